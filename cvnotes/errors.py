@@ -1,0 +1,186 @@
+"""What can go wrong, said in sentences that teach, and the guards of every public function.
+
+Two kinds of failure, one rule each. The whole input is unusable: an exception from this
+module. A single point has no image: its row is NaN. Guards copy what they are given to
+float64, so that no function can write to its input.
+"""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+class CvnotesError(ValueError):
+    """Base of all errors about values."""
+
+
+class ShapeError(CvnotesError):
+    """An array has the wrong shape, or two arrays do not belong together."""
+
+
+class DegenerateError(CvnotesError):
+    """The data do not determine what was asked for."""
+
+
+class CornersNotFound(CvnotesError):
+    """The board was not found in the picture."""
+
+
+class ConvergenceError(CvnotesError):
+    """An iteration did not reach its answer."""
+
+
+class FileError(CvnotesError):
+    """A file cannot be read as what it should be."""
+
+
+class InputTypeError(TypeError):
+    """Something that is not made of real numbers was given."""
+
+
+class CalibrationWarning(UserWarning):
+    """A result is usable but doubtful; the same sentence is in ``result.warnings``."""
+
+
+def numbers(x: Any, name: str) -> Array:
+    """Copy `x` to a float64 array of finite numbers, or say what is wrong with it.
+
+    Raises
+    ------
+    InputTypeError
+        `x` is None, text, complex, ragged, masked or otherwise no array of real numbers.
+    CvnotesError
+        `x` holds NaN or infinite values.
+
+    Examples
+    --------
+    >>> numbers([1, 2], "m")
+    array([1., 2.])
+    """
+    if x is None:
+        raise InputTypeError(f"{name}: expected numbers, got None (a missing return?)")
+    if isinstance(x, np.ma.MaskedArray):
+        raise InputTypeError(f"{name}: masked arrays are not read; pass the unmasked rows only")
+    try:
+        given = np.asarray(x)
+    except Exception as error:
+        raise InputTypeError(f"{name}: expected a numeric array; {error}") from error
+    if given.dtype.kind not in "iuf":
+        raise InputTypeError(
+            f"{name}: expected a numeric array, got {type(x).__name__} of {given.dtype}"
+        )
+    array = np.array(given, dtype=np.float64)
+    if not np.isfinite(array).all():
+        raise CvnotesError(f"{name} contains NaN or infinite values; drop those rows first")
+    return array
+
+
+def points(x: Any, name: str, *dims: int) -> Array:
+    """Guard points as rows: shape (..., d) with d one of `dims`.
+
+    Examples
+    --------
+    >>> points([100, 50], "m", 2)
+    array([100.,  50.])
+    """
+    array = numbers(x, name)
+    if array.ndim == 0 or array.shape[-1] not in dims:
+        wanted = " or ".join(f"(..., {d})" for d in dims)
+        hint = ""
+        if array.ndim == 2 and array.shape[0] in dims:
+            hint = "; points are rows here, so transpose it"
+        raise ShapeError(f"{name}: expected shape {wanted}, got {array.shape}{hint}")
+    return array
+
+
+def paired(a: Array, b: Array, names: tuple[str, str], *, at_least: int) -> None:
+    """Refuse two sets of points (..., n, d) that do not match one to one."""
+    if a.ndim < 2 or b.ndim < 2:
+        short = names[0] if a.ndim < 2 else names[1]
+        raise ShapeError(f"{short}: expected several points (..., n, d), got a single one")
+    if a.shape[-2] != b.shape[-2]:
+        raise ShapeError(
+            f"{names[0]} has {a.shape[-2]} points but {names[1]} has {b.shape[-2]}; "
+            "each point needs its partner in the same row"
+        )
+    if a.shape[-2] < at_least:
+        raise DegenerateError(f"need at least {at_least} points, got {a.shape[-2]}")
+
+
+def matrix(x: Any, name: str, *shape: int) -> Array:
+    """Guard one matrix, or a stack of them, of the given shape.
+
+    Examples
+    --------
+    >>> matrix([[1, 0], [0, 1]], "H", 2, 2).shape
+    (2, 2)
+    """
+    array = numbers(x, name)
+    if array.shape[-len(shape) :] != shape:
+        raise ShapeError(f"{name}: expected shape {shape}, got {array.shape}")
+    return array
+
+
+def rotation(x: Any, name: str = "R") -> Array:
+    """Guard a rotation (..., 3, 3): orthonormal to 1e-6 and with determinant +1."""
+    R = matrix(x, name, 3, 3)
+    deviation = float(np.abs(R @ R.mT - np.eye(3)).max(initial=0.0))
+    if deviation > 1e-6:
+        raise CvnotesError(
+            f"{name} is not orthonormal (R Rᵀ deviates from I by {deviation:.2g}); "
+            "rigid.nearest_rotation gives the closest rotation"
+        )
+    if (np.linalg.det(R) < 0).any():
+        raise CvnotesError(f"{name} has det = -1: a reflection, not a rotation")
+    return R
+
+
+def rigid_motion(x: Any, name: str = "G") -> Array:
+    """Guard a rigid motion (..., 4, 4) = [R T; 0 1]."""
+    G = matrix(x, name, 4, 4)
+    if not (G[..., 3, :] == [0, 0, 0, 1]).all():
+        raise CvnotesError(f"{name}: the last row of a rigid motion is (0, 0, 0, 1)")
+    rotation(G[..., :3, :3], f"the rotation in {name}")
+    return G
+
+
+def intrinsic_matrix(x: Any, name: str = "A") -> Array:
+    """Guard an intrinsic matrix: upper triangular, α_u and α_v positive, last entry 1."""
+    A = matrix(x, name, 3, 3)
+    if A.ndim != 2:
+        raise ShapeError(f"{name}: expected one (3, 3) matrix, got {A.shape}")
+    for i, j in ((1, 0), (2, 0), (2, 1)):
+        if A[i, j] != 0:
+            raise CvnotesError(
+                f"{name}[{i}, {j}] = {A[i, j]:g} but an intrinsic matrix is upper triangular "
+                "(transposed?)"
+            )
+    if A[2, 2] != 1:
+        raise CvnotesError(f"{name}[2, 2] = {A[2, 2]:g} but must be 1; divide {name} by it")
+    for i, letter in ((0, "alpha_u"), (1, "alpha_v")):
+        if A[i, i] <= 0:
+            raise CvnotesError(f"{name}[{i}, {i}] = {letter} = {A[i, i]:g} but must be positive")
+    return A
+
+
+def image_size(x: Any, name: str = "size") -> tuple[int, int]:
+    """Guard a size in pixels, (width, height), two positive integers.
+
+    Examples
+    --------
+    >>> image_size([640, 480])
+    (640, 480)
+    """
+    wanted = f"{name}: expected (width, height), two positive whole numbers, got {x!r}"
+    try:
+        width, height = x
+        whole = (int(width), int(height))
+        exact = whole == (width, height) and not isinstance(width, str | bytes)
+    except (TypeError, ValueError, OverflowError):
+        raise CvnotesError(wanted) from None
+    if not exact or min(whole) < 1:
+        raise CvnotesError(wanted)
+    return whole

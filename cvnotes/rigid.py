@@ -1,0 +1,220 @@
+"""Rigid motions between reference frames (notes 2b.2).
+
+G = [R T; 0 1] carries world points into the camera's frame: M = R W + T. T is where the world's
+origin is seen from the camera; the camera itself stands at C = −Rᵀ T.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.errors import (
+    Array,
+    CvnotesError,
+    DegenerateError,
+    matrix,
+    numbers,
+    points,
+    rigid_motion,
+    rotation,
+)
+
+
+def pose(R: npt.ArrayLike, T: npt.ArrayLike) -> Array:
+    """Join R (..., 3, 3) and T (..., 3) to the rigid motion G (..., 4, 4).
+
+    Examples
+    --------
+    >>> pose(np.eye(3), [1, 2, 3])[:3, 3]
+    array([1., 2., 3.])
+    """
+    R, T = rotation(R), points(T, "T", 3)
+    G = np.zeros((*np.broadcast_shapes(R.shape[:-2], T.shape[:-1]), 4, 4))
+    G[..., :3, :3], G[..., :3, 3], G[..., 3, 3] = R, T, 1.0
+    return G
+
+
+def inverse(G: npt.ArrayLike) -> Array:
+    """Invert rigid motions (..., 4, 4): [Rᵀ  −RᵀT; 0 1].
+
+    Examples
+    --------
+    >>> G = pose(rotation_from_vector([0, 0, 1]), [1, 2, 3])
+    >>> np.allclose(inverse(G) @ G, np.eye(4))
+    True
+    """
+    G = rigid_motion(G)
+    R_inv = G[..., :3, :3].mT
+    return pose(R_inv, -(R_inv @ G[..., :3, 3, None])[..., 0])
+
+
+def move(G: npt.ArrayLike, W: npt.ArrayLike) -> Array:
+    """Carry points W (..., 3) into the other frame: M = R W + T.
+
+    Examples
+    --------
+    >>> move(pose(np.eye(3), [0, 0, 5]), [1, 1, 0])
+    array([1., 1., 5.])
+    """
+    G, W = rigid_motion(G), points(W, "W", 3)
+    if W.ndim == 1:
+        return G[..., :3, :3] @ W + G[..., :3, 3]
+    return W @ G[..., :3, :3].mT + G[..., None, :3, 3]
+
+
+def rotation_from_vector(w: npt.ArrayLike) -> Array:
+    """Rotate about the axis w (..., 3) by ‖w‖ radians: R = exp([w]×) (Rodrigues' formula).
+
+    R = I + (sin θ / θ) [w]× + ((1 − cos θ) / θ²) [w]×².
+
+    Examples
+    --------
+    >>> rotation_from_vector([0, 0, np.pi / 2]).round(3) + 0.0
+    array([[ 0., -1.,  0.],
+           [ 1.,  0.,  0.],
+           [ 0.,  0.,  1.]])
+    """
+    return exp_so3(points(w, "w", 3))
+
+
+def vector_from_rotation(R: npt.ArrayLike) -> Array:
+    """Give the axis times the angle (..., 3), angle in [0, π], of rotations (..., 3, 3).
+
+    Goes through the quaternion of R, whose largest component is never small, so that angles
+    near 0 and near π keep all their digits.
+
+    Examples
+    --------
+    >>> vector_from_rotation(rotation_from_vector([0.1, -0.2, 0.3])).round(12)
+    array([ 0.1, -0.2,  0.3])
+    """
+    R = rotation(R)
+    t = np.trace(R, axis1=-2, axis2=-1)
+    # 4 q qᵀ, of which any row is the quaternion (x, y, z, w) up to scale.
+    Q = np.empty((*R.shape[:-2], 4, 4))
+    Q[..., :3, :3] = R + R.mT + (1 - t)[..., None, None] * np.eye(3)
+    Q[..., :3, 3] = Q[..., 3, :3] = np.stack(
+        [R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]], -1
+    )
+    Q[..., 3, 3] = 1 + t
+    largest = np.argmax(np.diagonal(Q, axis1=-2, axis2=-1), axis=-1)
+    q = np.take_along_axis(Q, largest[..., None, None], axis=-2)[..., 0, :]
+    q = q / np.linalg.norm(q, axis=-1, keepdims=True)
+    q = np.where(q[..., 3:] < 0, -q, q)
+    s = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
+    angle = 2 * np.arctan2(s, q[..., 3:])
+    factor = np.divide(angle, s, out=np.full_like(s, 2.0), where=s > 0)
+    return np.asarray(q[..., :3] * factor)
+
+
+def rotation_from_angles(x: float, y: float, z: float) -> Array:
+    """Rotate about the fixed axes x, then y, then z, by angles in radians: R = Rz Ry Rx.
+
+    Examples
+    --------
+    >>> np.allclose(rotation_from_angles(0, 0, 0.3), rotation_from_vector([0, 0, 0.3]))
+    True
+    """
+    Rx, Ry, Rz = exp_so3(np.diag(points([x, y, z], "angles", 3)))
+    return np.asarray(Rz @ Ry @ Rx)
+
+
+def nearest_rotation(M: npt.ArrayLike) -> Array:
+    """Give the rotation closest to M (..., 3, 3): R = U diag(1, 1, det(U Vᵀ)) Vᵀ.
+
+    Raises
+    ------
+    DegenerateError
+        M has rank below 2, so that no rotation is closest.
+
+    Examples
+    --------
+    >>> nearest_rotation(2 * np.eye(3))
+    array([[1., 0., 0.],
+           [0., 1., 0.],
+           [0., 0., 1.]])
+    """
+    U, s, Vt = np.linalg.svd(matrix(M, "M", 3, 3))
+    if (s[..., 1] <= 1e-12 * s[..., 0]).any():
+        raise DegenerateError("M has rank below 2: no rotation is closest to it")
+    U[..., :, 2] *= np.linalg.det(U @ Vt)[..., None]
+    return np.asarray(U @ Vt) + 0.0
+
+
+def look_at(eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike = (0, -1, 0)) -> Array:
+    """Give the G of a camera at `eye` that looks at `target`, both (3,) in the WRF.
+
+    `up` is the world direction that points up in the picture (the default: y runs down, as in
+    the camera's own frame).
+
+    Raises
+    ------
+    DegenerateError
+        `eye` and `target` coincide, or the line of sight is parallel to `up`.
+
+    Examples
+    --------
+    >>> look_at([0, 0, -5], [0, 0, 0])[:3, 3]
+    array([0., 0., 5.])
+    """
+    eye, up = points(eye, "eye", 3), points(up, "up", 3)
+    z = points(target, "target", 3) - eye
+    x = np.cross(z, up)
+    length = np.linalg.norm(z)
+    if length == 0:
+        raise DegenerateError("eye and target coincide: there is no line of sight")
+    if np.linalg.norm(x) <= 1e-9 * length * np.linalg.norm(up):
+        raise DegenerateError("the line of sight is parallel to up; choose another up")
+    z = z / length
+    x = x / np.linalg.norm(x)
+    R = np.stack([x, np.cross(z, x), z])
+    return pose(R, -R @ eye + 0.0)
+
+
+def exp_so3(w: Array) -> Array:
+    """Rotations (..., 3, 3) of rotation vectors (..., 3), without a guard: for use inside."""
+    theta2 = (w * w).sum(-1)
+    theta = np.sqrt(theta2)
+    small = theta < 1e-4
+    safe = np.where(small, 1.0, theta)
+    a = np.where(small, 1 - theta2 / 6, np.sin(safe) / safe)
+    b = np.where(small, 0.5 - theta2 / 24, 2 * (np.sin(safe / 2) / safe) ** 2)
+    x, y, z = w[..., 0], w[..., 1], w[..., 2]
+    R = b[..., None, None] * (w[..., :, None] * w[..., None, :])
+    c = 1 - b * theta2
+    for i, (p, q, v) in enumerate(((1, 2, x), (2, 0, y), (0, 1, z))):
+        R[..., i, i] += c
+        R[..., p, q] -= a * v
+        R[..., q, p] += a * v
+    return np.asarray(R)
+
+
+def chain(*motions: npt.ArrayLike) -> Array:
+    """Chain rigid motions from left to right as they are written: a ← b ← c is chain(ab, bc).
+
+    Examples
+    --------
+    >>> chain(pose(np.eye(3), [1, 0, 0]), pose(np.eye(3), [0, 2, 0]))[:3, 3]
+    array([1., 2., 0.])
+    """
+    if not motions:
+        raise CvnotesError("chain needs at least one rigid motion")
+    G = rigid_motion(motions[0])
+    for other in motions[1:]:
+        G = G @ rigid_motion(other)
+    return G
+
+
+def skew_matrix(v: npt.ArrayLike) -> Array:
+    """Give [v]× (..., 3, 3), the matrix of the cross product: [v]× w = v × w.
+
+    Examples
+    --------
+    >>> skew_matrix([1, 2, 3]) @ [4, 5, 6]
+    array([-3.,  6., -3.])
+    """
+    v = numbers(v, "v")
+    x, y, z = v[..., 0], v[..., 1], v[..., 2]
+    o = np.zeros_like(x)
+    return np.stack(
+        [np.stack([o, -z, y], -1), np.stack([z, o, -x], -1), np.stack([-y, x, o], -1)], -2
+    )
