@@ -8,6 +8,7 @@ offset from the distortion centre and r = ‖d‖,
 where p = (p2, p1) collects the notes' tangential terms in one vector.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -192,7 +193,7 @@ class Lens:
     def _factor_and_slope(self, r2: Array) -> tuple[Array, Array]:
         """Give L and 2 dL/d(r²), both as functions of r²."""
         slope = [2 * i * k for i, k in enumerate(self.k, start=1)]
-        return radial_factor(self.k, r2), _horner(slope, r2)
+        return radial_factor(self.k, r2), horner(slope, r2)
 
     def _radial_table(self, s_max: float) -> tuple[Array, Array]:
         """Tabulate r against r L(r), far enough to cover observed radii up to `s_max`."""
@@ -231,13 +232,13 @@ class Lens:
         return np.where(found[:, None], np.stack([x, y], -1), np.nan)
 
 
-def radial_factor(k: tuple[float, ...], r2: Array) -> Array:
+def radial_factor(k: Sequence[float], r2: Array) -> Array:
     """Give L as a function of r² by Horner's scheme, without a guard: for use inside."""
-    return 1 + r2 * _horner(k, r2)
+    return 1 + r2 * horner(k, r2)
 
 
-def _horner(coefficients: "tuple[float, ...] | list[float]", t: Array) -> Array:
-    """Evaluate the polynomial c0 + c1 t + c2 t² + … ."""
+def horner(coefficients: Sequence[float], t: Array) -> Array:
+    """Evaluate c0 + c1 t + c2 t² + … from its coefficients, without a guard: for use inside."""
     if not coefficients:
         return np.zeros_like(t)
     value = np.full_like(t, coefficients[-1])

@@ -36,7 +36,7 @@ def levenberg_marquardt(
     move: Callable[[X, Step], X],
     *,
     max_iterations: int = 100,
-    tolerance: float = 1e-12,
+    tolerance: float = 1e-14,
     floor: float = 0.0,
 ) -> Minimum[X, System]:
     """Minimise a sum of squares, starting from `x`.
@@ -54,8 +54,8 @@ def levenberg_marquardt(
     max_iterations : int
         Steps tried before giving up; the result then says ``converged=False``.
     tolerance, floor : float
-        Stop when the predicted decrease falls below ``tolerance * cost + floor``. The floor is
-        the cost that rounding alone causes.
+        Stop when the next step would gain less than ``tolerance * cost + floor``, if it shrinks
+        as much as this one did. The floor is the cost that rounding alone causes.
 
     Raises
     ------
@@ -81,15 +81,17 @@ def levenberg_marquardt(
     cost, system = linearise(x)
     if not np.isfinite(cost):
         raise ConvergenceError("the cost at the start is not finite: start closer to the answer")
-    damping = 0.0
+    damping, previous = 0.0, 0.0
     for iteration in range(1, max_iterations + 1):
         step, predicted = solve(system, damping)
         x_new = move(x, step)
         with np.errstate(all="ignore"):  # a step too far may leave the model; it is then refused
             cost_new, system_new = linearise(x_new)
-        close = predicted <= tolerance * cost + floor
+        next_gain = predicted * min(1.0, predicted / previous if previous > 0 else 1.0)
+        close = next_gain <= tolerance * cost + floor
         if cost_new < cost:
             x, cost, system = x_new, cost_new, system_new
+            previous = predicted if damping == 0 else 0.0
             damping = 0.1 * damping if damping > 1e-6 else 0.0
             if close:
                 return Minimum(x, cost, system, iteration, True)
@@ -98,7 +100,7 @@ def levenberg_marquardt(
         elif damping > 1e9:
             break
         else:
-            damping = max(10 * damping, 1e-3)
+            damping, previous = max(10 * damping, 1e-3), 0.0
     return Minimum(x, cost, system, iteration, False)
 
 

@@ -1,0 +1,328 @@
+"""Zhang's closed form: from homographies to A, the poses and the lens (notes 2b.4).
+
+Each view's H = λ A [r1 r2 T] puts two linear constraints on B = A⁻ᵀ A⁻¹, because r1 and r2 are
+orthonormal. With B known, A, then each pose, then the lens follow. Stacks of H are (..., 3, 3).
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.camera import xy_from_px
+from cvnotes.errors import (
+    Array,
+    CvnotesError,
+    DegenerateError,
+    ShapeError,
+    intrinsic_matrix,
+    matrix,
+    numbers,
+    paired,
+    points,
+    rigid_motion,
+)
+from cvnotes.rigid import nearest_rotation
+
+# The six entries of b and where they stand in the symmetric B.
+_B_ROWS, _B_COLUMNS = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
+
+
+def v_ij(H: npt.ArrayLike, i: int, j: int) -> Array:
+    """Give v_ij (..., 6) with h_iᵀ B h_j = v_ijᵀ b; i and j count columns of H from 1.
+
+    Examples
+    --------
+    >>> v_ij([[1, 0, 0], [0, 2, 0], [0, 0, 1]], 1, 2)
+    array([0., 2., 0., 0., 0., 0.])
+    """
+    H = matrix(H, "H", 3, 3)
+    if i not in (1, 2, 3) or j not in (1, 2, 3):
+        raise CvnotesError(f"i and j number the columns of H, 1 to 3; got {i} and {j}")
+    return _v(H[..., :, i - 1], H[..., :, j - 1])
+
+
+def constraints(H: npt.ArrayLike) -> Array:
+    """Stack the two constraints of each view to V (2n, 6): v_12ᵀ b = 0, (v_11 − v_22)ᵀ b = 0.
+
+    Each H is first scaled to ‖h1‖ ‖h2‖ = 1, so that its arbitrary scale gives it no weight.
+
+    Raises
+    ------
+    DegenerateError
+        A homography is singular; the message gives its index.
+
+    Examples
+    --------
+    >>> constraints(np.eye(3)[None])
+    array([[ 0.,  1.,  0.,  0.,  0.,  0.],
+           [ 1.,  0., -1.,  0.,  0.,  0.]])
+    """
+    H = matrix(H, "H", 3, 3)
+    H = H.reshape(-1, 3, 3)
+    columns = np.linalg.norm(H, axis=1)
+    bad = np.abs(np.linalg.det(H)) <= 1e-12 * columns.prod(-1)
+    if bad.any():
+        raise DegenerateError(f"homography {int(np.argmax(bad))} is singular: it shows no plane")
+    scale = np.sqrt(columns[:, 0] * columns[:, 1])[:, None]
+    h1, h2 = H[:, :, 0] / scale, H[:, :, 1] / scale
+    V = np.stack([_v(h1, h2), _v(h1, h1) - _v(h2, h2)], axis=1)
+    return V.reshape(-1, 6)
+
+
+def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
+    """Solve V b = 0 with ‖b‖ = 1 and the sign that makes B positive: b (6,).
+
+    b = (B11, B12, B22, B13, B23, B33). With ``skew=False``, B12 = 0 is imposed by leaving its
+    column out; then two views suffice (erratum E29), otherwise three are needed.
+
+    Raises
+    ------
+    DegenerateError
+        Too few views, or views that do not determine b (parallel or repeated boards).
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Estimation of intrinsic parameters".
+
+    Examples
+    --------
+    >>> A = np.array([[2.0, 0, 1], [0, 2, 1], [0, 0, 1]])
+    >>> R = [[[1, 0, 0], [0, 0.8, 0], [0, 0.6, 5]], [[0.8, 0, 0], [0, 1, 0], [0.6, 0, 5]]]
+    >>> (solve_b(constraints(A @ R)) * 2 * np.sqrt(10)).round(9) + 0.0
+    array([ 1.,  0.,  1., -1., -1.,  6.])
+    """
+    V = numbers(V, "V")
+    if V.ndim != 2 or V.shape[1] != 6:
+        raise ShapeError(f"V: expected (2n, 6), got {V.shape}")
+    kept = [0, 1, 2, 3, 4, 5] if skew else [0, 2, 3, 4, 5]
+    needed = 3 if skew else 2
+    if len(V) < 2 * needed:
+        raise DegenerateError(
+            f"need at least {needed} views {'with' if skew else 'without'} skew, got {len(V) // 2}"
+        )
+    _, s, Vt = np.linalg.svd(V[:, kept])
+    if s[len(kept) - 2] <= 1e-9 * s[0]:
+        raise DegenerateError(
+            "rank of V too low: the views do not determine the camera, because their boards are "
+            "parallel or repeated; tilt the board by 30 to 45 degrees in different directions"
+        )
+    b = np.zeros(6)
+    b[kept] = Vt[-1]
+    return np.asarray(b if b[0] > 0 else -b) + 0.0
+
+
+def intrinsics_from_b(b: npt.ArrayLike) -> Array:
+    """Give A (3, 3) from b (6,) by Cholesky: B = L Lᵀ and B ∝ A⁻ᵀ A⁻¹, so A ∝ L⁻ᵀ.
+
+    Raises
+    ------
+    DegenerateError
+        B is not positive definite: too much noise, or views that do not determine it.
+
+    Examples
+    --------
+    >>> intrinsics_from_b([1, 0, 1, -1, -1, 6]).round(9) + 0.0
+    array([[2., 0., 1.],
+           [0., 2., 1.],
+           [0., 0., 1.]])
+    """
+    try:
+        L = np.linalg.cholesky(_B(b))
+    except np.linalg.LinAlgError:
+        raise DegenerateError(_NOT_POSITIVE) from None
+    A = np.linalg.inv(L).T
+    return np.asarray(A / A[2, 2])
+
+
+def intrinsics_from_b_by_formulas(b: npt.ArrayLike) -> Array:
+    """Give A (3, 3) from b (6,) by Zhang's six formulas; the same A as `intrinsics_from_b`.
+
+    The notes leave them out (erratum E31). u0 = γ v0 / β − B13 α² / s, with β in the
+    denominator; the α often printed there is wrong.
+
+    Raises
+    ------
+    DegenerateError
+        B is not positive definite.
+
+    References
+    ----------
+    .. [1] Z. Zhang, PAMI 22 (2000) 1330-1334, appendix B.
+
+    Examples
+    --------
+    >>> intrinsics_from_b_by_formulas([1, 0, 1, -1, -1, 6]) + 0.0
+    array([[2., 0., 1.],
+           [0., 2., 1.],
+           [0., 0., 1.]])
+    """
+    B11, B12, B22, B13, B23, B33 = points(b, "b", 6).tolist()
+    minor = B11 * B22 - B12**2
+    if B11 <= 0 or minor <= 0:
+        raise DegenerateError(_NOT_POSITIVE)
+    v0 = (B12 * B13 - B11 * B23) / minor
+    s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11
+    if s <= 0:
+        raise DegenerateError(_NOT_POSITIVE)
+    alpha = np.sqrt(s / B11)
+    beta = np.sqrt(s * B11 / minor)
+    gamma = -B12 * alpha**2 * beta / s
+    u0 = gamma * v0 / beta - B13 * alpha**2 / s
+    return np.array([[alpha, gamma, u0], [0, beta, v0], [0, 0, 1]])
+
+
+def intrinsics_from_homographies(H: npt.ArrayLike, *, skew: bool = False) -> Array:
+    """Give A (3, 3) from the homographies (n, 3, 3) of n views: V, then b, then A.
+
+    Pixels far from the origin make V badly conditioned; `calibrate` hands over homographies
+    into a picture scaled to about [−1, 1].
+
+    Raises
+    ------
+    DegenerateError
+        Fewer than 2 views (3 with skew), or views that do not determine A.
+
+    Examples
+    --------
+    >>> A = np.array([[2.0, 0, 1], [0, 2, 1], [0, 0, 1]])
+    >>> R = [[[1, 0, 0], [0, 0.8, 0], [0, 0.6, 5]], [[0.8, 0, 0], [0, 1, 0], [0.6, 0, 5]]]
+    >>> intrinsics_from_homographies(A @ R).round(9) + 0.0
+    array([[2., 0., 1.],
+           [0., 2., 1.],
+           [0., 0., 1.]])
+    """
+    return intrinsics_from_b(solve_b(constraints(H), skew=skew))
+
+
+def focal_lengths_from_homographies(H: npt.ArrayLike, centre: npt.ArrayLike = (0, 0)) -> Array:
+    """Give A (3, 3) when its piercing point is known and its skew is zero.
+
+    With the pixels measured from `centre`, B = diag(1/α_u², 1/α_v², 1): the same constraints,
+    two unknowns. Less is asked of the views, so this start survives noise that the full closed
+    form does not.
+
+    Raises
+    ------
+    DegenerateError
+        The constraints have no solution with positive focal lengths.
+
+    Examples
+    --------
+    >>> R = [[[1, 0, 0], [0, 0.8, 0], [0, 0.6, 5]], [[0.8, 0, 0], [0, 1, 0], [0.6, 0, 5]]]
+    >>> focal_lengths_from_homographies(np.diag([2.0, 2, 1]) @ R).round(9)
+    array([[2., 0., 0.],
+           [0., 2., 0.],
+           [0., 0., 1.]])
+    """
+    u0, v0 = points(centre, "centre", 2)
+    to_centre = np.array([[1, 0, -u0], [0, 1, -v0], [0, 0, 1]])
+    V = constraints(to_centre @ matrix(H, "H", 3, 3))
+    B11, B22 = np.linalg.lstsq(V[:, [0, 2]], -V[:, 5], rcond=None)[0]
+    if B11 <= 0 or B22 <= 0:
+        raise DegenerateError(_NOT_POSITIVE)
+    return np.array([[B11**-0.5, 0, u0], [0, B22**-0.5, v0], [0, 0, 1]])
+
+
+def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
+    """Give the pose G (..., 4, 4) of each view, CRF ← board, from A and H (..., 3, 3).
+
+    λ r1 = A⁻¹ h1 and λ r2 = A⁻¹ h2 with two values of |λ| when there is noise; their mean is
+    taken (erratum E32), with the sign that puts the board in front of the camera (T_z > 0).
+    r3 = r1 × r2, and the SVD gives the rotation nearest to [r1 r2 r3] (erratum E33).
+
+    Raises
+    ------
+    DegenerateError
+        A homography is singular.
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Estimation of extrinsic parameters".
+
+    Examples
+    --------
+    >>> extrinsics(np.eye(3), -7 * np.diag([1.0, 1, 2]))[:3, 3] + 0.0
+    array([0., 0., 2.])
+    """
+    A, H = intrinsic_matrix(A), matrix(H, "H", 3, 3)
+    rays = np.linalg.inv(A) @ H  # λ [r1 r2 T]
+    lengths = np.linalg.norm(rays, axis=-2)
+    scale = (lengths[..., 0] + lengths[..., 1]) / 2
+    if not (np.abs(np.linalg.det(rays)) > 1e-14 * lengths.prod(-1)).all():
+        raise DegenerateError("a homography is singular: it shows no plane")
+    scale = np.where(rays[..., 2, 2] < 0, -scale, scale)
+    rays = rays / scale[..., None, None]
+    r1, r2 = rays[..., :, 0], rays[..., :, 1]
+    G = np.zeros((*H.shape[:-2], 4, 4))
+    G[..., :3, :3] = nearest_rotation(np.stack([r1, r2, np.cross(r1, r2)], axis=-1))
+    G[..., :3, 3], G[..., 3, 3] = rays[..., :, 2], 1
+    return G
+
+
+def radial_distortion(
+    A: npt.ArrayLike, G: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike, *, terms: int = 2
+) -> Array:
+    """Estimate k (terms,) by linear least squares, A and the poses being known: D k = d.
+
+    Parameters
+    ----------
+    A : array_like, shape (3, 3)
+        Intrinsic matrix.
+    G : array_like, shape (..., 4, 4)
+        Poses of the views.
+    W : array_like, shape (..., n, 3)
+        Board points; one set serves all views.
+    m : array_like, shape (..., n, 2)
+        Where the points were seen, in pixels.
+    terms : int
+        How many radial coefficients.
+
+    Notes
+    -----
+    Each point gives x̃ (k1 r² + k2 r⁴ + …) = x' − x̃, and so for y, with r the radius of the
+    *ideal* point (x̃, ỹ), as L(r) was defined. The notes print the radius of the observed
+    point; with that, even exact data give wrong coefficients (erratum E34).
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Estimation of lens distortion parameters".
+
+    Examples
+    --------
+    >>> W = np.array([[0.0, 0, 0], [0.5, 0, 0], [1, 0, 0], [1, 1, 0]])
+    >>> seen = W[:, :2] * (1 - 0.1 * (W**2).sum(-1, keepdims=True))
+    >>> G = np.eye(4)
+    >>> G[2, 3] = 1
+    >>> radial_distortion(np.eye(3), G, W, seen, terms=1).round(12)
+    array([-0.1])
+    """
+    A, G = intrinsic_matrix(A), rigid_motion(G)
+    W, m = points(W, "W", 3), points(m, "m", 2)
+    paired(W, m, ("W", "m"), at_least=1)
+    M = W @ G[..., :3, :3].mT + G[..., None, :3, 3]
+    ideal = M[..., :2] / M[..., 2:]
+    r2 = (ideal**2).sum(-1, keepdims=True)
+    powers = [ideal * r2**i for i in range(1, terms + 1)]
+    d = xy_from_px(A, m) - ideal
+    D = np.stack(powers, axis=-1).reshape(-1, terms)
+    return np.asarray(np.linalg.lstsq(D, d.ravel(), rcond=None)[0])
+
+
+_NOT_POSITIVE = (
+    "B is not positive definite, so no camera fits: the noise is too high, or the views do not "
+    "determine the camera (tilt the board by 30 to 45 degrees in different directions)"
+)
+
+
+def _v(a: Array, b: Array) -> Array:
+    """Give v (..., 6) with aᵀ B b = vᵀ b, for columns a and b (..., 3)."""
+    v = a[..., _B_ROWS] * b[..., _B_COLUMNS]
+    off = [1, 3, 4]
+    v[..., off] += (a[..., _B_COLUMNS] * b[..., _B_ROWS])[..., off]
+    return v
+
+
+def _B(b: npt.ArrayLike) -> Array:
+    b = points(b, "b", 6)
+    B = np.zeros((3, 3))
+    B[_B_ROWS, _B_COLUMNS] = B[_B_COLUMNS, _B_ROWS] = b
+    return B
