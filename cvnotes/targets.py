@@ -4,12 +4,13 @@ Every target is made of chessboards: ``faces`` gives each board with its pose in
 frame, ``points`` all inner corners, face after face and each in its board's own order.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from cvnotes.errors import Array, CvnotesError, image_size, numbers
 from cvnotes.rigid import move, pose
+from cvnotes.sheet import Sheet, lay_out
 
 Faces = tuple[tuple[Array, "Chessboard"], ...]
 
@@ -86,6 +87,31 @@ class Chessboard:
         """The board itself, in the pose (4, 4) that leaves it where it is."""
         return ((np.eye(4), self),)
 
+    def sheet(self, paper: str = "A4") -> Sheet:
+        """Lay the board out for printing, `square` read as millimetres.
+
+        Parameters
+        ----------
+        paper : {"A4", "Letter", "A3"}
+            The paper; it is turned as the board needs it.
+
+        Returns
+        -------
+        Sheet
+            With ``pdf()``, ``svg()`` and ``save(path)``.
+
+        Raises
+        ------
+        CvnotesError
+            The board does not fit; the message says what would.
+
+        Examples
+        --------
+        >>> Chessboard((9, 6), 25.0).sheet().pdf()[:4]
+        b'%PDF'
+        """
+        return lay_out(self.corners, self.square, paper)
+
 
 @dataclass(frozen=True)
 class TwoPlanes:
@@ -121,7 +147,7 @@ class TwoPlanes:
            [   0.,    0., -100.]])
     """
 
-    board: Chessboard = Chessboard()
+    board: Chessboard = field(default_factory=Chessboard)
     angle: float = np.pi / 2
     margin: float = 1.0
 
@@ -182,7 +208,7 @@ class ThreePlanes:
            [  50.,    0.,  -50.]])
     """
 
-    board: Chessboard = Chessboard()
+    board: Chessboard = field(default_factory=Chessboard)
     margin: float = 1.0
 
     def __post_init__(self) -> None:
