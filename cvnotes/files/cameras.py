@@ -1,0 +1,166 @@
+"""Cameras as files: our JSON, OpenCV's YAML, ROS's YAML."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import CvnotesError, FileError, intrinsic_matrix
+from cvnotes.files.entry import Entry
+from cvnotes.files.exchange import CameraInfo, camera_info, opencv_yaml, ros_yaml
+from cvnotes.files.strict import parse_json, parse_yaml, read_text
+from cvnotes.files.writing import PathLike, printable, write_whole
+from cvnotes.lens import Lens
+from cvnotes.rigid import pose
+
+FORMAT = "cvnotes camera"
+VERSION = 1
+
+
+def write_camera(camera: Camera, path: PathLike) -> None:
+    """Write a camera, whole or not at all: ``.json`` is ours, ``.yml`` or ``.yaml`` OpenCV's.
+
+    OpenCV's form holds sensor, lens and size but no pose.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from cvnotes.camera import intrinsics
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_camera(Camera(intrinsics(800, 805, 320, 240)), f"{folder}/camera.json")
+    ...     read_camera(f"{folder}/camera.json").A[1, 1]
+    np.float64(805.0)
+    """
+    if _is_yaml(path):
+        text = opencv_yaml(camera)
+    else:
+        text = dump({"format": FORMAT, "version": VERSION, **camera_to_dict(camera)})
+    write_whole({Path(path): text.encode()})
+
+
+def read_camera(path: PathLike) -> Camera:
+    """Read a camera: our JSON (also a whole calibration), OpenCV's YAML or ROS's.
+
+    Nothing in the file is executed. OpenCV's and ROS's cameras stand in the world's origin.
+
+    Raises
+    ------
+    FileError
+        The file does not describe a camera; the message names the key or the line.
+    """
+    if _is_yaml(path):
+        return read_camera_info(path).camera
+    return camera_from_entry(parse_json(read_text(path), printable(path)))
+
+
+def write_camera_info(info: CameraInfo, path: PathLike) -> None:
+    """Write a camera as the ``camera_info`` YAML of ROS, whole or not at all."""
+    write_whole({Path(path): ros_yaml(info).encode()})
+
+
+def read_camera_info(path: PathLike) -> CameraInfo:
+    """Read the ``camera_info`` YAML of ROS, or OpenCV's.
+
+    Raises
+    ------
+    FileError
+        The file does not describe a camera; the message names the key or the line.
+    """
+    return camera_info(parse_yaml(read_text(path), printable(path)))
+
+
+def camera_to_dict(camera: Camera) -> dict[str, Any]:
+    """Give a camera as plain values under the keys of our JSON.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> camera_to_dict(Camera(intrinsics(800, 800, 320, 240)))["image_size"]
+    [640, 480]
+    """
+    distortion: dict[str, Any] = {"k": list(camera.lens.k), "p": list(camera.lens.p)}
+    if any(camera.lens.centre):
+        distortion["centre"] = list(camera.lens.centre)
+    keys: dict[str, Any] = {
+        "image_size": list(camera.size),
+        "camera_matrix": camera.A.tolist(),
+        "distortion": distortion,
+    }
+    if not np.array_equal(camera.G, np.eye(4)):
+        keys["pose"] = pose_to_dict(camera.G)
+    return keys
+
+
+def camera_from_entry(entry: Entry) -> Camera:
+    """Make a camera of the keys of our JSON; others are left to whoever knows them."""
+    check_version(entry)
+    size = (entry["image_size"].array(2)).tolist()
+    A = entry["camera_matrix"].array(3, 3)
+    distortion = entry["distortion"]
+    centre, where = distortion.get("centre"), entry.get("pose")
+    try:
+        lens = Lens(
+            k=tuple(distortion["k"].array(None)),
+            p=tuple(distortion["p"].array(2)),
+            centre=(0.0, 0.0) if centre is None else tuple(centre.array(2)),
+        )
+        G = np.eye(4) if where is None else pose_from_entry(where)
+        return Camera(intrinsic_matrix(A, "camera_matrix"), G, lens, size)
+    except FileError:
+        raise
+    except CvnotesError as error:
+        raise entry.error(str(error)) from error
+
+
+def pose_to_dict(G: Any) -> dict[str, Any]:
+    """Give a rigid motion as R and T."""
+    G = np.asarray(G)
+    return {"R": G[:3, :3].tolist(), "T": G[:3, 3].tolist()}
+
+
+def pose_from_entry(entry: Entry) -> Any:
+    """Make the rigid motion G (4, 4) of R and T."""
+    try:
+        return pose(entry["R"].array(3, 3), entry["T"].array(3))
+    except FileError:
+        raise
+    except CvnotesError as error:
+        raise entry.error(str(error)) from error
+
+
+def check_version(entry: Entry) -> None:
+    """Refuse a JSON file that says it is something else, or something newer."""
+    form, version = entry.get("format"), entry.get("version")
+    if form is not None and not form.text().startswith("cvnotes "):
+        raise form.error(f"expected a cvnotes camera or calibration, got {form.text()!r:.40}")
+    if version is not None and version.whole() != VERSION:
+        raise version.error(
+            f"this cvnotes reads version {VERSION}, the file has {version.whole()}; "
+            "install the cvnotes that wrote it"
+        )
+
+
+def dump(keys: dict[str, Any]) -> str:
+    """Lay out JSON for the eye: a key per line, a small matrix a row per line."""
+    return _lay_out(keys, "") + "\n"
+
+
+def _lay_out(value: Any, indent: str) -> str:
+    inner = indent + "  "
+    if isinstance(value, dict) and value:
+        lines = [f"{json.dumps(k)}: {_lay_out(v, inner)}" for k, v in value.items()]
+        return "{\n" + ",\n".join(inner + line for line in lines) + f"\n{indent}}}"
+    nested = isinstance(value, list) and any(isinstance(v, dict | list) for v in value)
+    if nested and (len(value) <= 4 or any(isinstance(v, dict) for v in value)):
+        lines = [_lay_out(v, inner) for v in value]
+        return "[\n" + ",\n".join(inner + line for line in lines) + f"\n{indent}]"
+    return json.dumps(value, allow_nan=False)
+
+
+def _is_yaml(path: PathLike) -> bool:
+    suffix = Path(path).suffix.lower()
+    if suffix not in (".json", ".yml", ".yaml"):
+        raise FileError(f"{printable(path)}: a camera's file ends in .json, .yml or .yaml")
+    return suffix != ".json"

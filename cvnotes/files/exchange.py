@@ -1,0 +1,191 @@
+"""Cameras in the YAML of OpenCV and of ROS, both ways.
+
+Both give the distortion as k1, k2, p1, p2, k3 on pixels whose centres are integers, as we do, so
+that nothing is converted; what they cannot hold is refused rather than dropped.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array, CvnotesError, FileError, intrinsic_matrix, matrix, rotation
+from cvnotes.files.entry import Entry
+from cvnotes.lens import Lens
+
+
+@dataclass(frozen=True, eq=False)
+class CameraInfo:
+    """A camera as ROS describes it in a ``camera_info`` file.
+
+    Parameters
+    ----------
+    camera : Camera
+        Sensor, lens and size.
+    name : str
+        The camera's name.
+    rectification : array_like, shape (3, 3)
+        Rotation into the rectified frame; the identity unless the camera is one of a stereo pair.
+    projection : array_like, shape (3, 4), optional
+        Projection of the rectified picture; by default [A|0].
+
+    References
+    ----------
+    .. [1] ROS, message sensor_msgs/CameraInfo: D, K, R and P.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> CameraInfo(Camera(intrinsics(800, 800, 320, 240))).projection
+    array([[800.,   0., 320.,   0.],
+           [  0., 800., 240.,   0.],
+           [  0.,   0.,   1.,   0.]])
+    """
+
+    camera: Camera
+    name: str = "camera"
+    rectification: Array = field(default_factory=lambda: np.eye(3))
+    projection: npt.ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        P = self.camera.A @ np.eye(3, 4) if self.projection is None else self.projection
+        object.__setattr__(self, "projection", matrix(P, "projection", 3, 4))
+        object.__setattr__(self, "rectification", rotation(self.rectification, "rectification"))
+
+
+def opencv_yaml(camera: Camera) -> str:
+    """Spell a camera as ``cv2.FileStorage`` of OpenCV 4 and 5 reads it.
+
+    Raises
+    ------
+    CvnotesError
+        The lens has more than k1 k2 p1 p2 k3, or a distortion centre of its own.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> opencv_yaml(Camera(intrinsics(800, 800, 320, 240))).splitlines()[:3]
+    ['%YAML:1.0', '---', 'image_width: 640']
+    """
+    size = f"image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
+    note = "# OpenCV keeps the skew in the matrix but does not use it.\n" if camera.A[0, 1] else ""
+    K = _opencv_matrix("camera_matrix", camera.A)
+    D = _opencv_matrix("distortion_coefficients", opencv_coefficients(camera.lens)[None])
+    return f"%YAML:1.0\n---\n{size}{note}{K}{D}"
+
+
+def ros_yaml(info: CameraInfo) -> str:
+    """Spell a camera as ROS's camera_info_manager and calibrators read it.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> info = CameraInfo(Camera(intrinsics(800, 800, 320, 240)), name="left")
+    >>> print(ros_yaml(info).splitlines()[2])
+    camera_name: "left"
+    """
+    if not info.name.isprintable() or set(info.name) & {'"', "\\"}:
+        raise CvnotesError(f"name: expected plain text without quotes, got {info.name!r}")
+    camera = info.camera
+    return (
+        f"image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
+        f'camera_name: "{info.name}"\n'
+        + _ros_matrix("camera_matrix", camera.A)
+        + "distortion_model: plumb_bob\n"
+        + _ros_matrix("distortion_coefficients", opencv_coefficients(camera.lens)[None])
+        + _ros_matrix("rectification_matrix", info.rectification)
+        + _ros_matrix("projection_matrix", np.asarray(info.projection))
+    )
+
+
+def camera_info(entry: Entry) -> CameraInfo:
+    """Understand the YAML of OpenCV or of ROS; OpenCV's has no name and no rectification."""
+    model = entry.get("distortion_model")
+    if model is not None and model.text() not in ("plumb_bob", "rational_polynomial"):
+        raise model.error(f"the lens model {model.text()!r} is not one of ours (plumb_bob is)")
+    name = entry.get("camera_name")
+    R, P = entry.get("rectification_matrix"), entry.get("projection_matrix")
+    size = (entry["image_width"].whole(), entry["image_height"].whole())
+    A, d = _read_matrix(entry["camera_matrix"]), _read_matrix(entry["distortion_coefficients"])
+    try:
+        lens = lens_from_opencv(d.ravel())
+        return CameraInfo(
+            Camera(intrinsic_matrix(A, "camera_matrix"), lens=lens, size=size),
+            name.text() if name is not None else "camera",
+            _read_matrix(R) if R is not None else np.eye(3),
+            _read_matrix(P) if P is not None else None,
+        )
+    except CvnotesError as error:
+        raise FileError(f"{entry.file}: {error}") from error
+
+
+def opencv_coefficients(lens: Lens) -> Array:
+    """Give OpenCV's (k1, k2, p1, p2, k3) of a lens, shape (5,).
+
+    Examples
+    --------
+    >>> opencv_coefficients(Lens(k=(-0.25,), p=(0.001, 0.002)))
+    array([-0.25 ,  0.   ,  0.001,  0.002,  0.   ])
+    """
+    if any(lens.centre) or any(lens.k[3:]):
+        raise CvnotesError(
+            "OpenCV and ROS hold k1 k2 p1 p2 k3 about the piercing point; this lens has "
+            f"more ({lens}); keep it as JSON"
+        )
+    k1, k2, k3 = (*lens.k, 0.0, 0.0, 0.0)[:3]
+    return np.array([k1, k2, *lens.p, k3])
+
+
+def lens_from_opencv(coefficients: npt.ArrayLike) -> Lens:
+    """Make a lens of OpenCV's 4 or 5 coefficients (k1, k2, p1, p2[, k3]).
+
+    Longer lists, as the rational model has, are accepted where the rest is zero.
+
+    Examples
+    --------
+    >>> lens_from_opencv([-0.25, 0.1, 0.001, 0.0])
+    Lens(k=(-0.25, 0.1), p=(0.001, 0.0), centre=(0.0, 0.0))
+    """
+    d = np.asarray(coefficients, dtype=np.float64)
+    if d.shape not in ((4,), (5,), (8,), (12,), (14,)) or d[5:].any():
+        raise CvnotesError(
+            f"distortion: expected 4 or 5 coefficients (k1, k2, p1, p2, k3), got {d.size}"
+            + (", of which some of the rational model are not zero" if d[5:].any() else "")
+        )
+    k = d[[0, 1, 4]] if d[4:5].any() else d[:2]
+    return Lens(k=tuple(k), p=(d[2], d[3]))
+
+
+def _number(x: float) -> str:
+    """Spell a float exactly; PyYAML takes 1e-05 for text, so the mantissa always has a point."""
+    mantissa, e, exponent = repr(float(x)).partition("e")
+    return (mantissa if "." in mantissa else mantissa + ".0") + e + exponent
+
+
+def _rows(M: Array) -> str:
+    """Spell the numbers of a matrix, a row per line."""
+    return ",\n      ".join(", ".join(_number(x) for x in row) for row in M)
+
+
+def _opencv_matrix(key: str, M: Array) -> str:
+    rows, cols = M.shape
+    head = f"{key}: !!opencv-matrix\n   rows: {rows}\n   cols: {cols}\n   dt: d\n"
+    return f"{head}   data: [ {_rows(M)} ]\n"
+
+
+def _ros_matrix(key: str, M: Array) -> str:
+    return f"{key}:\n  rows: {M.shape[0]}\n  cols: {M.shape[1]}\n  data: [{_rows(M)}]\n"
+
+
+def _read_matrix(entry: Entry) -> Array:
+    """Read {rows, cols, data} or OpenCV 5's {sizes, data}."""
+    sizes = entry.get("sizes")
+    if sizes is not None:
+        shape = [item.whole() for item in sizes]
+    else:
+        shape = [entry["rows"].whole(), entry["cols"].whole()]
+    data = entry["data"].array(None)
+    if min(shape) < 0 or data.size != np.prod(shape, dtype=object):
+        raise entry.error(f"expected {'×'.join(map(str, shape))} values in data, got {data.size}")
+    return data.reshape(shape)

@@ -1,0 +1,88 @@
+"""Files written whole or not at all."""
+
+import os
+import secrets
+from collections.abc import Mapping
+from pathlib import Path
+
+from cvnotes.errors import FileError
+
+PathLike = str | os.PathLike[str]
+
+
+def printable(path: PathLike) -> str:
+    r"""Spell a path so that any terminal and any JSON file can hold it.
+
+    Line breaks, control characters and bytes that are no UTF-8 become escapes.
+
+    Examples
+    --------
+    >>> print(printable("two\nlines.jpg"))
+    two\nlines.jpg
+    """
+    text = os.fspath(path).encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def write_whole(contents: Mapping[Path, bytes]) -> None:
+    """Write files so that each is complete or, if anything goes wrong, as it was before.
+
+    All contents go to temporary files beside their targets, flushed to the disk; only when
+    every one of them is there, they take their targets' names. No temporary file stays behind,
+    whatever interrupts. Missing folders are made.
+
+    Parameters
+    ----------
+    contents : mapping of Path to bytes
+        What to write, and where. An existing regular file is replaced.
+
+    Raises
+    ------
+    FileError
+        A file cannot be written there: with the reason in words.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     target = Path(folder, "new", "note.txt")
+    ...     write_whole({target: b"hello"})
+    ...     target.read_text()
+    'hello'
+    """
+    staged: list[tuple[Path, Path]] = []
+    target = Path()
+    try:
+        for target, data in contents.items():
+            final = _checked(target)
+            # The name is noted before the file exists: an interruption in between leaves nothing.
+            staged.append((final.with_name(f".cvnotes-{secrets.token_hex(8)}.tmp"), final))
+            _write_and_sync(staged[-1][0], data)
+        for temporary, target in staged:
+            temporary.replace(target)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise FileError(f"{printable(target)} cannot be written: {reason}") from error
+    finally:
+        for temporary, _ in staged:
+            temporary.unlink(missing_ok=True)
+
+
+def _checked(target: Path) -> Path:
+    """Follow links, make the folder, and refuse what must not be replaced."""
+    final = target.resolve()
+    if final.is_dir():
+        raise FileError(f"{printable(target)} cannot be written: it is a folder")
+    if final.exists() and not final.is_file():
+        raise FileError(f"{printable(target)} cannot be written: it is not a regular file")
+    if final.exists() and not os.access(final, os.W_OK):
+        raise FileError(f"{printable(target)} cannot be written: it is read-only")
+    final.parent.mkdir(parents=True, exist_ok=True)
+    return final
+
+
+def _write_and_sync(path: Path, data: bytes) -> None:
+    with path.open("xb") as stream:
+        stream.write(data)
+        stream.flush()
+        os.fsync(stream.fileno())
