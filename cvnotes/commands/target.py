@@ -1,0 +1,88 @@
+"""``cvnotes target``: write a chessboard to print."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from cvnotes.errors import CvnotesError
+from cvnotes.files.writing import printable, write_whole
+from cvnotes.sheet import PAPERS
+from cvnotes.targets import Chessboard
+
+
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command's arguments."""
+    parser = subparsers.add_parser(
+        "target",
+        help="write a chessboard to print, in true millimetres",
+        description="Write a chessboard to print, as PDF or SVG in true millimetres, with a ruler "
+        "that shows whether the printer kept the scale.",
+    )
+    parser.add_argument(
+        "--corners", type=corners, default=(9, 6), metavar="9x6", help="inner corners (default 9x6)"
+    )
+    parser.add_argument(
+        "--square", type=length, default=25.0, metavar="25", help="side of a square in mm"
+    )
+    parser.add_argument("--paper", choices=list(PAPERS), default="A4", help="default A4")
+    parser.add_argument(
+        "--out", required=True, metavar="board.pdf", help="file to write, .pdf or .svg"
+    )
+    parser.add_argument(
+        "--half-turn-symmetric",
+        action="store_true",
+        help="allow a board whose origin no picture can tell",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the sheet; give the exit code: 0 done, 1 cannot, 2 no such board."""
+    try:
+        board = Chessboard(args.corners, args.square, args.half_turn_symmetric)
+    except CvnotesError as error:
+        print(f"cvnotes target: {error}", file=sys.stderr)
+        return 2
+    try:
+        write_whole({Path(args.out): board.sheet(args.paper).encoded(args.out)})
+    except CvnotesError as error:
+        print(f"cvnotes target: {error}", file=sys.stderr)
+        return 1
+    print(f"{printable(args.out)}: print it at 100 %, and check that its ruler is 100 mm long")
+    return 0
+
+
+def corners(text: str) -> tuple[int, int]:
+    """Read inner corners as ``9x6``.
+
+    Examples
+    --------
+    >>> corners("9x6")
+    (9, 6)
+    """
+    columns, _, rows = text.lower().replace("×", "x").partition("x")
+    if not (_is_count(columns) and _is_count(rows)):
+        raise argparse.ArgumentTypeError(f"expected inner corners such as 9x6, got {text!r}")
+    return int(columns), int(rows)
+
+
+def length(text: str) -> float:
+    """Read a positive length, with a decimal point.
+
+    Examples
+    --------
+    >>> length("24.8")
+    24.8
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        comma = "; write a point for the comma" if "," in text else ""
+        raise argparse.ArgumentTypeError(f"expected a length such as 25, got {text!r}{comma}")
+    return value
+
+
+def _is_count(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 5
