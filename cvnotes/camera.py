@@ -1,7 +1,7 @@
 """The camera: the perspective projection matrix and what it is made of (notes 2b.1-2b.3)."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -42,7 +42,7 @@ def px_from_xy(A: npt.ArrayLike, xy: npt.ArrayLike) -> Array:
     >>> px_from_xy(intrinsics(800, 805, 320, 240), [0.1, 0.2])
     array([400., 401.])
     """
-    return _px_from_xy(intrinsic_matrix(A), points(xy, "xy", 2))
+    return pixels(intrinsic_matrix(A), points(xy, "xy", 2))
 
 
 def xy_from_px(A: npt.ArrayLike, m: npt.ArrayLike) -> Array:
@@ -53,10 +53,7 @@ def xy_from_px(A: npt.ArrayLike, m: npt.ArrayLike) -> Array:
     >>> xy_from_px(intrinsics(800, 805, 320, 240), [400, 401])
     array([0.1, 0.2])
     """
-    A, m = intrinsic_matrix(A), points(m, "m", 2)
-    y = (m[..., 1] - A[1, 2]) / A[1, 1]
-    x = (m[..., 0] - A[0, 2] - A[0, 1] * y) / A[0, 0]
-    return np.stack([x, y], axis=-1)
+    return np.stack(_xy_from_px(intrinsic_matrix(A), points(m, "m", 2)), axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +155,7 @@ class Camera:
         z = M[..., 2:]
         xy = np.divide(M[..., :2], z, out=np.full_like(M[..., :2], np.nan), where=z > 0)
         # 3. lens, 4. sensor
-        return _px_from_xy(self.A, self.lens._distort(xy))
+        return pixels(self.A, self.lens._distort(xy))
 
     def ideal(self, m: npt.ArrayLike) -> Array:
         """Undo sensor and lens: pixels (..., 2) to ideal coordinates on the plane z = 1.
@@ -170,7 +167,7 @@ class Camera:
         >>> Camera(intrinsics(800, 800, 320, 240)).ideal([400, 240])
         array([0.1, 0. ])
         """
-        return self.lens.undistort(xy_from_px(self.A, m))
+        return self.lens._undistort(points(m, "m", 2), partial(_xy_from_px, self.A))
 
     def ray(self, m: npt.ArrayLike) -> Array:
         """Give the direction in the WRF of the ray that pixels (..., 2) see, as unit vectors.
@@ -275,10 +272,16 @@ def decompose(P: npt.ArrayLike) -> tuple[Array, Array, Array]:
     return np.triu(A / A[2, 2]), R, T
 
 
-def _px_from_xy(A: Array, xy: Array) -> Array:
-    """Apply A without a guard; NaN rows stay NaN."""
+def pixels(A: Array, xy: Array) -> Array:
+    """Apply A without a guard, so that NaN rows stay NaN: for use inside."""
     x, y = xy[..., 0], xy[..., 1]
     return np.stack([A[0, 0] * x + A[0, 1] * y + A[0, 2], A[1, 1] * y + A[1, 2]], axis=-1)
+
+
+def _xy_from_px(A: Array, m: Array) -> tuple[Array, Array]:
+    """Undo A without a guard, and give the two columns."""
+    y = (m[..., 1] - A[1, 2]) / A[1, 1]
+    return (m[..., 0] - A[0, 2] - A[0, 1] * y) / A[0, 0], y
 
 
 def centre_of(P: npt.ArrayLike) -> Array:

@@ -259,7 +259,8 @@ def _null_vector(src: Array, dst: Array) -> Array:
     h = vectors[..., 0]
     doubtful = values[..., 1] < 1e-5 * values[..., 8]
     if doubtful.any():
-        _, s, Vt = np.linalg.svd(_design_matrix(src, dst)[doubtful])
+        D = _design_matrix(src, dst)[doubtful]
+        _, s, Vt = np.linalg.svd(D, full_matrices=D.shape[-2] < 9)
         if (s[..., 7] <= _RANK * s[..., 0]).any():
             raise DegenerateError(_why_degenerate(src, dst))
         h[doubtful] = Vt[..., 8, :]

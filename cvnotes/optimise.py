@@ -36,7 +36,7 @@ def levenberg_marquardt(
     move: Callable[[X, Step], X],
     *,
     max_iterations: int = 100,
-    tolerance: float = 1e-14,
+    tolerance: float = 1e-12,
     floor: float = 0.0,
 ) -> Minimum[X, System]:
     """Minimise a sum of squares, starting from `x`.

@@ -7,13 +7,14 @@ parameters and on that view's own pose only, so the normal matrix has the shape 
 cost grows linearly with the number of views.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from cvnotes.camera import intrinsics
+from cvnotes.camera import intrinsics, pixels
 from cvnotes.errors import Array, DegenerateError
 from cvnotes.lens import Lens, horner, radial_factor
 from cvnotes.optimise import Minimum, levenberg_marquardt
@@ -41,6 +42,7 @@ class Arrow(NamedTuple):
     poses: Array  # (n_views, 6, 6)
     g_shared: Array  # (q,)
     g_poses: Array  # (n_views, 6)
+    view_costs: Array  # (n_views,) rᵀr of each view
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ class Problem:
 
     W: Array
     m: Array
-    seen: Array | None = None
+    seen: npt.NDArray[np.bool_] | None = None
     skew: bool = False
     n_radial: int = 2
     tangential: bool = False
@@ -77,6 +79,23 @@ class Problem:
         names += [f"k{i}" for i in range(1, self.n_radial + 1)]
         names += ["p1", "p2"] * self.tangential
         object.__setattr__(self, "names", tuple(names))
+
+    @property
+    def n_seen(self) -> int:
+        """How many points were seen, over all views."""
+        return self.m[..., 0].size if self.seen is None else int(self.seen.sum())
+
+    @property
+    def n_seen_by_view(self) -> Array:
+        """How many points were seen in each view."""
+        n_views, n = self.m.shape[:2]
+        return np.full(n_views, float(n)) if self.seen is None else self.seen.sum(1, dtype=float)
+
+    def some(self, views: npt.NDArray[np.intp]) -> "Problem":
+        """Keep some of the views."""
+        W = self.W if self.W.ndim == 2 else self.W[views]
+        seen = None if self.seen is None else self.seen[views]
+        return replace(self, W=W, m=self.m[views], seen=seen)
 
     def state(self, A: Array, lens: Lens, poses: Array) -> State:
         """Give the state that stands for a camera and its poses (n_views, 4, 4)."""
@@ -97,119 +116,121 @@ class Problem:
     def linearise(self, x: State) -> tuple[float, Arrow]:
         """Give the cost and the normal equations at x."""
         q, n_views = len(x.shared), len(self.m)
-        normal, cost = np.empty((n_views, q + 7, q + 6)), 0.0
+        normal, costs = np.empty((n_views, q + 7, q + 6)), np.empty(n_views)
         workspace = self._workspace()
         for i in range(0, n_views, _CHUNK):
             part = slice(i, i + _CHUNK)
-            J = self._jacobian(x, part, workspace)
+            u, v = self._jacobian(x, part, workspace).transpose(1, 2, 0, 3)
             # Two factors of different shape: for J Jᵀ with itself NumPy takes a slower road.
-            np.matmul(J, J[:, :-1].mT, out=normal[part])
-            cost += float(np.vdot(J[:, -1], J[:, -1]))
+            normal[part] = u @ u[:, :-1].mT + v @ v[:, :-1].mT
+            costs[part] = (u[:, -1] ** 2 + v[:, -1] ** 2).sum(-1)
         arrow = Arrow(
             normal[:, :q, :q].sum(0),
             normal[:, q:-1, :q],
             normal[:, q:-1, q:],
             normal[:, -1, :q].sum(0),
             normal[:, -1, q:],
+            costs,
         )
-        return cost, arrow
+        return float(costs.sum()), arrow
+
+    def predicted(self, A: Array, lens: Lens, x: State) -> Array:
+        """Where the camera shows the points, (n_views, n, 2); NaN where the lens folds."""
+        M = self.W @ x.R.mT + x.T[:, None]
+        return pixels(A, lens.distort(M[..., :2] / M[..., 2:]))
 
     def jacobian(self, x: State) -> tuple[Array, Array]:
         """Give J and r (predicted minus observed) of each view, for whoever wants to check them.
 
-        J is (n_views, 2n, q + 6): the shared parameters, then ω and T; r is (n_views, 2n). Rows
-        are all u, then all v.
+        J is (n_views, n, 2, q + 6): the shared parameters, then ω and T; r is (n_views, n, 2).
         """
-        parts = [self._jacobian(x, slice(i, i + 1), self._workspace()) for i in range(len(self.m))]
-        both = np.concatenate(parts).mT
+        views = [
+            self._jacobian(x, slice(i, i + 1), self._workspace()).transpose(2, 3, 1, 0)
+            for i in range(len(self.m))
+        ]
+        both = np.concatenate(views)
         return both[..., :-1], both[..., -1]
 
     @cached_property
     def _by_coordinate(self) -> tuple[Array, Array]:
         """W and m with the coordinates before the points, so that each is one run of memory."""
-        return np.ascontiguousarray(self.W.mT), np.ascontiguousarray(self.m.mT)
+        return np.ascontiguousarray(self.W.mT), np.ascontiguousarray(self.m.transpose(2, 0, 1))
 
     def _workspace(self) -> Array:
         """Allocate [J r]ᵀ for a chunk of views, with the entries that never change."""
-        J = np.zeros((min(_CHUNK, len(self.m)), len(self.names) + 7, 2, self.m.shape[1]))
-        J[:, self.names.index("u0"), 0] = J[:, self.names.index("v0"), 1] = 1
+        n_views, n = self.m.shape[:2]
+        J = np.zeros((len(self.names) + 7, 2, min(_CHUNK, n_views), n))
+        J[self.names.index("u0"), 0] = J[self.names.index("v0"), 1] = 1
         return J
 
     def _jacobian(self, x: State, part: slice, workspace: Array) -> Array:
-        """Give [J r]ᵀ of some views, (views, q + 7, 2n): one row per parameter, then r.
+        """Give [J r]ᵀ of some views, (q + 7, 2, views, n): one row per parameter, then r.
 
         The residual is m̂ − m. The pose moves as R ← exp(ω) R, T ← T + dT, so a point moves by
-        dM = ω × (R W) + dT.
+        dM = ω × (R W) + dT. Coordinates stand before views and points, so that each operation
+        below runs through one piece of memory.
         """
-        W, m = self._by_coordinate
-        RW = x.R[part] @ (W if W.ndim == 2 else W[part])
-        Yx, Yy, Yz = RW[:, 0], RW[:, 1], RW[:, 2]
-        Tx, Ty, Tz = x.T[part].T[..., None]
-        over_z = 1 / (Yz + Tz)
-        X, Y = (Yx + Tx) * over_z, (Yy + Ty) * over_z  # 2. ideal image point
-
         value = dict(zip(self.names, x.shared.tolist(), strict=True))
         alpha_u, alpha_v, skew = value["alpha_u"], value["alpha_v"], value.get("skew", 0.0)
+        k = [value[f"k{i}"] for i in range(1, self.n_radial + 1)]
+        W, m = self._by_coordinate
+        m = m[:, part]
+        J = workspace[:, :, : m.shape[1]]
         q = len(x.shared)
-        J = workspace[: len(X)]
-        row = dict(zip(self.names, range(q), strict=True))
+        by_lens, by_omega, by_T, residual = J[4 + self.skew : q], J[q : q + 3], J[q + 3 : -1], J[-1]
 
-        # 3. lens, and its derivatives by its own coefficients
+        # 1. into the CRF, 2. divided by z
+        R, T = x.R[part], x.T[part].T[..., None]
+        RW = R.transpose(1, 0, 2) @ W if W.ndim == 2 else (R @ W[part]).transpose(1, 0, 2).copy()
+        over_z = 1 / (RW[2] + T[2])
+        xy = (RW[:2] + T[:2]) * over_z
+        X, Y = xy
+
+        # 3. the lens: d(x', y') by its coefficients, and D = d(x', y')/d(x, y)
         XX, XY, YY = X * X, X * Y, Y * Y
         r2 = XX + YY
-        k = [value[f"k{i}"] for i in range(1, self.n_radial + 1)]
-        L = radial_factor(k, r2)
-        slope = horner([2 * i * ki for i, ki in enumerate(k, start=1)], r2)
-        power_x, power_y = X, Y
-        for i in range(1, self.n_radial + 1):
-            power_x, power_y = power_x * r2, power_y * r2
-            self._lens_row(J[:, row[f"k{i}"]], power_x, power_y, alpha_u, skew, alpha_v)
-        x_lens, y_lens = L * X, L * Y
-        J11, J12, J22 = L + slope * XX, slope * XY, L + slope * YY
+        power = xy
+        for i in range(self.n_radial):
+            power = np.multiply(power, r2, out=by_lens[i])
+        L, slope = radial_factor(k, r2), horner([2 * i * ki for i, ki in enumerate(k, 1)], r2)
+        xy_lens = L * xy
+        D11, D12, D22 = L + slope * XX, slope * XY, L + slope * YY
         if self.tangential:
             p1, p2 = value["p1"], value["p2"]
-            dx, dy, both = r2 + 2 * XX, r2 + 2 * YY, 2 * XY
-            self._lens_row(J[:, row["p1"]], both, dy, alpha_u, skew, alpha_v)
-            self._lens_row(J[:, row["p2"]], dx, both, alpha_u, skew, alpha_v)
-            x_lens += p1 * both + p2 * dx
-            y_lens += p1 * dy + p2 * both
-            J11 += 6 * p2 * X + 2 * p1 * Y
-            J12 += 2 * (p1 * X + p2 * Y)
-            J22 += 2 * p2 * X + 6 * p1 * Y
+            by_p1, by_p2 = by_lens[-2:]
+            by_p1[0] = by_p2[1] = 2 * XY
+            by_p1[1], by_p2[0] = r2 + 2 * YY, r2 + 2 * XX
+            xy_lens += p1 * by_p1 + p2 * by_p2
+            along = 2 * (p2 * X + p1 * Y)
+            D11 += along + (4 * p2) * X
+            D12 += (2 * p1) * X + (2 * p2) * Y
+            D22 += along + (4 * p1) * Y
 
-        # 4. sensor
-        J[:, row["alpha_u"], 0], J[:, row["alpha_v"], 1] = x_lens, y_lens
-        J[:, -1, 0] = alpha_u * x_lens + (value["u0"] - m[part, 0])
-        J[:, -1, 1] = alpha_v * y_lens + (value["v0"] - m[part, 1])
+        # 4. the sensor turns x', y' and all their derivatives into pixels
+        J[0, 0], J[1, 1] = xy_lens
+        residual[0] = alpha_u * xy_lens[0] + (value["u0"] - m[0])
+        residual[1] = alpha_v * xy_lens[1] + (value["v0"] - m[1])
         if self.skew:
-            J[:, row["skew"], 0] = y_lens
-            J[:, -1, 0] += skew * y_lens
+            J[2, 0] = xy_lens[1]
+            residual[0] += skew * xy_lens[1]
+            by_lens[:, 0] += (skew / alpha_u) * by_lens[:, 1]
+        by_lens[:, 0] *= alpha_u
+        by_lens[:, 1] *= alpha_v
 
-        # 1. pose: the pixel's derivatives by the point in the CRF, then by ω and T
-        pixel = ((alpha_u * J11 + skew * J12, alpha_u * J12 + skew * J22),
-                 (alpha_v * J12, alpha_v * J22))  # fmt: skip
-        for c, (by_x, by_y) in enumerate(pixel):
-            gX, gY = by_x * over_z, by_y * over_z
-            gZ = X * gX + Y * gY  # minus the derivative by z
-            J[:, q, c], J[:, q + 1, c] = -Yy * gZ - Yz * gY, Yz * gX + Yx * gZ
-            J[:, q + 2, c] = Yx * gY - Yy * gX
-            J[:, q + 3, c], J[:, q + 4, c], J[:, q + 5, c] = gX, gY, -gZ
-        if self.seen is not None:
-            J = J * self.seen[part, None, None, :]
-        return J.reshape(len(J), q + 7, -1)
-
-    @staticmethod
-    def _lens_row(
-        out: Array, by_x: Array, by_y: Array, alpha_u: float, skew: float, alpha_v: float
-    ) -> None:
-        """Write the derivative of the pixel by a lens coefficient, from that of (x', y')."""
-        out[:, 0] = alpha_u * by_x
-        if skew:
-            out[:, 0] += skew * by_y
-        out[:, 1] = alpha_v * by_y
+        # and the pose: by T, then by ω, where d/dω = (R W) × d/dT
+        by_x = alpha_u * D11 + skew * D12, alpha_v * D12
+        by_y = alpha_u * D12 + skew * D22, alpha_v * D22
+        for c in range(2):
+            gX = np.multiply(by_x[c], over_z, out=by_T[0, c])
+            gY = np.multiply(by_y[c], over_z, out=by_T[1, c])
+            gZ = np.negative(X * gX + Y * gY, out=by_T[2, c])
+            np.subtract(RW[1] * gZ, RW[2] * gY, out=by_omega[0, c])
+            np.subtract(RW[2] * gX, RW[0] * gZ, out=by_omega[1, c])
+            np.subtract(RW[0] * gY, RW[1] * gX, out=by_omega[2, c])
+        return J if self.seen is None else J * self.seen[part]
 
 
-def minimise(problem: Problem, start: State, *, max_iterations: int = 100) -> Minimum[State, Arrow]:
+def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Minimum[State, Arrow]:
     """Minimise the reprojection error from a start, by Levenberg–Marquardt.
 
     Raises
@@ -224,20 +245,21 @@ def minimise(problem: Problem, start: State, *, max_iterations: int = 100) -> Mi
     """
     floor = _ROUNDING * problem.m.size
     return levenberg_marquardt(
-        start, problem.linearise, solve_arrow, move, max_iterations=max_iterations, floor=floor
+        start, problem.linearise, solve_arrow, move, tolerance=tolerance, floor=floor
     )
 
 
 def solve_arrow(system: Arrow, damping: float) -> tuple[tuple[Array, Array], float]:
     """Solve the damped normal equations; gives the step (shared, poses) and the predicted gain."""
     poses, shared = _damp(system.poses, damping), _damp(system.shared, damping)
+    q = len(shared)
     try:
-        # poses⁻¹ [border | gradient] in one go
+        # V⁻¹ [W g] for all views, V being a pose block, W its border and g its gradient
         right = np.concatenate([system.border, system.g_poses[..., None]], axis=-1)
         solved = np.linalg.solve(poses, right)
-        S = shared - np.tensordot(system.border, solved[..., :-1], ([0, 1], [0, 1]))
-        g = system.g_shared - np.tensordot(system.border, solved[..., -1], ([0, 1], [0, 1]))
-        d_shared = -np.linalg.solve(S, g)
+        # Σ Wᵀ V⁻¹ [W g]
+        eliminated = right.reshape(-1, q + 1)[:, :q].T @ solved.reshape(-1, q + 1)
+        d_shared = np.linalg.solve(shared - eliminated[:, :q], eliminated[:, q] - system.g_shared)
     except np.linalg.LinAlgError:
         raise DegenerateError(_UNDETERMINED) from None
     d_poses = -(solved[..., -1] + solved[..., :-1] @ d_shared)

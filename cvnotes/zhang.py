@@ -99,7 +99,8 @@ def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
         raise DegenerateError(
             f"need at least {needed} views {'with' if skew else 'without'} skew, got {len(V) // 2}"
         )
-    _, s, Vt = np.linalg.svd(V[:, kept])
+    # Two views without skew have four rows: the null vector is then in no thin decomposition.
+    _, s, Vt = np.linalg.svd(V[:, kept], full_matrices=len(V) < len(kept))
     if s[len(kept) - 2] <= 1e-9 * s[0]:
         raise DegenerateError(
             "rank of V too low: the views do not determine the camera, because their boards are "
@@ -129,7 +130,7 @@ def intrinsics_from_b(b: npt.ArrayLike) -> Array:
         L = np.linalg.cholesky(_B(b))
     except np.linalg.LinAlgError:
         raise DegenerateError(_NOT_POSITIVE) from None
-    A = np.linalg.inv(L).T
+    A = np.triu(np.linalg.inv(L).T)  # rounding leaves 1e-16 below the diagonal
     return np.asarray(A / A[2, 2])
 
 
