@@ -1,0 +1,93 @@
+"""How the course's figures look: five colours with one meaning each, axes, sizes.
+
+The colours are those of Okabe and Ito, chosen so that any two that meet in a figure stay apart
+for readers with red or green blindness too; each meaning also has its own marker.
+"""
+
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+WORLD = "#009E73"
+CAMERA = "#56B4E9"
+IDEAL = "#000000"
+LENS = "#0072B2"
+ESTIMATED = "#D55E00"
+
+COLOURS = {
+    "world": WORLD,
+    "camera": CAMERA,
+    "ideal": IDEAL,
+    "lens": LENS,
+    "estimated": ESTIMATED,
+}
+MARKERS = {"world": "s", "camera": "^", "ideal": "+", "lens": "o", "estimated": "x"}
+MUTED = "#6E6E6E"  # frames, grids, remarks
+
+DPI = 100  # a figure's inch is 100 px of the page
+FONT = 10
+
+
+def panels(
+    columns: int = 1, rows: int = 1, *, width: int = 640, height: int | None = None, **kwargs: Any
+) -> Any:
+    """Make empty axes for figures that stand side by side.
+
+    Parameters
+    ----------
+    columns, rows : int
+        How many.
+    width, height : int
+        Size of the whole on the page, in px; by default each panel is three quarters as high
+        as it is wide.
+    **kwargs
+        Passed to ``Figure.subplots``.
+
+    Returns
+    -------
+    Axes, or ndarray of Axes
+        One, a row of them, or rows of them. They belong to a figure of their own that no global
+        state knows, so that nothing has to be closed.
+
+    Examples
+    --------
+    >>> left, right = panels(2)
+    >>> left.figure is right.figure
+    True
+    """
+    if height is None:
+        height = round(0.75 * width / columns * rows)
+    figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False, **kwargs)
+    for ax in axes.flat:
+        dress(ax)
+    if rows > 1:
+        return axes
+    return axes[0] if columns > 1 else axes[0, 0]
+
+
+def dress(ax: Axes) -> Axes:
+    """Give axes the course's look: a light frame, small type."""
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.spines[["left", "bottom"]].set_color(MUTED)
+    ax.tick_params(labelsize=FONT - 1, color=MUTED, labelcolor="#333333")
+    ax.title.set_fontsize(FONT + 1)
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.label.set_fontsize(FONT)
+    return ax
+
+
+def picture_axes(size: tuple[int, int]) -> Any:
+    """Make axes that fit a picture of (width, height): 640 px wide, not absurdly high."""
+    width, height = size
+    return panels(height=round(min(max(560 * height / width, 160), 760) + 60))
+
+
+def as_picture(ax: Axes, size: tuple[int, int]) -> Axes:
+    """Let axes show pixels: v downwards, equal scales, a picture's limits, units in the labels."""
+    width, height = size
+    ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), aspect="equal")
+    ax.set(xlabel="u (px)", ylabel="v (px)")
+    ax.spines[["top", "right"]].set(visible=True, color=MUTED)
+    return ax

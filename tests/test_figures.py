@@ -1,0 +1,372 @@
+"""Figures: what they say is where it should be, nothing is cut off, each has its text."""
+
+import base64
+import io
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import Circle, Rectangle
+from matplotlib.quiver import Quiver
+from PIL import Image
+
+from cvnotes.errors import CvnotesError, DegenerateError, ShapeError
+from cvnotes.show import (
+    draw_corners,
+    draw_coverage,
+    draw_image,
+    draw_points,
+    draw_residual_scatter,
+    draw_residuals,
+    draw_view_rms,
+    panels,
+    show,
+)
+from cvnotes.show.picture import encode
+from cvnotes.show.style import COLOURS, MARKERS
+from cvnotes.targets import Chessboard
+
+RNG = np.random.default_rng(7)
+GREY = RNG.integers(0, 255, (48, 64), dtype=np.uint8)
+BOARD = Chessboard((4, 3), 10.0)
+CORNERS = BOARD.points[:, :2] + 12.0
+
+
+def calibration(residuals, image_points=None, size=(64, 48)):
+    """Give what the figures need of a calibration."""
+    residuals = [np.asarray(r, dtype=float) for r in residuals]
+    if image_points is None:
+        image_points = [np.full_like(r, 20.0) + np.arange(len(r))[:, None] for r in residuals]
+    view_rms = np.array([np.sqrt((r**2).sum(1).mean()) for r in residuals])
+    every = np.concatenate(residuals)
+    return SimpleNamespace(
+        residuals=residuals,
+        image_points=image_points,
+        size=size,
+        view_rms=view_rms,
+        rms=float(np.sqrt((every**2).sum(1).mean())),
+    )
+
+
+NOISE = calibration(RNG.normal(0, 0.1, (5, 12, 2)), [CORNERS + i for i in range(5)])
+
+DRAWN = {
+    "image": lambda ax: draw_image(GREY, ax=ax, title="a picture"),
+    "points": lambda ax: draw_points(CORNERS, size=(64, 48), ax=ax, label="seen"),
+    "corners": lambda ax: draw_corners(GREY, CORNERS, BOARD, ax=ax),
+    "residuals": lambda ax: draw_residuals(NOISE, ax=ax),
+    "scatter": lambda ax: draw_residual_scatter(NOISE, ax=ax),
+    "coverage": lambda ax: draw_coverage(NOISE.image_points, (64, 48), ax=ax),
+    "view rms": lambda ax: draw_view_rms(NOISE, ax=ax, names=["a very long name.jpg"] * 5),
+}
+
+
+# --- what holds for every figure ------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_a_figure_is_drawn_on_the_axes_it_is_given_and_on_no_others(name):
+    left, right = panels(2)
+    assert DRAWN[name](left) is left
+    assert not right.has_data()
+    new = DRAWN[name](None)
+    assert new.figure is not left.figure
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_every_axis_has_a_label_with_its_unit(name):
+    ax = DRAWN[name](None)
+    assert ax.get_ylabel().endswith(("(px)", "(px per point)"))
+    assert ax.get_xlabel().endswith("(px)") or ax.get_xlabel() == "view"
+
+
+def texts_of(ax):
+    """List the texts that are really drawn: ticks outside of the limits are not."""
+    texts = [ax.title, ax.xaxis.label, ax.yaxis.label, *ax.texts]
+    texts += ax.get_legend().get_texts() if ax.get_legend() else []
+    for axis in (ax.xaxis, ax.yaxis):
+        low, high = sorted(axis.get_view_interval())
+        texts += [t.label1 for t in axis.get_major_ticks() if low <= t.get_loc() <= high]
+    return [text for text in texts if text.get_text().strip()]
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_no_text_is_cut_off_and_no_two_texts_overlap(name):
+    ax = DRAWN[name](None)
+    canvas = FigureCanvasAgg(ax.figure)
+    canvas.draw()
+    texts = texts_of(ax)
+    boxes = [text.get_window_extent(canvas.get_renderer()) for text in texts]
+    assert len(boxes) >= 8
+    for i, box in enumerate(boxes):
+        assert ax.figure.bbox.count_contains(box.get_points()) == 2, texts[i]
+        assert not box.count_overlaps(boxes[:i]), texts[i]
+
+
+@pytest.mark.parametrize("name", ["image", "points", "corners", "residuals", "coverage"])
+def test_pixels_have_v_downwards_equal_scales_and_centres_at_integers(name):
+    ax = DRAWN[name](None)
+    assert ax.get_xlim() == (-0.5, 63.5)
+    assert ax.get_ylim() == (47.5, -0.5)
+    assert ax.get_aspect() == 1
+
+
+def test_drawing_touches_no_global_state():
+    code = (
+        "import sys, numpy as np, matplotlib\n"
+        "before = matplotlib.rcParams.copy()\n"
+        "from cvnotes.show import *\n"
+        "show(draw_image(np.zeros((9, 9), np.uint8)), alt='black')\n"
+        "assert matplotlib.rcParams.copy() == before\n"
+        "assert 'matplotlib.pyplot' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
+
+
+# --- pictures and points --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("image", "grey", "shown"),
+    [
+        (np.array([[0, 255, 51]], np.uint8), True, [0, 1, 0.2]),
+        (np.array([[0, 500, 100]], np.uint16), True, [0, 1, 0.2]),
+        (np.array([[0.0, 1.0, 0.2]]), True, [0, 1, 0.2]),
+        (np.array([[False, True, False]]), True, [0, 1, 0]),
+        (np.full((1, 3, 3), 255, np.uint8), False, None),
+    ],
+)
+def test_black_is_black_and_white_is_white_whatever_the_type(image, grey, shown):
+    drawn = draw_image(image).images[0]
+    if grey:
+        assert drawn.norm(drawn.get_array().astype(float)).tolist() == [pytest.approx(shown)]
+    else:
+        assert drawn.get_array().shape == (1, 3, 3)
+
+
+@pytest.mark.parametrize("shape", [(3,), (0, 5), (2, 2, 4), (1, 2, 3, 4)])
+def test_what_is_no_picture_is_refused(shape):
+    with pytest.raises(ShapeError, match=r"image: expected \(height, width\) or"):
+        draw_image(np.zeros(shape))
+
+
+def test_a_picture_of_text_is_refused():
+    with pytest.raises(CvnotesError, match="image: expected numbers"):
+        draw_image([["a", "b"]])
+
+
+def test_points_lie_where_they_were_given_and_nan_rows_are_left_out():
+    drawn = draw_points([[[1, 2], [np.nan, np.nan]], [[3, 4], [5, 6]]], meaning="lens").collections
+    kept = drawn[0].get_offsets()
+    assert kept[~np.ma.getmaskarray(kept).any(1)].tolist() == [[1, 2], [3, 4], [5, 6]]
+
+
+def test_a_wrong_meaning_or_shape_is_said():
+    with pytest.raises(CvnotesError, match="meaning: expected one of world, camera, ideal, lens"):
+        draw_points([[1, 2]], meaning="guess")
+    with pytest.raises(ShapeError, match=r"m: expected shape \(\.\.\., 2\), got \(1, 3\)"):
+        draw_points([[1, 2, 3]])
+
+
+def test_the_order_of_the_corners_can_be_seen():
+    ax = draw_corners(GREY, CORNERS, BOARD)
+    rows = [line.get_xydata() for line in ax.lines if len(line.get_xydata()) == 4]
+    assert np.array_equal(np.concatenate(rows), CORNERS)
+    arrows = [a for a in ax.texts if getattr(a, "arrow_patch", None)]
+    assert [tuple(a.xyann) for a in arrows] == [(12.0, 12.0)] * 2
+    assert [tuple(a.xy) for a in arrows] == [(42.0, 12.0), (12.0, 32.0)]  # x, then y
+    places = {t.get_text(): t.get_position() for t in ax.texts if t.get_text()}
+    assert list(places) == ["x", "y", "0", "3", "8", "11"]
+    assert places["x"][0] > 42
+    assert places["y"][1] > 32
+    assert places["0"] < (12, 12)
+    assert places["11"] > (42, 32)
+
+
+def test_corners_of_another_board_are_refused():
+    with pytest.raises(ShapeError, match=r"a board of 4×3 has 12, got \(11, 2\)"):
+        draw_corners(GREY, CORNERS[:-1], BOARD)
+
+
+# --- quality --------------------------------------------------------------------------------
+
+
+def quiver(ax):
+    (found,) = [c for c in ax.collections if isinstance(c, Quiver)]
+    return found
+
+
+def test_an_arrow_leads_from_the_prediction_towards_the_observation_magnified():
+    ax = draw_residuals(calibration([[[0.2, -0.1]]], [np.array([[30.0, 20.0]])]), magnify=50)
+    arrow = quiver(ax)
+    assert arrow.get_offsets().tolist() == [[29.8, 20.1]]
+    assert (arrow.U.tolist(), arrow.V.tolist()) == ([10.0], [-5.0])
+    assert (arrow.angles, arrow.scale, arrow.scale_units) == ("xy", 1, "xy")
+    assert ax.get_title() == "Residuals × 50 (RMS 0.224 px per point)"
+
+
+def test_the_magnification_is_a_round_number_that_keeps_arrows_short():
+    for size in (0.003, 0.1, 1.0, 47.0):
+        made = calibration([np.full((20, 2), size)], size=(640, 480))
+        title = draw_residuals(made).get_title()
+        magnify = float(title.split("× ")[1].split(" ")[0].replace(",", ""))
+        assert f"{magnify:e}"[0] in "125"
+        assert 0.01 < magnify * size * np.sqrt(2) / 640 <= 0.04
+
+
+def test_perfect_data_has_residuals_that_can_be_drawn():
+    made = calibration([np.zeros((4, 2))])
+    show(draw_residuals(made), alt="nothing")
+    show(draw_residual_scatter(made), alt="nothing")
+
+
+def test_the_circle_is_one_standard_deviation_per_axis():
+    ax = draw_residual_scatter(calibration([[[0.3, 0], [-0.3, 0], [0, 0.3], [0, -0.3]]]))
+    (circle,) = [p for p in ax.patches if isinstance(p, Circle)]
+    assert circle.radius == pytest.approx(0.3 / np.sqrt(2))
+    assert ax.get_title() == "The circle is one σ per axis: 0.212 px"
+    bottom, top = ax.get_ylim()
+    assert bottom > top  # down is down, as in the picture
+
+
+def test_residuals_need_corners():
+    made = calibration([[[0.1, 0.1]]], image_points=[])
+    for draw in (draw_residuals, draw_residual_scatter):
+        with pytest.raises(DegenerateError, match="read from a file that has no corners"):
+            draw(made)
+
+
+def hatched(ax):
+    return {p.get_xy() for p in ax.patches if isinstance(p, Rectangle)}
+
+
+def test_the_cells_without_corners_are_hatched_and_counted():
+    # 8 × 4 cells of 10 px; the outermost pixels of the picture belong to its outermost cells.
+    m = [[-0.5, -0.5], [9.4, 9.4], [9.5, 0], [79.4, 39.4], [79.5, 0], [500, -3]]
+    ax = draw_coverage(m, (80, 40))
+    assert ax.get_title() == "Corners in 3 of 32 cells of the picture"
+    empty = hatched(ax)
+    assert len(empty) == 29
+    assert (19.5, -0.5) in empty
+    assert not empty & {(-0.5, -0.5), (9.5, -0.5), (69.5, 29.5)}
+
+
+def test_coverage_takes_all_views_in_any_form():
+    for m in (NOISE.image_points, tuple(NOISE.image_points), np.stack(NOISE.image_points)):
+        assert draw_coverage(m, (64, 48)).get_title() == "Corners in 20 of 48 cells of the picture"
+    assert draw_coverage([], (48, 64)).get_title() == "Corners in 0 of 48 cells of the picture"
+
+
+def test_bars_are_as_high_as_the_rms_of_their_views():
+    ax = draw_view_rms(NOISE, names=list("abcde"))
+    assert [p.get_height() for p in ax.patches] == NOISE.view_rms.tolist()
+    assert [t.get_text() for t in ax.get_xticklabels()] == list("abcde")
+    assert f" all: {NOISE.rms:.3f}" in [t.get_text() for t in ax.texts]
+
+
+def test_a_hundred_views_keep_legible_labels():
+    ax = draw_view_rms(calibration(RNG.normal(0, 0.1, (100, 4, 2))))
+    assert [t.get_text() for t in ax.get_xticklabels()][:3] == ["0", "3", "6"]
+
+
+def test_each_view_has_one_name():
+    with pytest.raises(ShapeError, match="names: expected 5, one for each view, got 2"):
+        draw_view_rms(NOISE, names=["a", "b"])
+
+
+# --- style ----------------------------------------------------------------------------------
+
+# Machado, Oliveira and Fernandes (2009): how linear RGB looks without red or green cones.
+SEEN_BY = {
+    "most": np.eye(3),
+    "the red-blind": [[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]],
+    "the green-blind": [[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]],
+}
+XYZ_OF_RGB = np.array(
+    [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+)
+
+
+def lab(colour, seen_by):
+    rgb = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    t = XYZ_OF_RGB @ np.clip(SEEN_BY[seen_by] @ linear, 0, 1) / [0.9505, 1, 1.089]
+    f = np.where(t > 0.008856, np.cbrt(t), 7.787 * t + 16 / 116)
+    return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
+
+
+@pytest.mark.parametrize("seen_by", SEEN_BY)
+def test_the_five_colours_stay_apart_on_white(seen_by):
+    colours = [lab(c, seen_by) for c in [*COLOURS.values(), "#FFFFFF"]]
+    apart = [np.linalg.norm(a - b) for i, a in enumerate(colours) for b in colours[:i]]
+    assert min(apart) > 20  # ten times what a trained eye just notices
+
+
+def test_each_meaning_has_a_marker_of_its_own():
+    assert COLOURS.keys() == MARKERS.keys()
+    assert len(set(MARKERS.values())) == 5
+
+
+def test_panels_come_one_in_a_row_or_in_rows():
+    assert panels(3).shape == (3,)
+    assert panels(2, 3).shape == (3, 2)
+    figure = panels(2, width=800, height=300).flat[0].figure
+    assert figure.get_size_inches().tolist() == [8.0, 3.0]
+
+
+# --- the page -------------------------------------------------------------------------------
+
+
+def decoded(picture):
+    html = picture._repr_html_()
+    return Image.open(io.BytesIO(base64.b64decode(html.split("base64,")[1].split('"')[0])))
+
+
+def test_a_picture_carries_its_text_and_twice_the_pixels_of_its_width():
+    picture = show(draw_image(GREY), alt='Noise, "grey" & <fine>.')
+    assert repr(picture) == 'Noise, "grey" & <fine>.'
+    html = picture._repr_html_()
+    assert '<img alt="Noise, &quot;grey&quot; &amp; &lt;fine&gt;." width="640"' in html
+    assert decoded(picture).size[0] == 1280
+    assert 'width="320"' in show(draw_image(GREY), alt="noise", width=320)._repr_html_()
+
+
+def test_a_picture_is_white_behind_its_labels():
+    for ax in (draw_view_rms(NOISE), draw_image(GREY)):
+        picture = decoded(show(ax, alt="x"))
+        assert picture.convert("RGB").getpixel((0, 0)) == (255, 255, 255)
+
+
+def test_line_drawings_are_small_png_and_photographs_jpeg_where_allowed():
+    figure = draw_residuals(NOISE).figure
+    data, mime = encode(figure)
+    assert mime == "image/png"
+    assert len(data) < 30_000
+    photograph = RNG.integers(0, 255, (480, 640, 3), dtype=np.uint8)
+    assert encode(draw_image(photograph).figure)[1] == "image/jpeg"
+    assert encode(draw_image(photograph).figure, jpeg=False)[1] == "image/png"
+
+
+def test_the_same_figure_gives_the_same_bytes():
+    assert encode(draw_residuals(NOISE).figure) == encode(draw_residuals(NOISE).figure)
+
+
+def test_axes_rows_of_axes_and_figures_can_be_shown():
+    axes = panels(2)
+    for thing in (axes, axes[0], axes[0].figure):
+        assert repr(show(thing, alt="two")) == "two"
+
+
+def test_a_figure_of_pyplot_is_closed():
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    figure, _ = pyplot.subplots()
+    show(figure, alt="a figure of pyplot")
+    assert not pyplot.fignum_exists(figure.number)
+
+
+def test_a_picture_without_a_text_is_refused():
+    with pytest.raises(CvnotesError, match="alt: say in a sentence what the picture shows"):
+        show(panels(), alt=" ")
