@@ -153,7 +153,7 @@ def _lay_out(value: Any, indent: str) -> str:
         lines = [f"{json.dumps(k)}: {_lay_out(v, inner)}" for k, v in value.items()]
         return "{\n" + ",\n".join(inner + line for line in lines) + f"\n{indent}}}"
     nested = isinstance(value, list) and any(isinstance(v, dict | list) for v in value)
-    if nested and (len(value) <= 4 or any(isinstance(v, dict) for v in value)):
+    if nested and (len(value) <= 12 or any(isinstance(v, dict) for v in value)):
         lines = [_lay_out(v, inner) for v in value]
         return "[\n" + ",\n".join(inner + line for line in lines) + f"\n{indent}]"
     return json.dumps(value, allow_nan=False)

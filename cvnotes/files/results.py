@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from cvnotes.camera import Camera
+from cvnotes.correspondences import Correspondences
 from cvnotes.errors import Array, CvnotesError
 from cvnotes.files.cameras import (
     VERSION,
@@ -155,7 +156,6 @@ def read_calibration(path: PathLike) -> dict[str, Any]:
     if not views:
         raise entry.error("the list of views is empty")
     names = tuple(entry["standard_deviations"].items())
-    image_points, board_points = _corners(entry, views)
     return {
         "A": camera.A,
         "lens": camera.lens,
@@ -165,22 +165,24 @@ def read_calibration(path: PathLike) -> dict[str, Any]:
         "view_rms": np.array([view["rms"].number() for view in views]),
         "names": names,
         "covariance": entry["covariance"].array(len(names), len(names)),
-        "board_points": board_points,
-        "image_points": image_points,
         "warnings": tuple(item.text() for item in entry["warnings"]),
         "reliable": entry["reliable"].flag(),
         "converged": entry["converged"].flag(),
+        "_data": _corners(entry, views),
     }
 
 
-def _corners(entry: Entry, views: list[Entry]) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
-    """Read the image points and board points of all views, or none at all."""
+def _corners(entry: Entry, views: list[Entry]) -> Correspondences | None:
+    """Read the corners of all views, or none at all."""
     one_board = entry.get("board")
     image_points, board_points = [], []
     for view in views:
         corners = view.get("corners")
         if corners is None:
-            return (), ()
+            return None
         image_points.append(corners.array(None, 2))
         board_points.append((one_board or view["board"]).array(len(image_points[-1]), 3))
-    return tuple(image_points), tuple(board_points)
+    try:
+        return Correspondences.of(board_points, image_points)
+    except CvnotesError as error:
+        raise entry.error(str(error)) from error
