@@ -1,0 +1,110 @@
+"""Execute the notebooks in place, the one way in which committed notebooks are made.
+
+    python tools/build_notebooks.py                    all notebooks
+    python tools/build_notebooks.py notebooks/00*      some
+    python tools/build_notebooks.py --check            only tell which are not as built
+
+Cells with the tag ``no-save-output`` (3-D viewers, widgets) run, but their output is not kept: it
+would be large, and an untrusted notebook does not show it. Ids, metadata and execution counts
+are set so that two runs give the same file.
+"""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError
+
+ROOT = Path(__file__).resolve().parents[1]
+METADATA = {
+    "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
+    "language_info": {"name": "python"},
+}
+
+
+def tidy(notebook: nbformat.NotebookNode) -> None:
+    """Set everything that is not content, and drop the outputs that are not kept."""
+    notebook.metadata = nbformat.from_dict(METADATA)
+    notebook.nbformat, notebook.nbformat_minor = 4, 5
+    count = 0
+    for i, cell in enumerate(notebook.cells):
+        tags = cell.metadata.get("tags", [])
+        cell.metadata = nbformat.from_dict({"tags": tags} if tags else {})
+        cell.id = f"cell-{i:02d}"
+        if cell.cell_type == "code":
+            count += 1
+            cell.execution_count = count
+            if "no-save-output" in tags:
+                cell.outputs = []
+            for output in cell.outputs:
+                output.pop("execution_count", None)
+                if output.output_type == "execute_result":
+                    output.execution_count = count
+                if "metadata" in output:
+                    output.metadata = nbformat.from_dict({})
+
+
+def problems(notebook: nbformat.NotebookNode) -> list[str]:
+    """Say what an executed notebook must not contain."""
+    found = []
+    for cell in notebook.cells:
+        tags = cell.metadata.get("tags", [])
+        for output in cell.get("outputs", []):
+            if output.output_type == "stream" and output.name == "stderr":
+                found.append(f"{cell.id} writes to stderr: {output.text[:200]}")
+            if output.output_type == "error" and "raises-exception" not in tags:
+                found.append(f"{cell.id} raises {output.ename}: {output.evalue}")
+    return found
+
+
+def build(path: Path) -> list[str]:
+    """Execute one notebook and write it back; give what is wrong with it."""
+    notebook = nbformat.read(path, as_version=4)
+    client = NotebookClient(
+        notebook,
+        timeout=120,
+        kernel_name="python3",
+        resources={"metadata": {"path": str(path.parent)}},
+        record_timing=False,
+        store_widget_state=False,
+    )
+    try:
+        client.execute()
+    except CellExecutionError as error:
+        return [str(error)]
+    tidy(notebook)
+    partial = path.with_suffix(".partial")
+    nbformat.write(notebook, partial)
+    os.replace(partial, path)
+    return problems(notebook)
+
+
+def check(path: Path) -> list[str]:
+    """Tell whether a notebook is as `build` leaves it, without executing it."""
+    notebook = nbformat.read(path, as_version=4)
+    before = nbformat.writes(notebook)
+    tidy(notebook)
+    found = problems(notebook)
+    if nbformat.writes(notebook) != before or path.read_text().rstrip() != before.rstrip():
+        found.append("ids, metadata or kept outputs are not those of tools/build_notebooks.py")
+    return found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("notebooks", nargs="*", type=Path)
+    parser.add_argument("--check", action="store_true", help="execute nothing, change nothing")
+    arguments = parser.parse_args()
+    failed = False
+    for path in arguments.notebooks or sorted((ROOT / "notebooks").glob("*.ipynb")):
+        found = check(path) if arguments.check else build(path)
+        print(f"{path.name}: {'not as built' if found else 'ok'}", *found, sep="\n  ")
+        failed |= bool(found)
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
