@@ -30,9 +30,9 @@ def environment(extras: str) -> Path:
     print(f"Installing the course into {folder} …", flush=True)
     if not (scripts / "pip").exists() and not (scripts / "pip.exe").exists():
         venv.create(folder, with_pip=True)
-    python = scripts / "python"
-    install = [python, "-m", "pip", "install", "--quiet", "--editable", f"{ROOT}[{extras}]"]
-    subprocess.run(install, check=True)
+    python = str(scripts / "python")
+    install = ["-m", "pip", "install", "--quiet", "--editable", f"{ROOT}[{extras}]"]
+    subprocess.run([python, *install], check=True)
     stamp.write_text(wanted)
     return scripts
 
@@ -52,7 +52,7 @@ def main(arguments: list[str]) -> int:
         print("pip could not install the course; its message above says why.", file=sys.stderr)
         return 1
     run = ["-m", "cvnotes", "lab"] if command == "lab" else ["-m", "pytest"]
-    return subprocess.run([scripts / "python", *run, *rest], cwd=ROOT).returncode
+    return subprocess.run([str(scripts / "python"), *run, *rest], cwd=ROOT).returncode
 
 
 if __name__ == "__main__":

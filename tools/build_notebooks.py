@@ -10,7 +10,6 @@ are set so that two runs give the same file.
 """
 
 import argparse
-import os
 import sys
 from pathlib import Path
 
@@ -78,7 +77,7 @@ def build(path: Path) -> list[str]:
     tidy(notebook)
     partial = path.with_suffix(".partial")
     nbformat.write(notebook, partial)
-    os.replace(partial, path)
+    partial.replace(path)
     return problems(notebook)
 
 
