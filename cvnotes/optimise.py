@@ -35,6 +35,7 @@ def levenberg_marquardt(
     solve: Callable[[System, float], tuple[Step, float]],
     move: Callable[[X, Step], X],
     *,
+    follow: Callable[[X, System], X] | None = None,
     max_iterations: int = 100,
     tolerance: float = 1e-12,
     floor: float = 0.0,
@@ -51,6 +52,8 @@ def levenberg_marquardt(
         (system, damping μ) → (step, predicted decrease of the cost).
     move : callable
         (x, step) → the new x.
+    follow : callable, optional
+        (x, system) → x with some of its parameters brought to their best, the others held.
     max_iterations : int
         Steps tried before giving up; the result then says ``converged=False``.
     tolerance, floor : float
@@ -64,7 +67,9 @@ def levenberg_marquardt(
 
     Notes
     -----
-    The first steps are Gauss–Newton steps (μ = 0); damping begins when a step goes uphill.
+    The first steps are Gauss–Newton steps (μ = 0). When a step goes uphill, `follow` may first
+    bring it back into a curved valley, along which damped steps only creep; if that does not
+    help, damping begins.
 
     References
     ----------
@@ -89,6 +94,10 @@ def levenberg_marquardt(
             cost_new, system_new = linearise(x_new)
         next_gain = predicted * min(1.0, predicted / previous if previous > 0 else 1.0)
         close = next_gain <= tolerance * cost + floor
+        if follow and not close and np.isfinite(cost_new) and cost_new >= cost:
+            x_new = follow(x_new, system_new)
+            with np.errstate(all="ignore"):
+                cost_new, system_new = linearise(x_new)
         if cost_new < cost:
             x, cost, system = x_new, cost_new, system_new
             previous = predicted if damping == 0 else 0.0

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import intrinsics, pixels
-from cvnotes.errors import Array, DegenerateError
+from cvnotes.errors import Array, ConvergenceError, DegenerateError
 from cvnotes.lens import Lens, horner, radial_factor
 from cvnotes.optimise import Minimum, levenberg_marquardt
 from cvnotes.rigid import exp_so3
@@ -237,6 +237,8 @@ def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Min
     ------
     DegenerateError
         The views do not determine the parameters.
+    ConvergenceError
+        The minimum is no camera: a focal length or the depth of a board is not positive.
 
     References
     ----------
@@ -244,9 +246,21 @@ def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Min
     .. [2] Triggs et al., Bundle adjustment: a modern synthesis (2000), section 6.
     """
     floor = _ROUNDING * problem.m.size
-    return levenberg_marquardt(
-        start, problem.linearise, solve_arrow, move, tolerance=tolerance, floor=floor
+    found = levenberg_marquardt(
+        start,
+        problem.linearise,
+        solve_arrow,
+        move,
+        follow=poses_follow,
+        tolerance=tolerance,
+        floor=floor,
     )
+    if found.x.shared[:2].min() <= 0 or found.x.T[:, 2].min() <= 0:
+        raise ConvergenceError(
+            "the refinement left the space of cameras (a focal length or the depth of a board is "
+            "not positive); the corners are probably paired with the wrong points of the board"
+        )
+    return found
 
 
 def solve_arrow(system: Arrow, damping: float) -> tuple[tuple[Array, Array], float]:
@@ -271,6 +285,15 @@ def move(x: State, step: tuple[Array, Array]) -> State:
     """Take a step: R ← exp(ω) R, everything else by addition."""
     shared, poses = step
     return State(x.shared + shared, exp_so3(poses[:, :3]) @ x.R, x.T + poses[:, 3:])
+
+
+def poses_follow(x: State, system: Arrow) -> State:
+    """Take a step of the poses alone, the camera being held."""
+    try:
+        step = np.linalg.solve(system.poses, system.g_poses[..., None])[..., 0]
+    except np.linalg.LinAlgError:  # too far away to be brought back
+        return x
+    return move(x, (np.zeros_like(x.shared), np.asarray(-step)))
 
 
 def covariance(system: Arrow) -> Array:
