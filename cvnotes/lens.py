@@ -8,18 +8,20 @@ offset from the distortion centre and r = ‖d‖,
 where p = (p2, p1) collects the notes' tangential terms in one vector.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, ShapeError, numbers, points
+from cvnotes.errors import Array, CvnotesError, ShapeError, numbers, points
+from cvnotes.radial import Inverse, fold_radius
+from cvnotes.radial import horner as horner
+from cvnotes.radial import radial_factor as radial_factor
 
-# Points worked on at a time by undistort: its dozen temporaries then stay in the cache.
-_CHUNK = 8192
+# Points undistorted at a time: the dozen temporaries then stay in the cache.
+_CHUNK = 12288
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,8 @@ class Lens:
             if values.ndim != 1 or length not in (None, values.size):
                 wanted = "a sequence k1, k2, …" if length is None else "two numbers"
                 raise ShapeError(f"{name}: expected {wanted}, got shape {values.shape}")
+            if (np.abs(values) > 1e50).any():
+                raise CvnotesError(f"{name} = {values.tolist()}: no lens has such coefficients")
             object.__setattr__(self, name, tuple(values.tolist()))
 
     @property
@@ -83,18 +87,14 @@ class Lens:
     def max_radius(self) -> float:
         """Largest ideal radius up to which the lens maps one to one (inf if there is no end).
 
-        Without tangential terms, the first positive root of d(r L)/dr. With them, the first
-        radius at which det J = 0 in the direction −p, where the image folds first: there
-        det J = (d(r L)/dr − 6 ‖p‖ r)(L − 2 ‖p‖ r).
+        Without tangential terms, the first positive root of d(r L)/dr; with them, the first
+        radius at which the Jacobian becomes singular in some direction.
         """
-        q = float(np.hypot(*self.p))
-        slope = [0.0] * (2 * len(self.k) + 2)  # ascending powers of r
-        factor = list(slope)
-        slope[0] = factor[0] = 1.0
-        for i, k in enumerate(self.k, start=1):
-            slope[2 * i], factor[2 * i] = (2 * i + 1) * k, k
-        slope[1], factor[1] = -6 * q, -2 * q
-        return min(_first_positive_root(slope), _first_positive_root(factor))
+        return fold_radius(self.k, float(np.hypot(*self.p)))
+
+    @cached_property
+    def _inverse(self) -> Inverse:
+        return Inverse(self.k, self.p[::-1])
 
     def distort(self, xy: npt.ArrayLike) -> Array:
         """Move ideal image points to where the lens shows them.
@@ -128,7 +128,7 @@ class Lens:
     def undistort(self, xy_lens: npt.ArrayLike) -> Array:
         """Move observed image points back to where an ideal lens would show them.
 
-        Newton's method to 1e-12, started on the inverse of the radial curve.
+        Newton's method on the radius, to 1e-12; see `cvnotes.radial`.
 
         Parameters
         ----------
@@ -150,17 +150,7 @@ class Lens:
         >>> lens.undistort(lens.distort([0.4, -0.3])).round(12)
         array([ 0.4, -0.3])
         """
-        xy_lens = points(xy_lens, "xy_lens", 2)
-        if self.is_ideal or xy_lens.size == 0:
-            return xy_lens
-        d = xy_lens.reshape(-1, 2) - self.centre
-        s = np.hypot(d[:, 0], d[:, 1])
-        table = self._radial_table(float(s.max()))
-        out = np.empty_like(d)
-        for i in range(0, len(d), _CHUNK):
-            part = slice(i, i + _CHUNK)
-            out[part] = self._newton(d[part], s[part], table)
-        return (out + self.centre).reshape(xy_lens.shape)
+        return self._undistort(points(xy_lens, "xy_lens", 2), lambda xy: (xy[:, 0], xy[:, 1]))
 
     def jacobian(self, xy: npt.ArrayLike) -> Array:
         """Differentiate the distorted point by the ideal one: (..., 2, 2).
@@ -172,8 +162,13 @@ class Lens:
         """
         d = points(xy, "xy", 2) - self.centre
         x, y = d[..., 0], d[..., 1]
-        L, slope = self._factor_and_slope(x * x + y * y)
-        J11, J12, J22 = _symmetric_jacobian(x, y, L, slope, self.p)
+        p1, p2 = self.p
+        r2 = x * x + y * y
+        L = radial_factor(self.k, r2)
+        slope = horner([2 * i * k for i, k in enumerate(self.k, start=1)], r2)  # L'(r) / r
+        J11 = L + slope * x * x + 6 * p2 * x + 2 * p1 * y
+        J12 = slope * x * y + 2 * (p1 * x + p2 * y)
+        J22 = L + slope * y * y + 2 * p2 * x + 6 * p1 * y
         return np.stack([np.stack([J11, J12], -1), np.stack([J12, J22], -1)], -2)
 
     def _distort(self, xy: Array) -> Array:
@@ -190,83 +185,17 @@ class Lens:
         out[~(r2[..., 0] <= self.max_radius**2)] = np.nan
         return np.asarray(out)
 
-    def _factor_and_slope(self, r2: Array) -> tuple[Array, Array]:
-        """Give L and 2 dL/d(r²), both as functions of r²."""
-        slope = [2 * i * k for i, k in enumerate(self.k, start=1)]
-        return radial_factor(self.k, r2), horner(slope, r2)
-
-    def _radial_table(self, s_max: float) -> tuple[Array, Array]:
-        """Tabulate r against r L(r), far enough to cover observed radii up to `s_max`."""
-        R = self.max_radius
-        if np.isinf(R):
-            R = s_max
-            while R * float(self.L(R)) < s_max:
-                R *= 2
-        # Denser towards the fold, where r changes fastest with r L(r).
-        r = R * (1 - np.linspace(1, 0, 512) ** 2)
-        return r * self.L(r), r
-
-    def _newton(self, d: Array, s: Array, table: tuple[Array, Array]) -> Array:
-        """Solve distort(x) = d; `s` = ‖d‖."""
-        ratio = np.divide(np.interp(s, *table), s, out=np.ones_like(s), where=s > 0)
-        x, y = d[:, 0] * ratio, d[:, 1] * ratio
-        p1, p2 = self.p
-        error = np.full_like(s, np.inf)
-        with np.errstate(all="ignore"):  # rows that have no answer may run away
-            for _ in range(20):
-                r2 = x * x + y * y
-                L, slope = self._factor_and_slope(r2)
-                pd = 2 * (p2 * x + p1 * y)
-                ex, ey = (L + pd) * x + p2 * r2 - d[:, 0], (L + pd) * y + p1 * r2 - d[:, 1]
-                error = np.abs(ex) + np.abs(ey)
-                if not (error > 1e-15 * (1 + s)).any():
-                    break
-                J11, J12, J22 = _symmetric_jacobian(x, y, L, slope, self.p)
-                det = J11 * J22 - J12 * J12
-                dx, dy = (J22 * ex - J12 * ey) / det, (J11 * ey - J12 * ex) / det
-                x, y = x - dx, y - dy
-                if not (np.abs(dx) + np.abs(dy) > 1e-9 * (1 + s)).any():
-                    error = np.zeros_like(s)  # the next step would be about 1e-18
-                    break
-            found = (error <= 1e-12 * (1 + s)) & (x * x + y * y <= self.max_radius**2)
-        return np.where(found[:, None], np.stack([x, y], -1), np.nan)
-
-
-def radial_factor(k: Sequence[float], r2: Array) -> Array:
-    """Give L as a function of r² by Horner's scheme, without a guard: for use inside."""
-    return 1 + r2 * horner(k, r2)
-
-
-def horner(coefficients: Sequence[float], t: Array) -> Array:
-    """Evaluate c0 + c1 t + c2 t² + … from its coefficients, without a guard: for use inside."""
-    if not coefficients:
-        return np.zeros_like(t)
-    value = np.full_like(t, coefficients[-1])
-    for c in reversed(coefficients[:-1]):
-        value *= t
-        value += c
-    return value
-
-
-def _symmetric_jacobian(
-    x: Array, y: Array, L: Array, slope: Array, p: tuple[float, float]
-) -> tuple[Array, Array, Array]:
-    """Give the entries (11, 12 = 21, 22) of d(x', y')/d(x, y)."""
-    p1, p2 = p
-    J11 = L + slope * x * x + 6 * p2 * x + 2 * p1 * y
-    J12 = slope * x * y + 2 * (p1 * x + p2 * y)
-    J22 = L + slope * y * y + 2 * p2 * x + 6 * p1 * y
-    return J11, J12, J22
-
-
-def _first_positive_root(ascending: list[float]) -> float:
-    """Find the first sign change of a polynomial that is 1 at 0; inf if there is none."""
-    roots = np.roots(ascending[::-1])
-    real = np.sort(roots[np.abs(roots.imag) <= 1e-7 * np.abs(roots)].real)
-    value = np.polynomial.Polynomial(ascending)
-    candidates = np.append(real[real > 0], np.inf)
-    for root, following in pairwise(candidates):
-        middle = (root + following) / 2 if np.isfinite(following) else 2 * root
-        if value(middle) < 0:
-            return float(root - value(root) / value.deriv()(root))
-    return np.inf
+    def _undistort(self, m: Array, columns: Callable[[Array], tuple[Array, Array]]) -> Array:
+        """Undistort rows m (..., 2) without a guard; `columns` turns some of them into x', y'."""
+        rows = m.reshape(-1, 2)
+        out = np.empty_like(rows)
+        x0, y0 = self.centre
+        for i in range(0, len(rows), _CHUNK):
+            part = slice(i, i + _CHUNK)
+            x, y = columns(rows[part])
+            if not self.is_ideal:
+                x, y = self._inverse(x - x0, y - y0)
+                x += x0
+                y += y0
+            out[part, 0], out[part, 1] = x, y
+        return out.reshape(m.shape)

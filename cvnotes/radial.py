@@ -1,0 +1,230 @@
+"""The lens along a radius: the curve r L(r), where it folds, and its inverse (notes 2b.3).
+
+A point at the ideal offset x from the distortion centre, r = ‖x‖, is seen at the offset
+
+    d = (L(r) + 2 p·x) x + r² p,    L(r) = 1 + k1 r² + k2 r⁴ + …
+
+The way back has no closed form, but tangential terms or not, only one number has to be searched:
+q = ‖x‖/‖d‖ (see `Inverse`). Nothing here guards its input; `cvnotes.lens` does.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+# Knots of the table that Newton's method starts from; more of them would only save steps.
+_KNOTS = 4096
+
+
+def horner(coefficients: Sequence[float], t: Array) -> Array:
+    """Evaluate c0 + c1 t + c2 t² + … from its coefficients.
+
+    Examples
+    --------
+    >>> horner([1, 2], np.array([0.0, 10.0]))
+    array([ 1., 21.])
+    """
+    if len(coefficients) < 2:
+        return np.full_like(t, coefficients[0] if len(coefficients) else 0.0)
+    value = coefficients[-1] * t
+    for c in coefficients[-2:0:-1]:
+        value += c
+        value *= t
+    value += coefficients[0]
+    return value
+
+
+def radial_factor(k: Sequence[float], r2: Array) -> Array:
+    """Give L = 1 + k1 r² + k2 r⁴ + … as a function of r².
+
+    Examples
+    --------
+    >>> radial_factor((-0.25,), np.array([0.0, 1.0]))
+    array([1.  , 0.75])
+    """
+    return horner((1.0, *k), r2)
+
+
+def fold_radius(k: Sequence[float], p_norm: float = 0.0) -> float:
+    """Give the smallest ideal radius at which the picture folds over; inf if there is none.
+
+    It folds where the smaller eigenvalue of the Jacobian, a symmetric matrix, reaches 0. With
+    a = r dL/dr and m = 4 ‖p‖ r, the smallest value of this eigenvalue on a circle is
+
+        L − a/8 − m²/(2a)                 if 2m/3 < a < 2m,
+        min(L + a − 3m/2,  L − m/2)       otherwise, and then in the direction −p,
+
+    so that every fold is a root of one of three polynomials in r. Without tangential terms
+    L + a = d(r L)/dr decides alone.
+
+    Examples
+    --------
+    >>> fold_radius([-4 / 3]), fold_radius([0.1])
+    (0.5, inf)
+    """
+    L, m = np.zeros((2, 2 * len(k) + 2))  # ascending powers of r
+    L[0], L[2::2], m[1] = 1, k, 4 * p_norm
+    a = L * np.arange(L.size)
+    curves = [L + a - 1.5 * m]
+    if p_norm > 0:
+        curves += [L - m / 2, np.convolve(a, 8 * L - a) - 4 * np.convolve(m, m)]
+    candidates = np.sort(np.concatenate([_positive_roots(c) for c in curves]))
+    for i, r in enumerate(candidates):
+        beyond = (r + candidates[i + 1]) / 2 if i + 1 < candidates.size else 2 * r
+        L_r, a_r, m_r = (float(horner(c.tolist(), beyond)) for c in (L, a, m))
+        smallest = min(L_r + a_r - 1.5 * m_r, L_r - m_r / 2)
+        if 2 * m_r < 3 * a_r < 6 * m_r:
+            smallest = L_r - a_r / 8 - m_r**2 / (2 * a_r)
+        if smallest < 0:
+            return float(r)
+    return np.inf
+
+
+class Inverse:
+    """The way back: from the offset d at which a lens shows a point to its ideal offset x.
+
+    Parameters
+    ----------
+    k : sequence of float
+        Radial coefficients k1, k2, …
+    p : (2,) sequence of float
+        The tangential vector p = (p2, p1).
+
+    Notes
+    -----
+    Write S = ‖d‖², r² = q² S, a = q² p·d, b = q⁴ ‖p‖² S and n = ‖d − r² p‖/‖d‖ = √(1 − 2a + b).
+    Since d − r² p = (L + 2 p·x) x, its length gives L + 2 p·x = n/q and its product with p gives
+    p·x; together
+
+        q L n = 1 − 4a + 3b,    x = (q/n) (d − r² p).
+
+    Before the fold the Jacobian is symmetric and positive definite, so no two points share their
+    image: the equation has at most one root, and left − right passes from − to + there.
+    Newton's method starts from a table of q for p = 0. Its argument w is chosen such that q is
+    smooth in it, at the fold too, so that linear interpolation is right to about 1e-7.
+    """
+
+    def __init__(self, k: Sequence[float], p: Sequence[float]) -> None:
+        self.k, self.p = tuple(k), tuple(p)
+        self.k_slope = tuple((2 * i + 1) * k_i for i, k_i in enumerate(k, start=1))
+        self.p_norm2 = p[0] ** 2 + p[1] ** 2
+        self.r_max = fold_radius(k, self.p_norm2**0.5)
+        self._tabulate(fold_radius(k))
+
+    @np.errstate(all="ignore")  # rows without an answer may overflow on their way to NaN
+    def __call__(self, dx: Array, dy: Array) -> tuple[Array, Array]:
+        """Map offsets (n,), (n,); rows that no point before the fold is shown at become NaN."""
+        S = dx * dx
+        S += dy * dy
+        e = self.p[0] * dx + self.p[1] * dy if self.p_norm2 else np.zeros(1)
+        q = self._start(S, e)
+        for _ in range(2 if self.p_norm2 else 1):
+            f, slope = self._newton(q, S, e)
+            q -= q * f / slope
+        # Newton's step squares the error; where that may not be enough yet, take care.
+        late = np.flatnonzero(~(np.abs(f) <= 1e-7 * np.minimum(slope, slope * slope)))
+        if late.size:
+            q[late] = self._search(q[late], S[late], e[late] if self.p_norm2 else e)
+        r2 = q * q
+        r2 *= S
+        if self.p_norm2:
+            dx, dy = dx - self.p[0] * r2, dy - self.p[1] * r2  # d − r² p points along x
+            q = np.sqrt(r2 / np.maximum(dx * dx + dy * dy, 1e-300))
+        q[~(r2 <= self.r_max**2)] = np.nan
+        return q * dx, q * dy
+
+    def _newton(self, q: Array, S: Array, e: Array) -> tuple[Array, Array]:
+        """Give f = left − right and its slope q df/dq; e = p·d."""
+        q2 = q * q
+        r2 = q2 * S
+        qn = q
+        if self.p_norm2:
+            a = q2 * e
+            b = q2 * r2
+            b *= self.p_norm2
+            n2 = b - 2 * a
+            n2 += 1
+            qn = q * np.sqrt(n2)
+        f = radial_factor(self.k, r2)
+        f *= qn
+        slope = radial_factor(self.k_slope, r2)
+        slope *= qn
+        if self.p_norm2:
+            slope += 2 * f * (b - a) / n2 + 8 * a - 12 * b
+            f += 4 * a - 3 * b
+        f -= 1
+        return f, slope
+
+    def _search(self, q: Array, S: Array, e: Array) -> Array:
+        """Solve the rows that need care: stay between bounds, and halve these while far."""
+        lower, upper = np.zeros_like(q), self.r_max / np.sqrt(S)
+        if np.isfinite(self.r_max):
+            beyond = self._newton(upper, S, e)[0] < 0
+            lower[beyond] = upper[beyond] = np.nan  # no root before the fold
+        for _ in range(100):
+            middle = np.where(np.isinf(upper), 2 * lower + 1, (lower + upper) / 2)
+            q = np.where((lower < q) & (q < upper), q, middle)
+            f, slope = self._newton(q, S, e)
+            lower, upper = np.where(f < 0, q, lower), np.where(f < 0, upper, q)
+            if not ((np.abs(f) > 1e-13 * slope) & (upper - lower > 1e-15 * q)).any():
+                break
+            q = np.where(np.abs(f) < 0.1 * slope, q - q * f / slope, np.inf)
+        return q
+
+    def _start(self, S: Array, e: Array) -> Array:
+        """Look q up; to first order the tangential terms scale ‖d‖ by 1/c = 1 + 3a."""
+        c = np.ones(1)
+        if self.p_norm2:
+            q = 1 + (self.k[0] if self.k else 0.0) * S  # its reciprocal, to first order
+            c = 1 - 3 * e / (q * q)
+        w = self._w(c * c * S)
+        i = w.astype(np.intp)
+        w -= i
+        w *= self.q_step.take(i, mode="clip")
+        w += self.q.take(i, mode="clip")
+        w *= c
+        return w
+
+    def _w(self, S: Array) -> Array:
+        """Place S in the table, from 0 (the fold, or infinity) to _KNOTS (the centre)."""
+        w = S / self.S_scale
+        if self.folds:
+            np.subtract(1, w, out=w)
+            np.maximum(w, 0, out=w)
+            np.sqrt(w, out=w)
+        else:
+            w += 1
+            np.sqrt(w, out=w)
+            np.divide(1, w, out=w)
+        w *= _KNOTS
+        return w
+
+    def _tabulate(self, fold: float) -> None:
+        """Tabulate q for p = 0 at equal steps of w."""
+        w = np.linspace(1, 0, _KNOTS, endpoint=False)
+        self.folds = bool(np.isfinite(fold))
+        if self.folds:
+            r = fold * np.append(1 - w, 1)
+            self.S_scale = float(fold * radial_factor(self.k, np.array(fold**2))) ** 2
+        else:
+            reach = [abs(k_i) ** (-0.5 / i) for i, k_i in enumerate(self.k, start=1) if k_i]
+            self.S_scale = min([1.0, *reach]) ** 2
+            r = np.sqrt(self.S_scale * (1 / w**2 - 1))
+        L = radial_factor(self.k, r * r)
+        knots = np.arange(_KNOTS + 1)
+        self.q = np.interp(knots, self._w((r * L) ** 2)[::-1], (1 / L)[::-1])
+        self.q_step = np.diff(self.q, append=self.q[-1])
+
+
+def _positive_roots(ascending: Array) -> Array:
+    """Give the positive real roots of a polynomial, polished by one step of Newton's method."""
+    # Read backwards the polynomial has the reciprocals as roots, and small r come out best.
+    reciprocal = np.roots(np.where(np.abs(ascending) < 1e-100, 0, ascending))
+    real = np.abs(reciprocal.imag) <= 1e-7 * np.abs(reciprocal)
+    r = 1 / reciprocal.real[real & (reciprocal.real > 1e-6)]  # 90° is infinite for our purpose
+    value = horner(ascending.tolist(), r)
+    slope = horner((ascending * np.arange(ascending.size))[1:].tolist(), r)
+    return np.asarray(r - np.divide(value, slope, out=np.zeros_like(r), where=slope != 0))
