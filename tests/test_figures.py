@@ -177,10 +177,10 @@ def test_the_order_of_the_corners_can_be_seen():
     assert np.array_equal(np.concatenate(rows), CORNERS)
     arrows = [a for a in ax.texts if getattr(a, "arrow_patch", None)]
     assert [tuple(a.xyann) for a in arrows] == [(12.0, 12.0)] * 2
-    assert [tuple(a.xy) for a in arrows] == [(42.0, 12.0), (12.0, 32.0)]  # x, then y
+    assert [tuple(a.xy) for a in arrows] == [(32.0, 12.0), (12.0, 32.0)]  # x, then y
     places = {t.get_text(): t.get_position() for t in ax.texts if t.get_text()}
     assert list(places) == ["x", "y", "0", "3", "8", "11"]
-    assert places["x"][0] > 42
+    assert places["x"][0] > 32
     assert places["y"][1] > 32
     assert places["0"] < (12, 12)
     assert places["11"] > (42, 32)

@@ -115,10 +115,12 @@ def read_photos(paths: Iterable[PathLike]) -> tuple[list[Photo], list[Rejected]]
     return photos, rejected + [item for item in read if isinstance(item, Rejected)]
 
 
-def list_photos(paths: Iterable[PathLike]) -> tuple[list[Path], list[Rejected]]:
+def list_photos(
+    paths: Iterable[PathLike], *, size: tuple[int, int] | None = None
+) -> tuple[list[Path], list[Rejected]]:
     """Find the photographs among files and in folders, by their headers alone.
 
-    Gives those that have the size of most, and the others with their reasons.
+    Gives those of a (width, height), by default that of most, and the others with their reasons.
     """
     sizes: dict[Path, tuple[int, int]] = {}
     rejected = []
@@ -127,15 +129,14 @@ def list_photos(paths: Iterable[PathLike]) -> tuple[list[Path], list[Rejected]]:
             sizes[path] = header_size(path)
         except FileError as error:
             rejected.append(Rejected(printable(path), str(error)))
-    if sizes:
-        (w, h), _ = Counter(sizes.values()).most_common(1)[0]
-        for path, (width, height) in sizes.items():
-            if (width, height) != (w, h):
-                turned = "; was it turned by an editor?" if (height, width) == (w, h) else ""
-                reason = f"{width}×{height} pixels where most photographs have {w}×{h}{turned}"
-                rejected.append(Rejected(printable(path), reason))
-        sizes = {path: size for path, size in sizes.items() if size == (w, h)}
-    return list(sizes), rejected
+    whose = "most photographs have" if size is None else "the camera has"
+    width, height = size or Counter(sizes.values() or [(0, 0)]).most_common(1)[0][0]
+    for path, (w, h) in sizes.items():
+        if (w, h) != (width, height):
+            turned = "; was it turned by an editor?" if (h, w) == (width, height) else ""
+            reason = f"{w}×{h} pixels where {whose} {width}×{height}{turned}"
+            rejected.append(Rejected(printable(path), reason))
+    return [path for path in sizes if sizes[path] == (width, height)], rejected
 
 
 def open_photos(files: Iterable[Path]) -> Iterator[Photo | Rejected]:

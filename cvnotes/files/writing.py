@@ -68,6 +68,23 @@ def write_whole(contents: Mapping[Path, bytes]) -> None:
             temporary.unlink(missing_ok=True)
 
 
+def check_folder(folder: Path) -> None:
+    """Refuse a folder in which nothing could be written, before the work and not after it.
+
+    Raises
+    ------
+    FileError
+        A file is in its place, or it or where it would be made is read-only.
+    """
+    there = folder.resolve()
+    while not there.exists():
+        there = there.parent
+    if not there.is_dir():
+        raise FileError(f"{printable(folder)} cannot be a folder: {printable(there)} is a file")
+    if not os.access(there, os.W_OK):
+        raise FileError(f"{printable(folder)} cannot be written: {printable(there)} is read-only")
+
+
 def _checked(target: Path) -> Path:
     """Follow links, make the folder, and refuse what must not be replaced."""
     final = target.resolve()

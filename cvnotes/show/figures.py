@@ -135,7 +135,7 @@ def draw_corners(
     grid = m.reshape(rows, columns, 2)
     for row in grid:
         ax.plot(*row.T, "-", color=ESTIMATED, linewidth=1, marker=".", markersize=4)
-    for name, end in (("x", grid[0, min(3, columns - 1)]), ("y", grid[min(3, rows - 1), 0])):
+    for name, end in (("x", grid[0, min(2, columns - 1)]), ("y", grid[min(2, rows - 1), 0])):
         arrow = {"arrowstyle": "-|>", "color": WORLD, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", end, m[0], arrowprops=arrow)
         _write(ax, name, m[0] + 1.25 * (end - m[0]), WORLD)

@@ -63,12 +63,18 @@ def show(figure: Any, *, alt: str, width: int | None = None) -> Picture:
     """
     if not alt.strip():
         raise CvnotesError("alt: say in a sentence what the picture shows")
-    while not isinstance(figure, Figure):
-        figure = np.ravel(figure)[0].figure
+    figure = figure_of(figure)
     data, mime = encode(figure)
     if pyplot := sys.modules.get("matplotlib.pyplot"):
         pyplot.close(figure)
     return Picture(data, alt, width or round(figure.get_figwidth() * DPI), mime)
+
+
+def figure_of(drawn: Any) -> Figure:
+    """Give the figure that axes, or the first of several, belong to."""
+    while not isinstance(drawn, Figure):
+        drawn = np.ravel(drawn)[0].figure
+    return drawn
 
 
 def encode(figure: Figure, *, jpeg: bool = True) -> tuple[bytes, str]:

@@ -97,14 +97,8 @@ def draw_coverage(
     'Corners in 2 of 48 cells of the picture'
     """
     size = image_size(size)
-    views = list(image_points) if isinstance(image_points, Sequence) else [image_points]
-    flat = [points(view, "image_points", 2).reshape(-1, 2) for view in views]
-    m = np.concatenate(flat) if flat else np.empty((0, 2))
-    cells = np.array(_cells(size))
-    side = np.array(size) / cells
-    inside = ((m >= -0.5) & (m < np.array(size) - 0.5)).all(axis=1)
-    seen = np.zeros(cells, dtype=bool)
-    seen[tuple(((m[inside] + 0.5) // side).astype(int).T)] = True
+    m, seen = _joined(image_points), covered_cells(image_points, size)
+    side = np.array(size) / seen.shape
     ax = as_picture(picture_axes(size) if ax is None else ax, size)
     for cell in np.argwhere(~seen):
         corner = (cell * side - 0.5).tolist()
@@ -112,6 +106,35 @@ def draw_coverage(
     ax.plot(*m.T, ".", color=ESTIMATED, markersize=4, alpha=0.6, markeredgewidth=0)
     ax.set_title(f"Corners in {seen.sum()} of {seen.size} cells of the picture")
     return ax
+
+
+def covered_cells(
+    image_points: npt.ArrayLike | Sequence[npt.ArrayLike], size: tuple[int, int]
+) -> npt.NDArray[np.bool_]:
+    """Divide a picture into about square cells and tell in which of them corners were seen.
+
+    Parameters
+    ----------
+    image_points : array_like, shape (views, n, 2) or (n, 2), or a list of (n_i, 2)
+        Pixels.
+    size : (width, height)
+        Size of the picture; its longer side has eight cells.
+
+    Returns
+    -------
+    ndarray of bool, shape (columns, rows)
+
+    Examples
+    --------
+    >>> covered_cells([[10, 10], [600, 400]], (640, 480)).sum()
+    np.int64(2)
+    """
+    m, size = _joined(image_points), image_size(size)
+    cells = np.array([max(round(8 * n / max(size)), 1) for n in size])
+    inside = m[((m >= -0.5) & (m < np.array(size) - 0.5)).all(axis=1)]
+    seen = np.zeros(cells, dtype=bool)
+    seen[tuple(((inside + 0.5) // (size / cells)).astype(int).T)] = True
+    return seen
 
 
 def draw_view_rms(
@@ -161,8 +184,8 @@ def _round_number(x: float) -> float:
     return float(power * max(step for step in (1, 2, 5) if step * power <= x * (1 + 1e-12)))
 
 
-def _cells(size: tuple[int, int]) -> tuple[int, int]:
-    """Divide a picture into about square cells, eight along its longer side."""
-    longer = max(size)
-    columns, rows = (max(round(8 * n / longer), 1) for n in size)
-    return columns, rows
+def _joined(image_points: npt.ArrayLike | Sequence[npt.ArrayLike]) -> Array:
+    """Join the points of all views, (n, 2)."""
+    views = list(image_points) if isinstance(image_points, Sequence) else [image_points]
+    flat = [points(m, "image_points", 2).reshape(-1, 2) for m in views]
+    return np.concatenate([np.empty((0, 2)), *flat])
