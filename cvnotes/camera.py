@@ -10,6 +10,7 @@ from cvnotes.errors import (
     Array,
     CvnotesError,
     DegenerateError,
+    ShapeError,
     image_size,
     intrinsic_matrix,
     matrix,
@@ -32,6 +33,55 @@ def intrinsics(alpha_u: float, alpha_v: float, u0: float, v0: float, skew: float
            [  0.,   0.,   1.]])
     """
     return intrinsic_matrix([[alpha_u, skew, u0], [0, alpha_v, v0], [0, 0, 1]])
+
+
+def intrinsics_from_pixel_size(
+    f: float, du: float, dv: float, u0: float, v0: float, *, angle: float = np.pi / 2
+) -> Array:
+    """Build the intrinsic matrix A (3, 3) from what the makers of lens and sensor print.
+
+    Parameters
+    ----------
+    f : float
+        Focal length, in the same unit of length as the pixels.
+    du, dv : float
+        Width and height of a pixel.
+    u0, v0 : float
+        Where the optical axis pierces the picture, in pixels; in general not its middle (E7).
+    angle : float
+        Angle in radians between the sensor's axes u and v.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        [α_u  −α_u cot θ  u0; 0  α_v / sin θ  v0; 0 0 1] with α_u = f / du and α_v = f / dv.
+
+    Notes
+    -----
+    The notes give the skew entry as cot(π/2) = 0, without its factor, and leave α_v as it is
+    (erratum E9). An angle below 90° makes the skew negative.
+
+    References
+    ----------
+    .. [1] Notes 2b.2, "Image Digitalization".
+    .. [2] Forsyth and Ponce, Computer Vision, 2nd ed. (2012), 1.2.2.
+
+    Examples
+    --------
+    >>> intrinsics_from_pixel_size(8.0, 0.01, 0.01, 320, 240)  # 8 mm, 10 µm
+    array([[800.,   0., 320.],
+           [  0., 800., 240.],
+           [  0.,   0.,   1.]])
+    """
+    given = {"f": f, "du": du, "dv": dv, "angle": angle}
+    for name, value in given.items():
+        if not numbers(value, name) > 0:
+            raise CvnotesError(f"{name}: expected a positive number, got {value}")
+    if angle >= np.pi:
+        raise CvnotesError(f"angle: expected radians between 0 and π, got {angle:g} (degrees?)")
+    alpha_u, alpha_v = f / du, f / dv
+    skew = 0.0 if angle == np.pi / 2 else -alpha_u / np.tan(angle)
+    return intrinsics(alpha_u, alpha_v / np.sin(angle), u0, v0, skew)
 
 
 def px_from_xy(A: npt.ArrayLike, xy: npt.ArrayLike) -> Array:
@@ -112,6 +162,11 @@ class Camera:
         P = self.A @ self.G[:3]
         P.setflags(write=False)
         return P
+
+    @property
+    def factors(self) -> tuple[Array, Array, Array]:
+        """What P is made of: A (sensor), [I|0] (pinhole, the canonical PPM), G (pose)."""
+        return self.A, np.eye(3, 4), self.G
 
     @property
     def centre(self) -> Array:
@@ -205,6 +260,15 @@ class Camera:
         left, right, top, bottom = self.ray(edges)
         return float(np.arccos(left @ right)), float(np.arccos(top @ bottom))
 
+    @property
+    def is_invertible(self) -> bool:
+        """Tell whether every pixel of the picture shows a point that the lens model reaches."""
+        w, h = self.size
+        u, v = np.arange(w), np.arange(h)
+        border = [(u, 0 * u), (u, 0 * u + h - 1), (0 * v, v), (0 * v + w - 1, v)]
+        edge = np.concatenate([np.stack(side, axis=-1) for side in border])
+        return not np.isnan(self.ideal(edge)).any()
+
     def __repr__(self) -> str:
         a, w = self.A, self.size
         return (
@@ -289,12 +353,22 @@ def centre_of(P: npt.ArrayLike) -> Array:
 
     Also defined for cameras at infinity, whose centre has a zero last coordinate.
 
+    Raises
+    ------
+    DegenerateError
+        P has rank below 3, so that more than a point has no image.
+
     Examples
     --------
     >>> centre_of(np.eye(3, 4))
     array([0., 0., 0., 1.])
     """
-    P = numbers(P, "P")
-    C = np.linalg.svd(matrix(P, "P", 3, 4))[2][3]
+    P = matrix(P, "P", 3, 4)
+    if P.ndim != 2:
+        raise ShapeError(f"P: expected one (3, 4) matrix, got {P.shape}")
+    _, s, Vt = np.linalg.svd(P)
+    if s[2] <= 1e-13 * s[0]:
+        raise DegenerateError("P has rank below 3: it has no single centre")
+    C = Vt[3]
     sign = C[3] if abs(C[3]) > 1e-14 else C[np.argmax(np.abs(C))]
     return np.asarray(C * np.sign(sign)) + 0.0

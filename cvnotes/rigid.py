@@ -11,8 +11,8 @@ from cvnotes.errors import (
     Array,
     CvnotesError,
     DegenerateError,
+    ShapeError,
     matrix,
-    numbers,
     points,
     rigid_motion,
     rotation,
@@ -28,7 +28,11 @@ def pose(R: npt.ArrayLike, T: npt.ArrayLike) -> Array:
     array([1., 2., 3.])
     """
     R, T = rotation(R), points(T, "T", 3)
-    G = np.zeros((*np.broadcast_shapes(R.shape[:-2], T.shape[:-1]), 4, 4))
+    try:
+        stack = np.broadcast_shapes(R.shape[:-2], T.shape[:-1])
+    except ValueError:
+        raise ShapeError(f"R {R.shape} and T {T.shape} are not equally many") from None
+    G = np.zeros((*stack, 4, 4))
     G[..., :3, :3], G[..., :3, 3], G[..., 3, 3] = R, T, 1.0
     return G
 
@@ -124,7 +128,8 @@ def nearest_rotation(M: npt.ArrayLike) -> Array:
     Raises
     ------
     DegenerateError
-        M has rank below 2, so that no rotation is closest.
+        M has rank below 2, or mirrors with two equal smallest singular values (as −I does), so
+        that many rotations are equally close.
 
     Examples
     --------
@@ -136,7 +141,10 @@ def nearest_rotation(M: npt.ArrayLike) -> Array:
     U, s, Vt = np.linalg.svd(matrix(M, "M", 3, 3))
     if (s[..., 1] <= 1e-12 * s[..., 0]).any():
         raise DegenerateError("M has rank below 2: no rotation is closest to it")
-    U[..., :, 2] *= np.linalg.det(U @ Vt)[..., None]
+    det = np.round(np.linalg.det(U @ Vt))
+    if ((det < 0) & (s[..., 1] - s[..., 2] <= 1e-12 * s[..., 0])).any():
+        raise DegenerateError("M is a reflection to which many rotations are equally close")
+    U[..., :, 2] *= det[..., None]
     return np.asarray(U @ Vt) + 0.0
 
 
@@ -156,8 +164,10 @@ def look_at(eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike = (0, -
     >>> look_at([0, 0, -5], [0, 0, 0])[:3, 3]
     array([0., 0., 5.])
     """
-    eye, up = points(eye, "eye", 3), points(up, "up", 3)
-    z = points(target, "target", 3) - eye
+    eye, target, up = points(eye, "eye", 3), points(target, "target", 3), points(up, "up", 3)
+    if not eye.ndim == target.ndim == up.ndim == 1:
+        raise ShapeError("eye, target and up: expected one point (3,) each; loop over several")
+    z = target - eye
     x = np.cross(z, up)
     length = np.linalg.norm(z)
     if length == 0:
@@ -204,6 +214,35 @@ def chain(*motions: npt.ArrayLike) -> Array:
     return G
 
 
+def board_from_board(cam_from_to: npt.ArrayLike, cam_from_from: npt.ArrayLike) -> Array:
+    """Chain the WRFs of two views of a board that moved before a fixed camera.
+
+    W_to = G_to⁻¹ G_from W_from: the two boards are seen from one CRF. This is one of the two
+    readings of the notes' "transformation chaining" (erratum E20); `cam_from_cam` is the other.
+
+    Examples
+    --------
+    >>> near, far = pose(np.eye(3), [0, 0, 500]), pose(np.eye(3), [10, 0, 700])
+    >>> move(board_from_board(near, far), [0, 0, 0])  # the far board's origin, in the near's WRF
+    array([ 10.,   0., 200.])
+    """
+    return chain(inverse(cam_from_to), cam_from_from)
+
+
+def cam_from_cam(to_from_world: npt.ArrayLike, from_from_world: npt.ArrayLike) -> Array:
+    """Chain the CRFs of two views of a fixed board by a camera that moved.
+
+    M_to = G_to G_from⁻¹ M_from: the two cameras see one WRF (the second reading of E20).
+
+    Examples
+    --------
+    >>> left, right = pose(np.eye(3), [0, 0, 500]), pose(np.eye(3), [-100, 0, 500])
+    >>> cam_from_cam(right, left)[:3, 3]  # what the left camera calls its origin
+    array([-100.,    0.,    0.])
+    """
+    return chain(to_from_world, inverse(from_from_world))
+
+
 def skew_matrix(v: npt.ArrayLike) -> Array:
     """Give [v]× (..., 3, 3), the matrix of the cross product: [v]× w = v × w.
 
@@ -212,7 +251,7 @@ def skew_matrix(v: npt.ArrayLike) -> Array:
     >>> skew_matrix([1, 2, 3]) @ [4, 5, 6]
     array([-3.,  6., -3.])
     """
-    v = numbers(v, "v")
+    v = points(v, "v", 3)
     x, y, z = v[..., 0], v[..., 1], v[..., 2]
     o = np.zeros_like(x)
     return np.stack(
