@@ -186,6 +186,15 @@ def test_the_order_of_the_corners_can_be_seen():
     assert places["11"] > (42, 32)
 
 
+def test_numbers_stay_inside_a_picture_that_the_board_fills():
+    ax = draw_corners(GREY, CORNERS * [1.55, 1.45] - [18, 17], BOARD)
+    for text in ax.texts:
+        if text.get_text():
+            u, v = text.get_position()
+            assert 2 < u < 62
+            assert 2 < v < 46
+
+
 def test_corners_of_another_board_are_refused():
     with pytest.raises(ShapeError, match=r"a board of 4×3 has 12, got \(11, 2\)"):
         draw_corners(GREY, CORNERS[:-1], BOARD)

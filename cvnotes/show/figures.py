@@ -147,8 +147,11 @@ def draw_corners(
 
 
 def _write(ax: Axes, text: str, where: Array, colour: str) -> None:
-    """Write a short text that stays legible over a picture."""
+    """Write a short text that stays legible over a picture, and inside of it."""
+    right, bottom = ax.get_xlim()[1], ax.get_ylim()[0]
+    margin = 0.04 * max(right, bottom)
+    u, v = np.clip(where, margin, [right - margin, bottom - margin])
     ax.text(
-        where[0], where[1], text, color=colour, fontsize=FONT, fontweight="bold",
-        ha="center", va="center", path_effects=[_HALO], clip_on=True,
+        u, v, text, color=colour, fontsize=FONT, fontweight="bold",
+        ha="center", va="center", path_effects=[_HALO],
     )  # fmt: skip
