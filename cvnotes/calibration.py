@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 from warnings import warn
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import xy_from_px
 from cvnotes.correspondences import Correspondences, PointSets
 from cvnotes.errors import (
     Array,
@@ -18,25 +17,14 @@ from cvnotes.errors import (
     CvnotesError,
     DegenerateError,
     image_size,
-    intrinsic_matrix,
-    matrix,
-    numbers,
-    rigid_motion,
 )
 from cvnotes.homography import dlt
-from cvnotes.lens import Lens
 from cvnotes.optimise import Minimum
 from cvnotes.refine import Arrow, Problem, State, covariance, minimise, pose_covariance
-from cvnotes.reliability import Evidence, judge
+from cvnotes.reliability import Evidence, judge, likeness
 from cvnotes.result import Calibration
-from cvnotes.zhang import (
-    constraints,
-    extrinsics,
-    focal_lengths_from_homographies,
-    intrinsics_from_b,
-    radial_distortion,
-    solve_b,
-)
+from cvnotes.steps import Steps
+from cvnotes.zhang import extrinsics, radial_distortion
 
 __all__ = ["LENSES", "Calibration", "calibrate"]
 
@@ -51,11 +39,11 @@ LENSES = {
 }
 # Views among which the start is sought; what they agree on, the others only sharpen.
 _VIEWS_FOR_START = 10
-# Strong lenses bend the boards so much that homographies mislead. In reserve, the corners are
-# first straightened: x ← x (1 + bend r²), with r = 1 at the ends of the picture's longer axis.
-_BENDS = (0.0, 0.2, -0.2)
-# px per point: a start that leaves more than this is not trusted before the others were tried.
-_SUSPICIOUS_RMS = 2.0
+# RMS over the picture's longer side: a start that leaves more than this is not trusted before the
+# others were tried.
+_SUSPICIOUS = 0.002
+
+_Minimum = Minimum[State, Arrow]
 
 
 def calibrate(
@@ -126,6 +114,7 @@ def calibrate(
     Examples
     --------
     >>> from cvnotes.camera import Camera, intrinsics
+    >>> from cvnotes.lens import Lens
     >>> from cvnotes.rigid import pose, rotation_from_vector
     >>> from cvnotes.targets import Chessboard
     >>> board = Chessboard((9, 6), 25.0)
@@ -138,23 +127,15 @@ def calibrate(
            [  0., 804., 238.],
            [  0.,   0.,   1.]])
     """
-    if lens not in LENSES:
+    if not isinstance(lens, str) or lens not in LENSES:
         raise CvnotesError(f"lens: expected one of {', '.join(map(repr, LENSES))}, got {lens!r}")
     n_radial, tangential = LENSES[lens]
     size = image_size(size)
     data = Correspondences.of(board_points, image_points)
     problem = Problem(data.W, data.m, data.seen, skew, n_radial, tangential)
     _enough(data, problem, 3 if skew else 2)
-    steps = _Steps(size, homography, intrinsics, extrinsics, distortion)
-
-    if len(data) <= 2 * _VIEWS_FOR_START:
-        best = _first_minimum(problem, steps)
-    else:
-        # a few views give the camera, from which all of them need fewer iterations
-        few = problem.some(_spread(len(data), _VIEWS_FOR_START))
-        camera = _first_minimum(few, steps, tolerance=1e-6).x.shared
-        best = minimise(problem, steps.resumed(problem, camera))
-    return _result(problem, data, size, best)
+    steps = Steps(size, homography, intrinsics, extrinsics, distortion)
+    return _result(problem, data, size, _best_minimum(problem, steps))
 
 
 def _enough(data: Correspondences, problem: Problem, n_views: int) -> None:
@@ -177,99 +158,30 @@ def _spread(n: int, kept: int) -> npt.NDArray[np.intp]:
     return np.unique(np.linspace(0, n - 1, min(n, kept)).astype(np.intp))
 
 
-def _picture_normaliser(size: tuple[int, int]) -> Array:
-    """Similarity that takes the picture's middle to 0 and its longer side to [−1, 1]."""
-    w, h = size
-    s = 2 / max(w, h)
-    return np.array([[s, 0, -s * (w - 1) / 2], [0, s, -s * (h - 1) / 2], [0, 0, 1]])
+def _starts(problem: Problem, steps: Steps) -> Iterator[State]:
+    """Give the starts of all views, before which a few of many views may say more, and sooner."""
+    if len(problem.m) > 2 * _VIEWS_FOR_START:
+        with suppress(ConvergenceError, DegenerateError):
+            few = problem.some(_spread(len(problem.m), _VIEWS_FOR_START))
+            camera = _best_minimum(few, steps, tolerance=1e-6).x.shared
+            yield steps.resumed(problem, camera)
+    yield from steps.starts(problem)
 
 
-@dataclass(frozen=True)
-class _Steps:
-    """Steps 1 to 4, the library's own or the student's."""
-
-    size: tuple[int, int]
-    homography: Callable[..., Any]
-    intrinsics: Callable[..., Any] | None
-    extrinsics: Callable[..., Any]
-    distortion: Callable[..., Any]
-
-    def homographies(self, problem: Problem, m: Array) -> Array:
-        """1. One homography for each view."""
-        src = problem.W[..., :2]
-        if self.homography is dlt and problem.seen is None:
-            return dlt(src, m)
-        H = []
-        for i in range(len(m)):
-            seen = slice(None) if problem.seen is None else problem.seen[i]
-            try:
-                given = self.homography((src if src.ndim == 2 else src[i])[seen], m[i][seen])
-            except DegenerateError as error:
-                raise DegenerateError(f"view {i}: {error}") from error
-            H.append(matrix(given, f"the homography of view {i}", 3, 3))
-        return np.array(H)
-
-    def candidates(self, H: Array, skew: bool) -> Iterator[Array]:
-        """2. Intrinsics: the focal lengths alone, then, in reserve, the full closed form."""
-        if self.intrinsics is not None:
-            yield intrinsic_matrix(self.intrinsics(H), "the A of your intrinsics")
-            return
-        b = solve_b(constraints(H), skew=skew)
-        with suppress(DegenerateError):
-            yield focal_lengths_from_homographies(H)
-        with suppress(DegenerateError):
-            yield intrinsics_from_b(b)
-        # Noise can leave neither; then a few usual fields of view, from 90° to 28°, are tried.
-        for f in (1.0, 2.0, 4.0):
-            yield np.diag([f, f, 1.0])
-
-    def starts(self, problem: Problem) -> Iterator[State]:
-        """Run steps 1 to 4; gives a state for each candidate, the most robust first."""
-        N = _picture_normaliser(self.size)
-        m = problem.m * N[0, 0] + N[:2, 2]
-        to_px = np.linalg.inv(N)
-        for bend in _BENDS if problem.n_radial else _BENDS[:1]:
-            H = self.homographies(problem, m * (1 + bend * (m * m).sum(-1, keepdims=True)))
-            for A in self.candidates(H, problem.skew):
-                with suppress(DegenerateError):
-                    yield self.with_lens(problem, to_px @ A, self.poses(A, H))
-
-    def poses(self, A: Array, H: Array) -> Array:
-        """3. The pose of each view."""
-        return rigid_motion(self.extrinsics(A, H), "the poses of your extrinsics")
-
-    def with_lens(self, problem: Problem, A: Array, G: Array) -> State:
-        """4. The lens by linear least squares."""
-        k: Array = np.zeros(0)
-        if problem.n_radial:
-            given = self.distortion(A, G, problem.W, problem.m, terms=problem.n_radial)
-            k = numbers(given, "the k of your distortion")
-        return problem.state(A, Lens(k=tuple(k)), G)
-
-    def resumed(self, problem: Problem, shared: Array) -> State:
-        """Give the state of all views, from what a few of them say about the camera."""
-        A, lens = problem.camera_of(shared)
-        ideal = lens.undistort(xy_from_px(A, problem.m))
-        as_seen = xy_from_px(A, problem.m)
-        H = self.homographies(problem, np.where(np.isnan(ideal), as_seen, ideal))
-        G = self.poses(np.eye(3), H)
-        return State(shared, G[:, :3, :3], G[:, :3, 3])
-
-
-def _first_minimum(
-    problem: Problem, steps: _Steps, tolerance: float = 1e-12
-) -> Minimum[State, Arrow]:
-    """Step 5, from the best start, and from the others if that leads nowhere."""
-    found: list[Minimum[State, Arrow]] = []
-    for start in steps.starts(problem):
+def _best_minimum(problem: Problem, steps: Steps, tolerance: float = 1e-12) -> _Minimum:
+    """Step 5, from the first start, and from the others if that leads nowhere."""
+    found: list[_Minimum] = []
+    good = (_SUSPICIOUS * max(steps.size)) ** 2 * problem.n_seen
+    for start in _starts(problem, steps):
         with suppress(ConvergenceError, DegenerateError):
             found.append(minimise(problem, start, tolerance=tolerance))
-            if found[-1].converged and found[-1].cost < _SUSPICIOUS_RMS**2 * problem.n_seen:
+            if found[-1].converged and found[-1].cost < good:
                 break
     if not found:
+        yours = f", or your {' and '.join(steps.own)} start far from it" if steps.own else ""
         raise ConvergenceError(
             "no start leads to a camera: the corners are probably paired with the wrong points "
-            "of the board, or the views do not determine the camera"
+            f"of the board, or the views do not determine the camera{yours}"
         )
     return min(found, key=lambda minimum: minimum.cost)
 
@@ -278,17 +190,17 @@ def _result(
     problem: Problem,
     data: Correspondences,
     size: tuple[int, int],
-    best: Minimum[State, Arrow],
+    best: _Minimum,
 ) -> Calibration:
     """Undo the scaling, add the error bars, and judge."""
     A, lens = problem.camera_of(best.x.shared)
     freedom = 2 * problem.n_seen - len(problem.names) - 6 * len(data)
     variance = best.cost / freedom
-    cov = variance * covariance(best.system)
+    unit = covariance(best.system)
 
     def poses() -> Array:
         J = data.pose_jacobian(best.x.R)
-        return J @ (pose_covariance(best.system, cov / variance) * variance) @ J.mT
+        return J @ (variance * pose_covariance(best.system, unit)) @ J.mT
 
     result = Calibration(
         A=A,
@@ -298,18 +210,18 @@ def _result(
         rms=float(np.sqrt(best.cost / problem.n_seen)),
         view_rms=np.sqrt(best.system.view_costs / problem.n_seen_by_view),
         names=problem.names,
-        covariance=cov,
+        covariance=variance * unit,
         converged=best.converged,
         _data=data,
         _pose_covariance=poses,
     )
-    distances = np.linalg.norm(problem.m - problem.predicted(A, lens, best.x), axis=-1)
+    residuals = problem.m - problem.predicted(A, lens, best.x)
     if problem.seen is not None:
-        distances = distances * problem.seen
-    return _judged(result, distances, problem.m)
+        residuals = residuals * problem.seen[..., None]
+    return _judged(result, residuals, problem.m, freedom)
 
 
-def _judged(result: Calibration, distances: Array, corners: Array) -> Calibration:
+def _judged(result: Calibration, residuals: Array, corners: Array, freedom: int) -> Calibration:
     """Add what is doubtful to the result, and warn of it."""
     sentences, reliable = judge(
         Evidence(
@@ -319,9 +231,10 @@ def _judged(result: Calibration, distances: Array, corners: Array) -> Calibratio
             result.poses,
             result.std,
             result.view_rms,
-            distances,
+            np.linalg.norm(residuals, axis=-1),
             corners,
             result.converged,
+            likeness(residuals, freedom),
         )
     )
     for sentence in sentences:

@@ -102,6 +102,8 @@ def _stack(sets: Any, name: str, dims: tuple[int, ...]) -> tuple[Array, Any]:
         uniform = one.dtype.kind in "iuf"
     except Exception:  # ragged, or no array at all: the guard below says which
         uniform = False
+    if uniform and one.size == 0:
+        raise DegenerateError(f"{name}: need at least one view with points, got none")
     if uniform:
         stacked = points(_located(one, name), name, *dims)
         if stacked.ndim == 4 and stacked.shape[2] == 1:  # OpenCV's (n, 1, 2)

@@ -7,12 +7,24 @@ take one set of points (n, 2) or a stack of sets (..., n, 2).
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, DegenerateError, ShapeError, matrix, paired, points
+from cvnotes.errors import (
+    Array,
+    CvnotesError,
+    DegenerateError,
+    ShapeError,
+    matrix,
+    paired,
+    points,
+)
 from cvnotes.optimise import levenberg_marquardt, solve_dense
 from cvnotes.projective import drop, to_homogeneous
 
+Mask = npt.NDArray[np.bool_]
+
 # Relative singular value, after normalisation, below which a rank is called deficient.
 _RANK = 1e-9
+# Spreads of points between 1/_HUGE and _HUGE keep every product below finite.
+_HUGE = 1e70
 
 
 def normaliser(x: npt.ArrayLike) -> Array:
@@ -106,7 +118,7 @@ def dlt(src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
     # Ĥ[2, 2] is the mean third coordinate of the points, whose centroid is the origin here.
     sign = np.where(H[..., 2, 2] < 0, -1.0, 1.0)[..., None, None]
     H = _inverse_similarity(N2) @ H @ N1
-    return np.asarray(H * (sign / np.linalg.norm(H, axis=(-2, -1), keepdims=True)))
+    return np.asarray(H * (sign / np.sqrt((H * H).sum((-2, -1), keepdims=True))))
 
 
 def refine_homography(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
@@ -217,7 +229,9 @@ def _normaliser(x: Array) -> Array:
     centre = x.sum(-2) / x.shape[-2]  # the method mean costs twice as much on few points
     d = x - centre[..., None, :]
     distance = np.hypot(d[..., 0], d[..., 1]).sum(-1) / x.shape[-2]
-    if not (distance > 1e-12 * np.abs(centre).max(-1)).all():
+    if not (distance < _HUGE).all():
+        raise CvnotesError(f"points more than {_HUGE:g} apart cannot be computed with")
+    if not (distance > 1e-12 * np.abs(centre).max(-1) + 1 / _HUGE).all():
         raise DegenerateError("all points coincide; a homography needs four that do not")
     s = np.sqrt(2) / distance
     N = np.zeros((*x.shape[:-2], 3, 3))
@@ -261,8 +275,9 @@ def _null_vector(src: Array, dst: Array) -> Array:
     if doubtful.any():
         D = _design_matrix(src, dst)[doubtful]
         _, s, Vt = np.linalg.svd(D, full_matrices=D.shape[-2] < 9)
-        if (s[..., 7] <= _RANK * s[..., 0]).any():
-            raise DegenerateError(_why_degenerate(src, dst))
+        bad = s[..., 7] <= _RANK * s[..., 0]
+        if bad.any():
+            raise DegenerateError(_why_degenerate(src, dst, doubtful, bad))
         h[doubtful] = Vt[..., 8, :]
     return np.asarray(h)
 
@@ -290,23 +305,29 @@ def _refuse_singular(H: Array, src: Array, dst: Array) -> None:
     doubtful = np.abs(np.linalg.det(H)) < 1e-4
     if doubtful.any():
         s = np.linalg.svd(H[doubtful], compute_uv=False)
-        if (s[..., 2] <= _RANK * s[..., 0]).any():
-            raise DegenerateError(_why_degenerate(src, dst))
+        bad = s[..., 2] <= _RANK * s[..., 0]
+        if bad.any():
+            raise DegenerateError(_why_degenerate(src, dst, doubtful, bad))
 
 
-def _why_degenerate(src: Array, dst: Array) -> str:
-    """Say in words which configuration keeps the homography from being determined."""
-    for name, x in (("src", src), ("dst", dst)):
-        for one in _flatten(x):
-            distinct = len(np.unique(one.round(9), axis=0))
-            if distinct < 4:
-                return f"{name} has only {distinct} distinct points (duplicates); 4 are needed"
-            s = np.linalg.svd(one - one.mean(0), compute_uv=False)
-            if s[1] <= _RANK * s[0]:
-                return f"all points of {name} are collinear; move some off the line"
+def _why_degenerate(src: Array, dst: Array, doubtful: Mask, bad: Mask) -> str:
+    """Say in words which configuration keeps the first bad homography from being determined.
+
+    `bad` has one entry for each set of points that is `doubtful`, which has one for every set.
+    """
+    where = tuple(np.argwhere(doubtful)[np.argmax(bad)].tolist())
+    src, dst = np.broadcast_arrays(src, dst)
+    prefix = f"set {', '.join(map(str, where))}: " if where else ""
+    for name, x in (("src", src[where]), ("dst", dst[where])):
+        distinct = len(np.unique(x.round(9), axis=0))
+        if distinct < 4:
+            return f"{prefix}{name} has only {distinct} distinct points (duplicates); 4 are needed"
+        s = np.linalg.svd(x - x.mean(0), compute_uv=False)
+        if s[1] <= _RANK * s[0]:
+            return f"{prefix}all points of {name} are collinear; move some off the line"
     return (
-        "all but one of the points lie on a line (collinear), so they do not fix a homography; "
-        "use four points of which no three are collinear"
+        f"{prefix}all but one of the points lie on a line (collinear), so they do not fix a "
+        "homography; use four points of which no three are collinear"
     )
 
 
@@ -336,9 +357,10 @@ def _refine_one(H: Array, src: Array, dst: Array) -> Array:
     def move(h: Array, step: Array) -> Array:
         return np.asarray((h + step) / np.linalg.norm(h + step))
 
-    start = N2 @ H @ _inverse_similarity(N1)
-    if np.linalg.norm(start) == 0:
-        raise DegenerateError("H: the zero matrix is no homography")
+    start = N2 @ (H / (np.abs(H).max() or 1.0)) @ _inverse_similarity(N1)
+    s = np.linalg.svd(start, compute_uv=False)
+    if s[2] <= _RANK * s[0]:
+        raise DegenerateError("H is singular: it maps the plane onto a line or a point")
     start = start.ravel() / np.linalg.norm(start)
     h = levenberg_marquardt(start, linearise, solve_dense, move, floor=1e-28 * n).x
     refined = _inverse_similarity(N2) @ h.reshape(3, 3) @ N1

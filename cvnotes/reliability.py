@@ -22,6 +22,8 @@ from cvnotes.zhang import constraints
 _UNDETERMINED, _WEAK = 0.0023, 0.01  # second smallest over largest singular value of V
 _PARALLEL, _FLAT = 5.0, 15.0  # largest angle between two boards, degrees
 _UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over its value
+_ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
+_ROUNDING = 1e-6  # px, more than rounding leaves
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
 
 
@@ -45,6 +47,8 @@ class Evidence:
         Where the corners were seen, px.
     converged : bool
         Whether the refinement ended at a minimum.
+    likeness : float
+        Correlation between the residuals of corners that follow each other; about 0 for noise.
     """
 
     A: Array
@@ -56,6 +60,7 @@ class Evidence:
     distances: Array
     corners: Array
     converged: bool
+    likeness: float = 0.0
 
     @cached_property
     def tilt_between(self) -> float:
@@ -82,6 +87,24 @@ class Evidence:
     def focal_uncertainty(self) -> float:
         """Largest standard deviation of a focal length over its value."""
         return float(max(self.std["alpha_u"] / self.A[0, 0], self.std["alpha_v"] / self.A[1, 1]))
+
+
+def likeness(residuals: Array, freedom: int) -> float:
+    """Correlate the residuals (n_views, n, 2) of corners that follow each other.
+
+    0 where that tells nothing: when there are hardly more measured coordinates than unknowns (the
+    difference is `freedom`), or when only rounding errors are left.
+
+    Examples
+    --------
+    >>> drift = np.linspace(-1, 1, 50).reshape(1, 25, 2)
+    >>> likeness(drift, 40) > 0.8, likeness(drift, 10), likeness(1e-12 * drift, 40)
+    (True, 0.0, 0.0)
+    """
+    r = np.nan_to_num(residuals)
+    if 2 * freedom < r.size or np.abs(r).max() < _ROUNDING:
+        return 0.0
+    return float((r[:, 1:] * r[:, :-1]).sum() / (r * r).sum())
 
 
 def judge(evidence: Evidence) -> tuple[tuple[str, ...], bool]:
@@ -125,10 +148,15 @@ def _undetermined(e: Evidence) -> Iterator[str]:
 
 
 def _weak(e: Evidence) -> Iterator[str]:
-    if e.tilt_between < _FLAT or e.determinacy < _WEAK:
+    if len(e.poses) == 2:
         yield (
-            f"the boards are tilted little against each other (at most {e.tilt_between:.0f}°), so "
-            f"the focal length is weakly determined: {_ADVICE}"
+            "two views give as many constraints as A has unknowns, so nothing checks the answer: "
+            "add views"
+        )
+    elif e.tilt_between < _FLAT or e.determinacy < _WEAK:
+        yield (
+            f"the boards' tilts (at most {e.tilt_between:.0f}° between two) determine the focal "
+            f"length only weakly: {_ADVICE}"
         )
     elif e.focal_uncertainty > _UNCERTAIN:
         yield (
@@ -167,6 +195,12 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
             f"views {_listed(bad)} do not fit the others (view {worst}: "
             f"{e.view_rms[worst]:.2f} px, typical {typical:.2f} px): moved, zoomed, rotated or "
             "badly found? Leave them out and see what changes"
+        )
+    if e.likeness > _ALIKE:  # the error bars take the residuals for noise
+        yield (
+            "neighbouring corners miss their places in the same direction, so this is no noise: "
+            "did zoom, focus or orientation change between the pictures, is the board bent, or "
+            "does the lens need more coefficients?"
         )
 
 

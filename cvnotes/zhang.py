@@ -56,12 +56,8 @@ def constraints(H: npt.ArrayLike) -> Array:
     array([[ 0.,  1.,  0.,  0.,  0.,  0.],
            [ 1.,  0., -1.,  0.,  0.,  0.]])
     """
-    H = matrix(H, "H", 3, 3)
-    H = H.reshape(-1, 3, 3)
+    H = _scaled(matrix(H, "H", 3, 3)).reshape(-1, 3, 3)
     columns = np.linalg.norm(H, axis=1)
-    bad = np.abs(np.linalg.det(H)) <= 1e-12 * columns.prod(-1)
-    if bad.any():
-        raise DegenerateError(f"homography {int(np.argmax(bad))} is singular: it shows no plane")
     scale = np.sqrt(columns[:, 0] * columns[:, 1])[:, None]
     h1, h2 = H[:, :, 0] / scale, H[:, :, 1] / scale
     V = np.stack([_v(h1, h2), _v(h1, h1) - _v(h2, h2)], axis=1)
@@ -156,7 +152,7 @@ def intrinsics_from_b_by_formulas(b: npt.ArrayLike) -> Array:
            [0., 2., 1.],
            [0., 0., 1.]])
     """
-    B11, B12, B22, B13, B23, B33 = points(b, "b", 6).tolist()
+    B11, B12, B22, B13, B23, B33 = _six(b).tolist()
     minor = B11 * B22 - B12**2
     if B11 <= 0 or minor <= 0:
         raise DegenerateError(_NOT_POSITIVE)
@@ -244,12 +240,9 @@ def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
     >>> extrinsics(np.eye(3), -7 * np.diag([1.0, 1, 2]))[:3, 3] + 0.0
     array([0., 0., 2.])
     """
-    A, H = intrinsic_matrix(A), matrix(H, "H", 3, 3)
+    A, H = intrinsic_matrix(A), _scaled(matrix(H, "H", 3, 3))
     rays = np.linalg.inv(A) @ H  # λ [r1 r2 T]
-    lengths = np.linalg.norm(rays, axis=-2)
-    scale = (lengths[..., 0] + lengths[..., 1]) / 2
-    if not (np.abs(np.linalg.det(rays)) > 1e-14 * lengths.prod(-1)).all():
-        raise DegenerateError("a homography is singular: it shows no plane")
+    scale = np.linalg.norm(rays[..., :2], axis=-2).mean(-1)
     scale = np.where(rays[..., 2, 2] < 0, -scale, scale)
     rays = rays / scale[..., None, None]
     r1, r2 = rays[..., :, 0], rays[..., :, 1]
@@ -277,6 +270,11 @@ def radial_distortion(
     terms : int
         How many radial coefficients.
 
+    Raises
+    ------
+    DegenerateError
+        A point does not lie in front of the camera, or the points do not determine k.
+
     Notes
     -----
     Each point gives x̃ (k1 r² + k2 r⁴ + …) = x' − x̃, and so for y, with r the radius of the
@@ -299,13 +297,20 @@ def radial_distortion(
     A, G = intrinsic_matrix(A), rigid_motion(G)
     W, m = points(W, "W", 3), points(m, "m", 2)
     paired(W, m, ("W", "m"), at_least=1)
+    if not isinstance(terms, int) or terms < 1:
+        raise CvnotesError(f"terms: expected how many coefficients, 1 or more, got {terms!r}")
     M = W @ G[..., :3, :3].mT + G[..., None, :3, 3]
+    if not (M[..., 2] > 0).all():
+        raise DegenerateError("a board point does not lie in front of the camera")
     ideal = M[..., :2] / M[..., 2:]
     r2 = (ideal**2).sum(-1, keepdims=True)
     powers = [ideal * r2**i for i in range(1, terms + 1)]
     d = xy_from_px(A, m) - ideal
     D = np.stack(powers, axis=-1).reshape(-1, terms)
-    return np.asarray(np.linalg.lstsq(D, d.ravel(), rcond=None)[0])
+    k, _, rank, _ = np.linalg.lstsq(D, d.ravel(), rcond=None)
+    if rank < terms:
+        raise DegenerateError(f"the points do not determine {terms} coefficients: vary the radius")
+    return np.asarray(k)
 
 
 _NOT_POSITIVE = (
@@ -322,8 +327,24 @@ def _v(a: Array, b: Array) -> Array:
     return v
 
 
-def _B(b: npt.ArrayLike) -> Array:
+def _six(b: npt.ArrayLike) -> Array:
     b = points(b, "b", 6)
+    if b.ndim != 1:
+        raise ShapeError(f"b: expected one vector (6,), got {b.shape}")
+    return b
+
+
+def _B(b: npt.ArrayLike) -> Array:
     B = np.zeros((3, 3))
-    B[_B_ROWS, _B_COLUMNS] = B[_B_COLUMNS, _B_ROWS] = b
+    B[_B_ROWS, _B_COLUMNS] = B[_B_COLUMNS, _B_ROWS] = _six(b)
     return B
+
+
+def _scaled(H: Array) -> Array:
+    """Scale each homography (..., 3, 3) to a largest entry of 1, and name one that is singular."""
+    largest = np.abs(H).max((-2, -1), keepdims=True)
+    H = H / np.where(largest > 0, largest, 1)
+    bad = np.abs(np.linalg.det(H)) <= 1e-12 * np.linalg.norm(H, axis=-2).prod(-1)
+    if bad.any():
+        raise DegenerateError(f"homography {int(np.argmax(bad))} is singular: it shows no plane")
+    return H

@@ -17,7 +17,7 @@ LAYERS = [
     ["camera", "incidence", "targets", "correspondences", "meshes", "raycast", "interpolate"],
     ["files", "vanishing", "homography", "resection", "warp", "sampling", "edges"],
     ["zhang", "refine", "subpixel", "robust", "scenes", "rendering", "synthetic"],
-    ["corners", "reliability", "views", "result"],
+    ["corners", "reliability", "steps", "views", "result"],
     ["calibration"],
     ["stereo", "course"],
     ["show", "learn"],

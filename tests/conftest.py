@@ -1,0 +1,59 @@
+"""What several test files share: a board, its views by a known camera, and where real data lie."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.targets import Chessboard
+
+_SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
+
+
+@pytest.fixture(scope="session")
+def shared_data():
+    """Give the path of real data, or skip: they are not part of the project."""
+
+    def find(name):
+        path = _SHARED / name
+        if not path.exists():
+            pytest.skip(f"real data are not here: {path}")
+        return path
+
+    return find
+
+
+@pytest.fixture(scope="session")
+def board():
+    return Chessboard((9, 6), 25.0)
+
+
+@pytest.fixture(scope="session")
+def views_of(board):
+    """Give a function that poses the board at random where the camera sees all of it."""
+
+    def views(camera, n, rng, *, tilt=45.0, roll=180.0, fill=(0.35, 0.9)):
+        """Give n poses (n, 4, 4) and the exact corners (n, 54, 2).
+
+        Angles are in degrees; `fill` is the part of the picture's width that the board would
+        take up in front of the camera.
+        """
+        W, middle = board.points, board.points.mean(0)
+        width, height = camera.size
+        poses, corners = [], []
+        while len(poses) < n:
+            a, angle = rng.uniform(0, 2 * np.pi), np.radians(tilt) * np.sqrt(rng.uniform())
+            turn = rotation_from_vector([0, 0, np.radians(rng.uniform(-roll, roll))])
+            R = rotation_from_vector([angle * np.cos(a), angle * np.sin(a), 0]) @ turn
+            z = camera.A[0, 0] * W[:, 0].max() / (width * rng.uniform(*fill))
+            m = rng.uniform([0.1, 0.1], [0.9, 0.9]) * camera.size
+            T = np.linalg.solve(camera.A, [*m, 1]) * z
+            G = pose(R, T - R @ middle)
+            seen = camera.moved(G).project(W)
+            if np.isfinite(seen).all() and (seen >= 0).all() and (seen <= [width, height]).all():
+                poses.append(G)
+                corners.append(seen)
+        return np.array(poses), np.array(corners)
+
+    return views
