@@ -175,15 +175,20 @@ class Lens:
         """Distort without a guard; NaN rows stay NaN."""
         if self.is_ideal:
             return xy
-        d = xy - self.centre
-        r2 = (d * d).sum(-1, keepdims=True)
-        out = radial_factor(self.k, r2) * d
-        if any(self.p):
-            p = np.array(self.p[::-1])
-            out += 2 * (d @ p)[..., None] * d + r2 * p
-        out += self.centre
-        out[~(r2[..., 0] <= self.max_radius**2)] = np.nan
-        return np.asarray(out)
+        return np.stack(self._distort_columns(xy[..., 0], xy[..., 1]), axis=-1)
+
+    def _distort_columns(self, x: Array, y: Array) -> tuple[Array, Array]:
+        x0, y0 = self.centre
+        x, y = x - x0, y - y0
+        r2 = x * x + y * y
+        factor = radial_factor(self.k, r2)
+        if np.isfinite(self.max_radius):
+            factor = np.where(r2 <= self.max_radius**2, factor, np.nan)
+        p1, p2 = self.p
+        if p1 or p2:
+            factor += 2 * (p2 * x + p1 * y)
+            return factor * x + (p2 * r2 + x0), factor * y + (p1 * r2 + y0)
+        return factor * x + x0, factor * y + y0
 
     def _undistort(self, m: Array, columns: Callable[[Array], tuple[Array, Array]]) -> Array:
         """Undistort rows m (..., 2) without a guard; `columns` turns some of them into x', y'."""

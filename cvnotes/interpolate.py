@@ -1,0 +1,255 @@
+"""The picture between its pixels: nearest neighbour and bilinear (notes 2b.5).
+
+Pixel centres are integers, so the picture covers [−½, width − ½] × [−½, height − ½]; what a
+position beyond the outermost centres shows is the border's business.
+"""
+
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, numbers
+
+Method = Literal["bilinear", "nearest"]
+Border = Literal["constant", "replicate", "reflect"]
+Image = npt.NDArray[np.uint8 | np.uint16 | np.float32 | np.float64]
+Real = npt.NDArray[Any]  # float32 or float64
+
+
+def bilinear(I1: Real, I2: Real, I3: Real, I4: Real, du: Real, dv: Real) -> Real:
+    """Interpolate between the four pixels around a position.
+
+    Parameters
+    ----------
+    I1, I2, I3, I4 : ndarray
+        The picture at (u_k, v_k), (u_k + 1, v_k), (u_k, v_k + 1) and (u_k + 1, v_k + 1).
+    du, dv : ndarray
+        Fractions u − u_k and v − v_k, from 0 to 1.
+
+    Notes
+    -----
+    Along u first, then along v:
+
+        I_a = (I2 − I1) Δu + I1,    I_b = (I4 − I3) Δu + I3,    I = (I_b − I_a) Δv + I_a,
+
+    which is (1−Δu)(1−Δv) I1 + Δu(1−Δv) I2 + (1−Δu)Δv I3 + ΔuΔv I4. The notes' expanded form has
+    the sign of I1 wrong in its last factor, I4 − I3 − I2 + I1 (erratum E42).
+
+    References
+    ----------
+    .. [1] Notes 2b.5, "Forward/Backward Mapping".
+
+    Examples
+    --------
+    >>> bilinear(*np.array([10.0, 20.0, 30.0, 80.0, 0.5, 0.5]))  # the mean of the four
+    array(35.)
+    """
+    I_a = (I2 - I1) * du + I1
+    I_b = (I4 - I3) * du + I3
+    return np.asarray((I_b - I_a) * dv + I_a)
+
+
+def interpolate(
+    image: npt.ArrayLike,
+    m: npt.ArrayLike,
+    *,
+    method: Method = "bilinear",
+    border: Border = "constant",
+    fill: npt.ArrayLike = 0,
+) -> Image:
+    """Look a picture up at positions that need not be pixels.
+
+    Parameters
+    ----------
+    image : ndarray, shape (height, width) or (height, width, channels)
+        uint8, uint16, float32 or float64.
+    m : array_like, shape (..., 2)
+        Positions (u, v) in pixels; NaN where there is nothing to show.
+    method : {"bilinear", "nearest"}
+        Between four pixels, or the closest one; half-way to the right and downwards.
+    border : {"constant", "replicate", "reflect"}
+        What lies outside: `fill`, the outermost pixel, or the picture mirrored at the outermost
+        pixel centres.
+    fill : number, or one per channel
+        What lies outside of a constant border, and what NaN shows under every border.
+
+    Returns
+    -------
+    ndarray, shape (...) or (..., channels), of the image's dtype
+        Integers are rounded to the nearest, halves upwards.
+
+    Notes
+    -----
+    Nearest rounds both coordinates, bilinear takes the floor of both; the notes' mixture of floor
+    and round (erratum E40) does neither.
+
+    References
+    ----------
+    .. [1] Notes 2b.5, "Forward/Backward Mapping".
+
+    Examples
+    --------
+    >>> image = np.array([[10.0, 20.0], [30.0, 80.0]])
+    >>> interpolate(image, [[0.5, 0.5], [0.25, 0.0], [7.0, 7.0]])
+    array([35. , 12.5,  0. ])
+    >>> interpolate(image, [[0.5, 0.5], [0.4, 0.0]], method="nearest")
+    array([80., 10.])
+    """
+    sampler = Sampler(image, method, border, fill)
+    xy = positions(m, "m")
+    values = sampler(xy[..., 0].ravel(), xy[..., 1].ravel())
+    return values.reshape(xy.shape[:-1] + sampler.channels)
+
+
+class Sampler:
+    """A picture made ready to be looked up at many positions; see `interpolate`."""
+
+    def __init__(
+        self, image: npt.ArrayLike, method: Method, border: Border, fill: npt.ArrayLike
+    ) -> None:
+        picture = checked_image(image)
+        if method not in ("bilinear", "nearest"):
+            raise CvnotesError(f'method: expected "bilinear" or "nearest", got {method!r}')
+        if border not in ("constant", "replicate", "reflect"):
+            raise CvnotesError(
+                f'border: expected "constant", "replicate" or "reflect", got {border!r}'
+            )
+        self.method, self.border, self.dtype = method, border, picture.dtype
+        self.height, self.width = picture.shape[:2]
+        self.channels = picture.shape[2:]
+        self.fill = checked_fill(fill, picture)
+        self.stride = self.width + 3
+        self._pad(picture)
+
+    def _pad(self, picture: Image) -> None:
+        """Frame each channel with `fill`, so that no position needs a test of its own."""
+        planes = np.moveaxis(picture.reshape(self.height, self.width, -1), -1, 0)
+        shape = (len(planes), self.height + 3, self.stride)
+        framed = np.empty(shape, picture.dtype)
+        framed[:] = self.fill.reshape(-1, 1, 1)
+        framed[:, 1:-2, 1:-2] = planes
+        self.planes = framed.reshape(len(planes), -1)
+        self.all_finite = picture.dtype.kind != "f" or bool(np.isfinite(framed).all())
+
+    @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
+    def __call__(self, u: Array, v: Array) -> Image:
+        """Give the picture at u, v (n,) as (n, channels); overwrites u and v."""
+        nowhere = None
+        if self.border != "constant":
+            nowhere = np.flatnonzero(~(np.isfinite(u) & np.isfinite(v)))
+            u, v = (_fold(x, n, self.border) for x, n in ((u, self.width), (v, self.height)))
+        values = self._nearest(u, v) if self.method == "nearest" else self._bilinear(u, v)
+        if nowhere is not None and nowhere.size:
+            values[nowhere] = self.fill
+        return values
+
+    def _nearest(self, u: Array, v: Array) -> Image:
+        u, v = (_inside(np.floor(x + 0.5), n) for x, n in ((u, self.width), (v, self.height)))
+        index = self._index(u, v)
+        return np.stack([plane.take(index) for plane in self.planes], axis=-1)
+
+    def _bilinear(self, u: Array, v: Array) -> Image:
+        u, v = _inside(u, self.width), _inside(v, self.height)
+        u_k, v_k = np.floor(u), np.floor(v)
+        working = np.float32 if self.dtype == np.uint8 else np.float64
+        du, dv = (u - u_k).astype(working, copy=False), (v - v_k).astype(working, copy=False)
+        index = self._index(u_k, v_k)
+        values = np.empty((u.size, len(self.planes)), self.dtype)
+        for channel, plane in enumerate(self.planes):
+            I1, I2, I3, I4 = (
+                plane[offset:].take(index).astype(working, copy=False)
+                for offset in (0, 1, self.stride, self.stride + 1)
+            )
+            if not self.all_finite:  # 0 · NaN is not 0
+                I2, I4 = np.where(du == 0, I1, I2), np.where(du == 0, I3, I4)
+                I3, I4 = np.where(dv == 0, I1, I3), np.where(dv == 0, I2, I4)
+            value = bilinear(I1, I2, I3, I4, du, dv)
+            if self.dtype.kind == "u":
+                value += 0.5
+            values[:, channel] = value
+        return values
+
+    def _index(self, u_k: Array, v_k: Array) -> npt.NDArray[np.intp]:
+        """Place whole pixels in the framed picture, whose frame begins at (−1, −1)."""
+        index = v_k * self.stride
+        index += u_k
+        index += self.stride + 1
+        return np.asarray(index, dtype=np.intp)
+
+
+def _inside(x: Array, n: int) -> Array:
+    """Keep positions between −1 and n, where the frame begins; NaN goes there too."""
+    if x.size and not (x.min() >= -1 and x.max() <= n):
+        x = np.fmin(np.fmax(x, -1), n)
+    return x
+
+
+def _fold(x: Array, n: int, border: Border) -> Array:
+    """Bring positions outside back into the picture, 0 to n − 1; infinity and NaN to 0."""
+    x = np.where(np.isfinite(x), x, 0)
+    if border == "replicate":
+        return np.clip(x, 0, n - 1)
+    return (n - 1) - np.abs(np.abs(x) % (2 * n - 2) - (n - 1)) if n > 1 else np.zeros_like(x)
+
+
+def checked_image(x: Any, name: str = "image") -> Image:
+    """Guard a picture, (height, width) or (height, width, channels); it is not copied.
+
+    Examples
+    --------
+    >>> checked_image(np.zeros((4, 6), np.uint8)).shape
+    (4, 6)
+    """
+    if not isinstance(x, np.ndarray):
+        x = numbers(x, name)
+    if isinstance(x, np.ma.MaskedArray):
+        raise InputTypeError(f"{name}: masked arrays are not read; put NaN where nothing is known")
+    x = x.view(np.ndarray)
+    if x.dtype.kind + str(x.dtype.itemsize) not in ("u1", "u2", "f4", "f8"):
+        raise InputTypeError(
+            f"{name}: expected uint8, uint16, float32 or float64, got {x.dtype}; "
+            "convert it, minding its range"
+        )
+    if x.ndim not in (2, 3) or x.size == 0 or (x.ndim == 3 and x.shape[2] > 4):
+        raise ShapeError(
+            f"{name}: expected (height, width) or (height, width, channels) with at most four "
+            f"channels, got {x.shape}"
+        )
+    return x
+
+
+def checked_fill(fill: npt.ArrayLike, image: Image) -> Image:
+    """Guard a grey value, or one per channel, that the image's dtype can hold.
+
+    Examples
+    --------
+    >>> checked_fill(7, np.zeros((4, 6, 3), np.uint8))
+    array([7, 7, 7], dtype=uint8)
+    """
+    channels = image.shape[2:] or (1,)
+    try:
+        with np.errstate(invalid="ignore", over="ignore"):
+            given = np.broadcast_to(np.asarray(fill, dtype=np.float64), channels)
+            value = given.astype(image.dtype)
+    except (TypeError, ValueError):
+        raise CvnotesError(f"fill: expected a number, or {channels[0]}, got {fill!r}") from None
+    if image.dtype.kind == "u" and not (value == given).all():
+        raise CvnotesError(f"fill: {fill!r} is not a value of {image.dtype}")
+    return value
+
+
+def positions(x: Any, name: str) -> Array:
+    """Guard positions (..., 2) in pixels, among which NaN and infinity mean nowhere.
+
+    Examples
+    --------
+    >>> positions([3, np.nan], "m")
+    array([ 3., nan])
+    """
+    array = np.asarray(x)
+    if array.dtype.kind not in "iuf":
+        raise InputTypeError(f"{name}: expected numbers, got {type(x).__name__} of {array.dtype}")
+    if array.ndim == 0 or array.shape[-1] != 2:
+        raise ShapeError(f"{name}: expected positions (u, v) of shape (..., 2), got {array.shape}")
+    return array.astype(np.float64)
