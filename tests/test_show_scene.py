@@ -1,0 +1,319 @@
+import json
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import CvnotesError, ShapeError
+from cvnotes.lens import Lens
+from cvnotes.meshes import box
+from cvnotes.rigid import look_at, move, pose
+from cvnotes.show.scene import GL_FROM_CV, build_scene, export_glb, gl_from_cv
+from cvnotes.show.shapes import (
+    Faces,
+    Label,
+    Lines,
+    Photo,
+    axes_shapes,
+    horizon_shapes,
+    scene_shapes,
+    target_shapes,
+)
+from cvnotes.show.sights import camera_shapes, plane_shapes, ray_shapes
+from cvnotes.show.stills import draw_scene
+from cvnotes.show.style import CAMERA, ESTIMATED, WORLD
+from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
+
+A = intrinsics(800, 800, 319.5, 239.5)
+POSE = look_at([330, -180, -420], [100, 62, 0])
+STRAIGHT = Camera(A, POSE)
+BENT = Camera(A, POSE, Lens((-0.25, 0.10), (0.001, 0.0)))
+BOARD = Chessboard()
+
+
+def all_shapes():
+    image = np.zeros((480, 640, 3), np.uint8)
+    return (
+        *target_shapes(BOARD, name="board"),
+        *axes_shapes(),
+        *camera_shapes(BENT, image=image),
+        *ray_shapes(BENT, [320, 240], 500.0),
+        *plane_shapes(BENT, 100.0),
+        *horizon_shapes(radius=800.0),
+        *scene_shapes(box((0, 50), (0, 50), (0, 50))),
+    )
+
+
+def named(shapes, kind):
+    return next(shape for shape in shapes if isinstance(shape, kind))
+
+
+# The flip between the two conventions.
+
+
+def test_a_camera_in_opengl_looks_along_minus_z_with_y_up():
+    world_from_gl = gl_from_cv(POSE)
+    assert np.allclose(world_from_gl[:3, 3], STRAIGHT.centre, atol=1e-9)
+    ahead, up = world_from_gl[:3, :3] @ [0, 0, -1], world_from_gl[:3, :3] @ [0, 1, 0]
+    assert np.allclose(ahead, STRAIGHT.ray([319.5, 239.5]), atol=1e-12)
+    assert up @ (STRAIGHT.ray([319.5, 0]) - STRAIGHT.ray([319.5, 479])) > 0
+    assert np.linalg.det(world_from_gl) == pytest.approx(1)
+
+
+def test_the_flip_is_half_a_turn_about_x_and_its_own_inverse():
+    assert np.array_equal(GL_FROM_CV @ GL_FROM_CV, np.eye(4))
+    assert np.array_equal(GL_FROM_CV @ [1, 2, 3, 1], [1, -2, -3, 1])
+
+
+def test_trimesh_casts_the_same_rays_as_the_course():
+    import trimesh
+
+    scene = trimesh.Scene(trimesh.creation.box())
+    scene.camera = trimesh.scene.Camera(resolution=(64, 48), focal=(80, 80))
+    scene.camera_transform = gl_from_cv(POSE)
+    origins, directions, _ = scene.camera_rays()
+    ours = Camera(intrinsics(80, 80, 31.5, 23.5), POSE, size=(64, 48))
+    assert np.allclose(origins, ours.centre, atol=1e-9)
+    corners = ours.ray([[u, v] for u in (-0.5, 63.5) for v in (-0.5, 47.5)])
+    for corner in corners:  # the outermost rays are those of the outermost pixels
+        assert (directions @ corner).max() > np.cos(0.02)
+    mean = directions.mean(axis=0)
+    assert np.allclose(mean / np.linalg.norm(mean), ours.ray([31.5, 23.5]), atol=0.01)
+
+
+# What the shapes are.
+
+
+def test_the_pyramid_of_a_camera_ends_in_the_corners_of_its_picture():
+    ends = named(camera_shapes(STRAIGHT, 150.0), Lines).ends
+    corners = np.unique(ends[:4].reshape(-1, 3).round(6), axis=0)
+    pixels = {tuple(m) for m in STRAIGHT.project(corners).round(3).tolist()}
+    assert pixels == {(-0.5, -0.5), (639.5, -0.5), (639.5, 479.5), (-0.5, 479.5)}
+    assert np.allclose(STRAIGHT.depth(corners), 150, atol=1e-3)
+    assert np.allclose(ends[4:8, 0], STRAIGHT.centre, atol=1e-9)
+
+
+def test_the_tick_of_a_camera_is_above_its_picture():
+    tick = named(camera_shapes(STRAIGHT, 150.0), Lines).ends[-1, 0]
+    assert STRAIGHT.project(tick)[1] < -20
+
+
+def test_a_picture_on_the_image_plane_has_its_first_pixel_at_the_top_left():
+    image = np.arange(480 * 640 * 3, dtype=np.uint32).reshape(480, 640, 3).astype(np.uint8)
+    photo = named(camera_shapes(STRAIGHT, 150.0, image=image), Photo)
+    assert np.allclose(STRAIGHT.project(photo.corners[0]), [-0.5, -0.5], atol=1e-6)
+    assert np.allclose(STRAIGHT.project(photo.corners[1]), [639.5, -0.5], atol=1e-6)
+    assert np.array_equal(photo.image, image)
+    grey = named(camera_shapes(STRAIGHT, image=image[..., 0]), Photo)
+    assert np.array_equal(grey.image[..., 2], image[..., 0])
+
+
+def test_rays_through_the_lens_end_in_the_points_that_the_pixels_show():
+    (lines,) = ray_shapes(BENT, BENT.project(BOARD.points), to=BOARD.points)
+    assert np.allclose(lines.ends[:, 0], BENT.centre, atol=1e-9)
+    assert np.allclose(lines.ends[:, 1], BOARD.points, atol=1e-6)
+
+
+def test_pixels_beyond_the_lens_have_no_ray():
+    camera = Camera(intrinsics(200, 200, 319.5, 239.5), lens=Lens((-0.5,)))
+    (lines,) = ray_shapes(camera, [[320, 240], [639, 479]], 10.0)
+    assert len(lines.ends) == 1
+
+
+def test_the_outline_on_the_plane_z_is_the_border_of_the_picture_without_the_lens():
+    faces, outline, label = plane_shapes(BENT, 3.0)
+    on = outline.ends[:, 0]
+    assert np.allclose(BENT.depth(on), 3, atol=1e-9)
+    m = BENT.project(on)
+    far = np.abs((m - [319.5, 239.5]) / [320, 240]).max(axis=1)
+    assert np.allclose(far, 1, atol=1e-6)
+    assert np.allclose(BENT.depth(faces.corners[0]), 3, atol=1e-9)
+    assert label.name == "z = 1"
+
+
+@pytest.mark.parametrize("target", [BOARD, TwoPlanes(), ThreePlanes()])
+def test_every_inner_corner_is_where_four_squares_of_two_colours_meet(target):
+    faces = target_shapes(target)[0]
+    dark = faces.colours[:, 0] < 0.5
+    for W in target.points[[0, 7, 20, -1]]:
+        touching = (np.linalg.norm(faces.corners - W, axis=-1) < 1e-6).any(axis=1)
+        on_face = [touching & (np.arange(len(dark)) // 108 == k) for k in range(len(target.faces))]
+        assert any(np.count_nonzero(t) == 4 and np.count_nonzero(dark[t]) == 2 for t in on_face)
+    # The first square, beyond the origin towards −x and −y, is dark.
+    first = move(target.faces[0][0], [-12.5, -12.5, 0])
+    nearest = np.linalg.norm(faces.corners.mean(axis=1) - first, axis=-1).argmin()
+    assert dark[nearest]
+    assert np.count_nonzero(dark) == 35 * len(target.faces)
+
+
+def test_a_targets_border_is_its_paper():
+    border = named(target_shapes(BOARD), Lines).ends
+    assert border.shape == (4, 2, 3)
+    assert border.reshape(-1, 3).min(axis=0).tolist() == [-50, -50, 0]
+    assert border.reshape(-1, 3).max(axis=0).tolist() == [250, 175, 0]
+
+
+def test_axes_are_as_long_as_asked_and_stand_in_their_frame():
+    world_from_frame = pose(np.eye(3), [10, 20, 30])
+    ends = named(axes_shapes(world_from_frame, 50.0), Lines).ends
+    assert np.allclose(ends[0], [[10, 20, 30], [60, 20, 30]], atol=1e-12)
+    tips = {tuple(tip) for tip in ends[:, 1].round(9).tolist()}
+    assert {(60, 20, 30), (10, 70, 30), (10, 20, 80)} <= tips
+
+
+def test_the_horizon_is_seen_at_the_vanishing_points_of_level_directions():
+    camera = Camera(A, pose(STRAIGHT.R, -STRAIGHT.R @ [0, -300, 0]))
+    on = named(horizon_shapes([0, -300, 0], 5000.0), Lines).ends[:, 0]
+    seen = camera.depth(on) > 0
+    expected = camera.vanishing_point(on[seen] - [0, -300, 0])
+    assert np.allclose(camera.project(on[seen]), expected, atol=1e-6)
+
+
+def test_what_is_estimated_has_its_own_colour():
+    assert named(camera_shapes(STRAIGHT), Lines).colour == CAMERA
+    assert named(camera_shapes(STRAIGHT, meaning="estimated"), Lines).colour == ESTIMATED
+    assert named(axes_shapes(), Lines).colour == WORLD
+
+
+# Scenes and files.
+
+
+def test_a_scene_holds_every_shape_with_y_up():
+    scene = build_scene(*all_shapes())
+    expected = {"board", "board border", "WRF axes", "camera pyramid", "camera picture", "rays"}
+    expected |= {"z = 1 plane", "z = 1 outline", "horizon", "scene"}
+    assert expected <= set(scene.geometry)
+    board = target_shapes(BOARD)[0].corners.reshape(-1, 3)
+    low, high = build_scene(*target_shapes(BOARD)[:1]).bounds
+    assert np.allclose(low, [board[:, 0].min(), -board[:, 1].max(), 0], atol=1e-9)
+    assert np.allclose(high, [board[:, 0].max(), -board[:, 1].min(), 0], atol=1e-9)
+
+
+def test_two_cameras_of_one_name_are_both_kept():
+    scene = build_scene(*camera_shapes(STRAIGHT), *camera_shapes(Camera(A)))
+    assert len(scene.geometry) == 2
+    assert len(scene.graph.nodes_geometry) == 2
+
+
+def test_lines_get_a_body_as_thick_as_asked():
+    bar = Lines("bar", np.array([[[0.0, 0, 0], [100, 0, 0]]]), WORLD, 2.0)
+    mesh = build_scene(bar, thickness=1.5).geometry["bar"]
+    assert np.allclose(np.ptp(mesh.vertices, axis=0), [100, 3 * 2**0.5, 3 * 2**0.5], atol=1.3)
+    assert np.allclose(np.ptp(mesh.vertices, axis=0)[0], 100, atol=1e-9)
+
+
+def test_a_glb_holds_everything_and_no_address_outside(tmp_path):
+    export_glb(build_scene(*all_shapes()), tmp_path / "scene.glb")
+    file = (tmp_path / "scene.glb").read_bytes()
+    assert file[:4] == b"glTF"
+    for address in (b"http", b"www.", b"//"):
+        assert address not in file[: 20 + int.from_bytes(file[12:16], "little")]
+    tree = json.loads(file[20 : 20 + int.from_bytes(file[12:16], "little")])
+    assert all("uri" not in part for part in tree["buffers"] + tree["images"])
+    assert all(m["doubleSided"] for m in tree["materials"])
+    assert all(m["pbrMetallicRoughness"]["metallicFactor"] == 0 for m in tree["materials"])
+
+
+def test_the_same_scene_is_the_same_file_byte_for_byte(tmp_path):
+    for name in ("a.glb", "b.glb"):
+        export_glb(build_scene(*all_shapes()), tmp_path / name)
+    assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+
+def test_a_glb_read_back_has_the_same_places_and_the_picture(tmp_path):
+    import trimesh
+
+    image = np.random.default_rng(0).integers(0, 255, (48, 64, 3), np.uint8)
+    scene = build_scene(*camera_shapes(STRAIGHT, 150.0, image=image), *target_shapes(BOARD))
+    export_glb(scene, tmp_path / "scene.glb")
+    again = trimesh.load_scene(tmp_path / "scene.glb")
+    assert np.allclose(again.bounds, scene.bounds, atol=1e-3)
+    material = again.geometry["camera picture"].visual.material
+    assert np.array_equal(np.asarray(material.baseColorTexture.convert("RGB")), image)
+
+
+# Stills.
+
+
+def test_a_still_has_equal_scales_and_y_downwards():
+    ax = draw_scene(*all_shapes())
+    extents = [abs(np.ptp(limits)) for limits in (ax.get_xlim(), ax.get_ylim(), ax.get_zlim())]
+    aspect = np.asarray(ax._box_aspect)
+    assert np.allclose(aspect / aspect.max(), np.array(extents) / max(extents), atol=1e-9)
+    low, high = ax.get_zlim()
+    assert low > high
+    assert [ax.get_xlabel(), ax.get_ylabel(), ax.get_zlabel()] == ["x (mm)", "z (mm)", "y (mm)"]
+
+
+def test_a_still_names_what_it_shows():
+    shapes = (*all_shapes(), *camera_shapes(STRAIGHT, name="camera 2"))
+    texts = [text.get_text() for text in draw_scene(*shapes, unit="m").texts]
+    assert texts == ["board", "WRF", "camera", "z = 1", "horizon", "camera 2"]
+
+
+@pytest.mark.parametrize("view", [(20, -40), (5, -90), (60, 10), (-20, 120)])
+def test_a_still_fills_its_place_and_stays_within(view):
+    from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+    ax = draw_scene(*all_shapes(), view=view)
+    ax.figure.canvas.draw()
+    corners = [
+        ax.transData.transform(proj_transform(x, y, z, ax.get_proj())[:2])
+        for x in ax.get_xlim()
+        for y in ax.get_ylim()
+        for z in ax.get_zlim()
+    ]
+    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+    assert (low > [40, 50]).all()
+    assert (high < [560, 505]).all()
+    assert np.isclose(high - low, [510, 445], atol=1).any()
+
+
+def test_a_still_is_drawn_on_the_axes_it_is_given_and_leaves_no_figure_behind():
+    import matplotlib.pyplot as plt
+
+    figure = Figure()
+    ax = figure.add_subplot(1, 2, 2, projection="3d")
+    assert draw_scene(*axes_shapes(), ax=ax) is ax
+    draw_scene(*axes_shapes())
+    assert plt.get_fignums() == []
+
+
+def test_a_nearer_face_is_painted_over_a_farther_one():
+    def square(name, z, colour):
+        corners = np.array([[[-50.0, -50, z], [50, -50, z], [50, 50, z], [-50, 50, z]]])
+        return Faces(name, corners, np.array([colour]))
+
+    near, far = square("near", 0, (1, 0, 0, 1)), square("far", 200, (0, 0, 1, 1))
+    for shapes in ((near, far), (far, near)):
+        ax = draw_scene(*shapes, view=(0, -90))  # looks along +z
+        canvas = FigureCanvasAgg(ax.figure)
+        canvas.draw()
+        picture = np.asarray(canvas.buffer_rgba())
+        red = (picture[..., 0] > 200) & (picture[..., 2] < 50)
+        blue = (picture[..., 2] > 200) & (picture[..., 0] < 50)
+        assert np.count_nonzero(red) > 10_000
+        assert np.count_nonzero(blue) == 0
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "words"),
+    [
+        (lambda: draw_scene(), CvnotesError, "at least one shape"),
+        (lambda: build_scene(), CvnotesError, "at least one shape"),
+        (lambda: axes_shapes(meaning="red"), CvnotesError, "world, camera, ideal"),
+        (lambda: ray_shapes(STRAIGHT, [1, 2]), CvnotesError, "`length` or near points `to`"),
+        (lambda: ray_shapes(STRAIGHT, [[1, 2]], to=np.eye(3)), ShapeError, "one point for each"),
+        (lambda: camera_shapes(STRAIGHT, image=np.ones((4, 4))), ShapeError, "expected uint8"),
+    ],
+)
+def test_what_cannot_be_shown_is_refused_in_words(make, error, words):
+    with pytest.raises(error, match=words):
+        make()
+
+
+def test_labels_alone_make_a_still_too():
+    ax = draw_scene(Label("here", np.array([1.0, 2, 3]), WORLD), *axes_shapes(length=5.0))
+    assert "here" in [text.get_text() for text in ax.texts]
