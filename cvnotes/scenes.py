@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.meshes import Scene, Surroundings, box, join, quads
+from cvnotes.rigid import pose, rotation_from_vector
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 Span = tuple[float, float]  # from, to
@@ -97,6 +98,33 @@ def rails() -> Scene:
         for z in range(15_000, 500_000, 25_000)
     ]
     return replace(join(ground, ballast, sleepers, *pair, *poles), around=_OUTDOORS)
+
+
+def blocks() -> Scene:
+    """Build three blocks on a plain that reaches to the horizon, for vanishing points.
+
+    All their edges keep to three directions: the vertical, and two level ones that are turned by
+    35° about it, (cos 35°, 0, −sin 35°) and (sin 35°, 0, cos 35°). Tiles are 1 m wide. The first
+    8 vertices are the corners of the block in the middle, 4 m × 5 m × 4 m.
+
+    Examples
+    --------
+    >>> edge = blocks().vertices[1] - blocks().vertices[0]
+    >>> (edge / np.cos(np.deg2rad(35))).round(9)[0]
+    np.float64(4000.0)
+    """
+    turn = rotation_from_vector([0, np.deg2rad(35), 0])
+    sides = [
+        ((0, 4000), (-3400, GROUND), (0, 4000)),
+        ((-7000, -3000), (-1400, GROUND), (3000, 9000)),
+    ]
+    sides += [((4700, 7700), (-400, GROUND), (3000, 6000))]
+    colours = [((0.72, 0.42, 0.30), (0.86, 0.60, 0.45)), ((0.36, 0.50, 0.58), (0.55, 0.68, 0.74))]
+    colours += [((0.70, 0.62, 0.38), (0.87, 0.80, 0.58))]
+    walls = [box(*side, pair, 1000) for side, pair in zip(sides, colours, strict=True)]
+    town = join(*walls).moved(pose(turn, [-2300, 0, 12_500]))
+    ground = _floor((-_FAR, _FAR), GROUND, (-_FAR, _FAR), (0.62, 0.60, 0.53))
+    return replace(join(town, ground), around=_OUTDOORS)
 
 
 def corridor() -> Scene:

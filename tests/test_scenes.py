@@ -5,7 +5,7 @@ from cvnotes.camera import Camera, intrinsics
 from cvnotes.meshes import join
 from cvnotes.rendering import depth_map, render_scene
 from cvnotes.rigid import look_at, move, pose, rotation_from_vector
-from cvnotes.scenes import GROUND, corridor, from_trimesh, rails, room, target_scene
+from cvnotes.scenes import GROUND, blocks, corridor, from_trimesh, rails, room, target_scene
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 CAMERA = Camera(intrinsics(400, 400, 159.5, 119.5), size=(320, 240))
@@ -95,6 +95,24 @@ def test_a_place_is_closed_around_the_camera_and_keeps_to_three_directions(place
     assert np.allclose(np.sort(np.abs(scene.normals), axis=1), [0, 0, 1], atol=1e-12)
 
 
+def test_the_blocks_keep_to_the_three_directions_that_are_promised():
+    scene, turn = blocks(), np.deg2rad(35)
+    directions = np.array(
+        [[np.cos(turn), 0, -np.sin(turn)], [0, 1, 0], [np.sin(turn), 0, np.cos(turn)]]
+    )
+    edges = np.diff(scene.vertices[scene.edges][:36], axis=1)[:, 0]
+    along = np.abs(edges @ directions.T) / np.linalg.norm(edges, axis=1, keepdims=True)
+    assert np.allclose(np.sort(along, axis=1), [0, 0, 1], atol=1e-9)
+    size = np.ptp(scene.vertices[:8] @ directions.T, axis=0)
+    assert np.allclose(size, [4000, 5000, 4000], atol=1e-6)
+    assert scene.vertices[:, 1].max() == pytest.approx(GROUND)
+    # Two level vanishing points on the horizon, the third far below it.
+    camera = CAMERA.moved(look_at([0, 0, 0], [0, -200, 3000]))
+    left, below, right = (camera.vanishing_point(d) for d in directions)
+    assert left[1] == pytest.approx(right[1], abs=1e-6)
+    assert abs(below[1] - left[1]) > 1000
+
+
 @pytest.mark.parametrize("place", [room, corridor])
 def test_the_tiles_of_a_floor_are_square_and_fit_its_walls(place):
     scene = place()
@@ -119,6 +137,6 @@ def test_a_trimesh_keeps_its_triangles_and_face_colours():
 
 
 def test_every_scene_is_drawn_without_a_warning_and_is_not_flat():
-    for scene in (rails(), room(), corridor()):
+    for scene in (rails(), room(), corridor(), blocks()):
         picture = render_scene(scene, CAMERA, samples=16)
         assert picture.std() > 20
