@@ -91,6 +91,8 @@ def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike, *, engine: str = "auto
         raise ShapeError(f"xy: expected groups of rays (groups, k, 2), got {xy.shape}")
     if engine not in ("auto", "own", "embree"):
         raise CvnotesError(f"engine: expected 'auto', 'own' or 'embree', got {engine!r}")
+    if engine == "embree" and not has_embree():
+        raise CvnotesError("engine: embree is not installed; pip install 'cvnotes[rays]' adds it")
     if engine == "auto":
         engine = "embree" if len(corners) >= _MANY and has_embree() else "own"
     n, det = edge_functions(corners)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import Camera
-from cvnotes.errors import Array
+from cvnotes.errors import Array, CvnotesError, InputTypeError
 from cvnotes.meshes import Scene, Surroundings
 from cvnotes.raycast import Indices, edge_functions, first_hits
 from cvnotes.rigid import move
@@ -31,13 +31,11 @@ _PIXELS = 2048  # looked at closely at a time
 
 
 def render_scene(
-    scene: Scene,
-    camera: Camera,
-    *,
-    samples: int = 64,
-    engine: str = "auto",
+    scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "auto"
 ) -> npt.NDArray[np.uint8]:
     """Take a picture of a scene.
+
+    For noise, blur or JPEG hand `radiance` to `cvnotes.sensor.expose`.
 
     Parameters
     ----------
@@ -69,6 +67,29 @@ def render_scene(
     >>> render_scene(box((-1, 1), (-1, 1), (-1, 1)), camera).shape
     (48, 64, 3)
     """
+    light = radiance(scene, camera, samples=samples, engine=engine)
+    return np.asarray(np.rint(light.clip(0, 255)), dtype=np.uint8)
+
+
+def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "auto") -> Array:
+    """Give the mean light on each pixel, on the scale of grey levels, unrounded.
+
+    Parameters are those of `render_scene`.
+
+    Returns
+    -------
+    ndarray, shape (height, width, 3)
+        Red, green, blue; 255 is white, lamps are brighter.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.meshes import box
+    >>> lamp = box((-1, 1), (-1, 1), (3, 4), (2.0, 2.0, 2.0))
+    >>> bool(radiance(lamp, Camera(intrinsics(80, 80, 32, 24), size=(64, 48))).max() > 255)
+    True
+    """
+    _guard(scene, camera, samples)
     # 1. one ray through the middle of each pixel
     surfaces = _Surfaces.seen_by(camera, scene)
     middle = pixel_centres(camera.size)
@@ -80,7 +101,7 @@ def render_scene(
     busy |= crossed(camera, move(camera.G, scene.vertices)[scene.edges], xy)
     picture = out_of_tiles(np.moveaxis(colour, 0, -1), camera.size)
     picture[busy] = _look_closely(surfaces, camera, middle[busy], samples, engine)
-    return np.rint(255 * np.clip(picture, 0, 1)).astype(np.uint8)
+    return 255 * picture
 
 
 def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:
@@ -99,9 +120,22 @@ def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:
     >>> float(depth_map(wall, Camera(intrinsics(80, 80, 32, 24), size=(64, 48)))[0, 0])
     5.0
     """
+    _guard(scene, camera)
     xy = in_tiles(camera.ideal(pixel_centres(camera.size)))
     hits = first_hits(move(camera.G, scene.vertices)[scene.triangles], xy, engine=engine)
     return out_of_tiles(hits.depth, camera.size)
+
+
+def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
+    if not isinstance(scene, Scene):
+        raise InputTypeError(
+            f"scene: expected a Scene, got {type(scene).__name__}; "
+            "cvnotes.scenes.target_scene makes one of a target"
+        )
+    if not isinstance(camera, Camera):
+        raise InputTypeError(f"camera: expected a Camera, got {type(camera).__name__}")
+    if not isinstance(samples, int) or samples < 1:
+        raise CvnotesError(f"samples: expected a whole number of rays, at least 1, got {samples!r}")
 
 
 class _Surfaces(NamedTuple):

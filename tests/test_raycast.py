@@ -124,3 +124,12 @@ def test_large_meshes_go_to_embree_and_see_the_same():
 def test_wrong_shapes_and_engines_are_named(arguments, error, words):
     with pytest.raises(error, match=words):
         first_hits(*arguments[:2], **({"engine": arguments[2]} if len(arguments) > 2 else {}))
+
+
+def test_without_embree_all_goes_on_and_asking_for_it_says_how_to_get_it(monkeypatch):
+    monkeypatch.setattr("cvnotes.raycast.has_embree", lambda: False)
+    rng = np.random.default_rng(3)
+    hits = first_hits(cloud(1200, rng), [[[0.1, 0.1]]])
+    assert hits.triangle.shape == (1, 1)
+    with pytest.raises(CvnotesError, match=r"pip install 'cvnotes\[rays\]'"):
+        first_hits([WALL], [[[0, 0]]], engine="embree")

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError
+from cvnotes.errors import CvnotesError, InputTypeError
 from cvnotes.lens import Lens
 from cvnotes.meshes import Surroundings, box, join, quads
 from cvnotes.raycast import has_embree
-from cvnotes.rendering import depth_map, render_scene
+from cvnotes.rendering import depth_map, radiance, render_scene
 from cvnotes.rigid import look_at, move, pose, rotation_from_vector
 from cvnotes.scenes import corridor, from_trimesh, target_scene
 from cvnotes.targets import Chessboard
@@ -205,3 +205,26 @@ def test_a_sphere_of_many_triangles_has_the_outline_of_a_sphere():
 def test_an_unknown_engine_is_refused():
     with pytest.raises(CvnotesError, match="'auto', 'own' or 'embree'"):
         render_scene(box((0, 1), (0, 1), (5, 6)), SMALL, engine="gpu")
+
+
+def test_light_is_unrounded_and_lamps_are_brighter_than_white():
+    lamp = replace(wall((-9, 9), (-9, 9), 4, (1.4, 0.701, 0.1)), around=DARK)
+    light = radiance(lamp, SMALL)
+    assert np.allclose(light, [357, 178.755, 25.5], atol=1e-9)
+    assert render_scene(lamp, SMALL)[20, 30].tolist() == [255, 179, 26]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "error", "words"),
+    [
+        ((Chessboard(), SMALL), {}, InputTypeError, "got Chessboard; .*target_scene makes one"),
+        ((box((0, 1), (0, 1), (5, 6)), A), {}, InputTypeError, "expected a Camera, got ndarray"),
+        ((box((0, 1), (0, 1), (5, 6)), SMALL), {"samples": 0}, CvnotesError, "at least 1, got 0"),
+    ],
+)
+def test_what_cannot_be_rendered_is_refused_in_words(arguments, options, error, words):
+    with pytest.raises(error, match=words):
+        render_scene(*arguments, **options)
+    if not options:
+        with pytest.raises(error, match=words):
+            depth_map(*arguments)

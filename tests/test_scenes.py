@@ -106,11 +106,11 @@ def test_the_blocks_keep_to_the_three_directions_that_are_promised():
     size = np.ptp(scene.vertices[:8] @ directions.T, axis=0)
     assert np.allclose(size, [4000, 5000, 4000], atol=1e-6)
     assert scene.vertices[:, 1].max() == pytest.approx(GROUND)
-    # Two level vanishing points on the horizon, the third far below it.
+    # Two vanishing points on the horizon, the third far from it.
     camera = CAMERA.moved(look_at([0, 0, 0], [0, -200, 3000]))
-    left, below, right = (camera.vanishing_point(d) for d in directions)
+    left, upright, right = (camera.vanishing_point(d) for d in directions)
     assert left[1] == pytest.approx(right[1], abs=1e-6)
-    assert abs(below[1] - left[1]) > 1000
+    assert abs(upright[1] - left[1]) > 1000
 
 
 @pytest.mark.parametrize("place", [room, corridor])
