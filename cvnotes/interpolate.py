@@ -98,7 +98,7 @@ def interpolate(
     """
     sampler = Sampler(image, method, border, fill)
     xy = positions(m, "m")
-    values = sampler(xy[..., 0].ravel(), xy[..., 1].ravel())
+    values = sampler(xy.reshape(-1, 2).T)
     return values.reshape(xy.shape[:-1] + sampler.channels)
 
 
@@ -133,64 +133,77 @@ class Sampler:
         self.all_finite = picture.dtype.kind != "f" or bool(np.isfinite(framed).all())
 
     @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
-    def __call__(self, u: Array, v: Array) -> Image:
-        """Give the picture at u, v (n,) as (n, channels); overwrites u and v."""
+    def __call__(self, m: Array) -> Image:
+        """Give the picture at m (2, n), rows u and v, as (n, channels)."""
         nowhere = None
         if self.border != "constant":
-            nowhere = np.flatnonzero(~(np.isfinite(u) & np.isfinite(v)))
-            u, v = (_fold(x, n, self.border) for x, n in ((u, self.width), (v, self.height)))
-        values = self._nearest(u, v) if self.method == "nearest" else self._bilinear(u, v)
+            nowhere = np.flatnonzero(~np.isfinite(m).all(axis=0))
+            m = np.where(np.isfinite(m), m, 0)
+            m = np.stack([_fold(x, n, self.border) for x, n in zip(m, self._limits, strict=True)])
+        values = self._nearest(m) if self.method == "nearest" else self._bilinear(m)
         if nowhere is not None and nowhere.size:
             values[nowhere] = self.fill
         return values
 
-    def _nearest(self, u: Array, v: Array) -> Image:
-        u, v = (_inside(np.floor(x + 0.5), n) for x, n in ((u, self.width), (v, self.height)))
-        index = self._index(u, v)
-        return np.stack([plane.take(index) for plane in self.planes], axis=-1)
+    def _nearest(self, m: Array) -> Image:
+        index = self._index(self._inside(np.floor(m + 0.5)))
+        return self.planes.take(index, axis=1).T
 
-    def _bilinear(self, u: Array, v: Array) -> Image:
-        u, v = _inside(u, self.width), _inside(v, self.height)
-        u_k, v_k = np.floor(u), np.floor(v)
+    def _bilinear(self, m: Array) -> Image:
+        m = self._inside(m)
+        m_k = np.floor(m)
         working = np.float32 if self.dtype == np.uint8 else np.float64
-        du, dv = (u - u_k).astype(working, copy=False), (v - v_k).astype(working, copy=False)
-        index = self._index(u_k, v_k)
-        values = np.empty((u.size, len(self.planes)), self.dtype)
-        for channel, plane in enumerate(self.planes):
+        du, dv = (m - m_k).astype(working, copy=False)
+        index = self._index(m_k)
+        values = np.empty((len(self.planes), index.size), self.dtype)
+        for plane, out in zip(self.planes, values, strict=True):
             I1, I2, I3, I4 = (
-                plane[offset:].take(index).astype(working, copy=False)
+                plane[offset:].take(index, mode="clip").astype(working, copy=False)
                 for offset in (0, 1, self.stride, self.stride + 1)
             )
             if not self.all_finite:  # 0 · NaN is not 0
                 I2, I4 = np.where(du == 0, I1, I2), np.where(du == 0, I3, I4)
                 I3, I4 = np.where(dv == 0, I1, I3), np.where(dv == 0, I2, I4)
-            value = bilinear(I1, I2, I3, I4, du, dv)
+            I_a, I_b = _between(I1, I2, du), _between(I3, I4, du)
+            value = _between(I_a, I_b, dv)
             if self.dtype.kind == "u":
                 value += 0.5
-            values[:, channel] = value
-        return values
+            out[:] = value
+        return values.T
 
-    def _index(self, u_k: Array, v_k: Array) -> npt.NDArray[np.intp]:
+    @property
+    def _limits(self) -> tuple[int, int]:
+        return self.width, self.height
+
+    def _inside(self, m: Array) -> Array:
+        """Keep positions between −1 and width or height, where the frame begins; NaN at −1."""
+        inside = np.empty_like(m, order="C")
+        for x, n, out in zip(m, self._limits, inside, strict=True):
+            np.clip(x, -1, n, out=out)
+        if np.isnan(inside.min(initial=0)):
+            inside[:, np.isnan(inside).any(axis=0)] = -1
+        return inside
+
+    def _index(self, m_k: Array) -> npt.NDArray[np.intp]:
         """Place whole pixels in the framed picture, whose frame begins at (−1, −1)."""
-        index = v_k * self.stride
-        index += u_k
+        index = np.array([1.0, self.stride]) @ m_k
         index += self.stride + 1
         return np.asarray(index, dtype=np.intp)
 
 
-def _inside(x: Array, n: int) -> Array:
-    """Keep positions between −1 and n, where the frame begins; NaN goes there too."""
-    if x.size and not (x.min() >= -1 and x.max() <= n):
-        x = np.fmin(np.fmax(x, -1), n)
-    return x
+def _between(a: Real, b: Real, t: Real) -> Real:
+    """Give a + (b − a) t, written over b: the steps of `bilinear`."""
+    b -= a
+    b *= t
+    b += a
+    return b
 
 
 def _fold(x: Array, n: int, border: Border) -> Array:
-    """Bring positions outside back into the picture, 0 to n − 1; infinity and NaN to 0."""
-    x = np.where(np.isfinite(x), x, 0)
-    if border == "replicate":
+    """Bring positions outside back into the picture, 0 to n − 1."""
+    if border == "replicate" or n == 1:
         return np.clip(x, 0, n - 1)
-    return (n - 1) - np.abs(np.abs(x) % (2 * n - 2) - (n - 1)) if n > 1 else np.zeros_like(x)
+    return np.asarray((n - 1) - np.abs(np.abs(x) % (2 * n - 2) - (n - 1)))
 
 
 def checked_image(x: Any, name: str = "image") -> Image:
@@ -252,4 +265,4 @@ def positions(x: Any, name: str) -> Array:
         raise InputTypeError(f"{name}: expected numbers, got {type(x).__name__} of {array.dtype}")
     if array.ndim == 0 or array.shape[-1] != 2:
         raise ShapeError(f"{name}: expected positions (u, v) of shape (..., 2), got {array.shape}")
-    return array.astype(np.float64)
+    return array.astype(np.float64, copy=False)

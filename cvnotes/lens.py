@@ -178,6 +178,8 @@ class Lens:
         return np.stack(self._distort_columns(xy[..., 0], xy[..., 1]), axis=-1)
 
     def _distort_columns(self, x: Array, y: Array) -> tuple[Array, Array]:
+        if self.is_ideal:
+            return x, y
         x0, y0 = self.centre
         x, y = x - x0, y - y0
         r2 = x * x + y * y
@@ -194,13 +196,16 @@ class Lens:
         """Undistort rows m (..., 2) without a guard; `columns` turns some of them into x', y'."""
         rows = m.reshape(-1, 2)
         out = np.empty_like(rows)
-        x0, y0 = self.centre
         for i in range(0, len(rows), _CHUNK):
             part = slice(i, i + _CHUNK)
-            x, y = columns(rows[part])
-            if not self.is_ideal:
-                x, y = self._inverse(x - x0, y - y0)
-                x += x0
-                y += y0
-            out[part, 0], out[part, 1] = x, y
+            out[part, 0], out[part, 1] = self._undistort_columns(*columns(rows[part]))
         return out.reshape(m.shape)
+
+    def _undistort_columns(self, x: Array, y: Array) -> tuple[Array, Array]:
+        if self.is_ideal:
+            return x, y
+        x0, y0 = self.centre
+        x, y = self._inverse(x - x0, y - y0)
+        x += x0
+        y += y0
+        return x, y
