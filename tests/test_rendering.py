@@ -82,16 +82,16 @@ def test_a_rendered_vertex_of_a_plain_quad_is_where_its_sides_meet():
 
 def test_every_grey_value_is_the_mean_over_the_pixels_square():
     board = target_scene(Chessboard(), pose(rotation_from_vector([0.4, 0.3, 0.5]), [-90, -70, 500]))
-    camera = Camera(intrinsics(160, 160, 79.5, 59.5), lens=Lens((-0.2,)), size=(160, 120))
+    camera = Camera(intrinsics(80, 80, 39.5, 29.5), lens=Lens((-0.2,)), size=(80, 60))
     picture = render_scene(board, camera).astype(float)
     n = 16  # a picture of n times the size, whose pixels fill those of the small one
-    A_fine = intrinsics(160 * n, 160 * n, 79.5 * n + (n - 1) / 2, 59.5 * n + (n - 1) / 2)
-    fine = Camera(A_fine, lens=camera.lens, size=(160 * n, 120 * n))
+    A_fine = intrinsics(80 * n, 80 * n, 39.5 * n + (n - 1) / 2, 29.5 * n + (n - 1) / 2)
+    fine = Camera(A_fine, lens=camera.lens, size=(80 * n, 60 * n))
     reference = render_scene(board, fine, samples=1).astype(float)
-    reference = reference.reshape(120, n, 160, n, 3).mean(axis=(1, 3))
-    assert np.sqrt(np.mean((picture - reference) ** 2)) < 0.8
+    reference = reference.reshape(60, n, 80, n, 3).mean(axis=(1, 3))
+    assert np.sqrt(np.mean((picture - reference) ** 2)) < 1.2
     assert np.abs(picture - reference).max() < 15
-    assert abs((picture - reference).mean()) < 0.02
+    assert abs((picture - reference).mean()) < 0.05
 
 
 def test_what_is_nearer_hides_what_is_farther():

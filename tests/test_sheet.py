@@ -46,7 +46,7 @@ def printed(sheet, folder, dpi=300):
     return cv2.imread(str(folder / "page.pgm"), cv2.IMREAD_GRAYSCALE)
 
 
-@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("paper", ["A4", "Letter"])
 def test_a_printed_sheet_has_squares_of_25_mm(paper, tmp_path):
     picture = printed(Chessboard((9, 6), 25.0).sheet(paper), tmp_path)
     corners = inner_corners(picture, (9, 6)) / 300 * 25.4
