@@ -98,14 +98,17 @@ def levenberg_marquardt(
             x_new = follow(x_new, system_new)
             with np.errstate(all="ignore"):
                 cost_new, system_new = linearise(x_new)
-        if cost_new < cost:
+        downhill = cost_new < cost
+        if downhill:
             x, cost, system = x_new, cost_new, system_new
+        close = close or (not downhill and predicted <= 1e-9 * cost)  # uphill by rounding only
+        if close and damping == 0:
+            return Minimum(x, cost, system, iteration, True)
+        if close:  # perhaps only because damping keeps the step short
+            damping, previous = 0.0, 0.0
+        elif downhill:
             previous = predicted if damping == 0 else 0.0
             damping = 0.1 * damping if damping > 1e-6 else 0.0
-            if close:
-                return Minimum(x, cost, system, iteration, True)
-        elif close or predicted <= 1e-9 * cost:  # uphill, but only by rounding
-            return Minimum(x, cost, system, iteration, True)
         elif damping > 1e9:
             break
         else:

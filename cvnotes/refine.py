@@ -75,7 +75,6 @@ class Problem:
 
     def __post_init__(self) -> None:
         names = ["alpha_u", "alpha_v", *["skew"] * self.skew, "u0", "v0"]
-        # the order of OpenCV, where p1 and p2 stand between k2 and k3
         names += [f"k{i}" for i in range(1, self.n_radial + 1)]
         names += ["p1", "p2"] * self.tangential
         object.__setattr__(self, "names", tuple(names))
