@@ -215,13 +215,13 @@ def _foot(
     columns, rows = corners
     x, y = (size[0] - width) / 2, size[1] - _EDGE - _FOOT
     words = x + 18
+    symmetric = ", True" if (columns - rows) % 2 == 0 else ""
+    code = f"Chessboard(({columns}, {rows}), {square:g}{symmetric})"
     return [
         *_key(x, y + 2.5),
         Text(words, y + 4.5, f"{columns} by {rows} inner corners", 3.4, "Helvetica-Bold"),
         Text(words, y + 8, f"{columns + 1} by {rows + 1} squares of {square:g} mm", 2.8),
-        Text(
-            words, y + 11.4, f"Chessboard(({columns}, {rows}), {square:g})", 2.5, "Courier", _GREY
-        ),
+        Text(words, y + 11.4, code, 2.5, "Courier", _GREY),
         *_ruler(x + width - _RULER, y + 2.5),
     ]
 

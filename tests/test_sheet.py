@@ -102,8 +102,18 @@ def test_everything_stays_on_the_paper_and_the_margin_is_white(paper, corners):
     assert 5 <= gaps[0] <= 20 + 1e-5
 
 
+def texts_of(sheet):
+    return [element.text for element in ElementTree.fromstring(sheet.svg()).iter(f"{SVG}text")]
+
+
+@pytest.mark.parametrize("board", [Chessboard(), Chessboard((8, 6), 12.5, True)])
+def test_the_code_on_the_sheet_makes_its_board(board):
+    code = next(text for text in texts_of(board.sheet()) if text.startswith("Chessboard"))
+    assert eval(code) == board
+
+
 def test_the_numbers_are_printed_in_words():
-    texts = [e.text for e in ElementTree.fromstring(lay_out((9, 6), 25.0).svg()).iter(f"{SVG}text")]
+    texts = texts_of(lay_out((9, 6), 25.0))
     assert "9 by 6 inner corners" in texts
     assert "10 by 7 squares of 25 mm" in texts
     assert "Chessboard((9, 6), 25)" in texts
