@@ -171,7 +171,8 @@ def _refusal(corners: tuple[int, int], square: float, paper: str) -> str:
         margins = (_margin(corners, square, size) for size in _ways(paper))
         return max(margins) >= _least_margin(square)
 
-    halves = [n / 2 for n in range(2, int(2 * square) + 1) if fits(n / 2, paper)]
+    largest = min(square, max(PAPERS[paper]))
+    halves = [n / 2 for n in range(2, int(2 * largest) + 1) if fits(n / 2, paper)]
     offers = [f"squares of up to {halves[-1]:g} mm do"] if halves else []
     offers += [f"take {other}" for other in PAPERS if other != paper and fits(square, other)][:1]
     columns, rows = (n + 1 for n in corners)

@@ -141,6 +141,7 @@ def test_the_same_sheet_is_the_same_file_byte_for_byte(tmp_path):
         (((9, 6), 26.0), "10 by 7 squares of 26 mm does not fit on A4.*up to 25 mm do, or take A3"),
         (((9, 6), 60.0, "A3"), "does not fit on A3; squares of up to 37 mm do$"),
         (((400, 301), 5.0), "does not fit on A4; take fewer squares"),
+        (((9, 6), 1e12), "up to 25 mm do$"),
         (((9, 6), 25.0, "A5"), "expected one of A4, Letter, A3, got 'A5'"),
         (((9.5, 6), 25.0), "corners: expected .* two positive whole numbers"),
         (((9, 6), float("nan")), "square contains NaN"),
