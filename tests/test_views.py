@@ -1,0 +1,273 @@
+"""Sets of poses: that the target is seen whole, and what each set says about the camera."""
+
+import numpy as np
+import pytest
+
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError
+from cvnotes.lens import Lens
+from cvnotes.placing import every_face_seen, facing, hold_at
+from cvnotes.rigid import exp_so3, pose, rotation_from_vector
+from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
+from cvnotes.views import (
+    centre_only_views,
+    fronto_parallel_views,
+    good_views,
+    nearly_parallel_views,
+    one_axis_views,
+    pure_translation_views,
+    repeated_views,
+)
+
+BOARD = Chessboard((9, 6), 25.0)
+CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))
+FAMILIES = [
+    good_views,
+    fronto_parallel_views,
+    pure_translation_views,
+    nearly_parallel_views,
+    one_axis_views,
+    centre_only_views,
+    repeated_views,
+]
+families = pytest.mark.parametrize("family", FAMILIES, ids=lambda f: f.__name__)
+
+
+def views(family, n, seed=0, target=BOARD, camera=CAMERA, **options):
+    return family(target, camera, n, rng=np.random.default_rng(seed), **options)
+
+
+def squares_lie_inside(target, camera, G):
+    """Every point along the outer squares, densely."""
+    w, h = camera.size
+    for world_from_board, board in target.faces:
+        x = np.linspace(-1, board.corners[0], 60) * board.square
+        y = np.linspace(-1, board.corners[1], 60) * board.square
+        X, Y = np.meshgrid(x, y)
+        W = np.stack([X, Y, 0 * X], -1).reshape(-1, 3)
+        m = camera.moved(G @ world_from_board).project(W)
+        if not ((m > 0) & (m < [w - 1, h - 1])).all():  # False for NaN, too
+            return False
+    return True
+
+
+@families
+@pytest.mark.parametrize("n", [1, 3, 20])
+def test_in_every_view_all_squares_lie_in_the_picture(family, n):
+    G = views(family, n)
+    assert G.shape == (n, 4, 4)
+    assert all(squares_lie_inside(BOARD, CAMERA, G_i) for G_i in G)
+
+
+@families
+def test_the_same_seed_gives_the_same_views(family):
+    np.testing.assert_array_equal(views(family, 4, seed=5), views(family, 4, seed=5))
+    assert not np.allclose(views(family, 4, seed=5), views(family, 4, seed=6))
+
+
+def test_boards_stay_where_the_lens_still_maps_one_to_one():
+    camera = Camera(intrinsics(400, 400, 320, 240), lens=Lens(k=(-0.4,)))
+    assert camera.lens.max_radius < camera.ideal([320 + 160, 240])[0] * 3
+    G = views(good_views, 12, camera=camera)
+    assert all(squares_lie_inside(BOARD, camera, G_i) for G_i in G)
+
+
+def tilts(G):
+    return np.degrees(np.arccos(G[:, 2, 2]))
+
+
+def test_good_views_are_tilted_by_20_to_45_degrees_to_all_sides():
+    G = views(good_views, 40)
+    assert tilts(G).min() >= 20
+    assert tilts(G).max() <= 45
+    towards = np.arctan2(G[:, 1, 2], G[:, 0, 2])  # of the normals
+    quarters, _ = np.histogram(towards, bins=4, range=(-np.pi, np.pi))
+    assert quarters.min() >= 8
+    assert tilts(views(good_views, 9, tilt=(0.0, 0.1))).max() < np.degrees(0.1)
+
+
+def test_good_views_cover_the_picture():
+    corners = np.concatenate([CAMERA.moved(G).project(BOARD.points) for G in views(good_views, 12)])
+    cells = np.unique((corners / [640 / 8, 480 / 6]).astype(int), axis=0)
+    assert len(cells) >= 0.7 * 48
+
+
+@pytest.mark.parametrize("target", [TwoPlanes(), ThreePlanes(Chessboard((5, 4)))])
+def test_good_views_show_all_faces_of_a_target(target):
+    for G in views(good_views, 6, target=target, tilt=(0.0, 0.3)):
+        assert squares_lie_inside(target, CAMERA, G)
+        for world_from_board, board in target.faces:
+            face = G @ world_from_board
+            middle = face[:3, :3] @ board.points.mean(axis=0) + face[:3, 3]
+            assert face[:3, 2] @ middle > 0.25 * np.linalg.norm(middle)
+
+
+def test_fronto_parallel_boards_are_parallel_to_the_sensor():
+    np.testing.assert_allclose(views(fronto_parallel_views, 5)[:, :3, 2], [[0, 0, 1]] * 5)
+
+
+def test_pure_translation_never_turns_a_tilted_board():
+    G = views(pure_translation_views, 6)
+    np.testing.assert_array_equal(G[:, :3, :3], G[[0] * 6, :3, :3])
+    np.testing.assert_allclose(tilts(G), 30)
+    assert np.ptp(G[:, :2, 3] / G[:, 2:3, 3], axis=0).min() > 0.05
+
+
+def test_nearly_parallel_boards_differ_by_a_few_degrees():
+    normals = views(nearly_parallel_views, 10)[:, :3, 2]
+    apart = np.degrees(np.arccos(np.clip(normals @ normals.T, -1, 1)))
+    assert 1 < apart.max() < 8
+
+
+def test_tilts_about_one_axis_leave_the_boards_x_along_u():
+    G = views(one_axis_views, 6)
+    np.testing.assert_allclose(G[:, :3, 0], [[1, 0, 0]] * 6, atol=1e-12)
+    assert (G[::2, 1, 2] * G[1::2, 1, 2] < 0).all()  # to either side
+    np.testing.assert_allclose(tilts(G), 30, atol=2.1)
+
+
+def test_centre_only_boards_stay_in_the_middle_half():
+    for G in views(centre_only_views, 9):
+        m = CAMERA.moved(G).project(BOARD.points)
+        assert (np.abs(m - [319.5, 239.5]) < [160, 120]).all()
+
+
+def test_repeated_views_are_so_many_poses_and_no_more():
+    G = views(repeated_views, 7, distinct=3)
+    assert len(np.unique(G.reshape(7, -1), axis=0)) == 3
+
+
+# ---- what a set of views says about the camera
+
+
+def pixels(parameters, G):
+    """All corners in all views, for α_u, α_v, u0, v0 and perhaps k1, k2."""
+    alpha_u, alpha_v, u0, v0, *k = parameters
+    camera = Camera(intrinsics(alpha_u, alpha_v, u0, v0), lens=Lens(k=tuple(k)))
+    return np.stack([camera.moved(G_i).project(BOARD.points).ravel() for G_i in G])
+
+
+def derivatives(f, steps):
+    return np.stack([(f(e) - f(-e)) / (2 * e.sum()) for e in np.diag(steps)], axis=-1)
+
+
+def error_bars(G, truth=(800, 804, 325, 238, -0.25, 0.10), sigma=0.3):
+    """Smallest standard deviations that any estimate from these views can have (Cramér, Rao).
+
+    Of the parameters of `pixels`; poses are unknown too, and eliminated.
+    """
+    steps = [1e-2] * 4 + [1e-4] * (len(truth) - 4)
+
+    def moved(e):
+        return np.stack([pose(exp_so3(e[:3]), e[3:]) @ G_i for G_i in G])
+
+    of_camera = derivatives(lambda e: pixels(truth + e, G), steps)
+    of_pose = derivatives(lambda e: pixels(truth, moved(e)), [1e-6] * 3 + [1e-3] * 3)
+    information = np.zeros((len(truth), len(truth)))
+    for J, E in zip(of_camera, of_pose, strict=True):
+        left = J - E @ np.linalg.lstsq(E, J, rcond=None)[0]
+        information += left.T @ left
+    return sigma / np.sqrt(np.maximum(eliminate(information), 1e-30))
+
+
+def eliminate(information):
+    """What is known of each parameter when all others are unknown."""
+    known = []
+    for i in range(len(information)):
+        rest = np.arange(len(information)) != i
+        tied = information[i, rest]
+        known.append(
+            information[i, i] - tied @ np.linalg.lstsq(information[rest][:, rest], tied)[0]
+        )
+    return np.array(known)
+
+
+GOOD = error_bars(views(good_views, 12))
+
+
+def test_good_views_know_the_camera_well():
+    np.testing.assert_array_less(GOOD, [3, 3, 4, 4, 0.02, 0.15])
+    np.testing.assert_array_less(error_bars(views(good_views, 3)), [12, 12, 12, 12, 0.06, 0.6])
+
+
+@pytest.mark.parametrize(
+    ("family", "parameter", "times"),
+    [
+        (fronto_parallel_views, 0, 100),
+        (nearly_parallel_views, 0, 2),
+        (one_axis_views, 0, 5),
+        (one_axis_views, 1, 5),
+        (centre_only_views, 4, 4),
+        (centre_only_views, 5, 10),
+        (repeated_views, 0, 1.4),
+    ],
+)
+def test_bad_views_leave_unknown_what_they_are_named_for(family, parameter, times):
+    assert error_bars(views(family, 12))[parameter] > times * GOOD[parameter]
+
+
+def test_without_distortion_translated_boards_say_nothing_about_the_focal_length():
+    pinhole = (800, 804, 325, 238)
+    good = error_bars(views(good_views, 12), pinhole)
+    assert error_bars(views(pure_translation_views, 12), pinhole)[0] > 1000 * good[0]
+    assert error_bars(views(repeated_views, 12, distinct=1), pinhole)[0] > 1000 * good[0]
+
+
+# ---- placing
+
+
+def test_a_target_is_held_where_it_is_wanted_and_as_near_as_it_fits():
+    R = rotation_from_vector([0.4, -0.3, 0.1])
+    G = hold_at(BOARD, CAMERA, R, [300, 200])
+    middle = CAMERA.moved(G).project([100, 62.5, 0])
+    np.testing.assert_allclose(middle, [300, 200], atol=1e-9)
+    assert squares_lie_inside(BOARD, CAMERA, G)
+    nearer = G.copy()
+    nearer[:3, 3] -= 0.1 * (G @ [100, 62.5, 0, 1])[:3]
+    assert not squares_lie_inside(BOARD, CAMERA, nearer)
+
+
+def test_a_target_of_several_faces_turns_all_of_them_to_the_camera():
+    for target in (TwoPlanes(), ThreePlanes()):
+        assert every_face_seen(target, hold_at(target, CAMERA, facing(target), [320, 240]))
+        behind = facing(target) @ rotation_from_vector([0, np.pi, 0])
+        assert not every_face_seen(target, hold_at(target, CAMERA, behind, [320, 240]))
+
+
+class BackToBack:
+    faces = ((np.eye(4), BOARD), (pose(rotation_from_vector([0, np.pi, 0]), [0, 0, 9]), BOARD))
+
+
+def test_impossible_wishes_are_refused_in_words():
+    with pytest.raises(DegenerateError, match="look in opposite directions"):
+        views(good_views, 3, target=BackToBack())
+    with pytest.raises(DegenerateError, match="does not fit into a picture of 9×7 pixels"):
+        views(good_views, 3, camera=Camera(intrinsics(20, 20, 4, 3), size=(9, 7)))
+    with pytest.raises(DegenerateError, match="a face of the target is hidden; tilt it less"):
+        views(good_views, 3, target=TwoPlanes(), tilt=(1.4, 1.5))
+    folded = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-1.6,)))
+    with pytest.raises(DegenerateError, match="beyond the reach of the lens"):
+        hold_at(BOARD, folded, np.eye(3), [0, 0])
+
+
+@families
+@pytest.mark.parametrize(
+    ("change", "error", "words"),
+    [
+        ({"target": 5}, InputTypeError, "target: expected a Chessboard or the like, got int"),
+        ({"camera": None}, InputTypeError, "camera: expected a Camera, got NoneType"),
+        ({"n": 0}, CvnotesError, "at least 1, got 0"),
+        ({"n": 2.5}, CvnotesError, "at least 1, got 2.5"),
+        ({"rng": 1}, InputTypeError, r"rng: expected a numpy\.random\.Generator, got int"),
+    ],
+)
+def test_a_wrong_argument_is_refused_in_words(family, change, error, words):
+    given = {"target": BOARD, "camera": CAMERA, "n": 3, "rng": np.random.default_rng(0)} | change
+    with pytest.raises(error, match=words):
+        family(given["target"], given["camera"], given["n"], rng=given["rng"])
+
+
+@pytest.mark.parametrize("tilt", [(0.5, 0.2), (20, 45), (-0.1, 0.3), 0.3])
+def test_a_tilt_that_is_no_range_of_radians_is_refused(tilt):
+    with pytest.raises(CvnotesError, match=r"tilt: expected \(least, most\) in radians"):
+        views(good_views, 3, tilt=tilt)
