@@ -1,0 +1,339 @@
+"""Stereo calibration: two cameras and how they stand to each other, from pairs of pictures."""
+
+from dataclasses import replace
+from warnings import catch_warnings, simplefilter, warn
+
+import numpy as np
+
+from cvnotes.calibration import LENSES, calibrate
+from cvnotes.camera import Camera
+from cvnotes.correspondences import Correspondences, PointSets
+from cvnotes.errors import (
+    Array,
+    CalibrationWarning,
+    CvnotesError,
+    DegenerateError,
+    ShapeError,
+    image_size,
+)
+from cvnotes.homography import dlt
+from cvnotes.lens import Lens
+from cvnotes.refine import Problem, State, covariance
+from cvnotes.reliability import Evidence, judge
+from cvnotes.rigid import chain, inverse, nearest_rotation, pose, vector_from_rotation
+from cvnotes.stereo.refinement import StereoProblem, StereoState
+from cvnotes.stereo.result import StereoCalibration
+from cvnotes.zhang import extrinsics
+
+# A pair whose relative pose is this far from the others' (radians) does not belong to the rig.
+_APART = np.deg2rad(10)
+# Typical distance from the model, over the longer side of the picture, that no noise explains.
+_MISFIT = 0.005
+
+
+def calibrate_stereo(
+    board_points: PointSets,
+    left_points: PointSets,
+    right_points: PointSets,
+    size: tuple[int, int],
+    *,
+    lens: str = "k1 k2",
+    skew: bool = False,
+) -> StereoCalibration:
+    """Calibrate two cameras and their relative pose from pairs of pictures of a planar board.
+
+    Parameters
+    ----------
+    board_points : array_like, shape (n, 2) or (n, 3), or a list of such
+        The corners on the board, Z = 0; one set for all pairs, or one for each.
+    left_points, right_points : array_like, shape (n_views, n, 2), or lists of (n_i, 2)
+        The same corners in the left and right pictures, in pixels; pair i was taken at once.
+    size : (width, height)
+        Size of the pictures.
+    lens : {"none", "k1", "k1 k2", "k1 k2 k3", "k1 k2 p1 p2", "k1 k2 p1 p2 k3"}
+        Which lens coefficients of either camera are estimated.
+    skew : bool
+        Estimate the skew of both cameras too.
+
+    Returns
+    -------
+    StereoCalibration
+        With error bars, and with sentences about what is doubtful.
+
+    Raises
+    ------
+    DegenerateError
+        Too few views or points, or pairs that do not fit two cameras on one rig.
+
+    Warns
+    -----
+    CalibrationWarning
+        The answer is doubtful; the sentences are also in ``warnings`` of the result.
+
+    Notes
+    -----
+    Each camera is calibrated by itself; the relative pose is first that of the pair most like
+    all others; then both cameras, the relative pose and one board pose for each pair are refined
+    together (see `cvnotes.stereo.refinement`). One board pose for two pictures is what sharpens
+    both cameras.
+
+    References
+    ----------
+    .. [1] Notes 2b.4 for one camera; stereo is named in 2b.5.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.rigid import rotation_from_vector
+    >>> from cvnotes.targets import Chessboard
+    >>> board = Chessboard((9, 6), 25.0)
+    >>> left = Camera(intrinsics(800, 804, 325, 238))
+    >>> right = Camera(intrinsics(790, 794, 315, 243), pose(np.eye(3), [-100, 0, 0]))
+    >>> tilts = [(0.5, 0, 0), (0, 0.5, 0), (-0.4, 0.3, 0.1)]
+    >>> boards = [pose(rotation_from_vector(w), [-40, -60, 600]) for w in tilts]
+    >>> seen = [[c.moved(chain(c.G, G)).project(board.points) for G in boards]
+    ...         for c in (left, right)]
+    >>> rig = calibrate_stereo(board.points, *seen, left.size, lens="none")
+    >>> rig.T.round(6) + 0.0
+    array([-100.,    0.,    0.])
+    """
+    if lens not in LENSES:
+        raise CvnotesError(f"lens: expected one of {', '.join(map(repr, LENSES))}, got {lens!r}")
+    size = image_size(size)
+    pairs = _pairs(board_points, left_points, right_points)
+    n_radial, tangential = LENSES[lens]
+    problems = [Problem(d.W, d.m, d.seen, skew, n_radial, tangential) for d in pairs]
+    cameras = []
+    for side, points in (("left", left_points), ("right", right_points)):
+        with catch_warnings():  # what is doubtful is judged once, at the joint optimum
+            simplefilter("ignore", CalibrationWarning)
+            try:
+                cameras.append(calibrate(board_points, points, size, lens=lens, skew=skew).camera)
+            except DegenerateError as error:
+                raise DegenerateError(f"{side} camera: {error}") from error
+    return _refined(StereoProblem(problems[0], problems[1]), pairs, cameras)
+
+
+def calibrate_relative_pose(
+    left: Camera,
+    right: Camera,
+    board_points: PointSets,
+    left_points: PointSets,
+    right_points: PointSets,
+) -> StereoCalibration:
+    """Find how two calibrated cameras stand to each other, from one or more pairs of pictures.
+
+    Parameters
+    ----------
+    left, right : Camera
+        Their A and lens are held; their own poses are not used.
+    board_points, left_points, right_points
+        As in `calibrate_stereo`.
+
+    Returns
+    -------
+    StereoCalibration
+        The given cameras with their relative pose, and its error bars.
+
+    Raises
+    ------
+    DegenerateError
+        The pairs do not fit two cameras on one rig.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> board = Chessboard((9, 6), 25.0)
+    >>> left = Camera(intrinsics(800, 804, 325, 238))
+    >>> right = Camera(intrinsics(790, 794, 315, 243), pose(np.eye(3), [-100, 0, 0]))
+    >>> G = pose(nearest_rotation([[1, 0, 0.1], [0, 1, 0.2], [-0.1, -0.2, 1]]), [-40, -60, 600])
+    >>> seen = [c.moved(chain(c.G, G)).project(board.points) for c in (left, right)]
+    >>> calibrate_relative_pose(left, right, board.points, *seen).T.round(6) + 0.0
+    array([-100.,    0.,    0.])
+    """
+    for name, camera in (("left", left), ("right", right)):
+        if any(camera.lens.centre):
+            raise CvnotesError(
+                f"{name}: the refinement knows lenses centred on the piercing point only, got "
+                f"{camera.lens}"
+            )
+    pairs = _pairs(board_points, left_points, right_points)
+    problems = [
+        Problem(d.W, d.m, d.seen, bool(c.A[0, 1]), len(c.lens.k), any(c.lens.p))
+        for d, c in zip(pairs, (left, right), strict=True)
+    ]
+    problem = StereoProblem(problems[0], problems[1], cameras_known=True)
+    return _refined(problem, pairs, [left, right])
+
+
+def _pairs(
+    board_points: PointSets, left_points: PointSets, right_points: PointSets
+) -> tuple[Correspondences, Correspondences]:
+    """Pair corners with the board in both pictures, or say what does not fit together."""
+    left = Correspondences.of(board_points, left_points)
+    right = Correspondences.of(board_points, right_points)
+    if len(left) != len(right):
+        raise ShapeError(
+            f"left_points has {len(left)} views but right_points has {len(right)}; each left "
+            "picture needs its partner, taken at the same moment"
+        )
+    return left, right
+
+
+def _refined(
+    problem: StereoProblem, pairs: tuple[Correspondences, Correspondences], cameras: list[Camera]
+) -> StereoCalibration:
+    """Refine from a closed-form start, undo the scaling, add error bars, and judge."""
+    unknowns = len(problem.names) + 6 * len(pairs[0])
+    measured = 2 * (problem.left.n_seen + problem.right.n_seen)
+    if measured <= unknowns:
+        raise DegenerateError(
+            f"{measured} measured coordinates cannot determine {unknowns} parameters; add pairs"
+        )
+    start, strangers = _start(problem, pairs, cameras)
+    best = problem.minimise(start)
+    variance = best.cost / (measured - unknowns)
+    scale = np.ones(len(problem.names))
+    scale[-3:] = pairs[0].scale  # T, back in the unit of the board
+    cov = variance * covariance(best.system) * np.outer(scale, scale)
+    left, right = _cameras(problem, best.x, pairs[0].scale, cameras)
+    distances = _distances(problem, best.x, left, right)
+    view_rms = np.sqrt(
+        [
+            np.nansum(d**2, axis=1) / p.n_seen_by_view
+            for d, p in zip(distances, (problem.left, problem.right), strict=True)
+        ]
+    ).T
+    result = StereoCalibration(
+        left=left,
+        right=right,
+        poses=pairs[0].pose_in_given_units(best.x.left.R, best.x.left.T),
+        rms=float(np.sqrt(2 * best.cost / measured)),
+        view_rms=view_rms,
+        names=problem.names,
+        covariance=cov,
+        converged=best.converged,
+    )
+    return _judged(result, problem, distances, strangers)
+
+
+def _start(
+    problem: StereoProblem, pairs: tuple[Correspondences, Correspondences], cameras: list[Camera]
+) -> tuple[StereoState, list[int]]:
+    """Give the state from which to refine, and the pairs that do not agree with the others."""
+    poses = [_poses(data, camera) for data, camera in zip(pairs, cameras, strict=True)]
+    G = chain(poses[1], inverse(poses[0]))  # right ← left, as each pair has it
+    between = G[:, None, :3, :3] @ G[:, :3, :3].mT
+    angles = np.linalg.norm(vector_from_rotation(between), axis=-1)
+    middle = int(np.argmin(np.median(angles, axis=1)))
+    strangers = np.flatnonzero(angles[middle] > _APART).tolist()
+    left = problem.left.state(cameras[0].A, cameras[0].lens, poses[0])
+    right = problem.right.state(cameras[1].A, cameras[1].lens, poses[1]).shared
+    return StereoState(left, right, G[middle, :3, :3], G[middle, :3, 3]), strangers
+
+
+def _poses(data: Correspondences, camera: Camera) -> Array:
+    """Poses (n_views, 4, 4) of the scaled boards from the homographies of the ideal points."""
+    H = []
+    for i, (W, m) in enumerate(data.views()):
+        xy = camera.ideal(m)
+        known = ~np.isnan(xy).any(-1)
+        try:
+            H.append(dlt(W[known, :2], xy[known]))
+        except DegenerateError as error:
+            raise DegenerateError(f"view {i}: {error}") from error
+    return extrinsics(np.eye(3), np.array(H))
+
+
+def _cameras(
+    problem: StereoProblem, x: StereoState, scale: float, given: list[Camera]
+) -> tuple[Camera, Camera]:
+    """Give both cameras in the left one's frame."""
+    G = pose(nearest_rotation(x.R), scale * x.T)
+    if problem.cameras_known:
+        return given[0].moved(np.eye(4)), given[1].moved(G)
+    A_left, lens_left = problem.left.camera_of(x.left.shared)
+    A_right, lens_right = problem.right.camera_of(x.right)
+    return (
+        Camera(A_left, np.eye(4), lens_left, given[0].size),
+        Camera(A_right, G, lens_right, given[1].size),
+    )
+
+
+def _distances(
+    problem: StereoProblem, x: StereoState, left: Camera, right: Camera
+) -> tuple[Array, Array]:
+    """Reprojection distances (n_views, n) in both pictures; 0 where no corner was seen."""
+
+    def of(p: Problem, A: Array, lens: Lens, state: State) -> Array:
+        d = np.linalg.norm(p.m - p.predicted(A, lens, state), axis=-1)
+        return d if p.seen is None else np.where(p.seen, d, 0.0)
+
+    return (
+        of(problem.left, left.A, left.lens, x.left),
+        of(problem.right, right.A, right.lens, x.of_right()),
+    )
+
+
+def _judged(
+    result: StereoCalibration,
+    problem: StereoProblem,
+    distances: tuple[Array, Array],
+    strangers: list[int],
+) -> StereoCalibration:
+    """Add what is doubtful to the result, and warn of it."""
+    fatal: list[str] = []
+    if strangers:
+        fatal.append(
+            f"pairs {', '.join(map(str, strangers))} show the cameras turned by more than 10° "
+            "from where the others do: do left and right belong together, is the board numbered "
+            "from the same corner in both, did the rig stay rigid?"
+        )
+    if not result.converged:
+        fatal.append("the refinement stopped before it reached a minimum")
+    reliable = True
+    of_cameras: list[str] = []
+    if problem.cameras_known:
+        fatal += _misfits(result)
+    else:
+        of_cameras, reliable = _judge_cameras(result, problem, distances)
+    for sentence in [*fatal, *of_cameras]:
+        warn(sentence, CalibrationWarning, stacklevel=4)
+    return replace(result, warnings=(*fatal, *of_cameras), reliable=reliable and not fatal)
+
+
+def _misfits(result: StereoCalibration) -> list[str]:
+    """Say when known cameras do not explain the corners."""
+    typical = float(np.median(result.view_rms))
+    if typical <= _MISFIT * max(result.left.size):
+        return []
+    return [
+        f"the corners are {typical:.1f} px away from where the cameras put them, in a typical "
+        "picture: do A and lens belong to these pictures?"
+    ]
+
+
+def _judge_cameras(
+    result: StereoCalibration, problem: StereoProblem, distances: tuple[Array, Array]
+) -> tuple[list[str], bool]:
+    """Judge each camera by what `calibrate` judges it by, at the joint minimum."""
+    sentences, reliable = [], True
+    poses = (result.poses, result.G @ result.poses)
+    for i, side in enumerate(("left", "right")):
+        camera = result.cameras[i]
+        evidence = Evidence(
+            A=camera.A,
+            lens=camera.lens,
+            size=camera.size,
+            poses=poses[i],
+            std={n.removeprefix(f"{side}."): s for n, s in result.std.items() if side in n},
+            view_rms=result.view_rms[:, i],
+            distances=distances[i],
+            corners=(problem.left, problem.right)[i].m,
+            converged=True,
+        )
+        found, believed = judge(evidence)
+        sentences += [f"{side} camera: {sentence}" for sentence in found]
+        reliable = reliable and believed
+    return sentences, reliable
