@@ -1,0 +1,1 @@
+"""What the ``cvnotes`` command does: a module for each of its sub-commands."""

@@ -1,0 +1,142 @@
+"""``cvnotes calibrate``: from photographs of a chessboard to a camera with error bars."""
+
+import argparse
+import os
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cvnotes.commands.console import complain, say
+from cvnotes.commands.target import corners, length
+from cvnotes.errors import CalibrationWarning, CvnotesError, DegenerateError
+from cvnotes.files.photos import Rejected
+from cvnotes.files.writing import check_folder, printable, write_whole
+from cvnotes.targets import Chessboard
+
+if TYPE_CHECKING:
+    from cvnotes.calibration import Calibration
+    from cvnotes.commands.views import View
+
+
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command's arguments."""
+    parser = subparsers.add_parser(
+        "calibrate",
+        help="calibrate a camera from photographs of a chessboard",
+        description="Calibrate a camera from photographs of a chessboard. Take ten or more, with "
+        "the board tilted by 30 to 45 degrees in different directions and reaching into the "
+        "corners of the picture, without touching focus or zoom.",
+        epilog="example: cvnotes calibrate photos/ --corners 9x6 --square 25 --out result/",
+    )
+    add = parser.add_argument
+    add("photos", nargs="+", metavar="PHOTO", help="photographs, or folders of photographs")
+    add("--corners", type=corners, required=True, metavar="9x6",
+        help="inner corners of the board along x and y: where four squares meet")  # fmt: skip
+    add("--square", type=length, required=True, metavar="25", help="side of a square, in mm")
+    add("--out", type=Path, required=True, metavar="FOLDER", help="folder for the results")
+    add("--lens", type=lens, default="k1 k2 p1 p2", metavar='"k1 k2"',
+        help='lens coefficients to estimate, such as none, k1, "k1 k2", "k1 k2 p1 p2" (default) '
+        'or "k1 k2 p1 p2 k3"')  # fmt: skip
+    add("--skew", action="store_true", help="estimate the skew of the pixels' axes too")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no such board, 3 not reliable."""
+    from cvnotes.commands.report import camera_report, doubts, photo_table
+    from cvnotes.commands.views import look
+
+    columns, rows = args.corners
+    symmetric = (columns - rows) % 2 == 0
+    try:
+        board = Chessboard(args.corners, args.square, half_turn_symmetric=symmetric)
+    except CvnotesError as error:
+        complain("calibrate", str(error))
+        return 2
+    check_folder(args.out)
+    views, rejected = look(args.photos, board)
+    used = [view for view in views if view.corners is not None]
+    files, rejected = _brief([printable(view.path) for view in used], rejected)
+    notes = [view.note for view in used]
+    try:
+        result = _calibrate(used, board, args)
+    except CvnotesError as error:
+        say(photo_table(files, notes, rejected))
+        complain("calibrate", f"{len(used)} usable photographs; {error}")
+        return 1
+    say(photo_table(files, notes, rejected, result) + "\n")
+    say(camera_report(result) + "\n")
+    for sentence in doubts(result, views, symmetric=symmetric):
+        say(f"! {sentence}")
+    contents = _contents(result, views, board, files, rejected)
+    write_whole({args.out / name: data for name, data in contents.items()})
+    say(f"Written to {printable(args.out)}: {', '.join(contents)}")
+    if not result.reliable:
+        complain("calibrate", f"written, but not reliable: {result.warnings[0]}")
+        return 3
+    return 0
+
+
+def _calibrate(
+    views: "Sequence[View]", board: Chessboard, args: argparse.Namespace
+) -> "Calibration":
+    from cvnotes.calibration import calibrate
+
+    if not views:
+        raise DegenerateError(
+            "a board of {}×{} inner corners was found in none (count where four squares meet, "
+            "not squares)".format(*args.corners)
+        )
+    seen = [view.corners for view in views if view.corners is not None]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CalibrationWarning)  # the report has them
+        return calibrate(board.points, seen, views[0].size, lens=args.lens, skew=args.skew)
+
+
+def _contents(
+    result: "Calibration",
+    views: "Sequence[View]",
+    board: Chessboard,
+    files: Sequence[str],
+    rejected: Sequence[Rejected],
+) -> dict[str, bytes]:
+    """Give all files to write, by name."""
+    from cvnotes.commands.pictures import pictures
+    from cvnotes.files.exchange import opencv_yaml
+    from cvnotes.files.results import calibration_json
+
+    return {
+        "calibration.json": calibration_json(result, files=files, rejected=rejected).encode(),
+        "calibration.yml": opencv_yaml(result.camera).encode(),
+        **pictures(result, views, board, files),
+    }
+
+
+def _brief(files: Sequence[str], rejected: Sequence[Rejected]) -> tuple[list[str], list[Rejected]]:
+    """Name photographs without the folder that they have in common."""
+    every = [*files, *(r.file for r in rejected)]
+    try:
+        common = os.path.commonpath([Path(file).parent for file in every])
+    except ValueError:  # some are absolute and some are not
+        return list(files), list(rejected)
+    short = [str(Path(file).relative_to(common)) for file in every]
+    kept = [Rejected(name, r.reason) for name, r in zip(short[len(files) :], rejected, strict=True)]
+    return short[: len(files)], kept
+
+
+def lens(text: str) -> str:
+    """Read the names of lens coefficients, such as ``k1 k2`` or ``k1,k2``.
+
+    Examples
+    --------
+    >>> lens("k1,k2")
+    'k1 k2'
+    """
+    from cvnotes.calibration import LENSES
+
+    name = " ".join(text.replace(",", " ").split())
+    if name not in LENSES:
+        known = ", ".join(f'"{known}"' for known in LENSES)
+        raise argparse.ArgumentTypeError(f"expected one of {known}, got {text!r}")
+    return name

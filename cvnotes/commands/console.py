@@ -1,0 +1,74 @@
+"""Talking to whoever sits at the terminal: results on stdout, everything else on stderr."""
+
+import os
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TypeVar
+
+T = TypeVar("T")
+
+# For terminals and files that hold ASCII only.
+_PLAIN = str.maketrans(
+    {"×": "x", "±": "+-", "σ": "sigma", "–": "-", "−": "-", "°": " deg", "…": "..."}
+)
+
+
+def say(text: str = "") -> None:
+    """Print to stdout, in whatever letters it can hold."""
+    try:
+        print(_fitting(text, sys.stdout.encoding))
+        sys.stdout.flush()
+    except BrokenPipeError:  # whoever reads has seen enough; the work goes on
+        stop_printing()
+
+
+def stop_printing() -> None:
+    """Send what is still to be printed nowhere."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
+
+
+def complain(command: str, text: str) -> None:
+    """Print one line of reason to stderr."""
+    name = f"cvnotes {command}".strip()
+    line = " ".join(f"{name}: {text}".split())
+    print(_fitting(line, sys.stderr.encoding), file=sys.stderr)
+
+
+def progress(items: Iterable[T], *, total: int) -> Iterator[T]:
+    """Pass photographs on, with a bar on stderr where that is a terminal."""
+    from tqdm import tqdm
+
+    yield from tqdm(items, total=total, unit=" photographs", disable=None, leave=False)
+
+
+def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Lay out text in columns: the first and the last to the left, those between to the right.
+
+    Examples
+    --------
+    >>> print(table(["view", "px", "note"], [["left01.jpg", "0.2", ""], ["b", "11.5", "far off"]]))
+    view          px  note
+    left01.jpg   0.2
+    b           11.5  far off
+    """
+    lines = [list(header), *map(list, rows)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if i in (0, len(widths) - 1) else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in lines
+    )
+
+
+def _fitting(text: str, encoding: str | None) -> str:
+    """Replace what an encoding does not hold."""
+    encoding = encoding or "utf-8"
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return text.translate(_PLAIN).encode(encoding, "backslashreplace").decode(encoding)
+    return text

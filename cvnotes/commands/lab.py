@@ -1,0 +1,142 @@
+"""``cvnotes lab``: the course in JupyterLab, on this machine alone."""
+
+import argparse
+import importlib.util
+import os
+import secrets
+import socket
+import subprocess
+import sys
+import time
+import webbrowser
+from http.client import HTTPConnection, HTTPException
+from pathlib import Path
+
+import cvnotes
+from cvnotes.commands.console import say
+from cvnotes.errors import FileError
+
+START = "00_start_here.ipynb"
+
+
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command's arguments."""
+    parser = subparsers.add_parser(
+        "lab",
+        help="open the course in JupyterLab",
+        description="Open the course's notebooks in JupyterLab. The server listens on this machine "
+        "only (127.0.0.1); Ctrl-C ends it.",
+    )
+    add = parser.add_argument
+    add("--notebooks", type=Path, metavar="FOLDER", help="folder of the notebooks, if not found")
+    add("--port", type=int, default=8888, help="port to try first (default 8888)")
+    add("--no-browser", action="store_true", help="print the address only")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Serve the notebooks until Ctrl-C; gives the exit code."""
+    notebooks = find_notebooks(args.notebooks)
+    if importlib.util.find_spec("jupyterlab") is None:
+        raise FileError('JupyterLab is not installed; install it with: pip install "cvnotes[lab]"')
+    port, token = free_port(args.port), secrets.token_hex(24)
+    server = start_server(notebooks, port, token)
+    try:
+        wait_until_up(server, port)
+        address = f"http://127.0.0.1:{port}/lab/tree/{START}?token={token}"
+        say(f"The course is open at\n\n    {address}\n")
+        if not args.no_browser and not open_browser(address):
+            say("No browser could be opened here: copy the address into one on this machine.")
+        say("Ctrl-C ends it.")
+        sys.stdout.flush()
+        return server.wait()
+    except KeyboardInterrupt:
+        say("\nThe course is closed; what you saved is kept.")
+        return 0
+    finally:
+        stop(server)
+
+
+def find_notebooks(given: Path | None) -> Path:
+    """Find the folder of the notebooks: as given, beside the package, or here."""
+    beside = Path(cvnotes.__file__).resolve().parents[1] / "notebooks"
+    places = [given] if given is not None else [beside, Path("notebooks")]
+    for place in places:
+        if (place / START).is_file():
+            return place.resolve()
+    raise FileError(
+        f"{START} is not in {' nor in '.join(map(str, places))}; "
+        "say where the course's notebooks are with --notebooks FOLDER"
+    )
+
+
+def free_port(first: int) -> int:
+    """Give the first port if nobody listens there, else one that is free."""
+    for port in (first, 0):
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+            return int(probe.getsockname()[1])
+    raise FileError("no port is free on 127.0.0.1")
+
+
+def start_server(notebooks: Path, port: int, token: str) -> "subprocess.Popen[bytes]":
+    """Start JupyterLab on loopback, quiet and without asking anybody outside."""
+    command = [sys.executable, "-m", "jupyterlab", "--no-browser"]
+    command += ["--ServerApp.log_level=ERROR", "--LabApp.log_level=ERROR"]
+    command += ["--ServerApp.ip=127.0.0.1", f"--ServerApp.port={port}"]
+    command += ["--ServerApp.port_retries=0", f"--ServerApp.root_dir={notebooks}"]
+    command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
+    command += ["--LabApp.extension_manager=readonly"]
+    if hasattr(os, "geteuid") and os.geteuid() == 0:
+        command.append("--allow-root")
+    # The token goes by the environment, which other users cannot read; the kernel is this Python.
+    environment = os.environ | {"JUPYTER_TOKEN": token, "JUPYTER_PREFER_ENV_PATH": "1"}
+    # Our settings, beside those of the user: no question about Jupyter news on the first page.
+    settings = [str(Path(__file__).parent / "jupyter"), os.environ.get("JUPYTER_CONFIG_PATH", "")]
+    environment["JUPYTER_CONFIG_PATH"] = os.pathsep.join(filter(None, settings))
+    # In a session of its own, so that Ctrl-C reaches us and not its question whether to stop.
+    return subprocess.Popen(command, env=environment, start_new_session=True)
+
+
+def wait_until_up(server: "subprocess.Popen[bytes]", port: int, seconds: float = 60) -> None:
+    """Wait until the server answers; raises FileError if it ends or never does."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if server.poll() is not None:
+            raise FileError(f"JupyterLab ended with code {server.returncode}; see its words above")
+        connection = HTTPConnection("127.0.0.1", port, timeout=5)
+        try:
+            connection.request("GET", "/api")
+            connection.getresponse()
+        except (HTTPException, OSError):
+            time.sleep(0.1)
+        else:
+            return
+        finally:
+            connection.close()
+    raise FileError(f"JupyterLab did not answer within {seconds:.0f} s")
+
+
+def open_browser(address: str) -> bool:
+    """Open the address in a window, if this machine has any."""
+    windows = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER", "WSL_DISTRO_NAME")
+    if sys.platform.startswith("linux") and not any(map(os.environ.get, windows)):
+        return False  # a text browser would take over this terminal
+    try:
+        return webbrowser.open(address)
+    except webbrowser.Error:
+        return False
+
+
+def stop(server: "subprocess.Popen[bytes]") -> None:
+    """End the server and its kernels, kindly at first."""
+    if server.poll() is None:
+        server.terminate()
+        try:
+            server.wait(timeout=10)
+        except subprocess.TimeoutExpired:
+            server.kill()
+            server.wait()

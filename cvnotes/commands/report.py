@@ -1,0 +1,91 @@
+"""What `cvnotes calibrate` prints: a line for each photograph, the camera, what is doubtful."""
+
+from collections.abc import Sequence
+from math import floor, log10
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cvnotes.commands.console import table
+from cvnotes.commands.views import View
+from cvnotes.errors import Array
+from cvnotes.files.photos import Rejected
+from cvnotes.show.quality import covered_cells
+
+if TYPE_CHECKING:
+    from cvnotes.calibration import Calibration
+
+
+def photo_table(
+    files: Sequence[str],
+    notes: Sequence[str],
+    rejected: Sequence[Rejected],
+    result: "Calibration | None" = None,
+) -> str:
+    """Give the table of photographs: those used, with their RMS, then the rest with reasons."""
+    rms = [""] * len(files) if result is None else [f"{x:.3f}" for x in result.view_rms]
+    rows = [list(row) for row in zip(files, rms, notes, strict=True)]
+    rows += [[r.file, "–", r.reason] for r in rejected]
+    return table(["photograph", "RMS (px)", "note"], rows)
+
+
+def camera_report(result: "Calibration") -> str:
+    """Give the camera with its error bars, and what the result rests on."""
+    width, height = result.size
+    rows = [[name, *with_error(value, error), unit] for name, value, error, unit in result.table()]
+    corners = sum(map(len, result.image_points))
+    cells = covered_cells(result.image_points, result.size)
+    lines = [
+        f"Camera of {width}×{height} pixels",
+        table(["", "value", "± 1 σ", ""], rows),
+        f"Field of view   {field_of_view(result)}",
+        f"RMS             {result.rms:.3f} px per point, of {corners} corners in "
+        f"{len(result.poses)} photographs",
+        f"Tilt            boards differ by up to {widest_angle(result.poses):.0f}°",
+        f"Coverage        corners in {cells.sum()} of {cells.size} cells of the picture",
+    ]
+    return "\n".join(lines)
+
+
+def doubts(result: "Calibration", views: Sequence[View], *, symmetric: bool) -> list[str]:
+    """List what whoever uses the result should know, in sentences."""
+    sentences = list(result.warnings)
+    if any(view.turned for view in views):
+        sentences.append(
+            "some photographs ask to be turned by their EXIF data; the camera is that of the "
+            "pixels as stored (read them with cv2.IMREAD_IGNORE_ORIENTATION)"
+        )
+    if symmetric:
+        sentences.append(
+            "this board looks the same after half a turn: poses may be turned by 180°, which "
+            "does not change the camera"
+        )
+    if "skew" in result.names:
+        sentences.append("OpenCV keeps the skew in calibration.yml but does not use it")
+    return sentences
+
+
+def with_error(value: float, error: float) -> tuple[str, str]:
+    """Spell a value and its standard deviation, both to the second digit of the latter.
+
+    Examples
+    --------
+    >>> with_error(533.0912, 0.4144)
+    ('533.09', '0.41')
+    """
+    digits = 6 if error <= 0 else max(0, 1 - floor(log10(error)))
+    return f"{value:.{digits}f}", f"{error:.{digits}f}"
+
+
+def field_of_view(result: "Calibration") -> str:
+    """Spell the angles that the picture spans."""
+    across, down = np.degrees(result.camera.field_of_view)
+    if np.isnan(across + down):
+        return "not known: the lens model ends inside the picture"
+    return f"{across:.1f}° × {down:.1f}°"
+
+
+def widest_angle(poses: Array) -> float:
+    """Give the largest angle between the planes of two boards, in degrees."""
+    normals = poses[:, :3, 2]
+    return float(np.degrees(np.arccos(np.clip(np.abs(normals @ normals.T), 0, 1).min())))
