@@ -10,6 +10,9 @@ import numpy.typing as npt
 from cvnotes.errors import Array, CvnotesError, DegenerateError, ShapeError, numbers, points
 from cvnotes.rigid import skew_matrix
 
+# Lengths beyond this could not be squared.
+_HUGE = 1e100
+
 PointSets = npt.ArrayLike | Sequence[npt.ArrayLike]
 
 
@@ -23,7 +26,7 @@ class Correspondences:
     Attributes
     ----------
     W : ndarray, shape (n, 3) or (n_views, n, 3)
-        Board points with Z = 0, centred on 0 and scaled to a root mean square radius of 1.
+        Board points with Z = 0, centred on 0 and scaled so that half their diagonal is 1.
     m : ndarray, shape (n_views, n, 2)
         Image points in pixels.
     seen : ndarray of bool, shape (n_views, n), or None
@@ -49,16 +52,20 @@ class Correspondences:
             raise ShapeError(f"{len(W)} sets of board points but {len(m)} of image points")
         elif on_board is None and np.array_equal(W, np.broadcast_to(W[0], W.shape)):
             W = W[0]
-        if W.shape[-2] != m.shape[1] or not _same(seen, on_board):
+        on, at = _counts(W, on_board, len(m)), _counts(m, seen, len(m))
+        if on != at:
+            i = next(i for i in range(len(m)) if on[i] != at[i])
             raise ShapeError(
-                f"board_points has {W.shape[-2]} points a view but image_points has "
-                f"{m.shape[1]}; each corner needs its partner in the same row"
+                f"view {i} has {on[i]} board points but {at[i]} image points; each corner needs "
+                "its partner in the same row"
             )
         W = _in_plane(W)
         if W.shape[-2] < 4 or (seen is not None and seen.sum(1).min() < 4):
             raise DegenerateError("every view needs at least 4 points")
         low, high = W.reshape(-1, 3).min(0), W.reshape(-1, 3).max(0)
         centre = (low + high) / 2
+        if not (high - low < _HUGE).all():
+            raise CvnotesError(f"board_points: more than {_HUGE:g} apart; choose another unit")
         scale = float(np.linalg.norm(high - low)) / 2
         if scale <= 1e-12 * float(np.abs(centre).max()):
             raise DegenerateError("all board points coincide")
@@ -97,9 +104,10 @@ class Correspondences:
 
 def _stack(sets: Any, name: str, dims: tuple[int, ...]) -> tuple[Array, Any]:
     """Give all views as one array (n_views, n, d), filled up, and which points are real."""
+    masked = any(isinstance(s, np.ma.MaskedArray) for s in (sets, *_list(sets)))
     try:
         one = np.asarray(sets)
-        uniform = one.dtype.kind in "iuf"
+        uniform = one.dtype.kind in "iuf" and not masked
     except Exception:  # ragged, or no array at all: the guard below says which
         uniform = False
     if uniform and one.size == 0:
@@ -113,7 +121,7 @@ def _stack(sets: Any, name: str, dims: tuple[int, ...]) -> tuple[Array, Any]:
         if stacked.ndim != 3:
             raise ShapeError(f"{name}: expected (views, n, {dims[0]}), got {one.shape}")
         return stacked, None
-    if not isinstance(sets, Sequence):
+    if not _list(sets):
         numbers(sets, name)
         raise ShapeError(f"{name}: expected an array or a list of arrays")
     each = [points(_located(s, f"{name}[{i}]"), f"{name}[{i}]", *dims) for i, s in enumerate(sets)]
@@ -126,6 +134,10 @@ def _stack(sets: Any, name: str, dims: tuple[int, ...]) -> tuple[Array, Any]:
     filled = np.stack([np.concatenate([s, np.repeat(s[:1], n - len(s), axis=0)]) for s in each])
     seen = np.arange(n) < np.array([len(s) for s in each])[:, None]
     return filled, None if seen.all() else seen
+
+
+def _list(sets: Any) -> Sequence[Any]:
+    return sets if isinstance(sets, Sequence) else ()
 
 
 def _located(x: Any, name: str) -> Any:
@@ -141,10 +153,9 @@ def _located(x: Any, name: str) -> Any:
     return x
 
 
-def _same(a: Any, b: Any) -> bool:
-    if a is None or b is None:
-        return a is b
-    return bool(np.array_equal(a, b))
+def _counts(points: Array, real: Any, n_views: int) -> list[int]:
+    """How many points each view has."""
+    return [points.shape[-2]] * n_views if real is None else [int(n) for n in real.sum(1)]
 
 
 def _in_plane(W: Array) -> Array:
