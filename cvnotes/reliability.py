@@ -24,7 +24,13 @@ _PARALLEL, _FLAT = 5.0, 15.0  # largest angle between two boards, degrees
 _UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over its value
 _ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
 _ROUNDING = 1e-6  # px, more than rounding leaves
+_MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
+_NO_NOISE = (
+    "neighbouring corners miss their places in the same direction, so this is no noise: is the "
+    "board bent, did zoom, focus or orientation change between the pictures, or does the lens "
+    "need more coefficients?"
+)
 
 
 @dataclass(frozen=True)
@@ -118,7 +124,7 @@ def judge(evidence: Evidence) -> tuple[tuple[str, ...], bool]:
         False when the answer may be wrong by more than its error bars say.
     """
     fatal = [*_undetermined(evidence), *_mirrored(evidence), *_badly_fitted(evidence)]
-    doubtful = [*_outside(evidence), *_outliers(evidence)]
+    doubtful = [*_systematic(evidence), *_outside(evidence), *_outliers(evidence)]
     if not fatal:
         doubtful = [*_weak(evidence), *doubtful]
     return tuple(fatal + doubtful), not fatal
@@ -196,12 +202,14 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
             f"{e.view_rms[worst]:.2f} px, typical {typical:.2f} px): moved, zoomed, rotated or "
             "badly found? Leave them out and see what changes"
         )
-    if e.likeness > _ALIKE:  # the error bars take the residuals for noise
-        yield (
-            "neighbouring corners miss their places in the same direction, so this is no noise: "
-            "did zoom, focus or orientation change between the pictures, is the board bent, or "
-            "does the lens need more coefficients?"
-        )
+    if e.likeness > _ALIKE and typical > _MOVED * max(e.size):
+        yield _NO_NOISE
+
+
+def _systematic(e: Evidence) -> Iterator[str]:
+    """Find residuals that are small, but of which the error bars are not a measure."""
+    if e.likeness > _ALIKE and float(np.median(e.view_rms)) <= _MOVED * max(e.size):
+        yield f"{_NO_NOISE} The true error is then larger than the error bars say"
 
 
 def _outliers(e: Evidence) -> Iterator[str]:
