@@ -14,8 +14,8 @@ PACKAGE = Path(__file__).resolve().parents[1] / "cvnotes"
 LAYERS = [
     ["errors", "radial", "page"],
     ["projective", "rigid", "optimise", "lens", "sheet", "sensor", "coverage", "_cv"],
-    ["camera", "incidence", "targets", "correspondences", "meshes", "raycast", "interpolate"],
-    ["files", "vanishing", "homography", "projection", "warp", "sampling", "edges"],
+    ["camera", "incidence", "targets", "correspondences", "faces", "meshes", "raycast", "interpolate"],
+    ["files", "vanishing", "homography", "projection", "warp", "sampling", "edges", "placing"],
     ["zhang", "refine", "subpixel", "robust", "scenes", "rendering", "synthetic"],
     ["corners", "reliability", "steps", "views", "result"],
     ["calibration"],

@@ -1,0 +1,133 @@
+"""Figures of estimates: how they scatter, and which sets of views they can be trusted for."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+
+from cvnotes.calibration import Calibration
+from cvnotes.errors import CvnotesError, ShapeError, matrix, paired, points
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, panels
+
+
+def draw_plane_error(
+    m: npt.ArrayLike,
+    predicted: npt.ArrayLike,
+    *,
+    ax: Axes | None = None,
+    magnify: float = 10.0,
+    title: str = "",
+) -> Axes:
+    """Draw how far predicted points are from the true ones, as magnified arrows.
+
+    Parameters
+    ----------
+    m, predicted : array_like, shape (n, 2)
+        True and predicted pixels.
+    magnify : float
+        How much longer than true the arrows are; said in the title.
+
+    Examples
+    --------
+    >>> draw_plane_error([[0, 0], [9, 9]], [[1, 0], [9, 9]], title="two points").get_title()
+    'two points (arrows × 10)'
+    """
+    m, predicted = points(m, "m", 2), points(predicted, "predicted", 2)
+    paired(m, predicted, ("m", "predicted"), at_least=1)
+    ax = panels() if ax is None else ax
+    d = magnify * (predicted - m)
+    ax.plot(*m.T, "o", color=LENS, ms=3)
+    ax.quiver(
+        *m.T, *d.T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1, width=0.004
+    )  # fmt: skip
+    low, high = np.minimum(m, m + d).min(0), np.maximum(m, m + d).max(0)
+    room = 0.06 * float((high - low).max()) + 1
+    as_picture(ax, (2, 2))
+    ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
+    ax.set_title(f"{title} (arrows × {magnify:g})".strip())
+    return ax
+
+
+def draw_error_bars(
+    estimates: npt.ArrayLike, truth: Sequence[float], std: npt.ArrayLike, *, names: Sequence[str]
+) -> Any:
+    """Draw histograms of repeated estimates with the truth and the bell curve that was promised.
+
+    Parameters
+    ----------
+    estimates : array_like, shape (n_runs, q)
+        One row for each repetition.
+    truth : sequence of q floats
+        True values: the black lines.
+    std : array_like, shape (q,)
+        Standard deviations that were promised: the curves.
+    names : sequence of q str
+        Titles of the panels.
+
+    Returns
+    -------
+    ndarray of Axes
+        Three panels to a row.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> len(draw_error_bars(rng.normal(size=(50, 2)), [0, 0], [1, 1], names=["a", "b"]))
+    2
+    """
+    q = len(names)
+    estimates = matrix(estimates, "estimates", q)
+    if len(truth) != q or np.shape(std) != (q,):
+        raise ShapeError(f"{q} names need {q} true values and {q} standard deviations")
+    rows = -(-q // 3)
+    axes = np.ravel(panels(min(q, 3), rows, width=900, height=250 * rows))[:q]
+    std = np.asarray(std, float)
+    for ax, x, t, s, name in zip(axes, estimates.T, truth, std, names, strict=True):
+        span = np.linspace(t - 4.2 * s, t + 4.2 * s, 200)
+        ax.hist(x, bins=np.linspace(span[0], span[-1], 22), color=LENS, alpha=0.45, density=True)
+        ax.plot(
+            span, np.exp(-(((span - t) / s) ** 2) / 2) / (s * np.sqrt(2 * np.pi)), color=ESTIMATED
+        )
+        ax.axvline(t, color=IDEAL, lw=1.2)
+        unit = " (px)" if name[0] in "asuv" else ""
+        ax.set(title=name, yticks=[], xlabel=f"estimate{unit}")
+        ax.spines["left"].set_visible(False)
+        ax.locator_params(axis="x", nbins=4)
+        ax.ticklabel_format(axis="x", useOffset=False)
+    return axes
+
+
+def draw_view_families(results: Mapping[str, Calibration], *, truth: float) -> Any:
+    """Draw RMS and error of the focal length of several calibrations, side by side.
+
+    Parameters
+    ----------
+    results : mapping from name to Calibration
+        One for each set of views.
+    truth : float
+        The true α_u in pixels.
+
+    Returns
+    -------
+    ndarray of two Axes
+        The RMS on the left; on the right the relative error of α_u, on a logarithmic axis.
+    """
+    if not results:
+        raise CvnotesError("results: expected at least one calibration")
+    left, right = axes = panels(2, width=900, height=80 + 46 * len(results), sharey=True)
+    names, y = list(results), np.arange(len(results))
+    error = [max(abs(r.A[0, 0] / truth - 1), 1e-5) * 100 for r in results.values()]
+    colours = [LENS if r.reliable else ESTIMATED for r in results.values()]
+    left.barh(y, [r.rms for r in results.values()], color=MUTED, height=0.55)
+    right.barh(y, error, color=colours, height=0.55, left=0)
+    right.set_xscale("log")
+    right.set_xlim(1e-3, 3e3)
+    for i, (value, r) in enumerate(zip(error, results.values(), strict=True)):
+        words = f"{value:.2g} %" + ("" if r.reliable else "  not reliable")
+        right.annotate(words, (value, i), (5, 0), textcoords="offset points", va="center", size=9)
+    left.set(yticks=y, yticklabels=names, xlabel="RMS (px per point)", title="what is looked at")
+    right.set(xlabel="error of the focal length (%)", title="what counts")
+    left.invert_yaxis()
+    return axes

@@ -1,0 +1,134 @@
+"""The anatomy of the notebooks: what CONTRIBUTING.md and docs/teaching.md promise of each."""
+
+import re
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+CHAPTERS = [path for path in NOTEBOOKS if not path.name.startswith("00")]
+each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
+each_chapter = pytest.mark.parametrize("path", CHAPTERS, ids=lambda p: p.stem)
+MAX_LINES, MEDIAN_LINES, MAX_BYTES = 12, 4, 1_500_000
+# Sections of a chapter that tell rather than show.
+TELLING = ("summary", "further reading", "what comes next", "exercises", "explore", "careful")
+
+
+def _read(path):
+    return nbformat.read(path, as_version=4)
+
+
+def _code(notebook):
+    return [c for c in notebook.cells if c.cell_type == "code"]
+
+
+def _lines(cell):
+    return [line for line in cell.source.splitlines() if line.strip()]
+
+
+def _html(notebook):
+    for cell in _code(notebook):
+        for output in cell.outputs:
+            yield cell, "".join(output.get("data", {}).get("text/html", ""))
+
+
+@each_notebook
+def test_a_notebook_is_committed_as_the_builder_leaves_it(path):
+    run = subprocess.run(
+        [sys.executable, ROOT / "tools/build_notebooks.py", "--check", path],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert path.stat().st_size < MAX_BYTES
+
+
+@each_notebook
+def test_code_cells_are_short_and_follow_prose(path):
+    notebook = _read(path)
+    lengths = [len(_lines(cell)) for cell in _code(notebook)]
+    assert max(lengths) <= MAX_LINES
+    assert statistics.median(lengths) <= MEDIAN_LINES
+    for before, cell in zip(notebook.cells, notebook.cells[1:], strict=False):
+        if cell.cell_type == "code":
+            assert before.cell_type == "markdown", f"{cell.id} has no prose before it"
+
+
+@each_notebook
+def test_there_is_more_prose_than_code(path):
+    notebook = _read(path)
+    words = sum(len(c.source.split()) for c in notebook.cells if c.cell_type == "markdown")
+    lines = sum(len(_lines(cell)) for cell in _code(notebook))
+    assert words / lines >= 8, f"{words / lines:.1f} words of prose for a line of code"
+
+
+@each_notebook
+def test_every_heading_is_followed_by_a_thesis(path):
+    for cell in _read(path).cells:
+        if cell.cell_type != "markdown":
+            continue
+        found = re.findall(r"^##? (.+)\n+(.*)", cell.source, re.M)
+        for heading, following in found:
+            if not heading.lower().startswith(TELLING):
+                assert following.startswith(">"), f"{heading!r} has no one-sentence thesis"
+
+
+@each_notebook
+def test_every_picture_has_a_text_for_those_who_cannot_see_it(path):
+    notebook = _read(path)
+    for cell in _code(notebook):
+        for output in cell.outputs:
+            kinds = {k for k in output.get("data", {}) if k.startswith("image/")}
+            assert not kinds, f"{cell.id} shows {kinds} without show(…, alt=…)"
+    pictures = [img for _, html in _html(notebook) for img in re.findall(r"<img[^>]*>", html)]
+    assert pictures
+    for img in pictures:
+        alt = re.search(r'alt="([^"]*)"', img)
+        assert alt and len(alt.group(1).split()) >= 5, img[:120]
+
+
+@each_notebook
+def test_nothing_of_this_machine_or_of_a_bad_run_is_left(path):
+    text = path.read_text()
+    for pattern in (r"/home/", r"/root/", r"Traceback", r"Warning:", r"<Axes", r"object at 0x"):
+        assert not re.search(pattern, re.sub(r"base64,[A-Za-z0-9+/=]+", "", text)), pattern
+
+
+@each_notebook
+def test_links_to_other_files_lead_somewhere(path):
+    for cell in _read(path).cells:
+        for target in re.findall(r"\]\(([^)#\s]+)", cell.source):
+            if not target.startswith(("http", "#")):
+                assert (path.parent / target).exists(), target
+
+
+@each_chapter
+def test_every_section_of_a_chapter_checks_what_it_says(path):
+    heading, checked, has_code = "", True, False
+    for cell in [*_read(path).cells, nbformat.v4.new_markdown_cell("## Summary")]:
+        if cell.cell_type == "markdown" and (found := re.search(r"^## (.+)$", cell.source, re.M)):
+            assert checked or not has_code, f"section {heading!r} verifies nothing"
+            heading = found.group(1)
+            checked, has_code = heading.lower().startswith(TELLING), False
+        elif cell.cell_type == "code":
+            has_code = True
+            checked |= bool(re.search(r"\bassert\b|\bverify\(", cell.source))
+
+
+@each_chapter
+def test_a_chapter_has_all_its_parts(path):
+    notebook = _read(path)
+    prose = "\n".join(c.source for c in notebook.cells if c.cell_type == "markdown")
+    code = "\n".join(c.source for c in _code(notebook))
+    for part in ("You will learn", "Notes", "Needs", "**Verify", "## Exercises", "## Summary",
+                 "## Further reading", "## What comes next"):  # fmt: skip
+        assert part in prose, f"no {part!r}"
+    assert 2 <= len(re.findall(r"^check\(", code, re.M)) <= 6
+    assert "from cvnotes.show.explore import" in code, "no explore widget"
+    assert 30 <= len(notebook.cells) <= 62
+    assert len(_code(notebook)[0].source.splitlines()) <= MAX_LINES
+    assert "import" in _code(notebook)[0].source

@@ -1,0 +1,135 @@
+"""Make the files of data/ again, byte for byte.
+
+    python tools/make_data.py              make them
+    python tools/make_data.py --check      only tell which differ
+
+The corners in real photographs are measured again only where the photographs are found
+(--photographs FOLDER); without them the committed numbers stay.
+"""
+
+import argparse
+import io
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from cvnotes.corners import find_corners
+from cvnotes.views import good_views
+from PIL import Image
+
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.files import read_photo, write_camera
+from cvnotes.files.writing import write_whole
+from cvnotes.lens import Lens
+from cvnotes.rigid import chain, pose, rotation_from_vector
+from cvnotes.synthetic import render
+from cvnotes.targets import Chessboard
+
+ROOT = Path(__file__).resolve().parents[1]
+CAMERA = Camera(
+    intrinsics(alpha_u=800, alpha_v=804, u0=325, v0=238),
+    lens=Lens(k=(-0.25, 0.10)),
+    size=(640, 480),
+)
+BOARD = Chessboard(corners=(9, 6), square=25.0)
+N_VIEWS, BLUR, NOISE = 12, 0.7, 2.0
+# Pairs of the example photographs of Debian's package opencv-doc; 10 does not exist.
+PAIRS = ("01", "02", "03", "04", "05", "06", "07", "08", "09", "11", "12", "13", "14")
+
+
+def text(value: Any) -> bytes:
+    return (json.dumps(value, indent=1) + "\n").encode()
+
+
+def rounded(x: Any, digits: int) -> Any:
+    return np.asarray(x).round(digits).tolist()
+
+
+def png(image: Any) -> bytes:
+    stream = io.BytesIO()
+    Image.fromarray(image).save(stream, "PNG", optimize=True)
+    return stream.getvalue()
+
+
+def views() -> dict[str, bytes]:
+    """The twelve pictures, their poses, and their corners, true and measured."""
+    rng = np.random.default_rng(2026)
+    poses = good_views(BOARD, CAMERA, N_VIEWS, rng=rng)
+    cameras = [CAMERA.moved(G) for G in poses]
+    photos = [render(BOARD, c, blur=BLUR, noise=NOISE, rng=rng) for c in cameras]
+    files = {f"views/view_{i:02d}.png": png(photo) for i, photo in enumerate(photos)}
+    files["views.json"] = text(
+        {
+            "about": f"poses, CRF <- board (mm); corners in px; blur {BLUR} px, noise {NOISE} grey",
+            "poses": [G.tolist() for G in poses],
+            "exact_corners": [c.project(BOARD.points).tolist() for c in cameras],
+            "measured_corners": [rounded(find_corners(photo, BOARD), 3) for photo in photos],
+        }
+    )
+    return files
+
+
+def stereo() -> dict[str, Camera]:
+    """The course's camera, and a second one 100 mm to its right, turned a little inwards."""
+    right_from_left = pose(rotation_from_vector([0.01, 0.06, -0.015]), [0, 0, 0])
+    right_from_left[:3, 3] = -right_from_left[:3, :3] @ [99.5, 3.0, np.sqrt(100**2 - 99.5**2 - 9)]
+    second = Camera(
+        intrinsics(alpha_u=790, alpha_v=793, u0=315, v0=245),
+        chain(right_from_left),
+        Lens(k=(-0.22, 0.08)),
+        CAMERA.size,
+    )
+    return {"camera.json": CAMERA, "stereo_left.json": CAMERA, "stereo_right.json": second}
+
+
+def real_corners(folder: Path) -> dict[str, bytes]:
+    """What `find_corners` measures in the real photographs."""
+    board = Chessboard((9, 6), 30.0)
+    measured = {
+        side: [
+            rounded(find_corners(read_photo(folder / f"{side}{n}.jpg").image, board), 3)
+            for n in PAIRS
+        ]
+        for side in ("left", "right")
+    }
+    about = (
+        "corners in px that cvnotes.corners.find_corners measures in the stereo example "
+        "photographs of OpenCV (Debian package opencv-doc), 640x480, squares of 30 mm"
+    )
+    values = {"about": about, "corners": [9, 6], "square": 30.0, "size": [640, 480]}
+    return {"real_corners.json": text({**values, "names": PAIRS, **measured})}
+
+
+def same(path: Path, data: bytes) -> bool:
+    """Compare bytes, and pixels where compression may differ between versions of zlib."""
+    if not path.exists():
+        return False
+    old = path.read_bytes()
+    if path.suffix == ".png" and old != data:
+        pictures = [np.asarray(Image.open(io.BytesIO(x))) for x in (old, data)]
+        return bool(np.array_equal(*pictures))
+    return old == data
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--check", action="store_true", help="write nothing")
+    parser.add_argument("--photographs", type=Path, help="folder with left01.jpg … right14.jpg")
+    arguments = parser.parse_args()
+    files = views()
+    if arguments.photographs:
+        files |= real_corners(arguments.photographs)
+    if not arguments.check:
+        (ROOT / "data" / "views").mkdir(parents=True, exist_ok=True)
+        for name, camera in stereo().items():
+            write_camera(camera, ROOT / "data" / name)
+        write_whole({ROOT / "data" / name: data for name, data in files.items()})
+    different = [name for name, data in files.items() if not same(ROOT / "data" / name, data)]
+    print("\n".join([f"{name} differs" for name in different] or ["all as made"]))
+    return bool(different)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
