@@ -1,0 +1,1 @@
+"""Learning by doing: estimates held against the truth, and exercises that answer."""

@@ -1,0 +1,96 @@
+"""Lift points to projective space."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import rounded
+from cvnotes.learn.exercise import (
+    Case,
+    Exercise,
+    Misconception,
+    Property,
+    Rng,
+)
+from cvnotes.projective import to_homogeneous
+
+
+def lift(x: Array, k: float) -> Array:
+    """Lift points (n, d) to homogeneous coordinates (n, d + 1) with the factor k."""
+    return k * to_homogeneous(x)
+
+
+def _points_and_factor(rng: Rng) -> list[Case]:
+    by_hand = Case((np.array([[2.0, 3.0], [4.0, 5.0], [6.0, 8.0]]), 10.0))
+    return [
+        by_hand,
+        Case((rounded(rng.uniform(-5, 5, (5, 3))), -0.5)),
+        Case((rounded(rng.uniform(-5, 5, (4, 2))), 3.0)),
+    ]
+
+
+LIFT = Exercise(
+    name="lift",
+    chapter=1,
+    title="Lift points to projective space",
+    task="Give homogeneous coordinates, shape (n, d + 1), of points x, shape (n, d): those of the "
+    "whole class whose last coordinate is k.",
+    stub='''def my_lift(x, k):
+    """Give homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate k."""
+    ...''',
+    hints=(
+        "For k = 1 the point (x, y) becomes (x, y, 1).",
+        "A class of coordinates differs by a factor that multiplies every one of them.",
+        "np.hstack or np.concatenate(…, axis=1) joins columns; the new one has shape (n, 1).",
+    ),
+    cases=_points_and_factor,
+    properties=(
+        Property(
+            "Dividing by the last coordinate gives the points back.",
+            lambda x_h, case: np.allclose(x_h[:, :-1] / x_h[:, -1:], case.args[0], atol=1e-6),
+        ),
+        Property(
+            "The last coordinate of every point is k.",
+            lambda x_h, case: np.allclose(x_h[:, -1], case.args[1], atol=1e-6),
+        ),
+    ),
+    misconceptions=(
+        Misconception(
+            "k appended only",
+            "You appended k but left the other coordinates as they were: [x y k] is the point "
+            "(x/k, y/k). The factor multiplies all of them (the notes' first formula slips here).",
+            lambda x, k: np.hstack([x, np.full((len(x), 1), k)]),
+        ),
+        Misconception(
+            "factor on the coordinates only",
+            "You multiplied the coordinates but appended 1: that is the point (kx, ky). "
+            "The last coordinate takes the factor too.",
+            lambda x, k: np.hstack([k * x, np.ones((len(x), 1))]),
+        ),
+        Misconception(
+            "factor forgotten",
+            "These are the right points, with the factor 1; asked is the member of the class "
+            "whose last coordinate is k.",
+            lambda x, _: np.hstack([x, np.ones((len(x), 1))]),
+        ),
+        Misconception(
+            "zero appended",
+            "You appended 0: that makes a point at infinity, a direction. A point in a place has "
+            "a last coordinate that is not 0.",
+            lambda x, k: np.hstack([k * x, np.zeros((len(x), 1))]),
+        ),
+        Misconception(
+            "new coordinate in front",
+            "You put the new coordinate first. Here, as in the notes, it is the last one.",
+            lambda x, k: np.hstack([np.full((len(x), 1), k), k * x]),
+        ),
+        Misconception(
+            "a row instead of a column",
+            "You added a row: another point. Points are rows here, so a coordinate is a column: "
+            "axis=1.",
+            lambda x, k: np.vstack([k * x, np.full((1, x.shape[1]), k)]),
+        ),
+    ),
+    reference=lift,
+    concepts=("2", "3", "4", "E1"),
+    sources=(lift, to_homogeneous),
+)

@@ -1,0 +1,103 @@
+"""Where two lines meet."""
+
+import numpy as np
+
+from cvnotes.errors import Array, CvnotesError
+from cvnotes.learn.cameras import rounded
+from cvnotes.learn.exercise import (
+    Case,
+    Exercise,
+    Misconception,
+    Property,
+    Rng,
+    up_to_scale,
+)
+
+
+def meet(l1: Array, l2: Array) -> Array:
+    """Give the homogeneous point (3,) on both lines (3,)."""
+    return np.cross(l1, l2)
+
+
+def _two_lines(rng: Rng) -> list[Case]:
+    l1, l2 = rounded(rng.uniform(-3, 3, (2, 3)))
+    return [
+        Case((np.array([1.0, 0.0, -2.0]), np.array([1.0, 1.0, -5.0]))),
+        Case((l1, l2)),
+        Case((np.array([1.0, 2.0, -3.0]), np.array([-2.0, -4.0, 9.0])), about="parallel"),
+    ]
+
+
+def _solved(l1: Array, l2: Array, sign: float = -1.0) -> Array:
+    normals = np.array([l1[:2], l2[:2]])
+    if abs(np.linalg.det(normals)) < 1e-12:
+        raise CvnotesError("parallel")
+    return np.array([*np.linalg.solve(normals, sign * np.array([l1[2], l2[2]])), 1.0])
+
+
+def _on_both(x_h: Array, case: Case) -> bool:
+    lines = np.array(case.args)
+    return bool((np.abs(lines @ x_h) <= 1e-6 * (np.abs(lines) @ np.abs(x_h))).all() and x_h.any())
+
+
+MEET = Exercise(
+    name="meet",
+    chapter=1,
+    title="Where two lines meet",
+    task="Give the point, homogeneous (3,) and of any scale, in which two lines (a, b, c) meet. "
+    "Parallel lines meet too: at infinity.",
+    stub='''def my_meet(l1, l2):
+    """Give the homogeneous point (3,) on both lines l1 and l2, (3,) each."""
+    ...''',
+    hints=(
+        "The point x̃ has l1·x̃ = 0 and l2·x̃ = 0.",
+        "So it is perpendicular to both, as vectors of three numbers.",
+        "No division is needed, and parallel lines need no case of their own.",
+    ),
+    cases=_two_lines,
+    properties=(
+        Property("The point lies on both lines.", _on_both),
+        Property(
+            "Parallel lines meet at infinity, in their direction.", _on_both, about="parallel"
+        ),
+    ),
+    misconceptions=(
+        Misconception(
+            "parallel lines left out",
+            "Right, except that parallel lines have no answer in the plane: there the two "
+            "equations cannot be solved. In the projective plane they can: the cross product "
+            "gives a point whose last coordinate is 0.",
+            _solved,
+        ),
+        Misconception(
+            "sign of the constant",
+            "Your point is mirrored at the origin: a x + b y + c = 0 means a x + b y = −c.",
+            lambda l1, l2: _solved(l1, l2, sign=1.0),
+        ),
+        Misconception(
+            "sum of the lines",
+            "l1 + l2 is another line through the same point, not the point.",
+            lambda l1, l2: l1 + l2,
+        ),
+        Misconception(
+            "difference of the lines",
+            "l1 − l2 is another line through the same point, not the point.",
+            lambda l1, l2: l1 - l2,
+        ),
+        Misconception(
+            "entry by entry",
+            "l1 * l2 multiplies entry by entry; the product that is perpendicular to both is the "
+            "cross product.",
+            lambda l1, l2: l1 * l2,
+        ),
+        Misconception(
+            "direction of the first line",
+            "That is the point at infinity on the first line: its direction. The second line was "
+            "not used.",
+            lambda l1, _: np.array([l1[1], -l1[0], 0.0]),
+        ),
+    ),
+    reference=meet,
+    same=up_to_scale,
+    concepts=("1", "5", "7"),
+)

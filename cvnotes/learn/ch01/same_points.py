@@ -1,0 +1,86 @@
+"""When are two points the same."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import rounded
+from cvnotes.learn.exercise import (
+    Case,
+    Exercise,
+    Misconception,
+    Property,
+    Rng,
+)
+
+
+def same_points(a: Array, b: Array) -> Array:
+    """Tell row by row whether homogeneous points (n, 3) are the same: (n,) of 1 and 0."""
+    lengths = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
+    return np.asarray(np.linalg.norm(np.cross(a, b), axis=1) <= 1e-9 * lengths, dtype=float)
+
+
+def _pairs(rng: Rng) -> list[Case]:
+    a = np.array([[1.0, 2, 1], [1, 2, 1], [2, 4, 2], [1, 2, 0], [1, 2, 0], [0, 3, 1], [4, 2, 2]])
+    b = np.array(
+        [[1.0, 2, 1], [2, 4, 2], [-1, -2, -1], [-3, -6, 0], [2, 1, 0], [0, 6, 1], [4, 2, 1]]
+    )
+    more = rounded(rng.uniform(-4, 4, (6, 3)), 1)
+    factors = np.array([1.0, 2.0, -1.5, -4.0, 1.0, 0.5])[:, None]
+    other = more * factors
+    other[4:, 2] += 1.0
+    return [Case((a, b)), Case((more, other))]
+
+
+def _unit(x: Array) -> Array:
+    return np.asarray(x / np.linalg.norm(x, axis=1, keepdims=True))
+
+
+SAME = Exercise(
+    name="same_points",
+    chapter=1,
+    title="When are two points the same?",
+    task="Tell row by row whether homogeneous points a and b, shape (n, 3), are the same point of "
+    "the projective plane: True or False, shape (n,). Some of them are at infinity.",
+    stub='''def my_same_points(a, b):
+    """Tell row by row whether homogeneous points (n, 3) are the same."""
+    ...''',
+    hints=(
+        "Equal up to a factor, which may be negative, and which you do not know.",
+        "Dividing by the last coordinate is not allowed at infinity.",
+        "Vectors that differ by a factor are parallel. What is their cross product?",
+    ),
+    cases=_pairs,
+    properties=(Property("Points are the same exactly if a factor apart, at infinity too."),),
+    misconceptions=(
+        Misconception(
+            "equality of the numbers",
+            "You compared the numbers as they are; homogeneous coordinates are the same point if "
+            "they differ by a factor.",
+            lambda a, b: (a == b).all(1),
+        ),
+        Misconception(
+            "negative factors left out",
+            "You allow for a positive factor only: (1, 2, 1) and (−1, −2, −1) are the same point.",
+            lambda a, b: np.isclose(_unit(a), _unit(b)).all(1),
+        ),
+        Misconception(
+            "points at infinity left out",
+            "You divided by the last coordinate, which is 0 at infinity: (1, 2, 0) and "
+            "(−3, −6, 0) are the same point too.",
+            lambda a, b: np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1),
+        ),
+        Misconception(
+            "direction in the plane only",
+            "You compared x : y only. Points on one line through the origin have that in common; "
+            "the last coordinate tells them apart.",
+            lambda a, b: np.isclose(a[:, 0] * b[:, 1], a[:, 1] * b[:, 0]),
+        ),
+        Misconception(
+            "every pair the same",
+            "You say that all points are the same; (1, 2, 0) and (2, 1, 0) are two directions.",
+            lambda a, _: np.ones(len(a)),
+        ),
+    ),
+    reference=same_points,
+    concepts=("4", "12", "E3"),
+)

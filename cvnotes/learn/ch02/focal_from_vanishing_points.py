@@ -1,0 +1,97 @@
+"""The focal length in a picture of a box."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import rounded
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def focal_from_vanishing_points(v1: Array, v2: Array, centre: Array) -> float:
+    """Give f in pixels from the vanishing points (2,) of two perpendicular directions."""
+    return float(np.sqrt(-(v1 - centre) @ (v2 - centre)))
+
+
+def _perpendicular(rng: Rng) -> list[Case]:
+    by_hand = (np.array([400.0, 100]), np.array([-300.0, 200]), np.array([100.0, 0]))
+    f, centre = rng.uniform(500, 900), np.round(rng.uniform([300, 220], [340, 260]), 1)
+    x, y = rng.uniform(0.3, 1.2), rng.uniform(-0.6, 0.6)
+    d1 = np.array([x, y, 1.0])
+    d2 = np.array([-1.0, 0.2, x - 0.2 * y])
+    v1, v2 = (rounded(centre + f * d[:2] / d[2], 3) for d in (d1, d2))
+    return [Case(by_hand), Case((v1, v2, centre))]
+
+
+FOCAL = Exercise(
+    name="focal_from_vanishing_points",
+    chapter=2,
+    title="The focal length in a picture of a box",
+    task="Give the focal length in pixels of a camera with square pixels and known piercing point "
+    "`centre`, from the vanishing points v1 and v2 of two perpendicular directions, shape (2,) "
+    "each.",
+    stub='''def my_focal_from_vanishing_points(v1, v2, centre):
+    """Give f in pixels."""
+    ...''',
+    hints=(
+        "Measured from the piercing point, v = f (a/c, b/c): the ray of v is (v − centre, f).",
+        "The rays of v1 and v2 are perpendicular: their dot product is 0.",
+        "(v1 − centre)·(v2 − centre) + f² = 0.",
+    ),
+    cases=_perpendicular,
+    properties=(
+        Property(
+            "With this f the rays of both vanishing points are perpendicular.",
+            lambda f, c: bool(
+                abs((c.args[0] - c.args[2]) @ (c.args[1] - c.args[2]) + f**2) < 1e-5 * f**2
+            ),
+        ),
+        Property("f is positive.", lambda f, _: bool(f > 0)),
+    ),
+    misconceptions=(
+        Misconception(
+            "piercing point forgotten",
+            "You took v1·v2 from pixel (0, 0); measure both from the piercing point.",
+            lambda v1, v2, centre: np.sqrt(-v1 @ v2),
+        ),
+        Misconception(
+            "sign under the root",
+            "The dot product of the two is negative, so f² is its negative: your root is NaN.",
+            lambda v1, v2, centre: np.sqrt((v1 - centre) @ (v2 - centre)),
+        ),
+        Misconception(
+            "root forgotten",
+            "That is f²: take the root.",
+            lambda v1, v2, centre: -(v1 - centre) @ (v2 - centre),
+        ),
+        Misconception(
+            "lengths multiplied",
+            "You multiplied the two distances from the piercing point; it is the dot product, "
+            "which is the same only if both points lie on one line with the piercing point.",
+            lambda v1, v2, centre: np.sqrt(
+                np.linalg.norm(v1 - centre) * np.linalg.norm(v2 - centre)
+            ),
+        ),
+        Misconception(
+            "half the distance",
+            "The circle over v1 and v2 is a good idea: the camera's centre lies on a sphere over "
+            "them. But f is its height above the picture, not its radius.",
+            lambda v1, v2, centre: np.linalg.norm(v1 - v2) / 2,
+        ),
+        Misconception(
+            "the distance itself",
+            "That is how far apart the two vanishing points are. It depends on how the box "
+            "stands, f does not.",
+            lambda v1, v2, centre: np.linalg.norm(v1 - v2),
+        ),
+        Misconception(
+            "negative root",
+            "Both roots solve the equation; a focal length is positive.",
+            lambda v1, v2, centre: -focal_from_vanishing_points(v1, v2, centre),
+        ),
+    ),
+    reference=focal_from_vanishing_points,
+    concepts=("13", "20"),
+)

@@ -1,0 +1,82 @@
+"""The horizon of a plane."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, up_to_scale
+
+
+def horizon(A: Array, R: Array, n: Array) -> Array:
+    """Give the line (3,) in which planes with world normal n (3,) seem to end."""
+    return np.asarray(np.linalg.inv(A).T @ R @ n)
+
+
+def _ends_there(line: Array, case: Case) -> bool:
+    A, R, n = case.args
+    inside = np.linalg.svd(n[None])[2][1:]
+    m_h = inside @ R.T @ A.T
+    return bool((np.abs(m_h @ line) <= 1e-5 * (np.abs(m_h) @ np.abs(line))).all() and line.any())
+
+
+HORIZON = Exercise(
+    name="horizon",
+    chapter=2,
+    title="The horizon of a plane",
+    task="Give the line (a, b, c), of any scale, in which all planes with world normal n (3,) "
+    "seem to end: it contains the vanishing points of all directions in the plane.",
+    stub='''def my_horizon(A, R, n):
+    """Give the horizon (3,) of planes with world normal n (3,)."""
+    ...''',
+    hints=(
+        "Two directions in the plane have two vanishing points; the horizon joins them.",
+        "Or at once: a pixel m̃ is on the horizon if its ray Rᵀ A⁻¹ m̃ is perpendicular to n.",
+        "n·(Rᵀ A⁻¹ m̃) = 0 is l·m̃ = 0 with which l?",
+    ),
+    cases=lambda rng: [
+        Case((TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 3.0]))),
+        Case((some_intrinsics(rng), some_rotation(rng), rounded(rng.uniform(-1, 1, 3)))),
+    ],
+    properties=(
+        Property("The vanishing points of directions in the plane lie on it.", _ends_there),
+    ),
+    misconceptions=(
+        Misconception(
+            "vanishing point of the normal",
+            "A R n is a point: where the normals of the plane end. Lines transform with the "
+            "inverse transpose, A⁻ᵀ.",
+            lambda A, R, n: A @ R @ n,
+        ),
+        Misconception(
+            "inverse without transpose",
+            "A⁻¹ R n is still a point. From n·(Rᵀ A⁻¹ m̃) = 0 follows l = A⁻ᵀ R n.",
+            lambda A, R, n: np.linalg.inv(A) @ R @ n,
+        ),
+        Misconception(
+            "transpose without inverse",
+            "You have Aᵀ R n: invert as well, A⁻ᵀ.",
+            lambda A, R, n: A.T @ R @ n,
+        ),
+        Misconception(
+            "rotation left out",
+            "You took n as if it were given in the camera's frame: R is missing.",
+            lambda A, R, n: np.linalg.inv(A).T @ n,
+        ),
+        Misconception(
+            "rotation transposed",
+            "You used Rᵀ: n is given in the world, and R takes it to the camera.",
+            lambda A, R, n: np.linalg.inv(A).T @ R.T @ n,
+        ),
+        Misconception(
+            "sensor left out",
+            "R n is the horizon on the plane z = 1. In pixels it is A⁻ᵀ R n.",
+            lambda A, R, n: R @ n,
+        ),
+    ),
+    reference=horizon,
+    same=up_to_scale,
+    concepts=("7", "13"),
+)

@@ -1,0 +1,109 @@
+"""Where a direction is seen."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective import drop
+from cvnotes.rigid import pose
+
+
+def vanishing_point(A: Array, R: Array, d: Array) -> Array:
+    """Give the pixel (2,) where lines of world direction d (3,) end."""
+    return Camera(A, pose(R, np.zeros(3))).vanishing_point(d)
+
+
+def _directions(rng: Rng) -> list[Case]:
+    A, R = some_intrinsics(rng), some_rotation(rng)
+    ahead = rounded(R.T @ [*rng.uniform(-0.5, 0.5, 2), 1.0])
+    return [
+        Case((TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 3.0]))),
+        Case((A, R, ahead)),
+        Case((A, R, -ahead), about="away"),
+        Case((TIDY_A, ABOUT_Y, np.array([0.0, 1.0, 0.0])), about="parallel"),
+    ]
+
+
+def _seen(x_h: Array) -> Array:
+    return drop(np.asarray(x_h, dtype=float))
+
+
+def _only(condition: bool, value: Array) -> Array | None:
+    return value if condition else None
+
+
+VANISHING = Exercise(
+    name="vanishing_point",
+    chapter=2,
+    title="Where a direction is seen",
+    task="Give the pixel (2,) in which all lines of world direction d (3,) seem to end, for a "
+    "camera with A and R. If there is no such pixel, give NaN twice.",
+    stub='''def my_vanishing_point(A, R, d):
+    """Give the vanishing point (2,) of the world direction d (3,); NaN if at infinity."""
+    ...''',
+    hints=(
+        "A direction is the point at infinity [d; 0]: T drops out.",
+        "m̃ ≈ A R d, then divide by the third coordinate.",
+        "If that is 0, the lines are parallel to the image plane and stay parallel in the "
+        "picture. A direction that points away has the same lines as the opposite one.",
+    ),
+    cases=_directions,
+    properties=(
+        Property("It is the pixel that far points of such a line approach."),
+        Property("d and −d are the same lines, with the same vanishing point.", about="away"),
+        Property("Lines parallel to the image plane have none: NaN.", about="parallel"),
+    ),
+    misconceptions=(
+        Misconception(
+            "rotation left out",
+            "You used A d, as if d were given in the camera's frame. R takes it there.",
+            lambda A, R, d: _seen(A @ d),
+        ),
+        Misconception(
+            "rotation transposed",
+            "You used Rᵀ, which leads from the camera to the world; d comes from the world.",
+            lambda A, R, d: _seen(A @ R.T @ d),
+        ),
+        Misconception(
+            "sensor left out",
+            "That is where the direction meets the plane z = 1; A turns it into pixels.",
+            lambda A, R, d: _seen(R @ d),
+        ),
+        Misconception(
+            "no division",
+            "You did not divide by the third coordinate.",
+            lambda A, R, d: (A @ R @ d)[:2],
+        ),
+        Misconception(
+            "piercing point left out",
+            "f a/c and f b/c are measured from the piercing point; add u0 and v0.",
+            lambda A, R, d: _seen(A @ R @ d) - A[:2, 2],
+        ),
+        Misconception(
+            "divided by the world's Z",
+            "You divided by the third coordinate of d in the world. Depth is the third coordinate "
+            "in the camera's frame.",
+            lambda A, R, d: (A @ R @ d)[:2] / d[2],
+        ),
+        Misconception(
+            "divided by zero",
+            "Right, except for lines parallel to the image plane, where you divided by 0. They "
+            "meet at infinity in the picture too: NaN.",
+            lambda A, R, d: _only(bool((R @ d)[2]), _seen(A @ R @ d)),
+        ),
+        Misconception(
+            "directions that point away",
+            "Right, except that you have no answer where d points away from the camera. A line "
+            "has two ends, but d and −d share one vanishing point.",
+            lambda A, R, d: _only(bool((R @ d)[2] >= 0), _seen(A @ R @ d)),
+        ),
+    ),
+    reference=vanishing_point,
+    concepts=("5", "13", "14", "E5", "E6"),
+    sources=(Camera.vanishing_point,),
+)

@@ -1,0 +1,85 @@
+"""From one view to the other."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    ABOUT_Y,
+    some_pose_matrix,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.rigid import chain, inverse, pose
+
+
+def cam1_from_cam2(G1: Array, G2: Array) -> Array:
+    """Give the motion (4, 4) from camera 2's frame to camera 1's."""
+    return chain(G1, inverse(G2))
+
+
+def _both_see_the_board(G: Array, case: Case) -> bool:
+    G1, G2 = case.args
+    W = np.array([[0.0, 0, 0, 1], [100, 0, 0, 1], [0, 100, 0, 1], [0, 0, 100, 1]])
+    return np.allclose(W @ G2.T @ G.T, W @ G1.T, atol=1e-3)
+
+
+CHAIN = Exercise(
+    name="cam1_from_cam2",
+    chapter=3,
+    title="From one view to the other",
+    task="G1 and G2 (4, 4) carry points of one board into the frames of camera 1 and camera 2. "
+    "Give the motion (4, 4) that carries points from camera 2's frame into camera 1's.",
+    stub='''def my_cam1_from_cam2(G1, G2):
+    """Give the motion (4, 4) from camera 2's frame to camera 1's."""
+    ...''',
+    hints=(
+        "Go from camera 2 to the board, and from there to camera 1.",
+        "Written by names: cam1_from_cam2 = cam1_from_board @ board_from_cam2.",
+        "board_from_cam2 is the inverse of cam2_from_board = G2.",
+    ),
+    cases=lambda rng: [
+        Case((pose(ABOUT_Y, [1.0, 2.0, 10.0]), pose(np.eye(3), [0.0, 1.0, 8.0]))),
+        Case((some_pose_matrix(rng), some_pose_matrix(rng))),
+    ],
+    properties=(
+        Property("What camera 2 sees of the board, camera 1 sees too.", _both_see_the_board),
+    ),
+    misconceptions=(
+        Misconception(
+            "the other direction",
+            "Your motion leads from camera 1 to camera 2; asked is the way back.",
+            lambda G1, G2: G2 @ np.linalg.inv(G1),
+        ),
+        Misconception(
+            "the board moved",
+            "G1⁻¹ G2 is the other reading: one camera, and a board that moved. Here the board "
+            "stands still and there are two cameras.",
+            lambda G1, G2: np.linalg.inv(G1) @ G2,
+        ),
+        Misconception(
+            "the board moved back",
+            "G2⁻¹ G1 ends where it starts, in the board's frame: it moves a board, in front of "
+            "one camera.",
+            lambda G1, G2: np.linalg.inv(G2) @ G1,
+        ),
+        Misconception(
+            "no inverse",
+            "G1 G2 chains two motions that both start at the board. The names must touch: "
+            "cam1_from_board, then board_from_cam2.",
+            lambda G1, G2: G1 @ G2,
+        ),
+        Misconception(
+            "translations subtracted",
+            "The rotation is right, but translations cannot just be subtracted: T2 has to be "
+            "turned into camera 1's frame first.",
+            lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G1[:3, 3] - G2[:3, 3]),
+        ),
+        Misconception(
+            "poses subtracted",
+            "The difference of two poses is no pose; motions are chained by multiplication.",
+            lambda G1, G2: G1 - G2,
+        ),
+    ),
+    reference=cam1_from_cam2,
+    concepts=("24", "42", "E20"),
+    sources=(cam1_from_cam2, chain, inverse),
+)

@@ -1,0 +1,80 @@
+"""Where the camera stands."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    ABOUT_Y,
+    some_pose,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.rigid import pose
+
+
+def camera_centre(R: Array, T: Array) -> Array:
+    """Give the camera's position in the world, (3,)."""
+    return Camera(np.eye(3), pose(R, T)).centre
+
+
+CENTRE = Exercise(
+    name="camera_centre",
+    chapter=3,
+    title="Where the camera stands",
+    task="Give the camera's centre in the world, shape (3,), from R and T.",
+    stub='''def my_camera_centre(R, T):
+    """Give the camera's centre (3,) in the WRF."""
+    ...''',
+    hints=(
+        "In the camera's own frame its centre is (0, 0, 0).",
+        "Solve R C + T = 0 for C.",
+        "The inverse of a rotation is its transpose.",
+    ),
+    cases=lambda rng: [
+        Case((ABOUT_Y, np.array([1.0, 2.0, 10.0]))),
+        Case(some_pose(rng)),
+    ],
+    properties=(
+        Property(
+            "Seen from the camera, its centre is the origin: R C + T = 0.",
+            lambda C, c: np.allclose(
+                c.args[0] @ C, -c.args[1], atol=1e-5 * np.abs(c.args[1]).max()
+            ),
+        ),
+    ),
+    misconceptions=(
+        Misconception(
+            "T itself",
+            "T is where the world's origin is seen from the camera, not where the camera stands. "
+            "It is the most frequent confusion of all.",
+            lambda R, T: T,
+        ),
+        Misconception(
+            "minus T",
+            "−T would be the position if the camera were not rotated; it is still in the "
+            "camera's frame. Turn it into the world's.",
+            lambda R, T: -T,
+        ),
+        Misconception(
+            "sign lost",
+            "The direction is right, the sign is not: R C = −T.",
+            lambda R, T: R.T @ T,
+        ),
+        Misconception(
+            "rotated the wrong way",
+            "You used R where its inverse belongs: from R C = −T follows C = −Rᵀ T.",
+            lambda R, T: -R @ T,
+        ),
+        Misconception(
+            "rotated the wrong way, sign lost",
+            "You gave R T: from R C + T = 0 follows C = −Rᵀ T.",
+            lambda R, T: R @ T,
+        ),
+    ),
+    reference=camera_centre,
+    concepts=("22", "24", "E11"),
+    sources=(Camera.centre,),
+)

@@ -1,0 +1,88 @@
+"""How much the camera sees."""
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    some_intrinsics,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def field_of_view(A: Array, width: int) -> float:
+    """Give the horizontal angle in radians that a picture spans at the height of its axis."""
+    return Camera(A, size=(width, 480)).field_of_view[0]
+
+
+def _off_centre(rng: Rng) -> list[Case]:
+    by_hand = np.array([[500.0, 0, 399.5], [0, 600, 240], [0, 0, 1]])
+    return [Case((by_hand, 1000)), Case((some_intrinsics(rng), 640))]
+
+
+def _to_the_sides(A: Array, left: float, right: float, alpha: float | None = None) -> float:
+    alpha = A[0, 0] if alpha is None else alpha
+    return float(np.arctan((right - A[0, 2]) / alpha) + np.arctan((A[0, 2] - left) / alpha))
+
+
+FIELD = Exercise(
+    name="field_of_view",
+    chapter=3,
+    title="How much the camera sees",
+    task="Give the angle in radians between the rays through the left and the right border of a "
+    "picture of given width, at the height of the piercing point. Integers are pixel centres, so "
+    "the borders are u = −½ and u = width − ½; the piercing point need not be in the middle.",
+    stub='''def my_field_of_view(A, width):
+    """Give the horizontal field of view in radians."""
+    ...''',
+    hints=(
+        "Draw the triangle of centre, piercing point and border: its sides are α_u and pixels.",
+        "Two such triangles, one to the left and one to the right, with two different angles.",
+        "Each is arctan(pixels / α_u).",
+    ),
+    cases=_off_centre,
+    properties=(Property("It is the angle between the two rays, wherever the piercing point is."),),
+    misconceptions=(
+        Misconception(
+            "piercing point in the middle",
+            "2 arctan(width / 2α_u) holds if the piercing point is in the middle; in general it "
+            "is not. Take the two sides one by one.",
+            lambda A, width: 2 * np.arctan(width / 2 / A[0, 0]),
+        ),
+        Misconception(
+            "half of the angle",
+            "That is half of the field of view: there is a left side too.",
+            lambda A, width: np.arctan(width / 2 / A[0, 0]),
+        ),
+        Misconception(
+            "one triangle for both sides",
+            "arctan(width / α_u) is the angle if the piercing point were at the border.",
+            lambda A, width: np.arctan(width / A[0, 0]),
+        ),
+        Misconception(
+            "degrees",
+            "The angle is right, in degrees; asked are radians.",
+            lambda A, width: np.degrees(_to_the_sides(A, -0.5, width - 0.5)),
+        ),
+        Misconception(
+            "borders at whole pixels",
+            "Nearly: the first and last pixels have their centres at 0 and width − 1, and reach "
+            "half a pixel further.",
+            lambda A, width: _to_the_sides(A, 0, width - 1),
+        ),
+        Misconception(
+            "borders from 0 to width",
+            "Nearly: you have the borders at 0 and width, as if whole numbers were the borders "
+            "of pixels. Here they are their centres.",
+            lambda A, width: _to_the_sides(A, 0, width),
+        ),
+        Misconception(
+            "the vertical focal length",
+            "Horizontal angles go with α_u = A[0, 0]; you took α_v.",
+            lambda A, width: _to_the_sides(A, -0.5, width - 0.5, alpha=A[1, 1]),
+        ),
+    ),
+    reference=field_of_view,
+    concepts=("18", "20", "E7", "E45"),
+    sources=(Camera.field_of_view,),
+)

@@ -1,0 +1,95 @@
+"""The sensor's matrix."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.camera import intrinsics
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    rounded,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def intrinsics_from_sensor(f: float, du: float, dv: float, u0: float, v0: float) -> Array:
+    """Give A (3, 3) from focal length and pixel sizes in mm, piercing point in pixels."""
+    return intrinsics(f / du, f / dv, u0, v0)
+
+
+def _sensors(rng: Rng) -> list[Case]:
+    f, du, dv = np.round(rng.uniform([4, 0.003, 0.006], [12, 0.005, 0.009]), 4).tolist()
+    u0, v0 = rounded(rng.uniform([300, 200], [340, 260]), 1).tolist()
+    return [Case((8.0, 0.01, 0.02, 320.0, 240.0)), Case((f, du, dv, u0, v0))]
+
+
+def _matrix(a: float, b: float, u0: float, v0: float) -> Array:
+    return np.array([[a, 0, u0], [0, b, v0], [0, 0, 1]])
+
+
+INTRINSICS = Exercise(
+    name="intrinsics_from_sensor",
+    chapter=3,
+    title="The sensor's matrix",
+    task="Give A (3, 3) of a camera with focal length f and pixels du wide and dv high, all in "
+    "millimetres; its piercing point (u0, v0) is in pixels. No skew.",
+    stub='''def my_intrinsics_from_sensor(f, du, dv, u0, v0):
+    """Give A (3, 3); f, du and dv in mm, u0 and v0 in pixels."""
+    ...''',
+    hints=(
+        "α_u is the focal length measured in pixel widths: how many of them fit into it?",
+        "u0 and v0 are pixels already.",
+        "A = [[α_u, 0, u0], [0, α_v, v0], [0, 0, 1]].",
+    ),
+    cases=_sensors,
+    properties=(
+        Property(
+            "The optical axis, (0, 0, 1), is seen at (u0, v0).",
+            lambda A, c: np.allclose(A @ [0, 0, 1], [c.args[3], c.args[4], 1], rtol=1e-6),
+        ),
+        Property("A point at 45° to the right is f/du pixels right of that, and so for v."),
+    ),
+    misconceptions=(
+        Misconception(
+            "multiplied by the pixel size",
+            "You multiplied f by the pixel size. The unit tells: millimetres by millimetres per "
+            "pixel give pixels only if one divides.",
+            lambda f, du, dv, u0, v0: _matrix(f * du, f * dv, u0, v0),
+        ),
+        Misconception(
+            "pixel sizes exchanged",
+            "α_u belongs to u: it takes the width du of a pixel, α_v the height dv.",
+            lambda f, du, dv, u0, v0: _matrix(f / dv, f / du, u0, v0),
+        ),
+        Misconception(
+            "piercing point exchanged",
+            "u0 and v0 are exchanged: u runs along the columns, and its row of A is the first.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, v0, u0),
+        ),
+        Misconception(
+            "piercing point divided by the pixel size",
+            "u0 and v0 are in pixels already; only lengths on the sensor are divided.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0 / du, v0 / dv),
+        ),
+        Misconception(
+            "piercing point left out",
+            "u0 and v0 are missing: the axis would be seen at pixel (0, 0). (The notes' formula "
+            "for u loses them in its middle term too.)",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, 0, 0),
+        ),
+        Misconception(
+            "focal length left out",
+            "1/du and 1/dv are k_u and k_v; α_u and α_v carry the focal length as well.",
+            lambda f, du, dv, u0, v0: _matrix(1 / du, 1 / dv, u0, v0),
+        ),
+        Misconception(
+            "transposed",
+            "A is upper triangular: u0 and v0 stand in its last column.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0).T,
+        ),
+    ),
+    reference=intrinsics_from_sensor,
+    concepts=("17", "18", "19", "20", "E8"),
+    sources=(intrinsics_from_sensor, intrinsics),
+)

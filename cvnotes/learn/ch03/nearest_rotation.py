@@ -1,0 +1,103 @@
+"""The nearest rotation."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    ABOUT_Y,
+    rounded,
+    some_rotation,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.rigid import nearest_rotation
+
+
+def _nearly_rotations(rng: Rng) -> list[Case]:
+    by_hand = rounded(ABOUT_Y + [[0.1, 0.0, 0.2], [0.2, 0.1, 0.0], [0.0, 0.1, 0.1]], 2)
+    noisy = rounded(some_rotation(rng) + 0.1 * rng.standard_normal((3, 3)), 3)
+    mirrored = rounded(some_rotation(rng) @ np.diag([1, 1, -0.2]) + 0.03 * noisy, 3)
+    return [Case((by_hand,)), Case((noisy,)), Case((mirrored,), about="mirrored")]
+
+
+def _left(M: Array) -> tuple[Array, Array]:
+    U, _, Vt = np.linalg.svd(M)
+    return U, Vt
+
+
+def _flipped(M: Array) -> Array:
+    U, Vt = _left(M)
+    return np.asarray(U @ Vt * np.sign(np.linalg.det(U @ Vt)))
+
+
+def _gram_schmidt(M: Array) -> Array:
+    Q, U = np.linalg.qr(M)
+    return Q * np.sign(np.diag(U))
+
+
+NEAREST = Exercise(
+    name="nearest_rotation",
+    chapter=3,
+    title="The nearest rotation",
+    task="Give the rotation (3, 3) that is nearest to a matrix M (3, 3), in the sense of the sum "
+    "of squared differences.",
+    stub='''def my_nearest_rotation(M):
+    """Give the rotation (3, 3) nearest to M (3, 3)."""
+    ...''',
+    hints=(
+        "U, s, Vt = np.linalg.svd(M) takes M apart: rotate, stretch by s, rotate.",
+        "Leave the stretching out.",
+        "Is your result a rotation or a reflection? Look at its determinant, and turn around the "
+        "direction that counts least: the last column of U.",
+    ),
+    cases=_nearly_rotations,
+    properties=(
+        Property(
+            "The columns are orthonormal.",
+            lambda R, c: np.allclose(R.T @ R, np.eye(3), atol=1e-5),
+        ),
+        Property("No other rotation is nearer."),
+        Property(
+            "Also if M is nearer to a reflection: the determinant is +1 always.", about="mirrored"
+        ),
+    ),
+    misconceptions=(
+        Misconception(
+            "V for Vᵀ",
+            "np.linalg.svd gives Vᵀ, not V: the product is U @ Vt.",
+            lambda M: _left(M)[0] @ _left(M)[1].T,
+        ),
+        Misconception(
+            "transposed",
+            "V Uᵀ is the rotation back: the transpose of what is asked.",
+            lambda M: (_left(M)[0] @ _left(M)[1]).T,
+        ),
+        Misconception(
+            "a reflection",
+            "Right unless U Vᵀ has determinant −1: that is a reflection. "
+            "R = U diag(1, 1, det(U Vᵀ)) Vᵀ.",
+            lambda M: _left(M)[0] @ _left(M)[1],
+        ),
+        Misconception(
+            "everything turned around",
+            "A negative determinant is cured by turning one direction around, the one with the "
+            "smallest singular value; you turned around all three, which ends far away.",
+            _flipped,
+        ),
+        Misconception(
+            "columns scaled only",
+            "Columns of length 1 are not perpendicular yet.",
+            lambda M: M / np.linalg.norm(M, axis=0),
+        ),
+        Misconception(
+            "Gram and Schmidt",
+            "That is a rotation, by making one column after the other perpendicular. But it "
+            "favours the first column: it is not the nearest.",
+            lambda M: _gram_schmidt(M),
+        ),
+    ),
+    reference=nearest_rotation,
+    concepts=("61", "E33"),
+)

@@ -1,0 +1,126 @@
+"""Project points."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    ABOUT_Y,
+    points_in_front,
+    some_intrinsics,
+    some_pose,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.rigid import pose
+
+
+def project(A: Array, R: Array, T: Array, W: Array) -> Array:
+    """Project world points (n, 3) to pixels (n, 2)."""
+    return Camera(A, pose(R, T)).project(W)
+
+
+def _cameras(rng: Rng) -> list[Case]:
+    by_hand = (
+        np.array([[500.0, 0, 300], [0, 600, 200], [0, 0, 1]]),
+        ABOUT_Y,
+        np.array([1.0, 2.0, 10.0]),
+        np.array([[5.0, 1.0, 0.0]]),
+    )
+    cases = [Case(by_hand)]
+    for n in (4, 6):
+        R, T = some_pose(rng)
+        cases.append(Case((some_intrinsics(rng, skew=True), R, T, points_in_front(rng, R, T, n))))
+    return cases
+
+
+def _seen(M: Array, A: Array) -> Array:
+    m_h = M @ A.T
+    return m_h[:, :2] / m_h[:, 2:]
+
+
+def _on_ray(m: Array, case: Case) -> bool:
+    """Tell whether each pixel's ray contains its point."""
+    A, R, T, W = case.args
+    rays = np.hstack([m, np.ones((len(m), 1))]) @ np.linalg.inv(A).T
+    M = W @ R.T + T
+    return np.allclose(rays * M[:, 2:], M, rtol=0, atol=1e-5 * np.abs(M).max())
+
+
+PROJECT = Exercise(
+    name="project",
+    chapter=3,
+    title="Project points",
+    task="Give the pixels (n, 2) at which a camera with A, R and T sees world points W (n, 3). "
+    "All of them are in front of it.",
+    stub='''def my_project(A, R, T, W):
+    """Give pixels (n, 2) of world points W (n, 3)."""
+    ...''',
+    hints=(
+        "M = R W + T first. Points are rows here: W @ R.T + T.",
+        "Then m̃ ≈ A M: three numbers a point.",
+        "Divide the first two of them by the third.",
+    ),
+    cases=_cameras,
+    properties=(
+        Property("The ray through each pixel contains its point.", _on_ray),
+        Property("Pixels are (u, v), rows as the points are."),
+    ),
+    misconceptions=(
+        Misconception(
+            "no division",
+            "You did not divide by the third coordinate: without that, nothing looks smaller "
+            "when it is farther away.",
+            lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2],
+        ),
+        Misconception(
+            "T taken for the camera's position",
+            "You used R (W − T), as if the camera stood at T. T is where the world's origin is "
+            "seen from the camera: M = R W + T.",
+            lambda A, R, T, W: _seen((W - T) @ R.T, A),
+        ),
+        Misconception(
+            "T added before the rotation",
+            "You added T before rotating: M = R W + T, not R (W + T).",
+            lambda A, R, T, W: _seen((W + T) @ R.T, A),
+        ),
+        Misconception(
+            "rotation transposed",
+            "W @ R applies Rᵀ, the inverse rotation, to points that are rows. It takes W @ R.T.",
+            lambda A, R, T, W: _seen(W @ R + T, A),
+        ),
+        Misconception(
+            "u and v exchanged",
+            "You gave (v, u), row before column; pixels are (u, v) here.",
+            lambda A, R, T, W: _seen(W @ R.T + T, A)[:, ::-1],
+        ),
+        Misconception(
+            "divided by the world's Z",
+            "You divided by the Z of the world; depth is the z of the camera's own frame.",
+            lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] / W[:, 2:],
+        ),
+        Misconception(
+            "divided by the distance",
+            "You divided by the distance to the camera's centre; the picture is a plane, so it is "
+            "the depth z that counts.",
+            lambda A, R, T, W: (
+                ((W @ R.T + T) @ A.T)[:, :2] / np.linalg.norm(W @ R.T + T, axis=1, keepdims=True)
+            ),
+        ),
+        Misconception(
+            "not in pixels",
+            "These are x/z and y/z on the plane z = 1; A turns them into pixels.",
+            lambda A, R, T, W: _seen(W @ R.T + T, np.eye(3)),
+        ),
+        Misconception(
+            "pose left out",
+            "You projected W as if it were given in the camera's frame; R and T take it there.",
+            lambda A, R, T, W: _seen(W, A),
+        ),
+    ),
+    reference=project,
+    concepts=("9", "11", "23", "25", "E4", "E10"),
+    sources=(Camera.project,),
+)

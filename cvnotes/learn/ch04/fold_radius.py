@@ -1,0 +1,103 @@
+"""Where the model ends."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    rounded,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.lens import Lens
+
+
+def fold_radius(k: Array) -> float:
+    """Give the largest ideal radius up to which a lens with k (2,) is valid."""
+    return Lens(tuple(k)).max_radius
+
+
+def _lenses(rng: Rng) -> list[Case]:
+    k1, k2 = rounded(rng.uniform([-0.5, 0.005], [-0.3, 0.02]), 3)
+    return [
+        Case((np.array([-4 / 3, 0.0]),)),
+        Case((np.array([k1, k2]),)),
+        Case((np.array([-0.3, -0.1]),)),
+        Case((np.array([0.2, 0.1]),), about="endless"),
+    ]
+
+
+def _smallest_root(a: float, b: float, largest: bool = False) -> float:
+    """Give the smallest r > 0 with 1 + a r² + b r⁴ = 0, infinite without one."""
+    roots = np.roots([b, a, 1.0] if b else [a, 1.0])
+    real = np.sort(roots[(np.abs(roots.imag) < 1e-12) & (roots.real > 0)].real)
+    return float(np.sqrt(real[-1 if largest else 0])) if real.size else np.inf
+
+
+def _seen_radius(k: Array) -> float:
+    r = fold_radius(k)
+    return float(r * (1 + k[0] * r**2 + k[1] * r**4)) if np.isfinite(r) else np.inf
+
+
+FOLD = Exercise(
+    name="fold_radius",
+    chapter=4,
+    title="Where the model ends",
+    task="Beyond some radius the picture r L(r) of a radius shrinks again: the image folds over, "
+    "which no lens does. Give this largest valid ideal radius for k = (k1, k2), or np.inf if "
+    "there is none.",
+    stub='''def my_fold_radius(k):
+    """Give the largest radius r up to which r L(r) grows; np.inf if it always does."""
+    ...''',
+    hints=(
+        "r L(r) = r + k1 r³ + k2 r⁵. Where does its slope become 0?",
+        "1 + 3 k1 r² + 5 k2 r⁴ = 0 is a quadratic equation for r².",
+        "Of its positive roots the smallest counts. For k = (−4/3, 0) the answer is 0.5.",
+    ),
+    cases=_lenses,
+    properties=(
+        Property("Up to your radius r L(r) grows, beyond it it shrinks."),
+        Property("A lens that never folds has no such radius: np.inf.", about="endless"),
+    ),
+    misconceptions=(
+        Misconception(
+            "root of L",
+            "There L(r) = 0: all points fall into the centre. The picture folds before that, "
+            "where r L(r) stops growing.",
+            lambda k: _smallest_root(*k),
+        ),
+        Misconception(
+            "derivative of L alone",
+            "You looked where L itself is flat. It is r L(r) that must grow; its slope is "
+            "1 + 3 k1 r² + 5 k2 r⁴.",
+            lambda k: np.sqrt(-k[0] / (2 * k[1])) if k[0] * k[1] < 0 else np.inf,
+        ),
+        Misconception(
+            "square root forgotten",
+            "The equation is one for r²: take the root of its root.",
+            lambda k: fold_radius(k) ** 2,
+        ),
+        Misconception(
+            "radius in the picture",
+            "That is how far from the centre the fold is seen, r L(r). Asked is the ideal radius.",
+            _seen_radius,
+        ),
+        Misconception(
+            "k2 left out",
+            "You left k2 out: √(−1 / 3k1) is the answer for k2 = 0 only.",
+            lambda k: np.sqrt(-1 / (3 * k[0])) if k[0] < 0 else np.inf,
+        ),
+        Misconception(
+            "the outer root",
+            "There are two radii at which the slope is 0. The picture has folded at the first of "
+            "them.",
+            lambda k: _smallest_root(3 * k[0], 5 * k[1], largest=True),
+        ),
+        Misconception(
+            "factors of the derivative",
+            "The derivative of r³ is 3r², that of r⁵ is 5r⁴: your factors are those of L.",
+            lambda k: _smallest_root(2 * k[0], 4 * k[1]),
+        ),
+    ),
+    reference=fold_radius,
+    concepts=("31", "E15"),
+    sources=(Lens.max_radius,),
+)

@@ -1,0 +1,129 @@
+"""The four steps of image formation."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    ABOUT_Y,
+    lens_factor,
+    points_in_front,
+    some_intrinsics,
+    some_lens,
+    some_pose,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.lens import Lens
+from cvnotes.rigid import pose
+
+
+def form_image(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array:
+    """Give the pixels (n, 2) of world points (n, 3), through a lens with k (2,)."""
+    return Camera(A, pose(R, T), Lens(tuple(k))).project(W)
+
+
+def _photographs(rng: Rng) -> list[Case]:
+    by_hand = (
+        intrinsics(500.0, 600.0, 300.0, 200.0),
+        ABOUT_Y,
+        np.array([1.0, 2.0, 10.0]),
+        np.array([-0.2, 0.1]),
+        np.array([[5.0, 1.0, 0.0]]),
+    )
+    cases = [Case(by_hand)]
+    for n in (4, 6):
+        R, T = some_pose(rng)
+        W = points_in_front(rng, R, T, n)
+        cases.append(Case((some_intrinsics(rng), R, T, some_lens(rng)[0], W)))
+    return cases
+
+
+def _pixels(A: Array, xy: Array) -> Array:
+    return np.asarray(xy @ A[:2, :2].T + A[:2, 2])
+
+
+def _ideal(R: Array, T: Array, W: Array) -> Array:
+    M = W @ R.T + T
+    return np.asarray(M[:, :2] / M[:, 2:])
+
+
+def _lens_before_division(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array:
+    M = W @ R.T + T
+    return _pixels(A, M[:, :2] * lens_factor(M[:, :2], k) / M[:, 2:])
+
+
+def _lens_after_pixels(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array:
+    m = _pixels(A, _ideal(R, T, W))
+    return m * lens_factor(m, k)
+
+
+def _radius_in_pixels(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array:
+    xy = _ideal(R, T, W)
+    offset = _pixels(A, xy) - A[:2, 2]
+    return A[:2, 2] + offset * lens_factor(offset, k)
+
+
+FORM = Exercise(
+    name="form_image",
+    chapter=4,
+    title="The four steps of image formation",
+    task="Give the pixels (n, 2) of world points W (n, 3), through a lens with k = (k1, k2), for a "
+    "camera with A, R and T. All points are in front of it.",
+    stub='''def my_form_image(A, R, T, k, W):
+    """Give the pixels (n, 2) of world points W (n, 3)."""
+    ...''',
+    hints=(
+        "Four steps, in this order: into the camera's frame, divide by z, lens, sensor.",
+        "The lens acts on x/z and y/z, before there are pixels.",
+        "The last step is A (x', y', 1)ᵀ: u = α_u x' + u0, v = α_v y' + v0.",
+    ),
+    cases=_photographs,
+    properties=(Property("Every point is where the four steps, in their order, put it."),),
+    misconceptions=(
+        Misconception(
+            "lens left out",
+            "These are the pixels of an ideal lens: the third step is missing.",
+            lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W)),
+        ),
+        Misconception(
+            "lens before the division",
+            "You distorted before dividing by z: r is then in millimetres. The lens acts on "
+            "x/z and y/z.",
+            _lens_before_division,
+        ),
+        Misconception(
+            "lens after the pixels",
+            "You distorted the pixels themselves, about pixel (0, 0). The lens acts before the "
+            "sensor, on x/z and y/z.",
+            _lens_after_pixels,
+        ),
+        Misconception(
+            "radius in pixels",
+            "You distorted about (u0, v0), which is right, but with r in pixels. k1 and k2 belong "
+            "to the r of the plane z = 1.",
+            _radius_in_pixels,
+        ),
+        Misconception(
+            "the way back",
+            "You divided by L. The lens multiplies: image formation distorts, correction "
+            "undistorts.",
+            lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W) / lens_factor(_ideal(R, T, W), k)),
+        ),
+        Misconception(
+            "T taken for the camera's position",
+            "You used R (W − T), as if the camera stood at T: M = R W + T.",
+            lambda A, R, T, k, W: form_image(A, R, -R @ T, k, W),
+        ),
+        Misconception(
+            "no pixels yet",
+            "These are x' and y' on the plane z = 1: the sensor's A is missing.",
+            lambda A, R, T, k, W: _ideal(R, T, W) * lens_factor(_ideal(R, T, W), k),
+        ),
+    ),
+    reference=form_image,
+    concepts=("34", "35", "E13", "E16"),
+    sources=(Camera.project,),
+)

@@ -1,0 +1,100 @@
+"""Back through the lens."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    lens_factor,
+    rounded,
+    some_lens,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.lens import Lens
+
+
+def undistort(xy_lens: Array, k: Array) -> Array:
+    """Give the ideal points (n, 2) that a lens with k (2,) shows at xy_lens."""
+    return Lens(tuple(k)).undistort(xy_lens)
+
+
+def _observed_points(rng: Rng) -> list[Case]:
+    k, _ = some_lens(rng)
+    k_hand = np.array([-0.2, 0.05])
+    cases = [(np.array([[0.5, 0.0], [0.3, 0.4]]), k_hand), (rng.uniform(-0.5, 0.5, (6, 2)), k)]
+    return [Case((rounded(xy * lens_factor(xy, c), 4), c)) for xy, c in cases]
+
+
+def _divided(xy_lens: Array, k: Array, times: int) -> Array:
+    xy = xy_lens
+    for _ in range(times):
+        xy = xy_lens / lens_factor(xy, k)
+    return xy
+
+
+UNDISTORT = Exercise(
+    name="undistort",
+    chapter=4,
+    title="Back through the lens",
+    task="Give the ideal points (n, 2) that a lens with k = (k1, k2), and no tangential terms, "
+    "shows at xy_lens (n, 2). There is no closed form: iterate until nothing changes any more.",
+    stub='''def my_undistort(xy_lens, k):
+    """Give the ideal points (n, 2) seen at xy_lens (n, 2), to 1e-8."""
+    ...''',
+    hints=(
+        "You want xy with L(r) xy = xy_lens, where r is the radius of the xy you want.",
+        "If you knew r you could divide. Guess xy = xy_lens, divide, and use the better guess.",
+        "Repeat this 50 times, or until the change is below 1e-10. Newton's method is quicker.",
+    ),
+    cases=_observed_points,
+    properties=(
+        Property(
+            "The lens takes your points to where they were seen.",
+            lambda xy, c: np.allclose(
+                xy * lens_factor(xy, c.args[1]), c.args[0], rtol=0, atol=1e-6
+            ),
+        ),
+        Property("Of all points with this property they are the nearest to the axis."),
+    ),
+    misconceptions=(
+        Misconception(
+            "divided once",
+            "You divided by L at the radius that was seen. L is a function of the ideal radius, "
+            "which you now know better: repeat.",
+            lambda xy_lens, k: _divided(xy_lens, k, 1),
+        ),
+        Misconception(
+            "divided twice",
+            "Two rounds are better than one and not enough yet: go on until nothing changes.",
+            lambda xy_lens, k: _divided(xy_lens, k, 2),
+        ),
+        Misconception(
+            "divided three times",
+            "Three rounds leave an error that can be seen in a picture's corner: go on until "
+            "nothing changes.",
+            lambda xy_lens, k: _divided(xy_lens, k, 3),
+        ),
+        Misconception(
+            "distorted once more",
+            "You distorted the points a second time: L(r) times a point leads to the observed "
+            "point, not back.",
+            lambda xy_lens, k: xy_lens * lens_factor(xy_lens, k),
+        ),
+        Misconception(
+            "signs of k changed",
+            "A lens with −k1 and −k2 undoes the distortion only roughly: the inverse of a "
+            "polynomial is no such polynomial.",
+            lambda xy_lens, k: xy_lens * lens_factor(xy_lens, -k),
+        ),
+        Misconception(
+            "nothing done",
+            "You gave the points back as they were seen.",
+            lambda xy_lens, k: xy_lens,
+        ),
+    ),
+    reference=undistort,
+    concepts=("29", "34", "69", "E13"),
+    sources=(Lens.undistort, Lens._undistort),
+)

@@ -1,0 +1,87 @@
+"""Which corner is the first."""
+
+import numpy as np
+
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import Array
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, within
+from cvnotes.rigid import pose, rotation_from_angles
+from cvnotes.targets import Chessboard
+
+_BOARD = Chessboard((4, 3), 30.0)
+
+
+def turned_board() -> tuple[Chessboard, Camera]:
+    """Give a board and a camera that sees it turned; ``render(*turned_board())`` is the picture."""
+    R = rotation_from_angles(0.35, -0.3, 2.5)
+    T = np.array([4.0, -2.0, 450.0]) - R @ [45, 30, 0]
+    return _BOARD, Camera(intrinsics(500, 500, 159.5, 119.5), pose(R, T), size=(320, 240))
+
+
+def _corner(column: int, row: int) -> Array:
+    return turned_board()[1].project([30.0 * column, 30.0 * row, 0.0])
+
+
+def first_corner() -> Array:
+    """Give the pixel (2,) of the board's first inner corner."""
+    return _corner(0, 0)
+
+
+FIRST = Exercise(
+    name="first_corner",
+    chapter=5,
+    title="Which corner is the first?",
+    task="Look at render(*turned_board()), a picture of 320 × 240 pixels of a board with 4 × 3 "
+    "inner corners. At which pixel (u, v) is its first inner corner? The square outside of it, "
+    "towards −x and −y, is dark; x runs along the 4 corners, and seen from the front y is a "
+    "quarter turn clockwise from x. To within 4 pixels is good enough.",
+    stub="my_first_corner = ...  # (u, v)",
+    hints=(
+        "Two of the four outermost squares are dark; the first corner is at one of them.",
+        "Stand on either corner and look along the side with 4 corners: the board must lie to "
+        "your right.",
+        "Zoom in, and count pixels: u from the left, v from the top.",
+    ),
+    cases=lambda _: [Case(())],
+    properties=(Property("It is the first corner, to within 4 pixels."),),
+    misconceptions=(
+        Misconception(
+            "mirrored",
+            "That is the other corner beside a dark outer square, the end of the first row. With "
+            "the origin there, x and y would be a mirror image: y is clockwise from x.",
+            lambda: _corner(3, 0),
+        ),
+        Misconception(
+            "half a turn",
+            "That is the last corner. Its outer square is light; the one at the first corner is "
+            "dark.",
+            lambda: _corner(3, 2),
+        ),
+        Misconception(
+            "start of the last row",
+            "That is where the last row starts. Its outer square is light.",
+            lambda: _corner(0, 2),
+        ),
+        Misconception(
+            "outer corner",
+            "That is the outer corner of the dark square. Inner corners are those in which four "
+            "squares meet.",
+            lambda: _corner(-1, -1),
+        ),
+        Misconception(
+            "v before u",
+            "You gave row before column: pixels are (u, v).",
+            lambda: first_corner()[::-1],
+        ),
+        Misconception(
+            "v counted from below",
+            "v counts from the top of the picture downwards.",
+            lambda: first_corner() * [1, -1] + [0, 239],
+        ),
+    ),
+    reference=first_corner,
+    same=within(4.0),
+    concepts=("39", "41", "E18"),
+    answer="value",
+    sources=(turned_board, first_corner),
+)

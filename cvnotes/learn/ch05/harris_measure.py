@@ -1,0 +1,106 @@
+"""Is there a corner."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import rounded
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def harris_measure(Iu: Array, Iv: Array, k: float) -> float:
+    """Give det M − k (trace M)², where M sums the products of gradients over a window."""
+    uu, vv, uv = (Iu * Iu).sum(), (Iv * Iv).sum(), (Iu * Iv).sum()
+    return float(uu * vv - uv**2 - k * (uu + vv) ** 2)
+
+
+def _windows(rng: Rng) -> list[Case]:
+    Iu, Iv = rounded(rng.uniform(-9, 9, (2, 5, 5)), 1)
+    edge = np.array([[1.0, 2.0], [3.0, 1.0]])
+    return [
+        Case((np.array([[1.0, 0.0], [2.0, 0.0]]), np.array([[0.0, 3.0], [1.0, 0.0]]), 0.05)),
+        Case((Iu, Iv, 0.04)),
+        Case((edge, 2 * edge, 0.05), about="edge"),
+    ]
+
+
+def _sums(Iu: Array, Iv: Array) -> Array:
+    return np.array([(Iu * Iu).sum(), (Iv * Iv).sum(), (Iu * Iv).sum()])
+
+
+def _det_trace(Iu: Array, Iv: Array) -> tuple[float, float]:
+    uu, vv, uv = _sums(Iu, Iv)
+    return uu * vv - uv**2, uu + vv
+
+
+HARRIS = Exercise(
+    name="harris_measure",
+    chapter=5,
+    title="Is there a corner?",
+    task="Give Harris' measure det M − k (trace M)² of a window, from the gradients Iu and Iv of "
+    "its pixels (both of one shape): M = Σ [Iu², Iu Iv; Iu Iv, Iv²] over the window.",
+    stub='''def my_harris_measure(Iu, Iv, k):
+    """Give Harris' measure of the window, a number."""
+    ...''',
+    hints=(
+        "Multiply pixel by pixel first, then sum: three sums, Σ Iu², Σ Iv² and Σ Iu Iv.",
+        "det M = Σ Iu² Σ Iv² − (Σ Iu Iv)².",
+        "trace M = Σ Iu² + Σ Iv².",
+    ),
+    cases=_windows,
+    properties=(
+        Property("A corner gets det M − k (trace M)²."),
+        Property(
+            "An edge, where all gradients are parallel, gets a negative number.",
+            lambda measure, _: bool(measure < 0),
+            about="edge",
+        ),
+        Property("It gets exactly −k (trace M)², as det M is 0 there.", about="edge"),
+    ),
+    misconceptions=(
+        Misconception(
+            "sums before products",
+            "You summed the gradients before multiplying. Gradients of opposite sign then cancel; "
+            "multiply pixel by pixel, then sum.",
+            lambda Iu, Iv, k: harris_measure(Iu.sum(keepdims=True), Iv.sum(keepdims=True), k),
+        ),
+        Misconception(
+            "trace not squared",
+            "det M grows with the fourth power of the gradients, so the trace is squared.",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - k * _det_trace(Iu, Iv)[1],
+        ),
+        Misconception(
+            "trace added",
+            "The term k (trace M)² is subtracted: it punishes edges.",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] + k * _det_trace(Iu, Iv)[1] ** 2,
+        ),
+        Misconception(
+            "k left out",
+            "k is missing before (trace M)²; without it no corner ever gets a positive measure.",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - _det_trace(Iu, Iv)[1] ** 2,
+        ),
+        Misconception(
+            "mixed sum left out",
+            "The determinant is Σ Iu² Σ Iv² − (Σ Iu Iv)²: without the last term slanted edges "
+            "pass for corners.",
+            lambda Iu, Iv, k: np.prod(_sums(Iu, Iv)[:2]) - k * _det_trace(Iu, Iv)[1] ** 2,
+        ),
+        Misconception(
+            "mixed sum not squared",
+            "The determinant has the square of Σ Iu Iv.",
+            lambda Iu, Iv, k: (
+                np.prod(_sums(Iu, Iv)[:2]) - _sums(Iu, Iv)[2] - k * _det_trace(Iu, Iv)[1] ** 2
+            ),
+        ),
+        Misconception(
+            "determinant only",
+            "det M is a measure too, but large on strong edges with a little noise; subtract "
+            "k (trace M)².",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0],
+        ),
+    ),
+    reference=harris_measure,
+    concepts=("40", "E19"),
+)

@@ -1,0 +1,76 @@
+"""Which boards know their origin."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def knows_its_origin(columns: Array, rows: Array) -> Array:
+    """Tell for boards of so many inner corners whether half a turn changes how they look."""
+    return np.asarray((columns + rows) % 2 == 1, dtype=float)
+
+
+def _boards(_: Rng) -> list[Case]:
+    counts = [(9, 6), (8, 6), (7, 7), (5, 4), (7, 5), (3, 2), (8, 8), (12, 9), (4, 9), (11, 3)]
+    columns, rows = np.array(counts).T
+    return [Case((columns[:4], rows[:4])), Case((columns, rows))]
+
+
+ORIGIN = Exercise(
+    name="knows_its_origin",
+    chapter=5,
+    title="Which boards know their origin?",
+    task="For boards with `columns` × `rows` inner corners, arrays (n,) of whole numbers, tell "
+    "whether the board looks different after half a turn, so that a picture tells where its first "
+    "corner is: True or False, shape (n,).",
+    stub='''def my_knows_its_origin(columns, rows):
+    """Tell for each board whether half a turn changes how it looks."""
+    ...''',
+    hints=(
+        "Draw 2 × 2, 3 × 2 and 3 × 3 inner corners, and turn the paper.",
+        "Half a turn exchanges opposite corner squares. When do they have one colour?",
+        "A board has (columns + 1) × (rows + 1) squares; colours alternate.",
+    ),
+    cases=_boards,
+    properties=(Property("It is so exactly if one count is even and the other odd."),),
+    misconceptions=(
+        Misconception(
+            "different counts",
+            "That is what the notes ask for, and it is not enough: 8 × 6 differ, and the board "
+            "looks the same after half a turn. What must differ is the parity.",
+            lambda c, r: c != r,
+        ),
+        Misconception(
+            "the other way round",
+            "These are the boards that look the same after half a turn.",
+            lambda c, r: (c + r) % 2 == 0,
+        ),
+        Misconception(
+            "one count even",
+            "One even count is not enough: with two even ones the board looks the same after "
+            "half a turn.",
+            lambda c, r: (c * r) % 2 == 0,
+        ),
+        Misconception(
+            "one count odd",
+            "One odd count is not enough: with two odd ones the board looks the same after half "
+            "a turn.",
+            lambda c, r: (c % 2 == 1) | (r % 2 == 1),
+        ),
+        Misconception(
+            "no common divisor",
+            "What the counts share does not matter, 9 × 6 is fine although both are divisible by "
+            "3. Only even or odd counts.",
+            lambda c, r: np.gcd(c, r) == 1,
+        ),
+        Misconception(
+            "counts that differ by one",
+            "Counts one apart do, but so does every odd difference.",
+            lambda c, r: np.abs(c - r) == 1,
+        ),
+    ),
+    reference=knows_its_origin,
+    concepts=("39", "k", "E18"),
+    sources=(knows_its_origin,),
+)

@@ -1,0 +1,117 @@
+"""The rows of the DLT."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.homography import design_matrix
+from cvnotes.learn.cameras import (
+    rounded,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective import to_homogeneous
+
+
+def _pairs(rng: Rng) -> list[Case]:
+    src, dst = rounded(rng.uniform(0, 9, (3, 2)), 1), rounded(rng.uniform(2, 30, (3, 2)), 1)
+    return [Case((np.array([[1.0, 2.0]]), np.array([[3.0, 4.0]]))), Case((src, dst))]
+
+
+def same_row_space(a: Array, b: Array, tolerance: float) -> bool:
+    """Tell whether two systems have the same solutions: their rows span the same space."""
+    if a.shape != b.shape or not np.isfinite(a).all():
+        return False
+    scale = np.abs(b).max(axis=0) + 1e-9
+    spaces = []
+    for x in (a, b):
+        _, s, Vt = np.linalg.svd(x / scale, full_matrices=False)
+        Vt = Vt[s > 1e-9 * s[0]]
+        spaces.append(Vt.T @ Vt)
+    return bool(np.abs(spaces[0] - spaces[1]).max() <= 10 * tolerance)
+
+
+def _design(src: Array, dst: Array, lift: float = 1.0, last: float = 1.0) -> Array:
+    """Give the design matrix, with a factor on its last block and another 1 in the points."""
+    D = design_matrix(src, dst)
+    D[:, 6:] *= last
+    D[:, [2, 5, 8]] *= lift
+    return D
+
+
+def _affine_rows(src: Array, dst: Array) -> Array:
+    D = design_matrix(src, dst)
+    D[:, 6:8] = 0
+    return D
+
+
+def _third_rows(src: Array, dst: Array) -> Array:
+    W = to_homogeneous(src)
+    return np.hstack([-dst[:, 1:] * W, dst[:, :1] * W, 0 * W])
+
+
+DESIGN = Exercise(
+    name="design_matrix",
+    chapter=6,
+    title="The rows of the DLT",
+    task="Give the matrix D, shape (2n, 9), of the equations D h = 0 that n point pairs src and "
+    "dst, shape (n, 2) each, put on h, the rows of H stacked: two rows for each pair, in any "
+    "order and of any scale.",
+    stub='''def my_design_matrix(src, dst):
+    """Give D (2n, 9) of D h = 0 for dst ≈ H src."""
+    ...''',
+    hints=(
+        "m̃ × H W̃' = 0 has three rows for each pair; two of them suffice.",
+        "With W̃' = (x, y, 1) and m = (u, v): [0 0 0, −W̃', v W̃'] and [W̃', 0 0 0, −u W̃'].",
+        "np.hstack joins blocks of columns, np.vstack the two sets of rows.",
+    ),
+    cases=_pairs,
+    properties=(
+        Property("The true h of these pairs solves D h = 0, and nothing else is asked of it."),
+    ),
+    misconceptions=(
+        Misconception(
+            "columns of H stacked",
+            "Your h has the columns of H stacked; the notes stack its rows: h = (h1; h2; h3).",
+            lambda src, dst: design_matrix(src, dst)[:, [0, 3, 6, 1, 4, 7, 2, 5, 8]],
+        ),
+        Misconception(
+            "src and dst exchanged",
+            "Your equations are those of dst → src: W̃' is the point of src, m that of dst.",
+            lambda src, dst: design_matrix(dst, src),
+        ),
+        Misconception(
+            "sign of the last block",
+            "The last block has the wrong sign: u (h3·W̃') = h1·W̃' gives W̃' and −u W̃'.",
+            lambda src, dst: _design(src, dst, last=-1.0),
+        ),
+        Misconception(
+            "u and v exchanged",
+            "u and v are exchanged: u goes with the first row of H, v with the second.",
+            lambda src, dst: design_matrix(src, dst[:, ::-1]),
+        ),
+        Misconception(
+            "points lifted with 0",
+            "W̃' = (x, y, 1): the third coordinate of a point of the plane is 1, not 0.",
+            lambda src, dst: _design(src, dst, lift=0.0),
+        ),
+        Misconception(
+            "denominator left out",
+            "Your equations say u = h1·W̃', as for an affine map; the pixel is "
+            "h1·W̃' divided by h3·W̃'.",
+            lambda src, dst: _affine_rows(src, dst),
+        ),
+        Misconception(
+            "one row for each pair",
+            "One row for each pair does not fix both u and v; two of the three are independent.",
+            lambda src, dst: design_matrix(src, dst)[1::2],
+        ),
+        Misconception(
+            "all three rows",
+            "All three rows of the cross product are true, but the third follows from the others; "
+            "asked are two for each pair.",
+            lambda src, dst: np.vstack([design_matrix(src, dst), _third_rows(src, dst)]),
+        ),
+    ),
+    reference=design_matrix,
+    same=same_row_space,
+    concepts=("45", "46", "E24"),
+)

@@ -1,0 +1,135 @@
+"""The direct linear transform."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.homography import design_matrix, dlt, geometric_error, normaliser
+from cvnotes.learn.cameras import (
+    SQUARE,
+    SQUARE_SEEN,
+    affine_fit,
+    board_grid,
+    some_homography,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng, up_to_scale
+from cvnotes.projective import apply
+
+
+def _views(rng: Rng) -> list[Case]:
+    cases = [Case((SQUARE, SQUARE_SEEN))]
+    for n, noise, about in ((12, 0.0, ""), (12, 0.3, "noisy")):
+        src = board_grid()[:n]
+        H = some_homography(rng)
+        dst = apply(H, src) + noise * rng.standard_normal((n, 2))
+        cases.append(Case((src, np.round(dst, 2 if noise else 9)), about=about))
+    return cases
+
+
+def _svd(D: Array) -> tuple[Array, Array, Array]:
+    return np.linalg.svd(D)
+
+
+def _hat(src: Array, dst: Array) -> tuple[Array, Array, Array]:
+    """Give the H of normalised points, and both normalisers."""
+    N1, N2 = normaliser(src), normaliser(dst)
+    return dlt(apply(N1, src), apply(N2, dst)), N1, N2
+
+
+def _undone_wrongly(src: Array, dst: Array, *, order: bool) -> Array:
+    H, N1, N2 = _hat(src, dst)
+    return np.linalg.inv(N1) @ H @ N2 if order else N2 @ H @ np.linalg.inv(N1)
+
+
+def _fits(H: Array, case: Case) -> bool:
+    return bool((geometric_error(H, *case.args) < 1e-4).all())
+
+
+def _fits_noise(H: Array, case: Case) -> bool:
+    mine, best = (np.sqrt((geometric_error(X, *case.args) ** 2).mean()) for X in (H, case.right))
+    return bool(mine <= 1.5 * best)
+
+
+DLT = Exercise(
+    name="dlt",
+    chapter=6,
+    title="The direct linear transform",
+    task="Estimate the homography H (3, 3), of any scale and sign, with dst ≈ H src from n ≥ 4 "
+    "point pairs, shape (n, 2) each.",
+    stub='''def my_dlt(src, dst):
+    """Give H (3, 3) with dst ≈ H src."""
+    ...''',
+    hints=(
+        "Stack two rows for each pair to D h = 0, as in design_matrix.",
+        "h is the right singular vector of D with the smallest singular value: the last row of "
+        "Vt in U, s, Vt = np.linalg.svd(D).",
+        "It holds the rows of H: h.reshape(3, 3). Normalise before and undo it after: "
+        "H = N2⁻¹ Ĥ N1.",
+    ),
+    cases=_views,
+    properties=(
+        Property("On exact data H takes every point of src to its partner in dst.", _fits),
+        Property("On exact data H is the map that made the data, up to scale and sign."),
+        Property("With noise the errors stay as small as the noise.", _fits_noise, about="noisy"),
+    ),
+    misconceptions=(
+        Misconception(
+            "src and dst exchanged",
+            "Your H maps dst to src: the picture to the board. Did you exchange src and dst?",
+            lambda src, dst: dlt(dst, src),
+        ),
+        Misconception(
+            "transposed",
+            "Your H is the transpose of the right one: h holds the rows of H one after the other.",
+            lambda src, dst: dlt(src, dst).T,
+        ),
+        Misconception(
+            "a column of Vt",
+            "You took the last column of Vt. np.linalg.svd gives Vᵀ: its rows are the singular "
+            "vectors, so take Vt[-1].",
+            lambda src, dst: _svd(design_matrix(src, dst))[2][:, -1].reshape(3, 3),
+        ),
+        Misconception(
+            "the largest singular value",
+            "You took the first singular vector, for which ‖D h‖ is largest. The smallest comes "
+            "last.",
+            lambda src, dst: _svd(design_matrix(src, dst))[2][0].reshape(3, 3),
+        ),
+        Misconception(
+            "normalisation not undone",
+            "That is the homography between normalised points: H = N2⁻¹ Ĥ N1 brings it back.",
+            lambda src, dst: _hat(src, dst)[0],
+        ),
+        Misconception(
+            "normalisers exchanged",
+            "You undid the normalisation with N1⁻¹ Ĥ N2. A point of src enters at the right: "
+            "first N1, then Ĥ, then N2⁻¹.",
+            lambda src, dst: _undone_wrongly(src, dst, order=True),
+        ),
+        Misconception(
+            "normalisers inverted",
+            "You have N2 Ĥ N1⁻¹: points of src have to be normalised on the way in (N1), and "
+            "those of dst brought back on the way out (N2⁻¹).",
+            lambda src, dst: _undone_wrongly(src, dst, order=False),
+        ),
+        Misconception(
+            "u and v exchanged",
+            "Your H gives (v, u): the first row of H belongs to u.",
+            lambda src, dst: dlt(src, dst[:, ::-1]),
+        ),
+        Misconception(
+            "x and y exchanged",
+            "Your H expects (y, x): its first column belongs to x.",
+            lambda src, dst: dlt(src[:, ::-1], dst),
+        ),
+        Misconception(
+            "an affine map",
+            "The last row of your H is (0, 0, 1): an affine map keeps parallels parallel, which a "
+            "camera does not.",
+            affine_fit,
+        ),
+    ),
+    reference=dlt,
+    same=up_to_scale,
+    concepts=("43", "47", "48", "68", "E26"),
+    sources=(design_matrix, dlt),
+)

@@ -1,0 +1,93 @@
+"""How far off is H."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.homography import geometric_error
+from cvnotes.learn.cameras import (
+    board_grid,
+    rounded,
+    some_factors,
+    some_homography,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective import apply, drop, to_homogeneous
+
+
+def _with_errors(rng: Rng) -> list[Case]:
+    by_hand = np.array([[2.0, 0, 4], [0, 2, 6], [0, 0.5, 2]])
+    src = board_grid()[:7]
+    H = some_homography(rng)
+    dst = rounded(apply(H, src) + rng.uniform(-3, 3, src.shape), 1)
+    return [
+        Case((by_hand, np.array([[1.0, 0.0], [2.0, 4.0]]), np.array([[6.0, 7.0], [2.0, 3.0]]))),
+        Case((H * some_factors(rng, 1)[0], src, dst)),
+    ]
+
+
+def _mapped(H: Array, src: Array) -> Array:
+    return drop(to_homogeneous(src) @ H.T)
+
+
+GEOMETRIC = Exercise(
+    name="geometric_error",
+    chapter=6,
+    title="How far off is H?",
+    task="Give for each pair the distance in pixels between dst (n, 2) and where H (3, 3), of any "
+    "scale, takes src (n, 2): shape (n,).",
+    stub='''def my_geometric_error(H, src, dst):
+    """Give the distances (n,) between dst and the image of src under H."""
+    ...''',
+    hints=(
+        "Lift src, multiply by H, divide by the third coordinate.",
+        "Only then subtract: homogeneous coordinates have no scale of their own.",
+        "np.linalg.norm(…, axis=1) gives one length for each row.",
+    ),
+    cases=_with_errors,
+    properties=(
+        Property("They are distances in the plane of dst, and the scale of H does not matter."),
+    ),
+    misconceptions=(
+        Misconception(
+            "no division",
+            "You subtracted before dividing by the third coordinate, so the scale of H enters.",
+            lambda H, src, dst: np.linalg.norm(dst - (to_homogeneous(src) @ H.T)[:, :2], axis=1),
+        ),
+        Misconception(
+            "difference of homogeneous vectors",
+            "That is the difference the notes print, of vectors with three coordinates. Their "
+            "scales are arbitrary: divide both by their last coordinate first.",
+            lambda H, src, dst: np.linalg.norm(
+                to_homogeneous(dst) - to_homogeneous(src) @ H.T, axis=1
+            ),
+        ),
+        Misconception(
+            "squared",
+            "These are the squares of the distances: take the root.",
+            lambda H, src, dst: geometric_error(H, src, dst) ** 2,
+        ),
+        Misconception(
+            "H transposed",
+            "You applied Hᵀ: rows of points are multiplied by H.T from the right.",
+            lambda H, src, dst: np.linalg.norm(dst - _mapped(H.T, src), axis=1),
+        ),
+        Misconception(
+            "sum of absolute differences",
+            "You added |Δu| and |Δv|; the distance is √(Δu² + Δv²).",
+            lambda H, src, dst: np.abs(dst - _mapped(H, src)).sum(1),
+        ),
+        Misconception(
+            "error in the other plane",
+            "That is the error in the plane of src. Corners are measured in the picture, so the "
+            "distance belongs there.",
+            lambda H, src, dst: np.linalg.norm(src - _mapped(np.linalg.inv(H), dst), axis=1),
+        ),
+        Misconception(
+            "one number for all",
+            "That is the mean of the distances; asked is one for each pair.",
+            lambda H, src, dst: geometric_error(H, src, dst).mean(),
+        ),
+    ),
+    reference=geometric_error,
+    concepts=("49", "50", "E25"),
+)

@@ -1,0 +1,112 @@
+"""Hartley's normalisation."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.homography import normaliser
+from cvnotes.learn.cameras import (
+    rounded,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, up_to_scale
+from cvnotes.projective import apply
+
+
+def _similarity(s: float | Array, move: Array) -> Array:
+    N = np.diag([*np.broadcast_to(s, 2), 1.0])
+    N[:2, 2] = move
+    return N
+
+
+def _centred(x: Array) -> tuple[Array, float]:
+    c = x.mean(0)
+    return c, float(np.linalg.norm(x - c, axis=1).mean())
+
+
+def _mean_distance(N: Array, case: Case) -> float:
+    return float(np.linalg.norm(apply(N, case.args[0]), axis=1).mean())
+
+
+def _scaled_by(x: Array, distance: float) -> Array:
+    s = np.sqrt(2) / distance
+    return _similarity(s, -s * x.mean(0))
+
+
+NORMALISER = Exercise(
+    name="normaliser",
+    chapter=6,
+    title="Hartley's normalisation",
+    task="Give the matrix N (3, 3), a shift and a scale that is the same in both directions, that "
+    "moves points x (n, 2) so that their centroid is 0 and their mean distance from it √2.",
+    stub='''def my_normaliser(x):
+    """Give N (3, 3): N x has centroid 0 and mean distance √2 from it."""
+    ...''',
+    hints=(
+        "First the centroid c = x.mean(axis=0), then the distances ‖x − c‖ and their mean d.",
+        "x ↦ s (x − c) with s = √2 / d.",
+        "As a matrix: [[s, 0, −s c_x], [0, s, −s c_y], [0, 0, 1]].",
+    ),
+    cases=lambda rng: [
+        Case((np.array([[1.0, 2.0], [5.0, 2.0], [1.0, 8.0]]),)),
+        Case((rounded(rng.uniform([100, 50], [500, 300], (7, 2)), 1),)),
+    ],
+    properties=(
+        Property(
+            "The centroid moves to 0.",
+            lambda N, c: np.allclose(apply(N, c.args[0]).mean(0), 0, atol=1e-5),
+        ),
+        Property(
+            "The mean distance from it becomes √2.",
+            lambda N, c: abs(_mean_distance(N, c) - np.sqrt(2)) < 1e-5,
+        ),
+        Property("Both directions are scaled alike, and nothing is turned."),
+    ),
+    misconceptions=(
+        Misconception(
+            "mean distance 1",
+            "The mean distance became 1; asked is √2, so that a typical point is (1, 1).",
+            lambda x: _similarity(1 / _centred(x)[1], -_centred(x)[0] / _centred(x)[1]),
+        ),
+        Misconception(
+            "each direction by itself",
+            "You divided each direction by its own standard deviation; one scale for both is "
+            "asked, so that circles stay circles.",
+            lambda x: _similarity(1 / x.std(0), -x.mean(0) / x.std(0)),
+        ),
+        Misconception(
+            "root mean square distance",
+            "You took the root of the mean squared distance; asked is the mean distance.",
+            lambda x: _scaled_by(x, float(np.sqrt(((x - x.mean(0)) ** 2).sum(1).mean()))),
+        ),
+        Misconception(
+            "shift not scaled",
+            "N first scales and then shifts by what stands in its last column, so the centroid in "
+            "there has to be scaled too: −s c.",
+            lambda x: _similarity(np.sqrt(2) / _centred(x)[1], -_centred(x)[0]),
+        ),
+        Misconception(
+            "shift in the wrong direction",
+            "Your shift moves the centroid away from 0: its sign is wrong.",
+            lambda x: _similarity(
+                np.sqrt(2) / _centred(x)[1], np.sqrt(2) / _centred(x)[1] * _centred(x)[0]
+            ),
+        ),
+        Misconception(
+            "the inverse",
+            "That is N⁻¹: it brings normalised points back.",
+            lambda x: np.linalg.inv(normaliser(x)),
+        ),
+        Misconception(
+            "distance from the origin",
+            "You took distances from (0, 0); take them from the centroid.",
+            lambda x: _scaled_by(x, float(np.linalg.norm(x, axis=1).mean())),
+        ),
+        Misconception(
+            "not centred",
+            "The scale is right, but the points are not shifted to their centroid.",
+            lambda x: _similarity(np.sqrt(2) / _centred(x)[1], np.zeros(2)),
+        ),
+    ),
+    reference=normaliser,
+    same=up_to_scale,
+    concepts=("a", "E26"),
+)

@@ -1,0 +1,129 @@
+"""The camera in B."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    some_intrinsics,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.zhang import intrinsics_from_b
+
+
+def A_from_b(b: Array) -> Array:
+    """Give A (3, 3) from b (6,) of any scale and sign."""
+    return intrinsics_from_b(b * np.sign(b[0]))
+
+
+def _b_of(A: Array, factor: float) -> Array:
+    B = np.linalg.inv(A @ A.T) * factor
+    return np.asarray(B[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]])
+
+
+def _bs(rng: Rng) -> list[Case]:
+    A = some_intrinsics(rng, skew=True)
+    factor = float(rng.uniform(2, 9))
+    by_hand = np.array([[2.0, 0.5, 1], [0, 4, 3], [0, 0, 1]])
+    return [
+        Case((_b_of(by_hand, 64.0),), truth=by_hand),
+        Case((_b_of(A, factor),), truth=A),
+        Case((_b_of(A, -factor),), truth=A, about="negative"),
+    ]
+
+
+def _B(b: Array) -> Array:
+    B11, B12, B22, B13, B23, B33 = b
+    return np.array([[B11, B12, B13], [B12, B22, B23], [B13, B23, B33]])
+
+
+def _formulas(b: Array, *, wrong_u0: bool = False, scale: bool = True) -> Array:
+    """Give A by Zhang's formulas, with one of the slips they are printed with."""
+    B11, B12, B22, B13, B23, B33 = b
+    v0 = (B12 * B13 - B11 * B23) / (B11 * B22 - B12**2)
+    s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11 if scale else 1.0
+    alpha, beta = np.sqrt(s / B11), np.sqrt(s * B11 / (B11 * B22 - B12**2))
+    gamma = -B12 * alpha**2 * beta / s
+    u0 = gamma * v0 / (alpha if wrong_u0 else beta) - B13 * alpha**2 / s
+    return np.array([[alpha, gamma, u0], [0, beta, v0], [0, 0, 1]])
+
+
+def _last_one(M: npt.ArrayLike) -> Array:
+    M = np.asarray(M, dtype=float)
+    return np.asarray(M / M[2, 2])
+
+
+def _without_skew(b: Array) -> Array:
+    A = A_from_b(b)
+    s = b[5] - (b[3] ** 2 + A[1, 2] * (b[1] * b[3] - b[0] * b[4])) / b[0]
+    A[0, 1], A[0, 2] = 0.0, -b[3] * A[0, 0] ** 2 / s
+    return A
+
+
+A_FROM_B = Exercise(
+    name="A_from_b",
+    chapter=7,
+    title="The camera in B",
+    task="Give A (3, 3), with skew, from b = (B11, B12, B22, B13, B23, B33) of any scale and sign, "
+    "where B ∝ A⁻ᵀ A⁻¹. The last entry of A is 1.",
+    stub='''def my_A_from_b(b):
+    """Give A (3, 3) from b (6,), of any scale and sign."""
+    ...''',
+    hints=(
+        "Write B as a matrix first, and give it the sign that makes B11 positive.",
+        "np.linalg.cholesky gives L, lower triangular, with B = L Lᵀ. Compare with A⁻ᵀ A⁻¹.",
+        "So A⁻ᵀ is L up to scale, and A = (L⁻¹)ᵀ, divided by its last entry.",
+    ),
+    cases=_bs,
+    properties=(
+        Property(
+            "A is the camera that b was made of.",
+            lambda A, c: np.allclose(A, c.truth, rtol=1e-5, atol=1e-5 * np.abs(c.truth).max()),
+        ),
+        Property("The sign of b does not matter.", about="negative"),
+    ),
+    misconceptions=(
+        Misconception(
+            "last entry not 1",
+            "Your A is right up to scale: b has an unknown scale, so divide A by its last entry.",
+            lambda b: np.linalg.inv(np.linalg.cholesky(_B(b))).T if b[0] > 0 else None,
+        ),
+        Misconception(
+            "transposed",
+            "Your A is lower triangular. From B = L Lᵀ and B = A⁻ᵀ A⁻¹ follows L = A⁻ᵀ, so A is "
+            "the transpose of L⁻¹.",
+            lambda b: A_from_b(b).T,
+        ),
+        Misconception(
+            "inverse forgotten",
+            "You gave the factor of B itself. B is made of A⁻¹: invert.",
+            lambda b: _last_one(np.linalg.cholesky(_B(b)).T) if b[0] > 0 else None,
+        ),
+        Misconception(
+            "u0 with α for β",
+            "All but u0 is right: u0 = γ v0 / β − B13 α² / s. An α in place of the β is often "
+            "printed.",
+            lambda b: _formulas(b, wrong_u0=True),
+        ),
+        Misconception(
+            "scale taken for 1",
+            "B11 = 1/α_u² holds only if b has the scale of A⁻ᵀ A⁻¹; its scale is unknown and has "
+            "to be found first (s, or λ, in the formulas).",
+            lambda b: _formulas(b, scale=False) if b[0] > 0 else None,
+        ),
+        Misconception(
+            "sign taken for positive",
+            "Right for a b with B11 > 0. A null vector comes with either sign; multiply b by that "
+            "of B11.",
+            lambda b: A_from_b(b) if b[0] > 0 else None,
+        ),
+        Misconception(
+            "skew left out",
+            "All but the skew is as it should be, and u0 suffers from it: γ = −B12 α² β / s.",
+            lambda b: _without_skew(b),
+        ),
+    ),
+    reference=A_from_b,
+    concepts=("56", "59", "E28", "E31"),
+    sources=(intrinsics_from_b,),
+)

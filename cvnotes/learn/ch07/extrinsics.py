@@ -1,0 +1,129 @@
+"""Where the board was."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.camera import intrinsics
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    ABOUT_Y,
+    plane_image,
+    some_factors,
+    some_intrinsics,
+    some_pose,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng, up_to_scale
+from cvnotes.zhang import extrinsics
+
+
+def _posed(rng: Rng) -> list[Case]:
+    A = intrinsics(500.0, 600.0, 300.0, 200.0)
+    cases = [Case((A, plane_image(A, ABOUT_Y, np.array([1.0, 2.0, 10.0]))), truth=None)]
+    A = some_intrinsics(rng)
+    for sign, about in ((1.0, ""), (-1.0, "negative")):
+        factor = sign * abs(some_factors(rng, 1)[0])
+        cases.append(Case((A, factor * plane_image(A, *some_pose(rng))), about=about))
+    return cases
+
+
+def _parts(A: Array, H: Array) -> tuple[Array, Array, Array, float]:
+    """Give λ r1, λ r2, λ T and λ, with the sign that puts the board in front."""
+    rays = np.linalg.inv(A) @ H
+    scale = float(np.linalg.norm(rays[:, 0])) * (1.0 if rays[2, 2] > 0 else -1.0)
+    return rays[:, 0], rays[:, 1], rays[:, 2], scale
+
+
+def _joined(r1: Array, r2: Array, r3: Array, T: Array) -> Array:
+    G = np.eye(4)
+    G[:3] = np.stack([r1, r2, r3, T], axis=1)
+    return G
+
+
+def _G(A: Array, H: Array, *, T_scale: float = 1.0, r3: float = 1.0, sign: bool = True) -> Array:
+    a, b, c, scale = _parts(A, H)
+    if not sign:
+        scale = abs(scale)
+    return _joined(a / scale, b / scale, r3 * np.cross(a, b) / scale**2, c / scale * T_scale)
+
+
+def _is_view(G: Array, case: Case) -> bool:
+    A, H = case.args
+    return up_to_scale(A @ G[:3, [0, 1, 3]], H, 1e-5)
+
+
+def _transposed(G: Array) -> Array:
+    G[:3, :3] = G[:3, :3].T
+    return G
+
+
+EXTRINSICS = Exercise(
+    name="extrinsics",
+    chapter=7,
+    title="Where the board was",
+    task="Give the pose G (4, 4) of the board in the camera's frame from A and the view's "
+    "homography H, of any scale and sign. The board was in front of the camera.",
+    stub='''def my_extrinsics(A, H):
+    """Give G (4, 4), CRF ← board."""
+    ...''',
+    hints=(
+        "A⁻¹ H = λ [r1 r2 T], and r1 and r2 are unit vectors: that gives |λ|.",
+        "Its sign is the one that makes T_z positive.",
+        "r3 = r1 × r2. G has R and T in its first three rows and (0, 0, 0, 1) below.",
+    ),
+    cases=_posed,
+    properties=(
+        Property("A [r1 r2 T] is the homography, up to scale.", _is_view),
+        Property("R is a rotation, and T has the length it has."),
+        Property("A negative scale of H still puts the board in front: T_z > 0.", about="negative"),
+    ),
+    misconceptions=(
+        Misconception(
+            "T not divided",
+            "R is right, but T is still multiplied by λ: all three columns are divided.",
+            lambda A, H: _G(A, H, T_scale=_parts(A, H)[3]),
+        ),
+        Misconception(
+            "λ for 1/λ",
+            "You multiplied T by λ where it is divided. Zhang's λ is the reciprocal of the notes'.",
+            lambda A, H: _G(A, H, T_scale=_parts(A, H)[3] ** 2),
+        ),
+        Misconception(
+            "sign of λ",
+            "Right for a positive scale. With a negative one your board stands behind the camera: "
+            "choose the sign for which T_z > 0.",
+            lambda A, H: _G(A, H, sign=False),
+        ),
+        Misconception(
+            "r3 the wrong way round",
+            "r3 = r1 × r2, in this order; with r2 × r1 the determinant of R is −1, a reflection.",
+            lambda A, H: _G(A, H, r3=-1.0),
+        ),
+        Misconception(
+            "R transposed",
+            "r1, r2 and r3 are the columns of R; you have them as rows.",
+            lambda A, H: _transposed(extrinsics(A, H)),
+        ),
+        Misconception(
+            "A⁻¹ forgotten",
+            "You took r1 and r2 from H itself. H = λ A [r1 r2 T]: multiply by A⁻¹ first.",
+            lambda A, H: _G(np.eye(3), H),
+        ),
+        Misconception(
+            "the way back",
+            "That is the pose of the camera in the board's frame, G⁻¹.",
+            lambda A, H: np.linalg.inv(extrinsics(A, H)),
+        ),
+        Misconception(
+            "r3 the third column",
+            "The third column of A⁻¹ H is λ T, not r3: the board's own z axis is not seen. "
+            "r3 = r1 × r2.",
+            lambda A, H: _joined(
+                *(x / _parts(A, H)[3] for x in (*_parts(A, H)[:3], _parts(A, H)[2]))
+            ),
+        ),
+    ),
+    reference=extrinsics,
+    concepts=("54", "60", "d", "E32"),
+)

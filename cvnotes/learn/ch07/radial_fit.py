@@ -1,0 +1,113 @@
+"""The lens by least squares."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    rounded,
+    some_lens,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.zhang import radial_distortion
+
+
+def radial_fit(xy: Array, xy_lens: Array) -> Array:
+    """Give k (2,) from ideal and observed points (n, 2) of the plane z = 1."""
+    W = np.column_stack([xy, np.zeros(len(xy))])
+    at_one = np.eye(4)
+    at_one[2, 3] = 1
+    return radial_distortion(np.eye(3), at_one, W, xy_lens)
+
+
+def _ideal_and_seen(rng: Rng) -> list[Case]:
+    cases = []
+    for n in (3, 12):
+        k, _ = some_lens(rng)
+        xy = rounded(rng.uniform(-0.5, 0.5, (n, 2)), 2)
+        cases.append(Case((xy, rounded(xy + _bent(xy, xy) @ k, 10)), truth=k))
+    return cases
+
+
+def _bent(xy: Array, radius_of: Array) -> Array:
+    """Give (n, 2, 2): what k1 = 1 and k2 = 1 add to each point."""
+    r2 = (radius_of**2).sum(1)[:, None]
+    return np.stack([xy * r2, xy * r2**2], axis=-1)
+
+
+def _fit(D: Array, d: Array) -> Array:
+    return np.asarray(np.linalg.lstsq(D.reshape(d.size, -1), d.ravel(), rcond=None)[0])
+
+
+def _one_by_one(xy: Array, xy_lens: Array) -> Array:
+    D, d = _bent(xy, xy), xy_lens - xy
+    k1 = _fit(D[..., 0], d)
+    return np.array([*k1, *_fit(D[..., 1], d - D[..., 0] * k1)])
+
+
+RADIAL = Exercise(
+    name="radial_fit",
+    chapter=7,
+    title="The lens by least squares",
+    task="Give k = (k1, k2) from points of the plane z = 1: where they should be (xy, ideal) and "
+    "where they were seen (xy_lens), shape (n, 2) each. No tangential terms.",
+    stub='''def my_radial_fit(xy, xy_lens):
+    """Give k (2,) with xy_lens = (1 + k1 r² + k2 r⁴) xy, by least squares."""
+    ...''',
+    hints=(
+        "xy_lens − xy = (k1 r² + k2 r⁴) xy is linear in k1 and k2.",
+        "Stack it to D k = d with two rows for each point.",
+        "r is the radius of the ideal points, as L(r) was defined. np.linalg.lstsq solves it.",
+    ),
+    cases=_ideal_and_seen,
+    properties=(
+        Property(
+            "On exact data k is the lens that made them.",
+            lambda k, c: np.allclose(k, c.truth, rtol=0, atol=1e-5),
+        ),
+    ),
+    misconceptions=(
+        Misconception(
+            "r of the observed points",
+            "You computed r from the observed points, as the notes print it. L(r) was defined "
+            "with the ideal radius: even exact data give wrong coefficients otherwise.",
+            lambda xy, xy_lens: _fit(_bent(xy, xy_lens), xy_lens - xy),
+        ),
+        Misconception(
+            "ideal and observed exchanged",
+            "You fitted the way back, from observed to ideal points.",
+            lambda xy, xy_lens: _fit(_bent(xy_lens, xy_lens), xy - xy_lens),
+        ),
+        Misconception(
+            "sign",
+            "Your coefficients have the wrong sign: d is observed minus ideal.",
+            lambda xy, xy_lens: -radial_fit(xy, xy_lens),
+        ),
+        Misconception(
+            "k1 and k2 exchanged",
+            "You gave (k2, k1).",
+            lambda xy, xy_lens: radial_fit(xy, xy_lens)[::-1],
+        ),
+        Misconception(
+            "the 1 of L left out",
+            "You fitted xy_lens = (k1 r² + k2 r⁴) xy: L starts with 1, so subtract xy first.",
+            lambda xy, xy_lens: _fit(_bent(xy, xy), xy_lens),
+        ),
+        Misconception(
+            "k1 alone first",
+            "You fitted k1 without k2, and then k2 to what was left. Both share the same points: "
+            "solve for them together.",
+            lambda xy, xy_lens: _one_by_one(xy, xy_lens),
+        ),
+        Misconception(
+            "r for r²",
+            "You used r and r² where L has r² and r⁴.",
+            lambda xy, xy_lens: _fit(
+                np.stack([xy * np.hypot(*xy.T)[:, None], xy * (xy**2).sum(1)[:, None]], -1),
+                xy_lens - xy,
+            ),
+        ),
+    ),
+    reference=radial_fit,
+    concepts=("62", "63", "E34", "E35"),
+    sources=(radial_distortion,),
+)

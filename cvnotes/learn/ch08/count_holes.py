@@ -1,0 +1,95 @@
+"""Holes in a forward warp."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import pixel_centres, rounded
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def count_holes(m: Array, size: tuple[int, int]) -> int:
+    """Count the target pixels to which no source pixel is sent, m (n, 2) being where they land."""
+    return size[0] * size[1] - len(_hit(m, size))
+
+
+def _hit(m: Array, size: tuple[int, int], rounding: np.ufunc = np.rint) -> Array:
+    """Give the target pixels (k, 2) that are hit, each once."""
+    pixels = np.unique(rounding(m), axis=0)
+    inside = (pixels >= 0).all(1) & (pixels < size).all(1)
+    return np.asarray(pixels[inside])
+
+
+def _landings(rng: Rng) -> list[Case]:
+    by_hand = np.array([[0.2, 0.1], [0.9, 0.0], [1.1, 0.2], [2.6, 1.2], [0.8, 1.1]])
+    grid = pixel_centres((8, 6)) * 1.3 - 1.0
+    moved = rounded(grid + rng.uniform(-0.9, 0.9, grid.shape))
+    moved[np.abs(moved % 1 - 0.5) < 0.02] += 0.05
+    return [Case((by_hand, (3, 2))), Case((moved, (10, 7)))]
+
+
+def _landed_inside(m: Array, size: tuple[int, int]) -> int:
+    pixels = np.rint(m)
+    return int(((pixels >= 0).all(1) & (pixels < size).all(1)).sum())
+
+
+HOLES = Exercise(
+    name="count_holes",
+    chapter=8,
+    title="Holes in a forward warp",
+    task="A forward warp sends source pixels to positions m (n, 2) in the target, where each "
+    "colours the nearest pixel. Count the pixels of the target, of size (width, height), that "
+    "stay empty. Positions outside of the target colour nothing.",
+    stub='''def my_count_holes(m, size):
+    """Count the target pixels that receive no source pixel."""
+    ...''',
+    hints=(
+        "Round both coordinates, and keep those inside of the target.",
+        "Make an array of zeros, shape (height, width), and set the pixels that are hit to 1.",
+        "Several may hit the same pixel: count what is still 0 at the end.",
+    ),
+    cases=_landings,
+    properties=(Property("It is the number of target pixels that none is nearest to."),),
+    misconceptions=(
+        Misconception(
+            "pixels hit",
+            "That is how many pixels are coloured; the holes are the others.",
+            lambda m, size: len(_hit(m, size)),
+        ),
+        Misconception(
+            "folds not considered",
+            "You subtracted the number of source pixels that land inside. Several of them may "
+            "land on one pixel (a fold), which is then coloured once.",
+            lambda m, size: size[0] * size[1] - _landed_inside(m, size),
+        ),
+        Misconception(
+            "folds counted",
+            "That is how many source pixels land where another one has landed already: folds, "
+            "not holes.",
+            lambda m, size: _landed_inside(m, size) - len(_hit(m, size)),
+        ),
+        Misconception(
+            "floored, not rounded",
+            "You cut the decimals off; the nearest pixel is found by rounding.",
+            lambda m, size: size[0] * size[1] - len(_hit(m, size, np.floor)),
+        ),
+        Misconception(
+            "positions outside counted",
+            "You counted positions outside of the target as if they coloured a pixel of it.",
+            lambda m, size: size[0] * size[1] - len(np.unique(np.rint(m), axis=0)),
+        ),
+        Misconception(
+            "n subtracted",
+            "Pixels of the target minus pixels of the source: but some land outside, and some on "
+            "the same pixel.",
+            lambda m, size: size[0] * size[1] - len(m),
+        ),
+        Misconception(
+            "size exchanged",
+            "size is (width, height): u goes with the width, size[0].",
+            lambda m, size: count_holes(m, size[::-1]),
+        ),
+    ),
+    reference=count_holes,
+    concepts=("71", "72"),
+    sources=(count_holes, _hit),
+)

@@ -1,0 +1,84 @@
+"""Depth from two pictures."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import rounded
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def depth(alpha: float, b: float, u_left: Array, u_right: Array) -> Array:
+    """Give the depths (n,) from columns in the rectified left and right pictures."""
+    return np.asarray(alpha * b / (u_left - u_right))
+
+
+def _columns(rng: Rng) -> list[Case]:
+    Z = rng.uniform(400, 3000, 5)
+    u = rounded(rng.uniform(200, 600, 5), 1)
+    return [
+        Case((500.0, 100.0, np.array([300.0, 320.0]), np.array([250.0, 220.0]))),
+        Case((800.0, 120.0, u, rounded(u - 800 * 120 / Z, 1))),
+        Case((500.0, 100.0, np.array([300.0]), np.array([300.0])), about="infinity"),
+    ]
+
+
+DEPTH = Exercise(
+    name="depth",
+    chapter=8,
+    title="Depth from two pictures",
+    task="Two rectified cameras with the focal length alpha, in pixels, stand b millimetres "
+    "apart. Give the depth (n,) in millimetres of points seen in columns u_left and u_right, "
+    "shape (n,) each; np.inf where both columns are the same.",
+    stub='''def my_depth(alpha, b, u_left, u_right):
+    """Give the depths (n,) in millimetres."""
+    ...''',
+    hints=(
+        "The disparity d = u_left − u_right is positive: nearer points lie more to the left in "
+        "the right picture.",
+        "Similar triangles: d / alpha = b / Z.",
+        "With NumPy arrays x / 0 is inf, by itself.",
+    ),
+    cases=_columns,
+    properties=(
+        Property("Near points have large disparities: Z d = α b."),
+        Property("Without disparity a point is infinitely far.", about="infinity"),
+    ),
+    misconceptions=(
+        Misconception(
+            "sign of the disparity",
+            "Your depths are negative: d = u_left − u_right.",
+            lambda alpha, b, left, right: alpha * b / (right - left),
+        ),
+        Misconception(
+            "upside down",
+            "You gave d / (α b): larger disparities mean nearer points, Z = α b / d.",
+            lambda alpha, b, left, right: (left - right) / (alpha * b),
+        ),
+        Misconception(
+            "focal length left out",
+            "b / d has no unit of length yet: the disparity is in pixels, and so is α.",
+            lambda alpha, b, left, right: b / (left - right),
+        ),
+        Misconception(
+            "baseline left out",
+            "α / d is the depth in baselines: multiply by b.",
+            lambda alpha, b, left, right: alpha / (left - right),
+        ),
+        Misconception(
+            "half the baseline",
+            "You measured from the middle between the cameras; the full baseline goes with the "
+            "full disparity.",
+            lambda alpha, b, left, right: alpha * b / 2 / (left - right),
+        ),
+        Misconception(
+            "proportional to the disparity",
+            "You have α b d: depth falls with the disparity.",
+            lambda alpha, b, left, right: alpha * b * (left - right),
+        ),
+    ),
+    reference=depth,
+    concepts=("70",),
+)

@@ -1,0 +1,111 @@
+"""Two cameras side by side."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import rounded, some_rotation
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def rectifying_rotation(R: Array, left: Array, right: Array) -> Array:
+    """Give the rotation CRF ← WRF that both cameras of a pair are turned to."""
+    x = _unit(right - left)
+    y = _unit(np.cross(R[2], x))
+    return np.array([x, y, np.cross(x, y)])
+
+
+def _unit(x: Array) -> Array:
+    return np.asarray(x / np.linalg.norm(x))
+
+
+def _stereo_pairs(rng: Rng) -> list[Case]:
+    R = some_rotation(rng)
+    left = rounded(rng.uniform(-50, 50, 3), 1)
+    right = rounded(left + R.T @ [100.0, *rng.uniform(-8, 8, 2)], 1)
+    return [Case((np.eye(3), np.zeros(3), np.array([3.0, 0.0, 4.0]))), Case((R, left, right))]
+
+
+def _unscaled(R: Array, x: Array) -> Array:
+    y = np.cross(R[2], x)
+    return np.array([x, y, np.cross(x, y)])
+
+
+RECTIFY = Exercise(
+    name="rectifying_rotation",
+    chapter=8,
+    title="Two cameras side by side",
+    task="To rectify a stereo pair both cameras are turned to one rotation, CRF ← WRF, whose x "
+    "axis leads from the left camera's centre to the right one's; its z axis is as near as that "
+    "allows to the left camera's. Give it (3, 3) from the left camera's R and the two centres.",
+    stub='''def my_rectifying_rotation(R, left, right):
+    """Give the common rotation (3, 3), CRF ← WRF; left and right are centres (3,)."""
+    ...''',
+    hints=(
+        "The rows of a rotation CRF ← WRF are the camera's axes, seen in the world.",
+        "First row: the unit vector from left to right. The old z axis is R[2].",
+        "y = z_old × x, scaled to length 1; then z = x × y.",
+    ),
+    cases=_stereo_pairs,
+    properties=(
+        Property(
+            "It is a rotation.",
+            lambda R, _: np.allclose(R @ R.T, np.eye(3), atol=1e-5) and np.linalg.det(R) > 0,
+        ),
+        Property(
+            "The right camera lies on the left one's x axis.",
+            lambda R, c: np.allclose(
+                R @ _unit(c.args[2] - c.args[1]), [1, 0, 0], rtol=0, atol=1e-5
+            ),
+        ),
+        Property("It looks as nearly as it can where the left camera looked."),
+    ),
+    misconceptions=(
+        Misconception(
+            "axes as columns",
+            "You wrote the axes as columns, which is the rotation WRF ← CRF: transpose it.",
+            lambda R, left, right: rectifying_rotation(R, left, right).T,
+        ),
+        Misconception(
+            "from right to left",
+            "Your x axis leads from the right camera to the left one, so that the pictures stand "
+            "on their heads.",
+            lambda R, left, right: rectifying_rotation(R, right, left),
+        ),
+        Misconception(
+            "z axis kept",
+            "You kept the old z axis, which need not be perpendicular to the baseline: that is no "
+            "rotation. Finish with z = x × y.",
+            lambda R, left, right: np.array(
+                [
+                    *rectifying_rotation(R, left, right)[:2],
+                    R[2],
+                ]
+            ),
+        ),
+        Misconception(
+            "y axis not of length 1",
+            "z_old × x is shorter than 1 unless both are perpendicular: scale it.",
+            lambda R, left, right: _unscaled(R, _unit(right - left)),
+        ),
+        Misconception(
+            "left-handed",
+            "Your z axis points backwards: z = x × y, in this order.",
+            lambda R, left, right: rectifying_rotation(R, left, right) * [[1], [1], [-1]],
+        ),
+        Misconception(
+            "y the wrong way round",
+            "Your y axis points up: y = z_old × x, in this order.",
+            lambda R, left, right: rectifying_rotation(R, left, right) * [[1], [-1], [-1]],
+        ),
+        Misconception(
+            "nothing turned",
+            "That is the left camera's own rotation; its x axis need not lie along the baseline.",
+            lambda R, left, right: R,
+        ),
+    ),
+    reference=rectifying_rotation,
+    concepts=("70", "j"),
+)

@@ -1,0 +1,115 @@
+"""The map that straightens a photograph."""
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import pixel_centres, some_lens
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.lens import Lens
+
+
+def undistortion_map(A: Array, k: Array, size: tuple[int, int]) -> Array:
+    """Give where in the photograph to look up each pixel, (height, width, 2)."""
+    camera = Camera(A, lens=Lens(tuple(k)), size=size)
+    ideal = Camera(A).ideal(pixel_centres(size))
+    rays = np.column_stack([ideal, np.ones(len(ideal))])
+    return camera.project(rays).reshape(size[1], size[0], 2)
+
+
+def _small_cameras(rng: Rng) -> list[Case]:
+    A = np.array([[4.0, 0, 1.5], [0, 5, 1], [0, 0, 1]])
+    k, _ = some_lens(rng)
+    other = np.array([[12.0, 0, 4.2], [0, 13.0, 2.7], [0, 0, 1]])
+    return [Case((A, np.array([-0.2, 0.05]), (4, 3))), Case((other, k, (10, 7)))]
+
+
+def _moved(A: Array, k: Array, size: tuple[int, int], *, radius: str = "ideal") -> Array:
+    """Move each pixel away from the piercing point, by L of a radius that may be wrong."""
+    m = pixel_centres(size)
+    offset = m - (0 if radius == "from pixel 0" else A[:2, 2])
+    r2 = ((offset / (1 if radius == "pixels" else A[[0, 1], [0, 1]])) ** 2).sum(1)[:, None]
+    moved = offset * (1 + k[0] * r2 + k[1] * r2**2)
+    out = moved + (0 if radius == "from pixel 0" else A[:2, 2])
+    return np.asarray(out.reshape(size[1], size[0], 2))
+
+
+def _undone(A: Array, k: Array, size: tuple[int, int]) -> Array:
+    ideal = Camera(A, lens=Lens(tuple(k))).ideal(pixel_centres(size))
+    return (ideal @ A[:2, :2].T + A[:2, 2]).reshape(size[1], size[0], 2)
+
+
+def _at_piercing_point(m: Array, case: Case) -> float:
+    """Give by how much the map moves the pixel nearest to the piercing point, minus what it may."""
+    u, v = np.round(case.args[0][:2, 2]).astype(int)
+    return float(np.linalg.norm(m[v, u] - case.right[v, u]))
+
+
+UNDISTORTION = Exercise(
+    name="undistortion_map",
+    chapter=8,
+    title="The map that straightens a photograph",
+    task="For each pixel of the straightened picture, of size (width, height), give the position "
+    "(u, v) in the photograph at which it is to be looked up: shape (height, width, 2). The lens "
+    "has k = (k1, k2), and both pictures share A, which has no skew.",
+    stub='''def my_undistortion_map(A, k, size):
+    """Give the position in the photograph for each pixel, (height, width, 2)."""
+    ...''',
+    hints=(
+        "Backwards: the target is the ideal picture, the source is the distorted one. So the way "
+        "leads from ideal to distorted, and nothing has to be inverted.",
+        "x = (u − u0) / α_u, y = (v − v0) / α_v; then L(r); then back to pixels.",
+        "u' = u + (k1 r² + k2 r⁴)(u − u0), with r² = x² + y², and so for v.",
+    ),
+    cases=_small_cameras,
+    properties=(
+        Property(
+            "The piercing point stays where it is, as nothing is distorted there.",
+            lambda m, c: abs(_at_piercing_point(m, c)) < 0.05,
+        ),
+        Property("Each pixel is looked up where the lens shows it."),
+    ),
+    misconceptions=(
+        Misconception(
+            "the wrong direction",
+            "You undistorted the target's pixels. They are ideal already; where the lens shows "
+            "them is found by distorting.",
+            _undone,
+        ),
+        Misconception(
+            "radius in pixels",
+            "r² is taken in pixels. k1 and k2 belong to x = (u − u0) / α_u and y = (v − v0) / α_v.",
+            lambda A, k, size: _moved(A, k, size, radius="pixels"),
+        ),
+        Misconception(
+            "about pixel (0, 0)",
+            "You distorted about pixel (0, 0); the centre is the piercing point (u0, v0).",
+            lambda A, k, size: _moved(A, k, size, radius="from pixel 0"),
+        ),
+        Misconception(
+            "v before u",
+            "Your positions are (v, u); u comes first.",
+            lambda A, k, size: undistortion_map(A, k, size)[..., ::-1],
+        ),
+        Misconception(
+            "columns before rows",
+            "The map has shape (width, height, 2); arrays have their rows first.",
+            lambda A, k, size: undistortion_map(A, k, size).transpose(1, 0, 2),
+        ),
+        Misconception(
+            "not back to pixels",
+            "These are x' and y' on the plane z = 1; the look-up needs pixels.",
+            lambda A, k, size: (undistortion_map(A, k, size) - A[:2, 2]) / A[[0, 1], [0, 1]],
+        ),
+        Misconception(
+            "displacement only",
+            "That is by how much each pixel moves; add where it is.",
+            lambda A, k, size: (
+                undistortion_map(A, k, size) - pixel_centres(size).reshape(size[1], size[0], 2)
+            ),
+        ),
+    ),
+    reference=undistortion_map,
+    concepts=("69", "77", "E44"),
+    sources=(undistortion_map, Camera.project),
+)

@@ -1,0 +1,89 @@
+"""How sure is each parameter."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+import numpy as np
+
+from cvnotes.errors import Array
+from cvnotes.learn.cameras import (
+    rounded,
+)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.refine import covariance
+
+
+def error_bars(J: Array, r: Array) -> Array:
+    """Give the standard deviations (p,) of parameters from Jacobian (n, p) and residuals (n,)."""
+    n, p = J.shape
+    return np.asarray(np.sqrt(r @ r / (n - p) * np.diag(np.linalg.inv(J.T @ J))))
+
+
+def _fits(rng: Rng) -> list[Case]:
+    line = np.array([[1.0, 0], [1, 1], [1, 2], [1, 3], [1, 4]])
+    J = rounded(rng.normal(size=(9, 3)) @ np.array([[2, 1, 0], [0, 1, 1], [0, 0, 3.0]]), 1)
+    return [
+        Case((line, np.array([0.1, -0.2, 0.0, 0.2, -0.1]))),
+        Case((J, rounded(rng.normal(size=9)))),
+    ]
+
+
+def _with_variance(J: Array, variance: float) -> Array:
+    return np.sqrt(variance * np.diag(np.linalg.inv(J.T @ J)))
+
+
+ERRORS = Exercise(
+    name="error_bars",
+    chapter=9,
+    title="How sure is each parameter?",
+    task="At the end of a least-squares fit there are the Jacobian J (n, p) of the residuals and "
+    "the residuals r (n,). Give the standard deviation of each parameter, (p,); the noise is "
+    "estimated from r.",
+    stub='''def my_error_bars(J, r):
+    """Give the standard deviations (p,)."""
+    ...''',
+    hints=(
+        "The covariance of the parameters is σ² (JᵀJ)⁻¹.",
+        "σ² = Σ r² / (n − p): p of the n residuals were spent on the parameters.",
+        "Standard deviations are the roots of its diagonal.",
+    ),
+    cases=_fits,
+    properties=(Property("They are the roots of the diagonal of σ² (JᵀJ)⁻¹, with σ² from n − p."),),
+    misconceptions=(
+        Misconception(
+            "n for n − p",
+            "You divided Σ r² by n. The fit has used up p residuals: n − p.",
+            lambda J, r: _with_variance(J, r @ r / len(r)),
+        ),
+        Misconception(
+            "noise of 1",
+            "That is for noise of one pixel; estimate σ² from the residuals.",
+            lambda J, r: _with_variance(J, 1.0),
+        ),
+        Misconception(
+            "variances",
+            "These are variances: take the roots.",
+            lambda J, r: error_bars(J, r) ** 2,
+        ),
+        Misconception(
+            "correlations left out",
+            "You inverted the diagonal of JᵀJ. That holds the other parameters fixed, and makes "
+            "error bars too short: invert the whole matrix, then take the diagonal.",
+            lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1]) / np.diag(J.T @ J)),
+        ),
+        Misconception(
+            "inverse forgotten",
+            "You took the diagonal of JᵀJ itself: a parameter that moves the residuals much is "
+            "known well, not badly.",
+            lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1]) * np.diag(J.T @ J)),
+        ),
+        Misconception(
+            "σ for σ²",
+            "σ² belongs in front of (JᵀJ)⁻¹, before the root is taken.",
+            lambda J, r: _with_variance(J, np.sqrt(r @ r / (len(r) - J.shape[1]))),
+        ),
+    ),
+    reference=error_bars,
+    concepts=("m", "64"),
+    sources=(error_bars, covariance),
+)

@@ -1,0 +1,273 @@
+"""Grade handed-in notebooks: each runs in its own process, the verdict is worked out here.
+
+The processes have limits of time and memory, and what they hand back is numbers only. That keeps
+mistakes to the row of whoever made them. It is no prison: who fears bad intent grades in a
+container.
+"""
+
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from cvnotes.course import DATA
+from cvnotes.errors import CvnotesError, FileError
+from cvnotes.files.writing import printable
+from cvnotes.learn.exercises import CHAPTERS, EXERCISES, asked
+from cvnotes.learn.judge import judge
+from cvnotes.learn.outcome import clean, decode
+from cvnotes.learn.report import Report
+
+_MAX_NOTEBOOK = 100 * 2**20
+_MAX_RESULTS = 200 * 2**20
+_NOTEBOOKS = Path(__file__).resolve().parents[2] / "notebooks"
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What one notebook earned.
+
+    Attributes
+    ----------
+    student, notebook : str
+        Its folder below the graded one, and its file name.
+    reports : dict
+        The verdict on each exercise that was handed in, by name.
+    expected : tuple of str
+        The exercises that belong to it.
+    ids : tuple of str
+        The student ids that it used.
+    remark : str
+        What went wrong with the notebook as a whole.
+    """
+
+    student: str
+    notebook: str
+    reports: dict[str, Report] = field(default_factory=dict)
+    expected: tuple[str, ...] = ()
+    ids: tuple[str, ...] = ()
+    remark: str = ""
+
+    @property
+    def points(self) -> int:
+        """How many of the expected exercises are right."""
+        return sum(self.earned(name) for name in self.expected)
+
+    def earned(self, name: str) -> int:
+        """Give the point for one exercise."""
+        return int(name in self.reports and self.reports[name].passed)
+
+    @property
+    def misconceptions(self) -> dict[str, str]:
+        """The misconceptions met, by exercise."""
+        return {n: r.misconception for n, r in self.reports.items() if r.misconception}
+
+
+def grade_folder(
+    folder: Path, *, seconds: float = 120.0, megabytes: int = 4096, jobs: int | None = None
+) -> tuple[int, Iterator[Mark]]:
+    """Grade all notebooks below a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they were handed in, in folders of their own or not.
+    seconds, megabytes : float and int
+        What each notebook may use.
+    jobs : int, optional
+        How many run at a time; by default one for each processor.
+
+    Returns
+    -------
+    n, marks
+        How many there are, and an iterator over their marks, in the order of their names.
+
+    Raises
+    ------
+    FileError
+        There is no such folder, or no notebook in it.
+    """
+    if not folder.is_dir():
+        raise FileError(f"{printable(folder)} is not a folder")
+    paths = sorted(p for p in folder.rglob("*.ipynb") if ".ipynb_checkpoints" not in p.parts)
+    if not paths:
+        raise FileError(f"{printable(folder)} holds no notebooks (*.ipynb)")
+    # All are read before the first one runs: none can change another.
+    contents = [_content(path) for path in paths]
+
+    def marks() -> Iterator[Mark]:
+        with ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
+            yield from pool.map(
+                lambda path, content: _grade(path.relative_to(folder), content, seconds, megabytes),
+                paths,
+                contents,
+            )
+
+    return len(paths), marks()
+
+
+def expected_exercises(notebook: str, handed_in: list[str]) -> tuple[str, ...]:
+    """Give the exercises that belong to a notebook, by the chapter's number in its name.
+
+    Examples
+    --------
+    >>> "dlt" in expected_exercises("06_homography_dlt.ipynb", [])
+    True
+    """
+    number = re.match(r"(\d\d)_", notebook)
+    if number and int(number[1]) in CHAPTERS:
+        chapters = {int(number[1])}
+    else:
+        chapters = {EXERCISES[name].chapter for name in handed_in}
+    placed = {n: _placed(n) for n in chapters}
+    return tuple(e.name for e in EXERCISES.values() if e.name in placed.get(e.chapter, ()))
+
+
+def _placed(chapter: int) -> set[str]:
+    """Give the exercises that the course's own notebook asks for; without it, the chapter's."""
+    names: set[str] = set()
+    for path in _NOTEBOOKS.glob(f"{chapter:02d}_*.ipynb"):
+        text = path.read_text(encoding="utf-8").replace('\\"', '"')
+        names |= set(re.findall(r"check\(\s*[\"'](\w+)[\"']", text)) & set(EXERCISES)
+    return names or {e.name for e in EXERCISES.values() if e.chapter == chapter}
+
+
+def _content(path: Path) -> bytes | str:
+    """Read a notebook, or say why that cannot be done."""
+    try:
+        if not path.is_file():
+            return "not a regular file"
+        if path.stat().st_size > _MAX_NOTEBOOK:
+            return "larger than 100 MB"
+        return path.read_bytes()
+    except OSError as error:
+        return f"cannot be read: {error.strerror}"
+
+
+def _grade(path: Path, content: bytes | str, seconds: float, megabytes: int) -> Mark:
+    student, notebook = printable(path.parent), printable(path.name)
+    student = "" if student == "." else student
+    if isinstance(content, str):
+        expected = expected_exercises(notebook, [])
+        return Mark(student, notebook, expected=expected, remark=content)
+    # Inputs that nobody knows before, and that are the same if the notebook is graded again.
+    seed = int.from_bytes(sha256(content).digest()[:6], "big")
+    with tempfile.TemporaryDirectory(prefix="cvnotes-", ignore_cleanup_errors=True) as scratch:
+        ended = _run(Path(scratch), content, seed, seconds, megabytes)
+        lines = _lines(Path(scratch) / "results")
+    reports, ids = _judged(lines, seed)
+    return Mark(
+        student,
+        notebook,
+        reports,
+        expected_exercises(notebook, list(reports)),
+        ids,
+        _remark(lines, ended),
+    )
+
+
+def _run(scratch: Path, content: bytes, seed: int, seconds: float, megabytes: int) -> str:
+    """Run a notebook in a folder laid out like the course; says how it ended, if not by itself."""
+    (scratch / "notebooks").mkdir()
+    (scratch / "handed_in.ipynb").write_bytes(content)
+    if DATA.is_dir():
+        with contextlib.suppress(OSError):
+            (scratch / "data").symlink_to(DATA, target_is_directory=True)
+    command = [sys.executable, "-m", "cvnotes.learn.handin"]
+    command += [str(scratch / "handed_in.ipynb"), str(scratch / "results"), "--seed", str(seed)]
+    command += ["--cell-seconds", str(max(5.0, seconds / 4)), "--megabytes", str(megabytes)]
+    process = subprocess.Popen(
+        command,
+        cwd=scratch / "notebooks",
+        env=_environment(scratch),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        code = process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        return f"stopped after {seconds:g} seconds"
+    finally:
+        _end(process)
+    return "" if code in (0, 1) else f"ended its process ({_ending(code)})"
+
+
+def _environment(scratch: Path) -> dict[str, str]:
+    """Give a notebook's process what it needs: no secrets, one thread, figures without a screen."""
+    kept = ("PATH", "LANG", "LC_ALL", "SYSTEMROOT", "TEMP", "TMP", "VIRTUAL_ENV", "LD_LIBRARY_PATH")
+    environment = {name: os.environ[name] for name in kept if name in os.environ}
+    package = str(Path(__file__).resolve().parents[2])
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
+    threads = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+    return (
+        environment
+        | dict.fromkeys(threads, "1")
+        | {"PYTHONPATH": package, "MPLBACKEND": "agg", "XDG_CACHE_HOME": cache}
+        | {"HOME": str(scratch), "IPYTHONDIR": str(scratch / "ipython"), "PYTHONUTF8": "1"}
+    )
+
+
+def _end(process: "subprocess.Popen[bytes]") -> None:
+    """End a notebook's process, and what it started."""
+    if hasattr(os, "killpg"):
+        with contextlib.suppress(OSError):
+            os.killpg(process.pid, signal.SIGKILL)
+    process.kill()
+    process.wait()
+
+
+def _ending(code: int) -> str:
+    return signal.Signals(-code).name if code < 0 else f"exit code {code}"
+
+
+def _lines(results: Path) -> list[dict[str, Any]]:
+    """Read what the process wrote, leaving out what is no such line."""
+    lines = []
+    try:
+        with results.open("rb") as stream:
+            for line in stream.read(_MAX_RESULTS).splitlines():
+                with contextlib.suppress(ValueError, RecursionError):
+                    lines.append(json.loads(line))
+    except OSError:
+        return []
+    return [line for line in lines if isinstance(line, dict)]
+
+
+def _judged(lines: list[dict[str, Any]], seed: int) -> tuple[dict[str, Report], tuple[str, ...]]:
+    """Judge the last answer to each exercise; gives the ids that were used, too."""
+    reports: dict[str, Report] = {}
+    ids: list[str] = []
+    for line in lines:
+        name, student = line.get("exercise"), line.get("student")
+        if name not in EXERCISES:
+            continue
+        student = clean(student, 60) if isinstance(student, str) else None
+        with contextlib.suppress(CvnotesError, TypeError):
+            outcomes = [decode(text) for text in line["outcomes"]]
+            reports[name] = judge(asked(name, student), outcomes, seed)
+            ids += [student] if student and student not in ids else []
+    return reports, tuple(ids)
+
+
+def _remark(lines: list[dict[str, Any]], ended: str) -> str:
+    if any(line.get("unreadable") is True for line in lines):
+        return "not a notebook"
+    if ended:
+        return ended
+    last = lines[-1] if lines else {}
+    if last.get("finished") is not True:
+        return "ended before its last cell"
+    failed = last.get("failed")
+    return f"{failed} cells failed, first: {clean(last.get('first'), 120)}" if failed else ""

@@ -1,0 +1,352 @@
+"""The exercises of the course: right answers pass, every classic mistake is called by its name."""
+
+# Functions that give a wrong answer need none of their arguments.
+# ruff: noqa: ARG001, ARG005
+
+import ast
+import inspect
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_exercises_second import solution_of
+
+from cvnotes.errors import CvnotesError
+from cvnotes.learn import exercises
+from cvnotes.learn.exercises import EXERCISES, check, hint, progress, solution
+from cvnotes.learn.judge import ask, judge, what_it_gives
+from cvnotes.learn.outcome import Outcome, outcome_of
+
+ROOT = Path(__file__).resolve().parents[1]
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+EACH = pytest.mark.parametrize("exercise", EXERCISES.values(), ids=list(EXERCISES))
+
+
+@pytest.fixture(autouse=True)
+def new_session(monkeypatch):
+    """Let each test begin with nothing solved."""
+    monkeypatch.setattr(exercises, "_SESSION", exercises._Session())
+
+
+def _stub_of(exercise):
+    names = {}
+    exec(exercise.stub, names)
+    return next(value for key, value in names.items() if key.startswith("my_"))
+
+
+def _tried(exercise, function, seed):
+    """Give outcomes without a process: for functions of our own, which do no harm."""
+    outcomes = []
+    for part in exercise.parts:
+        outcomes += _tried(part, part.reference, seed)
+    for args in exercise.inputs(seed):
+        given = what_it_gives(function, args)
+        outcomes.append(Outcome("raised") if given is None else outcome_of(given))
+    return outcomes
+
+
+def _mistakes():
+    return [(e, m) for e in EXERCISES.values() for m in e.misconceptions]
+
+
+# --- the collection -------------------------------------------------------------------------
+
+
+def test_there_are_enough_exercises_and_misconceptions():
+    assert {e.chapter for e in EXERCISES.values()} == set(range(1, 10))
+    assert len(EXERCISES) >= 30
+    assert len(_mistakes()) >= max(150, 5 * len(EXERCISES))
+    for chapter in range(1, 10):  # a notebook has room for two to six
+        assert 2 <= sum(e.chapter == chapter for e in EXERCISES.values()) <= 6
+
+
+@EACH
+def test_an_exercise_is_complete(exercise):
+    assert 2 <= len(exercise.hints) <= 3
+    assert len(set(exercise.hints)) == len(exercise.hints)
+    assert len(exercise.task) < 700
+    assert len(exercise.stub.splitlines()) <= 7
+    assert exercise.properties
+    assert exercise.concepts
+    names = [m.name for m in exercise.misconceptions]
+    sentences = [m.sentence for m in exercise.misconceptions]
+    assert len(set(names)) == len(names)
+    assert len(set(sentences)) == len(sentences)
+    assert all(s.endswith((".", "?", ".)", "”")) for s in [*sentences, exercise.task])
+
+
+@EACH
+def test_the_stub_takes_what_the_cases_give(exercise):
+    for args in exercise.inputs(0):
+        assert len(args) == len(exercise.arguments) or exercise.answer != "function"
+
+
+@EACH
+def test_the_solution_is_the_source_of_the_library(exercise):
+    shown = solution(exercise.name)
+    assert "def " in shown.code
+    assert "cvnotes" in shown.title
+    assert "lambda" not in shown.code.splitlines()[0]
+
+
+# --- right answers --------------------------------------------------------------------------
+
+
+@EACH
+def test_the_stub_is_not_solved_yet(exercise):
+    report = check(exercise.name, _stub_of(exercise), student="demo")
+    assert report.verdict == "not solved yet"
+    assert not report.passed
+    assert report.misconception is None
+    assert exercise.title in report.message
+    assert f'hint("{exercise.name}")' in report.message
+
+
+@EACH
+def test_the_reference_passes_on_any_seed(exercise):
+    for seed in range(12):
+        report = judge(exercise, _tried(exercise, exercise.reference, seed), seed)
+        assert report.passed, report
+
+
+@pytest.mark.parametrize("name", ["dlt", "four_points", "b_from_views", "normaliser", "horizon"])
+def test_a_thousand_scalings_and_signs_are_all_right(name):
+    exercise = EXERCISES[name]
+    rng = np.random.default_rng(1)
+    inputs = exercise.inputs(5)
+    rights = [exercise.reference(*args) for args in inputs]
+    for factor in 10.0 ** rng.uniform(-6, 6, 1000 // 5) * rng.choice([-1, 1], 200):
+        outcomes = [outcome_of(factor * right) for right in rights]
+        assert judge(exercise, outcomes, 5).passed, factor
+
+
+@pytest.mark.parametrize("name", ["A_from_b", "extrinsics", "geometric_error"])
+def test_the_scale_of_what_is_given_does_not_matter(name):
+    # The input has scales of either sign; the reference must not depend on it, nor the checker.
+    signs = {np.sign(args[-1 if name == "extrinsics" else 0]).ravel()[0] for seed in range(9)
+             for args in EXERCISES[name].inputs(seed)}  # fmt: skip
+    assert signs == {-1.0, 1.0}
+
+
+def test_rows_of_a_design_matrix_may_come_in_any_order_and_scale():
+    exercise = EXERCISES["design_matrix"]
+    rng = np.random.default_rng(2)
+
+    def shuffled(src, dst):
+        D = exercise.reference(src, dst)
+        return rng.permutation(D) * rng.uniform(0.5, 2, (len(D), 1)) * rng.choice([-1, 1])
+
+    assert judge(exercise, _tried(exercise, shuffled, 3), 3).passed
+
+
+# --- mistakes -------------------------------------------------------------------------------
+
+
+@EACH
+def test_every_misconception_is_refused_by_its_own_name(exercise):
+    for mistake in exercise.misconceptions:
+        for seed in (2024, 1, 2, 3, 4, 5):
+            report = judge(exercise, _tried(exercise, mistake.gives, seed), seed)
+            assert not report.passed, mistake.name
+            assert report.misconception == mistake.name
+            assert report.message == mistake.sentence
+            assert report.fails
+
+
+def test_a_misconception_handed_over_like_any_function_is_named_too():
+    report = check("dlt", EXERCISES["dlt"].misconceptions[0].gives)
+    assert report.misconception == "src and dst exchanged"
+    assert "Did you exchange src and dst?" in repr(report)
+
+
+@EACH
+def test_nonsense_is_refused_without_a_name(exercise):
+    if exercise.answer != "function":
+        return
+    rng = np.random.default_rng(4)
+
+    def nonsense(*args):
+        right = np.asarray(exercise.reference(*args), dtype=float)
+        return np.nan_to_num(right, posinf=3.0) * rng.uniform(1.3, 2.0, right.shape) + 0.37
+
+    report = judge(exercise, _tried(exercise, nonsense, 6), 6)
+    assert not report.passed
+    assert report.misconception is None
+
+
+def test_a_mistake_right_in_all_but_one_case_is_told_from_another_slip_in_that_case():
+    def my_drop(x_h):
+        out = x_h[:, :-1] / np.where(x_h[:, -1:] == 0, 1e-9, x_h[:, -1:])
+        return out
+
+    report = check("drop", my_drop)
+    assert not report.passed
+    assert report.misconception is None
+    assert report.holds == ("Each point comes back, whatever its factor was, negative ones too.",)
+    assert report.fails == "Rows whose last coordinate is 0 are NaN."
+
+
+# --- what the report says -------------------------------------------------------------------
+
+
+def test_the_counterexample_is_the_shortest_and_can_be_copied():
+    report = check("project", lambda A, R, T, W: W[:, :2] + 0.1)
+    names = {"np": np}
+    exec("\n".join(report.example()), names)
+    assert names["W"].shape == (1, 3)
+    assert np.array_equal(names["yours"], names["W"][:, :2] + 0.1)
+    assert np.array_equal(names["wanted"], report.wanted)
+    assert list(report.counterexample) == ["A", "R", "T", "W"]
+
+
+def test_a_long_counterexample_is_printed_by_name_only():
+    def right_on_small_pictures(image, u, v):
+        return solution_of("bilinear")(image, u, v) if image.size < 9 else 5.0
+
+    report = check("bilinear", right_on_small_pictures)
+    assert "image = np.array([[" in repr(report)  # 5 × 7
+    wide = check("backward_warp", lambda image, H, size: np.zeros((300, 300)))
+    assert "yours = report.yours  # (300, 300)" in repr(wide)
+    assert wide.yours.shape == (300, 300)
+
+
+def test_what_holds_and_what_does_not_is_said_in_words():
+    text = repr(check("intrinsics_from_sensor", lambda f, du, dv, u0, v0: np.diag([f, f, 1.0])))
+    assert "not yet right" in text
+    assert "✗ does not hold: The optical axis, (0, 0, 1), is seen at (u0, v0)." in text
+    right = check("lift", solution_of("lift"))
+    assert "✓ holds: The last coordinate of every point is k." in repr(right)
+    assert "right" in repr(right)
+
+
+def test_html_is_escaped():
+    def my_drop(x_h):
+        print("<script>alert(1)</script>")
+        raise ValueError("<b>no</b>")
+
+    html = check("drop", my_drop)._repr_html_()
+    assert "<script>" not in html
+    assert "<b>" not in html
+    assert "&lt;script&gt;" in html
+
+
+def test_a_number_read_off_is_right_within_its_tolerance():
+    u, v = EXERCISES["where_the_rails_meet"].reference()
+    assert check("where_the_rails_meet", (u + 6, v - 6)).passed
+    assert check("where_the_rails_meet", [round(u), round(v)]).passed
+    assert not check("where_the_rails_meet", (u + 30, v)).passed
+    assert check("where_the_rails_meet", (v, u)).misconception == "v before u"
+    assert "shape" in check("where_the_rails_meet", 432.0).message
+
+
+def test_a_choice_is_a_letter():
+    assert check("bad_views", "B").passed
+    assert check("bad_views", "b ").passed
+    assert check("bad_views", "A").misconception == "two views thought too few"
+    assert check("bad_views", ...).verdict == "not solved yet"
+    assert "text 'E'" in check("bad_views", "E").message
+
+
+def test_a_result_in_place_of_the_function_is_explained():
+    report = check("dlt", np.eye(3))
+    assert "without brackets" in report.message
+    assert check("dlt", None).verdict == "not solved yet"
+    assert check("dlt", ...).verdict == "not solved yet"
+    assert "by name" in check("pipeline", solution_of("dlt")).message
+
+
+def test_progress_hints_and_unknown_names():
+    assert progress().title == f"0 of {len(EXERCISES)} exercises solved"
+    report = check("lift", solution_of("lift"))
+    assert report.progress == "Chapter 1: 1 of 5 solved; next: drop."
+    assert progress().title.startswith("1 of")
+    first, second, third, again = (hint("lift") for _ in range(4))
+    assert (first.lines, second.lines, third.lines) == tuple((h,) for h in EXERCISES["lift"].hints)
+    assert again == third
+    with pytest.raises(CvnotesError, match="there is no exercise 'dtl'; did you mean 'dlt'"):
+        check("dtl", abs)
+    with pytest.raises(CvnotesError, match="add student="):
+        check("own_camera", 800.0)
+
+
+def test_a_wrong_answer_leaves_what_was_solved_solved():
+    check("lift", solution_of("lift"))
+    check("lift", lambda x, k: x)
+    assert progress().title.startswith("1 of")
+
+
+# --- the pipeline ---------------------------------------------------------------------------
+
+
+def test_the_pipeline_names_the_step_that_is_wrong():
+    steps = dict(solution_of("pipeline"))
+    steps["dlt"] = EXERCISES["dlt"].misconceptions[1].gives
+    report = check("pipeline", steps)
+    assert report.exercise == "pipeline"
+    assert report.misconception == "transposed"
+    assert report.message.startswith("Step dlt: Your H is the transpose")
+    del steps["dlt"]
+    assert check("pipeline", steps).verdict == "not solved yet"
+
+
+def test_steps_that_are_right_one_by_one_but_not_together_are_found():
+    steps = dict(solution_of("pipeline"))
+    A_from_b = steps["A_from_b"]
+
+    def only_in_pixels(b):
+        A = A_from_b(b)
+        return A if A[0, 0] > 50 or abs(A[0, 0] - 2) < 1e-6 else A * np.nan
+
+    steps["A_from_b"] = only_in_pixels
+    report = check("pipeline", steps)
+    assert not report.passed
+    assert "the A of your intrinsics contains NaN" in report.message
+
+
+# --- notebooks ------------------------------------------------------------------------------
+
+
+def _cells(path):
+    nbformat = pytest.importorskip("nbformat")
+    return nbformat.read(path, as_version=4).cells
+
+
+def _normal(code):
+    """Give the lines of code that say something, without spaces and comments."""
+    lines = (re.sub(r"\s+|#.*", "", line) for line in code.splitlines())
+    return [line for line in lines if len(line) > 12 and not line.startswith(("from", "import"))]
+
+
+def _functions(code):
+    """Give the functions for exercises that a cell defines, by name, as source."""
+    tree = ast.parse(re.sub(r"^[%!].*$", "", code, flags=re.M))
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and node.name.removeprefix("my_") in EXERCISES:
+            yield node.name, ast.unparse(node)
+
+
+@pytest.mark.skipif(not NOTEBOOKS, reason="no notebooks yet")
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
+def test_no_notebook_holds_the_text_of_a_solution(path):
+    for cell in _cells(path):
+        if cell.cell_type != "code":
+            continue
+        assert not re.search(r"\bsolution\(", cell.source), cell.source
+        for name, source in _functions(cell.source):
+            exercise = EXERCISES[name.removeprefix("my_")]
+            solved = set(_normal(solution(exercise.name).code))
+            assert not solved & set(_normal(source)), source
+            names = {}
+            exec(source, names)
+            report = judge(exercise, ask(exercise, names[name], 1), 1)
+            assert report.verdict == "not solved yet"
+            assert tuple(inspect.signature(names[name]).parameters) == exercise.arguments
+
+
+@pytest.mark.skipif(not NOTEBOOKS, reason="no notebooks yet")
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
+def test_the_exercises_of_a_notebook_exist_and_belong_to_its_chapter(path):
+    for cell in _cells(path):
+        for name in re.findall(r"^check\(\"(\w+)\"", cell.source, re.M):
+            assert EXERCISES[name].chapter == int(path.name[:2])

@@ -1,0 +1,378 @@
+"""A second right answer to every exercise, written from its task alone, with NumPy only.
+
+They differ from the library's where that is possible: loops, other decompositions, other scales.
+"""
+
+import inspect
+
+import numpy as np
+import pytest
+
+from cvnotes.learn.exercises import EXERCISES
+from cvnotes.learn.judge import ask, judge
+from cvnotes.learn.personal import personal_camera
+
+# Chapter 1
+
+
+def my_lift(x, k):
+    return [[k * value for value in point] + [k] for point in x.tolist()]
+
+
+def my_drop(x_h):
+    out = np.full((len(x_h), x_h.shape[1] - 1), np.nan)
+    for i, row in enumerate(x_h):
+        if row[-1] != 0:
+            out[i] = row[:-1] / row[-1]
+    return out
+
+
+def my_line_through(p, q):
+    return 7 * np.array([p[1] - q[1], q[0] - p[0], p[0] * q[1] - p[1] * q[0]])
+
+
+def my_meet(l1, l2):
+    return np.linalg.svd(np.array([l1, l2]))[2][2]
+
+
+def my_same_points(a, b):
+    return [
+        np.linalg.matrix_rank(np.array([x, y]), tol=1e-6) == 1 for x, y in zip(a, b, strict=True)
+    ]
+
+
+# Chapter 2
+
+
+def my_vanishing_point(A, R, d):
+    x, y, z = R @ d
+    if abs(z) < 1e-12:
+        return np.array([np.nan, np.nan])
+    return np.array([A[0, 0] * x / z + A[0, 1] * y / z + A[0, 2], A[1, 1] * y / z + A[1, 2]])
+
+
+def my_horizon(A, R, n):
+    d1 = np.cross(n, [0.3, 0.5, 0.7])
+    d2 = np.cross(n, d1)
+    return np.cross(A @ R @ d1, A @ R @ d2)
+
+
+def my_focal_from_vanishing_points(v1, v2, centre):
+    a, b = v1 - centre, v2 - centre
+    return (-(a[0] * b[0] + a[1] * b[1])) ** 0.5
+
+
+my_where_the_rails_meet = (430, 160)
+
+
+# Chapter 3
+
+
+def my_intrinsics_from_sensor(f, du, dv, u0, v0):
+    A = np.diag([1 / du, 1 / dv, 1]) @ np.diag([f, f, 1])
+    A[:2, 2] = u0, v0
+    return A
+
+
+def my_project(A, R, T, W):
+    pixels = []
+    for point in W:
+        u, v, w = A @ (R @ point + T)
+        pixels.append((u / w, v / w))
+    return pixels
+
+
+def my_camera_centre(R, T):
+    return np.linalg.solve(R, -T)
+
+
+def my_cam1_from_cam2(G1, G2):
+    return np.linalg.solve(G2.T, G1.T).T
+
+
+def my_nearest_rotation(M):
+    # The polar factor M (MᵀM)^(-1/2), with the least stretched direction turned around if need be.
+    values, vectors = np.linalg.eigh(M.T @ M)
+    S = vectors @ np.diag(np.sign([np.linalg.det(M), 1, 1]) / np.sqrt(values)) @ vectors.T
+    return M @ S
+
+
+def my_field_of_view(A, width):
+    left, right = (np.linalg.solve(A, [u, A[1, 2], 1]) for u in (-0.5, width - 0.5))
+    return np.arccos(left @ right / np.linalg.norm(left) / np.linalg.norm(right))
+
+
+# Chapter 4
+
+
+def my_distort(xy, k, p):
+    out = []
+    for x, y in xy:
+        r2 = x**2 + y**2
+        L = 1 + r2 * (k[0] + r2 * k[1])
+        out.append(
+            (
+                L * x + 2 * p[0] * x * y + p[1] * (3 * x**2 + y**2),
+                L * y + p[0] * (x**2 + 3 * y**2) + 2 * p[1] * x * y,
+            )
+        )
+    return np.array(out)
+
+
+def my_undistort(xy_lens, k):
+    out = np.zeros_like(xy_lens)
+    for i, point in enumerate(xy_lens):
+        seen = r = np.hypot(*point)
+        for _ in range(30):  # Newton
+            r -= (r + k[0] * r**3 + k[1] * r**5 - seen) / (1 + 3 * k[0] * r**2 + 5 * k[1] * r**4)
+        out[i] = point * r / seen
+    return out
+
+
+def my_fold_radius(k):
+    roots = np.roots([5 * k[1], 0, 3 * k[0], 0, 1])
+    radii = [r.real for r in roots if abs(r.imag) < 1e-9 and r.real > 0]
+    return min(radii, default=np.inf)
+
+
+def my_form_image(A, R, T, k, W):
+    M = R @ W.T + T[:, None]
+    x, y = M[0] / M[2], M[1] / M[2]
+    r2 = x**2 + y**2
+    L = 1 + k[0] * r2 + k[1] * r2**2
+    return (A @ np.array([L * x, L * y, np.ones_like(x)]))[:2].T
+
+
+my_corner_shift = -22.4
+
+
+# Chapter 5
+
+
+def my_board_points(columns, rows, square):
+    return [(square * i, square * j, 0) for j in range(rows) for i in range(columns)]
+
+
+def my_harris_measure(Iu, Iv, k):
+    g = np.stack([Iu.ravel(), Iv.ravel()])
+    a, b = np.linalg.eigvalsh(g @ g.T)
+    return a * b - k * (a + b) ** 2
+
+
+def my_saddle_point(coefficients):
+    a, b, c, d, e, _ = coefficients
+    det = 4 * a * c - b * b
+    return np.array([b * e - 2 * c * d, b * d - 2 * a * e]) / det
+
+
+def my_knows_its_origin(columns, rows):
+    return [bool(c % 2) != bool(r % 2) for c, r in zip(columns, rows, strict=True)]
+
+
+my_first_corner = (221.4, 115.6)
+
+
+# Chapter 6
+
+
+def my_design_matrix(src, dst):
+    first, second = [], []
+    for (x, y), (u, v) in zip(src, dst, strict=True):
+        first.append([2 * x, 2 * y, 2, 0, 0, 0, -2 * u * x, -2 * u * y, -2 * u])
+        second.append([0, 0, 0, x, y, 1, -v * x, -v * y, -v])
+    return np.array(first + second)
+
+
+def my_normaliser(x):
+    c = sum(x) / len(x)
+    s = 2**0.5 * len(x) / sum(np.hypot(*(p - c)) for p in x)
+    return np.diag([s, s, 1.0]) @ np.array([[1, 0, -c[0]], [0, 1, -c[1]], [0, 0, 1]])
+
+
+def my_dlt(src, dst):
+    def moved(x):
+        s = np.abs(x - x.mean(0)).max()
+        return np.array([[1, 0, -x[:, 0].mean()], [0, 1, -x[:, 1].mean()], [0, 0, s]])
+
+    N1, N2 = moved(src), moved(dst)
+    rows = []
+    for W, m in zip(src, dst, strict=True):
+        a, (u, v, w) = N1 @ [*W, 1], N2 @ [*m, 1]
+        rows += [[*(w * a), 0, 0, 0, *(-u * a)], [0, 0, 0, *(w * a), *(-v * a)]]
+    D = np.array(rows)
+    H = np.linalg.eigh(D.T @ D)[1][:, 0].reshape(3, 3)
+    return -5 * np.linalg.solve(N2, H @ N1)
+
+
+def my_four_points(src, dst):
+    def frame(x):
+        X = np.column_stack([x, np.ones(4)]).T
+        return X[:, :3] * np.linalg.solve(X[:, :3], X[:, 3])
+
+    return frame(dst) @ np.linalg.inv(frame(src))
+
+
+def my_geometric_error(H, src, dst):
+    out = []
+    for W, m in zip(src, dst, strict=True):
+        x, y, w = H @ np.append(W, 1)
+        out.append(np.hypot(x / w - m[0], y / w - m[1]))
+    return out
+
+
+# Chapter 7
+
+
+def my_v_ij(H, i, j):
+    a, b = H[:, i - 1], H[:, j - 1]
+    M = np.outer(a, b) + np.outer(b, a)
+    return [M[0, 0] / 2, M[0, 1], M[1, 1] / 2, M[0, 2], M[1, 2], M[2, 2] / 2]
+
+
+def my_b_from_views(H):
+    def v(a, b):
+        M = np.outer(a, b) + np.outer(b, a)
+        return np.array([M[0, 0] / 2, M[0, 1], M[1, 1] / 2, M[0, 2], M[1, 2], M[2, 2] / 2])
+
+    N = np.zeros((6, 6))
+    for X in H:
+        X = X / np.linalg.norm(X)
+        for row in (v(X[:, 0], X[:, 1]), v(X[:, 0], X[:, 0]) - v(X[:, 1], X[:, 1])):
+            N += np.outer(row, row)
+    return -3 * np.linalg.eigh(N)[1][:, 0]
+
+
+def my_A_from_b(b):
+    B11, B12, B22, B13, B23, B33 = b
+    v0 = (B12 * B13 - B11 * B23) / (B11 * B22 - B12**2)
+    s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11
+    alpha = (s / B11) ** 0.5
+    beta = (s * B11 / (B11 * B22 - B12**2)) ** 0.5
+    gamma = -B12 * alpha**2 * beta / s
+    return np.array(
+        [[alpha, gamma, gamma * v0 / beta - B13 * alpha**2 / s], [0, beta, v0], [0, 0, 1]]
+    )
+
+
+def my_extrinsics(A, H):
+    r1, r2, t = np.linalg.solve(A, H).T
+    size = np.sqrt(np.linalg.norm(r1) * np.linalg.norm(r2)) * np.sign(t[2])
+    R = np.column_stack([r1 / size, r2 / size, np.cross(r1, r2) / size**2])
+    for _ in range(40):  # to the nearest rotation, for H that are not exact
+        R = (R + np.linalg.inv(R).T) / 2
+    return np.block([[R, (t / size)[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]])
+
+
+def my_radial_fit(xy, xy_lens):
+    D, d = [], []
+    for ideal, seen in zip(xy, xy_lens, strict=True):
+        r2 = ideal @ ideal
+        for a, b in zip(ideal, seen, strict=True):
+            D.append([a * r2, a * r2 * r2])
+            d.append(b - a)
+    D, d = np.array(D), np.array(d)
+    return np.linalg.solve(D.T @ D, D.T @ d)
+
+
+my_bad_views = " b "
+
+
+# Chapter 8
+
+
+def my_bilinear(image, u, v):
+    total = 0.0
+    for row in range(image.shape[0]):
+        for column in range(image.shape[1]):
+            weight = max(0, 1 - abs(u - column)) * max(0, 1 - abs(v - row))
+            total += weight * image[row, column]
+    return total
+
+
+def my_backward_warp(image, H, size):
+    out = np.zeros((size[1], size[0]))
+    for v in range(size[1]):
+        for u in range(size[0]):
+            x, y, w = np.linalg.solve(H, [u, v, 1])
+            column, row = int(np.floor(x / w + 0.5)), int(np.floor(y / w + 0.5))
+            if 0 <= row < image.shape[0] and 0 <= column < image.shape[1]:
+                out[v, u] = image[row, column]
+    return out
+
+
+def my_count_holes(m, size):
+    empty = np.ones((size[1], size[0]), bool)
+    for u, v in m:
+        column, row = round(u), round(v)
+        if 0 <= row < size[1] and 0 <= column < size[0]:
+            empty[row, column] = False
+    return empty.sum()
+
+
+def my_undistortion_map(A, k, size):
+    out = np.zeros((size[1], size[0], 2))
+    for v in range(size[1]):
+        for u in range(size[0]):
+            x, y = (u - A[0, 2]) / A[0, 0], (v - A[1, 2]) / A[1, 1]
+            L = 1 + k[0] * (x * x + y * y) + k[1] * (x * x + y * y) ** 2
+            out[v, u] = A[0, 2] + A[0, 0] * L * x, A[1, 2] + A[1, 1] * L * y
+    return out
+
+
+def my_rectifying_rotation(R, left, right):
+    x = (right - left) / np.linalg.norm(right - left)
+    z = R[2] - (R[2] @ x) * x
+    z /= np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z])
+
+
+def my_depth(alpha, b, u_left, u_right):
+    return [alpha * b / d if d else float("inf") for d in u_left - u_right]
+
+
+# Chapter 9
+
+
+def my_residuals(A, k, G, W, m):
+    M = G[:3, :3] @ W.T + G[:3, 3:]
+    x, y = M[0] / M[2], M[1] / M[2]
+    r2 = x**2 + y**2
+    L = 1 + k[0] * r2 + k[1] * r2**2
+    return m - (A @ np.array([L * x, L * y, np.ones_like(x)]))[:2].T
+
+
+def my_error_bars(J, r):
+    R = np.linalg.qr(J, mode="r")
+    sigma = np.sqrt((r**2).sum() / (J.shape[0] - J.shape[1]))
+    return sigma * np.linalg.norm(np.linalg.inv(R), axis=1)
+
+
+my_which_to_trust = "B"
+
+
+def solution_of(name, student=None):
+    """Give the second answer to an exercise."""
+    if name == "own_camera":
+        return 1.004 * personal_camera(student or "demo").camera.A[0, 0]
+    if name == "pipeline":
+        return {part.name: solution_of(part.name) for part in EXERCISES[name].parts}
+    return globals()[f"my_{name}"]
+
+
+def source_of(name):
+    """Give the second answer as the code of a notebook's cell."""
+    if name == "own_camera":
+        return "my_alpha_u = personal_camera('demo').camera.A[0, 0]"
+    if name == "pipeline":
+        parts = [part.name for part in EXERCISES[name].parts]
+        steps = ", ".join(f"'{part}': my_{part}" for part in parts)
+        return "\n\n".join([*map(source_of, parts), f"my_steps = {{{steps}}}"])
+    answer = globals()[f"my_{name}"]
+    return inspect.getsource(answer) if callable(answer) else f"my_{name} = {answer!r}"
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_a_second_differently_written_answer_passes(name):
+    for seed in (2024, 7, 8):
+        report = judge(EXERCISES[name], ask(EXERCISES[name], solution_of(name), seed), seed)
+        assert report.passed, report
