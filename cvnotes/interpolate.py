@@ -98,7 +98,7 @@ def interpolate(
     """
     sampler = Sampler(image, method, border, fill)
     xy = positions(m, "m")
-    values = sampler(xy.reshape(-1, 2).T)
+    values = sampler(xy.reshape(-1, 2).T.copy())
     return values.reshape(xy.shape[:-1] + sampler.channels)
 
 
@@ -120,6 +120,7 @@ class Sampler:
         self.channels = picture.shape[2:]
         self.fill = checked_fill(fill, picture)
         self.stride = self.width + 3
+        self.strides = np.array([1.0, self.stride])
         self._pad(picture)
 
     def _pad(self, picture: Image) -> None:
@@ -134,12 +135,14 @@ class Sampler:
 
     @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
     def __call__(self, m: Array) -> Image:
-        """Give the picture at m (2, n), rows u and v, as (n, channels)."""
+        """Give the picture at m (2, n), rows u and v, as (n, channels); m is written over."""
         nowhere = None
         if self.border != "constant":
             nowhere = np.flatnonzero(~np.isfinite(m).all(axis=0))
             m = np.where(np.isfinite(m), m, 0)
-            m = np.stack([_fold(x, n, self.border) for x, n in zip(m, self._limits, strict=True)])
+            m = np.stack(
+                [_fold(m[0], self.width, self.border), _fold(m[1], self.height, self.border)]
+            )
         values = self._nearest(m) if self.method == "nearest" else self._bilinear(m)
         if nowhere is not None and nowhere.size:
             values[nowhere] = self.fill
@@ -152,8 +155,9 @@ class Sampler:
     def _bilinear(self, m: Array) -> Image:
         m = self._inside(m)
         m_k = np.floor(m)
+        m -= m_k
         working = np.float32 if self.dtype == np.uint8 else np.float64
-        du, dv = (m - m_k).astype(working, copy=False)
+        du, dv = m.astype(working, copy=False)
         index = self._index(m_k)
         values = np.empty((len(self.planes), index.size), self.dtype)
         for plane, out in zip(self.planes, values, strict=True):
@@ -171,22 +175,17 @@ class Sampler:
             out[:] = value
         return values.T
 
-    @property
-    def _limits(self) -> tuple[int, int]:
-        return self.width, self.height
-
     def _inside(self, m: Array) -> Array:
         """Keep positions between −1 and width or height, where the frame begins; NaN at −1."""
-        inside = np.empty_like(m, order="C")
-        for x, n, out in zip(m, self._limits, inside, strict=True):
-            np.clip(x, -1, n, out=out)
-        if np.isnan(inside.min(initial=0)):
-            inside[:, np.isnan(inside).any(axis=0)] = -1
-        return inside
+        np.clip(m[0], -1.0, self.width, out=m[0])
+        np.clip(m[1], -1.0, self.height, out=m[1])
+        if m.size and np.isnan(m.min()):
+            m[:, np.isnan(m).any(axis=0)] = -1
+        return m
 
     def _index(self, m_k: Array) -> npt.NDArray[np.intp]:
         """Place whole pixels in the framed picture, whose frame begins at (−1, −1)."""
-        index = np.array([1.0, self.stride]) @ m_k
+        index = self.strides @ m_k
         index += self.stride + 1
         return np.asarray(index, dtype=np.intp)
 

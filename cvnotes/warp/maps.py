@@ -91,9 +91,13 @@ def homography_map(H: npt.ArrayLike) -> PixelMap:
     if not determined:
         raise DegenerateError("H is singular: it maps the picture to a line or a point")
 
+    if (H[2] == [0, 0, 1]).all():  # affine: every third coordinate is 1
+        return PixelMap(lambda m_h: np.asarray(H[:2] @ m_h))
+
     def columns(m_h: Array) -> Array:
         x_h = H @ m_h
-        return np.asarray(x_h[:2] / x_h[2])
+        x_h[:2] /= x_h[2]
+        return np.asarray(x_h[:2])
 
     return PixelMap(columns)
 
@@ -197,7 +201,10 @@ def map_array(mapping: Mapping, size: tuple[int, int]) -> Array:
 
 
 def tiles(mapping: Mapping, size: tuple[int, int]) -> Iterator[tuple[slice, Array]]:
-    """Map a picture's pixels, some rows at a time: slices of the flat picture, (2, n) pixels."""
+    """Map a picture's pixels, some rows at a time: slices of the flat picture, pixels (2, n).
+
+    The pixels belong to whoever asked for them and may be written over.
+    """
     width, height = size
     rows = max(1, TILE // width)
     table = None if callable(mapping) else _checked_array(mapping, size)
@@ -206,11 +213,12 @@ def tiles(mapping: Mapping, size: tuple[int, int]) -> Iterator[tuple[slice, Arra
     for first in range(0, height, rows):
         part = slice(first * width, min(first + rows, height) * width)
         if table is not None:
-            m = table[part].T
+            m = table[part].T.copy()
         elif columns is not None:
             with np.errstate(all="ignore"):  # what has no image becomes NaN in silence
                 m = columns(m_h[:, : part.stop - part.start])
-        yield part, np.ascontiguousarray(m, dtype=np.float64)
+        own = m.flags.c_contiguous and not np.may_share_memory(m, m_h)
+        yield part, np.array(m, dtype=np.float64, order="C", copy=None if own else True)
         m_h[1] += rows
 
 
