@@ -168,7 +168,7 @@ def _starts(problem: Problem, steps: Steps) -> Iterator[State]:
     yield from steps.starts(problem)
 
 
-def _best_minimum(problem: Problem, steps: Steps, tolerance: float = 1e-12) -> _Minimum:
+def _best_minimum(problem: Problem, steps: Steps, tolerance: float = 1e-13) -> _Minimum:
     """Step 5, from the first start, and from the others if that leads nowhere."""
     found: list[_Minimum] = []
     good = (_SUSPICIOUS * max(steps.size)) ** 2 * problem.n_seen

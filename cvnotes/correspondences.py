@@ -62,6 +62,7 @@ class Correspondences:
         W = _in_plane(W)
         if W.shape[-2] < 4 or (seen is not None and seen.sum(1).min() < 4):
             raise DegenerateError("every view needs at least 4 points")
+        _refuse_lines(m)
         low, high = W.reshape(-1, 3).min(0), W.reshape(-1, 3).max(0)
         centre = (low + high) / 2
         if not (high - low < _HUGE).all():
@@ -156,6 +157,17 @@ def _located(x: Any, name: str) -> Any:
 def _counts(points: Array, real: Any, n_views: int) -> list[int]:
     """How many points each view has."""
     return [points.shape[-2]] * n_views if real is None else [int(n) for n in real.sum(1)]
+
+
+def _refuse_lines(m: Array) -> None:
+    """Refuse views (n_views, n, 2) in which all points lie on one line."""
+    d = m - m.mean(1, keepdims=True)
+    uu, vv, uv = (d * d).sum(1)[:, 0], (d * d).sum(1)[:, 1], (d[..., 0] * d[..., 1]).sum(1)
+    flat = uu * vv - uv * uv <= 1e-14 * (uu + vv) ** 2
+    if flat.any():
+        raise DegenerateError(
+            f"view {int(np.argmax(flat))}: all its image points coincide or lie on one line"
+        )
 
 
 def _in_plane(W: Array) -> Array:

@@ -13,6 +13,10 @@ import numpy as np
 
 from cvnotes.errors import Array, ConvergenceError, DegenerateError
 
+# Gains may fall at a stroke while the residuals still matter, but at the end, next to what noise
+# leaves of them, at a steady rate: no step is expected to gain less than this much of the last.
+_SHRINKS = 1e-3
+
 X = TypeVar("X")
 System = TypeVar("System")
 Step = TypeVar("Step")
@@ -37,7 +41,7 @@ def levenberg_marquardt(
     *,
     follow: Callable[[X, System], X] | None = None,
     max_iterations: int = 100,
-    tolerance: float = 1e-12,
+    tolerance: float = 1e-13,
     floor: float = 0.0,
 ) -> Minimum[X, System]:
     """Minimise a sum of squares, starting from `x`.
@@ -92,7 +96,8 @@ def levenberg_marquardt(
         x_new = move(x, step)
         with np.errstate(all="ignore"):  # a step too far may leave the model; it is then refused
             cost_new, system_new = linearise(x_new)
-        next_gain = predicted * min(1.0, predicted / previous if previous > 0 else 1.0)
+        shrinks = max(_SHRINKS, predicted / previous) if previous > 0 else 1.0
+        next_gain = predicted * min(1.0, shrinks)
         close = next_gain <= tolerance * cost + floor
         if follow and not close and np.isfinite(cost_new) and cost_new >= cost:
             x_new = follow(x_new, system_new)

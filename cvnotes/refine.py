@@ -229,7 +229,7 @@ class Problem:
         return J if self.seen is None else J * self.seen[part]
 
 
-def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Minimum[State, Arrow]:
+def minimise(problem: Problem, start: State, *, tolerance: float = 1e-13) -> Minimum[State, Arrow]:
     """Minimise the reprojection error from a start, by Levenberg–Marquardt.
 
     Raises

@@ -1,7 +1,8 @@
 """Steps 1 to 4 of Zhang's method, the library's own or the student's (notes 2b.4).
 
 They see the board centred and scaled to unit size and the picture centred and scaled to [−1, 1],
-and give starts for the refinement, the most robust first.
+and give starts for the refinement, the most robust first. Each gets copies, and what a student's
+function gives back is looked at before it is used.
 """
 
 from collections.abc import Callable, Iterator
@@ -110,7 +111,7 @@ class Steps:
     def candidates(self, H: Array, skew: bool) -> Iterator[Array]:
         """2. Intrinsics: the focal lengths alone, then, in reserve, the full closed form."""
         if self.intrinsics is not None:
-            yield intrinsic_matrix(self.intrinsics(H), "the A of your intrinsics")
+            yield intrinsic_matrix(self.intrinsics(H.copy()), "the A of your intrinsics")
             return
         b = solve_b(constraints(H), skew=skew)
         with suppress(DegenerateError):
@@ -123,7 +124,7 @@ class Steps:
 
     def poses(self, A: Array, H: Array) -> Array:
         """3. The pose of each view."""
-        G = rigid_motion(self.extrinsics(A, H), "the poses of your extrinsics")
+        G = rigid_motion(self.extrinsics(A.copy(), H.copy()), "the poses of your extrinsics")
         if G.shape != (len(H), 4, 4):
             raise ShapeError(
                 f"the poses of your extrinsics: expected shape {(len(H), 4, 4)}, got {G.shape}"
@@ -140,8 +141,8 @@ class Steps:
         """4. The lens by linear least squares."""
         k: Array = np.zeros(0)
         if problem.n_radial:
-            W, m = problem.W.copy(), problem.m.copy()
-            given = self.distortion(A, G, W, m, terms=problem.n_radial)
+            copies = (x.copy() for x in (A, G, problem.W, problem.m))
+            given = self.distortion(*copies, terms=problem.n_radial)
             k = numbers(given, "the k of your distortion")
         if k.shape != (problem.n_radial,):
             raise ShapeError(
