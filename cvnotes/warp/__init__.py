@@ -5,17 +5,9 @@ backward, where a pixel of the target comes from.
 """
 
 from cvnotes.warp.lens_maps import distortion_map, undistort_image, undistortion_map
-from cvnotes.warp.maps import (
-    Mapping,
-    PixelMap,
-    compose,
-    homography_map,
-    map_array,
-    plane_map,
-    rotation_map,
-    zoom_map,
-)
+from cvnotes.warp.maps import homography_map, plane_map, rotation_map, zoom_map
 from cvnotes.warp.moving import ForwardWarp, backward_warp, forward_warp, rectify_plane
+from cvnotes.warp.pixel_map import Mapping, PixelMap, compose, map_array
 
 __all__ = [
     "ForwardWarp",

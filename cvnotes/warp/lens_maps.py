@@ -8,8 +8,8 @@ import numpy.typing as npt
 from cvnotes.camera import Camera
 from cvnotes.errors import Array, CalibrationWarning, ShapeError, intrinsic_matrix, rotation
 from cvnotes.interpolate import Border, Image, Method, checked_image
-from cvnotes.warp.maps import PixelMap, homogeneous_columns
 from cvnotes.warp.moving import backward_warp
+from cvnotes.warp.pixel_map import PixelMap, homogeneous_columns
 
 
 def undistortion_map(

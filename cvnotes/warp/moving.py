@@ -7,7 +7,8 @@ import numpy.typing as npt
 
 from cvnotes.errors import CvnotesError, ShapeError, points
 from cvnotes.interpolate import Border, Image, Method, Sampler, checked_fill, checked_image
-from cvnotes.warp.maps import Mapping, plane_map, target_size, tiles
+from cvnotes.warp.maps import plane_map
+from cvnotes.warp.pixel_map import Mapping, target_size, tiles
 
 
 class ForwardWarp(NamedTuple):

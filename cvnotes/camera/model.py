@@ -1,4 +1,4 @@
-"""The camera: the perspective projection matrix and what it is made of (notes 2b.1-2b.3)."""
+"""The camera: what it is made of, and what it sees (notes 2b.1-2b.3)."""
 
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -6,104 +6,10 @@ from functools import cached_property, partial
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import (
-    Array,
-    CvnotesError,
-    DegenerateError,
-    ShapeError,
-    image_size,
-    intrinsic_matrix,
-    matrix,
-    numbers,
-    points,
-    rigid_motion,
-)
+from cvnotes.camera.sensor import ideal_columns, pixels
+from cvnotes.errors import Array, CvnotesError, image_size, intrinsic_matrix, points, rigid_motion
 from cvnotes.lens import Lens
 from cvnotes.projective import drop
-
-
-def intrinsics(alpha_u: float, alpha_v: float, u0: float, v0: float, skew: float = 0.0) -> Array:
-    """Build the intrinsic matrix A (3, 3), all entries in pixels.
-
-    Examples
-    --------
-    >>> intrinsics(800, 805, 320, 240)
-    array([[800.,   0., 320.],
-           [  0., 805., 240.],
-           [  0.,   0.,   1.]])
-    """
-    return intrinsic_matrix([[alpha_u, skew, u0], [0, alpha_v, v0], [0, 0, 1]])
-
-
-def intrinsics_from_pixel_size(
-    f: float, du: float, dv: float, u0: float, v0: float, *, angle: float = np.pi / 2
-) -> Array:
-    """Build the intrinsic matrix A (3, 3) from what the makers of lens and sensor print.
-
-    Parameters
-    ----------
-    f : float
-        Focal length, in the same unit of length as the pixels.
-    du, dv : float
-        Width and height of a pixel.
-    u0, v0 : float
-        Where the optical axis pierces the picture, in pixels; in general not its middle (E7).
-    angle : float
-        Angle in radians between the sensor's axes u and v.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        [α_u  −α_u cot θ  u0; 0  α_v / sin θ  v0; 0 0 1] with α_u = f / du and α_v = f / dv.
-
-    Notes
-    -----
-    The notes give the skew entry as cot(π/2) = 0, without its factor, and leave α_v as it is
-    (erratum E9). An angle below 90° makes the skew negative.
-
-    References
-    ----------
-    .. [1] Notes 2b.2, "Image Digitalization".
-    .. [2] Forsyth and Ponce, Computer Vision, 2nd ed. (2012), 1.2.2.
-
-    Examples
-    --------
-    >>> intrinsics_from_pixel_size(8.0, 0.01, 0.01, 320, 240)  # 8 mm, 10 µm
-    array([[800.,   0., 320.],
-           [  0., 800., 240.],
-           [  0.,   0.,   1.]])
-    """
-    given = {"f": f, "du": du, "dv": dv, "angle": angle}
-    for name, value in given.items():
-        if not numbers(value, name) > 0:
-            raise CvnotesError(f"{name}: expected a positive number, got {value}")
-    if angle >= np.pi:
-        raise CvnotesError(f"angle: expected radians between 0 and π, got {angle:g} (degrees?)")
-    alpha_u, alpha_v = f / du, f / dv
-    skew = 0.0 if angle == np.pi / 2 else -alpha_u / np.tan(angle)
-    return intrinsics(alpha_u, alpha_v / np.sin(angle), u0, v0, skew)
-
-
-def px_from_xy(A: npt.ArrayLike, xy: npt.ArrayLike) -> Array:
-    """Turn image coordinates on the plane z = 1 into pixels (..., 2): m̃ = A (x, y, 1)ᵀ.
-
-    Examples
-    --------
-    >>> px_from_xy(intrinsics(800, 805, 320, 240), [0.1, 0.2])
-    array([400., 401.])
-    """
-    return pixels(intrinsic_matrix(A), points(xy, "xy", 2))
-
-
-def xy_from_px(A: npt.ArrayLike, m: npt.ArrayLike) -> Array:
-    """Turn pixels (..., 2) into image coordinates on the plane z = 1, still through the lens.
-
-    Examples
-    --------
-    >>> xy_from_px(intrinsics(800, 805, 320, 240), [400, 401])
-    array([0.1, 0.2])
-    """
-    return np.stack(_xy_from_px(intrinsic_matrix(A), points(m, "m", 2)), axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +29,7 @@ class Camera:
 
     Examples
     --------
+    >>> from cvnotes.camera import Camera, intrinsics
     >>> camera = Camera(intrinsics(800, 800, 320, 240))
     >>> camera.project([[0.0, 0.0, 5.0], [1.0, 0.5, 5.0]])
     array([[320., 240.],
@@ -201,6 +108,7 @@ class Camera:
 
         Examples
         --------
+        >>> from cvnotes.camera import Camera, intrinsics
         >>> Camera(intrinsics(800, 800, 320, 240)).project([0, 0, -1])
         array([nan, nan])
         """
@@ -219,10 +127,11 @@ class Camera:
 
         Examples
         --------
+        >>> from cvnotes.camera import Camera, intrinsics
         >>> Camera(intrinsics(800, 800, 320, 240)).ideal([400, 240])
         array([0.1, 0. ])
         """
-        return self.lens._undistort(points(m, "m", 2), partial(_xy_from_px, self.A))
+        return self.lens._undistort(points(m, "m", 2), partial(ideal_columns, self.A))
 
     def ray(self, m: npt.ArrayLike) -> Array:
         """Give the direction in the WRF of the ray that pixels (..., 2) see, as unit vectors.
@@ -231,6 +140,7 @@ class Camera:
 
         Examples
         --------
+        >>> from cvnotes.camera import Camera, intrinsics
         >>> Camera(intrinsics(800, 800, 320, 240)).ray([320, 240])
         array([0., 0., 1.])
         """
@@ -246,6 +156,7 @@ class Camera:
 
         Examples
         --------
+        >>> from cvnotes.camera import Camera, intrinsics
         >>> Camera(intrinsics(800, 800, 320, 240)).vanishing_point([1, 0, 2])
         array([720., 240.])
         """
@@ -275,100 +186,3 @@ class Camera:
             f"Camera(alpha_u={a[0, 0]:.2f}, alpha_v={a[1, 1]:.2f}, u0={a[0, 2]:.2f}, "
             f"v0={a[1, 2]:.2f}, skew={a[0, 1]:.2f}, lens={self.lens}, size={w})"
         )
-
-
-def decompose(P: npt.ArrayLike) -> tuple[Array, Array, Array]:
-    """Take a projection matrix apart: P ≈ A [R|T].
-
-    Parameters
-    ----------
-    P : array_like, shape (3, 4)
-        A projection matrix, of any scale and sign.
-
-    Returns
-    -------
-    A : ndarray, shape (3, 3)
-        Intrinsic matrix with positive focal lengths and A[2, 2] = 1.
-    R : ndarray, shape (3, 3)
-        Rotation with determinant +1.
-    T : ndarray, shape (3,)
-        Translation.
-
-    Raises
-    ------
-    DegenerateError
-        The left 3×3 block is singular: the camera is at infinity, or P has too low a rank.
-
-    Notes
-    -----
-    The left block is A R up to scale. Its RQ decomposition is the QR decomposition of the
-    block read backwards; signs are moved so that the diagonal of A is positive.
-
-    References
-    ----------
-    .. [1] Notes 2b.2, "Rigid motion".
-    .. [2] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 6.2.4.
-
-    Examples
-    --------
-    >>> camera = Camera(intrinsics(800, 805, 320, 240))
-    >>> np.allclose(decompose(-3 * camera.P)[0], camera.A)
-    True
-    """
-    P = matrix(P, "P", 3, 4)
-    largest = np.abs(P).max(initial=0.0)
-    if P.ndim != 2 or largest == 0:
-        raise DegenerateError("P must be one non-zero (3, 4) matrix")
-    P = P / largest
-    s = np.linalg.svd(P[:, :3], compute_uv=False)
-    if s[2] <= 1e-13 * s[0]:
-        raise DegenerateError(
-            "the left 3×3 block of P is singular: its camera is at infinity (affine), "
-            "or the rank of P is below 3"
-        )
-    if np.linalg.det(P[:, :3]) < 0:
-        P = -P
-    Q, U = np.linalg.qr(P[::-1, :3].T)
-    A, R = U.T[::-1, ::-1], Q.T[::-1]
-    signs = np.sign(np.diag(A))
-    A, R = A * signs, signs[:, None] * R
-    T = np.linalg.solve(A, P[:, 3])
-    return np.triu(A / A[2, 2]), R, T
-
-
-def pixels(A: Array, xy: Array) -> Array:
-    """Apply A without a guard, so that NaN rows stay NaN: for use inside."""
-    x, y = xy[..., 0], xy[..., 1]
-    return np.stack([A[0, 0] * x + A[0, 1] * y + A[0, 2], A[1, 1] * y + A[1, 2]], axis=-1)
-
-
-def _xy_from_px(A: Array, m: Array) -> tuple[Array, Array]:
-    """Undo A without a guard, and give the two columns."""
-    y = (m[..., 1] - A[1, 2]) / A[1, 1]
-    return (m[..., 0] - A[0, 2] - A[0, 1] * y) / A[0, 0], y
-
-
-def centre_of(P: npt.ArrayLike) -> Array:
-    """Give the camera centre as the null vector of P, homogeneous (4,).
-
-    Also defined for cameras at infinity, whose centre has a zero last coordinate.
-
-    Raises
-    ------
-    DegenerateError
-        P has rank below 3, so that more than a point has no image.
-
-    Examples
-    --------
-    >>> centre_of(np.eye(3, 4))
-    array([0., 0., 0., 1.])
-    """
-    P = matrix(P, "P", 3, 4)
-    if P.ndim != 2:
-        raise ShapeError(f"P: expected one (3, 4) matrix, got {P.shape}")
-    _, s, Vt = np.linalg.svd(P)
-    if s[2] <= 1e-13 * s[0]:
-        raise DegenerateError("P has rank below 3: it has no single centre")
-    C = Vt[3]
-    sign = C[3] if abs(C[3]) > 1e-14 else C[np.argmax(np.abs(C))]
-    return np.asarray(C * np.sign(sign)) + 0.0

@@ -1,0 +1,176 @@
+"""The camera that vanishing points and horizons give away."""
+
+import itertools
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.camera import intrinsics
+from cvnotes.errors import (
+    Array,
+    DegenerateError,
+    ShapeError,
+    intrinsic_matrix,
+    matrix,
+    numbers,
+    points,
+    rotation,
+)
+from cvnotes.rigid import nearest_rotation
+
+
+def focal_length(v1: npt.ArrayLike, v2: npt.ArrayLike, centre: npt.ArrayLike) -> float:
+    """Give the focal length in pixels from two vanishing points (2,) of orthogonal directions.
+
+    Parameters
+    ----------
+    v1, v2 : array_like, shape (2,)
+        The vanishing points, in pixels.
+    centre : array_like, shape (2,)
+        The piercing point; for an uncropped picture its middle is a fair guess.
+
+    Raises
+    ------
+    DegenerateError
+        No focal length makes the two directions orthogonal.
+
+    Notes
+    -----
+    Square pixels without skew: the rays (v1 − c, f) and (v2 − c, f) are orthogonal, so
+    f² = −(v1 − c)ᵀ(v2 − c). Seen from c the two points lie on opposite sides.
+
+    References
+    ----------
+    .. [1] B. Caprile and V. Torre, Int. J. Computer Vision 4 (1990) 127-139.
+
+    Examples
+    --------
+    >>> focal_length([1120, 240], [-480, 240], centre=(320, 240))
+    800.0
+    """
+    v1, v2, c = (points(x, name, 2) for x, name in ((v1, "v1"), (v2, "v2"), (centre, "centre")))
+    if not v1.ndim == v2.ndim == c.ndim == 1:
+        raise ShapeError("v1, v2 and centre: expected one pixel (2,) each")
+    f2 = -float((v1 - c) @ (v2 - c))
+    if f2 <= 0:
+        raise DegenerateError(
+            "seen from the centre, the two vanishing points are less than 90° apart: no camera "
+            "sees orthogonal directions there (a wrong centre, or lines that are not orthogonal?)"
+        )
+    return float(np.sqrt(f2))
+
+
+def intrinsics_from_vanishing_points(v: npt.ArrayLike) -> Array:
+    """Find A (3, 3) from the vanishing points (3, 2) of three orthogonal directions.
+
+    Raises
+    ------
+    DegenerateError
+        The three points lie on a line, or their triangle has an angle of 90° or more.
+
+    Notes
+    -----
+    Square pixels without skew. The rays to the three points are orthogonal in pairs, so
+    (v1 − c)ᵀ(v2 − v3) = 0 and so on: the piercing point c is where the heights of the triangle
+    meet. A vanishing point at infinity leaves c undetermined; guess it, and use `focal_length`.
+
+    References
+    ----------
+    .. [1] B. Caprile and V. Torre, Int. J. Computer Vision 4 (1990) 127-139.
+    .. [2] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 8.8.
+
+    Examples
+    --------
+    >>> s, c = 800 * np.sqrt(1.5), 800 * np.sqrt(0.5)
+    >>> v = np.array([[s, c], [-s, c], [0, -2 * c]]) + [320, 240]  # a cube seen corner on
+    >>> intrinsics_from_vanishing_points(v).round(9)
+    array([[800.,   0., 320.],
+           [  0., 800., 240.],
+           [  0.,   0.,   1.]])
+    """
+    v = matrix(v, "v", 3, 2)
+    if v.ndim != 2:
+        raise ShapeError(f"v: expected three pixels (3, 2), got {v.shape}")
+    middle = v.mean(axis=0)
+    v1, v2, v3 = v - middle
+    D = np.stack([v2 - v3, v3 - v1])
+    size = np.linalg.norm(D, axis=1).prod()
+    if abs(np.linalg.det(D)) <= 1e-12 * size or size == 0:
+        raise DegenerateError("the three vanishing points lie on a line: they fix no camera")
+    c = np.linalg.solve(D, [v1 @ (v2 - v3), v2 @ (v3 - v1)])
+    if (v1 - c) @ (v2 - c) >= 0 or (v2 - c) @ (v3 - c) >= 0 or (v3 - c) @ (v1 - c) >= 0:
+        raise DegenerateError(
+            "the triangle of the vanishing points has an angle of 90° or more: the three "
+            "directions are not orthogonal, or the lens was not taken out"
+        )
+    f = focal_length(v1, v2, c)
+    return intrinsics(f, f, *(c + middle))
+
+
+def rotation_from_vanishing_points(
+    A: npt.ArrayLike, v_h: npt.ArrayLike, *, near: npt.ArrayLike | None = None
+) -> Array:
+    """Find the rotation CRF ← WRF from the vanishing points of the world's axes.
+
+    Parameters
+    ----------
+    A : array_like, shape (3, 3)
+        Intrinsic matrix.
+    v_h : array_like, shape (2, 3) or (3, 3)
+        Homogeneous vanishing points of x and y, or of x, y and z, one a row.
+    near : array_like, shape (3, 3), optional
+        A rough guess; by default the identity, the camera looking along z with x to the right.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        The rotation closest to the measured axes.
+
+    Notes
+    -----
+    rᵢ ≈ ± A⁻¹ ṽᵢ. A vanishing point is that of a direction and of its opposite, so the picture
+    leaves four rotations; the one nearest to the guess is given.
+
+    References
+    ----------
+    .. [1] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 8.6.
+
+    Examples
+    --------
+    >>> A = intrinsics(800, 800, 320, 240)
+    >>> v = A @ np.diag([1, -2, 3])  # axes are seen as if from straight behind, in any scale
+    >>> rotation_from_vanishing_points(A, v.T)
+    array([[1., 0., 0.],
+           [0., 1., 0.],
+           [0., 0., 1.]])
+    """
+    v = numbers(v_h, "v_h")
+    if v.shape not in ((2, 3), (3, 3)):
+        raise ShapeError(f"v_h: expected shape (2, 3) or (3, 3), got {v.shape}")
+    guess = np.eye(3) if near is None else rotation(near, "near")
+    r = np.linalg.solve(intrinsic_matrix(A), v.T).T
+    if not r.any(axis=1).all():
+        raise DegenerateError("v_h: the zero vector is not a vanishing point")
+    r = r / np.linalg.norm(r, axis=1, keepdims=True)
+    if len(r) == 2:
+        r = np.stack([*r, np.cross(*r)])
+    if abs(np.linalg.det(r)) < 0.1:
+        raise DegenerateError("the vanishing points are not those of orthogonal directions")
+    signs = np.array(list(itertools.product((1, -1), repeat=3)))
+    signs = signs[np.prod(signs, axis=1) == np.sign(np.linalg.det(r))]
+    likeness = signs @ (r * guess.T).sum(axis=1)
+    return nearest_rotation((signs[np.argmax(likeness)][:, None] * r).T)
+
+
+def normal_from_horizon(A: npt.ArrayLike, line: npt.ArrayLike) -> Array:
+    """Give the normal (3,) in the CRF of the planes whose horizon is a line (3,): n ≈ Aᵀ l.
+
+    Of unit length; upwards or downwards, as the line's own sign says.
+
+    Examples
+    --------
+    >>> normal_from_horizon(intrinsics(800, 800, 320, 240), [0, 1, -240])
+    array([0., 1., 0.])
+    """
+    n = intrinsic_matrix(A).T @ matrix(line, "line", 3)
+    return np.asarray(n / np.linalg.norm(n)) + 0.0
