@@ -251,10 +251,10 @@ def _judged(lines: list[dict[str, Any]], seed: int) -> tuple[dict[str, Report], 
     ids: list[str] = []
     for line in lines:
         name, student = line.get("exercise"), line.get("student")
-        if name not in EXERCISES:
+        if not isinstance(name, str) or name not in EXERCISES:
             continue
         student = clean(student, 60) if isinstance(student, str) else None
-        with contextlib.suppress(CvnotesError, TypeError):
+        with contextlib.suppress(CvnotesError, TypeError, KeyError):
             outcomes = [decode(text) for text in line["outcomes"]]
             reports[name] = judge(asked(name, student), outcomes, seed)
             ids += [student] if student and student not in ids else []

@@ -73,6 +73,8 @@ def run_cells(cells: list[str], seconds: float) -> Iterator[str]:
     config = Config()
     config.HistoryManager.enabled = False
     shell = InteractiveShell.instance(config=config)
+    # What %matplotlib asks for; there is no screen.
+    shell.enable_gui = lambda *_: None  # type: ignore[method-assign]
     for source in cells:
         with _alarm(seconds):
             result = shell.run_cell(source, store_history=False)

@@ -64,6 +64,8 @@ class Row:
 
     def _error(self, digits: int) -> str:
         """Write the error, but no digits of mere rounding, which differ between computers."""
+        if isnan(self.error):
+            return "missing"
         if not self.holds:
             return f"{self.error:+.3g}"
         if self.allowed <= 1e-6 * max(abs(self.truth), 1.0) or isnan(self.truth):

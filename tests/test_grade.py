@@ -1,0 +1,319 @@
+"""Grading: right notebooks score all points, broken and hostile ones cost their own row only."""
+
+import argparse
+import csv
+import json
+import os
+import time
+from pathlib import Path
+
+import pytest
+from test_exercises_second import source_of
+
+from cvnotes.commands.grade import add_parser, table
+from cvnotes.learn import grading
+from cvnotes.learn.exercises import CHAPTERS, EXERCISES
+from cvnotes.learn.grading import Mark, expected_exercises, grade_folder
+from cvnotes.learn.report import Report
+
+IMPORTS = "import numpy as np\nfrom cvnotes.learn.exercises import check\n"
+IMPORTS += "from cvnotes.learn.personal import personal_camera"
+needs_posix = pytest.mark.skipif(os.name != "posix", reason="limits as on Linux")
+
+
+@pytest.fixture(autouse=True)
+def all_exercises_are_placed(monkeypatch, tmp_path):
+    """Expect every exercise of a chapter, whatever the course's own notebooks ask for."""
+    monkeypatch.setattr(grading, "_NOTEBOOKS", tmp_path / "none")
+
+
+def notebook(path, *cells):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    cells = [{"cell_type": "code", "source": c, "outputs": [], "metadata": {}} for c in cells]
+    text = [{"cell_type": "markdown", "source": ["# A title"], "metadata": {}}]
+    path.write_text(json.dumps({"cells": text + cells, "metadata": {}, "nbformat": 4}))
+
+
+def hand_over(name):
+    variable = {"own_camera": "my_alpha_u", "pipeline": "my_steps"}.get(name, f"my_{name}")
+    student = ', student="demo"' if name == "own_camera" else ""
+    return f'check("{name}", {variable}{student})'
+
+
+def answered(name, source):
+    return [source, hand_over(name)]
+
+
+def chapter(number, sources):
+    """Give the cells of a chapter's notebook, with a source for each exercise."""
+    cells = [IMPORTS]
+    for exercise in EXERCISES.values():
+        if exercise.chapter == number:
+            cells += answered(exercise.name, sources(exercise))
+    return cells
+
+
+def graded(folder, **limits):
+    n, marks = grade_folder(folder, **limits)
+    marks = list(marks)
+    assert n == len(marks)
+    return {f"{m.student}/{m.notebook}".lstrip("/"): m for m in marks}
+
+
+def command(*arguments):
+    parser = argparse.ArgumentParser(prog="cvnotes")
+    add_parser(parser.add_subparsers(required=True))
+    args = parser.parse_args(["grade", *map(str, arguments)])
+    return args.run(args)
+
+
+def mistaken(exercise):
+    """Give code that hands over a misconception, and how it is called."""
+    if exercise.name == "pipeline":
+        wrong = "my_dlt = EXERCISES['dlt'].misconceptions[0].gives"
+        return source_of("pipeline").replace("my_steps", f"{wrong}\nmy_steps")
+    variable = hand_over(exercise.name).split(", ")[1].rstrip(")")
+    gives = f"EXERCISES['{exercise.name}'].misconceptions[-1].gives"
+    call = "()" if exercise.answer == "value" else ""
+    letter = "'ABCD'[int({})]" if exercise.choices else "{}"
+    source = f"{variable} = " + letter.format(gives + call)
+    return f"from cvnotes.learn.exercises import EXERCISES\n{source}"
+
+
+def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
+    for n in CHAPTERS:
+        notebook(
+            tmp_path / "ada" / f"{n:02d}_chapter.ipynb", *chapter(n, lambda e: source_of(e.name))
+        )
+        notebook(tmp_path / "bob" / f"{n:02d}_chapter.ipynb", *chapter(n, stub))
+    started = time.monotonic()
+    marks = graded(tmp_path)
+    assert 60 * len(marks) / (time.monotonic() - started) > 10  # notebooks a minute
+    for n in CHAPTERS:
+        ada, bob = (marks[f"{who}/{n:02d}_chapter.ipynb"] for who in ("ada", "bob"))
+        assert ada.remark == ""
+        assert ada.points == len(ada.expected), ada.reports
+        assert bob.points == 0
+        assert {r.verdict for r in bob.reports.values()} == {"not solved yet"}
+        assert len(bob.reports) == len(bob.expected)
+    assert sum(len(marks[k].expected) for k in marks) == 2 * len(EXERCISES)
+
+
+def stub(exercise):
+    return exercise.stub.replace("my_own_camera", "my_alpha_u")
+
+
+@pytest.mark.parametrize("wrong", [0, 1, 2, 3])
+def test_each_misconception_costs_exactly_its_exercise(wrong, tmp_path):
+    names = {}
+    for n in (1, 3, 6, 7, 9):
+        chosen = [e for e in EXERCISES.values() if e.chapter == n][wrong]
+        names[n] = chosen
+        notebook(
+            tmp_path / f"{n:02d}_copy.ipynb",
+            *chapter(n, lambda e, c=chosen: mistaken(e) if e is c else source_of(e.name)),
+        )
+    marks = graded(tmp_path)
+    for n, exercise in names.items():
+        mark = marks[f"{n:02d}_copy.ipynb"]
+        lost = [name for name in mark.expected if not mark.earned(name)]
+        assert lost == [exercise.name]
+        assert mark.misconceptions == {exercise.name: exercise.misconceptions[-1].name}
+
+
+def test_the_last_answer_counts_and_cells_after_a_broken_one_still_run(tmp_path):
+    notebook(
+        tmp_path / "01_a.ipynb",
+        IMPORTS,
+        "check('lift', lambda x, k: x)",
+        "raise RuntimeError('broken')",
+        "this is no Python",
+        *answered("lift", source_of("lift")),
+    )
+    [mark] = graded(tmp_path).values()
+    assert mark.points == 1
+    assert mark.remark == "2 cells failed, first: RuntimeError: broken"
+
+
+def test_what_notebooks_do_besides_is_understood(tmp_path):
+    notebook(
+        tmp_path / "01_a.ipynb",
+        "%matplotlib inline\n" + IMPORTS,
+        "import matplotlib.pyplot as plt\nplt.plot([1, 2]); plt.show()",
+        "from IPython.display import display\ndisplay(1)",
+        "import ipywidgets\nipywidgets.interact(lambda x: x, x=3)",
+        "import os\nassert os.getcwd().endswith('notebooks')",
+        *answered("lift", source_of("lift")),
+        "hasattr(1, 'x')\n_",
+    )
+    [mark] = graded(tmp_path).values()
+    assert (mark.points, mark.remark) == (1, "")
+
+
+HOSTILE = {
+    "endless": "while True: pass",
+    "exits": "import os; os._exit(0)",
+    "crashes": "import ctypes; ctypes.string_at(0)",
+    "greedy": "x = bytearray(10**12)",
+    "patches": "import cvnotes.learn.judge as j\nj.judge = lambda *a: None\n"
+    "import numpy as np\nnp.allclose = lambda *a, **k: True\nnp.array_equal = np.allclose",
+    "praises": "check = lambda *a, **k: print('PASSED')",
+    "forges": "import gc, io\nfor f in gc.get_objects():\n"
+    "    if isinstance(f, io.FileIO) and 'results' in str(f.name):\n"
+    '        f.write(b\'{"exercise": "lift", "passed": true}\\n\' * 3)\n'
+    '        f.write(b\'{"exercise": "lift", "student": null, "outcomes": ["{}"]}\\n\')\n'
+    '        f.write(b\'[1]\\nnonsense\\n{"exercise": [], "outcomes": 1}\\n\')',
+    "deletes": "import shutil, pathlib\nfor p in pathlib.Path('..').resolve().iterdir():\n"
+    "    p.unlink() if p.is_file() else None",
+}
+
+
+@needs_posix
+def test_a_hostile_notebook_costs_its_own_row_only(tmp_path):
+    for name, cell in HOSTILE.items():
+        right = answered("lift", source_of("lift"))
+        wrong = "check('drop', lambda x_h: x_h[:, :-1])"
+        notebook(tmp_path / name / "01_a.ipynb", IMPORTS, *right, cell, wrong)
+    (tmp_path / "text").mkdir()
+    (tmp_path / "text" / "01_a.ipynb").write_text("this is no notebook")
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "01_a.ipynb").write_text("[" * 200_000)
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "empty" / "01_a.ipynb").write_text("")
+    (tmp_path / "folder" / "01_a.ipynb").mkdir(parents=True)
+    os.mkfifo(tmp_path / "folder" / "02_pipe.ipynb")
+    notebook(tmp_path / "zoe" / "01_a.ipynb", IMPORTS, *answered("lift", source_of("lift")))
+    marks = graded(tmp_path, seconds=12.0, megabytes=3000)
+    assert marks["zoe/01_a.ipynb"].points == 1
+    assert marks["zoe/01_a.ipynb"].remark == ""
+    for name in HOSTILE:
+        mark = marks[f"{name}/01_a.ipynb"]
+        assert mark.earned("drop") == 0
+        # what was right before it stays right, unless its record was destroyed
+        assert mark.earned("lift") == (name != "deletes")
+    assert "CellTimeout" in marks["endless/01_a.ipynb"].remark
+    assert marks["endless/01_a.ipynb"].misconceptions == {"drop": "no division"}
+    assert marks["exits/01_a.ipynb"].remark == "ended before its last cell"
+    assert marks["crashes/01_a.ipynb"].remark == "ended its process (SIGSEGV)"
+    assert "MemoryError" in marks["greedy/01_a.ipynb"].remark
+    for name in ("text", "deep", "empty"):
+        assert marks[f"{name}/01_a.ipynb"].remark == "not a notebook"
+    assert marks["folder/01_a.ipynb"].remark == "not a regular file"
+    assert marks["folder/02_pipe.ipynb"].remark == "not a regular file"
+
+
+@needs_posix
+def test_what_cannot_be_interrupted_is_ended_and_its_first_answers_kept(tmp_path):
+    stuck = "import signal\nsignal.signal(signal.SIGALRM, signal.SIG_IGN)\nwhile True: pass"
+    left = "import subprocess, sys\nsubprocess.Popen([sys.executable, '-c', "
+    left += f"\"import time, pathlib; time.sleep(9); pathlib.Path('{tmp_path}/late').touch()\"])"
+    notebook(tmp_path / "01_a.ipynb", IMPORTS, *answered("lift", source_of("lift")), left, stuck)
+    [mark] = graded(tmp_path, seconds=7.0).values()
+    assert mark.remark == "stopped after 7 seconds"
+    assert mark.points == 1
+    time.sleep(3)
+    assert not (tmp_path / "late").exists()
+
+
+def test_no_notebook_sees_the_graders_environment(tmp_path, monkeypatch):
+    monkeypatch.setenv("GRADER_TOKEN", "secret")
+    cell = "import os\nassert 'GRADER_TOKEN' not in os.environ, 'seen'"
+    notebook(tmp_path / "01_a.ipynb", cell)
+    assert graded(tmp_path)["01_a.ipynb"].remark == ""
+
+
+def test_an_answer_made_for_the_notebooks_own_inputs_does_not_pass(tmp_path):
+    memorised = (
+        "from cvnotes.learn.exercises import EXERCISES, _SEED\n"
+        "known = [(a[0].tobytes(), EXERCISES['drop'].reference(*a))"
+        " for a in EXERCISES['drop'].inputs(_SEED)]\n"
+        "my_drop = lambda x_h: dict(known).get(x_h.tobytes(), x_h[:, :-1])"
+    )
+    notebook(tmp_path / "01_a.ipynb", IMPORTS, memorised, hand_over("drop"))
+    [mark] = graded(tmp_path).values()
+    assert mark.earned("drop") == 0
+
+
+def test_the_table_and_the_class_summary(tmp_path, capsys):
+    notebook(tmp_path / "ada" / "06_dlt.ipynb", IMPORTS, *answered("dlt", source_of("dlt")))
+    notebook(
+        tmp_path / "bob" / "06_dlt.ipynb",
+        IMPORTS,
+        "from cvnotes.learn.exercises import EXERCISES",
+        "check('dlt', EXERCISES['dlt'].misconceptions[0].gives)",
+    )
+    out = tmp_path / "marks" / "marks.csv"
+    assert command(tmp_path, "--out", out, "--jobs", "2") == 0
+    ada, bob = csv.DictReader(out.read_text().splitlines())
+    assert (ada["student"], ada["points"], ada["of"], ada["percent"]) == ("ada", "1", "5", "20")
+    assert (ada["dlt"], bob["dlt"], bob["normaliser"]) == ("1", "0", "0")
+    assert bob["misconceptions"] == "dlt: src and dst exchanged"
+    said = capsys.readouterr().out
+    assert "2 notebooks, 1 of 10 points" in said
+    assert "1 × dlt: src and dst exchanged" in said
+    assert "dlt                           1 of 2" in said
+
+
+def test_ids_show_who_handed_in_whose_numbers(tmp_path):
+    cell = "check('own_camera', personal_camera('eve').camera.A[0, 0], student='eve')"
+    notebook(tmp_path / "09_a.ipynb", IMPORTS, cell)
+    copied = "check('own_camera', personal_camera('eve').camera.A[0, 0], student='bob')"
+    notebook(tmp_path / "bob" / "09_a.ipynb", IMPORTS, copied)
+    marks = graded(tmp_path)
+    assert marks["09_a.ipynb"].ids == ("eve",)
+    assert marks["09_a.ipynb"].earned("own_camera") == 1
+    assert marks["bob/09_a.ipynb"].ids == ("bob",)
+    assert marks["bob/09_a.ipynb"].earned("own_camera") == 0
+
+
+def test_a_spreadsheet_takes_no_text_for_a_formula():
+    mark = Mark("=cmd()", "@x.ipynb", {}, ("dlt",), ids=("+1",), remark="-1")
+    row = next(csv.DictReader(table([mark]).splitlines()))
+    assert [row[k] for k in ("student", "notebook", "id", "remark")] == [
+        "'=cmd()", "'@x.ipynb", "'+1", "'-1",
+    ]  # fmt: skip
+
+
+def test_exercises_that_a_notebook_does_not_have_are_left_blank():
+    one = Mark("a", "01.ipynb", {"lift": Report("lift", "right", "")}, ("lift",))
+    two = Mark("a", "06.ipynb", {}, ("dlt",))
+    rows = list(csv.DictReader(table([one, two]).splitlines()))
+    assert [(r["lift"], r["dlt"]) for r in rows] == [("1", ""), ("", "0")]
+
+
+def test_the_number_in_a_notebooks_name_says_what_belongs_to_it():
+    assert "dlt" in expected_exercises("06_anything.ipynb", ["lift"])
+    assert "lift" not in expected_exercises("06_anything.ipynb", ["lift"])
+    assert "drop" in expected_exercises("ada.ipynb", ["lift"])
+    assert expected_exercises("ada.ipynb", []) == ()
+
+
+def test_only_what_the_course_itself_asks_for_is_expected(tmp_path, monkeypatch):
+    notebook(tmp_path / "06_dlt.ipynb", 'check("dlt", my_dlt)', "check('normaliser', my_n)")
+    monkeypatch.setattr(grading, "_NOTEBOOKS", tmp_path)
+    assert expected_exercises("06_dlt.ipynb", []) == ("normaliser", "dlt")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["nowhere"], "is not a folder"),
+        (["."], "holds no notebooks"),
+    ],
+)
+def test_what_cannot_be_graded_is_said_in_a_line(arguments, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert command(*arguments, "--out", "marks.csv") == 1
+    said = capsys.readouterr().err
+    assert words in said
+    assert said.count("\n") == 1
+    assert not Path("marks.csv").exists()
+
+
+def test_wrong_usage_exits_with_2(tmp_path, capsys):
+    for option in (["--seconds", "0"], ["--jobs", "many"], []):
+        out = ["--out", "m.csv"] if option else []
+        with pytest.raises(SystemExit) as ended:
+            command(tmp_path, *out, *option)
+        assert ended.value.code == 2
+    assert "expected a number from 1" in capsys.readouterr().err
