@@ -42,8 +42,8 @@ def draw_plane_error(
     ax.quiver(
         *m.T, *d.T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1, width=0.004
     )  # fmt: skip
-    low, high = np.minimum(m, m + d).min(0), np.maximum(m, m + d).max(0)
-    room = 0.06 * float((high - low).max()) + 1
+    low, high = m.min(0), m.max(0)  # of the points alone, so that two figures can be compared
+    room = 0.15 * float((high - low).max()) + 1
     as_picture(ax, (2, 2))
     ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
     ax.set_title(f"{title} (arrows × {magnify:g})".strip())

@@ -15,6 +15,8 @@ from cvnotes.show.style import DPI
 
 # A figure with more colours than this holds a photograph.
 _MANY_COLOURS = 4096
+# A drawing is smaller than this, in bytes.
+_LARGE = 150_000
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,9 @@ def encode(figure: Figure, *, jpeg: bool = True) -> tuple[bytes, str]:
     picture = Image.open(drawn).convert("RGB")
     if picture.getcolors(_MANY_COLOURS) is not None:
         picture.quantize(256, dither=Image.Dither.NONE).save(encoded, "PNG", optimize=True)
-        return encoded.getvalue(), "image/png"
+        if encoded.tell() < _LARGE or not jpeg:
+            return encoded.getvalue(), "image/png"
+        encoded = io.BytesIO()  # a grey photograph: few colours, but noise that no PNG packs
     if jpeg:
         picture.save(encoded, "JPEG", quality=85, subsampling=0, optimize=True)
         return encoded.getvalue(), "image/jpeg"

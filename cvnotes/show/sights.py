@@ -2,6 +2,7 @@
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.colors import to_rgb
 
 from cvnotes.camera import Camera, xy_from_px
 from cvnotes.errors import Array, CvnotesError, ShapeError, points
@@ -131,6 +132,27 @@ def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shap
         Lines(f"{name} outline", ends, COLOURS["ideal"], 1.0),
         Label(name, corners[1], COLOURS["ideal"]),
     )
+
+
+def dot_shapes(
+    W: npt.ArrayLike, name: str, *, radius: float = 8.0, meaning: str = "estimated"
+) -> Shapes:
+    """Give a point of the world (3,): a small octahedron with its name.
+
+    Examples
+    --------
+    >>> [shape.name for shape in dot_shapes([0, 0, 0], "C")]
+    ['C dot', 'C']
+    """
+    at = points(W, "W", 3)
+    x, y, z = radius * np.eye(3)
+    belt = [x, y, -x, -y]
+    corners = at + np.array(
+        [[belt[i], belt[(i + 1) % 4], tip] for tip in (z, -z) for i in range(4)]
+    )
+    colour = colour_of(meaning)
+    colours = np.tile([*to_rgb(colour), 1.0], (8, 1))
+    return Faces(f"{name} dot", corners, colours), Label(name, at - 3.0 * y, colour)
 
 
 def _on_plane(camera: Camera, xy: Array, z: float) -> Array:
