@@ -234,7 +234,7 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: Axes | None = None, reach: float = 5
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=8, zorder=4)
     text: dict[str, Any] = {"textcoords": "offset points", "fontsize": FONT, "zorder": 5}
     text["path_effects"] = [_HALO]
-    ax.annotate("k = 1: the line R", (reach, 1), (-4, 6), ha="right", color=WORLD, **text)
+    ax.annotate("R, at\nk = 1", (reach, 1), (6, 0), va="center", color=WORLD, **text)
     ax.annotate("[0 0]", (0, 0), (0, -20), ha="center", color=MUTED, **text)
     ax.set(xlim=(-reach, reach), ylim=(-0.35 * reach, 0.65 * reach), aspect="equal")
     ax.set(xlabel="first coordinate, kx", ylabel="last coordinate, k")
