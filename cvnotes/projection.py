@@ -1,9 +1,25 @@
 """The image of points given in the CRF, together with its derivative (notes 2b.3, the flow)."""
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.camera import Camera, pixels
-from cvnotes.errors import Array
+from cvnotes.errors import Array, InputTypeError
+
+
+def is_camera(x: Any, name: str) -> Camera:
+    """Guard a camera.
+
+    Examples
+    --------
+    >>> is_camera("left.json", "left")
+    Traceback (most recent call last):
+    cvnotes.errors.InputTypeError: left: expected a Camera, got str
+    """
+    if not isinstance(x, Camera):
+        raise InputTypeError(f"{name}: expected a Camera, got {type(x).__name__}")
+    return x
 
 
 def project_with_derivative(camera: Camera, M: Array) -> tuple[Array, Array]:

@@ -237,7 +237,7 @@ def _guard(threshold: Any, confidence: Any, most: Any, rng: Any) -> tuple[float,
             f"rng: expected a numpy.random.Generator (np.random.default_rng(seed)), got {rng!r}"
         )
     t = numbers(threshold, "threshold")
-    if t.ndim or not t > 0:
+    if t.ndim or not 0 < t < 1e100:
         raise CvnotesError(f"threshold: expected a positive distance, got {threshold!r}")
     if isinstance(most, bool) or not isinstance(most, int | np.integer) or most < 1:
         raise CvnotesError(f"max_trials: expected a positive whole number, got {most!r}")

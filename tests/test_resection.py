@@ -25,6 +25,8 @@ from cvnotes.resection import (
     resect,
 )
 from cvnotes.rigid import look_at, pose, rotation_from_vector, vector_from_rotation
+from cvnotes.subpixel import refine_edges
+from cvnotes.synthetic import render
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 BOOK = TwoPlanes(Chessboard((9, 6), 25.0))
@@ -325,6 +327,37 @@ def test_bad_arguments_of_one_view_are_refused_in_words():
     few = [0, 8, 45, 60, 100, 107]
     with pytest.raises(DegenerateError, match="12 measured coordinates cannot determine"):
         calibrate_one_view(W[few], m[few], SIZE, lens="k1 k2")
+
+
+# --- From a picture ----------------------------------------------------------------------------
+
+
+def _corners_in_a_picture_of_the_book(camera, seed):
+    """Render the book; find the corners of each face from a start that is a pixel off."""
+    rng = np.random.default_rng(seed)
+    picture = render(BOOK, camera, blur=0.7, noise=2.0, rng=rng)
+    start = camera.project(BOOK.points) + rng.uniform(-1, 1, BOOK.points[:, :2].shape)
+    faces = np.split(start, len(BOOK.faces))
+    return np.concatenate([refine_edges(picture, face, grid=(9, 6)) for face in faces])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_one_picture_of_two_planes_gives_the_focal_length_by_P_alone(seed):
+    A_found, R, T = decompose(resect(BOOK.points, _corners_in_a_picture_of_the_book(CAMERA, seed)))
+    np.testing.assert_allclose(A_found[[0, 1], [0, 1]], [1400, 1395], rtol=0.003)
+    np.testing.assert_allclose(A_found[:2, 2], [630, 470], atol=2)
+    assert abs(A_found[0, 1]) < 1  # no skew
+    np.testing.assert_allclose(-R.T @ T, CAMERA.centre, atol=1)
+
+
+def test_one_picture_through_a_lens_needs_the_lens_to_be_estimated():
+    camera = Camera(A, G, Lens(k=(-0.22, 0.09)), SIZE)
+    m = _corners_in_a_picture_of_the_book(camera, 0)
+    found = calibrate_one_view(BOOK.points, m, SIZE, lens="k1 k2")
+    assert found.A[0, 0] == pytest.approx(1400, rel=0.003)
+    np.testing.assert_allclose(found.lens.k, [-0.22, 0.09], atol=0.02)
+    by_P_alone = decompose(resect(BOOK.points, m))[0]
+    assert abs(by_P_alone[0, 0] / 1400 - 1) > 0.05  # a PPM knows no lens
 
 
 # --- The pose of a known camera ----------------------------------------------------------------

@@ -3,7 +3,9 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
+from cvnotes import course
 from cvnotes.camera import Camera, intrinsics, px_from_xy
+from cvnotes.corners import find_corners
 from cvnotes.errors import (
     CalibrationWarning,
     CvnotesError,
@@ -11,6 +13,7 @@ from cvnotes.errors import (
     InputTypeError,
     ShapeError,
 )
+from cvnotes.files import read_photo
 from cvnotes.lens import Lens
 from cvnotes.optimise import numerical_jacobian
 from cvnotes.refine import Problem
@@ -283,8 +286,10 @@ def test_what_cannot_be_triangulated_is_refused_in_words():
         triangulate([IDEAL], m[:1])
     with pytest.raises(ShapeError, match=r"expected \(2, ..., 2\).*got \(3, 5, 2\)"):
         triangulate([IDEAL, right], np.zeros((3, 5, 2)))
-    with pytest.raises(InputTypeError, match="sequence of Camera"):
+    with pytest.raises(InputTypeError, match=r"cameras\[0\]: expected a Camera, got ndarray"):
         triangulate([IDEAL.P, right.P], m)
+    with pytest.raises(InputTypeError, match="several cameras"):
+        triangulate(None, m)
     m[0, 3] = np.nan
     with pytest.raises(CvnotesError, match="NaN"):
         triangulate([IDEAL, right], m)
@@ -466,6 +471,16 @@ def test_where_the_lens_model_ends_before_the_corner_the_pictures_end_too(keep):
     pair = rectify(wide, wide.moved(SIDEWAYS), keep=keep)
     assert np.isfinite(pair.left_map[240, 320]).all()
     assert np.isfinite(pair.left_map).all() == (keep == "valid")
+
+
+@pytest.mark.parametrize(
+    "f", [relative_pose, baseline, essential_matrix, fundamental_matrix, epipole, rectify]
+)
+def test_what_is_no_camera_is_refused_by_its_name(f):
+    with pytest.raises(InputTypeError, match="right: expected a Camera, got ndarray"):
+        f(LEFT, RIGHT.P)
+    with pytest.raises(InputTypeError, match="left: expected a Camera, got NoneType"):
+        f(None, RIGHT)
 
 
 def test_bad_rigs_are_refused_in_words():
@@ -779,7 +794,7 @@ def test_what_is_no_set_of_pairs_is_refused_in_words():
     W = BOARD.points
     with pytest.raises(ShapeError, match="12 views but right_points has 11"):
         calibrate_stereo(W, SEEN_LEFT, SEEN_RIGHT[1:], SIZE)
-    with pytest.raises(ShapeError, match="54 points a view but image_points has 53"):
+    with pytest.raises(ShapeError, match="54 board points but 53"):
         calibrate_stereo(W, SEEN_LEFT, SEEN_RIGHT[:, 1:], SIZE)
     with pytest.raises(CvnotesError, match="lens: expected one of"):
         calibrate_stereo(W, SEEN_LEFT, SEEN_RIGHT, SIZE, lens="fisheye")
@@ -805,3 +820,62 @@ def test_a_calibrated_rig_measures_a_square():
     pair = rectify(*rig.cameras)
     to_world = inverse(pair.left.G)
     np.testing.assert_allclose(to_world[:3, 3], 0, atol=1e-9)
+
+
+# --- Photographs -------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=["photographs", "kept corners"])
+def photographed(request):
+    """Corners (2, 13, 54, 2) of a 9 × 6 board of 30 mm in 13 pairs of photographs."""
+    if request.param == "kept corners":
+        kept = course.real_corners()
+        return np.array([kept.left, kept.right])
+    folder = request.getfixturevalue("shared_data")("left_right")
+    names = [f"{i:02d}.jpg" for i in range(1, 15) if i != 10]
+    return np.array(
+        [
+            [find_corners(read_photo(folder / f"{side}{name}").image, BOARD) for name in names]
+            for side in ("left", "right")
+        ]
+    )
+
+
+@pytest.fixture(scope="module")
+def photographed_rig(photographed):
+    return calibrate_stereo(BOARD.points, *photographed, SIZE, lens=LENS)
+
+
+def test_the_published_rig_is_found_in_its_photographs(photographed_rig):
+    rig = photographed_rig
+    assert rig.reliable
+    assert rig.rms < 0.2
+    # J.-Y. Bouguet's toolbox, whose error bars are three standard deviations of 0.05, 0.04, 0.17
+    assert (np.abs(rig.T - [-99.80, 1.12, 0.05]) < [0.15, 0.15, 0.5]).all()
+    omega = vector_from_rotation(rig.R)
+    np.testing.assert_allclose(omega, [0.00669, 0.00452, -0.00350], atol=0.003)
+    assert rig.left.A[0, 0] == pytest.approx(533.0, abs=1.5)
+    assert rig.right.A[0, 0] == pytest.approx(537.0, abs=1.5)
+    np.testing.assert_allclose(
+        [rig.std[f"T_{axis}"] for axis in "xyz"], [0.045, 0.036, 0.16], atol=0.02
+    )
+
+
+def test_rectified_rows_of_the_photographs_agree(photographed, photographed_rig):
+    pair = rectify(*photographed_rig.cameras)
+    rows = []
+    for new, old, m in zip(pair[:2], photographed_rig.cameras, photographed, strict=True):
+        d = old.ray(m) @ new.R.T
+        rows.append(px_from_xy(new.A, d[..., :2] / d[..., 2:])[..., 1])
+    assert np.sqrt(((rows[0] - rows[1]) ** 2).mean()) < 0.15
+
+
+def test_triangulated_squares_of_the_photographs_have_their_true_side(
+    photographed, photographed_rig
+):
+    grid = triangulate(photographed_rig.cameras, photographed).reshape(-1, 6, 9, 3)
+    sides = np.concatenate(
+        [np.linalg.norm(np.diff(grid, axis=axis), axis=-1).ravel() for axis in (1, 2)]
+    )
+    assert sides.mean() == pytest.approx(30.0, abs=0.02)
+    assert np.std(sides) < 0.2

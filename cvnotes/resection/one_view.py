@@ -88,7 +88,7 @@ def calibrate_one_view(
            [  0., 805., 240.],
            [  0.,   0.,   1.]])
     """
-    if lens not in LENSES:
+    if not isinstance(lens, str) or lens not in LENSES:
         raise CvnotesError(f"lens: expected one of {', '.join(map(repr, LENSES))}, got {lens!r}")
     size = image_size(size)
     W, m = points(target_points, "target_points", 3), points(image_points, "image_points", 2)

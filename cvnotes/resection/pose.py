@@ -17,7 +17,7 @@ from cvnotes.errors import (
 )
 from cvnotes.homography import dlt
 from cvnotes.optimise import Minimum, levenberg_marquardt, solve_dense
-from cvnotes.projection import project_with_derivative
+from cvnotes.projection import is_camera, project_with_derivative
 from cvnotes.resection.ppm import ppm_dlt
 from cvnotes.rigid import exp_so3, nearest_rotation, pose, skew_matrix
 from cvnotes.zhang import extrinsics
@@ -79,12 +79,15 @@ def pose_from_view(
     >>> np.allclose(pose_from_view(camera, board.points, seen), G)
     True
     """
+    camera = is_camera(camera, "camera")
     W, m = points(target_points, "target_points", 2, 3), points(image_points, "image_points", 2)
     if W.ndim != 2 or m.ndim != 2:
         raise ShapeError(
             f"one picture has points (n, 3) and pixels (n, 2), got {W.shape} and {m.shape}"
         )
     paired(W, m, ("target_points", "image_points"), at_least=4)
+    if np.abs(W).max() > 1e100:
+        raise CvnotesError("target_points: coordinates beyond 1e100 cannot be computed with")
     if W.shape[1] == 2:
         W = np.column_stack([W, np.zeros(len(W))])
     xy = _ideal(camera, m)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes import homography
-from cvnotes.errors import Array, DegenerateError, ShapeError, matrix, paired, points
+from cvnotes.errors import Array, CvnotesError, DegenerateError, ShapeError, matrix, paired, points
 from cvnotes.optimise import levenberg_marquardt, solve_dense
 from cvnotes.projective import apply, drop, to_homogeneous
 
@@ -224,8 +224,10 @@ def resect(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
 
 def _several(W: npt.ArrayLike) -> Array:
     W = points(W, "W", 3)
-    if W.ndim != 2:
+    if W.ndim != 2 or not len(W):
         raise ShapeError(f"W: expected points (n, 3) of one picture, got {W.shape}")
+    if np.abs(W).max() > 1e100:
+        raise CvnotesError("W: coordinates beyond 1e100 cannot be computed with")
     return W
 
 

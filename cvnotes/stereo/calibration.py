@@ -18,17 +18,16 @@ from cvnotes.errors import (
 )
 from cvnotes.homography import dlt
 from cvnotes.lens import Lens
+from cvnotes.projection import is_camera
 from cvnotes.refine import Problem, State, covariance
-from cvnotes.reliability import Evidence, judge
 from cvnotes.rigid import chain, inverse, nearest_rotation, pose, vector_from_rotation
+from cvnotes.stereo.judging import judge_rig
 from cvnotes.stereo.refinement import StereoProblem, StereoState
 from cvnotes.stereo.result import StereoCalibration
 from cvnotes.zhang import extrinsics
 
 # A pair whose relative pose is this far from the others' (radians) does not belong to the rig.
 _APART = np.deg2rad(10)
-# Typical distance from the model, over the longer side of the picture, that no noise explains.
-_MISFIT = 0.005
 
 
 def calibrate_stereo(
@@ -72,10 +71,10 @@ def calibrate_stereo(
 
     Notes
     -----
-    Each camera is calibrated by itself; the relative pose is first that of the pair most like
-    all others; then both cameras, the relative pose and one board pose for each pair are refined
-    together (see `cvnotes.stereo.refinement`). One board pose for two pictures is what sharpens
-    both cameras.
+    1. Each camera is calibrated by itself; 2. every pair then gives a relative pose, of which the
+    median is taken; 3. both cameras, the relative pose and one board pose for each pair are
+    refined together (see `cvnotes.stereo.refinement`). One board pose for two pictures is what
+    sharpens both cameras.
 
     References
     ----------
@@ -97,7 +96,7 @@ def calibrate_stereo(
     >>> rig.T.round(6) + 0.0
     array([-100.,    0.,    0.])
     """
-    if lens not in LENSES:
+    if not isinstance(lens, str) or lens not in LENSES:
         raise CvnotesError(f"lens: expected one of {', '.join(map(repr, LENSES))}, got {lens!r}")
     size = image_size(size)
     pairs = _pairs(board_points, left_points, right_points)
@@ -153,7 +152,7 @@ def calibrate_relative_pose(
     array([-100.,    0.,    0.])
     """
     for name, camera in (("left", left), ("right", right)):
-        if any(camera.lens.centre):
+        if any(is_camera(camera, name).lens.centre):
             raise CvnotesError(
                 f"{name}: the refinement knows lenses centred on the piercing point only, got "
                 f"{camera.lens}"
@@ -215,7 +214,10 @@ def _refined(
         covariance=cov,
         converged=best.converged,
     )
-    return _judged(result, problem, distances, strangers)
+    sentences, reliable = judge_rig(result, (problem.left.m, problem.right.m), distances, strangers)
+    for sentence in sentences:
+        warn(sentence, CalibrationWarning, stacklevel=3)
+    return replace(result, warnings=sentences, reliable=reliable)
 
 
 def _start(
@@ -224,13 +226,11 @@ def _start(
     """Give the state from which to refine, and the pairs that do not agree with the others."""
     poses = [_poses(data, camera) for data, camera in zip(pairs, cameras, strict=True)]
     G = chain(poses[1], inverse(poses[0]))  # right ← left, as each pair has it
-    between = G[:, None, :3, :3] @ G[:, :3, :3].mT
-    angles = np.linalg.norm(vector_from_rotation(between), axis=-1)
-    middle = int(np.argmin(np.median(angles, axis=1)))
-    strangers = np.flatnonzero(angles[middle] > _APART).tolist()
+    R, T = nearest_rotation(np.median(G[:, :3, :3], axis=0)), np.median(G[:, :3, 3], axis=0)
+    apart = np.linalg.norm(vector_from_rotation(G[:, :3, :3] @ R.T), axis=-1) > _APART
     left = problem.left.state(cameras[0].A, cameras[0].lens, poses[0])
     right = problem.right.state(cameras[1].A, cameras[1].lens, poses[1]).shared
-    return StereoState(left, right, G[middle, :3, :3], G[middle, :3, 3]), strangers
+    return StereoState(left, right, R, T), np.flatnonzero(apart).tolist()
 
 
 def _poses(data: Correspondences, camera: Camera) -> Array:
@@ -274,66 +274,3 @@ def _distances(
         of(problem.left, left.A, left.lens, x.left),
         of(problem.right, right.A, right.lens, x.of_right()),
     )
-
-
-def _judged(
-    result: StereoCalibration,
-    problem: StereoProblem,
-    distances: tuple[Array, Array],
-    strangers: list[int],
-) -> StereoCalibration:
-    """Add what is doubtful to the result, and warn of it."""
-    fatal: list[str] = []
-    if strangers:
-        fatal.append(
-            f"pairs {', '.join(map(str, strangers))} show the cameras turned by more than 10° "
-            "from where the others do: do left and right belong together, is the board numbered "
-            "from the same corner in both, did the rig stay rigid?"
-        )
-    if not result.converged:
-        fatal.append("the refinement stopped before it reached a minimum")
-    reliable = True
-    of_cameras: list[str] = []
-    if problem.cameras_known:
-        fatal += _misfits(result)
-    else:
-        of_cameras, reliable = _judge_cameras(result, problem, distances)
-    for sentence in [*fatal, *of_cameras]:
-        warn(sentence, CalibrationWarning, stacklevel=4)
-    return replace(result, warnings=(*fatal, *of_cameras), reliable=reliable and not fatal)
-
-
-def _misfits(result: StereoCalibration) -> list[str]:
-    """Say when known cameras do not explain the corners."""
-    typical = float(np.median(result.view_rms))
-    if typical <= _MISFIT * max(result.left.size):
-        return []
-    return [
-        f"the corners are {typical:.1f} px away from where the cameras put them, in a typical "
-        "picture: do A and lens belong to these pictures?"
-    ]
-
-
-def _judge_cameras(
-    result: StereoCalibration, problem: StereoProblem, distances: tuple[Array, Array]
-) -> tuple[list[str], bool]:
-    """Judge each camera by what `calibrate` judges it by, at the joint minimum."""
-    sentences, reliable = [], True
-    poses = (result.poses, result.G @ result.poses)
-    for i, side in enumerate(("left", "right")):
-        camera = result.cameras[i]
-        evidence = Evidence(
-            A=camera.A,
-            lens=camera.lens,
-            size=camera.size,
-            poses=poses[i],
-            std={n.removeprefix(f"{side}."): s for n, s in result.std.items() if side in n},
-            view_rms=result.view_rms[:, i],
-            distances=distances[i],
-            corners=(problem.left, problem.right)[i].m,
-            converged=True,
-        )
-        found, believed = judge(evidence)
-        sentences += [f"{side} camera: {sentence}" for sentence in found]
-        reliable = reliable and believed
-    return sentences, reliable

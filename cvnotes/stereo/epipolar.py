@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cvnotes.camera import Camera
 from cvnotes.errors import Array, DegenerateError, matrix, points
+from cvnotes.projection import is_camera
 from cvnotes.projective import to_homogeneous
 from cvnotes.rigid import chain, inverse, skew_matrix
 
@@ -27,7 +28,7 @@ def relative_pose(left: Camera, right: Camera) -> Array:
     >>> relative_pose(left, left.moved(pose(np.eye(3), [-100, 0, 0])))[:3, 3]
     array([-100.,    0.,    0.])
     """
-    return chain(right.G, inverse(left.G))
+    return chain(is_camera(right, "right").G, inverse(is_camera(left, "left").G))
 
 
 def baseline(left: Camera, right: Camera) -> Array:
@@ -46,7 +47,7 @@ def baseline(left: Camera, right: Camera) -> Array:
     >>> baseline(left, left.moved(pose(np.eye(3), [-100, 0, 0])))
     array([100.,   0.,   0.])
     """
-    b = right.centre - left.centre
+    b = is_camera(right, "right").centre - is_camera(left, "left").centre
     reach = max(np.abs(left.T).max(), np.abs(right.T).max())
     if np.linalg.norm(b) <= 1e-12 * reach:
         raise DegenerateError(
@@ -124,9 +125,11 @@ def epipolar_lines(F: npt.ArrayLike, m: npt.ArrayLike) -> Array:
     >>> epipolar_lines(F, [320, 100])
     array([   0.,    1., -100.])
     """
-    line = to_homogeneous(points(m, "m", 2)) @ matrix(F, "F", 3, 3).T
-    length = np.linalg.norm(line[..., :2], axis=-1, keepdims=True)
-    scaled = np.divide(line, length, out=np.full_like(line, np.nan), where=length > 0)
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows has no line either
+        line = to_homogeneous(points(m, "m", 2)) @ matrix(F, "F", 3, 3).T
+    length = np.hypot(line[..., :1], line[..., 1:2])
+    has_line = (length > 0) & np.isfinite(length)
+    scaled = np.divide(line, length, out=np.full_like(line, np.nan), where=has_line)
     return np.asarray(scaled + 0.0)
 
 
@@ -149,5 +152,6 @@ def epipole(left: Camera, right: Camera) -> Array:
     >>> epipole(left, left.moved(pose(np.eye(3), [0, 0, -100])))
     array([320., 240.,   1.])
     """
-    e = left.A @ left.R @ baseline(left, right)
+    b = baseline(left, right)
+    e = left.A @ left.R @ b
     return np.asarray(e / e[2] if abs(e[2]) > 1e-15 * np.abs(e).max() else [e[0], e[1], 0.0])

@@ -7,6 +7,7 @@ import numpy as np
 
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.errors import Array, CalibrationWarning, CvnotesError, DegenerateError, image_size
+from cvnotes.projection import is_camera
 from cvnotes.rigid import exp_so3, pose, vector_from_rotation
 from cvnotes.stereo.epipolar import baseline, relative_pose
 from cvnotes.warp import map_array, undistortion_map
@@ -107,9 +108,9 @@ def rectify(
     >>> bool(abs(v[0] - v[1]) < 1e-9)
     True
     """
-    if keep not in ("valid", "all"):
+    if not isinstance(keep, str) or keep not in ("valid", "all"):
         raise CvnotesError(f"keep: expected 'valid' or 'all', got {keep!r}")
-    size = image_size(left.size if size is None else size)
+    size = image_size(is_camera(left, "left").size if size is None else size)
     if min(size) < 2 or size[0] * size[1] > _MOST_PIXELS:
         raise CvnotesError(f"size: cannot make rectified pictures of {size[0]}×{size[1]} pixels")
     R = _rectifying_rotation(left, right)

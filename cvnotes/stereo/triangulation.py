@@ -16,7 +16,7 @@ from cvnotes.errors import (
     points,
 )
 from cvnotes.optimise import levenberg_marquardt
-from cvnotes.projection import project_with_derivative
+from cvnotes.projection import is_camera, project_with_derivative
 
 # Rays that meet at less than about this angle (radians) are parallel to within rounding.
 _PARALLEL = 1e-12
@@ -131,6 +131,7 @@ def rectified_baseline(left: Camera, right: Camera) -> tuple[int, float]:
     >>> rectified_baseline(left, left.moved(pose(np.eye(3), [-100, 0, 0])))
     (0, 100.0)
     """
+    left, right = is_camera(left, "left"), is_camera(right, "right")
     b = left.R @ (right.centre - left.centre)
     axis = int(np.argmax(np.abs(b[:2])))
     length = np.linalg.norm(b)
@@ -146,9 +147,10 @@ def rectified_baseline(left: Camera, right: Camera) -> tuple[int, float]:
 
 
 def _guard(cameras: Sequence[Camera], image_points: npt.ArrayLike) -> tuple[list[Camera], Array]:
-    cameras = list(cameras)
-    if not all(isinstance(camera, Camera) for camera in cameras):
-        raise InputTypeError("cameras: expected a sequence of Camera")
+    try:
+        cameras = [is_camera(camera, f"cameras[{i}]") for i, camera in enumerate(cameras)]
+    except TypeError as error:
+        raise InputTypeError(f"cameras: expected several cameras; {error}") from error
     if len(cameras) < 2:
         raise DegenerateError(f"need at least 2 cameras, got {len(cameras)}")
     m = points(image_points, "image_points", 2)
