@@ -97,9 +97,9 @@ class Report:
             for name, value in self.counterexample.items()
         ]
         if self.yours is not None:
-            lines.append(f"yours = {as_code(self.yours, 'report.yours')}")
+            lines.append(f"yours = {as_code(_short(self.yours), 'report.yours')}")
         if self.wanted is not None:
-            lines.append(f"wanted = {as_code(self.wanted, 'report.wanted')}")
+            lines.append(f"wanted = {as_code(_short(self.wanted), 'report.wanted')}")
         return lines
 
     def printed_lines(self) -> list[str]:
@@ -124,6 +124,11 @@ def as_code(value: Any, name: str = "") -> str:
         return f"{name}  # {value.shape}"
     text = repr((value + 0.0).tolist())
     return f"np.array({text.replace('nan', 'np.nan').replace('inf', 'np.inf')})"
+
+
+def _short(x: Any) -> Any:
+    """Leave six significant digits: results are to be read, inputs to be copied."""
+    return np.array([float(f"{value:.6g}") for value in np.ravel(x)]).reshape(np.shape(x))
 
 
 @dataclass(frozen=True)

@@ -123,6 +123,7 @@ def _work(
     os.setpgid(0, 0)
     faulthandler.disable()  # a crash is reported by the parent, in a sentence
     _limit(seconds, megabytes)
+    _show_nothing()
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
         os.dup2(nowhere, stream)
@@ -130,6 +131,14 @@ def _work(
         line = encode(attempt(function, given))
         while line:
             line = line[os.write(writing, line) :]
+
+
+def _show_nothing() -> None:
+    """Keep the child from sending figures to the page in the notebook's name."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython else None
+    if shell is not None:
+        shell.display_pub.publish = lambda *_, **__: None
 
 
 def _limit(seconds: float, megabytes: int) -> None:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from cvnotes.errors import Array
+from cvnotes.incidence import join
 from cvnotes.learn.cameras import rounded
 from cvnotes.learn.exercise import (
     Case,
@@ -17,7 +18,7 @@ from cvnotes.projective import to_homogeneous
 
 def line_through(p: Array, q: Array) -> Array:
     """Give the line (3,) through two points (2,): l with l·x̃ = 0 for all its points."""
-    return np.cross(to_homogeneous(p), to_homogeneous(q))
+    return join(to_homogeneous(p), to_homogeneous(q))
 
 
 def _two_points(rng: Rng) -> list[Case]:
@@ -105,4 +106,5 @@ LINE = Exercise(
     reference=line_through,
     same=up_to_scale,
     concepts=("2", "12"),
+    sources=(line_through, join),
 )

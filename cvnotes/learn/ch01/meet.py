@@ -3,6 +3,7 @@
 import numpy as np
 
 from cvnotes.errors import Array, CvnotesError
+from cvnotes.incidence import meet
 from cvnotes.learn.cameras import rounded
 from cvnotes.learn.exercise import (
     Case,
@@ -12,11 +13,6 @@ from cvnotes.learn.exercise import (
     Rng,
     up_to_scale,
 )
-
-
-def meet(l1: Array, l2: Array) -> Array:
-    """Give the homogeneous point (3,) on both lines (3,)."""
-    return np.cross(l1, l2)
 
 
 def _two_lines(rng: Rng) -> list[Case]:

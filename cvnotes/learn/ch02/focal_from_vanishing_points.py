@@ -5,14 +5,9 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
 from cvnotes.learn.cameras import rounded
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-
-
-def focal_from_vanishing_points(v1: Array, v2: Array, centre: Array) -> float:
-    """Give f in pixels from the vanishing points (2,) of two perpendicular directions."""
-    return float(np.sqrt(-(v1 - centre) @ (v2 - centre)))
+from cvnotes.vanishing import focal_length
 
 
 def _perpendicular(rng: Rng) -> list[Case]:
@@ -89,9 +84,9 @@ FOCAL = Exercise(
         Misconception(
             "negative root",
             "Both roots solve the equation; a focal length is positive.",
-            lambda v1, v2, centre: -focal_from_vanishing_points(v1, v2, centre),
+            lambda v1, v2, centre: -focal_length(v1, v2, centre),
         ),
     ),
-    reference=focal_from_vanishing_points,
+    reference=focal_length,
     concepts=("13", "20"),
 )

@@ -5,14 +5,17 @@
 
 import numpy as np
 
+from cvnotes.camera import Camera
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, up_to_scale
+from cvnotes.rigid import pose
+from cvnotes.vanishing import horizon as library_horizon
 
 
 def horizon(A: Array, R: Array, n: Array) -> Array:
     """Give the line (3,) in which planes with world normal n (3,) seem to end."""
-    return np.asarray(np.linalg.inv(A).T @ R @ n)
+    return library_horizon(Camera(A, pose(R, np.zeros(3))), n)
 
 
 def _ends_there(line: Array, case: Case) -> bool:
@@ -79,4 +82,5 @@ HORIZON = Exercise(
     reference=horizon,
     same=up_to_scale,
     concepts=("7", "13"),
+    sources=(library_horizon,),
 )

@@ -7,11 +7,15 @@ from cvnotes.errors import Array
 from cvnotes.learn.cameras import image_of_noise, pixel_centres, rounded
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply
+from cvnotes.warp import backward_warp as library_backward_warp
+from cvnotes.warp import homography_map
 
 
 def backward_warp(image: Array, H: Array, size: tuple[int, int]) -> Array:
     """Warp an image by H, target ≈ H source, to a picture of size (width, height)."""
-    return _looked_up(image, _sources(np.linalg.inv(H), size), size)
+    to_source = homography_map(np.linalg.inv(H))
+    warped = library_backward_warp(image, to_source, size=size, method="nearest")
+    return warped.astype(np.float64)
 
 
 def _sources(M: npt.ArrayLike, size: tuple[int, int]) -> Array:
@@ -122,5 +126,5 @@ BACKWARD = Exercise(
     ),
     reference=backward_warp,
     concepts=("66", "73", "74", "E39"),
-    sources=(backward_warp, _sources, _looked_up),
+    sources=(backward_warp, library_backward_warp),
 )

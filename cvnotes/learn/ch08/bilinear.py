@@ -3,14 +3,15 @@
 import numpy as np
 
 from cvnotes.errors import Array
+from cvnotes.interpolate import bilinear as library_bilinear
+from cvnotes.interpolate import interpolate
 from cvnotes.learn.cameras import image_of_noise, rounded
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def bilinear(image: Array, u: float, v: float) -> float:
     """Give the grey level of an image (height, width) at (u, v), between its pixels."""
-    i, j, du, dv = _split(u, v)
-    return float(_blend(*_four(image, i, j), du, dv))
+    return float(interpolate(image, [u, v]))
 
 
 def _four(image: Array, i: int, j: int) -> tuple[float, float, float, float]:
@@ -123,4 +124,5 @@ BILINEAR = Exercise(
     ),
     reference=bilinear,
     concepts=("75", "E40", "E42", "E43"),
+    sources=(library_bilinear, interpolate),
 )

@@ -5,11 +5,12 @@ import numpy as np
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import pixel_centres, rounded
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.warp import forward_warp
 
 
 def count_holes(m: Array, size: tuple[int, int]) -> int:
     """Count the target pixels to which no source pixel is sent, m (n, 2) being where they land."""
-    return size[0] * size[1] - len(_hit(m, size))
+    return forward_warp(np.ones((1, len(m))), m[None], size).holes
 
 
 def _hit(m: Array, size: tuple[int, int], rounding: np.ufunc = np.rint) -> Array:
@@ -91,5 +92,5 @@ HOLES = Exercise(
     ),
     reference=count_holes,
     concepts=("71", "72"),
-    sources=(count_holes, _hit),
+    sources=(count_holes, forward_warp),
 )

@@ -5,14 +5,19 @@
 
 import numpy as np
 
+from cvnotes.camera import Camera, intrinsics
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import rounded
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.rigid import pose
+from cvnotes.stereo import disparity_to_depth
 
 
 def depth(alpha: float, b: float, u_left: Array, u_right: Array) -> Array:
     """Give the depths (n,) from columns in the rectified left and right pictures."""
-    return np.asarray(alpha * b / (u_left - u_right))
+    left = Camera(intrinsics(alpha, alpha, 0, 0))
+    right = left.moved(pose(np.eye(3), [-b, 0, 0]))
+    return disparity_to_depth(u_left - u_right, left, right)
 
 
 def _columns(rng: Rng) -> list[Case]:
@@ -81,4 +86,5 @@ DEPTH = Exercise(
     ),
     reference=depth,
     concepts=("70",),
+    sources=(disparity_to_depth,),
 )

@@ -7,14 +7,14 @@ from cvnotes.errors import Array
 from cvnotes.learn.cameras import pixel_centres, some_lens
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.lens import Lens
+from cvnotes.warp import map_array
+from cvnotes.warp import undistortion_map as library_map
 
 
 def undistortion_map(A: Array, k: Array, size: tuple[int, int]) -> Array:
     """Give where in the photograph to look up each pixel, (height, width, 2)."""
     camera = Camera(A, lens=Lens(tuple(k)), size=size)
-    ideal = Camera(A).ideal(pixel_centres(size))
-    rays = np.column_stack([ideal, np.ones(len(ideal))])
-    return camera.project(rays).reshape(size[1], size[0], 2)
+    return map_array(library_map(camera), size)
 
 
 def _small_cameras(rng: Rng) -> list[Case]:
@@ -111,5 +111,5 @@ UNDISTORTION = Exercise(
     ),
     reference=undistortion_map,
     concepts=("69", "77", "E44"),
-    sources=(undistortion_map, Camera.project),
+    sources=(undistortion_map, library_map),
 )
