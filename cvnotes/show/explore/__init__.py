@@ -1,0 +1,158 @@
+"""Explorations: pictures that follow sliders, and stills of the same pictures for the page.
+
+``explore_<name>()`` gives a widget for a running notebook, ``still(name, …)`` the picture it shows
+for some values, with its alternative text. Both call one pure model, so the page and the widget
+cannot disagree.
+"""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from cvnotes.camera import Camera
+from cvnotes.errors import CvnotesError
+from cvnotes.show.explore.camera import camera_model
+from cvnotes.show.explore.homography import homography_model
+from cvnotes.show.explore.lens import lens_model
+from cvnotes.show.explore.model import Model, Setting, Sight
+from cvnotes.show.explore.noise import noise_model
+from cvnotes.show.explore.projection import projection_model
+from cvnotes.show.explore.rectification import rectification_model
+from cvnotes.show.explore.warp import warp_model
+from cvnotes.show.picture import Picture
+from cvnotes.targets import Chessboard
+
+if TYPE_CHECKING:
+    from cvnotes.show.explore.shell import Explorer
+
+_MODELS: dict[str, Callable[[Camera, Chessboard], Model]] = {
+    "projection": lambda camera, _: projection_model(camera),
+    "camera": camera_model,
+    "lens": lambda camera, _: lens_model(camera),
+    "homography": homography_model,
+    "noise": noise_model,
+    "warp": warp_model,
+    "rectification": rectification_model,
+}
+NAMES = tuple(_MODELS)
+
+
+def model(name: str, camera: Camera | None = None, board: Chessboard | None = None) -> Model:
+    """Give the model of an exploration, for the course's camera and board unless others are given.
+
+    Parameters
+    ----------
+    name : str
+        One of `NAMES`.
+    camera : Camera, optional
+        By default the course's.
+    board : Chessboard, optional
+        By default the course's.
+
+    Examples
+    --------
+    >>> model("lens").sight(k1=-4 / 3, k2=0).sentence[:48]
+    'The lens shows nothing beyond max_radius = 0.500'
+    """
+    if name not in _MODELS:
+        raise CvnotesError(f"name: expected one of {', '.join(NAMES)}, got {name!r}")
+    if camera is None or board is None:
+        from cvnotes import course
+
+        camera = course.camera() if camera is None else camera
+        board = course.board() if board is None else board
+    return _MODELS[name](camera, board)
+
+
+def still(
+    name: str,
+    *,
+    camera: Camera | None = None,
+    board: Chessboard | None = None,
+    **values: float,
+) -> Picture:
+    """Give the picture that an exploration shows for some values, for the page.
+
+    Parameters
+    ----------
+    name : str
+        One of `NAMES`.
+    camera, board
+        As for the widget.
+    **values
+        Positions of sliders, by the names in ``model(name).settings``; the others stay where the
+        widget starts.
+
+    Returns
+    -------
+    Picture
+        At twice the resolution of the widget; its alternative text describes the picture and
+        tells its numbers.
+
+    Examples
+    --------
+    >>> still("projection", heading=90).alt[-55:]
+    'at infinity, and in the picture too they stay parallel.'
+    """
+    return model(name, camera, board).still(**values)
+
+
+def explore_projection(*, camera: Camera | None = None) -> "Explorer":
+    """Move the direction of two rails, and watch where they seem to meet."""
+    return _explorer("projection", camera)
+
+
+def explore_camera(*, camera: Camera | None = None, board: Chessboard | None = None) -> "Explorer":
+    """Move α, (u0, v0), the skew, three angles and T; watch a board's picture and the space."""
+    return _explorer("camera", camera, board)
+
+
+def explore_lens(*, camera: Camera | None = None) -> "Explorer":
+    """Move k1, k2, k3, p1 and p2, and watch a grid bend and fold."""
+    return _explorer("lens", camera)
+
+
+def explore_homography(
+    *, camera: Camera | None = None, board: Chessboard | None = None
+) -> "Explorer":
+    """Nudge four corners of a board, and watch the picture that their homography makes upright."""
+    return _explorer("homography", camera, board)
+
+
+def explore_noise(*, camera: Camera | None = None, board: Chessboard | None = None) -> "Explorer":
+    """Change noise and number of views, and watch the error bars of a calibration."""
+    return _explorer("noise", camera, board)
+
+
+def explore_warp(*, camera: Camera | None = None, board: Chessboard | None = None) -> "Explorer":
+    """Turn and zoom a picture forward and backward, and count the holes."""
+    return _explorer("warp", camera, board)
+
+
+def explore_rectification(
+    *, camera: Camera | None = None, board: Chessboard | None = None
+) -> "Explorer":
+    """Turn one camera of a stereo pair, and watch the epipolar lines become rows."""
+    return _explorer("rectification", camera, board)
+
+
+def _explorer(name: str, camera: Camera | None, board: Chessboard | None = None) -> "Explorer":
+    from cvnotes.show.explore.shell import Explorer
+
+    return Explorer(model(name, camera, board))
+
+
+__all__ = [
+    "NAMES",
+    "Model",
+    "Setting",
+    "Sight",
+    "explore_camera",
+    "explore_homography",
+    "explore_lens",
+    "explore_noise",
+    "explore_projection",
+    "explore_rectification",
+    "explore_warp",
+    "model",
+    "still",
+]

@@ -1,0 +1,61 @@
+"""Boards, cameras and axes as line drawings: what several explorations show."""
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.rigid import rotation_from_vector
+from cvnotes.show.explore.paper import Panel
+from cvnotes.show.shapes import Faces, Label, Lines, Shape, places, target_shapes
+from cvnotes.show.style import MUTED
+from cvnotes.targets import Chessboard
+
+_INK = "#262629"
+# Seen a little from above and from the right: x to the right, y down, z to the left and away.
+_VIEW = rotation_from_vector([0.35, 0, 0]) @ rotation_from_vector([0, -0.9, 0])
+
+
+def pinhole(camera: Camera) -> Camera:
+    """Give a camera's sensor behind an ideal lens, in its own frame: straight lines stay so."""
+    return Camera(camera.A, size=camera.size)
+
+
+def draw_board(panel: Panel, camera: Camera, board: Chessboard) -> bool:
+    """Draw a board's picture by a camera without distortion; tell if all of it is in front."""
+    squares, border = target_shapes(board)
+    assert isinstance(squares, Faces)
+    assert isinstance(border, Lines)
+    paper = camera.project(border.ends[:, 0])
+    panel.polygons(paper[None], "#FBFBF8")
+    panel.line(paper[[0, 1, 2, 3, 0]], MUTED, 0.8)
+    panel.polygons(camera.project(squares.corners[_dark(squares)]), _INK)
+    return bool(np.isfinite(paper).all())
+
+
+def in_space(shapes: tuple[Shape, ...], size: tuple[int, int]) -> tuple[Array, Array]:
+    """Choose the x and y ranges of a panel that shows all of some shapes, at equal scales."""
+    seen = on_sheet(places(*shapes))
+    low, high = seen.min(0), seen.max(0)
+    scale = 1.15 * ((high - low) / size).max() / 2 * np.array(size)
+    middle = (low + high) / 2
+    return middle - scale, middle + scale
+
+
+def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:
+    """Draw shapes of the world as seen from far away, in the order in which they are given."""
+    for shape in shapes:
+        if isinstance(shape, Faces):
+            panel.polygons(on_sheet(shape.corners[_dark(shape)]), _INK)
+        elif isinstance(shape, Lines):
+            panel.segments(on_sheet(shape.ends), shape.colour, shape.width)
+        elif isinstance(shape, Label):
+            panel.text(on_sheet(shape.at), shape.name, shape.colour, anchor="ra", size=12)
+
+
+def on_sheet(W: Array) -> Array:
+    """Project points of the world (..., 3) onto the sheet (..., 2), all parallel."""
+    return np.asarray(W @ _VIEW[:2].T)
+
+
+def _dark(squares: Faces) -> Array:
+    return np.asarray(squares.colours[:, 0] < 0.5)

@@ -1,0 +1,106 @@
+"""Explore the camera: every entry of A, R and T, with the picture of a board and the space."""
+
+import numpy as np
+
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import Array
+from cvnotes.rigid import pose, rotation_from_angles
+from cvnotes.show.explore.boards import draw_board, draw_in_space, in_space, on_sheet, pinhole
+from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.shapes import axes_shapes, target_shapes
+from cvnotes.show.sights import camera_shapes
+from cvnotes.show.style import WORLD
+from cvnotes.targets import Chessboard
+
+
+def camera_model(camera: Camera, board: Chessboard) -> Model:
+    """Make the model of a board seen by `camera`, its lens left out."""
+    alpha, (u0, v0), (w, h) = camera.A[0, 0], camera.A[:2, 2], camera.size
+    reach = float(np.ceil(np.linalg.norm(board.points[-1])))
+    x, y, _ = -board.points.mean(axis=0)
+    turn = "turns the board about the camera's {} axis: R = Rz Ry Rx"
+    shift = "where the board's origin lies along the camera's {} axis, mm"
+    settings = (
+        _whole("alpha", "α (px)", 0.3 * alpha, 2 * alpha, alpha, "focal length in pixels"),
+        _whole("u0", "u0 (px)", 0, w, u0, "column in which the optical axis pierces the picture"),
+        _whole("v0", "v0 (px)", 0, h, v0, "row in which the optical axis pierces the picture"),
+        _whole("skew", "skew (px)", -0.4 * alpha, 0.4 * alpha, camera.A[0, 1], "entry A12"),
+        Setting("angle_x", "angle x (°)", -75, 75, 1, -25, turn.format("x")),
+        Setting("angle_y", "angle y (°)", -75, 75, 1, 20, turn.format("y")),
+        Setting("angle_z", "angle z (°)", -180, 180, 1, 5, turn.format("z")),
+        _whole("T_x", "T x (mm)", -reach, reach, 0.9 * x, shift.format("x")),
+        _whole("T_y", "T y (mm)", -reach, reach, 0.9 * y, shift.format("y")),
+        _whole("T_z", "T z (mm)", 0, 4 * reach, 2.6 * reach, shift.format("z")),
+    )
+    about = (
+        "The picture that a camera takes of a chessboard; beside it camera and board in space, "
+        "in the frame of the board."
+    )
+
+    def draw(paper: Paper, values: Values) -> Sight:
+        return _draw(_moved(camera, values), board, paper)
+
+    return Model("camera", about, settings, draw)
+
+
+def _whole(name: str, label: str, low: float, high: float, value: float, help: str) -> Setting:  # noqa: A002
+    """Make a setting in steps of 1."""
+    return Setting(name, label, round(low), round(high), 1, round(value), help)
+
+
+def _moved(camera: Camera, values: Values) -> Camera:
+    ratio = camera.A[1, 1] / camera.A[0, 0]
+    alpha = values["alpha"]
+    A = intrinsics(alpha, ratio * alpha, values["u0"], values["v0"], values["skew"])
+    angles = np.radians([values["angle_x"], values["angle_y"], values["angle_z"]])
+    T = [values["T_x"], values["T_y"], values["T_z"]]
+    return pinhole(Camera(A, size=camera.size)).moved(pose(rotation_from_angles(*angles), T))
+
+
+def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Sight:
+    picture = paper.picture_panel((440, 330), camera.size, "the picture of the board")
+    complete = draw_board(picture, camera, board)
+    picture.mark(camera.A[:2, 2], "ideal", 9)
+    origin = camera.project([0, 0, 0])
+    picture.mark(origin, "world", 5)
+    space = _space(camera, board, paper)
+    return Sight(paper.join((picture, space)), _sentence(camera, complete))
+
+
+def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
+    size = (410, 330)
+    length = 2.5 * board.square
+    shapes = (
+        *target_shapes(board),
+        *axes_shapes(length=length, name="WRF"),
+        *camera_shapes(camera, 2.5 * length, name="camera"),
+    )
+    low, high = in_space(shapes, size)
+    panel = paper.panel(
+        size, (low[0], high[0]), (low[1], high[1]), "space, in the frame of the board"
+    )
+    draw_in_space(panel, shapes)
+    _draw_T(panel, camera)
+    return panel
+
+
+def _draw_T(panel: Panel, camera: Camera) -> None:
+    """Draw the way from the camera to the board's origin, which is T in the camera's frame."""
+    ends = on_sheet(np.stack([camera.centre, np.zeros(3)]))
+    panel.line(ends, WORLD, 1, dash=4)
+    panel.mark(ends[0], "camera", 5)
+    panel.text(ends.mean(axis=0), "T", WORLD, size=12)
+
+
+def _sentence(camera: Camera, complete: bool) -> str:
+    said = (
+        f"T = {_words(camera.T)} mm is where the camera sees the board's origin; the camera stands "
+        f"at C = −RᵀT = {_words(camera.centre)} mm."
+    )
+    missing = "" if complete else " Part of the board is behind the camera and has no image."
+    return said + missing
+
+
+def _words(x: Array) -> str:
+    return f"({', '.join(f'{value:.0f}' for value in (x.round() + 0.0).tolist())})"

@@ -1,0 +1,131 @@
+"""Explore the lens: what k1, k2, k3, p1 and p2 do to a grid, and where the model folds."""
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.lens import Lens, radial_factor
+from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS
+
+_EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
+_RADIUS = 1.0  # of the curve r L(r)
+_SIZE = (430, 360)
+
+
+def lens_model(camera: Camera) -> Model:
+    """Make the model; it starts with the lens of `camera`, whose frame is drawn into the grid.
+
+    Of the lens its first three radial coefficients and the tangential ones are taken.
+    """
+    k1, k2, k3 = (*camera.lens.k, 0.0, 0.0, 0.0)[:3]
+    p1, p2 = camera.lens.p
+    what = "radial: bends the borders inwards (negative) or outwards"
+    settings = (
+        _around("k1", 1.5, 0.01, k1, what),
+        _around("k2", 2.0, 0.01, k2, "radial, of the fourth power of r"),
+        _around("k3", 2.0, 0.01, k3, "radial, of the sixth power of r"),
+        _around("p1", 0.1, 0.001, p1, "tangential: a lens tilted about x"),
+        _around("p2", 0.1, 0.001, p2, "tangential: a lens tilted about y"),
+    )
+    about = (
+        "A square grid and the same grid seen through a lens; beside it the observed radius "
+        "r L(r) over the ideal radius r, with the fold where the model ends."
+    )
+    return Model("lens", about, settings, lambda paper, values: _draw(camera, paper, values))
+
+
+def _around(name: str, reach: float, step: float, value: float, about: str) -> Setting:
+    """Make a setting from −reach to reach, or as far as a camera's own value asks for."""
+    reach = max(reach, abs(value))
+    return Setting(name, name, -reach, reach, step, value, about)
+
+
+def _draw(camera: Camera, paper: Paper, values: Values) -> Sight:
+    lens = Lens((values["k1"], values["k2"], values["k3"]), (values["p1"], values["p2"]))
+    reach = 1.25 * _EXTENT
+    x = reach * _SIZE[0] / _SIZE[1]
+    grid = paper.panel(_SIZE, (-x, x), (-reach, reach), "plane z = 1: ideal, and through the lens")
+    _draw_grid(grid, lens)
+    _draw_frame(grid, camera, lens)
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "radius: observed r L(r) over ideal r")
+    _draw_curve(curve, lens)
+    return Sight(paper.join((grid, curve)), _sentence(camera, lens))
+
+
+def _draw_grid(panel: Panel, lens: Lens) -> None:
+    fine, coarse = np.linspace(-_EXTENT, _EXTENT, 61), np.linspace(-_EXTENT, _EXTENT, 13)
+    across = np.stack(np.meshgrid(fine, coarse), -1)
+    for line in (*across, *across[..., ::-1]):
+        panel.line(line[[0, -1]], "#BBBBBB", 0.6)
+    for line in (*across, *across[..., ::-1]):
+        bent = polynomial(lens, line)
+        beyond = np.linalg.norm(line, axis=-1, keepdims=True) > lens.max_radius
+        if beyond.any():
+            panel.line(np.where(beyond, bent, np.nan), ESTIMATED, 0.8)
+        panel.line(np.where(beyond, np.nan, bent), LENS, 1.4)
+    panel.mark([0, 0], "ideal")
+
+
+def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
+    """Draw the border of the camera's picture, and the fold's."""
+    corners = camera_corners(camera)
+    panel.line(corners[[0, 1, 2, 3, 0]], CAMERA, 1.8)
+    panel.text(corners[0] - [0, 0.03], "border of the picture", CAMERA)
+    if lens.max_radius < 2 * _EXTENT:
+        phi = np.linspace(0, 2 * np.pi, 121)
+        circle = lens.max_radius * np.stack([np.cos(phi), np.sin(phi)], -1)
+        panel.line(polynomial(lens, circle), ESTIMATED, 2.2)
+
+
+def _draw_curve(panel: Panel, lens: Lens) -> None:
+    r = np.linspace(0, _RADIUS, 201)
+    observed = np.stack([r, r * radial_factor(lens.k, r * r)], -1)
+    panel.ticks(np.arange(0.2, 1, 0.2).round(1), np.arange(0, 1.1, 0.2).round(1))
+    panel.line([[0, 0], [1, 1]], IDEAL, 1, dash=4)
+    panel.text([0.87, 0.93], "ideal", IDEAL, anchor="rm")
+    good = (r <= lens.max_radius)[:, None]
+    panel.line(np.where(good, np.nan, observed), ESTIMATED, 1.8, dash=5)
+    panel.line(np.where(good, observed, np.nan), LENS, 2.2)
+    if lens.max_radius < _RADIUS:
+        panel.line([[lens.max_radius, 1.2], [lens.max_radius, -0.2]], ESTIMATED, 1)
+        side = "l" if lens.max_radius < 0.6 else "r"
+        shift = 0.015 if side == "l" else -0.015
+        panel.text(
+            [lens.max_radius + shift, 1.12], f"max_radius {lens.max_radius:.3f}", ESTIMATED,
+            anchor=f"{side}m",
+        )  # fmt: skip
+
+
+def _sentence(camera: Camera, lens: Lens) -> str:
+    corners = camera_corners(camera)
+    r = float(np.linalg.norm(corners, axis=-1).max())
+    ideal = lens.undistort(corners)
+    if np.isnan(ideal).any():
+        return (
+            f"The lens shows nothing beyond max_radius = {lens.max_radius:.3f}, not even at the "
+            f"corners of the picture (r' = {r:.3f}): there the model folds. Orange is no lens."
+        )
+    ends = "never folds" if np.isinf(lens.max_radius) else f"folds at r = {lens.max_radius:.3f}"
+    far = float(np.linalg.norm(camera.A[:2, :2] @ (ideal - corners).T, axis=0).max())
+    return (
+        f"The model {ends}, beyond the picture. An ideal lens would show what is seen in the "
+        f"picture's corners up to {far:.1f} px elsewhere."
+    )
+
+
+def camera_corners(camera: Camera) -> Array:
+    """Give the corners (4, 2) of a camera's picture on the plane z = 1, through an ideal lens."""
+    w, h = camera.size
+    corners = [[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]]
+    return Camera(camera.A, size=camera.size).ideal(corners)
+
+
+def polynomial(lens: Lens, xy: Array) -> Array:
+    """Evaluate the lens's formula (..., 2) beyond its validity too, to show how it folds."""
+    x, y = xy[..., 0], xy[..., 1]
+    r2 = x * x + y * y
+    p1, p2 = lens.p
+    factor = radial_factor(lens.k, r2) + 2 * (p2 * x + p1 * y)
+    return np.stack([factor * x + p2 * r2, factor * y + p1 * r2], -1)

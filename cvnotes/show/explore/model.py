@@ -1,0 +1,150 @@
+"""What an exploration is: settings, and a pure function from their values to a picture."""
+
+import io
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from struct import pack
+from typing import NamedTuple
+
+import numpy as np
+
+from cvnotes.errors import CvnotesError, ShapeError
+from cvnotes.show.explore.paper import Drawn, Paper
+from cvnotes.show.picture import Picture
+from cvnotes.show.style import ESTIMATED
+
+Values = Mapping[str, float]
+
+
+class Setting(NamedTuple):
+    """A number that can be moved.
+
+    Attributes
+    ----------
+    name : str
+        The keyword of the model's ``picture``.
+    label : str
+        What stands beside the slider, with the unit.
+    low, high, step, value : float
+        Range, step and start.
+    help : str
+        What it means, for the tooltip.
+    """
+
+    name: str
+    label: str
+    low: float
+    high: float
+    step: float
+    value: float
+    help: str
+
+
+class Sight(NamedTuple):
+    """What a model shows for one set of values: a picture, and its numbers in a sentence."""
+
+    picture: Drawn
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Model:
+    """An exploration without its sliders: values go in, a picture and a sentence come out.
+
+    Parameters
+    ----------
+    name : str
+        As in ``still(name)``.
+    about : str
+        What the picture shows, in a sentence; the beginning of its alternative text.
+    settings : tuple of Setting
+        What can be moved.
+    draw : callable
+        (paper, values) → `Sight`.
+
+    Examples
+    --------
+    >>> def draw(paper, values):
+    ...     panel = paper.panel((200, 100), (0, 1), (0, 1))
+    ...     return Sight(paper.join((panel,)), f"x is {values['x']:g}.")
+    >>> model = Model("empty", "A frame.", (Setting("x", "x", 0, 1, 0.1, 0.5, "a number"),), draw)
+    >>> model.sight(x=0.3).sentence
+    'x is 0.3.'
+    >>> model.picture().dtype
+    dtype('uint8')
+    """
+
+    name: str
+    about: str
+    settings: tuple[Setting, ...]
+    draw: Callable[[Paper, Values], Sight]
+
+    def values(self, **given: float) -> dict[str, float]:
+        """Fill up given values with the starting ones; refuse what no slider could say."""
+        values = {setting.name: setting.value for setting in self.settings}
+        for name, value in given.items():
+            if name not in values:
+                raise CvnotesError(f"{self.name}: {name!r} is none of {', '.join(values)}")
+            values[name] = value
+        for s in self.settings:
+            if not s.low <= values[s.name] <= s.high:
+                raise CvnotesError(
+                    f"{s.name}: expected a number from {s.low:g} to {s.high:g}, "
+                    f"got {values[s.name]!r}"
+                )
+        return values
+
+    def sight(self, **values: float) -> Sight:
+        """Give picture and sentence; where there is no answer, the sentence says why."""
+        return self._sight(Paper(), self.values(**values))
+
+    def _sight(self, paper: Paper, values: Values) -> Sight:
+        try:
+            return self.draw(paper, values)
+        except CvnotesError as reason:
+            panel = paper.panel((660, 120), (0, 1), (0, 1))
+            panel.text([0.5, 0.5], "no answer for these values", ESTIMATED, anchor="mm", size=14)
+            return Sight(paper.join((panel,)), f"No answer: {reason}.")
+
+    def picture(self, **values: float) -> Drawn:
+        """Give the picture alone, (height, width, 3) of uint8."""
+        return self.sight(**values).picture
+
+    def still(self, **values: float) -> Picture:
+        """Give the picture for a page: at twice the resolution, with its alternative text."""
+        from PIL import Image
+
+        sight = self._sight(Paper(2), self.values(**values))
+        encoded = io.BytesIO()
+        palette = Image.fromarray(sight.picture).quantize(256, dither=Image.Dither.NONE)
+        palette.save(encoded, "PNG", optimize=True)
+        alt = f"{self.about} {sight.sentence}"
+        return Picture(encoded.getvalue(), alt, sight.picture.shape[1] // 2)
+
+
+def pack_png(picture: Drawn) -> bytes:
+    r"""Pack a picture (height, width, 3) of uint8 as PNG, in few milliseconds.
+
+    Each row is stored as its difference from the row above (filter 2, "up"), which turns most of
+    a drawing into zeros, and compressed at level 1.
+
+    Examples
+    --------
+    >>> pack_png(np.zeros((2, 3, 3), np.uint8))[:8]
+    b'\x89PNG\r\n\x1a\n'
+    """
+    if picture.ndim != 3 or picture.shape[2] != 3 or picture.dtype != np.uint8:
+        raise ShapeError(f"picture: expected uint8 (height, width, 3), got {picture.shape}")
+    height, width = picture.shape[:2]
+    rows = np.empty((height, 1 + 3 * width), np.uint8)
+    flat = picture.reshape(height, -1)
+    rows[:, 0] = 2
+    rows[0, 1:] = flat[0]
+    np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
+    header = pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 1)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        pack(">I", len(data)) + kind + data + pack(">I", zlib.crc32(kind + data))
+        for kind, data in chunks
+    )

@@ -1,0 +1,137 @@
+"""Explore the noise: how exact a calibration can be, by the bound and by trying it."""
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.refine import Problem, State, covariance, minimise
+from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
+from cvnotes.targets import Chessboard
+from cvnotes.views import good_views
+
+_FEWEST, _MOST = 3, 30
+_SHOWN = ("alpha_u", "alpha_v", "u0", "v0")
+_LABELS = ("α_u", "α_v", "u0", "v0")
+_REACHES = (1, 4, 20, 100)  # px, of the error bars
+
+
+class _Study:
+    """Many exact views of a board by a known camera, and what the first n of them say."""
+
+    def __init__(self, camera: Camera, board: Chessboard) -> None:
+        poses = good_views(board, camera, _MOST, rng=np.random.default_rng(4))
+        m = np.stack([camera.moved(G).project(board.points) for G in poses])
+        # The refinement wants the board centred and about as large as 1.
+        centre, unit = board.points.mean(axis=0), float(np.abs(board.points).max()) / 2
+        poses[:, :3, 3] = (poses[:, :3, 3] + poses[:, :3, :3] @ centre) / unit
+        lens = camera.lens
+        self.problem = Problem(
+            (board.points - centre) / unit, m, skew=False,
+            n_radial=max(2, len(lens.k)), tangential=any(lens.p),
+        )  # fmt: skip
+        self.truth = self.problem.state(camera.A, lens, poses)
+        counts = range(_FEWEST, _MOST + 1)
+        self.std_by_views = np.array([self._std(n) for n in counts])  # for noise of 1 px
+
+    def std(self, n: int, sigma: float) -> Array:
+        """Give the least standard deviations possible with n views, in the order of `_SHOWN`."""
+        return np.asarray(sigma * self.std_by_views[n - _FEWEST])
+
+    def estimate(self, n: int, sigma: float, draw: int) -> tuple[Array, Array]:
+        """Calibrate from n noisy views: the estimate minus the truth, and its own error bars."""
+        problem, start = self._first(n)
+        noise = np.random.default_rng(draw).normal(0, 1, self.problem.m.shape)[:n]
+        noisy = Problem(
+            problem.W, problem.m + sigma * noise, skew=False,
+            n_radial=problem.n_radial, tangential=problem.tangential,
+        )  # fmt: skip
+        found = minimise(noisy, start)
+        freedom = problem.m.size - len(problem.names) - 6 * n
+        std = np.sqrt(found.cost / freedom * np.diag(covariance(found.system)))
+        return (found.x.shared - start.shared)[self._shown], std[self._shown]
+
+    def _std(self, n: int) -> Array:
+        problem, start = self._first(n)
+        _, system = problem.linearise(start)
+        return np.sqrt(np.diag(covariance(system)))[self._shown]
+
+    def _first(self, n: int) -> tuple[Problem, State]:
+        x = self.truth
+        return self.problem.some(np.arange(n)), State(x.shared, x.R[:n], x.T[:n])
+
+    @property
+    def _shown(self) -> list[int]:
+        return [self.problem.names.index(name) for name in _SHOWN]
+
+
+def noise_model(camera: Camera, board: Chessboard) -> Model:
+    """Make the model of calibrations of `camera` from good views of `board`."""
+    settings = (
+        Setting("sigma", "noise σ (px)", 0, 1, 0.01, 0.2, "standard deviation of u and of v"),
+        Setting("views", "views", _FEWEST, _MOST, 1, 6, "how many pictures of the board"),
+        Setting("draw", "another try", 1, 100, 1, 1, "which sample of the noise is drawn"),
+    )
+    about = (
+        "Errors of a simulated calibration with its own error bars, beside the least possible "
+        "standard deviations; and these over the number of views."
+    )
+    study = _Study(camera, board)
+    return Model("noise", about, settings, lambda paper, values: _draw(study, paper, values))
+
+
+def _draw(study: _Study, paper: Paper, values: Values) -> Sight:
+    n, sigma = int(values["views"]), values["sigma"]
+    bound = study.std(n, sigma)
+    error, std = study.estimate(n, sigma, int(values["draw"]))
+    reach = next((r for r in _REACHES if r > 2.5 * max(bound.max(), 0.1)), _REACHES[-1])
+    bars = paper.panel((450, 300), (-1.25 * reach, reach), (-0.8, 4.3), "estimate minus truth (px)")
+    _draw_bars(bars, bound, error, std)
+    curve = paper.panel(
+        (400, 300), (np.log10(2.6), np.log10(36)), (1.4, -1.8),
+        "least standard deviation of α_u (px) over views",
+    )  # fmt: skip
+    _draw_curve(curve, study, n, sigma)
+    sentence = (
+        f"σ = {sigma:.2f} px and {n} views: α_u cannot be known better than ±{bound[0]:.2f} px "
+        f"(one standard deviation); this try says {error[0]:+.2f} ± {std[0]:.2f} px."
+    )
+    return Sight(paper.join((bars, curve)), sentence)
+
+
+def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array) -> None:
+    left, reach = panel.x
+    panel.ticks(x=np.array([-0.8, -0.4, 0.4, 0.8]) * reach)
+    panel.line([[0, -0.3], [0, 4.3]], IDEAL, 1, dash=4)
+    panel.text([0.02 * reach, 3.85], "truth", IDEAL)
+    panel.text([0.95 * left, -0.55], "blue: the bound, ±1σ and ±2σ", CAMERA)
+    panel.text([0.95 * reach, -0.55], "orange: the estimate, ±1σ", ESTIMATED, anchor="rm")
+    for i, label in enumerate(_LABELS):
+        for k, width in ((2, 7), (1, 14)):
+            panel.line([[-k * bound[i], i], [k * bound[i], i]], CAMERA, width)
+        y = i + 0.35
+        panel.line([[error[i] - std[i], y], [error[i] + std[i], y]], ESTIMATED, 2)
+        panel.mark([error[i], y], "estimated", 5)
+        panel.text([0.95 * left, i], label, IDEAL, size=13)
+
+
+def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
+    """Draw both axes as logarithms; a halved error bar needs four times as many views."""
+    for value in (3, 5, 10, 20, 30):
+        x = float(np.log10(value))
+        panel.line([[x, -1.8], [x, 1.4]], "#DDDDDD", 0.5)
+        panel.text([x, -1.72], f"{value}", anchor="md", size=9)
+    for value in (0.1, 1, 10):
+        panel.line([[0, np.log10(value)], [2, np.log10(value)]], "#DDDDDD", 0.5)
+        panel.text([np.log10(2.7), np.log10(value)], f"{value:g}", size=9)
+    if sigma == 0:
+        panel.text([1.0, -0.2], "no noise, no error", MUTED, anchor="mm", size=12)
+        return
+    counts = np.arange(_FEWEST, _MOST + 1)
+    std = sigma * study.std_by_views[:, 0]
+    slope = std[-1] * np.sqrt(_MOST / counts)
+    panel.line(np.log10(np.stack([counts, slope], -1)), MUTED, 1, dash=4)
+    panel.text(np.log10([3.2, slope[0] * 0.6]), "∝ 1/√views", MUTED)
+    panel.line(np.log10(np.stack([counts, std], -1)), CAMERA, 2.2)
+    panel.mark(np.log10([n, std[n - _FEWEST]]), "camera", 8)

@@ -1,0 +1,209 @@
+"""Line drawings made quickly: panels that are drawn straight into arrays of pixels.
+
+Matplotlib takes a tenth of a second for a figure, too long for a picture that follows the hand.
+Here Pillow draws at twice the size, and taking the mean of 2 × 2 pixels makes the lines smooth.
+"""
+
+from functools import lru_cache
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, ImageDraw, ImageFont
+
+from cvnotes.errors import Array
+from cvnotes.show.style import COLOURS, MARKERS, MUTED
+
+Drawn = npt.NDArray[np.uint8]
+Range = tuple[float, float]
+_Stroke = tuple[float, float, float, float]
+
+_TITLE = 22  # px of the page above each panel
+_FARTHEST = 1e12  # px: lines are cut to the panel with all the digits this leaves
+_LARGEST = 1e6  # px: polygons are not cut, and Pillow counts in whole numbers
+_BEYOND = 8  # px by which lines are drawn over the border, where they are cut off
+
+
+class Paper:
+    """Something to draw panels on, in pixels of the page times `sharpness`."""
+
+    def __init__(self, sharpness: int = 1) -> None:
+        self.sharpness = sharpness
+
+    def panel(self, size: tuple[int, int], x: Range, y: Range, title: str = "") -> "Panel":
+        """Make a panel of (width, height) px that shows x from left to right, y downwards."""
+        return Panel(size, x, y, title, 2 * self.sharpness)
+
+    def picture_panel(
+        self, size: tuple[int, int], picture: tuple[int, int], title: str = ""
+    ) -> "Panel":
+        """Make a panel that shows the pixels of a picture of (width, height)."""
+        return self.panel(size, (-0.5, picture[0] - 0.5), (-0.5, picture[1] - 0.5), title)
+
+    def join(self, *rows: tuple["Panel", ...]) -> Drawn:
+        """Lay panels side by side, and rows below each other: (height, width, 3)."""
+        return np.vstack([np.hstack([panel.finish() for panel in row]) for row in rows])
+
+
+class Panel:
+    """A rectangle with coordinates of its own; what leaves it is cut off."""
+
+    def __init__(self, size: tuple[int, int], x: Range, y: Range, title: str, scale: int) -> None:
+        self.scale, self.title, self.x, self.y = scale, title, x, y
+        self.width, self.height = scale * size[0], scale * size[1]
+        self._image = Image.new("RGB", (self.width, self.height), "white")
+        self._draw = ImageDraw.Draw(self._image)
+
+    def place(self, xy: npt.ArrayLike) -> Array:
+        """Give where points (..., 2) lie on this panel, in its own pixels; NaN stays NaN."""
+        low = np.array([self.x[0], self.y[0]])
+        extent = np.array([self.x[1], self.y[1]]) - low
+        at = (np.asarray(xy, dtype=np.float64) - low) / extent * [self.width, self.height]
+        # What is farther away than any line can be followed has no place either.
+        return np.where(np.abs(at) < _FARTHEST, at, np.nan)
+
+    def line(self, xy: npt.ArrayLike, colour: str, width: float = 1.5, dash: float = 0) -> None:
+        """Draw a curve through points (n, 2); it is interrupted where they are NaN."""
+        at = self.place(xy)
+        pairs = _clipped(at[:-1], at[1:], self._limits())
+        thick = max(1, round(width * self.scale))
+        if not dash and len(pairs) == len(at) - 1 and (pairs[1:, 0] == pairs[:-1, 1]).all():
+            chain = np.concatenate([pairs[:1, 0], pairs[:, 1]])
+            self._draw.line(chain.ravel().tolist(), colour, thick, joint="curve")
+            return
+        for pair in _dashed(pairs, dash * self.scale) if dash else pairs:
+            self._draw.line(pair.ravel().tolist(), colour, thick)
+
+    def segments(self, ends: npt.ArrayLike, colour: str, width: float = 1.5) -> None:
+        """Draw straight lines between pairs of points (n, 2, 2)."""
+        at = self.place(ends)
+        thick = max(1, round(width * self.scale))
+        for pair in _clipped(at[:, 0], at[:, 1], self._limits()):
+            self._draw.line(pair.ravel().tolist(), colour, thick)
+
+    def polygons(self, corners: npt.ArrayLike, colour: str) -> None:
+        """Fill polygons with corners (n, k, 2); those without a place are left out."""
+        at = self.place(corners)
+        for one in at[(np.abs(at) < _LARGEST).all((1, 2))]:
+            self._draw.polygon(one.ravel().tolist(), fill=colour)
+
+    def mark(self, xy: npt.ArrayLike, meaning: str, size: float = 5) -> None:
+        """Mark points (n, 2) with the colour and the marker of their meaning."""
+        reach = size * self.scale
+        for at in np.atleast_2d(self.place(xy)):
+            if np.isfinite(at).all() and (np.abs(at) < 10 * max(self.width, self.height)).all():
+                self._marker(at, MARKERS[meaning], COLOURS[meaning], reach)
+
+    def image(self, picture: Drawn, smooth: bool = True) -> None:
+        """Fill the panel with a picture, grey or RGB."""
+        how = Image.Resampling.BILINEAR if smooth else Image.Resampling.NEAREST
+        resized = Image.fromarray(picture).resize((self.width, self.height), how)
+        self._image.paste(resized.convert("RGB"))
+
+    def text(
+        self,
+        xy: npt.ArrayLike,
+        words: str,
+        colour: str = MUTED,
+        *,
+        anchor: str = "lm",
+        size: int = 11,
+    ) -> None:
+        """Write words at a point; the anchor is Pillow's: left, middle, right; a, m, s or d."""
+        at = self.place(xy)
+        if np.isfinite(at).all():
+            self._draw.text(
+                tuple(at.tolist()), words, colour, _font(size * self.scale), anchor,
+                stroke_width=round(1.5 * self.scale), stroke_fill="white",
+            )  # fmt: skip
+
+    def ticks(self, x: npt.ArrayLike = (), y: npt.ArrayLike = ()) -> None:
+        """Draw light lines with their numbers at some x and y."""
+        (x0, x1), (y0, y1) = self.x, self.y
+        at_x, at_y = np.ravel(x).tolist(), np.ravel(y).tolist()
+        grid = [[[v, y0], [v, y1]] for v in at_x] + [[[x0, v], [x1, v]] for v in at_y]
+        self.segments(grid, _GRID, 0.5)
+        for value in at_x:
+            self.text([value, y1 - 0.03 * (y1 - y0)], f"{value:g}", anchor="md", size=9)
+        for value in at_y:
+            self.text([x0 + 0.01 * (x1 - x0), value], f"{value:g}", size=9)
+
+    def finish(self) -> Drawn:
+        """Give the panel with frame and title, at its final size."""
+        s, strip, gap = self.scale, self.scale * _TITLE, self.scale * 6
+        self._draw.rectangle((0, 0, self.width - 1, self.height - 1), outline=MUTED, width=s)
+        sheet = Image.new("RGB", (self.width + gap, self.height + strip + gap), "white")
+        sheet.paste(self._image, (gap // 2, strip))
+        ImageDraw.Draw(sheet).text(
+            (gap // 2 + 2 * s, strip // 2), self.title, "#333333", _font(12 * s), "lm"
+        )
+        return np.asarray(sheet.reduce(2))
+
+    def _limits(self) -> tuple[Array, Array]:
+        beyond = _BEYOND * self.scale
+        return np.full(2, -float(beyond)), np.array([self.width, self.height]) + float(beyond)
+
+    def _marker(self, at: Array, marker: str, colour: str, reach: float) -> None:
+        u, v = at.tolist()
+        r = 0.7 * reach
+        box = (u - r, v - r, u + r, v + r)
+        if marker == "o":
+            self._draw.ellipse(box, fill=colour, outline="white", width=self.scale // 2)
+        elif marker == "s":
+            self._draw.rectangle(box, fill=colour, outline="white", width=self.scale // 2)
+        elif marker == "^":
+            self._draw.polygon((u, v - reach, u + r, v + r, u - r, v + r), fill=colour)
+        elif marker == "+":
+            self._cross((u - reach, v, u + reach, v), (u, v - reach, u, v + reach), colour, reach)
+        else:
+            self._cross(box, (u - r, v + r, u + r, v - r), colour, reach)
+
+    def _cross(self, one: _Stroke, two: _Stroke, colour: str, reach: float) -> None:
+        """Draw two strokes with a white rim, to be seen on dark and light."""
+        for ink, part in (("white", 0.6), (colour, 0.28)):
+            for stroke in (one, two):
+                self._draw.line(stroke, ink, max(1, round(part * reach)))
+
+
+_GRID = "#DDDDDD"
+
+
+@lru_cache(maxsize=16)
+def _font(size: int) -> ImageFont.FreeTypeFont:
+    """Matplotlib's own type, so that drawings and figures look alike and have Greek letters."""
+    return ImageFont.truetype(Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf"), size)
+
+
+def _clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:
+    """Cut segments a to b (n, 2) to a rectangle: (m, 2, 2), without what lies outside."""
+    d = b - a
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, two = (limits[0] - a) / d, (limits[1] - a) / d
+    still = d == 0  # parallel to a side: inside of it, or not at all
+    inside = (a >= limits[0]) & (a <= limits[1])
+    enter = np.where(still, np.where(inside, 0.0, np.nan), np.minimum(one, two)).max(1)
+    leave = np.where(still, np.where(inside, 1.0, np.nan), np.maximum(one, two)).min(1)
+    enter, leave = np.maximum(enter, 0), np.minimum(leave, 1)
+    seen = enter < leave
+    a, d, enter, leave = a[seen], d[seen], enter[seen, None], leave[seen, None]
+    # The ends themselves are kept as they are, so that a curve stays in one piece.
+    return np.stack([a + enter * d, np.where(leave == 1, a + d, a + leave * d)], axis=1)
+
+
+def _dashed(pairs: Array, length: float) -> Array:
+    """Cut segments (n, 2, 2) into dashes and keep every other one, along the whole curve."""
+    dashes: list[Array] = []
+    done = 0.0
+    for a, b in pairs:
+        reach = float(np.linalg.norm(b - a))
+        cuts = np.arange(np.floor(done / length), np.ceil((done + reach) / length) + 1)
+        starts = ((cuts[cuts % 2 == 0] * length - done) / reach).clip(0, 1)
+        ends = (((cuts[cuts % 2 == 0] + 1) * length - done) / reach).clip(0, 1)
+        dashes += [
+            np.stack([a + s * (b - a), a + e * (b - a)])
+            for s, e in zip(starts, ends, strict=True)
+            if e > s
+        ]
+        done += reach
+    return np.array(dashes).reshape(-1, 2, 2)

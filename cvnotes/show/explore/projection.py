@@ -1,0 +1,128 @@
+"""Explore the projection: a direction of lines, and the point in which they all seem to end."""
+
+import numpy as np
+
+from cvnotes.camera import Camera
+from cvnotes.errors import Array
+from cvnotes.show.explore.boards import pinhole
+from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD
+
+_GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before the camera
+_NEAREST = 0.2  # m: what is nearer to the camera is not drawn
+_WOOD = "#A8A8A8"
+_PLANE = 2.5  # m: how far away the image plane is drawn from above
+
+
+def projection_model(camera: Camera) -> Model:
+    """Make the model of rails seen by `camera`, its lens left out."""
+    settings = (
+        Setting("heading", "heading (°)", -90, 90, 1, 12, "how far the rails turn to the right"),
+        Setting("slope", "slope (°)", -15, 15, 1, 0, "how steeply the rails climb"),
+        Setting("height", "height (m)", 0.2, 4, 0.1, 1.6, "how far the camera is above the rails"),
+    )
+    about = (
+        "Two rails as the camera sees them, meeting in their vanishing point; beside it the same "
+        "from above, with the ray through the camera's centre that is parallel to the rails."
+    )
+    ideal = pinhole(camera)
+    return Model("projection", about, settings, lambda paper, values: _draw(ideal, paper, values))
+
+
+def _draw(camera: Camera, paper: Paper, values: Values) -> Sight:
+    heading, slope = np.radians([values["heading"], values["slope"]])
+    # The rails' direction, and the level one across; rounded, so that 90° is exact.
+    along = np.array([np.sin(heading), -np.tan(slope), np.cos(heading)]) * np.cos(slope)
+    along, across = along.round(15), np.array([np.cos(heading), 0, -np.sin(heading)]).round(15)
+    # Where they pass before the camera: straight ahead, on their own plane below it.
+    normal = np.cross(along, across)
+    ahead = np.array([0, 0, 1]) - normal[2] * normal
+    middle = np.array([0, values["height"], 0]) + _START * ahead / np.linalg.norm(ahead)
+    picture = paper.picture_panel((440, 330), camera.size, "what the camera sees")
+    _draw_picture(picture, camera, middle, along, across)
+    above = paper.panel((410, 330), (-8.9, 8.9), (12.6, -1.7), "the same from above (m)")
+    _draw_above(above, camera, middle, along, across)
+    return Sight(paper.join((picture, above)), _sentence(camera, along))
+
+
+def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:
+    w, h = camera.size
+    horizon = np.cross(camera.A @ along, camera.A @ across)
+    side = horizon @ camera.A @ middle  # the side on which the plane of the rails is seen
+    picture = np.array([[-9, -9], [w + 8, -9], [w + 8, h + 8], [-9, h + 8]], dtype=float)
+    ground = _half(picture, horizon * np.sign(side))
+    if len(ground) > 2:
+        panel.polygons(ground[None], "#EEF5EF")
+        panel.line(ground[[*range(len(ground)), 0]], MUTED, 0.8, dash=5)
+    panel.segments(camera.project(_sleepers(middle, along, across)), _WOOD, 1)
+    for side in (-0.5, 0.5):
+        rail = _in_front(middle + side * _GAUGE * across - 1e3 * along, 1e7 * along)
+        panel.line(camera.project(rail), WORLD, 2.5)
+    end = camera.vanishing_point(along)
+    panel.mark(end, "ideal", 9)
+    u, v = end.tolist()
+    if 0 <= u < w and 0 <= v < h:
+        left, above = u > 0.7 * w, v > 40
+        beside = [u - 14 if left else u + 14, v - 14 if above else v + 18]
+        panel.text(beside, "vanishing point", IDEAL, anchor="rm" if left else "lm")
+
+
+def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:
+    panel.segments(_sleepers(middle, along, across)[..., ::2], _WOOD, 1)
+    for side in (-0.5, 0.5):
+        rail = middle + side * _GAUGE * across + np.outer([-50, 50], along)
+        panel.line(rail[:, ::2], WORLD, 2.5)
+    (left, _), (right, _) = camera.ideal([[-0.5, 0], [camera.size[0] - 0.5, 0]]) * _PLANE
+    view = np.array([[left, _PLANE], [0, 0], [right, _PLANE]])
+    panel.line(5 * view, CAMERA, 0.8)
+    panel.line([[left, _PLANE], [right, _PLANE]], CAMERA, 3)
+    panel.text([right + 0.2, _PLANE], "image plane", CAMERA)
+    panel.line(np.outer([0, 20], along[::2]), IDEAL, 1.2, dash=5)
+    panel.mark([0, 0], "camera", 8)
+    panel.text([-0.4, -0.6], "camera", CAMERA, anchor="rm")
+    if along[2] > 0:
+        panel.mark(_PLANE * along[::2] / along[2], "ideal", 9)
+
+
+def _sleepers(middle: Array, along: Array, across: Array) -> Array:
+    """Give the ends (n, 2, 3) of the sleepers, one for each metre."""
+    s = np.arange(-25.0, 40.0)[:, None, None]
+    return np.asarray(middle + s * along + np.outer([-0.8, 0.8], across) * _GAUGE)
+
+
+def _sentence(camera: Camera, along: Array) -> str:
+    a, b, c = (along.round(3) + 0.0).tolist()
+    said = f"All lines of direction d = ({a:.3f}, {b:.3f}, {c:.3f})"
+    if along[2] == 0:
+        return (
+            f"{said} are parallel to the image plane (c = 0): their vanishing point lies at "
+            "infinity, and in the picture too they stay parallel."
+        )
+    u, v = camera.vanishing_point(along)
+    w, h = camera.size
+    inside = -0.5 <= u <= w - 0.5 and -0.5 <= v <= h - 0.5
+    place = "" if inside else ", outside of the picture"
+    return f"{said} end at ({u:.1f}, {v:.1f}) px{place}, wherever they start."
+
+
+def _in_front(start: Array, along: Array) -> Array:
+    """Cut the segment start … start + along to what lies in front of the camera: (2, 3)."""
+    z, dz = float(start[2]) - _NEAREST, float(along[2])
+    if z < 0 and z + dz < 0:
+        return np.full((2, 3), 0.0)  # the camera's centre has no image
+    cut = -z / dz if z * (z + dz) < 0 else None
+    first = cut if cut is not None and z < 0 else 0.0
+    last = cut if cut is not None and z >= 0 else 1.0
+    return start + np.outer([first, last], along)
+
+
+def _half(corners: Array, line: Array) -> Array:
+    """Cut a convex polygon (n, 2) to where l · (u, v, 1) is positive."""
+    following = np.roll(corners, -1, axis=0)
+    here, there = (x @ line[:2] + line[2] for x in (corners, following))
+    kept: list[Array] = []
+    for a, b, f, g in zip(corners, following, here, there, strict=True):
+        kept += [a] * bool(f >= 0)
+        kept += [a + f / (f - g) * (b - a)] if f * g < 0 else []
+    return np.array(kept).reshape(-1, 2)

@@ -1,0 +1,81 @@
+"""Explore the warp: the same map forward, with its holes, and backward, without."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.camera import Camera
+from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.show.explore.boards import pinhole
+from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.paper import Drawn, Paper
+from cvnotes.show.style import ESTIMATED
+from cvnotes.synthetic import render
+from cvnotes.targets import Chessboard
+from cvnotes.warp import backward_warp, compose, forward_warp, rotation_map, zoom_map
+
+_WIDTH = 108  # px of the source: few enough to see each one
+_PAPER = 255  # grey level where the source has nothing to show
+
+
+def warp_model(camera: Camera, board: Chessboard) -> Model:
+    """Make the model of a small picture of `board` by `camera`, turned and zoomed."""
+    settings = (
+        Setting("angle", "rotation (°)", -180, 180, 1, 20, "clockwise on the screen: v runs down"),
+        Setting("zoom", "zoom", 0.25, 4, 0.05, 1.2, "by how much distances grow"),
+        Setting("bilinear", "bilinear", 0, 1, 1, 0, "backward: 0 nearest neighbour, 1 bilinear"),
+    )
+    about = (
+        "A small picture turned and zoomed twice by the same map: forward, where pixels that "
+        "receive nothing are orange holes, and backward, without holes."
+    )
+    source = _source(camera, board)
+    return Model("warp", about, settings, lambda paper, values: _draw(source, paper, values))
+
+
+def _draw(source: Drawn, paper: Paper, values: Values) -> Sight:
+    height, width = source.shape
+    middle = (width - 1) / 2, (height - 1) / 2
+    angle, zoom = np.radians(values["angle"]), values["zoom"]
+    forward = forward_warp(
+        source, compose(zoom_map(zoom, middle), rotation_map(angle, middle)), fill=_PAPER
+    )
+    where_from = compose(rotation_map(-angle, middle), zoom_map(1 / zoom, middle))
+    backward = backward_warp(
+        source, where_from, method="bilinear" if values["bilinear"] else "nearest",
+        border="replicate" if values["bilinear"] else "constant", fill=_PAPER,
+    )  # fmt: skip
+    covered = backward_warp(np.ones_like(source), where_from, method="nearest") > 0
+    backward[~covered] = _PAPER
+    holes = covered & (forward.hits == 0)
+    size = (430, round(430 * height / width))
+    left = paper.picture_panel(size, (width, height), "forward: each pixel is sent")
+    left.image(_with_holes(forward.image.astype(np.uint8), holes), smooth=False)
+    right = paper.picture_panel(size, (width, height), "backward: each pixel is fetched")
+    right.image(backward.astype(np.uint8), smooth=False)
+    for panel in (left, right):
+        panel.mark(middle, "ideal", 6)
+    return Sight(paper.join((left, right)), _sentence(holes, covered, forward.folds))
+
+
+def _sentence(holes: npt.NDArray[np.bool_], covered: npt.NDArray[np.bool_], folds: int) -> str:
+    return (
+        f"Forward: {holes.sum()} of {covered.sum()} pixels are holes, and {folds} were hit more "
+        "than once. Backward: each pixel is asked for exactly once, no holes, no folds."
+    )
+
+
+def _with_holes(image: Drawn, holes: npt.NDArray[np.bool_]) -> Drawn:
+    coloured = np.repeat(image[..., None], 3, axis=2)
+    coloured[holes] = [int(ESTIMATED[i : i + 2], 16) for i in (1, 3, 5)]
+    return coloured
+
+
+def _source(camera: Camera, board: Chessboard) -> Drawn:
+    """Photograph the board with a sensor of few pixels."""
+    scale = _WIDTH / camera.size[0]
+    A = np.diag([scale, scale, 1]) @ pinhole(camera).A
+    R = rotation_from_vector([-0.4, 0.3, 0.15])
+    far = 1.45 * float(np.linalg.norm(board.points[-1] + 2 * board.square))
+    T = [0, 0, far] - R @ board.points.mean(axis=0)
+    small = Camera(A, pose(R, T), size=(_WIDTH, round(camera.size[1] * scale)))
+    return render(board, small, blur=0.4).astype(np.uint8)

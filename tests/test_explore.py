@@ -1,0 +1,446 @@
+"""The explorations: what they show is right, quick, and survives every position of the sliders."""
+
+import base64
+import html
+import io
+import re
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from cvnotes import course
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import CvnotesError, DegenerateError, ShapeError
+from cvnotes.lens import Lens
+from cvnotes.show import explore
+from cvnotes.show.explore.model import Model, Setting, Sight, pack_png
+from cvnotes.show.explore.paper import Paper
+from cvnotes.show.style import CAMERA, ESTIMATED, LENS, WORLD
+
+# Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
+MARGIN, TITLE, WIDTH = 3, 22, 440
+MODELS = {name: explore.model(name) for name in explore.NAMES}
+each_model = pytest.mark.parametrize("name", explore.NAMES)
+
+
+def colour(text):
+    return np.array([int(text[i : i + 2], 16) for i in (1, 3, 5)])
+
+
+def count(picture, text, atol=40):
+    return int((np.abs(picture.astype(int) - colour(text)).max(-1) < atol).sum())
+
+
+def numbers(sentence):
+    return [float(x.replace("−", "-")) for x in re.findall(r"[-−+]?\d+\.?\d*", sentence)]
+
+
+def random_values(model, rng):
+    values = {}
+    for s in model.settings:
+        steps = rng.integers(0, round((s.high - s.low) / s.step) + 1)
+        values[s.name] = min(s.low + steps * s.step, s.high)
+    return values
+
+
+def check_sight(name, values):
+    sight = MODELS[name].sight(**values)
+    assert sight.picture.dtype == np.uint8
+    assert sight.picture.ndim == 3
+    assert np.ptp(sight.picture) > 100
+    assert not sight.sentence.startswith("No answer") or name == "homography"
+    assert not re.search(r"\b(nan|inf)\b", sight.sentence)
+    return sight
+
+
+# Every exploration.
+
+
+@each_model
+def test_each_slider_may_stand_at_either_end_and_at_zero(name):
+    for s in MODELS[name].settings:
+        for value in {s.low, s.high, min(max(0, s.low), s.high)}:
+            check_sight(name, {s.name: value})
+
+
+@each_model
+def test_all_sliders_may_stand_at_their_ends_together(name):
+    settings = MODELS[name].settings
+    check_sight(name, {s.name: s.low for s in settings})
+    check_sight(name, {s.name: s.high for s in settings})
+    check_sight(name, {s.name: (s.low, s.high)[i % 2] for i, s in enumerate(settings)})
+
+
+@each_model
+def test_thirty_random_settings_each_give_a_picture_of_the_same_size(name):
+    rng = np.random.default_rng(7)
+    shapes = {check_sight(name, random_values(MODELS[name], rng)).picture.shape for _ in range(30)}
+    assert shapes == {MODELS[name].picture().shape}
+
+
+@each_model
+def test_every_slider_moves_something(name):
+    model = MODELS[name]
+    start = model.picture()
+    for s in model.settings:
+        moved = min(s.value + max(s.step, (s.high - s.low) / 8), s.high)
+        assert not np.array_equal(model.picture(**{s.name: moved}), start), s.name
+
+
+@each_model
+def test_the_same_values_give_the_same_picture(name):
+    model = explore.model(name)
+    assert np.array_equal(model.picture(), MODELS[name].picture())
+
+
+@each_model
+def test_a_picture_is_made_and_packed_sooner_than_an_empty_figure_of_matplotlib(name):
+    from cvnotes.show.picture import encode
+    from cvnotes.show.style import panels
+
+    def fastest(run):
+        times = []
+        for _ in range(4):
+            start = time.perf_counter()
+            run()
+            times.append(time.perf_counter() - start)
+        return min(times)
+
+    ours = fastest(lambda: pack_png(MODELS[name].picture()))
+    assert ours < fastest(lambda: encode(panels(2).flat[0].figure))
+
+
+@each_model
+def test_no_figure_is_left_open(name):
+    import matplotlib.pyplot as plt
+
+    MODELS[name].picture()
+    assert plt.get_fignums() == []
+
+
+@each_model
+def test_a_still_shows_what_the_widget_shows_at_twice_the_resolution(name):
+    s = MODELS[name].settings[0]
+    picture = explore.still(name, **{s.name: s.high})
+    live = MODELS[name].sight(**{s.name: s.high})
+    assert picture.alt.endswith(live.sentence)
+    assert picture.alt.startswith(MODELS[name].about)
+    sharp = Image.open(io.BytesIO(picture.data)).convert("RGB")
+    height, width = live.picture.shape[:2]
+    assert (picture.width, sharp.size) == (width, (2 * width, 2 * height))
+    small = np.asarray(sharp.reduce(2)).astype(float)
+    assert np.abs(small - live.picture).mean() < 6
+    assert len(picture.data) < 150_000
+    assert base64.b64encode(picture.data).decode() in picture._repr_html_()
+
+
+def test_values_no_slider_could_say_are_refused_in_words():
+    with pytest.raises(CvnotesError, match="lens: 'k9' is none of k1, k2, k3, p1, p2"):
+        explore.still("lens", k9=0)
+    with pytest.raises(CvnotesError, match=r"k1: expected a number from -1\.5 to 1\.5, got 7"):
+        explore.still("lens", k1=7)
+    with pytest.raises(CvnotesError, match="got nan"):
+        explore.still("lens", k1=float("nan"))
+    with pytest.raises(CvnotesError, match="expected one of projection, camera, lens"):
+        explore.still("zoo")
+
+
+def test_where_there_is_no_answer_the_sentence_says_why():
+    def draw(_paper, _values):
+        raise DegenerateError("three points are collinear; move one")
+
+    model = Model("x", "Nothing.", (Setting("a", "a", 0, 1, 1, 0, ""),), draw)
+    sight = model.sight()
+    assert sight.sentence == "No answer: three points are collinear; move one."
+    assert count(sight.picture, ESTIMATED) > 50
+
+
+def test_another_camera_and_another_board_may_be_given():
+    camera = Camera(intrinsics(500, 505, 250, 190), lens=Lens(k=(-1.7, 0.2)), size=(500, 400))
+    board = course.Chessboard((6, 5), 40.0)
+    for name in explore.NAMES:
+        model = explore.model(name, camera, board)
+        rng = np.random.default_rng(1)
+        assert model.picture(**random_values(model, rng)).any()
+    assert explore.model("lens", camera).settings[0].value == -1.7
+
+
+# What each of them shows.
+
+
+def test_rails_turned_by_45_degrees_vanish_one_focal_length_beside_the_piercing_point():
+    sight = MODELS["projection"].sight(heading=45)
+    assert numbers(sight.sentence)[-2:] == [325 + 800, 238]
+    assert "outside of the picture" in sight.sentence
+
+
+def test_the_vanishing_point_does_not_depend_on_where_the_rails_lie():
+    low, high = (MODELS["projection"].sight(heading=5, height=h) for h in (0.5, 3))
+    assert low.sentence == high.sentence
+    assert not np.array_equal(low.picture, high.picture)
+
+
+def test_rails_are_drawn_up_to_their_vanishing_point():
+    picture = MODELS["projection"].sight(heading=0).picture
+    u, v = (np.array([325, 238]) + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
+    around = picture[round(v) + 8 : round(v) + 14, round(u) - 12 : round(u) + 12]
+    assert count(around, WORLD) > 10
+    assert count(picture[TITLE : round(v) - 2, :WIDTH], WORLD) == 0
+
+
+def test_rails_parallel_to_the_image_plane_stay_parallel_and_are_still_drawn():
+    sight = MODELS["projection"].sight(heading=90)
+    assert "(c = 0)" in sight.sentence
+    assert "infinity" in sight.sentence
+    left = sight.picture[:, MARGIN : MARGIN + WIDTH]
+    green = np.abs(left.astype(int) - colour(WORLD)).max(-1) < 40
+    assert 2 < green.any(axis=1).sum() < 12
+    assert green.any(axis=0).mean() > 0.98
+
+
+def test_T_is_not_where_the_camera_stands():
+    turned = {"angle_x": 0, "angle_y": 0, "angle_z": 90, "T_x": 100, "T_y": 0, "T_z": 500}
+    said = numbers(MODELS["camera"].sight(**turned).sentence)
+    # R carries x to y, so Rᵀ carries it to −y: C = −Rᵀ (100, 0, 500) = (0, 100, −500).
+    assert said == [100, 0, 500, 0, 100, -500]
+
+
+def test_the_board_is_drawn_where_the_camera_sees_it():
+    picture = MODELS["camera"].picture(angle_x=0, angle_y=0, angle_z=0, T_x=-100, T_y=-60, T_z=500)
+
+    def grey_at(X, Y):
+        m = np.array([325 + 800 * (X - 100) / 500, 238 + 804 * (Y - 60) / 500])
+        u, v = (m + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
+        return picture[round(v), round(u)].mean()
+
+    for i in range(-1, 9):
+        for j in range(-1, 6):
+            dark = (i + j) % 2 == 0
+            grey = grey_at(25 * (i + 0.5), 25 * (j + 0.3))
+            assert grey < 60 if dark else grey > 230, (i, j)
+
+
+def test_a_board_behind_the_camera_has_no_image():
+    sight = MODELS["camera"].sight(T_z=0)
+    assert "behind the camera" in sight.sentence
+    assert count(sight.picture[TITLE + 2 :, MARGIN + 2 : WIDTH], "#262629", 10) < 200
+
+
+def test_a_lens_with_k1_of_minus_four_thirds_folds_at_one_half():
+    sight = MODELS["lens"].sight(k1=-4 / 3, k2=0)
+    assert "max_radius = 0.500" in sight.sentence
+    assert count(sight.picture, ESTIMATED) > 500
+    # On the axes the fold lies at r L(r) = 1/3; the grid panel shows 1.5 in 360 px.
+    middle, reach = np.array([MARGIN + 215, TITLE + 180]), 360 / 1.5 / 3
+    for direction in ([1, 0], [-1, 0], [0, 1], [0, -1]):
+        u, v = np.rint(middle + reach * np.array(direction)).astype(int)
+        assert count(sight.picture[v - 2 : v + 3, u - 2 : u + 3], ESTIMATED) > 0
+
+
+def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():
+    sight = MODELS["lens"].sight(k1=0, k2=0)
+    assert "never folds" in sight.sentence
+    assert numbers(sight.sentence)[-1] == 0
+    assert count(sight.picture, ESTIMATED) == 0
+    assert count(sight.picture, LENS) > 1000
+
+
+def test_four_exact_corners_make_every_square_upright():
+    model = MODELS["homography"]
+    picture = model.picture()[:, WIDTH + 6 + MARGIN :]
+    board = course.board()
+    # The squares span 250 × 175 mm, of which 0.65 / 0.5 as much is shown over 410 px.
+    pixel = 2 * 0.65 * 250 / 410
+    middle = np.array([410, 330]) / 2 + [0, TITLE]
+    for i in range(-1, 9):
+        for j in range(-1, 6):
+            at = (np.array([25 * (i + 0.5), 25 * (j + 0.5)]) - board.points.mean(0)[:2]) / pixel
+            u, v = np.rint(middle + at).astype(int)
+            grey = picture[v - 2 : v + 3, u - 2 : u + 3].mean()
+            assert grey < 60 if (i + j) % 2 == 0 else grey > 200, (i, j)
+
+
+def test_a_nudged_corner_moves_the_board_by_as_much_as_the_sentence_says():
+    near = numbers(MODELS["homography"].sight(du1=1).sentence)[1]
+    far = numbers(MODELS["homography"].sight(du1=10).sentence)[1]
+    assert 0 < near < 2
+    assert 7 < far / near < 13
+
+
+def test_error_bars_grow_with_the_noise_and_shrink_with_the_views():
+    def bound(**values):
+        return float(re.search(r"±(\d+\.\d+) px", MODELS["noise"].sight(**values).sentence)[1])
+
+    assert abs(bound(sigma=0.8, views=8) / bound(sigma=0.2, views=8) - 4) < 0.05
+    assert bound(sigma=1, views=30) < 0.65 * bound(sigma=1, views=8)
+    assert bound(sigma=0) == 0
+
+
+def test_simulated_calibrations_scatter_as_the_bound_says():
+    errors, bounds = [], []
+    for draw in range(1, 61):
+        said = numbers(MODELS["noise"].sight(sigma=1, views=12, draw=draw).sentence)
+        _, _, bound, error, own = said
+        errors.append(error)
+        bounds.append(bound)
+        assert 0.8 < own / bound < 1.25
+    assert len(set(bounds)) == 1
+    assert 0.75 < np.std(errors) / bounds[0] < 1.3
+    assert abs(np.mean(errors)) < 0.5 * bounds[0]
+
+
+def test_a_picture_left_alone_has_neither_holes_nor_folds():
+    for angle in (0, 180, -180):
+        said = numbers(MODELS["warp"].sight(angle=angle, zoom=1).sentence)
+        assert said[:3] == [0, 108 * 81, 0]
+
+
+def test_zoomed_by_two_three_quarters_of_the_picture_are_holes():
+    sight = MODELS["warp"].sight(angle=0, zoom=2)
+    holes, covered, folds = numbers(sight.sentence)[:3]
+    assert covered == 108 * 81
+    assert folds == 0
+    assert abs(holes / covered - 0.75) < 0.01
+    left, right = sight.picture[:, :436], sight.picture[:, 436:]
+    assert count(left, ESTIMATED) / (430 * 322) > 0.65
+    assert count(right, ESTIMATED) == 0
+
+
+def test_rectified_partners_share_their_row_however_the_camera_was_turned():
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        said = numbers(
+            MODELS["rectification"].sight(**random_values(MODELS["rectification"], rng)).sentence
+        )
+        assert said[1] == 0
+    assert said[0] > 1
+
+
+def test_cameras_side_by_side_are_rectified_already():
+    still = {"angle_x": 0, "angle_y": 0, "angle_z": 0, "forward": 0}
+    assert numbers(MODELS["rectification"].sight(**still).sentence)[0] == 0
+
+
+def test_epipolar_lines_pass_through_the_points_they_were_drawn_for():
+    picture = MODELS["rectification"].picture(angle_x=0, angle_y=0, angle_z=0, forward=0)
+    orange = np.abs(picture.astype(int) - colour(ESTIMATED)).max(-1) < 60
+    rows = [half.mean(axis=1) > 0.6 for half in (orange[:, :346], orange[:, 346:])]
+    assert np.array_equal(*rows)
+    assert 7 <= rows[0].sum() <= 24  # eight lines of one to three px
+
+
+# Paper and packing.
+
+
+def test_a_packed_picture_is_unpacked_by_others_as_it_was():
+    picture = np.random.default_rng(0).integers(0, 256, (37, 53, 3), np.uint8)
+    assert np.array_equal(np.asarray(Image.open(io.BytesIO(pack_png(picture)))), picture)
+
+
+@pytest.mark.parametrize("bad", [np.zeros((4, 4), np.uint8), np.zeros((4, 4, 3))])
+def test_only_pictures_are_packed(bad):
+    with pytest.raises(ShapeError, match="expected uint8"):
+        pack_png(bad)
+
+
+def test_a_line_is_cut_at_the_border_and_interrupted_by_nan():
+    panel = Paper().panel((100, 100), (0, 100), (0, 100))
+    panel.line([[-1e9, 50], [1e9, 50]], WORLD, 3)
+    panel.line([[20, 80], [np.nan, 80], [80, 80], [1e300, 80]], CAMERA, 3)
+    picture = panel.finish()[TITLE:]
+    assert count(picture[50], WORLD) > 95
+    assert count(picture[80], CAMERA) == 0
+    assert count(picture, WORLD) < 500
+
+
+def test_a_dashed_line_is_drawn_by_half_in_one_rhythm_around_corners():
+    panel = Paper().panel((200, 50), (0, 200), (0, 50))
+    panel.line([[0, 25], [33, 25], [66, 25], [200, 25]], WORLD, 2, dash=10)
+    row = panel.finish()[TITLE + 25]
+    green = np.abs(row.astype(int) - colour(WORLD)).max(-1) < 60
+    assert 0.4 < green[3:203].mean() < 0.6
+    edges = np.flatnonzero(np.diff(green[5:200].astype(int)))
+    assert np.allclose(np.diff(edges), 10, atol=2)
+
+
+def test_points_far_away_or_without_a_place_are_not_marked():
+    panel = Paper().panel((50, 50), (0, 50), (0, 50))
+    panel.mark([[1e12, 3], [np.nan, np.nan]], "world")
+    panel.text([np.nan, 0], "nowhere")
+    assert count(panel.finish(), WORLD) == 0
+
+
+# The shell.
+
+
+def counting(model):
+    calls = []
+
+    def draw(paper, values):
+        calls.append(dict(values))
+        return model.draw(paper, values)
+
+    return Model(model.name, model.about, model.settings, draw), calls
+
+
+@each_model
+def test_a_slider_that_is_moved_changes_the_picture_and_reset_brings_it_back(name):
+    widget = getattr(explore, f"explore_{name}")()
+    start = widget.image.value
+    assert np.array_equal(np.asarray(Image.open(io.BytesIO(start))), MODELS[name].picture())
+    first = MODELS[name].settings[0]
+    slider = widget.sliders[first.name]
+    slider.value += slider.step * 9
+    assert widget.image.value != start
+    values = widget.values
+    assert MODELS[name].sight(**values).sentence in html.unescape(widget.sentence.value)
+    widget.reset_button.click()
+    assert widget.values == {s.name: s.value for s in MODELS[name].settings}
+    assert widget.image.value == start
+    widget.reset_button.click()
+    assert widget.image.value == start
+    widget.close_all()
+
+
+@each_model
+def test_sliders_say_what_they_are_and_can_be_moved_by_keys(name):
+    widget = getattr(explore, f"explore_{name}")()
+    for s in MODELS[name].settings:
+        slider = widget.sliders[s.name]
+        assert type(slider).__name__ in ("IntSlider", "FloatSlider")
+        assert len(slider.tooltip) > 4
+        assert (slider.min, slider.max, slider.step) == (s.low, s.high, s.step)
+        assert slider.continuous_update
+    assert widget.image.tooltip == MODELS[name].about
+    assert 'aria-live="polite"' in widget.sentence.value
+    assert not any("Output" in type(w).__name__ for w in widget.children)
+    widget.close_all()
+
+
+def test_reset_draws_once_and_unchanged_values_are_not_drawn_again():
+    from cvnotes.show.explore.shell import Explorer
+
+    model, calls = counting(MODELS["lens"])
+    widget = Explorer(model)
+    for name in ("k1", "k2", "k3", "p1", "p2"):
+        widget.sliders[name].value = 0.05
+    assert len(calls) == 6
+    widget.reset()
+    assert len(calls) == 7
+    widget.reset()
+    widget.redraw()
+    assert len(calls) == 7
+    widget.close_all()
+
+
+def test_a_sentence_cannot_smuggle_markup_into_the_page():
+    from cvnotes.show.explore.shell import Explorer
+
+    def draw(paper, _):
+        return Sight(paper.join((paper.panel((50, 50), (0, 1), (0, 1)),)), "1 < 2 & <b>no</b>")
+
+    widget = Explorer(Model("x", "x", (Setting("a", "a", 0, 1, 0.5, 0.5, "a value"),), draw))
+    assert "1 &lt; 2 &amp; &lt;b&gt;no" in widget.sentence.value
+    widget.close_all()
