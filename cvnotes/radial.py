@@ -54,10 +54,11 @@ def fold_radius(k: Sequence[float], p_norm: float = 0.0) -> float:
     It folds where the smaller eigenvalue of the Jacobian, a symmetric matrix, reaches 0. With
     a = r dL/dr and m = 4 ‖p‖ r, the smallest value of this eigenvalue on a circle is
 
-        L − a/8 − m²/(2a)                 if 2m/3 < a < 2m,
-        min(L + a − 3m/2,  L − m/2)       otherwise, and then in the direction −p,
+        L + a − 3m/2              if a ≤ 2m/3, in the direction −p,
+        L − a/8 − m²/(2a)         if 2m/3 < a < 2m, beside it,
+        L − m/2                   if a ≥ 2m; it grows there, so it never reaches 0 first,
 
-    so that every fold is a root of one of three polynomials in r. Without tangential terms
+    so that every fold is a root of one of two polynomials in r. Without tangential terms
     L + a = d(r L)/dr decides alone.
 
     Examples
@@ -70,7 +71,7 @@ def fold_radius(k: Sequence[float], p_norm: float = 0.0) -> float:
     a = L * np.arange(L.size)
     curves = [L + a - 1.5 * m]
     if p_norm > 0:
-        curves += [L - m / 2, np.convolve(a, 8 * L - a) - 4 * np.convolve(m, m)]
+        curves.append(np.convolve(a, 8 * L - a) - 4 * np.convolve(m, m))
     candidates = np.sort(np.concatenate([_positive_roots(c) for c in curves]))
     for i, r in enumerate(candidates):
         beyond = (r + candidates[i + 1]) / 2 if i + 1 < candidates.size else 2 * r

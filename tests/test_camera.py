@@ -150,10 +150,10 @@ def test_the_optical_axis_vanishes_in_the_piercing_point_and_the_image_plane_now
 
 
 def test_the_field_of_view_is_twice_the_arctangent_of_half_the_width_over_f():
-    camera = Camera(intrinsics(500, 400, 499.5, 299.5), size=(1000, 600))
+    camera = Camera(intrinsics(5, 4, 4.5, 2.5), size=(10, 6))  # from −½ to 9½, and to 5½
     horizontal, vertical = camera.field_of_view
-    assert horizontal == pytest.approx(2 * np.arctan(500 / 500))
-    assert vertical == pytest.approx(2 * np.arctan(300 / 400))
+    assert horizontal == pytest.approx(2 * np.arctan(5 / 5))
+    assert vertical == pytest.approx(2 * np.arctan(3 / 4))
 
 
 def test_a_lens_that_folds_inside_the_picture_is_found_out():

@@ -82,8 +82,8 @@ def test_what_coincides_up_to_a_factor_is_found_out(factor):
 
 
 def test_neighbours_far_from_the_origin_do_not_coincide():
-    line = join([1e6, 2e6, 1], [1e6 + 1, 2e6, 1])
-    assert same_up_to_scale(line, [0, 1, -2e6])
+    for step in (1.0, 2.0**-16):
+        assert same_up_to_scale(join([1e6, 2e6, 1], [1e6 + step, 2e6, 1]), [0, 1, -2e6])
 
 
 @pytest.mark.parametrize("factor", [-1, 1e-200, 1e300])
