@@ -35,7 +35,7 @@ def notebook(path, *cells):
 
 
 def hand_over(name):
-    variable = {"own_camera": "my_alpha_u", "pipeline": "my_steps"}.get(name, f"my_{name}")
+    variable = "my_steps" if name == "pipeline" else f"my_{name}"
     student = ', student="demo"' if name == "own_camera" else ""
     return f'check("{name}", {variable}{student})'
 
@@ -100,7 +100,7 @@ def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
 
 
 def stub(exercise):
-    return exercise.stub.replace("my_own_camera", "my_alpha_u")
+    return exercise.stub
 
 
 @pytest.mark.parametrize("wrong", [0, 1, 2, 3])
@@ -206,12 +206,12 @@ def test_a_hostile_notebook_costs_its_own_row_only(tmp_path):
 def test_what_cannot_be_interrupted_is_ended_and_its_first_answers_kept(tmp_path):
     stuck = "import signal\nsignal.signal(signal.SIGALRM, signal.SIG_IGN)\nwhile True: pass"
     left = "import subprocess, sys\nsubprocess.Popen([sys.executable, '-c', "
-    left += f"\"import time, pathlib; time.sleep(9); pathlib.Path('{tmp_path}/late').touch()\"])"
+    left += f"\"import time, pathlib; time.sleep(7); pathlib.Path('{tmp_path}/late').touch()\"])"
     notebook(tmp_path / "01_a.ipynb", IMPORTS, *answered("lift", source_of("lift")), left, stuck)
-    [mark] = graded(tmp_path, seconds=7.0).values()
-    assert mark.remark == "stopped after 7 seconds"
+    [mark] = graded(tmp_path, seconds=6.0).values()
+    assert mark.remark == "stopped after 6 seconds"
     assert mark.points == 1
-    time.sleep(3)
+    time.sleep(2.5)
     assert not (tmp_path / "late").exists()
 
 
@@ -255,10 +255,10 @@ def test_the_table_and_the_class_summary(tmp_path, capsys):
 
 
 def test_ids_show_who_handed_in_whose_numbers(tmp_path):
-    cell = "check('own_camera', personal_camera('eve').camera.A[0, 0], student='eve')"
-    notebook(tmp_path / "09_a.ipynb", IMPORTS, cell)
-    copied = "check('own_camera', personal_camera('eve').camera.A[0, 0], student='bob')"
-    notebook(tmp_path / "bob" / "09_a.ipynb", IMPORTS, copied)
+    numbers = "A = personal_camera('eve').camera.A[[0, 1, 0, 1], [0, 1, 2, 2]]"
+    own, copied = (f"check('own_camera', A, student='{who}')" for who in ("eve", "bob"))
+    notebook(tmp_path / "09_a.ipynb", IMPORTS, numbers, own)
+    notebook(tmp_path / "bob" / "09_a.ipynb", IMPORTS, numbers, copied)
     marks = graded(tmp_path)
     assert marks["09_a.ipynb"].ids == ("eve",)
     assert marks["09_a.ipynb"].earned("own_camera") == 1

@@ -150,4 +150,4 @@ def _poses(name: str, camera: Camera, board: Chessboard) -> Array:
     aim = np.array(_SIZE) / 2 + room * (u[:, 3:] - 0.5)
     ideal = (aim - camera.A[:2, 2]) / np.diag(camera.A)[:2]
     middle = np.column_stack([z[:, None] * ideal, z])
-    return np.asarray(np.round(pose(R, middle - R @ board.points.mean(0)), 12))
+    return np.asarray(np.round(pose(R, middle - R @ board.points.mean(0)), 9))

@@ -1,84 +1,94 @@
 """A camera of your own."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from cvnotes.calibration import calibrate
 from cvnotes.errors import Array
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Same
 from cvnotes.learn.personal import PersonalCamera, personal_camera
 
+_COURSE = np.array([800.0, 804.0, 325.0, 238.0])
+_NEAR = 10.0  # px; the corners determine each number to about 2 px
 
-def _within_percent(percent: float) -> Callable[[Array, Array, float], bool]:
+
+def numbers_of(own: PersonalCamera) -> Array:
+    """Give (α_u, α_v, u0, v0) of a student's camera."""
+    return own.camera.A[[0, 1, 0, 1], [0, 1, 2, 2]]
+
+
+def _each_within(distance: float) -> Same:
     def same(answer: Array, right: Array, _: float) -> bool:
-        return bool(np.abs(answer - right).max() <= percent / 100 * np.abs(right).max())
+        return answer.shape == right.shape and bool((np.abs(answer - right) <= distance).all())
 
     return same
 
 
 def _of_student(student: str) -> Exercise:
     own = personal_camera(student)
-    return replace(OWN, reference=lambda: own.camera.A[0, 0], misconceptions=_slips(own))
+    return replace(OWN, reference=lambda: numbers_of(own), misconceptions=_slips(own))
 
 
 def _slips(own: PersonalCamera) -> tuple[Misconception, ...]:
-    A = own.camera.A
+    right = numbers_of(own)
     return (
         Misconception(
-            "the vertical focal length",
-            "That is α_v = A[1, 1], in pixel heights; α_u is in pixel widths.",
-            lambda: A[1, 1],
+            "α_u and α_v exchanged",
+            "α_u and α_v are exchanged: α_u = A[0, 0] is in pixel widths, α_v = A[1, 1] in pixel "
+            "heights.",
+            lambda: right[[1, 0, 2, 3]],
         ),
         Misconception(
-            "the piercing point",
-            "That is u0 = A[0, 2], where the optical axis is seen; α_u is A[0, 0].",
-            lambda: A[0, 2],
+            "u0 and v0 exchanged",
+            "u0 and v0 are exchanged: u0 = A[0, 2] counts columns, v0 = A[1, 2] rows.",
+            lambda: right[[0, 1, 3, 2]],
         ),
         Misconception(
-            "the piercing point's row",
-            "That is v0 = A[1, 2]; α_u is A[0, 0].",
-            lambda: A[1, 2],
+            "row by row",
+            "You read A row by row; asked are α_u, α_v, u0, v0, in this order.",
+            lambda: right[[0, 2, 1, 3]],
         ),
         Misconception(
             "in squares",
-            "You divided by the side of a square. α_u is in pixels, whatever unit the board is "
+            "You divided by the side of a square. A is in pixels, whatever unit the board is "
             "measured in.",
-            lambda: A[0, 0] / own.board.square,
-        ),
-        Misconception(
-            "someone else's camera",
-            "That is the focal length of the course's camera. Calibrate your own: "
-            'personal_camera("your id").',
-            lambda: 800.0 if abs(A[0, 0] / 800 - 1) > 0.04 else None,
+            lambda: right / own.board.square,
         ),
         Misconception(
             "half a picture",
-            "That is half of it: were the pictures scaled down before the corners were found?",
-            lambda: A[0, 0] / 2,
+            "These are half of the numbers: were the pictures scaled down before the corners were "
+            "found?",
+            lambda: right / 2,
+        ),
+        Misconception(
+            "someone else's camera",
+            'That is the course\'s camera. Calibrate your own: personal_camera("your id").',
+            lambda: _COURSE if np.abs(right - _COURSE).max() > _NEAR else None,
         ),
     )
 
+
+_DEMO = personal_camera("demo")
 
 OWN = Exercise(
     name="own_camera",
     chapter=9,
     title="A camera of your own",
-    task='mine = personal_camera("your id") is a camera that nobody else has. Calibrate it from '
-    "mine.photos(), or from mine.corners, and mine.board, and give its α_u in pixels, to 1.5 %: "
-    'check("own_camera", alpha_u, student="your id").',
-    stub="my_alpha_u = ...",
+    task="""mine = personal_camera("your id") is a camera that nobody else has. Calibrate it from \
+mine.photos(), or from mine.corners, and mine.board, and give (α_u, α_v, u0, v0), each to 10 pixels:
+check("own_camera", my_own_camera, student="your id").""",
+    stub="my_own_camera = ...  # (alpha_u, alpha_v, u0, v0)",
     hints=(
         "find_corners finds the board in each picture; calibrate takes it from there.",
-        "calibrate(mine.board.points, mine.corners, mine.camera.size) starts from the corners.",
-        "α_u is the first entry of A.",
+        "calibrate(mine.board.points, mine.corners, (640, 480)) starts from the corners.",
+        "α_u = A[0, 0], α_v = A[1, 1], u0 = A[0, 2], v0 = A[1, 2].",
     ),
     cases=lambda _: [Case(())],
-    properties=(Property("It is the α_u of your camera, to 1.5 %."),),
-    misconceptions=_slips(personal_camera("demo")),
-    reference=lambda: personal_camera("demo").camera.A[0, 0],
-    same=_within_percent(1.5),
+    properties=(Property("They are α_u, α_v, u0 and v0 of your camera, each to 10 pixels."),),
+    misconceptions=_slips(_DEMO),
+    reference=lambda: numbers_of(_DEMO),
+    same=_each_within(_NEAR),
     concepts=("20", "36", "64"),
     answer="value",
     personal=_of_student,
