@@ -318,30 +318,28 @@ def _normal(code):
     return [line for line in lines if len(line) > 12 and not line.startswith(("from", "import"))]
 
 
-def _functions(code):
-    """Give the functions for exercises that a cell defines, by name, as source."""
-    asked = {f"my_{name}" for name in EXERCISES}
+def _functions(cells):
+    """Give the exercises that a notebook asks for, with the source of the function it has."""
+    code = "\n\n".join(cell.source for cell in cells if cell.cell_type == "code")
+    asked = {f: name for name, f in re.findall(r"^check\(\"(\w+)\", (\w+)", code, re.M)}
     for node in ast.parse(re.sub(r"^[%!].*$", "", code, flags=re.M)).body:
         if isinstance(node, ast.FunctionDef) and node.name in asked:
-            yield node.name, ast.unparse(node)
+            yield EXERCISES[asked[node.name]], node.name, ast.unparse(node)
 
 
 @pytest.mark.skipif(not NOTEBOOKS, reason="no notebooks yet")
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
 def test_no_notebook_holds_the_text_of_a_solution(path):
-    for cell in _cells(path):
-        if cell.cell_type != "code":
-            continue
-        assert not re.search(r"\bsolution\(", cell.source), cell.source
-        for name, source in _functions(cell.source):
-            exercise = EXERCISES[name.removeprefix("my_")]
-            solved = set(_normal(solution(exercise.name).code))
-            assert not solved & set(_normal(source)), source
-            names = {}
-            exec(source, names)
-            report = judge(exercise, ask(exercise, names[name], 1), 1)
-            assert report.verdict == "not solved yet"
-            assert tuple(inspect.signature(names[name]).parameters) == exercise.arguments
+    cells = _cells(path)
+    assert not any(re.search(r"\bsolution\(", c.source) for c in cells if c.cell_type == "code")
+    for exercise, name, source in _functions(cells):
+        solved = set(_normal(solution(exercise.name).code))
+        assert not solved & set(_normal(source)), source
+        names = {}
+        exec(source, names)
+        report = judge(exercise, ask(exercise, names[name], 1), 1)
+        assert report.verdict == "not solved yet"
+        assert tuple(inspect.signature(names[name]).parameters) == exercise.arguments
 
 
 @pytest.mark.skipif(not NOTEBOOKS, reason="no notebooks yet")

@@ -4,6 +4,7 @@ import argparse
 import csv
 import json
 import os
+import re
 import time
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from cvnotes.learn.report import Report
 
 IMPORTS = "import numpy as np\nfrom cvnotes.learn.exercises import check\n"
 IMPORTS += "from cvnotes.learn.personal import personal_camera"
+COURSE = sorted((Path(__file__).resolve().parents[1] / "notebooks").glob("0[1-9]_*.ipynb"))
 needs_posix = pytest.mark.skipif(os.name != "posix", reason="limits as on Linux")
 
 
@@ -101,6 +103,45 @@ def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
 
 def stub(exercise):
     return exercise.stub
+
+
+def exercise_cells(path, solved):
+    """Give a course notebook's imports and exercises, with the stubs as they are or solved."""
+    code = [
+        "".join(cell["source"])
+        for cell in json.loads(path.read_text())["cells"]
+        if cell["cell_type"] == "code"
+    ]
+    kept = [code[0]]
+    for cell in code[1:]:
+        asked = re.findall(r"^check\(\"(\w+)\", (\w+)", cell, re.M)
+        if asked and solved:
+            [(name, variable)] = asked
+            own = "my_steps" if name == "pipeline" else f"my_{name}"
+            call = re.search(r"^check\(.*", cell, re.M | re.S)[0]
+            cell = f"{source_of(name)}\n{variable} = {own}\n{call}"
+        if asked or re.search(r"^(def )?my_\w+", cell, re.M):
+            kept.append(cell)
+    return kept
+
+
+@pytest.mark.skipif(not COURSE, reason="no notebooks yet")
+def test_the_courses_own_notebooks_score_nothing_untouched_and_all_when_solved(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr(grading, "_NOTEBOOKS", COURSE[0].parent)
+    for path in COURSE:
+        for who in ("solved", "untouched"):
+            cells = exercise_cells(path, who == "solved")
+            notebook(tmp_path / who / path.name, IMPORTS, *cells)
+    marks = graded(tmp_path)
+    for path in COURSE:
+        solved, untouched = (marks[f"{who}/{path.name}"] for who in ("solved", "untouched"))
+        assert (solved.remark, untouched.remark) == ("", "")
+        assert 2 <= len(solved.expected) <= 6
+        assert solved.points == len(solved.expected), solved.reports
+        assert untouched.points == 0
+        assert {r.verdict for r in untouched.reports.values()} == {"not solved yet"}
 
 
 @pytest.mark.parametrize("wrong", [0, 1, 2, 3])
