@@ -76,6 +76,15 @@ def test_an_exercise_is_complete(exercise):
     assert all(s.endswith((".", "?", ".)", "”")) for s in [*sentences, exercise.task])
 
 
+def test_what_an_exercise_practises_is_named_by_its_number():
+    for exercise in EXERCISES.values():
+        for concept in exercise.concepts:
+            number = re.fullmatch(r"(E?)(\d+)|[a-p]", concept)
+            assert number, (exercise.name, concept)
+            if number[2]:
+                assert 1 <= int(number[2]) <= (46 if number[1] else 77)
+
+
 @EACH
 def test_the_stub_takes_what_the_cases_give(exercise):
     for args in exercise.inputs(0):
