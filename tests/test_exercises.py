@@ -154,9 +154,10 @@ def test_rows_of_a_design_matrix_may_come_in_any_order_and_scale():
 
 @EACH
 def test_every_misconception_is_refused_by_its_own_name(exercise):
-    for mistake in exercise.misconceptions:
+    made = [(m, gives) for m in exercise.misconceptions for gives in (m.gives, *m.variants)]
+    for mistake, gives in made:
         for seed in (2024, 1, 2, 3, 4, 5):
-            report = judge(exercise, _tried(exercise, mistake.gives, seed), seed)
+            report = judge(exercise, _tried(exercise, gives, seed), seed)
             assert not report.passed, mistake.name
             assert report.misconception == mistake.name
             assert report.message == mistake.sentence
@@ -167,6 +168,16 @@ def test_a_misconception_handed_over_like_any_function_is_named_too():
     report = check("dlt", EXERCISES["dlt"].misconceptions[0].gives)
     assert report.misconception == "src and dst exchanged"
     assert "Did you exchange src and dst?" in repr(report)
+
+
+def test_a_column_of_vt_is_recognised_however_the_rows_and_signs_come():
+    def my_dlt(src, dst):
+        D = []
+        for (x, y), (u, v) in zip(src, dst, strict=True):
+            D += [[x, y, 1, 0, 0, 0, -u * x, -u * y, -u], [0, 0, 0, x, y, 1, -v * x, -v * y, -v]]
+        return np.linalg.svd(D)[2][:, -1].reshape(3, 3)
+
+    assert check("dlt", my_dlt).misconception == "a column of Vt"
 
 
 @EACH

@@ -65,12 +65,15 @@ class Misconception:
     """A classic mistake: its name, a sentence that helps, and what it gives.
 
     `gives` takes what the student's function takes; None where the mistake gives nothing
-    definite.
+    definite. `variants` make the same mistake on other ways. `same` tells when two results of
+    it are equal, if that is not what the exercise calls equal.
     """
 
     name: str
     sentence: str
     gives: Callable[..., Any]
+    variants: tuple[Callable[..., Any], ...] = ()
+    same: Same | None = None
 
 
 def close(answer: Array, right: Array, tolerance: float) -> bool:
@@ -105,6 +108,19 @@ def up_to_scale(answer: Array, right: Array, tolerance: float) -> bool:
         return bool(max(norms) == 0)
     a, b = answer / norms[0], right / norms[1]
     return bool(min(np.abs(a - b).max(), np.abs(a + b).max()) <= tolerance)
+
+
+def up_to_signs(answer: Array, right: Array, tolerance: float) -> bool:
+    """Tell whether two arrays differ only by a factor and by the signs of their entries.
+
+    Each singular vector has a sign of its own, so a column that cuts across them has many.
+
+    Examples
+    --------
+    >>> up_to_signs(np.array([2.0, -4.0]), np.array([1.0, 2.0]), 1e-6)
+    True
+    """
+    return up_to_scale(np.abs(answer), np.abs(right), tolerance)
 
 
 def rows_up_to_scale(answer: Array, right: Array, tolerance: float) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cvnotes.errors import Array, CvnotesError
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Same
 from cvnotes.learn.outcome import Outcome
 from cvnotes.learn.report import OPEN, RIGHT, WRONG, Report
 from cvnotes.learn.sandbox import run
@@ -182,21 +182,23 @@ def _mistake(exercise: Exercise, tried: list[Tried], failing: Failing) -> Miscon
     """Find the mistake that gives what the student's function gave."""
     wrong = {id(case) for _, _, case, _ in failing}
     for mistake in exercise.misconceptions:
-        if _explains(exercise, mistake, tried, wrong):
-            return mistake
+        same = mistake.same or exercise.same
+        for gives in (mistake.gives, *mistake.variants):
+            if _explains(exercise, gives, same, tried, wrong):
+                return mistake
     return None
 
 
 def _explains(
-    exercise: Exercise, mistake: Misconception, tried: list[Tried], wrong: set[int]
+    exercise: Exercise, gives: Callable[..., Any], same: Same, tried: list[Tried], wrong: set[int]
 ) -> bool:
     """Tell whether a mistake gives the same, wherever it gives anything, and is wrong there too."""
     compared = 0
     for case, outcome in tried:
-        given = what_it_gives(mistake.gives, case.args)
+        given = what_it_gives(gives, case.args)
         if given is None:
             continue
-        if outcome.value is None or not exercise.same(outcome.value, given, _tolerance(outcome)):
+        if outcome.value is None or not same(outcome.value, given, _tolerance(outcome)):
             return False
         if id(case) in wrong and exercise.same(given, case.right, TOLERANCE):
             return False

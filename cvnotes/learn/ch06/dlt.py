@@ -1,5 +1,7 @@
 """The direct linear transform."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cvnotes.errors import Array
@@ -11,7 +13,15 @@ from cvnotes.learn.cameras import (
     board_grid,
     some_homography,
 )
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng, up_to_scale
+from cvnotes.learn.exercise import (
+    Case,
+    Exercise,
+    Misconception,
+    Property,
+    Rng,
+    up_to_scale,
+    up_to_signs,
+)
 from cvnotes.projective import apply
 
 
@@ -25,8 +35,27 @@ def _views(rng: Rng) -> list[Case]:
     return cases
 
 
-def _svd(D: Array) -> tuple[Array, Array, Array]:
-    return np.linalg.svd(D)
+def _right_vectors(src: Array, dst: Array) -> Array:
+    """Give Vᵀ (9, 9) of the design matrix, whose rows are the right singular vectors."""
+    return np.asarray(np.linalg.svd(design_matrix(src, dst))[2])
+
+
+def _normalised(gives: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
+    """Make a mistake between normalised points, and undo the normalisation rightly."""
+
+    def mistake(src: Array, dst: Array) -> Array:
+        N1, N2 = normaliser(src), normaliser(dst)
+        return np.asarray(np.linalg.inv(N2) @ gives(apply(N1, src), apply(N2, dst)) @ N1)
+
+    return mistake
+
+
+def _first_row(src: Array, dst: Array) -> Array:
+    return np.asarray(_right_vectors(src, dst)[0].reshape(3, 3))
+
+
+def _last_column(src: Array, dst: Array) -> Array:
+    return _right_vectors(src, dst)[:, -1].reshape(3, 3)
 
 
 def _hat(src: Array, dst: Array) -> tuple[Array, Array, Array]:
@@ -86,13 +115,15 @@ DLT = Exercise(
             "a column of Vt",
             "You took the last column of Vt. np.linalg.svd gives Vᵀ: its rows are the singular "
             "vectors, so take Vt[-1].",
-            lambda src, dst: _svd(design_matrix(src, dst))[2][:, -1].reshape(3, 3),
+            _last_column,
+            same=up_to_signs,
         ),
         Misconception(
             "the largest singular value",
             "You took the first singular vector, for which ‖D h‖ is largest. The smallest comes "
             "last.",
-            lambda src, dst: _svd(design_matrix(src, dst))[2][0].reshape(3, 3),
+            _first_row,
+            variants=(_normalised(_first_row),),
         ),
         Misconception(
             "normalisation not undone",

@@ -1,5 +1,7 @@
 """What all views say about B."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cvnotes.errors import Array
@@ -10,7 +12,16 @@ from cvnotes.learn.cameras import (
     some_intrinsics,
     some_views,
 )
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng, up_to_scale
+from cvnotes.learn.exercise import (
+    Case,
+    Exercise,
+    Misconception,
+    Property,
+    Rng,
+    Same,
+    up_to_scale,
+    up_to_signs,
+)
 from cvnotes.zhang import constraints, solve_b, v_ij
 
 # The picture scaled to about [−1, 1], in which the entries of b are of one size.
@@ -36,10 +47,22 @@ def _null(V: Array) -> Array:
 
 
 def _rows(H: Array, sign: float = -1.0) -> Array:
-    """Stack v_12 and v_11 − v_22 of all views, each H scaled as the library does."""
-    H = H / np.cbrt(np.linalg.det(H))[:, None, None]
+    """Stack v_12 and v_11 − v_22 of all views."""
     pairs = [(v_ij(X, 1, 2), v_ij(X, 1, 1) + sign * v_ij(X, 2, 2)) for X in H]
     return np.concatenate(pairs)
+
+
+def _at_any_scale(
+    name: str, sentence: str, gives: Callable[[Array], Array], same: Same | None = None
+) -> Misconception:
+    """Name a mistake whose result depends on how the student scaled the H."""
+    scales: tuple[Callable[[Array], Array], ...] = (
+        lambda H: np.asarray(H / np.linalg.norm(H, axis=(1, 2), keepdims=True)),
+        lambda H: np.asarray(H / H[:, 2:, 2:]),
+        lambda H: np.asarray(H / np.cbrt(np.linalg.det(H))[:, None, None]),
+    )
+    variants = tuple(lambda H, scale=scale: gives(scale(H)) for scale in scales)
+    return Misconception(name, sentence, gives, variants, same)
 
 
 def _both_constraints(b: Array, case: Case) -> bool:
@@ -68,23 +91,24 @@ B_FROM_VIEWS = Exercise(
         Property("b is the one and only answer, up to scale and sign."),
     ),
     misconceptions=(
-        Misconception(
+        _at_any_scale(
             "sum for difference",
             "You asked for v_11·b + v_22·b = 0. Both columns have the same length, so it is their "
             "difference that is 0.",
             lambda H: _null(_rows(H, sign=1.0)),
         ),
-        Misconception(
+        _at_any_scale(
             "rows of H",
             "You took the rows of H; h1 and h2 are its columns.",
             lambda H: _null(_rows(H.mT)),
         ),
-        Misconception(
+        _at_any_scale(
             "a column of Vt",
             "You took the last column of Vt. Its rows are the singular vectors: Vt[-1].",
             lambda H: np.linalg.svd(_rows(H))[2][:, -1],
+            same=up_to_signs,
         ),
-        Misconception(
+        _at_any_scale(
             "the largest singular value",
             "You took the first singular vector, for which ‖V b‖ is largest. The last one makes "
             "it small.",
@@ -96,7 +120,7 @@ B_FROM_VIEWS = Exercise(
             "‖b‖ = 1.",
             lambda _: np.zeros(6),
         ),
-        Misconception(
+        _at_any_scale(
             "first view only",
             "One view gives two equations for five unknowns: stack the rows of all views.",
             lambda H: _null(_rows(H[:1])),
