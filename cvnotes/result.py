@@ -123,7 +123,10 @@ class Calibration:
 
     def __repr__(self) -> str:
         lines = [f"Calibration from {len(self.poses)} views, {self.size[0]}×{self.size[1]} px"]
-        lines += [f"  {n:<8}{v:>12.4f} ± {s:.4f} {u}".rstrip() for n, v, s, u in self.table()]
+        for name, value, std, unit in self.table():
+            lines.append(
+                f"  {name:<8}{_rounded(value, std):>14} ± {_rounded(std, std)} {unit}".rstrip()
+            )
         worst = int(np.argmax(self.view_rms))
         lines.append(f"  RMS {self.rms:.4f} px per point; worst view {worst}: "
                      f"{self.view_rms[worst]:.4f} px")  # fmt: skip
@@ -133,7 +136,8 @@ class Calibration:
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td style='text-align:left'>{n}</td><td>{v:.4f}</td><td>± {s:.4f}</td>"
+            f"<tr><td style='text-align:left'>{n}</td><td>{_rounded(v, s)}</td>"
+            f"<td>± {_rounded(s, s)}</td>"
             f"<td style='text-align:left'>{u}</td></tr>"
             for n, v, s, u in self.table()
         )
@@ -143,3 +147,9 @@ class Calibration:
             f"<table><caption>{len(self.poses)} views, RMS {self.rms:.4f} px per point"
             f"</caption>{rows}</table>{verdict}" + (f"<ul>{notes}</ul>" if notes else "")
         )
+
+
+def _rounded(x: float, std: float) -> str:
+    """Write x to two digits of its standard deviation; what comes after is noise."""
+    digits = 2 if not std > 0 else min(max(1 - int(np.floor(np.log10(std))), 0), 9)
+    return f"{round(x, digits) + 0.0:.{digits}f}"
