@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import DegenerateError, ShapeError
+from cvnotes.rigid import look_at
+from cvnotes.show.vanishing import draw_heights, draw_vanishing
+
+
+def ends(line):
+    return np.array(line.get_xydata(), dtype=float)
+
+
+def crosses(ax):
+    return np.concatenate([c.get_offsets() for c in ax.collections])
+
+
+# Segments and their vanishing point.
+
+
+def test_dashes_lead_from_the_nearer_end_of_each_segment_to_the_vanishing_point():
+    segments = [[[0, 0], [100, 50]], [[100, 150], [0, 200]]]  # they meet in (200, 100)
+    ax = draw_vanishing(segments, [400, 200, 2])
+    dashed = [ends(line) for line in ax.lines if line.get_linestyle() == "--"]
+    assert np.allclose(dashed, [[[100, 50], [200, 100]], [[100, 150], [200, 100]]])
+    assert np.allclose(crosses(ax), [[200, 100]])
+
+
+@pytest.mark.parametrize("v", [[2000, 100], [-900, 240], [300, 3000], [300, -50]])
+def test_the_axes_grow_towards_a_vanishing_point_outside_of_the_picture(v):
+    ax = draw_vanishing([[[10, 10], [40, 40]]], [*v, 1])
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    assert left < v[0] < right
+    assert top < v[1] < bottom
+    assert left <= -0.5 < 639.5 <= right
+    assert top <= -0.5 < 479.5 <= bottom
+
+
+def test_a_vanishing_point_at_infinity_is_not_drawn():
+    ax = draw_vanishing([[[10, 10], [40, 40]]], [1, 1, 0])
+    assert len(ax.lines) == 1
+    assert not ax.collections
+    assert ax.get_xlim() == (-0.5, 639.5)
+
+
+# The triangle.
+
+
+def test_the_heights_meet_in_the_piercing_point_of_the_camera_that_saw_a_box():
+    camera = Camera(intrinsics(800, 800, 333, 222), look_at([9, -7, -8], [0, 0, 0]))
+    ax = draw_heights(camera.vanishing_point(np.eye(3)))
+    assert np.allclose(crosses(ax)[0], [333, 222], atol=1e-6)
+
+
+def test_the_feet_of_a_triangle_worked_out_by_hand():
+    ax = draw_heights([[0, 0], [4, 0], [1, 3]], size=(10, 10))
+    dashed = np.array([ends(line) for line in ax.lines if line.get_linestyle() == "--"])
+    assert np.allclose(dashed[:, 1], [[2, 2], [0.4, 1.2], [1, 0]])
+    assert np.allclose(crosses(ax)[0], [1, 1])
+
+
+def test_the_corners_carry_their_names():
+    ax = draw_heights([[0, 0], [900, 0], [400, 700]], names=["a", "b", "c"])
+    assert [text.get_text() for text in ax.texts] == ["a", "b", "c"]
+
+
+def test_points_on_a_line_are_no_triangle():
+    with pytest.raises(DegenerateError, match="there is no triangle"):
+        draw_heights([[0, 0], [1, 1], [2, 2]])
+    with pytest.raises(DegenerateError, match="there is no triangle"):
+        draw_heights([[0, 0], [0, 0], [2, 2]])
+
+
+# What cannot be drawn.
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (lambda: draw_vanishing([[[1, 2], [3, 4]]], np.eye(3)), "one point"),
+        (lambda: draw_vanishing([[1, 2], [3, 4], [5, 6]], [1, 2, 1]), "two ends each"),
+        (lambda: draw_heights([[[0, 0], [4, 0], [1, 3]]]), "three points"),
+        (lambda: draw_heights([[0, 0], [4, 0], [1, 3]], names="XY"), "three names"),
+    ],
+)
+def test_the_wrong_shape_is_named(draw, message):
+    with pytest.raises(ShapeError, match=message):
+        draw()
