@@ -253,11 +253,14 @@ def test_the_counts_of_corners_differ_in_parity():
 
 
 def test_views_are_chained_through_what_they_share():
-    first, other = pose(np.eye(3), [0, 0, 500]), pose(QUARTER_TURN, [100, 0, 700])
-    # the board moved: both are seen by one camera. Its corner (25, 0, 0) is at (100, 25, 700).
-    equal(move(board_from_board(first, other), [25, 0, 0]), [100, 25, 200])
-    # the camera moved: both see one board. The same point of the CRF is the first board's corner.
-    equal(move(cam_from_cam(first, other), [100, 25, 700]), [25, 0, 500])
+    about_x = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]  # a quarter turn: y becomes z
+    first, other = pose(about_x, [0, 0, 500]), pose(QUARTER_TURN, [100, 0, 700])
+    W, M = [25, 50, 0], [50, 25, 700]
+    equal(move(other, W), M)
+    # the board moved before one camera: M − (0, 0, 500) turned back about x, erratum E20
+    equal(move(board_from_board(first, other), W), [50, 200, -25])
+    # the camera moved before one board: the first camera sees W at (25, 0, 50) + (0, 0, 500)
+    equal(move(cam_from_cam(first, other), M), [25, 0, 550])
 
 
 def test_a_plane_is_seen_through_columns_1_2_4_of_P():
@@ -449,8 +452,8 @@ def test_perspective_is_removed_by_a_homography_that_divides_by_its_third_row():
 
 
 def test_forward_mapping_rounds_and_leaves_holes_and_folds():
-    stretched = forward_warp(GREY[:1], lambda m: m * [2.4, 1], (4, 1))  # 0 ↦ 0, 1 ↦ 2.4 ≈ 2
-    assert stretched.hits.tolist() == [[1, 0, 1, 0]]
+    stretched = forward_warp(GREY[:1], lambda m: m * [2.6, 1], (4, 1))  # 0 ↦ 0, 1 ↦ 2.6 ≈ 3
+    assert stretched.hits.tolist() == [[1, 0, 0, 1]]
     shrunk = forward_warp(GREY[:1], lambda m: m * [0.4, 1], (2, 1))  # 0 ↦ 0, 1 ↦ 0.4 ≈ 0
     assert (shrunk.holes, shrunk.folds) == (1, 1)
 
