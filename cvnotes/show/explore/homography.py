@@ -23,9 +23,11 @@ _NAMES = ("top left", "top right", "bottom right", "bottom left")
 def homography_model(camera: Camera, board: Chessboard) -> Model:
     """Make the model of an oblique picture of `board` by `camera`, its lens left out."""
     settings = tuple(
-        Setting(f"d{axis}{i + 1}", f"{name} {axis}", -80, 80, 1, 0,
-                f"moves the {name} corner by so many px along {axis}")
-        for i, name in enumerate(_NAMES)
+        Setting(
+            f"d{axis}{i}", f"corner {i} {axis}", -80, 80, 1, 0,
+            f"moves the {name} corner by so many px along {axis}",
+        )
+        for i, name in enumerate(_NAMES, start=1)
         for axis in "uv"
     )  # fmt: skip
     view = pinhole(camera).moved(_oblique(board))
@@ -49,6 +51,10 @@ def _draw(photo: Image, camera: Camera, board: Chessboard, paper: Paper, values:
     picture.image(photo.astype(np.uint8))
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 1.8)
     picture.mark(m, "estimated", 7)
+    for i, at in enumerate(m, start=1):
+        picture.text(
+            at + 22 * np.sign(at - m.mean(axis=0)), f"{i}", ESTIMATED, anchor="mm", size=14
+        )
     H = dlt(W[:, :2], m)
     upright = paper.panel(_SIZE, *_region(board), "the board from straight above, by H")
     (X0, X1), (Y0, Y1) = upright.x, upright.y

@@ -12,7 +12,9 @@ from ipywidgets.widgets.widget_string import HTML
 
 from cvnotes.show.explore.model import Model, Setting, pack_png
 
-_COLUMNS = "repeat(auto-fit, minmax(290px, 1fr))"
+_UNSEEN = "position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%)"
+_TWO_LINES = "min-height: 2.8em; line-height: 1.4"  # so that the picture stays where it is
+_COLUMNS = "repeat(auto-fit, minmax({}px, 1fr))"
 
 
 class Explorer(VBox):
@@ -31,6 +33,8 @@ class Explorer(VBox):
     --------
     >>> from cvnotes.show.explore import explore_lens
     >>> explorer = explore_lens()
+    >>> explorer
+    explore lens: run this cell to move its sliders
     >>> explorer.sliders["k1"].value = -0.3
     >>> explorer.values["k1"]
     -0.3
@@ -43,23 +47,30 @@ class Explorer(VBox):
             description="Reset", icon="undo", tooltip="Move every slider back to where it started"
         )
         self.sentence = HTML()
-        self.image = Image(format="png", tooltip=model.about)
+        self.image = Image(format="png")
         self._drawn: dict[str, float] | None = None
         self._held = False
         self.redraw()
         for slider in self.sliders.values():
             slider.observe(self.redraw, "value")
         self.reset_button.on_click(self.reset)
+        many = len(self.sliders) > 6
         controls = GridBox(
             [*self.sliders.values(), self.reset_button],
-            layout={"grid_template_columns": _COLUMNS, "width": "100%"},
+            layout={
+                "grid_template_columns": _COLUMNS.format(250 if many else 290),
+                "width": "100%",
+            },
         )
         super().__init__([controls, self.sentence, self.image])  # type: ignore[no-untyped-call]
 
+    def __repr__(self) -> str:
+        return f"explore {self.model.name}: run this cell to move its sliders"
+
     @property
     def values(self) -> dict[str, float]:
-        """Where the sliders are."""
-        return {name: slider.value for name, slider in self.sliders.items()}
+        """Where the sliders are, without what the browser adds in the sixteenth digit."""
+        return {name: round(slider.value, 9) for name, slider in self.sliders.items()}
 
     def redraw(self, _: Any = None) -> None:
         """Show the picture of the present values, unless it is shown already."""
@@ -70,8 +81,11 @@ class Explorer(VBox):
         sight = self.model.sight(**values)
         self.image.width = str(sight.picture.shape[1])
         self.image.value = pack_png(sight.picture)
+        # An image widget has no alternative text; its description stands here, for the ear only.
         self.sentence.value = (
-            f'<div role="status" aria-live="polite">{escape(sight.sentence)}</div>'
+            f'<span style="{_UNSEEN}">{escape(self.model.about)}</span>'
+            f'<div role="status" aria-live="polite" style="{_TWO_LINES}">'
+            f"{escape(sight.sentence)}</div>"
         )
 
     def reset(self, _: Any = None) -> None:
@@ -100,5 +114,5 @@ def _slider(setting: Setting) -> Any:
         tooltip=setting.help,
         readout_format="d" if whole else f".{digits}f",
         layout={"width": "auto"},
-        style={"description_width": "95px"},
+        style={"description_width": "85px"},
     )
