@@ -14,8 +14,9 @@ from test_exercises_second import solution_of
 
 from cvnotes.errors import CvnotesError
 from cvnotes.learn import exercises
+from cvnotes.learn.asking import ask
 from cvnotes.learn.exercises import EXERCISES, check, hint, progress, solution
-from cvnotes.learn.judge import ask, judge, what_it_gives
+from cvnotes.learn.judge import judge, what_it_gives
 from cvnotes.learn.outcome import Outcome, outcome_of
 
 ROOT = Path(__file__).resolve().parents[1]

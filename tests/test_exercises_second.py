@@ -8,8 +8,9 @@ import inspect
 import numpy as np
 import pytest
 
+from cvnotes.learn.asking import ask
 from cvnotes.learn.exercises import EXERCISES
-from cvnotes.learn.judge import ask, judge
+from cvnotes.learn.judge import judge
 from cvnotes.learn.personal import personal_camera
 
 # Chapter 1

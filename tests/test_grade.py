@@ -119,7 +119,8 @@ def exercise_cells(path, solved):
             [(name, variable)] = asked
             own = "my_steps" if name == "pipeline" else f"my_{name}"
             call = re.search(r"^check\(.*", cell, re.M | re.S)[0]
-            cell = f"{source_of(name)}\n{variable} = {own}\n{call}"
+            source = source_of(name).replace("'demo'", "'your id'")
+            cell = f"{source}\n{variable} = {own}\n{call}"
         if asked or re.search(r"^(def )?my_\w+", cell, re.M):
             kept.append(cell)
     return kept
@@ -144,7 +145,7 @@ def test_the_courses_own_notebooks_score_nothing_untouched_and_all_when_solved(
         assert {r.verdict for r in untouched.reports.values()} == {"not solved yet"}
 
 
-@pytest.mark.parametrize("wrong", [0, 1, 2, 3])
+@pytest.mark.parametrize("wrong", [0, 3])
 def test_each_misconception_costs_exactly_its_exercise(wrong, tmp_path):
     names = {}
     for n in (1, 3, 6, 7, 9):

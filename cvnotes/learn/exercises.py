@@ -13,8 +13,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cvnotes.errors import CvnotesError
+from cvnotes.learn.asking import ask
 from cvnotes.learn.exercise import Exercise
-from cvnotes.learn.judge import ask, judge
+from cvnotes.learn.judge import judge
 from cvnotes.learn.report import Report, Source, Words
 
 CHAPTERS = range(1, 10)

@@ -6,13 +6,8 @@ container.
 """
 
 import contextlib
-import json
 import os
 import re
-import signal
-import subprocess
-import sys
-import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -20,16 +15,15 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from cvnotes.course import DATA
 from cvnotes.errors import CvnotesError, FileError
 from cvnotes.files.writing import printable
 from cvnotes.learn.exercises import CHAPTERS, EXERCISES, asked
 from cvnotes.learn.judge import judge
 from cvnotes.learn.outcome import clean, decode
+from cvnotes.learn.process import run_notebook
 from cvnotes.learn.report import Report
 
 _MAX_NOTEBOOK = 100 * 2**20
-_MAX_RESULTS = 200 * 2**20
 _NOTEBOOKS = Path(__file__).resolve().parents[2] / "notebooks"
 
 
@@ -162,9 +156,7 @@ def _grade(path: Path, content: bytes | str, seconds: float, megabytes: int) -> 
         return Mark(student, notebook, expected=expected, remark=content)
     # Inputs that nobody knows before, and that are the same if the notebook is graded again.
     seed = int.from_bytes(sha256(content).digest()[:6], "big")
-    with tempfile.TemporaryDirectory(prefix="cvnotes-", ignore_cleanup_errors=True) as scratch:
-        ended = _run(Path(scratch), content, seed, seconds, megabytes)
-        lines = _lines(Path(scratch) / "results")
+    lines, ended = run_notebook(content, seed, seconds, megabytes)
     reports, ids = _judged(lines, seed)
     return Mark(
         student,
@@ -174,75 +166,6 @@ def _grade(path: Path, content: bytes | str, seconds: float, megabytes: int) -> 
         ids,
         _remark(lines, ended),
     )
-
-
-def _run(scratch: Path, content: bytes, seed: int, seconds: float, megabytes: int) -> str:
-    """Run a notebook in a folder laid out like the course; says how it ended, if not by itself."""
-    (scratch / "notebooks").mkdir()
-    (scratch / "handed_in.ipynb").write_bytes(content)
-    if DATA.is_dir():
-        with contextlib.suppress(OSError):
-            (scratch / "data").symlink_to(DATA, target_is_directory=True)
-    command = [sys.executable, "-m", "cvnotes.learn.handin"]
-    command += [str(scratch / "handed_in.ipynb"), str(scratch / "results"), "--seed", str(seed)]
-    command += ["--cell-seconds", str(max(5.0, seconds / 4)), "--megabytes", str(megabytes)]
-    process = subprocess.Popen(
-        command,
-        cwd=scratch / "notebooks",
-        env=_environment(scratch),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    try:
-        code = process.wait(seconds)
-    except subprocess.TimeoutExpired:
-        return f"stopped after {seconds:g} seconds"
-    finally:
-        _end(process)
-    return "" if code in (0, 1) else f"ended its process ({_ending(code)})"
-
-
-def _environment(scratch: Path) -> dict[str, str]:
-    """Give a notebook's process what it needs: no secrets, one thread, figures without a screen."""
-    kept = ("PATH", "LANG", "LC_ALL", "SYSTEMROOT", "TEMP", "TMP", "VIRTUAL_ENV", "LD_LIBRARY_PATH")
-    environment = {name: os.environ[name] for name in kept if name in os.environ}
-    package = str(Path(__file__).resolve().parents[2])
-    cache = os.environ.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
-    threads = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-    return (
-        environment
-        | dict.fromkeys(threads, "1")
-        | {"PYTHONPATH": package, "MPLBACKEND": "agg", "XDG_CACHE_HOME": cache}
-        | {"HOME": str(scratch), "IPYTHONDIR": str(scratch / "ipython"), "PYTHONUTF8": "1"}
-    )
-
-
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    """End a notebook's process, and what it started."""
-    if hasattr(os, "killpg"):
-        with contextlib.suppress(OSError):
-            os.killpg(process.pid, signal.SIGKILL)
-    process.kill()
-    process.wait()
-
-
-def _ending(code: int) -> str:
-    return signal.Signals(-code).name if code < 0 else f"exit code {code}"
-
-
-def _lines(results: Path) -> list[dict[str, Any]]:
-    """Read what the process wrote, leaving out what is no such line."""
-    lines = []
-    try:
-        with results.open("rb") as stream:
-            for line in stream.read(_MAX_RESULTS).splitlines():
-                with contextlib.suppress(ValueError, RecursionError):
-                    lines.append(json.loads(line))
-    except OSError:
-        return []
-    return [line for line in lines if isinstance(line, dict)]
 
 
 def _judged(lines: list[dict[str, Any]], seed: int) -> tuple[dict[str, Report], tuple[str, ...]]:

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from cvnotes.learn import exercises
-from cvnotes.learn.judge import ask, judge
+from cvnotes.learn.asking import ask
+from cvnotes.learn.judge import judge
 from cvnotes.learn.outcome import clean, encode
 from cvnotes.learn.report import Report
 

@@ -1,8 +1,6 @@
 """Estimate against truth: one table for all chapters, which raises when something is off."""
 
-from dataclasses import dataclass
-from html import escape
-from math import floor, isnan, log10
+from math import isnan
 from typing import Any
 
 import numpy as np
@@ -10,6 +8,7 @@ import numpy as np
 from cvnotes.camera import Camera
 from cvnotes.errors import Array, CvnotesError, ShapeError
 from cvnotes.learn.parameters import named_values
+from cvnotes.learn.table import Row, Verification
 
 # An error of more standard deviations than this is no chance: it happens once in 16,000 times.
 SIGMAS = 4.0
@@ -19,102 +18,6 @@ _LISTED = 12
 
 class NotVerified(CvnotesError):
     """An estimate is farther from the truth than it should be; the message is the table."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """One number held against the truth.
-
-    `allowed` is the largest error that holds. `std` is the predicted standard deviation where
-    that is what decides, else NaN.
-    """
-
-    name: str
-    estimate: float
-    truth: float
-    allowed: float
-    std: float = float("nan")
-    unit: str = ""
-
-    @property
-    def error(self) -> float:
-        """Estimate minus truth; 0 where neither exists (NaN)."""
-        if isnan(self.estimate) and isnan(self.truth):
-            return 0.0
-        return self.estimate - self.truth
-
-    @property
-    def holds(self) -> bool:
-        """Whether the error is as small as it should be; never with a NaN on one side only."""
-        return bool(abs(self.error) <= self.allowed)
-
-    def cells(self) -> tuple[str, ...]:
-        """Give the row as text: name, estimate, truth, error, expected error, verdict."""
-        digits = _digits(self)
-        name = f"{self.name} ({self.unit})" if self.unit else self.name
-        expected = f"± {self.std:.2g}" if not isnan(self.std) else f"≤ {self.allowed:.2g}"
-        return (
-            name,
-            _number(self.estimate, digits),
-            _number(self.truth, digits),
-            self._error(digits),
-            expected,
-            "✓ holds" if self.holds else "✗ off",
-        )
-
-    def _error(self, digits: int) -> str:
-        """Write the error, but no digits of mere rounding, which differ between computers."""
-        if isnan(self.error):
-            return "missing"
-        if not self.holds:
-            return f"{self.error:+.3g}"
-        if self.allowed <= 1e-6 * max(abs(self.truth), 1.0) or isnan(self.truth):
-            return "rounding"
-        return f"{round(self.error, digits) + 0.0:+.{digits}f}"
-
-
-@dataclass(frozen=True)
-class Verification:
-    """Estimates held against the truth, row by row."""
-
-    rows: tuple[Row, ...]
-
-    @property
-    def holds(self) -> bool:
-        """Whether every row holds."""
-        return all(row.holds for row in self.rows)
-
-    def __bool__(self) -> bool:
-        return self.holds
-
-    @property
-    def summary(self) -> str:
-        """The verdict in words."""
-        off = [row.name for row in self.rows if not row.holds]
-        if not off:
-            return "verified: every estimate is as near to the truth as it should be"
-        return f"{len(off)} of {len(self.rows)} off: {', '.join(off[:6])}" + " …" * (len(off) > 6)
-
-    def __repr__(self) -> str:
-        lines = [_HEADER, *(row.cells() for row in self.rows)]
-        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-        text = [
-            "  ".join(
-                cell.ljust(width) if i in (0, 5) else cell.rjust(width)
-                for i, (cell, width) in enumerate(zip(line, widths, strict=True))
-            ).rstrip()
-            for line in lines
-        ]
-        return "\n".join([self.summary, *text])
-
-    def _repr_html_(self) -> str:
-        head = "".join(f"<th>{escape(cell)}</th>" for cell in _HEADER)
-        body = "".join(
-            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row.cells()) + "</tr>"
-            for row in self.rows
-        )
-        caption = escape(self.summary)
-        return f"<table><caption>{caption}</caption><tr>{head}</tr>{body}</table>"
 
 
 def verify(
@@ -230,20 +133,3 @@ def _alike(found: Array, true: Array) -> tuple[Array, Array]:
         raise CvnotesError("an array of zeros, or with NaN, has no scale to compare up to")
     found, true = found / lengths[0], true / lengths[1]
     return found * (1.0 if np.vdot(found, true) >= 0 else -1.0), true
-
-
-_HEADER = ("", "estimate", "truth", "error", "expected", "")
-
-
-def _digits(row: Row) -> int:
-    """Decimals that show the expected error, but at most five significant digits of the truth."""
-    spread = row.allowed if isnan(row.std) else row.std
-    size = max(abs(row.truth) or 1.0, spread) if not isnan(row.truth) else 1.0
-    if size == float("inf"):
-        return 0
-    shown = 1 - floor(log10(spread)) if spread > 0 else 12
-    return max(0, min(shown, 4 - floor(log10(size))))
-
-
-def _number(x: float, digits: int) -> str:
-    return "none" if isnan(x) else f"{round(x, digits) + 0.0:.{digits}f}"

@@ -4,13 +4,7 @@ import numpy as np
 
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import rounded, some_factors
-from cvnotes.learn.exercise import (
-    Case,
-    Exercise,
-    Misconception,
-    Property,
-    Rng,
-)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import from_homogeneous, to_homogeneous
 
 

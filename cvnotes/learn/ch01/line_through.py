@@ -5,14 +5,8 @@ import numpy as np
 from cvnotes.errors import Array
 from cvnotes.incidence import join
 from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import (
-    Case,
-    Exercise,
-    Misconception,
-    Property,
-    Rng,
-    up_to_scale,
-)
+from cvnotes.learn.equality import up_to_scale
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import to_homogeneous
 
 

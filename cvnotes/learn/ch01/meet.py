@@ -5,14 +5,8 @@ import numpy as np
 from cvnotes.errors import Array, CvnotesError
 from cvnotes.incidence import meet
 from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import (
-    Case,
-    Exercise,
-    Misconception,
-    Property,
-    Rng,
-    up_to_scale,
-)
+from cvnotes.learn.equality import up_to_scale
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def _two_lines(rng: Rng) -> list[Case]:

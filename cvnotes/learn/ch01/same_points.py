@@ -4,13 +4,7 @@ import numpy as np
 
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import (
-    Case,
-    Exercise,
-    Misconception,
-    Property,
-    Rng,
-)
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def same_points(a: Array, b: Array) -> Array:

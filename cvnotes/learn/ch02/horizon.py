@@ -8,7 +8,8 @@ import numpy as np
 from cvnotes.camera import Camera
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, up_to_scale
+from cvnotes.learn.equality import up_to_scale
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
 from cvnotes.rigid import pose
 from cvnotes.vanishing import horizon as library_horizon
 

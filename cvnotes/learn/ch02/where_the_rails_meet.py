@@ -2,19 +2,10 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera, intrinsics
 from cvnotes.errors import Array
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, within
-from cvnotes.rigid import look_at
-
-
-def rails_camera() -> Camera:
-    """Give the camera of the question where the rails meet: turned a little, and lowered.
-
-    ``render_scene(rails(), rails_camera())`` is its picture.
-    """
-    G = look_at([0, 0, 0], [-0.16, 0.12, 1.0])
-    return Camera(intrinsics(700, 700, 319.5, 239.5), G)
+from cvnotes.learn.equality import within
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.learn.pictures import rails_camera
 
 
 def where_the_rails_meet() -> Array:
@@ -30,7 +21,7 @@ RAILS = Exercise(
     name="where_the_rails_meet",
     chapter=2,
     title="Read it off: where do the rails meet?",
-    task="Look at render_scene(rails(), rails_camera()), a picture of 640 × 480 pixels. At which "
+    task="Look at rails_picture(), which has 640 × 480 pixels. At which "
     "pixel (u, v) do the rails meet? To within 12 pixels is good enough.",
     stub="my_where_the_rails_meet = ...  # (u, v)",
     hints=(

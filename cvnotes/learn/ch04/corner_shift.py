@@ -3,7 +3,8 @@
 import numpy as np
 
 from cvnotes.camera import Camera, intrinsics
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, within
+from cvnotes.learn.equality import within
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
 from cvnotes.lens import Lens
 
 _CAMERA = Camera(intrinsics(800, 800, 319.5, 239.5), lens=Lens((-0.25, 0.1)), size=(640, 480))

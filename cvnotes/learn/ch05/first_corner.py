@@ -1,21 +1,9 @@
 """Which corner is the first."""
 
-import numpy as np
-
-from cvnotes.camera import Camera, intrinsics
 from cvnotes.errors import Array
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, within
-from cvnotes.rigid import pose, rotation_from_angles
-from cvnotes.targets import Chessboard
-
-_BOARD = Chessboard((4, 3), 30.0)
-
-
-def turned_board() -> tuple[Chessboard, Camera]:
-    """Give a board and a camera that sees it turned; ``render(*turned_board())`` is the picture."""
-    R = rotation_from_angles(0.35, -0.3, 2.5)
-    T = np.array([4.0, -2.0, 450.0]) - R @ [45, 30, 0]
-    return _BOARD, Camera(intrinsics(500, 500, 159.5, 119.5), pose(R, T), size=(320, 240))
+from cvnotes.learn.equality import within
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.learn.pictures import turned_board
 
 
 def _corner(column: int, row: int) -> Array:
@@ -31,7 +19,7 @@ FIRST = Exercise(
     name="first_corner",
     chapter=5,
     title="Which corner is the first?",
-    task="Look at render(*turned_board()), a picture of 320 × 240 pixels of a board with 4 × 3 "
+    task="Look at board_picture(), which has 320 × 240 pixels and shows a board with 4 × 3 "
     "inner corners. At which pixel (u, v) is its first inner corner? The square outside of it, "
     "towards −x and −y, is dark; x runs along the 4 corners, and seen from the front y is a "
     "quarter turn clockwise from x. To within 4 pixels is good enough.",

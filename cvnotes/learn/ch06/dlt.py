@@ -13,15 +13,8 @@ from cvnotes.learn.cameras import (
     board_grid,
     some_homography,
 )
-from cvnotes.learn.exercise import (
-    Case,
-    Exercise,
-    Misconception,
-    Property,
-    Rng,
-    up_to_scale,
-    up_to_signs,
-)
+from cvnotes.learn.equality import up_to_scale, up_to_signs
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply
 
 

@@ -12,7 +12,8 @@ from cvnotes.learn.cameras import (
     rounded,
     some_homography,
 )
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng, up_to_scale
+from cvnotes.learn.equality import up_to_scale
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply, drop, to_homogeneous
 
 

@@ -7,7 +7,8 @@ from cvnotes.homography import normaliser
 from cvnotes.learn.cameras import (
     rounded,
 )
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, up_to_scale
+from cvnotes.learn.equality import up_to_scale
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
 from cvnotes.projective import apply
 
 

@@ -12,16 +12,8 @@ from cvnotes.learn.cameras import (
     some_intrinsics,
     some_views,
 )
-from cvnotes.learn.exercise import (
-    Case,
-    Exercise,
-    Misconception,
-    Property,
-    Rng,
-    Same,
-    up_to_scale,
-    up_to_signs,
-)
+from cvnotes.learn.equality import Same, up_to_scale, up_to_signs
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.zhang import constraints, solve_b, v_ij
 
 # The picture scaled to about [−1, 1], in which the entries of b are of one size.

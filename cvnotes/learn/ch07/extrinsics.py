@@ -14,7 +14,8 @@ from cvnotes.learn.cameras import (
     some_intrinsics,
     some_pose,
 )
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng, up_to_scale
+from cvnotes.learn.equality import up_to_scale
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.zhang import extrinsics
 
 

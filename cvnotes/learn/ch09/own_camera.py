@@ -6,7 +6,8 @@ import numpy as np
 
 from cvnotes.calibration import calibrate
 from cvnotes.errors import Array
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Same
+from cvnotes.learn.equality import Same
+from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
 from cvnotes.learn.personal import PersonalCamera, personal_camera
 
 _COURSE = np.array([800.0, 804.0, 325.0, 238.0])

@@ -1,0 +1,55 @@
+"""Pictures to read a number off: rendered by known cameras, so that the checker knows it too."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.rigid import look_at, pose, rotation_from_angles
+from cvnotes.targets import Chessboard
+
+
+def rails_camera() -> Camera:
+    """Give the camera of `rails_picture`: turned a little to the left, and lowered.
+
+    Examples
+    --------
+    >>> rails_camera().size
+    (640, 480)
+    """
+    G = look_at([0, 0, 0], [-0.16, 0.12, 1.0])
+    return Camera(intrinsics(700, 700, 319.5, 239.5), G)
+
+
+def rails_picture() -> npt.NDArray[np.uint8]:
+    """Photograph the rails: (480, 640, 3), for the exercise ``where_the_rails_meet``."""
+    from cvnotes.rendering import render_scene
+    from cvnotes.scenes import rails
+
+    return render_scene(rails(), rails_camera())
+
+
+def turned_board() -> tuple[Chessboard, Camera]:
+    """Give the board of `board_picture`, and the camera that sees it turned.
+
+    Examples
+    --------
+    >>> turned_board()[0].corners
+    (4, 3)
+    """
+    R = rotation_from_angles(0.35, -0.3, 2.5)
+    T = np.array([4.0, -2.0, 450.0]) - R @ [45, 30, 0]
+    camera = Camera(intrinsics(500, 500, 159.5, 119.5), pose(R, T), size=(320, 240))
+    return Chessboard((4, 3), 30.0), camera
+
+
+def board_picture() -> npt.NDArray[np.uint8]:
+    """Photograph the turned board: (240, 320), for the exercise ``first_corner``.
+
+    Examples
+    --------
+    >>> board_picture().shape
+    (240, 320)
+    """
+    from cvnotes.synthetic import render
+
+    return render(*turned_board())
