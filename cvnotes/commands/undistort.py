@@ -2,12 +2,13 @@
 
 import argparse
 import io
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
 from cvnotes.camera import Camera
 from cvnotes.commands.console import complain, progress, say, table
-from cvnotes.errors import CvnotesError, FileError
+from cvnotes.errors import CalibrationWarning, CvnotesError, FileError
 from cvnotes.files.cameras import read_camera, write_camera
 from cvnotes.files.photos import Photo, Rejected, list_photos, open_photos
 from cvnotes.files.writing import check_folder, printable, write_whole
@@ -35,19 +36,19 @@ def run(args: argparse.Namespace) -> int:
     camera = read_camera(args.camera)
     check_folder(args.out)
     files, rejected = list_photos(args.photos, size=camera.size)
-    written: dict[Path, str] = {}
+    written: dict[Path, list[str]] = {}
     for photo in progress(open_photos(files), total=len(files)):
         if isinstance(photo, Rejected):
             rejected.append(photo)
             continue
         try:
             target = _target(photo.path, args.out, written)
-            write_whole({target: straightened(photo, camera)})
-            written[target] = printable(photo.path)
+            picture, note = straightened(photo, camera)
+            write_whole({target: picture})
+            written[target] = [printable(photo.path), printable(target.name), note]
         except CvnotesError as error:
             rejected.append(Rejected(printable(photo.path), str(error)))
-    rows = [[name, printable(target.name), ""] for target, name in written.items()]
-    rows += [[r.file, "–", r.reason] for r in rejected]
+    rows = [*written.values(), *([r.file, "–", r.reason] for r in rejected)]
     say(table(["photograph", "written as", "note"], rows))
     if not written:
         complain("undistort", "no photograph could be undistorted")
@@ -57,8 +58,8 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def straightened(photo: Photo, camera: Camera) -> bytes:
-    """Undistort one photograph and encode it as PNG, with its EXIF orientation."""
+def straightened(photo: Photo, camera: Camera) -> tuple[bytes, str]:
+    """Undistort one photograph; gives it as PNG, with its EXIF orientation, and a note."""
     from PIL import Image
 
     from cvnotes.warp import undistort_image
@@ -66,11 +67,15 @@ def straightened(photo: Photo, camera: Camera) -> bytes:
     encoded, exif = io.BytesIO(), Image.Exif()
     if photo.orientation != 1:
         exif[274] = photo.orientation
-    Image.fromarray(undistort_image(photo.image, camera)).save(encoded, "PNG", exif=exif)
-    return encoded.getvalue()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", CalibrationWarning)
+        image = undistort_image(photo.image, camera)
+    Image.fromarray(image).save(encoded, "PNG", exif=exif)
+    notes = [photo.note] * bool(photo.note) + [str(warning.message) for warning in caught]
+    return encoded.getvalue(), "; ".join(notes)
 
 
-def _target(path: Path, out: Path, taken: Mapping[Path, str]) -> Path:
+def _target(path: Path, out: Path, taken: Mapping[Path, object]) -> Path:
     """Name the result after its photograph, without ever replacing one."""
     target = out / f"{path.stem}.png"
     if target in taken:

@@ -1,0 +1,651 @@
+"""The command: photographs in, a camera out, and one clear line whenever that cannot be."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import textwrap
+import time
+import urllib.request
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from cvnotes import __version__
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.cli import main
+from cvnotes.commands import lab
+from cvnotes.errors import FileError
+from cvnotes.files import read_camera, write_camera
+from cvnotes.lens import Lens
+from cvnotes.rigid import rotation_from_vector
+
+posix = pytest.mark.skipif(os.name == "nt", reason="signals, pipes and devices of POSIX")
+SHARED = Path(__file__).resolve().parents[2] / "shared" / "data" / "left_right"
+
+A = intrinsics(420.0, 424.0, 161.0, 118.0)
+SIZE = (320, 240)
+TILTS = [(0.5, 0.1, 0.05), (-0.5, 0.1, -0.1), (0.1, 0.55, 0.1), (0, -0.55, 0), (0.4, 0.4, 0.2)]
+TILTS += [(-0.4, -0.3, -0.2), (0.45, -0.35, 0.1), (-0.2, 0.5, 0.0)]
+
+
+def photograph(R, T, corners=(9, 6), square=20.0):
+    """Photograph a chessboard with an ideal lens: each pixel is the mean of 5 × 5 rays."""
+    columns, rows = corners
+    part = (np.arange(5) - 2) / 5
+    v, u = np.meshgrid(
+        (np.arange(SIZE[1])[:, None] + part).ravel(),
+        (np.arange(SIZE[0])[:, None] + part).ravel(),
+        indexing="ij",
+    )
+    H = A @ np.column_stack([R[:, 0], R[:, 1], T])
+    x, y, w = np.linalg.inv(H) @ np.stack([u.ravel(), v.ravel(), np.ones(u.size)])
+    x, y = np.floor(x / w / square) + 1, np.floor(y / w / square) + 1
+    dark = (x + y) % 2 == 0
+    on_board = (x >= 0) & (x <= columns) & (y >= 0) & (y <= rows)
+    grey = np.where(on_board & dark, 30.0, 220.0).reshape(SIZE[1], 5, SIZE[0], 5)
+    return grey.mean(axis=(1, 3)).round().astype(np.uint8)
+
+
+def board_pose(tilt, depth=520.0, corners=(9, 6), square=20.0):
+    """Place the middle of the board on the optical axis."""
+    R = rotation_from_vector(tilt)
+    middle = np.array([(corners[0] - 1) / 2, (corners[1] - 1) / 2, 0]) * square
+    return R, np.array([0, 0, depth]) - R @ middle
+
+
+@pytest.fixture(scope="module")
+def photos(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("photos")
+    for i, tilt in enumerate(TILTS):
+        Image.fromarray(photograph(*board_pose(tilt))).save(folder / f"view {i}.png")
+    return folder
+
+
+def calibrate(*arguments, corners="9x6"):
+    return main(["calibrate", *map(str, arguments), "--corners", corners, "--square", "20"])
+
+
+def process(*arguments, code=None, **options):
+    """Run the command, or some code, in a process of its own."""
+    run = ["-m", "cvnotes", *map(str, arguments)] if code is None else ["-c", code]
+    options = {"capture_output": True, "text": True, "check": False} | options
+    return subprocess.run([sys.executable, "-W", "error", *run], **options)
+
+
+def one_line(text):
+    """Tell whether a text is one line, and no traceback."""
+    return text.count("\n") == 1 and text.endswith("\n") and "Traceback" not in text
+
+
+@pytest.fixture
+def plain(monkeypatch):
+    """Calibrate without drawing: what is tested then is not the pictures."""
+    monkeypatch.setattr("cvnotes.commands.pictures.pictures", lambda *_: {})
+
+
+# --- calibrate ------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def calibrated(photos, tmp_path_factory):
+    """Calibrate once, with files of all sorts among the photographs."""
+    folder = tmp_path_factory.mktemp("mixed")
+    for path in photos.iterdir():
+        shutil.copy(path, folder)
+    (folder / "notes.txt").write_text("tilt more")
+    (folder / "empty.jpg").write_bytes(b"")
+    whole = (folder / "view 0.png").read_bytes()
+    (folder / "cut.png").write_bytes(whole[: len(whole) // 2])
+    shutil.copy(folder / "view 3.png", folder / "view 3z.png")
+    Image.fromarray(np.full((240, 320), 128, np.uint8)).save(folder / "wall.png")
+    Image.fromarray(photograph(*board_pose(TILTS[0]))[:, :300]).save(folder / "cropped.png")
+    out = tmp_path_factory.mktemp("result") / "new"
+    done = process("calibrate", folder, "--corners", "9x6", "--square", "20", "--out", out)
+    return done, out
+
+
+def test_photographs_become_a_camera_within_its_error_bars(calibrated):
+    done, out = calibrated
+    assert done.returncode == 0, done.stderr
+    keys = json.loads((out / "calibration.json").read_text())
+    assert keys["image_size"] == [320, 240]
+    assert len(keys["views"]) == 8
+    assert keys["rms"] < 0.1
+    found = read_camera(out / "calibration.json")
+    for i, j, name in ((0, 0, "alpha_u"), (1, 1, "alpha_v"), (0, 2, "u0"), (1, 2, "v0")):
+        assert abs(found.A[i, j] - A[i, j]) < 4 * keys["standard_deviations"][name] + 0.05
+    assert np.allclose(read_camera(out / "calibration.yml").A, found.A, rtol=0, atol=0)
+    assert keys["lens"] == "k1 k2 p1 p2"
+
+
+def test_every_photograph_is_listed_and_those_not_used_have_their_reasons(calibrated):
+    done, out = calibrated
+    reasons = {
+        "notes.txt": "not a picture, or in a format that is not read",
+        "empty.jpg": "the file is empty",
+        "cut.png": "damaged or cut off",
+        "view 3z.png": "the same picture as",
+        "cropped.png": "300×240 pixels where most photographs have 320×240",
+        "wall.png": "",
+    }
+    listed = json.loads((out / "calibration.json").read_text())["rejected"]
+    rejected = {view["file"]: view["reason"] for view in listed}
+    assert rejected.keys() == reasons.keys()
+    for name, reason in reasons.items():
+        assert reason in rejected[name]
+        assert re.search(rf"^{re.escape(name)} +–  {re.escape(rejected[name])}$", done.stdout, re.M)
+    for i in range(8):
+        assert re.search(rf"^view {i}\.png +0\.\d\d\d", done.stdout, re.M)
+
+
+def test_the_report_has_error_bars_and_what_the_result_rests_on(calibrated):
+    said = calibrated[0].stdout
+    assert re.search(r"^alpha_u +4\d\d\.\d+ +0\.\d\d+  px$", said, re.M)
+    assert re.search(r"^RMS +0\.\d+ px per point, of 432 corners in 8 photographs$", said, re.M)
+    assert re.search(r"^Tilt +boards differ by up to [56]\d°$", said, re.M)
+    assert re.search(r"^Coverage +corners in \d+ of 48 cells of the picture$", said, re.M)
+    assert "± 1 σ" in said
+    assert calibrated[0].stderr == ""  # no bar where nobody watches
+
+
+def test_pictures_are_left_beside_the_numbers_and_nothing_else(calibrated):
+    out = calibrated[1]
+    names = ["calibration.json", "calibration.yml", "corners.png", "coverage.png"]
+    assert sorted(path.name for path in out.iterdir()) == [*names, "residuals.png", "view_rms.png"]
+    for path in out.glob("*.png"):
+        with Image.open(path) as picture:
+            picture.load()
+            assert picture.size[0] >= 900
+
+
+@pytest.mark.usefixtures("plain")
+def test_the_real_photographs_give_bouguets_camera(tmp_path):
+    if not SHARED.exists():
+        pytest.skip("the shared photographs are not here")
+    photos = sorted(SHARED.glob("left*.jpg"))
+    options = ["--corners", "9x6", "--square", "30", "--out", str(tmp_path)]
+    assert main(["calibrate", *map(str, photos), *options]) == 0
+    keys = json.loads((tmp_path / "calibration.json").read_text())
+    assert (len(keys["views"]), keys["rejected"]) == (13, [])
+    assert keys["camera_matrix"][0][0] == pytest.approx(533.00, abs=0.5)
+    assert keys["camera_matrix"][1][1] == pytest.approx(533.15, abs=0.5)
+    assert keys["rms"] <= 0.19
+
+
+@pytest.mark.usefixtures("plain")
+def test_lens_and_skew_are_estimated_as_asked(photos, tmp_path, capsys):
+    assert calibrate(photos, "--out", tmp_path, "--lens", "k1,k2", "--skew") == 0
+    std = json.loads((tmp_path / "calibration.json").read_text())["standard_deviations"]
+    assert set(std) == {"alpha_u", "alpha_v", "skew", "u0", "v0", "k1", "k2"}
+    assert "OpenCV keeps the skew in calibration.yml but does not use it" in capsys.readouterr().out
+
+
+def test_too_few_photographs_are_refused_with_the_reasons_and_nothing_is_written(
+    photos, tmp_path, capsys
+):
+    wall = tmp_path / "wall.png"
+    Image.fromarray(np.full((240, 320), 128, np.uint8)).save(wall)
+    out = tmp_path / "out"
+    assert calibrate(photos / "view 0.png", wall, tmp_path / "gone.jpg", "--out", out) == 1
+    said = capsys.readouterr()
+    assert "there is no such file" in said.out
+    assert re.search(r"wall\.png +–  \w+", said.out)
+    assert one_line(said.err)
+    assert said.err.startswith("cvnotes calibrate: 1 usable photographs; need at least 2 views")
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("name", ["missing", "empty"])
+def test_a_missing_or_empty_folder_is_said_in_one_line(tmp_path, capsys, name):
+    (tmp_path / "empty").mkdir()
+    assert calibrate(tmp_path / name, "--out", tmp_path / "out") == 1
+    said = capsys.readouterr()
+    assert one_line(said.err)
+    assert ("no photographs in" in said.err) or "there is no such file" in said.out
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_board_that_was_counted_wrongly_is_not_found(photos, tmp_path, capsys):
+    assert calibrate(photos, "--out", tmp_path / "out", corners="10x7") == 1
+    assert "a board of 10×7 inner corners was found in none" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.usefixtures("plain")
+def test_views_that_do_not_determine_the_camera_are_written_and_marked(tmp_path, capsys):
+    folder, out = tmp_path / "flat", tmp_path / "out"
+    folder.mkdir()
+    for i, roll in enumerate((0.0, 0.2, -0.3, 0.5)):
+        picture = photograph(*board_pose((0, 0, roll), depth=500 + 20 * i))
+        Image.fromarray(picture).save(folder / f"{i}.png")
+    assert calibrate(folder, "--out", out) == 3
+    said = capsys.readouterr()
+    keys = json.loads((out / "calibration.json").read_text())
+    assert keys["reliable"] is False
+    assert keys["warnings"]
+    assert f"! {keys['warnings'][0]}" in said.out
+    assert one_line(said.err)
+    assert said.err.startswith("cvnotes calibrate: written, but not reliable: ")
+
+
+@pytest.mark.usefixtures("plain")
+def test_a_half_turn_symmetric_board_is_accepted_and_that_is_said(tmp_path, capsys):
+    for i, tilt in enumerate(TILTS[:5]):
+        made = photograph(*board_pose(tilt, corners=(8, 6)), corners=(8, 6))
+        Image.fromarray(made).save(tmp_path / f"{i}.png")
+    assert calibrate(tmp_path, "--out", tmp_path / "out", corners="8x6") == 0
+    assert "this board looks the same after half a turn" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("plain")
+def test_an_exif_rotation_is_pointed_out(tmp_path, capsys):
+    exif = Image.Exif()
+    exif[274] = 6
+    for i, tilt in enumerate(TILTS):
+        made = Image.fromarray(photograph(*board_pose(tilt)))
+        made.save(tmp_path / f"{i}.png", **({"exif": exif} if i % 2 else {}))
+    assert calibrate(tmp_path, "--out", tmp_path / "out") == 0
+    said = capsys.readouterr().out
+    assert said.count("EXIF orientation 6 not applied: sensor frame") == 4
+    assert "cv2.IMREAD_IGNORE_ORIENTATION" in said
+    assert read_camera(tmp_path / "out" / "calibration.json").A[0, 2] == pytest.approx(161, abs=2)
+
+
+@pytest.mark.usefixtures("plain")
+def test_photographs_of_two_folders_are_told_apart(photos, tmp_path):
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+    for i, path in enumerate(sorted(photos.iterdir())):
+        shutil.copy(path, tmp_path / "ab"[i % 2] / f"{i // 2}.png")
+    assert calibrate(tmp_path / "a", tmp_path / "b", "--out", tmp_path / "out") == 0
+    views = json.loads((tmp_path / "out" / "calibration.json").read_text())["views"]
+    assert [view["file"] for view in views][::4] == [str(Path("a/0.png")), str(Path("b/0.png"))]
+
+
+@pytest.mark.usefixtures("plain")
+@pytest.mark.parametrize(
+    ("make", "reason"),
+    [
+        (lambda out: out.write_bytes(b"old"), "out is a file"),
+        (lambda out: (out / "calibration.json").mkdir(parents=True), "it is a folder"),
+    ],
+    ids=["a file for the folder", "a folder for the file"],
+)
+def test_results_that_cannot_be_written_are_one_line_and_exit_code_1(
+    photos, tmp_path, capsys, make, reason
+):
+    out = tmp_path / "out"
+    make(out)
+    assert calibrate(photos, "--out", out) == 1
+    error = capsys.readouterr().err
+    assert one_line(error)
+    assert reason in error
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+    assert not list(tmp_path.rglob("*.tmp"))
+
+
+def test_a_read_only_folder_is_refused_before_the_work(photos, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda *_: False)  # for root everything is writable
+    assert calibrate(photos, "--out", tmp_path / "out") == 1
+    said = capsys.readouterr()
+    assert "is read-only" in said.err
+    assert said.out == ""
+
+
+# --- usage ----------------------------------------------------------------------------------
+
+GOOD = ["calibrate", "photos", "--corners", "9x6", "--square", "25", "--out", "out"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "required: COMMAND"),
+        (["nonsense"], "invalid choice: 'nonsense'"),
+        (["calibrate"], "required: PHOTO, --corners, --square, --out"),
+        ([*GOOD, "--bogus"], "unrecognized arguments: --bogus"),
+        ([*GOOD, "--corners", "9by6"], "expected inner corners such as 9x6, got '9by6'"),
+        ([*GOOD, "--corners", "0x0"], "two positive whole numbers"),
+        ([*GOOD, "--corners", "9x1"], "at least 2×2 inner corners"),
+        ([*GOOD, "--square", "0"], "expected a length such as 25, got '0'"),
+        ([*GOOD, "--square", "-1"], "expected a length such as 25, got '-1'"),
+        ([*GOOD, "--square", "nan"], "expected a length such as 25, got 'nan'"),
+        ([*GOOD, "--square", "0,025"], "write a point for the comma"),
+        ([*GOOD, "--lens", "k9"], 'expected one of "none", "k1", "k1 k2"'),
+        (["undistort", "photos", "--out", "out"], "required: --camera"),
+        (["lab", "--port", "many"], "invalid int value: 'many'"),
+    ],
+)
+def test_wrong_usage_is_one_line_and_exit_code_2(arguments, words, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    try:
+        code = main(arguments)
+    except SystemExit as ended:
+        code = ended.code
+    assert code == 2
+    said = capsys.readouterr()
+    assert one_line(said.err)
+    assert words in said.err
+    assert said.out == ""
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("command", [[], ["calibrate"], ["undistort"], ["lab"], ["target"]])
+def test_help_reads_well(command, capsys):
+    with pytest.raises(SystemExit, match="0"):
+        main([*command, "--help"])
+    said = capsys.readouterr().out
+    assert said.startswith(f"usage: {' '.join(['cvnotes', *command])}")
+    assert max(map(len, said.splitlines())) <= 80
+    if command in ([], ["calibrate"], ["undistort"]):
+        assert "example" in said
+
+
+def test_the_version_is_told(capsys):
+    with pytest.raises(SystemExit, match="0"):
+        main(["--version"])
+    assert capsys.readouterr().out == f"cvnotes {__version__}\n"
+
+
+# --- whatever happens -----------------------------------------------------------------------
+
+
+def test_a_mistake_of_ours_is_one_line_too(photos, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("cvnotes.commands.views._look", lambda *_: 1 / 0)
+    assert calibrate(photos, "--out", tmp_path / "out") == 1
+    error = capsys.readouterr().err
+    assert one_line(error)
+    assert "a mistake of ours, please report it: ZeroDivisionError" in error
+    assert "test_cli.py, line" in error
+
+
+def test_memory_that_runs_out_is_said(photos, tmp_path, capsys, monkeypatch):
+    def look(*_):
+        raise MemoryError
+
+    monkeypatch.setattr("cvnotes.commands.views._look", look)
+    assert calibrate(photos, "--out", tmp_path / "out") == 1
+    assert capsys.readouterr().err == "cvnotes calibrate: there is not enough memory for this\n"
+
+
+SLOW = """
+    import sys, time
+    from pathlib import Path
+    PATCH
+    from cvnotes.cli import main
+    sys.exit(main(sys.argv[1:]))
+"""
+PATCHES = {
+    "while looking for corners": """
+    import cvnotes.commands.views as views
+    def slow(*_):
+        Path("ready").touch()
+        time.sleep(60)
+    views._look = slow
+    """,
+    "while writing": """
+    import os
+    import cvnotes.commands.pictures as pictures
+    pictures.pictures = lambda *_: {}
+    synced = os.fsync
+    def slow(handle):
+        synced(handle)
+        Path("ready").touch()
+        time.sleep(60)
+    os.fsync = slow
+    """,
+}
+
+
+@posix
+@pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("when", PATCHES)
+def test_an_interruption_leaves_the_old_result_whole_and_nothing_else(photos, tmp_path, when, kind):
+    old = tmp_path / "out" / "calibration.json"
+    old.parent.mkdir()
+    old.write_text("old")
+    code = textwrap.dedent(SLOW).replace("PATCH", textwrap.dedent(PATCHES[when]))
+    arguments = ["calibrate", photos, "--corners", "9x6", "--square", "20", "--out", "out"]
+    running = subprocess.Popen(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    for _ in range(600):
+        if (tmp_path / "ready").exists():
+            break
+        time.sleep(0.05)
+    running.send_signal(kind)
+    _, error = running.communicate(timeout=30)
+    assert running.returncode == 130
+    assert "Traceback" not in error
+    assert old.read_text() == "old"
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["calibration.json", "out", "ready"]
+
+
+@posix
+def test_output_that_cannot_be_printed_is_a_failure_but_a_closed_pipe_is_not(photos, tmp_path):
+    out = tmp_path / "out"
+    arguments = ["calibrate", photos, "--corners", "9x6", "--square", "20", "--out", out]
+    with Path("/dev/full").open("w") as full:
+        done = process(*arguments, capture_output=False, stdout=full, stderr=subprocess.PIPE)
+    assert done.returncode == 1
+    assert done.stderr == "cvnotes calibrate: [Errno 28] No space left on device\n"
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = process(*arguments, capture_output=False, stdout=writer, stderr=subprocess.PIPE)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (out / "calibration.json").exists()
+
+
+@posix
+def test_any_locale_any_name_and_no_home_give_the_same_camera(calibrated, photos, tmp_path):
+    folder, out = tmp_path / "-ö\n%s", tmp_path / "out"
+    shutil.copytree(photos, folder)
+    (folder / os.fsdecode(b"caf\xe9.png")).write_bytes(b"")
+    done = process(
+        "calibrate", "--corners", "9x6", "--square", "20", "--out", out, "--", folder,
+        env={"PATH": os.environ["PATH"], "LC_ALL": "C", "PYTHONIOENCODING": "ascii"},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert r"caf\xe9.png" in done.stdout
+    assert "+- 1 sigma" in done.stdout
+    here, there = (read_camera(o / "calibration.json").A for o in (out, calibrated[1]))
+    assert np.allclose(here, there, rtol=1e-8, atol=0)
+
+
+# --- undistort ------------------------------------------------------------------------------
+
+CAMERA = Camera(A, lens=Lens(k=(-0.25, 0.1)), size=SIZE)
+
+
+def grid_through(camera):
+    """Photograph a ruled wall at z = 1 through the lens: an exact picture of smooth waves."""
+    u, v = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
+    return waves(camera.ideal(np.stack([u, v], -1)))
+
+
+def waves(xy):
+    return (128 + 60 * np.sin(25 * xy[..., 0]) + 50 * np.cos(30 * xy[..., 1])).astype(np.uint8)
+
+
+@pytest.fixture
+def bent(tmp_path):
+    """A photograph through the lens, the camera's file, and what an ideal lens would show."""
+    Image.fromarray(grid_through(CAMERA)).save(tmp_path / "bent.png")
+    write_camera(CAMERA, tmp_path / "camera.json")
+    return tmp_path / "bent.png", tmp_path / "camera.json", grid_through(Camera(A, size=SIZE))
+
+
+def undistort(*arguments):
+    return main(["undistort", *map(str, arguments)])
+
+
+def test_photographs_come_out_as_an_ideal_lens_takes_them(bent, tmp_path, capsys):
+    photo, camera, straight = bent
+    assert undistort(photo, "--camera", camera, "--out", tmp_path / "out") == 0
+    with Image.open(tmp_path / "out" / "bent.png") as picture:
+        found = np.asarray(picture).astype(float)
+    middle = (slice(20, -20), slice(20, -20))
+    assert np.abs(found[middle] - straight[middle]).max() <= 4  # grey levels, interpolated
+    kept = read_camera(tmp_path / "out" / "camera.json")
+    assert np.array_equal(kept.A, A)
+    assert (kept.lens, kept.size) == (Lens(), SIZE)
+    assert re.search(r"bent\.png +bent\.png", capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("suffix", [".yml", ".json"])
+def test_any_form_of_camera_does(bent, tmp_path, suffix):
+    write_camera(CAMERA, tmp_path / f"other{suffix}")
+    camera = tmp_path / f"other{suffix}"
+    assert undistort(bent[0], "--camera", camera, "--out", tmp_path / "out") == 0
+
+
+def test_colour_depth_and_orientation_are_kept(bent, tmp_path):
+    grey = grid_through(CAMERA)
+    exif = Image.Exif()
+    exif[274] = 8
+    colour = np.stack([grey, grey // 2, 255 - grey], -1)
+    Image.fromarray(colour).save(tmp_path / "colour.tif", exif=exif)
+    Image.fromarray(grey.astype(np.uint16) * 200).save(tmp_path / "deep.png")
+    photos = [tmp_path / "colour.tif", tmp_path / "deep.png"]
+    assert undistort(*photos, "--camera", bent[1], "--out", tmp_path / "out") == 0
+    with Image.open(tmp_path / "out" / "colour.png") as picture:
+        assert picture.mode == "RGB"
+        assert picture.getexif()[274] == 8
+    with Image.open(tmp_path / "out" / "deep.png") as picture:
+        assert np.asarray(picture).max() > 40_000
+
+
+def test_what_cannot_be_undistorted_has_its_reason(bent, tmp_path, capsys):
+    Image.fromarray(np.zeros((50, 60), np.uint8)).save(tmp_path / "small.png")
+    (tmp_path / "text.jpg").write_text("x")
+    out = tmp_path / "out"
+    assert undistort(tmp_path, "--camera", bent[1], "--out", out) == 0
+    said = capsys.readouterr().out
+    assert "60×50 pixels where the camera has 320×240" in said
+    assert "not a picture" in said
+    assert sorted(path.name for path in out.iterdir()) == ["bent.png", "camera.json"]
+    assert undistort(tmp_path / "small.png", "--camera", bent[1], "--out", tmp_path / "none") == 1
+    assert one_line(capsys.readouterr().err)
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_lens_that_folds_inside_the_picture_is_pointed_out(bent, tmp_path, capsys):
+    folding = Camera(A, lens=Lens(k=(-4.0,)), size=SIZE)
+    write_camera(folding, tmp_path / "folding.json")
+    assert undistort(bent[0], "--camera", tmp_path / "folding.json", "--out", tmp_path / "o") == 0
+    said = capsys.readouterr()
+    assert re.search(r"bent\.png +bent\.png  the lens model folds inside", said.out)
+    assert said.err == ""
+
+
+def test_a_photograph_is_never_replaced_by_its_result(bent, tmp_path, capsys):
+    before = bent[0].read_bytes()
+    assert undistort(bent[0], "--camera", bent[1], "--out", tmp_path) == 1
+    assert "would replace the photograph itself" in capsys.readouterr().out
+    assert bent[0].read_bytes() == before
+
+
+def test_two_photographs_of_one_name_give_two_results(bent, tmp_path):
+    Image.fromarray(255 - grid_through(CAMERA)).save(tmp_path / "bent.bmp")
+    photos = [bent[0], tmp_path / "bent.bmp"]
+    assert undistort(*photos, "--camera", bent[1], "--out", tmp_path / "out") == 0
+    names = ["bent.bmp.png", "bent.png", "camera.json"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == names
+
+
+def test_a_camera_file_that_is_none_is_one_line(bent, tmp_path, capsys):
+    bent[1].write_text('{"camera_matrix": NaN}')
+    assert undistort(bent[0], "--camera", bent[1], "--out", tmp_path / "out") == 1
+    error = capsys.readouterr().err
+    assert one_line(error)
+    assert "camera_matrix: expected a finite number, got nan" in error
+
+
+# --- lab ------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def notebooks(tmp_path):
+    """A folder that holds a first notebook."""
+    nbformat = pytest.importorskip("nbformat")
+    folder = tmp_path / "note books"
+    folder.mkdir()
+    nbformat.write(nbformat.v4.new_notebook(), folder / lab.START)
+    return folder
+
+
+def test_without_notebooks_or_jupyterlab_it_says_what_to_do(
+    notebooks, tmp_path, capsys, monkeypatch
+):
+    assert main(["lab", "--notebooks", str(tmp_path)]) == 1
+    error = capsys.readouterr().err
+    assert one_line(error)
+    assert "say where the course's notebooks are with --notebooks FOLDER" in error
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    assert main(["lab", "--notebooks", str(notebooks)]) == 1
+    assert 'pip install "cvnotes[lab]"' in capsys.readouterr().err
+
+
+def test_another_port_is_taken_where_somebody_listens_already():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        assert lab.free_port(port) not in (0, port)
+    assert lab.free_port(port) == port
+
+
+def test_a_machine_without_windows_opens_no_browser(monkeypatch):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER", "WSL_DISTRO_NAME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr("webbrowser.open", lambda _: pytest.fail("a browser was opened"))
+    assert lab.open_browser("http://127.0.0.1:1") is False
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.setattr("webbrowser.open", lambda _: True)
+    assert lab.open_browser("http://127.0.0.1:1") is True
+
+
+def test_a_server_that_ends_at_once_is_said():
+    server = subprocess.Popen([sys.executable, "-c", "raise SystemExit(7)"])
+    with pytest.raises(FileError, match="JupyterLab ended with code 7"):
+        lab.wait_until_up(server, lab.free_port(0))
+
+
+@posix
+def test_the_course_is_served_on_loopback_until_ctrl_c(notebooks, tmp_path):
+    pytest.importorskip("jupyterlab")
+    environment = os.environ | {"JUPYTER_CONFIG_DIR": str(tmp_path / "config")}
+    environment.pop("DISPLAY", None)
+    running = subprocess.Popen(
+        [sys.executable, "-m", "cvnotes", "lab", "--notebooks", str(notebooks)],
+        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment,
+    )  # fmt: skip
+    try:
+        said = [running.stdout.readline() for _ in range(5)]
+        address = re.search(r"http://127\.0\.0\.1:\d+/lab/tree/(\S+)\?token=(\S{40,})", said[2])
+        assert address, said
+        assert address[1] == lab.START
+        assert "No browser could be opened here" in said[4]
+        with urllib.request.urlopen(address[0], timeout=20) as page:
+            html = page.read().decode()
+        assert "JupyterLab" in html
+        assert "apputils-extension:announcements" in html  # switched off: it asks about news
+        with pytest.raises(urllib.error.HTTPError, match="403"):
+            urllib.request.urlopen(f"{address[0].split('/lab')[0]}/api/contents?token=guess")
+        running.send_signal(signal.SIGINT)
+        assert "The course is closed" in running.communicate(timeout=30)[0]
+        assert running.returncode == 0
+        with pytest.raises(urllib.error.URLError):
+            urllib.request.urlopen(address[0], timeout=5)
+    finally:
+        running.terminate()
