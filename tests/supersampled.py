@@ -20,7 +20,10 @@ def picture(board, camera, blur=0.0, half=_HALF):
     width, height = camera.size
     image = np.full((height, width), GREY)
     rim = int(np.ceil(4 * blur))
-    side, n = 2 * (half + rim) + 1, 10 if blur else 16  # samples per pixel and direction
+    side, n = (
+        2 * (half + rim) + 1,
+        max(4, round(7 / blur)) if blur else 16,
+    )  # samples per pixel and direction
     fine = (np.arange(side * n) + 0.5) / n - 0.5 - half - rim
     # Samples step aside from their grid, or upright edges would snap to it.
     aside = (np.arange(side * n) * (np.sqrt(5) - 1) / 2 % 1 - 0.5) / n

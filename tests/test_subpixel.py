@@ -54,6 +54,11 @@ class TestHarris:
         response = harris(np.tile(np.arange(60.0), (50, 1)), k=0.05)
         np.testing.assert_allclose(response[15:-15, 15:-15], -0.05, atol=1e-9)
 
+    def test_a_slanting_ramp_has_one_gradient_too(self):
+        v, u = np.indices((50, 60), dtype=float)
+        response = harris(3 * u - 4 * v)
+        np.testing.assert_allclose(response[15:-15, 15:-15], -0.04 * 25**2, atol=1e-6)
+
     def test_it_is_positive_at_corners_negative_on_edges_and_zero_where_flat(self):
         image = np.zeros((60, 60))
         image[:30, :30] = image[30:, 30:] = 200
@@ -192,7 +197,7 @@ class TestRefineEdges:
 
     def test_without_any_blur_it_stays_below_a_twentieth_of_a_pixel(self):
         errors = []
-        for turn in TURNS[:4]:
+        for turn in TURNS[:2]:
             image, m = picture(BOARD, view(*turn))
             errors.append(refine_edges(eight_bits(image), m + 0.3, grid=(9, 6)) - m)
         assert rms(errors) < 0.05
@@ -230,19 +235,19 @@ class TestRefineEdges:
         np.testing.assert_allclose(far, near, atol=5e-3)
 
     def test_neighbouring_corners_stay_out_of_the_window(self):
-        board = Chessboard((9, 6), 9.0)
+        board = Chessboard((9, 6), 6.0)
         R = rotation_from_vector((0.2, -0.3, 0.1))
         camera = CAMERA.moved(pose(R, [0, 0, 650] - R @ board.points.mean(0)))
         image, m = picture(board, camera, blur=0.7)
         squares = np.linalg.norm(np.diff(m.reshape(6, 9, 2), axis=1), axis=-1)
-        assert squares.max() < 12
+        assert squares.max() < 8
         errors = refine_edges(eight_bits(image), m + 0.2, grid=(9, 6)) - m
         assert rms(errors) < 0.02
 
     def test_strong_blur_costs_little(self):
-        image, m = picture(BOARD, view(*TURNS[5]), blur=3.0)
-        errors = refine_edges(eight_bits(image), m + 0.2, grid=(9, 6)) - m
-        assert rms(errors) < 0.03
+        image, m = picture(BOARD, view(*TURNS[0]), blur=3.5)
+        pixels = eight_bits(image, 2.0, np.random.default_rng(5))
+        assert rms(refine_edges(pixels, m + 0.2, grid=(9, 6)) - m) < 0.04
 
     @pytest.mark.parametrize(
         "response",

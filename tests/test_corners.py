@@ -1,0 +1,372 @@
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from cvnotes import _cv
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.corners import doubts, find_corners, finding
+from cvnotes.corners.order import handedness, ordered
+from cvnotes.errors import CornersNotFound, CvnotesError, InputTypeError, ShapeError
+from cvnotes.lens import Lens
+from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.subpixel import fit_edges
+from cvnotes.synthetic import clutter, render
+from cvnotes.targets import Chessboard
+from cvnotes.views import good_views
+
+PHOTOS = Path(__file__).resolve().parents[2] / "shared" / "data" / "left_right"
+BOARD = Chessboard((9, 6), 25.0)
+CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))
+
+
+def view(turn=(0.3, -0.4, 0.2), centre=(0, 0, 520), board=BOARD):
+    R = rotation_from_vector(turn)
+    return CAMERA.moved(pose(R, np.array(centre) - R @ board.points.mean(0)))
+
+
+def views(n, board=BOARD, seed=0):
+    return [CAMERA.moved(G) for G in good_views(board, CAMERA, n, rng=np.random.default_rng(seed))]
+
+
+def photograph(camera, board=BOARD, noise=2.0, seed=1, **effects):
+    effects = {"blur": 0.7, **effects}
+    return render(board, camera, noise=noise, rng=np.random.default_rng(seed), **effects)
+
+
+def rms(x):
+    return float(np.sqrt(np.mean(np.square(x))))
+
+
+@pytest.fixture(scope="module")
+def shot():
+    camera = view()
+    return photograph(camera), camera.project(BOARD.points)
+
+
+class TestFound:
+    def test_corners_lie_where_the_camera_put_them_in_the_boards_order(self):
+        for camera in views(6):
+            m = find_corners(photograph(camera, noise=0), BOARD)
+            np.testing.assert_allclose(m, camera.project(BOARD.points), atol=0.03)
+            assert rms(m - camera.project(BOARD.points)) < 0.004
+
+    @pytest.mark.parametrize(
+        ("effects", "limit"),
+        [
+            ({"blur": 0.0, "noise": 0.0}, 0.05),
+            ({"noise": 5.0}, 0.018),
+            ({"noise": 25.0}, 0.1),
+            ({"blur": 2.5}, 0.03),
+            ({"blur": 0.0, "motion": (5, 2)}, 0.06),
+            ({"light": (0.5, 0.4)}, 0.012),
+            ({"vignetting": 0.6}, 0.012),
+            ({"gain": 0.1, "noise": 1.0}, 0.05),
+            ({"gain": 2.0}, 0.05),
+            ({"jpeg": 20}, 0.05),
+            ({"margin": 0.2}, 0.01),
+            ({"background": "clutter"}, 0.01),
+            ({"background": "clutter", "margin": 0.0}, 0.01),
+        ],
+        ids=str,
+    )
+    def test_pictures_of_all_kinds(self, effects, limit):
+        if effects.get("background") == "clutter":
+            effects = {**effects, "background": clutter((640, 480), rng=np.random.default_rng(5))}
+        errors = []
+        for camera in views(3, seed=2):
+            m = find_corners(photograph(camera, **effects), BOARD)
+            errors.append(m - camera.project(BOARD.points))
+        assert rms(errors) < limit
+
+    def test_steep_boards(self):
+        for turn in ((1.05, 0.2, 0.1), (-0.3, 1.0, 0.4)):
+            camera = view(turn, (0, 0, 480))
+            m = find_corners(photograph(camera), BOARD)
+            assert rms(m - camera.project(BOARD.points)) < 0.03
+
+    @pytest.mark.parametrize("corners", [(3, 4), (4, 3), (6, 9), (14, 9)])
+    def test_boards_of_other_counts(self, corners):
+        board = Chessboard(corners, 200 / max(corners))
+        camera = view((0.3, -0.2, 0.1), board=board)
+        m = find_corners(photograph(camera, board), board)
+        np.testing.assert_allclose(m, camera.project(board.points), atol=0.05)
+
+    def test_a_large_picture_is_measured_at_its_full_size(self):
+        camera = view()
+        A = intrinsics(4 * 800, 4 * 804, 4 * 325.5 - 0.5, 4 * 238.5 - 0.5)
+        large = Camera(A, camera.G, camera.lens, (2560, 1920))
+        m = find_corners(photograph(large, blur=1.2), BOARD)
+        assert rms(m - large.project(BOARD.points)) < 0.012
+
+    def test_a_small_board_in_a_large_picture(self):
+        camera = Camera(intrinsics(3000, 3000, 1280, 960), size=(2560, 1920))
+        camera = camera.moved(pose(np.eye(3), [-300, 100, 6500]))
+        m = find_corners(photograph(camera), BOARD)
+        np.testing.assert_allclose(m, camera.project(BOARD.points), atol=0.05)
+
+
+class TestKindsOfPictures:
+    def test_colours_alpha_depth_and_range_give_the_same_corners(self, shot):
+        grey, m = shot
+        kinds = [
+            np.dstack([grey] * 3),
+            np.dstack([grey] * 3 + [np.zeros_like(grey)]),
+            grey.astype(np.uint16) * 257,
+            grey.astype(np.uint16) * 16,  # 12 bits in 16
+            grey / np.float32(255),
+            grey.astype(float) - 128,
+        ]
+        expected = find_corners(grey, BOARD)
+        np.testing.assert_allclose(expected, m, atol=0.06)
+        for image in kinds:
+            np.testing.assert_allclose(find_corners(image, BOARD), expected, atol=0.02)
+
+    def test_the_picture_is_left_alone(self, shot):
+        image = shot[0].copy()
+        image.setflags(write=False)
+        find_corners(image, BOARD)
+        np.testing.assert_array_equal(image, shot[0])
+
+    def test_what_is_no_picture_is_refused(self, shot):
+        with pytest.raises(InputTypeError, match="expected uint8, uint16, float32 or float64"):
+            find_corners(shot[0] > 100, BOARD)
+        with pytest.raises(ShapeError, match="expected"):
+            find_corners(shot[0][0], BOARD)
+        with pytest.raises(ShapeError, match="grey, RGB or RGBA"):
+            find_corners(np.dstack([shot[0]] * 2), BOARD)
+        with pytest.raises(ShapeError, match="expected"):
+            find_corners(np.zeros((0, 5), np.uint8), BOARD)
+        with pytest.raises(CvnotesError, match="NaN or infinite"):
+            find_corners(np.full((40, 40), np.nan), BOARD)
+        with pytest.raises(InputTypeError, match="None"):
+            find_corners(None, BOARD)
+        with pytest.raises(InputTypeError, match="expected a Chessboard, got tuple"):
+            find_corners(shot[0], (9, 6))
+
+    @pytest.mark.parametrize("shape", [(1, 1), (1, 500), (7, 500), (20, 20)])
+    def test_tiny_pictures_hold_no_board(self, shape):
+        with pytest.raises(CornersNotFound, match=f"picture of {shape[1]}×{shape[0]} pixels"):
+            find_corners(np.zeros(shape, np.uint8), BOARD)
+
+
+class TestOrder:
+    @pytest.mark.parametrize("quarters", [0, 1, 2, 3])
+    def test_turning_the_picture_turns_the_corners(self, shot, quarters):
+        image, m = shot
+        height, width = image.shape
+        m = find_corners(image, BOARD)
+        for _ in range(quarters):  # a quarter turn takes (u, v) to (v, width − 1 − u)
+            m, width, height = np.stack([m[:, 1], width - 1 - m[:, 0]], -1), height, width
+        turned = find_corners(np.rot90(image, quarters).copy(), BOARD)
+        np.testing.assert_allclose(turned, m, atol=2e-3)
+
+    def test_a_mirrored_picture_is_read_as_a_board_seen_from_its_front(self, shot):
+        m = find_corners(shot[0][:, ::-1].copy(), BOARD).reshape(6, 9, 2)
+        assert handedness(m) > 0
+        # The mirror image of the first column, from its other end.
+        expected = shot[1].reshape(6, 9, 2)[::-1]
+        np.testing.assert_allclose(m, [639, 0] - expected * [1, -1], atol=0.06)
+
+    @pytest.mark.parametrize("flip", [np.s_[::-1, ::-1], np.s_[::-1], np.s_[:, ::-1]], ids=str)
+    def test_the_finders_own_order_does_not_matter(self, shot, monkeypatch, flip):
+        expected = find_corners(shot[0], BOARD)
+
+        def in_another_order(grey, corners):
+            found = _cv.find_sb(grey, corners)
+            return found.reshape(6, 9, 2)[flip].reshape(-1, 2)
+
+        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", in_another_order, 10**6),))
+        np.testing.assert_allclose(find_corners(shot[0], BOARD), expected, atol=2e-3)
+
+    @pytest.mark.parametrize("corners", [(8, 6), (7, 5), (7, 7)])
+    @pytest.mark.parametrize("turn", [0.3, 1.9, 3.3, -1.2])
+    def test_the_origin_of_a_symmetric_board_is_at_the_end_near_the_top_left(self, corners, turn):
+        board = Chessboard(corners, 25.0, half_turn_symmetric=True)
+        camera = view((0.2, -0.3, turn), (0, 0, 620), board)
+        m = find_corners(photograph(camera, board), board)
+        truth = camera.project(board.points)
+        apart = np.linalg.norm(m[:, None] - truth, axis=-1)
+        assert apart.min(1).max() < 0.06
+        assert handedness(m.reshape(*corners[::-1], 2)) > 0
+        half_turn = m[::-1]
+        assert np.hypot(*m[0]) < np.hypot(*half_turn[0])
+        # Only half a turn away, at most, from what was rendered: its dark squares are there.
+        assert min(np.abs(m - truth).max(), np.abs(half_turn - truth).max()) < 0.06
+
+    def test_the_square_outside_of_the_first_corner_is_dark(self):
+        lattice = np.stack(np.meshgrid([10.0, 20, 30], [10.0, 20]), axis=-1)
+        dark = np.array([[-1, 1, -1], [1, -1, 1]])
+        assert ordered(lattice, dark)[0].tolist() == [10, 10]
+        assert ordered(lattice, -dark)[0].tolist() == [30, 20]
+
+    def test_left_handed_corners_are_mirrored(self):
+        lattice = np.stack(np.meshgrid([30.0, 20, 10], [10.0, 20]), axis=-1)
+        assert handedness(ordered(lattice, np.ones((2, 3))).reshape(2, 3, 2)) == 100
+
+
+class TestRefused:
+    def test_no_board_tells_what_was_tried_and_what_to_look_at(self):
+        image = np.full((480, 640), 90, np.uint8)
+        with pytest.raises(CornersNotFound) as error:
+            find_corners(image, BOARD)
+        message = str(error.value)
+        assert "no board of 9×6 inner corners found in a picture of 640×480 pixels" in message
+        assert "SB finder at 640×480: not found; classic finder at 640×480: not found" in message
+        assert "is the whole board in the picture" in message
+        assert message.count("SB finder") == 1  # the same picture is not searched twice
+
+    def test_squares_counted_for_corners(self, shot):
+        with pytest.raises(CornersNotFound, match="a board of 9×6 inner corners is there: were"):
+            find_corners(shot[0], Chessboard((10, 7), 25.0))
+
+    def test_boards_that_no_finder_finds(self, shot):
+        with pytest.raises(CornersNotFound, match="at least 3 inner corners along each side"):
+            find_corners(shot[0], Chessboard((9, 2), 25.0))
+
+    def test_a_board_that_is_cut_off(self, shot):
+        image, m = shot
+        with pytest.raises(CornersNotFound, match="whole board"):
+            find_corners(image[:, : int(np.sort(m[:, 0])[-4])].copy(), BOARD)
+
+    def test_a_hidden_corner(self, shot):
+        image, m = shot
+        u, v = m[31]
+        v_all, u_all = np.indices(image.shape)
+        hidden = np.where(np.hypot(u_all - u, v_all - v) < 14, 140, image).astype(np.uint8)
+        with pytest.raises(CornersNotFound):
+            find_corners(hidden, BOARD)
+
+    @pytest.mark.parametrize(
+        ("corners", "part"),
+        [
+            ((11, 8), np.s_[:6, :9]),
+            ((11, 8), np.s_[1:7, 1:10]),
+            ((11, 8), np.s_[2:, 2:]),
+            ((9, 8), np.s_[:6]),
+            ((9, 8), np.s_[2:]),
+            ((11, 6), np.s_[:, :9]),
+            ((11, 6), np.s_[:, 2:]),
+        ],
+        ids=str,
+    )
+    @pytest.mark.parametrize("light", [(0.0, 0.0), (0.5, 0.4)])
+    def test_part_of_a_larger_board(self, monkeypatch, corners, part, light):
+        larger = Chessboard(corners, 20.0)
+        camera = view((0.3, -0.5, 0.4), board=larger)
+        image = photograph(camera, larger, light=light)
+        found = camera.project(larger.points).reshape(*corners[::-1], 2)[part].reshape(-1, 2)
+        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: found, 10**6),))
+        with pytest.raises(CornersNotFound, match="squares go on beyond 9×6 corners"):
+            find_corners(image, BOARD)
+
+    def test_larger_boards_are_not_taken_for_it_by_the_finders_either(self):
+        for corners in ((10, 7), (11, 6), (9, 8)):
+            board = Chessboard(corners, 20.0)
+            camera = view((0.2, -0.3, 0.1), board=board)
+            with pytest.raises(CornersNotFound):
+                find_corners(photograph(camera, board), BOARD)
+
+    def test_a_corner_out_of_line(self, shot):
+        image, m = shot
+        fit = fit_edges(image, m, grid=(9, 6))
+        doubts.check_board(fit, (9, 6))
+        fit.m[20] += 3.0
+        with pytest.raises(doubts.NotABoard, match=r"out of line by \d+\.\d px"):
+            doubts.check_board(fit, (9, 6))
+
+    def test_squares_that_do_not_alternate(self, shot):
+        fit = fit_edges(shot[0], shot[1], grid=(9, 6))
+        fit.contrast[20] *= -1
+        with pytest.raises(doubts.NotABoard, match="not alternately light and dark"):
+            doubts.check_board(fit, (9, 6))
+
+    def test_noise_is_no_board(self):
+        # OpenCV's finder sees a 3×3 board in some noise.
+        board = Chessboard((3, 3), 25.0, half_turn_symmetric=True)
+        for seed in range(3):
+            noise = np.random.default_rng(seed).integers(0, 255, (480, 640), dtype=np.uint8)
+            with pytest.raises(CornersNotFound):
+                find_corners(noise, board)
+
+    def test_a_second_finder_is_asked_when_the_first_is_not_believed(self, shot, monkeypatch):
+        attempts = (
+            ("wrong", lambda grey, corners: _cv.find_sb(grey, corners) + 40, 10**6),
+            ("right", _cv.find_sb, 10**6),
+        )
+        monkeypatch.setattr(finding, "_ATTEMPTS", attempts)
+        np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
+
+
+class TestFinders:
+    def test_large_pictures_are_looked_at_in_reduced_copies(self, monkeypatch):
+        seen = []
+        for i, (name, _, most) in enumerate(finding._ATTEMPTS):
+
+            def look(grey, _, i=i):
+                seen.append((i, grey.size))
+
+            attempts = list(finding._ATTEMPTS)
+            attempts[i] = (name, look, most)
+            monkeypatch.setattr(finding, "_ATTEMPTS", tuple(attempts))
+        with pytest.raises(CornersNotFound, match="SB finder at 1316×987"):
+            find_corners(np.zeros((6000, 8000), np.uint8), BOARD)
+        assert [i for i, _ in seen] == [0, 1, 2]
+        assert seen[0][1] <= 1_300_000
+        assert seen[1][1] <= 500_000
+        assert seen[2][1] <= 12_000_000
+
+    @pytest.mark.parametrize("shape", [(54, 1, 2), (54, 2)])
+    def test_both_shapes_that_opencv_gives(self, monkeypatch, shape):
+        m = np.random.default_rng(0).random(shape).astype(np.float32)
+        monkeypatch.setattr(cv2, "findChessboardCornersSB", lambda *_, **__: (True, m))
+        monkeypatch.setattr(cv2, "findChessboardCorners", lambda *_, **__: (True, m))
+        for finder in (_cv.find_sb, _cv.find_classic):
+            found = finder(np.zeros((40, 40), np.uint8), (9, 6))
+            assert found.shape == (54, 2)
+            assert found.dtype == np.float64
+
+    def test_both_find_a_board(self, shot):
+        for finder in (_cv.find_sb, _cv.find_classic):
+            found = finder(shot[0], (9, 6))
+            nearest = np.linalg.norm(found[:, None] - shot[1], axis=-1).min(1)
+            assert nearest.max() < 1.5
+
+    def test_a_pixel_of_a_reduced_copy_is_the_mean_of_those_it_covers(self):
+        grey = np.random.default_rng(0).integers(0, 256, (6, 8), dtype=np.uint8)
+        small = _cv.shrink(grey, (4, 3))
+        np.testing.assert_allclose(small, grey.reshape(3, 2, 4, 2).mean((1, 3)), atol=0.51)
+
+
+@pytest.mark.skipif(not PHOTOS.is_dir(), reason="the stereo photographs are not on this machine")
+class TestPhotographs:
+    @pytest.mark.parametrize(
+        ("side", "alpha_u", "alpha_v"), [("left", 533.004, 533.153), ("right", 536.983, 536.569)]
+    )
+    def test_thirteen_of_thirteen_calibrate_as_published(self, side, alpha_u, alpha_v):
+        files = sorted(PHOTOS.glob(f"{side}*.jpg"))
+        board = Chessboard((9, 6), 30.0)
+        m = [find_corners(cv2.imread(str(f), cv2.IMREAD_GRAYSCALE), board) for f in files]
+        assert len(m) == 13
+        rms_per_point, A, *_ = cv2.calibrateCamera(
+            [board.points.astype(np.float32)] * 13,
+            [x.astype(np.float32) for x in m],
+            (640, 480),
+            None,
+            None,
+            flags=cv2.CALIB_FIX_K3,
+        )
+        assert rms_per_point < 0.17
+        assert abs(A[0, 0] - alpha_u) < 0.5
+        assert abs(A[1, 1] - alpha_v) < 0.5
+
+    def test_the_origin_stays_on_the_same_corner_of_the_board(self):
+        # The board is held upright or turned to its left, never upside down.
+        for file in sorted(PHOTOS.glob("*.jpg")):
+            image = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
+            m = find_corners(image, Chessboard((9, 6), 30.0)).reshape(6, 9, 2)
+            assert handedness(m) > 0
+            outside = np.rint(m[0, 0] + 0.2 * (2 * m[0, 0] - m[0, 1] - m[1, 0])).astype(int)
+            beside = np.rint(m[0, 0] + 0.2 * (m[0, 1] - m[1, 0])).astype(int)
+            assert image[tuple(outside[::-1])] < image[tuple(beside[::-1])] - 50
