@@ -118,8 +118,8 @@ class Steps:
             yield focal_lengths_from_homographies(H)
         with suppress(DegenerateError):
             yield intrinsics_from_b(b)
-        # Noise can leave neither; then a few usual fields of view, from 90° to 28°, are tried.
-        for f in (1.0, 2.0, 4.0):
+        # Noise and strong lenses can leave neither; then fields of view from 118° to 28° are tried.
+        for f in (0.6, 1.0, 2.0, 4.0):
             yield np.diag([f, f, 1.0])
 
     def poses(self, A: Array, H: Array) -> Array:

@@ -7,6 +7,7 @@ import pytest
 
 from cvnotes.calibration import LENSES, Calibration, calibrate
 from cvnotes.camera import Camera, intrinsics
+from cvnotes.correspondences import Correspondences
 from cvnotes.errors import (
     CalibrationWarning,
     ConvergenceError,
@@ -17,7 +18,9 @@ from cvnotes.errors import (
 )
 from cvnotes.homography import dlt
 from cvnotes.lens import Lens
+from cvnotes.refine import Problem
 from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.steps import Steps
 from cvnotes.zhang import extrinsics, intrinsics_from_homographies, radial_distortion
 
 SIZE = (1280, 960)
@@ -104,6 +107,48 @@ def test_points_left_out_are_as_if_they_had_not_been_there(board, noisy):
     assert np.allclose(lists.A, shorter.A, atol=1e-9)
     assert np.abs(ragged.A - shorter.A).max() < 3
     assert ragged.std["alpha_u"] < shorter.std["alpha_u"]
+
+
+# The steps that lead to the start.
+
+
+def problem_of(board, m, **model):
+    data = Correspondences.of(board.points, m)
+    return Problem(data.W, data.m, data.seen, **model)
+
+
+def test_the_first_start_has_its_piercing_point_in_the_middle_of_the_picture(board, views_of):
+    found = []
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        m = noise(views_of(RADIAL, 3, rng)[1], rng)
+        start = next(Steps(SIZE).starts(problem_of(board, m, n_radial=0)))
+        assert np.allclose(start.shared[2:], [639.5, 479.5], atol=1e-9)
+        found.append(start.shared[:2])
+    assert np.abs(np.median(found, axis=0) / 1000 - 1).max() < 0.15
+
+
+@pytest.mark.parametrize(("seed", "tilt"), [(181, 30), (171, 45)])
+def test_a_strong_lens_is_straightened_where_no_other_start_leads_to_it(
+    board, views_of, seed, tilt
+):
+    rng = np.random.default_rng([seed, 12, tilt])
+    alpha = rng.uniform(400, 560)
+    A = intrinsics(alpha, alpha, 639.5 + rng.uniform(-128, 128), 479.5 + rng.uniform(-96, 96))
+    lens = Lens(k=(rng.uniform(-0.45, -0.3), rng.uniform(0.08, 0.15)))
+    _, m = views_of(Camera(A, lens=lens, size=SIZE), 12, rng, tilt=tilt, fill=(0.3, 0.95))
+    result = quietly(board.points, noise(m, rng), SIZE)
+    assert result.rms < 0.5
+    assert abs(result.A[0, 0] - alpha) < 4.5 * result.std["alpha_u"]
+
+
+def test_a_lens_that_folds_before_some_corners_does_not_keep_the_others_from_a_start(board, exact):
+    problem = problem_of(board, exact[1])
+    folding = np.array([1000, 1004, 650, 470, -1.2, 0])  # beyond a radius of 0.53
+    state = Steps(SIZE).resumed(problem, folding)
+    assert np.isnan(Lens(k=(-1.2,)).undistort((exact[1][0] - 600) / 1000)).any()
+    assert np.isfinite(state.T).all()
+    assert (state.T[:, 2] > 0).all()
 
 
 # What does not matter, does not matter.
@@ -220,10 +265,12 @@ def test_the_result_reads_well_in_a_terminal_and_in_a_notebook(board, noisy):
     result = calibrate(board.points, noisy, SIZE)
     text, html = repr(result), result._repr_html_()
     assert text.startswith("Calibration from 15 views, 1280×960 px\n  alpha_u ")
-    assert f"{result.A[0, 0]:.4f} ± {result.std['alpha_u']:.4f} px" in text
+    # two digits of each standard deviation, and the value to the same place
+    assert f"{result.A[0, 0]:.2f} ± {result.std['alpha_u']:.2f} px" in text
+    assert f"{result.lens.k[0]:.4f} ± {result.std['k1']:.4f}" in text
     assert f"RMS {result.rms:.4f} px per point; worst view {result.view_rms.argmax()}" in text
     assert "NOT RELIABLE" not in text
-    assert f"<td>{result.A[0, 0]:.4f}</td>" in html
+    assert f"<td>{result.A[0, 0]:.2f}</td>" in html
     assert "Not reliable" not in html
     doubtful = quietly(board.points, noisy[..., ::-1], SIZE[::-1])
     assert "NOT RELIABLE:\n  ! every board is seen from behind" in repr(doubtful)

@@ -163,6 +163,18 @@ def test_many_points_need_neither_a_square_of_their_number_nor_a_second():
     assert peak < 2_000 * 20_000  # bytes: a (2n, 2n) matrix would take 12.8 GB
 
 
+def test_points_close_to_a_line_are_looked_at_more_closely_at_no_greater_cost():
+    rng = np.random.default_rng(16)
+    src = np.c_[rng.uniform(0, 8, 5_000), rng.uniform(0, 1e-5, 5_000)]
+    H = random_homographies(1, rng)[0]
+    tracemalloc.start()
+    found = dlt(src, mapped(H, src))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert np.abs(mapped(found, src) - mapped(H, src)).max() < 1e-6
+    assert peak < 2_000 * 5_000
+
+
 COLLINEAR = "all but one of the points lie on a line"
 
 

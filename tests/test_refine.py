@@ -308,15 +308,22 @@ def test_parameters_that_the_views_say_nothing_about_are_refused(views_of):
         minimise(one_row, one_row.state(TRUTH.A, TRUTH.lens, pose_of_none))
 
 
-def test_a_minimum_behind_the_camera_is_no_camera(board, views_of):
+# The same pixels of flat boards come from cameras that do not exist: (α, side of the board).
+IMPOSSIBLE = {
+    "boards behind the camera": (1, np.diag([-1.0, -1, -1]), np.diag([1.0, 1, -1])),
+    "negative focal lengths": (-1, np.diag([-1.0, -1, 1]), np.eye(3)),
+}
+
+
+@pytest.mark.parametrize("name", IMPOSSIBLE)
+def test_a_minimum_that_is_no_camera_is_refused(board, views_of, name):
+    sign, of_cam, of_board = IMPOSSIBLE[name]
     G, m = views_of(TRUTH, 3, np.random.default_rng(12))
     problem = scaled(board, m, tangential=True)
     G = in_scaled_board(board, G)
-    # −A and boards reflected at z = 0 give the same pixels
-    A = np.diag([-1.0, -1, 1]) @ TRUTH.A
-    behind = np.diag([1.0, 1, -1])
-    shared = np.array([A[0, 0], A[1, 1], 325, 238, -0.25, 0.1, -0.002, 0.001])
-    mirrored = State(shared, behind @ G[:, :3, :3] @ behind, G[:, :3, 3] @ behind)
-    assert problem.linearise(mirrored)[0] < 1e-15
+    shared = np.array([sign * 800, sign * 804, 325, 238, -0.25, 0.1, 0.002 * sign, -0.001 * sign])
+    x = State(shared, of_cam @ G[:, :3, :3] @ of_board, G[:, :3, 3] @ of_cam)
+    assert np.allclose(np.linalg.det(x.R), 1, atol=1e-12)
+    assert problem.linearise(x)[0] < 1e-15
     with pytest.raises(ConvergenceError, match="left the space of cameras"):
-        minimise(problem, mirrored)
+        minimise(problem, x)

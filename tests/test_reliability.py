@@ -172,6 +172,10 @@ def with_one(value, shape, *place):
             {"poses": turned([0.3, 0, 0], [0.33, 0, 0], [0.28, 0.05, 0])},
             "all boards are nearly parallel",
         ),
+        (
+            {"poses": turned([0.05, 0, 0], [-0.05, 0, 0], [0, 0.05, 1])},
+            r"do not determine the camera \(V is singular to 0\.00",
+        ),
         ({"std": {"alpha_u": 200.0, "alpha_v": 1.0}}, "the focal length is known to 20% only"),
         ({"A": intrinsics(1000, 2100, 640, 480)}, "pixels 2.1 times as high as wide"),
         ({"A": intrinsics(1000, 450, 640, 480)}, "rows and columns of the board swapped"),
@@ -253,6 +257,21 @@ def test_the_focal_length_is_open_between_parallel_boards_and_fixed_by_tilted_on
     assert flat.tilt_between == pytest.approx(0, abs=1e-5)
     assert flat.determinacy < 1e-12
     assert tilted.focal_uncertainty == pytest.approx(0.001, abs=1e-12)
+
+
+def test_the_determinacy_is_that_of_zhangs_constraints_in_a_picture_scaled_to_1():
+    e = good_evidence(A=intrinsics(1000, 1100, 300, 200))
+    V = []
+    for G in e.poses:
+        # x = (u − 640)/640, y = (v − 480)/640
+        h1, h2 = (np.array([[1000, 0, 300 - 640], [0, 1100, 200 - 480], [0, 0, 640]]) @ G[:3, :2]).T
+        s = np.sqrt(np.linalg.norm(h1) * np.linalg.norm(h2))
+        (a, b, c), (d, f, g) = h1 / s, h2 / s
+        V.append([a * d, b * f, a * g + c * d, b * g + c * f, c * g])
+        V.append([a * a - d * d, b * b - f * f, 2 * (a * c - d * g), 2 * (b * c - f * g), 0])
+        V[-1][-1] = c * c - g * g
+    sv = np.linalg.svd(V, compute_uv=False)
+    assert e.determinacy == pytest.approx(sv[3] / sv[0], rel=1e-9)
 
 
 def tilted_cosine():

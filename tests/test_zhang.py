@@ -66,6 +66,12 @@ def test_the_scale_of_a_homography_gives_it_no_weight():
     assert np.allclose(constraints(H * factors), constraints(H), rtol=1e-9, atol=1e-12)
 
 
+def test_the_columns_of_a_homography_are_scaled_to_a_product_of_norms_of_1():
+    # h1 = (2, 0, 0) and h2 = (0, 8, 0) become (½, 0, 0) and (0, 2, 0)
+    V = constraints(np.diag([2.0, 8, 1]))
+    assert np.allclose(V, [[0, 1, 0, 0, 0, 0], [0.25, 0, -4, 0, 0, 0]], atol=1e-12)
+
+
 def test_b_has_norm_1_and_the_sign_that_makes_B_positive():
     H = homographies(A_SKEW, random_poses(5, np.random.default_rng(3)))
     b = solve_b(constraints(H), skew=True)
