@@ -14,9 +14,12 @@ from cvnotes import course
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.errors import CvnotesError, DegenerateError, ShapeError
 from cvnotes.lens import Lens
+from cvnotes.rigid import pose, rotation_from_vector
 from cvnotes.show import explore
+from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.model import Model, Setting, Sight, pack_png
 from cvnotes.show.explore.paper import Paper
+from cvnotes.show.explore.rectification import lines_from
 from cvnotes.show.style import CAMERA, ESTIMATED, LENS, WORLD
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
@@ -247,6 +250,23 @@ def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():
     assert count(sight.picture, LENS) > 1000
 
 
+def test_the_drawn_polynomial_is_the_lens_wherever_that_is_valid():
+    lens = Lens((-0.3, 0.2, -0.1), (0.02, -0.03))
+    xy = np.random.default_rng(0).uniform(-0.4, 0.4, (50, 2))
+    assert np.allclose(polynomial(lens, xy), lens.distort(xy), atol=1e-14)
+    assert np.isfinite(polynomial(lens, 100 * xy)).all()
+
+
+def test_the_sentence_tells_how_far_an_ideal_lens_would_show_the_corners_elsewhere():
+    said = numbers(MODELS["lens"].sight(k1=-0.25, k2=0).sentence)[-1]
+    # The farthest corner is the lower left one; r − 0.25 r³ = r' has the ideal r as smallest root.
+    x, y = (-0.5 - 325) / 800, (479.5 - 238) / 804
+    seen = np.hypot(x, y)
+    roots = np.roots([-0.25, 0, 1, -seen])
+    r = roots[roots > 0].min()
+    assert abs(said - (r / seen - 1) * np.hypot(800 * x, 804 * y)) < 0.06
+
+
 def test_four_exact_corners_make_every_square_upright():
     model = MODELS["homography"]
     picture = model.picture()[:, WIDTH + 6 + MARGIN :]
@@ -308,6 +328,21 @@ def test_zoomed_by_two_three_quarters_of_the_picture_are_holes():
     assert count(right, ESTIMATED) == 0
 
 
+def test_forward_and_backward_show_the_same_but_for_the_holes():
+    for values in ({"angle": 30, "zoom": 1}, {"angle": -50, "zoom": 0.7}):
+        picture = MODELS["warp"].picture(**values).astype(int)[TITLE + 4 : 340]
+        left, right = picture[:, 4:434], picture[:, 440:870]
+        hole = np.abs(left - colour(ESTIMATED)).max(-1) < 60
+        assert (np.abs(left - right).max(-1) < 30)[~hole].mean() > 0.9
+
+
+def test_a_smaller_picture_has_no_holes_for_there_is_nothing_to_show_around_it():
+    holes, covered, folds = numbers(MODELS["warp"].sight(angle=0, zoom=0.5).sentence)[:3]
+    assert holes == 0
+    assert abs(covered - 54 * 40.5) < 60
+    assert folds > 0.9 * covered
+
+
 def test_rectified_partners_share_their_row_however_the_camera_was_turned():
     rng = np.random.default_rng(3)
     for _ in range(20):
@@ -321,6 +356,16 @@ def test_rectified_partners_share_their_row_however_the_camera_was_turned():
 def test_cameras_side_by_side_are_rectified_already():
     still = {"angle_x": 0, "angle_y": 0, "angle_z": 0, "forward": 0}
     assert numbers(MODELS["rectification"].sight(**still).sentence)[0] == 0
+
+
+def test_the_partner_of_each_marked_point_lies_on_its_epipolar_line():
+    W = course.board().points
+    left = Camera(course.camera().A, pose(np.eye(3), [-100, -60, 600]))
+    right = left.moved(pose(rotation_from_vector([0.1, -0.2, 0.15]), [-190, -40, 620]))
+    for other, camera in ((left, right), (right, left)):
+        lines, m = lines_from(other, camera, W), camera.project(W)
+        assert np.abs((lines[:, :2] * m).sum(-1) + lines[:, 2]).max() < 1e-9
+        assert np.abs((lines[0, :2] * m).sum(-1) + lines[0, 2]).max() > 10
 
 
 def test_epipolar_lines_pass_through_the_points_they_were_drawn_for():

@@ -66,12 +66,12 @@ class Panel:
     def line(self, xy: npt.ArrayLike, colour: str, width: float = 1.5, dash: float = 0) -> None:
         """Draw a curve through points (n, 2); it is interrupted where they are NaN."""
         at = self.place(xy)
-        pairs = _clipped(at[:-1], at[1:], self._limits())
+        low, high = self._limits()
         thick = max(1, round(width * self.scale))
-        if not dash and len(pairs) == len(at) - 1 and (pairs[1:, 0] == pairs[:-1, 1]).all():
-            chain = np.concatenate([pairs[:1, 0], pairs[:, 1]])
-            self._draw.line(chain.ravel().tolist(), colour, thick, joint="curve")
+        if not dash and (at >= low).all() and (at <= high).all():
+            self._draw.line(at.ravel().tolist(), colour, thick, joint="curve")
             return
+        pairs = _clipped(at[:-1], at[1:], (low, high))
         for pair in _dashed(pairs, dash * self.scale) if dash else pairs:
             self._draw.line(pair.ravel().tolist(), colour, thick)
 
@@ -187,8 +187,7 @@ def _clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:
     enter, leave = np.maximum(enter, 0), np.minimum(leave, 1)
     seen = enter < leave
     a, d, enter, leave = a[seen], d[seen], enter[seen, None], leave[seen, None]
-    # The ends themselves are kept as they are, so that a curve stays in one piece.
-    return np.stack([a + enter * d, np.where(leave == 1, a + d, a + leave * d)], axis=1)
+    return np.stack([a + enter * d, a + leave * d], axis=1)
 
 
 def _dashed(pairs: Array, length: float) -> Array:

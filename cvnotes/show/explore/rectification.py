@@ -67,16 +67,20 @@ def _draw(left: Camera, right: Camera, board: Chessboard, paper: Paper) -> Sight
 def _row(
     paper: Paper, left: Camera, right: Camera, board: Chessboard, shown: Array, what: str
 ) -> tuple[Panel, Panel]:
-    F = fundamental_matrix(left, right)
     panels = []
-    for camera, other, F_from, side in ((left, right, F.T, "left"), (right, left, F, "right")):
+    for camera, other, side in ((left, right, "left"), (right, left, "right")):
         panel = paper.picture_panel(_SIZE, camera.size, f"{side}, {what}")
         draw_board(panel, camera, board)
-        for line in epipolar_lines(F_from, other.project(shown)):
+        for line in lines_from(other, camera, shown):
             panel.line(_across(line, camera.size), ESTIMATED, 1.4)
         panel.mark(camera.project(shown), "ideal", 6)
         panels.append(panel)
     return panels[0], panels[1]
+
+
+def lines_from(other: Camera, camera: Camera, W: Array) -> Array:
+    """Give the lines (n, 3) in a camera's picture on which what the other sees of W must lie."""
+    return epipolar_lines(fundamental_matrix(other, camera), other.project(W))
 
 
 def _rows_apart(left: Camera, right: Camera, board: Chessboard) -> float:
