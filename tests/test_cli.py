@@ -21,10 +21,13 @@ from cvnotes import __version__
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.cli import main
 from cvnotes.commands import lab
+from cvnotes.commands.pictures import corner_sheets
+from cvnotes.commands.views import View
 from cvnotes.errors import FileError
 from cvnotes.files import read_camera, write_camera
 from cvnotes.lens import Lens
 from cvnotes.rigid import rotation_from_vector
+from cvnotes.targets import Chessboard
 
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, pipes and devices of POSIX")
 SHARED = Path(__file__).resolve().parents[2] / "shared" / "data" / "left_right"
@@ -72,11 +75,12 @@ def calibrate(*arguments, corners="9x6"):
     return main(["calibrate", *map(str, arguments), "--corners", corners, "--square", "20"])
 
 
-def process(*arguments, code=None, **options):
-    """Run the command, or some code, in a process of its own."""
-    run = ["-m", "cvnotes", *map(str, arguments)] if code is None else ["-c", code]
+def process(*arguments, **options):
+    """Run the command in a process of its own."""
+    # What other packages deprecate is no mistake of the command's.
+    run = [sys.executable, "-W", "error", "-W", "ignore::DeprecationWarning", "-m", "cvnotes"]
     options = {"capture_output": True, "text": True, "check": False} | options
-    return subprocess.run([sys.executable, "-W", "error", *run], **options)
+    return subprocess.run([*run, *map(str, arguments)], **options)
 
 
 def one_line(text):
@@ -133,14 +137,15 @@ def test_every_photograph_is_listed_and_those_not_used_have_their_reasons(calibr
         "cut.png": "damaged or cut off",
         "view 3z.png": "the same picture as",
         "cropped.png": "300×240 pixels where most photographs have 320×240",
-        "wall.png": "",
+        "wall.png": "no board of 9×6 inner corners found in a picture of 320×240 pixels",
     }
     listed = json.loads((out / "calibration.json").read_text())["rejected"]
     rejected = {view["file"]: view["reason"] for view in listed}
     assert rejected.keys() == reasons.keys()
     for name, reason in reasons.items():
         assert reason in rejected[name]
-        assert re.search(rf"^{re.escape(name)} +–  {re.escape(rejected[name])}$", done.stdout, re.M)
+        assert re.search(rf"^{re.escape(name)} +–  {re.escape(reason)}", done.stdout, re.M)
+    assert f"\n! {rejected['wall.png']}\n" in done.stdout  # too long for the table
     for i in range(8):
         assert re.search(rf"^view {i}\.png +0\.\d\d\d", done.stdout, re.M)
 
@@ -163,6 +168,22 @@ def test_pictures_are_left_beside_the_numbers_and_nothing_else(calibrated):
         with Image.open(path) as picture:
             picture.load()
             assert picture.size[0] >= 900
+
+
+def test_corners_lie_on_the_thumbnail_where_they_lie_on_the_photograph():
+    corners = np.array([[-0.5, -0.5], [0.5, 0.5], [639.5, 479.5], [320.5, 2.5]])
+    thumbnail = np.zeros((240, 320), np.uint8)
+    view = View(Path("a.png"), (640, 480), thumbnail, corners, turned=False, note="")
+    expected = [[-0.5, -0.5], [0, 0], [319.5, 239.5], [160, 1]]
+    assert np.allclose(view.thumbnail_corners, expected, atol=1e-12)
+
+
+def test_many_photographs_go_on_several_sheets():
+    board = Chessboard((9, 6), 20.0)
+    picture = np.zeros((48, 64), np.uint8)
+    view = View(Path("a.png"), (64, 48), picture, None, turned=False, note="")
+    assert list(corner_sheets([view] * 40, board)) == ["corners.png"]
+    assert list(corner_sheets([view] * 41, board)) == ["corners-1.png", "corners-2.png"]
 
 
 @pytest.mark.usefixtures("plain")

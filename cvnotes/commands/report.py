@@ -1,5 +1,6 @@
 """What `cvnotes calibrate` prints: a line for each photograph, the camera, what is doubtful."""
 
+import re
 from collections.abc import Sequence
 from math import floor, log10
 from typing import TYPE_CHECKING
@@ -15,6 +16,8 @@ from cvnotes.show.quality import covered_cells
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration
 
+_WIDE = 80  # letters that a reason may have in the table
+
 
 def photo_table(
     files: Sequence[str],
@@ -22,11 +25,15 @@ def photo_table(
     rejected: Sequence[Rejected],
     result: "Calibration | None" = None,
 ) -> str:
-    """Give the table of photographs: those used, with their RMS, then the rest with reasons."""
+    """Give the table of photographs: those used, with their RMS, then the rest with reasons.
+
+    A long reason is cut in the table, and stands once in full below it.
+    """
     rms = [""] * len(files) if result is None else [f"{x:.3f}" for x in result.view_rms]
     rows = [list(row) for row in zip(files, rms, notes, strict=True)]
-    rows += [[r.file, "–", r.reason] for r in rejected]
-    return table(["photograph", "RMS (px)", "note"], rows)
+    rows += [[r.file, "–", _first_clause(r.reason)] for r in rejected]
+    long = dict.fromkeys(r.reason for r in rejected if _first_clause(r.reason) != r.reason)
+    return "\n".join([table(["photograph", "RMS (px)", "note"], rows), *(f"! {r}" for r in long)])
 
 
 def camera_report(result: "Calibration") -> str:
@@ -83,6 +90,10 @@ def field_of_view(result: "Calibration") -> str:
     if np.isnan(across + down):
         return "not known: the lens model ends inside the picture"
     return f"{across:.1f}° × {down:.1f}°"
+
+
+def _first_clause(reason: str) -> str:
+    return reason if len(reason) <= _WIDE else re.split(r" \(|; ", reason, maxsplit=1)[0]
 
 
 def widest_angle(poses: Array) -> float:
