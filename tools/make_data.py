@@ -15,17 +15,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from cvnotes.corners import find_corners
-from cvnotes.views import good_views
 from PIL import Image
 
 from cvnotes.camera import Camera, intrinsics
+from cvnotes.corners import find_corners
 from cvnotes.files import read_photo, write_camera
 from cvnotes.files.writing import write_whole
 from cvnotes.lens import Lens
 from cvnotes.rigid import chain, pose, rotation_from_vector
 from cvnotes.synthetic import render
 from cvnotes.targets import Chessboard
+from cvnotes.views import good_views
 
 ROOT = Path(__file__).resolve().parents[1]
 CAMERA = Camera(
@@ -108,8 +108,8 @@ def same(path: Path, data: bytes) -> bool:
         return False
     old = path.read_bytes()
     if path.suffix == ".png" and old != data:
-        pictures = [np.asarray(Image.open(io.BytesIO(x))) for x in (old, data)]
-        return bool(np.array_equal(*pictures))
+        before, after = (np.asarray(Image.open(io.BytesIO(x))) for x in (old, data))
+        return bool(np.array_equal(before, after))
     return old == data
 
 
