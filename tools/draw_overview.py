@@ -1,0 +1,59 @@
+"""Draw the README's picture: python tools/draw_overview.py."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
+from PIL import Image
+
+from cvnotes import course
+from cvnotes.calibration import calibrate
+from cvnotes.show import draw_corners
+from cvnotes.show.estimates import draw_error_bars
+from cvnotes.show.picture import figure_of
+from cvnotes.show.shapes import target_shapes
+from cvnotes.show.sights import camera_shapes
+from cvnotes.show.stills import draw_scene
+
+OUT = Path(__file__).resolve().parents[1] / "docs" / "figures" / "overview.png"
+
+
+def panel(figure: Figure, height: int) -> npt.NDArray[np.uint8]:
+    """Render a figure at a height in pixels."""
+    stream = io.BytesIO()
+    figure.savefig(stream, dpi=height / figure.get_figheight(), facecolor="white")
+    picture = Image.open(stream).convert("RGB")
+    return np.asarray(picture.resize((round(picture.width * height / picture.height), height)))
+
+
+def main() -> None:
+    board, measured = course.board(), course.measured_corners()
+    found = calibrate(board.points, measured, course.camera().size)
+    first = draw_corners(course.photos()[6], measured[6], board)
+    first.set_title("corners, found in a picture")
+    boards = [shape for G in found.poses[::2] for shape in target_shapes(board, G)]
+    scene = draw_scene(*camera_shapes(found.camera, 120, name=""), *boards, view=(25, -75))
+    scene.set_title("the camera they determine")
+    rng = np.random.default_rng(7)
+    exact = course.exact_corners()
+    runs = [
+        calibrate(board.points, exact + rng.normal(scale=0.1, size=exact.shape), found.size)
+        for _ in range(200)
+    ]
+    names = ["alpha_u", "u0"]
+    bars = draw_error_bars(
+        np.array([[run.parameters[n] for n in names] for run in runs]),
+        [800, 325],
+        np.mean([[run.std[n] for n in names] for run in runs], axis=0),
+        names=names,
+    )
+    figures = [figure_of(drawn) for drawn in (first, scene, bars)]
+    figures[2].set_size_inches(4.2, 3.6)
+    pictures = [panel(figure, 430) for figure in figures]
+    Image.fromarray(np.hstack(pictures)).quantize(256).save(OUT, optimize=True)
+
+
+if __name__ == "__main__":
+    main()
