@@ -137,7 +137,7 @@ def fit_edges(
     again, large = cut_out(grey, found, half, axes, reach)
     # A slope of the lighting looks like an edge as blurred as this: then there shall be none.
     free = SLOPES if blur > _VERY_BLURRED * half else PARAMETERS
-    p, system, good = minimise(_shifted(p, again - middle), large, tolerance=0.003, free=free)
+    p, system, good = minimise(_shifted(p, again - middle), large, tolerance=0.01, free=free)
     good &= ~lost & (np.abs(again + crossing(p) - m).max(-1) <= near)
     return _result(again, _facing(p, axes), system[:, [*range(free), -1]], large, good)
 

@@ -58,12 +58,17 @@ def refine_subpixel(image: npt.ArrayLike, m: npt.ArrayLike, *, window: int = 5) 
     half = whole(window, "window")
     out = np.full(start.shape, np.nan)
     where, at = np.arange(start.size // 2), start.reshape(-1, 2).copy()
+    middle = np.rint(at)
     for _ in range(_ITERATIONS):
-        moved = _crossing(grey, at, half)
+        # The window follows by whole pixels, but not to and fro between two of them.
+        far = np.abs(at - middle).max(-1) > 0.75
+        middle[far] = np.rint(at[far])
+        moved = _crossing(grey, at, middle, half)
         close = np.abs(moved - at).max(-1) < _CLOSE
         out.reshape(-1, 2)[where[close]] = moved[close]
         stays = np.abs(moved - start.reshape(-1, 2)[where]).max(-1) <= half
-        where, at = where[stays & ~close], moved[stays & ~close]
+        goes_on = stays & ~close
+        where, at, middle = where[goes_on], moved[goes_on], middle[goes_on]
         if not where.size:
             break
     return out
@@ -83,9 +88,9 @@ def whole(x: float, name: str) -> int:
     return int(value)
 
 
-def _crossing(grey: Image, m: Array, half: int) -> Array:
+def _crossing(grey: Image, m: Array, middle: Array, half: int) -> Array:
     """One step: the least-squares crossing of the edges around m (n, 2), NaN if there is none."""
-    u, v, g_u, g_v = patch_gradients(grey, m, half)
+    u, v, g_u, g_v = patch_gradients(grey, middle, half)
     du, dv = u - m[:, :1], v - m[:, 1:]
     w = np.exp(-(du * du + dv * dv) * (2 / half**2))
     uu, uv, vv = w * g_u * g_u, w * g_u * g_v, w * g_v * g_v
