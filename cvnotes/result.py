@@ -110,7 +110,7 @@ class Calibration:
 
     @staticmethod
     def load(path: Any) -> "Calibration":
-        """Read a result that `save` wrote. The corners are not kept in the file."""
+        """Read a result that `save` wrote, with its corners if the file has them."""
         from cvnotes.files import read_calibration
 
         return Calibration(**read_calibration(path))
