@@ -11,18 +11,23 @@ import argparse
 import io
 import json
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
+from cvnotes import scenes
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.corners import find_corners
 from cvnotes.files import read_photo, write_camera
 from cvnotes.files.writing import write_whole
+from cvnotes.learn.personal import personal_camera
 from cvnotes.lens import Lens
 from cvnotes.rigid import chain, pose, rotation_from_vector
+from cvnotes.show.scene import build_scene, export_glb
+from cvnotes.show.shapes import scene_shapes
 from cvnotes.synthetic import render
 from cvnotes.targets import Chessboard
 from cvnotes.views import good_views
@@ -84,6 +89,26 @@ def stereo() -> dict[str, Camera]:
     return {"camera.json": CAMERA, "stereo_left.json": CAMERA, "stereo_right.json": second}
 
 
+def meshes() -> dict[str, bytes]:
+    """The rooms and rails of chapters 1 and 2, as GLB files that any 3-D viewer opens."""
+    files = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for scene in (scenes.rails, scenes.blocks, scenes.corridor, scenes.room):
+            path = Path(folder) / f"{scene.__name__}.glb"
+            export_glb(build_scene(*scene_shapes(scene())), path)
+            files[f"meshes/{path.name}"] = path.read_bytes()
+    return files
+
+
+def personal() -> dict[str, bytes]:
+    """The cameras of a few ids, so that a test can hold them over versions and systems."""
+    people = {
+        student: rounded(personal_camera(student).camera.A[[0, 1, 0, 1], [0, 1, 2, 2]], 9)
+        for student in ("ada", "grace", "emmy")
+    }
+    return {"personal.json": text({"about": "alpha_u, alpha_v, u0, v0 (px) by id", **people})}
+
+
 def real_corners(folder: Path) -> dict[str, bytes]:
     """What `find_corners` measures in the real photographs."""
     board = Chessboard((9, 6), 30.0)
@@ -118,11 +143,12 @@ def main() -> int:
     parser.add_argument("--check", action="store_true", help="write nothing")
     parser.add_argument("--photographs", type=Path, help="folder with left01.jpg … right14.jpg")
     arguments = parser.parse_args()
-    files = views()
+    files = views() | meshes() | personal()
     if arguments.photographs:
         files |= real_corners(arguments.photographs)
     if not arguments.check:
-        (ROOT / "data" / "views").mkdir(parents=True, exist_ok=True)
+        for folder in ("views", "meshes"):
+            (ROOT / "data" / folder).mkdir(parents=True, exist_ok=True)
         for name, camera in stereo().items():
             write_camera(camera, ROOT / "data" / name)
         write_whole({ROOT / "data" / name: data for name, data in files.items()})

@@ -1,0 +1,96 @@
+"""The course's data are what tools/make_data.py makes, and what their README says."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cvnotes import course
+from cvnotes.calibration import calibrate
+from cvnotes.corners import find_corners
+from cvnotes.errors import FileError
+from cvnotes.learn.personal import personal_camera
+from cvnotes.synthetic import render
+from cvnotes.views import good_views
+
+ROOT = Path(__file__).resolve().parents[1]
+SHARED = ROOT.parent / "shared" / "data" / "left_right"
+
+
+def test_the_poses_and_corners_are_those_of_the_tool():
+    rng = np.random.default_rng(2026)
+    poses = good_views(course.board(), course.camera(), 12, rng=rng)
+    np.testing.assert_allclose(course.poses(), poses, atol=1e-9)
+    views = [course.camera().moved(G) for G in poses]
+    exact = [view.project(course.board().points) for view in views]
+    np.testing.assert_allclose(course.exact_corners(), exact, atol=1e-8)
+    first = render(course.board(), views[0], blur=0.7, noise=2.0, rng=rng)
+    assert (np.abs(first.astype(int) - course.photos()[0]) <= 1).all()
+
+
+def test_measured_corners_are_what_the_finder_measures():
+    for i in (0, 7):
+        found = find_corners(course.photos()[i], course.board())
+        np.testing.assert_allclose(found, course.measured_corners()[i], atol=2e-3)
+
+
+@pytest.mark.skipif(not SHARED.exists(), reason="the real photographs are not here")
+def test_real_corners_are_what_the_finder_measures_in_the_photographs():
+    from cvnotes.files import read_photo
+
+    real = course.real_corners()
+    for side, stored in (("left", real.left), ("right", real.right)):
+        for n, corners in zip(real.names[::6], stored[::6], strict=True):
+            found = find_corners(read_photo(SHARED / f"{side}{n}.jpg").image, real.board)
+            np.testing.assert_allclose(found, corners, atol=5e-3)
+
+
+def test_from_pixels_to_the_camera_within_its_own_error_bars():
+    rng = np.random.default_rng(77)
+    camera, board = course.camera(), course.board()
+    poses = good_views(board, camera, 12, rng=rng)
+    photos = [render(board, camera.moved(G), blur=0.7, noise=2, rng=rng) for G in poses]
+    found = calibrate(board.points, [find_corners(p, board) for p in photos], camera.size)
+    true = {"alpha_u": 800, "alpha_v": 804, "u0": 325, "v0": 238, "k1": -0.25, "k2": 0.10}
+    for name, value in true.items():
+        assert abs(found.parameters[name] - value) < 3 * found.std[name], name
+    assert abs(found.A[0, 0] / 800 - 1) < 5e-4
+    assert found.reliable
+    assert not found.warnings
+
+
+def test_personal_cameras_stay_the_same():
+    stored = json.loads((ROOT / "data" / "personal.json").read_text())
+    for student in ("ada", "grace", "emmy"):
+        A = personal_camera(student).camera.A
+        np.testing.assert_allclose(A[[0, 1, 0, 1], [0, 1, 2, 2]], stored[student], atol=1e-8)
+
+
+def test_the_data_are_small_and_contain_no_photograph_of_others():
+    files = [p for p in (ROOT / "data").rglob("*") if p.is_file()]
+    assert sum(p.stat().st_size for p in files) < 10_000_000
+    assert {p.suffix for p in files} == {".json", ".png", ".md", ".glb"}
+    for path in (ROOT / "data" / "meshes").glob("*.glb"):
+        assert path.read_bytes()[:4] == b"glTF"
+        assert b"http" not in path.read_bytes()
+
+
+def test_a_missing_file_is_named(monkeypatch, tmp_path):
+    monkeypatch.setattr(course, "DATA", tmp_path)
+    with pytest.raises(FileError, match=r"data/camera.json is missing"):
+        course.camera()
+
+
+@pytest.mark.sampling
+def test_the_tool_finds_nothing_to_change():
+    if np.__version__ < "2.3":
+        pytest.skip("pictures are compared with those of current versions")
+    run = subprocess.run(
+        [sys.executable, ROOT / "tools" / "make_data.py", "--check"], capture_output=True, text=True
+    )
+    differs = [line for line in run.stdout.splitlines() if "meshes" not in line]
+    assert run.returncode in (0, 1), run.stderr
+    assert not [line for line in differs if line.endswith("differs")], run.stdout
