@@ -1,6 +1,7 @@
 """The notebooks in a real browser: opened, run, a slider moved by the keyboard, nothing outside."""
 
 import json
+import re
 import shutil
 import statistics
 from pathlib import Path
@@ -18,6 +19,7 @@ pytest.importorskip("jupyterlab", reason="JupyterLab is not installed")
 sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
 
 NOTEBOOKS = sorted((Path(__file__).resolve().parents[1] / "notebooks").glob("*.ipynb"))
+EXPLORES = re.compile(r"^explore_\w+\(", re.MULTILINE)
 TOKEN = "of-this-test-alone"
 ARGUMENTS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
@@ -161,7 +163,7 @@ def _open_and_run(page, address, name):
 
 def _explorer(page, cells, call, image="img.widget-image"):
     """Bring the cell that makes a widget into view; gives its first handle and its picture."""
-    index = next(i for i, cell in enumerate(cells) if call in cell["source"] and cell["outputs"])
+    index = next(i for i, cell in enumerate(cells) if re.search(call, cell["source"]))
     page.evaluate(SHOW_CELL, index)
     output = page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea-output").first
     handle, picture = output.locator(".noUi-handle").first, output.locator(image).first
@@ -190,8 +192,9 @@ def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, path, tm
             unexpected = "raises-exception" not in cell["tags"]
             assert output["output_type"] != "error" or not unexpected, output
             assert output.get("name") != "stderr", output
-    if any("explore_" in cell["source"] and "show.explore" not in cell["source"] for cell in cells):
-        handle, picture = _explorer(page, cells, "explore_")
+    assert any(cell["outputs"] for cell in cells)
+    if any(re.search(EXPLORES, cell["source"]) for cell in cells):
+        handle, picture = _explorer(page, cells, EXPLORES)
         before = picture.evaluate(PICTURE)
         handle.focus()
         page.keyboard.press("ArrowRight")
@@ -205,7 +208,7 @@ def test_all_explorers_follow_the_keyboard_and_none_lags_behind(page, course, tm
     cells = _open_and_run(page, course[1], "all_explorers.ipynb")
     waited = {}
     for name in NAMES:
-        handle, picture = _explorer(page, cells, f"explore_{name}()")
+        handle, picture = _explorer(page, cells, rf"^explore_{name}\(")
         start = picture.evaluate(PICTURE)
         waited[name] = statistics.median(handle.evaluate(LATENCY))
         page.screenshot(path=tmp_path / f"{name}.png")
