@@ -10,8 +10,6 @@ from cvnotes.interpolate import Image, checked_image
 
 Mask = npt.NDArray[np.bool_]
 
-_LUMA = np.array([0.299, 0.587, 0.114], dtype=np.float32)  # ITU-R BT.601
-
 
 def grey_picture(x: Any, name: str = "image") -> Image:
     """Give a picture's grey levels (height, width); an alpha channel is dropped.
@@ -21,16 +19,25 @@ def grey_picture(x: Any, name: str = "image") -> Image:
     Examples
     --------
     >>> grey_picture(np.full((4, 6, 3), 100, np.uint8))[0, 0]
-    np.float32(100.0)
+    np.uint8(100)
     """
     image = checked_image(x, name)
     if image.ndim == 3 and image.shape[2] == 2:
         raise ShapeError(f"{name}: expected grey, RGB or RGBA, got {image.shape}; pass grey alone")
     if image.ndim == 3:
-        image = image[..., 0] if image.shape[2] == 1 else image[..., :3] @ _LUMA
+        red = image[..., 0]
+        image = red if image.shape[2] == 1 else _luma(red, image[..., 1], image[..., 2])
     if image.dtype.kind == "f" and not np.isfinite(image).all():
         raise CvnotesError(f"{name} contains NaN or infinite grey levels; give them a number")
     return image
+
+
+def _luma(red: Image, green: Image, blue: Image) -> Image:
+    """Weigh the colours as ITU-R BT.601 does; of 8-bit colours, 8-bit grey."""
+    grey = np.float32(0.299) * red
+    grey += np.float32(0.587) * green
+    grey += np.float32(0.114) * blue
+    return np.rint(grey).astype(np.uint8) if red.dtype == np.uint8 else np.asarray(grey)
 
 
 def patches(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Mask]:
