@@ -28,7 +28,7 @@ LAYERS = [
     ["zhang", "refine", "subpixel", "robust", "scenes", "rendering", "synthetic"],
     ["corners", "reliability", "steps", "views", "result"],
     ["calibration"],
-    ["stereo", "resection", "course"],
+    ["stereo", "resection", "course", "uncertainty"],
     ["show", "learn"],
     ["commands"],
     ["cli"],
