@@ -168,7 +168,7 @@ def _starts(problem: Problem, steps: Steps) -> Iterator[State]:
     yield from steps.starts(problem)
 
 
-def _best_minimum(problem: Problem, steps: Steps, tolerance: float = 1e-13) -> _Minimum:
+def _best_minimum(problem: Problem, steps: Steps, tolerance: float = 1e-12) -> _Minimum:
     """Step 5, from the first start, and from the others if that leads nowhere."""
     found: list[_Minimum] = []
     good = (_SUSPICIOUS * max(steps.size)) ** 2 * problem.n_seen
@@ -231,7 +231,7 @@ def _judged(result: Calibration, residuals: Array, corners: Array, freedom: int)
             result.poses,
             result.std,
             result.view_rms,
-            np.linalg.norm(residuals, axis=-1),
+            np.sqrt(residuals[..., 0] ** 2 + residuals[..., 1] ** 2),
             corners,
             result.converged,
             likeness(residuals, freedom),

@@ -161,8 +161,8 @@ def _counts(points: Array, real: Any, n_views: int) -> list[int]:
 
 def _refuse_lines(m: Array) -> None:
     """Refuse views (n_views, n, 2) in which all points lie on one line."""
-    d = m - m.mean(1, keepdims=True)
-    uu, vv, uv = (d * d).sum(1)[:, 0], (d * d).sum(1)[:, 1], (d[..., 0] * d[..., 1]).sum(1)
+    u, v = (x - x.mean(1, keepdims=True) for x in (m[..., 0], m[..., 1]))
+    uu, vv, uv = (u * u).sum(1), (v * v).sum(1), (u * v).sum(1)
     flat = uu * vv - uv * uv <= 1e-14 * (uu + vv) ** 2
     if flat.any():
         raise DegenerateError(

@@ -41,7 +41,7 @@ def levenberg_marquardt(
     *,
     follow: Callable[[X, System], X] | None = None,
     max_iterations: int = 100,
-    tolerance: float = 1e-13,
+    tolerance: float = 1e-12,
     floor: float = 0.0,
 ) -> Minimum[X, System]:
     """Minimise a sum of squares, starting from `x`.

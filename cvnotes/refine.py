@@ -116,10 +116,9 @@ class Problem:
         """Give the cost and the normal equations at x."""
         q, n_views = len(x.shared), len(self.m)
         normal, costs = np.empty((n_views, q + 7, q + 6)), np.empty(n_views)
-        workspace = self._workspace()
         for i in range(0, n_views, _CHUNK):
             part = slice(i, i + _CHUNK)
-            u, v = self._jacobian(x, part, workspace).transpose(1, 2, 0, 3)
+            u, v = self._jacobian(x, part).transpose(1, 2, 0, 3)
             # Two factors of different shape: for J Jᵀ with itself NumPy takes a slower road.
             normal[part] = u @ u[:, :-1].mT + v @ v[:, :-1].mT
             costs[part] = (u[:, -1] ** 2 + v[:, -1] ** 2).sum(-1)
@@ -143,11 +142,8 @@ class Problem:
 
         J is (n_views, n, 2, q + 6): the shared parameters, then ω and T; r is (n_views, n, 2).
         """
-        views = [
-            self._jacobian(x, slice(i, i + 1), self._workspace()).transpose(2, 3, 1, 0)
-            for i in range(len(self.m))
-        ]
-        both = np.concatenate(views)
+        views = (slice(i, i + 1) for i in range(len(self.m)))
+        both = np.concatenate([self._jacobian(x, i).transpose(2, 3, 1, 0).copy() for i in views])
         return both[..., :-1], both[..., -1]
 
     @cached_property
@@ -155,15 +151,18 @@ class Problem:
         """W and m with the coordinates before the points, so that each is one run of memory."""
         return np.ascontiguousarray(self.W.mT), np.ascontiguousarray(self.m.transpose(2, 0, 1))
 
+    @cached_property
     def _workspace(self) -> Array:
-        """Allocate [J r]ᵀ for a chunk of views, with the entries that never change."""
+        """Room for [J r]ᵀ of a chunk of views, with the entries that never change."""
         n_views, n = self.m.shape[:2]
         J = np.zeros((len(self.names) + 7, 2, min(_CHUNK, n_views), n))
         J[self.names.index("u0"), 0] = J[self.names.index("v0"), 1] = 1
         return J
 
-    def _jacobian(self, x: State, part: slice, workspace: Array) -> Array:
-        """Give [J r]ᵀ of some views, (q + 7, 2, views, n): one row per parameter, then r.
+    def _jacobian(self, x: State, part: slice) -> Array:
+        """Give [J r]ᵀ of some views, (q + 7, 2, views, n), until it is asked for others.
+
+        One row for each parameter, then r.
 
         The residual is m̂ − m. The pose moves as R ← exp(ω) R, T ← T + dT, so a point moves by
         dM = ω × (R W) + dT. Coordinates stand before views and points, so that each operation
@@ -174,7 +173,7 @@ class Problem:
         k = [value[f"k{i}"] for i in range(1, self.n_radial + 1)]
         W, m = self._by_coordinate
         m = m[:, part]
-        J = workspace[:, :, : m.shape[1]]
+        J = self._workspace[:, :, : m.shape[1]]
         q = len(x.shared)
         by_lens, by_omega, by_T, residual = J[4 + self.skew : q], J[q : q + 3], J[q + 3 : -1], J[-1]
 
@@ -229,7 +228,7 @@ class Problem:
         return J if self.seen is None else J * self.seen[part]
 
 
-def minimise(problem: Problem, start: State, *, tolerance: float = 1e-13) -> Minimum[State, Arrow]:
+def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Minimum[State, Arrow]:
     """Minimise the reprojection error from a start, by Levenberg–Marquardt.
 
     Raises

@@ -23,6 +23,7 @@ _UNDETERMINED, _WEAK = 0.0023, 0.01  # second smallest over largest singular val
 _PARALLEL, _FLAT = 5.0, 15.0  # largest angle between two boards, degrees
 _UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over its value
 _ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
+_FAR = 100  # boards compared with each other; all pairs of thousands would take too long
 _ROUNDING = 1e-6  # px, more than rounding leaves
 _MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
@@ -70,10 +71,10 @@ class Evidence:
 
     @cached_property
     def tilt_between(self) -> float:
-        """Largest angle between two boards, degrees."""
-        normals = self.poses[:, :3, 2]
-        cosine = float(np.abs(normals @ normals.T).min())
-        return float(np.degrees(np.arccos(min(1.0, cosine))))
+        """Largest angle between two boards, degrees; of many, those farthest from the mean."""
+        normals = self.poses[:, :3, 2] * np.sign(self.poses[:, 2:3, 2])
+        far = normals[np.argsort(normals @ normals.mean(0))[:_FAR]]
+        return float(np.degrees(np.arccos(min(1.0, float(np.abs(far @ far.T).min())))))
 
     @cached_property
     def determinacy(self) -> float:
@@ -107,10 +108,11 @@ def likeness(residuals: Array, freedom: int) -> float:
     >>> likeness(drift, 40) > 0.8, likeness(drift, 10), likeness(1e-12 * drift, 40)
     (True, 0.0, 0.0)
     """
-    r = np.nan_to_num(residuals)
-    if 2 * freedom < r.size or np.abs(r).max() < _ROUNDING:
+    r = residuals if np.isfinite(residuals.sum()) else np.nan_to_num(residuals)
+    squares = float((r * r).sum())
+    if 2 * freedom < r.size or squares < r.size * _ROUNDING**2:
         return 0.0
-    return float((r[:, 1:] * r[:, :-1]).sum() / (r * r).sum())
+    return float((r[:, 1:] * r[:, :-1]).sum()) / squares
 
 
 def judge(evidence: Evidence) -> tuple[tuple[str, ...], bool]:
@@ -232,8 +234,8 @@ def _outliers(e: Evidence) -> Iterator[str]:
 
 def _outside(e: Evidence) -> Iterator[str]:
     w, h = e.size
-    low, high = e.corners.min((0, 1)), e.corners.max((0, 1))
-    if (low < -0.5).any() or (high > [w - 0.5, h - 0.5]).any():
+    u, v = e.corners[..., 0], e.corners[..., 1]
+    if min(u.min(), v.min()) < -0.5 or u.max() > w - 0.5 or v.max() > h - 0.5:
         yield (
             f"corners lie outside of the {w}×{h} picture: is size (width, height), and of these "
             "pictures?"

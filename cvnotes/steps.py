@@ -30,7 +30,7 @@ from cvnotes.refine import Problem, State
 from cvnotes.zhang import (
     constraints,
     extrinsics,
-    focal_lengths_from_homographies,
+    focal_lengths_from_v,
     intrinsics_from_b,
     radial_distortion,
     solve_b,
@@ -113,9 +113,10 @@ class Steps:
         if self.intrinsics is not None:
             yield intrinsic_matrix(self.intrinsics(H.copy()), "the A of your intrinsics")
             return
-        b = solve_b(constraints(H), skew=skew)
+        V = constraints(H)
+        b = solve_b(V, skew=skew)
         with suppress(DegenerateError):
-            yield focal_lengths_from_homographies(H)
+            yield np.diag([*focal_lengths_from_v(V), 1.0])
         with suppress(DegenerateError):
             yield intrinsics_from_b(b)
         # Noise and strong lenses can leave neither; then fields of view from 118° to 28° are tried.
@@ -124,6 +125,8 @@ class Steps:
 
     def poses(self, A: Array, H: Array) -> Array:
         """3. The pose of each view."""
+        if self.extrinsics is extrinsics:
+            return extrinsics(A, H)
         G = rigid_motion(self.extrinsics(A.copy(), H.copy()), "the poses of your extrinsics")
         if G.shape != (len(H), 4, 4):
             raise ShapeError(

@@ -86,9 +86,7 @@ def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
     >>> (solve_b(constraints(A @ R)) * 2 * np.sqrt(10)).round(9) + 0.0
     array([ 1.,  0.,  1., -1., -1.,  6.])
     """
-    V = numbers(V, "V")
-    if V.ndim != 2 or V.shape[1] != 6:
-        raise ShapeError(f"V: expected (2n, 6), got {V.shape}")
+    V = _rows(V)
     kept = [0, 1, 2, 3, 4, 5] if skew else [0, 2, 3, 4, 5]
     needed = 3 if skew else 2
     if len(V) < 2 * needed:
@@ -212,11 +210,28 @@ def focal_lengths_from_homographies(H: npt.ArrayLike, centre: npt.ArrayLike = (0
     """
     u0, v0 = points(centre, "centre", 2)
     to_centre = np.array([[1, 0, -u0], [0, 1, -v0], [0, 0, 1]])
-    V = constraints(to_centre @ matrix(H, "H", 3, 3))
-    B11, B22 = np.linalg.lstsq(V[:, [0, 2]], -V[:, 5], rcond=None)[0]
+    alpha_u, alpha_v = focal_lengths_from_v(constraints(to_centre @ matrix(H, "H", 3, 3)))
+    return np.array([[alpha_u, 0, u0], [0, alpha_v, v0], [0, 0, 1]])
+
+
+def focal_lengths_from_v(V: npt.ArrayLike) -> tuple[float, float]:
+    """Solve V b = 0 with b = (1/α_u², 0, 1/α_v², 0, 0, 1) for the two focal lengths.
+
+    Raises
+    ------
+    DegenerateError
+        They are not positive.
+
+    Examples
+    --------
+    >>> focal_lengths_from_v([[4, 0, 0, 0, 0, -1], [0, 0, 9, 0, 0, -1]])
+    (2.0, 3.0)
+    """
+    V = _rows(V)
+    B11, B22 = np.linalg.lstsq(V[:, [0, 2]], -V[:, 5], rcond=None)[0].tolist()
     if B11 <= 0 or B22 <= 0:
         raise DegenerateError(_NOT_POSITIVE)
-    return np.array([[B11**-0.5, 0, u0], [0, B22**-0.5, v0], [0, 0, 1]])
+    return B11**-0.5, B22**-0.5
 
 
 def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
@@ -325,6 +340,13 @@ def _v(a: Array, b: Array) -> Array:
     off = [1, 3, 4]
     v[..., off] += (a[..., _B_COLUMNS] * b[..., _B_ROWS])[..., off]
     return v
+
+
+def _rows(V: npt.ArrayLike) -> Array:
+    V = numbers(V, "V")
+    if V.ndim != 2 or V.shape[1] != 6:
+        raise ShapeError(f"V: expected (2n, 6), got {V.shape}")
+    return V
 
 
 def _six(b: npt.ArrayLike) -> Array:
