@@ -370,3 +370,16 @@ class TestPhotographs:
             outside = np.rint(m[0, 0] + 0.2 * (2 * m[0, 0] - m[0, 1] - m[1, 0])).astype(int)
             beside = np.rint(m[0, 0] + 0.2 * (m[0, 1] - m[1, 0])).astype(int)
             assert image[tuple(outside[::-1])] < image[tuple(beside[::-1])] - 50
+
+
+@pytest.mark.parametrize("side", [48.0, 50.0])
+def test_a_board_seen_straight_from_the_front_is_found_wherever_it_stands(side):
+    # On such symmetric pictures a first step may leave the crossing at rest and ruin the rest.
+    board = Chessboard((9, 6), 25.0)
+    A = intrinsics(20 * side, 20 * side, 0, 0)
+    for shift in (0.0, 0.25, 0.5):
+        G = np.eye(4)
+        G[:3, 3] = [500 * 90 / (20 * side), 500 * (90 + shift) / (20 * side), 500]
+        camera = Camera(A, G, size=(600, 460))
+        found = find_corners(render(board, camera, blur=0.7), board)
+        np.testing.assert_allclose(found, camera.project(board.points), atol=0.02)

@@ -100,6 +100,10 @@ def crossing_jacobian(p: Array) -> Array:
     return D
 
 
+# Sum of squares, in grey levels, that single precision leaves in a window.
+_ROUNDING = 3.0
+
+
 def minimise(
     p: Array, window: Window, *, tolerance: float, free: int = PARAMETERS, iterations: int = 15
 ) -> tuple[Array, Array, Mask]:
@@ -120,10 +124,13 @@ def minimise(
     system = _system(p, window)
     k, part = np.arange(len(p)), window
     for _ in range(iterations):
-        p_new = _limited(p[k] + _solve(system[k], damping[k], free))
+        step = _solve(system[k], damping[k], free)
+        gain, cost = (system[k, :PARAMETERS, -1] * step).sum(-1), system[k, -1, -1]
+        p_new = _limited(p[k] + step)
         moved[k] = np.abs(crossing(p_new) - crossing(p[k])).max(-1)
-        # A step this small needs no proof that it leads downhill.
-        close = moved[k] < tolerance
+        # A step this small needs no proof that it leads downhill, unless it promises much: at a
+        # symmetric start the crossing rests while everything else may go astray.
+        close = (moved[k] < tolerance) & (gain < 0.1 * cost + _ROUNDING)
         p[k[close]] = p_new[close]
         if close.any():
             k, p_new = k[~close], p_new[~close]
