@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from cvnotes.errors import Array
 
-def in_turns(ways: Mapping[str, Callable[[], Any]], repeats: int = 15) -> dict[str, float]:
-    """Give the median time in seconds of each way, after one round that is not counted."""
+
+def all_in_turns(ways: Mapping[str, Callable[[], Any]], repeats: int = 15) -> dict[str, Array]:
+    """Give the times (repeats,) in seconds of each way, after one round that is not counted."""
     spent: dict[str, list[float]] = {name: [] for name in ways}
     for turn in range(repeats + 1):
         for name, way in ways.items():
@@ -16,4 +18,9 @@ def in_turns(ways: Mapping[str, Callable[[], Any]], repeats: int = 15) -> dict[s
             way()
             if turn:
                 spent[name].append(time.perf_counter() - start)
-    return {name: float(np.median(times)) for name, times in spent.items()}
+    return {name: np.array(times) for name, times in spent.items()}
+
+
+def in_turns(ways: Mapping[str, Callable[[], Any]], repeats: int = 15) -> dict[str, float]:
+    """Give the median time in seconds of each way."""
+    return {name: float(np.median(times)) for name, times in all_in_turns(ways, repeats).items()}

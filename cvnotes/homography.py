@@ -229,11 +229,12 @@ def _normaliser(x: Array) -> Array:
     centre = x.sum(-2) / x.shape[-2]  # the method mean costs twice as much on few points
     d = x - centre[..., None, :]
     distance = np.hypot(d[..., 0], d[..., 1]).sum(-1) / x.shape[-2]
-    if not (distance < _HUGE).all():
+    smallest = 1e-12 * np.abs(centre).max(-1) + 1 / _HUGE
+    if not ((smallest < distance) & (distance < _HUGE)).all():
+        if (distance <= smallest).any():
+            raise DegenerateError("all points coincide; a homography needs four that do not")
         raise CvnotesError(f"points more than {_HUGE:g} apart cannot be computed with")
-    if not (distance > 1e-12 * np.abs(centre).max(-1) + 1 / _HUGE).all():
-        raise DegenerateError("all points coincide; a homography needs four that do not")
-    s = np.sqrt(2) / distance
+    s = 2**0.5 / distance
     N = np.zeros((*x.shape[:-2], 3, 3))
     N[..., 0, 0] = N[..., 1, 1] = s
     N[..., :2, 2] = -s[..., None] * centre

@@ -24,7 +24,10 @@ Step = TypeVar("Step")
 
 @dataclass(frozen=True)
 class Minimum(Generic[X, System]):
-    """Where a minimisation ended: the point, its cost and its last linear system."""
+    """Where a minimisation ended, its cost, and the linear system that led there.
+
+    After a converged last step, cost and system are what the linear model says of its end.
+    """
 
     x: X
     cost: float
@@ -94,20 +97,21 @@ def levenberg_marquardt(
     for iteration in range(1, max_iterations + 1):
         step, predicted = solve(system, damping)
         x_new = move(x, step)
+        shrinks = max(_SHRINKS, predicted / previous) if previous > 0 else 1.0
+        # (a decrease below 0 is no decrease: it comes from rounding where J is nearly singular)
+        close = abs(predicted) * min(1.0, shrinks) <= tolerance * cost + floor
+        if close and damping == 0:  # too short a step to look where it ends
+            return Minimum(x_new, max(cost - predicted, 0.0), system, iteration, True)
         with np.errstate(all="ignore"):  # a step too far may leave the model; it is then refused
             cost_new, system_new = linearise(x_new)
-        shrinks = max(_SHRINKS, predicted / previous) if previous > 0 else 1.0
-        next_gain = predicted * min(1.0, shrinks)
-        close = next_gain <= tolerance * cost + floor
-        if follow and not close and np.isfinite(cost_new) and cost_new >= cost:
+        if follow and np.isfinite(cost_new) and cost_new >= cost:
             x_new = follow(x_new, system_new)
             with np.errstate(all="ignore"):
                 cost_new, system_new = linearise(x_new)
         downhill = cost_new < cost
         if downhill:
             x, cost, system = x_new, cost_new, system_new
-        close = close or (not downhill and predicted <= 1e-9 * cost)  # uphill by rounding only
-        if close and damping == 0:
+        elif damping == 0 and abs(predicted) <= 1e-9 * cost:  # uphill, but only by rounding
             return Minimum(x, cost, system, iteration, True)
         if close:  # perhaps only because damping keeps the step short
             damping, previous = 0.0, 0.0

@@ -90,6 +90,11 @@ class Evidence:
         s = np.linalg.svd(V, compute_uv=False)
         return float(s[3] / s[0])
 
+    @cached_property
+    def typical_rms(self) -> float:
+        """Median of the views' RMS, px."""
+        return float(np.median(self.view_rms))
+
     @property
     def focal_uncertainty(self) -> float:
         """Largest standard deviation of a focal length over its value."""
@@ -188,7 +193,7 @@ def _mirrored(e: Evidence) -> Iterator[str]:
 
 def _badly_fitted(e: Evidence) -> Iterator[str]:
     """Find views and whole sets that no camera of this kind explains."""
-    typical = float(np.median(e.view_rms))
+    typical = e.typical_rms
     limit = 0.005 * max(e.size)
     if typical > limit:
         yield (
@@ -210,7 +215,7 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
 
 def _systematic(e: Evidence) -> Iterator[str]:
     """Find residuals that are small, but of which the error bars are not a measure."""
-    if e.likeness > _ALIKE and float(np.median(e.view_rms)) <= _MOVED * max(e.size):
+    if e.likeness > _ALIKE and e.typical_rms <= _MOVED * max(e.size):
         yield f"{_NO_NOISE} The true error is then larger than the error bars say"
 
 

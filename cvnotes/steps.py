@@ -71,7 +71,8 @@ class Steps:
         m = problem.m * N[0, 0] + N[:2, 2]
         to_px = np.linalg.inv(N)
         for bend in _BENDS if problem.n_radial else _BENDS[:1]:
-            H = self.homographies(problem, m * (1 + bend * (m * m).sum(-1, keepdims=True)))
+            straight = m * (1 + bend * (m * m).sum(-1, keepdims=True)) if bend else m
+            H = self.homographies(problem, straight)
             for A in self.candidates(H, problem.skew):
                 with suppress(DegenerateError):
                     yield self.with_lens(problem, to_px @ A, self.poses(A, H))

@@ -318,7 +318,7 @@ def radial_distortion(
     if not (M[..., 2] > 0).all():
         raise DegenerateError("a board point does not lie in front of the camera")
     ideal = M[..., :2] / M[..., 2:]
-    r2 = (ideal**2).sum(-1, keepdims=True)
+    r2 = ideal[..., :1] ** 2 + ideal[..., 1:] ** 2
     powers = [ideal * r2**i for i in range(1, terms + 1)]
     d = xy_from_px(A, m) - ideal
     D = np.stack(powers, axis=-1).reshape(-1, terms)
@@ -336,10 +336,10 @@ _NOT_POSITIVE = (
 
 def _v(a: Array, b: Array) -> Array:
     """Give v (..., 6) with aᵀ B b = vᵀ b, for columns a and b (..., 3)."""
-    v = a[..., _B_ROWS] * b[..., _B_COLUMNS]
-    off = [1, 3, 4]
-    v[..., off] += (a[..., _B_COLUMNS] * b[..., _B_ROWS])[..., off]
-    return v
+    # aᵀ B b = Σ B_ij a_i b_j, where B_ij = B_ji belongs to two products unless i = j
+    products = a[..., :, None] * b[..., None, :]
+    both = products + products.mT
+    return np.asarray(both[..., _B_ROWS, _B_COLUMNS] * [0.5, 1, 0.5, 1, 1, 0.5])
 
 
 def _rows(V: npt.ArrayLike) -> Array:

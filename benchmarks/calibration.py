@@ -1,0 +1,124 @@
+"""Calibration from corners alone: `calibrate` against OpenCV's calibrateCamera.
+
+Run ``python -m benchmarks.calibration``. A 9×6 board in 640×480, σ = 0.3 px, k1 k2 p1 p2. OpenCV
+runs once as its users run it (30 iterations, eps 2e-16) and once stopped after the 8 iterations
+that it needs to converge. Both start from the corners, in turns, in one process; a turn of a few
+views is several calibrations. Each time is the median, and behind the slash the shortest, of all
+turns: on a machine that others use too, the shortest is the steadier of the two. The difference
+of the RMS says that both ended in the same minimum.
+"""
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import cv2
+import numpy as np
+
+from benchmarks.turns import all_in_turns
+from cvnotes.calibration import Calibration, calibrate
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import Array, CalibrationWarning
+from cvnotes.lens import Lens
+from cvnotes.targets import Chessboard
+from cvnotes.views import good_views
+
+BOARD = Chessboard((9, 6), 25.0)
+CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10), p=(0.001, -0.0005)))
+VIEWS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
+CONVERGED = (cv2.TERM_CRITERIA_COUNT, 8, 0.0)
+
+
+def corners(n: int) -> Array:
+    """Give the corners (n, 54, 2) of n views, with noise, exact in OpenCV's float32."""
+    rng = np.random.default_rng(n)
+    poses = good_views(BOARD, CAMERA, n, rng=rng)
+    m = np.array([CAMERA.moved(G).project(BOARD.points) for G in poses])
+    m += rng.normal(0, 0.3, m.shape)
+    return m.astype(np.float32).astype(float)
+
+
+def ours(m: Array) -> Calibration:
+    return calibrate(BOARD.points, m, CAMERA.size, lens="k1 k2 p1 p2")
+
+
+def ours_with_error_bars(m: Array) -> Array:
+    return ours(m).pose_covariance
+
+
+def opencv(function: Callable[..., Any], m: Array) -> Callable[..., Any]:
+    """Give OpenCV's function of the same corners, converted beforehand."""
+    W, views = BOARD.points.astype(np.float32), list(m.astype(np.float32))
+
+    def run(**options: Any) -> Any:
+        flags = cv2.CALIB_FIX_K3
+        return function([W] * len(m), views, CAMERA.size, None, None, flags=flags, **options)
+
+    return run
+
+
+def row(n: int, times: dict[str, Array], rest: str) -> None:
+    """Print median/shortest of each way in milliseconds, and how many times ours is faster."""
+    own, *others = times.values()
+    words = f"{n:6}{_pair(1e3 * np.median(own), 1e3 * own.min())}"
+    for other in others:
+        words += f"{_pair(1e3 * np.median(other), 1e3 * other.min())}"
+        words += f"{_pair(np.median(other) / np.median(own), other.min() / own.min())}"
+    print(words + rest)
+
+
+def _pair(a: Any, b: Any) -> str:
+    return f"{a:9.1f}/{b:<8.1f}"
+
+
+def again(way: Callable[[], Any], rounds: int) -> Callable[[], Any]:
+    """Do the same thing several times."""
+    return lambda: [way() for _ in range(rounds)]
+
+
+def timed(n: int, ways: dict[str, Callable[[], Any]]) -> dict[str, Array]:
+    """Time each way to calibrate from n views, in seconds a calibration."""
+    rounds = max(1, 100 // n)
+    repeated = {name: again(way, rounds) for name, way in ways.items()}
+    times = all_in_turns(repeated, repeats=max(3, min(15, 1000 // n)))
+    return {name: spent / rounds for name, spent in times.items()}
+
+
+def compare(n: int) -> None:
+    """Time one number of views."""
+    m = corners(n)
+    theirs = opencv(cv2.calibrateCamera, m)
+    ways = {
+        "ours": lambda: ours(m),
+        "OpenCV": theirs,
+        "OpenCV, converged": lambda: theirs(criteria=CONVERGED),
+    }
+    row(n, timed(n, ways), f"{ours(m).rms - theirs()[0]:+11.0e} px")
+
+
+def compare_error_bars(n: int) -> None:
+    """Time one number of views, with the error bars of every pose too."""
+    m = corners(n)
+    ways = {
+        "ours": lambda: ours_with_error_bars(m),
+        "OpenCV": opencv(cv2.calibrateCameraExtended, m),
+    }
+    row(n, timed(n, ways), "")
+
+
+def main() -> None:
+    warnings.simplefilter("ignore", CalibrationWarning)
+    print(f"Calibration from corners [ms], median/shortest (OpenCV {cv2.__version__})")
+    print(
+        f"{'views':>6}{'cvnotes':>13}{'calibrateCamera':>20}{'faster':>15}"
+        f"{'stopped at 8':>19}{'faster':>16}{'RMS difference':>22}"
+    )
+    for n in VIEWS:
+        compare(n)
+    print("\nWith the error bars of every parameter and pose, against calibrateCameraExtended [ms]")
+    for n in (20, 200):
+        compare_error_bars(n)
+
+
+if __name__ == "__main__":
+    main()
