@@ -111,8 +111,6 @@ def levenberg_marquardt(
         downhill = cost_new < cost
         if downhill:
             x, cost, system = x_new, cost_new, system_new
-        elif damping == 0 and abs(predicted) <= 1e-9 * cost:  # uphill, but only by rounding
-            return Minimum(x, cost, system, iteration, True)
         if close:  # perhaps only because damping keeps the step short
             damping, previous = 0.0, 0.0
         elif downhill:

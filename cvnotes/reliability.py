@@ -72,7 +72,7 @@ class Evidence:
     @cached_property
     def tilt_between(self) -> float:
         """Largest angle between two boards, degrees; of many, those farthest from the mean."""
-        normals = self.poses[:, :3, 2] * np.sign(self.poses[:, 2:3, 2])
+        normals = self.poses[:, :3, 2]
         far = normals[np.argsort(normals @ normals.mean(0))[:_FAR]]
         return float(np.degrees(np.arccos(min(1.0, float(np.abs(far @ far.T).min())))))
 

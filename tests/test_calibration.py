@@ -151,6 +151,20 @@ def test_a_lens_that_folds_before_some_corners_does_not_keep_the_others_from_a_s
     assert (state.T[:, 2] > 0).all()
 
 
+def test_whatever_the_start_the_same_minimum_is_reached_to_a_fraction_of_the_error_bars(
+    board, views_of
+):
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        m = noise(views_of(RADIAL, 10, rng, tilt=30)[1], rng)
+        one = quietly(board.points, m, SIZE, lens="k1 k2 p1 p2")
+        other = quietly(
+            board.points, m, SIZE, lens="k1 k2 p1 p2", intrinsics=lambda _: np.diag([2.0, 2, 1])
+        )
+        off = np.subtract(list(one.parameters.values()), list(other.parameters.values()))
+        assert np.abs(off / list(one.std.values())).max() < 1e-4
+
+
 # What does not matter, does not matter.
 
 

@@ -90,10 +90,20 @@ def test_what_does_not_converge_says_so():
     assert found.iterations == 3
 
 
-def test_a_gradient_with_the_wrong_sign_is_given_up_not_followed_for_ever():
-    found = minimise(rosenbrock, lambda x: -rosenbrock_jacobian(x), [-1.2, 1])
+@pytest.mark.parametrize("tolerance", [1e-12, 1e-3])
+def test_a_step_that_is_short_only_because_it_is_damped_is_no_convergence(tolerance):
+    # a gradient with the wrong sign: every step goes uphill, however short
+    found = minimise(rosenbrock, lambda x: -rosenbrock_jacobian(x), [-1.2, 1], tolerance=tolerance)
     assert not found.converged
     assert found.cost == pytest.approx(rosenbrock([-1.2, 1]) @ rosenbrock([-1.2, 1]), abs=1e-9)
+
+
+def test_no_cost_is_below_0():
+    for seed in range(50):
+        rng = np.random.default_rng(seed)
+        J = rng.normal(size=(6, 3))
+        found = minimise(lambda x, J=J: J @ x, lambda _, J=J: J, rng.normal(size=3), floor=1e3)
+        assert 0 <= found.cost < 1e-12
 
 
 def test_a_start_without_a_finite_cost_is_refused():
