@@ -4,14 +4,18 @@ import re
 import statistics
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import nbformat
 import pytest
 
+from cvnotes.learn.exercises import EXERCISES
+
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-CHAPTERS = [path for path in NOTEBOOKS if not path.name.startswith("00")]
+CHAPTERS = [path for path in NOTEBOOKS if path.name[:2] in {f"{n:02d}" for n in range(1, 10)}]
+FURTHER = ROOT / "notebooks/10_more_exercises.ipynb"
 each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
 each_chapter = pytest.mark.parametrize("path", CHAPTERS, ids=lambda p: p.stem)
 MAX_LINES, MEDIAN_LINES, IMPORT_LINES, MAX_BYTES = 12, 4, 20, 1_500_000
@@ -132,3 +136,36 @@ def test_a_chapter_has_all_its_parts(path):
     assert "from cvnotes.show.explore import" in code, "no explore widget"
     assert 30 <= len(notebook.cells) <= 70
     assert "import" in _code(notebook)[0].source
+
+
+def test_there_is_a_first_page_nine_chapters_and_further_exercises():
+    assert [path.name[:2] for path in NOTEBOOKS] == [f"{n:02d}" for n in range(11)]
+    assert len(CHAPTERS) == 9
+    assert NOTEBOOKS[-1] == FURTHER
+    for name in ("README.md", "CHANGELOG.md", "docs/teaching.md"):
+        text = (ROOT / name).read_text().lower()
+        assert "eleven notebooks" in text
+        assert "ten notebooks," not in text
+
+
+def test_the_further_exercises_stand_below_the_chapter_they_go_with():
+    names, chapter = [], 0
+    for cell in _read(FURTHER).cells:
+        if found := re.search(r"^## .*\n+> .*\n+After \[chapter (\d)\]", cell.source, re.M):
+            chapter = int(found[1])
+        for name in re.findall(r"^check\(\"(\w+)\"", cell.source, re.M):
+            assert EXERCISES[name].chapter == chapter, name
+            names.append(name)
+    assert len(names) == len(set(names)) >= 9
+
+
+def test_the_further_exercises_have_their_parts():
+    cells = _read(FURTHER).cells
+    prose = "\n".join(c.source for c in cells if c.cell_type == "markdown")
+    for part in ("You will learn", "Notes", "Needs", "## Summary", "## Further reading",
+                 "## What comes next"):  # fmt: skip
+        assert part in prose, f"no {part!r}"
+    for before, cell in pairwise(cells):
+        if cell.cell_type == "code" and "check(" in cell.source:
+            assert len(re.findall(r"^check\(", cell.source, re.M)) == 1
+            assert re.match(r"\*\*\d+\. .+\*\* \S", before.source), f"{cell.id} has no task"
