@@ -480,6 +480,21 @@ def test_reset_draws_once_and_unchanged_values_are_not_drawn_again():
     widget.close_all()
 
 
+@each_model
+def test_where_no_kernel_runs_the_still_of_the_same_values_is_seen(name):
+    widget = getattr(explore, f"explore_{name}")()
+    bundle = widget._repr_mimebundle_()
+    assert bundle["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
+    assert bundle["text/html"].startswith(explore.still(name)._repr_html_())
+    assert html.escape(MODELS[name].sight().sentence) in bundle["text/html"].partition(">")[2]
+    assert len(bundle["text/html"]) < 160_000  # three bytes as four letters: 120 kB of picture
+    slider = widget.sliders[MODELS[name].settings[0].name]
+    slider.value = slider.max
+    still = explore.still(name, **widget.values)._repr_html_()
+    assert widget._repr_mimebundle_()["text/html"].startswith(still)
+    widget.close_all()
+
+
 def test_a_sentence_cannot_smuggle_markup_into_the_page():
     from cvnotes.show.explore.shell import Explorer
 
@@ -488,4 +503,5 @@ def test_a_sentence_cannot_smuggle_markup_into_the_page():
 
     widget = Explorer(Model("x", "x", (Setting("a", "a", 0, 1, 0.5, 0.5, "a value"),), draw))
     assert "1 &lt; 2 &amp; &lt;b&gt;no" in widget.sentence.value
+    assert "<b>" not in widget._repr_mimebundle_()["text/html"]
     widget.close_all()

@@ -4,9 +4,10 @@
     python tools/build_notebooks.py notebooks/00*      some
     python tools/build_notebooks.py --check            only tell which are not as built
 
-Cells with the tag ``no-save-output`` (3-D viewers, widgets) run, but their output is not kept: it
-would be large, and an untrusted notebook does not show it. Ids, metadata and execution counts
-are set so that two runs give the same file.
+Cells with the tag ``no-save-output`` (3-D viewers) run, but their output is not kept: it would be
+large, and an untrusted notebook does not show it. Of a widget its still is kept, not the view,
+which means nothing without its kernel. Ids, metadata and execution counts are set so that two
+runs give the same file.
 """
 
 import argparse
@@ -22,6 +23,7 @@ METADATA = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {"name": "python"},
 }
+WIDGET_VIEW = "application/vnd.jupyter.widget-view+json"
 
 
 def tidy(notebook: nbformat.NotebookNode) -> None:
@@ -36,14 +38,21 @@ def tidy(notebook: nbformat.NotebookNode) -> None:
         if cell.cell_type == "code":
             count += 1
             cell.execution_count = count
-            if "no-save-output" in tags:
-                cell.outputs = []
+            kept = [] if "no-save-output" in tags else cell.outputs
+            cell.outputs = [output for output in kept if not _is_widget_alone(output)]
             for output in cell.outputs:
+                output.get("data", {}).pop(WIDGET_VIEW, None)
                 output.pop("execution_count", None)
                 if output.output_type == "execute_result":
                     output.execution_count = count
                 if "metadata" in output:
                     output.metadata = nbformat.from_dict({})
+
+
+def _is_widget_alone(output: nbformat.NotebookNode) -> bool:
+    """Tell if nothing would be left of an output but the words that replace a widget."""
+    data = output.get("data", {})
+    return WIDGET_VIEW in data and not data.keys() - {WIDGET_VIEW, "text/plain"}
 
 
 def problems(notebook: nbformat.NotebookNode) -> list[str]:

@@ -22,7 +22,8 @@ class Explorer(VBox):
 
     Every slider can be reached with Tab and moved with the arrow keys. The front end sends the
     newest value only after the picture of the one before has arrived, so nothing piles up however
-    quickly a slider is dragged.
+    quickly a slider is dragged. Where no kernel runs, on a page or in a file that was saved, the
+    still of the same values stands in its place.
 
     Parameters
     ----------
@@ -66,6 +67,14 @@ class Explorer(VBox):
 
     def __repr__(self) -> str:
         return f"explore {self.model.name}: run this cell to move its sliders"
+
+    def _repr_mimebundle_(self, **kwargs: Any) -> dict[str, Any]:
+        """Give the view of the widget, and the still for whoever cannot show that."""
+        bundle: dict[str, Any] = super()._repr_mimebundle_(**kwargs)  # type: ignore[no-untyped-call]
+        said = escape(self.model.sight(**self.values).sentence)
+        still = self.model.still(**self.values)._repr_html_()
+        words = f"<p>{said} <em>Run this cell to move its sliders.</em></p>"
+        return bundle | {"text/html": still + words}
 
     @property
     def values(self) -> dict[str, float]:

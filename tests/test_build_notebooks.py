@@ -1,0 +1,93 @@
+"""The builder keeps what a page can show, drops what it cannot, and gives the same file twice."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+
+SCRIPT = Path(__file__).resolve().parents[1] / "tools" / "build_notebooks.py"
+VIEW = "application/vnd.jupyter.widget-view+json"
+
+
+def write(path, *cells):
+    """Write a notebook; a cell is its source, or its source and a tag."""
+    notebook = nbformat.v4.new_notebook()
+    for source, *tags in ([cell] if isinstance(cell, str) else cell for cell in cells):
+        metadata = {"tags": tags, "collapsed": True}
+        notebook.cells.append(nbformat.v4.new_code_cell(source, metadata=metadata))
+    nbformat.write(notebook, path)
+    return path
+
+
+def run(*arguments):
+    return subprocess.run([sys.executable, SCRIPT, *arguments], capture_output=True, text=True)
+
+
+def built(path):
+    result = run(path)
+    assert result.returncode == 0, result.stdout + result.stderr
+    return nbformat.read(path, as_version=4).cells
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """Build one notebook with everything that is not kept as it comes."""
+    path = write(
+        tmp_path_factory.mktemp("page") / "page.ipynb",
+        ("from cvnotes.show.explore import explore_lens\nexplore_lens()", "nbval-ignore-output"),
+        "import ipywidgets\nipywidgets.IntSlider()",
+        ("'a large viewer'", "no-save-output"),
+        "'a value'",
+        "from IPython.display import display\nwidget = explore_lens()\ndisplay(widget, 5)",
+    )
+    return path, built(path)
+
+
+def test_of_an_exploration_the_still_remains_with_its_text_and_nothing_of_the_widget(page):
+    from cvnotes.show.explore import still
+
+    for cell in (page[1][0], page[1][4]):
+        data = cell.outputs[0].data
+        assert data.keys() == {"text/html", "text/plain"}
+        assert data["text/html"].startswith(still("lens")._repr_html_())
+    assert page[1][4].outputs[1].data == {"text/plain": "5"}
+
+
+def test_a_widget_without_a_still_and_a_viewer_leave_nothing(page):
+    assert page[1][1].outputs == []
+    assert page[1][2].outputs == []
+
+
+def test_everything_else_is_kept(page):
+    assert page[1][3].outputs[0].data == {"text/plain": "'a value'"}
+
+
+def test_built_twice_it_is_the_same_file_and_the_check_agrees(page):
+    path, _ = page
+    before = path.read_bytes()
+    assert run("--check", path).returncode == 0
+    built(path)
+    assert path.read_bytes() == before
+
+
+def test_a_widget_saved_by_jupyterlab_is_not_as_built(page, tmp_path):
+    notebook = nbformat.read(page[0], as_version=4)
+    notebook.cells[0].outputs[0].data[VIEW] = {"model_id": "1", "version_major": 2}
+    nbformat.write(notebook, tmp_path / "saved.ipynb")
+    result = run("--check", tmp_path / "saved.ipynb")
+    assert result.returncode == 1
+    assert "not those of tools/build_notebooks.py" in result.stdout
+
+
+def test_an_error_and_words_on_stderr_are_told_and_leave_the_exit_code_one(tmp_path):
+    path = write(tmp_path / "loud.ipynb", "import sys\nprint('careful', file=sys.stderr)")
+    result = run(path)
+    assert result.returncode == 1
+    assert "cell-00 writes to stderr: careful" in result.stdout
+    before = write(tmp_path / "wrong.ipynb", "1 / 0").read_bytes()
+    result = run(tmp_path / "wrong.ipynb")
+    assert result.returncode == 1
+    assert "ZeroDivisionError" in result.stdout
+    assert (tmp_path / "wrong.ipynb").read_bytes() == before
