@@ -1,4 +1,4 @@
-"""Cameras in 3-D figures: their pyramids, their rays and the plane z = 1."""
+"""Cameras in 3-D figures: their pyramids, rays and sheets of rays, and the plane z = 1."""
 
 import numpy as np
 import numpy.typing as npt
@@ -100,6 +100,46 @@ def ray_shapes(
     tips = tips[np.isfinite(tips[:, 0])]
     ends = np.stack([np.broadcast_to(camera.centre, tips.shape), tips], axis=1)
     return (Lines(name, ends, colour_of(meaning), 1.0),)
+
+
+def sheet_shapes(
+    edge: npt.ArrayLike, edges: npt.ArrayLike, *, name: str = "sheets", meaning: str = "world"
+) -> Shapes:
+    """Give flat sheets from one edge to others, as the rays of a camera to lines of the world.
+
+    Parameters
+    ----------
+    edge : array_like, shape (2, 3)
+        The segment that all sheets share.
+    edges : array_like, shape (..., 2, 3)
+        The segment opposite to it, of each sheet.
+    name : str
+        Of the faces.
+    meaning : {"world", "camera", "ideal", "lens", "estimated"}
+        Sets the colour, which is pale: what is behind a sheet stays visible.
+
+    Examples
+    --------
+    >>> ridge, eaves = [[0, 0, 0], [0, 0, 9]], [[[x, 2, 0], [x, 2, 9]] for x in (-1, 1)]
+    >>> faces, = sheet_shapes(ridge, eaves)
+    >>> faces.corners[0, 0], faces.corners[-1, 2]
+    (array([0., 0., 0.]), array([1., 2., 9.]))
+    """
+    shared, others = points(edge, "edge", 3), points(edges, "edges", 3)
+    if shared.shape != (2, 3) or others.ndim < 2 or others.shape[-2] != 2:
+        raise ShapeError(
+            "a sheet lies between two segments: expected edge (2, 3) and edges (..., 2, 3), "
+            f"got {shared.shape} and {others.shape}"
+        )
+    # In pieces, so that a still can sort what is in front of each and what is behind it.
+    along, across = np.linspace(0, 1, 29)[:, None], np.linspace(0, 1, 9)[:, None, None]
+    near = shared[0] + along * (shared[1] - shared[0])
+    start, end = (others.reshape(-1, 2, 3)[:, i, None, None] for i in (0, 1))
+    grid = near + across * (start + along * (end - start) - near)
+    steps = ((0, 0), (0, 1), (1, 1), (1, 0))
+    corners = np.stack([grid[:, i : i + 8, j : j + 28] for i, j in steps], axis=-2)
+    corners = corners.reshape(-1, 4, 3)
+    return (Faces(name, corners, np.tile([*to_rgb(colour_of(meaning)), 0.22], (len(corners), 1))),)
 
 
 def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shapes:
