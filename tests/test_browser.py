@@ -4,13 +4,15 @@ import json
 import re
 import shutil
 import statistics
+import subprocess
+import sys
 from pathlib import Path
 
 import nbformat
 import pytest
 
 from cvnotes.commands.lab import free_port, start_server, stop, wait_until_up
-from cvnotes.show.explore import NAMES
+from cvnotes.show.explore import NAMES, model
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 if CHROMIUM is None:
@@ -18,7 +20,8 @@ if CHROMIUM is None:
 pytest.importorskip("jupyterlab", reason="JupyterLab is not installed")
 sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
 
-NOTEBOOKS = sorted((Path(__file__).resolve().parents[1] / "notebooks").glob("*.ipynb"))
+ROOT = Path(__file__).resolve().parents[1]
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 EXPLORES = re.compile(r"^explore_\w+\(", re.MULTILINE)
 TOKEN = "of-this-test-alone"
 ARGUMENTS = [
@@ -105,7 +108,11 @@ def course(tmp_path_factory):
     """Serve a copy of the notebooks as `cvnotes lab` does; gives its folder and its address."""
     place = tmp_path_factory.mktemp("lab")
     folder = shutil.copytree(NOTEBOOKS[0].parent, place / "notebooks") if NOTEBOOKS else place
-    _write_scratch(folder / "all_explorers.ipynb")
+    calls = [f"explore_{name}()" for name in NAMES]
+    _write_scratch(folder / "all_explorers.ipynb", *calls, PEER)
+    _write_scratch(folder / "saved.ipynb", *calls)
+    build = [sys.executable, ROOT / "tools" / "build_notebooks.py", folder / "saved.ipynb"]
+    subprocess.run(build, check=True, capture_output=True)
     (place / "config").mkdir()
     config = {"LabApp": {"expose_app_in_browser": True}}
     (place / "config" / "jupyter_server_config.json").write_text(json.dumps(config))
@@ -145,27 +152,36 @@ def page(chromium, course):
     assert outside == []
 
 
-def _write_scratch(path):
+def _write_scratch(path, *sources):
     kernel = {"name": "python3", "display_name": "Python 3"}
     notebook = nbformat.v4.new_notebook(metadata={"kernelspec": kernel})
-    cells = ["from cvnotes.show.explore import *", *(f"explore_{name}()" for name in NAMES), PEER]
+    cells = ["from cvnotes.show.explore import *", *sources]
     notebook.cells = [nbformat.v4.new_code_cell(source) for source in cells]
     nbformat.write(notebook, path)
 
 
-def _open_and_run(page, address, name):
-    """Open a notebook, run all its cells, and give them with their outputs."""
+def _open(page, address, name):
     page.goto(f"{address}/lab/workspaces/auto-{Path(name).stem}/tree/{name}?token={TOKEN}")
     page.wait_for_selector(".jp-Notebook .jp-CodeCell", timeout=60_000)
+
+
+def _open_and_run(page, address, name):
+    """Open a notebook, run all its cells, and give them with their outputs."""
+    _open(page, address, name)
     assert page.evaluate(RUN_ALL) == "done"
     return page.evaluate(CELLS)
 
 
-def _explorer(page, cells, call, image="img.widget-image"):
-    """Bring the cell that makes a widget into view; gives its first handle and its picture."""
+def _output(page, cells, call):
+    """Bring the cell that makes a call into view; gives its output."""
     index = next(i for i, cell in enumerate(cells) if re.search(call, cell["source"]))
     page.evaluate(SHOW_CELL, index)
-    output = page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea-output").first
+    return page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea-output").first
+
+
+def _explorer(page, cells, call, image="img.widget-image"):
+    """Bring the cell that makes a widget into view; gives its first handle and its picture."""
+    output = _output(page, cells, call)
     handle, picture = output.locator(".noUi-handle").first, output.locator(image).first
     picture.wait_for(state="visible", timeout=20_000)
     return handle, picture
@@ -201,6 +217,28 @@ def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, path, tm
         page.keyboard.press("ArrowRight")
         assert _becomes(page, picture, lambda now: now != before)
         page.screenshot(path=tmp_path / f"{path.stem}.png")
+    _shut_down(page)
+
+
+def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alone(
+    page, course, tmp_path
+):
+    _open(page, course[1], "saved.ipynb")
+    page.evaluate("() => window.jupyterapp.shell.currentWidget.context.ready.then(() => true)")
+    cells = page.evaluate(CELLS)
+    for name in NAMES:
+        picture = _output(page, cells, rf"^explore_{name}\(").locator("img")
+        picture.wait_for(state="visible", timeout=20_000)
+        assert picture.count() == 1
+        assert picture.evaluate("img => img.naturalWidth / img.width") >= 1.5
+        assert picture.get_attribute("alt").startswith(model(name).about)
+        page.screenshot(path=tmp_path / f"{name}_saved.png")
+    assert page.evaluate(RUN_ALL) == "done"
+    for name in NAMES:
+        output = _output(page, cells, rf"^explore_{name}\(")
+        output.locator("img.widget-image").wait_for(state="visible", timeout=20_000)
+        assert output.locator("img").count() == 1
+        assert output.locator(".noUi-handle").count() == len(model(name).settings)
     _shut_down(page)
 
 
