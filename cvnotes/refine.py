@@ -21,7 +21,7 @@ from cvnotes.optimise import Minimum, levenberg_marquardt
 from cvnotes.rigid import exp_so3
 
 # Views worked on at a time: their arrays of one number per point then stay in the cache.
-_CHUNK = 64
+_CHUNK = 128
 # Squared pixels per coordinate that rounding alone may leave.
 _ROUNDING = 1e-25
 
@@ -169,7 +169,9 @@ class Problem:
         below runs through one piece of memory.
         """
         value = dict(zip(self.names, x.shared.tolist(), strict=True))
-        alpha_u, alpha_v, skew = value["alpha_u"], value["alpha_v"], value.get("skew", 0.0)
+        alpha_u, skew = value["alpha_u"], value.get("skew", 0.0)
+        alpha = np.array([alpha_u, value["alpha_v"]])[:, None, None]
+        centre = np.array([value["u0"], value["v0"]])[:, None, None]
         k = [value[f"k{i}"] for i in range(1, self.n_radial + 1)]
         W, m = self._by_coordinate
         m = m[:, part]
@@ -180,8 +182,9 @@ class Problem:
         # 1. into the CRF, 2. divided by z
         R, T = x.R[part], x.T[part].T[..., None]
         RW = R.transpose(1, 0, 2) @ W if W.ndim == 2 else (R @ W[part]).transpose(1, 0, 2).copy()
-        over_z = 1 / (RW[2] + T[2])
-        xy = (RW[:2] + T[:2]) * over_z
+        M = RW + T
+        over_z = 1 / M[2]
+        xy = M[:2] * over_z
         X, Y = xy
 
         # 3. the lens: d(x', y') by its coefficients, and D = d(x', y')/d(x, y)
@@ -206,25 +209,29 @@ class Problem:
 
         # 4. the sensor turns x', y' and all their derivatives into pixels
         J[0, 0], J[1, 1] = xy_lens
-        residual[0] = alpha_u * xy_lens[0] + (value["u0"] - m[0])
-        residual[1] = alpha_v * xy_lens[1] + (value["v0"] - m[1])
+        np.multiply(alpha, xy_lens, out=residual)
+        residual += centre
+        residual -= m
         if self.skew:
             J[2, 0] = xy_lens[1]
             residual[0] += skew * xy_lens[1]
             by_lens[:, 0] += (skew / alpha_u) * by_lens[:, 1]
-        by_lens[:, 0] *= alpha_u
-        by_lens[:, 1] *= alpha_v
+        by_lens *= alpha
 
-        # and the pose: by T, then by ω, where d/dω = (R W) × d/dT
-        by_x = alpha_u * D11 + skew * D12, alpha_v * D12
-        by_y = alpha_u * D12 + skew * D22, alpha_v * D22
-        for c in range(2):
-            gX = np.multiply(by_x[c], over_z, out=by_T[0, c])
-            gY = np.multiply(by_y[c], over_z, out=by_T[1, c])
-            gZ = np.negative(X * gX + Y * gY, out=by_T[2, c])
-            np.subtract(RW[1] * gZ, RW[2] * gY, out=by_omega[0, c])
-            np.subtract(RW[2] * gX, RW[0] * gZ, out=by_omega[1, c])
-            np.subtract(RW[0] * gY, RW[1] * gX, out=by_omega[2, c])
+        # and the pose: by T, where dT acts on x and y through 1/z, then by ω, where dM = ω × R W
+        by_X, by_Y, by_Z = by_T
+        u_over_z, v_over_z = alpha * over_z
+        np.multiply(u_over_z, D11, out=by_X[0])
+        np.multiply(v_over_z, D12, out=by_X[1])
+        np.multiply(u_over_z, D12, out=by_Y[0])
+        np.multiply(v_over_z, D22, out=by_Y[1])
+        if self.skew:
+            by_X[0] += skew * over_z * D12
+            by_Y[0] += skew * over_z * D22
+        np.negative(X * by_X + Y * by_Y, out=by_Z)
+        np.subtract(RW[1] * by_Z, RW[2] * by_Y, out=by_omega[0])
+        np.subtract(RW[2] * by_X, RW[0] * by_Z, out=by_omega[1])
+        np.subtract(RW[0] * by_Y, RW[1] * by_X, out=by_omega[2])
         return J if self.seen is None else J * self.seen[part]
 
 
