@@ -1,11 +1,4 @@
-"""Maximum likelihood: refine A, the lens and all poses together (notes 2b.4).
-
-Minimises Σ ‖m_ij − m̂(A, k, R_i, T_i, w_j)‖². Each view's residuals depend on the shared
-parameters and on that view's own pose only, so the normal matrix has the shape of an arrow: one
-6×6 block per view and one border for what is shared. The poses are eliminated block by block
-(Schur complement), the small system that is left is solved, and the poses follow from it: the
-cost grows linearly with the number of views.
-"""
+"""The problem: which parameters are sought, and how the corners depend on them."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,15 +8,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import intrinsics, pixels
-from cvnotes.errors import Array, ConvergenceError, DegenerateError
-from cvnotes.lens import Lens, horner, radial_factor
-from cvnotes.optimise import Minimum, levenberg_marquardt
-from cvnotes.rigid import exp_so3
+from cvnotes.errors import Array
+from cvnotes.lens import Lens
+from cvnotes.radial import horner, radial_factor
+from cvnotes.refine.arrow import Arrow
 
 # Views worked on at a time: their arrays of one number per point then stay in the cache.
 _CHUNK = 128
-# Squared pixels per coordinate that rounding alone may leave.
-_ROUNDING = 1e-25
 
 
 class State(NamedTuple):
@@ -32,17 +23,6 @@ class State(NamedTuple):
     shared: Array  # (q,), in the order of Problem.names
     R: Array  # (n_views, 3, 3)
     T: Array  # (n_views, 3)
-
-
-class Arrow(NamedTuple):
-    """The normal equations, in blocks: JᵀJ and Jᵀr."""
-
-    shared: Array  # (q, q) border corner
-    border: Array  # (n_views, 6, q)
-    poses: Array  # (n_views, 6, 6)
-    g_shared: Array  # (q,)
-    g_poses: Array  # (n_views, 6)
-    view_costs: Array  # (n_views,) rᵀr of each view
 
 
 @dataclass(frozen=True)
@@ -233,107 +213,3 @@ class Problem:
         np.subtract(RW[2] * by_X, RW[0] * by_Z, out=by_omega[1])
         np.subtract(RW[0] * by_Y, RW[1] * by_X, out=by_omega[2])
         return J if self.seen is None else J * self.seen[part]
-
-
-def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Minimum[State, Arrow]:
-    """Minimise the reprojection error from a start, by Levenberg–Marquardt.
-
-    Raises
-    ------
-    DegenerateError
-        The views do not determine the parameters.
-    ConvergenceError
-        The minimum is no camera: a focal length or the depth of a board is not positive.
-
-    References
-    ----------
-    .. [1] Notes 2b.4, "Refinement by non-linear optimization".
-    .. [2] Triggs et al., Bundle adjustment: a modern synthesis (2000), section 6.
-    """
-    floor = _ROUNDING * problem.m.size
-    found = levenberg_marquardt(
-        start,
-        problem.linearise,
-        solve_arrow,
-        move,
-        follow=poses_follow,
-        tolerance=tolerance,
-        floor=floor,
-    )
-    if found.x.shared[:2].min() <= 0 or found.x.T[:, 2].min() <= 0:
-        raise ConvergenceError(
-            "the refinement left the space of cameras (a focal length or the depth of a board is "
-            "not positive); the corners are probably paired with the wrong points of the board"
-        )
-    return found
-
-
-def solve_arrow(system: Arrow, damping: float) -> tuple[tuple[Array, Array], float]:
-    """Solve the damped normal equations; gives the step (shared, poses) and the predicted gain."""
-    poses, shared = _damp(system.poses, damping), _damp(system.shared, damping)
-    q = len(shared)
-    try:
-        # V⁻¹ [W g] for all views, V being a pose block, W its border and g its gradient
-        right = np.concatenate([system.border, system.g_poses[..., None]], axis=-1)
-        solved = np.linalg.solve(poses, right)
-        # Σ Wᵀ V⁻¹ [W g]
-        eliminated = right.reshape(-1, q + 1)[:, :q].T @ solved.reshape(-1, q + 1)
-        d_shared = np.linalg.solve(shared - eliminated[:, :q], eliminated[:, q] - system.g_shared)
-    except np.linalg.LinAlgError:
-        raise DegenerateError(_UNDETERMINED) from None
-    d_poses = -(solved[..., -1] + solved[..., :-1] @ d_shared)
-    gain = -(system.g_shared @ d_shared) - float((system.g_poses * d_poses).sum())
-    return (d_shared, d_poses), float(gain)
-
-
-def move(x: State, step: tuple[Array, Array]) -> State:
-    """Take a step: R ← exp(ω) R, everything else by addition."""
-    shared, poses = step
-    return State(x.shared + shared, exp_so3(poses[:, :3]) @ x.R, x.T + poses[:, 3:])
-
-
-def poses_follow(x: State, system: Arrow) -> State:
-    """Take a step of the poses alone, the camera being held."""
-    try:
-        step = np.linalg.solve(system.poses, system.g_poses[..., None])[..., 0]
-    except np.linalg.LinAlgError:  # too far away to be brought back
-        return x
-    return move(x, (np.zeros_like(x.shared), np.asarray(-step)))
-
-
-def covariance(system: Arrow) -> Array:
-    """Invert the normal matrix for the shared parameters, (q, q), for noise of 1 px."""
-    solved = np.linalg.solve(system.poses, system.border)
-    S = system.shared - np.tensordot(system.border, solved, ([0, 1], [0, 1]))
-    scale = np.sqrt(np.diagonal(S))
-    if not (scale > 0).all():
-        raise DegenerateError(_UNDETERMINED)
-    try:
-        inverse = np.linalg.inv(S / np.outer(scale, scale)) / np.outer(scale, scale)
-    except np.linalg.LinAlgError:
-        raise DegenerateError(_UNDETERMINED) from None
-    return np.asarray((inverse + inverse.T) / 2)
-
-
-def pose_covariance(system: Arrow, shared: Array) -> Array:
-    """Invert the normal matrix for each pose (ω, T), (n_views, 6, 6), for noise of 1 px.
-
-    The uncertainty of the shared parameters, from `covariance`, is included.
-    """
-    solved = np.linalg.solve(system.poses, system.border)
-    return np.asarray(np.linalg.inv(system.poses) + solved @ shared @ solved.mT)
-
-
-_UNDETERMINED = (
-    "the normal equations are singular: these views do not determine every parameter; "
-    "add views with the board tilted in other directions"
-)
-
-
-def _damp(N: Array, damping: float) -> Array:
-    if not damping:
-        return N
-    N = N.copy()
-    diagonal = np.einsum("...ii->...i", N)
-    diagonal *= 1 + damping
-    return N
