@@ -15,12 +15,16 @@ from test_exercises_second import solution_of
 from cvnotes.errors import CvnotesError
 from cvnotes.learn import exercises
 from cvnotes.learn.asking import ask
+from cvnotes.learn.equality import up_to_scale
 from cvnotes.learn.exercises import EXERCISES, check, hint, progress, solution
-from cvnotes.learn.judge import judge, what_it_gives
+from cvnotes.learn.judge import judge
 from cvnotes.learn.outcome import Outcome, outcome_of
+from cvnotes.learn.recognising import what_it_gives
+from cvnotes.learn.report import as_code
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+SCALE_FREE = [name for name, e in EXERCISES.items() if e.same is up_to_scale]
 EACH = pytest.mark.parametrize("exercise", EXERCISES.values(), ids=list(EXERCISES))
 
 
@@ -120,15 +124,32 @@ def test_the_reference_passes_on_any_seed(exercise):
         assert report.passed, report
 
 
-@pytest.mark.parametrize("name", ["dlt", "four_points", "b_from_views", "normaliser", "horizon"])
-def test_a_thousand_scalings_and_signs_are_all_right(name):
+@pytest.mark.parametrize("name", SCALE_FREE)
+def test_an_answer_without_a_scale_is_right_at_a_thousand_scales_of_either_sign(name):
     exercise = EXERCISES[name]
     rng = np.random.default_rng(1)
-    inputs = exercise.inputs(5)
-    rights = [exercise.reference(*args) for args in inputs]
-    for factor in 10.0 ** rng.uniform(-6, 6, 1000 // 5) * rng.choice([-1, 1], 200):
-        outcomes = [outcome_of(factor * right) for right in rights]
-        assert judge(exercise, outcomes, 5).passed, factor
+    rights = [np.asarray(exercise.reference(*args)) for args in exercise.inputs(5)]
+    for _ in range(1000):
+        # each result has a scale and a sign of its own
+        factors = 10.0 ** rng.uniform(-6, 6, len(rights)) * rng.choice([-1, 1], len(rights))
+        outcomes = [outcome_of(f * x) for f, x in zip(factors, rights, strict=True)]
+        assert judge(exercise, outcomes, 5).passed, factors
+
+
+@pytest.mark.parametrize("name", SCALE_FREE)
+def test_a_scale_for_each_entry_is_one_too_many(name):
+    exercise = EXERCISES[name]
+    rng = np.random.default_rng(2)
+    rights = [np.asarray(exercise.reference(*args)) for args in exercise.inputs(5)]
+    for _ in range(20):
+        bent = [x * rng.uniform(0.99, 1.01, x.shape) for x in rights]
+        assert not judge(exercise, [outcome_of(x) for x in bent], 5).passed
+
+
+def test_H_and_b_and_whatever_else_has_no_scale_are_compared_without():
+    assert set(SCALE_FREE) == {
+        "line_through", "meet", "horizon", "normaliser", "dlt", "four_points", "b_from_views",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["A_from_b", "extrinsics", "geometric_error"])
@@ -226,7 +247,8 @@ def test_a_long_counterexample_is_printed_by_name_only():
         return solution_of("bilinear")(image, u, v) if image.size < 9 else 5.0
 
     report = check("bilinear", right_on_small_pictures)
-    assert "image = np.array([[" in repr(report)  # 5 × 7
+    assert len(report.counterexample["image"]) == 5
+    assert "image = np.array([\n        [" in repr(report)  # 5 × 7
     wide = check("backward_warp", lambda image, H, size: np.zeros((300, 300)))
     assert "yours = report.yours  # (300, 300)" in repr(wide)
     assert wide.yours.shape == (300, 300)
@@ -239,6 +261,64 @@ def test_what_holds_and_what_does_not_is_said_in_words():
     right = check("lift", solution_of("lift"))
     assert "✓ holds: The last coordinate of every point is k." in repr(right)
     assert "right" in repr(right)
+
+
+@EACH
+def test_a_title_that_asks_gets_no_full_stop(exercise):
+    message = check(exercise.name, ..., student="demo").message
+    assert message.startswith((f"{exercise.title}. ", f"{exercise.title} "))
+    assert "?." not in message
+
+
+def test_a_wide_matrix_is_shown_row_by_row_and_can_still_be_copied():
+    text = as_code(np.array([[-1.25, 1e-7, np.inf], [-np.inf, np.nan, 12345.678901]]), "x")
+    assert text == "np.array([[-1.25, 1e-07, np.inf], [-np.inf, np.nan, 12345.678901]])"
+    wide = np.array([[-1.25, 1e-7, np.inf], [-np.inf, np.nan, 12345.678901]] * 2)
+    assert as_code(wide).splitlines()[:3] == [
+        "np.array([",
+        "    [  -1.25,  1e-07,       np.inf],",
+        "    [-np.inf, np.nan, 12345.678901],",
+    ]
+    for x in (wide, wide.reshape(2, 2, 3), wide.ravel(), wide[:0], np.float64(2.5)):
+        assert np.array_equal(eval(as_code(np.asarray(x)), {"np": np}), x, equal_nan=True)
+
+
+def test_a_right_answer_is_shown_at_the_scale_and_sign_of_the_students():
+    right = EXERCISES["dlt"].reference
+
+    def my_dlt(src, dst):
+        H = -50 * right(src, dst)
+        return H + [[0.01, 0, 0], [0, 0, 0], [0, 0, 0]]
+
+    report = check("dlt", my_dlt)
+    assert report.misconception is None
+    assert np.abs(report.yours - report.wanted).max() < 0.02
+    assert "Scale and sign are free" in repr(report)
+    assert "Scale and sign" not in repr(check("lift", lambda x, k: x * 1.1))
+
+
+def test_rounding_noise_is_not_shown():
+    report = check("b_from_views", EXERCISES["b_from_views"].misconceptions[0].gives)
+    shown = {}
+    exec("\n".join(report.example()), {"np": np}, shown)
+    assert (shown["wanted"] == 0).sum() == 3
+    assert (np.abs(report.wanted) < 1e-12).sum() == 3
+
+
+def test_of_what_never_came_back_nothing_is_said_to_hold_or_not():
+    for silent in (lambda x, k: print(k), lambda x, k: "H", lambda x, k: 1 / 0):
+        report = check("lift", silent)
+        assert (report.holds, report.fails) == ((), "")
+        assert "On this input:\n    x = np.array([[2.0, 3.0]" in repr(report)
+    some = check("same_points", lambda a, b: None if len(a) == 1 else [True] * len(a))
+    assert some.fails
+
+
+def test_a_number_read_off_is_not_blamed_for_being_whole():
+    report = check("where_the_rails_meet", (100, 100))
+    assert not report.passed
+    assert "integer array" not in repr(report)
+    assert "integer array" in repr(check("distort", lambda xy, k, p: (1000 * xy).astype(int)))
 
 
 def test_html_is_escaped():
@@ -266,7 +346,7 @@ def test_a_choice_is_a_letter():
     assert check("bad_views", "b ").passed
     assert check("bad_views", "A").misconception == "two views thought too few"
     assert check("bad_views", ...).verdict == "not solved yet"
-    assert "text 'E'" in check("bad_views", "E").message
+    assert check("bad_views", "E").message == "The answer is one of A, B, C, D; 'E' is none."
 
 
 def test_a_result_in_place_of_the_function_is_explained():
@@ -280,7 +360,7 @@ def test_a_result_in_place_of_the_function_is_explained():
 def test_progress_hints_and_unknown_names():
     assert progress().title == f"0 of {len(EXERCISES)} exercises solved"
     report = check("lift", solution_of("lift"))
-    assert report.progress == "Chapter 1: 1 of 5 solved; next: drop."
+    assert report.progress == "Chapter 1: 1 of 4 solved; next: drop."
     assert progress().title.startswith("1 of")
     first, second, third, again = (hint("lift") for _ in range(4))
     assert (first.lines, second.lines, third.lines) == tuple((h,) for h in EXERCISES["lift"].hints)

@@ -12,21 +12,28 @@ import pytest
 from test_exercises_second import source_of
 
 from cvnotes.commands.grade import add_parser, table
-from cvnotes.learn import grading
-from cvnotes.learn.exercises import CHAPTERS, EXERCISES
-from cvnotes.learn.grading import Mark, expected_exercises, grade_folder
+from cvnotes.learn import expected
+from cvnotes.learn.exercises import EXERCISES, notebook_of
+from cvnotes.learn.expected import expected_exercises
+from cvnotes.learn.grading import Mark, grade_folder
 from cvnotes.learn.report import Report
 
 IMPORTS = "import numpy as np\nfrom cvnotes.learn.exercises import check\n"
 IMPORTS += "from cvnotes.learn.personal import personal_camera"
-COURSE = sorted((Path(__file__).resolve().parents[1] / "notebooks").glob("0[1-9]_*.ipynb"))
+NUMBERS = range(1, 11)
+COURSE = sorted(
+    path
+    for path in (Path(__file__).resolve().parents[1] / "notebooks").glob("*.ipynb")
+    if int(path.name[:2]) in NUMBERS
+)
+MOST_MISTAKES = max(len(e.misconceptions) for e in EXERCISES.values())
 needs_posix = pytest.mark.skipif(os.name != "posix", reason="limits as on Linux")
 
 
 @pytest.fixture(autouse=True)
 def all_exercises_are_placed(monkeypatch, tmp_path):
-    """Expect every exercise of a chapter, whatever the course's own notebooks ask for."""
-    monkeypatch.setattr(grading, "_NOTEBOOKS", tmp_path / "none")
+    """Expect every exercise in its notebook, whatever the course's own notebooks ask for."""
+    monkeypatch.setattr(expected, "COURSE", tmp_path / "none")
 
 
 def notebook(path, *cells):
@@ -46,12 +53,15 @@ def answered(name, source):
     return [source, hand_over(name)]
 
 
-def chapter(number, sources):
-    """Give the cells of a chapter's notebook, with a source for each exercise."""
+def in_notebook(number):
+    return [e for e in EXERCISES.values() if notebook_of(e) == number]
+
+
+def cells_for(exercises, sources):
+    """Give the cells of a notebook, with a source for each exercise."""
     cells = [IMPORTS]
-    for exercise in EXERCISES.values():
-        if exercise.chapter == number:
-            cells += answered(exercise.name, sources(exercise))
+    for exercise in exercises:
+        cells += answered(exercise.name, sources(exercise))
     return cells
 
 
@@ -69,13 +79,21 @@ def command(*arguments):
     return args.run(args)
 
 
-def mistaken(exercise):
-    """Give code that hands over a misconception, and how it is called."""
+def mistake_in(exercise, which):
+    """Give a misconception; those of the pipeline are those of its first step."""
+    mistakes = (exercise.parts or (exercise,))[0].misconceptions
+    return mistakes[which % len(mistakes)]
+
+
+def mistaken(exercise, which):
+    """Give code that hands over a misconception."""
     if exercise.name == "pipeline":
-        wrong = "my_dlt = EXERCISES['dlt'].misconceptions[0].gives"
+        first = exercise.parts[0]
+        wrong = mistaken(first, which)
         return source_of("pipeline").replace("my_steps", f"{wrong}\nmy_steps")
     variable = hand_over(exercise.name).split(", ")[1].rstrip(")")
-    gives = f"EXERCISES['{exercise.name}'].misconceptions[-1].gives"
+    number = exercise.misconceptions.index(mistake_in(exercise, which))
+    gives = f"EXERCISES['{exercise.name}'].misconceptions[{number}].gives"
     call = "()" if exercise.answer == "value" else ""
     letter = "'ABCD'[int({})]" if exercise.choices else "{}"
     source = f"{variable} = " + letter.format(gives + call)
@@ -83,22 +101,54 @@ def mistaken(exercise):
 
 
 def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
-    for n in CHAPTERS:
-        notebook(
-            tmp_path / "ada" / f"{n:02d}_chapter.ipynb", *chapter(n, lambda e: source_of(e.name))
-        )
-        notebook(tmp_path / "bob" / f"{n:02d}_chapter.ipynb", *chapter(n, stub))
+    for n in NUMBERS:
+        solved = cells_for(in_notebook(n), lambda e: source_of(e.name))
+        notebook(tmp_path / "ada" / f"{n:02d}_chapter.ipynb", *solved)
+        notebook(tmp_path / "bob" / f"{n:02d}_chapter.ipynb", *cells_for(in_notebook(n), stub))
     started = time.monotonic()
     marks = graded(tmp_path)
     assert 60 * len(marks) / (time.monotonic() - started) > 10  # notebooks a minute
-    for n in CHAPTERS:
+    for n in NUMBERS:
         ada, bob = (marks[f"{who}/{n:02d}_chapter.ipynb"] for who in ("ada", "bob"))
         assert ada.remark == ""
         assert ada.points == len(ada.expected), ada.reports
         assert bob.points == 0
         assert {r.verdict for r in bob.reports.values()} == {"not solved yet"}
         assert len(bob.reports) == len(bob.expected)
-    assert sum(len(marks[k].expected) for k in marks) == 2 * len(EXERCISES)
+    for who in ("ada", "bob"):
+        expected = [name for key, m in marks.items() if key.startswith(who) for name in m.expected]
+        assert sorted(expected) == sorted(EXERCISES)
+
+
+def test_a_misconception_costs_exactly_its_exercise(tmp_path):
+    for one in EXERCISES.values():
+        n = notebook_of(one)
+
+        def source(e, one=one):
+            return mistaken(e, 0) if e is one else source_of(e.name)
+
+        notebook(tmp_path / one.name / f"{n:02d}_copy.ipynb", *cells_for(in_notebook(n), source))
+    marks = graded(tmp_path)
+    assert len(marks) == len(EXERCISES)
+    for mark in marks.values():
+        lost = [name for name in mark.expected if not mark.earned(name)]
+        assert lost == [mark.student]
+        wrong = mistake_in(EXERCISES[mark.student], 0).name
+        assert mark.misconceptions == {mark.student: wrong}
+
+
+def test_courses_answered_by_misconceptions_alone_score_nothing_and_each_is_named(tmp_path):
+    met = set()
+    for which in range(MOST_MISTAKES):
+        cells = cells_for(EXERCISES.values(), lambda e, which=which: mistaken(e, which))
+        notebook(tmp_path / f"copy{which:02d}.ipynb", *cells)
+    for which, mark in enumerate(graded(tmp_path).values()):
+        assert mark.points == 0
+        assert sorted(mark.expected) == sorted(EXERCISES)
+        named = {e.name: mistake_in(e, which).name for e in EXERCISES.values()}
+        assert mark.misconceptions == named
+        met |= set(named.items())
+    assert met >= {(e.name, m.name) for e in EXERCISES.values() for m in e.misconceptions}
 
 
 def stub(exercise):
@@ -130,7 +180,7 @@ def exercise_cells(path, solved):
 def test_the_courses_own_notebooks_score_nothing_untouched_and_all_when_solved(
     tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(grading, "_NOTEBOOKS", COURSE[0].parent)
+    monkeypatch.setattr(expected, "COURSE", COURSE[0].parent)
     for path in COURSE:
         for who in ("solved", "untouched"):
             cells = exercise_cells(path, who == "solved")
@@ -139,28 +189,9 @@ def test_the_courses_own_notebooks_score_nothing_untouched_and_all_when_solved(
     for path in COURSE:
         solved, untouched = (marks[f"{who}/{path.name}"] for who in ("solved", "untouched"))
         assert (solved.remark, untouched.remark) == ("", "")
-        assert 2 <= len(solved.expected) <= 6
         assert solved.points == len(solved.expected), solved.reports
         assert untouched.points == 0
         assert {r.verdict for r in untouched.reports.values()} == {"not solved yet"}
-
-
-@pytest.mark.parametrize("wrong", [0, 3])
-def test_each_misconception_costs_exactly_its_exercise(wrong, tmp_path):
-    names = {}
-    for n in (1, 3, 6, 7, 9):
-        chosen = [e for e in EXERCISES.values() if e.chapter == n][wrong]
-        names[n] = chosen
-        notebook(
-            tmp_path / f"{n:02d}_copy.ipynb",
-            *chapter(n, lambda e, c=chosen: mistaken(e) if e is c else source_of(e.name)),
-        )
-    marks = graded(tmp_path)
-    for n, exercise in names.items():
-        mark = marks[f"{n:02d}_copy.ipynb"]
-        lost = [name for name in mark.expected if not mark.earned(name)]
-        assert lost == [exercise.name]
-        assert mark.misconceptions == {exercise.name: exercise.misconceptions[-1].name}
 
 
 def test_the_last_answer_counts_and_cells_after_a_broken_one_still_run(tmp_path):
@@ -287,11 +318,11 @@ def test_the_table_and_the_class_summary(tmp_path, capsys):
     out = tmp_path / "marks" / "marks.csv"
     assert command(tmp_path, "--out", out, "--jobs", "2") == 0
     ada, bob = csv.DictReader(out.read_text().splitlines())
-    assert (ada["student"], ada["points"], ada["of"], ada["percent"]) == ("ada", "1", "5", "20")
+    assert (ada["student"], ada["points"], ada["of"], ada["percent"]) == ("ada", "1", "4", "25")
     assert (ada["dlt"], bob["dlt"], bob["normaliser"]) == ("1", "0", "0")
     assert bob["misconceptions"] == "dlt: src and dst exchanged"
     said = capsys.readouterr().out
-    assert "2 notebooks, 1 of 10 points" in said
+    assert "2 notebooks, 1 of 8 points" in said
     assert "1 × dlt: src and dst exchanged" in said
     assert "dlt                           1 of 2" in said
 
@@ -332,7 +363,7 @@ def test_the_number_in_a_notebooks_name_says_what_belongs_to_it():
 
 def test_only_what_the_course_itself_asks_for_is_expected(tmp_path, monkeypatch):
     notebook(tmp_path / "06_dlt.ipynb", 'check("dlt", my_dlt)', "check('normaliser', my_n)")
-    monkeypatch.setattr(grading, "_NOTEBOOKS", tmp_path)
+    monkeypatch.setattr(expected, "COURSE", tmp_path)
     assert expected_exercises("06_dlt.ipynb", []) == ("normaliser", "dlt")
 
 

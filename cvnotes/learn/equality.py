@@ -8,6 +8,21 @@ from cvnotes.errors import Array
 
 Same = Callable[[Array, Array, float], bool]
 
+TOLERANCE = 1e-6
+# Single precision is a fair choice; its rounding must not count as a mistake.
+SINGLE_TOLERANCE = 2e-4
+
+
+def tolerance(dtype: str) -> float:
+    """Give by how much numbers may differ that were of a type.
+
+    Examples
+    --------
+    >>> tolerance("float64")
+    1e-06
+    """
+    return SINGLE_TOLERANCE if dtype in ("float32", "float16") else TOLERANCE
+
 
 def close(answer: Array, right: Array, tolerance: float) -> bool:
     """Tell whether two answers are equal, relative to their largest entry; NaN equals NaN.

@@ -19,6 +19,20 @@ from cvnotes.learn.judge import judge
 from cvnotes.learn.report import Report, Source, Words
 
 CHAPTERS = range(1, 10)
+# Asked for in the notebook of further exercises; all others in the notebook of their chapter.
+FURTHER = (
+    "line_through",
+    "field_of_view",
+    "nearest_rotation",
+    "form_image",
+    "knows_its_origin",
+    "geometric_error",
+    "radial_fit",
+    "b_from_views",
+    "bilinear",
+    "rectifying_rotation",
+    "which_to_trust",
+)
 # The inputs are the same each time, so that a counterexample stays where it is.
 _SEED = 2024
 
@@ -77,7 +91,7 @@ def check(name: str, answer: Any, *, student: str | None = None) -> Report:
     report = judge(exercise, ask(exercise, answer, _SEED), _SEED)
     if report.passed:
         _SESSION.solved.add(name)
-    return replace(report, progress=_chapter_progress(exercise.chapter))
+    return replace(report, progress=_progress_in(notebook_of(exercise)))
 
 
 def hint(name: str) -> Words:
@@ -111,14 +125,14 @@ def solution(name: str) -> Source:
 
 
 def progress() -> Words:
-    """Tell how far you are, chapter by chapter.
+    """Tell how far you are, notebook by notebook.
 
     Examples
     --------
     >>> progress().title.split()[2:]
     ['47', 'exercises', 'solved']
     """
-    lines = tuple(_chapter_progress(n) for n in CHAPTERS)
+    lines = tuple(_progress_in(n) for n in sorted({*map(notebook_of, EXERCISES.values())}))
     return Words(f"{len(_SESSION.solved)} of {len(EXERCISES)} exercises solved", lines)
 
 
@@ -136,6 +150,17 @@ def find(name: str) -> Exercise:
         meant = f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
         raise CvnotesError(f"there is no exercise {name!r}{meant}")
     return exercise
+
+
+def notebook_of(exercise: Exercise) -> int:
+    """Give the number of the notebook that asks for an exercise.
+
+    Examples
+    --------
+    >>> notebook_of(EXERCISES["dlt"]), notebook_of(EXERCISES["bilinear"])
+    (6, 10)
+    """
+    return CHAPTERS.stop if exercise.name in FURTHER else exercise.chapter
 
 
 def asked(name: str, student: str | None) -> Exercise:
@@ -159,8 +184,9 @@ def _function(source: Any) -> Any:
     return getattr(source, "fget", None) or getattr(source, "func", None) or source
 
 
-def _chapter_progress(chapter: int) -> str:
-    names = [e.name for e in EXERCISES.values() if e.chapter == chapter]
+def _progress_in(notebook: int) -> str:
+    names = [e.name for e in EXERCISES.values() if notebook_of(e) == notebook]
     open_ = [name for name in names if name not in _SESSION.solved]
     left = f"; next: {open_[0]}" if open_ else ""
-    return f"Chapter {chapter}: {len(names) - len(open_)} of {len(names)} solved{left}."
+    title = f"Chapter {notebook}" if notebook in CHAPTERS else "Further exercises"
+    return f"{title}: {len(names) - len(open_)} of {len(names)} solved{left}."

@@ -7,7 +7,6 @@ container.
 
 import contextlib
 import os
-import re
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -17,14 +16,14 @@ from typing import Any
 
 from cvnotes.errors import CvnotesError, FileError
 from cvnotes.files.writing import printable
-from cvnotes.learn.exercises import CHAPTERS, EXERCISES, asked
+from cvnotes.learn.exercises import EXERCISES, asked
+from cvnotes.learn.expected import expected_exercises
 from cvnotes.learn.judge import judge
 from cvnotes.learn.outcome import clean, decode
 from cvnotes.learn.process import run_notebook
 from cvnotes.learn.report import Report
 
 _MAX_NOTEBOOK = 100 * 2**20
-_NOTEBOOKS = Path(__file__).resolve().parents[2] / "notebooks"
 
 
 @dataclass(frozen=True)
@@ -108,32 +107,6 @@ def grade_folder(
             )
 
     return len(paths), marks()
-
-
-def expected_exercises(notebook: str, handed_in: list[str]) -> tuple[str, ...]:
-    """Give the exercises that belong to a notebook, by the chapter's number in its name.
-
-    Examples
-    --------
-    >>> "dlt" in expected_exercises("06_homography_dlt.ipynb", [])
-    True
-    """
-    number = re.match(r"(\d\d)_", notebook)
-    if number and int(number[1]) in CHAPTERS:
-        chapters = {int(number[1])}
-    else:
-        chapters = {EXERCISES[name].chapter for name in handed_in}
-    placed = {n: _placed(n) for n in chapters}
-    return tuple(e.name for e in EXERCISES.values() if e.name in placed.get(e.chapter, ()))
-
-
-def _placed(chapter: int) -> set[str]:
-    """Give the exercises that the course's own notebook asks for; without it, the chapter's."""
-    names: set[str] = set()
-    for path in _NOTEBOOKS.glob(f"{chapter:02d}_*.ipynb"):
-        text = path.read_text(encoding="utf-8").replace('\\"', '"')
-        names |= set(re.findall(r"check\(\s*[\"'](\w+)[\"']", text)) & set(EXERCISES)
-    return names or {e.name for e in EXERCISES.values() if e.chapter == chapter}
 
 
 def _content(path: Path) -> bytes | str:

@@ -1,22 +1,17 @@
 """From what a student's function gave to a report: the answer is worked out here, afterwards."""
 
-import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from cvnotes.errors import Array, CvnotesError
-from cvnotes.learn.equality import Same
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.learn.equality import tolerance, up_to_scale
+from cvnotes.learn.exercise import Case, Exercise, Property
 from cvnotes.learn.outcome import Outcome
+from cvnotes.learn.recognising import Tried, mistake_behind
 from cvnotes.learn.report import OPEN, RIGHT, WRONG, Report
 from cvnotes.learn.wording import other_shape, remarks, trouble
-
-TOLERANCE = 1e-6
-# Single precision is a fair choice; its rounding must not count as a mistake.
-SINGLE_TOLERANCE = 2e-4
 
 
 def judge(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
@@ -37,7 +32,7 @@ def judge(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
         Passed only if every property holds on every case.
     """
     if any(outcome.kind == "unfinished" for outcome in outcomes):
-        return Report(exercise.name, OPEN, f"{exercise.title}. {hint_at(exercise)}")
+        return Report(exercise.name, OPEN, f"{_sentence(exercise.title)} {hint_at(exercise)}")
     if any(outcome.kind == "result" for outcome in outcomes):
         return Report(exercise.name, WRONG, _not_a_function(exercise))
     rest = list(outcomes)
@@ -60,12 +55,15 @@ def judge(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
     return _wrong(exercise, tried, holding, failing)
 
 
+def _sentence(title: str) -> str:
+    return title if title.endswith(("?", ".")) else f"{title}."
+
+
 def hint_at(exercise: Exercise) -> str:
     """Say where help is to be had."""
     return f'hint("{exercise.name}") helps.'
 
 
-Tried = tuple[Case, Outcome]
 Failing = list[tuple[str, str, Case, Outcome]]
 
 
@@ -89,7 +87,7 @@ def _sorted(exercise: Exercise, tried: list[Tried]) -> tuple[tuple[str, ...], Fa
 def _unusable(exercise: Exercise, case: Case, outcome: Outcome) -> str:
     """Say what keeps an outcome from being compared; empty if nothing does."""
     if outcome.value is None:
-        return trouble(outcome)
+        return trouble(outcome, exercise)
     if outcome.value.shape != case.right.shape:
         return other_shape(outcome.value.shape, case.right.shape)
     if outcome.changed:
@@ -106,16 +104,12 @@ def _holds(exercise: Exercise, p: Property, case: Case, outcome: Outcome) -> boo
     if answer is None or answer.shape != case.right.shape:
         return False
     if p.holds is None:
-        return exercise.same(answer, case.right, _tolerance(outcome))
+        return exercise.same(answer, case.right, tolerance(outcome.dtype))
     with np.errstate(all="ignore"):
         try:
             return bool(p.holds(answer, case))
         except (np.linalg.LinAlgError, CvnotesError):  # NaN where there should be none
             return False
-
-
-def _tolerance(outcome: Outcome) -> float:
-    return SINGLE_TOLERANCE if outcome.dtype in ("float32", "float16") else TOLERANCE
 
 
 def _wrong(
@@ -124,64 +118,36 @@ def _wrong(
     alike = [x for x in failing if x[0] == failing[0][0]]
     _, why, case, outcome = min(alike, key=lambda x: x[2].size)
     sentences = [sentence for sentence, *_ in failing if sentence]
-    mistake = _mistake(exercise, tried, failing) if sentences else None
+    mistake = mistake_behind(exercise, tried, [x[2] for x in failing]) if sentences else None
     if mistake is not None:
         why = mistake.sentence
     elif not why:
-        why = f"Look at what does not hold, or ask for help: {hint_at(exercise)}"
+        why = f"Look at what does not hold; {hint_at(exercise)}"
     shown = exercise.answer == "function"
+    came = any(outcome.value is not None for _, outcome in tried)
     return Report(
         exercise.name,
         WRONG,
         why,
         misconception=mistake.name if mistake else None,
         holds=holding,
-        fails=sentences[0] if sentences else "",
+        fails=sentences[0] if sentences and came else "",
         counterexample=dict(zip(exercise.arguments, case.args, strict=True)) if shown else {},
         yours=outcome.value if shown else None,
-        wanted=case.right if shown else None,
-        remarks=() if mistake else remarks(outcome, case),
+        wanted=_scaled(exercise, case.right, outcome) if shown else None,
+        remarks=() if mistake else remarks(exercise, outcome, case),
         printed=outcome.printed,
     )
 
 
-def _mistake(exercise: Exercise, tried: list[Tried], failing: Failing) -> Misconception | None:
-    """Find the mistake that gives what the student's function gave."""
-    wrong = {id(case) for _, _, case, _ in failing}
-    for mistake in exercise.misconceptions:
-        same = mistake.same or exercise.same
-        for gives in (mistake.gives, *mistake.variants):
-            if _explains(exercise, gives, same, tried, wrong):
-                return mistake
-    return None
-
-
-def _explains(
-    exercise: Exercise, gives: Callable[..., Any], same: Same, tried: list[Tried], wrong: set[int]
-) -> bool:
-    """Tell whether a mistake gives the same, wherever it gives anything, and is wrong there too."""
-    compared = 0
-    for case, outcome in tried:
-        given = what_it_gives(gives, case.args)
-        if given is None:
-            continue
-        if outcome.value is None or not same(outcome.value, given, _tolerance(outcome)):
-            return False
-        if id(case) in wrong and exercise.same(given, case.right, TOLERANCE):
-            return False
-        compared += 1
-    return compared > 0
-
-
-def what_it_gives(function: Callable[..., Any], args: tuple[Any, ...]) -> Array | None:
-    """Give the result of a mistake as numbers; None where it has none."""
-    with np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            given = function(*(np.array(x) if isinstance(x, np.ndarray) else x for x in args))
-        except (np.linalg.LinAlgError, CvnotesError):
-            return None
-    return None if given is None else np.asarray(given, dtype=np.float64)
+def _scaled(exercise: Exercise, right: Array, outcome: Outcome) -> Array:
+    """Give a right answer of the student's own scale and sign where these are free."""
+    given = outcome.value
+    if exercise.same is not up_to_scale or given is None or given.shape != right.shape:
+        return right
+    sign = 1 if np.vdot(given, right) >= 0 else -1
+    factor = sign * np.linalg.norm(given) / np.linalg.norm(right)
+    return right * factor if np.isfinite(factor) and factor != 0 else right
 
 
 def _not_a_function(exercise: Exercise) -> str:

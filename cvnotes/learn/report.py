@@ -8,8 +8,11 @@ import numpy as np
 
 # Longer arrays are not printed; `Report.counterexample` holds them.
 _LONGEST = 60
+# Wider ones get a line for each row.
+_WIDEST = 72
 
 RIGHT, OPEN, WRONG = "right", "not solved yet", "not yet right"
+_ON_THIS = "On this input:"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +71,8 @@ class Report:
         lines = [f"{self.exercise}: {mark}{self.verdict}", f"  {self.message}"]
         lines += [f"  ✓ holds: {sentence}" for sentence in self.holds]
         lines += [f"  ✗ does not hold: {self.fails}"] * bool(self.fails)
-        lines += [f"    {line}" for line in self.example()]
+        example = "\n".join(self.example()).splitlines()
+        lines += [f"  {_ON_THIS}"] * bool(example) + [f"    {line}" for line in example]
         lines += [f"  {remark}" for remark in self.remarks]
         lines += [f"  | {line}" for line in self.printed_lines()]
         return "\n".join([*lines, *[f"  {self.progress}"] * bool(self.progress)])
@@ -83,7 +87,7 @@ class Report:
             f"<div><strong>{escape(self.exercise)}: {mark}{self.verdict}.</strong> "
             f"{escape(self.message)}"
             + _list(items)
-            + (f"<pre>{escape(example)}</pre>" if example else "")
+            + (f"<p>{_ON_THIS}</p><pre>{escape(example)}</pre>" if example else "")
             + _list(self.remarks)
             + (f"<p>Your function printed:</p><pre>{escape(printed)}</pre>" if printed else "")
             + (f"<p>{escape(self.progress)}</p>" if self.progress else "")
@@ -91,7 +95,7 @@ class Report:
         )
 
     def example(self) -> list[str]:
-        """Give the counterexample as lines of code that can be copied."""
+        """Give the counterexample as statements that can be copied."""
         lines = [
             f"{name} = {as_code(value, f'report.counterexample[{name!r}]')}"
             for name, value in self.counterexample.items()
@@ -113,22 +117,48 @@ def as_code(value: Any, name: str = "") -> str:
 
     Examples
     --------
-    >>> as_code(np.array([[1.0, 0.25]]))
-    'np.array([[1.0, 0.25]])'
+    >>> as_code(np.array([[1.0, np.inf]]))
+    'np.array([[1.0, np.inf]])'
+    >>> print(as_code(np.diag([800.0, 804.0, 1.0]) @ np.full((3, 3), 0.125) + np.eye(3)))
+    np.array([
+        [101.0, 100.0, 100.0],
+        [100.5, 101.5, 100.5],
+        [0.125, 0.125, 1.125],
+    ])
     """
     if not isinstance(value, np.ndarray):
         return repr(value)
     if value.ndim == 0:
         return repr(value.item())
+    if value.size == 0:
+        return f"np.empty({value.shape})"
     if value.size > _LONGEST:
         return f"{name}  # {value.shape}"
-    text = repr((value + 0.0).tolist())
-    return f"np.array({text.replace('nan', 'np.nan').replace('inf', 'np.inf')})"
+    numbers = np.vectorize(_literal, otypes=[object])(value)
+    line = f"np.array({_listed(numbers)})"
+    if value.ndim == 1 or len(line) <= _WIDEST:
+        return line
+    if value.ndim == 2:
+        widths = np.vectorize(len)(numbers).max(axis=0)
+        numbers = np.vectorize(str.rjust, otypes=[object])(numbers, widths)
+    return "\n".join(["np.array([", *(f"    {_listed(row)}," for row in numbers), "])"])
+
+
+def _literal(x: float) -> str:
+    text = repr(float(x) + 0.0)
+    return f"np.{text}".replace("np.-", "-np.") if not np.isfinite(x) else text
+
+
+def _listed(x: Any) -> str:
+    """Write nested lists of what is written already."""
+    return x if isinstance(x, str) else f"[{', '.join(map(_listed, x))}]"
 
 
 def _short(x: Any) -> Any:
-    """Leave six significant digits: results are to be read, inputs to be copied."""
-    return np.array([float(f"{value:.6g}") for value in np.ravel(x)]).reshape(np.shape(x))
+    """Leave six significant digits, and no rounding noise: results are to be read."""
+    rounded = np.array([float(f"{value:.6g}") for value in np.ravel(x)]).reshape(np.shape(x))
+    noise = 1e-14 * np.abs(rounded[np.isfinite(rounded)]).max(initial=0.0)
+    return np.where(np.abs(rounded) <= noise, 0.0, rounded)
 
 
 @dataclass(frozen=True)

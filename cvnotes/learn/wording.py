@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from cvnotes.learn.exercise import Case
+from cvnotes.learn.equality import up_to_scale
+from cvnotes.learn.exercise import Case, Exercise
 from cvnotes.learn.outcome import Outcome
 
 _RAISED = {
@@ -13,17 +14,13 @@ _RAISED = {
 }
 
 
-def trouble(outcome: Outcome) -> str:
-    """Say kindly and exactly what happened instead of an answer.
-
-    Examples
-    --------
-    >>> trouble(Outcome("none"))
-    'Your function gives None: is a return missing?'
-    """
+def trouble(outcome: Outcome, exercise: Exercise) -> str:
+    """Say kindly and exactly what happened instead of an answer."""
     match outcome.kind:
         case "none":
             return "Your function gives None: is a return missing?"
+        case "text" if exercise.choices:
+            return f"The answer is one of {', '.join(exercise.choices)}; {outcome.words} is none."
         case "text":
             return f"The answer is the text {outcome.words}; numbers are wanted."
         case "late":
@@ -66,7 +63,7 @@ def other_shape(given: tuple[int, ...], wanted: tuple[int, ...]) -> str:
     return f"{text}."
 
 
-def remarks(outcome: Outcome, case: Case) -> tuple[str, ...]:
+def remarks(exercise: Exercise, outcome: Outcome, case: Case) -> tuple[str, ...]:
     """Say what else is striking about an answer that is not right."""
     found = []
     answer = outcome.value
@@ -75,11 +72,13 @@ def remarks(outcome: Outcome, case: Case) -> tuple[str, ...]:
     elif answer is not None and np.isinf(answer).any():
         found.append("The answer contains infinite values: was something divided by 0?")
     whole = outcome.dtype.startswith(("int", "uint"))
-    if whole and (case.right != np.round(case.right)).any():
+    if exercise.answer == "function" and whole and (case.right != np.round(case.right)).any():
         found.append(
             f"The answer is made of whole numbers ({outcome.dtype}): what was written into an "
             "integer array has lost its decimals."
         )
+    if answer is not None and exercise.same is up_to_scale:
+        found.append("Scale and sign are free: wanted is shown with those of your answer.")
     if outcome.shares:
         found.append("The answer is a view of an argument: whoever changes one changes the other.")
     if "PASSED" in outcome.printed.upper():

@@ -111,7 +111,8 @@ PIPELINE = Exercise(
     "radial_fit": ...,
 }""",
     hints=(
-        "Copy your functions from chapters 6 and 7 into this notebook.",
+        "Copy your functions into this notebook: dlt from notebook 06, A_from_b and extrinsics "
+        "from 07, b_from_views and radial_fit from 10, the further exercises.",
         "check each of them by its own name first.",
         'my_steps = {"dlt": my_dlt, …}: functions, without brackets.',
     ),
