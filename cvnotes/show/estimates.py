@@ -125,7 +125,7 @@ def draw_view_families(results: Mapping[str, Calibration], *, truth: float) -> A
     right.set_xscale("log")
     right.set_xlim(1e-3, 3e3)
     for i, (value, r) in enumerate(zip(error, results.values(), strict=True)):
-        words = f"{value:.2g} %" + ("" if r.reliable else "  not reliable")
+        words = f"{float(f'{value:.2g}'):g} %" + ("" if r.reliable else "  not reliable")
         right.annotate(words, (value, i), (5, 0), textcoords="offset points", va="center", size=9)
     left.set(yticks=y, yticklabels=names, xlabel="RMS (px per point)", title="what is looked at")
     right.set(xlabel="error of the focal length (%)", title="what counts")
