@@ -10,9 +10,6 @@ import numpy.typing as npt
 from cvnotes.errors import Array, CvnotesError, DegenerateError, ShapeError, numbers, points
 from cvnotes.rigid import skew_matrix
 
-# Lengths beyond this could not be squared.
-_HUGE = 1e100
-
 PointSets = npt.ArrayLike | Sequence[npt.ArrayLike]
 
 
@@ -26,7 +23,8 @@ class Correspondences:
     Attributes
     ----------
     W : ndarray, shape (n, 3) or (n_views, n, 3)
-        Board points with Z = 0, centred on 0 and scaled so that half their diagonal is 1.
+        Board points, with Z = 0 if it is flat, centred on 0 and scaled so that half their diagonal
+        is 1.
     m : ndarray, shape (n_views, n, 2)
         Image points in pixels.
     seen : ndarray of bool, shape (n_views, n), or None
@@ -42,14 +40,23 @@ class Correspondences:
     scale: float
 
     @staticmethod
-    def of(board_points: PointSets, image_points: PointSets) -> "Correspondences":
-        """Pair what `calibrate` was given, or say what does not fit together."""
-        m, seen = _stack(image_points, "image_points", (2,))
+    def of(
+        board_points: PointSets,
+        image_points: PointSets,
+        *,
+        flat: bool = True,
+        name: str = "image_points",
+    ) -> "Correspondences":
+        """Pair what `calibrate` was given, or say what does not fit together.
+
+        `flat` asks for Z = 0 on the board; `name` is what messages call the image points.
+        """
+        m, seen = _stack(image_points, name, (2,))
         W, on_board = _stack(board_points, "board_points", (2, 3))
         if len(W) == 1 and len(m) > 1 and on_board is None:
             W = W[0]
         elif len(W) != len(m):
-            raise ShapeError(f"{len(W)} sets of board points but {len(m)} of image points")
+            raise ShapeError(f"{len(W)} sets of board points but {len(m)} of {name}")
         elif on_board is None and np.array_equal(W, np.broadcast_to(W[0], W.shape)):
             W = W[0]
         on, at = _counts(W, on_board, len(m)), _counts(m, seen, len(m))
@@ -59,14 +66,12 @@ class Correspondences:
                 f"view {i} has {on[i]} board points but {at[i]} image points; each corner needs "
                 "its partner in the same row"
             )
-        W = _in_plane(W)
+        W = _in_plane(W) if flat else W
         if W.shape[-2] < 4 or (seen is not None and seen.sum(1).min() < 4):
             raise DegenerateError("every view needs at least 4 points")
         _refuse_lines(m)
         low, high = W.reshape(-1, 3).min(0), W.reshape(-1, 3).max(0)
         centre = (low + high) / 2
-        if not (high - low < _HUGE).all():
-            raise CvnotesError(f"board_points: more than {_HUGE:g} apart; choose another unit")
         scale = float(np.linalg.norm(high - low)) / 2
         if scale <= 1e-12 * float(np.abs(centre).max()):
             raise DegenerateError("all board points coincide")
@@ -145,9 +150,9 @@ def _located(x: Any, name: str) -> Any:
     """Name the view and the corner of the first NaN, which the common guard cannot."""
     try:
         bad = np.argwhere(~np.isfinite(x))
-    except (TypeError, ValueError):
+    except Exception:  # no array of numbers: the common guard says so
         return x
-    if len(bad):
+    if bad.size:
         place = bad[0][:-1].tolist()
         words = f"view {place[0]}, corner {place[1]}" if len(place) == 2 else f"corner {place[-1]}"
         raise CvnotesError(f"{name}: {words} contains NaN or infinite values; leave it out")
@@ -163,7 +168,8 @@ def _refuse_lines(m: Array) -> None:
     """Refuse views (n_views, n, 2) in which all points lie on one line."""
     u, v = (x - x.mean(1, keepdims=True) for x in (m[..., 0], m[..., 1]))
     uu, vv, uv = (u * u).sum(1), (v * v).sum(1), (u * v).sum(1)
-    flat = uu * vv - uv * uv <= 1e-14 * (uu + vv) ** 2
+    size = np.maximum(uu + vv, 1e-300)  # dividing by it first keeps all products finite
+    flat = uu / size * (vv / size) - (uv / size) ** 2 <= 1e-14
     if flat.any():
         raise DegenerateError(
             f"view {int(np.argmax(flat))}: all its image points coincide or lie on one line"

@@ -9,11 +9,12 @@ and squares smaller than a pixel are then all alike, and nothing is sampled.
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, DegenerateError, image_size, numbers, points
+from cvnotes.errors import Array, CvnotesError, DegenerateError, image_size, number, points
 
 Indices = npt.NDArray[np.intp]
 
 _REACH = 5.0  # standard deviations beyond which a Gaussian counts as zero (6e-7 of it is lost)
+_FARTHEST = 1e6  # pixels; a piece of edge is cut up pixel by pixel
 _DEPOSITS = 100_000  # made at a time when blurring, so that they stay in the cache
 
 
@@ -107,12 +108,14 @@ def polygon_means(outline: npt.ArrayLike, size: tuple[int, int], *, blur: float 
     outline, size = points(outline, "outline", 2), image_size(size)
     if outline.ndim != 2 or len(outline) < 3:
         raise DegenerateError(f"outline: a polygon has at least 3 corners, got {outline.shape}")
+    if np.abs(outline).max() > _FARTHEST:
+        raise CvnotesError(f"outline: cut off what is more than {_FARTHEST:g} pixels away")
     following = np.roll(outline, -1, axis=0)
     area = float((following[:, 0] - outline[:, 0]) @ (following[:, 1] + outline[:, 1])) / 2
     if area == 0:
         raise DegenerateError("outline: the polygon has no area; its corners lie on one line")
     jump = np.full((len(outline), 1), np.sign(area))
-    covered = edge_means(outline, following, jump, size, blur=float(numbers(blur, "blur")))[0]
+    covered = edge_means(outline, following, jump, size, blur=number(blur, "blur"))[0]
     return np.asarray(covered.clip(0.0, 1.0, out=covered))
 
 

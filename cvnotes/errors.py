@@ -12,6 +12,9 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
+# Cubes of larger numbers overflow; a matrix, which stands for all its multiples, may be squared.
+LARGEST, LARGEST_ENTRY = 1e100, 1e150
+
 
 class CvnotesError(ValueError):
     """Base of all errors about values."""
@@ -45,24 +48,17 @@ class CalibrationWarning(UserWarning):
     """A result is usable but doubtful; the same sentence is in ``result.warnings``."""
 
 
-def numbers(x: Any, name: str) -> Array:
-    """Copy `x` to a float64 array of finite numbers, or say what is wrong with it.
-
-    Raises
-    ------
-    InputTypeError
-        `x` is None, text, complex, ragged, masked or otherwise no array of real numbers.
-    CvnotesError
-        `x` holds NaN or infinite values.
+def real(x: Any, name: str) -> npt.NDArray[Any]:
+    """Give `x` as an array of real numbers of any kind, uncopied, NaN and infinity among them.
 
     Examples
     --------
-    >>> numbers([1, 2], "m")
-    array([1., 2.])
+    >>> real([3, np.nan], "m")
+    array([ 3., nan])
     """
     if x is None:
         raise InputTypeError(f"{name}: expected numbers, got None (a missing return?)")
-    if isinstance(x, np.ma.MaskedArray):
+    if _is_masked(x):
         raise InputTypeError(f"{name}: masked arrays are not read; pass the unmasked rows only")
     try:
         given = np.asarray(x)
@@ -72,10 +68,53 @@ def numbers(x: Any, name: str) -> Array:
         raise InputTypeError(
             f"{name}: expected a numeric array, got {type(x).__name__} of {given.dtype}"
         )
-    array = np.array(given, dtype=np.float64)
-    if not np.isfinite(array).all():
+    return given
+
+
+def numbers(x: Any, name: str, *, largest: float = LARGEST) -> Array:
+    """Copy `x` to a float64 array of finite numbers, or say what is wrong with it.
+
+    Raises
+    ------
+    InputTypeError
+        `x` is None, text, complex, ragged, masked or otherwise no array of real numbers.
+    CvnotesError
+        `x` holds NaN, infinite values, or values beyond `largest`, which products would turn into
+        infinite ones.
+
+    Examples
+    --------
+    >>> numbers([1, 2], "m")
+    array([1., 2.])
+    """
+    given = real(x, name)
+    with np.errstate(over="ignore"):  # of long doubles
+        array = np.array(given, dtype=np.float64)
+    peak = float(np.abs(array).max(initial=0.0))
+    if not np.isfinite(peak):
         raise CvnotesError(f"{name} contains NaN or infinite values; drop those rows first")
+    if peak > largest:
+        raise CvnotesError(
+            f"{name} contains values of {peak:.2g}, but beyond {largest:g} products overflow; "
+            "choose another unit (or were they never assigned?)"
+        )
     return array
+
+
+def number(x: Any, name: str, *, at_least: float = -np.inf) -> float:
+    """Guard one finite number, not smaller than `at_least`.
+
+    Examples
+    --------
+    >>> number(2, "blur", at_least=0)
+    2.0
+    """
+    value = numbers(x, name)
+    if value.ndim:
+        raise ShapeError(f"{name}: expected one number, got an array of shape {value.shape}")
+    if value < at_least:
+        raise CvnotesError(f"{name} = {value:g} but must be at least {at_least:g}")
+    return float(value)
 
 
 def points(x: Any, name: str, *dims: int) -> Array:
@@ -110,6 +149,21 @@ def paired(a: Array, b: Array, names: tuple[str, str], *, at_least: int) -> None
         raise DegenerateError(f"need at least {at_least} points, got {a.shape[-2]}")
 
 
+def equally_many(names: str, *stacks: tuple[int, ...]) -> tuple[int, ...]:
+    """Give the leading axes that several arrays share, or refuse axes that do not fit.
+
+    Examples
+    --------
+    >>> equally_many("R and T", (5, 1), (7,))
+    (5, 7)
+    """
+    try:
+        return np.broadcast_shapes(*stacks)
+    except ValueError:
+        shapes = ", ".join(str(stack) for stack in stacks)
+        raise ShapeError(f"{names} are not equally many: {shapes}") from None
+
+
 def matrix(x: Any, name: str, *shape: int) -> Array:
     """Guard one matrix, or a stack of them, of the given shape.
 
@@ -118,7 +172,7 @@ def matrix(x: Any, name: str, *shape: int) -> Array:
     >>> matrix([[1, 0], [0, 1]], "H", 2, 2).shape
     (2, 2)
     """
-    array = numbers(x, name)
+    array = numbers(x, name, largest=LARGEST_ENTRY)
     if array.shape[-len(shape) :] != shape:
         raise ShapeError(f"{name}: expected shape {shape}, got {array.shape}")
     return array
@@ -161,8 +215,11 @@ def intrinsic_matrix(x: Any, name: str = "A") -> Array:
     if A[2, 2] != 1:
         raise CvnotesError(f"{name}[2, 2] = {A[2, 2]:g} but must be 1; divide {name} by it")
     for i, letter in ((0, "alpha_u"), (1, "alpha_v")):
-        if A[i, i] <= 0:
-            raise CvnotesError(f"{name}[{i}, {i}] = {letter} = {A[i, i]:g} but must be positive")
+        if A[i, i] < 1 / LARGEST:
+            small = " and not so small" if A[i, i] > 0 else ""
+            raise CvnotesError(
+                f"{name}[{i}, {i}] = {letter} = {A[i, i]:g} but must be positive{small}"
+            )
     return A
 
 
@@ -184,3 +241,10 @@ def image_size(x: Any, name: str = "size") -> tuple[int, int]:
     if not exact or min(whole) < 1:
         raise CvnotesError(wanted)
     return whole
+
+
+def _is_masked(x: Any) -> bool:
+    """Tell whether x is a masked array, or a list of such, whose masks NumPy would drop."""
+    if isinstance(x, list | tuple):
+        return any(isinstance(item, np.ma.MaskedArray) for item in x)
+    return isinstance(x, np.ma.MaskedArray)

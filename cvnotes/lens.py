@@ -20,6 +20,9 @@ from cvnotes.radial import Inverse, fold_radius
 from cvnotes.radial import horner as horner
 from cvnotes.radial import radial_factor as radial_factor
 
+# Far from all lenses powers of r overflow: to infinity, or to NaN, and in silence.
+_beyond_all_numbers = np.errstate(over="ignore", invalid="ignore")
+
 # Points undistorted at a time: the dozen temporaries then stay in the cache.
 _CHUNK = 12288
 
@@ -60,7 +63,7 @@ class Lens:
 
     def __post_init__(self) -> None:
         for name, length in (("k", None), ("p", 2), ("centre", 2)):
-            values = numbers(getattr(self, name), name)
+            values = numbers(getattr(self, name), name, largest=np.inf)
             if values.ndim != 1 or length not in (None, values.size):
                 wanted = "a sequence k1, k2, …" if length is None else "two numbers"
                 raise ShapeError(f"{name}: expected {wanted}, got shape {values.shape}")
@@ -73,6 +76,7 @@ class Lens:
         """Tell whether this lens moves nothing."""
         return not any(self.k) and not any(self.p)
 
+    @_beyond_all_numbers
     def L(self, r: npt.ArrayLike) -> Array:
         """Give the radial factor L(r) = 1 + k1 r² + k2 r⁴ + …, same shape as r.
 
@@ -152,6 +156,7 @@ class Lens:
         """
         return self._undistort(points(xy_lens, "xy_lens", 2), lambda xy: (xy[:, 0], xy[:, 1]))
 
+    @_beyond_all_numbers
     def jacobian(self, xy: npt.ArrayLike) -> Array:
         """Differentiate the distorted point by the ideal one: (..., 2, 2).
 
@@ -177,6 +182,7 @@ class Lens:
             return xy
         return np.stack(self._distort_columns(xy[..., 0], xy[..., 1]), axis=-1)
 
+    @_beyond_all_numbers
     def _distort_columns(self, x: Array, y: Array) -> tuple[Array, Array]:
         if self.is_ideal:
             return x, y

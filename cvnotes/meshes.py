@@ -181,16 +181,21 @@ def quads(
     >>> quads([[0, 0, 5], [2, 0, 5], [2, 1, 5], [0, 1, 5]], [[0, 1, 2, 3]], (0.5, 0.5, 0.5))
     Scene(4 vertices, 2 triangles)
     """
-    vertices, loops = numbers(vertices, "vertices"), np.asarray(loops)
+    vertices, colours = points(vertices, "vertices", 3), points(colours, "colours", 3)
+    loops = numbers(loops, "loops").astype(np.int64)
     if loops.ndim != 2 or loops.shape[1] != 4:
         raise ShapeError(f"loops: expected four corners a face (q, 4), got {loops.shape}")
+    if vertices.ndim != 2 or not ((loops >= 0) & (loops < len(vertices))).all():
+        raise ShapeError(f"loops: some corners are none of the vertices {vertices.shape}")
+    if colours.shape not in ((3,), (2, 3), (len(loops), 1, 3), (len(loops), 2, 3)):
+        raise ShapeError(f"colours: expected (3,), (2, 3) or (q, 2, 3), got {colours.shape}")
     a, b, d = (vertices[loops[:, i]] for i in (0, 1, 3))
     across, down = (np.linalg.norm(p - a, axis=-1) / tile for p in (b, d))
     zero = np.zeros(len(loops))
     u, v = np.stack([zero, across, across, zero], -1), np.stack([zero, zero, down, down], -1)
     halves = np.array([[0, 1, 2], [0, 2, 3]])
     uv = np.stack([u, v], -1)[:, halves].reshape(-1, 3, 2)
-    each = np.broadcast_to(numbers(colours, "colours"), (len(loops), 2, 3))
+    each = np.broadcast_to(colours, (len(loops), 2, 3))
     return Scene(
         vertices,
         loops[:, halves].reshape(-1, 3),

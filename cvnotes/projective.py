@@ -8,7 +8,15 @@ it has a direction but no place, so dropping back to Euclidean coordinates gives
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, ShapeError, numbers
+from cvnotes.errors import (
+    LARGEST_ENTRY,
+    Array,
+    CvnotesError,
+    ShapeError,
+    equally_many,
+    number,
+    numbers,
+)
 
 
 def to_homogeneous(x: npt.ArrayLike) -> Array:
@@ -45,7 +53,10 @@ def from_homogeneous(x_h: npt.ArrayLike) -> Array:
     array([[ 2.,  3.],
            [nan, nan]])
     """
-    return drop(numbers(x_h, "x_h"))
+    x_h = numbers(x_h, "x_h", largest=np.inf)
+    if x_h.ndim == 0 or x_h.shape[-1] < 2:
+        raise ShapeError(f"x_h: expected homogeneous coordinates (..., d + 1), got {x_h.shape}")
+    return drop(x_h)
 
 
 def apply(H: npt.ArrayLike, x: npt.ArrayLike) -> Array:
@@ -60,12 +71,13 @@ def apply(H: npt.ArrayLike, x: npt.ArrayLike) -> Array:
     array([[6., 2.],
            [8., 4.]])
     """
-    H, x = numbers(H, "H"), numbers(x, "x")
-    if H.ndim < 2 or x.ndim < 1 or H.shape[-1] != x.shape[-1] + 1:
+    H, x = numbers(H, "H", largest=LARGEST_ENTRY), numbers(x, "x")
+    if H.ndim < 2 or H.shape[-2] < 2 or x.ndim < 1 or H.shape[-1] != x.shape[-1] + 1:
         raise ShapeError(
-            f"H {H.shape} cannot map points {x.shape}: it needs one column more than a point "
+            f"H {H.shape} cannot map points x {x.shape}: it needs one column more than a point "
             "has coordinates"
         )
+    equally_many("the maps H and the sets of points x", H.shape[:-2], x.shape[:-2])
     x_h = _append(x, 1.0)
     return drop(x_h @ H.mT if x.ndim > 1 else (H @ x_h))
 
@@ -81,7 +93,8 @@ def same_up_to_scale(a: npt.ArrayLike, b: npt.ArrayLike, atol: float = 1e-9) -> 
     >>> same_up_to_scale([1, 2, 3], [-2, -4, -6])
     True
     """
-    a, b = numbers(a, "a"), numbers(b, "b")
+    a, b = (numbers(x, name, largest=np.inf) for x, name in ((a, "a"), (b, "b")))
+    atol = number(atol, "atol", at_least=0)
     if a.shape != b.shape:
         raise ShapeError(f"a has shape {a.shape} but b has {b.shape}")
     if not a.any() or not b.any():
@@ -99,6 +112,8 @@ def drop(x_h: Array) -> Array:
 
 
 def _append(x: Array, last: float) -> Array:
-    if x.ndim == 0:
-        raise ShapeError("expected coordinates (..., d), got a single number")
+    if x.ndim == 0 or x.shape[-1] == 0:
+        raise ShapeError(
+            f"expected coordinates (..., d), got {'a single number' if x.ndim == 0 else 'none'}"
+        )
     return np.concatenate([x, np.full((*x.shape[:-1], 1), last)], axis=-1)

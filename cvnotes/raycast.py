@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, ShapeError, numbers
+from cvnotes.errors import Array, CvnotesError, ShapeError, numbers, real
 
 Indices = npt.NDArray[np.int32]
 
@@ -84,7 +84,9 @@ def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike, *, engine: str = "auto
     >>> hits.triangle
     array([[ 0, -1]], dtype=int32)
     """
-    corners, xy = numbers(corners, "corners"), np.asarray(xy, dtype=np.float64)
+    corners = numbers(corners, "corners")
+    with np.errstate(over="ignore"):  # of long doubles
+        xy = np.asarray(real(xy, "xy"), dtype=np.float64)
     if corners.ndim != 3 or corners.shape[1:] != (3, 3):
         raise ShapeError(f"corners: expected triangles (m, 3, 3), got {corners.shape}")
     if xy.ndim != 3 or xy.shape[-1] != 2:
@@ -125,6 +127,7 @@ def _own_search(n: Array, det: Array, xy: Array) -> Indices:
     return first
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of rays along the picture's plane, nearly
 def _may_touch(n: Array, low: Array, high: Array) -> npt.NDArray[np.bool_]:
     """Tell which triangles (rows) may be seen within the rectangles low..high (columns).
 

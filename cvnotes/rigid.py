@@ -4,6 +4,8 @@ G = [R T; 0 1] carries world points into the camera's frame: M = R W + T. T is w
 origin is seen from the camera; the camera itself stands at C = −Rᵀ T.
 """
 
+from functools import reduce
+
 import numpy as np
 import numpy.typing as npt
 
@@ -12,7 +14,9 @@ from cvnotes.errors import (
     CvnotesError,
     DegenerateError,
     ShapeError,
+    equally_many,
     matrix,
+    number,
     points,
     rigid_motion,
     rotation,
@@ -28,10 +32,7 @@ def pose(R: npt.ArrayLike, T: npt.ArrayLike) -> Array:
     array([1., 2., 3.])
     """
     R, T = rotation(R), points(T, "T", 3)
-    try:
-        stack = np.broadcast_shapes(R.shape[:-2], T.shape[:-1])
-    except ValueError:
-        raise ShapeError(f"R {R.shape} and T {T.shape} are not equally many") from None
+    stack = equally_many("R and T", R.shape[:-2], T.shape[:-1])
     G = np.zeros((*stack, 4, 4))
     G[..., :3, :3], G[..., :3, 3], G[..., 3, 3] = R, T, 1.0
     return G
@@ -60,6 +61,7 @@ def move(G: npt.ArrayLike, W: npt.ArrayLike) -> Array:
     array([1., 1., 5.])
     """
     G, W = rigid_motion(G), points(W, "W", 3)
+    equally_many("the motions G and the sets of points W", G.shape[:-2], W.shape[:-2])
     if W.ndim == 1:
         return G[..., :3, :3] @ W + G[..., :3, 3]
     return W @ G[..., :3, :3].mT + G[..., None, :3, 3]
@@ -118,7 +120,8 @@ def rotation_from_angles(x: float, y: float, z: float) -> Array:
     >>> np.allclose(rotation_from_angles(0, 0, 0.3), rotation_from_vector([0, 0, 0.3]))
     True
     """
-    Rx, Ry, Rz = exp_so3(np.diag(points([x, y, z], "angles", 3)))
+    angles = [number(angle, name) for angle, name in ((x, "x"), (y, "y"), (z, "z"))]
+    Rx, Ry, Rz = exp_so3(np.diag(angles))
     return np.asarray(Rz @ Ry @ Rx)
 
 
@@ -208,10 +211,9 @@ def chain(*motions: npt.ArrayLike) -> Array:
     """
     if not motions:
         raise CvnotesError("chain needs at least one rigid motion")
-    G = rigid_motion(motions[0])
-    for other in motions[1:]:
-        G = G @ rigid_motion(other)
-    return G
+    guarded = [rigid_motion(G, f"motions[{i}]") for i, G in enumerate(motions)]
+    equally_many("the motions", *(G.shape[:-2] for G in guarded))
+    return reduce(np.matmul, guarded)
 
 
 def board_from_board(cam_from_to: npt.ArrayLike, cam_from_from: npt.ArrayLike) -> Array:
@@ -226,7 +228,11 @@ def board_from_board(cam_from_to: npt.ArrayLike, cam_from_from: npt.ArrayLike) -
     >>> move(board_from_board(near, far), [0, 0, 0])  # the far board's origin, in the near's WRF
     array([ 10.,   0., 200.])
     """
-    return chain(inverse(cam_from_to), cam_from_from)
+    to, start = (
+        rigid_motion(cam_from_to, "cam_from_to"),
+        rigid_motion(cam_from_from, "cam_from_from"),
+    )
+    return chain(inverse(to), start)
 
 
 def cam_from_cam(to_from_world: npt.ArrayLike, from_from_world: npt.ArrayLike) -> Array:
@@ -240,7 +246,8 @@ def cam_from_cam(to_from_world: npt.ArrayLike, from_from_world: npt.ArrayLike) -
     >>> cam_from_cam(right, left)[:3, 3]  # what the left camera calls its origin
     array([-100.,    0.,    0.])
     """
-    return chain(to_from_world, inverse(from_from_world))
+    to = rigid_motion(to_from_world, "to_from_world")
+    return chain(to, inverse(rigid_motion(from_from_world, "from_from_world")))
 
 
 def skew_matrix(v: npt.ArrayLike) -> Array:

@@ -10,9 +10,11 @@ import io
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, numbers
+from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, number, numbers
 
 Image = npt.NDArray[np.uint8]
+
+_LONGEST = 10_000  # pixels that the picture may move; its memory grows with the square
 
 
 def expose(
@@ -87,6 +89,8 @@ def develop(
     path = numbers(motion, "motion")
     if path.shape != (2,):
         raise ShapeError(f"motion: expected (du, dv) in pixels, got shape {path.shape}")
+    if np.abs(path).max() > _LONGEST:
+        raise CvnotesError(f"motion: expected at most {_LONGEST} pixels, got {motion!r}")
     if rng is not None and not isinstance(rng, np.random.Generator):
         raise InputTypeError(f"rng: expected a numpy.random.Generator, got {type(rng).__name__}")
     if noise and rng is None:
@@ -156,19 +160,3 @@ def compress(image: Image, quality: int) -> Image:
     file = io.BytesIO()
     PillowImage.fromarray(image).save(file, "JPEG", quality=int(level))
     return np.asarray(PillowImage.open(file))
-
-
-def number(x: npt.ArrayLike, name: str, at_least: float = -np.inf) -> float:
-    """Guard one finite number, not smaller than `at_least`.
-
-    Examples
-    --------
-    >>> number(2, "blur", at_least=0)
-    2.0
-    """
-    value = numbers(x, name)
-    if value.ndim:
-        raise ShapeError(f"{name}: expected one number, got an array of shape {value.shape}")
-    if value < at_least:
-        raise CvnotesError(f"{name} = {value:g} but must be at least {at_least:g}")
-    return float(value)

@@ -7,7 +7,7 @@ board's frame lies, and a ruler, because printers like to scale.
 import os
 from dataclasses import dataclass
 
-from cvnotes.errors import CvnotesError, image_size, numbers
+from cvnotes.errors import CvnotesError, image_size, number
 from cvnotes.page import Area, Line, Page, Shape, Text, rectangle
 
 PAPERS = {"A4": (210.0, 297.0), "Letter": (215.9, 279.4), "A3": (297.0, 420.0)}  # upright, mm
@@ -111,7 +111,7 @@ def lay_out(corners: tuple[int, int], square: float, paper: str = "A4") -> Sheet
     cvnotes.errors.CvnotesError: a board of 10 by 7 squares of 40 mm does not fit on A4; \
 squares of up to 25 mm do
     """
-    corners, square = image_size(corners, "corners"), float(numbers(square, "square"))
+    corners, square = image_size(corners, "corners"), number(square, "square")
     size, quiet = _oriented(corners, square, paper)
     columns, rows = corners
     title = f"Chessboard, {columns} by {rows} inner corners, squares of {square:g} mm"

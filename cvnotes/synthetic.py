@@ -11,9 +11,17 @@ import numpy.typing as npt
 from cvnotes.camera import Camera
 from cvnotes.coverage import edge_means, polygon_means
 from cvnotes.edges import edges_in_picture
-from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, image_size, numbers
+from cvnotes.errors import (
+    Array,
+    CvnotesError,
+    InputTypeError,
+    ShapeError,
+    image_size,
+    number,
+    numbers,
+)
 from cvnotes.faces import Target
-from cvnotes.sensor import Image, develop, gaussian_blur, number
+from cvnotes.sensor import Image, develop, gaussian_blur
 
 _OCCLUDER = 90.0  # grey level of what stands in the way
 

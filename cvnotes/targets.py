@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cvnotes.errors import Array, CvnotesError, image_size, numbers
+from cvnotes.errors import Array, CvnotesError, image_size, number
 from cvnotes.rigid import move, pose
 from cvnotes.sheet import Sheet, lay_out
 
@@ -54,7 +54,7 @@ class Chessboard:
 
     def __post_init__(self) -> None:
         columns, rows = image_size(self.corners, "corners")
-        square = float(numbers(self.square, "square"))
+        square = number(self.square, "square")
         if min(columns, rows) < 2:
             raise CvnotesError(f"corners: a board needs at least 2×2 inner corners, got {self}")
         if square <= 0:
@@ -153,7 +153,7 @@ class TwoPlanes:
 
     def __post_init__(self) -> None:
         _guard_board_and_margin(self)
-        angle = float(numbers(self.angle, "angle"))
+        angle = number(self.angle, "angle")
         if not 0 < angle <= np.pi:
             raise CvnotesError(
                 f"angle: the planes meet at an angle in (0, π] radians, got {angle:g}"
@@ -233,7 +233,7 @@ class ThreePlanes:
 def _guard_board_and_margin(target: "TwoPlanes | ThreePlanes") -> None:
     if not isinstance(target.board, Chessboard):
         raise CvnotesError(f"board: expected a Chessboard, got {type(target.board).__name__}")
-    margin = float(numbers(target.margin, "margin"))
+    margin = number(target.margin, "margin")
     if margin < 0:
         raise CvnotesError(f"margin: {margin:g} squares would let the boards overlap at the edge")
     object.__setattr__(target, "margin", margin)

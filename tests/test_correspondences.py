@@ -126,7 +126,7 @@ def nan_at(x, *place):
         (W, M[:, :, :1], ShapeError, r"expected shape \(\.\.\., 2\), got \(3, 54, 1\)"),
         (W.T, M, ShapeError, "points are rows here, so transpose it"),
         (W, M[None], ShapeError, r"expected \(views, n, 2\), got \(1, 3, 54, 2\)"),
-        ([W] * 2, M, ShapeError, "2 sets of board points but 3 of image points"),
+        ([W] * 2, M, ShapeError, "2 sets of board points but 3 of image_points"),
         (W[:50], M, ShapeError, "view 0 has 50 board points but 54 image points"),
         (W, OTHER_M, ShapeError, "view 1 has 54 board points but 40 image points"),
         (OTHER_W[::-1], OTHER_M, ShapeError, "view 0 has 50 board points but 54 image points"),
@@ -142,7 +142,7 @@ def nan_at(x, *place):
         (W + [0, 0, 1], M, CvnotesError, "Z must be 0 on a flat board"),
         (W + np.c_[0 * W[:, :2], 0.01 * W[:, 0]], M, CvnotesError, "not flat see resection"),
         (np.full((54, 2), 5.0), M, DegenerateError, "all board points coincide"),
-        (W * 1e200, M, CvnotesError, "more than 1e[+]100 apart; choose another unit"),
+        (W * 1e200, M, CvnotesError, "beyond 1e[+]100 products overflow; choose another unit"),
     ],
 )
 def test_what_does_not_fit_together_is_refused_by_name(board, corners, error, words):

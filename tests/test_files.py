@@ -34,7 +34,10 @@ from cvnotes.files import (
     write_whole,
 )
 from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.resection import calibrate_one_view
+from cvnotes.result import Calibration
+from cvnotes.rigid import look_at, pose, rotation_from_vector
+from cvnotes.targets import TwoPlanes
 
 posix = pytest.mark.skipif(os.name == "nt", reason="pipes, devices and limits of POSIX")
 SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
@@ -150,6 +153,19 @@ def test_a_calibration_comes_back_bit_for_bit(tmp_path, made):
     for (W, m), board, image in zip(corners, made.board_points, made.image_points, strict=True):
         assert np.array_equal(m, image)
         assert np.allclose(W, board, rtol=0, atol=1e-12)  # kept centred and scaled
+
+
+def test_a_calibration_from_one_picture_of_a_solid_target_comes_back_too(tmp_path):
+    target = TwoPlanes()
+    seen = Camera(CAMERA.A, look_at([500, 0, -700], [100, 60, -80])).project(target.points)
+    seen += np.random.default_rng(5).normal(0, 0.1, seen.shape)
+    made = calibrate_one_view(target.points, seen, (640, 480))
+    made.save(tmp_path / "calibration.json")
+    back = Calibration.load(tmp_path / "calibration.json")
+    assert np.array_equal(back.A, made.A)
+    assert np.array_equal(back.image_points, [seen])
+    assert np.allclose(back.board_points, [target.points], rtol=0, atol=1e-12)
+    assert np.allclose(back.residuals, made.residuals, rtol=0, atol=1e-9)
 
 
 def test_the_camera_of_a_calibration_can_be_read_alone(tmp_path):

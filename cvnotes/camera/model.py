@@ -88,6 +88,7 @@ class Camera:
         """Distance of world points (..., 3) from the plane z = 0 of the CRF, along its axis."""
         return np.asarray(points(W, "W", 3) @ self.R[2] + self.T[2])
 
+    @np.errstate(over="ignore", invalid="ignore")  # of points too far away to have an image
     def project(self, W: npt.ArrayLike) -> Array:
         """Image world points: the four steps of the image formation flow.
 

@@ -1,9 +1,11 @@
 """The sensor: from the plane z = 1 to pixels, and back (notes 2b.2)."""
 
+from math import pi, sin, tan
+
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, intrinsic_matrix, numbers, points
+from cvnotes.errors import Array, CvnotesError, intrinsic_matrix, number, points
 
 
 def intrinsics(alpha_u: float, alpha_v: float, u0: float, v0: float, skew: float = 0.0) -> Array:
@@ -16,11 +18,13 @@ def intrinsics(alpha_u: float, alpha_v: float, u0: float, v0: float, skew: float
            [  0., 805., 240.],
            [  0.,   0.,   1.]])
     """
+    entries = {"alpha_u": alpha_u, "alpha_v": alpha_v, "u0": u0, "v0": v0, "skew": skew}
+    alpha_u, alpha_v, u0, v0, skew = (number(x, name) for name, x in entries.items())
     return intrinsic_matrix([[alpha_u, skew, u0], [0, alpha_v, v0], [0, 0, 1]])
 
 
 def intrinsics_from_pixel_size(
-    f: float, du: float, dv: float, u0: float, v0: float, *, angle: float = np.pi / 2
+    f: float, du: float, dv: float, u0: float, v0: float, *, angle: float = pi / 2
 ) -> Array:
     """Build the intrinsic matrix A (3, 3) from what the makers of lens and sensor print.
 
@@ -58,14 +62,15 @@ def intrinsics_from_pixel_size(
            [  0.,   0.,   1.]])
     """
     given = {"f": f, "du": du, "dv": dv, "angle": angle}
-    for name, value in given.items():
-        if not numbers(value, name) > 0:
-            raise CvnotesError(f"{name}: expected a positive number, got {value}")
-    if angle >= np.pi:
+    f, du, dv, angle = (number(value, name) for name, value in given.items())
+    for name, value in zip(given, (f, du, dv, angle), strict=True):
+        if value <= 0:
+            raise CvnotesError(f"{name}: expected a positive number, got {value:g}")
+    if angle >= pi:
         raise CvnotesError(f"angle: expected radians between 0 and π, got {angle:g} (degrees?)")
     alpha_u, alpha_v = f / du, f / dv
-    skew = 0.0 if angle == np.pi / 2 else -alpha_u / np.tan(angle)
-    return intrinsics(alpha_u, alpha_v / np.sin(angle), u0, v0, skew)
+    skew = 0.0 if angle == pi / 2 else -alpha_u / tan(angle)
+    return intrinsics(alpha_u, alpha_v / sin(angle), u0, v0, skew)
 
 
 def px_from_xy(A: npt.ArrayLike, xy: npt.ArrayLike) -> Array:

@@ -10,7 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import Camera
-from cvnotes.errors import Array, CvnotesError, FileError, intrinsic_matrix, matrix, rotation
+from cvnotes.errors import (
+    Array,
+    CvnotesError,
+    FileError,
+    intrinsic_matrix,
+    matrix,
+    numbers,
+    rotation,
+)
 from cvnotes.files.entry import Entry
 from cvnotes.lens import Lens
 
@@ -147,10 +155,10 @@ def lens_from_opencv(coefficients: npt.ArrayLike) -> Lens:
     >>> lens_from_opencv([-0.25, 0.1, 0.001, 0.0])
     Lens(k=(-0.25, 0.1), p=(0.001, 0.0), centre=(0.0, 0.0))
     """
-    d = np.asarray(coefficients, dtype=np.float64)
-    if d.shape not in ((4,), (5,), (8,), (12,), (14,)) or d[5:].any():
+    d = numbers(coefficients, "coefficients").reshape(-1)
+    if d.size not in (4, 5, 8, 12, 14) or d[5:].any():
         raise CvnotesError(
-            f"distortion: expected 4 or 5 coefficients (k1, k2, p1, p2, k3), got {d.size}"
+            f"coefficients: expected 4 or 5 coefficients (k1, k2, p1, p2, k3), got {d.size}"
             + (", of which some of the rational model are not zero" if d[5:].any() else "")
         )
     k = d[[0, 1, 4]] if d[4:5].any() else d[:2]

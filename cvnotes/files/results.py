@@ -183,6 +183,6 @@ def _corners(entry: Entry, views: list[Entry]) -> Correspondences | None:
         image_points.append(corners.array(None, 2))
         board_points.append((one_board or view["board"]).array(len(image_points[-1]), 3))
     try:
-        return Correspondences.of(board_points, image_points)
+        return Correspondences.of(board_points, image_points, flat=False)
     except CvnotesError as error:
         raise entry.error(str(error)) from error

@@ -3,9 +3,10 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, DegenerateError, ShapeError, matrix
+from cvnotes.errors import Array, DegenerateError, ShapeError, equally_many, matrix, number
 from cvnotes.incidence.vectors import refuse_zero, vectors
 
+_ROUNDING = 1e-15  # what is left of a determinant of unit vectors that should be 0
 LINE_AT_INFINITY = np.array([0.0, 0.0, 1.0])
 LINE_AT_INFINITY.setflags(write=False)
 
@@ -59,6 +60,8 @@ def lies_on(x: npt.ArrayLike, line: npt.ArrayLike, atol: float = 1e-12) -> npt.N
     array([ True, False])
     """
     x, line = vectors(x, "x", "point"), vectors(line, "line", "line or plane")
+    equally_many("x and line", x.shape[:-1], line.shape[:-1])
+    atol = number(atol, "atol", at_least=0)
     if x.shape[-1] != line.shape[-1]:
         raise ShapeError(f"x {x.shape} and line {line.shape} are not of one space")
     cosine = (x * line).sum(-1) / (np.linalg.norm(x, axis=-1) * np.linalg.norm(line, axis=-1))
@@ -86,6 +89,7 @@ def map_lines(H: npt.ArrayLike, lines: npt.ArrayLike) -> Array:
     """
     lines = vectors(lines, "lines", "line or plane")
     H = matrix(H, "H", lines.shape[-1], lines.shape[-1])
+    equally_many("H and lines", H.shape[:-2], lines.shape[:-1])
     try:
         return np.asarray(np.linalg.solve(H.mT, lines[..., None])[..., 0]) + 0.0
     except np.linalg.LinAlgError:
@@ -112,7 +116,10 @@ def cross_ratio(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.Arr
     >>> round(cross_ratio([0, 0, 1], [1, 0, 1], [2, 0, 1], [3, 0, 1]), 12)  # 2·2 / (1·3)
     1.333333333333
     """
-    x = np.stack([vectors(x, name, "point") for x, name in zip((a, b, c, d), "abcd", strict=True)])
+    four = [vectors(x, name, "point") for x, name in zip((a, b, c, d), "abcd", strict=True)]
+    if any(x.shape != four[0].shape or x.ndim != 1 for x in four):
+        raise ShapeError(f"expected four points of one space, got {[x.shape for x in four]}")
+    x = np.stack(four)
     x = x / np.linalg.norm(x, axis=-1, keepdims=True)
     _, s, Vt = np.linalg.svd(x)
     if s[2] > 1e-9 * s[0]:
@@ -120,10 +127,11 @@ def cross_ratio(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.Arr
     t = x @ Vt[:2].T  # homogeneous coordinates on the line
 
     def det(i: int, j: int) -> float:
-        return float(t[i, 0] * t[j, 1] - t[i, 1] * t[j, 0])
+        value = float(t[i, 0] * t[j, 1] - t[i, 1] * t[j, 0])
+        return value if abs(value) > _ROUNDING else 0.0
 
     above, below = det(0, 2) * det(1, 3), det(1, 2) * det(0, 3)
-    if abs(above) <= 1e-14 and abs(below) <= 1e-14:
+    if above == 0 and below == 0:
         raise DegenerateError("three of the four points coincide: their cross-ratio is 0/0")
     return above / below if below != 0 else float(np.inf)
 
@@ -132,6 +140,7 @@ def _cross(
     a: npt.ArrayLike, b: npt.ArrayLike, names: tuple[str, str], what: str, why: str
 ) -> Array:
     a, b = (vectors(x, name, what, 3) for x, name in zip((a, b), names, strict=True))
+    equally_many(" and ".join(names), a.shape[:-1], b.shape[:-1])
     product = np.cross(a, b)
     refuse_zero(product, np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1), why)
     return np.asarray(product) + 0.0

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, matrix
+from cvnotes.errors import Array, CvnotesError, equally_many, matrix
 from cvnotes.incidence.vectors import refuse_zero, vectors
 
 PLANE_AT_INFINITY = np.array([0.0, 0.0, 0.0, 1.0])
@@ -94,7 +94,7 @@ def dual(L: npt.ArrayLike) -> Array:
     >>> bool((dual(dual(L)) == L).all())
     True
     """
-    L = matrix(L, "L", 4, 4)
+    L = _line(L)
     D = np.zeros_like(L)
     for (i, j), (k, m) in (((0, 1), (2, 3)), ((0, 2), (3, 1)), ((0, 3), (1, 2))):
         D[..., i, j], D[..., k, m] = L[..., k, m], L[..., i, j]
@@ -115,7 +115,7 @@ def meet_plane(L: npt.ArrayLike, p: npt.ArrayLike) -> Array:
     >>> meet_plane(L, [0, 0, 1, -9])
     array([1., 2., 9., 1.])
     """
-    return _apply(matrix(L, "L", 4, 4), p, "plane", "the line lies in the plane")
+    return _apply(_line(L), p, ("p", "plane"), "the line lies in the plane")
 
 
 def join_point(L: npt.ArrayLike, x: npt.ArrayLike) -> Array:
@@ -132,13 +132,16 @@ def join_point(L: npt.ArrayLike, x: npt.ArrayLike) -> Array:
     >>> join_point(z_axis, [3, 0, 0, 1])  # y = 0
     array([0., 3., 0., 0.])
     """
-    return _apply(dual(L), x, "point", "the point lies on the line: many planes contain both")
+    return _apply(
+        dual(L), x, ("x", "point"), "the point lies on the line: many planes contain both"
+    )
 
 
 def _plucker(
     a: npt.ArrayLike, b: npt.ArrayLike, names: tuple[str, str], what: str, why: str
 ) -> Array:
     a, b = (vectors(x, name, what, 4) for x, name in zip((a, b), names, strict=True))
+    equally_many(" and ".join(names), a.shape[:-1], b.shape[:-1])
     L = a[..., :, None] * b[..., None, :]
     L = L - L.mT
     size = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
@@ -149,15 +152,29 @@ def _plucker(
 def _wedge(three: tuple[npt.ArrayLike, ...], names: tuple[str, ...], what: str, why: str) -> Array:
     """Give the vector (..., 4) that is orthogonal to three: the cross product of P³."""
     given = [vectors(x, name, what, 4) for x, name in zip(three, names, strict=True)]
+    equally_many(", ".join(names), *(x.shape[:-1] for x in given))
     M = np.stack(np.broadcast_arrays(*given), axis=-2)
-    minors = [(-1) ** i * np.linalg.det(np.delete(M, i, axis=-1)) for i in range(4)]
+    with np.errstate(divide="ignore"):  # factors so small that their logarithm is infinite
+        minors = [(-1) ** i * np.linalg.det(np.delete(M, i, axis=-1)) for i in range(4)]
     product = np.stack(minors, axis=-1)
     refuse_zero(product, np.prod(np.linalg.norm(M, axis=-1), axis=-1), why)
     return product + 0.0
 
 
-def _apply(L: Array, x: npt.ArrayLike, what: str, why: str) -> Array:
-    x = vectors(x, what, what, 4)
+def _line(L: npt.ArrayLike) -> Array:
+    """Guard lines of P³ (..., 4, 4): L = −Lᵀ, and not zero."""
+    L = matrix(L, "L", 4, 4)
+    largest = np.abs(L).max(axis=(-2, -1), initial=0.0, keepdims=True)
+    if (largest == 0).any() or (np.abs(L + L.mT) > 1e-9 * largest).any():
+        raise CvnotesError(
+            "L: a line of P³ is a matrix that is not zero, with L = −Lᵀ; line_through gives it"
+        )
+    return L
+
+
+def _apply(L: Array, x: npt.ArrayLike, names: tuple[str, str], why: str) -> Array:
+    x = vectors(x, *names, 4)
+    equally_many("lines L and " + names[0], L.shape[:-2], x.shape[:-1])
     product = (L @ x[..., None])[..., 0]
     refuse_zero(product, np.linalg.norm(L, axis=(-2, -1)) * np.linalg.norm(x, axis=-1), why)
     return np.asarray(product) + 0.0

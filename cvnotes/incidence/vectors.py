@@ -10,7 +10,7 @@ _ROUNDING = 2e-15  # relative size of what is left of a product that should be 0
 
 def vectors(x: npt.ArrayLike, name: str, what: str, d: int | None = None) -> Array:
     """Guard homogeneous vectors; factors that would make products overflow are taken out."""
-    x = numbers(x, name)
+    x = numbers(x, name, largest=np.inf)
     wanted = "(..., 3) or (..., 4)" if d is None else f"(..., {d})"
     if x.ndim == 0 or x.shape[-1] not in ((3, 4) if d is None else (d,)):
         raise ShapeError(f"{name}: expected homogeneous coordinates {wanted}, got {x.shape}")

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, numbers
+from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, numbers, real
 
 Image = npt.NDArray[np.uint8 | np.uint16 | np.float32 | np.float64]
 
@@ -64,9 +64,8 @@ def positions(x: Any, name: str) -> Array:
     >>> positions([3, np.nan], "m")
     array([ 3., nan])
     """
-    array = np.asarray(x)
-    if array.dtype.kind not in "iuf":
-        raise InputTypeError(f"{name}: expected numbers, got {type(x).__name__} of {array.dtype}")
+    array = real(x, name)
     if array.ndim == 0 or array.shape[-1] != 2:
         raise ShapeError(f"{name}: expected positions (u, v) of shape (..., 2), got {array.shape}")
-    return array.astype(np.float64, copy=False)
+    with np.errstate(over="ignore"):  # of long doubles
+        return array.astype(np.float64, copy=False)

@@ -170,8 +170,8 @@ def _pairs(
     board_points: PointSets, left_points: PointSets, right_points: PointSets
 ) -> tuple[Correspondences, Correspondences]:
     """Pair corners with the board in both pictures, or say what does not fit together."""
-    left = Correspondences.of(board_points, left_points)
-    right = Correspondences.of(board_points, right_points)
+    left = Correspondences.of(board_points, left_points, name="left_points")
+    right = Correspondences.of(board_points, right_points, name="right_points")
     if len(left) != len(right):
         raise ShapeError(
             f"left_points has {len(left)} views but right_points has {len(right)}; each left "

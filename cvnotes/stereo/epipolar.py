@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import Camera
-from cvnotes.errors import Array, DegenerateError, matrix, points
+from cvnotes.errors import Array, DegenerateError, ShapeError, matrix, points
 from cvnotes.projection import is_camera
 from cvnotes.projective import to_homogeneous
 from cvnotes.rigid import chain, inverse, skew_matrix
@@ -125,8 +125,11 @@ def epipolar_lines(F: npt.ArrayLike, m: npt.ArrayLike) -> Array:
     >>> epipolar_lines(F, [320, 100])
     array([   0.,    1., -100.])
     """
+    F = matrix(F, "F", 3, 3)
+    if F.ndim != 2:
+        raise ShapeError(f"F: expected one (3, 3) matrix, got {F.shape}")
     with np.errstate(over="ignore", invalid="ignore"):  # what overflows has no line either
-        line = to_homogeneous(points(m, "m", 2)) @ matrix(F, "F", 3, 3).T
+        line = to_homogeneous(points(m, "m", 2)) @ F.T
     length = np.hypot(line[..., :1], line[..., 1:2])
     has_line = (length > 0) & np.isfinite(length)
     scaled = np.divide(line, length, out=np.full_like(line, np.nan), where=has_line)

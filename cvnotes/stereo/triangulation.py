@@ -111,7 +111,8 @@ def disparity_to_depth(disparity: npt.ArrayLike, left: Camera, right: Camera) ->
     d = numbers(disparity, "disparity")
     axis, b = rectified_baseline(left, right)
     scaled = left.A[axis, axis] * b
-    depth = np.divide(scaled, d, out=np.full_like(d, np.inf), where=d != 0)
+    with np.errstate(over="ignore"):
+        depth = np.divide(scaled, d, out=np.full_like(d, np.inf), where=d != 0)
     return np.asarray(np.where(depth > 0, depth, np.nan))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, numbers, points
+from cvnotes.errors import Array, CvnotesError, number, points
 from cvnotes.interpolate import Image
 from cvnotes.subpixel.patches import grey_picture, patch_gradients
 
@@ -82,7 +82,7 @@ def whole(x: float, name: str) -> int:
     >>> whole(5, "window")
     5
     """
-    value = float(numbers(x, name))
+    value = number(x, name)
     if value < 1 or value != int(value):
         raise CvnotesError(f"{name}: expected a positive whole number, got {x!r}")
     return int(value)

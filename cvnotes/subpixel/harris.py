@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, ShapeError, numbers
+from cvnotes.errors import Array, CvnotesError, ShapeError, number, numbers
 from cvnotes.subpixel.patches import grey_picture
 
 
@@ -46,7 +46,7 @@ def harris(image: npt.ArrayLike, *, sigma: float = 1.5, k: float = 0.04) -> Arra
     sigma = _positive(sigma, "sigma")
     g_v, g_u = (_differences(grey, axis) for axis in (0, 1))
     S_uu, S_uv, S_vv = (gaussian_filter(g, sigma) for g in (g_u * g_u, g_u * g_v, g_v * g_v))
-    return np.asarray(S_uu * S_vv - S_uv**2 - float(numbers(k, "k")) * (S_uu + S_vv) ** 2)
+    return np.asarray(S_uu * S_vv - S_uv**2 - number(k, "k") * (S_uu + S_vv) ** 2)
 
 
 def local_maxima(
@@ -103,7 +103,7 @@ def _differences(grey: Array, axis: int) -> Array:
 
 
 def _positive(x: float, name: str) -> float:
-    value = float(numbers(x, name))
+    value = number(x, name)
     if value <= 0:
         raise CvnotesError(f"{name} must be positive, got {value:g}")
     return value

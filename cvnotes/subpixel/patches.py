@@ -10,6 +10,8 @@ from cvnotes.interpolate import Image, checked_image
 
 Mask = npt.NDArray[np.bool_]
 
+_BRIGHTEST = 1e9  # fourth powers of grey levels fit into single precision
+
 
 def grey_picture(x: Any, name: str = "image") -> Image:
     """Give a picture's grey levels (height, width); an alpha channel is dropped.
@@ -29,6 +31,8 @@ def grey_picture(x: Any, name: str = "image") -> Image:
         image = red if image.shape[2] == 1 else _luma(red, image[..., 1], image[..., 2])
     if image.dtype.kind == "f" and not np.isfinite(image).all():
         raise CvnotesError(f"{name} contains NaN or infinite grey levels; give them a number")
+    if image.dtype.kind == "f" and np.abs(image).max() > _BRIGHTEST:
+        raise CvnotesError(f"{name}: no picture has grey levels beyond {_BRIGHTEST:g}")
     return image
 
 
@@ -58,7 +62,8 @@ def patches(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Mas
     height, width = image.shape
     step = np.arange(-half, half + 1)
     du, dv = np.meshgrid(step, step)
-    centre = np.rint(m).astype(np.intp)
+    far = max(height, width) + half + 1.0  # how far outside does not matter
+    centre = np.rint(np.clip(m, -far, far + max(height, width))).astype(np.intp)
     u, v = centre[:, :1] + du.ravel(), centre[:, 1:] + dv.ravel()
     inside = (u >= 0) & (u < width) & (v >= 0) & (v < height)
     grey = image[v.clip(0, height - 1), u.clip(0, width - 1)]

@@ -93,7 +93,9 @@ def horizon(camera: Camera, normal: npt.ArrayLike) -> Array:
     n = points(normal, "normal", 3)
     if n.ndim != 1 or not n.any():
         raise DegenerateError("normal: expected one direction (3,) that is not zero")
-    return _unit_line(np.asarray(np.linalg.solve(camera.A.T, camera.R @ _unit(n))))
+    return _unit_line(
+        np.asarray(np.linalg.solve(camera.A.T, camera.R @ _unit(n / np.abs(n).max())))
+    )
 
 
 def horizon_from_vanishing_points(v_h: npt.ArrayLike) -> Array:

@@ -148,9 +148,11 @@ def rotation_from_vanishing_points(
     if v.shape not in ((2, 3), (3, 3)):
         raise ShapeError(f"v_h: expected shape (2, 3) or (3, 3), got {v.shape}")
     guess = np.eye(3) if near is None else rotation(near, "near")
-    r = np.linalg.solve(intrinsic_matrix(A), v.T).T
-    if not r.any(axis=1).all():
+    if guess.ndim != 2:
+        raise ShapeError(f"near: expected one rotation (3, 3), got {guess.shape}")
+    if not v.any(axis=1).all():
         raise DegenerateError("v_h: the zero vector is not a vanishing point")
+    r = np.linalg.solve(intrinsic_matrix(A), (v / np.abs(v).max(axis=1, keepdims=True)).T).T
     r = r / np.linalg.norm(r, axis=1, keepdims=True)
     if len(r) == 2:
         r = np.stack([*r, np.cross(*r)])
@@ -172,5 +174,8 @@ def normal_from_horizon(A: npt.ArrayLike, line: npt.ArrayLike) -> Array:
     >>> normal_from_horizon(intrinsics(800, 800, 320, 240), [0, 1, -240])
     array([0., 1., 0.])
     """
-    n = intrinsic_matrix(A).T @ matrix(line, "line", 3)
+    line = matrix(line, "line", 3)
+    if line.ndim != 1 or not line.any():
+        raise ShapeError(f"line: expected one line (3,) that is not zero, got shape {line.shape}")
+    n = intrinsic_matrix(A).T @ (line / np.abs(line).max())
     return np.asarray(n / np.linalg.norm(n)) + 0.0

@@ -53,7 +53,7 @@ def undistortion_map(
     new_A = camera.A if new_A is None else intrinsic_matrix(new_A, "new_A")
     if R is None and _is_identity(camera, new_A):
         return PixelMap(lambda m_h: m_h[:2])
-    to_real = np.eye(3) if R is None else rotation(R).T
+    to_real = np.eye(3) if R is None else _one_rotation(R).T
     ray = to_real @ np.linalg.inv(new_A)
 
     def columns(m_h: Array) -> Array:
@@ -155,6 +155,13 @@ def undistort_image(
     mapping = undistortion_map(camera, new_A)
     size = camera.size if size is None else size
     return backward_warp(image, mapping, size=size, method=method, border=border, fill=fill)
+
+
+def _one_rotation(R: npt.ArrayLike) -> Array:
+    R = rotation(R)
+    if R.ndim != 2:
+        raise ShapeError(f"R: expected one rotation (3, 3), got {R.shape}")
+    return R
 
 
 def _is_identity(camera: Camera, new_A: Array) -> bool:

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, DegenerateError, ShapeError, matrix, numbers, points
+from cvnotes.errors import Array, CvnotesError, DegenerateError, ShapeError, matrix, number, points
 from cvnotes.warp.pixel_map import PixelMap
 
 
@@ -58,7 +58,8 @@ def rotation_map(angle: float, centre: npt.ArrayLike = (0, 0)) -> PixelMap:
     >>> rotation_map(np.pi / 2, centre=(10, 10))([20, 10]).round(9)
     array([10., 20.])
     """
-    c, s = np.cos(numbers(angle, "angle")), np.sin(numbers(angle, "angle"))
+    angle = number(angle, "angle")
+    c, s = np.cos(angle), np.sin(angle)
     return _about(np.array([[c, -s], [s, c]]), centre)
 
 
@@ -73,9 +74,10 @@ def zoom_map(factor: float, centre: npt.ArrayLike = (-0.5, -0.5)) -> PixelMap:
     >>> zoom_map(2)([0, 0])  # the middle of the 2 × 2 pixels that pixel (0, 0) turns into
     array([0.5, 0.5])
     """
-    if not numbers(factor, "factor") > 0:
+    factor = number(factor, "factor")
+    if factor <= 0:
         raise CvnotesError(f"factor: expected a positive number, got {factor:g}")
-    return _about(float(factor) * np.eye(2), centre)
+    return _about(factor * np.eye(2), centre)
 
 
 def plane_map(H: npt.ArrayLike, corner: npt.ArrayLike, pixel: float) -> PixelMap:
@@ -95,7 +97,8 @@ def plane_map(H: npt.ArrayLike, corner: npt.ArrayLike, pixel: float) -> PixelMap
     >>> plane_map(np.eye(3), corner=(100, 50), pixel=2)([0, 0])  # its centre is half a pixel in
     array([101.,  51.])
     """
-    if not numbers(pixel, "pixel") > 0:
+    pixel = number(pixel, "pixel")
+    if pixel <= 0:
         raise CvnotesError(f"pixel: expected a positive side, got {pixel:g}")
     X, Y = _one_point(corner, "corner") + 0.5 * pixel
     return homography_map(matrix(H, "H", 3, 3) @ [[pixel, 0, X], [0, pixel, Y], [0, 0, 1]])

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import CvnotesError, ShapeError, points
+from cvnotes.errors import CvnotesError, ShapeError, number, points
 from cvnotes.interpolate import Border, Image, Method, Sampler, checked_fill, checked_image
 from cvnotes.warp.maps import plane_map
 from cvnotes.warp.pixel_map import Mapping, target_size, tiles
@@ -184,8 +184,10 @@ def rectify_plane(
     (120, 180)
     """
     (X0, Y0), (X1, Y1) = _region(region)
+    pixel = number(pixel, "pixel")
     mapping = plane_map(H, (X0, Y0), pixel)
-    size = (round((X1 - X0) / pixel), round((Y1 - Y0) / pixel))
+    width, height = (round(min(side / pixel, 1e9)) for side in (X1 - X0, Y1 - Y0))
+    size = (width, height)
     return backward_warp(image, mapping, size=size, **how)
 
 
