@@ -14,7 +14,10 @@ from cvnotes.rigid import pose, rotation_from_vector
 ABOUT_Y = np.array([[0.8, 0.0, -0.6], [0.0, 1.0, 0.0], [0.6, 0.0, 0.8]])
 ABOUT_X = np.array([[1.0, 0.0, 0.0], [0.0, 0.6, -0.8], [0.0, 0.8, 0.6]])
 
+# A camera with tidy numbers, turned by ABOUT_Y, and what may be ten units in front of it.
 TIDY_A = np.array([[500.0, 0.0, 300.0], [0.0, 600.0, 200.0], [0.0, 0.0, 1.0]])
+TIDY_T = np.array([1.0, 2.0, 10.0])
+TIDY_POINT = np.array([[5.0, 1.0, 0.0]])
 # A square of 10 mm and where it is seen.
 SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
 SQUARE_SEEN = np.array([[100.0, 120.0], [300.0, 100.0], [280.0, 260.0], [120.0, 240.0]])

@@ -124,6 +124,7 @@ def _wrong(
     elif not why:
         why = f"Look at what does not hold; {hint_at(exercise)}"
     shown = exercise.answer == "function"
+    compared = shown and not outcome.changed
     came = any(outcome.value is not None for _, outcome in tried)
     return Report(
         exercise.name,
@@ -133,8 +134,8 @@ def _wrong(
         holds=holding,
         fails=sentences[0] if sentences and came else "",
         counterexample=dict(zip(exercise.arguments, case.args, strict=True)) if shown else {},
-        yours=outcome.value if shown else None,
-        wanted=_scaled(exercise, case.right, outcome) if shown else None,
+        yours=outcome.value if compared else None,
+        wanted=_scaled(exercise, case.right, outcome) if compared else None,
         remarks=() if mistake else remarks(exercise, outcome, case),
         printed=outcome.printed,
     )

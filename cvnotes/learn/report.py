@@ -86,7 +86,7 @@ class Report:
         return (
             f"<div><strong>{escape(self.exercise)}: {mark}{self.verdict}.</strong> "
             f"{escape(self.message)}"
-            + _list(items)
+            + _list(items, style="list-style:none;padding-left:1em")
             + (f"<p>{_ON_THIS}</p><pre>{escape(example)}</pre>" if example else "")
             + _list(self.remarks)
             + (f"<p>Your function printed:</p><pre>{escape(printed)}</pre>" if printed else "")
@@ -189,5 +189,7 @@ class Source:
         return f"<div><strong>{escape(self.title)}</strong><pre>{escape(self.code)}</pre></div>"
 
 
-def _list(items: Any) -> str:
-    return "<ul>" + "".join(f"<li>{escape(x)}</li>" for x in items) + "</ul>" if items else ""
+def _list(items: Any, style: str = "") -> str:
+    """Write items as a list; those with a mark of their own need no bullet."""
+    rows = "".join(f"<li>{escape(x)}</li>" for x in items)
+    return f'<ul style="{style}">{rows}</ul>' if items else ""

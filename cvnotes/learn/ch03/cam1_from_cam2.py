@@ -3,10 +3,7 @@
 import numpy as np
 
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    ABOUT_Y,
-    some_pose_matrix,
-)
+from cvnotes.learn.cameras import ABOUT_Y, some_pose_matrix
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
 from cvnotes.rigid import chain, inverse, pose
 

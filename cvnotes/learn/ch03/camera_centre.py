@@ -7,10 +7,7 @@ import numpy as np
 
 from cvnotes.camera import Camera
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    ABOUT_Y,
-    some_pose,
-)
+from cvnotes.learn.cameras import ABOUT_Y, some_pose
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
 from cvnotes.rigid import pose
 

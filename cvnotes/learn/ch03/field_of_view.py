@@ -4,9 +4,7 @@ import numpy as np
 
 from cvnotes.camera import Camera
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    some_intrinsics,
-)
+from cvnotes.learn.cameras import some_intrinsics
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 
 

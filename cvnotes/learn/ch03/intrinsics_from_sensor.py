@@ -7,9 +7,7 @@ import numpy as np
 
 from cvnotes.camera import intrinsics
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    rounded,
-)
+from cvnotes.learn.cameras import rounded
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 
 

@@ -6,11 +6,7 @@
 import numpy as np
 
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    ABOUT_Y,
-    rounded,
-    some_rotation,
-)
+from cvnotes.learn.cameras import ABOUT_Y, rounded, some_rotation
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.rigid import nearest_rotation
 
@@ -95,7 +91,7 @@ NEAREST = Exercise(
             "Gram and Schmidt",
             "That is a rotation, by making one column after the other perpendicular. But it "
             "favours the first column: it is not the nearest.",
-            lambda M: _gram_schmidt(M),
+            _gram_schmidt,
         ),
     ),
     reference=nearest_rotation,

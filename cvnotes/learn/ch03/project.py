@@ -9,6 +9,9 @@ from cvnotes.camera import Camera
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import (
     ABOUT_Y,
+    TIDY_A,
+    TIDY_POINT,
+    TIDY_T,
     points_in_front,
     some_intrinsics,
     some_pose,
@@ -23,13 +26,7 @@ def project(A: Array, R: Array, T: Array, W: Array) -> Array:
 
 
 def _cameras(rng: Rng) -> list[Case]:
-    by_hand = (
-        np.array([[500.0, 0, 300], [0, 600, 200], [0, 0, 1]]),
-        ABOUT_Y,
-        np.array([1.0, 2.0, 10.0]),
-        np.array([[5.0, 1.0, 0.0]]),
-    )
-    cases = [Case(by_hand)]
+    cases = [Case((TIDY_A, ABOUT_Y, TIDY_T, TIDY_POINT))]
     for n in (4, 6):
         R, T = some_pose(rng)
         cases.append(Case((some_intrinsics(rng, skew=True), R, T, points_in_front(rng, R, T, n))))

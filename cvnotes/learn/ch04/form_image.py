@@ -5,10 +5,13 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera, intrinsics
+from cvnotes.camera import Camera
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import (
     ABOUT_Y,
+    TIDY_A,
+    TIDY_POINT,
+    TIDY_T,
     lens_factor,
     points_in_front,
     some_intrinsics,
@@ -26,14 +29,7 @@ def form_image(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array:
 
 
 def _photographs(rng: Rng) -> list[Case]:
-    by_hand = (
-        intrinsics(500.0, 600.0, 300.0, 200.0),
-        ABOUT_Y,
-        np.array([1.0, 2.0, 10.0]),
-        np.array([-0.2, 0.1]),
-        np.array([[5.0, 1.0, 0.0]]),
-    )
-    cases = [Case(by_hand)]
+    cases = [Case((TIDY_A, ABOUT_Y, TIDY_T, np.array([-0.2, 0.1]), TIDY_POINT))]
     for n in (4, 6):
         R, T = some_pose(rng)
         W = points_in_front(rng, R, T, n)

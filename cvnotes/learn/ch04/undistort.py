@@ -6,11 +6,7 @@
 import numpy as np
 
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    lens_factor,
-    rounded,
-    some_lens,
-)
+from cvnotes.learn.cameras import lens_factor, rounded, some_lens
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.lens import Lens
 

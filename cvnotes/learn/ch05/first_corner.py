@@ -3,6 +3,7 @@
 from cvnotes.errors import Array
 from cvnotes.learn.equality import within
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.learn.misreading import misreadings
 from cvnotes.learn.pictures import turned_board
 
 
@@ -56,16 +57,7 @@ FIRST = Exercise(
             "squares meet.",
             lambda: _corner(-1, -1),
         ),
-        Misconception(
-            "v before u",
-            "You gave row before column: pixels are (u, v).",
-            lambda: first_corner()[::-1],
-        ),
-        Misconception(
-            "v counted from below",
-            "v counts from the top of the picture downwards.",
-            lambda: first_corner() * [1, -1] + [0, 239],
-        ),
+        *misreadings(first_corner, (320, 240)),
     ),
     reference=first_corner,
     same=within(4.0),

@@ -4,9 +4,7 @@ import numpy as np
 
 from cvnotes.errors import Array
 from cvnotes.homography import design_matrix
-from cvnotes.learn.cameras import (
-    rounded,
-)
+from cvnotes.learn.cameras import rounded
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import to_homogeneous
 
@@ -97,7 +95,7 @@ DESIGN = Exercise(
             "denominator left out",
             "Your equations say u = h1·W̃', as for an affine map; the pixel is "
             "h1·W̃' divided by h3·W̃'.",
-            lambda src, dst: _affine_rows(src, dst),
+            _affine_rows,
         ),
         Misconception(
             "one row for each pair",

@@ -6,13 +6,8 @@ import numpy as np
 
 from cvnotes.errors import Array
 from cvnotes.homography import design_matrix, dlt, geometric_error, normaliser
-from cvnotes.learn.cameras import (
-    SQUARE,
-    SQUARE_SEEN,
-    affine_fit,
-    board_grid,
-    some_homography,
-)
+from cvnotes.learn.cameras import SQUARE, SQUARE_SEEN, affine_fit, board_grid, some_homography
+from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
 from cvnotes.learn.equality import up_to_scale, up_to_signs
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply
@@ -94,16 +89,8 @@ DLT = Exercise(
         Property("With noise the errors stay as small as the noise.", _fits_noise, about="noisy"),
     ),
     misconceptions=(
-        Misconception(
-            "src and dst exchanged",
-            "Your H maps dst to src: the picture to the board. Did you exchange src and dst?",
-            lambda src, dst: dlt(dst, src),
-        ),
-        Misconception(
-            "transposed",
-            "Your H is the transpose of the right one: h holds the rows of H one after the other.",
-            lambda src, dst: dlt(src, dst).T,
-        ),
+        EXCHANGED,
+        TRANSPOSED,
         Misconception(
             "a column of Vt",
             "You took the last column of Vt. np.linalg.svd gives Vᵀ: its rows are the singular "
@@ -135,11 +122,7 @@ DLT = Exercise(
             "those of dst brought back on the way out (N2⁻¹).",
             lambda src, dst: _undone_wrongly(src, dst, order=False),
         ),
-        Misconception(
-            "u and v exchanged",
-            "Your H gives (v, u): the first row of H belongs to u.",
-            lambda src, dst: dlt(src, dst[:, ::-1]),
-        ),
+        V_BEFORE_U,
         Misconception(
             "x and y exchanged",
             "Your H expects (y, x): its first column belongs to x.",

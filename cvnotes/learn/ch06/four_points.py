@@ -12,6 +12,7 @@ from cvnotes.learn.cameras import (
     rounded,
     some_homography,
 )
+from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
 from cvnotes.learn.equality import up_to_scale
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply, drop, to_homogeneous
@@ -81,27 +82,15 @@ FOUR = Exercise(
             "With h9 = 1 the ninth column goes to the other side with a minus: Ã h̃ = −A9.",
             lambda src, dst: _with_h9(src, dst, sign=1.0),
         ),
-        Misconception(
-            "transposed",
-            "Your H is the transpose of the right one: h holds the rows of H.",
-            lambda src, dst: dlt(src, dst).T,
-        ),
-        Misconception(
-            "src and dst exchanged",
-            "Your H maps dst to src.",
-            lambda src, dst: dlt(dst, src),
-        ),
+        TRANSPOSED,
+        EXCHANGED,
         Misconception(
             "three points only",
             "That is the affine map of the first three points; the fourth says how far it is from "
             "one.",
             lambda src, dst: affine_fit(src[:3], dst[:3]),
         ),
-        Misconception(
-            "u and v exchanged",
-            "Your H gives (v, u): the first row of H belongs to u.",
-            lambda src, dst: dlt(src, dst[:, ::-1]),
-        ),
+        V_BEFORE_U,
     ),
     reference=dlt,
     same=up_to_scale,

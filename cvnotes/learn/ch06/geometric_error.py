@@ -4,12 +4,7 @@ import numpy as np
 
 from cvnotes.errors import Array
 from cvnotes.homography import geometric_error
-from cvnotes.learn.cameras import (
-    board_grid,
-    rounded,
-    some_factors,
-    some_homography,
-)
+from cvnotes.learn.cameras import board_grid, rounded, some_factors, some_homography
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply, drop, to_homogeneous
 

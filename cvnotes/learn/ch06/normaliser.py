@@ -4,9 +4,7 @@ import numpy as np
 
 from cvnotes.errors import Array
 from cvnotes.homography import normaliser
-from cvnotes.learn.cameras import (
-    rounded,
-)
+from cvnotes.learn.cameras import rounded
 from cvnotes.learn.equality import up_to_scale
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
 from cvnotes.projective import apply

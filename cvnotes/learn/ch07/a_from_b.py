@@ -4,9 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    some_intrinsics,
-)
+from cvnotes.learn.cameras import some_intrinsics
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.zhang import intrinsics_from_b
 
@@ -120,7 +118,7 @@ A_FROM_B = Exercise(
         Misconception(
             "skew left out",
             "All but the skew is as it should be, and u0 suffers from it: γ = −B12 α² β / s.",
-            lambda b: _without_skew(b),
+            _without_skew,
         ),
     ),
     reference=A_from_b,

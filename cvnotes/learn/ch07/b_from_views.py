@@ -5,13 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    ABOUT_X,
-    ABOUT_Y,
-    plane_image,
-    some_intrinsics,
-    some_views,
-)
+from cvnotes.learn.cameras import ABOUT_X, ABOUT_Y, plane_image, some_intrinsics, some_views
 from cvnotes.learn.equality import Same, up_to_scale, up_to_signs
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.zhang import constraints, solve_b, v_ij

@@ -4,9 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from cvnotes.learn.cameras import (
-    plane_image,
-)
+from cvnotes.learn.cameras import plane_image
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
 from cvnotes.rigid import rotation_from_vector
 from cvnotes.zhang import constraints

@@ -5,10 +5,11 @@
 
 import numpy as np
 
-from cvnotes.camera import intrinsics
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import (
     ABOUT_Y,
+    TIDY_A,
+    TIDY_T,
     plane_image,
     some_factors,
     some_intrinsics,
@@ -20,8 +21,7 @@ from cvnotes.zhang import extrinsics
 
 
 def _posed(rng: Rng) -> list[Case]:
-    A = intrinsics(500.0, 600.0, 300.0, 200.0)
-    cases = [Case((A, plane_image(A, ABOUT_Y, np.array([1.0, 2.0, 10.0]))), truth=None)]
+    cases = [Case((TIDY_A, plane_image(TIDY_A, ABOUT_Y, TIDY_T)))]
     A = some_intrinsics(rng)
     for sign, about in ((1.0, ""), (-1.0, "negative")):
         factor = sign * abs(some_factors(rng, 1)[0])

@@ -3,10 +3,7 @@
 import numpy as np
 
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    rounded,
-    some_lens,
-)
+from cvnotes.learn.cameras import rounded, some_lens
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.zhang import radial_distortion
 
@@ -96,7 +93,7 @@ RADIAL = Exercise(
             "k1 alone first",
             "You fitted k1 without k2, and then k2 to what was left. Both share the same points: "
             "solve for them together.",
-            lambda xy, xy_lens: _one_by_one(xy, xy_lens),
+            _one_by_one,
         ),
         Misconception(
             "r for r²",

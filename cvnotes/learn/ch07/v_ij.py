@@ -3,9 +3,7 @@
 import numpy as np
 
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
-    rounded,
-)
+from cvnotes.learn.cameras import rounded
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.zhang import v_ij as library_v_ij
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.camera import Camera
 from cvnotes.errors import Array
-from cvnotes.learn.cameras import pixel_centres, some_lens
+from cvnotes.learn.cameras import lens_factor, pixel_centres, some_lens
 from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.lens import Lens
 from cvnotes.warp import map_array
@@ -28,8 +28,8 @@ def _moved(A: Array, k: Array, size: tuple[int, int], *, radius: str = "ideal") 
     """Move each pixel away from the piercing point, by L of a radius that may be wrong."""
     m = pixel_centres(size)
     offset = m - (0 if radius == "from pixel 0" else A[:2, 2])
-    r2 = ((offset / (1 if radius == "pixels" else A[[0, 1], [0, 1]])) ** 2).sum(1)[:, None]
-    moved = offset * (1 + k[0] * r2 + k[1] * r2**2)
+    xy = offset / (1 if radius == "pixels" else A[[0, 1], [0, 1]])
+    moved = offset * lens_factor(xy, k)
     out = moved + (0 if radius == "from pixel 0" else A[:2, 2])
     return np.asarray(out.reshape(size[1], size[0], 2))
 

@@ -6,6 +6,7 @@ from cvnotes.camera import Camera
 from cvnotes.errors import Array
 from cvnotes.learn.cameras import (
     board_grid,
+    lens_factor,
     rounded,
     some_intrinsics,
     some_lens,
@@ -37,8 +38,7 @@ def _without_lens(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
 def _lens_on_pixels(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
     ideal = m - _without_lens(A, k, G, W, m)
     offset = ideal - A[:2, 2]
-    r2 = (offset**2).sum(1, keepdims=True)
-    return np.asarray(m - A[:2, 2] - offset * (1 + k[0] * r2 + k[1] * r2**2))
+    return np.asarray(m - A[:2, 2] - offset * lens_factor(offset, k))
 
 
 def _transposed(G: Array) -> Array:
