@@ -6,10 +6,20 @@ that it needs to converge. Both start from the corners, in turns, in one process
 views is several calibrations. Each time is the median, and behind the slash the shortest, of all
 turns: on a machine that others use too, the shortest is the steadier of the two. The difference
 of the RMS says that both ended in the same minimum.
+
+``python -m benchmarks.calibration PYTHON…`` names Pythons in which mrcal or pycolmap (Ceres) is
+installed; without names, this one and the system's are asked. They only refine, from the start
+that our closed form gives, so our refinement alone stands beside them.
 """
 
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import cv2
@@ -18,8 +28,11 @@ import numpy as np
 from benchmarks.turns import all_in_turns
 from cvnotes.calibration import Calibration, calibrate
 from cvnotes.camera import Camera, intrinsics
+from cvnotes.correspondences import Correspondences
 from cvnotes.errors import Array, CalibrationWarning
 from cvnotes.lens import Lens
+from cvnotes.refine import Problem, State, minimise
+from cvnotes.steps import Steps
 from cvnotes.targets import Chessboard
 from cvnotes.views import good_views
 
@@ -27,6 +40,7 @@ BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10), p=(0.001, -0.0005)))
 VIEWS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
 CONVERGED = (cv2.TERM_CRITERIA_COUNT, 8, 0.0)
+PEERS = {"mrcal": "mrcal_refinement.py", "pycolmap": "ceres_refinement.py"}
 
 
 def corners(n: int) -> Array:
@@ -106,6 +120,60 @@ def compare_error_bars(n: int) -> None:
     row(n, timed(n, ways), "")
 
 
+def pythons_with_peers(candidates: list[str]) -> dict[str, str]:
+    """Find for each peer a Python that can import it."""
+    found: dict[str, str] = {}
+    for peer in PEERS:
+        for python in candidates:
+            asked = subprocess.run([python, "-c", f"import {peer}"], capture_output=True)
+            if asked.returncode == 0:
+                found.setdefault(peer, python)
+    return found
+
+
+def start_of(m: Array) -> tuple[Problem, State, dict[str, Any]]:
+    """Give the problem, our closed form's start, and the same start in the peers' terms."""
+    data = Correspondences.of(BOARD.points, m)
+    problem = Problem(data.W, data.m, data.seen, n_radial=2, tangential=True)
+    start = next(Steps(CAMERA.size).starts(problem))
+    A, lens = problem.camera_of(start.shared)
+    G = data.pose_in_given_units(start.R, start.T)
+    frames = [np.append(cv2.Rodrigues(g[:3, :3])[0], g[:3, 3]) for g in G]
+    columns, rows = BOARD.corners
+    return (
+        problem,
+        start,
+        {
+            "m": m.reshape(-1, rows, columns, 2),
+            "W": BOARD.points[:, :2].reshape(rows, columns, 2),
+            "spacing": BOARD.square,
+            "size": np.array(CAMERA.size),
+            "intrinsics": np.array([A[0, 0], A[1, 1], A[0, 2], A[1, 2], *lens.k, *lens.p]),
+            "frames": np.array(frames),
+        },
+    )
+
+
+def compare_refinements(n: int, pythons: dict[str, str]) -> None:
+    """Time the refinement alone, all from the same start."""
+    problem, start, given = start_of(corners(n))
+    repeats = max(5, min(50, 1000 // n))
+    own = all_in_turns({"ours": lambda: minimise(problem, start)}, repeats)["ours"]
+    rms = np.sqrt(minimise(problem, start).cost / problem.n_seen)
+    words = f"{n:6}{_pair(1e3 * np.median(own), 1e3 * own.min())}"
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "start.npz"
+        np.savez(file, repeats=repeats, **given)
+        for peer, python in pythons.items():
+            worker = Path(__file__).parent / "peers" / PEERS[peer]
+            run = subprocess.run([python, worker, file], capture_output=True, text=True, check=True)
+            answer = json.loads(run.stdout)
+            spent = np.array(answer["seconds"])
+            words += f"{_pair(1e3 * np.median(spent), 1e3 * spent.min())}"
+            words += f"{answer['rms'] - rms:+9.0e} px"
+    print(words)
+
+
 def main() -> None:
     warnings.simplefilter("ignore", CalibrationWarning)
     print(f"Calibration from corners [ms], median/shortest (OpenCV {cv2.__version__})")
@@ -118,6 +186,12 @@ def main() -> None:
     print("\nWith the error bars of every parameter and pose, against calibrateCameraExtended [ms]")
     for n in (20, 200):
         compare_error_bars(n)
+    system = shutil.which("python3", path="/usr/bin") or sys.executable
+    pythons = pythons_with_peers(sys.argv[1:] or [sys.executable, system])
+    print("\nThe refinement alone, from the same start [ms], and RMS differences:")
+    print(f"{'views':>6}{'cvnotes':>13}" + "".join(f"{peer:>19}{'':12}" for peer in pythons))
+    for n in VIEWS:
+        compare_refinements(n, pythons)
 
 
 if __name__ == "__main__":
