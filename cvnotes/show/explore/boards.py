@@ -1,5 +1,7 @@
 """Boards, cameras and axes as line drawings: what several explorations show."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from cvnotes.camera import Camera
@@ -22,13 +24,11 @@ def pinhole(camera: Camera) -> Camera:
 
 def draw_board(panel: Panel, camera: Camera, board: Chessboard) -> bool:
     """Draw a board's picture by a camera without distortion; tell if all of it is in front."""
-    squares, border = target_shapes(board)
-    assert isinstance(squares, Faces)
-    assert isinstance(border, Lines)
-    paper = camera.project(border.ends[:, 0])
+    border, squares = _board(board)
+    paper = camera.project(border)
     panel.polygons(paper[None], "#FBFBF8")
     panel.line(paper[[0, 1, 2, 3, 0]], MUTED, 0.8)
-    panel.polygons(camera.project(squares.corners[_dark(squares)]), _INK)
+    panel.polygons(camera.project(squares), _INK)
     return bool(np.isfinite(paper).all())
 
 
@@ -55,6 +55,15 @@ def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:
 def on_sheet(W: Array) -> Array:
     """Project points of the world (..., 3) onto the sheet (..., 2), all parallel."""
     return np.asarray(W @ _VIEW[:2].T)
+
+
+@lru_cache(maxsize=4)
+def _board(board: Chessboard) -> tuple[Array, Array]:
+    """Give the corners of a board's paper (4, 3) and of its dark squares (m, 4, 3)."""
+    squares, border = target_shapes(board)
+    assert isinstance(squares, Faces)
+    assert isinstance(border, Lines)
+    return border.ends[:, 0], squares.corners[_dark(squares)]
 
 
 def _dark(squares: Faces) -> Array:

@@ -1,6 +1,9 @@
 """Explore the homography: four corners that can be nudged, and the picture made upright by them."""
 
+from functools import lru_cache
+
 import numpy as np
+from PIL import Image as Bitmap
 
 from cvnotes.camera import Camera
 from cvnotes.errors import Array
@@ -10,13 +13,13 @@ from cvnotes.projective import drop, to_homogeneous
 from cvnotes.rigid import pose, rotation_from_vector
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
-from cvnotes.show.explore.paper import Paper, Range
+from cvnotes.show.explore.paper import Drawn, Paper, Range
 from cvnotes.show.style import ESTIMATED, WORLD
 from cvnotes.synthetic import render
 from cvnotes.targets import Chessboard
 from cvnotes.warp import rectify_plane
 
-_SIZE = (410, 330)
+_PICTURE, _SIZE = (440, 330), (410, 330)
 _NAMES = ("top left", "top right", "bottom right", "bottom left")
 
 
@@ -37,18 +40,26 @@ def homography_model(camera: Camera, board: Chessboard) -> Model:
         "the perspective removed, by the homography of those four corners."
     )
 
+    @lru_cache(maxsize=2)
+    def shown(sharpness: int) -> Drawn:
+        """Keep the photograph as large as its panel: it is the same for all values."""
+        size = (sharpness * _PICTURE[0], sharpness * _PICTURE[1])
+        return np.asarray(Bitmap.fromarray(photo.astype(np.uint8)).resize(size))
+
     def draw(paper: Paper, values: Values) -> Sight:
-        return _draw(photo, view, board, paper, values)
+        return _draw(photo, shown(paper.sharpness), view, board, paper, values)
 
     return Model("homography", about, settings, draw)
 
 
-def _draw(photo: Image, camera: Camera, board: Chessboard, paper: Paper, values: Values) -> Sight:
+def _draw(
+    photo: Image, shown: Drawn, camera: Camera, board: Chessboard, paper: Paper, values: Values
+) -> Sight:
     W = _outer(board)
     nudge = [[values[f"du{i}"], values[f"dv{i}"]] for i in range(1, 5)]
     m = camera.project(W) + nudge
-    picture = paper.picture_panel((440, 330), camera.size, "the picture, and four corners of it")
-    picture.image(photo.astype(np.uint8))
+    picture = paper.picture_panel(_PICTURE, camera.size, "the picture, and four corners of it")
+    picture.image(shown)
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 1.8)
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):

@@ -20,6 +20,7 @@ Range = tuple[float, float]
 _Stroke = tuple[float, float, float, float]
 
 _TITLE = 22  # px of the page above each panel
+_GAP = 6  # px between panels
 _FARTHEST = 1e12  # px: lines are cut to the panel with all the digits this leaves
 _LARGEST = 1e6  # px: polygons are not cut, and Pillow counts in whole numbers
 _BEYOND = 8  # px by which lines are drawn over the border, where they are cut off
@@ -43,7 +44,8 @@ class Paper:
 
     def join(self, *rows: tuple["Panel", ...]) -> Drawn:
         """Lay panels side by side, and rows below each other: (height, width, 3)."""
-        return np.vstack([np.hstack([panel.finish() for panel in row]) for row in rows])
+        strips = [np.hstack([panel.finish() for panel in row]) for row in rows]
+        return strips[0] if len(strips) == 1 else np.vstack(strips)
 
 
 class Panel:
@@ -96,8 +98,9 @@ class Panel:
                 self._marker(at, MARKERS[meaning], COLOURS[meaning], reach)
 
     def image(self, picture: Drawn, smooth: bool = True) -> None:
-        """Fill the panel with a picture, grey or RGB."""
-        how = Image.Resampling.BILINEAR if smooth else Image.Resampling.NEAREST
+        """Fill the panel with a picture, grey or RGB; whole pixels stay as they are."""
+        fits = self.width % picture.shape[1] == 0 == self.height % picture.shape[0]
+        how = Image.Resampling.NEAREST if fits or not smooth else Image.Resampling.BILINEAR
         resized = Image.fromarray(picture).resize((self.width, self.height), how)
         self._image.paste(resized.convert("RGB"))
 
@@ -131,14 +134,18 @@ class Panel:
 
     def finish(self) -> Drawn:
         """Give the panel with frame and title, at its final size."""
-        s, strip, gap = self.scale, self.scale * _TITLE, self.scale * 6
-        self._draw.rectangle((0, 0, self.width - 1, self.height - 1), outline=MUTED, width=s)
-        sheet = Image.new("RGB", (self.width + gap, self.height + strip + gap), "white")
-        sheet.paste(self._image, (gap // 2, strip))
-        ImageDraw.Draw(sheet).text(
-            (gap // 2 + 2 * s, strip // 2), self.title, "#333333", _font(12 * s), "lm"
+        sharpness = self.scale // 2
+        strip, gap = sharpness * _TITLE, sharpness * _GAP
+        self._draw.rectangle(
+            (0, 0, self.width - 1, self.height - 1), outline=MUTED, width=self.scale
         )
-        return np.asarray(sheet.reduce(2))
+        panel = np.asarray(self._image.reduce(2))
+        height, width = panel.shape[:2]
+        sheet = np.full((height + strip + gap, width + gap, 3), 255, np.uint8)
+        sheet[strip : strip + height, gap // 2 : gap // 2 + width] = panel
+        title = _title(self.title, (width + gap, strip), self.scale)
+        sheet[:strip] = title
+        return sheet
 
     def _limits(self) -> tuple[Array, Array]:
         beyond = _BEYOND * self.scale
@@ -175,6 +182,15 @@ def _font(size: int) -> ImageFont.FreeTypeFont:
     return ImageFont.truetype(Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf"), size)
 
 
+@lru_cache(maxsize=64)
+def _title(words: str, size: tuple[int, int], scale: int) -> Drawn:
+    """Write a panel's title into a strip of (width, height) px."""
+    strip = Image.new("RGB", (2 * size[0], 2 * size[1]), "white")
+    at = (scale * (_GAP // 2 + 2), size[1])
+    ImageDraw.Draw(strip).text(at, words, "#333333", _font(12 * scale), "lm")
+    return np.asarray(strip.reduce(2))
+
+
 def _clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:
     """Cut segments a to b (n, 2) to a rectangle: (m, 2, 2), without what lies outside."""
     d = b - a
@@ -192,17 +208,14 @@ def _clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:
 
 def _dashed(pairs: Array, length: float) -> Array:
     """Cut segments (n, 2, 2) into dashes and keep every other one, along the whole curve."""
-    dashes: list[Array] = []
-    done = 0.0
-    for a, b in pairs:
-        reach = float(np.linalg.norm(b - a))
-        cuts = np.arange(np.floor(done / length), np.ceil((done + reach) / length) + 1)
-        starts = ((cuts[cuts % 2 == 0] * length - done) / reach).clip(0, 1)
-        ends = (((cuts[cuts % 2 == 0] + 1) * length - done) / reach).clip(0, 1)
-        dashes += [
-            np.stack([a + s * (b - a), a + e * (b - a)])
-            for s, e in zip(starts, ends, strict=True)
-            if e > s
-        ]
-        done += reach
-    return np.array(dashes).reshape(-1, 2, 2)
+    way = pairs[:, 1] - pairs[:, 0]
+    reach = np.linalg.norm(way, axis=-1)
+    done = np.cumsum(reach) - reach  # where along the curve each segment begins
+    first = 2 * np.floor(done / length / 2)  # dashes begin at even multiples of their length
+    count = np.ceil((done + reach - first * length) / length / 2).clip(0).astype(int)
+    which = np.repeat(np.arange(len(pairs)), count)
+    nth = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+    start = (first[which] + 2 * nth) * length - done[which]
+    part = (np.stack([start, start + length], -1) / reach[which, None]).clip(0, 1)
+    part, which = part[part[:, 1] > part[:, 0]], which[part[:, 1] > part[:, 0]]
+    return np.asarray(pairs[which, :1] + part[..., None] * way[which, None])
