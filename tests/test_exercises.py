@@ -16,7 +16,7 @@ from cvnotes.errors import CvnotesError
 from cvnotes.learn import exercises
 from cvnotes.learn.asking import ask
 from cvnotes.learn.equality import up_to_scale
-from cvnotes.learn.exercises import EXERCISES, check, hint, progress, solution
+from cvnotes.learn.exercises import EXERCISES, check, hint, notebook_of, progress, solution
 from cvnotes.learn.judge import judge
 from cvnotes.learn.outcome import Outcome, outcome_of
 from cvnotes.learn.recognising import what_it_gives
@@ -63,7 +63,7 @@ def test_there_are_enough_exercises_and_misconceptions():
     assert len(EXERCISES) >= 30
     assert len(_mistakes()) >= max(150, 5 * len(EXERCISES))
     for chapter in range(1, 10):  # a notebook has room for two to six
-        assert 2 <= sum(e.chapter == chapter for e in EXERCISES.values()) <= 6
+        assert 2 <= sum(notebook_of(e) == chapter for e in EXERCISES.values()) <= 6
 
 
 @EACH

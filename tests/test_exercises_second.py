@@ -331,6 +331,9 @@ def my_depth(alpha, b, u_left, u_right):
     return [alpha * b / d if d else float("inf") for d in u_left - u_right]
 
 
+my_how_far = 8_800
+
+
 # Chapter 9
 
 

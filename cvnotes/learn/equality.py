@@ -84,3 +84,20 @@ def within(distance: float) -> Same:
         return answer.shape == right.shape and bool(np.linalg.norm(answer - right) <= distance)
 
     return same
+
+
+def within_part(part: float) -> Same:
+    """Compare quantities that were read off: equal if no farther apart than a part of the size.
+
+    Examples
+    --------
+    >>> within_part(0.05)(np.array(9600.0), np.array(10_000.0), 1e-6)
+    True
+    """
+
+    def same(answer: Array, right: Array, _: float) -> bool:
+        return answer.shape == right.shape and bool(
+            np.linalg.norm(answer - right) <= part * np.linalg.norm(right)
+        )
+
+    return same

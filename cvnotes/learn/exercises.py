@@ -31,6 +31,7 @@ FURTHER = (
     "b_from_views",
     "bilinear",
     "rectifying_rotation",
+    "how_far",
     "which_to_trust",
 )
 # The inputs are the same each time, so that a counterexample stays where it is.
@@ -130,7 +131,7 @@ def progress() -> Words:
     Examples
     --------
     >>> progress().title.split()[2:]
-    ['47', 'exercises', 'solved']
+    ['48', 'exercises', 'solved']
     """
     lines = tuple(_progress_in(n) for n in sorted({*map(notebook_of, EXERCISES.values())}))
     return Words(f"{len(_SESSION.solved)} of {len(EXERCISES)} exercises solved", lines)

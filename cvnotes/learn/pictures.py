@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import Camera, intrinsics
+from cvnotes.errors import Array
 from cvnotes.rigid import look_at, pose, rotation_from_angles
 from cvnotes.targets import Chessboard
 
@@ -53,3 +54,41 @@ def board_picture() -> npt.NDArray[np.uint8]:
     from cvnotes.synthetic import render
 
     return render(*turned_board())
+
+
+def stereo_cameras() -> tuple[Camera, Camera]:
+    """Give the two cameras of `stereo_pictures`, 800 mm apart, with parallel axes.
+
+    Examples
+    --------
+    >>> left, right = stereo_cameras()
+    >>> right.centre - left.centre
+    array([800.,   0.,   0.])
+    """
+    A = intrinsics(640, 640, 319.5, 239.5)
+    left, right = (Camera(A, pose(np.eye(3), [x, 0, -1300])) for x in (300, -500))
+    return left, right
+
+
+def nearest_edge() -> Array:
+    """Give the top (3,) of the nearest upright edge of the tall block in `stereo_pictures`.
+
+    Examples
+    --------
+    >>> nearest_edge().round()
+    array([  977., -3400., 10206.])
+    """
+    from cvnotes.scenes import blocks
+
+    corners = blocks().vertices[:8]
+    nearest = corners[np.isclose(corners[:, 2], corners[:, 2].min())]
+    return np.asarray(nearest[nearest[:, 1].argmin()])
+
+
+def stereo_pictures() -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]]:
+    """Photograph the blocks twice: (480, 640, 3) each, for the exercise ``how_far``."""
+    from cvnotes.rendering import render_scene
+    from cvnotes.scenes import blocks
+
+    left, right = (render_scene(blocks(), camera) for camera in stereo_cameras())
+    return left, right
