@@ -167,25 +167,29 @@ class Problem:
         xy = M[:2] * over_z
         X, Y = xy
 
-        # 3. the lens: d(x', y') by its coefficients, and D = d(x', y')/d(x, y)
-        XX, XY, YY = X * X, X * Y, Y * Y
-        r2 = XX + YY
+        # 3. the lens: d(x', y') by its coefficients, and D = d(x', y')/d(x, y), which is
+        # symmetric: D11, D12, D22
+        products = np.empty((3, *X.shape))
+        np.multiply(xy, X, out=products[:2])
+        np.multiply(Y, Y, out=products[2])
+        r2 = products[0] + products[2]
         power = xy
         for i in range(self.n_radial):
             power = np.multiply(power, r2, out=by_lens[i])
         L, slope = radial_factor(k, r2), horner([2 * i * ki for i, ki in enumerate(k, 1)], r2)
         xy_lens = L * xy
-        D11, D12, D22 = L + slope * XX, slope * XY, L + slope * YY
+        D = slope * products
+        D[::2] += L
         if self.tangential:
             p1, p2 = value["p1"], value["p2"]
             by_p1, by_p2 = by_lens[-2:]
-            by_p1[0] = by_p2[1] = 2 * XY
-            by_p1[1], by_p2[0] = r2 + 2 * YY, r2 + 2 * XX
+            np.multiply(2, products[1:], out=by_p1)
+            np.multiply(2, products[:2], out=by_p2)
+            by_p1[1] += r2
+            by_p2[0] += r2
             xy_lens += p1 * by_p1 + p2 * by_p2
-            along = 2 * (p2 * X + p1 * Y)
-            D11 += along + (4 * p2) * X
-            D12 += (2 * p1) * X + (2 * p2) * Y
-            D22 += along + (4 * p1) * Y
+            D += np.array([6 * p2, 2 * p1, 2 * p2])[:, None, None] * X
+            D += np.array([2 * p1, 2 * p2, 6 * p1])[:, None, None] * Y
 
         # 4. the sensor turns x', y' and all their derivatives into pixels
         J[0, 0], J[1, 1] = xy_lens
@@ -200,14 +204,12 @@ class Problem:
 
         # and the pose: by T, where dT acts on x and y through 1/z, then by ω, where dM = ω × R W
         by_X, by_Y, by_Z = by_T
-        u_over_z, v_over_z = alpha * over_z
-        np.multiply(u_over_z, D11, out=by_X[0])
-        np.multiply(v_over_z, D12, out=by_X[1])
-        np.multiply(u_over_z, D12, out=by_Y[0])
-        np.multiply(v_over_z, D22, out=by_Y[1])
+        alpha_over_z = alpha * over_z
+        np.multiply(alpha_over_z, D[:2], out=by_X)
+        np.multiply(alpha_over_z, D[1:], out=by_Y)
         if self.skew:
-            by_X[0] += skew * over_z * D12
-            by_Y[0] += skew * over_z * D22
+            by_X[0] += skew * over_z * D[1]
+            by_Y[0] += skew * over_z * D[2]
         np.negative(X * by_X + Y * by_Y, out=by_Z)
         np.subtract(RW[1] * by_Z, RW[2] * by_Y, out=by_omega[0])
         np.subtract(RW[2] * by_X, RW[0] * by_Z, out=by_omega[1])
