@@ -15,12 +15,12 @@ from test_exercises_second import solution_of
 from cvnotes.errors import CvnotesError
 from cvnotes.learn import exercises
 from cvnotes.learn.asking import ask
+from cvnotes.learn.copying import as_code
 from cvnotes.learn.equality import up_to_scale
 from cvnotes.learn.exercises import EXERCISES, check, hint, notebook_of, progress, solution
 from cvnotes.learn.judge import judge
 from cvnotes.learn.outcome import Outcome, outcome_of
 from cvnotes.learn.recognising import what_it_gives
-from cvnotes.learn.report import as_code
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -295,6 +295,16 @@ def test_a_right_answer_is_shown_at_the_scale_and_sign_of_the_students():
     assert np.abs(report.yours - report.wanted).max() < 0.02
     assert "Scale and sign are free" in repr(report)
     assert "Scale and sign" not in repr(check("lift", lambda x, k: x * 1.1))
+
+
+def test_a_right_answer_has_a_last_entry_of_1_where_the_students_has():
+    def my_normaliser(x):
+        c, s = x.mean(axis=0), np.sqrt(2) / np.std(x)
+        return np.array([[s, 0, -s * c[0]], [0, s, -s * c[1]], [0, 0, 1]])
+
+    report = check("normaliser", my_normaliser)
+    assert not report.passed
+    assert report.wanted[2].tolist() == [0, 0, 1]
 
 
 def test_rounding_noise_is_not_shown():

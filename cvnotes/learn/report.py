@@ -4,15 +4,12 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
-import numpy as np
-
-# Longer arrays are not printed; `Report.counterexample` holds them.
-_LONGEST = 60
-# Wider ones get a line for each row.
-_WIDEST = 72
+from cvnotes.learn.copying import as_code, readable
 
 RIGHT, OPEN, WRONG = "right", "not solved yet", "not yet right"
-_ON_THIS = "On this input:"
+_ON_THIS, _PRINTED = "On this input:", "Your function printed:"
+# Notebooks leave out the space around paragraphs, some of them.
+_APART = 'style="margin:0.6em 0"'
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,15 +78,13 @@ class Report:
         mark = {RIGHT: "✓ ", WRONG: "✗ "}.get(self.verdict, "")
         items = [f"✓ holds: {sentence}" for sentence in self.holds]
         items += [f"✗ does not hold: {self.fails}"] * bool(self.fails)
-        example = "\n".join(self.example())
-        printed = "\n".join(self.printed_lines())
         return (
             f"<div><strong>{escape(self.exercise)}: {mark}{self.verdict}.</strong> "
             f"{escape(self.message)}"
-            + _list(items, style="list-style:none;padding-left:1em")
-            + (f"<p>{_ON_THIS}</p><pre>{escape(example)}</pre>" if example else "")
+            + _list(items, style="list-style:none;padding-left:1em;margin:0.6em 0")
+            + _block(_ON_THIS, self.example())
             + _list(self.remarks)
-            + (f"<p>Your function printed:</p><pre>{escape(printed)}</pre>" if printed else "")
+            + _block(_PRINTED, self.printed_lines())
             + (f"<p>{escape(self.progress)}</p>" if self.progress else "")
             + "</div>"
         )
@@ -101,64 +96,15 @@ class Report:
             for name, value in self.counterexample.items()
         ]
         if self.yours is not None:
-            lines.append(f"yours = {as_code(_short(self.yours), 'report.yours')}")
+            lines.append(f"yours = {as_code(readable(self.yours), 'report.yours')}")
         if self.wanted is not None:
-            lines.append(f"wanted = {as_code(_short(self.wanted), 'report.wanted')}")
+            lines.append(f"wanted = {as_code(readable(self.wanted), 'report.wanted')}")
         return lines
 
     def printed_lines(self) -> list[str]:
         """Give the first lines that the function printed."""
         lines = self.printed.splitlines()
         return [line[:100] for line in lines[:8]] + ["…"] * (len(lines) > 8)
-
-
-def as_code(value: Any, name: str = "") -> str:
-    """Write a value as code that makes it again; long arrays only by their name.
-
-    Examples
-    --------
-    >>> as_code(np.array([[1.0, np.inf]]))
-    'np.array([[1.0, np.inf]])'
-    >>> print(as_code(np.diag([800.0, 804.0, 1.0]) @ np.full((3, 3), 0.125) + np.eye(3)))
-    np.array([
-        [101.0, 100.0, 100.0],
-        [100.5, 101.5, 100.5],
-        [0.125, 0.125, 1.125],
-    ])
-    """
-    if not isinstance(value, np.ndarray):
-        return repr(value)
-    if value.ndim == 0:
-        return repr(value.item())
-    if value.size == 0:
-        return f"np.empty({value.shape})"
-    if value.size > _LONGEST:
-        return f"{name}  # {value.shape}"
-    numbers = np.vectorize(_literal, otypes=[object])(value)
-    line = f"np.array({_listed(numbers)})"
-    if value.ndim == 1 or len(line) <= _WIDEST:
-        return line
-    if value.ndim == 2:
-        widths = np.vectorize(len)(numbers).max(axis=0)
-        numbers = np.vectorize(str.rjust, otypes=[object])(numbers, widths)
-    return "\n".join(["np.array([", *(f"    {_listed(row)}," for row in numbers), "])"])
-
-
-def _literal(x: float) -> str:
-    text = repr(float(x) + 0.0)
-    return f"np.{text}".replace("np.-", "-np.") if not np.isfinite(x) else text
-
-
-def _listed(x: Any) -> str:
-    """Write nested lists of what is written already."""
-    return x if isinstance(x, str) else f"[{', '.join(map(_listed, x))}]"
-
-
-def _short(x: Any) -> Any:
-    """Leave six significant digits, and no rounding noise: results are to be read."""
-    rounded = np.array([float(f"{value:.6g}") for value in np.ravel(x)]).reshape(np.shape(x))
-    noise = 1e-14 * np.abs(rounded[np.isfinite(rounded)]).max(initial=0.0)
-    return np.where(np.abs(rounded) <= noise, 0.0, rounded)
 
 
 @dataclass(frozen=True)
@@ -187,6 +133,12 @@ class Source:
 
     def _repr_html_(self) -> str:
         return f"<div><strong>{escape(self.title)}</strong><pre>{escape(self.code)}</pre></div>"
+
+
+def _block(title: str, lines: list[str]) -> str:
+    """Write lines as they are, below a title; nothing without lines."""
+    text = escape("\n".join(lines))
+    return f"<p {_APART}>{title}</p><pre {_APART}>{text}</pre>" if lines else ""
 
 
 def _list(items: Any, style: str = "") -> str:

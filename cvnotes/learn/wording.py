@@ -18,7 +18,10 @@ def trouble(outcome: Outcome, exercise: Exercise) -> str:
     """Say kindly and exactly what happened instead of an answer."""
     match outcome.kind:
         case "none":
-            return "Your function gives None: is a return missing?"
+            return (
+                "Your function gives None: is a return missing? Or is a function that it uses "
+                "not solved yet?"
+            )
         case "text" if exercise.choices:
             return f"The answer is one of {', '.join(exercise.choices)}; {outcome.words} is none."
         case "text":

@@ -9,7 +9,7 @@ from cvnotes.rigid import chain, inverse, pose
 
 
 def cam1_from_cam2(G1: Array, G2: Array) -> Array:
-    """Give the motion (4, 4) from camera 2's frame to camera 1's."""
+    """Chain camera 1's pose with the inverse of camera 2's, both CRF ← world."""
     return chain(G1, inverse(G2))
 
 
