@@ -266,22 +266,88 @@ def test_a_still_names_what_it_shows():
     assert texts == ["board", "WRF", "camera", "z = 1", "horizon", "camera 2"]
 
 
-@pytest.mark.parametrize("view", [(20, -40), (5, -90), (60, 10), (-20, 120)])
+VIEWS = [(20, -40), (5, -90), (60, 10), (-20, 120), (25, -62), (89, -90), (18, 0)]
+
+
+def corners_of(text, renderer):
+    """Give the corners (4, 2) of a text on the screen, along its own slant."""
+    box, slant = text.get_window_extent(renderer), text.get_rotation()
+    text.set_rotation(0)
+    level = text.get_window_extent(renderer)
+    text.set_rotation(slant)
+    angle, half = np.radians(slant), np.array(level.size) / 2
+    R = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    middle = (np.array(box.p0) + box.p1) / 2
+    return middle + (np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half) @ R.T
+
+
+def apart(one, two):
+    """Tell if a line along one of their sides separates two rectangles."""
+    for side in (one[1] - one[0], one[2] - one[1], two[1] - two[0], two[2] - two[1]):
+        a, b = one @ side, two @ side
+        if a.max() <= b.min() or b.max() <= a.min():
+            return True
+    return False
+
+
+def words_of(ax):
+    """Draw, and give each number and each label with its corners on the screen."""
+    canvas = FigureCanvasAgg(ax.figure)
+    canvas.draw()
+    words = []
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        low, high = sorted(axis.get_view_interval())
+        drawn = axis.majorTicks[: len(axis.get_majorticklocs())]  # it keeps what it once drew
+        shown = [tick.label1 for tick in drawn if low <= tick.get_loc() <= high]
+        words += [(text.get_text(), corners_of(text, canvas.get_renderer()))
+                  for text in (*shown, axis.label)]  # fmt: skip
+    return words
+
+
+@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("scale", [0.002, 1, 40])
+def test_numbers_and_labels_of_a_still_never_meet_and_are_never_cut(view, scale):
+    shapes = [
+        *target_shapes(Chessboard((9, 6), 25.0 * scale)),
+        *camera_shapes(Camera(A, pose(np.eye(3), [-80 * scale, 0, 600 * scale])), 150 * scale),
+    ]
+    ax = draw_scene(*shapes, view=view)
+    words = words_of(ax)
+    assert len(words) > 6
+    for i, (name, corners) in enumerate(words):
+        assert (corners > 0).all(), name
+        assert (corners < ax.figure.bbox.size).all(), name
+        for other, there in words[:i]:
+            assert apart(corners, there), (name, other)
+
+
+@pytest.mark.parametrize("view", VIEWS)
 def test_a_still_fills_its_place_and_stays_within(view):
     from mpl_toolkits.mplot3d.proj3d import proj_transform
 
     ax = draw_scene(*all_shapes(), view=view)
-    ax.figure.canvas.draw()
-    corners = [
+    words = np.concatenate([corners for _, corners in words_of(ax)])
+    ends = [
         ax.transData.transform(proj_transform(x, y, z, ax.get_proj())[:2])
         for x in ax.get_xlim()
         for y in ax.get_ylim()
         for z in ax.get_zlim()
     ]
-    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
-    assert (low > [40, 50]).all()
-    assert (high < [560, 505]).all()
-    assert np.isclose(high - low, [510, 445], atol=1).any()
+    low, high = (f([f(ends, axis=0), f(words, axis=0)], axis=0) for f in (np.min, np.max))
+    assert (low > 0).all()
+    assert (high < [640, 520]).all()
+    assert np.isclose(high - low, [640, 520], atol=25).any()
+    assert (np.ptp(ends, axis=0) > 0.7 * np.array([640, 520])).any()
+
+
+def test_a_still_beside_others_stays_in_its_own_place():
+    figure = Figure(figsize=(9, 4), dpi=100)
+    right = figure.add_subplot(1, 2, 2, projection="3d")
+    place = right.get_position(original=True).transformed(figure.transFigure)
+    draw_scene(*all_shapes(), ax=right, view=(25, -60))
+    for name, corners in words_of(right):
+        assert (corners > place.p0).all(), name
+        assert (corners < place.p1).all(), name
 
 
 def test_a_still_is_drawn_on_the_axes_it_is_given_and_leaves_no_figure_behind():

@@ -4,18 +4,14 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.colors import to_rgba
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import MaxNLocator
-from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]
-from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
 from cvnotes.errors import Array
+from cvnotes.show.frame import frame
 from cvnotes.show.shapes import Faces, Label, Lines, Photo, Shape, extent, places
-from cvnotes.show.style import DPI, FONT, MUTED
+from cvnotes.show.style import DPI, FONT
 
-# Room for numbers and labels around the box, in px: left and below, right and above.
-_BORDER = ((45, 55), (85, 20))
 _HALO = withStroke(linewidth=3, foreground="white")
 
 
@@ -60,7 +56,7 @@ def draw_scene(
             text = ax.text(*_upright(shape.at), shape.name, color=shape.colour, zorder=1e6)
             text.set(fontsize=FONT - 1, ha="center", va="center", path_effects=[_HALO])
     ax.view_init(*view)
-    _frame(ax, shapes, unit)
+    frame(ax, _upright(places(*shapes)), unit)
     return ax
 
 
@@ -118,54 +114,6 @@ def _axes() -> Axes3D:
     figure = Figure(figsize=(640 / DPI, 520 / DPI), dpi=DPI)
     ax: Axes3D = figure.add_axes((0, 0, 1, 1), projection="3d")
     return ax
-
-
-def _frame(ax: Axes3D, shapes: tuple[Shape, ...], unit: str) -> None:
-    """Give axes equal scales, y downwards, few numbers and a light grid."""
-    shown = _upright(places(*shapes))
-    low, high = shown.min(axis=0), shown.max(axis=0)
-    middle = (low + high) / 2
-    half = np.maximum(high - low, 0.25 * (high - low).max()) / 2 * 1.02
-    ax.set_xlim(middle[0] - half[0], middle[0] + half[0])
-    ax.set_ylim(middle[1] - half[1], middle[1] + half[1])
-    ax.set_zlim(middle[2] + half[2], middle[2] - half[2])
-    _fill(ax, half)
-    ax.patch.set_visible(False)  # larger than its place, it would cover its neighbours
-    for axis, name, part in zip(
-        (ax.xaxis, ax.yaxis, ax.zaxis), "xzy", half / half.max(), strict=True
-    ):
-        axis.set_major_locator(MaxNLocator(max(2, round(5 * part))))
-        axis.set_label_text(f"{name} ({unit})", fontsize=FONT)
-        axis.set_tick_params(labelsize=FONT - 2, labelcolor=MUTED)
-        axis.set_pane_color((1, 1, 1, 0))
-        axis._axinfo["grid"].update(color=(0.88, 0.88, 0.88, 1), linewidth=0.6)
-        axis.line.set_color("#BBBBBB")
-
-
-def _fill(ax: Axes3D, half: Array) -> None:
-    """Give the box all the room of the axes' place; matplotlib leaves half of it empty."""
-    ax.set_box_aspect(half)
-    figure = ax.get_figure()
-    frame = figure.transFigure
-    place = ax.get_position(original=True).transformed(frame)
-    ax.apply_aspect()
-    window = ax.get_window_extent()
-    low, high = _box_in_pixels(ax)
-    free = np.array([place.p0 + _BORDER[0], place.p1 - _BORDER[1]])
-    zoom = float(((free[1] - free[0]) / (high - low)).min())
-    centre = (np.array(window.p0) + window.p1) / 2
-    middle = free.mean(axis=0) - zoom * ((low + high) / 2 - centre)
-    side = zoom * np.array(window.size) / 2
-    ax.set_position(Bbox([middle - side, middle + side]).transformed(frame.inverted()))
-
-
-def _box_in_pixels(ax: Axes3D) -> tuple[Array, Array]:
-    """Give the lowest and highest pixels of the box's corners."""
-    ax.M = ax.get_proj()
-    limits = np.array([ax.get_xlim(), ax.get_ylim(), ax.get_zlim()])
-    corners = [limits[[0, 1, 2], choice] for choice in np.ndindex(2, 2, 2)]
-    seen = ax.transData.transform([proj_transform(*corner, ax.M)[:2] for corner in corners])
-    return seen.min(axis=0), seen.max(axis=0)
 
 
 def _upright(W: Array) -> Array:
