@@ -9,7 +9,7 @@ and squares smaller than a pixel are then all alike, and nothing is sampled.
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, DegenerateError, image_size, number, points
+from cvnotes.errors import Array, CvnotesError, DegenerateError, number, points, target_size
 
 Indices = npt.NDArray[np.intp]
 
@@ -105,7 +105,7 @@ def polygon_means(outline: npt.ArrayLike, size: tuple[int, int], *, blur: float 
     array([[1. , 0.5],
            [0.5, 0. ]])
     """
-    outline, size = points(outline, "outline", 2), image_size(size)
+    outline, size = points(outline, "outline", 2), target_size(size)
     if outline.ndim != 2 or len(outline) < 3:
         raise DegenerateError(f"outline: a polygon has at least 3 corners, got {outline.shape}")
     if np.abs(outline).max() > _FARTHEST:

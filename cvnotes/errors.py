@@ -14,6 +14,8 @@ Array = npt.NDArray[np.float64]
 
 # Cubes of larger numbers overflow; a matrix, which stands for all its multiples, may be squared.
 LARGEST, LARGEST_ENTRY = 1e100, 1e150
+# Four times what a photograph may have; more is a slip, and would hardly fit into the memory.
+MOST_PIXELS = 2**28
 
 
 class CvnotesError(ValueError):
@@ -92,7 +94,9 @@ def numbers(x: Any, name: str, *, largest: float = LARGEST) -> Array:
         array = np.array(given, dtype=np.float64)
     peak = float(np.abs(array).max(initial=0.0))
     if not np.isfinite(peak):
-        raise CvnotesError(f"{name} contains NaN or infinite values; drop those rows first")
+        at = np.argwhere(~np.isfinite(array))[0].tolist()
+        first = f" (the first at {at})" if at else ""
+        raise CvnotesError(f"{name} contains NaN or infinite values{first}; leave those out")
     if peak > largest:
         raise CvnotesError(
             f"{name} contains values of {peak:.2g}, but beyond {largest:g} products overflow; "
@@ -232,15 +236,31 @@ def image_size(x: Any, name: str = "size") -> tuple[int, int]:
     (640, 480)
     """
     wanted = f"{name}: expected (width, height), two positive whole numbers, got {x!r}"
+    if not isinstance(x, list | tuple | np.ndarray) or _is_masked(x):
+        raise CvnotesError(wanted)
     try:
         width, height = x
         whole = (int(width), int(height))
-        exact = whole == (width, height) and not isinstance(width, str | bytes)
+        exact = whole == (width, height) and not isinstance(width, str | bytes | bool)
     except (TypeError, ValueError, OverflowError):
         raise CvnotesError(wanted) from None
-    if not exact or min(whole) < 1:
+    if not exact or min(whole) < 1 or max(whole) >= 2**31:
         raise CvnotesError(wanted)
     return whole
+
+
+def target_size(x: Any, name: str = "size") -> tuple[int, int]:
+    """Guard the size of a picture that is to be made, and that has to fit into the memory.
+
+    Examples
+    --------
+    >>> target_size([640, 480])
+    (640, 480)
+    """
+    width, height = image_size(x, name)
+    if width * height > MOST_PIXELS:
+        raise CvnotesError(f"{name}: a picture of {width} × {height} pixels would be too large")
+    return width, height
 
 
 def _is_masked(x: Any) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import Camera
-from cvnotes.errors import Array, CvnotesError, InputTypeError
+from cvnotes.errors import Array, CvnotesError, InputTypeError, target_size
 from cvnotes.meshes import Scene, Surroundings
 from cvnotes.raycast import Indices, edge_functions, first_hits
 from cvnotes.rigid import move
@@ -134,6 +134,7 @@ def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
         )
     if not isinstance(camera, Camera):
         raise InputTypeError(f"camera: expected a Camera, got {type(camera).__name__}")
+    target_size(camera.size)
     if not isinstance(samples, int) or samples < 1:
         raise CvnotesError(f"samples: expected a whole number of rays, at least 1, got {samples!r}")
 

@@ -16,9 +16,9 @@ from cvnotes.errors import (
     CvnotesError,
     InputTypeError,
     ShapeError,
-    image_size,
     number,
     numbers,
+    target_size,
 )
 from cvnotes.faces import Target
 from cvnotes.sensor import Image, develop, gaussian_blur
@@ -109,7 +109,7 @@ def render(
             f"target: expected a Chessboard or the like, got {type(target).__name__}"
         )
     sigma, white = number(blur, "blur", at_least=0), number(margin, "margin", at_least=0)
-    behind = _background(background, camera.size, colour)
+    behind = _background(background, target_size(camera.size), colour)
     picture = _paint(target, camera, behind, white, sigma)
     if occluder is not None:
         hidden = polygon_means(occluder, camera.size, blur=sigma)
@@ -147,7 +147,7 @@ def clutter(
     >>> clutter((64, 48), rng=np.random.default_rng(0)).shape
     (48, 64)
     """
-    width, height = size = image_size(size)
+    width, height = size = target_size(size)
     if not isinstance(rng, np.random.Generator):
         raise InputTypeError(f"rng: expected a numpy.random.Generator, got {type(rng).__name__}")
     picture = np.full((3 if colour else 1, height, width), 110.0)

@@ -24,6 +24,7 @@ _ATTEMPTS = (
 )
 _HINT_PIXELS = 500_000
 _ENOUGH_PIXELS = 1_000_000  # to tell a picture's darkest and brightest parts
+_FLAT = 1e-100  # contrast between grey levels that is none
 
 
 def find_corners(image: npt.ArrayLike, board: Chessboard) -> Array:
@@ -135,7 +136,8 @@ def _eight_bits(picture: Image) -> Grey8:
         return picture.astype(np.uint8, copy=False)
     step = int(np.ceil(np.sqrt(picture.size / _ENOUGH_PIXELS)))
     low, high = np.percentile(picture[::step, ::step], (0.1, 99.9))
-    scaled = (picture - low) * (255 / (high - low if high > low else 1.0))
+    contrast = high - low if high - low > _FLAT else 1.0
+    scaled = (picture - low) * (255 / contrast)
     return np.asarray(scaled.round().clip(0, 255), dtype=np.uint8)
 
 

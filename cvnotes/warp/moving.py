@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import CvnotesError, ShapeError, number, points
+from cvnotes.errors import CvnotesError, ShapeError, number, points, target_size
 from cvnotes.interpolate import Border, Image, Method, Sampler, checked_fill, checked_image
 from cvnotes.warp.maps import plane_map
-from cvnotes.warp.pixel_map import Mapping, target_size, tiles
+from cvnotes.warp.pixel_map import Mapping, tiles
 
 
 class ForwardWarp(NamedTuple):

@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, image_size, points
+from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, points, target_size
 from cvnotes.interpolate import positions
 
 # Pixels mapped at a time: a dozen arrays of them stay in the cache.
 TILE = 20_000
-# A size that is certainly a slip; it would not fit into the memory either.
-_TOO_MANY_PIXELS = 2**30
 
 
 @dataclass(frozen=True)
@@ -140,14 +138,6 @@ def homogeneous_columns(u: npt.ArrayLike, v: npt.ArrayLike) -> Array:
     """Put u (n,) and v (n,) above a row of ones."""
     u = np.asarray(u)
     return np.stack([u, v, np.ones(u.shape)])
-
-
-def target_size(size: Any) -> tuple[int, int]:
-    """Guard the size of a picture that is to be made."""
-    width, height = image_size(size)
-    if width * height > _TOO_MANY_PIXELS:
-        raise CvnotesError(f"size: a picture of {width} × {height} pixels would be too large")
-    return width, height
 
 
 def _checked_array(mapping: Any, size: tuple[int, int]) -> Array:
