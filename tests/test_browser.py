@@ -260,3 +260,58 @@ def test_all_explorers_follow_the_keyboard_and_none_lags_behind(page, course, tm
     # 40 ms for pictures and 70 ms for figures on a quiet machine; a busy one delays all alike.
     assert all(waited[name] < waited["peer"] for name in NAMES), waited
     _shut_down(page)
+
+
+# What somebody types who reads the tasks of chapter 6: right, a classic mistake, and no end.
+TYPED = {
+    "dlt": """def my_dlt(src, dst):
+    D = []
+    for (x, y), (u, v) in zip(src, dst):
+        D.append([0, 0, 0, -x, -y, -1, v * x, v * y, v])
+        D.append([x, y, 1, 0, 0, 0, -u * x, -u * y, -u])
+    return np.linalg.svd(np.array(D))[2][-1].reshape(3, 3)""",
+    "four_points": "def my_four_points(src, dst):\n    return my_dlt(dst, src)",
+    "normaliser": """def my_normaliser(x):
+    scale = 1.0
+    while np.linalg.norm(scale * x, axis=1).mean() != 2**0.5:
+        scale *= 0.999
+    return np.diag([scale, scale, 1])""",
+}
+PROMPT = ".jp-CodeCell.jp-mod-active .jp-InputPrompt"
+# Whether a cell has another number than before, and no star: it has run.
+HAS_RUN = """([prompt, before]) => {
+    const now = document.querySelector(prompt).innerText;
+    return /\\d/.test(now) && now !== before;
+}"""
+
+
+def _answer(page, cells, name):
+    """Type an answer over the stub of an exercise, run the cell, and give what is shown."""
+    call = f'check("{name}", my_{name})'
+    index = next(i for i, cell in enumerate(cells) if call in cell["source"])
+    page.evaluate(SHOW_CELL, index)
+    page.locator(".jp-CodeCell.jp-mod-active .cm-content").click()
+    page.keyboard.press("Control+a")
+    page.keyboard.insert_text(f"{TYPED[name]}\n\n\n{call}")
+    before = page.locator(PROMPT).inner_text()
+    page.keyboard.press("Control+Enter")
+    page.wait_for_function(HAS_RUN, arg=[PROMPT, before], timeout=20_000)
+    return page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea").inner_text()
+
+
+def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, course, tmp_path):
+    path = next(path for path in NOTEBOOKS if path.name.startswith("06"))
+    cells = _open_and_run(page, course[1], path.name)
+    shown = {}
+    for name in TYPED:
+        shown[name] = _answer(page, cells, name)
+        page.screenshot(path=tmp_path / f"{name}.png")
+    assert "dlt: ✓ right." in shown["dlt"]
+    assert "Chapter 6: 1 of 4 solved; next: design_matrix." in shown["dlt"]
+    assert "four_points: ✗ not yet right." in shown["four_points"]
+    assert "Did you exchange src and dst?" in shown["four_points"]
+    assert re.search(r"yours = np\.array\(\[", shown["four_points"])
+    assert "stopped after 5 seconds: does a loop never end?" in shown["normaliser"]
+    # the notebook lives on
+    assert "dlt: ✓ right." in _answer(page, cells, "dlt")
+    _shut_down(page)

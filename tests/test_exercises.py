@@ -460,3 +460,23 @@ def test_the_exercises_of_a_notebook_exist_and_belong_to_its_chapter(path):
         for name in re.findall(r"^check\(\"(\w+)\"", cell.source, re.M):
             # the last notebook has further exercises to all chapters
             assert int(path.name[:2]) in (EXERCISES[name].chapter, 10)
+
+
+@pytest.mark.skipif(not NOTEBOOKS, reason="no notebooks yet")
+def test_every_exercise_is_asked_for_in_exactly_one_notebook():
+    asked = [
+        (name, int(path.name[:2]))
+        for path in NOTEBOOKS
+        for cell in _cells(path)
+        for name in re.findall(r"^check\(\"(\w+)\"", cell.source, re.M)
+    ]
+    assert sorted(asked) == sorted((name, notebook_of(e)) for name, e in EXERCISES.items())
+
+
+@pytest.mark.skipif(not NOTEBOOKS, reason="no notebooks yet")
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
+def test_a_question_of_a_notebook_ends_in_a_question_mark_alone(path):
+    for cell in _cells(path):
+        assert "?." not in cell.source
+        for output in cell.get("outputs", []):
+            assert "?." not in str(output.get("data", {}).get("text/plain", ""))
