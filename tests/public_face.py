@@ -57,8 +57,7 @@ class Argument:
 class Function:
     """A public function, good arguments by name, which of them are arrays, and which are sizes.
 
-    The rows of `paired` arrays belong together. `exact` tells whether the same numbers in another
-    order of memory give the same answer to the last bit.
+    The rows of `paired` arrays belong together.
     """
 
     name: str
@@ -67,7 +66,6 @@ class Function:
     arrays: dict
     sizes: tuple
     paired: tuple
-    exact: bool
 
     def __str__(self):
         return self.name
@@ -132,12 +130,12 @@ def _generator():
     return np.random.default_rng(7)
 
 
-def function(call, arrays, name=None, *, sizes=(), paired=(), exact=True, **fixed):
+def function(call, arrays, name=None, *, sizes=(), paired=(), **fixed):
     """Give a Function; `arrays` maps parameters to (good value, Argument)."""
     good = {key: value for key, (value, _) in arrays.items()} | fixed
     known = {key: argument for key, (_, argument) in arrays.items()}
     full = name or f"{call.__module__.removeprefix('cvnotes.')}.{call.__name__}"
-    return Function(full, call, good, known, tuple(sizes), tuple(paired), exact)
+    return Function(full, call, good, known, tuple(sizes), tuple(paired))
 
 
 W2 = W[:, :2].copy()
@@ -323,13 +321,8 @@ FUNCTIONS = [
     # homography and zhang
     function(homography.normaliser, {"x": (W2, several(2))}),
     function(homography.design_matrix, PAIRS, paired=("src", "dst")),
-    function(homography.dlt, PAIRS, paired=("src", "dst"), exact=False),
-    function(
-        homography.refine_homography,
-        {"H": (H, MATRIX), **PAIRS},
-        paired=("src", "dst"),
-        exact=False,
-    ),
+    function(homography.dlt, PAIRS, paired=("src", "dst")),
+    function(homography.refine_homography, {"H": (H, MATRIX), **PAIRS}, paired=("src", "dst")),
     function(homography.four_points_h9_one, FOURS),
     function(homography.four_points_unit_norm, FOURS),
     function(homography.geometric_error, {"H": (H, MATRIX), **PAIRS}, paired=("src", "dst")),
@@ -360,7 +353,6 @@ FUNCTIONS = [
         robust.ransac_homography,
         {**PAIRS, "threshold": (2.0, ONE), "confidence": (0.99, ONE)},
         paired=("src", "dst"),
-        exact=False,
         rng=_generator,
     ),
     function(robust.trials_needed, {"inlier_fraction": (0.5, ONE), "confidence": (0.99, ONE)}),
@@ -372,7 +364,6 @@ FUNCTIONS = [
         paired=("board_points", "image_points"),
         size=(640, 480),
         lens="k1 k2 p1 p2",
-        exact=False,
     ),
     function(
         Correspondences.of,
@@ -388,26 +379,22 @@ FUNCTIONS = [
         {"W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
         "resection.resect",
         paired=("W", "m"),
-        exact=False,
     ),
     function(resection.ppm.normaliser, {"W": (SOLID.points, several(3))}),
     function(
         resection.ppm.ppm_design_matrix,
         {"W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
         paired=("W", "m"),
-        exact=False,
     ),
     function(
         resection.ppm.ppm_dlt,
         {"W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
         paired=("W", "m"),
-        exact=False,
     ),
     function(
         resection.ppm.refine_ppm,
         {"P": (PPM, SINGLE), "W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
         paired=("W", "m"),
-        exact=False,
     ),
     function(
         resection.pose_from_view,
@@ -415,7 +402,6 @@ FUNCTIONS = [
         "resection.pose_from_view",
         paired=("target_points", "image_points"),
         camera=Camera(A, lens=LENS),
-        exact=False,
     ),
     function(
         resection.calibrate_one_view,
@@ -425,7 +411,6 @@ FUNCTIONS = [
         sizes=("size",),
         size=(640, 480),
         lens="k1 k2 p1 p2",
-        exact=False,
     ),
     # stereo
     function(
@@ -438,7 +423,6 @@ FUNCTIONS = [
         "stereo.calibrate_stereo",
         sizes=("size",),
         size=(640, 480),
-        exact=False,
     ),
     function(
         stereo.calibrate_relative_pose,
@@ -450,7 +434,6 @@ FUNCTIONS = [
         "stereo.calibrate_relative_pose",
         left=LEFT,
         right=LEFT,
-        exact=False,
     ),
     function(
         stereo.epipolar_lines,
@@ -481,10 +464,7 @@ FUNCTIONS = [
     ),
     # vanishing
     function(
-        vanishing.vanishing_point,
-        {"segments": (LINES, several(2))},
-        "vanishing.vanishing_point",
-        exact=False,
+        vanishing.vanishing_point, {"segments": (LINES, several(2))}, "vanishing.vanishing_point"
     ),
     function(
         vanishing.horizon,
@@ -593,7 +573,7 @@ FUNCTIONS = [
         },
         "warp.rectify_plane",
     ),
-    function(find_corners, {"image": (GREY, PICTURE)}, board=BOARD, exact=False),
+    function(find_corners, {"image": (GREY, PICTURE)}, board=BOARD),
     function(subpixel.harris, {"image": (NOISE, PICTURE)}, "subpixel.harris"),
     function(subpixel.local_maxima, {"response": (NOISE, PICTURE)}, "subpixel.local_maxima"),
     function(
@@ -605,13 +585,11 @@ FUNCTIONS = [
         subpixel.refine_edges,
         {"image": (GREY, PICTURE), "m": (PLANE[0].round(), rows(2))},
         "subpixel.refine_edges",
-        exact=False,
     ),
     function(
         subpixel.fit_edges,
         {"image": (GREY, PICTURE), "m": (PLANE[0].round(), rows(2))},
         "subpixel.fit_edges",
-        exact=False,
     ),
     # making pictures
     function(expose, {"radiance": (NOISE, PICTURE), "motion": (np.array([1.0, 2]), several(2))}),

@@ -329,8 +329,7 @@ def test_the_same_numbers_in_another_dress_give_the_same_answer(function, arrays
             if function.arrays[name].picture and dress == "list":
                 continue  # a picture's dtype would be lost
             result = numbers_of(answer(function, **{name: value}))
-            tolerance = 0 if function.exact else 1e-9
-            assert np.allclose(result, expected, tolerance, tolerance, equal_nan=True), dress
+            assert np.allclose(result, expected, rtol=1e-9, atol=1e-9, equal_nan=True), dress
 
 
 @row(13)
