@@ -307,6 +307,20 @@ def test_a_right_answer_has_a_last_entry_of_1_where_the_students_has():
     assert report.wanted[2].tolist() == [0, 0, 1]
 
 
+def test_truth_values_and_whole_numbers_are_shown_as_such():
+    report = check("knows_its_origin", lambda columns, rows: columns != rows)
+    assert "columns = np.array([9, 8, 7, 5])" in report.example()
+    assert "yours = np.array([True, True, False, True])" in report.example()
+    assert "wanted = np.array([True, False, False, True])" in report.example()
+
+
+def test_one_number_for_several_is_told_from_one_of_several():
+    together = check("geometric_error", lambda H, src, dst: np.linalg.norm(dst - src + 1))
+    assert "one number for all of them; is an axis=1 missing?" in together.message
+    first = check("drop", lambda x_h: x_h[0, :-1])
+    assert "only one of several points came back" in first.message
+
+
 def test_rounding_noise_is_not_shown():
     report = check("b_from_views", EXERCISES["b_from_views"].misconceptions[0].gives)
     shown = {}

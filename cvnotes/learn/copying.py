@@ -32,7 +32,7 @@ def as_code(value: Any, name: str = "") -> str:
         return f"np.empty({value.shape})"
     if value.size > _LONGEST:
         return f"{name}  # {value.shape}"
-    numbers = np.vectorize(_literal, otypes=[object])(value)
+    numbers = np.vectorize(_literal, otypes=[object])(value.astype(object))
     line = f"np.array({_listed(numbers)})"
     if value.ndim == 1 or len(line) <= _WIDEST:
         return line
@@ -42,8 +42,10 @@ def as_code(value: Any, name: str = "") -> str:
     return "\n".join(["np.array([", *(f"    {_listed(row)}," for row in numbers), "])"])
 
 
-def _literal(x: float) -> str:
-    text = repr(float(x) + 0.0)
+def _literal(x: Any) -> str:
+    if isinstance(x, int):  # or a truth value
+        return repr(x)
+    text = repr(x + 0.0)
     return f"np.{text}".replace("np.-", "-np.") if not np.isfinite(x) else text
 
 
@@ -60,6 +62,8 @@ def readable(x: Any) -> Any:
     >>> readable([1 / 3, 1e-17])
     array([0.333333, 0.      ])
     """
+    if np.asarray(x).dtype == bool:
+        return x
     rounded = np.array([float(f"{value:.6g}") for value in np.ravel(x)]).reshape(np.shape(x))
     noise = 1e-14 * np.abs(rounded[np.isfinite(rounded)]).max(initial=0.0)
     return np.where(np.abs(rounded) <= noise, 0.0, rounded)

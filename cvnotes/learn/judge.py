@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -134,11 +135,16 @@ def _wrong(
         holds=holding,
         fails=sentences[0] if sentences and came else "",
         counterexample=dict(zip(exercise.arguments, case.args, strict=True)) if shown else {},
-        yours=outcome.value if compared else None,
-        wanted=_scaled(exercise, case.right, outcome) if compared else None,
+        yours=_as_given(outcome.value, outcome) if compared else None,
+        wanted=_as_given(_scaled(exercise, case.right, outcome), outcome) if compared else None,
         remarks=() if mistake else remarks(exercise, outcome, case),
         printed=outcome.printed,
     )
+
+
+def _as_given(x: Any, outcome: Outcome) -> Any:
+    """Show truth values as such, where the student gave such."""
+    return x.astype(bool) if outcome.dtype == "bool" and np.isin(x, (0, 1)).all() else x
 
 
 def _scaled(exercise: Exercise, right: Array, outcome: Outcome) -> Array:

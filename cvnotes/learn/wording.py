@@ -59,6 +59,8 @@ def other_shape(given: tuple[int, ...], wanted: tuple[int, ...]) -> str:
         return f"{text}: the values may be right, the arrangement is not; see np.reshape."
     if given[:-1] == wanted[:-1] and given and given[-1] == wanted[-1] + 1:
         return f"{text}: still homogeneous? Divide by the last coordinate, then leave it out."
+    if given == () and len(wanted) == 1:
+        return f"{text}: one number for all of them; is an axis=1 missing?"
     if given == wanted[1:]:
         return f"{text}: only one of several points came back; is the return inside of the loop?"
     if wanted == () and len(given) > 0:
