@@ -13,6 +13,7 @@ from cvnotes.show.style import MUTED
 from cvnotes.targets import Chessboard
 
 _INK = "#262629"
+_ASIDE = 13  # px from what a name belongs to
 # Seen a little from above and from the right: x to the right, y down, z to the left and away.
 _VIEW = rotation_from_vector([0.35, 0, 0]) @ rotation_from_vector([0, -0.9, 0])
 
@@ -49,7 +50,8 @@ def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:
         elif isinstance(shape, Lines):
             panel.segments(on_sheet(shape.ends), shape.colour, shape.width)
         elif isinstance(shape, Label):
-            panel.text(on_sheet(shape.at), shape.name, shape.colour, anchor="ra", size=12)
+            at = on_sheet(shape.at) - [_ASIDE * panel.pixel, 0]
+            panel.text(at, shape.name, shape.colour, anchor="ra", size=12)
 
 
 def on_sheet(W: Array) -> Array:

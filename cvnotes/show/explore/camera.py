@@ -65,7 +65,7 @@ def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Sight:
     origin = camera.project([0, 0, 0])
     picture.mark(origin, "world", 5)
     space = _space(camera, board, paper)
-    return Sight(paper.join((picture, space)), _sentence(camera, complete))
+    return Sight(paper.join((picture, space)), _sentence(camera, board, complete))
 
 
 def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
@@ -93,13 +93,16 @@ def _draw_T(panel: Panel, camera: Camera) -> None:
     panel.text(ends.mean(axis=0), "T", WORLD, size=12)
 
 
-def _sentence(camera: Camera, complete: bool) -> str:
+def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
     said = (
         f"T = {_words(camera.T)} mm is where the camera sees the board's origin; the camera stands "
         f"at C = −RᵀT = {_words(camera.centre)} mm."
     )
-    missing = "" if complete else " Part of the board is behind the camera and has no image."
-    return said + missing
+    if not complete:
+        return f"{said} Part of the board is behind the camera and has no image."
+    m = camera.project(board.points)
+    inside = ((m >= -0.5) & (m <= np.array(camera.size) - 0.5)).all(axis=-1)
+    return said if inside.any() else f"{said} All inner corners are outside of the picture."
 
 
 def _words(x: Array) -> str:

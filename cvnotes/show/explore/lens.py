@@ -7,7 +7,7 @@ from cvnotes.errors import Array
 from cvnotes.lens import Lens, radial_factor
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
 _RADIUS = 1.0  # of the curve r L(r)
@@ -71,18 +71,21 @@ def _draw_grid(panel: Panel, lens: Lens) -> None:
 def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
     """Draw the border of the camera's picture, and the fold's."""
     corners = camera_corners(camera)
-    panel.line(corners[[0, 1, 2, 3, 0]], CAMERA, 1.8)
-    panel.text(corners[0] - [0, 0.03], "border of the picture", CAMERA)
+    panel.line(corners[[0, 1, 2, 3, 0]], CAMERA, 2.2)
     if lens.max_radius < 2 * _EXTENT:
         phi = np.linspace(0, 2 * np.pi, 121)
         circle = lens.max_radius * np.stack([np.cos(phi), np.sin(phi)], -1)
         panel.line(polynomial(lens, circle), ESTIMATED, 2.2)
+    left, bottom = panel.x[0] + 0.03, panel.y[1] - 0.05
+    panel.text([left, bottom], "grey: ideal", MUTED)
+    panel.text([left + 0.34, bottom], "blue: through the lens", LENS)
+    panel.text([-left, bottom], "light blue: the picture", CAMERA, anchor="rm")
 
 
 def _draw_curve(panel: Panel, lens: Lens) -> None:
     r = np.linspace(0, _RADIUS, 201)
     observed = np.stack([r, r * radial_factor(lens.k, r * r)], -1)
-    panel.ticks(np.arange(0.2, 1, 0.2).round(1), np.arange(0, 1.1, 0.2).round(1))
+    panel.ticks(np.arange(0.2, 1, 0.2).round(1), np.arange(0.2, 1.1, 0.2).round(1))
     panel.line([[0, 0], [1, 1]], IDEAL, 1, dash=4)
     panel.text([0.87, 0.93], "ideal", IDEAL, anchor="rm")
     good = (r <= lens.max_radius)[:, None]
@@ -107,10 +110,11 @@ def _sentence(camera: Camera, lens: Lens) -> str:
             f"The lens shows nothing beyond max_radius = {lens.max_radius:.3f}, not even at the "
             f"corners of the picture (r' = {r:.3f}): there the model folds. Orange is no lens."
         )
-    ends = "never folds" if np.isinf(lens.max_radius) else f"folds at r = {lens.max_radius:.3f}"
+    fold = f"folds at r = {lens.max_radius:.3f}, beyond the picture"
+    ends = "never folds" if np.isinf(lens.max_radius) else fold
     far = float(np.linalg.norm(camera.A[:2, :2] @ (ideal - corners).T, axis=0).max())
     return (
-        f"The model {ends}, beyond the picture. An ideal lens would show what is seen in the "
+        f"The model {ends}. An ideal lens would show what is seen in the "
         f"picture's corners up to {far:.1f} px elsewhere."
     )
 

@@ -1,6 +1,7 @@
 """What an exploration is: settings, and a pure function from their values to a picture."""
 
 import io
+import re
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -101,7 +102,8 @@ class Model:
 
     def _sight(self, paper: Paper, values: Values) -> Sight:
         try:
-            return self.draw(paper, values)
+            picture, sentence = self.draw(paper, values)
+            return Sight(picture, re.sub(r"-(?=\d)", "−", sentence))
         except CvnotesError as reason:
             panel = paper.panel((660, 120), (0, 1), (0, 1))
             panel.text([0.5, 0.5], "no answer for these values", ESTIMATED, anchor="mm", size=14)

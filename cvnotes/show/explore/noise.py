@@ -14,7 +14,7 @@ from cvnotes.views import good_views
 _FEWEST, _MOST = 3, 30
 _SHOWN = ("alpha_u", "alpha_v", "u0", "v0")
 _LABELS = ("α_u", "α_v", "u0", "v0")
-_REACHES = (1, 4, 20, 100)  # px, of the error bars
+_REACHES = (1, 4, 10, 30, 100)  # px, of the error bars
 
 
 class _Study:
@@ -93,9 +93,10 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Sight:
         "least standard deviation of α_u (px) over views",
     )  # fmt: skip
     _draw_curve(curve, study, n, sigma)
+    off = round(float(error[0]), 2) + 0.0  # no "−0.00"
     sentence = (
         f"σ = {sigma:.2f} px and {n} views: α_u cannot be known better than ±{bound[0]:.2f} px "
-        f"(one standard deviation); this try says {error[0]:+.2f} ± {std[0]:.2f} px."
+        f"(one standard deviation); this try says {off:+.2f} ± {std[0]:.2f} px."
     )
     return Sight(paper.join((bars, curve)), sentence)
 

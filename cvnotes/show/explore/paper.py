@@ -58,6 +58,11 @@ class Panel:
         self._image = Image.new("RGB", (self.width, self.height), "white")
         self._draw = ImageDraw.Draw(self._image)
 
+    @property
+    def pixel(self) -> float:
+        """How far it is from one pixel of the page to the next, along x."""
+        return (self.x[1] - self.x[0]) * self.scale / self.width
+
     def place(self, xy: npt.ArrayLike) -> Array:
         """Give where points (..., 2) lie on this panel, in its own pixels; NaN stays NaN."""
         low = np.array([self.x[0], self.y[0]])
@@ -131,9 +136,11 @@ class Panel:
         grid = [[[v, y0], [v, y1]] for v in at_x] + [[[x0, v], [x1, v]] for v in at_y]
         self.segments(grid, _GRID, 0.5)
         for value in at_x:
-            self.text([value, y1 - 0.03 * (y1 - y0)], f"{value:g}", anchor="md", size=9)
+            number = f"{value:g}".replace("-", "−")
+            self.text([value, y1 - 0.03 * (y1 - y0)], number, anchor="md", size=9)
         for value in at_y:
-            self.text([x0 + 0.01 * (x1 - x0), value], f"{value:g}", size=9)
+            number = f"{value:g}".replace("-", "−")
+            self.text([x0 + 0.01 * (x1 - x0), value], number, size=9)
 
     def finish(self) -> Drawn:
         """Give the panel with frame and title, at its final size."""

@@ -69,6 +69,7 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
 
 
 def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:
+    panel.ticks(x=np.arange(-8, 9, 4), y=np.arange(4, 13, 4))
     panel.segments(_sleepers(middle, along, across)[..., ::2], _WOOD, 1)
     for side in (-0.5, 0.5):
         rail = middle + side * _GAUGE * across + np.outer([-50, 50], along)
@@ -77,12 +78,15 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     view = np.array([[left, _PLANE], [0, 0], [right, _PLANE]])
     panel.line(5 * view, CAMERA, 0.8)
     panel.line([[left, _PLANE], [right, _PLANE]], CAMERA, 3)
-    panel.text([right + 0.2, _PLANE], "image plane", CAMERA)
     panel.line(np.outer([0, 20], along[::2]), IDEAL, 1.2, dash=5)
     panel.mark([0, 0], "camera", 8)
-    panel.text([-0.4, -0.6], "camera", CAMERA, anchor="rm")
     if along[2] > 0:
         panel.mark(_PLANE * along[::2] / along[2], "ideal", 9)
+    # On the side that the rails leave free, and over all lines.
+    side = 1.0 if along[0] >= 0 else -1.0
+    anchor = "lm" if side > 0 else "rm"
+    panel.text([0.4 * side, -0.6], "camera", CAMERA, anchor=anchor)
+    panel.text([side * (abs(right) + 0.5), _PLANE], "image plane", CAMERA, anchor=anchor)
 
 
 def _sleepers(middle: Array, along: Array, across: Array) -> Array:

@@ -73,7 +73,7 @@ def _row(
         draw_board(panel, camera, board)
         for line in lines_from(other, camera, shown):
             panel.line(_across(line, camera.size), ESTIMATED, 1.4)
-        panel.mark(camera.project(shown), "ideal", 6)
+        panel.mark(camera.project(shown), "ideal", 8)
         panels.append(panel)
     return panels[0], panels[1]
 
