@@ -64,6 +64,7 @@ def peer(x):
     axes[0].plot([0, x])
     plt.show()
 ipywidgets.interact(peer, x=(0.0, 10.0));"""
+FOCUSED_SLIDER = "() => document.activeElement.classList.contains('noUi-handle')"
 PICTURE = "img => fetch(img.src).then(r => r.arrayBuffer()).then(b => new Uint8Array(b).join())"
 # Milliseconds from each key to the first frame with another picture in it.
 LATENCY = """async (handle) => {
@@ -196,6 +197,15 @@ def _becomes(page, picture, wanted):
     return False
 
 
+def _tab_to(page, found):
+    """Press Tab until what is focused is as wanted; a slider's number may lie in between."""
+    for _ in range(3):
+        if page.evaluate(found):
+            return True
+        page.keyboard.press("Tab")
+    return False
+
+
 def _shut_down(page):
     page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.shutdown()")
 
@@ -239,6 +249,26 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
         output.locator("img.widget-image").wait_for(state="visible", timeout=20_000)
         assert output.locator("img").count() == 1
         assert output.locator(".noUi-handle").count() == len(model(name).settings)
+    _shut_down(page)
+
+
+def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, course):
+    cells = _open_and_run(page, course[1], "saved.ipynb")
+    for name in NAMES:
+        handle, picture = _explorer(page, cells, rf"^explore_{name}\(")
+        start = picture.evaluate(PICTURE)
+        handle.focus()
+        for setting in model(name).settings:
+            assert _tab_to(page, FOCUSED_SLIDER), f"{name}: {setting.name}"
+            before = picture.evaluate(PICTURE)
+            for _ in range(3):
+                page.keyboard.press("ArrowRight")
+            assert _becomes(page, picture, lambda now, seen=before: now != seen), setting.name
+            page.keyboard.press("Tab")
+        assert _tab_to(page, "() => document.activeElement.textContent === 'Reset'"), name
+        page.wait_for_timeout(500)  # the front end still sends what the arrows did
+        page.keyboard.press("Enter")
+        assert _becomes(page, picture, lambda now, seen=start: now == seen), name
     _shut_down(page)
 
 
