@@ -24,7 +24,7 @@ from cvnotes.radial import radial_factor as radial_factor
 _beyond_all_numbers = np.errstate(over="ignore", invalid="ignore")
 
 # Points undistorted at a time: the dozen temporaries then stay in the cache.
-_CHUNK = 12288
+_CHUNK = 8192
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,7 @@ class Lens:
         if self.is_ideal:
             return x, y
         x0, y0 = self.centre
+        if not x0 and not y0:
+            return self._inverse(x, y)
         x, y = self._inverse(x - x0, y - y0)
-        x += x0
-        y += y0
-        return x, y
+        return x + x0, y + y0
