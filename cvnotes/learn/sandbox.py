@@ -8,7 +8,6 @@ Python is interrupted but a crash is a crash; see `run`.
 """
 
 import contextlib
-import faulthandler
 import os
 import select
 import signal
@@ -21,8 +20,9 @@ from typing import Any
 
 from cvnotes.errors import CvnotesError
 from cvnotes.learn.calling import attempt
+from cvnotes.learn.child import work
 from cvnotes.learn.here import run_here
-from cvnotes.learn.outcome import Outcome, decode, encode
+from cvnotes.learn.outcome import Outcome, decode
 
 SECONDS = 5.0
 MEGABYTES = 1024
@@ -98,7 +98,7 @@ def _run_in_child(
     if child == 0:
         try:
             os.close(reading)
-            _work(function, arguments, writing, seconds, megabytes)
+            work(function, arguments, writing, seconds, megabytes)
         finally:
             os._exit(0)
     try:
@@ -110,56 +110,6 @@ def _run_in_child(
     outcomes = [_decoded(line) for line in lines]
     rest = Outcome("late", words=f"{seconds:g}") if late else Outcome("died", words=_why(status))
     return outcomes + [rest] * (len(arguments) - len(outcomes))
-
-
-def _work(
-    function: Callable[..., Any],
-    arguments: Sequence[Arguments],
-    writing: int,
-    seconds: float,
-    megabytes: int,
-) -> None:
-    """Do the child's part: call, look, write."""
-    os.setpgid(0, 0)
-    faulthandler.disable()  # a crash is reported by the parent, in a sentence
-    _limit(seconds, megabytes)
-    _show_nothing()
-    nowhere = os.open(os.devnull, os.O_RDWR)
-    for stream in (0, 1, 2):
-        os.dup2(nowhere, stream)
-    for given in arguments:
-        line = encode(attempt(function, given))
-        while line:
-            line = line[os.write(writing, line) :]
-
-
-def _show_nothing() -> None:
-    """Keep the child from sending figures to the page in the notebook's name."""
-    ipython = sys.modules.get("IPython")
-    shell = ipython.get_ipython() if ipython else None
-    if shell is not None:
-        shell.display_pub.publish = lambda *_, **__: None
-
-
-def _limit(seconds: float, megabytes: int) -> None:
-    """Set limits that hold even if the notebook dies before the child does."""
-    import resource
-
-    # 1. time: one second after the parent would have stopped it
-    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.alarm(int(seconds) + 2)
-    # 2. memory: linear algebra sets some aside for each processor
-    headroom = (megabytes + 64 * (os.cpu_count() or 1)) * 2**20
-    with contextlib.suppress(OSError, ValueError):
-        with open("/proc/self/statm", "rb") as stream:  # noqa: PTH123
-            used = int(stream.read().split()[0]) * resource.getpagesize()
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        wanted = used + headroom
-        if hard == resource.RLIM_INFINITY or wanted < hard:
-            resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
-    # 3. no core files
-    with contextlib.suppress(OSError, ValueError):
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def _read(reading: int, n: int, seconds: float) -> tuple[list[bytes], bool]:
