@@ -37,8 +37,8 @@ def page(tmp_path_factory):
     path = write(
         tmp_path_factory.mktemp("page") / "page.ipynb",
         ("from cvnotes.show.explore import explore_lens\nexplore_lens()", "nbval-ignore-output"),
-        "import ipywidgets\nipywidgets.IntSlider()",
         ("'a large viewer'", "no-save-output"),
+        "import ipywidgets\nipywidgets.IntSlider()",
         "'a value'",
         "from IPython.display import display\nwidget = explore_lens()\ndisplay(widget, 5)",
     )
@@ -58,6 +58,7 @@ def test_of_an_exploration_the_still_remains_with_its_text_and_nothing_of_the_wi
 def test_a_widget_without_a_still_and_a_viewer_leave_nothing(page):
     assert page[1][1].outputs == []
     assert page[1][2].outputs == []
+    assert all(cell.execution_count for cell in page[1])
 
 
 def test_everything_else_is_kept(page):
@@ -79,6 +80,16 @@ def test_a_widget_saved_by_jupyterlab_is_not_as_built(page, tmp_path):
     result = run("--check", tmp_path / "saved.ipynb")
     assert result.returncode == 1
     assert "not those of tools/build_notebooks.py" in result.stdout
+
+
+def test_where_a_page_would_show_nothing_it_is_told(tmp_path):
+    hidden = ("from cvnotes.show.explore import explore_lens\nexplore_lens();", "explore")
+    path = write(tmp_path / "empty.ipynb", hidden, "1", ("'a viewer'", "no-save-output"), "2")
+    result = run(path)
+    assert result.returncode == 1
+    assert "cell-00 shows no still of its exploration" in result.stdout
+    assert "cell-02 has no picture beside its viewer" in result.stdout
+    assert run("--check", path).stdout == result.stdout
 
 
 def test_an_error_and_words_on_stderr_are_told_and_leave_the_exit_code_one(tmp_path):

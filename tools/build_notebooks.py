@@ -11,6 +11,7 @@ runs give the same file.
 """
 
 import argparse
+import re
 import sys
 from pathlib import Path
 
@@ -65,6 +66,21 @@ def problems(notebook: nbformat.NotebookNode) -> list[str]:
                 found.append(f"{cell.id} writes to stderr: {output.text[:200]}")
             if output.output_type == "error" and "raises-exception" not in tags:
                 found.append(f"{cell.id} raises {output.ename}: {output.evalue}")
+    return found + _unseen(notebook)
+
+
+def _unseen(notebook: nbformat.NotebookNode) -> list[str]:
+    """Say which widgets and viewers leave nothing to see on a page without a kernel."""
+    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    seen = ["<img" in str(cell.outputs) for cell in cells]
+    found = []
+    for i, cell in enumerate(cells):
+        if re.search(r"^explore_\w+\(", cell.source, re.M) and not seen[i]:
+            found.append(f"{cell.id} shows no still of its exploration")
+        if "no-save-output" in cell.metadata.get("tags", []) and not any(
+            seen[max(0, i - 1) : i + 2]
+        ):
+            found.append(f"{cell.id} has no picture beside its viewer")
     return found
 
 
