@@ -16,9 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.errors import Array, CvnotesError, ShapeError, numbers, points
-from cvnotes.radial import Inverse, fold_radius
-from cvnotes.radial import horner as horner
-from cvnotes.radial import radial_factor as radial_factor
+from cvnotes.radial import Inverse, fold_radius, horner, radial_factor
 
 # Far from all lenses powers of r overflow: to infinity, or to NaN, and in silence.
 _beyond_all_numbers = np.errstate(over="ignore", invalid="ignore")
