@@ -117,6 +117,7 @@ class Sampler:
         self.fill = checked_fill(fill, picture)
         self.stride = self.width + 3
         self.strides = np.array([1.0, self.stride])
+        self.limits = np.array([[self.width], [self.height]], dtype=np.float64)
         self._pad(picture)
 
     def _pad(self, picture: Image) -> None:
@@ -173,11 +174,8 @@ class Sampler:
 
     def _inside(self, m: Array) -> Array:
         """Keep positions between −1 and width or height, where the frame begins; NaN at −1."""
-        np.clip(m[0], -1.0, self.width, out=m[0])
-        np.clip(m[1], -1.0, self.height, out=m[1])
-        if m.size and np.isnan(m.min()):
-            m[:, np.isnan(m).any(axis=0)] = -1
-        return m
+        np.fmax(m, -1.0, out=m)
+        return np.minimum(m, self.limits, out=m)
 
     def _index(self, m_k: Array) -> npt.NDArray[np.intp]:
         """Place whole pixels in the framed picture, whose frame begins at (−1, −1)."""
