@@ -22,7 +22,7 @@ from cvnotes.radial import Inverse, fold_radius, horner, radial_factor
 _beyond_all_numbers = np.errstate(over="ignore", invalid="ignore")
 
 # Points undistorted at a time: the dozen temporaries then stay in the cache.
-_CHUNK = 8192
+_CHUNK = 12288
 
 
 @dataclass(frozen=True)
