@@ -336,15 +336,15 @@ def test_zoomed_by_two_three_quarters_of_the_picture_are_holes():
     assert covered == 108 * 81
     assert folds == 0
     assert abs(holes / covered - 0.75) < 0.01
-    left, right = sight.picture[:, :436], sight.picture[:, 436:]
-    assert count(left, ESTIMATED) / (430 * 322) > 0.65
+    left, right = sight.picture[:, :438], sight.picture[:, 438:]
+    assert count(left, ESTIMATED) / (432 * 324) > 0.65
     assert count(right, ESTIMATED) == 0
 
 
 def test_forward_and_backward_show_the_same_but_for_the_holes():
     for values in ({"angle": 30, "zoom": 1}, {"angle": -50, "zoom": 0.7}):
         picture = MODELS["warp"].picture(**values).astype(int)[TITLE + 4 : 340]
-        left, right = picture[:, 4:434], picture[:, 440:870]
+        left, right = picture[:, 4:434], picture[:, 442:872]
         hole = np.abs(left - colour(ESTIMATED)).max(-1) < 60
         assert (np.abs(left - right).max(-1) < 30)[~hole].mean() > 0.9
 

@@ -14,6 +14,7 @@ from cvnotes.targets import Chessboard
 from cvnotes.warp import backward_warp, compose, forward_warp, rotation_map, zoom_map
 
 _WIDTH = 108  # px of the source: few enough to see each one
+_LARGER = 4  # px of the page for a pixel
 _PAPER = 255  # grey level where the source has nothing to show
 
 
@@ -47,7 +48,7 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Sight:
     covered = backward_warp(np.ones_like(source), where_from, method="nearest") > 0
     backward[~covered] = _PAPER
     holes = covered & (forward.hits == 0)
-    size = (430, round(430 * height / width))
+    size = (_LARGER * width, _LARGER * height)
     left = paper.picture_panel(size, (width, height), "forward: each pixel is sent")
     left.image(_with_holes(forward.image.astype(np.uint8), holes), smooth=False)
     right = paper.picture_panel(size, (width, height), "backward: each pixel is fetched")
