@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-# Cubes of larger numbers overflow; a matrix, which stands for all its multiples, may be squared.
-LARGEST, LARGEST_ENTRY = 1e100, 1e150
+# Cubes of larger numbers overflow; of a matrix, which stands for all its multiples, sums of three
+# squares still do not.
+LARGEST, LARGEST_ENTRY = 1e100, 7e153
 # Four times what a photograph may have; more is a slip, and would hardly fit into the memory.
 MOST_PIXELS = 2**28
 
@@ -99,8 +100,8 @@ def numbers(x: Any, name: str, *, largest: float = LARGEST) -> Array:
         raise CvnotesError(f"{name} contains NaN or infinite values{first}; leave those out")
     if peak > largest:
         raise CvnotesError(
-            f"{name} contains values of {peak:.2g}, but beyond {largest:g} products overflow; "
-            "choose another unit (or were they never assigned?)"
+            f"{name} contains values of {peak:.2g}, which cannot be computed with: beyond "
+            f"{largest:g} products overflow; choose another unit (or were they never assigned?)"
         )
     return array
 
