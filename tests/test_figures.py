@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, Rectangle
 from matplotlib.quiver import Quiver
 from PIL import Image
 
-from cvnotes.errors import CvnotesError, DegenerateError, ShapeError
+from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
 from cvnotes.show import (
     draw_corners,
     draw_coverage,
@@ -154,7 +154,7 @@ def test_what_is_no_picture_is_refused(shape):
 
 
 def test_a_picture_of_text_is_refused():
-    with pytest.raises(CvnotesError, match="image: expected numbers"):
+    with pytest.raises(InputTypeError, match="image: expected a numeric array"):
         draw_image([["a", "b"]])
 
 
@@ -167,8 +167,13 @@ def test_points_lie_where_they_were_given_and_nan_rows_are_left_out():
 def test_a_wrong_meaning_or_shape_is_said():
     with pytest.raises(CvnotesError, match="meaning: expected one of world, camera, ideal, lens"):
         draw_points([[1, 2]], meaning="guess")
-    with pytest.raises(ShapeError, match=r"m: expected shape \(\.\.\., 2\), got \(1, 3\)"):
+    with pytest.raises(
+        ShapeError, match=r"m: expected positions .* shape \(\.\.\., 2\), got \(1, 3\)"
+    ):
         draw_points([[1, 2, 3]])
+    for nothing in (None, "abc", [[1, 2], [3]], [[1, 2j]]):
+        with pytest.raises(InputTypeError, match="m: expected"):
+            draw_points(nothing)
 
 
 def test_the_order_of_the_corners_can_be_seen():

@@ -9,7 +9,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
-from cvnotes.errors import Array, CvnotesError, ShapeError, image_size, points
+from cvnotes.errors import Array, CvnotesError, ShapeError, image_size, points, real
+from cvnotes.interpolate import positions
 from cvnotes.show.style import (
     COLOURS,
     ESTIMATED,
@@ -37,7 +38,7 @@ def draw_image(image: npt.ArrayLike, *, ax: Axes | None = None, title: str = "")
     >>> draw_image(np.zeros((480, 640), np.uint8)).get_ylim()
     (np.float64(479.5), np.float64(-0.5))
     """
-    picture = np.asarray(image)
+    picture = image if isinstance(image, np.ndarray) else real(image, "image")
     if picture.ndim not in (2, 3) or picture.size == 0 or picture.shape[2:] not in ((), (3,)):
         raise ShapeError(
             f"image: expected (height, width) or (height, width, 3), got {picture.shape}"
@@ -80,9 +81,7 @@ def draw_points(
     >>> len(draw_points([[100, 50], [200, 80]]).collections)
     1
     """
-    m = np.asarray(m, dtype=np.float64)
-    if m.ndim == 0 or m.shape[-1] != 2:
-        raise ShapeError(f"m: expected shape (..., 2), got {m.shape}")
+    m = positions(m, "m")
     if meaning not in COLOURS:
         raise CvnotesError(f"meaning: expected one of {', '.join(COLOURS)}, got {meaning!r}")
     if ax is None:
