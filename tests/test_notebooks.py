@@ -134,7 +134,7 @@ def test_a_chapter_has_all_its_parts(path):
         assert part in prose, f"no {part!r}"
     assert 2 <= len(re.findall(r"^check\(", code, re.M)) <= 6
     assert "from cvnotes.show.explore import" in code, "no explore widget"
-    assert 30 <= len(notebook.cells) <= 70
+    assert 30 <= len(notebook.cells) <= 50
     assert "import" in _code(notebook)[0].source
 
 
