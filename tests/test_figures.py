@@ -167,9 +167,7 @@ def test_points_lie_where_they_were_given_and_nan_rows_are_left_out():
 def test_a_wrong_meaning_or_shape_is_said():
     with pytest.raises(CvnotesError, match="meaning: expected one of world, camera, ideal, lens"):
         draw_points([[1, 2]], meaning="guess")
-    with pytest.raises(
-        ShapeError, match=r"m: expected positions .*2\), got \(1, 3\)"
-    ):
+    with pytest.raises(ShapeError, match=r"m: expected positions .*2\), got \(1, 3\)"):
         draw_points([[1, 2, 3]])
     for nothing in (None, "abc", [[1, 2], [3]], [[1, 2j]]):
         with pytest.raises(InputTypeError, match="m: expected"):
