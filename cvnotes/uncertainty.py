@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import Camera
-from cvnotes.errors import Array, CvnotesError, points, rigid_motion
+from cvnotes.errors import Array, CvnotesError, ShapeError, points, rigid_motion
 from cvnotes.lens import Lens
 from cvnotes.refine import Problem, covariance
 from cvnotes.result import Calibration
@@ -91,6 +91,8 @@ def std_with_view(calibration: Calibration, G: npt.ArrayLike) -> dict[str, float
     True
     """
     G = rigid_motion(G)
+    if G.ndim != 2:
+        raise ShapeError(f"G: expected one pose (4, 4), got {G.shape}")
     boards = calibration.board_points
     if not boards or any(W.shape != boards[0].shape for W in boards):
         raise CvnotesError("the views must come with their corners, all of one board")

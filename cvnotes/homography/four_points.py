@@ -44,8 +44,9 @@ def four_points_unit_norm(src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
     1.0
     """
     h = _eight_of_four(src, dst)
-    h9 = 1 / np.sqrt(h @ h + 1)
-    return np.append(h9 * h, h9).reshape(3, 3)
+    with np.errstate(over="ignore", invalid="ignore"):
+        h9 = 1 / np.sqrt(h @ h + 1)
+        return np.append(h9 * h, h9).reshape(3, 3)
 
 
 def _eight_of_four(src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
@@ -55,11 +56,13 @@ def _eight_of_four(src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
         raise ShapeError(f"the 4-point case takes (4, 2) and (4, 2), got {src.shape}, {dst.shape}")
     D = design_matrix(src, dst)
     # Scale the columns so that the rank does not depend on the units.
-    scale = np.linalg.norm(D, axis=0)
+    scale = np.abs(D).max(axis=0)
+    scale[scale == 0] = 1
     s = np.linalg.svd(D[:, :8] / scale[:8], compute_uv=False)
     if s[7] <= 1e-12 * s[0]:
         raise DegenerateError(
             "the 8×8 system is singular: three of the four points lie on a line, or the true h9 "
             "is zero, which neither h9 = 1 nor its closed form can express; use dlt"
         )
-    return np.asarray(np.linalg.solve(D[:, :8] / scale[:8], -D[:, 8]) / scale[:8])
+    with np.errstate(over="ignore"):  # from points within less than all numbers
+        return np.asarray(np.linalg.solve(D[:, :8] / scale[:8], -D[:, 8]) / scale[:8])

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, DegenerateError, matrix, paired, points
+from cvnotes.errors import Array, DegenerateError, equally_many, matrix, paired, points
 from cvnotes.homography.degenerate import RANK
 from cvnotes.homography.normalise import apply_similarity, inverse_similarity, normaliser_of
 from cvnotes.optimise import levenberg_marquardt, solve_dense
@@ -21,7 +21,9 @@ def geometric_error(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) ->
     H = matrix(H, "H", 3, 3)
     src, dst = points(src, "src", 2), points(dst, "dst", 2)
     paired(src, dst, ("src", "dst"), at_least=1)
-    return np.asarray(np.linalg.norm(dst - drop(to_homogeneous(src) @ H.mT), axis=-1))
+    equally_many("H, src and dst", H.shape[:-2], src.shape[:-2], dst.shape[:-2])
+    d = dst - drop(to_homogeneous(src) @ H.mT)
+    return np.asarray(np.hypot(d[..., 0], d[..., 1]))
 
 
 def refine_homography(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
@@ -63,8 +65,10 @@ def refine_homography(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) 
     H = matrix(H, "H", 3, 3)
     src, dst = points(src, "src", 2), points(dst, "dst", 2)
     paired(src, dst, ("src", "dst"), at_least=4)
-    if H.ndim > 2 or dst.ndim > 2:
-        stack = np.broadcast_shapes(H.shape[:-2], src.shape[:-2], dst.shape[:-2])
+    if max(H.ndim, src.ndim, dst.ndim) > 2:
+        stack = equally_many("H, src and dst", H.shape[:-2], src.shape[:-2], dst.shape[:-2])
+        if 0 in stack:
+            return np.zeros((*stack, 3, 3))
         views = (np.broadcast_to(x, (*stack, *x.shape[-2:])) for x in (H, src, dst))
         refined = [_refine_one(*one) for one in zip(*(_flatten(x) for x in views), strict=True)]
         return np.stack(refined).reshape(*stack, 3, 3)

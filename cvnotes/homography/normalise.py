@@ -29,7 +29,10 @@ def normaliser(x: npt.ArrayLike) -> Array:
            [ 0.,  1., -1.],
            [ 0.,  0.,  1.]])
     """
-    return normaliser_of(points(x, "x", 2))
+    x = points(x, "x", 2)
+    if x.size == 0:
+        raise DegenerateError(f"x: expected at least one point (..., n, 2), got {x.shape}")
+    return normaliser_of(x)
 
 
 def normaliser_of(x: Array) -> Array:

@@ -108,7 +108,8 @@ def scaled(H: Array) -> Array:
     """Scale each homography (..., 3, 3) to a largest entry of 1, and name one that is singular."""
     largest = np.abs(H).max((-2, -1), keepdims=True)
     H = H / np.where(largest > 0, largest, 1)
-    bad = np.abs(np.linalg.det(H)) <= 1e-12 * np.linalg.norm(H, axis=-2).prod(-1)
+    sizes = np.linalg.norm(H, axis=-2).prod(-1)
+    bad = (np.abs(np.linalg.det(H)) <= 1e-12 * sizes) | (sizes == 0)
     if bad.any():
         raise DegenerateError(f"homography {int(np.argmax(bad))} is singular: it shows no plane")
     return H

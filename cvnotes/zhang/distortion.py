@@ -8,6 +8,7 @@ from cvnotes.errors import (
     Array,
     CvnotesError,
     DegenerateError,
+    equally_many,
     intrinsic_matrix,
     paired,
     points,
@@ -62,13 +63,17 @@ def radial_distortion(
     paired(W, m, ("W", "m"), at_least=1)
     if not isinstance(terms, int) or terms < 1:
         raise CvnotesError(f"terms: expected how many coefficients, 1 or more, got {terms!r}")
+    views = equally_many("G, W and m", G.shape[:-2], W.shape[:-2], m.shape[:-2])
+    if 0 in views:
+        raise DegenerateError("need at least one view, got none")
+    W = np.broadcast_to(W, (*views, *W.shape[-2:]))
     M = W @ G[..., :3, :3].mT + G[..., None, :3, 3]
     if not (M[..., 2] > 0).all():
         raise DegenerateError("a board point does not lie in front of the camera")
     ideal = M[..., :2] / M[..., 2:]
     r2 = ideal[..., :1] ** 2 + ideal[..., 1:] ** 2
     powers = [ideal * r2**i for i in range(1, terms + 1)]
-    d = xy_from_px(A, m) - ideal
+    d = np.broadcast_to(xy_from_px(A, m), (*views, *m.shape[-2:])) - ideal
     D = np.stack(powers, axis=-1).reshape(-1, terms)
     k, _, rank, _ = np.linalg.lstsq(D, d.ravel(), rcond=None)
     if rank < terms:

@@ -115,7 +115,10 @@ def focal_lengths_from_homographies(H: npt.ArrayLike, centre: npt.ArrayLike = (0
            [0., 2., 0.],
            [0., 0., 1.]])
     """
-    u0, v0 = points(centre, "centre", 2)
+    middle = points(centre, "centre", 2)
+    if middle.ndim != 1:
+        raise ShapeError(f"centre: expected one point (u0, v0), got {middle.shape}")
+    u0, v0 = middle
     to_centre = np.array([[1, 0, -u0], [0, 1, -v0], [0, 0, 1]])
     alpha_u, alpha_v = focal_lengths_from_v(constraints(to_centre @ matrix(H, "H", 3, 3)))
     return np.array([[alpha_u, 0, u0], [0, alpha_v, v0], [0, 0, 1]])
