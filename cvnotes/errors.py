@@ -5,6 +5,7 @@ module. A single point has no image: its row is NaN. Guards copy what they are g
 float64, so that no function can write to its input.
 """
 
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
@@ -91,18 +92,11 @@ def numbers(x: Any, name: str, *, largest: float = LARGEST) -> Array:
     array([1., 2.])
     """
     given = real(x, name)
-    with np.errstate(over="ignore"):  # of long doubles
-        array = np.array(given, dtype=np.float64)
-    peak = float(np.abs(array).max(initial=0.0))
-    if not np.isfinite(peak):
-        at = np.argwhere(~np.isfinite(array))[0].tolist()
-        first = f" (the first at {at})" if at else ""
-        raise CvnotesError(f"{name} contains NaN or infinite values{first}; leave those out")
-    if peak > largest:
-        raise CvnotesError(
-            f"{name} contains values of {peak:.2g}, which cannot be computed with: beyond "
-            f"{largest:g} products overflow; choose another unit (or were they never assigned?)"
-        )
+    with np.errstate(over="ignore") if given.dtype.itemsize > 8 else nullcontext():
+        array = given.astype(np.float64)
+    # One pass tells in nearly all cases that no number is too large, and none NaN.
+    if not np.vdot(array, array) < largest * largest:
+        _refuse_extremes(array, name, largest)
     return array
 
 
@@ -262,6 +256,20 @@ def target_size(x: Any, name: str = "size") -> tuple[int, int]:
     if width * height > MOST_PIXELS:
         raise CvnotesError(f"{name}: a picture of {width} × {height} pixels would be too large")
     return width, height
+
+
+def _refuse_extremes(array: Array, name: str, largest: float) -> None:
+    """Refuse NaN, infinite values, and values beyond `largest`."""
+    peak = float(np.abs(array).max(initial=0.0))
+    if not np.isfinite(peak):
+        at = np.argwhere(~np.isfinite(array))[0].tolist()
+        first = f" (the first at {at})" if at else ""
+        raise CvnotesError(f"{name} contains NaN or infinite values{first}; leave those out")
+    if peak > largest:
+        raise CvnotesError(
+            f"{name} contains values of {peak:.2g}, which cannot be computed with: beyond "
+            f"{largest:g} products overflow; choose another unit (or were they never assigned?)"
+        )
 
 
 def _is_masked(x: Any) -> bool:
