@@ -149,10 +149,11 @@ def _list(sets: Any) -> Sequence[Any]:
 def _located(x: Any, name: str) -> Any:
     """Name the view and the corner of the first NaN, which the common guard cannot."""
     try:
-        bad = np.argwhere(~np.isfinite(x))
+        finite = np.isfinite(x)
     except Exception:  # no array of numbers: the common guard says so
         return x
-    if bad.size:
+    bad = () if finite.all() else np.argwhere(~finite)
+    if len(bad):
         place = bad[0][:-1].tolist()
         words = f"view {place[0]}, corner {place[1]}" if len(place) == 2 else f"corner {place[-1]}"
         raise CvnotesError(f"{name}: {words} contains NaN or infinite values; leave it out")
@@ -166,10 +167,11 @@ def _counts(points: Array, real: Any, n_views: int) -> list[int]:
 
 def _refuse_lines(m: Array) -> None:
     """Refuse views (n_views, n, 2) in which all points lie on one line."""
-    u, v = (x - x.mean(1, keepdims=True) for x in (m[..., 0], m[..., 1]))
-    uu, vv, uv = (u * u).sum(1), (v * v).sum(1), (u * v).sum(1)
-    size = np.maximum(uu + vv, 1e-300)  # dividing by it first keeps all products finite
-    flat = uu / size * (vv / size) - (uv / size) ** 2 <= 1e-14
+    uv = np.ascontiguousarray(m.mT)
+    uv -= uv.mean(-1, keepdims=True)
+    spread = uv @ uv.mT
+    size = np.trace(spread, axis1=1, axis2=2)[:, None, None]
+    flat = np.linalg.det(spread / np.maximum(size, 1e-300)) <= 1e-14
     if flat.any():
         raise DegenerateError(
             f"view {int(np.argmax(flat))}: all its image points coincide or lie on one line"

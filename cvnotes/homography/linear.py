@@ -113,7 +113,7 @@ def _normal_matrix(src: Array, dst: Array) -> Array:
     WW = (W[..., :, None] * W[..., None, :]).reshape(*W.shape[:-1], 9)
     weights = np.ones((*dst.shape[:-2], 4, dst.shape[-2]))
     weights[..., 1:3, :] = -dst.mT
-    weights[..., 3, :] = (dst * dst).sum(-1)
+    weights[..., 3, :] = dst[..., 0] ** 2 + dst[..., 1] ** 2
     blocks = weights @ WW
     N = np.zeros((*blocks.shape[:-2], 9, 9))
     blocks = blocks.reshape(*blocks.shape[:-1], 3, 3)

@@ -39,9 +39,10 @@ def normaliser_of(x: Array) -> Array:
     """Give the similarity of `normaliser`, without copying and checking x once more."""
     if x.ndim < 2:
         raise ShapeError("x: expected several points (..., n, 2), got a single one")
-    centre = x.sum(-2) / x.shape[-2]  # the method mean costs twice as much on few points
+    n = x.shape[-2]
+    centre = np.ones(n) @ x / n  # on stacks many times as quick as the method mean
     d = x - centre[..., None, :]
-    distance = np.hypot(d[..., 0], d[..., 1]).sum(-1) / x.shape[-2]
+    distance = np.sqrt(d[..., 0] ** 2 + d[..., 1] ** 2).sum(-1) / n
     smallest = 1e-12 * np.abs(centre).max(-1) + 1 / _HUGE
     if not ((smallest < distance) & (distance < _HUGE)).all():
         if (distance <= smallest).any():
