@@ -37,8 +37,8 @@ LENSES = {
     "k1 k2 p1 p2": (2, True),
     "k1 k2 p1 p2 k3": (3, True),
 }
-# Views among which the start is sought; what they agree on, the others only sharpen.
-_VIEWS_FOR_START = 10
+# Of many views, some say where the camera is; the others only sharpen it.
+_MANY_VIEWS, _VIEWS_FOR_START = 150, 16
 # RMS over the picture's longer side: a start that leaves more than this is not trusted before the
 # others were tried.
 _SUSPICIOUS = 0.002
@@ -160,7 +160,7 @@ def _spread(n: int, kept: int) -> npt.NDArray[np.intp]:
 
 def _starts(problem: Problem, steps: Steps) -> Iterator[State]:
     """Give the starts of all views, before which a few of many views may say more, and sooner."""
-    if len(problem.m) > 2 * _VIEWS_FOR_START:
+    if len(problem.m) > _MANY_VIEWS:
         with suppress(ConvergenceError, DegenerateError):
             few = problem.some(_spread(len(problem.m), _VIEWS_FOR_START))
             camera = _best_minimum(few, steps, tolerance=1e-6).x.shared

@@ -152,7 +152,7 @@ def _located(x: Any, name: str) -> Any:
         finite = np.isfinite(x)
     except Exception:  # no array of numbers: the common guard says so
         return x
-    bad = () if finite.all() else np.argwhere(~finite)
+    bad: Any = () if finite.all() else np.argwhere(~finite)
     if len(bad):
         place = bad[0][:-1].tolist()
         words = f"view {place[0]}, corner {place[1]}" if len(place) == 2 else f"corner {place[-1]}"

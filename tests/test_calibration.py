@@ -18,7 +18,7 @@ from cvnotes.errors import (
 )
 from cvnotes.homography import dlt
 from cvnotes.lens import Lens
-from cvnotes.refine import Problem
+from cvnotes.refine import Problem, State, solve_arrow
 from cvnotes.rigid import pose, rotation_from_vector
 from cvnotes.steps import Steps
 from cvnotes.zhang import extrinsics, intrinsics_from_homographies, radial_distortion
@@ -149,6 +149,36 @@ def test_a_lens_that_folds_before_some_corners_does_not_keep_the_others_from_a_s
     assert np.isnan(Lens(k=(-1.2,)).undistort((exact[1][0] - 600) / 1000)).any()
     assert np.isfinite(state.T).all()
     assert (state.T[:, 2] > 0).all()
+
+
+def test_many_views_are_started_from_a_few_of_them_and_end_where_all_would_have_led(
+    board, views_of, monkeypatch
+):
+    rng = np.random.default_rng(4)
+    m = noise(views_of(RADIAL, 160, rng)[1], rng)
+    resumed = []
+    original = Steps.resumed
+
+    def watched(self, problem, shared):
+        resumed.append((len(problem.m), shared))
+        return original(self, problem, shared)
+
+    monkeypatch.setattr(Steps, "resumed", watched)
+    quietly(board.points, m[:150], SIZE)
+    assert not resumed
+    result = quietly(board.points, m, SIZE)
+    [(n_views, shared)] = resumed
+    assert n_views == 160
+    # 16 views already know the camera to some of their error bars, which are √10 times as long
+    assert np.abs((shared[:4] - [1000, 1004, 650, 470]) / list(result.std.values())[:4]).max() < 15
+    # and the refinement ends where the derivatives of the cost, with respect to all, vanish
+    problem = problem_of(board, m)
+    data = Correspondences.of(board.points, m)
+    T = (result.poses[:, :3, 3] + result.poses[:, :3, :3] @ data.centre) / data.scale
+    end = State(np.array(list(result.parameters.values())), result.poses[:, :3, :3], T)
+    (step, _), gain = solve_arrow(problem.linearise(end)[1], 0.0)
+    assert np.abs(step / list(result.std.values())).max() < 1e-3
+    assert gain < 1e-9 * problem.linearise(end)[0]
 
 
 def test_whatever_the_start_the_same_minimum_is_reached_to_a_fraction_of_the_error_bars(
