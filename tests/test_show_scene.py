@@ -340,6 +340,14 @@ def test_a_still_fills_its_place_and_stays_within(view):
     assert (np.ptp(ends, axis=0) > 0.7 * np.array([640, 520])).any()
 
 
+def test_matplotlib_does_not_measure_polygons_of_different_lengths():
+    # it would read beyond the end of the shorter ones
+    fresh = Figure().add_subplot(projection="3d")
+    ax = draw_scene(*all_shapes())
+    assert np.array_equal(ax.xy_dataLim.get_points(), fresh.xy_dataLim.get_points())
+    assert np.array_equal(ax.zz_dataLim.get_points(), fresh.zz_dataLim.get_points())
+
+
 def test_a_still_beside_others_stays_in_its_own_place():
     figure = Figure(figsize=(9, 4), dpi=100)
     right = figure.add_subplot(1, 2, 2, projection="3d")

@@ -48,9 +48,11 @@ def draw_scene(
     """
     reach = extent(*shapes)
     ax = _axes() if ax is None else ax
-    # All in one collection: matplotlib sorts by distance only within one.
+    # All in one collection: matplotlib sorts by distance only within one. Its own limits would
+    # come from memory it never wrote where the polygons have different numbers of corners.
     corners, colours = _painted(shapes, reach, _towards(view))
-    ax.add_collection3d(Poly3DCollection(corners, facecolors=colours, edgecolors=colours, lw=0.3))
+    polygons = Poly3DCollection(corners, facecolors=colours, edgecolors=colours, lw=0.3)
+    ax.add_collection(polygons, autolim=False)
     for shape in shapes:
         if isinstance(shape, Label):
             text = ax.text(*_upright(shape.at), shape.name, color=shape.colour, zorder=1e6)
