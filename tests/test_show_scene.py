@@ -405,3 +405,12 @@ def test_what_cannot_be_shown_is_refused_in_words(make, error, words):
 def test_labels_alone_make_a_still_too():
     ax = draw_scene(Label("here", np.array([1.0, 2, 3]), WORLD), *axes_shapes(length=5.0))
     assert "here" in [text.get_text() for text in ax.texts]
+
+
+def test_a_colour_is_the_same_under_the_viewers_lamp_and_seen_in_the_shade_too():
+    scene = build_scene(Lines("rail", np.array([[[0.0, 0, 0], [0, 0, 9]]]), "#009e73", 2))
+    [rail] = scene.geometry.values()
+    paint = rail.visual.material
+    lit = np.asarray(paint.baseColorFactor[:3]) / 255 + paint.emissiveFactor
+    assert np.allclose(lit, np.array([0x00, 0x9E, 0x73]) / 255, atol=0.003)
+    assert (paint.emissiveFactor >= 0.5 * lit).all()

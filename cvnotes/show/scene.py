@@ -17,6 +17,8 @@ from cvnotes.rigid import inverse
 from cvnotes.show.shapes import Faces, Label, Lines, Photo, Shape, extent
 
 GL_FROM_CV = np.diag([1.0, -1.0, -1.0, 1.0])
+# Colours have meanings, so they must be seen on the far side of the viewer's lamp too.
+_GLOW = 0.7
 
 
 def gl_from_cv(cam_from_world: npt.ArrayLike) -> Array:
@@ -128,7 +130,8 @@ def _textured(corners: Array, image: npt.NDArray[np.uint8]) -> Any:
     from PIL import Image
 
     uv = np.array([[0, 1], [1, 1], [1, 0], [0, 0]], dtype=float)  # v points up in textures
-    paint = _paint(np.ones(4), baseColorTexture=Image.fromarray(image))
+    picture = Image.fromarray(image)
+    paint = _paint(np.ones(4), baseColorTexture=picture, emissiveTexture=picture)
     visual = trimesh.visual.TextureVisuals(uv=uv, material=paint)
     return trimesh.Trimesh(corners, [[0, 1, 2], [0, 2, 3]], visual=visual, process=False)
 
@@ -137,8 +140,10 @@ def _paint(rgba: Array, **kwargs: Any) -> Any:
     """Make a dull material, visible from both sides; without it viewers assume dark metal."""
     from trimesh.visual.material import PBRMaterial
 
+    lit = np.append((1 - _GLOW) * rgba[:3], rgba[3])
     return PBRMaterial(
-        baseColorFactor=np.rint(255 * rgba).astype(np.uint8),
+        baseColorFactor=np.rint(255 * lit).astype(np.uint8),
+        emissiveFactor=_GLOW * rgba[:3],
         metallicFactor=0.0,
         roughnessFactor=1.0,
         doubleSided=True,
