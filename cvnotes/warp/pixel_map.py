@@ -11,7 +11,7 @@ from cvnotes.errors import Array, CvnotesError, InputTypeError, ShapeError, poin
 from cvnotes.interpolate import positions
 
 # Pixels mapped at a time: a dozen arrays of them stay in the cache.
-TILE = 20_000
+TILE = 14_000
 
 
 @dataclass(frozen=True)
