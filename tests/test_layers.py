@@ -12,7 +12,8 @@ PACKAGE = Path(__file__).resolve().parents[1] / "cvnotes"
 # A module imports only from layers strictly below its own. A folder is one layer, inside which
 # modules may use each other as long as nothing goes round in a circle.
 LAYERS = [
-    ["errors", "radial", "page"],
+    ["errors", "page"],
+    ["radial"],
     ["projective", "rigid", "optimise", "lens", "sheet", "sensor", "coverage", "_cv"],
     [
         "camera",

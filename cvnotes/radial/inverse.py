@@ -1,87 +1,15 @@
-"""The lens along a radius: the curve r L(r), where it folds, and its inverse (notes 2b.3).
-
-A point at the ideal offset x from the distortion centre, r = ‖x‖, is seen at the offset
-
-    d = (L(r) + 2 p·x) x + r² p,    L(r) = 1 + k1 r² + k2 r⁴ + …
-
-The way back has no closed form, but tangential terms or not, only one number has to be searched:
-q = ‖x‖/‖d‖ (see `Inverse`). Nothing here guards its input; `cvnotes.lens` does.
-"""
+"""The way back through a lens: a search for one number (notes 2b.3)."""
 
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from cvnotes.errors import Array
+from cvnotes.radial.fold import fold_radius
+from cvnotes.radial.polynomial import radial_factor
 
 # Knots of the table that Newton's method starts from; more of them would only save steps.
 _KNOTS = 4096
-
-
-def horner(coefficients: Sequence[float], t: Array) -> Array:
-    """Evaluate c0 + c1 t + c2 t² + … from its coefficients.
-
-    Examples
-    --------
-    >>> horner([1, 2], np.array([0.0, 10.0]))
-    array([ 1., 21.])
-    """
-    if len(coefficients) < 2:
-        return np.full_like(t, coefficients[0] if len(coefficients) else 0.0)
-    value = coefficients[-1] * t
-    for c in coefficients[-2:0:-1]:
-        value += c
-        value *= t
-    value += coefficients[0]
-    return value
-
-
-def radial_factor(k: Sequence[float], r2: Array) -> Array:
-    """Give L = 1 + k1 r² + k2 r⁴ + … as a function of r².
-
-    Examples
-    --------
-    >>> radial_factor((-0.25,), np.array([0.0, 1.0]))
-    array([1.  , 0.75])
-    """
-    return horner((1.0, *k), r2)
-
-
-def fold_radius(k: Sequence[float], p_norm: float = 0.0) -> float:
-    """Give the smallest ideal radius at which the picture folds over; inf if there is none.
-
-    It folds where the smaller eigenvalue of the Jacobian, a symmetric matrix, reaches 0. With
-    a = r dL/dr and m = 4 ‖p‖ r, the smallest value of this eigenvalue on a circle is
-
-        L + a − 3m/2              if a ≤ 2m/3, in the direction −p,
-        L − a/8 − m²/(2a)         if 2m/3 < a < 2m, beside it,
-        L − m/2                   if a ≥ 2m; it grows there, so it never reaches 0 first,
-
-    so that every fold is a root of one of two polynomials in r. Without tangential terms
-    L + a = d(r L)/dr decides alone.
-
-    Examples
-    --------
-    >>> fold_radius([-4 / 3]), fold_radius([0.1])
-    (0.5, inf)
-    """
-    L, m = np.zeros((2, 2 * len(k) + 2))  # ascending powers of r
-    L[0], L[2::2], m[1] = 1, k, 4 * p_norm
-    a = L * np.arange(L.size)
-    curves = [L + a - 1.5 * m]
-    if p_norm > 0:
-        curves.append(np.convolve(a, 8 * L - a) - 4 * np.convolve(m, m))
-    candidates = np.sort(np.concatenate([_positive_roots(c) for c in curves]))
-    for i, r in enumerate(candidates):
-        beyond = (r + candidates[i + 1]) / 2 if i + 1 < candidates.size else 2 * r
-        L_r, a_r, m_r = (float(horner(c.tolist(), beyond)) for c in (L, a, m))
-        smallest = min(L_r + a_r - 1.5 * m_r, L_r - m_r / 2)
-        if 2 * m_r < 3 * a_r < 6 * m_r:
-            smallest = L_r - a_r / 8 - m_r**2 / (2 * a_r)
-        if smallest < 0:
-            return float(r)
-    return np.inf
 
 
 class Inverse:
@@ -246,14 +174,3 @@ class Inverse:
         knots = np.arange(_KNOTS + 1)
         self.q = np.interp(knots, self._w((r * L) ** 2)[::-1], (1 / L)[::-1])
         self.q_step = np.diff(self.q, append=self.q[-1])
-
-
-def _positive_roots(ascending: Array) -> Array:
-    """Give the positive real roots of a polynomial, polished by one step of Newton's method."""
-    # Read backwards the polynomial has the reciprocals as roots, and small r come out best.
-    reciprocal = np.roots(np.where(np.abs(ascending) < 1e-100, 0, ascending))
-    real = np.abs(reciprocal.imag) <= 1e-7 * np.abs(reciprocal)
-    r = 1 / reciprocal.real[real & (reciprocal.real > 1e-6)]  # 90° is infinite for our purpose
-    value = horner(ascending.tolist(), r)
-    slope = horner((ascending * np.arange(ascending.size))[1:].tolist(), r)
-    return np.asarray(r - np.divide(value, slope, out=np.zeros_like(r), where=slope != 0))
