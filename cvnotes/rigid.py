@@ -22,6 +22,13 @@ from cvnotes.errors import (
     rotation,
 )
 
+# [v]× = Σ v_i E_i; the rows here are E_1, E_2 and E_3 from left to right, top to bottom.
+_CROSS = np.array(
+    [[0, 0, 0, 0, 0, -1, 0, 1, 0], [0, 0, 1, 0, 0, 0, -1, 0, 0], [0, -1, 0, 1, 0, 0, 0, 0, 0.0]]
+)
+# Makes an angle of 0 the smallest of all, and changes no other.
+_NOT_ZERO = 1e-300
+
 
 def pose(R: npt.ArrayLike, T: npt.ArrayLike) -> Array:
     """Join R (..., 3, 3) and T (..., 3) to the rigid motion G (..., 4, 4).
@@ -185,20 +192,11 @@ def look_at(eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike = (0, -
 
 def exp_so3(w: Array) -> Array:
     """Rotations (..., 3, 3) of rotation vectors (..., 3), without a guard: for use inside."""
-    theta2 = (w * w).sum(-1)
-    theta = np.sqrt(theta2)
-    small = theta < 1e-4
-    safe = np.where(small, 1.0, theta)
-    a = np.where(small, 1 - theta2 / 6, np.sin(safe) / safe)
-    b = np.where(small, 0.5 - theta2 / 24, 2 * (np.sin(safe / 2) / safe) ** 2)
-    x, y, z = w[..., 0], w[..., 1], w[..., 2]
-    R = b[..., None, None] * (w[..., :, None] * w[..., None, :])
-    c = 1 - b * theta2
-    for i, (p, q, v) in enumerate(((1, 2, x), (2, 0, y), (0, 1, z))):
-        R[..., i, i] += c
-        R[..., p, q] -= a * v
-        R[..., q, p] += a * v
-    return np.asarray(R)
+    # With half angles, K = (sin(θ/2) / (θ/2)) [w]×, no small angle needs a series:
+    # sin θ [w]× / θ = cos(θ/2) K and (1 − cos θ) [w]×² / θ² = K² / 2.
+    half = np.sqrt(np.vecdot(w, w) + _NOT_ZERO)[..., None] / 2
+    K = ((np.sin(half) / half * w) @ _CROSS).reshape(*w.shape, 3)
+    return np.asarray(np.eye(3) + np.cos(half)[..., None] * K + K @ K / 2)
 
 
 def chain(*motions: npt.ArrayLike) -> Array:
@@ -259,8 +257,4 @@ def skew_matrix(v: npt.ArrayLike) -> Array:
     array([-3.,  6., -3.])
     """
     v = points(v, "v", 3)
-    x, y, z = v[..., 0], v[..., 1], v[..., 2]
-    o = np.zeros_like(x)
-    return np.stack(
-        [np.stack([o, -z, y], -1), np.stack([z, o, -x], -1), np.stack([-y, x, o], -1)], -2
-    )
+    return np.asarray((v @ _CROSS).reshape(*v.shape, 3))
