@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any
 from warnings import warn
 
@@ -202,41 +201,36 @@ def _result(
         J = data.pose_jacobian(best.x.R)
         return J @ (variance * pose_covariance(best.system, unit)) @ J.mT
 
-    result = Calibration(
+    residuals = problem.m - problem.predicted(A, lens, best.x)
+    if problem.seen is not None:
+        residuals = residuals * problem.seen[..., None]
+    evidence = Evidence(
         A=A,
         lens=lens,
         size=size,
         poses=data.pose_in_given_units(best.x.R, best.x.T),
-        rms=float(np.sqrt(best.cost / problem.n_seen)),
+        std=dict(zip(problem.names, np.sqrt(variance * np.diagonal(unit)).tolist(), strict=True)),
         view_rms=np.sqrt(best.system.view_costs / problem.n_seen_by_view),
+        distances=np.sqrt(residuals[..., 0] ** 2 + residuals[..., 1] ** 2),
+        corners=problem.m,
+        converged=best.converged,
+        likeness=likeness(residuals, freedom),
+    )
+    sentences, reliable = judge(evidence)
+    for sentence in sentences:
+        warn(sentence, CalibrationWarning, stacklevel=3)
+    return Calibration(
+        A=A,
+        lens=lens,
+        size=size,
+        poses=evidence.poses,
+        rms=float(np.sqrt(best.cost / problem.n_seen)),
+        view_rms=evidence.view_rms,
         names=problem.names,
         covariance=variance * unit,
+        warnings=sentences,
+        reliable=reliable,
         converged=best.converged,
         _data=data,
         _pose_covariance=poses,
     )
-    residuals = problem.m - problem.predicted(A, lens, best.x)
-    if problem.seen is not None:
-        residuals = residuals * problem.seen[..., None]
-    return _judged(result, residuals, problem.m, freedom)
-
-
-def _judged(result: Calibration, residuals: Array, corners: Array, freedom: int) -> Calibration:
-    """Add what is doubtful to the result, and warn of it."""
-    sentences, reliable = judge(
-        Evidence(
-            result.A,
-            result.lens,
-            result.size,
-            result.poses,
-            result.std,
-            result.view_rms,
-            np.sqrt(residuals[..., 0] ** 2 + residuals[..., 1] ** 2),
-            corners,
-            result.converged,
-            likeness(residuals, freedom),
-        )
-    )
-    for sentence in sentences:
-        warn(sentence, CalibrationWarning, stacklevel=4)
-    return replace(result, warnings=sentences, reliable=reliable)

@@ -119,7 +119,7 @@ def _stack(sets: Any, name: str, dims: tuple[int, ...]) -> tuple[Array, Any]:
     if uniform and one.size == 0:
         raise DegenerateError(f"{name}: need at least one view with points, got none")
     if uniform:
-        stacked = points(_located(one, name), name, *dims)
+        stacked = _points(one, name, dims)
         if stacked.ndim == 4 and stacked.shape[2] == 1:  # OpenCV's (n, 1, 2)
             stacked = stacked[:, :, 0]
         if stacked.ndim == 2:
@@ -130,7 +130,7 @@ def _stack(sets: Any, name: str, dims: tuple[int, ...]) -> tuple[Array, Any]:
     if not _list(sets):
         numbers(sets, name)
         raise ShapeError(f"{name}: expected an array or a list of arrays")
-    each = [points(_located(s, f"{name}[{i}]"), f"{name}[{i}]", *dims) for i, s in enumerate(sets)]
+    each = [_points(s, f"{name}[{i}]", dims) for i, s in enumerate(sets)]
     each = [s.reshape(-1, s.shape[-1]) for s in each]
     if len({s.shape[1] for s in each}) > 1:
         raise ShapeError(f"{name}: some sets have two coordinates, others three")
@@ -146,18 +146,19 @@ def _list(sets: Any) -> Sequence[Any]:
     return sets if isinstance(sets, Sequence) else ()
 
 
-def _located(x: Any, name: str) -> Any:
-    """Name the view and the corner of the first NaN, which the common guard cannot."""
+def _points(x: Any, name: str, dims: tuple[int, ...]) -> Array:
+    """Guard points, and name the view and the corner of the first NaN."""
     try:
-        finite = np.isfinite(x)
-    except Exception:  # no array of numbers: the common guard says so
-        return x
-    bad: Any = () if finite.all() else np.argwhere(~finite)
-    if len(bad):
-        place = bad[0][:-1].tolist()
-        words = f"view {place[0]}, corner {place[1]}" if len(place) == 2 else f"corner {place[-1]}"
-        raise CvnotesError(f"{name}: {words} contains NaN or infinite values; leave it out")
-    return x
+        return points(x, name, *dims)
+    except CvnotesError:
+        bad = np.argwhere(~np.isfinite(x))
+        if len(bad) and bad.shape[1] > 1:
+            *view, corner = bad[0][:-1].tolist()
+            words = f"view {view[0]}, corner {corner}" if len(view) == 1 else f"corner {corner}"
+            raise CvnotesError(
+                f"{name}: {words} contains NaN or infinite values; leave it out"
+            ) from None
+        raise
 
 
 def _counts(points: Array, real: Any, n_views: int) -> list[int]:
@@ -167,11 +168,12 @@ def _counts(points: Array, real: Any, n_views: int) -> list[int]:
 
 def _refuse_lines(m: Array) -> None:
     """Refuse views (n_views, n, 2) in which all points lie on one line."""
-    uv = np.ascontiguousarray(m.mT)
-    uv -= uv.mean(-1, keepdims=True)
-    spread = uv @ uv.mT
-    size = np.trace(spread, axis1=1, axis2=2)[:, None, None]
-    flat = np.linalg.det(spread / np.maximum(size, 1e-300)) <= 1e-14
+    n = m.shape[1]
+    d = m - (np.ones(n) @ m / n)[:, None]
+    spread = d.mT @ d
+    uu, vv, uv = spread[:, 0, 0], spread[:, 1, 1], spread[:, 0, 1]
+    size = np.maximum(uu + vv, 1e-300)
+    flat = (uu / size) * (vv / size) - (uv / size) ** 2 <= 1e-14
     if flat.any():
         raise DegenerateError(
             f"view {int(np.argmax(flat))}: all its image points coincide or lie on one line"

@@ -65,9 +65,10 @@ class Lens:
             if values.ndim != 1 or length not in (None, values.size):
                 wanted = "a sequence k1, k2, …" if length is None else "two numbers"
                 raise ShapeError(f"{name}: expected {wanted}, got shape {values.shape}")
-            if (np.abs(values) > 1e50).any():
-                raise CvnotesError(f"{name} = {values.tolist()}: no lens has such coefficients")
-            object.__setattr__(self, name, tuple(values.tolist()))
+            given = tuple(values.tolist())
+            if any(abs(value) > 1e50 for value in given):
+                raise CvnotesError(f"{name} = {list(given)}: no lens has such coefficients")
+            object.__setattr__(self, name, given)
 
     @property
     def is_ideal(self) -> bool:

@@ -8,6 +8,7 @@ well the closed form is determined, and from which side the boards are seen.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from math import acos, degrees
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,7 @@ import numpy.typing as npt
 from cvnotes.camera import xy_from_px
 from cvnotes.errors import Array
 from cvnotes.lens import Lens
-from cvnotes.zhang import constraints
+from cvnotes.zhang.b import constraint_rows
 
 # Thresholds between sets that give the focal length and sets that do not, measured on 25 noisy
 # sets of each family in tests/test_reliability.py.
@@ -72,9 +73,10 @@ class Evidence:
     @cached_property
     def tilt_between(self) -> float:
         """Largest angle between two boards, degrees; of many, those farthest from the mean."""
-        normals = self.poses[:, :3, 2]
-        far = normals[np.argsort(normals @ normals.mean(0))[:_FAR]]
-        return float(np.degrees(np.arccos(min(1.0, float(np.abs(far @ far.T).min())))))
+        far = self.poses[:, :3, 2]
+        if len(far) > _FAR:
+            far = far[np.argsort(far @ far.mean(0))[:_FAR]]
+        return degrees(acos(min(1.0, float(np.abs(far @ far.T).min()))))
 
     @cached_property
     def determinacy(self) -> float:
@@ -86,14 +88,14 @@ class Evidence:
         A = np.diag([scale, scale, 1]) @ self.A
         A[:2, 2] -= np.array(self.size) / max(self.size)
         skewless = [0, 2, 3, 4, 5]
-        V = constraints(A @ self.poses[:, :3, [0, 1, 3]])[:, skewless]
+        V = constraint_rows(A @ self.poses[:, :3, [0, 1, 3]])[:, skewless]
         s = np.linalg.svd(V, compute_uv=False)
         return float(s[3] / s[0])
 
     @cached_property
     def typical_rms(self) -> float:
         """Median of the views' RMS, px."""
-        return float(np.median(self.view_rms))
+        return _median(self.view_rms)
 
     @property
     def focal_uncertainty(self) -> float:
@@ -180,7 +182,7 @@ def _weak(e: Evidence) -> Iterator[str]:
 
 def _mirrored(e: Evidence) -> Iterator[str]:
     """Find boards seen from behind: the sign of det H, which no RMS shows."""
-    facing = np.einsum("ni,ni->n", e.poses[:, :3, 2], e.poses[:, :3, 3])
+    facing = np.vecdot(e.poses[:, :3, 2], e.poses[:, :3, 3])
     behind = np.flatnonzero(facing < 0)
     if len(behind) == len(e.poses):
         yield (
@@ -226,7 +228,7 @@ def _outliers(e: Evidence) -> Iterator[str]:
         yield "some corners lie where the estimated lens folds over: estimate fewer coefficients"
         d = np.nan_to_num(d)
     # A distance with Gaussian coordinates exceeds 5 of its medians once in 30 million corners.
-    limit = max(5 * float(np.median(d[d > 0])), 0.2) if d.any() else np.inf
+    limit = max(5 * _median(d[d > 0]), 0.2) if d.any() else np.inf
     worst = d.argmax(1)
     found = [
         f"view {i}, corner {worst[i]} ({d[i, worst[i]]:.1f} px)"
@@ -253,6 +255,12 @@ def _outside(e: Evidence) -> Iterator[str]:
                 "the estimated lens folds over before it reaches the corners of the picture: it "
                 "holds only where corners were seen; bring the board into the corners too"
             )
+
+
+def _median(x: Array) -> float:
+    # np.median takes longer than all the rest here, with its care for axes, NaN and subclasses.
+    ordered = np.sort(x)
+    return float(ordered[(x.size - 1) // 2] + ordered[x.size // 2]) / 2
 
 
 def _listed(indices: npt.NDArray[np.intp]) -> str:

@@ -67,9 +67,8 @@ class Steps:
 
     def starts(self, problem: Problem) -> Iterator[State]:
         """Run the steps; gives a state for each candidate, the most robust first."""
-        N = _picture_normaliser(self.size)
-        m = problem.m * N[0, 0] + N[:2, 2]
-        to_px = np.linalg.inv(N)
+        to_px = _px_from_normalised(self.size)
+        m = (problem.m - to_px[:2, 2]) / to_px[0, 0]
         for bend in _BENDS if problem.n_radial else _BENDS[:1]:
             straight = m * (1 + bend * (m * m).sum(-1, keepdims=True)) if bend else m
             H = self.homographies(problem, straight)
@@ -155,8 +154,8 @@ class Steps:
         return problem.state(A, Lens(k=tuple(k)), G)
 
 
-def _picture_normaliser(size: tuple[int, int]) -> Array:
-    """Similarity that takes the picture's middle to 0 and its longer side to [−1, 1]."""
+def _px_from_normalised(size: tuple[int, int]) -> Array:
+    """Similarity that takes 0 to the picture's middle and [−1, 1] to its longer side."""
     w, h = size
-    s = 2 / max(w, h)
-    return np.array([[s, 0, -s * (w - 1) / 2], [0, s, -s * (h - 1) / 2], [0, 0, 1]])
+    s = max(w, h) / 2
+    return np.array([[s, 0, (w - 1) / 2], [0, s, (h - 1) / 2], [0, 0, 1]])

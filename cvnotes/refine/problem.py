@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import intrinsics, pixels
+from cvnotes.camera import pixels
 from cvnotes.errors import Array
 from cvnotes.lens import Lens
 from cvnotes.radial import horner, radial_factor
@@ -86,9 +86,8 @@ class Problem:
     def camera_of(self, shared: Array) -> tuple[Array, Lens]:
         """Give A and the lens that the shared parameters stand for."""
         value = dict(zip(self.names, shared.tolist(), strict=True))
-        A = intrinsics(
-            value["alpha_u"], value["alpha_v"], value["u0"], value["v0"], value.get("skew", 0.0)
-        )
+        top = [value["alpha_u"], value.get("skew", 0.0), value["u0"]]
+        A = np.array([top, [0, value["alpha_v"], value["v0"]], [0, 0, 1]])
         k = tuple(value[f"k{i}"] for i in range(1, self.n_radial + 1))
         return A, Lens(k=k, p=(value.get("p1", 0.0), value.get("p2", 0.0)))
 
@@ -100,13 +99,15 @@ class Problem:
             part = slice(i, i + _CHUNK)
             u, v = self._jacobian(x, part).transpose(1, 2, 0, 3)
             # Two factors of different shape: for J Jᵀ with itself NumPy takes a slower road.
-            normal[part] = u @ u[:, :-1].mT + v @ v[:, :-1].mT
-            costs[part] = (u[:, -1] ** 2 + v[:, -1] ** 2).sum(-1)
+            np.matmul(u, u[:, :-1].mT, out=normal[part])
+            normal[part] += v @ v[:, :-1].mT
+            costs[part] = np.vecdot(u[:, -1], u[:, -1]) + np.vecdot(v[:, -1], v[:, -1])
+        by_shared = normal[..., :q].sum(0)
         arrow = Arrow(
-            normal[:, :q, :q].sum(0),
+            by_shared[:q],
             normal[:, q:-1, :q],
             normal[:, q:-1, q:],
-            normal[:, -1, :q].sum(0),
+            by_shared[-1],
             normal[:, -1, q:],
             costs,
         )
@@ -148,16 +149,14 @@ class Problem:
         dM = ω × (R W) + dT. Coordinates stand before views and points, so that each operation
         below runs through one piece of memory.
         """
-        value = dict(zip(self.names, x.shared.tolist(), strict=True))
-        alpha_u, skew = value["alpha_u"], value.get("skew", 0.0)
-        alpha = np.array([alpha_u, value["alpha_v"]])[:, None, None]
-        centre = np.array([value["u0"], value["v0"]])[:, None, None]
-        k = [value[f"k{i}"] for i in range(1, self.n_radial + 1)]
+        q, first = len(x.shared), 4 + self.skew  # where the pose and the lens begin
+        alpha, centre = x.shared[:2, None, None], x.shared[first - 2 : first, None, None]
+        skew = x.shared[2] if self.skew else 0.0
+        k = x.shared[first : first + self.n_radial].tolist()
         W, m = self._by_coordinate
         m = m[:, part]
         J = self._workspace[:, :, : m.shape[1]]
-        q = len(x.shared)
-        by_lens, by_omega, by_T, residual = J[4 + self.skew : q], J[q : q + 3], J[q + 3 : -1], J[-1]
+        by_lens, by_omega, by_T, residual = J[first:q], J[q : q + 3], J[q + 3 : -1], J[-1]
 
         # 1. into the CRF, 2. divided by z
         R, T = x.R[part], x.T[part].T[..., None]
@@ -181,15 +180,15 @@ class Problem:
         D = slope * products
         D[::2] += L
         if self.tangential:
-            p1, p2 = value["p1"], value["p2"]
+            p1, p2 = x.shared[-2:].tolist()
             by_p1, by_p2 = by_lens[-2:]
             np.multiply(2, products[1:], out=by_p1)
             np.multiply(2, products[:2], out=by_p2)
             by_p1[1] += r2
             by_p2[0] += r2
             xy_lens += p1 * by_p1 + p2 * by_p2
-            D += np.array([6 * p2, 2 * p1, 2 * p2])[:, None, None] * X
-            D += np.array([2 * p1, 2 * p2, 6 * p1])[:, None, None] * Y
+            by_xy = np.array([[6 * p2, 2 * p1], [2 * p1, 2 * p2], [2 * p2, 6 * p1]])
+            D += (by_xy @ xy.reshape(2, -1)).reshape(D.shape)
 
         # 4. the sensor turns x', y' and all their derivatives into pixels
         J[0, 0], J[1, 1] = xy_lens
@@ -199,7 +198,7 @@ class Problem:
         if self.skew:
             J[2, 0] = xy_lens[1]
             residual[0] += skew * xy_lens[1]
-            by_lens[:, 0] += (skew / alpha_u) * by_lens[:, 1]
+            by_lens[:, 0] += (skew / alpha[0]) * by_lens[:, 1]
         by_lens *= alpha
 
         # and the pose: by T, where dT acts on x and y through 1/z, then by ω, where dM = ω × R W

@@ -6,7 +6,7 @@ camera's poses are no unknowns: G_right = G · G_left, so its normal equations, 
 them, are carried over by the chain rule.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -63,7 +63,8 @@ class StereoProblem:
         cost_right, right = self.right.linearise(x.of_right())
         arrow = _joined(left, _carried_over(right, x))
         if self.cameras_known:
-            arrow = arrow._replace(
+            arrow = replace(
+                arrow,
                 shared=arrow.shared[-6:, -6:],
                 border=arrow.border[..., -6:],
                 g_shared=arrow.g_shared[-6:],

@@ -7,6 +7,10 @@ from cvnotes.errors import Array, CvnotesError, DegenerateError, ShapeError, mat
 
 # The six entries of b and where they stand in the symmetric B.
 B_ROWS, B_COLUMNS = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
+# The duplication matrix (9, 6): all nine entries of B, row by row, are D b.
+_DUPLICATION = np.zeros((3, 3, 6))
+_DUPLICATION[B_ROWS, B_COLUMNS, range(6)] = _DUPLICATION[B_COLUMNS, B_ROWS, range(6)] = 1
+_DUPLICATION = _DUPLICATION.reshape(9, 6)
 
 
 def v_ij(H: npt.ArrayLike, i: int, j: int) -> Array:
@@ -39,12 +43,7 @@ def constraints(H: npt.ArrayLike) -> Array:
     array([[ 0.,  1.,  0.,  0.,  0.,  0.],
            [ 1.,  0., -1.,  0.,  0.,  0.]])
     """
-    H = scaled(matrix(H, "H", 3, 3)).reshape(-1, 3, 3)
-    columns = np.linalg.norm(H, axis=1)
-    scale = np.sqrt(columns[:, 0] * columns[:, 1])[:, None]
-    h1, h2 = H[:, :, 0] / scale, H[:, :, 1] / scale
-    V = np.stack([_v(h1, h2), _v(h1, h1) - _v(h2, h2)], axis=1)
-    return V.reshape(-1, 6)
+    return constraint_rows(scaled(matrix(H, "H", 3, 3)).reshape(-1, 3, 3))
 
 
 def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
@@ -88,12 +87,19 @@ def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
     return np.asarray(b if b[0] > 0 else -b) + 0.0
 
 
+def constraint_rows(H: Array) -> Array:
+    """Give V (2n, 6) of homographies (n, 3, 3), without a guard: for use inside."""
+    lengths = _column_lengths(H)
+    scale = np.sqrt(lengths[:, 0] * lengths[:, 1])[:, None]
+    h1, h2 = H[:, :, 0] / scale, H[:, :, 1] / scale
+    V = np.stack([_v(h1, h2), _v(h1, h1) - _v(h2, h2)], axis=1)
+    return V.reshape(-1, 6)
+
+
 def _v(a: Array, b: Array) -> Array:
     """Give v (..., 6) with aᵀ B b = vᵀ b, for columns a and b (..., 3)."""
-    # aᵀ B b = Σ B_ij a_i b_j, where B_ij = B_ji belongs to two products unless i = j
-    products = a[..., :, None] * b[..., None, :]
-    both = products + products.mT
-    return np.asarray(both[..., B_ROWS, B_COLUMNS] * [0.5, 1, 0.5, 1, 1, 0.5])
+    products = a[..., :, None] * b[..., None, :]  # aᵀ B b = Σ B_ij a_i b_j
+    return np.asarray(products.reshape(*a.shape[:-1], 9) @ _DUPLICATION)
 
 
 def rows_of(V: npt.ArrayLike) -> Array:
@@ -108,8 +114,12 @@ def scaled(H: Array) -> Array:
     """Scale each homography (..., 3, 3) to a largest entry of 1, and name one that is singular."""
     largest = np.abs(H).max((-2, -1), keepdims=True)
     H = H / np.where(largest > 0, largest, 1)
-    sizes = np.linalg.norm(H, axis=-2).prod(-1)
+    sizes = _column_lengths(H).prod(-1)
     bad = (np.abs(np.linalg.det(H)) <= 1e-12 * sizes) | (sizes == 0)
     if bad.any():
         raise DegenerateError(f"homography {int(np.argmax(bad))} is singular: it shows no plane")
     return H
+
+
+def _column_lengths(H: Array) -> Array:
+    return np.asarray(np.sqrt(np.vecdot(H.mT, H.mT)))

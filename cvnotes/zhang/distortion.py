@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import xy_from_px
+from cvnotes.camera.sensor import ideal_columns
 from cvnotes.errors import (
     Array,
     CvnotesError,
@@ -66,16 +66,18 @@ def radial_distortion(
     views = equally_many("G, W and m", G.shape[:-2], W.shape[:-2], m.shape[:-2])
     if 0 in views:
         raise DegenerateError("need at least one view, got none")
-    W = np.broadcast_to(W, (*views, *W.shape[-2:]))
     M = W @ G[..., :3, :3].mT + G[..., None, :3, 3]
     if not (M[..., 2] > 0).all():
         raise DegenerateError("a board point does not lie in front of the camera")
     ideal = M[..., :2] / M[..., 2:]
     r2 = ideal[..., :1] ** 2 + ideal[..., 1:] ** 2
-    powers = [ideal * r2**i for i in range(1, terms + 1)]
-    d = np.broadcast_to(xy_from_px(A, m), (*views, *m.shape[-2:])) - ideal
-    D = np.stack(powers, axis=-1).reshape(-1, terms)
-    k, _, rank, _ = np.linalg.lstsq(D, d.ravel(), rcond=None)
+    d = np.stack(ideal_columns(A, m), axis=-1) - ideal
+    D = np.empty((*d.shape, terms))
+    power = ideal
+    for i in range(terms):
+        power = power * r2
+        D[..., i] = power
+    k, _, rank, _ = np.linalg.lstsq(D.reshape(-1, terms), d.ravel(), rcond=None)
     if rank < terms:
         raise DegenerateError(f"the points do not determine {terms} coefficients: vary the radius")
     return np.asarray(k)

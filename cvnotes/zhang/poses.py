@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.errors import Array, intrinsic_matrix, matrix
-from cvnotes.rigid import nearest_rotation
+from cvnotes.rigid import nearest_rotation, skew_matrix
 from cvnotes.zhang.b import scaled
 
 
@@ -31,11 +31,13 @@ def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
     """
     A, H = intrinsic_matrix(A), scaled(matrix(H, "H", 3, 3))
     rays = np.linalg.inv(A) @ H  # λ [r1 r2 T]
-    scale = np.linalg.norm(rays[..., :2], axis=-2).mean(-1)
+    lengths = np.sqrt(np.vecdot(rays.mT, rays.mT))
+    scale = (lengths[..., 0] + lengths[..., 1]) / 2
     scale = np.where(rays[..., 2, 2] < 0, -scale, scale)
     rays = rays / scale[..., None, None]
     r1, r2 = rays[..., :, 0], rays[..., :, 1]
     G = np.zeros((*H.shape[:-2], 4, 4))
-    G[..., :3, :3] = nearest_rotation(np.stack([r1, r2, np.cross(r1, r2)], axis=-1))
+    r3 = (skew_matrix(r1) @ r2[..., None])[..., 0]
+    G[..., :3, :3] = nearest_rotation(np.stack([r1, r2, r3], axis=-1))
     G[..., :3, 3], G[..., 3, 3] = rays[..., :, 2], 1
     return G
