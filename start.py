@@ -2,6 +2,7 @@
 
     python start.py                 open the course in JupyterLab
     python start.py test            run every test, the notebooks included
+    python start.py site            build the course as pages to be read in a browser
 
 The first call makes a virtual environment in .venv and installs the course into it (about a
 minute, 180 MB to download); later calls start at once. Whatever follows goes to `cvnotes lab` or
@@ -16,7 +17,8 @@ import venv
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
-EXTRAS = {"lab": "lab,rays", "test": "dev"}
+EXTRAS = {"lab": "lab,rays", "test": "dev", "site": "docs"}
+RUN = {"lab": ["-m", "cvnotes", "lab"], "test": ["-m", "pytest"], "site": ["tools/build_site.py"]}
 
 
 def environment(extras: str) -> Path:
@@ -51,8 +53,7 @@ def main(arguments: list[str]) -> int:
     except subprocess.CalledProcessError:
         print("pip could not install the course; its message above says why.", file=sys.stderr)
         return 1
-    run = ["-m", "cvnotes", "lab"] if command == "lab" else ["-m", "pytest"]
-    return subprocess.run([str(scripts / "python"), *run, *rest], cwd=ROOT).returncode
+    return subprocess.run([str(scripts / "python"), *RUN[command], *rest], cwd=ROOT).returncode
 
 
 if __name__ == "__main__":

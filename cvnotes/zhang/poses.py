@@ -11,7 +11,7 @@ from cvnotes.zhang.b import scaled
 def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
     """Give the pose G (..., 4, 4) of each view, CRF ← board, from A and H (..., 3, 3).
 
-    λ r1 = A⁻¹ h1 and λ r2 = A⁻¹ h2 with two values of |λ| when there is noise; their mean is
+    λ r1 = A⁻¹ h1 and λ r2 = A⁻¹ h2 with two sizes of λ when there is noise; their mean is
     taken (erratum E32), with the sign that puts the board in front of the camera (T_z > 0).
     r3 = r1 × r2, and the SVD gives the rotation nearest to [r1 r2 r3] (erratum E33).
 

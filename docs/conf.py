@@ -1,0 +1,38 @@
+"""How Sphinx makes the site; `tools/build_site.py` puts its pages together and calls it."""
+
+import cvnotes
+
+project = "cvnotes"
+author = "The cvnotes authors"
+copyright = "The cvnotes authors. Code: BSD 3-Clause. Text, figures and data: CC BY 4.0"  # noqa: A001
+release = version = cvnotes.__version__
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "numpydoc",
+    "sphinx.ext.viewcode",  # the source is the answer key
+    "sphinx-mathjax-offline",
+]
+exclude_patterns: list[str] = []
+
+nb_execution_mode = "off"  # they are committed executed
+nb_render_markdown_format = "myst"
+myst_enable_extensions = ["dollarmath", "amsmath"]
+myst_heading_anchors = 3
+
+# `dlt` in a docstring leads to dlt where there is just one; shapes stand in the text, so that
+# signatures can stay short.
+default_role = "py:obj"
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+add_module_names = False
+
+html_theme = "sphinx_book_theme"
+html_title = "cvnotes"
+html_theme_options = {"navbar_persistent": [], "home_page_in_toc": True}
+
+numpydoc_show_class_members = False
+suppress_warnings = ["ref.python"]  # a word that names several things is then just a word
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]

@@ -1,0 +1,140 @@
+"""The site: complete, without a dead link, and whole when there is no network."""
+
+import inspect
+import re
+import shutil
+import subprocess
+import sys
+from html.parser import HTMLParser
+from importlib import import_module
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import nbformat
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+# What the site is for is public; these serve the command, the build or others of the package.
+INTERNAL = {
+    "cli", "commands", "correspondences", "coverage", "edges", "faces", "learn", "page", "placing",
+    "projection", "result", "sampling", "show", "steps",
+}  # fmt: skip
+
+
+class Page(HTMLParser):
+    """What a page has in it: anchors, what it loads, where it leads, its pictures' words."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.ids, self.loads, self.links, self.alts, self.classes = set(), [], [], [], []
+        self.feed(path.read_text())
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        self.ids |= {given.get("id"), given.get("name")}
+        self.classes += [(tag, *(given.get("class") or "").split())]
+        if tag in ("script", "img", "iframe") and given.get("src"):
+            self.loads.append(given["src"])
+        if tag == "link" and "stylesheet" in given.get("rel", ""):
+            self.loads.append(given["href"])
+        if tag == "a" and given.get("href"):
+            self.links.append(given["href"])
+        if tag == "img":
+            self.alts.append(given.get("alt"))
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    out = tmp_path_factory.mktemp("site") / "built"
+    script = ROOT / "tools" / "build_site.py"
+    run = subprocess.run(
+        [sys.executable, script, "--out", out], capture_output=True, text=True, cwd=ROOT
+    )
+    assert run.returncode == 0, run.stdout + run.stderr  # a warning fails the build
+    return out
+
+
+@pytest.fixture(scope="module")
+def pages(site):
+    made = [path for path in site.rglob("*.html") if "_static" not in path.parts]
+    return {path.relative_to(site): Page(path) for path in made}
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_each_notebook_is_a_page_with_its_cells_and_its_described_figures(notebook, pages):
+    cells = nbformat.read(notebook, as_version=4).cells
+    page = pages[Path("notebooks") / f"{notebook.stem}.html"]
+    inputs = sum({"div", "cell_input"} <= set(classes) for classes in page.classes)
+    assert inputs == sum(cell.cell_type == "code" for cell in cells)
+    saved = sum(
+        'alt="' in output.get("data", {}).get("text/html", "")
+        for cell in cells
+        for output in cell.get("outputs", [])
+    )
+    described = [alt for alt in page.alts if alt and len(alt) > 20]
+    assert len(described) >= saved > 0
+
+
+def test_no_link_leads_nowhere(site, pages):
+    dead = []
+    for path, page in pages.items():
+        for link in page.links:
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc:
+                continue
+            target = (site / path.parent / unquote(parts.path)).resolve() if parts.path else None
+            name = target.relative_to(site.resolve()) if target else path
+            if not (site / name).is_file():
+                dead.append((str(path), link))
+            elif parts.fragment and name in pages:
+                known = pages[name].ids
+                if unquote(parts.fragment) not in known:
+                    dead.append((str(path), link))
+    assert not dead
+
+
+def test_no_page_loads_anything_from_elsewhere(site, pages):
+    for path, page in pages.items():
+        for source in page.loads:
+            parts = urlsplit(source)
+            assert parts.scheme in ("", "data"), (path, source)
+            assert not parts.netloc, (path, source)
+            if not parts.scheme:
+                assert (site / path.parent / unquote(parts.path)).is_file(), (path, source)
+
+
+def test_everything_public_is_in_the_reference(pages):
+    modules = {p.stem for p in (ROOT / "cvnotes").iterdir() if not p.name.startswith(("_", "py"))}
+    known = {path.stem for path in pages if path.parent == Path("reference")}
+    assert modules - INTERNAL <= known
+    for name in known:
+        module = import_module(f"cvnotes.{name}")
+        public = getattr(module, "__all__", None) or [
+            key
+            for key, value in vars(module).items()
+            if getattr(value, "__module__", "") == module.__name__ and not key.startswith("_")
+        ]
+        ids = pages[Path("reference") / f"{name}.html"].ids
+        for key in public:
+            if inspect.isfunction(getattr(module, key)) or inspect.isclass(getattr(module, key)):
+                assert f"cvnotes.{name}.{key}" in ids, (name, key)
+
+
+def test_formulas_are_set_without_a_network(site):
+    if CHROMIUM is None:
+        pytest.skip("no Chromium on this machine")
+    sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    asked = []
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page = browser.new_page()
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto((site / "notebooks" / "07_zhang_calibration.html").as_uri())
+        page.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
+        assert not page.query_selector("mjx-merror")
+        title = page.inner_text("h1")
+        browser.close()
+    assert re.match("7 · Zhang’s calibration", title)
+    assert all(url.startswith(("file:", "data:")) for url in asked), asked

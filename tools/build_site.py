@@ -1,0 +1,115 @@
+"""Build the site: notebooks, docs and the package's reference as one folder of pages.
+
+    python tools/build_site.py              into docs/_build/site
+    python tools/build_site.py --out FOLDER
+
+Needs the extra `docs` (`python start.py site` sets it up). The notebooks appear as they are
+committed; nothing is executed. The pages load nothing from elsewhere, formulas included.
+"""
+
+import argparse
+import shutil
+import sys
+import tempfile
+from importlib import import_module
+from pathlib import Path
+
+from sphinx.cmd.build import build_main
+
+ROOT = Path(__file__).resolve().parents[1]
+# Whatever the README leads to, at the place where it stands in the repository.
+PAGES = ("CHANGELOG.md", "CONTRIBUTING.md", "data/README.md", "docs/*.md", "notebooks/*.ipynb")
+FIGURES = "docs/figures"
+# Of MathJax, whose many bundles contain one another: the one in use, what it loads when a formula
+# asks for it, and what its menu loads for those who listen to formulas.
+MATHJAX = ("tex-chtml.js", "input", "output", "a11y", "sre")
+# The reference, in the order of the notes. What is not here serves those that are.
+REFERENCE = {
+    "Projective space (2b.1)": ("projective", "incidence", "vanishing"),
+    "The camera (2b.1 to 2b.3)": ("rigid", "camera", "lens", "radial"),
+    "Targets and corners (2b.4)": ("targets", "sheet", "corners", "subpixel"),
+    "Calibration (2b.4)": (
+        "homography",
+        "zhang",
+        "optimise",
+        "refine",
+        "calibration",
+        "reliability",
+        "uncertainty",
+        "resection",
+        "robust",
+    ),
+    "Two cameras and warping (2b.5)": ("stereo", "warp", "interpolate"),
+    "Pictures from known cameras": (
+        "synthetic",
+        "rendering",
+        "scenes",
+        "meshes",
+        "raycast",
+        "sensor",
+        "views",
+    ),
+    "Files and lessons": ("files", "course", "learn.verify", "learn.exercises", "errors"),
+}
+
+
+def reference_page(name: str) -> str:
+    """Write the page of one module: its docstring, and that of all that is public in it."""
+    module = import_module(f"cvnotes.{name}")
+    lines = [f"# cvnotes.{name}", "", "```{eval-rst}", f".. automodule:: cvnotes.{name}"]
+    lines.append("   :members:")
+    if hasattr(module, "__all__"):
+        lines.append("   :imported-members:")
+    return "\n".join([*lines, "```", ""])
+
+
+def toctree(caption: str, pages: list[str]) -> str:
+    """Write a part of the table of contents."""
+    lines = ["", "```{toctree}", ":hidden:", f":caption: {caption}", "", *pages, "```", ""]
+    return "\n".join(lines)
+
+
+def collect(source: Path) -> None:
+    """Put the pages together in a folder."""
+    for path in sorted(path for pattern in PAGES for path in ROOT.glob(pattern)):
+        target = source / path.relative_to(ROOT)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, target)
+    shutil.copytree(ROOT / FIGURES, source / FIGURES)
+    notebooks = sorted(path.stem for path in ROOT.glob("notebooks/*.ipynb"))
+    contents = toctree("The course", [f"notebooks/{name}" for name in notebooks])
+    docs = [f"docs/{path.stem}" for path in sorted(ROOT.glob("docs/*.md"))]
+    contents += toctree("To look things up", [*docs, "data/README"])
+    (source / "reference").mkdir()
+    for caption, names in REFERENCE.items():
+        for name in names:
+            (source / "reference" / f"{name}.md").write_text(reference_page(name))
+        contents += toctree(caption, [f"reference/{name}" for name in names])
+    contents += toctree("The project", ["CONTRIBUTING", "CHANGELOG"])
+    (source / "index.md").write_text((ROOT / "README.md").read_text() + contents)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "_build" / "site")
+    out = parser.parse_args().out
+    with tempfile.TemporaryDirectory() as folder:
+        source, made = Path(folder) / "source", Path(folder) / "site"
+        source.mkdir()
+        collect(source)
+        options = ["--fail-on-warning", "--quiet"]
+        failed = int(build_main([*options, "-c", str(ROOT / "docs"), str(source), str(made)]))
+        if failed:
+            return failed
+        for path in (made / "_static" / "mathjax").iterdir():
+            if path.name not in MATHJAX:
+                path.unlink() if path.is_file() else shutil.rmtree(path)
+        if out.exists():
+            shutil.rmtree(out)
+        shutil.copytree(made, out, ignore=shutil.ignore_patterns(".doctrees", ".buildinfo"))
+    print(f"The site is in {out / 'index.html'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
