@@ -16,10 +16,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
-# What the site is for is public; these serve the command, the build or others of the package.
+# These serve the command, the build or others of the package.
 INTERNAL = {
-    "cli", "commands", "correspondences", "coverage", "edges", "faces", "learn", "page", "placing",
-    "projection", "result", "sampling", "show", "steps",
+    "cli", "commands", "correspondences", "coverage", "edges", "faces", "learn", "page",
+    "projection", "result", "sampling", "steps",
 }  # fmt: skip
 
 
@@ -109,6 +109,12 @@ def test_everything_public_is_in_the_reference(pages):
     modules = {p.stem for p in (ROOT / "cvnotes").iterdir() if not p.name.startswith(("_", "py"))}
     known = {path.stem for path in pages if path.parent == Path("reference")}
     assert modules - INTERNAL <= known
+    imported = {
+        name
+        for notebook in NOTEBOOKS
+        for name in re.findall(r"from cvnotes\.([\w.]+) import", notebook.read_text())
+    }
+    assert imported <= known
     for name in known:
         module = import_module(f"cvnotes.{name}")
         public = getattr(module, "__all__", None) or [

@@ -23,7 +23,8 @@ FIGURES = "docs/figures"
 # Of MathJax, whose many bundles contain one another: the one in use, what it loads when a formula
 # asks for it, and what its menu loads for those who listen to formulas.
 MATHJAX = ("tex-chtml.js", "input", "output", "a11y", "sre")
-# The reference, in the order of the notes. What is not here serves those that are.
+# The reference, in the order of the notes: whatever the notebooks import, and what stands beside
+# it. What is not here serves those that are.
 REFERENCE = {
     "Projective space (2b.1)": ("projective", "incidence", "vanishing"),
     "The camera (2b.1 to 2b.3)": ("rigid", "camera", "lens", "radial"),
@@ -48,8 +49,32 @@ REFERENCE = {
         "raycast",
         "sensor",
         "views",
+        "placing",
     ),
-    "Files and lessons": ("files", "course", "learn.verify", "learn.exercises", "errors"),
+    "Figures": (
+        "show",
+        "show.corners",
+        "show.estimates",
+        "show.lenses",
+        "show.lines",
+        "show.predictions",
+        "show.vanishing",
+        "show.warps",
+        "show.shapes",
+        "show.sights",
+        "show.stills",
+        "show.scene",
+        "show.explore",
+    ),
+    "Lessons and files": (
+        "course",
+        "learn.exercises",
+        "learn.verify",
+        "learn.personal",
+        "learn.pictures",
+        "files",
+        "errors",
+    ),
 }
 
 
