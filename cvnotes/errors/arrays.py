@@ -1,9 +1,4 @@
-"""What can go wrong, said in sentences that teach, and the guards of every public function.
-
-Two kinds of failure, one rule each. The whole input is unusable: an exception from this
-module. A single point has no image: its row is NaN. Guards copy what they are given to
-float64, so that no function can write to its input.
-"""
+"""Guards of arrays: real and finite numbers, of the shape that was asked for."""
 
 from contextlib import nullcontext
 from typing import Any
@@ -11,45 +6,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cvnotes.errors.kinds import CvnotesError, DegenerateError, InputTypeError, ShapeError
+
 Array = npt.NDArray[np.float64]
 
 # Cubes of larger numbers overflow; of a matrix, which stands for all its multiples, sums of three
 # squares still do not.
 LARGEST, LARGEST_ENTRY = 1e100, 7e153
-# Four times what a photograph may have; more is a slip, and would hardly fit into the memory.
-MOST_PIXELS = 2**28
-
-
-class CvnotesError(ValueError):
-    """Base of all errors about values."""
-
-
-class ShapeError(CvnotesError):
-    """An array has the wrong shape, or two arrays do not belong together."""
-
-
-class DegenerateError(CvnotesError):
-    """The data do not determine what was asked for."""
-
-
-class CornersNotFound(CvnotesError):
-    """The board was not found in the picture."""
-
-
-class ConvergenceError(CvnotesError):
-    """An iteration did not reach its answer."""
-
-
-class FileError(CvnotesError):
-    """A file cannot be read as what it should be."""
-
-
-class InputTypeError(TypeError):
-    """Something that is not made of real numbers was given."""
-
-
-class CalibrationWarning(UserWarning):
-    """A result is usable but doubtful; the same sentence is in ``result.warnings``."""
 
 
 def real(x: Any, name: str) -> npt.NDArray[Any]:
@@ -62,7 +25,7 @@ def real(x: Any, name: str) -> npt.NDArray[Any]:
     """
     if x is None:
         raise InputTypeError(f"{name}: expected numbers, got None (a missing return?)")
-    if _is_masked(x):
+    if is_masked(x):
         raise InputTypeError(f"{name}: masked arrays are not read; pass the unmasked rows only")
     try:
         given = np.asarray(x)
@@ -177,85 +140,11 @@ def matrix(x: Any, name: str, *shape: int) -> Array:
     return array
 
 
-def rotation(x: Any, name: str = "R") -> Array:
-    """Guard a rotation (..., 3, 3): orthonormal to 1e-6 and with determinant +1."""
-    R = matrix(x, name, 3, 3)
-    deviation = float(np.abs(R @ R.mT - np.eye(3)).max(initial=0.0))
-    if deviation > 1e-6:
-        raise CvnotesError(
-            f"{name} is not orthonormal (R Rᵀ deviates from I by {deviation:.2g}); "
-            "rigid.nearest_rotation gives the closest rotation"
-        )
-    if (np.linalg.det(R) < 0).any():
-        raise CvnotesError(f"{name} has det = -1: a reflection, not a rotation")
-    return R
-
-
-def rigid_motion(x: Any, name: str = "G") -> Array:
-    """Guard a rigid motion (..., 4, 4) = [R T; 0 1]."""
-    G = matrix(x, name, 4, 4)
-    if not (G[..., 3, :] == [0, 0, 0, 1]).all():
-        raise CvnotesError(f"{name}: the last row of a rigid motion is (0, 0, 0, 1)")
-    rotation(G[..., :3, :3], f"the rotation in {name}")
-    return G
-
-
-def intrinsic_matrix(x: Any, name: str = "A") -> Array:
-    """Guard an intrinsic matrix: upper triangular, α_u and α_v positive, last entry 1."""
-    A = matrix(x, name, 3, 3)
-    if A.ndim != 2:
-        raise ShapeError(f"{name}: expected one (3, 3) matrix, got {A.shape}")
-    for i, j in ((1, 0), (2, 0), (2, 1)):
-        if A[i, j] != 0:
-            raise CvnotesError(
-                f"{name}[{i}, {j}] = {A[i, j]:g} but an intrinsic matrix is upper triangular "
-                "(transposed?)"
-            )
-    if A[2, 2] != 1:
-        raise CvnotesError(f"{name}[2, 2] = {A[2, 2]:g} but must be 1; divide {name} by it")
-    for i, letter in ((0, "alpha_u"), (1, "alpha_v")):
-        if A[i, i] < 1 / LARGEST:
-            small = " and not so small" if A[i, i] > 0 else ""
-            raise CvnotesError(
-                f"{name}[{i}, {i}] = {letter} = {A[i, i]:g} but must be positive{small}"
-            )
-    return A
-
-
-def image_size(x: Any, name: str = "size") -> tuple[int, int]:
-    """Guard a size in pixels, (width, height), two positive integers.
-
-    Examples
-    --------
-    >>> image_size([640, 480])
-    (640, 480)
-    """
-    wanted = f"{name}: expected (width, height), two positive whole numbers, got {x!r}"
-    if not isinstance(x, list | tuple | np.ndarray) or _is_masked(x):
-        raise CvnotesError(wanted)
-    try:
-        width, height = x
-        whole = (int(width), int(height))
-        exact = whole == (width, height) and not isinstance(width, str | bytes | bool)
-    except (TypeError, ValueError, OverflowError):
-        raise CvnotesError(wanted) from None
-    if not exact or min(whole) < 1 or max(whole) >= 2**31:
-        raise CvnotesError(wanted)
-    return whole
-
-
-def target_size(x: Any, name: str = "size") -> tuple[int, int]:
-    """Guard the size of a picture that is to be made, and that has to fit into the memory.
-
-    Examples
-    --------
-    >>> target_size([640, 480])
-    (640, 480)
-    """
-    width, height = image_size(x, name)
-    if width * height > MOST_PIXELS:
-        raise CvnotesError(f"{name}: a picture of {width} × {height} pixels would be too large")
-    return width, height
+def is_masked(x: Any) -> bool:
+    """Tell whether x is a masked array, or a list of such, whose masks NumPy would drop."""
+    if isinstance(x, list | tuple):
+        return any(isinstance(item, np.ma.MaskedArray) for item in x)
+    return isinstance(x, np.ma.MaskedArray)
 
 
 def _refuse_extremes(array: Array, name: str, largest: float) -> None:
@@ -270,10 +159,3 @@ def _refuse_extremes(array: Array, name: str, largest: float) -> None:
             f"{name} contains values of {peak:.2g}, which cannot be computed with: beyond "
             f"{largest:g} products overflow; choose another unit (or were they never assigned?)"
         )
-
-
-def _is_masked(x: Any) -> bool:
-    """Tell whether x is a masked array, or a list of such, whose masks NumPy would drop."""
-    if isinstance(x, list | tuple):
-        return any(isinstance(item, np.ma.MaskedArray) for item in x)
-    return isinstance(x, np.ma.MaskedArray)
