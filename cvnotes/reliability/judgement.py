@@ -1,22 +1,12 @@
-"""Whether a calibration can be believed: what its RMS does not show, in sentences.
-
-Parallel boards, pictures seen in a mirror and swapped coordinates fit a wrong camera as well as
-good pictures fit the right one. What gives them away is how the boards stand to each other, how
-well the closed form is determined, and from which side the boards are seen.
-"""
+"""What the evidence says: sentences about doubts, and whether the result is reliable."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
-from math import acos, degrees
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.camera import xy_from_px
-from cvnotes.errors import Array
-from cvnotes.lens import Lens
-from cvnotes.zhang.b import constraint_rows
+from cvnotes.reliability.evidence import Evidence, median
 
 # Thresholds between sets that give the focal length and sets that do not, measured on 25 noisy
 # sets of each family in tests/test_reliability.py.
@@ -24,8 +14,6 @@ _UNDETERMINED, _WEAK = 0.0023, 0.01  # second smallest over largest singular val
 _PARALLEL, _FLAT = 5.0, 15.0  # largest angle between two boards, degrees
 _UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over its value
 _ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
-_FAR = 100  # boards compared with each other; all pairs of thousands would take too long
-_ROUNDING = 1e-6  # px, more than rounding leaves
 _MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
 _NO_NOISE = (
@@ -33,93 +21,6 @@ _NO_NOISE = (
     "board bent, did zoom, focus or orientation change between the pictures, or does the lens "
     "need more coefficients?"
 )
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """What a calibration is judged by.
-
-    Parameters
-    ----------
-    A, lens, size
-        The estimated camera.
-    poses : ndarray, shape (n_views, 4, 4)
-        CRF ← board.
-    std : dict
-        Standard deviations by name.
-    view_rms : ndarray, shape (n_views,)
-        Root mean square reprojection distance of each view, px.
-    distances : ndarray, shape (n_views, n)
-        Reprojection distance of each corner, px; 0 where none was seen, NaN where the lens folds.
-    corners : ndarray, shape (n_views, n, 2)
-        Where the corners were seen, px.
-    converged : bool
-        Whether the refinement ended at a minimum.
-    likeness : float
-        Correlation between the residuals of corners that follow each other; about 0 for noise.
-    """
-
-    A: Array
-    lens: Lens
-    size: tuple[int, int]
-    poses: Array
-    std: dict[str, float]
-    view_rms: Array
-    distances: Array
-    corners: Array
-    converged: bool
-    likeness: float = 0.0
-
-    @cached_property
-    def tilt_between(self) -> float:
-        """Largest angle between two boards, degrees; of many, those farthest from the mean."""
-        far = self.poses[:, :3, 2]
-        if len(far) > _FAR:
-            far = far[np.argsort(far @ far.mean(0))[:_FAR]]
-        return degrees(acos(min(1.0, float(np.abs(far @ far.T).min()))))
-
-    @cached_property
-    def determinacy(self) -> float:
-        """Second smallest over largest singular value of Zhang's V; 0 if A is undetermined.
-
-        V is taken from the estimated camera, in a picture scaled to about [−1, 1].
-        """
-        scale = 2 / max(self.size)
-        A = np.diag([scale, scale, 1]) @ self.A
-        A[:2, 2] -= np.array(self.size) / max(self.size)
-        skewless = [0, 2, 3, 4, 5]
-        V = constraint_rows(A @ self.poses[:, :3, [0, 1, 3]])[:, skewless]
-        s = np.linalg.svd(V, compute_uv=False)
-        return float(s[3] / s[0])
-
-    @cached_property
-    def typical_rms(self) -> float:
-        """Median of the views' RMS, px."""
-        return _median(self.view_rms)
-
-    @property
-    def focal_uncertainty(self) -> float:
-        """Largest standard deviation of a focal length over its value."""
-        return float(max(self.std["alpha_u"] / self.A[0, 0], self.std["alpha_v"] / self.A[1, 1]))
-
-
-def likeness(residuals: Array, freedom: int) -> float:
-    """Correlate the residuals (n_views, n, 2) of corners that follow each other.
-
-    0 where that tells nothing: when there are hardly more measured coordinates than unknowns (the
-    difference is `freedom`), or when only rounding errors are left.
-
-    Examples
-    --------
-    >>> drift = np.linspace(-1, 1, 50).reshape(1, 25, 2)
-    >>> likeness(drift, 40) > 0.8, likeness(drift, 10), likeness(1e-12 * drift, 40)
-    (True, 0.0, 0.0)
-    """
-    r = residuals if np.isfinite(residuals.sum()) else np.nan_to_num(residuals)
-    squares = float((r * r).sum())
-    if 2 * freedom < r.size or squares < r.size * _ROUNDING**2:
-        return 0.0
-    return float((r[:, 1:] * r[:, :-1]).sum()) / squares
 
 
 def judge(evidence: Evidence) -> tuple[tuple[str, ...], bool]:
@@ -228,7 +129,7 @@ def _outliers(e: Evidence) -> Iterator[str]:
         yield "some corners lie where the estimated lens folds over: estimate fewer coefficients"
         d = np.nan_to_num(d)
     # A distance with Gaussian coordinates exceeds 5 of its medians once in 30 million corners.
-    limit = max(5 * _median(d[d > 0]), 0.2) if d.any() else np.inf
+    limit = max(5 * median(d[d > 0]), 0.2) if d.any() else np.inf
     worst = d.argmax(1)
     found = [
         f"view {i}, corner {worst[i]} ({d[i, worst[i]]:.1f} px)"
@@ -255,12 +156,6 @@ def _outside(e: Evidence) -> Iterator[str]:
                 "the estimated lens folds over before it reaches the corners of the picture: it "
                 "holds only where corners were seen; bring the board into the corners too"
             )
-
-
-def _median(x: Array) -> float:
-    # np.median takes longer than all the rest here, with its care for axes, NaN and subclasses.
-    ordered = np.sort(x)
-    return float(ordered[(x.size - 1) // 2] + ordered[x.size // 2]) / 2
 
 
 def _listed(indices: npt.NDArray[np.intp]) -> str:
