@@ -428,6 +428,7 @@ EXEMPT = {
     "hold_at": "a target and a camera; see test_views.py",
     "homogeneous_columns": "for use inside maps",
     "normaliser_of": "for use inside",
+    "pairs": "a guard",
     "Scene.moved": "guarded by `rigid.rigid_motion`; see test_meshes.py",
     "render": "a target and a camera; see test_synthetic.py",
     "rows_of": "a guard",
