@@ -1,10 +1,6 @@
-"""Homographies in spite of wrong correspondences: RANSAC (notes 2b.5, erratum E39).
+"""RANSAC: samples are drawn until the best of their maps is known, and that map is polished."""
 
-Least squares resists noise, not outliers: one wrong pair pulls the whole map. RANSAC draws four
-pairs at a time, maps by them alone, and keeps the map that most other pairs agree with.
-"""
-
-from math import ceil, inf, lgamma, log, log1p
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -13,36 +9,10 @@ import numpy.typing as npt
 from cvnotes.errors import Array, CvnotesError, DegenerateError, ShapeError, numbers, paired, points
 from cvnotes.homography import dlt, normaliser, refine_homography
 from cvnotes.projective import apply, to_homogeneous
+from cvnotes.robust.chance import HOPELESS, fraction, refuse_chance, trials_needed
+from cvnotes.robust.samples import BATCH, of_four, samples
 
 Mask = npt.NDArray[np.bool_]
-
-# Samples tried at a time.
-_BATCH = 64
-# Twice the area of a triangle of normalised points below which three of them count as collinear.
-_FLAT = 1e-6
-
-
-def trials_needed(inlier_fraction: float, confidence: float = 0.999, sample: int = 4) -> float:
-    """Give how many samples must be drawn to meet one without an outlier with `confidence`.
-
-    A sample of s pairs is clean with probability wˢ, and N of them are all spoilt with
-    probability (1 − wˢ)ᴺ, so N = log(1 − confidence) / log(1 − wˢ), rounded up.
-
-    References
-    ----------
-    .. [1] M. Fischler and R. Bolles, Random sample consensus, CACM 24 (1981) 381-395.
-    .. [2] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 4.7.1.
-
-    Examples
-    --------
-    >>> trials_needed(0.5, 0.99)  # table 4.3 of [2]
-    72
-    """
-    clean = _fraction(inlier_fraction, "inlier_fraction") ** sample
-    spoilt = log1p(-_fraction(confidence, "confidence", below=1.0))
-    if clean in (0, 1):
-        return 1 if clean else inf
-    return ceil(spoilt / log1p(-clean))
 
 
 def ransac_homography(
@@ -120,7 +90,7 @@ def ransac_homography(
     src_n, dst_n, t = apply(N1, src), apply(N2, dst), threshold * N2[0, 0]
     inliers = _search(src_n, dst_n, t, rng, confidence, max_trials)
     H, inliers = _polish(src, dst, threshold, inliers)
-    _refuse_chance(int(inliers.sum()), dst, threshold)
+    refuse_chance(int(inliers.sum()), dst, threshold)
     return H, inliers
 
 
@@ -131,31 +101,22 @@ def _search(
     best: Mask = np.zeros(len(src), dtype=bool)
     drawn, trials, needed = 0, 0, inf
     while drawn < most and trials < needed:
-        rows = _samples(rng, len(src))
-        H, counted = _of_four(src[rows], dst[rows])
+        rows = samples(rng, len(src))
+        H, counted = of_four(src[rows], dst[rows])
         for agree in _agreement(H, src, dst, t):
             if agree.sum() > best.sum():
                 best = agree
                 needed = trials_needed(float(best.mean()), confidence)
-        drawn += _BATCH
+        drawn += BATCH
         trials += counted
     return best
-
-
-def _samples(rng: np.random.Generator, n: int) -> npt.NDArray[np.intp]:
-    """Draw four different rows of n, (_BATCH, 4): the j-th among the n − j that are left."""
-    rows = rng.integers(0, [n, n - 1, n - 2, n - 3], size=(_BATCH, 4))
-    for j in (1, 2, 3):
-        for earlier in np.sort(rows[:, :j], axis=-1).T:
-            rows[:, j] += rows[:, j] >= earlier
-    return rows
 
 
 def _polish(src: Array, dst: Array, threshold: float, inliers: Mask) -> tuple[Array, Mask]:
     """Fit all inliers by least squares, and ask again who agrees, until nobody changes sides."""
     for _ in range(20):
         if inliers.sum() < 4:
-            raise DegenerateError(_HOPELESS.format(count=int(inliers.sum()), n=len(src)))
+            raise DegenerateError(HOPELESS.format(count=int(inliers.sum()), n=len(src)))
         H = dlt(src[inliers], dst[inliers])
         H = refine_homography(H, src[inliers], dst[inliers])
         agree = _agreement(H, src, dst, threshold)
@@ -163,39 +124,6 @@ def _polish(src: Array, dst: Array, threshold: float, inliers: Mask) -> tuple[Ar
             break
         inliers = agree
     return H, agree
-
-
-def _of_four(src: Array, dst: Array) -> tuple[Array, int]:
-    """Give the H (k, 3, 3) that map four normalised points (s, 4, 2) exactly, where one does.
-
-    Four points, no three of them collinear, are a projective basis: the fourth is
-    λ1 a + λ2 b + λ3 c, so [λ1 a, λ2 b, λ3 c] maps the standard basis and (1, 1, 1)ᵀ to the four,
-    and H is this matrix for dst times the inverse of that for src. No h9 is fixed. Also given is
-    how many samples count as trials: those that a right map could have come from.
-    """
-    M_src, areas_src = _basis(src)
-    M_dst, areas_dst = _basis(dst)
-    trial = (np.abs(areas_src) > _FLAT).all(-1)
-    # λ_dst / λ_src is the third coordinate of each image: one sign for all points in front.
-    sides = np.sign(areas_src * areas_dst) * (np.abs(areas_dst) > _FLAT)
-    usable = trial & (np.abs(sides.sum(-1)) == 4)
-    H = M_dst[usable] @ np.linalg.inv(M_src[usable]) * sides[usable, :1, None]
-    return H / np.linalg.norm(H, axis=(-2, -1), keepdims=True), int(trial.sum())
-
-
-def _basis(x: Array) -> tuple[Array, Array]:
-    """Give M diag(λ) (..., 3, 3), and the four triangles' signed areas (..., 4), twice.
-
-    By Cramer's rule λ_i is a triangle's area over another's, so the areas serve as λ.
-    """
-    x_h = np.concatenate([x, np.ones_like(x[..., :1])], axis=-1)
-    a, b, c, d = (x_h[..., i, :] for i in range(4))
-    areas = np.stack([_det(d, b, c), _det(a, d, c), _det(a, b, d), _det(a, b, c)], axis=-1)
-    return np.stack([a, b, c], axis=-1) * areas[..., None, :3], areas
-
-
-def _det(a: Array, b: Array, c: Array) -> Array:
-    return np.asarray((np.cross(a, b) * c).sum(-1))
 
 
 def _agreement(H: Array, src: Array, dst: Array, threshold: float) -> Mask:
@@ -210,27 +138,6 @@ def _agreement(H: Array, src: Array, dst: Array, threshold: float) -> Mask:
     return np.asarray((off[..., 0, :] + off[..., 1, :] <= threshold**2 * w * w) & (w > 0))
 
 
-def _refuse_chance(k: int, dst: Array, threshold: float) -> None:
-    """Refuse k inliers that random pairs would give too."""
-    n = len(dst)
-    area = float(np.prod(np.ptp(dst, axis=0)))
-    p = min(1.0, np.pi * threshold**2 / area) if area > 0 else 1.0
-    # log of the expected number of sets of k random pairs that agree as well
-    alarms = log(n - 4) + _log_choose(n, k) + _log_choose(k, 4) + (k - 4) * log(p)
-    if k < 5 or alarms > log(1e-3):
-        raise DegenerateError(_HOPELESS.format(count=k, n=n))
-
-
-_HOPELESS = (
-    "only {count} of {n} pairs agree on a homography, no more than chance would give: the "
-    "correspondences are wrong, or the threshold does not fit their noise"
-)
-
-
-def _log_choose(n: int, k: int) -> float:
-    return lgamma(n + 1) - lgamma(k + 1) - lgamma(n - k + 1)
-
-
 def _guard(threshold: Any, confidence: Any, most: Any, rng: Any) -> tuple[float, float]:
     if not isinstance(rng, np.random.Generator):
         raise CvnotesError(
@@ -241,11 +148,4 @@ def _guard(threshold: Any, confidence: Any, most: Any, rng: Any) -> tuple[float,
         raise CvnotesError(f"threshold: expected a positive distance, got {threshold!r}")
     if isinstance(most, bool) or not isinstance(most, int | np.integer) or most < 1:
         raise CvnotesError(f"max_trials: expected a positive whole number, got {most!r}")
-    return float(t), _fraction(confidence, "confidence", below=1.0)
-
-
-def _fraction(x: Any, name: str, *, below: float = np.inf) -> float:
-    value = numbers(x, name)
-    if value.ndim or not 0 <= value <= 1 or value >= below:
-        raise CvnotesError(f"{name}: expected a fraction below 1, got {x!r}")
-    return float(value)
+    return float(t), fraction(confidence, "confidence", below=1.0)
