@@ -4,16 +4,13 @@ Matplotlib takes a tenth of a second for a figure, too long for a picture that f
 Here Pillow draws at twice the size, and taking the mean of 2 × 2 pixels makes the lines smooth.
 """
 
-import math
-from functools import lru_cache
-from pathlib import Path
-
-import matplotlib
 import numpy as np
 import numpy.typing as npt
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from cvnotes.errors import Array
+from cvnotes.show.explore.lettering import stamp, title_strip
+from cvnotes.show.explore.strokes import clipped, dashed
 from cvnotes.show.style import COLOURS, MARKERS, MUTED
 
 Drawn = npt.NDArray[np.uint8]
@@ -25,6 +22,7 @@ _GAP = 6  # px between panels
 _FARTHEST = 1e12  # px: lines are cut to the panel with all the digits this leaves
 _LARGEST = 1e6  # px: polygons are not cut, and Pillow counts in whole numbers
 _BEYOND = 8  # px by which lines are drawn over the border, where they are cut off
+_GRID = "#DDDDDD"
 
 
 class Paper:
@@ -79,15 +77,15 @@ class Panel:
         if not dash and (at >= low).all() and (at <= high).all():
             self._draw.line(at.ravel().tolist(), colour, thick, joint="curve")
             return
-        pairs = _clipped(at[:-1], at[1:], (low, high))
-        for pair in _dashed(pairs, dash * self.scale) if dash else pairs:
+        pairs = clipped(at[:-1], at[1:], (low, high))
+        for pair in dashed(pairs, dash * self.scale) if dash else pairs:
             self._draw.line(pair.ravel().tolist(), colour, thick)
 
     def segments(self, ends: npt.ArrayLike, colour: str, width: float = 1.5) -> None:
         """Draw straight lines between pairs of points (n, 2, 2)."""
         at = self.place(ends)
         thick = max(1, round(width * self.scale))
-        for pair in _clipped(at[:, 0], at[:, 1], self._limits()):
+        for pair in clipped(at[:, 0], at[:, 1], self._limits()):
             self._draw.line(pair.ravel().tolist(), colour, thick)
 
     def polygons(self, corners: npt.ArrayLike, colour: str) -> None:
@@ -122,9 +120,7 @@ class Panel:
         """Write words at a point; the anchor is Pillow's: left, middle, right; a, m, s or d."""
         at = self.place(xy)
         if np.isfinite(at).all() and (np.abs(at) < _LARGEST).all():
-            rim, ink, (left, top) = _stamp(
-                words, anchor, size * self.scale, round(1.5 * self.scale)
-            )
+            rim, ink, (left, top) = stamp(words, anchor, size * self.scale, round(1.5 * self.scale))
             corner = (round(float(at[0])) + left, round(float(at[1])) + top)
             self._image.paste("white", corner, rim)
             self._image.paste(colour, corner, ink)
@@ -153,7 +149,8 @@ class Panel:
         height, width = panel.shape[:2]
         sheet = np.full((height + strip + gap, width + gap, 3), 255, np.uint8)
         sheet[strip : strip + height, gap // 2 : gap // 2 + width] = panel
-        title = _title(self.title, (width + gap, strip), self.scale)
+        left = self.scale * (_GAP // 2 + 2)
+        title = title_strip(self.title, (width + gap, strip), left, self.scale)
         sheet[:strip] = title
         return sheet
 
@@ -181,66 +178,3 @@ class Panel:
         for ink, part in (("white", 0.6), (colour, 0.28)):
             for stroke in (one, two):
                 self._draw.line(stroke, ink, max(1, round(part * reach)))
-
-
-_GRID = "#DDDDDD"
-
-
-@lru_cache(maxsize=16)
-def _font(size: int) -> ImageFont.FreeTypeFont:
-    """Matplotlib's own type, so that drawings and figures look alike and have Greek letters."""
-    return ImageFont.truetype(Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf"), size)
-
-
-@lru_cache(maxsize=512)
-def _stamp(
-    words: str, anchor: str, size: int, stroke: int
-) -> tuple[Image.Image, Image.Image, tuple[int, int]]:
-    """Write words once: masks of their white rim and of their ink, and where these begin."""
-    font = _font(size)
-    box = font.getbbox(words, anchor=anchor, stroke_width=stroke)
-    left, top = (math.floor(side) for side in box[:2])
-    size_of_both = (math.ceil(box[2]) - left + 1, math.ceil(box[3]) - top + 1)
-    masks = [Image.new("L", size_of_both) for _ in range(2)]
-    for mask, width in zip(masks, (stroke, 0), strict=True):
-        ImageDraw.Draw(mask).text((-left, -top), words, 255, font, anchor, stroke_width=width)
-    return masks[0], masks[1], (left, top)
-
-
-@lru_cache(maxsize=64)
-def _title(words: str, size: tuple[int, int], scale: int) -> Drawn:
-    """Write a panel's title into a strip of (width, height) px."""
-    strip = Image.new("RGB", (2 * size[0], 2 * size[1]), "white")
-    at = (scale * (_GAP // 2 + 2), size[1])
-    ImageDraw.Draw(strip).text(at, words, "#333333", _font(12 * scale), "lm")
-    return np.asarray(strip.reduce(2))
-
-
-def _clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:
-    """Cut segments a to b (n, 2) to a rectangle: (m, 2, 2), without what lies outside."""
-    d = b - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        one, two = (limits[0] - a) / d, (limits[1] - a) / d
-    still = d == 0  # parallel to a side: inside of it, or not at all
-    inside = (a >= limits[0]) & (a <= limits[1])
-    enter = np.where(still, np.where(inside, 0.0, np.nan), np.minimum(one, two)).max(1)
-    leave = np.where(still, np.where(inside, 1.0, np.nan), np.maximum(one, two)).min(1)
-    enter, leave = np.maximum(enter, 0), np.minimum(leave, 1)
-    seen = enter < leave
-    a, d, enter, leave = a[seen], d[seen], enter[seen, None], leave[seen, None]
-    return np.stack([a + enter * d, a + leave * d], axis=1)
-
-
-def _dashed(pairs: Array, length: float) -> Array:
-    """Cut segments (n, 2, 2) into dashes and keep every other one, along the whole curve."""
-    way = pairs[:, 1] - pairs[:, 0]
-    reach = np.linalg.norm(way, axis=-1)
-    done = np.cumsum(reach) - reach  # where along the curve each segment begins
-    first = 2 * np.floor(done / length / 2)  # dashes begin at even multiples of their length
-    count = np.ceil((done + reach - first * length) / length / 2).clip(0).astype(int)
-    which = np.repeat(np.arange(len(pairs)), count)
-    nth = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
-    start = (first[which] + 2 * nth) * length - done[which]
-    part = (np.stack([start, start + length], -1) / reach[which, None]).clip(0, 1)
-    part, which = part[part[:, 1] > part[:, 0]], which[part[:, 1] > part[:, 0]]
-    return np.asarray(pairs[which, :1] + part[..., None] * way[which, None])

@@ -1,0 +1,35 @@
+"""Straight strokes cut to a rectangle, and into dashes."""
+
+import numpy as np
+
+from cvnotes.errors import Array
+
+
+def clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:
+    """Cut segments a to b (n, 2) to a rectangle: (m, 2, 2), without what lies outside."""
+    d = b - a
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, two = (limits[0] - a) / d, (limits[1] - a) / d
+    still = d == 0  # parallel to a side: inside of it, or not at all
+    inside = (a >= limits[0]) & (a <= limits[1])
+    enter = np.where(still, np.where(inside, 0.0, np.nan), np.minimum(one, two)).max(1)
+    leave = np.where(still, np.where(inside, 1.0, np.nan), np.maximum(one, two)).min(1)
+    enter, leave = np.maximum(enter, 0), np.minimum(leave, 1)
+    seen = enter < leave
+    a, d, enter, leave = a[seen], d[seen], enter[seen, None], leave[seen, None]
+    return np.stack([a + enter * d, a + leave * d], axis=1)
+
+
+def dashed(pairs: Array, length: float) -> Array:
+    """Cut segments (n, 2, 2) into dashes and keep every other one, along the whole curve."""
+    way = pairs[:, 1] - pairs[:, 0]
+    reach = np.linalg.norm(way, axis=-1)
+    done = np.cumsum(reach) - reach  # where along the curve each segment begins
+    first = 2 * np.floor(done / length / 2)  # dashes begin at even multiples of their length
+    count = np.ceil((done + reach - first * length) / length / 2).clip(0).astype(int)
+    which = np.repeat(np.arange(len(pairs)), count)
+    nth = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+    start = (first[which] + 2 * nth) * length - done[which]
+    part = (np.stack([start, start + length], -1) / reach[which, None]).clip(0, 1)
+    part, which = part[part[:, 1] > part[:, 0]], which[part[:, 1] > part[:, 0]]
+    return np.asarray(pairs[which, :1] + part[..., None] * way[which, None])
