@@ -1,8 +1,8 @@
 """The catalogue of bad input and faults: what each of its 135 rows leads to.
 
 Rows 1 to 18 concern every public function that takes arrays: they are tried here on all of them
-(`public_face.FUNCTIONS`), and a test's id begins with its row. `catalogue.ELSEWHERE` says which
-tests hold the other rows; that these tests exist is tested.
+(`public_face.FUNCTIONS`, `public_figures.FIGURES`), and a test's id begins with its row.
+`catalogue.ELSEWHERE` says which tests hold the other rows; that these tests exist is tested.
 """
 
 import ast
@@ -17,7 +17,8 @@ import numpy as np
 import pytest
 from catalogue import ELSEWHERE, HERE
 from nbclient import NotebookClient
-from public_face import FUNCTIONS
+from public_face import FUNCTIONS as COMPUTING
+from public_figures import FIGURES
 
 from cvnotes.camera import Camera
 from cvnotes.errors import CalibrationWarning, CvnotesError, InputTypeError, matrix
@@ -27,6 +28,7 @@ from cvnotes.lens import Lens
 TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent / "cvnotes"
 OURS = (CvnotesError, InputTypeError)
+FUNCTIONS = [*COMPUTING, *FIGURES]
 
 
 class Unwilling:
@@ -183,8 +185,13 @@ def test_empty_arrays_are_refused_or_answered_by_nothing(function, arrays):
                 assert refused or name in MAY_BE_EMPTY.get(str(function), ()), (name, np.shape(x))
 
 
-# A lens without radial terms; a scene without triangles, in which rays meet nothing.
-MAY_BE_EMPTY = {"lens.Lens": ("k",), "raycast.first_hits": ("corners",)}
+# A lens without radial terms; a scene without triangles, in which rays meet nothing; views without
+# corners, which cover none of the cells.
+MAY_BE_EMPTY = {
+    "lens.Lens": ("k",),
+    "raycast.first_hits": ("corners",),
+    "show.quality.covered_cells": ("image_points",),
+}
 
 
 @row(5, has_columns)
@@ -441,7 +448,7 @@ def public_functions():
     """Give module and name of all functions and methods that take array_like arguments."""
     for path in sorted(PACKAGE.rglob("*.py")):
         parts = path.relative_to(PACKAGE).with_suffix("").parts
-        if parts[0] in ("show", "learn", "commands"):
+        if parts[0] in ("learn", "commands") or parts[:2] == ("show", "explore"):
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
         scopes = [("", tree.body)]

@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
-from cvnotes.errors import CvnotesError, ShapeError, numbers, points
+from cvnotes.errors import CvnotesError, DegenerateError, ShapeError, numbers, points
+from cvnotes.show.guards import length, thing
 from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, MUTED, as_picture, panels
 
 _CLOUDS = (COLOURS["lens"], ESTIMATED, COLOURS["world"])
@@ -57,11 +58,14 @@ def draw_clouds(errors: Mapping[str, npt.ArrayLike], *, reach: float | None = No
     >>> draw_clouds({"a": [[0, 0.1]], "b": [[0.1, 0]]}).get_xlabel()
     'error along u (px)'
     """
-    if len(errors) < 2:
+    if len(thing(errors, "errors", Mapping)) < 2:  # type: ignore[type-abstract]
         raise CvnotesError("errors: expected at least two methods to compare")
     clouds = {name: points(e, name, 2).reshape(-1, 2) for name, e in errors.items()}
+    if not all(map(len, clouds.values())):
+        raise DegenerateError("errors: expected at least one error of each method")
     if reach is None:
-        reach = float(np.percentile(np.abs(np.concatenate(list(clouds.values()))), 98)) * 1.2
+        reach = float(np.percentile(np.abs(np.concatenate(list(clouds.values()))), 98)) * 1.2 or 1.0
+    reach = length(reach, "reach")
     axes = panels(len(clouds), width=900, height=round(900 / len(clouds)) + 40, sharey=True)
     for ax, (name, cloud), i in zip(axes, clouds.items(), range(len(clouds)), strict=True):
         ax.axhline(0, color=MUTED, lw=0.6)

@@ -8,7 +8,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 
 from cvnotes.calibration import Calibration
-from cvnotes.errors import CvnotesError, ShapeError, matrix, paired, points
+from cvnotes.errors import CvnotesError, ShapeError, number, paired, points
+from cvnotes.show.guards import length, one_point, thing
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, panels
 
 
@@ -36,6 +37,9 @@ def draw_plane_error(
     """
     m, predicted = points(m, "m", 2), points(predicted, "predicted", 2)
     paired(m, predicted, ("m", "predicted"), at_least=1)
+    if m.ndim != 2 or m.shape != predicted.shape:
+        raise ShapeError(f"m and predicted: expected (n, 2), got {m.shape} and {predicted.shape}")
+    magnify = number(magnify, "magnify")
     ax = panels() if ax is None else ax
     d = magnify * (predicted - m)
     ax.plot(*m.T, "o", color=LENS, ms=3)
@@ -43,7 +47,7 @@ def draw_plane_error(
         *m.T, *d.T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1, width=0.004
     )  # fmt: skip
     low, high = m.min(0), m.max(0)  # of the points alone, so that two figures can be compared
-    room = 0.15 * float((high - low).max()) + 1
+    room = max(0.15 * float((high - low).max()) + 1, 1e-9 * float(np.abs(m).max()))
     as_picture(ax, (2, 2))
     ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
     ax.set_title(f"{title} (arrows × {magnify:g})".strip())
@@ -51,7 +55,7 @@ def draw_plane_error(
 
 
 def draw_error_bars(
-    estimates: npt.ArrayLike, truth: Sequence[float], std: npt.ArrayLike, *, names: Sequence[str]
+    estimates: npt.ArrayLike, truth: npt.ArrayLike, std: npt.ArrayLike, *, names: Sequence[str]
 ) -> Any:
     """Draw histograms of repeated estimates with the truth and the bell curve that was promised.
 
@@ -59,7 +63,7 @@ def draw_error_bars(
     ----------
     estimates : array_like, shape (n_runs, q)
         One row for each repetition.
-    truth : sequence of q floats
+    truth : array_like, shape (q,)
         True values: the black lines.
     std : array_like, shape (q,)
         Standard deviations that were promised: the curves.
@@ -78,15 +82,22 @@ def draw_error_bars(
     2
     """
     q = len(names)
-    estimates = matrix(estimates, "estimates", q)
-    if len(truth) != q or np.shape(std) != (q,):
-        raise ShapeError(f"{q} names need {q} true values and {q} standard deviations")
+    if q == 0:
+        raise CvnotesError("names: expected at least one, for its panel")
+    estimates = points(estimates, "estimates", q)
+    if estimates.ndim != 2 or len(estimates) == 0:
+        raise ShapeError(f"estimates: expected (n_runs, {q}), got {estimates.shape}")
+    truth, std = one_point(truth, "truth", q), one_point(std, "std", q)
+    if not (std > 1e-12 * (np.abs(truth) + 1e-88)).all():
+        raise CvnotesError("std: expected positive numbers, not negligible beside the true values")
     rows = -(-q // 3)
     axes = np.ravel(panels(min(q, 3), rows, width=900, height=250 * rows))[:q]
-    std = np.asarray(std, float)
     for ax, x, t, s, name in zip(axes, estimates.T, truth, std, names, strict=True):
         span = np.linspace(t - 4.2 * s, t + 4.2 * s, 200)
-        ax.hist(x, bins=np.linspace(span[0], span[-1], 22), color=LENS, alpha=0.45, density=True)
+        if (np.abs(x - t) <= 4.2 * s).any():  # a density of nothing would be NaN
+            ax.hist(
+                x, bins=np.linspace(span[0], span[-1], 22), color=LENS, alpha=0.45, density=True
+            )
         ax.plot(
             span, np.exp(-(((span - t) / s) ** 2) / 2) / (s * np.sqrt(2 * np.pi)), color=ESTIMATED
         )
@@ -114,8 +125,11 @@ def draw_view_families(results: Mapping[str, Calibration], *, truth: float) -> A
     ndarray of two Axes
         The RMS on the left; on the right the relative error of α_u, on a logarithmic axis.
     """
-    if not results:
+    if not thing(results, "results", Mapping):  # type: ignore[type-abstract]
         raise CvnotesError("results: expected at least one calibration")
+    for name, result in results.items():
+        thing(result, f"results[{name!r}]", Calibration)
+    truth = length(truth, "truth")
     left, right = axes = panels(2, width=900, height=80 + 46 * len(results), sharey=True)
     names, y = list(results), np.arange(len(results))
     error = [max(abs(r.A[0, 0] / truth - 1), 1e-5) * 100 for r in results.values()]

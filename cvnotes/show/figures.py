@@ -9,8 +9,10 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
-from cvnotes.errors import Array, CvnotesError, ShapeError, image_size, points, real
+from cvnotes.errors import Array, CvnotesError, ShapeError, image_size, points
 from cvnotes.interpolate import positions
+from cvnotes.show.guards import picture as checked
+from cvnotes.show.guards import thing
 from cvnotes.show.style import (
     COLOURS,
     ESTIMATED,
@@ -38,13 +40,7 @@ def draw_image(image: npt.ArrayLike, *, ax: Axes | None = None, title: str = "")
     >>> draw_image(np.zeros((480, 640), np.uint8)).get_ylim()
     (np.float64(479.5), np.float64(-0.5))
     """
-    picture = image if isinstance(image, np.ndarray) else real(image, "image")
-    if picture.ndim not in (2, 3) or picture.size == 0 or picture.shape[2:] not in ((), (3,)):
-        raise ShapeError(
-            f"image: expected (height, width) or (height, width, 3), got {picture.shape}"
-        )
-    if picture.dtype.kind not in "uifb":
-        raise CvnotesError(f"image: expected numbers, got {picture.dtype}")
+    picture = checked(image)
     size = (picture.shape[1], picture.shape[0])
     if picture.dtype == np.uint16:  # deep pictures seldom use their whole range
         picture = picture / max(int(picture.max()), 1)
@@ -125,12 +121,12 @@ def draw_corners(
     board : Chessboard
         Tells how many corners a row has.
     """
-    ax = draw_image(image, ax=ax, title=title)
-    m, (columns, rows) = points(corners, "corners", 2), board.corners
+    m, (columns, rows) = points(corners, "corners", 2), thing(board, "board", Chessboard).corners
     if m.shape != (columns * rows, 2):
         raise ShapeError(
             f"corners: a board of {columns}×{rows} has {columns * rows}, got {m.shape}"
         )
+    ax = draw_image(image, ax=ax, title=title)
     grid = m.reshape(rows, columns, 2)
     for row in grid:
         ax.plot(*row.T, "-", color=ESTIMATED, linewidth=1, marker=".", markersize=4)

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 
 from cvnotes.errors import Array, CvnotesError
 from cvnotes.lens import Lens
+from cvnotes.show.guards import count, length, thing
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, panels
 
 
@@ -30,6 +31,8 @@ def draw_grid(
     >>> draw_grid(Lens(k=(-0.2,)), title="barrel").get_title()
     'barrel'
     """
+    thing(lens, "lens", Lens)
+    extent, lines = length(extent, "extent"), count(lines, "lines")
     ax = panels(height=520) if ax is None else ax
     fine, coarse = np.linspace(-extent, extent, 121), np.linspace(-extent, extent, lines)
     for c in coarse:
@@ -53,7 +56,7 @@ def draw_lenses(lenses: Sequence[tuple[str, Lens]], *, extent: float = 0.5) -> A
     >>> len(draw_lenses([("barrel", Lens(k=(-0.3,))), ("pincushion", Lens(k=(0.3,)))]))
     2
     """
-    if len(lenses) < 2:
+    if not isinstance(lenses, list | tuple) or len(lenses) < 2:
         raise CvnotesError("lenses: expected at least two, each with its name")
     axes = panels(len(lenses), width=900, height=round(900 / len(lenses)) + 40)
     for ax, (name, lens) in zip(axes, lenses, strict=True):
@@ -78,6 +81,8 @@ def draw_radius(lens: Lens, *, ax: Axes | None = None, up_to: float = 1.5) -> Ax
     >>> draw_radius(Lens(k=(-4 / 3,))).get_xlabel()
     'ideal radius r'
     """
+    thing(lens, "lens", Lens)
+    up_to = length(up_to, "up_to")
     ax = panels() if ax is None else ax
     r = np.linspace(0, up_to, 400)
     observed = r * lens.L(r)
@@ -105,6 +110,8 @@ def draw_displacement(lens: Lens, *, ax: Axes | None = None, extent: float = 0.5
     >>> draw_displacement(Lens(p=(0.02, 0.0))).get_xlabel()
     'x'
     """
+    thing(lens, "lens", Lens)
+    extent = length(extent, "extent")
     ax = panels(height=520) if ax is None else ax
     x = np.linspace(-extent, extent, 13)
     xy: Array = np.stack(np.meshgrid(x, x), -1).reshape(-1, 2)

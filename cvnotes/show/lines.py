@@ -1,5 +1,6 @@
 """Figures of projective geometry: lines, segments, and the classes of coordinates."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from cvnotes.errors import (
     matrix,
     points,
 )
+from cvnotes.show.guards import length
 from cvnotes.show.shapes import colour_of
 from cvnotes.show.style import (
     ESTIMATED,
@@ -37,7 +39,9 @@ def draw_lines(
     size: tuple[int, int] = (640, 480),
     meaning: str = "estimated",
     label: str = "",
-    **kwargs: Any,
+    linewidth: float = 1.4,
+    linestyle: str = "-",
+    color: str | None = None,
 ) -> Axes:
     """Draw whole lines of P², as far as the axes reach.
 
@@ -51,8 +55,8 @@ def draw_lines(
         Whose lines these are; sets the colour.
     label : str
         Name in a legend.
-    **kwargs
-        Passed to ``Axes.axline``, as ``linestyle`` and ``linewidth``.
+    linewidth, linestyle, color
+        As matplotlib's; a colour takes the place of the meaning's.
 
     Examples
     --------
@@ -61,7 +65,12 @@ def draw_lines(
     """
     lines = points(lines, "lines", 3).reshape(-1, 3)
     ax, colour = pixel_axes(ax, size), colour_of(meaning)
-    style: dict[str, Any] = {"color": colour, "linewidth": 1.4, "path_effects": [_HALO]} | kwargs
+    style: dict[str, Any] = {
+        "color": color or colour,
+        "linewidth": linewidth,
+        "linestyle": linestyle,
+    }
+    style["path_effects"] = [_HALO]
     middle = np.array([np.mean(ax.get_xlim()), np.mean(ax.get_ylim())])
     for a, b, c in lines[(lines[:, :2] != 0).any(axis=1)]:
         n = np.array([a, b]) / np.hypot(a, b)
@@ -78,7 +87,10 @@ def draw_segments(
     size: tuple[int, int] = (640, 480),
     meaning: str = "estimated",
     label: str = "",
-    **kwargs: Any,
+    linewidth: float = 1.8,
+    linestyle: str = "-",
+    color: str | None = None,
+    path_effects: Sequence[Any] = (_HALO,),
 ) -> Axes:
     """Draw segments, each between its two end points.
 
@@ -86,8 +98,10 @@ def draw_segments(
     ----------
     segments : array_like, shape (..., 2, 2)
         End points (u, v).
-    size, meaning, label, **kwargs
-        As for `draw_lines`; the rest is passed to ``Axes.plot``.
+    size, meaning, label, linewidth, linestyle, color
+        As for `draw_lines`.
+    path_effects : sequence
+        As matplotlib's; by default a white rim keeps segments visible over a picture.
 
     Examples
     --------
@@ -96,7 +110,12 @@ def draw_segments(
     """
     ends = segment_ends(segments)
     ax, colour = pixel_axes(ax, size), colour_of(meaning)
-    style: dict[str, Any] = {"color": colour, "linewidth": 1.8, "path_effects": [_HALO]} | kwargs
+    style: dict[str, Any] = {
+        "color": color or colour,
+        "linewidth": linewidth,
+        "linestyle": linestyle,
+    }
+    style["path_effects"] = list(path_effects)
     for i, pair in enumerate(ends):
         ax.plot(*pair.T, label=label if label and i == 0 else None, **style)
     return ax
@@ -122,12 +141,15 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: Axes | None = None, reach: float = 5
     ('first coordinate, kx', 'last coordinate, k')
     """
     x_h = matrix(x_h, "x_h", 2).reshape(-1, 2)
+    if len(x_h) == 0:
+        raise CvnotesError("x_h: expected at least one class")
     if not (x_h != 0).any(axis=1).all():
         raise CvnotesError("x_h: [0 0] is no point, and has no line of its own")
+    reach = length(reach, "reach")
     ax = panels(height=370) if ax is None else ax
     ax.axhline(1, color=WORLD, linewidth=2.2, zorder=1)
     for x, k in x_h:
-        ideal = k == 0
+        ideal = abs(k) < 1e-100 * abs(x)
         ax.axline((0, 0), (x, k), color=ESTIMATED if ideal else IDEAL, linewidth=1.1, zorder=2)
         if not ideal:
             ax.plot(x / k, 1, "s", color=WORLD, markersize=6, zorder=3)

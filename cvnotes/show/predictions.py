@@ -7,7 +7,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 
 from cvnotes.calibration import Calibration
-from cvnotes.errors import CvnotesError
+from cvnotes.errors import ShapeError
+from cvnotes.show.guards import calibrated, count, eight_bits, pictures
 from cvnotes.show.style import ESTIMATED, as_picture, picture_axes
 from cvnotes.uncertainty import prediction_std
 
@@ -20,6 +21,7 @@ def draw_prediction_error(calibration: Calibration, *, ax: Axes | None = None) -
     calibration : Calibration
         Its corners, if it has them, are drawn too: where they end, extrapolation begins.
     """
+    calibrated(calibration)
     w, h = calibration.size
     if ax is None:
         ax = picture_axes(calibration.size)
@@ -50,9 +52,10 @@ def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5, title: str =
     >>> draw_wall([np.zeros((48, 64), np.uint8)] * 3, columns=3).axison
     False
     """
-    small = [np.asarray(image)[::4, ::4] for image in images]
-    if not small or len({image.shape for image in small}) > 1 or small[0].ndim != 2:
-        raise CvnotesError("images: expected grey pictures of one size")
+    small = [eight_bits(image, "images")[::4, ::4] for image in pictures(images, "images")]
+    if small[0].ndim != 2:
+        raise ShapeError(f"images: expected grey pictures, got colours, {small[0].shape}")
+    columns = count(columns, "columns")
     rows, gap = -(-len(small) // columns), 4
     h, w = small[0].shape
     wall = np.full((rows * (h + gap) - gap, columns * (w + gap) - gap), 255, np.uint8)

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Rectangle
 
-from cvnotes.errors import Array, DegenerateError, ShapeError, image_size, points
+from cvnotes.errors import Array, DegenerateError, ShapeError, image_size, number, points
+from cvnotes.show.guards import calibrated
 from cvnotes.show.style import ESTIMATED, FONT, MUTED, as_picture, panels, picture_axes
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def draw_residuals(
     longer = float(np.percentile(np.hypot(*r.T), 95))
     if magnify is None:
         magnify = _round_number(0.04 * width / longer) if longer > 0 else 1.0
+    magnify = number(magnify, "magnify")
     if ax is None:
         ax = picture_axes(calibration.size)
     as_picture(ax, calibration.size)
@@ -151,6 +153,7 @@ def draw_view_rms(
     names : sequence of str
         Names of the views; by default their numbers.
     """
+    calibrated(calibration)
     rms = np.asarray(calibration.view_rms)
     names = list(names) or [str(i) for i in range(len(rms))]
     if len(names) != len(rms):
@@ -173,6 +176,7 @@ def draw_view_rms(
 
 def _corners_of(calibration: "Calibration") -> Array:
     """Give all image points (n, 2) of a calibration that still has them."""
+    calibrated(calibration)
     if not calibration.image_points:
         raise DegenerateError("this calibration was read from a file that has no corners")
     return np.concatenate(calibration.image_points)

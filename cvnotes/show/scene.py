@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.colors import to_rgba
 
-from cvnotes.errors import Array
+from cvnotes.errors import Array, rigid_motion
 from cvnotes.rigid import inverse
+from cvnotes.show.guards import length
 from cvnotes.show.shapes import Faces, Label, Lines, Photo, Shape, extent
 
 GL_FROM_CV = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -39,7 +40,7 @@ def gl_from_cv(cam_from_world: npt.ArrayLike) -> Array:
     >>> gl_from_cv(np.eye(4))[:3, :3].diagonal()
     array([ 1., -1., -1.])
     """
-    return np.asarray(inverse(cam_from_world) @ GL_FROM_CV)
+    return np.asarray(inverse(rigid_motion(cam_from_world, "cam_from_world")) @ GL_FROM_CV)
 
 
 def build_scene(*shapes: Shape, thickness: float | None = None) -> Any:
@@ -66,7 +67,7 @@ def build_scene(*shapes: Shape, thickness: float | None = None) -> Any:
     import trimesh
 
     scene = trimesh.Scene()
-    thickness = extent(*shapes) / 500 if thickness is None else thickness
+    thickness = extent(*shapes) / 500 if thickness is None else length(thickness, "thickness")
     for shape in shapes:
         match shape:
             case Faces(name, corners, colours):

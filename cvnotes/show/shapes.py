@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, CvnotesError, points, rigid_motion
+from cvnotes.errors import Array, CvnotesError, InputTypeError, number
 from cvnotes.meshes import Scene
 from cvnotes.rigid import move
+from cvnotes.show.guards import one_motion, one_point, thing
 from cvnotes.show.style import COLOURS, MUTED
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
@@ -86,7 +87,8 @@ def axes_shapes(
     >>> [shape.name for shape in axes_shapes(length=50.0)]
     ['WRF axes', 'WRF']
     """
-    G = np.eye(4) if world_from_frame is None else rigid_motion(world_from_frame)
+    G = np.eye(4) if world_from_frame is None else one_motion(world_from_frame, "world_from_frame")
+    length = number(length, "length")
     tip, wing, letter = 0.1 * length, 0.04 * length, 0.11 * length
     ends = []
     for i, axis in enumerate(np.eye(3)):
@@ -125,7 +127,13 @@ def target_shapes(
     >>> faces.corners.shape
     (108, 4, 3)
     """
-    G = np.eye(4) if world_from_target is None else rigid_motion(world_from_target)
+    if not hasattr(target, "faces"):
+        raise InputTypeError(
+            f"target: expected a Chessboard or the like, got {type(target).__name__}"
+        )
+    G = np.eye(4)
+    if world_from_target is not None:
+        G = one_motion(world_from_target, "world_from_target")
     parts, inks, borders = [], [], []
     for world_from_board, board in target.faces:
         columns, rows = board.squares
@@ -162,7 +170,7 @@ def horizon_shapes(
     >>> bool(np.allclose(np.linalg.norm(lines.ends, axis=-1), 10, atol=1e-9))
     True
     """
-    centre = points(centre, "centre", 3)
+    centre, radius = one_point(centre, "centre", 3), number(radius, "radius")
     angle = np.linspace(0, 2 * np.pi, 145)
     way = centre + radius * np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=-1)
     dashes = np.stack([way[:-1], way[1:]], axis=1)[::2]
@@ -178,7 +186,7 @@ def scene_shapes(scene: Scene, *, name: str = "scene") -> Shapes:
     >>> scene_shapes(box((0, 1), (0, 1), (0, 1)))[0].corners.shape
     (12, 3, 3)
     """
-    colours = np.ones((len(scene.triangles), 4))
+    colours = np.ones((len(thing(scene, "scene", Scene).triangles), 4))
     colours[:, :3] = scene.colours.mean(axis=1).clip(0, 1)
     return (Faces(name, scene.corners, colours),)
 
@@ -187,6 +195,12 @@ def places(*shapes: Shape) -> Array:
     """Give all points (n, 3) of shapes."""
     if not shapes:
         raise CvnotesError("a scene needs at least one shape")
+    for shape in shapes:
+        if not isinstance(shape, Shape):
+            raise InputTypeError(
+                "shapes: expected Faces, Lines, Photo or Label one by one, got "
+                f"{type(shape).__name__} (forgotten *?)"
+            )
     parts = [shape.at if isinstance(shape, Label) else shape[1] for shape in shapes]
     return np.concatenate([np.asarray(part).reshape(-1, 3) for part in parts])
 

@@ -5,8 +5,10 @@ import numpy.typing as npt
 from matplotlib.colors import to_rgb
 
 from cvnotes.camera import Camera, xy_from_px
-from cvnotes.errors import Array, CvnotesError, ShapeError, points
+from cvnotes.errors import Array, CvnotesError, ShapeError, number, points
+from cvnotes.projection import is_camera
 from cvnotes.rigid import inverse, move
+from cvnotes.show.guards import eight_bits, one_point
 from cvnotes.show.shapes import Faces, Label, Lines, Photo, Shapes, colour_of
 from cvnotes.show.style import COLOURS
 
@@ -40,7 +42,8 @@ def camera_shapes(
     >>> [shape.name for shape in camera_shapes(Camera(intrinsics(800, 800, 320, 240)))]
     ['camera pyramid', 'camera']
     """
-    w, h = camera.size
+    w, h = is_camera(camera, "camera").size
+    depth = number(depth, "depth")
     border = [[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]]
     corners = _on_plane(camera, xy_from_px(camera.A, border), depth)
     around = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
@@ -89,13 +92,13 @@ def ray_shapes(
     """
     if (length is None) == (to is None):
         raise CvnotesError("a ray ends after a `length` or near points `to`: give one of the two")
-    d = camera.ray(m)
+    d = is_camera(camera, "camera").ray(m)
     if to is not None:
         reach = np.linalg.norm(points(to, "to", 3) - camera.centre, axis=-1)[..., None]
         if reach.shape[:-1] != d.shape[:-1]:
             raise ShapeError(f"to: expected one point for each of the rays {d.shape[:-1]}")
     else:
-        reach = np.float64(length)
+        reach = np.float64(number(length, "length"))
     tips = (camera.centre + reach * d).reshape(-1, 3)
     tips = tips[np.isfinite(tips[:, 0])]
     ends = np.stack([np.broadcast_to(camera.centre, tips.shape), tips], axis=1)
@@ -155,7 +158,8 @@ def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shap
     >>> faces.corners[0, 0]
     array([-50., -50., 100.])
     """
-    w, h = camera.size
+    w, h = is_camera(camera, "camera").size
+    z = number(z, "z")
     t = np.linspace(0, 1, 25)[:-1]
     sides = [(t, 0 * t), (1 + 0 * t, t), (1 - t, 1 + 0 * t), (0 * t, 1 - t)]
     border = np.concatenate([np.stack(side, axis=-1) for side in sides]) * [w, h] - 0.5
@@ -184,7 +188,7 @@ def dot_shapes(
     >>> [shape.name for shape in dot_shapes([0, 0, 0], "C")]
     ['C dot', 'C']
     """
-    at = points(W, "W", 3)
+    at, radius = one_point(W, "W", 3), number(radius, "radius")
     x, y, z = radius * np.eye(3)
     belt = [x, y, -x, -y]
     corners = at + np.array(
@@ -203,10 +207,5 @@ def _on_plane(camera: Camera, xy: Array, z: float) -> Array:
 
 def _picture(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     """Guard a picture; grey becomes red, green, blue."""
-    image = np.asarray(image)
-    if image.dtype != np.uint8 or image.ndim not in (2, 3) or image.shape[2:] not in ((), (3,)):
-        raise ShapeError(
-            "image: expected uint8 of shape (height, width) or (height, width, 3), "
-            f"got {image.dtype} of {image.shape}"
-        )
+    image = eight_bits(image)
     return image if image.ndim == 3 else np.repeat(image[..., None], 3, axis=2)

@@ -42,6 +42,8 @@ def draw_vanishing(
     True
     """
     ends, v_h = segment_ends(segments), matrix(v_h, "v_h", 3)
+    if len(ends) == 0:
+        raise DegenerateError("segments: expected at least one that leads to the vanishing point")
     if v_h.ndim != 1:
         raise ShapeError(f"v_h: expected one point (3,), got {v_h.shape}")
     ax = draw_segments(ends, ax=ax, size=size, meaning=meaning)

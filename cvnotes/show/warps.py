@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
-from cvnotes.errors import CvnotesError, ShapeError, numbers, points
+from cvnotes.errors import CvnotesError, ShapeError, number, numbers
 from cvnotes.show.figures import draw_image
+from cvnotes.show.guards import count, one_point, pictures
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL, LENS, MUTED, panels
 
 
@@ -40,12 +41,12 @@ def draw_hits(hits: npt.ArrayLike, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def draw_cell(values: Sequence[float], du: float, dv: float, *, ax: Axes | None = None) -> Axes:
+def draw_cell(values: npt.ArrayLike, du: float, dv: float, *, ax: Axes | None = None) -> Axes:
     """Draw the four pixels I1 to I4 around a point, and the way to its interpolated value.
 
     Parameters
     ----------
-    values : sequence of 4 floats
+    values : array_like, shape (4,)
         Grey values I1 (top left), I2 (top right), I3 (bottom left), I4 (bottom right).
     du, dv : float
         Fractions of the point, in [0, 1].
@@ -55,13 +56,14 @@ def draw_cell(values: Sequence[float], du: float, dv: float, *, ax: Axes | None 
     >>> draw_cell([0, 10, 20, 30], 0.5, 0.5).texts[-1].get_text()
     'I = 15'
     """
-    I1, I2, I3, I4 = points(values, "values", 4).tolist()
+    I1, I2, I3, I4 = grey = one_point(values, "values", 4).tolist()
+    du, dv = number(du, "du"), number(dv, "dv")
     if not (0 <= du <= 1 and 0 <= dv <= 1):
         raise CvnotesError(f"du and dv are fractions, from 0 to 1; got {du:g} and {dv:g}")
     ax = panels(height=400) if ax is None else ax
     upper, lower = I1 + (I2 - I1) * du, I3 + (I4 - I3) * du
     ax.plot([0, 1, 1, 0, 0], [0, 0, 1, 1, 0], color=MUTED, lw=1)
-    for (u, v), value, n in zip(((0, 0), (1, 0), (0, 1), (1, 1)), values, "1234", strict=True):
+    for (u, v), value, n in zip(((0, 0), (1, 0), (0, 1), (1, 1)), grey, "1234", strict=True):
         ax.plot(u, v, "o", color=LENS, ms=9)
         ax.annotate(f"$I_{n}$ = {value:g}", (u, v), (0, 12 if v == 0 else -22), ha="center",
                     textcoords="offset points", color=LENS)  # fmt: skip
@@ -94,14 +96,16 @@ def draw_rows(
     -------
     ndarray of Axes, shape (2, 2)
     """
-    if len(before) != 2 or len(after) != 2:
+    pairs = pictures(before, "before"), pictures(after, "after")
+    if len(pairs[0]) != 2 or len(pairs[1]) != 2:
         raise CvnotesError("before and after: expected two pictures each, left and right")
+    lines = count(lines, "lines")
     axes: npt.NDArray[np.object_] = panels(2, 2, width=900, height=720, sharey=True)
     titles = (("left camera", "right camera"), ("left, rectified", "right, rectified"))
-    for row, pictures, names in zip(axes, (before, after), titles, strict=True):
-        for ax, picture, name in zip(row, pictures, names, strict=True):
+    for row, pair, names in zip(axes, pairs, titles, strict=True):
+        for ax, picture, name in zip(row, pair, names, strict=True):
             draw_image(picture, ax=ax, title=name)
-            for v in np.linspace(0, np.shape(picture)[0] - 1, lines + 2)[1:-1]:
+            for v in np.linspace(0, picture.shape[0] - 1, lines + 2)[1:-1]:
                 ax.axhline(v, color=ESTIMATED, lw=0.9)
         row[1].set_ylabel("")
     return axes

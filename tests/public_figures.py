@@ -1,0 +1,196 @@
+"""The public drawing functions that take arrays, with arguments that are good.
+
+They are tried in the same way as those of `public_face.FUNCTIONS`. What they drew is read back as
+numbers, so that it can be compared; their figures are known to nobody else, and vanish with them.
+"""
+
+from functools import wraps
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
+from matplotlib.quiver import Quiver
+from public_face import (
+    BOARD,
+    CAMERA,
+    GREY,
+    LENS,
+    LINES,
+    MATRIX,
+    ONE,
+    PICTURE,
+    RESULT,
+    SEEN,
+    SINGLE,
+    TRIANGLE,
+    Argument,
+    G,
+    M,
+    W,
+    function,
+    rows,
+    several,
+)
+
+from cvnotes.show import (
+    corners,
+    estimates,
+    figures,
+    lenses,
+    lines,
+    predictions,
+    quality,
+    shapes,
+    sights,
+    vanishing,
+    warps,
+)
+from cvnotes.show import scene as scenes
+
+# Pixels among which NaN means that a point has no image.
+PIXELS = Argument((2,), empty=True, picture=True)
+SMALL = GREY[:24, :32].copy()
+PAIR = np.stack([SMALL, SMALL + 5])
+CLOUD = np.random.default_rng(3).normal(0, 0.2, (20, 2))
+
+
+def read_back(drawn):
+    """Give all numbers in axes or shapes, as a list of arrays."""
+    if isinstance(drawn, Axes):
+        marks = [c for c in drawn.collections if isinstance(c, PathCollection | Quiver)]
+        found = [np.ravel(line.get_xydata()) for line in drawn.lines]
+        found += [np.ma.filled(c.get_offsets(), np.nan).ravel() for c in marks]
+        found += [c.U for c in marks if isinstance(c, Quiver)]
+        return found + [np.ma.filled(image.get_array(), np.nan).ravel() for image in drawn.images]
+    if isinstance(drawn, tuple | list) or np.asarray(drawn).dtype.kind == "O":
+        return [x for part in drawn for x in read_back(part)]
+    return [] if isinstance(drawn, str | float) else [np.ravel(drawn)]
+
+
+def figure(call, arrays, name=None, **more):
+    """Give a Function that answers with the numbers it drew."""
+
+    @wraps(call)
+    def numbers(*args, **kwargs):
+        return read_back(call(*args, **kwargs))
+
+    return function(numbers, arrays, name, **more)
+
+
+FIGURES = [
+    # corners
+    figure(corners.draw_response, {"response": (CLOUD, SINGLE)}),
+    figure(
+        lambda errors, reach=None: corners.draw_clouds({"errors": errors, "b": CLOUD}, reach=reach),
+        {"errors": (CLOUD, several(2)), "reach": (0.5, ONE)},
+        "show.corners.draw_clouds",
+    ),
+    # estimates
+    figure(
+        estimates.draw_plane_error,
+        {"m": (M, several(2)), "predicted": (M + 1, several(2)), "magnify": (10.0, ONE)},
+        paired=("m", "predicted"),
+    ),
+    figure(
+        estimates.draw_error_bars,
+        {
+            "estimates": (CLOUD, several(2)),
+            "truth": (np.zeros(2), several(2)),
+            "std": (np.array([0.2, 0.3]), several(2)),
+        },
+        names=("a", "b"),
+    ),
+    figure(
+        estimates.draw_view_families, {"truth": (800.0, ONE)}, results={"a": RESULT, "b": RESULT}
+    ),
+    # figures
+    figure(figures.draw_image, {"image": (SMALL, PICTURE)}),
+    figure(figures.draw_points, {"m": (M, PIXELS)}, sizes=("size",), size=(640, 480)),
+    figure(
+        figures.draw_corners,
+        {"image": (SMALL, PICTURE), "corners": (SEEN[0], several(2))},
+        board=BOARD,
+    ),
+    # lenses
+    figure(lenses.draw_grid, {"extent": (0.5, ONE), "lines": (3, ONE)}, lens=LENS),
+    figure(lenses.draw_lenses, {"extent": (0.5, ONE)}, lenses=[("a", LENS), ("b", LENS)]),
+    figure(lenses.draw_radius, {"up_to": (1.5, ONE)}, lens=LENS),
+    figure(lenses.draw_displacement, {"extent": (0.5, ONE)}, lens=LENS),
+    # lines
+    figure(
+        lines.draw_lines,
+        {"lines": (np.array([[3.0, 1, 1], [1, 0, -320]]), rows(3))},
+        sizes=("size",),
+        size=(640, 480),
+    ),
+    figure(lines.draw_segments, {"segments": (LINES, rows(2))}, sizes=("size",), size=(640, 480)),
+    figure(
+        lines.draw_classes, {"x_h": (np.array([[1.0, 1], [4, 2]]), rows(2)), "reach": (5.0, ONE)}
+    ),
+    figure(lines.segment_ends, {"segments": (LINES, rows(2))}),
+    # predictions
+    figure(predictions.draw_wall, {"images": (PAIR, PICTURE), "columns": (2, ONE)}),
+    # quality
+    figure(quality.draw_residuals, {"magnify": (50.0, ONE)}, calibration=RESULT),
+    figure(
+        quality.draw_coverage, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480)
+    ),
+    figure(
+        quality.covered_cells, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480)
+    ),
+    # vanishing
+    figure(
+        vanishing.draw_vanishing,
+        {"segments": (LINES, several(2)), "v_h": (np.array([900.0, 95, 1]), several(3))},
+        sizes=("size",),
+        size=(640, 480),
+    ),
+    figure(vanishing.draw_heights, {"v": (TRIANGLE, several(2))}, sizes=("size",), size=(640, 480)),
+    # warps
+    figure(warps.draw_hits, {"hits": (np.array([[0.0, 1], [2, 1]]), SINGLE)}),
+    figure(
+        warps.draw_cell,
+        {"values": (np.array([0.0, 10, 20, 30]), several(4)), "du": (0.5, ONE), "dv": (0.25, ONE)},
+    ),
+    figure(
+        warps.draw_rows,
+        {"before": (PAIR, PICTURE), "after": (PAIR, PICTURE), "lines": (9, ONE)},
+    ),
+    # what 3-D figures are made of
+    figure(scenes.gl_from_cv, {"cam_from_world": (G, MATRIX)}),
+    figure(
+        lambda thickness=None: [
+            mesh.vertices
+            for mesh in scenes.build_scene(
+                *shapes.axes_shapes(), thickness=thickness
+            ).geometry.values()
+        ],
+        {"thickness": (1.0, ONE)},
+        "show.scene.build_scene",
+    ),
+    figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
+    figure(shapes.target_shapes, {"world_from_target": (G, SINGLE)}, target=BOARD),
+    figure(
+        shapes.horizon_shapes, {"centre": (np.array([1.0, 2, 3]), several(3)), "radius": (9.0, ONE)}
+    ),
+    figure(sights.camera_shapes, {"depth": (100.0, ONE), "image": (SMALL, PICTURE)}, camera=CAMERA),
+    figure(sights.ray_shapes, {"m": (M, rows(2)), "length": (9.0, ONE)}, camera=CAMERA),
+    figure(
+        lambda m, to=None: sights.ray_shapes(CAMERA, m, to=to),
+        {"m": (M, rows(2)), "to": (W[:3], rows(3))},
+        "show.sights.ray_shapes",
+    ),
+    figure(
+        sights.sheet_shapes,
+        {
+            "edge": (np.array([[0.0, 0, 0], [0, 0, 9]]), several(3)),
+            "edges": (np.array([[[1.0, 2, 0], [1, 2, 9]]]), rows(3)),
+        },
+    ),
+    figure(sights.plane_shapes, {"z": (100.0, ONE)}, camera=CAMERA),
+    figure(
+        lambda W, radius: sights.dot_shapes(W, "C", radius=radius),
+        {"W": (np.array([1.0, 2, 3]), several(3)), "radius": (8.0, ONE)},
+        "show.sights.dot_shapes",
+    ),
+]

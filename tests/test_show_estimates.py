@@ -1,0 +1,58 @@
+"""Figures of estimates: each panel says of each set of views what its calibration says."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from public_face import RESULT
+
+from cvnotes.errors import InputTypeError
+from cvnotes.show.estimates import draw_error_bars, draw_plane_error, draw_view_families
+from cvnotes.show.style import ESTIMATED, LENS
+
+ALPHA = float(RESULT.A[0, 0])
+
+
+def colours(ax):
+    return ["#{:02X}{:02X}{:02X}".format(*(round(255 * c) for c in p.get_facecolor()[:3]))
+            for p in ax.patches]  # fmt: skip
+
+
+def test_families_stand_side_by_side_with_their_rms_and_the_error_of_their_focal_length():
+    doubtful = replace(RESULT, reliable=False, rms=2 * RESULT.rms)
+    assert RESULT.reliable
+    left, right = draw_view_families({"good": RESULT, "bad": doubtful}, truth=ALPHA / 1.25)
+    assert [t.get_text() for t in left.get_yticklabels()] == ["good", "bad"]
+    assert left.yaxis_inverted()  # the first family on top
+    assert np.allclose([p.get_width() for p in left.patches], [RESULT.rms, 2 * RESULT.rms], 1e-12)
+    assert np.allclose([p.get_width() for p in right.patches], 25.0, atol=1e-9)  # per cent
+    assert colours(right) == [LENS, ESTIMATED]
+    assert [t.get_text() for t in right.texts] == ["25 %", "25 %  not reliable"]
+    assert right.get_xscale() == "log"
+    assert (left.get_title(), right.get_title()) == ("what is looked at", "what counts")
+    assert left.get_xlabel() == "RMS (px per point)"
+    assert right.get_xlabel() == "error of the focal length (%)"
+
+
+def test_what_is_no_calibration_is_refused_by_its_name():
+    with pytest.raises(InputTypeError, match=r"results: expected a Mapping, got list"):
+        draw_view_families([RESULT], truth=800)
+    with pytest.raises(InputTypeError, match=r"results\['a'\]: expected a Calibration, got str"):
+        draw_view_families({"a": "left.json"}, truth=800)
+
+
+def test_an_arrow_leads_from_the_truth_to_the_prediction_ten_times_as_long():
+    ax = draw_plane_error([[10.0, 20], [30, 5]], [[10.5, 20], [30, 4]])
+    (arrows,) = ax.collections
+    assert arrows.get_offsets().tolist() == [[10, 20], [30, 5]]
+    assert (arrows.U.tolist(), arrows.V.tolist()) == ([5, 0], [0, -10])
+    assert ax.get_title() == "(arrows × 10)"
+
+
+def test_estimates_far_from_the_truth_leave_their_panel_empty_but_for_what_was_promised():
+    near, far = draw_error_bars([[0.1, 90.0], [-0.2, 95]], [0, 0], [1, 1], names=["u0", "k1"])
+    assert (len(near.patches), len(far.patches)) == (21, 0)
+    assert [len(ax.lines) for ax in (near, far)] == [2, 2]
+    assert far.lines[1].get_xdata() == [0, 0]
+    assert (near.get_xlabel(), far.get_xlabel()) == ("estimate (px)", "estimate")
+    assert float(np.max(near.lines[0].get_ydata())) == pytest.approx(0.3989, abs=1e-3)
