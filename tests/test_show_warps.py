@@ -1,0 +1,46 @@
+"""Figures of warps, walls, clouds and lenses: everything stands where it was worked out by hand."""
+
+import numpy as np
+import pytest
+
+from cvnotes.lens import Lens
+from cvnotes.show.corners import draw_clouds
+from cvnotes.show.lenses import draw_displacement, draw_radius
+from cvnotes.show.predictions import draw_wall
+from cvnotes.show.warps import draw_cell, draw_hits, draw_rows
+
+
+def test_a_wall_fills_rows_from_the_left_with_every_fourth_pixel():
+    shades = [np.full((8, 16), grey, np.uint8) for grey in (10, 20, 30)]
+    wall = draw_wall(shades, columns=2).images[0].get_array()
+    assert wall.shape == (8, 12)  # two rows of 2 px, two columns of 4 px, and a gap of 4 px
+    assert [wall[0, 0], wall[0, 8], wall[6, 0], wall[6, 8]] == [10, 20, 30, 255]
+
+
+def test_rows_run_through_both_pictures_of_both_pairs():
+    axes = draw_rows([np.zeros((21, 9))] * 2, [np.ones((21, 9))] * 2, lines=3)
+    for ax in axes.flat:
+        assert [line.get_ydata()[0] for line in ax.lines] == [5, 10, 15]
+
+
+def test_a_cell_interpolates_along_u_first():
+    ax = draw_cell([0, 10, 20, 40], 0.5, 0.25)
+    assert [t.get_text() for t in ax.texts[-3:]] == ["$I_a$ = 5", "$I_b$ = 30", "I = 11.25"]
+
+
+def test_three_hits_look_like_two():
+    assert draw_hits([[0, 1, 3]]).images[0].get_array().tolist() == [[0, 1, 2]]
+
+
+def test_each_method_has_its_cloud_and_its_rms():
+    ax = draw_clouds({"a": [[3.0, -4.0]], "b": [[0, 0.1]]}, reach=5)
+    assert ax.get_title() == "a: 3.536 px"  # √(25/2)
+    assert ax.get_xlim() == (-5, 5)
+    assert ax.lines[2].get_xydata().tolist() == [[3, -4]]
+
+
+def test_the_lens_ends_at_its_fold_and_arrows_are_its_displacement():
+    ax = draw_radius(Lens(k=(-4 / 3,)))
+    assert ax.texts[0].get_text() == "max_radius = 0.50"  # 1 + 3 k1 r² = 0
+    arrows = draw_displacement(Lens(k=(0.4,)), extent=0.5).collections[0]
+    assert (arrows.U[0], arrows.V[0]) == pytest.approx((-0.1, -0.1), abs=1e-12)  # k1 r² = 0.2
