@@ -35,6 +35,8 @@ from cvnotes.zhang import (
     radial_distortion,
     solve_b,
 )
+from cvnotes.zhang.distortion import radial_from_poses
+from cvnotes.zhang.poses import poses_of
 
 # Strong lenses bend the boards so much that homographies mislead. In reserve, the corners are
 # first straightened: x ← x (1 + bend r²), with r = 1 at the ends of the picture's longer axis.
@@ -125,8 +127,8 @@ class Steps:
 
     def poses(self, A: Array, H: Array) -> Array:
         """3. The pose of each view."""
-        if self.extrinsics is extrinsics:
-            return extrinsics(A, H)
+        if self.extrinsics is extrinsics and self.homography is dlt:
+            return poses_of(A, H)
         G = rigid_motion(self.extrinsics(A.copy(), H.copy()), "the poses of your extrinsics")
         if G.shape != (len(H), 4, 4):
             raise ShapeError(
@@ -143,7 +145,9 @@ class Steps:
     def with_lens(self, problem: Problem, A: Array, G: Array) -> State:
         """4. The lens by linear least squares."""
         k: Array = np.zeros(0)
-        if problem.n_radial:
+        if problem.n_radial and self.distortion is radial_distortion:
+            k = radial_from_poses(A, G, problem.W, problem.m, problem.n_radial)
+        elif problem.n_radial:
             copies = (x.copy() for x in (A, G, problem.W, problem.m))
             given = self.distortion(*copies, terms=problem.n_radial)
             k = numbers(given, "the k of your distortion")

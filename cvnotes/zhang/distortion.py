@@ -66,6 +66,11 @@ def radial_distortion(
     views = equally_many("G, W and m", G.shape[:-2], W.shape[:-2], m.shape[:-2])
     if 0 in views:
         raise DegenerateError("need at least one view, got none")
+    return radial_from_poses(A, G, W, m, terms)
+
+
+def radial_from_poses(A: Array, G: Array, W: Array, m: Array, terms: int) -> Array:
+    """Solve `radial_distortion` without guards of the arrays: for use inside."""
     M = W @ G[..., :3, :3].mT + G[..., None, :3, 3]
     if not (M[..., 2] > 0).all():
         raise DegenerateError("a board point does not lie in front of the camera")

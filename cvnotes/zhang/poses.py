@@ -29,7 +29,11 @@ def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
     >>> extrinsics(np.eye(3), -7 * np.diag([1.0, 1, 2]))[:3, 3] + 0.0
     array([0., 0., 2.])
     """
-    A, H = intrinsic_matrix(A), scaled(matrix(H, "H", 3, 3))
+    return poses_of(intrinsic_matrix(A), scaled(matrix(H, "H", 3, 3)))
+
+
+def poses_of(A: Array, H: Array) -> Array:
+    """Give what `extrinsics` gives, without a guard: for use inside."""
     rays = np.linalg.inv(A) @ H  # λ [r1 r2 T]
     lengths = np.sqrt(np.vecdot(rays.mT, rays.mT))
     scale = (lengths[..., 0] + lengths[..., 1]) / 2
