@@ -28,15 +28,14 @@ import cv2
 import numpy as np
 
 from benchmarks.turns import all_in_turns
+from cvnotes.base import Array, CalibrationWarning
 from cvnotes.calibration import Calibration, calibrate
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.correspondences import Correspondences
-from cvnotes.errors import Array, CalibrationWarning
-from cvnotes.lens import Lens
-from cvnotes.refine import Problem, State, minimise
-from cvnotes.steps import Steps
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Problem, State, minimise
+from cvnotes.calibration.steps import Steps
+from cvnotes.camera import Camera, Lens, intrinsics
+from cvnotes.pictures import good_views
 from cvnotes.targets import Chessboard
-from cvnotes.views import good_views
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10), p=(0.001, -0.0005)))

@@ -13,11 +13,9 @@ import cv2
 import numpy as np
 
 from benchmarks.calibration import BOARD, opencv
+from cvnotes.base import Array, CalibrationWarning, CvnotesError
 from cvnotes.calibration import calibrate
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array, CalibrationWarning, CvnotesError
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 # k1 and k2, and between which focal lengths
 LENSES = {

@@ -1,7 +1,7 @@
 """Corners to a fraction of a pixel: bias and spread of every method against the truth.
 
 Run ``python -m benchmarks.corners``. Twenty views of the course's board are rendered by
-`cvnotes.synthetic.render`, which knows where the corners are; all methods see the same pictures in
+`cvnotes.pictures.render`, which knows where the corners are; all methods see the same pictures in
 the same run. Those that refine start from the truth, up to half a pixel away either way. The last
 column is the time per board of 54 corners: refining alone, or, for the finders, finding.
 
@@ -16,14 +16,12 @@ from dataclasses import dataclass, field
 import cv2
 import numpy as np
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array
-from cvnotes.lens import Lens
-from cvnotes.sensor import Image
-from cvnotes.subpixel import fit_edges, refine_edges, refine_subpixel
-from cvnotes.synthetic import render
-from cvnotes.targets import Chessboard
-from cvnotes.views import good_views
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens, intrinsics
+from cvnotes.pictures import good_views, render
+from cvnotes.pictures.exposure import Image
+from cvnotes.targets import Chessboard, refine_edges, refine_subpixel
+from cvnotes.targets.edge_corners import fit_edges
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))

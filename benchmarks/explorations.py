@@ -12,7 +12,7 @@ import time
 import numpy as np
 
 from benchmarks import screen
-from cvnotes.errors import Array
+from cvnotes.base import Array
 from cvnotes.show import explore
 from cvnotes.show.explore.model import Model, pack_png
 

@@ -9,12 +9,12 @@ import cv2
 import numpy as np
 
 from benchmarks.turns import all_in_turns
+from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array
 from cvnotes.homography import dlt, refine_homography
+from cvnotes.pictures import good_views
 from cvnotes.projective import apply
 from cvnotes.targets import Chessboard
-from cvnotes.views import good_views
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238))

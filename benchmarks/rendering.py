@@ -14,13 +14,11 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array
-from cvnotes.lens import Lens
-from cvnotes.sensor import Image
-from cvnotes.synthetic import render
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens, intrinsics
+from cvnotes.pictures import good_views, render
+from cvnotes.pictures.exposure import Image
 from cvnotes.targets import Chessboard
-from cvnotes.views import good_views
 
 BOARD = Chessboard((9, 6), 25.0)
 LENS = Lens(k=(-0.25, 0.10))

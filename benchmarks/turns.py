@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cvnotes.errors import Array
+from cvnotes.base import Array
 
 
 def all_in_turns(ways: Mapping[str, Callable[[], Any]], repeats: int = 15) -> dict[str, Array]:

@@ -12,9 +12,8 @@ import cv2
 import numpy as np
 
 from benchmarks.turns import in_turns
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array
-from cvnotes.lens import Lens
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens, intrinsics
 
 A = intrinsics(800, 805, 640, 480)
 LENSES = (

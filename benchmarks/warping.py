@@ -14,9 +14,8 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from benchmarks.turns import in_turns
-from cvnotes.errors import Array
-from cvnotes.interpolate import Image
-from cvnotes.warp import backward_warp, homography_map
+from cvnotes.base import Array, Image
+from cvnotes.warping import backward_warp, homography_map
 
 SIZE = (1000, 1000)
 ANGLE = 0.1

@@ -2,7 +2,7 @@
 
 import sys
 
-from cvnotes.cli import main
+from cvnotes.commands.cli import main
 
 if __name__ == "__main__":
     sys.exit(main())

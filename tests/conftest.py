@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.camera import pose, rotation_from_vector
 from cvnotes.targets import Chessboard
 
 _SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"

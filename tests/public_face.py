@@ -7,35 +7,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cvnotes import camera as cameras
-from cvnotes import (
-    homography,
-    incidence,
-    interpolate,
-    projective,
-    resection,
+from cvnotes import calibration, camera, homography, projective, stereo, targets, warping
+from cvnotes.calibration import calibrate, ppm, prediction_std, std_with_view, zhang
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.camera import (
+    Camera,
+    Lens,
+    intrinsics,
+    look_at,
+    pose,
     rigid,
-    robust,
-    stereo,
-    subpixel,
+    rotation_from_vector,
     vanishing,
-    warp,
-    zhang,
 )
-from cvnotes.calibration import calibrate
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.corners import find_corners
-from cvnotes.correspondences import Correspondences
-from cvnotes.coverage import polygon_means
 from cvnotes.files import lens_from_opencv
-from cvnotes.lens import Lens
-from cvnotes.meshes import quads
-from cvnotes.raycast import first_hits
-from cvnotes.rigid import look_at, pose, rotation_from_vector
-from cvnotes.sensor import expose
-from cvnotes.synthetic import render
-from cvnotes.targets import Chessboard, TwoPlanes
-from cvnotes.uncertainty import prediction_std, std_with_view
+from cvnotes.pictures import expose, render
+from cvnotes.pictures.meshes import quads
+from cvnotes.pictures.pixel_means import polygon_means
+from cvnotes.pictures.raycast import first_hits
+from cvnotes.targets import Chessboard, TwoPlanes, edge_corners, find_corners
+from cvnotes.warping import interpolation
 
 
 @dataclass(frozen=True)
@@ -194,7 +185,7 @@ FUNCTIONS = [
     function(LENS.jacobian, {"xy": (XY, rows(2))}, "lens.Lens.jacobian"),
     # camera
     function(
-        cameras.intrinsics,
+        camera.intrinsics,
         {
             n: (x, ONE)
             for n, x in zip(
@@ -204,7 +195,7 @@ FUNCTIONS = [
         "camera.intrinsics",
     ),
     function(
-        cameras.intrinsics_from_pixel_size,
+        camera.intrinsics_from_pixel_size,
         {
             "f": (8.0, ONE),
             "du": (0.01, ONE),
@@ -228,95 +219,95 @@ FUNCTIONS = [
     function(CAMERA.ideal, {"m": (M, rows(2))}, "camera.Camera.ideal"),
     function(CAMERA.ray, {"m": (M, rows(2))}, "camera.Camera.ray"),
     function(CAMERA.vanishing_point, {"d": (W, rows(3))}, "camera.Camera.vanishing_point"),
-    function(cameras.px_from_xy, {"A": (A, SINGLE), "xy": (XY, rows(2))}, "camera.px_from_xy"),
-    function(cameras.xy_from_px, {"A": (A, SINGLE), "m": (M, rows(2))}, "camera.xy_from_px"),
-    function(cameras.decompose, {"P": (PPM, SINGLE)}, "camera.decompose"),
-    function(cameras.centre_of, {"P": (PPM, SINGLE)}, "camera.centre_of"),
+    function(camera.px_from_xy, {"A": (A, SINGLE), "xy": (XY, rows(2))}, "camera.px_from_xy"),
+    function(camera.xy_from_px, {"A": (A, SINGLE), "m": (M, rows(2))}, "camera.xy_from_px"),
+    function(camera.decompose, {"P": (PPM, SINGLE)}, "camera.decompose"),
+    function(camera.centre_of, {"P": (PPM, SINGLE)}, "camera.centre_of"),
     # incidence
     function(
-        incidence.join,
+        projective.join,
         {"a": (np.array([1.0, 2, 1]), HOMOGENEOUS), "b": (np.array([3.0, 1, 1]), HOMOGENEOUS)},
-        "incidence.join",
+        "projective.join",
     ),
     function(
-        incidence.meet,
+        projective.meet,
         {"k": (np.array([1.0, 2, 1]), HOMOGENEOUS), "m": (np.array([3.0, 1, 1]), HOMOGENEOUS)},
-        "incidence.meet",
+        "projective.meet",
     ),
     function(
-        incidence.lies_on,
+        projective.lies_on,
         {
             "x": (np.array([1.0, 2, 1]), EITHER_SPACE),
             "line": (np.array([3.0, 1, 1]), EITHER_SPACE),
             "atol": (1e-12, ONE),
         },
-        "incidence.lies_on",
+        "projective.lies_on",
     ),
     function(
-        incidence.map_lines,
+        projective.map_lines,
         {"H": (H, MATRIX), "lines": (np.array([[3.0, 1, 1]]), EITHER_SPACE)},
-        "incidence.map_lines",
+        "projective.map_lines",
     ),
     function(
-        incidence.cross_ratio,
+        projective.cross_ratio,
         {
             n: (np.array([t, 1.0, 1]), EITHER_SPACE)
             for n, t in zip("abcd", (0.0, 1, 2, 5), strict=True)
         },
-        "incidence.cross_ratio",
+        "projective.cross_ratio",
     ),
     function(
-        incidence.plane_through,
+        projective.plane_through,
         {
             n: (np.array(x), POINT4)
             for n, x in zip("abc", ([1.0, 0, 0, 1], [0, 1.0, 0, 1], [0, 0, 1.0, 1]), strict=True)
         },
-        "incidence.plane_through",
+        "projective.plane_through",
     ),
     function(
-        incidence.point_of_planes,
+        projective.point_of_planes,
         {
             n: (np.array(x), POINT4)
             for n, x in zip("pqr", ([1.0, 0, 0, 1], [0, 1.0, 0, 1], [0, 0, 1.0, 1]), strict=True)
         },
-        "incidence.point_of_planes",
+        "projective.point_of_planes",
     ),
     function(
-        incidence.line_through,
+        projective.line_through,
         {
             n: (np.array(x), POINT4)
             for n, x in zip("ab", ([1.0, 0, 0, 1], [0, 1.0, 0, 1]), strict=True)
         },
-        "incidence.line_through",
+        "projective.line_through",
     ),
     function(
-        incidence.line_of_planes,
+        projective.line_of_planes,
         {
             n: (np.array(x), POINT4)
             for n, x in zip("pq", ([1.0, 0, 0, 1], [0, 1.0, 0, 1]), strict=True)
         },
-        "incidence.line_of_planes",
+        "projective.line_of_planes",
     ),
     function(
-        incidence.dual,
-        {"L": (incidence.line_through([1.0, 0, 0, 1], [0, 1.0, 0, 1]), MATRIX)},
-        "incidence.dual",
+        projective.dual,
+        {"L": (projective.line_through([1.0, 0, 0, 1], [0, 1.0, 0, 1]), MATRIX)},
+        "projective.dual",
     ),
     function(
-        incidence.meet_plane,
+        projective.meet_plane,
         {
-            "L": (incidence.line_through([1.0, 0, 0, 1], [0, 1.0, 0, 1]), MATRIX),
+            "L": (projective.line_through([1.0, 0, 0, 1], [0, 1.0, 0, 1]), MATRIX),
             "p": (np.array([0, 0, 1.0, 3]), POINT4),
         },
-        "incidence.meet_plane",
+        "projective.meet_plane",
     ),
     function(
-        incidence.join_point,
+        projective.join_point,
         {
-            "L": (incidence.line_through([1.0, 0, 0, 1], [0, 1.0, 0, 1]), MATRIX),
+            "L": (projective.line_through([1.0, 0, 0, 1], [0, 1.0, 0, 1]), MATRIX),
             "x": (np.array([0, 0, 1.0, 3]), POINT4),
         },
-        "incidence.join_point",
+        "projective.join_point",
     ),
     # homography and zhang
     function(homography.normaliser, {"x": (W2, several(2))}),
@@ -350,12 +341,12 @@ FUNCTIONS = [
         {"A": (A, SINGLE), "G": (POSES, MATRIX), "W": (W, several(3)), "m": (SEEN, several(2))},
     ),
     function(
-        robust.ransac_homography,
+        homography.ransac_homography,
         {**PAIRS, "threshold": (2.0, ONE), "confidence": (0.99, ONE)},
         paired=("src", "dst"),
         rng=_generator,
     ),
-    function(robust.trials_needed, {"inlier_fraction": (0.5, ONE), "confidence": (0.99, ONE)}),
+    function(homography.trials_needed, {"inlier_fraction": (0.5, ONE), "confidence": (0.99, ONE)}),
     # calibration
     function(
         calibrate,
@@ -375,38 +366,38 @@ FUNCTIONS = [
     function(std_with_view, {"G": (POSES[1], SINGLE)}, calibration=RESULT),
     # resection
     function(
-        resection.resect,
+        calibration.resect,
         {"W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
-        "resection.resect",
+        "calibration.resect",
         paired=("W", "m"),
     ),
-    function(resection.ppm.normaliser, {"W": (SOLID.points, several(3))}),
+    function(ppm.normaliser, {"W": (SOLID.points, several(3))}),
     function(
-        resection.ppm.ppm_design_matrix,
-        {"W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
-        paired=("W", "m"),
-    ),
-    function(
-        resection.ppm.ppm_dlt,
+        ppm.ppm_design_matrix,
         {"W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
         paired=("W", "m"),
     ),
     function(
-        resection.ppm.refine_ppm,
+        ppm.ppm_dlt,
+        {"W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
+        paired=("W", "m"),
+    ),
+    function(
+        ppm.refine_ppm,
         {"P": (PPM, SINGLE), "W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},
         paired=("W", "m"),
     ),
     function(
-        resection.pose_from_view,
+        calibration.pose_from_view,
         {"target_points": (W, EITHER), "image_points": (SEEN[0], several(2))},
-        "resection.pose_from_view",
+        "calibration.pose_from_view",
         paired=("target_points", "image_points"),
         camera=Camera(A, lens=LENS),
     ),
     function(
-        resection.calibrate_one_view,
+        calibration.calibrate_one_view,
         {"target_points": (SOLID.points, several(3)), "image_points": (SOLID_SEEN, several(2))},
-        "resection.calibrate_one_view",
+        "calibration.calibrate_one_view",
         paired=("target_points", "image_points"),
         sizes=("size",),
         size=(640, 480),
@@ -464,7 +455,9 @@ FUNCTIONS = [
     ),
     # vanishing
     function(
-        vanishing.vanishing_point, {"segments": (LINES, several(2))}, "vanishing.vanishing_point"
+        vanishing.vanishing_point,
+        {"segments": (LINES, several(2))},
+        "vanishing.vanishing_point",
     ),
     function(
         vanishing.horizon,
@@ -503,93 +496,98 @@ FUNCTIONS = [
     ),
     # pictures
     function(
-        interpolate.interpolate,
+        interpolation.interpolate,
         {"image": (NOISE, PICTURE), "m": (M / 100, Argument((2,), empty=True, picture=True))},
-        "interpolate.interpolate",
+        "interpolation.interpolate",
     ),
-    function(warp.homography_map, {"H": (H, SINGLE)}, "warp.homography_map"),
+    function(warping.homography_map, {"H": (H, SINGLE)}, "warping.homography_map"),
     function(
-        warp.rotation_map,
+        warping.rotation_map,
         {"angle": (0.1, ONE), "centre": (np.array([3.0, 4]), several(2))},
-        "warp.rotation_map",
+        "warping.rotation_map",
     ),
     function(
-        warp.zoom_map,
+        warping.zoom_map,
         {"factor": (2.0, ONE), "centre": (np.array([3.0, 4]), several(2))},
-        "warp.zoom_map",
+        "warping.zoom_map",
     ),
     function(
-        warp.plane_map,
+        warping.plane_map,
         {"H": (H, SINGLE), "corner": (np.array([3.0, 4]), several(2)), "pixel": (0.5, ONE)},
-        "warp.plane_map",
+        "warping.plane_map",
     ),
-    function(warp.zoom_map(2), {"m": (M, rows(2))}, "warp.PixelMap.__call__"),
+    function(warping.zoom_map(2), {"m": (M, rows(2))}, "warping.PixelMap.__call__"),
     function(
-        warp.undistortion_map,
+        warping.undistortion_map,
         {"new_A": (A, SINGLE), "R": (R, SINGLE)},
-        "warp.undistortion_map",
+        "warping.undistortion_map",
         camera=CAMERA,
     ),
-    function(warp.distortion_map, {"new_A": (A, SINGLE)}, "warp.distortion_map", camera=CAMERA),
     function(
-        warp.map_array,
+        warping.distortion_map,
+        {"new_A": (A, SINGLE)},
+        "warping.distortion_map",
+        camera=CAMERA,
+    ),
+    function(
+        warping.map_array,
         {},
-        "warp.map_array",
+        "warping.map_array",
         sizes=("size",),
-        mapping=warp.zoom_map(2),
+        mapping=warping.zoom_map(2),
         size=(16, 12),
     ),
     function(
-        warp.forward_warp,
+        warping.forward_warp,
         {"image": (NOISE, PICTURE)},
-        "warp.forward_warp",
+        "warping.forward_warp",
         sizes=("size",),
-        mapping=warp.zoom_map(2),
+        mapping=warping.zoom_map(2),
         size=(16, 12),
     ),
     function(
-        warp.backward_warp,
+        warping.backward_warp,
         {"image": (NOISE, PICTURE)},
-        "warp.backward_warp",
+        "warping.backward_warp",
         sizes=("size",),
-        mapping=warp.zoom_map(2),
+        mapping=warping.zoom_map(2),
         size=(16, 12),
     ),
     function(
-        warp.undistort_image,
+        warping.undistort_image,
         {"image": (NOISE, PICTURE), "new_A": (A, SINGLE)},
-        "warp.undistort_image",
+        "warping.undistort_image",
         sizes=("size",),
         camera=Camera(A, lens=LENS, size=(16, 12)),
         size=(16, 12),
     ),
     function(
-        warp.rectify_plane,
+        warping.rectify_plane,
         {
             "image": (NOISE, PICTURE),
             "H": (np.eye(3), SINGLE),
             "region": (np.array([[0.0, 0], [5, 6]]), several(2)),
             "pixel": (0.5, ONE),
         },
-        "warp.rectify_plane",
+        "warping.rectify_plane",
     ),
     function(find_corners, {"image": (GREY, PICTURE)}, board=BOARD),
-    function(subpixel.harris, {"image": (NOISE, PICTURE)}, "subpixel.harris"),
-    function(subpixel.local_maxima, {"response": (NOISE, PICTURE)}, "subpixel.local_maxima"),
+    function(targets.harris, {"image": (NOISE, PICTURE)}, "targets.harris"),
+    function(targets.local_maxima, {"response": (NOISE, PICTURE)}, "targets.local_maxima"),
     function(
-        subpixel.refine_subpixel,
+        targets.refine_subpixel,
         {"image": (GREY, PICTURE), "m": (PLANE[0].round(), rows(2))},
-        "subpixel.refine_subpixel",
+        "targets.refine_subpixel",
     ),
     function(
-        subpixel.refine_edges,
+        targets.refine_edges,
         {"image": (GREY, PICTURE), "m": (PLANE[0].round(), rows(2))},
-        "subpixel.refine_edges",
+        "targets.refine_edges",
     ),
     function(
-        subpixel.fit_edges,
+        edge_corners.fit_edges,
         {"image": (GREY, PICTURE), "m": (PLANE[0].round(), rows(2))},
-        "subpixel.fit_edges",
+        "edge_corners.fit_edges",
     ),
     # making pictures
     function(expose, {"radiance": (NOISE, PICTURE), "motion": (np.array([1.0, 2]), several(2))}),

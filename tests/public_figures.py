@@ -32,20 +32,22 @@ from public_face import (
     several,
 )
 
-from cvnotes.show import (
+from cvnotes.show.figures import (
     corners,
     estimates,
-    figures,
     lenses,
     lines,
     predictions,
     quality,
-    shapes,
-    sights,
     vanishing,
     warps,
 )
-from cvnotes.show import scene as scenes
+from cvnotes.show.figures import (
+    images as figures,
+)
+from cvnotes.show.space import camera_shapes as sights
+from cvnotes.show.space import shapes
+from cvnotes.show.space import viewer as scenes
 
 # Pixels among which NaN means that a point has no image.
 PIXELS = Argument((2,), empty=True, picture=True)

@@ -4,12 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from cvnotes.calibration import LENSES, calibrate
-from cvnotes.camera import Camera, intrinsics
+from cvnotes.calibration import LENSES, calibrate, extrinsics
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.homography import dlt, refine_homography
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
-from cvnotes.zhang import extrinsics
 
 SIZE = (1280, 960)
 TO_THE_END = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 300, 1e-16)
@@ -22,7 +19,7 @@ FLAGS = {
     "k1 k2 p1 p2": NO_K3,
     "k1 k2 p1 p2 k3": 0,
 }
-pytestmark = pytest.mark.filterwarnings("ignore::cvnotes.errors.CalibrationWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::cvnotes.base.errors.CalibrationWarning")
 
 
 def in_float32(m):

@@ -46,7 +46,7 @@ def page(tmp_path_factory):
 
 
 def test_of_an_exploration_the_still_remains_with_its_text_and_nothing_of_the_widget(page):
-    from cvnotes.show.explore import still
+    from cvnotes.show import still
 
     for cell in (page[1][0], page[1][4]):
         data = cell.outputs[0].data

@@ -5,10 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-from cvnotes.calibration import LENSES, Calibration, calibrate
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.correspondences import Correspondences
-from cvnotes.errors import (
+from cvnotes.base import (
     CalibrationWarning,
     ConvergenceError,
     CvnotesError,
@@ -16,12 +13,20 @@ from cvnotes.errors import (
     InputTypeError,
     ShapeError,
 )
+from cvnotes.calibration import (
+    LENSES,
+    Calibration,
+    calibrate,
+    extrinsics,
+    intrinsics_from_homographies,
+    radial_distortion,
+)
+from cvnotes.calibration.arrow import solve_arrow
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Problem, State
+from cvnotes.calibration.steps import Steps
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.homography import dlt
-from cvnotes.lens import Lens
-from cvnotes.refine import Problem, State, solve_arrow
-from cvnotes.rigid import pose, rotation_from_vector
-from cvnotes.steps import Steps
-from cvnotes.zhang import extrinsics, intrinsics_from_homographies, radial_distortion
 
 SIZE = (1280, 960)
 FULL = "k1 k2 p1 p2 k3"

@@ -4,18 +4,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
 from cvnotes.camera import (
     Camera,
+    Lens,
     centre_of,
     decompose,
     intrinsics,
     intrinsics_from_pixel_size,
+    look_at,
+    pose,
     px_from_xy,
+    rotation_from_vector,
     xy_from_px,
 )
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
-from cvnotes.lens import Lens
-from cvnotes.rigid import look_at, pose, rotation_from_vector
 
 RNG = np.random.default_rng(4)
 A = intrinsics(800, 805, 320, 240, 0.7)

@@ -20,10 +20,9 @@ from nbclient import NotebookClient
 from public_face import FUNCTIONS as COMPUTING
 from public_figures import FIGURES
 
-from cvnotes.camera import Camera
-from cvnotes.errors import CalibrationWarning, CvnotesError, InputTypeError, matrix
+from cvnotes.base import CalibrationWarning, CvnotesError, InputTypeError, matrix
+from cvnotes.camera import Camera, Lens
 from cvnotes.files import lens_from_opencv
-from cvnotes.lens import Lens
 
 TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent / "cvnotes"
@@ -157,7 +156,7 @@ def test_numbers_near_the_largest_never_overflow_and_never_come_out_as_garbage(f
 
 
 # Divide by the largest number before anything else.
-SCALE_FREE = ("projective.from_homogeneous", "projective.same_up_to_scale")
+SCALE_FREE = ("projective.points.from_homogeneous", "projective.points.same_up_to_scale")
 
 
 @row(3, lambda argument: argument.homogeneous)
@@ -189,8 +188,8 @@ def test_empty_arrays_are_refused_or_answered_by_nothing(function, arrays):
 # corners, which cover none of the cells.
 MAY_BE_EMPTY = {
     "lens.Lens": ("k",),
-    "raycast.first_hits": ("corners",),
-    "show.quality.covered_cells": ("image_points",),
+    "pictures.raycast.first_hits": ("corners",),
+    "show.figures.quality.covered_cells": ("image_points",),
 }
 
 

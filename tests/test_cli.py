@@ -18,15 +18,13 @@ import pytest
 from PIL import Image
 
 from cvnotes import __version__
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.cli import main
+from cvnotes.base import FileError
+from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.commands import lab
+from cvnotes.commands.cli import main
+from cvnotes.commands.examined import View
 from cvnotes.commands.pictures import corner_sheets
-from cvnotes.commands.views import View
-from cvnotes.errors import FileError
 from cvnotes.files import read_camera, write_camera
-from cvnotes.lens import Lens
-from cvnotes.rigid import rotation_from_vector
 from cvnotes.targets import Chessboard
 
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, pipes and devices of POSIX")
@@ -379,7 +377,7 @@ def test_the_version_is_told(capsys):
 
 
 def test_a_mistake_of_ours_is_one_line_too(photos, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("cvnotes.commands.views._look", lambda *_: 1 / 0)
+    monkeypatch.setattr("cvnotes.commands.examined._look", lambda *_: 1 / 0)
     assert calibrate(photos, "--out", tmp_path / "out") == 1
     error = capsys.readouterr().err
     assert one_line(error)
@@ -391,7 +389,7 @@ def test_memory_that_runs_out_is_said(photos, tmp_path, capsys, monkeypatch):
     def look(*_):
         raise MemoryError
 
-    monkeypatch.setattr("cvnotes.commands.views._look", look)
+    monkeypatch.setattr("cvnotes.commands.examined._look", look)
     assert calibrate(photos, "--out", tmp_path / "out") == 1
     assert capsys.readouterr().err == "cvnotes calibrate: there is not enough memory for this\n"
 
@@ -400,12 +398,12 @@ SLOW = """
     import sys, time
     from pathlib import Path
     PATCH
-    from cvnotes.cli import main
+    from cvnotes.commands.cli import main
     sys.exit(main(sys.argv[1:]))
 """
 PATCHES = {
     "while looking for corners": """
-    import cvnotes.commands.views as views
+    import cvnotes.commands.examined as views
     def slow(*_):
         Path("ready").touch()
         time.sleep(60)

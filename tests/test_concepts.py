@@ -9,9 +9,9 @@ from string import ascii_lowercase
 import nbformat
 import pytest
 
-from cvnotes.errors import CvnotesError
+from cvnotes.base import CvnotesError
+from cvnotes.learn import EXERCISES
 from cvnotes.learn.concepts import Concept, concepts, find
-from cvnotes.learn.exercises import EXERCISES
 
 ROOT = Path(__file__).resolve().parents[1]
 each_concept = pytest.mark.parametrize("concept", concepts().values(), ids=concepts().keys())

@@ -4,17 +4,13 @@ import cv2
 import numpy as np
 import pytest
 
-from cvnotes import _cv
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.corners import doubts, find_corners, finding
-from cvnotes.corners.order import handedness, ordered
-from cvnotes.errors import CornersNotFound, CvnotesError, InputTypeError, ShapeError
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
-from cvnotes.subpixel import fit_edges
-from cvnotes.synthetic import clutter, render
-from cvnotes.targets import Chessboard
-from cvnotes.views import good_views
+from cvnotes.base import CornersNotFound, CvnotesError, InputTypeError, ShapeError
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.pictures import clutter, good_views, render
+from cvnotes.targets import Chessboard, doubts, find_corners, finding
+from cvnotes.targets import opencv_finders as _cv
+from cvnotes.targets.edge_corners import fit_edges
+from cvnotes.targets.finding import handedness, ordered
 
 PHOTOS = Path(__file__).resolve().parents[2] / "shared" / "data" / "left_right"
 BOARD = Chessboard((9, 6), 25.0)

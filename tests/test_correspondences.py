@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from cvnotes.correspondences import Correspondences
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.targets import Chessboard
 
 W = Chessboard((9, 6), 25.0).points

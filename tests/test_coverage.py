@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from cvnotes.coverage import edge_means, polygon_means, subdivide
-from cvnotes.errors import CvnotesError, DegenerateError, ShapeError
+from cvnotes.base import CvnotesError, DegenerateError, ShapeError
+from cvnotes.pictures.pixel_means import edge_means, polygon_means, subdivide
 
 
 def shoelace(outline):

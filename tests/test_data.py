@@ -8,13 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cvnotes import course
+from cvnotes.base import FileError
 from cvnotes.calibration import calibrate
-from cvnotes.corners import find_corners
-from cvnotes.errors import FileError
-from cvnotes.learn.personal import personal_camera
-from cvnotes.synthetic import render
-from cvnotes.views import good_views
+from cvnotes.learn import personal_camera
+from cvnotes.pictures import course, good_views, render
+from cvnotes.targets import find_corners
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared" / "data" / "left_right"

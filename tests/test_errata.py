@@ -9,13 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
+from cvnotes.calibration import constraints, intrinsics_from_b, radial_distortion, solve_b
+from cvnotes.camera import Camera, Lens, intrinsics, look_at, pose, rotation_from_vector
 from cvnotes.homography import geometric_error
-from cvnotes.lens import Lens
 from cvnotes.projective import from_homogeneous, same_up_to_scale
-from cvnotes.rigid import look_at, pose, rotation_from_vector
 from cvnotes.targets import Chessboard
-from cvnotes.zhang import constraints, intrinsics_from_b, radial_distortion, solve_b
 
 CAMERA = Camera(
     intrinsics(800, 804, 325, 238), look_at([60, 40, -500], [80, 60, 0]), Lens(k=(-0.25, 0.10))

@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from test_exercises_second import solution_of
 
-from cvnotes.errors import CvnotesError
-from cvnotes.learn import exercises
-from cvnotes.learn.asking import ask
-from cvnotes.learn.copying import as_code
-from cvnotes.learn.equality import up_to_scale
-from cvnotes.learn.exercises import EXERCISES, check, hint, notebook_of, progress, solution
-from cvnotes.learn.judge import judge
-from cvnotes.learn.outcome import Outcome, outcome_of
-from cvnotes.learn.recognising import what_it_gives
+from cvnotes.base import CvnotesError
+from cvnotes.learn import EXERCISES, check, exercises, hint, progress, solution
+from cvnotes.learn.checker.diagnosis import what_it_gives
+from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.judge import judge
+from cvnotes.learn.checker.literals import as_code
+from cvnotes.learn.checker.outcome import Outcome, outcome_of
+from cvnotes.learn.checker.sandbox import ask
+from cvnotes.learn.exercises import notebook_of
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))

@@ -5,10 +5,10 @@ import hashlib
 import numpy as np
 import pytest
 
+from cvnotes.base import CvnotesError
 from cvnotes.calibration import calibrate
-from cvnotes.errors import CvnotesError
-from cvnotes.learn.exercises import check
-from cvnotes.learn.personal import normals, personal_camera, uniforms
+from cvnotes.learn import check, personal_camera
+from cvnotes.learn.personal import normals, uniforms
 
 
 def test_these_numbers_never_change():

@@ -17,13 +17,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cvnotes.learn import sandbox
-from cvnotes.learn.calling import is_empty
-from cvnotes.learn.exercises import check
-from cvnotes.learn.here import TimeIsOver, run_here
-from cvnotes.learn.outcome import Outcome, decode, encode
-from cvnotes.learn.report import RIGHT
-from cvnotes.learn.sandbox import run
+from cvnotes.learn import check
+from cvnotes.learn.checker import sandbox
+from cvnotes.learn.checker.attempt import is_empty
+from cvnotes.learn.checker.in_process import TimeIsOver, run_here
+from cvnotes.learn.checker.outcome import Outcome, decode, encode
+from cvnotes.learn.checker.report import RIGHT
+from cvnotes.learn.checker.sandbox import run
 
 X = np.arange(6.0).reshape(3, 2)
 needs_fork = pytest.mark.skipif(not sandbox.can_fork(), reason="no fork on this system")

@@ -8,10 +8,9 @@ import inspect
 import numpy as np
 import pytest
 
-from cvnotes.learn.asking import ask
-from cvnotes.learn.exercises import EXERCISES
-from cvnotes.learn.judge import judge
-from cvnotes.learn.personal import personal_camera
+from cvnotes.learn import EXERCISES, personal_camera
+from cvnotes.learn.checker.judge import judge
+from cvnotes.learn.checker.sandbox import ask
 
 # Chapter 1
 

@@ -11,17 +11,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cvnotes import course
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, DegenerateError, ShapeError
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
-from cvnotes.show import explore
+from cvnotes.base import CvnotesError, DegenerateError, ShapeError
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.pictures import course
+from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.model import Model, Setting, Sight, pack_png
 from cvnotes.show.explore.paper import Paper
 from cvnotes.show.explore.rectification import lines_from
-from cvnotes.show.style import CAMERA, ESTIMATED, LENS, WORLD
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
@@ -100,8 +97,8 @@ def test_the_same_values_give_the_same_picture(name):
 
 @each_model
 def test_a_picture_is_made_and_packed_sooner_than_an_empty_figure_of_matplotlib(name):
+    from cvnotes.show import panels
     from cvnotes.show.picture import encode
-    from cvnotes.show.style import panels
 
     def fastest(run):
         times = []

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, Rectangle
 from matplotlib.quiver import Quiver
 from PIL import Image
 
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
 from cvnotes.show import (
     draw_corners,
     draw_coverage,

@@ -18,25 +18,21 @@ import numpy as np
 import pytest
 import yaml
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, FileError
+from cvnotes.base import CvnotesError, FileError
+from cvnotes.calibration import Calibration, calibrate_one_view
+from cvnotes.calibration.saving import read_calibration, write_calibration
+from cvnotes.camera import Camera, Lens, intrinsics, look_at, pose, rotation_from_vector
 from cvnotes.files import (
     CameraInfo,
     Rejected,
     lens_from_opencv,
     opencv_coefficients,
-    read_calibration,
     read_camera,
     read_camera_info,
-    write_calibration,
     write_camera,
     write_camera_info,
     write_whole,
 )
-from cvnotes.lens import Lens
-from cvnotes.resection import calibrate_one_view
-from cvnotes.result import Calibration
-from cvnotes.rigid import look_at, pose, rotation_from_vector
 from cvnotes.targets import TwoPlanes
 
 posix = pytest.mark.skipif(os.name == "nt", reason="pipes, devices and limits of POSIX")

@@ -12,11 +12,12 @@ import pytest
 from test_exercises_second import source_of
 
 from cvnotes.commands.grade import add_parser, table
-from cvnotes.learn import expected
-from cvnotes.learn.exercises import EXERCISES, notebook_of
-from cvnotes.learn.expected import expected_exercises
-from cvnotes.learn.grading import Mark, grade_folder
-from cvnotes.learn.report import Report
+from cvnotes.learn import EXERCISES
+from cvnotes.learn.checker.report import Report
+from cvnotes.learn.exercises import notebook_of
+from cvnotes.learn.grader import assignment as expected
+from cvnotes.learn.grader.assignment import expected_exercises
+from cvnotes.learn.grader.grading import Mark, grade_folder
 
 IMPORTS = "import numpy as np\nfrom cvnotes.learn.exercises import check\n"
 IMPORTS += "from cvnotes.learn.personal import personal_camera"
@@ -228,7 +229,7 @@ HOSTILE = {
     "exits": "import os; os._exit(0)",
     "crashes": "import ctypes; ctypes.string_at(0)",
     "greedy": "x = bytearray(10**12)",
-    "patches": "import cvnotes.learn.judge as j\nj.judge = lambda *a: None\n"
+    "patches": "import cvnotes.learn.checker.judge as j\nj.judge = lambda *a: None\n"
     "import numpy as np\nnp.allclose = lambda *a, **k: True\nnp.array_equal = np.allclose",
     "praises": "check = lambda *a, **k: print('PASSED')",
     "forges": "import gc, io\nfor f in gc.get_objects():\n"

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
 from cvnotes.homography import (
     design_matrix,
     dlt,

@@ -3,13 +3,15 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
-from cvnotes.incidence import (
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.camera import Camera, intrinsics, look_at
+from cvnotes.projective import (
     LINE_AT_INFINITY,
     PLANE_AT_INFINITY,
     cross_ratio,
+    direction_to_homogeneous,
     dual,
+    from_homogeneous,
     join,
     join_point,
     lies_on,
@@ -20,9 +22,8 @@ from cvnotes.incidence import (
     meet_plane,
     plane_through,
     point_of_planes,
+    same_up_to_scale,
 )
-from cvnotes.projective import direction_to_homogeneous, from_homogeneous, same_up_to_scale
-from cvnotes.rigid import look_at
 
 RNG = np.random.default_rng(7)
 whole = st.integers(-50, 50)

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cvnotes.errors import CvnotesError, InputTypeError, ShapeError
-from cvnotes.lens import Lens
+from cvnotes.base import CvnotesError, InputTypeError, ShapeError
+from cvnotes.camera import Lens
 
 BARREL = Lens(k=(-0.28, 0.09, -0.012), p=(0.0011, -0.0007))
 OPENCV = np.array([-0.28, 0.09, 0.0011, -0.0007, -0.012])  # k1 k2 p1 p2 k3

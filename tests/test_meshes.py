@@ -3,9 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cvnotes.errors import CvnotesError, ShapeError
-from cvnotes.meshes import Scene, Surroundings, box, join, quads
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.base import CvnotesError, ShapeError
+from cvnotes.camera import pose, rotation_from_vector
+from cvnotes.pictures import Scene
+from cvnotes.pictures.meshes import Surroundings, box, join, quads
 
 CRATE = box((0, 1), (0, 2), (0, 3))
 

@@ -7,9 +7,29 @@ printed form fails is shown in test_errata.py.
 import numpy as np
 import pytest
 
-from cvnotes.calibration import calibrate
-from cvnotes.camera import Camera, intrinsics, intrinsics_from_pixel_size
-from cvnotes.errors import CvnotesError, DegenerateError
+from cvnotes.base import CvnotesError, DegenerateError, levenberg_marquardt, solve_dense
+from cvnotes.calibration import (
+    calibrate,
+    constraints,
+    extrinsics,
+    intrinsics_from_b,
+    radial_distortion,
+    resect,
+    solve_b,
+    v_ij,
+)
+from cvnotes.camera import (
+    Camera,
+    Lens,
+    board_from_board,
+    cam_from_cam,
+    intrinsics,
+    intrinsics_from_pixel_size,
+    move,
+    nearest_rotation,
+    pose,
+    rotation_from_angles,
+)
 from cvnotes.homography import (
     design_matrix,
     dlt,
@@ -18,37 +38,27 @@ from cvnotes.homography import (
     geometric_error,
     refine_homography,
 )
-from cvnotes.incidence import PLANE_AT_INFINITY, lies_on, line_through, meet_plane
-from cvnotes.interpolate import bilinear, interpolate
-from cvnotes.lens import Lens
-from cvnotes.optimise import levenberg_marquardt, solve_dense
-from cvnotes.projective import apply, from_homogeneous, same_up_to_scale, to_homogeneous
-from cvnotes.resection import resect
-from cvnotes.rigid import (
-    board_from_board,
-    cam_from_cam,
-    move,
-    nearest_rotation,
-    pose,
-    rotation_from_angles,
+from cvnotes.projective import (
+    PLANE_AT_INFINITY,
+    apply,
+    from_homogeneous,
+    lies_on,
+    line_through,
+    meet_plane,
+    same_up_to_scale,
+    to_homogeneous,
 )
 from cvnotes.stereo import disparity_to_depth, rectify
 from cvnotes.targets import Chessboard, TwoPlanes
-from cvnotes.warp import (
+from cvnotes.warping import (
     backward_warp,
+    bilinear,
     forward_warp,
     homography_map,
+    interpolate,
     rotation_map,
     undistortion_map,
     zoom_map,
-)
-from cvnotes.zhang import (
-    constraints,
-    extrinsics,
-    intrinsics_from_b,
-    radial_distortion,
-    solve_b,
-    v_ij,
 )
 
 QUARTER_TURN = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])  # about z: x becomes y

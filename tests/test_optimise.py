@@ -1,8 +1,13 @@
 import numpy as np
 import pytest
 
-from cvnotes.errors import ConvergenceError, DegenerateError
-from cvnotes.optimise import levenberg_marquardt, numerical_jacobian, solve_dense
+from cvnotes.base import (
+    ConvergenceError,
+    DegenerateError,
+    levenberg_marquardt,
+    numerical_jacobian,
+    solve_dense,
+)
 
 
 def least_squares(residuals, jacobian):

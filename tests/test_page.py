@@ -3,7 +3,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from cvnotes.page import Area, Line, Page, Text, rectangle
+from cvnotes.targets.page import Area, Line, Page, Text, rectangle
 
 PAGE = Page(
     "A (test) & more",

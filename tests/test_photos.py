@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cvnotes.errors import FileError
+from cvnotes.base import FileError
 from cvnotes.files import Photo, list_photos, open_photos, read_photo, read_photos
 from cvnotes.files.writing import printable
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cvnotes.errors import CvnotesError, InputTypeError, ShapeError
+from cvnotes.base import CvnotesError, InputTypeError, ShapeError
 from cvnotes.projective import (
     apply,
     direction_to_homogeneous,

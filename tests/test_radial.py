@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
-from cvnotes.lens import Lens
-from cvnotes.radial import Inverse, fold_radius, horner, radial_factor
+from cvnotes.camera import Lens
+from cvnotes.camera.lens_fold import fold_radius, horner, radial_factor
+from cvnotes.camera.lens_inverse import Inverse
 
 
 def wild_lenses(count, seed):

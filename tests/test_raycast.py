@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from cvnotes.errors import CvnotesError, ShapeError
-from cvnotes.raycast import edge_functions, first_hits, has_embree
+from cvnotes.base import CvnotesError, ShapeError
+from cvnotes.pictures.raycast import edge_functions, first_hits, has_embree
 
 ENGINES = [
     "own",
@@ -127,7 +127,7 @@ def test_wrong_shapes_and_engines_are_named(arguments, error, words):
 
 
 def test_without_embree_all_goes_on_and_asking_for_it_says_how_to_get_it(monkeypatch):
-    monkeypatch.setattr("cvnotes.raycast.has_embree", lambda: False)
+    monkeypatch.setattr("cvnotes.pictures.raycast.has_embree", lambda: False)
     rng = np.random.default_rng(3)
     hits = first_hits(cloud(1200, rng), [[[0.1, 0.1]]])
     assert hits.triangle.shape == (1, 1)

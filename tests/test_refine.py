@@ -5,19 +5,10 @@ import pytest
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import ConvergenceError, DegenerateError
-from cvnotes.lens import Lens
-from cvnotes.refine import (
-    Problem,
-    State,
-    covariance,
-    minimise,
-    move,
-    pose_covariance,
-    solve_arrow,
-)
-from cvnotes.rigid import pose
+from cvnotes.base import ConvergenceError, DegenerateError
+from cvnotes.calibration.arrow import covariance, pose_covariance, solve_arrow
+from cvnotes.calibration.refinement import Problem, State, minimise, move
+from cvnotes.camera import Camera, Lens, intrinsics, pose
 
 MODELS = list(product([False, True], [0, 1, 2, 3], [False, True]))  # skew, radial, tangential
 

@@ -7,12 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cvnotes.base import CalibrationWarning, DegenerateError
 from cvnotes.calibration import calibrate
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CalibrationWarning, DegenerateError
-from cvnotes.lens import Lens
-from cvnotes.reliability import Evidence, judge, likeness
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.calibration.reliability import Evidence, judge, likeness
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 CAMERA = Camera(intrinsics(1000, 1000, 640, 480), lens=Lens(k=(-0.2, 0.1)), size=(1280, 960))
 

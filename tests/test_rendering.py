@@ -3,14 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, InputTypeError
-from cvnotes.lens import Lens
-from cvnotes.meshes import Surroundings, box, join, quads
-from cvnotes.raycast import has_embree
-from cvnotes.rendering import depth_map, radiance, render_scene
-from cvnotes.rigid import look_at, move, pose, rotation_from_vector
-from cvnotes.scenes import corridor, from_trimesh, target_scene
+from cvnotes.base import CvnotesError, InputTypeError
+from cvnotes.camera import Camera, Lens, intrinsics, look_at, move, pose, rotation_from_vector
+from cvnotes.pictures import corridor, depth_map, from_trimesh, radiance, render_scene, target_scene
+from cvnotes.pictures.meshes import Surroundings, box, join, quads
+from cvnotes.pictures.raycast import has_embree
 from cvnotes.targets import Chessboard
 
 A = intrinsics(800, 800, 319.5, 239.5)

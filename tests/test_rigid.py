@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from cvnotes.errors import CvnotesError, DegenerateError, ShapeError
-from cvnotes.rigid import (
+from cvnotes.base import CvnotesError, DegenerateError, ShapeError
+from cvnotes.camera import (
     board_from_board,
     cam_from_cam,
     chain,

@@ -2,10 +2,9 @@ import cv2
 import numpy as np
 import pytest
 
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
-from cvnotes.homography import dlt, refine_homography
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.homography import dlt, ransac_homography, refine_homography, trials_needed
 from cvnotes.projective import apply
-from cvnotes.robust import ransac_homography, trials_needed
 
 H_TRUE = np.array([[1.2, 0.1, 30], [-0.05, 0.9, 20], [2e-4, -1e-4, 1]])
 PLACES = np.array([[x, y] for x in (0, 320, 640) for y in (0, 240, 480)], dtype=float)

@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.lens import Lens
-from cvnotes.sampling import (
+from cvnotes.camera import Camera, Lens, intrinsics
+from cvnotes.pictures.antialiasing import (
     changing,
     crossed,
     in_tiles,

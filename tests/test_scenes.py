@@ -1,11 +1,19 @@
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.meshes import join
-from cvnotes.rendering import depth_map, render_scene
-from cvnotes.rigid import look_at, move, pose, rotation_from_vector
-from cvnotes.scenes import GROUND, blocks, corridor, from_trimesh, rails, room, target_scene
+from cvnotes.camera import Camera, intrinsics, look_at, move, pose, rotation_from_vector
+from cvnotes.pictures import (
+    blocks,
+    corridor,
+    depth_map,
+    from_trimesh,
+    rails,
+    render_scene,
+    room,
+    target_scene,
+)
+from cvnotes.pictures.meshes import join
+from cvnotes.pictures.scenes import GROUND
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 CAMERA = Camera(intrinsics(400, 400, 159.5, 119.5), size=(320, 240))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cvnotes.errors import CvnotesError, InputTypeError, ShapeError, number
-from cvnotes.sensor import compress, expose, gaussian_blur, motion_blur
+from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number
+from cvnotes.pictures import compress, expose, gaussian_blur, motion_blur
 
 
 def test_values_are_rounded_to_the_nearest_and_clipped():

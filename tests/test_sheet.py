@@ -6,9 +6,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from cvnotes.errors import CvnotesError
-from cvnotes.sheet import PAPERS, lay_out
-from cvnotes.targets import Chessboard
+from cvnotes.base import CvnotesError
+from cvnotes.targets import PAPERS, Chessboard
+from cvnotes.targets.sheet import lay_out
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from public_face import RESULT
 
-from cvnotes.errors import InputTypeError
-from cvnotes.show.estimates import draw_error_bars, draw_plane_error, draw_view_families
-from cvnotes.show.style import ESTIMATED, LENS
+from cvnotes.base import InputTypeError
+from cvnotes.show import ESTIMATED, LENS, draw_error_bars, draw_plane_error, draw_view_families
 
 ALPHA = float(RESULT.A[0, 0])
 

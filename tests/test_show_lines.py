@@ -1,10 +1,16 @@
 import numpy as np
 import pytest
 
-from cvnotes.errors import CvnotesError, ShapeError
-from cvnotes.show.figures import draw_image
-from cvnotes.show.lines import draw_classes, draw_lines, draw_segments
-from cvnotes.show.style import ESTIMATED, IDEAL, WORLD
+from cvnotes.base import CvnotesError, ShapeError
+from cvnotes.show import (
+    ESTIMATED,
+    IDEAL,
+    WORLD,
+    draw_classes,
+    draw_image,
+    draw_lines,
+    draw_segments,
+)
 
 
 def ends(line):

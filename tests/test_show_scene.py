@@ -5,25 +5,30 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, ShapeError
-from cvnotes.lens import Lens
-from cvnotes.meshes import box
-from cvnotes.rigid import look_at, move, pose
-from cvnotes.show.scene import GL_FROM_CV, build_scene, export_glb, gl_from_cv
-from cvnotes.show.shapes import (
+from cvnotes.base import CvnotesError, ShapeError
+from cvnotes.camera import Camera, Lens, intrinsics, look_at, move, pose
+from cvnotes.pictures.meshes import box
+from cvnotes.show import (
+    CAMERA,
+    ESTIMATED,
+    WORLD,
     Faces,
     Label,
     Lines,
     Photo,
     axes_shapes,
+    build_scene,
+    camera_shapes,
+    draw_scene,
+    export_glb,
     horizon_shapes,
+    plane_shapes,
+    ray_shapes,
     scene_shapes,
+    sheet_shapes,
     target_shapes,
 )
-from cvnotes.show.sights import camera_shapes, plane_shapes, ray_shapes, sheet_shapes
-from cvnotes.show.stills import draw_scene
-from cvnotes.show.style import CAMERA, ESTIMATED, WORLD
+from cvnotes.show.space.viewer import GL_FROM_CV, gl_from_cv
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 A = intrinsics(800, 800, 319.5, 239.5)

@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import DegenerateError, ShapeError
-from cvnotes.rigid import look_at
-from cvnotes.show.vanishing import draw_heights, draw_vanishing
+from cvnotes.base import DegenerateError, ShapeError
+from cvnotes.camera import Camera, intrinsics, look_at
+from cvnotes.show import draw_heights, draw_vanishing
 
 
 def ends(line):

@@ -3,11 +3,16 @@
 import numpy as np
 import pytest
 
-from cvnotes.lens import Lens
-from cvnotes.show.corners import draw_clouds
-from cvnotes.show.lenses import draw_displacement, draw_radius
-from cvnotes.show.predictions import draw_wall
-from cvnotes.show.warps import draw_cell, draw_hits, draw_rows
+from cvnotes.camera import Lens
+from cvnotes.show import (
+    draw_cell,
+    draw_clouds,
+    draw_displacement,
+    draw_hits,
+    draw_radius,
+    draw_rows,
+    draw_wall,
+)
 
 
 def test_a_wall_fills_rows_from_the_left_with_every_fourth_pixel():

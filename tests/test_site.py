@@ -17,10 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 # These serve the command, the build or others of the package.
-INTERNAL = {
-    "cli", "commands", "correspondences", "coverage", "edges", "faces", "learn", "page",
-    "projection", "result", "sampling", "steps",
-}  # fmt: skip
+INTERNAL = {"commands"}
 
 
 class Page(HTMLParser):

@@ -8,14 +8,13 @@ bound allows, unbiased, and as large as it says itself.
 import numpy as np
 import pytest
 
+from cvnotes.base import levenberg_marquardt
 from cvnotes.calibration import calibrate
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.correspondences import Correspondences
-from cvnotes.lens import Lens
-from cvnotes.optimise import levenberg_marquardt
-from cvnotes.refine import Problem, move, solve_arrow
-from cvnotes.rigid import pose, rotation_from_vector
-from cvnotes.steps import Steps
+from cvnotes.calibration.arrow import solve_arrow
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Problem, move
+from cvnotes.calibration.steps import Steps
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 pytestmark = pytest.mark.sampling
 

@@ -3,29 +3,30 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from cvnotes import course
-from cvnotes.camera import Camera, intrinsics, px_from_xy
-from cvnotes.corners import find_corners
-from cvnotes.errors import (
+from cvnotes.base import (
     CalibrationWarning,
     CvnotesError,
     DegenerateError,
     InputTypeError,
     ShapeError,
+    numerical_jacobian,
 )
-from cvnotes.files import read_photo
-from cvnotes.lens import Lens
-from cvnotes.optimise import numerical_jacobian
-from cvnotes.refine import Problem
-from cvnotes.rigid import (
+from cvnotes.calibration.refinement import Problem
+from cvnotes.camera import (
+    Camera,
+    Lens,
     chain,
+    intrinsics,
     inverse,
     look_at,
     move,
     pose,
+    px_from_xy,
     rotation_from_vector,
     vector_from_rotation,
 )
+from cvnotes.files import read_photo
+from cvnotes.pictures import course
 from cvnotes.stereo import (
     baseline,
     calibrate_relative_pose,
@@ -41,7 +42,7 @@ from cvnotes.stereo import (
     triangulate,
 )
 from cvnotes.stereo.refinement import StereoProblem, StereoState
-from cvnotes.targets import Chessboard
+from cvnotes.targets import Chessboard, find_corners
 
 SIZE = (640, 480)
 BOARD = Chessboard((9, 6), 30.0)

@@ -4,14 +4,17 @@ import pytest
 from scipy.special import erf
 from supersampled import eight_bits, picture
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
-from cvnotes.lens import Lens
-from cvnotes.optimise import numerical_jacobian
-from cvnotes.rigid import pose, rotation_from_vector
-from cvnotes.subpixel import fit_edges, harris, local_maxima, refine_edges, refine_subpixel
-from cvnotes.subpixel.model import Window, crossing, crossing_jacobian, jacobian
-from cvnotes.targets import Chessboard
+from cvnotes.base import (
+    CvnotesError,
+    DegenerateError,
+    InputTypeError,
+    ShapeError,
+    numerical_jacobian,
+)
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.targets import Chessboard, harris, local_maxima, refine_edges, refine_subpixel
+from cvnotes.targets.edge_corners import fit_edges
+from cvnotes.targets.edge_model import Window, crossing, crossing_jacobian, jacobian
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))

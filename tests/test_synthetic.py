@@ -6,13 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.coverage import polygon_means
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
-from cvnotes.lens import Lens
-from cvnotes.rigid import look_at, pose, rotation_from_vector
-from cvnotes.sensor import gaussian_blur
-from cvnotes.synthetic import clutter, render
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.camera import Camera, Lens, intrinsics, look_at, pose, rotation_from_vector
+from cvnotes.pictures import clutter, gaussian_blur, render
+from cvnotes.pictures.pixel_means import polygon_means
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 BOARD = Chessboard((9, 6), 25.0)

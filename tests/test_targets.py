@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError
-from cvnotes.rigid import look_at, move
+from cvnotes.base import CvnotesError
+from cvnotes.camera import Camera, intrinsics, look_at, move
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 TARGETS = [Chessboard(), TwoPlanes(), TwoPlanes(angle=np.deg2rad(120)), ThreePlanes()]

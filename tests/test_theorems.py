@@ -4,10 +4,22 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from cvnotes.camera import Camera, decompose, intrinsics
+from cvnotes.camera import (
+    Camera,
+    Lens,
+    chain,
+    decompose,
+    intrinsics,
+    inverse,
+    look_at,
+    pose,
+    rotation_from_vector,
+)
 from cvnotes.homography import dlt
-from cvnotes.incidence import (
+from cvnotes.projective import (
+    apply,
     cross_ratio,
+    direction_to_homogeneous,
     join,
     lies_on,
     line_through,
@@ -15,12 +27,11 @@ from cvnotes.incidence import (
     meet,
     meet_plane,
     plane_through,
+    same_up_to_scale,
+    to_homogeneous,
 )
-from cvnotes.lens import Lens
-from cvnotes.projective import apply, direction_to_homogeneous, same_up_to_scale, to_homogeneous
-from cvnotes.rigid import chain, inverse, look_at, pose, rotation_from_vector
 from cvnotes.stereo import fundamental_matrix, rectify, triangulate
-from cvnotes.warp import backward_warp, compose, homography_map
+from cvnotes.warping import backward_warp, compose, homography_map
 
 theorem = settings(derandomize=True, deadline=None, max_examples=100)
 

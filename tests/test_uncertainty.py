@@ -3,11 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cvnotes import course
-from cvnotes.calibration import calibrate
-from cvnotes.errors import CvnotesError
-from cvnotes.lens import Lens
-from cvnotes.uncertainty import prediction_std, std_with_view
+from cvnotes.base import CvnotesError
+from cvnotes.calibration import calibrate, prediction_std, std_with_view
+from cvnotes.camera import Lens
+from cvnotes.pictures import course
 
 W, CAMERA, POSES = course.board().points, course.camera(), course.poses()
 EXACT = course.exact_corners()

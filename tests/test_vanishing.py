@@ -4,19 +4,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, DegenerateError, ShapeError
-from cvnotes.projective import from_homogeneous, same_up_to_scale
-from cvnotes.rigid import look_at, rotation_from_vector, vector_from_rotation
-from cvnotes.vanishing import (
+from cvnotes.base import CvnotesError, DegenerateError, ShapeError
+from cvnotes.camera import (
+    Camera,
     focal_length,
     horizon,
     horizon_from_vanishing_points,
+    intrinsics,
     intrinsics_from_vanishing_points,
+    look_at,
     normal_from_horizon,
     rotation_from_vanishing_points,
+    rotation_from_vector,
     vanishing_point,
+    vector_from_rotation,
 )
+from cvnotes.projective import from_homogeneous, same_up_to_scale
 
 CAMERA = Camera(intrinsics(800, 800, 322, 238), look_at([700, -500, -900], [0, 0, 0]))
 

@@ -5,13 +5,10 @@ import re
 import numpy as np
 import pytest
 
+from cvnotes.base import CvnotesError, InputTypeError, ShapeError
 from cvnotes.calibration import calibrate
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, InputTypeError, ShapeError
-from cvnotes.learn.personal import personal_camera
-from cvnotes.learn.verify import NotVerified, verify
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.learn import NotVerified, personal_camera, verify
 
 CAMERA = Camera(
     intrinsics(800, 804, 325, 238),

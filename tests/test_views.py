@@ -3,21 +3,21 @@
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError
-from cvnotes.lens import Lens
-from cvnotes.placing import every_face_seen, facing, hold_at
-from cvnotes.rigid import exp_so3, pose, rotation_from_vector
-from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
-from cvnotes.views import (
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError
+from cvnotes.camera import Camera, Lens, exp_so3, intrinsics, pose, rotation_from_vector
+from cvnotes.pictures import (
     centre_only_views,
+    facing,
     fronto_parallel_views,
     good_views,
+    hold_at,
     nearly_parallel_views,
     one_axis_views,
     pure_translation_views,
     repeated_views,
 )
+from cvnotes.pictures.placing import every_face_seen
+from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))

@@ -5,25 +5,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import map_coordinates
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import (
+from cvnotes.base import (
     CalibrationWarning,
     CvnotesError,
     DegenerateError,
     InputTypeError,
     ShapeError,
 )
-from cvnotes.interpolate import bilinear, interpolate
-from cvnotes.lens import Lens
+from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.projective import apply
-from cvnotes.rigid import rotation_from_vector
-from cvnotes.warp import (
+from cvnotes.warping import (
     PixelMap,
     backward_warp,
+    bilinear,
     compose,
     distortion_map,
     forward_warp,
     homography_map,
+    interpolate,
     map_array,
     plane_map,
     rectify_plane,

@@ -1,11 +1,8 @@
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CvnotesError, DegenerateError, InputTypeError, ShapeError
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
-from cvnotes.zhang import (
+from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.calibration import (
     constraints,
     extrinsics,
     focal_lengths_from_homographies,
@@ -16,6 +13,7 @@ from cvnotes.zhang import (
     solve_b,
     v_ij,
 )
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 A = intrinsics(800, 810, 320, 240)
 A_SKEW = intrinsics(800, 810, 320, 240, skew=15)

@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
+from cvnotes.base import CalibrationWarning
 from cvnotes.calibration import calibrate
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import CalibrationWarning
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 SIZE = (640, 480)
 
@@ -95,7 +93,7 @@ def test_no_camera_near_his_fits_better(result, data, published):
     assert 5 * 256 * result.rms**2 <= cost(*published_with_rotations(published), *data)
 
 
-@pytest.mark.filterwarnings("ignore::cvnotes.errors.CalibrationWarning")
+@pytest.mark.filterwarnings("ignore::cvnotes.base.errors.CalibrationWarning")
 def test_without_distortion_the_minimum_is_at_most_two_of_his_last_digits_away(data):
     """He prints 867.307 and 867.194; his own data have their minimum at 867.3084 and 867.1952."""
     result = calibrate(*data, SIZE, lens="none", skew=True)
@@ -127,7 +125,7 @@ def test_two_views_without_skew_still_give_a_camera(data, pair):
     assert 0.25 < result.rms < 0.45
 
 
-@pytest.mark.filterwarnings("ignore::cvnotes.errors.CalibrationWarning")
+@pytest.mark.filterwarnings("ignore::cvnotes.base.errors.CalibrationWarning")
 @pytest.mark.parametrize("left_out", range(5))
 def test_any_four_views_agree_within_their_error_bars(data, left_out):
     W, m = data

@@ -23,57 +23,28 @@ FIGURES = "docs/figures"
 # Of MathJax, whose many bundles contain one another: the one in use, what it loads when a formula
 # asks for it, and what its menu loads for those who listen to formulas.
 MATHJAX = ("tex-chtml.js", "input", "output", "a11y", "sre")
-# The reference, in the order of the notes: whatever the notebooks import, and what stands beside
-# it. What is not here serves those that are.
+# The reference: the wings, in the order of the chapters, and of a wing what stands in a module of
+# its own and yet is worth a page. What is not here serves those that are.
 REFERENCE = {
-    "Projective space (2b.1)": ("projective", "incidence", "vanishing"),
-    "The camera (2b.1 to 2b.3)": ("rigid", "camera", "lens", "radial"),
-    "Targets and corners (2b.4)": ("targets", "sheet", "corners", "subpixel"),
-    "Calibration (2b.4)": (
+    "Chapter by chapter": (
+        "projective",
+        "camera",
+        "targets",
         "homography",
-        "zhang",
-        "optimise",
-        "refine",
         "calibration",
-        "reliability",
-        "uncertainty",
-        "resection",
-        "robust",
+        "warping",
+        "stereo",
     ),
-    "Two cameras and warping (2b.5)": ("stereo", "warp", "interpolate"),
-    "Pictures from known cameras": (
-        "synthetic",
-        "rendering",
-        "scenes",
-        "meshes",
-        "raycast",
-        "sensor",
-        "views",
-        "placing",
-    ),
-    "Figures": (
-        "show",
-        "show.corners",
-        "show.estimates",
-        "show.lenses",
-        "show.lines",
-        "show.predictions",
-        "show.vanishing",
-        "show.warps",
-        "show.shapes",
-        "show.sights",
-        "show.stills",
-        "show.scene",
-        "show.explore",
-    ),
-    "Lessons and files": (
-        "course",
-        "learn.exercises",
-        "learn.verify",
-        "learn.personal",
-        "learn.pictures",
-        "files",
-        "errors",
+    "Beside the chapters": ("pictures", "pictures.course", "show", "learn", "files", "base"),
+    "Further inside": (
+        "camera.lens_fold",
+        "camera.lens_inverse",
+        "targets.sheet",
+        "calibration.steps",
+        "calibration.refinement",
+        "calibration.reliability",
+        "pictures.raycast",
+        "learn.concepts",
     ),
 }
 

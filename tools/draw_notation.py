@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from cvnotes.lens import Lens
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, WORLD
+from cvnotes.camera import Lens
+from cvnotes.show import CAMERA, ESTIMATED, IDEAL, LENS, WORLD
+from cvnotes.show.style import MUTED
 from cvnotes.targets import Chessboard
 
 OUT = Path(__file__).resolve().parents[1] / "docs" / "figures"

@@ -8,14 +8,10 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 from PIL import Image
 
-from cvnotes import course
 from cvnotes.calibration import calibrate
-from cvnotes.show import draw_corners
-from cvnotes.show.estimates import draw_error_bars
+from cvnotes.pictures import course
+from cvnotes.show import camera_shapes, draw_corners, draw_error_bars, draw_scene, target_shapes
 from cvnotes.show.picture import figure_of
-from cvnotes.show.shapes import target_shapes
-from cvnotes.show.sights import camera_shapes
-from cvnotes.show.stills import draw_scene
 
 OUT = Path(__file__).resolve().parents[1] / "docs" / "figures" / "overview.png"
 

@@ -18,19 +18,12 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from cvnotes import scenes
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.corners import find_corners
-from cvnotes.files import read_photo, write_camera
-from cvnotes.files.writing import write_whole
-from cvnotes.learn.personal import personal_camera
-from cvnotes.lens import Lens
-from cvnotes.rigid import chain, pose, rotation_from_vector
-from cvnotes.show.scene import build_scene, export_glb
-from cvnotes.show.shapes import scene_shapes
-from cvnotes.synthetic import render
-from cvnotes.targets import Chessboard
-from cvnotes.views import good_views
+from cvnotes.camera import Camera, Lens, chain, intrinsics, pose, rotation_from_vector
+from cvnotes.files import read_photo, write_camera, write_whole
+from cvnotes.learn import personal_camera
+from cvnotes.pictures import good_views, render, scenes
+from cvnotes.show import build_scene, export_glb, scene_shapes
+from cvnotes.targets import Chessboard, find_corners
 
 ROOT = Path(__file__).resolve().parents[1]
 CAMERA = Camera(
@@ -121,7 +114,7 @@ def real_corners(folder: Path) -> dict[str, bytes]:
         for side in ("left", "right")
     }
     about = (
-        "corners in px that cvnotes.corners.find_corners measures in the stereo example "
+        "corners in px that cvnotes.targets.find_corners measures in the stereo example "
         "photographs of OpenCV (Debian package opencv-doc), 640x480, squares of 30 mm"
     )
     values = {"about": about, "corners": [9, 6], "square": 30.0, "size": [640, 480]}

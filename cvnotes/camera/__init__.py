@@ -1,22 +1,61 @@
-"""The camera: the perspective projection matrix and what it is made of (notes 2b.1-2b.3)."""
+"""Chapters 2 to 4: vanishing points, the camera and its lens (notes 2b.1 to 2b.3)."""
 
 from cvnotes.camera.factors import centre_of, decompose
+from cvnotes.camera.lens import Lens
 from cvnotes.camera.model import Camera
-from cvnotes.camera.sensor import (
-    intrinsics,
-    intrinsics_from_pixel_size,
-    pixels,
-    px_from_xy,
-    xy_from_px,
+from cvnotes.camera.pixels import intrinsics, intrinsics_from_pixel_size, px_from_xy, xy_from_px
+from cvnotes.camera.rigid import (
+    board_from_board,
+    cam_from_cam,
+    chain,
+    exp_so3,
+    inverse,
+    look_at,
+    move,
+    nearest_rotation,
+    pose,
+    rotation_from_angles,
+    rotation_from_vector,
+    skew_matrix,
+    vector_from_rotation,
+)
+from cvnotes.camera.vanishing import (
+    focal_length,
+    horizon,
+    horizon_from_vanishing_points,
+    intrinsics_from_vanishing_points,
+    normal_from_horizon,
+    rotation_from_vanishing_points,
+    vanishing_point,
 )
 
 __all__ = [
     "Camera",
-    "centre_of",
-    "decompose",
+    "Lens",
     "intrinsics",
     "intrinsics_from_pixel_size",
-    "pixels",
     "px_from_xy",
     "xy_from_px",
+    "decompose",
+    "centre_of",
+    "pose",
+    "inverse",
+    "move",
+    "chain",
+    "look_at",
+    "board_from_board",
+    "cam_from_cam",
+    "rotation_from_vector",
+    "vector_from_rotation",
+    "rotation_from_angles",
+    "nearest_rotation",
+    "skew_matrix",
+    "exp_so3",
+    "vanishing_point",
+    "horizon",
+    "horizon_from_vanishing_points",
+    "focal_length",
+    "intrinsics_from_vanishing_points",
+    "rotation_from_vanishing_points",
+    "normal_from_horizon",
 ]

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, DegenerateError, ShapeError, matrix
+from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 
 
 def decompose(P: npt.ArrayLike) -> tuple[Array, Array, Array]:

@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError
 from cvnotes.commands.console import complain, say
 from cvnotes.commands.target import corners, length
-from cvnotes.errors import CalibrationWarning, CvnotesError, DegenerateError
-from cvnotes.files.photos import Rejected
-from cvnotes.files.writing import check_folder, printable, write_whole
+from cvnotes.files import Rejected, write_whole
+from cvnotes.files.writing import check_folder, printable
 from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration
-    from cvnotes.commands.views import View
+    from cvnotes.commands.examined import View
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -44,8 +44,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(args: argparse.Namespace) -> int:
     """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no such board, 3 not reliable."""
+    from cvnotes.commands.examined import look
     from cvnotes.commands.report import camera_report, doubts, photo_table
-    from cvnotes.commands.views import look
 
     columns, rows = args.corners
     symmetric = (columns - rows) % 2 == 0
@@ -102,9 +102,9 @@ def _contents(
     rejected: Sequence[Rejected],
 ) -> dict[str, bytes]:
     """Give all files to write, by name."""
+    from cvnotes.calibration.saving import calibration_json
     from cvnotes.commands.pictures import pictures
     from cvnotes.files.exchange import opencv_yaml
-    from cvnotes.files.results import calibration_json
 
     return {
         "calibration.json": calibration_json(result, files=files, rejected=rejected).encode(),

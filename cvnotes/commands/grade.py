@@ -7,11 +7,12 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from cvnotes.base import CvnotesError
 from cvnotes.commands.console import complain, say
-from cvnotes.errors import CvnotesError
-from cvnotes.files.writing import check_folder, printable, write_whole
-from cvnotes.learn.exercises import EXERCISES
-from cvnotes.learn.grading import Mark, grade_folder
+from cvnotes.files import write_whole
+from cvnotes.files.writing import check_folder, printable
+from cvnotes.learn import EXERCISES
+from cvnotes.learn.grader.grading import Mark, grade_folder
 
 _HEADER = ("student", "notebook", "points", "of", "percent")
 _TRAILER = ("misconceptions", "id", "remark")

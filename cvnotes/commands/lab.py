@@ -13,8 +13,8 @@ from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 
 import cvnotes
+from cvnotes.base import FileError
 from cvnotes.commands.console import say
-from cvnotes.errors import FileError
 
 START = "00_start_here.ipynb"
 

@@ -5,17 +5,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cvnotes.commands.views import View
+from cvnotes.commands.examined import View
 from cvnotes.files.writing import printable
-from cvnotes.show.figures import draw_corners, draw_image
-from cvnotes.show.picture import encode, figure_of
-from cvnotes.show.quality import (
+from cvnotes.show import (
+    ESTIMATED,
+    draw_corners,
     draw_coverage,
+    draw_image,
     draw_residual_scatter,
     draw_residuals,
     draw_view_rms,
+    panels,
 )
-from cvnotes.show.style import ESTIMATED, panels
+from cvnotes.show.picture import encode, figure_of
 from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:

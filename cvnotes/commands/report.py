@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.commands.console import table
-from cvnotes.commands.views import View
-from cvnotes.errors import Array
-from cvnotes.files.photos import Rejected
-from cvnotes.show.quality import covered_cells
+from cvnotes.commands.examined import View
+from cvnotes.files import Rejected
+from cvnotes.show.figures.quality import covered_cells
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration

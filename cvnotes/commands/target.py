@@ -4,10 +4,10 @@ import argparse
 import sys
 from pathlib import Path
 
-from cvnotes.errors import CvnotesError
-from cvnotes.files.writing import printable, write_whole
-from cvnotes.sheet import PAPERS
-from cvnotes.targets import Chessboard
+from cvnotes.base import CvnotesError
+from cvnotes.files import write_whole
+from cvnotes.files.writing import printable
+from cvnotes.targets import PAPERS, Chessboard
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

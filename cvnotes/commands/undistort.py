@@ -6,12 +6,19 @@ import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
+from cvnotes.base import CalibrationWarning, CvnotesError, FileError
 from cvnotes.camera import Camera
 from cvnotes.commands.console import complain, progress, say, table
-from cvnotes.errors import CalibrationWarning, CvnotesError, FileError
-from cvnotes.files.cameras import read_camera, write_camera
-from cvnotes.files.photos import Photo, Rejected, list_photos, open_photos
-from cvnotes.files.writing import check_folder, printable, write_whole
+from cvnotes.files import (
+    Photo,
+    Rejected,
+    list_photos,
+    open_photos,
+    read_camera,
+    write_camera,
+    write_whole,
+)
+from cvnotes.files.writing import check_folder, printable
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -62,7 +69,7 @@ def straightened(photo: Photo, camera: Camera) -> tuple[bytes, str]:
     """Undistort one photograph; gives it as PNG, with its EXIF orientation, and a note."""
     from PIL import Image
 
-    from cvnotes.warp import undistort_image
+    from cvnotes.warping import undistort_image
 
     encoded, exif = io.BytesIO(), Image.Exif()
     if photo.orientation != 1:

@@ -1,38 +1,23 @@
-"""Photographs read, cameras and calibrations written and read, in our format and in others'."""
+"""Photographs read; cameras written and read, in our format and in those of others."""
 
-from cvnotes.files.cameras import (
-    read_camera,
-    read_camera_info,
-    write_camera,
-    write_camera_info,
-)
+from cvnotes.files.cameras import read_camera, read_camera_info, write_camera, write_camera_info
 from cvnotes.files.exchange import CameraInfo, lens_from_opencv, opencv_coefficients
-from cvnotes.files.photos import (
-    Photo,
-    Rejected,
-    list_photos,
-    open_photos,
-    read_photo,
-    read_photos,
-)
-from cvnotes.files.results import read_calibration, write_calibration
+from cvnotes.files.photos import Photo, Rejected, list_photos, open_photos, read_photo, read_photos
 from cvnotes.files.writing import write_whole
 
 __all__ = [
-    "CameraInfo",
-    "Photo",
-    "Rejected",
-    "lens_from_opencv",
-    "list_photos",
-    "open_photos",
-    "opencv_coefficients",
-    "read_calibration",
-    "read_camera",
-    "read_camera_info",
     "read_photo",
     "read_photos",
-    "write_calibration",
+    "list_photos",
+    "open_photos",
+    "Photo",
+    "Rejected",
+    "read_camera",
     "write_camera",
+    "read_camera_info",
     "write_camera_info",
+    "CameraInfo",
+    "lens_from_opencv",
+    "opencv_coefficients",
     "write_whole",
 ]

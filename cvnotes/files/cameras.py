@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import CvnotesError, FileError, intrinsic_matrix
+from cvnotes.base import CvnotesError, FileError, intrinsic_matrix
+from cvnotes.camera import Camera, Lens, pose
 from cvnotes.files.entry import Entry
 from cvnotes.files.exchange import CameraInfo, camera_info, opencv_yaml, ros_yaml
 from cvnotes.files.strict import parse_json, parse_yaml, read_text
 from cvnotes.files.writing import PathLike, printable, write_whole
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose
 
 FORMAT = "cvnotes camera"
 VERSION = 1

@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import FileError
+from cvnotes.base import FileError
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cvnotes.errors import Array, FileError
+from cvnotes.base import Array, FileError
 
 
 @dataclass(frozen=True)

@@ -9,18 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import Camera
-from cvnotes.errors import (
-    Array,
-    CvnotesError,
-    FileError,
-    intrinsic_matrix,
-    matrix,
-    numbers,
-    rotation,
-)
+from cvnotes.base import Array, CvnotesError, FileError, intrinsic_matrix, matrix, numbers, rotation
+from cvnotes.camera import Camera, Lens
 from cvnotes.files.entry import Entry
-from cvnotes.lens import Lens
 
 
 @dataclass(frozen=True, eq=False)

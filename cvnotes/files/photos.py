@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import FileError
+from cvnotes.base import FileError
 from cvnotes.files.decoding import decode, header_size
 from cvnotes.files.writing import PathLike, printable
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from cvnotes.errors import FileError
+from cvnotes.base import FileError
 from cvnotes.files.entry import Entry
 from cvnotes.files.writing import PathLike, printable
 
@@ -62,7 +62,7 @@ def parse_json(text: str, file: str) -> Entry:
     >>> parse_json('{"rms": 1, "rms": 2}', "a.json")
     Traceback (most recent call last):
         ...
-    cvnotes.errors.FileError: a.json: the key 'rms' appears twice
+    cvnotes.base.errors.FileError: a.json: the key 'rms' appears twice
     """
     depth = 0
     for token in re.finditer(r'"(?:[^"\\]|\\.)*"|[\[{]|[\]}]', text):

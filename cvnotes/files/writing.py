@@ -5,7 +5,7 @@ import secrets
 from collections.abc import Mapping
 from pathlib import Path
 
-from cvnotes.errors import FileError
+from cvnotes.base import FileError
 
 PathLike = str | os.PathLike[str]
 

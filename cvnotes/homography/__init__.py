@@ -1,20 +1,18 @@
-"""Homographies between planes, from point pairs (notes 2b.4, "P as a Homography").
-
-A plane Z = 0 is seen through columns 1, 2 and 4 of P, a 3×3 matrix H: dst ≈ H src. Estimators
-take one set of points (n, 2) or a stack of sets (..., n, 2).
-"""
+"""Chapter 6: the image of a plane, from four pairs of points or from many (notes 2b.4)."""
 
 from cvnotes.homography.four_points import four_points_h9_one, four_points_unit_norm
-from cvnotes.homography.geometric import geometric_error, refine_homography
-from cvnotes.homography.linear import design_matrix, dlt
-from cvnotes.homography.normalise import normaliser
+from cvnotes.homography.linear import design_matrix, dlt, normaliser
+from cvnotes.homography.ransac import ransac_homography, trials_needed
+from cvnotes.homography.refinement import geometric_error, refine_homography
 
 __all__ = [
     "design_matrix",
+    "normaliser",
     "dlt",
     "four_points_h9_one",
     "four_points_unit_norm",
     "geometric_error",
-    "normaliser",
     "refine_homography",
+    "ransac_homography",
+    "trials_needed",
 ]

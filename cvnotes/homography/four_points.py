@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array, DegenerateError, ShapeError, points
+from cvnotes.base import Array, DegenerateError, ShapeError, points
 from cvnotes.homography.linear import design_matrix
 
 

@@ -1,1 +1,20 @@
-"""Learning by doing: estimates held against the truth, and exercises that answer."""
+"""What makes it a course: exercises that answer, estimates held against the truth."""
+
+from cvnotes.learn.cases.pictures import board_picture, rails_picture, stereo_pictures
+from cvnotes.learn.exercises import EXERCISES, check, hint, progress, solution
+from cvnotes.learn.personal import personal_camera
+from cvnotes.learn.truth.verification import NotVerified, verify
+
+__all__ = [
+    "check",
+    "hint",
+    "solution",
+    "progress",
+    "EXERCISES",
+    "verify",
+    "NotVerified",
+    "personal_camera",
+    "board_picture",
+    "rails_picture",
+    "stereo_pictures",
+]

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from cvnotes.errors import CvnotesError
+from cvnotes.base import CvnotesError
 
 
 @dataclass(frozen=True)

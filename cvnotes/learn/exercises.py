@@ -12,11 +12,11 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from cvnotes.errors import CvnotesError
-from cvnotes.learn.asking import ask
-from cvnotes.learn.exercise import Exercise
-from cvnotes.learn.judge import judge
-from cvnotes.learn.report import Report, Source, Words
+from cvnotes.base import CvnotesError
+from cvnotes.learn.checker.exercise import Exercise
+from cvnotes.learn.checker.judge import judge
+from cvnotes.learn.checker.report import Report, Source, Words
+from cvnotes.learn.checker.sandbox import ask
 
 CHAPTERS = range(1, 10)
 # Asked for in the notebook of further exercises; all others in the notebook of their chapter.

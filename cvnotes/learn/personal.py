@@ -13,10 +13,8 @@ from hashlib import sha256
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array, CvnotesError
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.base import Array, CvnotesError
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.targets import Chessboard
 
 _SIZE = (640, 480)
@@ -59,7 +57,7 @@ class PersonalCamera:
 
     def photos(self) -> list[npt.NDArray[np.uint8]]:
         """Take the ten pictures, grey (480, 640), a little blurred and noisy."""
-        from cvnotes.synthetic import render
+        from cvnotes.pictures import render
 
         rng = np.random.Generator(np.random.PCG64(_whole(self.student, "photos")))
         cameras = [self.camera.moved(G) for G in self.poses]

@@ -1,24 +1,110 @@
-"""Figures and the page: what draws, and what shows the drawing with a text beside it."""
+"""Figures, 3-D scenes and explorations."""
 
-from cvnotes.show.figures import draw_corners, draw_image, draw_points
-from cvnotes.show.picture import Picture, show
-from cvnotes.show.quality import (
+from cvnotes.show.explore import (
+    explore_camera,
+    explore_homography,
+    explore_lens,
+    explore_noise,
+    explore_projection,
+    explore_rectification,
+    explore_warp,
+    still,
+)
+from cvnotes.show.figures.corners import draw_clouds, draw_response
+from cvnotes.show.figures.estimates import draw_error_bars, draw_plane_error, draw_view_families
+from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
+from cvnotes.show.figures.lenses import draw_displacement, draw_grid, draw_lenses, draw_radius
+from cvnotes.show.figures.lines import draw_classes, draw_lines, draw_segments
+from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
+from cvnotes.show.figures.quality import (
     draw_coverage,
     draw_residual_scatter,
     draw_residuals,
     draw_view_rms,
 )
-from cvnotes.show.style import panels
+from cvnotes.show.figures.vanishing import draw_heights, draw_vanishing
+from cvnotes.show.figures.warps import draw_cell, draw_hits, draw_rows
+from cvnotes.show.picture import Picture, show
+from cvnotes.show.space.camera_shapes import (
+    camera_shapes,
+    dot_shapes,
+    plane_shapes,
+    ray_shapes,
+    sheet_shapes,
+)
+from cvnotes.show.space.shapes import (
+    Faces,
+    Label,
+    Lines,
+    Photo,
+    axes_shapes,
+    colour_of,
+    horizon_shapes,
+    scene_shapes,
+    target_shapes,
+)
+from cvnotes.show.space.stills import draw_scene
+from cvnotes.show.space.viewer import build_scene, export_glb
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, panels
 
 __all__ = [
+    "show",
     "Picture",
-    "draw_corners",
-    "draw_coverage",
+    "panels",
     "draw_image",
     "draw_points",
-    "draw_residual_scatter",
+    "draw_corners",
+    "draw_lines",
+    "draw_segments",
+    "draw_classes",
+    "draw_grid",
+    "draw_lenses",
+    "draw_radius",
+    "draw_displacement",
+    "draw_response",
+    "draw_clouds",
     "draw_residuals",
+    "draw_residual_scatter",
+    "draw_coverage",
     "draw_view_rms",
-    "panels",
-    "show",
+    "draw_plane_error",
+    "draw_error_bars",
+    "draw_view_families",
+    "draw_prediction_error",
+    "draw_wall",
+    "draw_vanishing",
+    "draw_heights",
+    "draw_hits",
+    "draw_cell",
+    "draw_rows",
+    "draw_scene",
+    "build_scene",
+    "export_glb",
+    "axes_shapes",
+    "target_shapes",
+    "horizon_shapes",
+    "scene_shapes",
+    "camera_shapes",
+    "ray_shapes",
+    "sheet_shapes",
+    "plane_shapes",
+    "dot_shapes",
+    "Faces",
+    "Lines",
+    "Photo",
+    "Label",
+    "colour_of",
+    "WORLD",
+    "CAMERA",
+    "IDEAL",
+    "LENS",
+    "ESTIMATED",
+    "explore_projection",
+    "explore_camera",
+    "explore_lens",
+    "explore_homography",
+    "explore_noise",
+    "explore_warp",
+    "explore_rectification",
+    "still",
 ]

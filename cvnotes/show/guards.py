@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import (
+from cvnotes.base import (
     Array,
     CvnotesError,
     InputTypeError,
@@ -59,7 +59,7 @@ def thing(x: Any, name: str, kind: type[Kind]) -> Kind:
     --------
     >>> thing("corners.json", "corners", np.ndarray)
     Traceback (most recent call last):
-    cvnotes.errors.InputTypeError: corners: expected a ndarray, got str
+    cvnotes.base.errors.InputTypeError: corners: expected a ndarray, got str
     """
     if not isinstance(x, kind):
         raise InputTypeError(f"{name}: expected a {kind.__name__}, got {type(x).__name__}")
@@ -73,7 +73,7 @@ def calibrated(x: Any) -> None:
     --------
     >>> calibrated("calibration.json")
     Traceback (most recent call last):
-    cvnotes.errors.InputTypeError: calibration: expected a Calibration, got str
+    cvnotes.base.errors.InputTypeError: calibration: expected a Calibration, got str
     """
     if not hasattr(x, "view_rms"):
         raise InputTypeError(f"calibration: expected a Calibration, got {type(x).__name__}")

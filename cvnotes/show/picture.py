@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from cvnotes.errors import CvnotesError
+from cvnotes.base import CvnotesError
 from cvnotes.show.style import DPI
 
 # A figure with more colours than this holds a photograph.
@@ -59,7 +59,7 @@ def show(figure: Any, *, alt: str, width: int | None = None) -> Picture:
 
     Examples
     --------
-    >>> from cvnotes.show.style import panels
+    >>> from cvnotes.show import panels
     >>> show(panels(), alt="Empty axes.")
     Empty axes.
     """

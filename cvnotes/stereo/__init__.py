@@ -1,4 +1,4 @@
-"""Two cameras: how they stand to each other, rectified pictures, and depth (notes 2b.5)."""
+"""Chapter 8: two cameras, and the depth that they see together (notes 2b.5)."""
 
 from cvnotes.stereo.calibration import calibrate_relative_pose, calibrate_stereo
 from cvnotes.stereo.epipolar import (
@@ -14,18 +14,18 @@ from cvnotes.stereo.result import StereoCalibration
 from cvnotes.stereo.triangulation import disparity_to_depth, rectified_baseline, triangulate
 
 __all__ = [
-    "RectifiedPair",
-    "StereoCalibration",
+    "relative_pose",
     "baseline",
-    "calibrate_relative_pose",
-    "calibrate_stereo",
-    "disparity_to_depth",
-    "epipolar_lines",
-    "epipole",
     "essential_matrix",
     "fundamental_matrix",
-    "rectified_baseline",
+    "epipolar_lines",
+    "epipole",
+    "RectifiedPair",
     "rectify",
-    "relative_pose",
     "triangulate",
+    "disparity_to_depth",
+    "rectified_baseline",
+    "calibrate_stereo",
+    "calibrate_relative_pose",
+    "StereoCalibration",
 ]

@@ -1,21 +1,35 @@
 """Stereo calibration: two cameras and how they stand to each other, from pairs of pictures."""
 
-from warnings import catch_warnings, simplefilter
+from dataclasses import replace
+from warnings import catch_warnings, simplefilter, warn
 
-from cvnotes.calibration import LENSES, calibrate
-from cvnotes.camera import Camera
-from cvnotes.correspondences import Correspondences, PointSets
-from cvnotes.errors import (
+import numpy as np
+
+from cvnotes.base import (
+    Array,
     CalibrationWarning,
     CvnotesError,
     DegenerateError,
     ShapeError,
     image_size,
 )
-from cvnotes.projection import is_camera
-from cvnotes.refine import Problem
-from cvnotes.stereo.joint import refined
-from cvnotes.stereo.refinement import StereoProblem
+from cvnotes.calibration import LENSES, calibrate, extrinsics
+from cvnotes.calibration.arrow import covariance
+from cvnotes.calibration.correspondences import Correspondences, PointSets
+from cvnotes.calibration.refinement import Problem, State
+from cvnotes.calibration.reliability import Evidence, judge
+from cvnotes.camera import (
+    Camera,
+    Lens,
+    chain,
+    inverse,
+    nearest_rotation,
+    pose,
+    vector_from_rotation,
+)
+from cvnotes.camera.model import is_camera
+from cvnotes.homography import dlt
+from cvnotes.stereo.refinement import StereoProblem, StereoState
 from cvnotes.stereo.result import StereoCalibration
 
 
@@ -73,7 +87,7 @@ def calibrate_stereo(
     --------
     >>> import numpy as np
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import chain, pose, rotation_from_vector
+    >>> from cvnotes.camera import chain, pose, rotation_from_vector
     >>> from cvnotes.targets import Chessboard
     >>> board = Chessboard((9, 6), 25.0)
     >>> left = Camera(intrinsics(800, 804, 325, 238))
@@ -133,7 +147,7 @@ def calibrate_relative_pose(
     --------
     >>> import numpy as np
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import chain, nearest_rotation, pose
+    >>> from cvnotes.camera import chain, nearest_rotation, pose
     >>> from cvnotes.targets import Chessboard
     >>> board = Chessboard((9, 6), 25.0)
     >>> left = Camera(intrinsics(800, 804, 325, 238))
@@ -170,3 +184,178 @@ def _pairs(
             "picture needs its partner, taken at the same moment"
         )
     return left, right
+
+
+# A pair whose relative pose is this far from the others' (radians) does not belong to the rig.
+_APART = np.deg2rad(10)
+
+
+def refined(
+    problem: StereoProblem, pairs: tuple[Correspondences, Correspondences], cameras: list[Camera]
+) -> StereoCalibration:
+    """Refine from a closed-form start, undo the scaling, add error bars, and judge."""
+    unknowns = len(problem.names) + 6 * len(pairs[0])
+    measured = 2 * (problem.left.n_seen + problem.right.n_seen)
+    if measured <= unknowns:
+        raise DegenerateError(
+            f"{measured} measured coordinates cannot determine {unknowns} parameters; add pairs"
+        )
+    start, strangers = _start(problem, pairs, cameras)
+    best = problem.minimise(start)
+    variance = best.cost / (measured - unknowns)
+    scale = np.ones(len(problem.names))
+    scale[-3:] = pairs[0].scale  # T, back in the unit of the board
+    cov = variance * covariance(best.system) * np.outer(scale, scale)
+    left, right = _cameras(problem, best.x, pairs[0].scale, cameras)
+    distances = _distances(problem, best.x, left, right)
+    view_rms = np.sqrt(
+        [
+            np.nansum(d**2, axis=1) / p.n_seen_by_view
+            for d, p in zip(distances, (problem.left, problem.right), strict=True)
+        ]
+    ).T
+    result = StereoCalibration(
+        left=left,
+        right=right,
+        poses=pairs[0].pose_in_given_units(best.x.left.R, best.x.left.T),
+        rms=float(np.sqrt(2 * best.cost / measured)),
+        view_rms=view_rms,
+        names=problem.names,
+        covariance=cov,
+        converged=best.converged,
+    )
+    sentences, reliable = judge_rig(result, (problem.left.m, problem.right.m), distances, strangers)
+    for sentence in sentences:
+        warn(sentence, CalibrationWarning, stacklevel=3)
+    return replace(result, warnings=sentences, reliable=reliable)
+
+
+def _start(
+    problem: StereoProblem, pairs: tuple[Correspondences, Correspondences], cameras: list[Camera]
+) -> tuple[StereoState, list[int]]:
+    """Give the state from which to refine, and the pairs that do not agree with the others."""
+    poses = [_poses(data, camera) for data, camera in zip(pairs, cameras, strict=True)]
+    G = chain(poses[1], inverse(poses[0]))  # right ← left, as each pair has it
+    R, T = nearest_rotation(np.median(G[:, :3, :3], axis=0)), np.median(G[:, :3, 3], axis=0)
+    apart = np.linalg.norm(vector_from_rotation(G[:, :3, :3] @ R.T), axis=-1) > _APART
+    left = problem.left.state(cameras[0].A, cameras[0].lens, poses[0])
+    right = problem.right.state(cameras[1].A, cameras[1].lens, poses[1]).shared
+    return StereoState(left, right, R, T), np.flatnonzero(apart).tolist()
+
+
+def _poses(data: Correspondences, camera: Camera) -> Array:
+    """Poses (n_views, 4, 4) of the scaled boards from the homographies of the ideal points."""
+    H = []
+    for i, (W, m) in enumerate(data.views()):
+        xy = camera.ideal(m)
+        known = ~np.isnan(xy).any(-1)
+        try:
+            H.append(dlt(W[known, :2], xy[known]))
+        except DegenerateError as error:
+            raise DegenerateError(f"view {i}: {error}") from error
+    return extrinsics(np.eye(3), np.array(H))
+
+
+def _cameras(
+    problem: StereoProblem, x: StereoState, scale: float, given: list[Camera]
+) -> tuple[Camera, Camera]:
+    """Give both cameras in the left one's frame."""
+    G = pose(nearest_rotation(x.R), scale * x.T)
+    if problem.cameras_known:
+        return given[0].moved(np.eye(4)), given[1].moved(G)
+    A_left, lens_left = problem.left.camera_of(x.left.shared)
+    A_right, lens_right = problem.right.camera_of(x.right)
+    return (
+        Camera(A_left, np.eye(4), lens_left, given[0].size),
+        Camera(A_right, G, lens_right, given[1].size),
+    )
+
+
+def _distances(
+    problem: StereoProblem, x: StereoState, left: Camera, right: Camera
+) -> tuple[Array, Array]:
+    """Reprojection distances (n_views, n) in both pictures; 0 where no corner was seen."""
+
+    def of(p: Problem, A: Array, lens: Lens, state: State) -> Array:
+        d = np.linalg.norm(p.m - p.predicted(A, lens, state), axis=-1)
+        return d if p.seen is None else np.where(p.seen, d, 0.0)
+
+    return (
+        of(problem.left, left.A, left.lens, x.left),
+        of(problem.right, right.A, right.lens, x.of_right()),
+    )
+
+
+# Typical distance from the model, over the longer side of the picture, that no noise explains.
+_MISFIT = 0.005
+
+
+def judge_rig(
+    result: StereoCalibration,
+    corners: tuple[Array, Array],
+    distances: tuple[Array, Array],
+    strangers: list[int],
+) -> tuple[tuple[str, ...], bool]:
+    """Give sentences about what is doubtful, and whether the result is reliable all the same.
+
+    Parameters
+    ----------
+    result : StereoCalibration
+        Not judged yet.
+    corners, distances : pair of ndarray, shape (n_views, n, 2) and (n_views, n)
+        Where the corners were seen in the left and right pictures, and how far from there the
+        model puts them; 0 where none was seen, NaN where the lens folds.
+    strangers : list of int
+        Pairs that show the cameras in another relative pose than the others do.
+    """
+    fatal: list[str] = []
+    if strangers:
+        fatal.append(
+            f"pairs {', '.join(map(str, strangers))} show the cameras turned by more than 10° "
+            "from where the others do: do left and right belong together, is the board numbered "
+            "from the same corner in both, did the rig stay rigid?"
+        )
+    if not result.converged:
+        fatal.append("the refinement stopped before it reached a minimum")
+    if len(result.names) == 6:  # the cameras were known
+        fatal += _misfits(result)
+        return tuple(fatal), not fatal
+    sentences, reliable = _judge_cameras(result, corners, distances)
+    return (*fatal, *sentences), reliable and not fatal
+
+
+def _misfits(result: StereoCalibration) -> list[str]:
+    """Say when known cameras do not explain the corners."""
+    typical = float(np.median(result.view_rms))
+    if typical <= _MISFIT * max(result.left.size):
+        return []
+    return [
+        f"the corners are {typical:.1f} px away from where the cameras put them, in a typical "
+        "picture: do A and lens belong to these pictures?"
+    ]
+
+
+def _judge_cameras(
+    result: StereoCalibration, corners: tuple[Array, Array], distances: tuple[Array, Array]
+) -> tuple[list[str], bool]:
+    """Judge each camera by what `calibrate` judges it by, at the joint minimum."""
+    sentences: list[str] = []
+    reliable = True
+    poses = (result.poses, result.G @ result.poses)
+    for i, side in enumerate(("left", "right")):
+        camera = result.cameras[i]
+        evidence = Evidence(
+            A=camera.A,
+            lens=camera.lens,
+            size=camera.size,
+            poses=poses[i],
+            std={n.removeprefix(f"{side}."): s for n, s in result.std.items() if side in n},
+            view_rms=result.view_rms[:, i],
+            distances=distances[i],
+            corners=corners[i],
+            converged=True,
+        )
+        found, believed = judge(evidence)
+        sentences += [f"{side} camera: {sentence}" for sentence in found]
+        reliable = reliable and believed
+    return sentences, reliable

@@ -8,11 +8,10 @@ with a lens, undistort them first, ``px_from_xy(camera.A, camera.ideal(m))``.
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array, DegenerateError, ShapeError, matrix, points
-from cvnotes.projection import is_camera
+from cvnotes.base import Array, DegenerateError, ShapeError, matrix, points
+from cvnotes.camera import Camera, chain, inverse, skew_matrix
+from cvnotes.camera.model import is_camera
 from cvnotes.projective import to_homogeneous
-from cvnotes.rigid import chain, inverse, skew_matrix
 
 
 def relative_pose(left: Camera, right: Camera) -> Array:
@@ -23,7 +22,7 @@ def relative_pose(left: Camera, right: Camera) -> Array:
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import pose
+    >>> from cvnotes.camera import pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> relative_pose(left, left.moved(pose(np.eye(3), [-100, 0, 0])))[:3, 3]
     array([-100.,    0.,    0.])
@@ -42,7 +41,7 @@ def baseline(left: Camera, right: Camera) -> Array:
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import pose
+    >>> from cvnotes.camera import pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> baseline(left, left.moved(pose(np.eye(3), [-100, 0, 0])))
     array([100.,   0.,   0.])
@@ -73,7 +72,7 @@ def essential_matrix(left: Camera, right: Camera) -> Array:
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import pose
+    >>> from cvnotes.camera import pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> essential_matrix(left, left.moved(pose(np.eye(3), [-100, 0, 0]))) + 0.0
     array([[   0.,    0.,    0.],
@@ -100,7 +99,7 @@ def fundamental_matrix(left: Camera, right: Camera) -> Array:
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import pose
+    >>> from cvnotes.camera import pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> right = left.moved(pose(np.eye(3), [-100, 0, 0]))
     >>> F = fundamental_matrix(left, right)
@@ -150,7 +149,7 @@ def epipole(left: Camera, right: Camera) -> Array:
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import pose
+    >>> from cvnotes.camera import pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> epipole(left, left.moved(pose(np.eye(3), [0, 0, -100])))
     array([320., 240.,   1.])

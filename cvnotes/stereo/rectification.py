@@ -5,12 +5,11 @@ from warnings import warn
 
 import numpy as np
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array, CalibrationWarning, CvnotesError, DegenerateError, image_size
-from cvnotes.projection import is_camera
-from cvnotes.rigid import exp_so3, pose, vector_from_rotation
+from cvnotes.base import Array, CalibrationWarning, CvnotesError, DegenerateError, image_size
+from cvnotes.camera import Camera, exp_so3, intrinsics, pose, vector_from_rotation
+from cvnotes.camera.model import is_camera
 from cvnotes.stereo.epipolar import baseline, relative_pose
-from cvnotes.warp import map_array, undistortion_map
+from cvnotes.warping import map_array, undistortion_map
 
 # Smallest z, on rays of unit z in their own camera, that a rectified camera may see them at.
 _SIDEWAYS = 0.1
@@ -99,8 +98,8 @@ def rectify(
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.lens import Lens
-    >>> from cvnotes.rigid import rotation_from_vector
+    >>> from cvnotes.camera import Lens
+    >>> from cvnotes.camera import rotation_from_vector
     >>> left = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-0.2,)))
     >>> right = left.moved(pose(rotation_from_vector([0.01, -0.05, 0.02]), [-99, 3, 5]))
     >>> pair = rectify(left, right)

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cvnotes.errors import Array, DegenerateError
-from cvnotes.optimise import Minimum, levenberg_marquardt
-from cvnotes.refine import Arrow, Problem, State, move, solve_arrow
-from cvnotes.rigid import exp_so3, skew_matrix
+from cvnotes.base import Array, DegenerateError, Minimum, levenberg_marquardt
+from cvnotes.calibration.arrow import Arrow, solve_arrow
+from cvnotes.calibration.refinement import Problem, State, move
+from cvnotes.camera import exp_so3, skew_matrix
 
 # Squared pixels per coordinate that rounding alone may leave.
 _ROUNDING = 1e-25

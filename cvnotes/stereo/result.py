@@ -5,8 +5,8 @@ from html import escape
 
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.camera import Camera
-from cvnotes.errors import Array
 from cvnotes.stereo.epipolar import relative_pose
 
 
@@ -112,7 +112,7 @@ class StereoCalibration:
 
     def _relative(self) -> list[str]:
         """Say the relative pose in two lines."""
-        from cvnotes.rigid import vector_from_rotation
+        from cvnotes.camera import vector_from_rotation
 
         std = self.std
         omega = ", ".join(

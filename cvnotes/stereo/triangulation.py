@@ -5,18 +5,18 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import Camera
-from cvnotes.errors import (
+from cvnotes.base import (
     Array,
     CvnotesError,
     DegenerateError,
     InputTypeError,
     ShapeError,
+    levenberg_marquardt,
     numbers,
     points,
 )
-from cvnotes.optimise import levenberg_marquardt
-from cvnotes.projection import is_camera, project_with_derivative
+from cvnotes.camera import Camera
+from cvnotes.camera.model import is_camera, project_with_derivative
 
 # Rays that meet at less than about this angle (radians) are parallel to within rounding.
 _PARALLEL = 1e-12
@@ -61,7 +61,7 @@ def triangulate(
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import pose
+    >>> from cvnotes.camera import pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> right = left.moved(pose(np.eye(3), [-100, 0, 0]))
     >>> W = [[30, 40, 500], [0, 0, 700]]
@@ -102,7 +102,7 @@ def disparity_to_depth(disparity: npt.ArrayLike, left: Camera, right: Camera) ->
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import pose
+    >>> from cvnotes.camera import pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> right = left.moved(pose(np.eye(3), [-100, 0, 0]))
     >>> disparity_to_depth([160, 80, 0], left, right)
@@ -127,7 +127,7 @@ def rectified_baseline(left: Camera, right: Camera) -> tuple[int, float]:
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.rigid import pose
+    >>> from cvnotes.camera import pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> rectified_baseline(left, left.moved(pose(np.eye(3), [-100, 0, 0])))
     (0, 100.0)

@@ -1,10 +1,21 @@
-"""What is photographed: calibration targets as points in a frame of their own (notes 2b.4).
+"""Chapter 5: what is photographed, and its corners found in the photograph (notes 2b.4)."""
 
-Every target is made of chessboards: ``faces`` gives each board with its pose in the target's
-frame, ``points`` all inner corners, face after face and each in its board's own order.
-"""
-
-from cvnotes.targets.chessboard import Chessboard, Faces
+from cvnotes.targets.chessboard import Chessboard
+from cvnotes.targets.edge_corners import refine_edges
+from cvnotes.targets.finding import find_corners
+from cvnotes.targets.gradient_corners import refine_subpixel
+from cvnotes.targets.harris_corners import harris, local_maxima
 from cvnotes.targets.planes import ThreePlanes, TwoPlanes
+from cvnotes.targets.sheet import PAPERS
 
-__all__ = ["Chessboard", "Faces", "ThreePlanes", "TwoPlanes"]
+__all__ = [
+    "Chessboard",
+    "TwoPlanes",
+    "ThreePlanes",
+    "PAPERS",
+    "find_corners",
+    "harris",
+    "local_maxima",
+    "refine_subpixel",
+    "refine_edges",
+]

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cvnotes.errors import Array, CvnotesError, image_size, number
-from cvnotes.sheet import Sheet, lay_out
+from cvnotes.base import Array, CvnotesError, image_size, number
+from cvnotes.targets.sheet import Sheet, lay_out
 
 Faces = tuple[tuple[Array, "Chessboard"], ...]
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cvnotes.errors import Array, CvnotesError, number
-from cvnotes.rigid import move, pose
+from cvnotes.base import Array, CvnotesError, number
+from cvnotes.camera import move, pose
 from cvnotes.targets.chessboard import Chessboard, Faces
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import to_homogeneous
 
 

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.incidence import join
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.equality import up_to_scale
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.projective import to_homogeneous
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective import join, to_homogeneous
 
 
 def line_through(p: Array, q: Array) -> Array:

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from cvnotes.errors import Array, CvnotesError
-from cvnotes.incidence import meet
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.equality import up_to_scale
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.base import Array, CvnotesError
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective import meet
 
 
 def _two_lines(rng: Rng) -> list[Case]:

@@ -5,9 +5,9 @@
 
 import numpy as np
 
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.vanishing import focal_length
+from cvnotes.camera import focal_length
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def _perpendicular(rng: Rng) -> list[Case]:

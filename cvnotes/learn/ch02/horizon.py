@@ -5,13 +5,12 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
-from cvnotes.learn.equality import up_to_scale
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
-from cvnotes.rigid import pose
-from cvnotes.vanishing import horizon as library_horizon
+from cvnotes.base import Array
+from cvnotes.camera import Camera, pose
+from cvnotes.camera import horizon as library_horizon
+from cvnotes.learn.cases.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
+from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
 def horizon(A: Array, R: Array, n: Array) -> Array:

@@ -5,12 +5,11 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.projective import drop
-from cvnotes.rigid import pose
+from cvnotes.base import Array
+from cvnotes.camera import Camera, pose
+from cvnotes.learn.cases.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective.points import drop
 
 
 def vanishing_point(A: Array, R: Array, d: Array) -> Array:

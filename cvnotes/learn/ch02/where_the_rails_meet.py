@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.equality import within
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
-from cvnotes.learn.misreading import misreadings
-from cvnotes.learn.pictures import rails_camera
+from cvnotes.base import Array
+from cvnotes.learn.cases.pictures import rails_camera
+from cvnotes.learn.checker.diagnosis import misreadings
+from cvnotes.learn.checker.equality import within
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
 def where_the_rails_meet() -> Array:

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import ABOUT_Y, some_pose_matrix
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
-from cvnotes.rigid import chain, inverse, pose
+from cvnotes.base import Array
+from cvnotes.camera import chain, inverse, pose
+from cvnotes.learn.cases.cameras import ABOUT_Y, some_pose_matrix
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
 def cam1_from_cam2(G1: Array, G2: Array) -> Array:

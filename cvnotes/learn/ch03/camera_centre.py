@@ -5,11 +5,10 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import ABOUT_Y, some_pose
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
-from cvnotes.rigid import pose
+from cvnotes.base import Array
+from cvnotes.camera import Camera, pose
+from cvnotes.learn.cases.cameras import ABOUT_Y, some_pose
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
 def camera_centre(R: Array, T: Array) -> Array:

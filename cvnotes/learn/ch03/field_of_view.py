@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import some_intrinsics
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.learn.cases.cameras import some_intrinsics
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def field_of_view(A: Array, width: int) -> float:

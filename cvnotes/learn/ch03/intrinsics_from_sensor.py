@@ -5,10 +5,10 @@
 
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.camera import intrinsics
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def intrinsics_from_sensor(f: float, du: float, dv: float, u0: float, v0: float) -> Array:

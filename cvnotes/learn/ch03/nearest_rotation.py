@@ -5,10 +5,10 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import ABOUT_Y, rounded, some_rotation
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.rigid import nearest_rotation
+from cvnotes.base import Array
+from cvnotes.camera import nearest_rotation
+from cvnotes.learn.cases.cameras import ABOUT_Y, rounded, some_rotation
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def _nearly_rotations(rng: Rng) -> list[Case]:

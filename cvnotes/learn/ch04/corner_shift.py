@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.learn.equality import within
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
-from cvnotes.lens import Lens
+from cvnotes.camera import Camera, Lens, intrinsics
+from cvnotes.learn.checker.equality import within
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 _CAMERA = Camera(intrinsics(800, 800, 319.5, 239.5), lens=Lens((-0.25, 0.1)), size=(640, 480))
 _OFFSET = np.array([319.5, 239.5])

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import lens_factor, rounded, some_lens
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.lens import Lens
+from cvnotes.base import Array
+from cvnotes.camera import Lens
+from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def distort(xy: Array, k: Array, p: Array) -> Array:

@@ -5,9 +5,9 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens, pose
+from cvnotes.learn.cases.cameras import (
     ABOUT_Y,
     TIDY_A,
     TIDY_POINT,
@@ -18,9 +18,7 @@ from cvnotes.learn.cameras import (
     some_lens,
     some_pose,
 )
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.lens import Lens
-from cvnotes.rigid import pose
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def form_image(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array:

@@ -5,9 +5,9 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 from cvnotes.targets import Chessboard
 
 

@@ -1,10 +1,10 @@
 """Which corner is the first."""
 
-from cvnotes.errors import Array
-from cvnotes.learn.equality import within
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
-from cvnotes.learn.misreading import misreadings
-from cvnotes.learn.pictures import turned_board
+from cvnotes.base import Array
+from cvnotes.learn.cases.pictures import turned_board
+from cvnotes.learn.checker.diagnosis import misreadings
+from cvnotes.learn.checker.equality import within
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
 def _corner(column: int, row: int) -> Array:

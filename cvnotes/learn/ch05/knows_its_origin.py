@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.base import Array
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def knows_its_origin(columns: Array, rows: Array) -> Array:

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cvnotes.errors import Array
+from cvnotes.base import Array
 from cvnotes.homography import design_matrix, dlt, geometric_error, normaliser
-from cvnotes.learn.cameras import SQUARE, SQUARE_SEEN, affine_fit, board_grid, some_homography
+from cvnotes.learn.cases.cameras import SQUARE, SQUARE_SEEN, affine_fit, board_grid, some_homography
 from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
-from cvnotes.learn.equality import up_to_scale, up_to_signs
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.learn.checker.equality import up_to_scale, up_to_signs
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply
 
 

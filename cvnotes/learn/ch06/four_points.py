@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
+from cvnotes.base import Array
 from cvnotes.homography import design_matrix, dlt
-from cvnotes.learn.cameras import (
+from cvnotes.learn.cases.cameras import (
     SQUARE,
     SQUARE_SEEN,
     affine_fit,
@@ -13,9 +13,10 @@ from cvnotes.learn.cameras import (
     some_homography,
 )
 from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
-from cvnotes.learn.equality import up_to_scale
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.projective import apply, drop, to_homogeneous
+from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective import apply, to_homogeneous
+from cvnotes.projective.points import drop
 
 
 def _four(rng: Rng) -> list[Case]:

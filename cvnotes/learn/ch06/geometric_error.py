@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
+from cvnotes.base import Array
 from cvnotes.homography import geometric_error
-from cvnotes.learn.cameras import board_grid, rounded, some_factors, some_homography
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.projective import apply, drop, to_homogeneous
+from cvnotes.learn.cases.cameras import board_grid, rounded, some_factors, some_homography
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective import apply, to_homogeneous
+from cvnotes.projective.points import drop
 
 
 def _with_errors(rng: Rng) -> list[Case]:

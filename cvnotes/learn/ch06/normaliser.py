@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
+from cvnotes.base import Array
 from cvnotes.homography import normaliser
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.equality import up_to_scale
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 from cvnotes.projective import apply
 
 

@@ -1,7 +1,7 @@
 """The mistakes that every way to a homography shares."""
 
 from cvnotes.homography import dlt
-from cvnotes.learn.exercise import Misconception
+from cvnotes.learn.checker.exercise import Misconception
 
 EXCHANGED = Misconception(
     "src and dst exchanged",

@@ -3,10 +3,10 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import some_intrinsics
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.zhang import intrinsics_from_b
+from cvnotes.base import Array
+from cvnotes.calibration import intrinsics_from_b
+from cvnotes.learn.cases.cameras import some_intrinsics
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def A_from_b(b: Array) -> Array:

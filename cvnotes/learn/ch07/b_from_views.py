@@ -4,11 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import ABOUT_X, ABOUT_Y, plane_image, some_intrinsics, some_views
-from cvnotes.learn.equality import Same, up_to_scale, up_to_signs
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.zhang import constraints, solve_b, v_ij
+from cvnotes.base import Array
+from cvnotes.calibration import constraints, solve_b, v_ij
+from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, plane_image, some_intrinsics, some_views
+from cvnotes.learn.checker.equality import Same, up_to_scale, up_to_signs
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 # The picture scaled to about [−1, 1], in which the entries of b are of one size.
 _UNIT = np.array([[1 / 320, 0, -1], [0, 1 / 320, -0.75], [0, 0, 1]])

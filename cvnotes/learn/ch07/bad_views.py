@@ -4,10 +4,10 @@ from functools import cache
 
 import numpy as np
 
-from cvnotes.learn.cameras import plane_image
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
-from cvnotes.rigid import rotation_from_vector
-from cvnotes.zhang import constraints
+from cvnotes.calibration import constraints
+from cvnotes.camera import rotation_from_vector
+from cvnotes.learn.cases.cameras import plane_image
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
 @cache

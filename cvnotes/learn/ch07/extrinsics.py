@@ -5,8 +5,9 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
+from cvnotes.base import Array
+from cvnotes.calibration import extrinsics
+from cvnotes.learn.cases.cameras import (
     ABOUT_Y,
     TIDY_A,
     TIDY_T,
@@ -15,9 +16,8 @@ from cvnotes.learn.cameras import (
     some_intrinsics,
     some_pose,
 )
-from cvnotes.learn.equality import up_to_scale
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.zhang import extrinsics
+from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def _posed(rng: Rng) -> list[Case]:

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import rounded, some_lens
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.zhang import radial_distortion
+from cvnotes.base import Array
+from cvnotes.calibration import radial_distortion
+from cvnotes.learn.cases.cameras import rounded, some_lens
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def radial_fit(xy: Array, xy_lens: Array) -> Array:

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.zhang import v_ij as library_v_ij
+from cvnotes.base import Array
+from cvnotes.calibration import v_ij as library_v_ij
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def v_ij(H: Array, i: int, j: int) -> Array:

@@ -3,12 +3,12 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import image_of_noise, pixel_centres, rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import image_of_noise, pixel_centres, rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply
-from cvnotes.warp import backward_warp as library_backward_warp
-from cvnotes.warp import homography_map
+from cvnotes.warping import backward_warp as library_backward_warp
+from cvnotes.warping import homography_map
 
 
 def backward_warp(image: Array, H: Array, size: tuple[int, int]) -> Array:

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.interpolate import bilinear as library_bilinear
-from cvnotes.interpolate import interpolate
-from cvnotes.learn.cameras import image_of_noise, rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import image_of_noise, rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.warping import bilinear as library_bilinear
+from cvnotes.warping import interpolate
 
 
 def bilinear(image: Array, u: float, v: float) -> float:

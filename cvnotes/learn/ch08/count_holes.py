@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import pixel_centres, rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.warp import forward_warp
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import pixel_centres, rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.warping import forward_warp
 
 
 def count_holes(m: Array, size: tuple[int, int]) -> int:

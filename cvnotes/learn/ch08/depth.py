@@ -5,11 +5,10 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.rigid import pose
+from cvnotes.base import Array
+from cvnotes.camera import Camera, intrinsics, pose
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.stereo import disparity_to_depth
 
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.equality import within_part
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
-from cvnotes.learn.pictures import nearest_edge, stereo_cameras
+from cvnotes.base import Array
+from cvnotes.learn.cases.pictures import nearest_edge, stereo_cameras
+from cvnotes.learn.checker.equality import within_part
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
 def how_far() -> float:

@@ -5,9 +5,9 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import rounded, some_rotation
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import rounded, some_rotation
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def rectifying_rotation(R: Array, left: Array, right: Array) -> Array:

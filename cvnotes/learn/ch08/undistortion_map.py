@@ -2,13 +2,12 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import lens_factor, pixel_centres, some_lens
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.lens import Lens
-from cvnotes.warp import map_array
-from cvnotes.warp import undistortion_map as library_map
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens
+from cvnotes.learn.cases.cameras import lens_factor, pixel_centres, some_lens
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.warping import map_array
+from cvnotes.warping import undistortion_map as library_map
 
 
 def undistortion_map(A: Array, k: Array, size: tuple[int, int]) -> Array:

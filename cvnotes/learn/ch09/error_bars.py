@@ -5,10 +5,10 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import rounded
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.refine import covariance
+from cvnotes.base import Array
+from cvnotes.calibration.arrow import covariance
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def error_bars(J: Array, r: Array) -> Array:

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.calibration import calibrate
-from cvnotes.errors import Array
-from cvnotes.learn.equality import Same
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property
+from cvnotes.learn.checker.equality import Same
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 from cvnotes.learn.personal import PersonalCamera, personal_camera
 
 _COURSE = np.array([800.0, 804.0, 325.0, 238.0])

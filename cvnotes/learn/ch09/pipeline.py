@@ -5,17 +5,17 @@ from typing import Any
 
 import numpy as np
 
+from cvnotes.base import Array, FileError
 from cvnotes.calibration import calibrate
-from cvnotes.course import real_corners
-from cvnotes.errors import Array, FileError
+from cvnotes.camera import move
 from cvnotes.learn.ch06.dlt import DLT
 from cvnotes.learn.ch07.a_from_b import A_FROM_B
 from cvnotes.learn.ch07.b_from_views import B_FROM_VIEWS
 from cvnotes.learn.ch07.extrinsics import EXTRINSICS
 from cvnotes.learn.ch07.radial_fit import RADIAL
-from cvnotes.learn.exercise import Case, Exercise, Property, Rng
+from cvnotes.learn.checker.exercise import Case, Exercise, Property, Rng
 from cvnotes.learn.personal import personal_camera
-from cvnotes.rigid import move
+from cvnotes.pictures.course import real_corners
 
 _PARTS = (DLT, B_FROM_VIEWS, A_FROM_B, EXTRINSICS, RADIAL)
 Step = Callable[..., Any]

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.learn.cameras import (
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens
+from cvnotes.learn.cases.cameras import (
     board_grid,
     lens_factor,
     rounded,
@@ -12,8 +12,7 @@ from cvnotes.learn.cameras import (
     some_lens,
     some_pose_matrix,
 )
-from cvnotes.learn.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.lens import Lens
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def residuals(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:

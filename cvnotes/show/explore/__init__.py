@@ -8,8 +8,8 @@ cannot disagree.
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from cvnotes.base import CvnotesError
 from cvnotes.camera import Camera
-from cvnotes.errors import CvnotesError
 from cvnotes.show.explore.camera import camera_model
 from cvnotes.show.explore.homography import homography_model
 from cvnotes.show.explore.lens import lens_model
@@ -56,7 +56,7 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     if name not in _MODELS:
         raise CvnotesError(f"name: expected one of {', '.join(NAMES)}, got {name!r}")
     if camera is None or board is None:
-        from cvnotes import course
+        from cvnotes.pictures import course
 
         camera = course.camera() if camera is None else camera
         board = course.board() if board is None else board

@@ -4,11 +4,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.rigid import rotation_from_vector
+from cvnotes.base import Array
+from cvnotes.camera import Camera, rotation_from_vector
 from cvnotes.show.explore.paper import Panel
-from cvnotes.show.shapes import Faces, Label, Lines, Shape, places, target_shapes
+from cvnotes.show.space.shapes import Faces, Label, Lines, Shape, places, target_shapes
 from cvnotes.show.style import MUTED
 from cvnotes.targets import Chessboard
 

@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera, intrinsics
-from cvnotes.errors import Array
-from cvnotes.rigid import pose, rotation_from_angles
+from cvnotes.base import Array
+from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
 from cvnotes.show.explore.boards import draw_board, draw_in_space, in_space, on_sheet, pinhole
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Panel, Paper
-from cvnotes.show.shapes import axes_shapes, target_shapes
-from cvnotes.show.sights import camera_shapes
+from cvnotes.show.space.camera_shapes import camera_shapes
+from cvnotes.show.space.shapes import axes_shapes, target_shapes
 from cvnotes.show.style import WORLD
 from cvnotes.targets import Chessboard
 

@@ -5,19 +5,18 @@ from functools import lru_cache
 import numpy as np
 from PIL import Image as Bitmap
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
+from cvnotes.base import Array, Image
+from cvnotes.camera import Camera, pose, rotation_from_vector
 from cvnotes.homography import dlt
-from cvnotes.interpolate import Image
-from cvnotes.projective import drop, to_homogeneous
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.pictures import render
+from cvnotes.projective import to_homogeneous
+from cvnotes.projective.points import drop
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Drawn, Paper, Range
 from cvnotes.show.style import ESTIMATED, WORLD
-from cvnotes.synthetic import render
 from cvnotes.targets import Chessboard
-from cvnotes.warp import rectify_plane
+from cvnotes.warping import rectify_plane
 
 _PICTURE, _SIZE = (440, 330), (410, 330)
 _NAMES = ("top left", "top right", "bottom right", "bottom left")

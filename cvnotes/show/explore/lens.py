@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.lens import Lens
-from cvnotes.radial import radial_factor
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens
+from cvnotes.camera.lens_fold import radial_factor
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cvnotes.errors import CvnotesError, ShapeError
+from cvnotes.base import CvnotesError, ShapeError
 from cvnotes.show.explore.paper import Drawn, Paper
 from cvnotes.show.picture import Picture
 from cvnotes.show.style import ESTIMATED

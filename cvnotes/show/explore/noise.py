@@ -2,14 +2,15 @@
 
 import numpy as np
 
+from cvnotes.base import Array
+from cvnotes.calibration.arrow import covariance
+from cvnotes.calibration.refinement import Problem, State, minimise
 from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.refine import Problem, State, covariance, minimise
+from cvnotes.pictures import good_views
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
 from cvnotes.targets import Chessboard
-from cvnotes.views import good_views
 
 _FEWEST, _MOST = 3, 30
 _SHOWN = ("alpha_u", "alpha_v", "u0", "v0")

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw
 
-from cvnotes.errors import Array
+from cvnotes.base import Array
 from cvnotes.show.explore.lettering import stamp, title_strip
 from cvnotes.show.explore.strokes import clipped, dashed
 from cvnotes.show.style import COLOURS, MARKERS, MUTED

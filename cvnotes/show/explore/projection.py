@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.camera import Camera
-from cvnotes.errors import Array
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Panel, Paper

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.errors import Array
-from cvnotes.rigid import chain, pose, rotation_from_angles, rotation_from_vector
+from cvnotes.base import Array
+from cvnotes.camera import Camera, chain, pose, rotation_from_angles, rotation_from_vector
 from cvnotes.show.explore.boards import draw_board, pinhole
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Panel, Paper

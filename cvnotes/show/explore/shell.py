@@ -32,7 +32,7 @@ class Explorer(VBox):
 
     Examples
     --------
-    >>> from cvnotes.show.explore import explore_lens
+    >>> from cvnotes.show import explore_lens
     >>> explorer = explore_lens()
     >>> explorer
     explore lens: run this cell to move its sliders

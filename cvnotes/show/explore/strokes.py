@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cvnotes.errors import Array
+from cvnotes.base import Array
 
 
 def clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:

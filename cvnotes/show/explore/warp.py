@@ -3,15 +3,14 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.camera import Camera
-from cvnotes.rigid import pose, rotation_from_vector
+from cvnotes.camera import Camera, pose, rotation_from_vector
+from cvnotes.pictures import render
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Drawn, Paper
 from cvnotes.show.style import ESTIMATED
-from cvnotes.synthetic import render
 from cvnotes.targets import Chessboard
-from cvnotes.warp import backward_warp, compose, forward_warp, rotation_map, zoom_map
+from cvnotes.warping import backward_warp, compose, forward_warp, rotation_map, zoom_map
 
 _WIDTH = 108  # px of the source: few enough to see each one
 _LARGER = 4  # px of the page for a pixel

@@ -1,0 +1,162 @@
+"""One Levenberg–Marquardt loop for all who refine (notes 2b.4).
+
+The cost is a sum of squares rᵀr with Jacobian J. A step solves (JᵀJ + μ D) δ = −Jᵀr with
+D = diag(JᵀJ). Who refines says how to linearise, how to solve and how to move; the loop only
+decides how far to trust the linear model.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from cvnotes.base.errors import ConvergenceError, DegenerateError
+from cvnotes.base.guards import Array
+
+# Gains may fall at a stroke while the residuals still matter, but at the end, next to what noise
+# leaves of them, at a steady rate: no step is expected to gain less than this much of the last.
+_SHRINKS = 1e-3
+
+X = TypeVar("X")
+System = TypeVar("System")
+Step = TypeVar("Step")
+
+
+@dataclass(frozen=True)
+class Minimum(Generic[X, System]):
+    """Where a minimisation ended, its cost, and the linear system that led there.
+
+    After a converged last step, cost and system are what the linear model says of its end.
+    """
+
+    x: X
+    cost: float
+    system: System
+    iterations: int
+    converged: bool
+
+
+def levenberg_marquardt(
+    x: X,
+    linearise: Callable[[X], tuple[float, System]],
+    solve: Callable[[System, float], tuple[Step, float]],
+    move: Callable[[X, Step], X],
+    *,
+    follow: Callable[[X, System], X] | None = None,
+    max_iterations: int = 100,
+    tolerance: float = 1e-12,
+    floor: float = 0.0,
+) -> Minimum[X, System]:
+    """Minimise a sum of squares, starting from `x`.
+
+    Parameters
+    ----------
+    x : any
+        The start.
+    linearise : callable
+        x → (cost, system): the sum of squares at x and whatever `solve` needs.
+    solve : callable
+        (system, damping μ) → (step, predicted decrease of the cost).
+    move : callable
+        (x, step) → the new x.
+    follow : callable, optional
+        (x, system) → x with some of its parameters brought to their best, the others held.
+    max_iterations : int
+        Steps tried before giving up; the result then says ``converged=False``.
+    tolerance, floor : float
+        Stop when the next step would gain less than ``tolerance * cost + floor``, if it shrinks
+        as much as this one did. The floor is the cost that rounding alone causes.
+
+    Raises
+    ------
+    ConvergenceError
+        The cost at the start is not finite.
+
+    Notes
+    -----
+    The first steps are Gauss–Newton steps (μ = 0). When a step goes uphill, `follow` may first
+    bring it back into a curved valley, along which damped steps only creep; if that does not
+    help, damping begins.
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Refinement by non-linear optimization".
+    .. [2] D. W. Marquardt, J. SIAM 11 (1963) 431-441.
+
+    Examples
+    --------
+    >>> def line(x):  # one parameter, r = x − 3
+    ...     return float((x[0] - 3) ** 2), np.array([[1.0, x[0] - 3], [x[0] - 3, 0.0]])
+    >>> levenberg_marquardt(np.zeros(1), line, solve_dense, np.add).x
+    array([3.])
+    """
+    cost, system = linearise(x)
+    if not np.isfinite(cost):
+        raise ConvergenceError("the cost at the start is not finite: start closer to the answer")
+    damping, previous = 0.0, 0.0
+    for iteration in range(1, max_iterations + 1):
+        step, predicted = solve(system, damping)
+        x_new = move(x, step)
+        shrinks = max(_SHRINKS, predicted / previous) if previous > 0 else 1.0
+        # (a decrease below 0 is no decrease: it comes from rounding where J is nearly singular)
+        close = abs(predicted) * min(1.0, shrinks) <= tolerance * cost + floor
+        if close and damping == 0:  # too short a step to look where it ends
+            return Minimum(x_new, max(cost - predicted, 0.0), system, iteration, True)
+        with np.errstate(all="ignore"):  # a step too far may leave the model; it is then refused
+            cost_new, system_new = linearise(x_new)
+        if follow and np.isfinite(cost_new) and cost_new >= cost:
+            x_new = follow(x_new, system_new)
+            with np.errstate(all="ignore"):
+                cost_new, system_new = linearise(x_new)
+        downhill = cost_new < cost
+        if downhill:
+            x, cost, system = x_new, cost_new, system_new
+        if close:  # perhaps only because damping keeps the step short
+            damping, previous = 0.0, 0.0
+        elif downhill:
+            previous = predicted if damping == 0 else 0.0
+            damping = 0.1 * damping if damping > 1e-6 else 0.0
+        elif damping > 1e9:
+            break
+        else:
+            damping, previous = max(10 * damping, 1e-3), 0.0
+    return Minimum(x, cost, system, iteration, False)
+
+
+def solve_dense(system: Array, damping: float) -> tuple[Array, float]:
+    """Solve one dense system, given as [J r]ᵀ [J r] of shape (p + 1, p + 1).
+
+    Raises
+    ------
+    DegenerateError
+        The normal equations are singular: some parameter changes nothing.
+    """
+    normal, gradient = system[:-1, :-1], system[:-1, -1]
+    damped = normal + damping * np.diag(np.diagonal(normal))
+    try:
+        step = np.asarray(-np.linalg.solve(damped, gradient))
+    except np.linalg.LinAlgError:
+        raise DegenerateError(
+            "the normal equations are singular: the data do not determine every parameter"
+        ) from None
+    return step, float(-gradient @ step)
+
+
+def numerical_jacobian(f: Callable[[Array], Array], x: Array, step: float = 1e-6) -> Array:
+    """Differentiate f at x by central differences, to check an analytic Jacobian.
+
+    Steps are relative to each parameter (absolute below 1), so expect about 1e-9 relative.
+
+    Examples
+    --------
+    >>> numerical_jacobian(lambda x: x**2, np.array([3.0])).round(6)
+    array([[6.]])
+    """
+    columns = []
+    for i in range(x.size):
+        h = step * max(1.0, abs(float(x[i])))
+        e = np.zeros_like(x)
+        e[i] = h
+        columns.append((f(x + e) - f(x - e)).ravel() / (2 * h))
+    return np.stack(columns, axis=-1)

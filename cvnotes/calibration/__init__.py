@@ -1,0 +1,42 @@
+"""Chapter 7: a camera from its pictures of a board, with error bars (notes 2b.4)."""
+
+from cvnotes.calibration.driver import LENSES, calibrate
+from cvnotes.calibration.one_view import calibrate_one_view
+from cvnotes.calibration.pose import pose_from_view
+from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, resect
+from cvnotes.calibration.result import Calibration
+from cvnotes.calibration.uncertainty import prediction_std, std_with_view
+from cvnotes.calibration.zhang import (
+    constraints,
+    extrinsics,
+    focal_lengths_from_homographies,
+    intrinsics_from_b,
+    intrinsics_from_b_by_formulas,
+    intrinsics_from_homographies,
+    radial_distortion,
+    solve_b,
+    v_ij,
+)
+
+__all__ = [
+    "calibrate",
+    "Calibration",
+    "LENSES",
+    "v_ij",
+    "constraints",
+    "solve_b",
+    "intrinsics_from_b",
+    "intrinsics_from_b_by_formulas",
+    "intrinsics_from_homographies",
+    "focal_lengths_from_homographies",
+    "extrinsics",
+    "radial_distortion",
+    "prediction_std",
+    "std_with_view",
+    "ppm_design_matrix",
+    "ppm_dlt",
+    "refine_ppm",
+    "resect",
+    "pose_from_view",
+    "calibrate_one_view",
+]

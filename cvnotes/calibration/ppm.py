@@ -1,0 +1,267 @@
+"""Points in space and their pixels: guarded, normalised, refused where they leave P open."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes import homography
+from cvnotes.base import (
+    Array,
+    CvnotesError,
+    DegenerateError,
+    ShapeError,
+    levenberg_marquardt,
+    matrix,
+    paired,
+    points,
+    solve_dense,
+)
+from cvnotes.projective import apply, to_homogeneous
+from cvnotes.projective.points import drop
+
+# Relative singular value, after normalisation, below which a rank is called deficient.
+RANK = 1e-9
+
+
+def normaliser(W: npt.ArrayLike) -> Array:
+    """Give the similarity N (4, 4) with which N W has centroid 0 and mean distance √3 from it.
+
+    Hartley's normalisation, one dimension up. With it the estimated P depends neither on the unit
+    of W nor on where the origin of the WRF is.
+
+    Raises
+    ------
+    DegenerateError
+        All points coincide.
+
+    References
+    ----------
+    .. [1] Absent from the notes; see erratum E26.
+    .. [2] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 7.1.
+
+    Examples
+    --------
+    >>> normaliser([[0, 0, 0], [2, 2, 2]])
+    array([[ 1.,  0.,  0., -1.],
+           [ 0.,  1.,  0., -1.],
+           [ 0.,  0.,  1., -1.],
+           [ 0.,  0.,  0.,  1.]])
+    """
+    W = _several(W)
+    centre = W.mean(0)
+    distance = np.linalg.norm(W - centre, axis=-1).mean()
+    if not distance > 1e-12 * np.abs(centre).max():
+        raise DegenerateError("all points of W coincide; the PPM needs six that do not")
+    s = np.sqrt(3) / distance
+    N = np.diag([s, s, s, 1.0])
+    N[:3, 3] = -s * centre
+    return N
+
+
+def pairs(W: npt.ArrayLike, m: npt.ArrayLike, *, at_least: int) -> tuple[Array, Array]:
+    """Guard points W (n, 3) and their pixels m (n, 2)."""
+    W, m = _several(W), points(m, "m", 2)
+    if m.ndim != 2:
+        raise ShapeError(f"m: expected pixels (n, 2) of one picture, got {m.shape}")
+    paired(W, m, ("W", "m"), at_least=at_least)
+    return W, m
+
+
+def refuse_flat(W: Array, m: Array) -> None:
+    """Refuse normalised points that span no space, or no picture, and say what they span."""
+    distinct = len(np.unique(W.round(9), axis=0))
+    if distinct < 6:
+        raise DegenerateError(
+            f"W has only {distinct} distinct points (duplicates); the PPM needs 6"
+        )
+    s = np.linalg.svd(W, compute_uv=False)
+    if s[1] <= RANK * s[0]:
+        raise DegenerateError("all points of W are collinear; the PPM needs points in space")
+    if s[2] <= RANK * s[0]:
+        raise DegenerateError(
+            "all points of W are coplanar: one picture of a plane gives a homography but not P; "
+            "use a target of two planes, or several views of the plane (calibrate)"
+        )
+    s = np.linalg.svd(m, compute_uv=False)
+    if s[1] <= RANK * s[0]:
+        raise DegenerateError("all pixels of m lie on a line: they show the target edge-on")
+
+
+def _several(W: npt.ArrayLike) -> Array:
+    W = points(W, "W", 3)
+    if W.ndim != 2 or not len(W):
+        raise ShapeError(f"W: expected points (n, 3) of one picture, got {W.shape}")
+    if np.abs(W).max() > 1e100:
+        raise CvnotesError("W: coordinates beyond 1e100 cannot be computed with")
+    return W
+
+
+def ppm_design_matrix(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
+    """Give D (2n, 12) of D p = 0, two rows for each point, p = the rows of P stacked.
+
+    m̃ × P W̃ = 0 has three rows, of which two suffice, as for a homography:
+    [0ᵀ, −W̃ᵀ, v W̃ᵀ] and [W̃ᵀ, 0ᵀ, −u W̃ᵀ].
+
+    Examples
+    --------
+    >>> ppm_design_matrix([[1, 2, 3]], [[4, 5]]).astype(int)
+    array([[ 0,  0,  0,  0, -1, -2, -3, -1,  5, 10, 15,  5],
+           [ 1,  2,  3,  1,  0,  0,  0,  0, -4, -8, -12, -4]])
+    """
+    W, m = pairs(W, m, at_least=1)
+    W_h = to_homogeneous(W)
+    D = np.zeros((len(W), 2, 3, 4))
+    D[:, 0, 1], D[:, 0, 2] = -W_h, m[:, 1:] * W_h
+    D[:, 1, 0], D[:, 1, 2] = W_h, -m[:, :1] * W_h
+    return D.reshape(-1, 12)
+
+
+def ppm_dlt(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
+    """Estimate P with m ≈ P W by the direct linear transform.
+
+    Parameters
+    ----------
+    W : array_like, shape (n, 3)
+        At least 6 points in the WRF, not all in one plane.
+    m : array_like, shape (n, 2)
+        The same points in the picture, in pixels.
+
+    Returns
+    -------
+    ndarray, shape (3, 4)
+        P with ‖P‖ = 1 and the sign that gives the points positive third coordinates, as points
+        in front of a camera have.
+
+    Raises
+    ------
+    DegenerateError
+        The points leave P open; the message names the configuration.
+
+    Notes
+    -----
+    Minimises the algebraic error ‖D p‖ with ‖p‖ = 1 in normalised coordinates: p is the right
+    singular vector of D of the smallest singular value, P = N₂⁻¹ P̂ N₁.
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Calibration Targets".
+    .. [2] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), algorithm 7.1.
+
+    Examples
+    --------
+    >>> from cvnotes.targets import Chessboard, TwoPlanes
+    >>> W = TwoPlanes(Chessboard((3, 2), 10.0)).points
+    >>> truth = np.array([[8, 0, 3, 400], [0, 8, 2, 300], [0, 0, 0.01, 1]])
+    >>> m_h = W @ truth[:, :3].T + truth[:, 3]
+    >>> P = ppm_dlt(W, m_h[:, :2] / m_h[:, 2:])
+    >>> (P / P[2, 3]).round(9) + 0.0
+    array([[8.e+00, 0.e+00, 3.e+00, 4.e+02],
+           [0.e+00, 8.e+00, 2.e+00, 3.e+02],
+           [0.e+00, 0.e+00, 1.e-02, 1.e+00]])
+    """
+    W, m = pairs(W, m, at_least=6)
+    N1, N2 = normaliser(W), homography.normaliser(m)
+    W, m = apply(N1, W), apply(N2, m)
+    refuse_flat(W, m)
+    _, s, Vt = np.linalg.svd(ppm_design_matrix(W, m), full_matrices=False)
+    if s[10] <= RANK * s[0]:
+        raise DegenerateError(
+            "these points leave P open although they are not in one plane: all but one lie in a "
+            "plane, or they lie on a curve that passes through the camera; spread them in depth"
+        )
+    P = Vt[11].reshape(3, 4)
+    P = P if P[2, 3] > 0 else -P  # the third coordinate of the centroid
+    P = np.linalg.solve(N2, P @ N1)
+    return np.asarray(P / np.linalg.norm(P))
+
+
+def refine_ppm(P: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
+    """Refine P by minimising the geometric error Σ ‖m − π(P W̃)‖².
+
+    Parameters
+    ----------
+    P : array_like, shape (3, 4)
+        The start, for example from `ppm_dlt`; of any scale.
+    W, m : array_like, shape (n, 3) and (n, 2)
+        At least 6 points and their pixels.
+
+    Returns
+    -------
+    ndarray, shape (3, 4)
+        The refined P, ‖P‖ = 1, with the sign of the start.
+
+    Raises
+    ------
+    DegenerateError
+        The points leave P open.
+
+    Notes
+    -----
+    Levenberg–Marquardt on all twelve entries, in normalised coordinates. P itself is a direction
+    in which nothing changes, so p pᵀ is added to JᵀJ and the step stays perpendicular to p. The
+    pixels' normalisation only scales the error, so the minimum is the one in pixels.
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Refinement by non-linear optimization".
+    .. [2] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 7.2.
+
+    Examples
+    --------
+    >>> from cvnotes.targets import Chessboard, TwoPlanes
+    >>> W = TwoPlanes(Chessboard((3, 2), 10.0)).points
+    >>> truth = np.array([[8, 0, 3, 400], [0, 8, 2, 300], [0, 0, 0.01, 1]])
+    >>> m_h = W @ truth[:, :3].T + truth[:, 3]
+    >>> P = refine_ppm(truth + 0.001, W, m_h[:, :2] / m_h[:, 2:])
+    >>> np.allclose(P / P[2, 3], truth, atol=1e-9)
+    True
+    """
+    P = matrix(P, "P", 3, 4)
+    W, m = pairs(W, m, at_least=6)
+    if P.ndim != 2 or not P.any():
+        raise DegenerateError("P must be one non-zero (3, 4) matrix")
+    N1, N2 = normaliser(W), homography.normaliser(m)
+    W_h, m = to_homogeneous(apply(N1, W)), apply(N2, m)
+    refuse_flat(W_h[:, :3], m)
+    n = len(W_h)
+
+    def linearise(p: Array) -> tuple[float, Array]:
+        m_h = W_h @ p.reshape(3, 4).T
+        predicted = drop(m_h)
+        J = np.zeros((n, 2, 13))
+        J[:, 0, 0:4] = J[:, 1, 4:8] = W_h / m_h[:, 2:]
+        J[:, :, 8:12] = -predicted[:, :, None] * J[:, :1, 0:4]
+        J[:, :, 12] = predicted - m
+        J = J.reshape(2 * n, 13)
+        system = J.T @ J
+        cost = float(system[12, 12])
+        system[:12, :12] += np.outer(p, p)
+        return cost, system
+
+    def move(p: Array, step: Array) -> Array:
+        return np.asarray((p + step) / np.linalg.norm(p + step))
+
+    start = (N2 @ (P / np.abs(P).max()) @ np.linalg.inv(N1)).ravel()
+    start /= np.linalg.norm(start)
+    with np.errstate(all="ignore"):  # from a senseless start; no step is then found
+        p = levenberg_marquardt(start, linearise, solve_dense, move, floor=1e-28 * n).x
+    P = np.linalg.solve(N2, p.reshape(3, 4) @ N1)
+    return np.asarray(P / np.linalg.norm(P))
+
+
+def resect(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
+    """Estimate P (3, 4) from points W (n, 3) and their pixels m (n, 2): DLT, then refinement.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import Camera, decompose, intrinsics
+    >>> from cvnotes.camera import look_at
+    >>> from cvnotes.targets import TwoPlanes
+    >>> target = TwoPlanes()
+    >>> camera = Camera(intrinsics(800, 805, 320, 240), look_at([500, 0, -700], [100, 60, -80]))
+    >>> A, R, T = decompose(resect(target.points, camera.project(target.points)))
+    >>> A.round(6) + 0.0
+    array([[800.,   0., 320.],
+           [  0., 805., 240.],
+           [  0.,   0.,   1.]])
+    """
+    return refine_ppm(ppm_dlt(W, m), W, m)

@@ -1,0 +1,265 @@
+"""What a calibration is judged by: its numbers, and those that follow from them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import acos, degrees
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array
+from cvnotes.calibration.zhang import constraint_rows
+from cvnotes.camera import Lens, xy_from_px
+
+_FAR = 100  # boards compared with each other; all pairs of thousands would take too long
+_ROUNDING = 1e-6  # px, more than rounding leaves
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a calibration is judged by.
+
+    Parameters
+    ----------
+    A, lens, size
+        The estimated camera.
+    poses : ndarray, shape (n_views, 4, 4)
+        CRF ← board.
+    std : dict
+        Standard deviations by name.
+    view_rms : ndarray, shape (n_views,)
+        Root mean square reprojection distance of each view, px.
+    distances : ndarray, shape (n_views, n)
+        Reprojection distance of each corner, px; 0 where none was seen, NaN where the lens folds.
+    corners : ndarray, shape (n_views, n, 2)
+        Where the corners were seen, px.
+    converged : bool
+        Whether the refinement ended at a minimum.
+    likeness : float
+        Correlation between the residuals of corners that follow each other; about 0 for noise.
+    """
+
+    A: Array
+    lens: Lens
+    size: tuple[int, int]
+    poses: Array
+    std: dict[str, float]
+    view_rms: Array
+    distances: Array
+    corners: Array
+    converged: bool
+    likeness: float = 0.0
+
+    @cached_property
+    def tilt_between(self) -> float:
+        """Largest angle between two boards, degrees; of many, those farthest from the mean."""
+        far = self.poses[:, :3, 2]
+        if len(far) > _FAR:
+            far = far[np.argsort(far @ far.mean(0))[:_FAR]]
+        return degrees(acos(min(1.0, float(np.abs(far @ far.T).min()))))
+
+    @cached_property
+    def determinacy(self) -> float:
+        """Second smallest over largest singular value of Zhang's V; 0 if A is undetermined.
+
+        V is taken from the estimated camera, in a picture scaled to about [−1, 1].
+        """
+        scale = 2 / max(self.size)
+        A = np.diag([scale, scale, 1]) @ self.A
+        A[:2, 2] -= np.array(self.size) / max(self.size)
+        skewless = [0, 2, 3, 4, 5]
+        V = constraint_rows(A @ self.poses[:, :3, [0, 1, 3]])[:, skewless]
+        s = np.linalg.svd(V, compute_uv=False)
+        return float(s[3] / s[0])
+
+    @cached_property
+    def typical_rms(self) -> float:
+        """Median of the views' RMS, px."""
+        return median(self.view_rms)
+
+    @property
+    def focal_uncertainty(self) -> float:
+        """Largest standard deviation of a focal length over its value."""
+        return float(max(self.std["alpha_u"] / self.A[0, 0], self.std["alpha_v"] / self.A[1, 1]))
+
+
+def likeness(residuals: Array, freedom: int) -> float:
+    """Correlate the residuals (n_views, n, 2) of corners that follow each other.
+
+    0 where that tells nothing: when there are hardly more measured coordinates than unknowns (the
+    difference is `freedom`), or when only rounding errors are left.
+
+    Examples
+    --------
+    >>> drift = np.linspace(-1, 1, 50).reshape(1, 25, 2)
+    >>> likeness(drift, 40) > 0.8, likeness(drift, 10), likeness(1e-12 * drift, 40)
+    (True, 0.0, 0.0)
+    """
+    r = residuals if np.isfinite(residuals.sum()) else np.nan_to_num(residuals)
+    squares = float((r * r).sum())
+    if 2 * freedom < r.size or squares < r.size * _ROUNDING**2:
+        return 0.0
+    return float((r[:, 1:] * r[:, :-1]).sum()) / squares
+
+
+def median(x: Array) -> float:
+    """Give the median of numbers (n,)."""
+    # np.median takes longer than all the rest here, with its care for axes, NaN and subclasses.
+    ordered = np.sort(x)
+    return float(ordered[(x.size - 1) // 2] + ordered[x.size // 2]) / 2
+
+
+# Thresholds between sets that give the focal length and sets that do not, measured on 25 noisy
+# sets of each family in tests/test_reliability.py.
+_UNDETERMINED, _WEAK = 0.0023, 0.01  # second smallest over largest singular value of V
+_PARALLEL, _FLAT = 5.0, 15.0  # largest angle between two boards, degrees
+_UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over its value
+_ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
+_MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed
+_ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
+_NO_NOISE = (
+    "neighbouring corners miss their places in the same direction, so this is no noise: is the "
+    "board bent, did zoom, focus or orientation change between the pictures, or does the lens "
+    "need more coefficients?"
+)
+
+
+def judge(evidence: Evidence) -> tuple[tuple[str, ...], bool]:
+    """Give sentences about what is doubtful, and whether the result is reliable all the same.
+
+    Returns
+    -------
+    warnings : tuple of str
+        Empty if nothing is doubtful.
+    reliable : bool
+        False when the answer may be wrong by more than its error bars say.
+    """
+    fatal = [*_undetermined(evidence), *_mirrored(evidence), *_badly_fitted(evidence)]
+    doubtful = [*_systematic(evidence), *_outside(evidence), *_outliers(evidence)]
+    if not fatal:
+        doubtful = [*_weak(evidence), *doubtful]
+    return tuple(fatal + doubtful), not fatal
+
+
+def _undetermined(e: Evidence) -> Iterator[str]:
+    if not e.converged:
+        yield "the refinement stopped before it reached a minimum; the answer is only a start"
+    if e.tilt_between < _PARALLEL:
+        yield (
+            f"all boards are nearly parallel (at most {e.tilt_between:.1f}° between two), which "
+            f"leaves the focal length open: {_ADVICE}"
+        )
+    elif e.determinacy < _UNDETERMINED:
+        yield (
+            f"these views do not determine the camera (V is singular to {e.determinacy:.4f}): "
+            f"{_ADVICE}"
+        )
+    elif e.focal_uncertainty > _UNKNOWN:
+        yield f"the focal length is known to {e.focal_uncertainty:.0%} only: {_ADVICE}"
+    ratio = e.A[1, 1] / e.A[0, 0]
+    if not 0.5 < ratio < 2:
+        yield (
+            f"pixels {ratio:.2g} times as high as wide are unlikely: are rows and columns of the "
+            "board swapped, or its squares not square?"
+        )
+
+
+def _weak(e: Evidence) -> Iterator[str]:
+    if len(e.poses) == 2:
+        yield (
+            "two views give as many constraints as A has unknowns, so nothing checks the answer: "
+            "add views"
+        )
+    elif e.tilt_between < _FLAT or e.determinacy < _WEAK:
+        yield (
+            f"the boards' tilts (at most {e.tilt_between:.0f}° between two) determine the focal "
+            f"length only weakly: {_ADVICE}"
+        )
+    elif e.focal_uncertainty > _UNCERTAIN:
+        yield (
+            f"the focal length has a standard deviation of {e.focal_uncertainty:.1%}: add views, "
+            "fill more of the picture, or tilt the board more"
+        )
+
+
+def _mirrored(e: Evidence) -> Iterator[str]:
+    """Find boards seen from behind: the sign of det H, which no RMS shows."""
+    facing = np.vecdot(e.poses[:, :3, 2], e.poses[:, :3, 3])
+    behind = np.flatnonzero(facing < 0)
+    if len(behind) == len(e.poses):
+        yield (
+            "every board is seen from behind: are the pictures mirrored, or (v, u) given for "
+            "(u, v)?"
+        )
+    elif len(behind):
+        yield f"boards seen from behind in views {_listed(behind)}: mirrored labels or pictures?"
+
+
+def _badly_fitted(e: Evidence) -> Iterator[str]:
+    """Find views and whole sets that no camera of this kind explains."""
+    typical = e.typical_rms
+    limit = 0.005 * max(e.size)
+    if typical > limit:
+        yield (
+            f"the corners are {typical:.1f} px away from where the model puts them, in a typical "
+            "view: are the board's counts and the order of its corners right?"
+        )
+        return
+    bad = np.flatnonzero(e.view_rms > np.maximum(4 * typical, 0.5))
+    if len(bad):
+        worst = int(np.argmax(e.view_rms))
+        yield (
+            f"views {_listed(bad)} do not fit the others (view {worst}: "
+            f"{e.view_rms[worst]:.2f} px, typical {typical:.2f} px): moved, zoomed, rotated or "
+            "badly found? Leave them out and see what changes"
+        )
+    if e.likeness > _ALIKE and typical > _MOVED * max(e.size):
+        yield _NO_NOISE
+
+
+def _systematic(e: Evidence) -> Iterator[str]:
+    """Find residuals that are small, but of which the error bars are not a measure."""
+    if e.likeness > _ALIKE and e.typical_rms <= _MOVED * max(e.size):
+        yield f"{_NO_NOISE} The true error is then larger than the error bars say"
+
+
+def _outliers(e: Evidence) -> Iterator[str]:
+    """Find single corners far from their place."""
+    d = e.distances
+    if np.isnan(d).any():
+        yield "some corners lie where the estimated lens folds over: estimate fewer coefficients"
+        d = np.nan_to_num(d)
+    # A distance with Gaussian coordinates exceeds 5 of its medians once in 30 million corners.
+    limit = max(5 * median(d[d > 0]), 0.2) if d.any() else np.inf
+    worst = d.argmax(1)
+    found = [
+        f"view {i}, corner {worst[i]} ({d[i, worst[i]]:.1f} px)"
+        for i in np.flatnonzero(d.max(1) > limit)
+    ]
+    if found:
+        more = f" and in {len(found) - 3} more views" if len(found) > 3 else ""
+        yield f"corners far from their place: {', '.join(found[:3])}{more}"
+
+
+def _outside(e: Evidence) -> Iterator[str]:
+    w, h = e.size
+    u, v = e.corners[..., 0], e.corners[..., 1]
+    if min(u.min(), v.min()) < -0.5 or u.max() > w - 0.5 or v.max() > h - 0.5:
+        yield (
+            f"corners lie outside of the {w}×{h} picture: is size (width, height), and of these "
+            "pictures?"
+        )
+    reach = e.lens.max_radius
+    if np.isfinite(reach):
+        xy = xy_from_px(e.A, [[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]])
+        if np.linalg.norm(xy, axis=-1).max() > reach * e.lens.L(reach):
+            yield (
+                "the estimated lens folds over before it reaches the corners of the picture: it "
+                "holds only where corners were seen; bring the board into the corners too"
+            )
+
+
+def _listed(indices: npt.NDArray[np.intp]) -> str:
+    words = [str(i) for i in indices[:5]]
+    return ", ".join(words) + (" …" if len(indices) > 5 else "")

@@ -1,0 +1,135 @@
+"""What a calibration is worth: how sure a predicted pixel is, and what one more view would give."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, CvnotesError, ShapeError, points, rigid_motion
+from cvnotes.calibration.arrow import covariance
+from cvnotes.calibration.refinement import Problem
+from cvnotes.calibration.result import Calibration
+from cvnotes.camera import Camera, Lens
+
+_STEP = 1e-6  # of a parameter, relative to its standard deviation or to 1
+
+
+def prediction_std(calibration: Calibration, m: npt.ArrayLike) -> Array:
+    """How far off, in pixels, the image of a ray may be that the camera shows at pixels m.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        The camera and the covariance of its parameters.
+    m : array_like, shape (..., 2)
+        Pixels, for example the corners of the picture.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        √ trace(J Σ Jᵀ): the standard deviation of the predicted pixel, both coordinates together,
+        for a ray that is fixed in the camera's frame. NaN where the lens model does not reach.
+
+    Notes
+    -----
+    Σ is the covariance of the estimated parameters and J the derivative of the pixel by them. A
+    small rotation of the camera, which the poses would absorb, is not subtracted, so this is
+    a cautious value.
+
+    References
+    ----------
+    .. [1] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 5.2.6, "forward
+       propagation of covariance".
+
+    Examples
+    --------
+    >>> from cvnotes.pictures import course
+    >>> from cvnotes.calibration import calibrate
+    >>> found = calibrate(course.board().points, course.measured_corners(), (640, 480))
+    >>> middle, corner = prediction_std(found, [[320, 240], [0, 0]])
+    >>> bool(middle < corner)
+    True
+    """
+    m = points(m, "m", 2)
+    xy = calibration.camera.ideal(m)
+    reached = np.isfinite(xy).all(-1)
+    J = np.empty((*m.shape[:-1], 2, len(calibration.names)))
+    value = calibration.parameters
+    for i, name in enumerate(calibration.names):
+        h = _STEP * max(1.0, abs(value[name]))
+        up, down = (_pixels(calibration, {name: value[name] + s * h}, xy) for s in (1, -1))
+        J[..., i] = (up - down) / (2 * h)
+    variance = np.einsum("...ci,ij,...cj->...", J, calibration.covariance, J)
+    return np.where(reached, np.sqrt(variance), np.nan)
+
+
+def std_with_view(calibration: Calibration, G: npt.ArrayLike) -> dict[str, float]:
+    """Predict the standard deviations if one more view of the board were taken at pose G.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        With its corners; the views must all show the same board points.
+    G : array_like, shape (4, 4)
+        Pose of the board in the view that is considered, CRF ← board.
+
+    Returns
+    -------
+    dict
+        Standard deviation of each parameter, by name, for corners as noisy as those so far.
+
+    Notes
+    -----
+    The normal matrix at the estimate, with the rows of one more view, inverted: the noise of the
+    new corners does not matter, only where they would be.
+
+    Examples
+    --------
+    >>> from cvnotes.pictures import course
+    >>> from cvnotes.calibration import calibrate
+    >>> board, m = course.board(), course.measured_corners()
+    >>> few = calibrate(board.points, m[:6], (640, 480))
+    >>> std_with_view(few, course.poses()[7])["alpha_u"] < few.std["alpha_u"]
+    True
+    """
+    G = rigid_motion(G)
+    if G.ndim != 2:
+        raise ShapeError(f"G: expected one pose (4, 4), got {G.shape}")
+    boards = calibration.board_points
+    if not boards or any(W.shape != boards[0].shape for W in boards):
+        raise CvnotesError("the views must come with their corners, all of one board")
+    poses = [*calibration.poses, G]
+    before = _covariance_at(calibration, poses[:-1])
+    after = _covariance_at(calibration, poses)
+    scale = np.sqrt(np.diag(after) / np.diag(before))
+    return {n: float(s * k) for (n, s), k in zip(calibration.std.items(), scale, strict=True)}
+
+
+def _covariance_at(calibration: Calibration, poses: list[Array]) -> Array:
+    """Covariance of the shared parameters for noise of 1 px, if the board stood at these poses."""
+    W = calibration.board_points[0]
+    centre, scale = W.mean(0), float(np.ptp(W, axis=0).max())
+    G = np.array(poses)
+    G[:, :3, 3] = (G[:, :3, 3] + G[:, :3, :3] @ centre) / scale
+    names = calibration.names
+    problem = Problem(
+        (W - centre) / scale,
+        np.zeros((len(G), len(W), 2)),  # where they are seen does not change the Jacobian
+        skew="skew" in names,
+        n_radial=sum(n.startswith("k") for n in names),
+        tangential="p1" in names,
+    )
+    state = problem.state(calibration.A, calibration.lens, G)
+    return covariance(problem.linearise(state)[1])
+
+
+def _pixels(calibration: Calibration, changed: dict[str, float], xy: Array) -> Array:
+    """Where the camera, with some parameters changed, shows ideal points (..., 2)."""
+    value = calibration.parameters | changed
+    A = calibration.A.copy()
+    for name, place in {"alpha_u": (0, 0), "alpha_v": (1, 1), "skew": (0, 1)}.items():
+        A[place] = value.get(name, A[place])
+    A[0, 2], A[1, 2] = value["u0"], value["v0"]
+    k = tuple(value[f"k{i}"] for i in range(1, len(calibration.lens.k) + 1))
+    lens = Lens(k, (value.get("p1", 0.0), value.get("p2", 0.0)))
+    reached = np.isfinite(xy).all(-1, keepdims=True)
+    W = np.concatenate([np.where(reached, xy, 0.0), np.ones_like(xy[..., :1])], axis=-1)
+    return Camera(A, lens=lens, size=calibration.size).project(W)

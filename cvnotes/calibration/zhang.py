@@ -1,0 +1,401 @@
+"""The constraints of each view on B = A⁻ᵀ A⁻¹, and the b that satisfies them."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import (
+    Array,
+    CvnotesError,
+    DegenerateError,
+    ShapeError,
+    equally_many,
+    intrinsic_matrix,
+    matrix,
+    numbers,
+    paired,
+    points,
+    rigid_motion,
+)
+from cvnotes.camera import nearest_rotation, skew_matrix
+from cvnotes.camera.pixels import ideal_columns
+
+# The six entries of b and where they stand in the symmetric B.
+B_ROWS, B_COLUMNS = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
+# The duplication matrix (9, 6): all nine entries of B, row by row, are D b.
+_DUPLICATION = np.zeros((3, 3, 6))
+_DUPLICATION[B_ROWS, B_COLUMNS, range(6)] = _DUPLICATION[B_COLUMNS, B_ROWS, range(6)] = 1
+_DUPLICATION = _DUPLICATION.reshape(9, 6)
+
+
+def v_ij(H: npt.ArrayLike, i: int, j: int) -> Array:
+    """Give v_ij (..., 6) with h_iᵀ B h_j = v_ijᵀ b; i and j count columns of H from 1.
+
+    Examples
+    --------
+    >>> v_ij([[1, 0, 0], [0, 2, 0], [0, 0, 1]], 1, 2)
+    array([0., 2., 0., 0., 0., 0.])
+    """
+    H = matrix(H, "H", 3, 3)
+    if i not in (1, 2, 3) or j not in (1, 2, 3):
+        raise CvnotesError(f"i and j number the columns of H, 1 to 3; got {i} and {j}")
+    return _v(H[..., :, i - 1], H[..., :, j - 1])
+
+
+def constraints(H: npt.ArrayLike) -> Array:
+    """Stack the two constraints of each view to V (2n, 6): v_12ᵀ b = 0, (v_11 − v_22)ᵀ b = 0.
+
+    Each H is first scaled to ‖h1‖ ‖h2‖ = 1, so that its arbitrary scale gives it no weight.
+
+    Raises
+    ------
+    DegenerateError
+        A homography is singular; the message gives its index.
+
+    Examples
+    --------
+    >>> constraints(np.eye(3)[None])
+    array([[ 0.,  1.,  0.,  0.,  0.,  0.],
+           [ 1.,  0., -1.,  0.,  0.,  0.]])
+    """
+    return constraint_rows(scaled(matrix(H, "H", 3, 3)).reshape(-1, 3, 3))
+
+
+def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
+    """Solve V b = 0 with ‖b‖ = 1 and the sign that makes B positive: b (6,).
+
+    b = (B11, B12, B22, B13, B23, B33). With ``skew=False``, B12 = 0 is imposed by leaving its
+    column out; then two views suffice (erratum E29), otherwise three are needed.
+
+    Raises
+    ------
+    DegenerateError
+        Too few views, or views that do not determine b (parallel or repeated boards).
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Estimation of intrinsic parameters".
+
+    Examples
+    --------
+    >>> A = np.array([[2.0, 0, 1], [0, 2, 1], [0, 0, 1]])
+    >>> R = [[[1, 0, 0], [0, 0.8, 0], [0, 0.6, 5]], [[0.8, 0, 0], [0, 1, 0], [0.6, 0, 5]]]
+    >>> (solve_b(constraints(A @ R)) * 2 * np.sqrt(10)).round(9) + 0.0
+    array([ 1.,  0.,  1., -1., -1.,  6.])
+    """
+    V = rows_of(V)
+    kept = [0, 1, 2, 3, 4, 5] if skew else [0, 2, 3, 4, 5]
+    needed = 3 if skew else 2
+    if len(V) < 2 * needed:
+        raise DegenerateError(
+            f"need at least {needed} views {'with' if skew else 'without'} skew, got {len(V) // 2}"
+        )
+    # Two views without skew have four rows: the null vector is then in no thin decomposition.
+    _, s, Vt = np.linalg.svd(V[:, kept], full_matrices=len(V) < len(kept))
+    if s[len(kept) - 2] <= 1e-9 * s[0]:
+        raise DegenerateError(
+            "rank of V too low: the views do not determine the camera, because their boards are "
+            "parallel or repeated; tilt the board by 30 to 45 degrees in different directions"
+        )
+    b = np.zeros(6)
+    b[kept] = Vt[-1]
+    return np.asarray(b if b[0] > 0 else -b) + 0.0
+
+
+def constraint_rows(H: Array) -> Array:
+    """Give V (2n, 6) of homographies (n, 3, 3), without a guard: for use inside."""
+    lengths = _column_lengths(H)
+    scale = np.sqrt(lengths[:, 0] * lengths[:, 1])[:, None]
+    h1, h2 = H[:, :, 0] / scale, H[:, :, 1] / scale
+    V = np.stack([_v(h1, h2), _v(h1, h1) - _v(h2, h2)], axis=1)
+    return V.reshape(-1, 6)
+
+
+def _v(a: Array, b: Array) -> Array:
+    """Give v (..., 6) with aᵀ B b = vᵀ b, for columns a and b (..., 3)."""
+    products = a[..., :, None] * b[..., None, :]  # aᵀ B b = Σ B_ij a_i b_j
+    return np.asarray(products.reshape(*a.shape[:-1], 9) @ _DUPLICATION)
+
+
+def rows_of(V: npt.ArrayLike) -> Array:
+    """Guard V (2n, 6)."""
+    V = numbers(V, "V")
+    if V.ndim != 2 or V.shape[1] != 6:
+        raise ShapeError(f"V: expected (2n, 6), got {V.shape}")
+    return V
+
+
+def scaled(H: Array) -> Array:
+    """Scale each homography (..., 3, 3) to a largest entry of 1, and name one that is singular."""
+    largest = np.abs(H).max((-2, -1), keepdims=True)
+    H = H / np.where(largest > 0, largest, 1)
+    sizes = _column_lengths(H).prod(-1)
+    bad = (np.abs(np.linalg.det(H)) <= 1e-12 * sizes) | (sizes == 0)
+    if bad.any():
+        raise DegenerateError(f"homography {int(np.argmax(bad))} is singular: it shows no plane")
+    return H
+
+
+def _column_lengths(H: Array) -> Array:
+    return np.asarray(np.sqrt(np.vecdot(H.mT, H.mT)))
+
+
+_NOT_POSITIVE = (
+    "B is not positive definite, so no camera fits: the noise is too high, or the views do not "
+    "determine the camera (tilt the board by 30 to 45 degrees in different directions)"
+)
+
+
+def intrinsics_from_b(b: npt.ArrayLike) -> Array:
+    """Give A (3, 3) from b (6,) by Cholesky: B = L Lᵀ and B ∝ A⁻ᵀ A⁻¹, so A ∝ L⁻ᵀ.
+
+    Raises
+    ------
+    DegenerateError
+        B is not positive definite: too much noise, or views that do not determine it.
+
+    Examples
+    --------
+    >>> intrinsics_from_b([1, 0, 1, -1, -1, 6]).round(9) + 0.0
+    array([[2., 0., 1.],
+           [0., 2., 1.],
+           [0., 0., 1.]])
+    """
+    try:
+        L = np.linalg.cholesky(_B(b))
+    except np.linalg.LinAlgError:
+        raise DegenerateError(_NOT_POSITIVE) from None
+    A = np.triu(np.linalg.inv(L).T)  # rounding leaves 1e-16 below the diagonal
+    return np.asarray(A / A[2, 2])
+
+
+def intrinsics_from_b_by_formulas(b: npt.ArrayLike) -> Array:
+    """Give A (3, 3) from b (6,) by Zhang's six formulas; the same A as `intrinsics_from_b`.
+
+    The notes leave them out (erratum E31). u0 = γ v0 / β − B13 α² / s, with β in the
+    denominator; the α often printed there is wrong.
+
+    Raises
+    ------
+    DegenerateError
+        B is not positive definite.
+
+    References
+    ----------
+    .. [1] Z. Zhang, PAMI 22 (2000) 1330-1334, appendix B.
+
+    Examples
+    --------
+    >>> intrinsics_from_b_by_formulas([1, 0, 1, -1, -1, 6]) + 0.0
+    array([[2., 0., 1.],
+           [0., 2., 1.],
+           [0., 0., 1.]])
+    """
+    B11, B12, B22, B13, B23, B33 = _six(b).tolist()
+    minor = B11 * B22 - B12**2
+    if B11 <= 0 or minor <= 0:
+        raise DegenerateError(_NOT_POSITIVE)
+    v0 = (B12 * B13 - B11 * B23) / minor
+    s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11
+    if s <= 0:
+        raise DegenerateError(_NOT_POSITIVE)
+    alpha = np.sqrt(s / B11)
+    beta = np.sqrt(s * B11 / minor)
+    gamma = -B12 * alpha**2 * beta / s
+    u0 = gamma * v0 / beta - B13 * alpha**2 / s
+    return np.array([[alpha, gamma, u0], [0, beta, v0], [0, 0, 1]])
+
+
+def intrinsics_from_homographies(H: npt.ArrayLike, *, skew: bool = False) -> Array:
+    """Give A (3, 3) from the homographies (n, 3, 3) of n views: V, then b, then A.
+
+    Pixels far from the origin make V badly conditioned; `calibrate` hands over homographies
+    into a picture scaled to about [−1, 1].
+
+    Raises
+    ------
+    DegenerateError
+        Fewer than 2 views (3 with skew), or views that do not determine A.
+
+    Examples
+    --------
+    >>> A = np.array([[2.0, 0, 1], [0, 2, 1], [0, 0, 1]])
+    >>> R = [[[1, 0, 0], [0, 0.8, 0], [0, 0.6, 5]], [[0.8, 0, 0], [0, 1, 0], [0.6, 0, 5]]]
+    >>> intrinsics_from_homographies(A @ R).round(9) + 0.0
+    array([[2., 0., 1.],
+           [0., 2., 1.],
+           [0., 0., 1.]])
+    """
+    return intrinsics_from_b(solve_b(constraints(H), skew=skew))
+
+
+def focal_lengths_from_homographies(H: npt.ArrayLike, centre: npt.ArrayLike = (0, 0)) -> Array:
+    """Give A (3, 3) when its piercing point is known and its skew is zero.
+
+    With the pixels measured from `centre`, B = diag(1/α_u², 1/α_v², 1): the same constraints,
+    two unknowns. Less is asked of the views, so this start survives noise that the full closed
+    form does not.
+
+    Raises
+    ------
+    DegenerateError
+        The constraints have no solution with positive focal lengths.
+
+    Examples
+    --------
+    >>> R = [[[1, 0, 0], [0, 0.8, 0], [0, 0.6, 5]], [[0.8, 0, 0], [0, 1, 0], [0.6, 0, 5]]]
+    >>> focal_lengths_from_homographies(np.diag([2.0, 2, 1]) @ R).round(9)
+    array([[2., 0., 0.],
+           [0., 2., 0.],
+           [0., 0., 1.]])
+    """
+    middle = points(centre, "centre", 2)
+    if middle.ndim != 1:
+        raise ShapeError(f"centre: expected one point (u0, v0), got {middle.shape}")
+    u0, v0 = middle
+    to_centre = np.array([[1, 0, -u0], [0, 1, -v0], [0, 0, 1]])
+    alpha_u, alpha_v = focal_lengths_from_v(constraints(to_centre @ matrix(H, "H", 3, 3)))
+    return np.array([[alpha_u, 0, u0], [0, alpha_v, v0], [0, 0, 1]])
+
+
+def focal_lengths_from_v(V: npt.ArrayLike) -> tuple[float, float]:
+    """Solve V b = 0 with b = (1/α_u², 0, 1/α_v², 0, 0, 1) for the two focal lengths.
+
+    Raises
+    ------
+    DegenerateError
+        They are not positive.
+
+    Examples
+    --------
+    >>> focal_lengths_from_v([[4, 0, 0, 0, 0, -1], [0, 0, 9, 0, 0, -1]])
+    (2.0, 3.0)
+    """
+    V = rows_of(V)
+    B11, B22 = np.linalg.lstsq(V[:, [0, 2]], -V[:, 5], rcond=None)[0].tolist()
+    if B11 <= 0 or B22 <= 0:
+        raise DegenerateError(_NOT_POSITIVE)
+    return B11**-0.5, B22**-0.5
+
+
+def _six(b: npt.ArrayLike) -> Array:
+    b = points(b, "b", 6)
+    if b.ndim != 1:
+        raise ShapeError(f"b: expected one vector (6,), got {b.shape}")
+    return b
+
+
+def _B(b: npt.ArrayLike) -> Array:
+    B = np.zeros((3, 3))
+    B[B_ROWS, B_COLUMNS] = B[B_COLUMNS, B_ROWS] = _six(b)
+    return B
+
+
+def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
+    """Give the pose G (..., 4, 4) of each view, CRF ← board, from A and H (..., 3, 3).
+
+    λ r1 = A⁻¹ h1 and λ r2 = A⁻¹ h2 with two sizes of λ when there is noise; their mean is
+    taken (erratum E32), with the sign that puts the board in front of the camera (T_z > 0).
+    r3 = r1 × r2, and the SVD gives the rotation nearest to [r1 r2 r3] (erratum E33).
+
+    Raises
+    ------
+    DegenerateError
+        A homography is singular.
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Estimation of extrinsic parameters".
+
+    Examples
+    --------
+    >>> extrinsics(np.eye(3), -7 * np.diag([1.0, 1, 2]))[:3, 3] + 0.0
+    array([0., 0., 2.])
+    """
+    return poses_of(intrinsic_matrix(A), scaled(matrix(H, "H", 3, 3)))
+
+
+def poses_of(A: Array, H: Array) -> Array:
+    """Give what `extrinsics` gives, without a guard: for use inside."""
+    rays = np.linalg.inv(A) @ H  # λ [r1 r2 T]
+    lengths = np.sqrt(np.vecdot(rays.mT, rays.mT))
+    scale = (lengths[..., 0] + lengths[..., 1]) / 2
+    scale = np.where(rays[..., 2, 2] < 0, -scale, scale)
+    rays = rays / scale[..., None, None]
+    r1, r2 = rays[..., :, 0], rays[..., :, 1]
+    G = np.zeros((*H.shape[:-2], 4, 4))
+    r3 = (skew_matrix(r1) @ r2[..., None])[..., 0]
+    G[..., :3, :3] = nearest_rotation(np.stack([r1, r2, r3], axis=-1))
+    G[..., :3, 3], G[..., 3, 3] = rays[..., :, 2], 1
+    return G
+
+
+def radial_distortion(
+    A: npt.ArrayLike, G: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike, *, terms: int = 2
+) -> Array:
+    """Estimate k (terms,) by linear least squares, A and the poses being known: D k = d.
+
+    Parameters
+    ----------
+    A : array_like, shape (3, 3)
+        Intrinsic matrix.
+    G : array_like, shape (..., 4, 4)
+        Poses of the views.
+    W : array_like, shape (..., n, 3)
+        Board points; one set serves all views.
+    m : array_like, shape (..., n, 2)
+        Where the points were seen, in pixels.
+    terms : int
+        How many radial coefficients.
+
+    Raises
+    ------
+    DegenerateError
+        A point does not lie in front of the camera, or the points do not determine k.
+
+    Notes
+    -----
+    Each point gives x̃ (k1 r² + k2 r⁴ + …) = x' − x̃, and so for y, with r the radius of the
+    *ideal* point (x̃, ỹ), as L(r) was defined. The notes print the radius of the observed
+    point; with that, even exact data give wrong coefficients (erratum E34).
+
+    References
+    ----------
+    .. [1] Notes 2b.4, "Estimation of lens distortion parameters".
+
+    Examples
+    --------
+    >>> W = np.array([[0.0, 0, 0], [0.5, 0, 0], [1, 0, 0], [1, 1, 0]])
+    >>> seen = W[:, :2] * (1 - 0.1 * (W**2).sum(-1, keepdims=True))
+    >>> G = np.eye(4)
+    >>> G[2, 3] = 1
+    >>> radial_distortion(np.eye(3), G, W, seen, terms=1).round(12)
+    array([-0.1])
+    """
+    A, G = intrinsic_matrix(A), rigid_motion(G)
+    W, m = points(W, "W", 3), points(m, "m", 2)
+    paired(W, m, ("W", "m"), at_least=1)
+    if not isinstance(terms, int) or terms < 1:
+        raise CvnotesError(f"terms: expected how many coefficients, 1 or more, got {terms!r}")
+    views = equally_many("G, W and m", G.shape[:-2], W.shape[:-2], m.shape[:-2])
+    if 0 in views:
+        raise DegenerateError("need at least one view, got none")
+    return radial_from_poses(A, G, W, m, terms)
+
+
+def radial_from_poses(A: Array, G: Array, W: Array, m: Array, terms: int) -> Array:
+    """Solve `radial_distortion` without guards of the arrays: for use inside."""
+    M = W @ G[..., :3, :3].mT + G[..., None, :3, 3]
+    if not (M[..., 2] > 0).all():
+        raise DegenerateError("a board point does not lie in front of the camera")
+    ideal = M[..., :2] / M[..., 2:]
+    r2 = ideal[..., :1] ** 2 + ideal[..., 1:] ** 2
+    d = np.stack(ideal_columns(A, m), axis=-1) - ideal
+    D = np.empty((*d.shape, terms))
+    power = ideal
+    for i in range(terms):
+        power = power * r2
+        D[..., i] = power
+    k, _, rank, _ = np.linalg.lstsq(D.reshape(-1, terms), d.ravel(), rcond=None)
+    if rank < terms:
+        raise DegenerateError(f"the points do not determine {terms} coefficients: vary the radius")
+    return np.asarray(k)

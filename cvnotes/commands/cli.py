@@ -1,0 +1,108 @@
+"""The ``cvnotes`` command.
+
+Exit codes: 0 done, 1 cannot, 2 wrong usage, 3 written but not reliable, 130 interrupted. Reasons
+go to stderr, one line each; nobody is shown a traceback.
+"""
+
+import argparse
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NoReturn
+
+from cvnotes import __version__
+
+_EXAMPLES = """\
+examples:
+  cvnotes lab
+  cvnotes target --corners 9x6 --square 25 --out board.pdf
+  cvnotes calibrate photos/ --corners 9x6 --square 25 --out result/
+  cvnotes undistort photos/ --camera result/calibration.json --out straight/
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line."""
+
+    def error(self, message: str) -> NoReturn:
+        from cvnotes.commands.console import complain
+
+        complain(self.prog.removeprefix("cvnotes").strip(), f"{message} (see {self.prog} --help)")
+        sys.exit(2)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Describe the command and its sub-commands."""
+    from cvnotes.commands import calibrate, grade, lab, target, undistort
+
+    top = _Parser(
+        prog="cvnotes",
+        description="A course on camera calibration, and its tools for your own photographs.",
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    top.add_argument("-V", "--version", action="version", version=f"cvnotes {__version__}")
+    commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for module in (lab, target, calibrate, undistort, grade):
+        module.add_parser(commands)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; gives its exit code."""
+    command = ""
+    try:
+        with _termination_as_interrupt():
+            args = parser().parse_args(arguments)
+            command = args.command
+            code: int = args.run(args)
+            sys.stdout.flush()  # a full disk behind stdout shows itself here
+            return code
+    except KeyboardInterrupt:
+        return 130
+    except Exception as error:
+        return _cannot(command, error)
+
+
+@contextmanager
+def _termination_as_interrupt() -> Iterator[None]:
+    """Let SIGTERM, or closing the terminal, end the command as Ctrl-C does: cleaned up."""
+
+    def interrupt(*_: Any) -> NoReturn:
+        raise KeyboardInterrupt
+
+    if threading.current_thread() is not threading.main_thread():
+        yield  # signals are the main thread's business
+        return
+    names = {"SIGTERM", "SIGHUP"} & set(dir(signal))  # there is no SIGHUP on Windows
+    before = {number: signal.getsignal(number) for number in (getattr(signal, n) for n in names)}
+    try:
+        for number, handler in before.items():
+            if handler != signal.SIG_IGN:  # nohup
+                signal.signal(number, interrupt)
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _cannot(command: str, error: Exception) -> int:
+    """Say in one line why the command could not; gives the exit code."""
+    from cvnotes.base import CvnotesError
+    from cvnotes.commands.console import complain, stop_printing
+
+    if isinstance(error, OSError):
+        stop_printing()  # perhaps it was stdout that failed; it would fail again at the end
+    if isinstance(error, CvnotesError | OSError):
+        complain(command, str(error))
+    elif isinstance(error, MemoryError):
+        complain(command, "there is not enough memory for this")
+    else:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{Path(place.filename).name}, line {place.lineno}"
+        complain(command, f"a mistake of ours, please report it: {error!r} in {where}")
+    return 1

@@ -1,0 +1,1 @@
+"""Random cameras and small pictures for the exercises."""

@@ -1,0 +1,1 @@
+"""The tutor: tries an answer safely, judges it, and names the mistake."""

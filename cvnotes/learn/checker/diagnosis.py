@@ -1,0 +1,114 @@
+"""Recognising a mistake by what it gives."""
+
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from cvnotes.base import Array, CvnotesError
+from cvnotes.learn.checker.equality import TOLERANCE, Same, tolerance
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception
+from cvnotes.learn.checker.outcome import Outcome
+
+Tried = tuple[Case, Outcome]
+
+
+def mistake_behind(
+    exercise: Exercise, tried: Sequence[Tried], failing: Sequence[Case]
+) -> Misconception | None:
+    """Find the mistake that gives what the student's function gave.
+
+    Parameters
+    ----------
+    exercise : Exercise
+        What was asked.
+    tried : sequence of (Case, Outcome)
+        All cases, with what came of them.
+    failing : sequence of Case
+        Those on which the answer is wrong.
+
+    Returns
+    -------
+    Misconception or None
+        The first that agrees with every outcome, and is wrong where the student is.
+    """
+    wrong = {id(case) for case in failing}
+    for mistake in exercise.misconceptions:
+        same = mistake.same or exercise.same
+        for gives in (mistake.gives, *mistake.variants):
+            if _explains(exercise, gives, same, tried, wrong):
+                return mistake
+    return None
+
+
+def _explains(
+    exercise: Exercise,
+    gives: Callable[..., Any],
+    same: Same,
+    tried: Sequence[Tried],
+    wrong: set[int],
+) -> bool:
+    """Tell whether a mistake gives the same, wherever it gives anything, and is wrong there too."""
+    compared = 0
+    for case, outcome in tried:
+        given = what_it_gives(gives, case.args)
+        if given is None:
+            continue
+        if outcome.value is None or not same(outcome.value, given, tolerance(outcome.dtype)):
+            return False
+        if id(case) in wrong and exercise.same(given, case.right, TOLERANCE):
+            return False
+        compared += 1
+    return compared > 0
+
+
+def what_it_gives(function: Callable[..., Any], args: tuple[Any, ...]) -> Array | None:
+    """Give the result of a mistake as numbers; None where it has none.
+
+    Examples
+    --------
+    >>> what_it_gives(np.linalg.inv, (np.zeros((2, 2)),)) is None
+    True
+    """
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            given = function(*(np.array(x) if isinstance(x, np.ndarray) else x for x in args))
+        except (np.linalg.LinAlgError, CvnotesError):
+            return None
+    return None if given is None else np.asarray(given, dtype=np.float64)
+
+
+def misreadings(pixel: Callable[[], Array], size: tuple[int, int]) -> tuple[Misconception, ...]:
+    """Give what comes out if a pixel (2,) of a picture of size (width, height) is misread.
+
+    Examples
+    --------
+    >>> slips = misreadings(lambda: np.array([600.0, 20.0]), (640, 480))
+    >>> {slip.name: slip.gives().tolist() for slip in slips}["v counted from below"]
+    [600.0, 459.0]
+    """
+    last = np.array(size) - 1.0
+    return (
+        Misconception(
+            "v before u",
+            "You gave row before column: pixels are (u, v).",
+            lambda: pixel()[::-1],
+        ),
+        Misconception(
+            "v counted from below",
+            "v counts from the top of the picture downwards.",
+            lambda: np.array([pixel()[0], last[1] - pixel()[1]]),
+        ),
+        Misconception(
+            "u counted from the right",
+            "u counts from the left.",
+            lambda: np.array([last[0] - pixel()[0], pixel()[1]]),
+        ),
+        Misconception(
+            "measured from the middle",
+            "You measured from the middle of the picture; pixel (0, 0) is at its top left.",
+            lambda: pixel() - last / 2,
+        ),
+    )

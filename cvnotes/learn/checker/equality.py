@@ -1,0 +1,103 @@
+"""When two answers are equal, as mathematics has it: (answer, right, tolerance) → bool."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from cvnotes.base import Array
+
+Same = Callable[[Array, Array, float], bool]
+
+TOLERANCE = 1e-6
+# Single precision is a fair choice; its rounding must not count as a mistake.
+SINGLE_TOLERANCE = 2e-4
+
+
+def tolerance(dtype: str) -> float:
+    """Give by how much numbers may differ that were of a type.
+
+    Examples
+    --------
+    >>> tolerance("float64")
+    1e-06
+    """
+    return SINGLE_TOLERANCE if dtype in ("float32", "float16") else TOLERANCE
+
+
+def close(answer: Array, right: Array, tolerance: float) -> bool:
+    """Tell whether two answers are equal, relative to their largest entry; NaN equals NaN.
+
+    Examples
+    --------
+    >>> close(np.array([1.0, np.nan]), np.array([1.0, np.nan]), 1e-6)
+    True
+    """
+    finite = np.isfinite(right)
+    if answer.shape != right.shape or not np.array_equal(np.isfinite(answer), finite):
+        return False
+    if not np.array_equal(answer[~finite], right[~finite], equal_nan=True):
+        return False
+    scale = float(np.abs(right[finite]).max(initial=0.0)) or 1e-3
+    return bool((np.abs(answer[finite] - right[finite]) <= tolerance * scale).all())
+
+
+def up_to_scale(answer: Array, right: Array, tolerance: float) -> bool:
+    """Tell whether two arrays differ only by a factor.
+
+    Examples
+    --------
+    >>> up_to_scale(np.array([2.0, 4.0]), np.array([-1.0, -2.0]), 1e-6)
+    True
+    """
+    if answer.shape != right.shape or not (np.isfinite(answer).all() and np.isfinite(right).all()):
+        return False
+    norms = np.linalg.norm(answer), np.linalg.norm(right)
+    if min(norms) == 0:
+        return bool(max(norms) == 0)
+    a, b = answer / norms[0], right / norms[1]
+    return bool(min(np.abs(a - b).max(), np.abs(a + b).max()) <= tolerance)
+
+
+def up_to_signs(answer: Array, right: Array, tolerance: float) -> bool:
+    """Tell whether two arrays differ only by a factor and by the signs of their entries.
+
+    Each singular vector has a sign of its own, so a column that cuts across them has many.
+
+    Examples
+    --------
+    >>> up_to_signs(np.array([2.0, -4.0]), np.array([1.0, 2.0]), 1e-6)
+    True
+    """
+    return up_to_scale(np.abs(answer), np.abs(right), tolerance)
+
+
+def within(distance: float) -> Same:
+    """Compare numbers that were read off: equal if no farther apart than a distance.
+
+    Examples
+    --------
+    >>> within(10.0)(np.array([320.0, 96.0]), np.array([325.0, 92.0]), 1e-6)
+    True
+    """
+
+    def same(answer: Array, right: Array, _: float) -> bool:
+        return answer.shape == right.shape and bool(np.linalg.norm(answer - right) <= distance)
+
+    return same
+
+
+def within_part(part: float) -> Same:
+    """Compare quantities that were read off: equal if no farther apart than a part of the size.
+
+    Examples
+    --------
+    >>> within_part(0.05)(np.array(9600.0), np.array(10_000.0), 1e-6)
+    True
+    """
+
+    def same(answer: Array, right: Array, _: float) -> bool:
+        return answer.shape == right.shape and bool(
+            np.linalg.norm(answer - right) <= part * np.linalg.norm(right)
+        )
+
+    return same

@@ -1,0 +1,169 @@
+"""From what a student's function gave to a report: the answer is worked out here, afterwards."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from cvnotes.base import Array, CvnotesError
+from cvnotes.learn.checker.diagnosis import Tried, mistake_behind
+from cvnotes.learn.checker.equality import tolerance, up_to_scale
+from cvnotes.learn.checker.exercise import Case, Exercise, Property
+from cvnotes.learn.checker.outcome import Outcome
+from cvnotes.learn.checker.remarks import other_shape, remarks, trouble
+from cvnotes.learn.checker.report import OPEN, RIGHT, WRONG, Report
+
+
+def judge(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
+    """Compare what came back with what must be true.
+
+    Parameters
+    ----------
+    exercise : Exercise
+        What was asked.
+    outcomes : sequence of Outcome
+        What `ask` gave for the same seed.
+    seed : int
+        Of the random cases.
+
+    Returns
+    -------
+    Report
+        Passed only if every property holds on every case.
+    """
+    if any(outcome.kind == "unfinished" for outcome in outcomes):
+        return Report(exercise.name, OPEN, f"{_sentence(exercise.title)} {hint_at(exercise)}")
+    if any(outcome.kind == "result" for outcome in outcomes):
+        return Report(exercise.name, WRONG, _not_a_function(exercise))
+    rest = list(outcomes)
+    for part in exercise.parts:
+        n = len(part.inputs(seed))
+        report = judge(part, rest[:n], seed)
+        if not report.passed:
+            return replace(
+                report, exercise=exercise.name, message=f"Step {part.name}: {report.message}"
+            )
+        del rest[:n]
+    cases = list(exercise.solved_cases(seed))
+    if len(rest) != len(cases):
+        raise CvnotesError(f"{exercise.name}: {len(rest)} outcomes for {len(cases)} cases")
+    tried = list(zip(cases, rest, strict=True))
+    holding, failing = _sorted(exercise, tried)
+    if not failing:
+        sentences = tuple(p.sentence for p in exercise.properties)
+        return Report(exercise.name, RIGHT, "Well done.", holds=sentences)
+    return _wrong(exercise, tried, holding, failing)
+
+
+def _sentence(title: str) -> str:
+    return title if title.endswith(("?", ".")) else f"{title}."
+
+
+def hint_at(exercise: Exercise) -> str:
+    """Say where help is to be had."""
+    return f'hint("{exercise.name}") helps.'
+
+
+Failing = list[tuple[str, str, Case, Outcome]]
+
+
+def _sorted(exercise: Exercise, tried: list[Tried]) -> tuple[tuple[str, ...], Failing]:
+    """Sort properties into those that hold, and what fails: (property, why, case, outcome)."""
+    failing: Failing = [
+        ("", why, case, outcome)
+        for case, outcome in tried
+        if (why := _unusable(exercise, case, outcome))
+    ]
+    holding: list[str] = []
+    for p in exercise.properties:
+        bad = [(c, o) for c, o in tried if c.about == p.about and not _holds(exercise, p, c, o)]
+        if bad:
+            failing += [(p.sentence, "", case, outcome) for case, outcome in bad]
+        else:
+            holding.append(p.sentence)
+    return tuple(holding), failing
+
+
+def _unusable(exercise: Exercise, case: Case, outcome: Outcome) -> str:
+    """Say what keeps an outcome from being compared; empty if nothing does."""
+    if outcome.value is None:
+        return trouble(outcome, exercise)
+    if outcome.value.shape != case.right.shape:
+        return other_shape(outcome.value.shape, case.right.shape)
+    if outcome.changed:
+        name = exercise.arguments[outcome.changed[0]]
+        return (
+            f"Your function changes its argument {name}, which belongs to whoever calls it. "
+            f"Work on a copy: {name} = np.array({name}, dtype=float)."
+        )
+    return ""
+
+
+def _holds(exercise: Exercise, p: Property, case: Case, outcome: Outcome) -> bool:
+    answer = outcome.value
+    if answer is None or answer.shape != case.right.shape:
+        return False
+    if p.holds is None:
+        return exercise.same(answer, case.right, tolerance(outcome.dtype))
+    with np.errstate(all="ignore"):
+        try:
+            return bool(p.holds(answer, case))
+        except (np.linalg.LinAlgError, CvnotesError):  # NaN where there should be none
+            return False
+
+
+def _wrong(
+    exercise: Exercise, tried: list[Tried], holding: tuple[str, ...], failing: Failing
+) -> Report:
+    alike = [x for x in failing if x[0] == failing[0][0]]
+    _, why, case, outcome = min(alike, key=lambda x: x[2].size)
+    sentences = [sentence for sentence, *_ in failing if sentence]
+    mistake = mistake_behind(exercise, tried, [x[2] for x in failing]) if sentences else None
+    if mistake is not None:
+        why = mistake.sentence
+    elif not why:
+        why = f"Look at what does not hold; {hint_at(exercise)}"
+    shown = exercise.answer == "function"
+    compared = shown and not outcome.changed
+    came = any(outcome.value is not None for _, outcome in tried)
+    return Report(
+        exercise.name,
+        WRONG,
+        why,
+        misconception=mistake.name if mistake else None,
+        holds=holding,
+        fails=sentences[0] if sentences and came else "",
+        counterexample=dict(zip(exercise.arguments, case.args, strict=True)) if shown else {},
+        yours=_as_given(outcome.value, outcome) if compared else None,
+        wanted=_as_given(_scaled(exercise, case.right, outcome), outcome) if compared else None,
+        remarks=() if mistake else remarks(exercise, outcome, case),
+        printed=outcome.printed,
+    )
+
+
+def _as_given(x: Any, outcome: Outcome) -> Any:
+    """Show truth values as such, where the student gave such."""
+    return x.astype(bool) if outcome.dtype == "bool" and np.isin(x, (0, 1)).all() else x
+
+
+def _scaled(exercise: Exercise, right: Array, outcome: Outcome) -> Array:
+    """Give a right answer of the student's own scale and sign where these are free."""
+    given = outcome.value
+    if exercise.same is not up_to_scale or given is None or given.shape != right.shape:
+        return right
+    if np.isclose(given.flat[-1], 1) and not np.isclose(right.flat[-1], 0):
+        return right / right.flat[-1]
+    sign = 1 if np.vdot(given, right) >= 0 else -1
+    factor = sign * np.linalg.norm(given) / np.linalg.norm(right)
+    return right * factor if np.isfinite(factor) and factor != 0 else right
+
+
+def _not_a_function(exercise: Exercise) -> str:
+    if exercise.answer == "steps":
+        names = ", ".join(f'"{part.name}": my_{part.name}' for part in exercise.parts)
+        return f"Hand over your steps by name: {{{names}}}."
+    return (
+        "Hand over the function itself, without brackets, so that it can be tried on other "
+        f'inputs: check("{exercise.name}", my_{exercise.name}).'
+    )

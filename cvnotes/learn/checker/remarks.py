@@ -1,0 +1,91 @@
+"""The checker's sentences about answers that cannot be compared."""
+
+import numpy as np
+
+from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.exercise import Case, Exercise
+from cvnotes.learn.checker.outcome import Outcome
+
+_RAISED = {
+    "RecursionError": "Your function calls itself without end. Give it a case that ends it.",
+    "SystemExit": "Your function tries to end the program. Let it return its answer instead.",
+    "KeyboardInterrupt": "Your function was interrupted. Run the check again.",
+    "EOFError": "Your function waits for the keyboard. Let it use its arguments only.",
+}
+
+
+def trouble(outcome: Outcome, exercise: Exercise) -> str:
+    """Say kindly and exactly what happened instead of an answer."""
+    match outcome.kind:
+        case "none":
+            return (
+                "Your function gives None: is a return missing? Or is a function that it uses "
+                "not solved yet?"
+            )
+        case "text" if exercise.choices:
+            return f"The answer is one of {', '.join(exercise.choices)}; {outcome.words} is none."
+        case "text":
+            return f"The answer is the text {outcome.words}; numbers are wanted."
+        case "late":
+            return (
+                f"Your function was stopped after {outcome.words} seconds: does a loop never end?"
+            )
+        case "memory":
+            return "Your function ran out of memory: is an array much larger than its inputs need?"
+        case "died":
+            return (
+                f"Your function ended its process ({outcome.words}). Nothing else was harmed; "
+                "let it return its answer."
+            )
+        case "raised":
+            name = outcome.words.split(":")[0].split(",")[0]
+            return _RAISED.get(name, f"Your function raised {outcome.words}.")
+        case _:
+            return f"The answer is {outcome.words}; an array of numbers is wanted."
+
+
+def other_shape(given: tuple[int, ...], wanted: tuple[int, ...]) -> str:
+    """Say what is probably wrong with a shape.
+
+    Examples
+    --------
+    >>> other_shape((2, 5), (5, 2))
+    'The answer has shape (2, 5), wanted is (5, 2): points are rows here, so transpose it.'
+    """
+    text = f"The answer has shape {given}, wanted is {wanted}"
+    if given == wanted[::-1]:
+        return f"{text}: points are rows here, so transpose it."
+    if np.prod(given) == np.prod(wanted):
+        return f"{text}: the values may be right, the arrangement is not; see np.reshape."
+    if given[:-1] == wanted[:-1] and given and given[-1] == wanted[-1] + 1:
+        return f"{text}: still homogeneous? Divide by the last coordinate, then leave it out."
+    if given == () and len(wanted) == 1:
+        return f"{text}: one number for all of them; is an axis=1 missing?"
+    if given == wanted[1:]:
+        return f"{text}: only one of several points came back; is the return inside of the loop?"
+    if wanted == () and len(given) > 0:
+        return f"{text}: a single number is wanted."
+    return f"{text}."
+
+
+def remarks(exercise: Exercise, outcome: Outcome, case: Case) -> tuple[str, ...]:
+    """Say what else is striking about an answer that is not right."""
+    found = []
+    answer = outcome.value
+    if answer is not None and np.isnan(answer).any() and not np.isnan(case.right).any():
+        found.append("The answer contains NaN: 0/0, or the root of a negative number?")
+    elif answer is not None and np.isinf(answer).any():
+        found.append("The answer contains infinite values: was something divided by 0?")
+    whole = outcome.dtype.startswith(("int", "uint"))
+    if exercise.answer == "function" and whole and (case.right != np.round(case.right)).any():
+        found.append(
+            f"The answer is made of whole numbers ({outcome.dtype}): what was written into an "
+            "integer array has lost its decimals."
+        )
+    if answer is not None and exercise.same is up_to_scale:
+        found.append("Scale and sign are free: wanted is shown with those of your answer.")
+    if outcome.shares:
+        found.append("The answer is a view of an argument: whoever changes one changes the other.")
+    if "PASSED" in outcome.printed.upper():
+        found.append("What a function prints does not count; what it returns does.")
+    return tuple(found)

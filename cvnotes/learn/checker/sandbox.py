@@ -1,0 +1,196 @@
+"""Running a student's function where it can do no harm.
+
+Where the system can fork, the function runs in a child process: a copy of the notebook's process
+in which it is defined already, nothing has to be pickled, and whatever it breaks dies with the
+child. The child has a limit of time and memory, and only numbers and words come back. Elsewhere
+(Windows, browsers) the function runs in the notebook's own process, where an endless loop in
+Python is interrupted but a crash is a crash; see `run`.
+"""
+
+import contextlib
+import os
+import select
+import signal
+import sys
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from typing import Any
+
+from cvnotes.base import CvnotesError
+from cvnotes.learn.checker.attempt import attempt
+from cvnotes.learn.checker.child_process import work
+from cvnotes.learn.checker.exercise import Exercise
+from cvnotes.learn.checker.in_process import run_here
+from cvnotes.learn.checker.outcome import Outcome, decode
+
+SECONDS = 5.0
+MEGABYTES = 1024
+_MAX_BYTES = 200_000_000
+
+Arguments = tuple[Any, ...]
+
+
+def run(
+    function: Callable[..., Any],
+    arguments: Sequence[Arguments],
+    *,
+    seconds: float = SECONDS,
+    megabytes: int = MEGABYTES,
+) -> list[Outcome]:
+    """Call a function with each of several sets of arguments; nothing it does gets out.
+
+    Parameters
+    ----------
+    function : callable
+        Anything that can be called.
+    arguments : sequence of tuple
+        What to call it with; it is given copies.
+    seconds : float
+        Time for all calls together.
+    megabytes : int
+        Memory that the calls may use beyond what is used already.
+
+    Returns
+    -------
+    list of Outcome
+        One for each set of arguments, also after a crash or an endless loop.
+
+    Notes
+    -----
+    Without fork, what blocks inside of compiled code (``time.sleep``, a huge matrix product, a
+    regular expression) is waited for, memory has no limit, and a crash ends the notebook.
+
+    Examples
+    --------
+    >>> [outcome.value.tolist() for outcome in run(abs, [(-1.0,), (2.0,)])]
+    [1.0, 2.0]
+    >>> run(lambda: sys.exit(), [()])[0].words
+    'SystemExit'
+    """
+    if can_fork():
+        return _run_in_child(function, arguments, seconds, megabytes)
+    return run_here(function, arguments, seconds)
+
+
+@cache
+def can_fork() -> bool:
+    """Tell whether a forked child can calculate here, by trying it once.
+
+    On some systems a library's threads do not survive the fork; the child then hangs or dies.
+    """
+    if not hasattr(os, "fork") or sys.platform in ("emscripten", "wasi", "win32"):
+        return False
+    import numpy as np
+
+    attempt(np.linalg.norm, (np.eye(3),))  # what is imported now, each child has
+    [outcome] = _run_in_child(np.linalg.norm, [(np.eye(3),)], 5.0, MEGABYTES)
+    return outcome.kind == "numbers"
+
+
+def _run_in_child(
+    function: Callable[..., Any], arguments: Sequence[Arguments], seconds: float, megabytes: int
+) -> list[Outcome]:
+    reading, writing = os.pipe()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that notebooks have threads is known, and considered
+        child = os.fork()
+    if child == 0:
+        try:
+            os.close(reading)
+            work(function, arguments, writing, seconds, megabytes)
+        finally:
+            os._exit(0)
+    try:
+        os.close(writing)
+        lines, late = _read(reading, len(arguments), seconds)
+    finally:
+        os.close(reading)
+        status = _end(child)
+    outcomes = [_decoded(line) for line in lines]
+    rest = Outcome("late", words=f"{seconds:g}") if late else Outcome("died", words=_why(status))
+    return outcomes + [rest] * (len(arguments) - len(outcomes))
+
+
+def _read(reading: int, n: int, seconds: float) -> tuple[list[bytes], bool]:
+    """Read up to n lines until the time is over; tells whether it was."""
+    buffer = bytearray()
+    for chunk in _chunks(reading, time.monotonic() + seconds):
+        if chunk is None or len(buffer) > _MAX_BYTES:
+            return bytes(buffer).split(b"\n")[:-1][:n], True
+        buffer += chunk
+        if b"\n" in chunk and buffer.count(b"\n") >= n:
+            break
+    return bytes(buffer).split(b"\n")[:-1][:n], False
+
+
+def _chunks(reading: int, deadline: float) -> Iterator[bytes | None]:
+    """Yield what arrives until the other end is closed; None when the time is over."""
+    poll = select.poll()
+    poll.register(reading, select.POLLIN)
+    while (left := deadline - time.monotonic()) > 0:
+        if poll.poll(1000 * left):
+            chunk = os.read(reading, 1 << 16)
+            if not chunk:
+                return
+            yield chunk
+    yield None
+
+
+def _end(child: int) -> int:
+    """End the child and whatever it started in its group; gives its exit status."""
+    with contextlib.suppress(OSError):
+        os.setpgid(child, child)  # if it has not come to do so itself
+    ended, status = os.waitpid(child, os.WNOHANG)
+    with contextlib.suppress(OSError):
+        os.killpg(child, signal.SIGKILL)
+    if not ended:
+        _, status = os.waitpid(child, 0)
+    return status
+
+
+def _why(status: int) -> str:
+    if os.WIFSIGNALED(status):
+        return signal.Signals(os.WTERMSIG(status)).name
+    return f"exit code {os.waitstatus_to_exitcode(status)}"
+
+
+def _decoded(line: bytes) -> Outcome:
+    try:
+        return decode(line)
+    except CvnotesError:
+        return Outcome("died", words="unreadable answer")
+
+
+def ask(exercise: Exercise, answer: Any, seed: int, **limits: Any) -> list[Outcome]:
+    """Try an answer on the cases of an exercise, without judging.
+
+    Parameters
+    ----------
+    exercise : Exercise
+        What is asked.
+    answer : any
+        The function, value or steps that the student hands over.
+    seed : int
+        Of the random cases.
+    **limits
+        Of time and memory; see `cvnotes.learn.checker.sandbox.run`.
+
+    Returns
+    -------
+    list of Outcome
+        One for each case, of each part first; a single one if there was nothing to try.
+    """
+    if exercise.answer == "value":
+        value = exercise.number_of(answer) if isinstance(answer, str) else answer
+        return run(lambda: value, [()], **limits)
+    if exercise.assemble is not None and isinstance(answer, dict):
+        parts = [ask(part, answer.get(part.name), seed, **limits) for part in exercise.parts]
+        whole = run(exercise.assemble(answer), exercise.inputs(seed), **limits)
+        return [outcome for outcomes in [*parts, whole] for outcome in outcomes]
+    if exercise.assemble is not None or not callable(answer):
+        [given] = run(lambda: answer, [()], **limits)
+        nothing = given.kind in ("none", "unfinished")
+        return [Outcome("unfinished" if nothing else "result")]
+    return run(answer, exercise.inputs(seed), **limits)

@@ -1,0 +1,1 @@
+"""The class: notebooks run each in its own process, and marked."""

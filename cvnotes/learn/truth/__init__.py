@@ -1,0 +1,1 @@
+"""An estimate held against the camera that took the pictures."""

@@ -1,0 +1,141 @@
+"""The running example of the course: one camera, one board, twelve pictures, and real corners.
+
+Everything is read from the folder ``data/`` of the repository, which ``tools/make_data.py`` makes;
+``data/README.md`` says what each file is.
+"""
+
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, FileError
+from cvnotes.camera import Camera
+from cvnotes.files import read_camera, read_photo
+from cvnotes.targets import Chessboard
+
+DATA = Path(__file__).resolve().parents[2] / "data"
+
+
+class RealCorners(NamedTuple):
+    """Corners measured in real photographs of a board, by a pair of cameras."""
+
+    board: Chessboard
+    size: tuple[int, int]
+    names: tuple[str, ...]  # of the 13 pairs of photographs
+    left: Array  # (13, 54, 2) px
+    right: Array  # (13, 54, 2) px
+
+
+def camera() -> Camera:
+    """Give the course's camera, with its own frame as the WRF.
+
+    Examples
+    --------
+    >>> camera().A
+    array([[800.,   0., 325.],
+           [  0., 804., 238.],
+           [  0.,   0.,   1.]])
+    """
+    return read_camera(_file("camera.json"))
+
+
+def board() -> Chessboard:
+    """Give the course's board: 9 × 6 inner corners, 25 mm apart.
+
+    Examples
+    --------
+    >>> board().corners
+    (9, 6)
+    """
+    return Chessboard((9, 6), 25.0)
+
+
+def poses() -> Array:
+    """Give the pose of the board in each of the twelve pictures, (12, 4, 4), CRF ← board.
+
+    Examples
+    --------
+    >>> poses().shape
+    (12, 4, 4)
+    """
+    return np.array(_json("views.json")["poses"])
+
+
+def photos() -> list[npt.NDArray[np.uint8]]:
+    """Give the twelve pictures, grey (480, 640).
+
+    Examples
+    --------
+    >>> len(photos())
+    12
+    """
+    return [np.asarray(read_photo(_file(f"views/view_{i:02d}.png")).image) for i in range(12)]
+
+
+def exact_corners() -> Array:
+    """Give the true corners of the twelve pictures, (12, 54, 2), px.
+
+    Examples
+    --------
+    >>> bool(np.allclose(exact_corners()[0], camera().moved(poses()[0]).project(board().points)))
+    True
+    """
+    return np.array(_json("views.json")["exact_corners"])
+
+
+def measured_corners() -> Array:
+    """Give the corners that `find_corners` finds in the twelve pictures, (12, 54, 2), px.
+
+    Examples
+    --------
+    >>> bool(np.abs(measured_corners() - exact_corners()).max() < 0.2)
+    True
+    """
+    return np.array(_json("views.json")["measured_corners"])
+
+
+def real_corners() -> RealCorners:
+    """Give the corners that `find_corners` finds in 13 real pairs of photographs.
+
+    Examples
+    --------
+    >>> real_corners().left.shape
+    (13, 54, 2)
+    """
+    stored = _json("real_corners.json")
+    return RealCorners(
+        Chessboard(tuple(stored["corners"]), stored["square"]),
+        tuple(stored["size"]),
+        tuple(stored["names"]),
+        np.array(stored["left"]),
+        np.array(stored["right"]),
+    )
+
+
+def stereo_rig() -> tuple[Camera, Camera]:
+    """Give the course's stereo pair: the course's camera, and one beside it.
+
+    Examples
+    --------
+    >>> left, right = stereo_rig()
+    >>> float(np.linalg.norm(right.centre - left.centre).round(6))
+    100.0
+    """
+    return read_camera(_file("stereo_left.json")), read_camera(_file("stereo_right.json"))
+
+
+def _file(name: str) -> Path:
+    path = DATA / name
+    if not path.exists():
+        raise FileError(
+            f"data/{name} is missing: the course's data come with a clone of the repository "
+            "(python tools/make_data.py makes them again)"
+        )
+    return path
+
+
+def _json(name: str) -> dict[str, Any]:
+    return dict(json.loads(_file(name).read_text()))

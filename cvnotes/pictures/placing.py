@@ -1,0 +1,114 @@
+"""Hold a target so that a camera sees it: turned to the camera, all of it inside the picture."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, DegenerateError, points, rotation
+from cvnotes.camera import Camera, move, pose
+from cvnotes.pictures.faces import Target
+
+_ROOM = 4.0  # pixels kept free along the border of the picture
+
+
+def facing(target: Target) -> Array:
+    """Give the rotation (3, 3), CRF ← target, that turns the mean of all faces to the camera.
+
+    Raises
+    ------
+    DegenerateError
+        The faces look in opposite directions.
+
+    Examples
+    --------
+    >>> from cvnotes.targets import Chessboard, TwoPlanes
+    >>> facing(Chessboard((9, 6)))
+    array([[1., 0., 0.],
+           [0., 1., 0.],
+           [0., 0., 1.]])
+    >>> (facing(TwoPlanes()) @ [1, 0, -1]).round(3) + 0.0  # out of the fold, to the camera
+    array([ 0.   ,  0.   , -1.414])
+    """
+    z = np.sum([G[:3, 2] for G, _ in target.faces], axis=0)
+    x = np.cross(target.faces[0][0][:3, 1], z)
+    if np.linalg.norm(x) < 1e-6:
+        raise DegenerateError("the faces of the target look in opposite directions")
+    x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z])
+
+
+def hold_at(
+    target: Target, camera: Camera, R: npt.ArrayLike, aim: npt.ArrayLike, farther: float = 1.0
+) -> Array:
+    """Give the pose G (4, 4) of a target seen at pixel `aim`, as large as the picture allows.
+
+    Parameters
+    ----------
+    target : Target
+        Anything with ``faces``.
+    camera : Camera
+        Who looks; its own pose does not matter.
+    R : array_like, shape (3, 3)
+        How the target is turned, CRF ← target.
+    aim : array_like, shape (2,)
+        Where the middle of the target is to be seen.
+    farther : float
+        Factor on the distance.
+
+    Raises
+    ------
+    DegenerateError
+        At no distance do all squares lie inside the picture, or the lens shows nothing there.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera, board = Camera(intrinsics(800, 800, 320, 240)), Chessboard((9, 6), 25.0)
+    >>> G = hold_at(board, camera, np.eye(3), [320, 240])
+    >>> camera.moved(G).project(board.points[[0, -1]]).round()
+    array([[ 70.,  83.],
+           [570., 397.]])
+    """
+    R, aim, outline = rotation(R), points(aim, "aim", 2), _outline(target)
+    middle = (outline.min(axis=0) + outline.max(axis=0)) / 2
+    ray = np.append(camera.ideal(aim), 1.0)
+    if not np.isfinite(ray).all():
+        raise DegenerateError(f"aim: pixel {aim.tolist()} is beyond the reach of the lens")
+    half = (np.array(camera.size) - 1) / 2
+    nearest = np.linalg.norm(outline - middle, axis=1).max()
+    for distance in nearest * 1.03 ** np.arange(200):
+        m = camera.moved(pose(R, distance * ray - R @ middle)).project(outline)
+        if (np.abs(m - half) <= half - _ROOM).all():  # never true for NaN
+            return pose(R, farther * distance * ray - R @ middle)
+    raise DegenerateError(
+        f"the target does not fit into a picture of {camera.size[0]}×{camera.size[1]} pixels"
+    )
+
+
+def every_face_seen(target: Target, G: Array) -> bool:
+    """Tell whether in pose G the camera sees each face from its printed side, by 15° at least.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import look_at
+    >>> from cvnotes.targets import TwoPlanes
+    >>> every_face_seen(TwoPlanes(), look_at([300, 0, -300], [0, 0, 0]))
+    True
+    >>> every_face_seen(TwoPlanes(), look_at([0, 0, -600], [0, 0, 0]))  # along the side face
+    False
+    """
+    for world_from_board, board in target.faces:
+        face = G @ world_from_board
+        middle = move(face, board.points.mean(axis=0))
+        if face[:3, 2] @ middle < np.sin(np.radians(15)) * np.linalg.norm(middle):
+            return False
+    return True
+
+
+def _outline(target: Target) -> Array:
+    """Points (m, 3) around the outer squares of all faces, dense enough for curved images."""
+    t = np.linspace(0, 1, 9)
+    around = np.concatenate([np.stack([t, 0 * t], -1), np.stack([0 * t, t], -1)])
+    around = np.column_stack([np.concatenate([around, 1 - around]), np.zeros(4 * len(t))])
+    faces = [(G, np.array([*board.squares, 0]), board.square) for G, board in target.faces]
+    return np.concatenate([move(G, (around * n - [1, 1, 0]) * side) for G, n, side in faces])

@@ -1,0 +1,143 @@
+"""From the rays through a pixel to the light on it, and to its depth."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, CvnotesError, InputTypeError, target_size
+from cvnotes.camera import Camera, move
+from cvnotes.pictures.antialiasing import (
+    TILE,
+    changing,
+    crossed,
+    in_tiles,
+    out_of_tiles,
+    pixel_centres,
+    tile_order,
+    within_pixel,
+)
+from cvnotes.pictures.meshes import Scene
+from cvnotes.pictures.raycast import first_hits
+from cvnotes.pictures.surfaces import Surfaces
+
+_PIXELS = 2048  # looked at closely at a time
+
+
+def render_scene(
+    scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "auto"
+) -> npt.NDArray[np.uint8]:
+    """Take a picture of a scene.
+
+    For noise, blur or JPEG hand `radiance` to `cvnotes.pictures.exposure.expose`.
+
+    Parameters
+    ----------
+    scene : Scene
+        Triangles in the WRF.
+    camera : Camera
+        The pixel that shows a vertex is ``camera.project(scene.vertices)``.
+    samples : int
+        Rays through each pixel in which something changes.
+    engine : {"auto", "own", "embree"}
+        See `cvnotes.pictures.raycast.first_hits`.
+
+    Returns
+    -------
+    ndarray of uint8, shape (height, width, 3)
+        Red, green, blue. Pixels beyond the lens's validity are black.
+
+    References
+    ----------
+    .. [1] Notes 2b.3, "Image Formation Flow", read from the pixel to the world.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.pictures.meshes import box
+    >>> from cvnotes.camera import look_at
+    >>> pose = look_at([3, -2, -5], [0, 0, 0])
+    >>> camera = Camera(intrinsics(80, 80, 31.5, 23.5), pose, size=(64, 48))
+    >>> render_scene(box((-1, 1), (-1, 1), (-1, 1)), camera).shape
+    (48, 64, 3)
+    """
+    light = radiance(scene, camera, samples=samples, engine=engine)
+    return np.asarray(np.rint(light.clip(0, 255)), dtype=np.uint8)
+
+
+def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "auto") -> Array:
+    """Give the mean light on each pixel, on the scale of grey levels, unrounded.
+
+    Parameters are those of `render_scene`.
+
+    Returns
+    -------
+    ndarray, shape (height, width, 3)
+        Red, green, blue; 255 is white, lamps are brighter.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.pictures.meshes import box
+    >>> lamp = box((-1, 1), (-1, 1), (3, 4), (2.0, 2.0, 2.0))
+    >>> bool(radiance(lamp, Camera(intrinsics(80, 80, 32, 24), size=(64, 48))).max() > 255)
+    True
+    """
+    _guard(scene, camera, samples)
+    # 1. one ray through the middle of each pixel
+    surfaces = Surfaces.seen_by(camera, scene)
+    middle = pixel_centres(camera.size)
+    xy = camera.ideal(middle)
+    colour, square = surfaces.look(in_tiles(xy), engine)
+    signature = np.moveaxis(np.concatenate([255 * colour, square]), 0, -1)
+    # 2. many, where a colour or a square changes or an edge passes
+    busy = changing(out_of_tiles(signature, camera.size))
+    busy |= crossed(camera, move(camera.G, scene.vertices)[scene.edges], xy)
+    picture = out_of_tiles(np.moveaxis(colour, 0, -1), camera.size)
+    picture[busy] = _look_closely(surfaces, camera, middle[busy], samples, engine)
+    return 255 * picture
+
+
+def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:
+    """Give the depth z in the CRF of what each pixel's middle shows.
+
+    Returns
+    -------
+    ndarray, shape (height, width)
+        In the unit of the scene; NaN where there is nothing, or where the lens model ends.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.pictures.meshes import quads
+    >>> wall = quads([[-9, -9, 5], [9, -9, 5], [9, 9, 5], [-9, 9, 5]], [[0, 1, 2, 3]], (1, 1, 1))
+    >>> float(depth_map(wall, Camera(intrinsics(80, 80, 32, 24), size=(64, 48)))[0, 0])
+    5.0
+    """
+    _guard(scene, camera)
+    xy = in_tiles(camera.ideal(pixel_centres(camera.size)))
+    hits = first_hits(move(camera.G, scene.vertices)[scene.triangles], xy, engine=engine)
+    return out_of_tiles(hits.depth, camera.size)
+
+
+def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
+    if not isinstance(scene, Scene):
+        raise InputTypeError(
+            f"scene: expected a Scene, got {type(scene).__name__}; "
+            "cvnotes.pictures.scenes.target_scene makes one of a target"
+        )
+    if not isinstance(camera, Camera):
+        raise InputTypeError(f"camera: expected a Camera, got {type(camera).__name__}")
+    target_size(camera.size)
+    if not isinstance(samples, int) or samples < 1:
+        raise CvnotesError(f"samples: expected a whole number of rays, at least 1, got {samples!r}")
+
+
+def _look_closely(surfaces: Surfaces, camera: Camera, m: Array, samples: int, engine: str) -> Array:
+    """Give the mean colours (n, 3) that `samples` rays in each of the pixels m (n, 2) see."""
+    out, order, offsets = np.empty((len(m), 3)), tile_order(m), within_pixel(samples)
+    for start in range(0, len(m), _PIXELS):
+        some = order[start : start + _PIXELS]
+        some = np.resize(some, -(-len(some) // TILE) * TILE)  # whole groups; a few twice
+        xy = camera.ideal(m[some, None] + offsets).reshape(-1, TILE * samples, 2)
+        colour, _ = surfaces.look(xy, engine)
+        out[some] = colour.reshape(3, -1, samples).mean(axis=2).T
+    return out

@@ -1,0 +1,229 @@
+"""Whole places: rails, blocks on a plain, a corridor, a room."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.camera import pose, rotation_from_vector
+from cvnotes.pictures.meshes import Scene, Surroundings, box, join, quads
+from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
+
+Span = tuple[float, float]  # from, to
+
+GROUND = 1600.0
+
+_OUTDOORS = Surroundings(
+    (0.90, 0.93, 0.95), (0.36, 0.58, 0.84), haze=200e3, light=(-0.5, -1.0, -0.7), ambient=0.35
+)
+_FAR = 1e6
+
+
+def rails() -> Scene:
+    """Build a straight railway along z, to the horizon.
+
+    The middles of the rail heads are the lines x = ±750, y = 1600. Poles 6 m high stand every
+    25 m along x = −4000.
+
+    Examples
+    --------
+    >>> rails().vertices[:, 1].max()
+    np.float64(1950.0)
+    """
+    ground = _floor((-_FAR, _FAR), 1950, (-_FAR, _FAR), (0.47, 0.55, 0.33))
+    ballast = _floor((-2300, 2300), 1770, (-_FAR, _FAR), (0.56, 0.53, 0.49))
+    # A checker that is one square wide is a row of sleepers, as wide as their gaps.
+    sleepers = _floor((-1300, 1300), 1750, (0, _FAR), ((0.36, 0.29, 0.24), (0.56, 0.53, 0.49)))
+    sleepers = replace(sleepers, uv=sleepers.corners[..., [0, 2]] / (2600, 300) + (0.5, 0))
+    steel = np.full((6, 1, 3), 0.36)
+    steel[4] = 0.80, 0.83, 0.87  # the heads shine
+    pair = [box((x - 35, x + 35), (1600, 1750), (-_FAR, _FAR), steel) for x in (-750, 750)]
+    poles = [
+        box((-4090, -3910), (-4050, 1950), (z - 90, z + 90), (0.42, 0.33, 0.26))
+        for z in range(15_000, 500_000, 25_000)
+    ]
+    return replace(join(ground, ballast, sleepers, *pair, *poles), around=_OUTDOORS)
+
+
+def blocks() -> Scene:
+    """Build three blocks on a plain that reaches to the horizon, for vanishing points.
+
+    All their edges keep to three directions: the vertical, and two level ones that are turned by
+    35° about it, (cos 35°, 0, −sin 35°) and (sin 35°, 0, cos 35°). Tiles are 1 m wide. The first
+    8 vertices are the corners of the block in the middle, 4 m × 5 m × 4 m.
+
+    Examples
+    --------
+    >>> edge = blocks().vertices[1] - blocks().vertices[0]
+    >>> (edge / np.cos(np.deg2rad(35))).round(9)[0]
+    np.float64(4000.0)
+    """
+    turn = rotation_from_vector([0, np.deg2rad(35), 0])
+    sides = [
+        ((0, 4000), (-3400, GROUND), (0, 4000)),
+        ((-7000, -3000), (-1400, GROUND), (3000, 9000)),
+    ]
+    sides += [((4700, 7700), (-400, GROUND), (3000, 6000))]
+    colours = [((0.72, 0.42, 0.30), (0.86, 0.60, 0.45)), ((0.36, 0.50, 0.58), (0.55, 0.68, 0.74))]
+    colours += [((0.70, 0.62, 0.38), (0.87, 0.80, 0.58))]
+    walls = [box(*side, pair, 1000) for side, pair in zip(sides, colours, strict=True)]
+    town = join(*walls).moved(pose(turn, [-2300, 0, 12_500]))
+    ground = _floor((-_FAR, _FAR), GROUND, (-_FAR, _FAR), (0.62, 0.60, 0.53))
+    return replace(join(town, ground), around=_OUTDOORS)
+
+
+def corridor() -> Scene:
+    """Build a corridor 2.4 m wide and 30 m long, with tiles of 600 mm, handrails and doors.
+
+    The first 8 vertices are its corners. The handrails run along x = ±1120, y = 700.
+
+    Examples
+    --------
+    >>> corridor().vertices[:8].max(axis=0)
+    array([ 1200.,  1600., 30000.])
+    """
+    tiles = ((0.36, 0.45, 0.50), (0.80, 0.83, 0.82))
+    shell = _shell((-1200, 1200), (-1100, GROUND), (-3000, 30_000), tiles, 600)
+    wood, door, lamp = (0.62, 0.42, 0.24), (0.27, 0.45, 0.52), (1.4, 1.4, 1.4)
+    parts = []
+    for side in (-1, 1):
+        parts += [
+            _beside(side, (1090, 1150), (670, 730), (-3000, 30_000), wood),
+            _beside(side, (1185, 1200), (1480, 1600), (-3000, 30_000), wood),
+        ]
+        parts += [
+            _beside(side, (1190, 1200), (-500, 1600), (z, z + 950), door)
+            for z in range(3500 + 1500 * (side > 0), 29_000, 5000)
+        ]
+    parts += [
+        box((-250, 250), (-1100, -1080), (z, z + 1200), lamp) for z in range(2000, 29_000, 3000)
+    ]
+    return join(shell, *parts)
+
+
+def room() -> Scene:
+    """Build a room of 6 m by 12 m whose walls, tiles and furniture all keep to three directions.
+
+    The first 8 vertices are its corners.
+
+    Examples
+    --------
+    >>> room().vertices[:8].max(axis=0)
+    array([ 3000.,  1600., 10000.])
+    """
+    tiles = ((0.66, 0.48, 0.34), (0.88, 0.79, 0.66))
+    shell = _shell((-3000, 3000), (-1600, GROUND), (-2000, 10_000), tiles, 500)
+    table, plinth = (0.84, 0.56, 0.29), (0.93, 0.93, 0.90)
+    furniture = [
+        box((-2900, -1300), (800, 860), (6400, 8800), table),
+        *(
+            box((x, x + 100), (860, GROUND), (z, z + 100), table)
+            for x in (-2850, -1450)
+            for z in (6450, 8650)
+        ),
+        box((-2500, -1900), (420, 800), (7000, 7600), (0.33, 0.55, 0.62)),
+        box((1900, 3000), (-500, GROUND), (7600, 9600), (0.55, 0.36, 0.27)),
+        box((300, 1000), (900, GROUND), (7300, 8000), plinth),
+        box((450, 850), (500, 900), (7450, 7850), (0.78, 0.33, 0.28)),
+    ]
+    hung = [
+        box((-700, 700), (-800, 300), (9950, 10_000), (0.96, 0.94, 0.90)),
+        box((-600, 600), (-700, 200), (9940, 9950), (0.23, 0.42, 0.40)),
+        box((-3000, -2980), (-900, 300), (6300, 8900), (1.0, 1.0, 1.0)),
+    ]
+    return join(shell, *furniture, *hung)
+
+
+def _shell(
+    x: Span,
+    y: Span,
+    z: Span,
+    tiles: npt.ArrayLike,
+    tile: float,
+) -> Scene:
+    """Build the walls, the ceiling and the tiled floor of a room."""
+    walls = np.empty((6, 2, 3))
+    walls[:2], walls[2:4], walls[4] = (0.95, 0.92, 0.85), (0.86, 0.88, 0.88), (0.97, 0.97, 0.96)
+    walls[5] = tiles
+    return box(x, y, z, walls, [np.inf] * 5 + [tile])
+
+
+def _floor(x: Span, y: float, z: Span, colours: npt.ArrayLike) -> Scene:
+    corners = [[x[0], y, z[0]], [x[1], y, z[0]], [x[1], y, z[1]], [x[0], y, z[1]]]
+    return quads(corners, [[0, 1, 2, 3]], colours)
+
+
+def _beside(side: int, x: Span, y: Span, z: Span, colours: npt.ArrayLike) -> Scene:
+    """Build a box on the right (side 1) or, mirrored, on the left (side −1)."""
+    low, high = sorted(side * value for value in x)
+    return box((low, high), y, z, colours)
+
+
+_PRINT = ((0.06, 0.06, 0.07), (0.98, 0.98, 0.97))
+_PLATE = (0.62, 0.64, 0.66)
+_THICK = 3.0
+
+
+def target_scene(
+    target: Chessboard | TwoPlanes | ThreePlanes,
+    world_from_target: npt.ArrayLike | None = None,
+    *,
+    margin: float = 1.0,
+) -> Scene:
+    """Build a calibration target: boards printed on paper, on plates 3 mm thick.
+
+    Parameters
+    ----------
+    target : Chessboard, TwoPlanes or ThreePlanes
+        Its corners are ``target.points``, in the target's frame.
+    world_from_target : array_like, shape (4, 4), optional
+        Where it stands; by default in the origin.
+    margin : float
+        White paper around the squares, in squares.
+
+    Examples
+    --------
+    >>> target_scene(TwoPlanes())
+    Scene(24 vertices, 24 triangles)
+    """
+    boards = [_board(board, margin).moved(G) for G, board in target.faces]
+    return join(*boards).moved(np.eye(4) if world_from_target is None else world_from_target)
+
+
+def from_trimesh(mesh: Any) -> Scene:
+    """Take the triangles and face colours of a ``trimesh.Trimesh``.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from_trimesh(trimesh.creation.icosphere(subdivisions=1, radius=50.0))
+    Scene(42 vertices, 80 triangles)
+    """
+    m = len(mesh.faces)
+    colours = np.asarray(mesh.visual.face_colors, dtype=float)[:, None, :3] / 255
+    return Scene(
+        mesh.vertices,
+        mesh.faces,
+        np.broadcast_to(colours, (m, 2, 3)),
+        np.zeros((m, 3, 2)),
+        np.full((m, 2), np.inf),
+    )
+
+
+def _board(board: Chessboard, margin: float) -> Scene:
+    """Build one board in its own frame: the print, and the plate behind it."""
+    columns, rows = board.squares
+    low, high = -1 - margin, np.array([columns, rows]) - 1 + margin
+    square = board.square
+    (x0, y0), (x1, y1) = (low * square, low * square), high * square
+    plate = box((x0, x1), (y0, y1), (0, _THICK), _PLATE)
+    behind = replace(  # all faces but the front
+        plate,
+        **{name: getattr(plate, name)[2:] for name in ("triangles", "colours", "uv", "extent")},
+    )
+    paper = quads(
+        [[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]], [[0, 1, 2, 3]], _PRINT, square
+    )
+    paper = replace(paper, uv=paper.uv - margin, extent=np.full((2, 2), (columns, rows)))
+    return join(paper, behind)

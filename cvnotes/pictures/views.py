@@ -1,0 +1,251 @@
+"""Random turns, directions and places, from which sets of views are made."""
+
+import numpy as np
+
+from cvnotes.base import Array, CvnotesError, DegenerateError, InputTypeError, numbers
+from cvnotes.camera import Camera, exp_so3
+from cvnotes.pictures.faces import Target
+from cvnotes.pictures.placing import every_face_seen, facing, hold_at
+
+TILT = (float(np.radians(20)), float(np.radians(45)))
+
+
+def guard(target: Target, camera: Camera, n: int, rng: np.random.Generator) -> None:
+    """Refuse what no set of views can be made of."""
+    if not hasattr(target, "faces"):
+        raise InputTypeError(
+            f"target: expected a Chessboard or the like, got {type(target).__name__}"
+        )
+    if not isinstance(camera, Camera):
+        raise InputTypeError(f"camera: expected a Camera, got {type(camera).__name__}")
+    if not isinstance(rng, np.random.Generator):
+        raise InputTypeError(f"rng: expected a numpy.random.Generator, got {type(rng).__name__}")
+    if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
+        raise CvnotesError(f"n: expected a number of views, at least 1, got {n!r}")
+
+
+def turned(towards: Array, angle: Array, rng: np.random.Generator) -> Array:
+    """Rotations (n, 3, 3) of a board that rolls a little and tilts towards a picture direction."""
+    axis = np.stack([-np.sin(towards), np.cos(towards), np.zeros_like(towards)], axis=-1)
+    roll = rng.uniform(-1, 1, (len(towards), 1)) * np.radians([0.0, 0.0, 15.0])
+    return np.asarray(exp_so3(angle[:, None] * axis) @ exp_so3(roll))
+
+
+def one_tilt(rng: np.random.Generator) -> Array:
+    """One rotation (1, 3, 3) by 30° towards any direction."""
+    return turned(rng.uniform(0, 2 * np.pi, 1), np.radians([30.0]), rng)
+
+
+def all_sides(n: int, rng: np.random.Generator) -> Array:
+    """Directions (n,) in the picture, one in each n-th of the circle, shuffled."""
+    return np.asarray(2 * np.pi * (rng.permutation(n) + rng.random(n)) / n)
+
+
+def all_over(camera: Camera, n: int, rng: np.random.Generator) -> Array:
+    """Pixels (n, 2) in turn in all of 3 × 3 cells around the middle, shuffled.
+
+    Boards reach farther out than their middles: the cells fill two fifths of either side.
+    """
+    cell = rng.permutation(np.arange(n) % 9)
+    place = (np.stack([cell % 3, cell // 3], axis=-1) + rng.random((n, 2))) / 3 - 0.5
+    return np.array(camera.size) * (0.5 + 0.4 * place) - 0.5
+
+
+def spread(target: Target, camera: Camera, R: Array, rng: np.random.Generator) -> Array:
+    """Hold a target in each of the rotations (n, 3, 3), all over the picture."""
+    R, aims = R @ facing(target), all_over(camera, len(R), rng)
+    far = rng.uniform(1.0, 1.3, len(R))
+    return np.stack([hold_at(target, camera, *given) for given in zip(R, aims, far, strict=True)])
+
+
+def good_views(
+    target: Target,
+    camera: Camera,
+    n: int,
+    *,
+    rng: np.random.Generator,
+    tilt: tuple[float, float] = TILT,
+) -> Array:
+    """Hold a target as one should: tilted to all sides, all over the picture, large.
+
+    Parameters
+    ----------
+    target : Target
+        What is held; anything with ``faces``, none of which turns away.
+    camera : Camera
+        Who looks; its own pose does not matter.
+    n : int
+        How many views. Three suffice for a calibration, ten or more make a good one.
+    rng : numpy.random.Generator
+        Where the poses come from.
+    tilt : (least, most)
+        Angle in radians by which the target turns away from facing the camera.
+
+    Returns
+    -------
+    ndarray, shape (n, 4, 4)
+        Poses G of the target.
+
+    Raises
+    ------
+    DegenerateError
+        The target cannot be seen whole like this.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera = Camera(intrinsics(800, 804, 325, 238))
+    >>> G = good_views(Chessboard((9, 6), 25.0), camera, 10, rng=np.random.default_rng(1))
+    >>> tilts = np.degrees(np.arccos(G[:, 2, 2]))
+    >>> bool((tilts > 20).all() and (tilts < 45).all())
+    True
+    """
+    guard(target, camera, n, rng)
+    angles = numbers(tilt, "tilt")
+    if angles.shape != (2,) or not 0 <= angles[0] <= angles[1] < np.pi / 2:
+        raise CvnotesError(
+            f"tilt: expected (least, most) in radians, between 0 and π/2, got {angles.tolist()}"
+        )
+    least, most = angles.tolist()
+    views = []
+    for towards, aim in zip(all_sides(n, rng), all_over(camera, n, rng), strict=True):
+        for _ in range(100):
+            R = turned(np.array([towards]), rng.uniform(least, most, 1), rng)[0] @ facing(target)
+            G = hold_at(target, camera, R, aim, rng.uniform(1.0, 1.3))
+            if every_face_seen(target, G):
+                break
+            towards = rng.uniform(0, 2 * np.pi)
+        else:
+            raise DegenerateError("tilted like this, a face of the target is hidden; tilt it less")
+        views.append(G)
+    return np.stack(views)
+
+
+def fronto_parallel_views(
+    target: Target, camera: Camera, n: int, *, rng: np.random.Generator
+) -> Array:
+    """Hold the board parallel to the sensor in every view: the focal length stays unknown.
+
+    Nothing in such a picture gets smaller with depth. A camera twice as long takes the same
+    pictures from twice as far away, and every view repeats the two constraints of the first.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera = Camera(intrinsics(800, 804, 325, 238))
+    >>> G = fronto_parallel_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
+    >>> G[:, 2, 2]
+    array([1., 1., 1.])
+    """
+    guard(target, camera, n, rng)
+    return spread(target, camera, turned(np.zeros(n), np.zeros(n), rng), rng)
+
+
+def pure_translation_views(
+    target: Target, camera: Camera, n: int, *, rng: np.random.Generator
+) -> Array:
+    """Move a tilted board without turning it: n views say no more than one.
+
+    Parallel planes have the same vanishing line, and the two constraints that a view puts on the
+    intrinsics depend on nothing else: every view repeats those of the first. (A strong distortion
+    may hide this from the refinement, for it gives the piercing point away.)
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera = Camera(intrinsics(800, 804, 325, 238))
+    >>> G = pure_translation_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
+    >>> bool((G[:, :3, :3] == G[0, :3, :3]).all())
+    True
+    """
+    guard(target, camera, n, rng)
+    return spread(target, camera, np.repeat(one_tilt(rng), n, axis=0), rng)
+
+
+def nearly_parallel_views(
+    target: Target, camera: Camera, n: int, *, rng: np.random.Generator
+) -> Array:
+    """Turn a tilted board by hardly a degree between views: noise decides the answer.
+
+    The equations do have a solution, for no two vanishing lines agree; but the differences between
+    them are of the size of the noise in the corners, and so is what is concluded from them.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera = Camera(intrinsics(800, 804, 325, 238))
+    >>> G = nearly_parallel_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
+    >>> bool((np.degrees(np.arccos(G[1:, :3, 2] @ G[0, :3, 2])) < 5).all())
+    True
+    """
+    guard(target, camera, n, rng)
+    wobble = exp_so3(rng.normal(0, np.radians(1), (n, 3)))
+    return spread(target, camera, wobble @ one_tilt(rng), rng)
+
+
+def one_axis_views(target: Target, camera: Camera, n: int, *, rng: np.random.Generator) -> Array:
+    """Tilt the board forwards and backwards only, by about 30°: α_u and α_v run away together.
+
+    With the board's x axis always along u, a tilt by θ gives one relation between α_u and α_v, and
+    a tilt by −θ gives the same one again. The normals differ by 60° and still it is not enough:
+    the board must be tilted about different axes.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera = Camera(intrinsics(800, 804, 325, 238))
+    >>> G = one_axis_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
+    >>> G[:, 0, 0]  # x stays along u
+    array([1., 1., 1.])
+    """
+    guard(target, camera, n, rng)
+    angle = np.where(np.arange(n) % 2, 1, -1) * np.radians(rng.uniform(28, 32, n))
+    return spread(target, camera, exp_so3(angle[:, None] * [1.0, 0.0, 0.0]), rng)
+
+
+def centre_only_views(target: Target, camera: Camera, n: int, *, rng: np.random.Generator) -> Array:
+    """Keep a small board in the middle of the picture: the lens is seen where it does nothing.
+
+    Distortion grows with the cube of the distance from the centre. What is estimated from the
+    middle of the picture says little about k1 and nothing about k2, and is wrong at the borders,
+    where it is then used.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera = Camera(intrinsics(800, 804, 325, 238))
+    >>> G = centre_only_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
+    >>> camera.moved(G[0]).project([100, 62.5, 0]).round()  # the middle of the board
+    array([320., 240.])
+    """
+    guard(target, camera, n, rng)
+    R = turned(all_sides(n, rng), rng.uniform(*TILT, n), rng) @ facing(target)
+    middle = (np.array(camera.size) - 1) / 2
+    return np.stack([hold_at(target, camera, R_i, middle, rng.uniform(2.0, 2.5)) for R_i in R])
+
+
+def repeated_views(
+    target: Target, camera: Camera, n: int, *, rng: np.random.Generator, distinct: int = 2
+) -> Array:
+    """Photograph `distinct` good views over and over: counting pictures is not counting views.
+
+    A copy adds no equation. With two views among three the general camera stays undetermined,
+    however many pictures there are; with noise, the residuals do not tell.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera = Camera(intrinsics(800, 804, 325, 238))
+    >>> G = repeated_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
+    >>> bool((G[2] == G[0]).all()), bool((G[1] == G[0]).all())
+    (True, False)
+    """
+    guard(target, camera, n, rng)
+    return good_views(target, camera, distinct, rng=rng)[np.arange(n) % distinct]

@@ -1,0 +1,146 @@
+"""Points and lines of the projective plane P², and what maps leave alone."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, DegenerateError, ShapeError, equally_many, matrix, number
+from cvnotes.projective.points import refuse_zero, vectors
+
+_ROUNDING = 1e-15  # what is left of a determinant of unit vectors that should be 0
+LINE_AT_INFINITY = np.array([0.0, 0.0, 1.0])
+LINE_AT_INFINITY.setflags(write=False)
+
+
+def join(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
+    """Give the line (..., 3) through two points of P², (..., 3) each: l = a × b.
+
+    Raises
+    ------
+    DegenerateError
+        The points coincide (up to a factor): many lines pass through them.
+
+    References
+    ----------
+    .. [1] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 2.2.
+
+    Examples
+    --------
+    >>> join([0, 0, 1], [1, 1, 1])  # y = x
+    array([-1.,  1.,  0.])
+    """
+    return _cross(a, b, ("a", "b"), "point", "the points coincide: many lines pass through them")
+
+
+def meet(k: npt.ArrayLike, m: npt.ArrayLike) -> Array:
+    """Give the point (..., 3) that two lines of P² share: x = k × m.
+
+    Parallel lines share a point at infinity, whose last coordinate is 0.
+
+    Raises
+    ------
+    DegenerateError
+        The lines coincide (up to a factor): they share all their points.
+
+    Examples
+    --------
+    >>> meet([1, 0, -2], [1, 0, -3])  # x = 2 and x = 3: the point at infinity along y
+    array([0., 1., 0.])
+    """
+    return _cross(k, m, ("k", "m"), "line", "the lines coincide: they share all their points")
+
+
+def lies_on(x: npt.ArrayLike, line: npt.ArrayLike, atol: float = 1e-12) -> npt.NDArray[np.bool_]:
+    """Tell whether points (..., d) lie on lines or planes (..., d), whatever their factors.
+
+    Both are scaled to unit length, so `atol` is the cosine of an angle, not a distance.
+
+    Examples
+    --------
+    >>> lies_on([[1, 1, 1], [1, 2, 1]], [1, -1, 0])
+    array([ True, False])
+    """
+    x, line = vectors(x, "x", "point"), vectors(line, "line", "line or plane")
+    equally_many("x and line", x.shape[:-1], line.shape[:-1])
+    atol = number(atol, "atol", at_least=0)
+    if x.shape[-1] != line.shape[-1]:
+        raise ShapeError(f"x {x.shape} and line {line.shape} are not of one space")
+    cosine = (x * line).sum(-1) / (np.linalg.norm(x, axis=-1) * np.linalg.norm(line, axis=-1))
+    return np.asarray(np.abs(cosine) <= atol)
+
+
+def map_lines(H: npt.ArrayLike, lines: npt.ArrayLike) -> Array:
+    """Map lines of P² (..., 3), or planes of P³ (..., 4), where H maps points: l' = H⁻ᵀ l.
+
+    So l'ᵀ x' = lᵀ H⁻¹ H x = 0 wherever lᵀ x = 0: incidence stays.
+
+    Raises
+    ------
+    DegenerateError
+        H is singular: it maps some lines to points.
+
+    References
+    ----------
+    .. [1] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 2.3.
+
+    Examples
+    --------
+    >>> map_lines([[1, 0, 5], [0, 1, 0], [0, 0, 1]], [1, 0, 0])  # x = 0 becomes x = 5
+    array([ 1.,  0., -5.])
+    """
+    lines = vectors(lines, "lines", "line or plane")
+    H = matrix(H, "H", lines.shape[-1], lines.shape[-1])
+    equally_many("H and lines", H.shape[:-2], lines.shape[:-1])
+    try:
+        return np.asarray(np.linalg.solve(H.mT, lines[..., None])[..., 0]) + 0.0
+    except np.linalg.LinAlgError:
+        raise DegenerateError("H is singular: it maps some lines to points") from None
+
+
+def cross_ratio(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.ArrayLike) -> float:
+    """Give the cross-ratio (a, b; c, d) of four collinear homogeneous points, (3,) or (4,) each.
+
+    On a line with coordinate t it is (c − a)(d − b) / ((c − b)(d − a)); for d at infinity, the
+    ratio (c − a)/(c − b). No projective map changes it.
+
+    Raises
+    ------
+    DegenerateError
+        The points are not collinear, or three of them coincide.
+
+    References
+    ----------
+    .. [1] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 2.5.
+
+    Examples
+    --------
+    >>> round(cross_ratio([0, 0, 1], [1, 0, 1], [2, 0, 1], [3, 0, 1]), 12)  # 2·2 / (1·3)
+    1.333333333333
+    """
+    four = [vectors(x, name, "point") for x, name in zip((a, b, c, d), "abcd", strict=True)]
+    if any(x.shape != four[0].shape or x.ndim != 1 for x in four):
+        raise ShapeError(f"expected four points of one space, got {[x.shape for x in four]}")
+    x = np.stack(four)
+    x = x / np.linalg.norm(x, axis=-1, keepdims=True)
+    _, s, Vt = np.linalg.svd(x)
+    if s[2] > 1e-9 * s[0]:
+        raise DegenerateError("the four points do not lie on one line")
+    t = x @ Vt[:2].T  # homogeneous coordinates on the line
+
+    def det(i: int, j: int) -> float:
+        value = float(t[i, 0] * t[j, 1] - t[i, 1] * t[j, 0])
+        return value if abs(value) > _ROUNDING else 0.0
+
+    above, below = det(0, 2) * det(1, 3), det(1, 2) * det(0, 3)
+    if above == 0 and below == 0:
+        raise DegenerateError("three of the four points coincide: their cross-ratio is 0/0")
+    return above / below if below != 0 else float(np.inf)
+
+
+def _cross(
+    a: npt.ArrayLike, b: npt.ArrayLike, names: tuple[str, str], what: str, why: str
+) -> Array:
+    a, b = (vectors(x, name, what, 3) for x, name in zip((a, b), names, strict=True))
+    equally_many(" and ".join(names), a.shape[:-1], b.shape[:-1])
+    product = np.cross(a, b)
+    refuse_zero(product, np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1), why)
+    return np.asarray(product) + 0.0

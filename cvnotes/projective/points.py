@@ -1,0 +1,142 @@
+"""Points, lines and planes of projective space, at infinity too (notes 2b.1).
+
+A homogeneous coordinate vector stands for a whole class of vectors that differ by a factor;
+nothing here depends on that factor. A last coordinate of exactly zero is a point at infinity:
+it has a direction but no place, so dropping back to Euclidean coordinates gives NaN.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import (
+    LARGEST_ENTRY,
+    Array,
+    CvnotesError,
+    DegenerateError,
+    ShapeError,
+    equally_many,
+    number,
+    numbers,
+)
+
+
+def to_homogeneous(x: npt.ArrayLike) -> Array:
+    """Lift points (..., d) to homogeneous coordinates (..., d + 1) by appending a 1.
+
+    Examples
+    --------
+    >>> to_homogeneous([2, 3])
+    array([2., 3., 1.])
+    """
+    return _append(numbers(x, "x"), 1.0)
+
+
+def direction_to_homogeneous(d: npt.ArrayLike) -> Array:
+    """Lift directions (..., d) to points at infinity (..., d + 1) by appending a 0.
+
+    Examples
+    --------
+    >>> direction_to_homogeneous([0, 0, 1])
+    array([0., 0., 1., 0.])
+    """
+    return _append(numbers(d, "d"), 0.0)
+
+
+def from_homogeneous(x_h: npt.ArrayLike) -> Array:
+    """Drop homogeneous coordinates (..., d + 1) to Euclidean ones (..., d).
+
+    Points at infinity have no Euclidean coordinates: their rows are NaN, and so is the row of
+    the zero vector, which is no point at all.
+
+    Examples
+    --------
+    >>> from_homogeneous([[4, 6, 2], [1, 0, 0]])
+    array([[ 2.,  3.],
+           [nan, nan]])
+    """
+    x_h = numbers(x_h, "x_h", largest=np.inf)
+    if x_h.ndim == 0 or x_h.shape[-1] < 2:
+        raise ShapeError(f"x_h: expected homogeneous coordinates (..., d + 1), got {x_h.shape}")
+    return drop(x_h)
+
+
+def apply(H: npt.ArrayLike, x: npt.ArrayLike) -> Array:
+    """Map points (..., d) by a projective transformation H of shape (..., e + 1, d + 1).
+
+    Lift, multiply, drop. A stack of matrices (..., e + 1, d + 1) maps a stack of point sets
+    (..., n, d). Rows whose image lies at infinity are NaN.
+
+    Examples
+    --------
+    >>> apply([[1, 0, 5], [0, 1, 0], [0, 0, 1]], [[1, 2], [3, 4]])
+    array([[6., 2.],
+           [8., 4.]])
+    """
+    H, x = numbers(H, "H", largest=LARGEST_ENTRY), numbers(x, "x")
+    if H.ndim < 2 or H.shape[-2] < 2 or x.ndim < 1 or H.shape[-1] != x.shape[-1] + 1:
+        raise ShapeError(
+            f"H {H.shape} cannot map points x {x.shape}: it needs one column more than a point "
+            "has coordinates"
+        )
+    equally_many("the maps H and the sets of points x", H.shape[:-2], x.shape[:-2])
+    x_h = _append(x, 1.0)
+    return drop(x_h @ H.mT if x.ndim > 1 else (H @ x_h))
+
+
+def same_up_to_scale(a: npt.ArrayLike, b: npt.ArrayLike, atol: float = 1e-9) -> bool:
+    """Tell whether two vectors or matrices differ only by a factor (the sign ≈ of the notes).
+
+    Both are scaled to unit norm, so `atol` is relative to the size of the whole array. The zero
+    vector stands for nothing, so it equals nothing.
+
+    Examples
+    --------
+    >>> same_up_to_scale([1, 2, 3], [-2, -4, -6])
+    True
+    """
+    a, b = (numbers(x, name, largest=np.inf) for x, name in ((a, "a"), (b, "b")))
+    atol = number(atol, "atol", at_least=0)
+    if a.shape != b.shape:
+        raise ShapeError(f"a has shape {a.shape} but b has {b.shape}")
+    if not a.any() or not b.any():
+        raise CvnotesError("the zero vector stands for no point; equality is not defined for it")
+    a, b = a / np.abs(a).max(), b / np.abs(b).max()
+    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    return bool(min(np.abs(a - b).max(), np.abs(a + b).max()) <= atol)
+
+
+def drop(x_h: Array) -> Array:
+    """Divide by the last coordinate, NaN where it is zero (no guard: for use inside)."""
+    w = x_h[..., -1:]
+    with np.errstate(over="ignore"):
+        return np.divide(x_h[..., :-1], w, out=np.full_like(x_h[..., :-1], np.nan), where=w != 0)
+
+
+def _append(x: Array, last: float) -> Array:
+    if x.ndim == 0 or x.shape[-1] == 0:
+        raise ShapeError(
+            f"expected coordinates (..., d), got {'a single number' if x.ndim == 0 else 'none'}"
+        )
+    return np.concatenate([x, np.full((*x.shape[:-1], 1), last)], axis=-1)
+
+
+_ROUNDING = 2e-15  # relative size of what is left of a product that should be 0
+
+
+def vectors(x: npt.ArrayLike, name: str, what: str, d: int | None = None) -> Array:
+    """Guard homogeneous vectors; factors that would make products overflow are taken out."""
+    x = numbers(x, name, largest=np.inf)
+    wanted = "(..., 3) or (..., 4)" if d is None else f"(..., {d})"
+    if x.ndim == 0 or x.shape[-1] not in ((3, 4) if d is None else (d,)):
+        raise ShapeError(f"{name}: expected homogeneous coordinates {wanted}, got {x.shape}")
+    largest = np.abs(x).max(axis=-1, keepdims=True, initial=0.0)
+    if (largest == 0).any():
+        raise CvnotesError(f"{name}: the zero vector is not a {what}")
+    exponent = np.frexp(largest)[1]
+    return np.asarray(np.ldexp(x, np.where(np.abs(exponent) > 200, -exponent, 0)))
+
+
+def refuse_zero(product: Array, size: Array, why: str) -> None:
+    """Refuse products (..., d) that are nothing but rounding beside their factors' size."""
+    if (np.linalg.norm(product, axis=-1) <= _ROUNDING * size).any():
+        raise DegenerateError(why)

@@ -1,0 +1,1 @@
+"""Flat figures: each function draws on axes and gives them back."""

@@ -1,0 +1,147 @@
+"""Figures of estimates: how they scatter, and which sets of views they can be trusted for."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+
+from cvnotes.base import CvnotesError, ShapeError, number, paired, points
+from cvnotes.calibration import Calibration
+from cvnotes.show.guards import length, one_point, thing
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, panels
+
+
+def draw_plane_error(
+    m: npt.ArrayLike,
+    predicted: npt.ArrayLike,
+    *,
+    ax: Axes | None = None,
+    magnify: float = 10.0,
+    title: str = "",
+) -> Axes:
+    """Draw how far predicted points are from the true ones, as magnified arrows.
+
+    Parameters
+    ----------
+    m, predicted : array_like, shape (n, 2)
+        True and predicted pixels.
+    magnify : float
+        How much longer than true the arrows are; said in the title.
+
+    Examples
+    --------
+    >>> draw_plane_error([[0, 0], [9, 9]], [[1, 0], [9, 9]], title="two points").get_title()
+    'two points (arrows × 10)'
+    """
+    m, predicted = points(m, "m", 2), points(predicted, "predicted", 2)
+    paired(m, predicted, ("m", "predicted"), at_least=1)
+    if m.ndim != 2 or m.shape != predicted.shape:
+        raise ShapeError(f"m and predicted: expected (n, 2), got {m.shape} and {predicted.shape}")
+    magnify = number(magnify, "magnify")
+    ax = panels() if ax is None else ax
+    d = magnify * (predicted - m)
+    ax.plot(*m.T, "o", color=LENS, ms=3)
+    ax.quiver(
+        *m.T, *d.T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1, width=0.004
+    )  # fmt: skip
+    low, high = m.min(0), m.max(0)  # of the points alone, so that two figures can be compared
+    room = max(0.15 * float((high - low).max()) + 1, 1e-9 * float(np.abs(m).max()))
+    as_picture(ax, (2, 2))
+    ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
+    ax.set_title(f"{title} (arrows × {magnify:g})".strip())
+    return ax
+
+
+def draw_error_bars(
+    estimates: npt.ArrayLike, truth: npt.ArrayLike, std: npt.ArrayLike, *, names: Sequence[str]
+) -> Any:
+    """Draw histograms of repeated estimates with the truth and the bell curve that was promised.
+
+    Parameters
+    ----------
+    estimates : array_like, shape (n_runs, q)
+        One row for each repetition.
+    truth : array_like, shape (q,)
+        True values: the black lines.
+    std : array_like, shape (q,)
+        Standard deviations that were promised: the curves.
+    names : sequence of q str
+        Titles of the panels.
+
+    Returns
+    -------
+    ndarray of Axes
+        Three panels to a row.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> len(draw_error_bars(rng.normal(size=(50, 2)), [0, 0], [1, 1], names=["a", "b"]))
+    2
+    """
+    q = len(names)
+    if q == 0:
+        raise CvnotesError("names: expected at least one, for its panel")
+    estimates = points(estimates, "estimates", q)
+    if estimates.ndim != 2 or len(estimates) == 0:
+        raise ShapeError(f"estimates: expected (n_runs, {q}), got {estimates.shape}")
+    truth, std = one_point(truth, "truth", q), one_point(std, "std", q)
+    if not (std > 1e-12 * (np.abs(truth) + 1e-88)).all():
+        raise CvnotesError("std: expected positive numbers, not negligible beside the true values")
+    rows = -(-q // 3)
+    axes = np.ravel(panels(min(q, 3), rows, width=900, height=250 * rows))[:q]
+    for ax, x, t, s, name in zip(axes, estimates.T, truth, std, names, strict=True):
+        span = np.linspace(t - 4.2 * s, t + 4.2 * s, 200)
+        if (np.abs(x - t) <= 4.2 * s).any():  # a density of nothing would be NaN
+            ax.hist(
+                x, bins=np.linspace(span[0], span[-1], 22), color=LENS, alpha=0.45, density=True
+            )
+        ax.plot(
+            span, np.exp(-(((span - t) / s) ** 2) / 2) / (s * np.sqrt(2 * np.pi)), color=ESTIMATED
+        )
+        ax.axvline(t, color=IDEAL, lw=1.2)
+        unit = " (px)" if name[0] in "asuv" else ""
+        ax.set(title=name, yticks=[], xlabel=f"estimate{unit}")
+        ax.spines["left"].set_visible(False)
+        ax.locator_params(axis="x", nbins=4)
+        ax.ticklabel_format(axis="x", useOffset=False)
+    return axes
+
+
+def draw_view_families(results: Mapping[str, Calibration], *, truth: float) -> Any:
+    """Draw RMS and error of the focal length of several calibrations, side by side.
+
+    Parameters
+    ----------
+    results : mapping from name to Calibration
+        One for each set of views.
+    truth : float
+        The true α_u in pixels.
+
+    Returns
+    -------
+    ndarray of two Axes
+        The RMS on the left; on the right the relative error of α_u, on a logarithmic axis.
+    """
+    if not thing(results, "results", Mapping):  # type: ignore[type-abstract]
+        raise CvnotesError("results: expected at least one calibration")
+    for name, result in results.items():
+        thing(result, f"results[{name!r}]", Calibration)
+    truth = length(truth, "truth")
+    left, right = axes = panels(2, width=900, height=80 + 46 * len(results), sharey=True)
+    names, y = list(results), np.arange(len(results))
+    error = [max(abs(r.A[0, 0] / truth - 1), 1e-5) * 100 for r in results.values()]
+    colours = [LENS if r.reliable else ESTIMATED for r in results.values()]
+    left.barh(y, [r.rms for r in results.values()], color=MUTED, height=0.55)
+    right.barh(y, error, color=colours, height=0.55, left=0)
+    right.set_xscale("log")
+    right.set_xlim(1e-3, 3e3)
+    for i, (value, r) in enumerate(zip(error, results.values(), strict=True)):
+        words = f"{float(f'{value:.2g}'):g} %" + ("" if r.reliable else "  not reliable")
+        right.annotate(words, (value, i), (5, 0), textcoords="offset points", va="center", size=9)
+    left.set(yticks=y, yticklabels=names, xlabel="RMS (px per point)", title="what is looked at")
+    right.set(xlabel="error of the focal length (%)", title="what counts")
+    left.invert_yaxis()
+    return axes

@@ -1,0 +1,143 @@
+"""Figures of pictures, points and corners.
+
+Each ``draw_<thing>(data, *, ax=None)`` draws on the axes it is given, or on new ones, and returns
+them; nothing is shown and no global state is touched. `cvnotes.show.show` puts them on a page.
+"""
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
+
+from cvnotes.base import Array, CvnotesError, ShapeError, image_size, points, positions
+from cvnotes.show.guards import picture as checked
+from cvnotes.show.guards import thing
+from cvnotes.show.style import COLOURS, ESTIMATED, FONT, MARKERS, WORLD, as_picture, picture_axes
+from cvnotes.targets import Chessboard
+
+_HALO = withStroke(linewidth=3, foreground="white")
+
+
+def draw_image(image: npt.ArrayLike, *, ax: Axes | None = None, title: str = "") -> Axes:
+    """Draw a picture with its pixel coordinates.
+
+    Parameters
+    ----------
+    image : array_like, shape (height, width) or (height, width, 3)
+        Grey values or RGB; uint8, uint16, bool, or float from 0 to 1 (NaN stays white).
+
+    Examples
+    --------
+    >>> draw_image(np.zeros((480, 640), np.uint8)).get_ylim()
+    (np.float64(479.5), np.float64(-0.5))
+    """
+    picture = checked(image)
+    size = (picture.shape[1], picture.shape[0])
+    if picture.dtype == np.uint16:  # deep pictures seldom use their whole range
+        picture = picture / max(int(picture.max()), 1)
+    white = 255 if picture.dtype.kind in "ui" else 1
+    ax = picture_axes(size) if ax is None else ax
+    ax.imshow(picture, cmap="gray", vmin=0, vmax=white)
+    ax.set_title(title)
+    return as_picture(ax, size)
+
+
+def draw_points(
+    m: npt.ArrayLike,
+    *,
+    ax: Axes | None = None,
+    size: tuple[int, int] = (640, 480),
+    meaning: str = "estimated",
+    label: str = "",
+) -> Axes:
+    """Draw pixels as markers, over a picture or on an empty one.
+
+    Parameters
+    ----------
+    m : array_like, shape (..., 2)
+        Pixels (u, v); rows with NaN have no image and are left out.
+    size : (width, height)
+        Size of the picture, where new axes are made.
+    meaning : {"world", "camera", "ideal", "lens", "estimated"}
+        Whose points these are; sets colour and marker.
+    label : str
+        Name in a legend.
+
+    Examples
+    --------
+    >>> len(draw_points([[100, 50], [200, 80]]).collections)
+    1
+    """
+    m = positions(m, "m")
+    if meaning not in COLOURS:
+        raise CvnotesError(f"meaning: expected one of {', '.join(COLOURS)}, got {meaning!r}")
+    if ax is None:
+        ax = as_picture(picture_axes(image_size(size)), size)
+    u, v = m.reshape(-1, 2).T
+    ax.scatter(
+        u,
+        v,
+        s=36,
+        marker=MARKERS[meaning],
+        color=COLOURS[meaning],
+        linewidths=1.4,
+        path_effects=[_HALO],
+        label=label or None,
+        zorder=3,
+    )
+    if label:
+        ax.legend(loc="upper right", fontsize=FONT - 1)
+    return ax
+
+
+def draw_corners(
+    image: npt.ArrayLike,
+    corners: npt.ArrayLike,
+    board: Chessboard,
+    *,
+    ax: Axes | None = None,
+    title: str = "",
+) -> Axes:
+    """Draw the corners of a board over its picture, so that their order can be seen.
+
+    Each row is joined, and the outermost corners have their numbers; the ring is the origin of
+    the board's frame, the arrows its x and y axes.
+
+    Parameters
+    ----------
+    image : array_like, shape (height, width) or (height, width, 3)
+        The picture.
+    corners : array_like, shape (n, 2)
+        Pixels, ordered as ``board.points``.
+    board : Chessboard
+        Tells how many corners a row has.
+    """
+    m, (columns, rows) = points(corners, "corners", 2), thing(board, "board", Chessboard).corners
+    if m.shape != (columns * rows, 2):
+        raise ShapeError(
+            f"corners: a board of {columns}×{rows} has {columns * rows}, got {m.shape}"
+        )
+    ax = draw_image(image, ax=ax, title=title)
+    grid = m.reshape(rows, columns, 2)
+    for row in grid:
+        ax.plot(*row.T, "-", color=ESTIMATED, linewidth=1, marker=".", markersize=4)
+    for name, end in (("x", grid[0, min(2, columns - 1)]), ("y", grid[min(2, rows - 1), 0])):
+        arrow = {"arrowstyle": "-|>", "color": WORLD, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
+        ax.annotate("", end, m[0], arrowprops=arrow)
+        _write(ax, name, m[0] + 1.25 * (end - m[0]), WORLD)
+    ax.plot(*m[0], "o", color=WORLD, markersize=9, fillstyle="none", markeredgewidth=1.6)
+    for i in (0, columns - 1, columns * (rows - 1), columns * rows - 1):
+        outwards = m[i] - m.mean(axis=0)
+        _write(ax, str(i), m[i] + 0.12 * outwards, ESTIMATED)
+    return ax
+
+
+def _write(ax: Axes, text: str, where: Array, colour: str) -> None:
+    """Write a short text that stays legible over a picture, and inside of it."""
+    right, bottom = ax.get_xlim()[1], ax.get_ylim()[0]
+    margin = 0.04 * max(right, bottom)
+    u, v = np.clip(where, margin, [right - margin, bottom - margin])
+    ax.text(
+        u, v, text, color=colour, fontsize=FONT, fontweight="bold",
+        ha="center", va="center", path_effects=[_HALO],
+    )  # fmt: skip

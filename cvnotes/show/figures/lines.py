@@ -1,0 +1,183 @@
+"""Figures of projective geometry: lines, segments, and the classes of coordinates."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
+
+from cvnotes.base import Array, CvnotesError, ShapeError, image_size, matrix, points
+from cvnotes.show.guards import length
+from cvnotes.show.space.shapes import colour_of
+from cvnotes.show.style import (
+    ESTIMATED,
+    FONT,
+    IDEAL,
+    MUTED,
+    WORLD,
+    as_picture,
+    panels,
+    picture_axes,
+)
+
+_HALO = withStroke(linewidth=3, foreground="white")
+
+
+def draw_lines(
+    lines: npt.ArrayLike,
+    *,
+    ax: Axes | None = None,
+    size: tuple[int, int] = (640, 480),
+    meaning: str = "estimated",
+    label: str = "",
+    linewidth: float = 1.4,
+    linestyle: str = "-",
+    color: str | None = None,
+) -> Axes:
+    """Draw whole lines of P², as far as the axes reach.
+
+    Parameters
+    ----------
+    lines : array_like, shape (..., 3)
+        Lines (a, b, c) with a u + b v + c = 0, of any scale. The line at infinity is left out.
+    size : (width, height)
+        Size of the picture, where new axes are made.
+    meaning : {"world", "camera", "ideal", "lens", "estimated"}
+        Whose lines these are; sets the colour.
+    label : str
+        Name in a legend.
+    linewidth, linestyle, color
+        As matplotlib's; a colour takes the place of the meaning's.
+
+    Examples
+    --------
+    >>> len(draw_lines([[0, 1, -240], [1, 0, -320], [0, 0, 1]]).lines)
+    2
+    """
+    lines = points(lines, "lines", 3).reshape(-1, 3)
+    ax, colour = pixel_axes(ax, size), colour_of(meaning)
+    style: dict[str, Any] = {
+        "color": color or colour,
+        "linewidth": linewidth,
+        "linestyle": linestyle,
+    }
+    style["path_effects"] = [_HALO]
+    middle = np.array([np.mean(ax.get_xlim()), np.mean(ax.get_ylim())])
+    for a, b, c in lines[(lines[:, :2] != 0).any(axis=1)]:
+        n = np.array([a, b]) / np.hypot(a, b)
+        foot = middle - (n @ middle + c / np.hypot(a, b)) * n
+        ax.axline(foot, foot + 100 * np.array([-n[1], n[0]]), label=label or None, **style)
+        label = ""
+    return ax
+
+
+def draw_segments(
+    segments: npt.ArrayLike,
+    *,
+    ax: Axes | None = None,
+    size: tuple[int, int] = (640, 480),
+    meaning: str = "estimated",
+    label: str = "",
+    linewidth: float = 1.8,
+    linestyle: str = "-",
+    color: str | None = None,
+    path_effects: Sequence[Any] = (_HALO,),
+) -> Axes:
+    """Draw segments, each between its two end points.
+
+    Parameters
+    ----------
+    segments : array_like, shape (..., 2, 2)
+        End points (u, v).
+    size, meaning, label, linewidth, linestyle, color
+        As for `draw_lines`.
+    path_effects : sequence
+        As matplotlib's; by default a white rim keeps segments visible over a picture.
+
+    Examples
+    --------
+    >>> len(draw_segments([[[0, 0], [90, 90]], [[0, 90], [90, 0]]]).lines)
+    2
+    """
+    ends = segment_ends(segments)
+    ax, colour = pixel_axes(ax, size), colour_of(meaning)
+    style: dict[str, Any] = {
+        "color": color or colour,
+        "linewidth": linewidth,
+        "linestyle": linestyle,
+    }
+    style["path_effects"] = list(path_effects)
+    for i, pair in enumerate(ends):
+        ax.plot(*pair.T, label=label if label and i == 0 else None, **style)
+    return ax
+
+
+def draw_classes(x_h: npt.ArrayLike, *, ax: Axes | None = None, reach: float = 5.0) -> Axes:
+    """Draw points of P¹, the projective line: classes [kx k] are lines through the origin.
+
+    Where such a line crosses k = 1 is the Euclidean point x. The class of [1 0] never does: it is
+    the point at infinity. All of them pass through [0 0], which therefore is no point.
+
+    Parameters
+    ----------
+    x_h : array_like, shape (n, 2)
+        One member (kx, k) of each class; a dot marks it where it is not the one with k = 1.
+    reach : float
+        Of the axes, to both sides.
+
+    Examples
+    --------
+    >>> ax = draw_classes([[1, 1], [4, 2], [1, 0]])
+    >>> ax.get_xlabel(), ax.get_ylabel()
+    ('first coordinate, kx', 'last coordinate, k')
+    """
+    x_h = matrix(x_h, "x_h", 2).reshape(-1, 2)
+    if len(x_h) == 0:
+        raise CvnotesError("x_h: expected at least one class")
+    if not (x_h != 0).any(axis=1).all():
+        raise CvnotesError("x_h: [0 0] is no point, and has no line of its own")
+    reach = length(reach, "reach")
+    ax = panels(height=370) if ax is None else ax
+    ax.axhline(1, color=WORLD, linewidth=2.2, zorder=1)
+    for x, k in x_h:
+        ideal = abs(k) < 1e-100 * abs(x)
+        ax.axline((0, 0), (x, k), color=ESTIMATED if ideal else IDEAL, linewidth=1.1, zorder=2)
+        if not ideal:
+            ax.plot(x / k, 1, "s", color=WORLD, markersize=6, zorder=3)
+        if k != 1:
+            ax.plot(x, k, "o", color=ESTIMATED if ideal else IDEAL, markersize=5, zorder=3)
+    ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=8, zorder=4)
+    text: dict[str, Any] = {"textcoords": "offset points", "fontsize": FONT, "zorder": 5}
+    text["path_effects"] = [_HALO]
+    ax.annotate("R, at\nk = 1", (reach, 1), (6, 0), va="center", color=WORLD, **text)
+    ax.annotate("[0 0]", (0, 0), (0, -20), ha="center", color=MUTED, **text)
+    ax.set(xlim=(-reach, reach), ylim=(-0.35 * reach, 0.65 * reach), aspect="equal")
+    ax.set(xlabel="first coordinate, kx", ylabel="last coordinate, k")
+    return ax
+
+
+def segment_ends(segments: npt.ArrayLike) -> Array:
+    """Guard segments and give their ends, (n, 2, 2).
+
+    Examples
+    --------
+    >>> segment_ends([[0, 1], [2, 3]]).shape
+    (1, 2, 2)
+    """
+    ends = points(segments, "segments", 2)
+    if ends.ndim < 2 or ends.shape[-2] != 2:
+        raise ShapeError(f"segments: expected two ends each, (..., 2, 2), got {ends.shape}")
+    return ends.reshape(-1, 2, 2)
+
+
+def pixel_axes(ax: Axes | None, size: tuple[int, int]) -> Axes:
+    """Give axes for pixels: those that there are, or new ones for a picture of a size.
+
+    Examples
+    --------
+    >>> pixel_axes(None, (64, 48)).get_xlabel()
+    'u (px)'
+    """
+    return as_picture(picture_axes(image_size(size)), size) if ax is None else ax

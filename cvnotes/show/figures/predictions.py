@@ -1,0 +1,68 @@
+"""Figures of what a calibration is worth, and of sets of photographs at a glance."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+
+from cvnotes.base import ShapeError
+from cvnotes.calibration import Calibration, prediction_std
+from cvnotes.show.guards import calibrated, count, eight_bits, pictures
+from cvnotes.show.style import ESTIMATED, as_picture, picture_axes
+
+
+def draw_prediction_error(calibration: Calibration, *, ax: Axes | None = None) -> Axes:
+    """Draw, over the picture, how far off the image of a fixed ray may be, as lines of equal px.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        Its corners, if it has them, are drawn too: where they end, extrapolation begins.
+    """
+    calibrated(calibration)
+    w, h = calibration.size
+    if ax is None:
+        ax = picture_axes(calibration.size)
+    u, v = np.meshgrid(np.linspace(0, w - 1, 65), np.linspace(0, h - 1, 49))
+    std = prediction_std(calibration, np.stack([u, v], axis=-1))
+    levels = np.linspace(float(np.nanmin(std)), float(np.nanmax(std)), 13)
+    ax.contourf(u, v, std, levels=levels, cmap="cividis")
+    lines = ax.contour(u, v, std, levels=levels[1::2], colors="white", linewidths=0.8)
+    ax.clabel(lines, fmt=lambda x: f"{x:.2g} px", fontsize=8)
+    for m in calibration.image_points:
+        ax.plot(*m.T, ".", color=ESTIMATED, ms=1.5)
+    ax.set_title("standard deviation of a predicted pixel")
+    return as_picture(ax, calibration.size)
+
+
+def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5, title: str = "") -> Axes:
+    """Draw small copies of grey pictures side by side, as on a contact sheet.
+
+    Parameters
+    ----------
+    images : sequence of array_like, shape (height, width)
+        All of one size.
+    columns : int
+        Pictures in a row.
+
+    Examples
+    --------
+    >>> draw_wall([np.zeros((48, 64), np.uint8)] * 3, columns=3).axison
+    False
+    """
+    small = [eight_bits(image, "images")[::4, ::4] for image in pictures(images, "images")]
+    if small[0].ndim != 2:
+        raise ShapeError(f"images: expected grey pictures, got colours, {small[0].shape}")
+    columns = count(columns, "columns")
+    rows, gap = -(-len(small) // columns), 4
+    h, w = small[0].shape
+    wall = np.full((rows * (h + gap) - gap, columns * (w + gap) - gap), 255, np.uint8)
+    for i, image in enumerate(small):
+        top, left = (i // columns) * (h + gap), (i % columns) * (w + gap)
+        wall[top : top + h, left : left + w] = image
+    ax: Axes = picture_axes((wall.shape[1], wall.shape[0]))
+    ax.imshow(wall, cmap="gray", vmin=0, vmax=255)
+    ax.set_title(title)
+    ax.axis("off")
+    return ax

@@ -1,0 +1,195 @@
+"""Figures of how good a calibration is: its residuals, its views, and what they cover.
+
+Like all ``draw_<thing>(data, *, ax=None)``: they draw on the axes they are given, or on new ones,
+and return them.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, Rectangle
+
+from cvnotes.base import Array, DegenerateError, ShapeError, image_size, number, points
+from cvnotes.show.guards import calibrated
+from cvnotes.show.style import ESTIMATED, FONT, MUTED, as_picture, panels, picture_axes
+
+if TYPE_CHECKING:
+    from cvnotes.calibration import Calibration
+
+
+def draw_residuals(
+    calibration: "Calibration", *, ax: Axes | None = None, magnify: float | None = None
+) -> Axes:
+    """Draw where each corner was seen relative to where the camera predicts it, magnified.
+
+    Arrows that point all over the place are noise; arrows that agree with their neighbours are
+    something the model does not describe.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        With its corners.
+    magnify : float, optional
+        How much longer than true the arrows are; by default a round number that makes the longer
+        ones 4 % of the picture's width.
+    """
+    m, r = _corners_of(calibration), np.concatenate(calibration.residuals)
+    width = calibration.size[0]
+    longer = float(np.percentile(np.hypot(*r.T), 95))
+    if magnify is None:
+        magnify = _round_number(0.04 * width / longer) if longer > 0 else 1.0
+    magnify = number(magnify, "magnify")
+    if ax is None:
+        ax = picture_axes(calibration.size)
+    as_picture(ax, calibration.size)
+    ax.quiver(
+        *(m - r).T, *(r * magnify).T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1,
+        units="width", width=0.0018, headwidth=4, headlength=4.5, headaxislength=4,
+    )  # fmt: skip
+    ax.set_title(f"Residuals × {magnify:,g} (RMS {calibration.rms:.3f} px per point)")
+    return ax
+
+
+def draw_residual_scatter(calibration: "Calibration", *, ax: Axes | None = None) -> Axes:
+    """Draw all residuals about one origin, with the circle of one standard deviation.
+
+    Noise gives a round cloud about 0; the circle's radius is the standard deviation per axis,
+    which is the RMS per point over √2.
+    """
+    _corners_of(calibration)
+    r = np.concatenate(calibration.residuals)
+    sigma = calibration.rms / np.sqrt(2)
+    if ax is None:
+        ax = panels(width=480, height=470)
+    reach = 1.08 * max(float(np.abs(r).max()), 1e-9)
+    ax.axhline(0, color=MUTED, linewidth=0.6)
+    ax.axvline(0, color=MUTED, linewidth=0.6)
+    ax.plot(*r.T, ".", color=ESTIMATED, markersize=4, alpha=0.5, markeredgewidth=0)
+    ax.add_patch(Circle((0, 0), sigma, fill=False, linewidth=1.5))
+    ax.set(xlim=(-reach, reach), ylim=(reach, -reach), aspect="equal")
+    ax.set(xlabel="observed − predicted u (px)", ylabel="observed − predicted v (px)")
+    ax.spines[["top", "right"]].set(visible=True, color=MUTED)
+    ax.set_title(f"The circle is one σ per axis: {sigma:.3f} px")
+    return ax
+
+
+def draw_coverage(
+    image_points: npt.ArrayLike | Sequence[npt.ArrayLike],
+    size: tuple[int, int],
+    *,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw where in the picture corners were seen, and which parts saw none.
+
+    The lens is known where corners were; in the empty parts, which are hatched, it is guessed.
+
+    Parameters
+    ----------
+    image_points : array_like, shape (views, n, 2) or (n, 2), or a list of (n_i, 2)
+        Pixels.
+    size : (width, height)
+        Size of the picture.
+
+    Examples
+    --------
+    >>> draw_coverage([[[10, 10], [600, 400]]], (640, 480)).get_title()
+    'Corners in 2 of 48 cells of the picture'
+    """
+    size = image_size(size)
+    m, seen = _joined(image_points), covered_cells(image_points, size)
+    side = np.array(size) / seen.shape
+    ax = as_picture(picture_axes(size) if ax is None else ax, size)
+    for cell in np.argwhere(~seen):
+        corner = (cell * side - 0.5).tolist()
+        ax.add_patch(Rectangle(corner, *side, facecolor="#EEEEEE", edgecolor="#C4C4C4", hatch="//"))
+    ax.plot(*m.T, ".", color=ESTIMATED, markersize=4, alpha=0.6, markeredgewidth=0)
+    ax.set_title(f"Corners in {seen.sum()} of {seen.size} cells of the picture")
+    return ax
+
+
+def covered_cells(
+    image_points: npt.ArrayLike | Sequence[npt.ArrayLike], size: tuple[int, int]
+) -> npt.NDArray[np.bool_]:
+    """Divide a picture into about square cells and tell in which of them corners were seen.
+
+    Parameters
+    ----------
+    image_points : array_like, shape (views, n, 2) or (n, 2), or a list of (n_i, 2)
+        Pixels.
+    size : (width, height)
+        Size of the picture; its longer side has eight cells.
+
+    Returns
+    -------
+    ndarray of bool, shape (columns, rows)
+
+    Examples
+    --------
+    >>> covered_cells([[10, 10], [600, 400]], (640, 480)).sum()
+    np.int64(2)
+    """
+    m, size = _joined(image_points), image_size(size)
+    cells = np.array([max(round(8 * n / max(size)), 1) for n in size])
+    inside = m[((m >= -0.5) & (m < np.array(size) - 0.5)).all(axis=1)]
+    seen = np.zeros(cells, dtype=bool)
+    seen[tuple(((inside + 0.5) // (size / cells)).astype(int).T)] = True
+    return seen
+
+
+def draw_view_rms(
+    calibration: "Calibration", *, ax: Axes | None = None, names: Sequence[str] = ()
+) -> Axes:
+    """Draw the RMS of each view as a bar, beside that of all.
+
+    A view that stands out has wrong corners, or was taken with another focus or zoom.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        The result.
+    names : sequence of str
+        Names of the views; by default their numbers.
+    """
+    calibrated(calibration)
+    rms = np.asarray(calibration.view_rms)
+    names = list(names) or [str(i) for i in range(len(rms))]
+    if len(names) != len(rms):
+        raise ShapeError(f"names: expected {len(rms)}, one for each view, got {len(names)}")
+    ax = panels(height=360) if ax is None else ax
+    ax.bar(np.arange(len(rms)), rms, width=0.7, color=ESTIMATED, alpha=0.85)
+    ax.axhline(calibration.rms, color=MUTED, linewidth=1, linestyle="--")
+    ax.text(
+        1.0, calibration.rms, f" all: {calibration.rms:.3f}", transform=ax.get_yaxis_transform(),
+        color=MUTED, fontsize=FONT - 1, va="center",
+    )  # fmt: skip
+    step = -(-len(rms) // 40)  # labels stay legible up to forty
+    ticks = np.arange(0, len(rms), step)
+    longest = max(len(name) for name in names)
+    upright = longest * len(ticks) < 80
+    ax.set_xticks(ticks, [names[i] for i in ticks], rotation=0 if upright else 90)
+    ax.set(xlim=(-0.6, len(rms) - 0.4), ylabel="RMS (px per point)", xlabel="view")
+    return ax
+
+
+def _corners_of(calibration: "Calibration") -> Array:
+    """Give all image points (n, 2) of a calibration that still has them."""
+    calibrated(calibration)
+    if not calibration.image_points:
+        raise DegenerateError("this calibration was read from a file that has no corners")
+    return np.concatenate(calibration.image_points)
+
+
+def _round_number(x: float) -> float:
+    """Round down to 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(x))
+    return float(power * max(step for step in (1, 2, 5) if step * power <= x * (1 + 1e-12)))
+
+
+def _joined(image_points: npt.ArrayLike | Sequence[npt.ArrayLike]) -> Array:
+    """Join the points of all views, (n, 2)."""
+    views = list(image_points) if isinstance(image_points, Sequence) else [image_points]
+    flat = [points(m, "image_points", 2).reshape(-1, 2) for m in views]
+    return np.concatenate([np.empty((0, 2)), *flat])

@@ -1,0 +1,127 @@
+"""Figures of vanishing points: where segments lead, and the triangle that gives a camera away."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+
+from cvnotes.base import Array, DegenerateError, ShapeError, matrix
+from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
+from cvnotes.show.figures.images import draw_points
+from cvnotes.show.figures.lines import draw_segments, pixel_axes, segment_ends
+from cvnotes.show.space.shapes import colour_of
+from cvnotes.show.style import ESTIMATED, FONT, IDEAL
+
+
+def draw_vanishing(
+    segments: npt.ArrayLike,
+    v_h: npt.ArrayLike,
+    *,
+    ax: Axes | None = None,
+    size: tuple[int, int] = (640, 480),
+    meaning: str = "estimated",
+    label: str = "",
+) -> Axes:
+    """Draw segments and, dashed, the way on to their vanishing point; the axes grow to show it.
+
+    Parameters
+    ----------
+    segments : array_like, shape (n, 2, 2)
+        End points (u, v).
+    v_h : array_like, shape (3,)
+        The vanishing point, homogeneous. At infinity it is not drawn, and the axes stay.
+    size, meaning, label
+        As for `cvnotes.show.figures.lines.draw_lines`.
+
+    Examples
+    --------
+    >>> ax = draw_vanishing([[[0, 0], [90, 90]], [[0, 190], [90, 100]]], [900, 95, 1])
+    >>> bool(ax.get_xlim()[1] > 900)
+    True
+    """
+    ends, v_h = segment_ends(segments), matrix(v_h, "v_h", 3)
+    if len(ends) == 0:
+        raise DegenerateError("segments: expected at least one that leads to the vanishing point")
+    if v_h.ndim != 1:
+        raise ShapeError(f"v_h: expected one point (3,), got {v_h.shape}")
+    ax = draw_segments(ends, ax=ax, size=size, meaning=meaning)
+    if v_h[2] == 0:
+        return ax
+    v = from_homogeneous(v_h)
+    near = ends[np.arange(len(ends)), np.linalg.norm(ends - v, axis=-1).argmin(axis=1)]
+    for start in near:
+        ax.plot(*np.stack([start, v]).T, "--", color=colour_of(meaning), linewidth=0.9)
+    draw_points(v, ax=ax, meaning=meaning, label=label)
+    return _widened(ax, v[None])
+
+
+def draw_heights(
+    v: npt.ArrayLike,
+    *,
+    ax: Axes | None = None,
+    size: tuple[int, int] = (640, 480),
+    names: Sequence[str] = ("X", "Y", "Z"),
+) -> Axes:
+    """Draw the triangle of three vanishing points, its heights, and the point that they share.
+
+    For three orthogonal directions and square pixels that point is the piercing point.
+
+    Parameters
+    ----------
+    v : array_like, shape (3, 2)
+        Vanishing points in pixels.
+    size : (width, height)
+        Size of the picture, where new axes are made.
+    names : sequence of three str
+        Written beside the points.
+
+    Raises
+    ------
+    DegenerateError
+        The points lie on a line: there is no triangle.
+
+    Examples
+    --------
+    >>> ax = draw_heights([[0, 0], [900, 0], [400, 700]])
+    >>> [text.get_text() for text in ax.texts]
+    ['X', 'Y', 'Z']
+    """
+    v = matrix(v, "v", 3, 2)
+    if v.ndim != 2 or len(names) != 3:
+        raise ShapeError(f"expected three points (3, 2) and three names, got {v.shape}")
+    feet = np.array([_foot(v[i], v[i - 1], v[i - 2]) for i in range(3)])
+    ax = pixel_axes(ax, size)
+    ax.plot(*np.concatenate([v, v[:1]]).T, color=ESTIMATED, linewidth=1.2)
+    for corner, foot in zip(v, feet, strict=True):
+        ax.plot(*np.stack([corner, foot]).T, "--", color=IDEAL, linewidth=0.9)
+    heights = [join(*to_homogeneous([v[i], feet[i]])) for i in range(2)]
+    draw_points(from_homogeneous(meet(*heights)), ax=ax, meaning="ideal", label="heights meet")
+    draw_points(v, ax=ax, meaning="estimated", label="vanishing points")
+    ax.legend(loc="lower right", fontsize=FONT - 1)
+    _widened(ax, v)
+    for name, corner, away in zip(names, v, v - v.mean(axis=0), strict=True):
+        shift = 14 * away / np.linalg.norm(away) * (1, -1)  # points on paper count upwards
+        ax.annotate(
+            name, corner, shift, textcoords="offset points", ha="center", va="center",
+            color=ESTIMATED, fontsize=FONT, fontweight="bold", annotation_clip=False,
+        )  # fmt: skip
+    return ax
+
+
+def _foot(corner: Array, a: Array, b: Array) -> Array:
+    """Give the point of the line through a and b that is nearest to a corner."""
+    side, height = b - a, np.linalg.det(np.stack([corner - a, b - a]))
+    if abs(height) <= 1e-12 * max(float(side @ side), float((corner - a) @ (corner - a))):
+        raise DegenerateError("the three vanishing points lie on a line: there is no triangle")
+    return np.asarray(a + (corner - a) @ side / (side @ side) * side)
+
+
+def _widened(ax: Axes, m: Array) -> Axes:
+    """Let the axes of a picture reach to points (n, 2) outside of it."""
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    span = np.ptp(np.concatenate([m, [[left, top], [right, bottom]]]), axis=0).max()
+    low = np.minimum([left, top], m.min(axis=0) - 0.08 * span)
+    high = np.maximum([right, bottom], m.max(axis=0) + 0.08 * span)
+    ax.set(xlim=(low[0], high[0]), ylim=(high[1], low[1]))
+    return ax

@@ -1,0 +1,1 @@
+"""Figures in three dimensions: stills on paper, and scenes to turn."""

@@ -1,0 +1,210 @@
+"""Cameras in 3-D figures: their pyramids, rays and sheets of rays, and the plane z = 1."""
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.colors import to_rgb
+
+from cvnotes.base import Array, CvnotesError, ShapeError, number, points
+from cvnotes.camera import Camera, inverse, move, xy_from_px
+from cvnotes.camera.model import is_camera
+from cvnotes.show.guards import eight_bits, one_point
+from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes, colour_of
+from cvnotes.show.style import COLOURS
+
+
+def camera_shapes(
+    camera: Camera,
+    depth: float = 100.0,
+    *,
+    image: npt.NDArray[np.uint8] | None = None,
+    name: str = "camera",
+    meaning: str = "camera",
+) -> Shapes:
+    """Give a camera: its centre, and the pyramid to its image plane at z = `depth`.
+
+    Parameters
+    ----------
+    camera : Camera
+        Where it stands, and what it sees.
+    depth : float
+        How far away the image plane is drawn; the true one, z = 1, would be too small to see.
+    image : ndarray of uint8, optional
+        A picture to put on the image plane, (height, width) or (height, width, 3).
+    name : str
+        Written above it.
+    meaning : {"camera", "estimated", ...}
+        Sets the colour.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> [shape.name for shape in camera_shapes(Camera(intrinsics(800, 800, 320, 240)))]
+    ['camera pyramid', 'camera']
+    """
+    w, h = is_camera(camera, "camera").size
+    depth = number(depth, "depth")
+    border = [[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]]
+    corners = _on_plane(camera, xy_from_px(camera.A, border), depth)
+    around = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+    spokes = np.stack([np.broadcast_to(camera.centre, (4, 3)), corners], axis=1)
+    # A tick on the upper side says which way is up.
+    left, right = _on_plane(camera, xy_from_px(camera.A, [[0.4 * w, -0.5], [0.6 * w, -0.5]]), depth)
+    up = (left + right) / 2 - 0.1 * (corners[3] - corners[0])
+    ends = np.concatenate([around, spokes, [[left, up], [up, right]]])
+    colour = colour_of(meaning)
+    shapes: Shapes = (Lines(f"{name} pyramid", ends, colour),)
+    if image is not None:
+        shapes += (Photo(f"{name} picture", corners, _picture(image)),)
+    return (*shapes, Label(name, up - 0.12 * (corners[3] - corners[0]), colour))
+
+
+def ray_shapes(
+    camera: Camera,
+    m: npt.ArrayLike,
+    length: float | None = None,
+    *,
+    to: npt.ArrayLike | None = None,
+    name: str = "rays",
+    meaning: str = "lens",
+) -> Shapes:
+    """Give the rays that pixels see, from the camera's centre.
+
+    Parameters
+    ----------
+    camera : Camera
+        Whose rays.
+    m : array_like, shape (..., 2)
+        Pixels. Those that the lens model does not reach have no ray.
+    length : float, optional
+        Of each ray.
+    to : array_like, shape (..., 3), optional
+        World points to end near, instead of a length: each ray is as long as its point is far.
+    meaning : {"lens", "ideal", "estimated", ...}
+        Sets the colour.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> lines, = ray_shapes(Camera(intrinsics(800, 800, 320, 240)), [320, 240], 1000.0)
+    >>> lines.ends[0, 1]
+    array([   0.,    0., 1000.])
+    """
+    if (length is None) == (to is None):
+        raise CvnotesError("a ray ends after a `length` or near points `to`: give one of the two")
+    d = is_camera(camera, "camera").ray(m)
+    if to is not None:
+        reach = np.linalg.norm(points(to, "to", 3) - camera.centre, axis=-1)[..., None]
+        if reach.shape[:-1] != d.shape[:-1]:
+            raise ShapeError(f"to: expected one point for each of the rays {d.shape[:-1]}")
+    else:
+        reach = np.float64(number(length, "length"))
+    tips = (camera.centre + reach * d).reshape(-1, 3)
+    tips = tips[np.isfinite(tips[:, 0])]
+    ends = np.stack([np.broadcast_to(camera.centre, tips.shape), tips], axis=1)
+    return (Lines(name, ends, colour_of(meaning), 1.0),)
+
+
+def sheet_shapes(
+    edge: npt.ArrayLike, edges: npt.ArrayLike, *, name: str = "sheets", meaning: str = "world"
+) -> Shapes:
+    """Give flat sheets from one edge to others, as the rays of a camera to lines of the world.
+
+    Parameters
+    ----------
+    edge : array_like, shape (2, 3)
+        The segment that all sheets share.
+    edges : array_like, shape (..., 2, 3)
+        The segment opposite to it, of each sheet.
+    name : str
+        Of the faces.
+    meaning : {"world", "camera", "ideal", "lens", "estimated"}
+        Sets the colour, which is pale: what is behind a sheet stays visible.
+
+    Examples
+    --------
+    >>> ridge, eaves = [[0, 0, 0], [0, 0, 9]], [[[x, 2, 0], [x, 2, 9]] for x in (-1, 1)]
+    >>> faces, = sheet_shapes(ridge, eaves)
+    >>> faces.corners[0, 0], faces.corners[-1, 2]
+    (array([0., 0., 0.]), array([1., 2., 9.]))
+    """
+    shared, others = points(edge, "edge", 3), points(edges, "edges", 3)
+    if shared.shape != (2, 3) or others.ndim < 2 or others.shape[-2] != 2:
+        raise ShapeError(
+            "a sheet lies between two segments: expected edge (2, 3) and edges (..., 2, 3), "
+            f"got {shared.shape} and {others.shape}"
+        )
+    # In pieces, so that a still can sort what is in front of each and what is behind it.
+    along, across = np.linspace(0, 1, 29)[:, None], np.linspace(0, 1, 9)[:, None, None]
+    near = shared[0] + along * (shared[1] - shared[0])
+    start, end = (others.reshape(-1, 2, 3)[:, i, None, None] for i in (0, 1))
+    grid = near + across * (start + along * (end - start) - near)
+    steps = ((0, 0), (0, 1), (1, 1), (1, 0))
+    corners = np.stack([grid[:, i : i + 8, j : j + 28] for i, j in steps], axis=-2)
+    corners = corners.reshape(-1, 4, 3)
+    return (Faces(name, corners, np.tile([*to_rgb(colour_of(meaning)), 0.22], (len(corners), 1))),)
+
+
+def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shapes:
+    """Give a plane of constant z in the CRF, and what the picture covers of it.
+
+    On the plane z = 1 live the ideal image points; `z` makes a copy of it as large as the rest of
+    the figure. The outline is the picture's border, freed from the lens.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> faces, outline, label = plane_shapes(Camera(intrinsics(800, 800, 320, 240)), 100.0)
+    >>> faces.corners[0, 0]
+    array([-50., -50., 100.])
+    """
+    w, h = is_camera(camera, "camera").size
+    z = number(z, "z")
+    t = np.linspace(0, 1, 25)[:-1]
+    sides = [(t, 0 * t), (1 + 0 * t, t), (1 - t, 1 + 0 * t), (0 * t, 1 - t)]
+    border = np.concatenate([np.stack(side, axis=-1) for side in sides]) * [w, h] - 0.5
+    xy = camera.ideal(border)
+    xy = xy[np.isfinite(xy[:, 0])]
+    reach = np.ceil(10 * 1.15 * np.abs(xy).max(initial=0.1)) / 10
+    square = reach * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    outline = _on_plane(camera, xy, z)
+    corners = _on_plane(camera, square, z)
+    pale = np.array([[0.4, 0.4, 0.4, 0.12]])
+    ends = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
+    return (
+        Faces(f"{name} plane", corners[None], pale),
+        Lines(f"{name} outline", ends, COLOURS["ideal"], 1.0),
+        Label(name, corners[1], COLOURS["ideal"]),
+    )
+
+
+def dot_shapes(
+    W: npt.ArrayLike, name: str, *, radius: float = 8.0, meaning: str = "estimated"
+) -> Shapes:
+    """Give a point of the world (3,): a small octahedron with its name.
+
+    Examples
+    --------
+    >>> [shape.name for shape in dot_shapes([0, 0, 0], "C")]
+    ['C dot', 'C']
+    """
+    at, radius = one_point(W, "W", 3), number(radius, "radius")
+    x, y, z = radius * np.eye(3)
+    belt = [x, y, -x, -y]
+    corners = at + np.array(
+        [[belt[i], belt[(i + 1) % 4], tip] for tip in (z, -z) for i in range(4)]
+    )
+    colour = colour_of(meaning)
+    colours = np.tile([*to_rgb(colour), 1.0], (8, 1))
+    return Faces(f"{name} dot", corners, colours), Label(name, at - 3.0 * y, colour)
+
+
+def _on_plane(camera: Camera, xy: Array, z: float) -> Array:
+    """Place points (n, 2) of the plane z = 1 on the plane z, in the WRF."""
+    M = np.concatenate([xy, np.ones_like(xy[:, :1])], axis=-1) * z
+    return move(inverse(camera.G), M)
+
+
+def _picture(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+    """Guard a picture; grey becomes red, green, blue."""
+    image = eight_bits(image)
+    return image if image.ndim == 3 else np.repeat(image[..., None], 3, axis=2)

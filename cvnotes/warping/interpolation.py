@@ -1,0 +1,198 @@
+"""A picture made ready to be looked up at many positions at once."""
+
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, CvnotesError, Image, checked_fill, checked_image, positions
+
+Method = Literal["bilinear", "nearest"]
+Border = Literal["constant", "replicate", "reflect"]
+Real = npt.NDArray[Any]  # float32 or float64
+
+
+def bilinear(I1: Real, I2: Real, I3: Real, I4: Real, du: Real, dv: Real) -> Real:
+    """Interpolate between the four pixels around a position.
+
+    Parameters
+    ----------
+    I1, I2, I3, I4 : ndarray
+        The picture at (u_k, v_k), (u_k + 1, v_k), (u_k, v_k + 1) and (u_k + 1, v_k + 1).
+    du, dv : ndarray
+        Fractions u − u_k and v − v_k, from 0 to 1.
+
+    Notes
+    -----
+    Along u first, then along v:
+
+        I_a = (I2 − I1) Δu + I1,    I_b = (I4 − I3) Δu + I3,    I = (I_b − I_a) Δv + I_a,
+
+    which is (1−Δu)(1−Δv) I1 + Δu(1−Δv) I2 + (1−Δu)Δv I3 + ΔuΔv I4. The notes' expanded form has
+    the sign of I1 wrong in its last factor, I4 − I3 − I2 + I1 (erratum E42).
+
+    References
+    ----------
+    .. [1] Notes 2b.5, "Forward/Backward Mapping".
+
+    Examples
+    --------
+    >>> bilinear(*np.array([10.0, 20.0, 30.0, 80.0, 0.5, 0.5]))  # the mean of the four
+    array(35.)
+    """
+    I_a = (I2 - I1) * du + I1
+    I_b = (I4 - I3) * du + I3
+    return np.asarray((I_b - I_a) * dv + I_a)
+
+
+def interpolate(
+    image: npt.ArrayLike,
+    m: npt.ArrayLike,
+    *,
+    method: Method = "bilinear",
+    border: Border = "constant",
+    fill: npt.ArrayLike = 0,
+) -> Image:
+    """Look a picture up at positions that need not be pixels.
+
+    Parameters
+    ----------
+    image : ndarray, shape (height, width) or (height, width, channels)
+        uint8, uint16, float32 or float64.
+    m : array_like, shape (..., 2)
+        Positions (u, v) in pixels; NaN where there is nothing to show.
+    method : {"bilinear", "nearest"}
+        Between four pixels, or the closest one; half-way to the right and downwards.
+    border : {"constant", "replicate", "reflect"}
+        What lies outside: `fill`, the outermost pixel, or the picture mirrored at the outermost
+        pixel centres.
+    fill : number, or one per channel
+        What lies outside of a constant border, and what NaN shows under every border.
+
+    Returns
+    -------
+    ndarray, shape (...) or (..., channels), of the image's dtype
+        Integers are rounded to the nearest, halves upwards.
+
+    Notes
+    -----
+    Nearest rounds both coordinates, bilinear takes the floor of both; the notes' mixture of floor
+    and round (erratum E40) does neither.
+
+    References
+    ----------
+    .. [1] Notes 2b.5, "Forward/Backward Mapping".
+
+    Examples
+    --------
+    >>> image = np.array([[10.0, 20.0], [30.0, 80.0]])
+    >>> interpolate(image, [[0.5, 0.5], [0.25, 0.0], [7.0, 7.0]])
+    array([35. , 12.5,  0. ])
+    >>> interpolate(image, [[0.5, 0.5], [0.4, 0.0]], method="nearest")
+    array([80., 10.])
+    """
+    sampler = Sampler(image, method, border, fill)
+    xy = positions(m, "m")
+    values = sampler(xy.reshape(-1, 2).T.copy())
+    return values.reshape(xy.shape[:-1] + sampler.channels)
+
+
+class Sampler:
+    """A picture made ready to be looked up at many positions; see `interpolate`."""
+
+    def __init__(
+        self, image: npt.ArrayLike, method: Method, border: Border, fill: npt.ArrayLike
+    ) -> None:
+        picture = checked_image(image)
+        if method not in ("bilinear", "nearest"):
+            raise CvnotesError(f'method: expected "bilinear" or "nearest", got {method!r}')
+        if border not in ("constant", "replicate", "reflect"):
+            raise CvnotesError(
+                f'border: expected "constant", "replicate" or "reflect", got {border!r}'
+            )
+        self.method, self.border, self.dtype = method, border, picture.dtype
+        self.height, self.width = picture.shape[:2]
+        self.channels = picture.shape[2:]
+        self.fill = checked_fill(fill, picture)
+        self.stride = self.width + 3
+        self.strides = np.array([1.0, self.stride])
+        self.limits = np.array([[self.width], [self.height]], dtype=np.float64)
+        self._pad(picture)
+
+    def _pad(self, picture: Image) -> None:
+        """Frame each channel with `fill`, so that no position needs a test of its own."""
+        planes = np.moveaxis(picture.reshape(self.height, self.width, -1), -1, 0)
+        shape = (len(planes), self.height + 3, self.stride)
+        framed = np.empty(shape, picture.dtype)
+        framed[:] = self.fill.reshape(-1, 1, 1)
+        framed[:, 1:-2, 1:-2] = planes
+        self.planes = framed.reshape(len(planes), -1)
+        self.all_finite = picture.dtype.kind != "f" or bool(np.isfinite(framed).all())
+
+    @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
+    def __call__(self, m: Array) -> Image:
+        """Give the picture at m (2, n), rows u and v, as (n, channels); m is written over."""
+        nowhere = None
+        if self.border != "constant":
+            nowhere = np.flatnonzero(~np.isfinite(m).all(axis=0))
+            m = np.where(np.isfinite(m), m, 0)
+            m = np.stack(
+                [_fold(m[0], self.width, self.border), _fold(m[1], self.height, self.border)]
+            )
+        values = self._nearest(m) if self.method == "nearest" else self._bilinear(m)
+        if nowhere is not None and nowhere.size:
+            values[nowhere] = self.fill
+        return values
+
+    def _nearest(self, m: Array) -> Image:
+        index = self._index(self._inside(np.floor(m + 0.5)))
+        return self.planes.take(index, axis=1).T
+
+    def _bilinear(self, m: Array) -> Image:
+        m = self._inside(m)
+        m_k = np.floor(m)
+        m -= m_k
+        working = np.float32 if self.dtype == np.uint8 else np.float64
+        du, dv = m.astype(working, copy=False)
+        index = self._index(m_k)
+        values = np.empty((len(self.planes), index.size), self.dtype)
+        for plane, out in zip(self.planes, values, strict=True):
+            I1, I2, I3, I4 = (
+                plane[offset:].take(index, mode="clip").astype(working, copy=False)
+                for offset in (0, 1, self.stride, self.stride + 1)
+            )
+            if not self.all_finite:  # 0 · NaN is not 0
+                I2, I4 = np.where(du == 0, I1, I2), np.where(du == 0, I3, I4)
+                I3, I4 = np.where(dv == 0, I1, I3), np.where(dv == 0, I2, I4)
+            I_a, I_b = _between(I1, I2, du), _between(I3, I4, du)
+            value = _between(I_a, I_b, dv)
+            if self.dtype.kind == "u":
+                value += 0.5
+            out[:] = value
+        return values.T
+
+    def _inside(self, m: Array) -> Array:
+        """Keep positions between −1 and width or height, where the frame begins; NaN at −1."""
+        np.fmax(m, -1.0, out=m)
+        return np.minimum(m, self.limits, out=m)
+
+    def _index(self, m_k: Array) -> npt.NDArray[np.intp]:
+        """Place whole pixels in the framed picture, whose frame begins at (−1, −1)."""
+        index = self.strides @ m_k
+        index += self.stride + 1
+        return np.asarray(index, dtype=np.intp)
+
+
+def _between(a: Real, b: Real, t: Real) -> Real:
+    """Give a + (b − a) t, written over b: the steps of `bilinear`."""
+    b -= a
+    b *= t
+    b += a
+    return b
+
+
+def _fold(x: Array, n: int, border: Border) -> Array:
+    """Bring positions outside back into the picture, 0 to n − 1."""
+    if border == "replicate" or n == 1:
+        return np.clip(x, 0, n - 1)
+    return np.asarray((n - 1) - np.abs(np.abs(x) % (2 * n - 2) - (n - 1)))

@@ -1,0 +1,177 @@
+"""Maps that take the lens out of a picture, or put it in (notes 2b.5)."""
+
+import warnings
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import (
+    Array,
+    CalibrationWarning,
+    Image,
+    ShapeError,
+    checked_image,
+    intrinsic_matrix,
+    rotation,
+)
+from cvnotes.camera import Camera
+from cvnotes.warping.interpolation import Border, Method
+from cvnotes.warping.pixel_map import PixelMap, homogeneous_columns
+from cvnotes.warping.warp import backward_warp
+
+
+def undistortion_map(
+    camera: Camera, new_A: npt.ArrayLike | None = None, *, R: npt.ArrayLike | None = None
+) -> PixelMap:
+    """Map the pixels of an ideal camera's picture to those of the real camera's picture.
+
+    Parameters
+    ----------
+    camera : Camera
+        The camera that took the picture.
+    new_A : array_like, shape (3, 3), optional
+        Intrinsic matrix of the ideal camera; by default the camera's own.
+    R : array_like, shape (3, 3), optional
+        Rotation ideal ← real camera about their common centre, as rectification asks for.
+
+    Returns
+    -------
+    PixelMap
+        For a backward warp: ideal target ↦ observed source. Pixels that the real camera cannot
+        see, or that its lens model does not reach, have no image.
+
+    Notes
+    -----
+    A backward warp needs the direction in which the lens model is written, so nothing has to be
+    inverted: u' = ũ + (k1 r² + k2 r⁴)(ũ − u0) and alike for v, with r² from the ideal pixel,
+    r² = ((ũ − u0)/α_u)² + ((ṽ − v0)/α_v)² (errata E34, E44).
+
+    References
+    ----------
+    .. [1] Notes 2b.5, "Warping to compensate lens distortion".
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.camera import Lens
+    >>> camera = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-0.25,)))
+    >>> undistortion_map(camera)([720, 240])  # x = 1/2: 320 + 400 (1 − 1/16)
+    array([695., 240.])
+    """
+    new_A = camera.A if new_A is None else intrinsic_matrix(new_A, "new_A")
+    if R is None and _is_identity(camera, new_A):
+        return PixelMap(lambda m_h: m_h[:2])
+    to_real = np.eye(3) if R is None else _one_rotation(R).T
+    ray = to_real @ np.linalg.inv(new_A)
+
+    def columns(m_h: Array) -> Array:
+        x, y, z = ray @ m_h
+        z[z <= 0] = np.nan  # behind the real camera
+        x, y = camera.lens._distort_columns(x / z, y / z)
+        return np.asarray(camera.A[:2] @ homogeneous_columns(x, y))
+
+    return PixelMap(columns)
+
+
+def distortion_map(camera: Camera, new_A: npt.ArrayLike | None = None) -> PixelMap:
+    """Map the pixels of the real camera's picture to those of an ideal camera's picture.
+
+    The inverse of `undistortion_map`: for a backward warp that puts a lens into a picture. It has
+    no closed form. Pixels that the lens model does not reach have no image.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.camera import Lens
+    >>> camera = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-0.25,)))
+    >>> distortion_map(camera)([695, 240]).round(9)
+    array([720., 240.])
+    """
+    new_A = camera.A if new_A is None else intrinsic_matrix(new_A, "new_A")
+
+    if _is_identity(camera, new_A):
+        return PixelMap(lambda m_h: m_h[:2])
+    to_sensor = np.linalg.inv(camera.A)[:2]
+
+    def columns(m_h: Array) -> Array:
+        x, y = camera.lens._undistort_columns(*(to_sensor @ m_h))
+        return np.asarray(new_A[:2] @ homogeneous_columns(x, y))
+
+    return PixelMap(columns)
+
+
+def undistort_image(
+    image: npt.ArrayLike,
+    camera: Camera,
+    new_A: npt.ArrayLike | None = None,
+    *,
+    size: tuple[int, int] | None = None,
+    method: Method = "bilinear",
+    border: Border = "constant",
+    fill: npt.ArrayLike = 0,
+) -> Image:
+    """Take the lens out of a picture, by a backward warp.
+
+    Parameters
+    ----------
+    image : ndarray, shape (height, width) or (height, width, channels)
+        A picture of ``camera.size``.
+    camera : Camera
+        The camera that took it.
+    new_A : array_like, shape (3, 3), optional
+        Intrinsic matrix of the ideal camera; by default the camera's own.
+    size : (width, height), optional
+        Size of the new picture; by default that of the old one.
+    method, border, fill
+        See `cvnotes.warping.interpolation.interpolate`.
+
+    Returns
+    -------
+    ndarray, of the image's dtype
+        What ``Camera(new_A, size=size)`` would have taken.
+
+    Warns
+    -----
+    CalibrationWarning
+        The lens model folds inside of the picture: what lies beyond is not shown.
+
+    References
+    ----------
+    .. [1] Notes 2b.5, "Warping to compensate lens distortion".
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> camera = Camera(intrinsics(80, 80, 31.5, 23.5), size=(64, 48))
+    >>> image = np.arange(64 * 48, dtype=np.uint16).reshape(48, 64)
+    >>> bool((undistort_image(image, camera) == image).all())
+    True
+    """
+    image = checked_image(image)
+    if image.shape[1::-1] != camera.size:
+        raise ShapeError(
+            f"the picture is {image.shape[1]} × {image.shape[0]} but the camera's pictures are "
+            f"{camera.size[0]} × {camera.size[1]} (scaled, cropped, or turned on its side?)"
+        )
+    if not camera.is_invertible:
+        warnings.warn(
+            "the lens model folds inside of the picture: it was fitted to points nearer to the "
+            "middle, and what lies beyond the fold is not shown",
+            CalibrationWarning,
+            stacklevel=2,
+        )
+    mapping = undistortion_map(camera, new_A)
+    size = camera.size if size is None else size
+    return backward_warp(image, mapping, size=size, method=method, border=border, fill=fill)
+
+
+def _one_rotation(R: npt.ArrayLike) -> Array:
+    R = rotation(R)
+    if R.ndim != 2:
+        raise ShapeError(f"R: expected one rotation (3, 3), got {R.shape}")
+    return R
+
+
+def _is_identity(camera: Camera, new_A: Array) -> bool:
+    """Tell whether nothing moves; then it must not move by rounding either."""
+    return camera.lens.is_ideal and bool((new_A == camera.A).all())
