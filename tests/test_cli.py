@@ -22,7 +22,7 @@ from cvnotes.base import FileError
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.commands import lab
 from cvnotes.commands.cli import main
-from cvnotes.commands.examined import View
+from cvnotes.commands.examined import Examined
 from cvnotes.commands.pictures import corner_sheets
 from cvnotes.files import read_camera, write_camera
 from cvnotes.targets import Chessboard
@@ -171,7 +171,7 @@ def test_pictures_are_left_beside_the_numbers_and_nothing_else(calibrated):
 def test_corners_lie_on_the_thumbnail_where_they_lie_on_the_photograph():
     corners = np.array([[-0.5, -0.5], [0.5, 0.5], [639.5, 479.5], [320.5, 2.5]])
     thumbnail = np.zeros((240, 320), np.uint8)
-    view = View(Path("a.png"), (640, 480), thumbnail, corners, turned=False, note="")
+    view = Examined(Path("a.png"), (640, 480), thumbnail, corners, turned=False, note="")
     expected = [[-0.5, -0.5], [0, 0], [319.5, 239.5], [160, 1]]
     assert np.allclose(view.thumbnail_corners, expected, atol=1e-12)
 
@@ -179,7 +179,7 @@ def test_corners_lie_on_the_thumbnail_where_they_lie_on_the_photograph():
 def test_many_photographs_go_on_several_sheets():
     board = Chessboard((9, 6), 20.0)
     picture = np.zeros((48, 64), np.uint8)
-    view = View(Path("a.png"), (64, 48), picture, None, turned=False, note="")
+    view = Examined(Path("a.png"), (64, 48), picture, None, turned=False, note="")
     assert list(corner_sheets([view] * 40, board)) == ["corners.png"]
     assert list(corner_sheets([view] * 41, board)) == ["corners-1.png", "corners-2.png"]
 
@@ -377,7 +377,7 @@ def test_the_version_is_told(capsys):
 
 
 def test_a_mistake_of_ours_is_one_line_too(photos, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("cvnotes.commands.examined._look", lambda *_: 1 / 0)
+    monkeypatch.setattr("cvnotes.commands.examined._examine", lambda *_: 1 / 0)
     assert calibrate(photos, "--out", tmp_path / "out") == 1
     error = capsys.readouterr().err
     assert one_line(error)
@@ -389,7 +389,7 @@ def test_memory_that_runs_out_is_said(photos, tmp_path, capsys, monkeypatch):
     def look(*_):
         raise MemoryError
 
-    monkeypatch.setattr("cvnotes.commands.examined._look", look)
+    monkeypatch.setattr("cvnotes.commands.examined._examine", look)
     assert calibrate(photos, "--out", tmp_path / "out") == 1
     assert capsys.readouterr().err == "cvnotes calibrate: there is not enough memory for this\n"
 
@@ -403,11 +403,11 @@ SLOW = """
 """
 PATCHES = {
     "while looking for corners": """
-    import cvnotes.commands.examined as views
+    import cvnotes.commands.examined as examined
     def slow(*_):
         Path("ready").touch()
         time.sleep(60)
-    views._look = slow
+    examined._examine = slow
     """,
     "while writing": """
     import os

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from test_exercises_second import source_of
 
-from cvnotes.commands.grade import add_parser, table
+from cvnotes.commands.grade import add_parser, marks_csv
 from cvnotes.learn import EXERCISES
 from cvnotes.learn.checker.report import Report
 from cvnotes.learn.exercises import notebook_of
@@ -342,7 +342,7 @@ def test_ids_show_who_handed_in_whose_numbers(tmp_path):
 
 def test_a_spreadsheet_takes_no_text_for_a_formula():
     mark = Mark("=cmd()", "@x.ipynb", {}, ("dlt",), ids=("+1",), remark="-1")
-    row = next(csv.DictReader(table([mark]).splitlines()))
+    row = next(csv.DictReader(marks_csv([mark]).splitlines()))
     assert [row[k] for k in ("student", "notebook", "id", "remark")] == [
         "'=cmd()", "'@x.ipynb", "'+1", "'-1",
     ]  # fmt: skip
@@ -351,7 +351,7 @@ def test_a_spreadsheet_takes_no_text_for_a_formula():
 def test_exercises_that_a_notebook_does_not_have_are_left_blank():
     one = Mark("a", "01.ipynb", {"lift": Report("lift", "right", "")}, ("lift",))
     two = Mark("a", "06.ipynb", {}, ("dlt",))
-    rows = list(csv.DictReader(table([one, two]).splitlines()))
+    rows = list(csv.DictReader(marks_csv([one, two]).splitlines()))
     assert [(r["lift"], r["dlt"]) for r in rows] == [("1", ""), ("", "0")]
 
 

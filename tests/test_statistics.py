@@ -12,7 +12,7 @@ from cvnotes.base import levenberg_marquardt
 from cvnotes.calibration import calibrate
 from cvnotes.calibration.arrow import solve_arrow
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import Problem, move
+from cvnotes.calibration.refinement import Problem, take_step
 from cvnotes.calibration.steps import Steps
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
@@ -153,7 +153,7 @@ def test_the_bands_refuse_what_is_not_refined_to_the_end(
         x = next(Steps(SIZE, intrinsics=intrinsics).starts(problem))
         if iterations:
             x = levenberg_marquardt(
-                x, problem.linearise, solve_arrow, move, max_iterations=iterations
+                x, problem.linearise, solve_arrow, take_step, max_iterations=iterations
             ).x
         d.append(x.shared - TRUTH)
     assert refused(np.array(d), bound)

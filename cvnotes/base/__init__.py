@@ -1,5 +1,6 @@
 """What everybody stands on: errors that teach, guards of input, the least-squares loop."""
 
+from cvnotes.base.chunks import chunks
 from cvnotes.base.errors import (
     CalibrationWarning,
     ConvergenceError,
@@ -28,8 +29,9 @@ from cvnotes.base.guards import (
     rotation,
     target_size,
 )
-from cvnotes.base.images import Image, checked_fill, checked_image, positions
+from cvnotes.base.images import Image, checked_fill, checked_image, luma, positions, stretched
 from cvnotes.base.optimise import Minimum, levenberg_marquardt, numerical_jacobian, solve_dense
+from cvnotes.base.text import text_table
 
 __all__ = [
     "Array",
@@ -60,6 +62,10 @@ __all__ = [
     "checked_image",
     "checked_fill",
     "positions",
+    "luma",
+    "stretched",
+    "chunks",
+    "text_table",
     "Minimum",
     "levenberg_marquardt",
     "solve_dense",

@@ -1,14 +1,20 @@
-"""The guards of pictures, of grey values and of positions in a picture."""
+"""Pictures: their guards, their grey levels, and positions in them."""
 
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from cvnotes.base.chunks import chunks
 from cvnotes.base.errors import CvnotesError, InputTypeError, ShapeError
 from cvnotes.base.guards import Array, numbers, real
 
 Image = npt.NDArray[np.uint8 | np.uint16 | np.float32 | np.float64]
+
+_ENOUGH_PIXELS = 1_000_000  # to tell a picture's darkest and brightest parts
+_PIXELS_AT_A_TIME = 30_000
+_RGB = np.array([0.299, 0.587, 0.114], np.float32)
+_FLAT = 1e-100  # contrast between grey levels that is none
 
 
 def checked_image(x: Any, name: str = "image") -> Image:
@@ -70,3 +76,44 @@ def positions(x: Any, name: str) -> Array:
         raise ShapeError(f"{name}: expected positions (u, v) of shape (..., 2), got {array.shape}")
     with np.errstate(over="ignore"):  # of long doubles
         return array.astype(np.float64, copy=False)
+
+
+def luma(image: Image) -> Image:
+    """Weigh the colours of (height, width, 3 or 4) to grey (height, width); alpha is dropped.
+
+    Notes
+    -----
+    Y = 0.299 R + 0.587 G + 0.114 B (ITU-R BT.601); of 8-bit colours, 8-bit grey.
+
+    Examples
+    --------
+    >>> luma(np.array([[[255, 0, 0], [0, 255, 0], [0, 0, 255]]], np.uint8))
+    array([[ 76, 150,  29]], dtype=uint8)
+    """
+    height, width = image.shape[:2]
+    eight_bits = image.dtype == np.uint8
+    kind = image.dtype if eight_bits else np.result_type(image.dtype, np.float32)
+    grey = np.empty((height, width), kind)
+    for rows in chunks(height, max(1, _PIXELS_AT_A_TIME // width)):
+        Y = image[rows, :, :3] @ _RGB
+        grey[rows] = np.rint(Y) if eight_bits else Y
+    return grey
+
+
+def stretched(grey: Image) -> npt.NDArray[np.uint8]:
+    """Stretch grey levels from their darkest to their brightest thousandth over 0 to 255.
+
+    Many pictures of 16 bits hold 10 or 12 only. Those of 8 bits come back as they are, uncopied.
+
+    Examples
+    --------
+    >>> stretched(np.array([[100, 4195]], np.uint16))
+    array([[  0, 255]], dtype=uint8)
+    """
+    if grey.dtype == np.uint8:
+        return grey.astype(np.uint8, copy=False)
+    step = int(np.ceil(np.sqrt(grey.size / _ENOUGH_PIXELS)))
+    low, high = np.percentile(grey[::step, ::step], (0.1, 99.9))
+    contrast = high - low if high - low > _FLAT else 1.0
+    scaled = (grey - low) * (255 / contrast)
+    return np.asarray(scaled.round().clip(0, 255), dtype=np.uint8)

@@ -41,7 +41,7 @@ def levenberg_marquardt(
     x: X,
     linearise: Callable[[X], tuple[float, System]],
     solve: Callable[[System, float], tuple[Step, float]],
-    move: Callable[[X, Step], X],
+    take_step: Callable[[X, Step], X],
     *,
     follow: Callable[[X, System], X] | None = None,
     max_iterations: int = 100,
@@ -58,7 +58,7 @@ def levenberg_marquardt(
         x → (cost, system): the sum of squares at x and whatever `solve` needs.
     solve : callable
         (system, damping μ) → (step, predicted decrease of the cost).
-    move : callable
+    take_step : callable
         (x, step) → the new x.
     follow : callable, optional
         (x, system) → x with some of its parameters brought to their best, the others held.
@@ -97,7 +97,7 @@ def levenberg_marquardt(
     damping, previous = 0.0, 0.0
     for iteration in range(1, max_iterations + 1):
         step, predicted = solve(system, damping)
-        x_new = move(x, step)
+        x_new = take_step(x, step)
         shrinks = max(_SHRINKS, predicted / previous) if previous > 0 else 1.0
         # (a decrease below 0 is no decrease: it comes from rounding where J is nearly singular)
         close = abs(predicted) * min(1.0, shrinks) <= tolerance * cost + floor

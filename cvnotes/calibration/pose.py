@@ -176,8 +176,8 @@ def _refine(camera: Camera, start: Pose, W: Array, m: Array) -> Minimum[Pose, Ar
         J = np.concatenate([-by_M @ skew_matrix(RW), by_M, r[:, :, None]], axis=-1).reshape(-1, 7)
         return float((r * r).sum()), J.T @ J
 
-    def move(x: Pose, step: Array) -> Pose:
+    def take_step(x: Pose, step: Array) -> Pose:
         return exp_so3(step[:3]) @ x[0], x[1] + step[3:]
 
     floor = 1e-25 * m.size
-    return levenberg_marquardt(start, linearise, solve_dense, move, floor=floor)
+    return levenberg_marquardt(start, linearise, solve_dense, take_step, floor=floor)

@@ -237,13 +237,13 @@ def refine_ppm(P: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
         system[:12, :12] += np.outer(p, p)
         return cost, system
 
-    def move(p: Array, step: Array) -> Array:
+    def take_step(p: Array, step: Array) -> Array:
         return np.asarray((p + step) / np.linalg.norm(p + step))
 
     start = (N2 @ (P / np.abs(P).max()) @ np.linalg.inv(N1)).ravel()
     start /= np.linalg.norm(start)
     with np.errstate(all="ignore"):  # from a senseless start; no step is then found
-        p = levenberg_marquardt(start, linearise, solve_dense, move, floor=1e-28 * n).x
+        p = levenberg_marquardt(start, linearise, solve_dense, take_step, floor=1e-28 * n).x
     P = np.linalg.solve(N2, p.reshape(3, 4) @ N1)
     return np.asarray(P / np.linalg.norm(P))
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, ConvergenceError, Minimum, levenberg_marquardt
+from cvnotes.base import Array, ConvergenceError, Minimum, chunks, levenberg_marquardt
 from cvnotes.calibration.arrow import Arrow, solve_arrow
 from cvnotes.camera import Lens, exp_so3
 from cvnotes.camera.lens_fold import horner, radial_factor
@@ -95,8 +95,7 @@ class Problem:
         """Give the cost and the normal equations at x."""
         q, n_views = len(x.shared), len(self.m)
         normal, costs = np.empty((n_views, q + 7, q + 6)), np.empty(n_views)
-        for i in range(0, n_views, _CHUNK):
-            part = slice(i, i + _CHUNK)
+        for part in chunks(n_views, _CHUNK):
             u, v = self._jacobian(x, part).transpose(1, 2, 0, 3)
             # Two factors of different shape: for J Jᵀ with itself NumPy takes a slower road.
             np.matmul(u, u[:, :-1].mT, out=normal[part])
@@ -240,7 +239,7 @@ def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Min
         start,
         problem.linearise,
         solve_arrow,
-        move,
+        take_step,
         follow=poses_follow,
         tolerance=tolerance,
         floor=floor,
@@ -253,7 +252,7 @@ def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Min
     return found
 
 
-def move(x: State, step: tuple[Array, Array]) -> State:
+def take_step(x: State, step: tuple[Array, Array]) -> State:
     """Take a step: R ← exp(ω) R, everything else by addition."""
     shared, poses = step
     return State(x.shared + shared, exp_so3(poses[:, :3]) @ x.R, x.T + poses[:, 3:])
@@ -265,4 +264,4 @@ def poses_follow(x: State, system: Arrow) -> State:
         step = np.linalg.solve(system.poses, system.g_poses[..., None])[..., 0]
     except np.linalg.LinAlgError:  # too far away to be brought back
         return x
-    return move(x, (np.zeros_like(x.shared), np.asarray(-step)))
+    return take_step(x, (np.zeros_like(x.shared), np.asarray(-step)))

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, numbers, points
+from cvnotes.base import Array, CvnotesError, ShapeError, chunks, numbers, points
 from cvnotes.camera.lens_fold import fold_radius, horner, radial_factor
 from cvnotes.camera.lens_inverse import Inverse
 
@@ -202,8 +202,7 @@ class Lens:
         """Undistort rows m (..., 2) without a guard; `columns` turns some of them into x', y'."""
         rows = m.reshape(-1, 2)
         out = np.empty_like(rows)
-        for i in range(0, len(rows), _CHUNK):
-            part = slice(i, i + _CHUNK)
+        for part in chunks(len(rows), _CHUNK):
             out[part, 0], out[part, 1] = self._undistort_columns(*columns(rows[part]))
         return out.reshape(m.shape)
 

@@ -16,7 +16,7 @@ from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration
-    from cvnotes.commands.examined import View
+    from cvnotes.commands.examined import Examined
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -44,7 +44,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(args: argparse.Namespace) -> int:
     """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no such board, 3 not reliable."""
-    from cvnotes.commands.examined import look
+    from cvnotes.commands.examined import examine
     from cvnotes.commands.report import camera_report, doubts, photo_table
 
     columns, rows = args.corners
@@ -55,10 +55,10 @@ def run(args: argparse.Namespace) -> int:
         complain("calibrate", str(error))
         return 2
     check_folder(args.out)
-    views, rejected = look(args.photos, board)
-    used = [view for view in views if view.corners is not None]
-    files, rejected = _brief([printable(view.path) for view in used], rejected)
-    notes = [view.note for view in used]
+    examined, rejected = examine(args.photos, board)
+    used = [photo for photo in examined if photo.corners is not None]
+    files, rejected = _brief([printable(photo.path) for photo in used], rejected)
+    notes = [photo.note for photo in used]
     try:
         result = _calibrate(used, board, args)
     except CvnotesError as error:
@@ -67,9 +67,9 @@ def run(args: argparse.Namespace) -> int:
         return 1
     say(photo_table(files, notes, rejected, result) + "\n")
     say(camera_report(result) + "\n")
-    for sentence in doubts(result, views, symmetric=symmetric):
+    for sentence in doubts(result, examined, symmetric=symmetric):
         say(f"! {sentence}")
-    contents = _contents(result, views, board, files, rejected)
+    contents = _contents(result, examined, board, files, rejected)
     write_whole({args.out / name: data for name, data in contents.items()})
     say(f"Written to {printable(args.out)}: {', '.join(contents)}")
     if not result.reliable:
@@ -79,24 +79,24 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _calibrate(
-    views: "Sequence[View]", board: Chessboard, args: argparse.Namespace
+    examined: "Sequence[Examined]", board: Chessboard, args: argparse.Namespace
 ) -> "Calibration":
     from cvnotes.calibration import calibrate
 
-    if not views:
+    if not examined:
         raise DegenerateError(
             "a board of {}×{} inner corners was found in none (count where four squares meet, "
             "not squares)".format(*args.corners)
         )
-    seen = [view.corners for view in views if view.corners is not None]
+    seen = [photo.corners for photo in examined if photo.corners is not None]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CalibrationWarning)  # the report has them
-        return calibrate(board.points, seen, views[0].size, lens=args.lens, skew=args.skew)
+        return calibrate(board.points, seen, examined[0].size, lens=args.lens, skew=args.skew)
 
 
 def _contents(
     result: "Calibration",
-    views: "Sequence[View]",
+    examined: "Sequence[Examined]",
     board: Chessboard,
     files: Sequence[str],
     rejected: Sequence[Rejected],
@@ -109,7 +109,7 @@ def _contents(
     return {
         "calibration.json": calibration_json(result, files=files, rejected=rejected).encode(),
         "calibration.yml": opencv_yaml(result.camera).encode(),
-        **pictures(result, views, board, files),
+        **pictures(result, examined, board, files),
     }
 
 

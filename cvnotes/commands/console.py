@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -41,27 +41,6 @@ def progress(items: Iterable[T], *, total: int) -> Iterator[T]:
     from tqdm import tqdm
 
     yield from tqdm(items, total=total, unit=" photographs", disable=None, leave=False)
-
-
-def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Lay out text in columns: the first and the last to the left, those between to the right.
-
-    Examples
-    --------
-    >>> print(table(["view", "px", "note"], [["left01.jpg", "0.2", ""], ["b", "11.5", "far off"]]))
-    view          px  note
-    left01.jpg   0.2
-    b           11.5  far off
-    """
-    lines = [list(header), *map(list, rows)]
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if i in (0, len(widths) - 1) else cell.rjust(width)
-            for i, (cell, width) in enumerate(zip(line, widths, strict=True))
-        ).rstrip()
-        for line in lines
-    )
 
 
 def _fitting(text: str, encoding: str | None) -> str:

@@ -17,7 +17,7 @@ _THUMBNAIL = 480  # px wide
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class Examined:
     """A photograph in which the board was looked for; its pixels are not kept.
 
     Parameters
@@ -52,7 +52,7 @@ class View:
         return np.asarray((self.corners + 0.5) * self.thumbnail.shape[1] / self.size[0] - 0.5)
 
 
-def look(paths: Sequence[str], board: Chessboard) -> tuple[list[View], list[Rejected]]:
+def examine(paths: Sequence[str], board: Chessboard) -> tuple[list[Examined], list[Rejected]]:
     """Look for the board in photographs; gives those looked at, and those that cannot be used.
 
     A photograph without the board is in both lists.
@@ -60,25 +60,27 @@ def look(paths: Sequence[str], board: Chessboard) -> tuple[list[View], list[Reje
     files, rejected = list_photos(paths)
     if not files and not rejected:
         raise FileError(f"no photographs in {', '.join(map(printable, paths))}")
-    views = []
+    examined = []
     for photo in progress(open_photos(files), total=len(files)):
         if isinstance(photo, Photo):
-            views.append(_look(photo, board))
-            if views[-1].corners is None:
-                rejected.append(Rejected(printable(photo.path), views[-1].note))
+            examined.append(_examine(photo, board))
+            if examined[-1].corners is None:
+                rejected.append(Rejected(printable(photo.path), examined[-1].note))
         else:
             rejected.append(photo)
-    return views, rejected
+    return examined, rejected
 
 
-def _look(photo: Photo, board: Chessboard) -> View:
+def _examine(photo: Photo, board: Chessboard) -> Examined:
     from cvnotes.targets import find_corners
 
     try:
         corners, note = find_corners(photo.grey, board), photo.note
     except CornersNotFound as error:
         corners, note = None, str(error)
-    return View(photo.path, photo.size, _thumbnail(photo), corners, photo.orientation != 1, note)
+    return Examined(
+        photo.path, photo.size, _thumbnail(photo), corners, photo.orientation != 1, note
+    )
 
 
 def _thumbnail(photo: Photo) -> npt.NDArray[np.uint8]:

@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
         for mark in marks:
             graded.append(mark)
             say(f"{len(graded)} of {n}  {one_line(mark)}")
-        write_whole({out: table(graded).encode()})
+        write_whole({out: marks_csv(graded).encode()})
     except CvnotesError as error:
         complain("grade", str(error))
         return 1
@@ -78,12 +78,12 @@ def one_line(mark: Mark) -> str:
     return f"{name}: {mark.points} of {len(mark.expected)}{remark}"
 
 
-def table(marks: Sequence[Mark]) -> str:
+def marks_csv(marks: Sequence[Mark]) -> str:
     """Write the marks as CSV: a row for each notebook, a column for each exercise.
 
     Examples
     --------
-    >>> print(table([Mark("ada", "=1+1.ipynb", expected=("dlt",))]).splitlines()[1])
+    >>> print(marks_csv([Mark("ada", "=1+1.ipynb", expected=("dlt",))]).splitlines()[1])
     ada,'=1+1.ipynb,0,1,0,0,,,
     """
     asked = {name for mark in marks for name in mark.expected}

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cvnotes.base import Array
-from cvnotes.commands.console import table
-from cvnotes.commands.examined import View
+from cvnotes.base import Array, text_table
+from cvnotes.commands.examined import Examined
 from cvnotes.files import Rejected
 from cvnotes.show.figures.quality import covered_cells
 
@@ -33,7 +32,9 @@ def photo_table(
     rows = [list(row) for row in zip(files, rms, notes, strict=True)]
     rows += [[r.file, "–", _first_clause(r.reason)] for r in rejected]
     long = dict.fromkeys(r.reason for r in rejected if _first_clause(r.reason) != r.reason)
-    return "\n".join([table(["photograph", "RMS (px)", "note"], rows), *(f"! {r}" for r in long)])
+    return "\n".join(
+        [text_table([["photograph", "RMS (px)", "note"], *rows]), *(f"! {r}" for r in long)]
+    )
 
 
 def camera_report(result: "Calibration") -> str:
@@ -44,7 +45,7 @@ def camera_report(result: "Calibration") -> str:
     cells = covered_cells(result.image_points, result.size)
     lines = [
         f"Camera of {width}×{height} pixels",
-        table(["", "value", "± 1 σ", ""], rows),
+        text_table([["", "value", "± 1 σ", ""], *rows]),
         f"Field of view   {field_of_view(result)}",
         f"RMS             {result.rms:.3f} px per point, of {corners} corners in "
         f"{len(result.poses)} photographs",
@@ -54,10 +55,10 @@ def camera_report(result: "Calibration") -> str:
     return "\n".join(lines)
 
 
-def doubts(result: "Calibration", views: Sequence[View], *, symmetric: bool) -> list[str]:
+def doubts(result: "Calibration", examined: Sequence[Examined], *, symmetric: bool) -> list[str]:
     """List what whoever uses the result should know, in sentences."""
     sentences = list(result.warnings)
-    if any(view.turned for view in views):
+    if any(photo.turned for photo in examined):
         sentences.append(
             "some photographs ask to be turned by their EXIF data; the camera is that of the "
             "pixels as stored (read them with cv2.IMREAD_IGNORE_ORIENTATION)"

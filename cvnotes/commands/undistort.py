@@ -6,9 +6,9 @@ import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
-from cvnotes.base import CalibrationWarning, CvnotesError, FileError
+from cvnotes.base import CalibrationWarning, CvnotesError, FileError, text_table
 from cvnotes.camera import Camera
-from cvnotes.commands.console import complain, progress, say, table
+from cvnotes.commands.console import complain, progress, say
 from cvnotes.files import (
     Photo,
     Rejected,
@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
         except CvnotesError as error:
             rejected.append(Rejected(printable(photo.path), str(error)))
     rows = [*written.values(), *([r.file, "–", r.reason] for r in rejected)]
-    say(table(["photograph", "written as", "note"], rows))
+    say(text_table([["photograph", "written as", "note"], *rows]))
     if not written:
         complain("undistort", "no photograph could be undistorted")
         return 1

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import FileError
+from cvnotes.base import FileError, luma, stretched
 from cvnotes.files.decoding import decode, header_size
 from cvnotes.files.writing import PathLike, printable
 
@@ -67,15 +67,7 @@ class Photo:
         16-bit pictures are stretched from their darkest to their brightest thousandth, because
         many hold 10 or 12 bits only.
         """
-        from PIL import Image
-
-        if self.image.ndim == 3:
-            return np.asarray(Image.fromarray(self.image).convert("L"))
-        if self.image.dtype == np.uint8:
-            return self.image
-        low, high = np.percentile(self.image, (0.1, 99.9))
-        scaled = (self.image - low) * (255 / max(high - low, 1.0))
-        return np.asarray(scaled.round().clip(0, 255), dtype=np.uint8)
+        return stretched(luma(self.image) if self.image.ndim == 3 else self.image)
 
 
 def read_photo(path: PathLike) -> Photo:

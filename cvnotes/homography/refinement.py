@@ -106,7 +106,7 @@ def _refine_one(H: Array, src: Array, dst: Array) -> Array:
         system[:9, :9] += np.outer(h, h)
         return cost, system
 
-    def move(h: Array, step: Array) -> Array:
+    def take_step(h: Array, step: Array) -> Array:
         return np.asarray((h + step) / np.linalg.norm(h + step))
 
     start = N2 @ (H / (np.abs(H).max() or 1.0)) @ inverse_similarity(N1)
@@ -114,6 +114,6 @@ def _refine_one(H: Array, src: Array, dst: Array) -> Array:
     if s[2] <= RANK * s[0]:
         raise DegenerateError("H is singular: it maps the plane onto a line or a point")
     start = start.ravel() / np.linalg.norm(start)
-    h = levenberg_marquardt(start, linearise, solve_dense, move, floor=1e-28 * n).x
+    h = levenberg_marquardt(start, linearise, solve_dense, take_step, floor=1e-28 * n).x
     refined = inverse_similarity(N2) @ h.reshape(3, 3) @ N1
     return np.asarray(refined / np.linalg.norm(refined))

@@ -50,7 +50,7 @@ class Face:
     passed: Array
     grey: Array
 
-    def look(self, d: Array) -> tuple[Mask, Array]:
+    def grey_along(self, d: Array) -> tuple[Mask, Array]:
         """Tell which directions (m, 3) meet the face, and the grey levels (m,) they find."""
         beyond = d @ self.passed.T > 0
         rows, columns = self.grey.shape
@@ -59,8 +59,8 @@ class Face:
         return hit, self.grey[j * hit, i * hit]
 
 
-def hold(target: Target, cam_from_world: Array, margin: float) -> list[Face]:
-    """Hold a target before a camera: its faces, the nearest plane first.
+def faces_before_camera(target: Target, cam_from_world: Array, margin: float) -> list[Face]:
+    """Carry the faces of a target into a camera's frame, the nearest plane first.
 
     Each board has `margin` squares of white paper around it; from behind it is plain paper. Faces
     seen edge on are left out.
@@ -69,7 +69,7 @@ def hold(target: Target, cam_from_world: Array, margin: float) -> list[Face]:
     --------
     >>> from cvnotes.camera import look_at
     >>> from cvnotes.targets import Chessboard
-    >>> (face,) = hold(Chessboard((4, 3)), look_at([0, 0, -500], [0, 0, 0]), 1.0)
+    >>> (face,) = faces_before_camera(Chessboard((4, 3)), look_at([0, 0, -500], [0, 0, 0]), 1.0)
     >>> face.grey
     array([[220., 220., 220., 220., 220., 220., 220.],
            [220.,  30., 220.,  30., 220.,  30., 220.],
@@ -97,7 +97,7 @@ def hold(target: Target, cam_from_world: Array, margin: float) -> list[Face]:
     return _aligned([face for _, face in held])
 
 
-def look(faces: list[Face], xy: Array) -> Array:
+def nearest_grey(faces: list[Face], xy: Array) -> Array:
     """Give the grey level of what is nearest at points `xy` of the plane z = 1, and 1: (m, 2).
 
     Rows are (0, 0) where nothing is.
@@ -106,8 +106,9 @@ def look(faces: list[Face], xy: Array) -> Array:
     --------
     >>> from cvnotes.camera import look_at
     >>> from cvnotes.targets import Chessboard
-    >>> faces = hold(Chessboard((4, 3)), look_at([0, 0, -500], [0, 0, 0]), 1.0)
-    >>> look(faces, np.array([[-0.01, -0.01], [0.01, -0.01], [-0.2, 0.0]]))
+    >>> cam_from_world = look_at([0, 0, -500], [0, 0, 0])
+    >>> faces = faces_before_camera(Chessboard((4, 3)), cam_from_world, 1.0)
+    >>> nearest_grey(faces, np.array([[-0.01, -0.01], [0.01, -0.01], [-0.2, 0.0]]))
     array([[ 30.,   1.],
            [220.,   1.],
            [  0.,   0.]])
@@ -115,7 +116,7 @@ def look(faces: list[Face], xy: Array) -> Array:
     d = np.column_stack([xy, np.ones(len(xy))])
     front, seen = np.zeros((len(xy), 3)), np.zeros((len(xy), 2))
     for face in faces:
-        hit, grey = face.look(d)
+        hit, grey = face.grey_along(d)
         # One difference instead of two depths, so that `folds` agrees to the last digit.
         nearer = hit & (((face.plane - front) * d).sum(axis=1) > 0)
         front[nearer], seen[nearer, 0], seen[nearer, 1] = face.plane, grey[nearer], 1
@@ -129,7 +130,8 @@ def folds(faces: list[Face]) -> list[Array]:
     --------
     >>> from cvnotes.camera import look_at
     >>> from cvnotes.targets import TwoPlanes
-    >>> (fold,) = folds(hold(TwoPlanes(), look_at([300, 0, -400], [0, 0, 0]), 1.0))
+    >>> cam_from_world = look_at([300, 0, -400], [0, 0, 0])
+    >>> (fold,) = folds(faces_before_camera(TwoPlanes(), cam_from_world, 1.0))
     >>> abs(fold[0, 1] - fold[0, 0]).round()  # the common edge, 9 fields of 25 mm, is upright
     array([  0., 225.,   0.])
     """

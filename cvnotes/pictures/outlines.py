@@ -10,7 +10,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, px_from_xy
-from cvnotes.pictures.faces import Face, Mask, Target, folds, hold, look
+from cvnotes.pictures.faces import Face, Mask, Target, faces_before_camera, folds, nearest_grey
 from cvnotes.pictures.pixel_means import Indices, subdivide
 
 _BESIDE = 1e-11  # how far from an edge, on z = 1, the colours on either side of it are read
@@ -52,7 +52,7 @@ def edges_in_picture(
     array([[190.,   0.],
            [220.,   1.]])
     """
-    faces = hold(target, camera.G, margin)
+    faces = faces_before_camera(target, camera.G, margin)
     if not faces:
         return np.empty((0, 2)), np.empty((0, 2)), np.empty((0, 2))
     lines = np.concatenate([face.lines for face in faces] + folds(faces))
@@ -78,7 +78,7 @@ def _separating(faces: list[Face], a: Array, b: Array) -> tuple[Array, Array, Ar
     right = along[:, ::-1] * [1, -1]
     right = _BESIDE * right / np.linalg.norm(along, axis=1, keepdims=True)
     middle = (a + b) / 2
-    jump = look(faces, middle + right) - look(faces, middle - right)
+    jump = nearest_grey(faces, middle + right) - nearest_grey(faces, middle - right)
     keep = jump.any(axis=1)
     return a[keep], b[keep], jump[keep]
 
@@ -130,7 +130,7 @@ def _rim(faces: list[Face], lines: Array, centre: Array, radius: float) -> tuple
     towards, half = np.arctan2(ny, nx)[meets], np.arccos(cosine[meets])
     phi = np.sort(np.mod(np.concatenate([[0], towards - half, towards + half]), 2 * np.pi))
     phi = np.append(phi, 2 * np.pi)
-    inside = look(faces, _on_rim((phi[1:] + phi[:-1]) / 2, centre, radius * (1 - _BESIDE)))
+    inside = nearest_grey(faces, _on_rim((phi[1:] + phi[:-1]) / 2, centre, radius * (1 - _BESIDE)))
     keep = inside[:, 1] > 0
     return np.column_stack([phi[:-1], phi[1:]])[keep], -inside[keep]
 

@@ -9,7 +9,7 @@ and squares smaller than a pixel are then all alike, and nothing is sampled.
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, number, points, target_size
+from cvnotes.base import Array, CvnotesError, DegenerateError, chunks, number, points, target_size
 
 Indices = npt.NDArray[np.intp]
 
@@ -186,7 +186,7 @@ def _deposit_blurred(picture: Array, ends: Array, jump: Array, blur: float, reac
     weight = np.tile(-jump.T * step[0] / 2, 2)
     offsets = np.arange(-reach, reach + 1)
     n = max(_DEPOSITS // len(offsets) ** 2, 1)
-    for part in (slice(i, i + n) for i in range(0, len(u), n)):
+    for part in chunks(len(u), n):
         row = np.floor(v[part, None]).astype(int) + offsets
         column = np.floor(u[part, None]).astype(int) + offsets
         rows, columns = _spread(row - v[part, None], column - u[part, None], blur)

@@ -17,13 +17,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, numbers, real
+from cvnotes.base import Array, CvnotesError, ShapeError, chunks, numbers, real
 
 Indices = npt.NDArray[np.int32]
 
 # From here on embree's search tree is worth its building, and its single precision.
 _MANY = 1000
-_CHUNK = 256
+_CHUNK = 256  # triangles at a time
 
 
 class Hits(NamedTuple):
@@ -114,15 +114,15 @@ def _own_search(n: Array, det: Array, xy: Array) -> Indices:
     high = np.stack([np.fmax.reduce(x, axis=1), np.fmax.reduce(y, axis=1)])
     first = np.full(x.shape, -1, dtype=np.int32)
     nearness = np.zeros(x.shape)  # 1 / z
-    for start in range(0, len(n), _CHUNK):
-        touched = _may_touch(n[start : start + _CHUNK], low, high)
+    for some in chunks(len(n), _CHUNK):
+        touched = _may_touch(n[some], low, high)
         for i in np.flatnonzero(touched.any(axis=1)):
             groups = np.flatnonzero(touched[i])
-            e0, e1, e2 = (a * x[groups] + b * y[groups] + c for a, b, c in n[start + i])
-            inverse_z = (e0 + e1 + e2) / det[start + i]
+            e0, e1, e2 = (a * x[groups] + b * y[groups] + c for a, b, c in n[some.start + i])
+            inverse_z = (e0 + e1 + e2) / det[some.start + i]
             seen = (e0 >= 0) & (e1 >= 0) & (e2 >= 0) & (inverse_z > nearness[groups])
             row, ray = np.nonzero(seen)
-            first[groups[row], ray] = start + i
+            first[groups[row], ray] = some.start + i
             nearness[groups[row], ray] = inverse_z[row, ray]
     return first
 

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, InputTypeError, target_size
+from cvnotes.base import Array, CvnotesError, InputTypeError, chunks, target_size
 from cvnotes.camera import Camera, move
 from cvnotes.pictures.antialiasing import (
     TILE,
@@ -86,13 +86,13 @@ def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "
     surfaces = Surfaces.seen_by(camera, scene)
     middle = pixel_centres(camera.size)
     xy = camera.ideal(middle)
-    colour, square = surfaces.look(in_tiles(xy), engine)
+    colour, square = surfaces.colours_along(in_tiles(xy), engine)
     signature = np.moveaxis(np.concatenate([255 * colour, square]), 0, -1)
     # 2. many, where a colour or a square changes or an edge passes
     busy = changing(out_of_tiles(signature, camera.size))
     busy |= crossed(camera, move(camera.G, scene.vertices)[scene.edges], xy)
     picture = out_of_tiles(np.moveaxis(colour, 0, -1), camera.size)
-    picture[busy] = _look_closely(surfaces, camera, middle[busy], samples, engine)
+    picture[busy] = _supersampled(surfaces, camera, middle[busy], samples, engine)
     return 255 * picture
 
 
@@ -131,13 +131,13 @@ def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
         raise CvnotesError(f"samples: expected a whole number of rays, at least 1, got {samples!r}")
 
 
-def _look_closely(surfaces: Surfaces, camera: Camera, m: Array, samples: int, engine: str) -> Array:
+def _supersampled(surfaces: Surfaces, camera: Camera, m: Array, samples: int, engine: str) -> Array:
     """Give the mean colours (n, 3) that `samples` rays in each of the pixels m (n, 2) see."""
     out, order, offsets = np.empty((len(m), 3)), tile_order(m), within_pixel(samples)
-    for start in range(0, len(m), _PIXELS):
-        some = order[start : start + _PIXELS]
+    for part in chunks(len(m), _PIXELS):
+        some = order[part]
         some = np.resize(some, -(-len(some) // TILE) * TILE)  # whole groups; a few twice
         xy = camera.ideal(m[some, None] + offsets).reshape(-1, TILE * samples, 2)
-        colour, _ = surfaces.look(xy, engine)
+        colour, _ = surfaces.colours_along(xy, engine)
         out[some] = colour.reshape(3, -1, samples).mean(axis=2).T
     return out

@@ -41,7 +41,7 @@ class Surfaces(NamedTuple):
             camera.R[:, 1],
         )
 
-    def look(self, xy: Array, engine: str) -> tuple[Array, Array]:
+    def colours_along(self, xy: Array, engine: str) -> tuple[Array, Array]:
         """Give the colours (3, groups, k) that rays (groups, k, 2) see, and the squares (2, …)."""
         triangle, depth = first_hits(self.corners, xy, engine=engine)
         x, y = np.moveaxis(xy, -1, 0).copy()

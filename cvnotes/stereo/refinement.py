@@ -13,7 +13,7 @@ import numpy as np
 
 from cvnotes.base import Array, DegenerateError, Minimum, levenberg_marquardt
 from cvnotes.calibration.arrow import Arrow, solve_arrow
-from cvnotes.calibration.refinement import Problem, State, move
+from cvnotes.calibration.refinement import Problem, State, take_step
 from cvnotes.camera import exp_so3, skew_matrix
 
 # Squared pixels per coordinate that rounding alone may leave.
@@ -71,13 +71,13 @@ class StereoProblem:
             )
         return cost_left + cost_right, arrow
 
-    def move(self, x: StereoState, step: tuple[Array, Array]) -> StereoState:
+    def take_step(self, x: StereoState, step: tuple[Array, Array]) -> StereoState:
         """Take a step: rotations from the left, everything else by addition."""
         shared, poses = step
         q = len(x.left.shared)
         cameras = np.zeros(q + len(x.right)) if self.cameras_known else shared[:-6]
         return StereoState(
-            move(x.left, (cameras[:q], poses)),
+            take_step(x.left, (cameras[:q], poses)),
             x.right + cameras[q:],
             exp_so3(shared[-6:-3]) @ x.R,
             x.T + shared[-3:],
@@ -92,7 +92,7 @@ class StereoProblem:
             The pairs do not determine the parameters.
         """
         floor = _ROUNDING * (self.left.m.size + self.right.m.size)
-        found = levenberg_marquardt(start, self.linearise, solve_arrow, self.move, floor=floor)
+        found = levenberg_marquardt(start, self.linearise, solve_arrow, self.take_step, floor=floor)
         depths = np.concatenate([found.x.left.T[:, 2], found.x.of_right().T[:, 2]])
         if depths.min() <= 0:
             raise DegenerateError(

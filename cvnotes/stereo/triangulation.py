@@ -210,10 +210,10 @@ def _refined(cameras: list[Camera], RT: Array, W: Array, m: Array) -> Array:
         step = np.asarray(-np.linalg.solve(damped, gradient[:, :, None])[:, :, 0])
         return step, -float((gradient * step).sum())
 
-    def move(W: Array, step: Array) -> Array:
+    def take_step(W: Array, step: Array) -> Array:
         return np.asarray(W + (D @ step[:, :, None])[:, :, 0])
 
-    return levenberg_marquardt(W, linearise, solve, move, floor=1e-25 * m.size).x
+    return levenberg_marquardt(W, linearise, solve, take_step, floor=1e-25 * m.size).x
 
 
 def _moves(W: Array) -> Array:

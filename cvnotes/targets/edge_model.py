@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array
+from cvnotes.base import Array, chunks
 
 Mask = npt.NDArray[np.bool_]
 Single = npt.NDArray[np.float32]
@@ -148,8 +148,7 @@ def minimise(
 
 def _system(p: Array, window: Window) -> Array:
     system = np.empty((len(p), PARAMETERS + 1, PARAMETERS + 1))
-    for i in range(0, len(p), _CHUNK):
-        part = slice(i, i + _CHUNK)
+    for part in chunks(len(p), _CHUNK):
         J = jacobian(p[part], window.rows(part))
         system[part] = J @ J.mT
     return system

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CornersNotFound, Image, InputTypeError
+from cvnotes.base import Array, CornersNotFound, Image, InputTypeError, stretched
 from cvnotes.targets.chessboard import Chessboard
 from cvnotes.targets.doubts import NotABoard, check_board, check_pattern_ends
 from cvnotes.targets.edge_corners import fit_edges
@@ -21,8 +21,6 @@ _ATTEMPTS = (
     ("SB", find_sb, 12_000_000),
 )
 _HINT_PIXELS = 500_000
-_ENOUGH_PIXELS = 1_000_000  # to tell a picture's darkest and brightest parts
-_FLAT = 1e-100  # contrast between grey levels that is none
 
 
 def find_corners(image: npt.ArrayLike, board: Chessboard) -> Array:
@@ -74,7 +72,7 @@ def find_corners(image: npt.ArrayLike, board: Chessboard) -> Array:
     if not isinstance(board, Chessboard):
         raise InputTypeError(f"board: expected a Chessboard, got {type(board).__name__}")
     picture = grey_picture(image)
-    grey, tried = _eight_bits(picture), []
+    grey, tried = stretched(picture), []
     if min(board.corners) > 2:
         for name, finder, scale in _attempts(grey):
             found = finder(scale, board.corners)
@@ -126,17 +124,6 @@ def _reduced(grey: Grey8, pixels: int) -> Grey8:
     if zoom >= 1:
         return grey
     return shrink(grey, (max(int(width * zoom), 1), max(int(height * zoom), 1)))
-
-
-def _eight_bits(picture: Image) -> Grey8:
-    """Stretch grey levels to 0 to 255 for OpenCV, but for the darkest and brightest thousandth."""
-    if picture.dtype == np.uint8:
-        return picture.astype(np.uint8, copy=False)
-    step = int(np.ceil(np.sqrt(picture.size / _ENOUGH_PIXELS)))
-    low, high = np.percentile(picture[::step, ::step], (0.1, 99.9))
-    contrast = high - low if high - low > _FLAT else 1.0
-    scaled = (picture - low) * (255 / contrast)
-    return np.asarray(scaled.round().clip(0, 255), dtype=np.uint8)
 
 
 def _size(image: Image) -> str:

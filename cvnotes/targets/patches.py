@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, Image, ShapeError, checked_image
+from cvnotes.base import Array, CvnotesError, Image, ShapeError, checked_image, luma
 
 Mask = npt.NDArray[np.bool_]
 
@@ -26,21 +26,12 @@ def grey_picture(x: Any, name: str = "image") -> Image:
     if image.ndim == 3 and image.shape[2] == 2:
         raise ShapeError(f"{name}: expected grey, RGB or RGBA, got {image.shape}; pass grey alone")
     if image.ndim == 3:
-        red = image[..., 0]
-        image = red if image.shape[2] == 1 else _luma(red, image[..., 1], image[..., 2])
+        image = image[..., 0] if image.shape[2] == 1 else luma(image)
     if image.dtype.kind == "f" and not np.isfinite(image).all():
         raise CvnotesError(f"{name} contains NaN or infinite grey levels; give them a number")
     if image.dtype.kind == "f" and np.abs(image).max() > _BRIGHTEST:
         raise CvnotesError(f"{name}: no picture has grey levels beyond {_BRIGHTEST:g}")
     return image
-
-
-def _luma(red: Image, green: Image, blue: Image) -> Image:
-    """Weigh the colours as ITU-R BT.601 does; of 8-bit colours, 8-bit grey."""
-    grey = np.float32(0.299) * red
-    grey += np.float32(0.587) * green
-    grey += np.float32(0.114) * blue
-    return np.rint(grey).astype(np.uint8) if red.dtype == np.uint8 else np.asarray(grey)
 
 
 def patches(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Mask]:

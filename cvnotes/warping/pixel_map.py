@@ -12,6 +12,7 @@ from cvnotes.base import (
     CvnotesError,
     InputTypeError,
     ShapeError,
+    chunks,
     points,
     positions,
     target_size,
@@ -113,8 +114,7 @@ def tiles(mapping: Mapping, size: tuple[int, int]) -> Iterator[tuple[slice, Arra
     table = None if callable(mapping) else _checked_array(mapping, size)
     columns = columns_of(mapping) if table is None else None
     m_h = homogeneous_columns(np.tile(np.arange(width), rows), np.repeat(np.arange(rows), width))
-    for first in range(0, height, rows):
-        part = slice(first * width, min(first + rows, height) * width)
+    for part in chunks(height * width, rows * width):
         if table is not None:
             m = table[part].T.copy()
         elif columns is not None:

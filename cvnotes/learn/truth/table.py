@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from html import escape
 from math import floor, isnan, log10
 
+from cvnotes.base import text_table
+
 _HEADER = ("", "estimate", "truth", "error", "expected", "")
 
 
@@ -82,16 +84,7 @@ class Verification:
         return f"{len(off)} of {len(self.rows)} off: {', '.join(off[:6])}" + " …" * (len(off) > 6)
 
     def __repr__(self) -> str:
-        lines = [_HEADER, *(row.cells() for row in self.rows)]
-        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-        text = [
-            "  ".join(
-                cell.ljust(width) if i in (0, 5) else cell.rjust(width)
-                for i, (cell, width) in enumerate(zip(line, widths, strict=True))
-            ).rstrip()
-            for line in lines
-        ]
-        return "\n".join([self.summary, *text])
+        return f"{self.summary}\n{text_table([_HEADER, *(row.cells() for row in self.rows)])}"
 
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{escape(cell)}</th>" for cell in _HEADER)
