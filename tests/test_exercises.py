@@ -293,8 +293,8 @@ def test_a_right_answer_is_shown_at_the_scale_and_sign_of_the_students():
     report = check("dlt", my_dlt)
     assert report.misconception is None
     assert np.abs(report.yours - report.wanted).max() < 0.02
-    assert "Scale and sign are free" in repr(report)
-    assert "Scale and sign" not in repr(check("lift", lambda x, k: x * 1.1))
+    assert "A factor of the whole answer does not matter" in repr(report)
+    assert "A factor of the whole" not in repr(check("lift", lambda x, k: x * 1.1))
 
 
 def test_a_right_answer_has_a_last_entry_of_1_where_the_students_has():

@@ -49,11 +49,17 @@ def _explains(
     tried: Sequence[Tried],
     wrong: set[int],
 ) -> bool:
-    """Tell whether a mistake gives the same, wherever it gives anything, and is wrong there too."""
+    """Tell whether a mistake gives the same as the student's function, and is wrong where it is.
+
+    Where the mistake gives no numbers, neither must the function: what it gave instead, an
+    exception, NaN or infinity, depends on how it was written.
+    """
     compared = 0
     for case, outcome in tried:
         given = what_it_gives(gives, case.args)
         if given is None:
+            if outcome.value is not None and np.isfinite(outcome.value).all():
+                return False
             continue
         if outcome.value is None or not same(outcome.value, given, tolerance(outcome.dtype)):
             return False

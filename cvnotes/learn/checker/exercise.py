@@ -28,12 +28,15 @@ class Case:
         What is special about this case; properties with the same word look at it.
     right : ndarray
         One right answer, worked out after the student's.
+    slack : float
+        How many times wider bounds are for this answer: 1, and more in single precision.
     """
 
     args: tuple[Any, ...]
     truth: Any = None
     about: str = ""
     right: Array = field(default_factory=lambda: np.zeros(0))
+    slack: float = 1.0
 
     @property
     def size(self) -> int:
@@ -50,7 +53,9 @@ class Property:
     sentence : str
         What must be true.
     holds : callable or None
-        (answer, case) → bool; None compares with the right answer of the case.
+        (answer, case) → bool; None compares with the right answer of the case. It is asked only
+        about answers of the right shape that are finite where the right one is, and its bounds
+        take the factor ``case.slack``.
     about : str
         Which cases it looks at.
     """
@@ -64,9 +69,9 @@ class Property:
 class Misconception:
     """A classic mistake: its name, a sentence that helps, and what it gives.
 
-    `gives` takes what the student's function takes; None where the mistake gives nothing
-    definite. `variants` make the same mistake on other ways. `same` tells when two results of
-    it are equal, if that is not what the exercise calls equal.
+    `gives` takes what the student's function takes; None where the mistake gives no numbers:
+    an exception, NaN or infinity, as it happens. `variants` make the same mistake on other ways.
+    `same` tells when two results of it are equal, if that is not what the exercise calls equal.
     """
 
     name: str
@@ -108,6 +113,8 @@ class Exercise:
         Exercises that the steps are tried on first, each by itself.
     personal : callable or None
         (student id) → this exercise with numbers of the student's own.
+    refusal : str
+        Why no answer counts, if none does.
     """
 
     name: str
@@ -128,6 +135,17 @@ class Exercise:
     choices: tuple[str, ...] = ()
     parts: "tuple[Exercise, ...]" = ()
     personal: "Callable[[str], Exercise] | None" = None
+    refusal: str = ""
+
+    @property
+    def variable(self) -> str:
+        """What the stub calls the answer: ``my_drop``."""
+        for node in ast.walk(ast.parse(self.stub)):
+            if isinstance(node, ast.FunctionDef):
+                return node.name
+            if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+                return node.targets[0].id
+        return f"my_{self.name}"
 
     @property
     def arguments(self) -> tuple[str, ...]:
@@ -137,10 +155,12 @@ class Exercise:
                 return tuple(argument.arg for argument in node.args.args)
         return ()
 
-    def number_of(self, answer: str) -> Any:
-        """Give the number of a choice; what is no choice comes back as it is."""
-        letter = answer.strip().upper()
-        return self.choices.index(letter) if letter in self.choices else answer
+    def number_of(self, answer: Any) -> Any:
+        """Give the number of a choice; what is no choice comes back, in words, as it is."""
+        if not self.choices or answer is None or answer is ...:
+            return answer
+        letter = str(answer).strip().upper()
+        return self.choices.index(letter) if letter in self.choices else str(answer)
 
     def inputs(self, seed: int) -> list[tuple[Any, ...]]:
         """Give the arguments of all cases, without anything that gives the answer away."""

@@ -8,13 +8,14 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.learn.checker.diagnosis import Tried, mistake_behind
-from cvnotes.learn.checker.equality import tolerance, up_to_scale
+from cvnotes.learn.checker.equality import of_size_one, slack, tolerance, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Property
 from cvnotes.learn.checker.outcome import Outcome
 from cvnotes.learn.checker.remarks import other_shape, remarks, trouble
 from cvnotes.learn.checker.report import OPEN, RIGHT, WRONG, Report
 
 
+@np.errstate(all="ignore")
 def judge(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
     """Compare what came back with what must be true.
 
@@ -33,27 +34,53 @@ def judge(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
         Passed only if every property holds on every case.
     """
     if any(outcome.kind == "unfinished" for outcome in outcomes):
-        return Report(exercise.name, OPEN, f"{_sentence(exercise.title)} {hint_at(exercise)}")
+        return Report(exercise.name, OPEN, _not_solved_yet(exercise, outcomes, seed))
     if any(outcome.kind == "result" for outcome in outcomes):
         return Report(exercise.name, WRONG, _not_a_function(exercise))
-    rest = list(outcomes)
-    for part in exercise.parts:
-        n = len(part.inputs(seed))
-        report = judge(part, rest[:n], seed)
+    if exercise.refusal:
+        return Report(exercise.name, WRONG, exercise.refusal)
+    by_part, rest = _by_part(exercise, outcomes, seed)
+    for part, own in by_part:
+        report = judge(part, own, seed)
         if not report.passed:
             return replace(
                 report, exercise=exercise.name, message=f"Step {part.name}: {report.message}"
             )
-        del rest[:n]
     cases = list(exercise.solved_cases(seed))
     if len(rest) != len(cases):
         raise CvnotesError(f"{exercise.name}: {len(rest)} outcomes for {len(cases)} cases")
-    tried = list(zip(cases, rest, strict=True))
+    tried = [
+        (replace(case, slack=slack(outcome.dtype)), outcome)
+        for case, outcome in zip(cases, rest, strict=True)
+    ]
     holding, failing = _sorted(exercise, tried)
     if not failing:
         sentences = tuple(p.sentence for p in exercise.properties)
         return Report(exercise.name, RIGHT, "Well done.", holds=sentences)
     return _wrong(exercise, tried, holding, failing)
+
+
+def _by_part(
+    exercise: Exercise, outcomes: Sequence[Outcome], seed: int
+) -> tuple[list[tuple[Exercise, list[Outcome]]], list[Outcome]]:
+    """Sort outcomes into those of each part, and those of the whole."""
+    rest, by_part = list(outcomes), []
+    for part in exercise.parts:
+        n = len(part.inputs(seed))
+        by_part.append((part, rest[:n]))
+        del rest[:n]
+    return by_part, rest
+
+
+def _not_solved_yet(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> str:
+    """Say what is asked; and of several steps, which are missing."""
+    by_part, rest = _by_part(exercise, outcomes, seed)
+    missing = [p.name for p, own in by_part if any(o.kind == "unfinished" for o in own)]
+    said = f"{_sentence(exercise.title)} "
+    if rest and 0 < len(missing) < len(by_part):
+        steps = f"{', '.join(missing[:-1])} and {missing[-1]}" if missing[1:] else missing[0]
+        said += f"{'These steps are' if missing[1:] else 'This step is'} missing: {steps}. "
+    return said + hint_at(exercise)
 
 
 def _sentence(title: str) -> str:
@@ -75,6 +102,9 @@ def _sorted(exercise: Exercise, tried: list[Tried]) -> tuple[tuple[str, ...], Fa
         for case, outcome in tried
         if (why := _unusable(exercise, case, outcome))
     ]
+    # What raised an exception comes before what has another shape.
+    nothing = [x for x in failing if x[3].value is None]
+    failing = nothing or failing
     holding: list[str] = []
     for p in exercise.properties:
         bad = [(c, o) for c, o in tried if c.about == p.about and not _holds(exercise, p, c, o)]
@@ -90,7 +120,7 @@ def _unusable(exercise: Exercise, case: Case, outcome: Outcome) -> str:
     if outcome.value is None:
         return trouble(outcome, exercise)
     if outcome.value.shape != case.right.shape:
-        return other_shape(outcome.value.shape, case.right.shape)
+        return other_shape(exercise, outcome.value, case)
     if outcome.changed:
         name = exercise.arguments[outcome.changed[0]]
         return (
@@ -104,13 +134,15 @@ def _holds(exercise: Exercise, p: Property, case: Case, outcome: Outcome) -> boo
     answer = outcome.value
     if answer is None or answer.shape != case.right.shape:
         return False
+    if not np.isfinite(answer[np.isfinite(case.right)]).all():
+        return False
     if p.holds is None:
         return exercise.same(answer, case.right, tolerance(outcome.dtype))
-    with np.errstate(all="ignore"):
-        try:
-            return bool(p.holds(answer, case))
-        except (np.linalg.LinAlgError, CvnotesError):  # NaN where there should be none
-            return False
+    try:
+        free = exercise.same is up_to_scale
+        return bool(p.holds(of_size_one(answer) if free else answer, case))
+    except (np.linalg.LinAlgError, CvnotesError):  # NaN where there should be none
+        return False
 
 
 def _wrong(
@@ -124,6 +156,7 @@ def _wrong(
         why = mistake.sentence
     elif not why:
         why = f"Look at what does not hold; {hint_at(exercise)}"
+    wanted = _scaled(exercise, case.right, outcome)
     shown = exercise.answer == "function"
     compared = shown and not outcome.changed
     came = any(outcome.value is not None for _, outcome in tried)
@@ -136,8 +169,8 @@ def _wrong(
         fails=sentences[0] if sentences and came else "",
         counterexample=dict(zip(exercise.arguments, case.args, strict=True)) if shown else {},
         yours=_as_given(outcome.value, outcome) if compared else None,
-        wanted=_as_given(_scaled(exercise, case.right, outcome), outcome) if compared else None,
-        remarks=() if mistake else remarks(exercise, outcome, case),
+        wanted=_as_given(wanted, outcome) if compared else None,
+        remarks=() if mistake else remarks(exercise, outcome, case, wanted),
         printed=outcome.printed,
     )
 
@@ -152,7 +185,7 @@ def _scaled(exercise: Exercise, right: Array, outcome: Outcome) -> Array:
     given = outcome.value
     if exercise.same is not up_to_scale or given is None or given.shape != right.shape:
         return right
-    if np.isclose(given.flat[-1], 1) and not np.isclose(right.flat[-1], 0):
+    if np.isclose(given.flat[-1], 1, rtol=0, atol=1e-9) and not np.isclose(right.flat[-1], 0):
         return right / right.flat[-1]
     sign = 1 if np.vdot(given, right) >= 0 else -1
     factor = sign * np.linalg.norm(given) / np.linalg.norm(right)

@@ -7,6 +7,8 @@ in the process that ran the function, and only numbers and clean words travel on
 import base64
 import json
 from dataclasses import asdict, dataclass
+from decimal import Decimal
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -99,11 +101,22 @@ def outcome_of(answer: Any) -> Outcome:
         array = np.asarray(answer)
     except ValueError:
         return Outcome("other", words=f"a {kind} whose parts have different lengths")
+    array = _real(array)
     if array.dtype.kind not in "biuf":
         return Outcome("other", words=_what(answer, array, kind))
     if array.size > MAX_VALUES:
         return Outcome("other", words=f"an array of shape {array.shape}, far too large")
     return Outcome("numbers", np.array(array, dtype=np.float64), dtype=str(array.dtype))
+
+
+def _real(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Take real numbers for what they are, also as fractions or with an imaginary part of 0."""
+    if array.dtype.kind == "c" and not (np.abs(array.imag) > 1e-12 * np.abs(array.real)).any():
+        return np.asarray(array.real)
+    if array.dtype.kind == "O" and 0 < array.size <= MAX_VALUES:
+        known = all(isinstance(x, Real | Decimal) for x in array.ravel())
+        return array.astype(np.float64) if known else array
+    return array
 
 
 def encode(outcome: Outcome) -> bytes:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise
 from cvnotes.learn.checker.outcome import Outcome
@@ -44,32 +45,53 @@ def trouble(outcome: Outcome, exercise: Exercise) -> str:
             return f"The answer is {outcome.words}; an array of numbers is wanted."
 
 
-def other_shape(given: tuple[int, ...], wanted: tuple[int, ...]) -> str:
-    """Say what is probably wrong with a shape.
-
-    Examples
-    --------
-    >>> other_shape((2, 5), (5, 2))
-    'The answer has shape (2, 5), wanted is (5, 2): points are rows here, so transpose it.'
-    """
+def other_shape(exercise: Exercise, answer: Array, case: Case) -> str:
+    """Say what is probably wrong with a shape; what can be measured is measured."""
+    given, wanted = answer.shape, case.right.shape
     text = f"The answer has shape {given}, wanted is {wanted}"
+    many = _one_for_each_point(exercise, case)
+    if wanted == ():
+        return f"{text}: a single number is wanted."
     if given == wanted[::-1]:
-        return f"{text}: points are rows here, so transpose it."
+        rows = (
+            "points are rows here" if many and len(wanted) == 2 else "an array has its rows first"
+        )
+        return f"{text}: {rows}, so transpose it."
+    if given == () and np.isnan(answer):
+        return f"{text}: one NaN for all of it; np.full({wanted}, np.nan) has the shape."
     if np.prod(given) == np.prod(wanted):
         return f"{text}: the values may be right, the arrangement is not; see np.reshape."
-    if given[:-1] == wanted[:-1] and given and given[-1] == wanted[-1] + 1:
-        return f"{text}: still homogeneous? Divide by the last coordinate, then leave it out."
-    if given == () and len(wanted) == 1:
+    if given and wanted and given[:-1] == wanted[:-1] and given[-1] == wanted[-1] + 1:
+        if np.allclose(_dropped(answer), case.right, equal_nan=True):
+            return f"{text}: still homogeneous? Divide by the last coordinate, then leave it out."
+        return f"{text}: one number too many{' in each row' * (len(wanted) > 1)}."
+    if given == () and many:
         return f"{text}: one number for all of them; is an axis=1 missing?"
-    if given == wanted[1:]:
+    if given == ():
+        return f"{text}: one number alone."
+    if given == wanted[1:] and many:
         return f"{text}: only one of several points came back; is the return inside of the loop?"
-    if wanted == () and len(given) > 0:
-        return f"{text}: a single number is wanted."
+    if given == wanted[1:]:
+        return f"{text}: only one row came back; is the return inside of a loop?"
     return f"{text}."
 
 
-def remarks(exercise: Exercise, outcome: Outcome, case: Case) -> tuple[str, ...]:
-    """Say what else is striking about an answer that is not right."""
+def _one_for_each_point(exercise: Exercise, case: Case) -> bool:
+    """Tell whether an answer has a row for each of n points that were given."""
+    wanted = case.right.shape
+    return "(n" in exercise.task and any(
+        isinstance(x, np.ndarray) and x.shape[:1] == wanted[:1] != () for x in case.args
+    )
+
+
+def _dropped(answer: Array) -> Array:
+    """Divide by the last coordinate, and leave it out."""
+    with np.errstate(all="ignore"):
+        return np.asarray(answer[..., :-1] / answer[..., -1:])
+
+
+def remarks(exercise: Exercise, outcome: Outcome, case: Case, wanted: Array) -> tuple[str, ...]:
+    """Say what else is striking about an answer that is not right; wanted is what is shown."""
     found = []
     answer = outcome.value
     if answer is not None and np.isnan(answer).any() and not np.isnan(case.right).any():
@@ -82,8 +104,10 @@ def remarks(exercise: Exercise, outcome: Outcome, case: Case) -> tuple[str, ...]
             f"The answer is made of whole numbers ({outcome.dtype}): what was written into an "
             "integer array has lost its decimals."
         )
-    if answer is not None and exercise.same is up_to_scale:
-        found.append("Scale and sign are free: wanted is shown with those of your answer.")
+    if exercise.same is up_to_scale and not np.array_equal(wanted, case.right):
+        found.append(
+            "A factor of the whole answer does not matter: wanted is shown with that of yours."
+        )
     if outcome.shares:
         found.append("The answer is a view of an argument: whoever changes one changes the other.")
     if "PASSED" in outcome.printed.upper():

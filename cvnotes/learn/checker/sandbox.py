@@ -183,12 +183,14 @@ def ask(exercise: Exercise, answer: Any, seed: int, **limits: Any) -> list[Outco
         One for each case, of each part first; a single one if there was nothing to try.
     """
     if exercise.answer == "value":
-        value = exercise.number_of(answer) if isinstance(answer, str) else answer
-        return run(lambda: value, [()], **limits)
+        return run(lambda: exercise.number_of(answer), [()], **limits)
     if exercise.assemble is not None and isinstance(answer, dict):
-        parts = [ask(part, answer.get(part.name), seed, **limits) for part in exercise.parts]
-        whole = run(exercise.assemble(answer), exercise.inputs(seed), **limits)
-        return [outcome for outcomes in [*parts, whole] for outcome in outcomes]
+        tried = []
+        for part in exercise.parts:
+            outcomes = ask(part, answer.get(part.name), seed, **limits)
+            # A step that is no function gives one outcome; it counts for all of the part's cases.
+            tried += outcomes * (len(part.inputs(seed)) if len(outcomes) == 1 else 1)
+        return tried + run(exercise.assemble(answer), exercise.inputs(seed), **limits)
     if exercise.assemble is not None or not callable(answer):
         [given] = run(lambda: answer, [()], **limits)
         nothing = given.kind in ("none", "unfinished")
