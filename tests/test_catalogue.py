@@ -430,8 +430,10 @@ EXEMPT = {
     "bilinear": "a formula for arrays of grey levels, without a guard",
     "box": "three intervals; its colours are guarded by `quads`",
     "checked_fill": "a guard",
+    "coordinates": "a guard",
     "develop": "for use inside; `expose` guards",
     "hold_at": "a target and a camera; see test_views.py",
+    "homogeneous": "a guard",
     "homogeneous_columns": "for use inside maps",
     "normaliser_of": "for use inside",
     "pairs": "a guard",
@@ -458,7 +460,8 @@ def public_functions():
                     continue
                 arguments = node.args.posonlyargs + node.args.args + node.args.kwonlyargs
                 hints = " ".join(ast.unparse(a.annotation) for a in arguments if a.annotation)
-                if "ArrayLike" in hints or "PointSets" in hints:
+                guarded = any("guarded(" in ast.unparse(d) for d in node.decorator_list)
+                if guarded or "ArrayLike" in hints or "PointSets" in hints:
                     yield prefix + node.name
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError
-from cvnotes.camera import Camera, Lens, exp_so3, intrinsics, pose, rotation_from_vector
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import (
     centre_only_views,
     facing,
@@ -159,7 +159,7 @@ def error_bars(G, truth=(800, 804, 325, 238, -0.25, 0.10), sigma=0.3):
     steps = [1e-2] * 4 + [1e-4] * (len(truth) - 4)
 
     def moved(e):
-        return np.stack([pose(exp_so3(e[:3]), e[3:]) @ G_i for G_i in G])
+        return np.stack([pose(rotation_from_vector.inside(e[:3]), e[3:]) @ G_i for G_i in G])
 
     of_camera = derivatives(lambda e: pixels(truth + e, G), steps)
     of_pose = derivatives(lambda e: pixels(truth, moved(e)), [1e-6] * 3 + [1e-3] * 3)

@@ -11,6 +11,7 @@ from cvnotes.base.errors import (
     InputTypeError,
     ShapeError,
 )
+from cvnotes.base.guarded import Matrix, Points, guarded
 from cvnotes.base.guards import (
     LARGEST,
     LARGEST_ENTRY,
@@ -46,6 +47,9 @@ __all__ = [
     "LARGEST",
     "LARGEST_ENTRY",
     "MOST_PIXELS",
+    "guarded",
+    "Points",
+    "Matrix",
     "real",
     "numbers",
     "number",

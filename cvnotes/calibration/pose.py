@@ -19,7 +19,7 @@ from cvnotes.base import (
 )
 from cvnotes.calibration.ppm import ppm_dlt
 from cvnotes.calibration.zhang import extrinsics
-from cvnotes.camera import Camera, exp_so3, nearest_rotation, pose, skew_matrix
+from cvnotes.camera import Camera, nearest_rotation, pose, rotation_from_vector, skew_matrix
 from cvnotes.camera.model import is_camera, project_with_derivative
 from cvnotes.homography import dlt
 
@@ -177,7 +177,7 @@ def _refine(camera: Camera, start: Pose, W: Array, m: Array) -> Minimum[Pose, Ar
         return float((r * r).sum()), J.T @ J
 
     def take_step(x: Pose, step: Array) -> Pose:
-        return exp_so3(step[:3]) @ x[0], x[1] + step[3:]
+        return rotation_from_vector.inside(step[:3]) @ x[0], x[1] + step[3:]
 
     floor = 1e-25 * m.size
     return levenberg_marquardt(start, linearise, solve_dense, take_step, floor=floor)

@@ -15,8 +15,7 @@ from cvnotes.base import (
     points,
     solve_dense,
 )
-from cvnotes.projective import apply, to_homogeneous
-from cvnotes.projective.points import drop
+from cvnotes.projective import apply, from_homogeneous, to_homogeneous
 
 # Relative singular value, after normalisation, below which a rank is called deficient.
 RANK = 1e-9
@@ -226,7 +225,7 @@ def refine_ppm(P: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
 
     def linearise(p: Array) -> tuple[float, Array]:
         m_h = W_h @ p.reshape(3, 4).T
-        predicted = drop(m_h)
+        predicted = from_homogeneous.inside(m_h)
         J = np.zeros((n, 2, 13))
         J[:, 0, 0:4] = J[:, 1, 4:8] = W_h / m_h[:, 2:]
         J[:, :, 8:12] = -predicted[:, :, None] * J[:, :1, 0:4]

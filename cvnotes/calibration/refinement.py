@@ -9,9 +9,8 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, ConvergenceError, Minimum, chunks, levenberg_marquardt
 from cvnotes.calibration.arrow import Arrow, solve_arrow
-from cvnotes.camera import Lens, exp_so3
+from cvnotes.camera import Lens, px_from_xy, rotation_from_vector
 from cvnotes.camera.lens_fold import horner, radial_factor
-from cvnotes.camera.pixels import pixels
 
 # Views worked on at a time: their arrays of one number per point then stay in the cache.
 _CHUNK = 128
@@ -115,7 +114,7 @@ class Problem:
     def predicted(self, A: Array, lens: Lens, x: State) -> Array:
         """Where the camera shows the points, (n_views, n, 2); NaN where the lens folds."""
         M = self.W @ x.R.mT + x.T[:, None]
-        return pixels(A, lens.distort(M[..., :2] / M[..., 2:]))
+        return px_from_xy.inside(A, lens.distort(M[..., :2] / M[..., 2:]))
 
     def jacobian(self, x: State) -> tuple[Array, Array]:
         """Give J and r (predicted minus observed) of each view, for whoever wants to check them.
@@ -255,7 +254,9 @@ def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Min
 def take_step(x: State, step: tuple[Array, Array]) -> State:
     """Take a step: R ← exp(ω) R, everything else by addition."""
     shared, poses = step
-    return State(x.shared + shared, exp_so3(poses[:, :3]) @ x.R, x.T + poses[:, 3:])
+    return State(
+        x.shared + shared, rotation_from_vector.inside(poses[:, :3]) @ x.R, x.T + poses[:, 3:]
+    )
 
 
 def poses_follow(x: State, system: Arrow) -> State:

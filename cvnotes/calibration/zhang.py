@@ -16,8 +16,7 @@ from cvnotes.base import (
     points,
     rigid_motion,
 )
-from cvnotes.camera import nearest_rotation, skew_matrix
-from cvnotes.camera.pixels import ideal_columns
+from cvnotes.camera import nearest_rotation, skew_matrix, xy_from_px
 
 # The six entries of b and where they stand in the symmetric B.
 B_ROWS, B_COLUMNS = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
@@ -389,7 +388,7 @@ def radial_from_poses(A: Array, G: Array, W: Array, m: Array, terms: int) -> Arr
         raise DegenerateError("a board point does not lie in front of the camera")
     ideal = M[..., :2] / M[..., 2:]
     r2 = ideal[..., :1] ** 2 + ideal[..., 1:] ** 2
-    d = np.stack(ideal_columns(A, m), axis=-1) - ideal
+    d = xy_from_px.inside(A, m) - ideal
     D = np.empty((*d.shape, terms))
     power = ideal
     for i in range(terms):

@@ -8,22 +8,18 @@ offset from the distortion centre and r = ‖d‖,
 where p = (p2, p1) collects the notes' tangential terms in one vector.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, chunks, numbers, points
+from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
 from cvnotes.camera.lens_fold import fold_radius, horner, radial_factor
 from cvnotes.camera.lens_inverse import Inverse
 
 # Far from all lenses powers of r overflow: to infinity, or to NaN, and in silence.
 _beyond_all_numbers = np.errstate(over="ignore", invalid="ignore")
-
-# Points undistorted at a time: the dozen temporaries then stay in the cache.
-_CHUNK = 12288
 
 
 @dataclass(frozen=True)
@@ -98,9 +94,11 @@ class Lens:
 
     @cached_property
     def _inverse(self) -> Inverse:
-        return Inverse(self.k, self.p[::-1])
+        return Inverse(self.k, self.p[::-1], self.centre)
 
-    def distort(self, xy: npt.ArrayLike) -> Array:
+    @guarded(xy=Points(2))
+    @_beyond_all_numbers
+    def distort(self, xy: Array) -> Array:
         """Move ideal image points to where the lens shows them.
 
         Parameters
@@ -116,7 +114,8 @@ class Lens:
 
         Notes
         -----
-        x' = L(r) x + 2 p1 x y + p2 (r² + 2 x²); y' alike, with p1 and p2 exchanged.
+        x' = L(r) x + 2 p1 x y + p2 (r² + 2 x²); y' alike, with p1 and p2 exchanged. Where
+        p = (p2, p1) multiplies x it is one factor with L: 2 p2 x² + 2 p1 x y = 2 (p2 x + p1 y) x.
 
         References
         ----------
@@ -127,9 +126,21 @@ class Lens:
         >>> Lens(k=(-0.1,)).distort([0.5, 0.0])
         array([0.4875, 0.    ])
         """
-        return self._distort(points(xy, "xy", 2))
+        if self.is_ideal:
+            return xy
+        (x0, y0), (p1, p2) = self.centre, self.p
+        x, y = xy[..., 0] - x0, xy[..., 1] - y0
+        r2 = x * x + y * y
+        factor = radial_factor(self.k, r2)
+        if np.isfinite(self.max_radius):
+            factor = np.where(r2 <= self.max_radius**2, factor, np.nan)
+        if p1 or p2:
+            factor += 2 * (p2 * x + p1 * y)
+            x0, y0 = x0 + p2 * r2, y0 + p1 * r2
+        return np.stack([factor * x + x0, factor * y + y0], axis=-1)
 
-    def undistort(self, xy_lens: npt.ArrayLike) -> Array:
+    @guarded(xy_lens=Points(2))
+    def undistort(self, xy_lens: Array) -> Array:
         """Move observed image points back to where an ideal lens would show them.
 
         Newton's method on the radius, to 1e-12; see `cvnotes.camera.lens_inverse`.
@@ -154,10 +165,13 @@ class Lens:
         >>> lens.undistort(lens.distort([0.4, -0.3])).round(12)
         array([ 0.4, -0.3])
         """
-        return self._undistort(points(xy_lens, "xy_lens", 2), lambda xy: (xy[:, 0], xy[:, 1]))
+        if self.is_ideal:
+            return xy_lens
+        return self._inverse(xy_lens)
 
+    @guarded(xy=Points(2))
     @_beyond_all_numbers
-    def jacobian(self, xy: npt.ArrayLike) -> Array:
+    def jacobian(self, xy: Array) -> Array:
         """Differentiate the distorted point by the ideal one: (..., 2, 2).
 
         Examples
@@ -165,7 +179,7 @@ class Lens:
         >>> Lens(k=(-4 / 3,)).jacobian([0.5, 0.0])[0, 0].round(12) + 0.0
         np.float64(0.0)
         """
-        d = points(xy, "xy", 2) - self.centre
+        d = xy - self.centre
         x, y = d[..., 0], d[..., 1]
         p1, p2 = self.p
         r2 = x * x + y * y
@@ -175,42 +189,3 @@ class Lens:
         J12 = slope * x * y + 2 * (p1 * x + p2 * y)
         J22 = L + slope * y * y + 2 * p2 * x + 6 * p1 * y
         return np.stack([np.stack([J11, J12], -1), np.stack([J12, J22], -1)], -2)
-
-    def _distort(self, xy: Array) -> Array:
-        """Distort without a guard; NaN rows stay NaN."""
-        if self.is_ideal:
-            return xy
-        return np.stack(self._distort_columns(xy[..., 0], xy[..., 1]), axis=-1)
-
-    @_beyond_all_numbers
-    def _distort_columns(self, x: Array, y: Array) -> tuple[Array, Array]:
-        if self.is_ideal:
-            return x, y
-        x0, y0 = self.centre
-        x, y = x - x0, y - y0
-        r2 = x * x + y * y
-        factor = radial_factor(self.k, r2)
-        if np.isfinite(self.max_radius):
-            factor = np.where(r2 <= self.max_radius**2, factor, np.nan)
-        p1, p2 = self.p
-        if p1 or p2:
-            factor += 2 * (p2 * x + p1 * y)
-            return factor * x + (p2 * r2 + x0), factor * y + (p1 * r2 + y0)
-        return factor * x + x0, factor * y + y0
-
-    def _undistort(self, m: Array, columns: Callable[[Array], tuple[Array, Array]]) -> Array:
-        """Undistort rows m (..., 2) without a guard; `columns` turns some of them into x', y'."""
-        rows = m.reshape(-1, 2)
-        out = np.empty_like(rows)
-        for part in chunks(len(rows), _CHUNK):
-            out[part, 0], out[part, 1] = self._undistort_columns(*columns(rows[part]))
-        return out.reshape(m.shape)
-
-    def _undistort_columns(self, x: Array, y: Array) -> tuple[Array, Array]:
-        if self.is_ideal:
-            return x, y
-        x0, y0 = self.centre
-        if not x0 and not y0:
-            return self._inverse(x, y)
-        x, y = self._inverse(x - x0, y - y0)
-        return x + x0, y + y0

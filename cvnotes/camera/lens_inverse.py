@@ -4,15 +4,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cvnotes.base import Array
+from cvnotes.base import Array, chunks
 from cvnotes.camera.lens_fold import fold_radius, radial_factor
 
 # Knots of the table that Newton's method starts from; more of them would only save steps.
 _KNOTS = 4096
+# Points at a time: the dozen temporaries then stay in the cache.
+_CHUNK = 12288
 
 
 class Inverse:
-    """The way back: from the offset d at which a lens shows a point to its ideal offset x.
+    """The way back through a lens: from where it shows a point to the ideal point.
 
     Parameters
     ----------
@@ -20,12 +22,14 @@ class Inverse:
         Radial coefficients k1, k2, …
     p : (2,) sequence of float
         The tangential vector p = (p2, p1).
+    centre : (2,) sequence of float
+        The distortion centre.
 
     Notes
     -----
-    Write S = ‖d‖², r² = q² S, a = q² p·d, b = q⁴ ‖p‖² S and n = ‖d − r² p‖/‖d‖ = √(1 − 2a + b).
-    Since d − r² p = (L + 2 p·x) x, its length gives L + 2 p·x = n/q and its product with p gives
-    p·x; together
+    With d the offset from the centre at which a point is shown, and x its ideal offset, write S =
+    ‖d‖², r² = q² S, a = q² p·d, b = q⁴ ‖p‖² S and n = ‖d − r² p‖/‖d‖ = √(1 − 2a + b). Since d − r²
+    p = (L + 2 p·x) x, its length gives L + 2 p·x = n/q and its product with p gives p·x; together
 
         q L n = 1 − 4a + 3b,    x = (q/n) (d − r² p).
 
@@ -35,16 +39,29 @@ class Inverse:
     smooth in it, at the fold too, so that linear interpolation is right to about 1e-7.
     """
 
-    def __init__(self, k: Sequence[float], p: Sequence[float]) -> None:
-        self.k, self.p = tuple(k), tuple(p)
+    def __init__(
+        self, k: Sequence[float], p: Sequence[float], centre: Sequence[float] = (0.0, 0.0)
+    ) -> None:
+        self.k, self.p, self.centre = tuple(k), tuple(p), tuple(centre)
         self.k_slope = tuple((2 * i + 1) * k_i for i, k_i in enumerate(k, start=1))
         self.p_norm2 = p[0] ** 2 + p[1] ** 2
         self.r_max = fold_radius(k, self.p_norm2**0.5)
         self._tabulate(fold_radius(k))
 
+    def __call__(self, xy_lens: Array) -> Array:
+        """Map points (..., 2); rows that no point before the fold is shown at become NaN."""
+        rows = xy_lens.reshape(-1, 2)
+        out = np.empty_like(rows)
+        x0, y0 = self.centre
+        for part in chunks(len(rows), _CHUNK):
+            x, y = self._offsets_of(rows[part, 0] - x0, rows[part, 1] - y0)
+            x += x0
+            y += y0
+            out[part, 0], out[part, 1] = x, y
+        return out.reshape(xy_lens.shape)
+
     @np.errstate(all="ignore")  # rows without an answer may overflow on their way to NaN
-    def __call__(self, dx: Array, dy: Array) -> tuple[Array, Array]:
-        """Map offsets (n,), (n,); rows that no point before the fold is shown at become NaN."""
+    def _offsets_of(self, dx: Array, dy: Array) -> tuple[Array, Array]:
         S = dx * dx
         S += dy * dy
         e = self.p[0] * dx + self.p[1] * dy if self.p_norm2 else np.zeros(1)

@@ -1,7 +1,7 @@
 """The camera: what it is made of, and what it sees (notes 2b.1-2b.3)."""
 
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,14 +11,16 @@ from cvnotes.base import (
     Array,
     CvnotesError,
     InputTypeError,
+    Points,
+    guarded,
     image_size,
     intrinsic_matrix,
     points,
     rigid_motion,
 )
 from cvnotes.camera.lens import Lens
-from cvnotes.camera.pixels import ideal_columns, pixels
-from cvnotes.projective.points import drop
+from cvnotes.camera.pixels import px_from_xy, xy_from_px
+from cvnotes.projective import from_homogeneous
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +99,9 @@ class Camera:
         """Distance of world points (..., 3) from the plane z = 0 of the CRF, along its axis."""
         return np.asarray(points(W, "W", 3) @ self.R[2] + self.T[2])
 
+    @guarded(W=Points(3))
     @np.errstate(over="ignore", invalid="ignore")  # of points too far away to have an image
-    def project(self, W: npt.ArrayLike) -> Array:
+    def project(self, W: Array) -> Array:
         """Image world points: the four steps of the image formation flow.
 
         Parameters
@@ -123,14 +126,15 @@ class Camera:
         array([nan, nan])
         """
         # 1. WRF → CRF
-        M = points(W, "W", 3) @ self.R.T + self.T
+        M = W @ self.R.T + self.T
         # 2. divide by z; what is not in front has no image
         z = M[..., 2:]
         xy = np.divide(M[..., :2], z, out=np.full_like(M[..., :2], np.nan), where=z > 0)
         # 3. lens, 4. sensor
-        return pixels(self.A, self.lens._distort(xy))
+        return px_from_xy.inside(self.A, Lens.distort.inside(self.lens, xy))
 
-    def ideal(self, m: npt.ArrayLike) -> Array:
+    @guarded(m=Points(2))
+    def ideal(self, m: Array) -> Array:
         """Undo sensor and lens: pixels (..., 2) to ideal coordinates on the plane z = 1.
 
         Rows that the lens model does not reach are NaN.
@@ -141,7 +145,7 @@ class Camera:
         >>> Camera(intrinsics(800, 800, 320, 240)).ideal([400, 240])
         array([0.1, 0. ])
         """
-        return self.lens._undistort(points(m, "m", 2), partial(ideal_columns, self.A))
+        return Lens.undistort.inside(self.lens, xy_from_px.inside(self.A, m))
 
     def ray(self, m: npt.ArrayLike) -> Array:
         """Give the direction in the WRF of the ray that pixels (..., 2) see, as unit vectors.
@@ -158,7 +162,8 @@ class Camera:
         d = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1) @ self.R
         return np.asarray(d / np.linalg.norm(d, axis=-1, keepdims=True))
 
-    def vanishing_point(self, d: npt.ArrayLike) -> Array:
+    @guarded(d=Points(3))
+    def vanishing_point(self, d: Array) -> Array:
         """Give the pixel (..., 2) where lines of world direction d (..., 3) seem to end.
 
         Through an ideal lens: m̃ ≈ P [d; 0]. A direction parallel to the image plane has its
@@ -170,7 +175,7 @@ class Camera:
         >>> Camera(intrinsics(800, 800, 320, 240)).vanishing_point([1, 0, 2])
         array([720., 240.])
         """
-        return drop(points(d, "d", 3) @ self.P[:, :3].T)
+        return from_homogeneous.inside(d @ self.P[:, :3].T)
 
     @property
     def field_of_view(self) -> tuple[float, float]:
@@ -232,7 +237,7 @@ def project_with_derivative(camera: Camera, M: Array) -> tuple[Array, Array]:
     """
     z = np.where(M[:, 2:] > 0, M[:, 2:], np.nan)
     xy = M[:, :2] / z
-    m = pixels(camera.A, camera.lens._distort(xy))
+    m = px_from_xy.inside(camera.A, Lens.distort.inside(camera.lens, xy))
     by_xy = np.full((len(M), 2, 2), np.nan)
     valid = np.isfinite(m).all(-1)
     by_xy[valid] = camera.A[:2, :2] @ camera.lens.jacobian(xy[valid])

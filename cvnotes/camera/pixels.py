@@ -3,9 +3,8 @@
 from math import pi, sin, tan
 
 import numpy as np
-import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, intrinsic_matrix, number, points
+from cvnotes.base import Array, CvnotesError, Points, guarded, intrinsic_matrix, number
 
 
 def intrinsics(alpha_u: float, alpha_v: float, u0: float, v0: float, skew: float = 0.0) -> Array:
@@ -73,7 +72,8 @@ def intrinsics_from_pixel_size(
     return intrinsics(alpha_u, alpha_v / sin(angle), u0, v0, skew)
 
 
-def px_from_xy(A: npt.ArrayLike, xy: npt.ArrayLike) -> Array:
+@guarded(A=intrinsic_matrix, xy=Points(2))
+def px_from_xy(A: Array, xy: Array) -> Array:
     """Turn image coordinates on the plane z = 1 into pixels (..., 2): m̃ = A (x, y, 1)ᵀ.
 
     Examples
@@ -81,10 +81,14 @@ def px_from_xy(A: npt.ArrayLike, xy: npt.ArrayLike) -> Array:
     >>> px_from_xy(intrinsics(800, 805, 320, 240), [0.1, 0.2])
     array([400., 401.])
     """
-    return pixels(intrinsic_matrix(A), points(xy, "xy", 2))
+    x, y = xy[..., 0], xy[..., 1]
+    u = A[0, 0] * x + A[0, 1] * y + A[0, 2]
+    v = A[1, 1] * y + A[1, 2]
+    return np.stack([u, v], axis=-1)
 
 
-def xy_from_px(A: npt.ArrayLike, m: npt.ArrayLike) -> Array:
+@guarded(A=intrinsic_matrix, m=Points(2))
+def xy_from_px(A: Array, m: Array) -> Array:
     """Turn pixels (..., 2) into image coordinates on the plane z = 1, still through the lens.
 
     Examples
@@ -92,16 +96,7 @@ def xy_from_px(A: npt.ArrayLike, m: npt.ArrayLike) -> Array:
     >>> xy_from_px(intrinsics(800, 805, 320, 240), [400, 401])
     array([0.1, 0.2])
     """
-    return np.stack(ideal_columns(intrinsic_matrix(A), points(m, "m", 2)), axis=-1)
-
-
-def pixels(A: Array, xy: Array) -> Array:
-    """Apply A without a guard, so that NaN rows stay NaN: for use inside."""
-    x, y = xy[..., 0], xy[..., 1]
-    return np.stack([A[0, 0] * x + A[0, 1] * y + A[0, 2], A[1, 1] * y + A[1, 2]], axis=-1)
-
-
-def ideal_columns(A: Array, m: Array) -> tuple[Array, Array]:
-    """Undo A without a guard, and give the two columns."""
-    y = (m[..., 1] - A[1, 2]) / A[1, 1]
-    return (m[..., 0] - A[0, 2] - A[0, 1] * y) / A[0, 0], y
+    u, v = m[..., 0], m[..., 1]
+    y = (v - A[1, 2]) / A[1, 1]
+    x = (u - A[0, 2] - A[0, 1] * y) / A[0, 0]
+    return np.stack([x, y], axis=-1)

@@ -9,9 +9,11 @@ from cvnotes.base import (
     Array,
     CvnotesError,
     DegenerateError,
+    Matrix,
+    Points,
     ShapeError,
     equally_many,
-    matrix,
+    guarded,
     number,
     points,
     rigid_motion,
@@ -26,7 +28,8 @@ _CROSS = np.array(
 _NOT_ZERO = 1e-300
 
 
-def rotation_from_vector(w: npt.ArrayLike) -> Array:
+@guarded(w=Points(3))
+def rotation_from_vector(w: Array) -> Array:
     """Rotate about the axis w (..., 3) by ‖w‖ radians: R = exp([w]×) (Rodrigues' formula).
 
     R = I + (sin θ / θ) [w]× + ((1 − cos θ) / θ²) [w]×².
@@ -38,7 +41,11 @@ def rotation_from_vector(w: npt.ArrayLike) -> Array:
            [ 1.,  0.,  0.],
            [ 0.,  0.,  1.]])
     """
-    return exp_so3(points(w, "w", 3))
+    # With half angles, K = (sin(θ/2) / (θ/2)) [w]×, no small angle needs a series:
+    # sin θ [w]× / θ = cos(θ/2) K and (1 − cos θ) [w]×² / θ² = K² / 2.
+    half = np.sqrt(np.vecdot(w, w) + _NOT_ZERO)[..., None] / 2
+    K = skew_matrix.inside(np.sin(half) / half * w)
+    return np.asarray(np.eye(3) + np.cos(half)[..., None] * K + K @ K / 2)
 
 
 def vector_from_rotation(R: npt.ArrayLike) -> Array:
@@ -80,11 +87,12 @@ def rotation_from_angles(x: float, y: float, z: float) -> Array:
     True
     """
     angles = [number(angle, name) for angle, name in ((x, "x"), (y, "y"), (z, "z"))]
-    Rx, Ry, Rz = exp_so3(np.diag(angles))
+    Rx, Ry, Rz = rotation_from_vector.inside(np.diag(angles))
     return np.asarray(Rz @ Ry @ Rx)
 
 
-def nearest_rotation(M: npt.ArrayLike) -> Array:
+@guarded(M=Matrix(3, 3))
+def nearest_rotation(M: Array) -> Array:
     """Give the rotation closest to M (..., 3, 3): R = U diag(1, 1, det(U Vᵀ)) Vᵀ.
 
     Raises
@@ -100,7 +108,7 @@ def nearest_rotation(M: npt.ArrayLike) -> Array:
            [0., 1., 0.],
            [0., 0., 1.]])
     """
-    U, s, Vt = np.linalg.svd(matrix(M, "M", 3, 3))
+    U, s, Vt = np.linalg.svd(M)
     if (s[..., 1] <= 1e-12 * s[..., 0]).any():
         raise DegenerateError("M has rank below 2: no rotation is closest to it")
     det = np.round(np.linalg.det(U @ Vt))
@@ -110,16 +118,8 @@ def nearest_rotation(M: npt.ArrayLike) -> Array:
     return np.asarray(U @ Vt) + 0.0
 
 
-def exp_so3(w: Array) -> Array:
-    """Rotations (..., 3, 3) of rotation vectors (..., 3), without a guard: for use inside."""
-    # With half angles, K = (sin(θ/2) / (θ/2)) [w]×, no small angle needs a series:
-    # sin θ [w]× / θ = cos(θ/2) K and (1 − cos θ) [w]×² / θ² = K² / 2.
-    half = np.sqrt(np.vecdot(w, w) + _NOT_ZERO)[..., None] / 2
-    K = ((np.sin(half) / half * w) @ _CROSS).reshape(*w.shape, 3)
-    return np.asarray(np.eye(3) + np.cos(half)[..., None] * K + K @ K / 2)
-
-
-def skew_matrix(v: npt.ArrayLike) -> Array:
+@guarded(v=Points(3))
+def skew_matrix(v: Array) -> Array:
     """Give [v]× (..., 3, 3), the matrix of the cross product: [v]× w = v × w.
 
     Examples
@@ -127,7 +127,6 @@ def skew_matrix(v: npt.ArrayLike) -> Array:
     >>> skew_matrix([1, 2, 3]) @ [4, 5, 6]
     array([-3.,  6., -3.])
     """
-    v = points(v, "v", 3)
     return np.asarray((v @ _CROSS).reshape(*v.shape, 3))
 
 

@@ -14,8 +14,7 @@ from cvnotes.base import (
     solve_dense,
 )
 from cvnotes.homography.linear import RANK, apply_similarity, inverse_similarity, normaliser_of
-from cvnotes.projective import to_homogeneous
-from cvnotes.projective.points import drop
+from cvnotes.projective import from_homogeneous, to_homogeneous
 
 
 def geometric_error(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
@@ -30,7 +29,7 @@ def geometric_error(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) ->
     src, dst = points(src, "src", 2), points(dst, "dst", 2)
     paired(src, dst, ("src", "dst"), at_least=1)
     equally_many("H, src and dst", H.shape[:-2], src.shape[:-2], dst.shape[:-2])
-    d = dst - drop(to_homogeneous(src) @ H.mT)
+    d = dst - from_homogeneous.inside(to_homogeneous(src) @ H.mT)
     return np.asarray(np.hypot(d[..., 0], d[..., 1]))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, InputTypeError, numbers
-from cvnotes.camera import Camera, exp_so3
+from cvnotes.camera import Camera, rotation_from_vector
 from cvnotes.pictures.faces import Target
 from cvnotes.pictures.placing import every_face_seen, facing, hold_at
 
@@ -28,7 +28,9 @@ def turned(towards: Array, angle: Array, rng: np.random.Generator) -> Array:
     """Rotations (n, 3, 3) of a board that rolls a little and tilts towards a picture direction."""
     axis = np.stack([-np.sin(towards), np.cos(towards), np.zeros_like(towards)], axis=-1)
     roll = rng.uniform(-1, 1, (len(towards), 1)) * np.radians([0.0, 0.0, 15.0])
-    return np.asarray(exp_so3(angle[:, None] * axis) @ exp_so3(roll))
+    return np.asarray(
+        rotation_from_vector.inside(angle[:, None] * axis) @ rotation_from_vector.inside(roll)
+    )
 
 
 def one_tilt(rng: np.random.Generator) -> Array:
@@ -183,7 +185,7 @@ def nearly_parallel_views(
     True
     """
     guard(target, camera, n, rng)
-    wobble = exp_so3(rng.normal(0, np.radians(1), (n, 3)))
+    wobble = rotation_from_vector.inside(rng.normal(0, np.radians(1), (n, 3)))
     return spread(target, camera, wobble @ one_tilt(rng), rng)
 
 
@@ -205,7 +207,9 @@ def one_axis_views(target: Target, camera: Camera, n: int, *, rng: np.random.Gen
     """
     guard(target, camera, n, rng)
     angle = np.where(np.arange(n) % 2, 1, -1) * np.radians(rng.uniform(28, 32, n))
-    return spread(target, camera, exp_so3(angle[:, None] * [1.0, 0.0, 0.0]), rng)
+    return spread(
+        target, camera, rotation_from_vector.inside(angle[:, None] * [1.0, 0.0, 0.0]), rng
+    )
 
 
 def centre_only_views(target: Target, camera: Camera, n: int, *, rng: np.random.Generator) -> Array:

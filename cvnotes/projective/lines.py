@@ -1,17 +1,34 @@
 """Points and lines of the projective plane P², and what maps leave alone."""
 
+from functools import partial
+
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, DegenerateError, ShapeError, equally_many, matrix, number
+from cvnotes.base import (
+    Array,
+    DegenerateError,
+    ShapeError,
+    equally_many,
+    guarded,
+    matrix,
+    number,
+)
 from cvnotes.projective.points import refuse_zero, vectors
 
 _ROUNDING = 1e-15  # what is left of a determinant of unit vectors that should be 0
 LINE_AT_INFINITY = np.array([0.0, 0.0, 1.0])
 LINE_AT_INFINITY.setflags(write=False)
 
+_point, _line = partial(vectors, what="point", d=3), partial(vectors, what="line", d=3)
 
-def join(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
+
+def _as_many(**two: Array) -> None:
+    equally_many(" and ".join(two), *(x.shape[:-1] for x in two.values()))
+
+
+@guarded(a=_point, b=_point, also=_as_many)
+def join(a: Array, b: Array) -> Array:
     """Give the line (..., 3) through two points of P², (..., 3) each: l = a × b.
 
     Raises
@@ -28,10 +45,13 @@ def join(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
     >>> join([0, 0, 1], [1, 1, 1])  # y = x
     array([-1.,  1.,  0.])
     """
-    return _cross(a, b, ("a", "b"), "point", "the points coincide: many lines pass through them")
+    line = np.cross(a, b)
+    refuse_zero(line, (a, b), "the points coincide: many lines pass through them")
+    return np.asarray(line) + 0.0
 
 
-def meet(k: npt.ArrayLike, m: npt.ArrayLike) -> Array:
+@guarded(k=_line, m=_line, also=_as_many)
+def meet(k: Array, m: Array) -> Array:
     """Give the point (..., 3) that two lines of P² share: x = k × m.
 
     Parallel lines share a point at infinity, whose last coordinate is 0.
@@ -46,7 +66,9 @@ def meet(k: npt.ArrayLike, m: npt.ArrayLike) -> Array:
     >>> meet([1, 0, -2], [1, 0, -3])  # x = 2 and x = 3: the point at infinity along y
     array([0., 1., 0.])
     """
-    return _cross(k, m, ("k", "m"), "line", "the lines coincide: they share all their points")
+    point = np.cross(k, m)
+    refuse_zero(point, (k, m), "the lines coincide: they share all their points")
+    return np.asarray(point) + 0.0
 
 
 def lies_on(x: npt.ArrayLike, line: npt.ArrayLike, atol: float = 1e-12) -> npt.NDArray[np.bool_]:
@@ -134,13 +156,3 @@ def cross_ratio(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.Arr
     if above == 0 and below == 0:
         raise DegenerateError("three of the four points coincide: their cross-ratio is 0/0")
     return above / below if below != 0 else float(np.inf)
-
-
-def _cross(
-    a: npt.ArrayLike, b: npt.ArrayLike, names: tuple[str, str], what: str, why: str
-) -> Array:
-    a, b = (vectors(x, name, what, 3) for x, name in zip((a, b), names, strict=True))
-    equally_many(" and ".join(names), a.shape[:-1], b.shape[:-1])
-    product = np.cross(a, b)
-    refuse_zero(product, np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1), why)
-    return np.asarray(product) + 0.0

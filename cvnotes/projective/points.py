@@ -5,6 +5,8 @@ nothing here depends on that factor. A last coordinate of exactly zero is a poin
 it has a direction but no place, so dropping back to Euclidean coordinates gives NaN.
 """
 
+from functools import partial, reduce
+
 import numpy as np
 import numpy.typing as npt
 
@@ -15,12 +17,33 @@ from cvnotes.base import (
     DegenerateError,
     ShapeError,
     equally_many,
+    guarded,
     number,
     numbers,
 )
 
 
-def to_homogeneous(x: npt.ArrayLike) -> Array:
+def coordinates(x: npt.ArrayLike, name: str) -> Array:
+    """Guard Euclidean coordinates (..., d)."""
+    array = numbers(x, name)
+    if array.ndim == 0 or array.shape[-1] == 0:
+        got = "a single number" if array.ndim == 0 else "none"
+        raise ShapeError(f"expected coordinates (..., d), got {got}")
+    return array
+
+
+def homogeneous(x: npt.ArrayLike, name: str) -> Array:
+    """Guard homogeneous coordinates (..., d + 1), of any size."""
+    array = numbers(x, name, largest=np.inf)
+    if array.ndim == 0 or array.shape[-1] < 2:
+        raise ShapeError(
+            f"{name}: expected homogeneous coordinates (..., d + 1), got {array.shape}"
+        )
+    return array
+
+
+@guarded(x=coordinates)
+def to_homogeneous(x: Array) -> Array:
     """Lift points (..., d) to homogeneous coordinates (..., d + 1) by appending a 1.
 
     Examples
@@ -28,10 +51,11 @@ def to_homogeneous(x: npt.ArrayLike) -> Array:
     >>> to_homogeneous([2, 3])
     array([2., 3., 1.])
     """
-    return _append(numbers(x, "x"), 1.0)
+    return np.concatenate([x, np.ones_like(x[..., :1])], axis=-1)
 
 
-def direction_to_homogeneous(d: npt.ArrayLike) -> Array:
+@guarded(d=coordinates)
+def direction_to_homogeneous(d: Array) -> Array:
     """Lift directions (..., d) to points at infinity (..., d + 1) by appending a 0.
 
     Examples
@@ -39,10 +63,12 @@ def direction_to_homogeneous(d: npt.ArrayLike) -> Array:
     >>> direction_to_homogeneous([0, 0, 1])
     array([0., 0., 1., 0.])
     """
-    return _append(numbers(d, "d"), 0.0)
+    return np.concatenate([d, np.zeros_like(d[..., :1])], axis=-1)
 
 
-def from_homogeneous(x_h: npt.ArrayLike) -> Array:
+@guarded(x_h=homogeneous)
+@np.errstate(over="ignore")
+def from_homogeneous(x_h: Array) -> Array:
     """Drop homogeneous coordinates (..., d + 1) to Euclidean ones (..., d).
 
     Points at infinity have no Euclidean coordinates: their rows are NaN, and so is the row of
@@ -54,13 +80,21 @@ def from_homogeneous(x_h: npt.ArrayLike) -> Array:
     array([[ 2.,  3.],
            [nan, nan]])
     """
-    x_h = numbers(x_h, "x_h", largest=np.inf)
-    if x_h.ndim == 0 or x_h.shape[-1] < 2:
-        raise ShapeError(f"x_h: expected homogeneous coordinates (..., d + 1), got {x_h.shape}")
-    return drop(x_h)
+    w = x_h[..., -1:]
+    return np.asarray(x_h[..., :-1] / np.where(w == 0, np.nan, w))
 
 
-def apply(H: npt.ArrayLike, x: npt.ArrayLike) -> Array:
+def _fit(H: Array, x: Array) -> None:
+    if H.ndim < 2 or H.shape[-2] < 2 or x.ndim < 1 or H.shape[-1] != x.shape[-1] + 1:
+        raise ShapeError(
+            f"H {H.shape} cannot map points x {x.shape}: it needs one column more than a point "
+            "has coordinates"
+        )
+    equally_many("the maps H and the sets of points x", H.shape[:-2], x.shape[:-2])
+
+
+@guarded(H=partial(numbers, largest=LARGEST_ENTRY), x=numbers, also=_fit)
+def apply(H: Array, x: Array) -> Array:
     """Map points (..., d) by a projective transformation H of shape (..., e + 1, d + 1).
 
     Lift, multiply, drop. A stack of matrices (..., e + 1, d + 1) maps a stack of point sets
@@ -72,15 +106,8 @@ def apply(H: npt.ArrayLike, x: npt.ArrayLike) -> Array:
     array([[6., 2.],
            [8., 4.]])
     """
-    H, x = numbers(H, "H", largest=LARGEST_ENTRY), numbers(x, "x")
-    if H.ndim < 2 or H.shape[-2] < 2 or x.ndim < 1 or H.shape[-1] != x.shape[-1] + 1:
-        raise ShapeError(
-            f"H {H.shape} cannot map points x {x.shape}: it needs one column more than a point "
-            "has coordinates"
-        )
-    equally_many("the maps H and the sets of points x", H.shape[:-2], x.shape[:-2])
-    x_h = _append(x, 1.0)
-    return drop(x_h @ H.mT if x.ndim > 1 else (H @ x_h))
+    x_h = to_homogeneous.inside(x)
+    return from_homogeneous.inside(x_h @ H.mT if x.ndim > 1 else H @ x_h)
 
 
 def same_up_to_scale(a: npt.ArrayLike, b: npt.ArrayLike, atol: float = 1e-9) -> bool:
@@ -105,21 +132,6 @@ def same_up_to_scale(a: npt.ArrayLike, b: npt.ArrayLike, atol: float = 1e-9) -> 
     return bool(min(np.abs(a - b).max(), np.abs(a + b).max()) <= atol)
 
 
-def drop(x_h: Array) -> Array:
-    """Divide by the last coordinate, NaN where it is zero (no guard: for use inside)."""
-    w = x_h[..., -1:]
-    with np.errstate(over="ignore"):
-        return np.divide(x_h[..., :-1], w, out=np.full_like(x_h[..., :-1], np.nan), where=w != 0)
-
-
-def _append(x: Array, last: float) -> Array:
-    if x.ndim == 0 or x.shape[-1] == 0:
-        raise ShapeError(
-            f"expected coordinates (..., d), got {'a single number' if x.ndim == 0 else 'none'}"
-        )
-    return np.concatenate([x, np.full((*x.shape[:-1], 1), last)], axis=-1)
-
-
 _ROUNDING = 2e-15  # relative size of what is left of a product that should be 0
 
 
@@ -136,7 +148,8 @@ def vectors(x: npt.ArrayLike, name: str, what: str, d: int | None = None) -> Arr
     return np.asarray(np.ldexp(x, np.where(np.abs(exponent) > 200, -exponent, 0)))
 
 
-def refuse_zero(product: Array, size: Array, why: str) -> None:
-    """Refuse products (..., d) that are nothing but rounding beside their factors' size."""
+def refuse_zero(product: Array, factors: tuple[Array, ...], why: str) -> None:
+    """Refuse products (..., d) that are nothing but rounding beside their factors (..., d)."""
+    size = reduce(np.multiply, (np.linalg.norm(x, axis=-1) for x in factors))
     if (np.linalg.norm(product, axis=-1) <= _ROUNDING * size).any():
         raise DegenerateError(why)

@@ -1,16 +1,43 @@
 """Points, lines and planes of projective space P³."""
 
+from functools import partial
+
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, equally_many, matrix
+from cvnotes.base import Array, CvnotesError, equally_many, guarded, matrix
 from cvnotes.projective.points import refuse_zero, vectors
 
 PLANE_AT_INFINITY = np.array([0.0, 0.0, 0.0, 1.0])
 PLANE_AT_INFINITY.setflags(write=False)
 
+_point, _plane = partial(vectors, what="point", d=4), partial(vectors, what="plane", d=4)
 
-def plane_through(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> Array:
+
+def _line(L: npt.ArrayLike, name: str) -> Array:
+    """Guard lines of P³ (..., 4, 4): L = −Lᵀ, and not zero."""
+    L = matrix(L, name, 4, 4)
+    largest = np.abs(L).max(axis=(-2, -1), initial=0.0, keepdims=True)
+    if (largest == 0).any() or (np.abs(L + L.mT) > 1e-9 * largest).any():
+        raise CvnotesError(
+            f"{name}: a line of P³ is a matrix that is not zero, with L = −Lᵀ; "
+            "line_through gives it"
+        )
+    return L
+
+
+def _as_many(**given: Array) -> None:
+    names = " and ".join(given) if len(given) == 2 else ", ".join(given)
+    equally_many(names, *(x.shape[:-1] for x in given.values()))
+
+
+def _one_each(L: Array, **other: Array) -> None:
+    ((name, x),) = other.items()
+    equally_many(f"lines L and {name}", L.shape[:-2], x.shape[:-1])
+
+
+@guarded(a=_point, b=_point, c=_point, also=_as_many)
+def plane_through(a: Array, b: Array, c: Array) -> Array:
     """Give the plane (..., 4) through three points of P³, (..., 4) each.
 
     Raises
@@ -23,11 +50,13 @@ def plane_through(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> Array
     >>> plane_through([1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1])  # x + y + z = 1
     array([ 1.,  1.,  1., -1.])
     """
-    why = "the points lie on a line: many planes pass through them"
-    return _wedge((a, b, c), ("a", "b", "c"), "point", why)
+    plane = _wedge(a, b, c)
+    refuse_zero(plane, (a, b, c), "the points lie on a line: many planes pass through them")
+    return plane + 0.0
 
 
-def point_of_planes(p: npt.ArrayLike, q: npt.ArrayLike, r: npt.ArrayLike) -> Array:
+@guarded(p=_plane, q=_plane, r=_plane, also=_as_many)
+def point_of_planes(p: Array, q: Array, r: Array) -> Array:
     """Give the point (..., 4) that three planes of P³ share.
 
     Raises
@@ -40,10 +69,13 @@ def point_of_planes(p: npt.ArrayLike, q: npt.ArrayLike, r: npt.ArrayLike) -> Arr
     >>> point_of_planes([1, 0, 0, -2], [0, 1, 0, -3], [0, 0, 1, -4])  # x = 2, y = 3, z = 4
     array([2., 3., 4., 1.])
     """
-    return -_wedge((p, q, r), ("p", "q", "r"), "plane", "the planes share a whole line") + 0.0
+    point = -_wedge(p, q, r)
+    refuse_zero(point, (p, q, r), "the planes share a whole line")
+    return point + 0.0
 
 
-def line_through(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
+@guarded(a=_point, b=_point, also=_as_many)
+def line_through(a: Array, b: Array) -> Array:
     """Give the line of P³ through two points (..., 4), as L = a bᵀ − b aᵀ of shape (..., 4, 4).
 
     Raises
@@ -61,11 +93,14 @@ def line_through(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
     >>> meet_plane(z_axis, PLANE_AT_INFINITY)  # its direction
     array([ 0.,  0., -5.,  0.])
     """
-    why = "the points coincide: many lines pass through them"
-    return _plucker(a, b, ("a", "b"), "point", why)
+    abT = a[..., :, None] * b[..., None, :]
+    L = abT - abT.mT
+    refuse_zero(_flat(L), (a, b), "the points coincide: many lines pass through them")
+    return L
 
 
-def line_of_planes(p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
+@guarded(p=_plane, q=_plane, also=_as_many)
+def line_of_planes(p: Array, q: Array) -> Array:
     """Give the line of P³ that two planes (..., 4) share, as a matrix L (..., 4, 4).
 
     Parallel planes share a line at infinity.
@@ -81,11 +116,14 @@ def line_of_planes(p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
     >>> meet_plane(z_axis, [0, 0, 1, -7])
     array([ 0.,  0., -7., -1.])
     """
-    why = "the planes coincide: they share all their points"
-    return dual(_plucker(p, q, ("p", "q"), "plane", why))
+    pqT = p[..., :, None] * q[..., None, :]
+    L = pqT - pqT.mT
+    refuse_zero(_flat(L), (p, q), "the planes coincide: they share all their points")
+    return dual.inside(L)
 
 
-def dual(L: npt.ArrayLike) -> Array:
+@guarded(L=_line)
+def dual(L: Array) -> Array:
     """Turn a line given by points into the same line given by planes, and back.
 
     Examples
@@ -94,14 +132,14 @@ def dual(L: npt.ArrayLike) -> Array:
     >>> bool((dual(dual(L)) == L).all())
     True
     """
-    L = _line(L)
     D = np.zeros_like(L)
     for (i, j), (k, m) in (((0, 1), (2, 3)), ((0, 2), (3, 1)), ((0, 3), (1, 2))):
         D[..., i, j], D[..., k, m] = L[..., k, m], L[..., i, j]
     return D - D.mT
 
 
-def meet_plane(L: npt.ArrayLike, p: npt.ArrayLike) -> Array:
+@guarded(L=_line, p=_plane, also=_one_each)
+def meet_plane(L: Array, p: Array) -> Array:
     """Give the point (..., 4) where a line L of P³ meets a plane (..., 4): x = L p.
 
     Raises
@@ -115,10 +153,13 @@ def meet_plane(L: npt.ArrayLike, p: npt.ArrayLike) -> Array:
     >>> meet_plane(L, [0, 0, 1, -9])
     array([1., 2., 9., 1.])
     """
-    return _apply(_line(L), p, ("p", "plane"), "the line lies in the plane")
+    point = (L @ p[..., None])[..., 0]
+    refuse_zero(point, (_flat(L), p), "the line lies in the plane")
+    return np.asarray(point) + 0.0
 
 
-def join_point(L: npt.ArrayLike, x: npt.ArrayLike) -> Array:
+@guarded(L=_line, x=_point, also=_one_each)
+def join_point(L: Array, x: Array) -> Array:
     """Give the plane (..., 4) through a line L of P³ and a point (..., 4): p = L* x.
 
     Raises
@@ -132,49 +173,18 @@ def join_point(L: npt.ArrayLike, x: npt.ArrayLike) -> Array:
     >>> join_point(z_axis, [3, 0, 0, 1])  # y = 0
     array([0., 3., 0., 0.])
     """
-    return _apply(
-        dual(L), x, ("x", "point"), "the point lies on the line: many planes contain both"
-    )
+    plane = (dual.inside(L) @ x[..., None])[..., 0]
+    refuse_zero(plane, (_flat(L), x), "the point lies on the line: many planes contain both")
+    return np.asarray(plane) + 0.0
 
 
-def _plucker(
-    a: npt.ArrayLike, b: npt.ArrayLike, names: tuple[str, str], what: str, why: str
-) -> Array:
-    a, b = (vectors(x, name, what, 4) for x, name in zip((a, b), names, strict=True))
-    equally_many(" and ".join(names), a.shape[:-1], b.shape[:-1])
-    L = a[..., :, None] * b[..., None, :]
-    L = L - L.mT
-    size = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
-    refuse_zero(L.reshape(*L.shape[:-2], 16), size, why)
-    return np.asarray(L)
-
-
-def _wedge(three: tuple[npt.ArrayLike, ...], names: tuple[str, ...], what: str, why: str) -> Array:
+def _wedge(*three: Array) -> Array:
     """Give the vector (..., 4) that is orthogonal to three: the cross product of P³."""
-    given = [vectors(x, name, what, 4) for x, name in zip(three, names, strict=True)]
-    equally_many(", ".join(names), *(x.shape[:-1] for x in given))
-    M = np.stack(np.broadcast_arrays(*given), axis=-2)
+    M = np.stack(np.broadcast_arrays(*three), axis=-2)
     with np.errstate(divide="ignore"):  # factors so small that their logarithm is infinite
         minors = [(-1) ** i * np.linalg.det(np.delete(M, i, axis=-1)) for i in range(4)]
-    product = np.stack(minors, axis=-1)
-    refuse_zero(product, np.prod(np.linalg.norm(M, axis=-1), axis=-1), why)
-    return product + 0.0
+    return np.stack(minors, axis=-1)
 
 
-def _line(L: npt.ArrayLike) -> Array:
-    """Guard lines of P³ (..., 4, 4): L = −Lᵀ, and not zero."""
-    L = matrix(L, "L", 4, 4)
-    largest = np.abs(L).max(axis=(-2, -1), initial=0.0, keepdims=True)
-    if (largest == 0).any() or (np.abs(L + L.mT) > 1e-9 * largest).any():
-        raise CvnotesError(
-            "L: a line of P³ is a matrix that is not zero, with L = −Lᵀ; line_through gives it"
-        )
-    return L
-
-
-def _apply(L: Array, x: npt.ArrayLike, names: tuple[str, str], why: str) -> Array:
-    x = vectors(x, *names, 4)
-    equally_many("lines L and " + names[0], L.shape[:-2], x.shape[:-1])
-    product = (L @ x[..., None])[..., 0]
-    refuse_zero(product, np.linalg.norm(L, axis=(-2, -1)) * np.linalg.norm(x, axis=-1), why)
-    return np.asarray(product) + 0.0
+def _flat(L: Array) -> Array:
+    return L.reshape(*L.shape[:-2], 16)

@@ -6,7 +6,7 @@ from warnings import warn
 import numpy as np
 
 from cvnotes.base import Array, CalibrationWarning, CvnotesError, DegenerateError, image_size
-from cvnotes.camera import Camera, exp_so3, intrinsics, pose, vector_from_rotation
+from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector, vector_from_rotation
 from cvnotes.camera.model import is_camera
 from cvnotes.stereo.epipolar import baseline, relative_pose
 from cvnotes.warping import map_array, undistortion_map
@@ -132,7 +132,7 @@ def _rectifying_rotation(left: Camera, right: Camera) -> Array:
     """Give the rotation (3, 3) from the WRF to the frame that both cameras are turned to."""
     # 1. halfway between the two cameras
     between = vector_from_rotation(relative_pose(left, right)[:3, :3])
-    R = exp_so3(between / 2) @ left.R
+    R = rotation_from_vector.inside(between / 2) @ left.R
     # 2. the baseline, seen from there, to the nearest axis
     b = R @ baseline(left, right)
     axis = int(np.argmax(np.abs(b[:2])))
@@ -141,7 +141,7 @@ def _rectifying_rotation(left: Camera, right: Camera) -> Array:
     n = np.cross(b, e)
     sine = np.linalg.norm(n)
     turn = n * (np.arctan2(sine, b @ e) / sine) if sine > 0 else n
-    return np.asarray(exp_so3(turn) @ R)
+    return np.asarray(rotation_from_vector.inside(turn) @ R)
 
 
 def _border(camera: Camera, R: Array) -> list[Array]:

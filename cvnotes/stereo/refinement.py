@@ -14,7 +14,7 @@ import numpy as np
 from cvnotes.base import Array, DegenerateError, Minimum, levenberg_marquardt
 from cvnotes.calibration.arrow import Arrow, solve_arrow
 from cvnotes.calibration.refinement import Problem, State, take_step
-from cvnotes.camera import exp_so3, skew_matrix
+from cvnotes.camera import rotation_from_vector, skew_matrix
 
 # Squared pixels per coordinate that rounding alone may leave.
 _ROUNDING = 1e-25
@@ -79,7 +79,7 @@ class StereoProblem:
         return StereoState(
             take_step(x.left, (cameras[:q], poses)),
             x.right + cameras[q:],
-            exp_so3(shared[-6:-3]) @ x.R,
+            rotation_from_vector.inside(shared[-6:-3]) @ x.R,
             x.T + shared[-3:],
         )
 

@@ -9,7 +9,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, pose
 from cvnotes.learn.cases.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.projective.points import drop
+from cvnotes.projective import from_homogeneous
 
 
 def vanishing_point(A: Array, R: Array, d: Array) -> Array:
@@ -29,7 +29,7 @@ def _directions(rng: Rng) -> list[Case]:
 
 
 def _seen(x_h: Array) -> Array:
-    return drop(np.asarray(x_h, dtype=float))
+    return from_homogeneous.inside(np.asarray(x_h, dtype=float))
 
 
 def _only(condition: bool, value: Array) -> Array | None:

@@ -107,5 +107,5 @@ DISTORT = Exercise(
     ),
     reference=distort,
     concepts=("28", "29", "31", "32", "E14", "E15"),
-    sources=(Lens.distort, Lens._distort),
+    sources=(Lens.distort,),
 )

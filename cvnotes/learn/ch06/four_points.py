@@ -15,8 +15,7 @@ from cvnotes.learn.cases.cameras import (
 from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.projective import apply, to_homogeneous
-from cvnotes.projective.points import drop
+from cvnotes.projective import apply, from_homogeneous, to_homogeneous
 
 
 def _four(rng: Rng) -> list[Case]:
@@ -40,7 +39,7 @@ def _with_h9(src: Array, dst: Array, sign: float = -1.0) -> Array | None:
 
 
 def _exactly(H: Array, case: Case) -> bool:
-    mapped = drop(to_homogeneous(case.args[0]) @ H.T)
+    mapped = from_homogeneous.inside(to_homogeneous(case.args[0]) @ H.T)
     return np.allclose(mapped, case.args[1], rtol=0, atol=1e-3)
 
 

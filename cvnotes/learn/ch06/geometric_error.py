@@ -6,8 +6,7 @@ from cvnotes.base import Array
 from cvnotes.homography import geometric_error
 from cvnotes.learn.cases.cameras import board_grid, rounded, some_factors, some_homography
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.projective import apply, to_homogeneous
-from cvnotes.projective.points import drop
+from cvnotes.projective import apply, from_homogeneous, to_homogeneous
 
 
 def _with_errors(rng: Rng) -> list[Case]:
@@ -22,7 +21,7 @@ def _with_errors(rng: Rng) -> list[Case]:
 
 
 def _mapped(H: Array, src: Array) -> Array:
-    return drop(to_homogeneous(src) @ H.T)
+    return from_homogeneous.inside(to_homogeneous(src) @ H.T)
 
 
 GEOMETRIC = Exercise(

@@ -19,7 +19,7 @@ def backward_warp(image: Array, H: Array, size: tuple[int, int]) -> Array:
 
 
 def _sources(M: npt.ArrayLike, size: tuple[int, int]) -> Array:
-    return np.nan_to_num(apply(M, pixel_centres(size)), nan=-1e6)
+    return np.asarray(np.nan_to_num(apply(M, pixel_centres(size)), nan=-1e6))
 
 
 def _looked_up(image: Array, m: Array, size: tuple[int, int]) -> Array:

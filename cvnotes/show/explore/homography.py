@@ -9,8 +9,7 @@ from cvnotes.base import Array, Image
 from cvnotes.camera import Camera, pose, rotation_from_vector
 from cvnotes.homography import dlt
 from cvnotes.pictures import render
-from cvnotes.projective import to_homogeneous
-from cvnotes.projective.points import drop
+from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.paper import Drawn, Paper, Range
@@ -78,7 +77,7 @@ def _draw(
 def _sentence(H: Array, camera: Camera, board: Chessboard, nudged: bool) -> str:
     """Tell how far the board's inner corners land from where they are, on the plane."""
     W = board.points
-    found = drop(to_homogeneous(camera.project(W)) @ np.linalg.inv(H).T)
+    found = from_homogeneous.inside(to_homogeneous(camera.project(W)) @ np.linalg.inv(H).T)
     off = float(np.linalg.norm(found - W[:, :2], axis=-1).max())
     if not nudged:
         return "The four corners are exact, and so is H: every square becomes a square."
