@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
 from cvnotes.camera import Lens
 from cvnotes.camera.lens_fold import fold_radius, horner, radial_factor
@@ -98,6 +100,26 @@ def test_what_the_inverse_answers_is_seen_there_and_the_rest_is_nan():
 def test_far_beyond_all_numbers_the_inverse_answers_nan_without_a_warning():
     d = np.array([1e-200, 1e-30, 0.0, 1e30, 1e200])
     for lens in (((-0.3,), (0, 0)), ((-0.3,), (1e-3, 1e-3)), ((0.1,), (1e-3, 0)), ((), (1e-3, 0))):
-        x, y = Inverse(*lens)(d, np.zeros(5))
+        x, y = Inverse(*lens)(np.stack([d, np.zeros(5)], axis=-1)).T
         np.testing.assert_allclose(np.hypot(x, y)[:3], [0, 1e-30, 0], rtol=1e-12, atol=1e-150)
         assert not np.isfinite(x[4]) or x[4] < 1e200
+
+
+coefficient = st.floats(-1e3, 1e3) | st.floats(-1e-20, 1e-20) | st.sampled_from([0.0, 1.25, -1.0])
+tangential = st.floats(-1, 1) | st.floats(-1e-25, 1e-25)
+
+
+@given(k=st.lists(coefficient, max_size=4), p=st.tuples(tangential, tangential))
+@example(k=[0.0, 1.25, -1.0], p=(0.0, 7e-29))  # its tiniest root was polished to below 0
+@settings(max_examples=400, deadline=None, derandomize=True)
+def test_every_lens_has_a_fold_or_none_and_is_one_to_one_before_it(k, p):
+    lens = Lens(tuple(k), p)
+    end = lens.max_radius
+    assert isinstance(end, float)
+    assert end > 0
+    radius = np.linspace(0, 0.999, 50)[:, None] * min(end, 100.0)
+    angle = np.linspace(0, 2 * np.pi, 24)
+    xy = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+    J = lens.jacobian(xy)
+    size = np.abs(J).max((-2, -1))
+    assert (np.linalg.eigvalsh(J)[..., 0] > -1e-9 * size).all()

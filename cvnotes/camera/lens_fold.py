@@ -91,10 +91,12 @@ def _positive_roots(ascending: Array, beyond: float) -> list[float]:
     # Read backwards the polynomial has the reciprocals as roots, and small roots come out best.
     reciprocal = np.roots(np.where(np.abs(ascending) < 1e-100, 0, ascending))
     real = np.abs(reciprocal.imag) <= 1e-7 * np.abs(reciprocal)
-    roots = 1 / reciprocal.real[real & (reciprocal.real > 1 / beyond)]
+    roots = (1 / reciprocal.real[real & (reciprocal.real > 1 / beyond)]).tolist()
     c = ascending.tolist()
     derivative = [i * c_i for i, c_i in enumerate(c)][1:]
-    return [r - _value(c, r) / (_value(derivative, r) or np.inf) for r in roots.tolist()]
+    polished = [r - _value(c, r) / (_value(derivative, r) or np.inf) for r in roots]
+    # Beside a double root, where the slope is all but 0, the step may lead anywhere.
+    return [new if r / 2 < new < 2 * r else r for r, new in zip(roots, polished, strict=True)]
 
 
 def _value(ascending: list[float], t: float) -> float:
