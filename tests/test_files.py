@@ -33,7 +33,7 @@ from cvnotes.files import (
     write_camera_info,
     write_whole,
 )
-from cvnotes.targets import TwoPlanes
+from cvnotes.targets import Chessboard, TwoPlanes
 
 posix = pytest.mark.skipif(os.name == "nt", reason="pipes, devices and limits of POSIX")
 SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
@@ -176,12 +176,39 @@ def test_a_matrix_is_laid_out_a_row_per_line(tmp_path):
 
 
 def test_corners_are_left_out_rather_than_writing_a_file_that_cannot_be_read(tmp_path):
-    many = np.random.default_rng(1).uniform(0, 640, (15_000, 2))
-    made = Made(image_points=(many, many), board_points=(np.zeros((15_000, 3)),) * 2)
+    many = np.random.default_rng(1).uniform(0, 640, (200_000, 2))
+    made = Made(image_points=(many, many), board_points=(np.zeros((200_000, 3)),) * 2)
     write_calibration(made, tmp_path / "calibration.json")
     back = read_calibration(tmp_path / "calibration.json")
     assert back["_data"] is None
     assert back["rms"] == 0.25
+
+
+def test_what_is_written_of_more_than_a_thousand_photographs_is_read(tmp_path):
+    rng = np.random.default_rng(1)
+    poses = np.stack([pose(rotation_from_vector(r), r * 900) for r in rng.normal(size=(1500, 3))])
+    found = tuple(rng.uniform(0, 640, (54, 2)) for _ in range(1500))
+    made = Made(
+        poses=poses,
+        view_rms=np.full(1500, 0.25),
+        image_points=found,
+        board_points=(Chessboard((9, 6), 30.0).points,) * 1500,
+    )
+    names = [f"a rather long folder/photograph number {i:05d}.jpg" for i in range(1500)]
+    lost = [Rejected(name, "no chessboard of 9×6 inner corners was found") for name in names]
+    write_calibration(made, tmp_path / "calibration.json", files=names, rejected=lost)
+    assert (tmp_path / "calibration.json").stat().st_size > 2_000_000
+    back = Calibration.load(tmp_path / "calibration.json")
+    assert np.array_equal(back.poses, poses)
+    assert np.array_equal(back.image_points[1499], found[1499])
+    assert read_camera(tmp_path / "calibration.json").size == CAMERA.size
+
+
+def test_what_could_not_be_read_is_not_written(tmp_path, monkeypatch):
+    monkeypatch.setattr("cvnotes.calibration.saving.MAX_BYTES", 1000)
+    with pytest.raises(CvnotesError, match=r"2 views and 0 photographs .* takes \d+ bytes"):
+        write_calibration(Made(), tmp_path / "calibration.json")
+    assert not list(tmp_path.iterdir())
 
 
 def test_as_many_names_as_views(tmp_path):
@@ -253,7 +280,9 @@ def test_a_missing_key_is_named(saved, camera_keys, key):
         (b'{"x": 1, "x": 2}', "the key 'x' appears twice"),
         (b"[" * 100_000, "nested more than 16 deep at character 16"),
         (b'{"a":' * 50_000, "nested more than 16 deep"),
-        (b"[" + b"1," * 2_000_000 + b"1]", "larger than 1000000 bytes"),
+        (b"[" + b"1," * 9_000_000 + b"1]", "larger than 16000000 bytes"),
+        (b'{"x": "' + b'\\"' * 1_000_000, "not valid JSON at line 1, column 7: Unterminated"),
+        (b'{"x": ' + b'"' * 999_999, "not valid JSON"),
         (pickle.dumps({"a": 1}), "not UTF-8|NUL bytes"),
     ],
 )
@@ -275,6 +304,30 @@ def test_hostile_json_is_refused_with_its_position(saved, content, message):
         ({"converged": None}, "converged: expected true or false, got nothing"),
         ({"board": [[0, 0, 0]]}, "board: expected 4 values, got 1"),
         ({"board": [[0, 0, 0]] * 4}, "all board points coincide"),
+        ({"distortion": {"k": [], "p": [0, 0]}}, "'k1' is no parameter of this camera; the lens"),
+        (
+            {"standard_deviations": {"alpha_u": 0.5, "k4": 1e-4, "p1": 1e-5}},
+            "'k4' is no parameter of this camera; the lens has 3 radial coefficients",
+        ),
+        (
+            {"standard_deviations": {"focal": 0.5, "k1": 1e-4, "p1": 1e-5}},
+            "standard_deviations: 'focal' is no parameter of this camera",
+        ),
+        (
+            {"covariance": np.diag([0.25, -1e-8, 1e-10]).tolist()},
+            "covariance: the variance of k1 is negative: -1e-08",
+        ),
+        (
+            {"standard_deviations": {"alpha_u": 0.4, "k1": 1e-4, "p1": 1e-5}},
+            "not the roots of the covariance's diagonal",
+        ),
+        (
+            {"covariance": [[0.25, 1e-4, 0], [1e-4, 1e-8, 0], [0, 0, 1e-10]]},
+            "larger than both variances allow",
+        ),
+        ({"covariance": [[0.25, 1e-6, 0], [0, 1e-8, 0], [0, 0, 1e-10]]}, "it is not symmetric"),
+        ({"rms": 0.4}, "rms: 0.4 does not lie between the smallest"),
+        ({"rms": -0.25}, "rms: -0.25 does not lie between"),
     ],
 )
 def test_a_wrong_calibration_is_refused_by_its_key(tmp_path, saved, change, message):
@@ -282,6 +335,36 @@ def test_a_wrong_calibration_is_refused_by_its_key(tmp_path, saved, change, mess
     keys = json.loads((tmp_path / "good.json").read_text()) | change
     with pytest.raises(FileError, match=message):
         read_calibration(saved("calibration.json", json.dumps(keys)))
+
+
+def test_a_lens_of_a_thousand_coefficients_is_refused_at_once(tmp_path):
+    (tmp_path / "a.json").write_text(
+        json.dumps(
+            {
+                "image_size": [640, 480],
+                "camera_matrix": CAMERA.A.tolist(),
+                "distortion": {"k": [1e-3] * 1000, "p": [0, 0]},
+            }
+        )
+    )
+    with pytest.raises(FileError, match="k: no lens has 1000 coefficients"):
+        read_camera(tmp_path / "a.json")
+
+
+@pytest.mark.parametrize("kind", ["unterminated", "many texts", "many lists", "many keys"])
+def test_hostile_json_of_the_largest_size_takes_no_longer_than_an_honest_one(tmp_path, kind):
+    size = 2_000_000
+    hostile = {
+        "unterminated": '{"x": "' + '\\"' * (size // 2),
+        "many texts": "[" + '"",' * (size // 3) + '""]',
+        "many lists": "[" + "[]," * (size // 3) + "[]]",
+        "many keys": "{" + ",".join(f'"{i}":0' for i in range(size // 9)) + "}",
+    }
+    (tmp_path / "camera.json").write_text(hostile[kind])
+    start = time.perf_counter()
+    with pytest.raises(FileError):
+        read_camera(tmp_path / "camera.json")
+    assert time.perf_counter() - start < 20  # of quadratic work they would take hours
 
 
 @posix
@@ -574,3 +657,32 @@ def test_an_interrupt_in_the_middle_of_writing_leaves_no_temporary_file(tmp_path
     done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == -signal.SIGINT
     assert not list(tmp_path.iterdir())
+
+
+@posix
+def test_the_next_run_clears_away_what_a_killed_one_left_but_not_what_is_being_written(tmp_path):
+    code = """
+        import os, sys, time
+        from pathlib import Path
+        from cvnotes.files import write_whole
+        def stuck(handle):
+            print("here", flush=True)
+            time.sleep(60)
+        os.fsync = stuck
+        write_whole({Path(sys.argv[1]): b"x"})
+    """
+    run = [sys.executable, "-c", textwrap.dedent(code)]
+    pipe = {"cwd": tmp_path, "stdout": subprocess.PIPE, "text": True}
+    with (
+        subprocess.Popen([*run, "killed"], **pipe) as killed,
+        subprocess.Popen([*run, "busy"], **pipe) as busy,
+    ):
+        assert killed.stdout.readline() == busy.stdout.readline() == "here\n"
+        killed.kill()
+        killed.wait()
+        assert len(list(tmp_path.glob(".cvnotes-*.tmp"))) == 2
+        write_whole({tmp_path / "next": b"y"})
+        assert len(list(tmp_path.glob(".cvnotes-*.tmp"))) == 1
+        busy.kill()
+    write_whole({tmp_path / "next": b"z"})
+    assert [path.name for path in tmp_path.iterdir()] == ["next"]

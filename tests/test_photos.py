@@ -2,6 +2,9 @@
 
 import os
 import struct
+import subprocess
+import sys
+import textwrap
 import time
 import zlib
 from pathlib import Path
@@ -315,3 +318,28 @@ def test_any_name_works_and_is_printed_on_one_line(tmp_path, name, shown):
     assert printable(path.name) == shown
     path.write_bytes(b"x")
     assert Path(read_photos([tmp_path])[1][0].file).name == shown
+
+
+def test_sixteen_bits_become_eight_as_percentiles_say():
+    rng = np.random.default_rng(3)
+    image = rng.gamma(2.0, 900.0, (211, 307)).astype(np.uint16)
+    low, high = np.percentile(image, (0.1, 99.9))
+    expected = ((image - low) * (255 / (high - low))).round().clip(0, 255)
+    assert np.array_equal(Photo(Path("a.png"), image).grey, expected.astype(np.uint8))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="limits of POSIX")
+def test_a_large_picture_of_sixteen_bits_takes_no_memory_but_its_own(tmp_path):
+    Image.fromarray(np.zeros((4000, 5000), np.uint16)).save(tmp_path / "large.png")
+    code = """
+        import resource, sys
+        from PIL import Image
+        from cvnotes.files import read_photo
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        read_photo(sys.argv[1]).grey
+        print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+    """
+    run = [sys.executable, "-c", textwrap.dedent(code), str(tmp_path / "large.png")]
+    said = subprocess.run(run, check=True, capture_output=True, text=True).stdout
+    unit = 1 if sys.platform == "darwin" else 1024
+    assert int(said) * unit < 10 * 20_000_000  # bytes a pixel; in floating point it were 25

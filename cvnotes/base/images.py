@@ -115,5 +115,8 @@ def stretched(grey: Image) -> npt.NDArray[np.uint8]:
     step = int(np.ceil(np.sqrt(grey.size / _ENOUGH_PIXELS)))
     low, high = np.percentile(grey[::step, ::step], (0.1, 99.9))
     contrast = high - low if high - low > _FLAT else 1.0
-    scaled = (grey - low) * (255 / contrast)
-    return np.asarray(scaled.round().clip(0, 255), dtype=np.uint8)
+    eight_bits = np.empty(grey.shape, np.uint8)
+    for rows in chunks(len(grey), max(1, _PIXELS_AT_A_TIME // grey[0].size)):
+        scaled = (grey[rows] - low) * (255 / contrast)
+        eight_bits[rows] = scaled.round().clip(0, 255)
+    return eight_bits

@@ -23,6 +23,7 @@ from cvnotes.files.strict import MAX_BYTES, parse_json, read_text
 from cvnotes.files.writing import PathLike, printable
 
 FORMAT = "cvnotes calibration"
+_ROUNDED = 1e-6  # numbers that agree to so much, whoever rounded them, are the same
 
 
 class Result(Protocol):
@@ -99,14 +100,19 @@ def write_calibration(
 
 
 def calibration_json(
-    result: Result, *, files: Sequence[PathLike] = (), rejected: Sequence[Rejected] = ()
+    result: Result,
+    *,
+    files: Sequence[PathLike] = (),
+    rejected: Sequence[Rejected] = (),
+    note: str = "",
 ) -> str:
-    """Spell a calibration as JSON; see `write_calibration`."""
+    """Spell a calibration as JSON, with a note for whoever opens it; see `write_calibration`."""
     if files and len(files) != len(result.poses):
         raise CvnotesError(f"files: expected {len(result.poses)} names, got {len(files)}")
     keys = {
         "format": FORMAT,
         "version": VERSION,
+        **({"note": note} if note else {}),
         "reliable": bool(result.reliable),
         "converged": bool(result.converged),
         "warnings": list(result.warnings),
@@ -120,6 +126,11 @@ def calibration_json(
     text = dump(keys | _views(result, files, with_corners=bool(result.image_points)))
     if len(text.encode()) > MAX_BYTES:
         text = dump(keys | _views(result, files, with_corners=False))
+    if (size := len(text.encode())) > MAX_BYTES:
+        raise CvnotesError(
+            f"a calibration of {len(result.poses)} views and {len(rejected)} photographs that were "
+            f"not used takes {size} bytes as a file; at most {MAX_BYTES} are read"
+        )
     return text
 
 
@@ -155,21 +166,61 @@ def read_calibration(path: PathLike) -> dict[str, Any]:
     views = list(entry["views"])
     if not views:
         raise entry.error("the list of views is empty")
-    names = tuple(entry["standard_deviations"].items())
+    rms, view_rms = _rms(entry, views)
+    names, covariance = _error_bars(entry, camera)
     return {
         "A": camera.A,
         "lens": camera.lens,
         "size": camera.size,
         "poses": np.stack([pose_from_entry(view) for view in views]),
-        "rms": entry["rms"].number(),
-        "view_rms": np.array([view["rms"].number() for view in views]),
+        "rms": rms,
+        "view_rms": view_rms,
         "names": names,
-        "covariance": entry["covariance"].array(len(names), len(names)),
+        "covariance": covariance,
         "warnings": tuple(item.text() for item in entry["warnings"]),
         "reliable": entry["reliable"].flag(),
         "converged": entry["converged"].flag(),
         "_data": _corners(entry, views),
     }
+
+
+def _rms(entry: Entry, views: list[Entry]) -> tuple[float, Array]:
+    """Read the RMS of all views together, which lies between those of single ones."""
+    rms, each = entry["rms"].number(), np.array([view["rms"].number() for view in views])
+    if each.min() < 0:
+        raise views[int(each.argmin())]["rms"].error(f"an RMS is not negative, got {each.min():g}")
+    if not each.min() * (1 - _ROUNDED) <= rms <= each.max() * (1 + _ROUNDED):
+        raise entry["rms"].error(
+            f"{rms:g} does not lie between the smallest ({each.min():g}) and the largest "
+            f"({each.max():g}) of the views, so one of them was changed"
+        )
+    return rms, each
+
+
+def _error_bars(entry: Entry, camera: Camera) -> tuple[tuple[str, ...], Array]:
+    """Read parameters' names and covariance: of this camera, and such as a covariance can be."""
+    listed, C = entry["standard_deviations"], entry["covariance"]
+    std = {name: item.number() for name, item in listed.items().items()}
+    known = ("alpha_u", "alpha_v", "skew", "u0", "v0", "p1", "p2")
+    known += tuple(f"k{i}" for i in range(1, len(camera.lens.k) + 1))
+    for name in std:
+        if name not in known:
+            count = len(camera.lens.k)
+            few = f"; the lens has {count or 'no'} radial coefficients" if name[:1] == "k" else ""
+            raise listed.error(f"{name!r} is no parameter of this camera{few}")
+    covariance = C.array(len(std), len(std))
+    variance = np.diag(covariance)
+    if (variance < 0).any():
+        name = list(std)[int(variance.argmin())]
+        raise C.error(f"the variance of {name} is negative: {variance.min():g}")
+    if not np.allclose(np.sqrt(variance), list(std.values()), rtol=_ROUNDED, atol=0):
+        raise listed.error("they are not the roots of the covariance's diagonal")
+    scale = np.sqrt(np.outer(variance, variance)) * (1 + _ROUNDED)
+    if (np.abs(covariance) > scale).any():
+        raise C.error("a covariance is larger than both variances allow")
+    if (np.abs(covariance - covariance.T) > scale * _ROUNDED).any():
+        raise C.error("it is not symmetric")
+    return tuple(std), covariance
 
 
 def _corners(entry: Entry, views: list[Entry]) -> Correspondences | None:

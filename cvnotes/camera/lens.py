@@ -21,6 +21,9 @@ from cvnotes.camera.lens_inverse import Inverse
 # Far from all lenses powers of r overflow: to infinity, or to NaN, and in silence.
 _beyond_all_numbers = np.errstate(over="ignore", invalid="ignore")
 
+# Nobody fits more coefficients to a lens, and the roots of a long polynomial take minutes.
+_MOST = 32
+
 
 @dataclass(frozen=True)
 class Lens:
@@ -29,7 +32,7 @@ class Lens:
     Parameters
     ----------
     k : sequence of float
-        Radial coefficients k1, k2, … of L(r) = 1 + k1 r² + k2 r⁴ + …; any number of them.
+        Radial coefficients k1, k2, … of L(r) = 1 + k1 r² + k2 r⁴ + …; at most 32 of them.
     p : (p1, p2)
         Tangential coefficients.
     centre : (x, y)
@@ -63,6 +66,8 @@ class Lens:
                 wanted = "a sequence k1, k2, …" if length is None else "two numbers"
                 raise ShapeError(f"{name}: expected {wanted}, got shape {values.shape}")
             given = tuple(values.tolist())
+            if len(given) > _MOST:
+                raise CvnotesError(f"{name}: no lens has {len(given)} coefficients")
             if any(abs(value) > 1e50 for value in given):
                 raise CvnotesError(f"{name} = {list(given)}: no lens has such coefficients")
             object.__setattr__(self, name, given)

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError
 from cvnotes.commands.console import complain, say
+from cvnotes.commands.ownership import earlier, made_by, marked
 from cvnotes.commands.target import corners, length
 from cvnotes.files import Rejected, write_whole
 from cvnotes.files.writing import check_folder, printable
@@ -17,6 +19,10 @@ from cvnotes.targets import Chessboard
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration
     from cvnotes.commands.examined import Examined
+
+_RESULTS = re.compile(
+    r"calibration\.(json|yml)|photographs\.csv|(coverage|residuals|view_rms|corners(-\d+)?)\.png"
+)
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -55,6 +61,7 @@ def run(args: argparse.Namespace) -> int:
         complain("calibrate", str(error))
         return 2
     check_folder(args.out)
+    before = earlier(args.out, _RESULTS.fullmatch, "calibrate")
     examined, rejected = examine(args.photos, board)
     used = [photo for photo in examined if photo.corners is not None]
     files, rejected = _brief([printable(photo.path) for photo in used], rejected)
@@ -71,6 +78,8 @@ def run(args: argparse.Namespace) -> int:
         say(f"! {sentence}")
     contents = _contents(result, examined, board, files, rejected)
     write_whole({args.out / name: data for name, data in contents.items()})
+    for stale in (path for path in before if path.name not in contents):
+        stale.unlink(missing_ok=True)  # a sheet that an earlier run had more than this one
     say(f"Written to {printable(args.out)}: {', '.join(contents)}")
     if not result.reliable:
         complain("calibrate", f"written, but not reliable: {result.warnings[0]}")
@@ -104,12 +113,19 @@ def _contents(
     """Give all files to write, by name."""
     from cvnotes.calibration.saving import calibration_json
     from cvnotes.commands.pictures import pictures
+    from cvnotes.commands.report import photo_csv
     from cvnotes.files.exchange import opencv_yaml
 
+    note = made_by("calibrate")
+    drawn = pictures(result, examined, board, files)
+    notes = [photo.note for photo in examined if photo.corners is not None]
     return {
-        "calibration.json": calibration_json(result, files=files, rejected=rejected).encode(),
-        "calibration.yml": opencv_yaml(result.camera).encode(),
-        **pictures(result, examined, board, files),
+        "calibration.json": calibration_json(
+            result, files=files, rejected=rejected, note=note
+        ).encode(),
+        "calibration.yml": opencv_yaml(result.camera, note=note).encode(),
+        "photographs.csv": photo_csv(files, notes, rejected, result).encode(),
+        **{name: marked(png, "calibrate") for name, png in drawn.items()},
     }
 
 

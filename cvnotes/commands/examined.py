@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, CornersNotFound, FileError
 from cvnotes.commands.console import progress
-from cvnotes.files import Photo, Rejected, list_photos, open_photos
+from cvnotes.commands.ownership import photographs
+from cvnotes.files import Photo, Rejected, open_photos
 from cvnotes.files.writing import printable
 from cvnotes.targets import Chessboard
 
@@ -57,7 +58,7 @@ def examine(paths: Sequence[str], board: Chessboard) -> tuple[list[Examined], li
 
     A photograph without the board is in both lists.
     """
-    files, rejected = list_photos(paths)
+    files, rejected = photographs(paths, straightened=True)
     if not files and not rejected:
         raise FileError(f"no photographs in {', '.join(map(printable, paths))}")
     examined = []

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cvnotes.base import CvnotesError
-from cvnotes.commands.console import complain, say
+from cvnotes.commands.console import complain, harmless, say
 from cvnotes.files import write_whole
 from cvnotes.files.writing import check_folder, printable
 from cvnotes.learn import EXERCISES
@@ -97,8 +97,8 @@ def marks_csv(marks: Sequence[Mark]) -> str:
         percent = round(100 * mark.points / len(mark.expected)) if mark.expected else 0
         texts = [met, ", ".join(mark.ids), mark.remark]
         writer.writerow(
-            [_harmless(mark.student), _harmless(mark.notebook), mark.points, len(mark.expected)]
-            + [percent, *points, *map(_harmless, texts)]
+            [harmless(mark.student), harmless(mark.notebook), mark.points, len(mark.expected)]
+            + [percent, *points, *map(harmless, texts)]
         )
     return text.getvalue()
 
@@ -133,8 +133,3 @@ def _positive(text: str) -> float:
     if not 1 <= value < 1e6:
         raise argparse.ArgumentTypeError(f"expected a number from 1, got {text!r}")
     return value
-
-
-def _harmless(text: str) -> str:
-    """Keep a spreadsheet from taking a text for a formula."""
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text

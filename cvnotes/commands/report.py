@@ -1,5 +1,7 @@
 """What `cvnotes calibrate` prints: a line for each photograph, the camera, what is doubtful."""
 
+import csv
+import io
 import re
 from collections.abc import Sequence
 from math import floor, log10
@@ -8,7 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cvnotes.base import Array, text_table
+from cvnotes.commands.console import harmless
 from cvnotes.commands.examined import Examined
+from cvnotes.commands.ownership import TABLE_HEADER
 from cvnotes.files import Rejected
 from cvnotes.show.figures.quality import covered_cells
 
@@ -35,6 +39,19 @@ def photo_table(
     return "\n".join(
         [text_table([["photograph", "RMS (px)", "note"], *rows]), *(f"! {r}" for r in long)]
     )
+
+
+def photo_csv(
+    files: Sequence[str], notes: Sequence[str], rejected: Sequence[Rejected], result: "Calibration"
+) -> str:
+    """Give the same table for other programs: reasons in full, no RMS for what was not used."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(TABLE_HEADER)
+    for file, rms, note in zip(files, result.view_rms, notes, strict=True):
+        writer.writerow([harmless(file), f"{rms:.4f}", harmless(note)])
+    writer.writerows([harmless(r.file), "", harmless(r.reason)] for r in rejected)
+    return text.getvalue()
 
 
 def camera_report(result: "Calibration") -> str:

@@ -3,16 +3,17 @@
 import argparse
 import io
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 
-from cvnotes.base import CalibrationWarning, CvnotesError, FileError, text_table
+from cvnotes.base import CalibrationWarning, CvnotesError, text_table
 from cvnotes.camera import Camera
 from cvnotes.commands.console import complain, progress, say
+from cvnotes.commands.ownership import free_name, made_by, marked, numbered, photographs
 from cvnotes.files import (
     Photo,
     Rejected,
-    list_photos,
     open_photos,
     read_camera,
     write_camera,
@@ -27,7 +28,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "undistort",
         help="take the lens distortion out of photographs",
         description="Take the lens distortion out of photographs, by a backward warp. They are "
-        "written as PNG, beside camera.json: the same camera without its lens.",
+        "written as PNG, beside camera.json: the same camera without its lens. No file but this "
+        "command's own is ever replaced.",
         epilog="example: cvnotes undistort photos/ --camera result/calibration.json --out flat/",
     )
     add = parser.add_argument
@@ -42,26 +44,29 @@ def run(args: argparse.Namespace) -> int:
     """Undistort; gives the exit code: 0 if any photograph could be, else 1."""
     camera = read_camera(args.camera)
     check_folder(args.out)
-    files, rejected = list_photos(args.photos, size=camera.size)
-    written: dict[Path, list[str]] = {}
+    files, rejected = photographs(args.photos, size=camera.size, straightened=False)
+    written: list[list[str]] = []
+    taken: set[str] = set()
     for photo in progress(open_photos(files), total=len(files)):
         if isinstance(photo, Rejected):
             rejected.append(photo)
             continue
         try:
-            target = _target(photo.path, args.out, written)
             picture, note = straightened(photo, camera)
+            target = free_name(_names(photo.path), args.out, "undistort", taken)
             write_whole({target: picture})
-            written[target] = [printable(photo.path), printable(target.name), note]
+            written.append([printable(photo.path), printable(target.name), note])
         except CvnotesError as error:
             rejected.append(Rejected(printable(photo.path), str(error)))
-    rows = [*written.values(), *([r.file, "–", r.reason] for r in rejected)]
+    rows = [*written, *([r.file, "–", r.reason] for r in rejected)]
     say(text_table([["photograph", "written as", "note"], *rows]))
     if not written:
         complain("undistort", "no photograph could be undistorted")
         return 1
-    write_camera(Camera(camera.A, size=camera.size), args.out / "camera.json")
-    say(f"Written to {printable(args.out)}, with camera.json for them")
+    names = chain(["camera.json"], numbered("camera", ".json"))
+    target = free_name(names, args.out, "undistort", taken)
+    write_camera(Camera(camera.A, size=camera.size), target, note=made_by("undistort"))
+    say(f"Written to {printable(args.out)}, with {target.name} for them")
     return 0
 
 
@@ -79,14 +84,12 @@ def straightened(photo: Photo, camera: Camera) -> tuple[bytes, str]:
         image = undistort_image(photo.image, camera)
     Image.fromarray(image).save(encoded, "PNG", exif=exif)
     notes = [photo.note] * bool(photo.note) + [str(warning.message) for warning in caught]
-    return encoded.getvalue(), "; ".join(notes)
+    return marked(encoded.getvalue(), "undistort"), "; ".join(notes)
 
 
-def _target(path: Path, out: Path, taken: Mapping[Path, object]) -> Path:
-    """Name the result after its photograph, without ever replacing one."""
-    target = out / f"{path.stem}.png"
-    if target in taken:
-        target = out / f"{path.name}.png"
-    if target.exists() and target.samefile(path):
-        raise FileError("the result would replace the photograph itself; choose another --out")
-    return target
+def _names(path: Path) -> Iterator[str]:
+    """Give the names that the result for a photograph may have, the best first."""
+    yield f"{path.stem}.png"
+    if path.suffix.lower() != ".png":
+        yield f"{path.name}.png"
+    yield from numbered(path.stem, ".png")

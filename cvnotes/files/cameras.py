@@ -10,17 +10,18 @@ from cvnotes.base import CvnotesError, FileError, intrinsic_matrix
 from cvnotes.camera import Camera, Lens, pose
 from cvnotes.files.entry import Entry
 from cvnotes.files.exchange import CameraInfo, camera_info, opencv_yaml, ros_yaml
-from cvnotes.files.strict import parse_json, parse_yaml, read_text
+from cvnotes.files.strict import MAX_YAML_BYTES, parse_json, parse_yaml, read_text
 from cvnotes.files.writing import PathLike, printable, write_whole
 
 FORMAT = "cvnotes camera"
 VERSION = 1
 
 
-def write_camera(camera: Camera, path: PathLike) -> None:
+def write_camera(camera: Camera, path: PathLike, *, note: str = "") -> None:
     """Write a camera, whole or not at all: ``.json`` is ours, ``.yml`` or ``.yaml`` OpenCV's.
 
-    OpenCV's form holds sensor, lens and size but no pose.
+    OpenCV's form holds sensor, lens and size but no pose. A note for whoever opens the file goes
+    to its beginning.
 
     Examples
     --------
@@ -32,9 +33,10 @@ def write_camera(camera: Camera, path: PathLike) -> None:
     np.float64(805.0)
     """
     if _is_yaml(path):
-        text = opencv_yaml(camera)
+        text = opencv_yaml(camera, note=note)
     else:
-        text = dump({"format": FORMAT, "version": VERSION, **camera_to_dict(camera)})
+        remark = {"note": note} if note else {}
+        text = dump({"format": FORMAT, "version": VERSION, **remark, **camera_to_dict(camera)})
     write_whole({Path(path): text.encode()})
 
 
@@ -66,7 +68,7 @@ def read_camera_info(path: PathLike) -> CameraInfo:
     FileError
         The file does not describe a camera; the message names the key or the line.
     """
-    return camera_info(parse_yaml(read_text(path), printable(path)))
+    return camera_info(parse_yaml(read_text(path, MAX_YAML_BYTES), printable(path)))
 
 
 def camera_to_dict(camera: Camera) -> dict[str, Any]:

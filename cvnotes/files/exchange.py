@@ -12,6 +12,7 @@ import numpy.typing as npt
 from cvnotes.base import Array, CvnotesError, FileError, intrinsic_matrix, matrix, numbers, rotation
 from cvnotes.camera import Camera, Lens
 from cvnotes.files.entry import Entry
+from cvnotes.files.writing import printable
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +54,7 @@ class CameraInfo:
         object.__setattr__(self, "rectification", rotation(self.rectification, "rectification"))
 
 
-def opencv_yaml(camera: Camera) -> str:
+def opencv_yaml(camera: Camera, *, note: str = "") -> str:
     """Spell a camera as ``cv2.FileStorage`` of OpenCV 4 and 5 reads it.
 
     Raises
@@ -67,11 +68,12 @@ def opencv_yaml(camera: Camera) -> str:
     >>> opencv_yaml(Camera(intrinsics(800, 800, 320, 240))).splitlines()[:3]
     ['%YAML:1.0', '---', 'image_width: 640']
     """
+    remark = f"# {printable(note)}\n" if note else ""
     size = f"image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
-    note = "# OpenCV keeps the skew in the matrix but does not use it.\n" if camera.A[0, 1] else ""
+    skew = "# OpenCV keeps the skew in the matrix but does not use it.\n" if camera.A[0, 1] else ""
     K = _opencv_matrix("camera_matrix", camera.A)
     D = _opencv_matrix("distortion_coefficients", opencv_coefficients(camera.lens)[None])
-    return f"%YAML:1.0\n---\n{size}{note}{K}{D}"
+    return f"%YAML:1.0\n---\n{remark}{size}{skew}{K}{D}"
 
 
 def ros_yaml(info: CameraInfo) -> str:
@@ -185,6 +187,8 @@ def _read_matrix(entry: Entry) -> Array:
     else:
         shape = [entry["rows"].whole(), entry["cols"].whole()]
     data = entry["data"].array(None)
+    if len(shape) > 2:
+        raise entry.error(f"expected a matrix of rows and columns, got {len(shape)} sizes")
     if min(shape) < 0 or data.size != np.prod(shape, dtype=object):
         raise entry.error(f"expected {'×'.join(map(str, shape))} values in data, got {data.size}")
     return data.reshape(shape)

@@ -140,7 +140,7 @@ def open_photos(files: Iterable[Path]) -> Iterator[Photo | Rejected]:
         except FileError as error:
             yield Rejected(printable(path), str(error))
             continue
-        content = blake2b(photo.image.tobytes(), digest_size=16).digest()
+        content = blake2b(np.ascontiguousarray(photo.image).data, digest_size=16).digest()
         first = seen.setdefault(content, path)
         if first != path:
             yield Rejected(printable(path), f"the same picture as {printable(first)}")

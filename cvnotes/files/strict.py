@@ -2,7 +2,7 @@
 
 Nothing is ever constructed or executed: the result is made of dict, list, str, float, int, bool
 and None. What a format allows but a result file never needs (NaN, repeated keys, aliases, deep
-nesting, more than a megabyte) is refused with a sentence that names the key or the line.
+nesting, more than 16 megabytes) is refused with a sentence that names the key or the line.
 """
 
 import json
@@ -15,7 +15,8 @@ from cvnotes.base import FileError
 from cvnotes.files.entry import Entry
 from cvnotes.files.writing import PathLike, printable
 
-MAX_BYTES = 1_000_000
+MAX_BYTES = 16_000_000  # a calibration of 6,000 photographs with all corners, in JSON
+MAX_YAML_BYTES = 100_000  # a camera; and YAML is read slowly
 MAX_DEPTH = 16
 
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?")
@@ -23,24 +24,24 @@ _YAML = "tag:yaml.org,2002:"
 _YAML_TAGS = {None, "!", *(_YAML + t for t in ("opencv-matrix", "opencv-nd-matrix", "map", "seq"))}
 
 
-def read_text(path: PathLike) -> str:
-    """Read a small regular file of UTF-8 text.
+def read_text(path: PathLike, largest: int = MAX_BYTES) -> str:
+    """Read a regular file of UTF-8 text, up to a number of bytes.
 
     Raises
     ------
     FileError
-        It is not there, no regular file, larger than a megabyte, empty or not UTF-8.
+        It is not there, no regular file, too large, empty or not UTF-8.
     """
     name = printable(path)
     try:
         if not Path(path).is_file():
             raise FileError(f"{name}: there is no such file, or it is not a regular one")
         with Path(path).open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
+            data = stream.read(largest + 1)
     except OSError as error:
         raise FileError(f"{name}: cannot be read: {error.strerror or error}") from error
-    if len(data) > MAX_BYTES:
-        raise FileError(f"{name}: larger than {MAX_BYTES} bytes, so it is no camera or calibration")
+    if len(data) > largest:
+        raise FileError(f"{name}: larger than {largest} bytes, so it is no camera or calibration")
     if not data.strip():
         raise FileError(f"{name}: the file is empty")
     if data.startswith((b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")) or b"\0" in data:
@@ -65,7 +66,9 @@ def parse_json(text: str, file: str) -> Entry:
     cvnotes.base.errors.FileError: a.json: the key 'rms' appears twice
     """
     depth = 0
-    for token in re.finditer(r'"(?:[^"\\]|\\.)*"|[\[{]|[\]}]', text):
+    # A text takes all it can and gives nothing back (*+), so that one without an end costs as
+    # much as one with: looking for its end anew from each escaped quote would take minutes.
+    for token in re.finditer(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', text, re.DOTALL):
         depth += {"[": 1, "{": 1, "]": -1, "}": -1}.get(token[0], 0)
         if depth > MAX_DEPTH:
             raise FileError(

@@ -2,12 +2,20 @@
 
 import os
 import secrets
+import time
 from collections.abc import Mapping
+from contextlib import ExitStack, suppress
+from importlib import import_module, util
 from pathlib import Path
+from typing import Any
 
 from cvnotes.base import FileError
 
 PathLike = str | os.PathLike[str]
+
+_PREFIX, _SUFFIX = ".cvnotes-", ".tmp"
+_HOUR = 3600  # s; no writing takes so long
+fcntl: Any = import_module("fcntl") if util.find_spec("fcntl") else None  # not on Windows
 
 
 def printable(path: PathLike) -> str:
@@ -29,7 +37,8 @@ def write_whole(contents: Mapping[Path, bytes]) -> None:
 
     All contents go to temporary files beside their targets, flushed to the disk; only when
     every one of them is there, they take their targets' names. No temporary file stays behind,
-    whatever interrupts. Missing folders are made.
+    whatever interrupts; what a killed process could not clear away, the next call in that folder
+    does. Missing folders are made.
 
     Parameters
     ----------
@@ -51,19 +60,22 @@ def write_whole(contents: Mapping[Path, bytes]) -> None:
     'hello'
     """
     staged: list[tuple[Path, Path]] = []
+    locks = ExitStack()
     target = Path()
     try:
         for target, data in contents.items():
             final = _checked(target)
+            _clear_abandoned(final.parent)
             # The name is noted before the file exists: an interruption in between leaves nothing.
-            staged.append((final.with_name(f".cvnotes-{secrets.token_hex(8)}.tmp"), final))
-            _write_and_sync(staged[-1][0], data)
+            staged.append((final.with_name(f"{_PREFIX}{secrets.token_hex(8)}{_SUFFIX}"), final))
+            _write_and_sync(staged[-1][0], data, locks)
         for temporary, target in staged:
             temporary.replace(target)
     except OSError as error:
         reason = error.strerror or str(error)
         raise FileError(f"{printable(target)} cannot be written: {reason}") from error
     finally:
+        locks.close()
         for temporary, _ in staged:
             temporary.unlink(missing_ok=True)
 
@@ -98,8 +110,41 @@ def _checked(target: Path) -> Path:
     return final
 
 
-def _write_and_sync(path: Path, data: bytes) -> None:
-    with path.open("xb") as stream:
+def _write_and_sync(path: Path, data: bytes, locks: ExitStack) -> None:
+    """Write a new file, and hold a lock on it that ends with `locks` or with this process."""
+    with ExitStack() as mine:
+        stream = mine.enter_context(path.open("xb"))
+        if fcntl is not None:
+            with suppress(OSError):  # some network folders have no locks
+                fcntl.flock(stream, fcntl.LOCK_EX)
         stream.write(data)
         stream.flush()
         os.fsync(stream.fileno())
+        if fcntl is not None:  # Windows renames no file that is open
+            locks.push(mine.pop_all())
+
+
+def _clear_abandoned(folder: Path) -> None:
+    """Remove the temporary files of processes that were killed while they wrote."""
+    with suppress(OSError):  # whatever cannot be cleared away is no reason not to write
+        for path in folder.glob(f"{_PREFIX}*{_SUFFIX}"):
+            if _is_abandoned(path):
+                path.unlink(missing_ok=True)
+
+
+def _is_abandoned(path: Path) -> bool:
+    """Tell that nobody writes a temporary file: its lock went with the process that held it."""
+    info = path.stat()
+    age = time.time() - info.st_mtime
+    if fcntl is None:
+        return age > _HOUR
+    if info.st_size == 0 and age < 60:  # perhaps just made, and not locked yet
+        return False
+    with path.open("rb") as stream:
+        try:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+        except OSError:
+            return age > _HOUR
+    return True
