@@ -29,11 +29,12 @@ import numpy as np
 
 from benchmarks.turns import all_in_turns
 from cvnotes.base import Array, CalibrationWarning
-from cvnotes.calibration import Calibration, calibrate
+from cvnotes.calibration import Calibration, calibrate, extrinsics, radial_distortion
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Problem, State, minimise
-from cvnotes.calibration.steps import Steps
+from cvnotes.calibration.starts import Search
 from cvnotes.camera import Camera, Lens, intrinsics
+from cvnotes.homography import dlt
 from cvnotes.pictures import good_views
 from cvnotes.targets import Chessboard
 
@@ -132,12 +133,22 @@ def pythons_with_peers(candidates: list[str]) -> dict[str, str]:
     return found
 
 
+def first_start(problem: Problem) -> State:
+    """Give the state that the first four steps of `calibrate` lead to."""
+    start = next(Search(problem).starts())
+    H = start.homographies(dlt)
+    A = start.intrinsics(None, H)
+    G = start.extrinsics(extrinsics, A, H)
+    return start.state(A, G, start.distortion(radial_distortion, A, G))
+
+
 def start_of(m: Array) -> tuple[Problem, State, dict[str, Any]]:
     """Give the problem, our closed form's start, and the same start in the peers' terms."""
     data = Correspondences.of(BOARD.points, m)
-    problem = Problem(data.W, data.m, data.seen, n_radial=2, tangential=True)
-    start = next(Steps(CAMERA.size).starts(problem))
-    A, lens = problem.camera_of(start.shared)
+    problem = Problem.of(data, CAMERA.size, "k1 k2 p1 p2", skew=False)
+    start = first_start(problem)
+    camera = problem.camera_of(start.shared)
+    A, lens = camera.A, camera.lens
     G = data.pose_in_given_units(start.R, start.T)
     frames = [np.append(cv2.Rodrigues(g[:3, :3])[0], g[:3, 3]) for g in G]
     columns, rows = BOARD.corners

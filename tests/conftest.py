@@ -5,7 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cvnotes.calibration import extrinsics, radial_distortion
+from cvnotes.calibration.starts import Search
 from cvnotes.camera import pose, rotation_from_vector
+from cvnotes.homography import dlt
 from cvnotes.targets import Chessboard
 
 _SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
@@ -57,3 +60,17 @@ def views_of(board):
         return np.array(poses), np.array(corners)
 
     return views
+
+
+@pytest.fixture(scope="session")
+def first_start():
+    """Give a function that takes steps 1 to 4 once, as `calibrate` does: what it refines first."""
+
+    def state_of(problem, intrinsics=None):
+        start = next(Search(problem).starts())
+        H = start.homographies(dlt)
+        A = start.intrinsics(intrinsics, H)
+        G = start.extrinsics(extrinsics, A, H)
+        return start.state(A, G, start.distortion(radial_distortion, A, G))
+
+    return state_of

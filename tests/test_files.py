@@ -10,7 +10,7 @@ import subprocess
 import sys
 import textwrap
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -20,6 +20,7 @@ import yaml
 
 from cvnotes.base import CvnotesError, FileError
 from cvnotes.calibration import Calibration, calibrate_one_view
+from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.saving import read_calibration, write_calibration
 from cvnotes.camera import Camera, Lens, intrinsics, look_at, pose, rotation_from_vector
 from cvnotes.files import (
@@ -48,21 +49,23 @@ LONGER = np.concatenate([BOARD, BOARD + np.array([60.0, 0.0, 0.0])])
 CORNERS = [np.array([[100.1, 50], [130, 50], [100, 80], [130, 80.25]]) + i for i in range(2)]
 
 
-@dataclass(frozen=True)
-class Made:
+def made(**changes):
     """A calibration by hand."""
-
-    camera: Camera = CAMERA
-    poses: np.ndarray = field(default_factory=lambda: np.stack([G, np.eye(4)]))
-    rms: float = 0.25
-    view_rms: np.ndarray = field(default_factory=lambda: np.array([0.2, 0.3]))
-    std: dict = field(default_factory=lambda: {"alpha_u": 0.5, "k1": 1e-4, "p1": 1e-5})
-    covariance: np.ndarray = field(default_factory=lambda: np.diag([0.25, 1e-8, 1e-10]))
-    image_points: tuple = tuple(CORNERS)
-    board_points: tuple = (BOARD, BOARD)
-    warnings: tuple = ("only two views",)
-    reliable: bool = False
-    converged: bool = True
+    boards, corners = changes.pop("board_points", (BOARD, BOARD)), changes.pop("corners", CORNERS)
+    by_hand = Calibration(
+        CAMERA.A,
+        CAMERA.lens,
+        CAMERA.size,
+        poses=np.stack([G, np.eye(4)]),
+        rms=0.25,
+        view_rms=np.array([0.2, 0.3]),
+        names=("alpha_u", "k1", "p1"),
+        covariance=np.diag([0.25, 1e-8, 1e-10]),
+        warnings=("only two views",),
+        reliable=False,
+        _data=Correspondences.of(boards, corners) if corners else None,
+    )
+    return replace(by_hand, **changes).as_mapping()
 
 
 FILES = ("left01.jpg", Path("left02.jpg"))
@@ -106,7 +109,7 @@ def test_a_camera_comes_back_from_json_bit_for_bit_with_its_pose_and_distortion_
 
 
 def test_json_has_the_keys_that_were_promised(tmp_path):
-    write_calibration(Made(), tmp_path / "calibration.json", files=FILES, rejected=REJECTED)
+    write_calibration(made(), tmp_path / "calibration.json", files=FILES, rejected=REJECTED)
     keys = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
     assert keys["format"] == "cvnotes calibration"
     assert keys["version"] == 1
@@ -126,27 +129,25 @@ def test_json_has_the_keys_that_were_promised(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "made",
+    "written",
     [
-        Made(),
-        Made(board_points=(BOARD, 2 * BOARD)),
-        Made(board_points=(LONGER, BOARD), image_points=(np.tile(CORNERS[0], (2, 1)), CORNERS[1])),
-        Made(board_points=(), image_points=(), warnings=(), reliable=True),
+        made(),
+        made(board_points=(BOARD, 2 * BOARD)),
+        made(board_points=(LONGER, BOARD), corners=(np.tile(CORNERS[0], (2, 1)), CORNERS[1])),
+        made(corners=(), warnings=(), reliable=True),
     ],
     ids=["one board", "two boards", "a partial board", "no corners"],
 )
-def test_a_calibration_comes_back_bit_for_bit(tmp_path, made):
-    write_calibration(made, tmp_path / "calibration.json")
+def test_a_calibration_comes_back_bit_for_bit(tmp_path, written):
+    write_calibration(written, tmp_path / "calibration.json")
     back = read_calibration(tmp_path / "calibration.json")
-    assert back["names"] == ("alpha_u", "k1", "p1")
-    assert (back["lens"], back["size"]) == (CAMERA.lens, CAMERA.size)
-    assert np.array_equal(back["A"], CAMERA.A)
-    for name in ("rms", "warnings", "reliable", "converged"):
-        assert back[name] == getattr(made, name), name
-    for name in ("poses", "view_rms", "covariance"):
-        assert np.array_equal(back[name], getattr(made, name)), name
-    corners = back["_data"].given() if back["_data"] else []
-    for (W, m), board, image in zip(corners, made.board_points, made.image_points, strict=True):
+    assert back.keys() == written.keys()
+    for name in ("names", "lens", "size", "rms", "warnings", "reliable", "converged"):
+        assert back[name] == written[name], name
+    for name in ("A", "poses", "view_rms", "covariance"):
+        assert np.array_equal(back[name], written[name]), name
+    corners = [x["_data"].given() if x["_data"] else [] for x in (back, written)]
+    for (W, m), (board, image) in zip(*corners, strict=True):
         assert np.array_equal(m, image)
         assert np.allclose(W, board, rtol=0, atol=1e-12)  # kept centred and scaled
 
@@ -155,17 +156,17 @@ def test_a_calibration_from_one_picture_of_a_solid_target_comes_back_too(tmp_pat
     target = TwoPlanes()
     seen = Camera(CAMERA.A, look_at([500, 0, -700], [100, 60, -80])).project(target.points)
     seen += np.random.default_rng(5).normal(0, 0.1, seen.shape)
-    made = calibrate_one_view(target.points, seen, (640, 480))
-    made.save(tmp_path / "calibration.json")
+    result = calibrate_one_view(target.points, seen, (640, 480))
+    result.save(tmp_path / "calibration.json")
     back = Calibration.load(tmp_path / "calibration.json")
-    assert np.array_equal(back.A, made.A)
+    assert np.array_equal(back.A, result.A)
     assert np.array_equal(back.image_points, [seen])
     assert np.allclose(back.board_points, [target.points], rtol=0, atol=1e-12)
-    assert np.allclose(back.residuals, made.residuals, rtol=0, atol=1e-9)
+    assert np.allclose(back.residuals, result.residuals, rtol=0, atol=1e-9)
 
 
 def test_the_camera_of_a_calibration_can_be_read_alone(tmp_path):
-    write_calibration(Made(), tmp_path / "calibration.json")
+    write_calibration(made(), tmp_path / "calibration.json")
     assert same_camera(read_camera(tmp_path / "calibration.json"), CAMERA)
 
 
@@ -177,8 +178,8 @@ def test_a_matrix_is_laid_out_a_row_per_line(tmp_path):
 
 def test_corners_are_left_out_rather_than_writing_a_file_that_cannot_be_read(tmp_path):
     many = np.random.default_rng(1).uniform(0, 640, (200_000, 2))
-    made = Made(image_points=(many, many), board_points=(np.zeros((200_000, 3)),) * 2)
-    write_calibration(made, tmp_path / "calibration.json")
+    large = made(corners=(many, many), board_points=(np.pad(many, ((0, 0), (0, 1))),) * 2)
+    write_calibration(large, tmp_path / "calibration.json")
     back = read_calibration(tmp_path / "calibration.json")
     assert back["_data"] is None
     assert back["rms"] == 0.25
@@ -188,15 +189,15 @@ def test_what_is_written_of_more_than_a_thousand_photographs_is_read(tmp_path):
     rng = np.random.default_rng(1)
     poses = np.stack([pose(rotation_from_vector(r), r * 900) for r in rng.normal(size=(1500, 3))])
     found = tuple(rng.uniform(0, 640, (54, 2)) for _ in range(1500))
-    made = Made(
+    written = made(
         poses=poses,
         view_rms=np.full(1500, 0.25),
-        image_points=found,
+        corners=found,
         board_points=(Chessboard((9, 6), 30.0).points,) * 1500,
     )
     names = [f"a rather long folder/photograph number {i:05d}.jpg" for i in range(1500)]
     lost = [Rejected(name, "no chessboard of 9×6 inner corners was found") for name in names]
-    write_calibration(made, tmp_path / "calibration.json", files=names, rejected=lost)
+    write_calibration(written, tmp_path / "calibration.json", files=names, rejected=lost)
     assert (tmp_path / "calibration.json").stat().st_size > 2_000_000
     back = Calibration.load(tmp_path / "calibration.json")
     assert np.array_equal(back.poses, poses)
@@ -207,13 +208,13 @@ def test_what_is_written_of_more_than_a_thousand_photographs_is_read(tmp_path):
 def test_what_could_not_be_read_is_not_written(tmp_path, monkeypatch):
     monkeypatch.setattr("cvnotes.calibration.saving.MAX_BYTES", 1000)
     with pytest.raises(CvnotesError, match=r"2 views and 0 photographs .* takes \d+ bytes"):
-        write_calibration(Made(), tmp_path / "calibration.json")
+        write_calibration(made(), tmp_path / "calibration.json")
     assert not list(tmp_path.iterdir())
 
 
 def test_as_many_names_as_views(tmp_path):
     with pytest.raises(CvnotesError, match="files: expected 2 names, got 1"):
-        write_calibration(Made(), tmp_path / "calibration.json", files=["a.jpg"])
+        write_calibration(made(), tmp_path / "calibration.json", files=["a.jpg"])
 
 
 # --- JSON that must be refused --------------------------------------------------------------
@@ -331,7 +332,7 @@ def test_hostile_json_is_refused_with_its_position(saved, content, message):
     ],
 )
 def test_a_wrong_calibration_is_refused_by_its_key(tmp_path, saved, change, message):
-    write_calibration(Made(), tmp_path / "good.json", rejected=REJECTED)
+    write_calibration(made(), tmp_path / "good.json", rejected=REJECTED)
     keys = json.loads((tmp_path / "good.json").read_text()) | change
     with pytest.raises(FileError, match=message):
         read_calibration(saved("calibration.json", json.dumps(keys)))

@@ -10,10 +10,8 @@ import pytest
 
 from cvnotes.base import levenberg_marquardt
 from cvnotes.calibration import calibrate
-from cvnotes.calibration.arrow import solve_arrow
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import Problem, take_step
-from cvnotes.calibration.steps import Steps
+from cvnotes.calibration.refinement import Problem, solve_arrow, take_step
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 pytestmark = pytest.mark.sampling
@@ -144,13 +142,13 @@ def usual_field_of_view(H):  # noqa: ARG001
     [(0, None), (1, None), (2, None), (3, usual_field_of_view)],
 )
 def test_the_bands_refuse_what_is_not_refined_to_the_end(
-    board, views, bound, iterations, intrinsics
+    board, views, bound, first_start, iterations, intrinsics
 ):
     d = []
     for m in simulated(views):
         data = Correspondences.of(board.points, m)
-        problem = Problem(data.W, data.m, n_radial=3, tangential=True)
-        x = next(Steps(SIZE, intrinsics=intrinsics).starts(problem))
+        problem = Problem(data.W, data.m, n_radial=3, tangential=True, size=SIZE)
+        x = first_start(problem, intrinsics)
         if iterations:
             x = levenberg_marquardt(
                 x, problem.linearise, solve_arrow, take_step, max_iterations=iterations

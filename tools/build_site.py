@@ -40,7 +40,7 @@ REFERENCE = {
         "camera.lens_fold",
         "camera.lens_inverse",
         "targets.sheet",
-        "calibration.steps",
+        "calibration.starts",
         "calibration.refinement",
         "calibration.reliability",
         "pictures.raycast",

@@ -244,3 +244,21 @@ def target_size(x: Any, name: str = "size") -> tuple[int, int]:
     if width * height > MOST_PIXELS:
         raise CvnotesError(f"{name}: a picture of {width} × {height} pixels would be too large")
     return width, height
+
+
+def generator(x: Any, name: str = "rng") -> "np.random.Generator":
+    """Guard a source of random numbers.
+
+    Examples
+    --------
+    >>> generator(7)
+    Traceback (most recent call last):
+    cvnotes.base.errors.InputTypeError: rng: expected a numpy.random.Generator \
+(np.random.default_rng(seed)), got int
+    """
+    if not isinstance(x, np.random.Generator):
+        raise InputTypeError(
+            f"{name}: expected a numpy.random.Generator (np.random.default_rng(seed)), "
+            f"got {type(x).__name__}"
+        )
+    return x

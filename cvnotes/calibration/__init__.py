@@ -1,9 +1,10 @@
 """Chapter 7: a camera from its pictures of a board, with error bars (notes 2b.4)."""
 
-from cvnotes.calibration.driver import LENSES, calibrate
+from cvnotes.calibration.driver import calibrate
 from cvnotes.calibration.one_view import calibrate_one_view
 from cvnotes.calibration.pose import pose_from_view
 from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, resect
+from cvnotes.calibration.refinement import LENSES
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.uncertainty import prediction_std, std_with_view
 from cvnotes.calibration.zhang import (

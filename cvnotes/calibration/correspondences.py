@@ -70,9 +70,15 @@ class Correspondences:
         if W.shape[-2] < 4 or (seen is not None and seen.sum(1).min() < 4):
             raise DegenerateError("every view needs at least 4 points")
         _refuse_lines(m)
+        return Correspondences.in_unit_frame(W, m, seen)
+
+    @staticmethod
+    def in_unit_frame(
+        W: Array, m: Array, seen: npt.NDArray[np.bool_] | None = None
+    ) -> "Correspondences":
+        """Centre points W on 0, and scale them so that half of their diagonal is 1."""
         low, high = W.reshape(-1, 3).min(0), W.reshape(-1, 3).max(0)
-        centre = (low + high) / 2
-        scale = float(np.linalg.norm(high - low)) / 2
+        centre, scale = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
         if scale <= 1e-12 * float(np.abs(centre).max()):
             raise DegenerateError("all board points coincide")
         return Correspondences((W - centre) / scale, m, seen, centre, scale)
@@ -96,6 +102,12 @@ class Correspondences:
         G = np.zeros((len(R), 4, 4))
         G[:, :3, :3], G[:, 3, 3] = R, 1
         G[:, :3, 3] = self.scale * T - R @ self.centre
+        return G
+
+    def pose_in_scaled_units(self, G: Array) -> Array:
+        """Undo `pose_in_given_units`: the scaled board's origin is seen at (R c + T) / s."""
+        G = G.copy()
+        G[..., :3, 3] = (G[..., :3, :3] @ self.centre + G[..., :3, 3]) / self.scale
         return G
 
     def pose_jacobian(self, R: Array) -> Array:

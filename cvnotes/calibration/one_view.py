@@ -1,26 +1,14 @@
 """The whole camera from one picture of a target that is not flat (notes 2b.4, first approach)."""
 
-from warnings import warn
-
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import (
-    Array,
-    CalibrationWarning,
-    CvnotesError,
-    DegenerateError,
-    image_size,
-    paired,
-    points,
-)
-from cvnotes.calibration.arrow import covariance, pose_covariance
+from cvnotes.base import Array, DegenerateError, image_size, paired, points
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.driver import LENSES
 from cvnotes.calibration.ppm import resect
-from cvnotes.calibration.refinement import Problem, minimise
+from cvnotes.calibration.refinement import Problem, minimise, refuse_too_few
 from cvnotes.calibration.result import Calibration
-from cvnotes.camera import Lens, decompose, pose
+from cvnotes.camera import Camera, decompose, pose
 
 # Standard deviation of a focal length over its value, and RMS over the picture's longer side.
 _UNCERTAIN, _UNKNOWN, _MISFIT = 0.01, 0.10, 0.005
@@ -75,8 +63,7 @@ def calibrate_one_view(
 
     Examples
     --------
-    >>> from cvnotes.camera import Camera, intrinsics
-    >>> from cvnotes.camera import look_at
+    >>> from cvnotes.camera import Camera, Lens, intrinsics, look_at
     >>> from cvnotes.targets import TwoPlanes
     >>> target = TwoPlanes()
     >>> G = look_at([500, 0, -700], [100, 60, -80])
@@ -87,56 +74,21 @@ def calibrate_one_view(
            [  0., 805., 240.],
            [  0.,   0.,   1.]])
     """
-    if not isinstance(lens, str) or lens not in LENSES:
-        raise CvnotesError(f"lens: expected one of {', '.join(map(repr, LENSES))}, got {lens!r}")
     size = image_size(size)
     W, m = points(target_points, "target_points", 3), points(image_points, "image_points", 2)
     paired(W, m, ("target_points", "image_points"), at_least=6)
-    A, G = _start(W, m)
-    data = _scaled(W, m)
-    n_radial, tangential = LENSES[lens]
-    problem = Problem(data.W, data.m, None, skew, n_radial, tangential)
-    freedom = m.size - len(problem.names) - 6
-    if freedom <= 0:
-        raise DegenerateError(
-            f"{m.size} measured coordinates cannot determine {len(problem.names) + 6} parameters; "
-            "add points or estimate a simpler lens"
-        )
-    # The target's scaled frame: R stays, the scaled origin is seen at (R c + T) / s.
-    G = pose(G[:3, :3], (G[:3, :3] @ data.centre + G[:3, 3]) / data.scale)
-    best = minimise(problem, problem.state(A, Lens(), G[None]))
-    A, found = problem.camera_of(best.x.shared)
-    variance = best.cost / freedom
-    cov = covariance(best.system)
-
-    def poses() -> Array:
-        J = data.pose_jacobian(best.x.R)
-        return np.asarray(J @ pose_covariance(best.system, cov) @ J.mT) * variance
-
-    rms = float(np.sqrt(best.cost / len(W)))
-    std = dict(zip(problem.names, np.sqrt(np.diag(variance * cov)).tolist(), strict=True))
-    sentences, reliable = _judge(A, std, rms, size, best.converged)
-    for sentence in sentences:
-        warn(sentence, CalibrationWarning, stacklevel=2)
-    return Calibration(
-        A=A,
-        lens=found,
-        size=size,
-        poses=data.pose_in_given_units(best.x.R, best.x.T),
-        rms=rms,
-        view_rms=np.array([rms]),
-        names=problem.names,
-        covariance=variance * cov,
-        warnings=sentences,
-        reliable=reliable,
-        converged=best.converged,
-        _data=data,
-        _pose_covariance=poses,
-    )
+    camera, G = _start(W, m, size)
+    data = Correspondences.of(W, m, flat=False)
+    problem = Problem.of(data, size, lens, skew)
+    remedy = "add points or estimate a simpler lens"
+    refuse_too_few(m.size, len(problem.names) + 6, remedy)
+    best = minimise(problem, problem.state(camera, data.pose_in_scaled_units(G)[None]))
+    found = Calibration.of(problem, data, best)
+    return found.judged(*_judge(found))
 
 
-def _start(W: Array, m: Array) -> tuple[Array, Array]:
-    """Take the PPM apart, or refuse what only a mirror could show."""
+def _start(W: Array, m: Array, size: tuple[int, int]) -> tuple[Camera, Array]:
+    """Take the PPM apart into sensor and pose, or refuse what only a mirror could show."""
     P = resect(W, m)
     if np.linalg.det(P[:, :3]) < 0:
         raise DegenerateError(
@@ -144,27 +96,19 @@ def _start(W: Array, m: Array) -> tuple[Array, Array]:
             "(u, v), or the target's frame left-handed?"
         )
     A, R, T = decompose(P)
-    return A, pose(R, T)
+    return Camera(A, size=size), pose(R, T)
 
 
-def _scaled(W: Array, m: Array) -> Correspondences:
-    """Centre the target and scale it to unit size, as one view."""
-    low, high = W.min(0), W.max(0)
-    centre, scale = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
-    return Correspondences((W - centre) / scale, m[None], None, centre, scale)
-
-
-def _judge(
-    A: Array, std: dict[str, float], rms: float, size: tuple[int, int], converged: bool
-) -> tuple[tuple[str, ...], bool]:
+def _judge(found: Calibration) -> tuple[tuple[str, ...], bool]:
     """Say what is doubtful, and whether the result is reliable all the same."""
-    if rms > _MISFIT * max(size):
+    if found.rms > _MISFIT * max(found.size):
         return (
-            f"the points are {rms:.1f} px away from where the model puts them: are they paired "
-            "with the right pixels?",
+            f"the points are {found.rms:.1f} px away from where the model puts them: are they "
+            "paired with the right pixels?",
         ), False
-    if not converged:
+    if not found.converged:
         return ("the refinement stopped before it reached a minimum",), False
+    std, A = found.std, found.A
     focal = max(std["alpha_u"] / A[0, 0], std["alpha_v"] / A[1, 1])
     if focal > _UNCERTAIN:
         return (

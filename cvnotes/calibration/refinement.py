@@ -1,16 +1,38 @@
-"""The problem: which parameters are sought, and how the corners depend on them."""
+"""Step 5, the refinement: what is sought, how the corners depend on it, and the best of it.
+
+In this order: the parameters; the Jacobian; the normal equations, which have the shape of an arrow,
+as each view meets the others only in the camera that they share; Levenberg–Marquardt.
+"""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, ConvergenceError, Minimum, chunks, levenberg_marquardt
-from cvnotes.calibration.arrow import Arrow, solve_arrow
-from cvnotes.camera import Lens, px_from_xy, rotation_from_vector
+from cvnotes.base import (
+    Array,
+    ConvergenceError,
+    CvnotesError,
+    DegenerateError,
+    Minimum,
+    chunks,
+    levenberg_marquardt,
+)
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.camera import Camera, intrinsics, rotation_from_vector
 from cvnotes.camera.lens_fold import horner, radial_factor
+
+# What `lens=` may name: how many radial terms, and whether the tangential ones too.
+LENSES = {
+    "none": (0, False),
+    "k1": (1, False),
+    "k1 k2": (2, False),
+    "k1 k2 k3": (3, False),
+    "k1 k2 p1 p2": (2, True),
+    "k1 k2 p1 p2 k3": (3, True),
+}
 
 # Views worked on at a time: their arrays of one number per point then stay in the cache.
 _CHUNK = 128
@@ -42,6 +64,8 @@ class Problem:
         Radial coefficients to estimate.
     tangential : bool
         Estimate p1 and p2; otherwise they are zero.
+    size : (width, height)
+        Size of the pictures.
     """
 
     W: Array
@@ -50,6 +74,7 @@ class Problem:
     skew: bool = False
     n_radial: int = 2
     tangential: bool = False
+    size: tuple[int, int] = (640, 480)
     names: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -57,6 +82,14 @@ class Problem:
         names += [f"k{i}" for i in range(1, self.n_radial + 1)]
         names += ["p1", "p2"] * self.tangential
         object.__setattr__(self, "names", tuple(names))
+
+    @staticmethod
+    def of(data: Correspondences, size: tuple[int, int], lens: Any, skew: bool) -> "Problem":
+        """Make the problem of corners, the lens being one of `LENSES`."""
+        if not isinstance(lens, str) or lens not in LENSES:
+            known = ", ".join(map(repr, LENSES))
+            raise CvnotesError(f"lens: expected one of {known}, got {lens!r}")
+        return Problem(data.W, data.m, data.seen, skew, *LENSES[lens], size=size)
 
     @property
     def n_seen(self) -> int:
@@ -75,22 +108,23 @@ class Problem:
         seen = None if self.seen is None else self.seen[views]
         return replace(self, W=W, m=self.m[views], seen=seen)
 
-    def state(self, A: Array, lens: Lens, poses: Array) -> State:
+    @property
+    def freedom(self) -> int:
+        """How many coordinates were measured beyond those that the parameters need."""
+        return 2 * self.n_seen - len(self.names) - 6 * len(self.m)
+
+    def state(self, camera: Camera, poses: Array) -> State:
         """Give the state that stands for a camera and its poses (n_views, 4, 4)."""
-        shared = [A[0, 0], A[1, 1], *[A[0, 1]] * self.skew, A[0, 2], A[1, 2]]
-        shared += [*lens.k, *[0.0] * self.n_radial][: self.n_radial]
-        shared += [*lens.p] * self.tangential
-        return State(np.array(shared), poses[:, :3, :3], poses[:, :3, 3])
+        value = camera.parameters
+        shared = np.array([value.get(name, 0.0) for name in self.names])
+        return State(shared, poses[:, :3, :3], poses[:, :3, 3])
 
-    def camera_of(self, shared: Array) -> tuple[Array, Lens]:
-        """Give A and the lens that the shared parameters stand for."""
-        value = dict(zip(self.names, shared.tolist(), strict=True))
-        top = [value["alpha_u"], value.get("skew", 0.0), value["u0"]]
-        A = np.array([top, [0, value["alpha_v"], value["v0"]], [0, 0, 1]])
-        k = tuple(value[f"k{i}"] for i in range(1, self.n_radial + 1))
-        return A, Lens(k=k, p=(value.get("p1", 0.0), value.get("p2", 0.0)))
+    def camera_of(self, shared: Array) -> Camera:
+        """Give the camera that the shared parameters stand for; what is not sought is zero."""
+        plain = Camera(intrinsics(1, 1, 0, 0), size=self.size)
+        return plain.with_parameters(dict(zip(self.names, shared.tolist(), strict=True)))
 
-    def linearise(self, x: State) -> tuple[float, Arrow]:
+    def linearise(self, x: State) -> "tuple[float, Arrow]":
         """Give the cost and the normal equations at x."""
         q, n_views = len(x.shared), len(self.m)
         normal, costs = np.empty((n_views, q + 7, q + 6)), np.empty(n_views)
@@ -111,10 +145,13 @@ class Problem:
         )
         return float(costs.sum()), arrow
 
-    def predicted(self, A: Array, lens: Lens, x: State) -> Array:
-        """Where the camera shows the points, (n_views, n, 2); NaN where the lens folds."""
-        M = self.W @ x.R.mT + x.T[:, None]
-        return px_from_xy.inside(A, lens.distort(M[..., :2] / M[..., 2:]))
+    def residuals(self, camera: Camera, x: State) -> Array:
+        """Observed minus predicted pixels (n_views, n, 2): 0 where none was seen.
+
+        NaN where the lens folds.
+        """
+        r = self.m - camera.project(self.W @ x.R.mT + x.T[:, None])
+        return r if self.seen is None else np.where(self.seen[..., None], r, 0.0)
 
     def jacobian(self, x: State) -> tuple[Array, Array]:
         """Give J and r (predicted minus observed) of each view, for whoever wants to check them.
@@ -150,7 +187,6 @@ class Problem:
         q, first = len(x.shared), 4 + self.skew  # where the pose and the lens begin
         alpha, centre = x.shared[:2, None, None], x.shared[first - 2 : first, None, None]
         skew = x.shared[2] if self.skew else 0.0
-        k = x.shared[first : first + self.n_radial].tolist()
         W, m = self._by_coordinate
         m = m[:, part]
         J = self._workspace[:, :, : m.shape[1]]
@@ -161,32 +197,10 @@ class Problem:
         RW = R.transpose(1, 0, 2) @ W if W.ndim == 2 else (R @ W[part]).transpose(1, 0, 2).copy()
         M = RW + T
         over_z = 1 / M[2]
-        xy = M[:2] * over_z
-        X, Y = xy
+        X, Y = xy = M[:2] * over_z
 
-        # 3. the lens: d(x', y') by its coefficients, and D = d(x', y')/d(x, y), which is
-        # symmetric: D11, D12, D22
-        products = np.empty((3, *X.shape))
-        np.multiply(xy, X, out=products[:2])
-        np.multiply(Y, Y, out=products[2])
-        r2 = products[0] + products[2]
-        power = xy
-        for i in range(self.n_radial):
-            power = np.multiply(power, r2, out=by_lens[i])
-        L, slope = radial_factor(k, r2), horner([2 * i * ki for i, ki in enumerate(k, 1)], r2)
-        xy_lens = L * xy
-        D = slope * products
-        D[::2] += L
-        if self.tangential:
-            p1, p2 = x.shared[-2:].tolist()
-            by_p1, by_p2 = by_lens[-2:]
-            np.multiply(2, products[1:], out=by_p1)
-            np.multiply(2, products[:2], out=by_p2)
-            by_p1[1] += r2
-            by_p2[0] += r2
-            xy_lens += p1 * by_p1 + p2 * by_p2
-            by_xy = np.array([[6 * p2, 2 * p1], [2 * p1, 2 * p2], [2 * p2, 6 * p1]])
-            D += (by_xy @ xy.reshape(2, -1)).reshape(D.shape)
+        # 3. the lens
+        xy_lens, D = self._through_lens(x.shared[first:], xy, by_lens)
 
         # 4. the sensor turns x', y' and all their derivatives into pixels
         J[0, 0], J[1, 1] = xy_lens
@@ -212,6 +226,117 @@ class Problem:
         np.subtract(RW[2] * by_X, RW[0] * by_Z, out=by_omega[1])
         np.subtract(RW[0] * by_Y, RW[1] * by_X, out=by_omega[2])
         return J if self.seen is None else J * self.seen[part]
+
+    def _through_lens(self, lens: Array, xy: Array, by_lens: Array) -> tuple[Array, Array]:
+        """Distort xy (2, views, n), and differentiate the x', y' that come out.
+
+        Into `by_lens` by the coefficients, in their order; D by x and y, (3, views, n), as it is
+        symmetric: D11, D12, D22.
+        """
+        X, Y = xy
+        k = lens[: self.n_radial].tolist()
+        products = np.empty((3, *X.shape))
+        np.multiply(xy, X, out=products[:2])
+        np.multiply(Y, Y, out=products[2])
+        r2 = products[0] + products[2]
+        power = xy
+        for i in range(self.n_radial):
+            power = np.multiply(power, r2, out=by_lens[i])
+        L, slope = radial_factor(k, r2), horner([2 * i * ki for i, ki in enumerate(k, 1)], r2)
+        xy_lens = L * xy
+        D = slope * products
+        D[::2] += L
+        if self.tangential:
+            p1, p2 = lens[-2:].tolist()
+            by_p1, by_p2 = by_lens[-2:]
+            np.multiply(2, products[1:], out=by_p1)
+            np.multiply(2, products[:2], out=by_p2)
+            by_p1[1] += r2
+            by_p2[0] += r2
+            xy_lens += p1 * by_p1 + p2 * by_p2
+            by_xy = np.array([[6 * p2, 2 * p1], [2 * p1, 2 * p2], [2 * p2, 6 * p1]])
+            D += (by_xy @ xy.reshape(2, -1)).reshape(D.shape)
+        return xy_lens, D
+
+
+_UNDETERMINED = (
+    "the normal equations are singular: these views do not determine every parameter; "
+    "add views with the board tilted in other directions"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Arrow:
+    """The normal equations, in blocks: JᵀJ and Jᵀr."""
+
+    shared: Array  # (q, q) border corner
+    border: Array  # (n_views, 6, q)
+    poses: Array  # (n_views, 6, 6)
+    g_shared: Array  # (q,)
+    g_poses: Array  # (n_views, 6)
+    view_costs: Array  # (n_views,) rᵀr of each view
+
+    def damped(self, damping: float) -> "Arrow":
+        """Multiply the diagonal by 1 + damping."""
+        if not damping:
+            return self
+        return replace(self, shared=_damp(self.shared, damping), poses=_damp(self.poses, damping))
+
+    @cached_property
+    def eliminated(self) -> tuple[Array, Array]:
+        """V⁻¹ [W g] of each view and Σ Wᵀ V⁻¹ [W g]: pose block V, its border W, gradient g."""
+        right = np.concatenate([self.border, self.g_poses[..., None]], axis=-1)
+        try:
+            solved = np.linalg.solve(self.poses, right)
+        except np.linalg.LinAlgError:
+            raise DegenerateError(_UNDETERMINED) from None
+        q = len(self.shared)
+        return solved, right.reshape(-1, q + 1)[:, :q].T @ solved.reshape(-1, q + 1)
+
+
+def solve_arrow(system: Arrow, damping: float) -> tuple[tuple[Array, Array], float]:
+    """Solve the damped normal equations; gives the step (shared, poses) and the predicted gain."""
+    system = system.damped(damping)
+    solved, from_poses = system.eliminated
+    try:
+        d_shared = np.linalg.solve(
+            system.shared - from_poses[:, :-1], from_poses[:, -1] - system.g_shared
+        )
+    except np.linalg.LinAlgError:
+        raise DegenerateError(_UNDETERMINED) from None
+    d_poses = -(solved[..., -1] + solved[..., :-1] @ d_shared)
+    gain = -np.vdot(system.g_shared, d_shared) - np.vdot(system.g_poses, d_poses)
+    return (np.asarray(d_shared), d_poses), float(gain)
+
+
+def covariance(system: Arrow) -> Array:
+    """Invert the normal matrix for the shared parameters, (q, q), for noise of 1 px."""
+    S = system.shared - system.eliminated[1][:, :-1]
+    diagonal = np.diagonal(S)
+    if not (diagonal > 0).all():
+        raise DegenerateError(_UNDETERMINED)
+    scale = np.sqrt(diagonal[:, None] * diagonal)
+    try:
+        inverse = np.linalg.inv(S / scale) / scale
+    except np.linalg.LinAlgError:
+        raise DegenerateError(_UNDETERMINED) from None
+    return np.asarray((inverse + inverse.T) / 2)
+
+
+def pose_covariance(system: Arrow, shared: Array) -> Array:
+    """Invert the normal matrix for each pose (ω, T), (n_views, 6, 6), for noise of 1 px.
+
+    The uncertainty of the shared parameters, from `covariance`, is included.
+    """
+    solved = system.eliminated[0][..., :-1]
+    return np.asarray(np.linalg.inv(system.poses) + solved @ shared @ solved.mT)
+
+
+def _damp(N: Array, damping: float) -> Array:
+    N = N.copy()
+    diagonal = np.einsum("...ii->...i", N)
+    diagonal *= 1 + damping
+    return N
 
 
 # Squared pixels per coordinate that rounding alone may leave.
@@ -266,3 +391,11 @@ def poses_follow(x: State, system: Arrow) -> State:
     except np.linalg.LinAlgError:  # too far away to be brought back
         return x
     return take_step(x, (np.zeros_like(x.shared), np.asarray(-step)))
+
+
+def refuse_too_few(measured: int, unknowns: int, remedy: str) -> None:
+    """Refuse fewer measured coordinates than there are unknowns, or as many."""
+    if measured <= unknowns:
+        raise DegenerateError(
+            f"{measured} measured coordinates cannot determine {unknowns} parameters; {remedy}"
+        )

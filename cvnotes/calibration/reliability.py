@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
+from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.zhang import constraint_rows
 from cvnotes.camera import Lens, xy_from_px
 
@@ -51,13 +52,31 @@ class Evidence:
     converged: bool
     likeness: float = 0.0
 
+    @staticmethod
+    def of(
+        found: Calibration, residuals: Array, corners: Array, freedom: int | None = None
+    ) -> "Evidence":
+        """Gather what a calibration is judged by; residuals and corners are (n_views, n, 2).
+
+        `freedom` is that of the residuals; without it their likeness is not looked at.
+        """
+        return Evidence(
+            A=found.A,
+            lens=found.lens,
+            size=found.size,
+            poses=found.poses,
+            std=found.std,
+            view_rms=found.view_rms,
+            distances=np.sqrt(residuals[..., 0] ** 2 + residuals[..., 1] ** 2),
+            corners=corners,
+            converged=found.converged,
+            likeness=0.0 if freedom is None else likeness(residuals, freedom),
+        )
+
     @cached_property
     def tilt_between(self) -> float:
-        """Largest angle between two boards, degrees; of many, those farthest from the mean."""
-        far = self.poses[:, :3, 2]
-        if len(far) > _FAR:
-            far = far[np.argsort(far @ far.mean(0))[:_FAR]]
-        return degrees(acos(min(1.0, float(np.abs(far @ far.T).min()))))
+        """Largest angle between two boards, degrees."""
+        return widest_angle(self.poses)
 
     @cached_property
     def determinacy(self) -> float:
@@ -76,7 +95,7 @@ class Evidence:
     @cached_property
     def typical_rms(self) -> float:
         """Median of the views' RMS, px."""
-        return median(self.view_rms)
+        return float(np.median(self.view_rms))
 
     @property
     def focal_uncertainty(self) -> float:
@@ -103,11 +122,22 @@ def likeness(residuals: Array, freedom: int) -> float:
     return float((r[:, 1:] * r[:, :-1]).sum()) / squares
 
 
-def median(x: Array) -> float:
-    """Give the median of numbers (n,)."""
-    # np.median takes longer than all the rest here, with its care for axes, NaN and subclasses.
-    ordered = np.sort(x)
-    return float(ordered[(x.size - 1) // 2] + ordered[x.size // 2]) / 2
+def widest_angle(poses: Array) -> float:
+    """Give the largest angle between the planes of two boards (n, 4, 4), in degrees.
+
+    Of very many boards, only those farthest from their mean are compared.
+
+    Examples
+    --------
+    >>> upright, tilted = np.eye(4), np.eye(4)
+    >>> tilted[:3, :3] = [[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]]
+    >>> round(widest_angle(np.array([upright, tilted])), 2)
+    36.87
+    """
+    normals = poses[:, :3, 2]
+    if len(normals) > _FAR:
+        normals = normals[np.argsort(normals @ normals.mean(0))[:_FAR]]
+    return degrees(acos(min(1.0, float(np.abs(normals @ normals.T).min()))))
 
 
 # Thresholds between sets that give the focal length and sets that do not, measured on 25 noisy
@@ -231,7 +261,7 @@ def _outliers(e: Evidence) -> Iterator[str]:
         yield "some corners lie where the estimated lens folds over: estimate fewer coefficients"
         d = np.nan_to_num(d)
     # A distance with Gaussian coordinates exceeds 5 of its medians once in 30 million corners.
-    limit = max(5 * median(d[d > 0]), 0.2) if d.any() else np.inf
+    limit = max(5 * np.median(d[d > 0]), 0.2) if d.any() else np.inf
     worst = d.argmax(1)
     found = [
         f"view {i}, corner {worst[i]} ({d[i, worst[i]]:.1f} px)"

@@ -1,16 +1,19 @@
 """What a calibration gives: a camera, its error bars, and what is doubtful about it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from html import escape
 from typing import Any
+from warnings import warn
 
 import numpy as np
 
-from cvnotes.base import Array, CvnotesError
+from cvnotes.base import Array, CalibrationWarning, CvnotesError, Minimum
+from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Arrow, Problem, State, covariance, pose_covariance
 from cvnotes.camera import Camera, Lens
+from cvnotes.camera.model import SENSOR
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,14 +57,42 @@ class Calibration:
     _data: Correspondences | None = field(default=None, repr=False)
     _pose_covariance: Callable[[], Array] | None = field(default=None, repr=False)
 
+    @staticmethod
+    def of(problem: Problem, data: Correspondences, best: Minimum[State, Arrow]) -> "Calibration":
+        """Undo the scaling of the board, and add the error bars; not judged yet."""
+        camera = problem.camera_of(best.x.shared)
+        variance = best.cost / problem.freedom
+        unit = covariance(best.system)
+
+        def of_poses() -> Array:
+            J = data.pose_jacobian(best.x.R)
+            return J @ (variance * pose_covariance(best.system, unit)) @ J.mT
+
+        return Calibration(
+            A=camera.A,
+            lens=camera.lens,
+            size=camera.size,
+            poses=data.pose_in_given_units(best.x.R, best.x.T),
+            rms=float(np.sqrt(best.cost / problem.n_seen)),
+            view_rms=np.sqrt(best.system.view_costs / problem.n_seen_by_view),
+            names=problem.names,
+            covariance=variance * unit,
+            converged=best.converged,
+            _data=data,
+            _pose_covariance=of_poses,
+        )
+
+    def judged(self, sentences: tuple[str, ...], reliable: bool) -> "Calibration":
+        """Give the same with what is doubtful, and warn of it whoever called the caller."""
+        for sentence in sentences:
+            warn(sentence, CalibrationWarning, stacklevel=3)
+        return replace(self, warnings=sentences, reliable=reliable)
+
     @property
     def parameters(self) -> dict[str, float]:
         """The estimated parameters by name."""
-        A, lens = self.A, self.lens
-        value = {"alpha_u": A[0, 0], "alpha_v": A[1, 1], "skew": A[0, 1], "u0": A[0, 2]}
-        value |= {"v0": A[1, 2], "p1": lens.p[0], "p2": lens.p[1]}
-        value |= {f"k{i}": k for i, k in enumerate(lens.k, start=1)}
-        return {name: float(value[name]) for name in self.names}
+        value = self.camera.parameters
+        return {name: value.get(name, 0.0) for name in self.names}
 
     @property
     def std(self) -> dict[str, float]:
@@ -101,11 +132,19 @@ class Calibration:
         views = zip(self.cameras, self.board_points, self.image_points, strict=False)
         return tuple(m - camera.project(W) for camera, W, m in views)
 
+    def as_mapping(self) -> dict[str, Any]:
+        """Give all that makes this calibration, by name; `cvnotes.calibration.saving` writes it.
+
+        ``Calibration(**mapping)`` makes it again, but for the uncertainty of its poses.
+        """
+        kept = [f.name for f in fields(self) if f.name != "_pose_covariance"]
+        return {name: getattr(self, name) for name in kept}
+
     def save(self, path: Any) -> None:
         """Write the result to a JSON file, whole or not at all; see `files`."""
         from cvnotes.calibration.saving import write_calibration
 
-        write_calibration(self, path)
+        write_calibration(self.as_mapping(), path)
 
     @staticmethod
     def load(path: Any) -> "Calibration":
@@ -116,39 +155,43 @@ class Calibration:
 
     def table(self) -> list[tuple[str, float, float, str]]:
         """Give the rows of the result: name, value, standard deviation, unit."""
-        unit = {"a": "px", "u": "px", "v": "px", "s": "px"}
         std = self.std
-        return [(n, v, std[n], unit.get(n[0], "")) for n, v in self.parameters.items()]
+        return [(n, v, std[n], "px" if n in SENSOR else "") for n, v in self.parameters.items()]
 
     def __repr__(self) -> str:
         lines = [f"Calibration from {len(self.poses)} views, {self.size[0]}×{self.size[1]} px"]
         for name, value, std, unit in self.table():
-            lines.append(
-                f"  {name:<8}{_rounded(value, std):>14} ± {_rounded(std, std)} {unit}".rstrip()
-            )
+            number, error = with_deviation(value, std)
+            lines.append(f"  {name:<8}{number:>14} ± {error} {unit}".rstrip())
         worst = int(np.argmax(self.view_rms))
         lines.append(f"  RMS {self.rms:.4f} px per point; worst view {worst}: "
                      f"{self.view_rms[worst]:.4f} px")  # fmt: skip
-        if not self.reliable:
-            lines.append("  NOT RELIABLE:")
-        return "\n".join(lines + [f"  ! {sentence}" for sentence in self.warnings])
+        return "\n".join([*lines, *doubts_as_text(self.warnings, self.reliable)])
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td style='text-align:left'>{n}</td><td>{_rounded(v, s)}</td>"
-            f"<td>± {_rounded(s, s)}</td>"
-            f"<td style='text-align:left'>{u}</td></tr>"
-            for n, v, s, u in self.table()
-        )
-        notes = "".join(f"<li>{escape(sentence)}</li>" for sentence in self.warnings)
-        verdict = "" if self.reliable else "<strong>Not reliable.</strong>"
-        return (
-            f"<table><caption>{len(self.poses)} views, RMS {self.rms:.4f} px per point"
-            f"</caption>{rows}</table>{verdict}" + (f"<ul>{notes}</ul>" if notes else "")
-        )
+        rows = ""
+        for name, value, std, unit in self.table():
+            cells = "<td>{}</td><td>± {}</td>".format(*with_deviation(value, std))
+            rows += f"<tr>{left_cell(name)}{cells}{left_cell(unit)}</tr>"
+        caption = f"{len(self.poses)} views, RMS {self.rms:.4f} px per point"
+        table = f"<table><caption>{caption}</caption>{rows}</table>"
+        return table + doubts_as_html(self.warnings, self.reliable)
 
 
-def _rounded(x: float, std: float) -> str:
-    """Write x to two digits of its standard deviation; what comes after is noise."""
-    digits = 2 if not std > 0 else min(max(1 - int(np.floor(np.log10(std))), 0), 9)
-    return f"{round(x, digits) + 0.0:.{digits}f}"
+def left_cell(text: str) -> str:
+    """Give a cell of an HTML table, with its text to the left."""
+    return f"<td style='text-align:left'>{text}</td>"
+
+
+def doubts_as_text(sentences: tuple[str, ...], reliable: bool) -> list[str]:
+    """Give the last lines of a result: the verdict, and a line for each sentence."""
+    return ["  NOT RELIABLE:"] * (not reliable) + [f"  ! {sentence}" for sentence in sentences]
+
+
+def doubts_as_html(sentences: tuple[str, ...], reliable: bool) -> str:
+    """Give the same for a notebook."""
+    from html import escape
+
+    notes = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
+    verdict = "" if reliable else "<strong>Not reliable.</strong>"
+    return verdict + (f"<ul>{notes}</ul>" if notes else "")

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from cvnotes.base import Array, CvnotesError
+from cvnotes.base import CvnotesError
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import Camera
 from cvnotes.files import Rejected, write_whole
@@ -26,56 +26,8 @@ FORMAT = "cvnotes calibration"
 _ROUNDED = 1e-6  # numbers that agree to so much, whoever rounded them, are the same
 
 
-class Result(Protocol):
-    """What a calibration has to offer to be written: see `cvnotes.calibration.Calibration`."""
-
-    @property
-    def camera(self) -> Camera:
-        """Sensor, lens and size."""
-
-    @property
-    def poses(self) -> Array:
-        """CRF ← board, (n_views, 4, 4)."""
-
-    @property
-    def rms(self) -> float:
-        """Root mean square distance of the corners, per point, in pixels."""
-
-    @property
-    def view_rms(self) -> Array:
-        """The same for each view, (n_views,)."""
-
-    @property
-    def std(self) -> Mapping[str, float]:
-        """Standard deviations by parameter name."""
-
-    @property
-    def covariance(self) -> Array:
-        """Covariance of these parameters, in that order."""
-
-    @property
-    def board_points(self) -> Sequence[Array]:
-        """The corners on the board, (n_i, 3) for each view, or nothing."""
-
-    @property
-    def image_points(self) -> Sequence[Array]:
-        """The corners in the pictures, (n_i, 2) for each view, or nothing."""
-
-    @property
-    def warnings(self) -> Sequence[str]:
-        """What is doubtful."""
-
-    @property
-    def reliable(self) -> bool:
-        """Whether the views determine the answer."""
-
-    @property
-    def converged(self) -> bool:
-        """Whether the refinement reached it."""
-
-
 def write_calibration(
-    result: Result,
+    result: Mapping[str, Any],
     path: PathLike,
     *,
     files: Sequence[PathLike] = (),
@@ -85,9 +37,9 @@ def write_calibration(
 
     Parameters
     ----------
-    result : Calibration
-        What to write. Its corners go into the file too, unless that would make it larger than
-        `read_calibration` accepts.
+    result : mapping
+        What to write, from ``Calibration.as_mapping``. Its corners go into the file too, unless
+        that would make it larger than `read_calibration` accepts.
     path : path
         Where to; an existing file is replaced.
     files : sequence of paths
@@ -100,57 +52,57 @@ def write_calibration(
 
 
 def calibration_json(
-    result: Result,
+    result: Mapping[str, Any],
     *,
     files: Sequence[PathLike] = (),
     rejected: Sequence[Rejected] = (),
     note: str = "",
 ) -> str:
     """Spell a calibration as JSON, with a note for whoever opens it; see `write_calibration`."""
-    if files and len(files) != len(result.poses):
-        raise CvnotesError(f"files: expected {len(result.poses)} names, got {len(files)}")
+    if files and len(files) != len(result["poses"]):
+        raise CvnotesError(f"files: expected {len(result['poses'])} names, got {len(files)}")
+    names, covariance = result["names"], result["covariance"]
+    std = np.sqrt(np.diag(covariance)).tolist()
     keys = {
         "format": FORMAT,
         "version": VERSION,
         **({"note": note} if note else {}),
-        "reliable": bool(result.reliable),
-        "converged": bool(result.converged),
-        "warnings": list(result.warnings),
-        **camera_to_dict(result.camera),
-        "lens": " ".join(name for name in result.std if name[0] in "kp") or "none",
-        "rms": float(result.rms),
-        "standard_deviations": dict(result.std),
-        "covariance": result.covariance.tolist(),
+        "reliable": bool(result["reliable"]),
+        "converged": bool(result["converged"]),
+        "warnings": list(result["warnings"]),
+        **camera_to_dict(Camera(result["A"], lens=result["lens"], size=result["size"])),
+        "lens": " ".join(name for name in names if name[0] in "kp") or "none",
+        "rms": float(result["rms"]),
+        "standard_deviations": dict(zip(names, std, strict=True)),
+        "covariance": covariance.tolist(),
         "rejected": [{"file": r.file, "reason": r.reason} for r in rejected],
     }
-    text = dump(keys | _views(result, files, with_corners=bool(result.image_points)))
+    views: list[dict[str, Any]] = []
+    for G, rms in zip(result["poses"], result["view_rms"], strict=True):
+        views.append({"rms": float(rms), **pose_to_dict(G)})
+    for view, file in zip(views, files, strict=False):
+        view["file"] = printable(file)
+    text = dump(keys | _with_corners(views, result["_data"]))
     if len(text.encode()) > MAX_BYTES:
-        text = dump(keys | _views(result, files, with_corners=False))
+        text = dump(keys | {"views": views})
     if (size := len(text.encode())) > MAX_BYTES:
         raise CvnotesError(
-            f"a calibration of {len(result.poses)} views and {len(rejected)} photographs that were "
+            f"a calibration of {len(views)} views and {len(rejected)} photographs that were "
             f"not used takes {size} bytes as a file; at most {MAX_BYTES} are read"
         )
     return text
 
 
-def _views(result: Result, files: Sequence[PathLike], *, with_corners: bool) -> dict[str, Any]:
-    """Give what belongs to each view, and the board if all views share it."""
-    views: list[dict[str, Any]] = []
-    for G, rms in zip(result.poses, result.view_rms, strict=True):
-        views.append({"rms": float(rms), **pose_to_dict(G)})
-    for view, file in zip(views, files, strict=False):
-        view["file"] = printable(file)
-    if not with_corners:
+def _with_corners(views: list[dict[str, Any]], data: Correspondences | None) -> dict[str, Any]:
+    """Give each view its corners, and its board unless all views share one."""
+    if data is None:
         return {"views": views}
-    boards = result.board_points
-    for view, corners, board in zip(views, result.image_points, boards, strict=True):
-        view["corners"], view["board"] = corners.tolist(), board.tolist()
-    if any(not np.array_equal(boards[0], board) for board in boards):
-        return {"views": views}
-    for view in views:
-        del view["board"]
-    return {"board": boards[0].tolist(), "views": views}
+    corners = [{"corners": m.tolist(), "board": W.tolist()} for W, m in data.given()]
+    one_board = corners[0]["board"]
+    if any(view["board"] != one_board for view in corners):
+        return {"views": [a | b for a, b in zip(views, corners, strict=True)]}
+    views = [a | {"corners": b["corners"]} for a, b in zip(views, corners, strict=True)]
+    return {"board": one_board, "views": views}
 
 
 def read_calibration(path: PathLike) -> dict[str, Any]:

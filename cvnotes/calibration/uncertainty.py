@@ -4,10 +4,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, ShapeError, points, rigid_motion
-from cvnotes.calibration.arrow import covariance
-from cvnotes.calibration.refinement import Problem
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Problem, covariance
 from cvnotes.calibration.result import Calibration
-from cvnotes.camera import Camera, Lens
 
 _STEP = 1e-6  # of a parameter, relative to its standard deviation or to 1
 
@@ -49,14 +48,16 @@ def prediction_std(calibration: Calibration, m: npt.ArrayLike) -> Array:
     True
     """
     m = points(m, "m", 2)
-    xy = calibration.camera.ideal(m)
+    camera = calibration.camera
+    xy = camera.ideal(m)
     reached = np.isfinite(xy).all(-1)
+    rays = np.concatenate([np.nan_to_num(xy), np.ones_like(xy[..., :1])], axis=-1)
     J = np.empty((*m.shape[:-1], 2, len(calibration.names)))
     value = calibration.parameters
     for i, name in enumerate(calibration.names):
         h = _STEP * max(1.0, abs(value[name]))
-        up, down = (_pixels(calibration, {name: value[name] + s * h}, xy) for s in (1, -1))
-        J[..., i] = (up - down) / (2 * h)
+        up, down = (camera.with_parameters({name: value[name] + s * h}) for s in (1, -1))
+        J[..., i] = (up.project(rays) - down.project(rays)) / (2 * h)
     variance = np.einsum("...ci,ij,...cj->...", J, calibration.covariance, J)
     return np.where(reached, np.sqrt(variance), np.nan)
 
@@ -106,30 +107,15 @@ def std_with_view(calibration: Calibration, G: npt.ArrayLike) -> dict[str, float
 def _covariance_at(calibration: Calibration, poses: list[Array]) -> Array:
     """Covariance of the shared parameters for noise of 1 px, if the board stood at these poses."""
     W = calibration.board_points[0]
-    centre, scale = W.mean(0), float(np.ptp(W, axis=0).max())
-    G = np.array(poses)
-    G[:, :3, 3] = (G[:, :3, 3] + G[:, :3, :3] @ centre) / scale
+    anywhere = np.zeros((len(poses), len(W), 2))  # does not change the Jacobian
+    data = Correspondences.in_unit_frame(W, anywhere)
     names = calibration.names
     problem = Problem(
-        (W - centre) / scale,
-        np.zeros((len(G), len(W), 2)),  # where they are seen does not change the Jacobian
+        data.W,
+        data.m,
         skew="skew" in names,
         n_radial=sum(n.startswith("k") for n in names),
         tangential="p1" in names,
     )
-    state = problem.state(calibration.A, calibration.lens, G)
+    state = problem.state(calibration.camera, data.pose_in_scaled_units(np.array(poses)))
     return covariance(problem.linearise(state)[1])
-
-
-def _pixels(calibration: Calibration, changed: dict[str, float], xy: Array) -> Array:
-    """Where the camera, with some parameters changed, shows ideal points (..., 2)."""
-    value = calibration.parameters | changed
-    A = calibration.A.copy()
-    for name, place in {"alpha_u": (0, 0), "alpha_v": (1, 1), "skew": (0, 1)}.items():
-        A[place] = value.get(name, A[place])
-    A[0, 2], A[1, 2] = value["u0"], value["v0"]
-    k = tuple(value[f"k{i}"] for i in range(1, len(calibration.lens.k) + 1))
-    lens = Lens(k, (value.get("p1", 0.0), value.get("p2", 0.0)))
-    reached = np.isfinite(xy).all(-1, keepdims=True)
-    W = np.concatenate([np.where(reached, xy, 0.0), np.ones_like(xy[..., :1])], axis=-1)
-    return Camera(A, lens=lens, size=calibration.size).project(W)

@@ -8,7 +8,8 @@ offset from the distortion centre and r = ‖d‖,
 where p = (p2, p1) collects the notes' tangential terms in one vector.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -76,6 +77,33 @@ class Lens:
     def is_ideal(self) -> bool:
         """Tell whether this lens moves nothing."""
         return not any(self.k) and not any(self.p)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The coefficients by name: k1, k2, … and, unless both are zero, p1 and p2.
+
+        A coefficient without a name here is zero.
+        """
+        radial = {f"k{i}": k for i, k in enumerate(self.k, start=1)}
+        return radial | (dict(zip(("p1", "p2"), self.p, strict=True)) if any(self.p) else {})
+
+    def with_parameters(self, values: Mapping[str, float]) -> "Lens":
+        """Give the same lens with other values of the coefficients that are named.
+
+        Examples
+        --------
+        >>> Lens(k=(-0.25,)).with_parameters({"k2": 0.1, "p1": 0.001})
+        Lens(k=(-0.25, 0.1), p=(0.001, 0.0), centre=(0.0, 0.0))
+        """
+        value = self.parameters | dict(values)
+        unknown = [name for name in value if not (name in ("p1", "p2") or _is_radial(name))]
+        if unknown:
+            raise CvnotesError(
+                f"{unknown[0]!r} is no coefficient of a lens: those are k1 …, p1, p2"
+            )
+        terms = max((int(name[1:]) for name in value if name[0] == "k"), default=0)
+        k = tuple(value.get(f"k{i}", 0.0) for i in range(1, terms + 1))
+        return replace(self, k=k, p=(value.get("p1", 0.0), value.get("p2", 0.0)))
 
     @_beyond_all_numbers
     def L(self, r: npt.ArrayLike) -> Array:
@@ -194,3 +222,8 @@ class Lens:
         J12 = slope * x * y + 2 * (p1 * x + p2 * y)
         J22 = L + slope * y * y + 2 * p2 * x + 6 * p1 * y
         return np.stack([np.stack([J11, J12], -1), np.stack([J12, J22], -1)], -2)
+
+
+def _is_radial(name: str) -> bool:
+    """Tell whether a name is k1, k2 or so on."""
+    return name[:1] == "k" and name[1:].isdecimal() and 1 <= int(name[1:]) <= 99

@@ -1,6 +1,7 @@
 """The camera: what it is made of, and what it sees (notes 2b.1-2b.3)."""
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -21,6 +22,9 @@ from cvnotes.base import (
 from cvnotes.camera.lens import Lens
 from cvnotes.camera.pixels import px_from_xy, xy_from_px
 from cvnotes.projective import from_homogeneous
+
+# Where the five numbers of the sensor stand in A.
+SENSOR = {"alpha_u": (0, 0), "alpha_v": (1, 1), "skew": (0, 1), "u0": (0, 2), "v0": (1, 2)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +98,39 @@ class Camera:
     def moved(self, G: npt.ArrayLike) -> "Camera":
         """Give the same camera with another pose G (4, 4)."""
         return Camera(self.A, rigid_motion(G), self.lens, self.size)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Sensor and lens as named numbers: alpha_u, alpha_v, skew, u0, v0, k1, …, p1, p2.
+
+        Lens coefficients without a name here are zero.
+
+        Examples
+        --------
+        >>> from cvnotes.camera import Camera, intrinsics
+        >>> Camera(intrinsics(800, 805, 320, 240), lens=Lens(k=(-0.25,))).parameters
+        {'alpha_u': 800.0, 'alpha_v': 805.0, 'skew': 0.0, 'u0': 320.0, 'v0': 240.0, 'k1': -0.25}
+        """
+        sensor = {name: float(self.A[place]) for name, place in SENSOR.items()}
+        return sensor | self.lens.parameters
+
+    def with_parameters(self, values: Mapping[str, float]) -> "Camera":
+        """Give the same camera with other values of the parameters that are named.
+
+        Examples
+        --------
+        >>> from cvnotes.camera import Camera, intrinsics
+        >>> camera = Camera(intrinsics(800, 805, 320, 240))
+        >>> camera.with_parameters({"alpha_u": 810, "k1": -0.2}).parameters
+        {'alpha_u': 810.0, 'alpha_v': 805.0, 'skew': 0.0, 'u0': 320.0, 'v0': 240.0, 'k1': -0.2}
+        """
+        A, of_lens = self.A.copy(), {}
+        for name, value in values.items():
+            if name in SENSOR:
+                A[SENSOR[name]] = value
+            else:
+                of_lens[name] = value
+        return replace(self, A=A, lens=self.lens.with_parameters(of_lens))
 
     def depth(self, W: npt.ArrayLike) -> Array:
         """Distance of world points (..., 3) from the plane z = 0 of the CRF, along its axis."""

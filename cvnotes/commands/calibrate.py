@@ -119,10 +119,9 @@ def _contents(
     note = made_by("calibrate")
     drawn = pictures(result, examined, board, files)
     notes = [photo.note for photo in examined if photo.corners is not None]
+    made = calibration_json(result.as_mapping(), files=files, rejected=rejected, note=note)
     return {
-        "calibration.json": calibration_json(
-            result, files=files, rejected=rejected, note=note
-        ).encode(),
+        "calibration.json": made.encode(),
         "calibration.yml": opencv_yaml(result.camera, note=note).encode(),
         "photographs.csv": photo_csv(files, notes, rejected, result).encode(),
         **{name: marked(png, "calibrate") for name, png in drawn.items()},

@@ -4,12 +4,13 @@ import csv
 import io
 import re
 from collections.abc import Sequence
-from math import floor, log10
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cvnotes.base import Array, text_table
+from cvnotes.base import text_table
+from cvnotes.base.digits import with_deviation
+from cvnotes.calibration.reliability import widest_angle
 from cvnotes.commands.console import harmless
 from cvnotes.commands.examined import Examined
 from cvnotes.commands.ownership import TABLE_HEADER
@@ -57,7 +58,9 @@ def photo_csv(
 def camera_report(result: "Calibration") -> str:
     """Give the camera with its error bars, and what the result rests on."""
     width, height = result.size
-    rows = [[name, *with_error(value, error), unit] for name, value, error, unit in result.table()]
+    rows = [
+        [name, *with_deviation(value, error), unit] for name, value, error, unit in result.table()
+    ]
     corners = sum(map(len, result.image_points))
     cells = covered_cells(result.image_points, result.size)
     lines = [
@@ -90,18 +93,6 @@ def doubts(result: "Calibration", examined: Sequence[Examined], *, symmetric: bo
     return sentences
 
 
-def with_error(value: float, error: float) -> tuple[str, str]:
-    """Spell a value and its standard deviation, both to the second digit of the latter.
-
-    Examples
-    --------
-    >>> with_error(533.0912, 0.4144)
-    ('533.09', '0.41')
-    """
-    digits = 6 if error <= 0 else max(0, 1 - floor(log10(error)))
-    return f"{value:.{digits}f}", f"{error:.{digits}f}"
-
-
 def field_of_view(result: "Calibration") -> str:
     """Spell the angles that the picture spans."""
     across, down = np.degrees(result.camera.field_of_view)
@@ -112,9 +103,3 @@ def field_of_view(result: "Calibration") -> str:
 
 def _first_clause(reason: str) -> str:
     return reason if len(reason) <= _WIDE else re.split(r" \(|; ", reason, maxsplit=1)[0]
-
-
-def widest_angle(poses: Array) -> float:
-    """Give the largest angle between the planes of two boards, in degrees."""
-    normals = poses[:, :3, 2]
-    return float(np.degrees(np.arccos(np.clip(np.abs(normals @ normals.T), 0, 1).min())))

@@ -13,14 +13,12 @@ from cvnotes.base import (
     ShapeError,
     image_size,
 )
-from cvnotes.calibration import LENSES, calibrate, extrinsics
-from cvnotes.calibration.arrow import covariance
+from cvnotes.calibration import calibrate, extrinsics
 from cvnotes.calibration.correspondences import Correspondences, PointSets
-from cvnotes.calibration.refinement import Problem, State
+from cvnotes.calibration.refinement import Problem, covariance, refuse_too_few
 from cvnotes.calibration.reliability import Evidence, judge
 from cvnotes.camera import (
     Camera,
-    Lens,
     chain,
     inverse,
     nearest_rotation,
@@ -100,12 +98,9 @@ def calibrate_stereo(
     >>> rig.T.round(6) + 0.0
     array([-100.,    0.,    0.])
     """
-    if not isinstance(lens, str) or lens not in LENSES:
-        raise CvnotesError(f"lens: expected one of {', '.join(map(repr, LENSES))}, got {lens!r}")
     size = image_size(size)
     pairs = _pairs(board_points, left_points, right_points)
-    n_radial, tangential = LENSES[lens]
-    problems = [Problem(d.W, d.m, d.seen, skew, n_radial, tangential) for d in pairs]
+    problems = [Problem.of(data, size, lens, skew) for data in pairs]
     cameras = []
     for side, points in (("left", left_points), ("right", right_points)):
         with catch_warnings():  # what is doubtful is judged once, at the joint optimum
@@ -165,7 +160,7 @@ def calibrate_relative_pose(
             )
     pairs = _pairs(board_points, left_points, right_points)
     problems = [
-        Problem(d.W, d.m, d.seen, bool(c.A[0, 1]), len(c.lens.k), any(c.lens.p))
+        Problem(d.W, d.m, d.seen, bool(c.A[0, 1]), len(c.lens.k), any(c.lens.p), c.size)
         for d, c in zip(pairs, (left, right), strict=True)
     ]
     problem = StereoProblem(problems[0], problems[1], cameras_known=True)
@@ -196,10 +191,7 @@ def refined(
     """Refine from a closed-form start, undo the scaling, add error bars, and judge."""
     unknowns = len(problem.names) + 6 * len(pairs[0])
     measured = 2 * (problem.left.n_seen + problem.right.n_seen)
-    if measured <= unknowns:
-        raise DegenerateError(
-            f"{measured} measured coordinates cannot determine {unknowns} parameters; add pairs"
-        )
+    refuse_too_few(measured, unknowns, "add pairs")
     start, strangers = _start(problem, pairs, cameras)
     best = problem.minimise(start)
     variance = best.cost / (measured - unknowns)
@@ -207,24 +199,25 @@ def refined(
     scale[-3:] = pairs[0].scale  # T, back in the unit of the board
     cov = variance * covariance(best.system) * np.outer(scale, scale)
     left, right = _cameras(problem, best.x, pairs[0].scale, cameras)
-    distances = _distances(problem, best.x, left, right)
-    view_rms = np.sqrt(
-        [
-            np.nansum(d**2, axis=1) / p.n_seen_by_view
-            for d, p in zip(distances, (problem.left, problem.right), strict=True)
-        ]
-    ).T
+    residuals = (
+        problem.left.residuals(left.moved(np.eye(4)), best.x.left),
+        problem.right.residuals(right.moved(np.eye(4)), best.x.of_right()),
+    )
+    view_rms = [
+        np.sqrt(np.nansum(r**2, axis=(1, 2)) / p.n_seen_by_view)
+        for r, p in zip(residuals, (problem.left, problem.right), strict=True)
+    ]
     result = StereoCalibration(
         left=left,
         right=right,
         poses=pairs[0].pose_in_given_units(best.x.left.R, best.x.left.T),
         rms=float(np.sqrt(2 * best.cost / measured)),
-        view_rms=view_rms,
+        view_rms=np.stack(view_rms, axis=-1),
         names=problem.names,
         covariance=cov,
         converged=best.converged,
     )
-    sentences, reliable = judge_rig(result, (problem.left.m, problem.right.m), distances, strangers)
+    sentences, reliable = judge_rig(result, (problem.left.m, problem.right.m), residuals, strangers)
     for sentence in sentences:
         warn(sentence, CalibrationWarning, stacklevel=3)
     return replace(result, warnings=sentences, reliable=reliable)
@@ -238,8 +231,8 @@ def _start(
     G = chain(poses[1], inverse(poses[0]))  # right ← left, as each pair has it
     R, T = nearest_rotation(np.median(G[:, :3, :3], axis=0)), np.median(G[:, :3, 3], axis=0)
     apart = np.linalg.norm(vector_from_rotation(G[:, :3, :3] @ R.T), axis=-1) > _APART
-    left = problem.left.state(cameras[0].A, cameras[0].lens, poses[0])
-    right = problem.right.state(cameras[1].A, cameras[1].lens, poses[1]).shared
+    left = problem.left.state(cameras[0], poses[0])
+    right = problem.right.state(cameras[1], poses[1]).shared
     return StereoState(left, right, R, T), np.flatnonzero(apart).tolist()
 
 
@@ -263,27 +256,8 @@ def _cameras(
     G = pose(nearest_rotation(x.R), scale * x.T)
     if problem.cameras_known:
         return given[0].moved(np.eye(4)), given[1].moved(G)
-    A_left, lens_left = problem.left.camera_of(x.left.shared)
-    A_right, lens_right = problem.right.camera_of(x.right)
-    return (
-        Camera(A_left, np.eye(4), lens_left, given[0].size),
-        Camera(A_right, G, lens_right, given[1].size),
-    )
-
-
-def _distances(
-    problem: StereoProblem, x: StereoState, left: Camera, right: Camera
-) -> tuple[Array, Array]:
-    """Reprojection distances (n_views, n) in both pictures; 0 where no corner was seen."""
-
-    def of(p: Problem, A: Array, lens: Lens, state: State) -> Array:
-        d = np.linalg.norm(p.m - p.predicted(A, lens, state), axis=-1)
-        return d if p.seen is None else np.where(p.seen, d, 0.0)
-
-    return (
-        of(problem.left, left.A, left.lens, x.left),
-        of(problem.right, right.A, right.lens, x.of_right()),
-    )
+    left, right = problem.left.camera_of(x.left.shared), problem.right.camera_of(x.right)
+    return left, right.moved(G)
 
 
 # Typical distance from the model, over the longer side of the picture, that no noise explains.
@@ -293,7 +267,7 @@ _MISFIT = 0.005
 def judge_rig(
     result: StereoCalibration,
     corners: tuple[Array, Array],
-    distances: tuple[Array, Array],
+    residuals: tuple[Array, Array],
     strangers: list[int],
 ) -> tuple[tuple[str, ...], bool]:
     """Give sentences about what is doubtful, and whether the result is reliable all the same.
@@ -302,8 +276,8 @@ def judge_rig(
     ----------
     result : StereoCalibration
         Not judged yet.
-    corners, distances : pair of ndarray, shape (n_views, n, 2) and (n_views, n)
-        Where the corners were seen in the left and right pictures, and how far from there the
+    corners, residuals : pair of ndarray, shape (n_views, n, 2)
+        Where the corners were seen in the left and right pictures, and how far from where the
         model puts them; 0 where none was seen, NaN where the lens folds.
     strangers : list of int
         Pairs that show the cameras in another relative pose than the others do.
@@ -320,7 +294,7 @@ def judge_rig(
     if len(result.names) == 6:  # the cameras were known
         fatal += _misfits(result)
         return tuple(fatal), not fatal
-    sentences, reliable = _judge_cameras(result, corners, distances)
+    sentences, reliable = _judge_cameras(result, corners, residuals)
     return (*fatal, *sentences), reliable and not fatal
 
 
@@ -336,26 +310,14 @@ def _misfits(result: StereoCalibration) -> list[str]:
 
 
 def _judge_cameras(
-    result: StereoCalibration, corners: tuple[Array, Array], distances: tuple[Array, Array]
+    result: StereoCalibration, corners: tuple[Array, Array], residuals: tuple[Array, Array]
 ) -> tuple[list[str], bool]:
     """Judge each camera by what `calibrate` judges it by, at the joint minimum."""
     sentences: list[str] = []
     reliable = True
-    poses = (result.poses, result.G @ result.poses)
     for i, side in enumerate(("left", "right")):
-        camera = result.cameras[i]
-        evidence = Evidence(
-            A=camera.A,
-            lens=camera.lens,
-            size=camera.size,
-            poses=poses[i],
-            std={n.removeprefix(f"{side}."): s for n, s in result.std.items() if side in n},
-            view_rms=result.view_rms[:, i],
-            distances=distances[i],
-            corners=corners[i],
-            converged=True,
-        )
-        found, believed = judge(evidence)
+        one = replace(result.of_camera(i), converged=True)  # said above
+        found, believed = judge(Evidence.of(one, residuals[i], corners[i]))
         sentences += [f"{side} camera: {sentence}" for sentence in found]
         reliable = reliable and believed
     return sentences, reliable

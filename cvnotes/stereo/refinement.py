@@ -12,8 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, DegenerateError, Minimum, levenberg_marquardt
-from cvnotes.calibration.arrow import Arrow, solve_arrow
-from cvnotes.calibration.refinement import Problem, State, take_step
+from cvnotes.calibration.refinement import Arrow, Problem, State, solve_arrow, take_step
 from cvnotes.camera import rotation_from_vector, skew_matrix
 
 # Squared pixels per coordinate that rounding alone may leave.

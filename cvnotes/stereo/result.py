@@ -1,12 +1,14 @@
 """What a stereo calibration gives: two cameras on one rig, with error bars."""
 
 from dataclasses import dataclass
-from html import escape
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera
+from cvnotes.base.digits import with_deviation
+from cvnotes.calibration import Calibration
+from cvnotes.calibration.result import doubts_as_html, doubts_as_text, left_cell
+from cvnotes.camera import Camera, vector_from_rotation
 from cvnotes.stereo.epipolar import relative_pose
 
 
@@ -74,59 +76,61 @@ class StereoCalibration:
         """Standard deviation of each estimated parameter, by name."""
         return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
 
+    def of_camera(self, i: int) -> Calibration:
+        """Give what was found out about the left camera (0), or about the right one (1)."""
+        camera, side = self.cameras[i], ("left.", "right.")[i]
+        own = [at for at, name in enumerate(self.names) if name.startswith(side)]
+        return Calibration(
+            A=camera.A,
+            lens=camera.lens,
+            size=camera.size,
+            poses=camera.G @ self.poses,
+            rms=float(np.sqrt(np.mean(self.view_rms[:, i] ** 2))),
+            view_rms=self.view_rms[:, i],
+            names=tuple(self.names[at].removeprefix(side) for at in own),
+            covariance=self.covariance[np.ix_(own, own)],
+            converged=self.converged,
+        )
+
     def table(self) -> list[tuple[str, float, float, float, float]]:
         """Give name, left value and deviation, right value and deviation of what was estimated."""
-        std, rows = self.std, []
-        of_cameras = [name.removeprefix("left.") for name in self.names if name.startswith("left.")]
-        for name in of_cameras:
-            values = [_parameters(camera)[name] for camera in self.cameras]
-            rows.append((name, values[0], std[f"left.{name}"], values[1], std[f"right.{name}"]))
-        return rows
+        left, right = (self.of_camera(i).table() for i in (0, 1))
+        both = zip(left, right, strict=True)
+        return [(name, a, da, b, db) for (name, a, da, _), (_, b, db, _) in both]
 
     def __repr__(self) -> str:
         w, h = self.left.size
         lines = [f"StereoCalibration from {len(self.poses)} pairs of views, {w}×{h} px"]
-        for name, a, da, b, db in self.table():
-            lines.append(f"  {name:<8}{a:>11.4f} ± {da:.4f}{b:>14.4f} ± {db:.4f}")
+        for name, *numbers in self.table():
+            a, da, b, db = _both(*numbers)
+            lines.append(f"  {name:<8}{a:>11} ± {da}{b:>14} ± {db}")
         lines += [f"  {line}" for line in self._relative()]
         lines.append(f"  RMS {self.rms:.4f} px per point")
-        if not self.reliable:
-            lines.append("  NOT RELIABLE:")
-        return "\n".join(lines + [f"  ! {sentence}" for sentence in self.warnings])
+        return "\n".join([*lines, *doubts_as_text(self.warnings, self.reliable)])
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td style='text-align:left'>{name}</td><td>{a:.4f}</td><td>± {da:.4f}</td>"
-            f"<td>{b:.4f}</td><td>± {db:.4f}</td></tr>"
-            for name, a, da, b, db in self.table()
-        )
         head = "<tr><th></th><th colspan=2>left</th><th colspan=2>right</th></tr>"
+        rows = ""
+        for name, *numbers in self.table():
+            cells = "<td>{}</td><td>± {}</td><td>{}</td><td>± {}</td>".format(*_both(*numbers))
+            rows += f"<tr>{left_cell(name)}{cells}</tr>"
+        caption = f"{len(self.poses)} pairs of views, RMS {self.rms:.4f} px per point"
+        table = f"<table><caption>{caption}</caption>{head}{rows}</table>"
         pose = "".join(f"<p>{line}</p>" for line in self._relative())
-        notes = "".join(f"<li>{escape(sentence)}</li>" for sentence in self.warnings)
-        verdict = "" if self.reliable else "<strong>Not reliable.</strong>"
-        return (
-            f"<table><caption>{len(self.poses)} pairs of views, RMS {self.rms:.4f} px per point"
-            f"</caption>{head}{rows}</table>{pose}{verdict}"
-            + (f"<ul>{notes}</ul>" if notes else "")
-        )
+        return table + pose + doubts_as_html(self.warnings, self.reliable)
 
     def _relative(self) -> list[str]:
         """Say the relative pose in two lines."""
-        from cvnotes.camera import vector_from_rotation
-
         std = self.std
-        omega = ", ".join(
-            f"{np.degrees(w):.4f} ± {np.degrees(std[f'omega_{axis}']):.4f}"
-            for axis, w in zip("xyz", vector_from_rotation(self.R), strict=True)
-        )
-        T = ", ".join(
-            f"{t:.3f} ± {std[f'T_{axis}']:.3f}" for axis, t in zip("xyz", self.T, strict=True)
-        )
-        return [f"rotation right ← left, degrees: {omega}", f"T right ← left: {T}"]
+        turn = np.degrees(vector_from_rotation(self.R))
+        turn_std = [np.degrees(std[f"omega_{axis}"]) for axis in "xyz"]
+        omega = map(with_deviation, turn, turn_std)
+        T = map(with_deviation, self.T, [std[f"T_{axis}"] for axis in "xyz"])
+        return [
+            f"rotation right ← left, degrees: {', '.join(map(' ± '.join, omega))}",
+            f"T right ← left: {', '.join(map(' ± '.join, T))}",
+        ]
 
 
-def _parameters(camera: Camera) -> dict[str, float]:
-    A, lens = camera.A, camera.lens
-    value = {"alpha_u": A[0, 0], "alpha_v": A[1, 1], "skew": A[0, 1], "u0": A[0, 2]}
-    value |= {"v0": A[1, 2], "p1": lens.p[0], "p2": lens.p[1]}
-    return value | {f"k{i}": k for i, k in enumerate(lens.k, start=1)}
+def _both(left: float, left_std: float, right: float, right_std: float) -> tuple[str, ...]:
+    return with_deviation(left, left_std) + with_deviation(right, right_std)

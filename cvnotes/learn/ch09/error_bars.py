@@ -6,7 +6,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.calibration.arrow import covariance
+from cvnotes.calibration.refinement import covariance
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 

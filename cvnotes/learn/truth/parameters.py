@@ -8,6 +8,7 @@ import numpy as np
 from cvnotes.base import Array, CvnotesError, InputTypeError
 from cvnotes.calibration import Calibration
 from cvnotes.camera import Camera, Lens, vector_from_rotation
+from cvnotes.camera.model import SENSOR
 
 # A value and its unit.
 Named = dict[str, tuple[Array, str]]
@@ -40,7 +41,7 @@ def named_values(x: Any, name: str = "", wanted: list[str] | None = None) -> Nam
     elif isinstance(x, Camera):
         values = of_camera(x)
     elif isinstance(x, Lens):
-        values = of_lens(x)
+        values = _of_mapping(x.parameters)
     elif isinstance(x, Mapping):
         values = _of_mapping(x)
     else:
@@ -53,14 +54,6 @@ def named_values(x: Any, name: str = "", wanted: list[str] | None = None) -> Nam
     return values
 
 
-def of_lens(lens: Lens) -> Named:
-    """Give k1, k2, … and p1, p2 of a lens."""
-    values = {f"k{i}": k for i, k in enumerate(lens.k, start=1)}
-    if any(lens.p):
-        values |= {"p1": lens.p[0], "p2": lens.p[1]}
-    return {key: (np.asarray(value), "") for key, value in values.items()}
-
-
 def of_camera(camera: Camera) -> Named:
     """Give a camera's intrinsics, lens, rotation vector and centre.
 
@@ -69,18 +62,14 @@ def of_camera(camera: Camera) -> Named:
     >>> list(of_camera(Camera(np.diag([800.0, 805, 1]))))[:6]
     ['alpha_u', 'alpha_v', 'skew', 'u0', 'v0', 'rotation']
     """
-    A = camera.A
-    entries = {"alpha_u": A[0, 0], "alpha_v": A[1, 1], "skew": A[0, 1], "u0": A[0, 2]}
-    values: Named = {k: (np.asarray(x), "px") for k, x in (entries | {"v0": A[1, 2]}).items()}
-    values |= of_lens(camera.lens)
+    values = _of_mapping(camera.parameters)
     values["rotation"] = (vector_from_rotation(camera.R), "rad")
     values["centre"] = (camera.centre, "")
     return values
 
 
 def _of_mapping(x: Mapping[Any, Any]) -> Named:
-    in_px = ("alpha_u", "alpha_v", "skew", "u0", "v0")
-    return {str(k): (_array(v, str(k)), "px" if k in in_px else "") for k, v in x.items()}
+    return {str(k): (_array(v, str(k)), "px" if k in SENSOR else "") for k, v in x.items()}
 
 
 def _array(x: Any, name: str) -> Array:

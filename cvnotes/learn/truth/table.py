@@ -5,6 +5,7 @@ from html import escape
 from math import floor, isnan, log10
 
 from cvnotes.base import text_table
+from cvnotes.base.digits import decimals, fixed
 
 _HEADER = ("", "estimate", "truth", "error", "expected", "")
 
@@ -58,7 +59,7 @@ class Row:
             return f"{self.error:+.3g}"
         if self.allowed <= 1e-6 * max(abs(self.truth), 1.0) or isnan(self.truth):
             return "rounding"
-        return f"{round(self.error, digits) + 0.0:+.{digits}f}"
+        return fixed(self.error, digits, sign="+")
 
 
 @dataclass(frozen=True)
@@ -102,9 +103,9 @@ def _digits(row: Row) -> int:
     size = max(abs(row.truth) or 1.0, spread) if not isnan(row.truth) else 1.0
     if size == float("inf"):
         return 0
-    shown = 1 - floor(log10(spread)) if spread > 0 else 12
+    shown = decimals(spread) if spread > 0 else 12
     return max(0, min(shown, 4 - floor(log10(size))))
 
 
 def _number(x: float, digits: int) -> str:
-    return "none" if isnan(x) else f"{round(x, digits) + 0.0:.{digits}f}"
+    return "none" if isnan(x) else fixed(x, digits)

@@ -1,10 +1,12 @@
 """Explore the noise: how exact a calibration can be, by the bound and by trying it."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.calibration.arrow import covariance
-from cvnotes.calibration.refinement import Problem, State, minimise
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Problem, State, covariance, minimise
 from cvnotes.camera import Camera
 from cvnotes.pictures import good_views
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
@@ -24,15 +26,12 @@ class _Study:
     def __init__(self, camera: Camera, board: Chessboard) -> None:
         poses = good_views(board, camera, _MOST, rng=np.random.default_rng(4))
         m = np.stack([camera.moved(G).project(board.points) for G in poses])
-        # The refinement wants the board centred and about as large as 1.
-        centre, unit = board.points.mean(axis=0), float(np.abs(board.points).max()) / 2
-        poses[:, :3, 3] = (poses[:, :3, 3] + poses[:, :3, :3] @ centre) / unit
-        lens = camera.lens
+        data = Correspondences.in_unit_frame(board.points, m)
         self.problem = Problem(
-            (board.points - centre) / unit, m, skew=False,
-            n_radial=max(2, len(lens.k)), tangential=any(lens.p),
+            data.W, m, skew=False,
+            n_radial=max(2, len(camera.lens.k)), tangential=any(camera.lens.p), size=camera.size,
         )  # fmt: skip
-        self.truth = self.problem.state(camera.A, lens, poses)
+        self.truth = self.problem.state(camera, data.pose_in_scaled_units(poses))
         counts = range(_FEWEST, _MOST + 1)
         self.std_by_views = np.array([self._std(n) for n in counts])  # for noise of 1 px
 
@@ -44,13 +43,9 @@ class _Study:
         """Calibrate from n noisy views: the estimate minus the truth, and its own error bars."""
         problem, start = self._first(n)
         noise = np.random.default_rng(draw).normal(0, 1, self.problem.m.shape)[:n]
-        noisy = Problem(
-            problem.W, problem.m + sigma * noise, skew=False,
-            n_radial=problem.n_radial, tangential=problem.tangential,
-        )  # fmt: skip
+        noisy = replace(problem, m=problem.m + sigma * noise)
         found = minimise(noisy, start)
-        freedom = problem.m.size - len(problem.names) - 6 * n
-        std = np.sqrt(found.cost / freedom * np.diag(covariance(found.system)))
+        std = np.sqrt(found.cost / problem.freedom * np.diag(covariance(found.system)))
         return (found.x.shared - start.shared)[self._shown], std[self._shown]
 
     def _std(self, n: int) -> Array:

@@ -1,0 +1,267 @@
+"""Where the refinement starts: the steps 1 to 4 as `calibrate` takes them, and what is in reserve.
+
+The plain way is the first start, and nearly always enough: corners as they were seen, and the
+focal lengths alone for an A. In reserve, when that leads nowhere, are
+
+1. other A: the full closed form, then four usual fields of view;
+2. corners straightened beforehand, for lenses that bend the boards too much for homographies;
+3. of many views first a few, which know the camera well enough to place all others.
+
+Steps see the board centred and scaled to unit size and the picture centred and scaled to [−1, 1].
+A student's step gets copies, and what it gives back is looked at before it is used.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cvnotes.base import (
+    Array,
+    ConvergenceError,
+    CvnotesError,
+    DegenerateError,
+    InputTypeError,
+    Minimum,
+    ShapeError,
+    intrinsic_matrix,
+    matrix,
+    numbers,
+    rigid_motion,
+)
+from cvnotes.calibration.refinement import Arrow, Problem, State, minimise
+from cvnotes.calibration.zhang import (
+    constraints,
+    extrinsics,
+    focal_lengths_from_v,
+    intrinsics_from_b,
+    poses_of,
+    radial_distortion,
+    radial_from_poses,
+    solve_b,
+)
+from cvnotes.camera import Camera, Lens, xy_from_px
+from cvnotes.homography import dlt, geometric_error
+
+# Strong lenses bend the boards so much that homographies mislead. In reserve, the corners are
+# first straightened: x ← x (1 + bend r²), with r = 1 at the ends of the picture's longer axis.
+_BENDS = (0.0, 0.2, -0.2)
+# Noise and strong lenses can leave no A; then fields of view from 118° to 28° are tried.
+_USUAL_FOCAL_LENGTHS = (0.6, 1.0, 2.0, 4.0)
+# Of many views, some say where the camera is; the others only sharpen it.
+_MANY_VIEWS, _VIEWS_FOR_START = 150, 16
+# RMS over the picture's longer side: a start that leaves more than this is not trusted before the
+# others were tried.
+_SUSPICIOUS = 0.002
+# A student's H is wrong when it puts half of the corners this far off; the picture's width is 2.
+_WRONG = 0.25
+
+
+@dataclass(eq=False)
+class Search:
+    """The search for the best minimum: the starts one after the other, until one is good."""
+
+    problem: Problem
+    tolerance: float = 1e-12
+    minima: list[Minimum[State, Arrow]] = field(default_factory=list)
+    own: list[str] = field(default_factory=list)  # the steps that are the student's
+
+    def starts(self) -> "Iterator[Start]":
+        """Give the starts, the most robust first, until one has led to a good minimum."""
+        for start in self._all_starts():
+            yield start
+            if self.minima and self._is_good(self.minima[-1]):
+                break
+
+    def _all_starts(self) -> "Iterator[Start]":
+        if len(self.problem.m) > _MANY_VIEWS:
+            some = np.linspace(0, len(self.problem.m) - 1, _VIEWS_FOR_START).astype(np.intp)
+            few = Search(self.problem.some(some), tolerance=1e-6)
+            for start in few.starts():
+                start.may_fail = True
+                yield start
+            if few.minima:
+                yield resumed(self, few.problem.camera_of(few.best().x.shared))
+        to_px = _px_from_normalised(self.problem.size)
+        m = (self.problem.m - to_px[:2, 2]) / to_px[0, 0]
+        for bend in _BENDS if self.problem.n_radial else _BENDS[:1]:
+            straight = m * (1 + bend * (m * m).sum(-1, keepdims=True)) if bend else m
+            for guess in (_focal_lengths_alone, _closed_form, *map(_usual, _USUAL_FOCAL_LENGTHS)):
+                yield Start(self, straight, to_px, guess)
+                if "intrinsics" in self.own:  # there is no other A
+                    break
+
+    def _is_good(self, minimum: Minimum[State, Arrow]) -> bool:
+        allowed = (_SUSPICIOUS * max(self.problem.size)) ** 2 * self.problem.n_seen
+        return minimum.converged and minimum.cost < allowed
+
+    def best(self) -> Minimum[State, Arrow]:
+        """Give the lowest minimum that was found."""
+        if not self.minima:
+            yours = f", or your {' and '.join(self.own)} start far from it" if self.own else ""
+            raise ConvergenceError(
+                "no start leads to a camera: the corners are probably paired with the wrong points "
+                f"of the board, or the views do not determine the camera{yours}"
+            )
+        return min(self.minima, key=lambda minimum: minimum.cost)
+
+
+@dataclass(eq=False)
+class Start:
+    """One way to start: how the corners are seen, and what the library takes for A.
+
+    Parameters
+    ----------
+    search : Search
+        To which it belongs.
+    m : ndarray, shape (n_views, n, 2)
+        The corners as steps 1 to 3 see them.
+    to_px : ndarray, shape (3, 3)
+        Pixels ← where they see them.
+    guess : callable
+        Step 2 of the library: (V (2n, 6), b (6,)) → A (3, 3).
+    lens : Lens, optional
+        When it is known already, step 4 is left out, and step 2 too.
+    """
+
+    search: Search
+    m: Array
+    to_px: Array
+    guess: Callable[[Array, Array], Array]
+    lens: Lens | None = None
+    may_fail: bool = False
+
+    @property
+    def problem(self) -> Problem:
+        """What is to be refined."""
+        return self.search.problem
+
+    @contextmanager
+    def attempt(self) -> Iterator[None]:
+        """Pass over errors that only say that this start leads nowhere.
+
+        Views without a homography, or that do not determine the camera, are no matter of the
+        start: such errors are raised.
+        """
+        try:
+            yield
+        except (ConvergenceError, DegenerateError):
+            if not self.may_fail:
+                raise
+
+    def homographies(self, step: Callable[..., Any]) -> Array:
+        """1. One homography for each view, (n_views, 3, 3)."""
+        own = self._is_own(step, dlt, "homography")
+        if not own and self.problem.seen is None:
+            with suppress(DegenerateError):  # one by one, so that the message names the view
+                return dlt(self.problem.W[..., :2], self.m)
+        return np.array([self._homography(step, own, i) for i in range(len(self.m))])
+
+    def _homography(self, step: Callable[..., Any], own: bool, i: int) -> Array:
+        """Ask for one homography, and look whether it can be one."""
+        W, seen = self.problem.W, self.problem.seen
+        W = W if W.ndim == 2 else W[i]
+        src, dst = (W[:, :2], self.m[i]) if seen is None else (W[seen[i], :2], self.m[i, seen[i]])
+        try:
+            H = matrix(step(src.copy(), dst.copy()), f"the homography of view {i}", 3, 3)
+        except DegenerateError as error:
+            raise DegenerateError(f"view {i}: {error}") from error
+        if own and not np.median(geometric_error(H, src, dst)) < _WRONG:
+            raise CvnotesError(
+                f"the homography of view {i} puts the corners far from where they were seen; it "
+                "must map the board to the picture, dst ≈ H src: is it transposed, or the inverse?"
+            )
+        return H
+
+    def intrinsics(self, step: Callable[..., Any] | None, H: Array) -> Array:
+        """2. The A (3, 3) that all views share."""
+        if self.lens is not None:
+            return np.eye(3)
+        if self._is_own(step, None, "intrinsics") and step:
+            A = intrinsic_matrix(step(H.copy()), "the A of your intrinsics")
+            self.may_fail = True
+            return A
+        V = constraints(H)
+        b = solve_b(V, skew=self.problem.skew)
+        self.may_fail = True
+        return self.guess(V, b)
+
+    def extrinsics(self, step: Callable[..., Any], A: Array, H: Array) -> Array:
+        """3. The pose of each view, (n_views, 4, 4)."""
+        if not self._is_own(step, extrinsics, "extrinsics") and "homography" not in self.search.own:
+            return poses_of(A, H)
+        G = rigid_motion(step(A.copy(), H.copy()), "the poses of your extrinsics")
+        if G.shape != (len(H), 4, 4):
+            raise ShapeError(
+                f"the poses of your extrinsics: expected shape {(len(H), 4, 4)}, got {G.shape}"
+            )
+        if G[:, 2, 3].min() <= 0:
+            i = int(G[:, 2, 3].argmin())
+            raise CvnotesError(
+                f"your extrinsics put the board of view {i} behind the camera; H and −H show the "
+                "same picture: take the sign that gives T_z > 0"
+            )
+        return G
+
+    def distortion(self, step: Callable[..., Any], A: Array, G: Array) -> Lens:
+        """4. The lens, by linear least squares."""
+        if self.lens is not None:
+            return self.lens
+        problem, terms = self.problem, self.problem.n_radial
+        k: Array = np.zeros(0)
+        if self._is_own(step, radial_distortion, "distortion") and terms:
+            copies = (x.copy() for x in (self.to_px @ A, G, problem.W, problem.m))
+            k = numbers(step(*copies, terms=terms), "the k of your distortion")
+        elif terms:
+            k = radial_from_poses(self.to_px @ A, G, problem.W, problem.m, terms)
+        if k.shape != (terms,):
+            raise ShapeError(f"the k of your distortion: expected shape {(terms,)}, got {k.shape}")
+        return Lens(k=tuple(k))
+
+    def state(self, A: Array, G: Array, lens: Lens) -> State:
+        """Give the state that the refinement starts from."""
+        return self.problem.state(Camera(self.to_px @ A, lens=lens, size=self.problem.size), G)
+
+    def refine(self, A: Array, G: Array, lens: Lens) -> None:
+        """5. Minimise from here, and keep what is found."""
+        found = minimise(self.problem, self.state(A, G, lens), tolerance=self.search.tolerance)
+        self.search.minima.append(found)
+
+    def _is_own(self, step: Any, library: Any, name: str) -> bool:
+        """Tell whether a step is the student's, and take note of it."""
+        if step is library:
+            return False
+        if not callable(step):
+            raise InputTypeError(f"{name}: expected a function, got {type(step).__name__}")
+        if name not in self.search.own:
+            self.search.own.append(name)
+        return True
+
+
+def resumed(search: Search, camera: Camera) -> Start:
+    """Start all views from what a few of them say about the camera."""
+    as_seen = xy_from_px(camera.A, search.problem.m)
+    ideal = camera.lens.undistort(as_seen)
+    m = np.where(np.isnan(ideal), as_seen, ideal)
+    return Start(search, m, camera.A, _closed_form, camera.lens, may_fail=True)
+
+
+def _focal_lengths_alone(V: Array, b: Array) -> Array:  # noqa: ARG001
+    return np.diag([*focal_lengths_from_v(V), 1.0])
+
+
+def _closed_form(V: Array, b: Array) -> Array:  # noqa: ARG001
+    return intrinsics_from_b(b)
+
+
+def _usual(f: float) -> Callable[[Array, Array], Array]:
+    return lambda V, b: np.diag([f, f, 1.0])  # noqa: ARG005
+
+
+def _px_from_normalised(size: tuple[int, int]) -> Array:
+    """Similarity that takes 0 to the picture's middle and [−1, 1] to its longer side."""
+    w, h = size
+    s = max(w, h) / 2
+    return np.array([[s, 0, (w - 1) / 2], [0, s, (h - 1) / 2], [0, 0, 1]])
