@@ -11,9 +11,9 @@ from cvnotes.calibration.refinement import (
     State,
     covariance,
     minimise,
-    take_step,
     pose_covariance,
     solve_arrow,
+    take_step,
 )
 from cvnotes.camera import Camera, Lens, intrinsics, pose
 
