@@ -603,7 +603,7 @@ def test_the_joint_gradient_and_normal_matrix_are_those_of_the_residuals(known):
     n_shared = len(problem.names)
 
     def residuals(step):
-        y = problem.move(x, (step[:n_shared], step[n_shared:].reshape(2, 6)))
+        y = problem.take_step(x, (step[:n_shared], step[n_shared:].reshape(2, 6)))
         parts = []
         for p, state in ((problem.left, y.left), (problem.right, y.of_right())):
             parts.append(-p.residuals(p.camera_of(state.shared), state).ravel())
