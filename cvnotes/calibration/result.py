@@ -63,6 +63,9 @@ class Calibration:
         camera = problem.camera_of(best.x.shared)
         variance = best.cost / problem.freedom
         unit = covariance(best.system)
+        # The cost of each view is of the last step's beginning, and all together of its end.
+        by_view = best.system.view_costs
+        by_view = by_view * (best.cost / max(by_view.sum(), np.finfo(float).tiny))
 
         def of_poses() -> Array:
             J = data.pose_jacobian(best.x.R)
@@ -74,7 +77,7 @@ class Calibration:
             size=camera.size,
             poses=data.pose_in_given_units(best.x.R, best.x.T),
             rms=float(np.sqrt(best.cost / problem.n_seen)),
-            view_rms=np.sqrt(best.system.view_costs / problem.n_seen_by_view),
+            view_rms=np.sqrt(by_view / problem.n_seen_by_view),
             names=problem.names,
             covariance=variance * unit,
             converged=best.converged,

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cvnotes.base import CvnotesError
+from cvnotes.base import Array, CvnotesError
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import Camera
 from cvnotes.files import Rejected, write_whole
@@ -153,8 +153,7 @@ def _error_bars(entry: Entry, camera: Camera) -> tuple[tuple[str, ...], Array]:
     """Read parameters' names and covariance: of this camera, and such as a covariance can be."""
     listed, C = entry["standard_deviations"], entry["covariance"]
     std = {name: item.number() for name, item in listed.items().items()}
-    known = ("alpha_u", "alpha_v", "skew", "u0", "v0", "p1", "p2")
-    known += tuple(f"k{i}" for i in range(1, len(camera.lens.k) + 1))
+    known = {*camera.parameters, "p1", "p2"}
     for name in std:
         if name not in known:
             count = len(camera.lens.k)
