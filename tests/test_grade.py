@@ -11,13 +11,16 @@ from pathlib import Path
 import pytest
 from test_exercises_second import source_of
 
-from cvnotes.commands.grade import add_parser, marks_csv
+from cvnotes.commands.grade import add_parser
 from cvnotes.learn import EXERCISES
-from cvnotes.learn.checker.report import Report
+from cvnotes.learn.checker.agreement import RIGHT_THERE_NOT_HERE
 from cvnotes.learn.exercises import notebook_of
-from cvnotes.learn.grader import assignment as expected
-from cvnotes.learn.grader.assignment import expected_exercises
-from cvnotes.learn.grader.grading import Mark, grade_folder
+from cvnotes.learn.grader import belonging as expected
+from cvnotes.learn.grader.belonging import expected_exercises
+from cvnotes.learn.grader.grading import grade_folder
+from cvnotes.learn.grader.judging import FORGED
+from cvnotes.learn.grader.marks import Mark, Verdict
+from cvnotes.learn.grader.tables import marks_csv
 
 IMPORTS = "import numpy as np\nfrom cvnotes.learn.exercises import check\n"
 IMPORTS += "from cvnotes.learn.personal import personal_camera"
@@ -70,7 +73,7 @@ def graded(folder, **limits):
     n, marks = grade_folder(folder, **limits)
     marks = list(marks)
     assert n == len(marks)
-    return {f"{m.student}/{m.notebook}".lstrip("/"): m for m in marks}
+    return {m.name: m for m in sorted(marks, key=lambda m: m.name)}
 
 
 def command(*arguments):
@@ -232,11 +235,16 @@ HOSTILE = {
     "patches": "import cvnotes.learn.checker.judge as j\nj.judge = lambda *a: None\n"
     "import numpy as np\nnp.allclose = lambda *a, **k: True\nnp.array_equal = np.allclose",
     "praises": "check = lambda *a, **k: print('PASSED')",
-    "forges": "import gc, io\nfor f in gc.get_objects():\n"
-    "    if isinstance(f, io.FileIO) and 'results' in str(f.name):\n"
-    '        f.write(b\'{"exercise": "lift", "passed": true}\\n\' * 3)\n'
-    '        f.write(b\'{"exercise": "lift", "student": null, "outcomes": ["{}"]}\\n\')\n'
-    '        f.write(b\'[1]\\nnonsense\\n{"exercise": [], "outcomes": 1}\\n\')',
+    "forges": "import json, os\n"
+    'honest = \'{"kind": "numbers", "value": "", "shape": [0], "dtype": "", \'\n'
+    'honest += \'"words": "", "printed": "", "changed": [99]}\'\n'
+    "lines = [{'exercise': 'drop', 'passed': True}, [1], {'exercise': [], 'outcomes': 1}]\n"
+    "lines += [{'exercise': 'drop', 'student': None, 'outcomes': ['{}']}]\n"
+    "lines += [{'exercise': 'meet', 'student': None, 'outcomes': [honest] * 3}]\n"
+    "data = b'nonsense\\n' + b''.join(json.dumps(x).encode() + b'\\n' for x in lines)\n"
+    "for fd in range(3, 20):\n"
+    "    try: os.write(fd, data)\n"
+    "    except OSError: pass",
     "deletes": "import shutil, pathlib\nfor p in pathlib.Path('..').resolve().iterdir():\n"
     "    p.unlink() if p.is_file() else None",
 }
@@ -263,8 +271,8 @@ def test_a_hostile_notebook_costs_its_own_row_only(tmp_path):
     for name in HOSTILE:
         mark = marks[f"{name}/01_a.ipynb"]
         assert mark.earned("drop") == 0
-        # what was right before it stays right, unless its record was destroyed
-        assert mark.earned("lift") == (name != "deletes")
+        assert mark.earned("lift") == 1  # what was right before it stays right
+    assert marks["forges/01_a.ipynb"].reports["meet"].note == FORGED
     assert "CellTimeout" in marks["endless/01_a.ipynb"].remark
     assert marks["endless/01_a.ipynb"].misconceptions == {"drop": "no division"}
     assert marks["exits/01_a.ipynb"].remark == "ended before its last cell"
@@ -306,6 +314,7 @@ def test_an_answer_made_for_the_notebooks_own_inputs_does_not_pass(tmp_path):
     notebook(tmp_path / "01_a.ipynb", IMPORTS, memorised, hand_over("drop"))
     [mark] = graded(tmp_path).values()
     assert mark.earned("drop") == 0
+    assert mark.reports["drop"].note.startswith(RIGHT_THERE_NOT_HERE)
 
 
 def test_the_table_and_the_class_summary(tmp_path, capsys):
@@ -318,7 +327,7 @@ def test_the_table_and_the_class_summary(tmp_path, capsys):
     )
     out = tmp_path / "marks" / "marks.csv"
     assert command(tmp_path, "--out", out, "--jobs", "2") == 0
-    ada, bob = csv.DictReader(out.read_text().splitlines())
+    ada, bob = csv.DictReader(out.read_text("utf-8-sig").splitlines())
     assert (ada["student"], ada["points"], ada["of"], ada["percent"]) == ("ada", "1", "4", "25")
     assert (ada["dlt"], bob["dlt"], bob["normaliser"]) == ("1", "0", "0")
     assert bob["misconceptions"] == "dlt: src and dst exchanged"
@@ -344,12 +353,12 @@ def test_a_spreadsheet_takes_no_text_for_a_formula():
     mark = Mark("=cmd()", "@x.ipynb", {}, ("dlt",), ids=("+1",), remark="-1")
     row = next(csv.DictReader(marks_csv([mark]).splitlines()))
     assert [row[k] for k in ("student", "notebook", "id", "remark")] == [
-        "'=cmd()", "'@x.ipynb", "'+1", "'-1",
+        "'=cmd()", "'@x.ipynb", "'+1", "'-1; id +1 is not the folder's",
     ]  # fmt: skip
 
 
 def test_exercises_that_a_notebook_does_not_have_are_left_blank():
-    one = Mark("a", "01.ipynb", {"lift": Report("lift", "right", "")}, ("lift",))
+    one = Mark("a", "01.ipynb", {"lift": Verdict("right")}, ("lift",))
     two = Mark("a", "06.ipynb", {}, ("dlt",))
     rows = list(csv.DictReader(marks_csv([one, two]).splitlines()))
     assert [(r["lift"], r["dlt"]) for r in rows] == [("1", ""), ("", "0")]

@@ -43,17 +43,6 @@ def progress(items: Iterable[T], *, total: int) -> Iterator[T]:
     yield from tqdm(items, total=total, unit=" photographs", disable=None, leave=False)
 
 
-def harmless(text: str) -> str:
-    """Keep a spreadsheet from taking a text for a formula.
-
-    Examples
-    --------
-    >>> harmless("=1+1")
-    "'=1+1"
-    """
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
-
-
 def _fitting(text: str, encoding: str | None) -> str:
     """Replace what an encoding does not hold."""
     encoding = encoding or "utf-8"

@@ -1,21 +1,29 @@
 """``cvnotes grade``: marks for a folder of handed-in notebooks."""
 
 import argparse
-import csv
-import io
-from collections import Counter
-from collections.abc import Sequence
+import signal
+import threading
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from cvnotes.base import CvnotesError
-from cvnotes.commands.console import complain, harmless, say
+from cvnotes.base import CvnotesError, FileError
+from cvnotes.commands.console import complain, say
 from cvnotes.files import write_whole
 from cvnotes.files.writing import check_folder, printable
-from cvnotes.learn import EXERCISES
-from cvnotes.learn.grader.grading import Mark, grade_folder
+from cvnotes.learn.grader.assignment import Assignment, read_assignment
+from cvnotes.learn.grader.feedback import class_page, class_picture, file_name, student_page
+from cvnotes.learn.grader.grading import grade_folder
+from cvnotes.learn.grader.marks import Mark
+from cvnotes.learn.grader.process import Limits
+from cvnotes.learn.grader.records import Records, read_records
+from cvnotes.learn.grader.tables import FORMATS, for_canvas, for_moodle, marks_csv, number, summary
+from cvnotes.learn.grader.totals import totals
 
-_HEADER = ("student", "notebook", "points", "of", "percent")
-_TRAILER = ("misconceptions", "id", "remark")
+_FORMATS = {"moodle": for_moodle, "canvas": for_canvas}
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -24,10 +32,28 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "grade",
         help="mark a folder of handed-in notebooks",
         description="Run every notebook below a folder in a process of its own, try the answers "
-        "it checks, and write a table of marks.",
+        "it checks, and write a table of marks. Rows are written as they come; what was "
+        "interrupted goes on with --resume.",
     )
     parser.add_argument("folder", metavar="FOLDER", help="where the notebooks are")
     parser.add_argument("--out", required=True, metavar="marks.csv", help="table to write")
+    parser.add_argument(
+        "--assignment",
+        metavar="homework.toml",
+        help="which exercises, for how many points, by whom",
+    )
+    parser.add_argument(
+        "--feedback", metavar="FOLDER", help="folder to write a page for each student to"
+    )
+    parser.add_argument(
+        "--summary", metavar="class.html", help="page of the class to write, and its picture (.svg)"
+    )
+    parser.add_argument(
+        "--format", choices=FORMATS, help="also write a table for this platform, beside the other"
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="keep the rows of notebooks that did not change"
+    )
     parser.add_argument(
         "--seconds", type=_positive, default=120.0, metavar="120", help="time for each notebook"
     )
@@ -37,32 +63,146 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument(
         "--jobs", type=_positive, default=None, metavar="2", help="how many run at a time"
     )
+    parser.add_argument(
+        "--cluster", metavar="ADDRESS", help="run them on the workers of a Dask scheduler"
+    )
     parser.set_defaults(run=run)
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """What is written, and where.
+
+    Attributes
+    ----------
+    table : Path
+        The marks.
+    assignment : Assignment or None
+        What was asked.
+    platform : str or None
+        For whom there is a second table.
+    feedback, summary : Path or None
+        Folder of the students' pages, and page of the class.
+    """
+
+    table: Path
+    assignment: Assignment | None = None
+    platform: str | None = None
+    feedback: Path | None = None
+    summary: Path | None = None
+
+    @property
+    def records(self) -> Path:
+        """The finished rows, for ``--resume``."""
+        return self.table.with_suffix(".rows.jsonl")
+
+    @property
+    def platform_table(self) -> Path:
+        """The table for a learning platform."""
+        return self.table.with_suffix(f".{self.platform}.csv")
+
+    @property
+    def all(self) -> list[Path]:
+        """Every file and folder."""
+        paths = [self.table, self.records]
+        paths += [self.platform_table] * bool(self.platform)
+        paths += [self.feedback] if self.feedback else []
+        paths += [self.summary, self.summary.with_suffix(".svg")] if self.summary else []
+        return paths
+
+    @property
+    def title(self) -> str:
+        """What the pages are called."""
+        return self.assignment.title if self.assignment else "Exercises"
+
+    def contents(self, marks: Sequence[Mark]) -> dict[Path, bytes]:
+        """Give all files but the records."""
+        marks = sorted(marks, key=lambda mark: (mark.student, mark.notebook))
+        contents = {self.table: _for_spreadsheets(marks_csv(marks, self.assignment))}
+        sums = totals(marks, self.assignment)
+        if self.platform:
+            text = _FORMATS[self.platform](sums, self.title)
+            contents[self.platform_table] = _for_spreadsheets(text)
+        if self.feedback:
+            taken: list[str] = []
+            for total in sums:
+                taken.append(file_name(total, taken))
+                page = student_page(total, self.title)
+                contents[self.feedback / taken[-1]] = page.encode()
+        if self.summary:
+            contents[self.summary] = class_page(marks, sums, self.title).encode()
+            contents[self.summary.with_suffix(".svg")] = class_picture(sums).encode()
+        return contents
 
 
 def run(args: argparse.Namespace) -> int:
     """Grade, write the table, tell about the class; gives the exit code: 0 done, 1 cannot."""
-    out = Path(args.out)
     try:
-        check_folder(out.parent)
-        n, marks = grade_folder(
-            Path(args.folder),
-            seconds=args.seconds,
-            megabytes=int(args.megabytes),
-            jobs=int(args.jobs) if args.jobs else None,
-        )
-        graded = []
-        for mark in marks:
-            graded.append(mark)
-            say(f"{len(graded)} of {n}  {one_line(mark)}")
-        write_whole({out: marks_csv(graded).encode()})
+        return _grade(args)
     except CvnotesError as error:
         complain("grade", str(error))
         return 1
-    say()
-    say(summary(graded))
-    say(f"written to {printable(out)}")
+
+
+def _grade(args: argparse.Namespace) -> int:
+    assignment = read_assignment(Path(args.assignment)) if args.assignment else None
+    outputs = Outputs(
+        Path(args.out),
+        assignment,
+        args.format,
+        Path(args.feedback) if args.feedback else None,
+        Path(args.summary) if args.summary else None,
+    )
+    folder, limits = Path(args.folder), Limits(args.seconds, int(args.megabytes))
+    _check(outputs)
+    known = read_records(outputs.records, limits) if args.resume else {}
+    with ExitStack() as stack:
+        n, marks = grade_folder(
+            folder,
+            seconds=limits.seconds,
+            megabytes=limits.megabytes,
+            jobs=int(args.jobs) if args.jobs else None,
+            executor=stack.enter_context(_cluster(args.cluster)) if args.cluster else None,
+            known=known,
+            ours=[*outputs.all, *([Path(args.assignment)] if args.assignment else [])],
+        )
+        stack.enter_context(_one_interruption())
+        graded: list[Mark] = []
+        try:
+            records = stack.enter_context(Records(outputs.records, known, limits))
+            for mark in stack.enter_context(closing(marks)):  # type: ignore[type-var]
+                records.add(mark)
+                graded.append(mark)
+                write_whole({outputs.table: outputs.contents(graded)[outputs.table]})
+                say(f"{len(graded)} of {n}  {one_line(mark)}")
+        except KeyboardInterrupt:
+            text = f"interrupted; the {len(graded)} finished rows of {n} are kept"
+            complain("grade", f"{text}, --resume goes on from there")
+            raise
+    write_whole(outputs.contents(graded))
+    _tell(graded, outputs)
     return 0
+
+
+def _check(outputs: Outputs) -> None:
+    """Refuse what could not be written, before the first notebook runs."""
+    for path in outputs.all:
+        check_folder(path if path == outputs.feedback else path.parent)
+        if path != outputs.feedback and path.is_dir():
+            raise FileError(f"{printable(path)} cannot be written: it is a folder")
+    # What is there is written once more, as it is.
+    write_whole({path: path.read_bytes() for path in outputs.all if path.is_file()})
+
+
+def _tell(graded: Sequence[Mark], outputs: Outputs) -> None:
+    say()
+    say(summary(graded, outputs.assignment))
+    if not all(mark.sealed for mark in graded):
+        say(
+            "This system does not let a notebook be sealed off: network, files and other "
+            "processes of yours were within its reach (docs/teaching.md says more)."
+        )
+    say(f"written to {printable(outputs.table)}")
 
 
 def one_line(mark: Mark) -> str:
@@ -73,56 +213,54 @@ def one_line(mark: Mark) -> str:
     >>> one_line(Mark("ada", "06.ipynb", expected=("dlt",), remark="not a notebook"))
     'ada/06.ipynb: 0 of 1 (not a notebook)'
     """
-    name = f"{mark.student}/{mark.notebook}" if mark.student else mark.notebook
     remark = f" ({mark.remark})" if mark.remark else ""
-    return f"{name}: {mark.points} of {len(mark.expected)}{remark}"
+    return f"{mark.name}: {number(mark.points)} of {len(mark.expected)}{remark}"
 
 
-def marks_csv(marks: Sequence[Mark]) -> str:
-    """Write the marks as CSV: a row for each notebook, a column for each exercise.
-
-    Examples
-    --------
-    >>> print(marks_csv([Mark("ada", "=1+1.ipynb", expected=("dlt",))]).splitlines()[1])
-    ada,'=1+1.ipynb,0,1,0,0,,,
-    """
-    asked = {name for mark in marks for name in mark.expected}
-    names = [name for name in EXERCISES if name in asked]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([*_HEADER, *names, *_TRAILER])
-    for mark in marks:
-        points = [mark.earned(name) if name in mark.expected else "" for name in names]
-        met = "; ".join(f"{name}: {mistake}" for name, mistake in mark.misconceptions.items())
-        percent = round(100 * mark.points / len(mark.expected)) if mark.expected else 0
-        texts = [met, ", ".join(mark.ids), mark.remark]
-        writer.writerow(
-            [harmless(mark.student), harmless(mark.notebook), mark.points, len(mark.expected)]
-            + [percent, *points, *map(harmless, texts)]
-        )
-    return text.getvalue()
+@contextmanager
+def _cluster(address: str) -> Iterator[Executor]:
+    """Give the workers of a Dask scheduler as an executor."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise CvnotesError(
+            "--cluster needs Dask, which is not installed here: pip install distributed"
+        ) from None
+    try:
+        client = Client(address, timeout="10s")
+    except (OSError, ValueError) as error:
+        raise CvnotesError(f"no Dask scheduler answers at {address}: {error}") from None
+    with client:
+        yield client.get_executor()
 
 
-def summary(marks: Sequence[Mark]) -> str:
-    """Tell what the class as a whole can do, and which misconceptions it met.
+@contextmanager
+def _one_interruption() -> Iterator[None]:
+    """Let the first Ctrl-C end the work and the second not end the tidying up."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
 
-    Examples
-    --------
-    >>> print(summary([Mark("ada", "06.ipynb", expected=("dlt",))]))
-    1 notebooks, 0 of 1 points
-    dlt                           0 of 1
-    """
-    points, possible = sum(m.points for m in marks), sum(len(m.expected) for m in marks)
-    lines = [f"{len(marks)} notebooks, {points} of {possible} points"]
-    for name in EXERCISES:
-        asked = [mark for mark in marks if name in mark.expected]
-        if asked:
-            solved = sum(mark.earned(name) for mark in asked)
-            lines.append(f"{name:<29} {solved} of {len(asked)}")
-    met = Counter(pair for mark in marks for pair in mark.misconceptions.items())
-    lines += ["misconceptions met:"] * bool(met)
-    lines += [f"{count:>4} × {name}: {what}" for (name, what), count in met.most_common()]
-    return "\n".join(lines)
+    def interrupt(*_: Any) -> None:
+        for number_ in before:
+            signal.signal(number_, signal.SIG_IGN)
+        raise KeyboardInterrupt
+
+    names = {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal))
+    every = {getattr(signal, name): signal.getsignal(getattr(signal, name)) for name in names}
+    before = {which: handler for which, handler in every.items() if handler != signal.SIG_IGN}
+    try:
+        for number_ in before:
+            signal.signal(number_, interrupt)
+        yield
+    finally:
+        for number_, handler in before.items():
+            signal.signal(number_, handler)
+
+
+def _for_spreadsheets(text: str) -> bytes:
+    """Begin with the mark by which spreadsheet programs know UTF-8."""
+    return text.encode("utf-8-sig")
 
 
 def _positive(text: str) -> float:

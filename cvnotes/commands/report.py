@@ -11,10 +11,10 @@ import numpy as np
 from cvnotes.base import text_table
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.reliability import widest_angle
-from cvnotes.commands.console import harmless
 from cvnotes.commands.examined import Examined
 from cvnotes.commands.ownership import TABLE_HEADER
 from cvnotes.files import Rejected
+from cvnotes.files.writing import harmless
 from cvnotes.show.figures.quality import covered_cells
 
 if TYPE_CHECKING:

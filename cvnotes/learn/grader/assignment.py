@@ -1,42 +1,230 @@
-"""Which exercises belong to which notebook: what the course's own notebooks ask for."""
+"""A piece of homework: which exercises, for how many points, from whom; a small TOML file.
 
+title = "Homework 1"
+students = "students.csv"               # or ["ada", "bob"]; may be left out
+
+[exercises]
+lift = 1
+dlt = 4
+drop = { points = 3, parts = [1, 2] }   # points for each property that holds
+depth = { points = 2, parts = true }    # the same for each
+"""
+
+import csv
+import io
 import re
-from collections import defaultdict
-from functools import cache
+import tomllib
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-from cvnotes.learn.exercises import EXERCISES, notebook_of
+from cvnotes.base import CvnotesError, FileError
+from cvnotes.files.writing import printable
+from cvnotes.learn.exercises import EXERCISES, find
+from cvnotes.learn.grader.marks import Verdict
 
-COURSE = Path(__file__).resolve().parents[3] / "notebooks"
+_LARGEST = 1_000_000  # bytes
+_COLUMNS = ("student", "name", "id", "email", "section")
 
 
-def expected_exercises(notebook: str, handed_in: list[str]) -> tuple[str, ...]:
-    """Give the exercises that belong to a notebook, by the number in its name.
+@dataclass(frozen=True)
+class Item:
+    """One exercise of an assignment.
 
-    Without a number they are those of the course's notebooks that it answers something of.
+    Attributes
+    ----------
+    points : float
+        What a right answer is worth.
+    parts : tuple of float
+        What each of its properties is worth by itself, in the order of the exercise; together
+        `points`. Empty where only the whole counts.
+    """
+
+    points: float
+    parts: tuple[float, ...] = ()
+
+    def earned(self, name: str, verdict: Verdict | None) -> float:
+        """Give the points for an answer to an exercise."""
+        if verdict is None:
+            return 0.0
+        if verdict.passed:
+            return self.points
+        sentences = [p.sentence for p in EXERCISES[name].properties]
+        shares = zip(sentences, self.parts, strict=False)
+        return sum(part for sentence, part in shares if sentence in verdict.holds)
+
+
+@dataclass(frozen=True)
+class Student:
+    """Somebody who is to hand in.
+
+    Attributes
+    ----------
+    student : str
+        What the folder, or the file, is called.
+    name, id, email, section : str
+        What a learning platform wants to know; `id` is the one for `personal_camera`, too.
+    """
+
+    student: str
+    name: str = ""
+    id: str = ""
+    email: str = ""
+    section: str = ""
+
+    def handed_in(self, folder: str, notebook: str) -> bool:
+        """Tell whether a folder, or a file that lies in none, is this student's.
+
+        Examples
+        --------
+        >>> Student("ada").handed_in("Ada_123456_assignsubmission_file", "06.ipynb")
+        True
+        >>> Student("ada").handed_in("", "07_ada_06_homography_dlt.ipynb")
+        True
+        >>> Student("ada").handed_in("adam", "ada.ipynb")
+        False
+        """
+        written = _plain(folder.split("/")[0] or notebook.rpartition(".")[0])
+        own = [_plain(text) for text in (self.student, self.name, self.id) if text.strip()]
+        return any(re.search(rf"(?<![^\W_]){re.escape(x)}(?![^\W_])", written) for x in own)
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """What is asked of whom, and for how many points.
+
+    Attributes
+    ----------
+    title : str
+        Its name, as a learning platform is to show it.
+    items : dict
+        By the name of the exercise, in the order of the file.
+    students : tuple of Student
+        Who is expected; empty if anybody is.
+    """
+
+    title: str
+    items: dict[str, Item] = field(default_factory=dict)
+    students: tuple[Student, ...] = ()
+
+    @property
+    def points(self) -> float:
+        """What everything together is worth."""
+        return sum(item.points for item in self.items.values())
+
+
+def read_assignment(path: Path) -> Assignment:
+    """Read an assignment.
+
+    Raises
+    ------
+    FileError
+        It is not one; the message says which entry, and what was expected.
+    """
+    text = _read(path)
+    try:
+        fields = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise FileError(f"{printable(path)} is no TOML: {error}") from None
+    try:
+        return _assignment(fields, path)
+    except CvnotesError as error:
+        raise FileError(f"{printable(path)}: {error}") from None
+
+
+def _read(path: Path) -> str:
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise FileError(f"{printable(path)} is larger than 1 MB; an assignment is a few lines")
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise FileError(f"{printable(path)} is no text in UTF-8") from None
+    except OSError as error:
+        raise FileError(f"{printable(path)} cannot be read: {error.strerror}") from None
+
+
+def _assignment(fields: Mapping[str, Any], path: Path) -> Assignment:
+    unknown = sorted(set(fields) - {"title", "students", "exercises"})
+    if unknown:
+        raise CvnotesError(f"{unknown[0]!r} is none of title, students, [exercises]")
+    exercises, title = fields.get("exercises"), fields.get("title", path.stem)
+    if not isinstance(exercises, dict) or not exercises:
+        raise CvnotesError('expected [exercises] with lines such as "dlt = 2"')
+    if not isinstance(title, str):
+        raise CvnotesError(f"title: expected a text in quotes, got {title!r}")
+    items = {name: _item(name, value) for name, value in exercises.items()}
+    return Assignment(title, items, _students(fields.get("students", []), path.parent))
+
+
+def _item(name: str, value: Any) -> Item:
+    exercise = find(name)
+    given = value if isinstance(value, dict) else {"points": value}
+    unknown = sorted(set(given) - {"points", "parts"})
+    if unknown:
+        raise CvnotesError(f"{name}: {unknown[0]!r} is none of points, parts")
+    parts = given.get("parts", False)
+    if isinstance(parts, list) and all(map(_is_number, parts)):
+        if len(parts) != len(exercise.properties):
+            n = len(exercise.properties)
+            raise CvnotesError(f"{name}: expected {n} parts, one for each property, got {parts}")
+        total = given.get("points", sum(parts))
+        if total != sum(parts):
+            raise CvnotesError(f"{name}: parts {parts} make {sum(parts):g} points, not {total}")
+        return Item(float(sum(parts)), tuple(map(float, parts)))
+    points = given.get("points", 1)
+    if not _is_number(points):
+        raise CvnotesError(f"{name}: expected points from 0, got {points!r}")
+    if not isinstance(parts, bool):
+        raise CvnotesError(f"{name}: parts is true, or a list of points, not {parts!r}")
+    n = len(exercise.properties)
+    return Item(float(points), (float(points) / n,) * n if parts else ())
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1e6
+
+
+def _students(value: Any, folder: Path) -> tuple[Student, ...]:
+    if isinstance(value, str):
+        students = _listed(folder / value)
+    elif isinstance(value, list) and all(isinstance(name, str) for name in value):
+        students = [Student(name) for name in value]
+    else:
+        raise CvnotesError("students: expected a list of names, or the name of a CSV file")
+    names = [_plain(student.student) for student in students]
+    twice = [name for i, name in enumerate(names) if name in names[:i]]
+    if twice:
+        raise CvnotesError(f"students: {twice[0]!r} is there twice")
+    return tuple(students)
+
+
+def _listed(path: Path) -> list[Student]:
+    """Read a list of students: a table with the column student, and others if there are."""
+    lines = io.StringIO(_read(path))
+    delimiter = ";" if ";" in lines.readline() else ","
+    lines.seek(0)
+    rows = [
+        {(key or "").strip().lower(): (value or "") for key, value in row.items() if key}
+        for row in csv.DictReader(lines, delimiter=delimiter)
+    ]
+    if not rows or "student" not in rows[0]:
+        raise CvnotesError(f"{printable(path.name)}: expected a column with the head student")
+    given = [{key: row.get(key, "").strip() for key in _COLUMNS} for row in rows]
+    return [Student(**fields) for fields in given if fields["student"]]
+
+
+def same_id(text: str, student: Student) -> bool:
+    """Tell whether an id that a notebook used is a student's.
 
     Examples
     --------
-    >>> "dlt" in expected_exercises("06_homography_dlt.ipynb", [])
-    True
+    >>> same_id("S123", Student("ada", id="s123")), same_id("bob", Student("ada"))
+    (True, False)
     """
-    placed = _placed(COURSE)
-    number = re.match(r"(\d\d)_", notebook)
-    if number and int(number[1]) in placed:
-        expected = placed[int(number[1])]
-    else:
-        expected = set().union(*(names for names in placed.values() if names & {*handed_in}))
-    return tuple(name for name in EXERCISES if name in expected)
+    return any(_plain(text) == _plain(own) for own in (student.student, student.name, student.id))
 
 
-@cache
-def _placed(course: Path) -> dict[int, set[str]]:
-    """Give what each of the course's own notebooks asks for; without them, what it should."""
-    numbers = {notebook_of(e) for e in EXERCISES.values()}
-    placed = {n: {e.name for e in EXERCISES.values() if notebook_of(e) == n} for n in numbers}
-    found: dict[int, set[str]] = defaultdict(set)
-    for path in course.glob("[0-9][0-9]_*.ipynb"):
-        text = path.read_text(encoding="utf-8").replace('\\"', '"')
-        names = set(re.findall(r"check\(\s*[\"'](\w+)[\"']", text)) & set(EXERCISES)
-        found[int(path.name[:2])] |= names
-    return placed | {n: names for n, names in found.items() if names}
+def _plain(text: str) -> str:
+    return unicodedata.normalize("NFKC", text).strip().casefold()

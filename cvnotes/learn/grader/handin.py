@@ -5,54 +5,84 @@ Whatever the notebook does to this process, the verdict is worked out elsewhere,
 `cvnotes.learn.grader.grading`.
 """
 
-import argparse
 import contextlib
 import json
 import os
+import pickle
 import signal
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from cvnotes import learn
 from cvnotes.learn import exercises
+from cvnotes.learn.checker.agreement import NOTEBOOK_SEED
+from cvnotes.learn.checker.exercise import Case, Exercise
 from cvnotes.learn.checker.judge import judge
 from cvnotes.learn.checker.outcome import clean, encode
 from cvnotes.learn.checker.report import Report
 from cvnotes.learn.checker.sandbox import ask
+from cvnotes.learn.grader.seal import adopt_orphans, end_with_parent, sealed
 
 # Bytes that a notebook may write into one file.
 _FILE_SIZE = 200 * 2**20
+
+
+Arguments = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Task:
+    """What the grader asks of this process.
+
+    Attributes
+    ----------
+    cells : list of str
+        The source of the notebook's code cells.
+    inputs : dict
+        What answers are tried on, by the name of the exercise.
+    scratch, hidden : str and tuple of str
+        The folder it may write to, and what it is not to find.
+    cell_seconds, megabytes : float and int
+        Time for one cell, and memory.
+    """
+
+    cells: list[str]
+    inputs: dict[str, list[Arguments]]
+    scratch: str
+    hidden: tuple[str, ...]
+    cell_seconds: float
+    megabytes: int
 
 
 class CellTimeout(Exception):
     """A cell takes too long; the next ones still run."""
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the notebook; gives the exit code."""
-    parser = argparse.ArgumentParser(description="Run one handed-in notebook for the grader.")
-    parser.add_argument("notebook", type=Path)
-    parser.add_argument("results", type=Path)
-    parser.add_argument("--seed", type=int, required=True)
-    parser.add_argument("--cell-seconds", type=float, required=True)
-    parser.add_argument("--megabytes", type=int, required=True)
-    args = parser.parse_args(arguments)
-    _limit(args.megabytes)
-    with args.results.open("ab", buffering=0) as stream:
+def main() -> int:
+    """Run the notebook that stands on stdin; what its answers give goes to what was stdout."""
+    end_with_parent()
+    adopt_orphans()
+    # The grader itself wrote this: the notebook's cells, and inputs whose seed stays where it is.
+    task: Task = pickle.load(sys.stdin.buffer)
+    results = os.dup(1)
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for stream in (0, 1):
+        os.dup2(nowhere, stream)
+    is_sealed = sealed(Path(task.scratch), [Path(path) for path in task.hidden])
+    _limit(task.megabytes)
 
-        def write(line: dict[str, Any]) -> None:
-            stream.write(json.dumps(line).encode() + b"\n")
+    def write(line: dict[str, Any]) -> None:
+        data = json.dumps(line).encode() + b"\n"
+        while data:
+            data = data[os.write(results, data) :]
 
-        try:
-            cells = code_cells(args.notebook.read_bytes())
-        except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
-            write({"unreadable": True})
-            return 1
-        exercises.check = learn.check = _recorder(args.seed, write)
-        failed = [why for why in run_cells(cells, args.cell_seconds) if why]
-        write({"finished": True, "failed": len(failed), "first": failed[0] if failed else ""})
+    write({"sealed": is_sealed})
+    exercises.check = learn.check = _recorder(task.inputs, write)
+    failed = [why for why in run_cells(task.cells, task.cell_seconds) if why]
+    write({"finished": True, "failed": len(failed), "first": failed[0] if failed else ""})
     return 0
 
 
@@ -85,17 +115,31 @@ def run_cells(cells: list[str], seconds: float) -> Iterator[str]:
         yield "" if error is None else clean(f"{type(error).__name__}: {error}", 120)
 
 
-def _recorder(seed: int, write: Callable[[dict[str, Any]], None]) -> Callable[..., Report]:
-    """Make a ``check`` that writes down what the answer gives, and answers as always."""
+def _recorder(
+    inputs: dict[str, list[Arguments]], write: Callable[[dict[str, Any]], None]
+) -> Callable[..., Report]:
+    """Make a ``check`` that writes down what the answer gives, and answers as always.
+
+    An answer that is right on the notebook's own inputs is tried on others, too.
+    """
 
     def check(name: str, answer: Any, *, student: str | None = None) -> Report:
         exercise = exercises.asked(name, student)
-        outcomes = ask(exercise, answer, seed)
-        lines = [encode(outcome).decode() for outcome in outcomes]
-        write({"exercise": name, "student": student, "outcomes": lines})
-        return judge(exercise, outcomes, seed)
+        outcomes = ask(exercise, answer, NOTEBOOK_SEED)
+        report = judge(exercise, outcomes, NOTEBOOK_SEED)
+        again = ask(_on(exercise, inputs), answer, NOTEBOOK_SEED) if report.passed else []
+        lines = [[encode(outcome).decode() for outcome in tried] for tried in (outcomes, again)]
+        write({"exercise": name, "student": student, "outcomes": lines[0], "again": lines[1]})
+        return report
 
     return check
+
+
+def _on(exercise: Exercise, inputs: dict[str, list[Arguments]]) -> Exercise:
+    """Give an exercise, and its steps, with the inputs of the grader."""
+    parts = tuple(_on(part, inputs) for part in exercise.parts)
+    given = [Case(arguments) for arguments in inputs[exercise.name]]
+    return replace(exercise, cases=lambda _: given, parts=parts)
 
 
 @contextlib.contextmanager

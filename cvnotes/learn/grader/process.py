@@ -1,114 +1,221 @@
 """One handed-in notebook in a process of its own, with limits of time and memory.
 
-See `cvnotes.learn.grader.handin` for what the process does. Only what it writes into one file
-comes back, and that file is read as if anybody had written it.
+See `cvnotes.learn.grader.handin` for what the process does. Only what it writes into one pipe
+comes back, and that is read as if anybody had written it.
 """
 
 import contextlib
 import json
 import os
+import pickle
+import secrets
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
+from cvnotes.learn.exercises import EXERCISES
+from cvnotes.learn.grader.handin import Arguments, Task
+from cvnotes.learn.grader.tracking import MARKER, end
 from cvnotes.pictures.course import DATA
 
-_MAX_RESULTS = 200 * 2**20
+# Bytes that one notebook may hand over, with all of its answers.
+_MAX_RESULTS = 64 * 2**20
+INTERRUPTED = "interrupted"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What each notebook may use: seconds, and megabytes of memory."""
+
+    seconds: float = 120.0
+    megabytes: int = 4096
+
+
+@dataclass
+class Ran:
+    """What a notebook handed over.
+
+    Attributes
+    ----------
+    answers : dict
+        The last line about each exercise, by its name; nobody has looked at what it says.
+    finished : dict
+        The line it ends with, if it came that far.
+    ended : str
+        How it ended, if not by itself.
+    sealed : bool
+        Whether it ran sealed off from network, files and processes.
+    """
+
+    answers: dict[str, dict[str, Any]] = field(default_factory=dict)
+    finished: dict[str, Any] = field(default_factory=dict)
+    ended: str = ""
+    sealed: bool = False
+
+
+# The batches of notebooks that were stopped, as a set that only ever grows.
+_STOPPED: set[str] = set()
+
+
+def stop(batch: str) -> None:
+    """End the notebooks of a batch that run in this process, and start no more of them."""
+    _STOPPED.add(batch)
 
 
 def run_notebook(
-    content: bytes, seed: int, seconds: float, megabytes: int
-) -> tuple[list[dict[str, Any]], str]:
+    cells: list[str], seed: int, limits: Limits, hidden: Sequence[Path] = (), batch: str = ""
+) -> Ran:
     """Run a notebook in a scratch folder, and give what it hands over.
 
     Parameters
     ----------
-    content : bytes
-        The notebook's file.
+    cells : list of str
+        Its code.
     seed : int
-        Of the inputs that its answers are tried on.
-    seconds, megabytes : float and int
+        Of the inputs that its answers are tried on; it stays here.
+    limits : Limits
         What it may use.
-
-    Returns
-    -------
-    lines : list of dict
-        What the process wrote down, line by line.
-    ended : str
-        How it ended, if not by itself.
+    hidden : sequence of Path
+        What it is not to find.
+    batch : str
+        Under which name `stop` ends it.
     """
-    with tempfile.TemporaryDirectory(prefix="cvnotes-", ignore_cleanup_errors=True) as scratch:
-        ended = _run(Path(scratch), content, seed, seconds, megabytes)
-        return _lines(Path(scratch) / "results"), ended
+    if batch in _STOPPED:
+        return Ran(ended=INTERRUPTED)
+    with tempfile.TemporaryDirectory(prefix="cvnotes-", ignore_cleanup_errors=True) as folder:
+        scratch = Path(folder).resolve()
+        (scratch / "notebooks").mkdir()
+        if DATA.is_dir():
+            with contextlib.suppress(OSError):
+                (scratch / "data").symlink_to(DATA, target_is_directory=True)
+        cell_seconds = max(5.0, limits.seconds / 4)
+        names = tuple(str(path.resolve()) for path in hidden)
+        inputs = _inputs(seed)
+        task = Task(cells, inputs, str(scratch), names, cell_seconds, limits.megabytes)
+        return _run(task, scratch, limits.seconds, batch)
 
 
-def _run(scratch: Path, content: bytes, seed: int, seconds: float, megabytes: int) -> str:
-    """Run a notebook in a folder laid out like the course; says how it ended, if not by itself."""
-    (scratch / "notebooks").mkdir()
-    (scratch / "handed_in.ipynb").write_bytes(content)
-    if DATA.is_dir():
-        with contextlib.suppress(OSError):
-            (scratch / "data").symlink_to(DATA, target_is_directory=True)
-    command = [sys.executable, "-m", "cvnotes.learn.grader.handin"]
-    command += [str(scratch / "handed_in.ipynb"), str(scratch / "results"), "--seed", str(seed)]
-    command += ["--cell-seconds", str(max(5.0, seconds / 4)), "--megabytes", str(megabytes)]
+def _inputs(seed: int) -> dict[str, list[Arguments]]:
+    """Give what the answers are tried on; those with a student's own numbers have no inputs."""
+    asked = {**EXERCISES}
+    for exercise in EXERCISES.values():
+        asked |= {part.name: part for part in exercise.parts}
+    return {name: exercise.inputs(seed) for name, exercise in asked.items()}
+
+
+def _run(task: Task, scratch: Path, seconds: float, batch: str) -> Ran:
+    """Run a notebook in a folder laid out like the course."""
+    token = secrets.token_hex(16)
     process = subprocess.Popen(
-        command,
+        [sys.executable, "-m", "cvnotes.learn.grader.handin"],
         cwd=scratch / "notebooks",
-        env=_environment(scratch),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
+        env=_environment(scratch) | {MARKER: token},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
+    ran = Ran()
+    assert process.stdin is not None
+    assert process.stdout is not None
+    reader = threading.Thread(target=_read, args=(process.stdout, ran), daemon=True)
     try:
-        code = process.wait(seconds)
-    except subprocess.TimeoutExpired:
-        return f"stopped after {seconds:g} seconds"
+        reader.start()
+        with contextlib.suppress(BrokenPipeError), process.stdin as stream:
+            stream.write(pickle.dumps(task))
+        ended = _wait(process, seconds, batch)
     finally:
-        _end(process)
-    return "" if code in (0, 1) else f"ended its process ({_ending(code)})"
+        end(process, token)
+        reader.join(2.0)  # whoever still holds the other end of the pipe is not waited for
+        if not reader.is_alive():
+            process.stdout.close()
+    ran.ended = ran.ended or ended
+    return ran
+
+
+def _wait(process: "subprocess.Popen[bytes]", seconds: float, batch: str) -> str:
+    """Wait for a notebook; says how it ended, if not by itself."""
+    deadline = time.monotonic() + seconds
+    while batch not in _STOPPED:
+        try:
+            code = process.wait(min(0.25, max(0.0, deadline - time.monotonic())))
+        except subprocess.TimeoutExpired:
+            if time.monotonic() > deadline:
+                return f"stopped after {seconds:g} seconds"
+        else:
+            return "" if code == 0 else f"ended its process ({_ending(code)})"
+    return INTERRUPTED
 
 
 def _environment(scratch: Path) -> dict[str, str]:
     """Give a notebook's process what it needs: no secrets, one thread, figures without a screen."""
-    kept = ("PATH", "LANG", "LC_ALL", "SYSTEMROOT", "TEMP", "TMP", "VIRTUAL_ENV", "LD_LIBRARY_PATH")
+    kept = ("PATH", "LANG", "LC_ALL", "SYSTEMROOT", "VIRTUAL_ENV", "LD_LIBRARY_PATH")
     environment = {name: os.environ[name] for name in kept if name in os.environ}
     package = str(Path(__file__).resolve().parents[3])
-    cache = os.environ.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
     threads = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+    (scratch / "tmp").mkdir()
+    _copy_fonts(scratch / "cache" / "matplotlib")
+    own = {"HOME": "", "XDG_CACHE_HOME": "cache", "IPYTHONDIR": "ipython"}
+    own |= dict.fromkeys(("TMPDIR", "TEMP", "TMP"), "tmp")
     return (
         environment
         | dict.fromkeys(threads, "1")
-        | {"PYTHONPATH": package, "MPLBACKEND": "agg", "XDG_CACHE_HOME": cache}
-        | {"HOME": str(scratch), "IPYTHONDIR": str(scratch / "ipython"), "PYTHONUTF8": "1"}
+        | {"PYTHONPATH": package, "PYTHONUTF8": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+        | {"MPLBACKEND": "agg", "MPLCONFIGDIR": str(scratch / "cache" / "matplotlib")}
+        | {name: str(scratch / folder) for name, folder in own.items()}
     )
 
 
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    """End a notebook's process, and what it started."""
-    if hasattr(os, "killpg"):
-        with contextlib.suppress(OSError):
-            os.killpg(process.pid, signal.SIGKILL)
-    process.kill()
-    process.wait()
+def _copy_fonts(target: Path) -> None:
+    """Copy matplotlib's list of fonts, which takes seconds to make."""
+    target.mkdir(parents=True)
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
+    folder = Path(os.environ.get("MPLCONFIGDIR") or cache / "matplotlib")
+    with contextlib.suppress(OSError):
+        for path in folder.glob("fontlist*.json"):
+            shutil.copyfile(path, target / path.name)
 
 
 def _ending(code: int) -> str:
-    return signal.Signals(-code).name if code < 0 else f"exit code {code}"
-
-
-def _lines(results: Path) -> list[dict[str, Any]]:
-    """Read what the process wrote, leaving out what is no such line."""
-    lines = []
+    number = -code if code < 0 else code - 128
     try:
-        with results.open("rb") as stream:
-            for line in stream.read(_MAX_RESULTS).splitlines():
-                with contextlib.suppress(ValueError, RecursionError):
-                    lines.append(json.loads(line))
-    except OSError:
-        return []
-    return [line for line in lines if isinstance(line, dict)]
+        return signal.Signals(number).name
+    except ValueError:
+        return f"exit code {code}"
+
+
+def _read(stream: IO[bytes], ran: Ran) -> None:
+    """Read lines as they come, keeping the last one about each exercise."""
+    left = _MAX_RESULTS
+    while left > 0 and (line := stream.readline(left)):
+        left -= len(line)
+        _keep(line, ran)
+    if left <= 0:
+        ran.ended = f"handed over more than {_MAX_RESULTS >> 20} MB"
+        while stream.read(1 << 20):  # nobody is kept waiting who still writes
+            pass
+
+
+def _keep(line: bytes, ran: Ran) -> None:
+    """Sort a line, leaving out what is none of ours."""
+    try:
+        fields = json.loads(line)
+    except (ValueError, RecursionError):
+        return
+    if not isinstance(fields, dict):
+        return
+    name = fields.get("exercise")
+    if isinstance(name, str) and name in EXERCISES:
+        ran.answers[name] = fields
+    elif fields.get("finished") is True:
+        ran.finished = fields
+    elif "sealed" in fields and not ran.answers:
+        ran.sealed = fields["sealed"] is True
