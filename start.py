@@ -1,6 +1,7 @@
 """Open the course, or run every test, on a machine that has only Python.
 
     python start.py                 open the course in JupyterLab
+    python start.py check           lint, types and unit tests: for every change, in a minute
     python start.py test            run every test, the notebooks included
     python start.py site            build the course as pages to be read in a browser
 
@@ -17,8 +18,13 @@ import venv
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
-EXTRAS = {"lab": "lab,rays", "test": "dev", "site": "docs"}
-RUN = {"lab": ["-m", "cvnotes", "lab"], "test": ["-m", "pytest"], "site": ["tools/build_site.py"]}
+EXTRAS = {"lab": "lab,rays", "check": "dev", "test": "dev", "site": "docs"}
+RUN = {
+    "lab": ["-m", "cvnotes", "lab"],
+    "check": ["tools/check.py"],
+    "test": ["-m", "pytest"],
+    "site": ["tools/build_site.py"],
+}
 
 
 def environment(extras: str) -> Path:

@@ -4,8 +4,10 @@ Nothing but `Camera.ideal` and `Camera.project` is shared with the package. Only
 of the corners are drawn; the rest of the picture is grey.
 """
 
+from functools import cache
+
 import numpy as np
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter1d
 
 WHITE, DARK, GREY = 220.0, 30.0, 128.0
 _HALF = 11  # pixels around each corner that are drawn
@@ -28,15 +30,22 @@ def picture(board, camera, blur=0.0, half=_HALF):
     # Samples step aside from their grid, or upright edges would snap to it.
     aside = (np.arange(side * n) * (np.sqrt(5) - 1) / 2 % 1 - 0.5) / n
     u, v = fine + aside[:, None], fine[:, None] + aside
+    gather = _blurred_means(side, n, blur)
     for corner in np.rint(m):
         light = _colour(board, camera, np.stack([u, v], axis=-1) + corner)
-        if blur:
-            light = gaussian_filter(light, blur * n, mode="nearest")
-        pixels = light.reshape(side, n, side, n).mean((1, 3))
-        pixels = pixels[rim : side - rim, rim : side - rim]
+        pixels = (gather @ light @ gather.T)[rim : side - rim, rim : side - rim]
         rows, columns = (np.arange(-half, half + 1) + int(c) for c in corner[::-1])
         image[np.ix_(rows, columns)] = pixels
     return image, m
+
+
+@cache
+def _blurred_means(side, n, blur):
+    """What blurring and gathering along one side of the picture do: a matrix (side, side · n)."""
+    light = np.eye(side * n)
+    if blur:
+        light = gaussian_filter1d(light, blur * n, axis=0, mode="nearest")
+    return light.reshape(side, n, side * n).mean(1)
 
 
 def eight_bits(image, noise=0.0, rng=None):

@@ -20,9 +20,13 @@ if CHROMIUM is None:
 pytest.importorskip("jupyterlab", reason="JupyterLab is not installed")
 sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 EXPLORES = re.compile(r"^explore_\w+\(", re.MULTILINE)
+# Handles, keys and the way to the kernel are the same for all; test_explore.py tries each model.
+ONE = ("noise",)
 TOKEN = "of-this-test-alone"
 ARGUMENTS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
@@ -52,6 +56,7 @@ CELLS = """() => {
         outputs: cell.type === 'code' ? cell.outputs.toJSON() : [],
     }));
 }"""
+READY = "() => window.jupyterapp.shell.currentWidget.context.ready.then(() => true)"
 SHOW_CELL = """async i => {
     const notebook = window.jupyterapp.shell.currentWidget.content;
     notebook.activeCellIndex = i;
@@ -210,8 +215,24 @@ def _shut_down(page):
     page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.shutdown()")
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, path, tmp_path):
+def test_every_notebook_opens_with_its_pictures(page, course):
+    for path in NOTEBOOKS:
+        _open(page, course[1], path.name)
+        saved = nbformat.read(path, as_version=4).cells
+        page.evaluate(READY)
+        assert [cell["source"] for cell in page.evaluate(CELLS)] == [c.source for c in saved]
+        first = next(i for i, cell in enumerate(saved) if "<img" in str(cell.get("outputs", "")))
+        page.evaluate(SHOW_CELL, first)
+        picture = page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea-output img").first
+        picture.wait_for(state="visible", timeout=20_000)
+        assert picture.evaluate("img => img.naturalWidth") > 100, path.stem
+        _shut_down(page)
+
+
+# nbval runs all of them; what a browser adds is the same in each.
+@pytest.mark.parametrize("chapter", ["04", "07"])
+def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, chapter, tmp_path):
+    path = next(path for path in NOTEBOOKS if path.name.startswith(chapter))
     cells = _open_and_run(page, course[1], path.name)
     for cell in cells:
         for output in cell["outputs"]:
@@ -219,14 +240,13 @@ def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, path, tm
             assert output["output_type"] != "error" or not unexpected, output
             assert output.get("name") != "stderr", output
     assert any(cell["outputs"] for cell in cells)
-    if any(re.search(EXPLORES, cell["source"]) for cell in cells):
-        handle, picture = _explorer(page, cells, EXPLORES)
-        before = picture.evaluate(PICTURE)
-        handle.focus()
-        page.keyboard.press("ArrowRight")
-        page.keyboard.press("ArrowRight")
-        assert _becomes(page, picture, lambda now: now != before)
-        page.screenshot(path=tmp_path / f"{path.stem}.png")
+    handle, picture = _explorer(page, cells, EXPLORES)
+    before = picture.evaluate(PICTURE)
+    handle.focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    assert _becomes(page, picture, lambda now: now != before)
+    page.screenshot(path=tmp_path / f"{path.stem}.png")
     _shut_down(page)
 
 
@@ -234,7 +254,7 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
     page, course, tmp_path
 ):
     _open(page, course[1], "saved.ipynb")
-    page.evaluate("() => window.jupyterapp.shell.currentWidget.context.ready.then(() => true)")
+    page.evaluate(READY)
     cells = page.evaluate(CELLS)
     for name in NAMES:
         picture = _output(page, cells, rf"^explore_{name}\(").locator("img")
@@ -254,7 +274,7 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
 
 def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, course):
     cells = _open_and_run(page, course[1], "saved.ipynb")
-    for name in NAMES:
+    for name in ONE:
         handle, picture = _explorer(page, cells, rf"^explore_{name}\(")
         start = picture.evaluate(PICTURE)
         handle.focus()
@@ -272,23 +292,24 @@ def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, course):
     _shut_down(page)
 
 
-def test_all_explorers_follow_the_keyboard_and_none_lags_behind(page, course, tmp_path):
+def test_an_exploration_follows_the_keyboard_and_does_not_lag_behind(page, course, tmp_path):
     cells = _open_and_run(page, course[1], "all_explorers.ipynb")
     waited = {}
-    for name in NAMES:
+    for name in ONE:
         handle, picture = _explorer(page, cells, rf"^explore_{name}\(")
         start = picture.evaluate(PICTURE)
         waited[name] = statistics.median(handle.evaluate(LATENCY))
         page.screenshot(path=tmp_path / f"{name}.png")
         assert _becomes(page, picture, lambda now, start=start: now != start), name
-        assert handle.evaluate(HELD_DOWN) < 1000, f"{name} has a backlog"
+        # sixty pictures that wait are a backlog, not a machine on which each takes long
+        assert handle.evaluate(HELD_DOWN) < max(1000, 5 * waited[name]), f"{name} has a backlog"
         page.locator(".jp-CodeCell.jp-mod-active button", has_text="Reset").click()
         assert _becomes(page, picture, lambda now, start=start: now == start), name
     handle, _ = _explorer(page, cells, "def peer", "img")
     waited["peer"] = statistics.median(handle.evaluate(LATENCY))
     (tmp_path / "waited.json").write_text(json.dumps(waited))
     # 40 ms for pictures and 70 ms for figures on a quiet machine; a busy one delays all alike.
-    assert all(waited[name] < waited["peer"] for name in NAMES), waited
+    assert all(waited[name] < waited["peer"] for name in ONE), waited
     _shut_down(page)
 
 

@@ -7,6 +7,8 @@ from pathlib import Path
 import nbformat
 import pytest
 
+pytestmark = pytest.mark.slow
+
 SCRIPT = Path(__file__).resolve().parents[1] / "tools" / "build_notebooks.py"
 VIEW = "application/vnd.jupyter.widget-view+json"
 

@@ -1,7 +1,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
@@ -62,7 +62,6 @@ def test_right_angles_have_no_skew_at_all():
     assert intrinsics_from_pixel_size(8, 0.01, 0.01, 0, 0)[0, 1] == 0
 
 
-@settings(derandomize=True, deadline=None)
 @given(u=st.floats(-1e4, 1e4), v=st.floats(-1e4, 1e4), skew=st.floats(-10, 10))
 def test_pixels_and_image_coordinates_undo_each_other(u, v, skew):
     A = intrinsics(800, 700, 320, 240, skew)

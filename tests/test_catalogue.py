@@ -402,6 +402,7 @@ def test_the_first_nan_is_shown_its_place():
         matrix(H, "H", 3, 3)
 
 
+@pytest.mark.slow
 def test_the_cells_of_a_notebook_may_be_run_twice():
     notebook = nbformat.read(TESTS.parent / "notebooks/00_start_here.ipynb", as_version=4)
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import cv2
 import numpy as np
 import pytest
@@ -12,7 +10,6 @@ from cvnotes.targets import opencv_finders as _cv
 from cvnotes.targets.edge_corners import fit_edges
 from cvnotes.targets.finding import handedness, ordered
 
-PHOTOS = Path(__file__).resolve().parents[2] / "shared" / "data" / "left_right"
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))
 
@@ -333,39 +330,6 @@ class TestFinders:
         grey = np.random.default_rng(0).integers(0, 256, (6, 8), dtype=np.uint8)
         small = _cv.shrink(grey, (4, 3))
         np.testing.assert_allclose(small, grey.reshape(3, 2, 4, 2).mean((1, 3)), atol=0.51)
-
-
-@pytest.mark.skipif(not PHOTOS.is_dir(), reason="the stereo photographs are not on this machine")
-class TestPhotographs:
-    @pytest.mark.parametrize(
-        ("side", "alpha_u", "alpha_v"), [("left", 533.004, 533.153), ("right", 536.983, 536.569)]
-    )
-    def test_thirteen_of_thirteen_calibrate_as_published(self, side, alpha_u, alpha_v):
-        files = sorted(PHOTOS.glob(f"{side}*.jpg"))
-        board = Chessboard((9, 6), 30.0)
-        m = [find_corners(cv2.imread(str(f), cv2.IMREAD_GRAYSCALE), board) for f in files]
-        assert len(m) == 13
-        rms_per_point, A, *_ = cv2.calibrateCamera(
-            [board.points.astype(np.float32)] * 13,
-            [x.astype(np.float32) for x in m],
-            (640, 480),
-            None,
-            None,
-            flags=cv2.CALIB_FIX_K3,
-        )
-        assert rms_per_point < 0.17
-        assert abs(A[0, 0] - alpha_u) < 0.5
-        assert abs(A[1, 1] - alpha_v) < 0.5
-
-    def test_the_origin_stays_on_the_same_corner_of_the_board(self):
-        # The board is held upright or turned to its left, never upside down.
-        for file in sorted(PHOTOS.glob("*.jpg")):
-            image = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
-            m = find_corners(image, Chessboard((9, 6), 30.0)).reshape(6, 9, 2)
-            assert handedness(m) > 0
-            outside = np.rint(m[0, 0] + 0.2 * (2 * m[0, 0] - m[0, 1] - m[1, 0])).astype(int)
-            beside = np.rint(m[0, 0] + 0.2 * (m[0, 1] - m[1, 0])).astype(int)
-            assert image[tuple(outside[::-1])] < image[tuple(beside[::-1])] - 50
 
 
 @pytest.mark.parametrize("side", [48.0, 50.0])

@@ -66,6 +66,7 @@ def test_each_slider_may_stand_at_either_end_and_at_zero(name):
             check_sight(name, {s.name: value})
 
 
+@pytest.mark.slow
 @each_model
 def test_all_sliders_may_stand_at_their_ends_in_every_combination(name):
     settings = MODELS[name].settings
@@ -103,9 +104,9 @@ def test_a_picture_is_made_and_packed_sooner_than_an_empty_figure_of_matplotlib(
     def fastest(run):
         times = []
         for _ in range(4):
-            start = time.perf_counter()
+            start = time.process_time()
             run()
-            times.append(time.perf_counter() - start)
+            times.append(time.process_time() - start)
         return min(times)
 
     ours = fastest(lambda: pack_png(MODELS[name].picture()))

@@ -37,7 +37,6 @@ from cvnotes.files import (
 from cvnotes.targets import Chessboard, TwoPlanes
 
 posix = pytest.mark.skipif(os.name == "nt", reason="pipes, devices and limits of POSIX")
-SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
 G = pose(rotation_from_vector([0.1, -0.2, 0.3]), [10.0, -20.0, 500.0])
 CAMERA = Camera(
     intrinsics(801.2345678901234, 799.1, 320.5, 1e-5),
@@ -415,17 +414,6 @@ def test_a_camera_comes_back_from_yaml_bit_for_bit(tmp_path):
     assert same_camera(read_camera(tmp_path / "camera.yaml"), CAMERA)
 
 
-def test_opencvs_own_example_is_read():
-    path = SHARED / "left_right" / "left_intrinsics.yml"
-    if not path.exists():
-        pytest.skip("the shared example data are not here")
-    camera = read_camera(path)
-    assert camera.A[0, 0] == 5.3591573396163199e02
-    assert camera.lens.k[2] == 2.3839153080878486e-01
-    assert camera.lens.p == (1.7831947042852964e-03, -2.8122100441115472e-04)
-    assert camera.size == (640, 480)
-
-
 def test_a_skew_that_opencv_ignores_is_pointed_out(tmp_path):
     camera = Camera(intrinsics(800, 800, 320, 240, skew=0.5))
     write_camera(camera, tmp_path / "camera.yml")
@@ -549,10 +537,10 @@ def test_a_billion_laughs_are_refused_at_once(saved):
     lines = ["a0: &a0 [lol]"] + [
         f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]" for i in range(1, 12)
     ]
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(FileError, match="anchors and aliases are not read"):
         read_camera(saved("camera.yml", "\n".join(lines)))
-    assert time.perf_counter() - start < 1
+    assert time.process_time() - start < 1
 
 
 def test_xml_is_not_taken_for_yaml(saved):

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from conftest import processor_time
 from test_exercises_second import source_of
 
 from cvnotes.commands.grade import add_parser
@@ -22,6 +23,8 @@ from cvnotes.learn.grader.judging import FORGED
 from cvnotes.learn.grader.marks import Mark, Verdict
 from cvnotes.learn.grader.tables import marks_csv
 
+pytestmark = pytest.mark.slow
+
 IMPORTS = "import numpy as np\nfrom cvnotes.learn.exercises import check\n"
 IMPORTS += "from cvnotes.learn.personal import personal_camera"
 NUMBERS = range(1, 11)
@@ -30,6 +33,9 @@ COURSE = sorted(
     for path in (Path(__file__).resolve().parents[1] / "notebooks").glob("*.ipynb")
     if int(path.name[:2]) in NUMBERS
 )
+# Every exercise is answered rightly and by each of its misconceptions; whole notebooks, which take
+# long, are marked for the DLT and for the chapter that knows its student.
+MARKED_IN_FULL = (6, 9)
 MOST_MISTAKES = max(len(e.misconceptions) for e in EXERCISES.values())
 needs_posix = pytest.mark.skipif(os.name != "posix", reason="limits as on Linux")
 
@@ -109,9 +115,9 @@ def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
         solved = cells_for(in_notebook(n), lambda e: source_of(e.name))
         notebook(tmp_path / "ada" / f"{n:02d}_chapter.ipynb", *solved)
         notebook(tmp_path / "bob" / f"{n:02d}_chapter.ipynb", *cells_for(in_notebook(n), stub))
-    started = time.monotonic()
+    started = processor_time()
     marks = graded(tmp_path)
-    assert 60 * len(marks) / (time.monotonic() - started) > 10  # notebooks a minute
+    assert 60 * len(marks) / (processor_time() - started) > 10  # notebooks a minute
     for n in NUMBERS:
         ada, bob = (marks[f"{who}/{n:02d}_chapter.ipynb"] for who in ("ada", "bob"))
         assert ada.remark == ""
@@ -125,7 +131,8 @@ def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
 
 
 def test_a_misconception_costs_exactly_its_exercise(tmp_path):
-    for one in EXERCISES.values():
+    exercises = [one for one in EXERCISES.values() if notebook_of(one) in MARKED_IN_FULL]
+    for one in exercises:
         n = notebook_of(one)
 
         def source(e, one=one):
@@ -133,7 +140,7 @@ def test_a_misconception_costs_exactly_its_exercise(tmp_path):
 
         notebook(tmp_path / one.name / f"{n:02d}_copy.ipynb", *cells_for(in_notebook(n), source))
     marks = graded(tmp_path)
-    assert len(marks) == len(EXERCISES)
+    assert len(marks) == len(exercises) > 5
     for mark in marks.values():
         lost = [name for name in mark.expected if not mark.earned(name)]
         assert lost == [mark.student]
@@ -185,17 +192,25 @@ def test_the_courses_own_notebooks_score_nothing_untouched_and_all_when_solved(
     tmp_path, monkeypatch
 ):
     monkeypatch.setattr(expected, "COURSE", COURSE[0].parent)
-    for path in COURSE:
+    in_full = [path for path in COURSE if int(path.name[:2]) in MARKED_IN_FULL]
+    for path in in_full:
         for who in ("solved", "untouched"):
             cells = exercise_cells(path, who == "solved")
             notebook(tmp_path / who / path.name, IMPORTS, *cells)
     marks = graded(tmp_path)
-    for path in COURSE:
+    assert len(marks) == 2 * len(MARKED_IN_FULL)
+    for path in in_full:
         solved, untouched = (marks[f"{who}/{path.name}"] for who in ("solved", "untouched"))
         assert (solved.remark, untouched.remark) == ("", "")
         assert solved.points == len(solved.expected), solved.reports
         assert untouched.points == 0
         assert {r.verdict for r in untouched.reports.values()} == {"not solved yet"}
+
+
+def test_each_of_the_courses_own_notebooks_asks_for_its_exercises(monkeypatch):
+    monkeypatch.setattr(expected, "COURSE", COURSE[0].parent)
+    asked = [name for path in COURSE for name in expected_exercises(path.name, [])]
+    assert sorted(asked) == sorted(EXERCISES)
 
 
 def test_the_last_answer_counts_and_cells_after_a_broken_one_still_run(tmp_path):
@@ -286,12 +301,12 @@ def test_a_hostile_notebook_costs_its_own_row_only(tmp_path):
 
 @needs_posix
 def test_what_cannot_be_interrupted_is_ended_and_its_first_answers_kept(tmp_path):
-    stuck = "import signal\nsignal.signal(signal.SIGALRM, signal.SIG_IGN)\nwhile True: pass"
+    stuck = "import signal, time\nsignal.signal(signal.SIGALRM, signal.SIG_IGN)\ntime.sleep(600)"
     left = "import subprocess, sys\nsubprocess.Popen([sys.executable, '-c', "
-    left += f"\"import time, pathlib; time.sleep(7); pathlib.Path('{tmp_path}/late').touch()\"])"
+    left += f"\"import time, pathlib; time.sleep(16); pathlib.Path('{tmp_path}/late').touch()\"])"
     notebook(tmp_path / "01_a.ipynb", IMPORTS, *answered("lift", source_of("lift")), left, stuck)
-    [mark] = graded(tmp_path, seconds=6.0).values()
-    assert mark.remark == "stopped after 6 seconds"
+    [mark] = graded(tmp_path, seconds=15.0).values()
+    assert mark.remark == "stopped after 15 seconds"
     assert mark.points == 1
     time.sleep(2.5)
     assert not (tmp_path / "late").exists()

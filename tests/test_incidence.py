@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
@@ -39,7 +39,6 @@ def space_map():
 # --- in the plane --------------------------------------------------------------------------------
 
 
-@settings(derandomize=True, deadline=None)
 @given(a=plane_vectors, b=plane_vectors)
 def test_a_line_through_two_points_contains_both(a, b):
     assume(np.cross(a, b).any())
@@ -49,7 +48,6 @@ def test_a_line_through_two_points_contains_both(a, b):
     assert lies_on([a, b], line).all()
 
 
-@settings(derandomize=True, deadline=None)
 @given(k=plane_vectors, m=plane_vectors)
 def test_the_point_of_two_lines_lies_on_both(k, m):
     assume(np.cross(k, m).any())
@@ -105,7 +103,6 @@ def test_stacks_are_joined_row_by_row():
 # --- in space ------------------------------------------------------------------------------------
 
 
-@settings(derandomize=True, deadline=None)
 @given(a=space_vectors, b=space_vectors, c=space_vectors)
 def test_a_plane_through_three_points_contains_them(a, b, c):
     assume(np.linalg.matrix_rank([a, b, c]) == 3)
@@ -113,7 +110,6 @@ def test_a_plane_through_three_points_contains_them(a, b, c):
     assert lies_on(point_of_planes(a, b, c), [a, b, c]).all()
 
 
-@settings(derandomize=True, deadline=None)
 @given(a=space_vectors, b=space_vectors, p=space_vectors, x=space_vectors)
 def test_a_line_of_space_contains_its_points_and_lies_in_its_planes(a, b, p, x):
     assume(np.linalg.matrix_rank([a, b]) == 2)

@@ -1,7 +1,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError
@@ -98,7 +98,6 @@ def test_undistorting_gives_back_what_was_distorted_to_1e_12_up_to_99_percent_of
     np.testing.assert_allclose(lens.undistort(lens.distort(xy)), xy, atol=1e-12)
 
 
-@settings(derandomize=True, deadline=None)
 @given(
     k=st.lists(st.floats(-0.5, 0.5), max_size=4),
     p=st.tuples(st.floats(-0.01, 0.01), st.floats(-0.01, 0.01)),

@@ -207,10 +207,10 @@ def test_each_bad_file_has_its_reason_and_no_good_one_is_lost(tmp_path):
 
 def test_a_bomb_is_refused_from_its_header_quickly(tmp_path):
     (tmp_path / "bomb.png").write_bytes(png_header(60_000, 60_000))
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(FileError, match="more than 80 million pixels by its header"):
         read_photo(tmp_path / "bomb.png")
-    assert time.perf_counter() - start < 1
+    assert time.process_time() - start < 1
 
 
 def test_a_file_too_large_for_any_photograph_is_not_loaded(tmp_path):

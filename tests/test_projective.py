@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError
@@ -27,7 +27,6 @@ def test_a_direction_is_lifted_with_a_zero_and_has_no_place():
     assert np.isnan(from_homogeneous([0, 0, 1, 0])).all()
 
 
-@settings(derandomize=True, deadline=None)
 @given(x=st.lists(coordinates, min_size=1, max_size=4), k=factors)
 def test_any_factor_stands_for_the_same_point(x, k):
     np.testing.assert_allclose(from_homogeneous(k * to_homogeneous(x)), x, rtol=1e-14, atol=1e-12)
@@ -66,7 +65,6 @@ def test_a_map_by_hand():
     assert np.isnan(apply(H, [[-1, 2], [1, 2]])).all(axis=1).tolist() == [True, False]
 
 
-@settings(derandomize=True, deadline=None)
 @given(
     H=st.lists(st.floats(-1, 1), min_size=9, max_size=9),
     K=st.lists(st.floats(-1, 1), min_size=9, max_size=9),

@@ -1,7 +1,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
@@ -66,7 +66,6 @@ def test_many_turns_are_still_a_rotation(turns):
     np.testing.assert_allclose(rotation_from_vector(turns * axis), by_hand, atol=1e-9)
 
 
-@settings(derandomize=True, deadline=None)
 @given(w=vectors)
 def test_every_rotation_vector_gives_a_rotation(w):
     R = rotation_from_vector(w)
@@ -133,7 +132,6 @@ def test_G_carries_a_point_by_R_and_then_T():
     np.testing.assert_allclose(G @ [1, 2, 3, 1], [8, 21, 33, 1], atol=1e-14)
 
 
-@settings(derandomize=True, deadline=None)
 @given(w=vectors, T=vectors, W=vectors)
 def test_the_inverse_motion_brings_every_point_back(w, T, W):
     G = pose(rotation_from_vector(w), T)

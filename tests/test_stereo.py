@@ -25,7 +25,6 @@ from cvnotes.camera import (
     rotation_from_vector,
     vector_from_rotation,
 )
-from cvnotes.files import read_photo
 from cvnotes.pictures import course
 from cvnotes.stereo import (
     baseline,
@@ -42,7 +41,7 @@ from cvnotes.stereo import (
     triangulate,
 )
 from cvnotes.stereo.refinement import StereoProblem, StereoState
-from cvnotes.targets import Chessboard, find_corners
+from cvnotes.targets import Chessboard
 
 SIZE = (640, 480)
 BOARD = Chessboard((9, 6), 30.0)
@@ -825,20 +824,11 @@ def test_a_calibrated_rig_measures_a_square():
 # --- Photographs -------------------------------------------------------------------------------
 
 
-@pytest.fixture(scope="module", params=["photographs", "kept corners"])
-def photographed(request):
-    """Corners (2, 13, 54, 2) of a 9 × 6 board of 30 mm in 13 pairs of photographs."""
-    if request.param == "kept corners":
-        kept = course.real_corners()
-        return np.array([kept.left, kept.right])
-    folder = request.getfixturevalue("shared_data")("left_right")
-    names = [f"{i:02d}.jpg" for i in range(1, 15) if i != 10]
-    return np.array(
-        [
-            [find_corners(read_photo(folder / f"{side}{name}").image, BOARD) for name in names]
-            for side in ("left", "right")
-        ]
-    )
+@pytest.fixture(scope="module")
+def photographed():
+    """Corners (2, 13, 54, 2) of a 9 × 6 board of 30 mm, measured in 13 pairs of photographs."""
+    kept = course.real_corners()
+    return np.array([kept.left, kept.right])
 
 
 @pytest.fixture(scope="module")

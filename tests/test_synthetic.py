@@ -27,14 +27,15 @@ class Scene:
 
 def scene_grey(target, G, xy, margin=1.0):
     """What a ray through the ideal point `xy` meets: direct look-up in the pattern of each face."""
-    rays = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1)
+    x, y = xy[..., 0], xy[..., 1]
     nearest, grey = np.full(xy.shape[:-1], np.inf), np.full(xy.shape[:-1], BEHIND)
     for world_from_board, board in target.faces:
         cam_from_board = G @ world_from_board
         with np.errstate(all="ignore"):
-            X = rays @ np.linalg.inv(cam_from_board[:3, [0, 1, 3]]).T
-            depth = 1 / X[..., 2]
-            i, j = X[..., 0] * depth / board.square, X[..., 1] * depth / board.square
+            a, b, c = np.linalg.inv(cam_from_board[:3, [0, 1, 3]])
+            depth = 1 / (c[0] * x + c[1] * y + c[2])
+            scale = depth / board.square
+            i, j = (a[0] * x + a[1] * y + a[2]) * scale, (b[0] * x + b[1] * y + b[2]) * scale
             columns, rows = board.corners
             on_paper = (i > -1 - margin) & (i < columns + margin)
             on_paper &= (j > -1 - margin) & (j < rows + margin) & (depth > 0) & (depth < nearest)
@@ -103,12 +104,14 @@ def refined(image, m, window=5):
     return cv2.cornerSubPix(image, start, (window, window), (-1, -1), stop)[:, 0]
 
 
+@pytest.mark.slow
 def test_every_grey_value_is_the_mean_over_its_pixel(pictures):
     errors = [rms(image, reference) for _, image, reference in pictures]
     assert max(errors) < 0.15
     assert np.mean(errors) < 0.08  # of which most is the reference's
 
 
+@pytest.mark.slow
 def test_corners_are_found_where_the_camera_projects_them(pictures):
     errors = []
     for camera, image, _ in pictures:
@@ -198,6 +201,7 @@ HARD = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HARD)
 def test_hard_scenes_agree_with_the_supersampler_too(name):
     target, camera, G, margin = HARD[name]

@@ -33,7 +33,7 @@ from cvnotes.projective import (
 from cvnotes.stereo import fundamental_matrix, rectify, triangulate
 from cvnotes.warping import backward_warp, compose, homography_map
 
-theorem = settings(derandomize=True, deadline=None, max_examples=100)
+theorem = settings(max_examples=100)
 
 
 def numbers(low, high):

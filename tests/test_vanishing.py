@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
@@ -170,7 +170,6 @@ def test_the_horizon_gives_the_planes_normal_back():
 # --- the camera ----------------------------------------------------------------------------------
 
 
-@settings(derandomize=True, deadline=None)
 @given(w=st.tuples(*[st.floats(-2, 2)] * 3), f=st.floats(200, 3000))
 def test_three_orthogonal_vanishing_points_give_the_camera_away(w, f):
     A, R = intrinsics(f, f, 322, 238), rotation_from_vector(w)

@@ -1,7 +1,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import map_coordinates
 
@@ -134,7 +134,6 @@ def test_whole_numbers_are_rounded_to_the_nearest_and_never_wrapped(dtype):
     assert np.abs(ours - exact).max() <= 0.5 + 1e-4
 
 
-@settings(derandomize=True, deadline=None)
 @given(u=st.floats(-5, 15), v=st.floats(-5, 15), seed=st.integers(0, 99))
 def test_bilinear_stays_between_the_darkest_and_the_brightest_pixel(u, v, seed):
     image = noise(9, 11, np.uint8, seed=seed)
@@ -321,7 +320,6 @@ def test_zoom_about_the_corner_shows_the_same_in_a_picture_of_the_same_shape():
     np.testing.assert_allclose(smooth_big, theirs, atol=1e-10)
 
 
-@settings(derandomize=True, deadline=None)
 @given(
     angle=st.floats(-7, 7),
     factor=st.floats(0.1, 10),

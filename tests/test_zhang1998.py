@@ -3,6 +3,9 @@
 MSR-TR-98-71 (1998). The model has skew and two radial coefficients; the board is in inches.
 """
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
@@ -12,26 +15,22 @@ from cvnotes.calibration import calibrate
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 SIZE = (640, 480)
+EXPERIMENT = json.loads((Path(__file__).parent / "data" / "zhang1998.json").read_text())
 
 
 @pytest.fixture(scope="module")
-def data(shared_data):
-    folder = shared_data("zhang1998")
-    W = np.loadtxt(folder / "Model.txt").reshape(-1, 2)
-    m = [np.loadtxt(folder / f"data{i}.txt").reshape(-1, 2) for i in range(1, 6)]
-    return W, np.array(m)
+def data():
+    return np.array(EXPERIMENT["board"]), np.array(EXPERIMENT["views"])
 
 
 @pytest.fixture(scope="module")
-def published(shared_data):
-    """A, k and the poses (5, 4, 4), read from his file."""
-    lines = (shared_data("zhang1998") / "calibration-result-zhang-withdistortion.txt").read_text()
-    numbers = np.array(lines.split(), float)
-    alpha, gamma, beta, u0, v0 = numbers[:5]
+def published():
+    """A, k and the poses (5, 4, 4) of his result: each R row by row, then T."""
+    alpha, gamma, beta, u0, v0 = EXPERIMENT["alpha_gamma_beta_u0_v0"]
     G = np.tile(np.eye(4), (5, 1, 1))
-    blocks = numbers[7:].reshape(5, 12)
-    G[:, :3, :3], G[:, :3, 3] = blocks[:, :9].reshape(5, 3, 3), blocks[:, 9:]
-    return intrinsics(alpha, beta, u0, v0, gamma), numbers[5:7], G
+    poses = np.array(EXPERIMENT["poses"])
+    G[:, :3, :3], G[:, :3, 3] = poses[:, :9].reshape(5, 3, 3), poses[:, 9:]
+    return intrinsics(alpha, beta, u0, v0, gamma), np.array(EXPERIMENT["k"]), G
 
 
 @pytest.fixture(scope="module")

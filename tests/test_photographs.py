@@ -1,0 +1,97 @@
+"""What is measured in real photographs; `conftest.py` says when these tests are collected.
+
+OpenCV's 26 stereo example pictures: 13 of each camera, a board of 9 × 6 corners of 30 mm.
+"""
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+from conftest import PHOTOGRAPHS
+from test_stereo import (
+    photographed_rig,  # noqa: F401
+    test_rectified_rows_of_the_photographs_agree,  # noqa: F401
+    test_the_published_rig_is_found_in_its_photographs,  # noqa: F401
+    test_triangulated_squares_of_the_photographs_have_their_true_side,  # noqa: F401
+)
+
+from cvnotes.commands.cli import main
+from cvnotes.files import read_camera, read_photo
+from cvnotes.pictures import course
+from cvnotes.targets import Chessboard, find_corners
+from cvnotes.targets.finding import handedness
+
+BOARD = Chessboard((9, 6), 30.0)
+SIDES = ("left", "right")
+
+
+@pytest.fixture(scope="module")
+def photographed():
+    """Corners (2, 13, 54, 2), measured now; the tests of `test_stereo` above are given these."""
+    kept = course.real_corners()
+    assert kept.board == BOARD
+    return np.array(
+        [
+            [
+                find_corners(read_photo(PHOTOGRAPHS / f"{side}{n}.jpg").image, BOARD)
+                for n in kept.names
+            ]
+            for side in SIDES
+        ]
+    )
+
+
+def test_the_committed_corners_are_those_measured_in_the_photographs(photographed):
+    kept = course.real_corners()
+    np.testing.assert_allclose(photographed, [kept.left, kept.right], atol=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("side", "alpha_u", "alpha_v"), [("left", 533.004, 533.153), ("right", 536.983, 536.569)]
+)
+def test_thirteen_of_thirteen_calibrate_as_published(photographed, side, alpha_u, alpha_v):
+    m = photographed[SIDES.index(side)]
+    assert len(m) == 13
+    rms_per_point, A, *_ = cv2.calibrateCamera(
+        [BOARD.points.astype(np.float32)] * 13,
+        [x.astype(np.float32) for x in m],
+        (640, 480),
+        None,
+        None,
+        flags=cv2.CALIB_FIX_K3,
+    )
+    assert rms_per_point < 0.17
+    assert abs(A[0, 0] - alpha_u) < 0.5
+    assert abs(A[1, 1] - alpha_v) < 0.5
+
+
+def test_the_origin_stays_on_the_same_corner_of_the_board(photographed):
+    # The board is held upright or turned to its left, never upside down.
+    for side, measured in zip(SIDES, photographed, strict=True):
+        for n, m in zip(course.real_corners().names, measured.reshape(-1, 6, 9, 2), strict=True):
+            image = read_photo(PHOTOGRAPHS / f"{side}{n}.jpg").image
+            assert handedness(m) > 0
+            outside = np.rint(m[0, 0] + 0.2 * (2 * m[0, 0] - m[0, 1] - m[1, 0])).astype(int)
+            beside = np.rint(m[0, 0] + 0.2 * (m[0, 1] - m[1, 0])).astype(int)
+            assert image[tuple(outside[::-1])] < image[tuple(beside[::-1])] - 50
+
+
+def test_the_command_finds_the_published_camera(tmp_path, monkeypatch):
+    monkeypatch.setattr("cvnotes.commands.pictures.pictures", lambda *_: {})
+    photos = sorted(PHOTOGRAPHS.glob("left*.jpg"))
+    options = ["--corners", "9x6", "--square", "30", "--out", str(tmp_path)]
+    assert main(["calibrate", *map(str, photos), *options]) == 0
+    keys = json.loads((tmp_path / "calibration.json").read_text())
+    assert (len(keys["views"]), keys["rejected"]) == (13, [])
+    assert keys["camera_matrix"][0][0] == pytest.approx(533.00, abs=0.5)
+    assert keys["camera_matrix"][1][1] == pytest.approx(533.15, abs=0.5)
+    assert keys["rms"] <= 0.19
+
+
+def test_opencvs_own_example_is_read():
+    camera = read_camera(PHOTOGRAPHS / "left_intrinsics.yml")
+    assert camera.A[0, 0] == 5.3591573396163199e02
+    assert camera.lens.k[2] == 2.3839153080878486e-01
+    assert camera.lens.p == (1.7831947042852964e-03, -2.8122100441115472e-04)
+    assert camera.size == (640, 480)

@@ -1,0 +1,52 @@
+"""The checks for every change: lint, format, types, unit tests and doctests, side by side.
+
+    python start.py check                  in less than a minute on two cores
+    python start.py check -k lens          whatever follows goes to pytest
+
+Notebooks, browser, site, the grader and long experiments are left to ``python start.py test``.
+"""
+
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+TOOLS = {
+    "types": ["mypy"],
+    "lint": ["ruff", "check"],
+    "format": ["ruff", "format", "--check"],
+}
+TESTS = ["pytest", "-m", "not slow and not sampling", "-q", "tests", "cvnotes"]
+
+
+def main(arguments: list[str]) -> int:
+    started = time.monotonic()
+    failed = []
+    with tempfile.TemporaryDirectory() as folder:
+        running = {}
+        for name, tool in TOOLS.items():
+            said = Path(folder) / name
+            with said.open("wb") as stream:
+                command = [sys.executable, "-m", *tool]
+                running[name] = subprocess.Popen(command, cwd=ROOT, stdout=stream, stderr=stream)
+        try:
+            tests = subprocess.run([sys.executable, "-m", *TESTS, *arguments], cwd=ROOT).returncode
+            for name, process in running.items():
+                if process.wait() != 0:
+                    failed.append(name)
+                    print(f"\n== {name} ==\n{(Path(folder) / name).read_text()}")
+        finally:
+            for process in running.values():
+                process.kill()
+                process.wait()
+    if tests != 0:
+        failed.append("tests")
+    seconds = time.monotonic() - started
+    print(f"\n{'Not right: ' + ', '.join(failed) if failed else 'All right'}, in {seconds:.0f} s")
+    return int(bool(failed))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
