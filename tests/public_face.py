@@ -310,7 +310,7 @@ FUNCTIONS = [
         "projective.join_point",
     ),
     # homography and zhang
-    function(homography.normaliser, {"x": (W2, several(2))}),
+    function(homography.normaliser, {"x": (W2, several(2, 3))}),
     function(homography.design_matrix, PAIRS, paired=("src", "dst")),
     function(homography.dlt, PAIRS, paired=("src", "dst")),
     function(homography.refine_homography, {"H": (H, MATRIX), **PAIRS}, paired=("src", "dst")),
@@ -371,7 +371,6 @@ FUNCTIONS = [
         "calibration.resect",
         paired=("W", "m"),
     ),
-    function(ppm.normaliser, {"W": (SOLID.points, several(3))}),
     function(
         ppm.ppm_design_matrix,
         {"W": (SOLID.points, several(3)), "m": (SOLID_SEEN, several(2))},

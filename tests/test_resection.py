@@ -20,7 +20,6 @@ from cvnotes.calibration import (
     refine_ppm,
     resect,
 )
-from cvnotes.calibration.ppm import normaliser
 from cvnotes.camera import (
     Camera,
     Lens,
@@ -32,6 +31,7 @@ from cvnotes.camera import (
     rotation_from_vector,
     vector_from_rotation,
 )
+from cvnotes.homography import normaliser
 from cvnotes.pictures import render
 from cvnotes.projective import apply, same_up_to_scale
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes, refine_edges

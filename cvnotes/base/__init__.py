@@ -31,7 +31,13 @@ from cvnotes.base.guards import (
     target_size,
 )
 from cvnotes.base.images import Image, checked_fill, checked_image, luma, positions, stretched
-from cvnotes.base.optimise import Minimum, levenberg_marquardt, numerical_jacobian, solve_dense
+from cvnotes.base.optimise import (
+    Minimum,
+    levenberg_marquardt,
+    numerical_jacobian,
+    solve_dense,
+    solved,
+)
 from cvnotes.base.text import text_table
 
 __all__ = [
@@ -73,5 +79,6 @@ __all__ = [
     "Minimum",
     "levenberg_marquardt",
     "solve_dense",
+    "solved",
     "numerical_jacobian",
 ]

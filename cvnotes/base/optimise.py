@@ -7,7 +7,7 @@ decides how far to trust the linear model.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -124,6 +124,32 @@ def levenberg_marquardt(
     return Minimum(x, cost, system, iteration, False)
 
 
+def solved(operation: Callable[..., Any], *arguments: Array, why: str) -> Array:
+    """Give what an operation of `numpy.linalg` gives, or refuse a singular matrix.
+
+    Where the machine has no flags of floating-point errors (WebAssembly), NumPy cannot raise and
+    gives NaN instead, so both are looked for.
+
+    Raises
+    ------
+    DegenerateError
+        The matrix is singular; `why` says what that means.
+
+    Examples
+    --------
+    >>> solved(np.linalg.inv, np.diag([2.0, 4.0]), why="two axes coincide")
+    array([[0.5 , 0.  ],
+           [0.  , 0.25]])
+    """
+    try:
+        answer = np.asarray(operation(*arguments))
+    except np.linalg.LinAlgError:
+        raise DegenerateError(why) from None
+    if not np.isfinite(answer).all():
+        raise DegenerateError(why)
+    return answer
+
+
 def solve_dense(system: Array, damping: float) -> tuple[Array, float]:
     """Solve one dense system, given as [J r]ᵀ [J r] of shape (p + 1, p + 1).
 
@@ -134,12 +160,8 @@ def solve_dense(system: Array, damping: float) -> tuple[Array, float]:
     """
     normal, gradient = system[:-1, :-1], system[:-1, -1]
     damped = normal + damping * np.diag(np.diagonal(normal))
-    try:
-        step = np.asarray(-np.linalg.solve(damped, gradient))
-    except np.linalg.LinAlgError:
-        raise DegenerateError(
-            "the normal equations are singular: the data do not determine every parameter"
-        ) from None
+    why = "the normal equations are singular: the data do not determine every parameter"
+    step = -solved(np.linalg.solve, damped, gradient, why=why)
     return step, float(-gradient @ step)
 
 

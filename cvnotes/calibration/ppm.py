@@ -3,57 +3,21 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes import homography
 from cvnotes.base import (
     Array,
     CvnotesError,
     DegenerateError,
     ShapeError,
-    levenberg_marquardt,
     matrix,
     paired,
     points,
-    solve_dense,
 )
-from cvnotes.projective import apply, from_homogeneous, to_homogeneous
+from cvnotes.homography.refinement import refine_projection
+from cvnotes.projective import to_homogeneous
+from cvnotes.projective.normaliser import apply_similarity, inverse_similarity, normaliser
 
 # Relative singular value, after normalisation, below which a rank is called deficient.
 RANK = 1e-9
-
-
-def normaliser(W: npt.ArrayLike) -> Array:
-    """Give the similarity N (4, 4) with which N W has centroid 0 and mean distance √3 from it.
-
-    Hartley's normalisation, one dimension up. With it the estimated P depends neither on the unit
-    of W nor on where the origin of the WRF is.
-
-    Raises
-    ------
-    DegenerateError
-        All points coincide.
-
-    References
-    ----------
-    .. [1] Absent from the notes; see erratum E26.
-    .. [2] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 7.1.
-
-    Examples
-    --------
-    >>> normaliser([[0, 0, 0], [2, 2, 2]])
-    array([[ 1.,  0.,  0., -1.],
-           [ 0.,  1.,  0., -1.],
-           [ 0.,  0.,  1., -1.],
-           [ 0.,  0.,  0.,  1.]])
-    """
-    W = _several(W)
-    centre = W.mean(0)
-    distance = np.linalg.norm(W - centre, axis=-1).mean()
-    if not distance > 1e-12 * np.abs(centre).max():
-        raise DegenerateError("all points of W coincide; the PPM needs six that do not")
-    s = np.sqrt(3) / distance
-    N = np.diag([s, s, s, 1.0])
-    N[:3, 3] = -s * centre
-    return N
 
 
 def pairs(W: npt.ArrayLike, m: npt.ArrayLike, *, at_least: int) -> tuple[Array, Array]:
@@ -158,8 +122,8 @@ def ppm_dlt(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
            [0.e+00, 0.e+00, 1.e-02, 1.e+00]])
     """
     W, m = pairs(W, m, at_least=6)
-    N1, N2 = normaliser(W), homography.normaliser(m)
-    W, m = apply(N1, W), apply(N2, m)
+    N1, N2 = normaliser.inside(W), normaliser.inside(m)
+    W, m = apply_similarity(N1, W), apply_similarity(N2, m)
     refuse_flat(W, m)
     _, s, Vt = np.linalg.svd(ppm_design_matrix(W, m), full_matrices=False)
     if s[10] <= RANK * s[0]:
@@ -169,7 +133,7 @@ def ppm_dlt(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
         )
     P = Vt[11].reshape(3, 4)
     P = P if P[2, 3] > 0 else -P  # the third coordinate of the centroid
-    P = np.linalg.solve(N2, P @ N1)
+    P = inverse_similarity(N2) @ P @ N1
     return np.asarray(P / np.linalg.norm(P))
 
 
@@ -218,32 +182,12 @@ def refine_ppm(P: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
     W, m = pairs(W, m, at_least=6)
     if P.ndim != 2 or not P.any():
         raise DegenerateError("P must be one non-zero (3, 4) matrix")
-    N1, N2 = normaliser(W), homography.normaliser(m)
-    W_h, m = to_homogeneous(apply(N1, W)), apply(N2, m)
+    N1, N2 = normaliser.inside(W), normaliser.inside(m)
+    W_h, m = to_homogeneous.inside(apply_similarity(N1, W)), apply_similarity(N2, m)
     refuse_flat(W_h[:, :3], m)
-    n = len(W_h)
-
-    def linearise(p: Array) -> tuple[float, Array]:
-        m_h = W_h @ p.reshape(3, 4).T
-        predicted = from_homogeneous.inside(m_h)
-        J = np.zeros((n, 2, 13))
-        J[:, 0, 0:4] = J[:, 1, 4:8] = W_h / m_h[:, 2:]
-        J[:, :, 8:12] = -predicted[:, :, None] * J[:, :1, 0:4]
-        J[:, :, 12] = predicted - m
-        J = J.reshape(2 * n, 13)
-        system = J.T @ J
-        cost = float(system[12, 12])
-        system[:12, :12] += np.outer(p, p)
-        return cost, system
-
-    def take_step(p: Array, step: Array) -> Array:
-        return np.asarray((p + step) / np.linalg.norm(p + step))
-
-    start = (N2 @ (P / np.abs(P).max()) @ np.linalg.inv(N1)).ravel()
-    start /= np.linalg.norm(start)
+    start = N2 @ (P / np.abs(P).max()) @ inverse_similarity(N1)
     with np.errstate(all="ignore"):  # from a senseless start; no step is then found
-        p = levenberg_marquardt(start, linearise, solve_dense, take_step, floor=1e-28 * n).x
-    P = np.linalg.solve(N2, p.reshape(3, 4) @ N1)
+        P = inverse_similarity(N2) @ refine_projection(start, W_h, m) @ N1
     return np.asarray(P / np.linalg.norm(P))
 
 

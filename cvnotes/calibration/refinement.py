@@ -19,6 +19,7 @@ from cvnotes.base import (
     Minimum,
     chunks,
     levenberg_marquardt,
+    solved,
 )
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import Camera, intrinsics, rotation_from_vector
@@ -286,27 +287,20 @@ class Arrow:
     def eliminated(self) -> tuple[Array, Array]:
         """V⁻¹ [W g] of each view and Σ Wᵀ V⁻¹ [W g]: pose block V, its border W, gradient g."""
         right = np.concatenate([self.border, self.g_poses[..., None]], axis=-1)
-        try:
-            solved = np.linalg.solve(self.poses, right)
-        except np.linalg.LinAlgError:
-            raise DegenerateError(_UNDETERMINED) from None
+        inner = solved(np.linalg.solve, self.poses, right, why=_UNDETERMINED)
         q = len(self.shared)
-        return solved, right.reshape(-1, q + 1)[:, :q].T @ solved.reshape(-1, q + 1)
+        return inner, right.reshape(-1, q + 1)[:, :q].T @ inner.reshape(-1, q + 1)
 
 
 def solve_arrow(system: Arrow, damping: float) -> tuple[tuple[Array, Array], float]:
     """Solve the damped normal equations; gives the step (shared, poses) and the predicted gain."""
     system = system.damped(damping)
-    solved, from_poses = system.eliminated
-    try:
-        d_shared = np.linalg.solve(
-            system.shared - from_poses[:, :-1], from_poses[:, -1] - system.g_shared
-        )
-    except np.linalg.LinAlgError:
-        raise DegenerateError(_UNDETERMINED) from None
-    d_poses = -(solved[..., -1] + solved[..., :-1] @ d_shared)
+    inner, from_poses = system.eliminated
+    S, g = system.shared - from_poses[:, :-1], from_poses[:, -1] - system.g_shared
+    d_shared = solved(np.linalg.solve, S, g, why=_UNDETERMINED)
+    d_poses = -(inner[..., -1] + inner[..., :-1] @ d_shared)
     gain = -np.vdot(system.g_shared, d_shared) - np.vdot(system.g_poses, d_poses)
-    return (np.asarray(d_shared), d_poses), float(gain)
+    return (d_shared, d_poses), float(gain)
 
 
 def covariance(system: Arrow) -> Array:
@@ -316,10 +310,7 @@ def covariance(system: Arrow) -> Array:
     if not (diagonal > 0).all():
         raise DegenerateError(_UNDETERMINED)
     scale = np.sqrt(diagonal[:, None] * diagonal)
-    try:
-        inverse = np.linalg.inv(S / scale) / scale
-    except np.linalg.LinAlgError:
-        raise DegenerateError(_UNDETERMINED) from None
+    inverse = solved(np.linalg.inv, S / scale, why=_UNDETERMINED) / scale
     return np.asarray((inverse + inverse.T) / 2)
 
 
@@ -328,8 +319,9 @@ def pose_covariance(system: Arrow, shared: Array) -> Array:
 
     The uncertainty of the shared parameters, from `covariance`, is included.
     """
-    solved = system.eliminated[0][..., :-1]
-    return np.asarray(np.linalg.inv(system.poses) + solved @ shared @ solved.mT)
+    inner = system.eliminated[0][..., :-1]
+    alone = solved(np.linalg.inv, system.poses, why=_UNDETERMINED)
+    return np.asarray(alone + inner @ shared @ inner.mT)
 
 
 def _damp(N: Array, damping: float) -> Array:
@@ -387,10 +379,10 @@ def take_step(x: State, step: tuple[Array, Array]) -> State:
 def poses_follow(x: State, system: Arrow) -> State:
     """Take a step of the poses alone, the camera being held."""
     try:
-        step = np.linalg.solve(system.poses, system.g_poses[..., None])[..., 0]
-    except np.linalg.LinAlgError:  # too far away to be brought back
+        step = solved(np.linalg.solve, system.poses, system.g_poses[..., None], why=_UNDETERMINED)
+    except DegenerateError:  # too far away to be brought back
         return x
-    return take_step(x, (np.zeros_like(x.shared), np.asarray(-step)))
+    return take_step(x, (np.zeros_like(x.shared), -step[..., 0]))
 
 
 def refuse_too_few(measured: int, unknowns: int, remedy: str) -> None:

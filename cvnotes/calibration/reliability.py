@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.calibration.result import Calibration
-from cvnotes.calibration.zhang import constraint_rows
+from cvnotes.calibration.zhang import constraints
 from cvnotes.camera import Lens, xy_from_px
 
 _FAR = 100  # boards compared with each other; all pairs of thousands would take too long
@@ -88,7 +88,7 @@ class Evidence:
         A = np.diag([scale, scale, 1]) @ self.A
         A[:2, 2] -= np.array(self.size) / max(self.size)
         skewless = [0, 2, 3, 4, 5]
-        V = constraint_rows(A @ self.poses[:, :3, [0, 1, 3]])[:, skewless]
+        V = constraints.inside(A @ self.poses[:, :3, [0, 1, 3]])[:, skewless]
         s = np.linalg.svd(V, compute_uv=False)
         return float(s[3] / s[0])
 

@@ -37,9 +37,7 @@ from cvnotes.calibration.zhang import (
     extrinsics,
     focal_lengths_from_v,
     intrinsics_from_b,
-    poses_of,
     radial_distortion,
-    radial_from_poses,
     solve_b,
 )
 from cvnotes.camera import Camera, Lens, xy_from_px
@@ -191,7 +189,7 @@ class Start:
     def extrinsics(self, step: Callable[..., Any], A: Array, H: Array) -> Array:
         """3. The pose of each view, (n_views, 4, 4)."""
         if not self._is_own(step, extrinsics, "extrinsics") and "homography" not in self.search.own:
-            return poses_of(A, H)
+            return extrinsics.inside(A, H)
         G = rigid_motion(step(A.copy(), H.copy()), "the poses of your extrinsics")
         if G.shape != (len(H), 4, 4):
             raise ShapeError(
@@ -215,7 +213,7 @@ class Start:
             copies = (x.copy() for x in (self.to_px @ A, G, problem.W, problem.m))
             k = numbers(step(*copies, terms=terms), "the k of your distortion")
         elif terms:
-            k = radial_from_poses(self.to_px @ A, G, problem.W, problem.m, terms)
+            k = radial_distortion.inside(self.to_px @ A, G, problem.W, problem.m, terms=terms)
         if k.shape != (terms,):
             raise ShapeError(f"the k of your distortion: expected shape {(terms,)}, got {k.shape}")
         return Lens(k=tuple(k))

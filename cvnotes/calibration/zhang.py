@@ -1,4 +1,7 @@
-"""The constraints of each view on B = A⁻ᵀ A⁻¹, and the b that satisfies them."""
+"""Zhang's closed form: from homographies to b, A, the poses and the lens (notes 2b.4).
+
+Each view constrains B = A⁻ᵀ A⁻¹ twice; b holds its six different entries.
+"""
 
 import numpy as np
 import numpy.typing as npt
@@ -7,26 +10,72 @@ from cvnotes.base import (
     Array,
     CvnotesError,
     DegenerateError,
+    Matrix,
+    Points,
     ShapeError,
     equally_many,
+    guarded,
     intrinsic_matrix,
     matrix,
     numbers,
-    paired,
     points,
     rigid_motion,
+    solved,
 )
 from cvnotes.camera import nearest_rotation, skew_matrix, xy_from_px
 
 # The six entries of b and where they stand in the symmetric B.
 B_ROWS, B_COLUMNS = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
-# The duplication matrix (9, 6): all nine entries of B, row by row, are D b.
-_DUPLICATION = np.zeros((3, 3, 6))
-_DUPLICATION[B_ROWS, B_COLUMNS, range(6)] = _DUPLICATION[B_COLUMNS, B_ROWS, range(6)] = 1
-_DUPLICATION = _DUPLICATION.reshape(9, 6)
+_NOT_POSITIVE = (
+    "B is not positive definite, so no camera fits: the noise is too high, or the views do not "
+    "determine the camera (tilt the board by 30 to 45 degrees in different directions)"
+)
 
 
-def v_ij(H: npt.ArrayLike, i: int, j: int) -> Array:
+def homographies(x: npt.ArrayLike, name: str) -> Array:
+    """Guard homographies (..., 3, 3), and scale each to a largest entry of 1."""
+    H = matrix(x, name, 3, 3)
+    largest = np.abs(H).max((-2, -1), keepdims=True)
+    H = H / np.where(largest > 0, largest, 1)
+    sizes = _column_lengths(H).prod(-1)
+    bad = (np.abs(np.linalg.det(H)) <= 1e-12 * sizes) | (sizes == 0)
+    if bad.any():
+        raise DegenerateError(f"homography {int(np.argmax(bad))} is singular: it shows no plane")
+    return H
+
+
+def _column_lengths(H: Array) -> Array:
+    return np.asarray(np.sqrt(np.vecdot(H.mT, H.mT)))
+
+
+def _rows(x: npt.ArrayLike, name: str) -> Array:
+    V = numbers(x, name)
+    if V.ndim != 2 or V.shape[1] != 6:
+        raise ShapeError(f"{name}: expected (2n, 6), got {V.shape}")
+    return V
+
+
+def _six(x: npt.ArrayLike, name: str) -> Array:
+    b = points(x, name, 6)
+    if b.ndim != 1:
+        raise ShapeError(f"{name}: expected one vector (6,), got {b.shape}")
+    return b
+
+
+def _columns(i: int, j: int, **_: Array) -> None:
+    if i not in (1, 2, 3) or j not in (1, 2, 3):
+        raise CvnotesError(f"i and j number the columns of H, 1 to 3; got {i} and {j}")
+
+
+def _views(A: Array, G: Array, W: Array, m: Array, terms: int = 2) -> None:  # noqa: ARG001
+    if not isinstance(terms, int) or terms < 1:
+        raise CvnotesError(f"terms: expected how many coefficients, 1 or more, got {terms!r}")
+    if 0 in equally_many("G, W and m", G.shape[:-2], W.shape[:-2], m.shape[:-2]):
+        raise DegenerateError("need at least one view, got none")
+
+
+@guarded(H=Matrix(3, 3), also=_columns)
+def v_ij(H: Array, i: int, j: int) -> Array:
     """Give v_ij (..., 6) with h_iᵀ B h_j = v_ijᵀ b; i and j count columns of H from 1.
 
     Examples
@@ -34,13 +83,14 @@ def v_ij(H: npt.ArrayLike, i: int, j: int) -> Array:
     >>> v_ij([[1, 0, 0], [0, 2, 0], [0, 0, 1]], 1, 2)
     array([0., 2., 0., 0., 0., 0.])
     """
-    H = matrix(H, "H", 3, 3)
-    if i not in (1, 2, 3) or j not in (1, 2, 3):
-        raise CvnotesError(f"i and j number the columns of H, 1 to 3; got {i} and {j}")
-    return _v(H[..., :, i - 1], H[..., :, j - 1])
+    a1, a2, a3 = (H[..., row, i - 1] for row in range(3))
+    b1, b2, b3 = (H[..., row, j - 1] for row in range(3))
+    v = [a1 * b1, a1 * b2 + a2 * b1, a2 * b2, a1 * b3 + a3 * b1, a2 * b3 + a3 * b2, a3 * b3]
+    return np.stack(v, axis=-1)
 
 
-def constraints(H: npt.ArrayLike) -> Array:
+@guarded(H=homographies)
+def constraints(H: Array) -> Array:
     """Stack the two constraints of each view to V (2n, 6): v_12ᵀ b = 0, (v_11 − v_22)ᵀ b = 0.
 
     Each H is first scaled to ‖h1‖ ‖h2‖ = 1, so that its arbitrary scale gives it no weight.
@@ -56,10 +106,14 @@ def constraints(H: npt.ArrayLike) -> Array:
     array([[ 0.,  1.,  0.,  0.,  0.,  0.],
            [ 1.,  0., -1.,  0.,  0.,  0.]])
     """
-    return constraint_rows(scaled(matrix(H, "H", 3, 3)).reshape(-1, 3, 3))
+    lengths = _column_lengths(H)
+    H = H / np.sqrt(lengths[..., 0] * lengths[..., 1])[..., None, None]
+    v_12, v_11, v_22 = v_ij.inside(H, 1, 2), v_ij.inside(H, 1, 1), v_ij.inside(H, 2, 2)
+    return np.stack([v_12, v_11 - v_22], axis=-2).reshape(-1, 6)
 
 
-def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
+@guarded(V=_rows)
+def solve_b(V: Array, *, skew: bool = False) -> Array:
     """Solve V b = 0 with ‖b‖ = 1 and the sign that makes B positive: b (6,).
 
     b = (B11, B12, B22, B13, B23, B33). With ``skew=False``, B12 = 0 is imposed by leaving its
@@ -81,7 +135,6 @@ def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
     >>> (solve_b(constraints(A @ R)) * 2 * np.sqrt(10)).round(9) + 0.0
     array([ 1.,  0.,  1., -1., -1.,  6.])
     """
-    V = rows_of(V)
     kept = [0, 1, 2, 3, 4, 5] if skew else [0, 2, 3, 4, 5]
     needed = 3 if skew else 2
     if len(V) < 2 * needed:
@@ -100,51 +153,8 @@ def solve_b(V: npt.ArrayLike, *, skew: bool = False) -> Array:
     return np.asarray(b if b[0] > 0 else -b) + 0.0
 
 
-def constraint_rows(H: Array) -> Array:
-    """Give V (2n, 6) of homographies (n, 3, 3), without a guard: for use inside."""
-    lengths = _column_lengths(H)
-    scale = np.sqrt(lengths[:, 0] * lengths[:, 1])[:, None]
-    h1, h2 = H[:, :, 0] / scale, H[:, :, 1] / scale
-    V = np.stack([_v(h1, h2), _v(h1, h1) - _v(h2, h2)], axis=1)
-    return V.reshape(-1, 6)
-
-
-def _v(a: Array, b: Array) -> Array:
-    """Give v (..., 6) with aᵀ B b = vᵀ b, for columns a and b (..., 3)."""
-    products = a[..., :, None] * b[..., None, :]  # aᵀ B b = Σ B_ij a_i b_j
-    return np.asarray(products.reshape(*a.shape[:-1], 9) @ _DUPLICATION)
-
-
-def rows_of(V: npt.ArrayLike) -> Array:
-    """Guard V (2n, 6)."""
-    V = numbers(V, "V")
-    if V.ndim != 2 or V.shape[1] != 6:
-        raise ShapeError(f"V: expected (2n, 6), got {V.shape}")
-    return V
-
-
-def scaled(H: Array) -> Array:
-    """Scale each homography (..., 3, 3) to a largest entry of 1, and name one that is singular."""
-    largest = np.abs(H).max((-2, -1), keepdims=True)
-    H = H / np.where(largest > 0, largest, 1)
-    sizes = _column_lengths(H).prod(-1)
-    bad = (np.abs(np.linalg.det(H)) <= 1e-12 * sizes) | (sizes == 0)
-    if bad.any():
-        raise DegenerateError(f"homography {int(np.argmax(bad))} is singular: it shows no plane")
-    return H
-
-
-def _column_lengths(H: Array) -> Array:
-    return np.asarray(np.sqrt(np.vecdot(H.mT, H.mT)))
-
-
-_NOT_POSITIVE = (
-    "B is not positive definite, so no camera fits: the noise is too high, or the views do not "
-    "determine the camera (tilt the board by 30 to 45 degrees in different directions)"
-)
-
-
-def intrinsics_from_b(b: npt.ArrayLike) -> Array:
+@guarded(b=_six)
+def intrinsics_from_b(b: Array) -> Array:
     """Give A (3, 3) from b (6,) by Cholesky: B = L Lᵀ and B ∝ A⁻ᵀ A⁻¹, so A ∝ L⁻ᵀ.
 
     Raises
@@ -159,15 +169,15 @@ def intrinsics_from_b(b: npt.ArrayLike) -> Array:
            [0., 2., 1.],
            [0., 0., 1.]])
     """
-    try:
-        L = np.linalg.cholesky(_B(b))
-    except np.linalg.LinAlgError:
-        raise DegenerateError(_NOT_POSITIVE) from None
+    B = np.zeros((3, 3))
+    B[B_ROWS, B_COLUMNS] = B[B_COLUMNS, B_ROWS] = b
+    L = solved(np.linalg.cholesky, B, why=_NOT_POSITIVE)
     A = np.triu(np.linalg.inv(L).T)  # rounding leaves 1e-16 below the diagonal
     return np.asarray(A / A[2, 2])
 
 
-def intrinsics_from_b_by_formulas(b: npt.ArrayLike) -> Array:
+@guarded(b=_six)
+def intrinsics_from_b_by_formulas(b: Array) -> Array:
     """Give A (3, 3) from b (6,) by Zhang's six formulas; the same A as `intrinsics_from_b`.
 
     The notes leave them out (erratum E31). u0 = γ v0 / β − B13 α² / s, with β in the
@@ -189,7 +199,7 @@ def intrinsics_from_b_by_formulas(b: npt.ArrayLike) -> Array:
            [0., 2., 1.],
            [0., 0., 1.]])
     """
-    B11, B12, B22, B13, B23, B33 = _six(b).tolist()
+    B11, B12, B22, B13, B23, B33 = b.tolist()
     minor = B11 * B22 - B12**2
     if B11 <= 0 or minor <= 0:
         raise DegenerateError(_NOT_POSITIVE)
@@ -256,7 +266,8 @@ def focal_lengths_from_homographies(H: npt.ArrayLike, centre: npt.ArrayLike = (0
     return np.array([[alpha_u, 0, u0], [0, alpha_v, v0], [0, 0, 1]])
 
 
-def focal_lengths_from_v(V: npt.ArrayLike) -> tuple[float, float]:
+@guarded(V=_rows)
+def focal_lengths_from_v(V: Array) -> tuple[float, float]:
     """Solve V b = 0 with b = (1/α_u², 0, 1/α_v², 0, 0, 1) for the two focal lengths.
 
     Raises
@@ -269,27 +280,14 @@ def focal_lengths_from_v(V: npt.ArrayLike) -> tuple[float, float]:
     >>> focal_lengths_from_v([[4, 0, 0, 0, 0, -1], [0, 0, 9, 0, 0, -1]])
     (2.0, 3.0)
     """
-    V = rows_of(V)
     B11, B22 = np.linalg.lstsq(V[:, [0, 2]], -V[:, 5], rcond=None)[0].tolist()
     if B11 <= 0 or B22 <= 0:
         raise DegenerateError(_NOT_POSITIVE)
     return B11**-0.5, B22**-0.5
 
 
-def _six(b: npt.ArrayLike) -> Array:
-    b = points(b, "b", 6)
-    if b.ndim != 1:
-        raise ShapeError(f"b: expected one vector (6,), got {b.shape}")
-    return b
-
-
-def _B(b: npt.ArrayLike) -> Array:
-    B = np.zeros((3, 3))
-    B[B_ROWS, B_COLUMNS] = B[B_COLUMNS, B_ROWS] = _six(b)
-    return B
-
-
-def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
+@guarded(A=intrinsic_matrix, H=homographies)
+def extrinsics(A: Array, H: Array) -> Array:
     """Give the pose G (..., 4, 4) of each view, CRF ← board, from A and H (..., 3, 3).
 
     λ r1 = A⁻¹ h1 and λ r2 = A⁻¹ h2 with two sizes of λ when there is noise; their mean is
@@ -310,27 +308,21 @@ def extrinsics(A: npt.ArrayLike, H: npt.ArrayLike) -> Array:
     >>> extrinsics(np.eye(3), -7 * np.diag([1.0, 1, 2]))[:3, 3] + 0.0
     array([0., 0., 2.])
     """
-    return poses_of(intrinsic_matrix(A), scaled(matrix(H, "H", 3, 3)))
-
-
-def poses_of(A: Array, H: Array) -> Array:
-    """Give what `extrinsics` gives, without a guard: for use inside."""
     rays = np.linalg.inv(A) @ H  # λ [r1 r2 T]
-    lengths = np.sqrt(np.vecdot(rays.mT, rays.mT))
+    lengths = _column_lengths(rays)
     scale = (lengths[..., 0] + lengths[..., 1]) / 2
     scale = np.where(rays[..., 2, 2] < 0, -scale, scale)
     rays = rays / scale[..., None, None]
     r1, r2 = rays[..., :, 0], rays[..., :, 1]
     G = np.zeros((*H.shape[:-2], 4, 4))
-    r3 = (skew_matrix(r1) @ r2[..., None])[..., 0]
-    G[..., :3, :3] = nearest_rotation(np.stack([r1, r2, r3], axis=-1))
+    r3 = (skew_matrix.inside(r1) @ r2[..., None])[..., 0]
+    G[..., :3, :3] = nearest_rotation.inside(np.stack([r1, r2, r3], axis=-1))
     G[..., :3, 3], G[..., 3, 3] = rays[..., :, 2], 1
     return G
 
 
-def radial_distortion(
-    A: npt.ArrayLike, G: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike, *, terms: int = 2
-) -> Array:
+@guarded(A=intrinsic_matrix, G=rigid_motion, W=Points(3), m=Points(2), pair=("W", "m"), also=_views)
+def radial_distortion(A: Array, G: Array, W: Array, m: Array, *, terms: int = 2) -> Array:
     """Estimate k (terms,) by linear least squares, A and the poses being known: D k = d.
 
     Parameters
@@ -370,19 +362,6 @@ def radial_distortion(
     >>> radial_distortion(np.eye(3), G, W, seen, terms=1).round(12)
     array([-0.1])
     """
-    A, G = intrinsic_matrix(A), rigid_motion(G)
-    W, m = points(W, "W", 3), points(m, "m", 2)
-    paired(W, m, ("W", "m"), at_least=1)
-    if not isinstance(terms, int) or terms < 1:
-        raise CvnotesError(f"terms: expected how many coefficients, 1 or more, got {terms!r}")
-    views = equally_many("G, W and m", G.shape[:-2], W.shape[:-2], m.shape[:-2])
-    if 0 in views:
-        raise DegenerateError("need at least one view, got none")
-    return radial_from_poses(A, G, W, m, terms)
-
-
-def radial_from_poses(A: Array, G: Array, W: Array, m: Array, terms: int) -> Array:
-    """Solve `radial_distortion` without guards of the arrays: for use inside."""
     M = W @ G[..., :3, :3].mT + G[..., None, :3, 3]
     if not (M[..., 2] > 0).all():
         raise DegenerateError("a board point does not lie in front of the camera")

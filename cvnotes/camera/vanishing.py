@@ -1,6 +1,7 @@
 """Vanishing points and horizons found in a picture."""
 
 import itertools
+from contextlib import suppress
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +21,8 @@ from cvnotes.base import (
 from cvnotes.camera.model import Camera
 from cvnotes.camera.pixels import intrinsics
 from cvnotes.camera.rigid import nearest_rotation
-from cvnotes.projective import join
+from cvnotes.projective import from_homogeneous, join, to_homogeneous
+from cvnotes.projective.normaliser import apply_similarity, normaliser
 
 
 def vanishing_point(segments: npt.ArrayLike) -> Array:
@@ -68,8 +70,8 @@ def vanishing_point(segments: npt.ArrayLike) -> Array:
         raise DegenerateError(f"need at least 2 segments, got {len(ends)}")
     if (ends[:, 0] == ends[:, 1]).all(axis=1).any():
         raise DegenerateError("a segment has no length: its end points coincide")
-    N = _normaliser(ends.reshape(-1, 2))
-    a, b = (np.concatenate([x, np.ones((len(x), 1))], axis=1) @ N.T for x in ends.swapaxes(0, 1))
+    N = normaliser.inside(ends.reshape(-1, 2))
+    a, b = (to_homogeneous.inside(apply_similarity(N, x)) for x in ends.swapaxes(0, 1))
     # 1. closest to all lines, algebraically
     lines = np.cross(a, b)
     _, s, Vt = np.linalg.svd(lines)
@@ -128,8 +130,9 @@ def horizon_from_vanishing_points(v_h: npt.ArrayLike) -> Array:
         raise ShapeError(f"v_h: expected at least two points (n, 3), got {v.shape}")
     if len(v) == 2:
         return _unit_line(join(*v))
-    finite = v[v[:, 2] != 0]
-    N = _normaliser(finite[:, :2] / finite[:, 2:]) if len(finite) > 1 else np.eye(3)
+    N = np.eye(3)
+    with suppress(DegenerateError):  # fewer than two points in the picture leave its pixels
+        N = normaliser(from_homogeneous.inside(v[v[:, 2] != 0]))
     v = v @ N.T
     _, s, Vt = np.linalg.svd(v / np.linalg.norm(v, axis=1, keepdims=True))
     if s[1] <= 1e-12 * s[0]:
@@ -155,14 +158,6 @@ def _linearise(v: Array, end: Array, middle: Array) -> tuple[float, Array]:
 def _tangents(v: Array) -> Array:
     """Give two unit directions (3, 2) in which a unit vector can move."""
     return np.linalg.svd(v[None])[2][1:].T
-
-
-def _normaliser(m: Array) -> Array:
-    """Give the similarity (3, 3) that brings pixels (n, 2) around 0, at a distance of about 1."""
-    centre = m.mean(axis=0)
-    spread = np.sqrt(((m - centre) ** 2).sum(axis=1).mean())
-    scale = 1 / spread if spread > 0 else 1.0
-    return np.array([[scale, 0, -scale * centre[0]], [0, scale, -scale * centre[1]], [0, 0, 1]])
 
 
 def _unit(v: Array) -> Array:

@@ -7,9 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, numbers, paired, points
-from cvnotes.homography.linear import dlt, normaliser
+from cvnotes.homography.linear import dlt
 from cvnotes.homography.refinement import refine_homography
 from cvnotes.projective import apply, to_homogeneous
+from cvnotes.projective.normaliser import normaliser
 
 HOPELESS = (
     "only {count} of {n} pairs agree on a homography, no more than chance would give: the "

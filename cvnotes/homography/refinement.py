@@ -1,23 +1,28 @@
 """The geometric error of a homography, and the H that minimises it."""
 
 import numpy as np
-import numpy.typing as npt
 
 from cvnotes.base import (
     Array,
     DegenerateError,
+    Matrix,
+    Points,
     equally_many,
+    guarded,
     levenberg_marquardt,
-    matrix,
-    paired,
-    points,
     solve_dense,
 )
-from cvnotes.homography.linear import RANK, apply_similarity, inverse_similarity, normaliser_of
+from cvnotes.homography.linear import RANK
 from cvnotes.projective import from_homogeneous, to_homogeneous
+from cvnotes.projective.normaliser import apply_similarity, inverse_similarity, normaliser
 
 
-def geometric_error(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
+def _equally_many(H: Array, src: Array, dst: Array) -> None:
+    equally_many("H, src and dst", H.shape[:-2], src.shape[:-2], dst.shape[:-2])
+
+
+@guarded(H=Matrix(3, 3), src=Points(2), dst=Points(2), pair=("src", "dst"), also=_equally_many)
+def geometric_error(H: Array, src: Array, dst: Array) -> Array:
     """Distances (..., n) in the plane of `dst` between dst and π(H src).
 
     Examples
@@ -25,15 +30,12 @@ def geometric_error(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) ->
     >>> geometric_error(np.eye(3), [[0, 0]], [[3, 4]])
     array([5.])
     """
-    H = matrix(H, "H", 3, 3)
-    src, dst = points(src, "src", 2), points(dst, "dst", 2)
-    paired(src, dst, ("src", "dst"), at_least=1)
-    equally_many("H, src and dst", H.shape[:-2], src.shape[:-2], dst.shape[:-2])
-    d = dst - from_homogeneous.inside(to_homogeneous(src) @ H.mT)
+    d = dst - from_homogeneous.inside(to_homogeneous.inside(src) @ H.mT)
     return np.asarray(np.hypot(d[..., 0], d[..., 1]))
 
 
-def refine_homography(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) -> Array:
+@guarded(H=Matrix(3, 3), src=Points(2), dst=Points(2), pair=("src", "dst"), at_least=4)
+def refine_homography(H: Array, src: Array, dst: Array) -> Array:
     """Refine H (3, 3) by minimising the geometric error Σ ‖dst − π(H src)‖².
 
     Parameters
@@ -69,9 +71,6 @@ def refine_homography(H: npt.ArrayLike, src: npt.ArrayLike, dst: npt.ArrayLike) 
            [0., 2., 4.],
            [0., 0., 1.]])
     """
-    H = matrix(H, "H", 3, 3)
-    src, dst = points(src, "src", 2), points(dst, "dst", 2)
-    paired(src, dst, ("src", "dst"), at_least=4)
     if max(H.ndim, src.ndim, dst.ndim) > 2:
         stack = equally_many("H, src and dst", H.shape[:-2], src.shape[:-2], dst.shape[:-2])
         if 0 in stack:
@@ -87,32 +86,39 @@ def _flatten(x: Array) -> Array:
 
 
 def _refine_one(H: Array, src: Array, dst: Array) -> Array:
-    N1, N2 = normaliser_of(src), normaliser_of(dst)
-    W, m = to_homogeneous(apply_similarity(N1, src)), apply_similarity(N2, dst)
-    n = len(W)
-
-    def linearise(h: Array) -> tuple[float, Array]:
-        m_h = W @ h.reshape(3, 3).T
-        w = m_h[:, 2:]
-        predicted = m_h[:, :2] / w
-        J = np.zeros((n, 2, 10))
-        J[:, 0, 0:3] = J[:, 1, 3:6] = W / w
-        J[:, :, 6:9] = -predicted[:, :, None] * (W / w)[:, None, :]
-        J[:, :, 9] = predicted - m
-        J = J.reshape(2 * n, 10)
-        system = J.T @ J
-        cost = float(system[9, 9])
-        system[:9, :9] += np.outer(h, h)
-        return cost, system
-
-    def take_step(h: Array, step: Array) -> Array:
-        return np.asarray((h + step) / np.linalg.norm(h + step))
-
+    N1, N2 = normaliser.inside(src), normaliser.inside(dst)
     start = N2 @ (H / (np.abs(H).max() or 1.0)) @ inverse_similarity(N1)
     s = np.linalg.svd(start, compute_uv=False)
     if s[2] <= RANK * s[0]:
         raise DegenerateError("H is singular: it maps the plane onto a line or a point")
-    start = start.ravel() / np.linalg.norm(start)
-    h = levenberg_marquardt(start, linearise, solve_dense, take_step, floor=1e-28 * n).x
-    refined = inverse_similarity(N2) @ h.reshape(3, 3) @ N1
+    W, m = to_homogeneous.inside(apply_similarity(N1, src)), apply_similarity(N2, dst)
+    refined = inverse_similarity(N2) @ refine_projection(start, W, m) @ N1
     return np.asarray(refined / np.linalg.norm(refined))
+
+
+def refine_projection(P: Array, W: Array, m: Array) -> Array:
+    """Minimise Σ ‖m − π(P W̃)‖² over P (3, k), for normalised W̃ (n, k) and m (n, 2).
+
+    P is a homography for points of a plane, k = 3, and the PPM for points in space, k = 4.
+    """
+    n, k = W.shape
+
+    def linearise(p: Array) -> tuple[float, Array]:
+        m_h = W @ p.reshape(3, k).T
+        predicted = from_homogeneous.inside(m_h)
+        J = np.zeros((n, 2, 3 * k + 1))
+        J[:, 0, :k] = J[:, 1, k : 2 * k] = W / m_h[:, 2:]
+        J[:, :, 2 * k : -1] = -predicted[:, :, None] * J[:, :1, :k]
+        J[:, :, -1] = predicted - m
+        J = J.reshape(2 * n, 3 * k + 1)
+        system = J.T @ J
+        cost = float(system[-1, -1])
+        system[:-1, :-1] += np.outer(p, p)
+        return cost, system
+
+    def take_step(p: Array, step: Array) -> Array:
+        return np.asarray((p + step) / np.linalg.norm(p + step))
+
+    start = P.ravel() / np.linalg.norm(P)
+    found = levenberg_marquardt(start, linearise, solve_dense, take_step, floor=1e-28 * n)
+    return found.x.reshape(3, k)

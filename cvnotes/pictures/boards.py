@@ -18,7 +18,7 @@ from cvnotes.base import (
     target_size,
 )
 from cvnotes.camera import Camera
-from cvnotes.pictures.exposure import Image, develop, gaussian_blur
+from cvnotes.pictures.exposure import Image, expose, gaussian_blur
 from cvnotes.pictures.faces import Target
 from cvnotes.pictures.outlines import edges_in_picture
 from cvnotes.pictures.pixel_means import edge_means, polygon_means
@@ -118,7 +118,7 @@ def render(
     if colour:
         picture = np.array(np.broadcast_to(picture, (3, *picture.shape[1:])))
     light_on_sensor = np.moveaxis(picture, 0, 2) if colour else picture[0]
-    return develop(light_on_sensor, motion, noise, gain, jpeg, rng)
+    return expose(light_on_sensor, motion=motion, noise=noise, gain=gain, jpeg=jpeg, rng=rng)
 
 
 def clutter(

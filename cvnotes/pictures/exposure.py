@@ -6,19 +6,62 @@ format compresses.
 """
 
 import io
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, InputTypeError, ShapeError, number, numbers
+from cvnotes.base import Array, CvnotesError, InputTypeError, ShapeError, guarded, number, numbers
 
 Image = npt.NDArray[np.uint8]
 
 _LONGEST = 10_000  # pixels that the picture may move; its memory grows with the square
 
 
+def _picture(x: npt.ArrayLike, name: str) -> Array:
+    light = numbers(x, name)
+    if light.ndim not in (2, 3) or light.shape[2:] not in ((), (3,)) or light.size == 0:
+        raise ShapeError(
+            f"{name}: expected a picture (height, width) or (height, width, 3) with at least one "
+            f"pixel, got {light.shape}"
+        )
+    return light
+
+
+def _path(x: npt.ArrayLike, name: str) -> Array:
+    path = numbers(x, name)
+    if path.shape != (2,):
+        raise ShapeError(f"{name}: expected (du, dv) in pixels, got shape {path.shape}")
+    if np.abs(path).max() > _LONGEST:
+        raise CvnotesError(f"{name}: expected at most {_LONGEST} pixels, got {x!r}")
+    return path
+
+
+def _generator(x: object, name: str) -> np.random.Generator | None:
+    if x is not None and not isinstance(x, np.random.Generator):
+        raise InputTypeError(f"{name}: expected a numpy.random.Generator, got {type(x).__name__}")
+    return x
+
+
+def _noise_from_somewhere(noise: float = 0.0, rng: object = None, **_: object) -> None:
+    if noise and rng is None:
+        raise CvnotesError("noise needs an rng; pass rng=numpy.random.default_rng(seed)")
+
+
+_positive = partial(number, at_least=0)
+
+
+@guarded(
+    radiance=_picture,
+    blur=_positive,
+    motion=_path,
+    noise=_positive,
+    gain=_positive,
+    rng=_generator,
+    also=_noise_from_somewhere,
+)
 def expose(
-    radiance: npt.ArrayLike,
+    radiance: Array,
     *,
     blur: float = 0.0,
     motion: tuple[float, float] = (0.0, 0.0),
@@ -64,45 +107,15 @@ def expose(
     >>> expose([[0.0, 99.5, 100.4, 300.0]])
     array([[  0, 100, 100, 255]], dtype=uint8)
     """
-    light = numbers(radiance, "radiance")
-    if light.ndim not in (2, 3) or light.shape[2:] not in ((), (3,)) or light.size == 0:
-        raise ShapeError(
-            "radiance: expected a picture (height, width) or (height, width, 3) with at least one "
-            f"pixel, got {light.shape}"
-        )
-    sigma = number(blur, "blur", at_least=0)
-    if sigma:
-        light = gaussian_blur(light, sigma)
-    return develop(light, motion, noise, gain, jpeg, rng)
-
-
-def develop(
-    light: Array,
-    motion: npt.ArrayLike,
-    noise: float,
-    gain: float,
-    jpeg: int | None,
-    rng: np.random.Generator | None,
-) -> Image:
-    """Do what `expose` does after the blur, changing `light` itself: for use inside."""
-    noise, gain = number(noise, "noise", at_least=0), number(gain, "gain", at_least=0)
-    path = numbers(motion, "motion")
-    if path.shape != (2,):
-        raise ShapeError(f"motion: expected (du, dv) in pixels, got shape {path.shape}")
-    if np.abs(path).max() > _LONGEST:
-        raise CvnotesError(f"motion: expected at most {_LONGEST} pixels, got {motion!r}")
-    if rng is not None and not isinstance(rng, np.random.Generator):
-        raise InputTypeError(f"rng: expected a numpy.random.Generator, got {type(rng).__name__}")
-    if noise and rng is None:
-        raise CvnotesError("noise needs an rng; pass rng=numpy.random.default_rng(seed)")
-    if path.any():
-        light = motion_blur(light, path)
-    if gain != 1:
-        light *= gain
+    light = radiance  # a copy already
+    if blur:
+        light = gaussian_blur(light, blur)
+    if np.any(motion):
+        light = motion_blur(light, np.asarray(motion))
+    light *= gain
     if noise and rng is not None:
         light += rng.normal(0.0, noise, light.shape)
-    np.rint(light, out=light)
-    image = light.clip(0, 255, out=light).astype(np.uint8, order="C")
+    image = np.rint(light).clip(0, 255).astype(np.uint8, order="C")
     return image if jpeg is None else compress(image, jpeg)
 
 

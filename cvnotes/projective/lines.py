@@ -13,6 +13,7 @@ from cvnotes.base import (
     guarded,
     matrix,
     number,
+    solved,
 )
 from cvnotes.projective.points import refuse_zero, vectors
 
@@ -112,10 +113,8 @@ def map_lines(H: npt.ArrayLike, lines: npt.ArrayLike) -> Array:
     lines = vectors(lines, "lines", "line or plane")
     H = matrix(H, "H", lines.shape[-1], lines.shape[-1])
     equally_many("H and lines", H.shape[:-2], lines.shape[:-1])
-    try:
-        return np.asarray(np.linalg.solve(H.mT, lines[..., None])[..., 0]) + 0.0
-    except np.linalg.LinAlgError:
-        raise DegenerateError("H is singular: it maps some lines to points") from None
+    why = "H is singular: it maps some lines to points"
+    return solved(np.linalg.solve, H.mT, lines[..., None], why=why)[..., 0] + 0.0
 
 
 def cross_ratio(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.ArrayLike) -> float:
