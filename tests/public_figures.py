@@ -16,7 +16,6 @@ from public_face import (
     GREY,
     LENS,
     LINES,
-    MATRIX,
     ONE,
     PICTURE,
     RESULT,
@@ -159,7 +158,6 @@ FIGURES = [
         {"before": (PAIR, PICTURE), "after": (PAIR, PICTURE), "lines": (9, ONE)},
     ),
     # what 3-D figures are made of
-    figure(scenes.gl_from_cv, {"cam_from_world": (G, MATRIX)}),
     figure(
         lambda thickness=None: [
             mesh.vertices

@@ -24,6 +24,34 @@ def cells_of(notebook):
     return [cell.source for cell in nbformat.read(path, as_version=4).cells]
 
 
+def names_met_in(source):
+    """All names that a piece of code uses; those imported under another name, by their own."""
+    tree = ast.parse(source)
+    aliases = {
+        alias.asname: alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    return {aliases.get(name, name) for name in used_in(tree)}
+
+
+@cache
+def met_in_notebook(notebook):
+    cells = nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4).cells
+    return names_met_in("\n".join(cell.source for cell in cells if cell.cell_type == "code"))
+
+
+@cache
+def met_in_exercises(row):
+    files = [
+        ROOT / f"cvnotes/learn/ch{exercise.chapter:02}/{name.lower()}.py"
+        for name, exercise in EXERCISES.items()
+        if row in exercise.concepts
+    ]
+    return set().union(*(names_met_in(file.read_text(encoding="utf-8")) for file in files))
+
+
 @cache
 def parts_of(file):
     """What a test file is made of: for each name that it defines, all names used in doing so."""
@@ -111,6 +139,15 @@ def test_its_places_in_the_notebooks_exist(concept):
     for notebook, words in concept.cells:
         found = sum(words in source for source in cells_of(notebook))
         assert found == 1, f"{words!r} stands in {found} cells of {notebook}, not in exactly one"
+
+
+def test_a_learner_meets_every_function_of_the_register():
+    """In a cell of the chapter that a row names, or in an exercise that practises the row."""
+    unmet = []
+    for row, concept in concepts().items():
+        met = met_in_exercises(row).union(*(met_in_notebook(name) for name, _ in concept.cells))
+        unmet += [f"{row}: {name}" for name in concept.functions if last_part(name) not in met]
+    assert not unmet
 
 
 def test_every_chapter_about_the_notes_has_its_rows():

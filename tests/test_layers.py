@@ -33,7 +33,7 @@ ONLY_IN = {
     },
     "matplotlib": {"show"},
     "ipywidgets": {"show.explore"},
-    "trimesh": {"pictures", "show.space.viewer"},
+    "trimesh": {"show.space.viewer"},
     "jupyter_server": {"commands.lab"},
 }
 FILES = sorted(PACKAGE.rglob("*.py"))

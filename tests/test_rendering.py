@@ -5,7 +5,7 @@ import pytest
 
 from cvnotes.base import CvnotesError, InputTypeError
 from cvnotes.camera import Camera, Lens, intrinsics, look_at, move, pose, rotation_from_vector
-from cvnotes.pictures import corridor, depth_map, from_trimesh, radiance, render_scene, target_scene
+from cvnotes.pictures import Scene, corridor, depth_map, radiance, render_scene, target_scene
 from cvnotes.pictures.meshes import Surroundings, box, join, quads
 from cvnotes.pictures.raycast import has_embree
 from cvnotes.targets import Chessboard
@@ -189,8 +189,9 @@ def test_the_same_picture_comes_from_embree():
 def test_a_sphere_of_many_triangles_has_the_outline_of_a_sphere():
     import trimesh
 
-    ball = from_trimesh(trimesh.creation.icosphere(subdivisions=4, radius=100.0))
-    assert len(ball.triangles) == 5120
+    mesh, n = trimesh.creation.icosphere(subdivisions=4, radius=100.0), 5120
+    grey, plain = np.full((n, 2, 3), 0.5), np.full((n, 2), np.inf)
+    ball = Scene(mesh.vertices, mesh.faces, grey, np.zeros((n, 3, 2)), plain)
     camera = Camera(intrinsics(200, 200, 79.5, 59.5), size=(160, 120))
     depth = depth_map(ball.moved(pose(np.eye(3), [0, 0, 500])), camera)
     # The tangent cone of a sphere at distance d: tan² = r² / (d² − r²).

@@ -6,7 +6,6 @@ from cvnotes.pictures import (
     blocks,
     corridor,
     depth_map,
-    from_trimesh,
     rails,
     render_scene,
     room,
@@ -132,16 +131,6 @@ def test_the_tiles_of_a_floor_are_square_and_fit_its_walls(place):
     assert np.allclose(
         np.sort(np.ptp(scene.uv[10:12].reshape(-1, 2), axis=0)), np.sort(lengths / side)
     )
-
-
-def test_a_trimesh_keeps_its_triangles_and_face_colours():
-    import trimesh
-
-    mesh = trimesh.creation.box((2, 2, 2))
-    mesh.visual.face_colors[3] = [255, 51, 0, 255]
-    scene = from_trimesh(mesh)
-    assert np.array_equal(scene.corners, mesh.triangles)
-    assert np.allclose(scene.colours[3], [1, 0.2, 0], atol=1e-12)
 
 
 def test_every_scene_is_drawn_without_a_warning_and_is_not_flat():

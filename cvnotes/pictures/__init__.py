@@ -6,7 +6,7 @@ from cvnotes.pictures.exposure import compress, expose, gaussian_blur, motion_bl
 from cvnotes.pictures.meshes import Scene
 from cvnotes.pictures.placing import facing, hold_at
 from cvnotes.pictures.scene_render import depth_map, radiance, render_scene
-from cvnotes.pictures.scenes import blocks, corridor, from_trimesh, rails, room, target_scene
+from cvnotes.pictures.scenes import blocks, corridor, rails, room, target_scene
 from cvnotes.pictures.views import (
     centre_only_views,
     fronto_parallel_views,
@@ -30,7 +30,6 @@ __all__ = [
     "corridor",
     "room",
     "target_scene",
-    "from_trimesh",
     "good_views",
     "fronto_parallel_views",
     "pure_translation_views",

@@ -1,7 +1,6 @@
 """Whole places: rails, blocks on a plain, a corridor, a room."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -189,26 +188,6 @@ def target_scene(
     """
     boards = [_board(board, margin).moved(G) for G, board in target.faces]
     return join(*boards).moved(np.eye(4) if world_from_target is None else world_from_target)
-
-
-def from_trimesh(mesh: Any) -> Scene:
-    """Take the triangles and face colours of a ``trimesh.Trimesh``.
-
-    Examples
-    --------
-    >>> import trimesh
-    >>> from_trimesh(trimesh.creation.icosphere(subdivisions=1, radius=50.0))
-    Scene(42 vertices, 80 triangles)
-    """
-    m = len(mesh.faces)
-    colours = np.asarray(mesh.visual.face_colors, dtype=float)[:, None, :3] / 255
-    return Scene(
-        mesh.vertices,
-        mesh.faces,
-        np.broadcast_to(colours, (m, 2, 3)),
-        np.zeros((m, 3, 2)),
-        np.full((m, 2), np.inf),
-    )
 
 
 def _board(board: Chessboard, margin: float) -> Scene:

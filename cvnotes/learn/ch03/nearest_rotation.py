@@ -95,5 +95,5 @@ NEAREST = Exercise(
         ),
     ),
     reference=nearest_rotation,
-    concepts=("61", "E33"),
+    concepts=("61", "c", "E33"),
 )

@@ -96,6 +96,6 @@ FOLD = Exercise(
         ),
     ),
     reference=fold_radius,
-    concepts=("31", "E15"),
+    concepts=("31", "h", "E15"),
     sources=(Lens.max_radius,),
 )

@@ -12,35 +12,13 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.colors import to_rgba
 
-from cvnotes.base import Array, rigid_motion
-from cvnotes.camera import inverse
+from cvnotes.base import Array
 from cvnotes.show.guards import length
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent
 
 GL_FROM_CV = np.diag([1.0, -1.0, -1.0, 1.0])
 # Colours have meanings, so they must be seen on the far side of the viewer's lamp too.
 _GLOW = 0.7
-
-
-def gl_from_cv(cam_from_world: npt.ArrayLike) -> Array:
-    """Turn a camera's G into the pose of the same camera as OpenGL means it.
-
-    Parameters
-    ----------
-    cam_from_world : array_like, shape (..., 4, 4)
-        G: CRF ← WRF, the camera looking along +z, y down.
-
-    Returns
-    -------
-    ndarray, shape (..., 4, 4)
-        WRF ← camera, the camera looking along −z, y up. The WRF stays as it is.
-
-    Examples
-    --------
-    >>> gl_from_cv(np.eye(4))[:3, :3].diagonal()
-    array([ 1., -1., -1.])
-    """
-    return np.asarray(inverse(rigid_motion(cam_from_world, "cam_from_world")) @ GL_FROM_CV)
 
 
 def build_scene(*shapes: Shape, thickness: float | None = None) -> Any:
