@@ -8,7 +8,8 @@ from cvnotes.pictures import clutter, good_views, render
 from cvnotes.targets import Chessboard, doubts, find_corners, finding
 from cvnotes.targets import opencv_finders as _cv
 from cvnotes.targets.edge_corners import fit_edges
-from cvnotes.targets.finding import handedness, ordered
+from cvnotes.targets.finding import count_corners
+from cvnotes.targets.lattice import completed, handedness, ordered, out_of_line
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))
@@ -98,6 +99,165 @@ class TestFound:
         camera = camera.moved(pose(np.eye(3), [-300, 100, 6500]))
         m = find_corners(photograph(camera), BOARD)
         np.testing.assert_allclose(m, camera.project(BOARD.points), atol=0.05)
+
+
+# Two lenses whose pictures bend a board more than its smallest square is wide: 120 and 140 degrees
+# of view at their fold. Each board fills a good part of the picture.
+WIDE = Camera(intrinsics(330, 330, 322, 237), lens=Lens(k=(-0.28, 0.06, -0.0055)), size=(640, 480))
+FISHEYE = Camera(
+    intrinsics(280, 280, 322, 237), lens=Lens(k=(-0.2, 0.027, -0.0014)), size=(640, 480)
+)
+CLOSE = [
+    (WIDE, (0, 0, 0.1), (0, 0, 95)),
+    (WIDE, (0.4, 0.2, 0), (40, 20, 130)),
+    (WIDE, (0.4, 0.2, 0), (-35, 25, 110)),
+    (FISHEYE, (0.4, 0.2, 0), (0, 0, 95)),
+    (FISHEYE, (0.4, 0.2, 0), (-35, 25, 110)),
+    (FISHEYE, (-0.3, 0.6, 0.2), (40, 20, 130)),
+]
+
+
+def close_up(camera, turn, centre):
+    R = rotation_from_vector(turn)
+    return camera.moved(pose(R, np.array(centre) - R @ BOARD.points.mean(0)))
+
+
+def with_coin(image, camera, corner, radius=9.0, grey=150):
+    """Lay a coin on a corner of the board."""
+    angle = np.linspace(0, 2 * np.pi, 60)
+    rim = np.zeros((60, 3)) + BOARD.points[corner]
+    rim[:, :2] += radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    image, around = image.copy(), np.rint(16 * camera.project(rim)).astype(np.int32)
+    cv2.fillPoly(image, [around], grey, cv2.LINE_AA, 4)
+    return image
+
+
+class TestWideLenses:
+    @pytest.mark.parametrize("shot", CLOSE, ids=str)
+    def test_a_board_is_found_however_much_the_lens_bends_it(self, shot):
+        camera = close_up(*shot)
+        m = find_corners(photograph(camera), BOARD)
+        np.testing.assert_allclose(m, camera.project(BOARD.points), atol=0.1)
+
+    @pytest.mark.parametrize("shot", CLOSE[3:], ids=str)
+    def test_a_wrong_corner_is_seen_there_too(self, shot):
+        lattice = close_up(*shot).project(BOARD.points).reshape(6, 9, 2)
+        assert not out_of_line(lattice, doubts._UNEVEN, 5).any()
+        for i, j in ((2, 3), (0, 4), (3, 8), (5, 7)):
+            wrong = lattice.copy()
+            wrong[i, j] += 0.3 * (lattice[i, j - 1] - lattice[i, j])
+            np.testing.assert_array_equal(
+                np.argwhere(out_of_line(wrong, doubts._UNEVEN, 5)), [[i, j]]
+            )
+
+
+class TestEdgesAlongPixelRows:
+    @pytest.mark.parametrize("phase_v", np.arange(4) / 4)
+    def test_a_sharp_board_is_found_in_all_phases(self, phase_v):
+        # Where an edge is as sharp as may be, a step may turn it over with its crossing at rest.
+        side = 24.3
+        for phase_u in np.arange(4) / 4:
+            G = np.eye(4)
+            G[:3, 3] = np.array([60 + phase_u, 55 + phase_v, 20 * side]) * 500 / (20 * side)
+            camera = Camera(intrinsics(20 * side, 20 * side, 0, 0), G, size=(360, 280))
+            for seed in range(3):
+                image = photograph(camera, blur=0.3, noise=4, seed=seed)
+                truth = camera.project(BOARD.points)
+                for start in (truth, np.rint(truth)):
+                    fit = fit_edges(image, start, grid=(9, 6))
+                    doubts.check_board(fit, (9, 6))
+                    np.testing.assert_allclose(fit.m, truth, atol=0.12)
+            np.testing.assert_allclose(find_corners(image, BOARD), truth, atol=0.12)
+
+
+class TestHiddenCorners:
+    @pytest.mark.parametrize("corner", [0, 4, 13, 22, 31, 40, 53])
+    def test_a_coin_takes_one_corner_and_leaves_the_others(self, corner):
+        camera = view((0.3, -0.4, 0.2), (0, 0, 480))
+        image = with_coin(photograph(camera), camera, corner)
+        m, truth = find_corners(image, BOARD, partial=True), camera.project(BOARD.points)
+        assert np.flatnonzero(np.isnan(m).any(-1)).tolist() == [corner]
+        assert np.nanmax(np.abs(m - truth)) < 0.2
+        with pytest.raises(CornersNotFound):
+            find_corners(image, BOARD)
+
+    def test_a_coin_on_a_board_seen_through_a_wide_lens(self):
+        camera = close_up(*CLOSE[1])
+        image = with_coin(photograph(camera), camera, 30)
+        m, truth = find_corners(image, BOARD, partial=True), camera.project(BOARD.points)
+        assert np.flatnonzero(np.isnan(m).any(-1)).tolist() == [30]
+        assert np.nanmax(np.abs(m - truth)) < 0.2
+
+    def test_a_whole_board_is_whole_with_partial_too(self, shot):
+        expected = find_corners(shot[0], BOARD)
+        np.testing.assert_array_equal(find_corners(shot[0], BOARD, partial=True), expected)
+
+    def test_of_a_board_mostly_hidden_nothing_is_believed(self):
+        camera = view((0.3, -0.4, 0.2), (0, 0, 480))
+        image = photograph(camera)
+        for corner in np.random.default_rng(0).choice(54, 24, replace=False):
+            image = with_coin(image, camera, corner)
+        with pytest.raises(CornersNotFound):
+            find_corners(image, BOARD, partial=True)
+
+    def test_a_corner_that_a_finder_missed_is_looked_for_where_the_others_expect_it(
+        self, shot, monkeypatch
+    ):
+        wrong = shot[1].copy()
+        wrong[[7, 30]] += 12.0
+        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: wrong, 10**6),))
+        np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
+
+    def test_gaps_of_a_lattice_are_filled_as_its_neighbours_bend(self):
+        lattice = close_up(*CLOSE[0]).project(BOARD.points).reshape(6, 9, 2)
+        gaps = lattice.copy()
+        gaps[[0, 2, 5], [0, 4, 5]] = np.nan
+        side = np.linalg.norm(np.diff(lattice, axis=1), axis=-1).mean()
+        assert np.abs(completed(gaps) - lattice).max() < 0.1 * side
+
+
+class TestCount:
+    @pytest.mark.parametrize("corners", [(9, 6), (8, 6), (7, 4), (4, 3), (13, 12)])
+    def test_the_count_is_found_in_the_picture(self, corners):
+        board = Chessboard(corners, 200 / max(corners), half_turn_symmetric=sum(corners) % 2 == 0)
+        for turn in ((0.3, -0.2, 0.1), (-0.4, 0.3, 1.4)):
+            assert count_corners(photograph(view(turn, board=board), board)) == corners
+
+    def test_a_covered_corner_does_not_change_it(self):
+        camera = view((0.3, -0.4, 0.2), (0, 0, 480))
+        for corner in (0, 13, 31, 53):
+            assert count_corners(with_coin(photograph(camera), camera, corner)) == (9, 6)
+
+    @pytest.mark.parametrize("shot", CLOSE, ids=str)
+    def test_a_wide_lens_does_not_change_it(self, shot):
+        assert count_corners(photograph(close_up(*shot))) == (9, 6)
+
+    def test_there_is_none_without_a_board(self):
+        assert count_corners(np.full((480, 640), 90, np.uint8)) is None
+        noise = np.random.default_rng(0).integers(0, 255, (480, 640), dtype=np.uint8)
+        assert count_corners(noise) is None
+
+    @pytest.mark.parametrize(
+        ("asked", "words"),
+        [
+            ((8, 5), "a board of 9×6 inner corners is there: were all of its inner corners"),
+            ((7, 6), "a board of 9×6 inner corners is there: were all of its inner corners"),
+            ((10, 7), "a board of 9×6 inner corners is there: were its squares counted"),
+            ((12, 7), "only 9×6 of them can be seen: is the whole board in the picture"),
+        ],
+    )
+    def test_the_count_that_is_there_is_named(self, shot, asked, words):
+        with pytest.raises(CornersNotFound, match=words):
+            find_corners(shot[0], Chessboard(asked, 25.0))
+
+    def test_it_is_not_guessed_where_a_finder_found_the_board_that_was_asked_for(self):
+        camera = view((0.3, -0.4, 0.2), (0, 0, 480))
+        image = photograph(camera)
+        for corner in (3, 4, 5):
+            image = with_coin(image, camera, corner, radius=7)
+        with pytest.raises(CornersNotFound) as error:
+            find_corners(image, BOARD)
+        assert "is there" not in str(error.value)
 
 
 class TestKindsOfPictures:
@@ -206,7 +366,7 @@ class TestRefused:
             find_corners(image, BOARD)
         message = str(error.value)
         assert "no board of 9×6 inner corners found in a picture of 640×480 pixels" in message
-        assert "SB finder at 640×480: not found; classic finder at 640×480: not found" in message
+        assert "classic finder at 640×480: not found; SB finder at 640×480: not found" in message
         assert "is the whole board in the picture" in message
         assert message.count("SB finder") == 1  # the same picture is not searched twice
 
@@ -283,6 +443,12 @@ class TestRefused:
             with pytest.raises(CornersNotFound):
                 find_corners(noise, board)
 
+    @pytest.mark.parametrize("found", [np.zeros((54, 2)), np.arange(108.0).reshape(54, 2)])
+    def test_garbage_of_a_finder_is_no_board(self, shot, monkeypatch, found):
+        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: found, 10**6),))
+        with pytest.raises(CornersNotFound, match="found, but its corners lie on a line"):
+            find_corners(shot[0], BOARD)
+
     def test_a_second_finder_is_asked_when_the_first_is_not_believed(self, shot, monkeypatch):
         attempts = (
             ("wrong", lambda grey, corners: _cv.find_sb(grey, corners) + 40, 10**6),
@@ -305,10 +471,10 @@ class TestFinders:
             monkeypatch.setattr(finding, "_ATTEMPTS", tuple(attempts))
         with pytest.raises(CornersNotFound, match="SB finder at 1316×987"):
             find_corners(np.zeros((6000, 8000), np.uint8), BOARD)
-        assert [i for i, _ in seen] == [0, 1, 2]
-        assert seen[0][1] <= 1_300_000
-        assert seen[1][1] <= 500_000
-        assert seen[2][1] <= 12_000_000
+        assert [i for i, _ in seen] == [0, 1, 2, 3, 4]
+        assert seen[0][1] <= 500_000  # the classic finder
+        assert max(size for _, size in seen[1:4]) <= 1_300_000
+        assert seen[4][1] <= 12_000_000
 
     @pytest.mark.parametrize("shape", [(54, 1, 2), (54, 2)])
     def test_both_shapes_that_opencv_gives(self, monkeypatch, shape):

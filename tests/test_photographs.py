@@ -1,6 +1,7 @@
 """What is measured in real photographs; `conftest.py` says when these tests are collected.
 
-OpenCV's 26 stereo example pictures: 13 of each camera, a board of 9 × 6 corners of 30 mm.
+OpenCV's 26 stereo example pictures: 13 of each camera, a board of 9 × 6 corners of 30 mm; and
+photographs through a wide lens and a fisheye.
 """
 
 import json
@@ -19,8 +20,8 @@ from test_stereo import (
 from cvnotes.commands.cli import main
 from cvnotes.files import read_camera, read_photo
 from cvnotes.pictures import course
-from cvnotes.targets import Chessboard, find_corners
-from cvnotes.targets.finding import handedness
+from cvnotes.targets import Chessboard, find_corners, opencv_finders
+from cvnotes.targets.lattice import handedness
 
 BOARD = Chessboard((9, 6), 30.0)
 SIDES = ("left", "right")
@@ -95,3 +96,25 @@ def test_opencvs_own_example_is_read():
     assert camera.lens.k[2] == 2.3839153080878486e-01
     assert camera.lens.p == (1.7831947042852964e-03, -2.8122100441115472e-04)
     assert camera.size == (640, 480)
+
+
+@pytest.mark.parametrize(
+    ("name", "corners", "found"), [("wide", (8, 6), 17), ("fisheye", (6, 4), 13)]
+)
+def test_every_photograph_through_a_wide_lens_in_which_opencv_finds_the_board(name, corners, found):
+    files = sorted((PHOTOGRAPHS.parent / name).glob("*.jpg"))
+    board, n = Chessboard(corners, 30.0, half_turn_symmetric=True), 0
+    for file in files:
+        image = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
+        near = [
+            m
+            for find in (opencv_finders.find_classic, opencv_finders.find_sb)
+            if (m := find(image, corners)) is not None
+        ]
+        if not near:
+            continue
+        m = find_corners(image, board)
+        apart = [np.linalg.norm(m[:, None] - other, axis=-1).min(1).max() for other in near]
+        assert min(apart) < 5.0  # the classic finder may be off by that much itself
+        n += 1
+    assert n == found

@@ -4,47 +4,71 @@ import numpy as np
 
 from cvnotes.base import Array, Image
 from cvnotes.targets.edge_corners import EdgeFit
+from cvnotes.targets.lattice import Mask, alternating, completed, out_of_line
 
-# How far, in squares, four corners in line may depart from a smooth course. Perspective and
-# strong lenses together stay below a third of it.
-_UNEVEN = 0.1
+# How unevenly corners in line may stand, as `unevenness` measures it: lenses of 150° need 0.4.
+_UNEVEN = 0.5
 # A fit may leave so much of the contrast unexplained; noise of 30 grey levels leaves 0.3.
 _UNEXPLAINED = 0.5
+_MOST_LOST = 0.25  # of a board's corners; with more of them, nothing holds it together
 _PAST = 1.2  # squares beyond the outermost corners: past the outer squares
 _GOES_ON = 0.6  # of 1, were the pattern to go on there
 
 
 class NotABoard(Exception):
-    """Why corners that were found are not to be trusted."""
+    """Why corners that were found are not to be trusted, and the count that is there if known."""
+
+    def __init__(self, reason: str, count: tuple[int, int] | None = None) -> None:
+        super().__init__(reason)
+        self.count = count
 
 
-def check_board(fit: EdgeFit, corners: tuple[int, int]) -> None:
+def trusted(fit: EdgeFit, corners: tuple[int, int]) -> Mask:
+    """Tell which corners (n,) are crossings of edges, alternate with the others and are in line."""
+    columns, rows = corners
+    signs = _signs(fit, corners)
+    seen = np.isfinite(fit.m).all(-1).reshape(rows, columns)
+    good = seen & (signs == np.sign(signs[seen].sum()))
+    lattice = np.where(good[..., None], fit.m.reshape(rows, columns, 2), np.nan)
+    most = int(_MOST_LOST * good.size) + 1
+    return np.asarray(good & ~out_of_line(lattice, _UNEVEN, most)).ravel()
+
+
+def check_board(fit: EdgeFit, corners: tuple[int, int], *, partial: bool = False) -> None:
     """Refuse corners that have no crossing of edges, do not alternate, or are out of line.
+
+    With `partial`, a quarter of them may.
 
     Raises
     ------
     NotABoard
-        With the corner, counted from the finder's own first one.
+        With the first thing that is wrong.
     """
     columns, rows = corners
-    lost = np.flatnonzero(~np.isfinite(fit.m).all(-1))
-    if lost.size:
+    seen, signs = np.isfinite(fit.m).all(-1), _signs(fit, corners).ravel()
+    lost = np.count_nonzero(~seen)
+    wrong = min(np.count_nonzero(signs[seen] > 0), np.count_nonzero(signs[seen] < 0))
+    may = int(_MOST_LOST * len(fit.m)) if partial else 0
+    if lost > may:
         raise NotABoard(
-            f"{lost.size} of {len(fit.m)} corners cannot be seen clearly (hidden, dirty or blurred)"
+            f"{lost} of {len(fit.m)} corners cannot be seen clearly (hidden, dirty or blurred)"
         )
-    i, j = np.indices((rows, columns))
-    signs = fit.contrast.reshape(rows, columns) * (-1.0) ** (i + j)
-    if not ((signs > 0).all() or (signs < 0).all()):
+    if wrong > may:
         raise NotABoard("its squares are not alternately light and dark")
-    if np.median(fit.residual / np.abs(fit.contrast)) > _UNEXPLAINED:
+    if np.median(fit.residual[seen] / np.abs(fit.contrast[seen])) > _UNEXPLAINED:
         raise NotABoard("its corners drown in noise")
-    lattice = fit.m.reshape(rows, columns, 2)
-    side = np.linalg.norm(np.diff(lattice, axis=1), axis=-1).min()
-    for axis in (0, 1):
-        if lattice.shape[axis] > 3:
-            bend = np.linalg.norm(np.diff(lattice, 3, axis=axis), axis=-1).max()
-            if bend > _UNEVEN * side:
-                raise NotABoard(f"its corners are out of line by {bend:.1f} px")
+    good = trusted(fit, corners)
+    if np.count_nonzero(~good) > may:
+        lattice = np.where(good[:, None], fit.m, np.nan).reshape(rows, columns, 2)
+        off = np.linalg.norm(fit.m - completed(lattice).reshape(-1, 2), axis=-1)
+        raise NotABoard(f"its corners are out of line by {np.nanmax(off):.1f} px")
+
+
+def _signs(fit: EdgeFit, corners: tuple[int, int]) -> Array:
+    """Give the signs (rows, columns) of a chessboard's contrasts: all alike on a board."""
+    columns, rows = corners
+    i, j = np.indices((rows, columns))
+    return np.asarray(np.sign(fit.contrast.reshape(rows, columns)) * (-1.0) ** (i + j))
 
 
 def check_pattern_ends(picture: Image, fit: EdgeFit, corners: tuple[int, int]) -> None:
@@ -64,7 +88,9 @@ def check_pattern_ends(picture: Image, fit: EdgeFit, corners: tuple[int, int]) -
     lattice = np.dstack(
         [x.reshape(rows, columns, -1) for x in (fit.m, fit.level, np.abs(fit.contrast))]
     )
-    signs = np.sign(fit.contrast).reshape(rows, columns)
+    lattice = completed(np.where(np.isfinite(lattice).all(-1, keepdims=True), lattice, np.nan))
+    i, j = np.indices((rows, columns))
+    signs = np.sign(alternating(fit.contrast.reshape(rows, columns))) * (-1.0) ** (i + j)
     for quarter in range(4):
         # A quarter turn exchanges the two pairs of opposite quadrants.
         light = (-1) ** quarter * np.rot90(signs, quarter)[0]

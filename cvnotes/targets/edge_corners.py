@@ -105,6 +105,7 @@ def _cross(a: Array, b: Array) -> Array:
 
 
 _VERY_BLURRED = 0.2  # of half a window
+_SINGULAR = 1e-30  # determinant of the parameters' correlations; on a board it is above 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,6 +252,7 @@ def _result(middle: Array, p: Array, system: Array, window: Window, good: Mask) 
     residual = np.sqrt(system[:, free, free] / np.maximum(window.weight.sum(-1) - free, 1))
     blur, half = _blur(p), window.place[0].max()
     good = good & (np.abs(p[:, 6]) > 2 * residual) & (blur.max(-1) < half)
+    good &= _determined(system[:, :free, :free])
     D = crossing_jacobian(p[good])[..., :free]
     covariance = np.full((len(p), 2, 2), np.nan)
     covariance[good] = D @ np.linalg.solve(system[good, :free, :free], D.mT)
@@ -262,6 +264,14 @@ def _result(middle: Array, p: Array, system: Array, window: Window, good: Mask) 
         residual=residual,
         covariance=covariance,
     )
+
+
+def _determined(normal: Array) -> Mask:
+    """Tell which normal matrices (n, free, free) are regular: the pixels tell all parameters."""
+    scale = np.sqrt(np.diagonal(normal, axis1=1, axis2=2))
+    scale = np.where(scale > 0, scale, np.inf)
+    correlation = normal / (scale[:, :, None] * scale[:, None, :])
+    return np.asarray(np.linalg.det(correlation) > _SINGULAR)
 
 
 def _blur(p: Array) -> Array:

@@ -129,8 +129,9 @@ def minimise(
         p_new = _limited(p[k] + step)
         moved[k] = np.abs(crossing(p_new) - crossing(p[k])).max(-1)
         # A step this small needs no proof that it leads downhill, unless it promises much: at a
-        # symmetric start the crossing rests while everything else may go astray.
-        close = (moved[k] < tolerance) & (gain < 0.1 * cost + _ROUNDING)
+        # symmetric start the crossing rests while everything else may go astray. Nor may an edge
+        # turn over unproved: as sharp as it may be, it does so with its crossing at rest.
+        close = (moved[k] < tolerance) & (gain < 0.1 * cost + _ROUNDING) & ~_overturned(p[k], p_new)
         p[k[close]] = p_new[close]
         if close.any():
             k, p_new = k[~close], p_new[~close]
@@ -166,6 +167,12 @@ def _erf(t: Single) -> tuple[Single, Single]:
         tail += np.float32(coefficient)
         tail *= k
     return np.copysign(1 - tail * bell, t), bell
+
+
+def _overturned(p: Array, p_new: Array) -> Mask:
+    """Tell for which windows (n,) an edge's normal turns by more than 90°."""
+    along = p[:, [0, 1, 3, 4]] * p_new[:, [0, 1, 3, 4]]
+    return np.asarray(along.reshape(-1, 2, 2).sum(-1).min(-1) <= 0)
 
 
 def _limited(p: Array) -> Array:

@@ -1,29 +1,23 @@
 """From a picture to the ordered corners of a board."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CornersNotFound, Image, InputTypeError, stretched
+from cvnotes.base import Array, CornersNotFound, DegenerateError, Image, InputTypeError, stretched
 from cvnotes.targets.chessboard import Chessboard
-from cvnotes.targets.doubts import NotABoard, check_board, check_pattern_ends
-from cvnotes.targets.edge_corners import fit_edges
+from cvnotes.targets.doubts import NotABoard, check_board, check_pattern_ends, trusted
+from cvnotes.targets.edge_corners import EdgeFit, fit_edges
+from cvnotes.targets.growing import grown_board
+from cvnotes.targets.lattice import completed, ordered
 from cvnotes.targets.opencv_finders import Grey8, find_classic, find_sb, shrink
 from cvnotes.targets.patches import grey_picture
 
-# Who looks for the board, and in a copy of at most how many pixels. The classic finder can take
-# minutes on large pictures without a board; the last attempt is for small boards in large ones.
-_ATTEMPTS = (
-    ("SB", find_sb, 1_300_000),
-    ("classic", find_classic, 500_000),
-    ("SB", find_sb, 12_000_000),
-)
-_HINT_PIXELS = 500_000
 
-
-def find_corners(image: npt.ArrayLike, board: Chessboard) -> Array:
+def find_corners(image: npt.ArrayLike, board: Chessboard, *, partial: bool = False) -> Array:
     """Find the inner corners of a chessboard in a picture.
 
     Parameters
@@ -32,11 +26,13 @@ def find_corners(image: npt.ArrayLike, board: Chessboard) -> Array:
         The picture: grey, RGB or RGBA; uint8, uint16 or floating point of any range.
     board : Chessboard
         What was photographed.
+    partial : bool
+        Accept a board of which up to a quarter of the corners are hidden, dirty or out of line.
 
     Returns
     -------
     ndarray, shape (n, 2)
-        Pixels (u, v), in the order of ``board.points``.
+        Pixels (u, v), in the order of ``board.points``; with `partial`, NaN for lost corners.
 
     Raises
     ------
@@ -46,7 +42,8 @@ def find_corners(image: npt.ArrayLike, board: Chessboard) -> Array:
 
     Notes
     -----
-    1. OpenCV's finders say where the board is, in a reduced copy if the picture is large.
+    1. OpenCV's finders say where the board is, in a reduced copy if the picture is large; if they
+       find none or only part of it, it is grown from that part (`cvnotes.targets.growing`).
     2. The model of two blurred edges is fitted to the pixels of the whole picture (`fit_edges`).
     3. Seen from its front, a board is right-handed, and the square outside of its origin is dark:
        that puts the corners in order. A board that looks the same after half a turn gets its
@@ -72,19 +69,77 @@ def find_corners(image: npt.ArrayLike, board: Chessboard) -> Array:
     if not isinstance(board, Chessboard):
         raise InputTypeError(f"board: expected a Chessboard, got {type(board).__name__}")
     picture = grey_picture(image)
-    grey, tried = stretched(picture), []
+    grey = stretched(picture)
+    tried: list[str] = []
+    others: list[tuple[int, int]] = []
+    best = np.full((0, 2), np.nan)
     if min(board.corners) > 2:
-        for name, finder, scale in _attempts(grey):
-            found = finder(scale, board.corners)
-            tried.append(f"{name} finder at {_size(scale)}: ")
-            if found is None:
-                tried[-1] += "not found"
-                continue
+        for name, finder, copy in _attempts(grey):
             try:
-                return _measure(picture, grey, scale, found, board)
+                m = _measure(picture, grey, copy, finder(copy, board.corners), board, partial)
             except NotABoard as doubt:
-                tried[-1] += f"found, but {doubt}"
-    raise CornersNotFound(_lesson(grey, board, tried))
+                tried.append(f"{name} at {_size(copy)}: {doubt}")
+                others += [doubt.count] if doubt.count else []
+                continue
+            best = max(best, m, key=lambda m: np.count_nonzero(np.isfinite(m)))
+            if np.isfinite(best).all():
+                break
+    if not len(best):
+        raise CornersNotFound(_lesson(grey, board, tried, others))
+    return best
+
+
+def count_corners(image: npt.ArrayLike) -> tuple[int, int] | None:
+    """Count the inner corners of whatever chessboard is in a picture.
+
+    Parameters
+    ----------
+    image : array_like, shape (height, width) or (height, width, 3 or 4)
+        The picture.
+
+    Returns
+    -------
+    (columns, rows) or None
+        The larger number first; None if there is no board with 3×3 inner corners or more. Of a
+        board that is cut off or covered along a side, it is what can be seen.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import Camera, intrinsics
+    >>> from cvnotes.camera import pose
+    >>> from cvnotes.pictures import render
+    >>> camera = Camera(intrinsics(800, 800, 320, 240), pose(np.eye(3), [-100, -60, 600]))
+    >>> count_corners(render(Chessboard((9, 6), 25.0), camera, blur=0.7))
+    (9, 6)
+    """
+    lattice = grown_board(_reduced(stretched(grey_picture(image)), _PART_PIXELS))
+    return None if lattice is None else (lattice.shape[1], lattice.shape[0])
+
+
+def _find_grown(grey: Grey8, corners: tuple[int, int]) -> Array | None:
+    """Look for a board by growing it from a part; corners (n, 2), NaN where they are hidden."""
+    lattice = grown_board(grey)
+    if lattice is None:
+        return None
+    rows, columns = lattice.shape[:2]
+    if (columns, rows) != (max(corners), min(corners)):
+        raise NotABoard(f"found {columns}×{rows} corners", count=(columns, rows))
+    if corners[0] < corners[1]:
+        lattice = lattice.transpose(1, 0, 2)
+    return lattice.reshape(-1, 2)
+
+
+# Who looks for the board, and in a copy of at most how many pixels: the quickest first. The
+# classic finder can take minutes on large pictures without a board; the last attempt is for small
+# boards in large ones.
+_PART_PIXELS = 1_300_000
+_ATTEMPTS = (
+    ("classic finder", find_classic, 500_000),
+    ("SB finder", find_sb, 1_300_000),
+    ("growing a part", _find_grown, _PART_PIXELS),
+    ("classic finder", find_classic, 1_300_000),
+    ("SB finder", find_sb, 12_000_000),
+)
 
 
 def _attempts(grey: Grey8) -> Iterator[tuple[str, Any, Grey8]]:
@@ -97,18 +152,49 @@ def _attempts(grey: Grey8) -> Iterator[tuple[str, Any, Grey8]]:
             yield name, finder, copy
 
 
-def _measure(picture: Image, grey: Grey8, copy: Grey8, found: Array, board: Chessboard) -> Array:
+def _measure(
+    picture: Image,
+    grey: Grey8,
+    copy: Grey8,
+    found: Array | None,
+    board: Chessboard,
+    partial: bool,
+) -> Array:
     """Refine what a finder found in a copy, in the copy and then in the picture itself."""
+    if found is None:
+        raise NotABoard("not found")
     columns, rows = board.corners
-    if copy.shape != grey.shape:
-        refined = fit_edges(copy, found, grid=board.corners).m
-        found = np.where(np.isfinite(refined), refined, found)
-        zoom = np.array(grey.shape[::-1]) / copy.shape[::-1]
-        found = (found + 0.5) * zoom - 0.5
-    fit = fit_edges(picture, found, window=_window(found, rows), grid=board.corners)
-    check_board(fit, board.corners)
-    check_pattern_ends(picture, fit, board.corners)
-    return ordered(fit.m.reshape(rows, columns, 2), fit.contrast.reshape(rows, columns))
+    found = completed(found.reshape(rows, columns, 2)).reshape(-1, 2)
+    try:
+        if copy.shape != grey.shape:
+            refined = fit_edges(copy, found, grid=board.corners).m
+            found = np.where(np.isfinite(refined), refined, found)
+            zoom = np.array(grey.shape[::-1]) / copy.shape[::-1]
+            found = (found + 0.5) * zoom - 0.5
+        fit = _fit_twice(picture, found, board.corners)
+        check_board(fit, board.corners, partial=partial)
+        good = trusted(fit, board.corners)[:, None]
+        check_pattern_ends(picture, replace(fit, m=np.where(good, fit.m, np.nan)), board.corners)
+    except DegenerateError:
+        raise NotABoard("found, but its corners lie on a line") from None
+    except NotABoard as doubt:
+        raise NotABoard(f"found, but {doubt}") from None
+    lattice = np.where(good, fit.m, np.nan).reshape(rows, columns, 2)
+    return ordered(lattice, fit.contrast.reshape(rows, columns))
+
+
+def _fit_twice(picture: Image, found: Array, corners: tuple[int, int]) -> EdgeFit:
+    """Fit edges, for corners that come to nothing once more from where the others expect them."""
+    columns, rows = corners
+    window = _window(found, rows)
+    fit = fit_edges(picture, found, window=window, grid=corners)
+    good = trusted(fit, corners)
+    if good.all() or 2 * np.count_nonzero(good) < len(good):
+        return fit
+    kept = np.where(good[:, None], fit.m, np.nan).reshape(rows, columns, 2)
+    again = fit_edges(picture, completed(kept).reshape(-1, 2), window=window, grid=corners)
+    better = np.count_nonzero(trusted(again, corners)) > np.count_nonzero(good)
+    return again if better else fit
 
 
 def _window(m: Array, rows: int) -> int:
@@ -130,72 +216,31 @@ def _size(image: Image) -> str:
     return f"{image.shape[1]}×{image.shape[0]}"
 
 
-def _lesson(grey: Grey8, board: Chessboard, tried: list[str]) -> str:
+def _lesson(grey: Grey8, board: Chessboard, tried: list[str], others: list[tuple[int, int]]) -> str:
     """Say what was looked for, what was tried, and what probably went wrong."""
     columns, rows = board.corners
     start = f"no board of {columns}×{rows} inner corners found in a picture of {_size(grey)} pixels"
     if not tried:
         return f"{start}: boards need at least 3 inner corners along each side to be found"
-    fewer = (columns - 1, rows - 1)
-    if min(fewer) > 2 and find_sb(_reduced(grey, _HINT_PIXELS), fewer) is not None:
-        why = (
-            f"but a board of {fewer[0]}×{fewer[1]} inner corners is there: "
-            "were its squares counted instead of its inner corners?"
+    return f"{start} ({'; '.join(tried)}); {_guess(board, tried, others)}"
+
+
+def _guess(board: Chessboard, tried: list[str], others: list[tuple[int, int]]) -> str:
+    """Guess what went wrong, from other boards (columns, rows) that were found instead."""
+    long, short = max(board.corners), min(board.corners)
+    # A finder that found the board that was asked for knows better than who grows a part of it.
+    if others and not any("found, but its" in words for words in tried):
+        columns, rows = others[0]
+        there = f"but a board of {columns}×{rows} inner corners is there"
+        if (columns, rows) == (long - 1, short - 1):
+            return f"{there}: were its squares counted instead of its inner corners?"
+        if columns > long or rows > short:
+            return f"{there}: were all of its inner corners counted?"
+        return (
+            f"only {columns}×{rows} of them can be seen: is the whole board in the picture, with "
+            "paper around it and unhidden, and are its inner corners counted right?"
         )
-    else:
-        why = (
-            "is the whole board in the picture, with paper around it, unhidden and sharp, and are "
-            "its inner corners (where four squares meet) counted, not its squares?"
-        )
-    return f"{start} ({'; '.join(tried)}); {why}"
-
-
-def ordered(lattice: Array, contrast: Array) -> Array:
-    """Put corners in the order of ``board.points``, whatever the order of the finder.
-
-    Parameters
-    ----------
-    lattice : ndarray, shape (rows, columns, 2)
-        Corners with neighbours next to each other.
-    contrast : ndarray, shape (rows, columns)
-        Positive where the quadrant towards larger row and column, and the one opposite, is light.
-
-    Returns
-    -------
-    ndarray, shape (rows · columns, 2)
-        Right-handed, and with a dark square outside of the first corner. If several orders are
-        so, the one whose first corner is nearest to the picture's top left pixel.
-
-    Examples
-    --------
-    >>> lattice = np.stack(np.meshgrid([10.0, 20, 30], [10.0, 20]), axis=-1)
-    >>> light = np.array([[1, -1, 1], [-1, 1, -1]])
-    >>> ordered(lattice, light)[0]  # the square outside of (10, 10) is light
-    array([30., 20.])
-    """
-    if handedness(lattice) < 0:
-        lattice, contrast = lattice[:, ::-1], -contrast[:, ::-1]
-    same_shape = (0, 1, 2, 3) if lattice.shape[0] == lattice.shape[1] else (0, 2)
-    # A quarter turn exchanges the two pairs of opposite quadrants.
-    turned = [(np.rot90(lattice, k), (-1) ** k * np.rot90(contrast, k)) for k in same_shape]
-    dark = [m for m, c in turned if _alternating(c) < 0] or [m for m, _ in turned]
-    first = min(dark, key=lambda m: float(np.hypot(*m[0, 0])))
-    return np.array(first).reshape(-1, 2)
-
-
-def handedness(lattice: Array) -> float:
-    """Give the mean signed area of a board's squares, positive if seen from its front.
-
-    Examples
-    --------
-    >>> handedness(np.stack(np.meshgrid([1.0, 2, 3], [1.0, 2]), axis=-1))
-    1.0
-    """
-    x, y = np.diff(lattice, axis=1)[:-1], np.diff(lattice, axis=0)[:, :-1]
-    return float(np.mean(x[..., 0] * y[..., 1] - x[..., 1] * y[..., 0]))
-
-
-def _alternating(contrast: Array) -> float:
-    """Sum contrasts with a chessboard's signs: negative if the square before (0, 0) is dark."""
-    i, j = np.indices(contrast.shape)
-    return float((contrast * (-1.0) ** (i + j)).sum())
+    return (
+        "is the whole board in the picture, with paper around it, unhidden and sharp, and are "
+        "its inner corners (where four squares meet) counted, not its squares?"
+    )
