@@ -1,6 +1,7 @@
 """``cvnotes grade``: marks for a folder of handed-in notebooks."""
 
 import argparse
+import codecs
 import signal
 import threading
 from collections.abc import Iterator, Sequence
@@ -12,6 +13,7 @@ from typing import Any
 
 from cvnotes.base import CvnotesError, FileError
 from cvnotes.commands.console import complain, say
+from cvnotes.commands.ownership import maker
 from cvnotes.files import write_whole
 from cvnotes.files.writing import check_folder, printable
 from cvnotes.learn.grader.assignment import Assignment, read_assignment
@@ -20,10 +22,20 @@ from cvnotes.learn.grader.grading import grade_folder
 from cvnotes.learn.grader.marks import Mark
 from cvnotes.learn.grader.process import Limits
 from cvnotes.learn.grader.records import Records, read_records
-from cvnotes.learn.grader.tables import FORMATS, for_canvas, for_moodle, marks_csv, number, summary
+from cvnotes.learn.grader.tables import (
+    FORMATS,
+    HEADER,
+    for_canvas,
+    for_moodle,
+    marks_csv,
+    number,
+    summary,
+)
 from cvnotes.learn.grader.totals import totals
 
 _FORMATS = {"moodle": for_moodle, "canvas": for_canvas}
+# How the tables of this command begin.
+_HEADS = (",".join(HEADER), "Identifier,Full name,Email address,ID number,Grade", "Student,ID,SIS")
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -174,7 +186,7 @@ def _grade(args: argparse.Namespace) -> int:
                 records.add(mark)
                 graded.append(mark)
                 write_whole({outputs.table: outputs.contents(graded)[outputs.table]})
-                say(f"{len(graded)} of {n}  {one_line(mark)}")
+                say(f"{len(graded)} of {n}  {one_line(mark, assignment)}")
         except KeyboardInterrupt:
             text = f"interrupted; the {len(graded)} finished rows of {n} are kept"
             complain("grade", f"{text}, --resume goes on from there")
@@ -190,8 +202,25 @@ def _check(outputs: Outputs) -> None:
         check_folder(path if path == outputs.feedback else path.parent)
         if path != outputs.feedback and path.is_dir():
             raise FileError(f"{printable(path)} cannot be written: it is a folder")
+    pages = outputs.feedback.glob("*.html") if outputs.feedback else []
+    for path in [*filter(Path.is_file, outputs.all), *pages]:
+        if not _is_ours(path):
+            raise FileError(
+                f"{printable(path)} was not made by cvnotes grade, which would replace it; "
+                "choose another name"
+            )
     # What is there is written once more, as it is.
     write_whole({path: path.read_bytes() for path in outputs.all if path.is_file()})
+
+
+def _is_ours(path: Path) -> bool:
+    """Tell whether this command made a file, or nobody has written into it."""
+    if path.suffix == ".csv":
+        head = path.read_bytes()[:200].removeprefix(codecs.BOM_UTF8).decode(errors="replace")
+        return not head or head.startswith(_HEADS)
+    if path.suffix == ".jsonl":
+        return path.read_bytes()[:10] in (b"", b'{"version"')
+    return maker(path) == "grade"
 
 
 def _tell(graded: Sequence[Mark], outputs: Outputs) -> None:
@@ -205,7 +234,7 @@ def _tell(graded: Sequence[Mark], outputs: Outputs) -> None:
     say(f"written to {printable(outputs.table)}")
 
 
-def one_line(mark: Mark) -> str:
+def one_line(mark: Mark, assignment: Assignment | None = None) -> str:
     """Tell about one notebook in a line.
 
     Examples
@@ -214,7 +243,10 @@ def one_line(mark: Mark) -> str:
     'ada/06.ipynb: 0 of 1 (not a notebook)'
     """
     remark = f" ({mark.remark})" if mark.remark else ""
-    return f"{mark.name}: {number(mark.points)} of {len(mark.expected)}{remark}"
+    points, of = float(mark.points), float(len(mark.expected))
+    if assignment:
+        points, of = assignment.earned(mark.reports), assignment.points
+    return f"{mark.name}: {number(points)} of {number(of)}{remark}"
 
 
 @contextmanager

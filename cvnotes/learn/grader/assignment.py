@@ -114,6 +114,10 @@ class Assignment:
         """What everything together is worth."""
         return sum(item.points for item in self.items.values())
 
+    def earned(self, verdicts: Mapping[str, Verdict]) -> float:
+        """Give the points for some answers."""
+        return sum(item.earned(name, verdicts.get(name)) for name, item in self.items.items())
+
 
 def read_assignment(path: Path) -> Assignment:
     """Read an assignment.

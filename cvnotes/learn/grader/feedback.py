@@ -12,6 +12,8 @@ from cvnotes.learn.grader.totals import Total
 
 # Okabe's and Ito's blue and vermilion stay apart for every eye; each has a sign of its own, too.
 _RIGHT, _WRONG, _OPEN, _NONE = "#0072B2", "#D55E00", "#8C8C8C", "#E3E3E3"
+# By these words the command knows its own files, which it may replace.
+MADE_BY = "made by cvnotes grade"
 _STYLE = """
 :root { color-scheme: light dark; --line: #8884; }
 body { font: 1rem/1.5 system-ui, sans-serif; margin: 0 auto; padding: 1rem; max-width: 44rem; }
@@ -21,7 +23,7 @@ section { border-top: 1px solid var(--line); padding: 1rem 0; }
 p { margin: .5rem 0; }
 ul { list-style: none; margin: .5rem 0; padding: 0; }
 li { padding-left: 1.4em; text-indent: -1.4em; overflow-wrap: anywhere; }
-pre { overflow-x: auto; padding: .6rem .75rem; border: 1px solid var(--line);
+pre { white-space: pre-wrap; overflow-wrap: anywhere; padding: .6rem .75rem; border: 1px solid var(--line);
       border-radius: .4rem; font-size: .8rem; line-height: 1.4; }
 code { overflow-wrap: anywhere; }
 .sum { font-size: 1.35rem; margin: .25rem 0 1rem; }
@@ -209,7 +211,7 @@ def class_picture(sums: Sequence[Total]) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 {height}" role="img" '
         'font-family="system-ui, sans-serif" font-size="13" fill="currentColor">'
-        "<title>Progress of the class, exercise by exercise</title>"
+        f"<!-- {MADE_BY} --><title>Progress of the class, exercise by exercise</title>"
         f"{''.join(shapes)}</svg>"
     )
 
@@ -242,7 +244,7 @@ def _counts(name: str, sums: Sequence[Total]) -> tuple[int, int, int, int]:
 
 def _page(title: str, parts: Sequence[str]) -> str:
     return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><!-- {MADE_BY} -->'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>{escape(title)}</title><style>{_STYLE}</style></head>\n<body>\n"
         + "\n".join(parts)

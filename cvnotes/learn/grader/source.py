@@ -12,12 +12,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import sha256
+from pathlib import Path
 from typing import Any
 
 from cvnotes.learn.exercises import EXERCISES
+from cvnotes.learn.grader.belonging import COURSE
+from cvnotes.learn.grader.handin import code_cells
 
 # Functions with fewer nodes than this are equal by nature: there are few ways to write them.
-_SHORTEST = 60
+_SHORTEST = 100
 Definition = ast.FunctionDef | ast.Assign | ast.AnnAssign
 
 
@@ -107,11 +110,21 @@ def fingerprint(name: str, written: Code) -> str:
 
     It is empty where the answer is too short to tell two students apart, or still a stub.
     """
-    shapes = [_shape(tree, rename=True) for tree in written.functions(name)]
-    nodes = sum(sum(1 for _ in ast.walk(tree)) for tree in written.functions(name))
-    if nodes < _SHORTEST:
+    shapes = {_shape(tree, rename=True): tree for tree in written.functions(name)}
+    own = {shape: tree for shape, tree in shapes.items() if shape not in _given(COURSE)}
+    if sum(1 for tree in own.values() for _ in ast.walk(tree)) < _SHORTEST:
         return ""
-    return sha256("\n".join(shapes).encode()).hexdigest()[:16]
+    return sha256("\n".join(own).encode()).hexdigest()[:16]
+
+
+@cache
+def _given(course: Path) -> set[str]:
+    """Give the shapes of what the course's own notebooks define: everybody has that."""
+    shapes: set[str] = set()
+    for path in course.glob("*.ipynb"):
+        definitions = own_code(code_cells(path.read_bytes())).definitions
+        shapes |= {_shape(tree, rename=True) for tree in definitions.values()}
+    return shapes
 
 
 def _note(node: ast.stmt, found: Code) -> None:

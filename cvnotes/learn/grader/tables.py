@@ -13,7 +13,7 @@ from cvnotes.learn.grader.marks import Mark
 from cvnotes.learn.grader.totals import Total, remarked, totals
 
 FORMATS = ("moodle", "canvas")
-_HEADER = ("student", "notebook", "points", "of", "percent")
+HEADER = ("student", "notebook", "points", "of", "percent")
 _TRAILER = ("misconceptions", "id", "remark")
 
 
@@ -37,7 +37,7 @@ def marks_csv(marks: Sequence[Mark], assignment: Assignment | None = None) -> st
             + [_percent(mark.points, len(mark.expected)), *points]
             + [_met(mark.misconceptions), ", ".join(mark.ids), "; ".join(remarks)]
         )
-    return _csv([[*_HEADER, *names, *_TRAILER], *rows])
+    return _csv([[*HEADER, *names, *_TRAILER], *rows])
 
 
 def _of_students(sums: Sequence[Total], assignment: Assignment) -> str:
@@ -51,7 +51,7 @@ def _of_students(sums: Sequence[Total], assignment: Assignment) -> str:
             + [number(total.earned(name)) for name in names]
             + [_met(met), ", ".join(total.ids), "; ".join(total.remarks)]
         )
-    return _csv([[*_HEADER, *names, *_TRAILER], *rows])
+    return _csv([[*HEADER, *names, *_TRAILER], *rows])
 
 
 def for_moodle(sums: Sequence[Total], title: str) -> str:
