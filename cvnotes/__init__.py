@@ -1,7 +1,7 @@
 """Image formation and camera calibration, after the course notes.
 
-Each module is a section of the notes; import what a section needs from its own module,
-for example ``from cvnotes.camera.lens import Lens``.
+Each wing is a chapter; import what a chapter needs from the face of its wing, for example
+``from cvnotes.camera import Lens``. ``docs/house.md`` is the plan.
 """
 
 __version__ = "0.1.0"
