@@ -9,12 +9,15 @@ import subprocess
 import sys
 import time
 import webbrowser
+from collections.abc import Sequence
 from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 
-import cvnotes
 from cvnotes.base import FileError
+from cvnotes.base.material import material
 from cvnotes.commands.console import say
+from cvnotes.commands.working_copy import FOLDER, default_folder, deliver, start_over
+from cvnotes.files.writing import printable
 
 START = "00_start_here.ipynb"
 
@@ -24,11 +27,19 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser = subparsers.add_parser(
         "lab",
         help="open the course in JupyterLab",
-        description="Open the course's notebooks in JupyterLab. The server listens on this machine "
-        "only (127.0.0.1); Ctrl-C ends it.",
+        description="Open your working copy of the course in JupyterLab. New chapters come into "
+        "it; what you changed is never overwritten. The server listens on this machine only "
+        "(127.0.0.1); Ctrl-C ends it.",
+        epilog="example: cvnotes lab --fresh 3",
     )
     add = parser.add_argument
-    add("--notebooks", type=Path, metavar="FOLDER", help="folder of the notebooks, if not found")
+    add("folder", nargs="?", type=Path, metavar="FOLDER",
+        help=f"your working copy (default {FOLDER}, in the clone or here)")  # fmt: skip
+    add("--fresh", metavar="CHAPTER", action="append", default=[],
+        help="start a chapter over, such as 3; yours is kept beside it")  # fmt: skip
+    add("--copy", action="store_true", help="bring the working copy up to date, and open nothing")
+    add("--notebooks", type=Path, metavar="FOLDER",
+        help="open the notebooks of this folder themselves, without a working copy")  # fmt: skip
     add("--port", type=int, default=8888, help="port to try first (default 8888)")
     add("--no-browser", action="store_true", help="print the address only")
     parser.set_defaults(run=run)
@@ -36,9 +47,13 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(args: argparse.Namespace) -> int:
     """Serve the notebooks until Ctrl-C; gives the exit code."""
-    notebooks = find_notebooks(args.notebooks)
+    course = find_notebooks(args.notebooks)
+    if args.copy:
+        prepare(course, args.folder, args.fresh)
+        return 0
     if importlib.util.find_spec("jupyterlab") is None:
         raise FileError('JupyterLab is not installed; install it with: pip install "cvnotes[lab]"')
+    notebooks = course if args.notebooks else prepare(course, args.folder, args.fresh)
     port, token = free_port(args.port), secrets.token_hex(24)
     server = start_server(notebooks, port, token)
     try:
@@ -58,16 +73,26 @@ def run(args: argparse.Namespace) -> int:
 
 
 def find_notebooks(given: Path | None) -> Path:
-    """Find the folder of the notebooks: as given, beside the package, or here."""
-    beside = Path(cvnotes.__file__).resolve().parents[1] / "notebooks"
-    places = [given] if given is not None else [beside, Path("notebooks")]
-    for place in places:
-        if (place / START).is_file():
-            return place.resolve()
+    """Find the folder of the notebooks: as given, else the course's own."""
+    place = material("notebooks") if given is None else given
+    if (place / START).is_file():
+        return place.resolve()
     raise FileError(
-        f"{START} is not in {' nor in '.join(map(str, places))}; "
+        f"{START} is not in {printable(place)}; "
         "say where the course's notebooks are with --notebooks FOLDER"
     )
+
+
+def prepare(course: Path, given: Path | None, fresh: Sequence[str]) -> Path:
+    """Bring the working copy up to date and say what is new; gives its folder."""
+    folder = (default_folder() if given is None else given).absolute()
+    for sentence in deliver(course, folder).sentences():
+        say(sentence)
+    for chapter in fresh:
+        name, kept = start_over(course, folder, chapter)
+        say(f"{name} starts over; yours is kept as {kept}")
+    say(f"Your working copy of the course: {printable(folder)}")
+    return folder
 
 
 def free_port(first: int) -> int:

@@ -1,7 +1,7 @@
 """The running example of the course: one camera, one board, twelve pictures, and real corners.
 
-Everything is read from the folder ``data/`` of the repository, which ``tools/make_data.py`` makes;
-``data/README.md`` says what each file is.
+Everything is read from the folder ``data/`` of the repository, which ``tools/make_data.py`` makes
+and an installed package brings along; ``data/README.md`` says what each file is.
 """
 
 import json
@@ -12,11 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, FileError
+from cvnotes.base.material import material
 from cvnotes.camera import Camera
 from cvnotes.files import read_camera, read_photo
 from cvnotes.targets import Chessboard
 
-DATA = Path(__file__).resolve().parents[2] / "data"
+DATA = material("data")
 
 
 class RealCorners(NamedTuple):
@@ -131,8 +132,8 @@ def _file(name: str) -> Path:
     path = DATA / name
     if not path.exists():
         raise FileError(
-            f"data/{name} is missing: the course's data come with a clone of the repository "
-            "(python tools/make_data.py makes them again)"
+            f"data/{name} is missing from {DATA.parent}: the course's data come with the package "
+            "and with a clone of the repository (python tools/make_data.py makes them again)"
         )
     return path
 
