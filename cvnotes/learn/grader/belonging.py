@@ -5,9 +5,10 @@ from collections import defaultdict
 from functools import cache
 from pathlib import Path
 
+from cvnotes.base.material import material
 from cvnotes.learn.exercises import EXERCISES, notebook_of
 
-COURSE = Path(__file__).resolve().parents[3] / "notebooks"
+COURSE = material("notebooks")
 
 
 def expected_exercises(notebook: str, handed_in: list[str]) -> tuple[str, ...]:
