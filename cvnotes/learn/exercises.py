@@ -114,8 +114,8 @@ def solution(name: str) -> Source:
 
     Examples
     --------
-    >>> print(solution("drop").code.splitlines()[0])
-    def from_homogeneous(x_h: npt.ArrayLike) -> Array:
+    >>> print(solution("drop").code.splitlines()[2])
+    def from_homogeneous(x_h: Array) -> Array:
     """
     exercise = find(name)
     sources = [_function(source) for source in exercise.sources or (exercise.reference,)]

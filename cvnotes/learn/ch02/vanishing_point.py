@@ -104,5 +104,5 @@ VANISHING = Exercise(
     ),
     reference=vanishing_point,
     concepts=("5", "13", "14", "E5", "E6"),
-    sources=(Camera.vanishing_point,),
+    sources=(Camera.vanishing_point, from_homogeneous),
 )

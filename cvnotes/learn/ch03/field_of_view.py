@@ -3,14 +3,15 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera
 from cvnotes.learn.cases.cameras import some_intrinsics
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def field_of_view(A: Array, width: int) -> float:
     """Give the horizontal angle in radians that a picture spans at the height of its axis."""
-    return Camera(A, size=(width, 480)).field_of_view[0]
+    alpha, u0 = A[0, 0], A[0, 2]
+    left, right = -0.5, width - 0.5  # the borders; pixel centres are whole numbers
+    return float(np.arctan((u0 - left) / alpha) + np.arctan((right - u0) / alpha))
 
 
 def _off_centre(rng: Rng) -> list[Case]:
@@ -82,5 +83,4 @@ FIELD = Exercise(
     ),
     reference=field_of_view,
     concepts=("18", "20", "E7", "E45"),
-    sources=(Camera.field_of_view,),
 )

@@ -6,7 +6,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, pose
+from cvnotes.camera import Camera, pose, px_from_xy
 from cvnotes.learn.cases.cameras import (
     ABOUT_Y,
     TIDY_A,
@@ -118,5 +118,5 @@ PROJECT = Exercise(
     ),
     reference=project,
     concepts=("9", "11", "23", "25", "E4", "E10"),
-    sources=(Camera.project,),
+    sources=(Camera.project, px_from_xy),
 )

@@ -4,6 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Lens
+from cvnotes.camera.lens_fold import horner, radial_factor
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
@@ -107,5 +108,5 @@ DISTORT = Exercise(
     ),
     reference=distort,
     concepts=("28", "29", "31", "32", "E14", "E15"),
-    sources=(Lens.distort,),
+    sources=(Lens.distort, radial_factor, horner),
 )

@@ -6,7 +6,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, Lens, pose
+from cvnotes.camera import Camera, Lens, pose, px_from_xy
 from cvnotes.learn.cases.cameras import (
     ABOUT_Y,
     TIDY_A,
@@ -119,5 +119,5 @@ FORM = Exercise(
     ),
     reference=form_image,
     concepts=("34", "35", "E13", "E16"),
-    sources=(Camera.project,),
+    sources=(Camera.project, Lens.distort, px_from_xy),
 )

@@ -138,5 +138,5 @@ DLT = Exercise(
     reference=dlt,
     same=up_to_scale,
     concepts=("43", "47", "48", "68", "E26"),
-    sources=(design_matrix, dlt),
+    sources=(normaliser, design_matrix, dlt),
 )

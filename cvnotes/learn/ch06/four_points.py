@@ -93,6 +93,7 @@ FOUR = Exercise(
         V_BEFORE_U,
     ),
     reference=dlt,
+    sources=(design_matrix, dlt),
     same=up_to_scale,
     concepts=("51", "52", "53", "E27"),
 )

@@ -84,5 +84,6 @@ GEOMETRIC = Exercise(
         ),
     ),
     reference=geometric_error,
+    sources=(geometric_error, from_homogeneous),
     concepts=("49", "50", "E25"),
 )

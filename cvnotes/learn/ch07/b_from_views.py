@@ -120,5 +120,5 @@ B_FROM_VIEWS = Exercise(
     reference=b_from_views,
     same=up_to_scale,
     concepts=("55", "58", "E29", "E30"),
-    sources=(constraints, solve_b),
+    sources=(v_ij, constraints, solve_b),
 )

@@ -7,6 +7,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import extrinsics
+from cvnotes.camera import nearest_rotation
 from cvnotes.learn.cases.cameras import (
     ABOUT_Y,
     TIDY_A,
@@ -126,5 +127,6 @@ EXTRINSICS = Exercise(
         ),
     ),
     reference=extrinsics,
+    sources=(extrinsics, nearest_rotation),
     concepts=("54", "60", "d", "E32"),
 )

@@ -4,6 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import radial_distortion
+from cvnotes.camera import xy_from_px
 from cvnotes.learn.cases.cameras import rounded, some_lens
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
@@ -106,5 +107,5 @@ RADIAL = Exercise(
     ),
     reference=radial_fit,
     concepts=("62", "63", "E34", "E35"),
-    sources=(radial_distortion,),
+    sources=(radial_distortion, xy_from_px),
 )

@@ -124,5 +124,5 @@ BILINEAR = Exercise(
     ),
     reference=bilinear,
     concepts=("75", "E40", "E42", "E43"),
-    sources=(library_bilinear, interpolate),
+    sources=(library_bilinear,),
 )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, Lens
+from cvnotes.camera import Camera, Lens, px_from_xy
 from cvnotes.learn.cases.cameras import (
     board_grid,
     lens_factor,
@@ -101,5 +101,5 @@ RESIDUALS = Exercise(
     ),
     reference=residuals,
     concepts=("50", "64", "E36"),
-    sources=(residuals, Camera.project),
+    sources=(residuals, Camera.project, Lens.distort, px_from_xy),
 )
