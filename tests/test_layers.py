@@ -135,3 +135,27 @@ def test_nothing_in_the_package_prints_or_seeds_globally():
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Call):
                 assert ast.unparse(node.func) not in ("print", "np.random.seed"), path.name
+
+
+def test_places_in_arrays_are_of_the_machines_own_size():
+    # `take` refuses int64 where the machine counts in 32 bits, as in a browser.
+    found = [
+        _name(path)
+        for path in FILES
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.Attribute) and node.attr == "int64"
+    ]
+    assert not found
+
+
+def test_one_place_alone_relies_on_numpy_to_refuse_a_singular_matrix():
+    # Without flags of floating-point errors it cannot; `solved` looks for its NaN too.
+    found = {
+        _name(path)
+        for path in FILES
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ExceptHandler)
+        and node.type is not None
+        and ast.unparse(node.type) == "np.linalg.LinAlgError"
+    }
+    assert found == {"base.optimise"}

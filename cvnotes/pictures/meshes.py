@@ -9,7 +9,7 @@ import numpy.typing as npt
 from cvnotes.base import Array, CvnotesError, ShapeError, numbers, points
 from cvnotes.camera import move
 
-Triangles = npt.NDArray[np.int64]
+Triangles = npt.NDArray[np.intp]
 Colour = tuple[float, float, float]
 
 
@@ -82,7 +82,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         vertices = points(self.vertices, "vertices", 3)
-        triangles = points(self.triangles, "triangles", 3).astype(np.int64)
+        triangles = points(self.triangles, "triangles", 3).astype(np.intp)
         m, n = len(triangles), len(vertices)
         if m == 0:
             raise CvnotesError("a scene needs at least one triangle")
@@ -161,7 +161,7 @@ def quads(
     Scene(4 vertices, 2 triangles)
     """
     vertices, colours = points(vertices, "vertices", 3), points(colours, "colours", 3)
-    loops = numbers(loops, "loops").astype(np.int64)
+    loops = numbers(loops, "loops").astype(np.intp)
     if loops.ndim != 2 or loops.shape[1] != 4:
         raise ShapeError(f"loops: expected four corners a face (q, 4), got {loops.shape}")
     if vertices.ndim != 2 or not ((loops >= 0) & (loops < len(vertices))).all():
