@@ -29,7 +29,7 @@ def photo_table(
     rejected: Sequence[Rejected],
     result: "Calibration | None" = None,
 ) -> str:
-    """Give the table of photographs: those used, with their RMS, then the rest with reasons.
+    """Return the table of photographs: those used, with their RMS, then the rest with reasons.
 
     A long reason is cut in the table, and stands once in full below it.
     """
@@ -45,7 +45,7 @@ def photo_table(
 def photo_csv(
     files: Sequence[str], notes: Sequence[str], rejected: Sequence[Rejected], result: "Calibration"
 ) -> str:
-    """Give the same table for other programs: reasons in full, no RMS for what was not used."""
+    """Return the same table for other programs: reasons in full, no RMS for what was not used."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(TABLE_HEADER)
@@ -56,7 +56,7 @@ def photo_csv(
 
 
 def camera_report(result: "Calibration") -> str:
-    """Give the camera with its error bars, and what the result rests on."""
+    """Return the camera with its error bars, and what the result rests on."""
     width, height = result.size
     rows = [
         [name, *with_deviation(value, error), unit] for name, value, error, unit in result.table()

@@ -1,4 +1,4 @@
-"""Pictures from known cameras: boards and scenes, rendered from the exact model."""
+"""Pictures from known cameras, for all chapters: boards and scenes by the exact model."""
 
 from cvnotes.pictures import course
 from cvnotes.pictures.boards import clutter, render
@@ -19,17 +19,20 @@ from cvnotes.pictures.views import (
 
 __all__ = [
     "course",
+    # boards, and what a scene looks like
     "render",
     "clutter",
     "render_scene",
     "radiance",
     "depth_map",
     "Scene",
+    # places, in the order of the chapters
     "rails",
     "blocks",
     "corridor",
     "room",
     "target_scene",
+    # sets of poses: one that is good, and those of chapter 7 that are not
     "good_views",
     "fronto_parallel_views",
     "pure_translation_views",
@@ -37,8 +40,10 @@ __all__ = [
     "one_axis_views",
     "centre_only_views",
     "repeated_views",
+    # one pose
     "facing",
     "hold_at",
+    # from light to grey levels
     "expose",
     "gaussian_blur",
     "motion_blur",

@@ -17,7 +17,7 @@ _GOLDEN = (np.sqrt(5) - 1) / 2
 
 
 def pixel_centres(size: tuple[int, int]) -> Array:
-    """Give the pixels (u, v) of a picture of (width, height) as (height, width, 2).
+    """Return the pixels (u, v) of a picture of (width, height) as (height, width, 2).
 
     Examples
     --------

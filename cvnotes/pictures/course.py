@@ -31,7 +31,7 @@ class RealCorners(NamedTuple):
 
 
 def camera() -> Camera:
-    """Give the course's camera, with its own frame as the WRF.
+    """Return the course's camera, with its own frame as the WRF.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def camera() -> Camera:
 
 
 def board() -> Chessboard:
-    """Give the course's board: 9 × 6 inner corners, 25 mm apart.
+    """Return the course's board: 9 × 6 inner corners, 25 mm apart.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def board() -> Chessboard:
 
 
 def poses() -> Array:
-    """Give the pose of the board in each of the twelve pictures, (12, 4, 4), CRF ← board.
+    """Return the pose of the board in each of the twelve pictures, (12, 4, 4), CRF ← board.
 
     Examples
     --------
@@ -66,7 +66,7 @@ def poses() -> Array:
 
 
 def photos() -> list[npt.NDArray[np.uint8]]:
-    """Give the twelve pictures, grey (480, 640).
+    """Return the twelve pictures, grey (480, 640).
 
     Examples
     --------
@@ -77,7 +77,7 @@ def photos() -> list[npt.NDArray[np.uint8]]:
 
 
 def exact_corners() -> Array:
-    """Give the true corners of the twelve pictures, (12, 54, 2), px.
+    """Return the true corners of the twelve pictures, (12, 54, 2), px.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def exact_corners() -> Array:
 
 
 def measured_corners() -> Array:
-    """Give the corners that `find_corners` finds in the twelve pictures, (12, 54, 2), px.
+    """Return the corners that `find_corners` finds in the twelve pictures, (12, 54, 2), px.
 
     Examples
     --------
@@ -99,7 +99,7 @@ def measured_corners() -> Array:
 
 
 def real_corners() -> RealCorners:
-    """Give the corners that `find_corners` finds in 13 real pairs of photographs.
+    """Return the corners that `find_corners` finds in 13 real pairs of photographs.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def real_corners() -> RealCorners:
 
 
 def stereo_rig() -> tuple[Camera, Camera]:
-    """Give the course's stereo pair: the course's camera, and one beside it.
+    """Return the course's stereo pair: the course's camera, and one beside it.
 
     Examples
     --------

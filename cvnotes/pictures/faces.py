@@ -98,7 +98,7 @@ def faces_before_camera(target: Target, cam_from_world: Array, margin: float) ->
 
 
 def nearest_grey(faces: list[Face], xy: Array) -> Array:
-    """Give the grey level of what is nearest at points `xy` of the plane z = 1, and 1: (m, 2).
+    """Return the grey level of what is nearest at points `xy` of the plane z = 1, and 1: (m, 2).
 
     Rows are (0, 0) where nothing is.
 
@@ -124,7 +124,7 @@ def nearest_grey(faces: list[Face], xy: Array) -> Array:
 
 
 def folds(faces: list[Face]) -> list[Array]:
-    """Give the lines (1, 2, 3) in which the planes of two faces meet, as long as the first.
+    """Return the lines (1, 2, 3) in which the planes of two faces meet, as long as the first.
 
     Examples
     --------

@@ -126,7 +126,7 @@ class Scene:
         return np.asarray(edges[~flat])
 
     def moved(self, world_from_scene: npt.ArrayLike) -> "Scene":
-        """Give the same scene elsewhere: every vertex moved by a rigid motion (4, 4)."""
+        """Return the same scene elsewhere: every vertex moved by a rigid motion (4, 4)."""
         return replace(self, vertices=move(world_from_scene, self.vertices))
 
     def __repr__(self) -> str:

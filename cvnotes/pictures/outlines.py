@@ -19,7 +19,7 @@ _BESIDE = 1e-11  # how far from an edge, on z = 1, the colours on either side of
 def edges_in_picture(
     target: Target, camera: Camera, margin: float = 1.0, *, step: float = 1.0
 ) -> tuple[Array, Array, Array]:
-    """Give the edges between the colours of a target, as a camera sees them.
+    """Return the edges between the colours of a target, as a camera sees them.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def _repeated(lines: Array, normals: Array, line: Indices, middle: Array) -> Mas
 
 
 def _rim(faces: list[Face], lines: Array, centre: Array, radius: float) -> tuple[Array, Array]:
-    """Give the arcs (n, 2), in angles, along which the lens's reach ends on something visible."""
+    """Return the arcs (n, 2), in angles, along which the lens's reach ends on something visible."""
     nx, ny, nz = np.cross(lines[:, 0], lines[:, 1]).T
     # n·(centre + radius (cos φ, sin φ), 1) = 0
     cosine = -(nz + nx * centre[0] + ny * centre[1]) / (
@@ -140,7 +140,7 @@ def _on_rim(phi: Array, centre: Array, radius: float) -> Array:
 
 
 def _visible_radius(camera: Camera) -> float:
-    """Give the ideal radius about the lens's centre that holds all that the picture can show."""
+    """Return the ideal radius about the lens's centre that holds all that the picture can show."""
     (w, h), n = camera.size, 16
     u, v = np.linspace(-0.5, w - 0.5, n), np.linspace(-0.5, h - 0.5, n)
     border = [

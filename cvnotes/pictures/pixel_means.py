@@ -82,7 +82,7 @@ def edge_means(
 
 
 def polygon_means(outline: npt.ArrayLike, size: tuple[int, int], *, blur: float = 0.0) -> Array:
-    """Give the part of each pixel that a polygon covers, (height, width), between 0 and 1.
+    """Return the part of each pixel that a polygon covers, (height, width), between 0 and 1.
 
     Parameters
     ----------

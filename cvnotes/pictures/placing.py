@@ -11,7 +11,7 @@ _ROOM = 4.0  # pixels kept free along the border of the picture
 
 
 def facing(target: Target) -> Array:
-    """Give the rotation (3, 3), CRF ← target, that turns the mean of all faces to the camera.
+    """Return the rotation (3, 3), CRF ← target, that turns the mean of all faces to the camera.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def facing(target: Target) -> Array:
 def hold_at(
     target: Target, camera: Camera, R: npt.ArrayLike, aim: npt.ArrayLike, farther: float = 1.0
 ) -> Array:
-    """Give the pose G (4, 4) of a target seen at pixel `aim`, as large as the picture allows.
+    """Return the pose G (4, 4) of a target seen at pixel `aim`, as large as the picture allows.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ class Hits(NamedTuple):
 
 
 def edge_functions(corners: Array) -> tuple[Array, Array]:
-    """Give rows n_i (m, 3, 3) with e_i = n_i·d, and det (m,), signed so that det > 0.
+    """Return rows n_i (m, 3, 3) with e_i = n_i·d, and det (m,), signed so that det > 0.
 
     `corners` (m, 3, 3) in the CRF. Triangles that are seen edge-on, as a line without width,
     are NaN: no ray meets them.
@@ -156,7 +156,7 @@ def _embree_search(corners: Array, xy: Array) -> Indices:
 
 
 def _depth(n: Array, det: Array, triangle: Indices, xy: Array) -> Array:
-    """Give z of the triangles' planes along the rays, NaN where there is no triangle."""
+    """Return z of the triangles' planes along the rays, NaN where there is no triangle."""
     z = np.full(triangle.shape, np.nan)
     hit = triangle >= 0
     inverse = (n.sum(axis=1) / det[:, None]).T.copy()

@@ -64,7 +64,7 @@ def render_scene(
 
 
 def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "auto") -> Array:
-    """Give the mean light on each pixel, on the scale of grey levels, unrounded.
+    """Return the mean light on each pixel, on the scale of grey levels, unrounded.
 
     Parameters are those of `render_scene`.
 
@@ -97,7 +97,7 @@ def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "
 
 
 def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:
-    """Give the depth z in the CRF of what each pixel's middle shows.
+    """Return the depth z in the CRF of what each pixel's middle shows.
 
     Returns
     -------
@@ -132,7 +132,7 @@ def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
 
 
 def _supersampled(surfaces: Surfaces, camera: Camera, m: Array, samples: int, engine: str) -> Array:
-    """Give the mean colours (n, 3) that `samples` rays in each of the pixels m (n, 2) see."""
+    """Return the mean colours (n, 3) that `samples` rays in each of the pixels m (n, 2) see."""
     out, order, offsets = np.empty((len(m), 3)), tile_order(m), within_pixel(samples)
     for part in chunks(len(m), _PIXELS):
         some = order[part]

@@ -42,7 +42,7 @@ class Surfaces(NamedTuple):
         )
 
     def colours_along(self, xy: Array, engine: str) -> tuple[Array, Array]:
-        """Give the colours (3, groups, k) that rays (groups, k, 2) see, and the squares (2, …)."""
+        """Return the colours (3, groups, k) that rays (groups, k, 2) see, and squares (2, …)."""
         triangle, depth = first_hits(self.corners, xy, engine=engine)
         x, y = np.moveaxis(xy, -1, 0).copy()
         none = triangle < 0
@@ -57,7 +57,7 @@ class Surfaces(NamedTuple):
         return colour, square
 
     def _squares(self, triangle: Indices, x: Array, y: Array) -> Array:
-        """Give the square (i, j) of the checker, as (2, …): (0, 0) where there is none.
+        """Return the square (i, j) of the checker, as (2, …): (0, 0) where there is none.
 
         Around the checker it is (−1, 0), which is odd: the second colour.
         """
@@ -74,7 +74,7 @@ class Surfaces(NamedTuple):
         return square
 
     def _sky(self, x: Array, y: Array) -> Array:
-        """Give the background (3, n) along rays: from the horizon up to the zenith."""
+        """Return the background (3, n) along rays: from the horizon up to the zenith."""
         down = x * self.down[0] + y * self.down[1] + self.down[2]
         height = np.clip(-down / np.sqrt(1 + x * x + y * y), 0, 1)
         horizon, zenith = (np.array(c)[:, None] for c in (self.around.horizon, self.around.zenith))
@@ -83,7 +83,7 @@ class Surfaces(NamedTuple):
 
 
 def _shade(scene: Scene, camera: Camera) -> Array:
-    """Give the brightness (m,) of the side of each triangle that the camera sees.
+    """Return the brightness (m,) of the side of each triangle that the camera sees.
 
     Lambert's cosine law, softened: it falls to the ambient light only on the far side.
     """

@@ -1,4 +1,4 @@
-"""Figures, 3-D scenes and explorations."""
+"""Figures on axes, scenes in space and explorations with sliders, for all chapters."""
 
 from cvnotes.show.explore import (
     explore_camera,
@@ -48,21 +48,29 @@ from cvnotes.show.space.viewer import build_scene, export_glb
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, panels
 
 __all__ = [
+    # a picture on the page
     "show",
     "Picture",
     "panels",
+    # pictures, and what is drawn into them
     "draw_image",
     "draw_points",
     "draw_corners",
     "draw_lines",
     "draw_segments",
     "draw_classes",
+    # chapter 2: vanishing points
+    "draw_vanishing",
+    "draw_heights",
+    # chapter 4: lenses
     "draw_grid",
     "draw_lenses",
     "draw_radius",
     "draw_displacement",
+    # chapter 5: corners
     "draw_response",
     "draw_clouds",
+    # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_residual_scatter",
     "draw_coverage",
@@ -72,11 +80,11 @@ __all__ = [
     "draw_view_families",
     "draw_prediction_error",
     "draw_wall",
-    "draw_vanishing",
-    "draw_heights",
+    # chapter 8: warps
     "draw_hits",
     "draw_cell",
     "draw_rows",
+    # in space
     "draw_scene",
     "build_scene",
     "export_glb",
@@ -94,11 +102,13 @@ __all__ = [
     "Photo",
     "Label",
     "colour_of",
+    # colours with a meaning
     "WORLD",
     "CAMERA",
     "IDEAL",
     "LENS",
     "ESTIMATED",
+    # explorations
     "explore_projection",
     "explore_camera",
     "explore_lens",

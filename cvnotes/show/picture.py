@@ -73,7 +73,7 @@ def show(figure: Any, *, alt: str, width: int | None = None) -> Picture:
 
 
 def figure_of(drawn: Any) -> Figure:
-    """Give the figure that axes, or the first of several, belong to."""
+    """Return the figure that axes, or the first of several, belong to."""
     while not isinstance(drawn, Figure):
         drawn = np.ravel(drawn)[0].figure
     return drawn

@@ -68,7 +68,7 @@ def panels(
 
 
 def dress(ax: Axes) -> Axes:
-    """Give axes the course's look: a light frame, small type."""
+    """Return axes the course's look: a light frame, small type."""
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(MUTED)
     ax.tick_params(labelsize=FONT - 1, color=MUTED, labelcolor="#333333")

@@ -44,7 +44,7 @@ class Text(NamedTuple):
 
 
 def rectangle(x: float, y: float, width: float, height: float) -> Places:
-    """Give the corners of an upright rectangle, from the top left one clockwise.
+    """Return the corners of an upright rectangle, from the top left one clockwise.
 
     Examples
     --------
@@ -117,7 +117,7 @@ class Page:
 
 
 def _pdf(shape: Shape) -> str:
-    """Give the drawing operators of one shape."""
+    """Return the drawing operators of one shape."""
     grey = _number(shape.grey)
     match shape:
         case Line(places, width):
@@ -133,7 +133,7 @@ def _pdf(shape: Shape) -> str:
 
 
 def _svg(shape: Shape) -> str:
-    """Give the element of one shape."""
+    """Return the element of one shape."""
     grey = f"#{round(255 * shape.grey):02x}" + 2 * f"{round(255 * shape.grey):02x}"
     match shape:
         case Line(places, width):
@@ -152,7 +152,7 @@ def _svg(shape: Shape) -> str:
 
 
 def _pdf_file(objects: list[bytes]) -> bytes:
-    """Give each object its number, and list at the end where each begins."""
+    """Return each object its number, and list at the end where each begins."""
     file, starts = b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n", []
     for i, body in enumerate(objects, start=1):
         starts.append(len(file))
@@ -176,7 +176,7 @@ def _escaped(text: str) -> str:
 
 
 def _way(places: Places) -> str:
-    """Give the operators of a path: move to the first place, on to the others."""
+    """Return the operators of a path: move to the first place, on to the others."""
     first, *others = (_numbers(*place) for place in places)
     return f"{first} m " + " ".join(f"{place} l" for place in others)
 

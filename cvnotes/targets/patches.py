@@ -13,7 +13,7 @@ _BRIGHTEST = 1e9  # fourth powers of grey levels fit into single precision
 
 
 def grey_picture(x: Any, name: str = "image") -> Image:
-    """Give a picture's grey levels (height, width); an alpha channel is dropped.
+    """Return a picture's grey levels (height, width); an alpha channel is dropped.
 
     Grey pictures come back as they are, uncopied. Colours are taken as red, green, blue.
 
@@ -61,7 +61,7 @@ def patches(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Mas
 
 
 def patch_gradients(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Array]:
-    """Give places u, v and central differences g_u, g_v of the patches' pixels, (n, (2 half + 1)²).
+    """Return u, v and central differences g_u, g_v of the patches' pixels, (n, (2 half + 1)²).
 
     Where a difference would reach beyond the picture, it is 0.
 

@@ -28,11 +28,11 @@ class Sheet:
     page: Page
 
     def pdf(self) -> bytes:
-        """Give the sheet as a PDF file, the same bytes every time."""
+        """Return the sheet as a PDF file, the same bytes every time."""
         return self.page.pdf()
 
     def svg(self) -> str:
-        """Give the sheet as SVG, a user unit being a millimetre."""
+        """Return the sheet as SVG, a user unit being a millimetre."""
         return self.page.svg()
 
     def save(self, path: PathLike) -> None:
@@ -42,7 +42,7 @@ class Sheet:
         Path(path).write_bytes(self.encoded(path))
 
     def encoded(self, path: PathLike) -> bytes:
-        """Give the bytes that belong into a file of that name.
+        """Return the bytes that belong into a file of that name.
 
         Raises
         ------

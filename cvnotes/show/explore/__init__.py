@@ -37,7 +37,7 @@ NAMES = tuple(_MODELS)
 
 
 def model(name: str, camera: Camera | None = None, board: Chessboard | None = None) -> Model:
-    """Give the model of an exploration, for the course's camera and board unless others are given.
+    """Return a model of an exploration, for the course's camera and board unless others are given.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def still(
     board: Chessboard | None = None,
     **values: float,
 ) -> Picture:
-    """Give the picture that an exploration shows for some values, for the page.
+    """Return the picture that an exploration shows for some values, for the page.
 
     Parameters
     ----------

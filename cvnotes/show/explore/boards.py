@@ -18,7 +18,7 @@ _VIEW = rotation_from_vector([0.35, 0, 0]) @ rotation_from_vector([0, -0.9, 0])
 
 
 def pinhole(camera: Camera) -> Camera:
-    """Give a camera's sensor behind an ideal lens, in its own frame: straight lines stay so."""
+    """Return a camera's sensor behind an ideal lens, in its own frame: straight lines stay so."""
     return Camera(camera.A, size=camera.size)
 
 
@@ -60,7 +60,7 @@ def on_sheet(W: Array) -> Array:
 
 @lru_cache(maxsize=4)
 def _board(board: Chessboard) -> tuple[Array, Array]:
-    """Give the corners of a board's paper (4, 3) and of its dark squares (m, 4, 3)."""
+    """Return the corners of a board's paper (4, 3) and of its dark squares (m, 4, 3)."""
     squares, border = target_shapes(board)
     assert isinstance(squares, Faces)
     assert isinstance(border, Lines)

@@ -120,7 +120,7 @@ def _sentence(camera: Camera, lens: Lens) -> str:
 
 
 def camera_corners(camera: Camera) -> Array:
-    """Give the corners (4, 2) of a camera's picture on the plane z = 1, through an ideal lens."""
+    """Return the corners (4, 2) of a camera's picture on the plane z = 1, through an ideal lens."""
     w, h = camera.size
     corners = [[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]]
     return Camera(camera.A, size=camera.size).ideal(corners)

@@ -97,7 +97,7 @@ class Model:
         return values
 
     def sight(self, **values: float) -> Sight:
-        """Give picture and sentence; where there is no answer, the sentence says why."""
+        """Return picture and sentence; where there is no answer, the sentence says why."""
         return self._sight(Paper(), self.values(**values))
 
     def _sight(self, paper: Paper, values: Values) -> Sight:
@@ -110,11 +110,11 @@ class Model:
             return Sight(paper.join((panel,)), f"No answer: {reason}.")
 
     def picture(self, **values: float) -> Drawn:
-        """Give the picture alone, (height, width, 3) of uint8."""
+        """Return the picture alone, (height, width, 3) of uint8."""
         return self.sight(**values).picture
 
     def still(self, **values: float) -> Picture:
-        """Give the picture for a page: at twice the resolution, with its alternative text."""
+        """Return the picture for a page: at twice the resolution, with its alternative text."""
         from PIL import Image
 
         sight = self._sight(Paper(2), self.values(**values))

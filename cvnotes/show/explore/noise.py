@@ -36,7 +36,7 @@ class _Study:
         self.std_by_views = np.array([self._std(n) for n in counts])  # for noise of 1 px
 
     def std(self, n: int, sigma: float) -> Array:
-        """Give the least standard deviations possible with n views, in the order of `_SHOWN`."""
+        """Return the least standard deviations possible with n views, in the order of `_SHOWN`."""
         return np.asarray(sigma * self.std_by_views[n - _FEWEST])
 
     def estimate(self, n: int, sigma: float, draw: int) -> tuple[Array, Array]:

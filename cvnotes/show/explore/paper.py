@@ -62,7 +62,7 @@ class Panel:
         return (self.x[1] - self.x[0]) * self.scale / self.width
 
     def place(self, xy: npt.ArrayLike) -> Array:
-        """Give where points (..., 2) lie on this panel, in its own pixels; NaN stays NaN."""
+        """Return where points (..., 2) lie on this panel, in its own pixels; NaN stays NaN."""
         low = np.array([self.x[0], self.y[0]])
         extent = np.array([self.x[1], self.y[1]]) - low
         at = (np.asarray(xy, dtype=np.float64) - low) / extent * [self.width, self.height]
@@ -139,7 +139,7 @@ class Panel:
             self.text([x0 + 0.01 * (x1 - x0), value], number, size=9)
 
     def finish(self) -> Drawn:
-        """Give the panel with frame and title, at its final size."""
+        """Return the panel with frame and title, at its final size."""
         sharpness = self.scale // 2
         strip, gap = sharpness * _TITLE, sharpness * _GAP
         self._draw.rectangle(

@@ -90,7 +90,7 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
 
 
 def _sleepers(middle: Array, along: Array, across: Array) -> Array:
-    """Give the ends (n, 2, 3) of the sleepers, one for each metre."""
+    """Return the ends (n, 2, 3) of the sleepers, one for each metre."""
     s = np.arange(-25.0, 40.0)[:, None, None]
     return np.asarray(middle + s * along + np.outer([-0.8, 0.8], across) * _GAUGE)
 

@@ -78,7 +78,7 @@ def _row(
 
 
 def lines_from(other: Camera, camera: Camera, W: Array) -> Array:
-    """Give the lines (n, 3) in a camera's picture on which what the other sees of W must lie."""
+    """Return the lines (n, 3) in a camera's picture on which what the other sees of W must lie."""
     return epipolar_lines(fundamental_matrix(other, camera), other.project(W))
 
 
@@ -88,7 +88,7 @@ def _rows_apart(left: Camera, right: Camera, board: Chessboard) -> float:
 
 
 def _across(line: Array, size: tuple[int, int]) -> Array:
-    """Give two points (2, 2) of a line, beyond the left and right (or upper, lower) border."""
+    """Return two points (2, 2) of a line, beyond the left and right (or upper, lower) border."""
     a, b, c = line.tolist()
     along = 0 if abs(b) >= abs(a) else 1
     ends = np.array([-1.0, size[along]])

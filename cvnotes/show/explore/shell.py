@@ -69,7 +69,7 @@ class Explorer(VBox):
         return f"explore {self.model.name}: run this cell to move its sliders"
 
     def _repr_mimebundle_(self, **kwargs: Any) -> dict[str, Any]:
-        """Give the view of the widget, and the still for whoever cannot show that."""
+        """Return the view of the widget, and the still for whoever cannot show that."""
         bundle: dict[str, Any] = super()._repr_mimebundle_(**kwargs)  # type: ignore[no-untyped-call]
         said = escape(self.model.sight(**self.values).sentence)
         still = self.model.still(**self.values)._repr_html_()

@@ -173,7 +173,7 @@ def segment_ends(segments: npt.ArrayLike) -> Array:
 
 
 def pixel_axes(ax: Axes | None, size: tuple[int, int]) -> Axes:
-    """Give axes for pixels: those that there are, or new ones for a picture of a size.
+    """Return axes for pixels: those that there are, or new ones for a picture of a size.
 
     Examples
     --------

@@ -175,7 +175,7 @@ def draw_view_rms(
 
 
 def _corners_of(calibration: "Calibration") -> Array:
-    """Give all image points (n, 2) of a calibration that still has them."""
+    """Return all image points (n, 2) of a calibration that still has them."""
     calibrated(calibration)
     if not calibration.image_points:
         raise DegenerateError("this calibration was read from a file that has no corners")

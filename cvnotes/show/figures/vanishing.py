@@ -110,7 +110,7 @@ def draw_heights(
 
 
 def _foot(corner: Array, a: Array, b: Array) -> Array:
-    """Give the point of the line through a and b that is nearest to a corner."""
+    """Return the point of the line through a and b that is nearest to a corner."""
     side, height = b - a, np.linalg.det(np.stack([corner - a, b - a]))
     if abs(height) <= 1e-12 * max(float(side @ side), float((corner - a) @ (corner - a))):
         raise DegenerateError("the three vanishing points lie on a line: there is no triangle")

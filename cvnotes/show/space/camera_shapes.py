@@ -20,7 +20,7 @@ def camera_shapes(
     name: str = "camera",
     meaning: str = "camera",
 ) -> Shapes:
-    """Give a camera: its centre, and the pyramid to its image plane at z = `depth`.
+    """Return a camera: its centre, and the pyramid to its image plane at z = `depth`.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def ray_shapes(
     name: str = "rays",
     meaning: str = "lens",
 ) -> Shapes:
-    """Give the rays that pixels see, from the camera's centre.
+    """Return the rays that pixels see, from the camera's centre.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def ray_shapes(
 def sheet_shapes(
     edge: npt.ArrayLike, edges: npt.ArrayLike, *, name: str = "sheets", meaning: str = "world"
 ) -> Shapes:
-    """Give flat sheets from one edge to others, as the rays of a camera to lines of the world.
+    """Return flat sheets from one edge to others, as the rays of a camera to lines of the world.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def sheet_shapes(
 
 
 def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shapes:
-    """Give a plane of constant z in the CRF, and what the picture covers of it.
+    """Return a plane of constant z in the CRF, and what the picture covers of it.
 
     On the plane z = 1 live the ideal image points; `z` makes a copy of it as large as the rest of
     the figure. The outline is the picture's border, freed from the lens.
@@ -180,7 +180,7 @@ def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shap
 def dot_shapes(
     W: npt.ArrayLike, name: str, *, radius: float = 8.0, meaning: str = "estimated"
 ) -> Shapes:
-    """Give a point of the world (3,): a small octahedron with its name.
+    """Return a point of the world (3,): a small octahedron with its name.
 
     Examples
     --------

@@ -20,7 +20,7 @@ _MOST_STEPS = 12
 
 
 def frame(ax: Axes3D, shown: Array, unit: str) -> None:
-    """Give axes that are looked at from where they will be seen a box around points.
+    """Return axes that are looked at from where they will be seen a box around points.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def frame(ax: Axes3D, shown: Array, unit: str) -> None:
 
 
 def _fill(ax: Axes3D) -> None:
-    """Give the box all the room of the axes' place; matplotlib leaves half of it empty."""
+    """Return the box all the room of the axes' place; matplotlib leaves half of it empty."""
     figure = ax.get_figure()
     place = ax.get_position(original=True).transformed(figure.transFigure)
     paper = RendererAgg(round(figure.bbox.width), round(figure.bbox.height), figure.dpi)  # type: ignore[no-untyped-call]
@@ -118,7 +118,7 @@ def _separate(ax: Axes3D, paper: RendererAgg) -> None:
 
 
 def _numbers(ax: Axes3D, paper: RendererAgg) -> list[list[tuple[float, Bbox]]]:
-    """Give each axis's numbers with their boxes, and put all words where they will be."""
+    """Return each axis's numbers with their boxes, and put all words where they will be."""
     ax.M = ax.get_proj()
     found = []
     for axis in _axes(ax):
@@ -144,7 +144,7 @@ def _pieces(label: Text, paper: RendererAgg) -> list[Bbox]:
 
 
 def _words(ax: Axes3D, paper: RendererAgg) -> Array:
-    """Give the corners (n, 2) of the boxes of all words: numbers, labels and names."""
+    """Return the corners (n, 2) of the boxes of all words: numbers, labels and names."""
     boxes = [box for found in _numbers(ax, paper) for _, box in found]
     boxes += [axis.label.get_window_extent(paper) for axis in _axes(ax)]
     for text in ax.texts:
@@ -155,7 +155,7 @@ def _words(ax: Axes3D, paper: RendererAgg) -> Array:
 
 
 def _box(ax: Axes3D) -> Array:
-    """Give the pixels (8, 2) of the box's corners."""
+    """Return the pixels (8, 2) of the box's corners."""
     ax.M = ax.get_proj()
     limits = np.array([ax.get_xlim(), ax.get_ylim(), ax.get_zlim()])
     corners = [limits[[0, 1, 2], choice] for choice in np.ndindex(2, 2, 2)]
@@ -164,7 +164,7 @@ def _box(ax: Axes3D) -> Array:
 
 
 def _lengths(ax: Axes3D) -> Array:
-    """Give the mean length (3,) in pixels of the box's edges along each axis."""
+    """Return the mean length (3,) in pixels of the box's edges along each axis."""
     corners = _box(ax).reshape(2, 2, 2, 2)
     ways = [np.diff(corners, axis=i).reshape(-1, 2) for i in range(3)]
     return np.array([np.linalg.norm(way, axis=-1).mean() for way in ways])

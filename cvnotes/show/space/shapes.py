@@ -68,7 +68,7 @@ def axes_shapes(
     name: str = "WRF",
     meaning: str = "world",
 ) -> Shapes:
-    """Give a frame: three arrows with their letters.
+    """Return a frame: three arrows with their letters.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def target_shapes(
     *,
     name: str = "",
 ) -> Shapes:
-    """Give a target: the squares of its boards, and a square of white paper around them.
+    """Return a target: the squares of its boards, and a square of white paper around them.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def target_shapes(
 def horizon_shapes(
     centre: npt.ArrayLike = (0, 0, 0), radius: float = 1e4, *, name: str = "horizon"
 ) -> Shapes:
-    """Give the horizon: where the plane at infinity meets all level planes.
+    """Return the horizon: where the plane at infinity meets all level planes.
 
     A dashed circle stands for it, around `centre`, at the height of whoever looks from there;
     every level direction ends in a point of it, and opposite directions in the same ideal point.
@@ -177,7 +177,7 @@ def horizon_shapes(
 
 
 def scene_shapes(scene: Scene, *, name: str = "scene") -> Shapes:
-    """Give a scene's triangles; a checker shows as the mean of its two colours.
+    """Return a scene's triangles; a checker shows as the mean of its two colours.
 
     Examples
     --------
@@ -191,7 +191,7 @@ def scene_shapes(scene: Scene, *, name: str = "scene") -> Shapes:
 
 
 def places(*shapes: Shape) -> Array:
-    """Give all points (n, 3) of shapes."""
+    """Return all points (n, 3) of shapes."""
     if not shapes:
         raise CvnotesError("a scene needs at least one shape")
     for shape in shapes:
@@ -205,7 +205,7 @@ def places(*shapes: Shape) -> Array:
 
 
 def extent(*shapes: Shape) -> float:
-    """Give the longest side of the box around shapes.
+    """Return the longest side of the box around shapes.
 
     Examples
     --------
@@ -216,7 +216,7 @@ def extent(*shapes: Shape) -> float:
 
 
 def colour_of(meaning: str) -> str:
-    """Give the course's colour of a meaning.
+    """Return the course's colour of a meaning.
 
     Examples
     --------

@@ -104,7 +104,7 @@ def _ribbons(ends: Array, width: float, towards: Array) -> Array:
 
 
 def _towards(view: tuple[float, float]) -> Array:
-    """Give the direction to the viewer in the WRF."""
+    """Return the direction to the viewer in the WRF."""
     elevation, azimuth = np.deg2rad(view)
     level = np.cos(elevation)
     return np.array([level * np.cos(azimuth), -np.sin(elevation), level * np.sin(azimuth)])

@@ -132,7 +132,7 @@ def _paint(rgba: Array, **kwargs: Any) -> Any:
 
 
 def _bars(ends: Array, thickness: float) -> Array:
-    """Give segments (k, 2, 3) a body: the four long sides (4 k, 4, 3) of square bars."""
+    """Return segments (k, 2, 3) a body: the four long sides (4 k, 4, 3) of square bars."""
     way = ends[:, 1] - ends[:, 0]
     way = way / np.linalg.norm(way, axis=-1, keepdims=True)
     # Any direction that is not along the segment: the axis that it follows least.
