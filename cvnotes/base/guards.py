@@ -253,12 +253,8 @@ def generator(x: Any, name: str = "rng") -> "np.random.Generator":
     --------
     >>> generator(7)
     Traceback (most recent call last):
-    cvnotes.base.errors.InputTypeError: rng: expected a numpy.random.Generator \
-(np.random.default_rng(seed)), got int
+    cvnotes.base.errors.InputTypeError: rng: expected a numpy.random.Generator, got int
     """
     if not isinstance(x, np.random.Generator):
-        raise InputTypeError(
-            f"{name}: expected a numpy.random.Generator (np.random.default_rng(seed)), "
-            f"got {type(x).__name__}"
-        )
+        raise InputTypeError(f"{name}: expected a numpy.random.Generator, got {type(x).__name__}")
     return x

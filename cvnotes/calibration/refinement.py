@@ -22,7 +22,7 @@ from cvnotes.base import (
     solved,
 )
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.camera import Camera, intrinsics, rotation_from_vector
+from cvnotes.camera import Camera, rotation_from_vector
 from cvnotes.camera.lens_fold import horner, radial_factor
 
 # What `lens=` may name: how many radial terms, and whether the tangential ones too.
@@ -122,8 +122,7 @@ class Problem:
 
     def camera_of(self, shared: Array) -> Camera:
         """Give the camera that the shared parameters stand for; what is not sought is zero."""
-        plain = Camera(intrinsics(1, 1, 0, 0), size=self.size)
-        return plain.with_parameters(dict(zip(self.names, shared.tolist(), strict=True)))
+        return self._plain.with_parameters(dict(zip(self.names, shared.tolist(), strict=True)))
 
     def linearise(self, x: State) -> "tuple[float, Arrow]":
         """Give the cost and the normal equations at x."""
@@ -162,6 +161,11 @@ class Problem:
         views = (slice(i, i + 1) for i in range(len(self.m)))
         both = np.concatenate([self._jacobian(x, i).transpose(2, 3, 1, 0).copy() for i in views])
         return both[..., :-1], both[..., -1]
+
+    @cached_property
+    def _plain(self) -> Camera:
+        """A camera of that size in which all that can be sought is 0, but for α = 1."""
+        return Camera(np.eye(3), size=self.size)
 
     @cached_property
     def _by_coordinate(self) -> tuple[Array, Array]:

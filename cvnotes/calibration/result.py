@@ -109,7 +109,7 @@ class Calibration:
             raise CvnotesError("the uncertainty of the poses is not kept in files")
         return self._pose_covariance()
 
-    @property
+    @cached_property
     def camera(self) -> Camera:
         """The camera, with its own frame as the WRF."""
         return Camera(self.A, lens=self.lens, size=self.size)

@@ -13,6 +13,7 @@ from cvnotes.base import (
     CvnotesError,
     InputTypeError,
     ShapeError,
+    generator,
     number,
     numbers,
     target_size,
@@ -148,8 +149,7 @@ def clutter(
     (48, 64)
     """
     width, height = size = target_size(size)
-    if not isinstance(rng, np.random.Generator):
-        raise InputTypeError(f"rng: expected a numpy.random.Generator, got {type(rng).__name__}")
+    generator(rng)
     picture = np.full((3 if colour else 1, height, width), 110.0)
     for _ in range(things):
         # Corners in order of their angle as seen from the middle, so that no sides cross.

@@ -5,6 +5,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, InputTypeError, chunks, target_size
 from cvnotes.camera import Camera, move
+from cvnotes.camera.model import is_camera
 from cvnotes.pictures.antialiasing import (
     TILE,
     changing,
@@ -124,8 +125,7 @@ def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
             f"scene: expected a Scene, got {type(scene).__name__}; "
             "cvnotes.pictures.scenes.target_scene makes one of a target"
         )
-    if not isinstance(camera, Camera):
-        raise InputTypeError(f"camera: expected a Camera, got {type(camera).__name__}")
+    is_camera(camera, "camera")
     target_size(camera.size)
     if not isinstance(samples, int) or samples < 1:
         raise CvnotesError(f"samples: expected a whole number of rays, at least 1, got {samples!r}")

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, InputTypeError, numbers
+from cvnotes.base import Array, CvnotesError, DegenerateError, InputTypeError, generator, numbers
 from cvnotes.camera import Camera, rotation_from_vector
+from cvnotes.camera.model import is_camera
 from cvnotes.pictures.faces import Target
 from cvnotes.pictures.placing import every_face_seen, facing, hold_at
 
@@ -16,10 +17,8 @@ def guard(target: Target, camera: Camera, n: int, rng: np.random.Generator) -> N
         raise InputTypeError(
             f"target: expected a Chessboard or the like, got {type(target).__name__}"
         )
-    if not isinstance(camera, Camera):
-        raise InputTypeError(f"camera: expected a Camera, got {type(camera).__name__}")
-    if not isinstance(rng, np.random.Generator):
-        raise InputTypeError(f"rng: expected a numpy.random.Generator, got {type(rng).__name__}")
+    is_camera(camera, "camera")
+    generator(rng)
     if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
         raise CvnotesError(f"n: expected a number of views, at least 1, got {n!r}")
 
