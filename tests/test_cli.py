@@ -6,6 +6,7 @@ import re
 import shutil
 import signal
 import socket
+import stat
 import subprocess
 import sys
 import textwrap
@@ -626,6 +627,56 @@ def test_a_server_that_ends_at_once_is_said():
 
 
 @pytest.mark.slow
+@posix
+def test_a_browser_is_started_with_a_page_of_its_owners_and_not_with_the_token(tmp_path):
+    from cvnotes.commands.redirect import leading_to
+
+    secret = "http://127.0.0.1:8888/lab/tree/a.ipynb?token=SECRET&x=1"
+    with leading_to(secret, tmp_path) as page:
+        assert "SECRET" not in page
+        path = Path(urllib.request.url2pathname(page.removeprefix("file://")))
+        assert path.parent == tmp_path
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600
+        assert 'content="0; url=http://127.0.0.1:8888/lab/tree/a.ipynb?token=SECRET&amp;x=1"' in (
+            path.read_text()
+        )
+    assert not list(tmp_path.iterdir())
+    with leading_to(secret, tmp_path / "missing") as page:  # it goes where temporary files go
+        assert "SECRET" not in page
+        path = Path(urllib.request.url2pathname(page.removeprefix("file://")))
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert not path.exists()
+
+
+@posix
+def test_the_token_is_in_no_command_line(notebooks, tmp_path):
+    pytest.importorskip("jupyterlab")
+    browser = tmp_path / "browser"
+    browser.write_text(f"#!/bin/sh\necho \"$@\" > {tmp_path}/called.part\n"
+                       f"mv {tmp_path}/called.part {tmp_path}/called\n")  # fmt: skip
+    browser.chmod(0o700)
+    running = subprocess.Popen(
+        [sys.executable, "-m", "cvnotes", "lab", "--notebooks", str(notebooks)],
+        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+        env=os.environ | {"BROWSER": f"{browser} %s"},
+    )  # fmt: skip
+    try:
+        said = [running.stdout.readline() for _ in range(5)]
+        token = re.search(r"token=(\S+)", said[2])[1]
+        for _ in range(200):
+            if (tmp_path / "called").exists():
+                break
+            time.sleep(0.05)
+        given = (tmp_path / "called").read_text()
+        assert token not in given
+        page = Path(urllib.request.url2pathname(given.strip().removeprefix("file://")))
+        assert token in page.read_text()
+    finally:
+        running.send_signal(signal.SIGINT)
+        running.communicate(timeout=30)
+    assert not page.exists()
+
+
 @posix
 def test_the_course_is_served_on_loopback_until_ctrl_c(notebooks, tmp_path):
     pytest.importorskip("jupyterlab")

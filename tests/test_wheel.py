@@ -21,7 +21,10 @@ EXECUTE = """
     NotebookClient(notebook, kernel_name="python3", timeout=300).execute()
 """
 
-pytestmark = pytest.mark.skipif(not is_clone(), reason="builds the package from a clone")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not is_clone(), reason="builds the package from a clone"),
+]
 
 
 @pytest.fixture(scope="module")

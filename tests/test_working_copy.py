@@ -59,6 +59,7 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in folder.glob("*.ipynb")}
 
 
+@pytest.mark.slow
 def test_three_chapters_run_and_saved_stay_when_a_changed_version_arrives(course, mine):
     original = contents(course)
     for name in CHAPTERS[:3]:
@@ -82,6 +83,7 @@ def test_three_chapters_run_and_saved_stay_when_a_changed_version_arrives(course
     assert contents(mine) == after
 
 
+@pytest.mark.slow
 def test_running_alone_is_work_too(course, mine):
     run_and_save(mine / CHAPTERS[1])
     before = (mine / CHAPTERS[1]).read_bytes()
@@ -103,6 +105,7 @@ def test_a_chapter_that_was_only_opened_is_brought_up_to_date(course, mine):
     assert len(contents(mine)) == 3
 
 
+@pytest.mark.slow
 def test_a_newer_version_that_was_worked_in_is_not_overwritten_by_the_next(course, mine):
     run_and_save(mine / CHAPTERS[1], change="'mine'")
     write(course, CHAPTERS[1], "'second'")
@@ -132,6 +135,7 @@ def test_a_file_that_is_no_notebook_any_more_is_left_alone(course, mine):
     assert (mine / CHAPTERS[1]).read_bytes() == b"\xff not JSON"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("asked", ["1", "01", "01_points", "01_points.ipynb"])
 def test_a_chapter_starts_over_and_the_old_one_is_kept(course, mine, asked):
     fresh = (mine / CHAPTERS[1]).read_bytes()

@@ -10,16 +10,19 @@ import sys
 import time
 import webbrowser
 from collections.abc import Sequence
+from contextlib import suppress
 from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 
 from cvnotes.base import FileError
 from cvnotes.base.material import material
 from cvnotes.commands.console import say
+from cvnotes.commands.redirect import leading_to
 from cvnotes.commands.working_copy import FOLDER, default_folder, deliver, start_over
 from cvnotes.files.writing import printable
 
 START = "00_start_here.ipynb"
+_SECONDS_TO_OPEN = 60  # after which no browser still reads the page that leads to the course
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -60,10 +63,13 @@ def run(args: argparse.Namespace) -> int:
         wait_until_up(server, port)
         address = f"http://127.0.0.1:{port}/lab/tree/{START}?token={token}"
         say(f"The course is open at\n\n    {address}\n")
-        if not args.no_browser and not open_browser(address):
-            say("No browser could be opened here: copy the address into one on this machine.")
-        say("Ctrl-C ends it.")
-        sys.stdout.flush()
+        with leading_to(address, notebooks) as page:
+            if not args.no_browser and not open_browser(page):
+                say("No browser could be opened here: copy the address into one on this machine.")
+            say("Ctrl-C ends it.")
+            sys.stdout.flush()
+            with suppress(subprocess.TimeoutExpired):
+                return server.wait(timeout=_SECONDS_TO_OPEN)
         return server.wait()
     except KeyboardInterrupt:
         say("\nThe course is closed; what you saved is kept.")
