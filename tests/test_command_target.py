@@ -24,6 +24,12 @@ def test_the_board_asked_for_is_written_and_the_user_told_to_check_the_ruler(tmp
     assert said.err == ""
 
 
+@pytest.mark.parametrize(("said", "meant"), [("a4", "A4"), ("LETTER", "Letter"), ("a3", "A3")])
+def test_a_paper_may_be_written_small(said, meant, tmp_path):
+    assert cvnotes("target", "--paper", said, "--out", tmp_path / "board.svg") == 0
+    assert (tmp_path / "board.svg").read_text() == Chessboard((9, 6), 25.0).sheet(meant).svg()
+
+
 def test_the_default_is_the_board_of_the_course_on_a4(tmp_path):
     assert cvnotes("target", "--out", tmp_path / "new" / "board.svg") == 0
     assert (tmp_path / "new" / "board.svg").read_text() == Chessboard((9, 6), 25.0).sheet().svg()
@@ -34,6 +40,7 @@ def test_the_default_is_the_board_of_the_course_on_a4(tmp_path):
     [
         (["--square", "26"], 1, "does not fit on A4; squares of up to 25 mm do, or take A3"),
         (["--corners", "8x6"], 2, "looks the same after half a turn"),
+        (["--corners", "8x6"], 2, "or say --half-turn-symmetric"),
         (["--corners", "9x1"], 2, "at least 2×2"),
     ],
 )

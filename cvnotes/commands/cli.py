@@ -37,7 +37,7 @@ class _Parser(argparse.ArgumentParser):
 
 def parser() -> argparse.ArgumentParser:
     """Describe the command and its sub-commands."""
-    from cvnotes.commands import calibrate, grade, lab, target, undistort
+    from cvnotes.commands import calibrate, completion, grade, lab, target, undistort
 
     top = _Parser(
         prog="cvnotes",
@@ -47,7 +47,7 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("-V", "--version", action="version", version=f"cvnotes {__version__}")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for module in (lab, target, calibrate, undistort, grade):
+    for module in (lab, target, calibrate, undistort, grade, completion):
         module.add_parser(commands)
     return top
 

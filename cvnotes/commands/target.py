@@ -1,10 +1,10 @@
 """``cvnotes target``: write a chessboard to print."""
 
 import argparse
-import sys
 from pathlib import Path
 
 from cvnotes.base import CvnotesError
+from cvnotes.commands.console import complain, say
 from cvnotes.files import write_whole
 from cvnotes.files.writing import printable
 from cvnotes.targets import PAPERS, Chessboard
@@ -22,9 +22,15 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "--corners", type=corners, default=(9, 6), metavar="9x6", help="inner corners (default 9x6)"
     )
     parser.add_argument(
-        "--square", type=length, default=25.0, metavar="25", help="side of a square in mm"
+        "--square",
+        type=length,
+        default=25.0,
+        metavar="25",
+        help="side of a square in mm (default 25)",
     )
-    parser.add_argument("--paper", choices=list(PAPERS), default="A4", help="default A4")
+    parser.add_argument(
+        "--paper", type=_paper, choices=list(PAPERS), default="A4", help="paper (default A4)"
+    )
     parser.add_argument(
         "--out", required=True, metavar="board.pdf", help="file to write, .pdf or .svg"
     )
@@ -41,14 +47,15 @@ def run(args: argparse.Namespace) -> int:
     try:
         board = Chessboard(args.corners, args.square, args.half_turn_symmetric)
     except CvnotesError as error:
-        print(f"cvnotes target: {error}", file=sys.stderr)
+        option = str(error).replace("say half_turn_symmetric=True", "say --half-turn-symmetric")
+        complain("target", option)
         return 2
     try:
         write_whole({Path(args.out): board.sheet(args.paper).encoded(args.out)})
     except CvnotesError as error:
-        print(f"cvnotes target: {error}", file=sys.stderr)
+        complain("target", str(error))
         return 1
-    print(f"{printable(args.out)}: print it at 100 %, and check that its ruler is 100 mm long")
+    say(f"{printable(args.out)}: print it at 100 %, and check that its ruler is 100 mm long")
     return 0
 
 
@@ -64,6 +71,11 @@ def corners(text: str) -> tuple[int, int]:
     if not (_is_count(columns) and _is_count(rows)):
         raise argparse.ArgumentTypeError(f"expected inner corners such as 9x6, got {text!r}")
     return int(columns), int(rows)
+
+
+def _paper(text: str) -> str:
+    """Read the name of a paper in capitals or not: A4, a4, letter."""
+    return next((name for name in PAPERS if name.lower() == text.lower()), text)
 
 
 def length(text: str) -> float:

@@ -1,0 +1,131 @@
+"""``cvnotes completion``: let a shell complete the command's words."""
+
+import argparse
+from collections.abc import Callable
+
+from cvnotes.commands.console import say
+
+_HOW = {
+    "bash": 'eval "$(cvnotes completion bash)"   in ~/.bashrc',
+    "zsh": 'eval "$(cvnotes completion zsh)"   in ~/.zshrc, after compinit',
+    "fish": "cvnotes completion fish > ~/.config/fish/completions/cvnotes.fish",
+}
+
+
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Describe the command's arguments."""
+    parser = subparsers.add_parser(
+        "completion",
+        help="let your shell complete this command",
+        description="Print what lets a shell complete commands, options and files after cvnotes.",
+        epilog="\n".join(_HOW.values()),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("shell", choices=list(_HOW), help="the shell")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print a shell's completion; gives the exit code."""
+    from cvnotes.commands.cli import parser
+
+    write: dict[str, Callable[[dict[str, list[argparse.Action]], dict[str, str]], str]] = {
+        "bash": _bash,
+        "zsh": _zsh,
+        "fish": _fish,
+    }
+    say(write[args.shell](*_described(parser())))
+    return 0
+
+
+def _described(
+    top: argparse.ArgumentParser,
+) -> tuple[dict[str, list[argparse.Action]], dict[str, str]]:
+    """Give the arguments and the help of each sub-command; those of none stand under ''."""
+    (commands,) = [a for a in top._actions if isinstance(a, argparse._SubParsersAction)]
+    arguments = {name: list(parser._actions) for name, parser in commands.choices.items()}
+    arguments[""] = [action for action in top._actions if action is not commands]
+    helps = {choice.dest: choice.help or "" for choice in commands._choices_actions}
+    return arguments, helps
+
+
+def _options(actions: list[argparse.Action]) -> list[str]:
+    return [option for action in actions for option in action.option_strings]
+
+
+def _choices(actions: list[argparse.Action]) -> list[str]:
+    """Give the words that an argument without an option may be."""
+    return [str(c) for a in actions if not a.option_strings for c in a.choices or ()]
+
+
+def _bash(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) -> str:
+    """Complete options and fixed words; everything else are files."""
+    cases = [_bash_case(name, arguments[name]) for name in helps]
+    top = " ".join([*helps, *_options(arguments[""])])
+    return "\n".join(
+        [
+            "_cvnotes() {",
+            '    local word="${COMP_WORDS[COMP_CWORD]}" before="${COMP_WORDS[COMP_CWORD-1]}" words=',
+            "    if [ $COMP_CWORD -eq 1 ]; then",
+            f'        words="{top}"',
+            "    else",
+            '        case "${COMP_WORDS[1]} $before" in',
+            *[line for valued, _ in cases for line in valued],
+            '        *) case "${COMP_WORDS[1]}" in',
+            *[plain for _, plain in cases],
+            "        esac ;;",
+            "        esac",
+            "    fi",
+            '    COMPREPLY=($(compgen -W "$words" -- "$word"))',
+            "}",
+            "complete -o default -F _cvnotes cvnotes",
+        ]
+    )
+
+
+def _bash_case(name: str, actions: list[argparse.Action]) -> tuple[list[str], str]:
+    valued = [
+        f'        "{name} {option}") words="{" ".join(map(str, action.choices or ()))}" ;;'
+        for action in actions
+        for option in action.option_strings
+        if action.nargs != 0
+    ]
+    return (
+        valued,
+        f'            {name}) words="{" ".join(_choices(actions) + _options(actions))}" ;;',
+    )
+
+
+def _zsh(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) -> str:
+    """Zsh reads bash's."""
+    return "autoload -U +X bashcompinit && bashcompinit\n" + _bash(arguments, helps)
+
+
+def _fish(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) -> str:
+    """Complete with the help beside each word."""
+    lines = []
+    for name, actions in arguments.items():
+        when = f"__fish_seen_subcommand_from {name}" if name else "__fish_use_subcommand"
+        for action in actions:
+            said = _quoted((action.help or "").replace("%%", "%"))
+            for option in action.option_strings:
+                kind = "-l" if option.startswith("--") else "-s"
+                values = (
+                    f" -a {_quoted(' '.join(map(str, action.choices)))}" if action.choices else ""
+                )
+                takes = "" if action.nargs == 0 else " -r"
+                flag = f"{kind} {option.lstrip('-')}"
+                lines.append(f"complete -c cvnotes -n '{when}' {flag}{takes}{values} -d {said}")
+        if words := _choices(actions):
+            lines.append(f"complete -c cvnotes -f -n '{when}' -a {_quoted(' '.join(words))}")
+    for name, said in helps.items():
+        lines.append(
+            f"complete -c cvnotes -f -n __fish_use_subcommand -a {name} -d {_quoted(said)}"
+        )
+    return "\n".join(lines)
+
+
+def _quoted(text: str) -> str:
+    """Quote for fish."""
+    escaped = text.replace("\\", "\\\\").replace("'", "\\'")
+    return f"'{escaped}'"
