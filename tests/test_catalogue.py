@@ -140,6 +140,7 @@ def test_infinity_is_refused_by_the_arguments_name(function, arrays):
             assert "NaN or infinite" in message, message
 
 
+@pytest.mark.slow
 @row(3)
 def test_numbers_near_the_largest_never_overflow_and_never_come_out_as_garbage(function, arrays):
     # Overflow would be a RuntimeWarning, and so an error here.
@@ -289,6 +290,7 @@ def test_what_fails_while_becoming_an_array_is_an_error_of_type_with_its_reason(
         assert isinstance(caught.value.__cause__, RuntimeError)
 
 
+@pytest.mark.slow
 @row(12)
 def test_the_same_numbers_in_another_dress_give_the_same_answer(function, arrays):
     expected = numbers_of(answer(function))
@@ -322,6 +324,7 @@ def test_read_only_input_is_read_and_no_input_is_written_to(function, arrays):
         numbers_of(answer(function, **{name: x}))
 
 
+@pytest.mark.slow
 @row(14, is_numeric)
 def test_whole_numbers_are_computed_with_like_any_others(function, arrays):
     for name in arrays:

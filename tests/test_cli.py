@@ -113,6 +113,7 @@ def calibrated(photos, tmp_path_factory):
     return done, out
 
 
+@pytest.mark.slow
 def test_photographs_become_a_camera_within_its_error_bars(calibrated):
     done, out = calibrated
     assert done.returncode == 0, done.stderr
@@ -127,6 +128,7 @@ def test_photographs_become_a_camera_within_its_error_bars(calibrated):
     assert keys["lens"] == "k1 k2 p1 p2"
 
 
+@pytest.mark.slow
 def test_every_photograph_is_listed_and_those_not_used_have_their_reasons(calibrated):
     done, out = calibrated
     reasons = {
@@ -148,6 +150,7 @@ def test_every_photograph_is_listed_and_those_not_used_have_their_reasons(calibr
         assert re.search(rf"^view {i}\.png +0\.\d\d\d", done.stdout, re.M)
 
 
+@pytest.mark.slow
 def test_the_report_has_error_bars_and_what_the_result_rests_on(calibrated):
     said = calibrated[0].stdout
     assert re.search(r"^alpha_u +4\d\d\.\d+ +0\.\d\d+  px$", said, re.M)
@@ -158,6 +161,7 @@ def test_the_report_has_error_bars_and_what_the_result_rests_on(calibrated):
     assert calibrated[0].stderr == ""  # no bar where nobody watches
 
 
+@pytest.mark.slow
 def test_pictures_are_left_beside_the_numbers_and_nothing_else(calibrated):
     out = calibrated[1]
     names = ["calibration.json", "calibration.yml", "corners.png", "coverage.png"]

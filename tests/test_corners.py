@@ -46,6 +46,7 @@ class TestFound:
             np.testing.assert_allclose(m, camera.project(BOARD.points), atol=0.03)
             assert rms(m - camera.project(BOARD.points)) < 0.004
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("effects", "limit"),
         [
@@ -391,6 +392,7 @@ class TestRefused:
         with pytest.raises(CornersNotFound):
             find_corners(hidden, BOARD)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("corners", "part"),
         [
@@ -414,6 +416,7 @@ class TestRefused:
         with pytest.raises(CornersNotFound, match="squares go on beyond 9×6 corners"):
             find_corners(image, BOARD)
 
+    @pytest.mark.slow
     def test_larger_boards_are_not_taken_for_it_by_the_finders_either(self):
         for corners in ((10, 7), (11, 6), (9, 8)):
             board = Chessboard(corners, 20.0)
@@ -435,6 +438,7 @@ class TestRefused:
         with pytest.raises(doubts.NotABoard, match="not alternately light and dark"):
             doubts.check_board(fit, (9, 6))
 
+    @pytest.mark.slow
     def test_noise_is_no_board(self):
         # OpenCV's finder sees a 3×3 board in some noise.
         board = Chessboard((3, 3), 25.0, half_turn_symmetric=True)

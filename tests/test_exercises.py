@@ -124,6 +124,7 @@ def test_the_reference_passes_on_any_seed(exercise):
         assert report.passed, report
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCALE_FREE)
 def test_an_answer_without_a_scale_is_right_at_a_thousand_scales_of_either_sign(name):
     exercise = EXERCISES[name]

@@ -217,6 +217,7 @@ def test_a_misbehaving_function_gets_an_exact_sentence(function, words):
     assert repr(report).isprintable() or "\n" in repr(report)
 
 
+@pytest.mark.slow
 @needs_fork
 @pytest.mark.parametrize(("function", "words"), DEADLY.values(), ids=list(DEADLY))
 def test_what_would_take_the_notebook_along_ends_in_a_sentence(function, words, monkeypatch):

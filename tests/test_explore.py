@@ -96,6 +96,7 @@ def test_the_same_values_give_the_same_picture(name):
     assert np.array_equal(model.picture(), MODELS[name].picture())
 
 
+@pytest.mark.slow
 @each_model
 def test_a_picture_is_made_and_packed_sooner_than_an_empty_figure_of_matplotlib(name):
     from cvnotes.show import panels
@@ -491,6 +492,7 @@ def test_reset_draws_once_and_unchanged_values_are_not_drawn_again():
     widget.close_all()
 
 
+@pytest.mark.slow
 @each_model
 def test_where_no_kernel_runs_the_still_of_the_same_values_is_seen(name):
     widget = getattr(explore, f"explore_{name}")()

@@ -24,6 +24,8 @@ from cvnotes.targets import Chessboard, find_corners, finding
 from cvnotes.targets.lattice import handedness
 from cvnotes.targets.opencv_finders import find_classic, find_sb
 
+pytestmark = pytest.mark.slow
+
 BOARD = Chessboard((9, 6), 30.0)
 SIDES = ("left", "right")
 

@@ -40,6 +40,7 @@ def saddle(grey, guess, reach=7):
     return np.array([a + b * c, c + d * a]) / (1 - b * d) + [u, v]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lens", [Lens(), Lens((-0.25, 0.10), (0.001, -0.0005))])
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_rendered_corner_lies_where_the_camera_projects_it(lens, seed):
@@ -77,6 +78,7 @@ def test_a_rendered_vertex_of_a_plain_quad_is_where_its_sides_meet():
         assert np.allclose(found, vertex, atol=0.01)
 
 
+@pytest.mark.slow
 def test_every_grey_value_is_the_mean_over_the_pixels_square():
     board = target_scene(Chessboard(), pose(rotation_from_vector([0.4, 0.3, 0.5]), [-90, -70, 500]))
     camera = Camera(intrinsics(80, 80, 39.5, 29.5), lens=Lens((-0.2,)), size=(80, 60))
@@ -174,13 +176,12 @@ def test_the_background_is_the_horizon_below_and_the_zenith_above():
     assert (render_scene(nothing, SMALL)[24:] == [255, 0, 0]).all()
 
 
-def test_the_same_picture_comes_from_embree():
-    if not has_embree():
-        pytest.skip("embreex is not installed")
+@pytest.mark.parametrize("engine", ["auto", *(["embree"] if has_embree() else [])])
+def test_the_same_picture_comes_from_every_engine(engine):
     camera = Camera(intrinsics(200, 200, 79.5, 59.5), size=(160, 120))
     for scene in (corridor(), target_scene(Chessboard(), pose(np.eye(3), [-100, -62, 500]))):
         own, other = (
-            render_scene(scene, camera, engine=engine).astype(float) for engine in ("own", "embree")
+            render_scene(scene, camera, engine=name).astype(float) for name in ("own", engine)
         )
         assert np.abs(own - other).max() <= 16
         assert np.sqrt(np.mean((own - other) ** 2)) < 0.1

@@ -46,6 +46,7 @@ def printed(sheet, folder, dpi=300):
     return cv2.imread(str(folder / "page.pgm"), cv2.IMREAD_GRAYSCALE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("paper", ["A4", "Letter"])
 def test_a_printed_sheet_has_squares_of_25_mm(paper, tmp_path):
     picture = printed(Chessboard((9, 6), 25.0).sheet(paper), tmp_path)

@@ -284,6 +284,7 @@ def words_of(ax):
     return words
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("view", VIEWS)
 @pytest.mark.parametrize("scale", [0.002, 1, 40])
 def test_numbers_and_labels_of_a_still_never_meet_and_are_never_cut(view, scale):
@@ -301,6 +302,7 @@ def test_numbers_and_labels_of_a_still_never_meet_and_are_never_cut(view, scale)
             assert apart(corners, there), (name, other)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("view", VIEWS)
 def test_a_still_fills_its_place_and_stays_within(view):
     from mpl_toolkits.mplot3d.proj3d import proj_transform
