@@ -1,7 +1,7 @@
 """``cvnotes completion``: let a shell complete the command's words."""
 
 import argparse
-from collections.abc import Callable
+from functools import partial
 
 from cvnotes.commands.console import say
 
@@ -10,6 +10,7 @@ _HOW = {
     "zsh": 'eval "$(cvnotes completion zsh)"   in ~/.zshrc, after compinit',
     "fish": "cvnotes completion fish > ~/.config/fish/completions/cvnotes.fish",
 }
+_TOP = ("-h", "--help", "-V", "--version")
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -22,31 +23,18 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("shell", choices=list(_HOW), help="the shell")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=partial(run, commands=subparsers))
 
 
-def run(args: argparse.Namespace) -> int:
-    """Print a shell's completion; gives the exit code."""
-    from cvnotes.commands.cli import parser
-
-    write: dict[str, Callable[[dict[str, list[argparse.Action]], dict[str, str]], str]] = {
-        "bash": _bash,
-        "zsh": _zsh,
-        "fish": _fish,
-    }
-    say(write[args.shell](*_described(parser())))
-    return 0
-
-
-def _described(
-    top: argparse.ArgumentParser,
-) -> tuple[dict[str, list[argparse.Action]], dict[str, str]]:
-    """Give the arguments and the help of each sub-command; those of none stand under ''."""
-    (commands,) = [a for a in top._actions if isinstance(a, argparse._SubParsersAction)]
+def run(
+    args: argparse.Namespace, commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
+) -> int:
+    """Print a shell's completion of all commands; gives the exit code."""
     arguments = {name: list(parser._actions) for name, parser in commands.choices.items()}
-    arguments[""] = [action for action in top._actions if action is not commands]
     helps = {choice.dest: choice.help or "" for choice in commands._choices_actions}
-    return arguments, helps
+    write = {"bash": _bash, "zsh": _zsh, "fish": _fish}
+    say(write[args.shell](arguments, helps))
+    return 0
 
 
 def _options(actions: list[argparse.Action]) -> list[str]:
@@ -61,11 +49,12 @@ def _choices(actions: list[argparse.Action]) -> list[str]:
 def _bash(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) -> str:
     """Complete options and fixed words; everything else are files."""
     cases = [_bash_case(name, arguments[name]) for name in helps]
-    top = " ".join([*helps, *_options(arguments[""])])
+    top = " ".join([*helps, *_TOP])
     return "\n".join(
         [
             "_cvnotes() {",
-            '    local word="${COMP_WORDS[COMP_CWORD]}" before="${COMP_WORDS[COMP_CWORD-1]}" words=',
+            '    local word="${COMP_WORDS[COMP_CWORD]}" words=',
+            '    local before="${COMP_WORDS[COMP_CWORD-1]}"',
             "    if [ $COMP_CWORD -eq 1 ]; then",
             f'        words="{top}"',
             "    else",
@@ -105,7 +94,7 @@ def _fish(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) ->
     """Complete with the help beside each word."""
     lines = []
     for name, actions in arguments.items():
-        when = f"__fish_seen_subcommand_from {name}" if name else "__fish_use_subcommand"
+        when = f"__fish_seen_subcommand_from {name}"
         for action in actions:
             said = _quoted((action.help or "").replace("%%", "%"))
             for option in action.option_strings:
