@@ -23,8 +23,8 @@ section { border-top: 1px solid var(--line); padding: 1rem 0; }
 p { margin: .5rem 0; }
 ul { list-style: none; margin: .5rem 0; padding: 0; }
 li { padding-left: 1.4em; text-indent: -1.4em; overflow-wrap: anywhere; }
-pre { white-space: pre-wrap; overflow-wrap: anywhere;
-      padding: .6rem .75rem; border: 1px solid var(--line);
+pre { white-space: pre-wrap; overflow-wrap: anywhere; padding: .6rem .75rem;
+      border: 1px solid var(--line);
       border-radius: .4rem; font-size: .8rem; line-height: 1.4; }
 code { overflow-wrap: anywhere; }
 .sum { font-size: 1.35rem; margin: .25rem 0 1rem; }
