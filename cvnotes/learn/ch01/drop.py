@@ -99,6 +99,24 @@ DROP = Exercise(
             "The task asks for NaN.",
             lambda x_h: _where_finite(x_h, x_h[:, :-1]),
         ),
+        Misconception(
+            "multiplied by the last coordinate",
+            "You multiplied by the last coordinate, which is the factor: divide by it.",
+            lambda x_h: x_h[:, :-1] * x_h[:, -1:],
+        ),
+        Misconception(
+            "the first point's factor for all",
+            (
+                "You divided all rows by the last coordinate of the first: each point has a "
+                "factor of its own, x_h[:, -1:]."
+            ),
+            lambda x_h: x_h[:, :-1] / x_h[0, -1],
+        ),
+        Misconception(
+            "last row for last column",
+            "x_h[-1] is the last point. The last coordinate of all points is x_h[:, -1:].",
+            lambda x_h: x_h[:-1] / x_h[-1],
+        ),
     ),
     reference=from_homogeneous,
     concepts=("5", "8", "E3"),

@@ -83,6 +83,24 @@ LIFT = Exercise(
             "axis=1.",
             lambda x, k: np.vstack([k * x, np.full((1, x.shape[1]), k)]),
         ),
+        Misconception(
+            "divided by k",
+            "You divided by k: the last coordinate is then 1/k. Multiply.",
+            lambda x, k: to_homogeneous(x) / k,
+        ),
+        Misconception(
+            "coordinates divided",
+            (
+                "You divided the coordinates and appended k: that is the point (x/k², y/k²). The "
+                "factor multiplies all of them."
+            ),
+            lambda x, k: np.hstack([x / k, np.full((len(x), 1), k)]),
+        ),
+        Misconception(
+            "factor added",
+            "You added k to the coordinates; a factor multiplies them.",
+            lambda x, k: to_homogeneous(x) + k,
+        ),
     ),
     reference=lift,
     concepts=("2", "3", "4", "E1"),

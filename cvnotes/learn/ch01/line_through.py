@@ -95,6 +95,29 @@ LINE = Exercise(
             "Your line goes through (y, x) of both points: a belongs to x, b to y.",
             lambda p, q: np.cross([*p[::-1], 1], [*q[::-1], 1]),
         ),
+        Misconception(
+            "sign of b",
+            (
+                "Your b has the wrong sign: the second entry of the cross product is q_x − p_x, "
+                "if the first is p_y − q_y."
+            ),
+            lambda p, q: line_through(p, q) * [1, -1, 1],
+        ),
+        Misconception(
+            "entry by entry",
+            "p̃ * q̃ multiplies entry by entry; perpendicular to both is their cross product.",
+            lambda p, q: np.array([*(p * q), 1.0]),
+        ),
+        Misconception(
+            "sum of the points",
+            "p̃ + q̃ is the point halfway between them, not the line.",
+            lambda p, q: np.array([*(p + q), 2.0]),
+        ),
+        Misconception(
+            "constant left out",
+            "Your line has the right direction but goes through pixel (0, 0): c is missing.",
+            lambda p, q: line_through(p, q) * [1, 1, 0],
+        ),
     ),
     reference=line_through,
     same=up_to_scale,

@@ -7,6 +7,7 @@ from cvnotes.learn.cases.cameras import rounded
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import meet
+from cvnotes.projective.points import drop
 
 
 def _two_lines(rng: Rng) -> list[Case]:
@@ -27,7 +28,14 @@ def _solved(l1: Array, l2: Array, sign: float = -1.0) -> Array:
 
 def _on_both(x_h: Array, case: Case) -> bool:
     lines = np.array(case.args)
-    return bool((np.abs(lines @ x_h) <= 1e-6 * (np.abs(lines) @ np.abs(x_h))).all() and x_h.any())
+    return bool(
+        (np.abs(lines @ x_h) <= 1e-6 * case.slack * (np.abs(lines) @ np.abs(x_h))).all()
+        and x_h.any()
+    )
+
+
+def _finite(x: Array) -> Array | None:
+    return x if np.isfinite(x).all() else None
 
 
 MEET = Exercise(
@@ -85,6 +93,27 @@ MEET = Exercise(
             "That is the point at infinity on the first line: its direction. The second line was "
             "not used.",
             lambda l1, _: np.array([l1[1], -l1[0], 0.0]),
+        ),
+        Misconception(
+            "sign of the second entry",
+            "The second entry of the cross product has the other sign: c1 a2 − a1 c2.",
+            lambda l1, l2: np.cross(l1, l2) * [1, -1, 1],
+        ),
+        Misconception(
+            "Euclidean coordinates",
+            (
+                "You divided already. Asked is the homogeneous point (3,), which exists for "
+                "parallel lines too."
+            ),
+            lambda l1, l2: _finite(drop(np.cross(l1, l2))),
+        ),
+        Misconception(
+            "direction of the second line",
+            (
+                "That is the point at infinity on the second line: its direction. The first line "
+                "was not used."
+            ),
+            lambda _, l2: np.array([l2[1], -l2[0], 0.0]),
         ),
     ),
     reference=meet,

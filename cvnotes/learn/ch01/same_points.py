@@ -14,9 +14,35 @@ def same_points(a: Array, b: Array) -> Array:
 
 
 def _pairs(rng: Rng) -> list[Case]:
-    a = np.array([[1.0, 2, 1], [1, 2, 1], [2, 4, 2], [1, 2, 0], [1, 2, 0], [0, 3, 1], [4, 2, 2]])
+    a = np.array(
+        [
+            [1.0, 2, 1],
+            [1, 2, 1],
+            [2, 4, 2],
+            [1, 2, 0],
+            [1, 2, 0],
+            [0, 3, 1],
+            [4, 2, 2],
+            [1, 2, 1],
+            [0, 3, 1],
+            [1, 2, 1],
+            [1, 2, 1],
+        ]
+    )
     b = np.array(
-        [[1.0, 2, 1], [2, 4, 2], [-1, -2, -1], [-3, -6, 0], [2, 1, 0], [0, 6, 1], [4, 2, 1]]
+        [
+            [1.0, 2, 1],
+            [2, 4, 2],
+            [-1, -2, -1],
+            [-3, -6, 0],
+            [2, 1, 0],
+            [0, 6, 1],
+            [4, 2, 1],
+            [1, -2, 1],
+            [0, 6, 2],
+            [2, 3, 2],
+            [3, 1, 2],
+        ]
     )
     more = rounded(rng.uniform(-4, 4, (6, 3)), 1)
     factors = np.array([1.0, 2.0, -1.5, -4.0, 1.0, 0.5])[:, None]
@@ -73,6 +99,45 @@ SAME = Exercise(
             "every pair the same",
             "You say that all points are the same; (1, 2, 0) and (2, 1, 0) are two directions.",
             lambda a, _: np.ones(len(a)),
+        ),
+        Misconception(
+            "signs ignored",
+            (
+                "You compared absolute values: (1, 2, 1) and (1, −2, 1) are two points. Only a "
+                "common sign does not matter."
+            ),
+            lambda a, b: np.isclose(np.abs(_unit(a)), np.abs(_unit(b))).all(1),
+        ),
+        Misconception(
+            "sum of the cross product",
+            "The cross product must be 0 in all three entries; their sum may be 0 by chance.",
+            lambda a, b: np.isclose(np.cross(a, b).sum(1), 0),
+        ),
+        Misconception(
+            "one entry of the cross product",
+            "One entry of the cross product that is 0 is not enough: all three must be.",
+            lambda a, b: np.isclose(np.cross(a, b), 0).any(1),
+        ),
+        Misconception(
+            "divided by the first coordinate",
+            (
+                "You divided by the first coordinate, which is 0 for all points on the y axis: "
+                "(0, 3, 1) and (0, 6, 2) are the same point."
+            ),
+            lambda a, b: np.isclose(a / a[:, :1], b / b[:, :1]).all(1),
+        ),
+        Misconception(
+            "perpendicular",
+            (
+                "The dot product is 0 if two vectors are perpendicular. Those of one point are "
+                "parallel: it is the cross product that vanishes."
+            ),
+            lambda a, b: np.isclose((a * b).sum(1), 0),
+        ),
+        Misconception(
+            "the other way round",
+            "You say True for points that differ.",
+            lambda a, b: 1 - same_points(a, b),
         ),
     ),
     reference=same_points,

@@ -50,10 +50,12 @@ FOCAL = Exercise(
             "piercing point forgotten",
             "You took v1·v2 from pixel (0, 0); measure both from the piercing point.",
             lambda v1, v2, centre: np.sqrt(-v1 @ v2),
+            (lambda v1, v2, centre: np.sqrt(np.abs(v1 @ v2)),),
         ),
         Misconception(
             "sign under the root",
-            "The dot product of the two is negative, so f² is its negative: your root is NaN.",
+            "The root of a negative number is NaN. Measured from the piercing point the dot "
+            "product of the two is negative, and f² is minus that.",
             lambda v1, v2, centre: np.sqrt((v1 - centre) @ (v2 - centre)),
         ),
         Misconception(
@@ -85,6 +87,22 @@ FOCAL = Exercise(
             "negative root",
             "Both roots solve the equation; a focal length is positive.",
             lambda v1, v2, centre: -focal_length(v1, v2, centre),
+        ),
+        Misconception(
+            "columns only",
+            "You multiplied the columns only; the dot product has the rows too.",
+            lambda v1, v2, centre: np.sqrt(-(v1 - centre)[0] * (v2 - centre)[0]),
+        ),
+        Misconception(
+            "one point measured from pixel 0",
+            "Only one of the two vanishing points is measured from the piercing point.",
+            lambda v1, v2, centre: np.sqrt(-(v1 - centre) @ v2),
+            variants=(lambda v1, v2, centre: np.sqrt(-v1 @ (v2 - centre)),),
+        ),
+        Misconception(
+            "square of the product",
+            ("You have the square root of f: the dot product is −f² already, one root is enough."),
+            lambda v1, v2, centre: np.sqrt(focal_length(v1, v2, centre)),
         ),
     ),
     reference=focal_length,

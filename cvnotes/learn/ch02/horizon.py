@@ -8,7 +8,14 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, pose
 from cvnotes.camera import horizon as library_horizon
-from cvnotes.learn.cases.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
+from cvnotes.learn.cases.cameras import (
+    ABOUT_Y,
+    TIDY_A,
+    rounded,
+    some_intrinsics,
+    some_rotation,
+    without_skew,
+)
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
@@ -22,7 +29,10 @@ def _ends_there(line: Array, case: Case) -> bool:
     A, R, n = case.args
     inside = np.linalg.svd(n[None])[2][1:]
     m_h = inside @ R.T @ A.T
-    return bool((np.abs(m_h @ line) <= 1e-5 * (np.abs(m_h) @ np.abs(line))).all() and line.any())
+    return bool(
+        (np.abs(m_h @ line) <= 1e-6 * case.slack * (np.abs(m_h) @ np.abs(line))).all()
+        and line.any()
+    )
 
 
 HORIZON = Exercise(
@@ -41,7 +51,13 @@ HORIZON = Exercise(
     ),
     cases=lambda rng: [
         Case((TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 3.0]))),
-        Case((some_intrinsics(rng), some_rotation(rng), rounded(rng.uniform(-1, 1, 3)))),
+        Case(
+            (
+                some_intrinsics(rng, skew=True),
+                some_rotation(rng),
+                rounded(rng.uniform(0.3, 1, 3) * rng.choice([-1, 1], 3)),
+            )
+        ),
     ],
     properties=(
         Property("The vanishing points of directions in the plane lie on it.", _ends_there),
@@ -77,6 +93,34 @@ HORIZON = Exercise(
             "sensor left out",
             "R n is the horizon on the plane z = 1. In pixels it is A⁻ᵀ R n.",
             lambda A, R, n: R @ n,
+        ),
+        Misconception(
+            "A for its inverse transpose, nothing turned",
+            "You used A n, with a point's matrix and without the rotation: l = A⁻ᵀ R n.",
+            lambda A, R, n: A @ n,
+        ),
+        Misconception(
+            "R and A in the wrong order",
+            (
+                "You applied R last. It takes n to the camera's frame, and A⁻ᵀ takes the line "
+                "from there to the picture: A⁻ᵀ R n."
+            ),
+            lambda A, R, n: R @ np.linalg.inv(A).T @ n,
+        ),
+        Misconception(
+            "skew left out",
+            "You left out the skew A[0, 1].",
+            lambda A, R, n: np.linalg.inv(without_skew(A)).T @ R @ n,
+        ),
+        Misconception(
+            "sign of the constant",
+            "All but the last entry is right: its sign is the other one.",
+            lambda A, R, n: horizon(A, R, n) * [1, 1, -1],
+        ),
+        Misconception(
+            "n itself",
+            "That is the normal itself, in the world: R and A are missing.",
+            lambda A, R, n: n,
         ),
     ),
     reference=horizon,

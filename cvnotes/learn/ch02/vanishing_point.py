@@ -7,7 +7,15 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, pose
-from cvnotes.learn.cases.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
+from cvnotes.learn.cases.cameras import (
+    ABOUT_Y,
+    TIDY_A,
+    rounded,
+    some_intrinsics,
+    some_rotation,
+    without_skew,
+)
+from cvnotes.learn.cases.slips import centre_divided_too
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import from_homogeneous
 
@@ -18,7 +26,7 @@ def vanishing_point(A: Array, R: Array, d: Array) -> Array:
 
 
 def _directions(rng: Rng) -> list[Case]:
-    A, R = some_intrinsics(rng), some_rotation(rng)
+    A, R = some_intrinsics(rng, skew=True), some_rotation(rng)
     ahead = rounded(R.T @ [*rng.uniform(-0.5, 0.5, 2), 1.0])
     return [
         Case((TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 3.0]))),
@@ -100,6 +108,46 @@ VANISHING = Exercise(
             "Right, except that you have no answer where d points away from the camera. A line "
             "has two ends, but d and −d share one vanishing point.",
             lambda A, R, d: _only(bool((R @ d)[2] >= 0), _seen(A @ R @ d)),
+        ),
+        Misconception(
+            "A and R in the wrong order",
+            "You applied A before R. The direction goes into the camera's frame first: A R d.",
+            lambda A, R, d: _seen(R @ A @ d),
+        ),
+        Misconception(
+            "A transposed",
+            "You used Aᵀ: for a single column it is A @ (R @ d).",
+            lambda A, R, d: _seen(A.T @ R @ d),
+        ),
+        Misconception(
+            "skew left out",
+            "You left out the skew A[0, 1]: u = (α_u x + γ y) / z + u0.",
+            lambda A, R, d: _seen(without_skew(A) @ R @ d),
+        ),
+        Misconception(
+            "divided by the absolute depth",
+            (
+                "You divided by |z|. The factor of a homogeneous point may be negative: d and −d "
+                "end in one point."
+            ),
+            lambda A, R, d: (A @ R @ d)[:2] / np.abs((A @ R @ d)[2]),
+        ),
+        Misconception(
+            "no NaN at infinity",
+            (
+                "Right, except for lines parallel to the image plane: you gave a pixel where "
+                "there is none. The task asks for NaN."
+            ),
+            lambda A, R, d: _seen(A @ R @ d) if (R @ d)[2] else np.zeros(2),
+            variants=(lambda A, R, d: _seen(A @ R @ d) if (R @ d)[2] else (A @ R @ d)[:2],),
+        ),
+        Misconception(
+            "piercing point added before the division",
+            (
+                "You added u0 and v0 before dividing by z: they belong to the pixel, so they are "
+                "added at the end."
+            ),
+            lambda A, R, d: centre_divided_too(A, R @ d),
         ),
     ),
     reference=vanishing_point,

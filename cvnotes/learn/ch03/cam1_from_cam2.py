@@ -75,6 +75,32 @@ CHAIN = Exercise(
             "The difference of two poses is no pose; motions are chained by multiplication.",
             lambda G1, G2: G1 - G2,
         ),
+        Misconception(
+            "transposed for inverse",
+            (
+                "The transpose of a rotation is its inverse, that of a motion (4, 4) is not: its "
+                "translation has to be turned."
+            ),
+            lambda G1, G2: G1 @ G2.T,
+        ),
+        Misconception(
+            "inverse without turning T",
+            "The inverse of (R, T) is (Rᵀ, −Rᵀ T); you have −T.",
+            lambda G1, G2: G1 @ pose(G2[:3, :3].T, -G2[:3, 3]),
+        ),
+        Misconception(
+            "the motions in the other order",
+            (
+                "You started with G1. Rightmost is what comes first: board_from_cam2, then "
+                "cam1_from_board."
+            ),
+            lambda G1, G2: G2 @ G1,
+        ),
+        Misconception(
+            "translation left out",
+            "The rotation is right; the translation is missing.",
+            lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, np.zeros(3)),
+        ),
     ),
     reference=cam1_from_cam2,
     concepts=("24", "42", "E20"),

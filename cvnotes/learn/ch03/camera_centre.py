@@ -69,6 +69,16 @@ CENTRE = Exercise(
             "You gave R T: from R C + T = 0 follows C = −Rᵀ T.",
             lambda R, T: R @ T,
         ),
+        Misconception(
+            "divided entry by entry",
+            ("You divided by the columns; R C = −T is solved by the inverse of R, its transpose."),
+            lambda R, T: -T / R.sum(0),
+        ),
+        Misconception(
+            "R in place of T",
+            "That is the camera's z axis in the world; its centre follows from T.",
+            lambda R, T: R[2],
+        ),
     ),
     reference=camera_centre,
     concepts=("22", "24", "E11"),

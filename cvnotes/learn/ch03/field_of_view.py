@@ -1,5 +1,8 @@
 """How much the camera sees."""
 
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -79,6 +82,44 @@ FIELD = Exercise(
             "the vertical focal length",
             "Horizontal angles go with α_u = A[0, 0]; you took α_v.",
             lambda A, width: _to_the_sides(A, -0.5, width - 0.5, alpha=A[1, 1]),
+        ),
+        Misconception(
+            "twice the whole width",
+            "2 arctan(width / α_u) takes the whole width for each side.",
+            lambda A, width: 2 * np.arctan(width / A[0, 0]),
+        ),
+        Misconception(
+            "the right side only",
+            "That is the angle from the axis to the right border; the left side is missing.",
+            lambda A, width: np.arctan((width - 0.5 - A[0, 2]) / A[0, 0]),
+        ),
+        Misconception(
+            "the left side only",
+            "That is the angle from the axis to the left border; the right side is missing.",
+            lambda A, width: np.arctan((A[0, 2] + 0.5) / A[0, 0]),
+        ),
+        Misconception(
+            "tangents for angles",
+            "You added the tangents; an angle is the arctan of its tangent.",
+            lambda A, width: width / A[0, 0],
+        ),
+        Misconception(
+            "sides subtracted",
+            (
+                "You subtracted the angle on the left from that on the right; both sides belong "
+                "to the picture."
+            ),
+            lambda A, width: (
+                np.arctan((width - 0.5 - A[0, 2]) / A[0, 0]) - np.arctan((A[0, 2] + 0.5) / A[0, 0])
+            ),
+        ),
+        Misconception(
+            "piercing point in the middle, in degrees",
+            (
+                "In degrees, and with the piercing point in the middle: asked are radians, and "
+                "the two sides one by one."
+            ),
+            lambda A, width: np.degrees(2 * np.arctan(width / 2 / A[0, 0])),
         ),
     ),
     reference=field_of_view,

@@ -86,6 +86,39 @@ INTRINSICS = Exercise(
             "A is upper triangular: u0 and v0 stand in its last column.",
             lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0).T,
         ),
+        Misconception(
+            "focal length in millimetres",
+            "α_u and α_v are in pixels: divide f by the size of a pixel.",
+            lambda f, du, dv, u0, v0: _matrix(f, f, u0, v0),
+        ),
+        Misconception(
+            "last 1 left out",
+            (
+                "The last entry of A is 1: without it nothing has a third coordinate to be "
+                "divided by."
+            ),
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0) * [[1], [1], [0]],
+        ),
+        Misconception(
+            "upside down",
+            "You have du / f: α_u is how many pixels fit into f.",
+            lambda f, du, dv, u0, v0: _matrix(du / f, dv / f, u0, v0),
+        ),
+        Misconception(
+            "du for both",
+            "You took du for both directions; the height of a pixel is dv.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / du, u0, v0),
+        ),
+        Misconception(
+            "sign of the piercing point",
+            "u0 and v0 are added to what the division gives: they stand in A with a plus.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, -u0, -v0),
+        ),
+        Misconception(
+            "inverse",
+            "That is A⁻¹, which leads from pixels to rays.",
+            lambda f, du, dv, u0, v0: np.linalg.inv(_matrix(f / du, f / dv, u0, v0)),
+        ),
     ),
     reference=intrinsics_from_sensor,
     concepts=("17", "18", "19", "20", "E8"),

@@ -33,6 +33,13 @@ def _gram_schmidt(M: Array) -> Array:
     return Q * np.sign(np.diag(U))
 
 
+def _turned_around(M: Array, i: int) -> Array:
+    """Give U Vᵀ, with column i of U turned around if that is needed for a rotation."""
+    U, Vt = _left(M)
+    U[:, i] *= np.linalg.det(U @ Vt)
+    return U @ Vt
+
+
 NEAREST = Exercise(
     name="nearest_rotation",
     chapter=3,
@@ -92,6 +99,59 @@ NEAREST = Exercise(
             "That is a rotation, by making one column after the other perpendicular. But it "
             "favours the first column: it is not the nearest.",
             _gram_schmidt,
+        ),
+        Misconception(
+            "QR",
+            (
+                "Q of the QR decomposition has the first column of M up to its sign: it favours "
+                "that column, and is not the nearest rotation."
+            ),
+            lambda M: np.linalg.qr(M)[0],
+        ),
+        Misconception(
+            "Gram and Schmidt by rows",
+            (
+                "That is a rotation, by making one row after the other perpendicular. But it "
+                "favours the first row: it is not the nearest."
+            ),
+            lambda M: _gram_schmidt(M.T).T,
+        ),
+        Misconception(
+            "rows scaled only",
+            "Rows of length 1 are not perpendicular yet.",
+            lambda M: M / np.linalg.norm(M, axis=1, keepdims=True),
+        ),
+        Misconception(
+            "the wrong direction turned around",
+            (
+                "You turned around the direction that counts most, the first column of U: take "
+                "the last one, with the smallest singular value."
+            ),
+            lambda M: _turned_around(M, 0),
+        ),
+        Misconception(
+            "the middle direction turned around",
+            (
+                "You turned around the second column of U: take the last one, with the smallest "
+                "singular value."
+            ),
+            lambda M: _turned_around(M, 1),
+        ),
+        Misconception(
+            "determinant scaled to 1",
+            "A determinant of 1 does not make a rotation: the columns have to be orthonormal.",
+            lambda M: M / np.cbrt(np.linalg.det(M)),
+        ),
+        Misconception(
+            "stretching kept", "You put the singular values back: that is M itself.", lambda M: M
+        ),
+        Misconception(
+            "always a turn",
+            (
+                "You turned the last direction around always; only where the determinant of U Vᵀ "
+                "is −1 it has to be."
+            ),
+            lambda M: _left(M)[0] @ np.diag([1, 1, -1]) @ _left(M)[1],
         ),
     ),
     reference=nearest_rotation,

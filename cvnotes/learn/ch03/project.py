@@ -15,7 +15,9 @@ from cvnotes.learn.cases.cameras import (
     points_in_front,
     some_intrinsics,
     some_pose,
+    without_skew,
 )
+from cvnotes.learn.cases.slips import centre_divided_too
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
@@ -114,6 +116,75 @@ PROJECT = Exercise(
             "pose left out",
             "You projected W as if it were given in the camera's frame; R and T take it there.",
             lambda A, R, T, W: _seen(W, A),
+        ),
+        Misconception(
+            "A transposed",
+            "M @ A applies Aᵀ to points that are rows: M @ A.T.",
+            lambda A, R, T, W: _seen(W @ R.T + T, A.T),
+        ),
+        Misconception(
+            "W @ A in place of A M",
+            ("M @ A applies Aᵀ, and W @ R applies Rᵀ, to points that are rows: W @ R.T, M @ A.T."),
+            lambda A, R, T, W: _seen(W @ R + T, A.T),
+        ),
+        Misconception(
+            "T left out", "T is missing: M = R W + T.", lambda A, R, T, W: _seen(W @ R.T, A)
+        ),
+        Misconception(
+            "T subtracted",
+            "You subtracted T: M = R W + T.",
+            lambda A, R, T, W: _seen(W @ R.T - T, A),
+        ),
+        Misconception(
+            "rotation left out", "R is missing: M = R W + T.", lambda A, R, T, W: _seen(W + T, A)
+        ),
+        Misconception(
+            "skew left out",
+            "You left out the skew A[0, 1]: u = (α_u x + γ y) / z + u0.",
+            lambda A, R, T, W: _seen(W @ R.T + T, without_skew(A)),
+        ),
+        Misconception(
+            "piercing point added before the division",
+            (
+                "You added u0 and v0 before dividing by z: they belong to the pixel, so they are "
+                "added at the end."
+            ),
+            lambda A, R, T, W: centre_divided_too(A, W @ R.T + T),
+        ),
+        Misconception(
+            "piercing point left out",
+            "u0 and v0 are missing: your pixels are measured from the piercing point.",
+            lambda A, R, T, W: _seen(W @ R.T + T, A) - A[:2, 2],
+        ),
+        Misconception(
+            "focal lengths exchanged",
+            "α_u = A[0, 0] goes with u, α_v = A[1, 1] with v.",
+            lambda A, R, T, W: (
+                _seen(W @ R.T + T, A[[1, 0, 2]][:, [1, 0, 2]]) - A[[1, 0], 2] + A[:2, 2]
+            ),
+            variants=(
+                lambda A, R, T, W: _seen(
+                    (W @ R.T + T) * [A[1, 1] / A[0, 0], A[0, 0] / A[1, 1], 1], without_skew(A)
+                ),
+            ),
+        ),
+        Misconception(
+            "v counted upwards",
+            "Your v runs upwards; rows count downwards, as y does.",
+            lambda A, R, T, W: _seen((W @ R.T + T) * [1, -1, 1], A),
+        ),
+        Misconception(
+            "homogeneous pixels",
+            (
+                "These are three homogeneous coordinates of each pixel: divide by the last, then "
+                "leave it out."
+            ),
+            lambda A, R, T, W: (W @ R.T + T) @ A.T,
+        ),
+        Misconception(
+            "divided, last coordinate kept",
+            "You divided but kept the last coordinate, which is now 1: leave it out.",
+            lambda A, R, T, W: (W @ R.T + T) @ A.T / ((W @ R.T + T) @ A.T)[:, 2:],
         ),
     ),
     reference=project,
