@@ -70,6 +70,27 @@ SHIFT = Exercise(
             "Asked is what the lens does.",
             lambda: 800 * float(np.linalg.norm(_CAMERA.lens.undistort(_OFFSET / 800)) - _R),
         ),
+        Misconception(
+            "where the corner is seen",
+            (
+                "That is the distance from the piercing point at which the corner is seen; by how "
+                "much it has moved is the difference to 400."
+            ),
+            lambda: 800 * _R + corner_shift(),
+        ),
+        Misconception(
+            "r² for r⁴", "k2 belongs to r⁴; you used r² for both.", lambda: _shift((-0.15,), _R)
+        ),
+        Misconception(
+            "r in pixels",
+            "r = 1 is 800 pixels: k1 and k2 belong to the r of the plane z = 1.",
+            lambda: _shift((-0.25, 0.1), 800 * _R) * 1.0,
+        ),
+        Misconception(
+            "sign lost and k2 left out",
+            "That is what k1 does alone, and without its sign.",
+            lambda: -_shift((-0.25,), _R),
+        ),
     ),
     reference=corner_shift,
     same=within(0.06),

@@ -1,5 +1,8 @@
 """Through the lens."""
 
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -104,6 +107,57 @@ DISTORT = Exercise(
             "the 1 of L left out",
             "L starts with 1: without distortion nothing moves. You gave the displacement only.",
             lambda xy, k, p: _through(xy, lens_factor(xy, k) - 1, p),
+        ),
+        Misconception(
+            "k2 left out",
+            "k2 r⁴ is missing.",
+            lambda xy, k, p: _through(xy, lens_factor(xy, k * [1, 0]), p),
+        ),
+        Misconception(
+            "r⁶ for r⁴",
+            "k2 belongs to r⁴, which is (r²)²; you have r⁶.",
+            lambda xy, k, p: _through(
+                xy, 1 + k[0] * (xy**2).sum(1)[:, None] + k[1] * (xy**2).sum(1)[:, None] ** 3, p
+            ),
+        ),
+        Misconception(
+            "r² lost in the tangential terms",
+            "The tangential terms have r² + 2x² and r² + 2y²: your r² is missing.",
+            lambda xy, k, p: (
+                _through(xy, lens_factor(xy, k), p) - (xy**2).sum(1)[:, None] * p[::-1]
+            ),
+        ),
+        Misconception(
+            "x² and y² exchanged",
+            "p2 goes with r² + 2x² in x, p1 with r² + 2y² in y: your squares are exchanged.",
+            lambda xy, k, p: (
+                _through(xy, lens_factor(xy, k), p) + 2 * (xy[:, ::-1] ** 2 - xy**2) * p[::-1]
+            ),
+        ),
+        Misconception(
+            "sign of the tangential terms",
+            "The tangential terms are added, not subtracted.",
+            lambda xy, k, p: _through(xy, lens_factor(xy, k), -p),
+        ),
+        Misconception(
+            "sign of k",
+            "L = 1 + k1 r² + k2 r⁴, with plus signs: k1 itself may be negative.",
+            lambda xy, k, p: _through(xy, lens_factor(xy, -k), p),
+        ),
+        Misconception(
+            "tangential terms multiplied by L",
+            "L multiplies x and y only; the tangential terms are added afterwards.",
+            lambda xy, k, p: lens_factor(xy, k) * _through(xy, np.ones((len(xy), 1)), p),
+        ),
+        Misconception(
+            "tangential terms of the moved point",
+            ("The tangential terms are those of the ideal point, not of the one that L has moved."),
+            lambda xy, k, p: _through(xy * lens_factor(xy, k), np.ones((len(xy), 1)), p),
+        ),
+        Misconception(
+            "tangential part alone",
+            "The radial part is missing: L multiplies x and y.",
+            lambda xy, k, p: _through(xy, np.ones((len(xy), 1)), p),
         ),
     ),
     reference=distort,

@@ -24,7 +24,9 @@ def _lenses(rng: Rng) -> list[Case]:
         Case((np.array([-4 / 3, 0.0]),)),
         Case((np.array([k1, k2]),)),
         Case((np.array([-0.3, -0.1]),)),
+        Case((np.array([0.2, -0.1]),)),
         Case((np.array([0.2, 0.1]),), about="endless"),
+        Case((np.array([-0.25, 0.1]),), about="endless"),  # the course's own
     ]
 
 
@@ -38,6 +40,20 @@ def _smallest_root(a: float, b: float, largest: bool = False) -> float:
 def _seen_radius(k: Array) -> float:
     r = fold_radius(k)
     return float(r * (1 + k[0] * r**2 + k[1] * r**4)) if np.isfinite(r) else np.inf
+
+
+def _real_part(a: float, b: float) -> float:
+    """Give the smallest r > 0 with 1 + a r² + b r⁴ = 0, of complex roots the real part."""
+    roots = np.roots([b, a, 1.0] if b else [a, 1.0]).real
+    return float(np.sqrt(roots[roots > 0].min())) if (roots > 0).any() else np.inf
+
+
+def _one_root(a: float, b: float, sign: float) -> float | None:
+    """Give one of the two roots; none where it is not real, or the formula divides by 0."""
+    if b == 0 or a * a < 4 * b:
+        return None
+    x = (-a + sign * np.sqrt(a * a - 4 * b)) / (2 * b)
+    return float(np.sqrt(x)) if x > 0 else None
 
 
 FOLD = Exercise(
@@ -98,6 +114,52 @@ FOLD = Exercise(
             "factors of the derivative",
             "The derivative of r³ is 3r², that of r⁵ is 5r⁴: your factors are those of L.",
             lambda k: _smallest_root(2 * k[0], 4 * k[1]),
+        ),
+        Misconception(
+            "complex roots taken for real",
+            (
+                "Right where there is such a radius. Where the quadratic equation has complex "
+                "roots the slope is never 0, and their real part means nothing: np.inf."
+            ),
+            lambda k: _real_part(3 * k[0], 5 * k[1]),
+        ),
+        Misconception(
+            "lenses without end left out",
+            (
+                "Right where the picture folds. A lens that never folds has no such radius, and "
+                "the task asks for np.inf."
+            ),
+            lambda k: fold_radius(k) if np.isfinite(fold_radius(k)) else None,
+        ),
+        Misconception(
+            "0 for a lens without end",
+            (
+                "Right where the picture folds. A lens that never folds is valid everywhere: "
+                "np.inf, not 0."
+            ),
+            lambda k: fold_radius(k) if np.isfinite(fold_radius(k)) else 0.0,
+        ),
+        Misconception(
+            "one root of the formula only",
+            (
+                "(−b + √(b² − 4ac)) / 2a is one of the two roots: take the smallest that is "
+                "positive, of both."
+            ),
+            lambda k: _one_root(3 * k[0], 5 * k[1], 1.0),
+            variants=(lambda k: _one_root(3 * k[0], 5 * k[1], -1.0),),
+        ),
+        Misconception(
+            "factor 3 alone",
+            "The slope of k1 r³ is 3 k1 r², that of k2 r⁵ is 5 k2 r⁴: you have 3 for both.",
+            lambda k: _smallest_root(3 * k[0], 3 * k[1]),
+        ),
+        Misconception(
+            "sign of the slope",
+            (
+                "The equation is 1 + 3 k1 r² + 5 k2 r⁴ = 0, with plus signs: k1 itself may be "
+                "negative."
+            ),
+            lambda k: _smallest_root(-3 * k[0], -5 * k[1]),
         ),
     ),
     reference=fold_radius,

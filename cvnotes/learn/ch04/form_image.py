@@ -17,6 +17,7 @@ from cvnotes.learn.cases.cameras import (
     some_intrinsics,
     some_lens,
     some_pose,
+    without_skew,
 )
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
@@ -31,7 +32,7 @@ def _photographs(rng: Rng) -> list[Case]:
     for n in (4, 6):
         R, T = some_pose(rng)
         W = points_in_front(rng, R, T, n)
-        cases.append(Case((some_intrinsics(rng), R, T, some_lens(rng)[0], W)))
+        cases.append(Case((some_intrinsics(rng, skew=True), R, T, some_lens(rng)[0], W)))
     return cases
 
 
@@ -58,6 +59,11 @@ def _radius_in_pixels(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array
     xy = _ideal(R, T, W)
     offset = _pixels(A, xy) - A[:2, 2]
     return A[:2, 2] + offset * lens_factor(offset, k)
+
+
+def _bent(R: Array, T: Array, k: Array, W: Array) -> Array:
+    xy = _ideal(R, T, W)
+    return xy * lens_factor(xy, k)
 
 
 FORM = Exercise(
@@ -115,6 +121,51 @@ FORM = Exercise(
             "no pixels yet",
             "These are x' and y' on the plane z = 1: the sensor's A is missing.",
             lambda A, R, T, k, W: _ideal(R, T, W) * lens_factor(_ideal(R, T, W), k),
+        ),
+        Misconception(
+            "rotation transposed",
+            "W @ R applies Rᵀ to points that are rows: W @ R.T.",
+            lambda A, R, T, k, W: form_image(A, R.T, T, k, W),
+        ),
+        Misconception(
+            "T left out",
+            "T is missing: M = R W + T.",
+            lambda A, R, T, k, W: form_image(A, R, 0 * T, k, W),
+        ),
+        Misconception(
+            "T subtracted",
+            "You subtracted T: M = R W + T.",
+            lambda A, R, T, k, W: _pixels(A, _bent(R, -T, k, W)),
+        ),
+        Misconception(
+            "skew left out",
+            "You left out the skew A[0, 1]: u = α_u x' + γ y' + u0.",
+            lambda A, R, T, k, W: form_image(without_skew(A), R, T, k, W),
+        ),
+        Misconception(
+            "k2 left out",
+            "k2 r⁴ is missing in L.",
+            lambda A, R, T, k, W: form_image(A, R, T, k * [1, 0], W),
+        ),
+        Misconception(
+            "both coefficients with r²",
+            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
+            lambda A, R, T, k, W: form_image(A, R, T, np.array([k.sum(), 0]), W),
+        ),
+        Misconception(
+            "u and v exchanged",
+            "You gave (v, u), row before column; pixels are (u, v) here.",
+            lambda A, R, T, k, W: form_image(A, R, T, k, W)[:, ::-1],
+        ),
+        Misconception(
+            "piercing point left out",
+            "u0 and v0 are missing: your pixels are measured from the piercing point.",
+            lambda A, R, T, k, W: form_image(A, R, T, k, W) - A[:2, 2],
+        ),
+        Misconception(
+            "pose left out",
+            "You took W as if it were given in the camera's frame; R and T take it there.",
+            lambda A, R, T, k, W: _pixels(A, _bent(np.eye(3), 0 * T, k, W)),
         ),
     ),
     reference=form_image,

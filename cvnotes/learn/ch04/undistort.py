@@ -7,6 +7,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
+from cvnotes.learn.checker.equality import close_to
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
@@ -29,6 +30,8 @@ def _observed_points(rng: Rng) -> list[Case]:
     k, _ = some_lens(rng)
     k_hand = np.array([-0.2, 0.05])
     cases = [(np.array([[0.5, 0.0], [0.3, 0.4]]), k_hand), (rng.uniform(-0.5, 0.5, (6, 2)), k)]
+    strong = np.array([-0.35, 0.1])
+    cases.append((rng.uniform(0.3, 0.5, (4, 2)) * rng.choice([-1, 1], (4, 2)), strong))
     return [Case((rounded(xy * lens_factor(xy, c), 4), c)) for xy, c in cases]
 
 
@@ -36,6 +39,27 @@ def _divided(xy_lens: Array, k: Array, times: int) -> Array:
     xy = xy_lens
     for _ in range(times):
         xy = xy_lens / lens_factor(xy, k)
+    return xy
+
+
+def _divided_again(xy: Array, k: Array, times: int) -> Array:
+    for _ in range(times):
+        xy = xy / lens_factor(xy, k)
+    return xy
+
+
+def _multiplied(xy_lens: Array, k: Array, times: int) -> Array:
+    xy = xy_lens
+    for _ in range(times):
+        xy = xy_lens * lens_factor(xy, k)
+    return xy
+
+
+def _with_r(xy_lens: Array, k: Array) -> Array:
+    xy = xy_lens
+    for _ in range(100):
+        r = np.hypot(*xy.T)[:, None]
+        xy = xy_lens / (1 + k[0] * r + k[1] * r**2)
     return xy
 
 
@@ -58,7 +82,7 @@ UNDISTORT = Exercise(
         Property(
             "The lens takes your points to where they were seen.",
             lambda xy, c: np.allclose(
-                xy * lens_factor(xy, c.args[1]), c.args[0], rtol=0, atol=1e-6
+                xy * lens_factor(xy, c.args[1]), c.args[0], rtol=0, atol=1e-8 * c.slack
             ),
         ),
         Property("Of all points with this property they are the nearest to the axis."),
@@ -98,7 +122,58 @@ UNDISTORT = Exercise(
             "You gave the points back as they were seen.",
             lambda xy_lens, k: xy_lens,
         ),
+        Misconception(
+            "a few rounds",
+            (
+                "Your way is right but stops too early: some rounds leave an error that is larger "
+                "than 1e-8. Go on until nothing changes."
+            ),
+            lambda xy_lens, k: _divided(xy_lens, k, 5),
+            variants=(
+                lambda xy_lens, k: _divided(xy_lens, k, 4),
+                lambda xy_lens, k: _divided(xy_lens, k, 6),
+                lambda xy_lens, k: _divided(xy_lens, k, 7),
+                lambda xy_lens, k: _divided(xy_lens, k, 8),
+                lambda xy_lens, k: _divided(xy_lens, k, 10),
+            ),
+        ),
+        Misconception(
+            "divided what was divided already",
+            (
+                "Each round divides xy_lens, what was seen, by L at the better radius. You "
+                "divided the last result again, which goes on for ever."
+            ),
+            lambda xy_lens, k: _divided_again(xy_lens, k, 2),
+            variants=(
+                *(
+                    lambda xy_lens, k, n=n: _divided_again(xy_lens, k, n)
+                    for n in (5, 10, 20, 30, 50, 100)
+                ),
+            ),
+        ),
+        Misconception(
+            "multiplied in each round",
+            "Each round divides by L; you multiplied.",
+            lambda xy_lens, k: _multiplied(xy_lens, k, 2),
+            variants=(
+                *(
+                    lambda xy_lens, k, n=n: _multiplied(xy_lens, k, n)
+                    for n in (5, 10, 20, 30, 50, 100)
+                ),
+            ),
+        ),
+        Misconception(
+            "k2 left out",
+            "You undid k1 alone: L = 1 + k1 r² + k2 r⁴.",
+            lambda xy_lens, k: undistort(xy_lens, k * [1, 0]),
+        ),
+        Misconception(
+            "r for r²",
+            "You used r and r² where L has r² and r⁴.",
+            lambda xy_lens, k: _with_r(xy_lens, k),
+        ),
     ),
     reference=undistort,
+    same=close_to(1e-8),
     concepts=("29", "34", "69", "E13"),
 )

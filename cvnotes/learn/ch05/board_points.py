@@ -44,7 +44,7 @@ BOARD = Exercise(
         Property("The first corner is the origin.", lambda W, _: not W[0].any()),
         Property(
             "The second one is one square to its right.",
-            lambda W, c: np.allclose(W[1] - W[0], [c.args[2], 0, 0], atol=1e-9),
+            lambda W, c: np.allclose(W[1] - W[0], [c.args[2], 0, 0], atol=1e-6 * c.slack),
         ),
         Property("All corners are there, row by row, in millimetres."),
     ),
@@ -86,6 +86,45 @@ BOARD = Exercise(
             "Your points have z = 1: they are (x, y, 1) lifted, not points of the board, whose "
             "frame lies in it: z = 0.",
             lambda c, r, s: _grid(c, r, s) + [0, 0, 1],
+        ),
+        Misconception(
+            "x and y exchanged",
+            "x runs along the columns and comes first; you have y in its place.",
+            lambda c, r, s: _grid(c, r, s)[:, [1, 0, 2]],
+        ),
+        Misconception(
+            "z left out",
+            "The corners are right, in their plane; z = 0 is missing.",
+            lambda c, r, s: _grid(c, r, s)[:, :2],
+        ),
+        Misconception(
+            "lifted",
+            (
+                "You lifted the points of the plane with a 1 in place of z, or in addition to it; "
+                "asked are x, y and z = 0."
+            ),
+            lambda c, r, s: np.column_stack([_grid(c, r, s), np.ones(c * r)]),
+        ),
+        Misconception(
+            "y upwards",
+            "Your y runs against the rows: its sign is wrong.",
+            lambda c, r, s: _grid(c, r, s) * [1, -1, 1],
+        ),
+        Misconception(
+            "one corner too few",
+            (
+                "You have one corner too few in each direction: `columns` and `rows` count inner "
+                "corners already."
+            ),
+            lambda c, r, s: _grid(c - 1, r - 1, s),
+        ),
+        Misconception(
+            "one corner too many",
+            (
+                "You have one corner too many in each direction: `columns` and `rows` count "
+                "corners, and the last is number columns − 1."
+            ),
+            lambda c, r, s: _grid(c + 1, r + 1, s),
         ),
     ),
     reference=board_points,

@@ -100,6 +100,57 @@ HARRIS = Exercise(
             "k (trace M)².",
             lambda Iu, Iv, k: _det_trace(Iu, Iv)[0],
         ),
+        Misconception(
+            "mean for sum",
+            (
+                "M is the sum over the window; with the mean, det M is smaller by n², and (trace "
+                "M)² too."
+            ),
+            lambda Iu, Iv, k: harris_measure(Iu, Iv, k) / Iu.size**2,
+        ),
+        Misconception(
+            "squares of the trace's parts",
+            "(trace M)² is (Σ Iu² + Σ Iv²)², not the sum of the squares.",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - k * (_sums(Iu, Iv)[:2] ** 2).sum(),
+        ),
+        Misconception(
+            "sign in the determinant",
+            "det M = Σ Iu² Σ Iv² − (Σ Iu Iv)², with a minus.",
+            lambda Iu, Iv, k: (
+                np.prod(_sums(Iu, Iv)[:2]) + _sums(Iu, Iv)[2] ** 2 - k * _det_trace(Iu, Iv)[1] ** 2
+            ),
+        ),
+        Misconception(
+            "the smaller eigenvalue",
+            (
+                "That is the smaller eigenvalue of M, Shi and Tomasi's measure; asked is det M − "
+                "k (trace M)²."
+            ),
+            lambda Iu, Iv, k: (
+                _det_trace(Iu, Iv)[1] / 2
+                - np.sqrt(_det_trace(Iu, Iv)[1] ** 2 / 4 - _det_trace(Iu, Iv)[0])
+            ),
+        ),
+        Misconception(
+            "k squared",
+            "k is not squared: k (trace M)².",
+            lambda Iu, Iv, k: harris_measure(Iu, Iv, k * k),
+        ),
+        Misconception(
+            "determinant over trace",
+            "det M / trace M is another measure; asked is det M − k (trace M)².",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] / _det_trace(Iu, Iv)[1],
+        ),
+        Misconception(
+            "pixel by pixel",
+            "You took the determinant of each pixel before summing: there it is 0. Sum first.",
+            lambda Iu, Iv, k: -k * ((Iu**2 + Iv**2) ** 2).sum(),
+        ),
+        Misconception(
+            "trace alone",
+            "The determinant is missing: det M − k (trace M)².",
+            lambda Iu, Iv, k: -k * _det_trace(Iu, Iv)[1] ** 2,
+        ),
     ),
     reference=harris_measure,
     concepts=("40", "E19"),

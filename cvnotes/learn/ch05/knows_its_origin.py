@@ -1,5 +1,8 @@
 """Which boards know their origin."""
 
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -68,6 +71,37 @@ ORIGIN = Exercise(
             "counts that differ by one",
             "Counts one apart do, but so does every odd difference.",
             lambda c, r: np.abs(c - r) == 1,
+        ),
+        Misconception(
+            "columns only",
+            (
+                "An odd number of columns is not enough: 7 × 7 looks the same after half a turn. "
+                "Rows count too."
+            ),
+            lambda c, r: c % 2 == 1,
+        ),
+        Misconception(
+            "rows only",
+            (
+                "The rows alone do not tell: 8 × 6 looks the same after half a turn. Columns "
+                "count too."
+            ),
+            lambda c, r: r % 2 == 0,
+        ),
+        Misconception(
+            "both counts odd",
+            ("With two odd counts the board looks the same after half a turn; one has to be even."),
+            lambda c, r: (c * r) % 2 == 1,
+        ),
+        Misconception(
+            "more columns than rows",
+            "Which count is larger does not matter, only even or odd.",
+            lambda c, r: c > r,
+        ),
+        Misconception(
+            "every board",
+            "You say that all boards do; 8 × 6 looks the same after half a turn.",
+            lambda c, r: np.ones(len(c)),
         ),
     ),
     reference=knows_its_origin,

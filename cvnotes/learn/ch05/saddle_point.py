@@ -87,6 +87,42 @@ SADDLE = Exercise(
             "That is the right direction: by Cramer's rule, divide by the determinant 4 a c − b².",
             lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2),
         ),
+        Misconception(
+            "multiplied, not solved",
+            (
+                "You multiplied by the matrix of the second derivatives: solve with it, which is "
+                "multiplying by its inverse."
+            ),
+            lambda c: np.array([[2 * c[0], c[1]], [c[1], 2 * c[2]]]) @ [-c[3], -c[4]],
+        ),
+        Misconception(
+            "half of the mixed term",
+            (
+                "With [[a, b/2], [b/2, c]] you have half of the derivatives: the point is twice "
+                "as far away."
+            ),
+            lambda c: _solve(c, diagonal=1.0, mixed=0.5),
+        ),
+        Misconception(
+            "a and c exchanged",
+            "a belongs to u², c to v²: they are exchanged.",
+            lambda c: _solve(c[[2, 1, 0, 3, 4, 5]]),
+        ),
+        Misconception(
+            "d and e exchanged",
+            "d belongs to u, e to v: they are exchanged.",
+            lambda c: _solve(c[[0, 1, 2, 4, 3, 5]]),
+        ),
+        Misconception(
+            "sign of the mixed term",
+            "The mixed term has the wrong sign: 2 a u + b v + d = 0.",
+            lambda c: _solve(c, mixed=-1.0),
+        ),
+        Misconception(
+            "coefficients in another order",
+            "You took the coefficients as those of u², v², u v: they are a u² + b u v + c v².",
+            lambda c: _solve(c[[0, 2, 1, 3, 4, 5]]),
+        ),
     ),
     reference=saddle_point,
     concepts=("40", "E19"),

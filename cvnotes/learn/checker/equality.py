@@ -64,6 +64,21 @@ def close(answer: Array, right: Array, tolerance: float) -> bool:
     return bool((np.abs(answer[finite] - right[finite]) <= tolerance * scale).all())
 
 
+def close_to(bound: float) -> Same:
+    """Compare as `close` does, to a bound of its own.
+
+    Examples
+    --------
+    >>> close_to(1e-8)(np.array([1.0]), np.array([1.0 + 1e-7]), TOLERANCE)
+    False
+    """
+
+    def same(answer: Array, right: Array, tolerance: float) -> bool:
+        return close(answer, right, bound * tolerance / TOLERANCE)
+
+    return same
+
+
 def up_to_scale(answer: Array, right: Array, tolerance: float) -> bool:
     """Tell whether two arrays differ only by a factor.
 
