@@ -46,6 +46,14 @@ def _third_rows(src: Array, dst: Array) -> Array:
     return np.hstack([-dst[:, 1:] * W, dst[:, :1] * W, 0 * W])
 
 
+def _affine_last(src: Array, dst: Array) -> Array:
+    """Give rows whose last block is (x, y, 1) but for the 1, which is multiplied by u or v."""
+    D = design_matrix(src, dst)
+    W = to_homogeneous(src)
+    D[:, 6:8] = -np.repeat(W[:, :2], 2, axis=0)
+    return D
+
+
 DESIGN = Exercise(
     name="design_matrix",
     chapter=6,
@@ -107,6 +115,41 @@ DESIGN = Exercise(
             "All three rows of the cross product are true, but the third follows from the others; "
             "asked are two for each pair.",
             lambda src, dst: np.vstack([design_matrix(src, dst), _third_rows(src, dst)]),
+        ),
+        Misconception(
+            "x and y exchanged",
+            "Your W̃' is (y, x, 1): x comes first.",
+            lambda src, dst: design_matrix(src[:, ::-1], dst),
+        ),
+        Misconception(
+            "the 1 in front",
+            "Your W̃' is (1, x, y): the 1 comes last.",
+            lambda src, dst: design_matrix(src, dst)[:, [2, 0, 1, 5, 3, 4, 8, 6, 7]],
+        ),
+        Misconception(
+            "u for both rows",
+            "u goes with the first row of H, v with the second: you have u in both.",
+            lambda src, dst: design_matrix(src, dst[:, [0, 0]]),
+        ),
+        Misconception(
+            "v for both rows",
+            "u goes with the first row of H, v with the second: you have v in both.",
+            lambda src, dst: design_matrix(src, dst[:, [1, 1]]),
+        ),
+        Misconception(
+            "last block not multiplied by x and y",
+            "u and v multiply all of W̃' in the last block, not its 1 alone.",
+            _affine_last,
+        ),
+        Misconception(
+            "last block without u and v",
+            "The last block is −u W̃' and −v W̃': u and v are missing.",
+            lambda src, dst: design_matrix(src, np.ones_like(dst)),
+        ),
+        Misconception(
+            "transposed",
+            "D has a row for each equation; you have a column: D.T.",
+            lambda src, dst: design_matrix(src, dst).T,
         ),
     ),
     reference=design_matrix,

@@ -40,7 +40,7 @@ def _with_h9(src: Array, dst: Array, sign: float = -1.0) -> Array | None:
 
 def _exactly(H: Array, case: Case) -> bool:
     mapped = from_homogeneous.inside(to_homogeneous(case.args[0]) @ H.T)
-    return np.allclose(mapped, case.args[1], rtol=0, atol=1e-3)
+    return np.allclose(mapped, case.args[1], rtol=0, atol=1e-3 * max(1.0, case.slack / 20))
 
 
 FOUR = Exercise(
@@ -91,6 +91,29 @@ FOUR = Exercise(
             lambda src, dst: affine_fit(src[:3], dst[:3]),
         ),
         V_BEFORE_U,
+        Misconception(
+            "full_matrices=False",
+            (
+                "The null vector of D (8, 9) is the ninth row of Vt: full_matrices=False leaves "
+                "it out."
+            ),
+            lambda src, dst: np.linalg.svd(design_matrix(src, dst), full_matrices=False)[2][
+                -1
+            ].reshape(3, 3),
+        ),
+        Misconception(
+            "a column of Vt",
+            (
+                "You took the last column of Vt. np.linalg.svd gives Vᵀ: its rows are the "
+                "singular vectors, so take Vt[-1]."
+            ),
+            lambda src, dst: np.linalg.svd(design_matrix(src, dst))[2][:, -1].reshape(3, 3),
+        ),
+        Misconception(
+            "x and y exchanged",
+            "Your H expects (y, x): its first column belongs to x.",
+            lambda src, dst: dlt(src[:, ::-1], dst),
+        ),
     ),
     reference=dlt,
     sources=(design_matrix, dlt),

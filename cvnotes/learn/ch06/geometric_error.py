@@ -1,5 +1,8 @@
 """How far off is H."""
 
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -81,6 +84,47 @@ GEOMETRIC = Exercise(
             "one number for all",
             "That is the mean of the distances; asked is one for each pair.",
             lambda H, src, dst: geometric_error(H, src, dst).mean(),
+        ),
+        Misconception(
+            "differences, not lengths",
+            (
+                "These are the differences of both coordinates; the distance is the length of "
+                "each row."
+            ),
+            lambda H, src, dst: dst - _mapped(H, src),
+        ),
+        Misconception(
+            "columns for rows",
+            "You took the length of each column: axis=1 gives one for each row.",
+            lambda H, src, dst: np.linalg.norm(dst - _mapped(H, src), axis=0),
+        ),
+        Misconception(
+            "H inverted",
+            "You used H⁻¹: H takes src to dst.",
+            lambda H, src, dst: np.linalg.norm(dst - _mapped(np.linalg.inv(H), src), axis=1),
+        ),
+        Misconception(
+            "root of the mean square",
+            ("That is the root of the mean squared distance; asked is one distance for each pair."),
+            lambda H, src, dst: np.sqrt((geometric_error(H, src, dst) ** 2).mean()),
+        ),
+        Misconception(
+            "length of all differences",
+            (
+                "That is the length of all differences taken together; asked is one distance for "
+                "each pair: axis=1."
+            ),
+            lambda H, src, dst: np.linalg.norm(dst - _mapped(H, src)),
+        ),
+        Misconception(
+            "one coordinate only",
+            "You compared u only; the distance is √(Δu² + Δv²).",
+            lambda H, src, dst: np.abs(dst - _mapped(H, src))[:, 0],
+        ),
+        Misconception(
+            "src not mapped",
+            "You compared dst with src itself: H takes src to the plane of dst.",
+            lambda H, src, dst: np.linalg.norm(dst - src, axis=1),
         ),
     ),
     reference=geometric_error,

@@ -51,11 +51,11 @@ NORMALISER = Exercise(
     properties=(
         Property(
             "The centroid moves to 0.",
-            lambda N, c: np.allclose(apply(N, c.args[0]).mean(0), 0, atol=1e-5),
+            lambda N, c: np.allclose(apply(N, c.args[0]).mean(0), 0, atol=1e-6 * c.slack),
         ),
         Property(
             "The mean distance from it becomes √2.",
-            lambda N, c: abs(_mean_distance(N, c) - np.sqrt(2)) < 1e-5,
+            lambda N, c: abs(_mean_distance(N, c) - np.sqrt(2)) < 1e-6 * c.slack,
         ),
         Property("Both directions are scaled alike, and nothing is turned."),
     ),
@@ -103,6 +103,73 @@ NORMALISER = Exercise(
             "not centred",
             "The scale is right, but the points are not shifted to their centroid.",
             lambda x: _similarity(np.sqrt(2) / _centred(x)[1], np.zeros(2)),
+        ),
+        Misconception(
+            "standard deviation of the distances",
+            (
+                "You divided by the standard deviation of the distances; asked is that their mean "
+                "is √2."
+            ),
+            lambda x: _scaled_by(x, float(np.std(np.linalg.norm(x - x.mean(0), axis=1)))),
+            variants=(
+                lambda x: _scaled_by(
+                    x, float(np.std(np.linalg.norm(x - x.mean(0), axis=1), ddof=1))
+                ),
+            ),
+        ),
+        Misconception(
+            "standard deviation of all coordinates",
+            (
+                "You divided by the standard deviation of all coordinates together; asked is the "
+                "mean distance from the centroid."
+            ),
+            lambda x: _scaled_by(x, float(np.std(x))),
+            variants=(lambda x: _similarity(1 / np.std(x), -x.mean(0) / np.std(x)),),
+        ),
+        Misconception(
+            "sum of the distances",
+            "You took the sum of the distances; asked is their mean.",
+            lambda x: _scaled_by(x, _centred(x)[1] * len(x)),
+        ),
+        Misconception(
+            "upside down",
+            "You multiplied by the mean distance: s = √2 / d.",
+            lambda x: _similarity(
+                _centred(x)[1] / np.sqrt(2), -_centred(x)[1] / np.sqrt(2) * x.mean(0)
+            ),
+        ),
+        Misconception(
+            "mean distance 2",
+            "The mean distance became 2; asked is √2.",
+            lambda x: _scaled_by(x, _centred(x)[1] / np.sqrt(2)),
+        ),
+        Misconception(
+            "the largest distance",
+            "The largest distance became √2; asked is the mean.",
+            lambda x: _scaled_by(x, float(np.linalg.norm(x - x.mean(0), axis=1).max())),
+        ),
+        Misconception(
+            "transposed",
+            "Your shift stands in the last row; it belongs into the last column.",
+            lambda x: normaliser(x).T,
+        ),
+        Misconception(
+            "n − 1 for n",
+            "You divided the sum of the distances by n − 1; the mean divides by n.",
+            lambda x: _scaled_by(x, _centred(x)[1] * len(x) / (len(x) - 1)),
+        ),
+        Misconception(
+            "moved only",
+            "The points are moved to their centroid, but not scaled.",
+            lambda x: _similarity(1.0, -x.mean(0)),
+        ),
+        Misconception(
+            "root mean square distance, n − 1",
+            (
+                "You took the root of the sum of squared distances by n − 1; asked is the mean "
+                "distance."
+            ),
+            lambda x: _scaled_by(x, float(np.sqrt(((x - x.mean(0)) ** 2).sum() / (len(x) - 1)))),
         ),
     ),
     reference=normaliser,

@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.calibration import intrinsics_from_b
-from cvnotes.learn.cases.cameras import some_intrinsics
+from cvnotes.learn.cases.cameras import some_intrinsics, without_skew
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
@@ -76,7 +76,9 @@ A_FROM_B = Exercise(
     properties=(
         Property(
             "A is the camera that b was made of.",
-            lambda A, c: np.allclose(A, c.truth, rtol=1e-5, atol=1e-5 * np.abs(c.truth).max()),
+            lambda A, c: np.allclose(
+                A, c.truth, rtol=1e-6 * c.slack, atol=1e-6 * c.slack * np.abs(c.truth).max()
+            ),
         ),
         Property("The sign of b does not matter.", about="negative"),
     ),
@@ -119,6 +121,42 @@ A_FROM_B = Exercise(
             "skew left out",
             "All but the skew is as it should be, and u0 suffers from it: γ = −B12 α² β / s.",
             _without_skew,
+        ),
+        Misconception(
+            "inverse before the factorisation",
+            (
+                "B⁻¹ ∝ A Aᵀ, but Cholesky gives a lower triangular factor of it, and A is upper "
+                "triangular: factorise B, then invert."
+            ),
+            lambda b: _last_one(np.linalg.cholesky(np.linalg.inv(_B(b)))) if b[0] > 0 else None,
+            variants=(
+                lambda b: (
+                    _last_one(np.linalg.cholesky(np.linalg.inv(_B(b))).T) if b[0] > 0 else None
+                ),
+            ),
+        ),
+        Misconception(
+            "skew for 0",
+            "All but the skew is right, which you have set to 0: γ = −B12 α² β / s.",
+            lambda b: without_skew(A_from_b(b)),
+        ),
+        Misconception(
+            "sign of the skew",
+            "All but the sign of the skew is right: γ = −B12 α² β / s, with a minus.",
+            lambda b: A_from_b(b) * [[1, -1, 1], [1, 1, 1], [1, 1, 1]],
+        ),
+        Misconception(
+            "roots forgotten",
+            "You have α² and β²: take the roots.",
+            lambda b: A_from_b(b) ** np.array([[2, 1, 1], [1, 2, 1], [1, 1, 1]]),
+        ),
+        Misconception(
+            "the inverse", "That is A⁻¹: B = A⁻ᵀ A⁻¹.", lambda b: np.linalg.inv(A_from_b(b))
+        ),
+        Misconception(
+            "scaled to length 1",
+            "Your A is right up to scale: divide it by its last entry.",
+            lambda b: A_from_b(b) / np.linalg.norm(A_from_b(b)),
         ),
     ),
     reference=A_from_b,

@@ -22,7 +22,14 @@ def b_from_views(H: Array) -> Array:
 def _tilted_views(rng: Rng) -> list[Case]:
     A = _UNIT @ some_intrinsics(rng)
     three = [plane_image(np.diag([2.0, 2.5, 1]), R, np.array([0.5, 0, 4])) for R in _TILTS]
-    return [Case((np.array(three),)), Case((some_views(rng, A, 4),))]
+    noisy = some_views(rng, A, 12)
+    noisy = noisy / np.linalg.norm(noisy, axis=(1, 2), keepdims=True)
+    noisy = noisy + 2e-4 * rng.standard_normal(noisy.shape)
+    return [
+        Case((np.array(three),)),
+        Case((some_views(rng, A, 4),)),
+        Case((noisy,), about="noisy"),
+    ]
 
 
 _TILTS = (ABOUT_X, ABOUT_Y, ABOUT_X @ ABOUT_Y)
@@ -56,6 +63,17 @@ def _both_constraints(b: Array, case: Case) -> bool:
     return bool((np.abs(V @ b) <= 1e-6 * np.linalg.norm(V, axis=1) * np.linalg.norm(b)).all())
 
 
+def _misfit(b: Array, case: Case) -> float:
+    """Give how much the constraints are violated, for views of size one and b of length one."""
+    H = case.args[0]
+    V = _rows(H / np.linalg.norm(H, axis=(1, 2), keepdims=True))
+    return float(np.linalg.norm(V @ b) / np.linalg.norm(b))
+
+
+def _fits_noise(b: Array, case: Case) -> bool:
+    return _misfit(b, case) <= 1.5 * _misfit(case.right, case)
+
+
 B_FROM_VIEWS = Exercise(
     name="b_from_views",
     chapter=7,
@@ -75,6 +93,11 @@ B_FROM_VIEWS = Exercise(
     properties=(
         Property("h1ᵀ B h2 = 0 and h1ᵀ B h1 = h2ᵀ B h2 in every view.", _both_constraints),
         Property("b is the one and only answer, up to scale and sign."),
+        Property(
+            "With noise all views count: the constraints fit as well as they can.",
+            _fits_noise,
+            about="noisy",
+        ),
     ),
     misconceptions=(
         _at_any_scale(
