@@ -5,6 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import chain, inverse, pose
 from cvnotes.learn.cases.cameras import ABOUT_Y, some_pose_matrix
+from cvnotes.learn.checker.equality import same_motion
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
@@ -103,6 +104,7 @@ CHAIN = Exercise(
         ),
     ),
     reference=cam1_from_cam2,
+    same=same_motion,
     concepts=("24", "42", "E20"),
     sources=(cam1_from_cam2, chain, inverse),
 )

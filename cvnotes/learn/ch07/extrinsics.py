@@ -3,11 +3,13 @@
 # A mistake is often an argument that was left out.
 # ruff: noqa: ARG005
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import extrinsics
-from cvnotes.camera import nearest_rotation
+from cvnotes.camera import nearest_rotation, pose
 from cvnotes.learn.cases.cameras import (
     ABOUT_Y,
     TIDY_A,
@@ -16,17 +18,21 @@ from cvnotes.learn.cases.cameras import (
     some_factors,
     some_intrinsics,
     some_pose,
+    without_skew,
 )
-from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.equality import same_motion, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 
 def _posed(rng: Rng) -> list[Case]:
     cases = [Case((TIDY_A, plane_image(TIDY_A, ABOUT_Y, TIDY_T)))]
-    A = some_intrinsics(rng)
+    A = some_intrinsics(rng, skew=True)
     for sign, about in ((1.0, ""), (-1.0, "negative")):
         factor = sign * abs(some_factors(rng, 1)[0])
         cases.append(Case((A, factor * plane_image(A, *some_pose(rng))), about=about))
+    R, T = some_pose(rng)
+    H = plane_image(A, R, T) * (1 + 2e-3 * rng.standard_normal((3, 3)))
+    cases.append(Case((A, H), truth=(R, T), about="noisy"))
     return cases
 
 
@@ -52,7 +58,41 @@ def _G(A: Array, H: Array, *, T_scale: float = 1.0, r3: float = 1.0, sign: bool 
 
 def _is_view(G: Array, case: Case) -> bool:
     A, H = case.args
-    return up_to_scale(A @ G[:3, [0, 1, 3]], H, 1e-5)
+    return up_to_scale(A @ G[:3, [0, 1, 3]], H, 1e-6 * case.slack)
+
+
+def _is_near(G: Array, case: Case) -> bool:
+    """Tell whether G is a rigid motion, and as near to the truth as the noise allows."""
+    (R, T), near = case.truth, 0.05
+    rigid = np.abs(G[:3, :3] @ G[:3, :3].T - np.eye(3)).max() <= 1e-6 * case.slack
+    return bool(
+        rigid
+        and np.linalg.det(G[:3, :3]) > 0
+        and np.array_equal(G[3], [0, 0, 0, 1])
+        and np.abs(G[:3, :3] - R).max() < near
+        and np.linalg.norm(G[:3, 3] - T) < near * np.linalg.norm(T)
+    )
+
+
+def _no_rotation(A: Array, H: Array, length: Callable[[float, float], float]) -> Array:
+    """Give [r1 r2 r1×r2 T] as it is, with a λ made of the lengths of both columns."""
+    a, b, c, scale = _parts(A, H)
+    scale = np.sign(scale) * length(*np.linalg.norm([a, b], axis=1))
+    return _joined(a / scale, b / scale, np.cross(a, b) / scale**2, c / scale)
+
+
+def _each_by_itself(A: Array, H: Array, first: float = 0.5) -> Array:
+    """Scale r1 and r2 to length 1 one by one; T with a mean of both factors."""
+    a, b, c, scale = _parts(A, H)
+    la, lb = np.sign(scale) * np.linalg.norm([a, b], axis=1)
+    return _joined(a / la, b / lb, np.cross(a / la, b / lb), c / (first * la + (1 - first) * lb))
+
+
+def _rotation_by_qr(A: Array, H: Array) -> Array:
+    G = _no_rotation(A, H, lambda a, b: (a + b) / 2)
+    Q, U = np.linalg.qr(G[:3, :3])
+    G[:3, :3] = Q * np.sign(np.diag(U))
+    return G
 
 
 def _transposed(G: Array) -> Array:
@@ -65,19 +105,26 @@ EXTRINSICS = Exercise(
     chapter=7,
     title="Where the board was",
     task="Give the pose G (4, 4) of the board in the camera's frame from A and the view's "
-    "homography H, of any scale and sign. The board was in front of the camera.",
+    "homography H, of any scale and sign. The board was in front of the camera, and H has a "
+    "little noise: make R a rotation all the same.",
     stub='''def my_extrinsics(A, H):
     """Give G (4, 4), CRF ← board."""
     ...''',
     hints=(
         "A⁻¹ H = λ [r1 r2 T], and r1 and r2 are unit vectors: that gives |λ|.",
         "Its sign is the one that makes T_z positive.",
-        "r3 = r1 × r2. G has R and T in its first three rows and (0, 0, 0, 1) below.",
+        "r3 = r1 × r2; the nearest rotation to [r1 r2 r3] cures what noise did to it. G has R and "
+        "T in its first three rows and (0, 0, 0, 1) below.",
     ),
     cases=_posed,
     properties=(
         Property("A [r1 r2 T] is the homography, up to scale.", _is_view),
         Property("R is a rotation, and T has the length it has."),
+        Property(
+            "With noise R is a rotation all the same, and near the true one.",
+            _is_near,
+            about="noisy",
+        ),
         Property("A negative scale of H still puts the board in front: T_z > 0.", about="negative"),
     ),
     misconceptions=(
@@ -125,8 +172,81 @@ EXTRINSICS = Exercise(
                 *(x / _parts(A, H)[3] for x in (*_parts(A, H)[:3], _parts(A, H)[2]))
             ),
         ),
+        Misconception(
+            "no rotation with noise",
+            (
+                "Right on exact data. With noise r1 and r2 are neither of one length nor "
+                "perpendicular: take the rotation nearest to [r1 r2 r3]."
+            ),
+            lambda A, H: _no_rotation(A, H, lambda a, b: (a + b) / 2),
+            variants=(
+                lambda A, H: _no_rotation(A, H, lambda a, b: a),
+                lambda A, H: _no_rotation(A, H, lambda a, b: b),
+                lambda A, H: _no_rotation(A, H, lambda a, b: np.sqrt(a * b)),
+            ),
+        ),
+        Misconception(
+            "r1 and r2 scaled each by itself",
+            (
+                "Right on exact data. You scaled r1 and r2 to length 1 one by one: with noise "
+                "they are still not perpendicular. Take the rotation nearest to [r1 r2 r3]."
+            ),
+            lambda A, H: _each_by_itself(A, H),
+            variants=(
+                lambda A, H: _each_by_itself(A, H, 1.0),
+                lambda A, H: _each_by_itself(A, H, 0.0),
+            ),
+        ),
+        Misconception(
+            "T left out",
+            "R is right; T = λ⁻¹ A⁻¹ h3 is missing.",
+            lambda A, H: pose(extrinsics(A, H)[:3, :3], np.zeros(3)),
+        ),
+        Misconception(
+            "last row left out",
+            "G is a motion (4, 4): (0, 0, 0, 1) is missing below.",
+            lambda A, H: extrinsics(A, H)[:3],
+        ),
+        Misconception(
+            "last row of zeros",
+            "The last row of G is (0, 0, 0, 1): without its 1 no translation is ever added.",
+            lambda A, H: np.diag([1, 1, 1, 0]) @ extrinsics(A, H),
+        ),
+        Misconception(
+            "A for A⁻¹",
+            "You multiplied by A: H = λ A [r1 r2 T], so A has to be undone.",
+            lambda A, H: _G(np.linalg.inv(A), H),
+        ),
+        Misconception(
+            "rows of H",
+            "You took the rows of H; h1, h2 and h3 are its columns.",
+            lambda A, H: extrinsics(A, H.T),
+        ),
+        Misconception(
+            "T negated",
+            "Your board stands behind the camera: T has the wrong sign.",
+            lambda A, H: pose(extrinsics(A, H)[:3, :3], -extrinsics(A, H)[:3, 3]),
+        ),
+        Misconception(
+            "skew left out",
+            "You left out the skew of A.",
+            lambda A, H: extrinsics(without_skew(A), H),
+        ),
+        Misconception(
+            "H inverted",
+            "You used H⁻¹: H leads from the board to the picture, as A [r1 r2 T] does.",
+            lambda A, H: extrinsics(A, np.linalg.inv(H)),
+        ),
+        Misconception(
+            "camera's position for T",
+            "You gave where the camera stands, −Rᵀ T, beside R: G has T itself.",
+            lambda A, H: pose(
+                extrinsics(A, H)[:3, :3], -extrinsics(A, H)[:3, :3].T @ extrinsics(A, H)[:3, 3]
+            ),
+        ),
     ),
     reference=extrinsics,
     sources=(extrinsics, nearest_rotation),
+    same=same_motion,
     concepts=("54", "60", "d", "E32"),
 )

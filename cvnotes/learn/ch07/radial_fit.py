@@ -23,6 +23,10 @@ def _ideal_and_seen(rng: Rng) -> list[Case]:
         k, _ = some_lens(rng)
         xy = rounded(rng.uniform(-0.5, 0.5, (n, 2)), 2)
         cases.append(Case((xy, rounded(xy + _bent(xy, xy) @ k, 10)), truth=k))
+    k, _ = some_lens(rng)
+    xy = rounded(rng.uniform(-0.5, 0.5, (9, 2)), 2)
+    noisy = xy + _bent(xy, xy) @ k + 2e-3 * rng.standard_normal((9, 2))
+    cases.append(Case((xy, rounded(noisy, 4)), about="noisy"))
     return cases
 
 
@@ -40,6 +44,17 @@ def _one_by_one(xy: Array, xy_lens: Array) -> Array:
     D, d = _bent(xy, xy), xy_lens - xy
     k1 = _fit(D[..., 0], d)
     return np.array([*k1, *_fit(D[..., 1], d - D[..., 0] * k1)])
+
+
+def _misfit(k: Array, case: Case) -> float:
+    xy, xy_lens = case.args
+    return float(((xy_lens - xy - _bent(xy, xy) @ k) ** 2).sum())
+
+
+def _radii_quotient(xy: Array, xy_lens: Array) -> Array:
+    r2 = (xy**2).sum(1)
+    D = np.column_stack([r2, r2**2])
+    return _fit(D, np.sqrt((xy_lens**2).sum(1) / r2) - 1)
 
 
 RADIAL = Exercise(
@@ -60,7 +75,12 @@ RADIAL = Exercise(
     properties=(
         Property(
             "On exact data k is the lens that made them.",
-            lambda k, c: np.allclose(k, c.truth, rtol=0, atol=1e-5),
+            lambda k, c: np.allclose(k, c.truth, rtol=0, atol=1e-6 * c.slack),
+        ),
+        Property(
+            "With noise no other k makes the sum of squares smaller.",
+            lambda k, c: _misfit(k, c) <= (1 + 1e-5 * c.slack) * _misfit(c.right, c),
+            about="noisy",
         ),
     ),
     misconceptions=(
@@ -102,6 +122,61 @@ RADIAL = Exercise(
             lambda xy, xy_lens: _fit(
                 np.stack([xy * np.hypot(*xy.T)[:, None], xy * (xy**2).sum(1)[:, None]], -1),
                 xy_lens - xy,
+            ),
+        ),
+        Misconception(
+            "x only",
+            (
+                "You used the equations of x only; with noise those of y count too: two rows for "
+                "each point."
+            ),
+            lambda xy, xy_lens: _fit(_bent(xy, xy)[:, 0], (xy_lens - xy)[:, 0]),
+        ),
+        Misconception(
+            "y only",
+            (
+                "You used the equations of y only; with noise those of x count too: two rows for "
+                "each point."
+            ),
+            lambda xy, xy_lens: _fit(_bent(xy, xy)[:, 1], (xy_lens - xy)[:, 1]),
+        ),
+        Misconception(
+            "r⁶ for r⁴",
+            "k2 belongs to r⁴, which is (r²)²; you have r⁶.",
+            lambda xy, xy_lens: _fit(
+                np.stack([xy * (xy**2).sum(1)[:, None], xy * (xy**2).sum(1)[:, None] ** 3], -1),
+                xy_lens - xy,
+            ),
+        ),
+        Misconception(
+            "the factors, not the points",
+            (
+                "You fitted L itself, the quotient of observed and ideal: right on exact data. "
+                "With noise, dividing by a small coordinate makes it large; fit xy_lens − xy."
+            ),
+            lambda xy, xy_lens: _fit(_bent(xy, xy) / xy[..., None], xy_lens / xy - 1),
+            variants=(lambda xy, xy_lens: _radii_quotient(xy, xy_lens),),
+        ),
+        Misconception(
+            "not multiplied by x and y",
+            (
+                "You fitted xy_lens − xy = k1 r² + k2 r⁴: both sides belong to x and y, (k1 r² + "
+                "k2 r⁴) xy."
+            ),
+            lambda xy, xy_lens: _fit(_bent(xy, xy) / xy[..., None], xy_lens - xy),
+        ),
+        Misconception(
+            "k1 only",
+            "You gave one coefficient twice, or 0 for k2: the fit has two unknowns.",
+            lambda xy, xy_lens: np.append(_fit(_bent(xy, xy)[..., 0], xy_lens - xy), 0),
+        ),
+        Misconception(
+            "the first points only",
+            ("Right on exact data. With noise every point counts: stack the rows of all of them."),
+            lambda xy, xy_lens: radial_fit(xy[:2], xy_lens[:2]),
+            variants=(
+                lambda xy, xy_lens: _fit(_bent(xy[:1], xy[:1]), (xy_lens - xy)[:1]),
+                lambda xy, xy_lens: radial_fit(xy[:3], xy_lens[:3]),
             ),
         ),
     ),

@@ -1,5 +1,8 @@
 """One equation for B."""
 
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -26,7 +29,9 @@ def _form(v: Array, case: Case) -> bool:
     H, i, j = case.args
     B = case.truth
     b = B[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]]
-    return bool(abs(v @ b - H[:, i - 1] @ B @ H[:, j - 1]) <= 1e-5)
+    return bool(
+        abs(v @ b - H[:, i - 1] @ B @ H[:, j - 1]) <= 1e-6 * case.slack * np.abs(H).max() ** 2
+    )
 
 
 def _outer(a: Array, b: Array) -> tuple[Array, Array]:
@@ -90,6 +95,49 @@ V_IJ = Exercise(
             "products of equal entries only",
             "You have a1 b1, a2 b2 and a3 b3 only: the mixed entries of B are missing.",
             lambda H, i, j: v_ij(H, i, j) * (1 - _MIXED),
+        ),
+        Misconception(
+            "mixed products halved",
+            (
+                "B12 and B21 are one unknown, b has it once: its factor is a1 b2 + a2 b1, without "
+                "a half."
+            ),
+            lambda H, i, j: v_ij(H, i, j) * (1 - _MIXED / 2),
+        ),
+        Misconception(
+            "difference of the mixed products",
+            "The two products of B12 add up: a1 b2 + a2 b1, with a plus.",
+            lambda H, i, j: (
+                np.subtract(*_outer(H[:, i - 1], H[:, j - 1])) + (1 - _MIXED) * v_ij(H, i, j)
+            ),
+            variants=(
+                lambda H, i, j: (
+                    -np.subtract(*_outer(H[:, i - 1], H[:, j - 1])) + (1 - _MIXED) * v_ij(H, i, j)
+                ),
+            ),
+        ),
+        Misconception(
+            "column i alone",
+            "You used column i twice; h_jᵀ is column j.",
+            lambda H, i, j: v_ij(H, i, i),
+        ),
+        Misconception(
+            "column j alone",
+            "You used column j twice; h_i is column i.",
+            lambda H, i, j: v_ij(H, j, j),
+        ),
+        Misconception(
+            "the other mixed products",
+            (
+                "B12 stands in B twice, so that a1 b2 and a2 b1 both belong to it; you have a2 b1 "
+                "only."
+            ),
+            lambda H, i, j: _outer(H[:, i - 1], H[:, j - 1])[1],
+        ),
+        Misconception(
+            "columns counted from the last",
+            "h_1 is H[:, 0]: you took i − 2, which Python counts from the end.",
+            lambda H, i, j: v_ij(np.roll(H, 1, axis=1), i, j),
         ),
     ),
     reference=v_ij,

@@ -79,6 +79,23 @@ def close_to(bound: float) -> Same:
     return same
 
 
+def same_motion(answer: Array, right: Array, tolerance: float) -> bool:
+    """Tell whether two motions (4, 4) are equal: rotations to their size, translations to theirs.
+
+    Examples
+    --------
+    >>> G = np.eye(4)
+    >>> G[2, 3] = 700.0
+    >>> same_motion(G + 1e-5, G, 1e-6), close(G + 1e-5, G, 1e-6)
+    (False, True)
+    """
+    if answer.shape != right.shape or answer.ndim != 2:
+        return False
+    return close(answer[:, :3], right[:, :3], tolerance) and close(
+        answer[:, 3:], right[:, 3:], tolerance
+    )
+
+
 def up_to_scale(answer: Array, right: Array, tolerance: float) -> bool:
     """Tell whether two arrays differ only by a factor.
 
