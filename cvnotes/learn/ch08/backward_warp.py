@@ -1,5 +1,8 @@
 """A warp without holes."""
 
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
 import numpy as np
 import numpy.typing as npt
 
@@ -75,6 +78,34 @@ def _repeated(image: Array, H: Array, size: tuple[int, int]) -> Array:
     return _looked_up(image, m, size)
 
 
+def _wrapped_around(image: Array, H: Array, size: tuple[int, int]) -> Array | None:
+    """Look up without asking for u ≥ 0 and v ≥ 0; None where that raises an IndexError."""
+    u, v = np.round(_sources(np.linalg.inv(H), size)).astype(int).T
+    height, width = image.shape
+    inside = (u < width) & (v < height)
+    if (u[inside] < -width).any() or (v[inside] < -height).any():
+        return None
+    found = np.where(inside, image[np.where(inside, v, 0), np.where(inside, u, 0)], 0.0)
+    return found.reshape(size[::-1])
+
+
+def _half_pixels(image: Array, H: Array, size: tuple[int, int]) -> Array:
+    sources = np.nan_to_num(apply(np.linalg.inv(H), pixel_centres(size) + 0.5), nan=-1e6)
+    return _looked_up(image, np.floor(sources + 1e-9), size)
+
+
+def _inside_only(image: Array, H: Array, size: tuple[int, int], first: int, last: int) -> Array:
+    framed = np.array(image)
+    framed[:first], framed[:, :first] = 0, 0
+    framed[len(framed) - last :], framed[:, framed.shape[1] - last :] = 0, 0
+    return _looked_up(framed, _sources(np.linalg.inv(H), size), size)
+
+
+def _outside_nan(image: Array, H: Array, size: tuple[int, int]) -> Array:
+    inside = backward_warp(np.ones_like(image), H, size)
+    return np.where(inside > 0, backward_warp(image, H, size), np.nan)
+
+
 BACKWARD = Exercise(
     name="backward_warp",
     chapter=8,
@@ -129,6 +160,82 @@ BACKWARD = Exercise(
             "border repeated",
             "Outside of the source you repeated its border; the task asks for 0 there.",
             _repeated,
+        ),
+        Misconception(
+            "negative indices that wrap",
+            (
+                "A negative index does not fail in Python: it counts from the end, so that the "
+                "other side of the picture shows up. Ask for u ≥ 0 and v ≥ 0 as well."
+            ),
+            _wrapped_around,
+        ),
+        Misconception(
+            "truncated, not rounded",
+            (
+                "int() cuts the decimals off, towards 0; the nearest pixel is found by rounding "
+                "both coordinates."
+            ),
+            lambda image, H, size: _looked_up(
+                image, np.trunc(_sources(np.linalg.inv(H), size) + 1e-9), size
+            ),
+        ),
+        Misconception(
+            "half-pixel centres",
+            (
+                "You took pixel centres at halves. Here whole numbers are the centres, so nothing "
+                "is added before H⁻¹."
+            ),
+            lambda image, H, size: _half_pixels(image, H, size),
+            variants=(
+                lambda image, H, size: _looked_up(
+                    image, apply(np.linalg.inv(H), pixel_centres(size) + 0.5), size
+                ),
+                lambda image, H, size: _looked_up(
+                    image, apply(np.linalg.inv(H), pixel_centres(size) + 0.5) - 0.5, size
+                ),
+            ),
+        ),
+        Misconception(
+            "rounded upwards",
+            "You took the ceiling; the nearest pixel is found by rounding both coordinates.",
+            lambda image, H, size: _looked_up(
+                image, np.ceil(_sources(np.linalg.inv(H), size) - 1e-9), size
+            ),
+        ),
+        Misconception(
+            "first row and column left out",
+            "Pixels in row 0 and column 0 of the source count too: u ≥ 0, not u > 0.",
+            lambda image, H, size: _inside_only(image, H, size, 1, 0),
+        ),
+        Misconception(
+            "last row and column left out",
+            "Pixels in the last row and column of the source count too: u ≤ width − 1.",
+            lambda image, H, size: _inside_only(image, H, size, 0, 1),
+        ),
+        Misconception(
+            "H transposed",
+            (
+                "You used the transpose of H⁻¹: rows of points are multiplied by its transpose "
+                "from the right."
+            ),
+            lambda image, H, size: _looked_up(image, _sources(np.linalg.inv(H).T, size), size),
+        ),
+        Misconception(
+            "NaN outside",
+            "Outside of the source the task asks for 0; you have NaN there.",
+            lambda image, H, size: _outside_nan(image, H, size),
+        ),
+        Misconception(
+            "nothing warped",
+            "That is the source itself, cut to the size of the target.",
+            lambda image, H, size: _looked_up(image, pixel_centres(size), size),
+        ),
+        Misconception(
+            "bilinear",
+            "You interpolated between four pixels; asked is the nearest one.",
+            lambda image, H, size: library_backward_warp(
+                image.astype(float), homography_map(np.linalg.inv(H)), size=size, method="bilinear"
+            ).astype(np.float64),
         ),
     ),
     reference=backward_warp,

@@ -31,7 +31,8 @@ def _positions(rng: Rng) -> list[Case]:
     for _ in range(3):
         u, v = rounded(rng.uniform([0.2, 0.2], [5.8, 3.8])).tolist()
         cases.append(Case((image_of_noise(rng, 7, 5), u + 0.003, v + 0.004)))
-    return cases
+    border = [(2.0, 0.25), (0.5, 1.0), (2.0, 1.0)]
+    return cases + [Case((by_hand, u, v), about="border") for u, v in border]
 
 
 def _split(u: float, v: float) -> tuple[int, int, float, float]:
@@ -58,12 +59,19 @@ def _from_rounded(image: Array, u: float, v: float) -> float:
     return _blend(*_four(image, i, j), u - i, v - j)
 
 
+def _along_v(image: Array, u: float, v: float) -> float:
+    i, j, _, dv = _split(u, v)
+    I1, _, I3, _ = _four(image, i, j)
+    return (1 - dv) * I1 + dv * I3
+
+
 BILINEAR = Exercise(
     name="bilinear",
     chapter=8,
     title="Between the pixels",
-    task="Give the grey level of an image, shape (height, width), at the position (u, v) inside "
-    "of it, interpolated between the four pixels around it. Whole numbers are pixel centres.",
+    task="Give the grey level of an image, shape (height, width), at the position (u, v) inside of "
+    "it, its last row and column included, interpolated between the four pixels around it. Whole "
+    "numbers are pixel centres.",
     stub='''def my_bilinear(image, u, v):
     """Give the grey level at (u, v), bilinearly interpolated."""
     ...''',
@@ -77,6 +85,7 @@ BILINEAR = Exercise(
     properties=(
         Property("At a pixel's centre it is that pixel.", about="centre"),
         Property("In between, each of the four counts by how near it is."),
+        Property("In the last column and row there is an answer too.", about="border"),
     ),
     misconceptions=(
         Misconception(
@@ -120,6 +129,58 @@ BILINEAR = Exercise(
             "mean of the four",
             "That is the mean of the four pixels, wherever the position is between them.",
             lambda image, u, v: np.mean(_four(image, *_split(u, v)[:2])),
+        ),
+        Misconception(
+            "neighbour beyond the border",
+            (
+                "Right inside. In the last column or row there is no pixel beyond: its weight is "
+                "0, so use the last one twice, min(u_k + 1, width − 1)."
+            ),
+            lambda image, u, v: (
+                bilinear(image, u, v) if u < image.shape[1] - 1 and v < image.shape[0] - 1 else None
+            ),
+        ),
+        Misconception(
+            "border left out",
+            (
+                "Right inside. In the last column or row you gave 0; there are still two pixels "
+                "to interpolate, or one."
+            ),
+            lambda image, u, v: (
+                bilinear(image, u, v) if u < image.shape[1] - 1 and v < image.shape[0] - 1 else 0.0
+            ),
+        ),
+        Misconception(
+            "along u only",
+            "You interpolated along the row only: Δv counts as well.",
+            lambda image, u, v: _weighted(image, u, v, order=(0, 1, 0, 1)),
+        ),
+        Misconception(
+            "along v only",
+            "You interpolated along the column only: Δu counts as well.",
+            lambda image, u, v: _along_v(image, u, v),
+        ),
+        Misconception(
+            "Δ for 1 − Δ in u",
+            "Δu and 1 − Δu are exchanged: the pixel on the left counts by 1 − Δu.",
+            lambda image, u, v: _weighted(image, u, v, order=(1, 0, 3, 2)),
+        ),
+        Misconception(
+            "Δ for 1 − Δ in v",
+            "Δv and 1 − Δv are exchanged: the pixel above counts by 1 − Δv.",
+            lambda image, u, v: _weighted(image, u, v, order=(2, 3, 0, 1)),
+        ),
+        Misconception(
+            "the last weight left out",
+            "The fourth pixel is missing: ΔuΔv I4.",
+            lambda image, u, v: _blend(
+                *_four(image, *_split(u, v)[:2])[:3], 0.0, *_split(u, v)[2:]
+            ),
+        ),
+        Misconception(
+            "ceil for floor",
+            "You took the ceiling: the first pixel is at (⌊u⌋, ⌊v⌋).",
+            lambda image, u, v: image[int(np.ceil(v)), int(np.ceil(u))],
         ),
     ),
     reference=bilinear,

@@ -1,5 +1,8 @@
 """Holes in a forward warp."""
 
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -22,16 +25,41 @@ def _hit(m: Array, size: tuple[int, int], rounding: np.ufunc = np.rint) -> Array
 
 
 def _landings(rng: Rng) -> list[Case]:
-    by_hand = np.array([[0.2, 0.1], [0.9, 0.0], [1.1, 0.2], [2.6, 1.2], [0.8, 1.1]])
+    by_hand = np.array(
+        [
+            [0.2, 0.1],
+            [0.9, 0.0],
+            [1.1, 0.2],
+            [2.6, 0.3],
+            [3.7, 1.2],
+            [0.8, 1.1],
+            [4.2, 0.8],
+            [-0.7, 1.4],
+            [1.2, -0.8],
+            [1.4, 0.4],
+            [0.6, 0.7],
+            [4.8, 0.9],
+            [2.1, -1.6],
+        ]
+    )
     grid = pixel_centres((8, 6)) * 1.3 - 1.0
     moved = rounded(grid + rng.uniform(-0.9, 0.9, grid.shape))
     moved[np.abs(moved % 1 - 0.5) < 0.02] += 0.05
-    return [Case((by_hand, (3, 2))), Case((moved, (10, 7)))]
+    return [Case((by_hand, (4, 2))), Case((moved, (10, 7)))]
 
 
 def _landed_inside(m: Array, size: tuple[int, int]) -> int:
     pixels = np.rint(m)
     return int(((pixels >= 0).all(1) & (pixels < size).all(1)).sum())
+
+
+def _wrapped_around(m: Array, size: tuple[int, int]) -> int | None:
+    """Colour without asking for u ≥ 0 and v ≥ 0; None where that raises an IndexError."""
+    pixels = np.rint(m).astype(int)
+    pixels = pixels[(pixels < size).all(1)]
+    if (pixels < -np.array(size)).any():
+        return None
+    return size[0] * size[1] - len(np.unique(pixels % size, axis=0))
 
 
 HOLES = Exercise(
@@ -89,6 +117,39 @@ HOLES = Exercise(
             "size exchanged",
             "size is (width, height): u goes with the width, size[0].",
             lambda m, size: count_holes(m, size[::-1]),
+        ),
+        Misconception(
+            "truncated, not rounded",
+            "int() cuts the decimals off, towards 0; the nearest pixel is found by rounding.",
+            lambda m, size: size[0] * size[1] - len(_hit(m, size, np.trunc)),
+        ),
+        Misconception(
+            "rounded upwards",
+            "You took the ceiling; the nearest pixel is found by rounding.",
+            lambda m, size: size[0] * size[1] - len(_hit(m, size, np.ceil)),
+        ),
+        Misconception(
+            "negative indices that wrap",
+            (
+                "A negative index does not fail in Python: it counts from the end, and colours "
+                "the other side. Ask for u ≥ 0 and v ≥ 0 as well."
+            ),
+            _wrapped_around,
+        ),
+        Misconception(
+            "pixels of the target",
+            "That is how many pixels the target has.",
+            lambda m, size: size[0] * size[1],
+        ),
+        Misconception(
+            "pixels outside",
+            "That is how many positions lie outside of the target.",
+            lambda m, size: len(m) - _landed_inside(m, size),
+        ),
+        Misconception(
+            "positions that land inside",
+            "That is how many positions land inside; the holes are pixels on which none does.",
+            _landed_inside,
         ),
     ),
     reference=count_holes,

@@ -82,6 +82,54 @@ DEPTH = Exercise(
             "You have α b d: depth falls with the disparity.",
             lambda alpha, b, left, right: alpha * b * (left - right),
         ),
+        Misconception(
+            "0 for infinity",
+            (
+                "Right, except without disparity: you gave 0, which is right here at the camera. "
+                "The task asks for np.inf."
+            ),
+            lambda alpha, b, left, right: np.where(
+                left == right, 0.0, depth(alpha, b, left, right)
+            ),
+        ),
+        Misconception(
+            "no answer at infinity",
+            (
+                "Right, except without disparity, where you have no answer: the point is "
+                "infinitely far, np.inf."
+            ),
+            lambda alpha, b, left, right: (
+                depth(alpha, b, left, right) if (left != right).all() else None
+            ),
+        ),
+        Misconception(
+            "sum of the columns",
+            "You added the two columns; the disparity is their difference.",
+            lambda alpha, b, left, right: alpha * b / (left + right),
+        ),
+        Misconception(
+            "divided by the focal length",
+            "You have b / (α d): Z = α b / d.",
+            lambda alpha, b, left, right: b / (alpha * (left - right)),
+        ),
+        Misconception(
+            "one picture only",
+            (
+                "You divided by the column of the left picture; the disparity is the difference "
+                "of both."
+            ),
+            lambda alpha, b, left, right: alpha * b / left,
+        ),
+        Misconception(
+            "in metres",
+            "Right, in metres; asked are millimetres.",
+            lambda alpha, b, left, right: alpha * b / (left - right) / 1000,
+        ),
+        Misconception(
+            "twice the baseline",
+            "You took the baseline twice.",
+            lambda alpha, b, left, right: 2 * alpha * b / (left - right),
+        ),
     ),
     reference=depth,
     concepts=("70",),

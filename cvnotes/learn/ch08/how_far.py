@@ -71,6 +71,27 @@ FAR = Exercise(
             "You added the two columns; the disparity is their difference.",
             lambda: _ALPHA * _BASELINE / sum(_seen(nearest_edge())),
         ),
+        Misconception(
+            "half the baseline",
+            (
+                "You measured from the middle between the cameras; the full baseline goes with "
+                "the full disparity."
+            ),
+            lambda: how_far() / 2,
+        ),
+        Misconception(
+            "in centimetres",
+            "Right, in centimetres; asked are millimetres.",
+            lambda: how_far() / 10,
+        ),
+        Misconception(
+            "sign of the disparity",
+            (
+                "Your depth is negative: the disparity is the column on the left minus that on "
+                "the right."
+            ),
+            lambda: -how_far(),
+        ),
     ),
     reference=how_far,
     same=within_part(0.06),

@@ -33,6 +33,23 @@ def _unscaled(R: Array, x: Array) -> Array:
     return np.array([x, y, np.cross(x, y)])
 
 
+def _from_x(z: Array, x: Array) -> Array:
+    x = _unit(x)
+    y = _unit(np.cross(z, x))
+    return np.array([x, y, np.cross(x, y)])
+
+
+def _old_y(R: Array, left: Array, right: Array) -> Array:
+    x = _unit(right - left)
+    z = _unit(np.cross(x, R[1]))
+    return np.array([x, np.cross(z, x), z])
+
+
+def _old_z(R: Array, left: Array, right: Array) -> Array:
+    y = _unit(np.cross(R[2], right - left))
+    return np.array([np.cross(y, R[2]), y, R[2]])
+
+
 RECTIFY = Exercise(
     name="rectifying_rotation",
     chapter=8,
@@ -104,6 +121,50 @@ RECTIFY = Exercise(
             "nothing turned",
             "That is the left camera's own rotation; its x axis need not lie along the baseline.",
             lambda R, left, right: R,
+        ),
+        Misconception(
+            "a column of R for its row",
+            ("R[:, 2] is the world's z axis, seen by the camera. The camera's own z axis is R[2]."),
+            lambda R, left, right: rectifying_rotation(R.T, left, right),
+        ),
+        Misconception(
+            "x axis not of length 1",
+            "The baseline has to be scaled to length 1.",
+            lambda R, left, right: (
+                rectifying_rotation(R, left, right) * [[np.linalg.norm(right - left)], [1], [1]]
+            ),
+        ),
+        Misconception(
+            "old y axis",
+            "You kept the old y axis; asked is that z stays as near as it can: y = z_old × x.",
+            _old_y,
+        ),
+        Misconception(
+            "baseline turned too",
+            (
+                "You turned the baseline into the camera's frame; the rows of the rotation are "
+                "axes seen in the world."
+            ),
+            lambda R, left, right: _from_x(R[2], R @ (right - left)),
+        ),
+        Misconception(
+            "centre for the baseline",
+            "x leads from the left centre to the right one: right − left.",
+            lambda R, left, right: _from_x(R[2], right),
+        ),
+        Misconception(
+            "rows in another order",
+            "You have the rows in another order: x, y, z.",
+            lambda R, left, right: rectifying_rotation(R, left, right)[[0, 2, 1]],
+            variants=(
+                lambda R, left, right: rectifying_rotation(R, left, right)[[2, 1, 0]],
+                lambda R, left, right: rectifying_rotation(R, left, right)[[1, 0, 2]],
+            ),
+        ),
+        Misconception(
+            "old z axis in front",
+            "You kept z and made x perpendicular to it: x has to lie along the baseline.",
+            _old_z,
         ),
     ),
     reference=rectifying_rotation,

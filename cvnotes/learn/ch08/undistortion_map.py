@@ -46,6 +46,27 @@ def _at_piercing_point(m: Array, case: Case) -> float:
     return float(np.linalg.norm(m[v, u] - case.right[v, u]))
 
 
+def _factors(A: Array, k: Array, size: tuple[int, int]) -> Array:
+    return lens_factor((pixel_centres(size) - A[:2, 2]) / A[[0, 1], [0, 1]], k)
+
+
+def _by(A: Array, L: Array, size: tuple[int, int]) -> Array:
+    moved = A[:2, 2] + (pixel_centres(size) - A[:2, 2]) * L
+    return moved.reshape(size[1], size[0], 2)
+
+
+def _with_r(A: Array, k: Array, size: tuple[int, int]) -> Array:
+    r = np.linalg.norm((pixel_centres(size) - A[:2, 2]) / A[[0, 1], [0, 1]], axis=1)[:, None]
+    return np.asarray(1 + k[0] * r + k[1] * r**2)
+
+
+def _half_pixels(A: Array, k: Array, size: tuple[int, int]) -> Array:
+    m = pixel_centres(size) + 0.5
+    offset = m - A[:2, 2]
+    moved = A[:2, 2] + offset * lens_factor(offset / A[[0, 1], [0, 1]], k)
+    return moved.reshape(size[1], size[0], 2)
+
+
 UNDISTORTION = Exercise(
     name="undistortion_map",
     chapter=8,
@@ -108,6 +129,58 @@ UNDISTORTION = Exercise(
             lambda A, k, size: (
                 undistortion_map(A, k, size) - pixel_centres(size).reshape(size[1], size[0], 2)
             ),
+        ),
+        Misconception(
+            "divided by L",
+            (
+                "You divided by L: that is about the way back. The target is ideal, and the "
+                "photograph is found by distorting: multiply."
+            ),
+            lambda A, k, size: _by(A, 1 / _factors(A, k, size), size),
+        ),
+        Misconception(
+            "k2 left out",
+            "k2 r⁴ is missing.",
+            lambda A, k, size: undistortion_map(A, k * [1, 0], size),
+        ),
+        Misconception(
+            "both coefficients with r²",
+            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
+            lambda A, k, size: undistortion_map(A, np.array([k.sum(), 0.0]), size),
+        ),
+        Misconception(
+            "r for r²",
+            "You used r and r² where L has r² and r⁴.",
+            lambda A, k, size: _by(A, _with_r(A, k, size), size),
+        ),
+        Misconception(
+            "piercing point not added back",
+            "You left the result measured from the piercing point: add u0 and v0.",
+            lambda A, k, size: undistortion_map(A, k, size) - A[:2, 2],
+        ),
+        Misconception(
+            "sign of k",
+            "You subtracted the distortion: u' = u + (k1 r² + k2 r⁴)(u − u0).",
+            lambda A, k, size: undistortion_map(A, -k, size),
+        ),
+        Misconception(
+            "a list of positions",
+            (
+                "The positions are right, one after the other; asked is the shape (height, width, "
+                "2)."
+            ),
+            lambda A, k, size: undistortion_map(A, k, size).reshape(-1, 2),
+        ),
+        Misconception(
+            "nothing moved",
+            "Every pixel is looked up where it is: the lens is missing.",
+            lambda A, k, size: undistortion_map(A, 0 * k, size),
+        ),
+        Misconception(
+            "half-pixel centres",
+            "You took pixel centres at halves. Here whole numbers are the centres.",
+            lambda A, k, size: _half_pixels(A, k, size),
+            variants=(lambda A, k, size: _half_pixels(A, k, size) - 0.5,),
         ),
     ),
     reference=undistortion_map,

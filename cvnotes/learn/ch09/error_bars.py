@@ -80,6 +80,56 @@ ERRORS = Exercise(
             "σ² belongs in front of (JᵀJ)⁻¹, before the root is taken.",
             lambda J, r: _with_variance(J, np.sqrt(r @ r / (len(r) - J.shape[1]))),
         ),
+        Misconception(
+            "standard deviation about the mean",
+            (
+                "np.std(r) subtracts the mean of r first, which the fit knows nothing of, and "
+                "divides by n: σ² = Σ r² / (n − p)."
+            ),
+            lambda J, r: _with_variance(J, r.var()),
+        ),
+        Misconception(
+            "n − 1",
+            "You divided Σ r² by n − 1. The fit has used up p residuals: n − p.",
+            lambda J, r: _with_variance(J, r @ r / (len(r) - 1)),
+            variants=(lambda J, r: _with_variance(J, r.var(ddof=1)),),
+        ),
+        Misconception(
+            "n + p",
+            "The parameters use up residuals: n − p, not n + p.",
+            lambda J, r: _with_variance(J, r @ r / (len(r) + J.shape[1])),
+        ),
+        Misconception(
+            "sum of squares for σ²",
+            "You took Σ r² itself; divide it by n − p.",
+            lambda J, r: _with_variance(J, r @ r),
+        ),
+        Misconception(
+            "covariance matrix",
+            "That is the whole covariance; asked are the roots of its diagonal.",
+            lambda J, r: r @ r / (len(r) - J.shape[1]) * np.linalg.inv(J.T @ J),
+        ),
+        Misconception(
+            "rows of J⁻¹",
+            (
+                "You added up without squares: the standard deviation is the root of a sum of "
+                "squares."
+            ),
+            lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1])) * np.abs(np.linalg.pinv(J)).sum(1),
+        ),
+        Misconception(
+            "σ alone",
+            (
+                "σ is the noise of one residual; each parameter has its own part of it, from "
+                "(JᵀJ)⁻¹."
+            ),
+            lambda J, r: np.full(J.shape[1], np.sqrt(r @ r / (len(r) - J.shape[1]))),
+        ),
+        Misconception(
+            "number of parameters for n",
+            "You divided Σ r² by p: n − p.",
+            lambda J, r: _with_variance(J, r @ r / J.shape[1]),
+        ),
     ),
     reference=error_bars,
     concepts=("m", "64"),

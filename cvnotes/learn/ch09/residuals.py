@@ -11,6 +11,7 @@ from cvnotes.learn.cases.cameras import (
     some_intrinsics,
     some_lens,
     some_pose_matrix,
+    without_skew,
 )
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
@@ -23,7 +24,7 @@ def residuals(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
 def _views(rng: Rng) -> list[Case]:
     cases = []
     for n in (2, 9):
-        A, (k, _), G = some_intrinsics(rng), some_lens(rng), some_pose_matrix(rng)
+        A, (k, _), G = some_intrinsics(rng, skew=True), some_lens(rng), some_pose_matrix(rng)
         W = np.column_stack([board_grid()[-n:], np.zeros(n)])
         seen = Camera(A, G, Lens(tuple(k))).project(W)
         cases.append(Case((A, k, G, W, rounded(seen + rng.uniform(-2, 2, seen.shape)))))
@@ -43,6 +44,26 @@ def _lens_on_pixels(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
 def _transposed(G: Array) -> Array:
     G[:3, :3] = G[:3, :3].T
     return G
+
+
+def _ideal(G: Array, W: Array) -> Array:
+    M = W @ G[:3, :3].T + G[:3, 3]
+    return np.asarray(M[:, :2] / M[:, 2:])
+
+
+def _by_hand(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
+    xy = _ideal(G, W)
+    return m - A[:2, 2] - (xy * lens_factor(xy, k)) @ A[:2, :2].T
+
+
+def _without_T(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
+    G[:3, 3] = 0
+    return _by_hand(A, k, G, W, m)
+
+
+def _undistorted(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
+    seen = Camera(A, lens=Lens(tuple(k))).ideal(m) @ A[:2, :2].T + A[:2, 2]
+    return np.asarray(_without_lens(A, k, G, W, m) - m + seen)
 
 
 RESIDUALS = Exercise(
@@ -97,6 +118,63 @@ RESIDUALS = Exercise(
             "the prediction itself",
             "These are the predicted pixels: subtract them from m.",
             lambda A, k, G, W, m: m - residuals(A, k, G, W, m),
+        ),
+        Misconception(
+            "skew left out",
+            "You left out the skew A[0, 1]: u = α_u x' + γ y' + u0.",
+            lambda A, k, G, W, m: residuals(without_skew(A), k, G, W, m),
+        ),
+        Misconception(
+            "T left out",
+            "T is missing: M = R W + T.",
+            lambda A, k, G, W, m: _without_T(A, k, G, W, m),
+        ),
+        Misconception(
+            "G inverted",
+            "You used G⁻¹: G takes points of the board to the camera's frame already.",
+            lambda A, k, G, W, m: _by_hand(A, k, np.linalg.inv(G), W, m),
+        ),
+        Misconception(
+            "k2 left out",
+            "k2 r⁴ is missing in L.",
+            lambda A, k, G, W, m: residuals(A, k * [1, 0], G, W, m),
+        ),
+        Misconception(
+            "both coefficients with r²",
+            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
+            lambda A, k, G, W, m: residuals(A, np.array([k.sum(), 0.0]), G, W, m),
+        ),
+        Misconception(
+            "divided by L",
+            ("You divided by L. The lens multiplies: prediction distorts, correction undistorts."),
+            lambda A, k, G, W, m: (
+                m - A[:2, 2] - (_ideal(G, W) / lens_factor(_ideal(G, W), k)) @ A[:2, :2].T
+            ),
+        ),
+        Misconception(
+            "u and v exchanged",
+            "Your prediction is (v, u), row before column; pixels are (u, v) here.",
+            lambda A, k, G, W, m: m - (m - residuals(A, k, G, W, m))[:, ::-1],
+        ),
+        Misconception(
+            "piercing point left out",
+            "u0 and v0 are missing in your prediction.",
+            lambda A, k, G, W, m: residuals(A, k, G, W, m) + A[:2, 2],
+        ),
+        Misconception(
+            "one row of all",
+            "The numbers are right, in one row; asked is a row for each corner, (n, 2).",
+            lambda A, k, G, W, m: residuals(A, k, G, W, m).ravel(),
+        ),
+        Misconception(
+            "absolute values",
+            "These are absolute values: least squares wants the signs too.",
+            lambda A, k, G, W, m: np.abs(residuals(A, k, G, W, m)),
+        ),
+        Misconception(
+            "lens of the wrong points",
+            "You undistorted what was seen; prediction distorts the ideal points.",
+            lambda A, k, G, W, m: _undistorted(A, k, G, W, m),
         ),
     ),
     reference=residuals,
