@@ -85,7 +85,8 @@ def _fits_noise(H: Array, case: Case) -> bool:
 
 
 def _economic(src: Array, dst: Array) -> Array:
-    return np.linalg.svd(design_matrix(src, dst), full_matrices=False)[2][-1].reshape(3, 3)
+    Vt = np.linalg.svd(design_matrix(src, dst), full_matrices=False)[2]
+    return np.asarray(Vt[-1].reshape(3, 3))
 
 
 def _by_eigenvectors(src: Array, dst: Array) -> Array:

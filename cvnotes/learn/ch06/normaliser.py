@@ -124,7 +124,7 @@ NORMALISER = Exercise(
                 "mean distance from the centroid."
             ),
             lambda x: _scaled_by(x, float(np.std(x))),
-            variants=(lambda x: _similarity(1 / np.std(x), -x.mean(0) / np.std(x)),),
+            variants=(lambda x: _similarity(1 / float(np.std(x)), -x.mean(0) / np.std(x)),),
         ),
         Misconception(
             "sum of the distances",

@@ -8,6 +8,7 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.learn.checker.diagnosis import Tried, mistake_behind
+from cvnotes.learn.checker.difference import difference
 from cvnotes.learn.checker.equality import of_size_one, slack, tolerance, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Property
 from cvnotes.learn.checker.outcome import Outcome
@@ -155,7 +156,8 @@ def _wrong(
     if mistake is not None:
         why = mistake.sentence
     elif not why:
-        why = f"Look at what does not hold; {hint_at(exercise)}"
+        measured = difference(exercise, tried, [x[2] for x in failing])
+        why = f"{measured or 'Look at what does not hold;'} {hint_at(exercise)}"
     wanted = _scaled(exercise, case.right, outcome)
     shown = exercise.answer == "function"
     compared = shown and not outcome.changed
