@@ -36,7 +36,7 @@ def said(name, change):
         ("v_ij", lambda x: np.roll(x, 1), "The entries are the right ones, moved on by one place."),
         ("distort", lambda x: x[[1, 0, *range(2, len(x))]], "The rows are the right ones, in"),
         ("horizon", lambda x: x[[1, 0, 2]], "The numbers are the right ones, in another order."),
-        ("nearest_rotation", lambda R: R * [1, -1, 1], "sizes are right, signs are wrong in [0, 1]"),
+        ("nearest_rotation", lambda R: R * [1, -1, 1], "sizes are right, signs are wrong in [0, 1"),
         ("A_from_b", lambda A: A + [[0, 0, 0], [0, 0, 3.0], [0, 0, 0]],
          "All is right but what stands in [1, 2]."),
         ("residuals", lambda r: r * [1, 1.5], "Only column 1 of your answer is wrong."),
