@@ -6,8 +6,7 @@ from cvnotes.base import Array, CvnotesError
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.projective import meet
-from cvnotes.projective.points import drop
+from cvnotes.projective import from_homogeneous, meet
 
 
 def _two_lines(rng: Rng) -> list[Case]:
@@ -105,7 +104,7 @@ MEET = Exercise(
                 "You divided already. Asked is the homogeneous point (3,), which exists for "
                 "parallel lines too."
             ),
-            lambda l1, l2: _finite(drop(np.cross(l1, l2))),
+            lambda l1, l2: _finite(from_homogeneous(np.cross(l1, l2))),
         ),
         Misconception(
             "direction of the second line",

@@ -10,6 +10,8 @@ from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import image_of_noise, pixel_centres, rounded
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply
+from cvnotes.warping import backward_warp as library_warp
+from cvnotes.warping import homography_map
 
 
 def backward_warp(image: Array, H: Array, size: tuple[int, int]) -> Array:
@@ -99,6 +101,11 @@ def _inside_only(image: Array, H: Array, size: tuple[int, int], first: int, last
     framed[:first], framed[:, :first] = 0, 0
     framed[len(framed) - last :], framed[:, framed.shape[1] - last :] = 0, 0
     return _looked_up(framed, _sources(np.linalg.inv(H), size), size)
+
+
+def _interpolated(image: Array, H: Array, size: tuple[int, int]) -> Array:
+    to_source = homography_map(np.linalg.inv(H))
+    return np.asarray(library_warp(image, to_source, size=size, method="bilinear"), dtype=float)
 
 
 def _outside_nan(image: Array, H: Array, size: tuple[int, int]) -> Array:
@@ -233,9 +240,7 @@ BACKWARD = Exercise(
         Misconception(
             "bilinear",
             "You interpolated between four pixels; asked is the nearest one.",
-            lambda image, H, size: library_backward_warp(
-                image.astype(float), homography_map(np.linalg.inv(H)), size=size, method="bilinear"
-            ).astype(np.float64),
+            _interpolated,
         ),
     ),
     reference=backward_warp,

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array
+from cvnotes.base import Array, CvnotesError
 from cvnotes.learn.checker.diagnosis import Tried
 from cvnotes.learn.checker.equality import Same, tolerance, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise
@@ -49,7 +49,7 @@ def difference(exercise: Exercise, tried: Sequence[Tried], failing: Sequence[Cas
             tell(pairs, exercise.same, bound) for tell in (_TELLERS[-1:] if truths else _TELLERS)
         )
         return next((sentence for sentence in found if sentence), "")
-    except np.linalg.LinAlgError:
+    except (np.linalg.LinAlgError, CvnotesError):
         return ""
 
 
