@@ -18,6 +18,7 @@ from cvnotes.learn.grader.marks import Mark, Verdict
 from cvnotes.learn.grader.source import fingerprint, own_code
 from cvnotes.learn.grader.totals import remarked, totals
 
+pytestmark = pytest.mark.slow
 ASSIGNMENT = """
 title = "Homework 1"
 students = "students.csv"

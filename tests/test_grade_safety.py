@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,7 @@ from cvnotes.learn.grader.process import Limits
 from cvnotes.learn.grader.records import Records, read_records
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes as on Linux")
+pytestmark = pytest.mark.slow
 LIFT = (IMPORTS, *answered("lift", source_of("lift")))
 
 
@@ -129,6 +131,11 @@ def test_a_killed_grader_leaves_its_rows_and_no_process(tmp_path):
     assert [row["student"] for row in rows(out)] == ["a"]
     [line] = (tmp_path / "marks.rows.jsonl").read_text().splitlines()
     assert json.loads(line)["mark"]["reports"]["lift"]["verdict"] == "right"
+    assert len(list(scratch.iterdir())) == 1
+    process = started(tmp_path / "in", out, "--jobs", "1", "--seconds", "3", scratch=scratch)
+    finished_rows(out, 3)
+    process.communicate()
+    assert list(scratch.iterdir()) == []  # what the killed one could not clear away, the next did
 
 
 def test_resuming_runs_only_what_is_new_or_changed(tmp_path, capsys, monkeypatch):
@@ -161,7 +168,7 @@ def test_a_class_interrupted_at_random_gives_the_same_table(tmp_path):
     process = started(tmp_path / "in", whole)
     process.communicate()
     for kept in (0, 1, 2, 4):
-        process = started(tmp_path / "in", pieces, "--resume", "--jobs", "2")
+        process = started(tmp_path / "in", pieces, "--resume", "--jobs", "2", scratch=tmp_path)
         finished_rows(pieces, kept + 1)
         time.sleep(rng.uniform(0, 0.3))
         process.send_signal(rng.choice([signal.SIGINT, signal.SIGTERM, signal.SIGKILL]))
@@ -329,11 +336,16 @@ def test_a_sealed_notebook_finds_no_network_no_neighbour_and_no_process(tmp_path
 
 
 @linux
-def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(tmp_path, monkeypatch):
+@pytest.mark.parametrize("interrupted", [False, True])
+def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(
+    interrupted, tmp_path, monkeypatch
+):
     from cvnotes.learn.grader import process
 
     word = f"left-{tmp_path.name}-{os.getpid()}"
     cells = [*LIFT, SLEEPER.format(word)]
+    if interrupted:
+        cells += ["import time\ntime.sleep(60)"]
     run = subprocess.Popen
 
     def unsealed(arguments, **options):
@@ -344,8 +356,17 @@ def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(tmp_path, 
         return run([arguments[0], "-c", blocked], **options)
 
     monkeypatch.setattr(process.subprocess, "Popen", unsealed)
-    ran = process.run_notebook(cells, 7, Limits(60.0))
-    assert ran.finished
+    with ThreadPoolExecutor() as pool:
+        future = pool.submit(process.run_notebook, cells, 7, Limits(60.0), (), word)
+        if interrupted:
+            wait_for(lambda: sleepers(word))
+            before = time.monotonic()
+            process.stop(word)
+        ran = future.result()
+    assert bool(ran.finished) != interrupted
+    if interrupted:
+        assert ran.ended == process.INTERRUPTED
+        assert time.monotonic() - before < 3
     assert not ran.sealed
     assert sleepers(word) == []
 

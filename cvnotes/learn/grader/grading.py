@@ -19,7 +19,7 @@ from cvnotes.learn.grader.handed_in import Handin, listed
 from cvnotes.learn.grader.handin import code_cells
 from cvnotes.learn.grader.judging import judged
 from cvnotes.learn.grader.marks import Mark, Verdict
-from cvnotes.learn.grader.process import Limits, run_notebook, stop
+from cvnotes.learn.grader.process import Limits, clear_abandoned, run_notebook, stop
 from cvnotes.learn.grader.source import fingerprint, own_code
 
 
@@ -62,6 +62,7 @@ def grade_folder(
         There is no such folder, or no notebook in it.
     """
     handed_in = listed(folder, ours)
+    clear_abandoned()
     return len(handed_in), _marks(
         handed_in, Limits(seconds, megabytes), jobs, executor, known or {}, (folder,)
     )

@@ -23,12 +23,13 @@ from typing import IO, Any
 
 from cvnotes.learn.exercises import EXERCISES
 from cvnotes.learn.grader.handin import Arguments, Task
-from cvnotes.learn.grader.tracking import MARKER, end
+from cvnotes.learn.grader.tracking import MARKER, alive, end
 from cvnotes.pictures.course import DATA
 
 # Bytes that one notebook may hand over, with all of its answers.
 _MAX_RESULTS = 64 * 2**20
 INTERRUPTED = "interrupted"
+_SCRATCH = "cvnotes-grade-"
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,15 @@ def stop(batch: str) -> None:
     _STOPPED.add(batch)
 
 
+def clear_abandoned() -> None:
+    """Remove the scratch folders of graders that were killed before they could."""
+    for path in Path(tempfile.gettempdir()).glob(f"{_SCRATCH}*"):
+        owner = path.name.removeprefix(_SCRATCH).split("-")[0]
+        with contextlib.suppress(OSError):
+            if owner.isdigit() and not alive(int(owner)) and path.stat().st_uid == os.getuid():
+                shutil.rmtree(path, ignore_errors=True)
+
+
 def run_notebook(
     cells: list[str], seed: int, limits: Limits, hidden: Sequence[Path] = (), batch: str = ""
 ) -> Ran:
@@ -90,7 +100,8 @@ def run_notebook(
     """
     if batch in _STOPPED:
         return Ran(ended=INTERRUPTED)
-    with tempfile.TemporaryDirectory(prefix="cvnotes-", ignore_cleanup_errors=True) as folder:
+    prefix = f"{_SCRATCH}{os.getpid()}-"
+    with tempfile.TemporaryDirectory(prefix=prefix, ignore_cleanup_errors=True) as folder:
         scratch = Path(folder).resolve()
         (scratch / "notebooks").mkdir()
         if DATA.is_dir():

@@ -9,6 +9,7 @@ from pathlib import Path
 
 MARKER = "CVNOTES_NOTEBOOK"  # an environment variable with which a notebook's processes begin
 _SECONDS = 2.0
+_PROC = Path("/proc")
 
 
 def end(process: "subprocess.Popen[bytes]", token: str) -> None:
@@ -44,7 +45,7 @@ def end(process: "subprocess.Popen[bytes]", token: str) -> None:
     while (left := marked(token)) and time.monotonic() < deadline:
         _send(left, signal.SIGKILL)
         time.sleep(0.01)
-    while any(map(_alive, found)) and time.monotonic() < deadline:
+    while _PROC.is_dir() and any(map(alive, found)) and time.monotonic() < deadline:
         time.sleep(0.01)
 
 
@@ -61,7 +62,7 @@ def marked(token: str) -> set[int]:
     for folder in _processes():
         with contextlib.suppress(OSError):
             begun_with = (folder / "environ").read_bytes().split(b"\0")
-            if wanted in begun_with and _alive(int(folder.name)):
+            if wanted in begun_with and alive(int(folder.name)):
                 found.add(int(folder.name))
     return found
 
@@ -79,16 +80,24 @@ def _below(ancestors: set[int]) -> set[int]:
     return below
 
 
-def _alive(number: int) -> bool:
+def alive(number: int) -> bool:
+    """Tell whether a process is there and has not ended; where there is no ``/proc``, it may be.
+
+    Examples
+    --------
+    >>> alive(os.getpid())
+    True
+    """
+    if not _PROC.is_dir():
+        return True
     try:
-        return _status(Path(f"/proc/{number}"))[0] not in ("Z", "X")
+        return _status(_PROC / str(number))[0] not in ("Z", "X")
     except (OSError, IndexError):
         return False
 
 
 def _processes() -> list[Path]:
-    proc = Path("/proc")
-    return [p for p in proc.iterdir() if p.name.isdigit()] if proc.is_dir() else []
+    return [p for p in _PROC.iterdir() if p.name.isdigit()] if _PROC.is_dir() else []
 
 
 def _status(folder: Path) -> list[str]:
