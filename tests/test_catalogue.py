@@ -190,7 +190,7 @@ def test_empty_arrays_are_refused_or_answered_by_nothing(function, arrays):
 MAY_BE_EMPTY = {
     "lens.Lens": ("k",),
     "pictures.raycast.first_hits": ("corners",),
-    "show.figures.quality.covered_cells": ("image_points",),
+    "calibration.coverage.covered_cells": ("image_points",),
 }
 
 

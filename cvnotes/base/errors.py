@@ -1,5 +1,7 @@
 """The kinds of errors, and the one warning."""
 
+from typing import Any
+
 
 class CvnotesError(ValueError):
     """Base of all errors about values."""
@@ -14,7 +16,9 @@ class DegenerateError(CvnotesError):
 
 
 class CornersNotFound(CvnotesError):
-    """The board was not found in the picture."""
+    """The board was not found in the picture; `found` (n, 2) is what was taken for it, if any."""
+
+    found: Any = None
 
 
 class ConvergenceError(CvnotesError):

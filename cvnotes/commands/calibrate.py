@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError
 from cvnotes.commands.console import complain, say
 from cvnotes.commands.ownership import earlier, made_by, marked
@@ -37,8 +39,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     )
     add = parser.add_argument
     add("photos", nargs="+", metavar="PHOTO", help="photographs, or folders of photographs")
-    add("--corners", type=corners, required=True, metavar="9x6",
-        help="inner corners of the board along x and y: where four squares meet")  # fmt: skip
+    add("--corners", type=corners_or_auto, required=True, metavar="9x6",
+        help="inner corners of the board along x and y: where four squares meet; or auto to "
+        "have them counted in the photographs")  # fmt: skip
     add("--square", type=length, required=True, metavar="25", help="side of a square, in mm")
     add("--out", type=Path, required=True, metavar="FOLDER", help="folder for the results")
     add("--lens", type=lens, default="k1 k2 p1 p2", metavar='"k1 k2"',
@@ -50,9 +53,16 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(args: argparse.Namespace) -> int:
     """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no such board, 3 not reliable."""
-    from cvnotes.commands.examined import examine
-    from cvnotes.commands.report import camera_report, doubts, photo_table
+    from cvnotes.commands.examined import counted, examine
+    from cvnotes.commands.report import camera_report, doubts, named, photo_table
 
+    if args.corners is None:
+        try:
+            args.corners = counted(args.photos)
+        except DegenerateError as error:
+            complain("calibrate", str(error))
+            return 1
+        say("A board of {}×{} inner corners, as counted in the photographs\n".format(*args.corners))
     columns, rows = args.corners
     symmetric = (columns - rows) % 2 == 0
     try:
@@ -74,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
         return 1
     say(photo_table(files, notes, rejected, result) + "\n")
     say(camera_report(result) + "\n")
-    for sentence in doubts(result, examined, symmetric=symmetric):
+    for sentence in doubts(result, examined, files, rejected, symmetric=symmetric):
         say(f"! {sentence}")
     contents = _contents(result, examined, board, files, rejected)
     write_whole({args.out / name: data for name, data in contents.items()})
@@ -82,7 +92,9 @@ def run(args: argparse.Namespace) -> int:
         stale.unlink(missing_ok=True)  # a sheet that an earlier run had more than this one
     say(f"Written to {printable(args.out)}: {', '.join(contents)}")
     if not result.reliable:
-        complain("calibrate", f"written, but not reliable: {result.warnings[0]}")
+        complain(
+            "calibrate", f"written, but not reliable: {named(result.warnings[0], result, files)}"
+        )
         return 3
     return 0
 
@@ -97,10 +109,14 @@ def _calibrate(
             "a board of {}×{} inner corners was found in none (count where four squares meet, "
             "not squares)".format(*args.corners)
         )
-    seen = [photo.corners for photo in examined if photo.corners is not None]
+    seen = [np.isfinite(photo.corners).all(-1) for photo in examined if photo.corners is not None]
+    m = [photo.corners for photo in examined if photo.corners is not None]
+    whole = all(s.all() for s in seen)
+    W = board.points if whole else [board.points[s] for s in seen]
+    m = m if whole else [x[s] for x, s in zip(m, seen, strict=True)]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CalibrationWarning)  # the report has them
-        return calibrate(board.points, seen, examined[0].size, lens=args.lens, skew=args.skew)
+        return calibrate(W, m, examined[0].size, lens=args.lens, skew=args.skew)
 
 
 def _contents(
@@ -138,6 +154,17 @@ def _brief(files: Sequence[str], rejected: Sequence[Rejected]) -> tuple[list[str
     short = [str(Path(file).relative_to(common)) for file in every]
     kept = [Rejected(name, r.reason) for name, r in zip(short[len(files) :], rejected, strict=True)]
     return short[: len(files)], kept
+
+
+def corners_or_auto(text: str) -> tuple[int, int] | None:
+    """Read ``9x6``, or ``auto``, which is None.
+
+    Examples
+    --------
+    >>> corners_or_auto("9x6"), corners_or_auto("auto")
+    ((9, 6), None)
+    """
+    return None if text.strip().lower() == "auto" else corners(text)
 
 
 def lens(text: str) -> str:

@@ -1,5 +1,6 @@
 """The photographs of a calibration: which of them show the board, and why the others do not."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,14 +8,18 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CornersNotFound, FileError
+from cvnotes.base import Array, CornersNotFound, DegenerateError, FileError
 from cvnotes.commands.console import progress
 from cvnotes.commands.ownership import photographs
-from cvnotes.files import Photo, Rejected, open_photos
+from cvnotes.commands.parallel import in_order
+from cvnotes.files import Photo, Rejected, open_photos, read_photo
+from cvnotes.files.photos import COPY, fingerprint
 from cvnotes.files.writing import printable
-from cvnotes.targets import Chessboard
+from cvnotes.targets import Chessboard, find_corners
+from cvnotes.targets.finding import count_corners
 
 _THUMBNAIL = 480  # px wide
+_SURE = 3  # photographs that agree on the board's count
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +35,14 @@ class Examined:
     thumbnail : ndarray of uint8, shape (h, w)
         A small copy.
     corners : ndarray, shape (n, 2), or None
-        Where the board's corners are in the photograph; None if it was not found.
+        Where the board's corners are in the photograph, NaN for those that cannot be seen; None
+        if it was not found.
     turned : bool
         Whether its EXIF data ask for a rotation (which is not carried out).
     note : str
         What was done to it, or why the board was not found.
+    found : ndarray, shape (n, 2), or None
+        What a finder took for the board where it is not to be trusted.
     """
 
     path: Path
@@ -43,14 +51,17 @@ class Examined:
     corners: Array | None
     turned: bool
     note: str
+    found: Array | None = None
 
     @property
     def thumbnail_corners(self) -> Array | None:
         """The corners in pixels of the thumbnail."""
-        if self.corners is None:
-            return None
+        return None if self.corners is None else self.on_thumbnail(self.corners)
+
+    def on_thumbnail(self, m: Array) -> Array:
+        """Give where pixels (n, 2) of the photograph lie on the thumbnail."""
         # Pixel centres are integers, so the picture's edge lies at −½ in both.
-        return np.asarray((self.corners + 0.5) * self.thumbnail.shape[1] / self.size[0] - 0.5)
+        return np.asarray((m + 0.5) * self.thumbnail.shape[1] / self.size[0] - 0.5)
 
 
 def examine(paths: Sequence[str], board: Chessboard) -> tuple[list[Examined], list[Rejected]]:
@@ -58,29 +69,75 @@ def examine(paths: Sequence[str], board: Chessboard) -> tuple[list[Examined], li
 
     A photograph without the board is in both lists.
     """
-    files, rejected = photographs(paths, straightened=True)
-    if not files and not rejected:
-        raise FileError(f"no photographs in {', '.join(map(printable, paths))}")
+    files, rejected = _photographs(paths)
     examined = []
-    for photo in progress(open_photos(files), total=len(files)):
-        if isinstance(photo, Photo):
-            examined.append(_examine(photo, board))
-            if examined[-1].corners is None:
-                rejected.append(Rejected(printable(photo.path), examined[-1].note))
+    first: dict[bytes, Path] = {}
+    looked = in_order(lambda path: _looked_at(path, board), files)
+    for path, (content, item) in zip(files, progress(looked, total=len(files)), strict=True):
+        same = first.setdefault(content, path)
+        if isinstance(item, Rejected):
+            rejected.append(item)
+        elif same != path:
+            rejected.append(Rejected(printable(path), f"{COPY} {printable(same)}"))
         else:
-            rejected.append(photo)
+            examined.append(item)
+            if item.corners is None:
+                rejected.append(Rejected(printable(path), item.note))
     return examined, rejected
 
 
-def _examine(photo: Photo, board: Chessboard) -> Examined:
-    from cvnotes.targets import find_corners
+def counted(paths: Sequence[str]) -> tuple[int, int]:
+    """Count the inner corners (columns, rows) of the board in photographs: as most of them show.
 
+    Raises
+    ------
+    DegenerateError
+        There is no board in any of them.
+    """
+    files, _ = _photographs(paths)
+    counts: Counter[tuple[int, int]] = Counter()
+    for count in in_order(_count, files):
+        counts.update([count] if count else [])
+        if counts and counts.most_common(1)[0][1] == _SURE:
+            break
+    if not counts:
+        raise DegenerateError("no chessboard with 3×3 inner corners or more was found in any")
+    return counts.most_common(1)[0][0]
+
+
+def _count(path: Path) -> tuple[int, int] | None:
     try:
-        corners, note = find_corners(photo.grey, board), photo.note
+        return count_corners(read_photo(path).grey)
+    except FileError:
+        return None
+
+
+def _photographs(paths: Sequence[str]) -> tuple[list[Path], list[Rejected]]:
+    files, rejected = photographs(paths, straightened=True)
+    if not files and not rejected:
+        raise FileError(f"no photographs in {', '.join(map(printable, paths))}")
+    return files, rejected
+
+
+def _looked_at(path: Path, board: Chessboard) -> tuple[bytes, Examined | Rejected]:
+    """Read and examine one photograph; gives what its pixels are known by, too."""
+    photo = next(open_photos([path]))
+    if isinstance(photo, Rejected):
+        return bytes(path), photo
+    return fingerprint(photo), _examine(photo, board)
+
+
+def _examine(photo: Photo, board: Chessboard) -> Examined:
+    corners, found, note = None, None, photo.note
+    try:
+        corners = find_corners(photo.grey, board, partial=True)
+        lost = np.count_nonzero(np.isnan(corners[:, 0]))
+        hidden = f"{lost} of {len(corners)} corners left out: they cannot be seen clearly"
+        note = "; ".join(filter(None, [photo.note, hidden if lost else ""]))
     except CornersNotFound as error:
-        corners, note = None, str(error)
+        found, note = error.found, str(error)
     return Examined(
-        photo.path, photo.size, _thumbnail(photo), corners, photo.orientation != 1, note
+        photo.path, photo.size, _thumbnail(photo), corners, photo.orientation != 1, note, found
     )
 
 

@@ -3,23 +3,26 @@
 import csv
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cvnotes.base import text_table
+from cvnotes.base import Array, text_table
 from cvnotes.base.digits import with_deviation
+from cvnotes.calibration.coverage import covered_cells
 from cvnotes.calibration.reliability import widest_angle
 from cvnotes.commands.examined import Examined
 from cvnotes.commands.ownership import TABLE_HEADER
 from cvnotes.files import Rejected
+from cvnotes.files.photos import COPY
 from cvnotes.files.writing import harmless
-from cvnotes.show.figures.quality import covered_cells
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration
 
+_MANY_LEFT_OUT = 0.5  # of the photographs
+_SAME_PLACE = 0.5  # px, between two pictures of a board that did not move
 _WIDE = 80  # letters that a reason may have in the table
 
 
@@ -35,7 +38,7 @@ def photo_table(
     """
     rms = [""] * len(files) if result is None else [f"{x:.3f}" for x in result.view_rms]
     rows = [list(row) for row in zip(files, rms, notes, strict=True)]
-    rows += [[r.file, "–", _first_clause(r.reason)] for r in rejected]
+    rows += [[r.file, "–", _in_brief(r.reason)] for r in rejected]
     long = dict.fromkeys(r.reason for r in rejected if _first_clause(r.reason) != r.reason)
     return "\n".join(
         [text_table([["photograph", "RMS (px)", "note"], *rows]), *(f"! {r}" for r in long)]
@@ -75,10 +78,25 @@ def camera_report(result: "Calibration") -> str:
     return "\n".join(lines)
 
 
-def doubts(result: "Calibration", examined: Sequence[Examined], *, symmetric: bool) -> list[str]:
-    """List what whoever uses the result should know, in sentences."""
-    sentences = list(result.warnings)
-    if any(photo.turned for photo in examined):
+def doubts(
+    result: "Calibration",
+    examined: Sequence[Examined],
+    files: Sequence[str],
+    rejected: Sequence[Rejected],
+    *,
+    symmetric: bool,
+) -> list[str]:
+    """List what whoever uses the result should know, in sentences that name the photographs."""
+    used = [photo for photo in examined if photo.corners is not None]
+    sentences = [named(sentence, result, files) for sentence in result.warnings]
+    without = len(examined) - len(used)
+    if without > _MANY_LEFT_OUT * len(examined):
+        sentences.append(
+            f"{without} of {len(examined)} photographs were left out, because the board was not "
+            "found in them: the camera is only known where the others saw it"
+        )
+    sentences += _repeated(used, files, rejected)
+    if any(photo.turned for photo in used):
         sentences.append(
             "some photographs ask to be turned by their EXIF data; the camera is that of the "
             "pixels as stored (read them with cv2.IMREAD_IGNORE_ORIENTATION)"
@@ -93,12 +111,76 @@ def doubts(result: "Calibration", examined: Sequence[Examined], *, symmetric: bo
     return sentences
 
 
+def named(sentence: str, result: "Calibration", files: Sequence[str]) -> str:
+    """Name photographs and places in a sentence that counts views and corners from 0."""
+
+    def corner(match: re.Match[str]) -> str:
+        view = int(match[1])
+        m = result.image_points[view][int(match[2])]
+        return f"{_place(m, result.size)} of {files[view]}"
+
+    def view(match: re.Match[str]) -> str:
+        return ", ".join(files[int(i)] for i in match[1].split(", "))
+
+    sentence = re.sub(r"view (\d+), corner (\d+)", corner, sentence)
+    return re.sub(r"\bviews? (\d+(?:, \d+)*)\b", view, sentence)
+
+
+def _place(m: Array, size: tuple[int, int]) -> str:
+    """Say in which part of a picture a pixel lies.
+
+    Examples
+    --------
+    >>> _place(np.array([20.0, 460.0]), (640, 480))
+    'in the lower left corner'
+    """
+    across, down = (np.floor(3 * (m + 0.5) / size)).clip(0, 2).astype(int)
+    side, height = ("left", "", "right")[across], ("upper", "", "lower")[down]
+    if side and height:
+        return f"in the {height} {side} corner"
+    if side:
+        return f"at the {side} edge"
+    return {"upper": "at the upper edge", "lower": "at the lower edge"}.get(height, "in the middle")
+
+
+def _repeated(
+    used: Sequence[Examined], files: Sequence[str], rejected: Sequence[Rejected]
+) -> Iterator[str]:
+    """Say where the same view was counted, or given, several times."""
+    copies = sum(r.reason.startswith(COPY) for r in rejected)
+    if copies:
+        yield (
+            f"{copies} of {len(used) + len(rejected)} photographs are copies of others: a copy "
+            "adds nothing, and was left out"
+        )
+    m = np.array([photo.corners for photo in used])
+    alike: list[tuple[int, int]] = []
+    for i in range(len(m) - 1):
+        apart = np.linalg.norm(m[i + 1 :] - m[i], axis=-1)
+        alike += [(i, i + 1 + int(k)) for k in np.flatnonzero(np.nanmedian(apart, 1) < _SAME_PLACE)]
+    if alike:
+        pairs = ", ".join(f"{files[i]} and {files[j]}" for i, j in alike[:3])
+        yield (
+            f"the board and the camera did not move between {pairs}"
+            f"{' …' if len(alike) > 3 else ''}: together they say hardly more than one of them"
+        )
+
+
 def field_of_view(result: "Calibration") -> str:
     """Spell the angles that the picture spans."""
     across, down = np.degrees(result.camera.field_of_view)
     if np.isnan(across + down):
         return "not known: the lens model ends inside the picture"
     return f"{across:.1f}° × {down:.1f}°"
+
+
+def _in_brief(reason: str) -> str:
+    """Cut a reason after its first clause, but keep what was found instead of the board."""
+    first = _first_clause(reason)
+    found = re.search(r"found, but ([^;)]*)|found (\d+×\d+ corners)", reason)
+    if first == reason or found is None:
+        return first
+    return f"{first}: {found[1] or f'{found[2]} are there'}"
 
 
 def _first_clause(reason: str) -> str:

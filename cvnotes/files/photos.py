@@ -21,6 +21,8 @@ from cvnotes.base import FileError, luma, stretched
 from cvnotes.files.decoding import decode, header_size
 from cvnotes.files.writing import PathLike, printable
 
+COPY = "the same picture as"  # another, which follows
+
 
 class Rejected(NamedTuple):
     """A photograph that was not used, and why."""
@@ -146,6 +148,11 @@ def open_photos(files: Iterable[Path]) -> Iterator[Photo | Rejected]:
             yield Rejected(printable(path), f"the same picture as {printable(first)}")
         else:
             yield photo
+
+
+def fingerprint(photo: Photo) -> bytes:
+    """Give a few bytes by which a photograph's pixels are known, whatever its name and format."""
+    return blake2b(np.ascontiguousarray(photo.image).data, digest_size=16).digest()
 
 
 def _expanded(paths: Iterable[PathLike]) -> Iterator[Path]:

@@ -18,9 +18,11 @@ _GOES_ON = 0.6  # of 1, were the pattern to go on there
 class NotABoard(Exception):
     """Why corners that were found are not to be trusted, and the count that is there if known."""
 
-    def __init__(self, reason: str, count: tuple[int, int] | None = None) -> None:
+    def __init__(
+        self, reason: str, count: tuple[int, int] | None = None, found: Array | None = None
+    ) -> None:
         super().__init__(reason)
-        self.count = count
+        self.count, self.found = count, found
 
 
 def trusted(fit: EdgeFit, corners: tuple[int, int]) -> Mask:

@@ -69,9 +69,10 @@ def find_corners(image: npt.ArrayLike, board: Chessboard, *, partial: bool = Fal
     if not isinstance(board, Chessboard):
         raise InputTypeError(f"board: expected a Chessboard, got {type(board).__name__}")
     picture = grey_picture(image)
-    grey = stretched(picture)
+    grey = _eight_bits(picture)
     tried: list[str] = []
     others: list[tuple[int, int]] = []
+    shown: Array | None = None
     best = np.full((0, 2), np.nan)
     if min(board.corners) > 2:
         for name, finder, copy in _attempts(grey):
@@ -80,12 +81,16 @@ def find_corners(image: npt.ArrayLike, board: Chessboard, *, partial: bool = Fal
             except NotABoard as doubt:
                 tried.append(f"{name} at {_size(copy)}: {doubt}")
                 others += [doubt.count] if doubt.count else []
+                if doubt.found is not None and shown is None:
+                    shown = _in_full(doubt.found, copy, grey) if doubt.count else doubt.found
                 continue
             best = max(best, m, key=lambda m: np.count_nonzero(np.isfinite(m)))
             if np.isfinite(best).all():
                 break
     if not len(best):
-        raise CornersNotFound(_lesson(grey, board, tried, others))
+        error = CornersNotFound(_lesson(grey, board, tried, others))
+        error.found = shown
+        raise error
     return best
 
 
@@ -112,7 +117,7 @@ def count_corners(image: npt.ArrayLike) -> tuple[int, int] | None:
     >>> count_corners(render(Chessboard((9, 6), 25.0), camera, blur=0.7))
     (9, 6)
     """
-    lattice = grown_board(_reduced(stretched(grey_picture(image)), _PART_PIXELS))
+    lattice = grown_board(_reduced(_eight_bits(grey_picture(image)), _PART_PIXELS))
     return None if lattice is None else (lattice.shape[1], lattice.shape[0])
 
 
@@ -123,7 +128,8 @@ def _find_grown(grey: Grey8, corners: tuple[int, int]) -> Array | None:
         return None
     rows, columns = lattice.shape[:2]
     if (columns, rows) != (max(corners), min(corners)):
-        raise NotABoard(f"found {columns}×{rows} corners", count=(columns, rows))
+        seen = lattice[np.isfinite(lattice).all(-1)]
+        raise NotABoard(f"found {columns}×{rows} corners", count=(columns, rows), found=seen)
     if corners[0] < corners[1]:
         lattice = lattice.transpose(1, 0, 2)
     return lattice.reshape(-1, 2)
@@ -169,8 +175,7 @@ def _measure(
         if copy.shape != grey.shape:
             refined = fit_edges(copy, found, grid=board.corners).m
             found = np.where(np.isfinite(refined), refined, found)
-            zoom = np.array(grey.shape[::-1]) / copy.shape[::-1]
-            found = (found + 0.5) * zoom - 0.5
+            found = _in_full(found, copy, grey)
         fit = _fit_twice(picture, found, board.corners)
         check_board(fit, board.corners, partial=partial)
         good = trusted(fit, board.corners)[:, None]
@@ -178,9 +183,14 @@ def _measure(
     except DegenerateError:
         raise NotABoard("found, but its corners lie on a line") from None
     except NotABoard as doubt:
-        raise NotABoard(f"found, but {doubt}") from None
+        raise NotABoard(f"found, but {doubt}", found=found) from None
     lattice = np.where(good, fit.m, np.nan).reshape(rows, columns, 2)
     return ordered(lattice, fit.contrast.reshape(rows, columns))
+
+
+def _in_full(m: Array, copy: Grey8, grey: Grey8) -> Array:
+    """Give where pixels of a copy lie in the picture that was reduced to it."""
+    return np.asarray((m + 0.5) * (np.array(grey.shape[::-1]) / copy.shape[::-1]) - 0.5)
 
 
 def _fit_twice(picture: Image, found: Array, corners: tuple[int, int]) -> EdgeFit:
@@ -201,6 +211,15 @@ def _window(m: Array, rows: int) -> int:
     """Half a window: 8 px, more where squares are larger than 64 px (their blur is, too)."""
     sides = np.linalg.norm(np.diff(m.reshape(rows, -1, 2), axis=1), axis=-1)
     return int(np.clip(np.median(sides) / 8, 8, 16))
+
+
+def _eight_bits(picture: Image) -> Grey8:
+    """Give what OpenCV reads: 8-bit pictures as they are, whatever type holds them."""
+    if picture.min() >= 0 and picture.max() <= 255:
+        whole = picture.astype(np.uint8)
+        if np.array_equal(whole, picture):
+            return whole
+    return stretched(picture)
 
 
 def _reduced(grey: Grey8, pixels: int) -> Grey8:

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Rectangle
 
-from cvnotes.base import Array, DegenerateError, ShapeError, image_size, number, points
+from cvnotes.base import Array, DegenerateError, ShapeError, image_size, number
+from cvnotes.calibration.coverage import covered_cells, joined
 from cvnotes.show.guards import calibrated
 from cvnotes.show.style import ESTIMATED, FONT, MUTED, as_picture, panels, picture_axes
 
@@ -99,7 +100,7 @@ def draw_coverage(
     'Corners in 2 of 48 cells of the picture'
     """
     size = image_size(size)
-    m, seen = _joined(image_points), covered_cells(image_points, size)
+    m, seen = joined(image_points), covered_cells(image_points, size)
     side = np.array(size) / seen.shape
     ax = as_picture(picture_axes(size) if ax is None else ax, size)
     for cell in np.argwhere(~seen):
@@ -108,35 +109,6 @@ def draw_coverage(
     ax.plot(*m.T, ".", color=ESTIMATED, markersize=4, alpha=0.6, markeredgewidth=0)
     ax.set_title(f"Corners in {seen.sum()} of {seen.size} cells of the picture")
     return ax
-
-
-def covered_cells(
-    image_points: npt.ArrayLike | Sequence[npt.ArrayLike], size: tuple[int, int]
-) -> npt.NDArray[np.bool_]:
-    """Divide a picture into about square cells and tell in which of them corners were seen.
-
-    Parameters
-    ----------
-    image_points : array_like, shape (views, n, 2) or (n, 2), or a list of (n_i, 2)
-        Pixels.
-    size : (width, height)
-        Size of the picture; its longer side has eight cells.
-
-    Returns
-    -------
-    ndarray of bool, shape (columns, rows)
-
-    Examples
-    --------
-    >>> covered_cells([[10, 10], [600, 400]], (640, 480)).sum()
-    np.int64(2)
-    """
-    m, size = _joined(image_points), image_size(size)
-    cells = np.array([max(round(8 * n / max(size)), 1) for n in size])
-    inside = m[((m >= -0.5) & (m < np.array(size) - 0.5)).all(axis=1)]
-    seen = np.zeros(cells, dtype=bool)
-    seen[tuple(((inside + 0.5) // (size / cells)).astype(int).T)] = True
-    return seen
 
 
 def draw_view_rms(
@@ -186,10 +158,3 @@ def _round_number(x: float) -> float:
     """Round down to 1, 2 or 5 times a power of ten."""
     power = 10.0 ** np.floor(np.log10(x))
     return float(power * max(step for step in (1, 2, 5) if step * power <= x * (1 + 1e-12)))
-
-
-def _joined(image_points: npt.ArrayLike | Sequence[npt.ArrayLike]) -> Array:
-    """Join the points of all views, (n, 2)."""
-    views = list(image_points) if isinstance(image_points, Sequence) else [image_points]
-    flat = [points(m, "image_points", 2).reshape(-1, 2) for m in views]
-    return np.concatenate([np.empty((0, 2)), *flat])
