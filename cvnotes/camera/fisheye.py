@@ -1,0 +1,212 @@
+"""The fisheye: a lens whose picture grows with the angle of a ray, not with its tangent.
+
+The plane z = 1 of the notes (2b.3) ends at 90° from the axis: a ray at 90° meets it nowhere. A
+fisheye sees such rays, and those behind. Its picture is laid out by the angle θ itself.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import Polynomial
+
+from cvnotes.base import Array, CvnotesError, ShapeError, numbers, points
+from cvnotes.camera.lens_fold import horner
+from cvnotes.camera.rational import sign_changes
+
+_STEPS = 50  # of Newton's method; near the end a dozen are needed
+
+
+@dataclass(frozen=True)
+class FisheyeLens:
+    """An equidistant lens, corrected by a polynomial of the angle.
+
+    Parameters
+    ----------
+    k : sequence of up to 4 floats
+        k1 … k4 of θ' = θ (1 + k1 θ² + k2 θ⁴ + k3 θ⁶ + k4 θ⁸), with θ the angle between the ray
+        and the axis, in radians.
+
+    Notes
+    -----
+    A ray at angle θ is shown at the distance θ' from the centre, in its own direction. Rays beyond
+    90° have no point on the plane z = 1: `of_rays` and `rays` reach them, `distort` and
+    `undistort` do not.
+
+    References
+    ----------
+    .. [1] J. Kannala and S. Brandt, A generic camera model and calibration method for conventional,
+       wide-angle, and fish-eye lenses, PAMI 28 (2006) 1335-1340.
+
+    Examples
+    --------
+    >>> FisheyeLens().distort([1.0, 0.0])[0] * 4 / np.pi
+    np.float64(1.0)
+    """
+
+    k: tuple[float, ...] = (0.0,) * 4
+
+    def __post_init__(self) -> None:
+        given = numbers(self.k, "k", largest=np.inf)
+        if given.ndim != 1 or given.size > 4:
+            raise ShapeError(f"k: expected up to 4 numbers, got shape {given.shape}")
+        if (np.abs(given) > 1e50).any():
+            raise CvnotesError(f"k = {given.tolist()}: no lens has such coefficients")
+        object.__setattr__(self, "k", (*given.tolist(), *[0.0] * (4 - given.size)))
+
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """The coefficients that a calibration estimates, by name."""
+        return {f"k{i}": k for i, k in enumerate(self.k, 1)}
+
+    @property
+    def is_ideal(self) -> bool:
+        """Tell whether this lens moves nothing: never."""
+        return False
+
+    @cached_property
+    def max_angle(self) -> float:
+        """Largest angle θ, in radians, up to which the lens maps one to one; at most π.
+
+        Examples
+        --------
+        >>> FisheyeLens((-1 / 3,)).max_angle
+        1.0
+        """
+        slopes = np.zeros(9)
+        slopes[::2] = [1.0, *(k * (2 * i + 1) for i, k in enumerate(self.k, 1))]
+        ends = sign_changes(Polynomial(slopes), np.pi)
+        return min(ends, default=np.pi)
+
+    @property
+    def max_radius(self) -> float:
+        """Largest ideal radius tan θ that the lens shows; inf from 90° on."""
+        return float(np.tan(self.max_angle)) if self.max_angle < np.pi / 2 else np.inf
+
+    def distort(self, xy: npt.ArrayLike) -> Array:
+        """Move ideal image points (..., 2) to where the lens shows them; NaN beyond its end.
+
+        Examples
+        --------
+        >>> FisheyeLens(k=(0.1,)).distort([0.0, 0.0])
+        array([0., 0.])
+        """
+        xy = points(xy, "xy", 2)
+        return self._of_rays(np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1))
+
+    def undistort(self, xy_lens: npt.ArrayLike) -> Array:
+        """Move observed points (..., 2) to the plane z = 1; NaN from 90° on, and beyond the end.
+
+        Examples
+        --------
+        >>> FisheyeLens().undistort([np.pi / 4, 0.0]).round(12)
+        array([1., 0.])
+        """
+        d = self._rays(points(xy_lens, "xy_lens", 2))
+        return np.where(
+            d[..., 2:] > 1e-12, d[..., :2] / np.where(d[..., 2:] > 0, d[..., 2:], 1), np.nan
+        )
+
+    def of_rays(self, M: npt.ArrayLike) -> Array:
+        """Where the lens shows points M (..., 3) of the CRF, behind the plane z = 0 too.
+
+        Examples
+        --------
+        >>> FisheyeLens().of_rays([-1.0, 0.0, 0.0])[0] * 2 / np.pi
+        np.float64(-1.0)
+        """
+        return self._of_rays(points(M, "M", 3))
+
+    def rays(self, xy_lens: npt.ArrayLike) -> Array:
+        """Directions (..., 3) of length 1 that observed points (..., 2) show; NaN beyond the end.
+
+        Notes
+        -----
+        Newton's method on θ, from a table.
+
+        Examples
+        --------
+        >>> FisheyeLens().rays([0.0, np.pi / 2]).round(12) + 0.0
+        array([0., 1., 0.])
+        """
+        return self._rays(points(xy_lens, "xy_lens", 2))
+
+    def jacobian(self, xy: npt.ArrayLike) -> Array:
+        """Differentiate the observed point by the ideal one: (..., 2, 2).
+
+        Examples
+        --------
+        >>> FisheyeLens().jacobian([1.0, 0.0]).round(6) + 0.0
+        array([[0.5     , 0.      ],
+               [0.      , 0.785398]])
+        """
+        xy = points(xy, "xy", 2)
+        M = np.stack([xy[..., 0], xy[..., 1], np.ones_like(xy[..., 0])])
+        return np.moveaxis(self.derivatives(M)[1][:, :2], (0, 1), (-2, -1))
+
+    def derivatives(self, M: Array) -> tuple[Array, Array, Array]:
+        """Show M (3, ...) through the lens, with derivatives; unguarded, for whoever refines.
+
+        Returns
+        -------
+        xy_lens : ndarray, shape (2, ...)
+        by_M : ndarray, shape (2, 3, ...)
+        by_coefficients : ndarray, shape (4, 2, ...)
+
+        Notes
+        -----
+        With ρ = √(X² + Y²) and θ = atan2(ρ, Z): ∂θ/∂(X, Y) = Z (X, Y)/(ρ ‖M‖²), ∂θ/∂Z = −ρ/‖M‖².
+        """
+        X, Y, Z = M
+        rho2 = X * X + Y * Y
+        rho = np.sqrt(rho2)
+        norm2 = rho2 + Z * Z
+        theta = np.arctan2(rho, Z)
+        shown, slope = self._shown(theta)
+        on_axis = rho2 <= 1e-24 * norm2
+        safe = np.where(on_axis, 1.0, rho)
+        # θ'/ρ, whose limit on the axis is 1/Z; (slope Z/‖M‖² − θ'/ρ)/ρ² there is left out
+        ratio = np.where(on_axis, 1 / np.where(Z == 0, 1, Z), shown / safe)
+        bend = np.where(on_axis, 0.0, (slope * Z / norm2 - ratio) / safe**2)
+        seen = ratio * M[:2]
+        D = np.empty((2, 3, *X.shape))
+        D[0, 0], D[1, 1] = ratio + bend * X * X, ratio + bend * Y * Y
+        D[0, 1] = D[1, 0] = bend * X * Y
+        D[:, 2] = -slope / norm2 * M[:2]
+        unit = np.where(on_axis, 0.0, M[:2] / safe)
+        C = np.stack([theta ** (2 * i + 1) * unit for i in range(1, 5)])
+        return seen, D, C
+
+    def _shown(self, theta: Array) -> tuple[Array, Array]:
+        """θ' and its slope."""
+        t = theta * theta
+        slopes = [(2 * i + 1) * k for i, k in enumerate(self.k, 1)]
+        return theta * horner((1.0, *self.k), t), horner((1.0, *slopes), t)
+
+    @np.errstate(all="ignore")
+    def _of_rays(self, M: Array) -> Array:
+        rho = np.hypot(M[..., 0], M[..., 1])
+        theta = np.arctan2(rho, M[..., 2])
+        shown = self._shown(theta)[0]
+        ratio = np.where(rho > 0, shown / np.where(rho > 0, rho, 1), 0.0)
+        inside = (theta <= self.max_angle) & ((rho > 0) | (M[..., 2] > 0))
+        return np.where(inside[..., None], ratio[..., None] * M[..., :2], np.nan)
+
+    @np.errstate(all="ignore")
+    def _rays(self, xy_lens: Array) -> Array:
+        shown = np.hypot(xy_lens[..., 0], xy_lens[..., 1])
+        knots = np.linspace(0, self.max_angle, 1025)
+        theta = np.interp(shown, self._shown(knots)[0], knots)
+        for _ in range(_STEPS):
+            value, slope = self._shown(theta)
+            step = np.where(slope > 0, (value - shown) / np.where(slope > 0, slope, 1), 0.0)
+            theta = np.clip(theta - step, 0, self.max_angle)
+            if not np.abs(step).max(initial=0.0) > 1e-15:
+                break
+        reached = np.abs(self._shown(theta)[0] - shown) <= 1e-12 * (1 + shown)
+        unit = np.where(
+            shown[..., None] > 0, xy_lens / np.where(shown > 0, shown, 1)[..., None], 0.0
+        )
+        d = np.concatenate([np.sin(theta)[..., None] * unit, np.cos(theta)[..., None]], axis=-1)
+        return np.where(reached[..., None], d, np.nan)
