@@ -132,15 +132,13 @@ class RationalLens:
                 high = middle
         return float(low)
 
+    @np.errstate(all="ignore")  # at a pole
     def _smallest_eigenvalue(self, r: Array, p_norm: float) -> Array:
-        with np.errstate(all="ignore"):  # at a pole
-            L, by_t = self._quotient(r * r)
-        L, by_t = np.nan_to_num(L), np.nan_to_num(by_t)
+        L, by_t = self._quotient(r * r)
         a, m = 2 * r * r * by_t, 4 * p_norm * r
         beside = L - a / 8 - m * m / (2 * np.where(a > 0, a, 1))
-        return np.where(
-            (2 * m < 3 * a) & (a < 2 * m), beside, np.minimum(L + a - 1.5 * m, L - m / 2)
-        )
+        straight = np.minimum(L + a - 1.5 * m, L - m / 2)
+        return np.where((2 * m < 3 * a) & (a < 2 * m), beside, straight)
 
     def distort(self, xy: npt.ArrayLike) -> Array:
         """Move ideal image points (..., 2) to where the lens shows them; NaN beyond its end.
