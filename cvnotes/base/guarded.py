@@ -30,7 +30,7 @@ class Guarded(Protocol[P, R_co]):
     @overload
     def __get__(
         self: "Guarded[Concatenate[Self_, ...], R_co]", instance: object, owner: type
-    ) -> Callable[..., R_co]: ...
+    ) -> "Guarded[..., R_co]": ...  # whose `inside` still wants the instance first
 
 
 def guarded(

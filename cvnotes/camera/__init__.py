@@ -1,9 +1,11 @@
 """Chapters 2 to 4: vanishing points, the camera and its lens (notes 2b.1 to 2b.3)."""
 
 from cvnotes.camera.factors import centre_of, decompose
+from cvnotes.camera.fisheye import FisheyeLens
 from cvnotes.camera.lens import Lens
 from cvnotes.camera.model import Camera
 from cvnotes.camera.pixels import intrinsics, intrinsics_from_pixel_size, px_from_xy, xy_from_px
+from cvnotes.camera.rational import RationalLens
 from cvnotes.camera.rigid import (
     board_from_board,
     cam_from_cam,
@@ -31,6 +33,8 @@ from cvnotes.camera.vanishing import (
 __all__ = [
     "Camera",
     "Lens",
+    "RationalLens",
+    "FisheyeLens",
     "intrinsics",
     "intrinsics_from_pixel_size",
     "px_from_xy",

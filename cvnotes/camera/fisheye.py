@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import Polynomial
 
-from cvnotes.base import Array, CvnotesError, ShapeError, numbers, points
+from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
 from cvnotes.camera.lens_fold import horner
 from cvnotes.camera.rational import sign_changes
 
@@ -61,6 +60,16 @@ class FisheyeLens:
         return {f"k{i}": k for i, k in enumerate(self.k, 1)}
 
     @property
+    def p(self) -> tuple[float, float]:
+        """Tangential coefficients: a fisheye has none."""
+        return (0.0, 0.0)
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Distortion centre on the plane z = 1: always the piercing point."""
+        return (0.0, 0.0)
+
+    @property
     def is_ideal(self) -> bool:
         """Tell whether this lens moves nothing: never."""
         return False
@@ -84,7 +93,8 @@ class FisheyeLens:
         """Largest ideal radius tan θ that the lens shows; inf from 90° on."""
         return float(np.tan(self.max_angle)) if self.max_angle < np.pi / 2 else np.inf
 
-    def distort(self, xy: npt.ArrayLike) -> Array:
+    @guarded(xy=Points(2))
+    def distort(self, xy: Array) -> Array:
         """Move ideal image points (..., 2) to where the lens shows them; NaN beyond its end.
 
         Examples
@@ -92,10 +102,11 @@ class FisheyeLens:
         >>> FisheyeLens(k=(0.1,)).distort([0.0, 0.0])
         array([0., 0.])
         """
-        xy = points(xy, "xy", 2)
-        return self._of_rays(np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1))
+        M = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1)
+        return FisheyeLens.of_rays.inside(self, M)
 
-    def undistort(self, xy_lens: npt.ArrayLike) -> Array:
+    @guarded(xy_lens=Points(2))
+    def undistort(self, xy_lens: Array) -> Array:
         """Move observed points (..., 2) to the plane z = 1; NaN from 90° on, and beyond the end.
 
         Examples
@@ -103,12 +114,14 @@ class FisheyeLens:
         >>> FisheyeLens().undistort([np.pi / 4, 0.0]).round(12)
         array([1., 0.])
         """
-        d = self._rays(points(xy_lens, "xy_lens", 2))
+        d = FisheyeLens.rays.inside(self, xy_lens)
         return np.where(
             d[..., 2:] > 1e-12, d[..., :2] / np.where(d[..., 2:] > 0, d[..., 2:], 1), np.nan
         )
 
-    def of_rays(self, M: npt.ArrayLike) -> Array:
+    @guarded(M=Points(3))
+    @np.errstate(all="ignore")  # of points too far away
+    def of_rays(self, M: Array) -> Array:
         """Where the lens shows points M (..., 3) of the CRF, behind the plane z = 0 too.
 
         Examples
@@ -116,9 +129,16 @@ class FisheyeLens:
         >>> FisheyeLens().of_rays([-1.0, 0.0, 0.0])[0] * 2 / np.pi
         np.float64(-1.0)
         """
-        return self._of_rays(points(M, "M", 3))
+        rho = np.hypot(M[..., 0], M[..., 1])
+        theta = np.arctan2(rho, M[..., 2])
+        shown = self._shown(theta)[0]
+        ratio = np.where(rho > 0, shown / np.where(rho > 0, rho, 1), 0.0)
+        inside = (theta <= self.max_angle) & ((rho > 0) | (M[..., 2] > 0))
+        return np.where(inside[..., None], ratio[..., None] * M[..., :2], np.nan)
 
-    def rays(self, xy_lens: npt.ArrayLike) -> Array:
+    @guarded(xy_lens=Points(2))
+    @np.errstate(all="ignore")
+    def rays(self, xy_lens: Array) -> Array:
         """Directions (..., 3) of length 1 that observed points (..., 2) show; NaN beyond the end.
 
         Notes
@@ -130,9 +150,24 @@ class FisheyeLens:
         >>> FisheyeLens().rays([0.0, np.pi / 2]).round(12) + 0.0
         array([0., 1., 0.])
         """
-        return self._rays(points(xy_lens, "xy_lens", 2))
+        shown = np.hypot(xy_lens[..., 0], xy_lens[..., 1])
+        knots = np.linspace(0, self.max_angle, 1025)
+        theta = np.interp(shown, self._shown(knots)[0], knots)
+        for _ in range(_STEPS):
+            value, slope = self._shown(theta)
+            step = np.where(slope > 0, (value - shown) / np.where(slope > 0, slope, 1), 0.0)
+            theta = np.clip(theta - step, 0, self.max_angle)
+            if not np.abs(step).max(initial=0.0) > 1e-15:
+                break
+        reached = np.abs(self._shown(theta)[0] - shown) <= 1e-12 * (1 + shown)
+        unit = np.where(
+            shown[..., None] > 0, xy_lens / np.where(shown > 0, shown, 1)[..., None], 0.0
+        )
+        d = np.concatenate([np.sin(theta)[..., None] * unit, np.cos(theta)[..., None]], axis=-1)
+        return np.where(reached[..., None], d, np.nan)
 
-    def jacobian(self, xy: npt.ArrayLike) -> Array:
+    @guarded(xy=Points(2))
+    def jacobian(self, xy: Array) -> Array:
         """Differentiate the observed point by the ideal one: (..., 2, 2).
 
         Examples
@@ -141,7 +176,6 @@ class FisheyeLens:
         array([[0.5     , 0.      ],
                [0.      , 0.785398]])
         """
-        xy = points(xy, "xy", 2)
         M = np.stack([xy[..., 0], xy[..., 1], np.ones_like(xy[..., 0])])
         return np.moveaxis(self.derivatives(M)[1][:, :2], (0, 1), (-2, -1))
 
@@ -183,30 +217,3 @@ class FisheyeLens:
         t = theta * theta
         slopes = [(2 * i + 1) * k for i, k in enumerate(self.k, 1)]
         return theta * horner((1.0, *self.k), t), horner((1.0, *slopes), t)
-
-    @np.errstate(all="ignore")
-    def _of_rays(self, M: Array) -> Array:
-        rho = np.hypot(M[..., 0], M[..., 1])
-        theta = np.arctan2(rho, M[..., 2])
-        shown = self._shown(theta)[0]
-        ratio = np.where(rho > 0, shown / np.where(rho > 0, rho, 1), 0.0)
-        inside = (theta <= self.max_angle) & ((rho > 0) | (M[..., 2] > 0))
-        return np.where(inside[..., None], ratio[..., None] * M[..., :2], np.nan)
-
-    @np.errstate(all="ignore")
-    def _rays(self, xy_lens: Array) -> Array:
-        shown = np.hypot(xy_lens[..., 0], xy_lens[..., 1])
-        knots = np.linspace(0, self.max_angle, 1025)
-        theta = np.interp(shown, self._shown(knots)[0], knots)
-        for _ in range(_STEPS):
-            value, slope = self._shown(theta)
-            step = np.where(slope > 0, (value - shown) / np.where(slope > 0, slope, 1), 0.0)
-            theta = np.clip(theta - step, 0, self.max_angle)
-            if not np.abs(step).max(initial=0.0) > 1e-15:
-                break
-        reached = np.abs(self._shown(theta)[0] - shown) <= 1e-12 * (1 + shown)
-        unit = np.where(
-            shown[..., None] > 0, xy_lens / np.where(shown > 0, shown, 1)[..., None], 0.0
-        )
-        d = np.concatenate([np.sin(theta)[..., None] * unit, np.cos(theta)[..., None]], axis=-1)
-        return np.where(reached[..., None], d, np.nan)

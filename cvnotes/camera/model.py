@@ -19,10 +19,13 @@ from cvnotes.base import (
     points,
     rigid_motion,
 )
+from cvnotes.camera.fisheye import FisheyeLens
 from cvnotes.camera.lens import Lens
 from cvnotes.camera.pixels import px_from_xy, xy_from_px
+from cvnotes.camera.rational import RationalLens
 from cvnotes.projective import from_homogeneous
 
+AnyLens = Lens | RationalLens | FisheyeLens
 # Where the five numbers of the sensor stand in A.
 SENSOR = {"alpha_u": (0, 0), "alpha_v": (1, 1), "skew": (0, 1), "u0": (0, 2), "v0": (1, 2)}
 
@@ -37,8 +40,8 @@ class Camera:
         Intrinsic matrix in pixels; see `intrinsics`.
     G : array_like, shape (4, 4)
         Rigid motion that carries world points into the camera's frame (CRF ← WRF).
-    lens : Lens
-        Distortion on the plane z = 1.
+    lens : Lens, RationalLens or FisheyeLens
+        Distortion on the plane z = 1; a fisheye's depends on the angle of the ray.
     size : (width, height)
         The picture's size in pixels. Pixel centres are integers.
 
@@ -53,11 +56,11 @@ class Camera:
 
     A: Array
     G: Array = field(default_factory=lambda: np.eye(4))
-    lens: Lens = field(default_factory=Lens)
+    lens: AnyLens = field(default_factory=Lens)
     size: tuple[int, int] = (640, 480)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.lens, Lens):
+        if not isinstance(self.lens, AnyLens):
             raise CvnotesError(f"lens: expected a Lens, got {type(self.lens).__name__}")
         A, G = intrinsic_matrix(self.A), rigid_motion(self.G)
         if G.ndim != 2:
@@ -164,11 +167,13 @@ class Camera:
         """
         # 1. WRF → CRF
         M = W @ self.R.T + self.T
+        if isinstance(self.lens, FisheyeLens):  # its picture goes by the angle, 90° and beyond
+            return px_from_xy.inside(self.A, FisheyeLens.of_rays.inside(self.lens, M))
         # 2. divide by z; what is not in front has no image
         z = M[..., 2:]
         xy = np.divide(M[..., :2], z, out=np.full_like(M[..., :2], np.nan), where=z > 0)
         # 3. lens, 4. sensor
-        return px_from_xy.inside(self.A, Lens.distort.inside(self.lens, xy))
+        return px_from_xy.inside(self.A, self.lens.distort.inside(self.lens, xy))
 
     @guarded(m=Points(2))
     def ideal(self, m: Array) -> Array:
@@ -182,7 +187,7 @@ class Camera:
         >>> Camera(intrinsics(800, 800, 320, 240)).ideal([400, 240])
         array([0.1, 0. ])
         """
-        return Lens.undistort.inside(self.lens, xy_from_px.inside(self.A, m))
+        return self.lens.undistort.inside(self.lens, xy_from_px.inside(self.A, m))
 
     def ray(self, m: npt.ArrayLike) -> Array:
         """Give the direction in the WRF of the ray that pixels (..., 2) see, as unit vectors.
@@ -195,6 +200,8 @@ class Camera:
         >>> Camera(intrinsics(800, 800, 320, 240)).ray([320, 240])
         array([0., 0., 1.])
         """
+        if isinstance(self.lens, FisheyeLens):
+            return np.asarray(self.lens.rays(xy_from_px(self.A, m)) @ self.R)
         xy = self.ideal(m)
         d = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1) @ self.R
         return np.asarray(d / np.linalg.norm(d, axis=-1, keepdims=True))
@@ -272,9 +279,12 @@ def project_with_derivative(camera: Camera, M: Array) -> tuple[Array, Array]:
     (array([[320., 320.]]), array([[[80.,  0.,  0.],
             [ 0., 80., -8.]]]))
     """
+    if isinstance(camera.lens, FisheyeLens):
+        seen = px_from_xy.inside(camera.A, FisheyeLens.of_rays.inside(camera.lens, M))
+        return seen, camera.A[:2, :2] @ np.moveaxis(camera.lens.derivatives(M.T)[1], -1, 0)
     z = np.where(M[:, 2:] > 0, M[:, 2:], np.nan)
     xy = M[:, :2] / z
-    m = px_from_xy.inside(camera.A, Lens.distort.inside(camera.lens, xy))
+    m = px_from_xy.inside(camera.A, camera.lens.distort.inside(camera.lens, xy))
     by_xy = np.full((len(M), 2, 2), np.nan)
     valid = np.isfinite(m).all(-1)
     by_xy[valid] = camera.A[:2, :2] @ camera.lens.jacobian(xy[valid])

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import Polynomial
 
-from cvnotes.base import Array, CvnotesError, ShapeError, numbers, points
+from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
 from cvnotes.camera.lens_fold import horner
 
 _FARTHEST = 1e12  # r², a ray almost at 90°
@@ -78,6 +78,11 @@ class RationalLens:
         )
 
     @property
+    def centre(self) -> tuple[float, float]:
+        """Distortion centre on the plane z = 1: always the piercing point."""
+        return (0.0, 0.0)
+
+    @property
     def is_ideal(self) -> bool:
         """Tell whether this lens moves nothing."""
         return self.k[:3] == self.k[3:] and not any((*self.p, *self.s, *self.tilt))
@@ -140,7 +145,9 @@ class RationalLens:
         straight = np.minimum(L + a - 1.5 * m, L - m / 2)
         return np.where((2 * m < 3 * a) & (a < 2 * m), beside, straight)
 
-    def distort(self, xy: npt.ArrayLike) -> Array:
+    @guarded(xy=Points(2))
+    @np.errstate(all="ignore")
+    def distort(self, xy: Array) -> Array:
         """Move ideal image points (..., 2) to where the lens shows them; NaN beyond its end.
 
         Examples
@@ -148,9 +155,14 @@ class RationalLens:
         >>> RationalLens(k=(-0.1,)).distort([0.5, 0.0])
         array([0.4875, 0.    ])
         """
-        return self._distort(points(xy, "xy", 2))
+        x, y = xy[..., 0], xy[..., 1]
+        seen = np.moveaxis(self.derivatives(x, y)[0], 0, -1)
+        inside = (x * x + y * y <= self.max_radius**2)[..., None]
+        return np.where(inside & np.isfinite(seen), seen, np.nan)
 
-    def undistort(self, xy_lens: npt.ArrayLike) -> Array:
+    @guarded(xy_lens=Points(2))
+    @np.errstate(all="ignore")  # a step too far may leave the model; it is then halved
+    def undistort(self, xy_lens: Array) -> Array:
         """Move observed points (..., 2) back; NaN where no point within ``max_radius`` is shown.
 
         Notes
@@ -164,9 +176,45 @@ class RationalLens:
         >>> lens.undistort(lens.distort([0.4, -0.3])).round(12)
         array([ 0.4, -0.3])
         """
-        return self._undistort(points(xy_lens, "xy_lens", 2))
+        target = np.moveaxis(xy_lens, -1, 0).reshape(2, -1)
+        xy = self._start(target)
+        seen, D, _ = self.derivatives(*xy)
+        miss = seen - target
+        for _ in range(_STEPS):
+            det = D[0, 0] * D[1, 1] - D[0, 1] * D[1, 0]
+            step = (
+                np.stack(
+                    [D[1, 1] * miss[0] - D[0, 1] * miss[1], D[0, 0] * miss[1] - D[1, 0] * miss[0]]
+                )
+                / det
+            )
+            late = np.flatnonzero((miss**2).sum(0) > _CLOSE**2)
+            if not late.size:
+                break
+            length = np.ones(late.size)
+            for _ in range(8):  # halve the steps that lead away
+                tried = xy[:, late] - length * step[:, late]
+                seen, by_xy, _ = self.derivatives(*tried)
+                off = seen - target[:, late]
+                worse = ~((off**2).sum(0) < (miss[:, late] ** 2).sum(0))
+                if not worse.any():
+                    break
+                length[worse] /= 2
+            better = ~worse
+            chosen = late[better]
+            if not chosen.size:
+                break
+            xy[:, chosen], miss[:, chosen] = tried[:, better], off[:, better]
+            D[:, :, chosen] = by_xy[:, :, better]
+        reached = ((miss**2).sum(0) <= 1e-20) & ((xy**2).sum(0) <= self.max_radius**2 * (1 + 1e-9))
+        return (
+            np.where(reached, xy, np.nan)
+            .reshape(2, *xy_lens.shape[:-1])
+            .transpose(*range(1, xy_lens.ndim), 0)
+        )
 
-    def jacobian(self, xy: npt.ArrayLike) -> Array:
+    @guarded(xy=Points(2))
+    def jacobian(self, xy: Array) -> Array:
         """Differentiate the distorted point by the ideal one: (..., 2, 2).
 
         Examples
@@ -174,7 +222,6 @@ class RationalLens:
         >>> RationalLens(k=(-4 / 3,)).jacobian([0.5, 0.0])[0, 0].round(12) + 0.0
         np.float64(0.0)
         """
-        xy = points(xy, "xy", 2)
         return np.moveaxis(self.derivatives(xy[..., 0], xy[..., 1])[1], (0, 1), (-2, -1))
 
     def derivatives(self, x: Array, y: Array) -> tuple[Array, Array, Array]:
@@ -234,52 +281,6 @@ class RationalLens:
         above, below = horner(a, t), horner(b, t)
         slopes = [horner([i * c for i, c in enumerate(ks)][1:], t) for ks in (a, b)]
         return above / below, (slopes[0] * below - above * slopes[1]) / below**2
-
-    @np.errstate(all="ignore")
-    def _distort(self, xy: Array) -> Array:
-        x, y = xy[..., 0], xy[..., 1]
-        seen = np.moveaxis(self.derivatives(x, y)[0], 0, -1)
-        inside = (x * x + y * y <= self.max_radius**2)[..., None]
-        return np.where(inside & np.isfinite(seen), seen, np.nan)
-
-    @np.errstate(all="ignore")
-    def _undistort(self, xy_lens: Array) -> Array:
-        target = np.moveaxis(xy_lens, -1, 0).reshape(2, -1)
-        xy = self._start(target)
-        seen, D, _ = self.derivatives(*xy)
-        miss = seen - target
-        for _ in range(_STEPS):
-            det = D[0, 0] * D[1, 1] - D[0, 1] * D[1, 0]
-            step = (
-                np.stack(
-                    [D[1, 1] * miss[0] - D[0, 1] * miss[1], D[0, 0] * miss[1] - D[1, 0] * miss[0]]
-                )
-                / det
-            )
-            late = np.flatnonzero((miss**2).sum(0) > _CLOSE**2)
-            if not late.size:
-                break
-            length = np.ones(late.size)
-            for _ in range(8):  # halve the steps that lead away
-                tried = xy[:, late] - length * step[:, late]
-                seen, by_xy, _ = self.derivatives(*tried)
-                off = seen - target[:, late]
-                worse = ~((off**2).sum(0) < (miss[:, late] ** 2).sum(0))
-                if not worse.any():
-                    break
-                length[worse] /= 2
-            better = ~worse
-            chosen = late[better]
-            if not chosen.size:
-                break
-            xy[:, chosen], miss[:, chosen] = tried[:, better], off[:, better]
-            D[:, :, chosen] = by_xy[:, :, better]
-        reached = ((miss**2).sum(0) <= 1e-20) & ((xy**2).sum(0) <= self.max_radius**2 * (1 + 1e-9))
-        return (
-            np.where(reached, xy, np.nan)
-            .reshape(2, *xy_lens.shape[:-1])
-            .transpose(*range(1, xy_lens.ndim), 0)
-        )
 
     def _start(self, target: Array) -> Array:
         """Interpolate the radius in a table of r L(r); the direction is that of the target."""

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import CvnotesError, FileError, intrinsic_matrix
-from cvnotes.camera import Camera, Lens, pose
+from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens, pose
+from cvnotes.camera.model import AnyLens
 from cvnotes.files.entry import Entry
 from cvnotes.files.exchange import CameraInfo, camera_info, opencv_yaml, ros_yaml
 from cvnotes.files.strict import MAX_YAML_BYTES, parse_json, parse_yaml, read_text
@@ -80,13 +81,10 @@ def camera_to_dict(camera: Camera) -> dict[str, Any]:
     >>> camera_to_dict(Camera(intrinsics(800, 800, 320, 240)))["image_size"]
     [640, 480]
     """
-    distortion: dict[str, Any] = {"k": list(camera.lens.k), "p": list(camera.lens.p)}
-    if any(camera.lens.centre):
-        distortion["centre"] = list(camera.lens.centre)
     keys: dict[str, Any] = {
         "image_size": list(camera.size),
         "camera_matrix": camera.A.tolist(),
-        "distortion": distortion,
+        "distortion": _lens_to_dict(camera.lens),
     }
     if not np.array_equal(camera.G, np.eye(4)):
         keys["pose"] = pose_to_dict(camera.G)
@@ -98,20 +96,42 @@ def camera_from_entry(entry: Entry) -> Camera:
     check_version(entry)
     size = (entry["image_size"].array(2)).tolist()
     A = entry["camera_matrix"].array(3, 3)
-    distortion = entry["distortion"]
-    centre, where = distortion.get("centre"), entry.get("pose")
+    where = entry.get("pose")
     try:
-        lens = Lens(
-            k=tuple(distortion["k"].array(None)),
-            p=tuple(distortion["p"].array(2)),
-            centre=(0.0, 0.0) if centre is None else tuple(centre.array(2)),
-        )
+        lens = _lens_from_entry(entry["distortion"])
         G = np.eye(4) if where is None else pose_from_entry(where)
         return Camera(intrinsic_matrix(A, "camera_matrix"), G, lens, size)
     except FileError:
         raise
     except CvnotesError as error:
         raise entry.error(str(error)) from error
+
+
+def _lens_to_dict(lens: AnyLens) -> dict[str, Any]:
+    """Spell a lens as its model, unless that is the polynomial, and its coefficients."""
+    match lens:
+        case FisheyeLens():
+            return {"model": "equidistant", "k": list(lens.k)}
+        case RationalLens():
+            keys = {"k": lens.k, "p": lens.p, "s": lens.s, "tilt": lens.tilt}
+            return {"model": "rational", **{name: list(values) for name, values in keys.items()}}
+    centre = {"centre": list(lens.centre)} if any(lens.centre) else {}
+    return {"k": list(lens.k), "p": list(lens.p), **centre}
+
+
+def _lens_from_entry(entry: Entry) -> AnyLens:
+    """Make the lens that `_lens_to_dict` spelt."""
+    model, k = entry.get("model"), tuple(entry["k"].array(None))
+    name = "polynomial" if model is None else model.text()
+    if name == "equidistant":
+        return FisheyeLens(k)
+    p = tuple(entry["p"].array(2))
+    if name == "rational":
+        return RationalLens(k, p, tuple(entry["s"].array(4)), tuple(entry["tilt"].array(2)))
+    if model is not None and name != "polynomial":
+        raise model.error(f"expected polynomial, rational or equidistant, got {name!r:.40}")
+    centre = entry.get("centre")
+    return Lens(k, p, (0.0, 0.0) if centre is None else tuple(centre.array(2)))
 
 
 def pose_to_dict(G: Any) -> dict[str, Any]:

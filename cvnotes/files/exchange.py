@@ -1,7 +1,9 @@
 """Cameras in the YAML of OpenCV and of ROS, both ways.
 
 Both give the distortion as k1, k2, p1, p2, k3 on pixels whose centres are integers, as we do, so
-that nothing is converted; what they cannot hold is refused rather than dropped.
+that nothing is converted; what they cannot hold is refused rather than dropped. The rational model
+goes on with k4, k5, k6, the thin prism s1 … s4 and the sensor's tilt; a fisheye has k1 … k4 alone,
+and says so by the name that ROS gives it, ``equidistant``.
 """
 
 from dataclasses import dataclass, field
@@ -10,9 +12,17 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, FileError, intrinsic_matrix, matrix, numbers, rotation
-from cvnotes.camera import Camera, Lens
+from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens
+from cvnotes.camera.model import AnyLens
 from cvnotes.files.entry import Entry
 from cvnotes.files.writing import printable
+
+# What ROS calls them; OpenCV's own files have no name for a model.
+_MODELS: dict[type, str] = {
+    Lens: "plumb_bob",
+    RationalLens: "rational_polynomial",
+    FisheyeLens: "equidistant",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +83,9 @@ def opencv_yaml(camera: Camera, *, note: str = "") -> str:
     skew = "# OpenCV keeps the skew in the matrix but does not use it.\n" if camera.A[0, 1] else ""
     K = _opencv_matrix("camera_matrix", camera.A)
     D = _opencv_matrix("distortion_coefficients", opencv_coefficients(camera.lens)[None])
-    return f"%YAML:1.0\n---\n{remark}{size}{skew}{K}{D}"
+    fisheye = isinstance(camera.lens, FisheyeLens)
+    model = "distortion_model: equidistant\n" if fisheye else ""
+    return f"%YAML:1.0\n---\n{remark}{size}{skew}{K}{model}{D}"
 
 
 def ros_yaml(info: CameraInfo) -> str:
@@ -93,7 +105,7 @@ def ros_yaml(info: CameraInfo) -> str:
         f"image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
         f'camera_name: "{info.name}"\n'
         + _ros_matrix("camera_matrix", camera.A)
-        + "distortion_model: plumb_bob\n"
+        + f"distortion_model: {_MODELS[type(camera.lens)]}\n"
         + _ros_matrix("distortion_coefficients", opencv_coefficients(camera.lens)[None])
         + _ros_matrix("rectification_matrix", info.rectification)
         + _ros_matrix("projection_matrix", np.asarray(info.projection))
@@ -103,14 +115,16 @@ def ros_yaml(info: CameraInfo) -> str:
 def camera_info(entry: Entry) -> CameraInfo:
     """Understand the YAML of OpenCV or of ROS; OpenCV's has no name and no rectification."""
     model = entry.get("distortion_model")
-    if model is not None and model.text() not in ("plumb_bob", "rational_polynomial"):
-        raise model.error(f"the lens model {model.text()!r} is not one of ours (plumb_bob is)")
+    if model is not None and model.text() not in _MODELS.values():
+        ours = ", ".join(_MODELS.values())
+        raise model.error(f"the lens model {model.text()!r} is not one of ours: {ours}")
     name = entry.get("camera_name")
     R, P = entry.get("rectification_matrix"), entry.get("projection_matrix")
     size = (entry["image_width"].whole(), entry["image_height"].whole())
     A, d = _read_matrix(entry["camera_matrix"]), _read_matrix(entry["distortion_coefficients"])
     try:
-        lens = lens_from_opencv(d.ravel())
+        fisheye = model is not None and model.text() == _MODELS[FisheyeLens]
+        lens = lens_from_opencv(d.ravel(), fisheye=fisheye)
         return CameraInfo(
             Camera(intrinsic_matrix(A, "camera_matrix"), lens=lens, size=size),
             name.text() if name is not None else "camera",
@@ -121,14 +135,26 @@ def camera_info(entry: Entry) -> CameraInfo:
         raise FileError(f"{entry.file}: {error}") from error
 
 
-def opencv_coefficients(lens: Lens) -> Array:
-    """Give OpenCV's (k1, k2, p1, p2, k3) of a lens, shape (5,).
+def opencv_coefficients(lens: AnyLens) -> Array:
+    """Spell a lens as OpenCV's coefficients.
+
+    Returns
+    -------
+    ndarray, shape (5,), (8,), (12,), (14,) or (4,)
+        (k1, k2, p1, p2, k3) of a `Lens`; of a `RationalLens` also k4, k5, k6 and, if it has them,
+        s1 … s4 and the tilt; k1 … k4 of a `FisheyeLens`, for the functions of ``cv2.fisheye``.
 
     Examples
     --------
     >>> opencv_coefficients(Lens(k=(-0.25,), p=(0.001, 0.002)))
     array([-0.25 ,  0.   ,  0.001,  0.002,  0.   ])
     """
+    if isinstance(lens, FisheyeLens):
+        return np.array(lens.k)
+    if isinstance(lens, RationalLens):
+        k1, k2, k3, *others = lens.k
+        size = 14 if any(lens.tilt) else 12 if any(lens.s) else 8
+        return np.array([k1, k2, *lens.p, k3, *others, *lens.s, *lens.tilt])[:size]
     if any(lens.centre) or any(lens.k[3:]):
         raise CvnotesError(
             "OpenCV and ROS hold k1 k2 p1 p2 k3 about the piercing point; this lens has "
@@ -138,22 +164,37 @@ def opencv_coefficients(lens: Lens) -> Array:
     return np.array([k1, k2, *lens.p, k3])
 
 
-def lens_from_opencv(coefficients: npt.ArrayLike) -> Lens:
-    """Make a lens of OpenCV's 4 or 5 coefficients (k1, k2, p1, p2[, k3]).
+def lens_from_opencv(coefficients: npt.ArrayLike, *, fisheye: bool = False) -> AnyLens:
+    """Make a lens of OpenCV's coefficients.
 
-    Longer lists, as the rational model has, are accepted where the rest is zero.
+    Parameters
+    ----------
+    coefficients : array_like
+        4 or 5 (k1, k2, p1, p2[, k3]), or 8, 12 or 14 of the rational model, which make a
+        `RationalLens` unless those after k3 are zero.
+    fisheye : bool
+        They are the k1 … k4 of ``cv2.fisheye``, or of ROS's ``equidistant``.
 
     Examples
     --------
     >>> lens_from_opencv([-0.25, 0.1, 0.001, 0.0])
     Lens(k=(-0.25, 0.1), p=(0.001, 0.0), centre=(0.0, 0.0))
+    >>> lens_from_opencv([0.1, 0.01, 0.0, 0.0], fisheye=True)
+    FisheyeLens(k=(0.1, 0.01, 0.0, 0.0))
     """
     d = numbers(coefficients, "coefficients").reshape(-1)
-    if d.size not in (4, 5, 8, 12, 14) or d[5:].any():
+    if fisheye:
+        if d.size != 4:
+            raise CvnotesError(f"coefficients: a fisheye has 4 (k1 … k4), got {d.size}")
+        return FisheyeLens(tuple(d))
+    if d.size not in (4, 5, 8, 12, 14):
         raise CvnotesError(
-            f"coefficients: expected 4 or 5 coefficients (k1, k2, p1, p2, k3), got {d.size}"
-            + (", of which some of the rational model are not zero" if d[5:].any() else "")
+            "coefficients: expected 4 or 5 (k1, k2, p1, p2, k3), or 8, 12 or 14 of the rational "
+            f"model, got {d.size}"
         )
+    if d[5:].any():
+        d = np.concatenate([d, np.zeros(14 - d.size)])
+        return RationalLens((*d[:2], *d[4:8]), (d[2], d[3]), tuple(d[8:12]), (d[12], d[13]))
     k = d[[0, 1, 4]] if d[4:5].any() else d[:2]
     return Lens(k=tuple(k), p=(d[2], d[3]))
 

@@ -9,11 +9,12 @@ formulas that project a point, so that a corner is drawn where `Camera.project` 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, px_from_xy
+from cvnotes.camera import Camera, FisheyeLens, px_from_xy
 from cvnotes.pictures.faces import Face, Mask, Target, faces_before_camera, folds, nearest_grey
 from cvnotes.pictures.pixel_means import Indices, subdivide
 
 _BESIDE = 1e-11  # how far from an edge, on z = 1, the colours on either side of it are read
+_GRAZING = 1e3  # ideal radius of a ray 0.06° before 90°: what lies flat there is not seen
 
 
 def edges_in_picture(
@@ -149,4 +150,6 @@ def _visible_radius(camera: Camera) -> float:
     ]
     reach = np.linalg.norm(camera.ideal(np.concatenate(border)) - camera.lens.centre, axis=1).max()
     limit = (1 - 1e-9) * camera.lens.max_radius
+    if isinstance(camera.lens, FisheyeLens):
+        limit = min(limit, _GRAZING)
     return float(min(1.1 * reach, limit)) if np.isfinite(reach) else limit

@@ -14,7 +14,7 @@ from cvnotes.base import (
     intrinsic_matrix,
     rotation,
 )
-from cvnotes.camera import Camera, Lens, px_from_xy
+from cvnotes.camera import Camera, px_from_xy
 from cvnotes.warping.interpolation import Border, Method
 from cvnotes.warping.pixel_map import PixelMap
 from cvnotes.warping.warp import backward_warp
@@ -67,7 +67,7 @@ def undistortion_map(
     def columns(m_h: Array) -> Array:
         x, y, z = ray @ m_h
         z[z <= 0] = np.nan  # behind the real camera
-        seen = Lens.distort.inside(camera.lens, np.stack([x / z, y / z]).T)
+        seen = camera.lens.distort.inside(camera.lens, np.stack([x / z, y / z]).T)
         return px_from_xy.inside(camera.A, seen).T
 
     return PixelMap(columns)
@@ -94,7 +94,7 @@ def distortion_map(camera: Camera, new_A: npt.ArrayLike | None = None) -> PixelM
     to_sensor = np.linalg.inv(camera.A)[:2]
 
     def columns(m_h: Array) -> Array:
-        ideal = Lens.undistort.inside(camera.lens, (to_sensor @ m_h).T)
+        ideal = camera.lens.undistort.inside(camera.lens, (to_sensor @ m_h).T)
         return px_from_xy.inside(new_A, ideal).T
 
     return PixelMap(columns)
