@@ -22,7 +22,16 @@ from cvnotes.base import CvnotesError, FileError
 from cvnotes.calibration import Calibration, calibrate_one_view
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.saving import read_calibration, write_calibration
-from cvnotes.camera import Camera, Lens, intrinsics, look_at, pose, rotation_from_vector
+from cvnotes.camera import (
+    Camera,
+    FisheyeLens,
+    Lens,
+    RationalLens,
+    intrinsics,
+    look_at,
+    pose,
+    rotation_from_vector,
+)
 from cvnotes.files import (
     CameraInfo,
     Rejected,
@@ -445,9 +454,47 @@ def test_any_other_number_of_coefficients_is_refused(count):
         lens_from_opencv(np.zeros(count))
 
 
-def test_a_rational_lens_is_refused():
-    with pytest.raises(CvnotesError, match="some of the rational model are not zero"):
-        lens_from_opencv([0, 0, 0, 0, 0, 0.1, 0, 0])
+@pytest.mark.parametrize("count", [8, 12, 14])
+def test_longer_lists_make_a_rational_lens_and_come_back(count):
+    d = np.arange(1, count + 1) / 100
+    lens = lens_from_opencv(d)
+    assert isinstance(lens, RationalLens)
+    assert (lens.k, lens.p) == ((0.01, 0.02, 0.05, 0.06, 0.07, 0.08), (0.03, 0.04))
+    assert opencv_coefficients(lens).tolist() == d.tolist()
+    assert lens_from_opencv([0.1, 0.2, 0, 0, 0, *[0.0] * (count - 5)]) == Lens((0.1, 0.2))
+
+
+WIDE = [
+    RationalLens((0.3, 0.05, 0.0, 0.6, 0.1, 0.01), (0.001, -0.002)),
+    RationalLens((0.3,), s=(0.001, 0.0, 0.002, 0.0), tilt=(0.01, -0.02)),
+    FisheyeLens((0.05, -0.01, 0.002, 0.0)),
+]
+
+
+@pytest.mark.parametrize("lens", WIDE)
+@pytest.mark.parametrize("name", ["camera.json", "camera.yml"])
+def test_wide_lenses_come_back_bit_for_bit(tmp_path, lens, name):
+    write_camera(replace(CAMERA, lens=lens), tmp_path / name)
+    assert read_camera(tmp_path / name).lens == lens
+
+
+@pytest.mark.parametrize("lens", WIDE)
+def test_wide_lenses_have_ros_names(tmp_path, lens):
+    write_camera_info(CameraInfo(replace(CAMERA, lens=lens)), tmp_path / "camera.yaml")
+    named = "equidistant" if isinstance(lens, FisheyeLens) else "rational_polynomial"
+    assert f"distortion_model: {named}\n" in (tmp_path / "camera.yaml").read_text()
+    assert read_camera_info(tmp_path / "camera.yaml").camera.lens == lens
+
+
+def test_opencv_reads_a_rational_camera_and_sees_what_it_sees(tmp_path):
+    camera = replace(CAMERA, G=np.eye(4), lens=WIDE[1])
+    write_camera(camera, tmp_path / "camera.yml")
+    storage = cv2.FileStorage(str(tmp_path / "camera.yml"), cv2.FILE_STORAGE_READ)
+    K, d = (storage.getNode(key).mat() for key in ("camera_matrix", "distortion_coefficients"))
+    storage.release()
+    W = np.random.default_rng(0).uniform([-1, -1, 3], [1, 1, 4], (30, 3))
+    theirs = cv2.projectPoints(W, np.zeros(3), np.zeros(3), K, d)[0].reshape(-1, 2)
+    assert np.allclose(camera.project(W), theirs, rtol=0, atol=1e-9)
 
 
 # --- ROS ------------------------------------------------------------------------------------
@@ -496,7 +543,7 @@ distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("plumb_bob", "equidistant", "the lens model 'equidistant' is not one of ours"),
+        ("plumb_bob", "double_sphere", "the lens model 'double_sphere' is not one of ours"),
         ("rows: 3", "rows: 2", "camera_matrix: expected 2×3 values in data, got 9"),
         ("cols: 3", "cols: -3", "camera_matrix: expected 3×-3 values"),
         ("800, 0, 320", "800, 0, .nan", r"camera_matrix.data\[2\]: expected a number, got '.nan'"),

@@ -273,7 +273,8 @@ class RationalLens:
         about_x = np.array([[1, 0, 0], [0, cx, sx], [0, -sx, cx]])
         about_y = np.array([[cy, 0, -sy], [0, 1, 0], [sy, 0, cy]])
         R = about_y @ about_x
-        return np.array([[R[2, 2], 0, -R[0, 2]], [0, R[2, 2], -R[1, 2]], [0, 0, 1]]) @ R
+        onto = [[R[2, 2], 0, -R[0, 2]], [0, R[2, 2], -R[1, 2]], [0, 0, 1]]
+        return np.asarray(np.array(onto) @ R)
 
     def _quotient(self, t: Array) -> tuple[Array, Array]:
         """L and its derivative by t = r²."""

@@ -1,0 +1,167 @@
+"""The rational lens and the fisheye, held against OpenCV and against themselves."""
+
+import cv2
+import numpy as np
+import pytest
+
+from cvnotes.base import CvnotesError, ShapeError
+from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens, intrinsics, look_at
+from cvnotes.camera.model import project_with_derivative
+from cvnotes.pictures import render
+from cvnotes.targets import Chessboard, refine_edges
+from cvnotes.warping import undistort_image, undistortion_map
+
+ZERO = np.zeros(3)
+
+
+def some_rational(seed):
+    rng = np.random.default_rng(seed)
+    k = rng.normal(0, 0.2, 6) * [1, 0.5, 0.2, 1, 0.5, 0.2]
+    p, s, tilt = rng.normal(0, 1e-3, 2), rng.normal(0, 1e-3, 4), rng.normal(0, 0.02, 2)
+    return RationalLens(k, p, s * (seed % 2), tilt * (seed % 3 == 0))
+
+
+def some_fisheye(seed):
+    return FisheyeLens(np.random.default_rng(seed).normal(0, 0.05, 4) * [1, 0.5, 0.2, 0.1])
+
+
+def within(lens, rng, part=0.97):
+    """Ideal points that the lens reaches."""
+    xy = rng.uniform(-0.8, 0.8, (200, 2))
+    return xy[np.hypot(*xy.T) < part * min(lens.max_radius, 3)]
+
+
+def directions(theta, rng):
+    phi = rng.uniform(0, 2 * np.pi, len(theta))
+    return np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_opencv_shows_a_rational_lens_alike(seed):
+    lens, rng = some_rational(seed), np.random.default_rng(seed)
+    xy = within(lens, rng)
+    k = lens.k
+    d = np.array([*k[:2], *lens.p, *k[2:], *lens.s, *lens.tilt])
+    theirs = cv2.projectPoints(np.c_[xy, np.ones(len(xy))], ZERO, ZERO, np.eye(3), d)[0]
+    assert np.allclose(lens.distort(xy), theirs.reshape(-1, 2), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_what_a_rational_lens_shows_it_takes_back(seed):
+    lens, rng = some_rational(seed), np.random.default_rng(seed)
+    xy = within(lens, rng)
+    assert np.allclose(lens.undistort(lens.distort(xy)), xy, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_opencv_shows_a_fisheye_alike(seed):
+    lens, rng = some_fisheye(seed), np.random.default_rng(seed)
+    M = directions(rng.uniform(0, min(0.98 * lens.max_angle, 1.5), 200), rng)
+    theirs = cv2.fisheye.projectPoints(M[None], ZERO, ZERO, np.eye(3), np.array(lens.k))[0][0]
+    assert np.allclose(lens.of_rays(M), theirs, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_fisheye_takes_rays_back_from_behind_too(seed):
+    lens, rng = some_fisheye(seed), np.random.default_rng(seed)
+    M = directions(rng.uniform(0, min(0.98 * lens.max_angle, 3.0), 200), rng)
+    assert np.allclose(lens.rays(lens.of_rays(M)), M, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("lens", [some_rational(3), some_rational(4), some_fisheye(5)])
+def test_derivatives_are_those_of_what_is_shown(lens):
+    rng = np.random.default_rng(0)
+    h, M = 1e-6, rng.uniform([-0.5, -0.5, 1], [0.5, 0.5, 2], (40, 3))
+    camera = Camera(intrinsics(800, 820, 320, 240, 3.0), lens=lens)
+    m, by_M = project_with_derivative(camera, M)
+    moved = [(camera.project(M + h * e) - camera.project(M - h * e)) / (2 * h) for e in np.eye(3)]
+    assert np.allclose(m, camera.project(M))
+    assert np.allclose(by_M, np.stack(moved, axis=-1), rtol=1e-6, atol=1e-4)
+
+
+@pytest.mark.parametrize("lens", [some_rational(3), some_rational(4), some_fisheye(5)])
+def test_derivatives_by_the_coefficients_are_those_of_what_is_shown(lens):
+    rng = np.random.default_rng(1)
+    M = rng.uniform([-0.5, -0.5, 1], [0.5, 0.5, 1], (40, 3)).T
+    fisheye = isinstance(lens, FisheyeLens)
+
+    def shown(change):
+        value = np.array([*lens.coefficients.values()]) + change
+        if fisheye:
+            return FisheyeLens(value).derivatives(M)[0]
+        return RationalLens(value[:6], value[6:], lens.s, lens.tilt).derivatives(*M[:2])[0]
+
+    C = (lens.derivatives(M) if fisheye else lens.derivatives(*M[:2]))[2]
+    for i, e in enumerate(1e-6 * np.eye(len(C))):
+        assert np.allclose(C[i], (shown(e) - shown(-e)) / 2e-6, rtol=0, atol=1e-8), i
+
+
+def test_a_rational_lens_without_a_quotient_is_the_lens_of_the_notes():
+    rational, polynomial = RationalLens((-0.25, 0.1, 0.02), (0.001, -0.002)), Lens(
+        (-0.25, 0.1, 0.02), (0.001, -0.002)
+    )  # fmt: skip
+    xy = np.random.default_rng(0).uniform(-0.6, 0.6, (50, 2))
+    assert np.allclose(rational.distort(xy), polynomial.distort(xy), rtol=0, atol=1e-14)
+    assert np.isclose(rational.max_radius, polynomial.max_radius, rtol=1e-9)
+
+
+def test_a_rational_lens_ends_at_its_pole_and_at_its_fold():
+    # L = 1/(1 − r²) has a pole at 1; r L = r/(1 + r²) folds at 1
+    assert np.isclose(RationalLens((0, 0, 0, -1.0)).max_radius, 1)
+    assert np.isclose(RationalLens((0, 0, 0, 1.0)).max_radius, 1)
+    assert np.isnan(RationalLens((0, 0, 0, 1.0)).distort([1.01, 0])).all()
+    assert RationalLens((0.5, 0, 0, 0.2)).max_radius == np.inf
+
+
+def test_an_equidistant_fisheye_shows_the_angle():
+    lens = FisheyeLens()
+    assert np.allclose(lens.of_rays([[1, 0, 1], [0, 2, 0], [-1, 0, -1]]),
+                       np.pi * np.array([[0.25, 0], [0, 0.5], [-0.75, 0]]))  # fmt: skip
+    assert np.isnan(lens.undistort([1.6, 0])).all()  # beyond 90° there is no point on z = 1
+    assert FisheyeLens((-1 / 3,)).max_angle == pytest.approx(1)
+
+
+def test_a_fisheye_camera_sees_what_stands_beside_it():
+    camera = Camera(intrinsics(200, 200, 320, 240), lens=FisheyeLens())
+    W = np.array([[5.0, 0, 0], [0, 5, -1], [0, 0, -1]])
+    m = camera.project(W)
+    assert np.allclose(m[0], [320 + 100 * np.pi, 240])
+    assert np.allclose(camera.ray(m[:2]), W[:2] / np.linalg.norm(W[:2], axis=1, keepdims=True))
+    assert np.isnan(m[2]).all() or np.hypot(*(m[2] - [320, 240])) > 600  # behind: no one place
+
+
+@pytest.mark.parametrize(
+    "lens", [RationalLens((0.3, 0.05, 0, 0.9, 0.2)), FisheyeLens((-0.02, 0.003))]
+)
+def test_a_board_through_a_wide_lens_has_its_corners_where_the_camera_says(lens):
+    board = Chessboard((9, 6), 25.0)
+    camera = Camera(
+        intrinsics(300, 300, 320, 240), look_at([150, 60, -190], [100, 60, 0]), lens=lens
+    )
+    picture = render(board, camera, blur=0.7)
+    found = refine_edges(picture, camera.project(board.points))
+    seen = np.isfinite(found).all(-1)
+    assert seen.sum() >= 50
+    assert np.abs(found - camera.project(board.points))[seen].max() < 0.05
+
+
+def test_a_straightened_fisheye_picture_is_that_of_an_ideal_camera():
+    board = Chessboard((9, 6), 25.0)
+    G, A = look_at([120, 80, -250], [100, 60, 0]), intrinsics(300, 300, 320, 240)
+    bent = render(board, Camera(A, G, FisheyeLens()), blur=0.7)
+    straight = render(board, Camera(A, G), blur=0.7)
+    back = undistort_image(bent, Camera(A, G, FisheyeLens()))
+    middle = (slice(140, 340), slice(200, 440))
+    assert np.abs(back[middle].astype(float) - straight[middle]).mean() < 4
+    m = undistortion_map(Camera(A, G, FisheyeLens()))([320 + 300, 240])
+    assert np.allclose(m, [320 + 300 * np.pi / 4, 240])
+
+
+@pytest.mark.parametrize("make", [RationalLens, FisheyeLens])
+def test_bad_coefficients_are_refused(make):
+    with pytest.raises(ShapeError, match="k: expected"):
+        make(np.zeros(7))
+    with pytest.raises(CvnotesError, match="NaN"):
+        make([np.nan])
+    with pytest.raises(CvnotesError, match="no lens has such"):
+        make([1e60])
