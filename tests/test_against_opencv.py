@@ -42,7 +42,7 @@ def predicted_by_opencv(board, A, dist, rvecs, tvecs):
 
 
 def true_camera(lens):
-    n_radial, tangential = LENSES[lens]
+    _, n_radial, tangential = LENSES[lens]
     k, p = (-0.2, 0.08, -0.02)[:n_radial], (0.001, -0.0005) if tangential else (0.0, 0.0)
     return Camera(intrinsics(1000, 1004, 650, 470), lens=Lens(k=k, p=p), size=SIZE)
 
@@ -54,7 +54,7 @@ def noisy_views(views_of, camera, n, seed):
 
 
 @pytest.mark.parametrize("n", [4, 12, 25])
-@pytest.mark.parametrize("lens", LENSES)
+@pytest.mark.parametrize("lens", [name for name in LENSES if LENSES[name][0] is Lens])
 def test_the_minimum_is_the_one_that_calibrate_camera_comes_to(board, views_of, lens, n):
     m = noisy_views(views_of, true_camera(lens), n, n)
     ours = calibrate(board.points, m, SIZE, lens=lens)

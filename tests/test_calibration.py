@@ -77,9 +77,9 @@ def test_exact_corners_give_back_the_camera_and_the_poses(board, views_of, n):
 
 
 @pytest.mark.parametrize("skew", [False, True])
-@pytest.mark.parametrize("lens", LENSES)
+@pytest.mark.parametrize("lens", [name for name in LENSES if LENSES[name][0] is Lens])
 def test_every_lens_model_comes_back_with_and_without_skew(board, views_of, lens, skew):
-    n_radial, tangential = LENSES[lens]
+    _, n_radial, tangential = LENSES[lens]
     camera = Camera(
         intrinsics(1000, 1004, 650, 470, skew=2.5 * skew),
         lens=Lens(k=TRUTH.lens.k[:n_radial], p=TRUTH.lens.p if tangential else (0, 0)),

@@ -86,7 +86,7 @@ def test_derivatives_by_the_coefficients_are_those_of_what_is_shown(lens):
     fisheye = isinstance(lens, FisheyeLens)
 
     def shown(change):
-        value = np.array([*lens.coefficients.values()]) + change
+        value = np.array([*lens.parameters.values()]) + change
         if fisheye:
             return FisheyeLens(value).derivatives(M)[0]
         return RationalLens(value[:6], value[6:], lens.s, lens.tilt).derivatives(*M[:2])[0]

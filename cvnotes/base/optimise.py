@@ -47,6 +47,7 @@ def levenberg_marquardt(
     max_iterations: int = 100,
     tolerance: float = 1e-12,
     floor: float = 0.0,
+    patience: int | None = None,
 ) -> Minimum[X, System]:
     """Minimise a sum of squares, starting from `x`.
 
@@ -67,6 +68,10 @@ def levenberg_marquardt(
     tolerance, floor : float
         Stop when the next step would gain less than ``tolerance * cost + floor``, if it shrinks
         as much as this one did. The floor is the cost that rounding alone causes.
+
+    patience : int, optional
+        How often an end that was reached by damped steps is left again without damping, before it
+        is taken for the minimum; as long as there are steps, unless given.
 
     Raises
     ------
@@ -94,7 +99,7 @@ def levenberg_marquardt(
     cost, system = linearise(x)
     if not np.isfinite(cost):
         raise ConvergenceError("the cost at the start is not finite: start closer to the answer")
-    damping, previous = 0.0, 0.0
+    damping, previous, returns = 0.0, 0.0, 0
     for iteration in range(1, max_iterations + 1):
         step, predicted = solve(system, damping)
         x_new = take_step(x, step)
@@ -113,9 +118,11 @@ def levenberg_marquardt(
         if downhill:
             x, cost, system = x_new, cost_new, system_new
         if close:  # perhaps only because damping keeps the step short
-            damping, previous = 0.0, 0.0
+            if returns == patience:  # no: whenever it is let go, the step leads uphill
+                return Minimum(x, cost, system, iteration, True)
+            damping, previous, returns = 0.0, 0.0, returns + 1
         elif downhill:
-            previous = predicted if damping == 0 else 0.0
+            previous, returns = (predicted, 0) if damping == 0 else (0.0, returns)
             damping = 0.1 * damping if damping > 1e-6 else 0.0
         elif damping > 1e9:
             break

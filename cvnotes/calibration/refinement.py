@@ -22,17 +22,22 @@ from cvnotes.base import (
     solved,
 )
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.camera import Camera, rotation_from_vector
+from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens, rotation_from_vector
+from cvnotes.camera.fisheye import through_angle
 from cvnotes.camera.lens_fold import horner, radial_factor
+from cvnotes.camera.model import AnyLens
+from cvnotes.camera.rational import through_quotient
 
-# What `lens=` may name: how many radial terms, and whether the tangential ones too.
-LENSES = {
-    "none": (0, False),
-    "k1": (1, False),
-    "k1 k2": (2, False),
-    "k1 k2 k3": (3, False),
-    "k1 k2 p1 p2": (2, True),
-    "k1 k2 p1 p2 k3": (3, True),
+# What `lens=` may name: the model, how many radial terms, and whether the tangential ones too.
+LENSES: dict[str, tuple[type[AnyLens], int, bool]] = {
+    "none": (Lens, 0, False),
+    "k1": (Lens, 1, False),
+    "k1 k2": (Lens, 2, False),
+    "k1 k2 k3": (Lens, 3, False),
+    "k1 k2 p1 p2": (Lens, 2, True),
+    "k1 k2 p1 p2 k3": (Lens, 3, True),
+    "rational": (RationalLens, 6, True),
+    "fisheye": (FisheyeLens, 4, False),
 }
 
 # Views worked on at a time: their arrays of one number per point then stay in the cache.
@@ -67,6 +72,10 @@ class Problem:
         Estimate p1 and p2; otherwise they are zero.
     size : (width, height)
         Size of the pictures.
+    model : type
+        `Lens`, `RationalLens` (with its 6 radial coefficients) or `FisheyeLens` (4).
+    ridge : float
+        Pixels that each radial coefficient adds to the residuals, per unit; holds them near zero.
     """
 
     W: Array
@@ -76,6 +85,8 @@ class Problem:
     n_radial: int = 2
     tangential: bool = False
     size: tuple[int, int] = (640, 480)
+    model: type[AnyLens] = Lens
+    ridge: float = 0.0
     names: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -90,7 +101,8 @@ class Problem:
         if not isinstance(lens, str) or lens not in LENSES:
             known = ", ".join(map(repr, LENSES))
             raise CvnotesError(f"lens: expected one of {known}, got {lens!r}")
-        return Problem(data.W, data.m, data.seen, skew, *LENSES[lens], size=size)
+        model, n_radial, tangential = LENSES[lens]
+        return Problem(data.W, data.m, data.seen, skew, n_radial, tangential, size, model)
 
     @property
     def n_seen(self) -> int:
@@ -143,7 +155,14 @@ class Problem:
             normal[:, -1, q:],
             costs,
         )
-        return float(costs.sum()), arrow
+        cost = float(costs.sum())
+        if self.ridge:
+            k = slice(4 + self.skew, 4 + self.skew + self.n_radial)
+            arrow.g_shared[k] += self.ridge**2 * x.shared[k]
+            diagonal = np.einsum("ii->i", arrow.shared)
+            diagonal[k] += self.ridge**2
+            cost += self.ridge**2 * float(x.shared[k] @ x.shared[k])
+        return cost, arrow
 
     def residuals(self, camera: Camera, x: State) -> Array:
         """Observed minus predicted pixels (n_views, n, 2): 0 where none was seen.
@@ -165,7 +184,7 @@ class Problem:
     @cached_property
     def _plain(self) -> Camera:
         """A camera of that size in which all that can be sought is 0, but for α = 1."""
-        return Camera(np.eye(3), size=self.size)
+        return Camera(np.eye(3), lens=self.model(), size=self.size)
 
     @cached_property
     def _by_coordinate(self) -> tuple[Array, Array]:
@@ -205,7 +224,11 @@ class Problem:
         X, Y = xy = M[:2] * over_z
 
         # 3. the lens
-        xy_lens, D = self._through_lens(x.shared[first:], xy, by_lens)
+        fisheye = self.model is FisheyeLens
+        if fisheye:  # which goes by the angle of the ray, not by x and y
+            xy_lens, by_M, by_lens[:] = through_angle(x.shared[first:].tolist(), M)
+        else:
+            xy_lens, D = self._through_lens(x.shared[first:], xy, by_lens)
 
         # 4. the sensor turns x', y' and all their derivatives into pixels
         J[0, 0], J[1, 1] = xy_lens
@@ -220,13 +243,17 @@ class Problem:
 
         # and the pose: by T, where dT acts on x and y through 1/z, then by ω, where dM = ω × R W
         by_X, by_Y, by_Z = by_T
-        alpha_over_z = alpha * over_z
-        np.multiply(alpha_over_z, D[:2], out=by_X)
-        np.multiply(alpha_over_z, D[1:], out=by_Y)
-        if self.skew:
-            by_X[0] += skew * over_z * D[1]
-            by_Y[0] += skew * over_z * D[2]
-        np.negative(X * by_X + Y * by_Y, out=by_Z)
+        if fisheye:
+            np.multiply(alpha, by_M.transpose(1, 0, 2, 3), out=by_T)
+            by_T[:, 0] += skew * by_M[1]
+        else:
+            alpha_over_z = alpha * over_z
+            np.multiply(alpha_over_z, D[:2], out=by_X)
+            np.multiply(alpha_over_z, D[1:], out=by_Y)
+            if self.skew:
+                by_X[0] += skew * over_z * D[1]
+                by_Y[0] += skew * over_z * D[2]
+            np.negative(X * by_X + Y * by_Y, out=by_Z)
         np.subtract(RW[1] * by_Z, RW[2] * by_Y, out=by_omega[0])
         np.subtract(RW[2] * by_X, RW[0] * by_Z, out=by_omega[1])
         np.subtract(RW[0] * by_Y, RW[1] * by_X, out=by_omega[2])
@@ -238,6 +265,9 @@ class Problem:
         Into `by_lens` by the coefficients, in their order; D by x and y, (3, views, n), as it is
         symmetric: D11, D12, D22.
         """
+        if self.model is RationalLens:
+            xy_lens, by_xy, by_lens[:] = through_quotient(lens[:6].tolist(), lens[6:].tolist(), *xy)
+            return xy_lens, np.stack([by_xy[0, 0], by_xy[0, 1], by_xy[1, 1]])
         X, Y = xy
         k = lens[: self.n_radial].tolist()
         products = np.empty((3, *X.shape))
@@ -335,6 +365,8 @@ def _damp(N: Array, damping: float) -> Array:
     return N
 
 
+# Pixels that a coefficient of a quotient costs per unit, and how far that sum is brought down.
+_RIDGE, _WITH_RIDGE = 0.1, 1e-6
 # Squared pixels per coordinate that rounding alone may leave.
 _ROUNDING = 1e-25
 
@@ -354,22 +386,53 @@ def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Min
     .. [1] Notes 2b.4, "Refinement by non-linear optimization".
     .. [2] Triggs et al., Bundle adjustment: a modern synthesis (2000), section 6.
     """
-    floor = _ROUNDING * problem.m.size
-    found = levenberg_marquardt(
-        start,
-        problem.linearise,
-        solve_arrow,
-        take_step,
-        follow=poses_follow,
-        tolerance=tolerance,
-        floor=floor,
-    )
-    if found.x.shared[:2].min() <= 0 or found.x.T[:, 2].min() <= 0:
+    if problem.model is RationalLens:
+        found = _minimise_quotient(problem, start, tolerance)
+    else:
+        found = _descend(problem, start, tolerance)
+    # (a fisheye may see a board beside it, and shows it elsewhere than one behind)
+    behind = problem.model is not FisheyeLens and found.x.T[:, 2].min() <= 0
+    if found.x.shared[:2].min() <= 0 or behind:
         raise ConvergenceError(
             "the refinement left the space of cameras (a focal length or the depth of a board is "
             "not positive); the corners are probably paired with the wrong points of the board"
         )
     return found
+
+
+def _descend(
+    problem: Problem,
+    start: State,
+    tolerance: float,
+    *,
+    steps: int = 100,
+    patience: int | None = None,
+) -> Minimum[State, Arrow]:
+    return levenberg_marquardt(
+        start,
+        problem.linearise,
+        solve_arrow,
+        take_step,
+        follow=poses_follow,
+        max_iterations=steps,
+        tolerance=tolerance,
+        floor=_ROUNDING * problem.m.size,
+        patience=patience,
+    )
+
+
+def _minimise_quotient(problem: Problem, start: State, tolerance: float) -> Minimum[State, Arrow]:
+    """Minimise where numerator and denominator of the lens nearly cancel each other.
+
+    Along the valley where they do, noise would carry the coefficients away for ever. A ridge,
+    which holds them near zero as if each had been measured with an uncertainty of 1/`_RIDGE`, keeps
+    them; from there the few steps are taken that lead to the exact answer, if the data have one.
+    """
+    held = _descend(
+        replace(problem, ridge=_RIDGE), start, max(tolerance, _WITH_RIDGE), steps=400, patience=20
+    )
+    free = _descend(problem, held.x, tolerance)
+    return free
 
 
 def take_step(x: State, step: tuple[Array, Array]) -> State:

@@ -11,7 +11,8 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.zhang import constraints
-from cvnotes.camera import Lens, xy_from_px
+from cvnotes.camera import Camera, FisheyeLens
+from cvnotes.camera.model import AnyLens
 
 _FAR = 100  # boards compared with each other; all pairs of thousands would take too long
 _ROUNDING = 1e-6  # px, more than rounding leaves
@@ -42,7 +43,7 @@ class Evidence:
     """
 
     A: Array
-    lens: Lens
+    lens: AnyLens
     size: tuple[int, int]
     poses: Array
     std: dict[str, float]
@@ -280,14 +281,14 @@ def _outside(e: Evidence) -> Iterator[str]:
             f"corners lie outside of the {w}×{h} picture: is size (width, height), and of these "
             "pictures?"
         )
-    reach = e.lens.max_radius
-    if np.isfinite(reach):
-        xy = xy_from_px(e.A, [[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]])
-        if np.linalg.norm(xy, axis=-1).max() > reach * e.lens.L(reach):
-            yield (
-                "the estimated lens folds over before it reaches the corners of the picture: it "
-                "holds only where corners were seen; bring the board into the corners too"
-            )
+    edges = [[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]]
+    # (the picture of a fisheye may well be a disc that ends before)
+    camera = Camera(e.A, lens=e.lens, size=e.size)
+    if not isinstance(e.lens, FisheyeLens) and np.isnan(camera.ideal(edges)).any():
+        yield (
+            "the estimated lens folds over before it reaches the corners of the picture: it "
+            "holds only where corners were seen; bring the board into the corners too"
+        )
 
 
 def _listed(indices: npt.NDArray[np.intp]) -> str:

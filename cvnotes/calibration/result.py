@@ -12,8 +12,8 @@ from cvnotes.base import Array, CalibrationWarning, CvnotesError, Minimum
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Arrow, Problem, State, covariance, pose_covariance
-from cvnotes.camera import Camera, Lens
-from cvnotes.camera.model import SENSOR
+from cvnotes.camera import Camera
+from cvnotes.camera.model import SENSOR, AnyLens
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ class Calibration:
     """
 
     A: Array
-    lens: Lens
+    lens: AnyLens
     size: tuple[int, int]
     poses: Array
     rms: float

@@ -5,7 +5,8 @@ focal lengths alone for an A. In reserve, when that leads nowhere, are
 
 1. other A: the full closed form, then four usual fields of view;
 2. corners straightened beforehand, for lenses that bend the boards too much for homographies;
-3. of many views first a few, which know the camera well enough to place all others.
+3. of many views first a few, which know the camera well enough to place all others;
+4. for wide lenses, corners straightened as equidistant lenses of several fields of view would.
 
 Steps see the board centred and scaled to unit size and the picture centred and scaled to [−1, 1].
 A student's step gets copies, and what it gives back is looked at before it is used.
@@ -13,7 +14,7 @@ A student's step gets copies, and what it gives back is looked at before it is u
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -40,7 +41,8 @@ from cvnotes.calibration.zhang import (
     radial_distortion,
     solve_b,
 )
-from cvnotes.camera import Camera, Lens, xy_from_px
+from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens, intrinsics, xy_from_px
+from cvnotes.camera.model import AnyLens
 from cvnotes.homography import dlt, geometric_error
 
 # Strong lenses bend the boards so much that homographies mislead. In reserve, the corners are
@@ -48,6 +50,11 @@ from cvnotes.homography import dlt, geometric_error
 _BENDS = (0.0, 0.2, -0.2)
 # Noise and strong lenses can leave no A; then fields of view from 118° to 28° are tried.
 _USUAL_FOCAL_LENGTHS = (0.6, 1.0, 2.0, 4.0)
+# Radians that the longer side of a wide picture may span, and the steepest ray for a homography.
+_FIELDS_OF_VIEW = (1.6, 2.2, 2.8, 1.1, 3.6)
+_STEEPEST = 1.4
+# The quotient that shows rays up to 75° where an equidistant lens does, to 0.001 of its radius.
+_LIKE_EQUIDISTANT = (0.693219, 0.077366, 0.000712, 1.02607, 0.221729, 0.007531)
 # Of many views, some say where the camera is; the others only sharpen it.
 _MANY_VIEWS, _VIEWS_FOR_START = 150, 16
 # RMS over the picture's longer side: a start that leaves more than this is not trusted before the
@@ -82,6 +89,9 @@ class Search:
                 yield start
             if few.minima:
                 yield resumed(self, few.problem.camera_of(few.best().x.shared))
+        if self.problem.model is FisheyeLens:
+            yield from (resumed(self, camera) for camera in _wide_cameras(self.problem))
+            return
         to_px = _px_from_normalised(self.problem.size)
         m = (self.problem.m - to_px[:2, 2]) / to_px[0, 0]
         for bend in _BENDS if self.problem.n_radial else _BENDS[:1]:
@@ -90,6 +100,9 @@ class Search:
                 yield Start(self, straight, to_px, guess)
                 if "intrinsics" in self.own:  # there is no other A
                     break
+                if self.problem.model is RationalLens:
+                    yield from (resumed(self, camera) for camera in _wide_cameras(self.problem))
+                    return
 
     def _is_good(self, minimum: Minimum[State, Arrow]) -> bool:
         allowed = (_SUSPICIOUS * max(self.problem.size)) ** 2 * self.problem.n_seen
@@ -103,7 +116,9 @@ class Search:
                 "no start leads to a camera: the corners are probably paired with the wrong points "
                 f"of the board, or the views do not determine the camera{yours}"
             )
-        return min(self.minima, key=lambda minimum: minimum.cost)
+        best = min(self.minima, key=lambda minimum: minimum.cost)
+        # A quotient's valley has no bottom that noise would let one find; all starts were tried.
+        return replace(best, converged=True) if self.problem.model is RationalLens else best
 
 
 @dataclass(eq=False)
@@ -128,7 +143,7 @@ class Start:
     m: Array
     to_px: Array
     guess: Callable[[Array, Array], Array]
-    lens: Lens | None = None
+    lens: AnyLens | None = None
     may_fail: bool = False
 
     @property
@@ -203,11 +218,12 @@ class Start:
             )
         return G
 
-    def distortion(self, step: Callable[..., Any], A: Array, G: Array) -> Lens:
+    def distortion(self, step: Callable[..., Any], A: Array, G: Array) -> AnyLens:
         """4. The lens, by linear least squares."""
         if self.lens is not None:
             return self.lens
-        problem, terms = self.problem, self.problem.n_radial
+        # (what is linear in them: of a quotient the first of its coefficients)
+        problem, terms = self.problem, min(self.problem.n_radial, 3 if self._is_polynomial else 2)
         k: Array = np.zeros(0)
         if self._is_own(step, radial_distortion, "distortion") and terms:
             copies = (x.copy() for x in (self.to_px @ A, G, problem.W, problem.m))
@@ -218,11 +234,15 @@ class Start:
             raise ShapeError(f"the k of your distortion: expected shape {(terms,)}, got {k.shape}")
         return Lens(k=tuple(k))
 
-    def state(self, A: Array, G: Array, lens: Lens) -> State:
+    @property
+    def _is_polynomial(self) -> bool:
+        return self.problem.model is Lens
+
+    def state(self, A: Array, G: Array, lens: AnyLens) -> State:
         """Give the state that the refinement starts from."""
         return self.problem.state(Camera(self.to_px @ A, lens=lens, size=self.problem.size), G)
 
-    def refine(self, A: Array, G: Array, lens: Lens) -> None:
+    def refine(self, A: Array, G: Array, lens: AnyLens) -> None:
         """5. Minimise from here, and keep what is found."""
         found = minimise(self.problem, self.state(A, G, lens), tolerance=self.search.tolerance)
         self.search.minima.append(found)
@@ -243,7 +263,21 @@ def resumed(search: Search, camera: Camera) -> Start:
     as_seen = xy_from_px(camera.A, search.problem.m)
     ideal = camera.lens.undistort(as_seen)
     m = np.where(np.isnan(ideal), as_seen, ideal)
+    if isinstance(camera.lens, FisheyeLens):  # rays near 90° and beyond: as far out as may be
+        r = np.linalg.norm(as_seen, axis=-1, keepdims=True)
+        m = np.where(r < _STEEPEST, m, np.tan(_STEEPEST) / np.maximum(r, 1e-9) * as_seen)
     return Start(search, m, camera.A, _closed_form, camera.lens, may_fail=True)
+
+
+def _wide_cameras(problem: Problem) -> Iterator[Camera]:
+    """Give equidistant cameras of several fields of view, for a quotient turned into such."""
+    w, h = problem.size
+    for view in _FIELDS_OF_VIEW:
+        f = max(w, h) / view
+        lens: AnyLens = FisheyeLens()
+        if problem.model is RationalLens:
+            lens = RationalLens(_LIKE_EQUIDISTANT)
+        yield Camera(intrinsics(f, f, (w - 1) / 2, (h - 1) / 2), lens=lens, size=problem.size)
 
 
 def _focal_lengths_alone(V: Array, b: Array) -> Array:  # noqa: ARG001

@@ -116,6 +116,7 @@ def _covariance_at(calibration: Calibration, poses: list[Array]) -> Array:
         skew="skew" in names,
         n_radial=sum(n.startswith("k") for n in names),
         tangential="p1" in names,
+        model=type(calibration.lens),
     )
     state = problem.state(calibration.camera, data.pose_in_scaled_units(np.array(poses)))
     return covariance(problem.linearise(state)[1])

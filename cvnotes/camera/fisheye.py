@@ -4,6 +4,7 @@ The plane z = 1 of the notes (2b.3) ends at 90° from the axis: a ray at 90° me
 fisheye sees such rays, and those behind. Its picture is laid out by the angle θ itself.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -55,9 +56,22 @@ class FisheyeLens:
         object.__setattr__(self, "k", (*given.tolist(), *[0.0] * (4 - given.size)))
 
     @property
-    def coefficients(self) -> dict[str, float]:
-        """The coefficients that a calibration estimates, by name."""
+    def parameters(self) -> dict[str, float]:
+        """The coefficients by name, k1 … k4."""
         return {f"k{i}": k for i, k in enumerate(self.k, 1)}
+
+    def with_parameters(self, values: Mapping[str, float]) -> "FisheyeLens":
+        """Give the same lens with other values of the coefficients that are named.
+
+        Examples
+        --------
+        >>> FisheyeLens().with_parameters({"k1": 0.1})
+        FisheyeLens(k=(0.1, 0.0, 0.0, 0.0))
+        """
+        unknown = values.keys() - self.parameters.keys()
+        if unknown:
+            raise CvnotesError(f"{min(unknown)!r} is no coefficient of a fisheye: k1 … k4 are")
+        return FisheyeLens(tuple((self.parameters | dict(values)).values()))
 
     @property
     def p(self) -> tuple[float, float]:
@@ -192,28 +206,38 @@ class FisheyeLens:
         -----
         With ρ = √(X² + Y²) and θ = atan2(ρ, Z): ∂θ/∂(X, Y) = Z (X, Y)/(ρ ‖M‖²), ∂θ/∂Z = −ρ/‖M‖².
         """
-        X, Y, Z = M
-        rho2 = X * X + Y * Y
-        rho = np.sqrt(rho2)
-        norm2 = rho2 + Z * Z
-        theta = np.arctan2(rho, Z)
-        shown, slope = self._shown(theta)
-        on_axis = rho2 <= 1e-24 * norm2
-        safe = np.where(on_axis, 1.0, rho)
-        # θ'/ρ, whose limit on the axis is 1/Z; (slope Z/‖M‖² − θ'/ρ)/ρ² there is left out
-        ratio = np.where(on_axis, 1 / np.where(Z == 0, 1, Z), shown / safe)
-        bend = np.where(on_axis, 0.0, (slope * Z / norm2 - ratio) / safe**2)
-        seen = ratio * M[:2]
-        D = np.empty((2, 3, *X.shape))
-        D[0, 0], D[1, 1] = ratio + bend * X * X, ratio + bend * Y * Y
-        D[0, 1] = D[1, 0] = bend * X * Y
-        D[:, 2] = -slope / norm2 * M[:2]
-        unit = np.where(on_axis, 0.0, M[:2] / safe)
-        C = np.stack([theta ** (2 * i + 1) * unit for i in range(1, 5)])
-        return seen, D, C
+        return through_angle(self.k, M)
 
     def _shown(self, theta: Array) -> tuple[Array, Array]:
         """θ' and its slope."""
-        t = theta * theta
-        slopes = [(2 * i + 1) * k for i, k in enumerate(self.k, 1)]
-        return theta * horner((1.0, *self.k), t), horner((1.0, *slopes), t)
+        return bent_angle(self.k, theta)
+
+
+def bent_angle(k: Sequence[float], theta: Array) -> tuple[Array, Array]:
+    """Evaluate θ' and its slope; unguarded."""
+    t = theta * theta
+    slopes = [(2 * i + 1) * k_i for i, k_i in enumerate(k, 1)]
+    return theta * horner((1.0, *k), t), horner((1.0, *slopes), t)
+
+
+def through_angle(k: Sequence[float], M: Array) -> tuple[Array, Array, Array]:
+    """Show M (3, ...) by k1 … k4, with derivatives; see `FisheyeLens.derivatives`."""
+    X, Y, Z = M
+    rho2 = X * X + Y * Y
+    rho = np.sqrt(rho2)
+    norm2 = rho2 + Z * Z
+    theta = np.arctan2(rho, Z)
+    shown, slope = bent_angle(k, theta)
+    on_axis = rho2 <= 1e-24 * norm2
+    safe = np.where(on_axis, 1.0, rho)
+    # θ'/ρ, whose limit on the axis is 1/Z; (slope Z/‖M‖² − θ'/ρ)/ρ² there is left out
+    ratio = np.where(on_axis, 1 / np.where(Z == 0, 1, Z), shown / safe)
+    bend = np.where(on_axis, 0.0, (slope * Z / norm2 - ratio) / safe**2)
+    seen = ratio * M[:2]
+    D = np.empty((2, 3, *X.shape))
+    D[0, 0], D[1, 1] = ratio + bend * X * X, ratio + bend * Y * Y
+    D[0, 1] = D[1, 0] = bend * X * Y
+    D[:, 2] = -slope / norm2 * M[:2]
+    unit = np.where(on_axis, 0.0, M[:2] / safe)
+    C = np.stack([theta ** (2 * i + 1) * unit for i in range(1, 5)])
+    return seen, D, C

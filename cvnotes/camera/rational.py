@@ -4,7 +4,8 @@ The polynomial of the notes (2b.3) bends away from a wide lens: far from the cen
 power wins. A quotient can level off, as lenses do. It is OpenCV's model with 8 to 14 coefficients.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -15,6 +16,7 @@ from numpy.polynomial import Polynomial
 from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
 from cvnotes.camera.lens_fold import horner
 
+NAMES = ("k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2")
 _FARTHEST = 1e12  # r², a ray almost at 90°
 _STEPS = 50  # of Newton's method; points near the fold need a dozen
 _CLOSE = 1e-13  # how near to the observed point the answer must be shown
@@ -71,11 +73,24 @@ class RationalLens:
             raise CvnotesError(f"tilt = {list(self.tilt)}: radians below 1.5 (degrees?)")
 
     @property
-    def coefficients(self) -> dict[str, float]:
-        """The coefficients that a calibration estimates, by name."""
-        return {f"k{i}": k for i, k in enumerate(self.k, 1)} | dict(
-            zip(("p1", "p2"), self.p, strict=True)
-        )
+    def parameters(self) -> dict[str, float]:
+        """The coefficients that a calibration estimates, by name: k1 … k6, p1 and p2."""
+        return dict(zip(NAMES, (*self.k, *self.p), strict=True))
+
+    def with_parameters(self, values: Mapping[str, float]) -> "RationalLens":
+        """Give the same lens with other values of the coefficients that are named.
+
+        Examples
+        --------
+        >>> RationalLens().with_parameters({"k4": 0.5}).k
+        (0.0, 0.0, 0.0, 0.5, 0.0, 0.0)
+        """
+        value = self.parameters | dict(values)
+        unknown = value.keys() - set(NAMES)
+        if unknown:
+            raise CvnotesError(f"{min(unknown)!r} is no coefficient of a rational lens")
+        k1_to_k6, p = [value[n] for n in NAMES[:6]], (value["p1"], value["p2"])
+        return replace(self, k=tuple(k1_to_k6), p=p)
 
     @property
     def centre(self) -> tuple[float, float]:
@@ -235,32 +250,18 @@ class RationalLens:
         by_coefficients : ndarray, shape (8, 2, ...)
             By k1 … k6, p1 and p2.
         """
-        xy = np.stack([x, y])
-        t = x * x + y * y
-        above, below = horner((1.0, *self.k[:3]), t), horner((1.0, *self.k[3:]), t)
-        L, by_t = self._quotient(t)
-        p1, p2 = self.p
-        s1, s2, s3, s4 = self.s
-        prism = np.stack([s1 * t + s2 * t * t, s3 * t + s4 * t * t])
-        prism_by_t = np.stack([s1 + 2 * s2 * t, s3 + 2 * s4 * t])
-        by_p1, by_p2 = np.stack([2 * x * y, t + 2 * y * y]), np.stack([t + 2 * x * x, 2 * x * y])
-        seen = L * xy + p1 * by_p1 + p2 * by_p2 + prism
-        # dt/dx = 2 x, dt/dy = 2 y
-        D = (by_t * xy + prism_by_t)[:, None] * (2 * xy)[None]
-        D[0, 0] += L + 2 * p1 * y + 6 * p2 * x
-        D[0, 1] += 2 * p1 * x + 2 * p2 * y
-        D[1, 0] += 2 * p1 * x + 2 * p2 * y
-        D[1, 1] += L + 2 * p2 * x + 6 * p1 * y
-        powers = [t, t * t, t**3]
-        by_k = [power / below * xy for power in powers]
-        by_k += [-above * power / below**2 * xy for power in powers]
-        C = np.stack([*by_k, by_p1, by_p2])
+        seen, D, C = through_quotient(self.k, self.p, x, y)
+        if any(self.s):
+            t, (s1, s2, s3, s4) = x * x + y * y, self.s
+            seen += np.stack([s1 * t + s2 * t * t, s3 * t + s4 * t * t])
+            by_t = np.stack([s1 + 2 * s2 * t, s3 + 2 * s4 * t])
+            D += by_t[:, None] * np.stack([2 * x, 2 * y])
         if any(self.tilt):
             H = self._sensor
             w = H[2, 0] * seen[0] + H[2, 1] * seen[1] + H[2, 2]
             shown = np.stack([H[i, 0] * seen[0] + H[i, 1] * seen[1] + H[i, 2] for i in (0, 1)]) / w
-            T = (H[:2, :2].reshape(2, 2, *[1] * t.ndim) - shown[:, None] * H[2, :2].reshape(
-                1, 2, *[1] * t.ndim)) / w  # fmt: skip
+            T = (H[:2, :2].reshape(2, 2, *[1] * x.ndim) - shown[:, None] * H[2, :2].reshape(
+                1, 2, *[1] * x.ndim)) / w  # fmt: skip
             D, C = np.einsum("ij...,jk...->ik...", T, D), np.einsum("ij...,nj...->ni...", T, C)
             seen = shown
         return seen, D, C
@@ -278,10 +279,7 @@ class RationalLens:
 
     def _quotient(self, t: Array) -> tuple[Array, Array]:
         """L and its derivative by t = r²."""
-        a, b = (1.0, *self.k[:3]), (1.0, *self.k[3:])
-        above, below = horner(a, t), horner(b, t)
-        slopes = [horner([i * c for i, c in enumerate(ks)][1:], t) for ks in (a, b)]
-        return above / below, (slopes[0] * below - above * slopes[1]) / below**2
+        return quotient(self.k, t)[:2]
 
     def _start(self, target: Array) -> Array:
         """Interpolate the radius in a table of r L(r); the direction is that of the target."""
@@ -312,3 +310,29 @@ def sign_changes(f: Polynomial, beyond: float) -> list[float]:
     between = [0.0, *[(a + b) / 2 for a, b in pairwise(real)], beyond]
     signs = [float(np.sign(f(t))) for t in between]
     return [t for t, (before, after) in zip(real, pairwise(signs), strict=False) if before != after]
+
+
+def quotient(k: Sequence[float], t: Array) -> tuple[Array, Array, Array]:
+    """Evaluate L(r), its derivative by t = r², and what L is divided by; unguarded."""
+    a, b = (1.0, *k[:3]), (1.0, *k[3:])
+    above, below = horner(a, t), horner(b, t)
+    slopes = [horner([i * c for i, c in enumerate(ks)][1:], t) for ks in (a, b)]
+    return above / below, (slopes[0] * below - above * slopes[1]) / below**2, below
+
+
+def through_quotient(
+    k: Sequence[float], p: Sequence[float], x: Array, y: Array
+) -> tuple[Array, Array, Array]:
+    """Distort ideal points by k1 … k6 and p, with derivatives; see `RationalLens.derivatives`."""
+    xy, t = np.stack([x, y]), x * x + y * y
+    L, by_t, below = quotient(k, t)
+    p1, p2 = p
+    by_p1, by_p2 = np.stack([2 * x * y, t + 2 * y * y]), np.stack([t + 2 * x * x, 2 * x * y])
+    seen = L * xy + p1 * by_p1 + p2 * by_p2
+    D = (2 * by_t * xy)[:, None] * xy  # dt/d(x, y) = 2 (x, y)
+    D[0, 0] += L + 2 * p1 * y + 6 * p2 * x
+    D[0, 1] += 2 * (p1 * x + p2 * y)
+    D[1, 0] += 2 * (p1 * x + p2 * y)
+    D[1, 1] += L + 2 * p2 * x + 6 * p1 * y
+    powers = np.stack([t, t * t, t * t * t])[:, None] / below * xy
+    return seen, D, np.concatenate([powers, -L * powers, [by_p1, by_p2]])

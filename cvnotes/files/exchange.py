@@ -189,8 +189,8 @@ def lens_from_opencv(coefficients: npt.ArrayLike, *, fisheye: bool = False) -> A
         return FisheyeLens(tuple(d))
     if d.size not in (4, 5, 8, 12, 14):
         raise CvnotesError(
-            "coefficients: expected 4 or 5 coefficients (k1, k2, p1, p2, k3), or 8, 12 or 14 of the "
-            f"rational model, got {d.size}"
+            "coefficients: expected 4 or 5 coefficients (k1, k2, p1, p2, k3), or the 8, 12 or 14 "
+            f"of the rational model, got {d.size}"
         )
     if d[5:].any():
         d = np.concatenate([d, np.zeros(14 - d.size)])
