@@ -5,7 +5,17 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError, ShapeError
-from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens, intrinsics, look_at
+from cvnotes.calibration import calibrate
+from cvnotes.camera import (
+    Camera,
+    FisheyeLens,
+    Lens,
+    RationalLens,
+    intrinsics,
+    look_at,
+    pose,
+    rotation_from_vector,
+)
 from cvnotes.camera.model import project_with_derivative
 from cvnotes.pictures import render
 from cvnotes.targets import Chessboard, refine_edges
@@ -165,3 +175,86 @@ def test_bad_coefficients_are_refused(make):
         make([np.nan])
     with pytest.raises(CvnotesError, match="no lens has such"):
         make([1e60])
+
+
+# --- calibration ------------------------------------------------------------------------------
+
+
+def seen_by(camera, n, seed=0):
+    """Boards all over the picture of a wide camera, in front of it and beside it."""
+    rng, board = np.random.default_rng(seed), Chessboard((9, 6), 25.0)
+    W, size, views = board.points, np.array(camera.size), []
+    while len(views) < n:
+        d = camera.ray(rng.uniform(0.1 * size, 0.9 * size))
+        x = np.cross([0, 1, 0], d) / np.linalg.norm(np.cross([0, 1, 0], d))
+        R = np.stack([x, np.cross(d, x), d], axis=1) @ rotation_from_vector(
+            rng.uniform(-0.6, 0.6, 3)
+        )
+        T = d * rng.uniform(120, 400) - R @ W.mean(0)
+        m = camera.moved(pose(R, T)).project(W)
+        if np.isfinite(m).all() and (m > 0).all() and (m < size).all():
+            views.append(m)
+    return W, np.array(views)
+
+
+TRUE = [
+    ("rational", RationalLens((0.8, 0.1, 0.01, 1.1, 0.3, 0.02), (0.0005, -0.0003)), 300),
+    ("fisheye", FisheyeLens((0.02, -0.01, 0.003, -0.0005)), 180),
+    ("fisheye", FisheyeLens((-0.05, 0.01)), 120),
+]
+
+
+@pytest.mark.parametrize(("name", "lens", "f"), TRUE)
+def test_exact_corners_give_the_exact_wide_camera(name, lens, f):
+    camera = Camera(intrinsics(f, 1.005 * f, 325, 238), lens=lens)
+    W, m = seen_by(camera, 15)
+    found = calibrate(W, m, camera.size, lens=name)
+    assert np.allclose(found.A, camera.A, rtol=0, atol=1e-6)
+    assert np.allclose(found.lens.k, lens.k, rtol=0, atol=1e-6)
+    assert found.names[-1] == ("p2" if name == "rational" else "k4")
+
+
+@pytest.mark.parametrize(("name", "lens", "f"), TRUE[:2])
+def test_noisy_corners_give_the_wide_camera_within_its_error_bars(name, lens, f):
+    camera = Camera(intrinsics(f, 1.005 * f, 325, 238), lens=lens)
+    W, m = seen_by(camera, 15)
+    found = calibrate(
+        W, m + np.random.default_rng(1).normal(0, 0.1, m.shape), camera.size, lens=name
+    )
+    assert found.reliable
+    for key in ("alpha_u", "alpha_v", "u0", "v0"):
+        error = abs(found.parameters[key] - camera.parameters[key])
+        assert error < 4 * found.std[key] + 0.05, key
+
+
+def test_opencv_finds_nothing_better_beside_the_fisheye_minimum():
+    camera = Camera(intrinsics(220, 221, 322, 241), lens=FisheyeLens((0.02, -0.01, 0.003, 0.0)))
+    W, m = seen_by(camera, 20)
+    m = m[[camera.ray(v)[:, 2].min() > 0.3 for v in m]]  # OpenCV goes by the plane z = 1
+    m = (m + np.random.default_rng(2).normal(0, 0.2, m.shape)).astype(np.float32).astype(float)
+    found = calibrate(W, m, camera.size, lens="fisheye")
+    # (4 and 5 keep the flags in different places)
+    where = cv2.fisheye if hasattr(cv2.fisheye, "CALIB_FIX_SKEW") else cv2
+    flags = where.CALIB_FIX_SKEW | where.CALIB_USE_INTRINSIC_GUESS
+    flags |= where.CALIB_RECOMPUTE_EXTRINSIC
+    rms, K, *_ = cv2.fisheye.calibrate(
+        [W[None]] * len(m), [v[None] for v in m], camera.size, found.A.copy(),
+        np.array(found.lens.k), flags=flags,
+        criteria=(cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 300, 1e-14),
+    )  # fmt: skip
+    assert found.rms <= rms + 1e-6
+    assert np.allclose(found.A, K, rtol=0, atol=0.05)
+
+
+def test_opencv_comes_to_no_better_rational_minimum():
+    name, lens, f = TRUE[0]
+    camera = Camera(intrinsics(f, f, 322, 241), lens=lens)
+    W, m = seen_by(camera, 12)
+    m = (m + np.random.default_rng(3).normal(0, 0.2, m.shape)).astype(np.float32)
+    boards = [W.astype(np.float32)] * len(m)
+    flags = cv2.CALIB_RATIONAL_MODEL | cv2.CALIB_USE_INTRINSIC_GUESS
+    rms, *_ = cv2.calibrateCamera(
+        boards, list(m), camera.size, camera.A.copy(), np.zeros(8), flags=flags
+    )
+    found = calibrate(W, m.astype(float), camera.size, lens=name)
+    assert found.rms < rms * (1 + 1e-3)
