@@ -4,7 +4,7 @@ import csv
 import io
 import re
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pytest
 from test_exercises_second import source_of
@@ -389,3 +389,15 @@ def test_no_file_of_anybody_else_is_replaced(name, tmp_path, capsys):
     assert command(tmp_path / "in", "--out", tmp_path / "marks.csv", *options) == 1
     assert "was not made by cvnotes grade" in capsys.readouterr().err
     assert (tmp_path / name).read_text() == "a list of my own"
+
+
+def test_two_copies_are_remarked_without_an_assignment_too():
+    marks = [
+        Mark("ada", f"06_{x}.ipynb", {"dlt": Verdict("right")}, ("dlt",), content=x) for x in "ab"
+    ]
+    said = "two copies: 06_a.ipynb and 06_b.ipynb, the better answers count"
+    assert remarked(marks) == [[], [said]]
+    [ada] = totals(marks)
+    assert (ada.points, ada.of) == (1, 1)
+    assert sum(said in text for text in ada.remarks) == 1
+    assert remarked([replace(mark, student="") for mark in marks]) == [[], []]

@@ -127,7 +127,7 @@ def test_a_killed_grader_leaves_its_rows_and_no_process(tmp_path):
     wait_for(lambda: inside(scratch))
     process.kill()
     process.communicate()
-    wait_for(lambda: not inside(scratch))
+    wait_for(lambda: not inside(scratch), 5)
     assert [row["student"] for row in rows(out)] == ["a"]
     [line] = (tmp_path / "marks.rows.jsonl").read_text().splitlines()
     assert json.loads(line)["mark"]["reports"]["lift"]["verdict"] == "right"

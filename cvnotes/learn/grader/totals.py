@@ -65,6 +65,7 @@ def remarked(marks: Sequence[Mark], assignment: Assignment | None = None) -> lis
         What was asked, if not the notebook's own chapter.
     """
     equal = _equal(marks)
+    theirs: dict[str, list[Mark]] = defaultdict(list)
     found = []
     for mark in marks:
         remarks = [mark.remark] * bool(mark.remark)
@@ -75,6 +76,9 @@ def remarked(marks: Sequence[Mark], assignment: Assignment | None = None) -> lis
         remarks += [f"{name}: {v.note}" for name, v in mark.reports.items() if v.note]
         remarks += [f"id {one} is not the folder's" for one in _foreign(mark, assignment)]
         remarks += equal.get(mark.name, [])
+        if mark.student and not assignment:  # there the sum over all notebooks says so
+            theirs[_who(mark)].append(mark)
+            remarks += _copies(theirs[_who(mark)], of=mark)
         found.append(remarks)
     return found
 
@@ -129,21 +133,21 @@ def _total(
                 best[name] = verdict
     remarks = ["not on the list of students"] * (not known)
     remarks += [NOTHING] * (not pairs)
-    remarks += list(_copies(marks))
+    remarks += [text for mark in marks for text in _copies(marks, of=mark)] * bool(assignment)
     several = len(pairs) > 1
     for mark, said in pairs:
         remarks += [f"{mark.notebook}: {text}" if several else text for text in said]
     return replace(total, verdicts=best, remarks=tuple(remarks))
 
 
-def _copies(marks: Sequence[Mark]) -> Iterator[str]:
-    """Yield which notebooks of one student answer the same exercises."""
-    for i, mark in enumerate(marks):
-        for other in marks[:i]:
-            if mark.content and mark.content == other.content:
-                yield f"two copies: {other.notebook} and {mark.notebook}, the same file"
-            elif {*mark.reports} & {*other.reports}:
-                yield f"two copies: {other.notebook} and {mark.notebook}, the better answers count"
+def _copies(marks: Sequence[Mark], of: Mark) -> Iterator[str]:
+    """Yield which notebooks of one student, before this one, answer the same exercises."""
+    for other in marks[: marks.index(of)]:
+        both = f"two copies: {other.notebook} and {of.notebook}"
+        if of.content and of.content == other.content:
+            yield f"{both}, the same file"
+        elif {*of.reports} & {*other.reports}:
+            yield f"{both}, the better answers count"
 
 
 def _foreign(mark: Mark, assignment: Assignment | None) -> Iterator[str]:
