@@ -16,6 +16,7 @@ from cvnotes.commands.console import complain, say
 from cvnotes.commands.ownership import maker
 from cvnotes.files import write_whole
 from cvnotes.files.writing import check_folder, printable
+from cvnotes.learn.exercises import add_exercises
 from cvnotes.learn.grader.assignment import Assignment, read_assignment
 from cvnotes.learn.grader.feedback import class_page, class_picture, file_name, student_page
 from cvnotes.learn.grader.grading import grade_folder
@@ -53,6 +54,14 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "--assignment",
         metavar="homework.toml",
         help="which exercises, for how many points, by whom",
+    )
+    parser.add_argument(
+        "--with",
+        dest="added",
+        action="append",
+        default=[],
+        metavar="my_exercises.py",
+        help="a file with exercises of your own",
     )
     parser.add_argument(
         "--feedback", metavar="FOLDER", help="folder to write a page for each student to"
@@ -157,6 +166,8 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _grade(args: argparse.Namespace) -> int:
+    for path in args.added:
+        add_exercises(path)
     assignment = read_assignment(Path(args.assignment)) if args.assignment else None
     outputs = Outputs(
         Path(args.out),
@@ -176,7 +187,7 @@ def _grade(args: argparse.Namespace) -> int:
             jobs=int(args.jobs) if args.jobs else None,
             executor=stack.enter_context(_cluster(args.cluster)) if args.cluster else None,
             known=known,
-            ours=[*outputs.all, *([Path(args.assignment)] if args.assignment else [])],
+            ours=[*outputs.all, *map(Path, [*args.added, *filter(None, [args.assignment])])],
         )
         stack.enter_context(_one_interruption())
         graded: list[Mark] = []

@@ -1,7 +1,7 @@
 """What makes it a course: exercises that answer, estimates held against the truth."""
 
 from cvnotes.learn.cases.pictures import board_picture, rails_picture, stereo_pictures
-from cvnotes.learn.exercises import EXERCISES, check, hint, progress, solution
+from cvnotes.learn.exercises import EXERCISES, add_exercises, check, hint, progress, solution
 from cvnotes.learn.personal import personal_camera
 from cvnotes.learn.truth.verification import NotVerified, verify
 
@@ -11,6 +11,7 @@ __all__ = [
     "solution",
     "progress",
     "EXERCISES",
+    "add_exercises",
     "verify",
     "NotVerified",
     "personal_camera",

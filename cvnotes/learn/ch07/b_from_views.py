@@ -11,7 +11,7 @@ from cvnotes.learn.checker.equality import Same, up_to_scale, up_to_signs
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
 # The picture scaled to about [−1, 1], in which the entries of b are of one size.
-_UNIT = np.array([[1 / 320, 0, -1], [0, 1 / 320, -0.75], [0, 0, 1]])
+_UNIT = np.array([[1 / 320, 0, -0.85], [0, 1 / 320, -0.6], [0, 0, 1]])
 
 
 def b_from_views(H: Array) -> Array:

@@ -40,6 +40,8 @@ class Report:
         The beginning of what the function printed.
     progress : str
         How far the student is in the chapter.
+    call : str
+        The call that gives this report again: what is too long to be shown is in it.
     """
 
     exercise: str
@@ -54,6 +56,7 @@ class Report:
     remarks: tuple[str, ...] = ()
     printed: str = ""
     progress: str = ""
+    call: str = "report"
 
     @property
     def passed(self) -> bool:
@@ -92,13 +95,13 @@ class Report:
     def example(self) -> list[str]:
         """Give the counterexample as statements that can be copied."""
         lines = [
-            f"{name} = {as_code(value, f'report.counterexample[{name!r}]')}"
+            f"{name} = {as_code(value, f'{self.call}.counterexample[{name!r}]')}"
             for name, value in self.counterexample.items()
         ]
         if self.yours is not None:
-            lines.append(f"yours = {as_code(readable(self.yours), 'report.yours')}")
+            lines.append(f"yours = {as_code(readable(self.yours), f'{self.call}.yours')}")
         if self.wanted is not None:
-            lines.append(f"wanted = {as_code(readable(self.wanted), 'report.wanted')}")
+            lines.append(f"wanted = {as_code(readable(self.wanted), f'{self.call}.wanted')}")
         return lines
 
     def printed_lines(self) -> list[str]:

@@ -47,6 +47,8 @@ class Task:
         The folder it may write to, and what it is not to find.
     cell_seconds, megabytes : float and int
         Time for one cell, and memory.
+    added : tuple of str
+        Files with exercises that the teacher has added.
     """
 
     cells: list[str]
@@ -55,6 +57,7 @@ class Task:
     hidden: tuple[str, ...]
     cell_seconds: float
     megabytes: int
+    added: tuple[str, ...] = ()
 
 
 class CellTimeout(Exception):
@@ -71,6 +74,8 @@ def main() -> int:
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1):
         os.dup2(nowhere, stream)
+    for path in task.added:
+        exercises.add_exercises(path)
     is_sealed = sealed(Path(task.scratch), [Path(path) for path in task.hidden])
     _limit(task.megabytes)
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-from cvnotes.learn.exercises import EXERCISES
+from cvnotes.learn.exercises import EXERCISES, added_files
 from cvnotes.learn.grader.handin import Arguments, Task
 from cvnotes.learn.grader.tracking import MARKER, alive, end
 from cvnotes.pictures.course import DATA
@@ -110,7 +110,8 @@ def run_notebook(
         cell_seconds = max(5.0, limits.seconds / 4)
         names = tuple(str(path.resolve()) for path in hidden)
         inputs = _inputs(seed)
-        task = Task(cells, inputs, str(scratch), names, cell_seconds, limits.megabytes)
+        added = tuple(map(str, added_files()))
+        task = Task(cells, inputs, str(scratch), names, cell_seconds, limits.megabytes, added)
         return _run(task, scratch, limits.seconds, batch)
 
 
