@@ -1,5 +1,8 @@
 """How Sphinx makes the site; `tools/build_site.py` puts its pages together and calls it."""
 
+import re
+from typing import Any
+
 import cvnotes
 
 project = "cvnotes"
@@ -34,5 +37,17 @@ html_theme_options = {"navbar_persistent": [], "home_page_in_toc": True}
 
 numpydoc_show_class_members = False
 suppress_warnings = ["ref.python"]  # a word that names several things is then just a word
-html_static_path = ["site.css"]
+html_static_path = ["site.css", "site.js"]
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
+
+
+def escape_initials(*event: Any) -> None:
+    """Keep a reference that begins with an author's initial ("Z. Zhang") from being a list."""
+    lines = event[-1]
+    lines[:] = [re.sub(r"^(\s*\.\. \[\d+\] [A-Z])\. ", r"\1\\. ", line) for line in lines]
+
+
+def setup(app: Any) -> None:
+    """Have Sphinx call us before numpydoc."""
+    app.connect("autodoc-process-docstring", escape_initials, priority=100)

@@ -143,3 +143,56 @@ def test_formulas_are_set_without_a_network(site):
         browser.close()
     assert re.match("7 · Zhang’s calibration", title)
     assert all(url.startswith(("file:", "data:")) for url in asked), asked
+
+
+@pytest.fixture(scope="module")
+def telephone():
+    """Give a page 400 px wide."""
+    if CHROMIUM is None:
+        pytest.skip("no Chromium on this machine")
+    sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser.new_page(viewport={"width": 400, "height": 900})
+        browser.close()
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["index", "docs/teaching", "docs/notation", "reference/homography", "reference/calibration"],
+)
+def test_on_a_telephone_no_page_is_wider_than_the_screen(site, telephone, name):
+    telephone.goto((site / f"{name}.html").as_uri())
+    assert telephone.evaluate("document.documentElement.scrollWidth") <= 400
+
+
+def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_beginning(
+    site, telephone
+):
+    telephone.goto((site / "notebooks" / "07_zhang_calibration.html").as_uri())
+    telephone.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
+    long = telephone.evaluate(
+        """() => [...document.querySelectorAll("div.math")]
+            .filter((box) => box.scrollWidth > box.clientWidth + 1)
+            .map((box) => box.querySelector("mjx-math").getBoundingClientRect().left
+                          - box.getBoundingClientRect().left)"""
+    )
+    assert len(long) >= 2
+    assert min(long) > -1  # px: what is left of a box cannot be scrolled to
+    telephone.goto((site / "notebooks" / "08_image_warping.html").as_uri())
+    telephone.wait_for_selector(".panels canvas", timeout=30_000)
+    stacks = telephone.evaluate(
+        """() => [...document.querySelectorAll(".panels")].map((stack) =>
+            [getComputedStyle(stack.nextElementSibling).display,
+             ...[...stack.children].map((c) => Math.round(c.getBoundingClientRect().width))])"""
+    )
+    assert len(stacks) >= 3
+    assert all(stack == ["none", *[stack[1]] * 2] and stack[1] > 300 for stack in stacks)
+
+
+def test_references_are_not_read_as_lists(site):
+    for path in (site / "reference").glob("*.html"):
+        text = path.read_text()
+        assert not re.search(r'<span class="label">.*?</span>\s*<ol', text, re.S), path.name
+        assert "upperalpha" not in text, path.name
+    assert "Z. Zhang" in (site / "reference" / "calibration.html").read_text()

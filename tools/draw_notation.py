@@ -32,19 +32,19 @@ def arrow(ax: Any, start: Any, end: Any, text: str, colour: str, shift: Any = (4
 
 def frames() -> Any:
     """The CRF, and a world frame that G carries into it."""
-    ax = canvas(4.6, 2.3, (-0.6, 8.6), (-2.1, 2.5))
-    c, w = np.array([0.6, 0.3]), np.array([6.0, 0.9])
-    ax.plot([c[0], 1.7, 1.7, c[0]], [c[1], -0.4, 1.0, c[1]], color=CAMERA, lw=1)
-    arrow(ax, c, c + [1.7, 0], "z forward", CAMERA, (4, -12))
-    arrow(ax, c, c + [-0.55, 0.55], "x right", CAMERA, (-6, -14))
-    arrow(ax, c, c + [0, 1.3], "y down", CAMERA, (-6, -12))
+    ax = canvas(4.6, 2.5, (-1.2, 8.0), (-2.1, 2.9))
+    c, w = np.array([0.6, 0.9]), np.array([6.0, -0.4])
+    ax.plot([c[0], 1.7, 1.7, c[0]], [c[1], 0.2, 1.6, c[1]], color=CAMERA, lw=1)
+    arrow(ax, c, c + [1.7, 0], "z forward", CAMERA, (4, -4))
+    arrow(ax, c, c + [-0.55, 0.55], "x right", CAMERA, (-44, -10))
+    arrow(ax, c, c + [0, 1.2], "y down", CAMERA, (-18, -14))
     arrow(ax, w, w + [1.4, -0.3], "X", WORLD)
     arrow(ax, w, w + [0.35, 1.2], "Y", WORLD)
     arrow(ax, w, w + [0.8, 0.8], "Z", WORLD)
     arrow(ax, c + [0.1, -0.1], w + [-0.1, -0.15], "", ESTIMATED)
-    ax.text(4.2, -0.35, "T: the WRF's origin,\nseen from the CRF", color=ESTIMATED, ha="center")
-    ax.text(0.5, -1.6, "CRF", color=CAMERA)
-    ax.text(6.4, -1.6, "WRF", color=WORLD)
+    ax.text(3.0, -1.15, "T: the WRF's origin,\nseen from the CRF", color=ESTIMATED, ha="center")
+    ax.text(0.2, -0.1, "CRF", color=CAMERA, ha="center")
+    ax.text(6.2, -1.5, "WRF", color=WORLD)
     return ax
 
 
@@ -55,8 +55,9 @@ def pixels() -> Any:
         for v in range(3):
             ax.add_patch(Rectangle((u - 0.5, v - 0.5), 1, 1, fc="white", ec=MUTED))
             ax.plot(u, v, ".", color=LENS)
-    for (u, v), place in {(0, 0): (4, 6), (3, 2): (4, 6)}.items():
-        ax.annotate(f"({u}, {v})", (u, v), place, textcoords="offset points", color=LENS, size=9)
+    for (u, v), place in {(0, 0): (0, 6), (3, 2): (0, 6)}.items():
+        ax.annotate(f"({u}, {v})", (u, v), place, textcoords="offset points", color=LENS, size=8,
+                    ha="center")  # fmt: skip
     ax.text(-0.5, -0.7, "(−½, −½)", ha="center", color=IDEAL, size=10)
     ax.text(3.5, 2.95, "(3½, 2½)", ha="center", color=IDEAL, size=10)
     arrow(ax, (-0.9, -1.0), (0.9, -1.0), "u", IDEAL, (4, -4))
@@ -68,7 +69,7 @@ def pixels() -> Any:
 def planes() -> Any:
     """Ideal image point, lens, pixel."""
     ax = canvas(4.6, 2.1, (-1.25, 6.2), (-1.3, 1.75))
-    lens, ideal = Lens(k=(-0.25,)), np.array([0.85, 0.55])
+    lens, ideal = Lens(k=(-0.25,)), np.array([0.78, 0.5])
     seen = lens.distort(ideal)
     for left, name in ((0.0, "plane z = 1"), (4.2, "picture")):
         ax.add_patch(Rectangle((left - 1.1, -0.85), 2.2, 1.7, fc="none", ec=MUTED))
@@ -77,8 +78,8 @@ def planes() -> Any:
     ax.plot([0, ideal[0]], [0, ideal[1]], ":", color=MUTED)
     ax.plot(*ideal, "+", color=IDEAL, ms=10, mew=2)
     ax.plot(*seen, "o", color=LENS)
-    ax.annotate("xy", ideal, (2, -13), textcoords="offset points", color=IDEAL)
-    ax.annotate("xy_lens", seen, (-52, -4), textcoords="offset points", color=LENS)
+    ax.annotate("xy", ideal, (-3, 7), textcoords="offset points", color=IDEAL)
+    ax.annotate("xy_lens", seen, (-52, -8), textcoords="offset points", color=LENS)
     arrow(ax, (1.5, 0.0), (2.7, 0.0), "", IDEAL)
     ax.text(2.1, -0.15, "A", ha="center")
     ax.plot(4.2 + seen[0], seen[1], "o", color=LENS)

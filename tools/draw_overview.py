@@ -13,6 +13,8 @@ from cvnotes.pictures import course
 from cvnotes.show import camera_shapes, draw_corners, draw_error_bars, draw_scene, target_shapes
 from cvnotes.show.picture import figure_of
 
+HEIGHT = 2.5  # inches of 100 px: the README shows it 850 px wide
+TEXT = 9  # points, to be read at that width
 OUT = Path(__file__).resolve().parents[1] / "docs" / "figures" / "overview.png"
 
 
@@ -28,26 +30,32 @@ def main() -> None:
     board, measured = course.board(), course.measured_corners()
     found = calibrate(board.points, measured, course.camera().size)
     first = draw_corners(course.photos()[6], measured[6], board)
-    first.set_title("corners, found in a picture")
+    first.set_title("corners, found in a picture", fontsize=TEXT)
     boards = [shape for G in found.poses[::2] for shape in target_shapes(board, G)]
     scene = draw_scene(*camera_shapes(found.camera, 120, name=""), *boards, view=(25, -75))
-    scene.set_title("the camera they determine")
+    scene.figure.suptitle("the camera they determine", fontsize=TEXT)
+    scene.set_axis_off()
     rng = np.random.default_rng(7)
     exact = course.exact_corners()
     runs = [
         calibrate(board.points, exact + rng.normal(scale=0.1, size=exact.shape), found.size)
         for _ in range(200)
     ]
-    names = ["alpha_u", "u0"]
+    names = ["alpha_u"]
     bars = draw_error_bars(
         np.array([[run.parameters[n] for n in names] for run in runs]),
-        [800, 325],
+        [800],
         np.mean([[run.std[n] for n in names] for run in runs], axis=0),
         names=names,
     )
     figures = [figure_of(drawn) for drawn in (first, scene, bars)]
-    figures[2].set_size_inches(4.2, 3.6)
-    pictures = [panel(figure, 430) for figure in figures]
+    for ax in figures[2].axes:
+        ax.set_title("how well it is known", fontsize=TEXT)
+        ax.tick_params(labelsize=TEXT - 1)
+        ax.xaxis.label.set_size(TEXT)
+    for figure, width in zip(figures, (3.1, 2.7, 2.7), strict=True):
+        figure.set_size_inches(width, HEIGHT)
+    pictures = [panel(figure, round(2 * 100 * HEIGHT)) for figure in figures]
     Image.fromarray(np.hstack(pictures)).quantize(256).save(OUT, optimize=True)
 
 
