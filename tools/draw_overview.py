@@ -52,7 +52,7 @@ def main() -> None:
     for ax in figures[2].axes:
         ax.set_title("how well it is known", fontsize=TEXT)
         ax.tick_params(labelsize=TEXT - 1)
-        ax.xaxis.label.set_size(TEXT)
+        ax.xaxis.label.set_fontsize(TEXT)
     for figure, width in zip(figures, (3.1, 2.7, 2.7), strict=True):
         figure.set_size_inches(width, HEIGHT)
     pictures = [panel(figure, round(2 * 100 * HEIGHT)) for figure in figures]
