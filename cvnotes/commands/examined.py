@@ -17,6 +17,7 @@ from cvnotes.files.photos import COPY, fingerprint
 from cvnotes.files.writing import printable
 from cvnotes.targets import Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
+from cvnotes.targets.opencv_finders import one_thread_each
 
 _THUMBNAIL = 480  # px wide
 _SURE = 3  # photographs that agree on the board's count
@@ -72,8 +73,9 @@ def examine(paths: Sequence[str], board: Chessboard) -> tuple[list[Examined], li
     files, rejected = _photographs(paths)
     examined = []
     first: dict[bytes, Path] = {}
-    looked = in_order(lambda path: _looked_at(path, board), files)
-    for path, (content, item) in zip(files, progress(looked, total=len(files)), strict=True):
+    with one_thread_each():
+        looked = list(progress(in_order(lambda p: _looked_at(p, board), files), total=len(files)))
+    for path, (content, item) in zip(files, looked, strict=True):
         same = first.setdefault(content, path)
         if isinstance(item, Rejected):
             rejected.append(item)

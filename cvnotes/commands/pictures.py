@@ -1,31 +1,24 @@
 """The pictures that `cvnotes calibrate` leaves beside its numbers."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cvnotes.base import chunks
+from cvnotes.base import Array, chunks
+from cvnotes.calibration.coverage import covered_cells
+from cvnotes.commands.canvas import ESTIMATED, FAINT, LENS, MUTED, WORLD, Canvas, known_runs, ticks
 from cvnotes.commands.examined import Examined
 from cvnotes.files.writing import printable
-from cvnotes.show import (
-    ESTIMATED,
-    draw_corners,
-    draw_coverage,
-    draw_image,
-    draw_residual_scatter,
-    draw_residuals,
-    draw_view_rms,
-    panels,
-)
-from cvnotes.show.picture import encode, figure_of
 from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration
 
 _COLUMNS, _ROWS = 4, 10  # of a sheet
-_TILE = 240  # px wide on the page, drawn at twice that
+_TILE = 320  # px wide
+_HEAD = 24  # px for a title
+_WIDE = 900  # px, of a picture of its own
 
 
 def pictures(
@@ -44,16 +37,16 @@ def pictures(
     names : sequence of str
         Names of those that were used.
     """
-    drawn = {"view_rms.png": draw_view_rms(result, names=names, ax=panels(width=900, height=420))}
-    drawn["coverage.png"] = draw_coverage(result.image_points, result.size)
-    left, right = panels(2, width=1120, height=480, width_ratios=(1.4, 1))
-    drawn["residuals.png"] = draw_residuals(result, ax=left)
-    draw_residual_scatter(result, ax=right)
-    drawn |= corner_sheets(examined, board)
-    return {name: encode(figure_of(ax), jpeg=False)[0] for name, ax in drawn.items()}
+    drawn = {
+        "view_rms.png": _view_rms(result, names),
+        "coverage.png": _coverage(result),
+        "residuals.png": _residuals(result),
+        **corner_sheets(examined, board),
+    }
+    return {name: sheet.png() for name, sheet in drawn.items()}
 
 
-def corner_sheets(examined: Sequence[Examined], board: Chessboard) -> dict[str, Any]:
+def corner_sheets(examined: Sequence[Examined], board: Chessboard) -> dict[str, Canvas]:
     """Draw all photographs small with the corners found in them, on as many sheets as it takes."""
     sheets = [examined[part] for part in chunks(len(examined), _COLUMNS * _ROWS)]
     if len(sheets) == 1:
@@ -61,25 +54,160 @@ def corner_sheets(examined: Sequence[Examined], board: Chessboard) -> dict[str, 
     return {f"corners-{i}.png": _sheet(sheet, board) for i, sheet in enumerate(sheets, start=1)}
 
 
-def _sheet(examined: Sequence[Examined], board: Chessboard) -> Any:
-    """Draw one sheet; gives the first of its axes."""
-    columns = min(_COLUMNS, len(examined))
-    rows = -(-len(examined) // columns)
+def _sheet(examined: Sequence[Examined], board: Chessboard) -> Canvas:
     width, height = examined[0].size
-    high = round(_TILE * height / width) + 25
-    tiles = np.ravel(panels(columns, rows, width=_TILE * columns, height=high * rows))
-    for ax in tiles:
-        ax.set_axis_off()
-    for ax, photo in zip(tiles, examined, strict=False):
-        name = _shortened(printable(photo.path.name))
-        if photo.thumbnail_corners is None:
-            draw_image(photo.thumbnail, ax=ax)
-            ax.set_title(f"{name}: not found", fontsize=8, color=ESTIMATED)
-        else:
-            draw_corners(photo.thumbnail, photo.thumbnail_corners, board, ax=ax)
-            ax.set_title(name, fontsize=8)
-    return tiles[0]
+    tile = (_TILE, max(round(_TILE * height / width), 1))
+    # Three tiles at least, so that a title has its place.
+    columns = min(_COLUMNS, max(len(examined), 3))
+    rows = -(-len(examined) // columns)
+    sheet = Canvas(columns * (_TILE + 4), rows * (tile[1] + _HEAD))
+    for k, photo in enumerate(examined):
+        x, y = k % columns * (_TILE + 4) + 2, k // columns * (tile[1] + _HEAD) + _HEAD
+        sheet.photograph(photo.thumbnail, (x, y), tile)
+        zoom, name = _TILE / photo.size[0], _shortened(printable(photo.path.name))
+        place = np.array([x, y])
+        if photo.corners is not None:
+            columns_rows = (*board.corners[::-1], 2)
+            _draw_lattice(sheet, ((photo.corners + 0.5) * zoom + place).reshape(columns_rows))
+        elif photo.found is not None:
+            sheet.dots((photo.found + 0.5) * zoom + place, LENS, 2.5)
+        title = name if photo.corners is not None else f"{name}: not used"
+        colour = MUTED if photo.corners is not None else ESTIMATED
+        sheet.text((x + _TILE / 2, y - 7), title, colour, size=12)
+    return sheet
+
+
+def _draw_lattice(sheet: Canvas, lattice: Array) -> None:
+    """Join each row; the ring is the origin, the thick lines lead along x and y."""
+    for row in lattice:
+        for run in known_runs(row):
+            sheet.line(run, ESTIMATED)
+    known = lattice[np.isfinite(lattice).all(-1)]
+    sheet.dots(known, ESTIMATED, 1.5)
+    for axis, name in ((lattice[0, :3], "x"), (lattice[:3, 0], "y")):
+        if np.isfinite(axis).all():
+            sheet.line(axis, WORLD, 2)
+            end = axis[-1] + 0.4 * (axis[-1] - axis[-2])
+            sheet.text((float(end[0]), float(end[1])), name, WORLD, anchor="mm", halo=True)
+    if np.isfinite(lattice[0, 0]).all():
+        sheet.ring(lattice[0, 0], 5, WORLD)
+
+
+def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
+    """Draw the RMS of each view as a bar, beside that of all."""
+    rms, height = np.asarray(result.view_rms), 420
+    step = -(-len(rms) // 40)  # labels stay legible up to forty
+    longest = max(len(_shortened(name)) for name in names)
+    # A digit or a letter of this size is about 6 px wide.
+    flat = 6.5 * longest < step * (_WIDE - 150) / len(rms)
+    left, right, top = 62, _WIDE - 88, 18
+    bottom = height - (40 if flat else min(24 + 7 * longest, 200))
+    high = 1.05 * max(float(rms.max()), result.rms, 1e-12)
+    sheet, across, up = Canvas(_WIDE, height), (right - left) / len(rms), (bottom - top) / high
+    for tick in ticks(0, high):
+        y = bottom - tick * up
+        sheet.line([(left, y), (right, y)], FAINT)
+        sheet.text((left - 6, y), f"{tick:.4g}", MUTED, anchor="rm", size=12)
+    for i, value in enumerate(rms.tolist()):
+        x = left + (i + 0.5) * across
+        sheet.rectangle(
+            (x - 0.35 * across, bottom - value * up), (x + 0.35 * across, bottom), fill=ESTIMATED
+        )
+        if i % step == 0 and flat:
+            sheet.text((x, bottom + 16), _shortened(names[i]), size=12)
+        elif i % step == 0:
+            sheet.upright((x, bottom + 5), _shortened(names[i]), size=11)
+    y = bottom - result.rms * up
+    sheet.line([(left, y), (right, y)], MUTED)
+    sheet.text((right + 5, y), f"all: {result.rms:.3f}", MUTED, anchor="lm")
+    sheet.text((left - 52, top - 5), "RMS (px per point)", anchor="ls", size=12)
+    return sheet
+
+
+def _coverage(result: "Calibration") -> Canvas:
+    """Draw where corners were seen: the lens is known there, and guessed in grey cells."""
+    cells = covered_cells(result.image_points, result.size)
+    sheet, zoom = _picture(
+        result.size, f"Corners in {cells.sum()} of {cells.size} cells of the picture"
+    )
+    side = zoom * np.array(result.size) / cells.shape
+    for cell in np.argwhere(~cells):
+        low = cell * side + [_EDGE, _HEAD + _EDGE]
+        sheet.rectangle(low, low + side, fill=FAINT, line="#C4C4C4")
+    m = np.concatenate(result.image_points)
+    sheet.dots((m + 0.5) * zoom + [_EDGE, _HEAD + _EDGE], ESTIMATED, 1.7)
+    _frame(sheet, result.size, zoom)
+    return sheet
+
+
+_EDGE = 6  # px around a picture
+
+
+def _picture(size: tuple[int, int], title: str, more: int = 0) -> tuple[Canvas, float]:
+    """Give a sheet for something drawn on a picture of a size, and pixels per pixel."""
+    zoom = min((_WIDE - 2 * _EDGE) / size[0], 900 / size[1])
+    sheet = Canvas(_WIDE + more, round(zoom * size[1]) + _HEAD + 2 * _EDGE)
+    sheet.text((_WIDE / 2, _HEAD - 6), title, size=14)
+    return sheet, zoom
+
+
+def _frame(sheet: Canvas, size: tuple[int, int], zoom: float) -> None:
+    low = np.array([_EDGE, _HEAD + _EDGE])
+    sheet.rectangle(low, low + zoom * np.array(size), line=MUTED)
+
+
+def _residuals(result: "Calibration") -> Canvas:
+    """Draw each residual where it is, magnified, and all of them around 0.
+
+    Lines that point all over the place are noise; lines that agree with their neighbours are
+    something that the model does not describe. Noise gives a round cloud.
+    """
+    m, r = np.concatenate(result.image_points), np.concatenate(result.residuals)
+    known = np.isfinite(r).all(-1)
+    m, r = m[known], r[known]
+    longer = float(np.percentile(np.hypot(*r.T), 95)) if len(r) else 0.0
+    magnify = _round_number(0.04 * result.size[0] / longer) if longer > 0 else 1.0
+    title = f"Residuals, {magnify:,g} times as long (RMS {result.rms:.3f} px per point)"
+    sheet, zoom = _picture(result.size, title, more=_CLOUD)
+    start = (m - r + 0.5) * zoom + [_EDGE, _HEAD + _EDGE]
+    end = start + zoom * magnify * r
+    for a, b in zip(start, end, strict=True):
+        sheet.line([a, b], ESTIMATED)
+    sheet.dots(end, ESTIMATED, 1.5)
+    _frame(sheet, result.size, zoom)
+    _cloud(sheet, r, result.rms / np.sqrt(2))
+    return sheet
+
+
+_CLOUD = 420  # px wide
+
+
+def _cloud(sheet: Canvas, r: Array, sigma: float) -> None:
+    """Draw residuals around 0, with a circle of one standard deviation."""
+    reach = 1.08 * max(float(np.abs(r).max(initial=0.0)), 1e-9)
+    middle, half = np.array([_WIDE + _CLOUD / 2 + 15, _HEAD + _EDGE + 190]), 170
+    sheet.rectangle(middle - half, middle + half, line=MUTED)
+    for tick in ticks(-reach, reach, 5):
+        x, y = middle + tick / reach * half
+        sheet.line([(x, middle[1] - half), (x, middle[1] + half)], FAINT)
+        sheet.line([(middle[0] - half, y), (middle[0] + half, y)], FAINT)
+        sheet.text((x, middle[1] + half + 15), f"{tick:.3g}", MUTED, size=11)
+        sheet.text((middle[0] - half - 4, y), f"{tick:.3g}", MUTED, size=11, anchor="rm")
+    sheet.dots(middle + r / reach * half, ESTIMATED, 1.5)
+    sheet.ring(middle, sigma / reach * half, "black")
+    place = (float(middle[0]), float(middle[1] + half + 36))
+    sheet.text(
+        place,
+        f"observed - predicted (px); the circle is one standard deviation: {sigma:.3f} px",
+        size=12,
+    )
+
+
+def _round_number(x: float) -> float:
+    """Give the largest of 1, 2, 5, 10, 20, … below a number."""
+    power = 10.0 ** np.floor(np.log10(x))
+    return float(power * max(f for f in (1, 2, 5) if f * power <= x * (1 + 1e-9)))
 
 
 def _shortened(name: str) -> str:
-    return name if len(name) <= 28 else f"{name[:14]}…{name[-13:]}"
+    return name if len(name) <= 28 else f"{name[:14]}...{name[-11:]}"

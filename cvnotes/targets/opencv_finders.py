@@ -4,7 +4,8 @@ Since version 5 the finders give (n, 2), before it (n, 1, 2). They raise for pic
 small and for boards with fewer than three corners along a side; here, all of these are not found.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -68,6 +69,22 @@ def find_part(grey: Grey8) -> Array | None:
     if not found or squares is None:
         return None
     return np.asarray(m, dtype=np.float64).reshape(*np.shape(squares)[:2], 2)
+
+
+@contextmanager
+def one_thread_each() -> Iterator[None]:
+    """Let OpenCV work in the thread that asks it alone, for those who ask it from several.
+
+    Its own threads wait busily for a while after each piece of work.
+    """
+    import cv2
+
+    before = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        yield
+    finally:
+        cv2.setNumThreads(before)
 
 
 def shrink(grey: Grey8, size: tuple[int, int]) -> Grey8:
