@@ -110,9 +110,8 @@ def ticks(low: float, high: float, most: int = 6) -> Array:
     rough = max(high - low, 1e-300) / most
     power = 10.0 ** np.floor(np.log10(rough))
     step = power * next(f for f in (1, 2, 5, 10) if f * power >= rough * (1 - 1e-9))
-    return np.asarray(
-        step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1)
-    )
+    first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
+    return np.asarray(step * np.arange(first, last + 1) + 0.0)
 
 
 def _scaled(m: npt.ArrayLike) -> list[float]:

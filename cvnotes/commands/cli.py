@@ -11,6 +11,7 @@ import threading
 import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -35,9 +36,12 @@ class _Parser(argparse.ArgumentParser):
         sys.exit(2)
 
 
-def parser() -> argparse.ArgumentParser:
-    """Describe the command and its sub-commands."""
-    from cvnotes.commands import calibrate, completion, grade, lab, target, undistort
+_COMMANDS = ("lab", "target", "calibrate", "undistort", "grade", "completion")
+
+
+def parser(command: str = "") -> argparse.ArgumentParser:
+    """Describe the command and its sub-commands; only one of them, if it is known which."""
+    names = (command,) if command in _COMMANDS else _COMMANDS
 
     top = _Parser(
         prog="cvnotes",
@@ -47,8 +51,8 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("-V", "--version", action="version", version=f"cvnotes {__version__}")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for module in (lab, target, calibrate, undistort, grade, completion):
-        module.add_parser(commands)
+    for name in names:
+        import_module(f"cvnotes.commands.{name}").add_parser(commands)
     return top
 
 
@@ -57,7 +61,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = ""
     try:
         with _termination_as_interrupt():
-            args = parser().parse_args(arguments)
+            given = sys.argv[1:] if arguments is None else list(arguments)
+            args = parser(*given[:1]).parse_args(given)
             command = args.command
             code: int = args.run(args)
             sys.stdout.flush()  # a full disk behind stdout shows itself here
