@@ -180,8 +180,8 @@ def exercise_cells(path, solved):
             [(name, variable)] = asked
             own = "my_steps" if name == "pipeline" else f"my_{name}"
             call = re.search(r"^check\(.*", cell, re.M | re.S)[0]
-            source = source_of(name).replace("'demo'", "'your id'")
-            cell = f"{source}\n{variable} = {own}\n{call}"
+            source = source_of(name).replace("'demo'", "'s123456'")
+            cell = f"{source}\n{variable} = {own}\n{call}".replace("your id", "s123456")
         if asked or re.search(r"^(def )?my_\w+", cell, re.M):
             kept.append(cell)
     return kept

@@ -58,18 +58,6 @@ def finished_rows(path, n):
     wait_for(lambda: path.exists() and len(path.read_text("utf-8-sig").splitlines()) > n)
 
 
-def inside(folder):
-    """Give the processes that work in a folder."""
-    found = []
-    for path in Path("/proc").iterdir():
-        try:
-            if path.name.isdigit() and str(folder) in str((path / "cwd").readlink()):
-                found.append(int(path.name))
-        except OSError:
-            continue
-    return found
-
-
 def sleepers(word):
     """Give the processes whose command line holds a word."""
     found = []
@@ -119,15 +107,17 @@ def test_an_interruption_leaves_rows_and_nothing_else(tmp_path):
 def test_a_killed_grader_leaves_its_rows_and_no_process(tmp_path):
     for name in ("a", "z"):
         notebook(tmp_path / "in" / name / "01_x.ipynb", *LIFT)
-    notebook(tmp_path / "in" / "m" / "01_x.ipynb", "import time\ntime.sleep(60)")
+    word = f"left-{tmp_path.name}-{os.getpid()}"
+    slow = "import time\ntime.sleep(60)"
+    notebook(tmp_path / "in" / "m" / "01_x.ipynb", SLEEPER.format(word), slow)
     scratch, out = tmp_path / "scratch", tmp_path / "marks.csv"
     scratch.mkdir()
     process = started(tmp_path / "in", out, "--jobs", "1", scratch=scratch)
     finished_rows(out, 1)
-    wait_for(lambda: inside(scratch))
+    wait_for(lambda: sleepers(word))
     process.kill()
     process.communicate()
-    wait_for(lambda: not inside(scratch), 5)
+    wait_for(lambda: not sleepers(word), 5)
     assert [row["student"] for row in rows(out)] == ["a"]
     [line] = (tmp_path / "marks.rows.jsonl").read_text().splitlines()
     assert json.loads(line)["mark"]["reports"]["lift"]["verdict"] == "right"
