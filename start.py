@@ -1,65 +1,284 @@
-"""Open the course, or run every test, on a machine that has only Python.
+"""Open the course, or check it, on a machine that has only Python 3.11 or newer.
 
-    python start.py                 open the course in JupyterLab
-    python start.py check           lint, types and unit tests: for every change, in a minute
-    python start.py test            run every test, the notebooks included
-    python start.py site            build the course as pages to be read in a browser
+    python3 start.py                open the course in JupyterLab (options go to `cvnotes lab`)
+    python3 start.py check          lint, types and unit tests: for every change, in a minute
+    python3 start.py test           run every test, the notebooks included
+    python3 start.py site           build the course as pages to be read in a browser
 
-The first call makes a virtual environment in .venv and installs the course into it (about a
-minute, 180 MB to download); later calls start at once. Whatever follows goes to `cvnotes lab` or
-to pytest. The environment variable CVNOTES_VENV names another folder for the environment.
+On Windows write `py` for `python3`. The first call makes a virtual environment in .venv and
+installs the course into it: about 190 MB to download and 770 MB on disk to read the course, 250 MB
+and 1.2 GB to test it; later calls start at once. Whatever follows the command goes to it, as in
+`start.py test tests/test_lens.py`. CVNOTES_VENV names another folder for the environment.
 """
 
 import hashlib
+import importlib.util
+import json
 import os
+import re
 import subprocess
 import sys
-import venv
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
-EXTRAS = {"lab": "lab,rays", "check": "dev", "test": "dev", "site": "docs"}
+WINDOWS = os.name == "nt"
+EXTRAS = {"lab": "lab", "check": "dev", "test": "dev", "site": "docs"}
 RUN = {
     "lab": ["-m", "cvnotes", "lab"],
     "check": ["tools/check.py"],
     "test": ["-m", "pytest"],
     "site": ["tools/build_site.py"],
 }
+# Nice to have: large scenes are drawn faster. Not every machine finds it ready to use.
+RAYS = "embreex>=2.17.7"
+UNREACHABLE = re.compile(
+    "Name or service not known|name resolution|nodename nor servname|getaddrinfo failed"
+    "|Failed to establish a new connection|ConnectTimeout|Connection refused|ProxyError"
+    "|Network is unreachable|Connection to .* timed out|Max retries exceeded"
+)
+# What an environment says of itself; -I keeps it from looking here or where PYTHONPATH points.
+PROBE = """
+import importlib.util, json, sys
+found = importlib.util.find_spec("cvnotes")
+print(json.dumps({
+    "version": list(sys.version_info[:2]),
+    "own": sys.prefix != sys.base_prefix,
+    "pip": importlib.util.find_spec("pip") is not None,
+    "cvnotes": found.origin if found else None,
+}))
+"""
 
 
-def environment(extras: str) -> Path:
-    """Give the folder of executables of an environment that has the course installed."""
-    folder = Path(os.environ.get("CVNOTES_VENV", ROOT / ".venv"))
-    scripts = folder / ("Scripts" if os.name == "nt" else "bin")
-    recipe = (ROOT / "pyproject.toml").read_bytes() + os.environ.get("PIP_CONSTRAINT", "").encode()
-    stamp, wanted = folder / f"installed-{extras}", hashlib.sha256(recipe).hexdigest()
-    if stamp.exists() and stamp.read_text() == wanted:
-        return scripts
-    print(f"Installing the course into {folder} …", flush=True)
-    if not (scripts / "pip").exists() and not (scripts / "pip.exe").exists():
-        venv.create(folder, with_pip=True)
-    python = str(scripts / "python")
-    install = ["-m", "pip", "install", "--quiet", "--editable", f"{ROOT}[{extras}]"]
-    subprocess.run([python, *install], check=True)
-    stamp.write_text(wanted)
-    return scripts
+class CannotError(Exception):
+    """What keeps the course from starting, in a sentence."""
 
 
 def main(arguments: list[str]) -> int:
-    """Install if needed, then run the command."""
+    """Install if needed, then become the command."""
     if sys.version_info < (3, 11):
         print(f"The course needs Python 3.11 or newer; this is {sys.version.split()[0]}.")
         return 1
-    command, *rest = arguments or ["lab"]
-    if command not in EXTRAS:
+    if arguments[:1] in (["-h"], ["--help"]):
         print(__doc__)
-        return 0 if command in ("-h", "--help") else 2
+        return 0
+    command, *rest = arguments if arguments and arguments[0][:1] != "-" else ["lab", *arguments]
+    if command not in RUN:
+        print(
+            f"start.py knows no command {command!r}; there are {', '.join(RUN)}: "
+            "see start.py --help",
+            file=sys.stderr,
+        )
+        return 2
     try:
-        scripts = environment(EXTRAS[command])
-    except subprocess.CalledProcessError:
-        print("pip could not install the course; its message above says why.", file=sys.stderr)
+        python = environment(EXTRAS[command])
+    except CannotError as error:
+        print(f"start.py: {error}", file=sys.stderr)
         return 1
-    return subprocess.run([str(scripts / "python"), *RUN[command], *rest], cwd=ROOT).returncode
+    return become([str(python), *RUN[command], *rest])
+
+
+def become(command: list[str]) -> int:
+    """Go on as another program, which then gets Ctrl-C and every other signal itself."""
+    os.chdir(ROOT)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if not WINDOWS:
+        os.execv(command[0], command)
+    child = subprocess.Popen(command)
+    while True:
+        try:
+            return child.wait()
+        except KeyboardInterrupt:
+            pass  # the child got it too, and ends what it has begun
+
+
+# --- The environment -----------------------------------------------------------------------------
+
+
+def environment(extra: str) -> Path:
+    """Give the Python of an environment that has this clone of the course installed."""
+    given = Path(os.environ.get("CVNOTES_VENV") or ROOT / ".venv").expanduser()
+    folder = Path.cwd() / given  # not resolved: the environment's own scripts name it as it is
+    python = folder / ("Scripts/python.exe" if WINDOWS else "bin/python")
+    wanted = recipe(folder)
+    found = probe(python)
+    if found is not None and is_ours(found) and installed(folder, extra) == wanted:
+        return python
+    ran_before = found is not None and is_ours(found) and installed(folder, extra) is not None
+    print(f"Installing the course into {folder}: about {SIZE[extra]}, once.", flush=True)
+    try:
+        found = prepare(folder, python, found)
+        try:
+            pip(python, found, ["--editable", f"{ROOT}[{extra}]"])
+        except CannotError as error:
+            if not ran_before:
+                raise
+            print(f"  {error}\n  The course goes on with the packages that it had.", flush=True)
+            return python
+        try:
+            pip(python, found, ["--only-binary", "embreex", RAYS])
+        except CannotError:
+            print("  (embreex is not to be had for this machine; the course goes without)")
+        (folder / f"installed-{extra}").write_text(wanted, encoding="utf-8")
+    except OSError as error:
+        raise CannotError(
+            f"{folder} cannot be written ({error.strerror or error}); "
+            "set CVNOTES_VENV to a folder where you may write"
+        ) from None
+    return python
+
+
+SIZE = {
+    "lab": "190 MB to download, 770 MB on disk",
+    "docs": "210 MB to download, 850 MB on disk",
+    "dev": "250 MB to download, 1.2 GB on disk",
+}
+
+
+def recipe(folder: Path) -> str:
+    """Give a name for all that an installation depends on; another one is made anew."""
+    constraint = os.environ.get("PIP_CONSTRAINT", "")
+    parts = [(ROOT / "pyproject.toml").read_bytes(), str(ROOT).encode(), str(folder).encode()]
+    parts.append(constraint.encode())
+    if constraint and Path(constraint).is_file():
+        parts.append(Path(constraint).read_bytes())
+    return hashlib.sha256(b"\0".join(parts)).hexdigest()
+
+
+def installed(folder: Path, extra: str) -> str | None:
+    """Give the recipe after which an extra was installed, or None; `dev` contains the others."""
+    for name in (extra, "dev"):
+        stamp = folder / f"installed-{name}"
+        try:
+            return stamp.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError):
+            continue
+    return None
+
+
+def probe(python: Path) -> dict[str, object] | None:
+    """Ask an environment's Python about it; None if there is none that answers."""
+    try:
+        said = subprocess.run(
+            [str(python), "-I", "-c", PROBE], capture_output=True, text=True, timeout=60
+        )
+        found: dict[str, object] = json.loads(said.stdout)
+    except (OSError, ValueError, subprocess.TimeoutExpired):
+        return None
+    return found if found["own"] else None
+
+
+def is_ours(found: dict[str, object]) -> bool:
+    """Tell if an environment's course is this clone, not one that was copied or has moved."""
+    origin = found["cvnotes"]
+    return isinstance(origin, str) and Path(origin).resolve() == ROOT / "cvnotes" / "__init__.py"
+
+
+def prepare(folder: Path, python: Path, found: dict[str, object] | None) -> dict[str, object]:
+    """Make the environment if there is none, or none that works; gives what it says of itself."""
+    made_here = any(folder.glob("installed-*")) if folder.is_dir() else False
+    if folder.exists() and not folder.is_dir():
+        raise CannotError(f"{folder} is no folder; set CVNOTES_VENV to one for the environment")
+    foreign = folder.is_dir() and any(folder.iterdir()) and not made_here
+    if foreign and not (folder / "pyvenv.cfg").is_file():
+        raise CannotError(
+            f"{folder} holds something else than an environment; "
+            "set CVNOTES_VENV to a new folder, or to an empty one"
+        )
+    if foreign and found is not None and tuple(found["version"]) < (3, 11):  # type: ignore[arg-type]
+        raise CannotError(
+            f"the environment in {folder} has a Python older than 3.11; delete that folder, "
+            "or set CVNOTES_VENV to another"
+        )
+    if foreign and found is None and folder != ROOT / ".venv":
+        raise CannotError(
+            f"the Python of the environment in {folder} does not start; "
+            "delete that folder, or set CVNOTES_VENV to another"
+        )
+    usable = found is not None and (foreign or (is_ours(found) and scripts_start(folder)))
+    if usable and found is not None:
+        return found
+    if importlib.util.find_spec("ensurepip") is None or importlib.util.find_spec("venv") is None:
+        minor = f"{sys.version_info[0]}.{sys.version_info[1]}"
+        raise CannotError(
+            "this Python comes without venv and ensurepip, which Debian and Ubuntu keep apart; "
+            f"install them with: sudo apt install python3-venv   (or python{minor}-venv)"
+        )
+    import venv
+
+    print(f"  a new environment with Python {sys.version.split()[0]}", flush=True)
+    try:
+        venv.create(folder, with_pip=True, clear=folder.is_dir())
+    except subprocess.CalledProcessError as error:
+        words = (error.output or b"").decode(errors="replace").strip().splitlines()
+        raise CannotError(
+            f"no environment could be made in {folder}: {words[-1] if words else error}"
+        ) from None
+    found = probe(python)
+    if found is None:
+        raise CannotError(f"the new Python in {folder} does not start; delete that folder")
+    return found
+
+
+def scripts_start(folder: Path) -> bool:
+    """Tell if the commands of an environment name this Python: they do not once it has moved."""
+    config = folder / ("Scripts/activate" if WINDOWS else "bin/activate")
+    try:
+        return str(folder) in config.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+
+
+def pip(python: Path, found: dict[str, object], what: list[str]) -> None:
+    """Install with pip, naming what is loaded; raises CannotError with the reason if it fails."""
+    if not found["pip"]:  # uv makes environments without
+        subprocess.run([str(python), "-m", "ensurepip"], capture_output=True)
+        if not (probe(python) or {}).get("pip"):
+            raise CannotError(
+                f"the environment in {python.parents[1]} has no pip and cannot get one; "
+                "delete that folder"
+            )
+        found["pip"] = True
+    command = [str(python), "-m", "pip", "install", "--progress-bar", "off"]
+    command += ["--disable-pip-version-check", *what]
+    # pip asks an index that does not answer for minutes, once for each package.
+    patience = {"PIP_RETRIES": "1"}
+    if "PIP_DEFAULT_TIMEOUT" not in os.environ:
+        patience["PIP_TIMEOUT"] = "15"
+    said = []
+    with subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        env=patience | dict(os.environ) | {"PYTHONUNBUFFERED": "1"},
+    ) as running:
+        for line in running.stdout or ():
+            said.append(line.strip())
+            told = progress(line.strip())
+            if told:
+                print(f"  {told}", flush=True)
+    code = running.returncode
+    if code == 0:
+        return
+    whole = "\n".join(said)
+    if UNREACHABLE.search(whole):
+        raise CannotError("the packages cannot be reached: is this machine connected to a network?")
+    if re.search(r"No space left|Errno 28", whole):
+        raise CannotError(f"the disk is full; the course takes {SIZE['lab'].split(', ')[1]}")
+    reasons = [line for line in said if line.startswith("ERROR")] or said[-3:]
+    raise CannotError("pip could not install the course:\n  " + "\n  ".join(reasons))
+
+
+def progress(line: str) -> str | None:
+    """Give what is worth telling of a line that pip prints."""
+    loaded = re.match(r"Downloading (?:\S*/)?([\w.]+)-([\w.]+?)-\S+ \(([\d.]+ [MG]B)\)", line)
+    if loaded:
+        return f"{loaded[1]} {loaded[2]}, {loaded[3]}"
+    if line.startswith("Installing collected packages"):
+        return f"putting {line.count(',') + 1} packages in place …"
+    return None
 
 
 if __name__ == "__main__":

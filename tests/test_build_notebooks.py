@@ -30,6 +30,7 @@ def run(*arguments):
 def built(path):
     result = run(path)
     assert result.returncode == 0, result.stdout + result.stderr
+    assert "eavesdropping" not in result.stderr
     return nbformat.read(path, as_version=4).cells
 
 

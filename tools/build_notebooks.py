@@ -13,11 +13,16 @@ runs give the same file.
 import argparse
 import re
 import sys
+import uuid
 from pathlib import Path
 
 import nbformat
+from jupyter_core.paths import jupyter_runtime_dir
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
+from traitlets.config import Config
+
+from cvnotes.commands.quiet import transport
 
 ROOT = Path(__file__).resolve().parents[1]
 METADATA = {
@@ -101,6 +106,7 @@ def build(path: Path) -> list[str]:
         kernel_name="python3",
         resources={"metadata": {"path": str(path.parent)}},
         record_timing=False,
+        config=Config({"KernelManager": _connection()}),
         store_widget_state=False,
     )
     try:
@@ -112,6 +118,14 @@ def build(path: Path) -> list[str]:
     nbformat.write(notebook, partial)
     partial.replace(path)
     return problems(notebook)
+
+
+def _connection() -> dict[str, str]:
+    """Give the way to a kernel; over files it needs a name that both sides know beforehand."""
+    runtime = Path(jupyter_runtime_dir())
+    runtime.mkdir(parents=True, exist_ok=True)
+    name = runtime / f"kernel-{uuid.uuid4()}.json"
+    return {"transport": transport(runtime), "connection_file": str(name)}
 
 
 def check(path: Path) -> list[str]:

@@ -3,7 +3,7 @@
     python tools/build_site.py              into docs/_build/site
     python tools/build_site.py --out FOLDER
 
-Needs the extra `docs` (`python start.py site` sets it up). The notebooks appear as they are
+Needs the extra `docs` (`python3 start.py site` sets it up). The notebooks appear as they are
 committed; nothing is executed. The pages load nothing from elsewhere, formulas included.
 """
 

@@ -1,9 +1,9 @@
 """The checks for every change: lint, format, types, unit tests and doctests, side by side.
 
-    python start.py check                  in less than a minute on two cores
-    python start.py check -k lens          whatever follows goes to pytest
+    python3 start.py check                  in less than a minute on two cores
+    python3 start.py check -k lens          whatever follows goes to pytest
 
-Notebooks, browser, site, the grader and long experiments are left to ``python start.py test``.
+Notebooks, browser, site, the grader and long experiments are left to ``python3 start.py test``.
 """
 
 import subprocess

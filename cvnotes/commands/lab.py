@@ -4,19 +4,23 @@ import argparse
 import importlib.util
 import os
 import secrets
+import signal
 import socket
 import subprocess
 import sys
 import time
 import webbrowser
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from http.client import HTTPConnection, HTTPException
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import current_thread, main_thread
 
 from cvnotes.base import FileError
 from cvnotes.base.material import material
 from cvnotes.commands.console import say
+from cvnotes.commands.quiet import options
 from cvnotes.commands.redirect import leading_to
 from cvnotes.commands.working_copy import FOLDER, default_folder, deliver, start_over
 from cvnotes.files.writing import printable
@@ -43,7 +47,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     add("--copy", action="store_true", help="bring the working copy up to date, and open nothing")
     add("--notebooks", type=Path, metavar="FOLDER",
         help="open the notebooks of this folder themselves, without a working copy")  # fmt: skip
-    add("--port", type=int, default=8888, help="port to try first (default 8888)")
+    add("--port", type=_port, default=8888, help="port to try first (default 8888)")
     add("--no-browser", action="store_true", help="print the address only")
     parser.set_defaults(run=run)
 
@@ -58,13 +62,22 @@ def run(args: argparse.Namespace) -> int:
         raise FileError('JupyterLab is not installed; install it with: pip install "cvnotes[lab]"')
     notebooks = course if args.notebooks else prepare(course, args.folder, args.fresh)
     port, token = free_port(args.port), secrets.token_hex(24)
-    server = start_server(notebooks, port, token)
+    with TemporaryDirectory(prefix="cvnotes-tabs-") as tabs:  # those of last time do not come back
+        return _serve(notebooks, port, token, tabs, args.no_browser)
+
+
+def _serve(notebooks: Path, port: int, token: str, tabs: str, no_browser: bool) -> int:
+    """Serve until Ctrl-C, and end whatever was started; gives the exit code."""
+    with _undisturbed() as came:
+        server = start_server(notebooks, port, token, tabs)
     try:
+        if came:
+            raise KeyboardInterrupt
         wait_until_up(server, port)
         address = f"http://127.0.0.1:{port}/lab/tree/{START}?token={token}"
         say(f"The course is open at\n\n    {address}\n")
         with leading_to(address, notebooks) as page:
-            if not args.no_browser and not open_browser(page):
+            if not no_browser and not open_browser(page):
                 say("No browser could be opened here: copy the address into one on this machine.")
             say("Ctrl-C ends it.")
             sys.stdout.flush()
@@ -73,9 +86,31 @@ def run(args: argparse.Namespace) -> int:
         return server.wait()
     except KeyboardInterrupt:
         say("\nThe course is closed; what you saved is kept.")
-        return 0
+        return 130
     finally:
-        stop(server)
+        with _undisturbed():  # a second Ctrl-C would leave the kernels running
+            stop(server)
+
+
+@contextmanager
+def _undisturbed() -> Iterator[list[int]]:
+    """Keep Ctrl-C and its like waiting for a moment; gives those that came."""
+    came: list[int] = []
+    names = ("SIGINT", "SIGTERM", "SIGHUP") if current_thread() is main_thread() else ()
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    heard = [number for number in numbers if signal.getsignal(number) != signal.SIG_IGN]
+    before = {number: signal.signal(number, lambda n, _: came.append(n)) for number in heard}
+    try:
+        yield came
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"expected a port from 0 to 65535, got {text!r}")
+    return int(text)
 
 
 def find_notebooks(given: Path | None) -> Path:
@@ -113,10 +148,17 @@ def free_port(first: int) -> int:
     raise FileError("no port is free on 127.0.0.1")
 
 
-def start_server(notebooks: Path, port: int, token: str) -> "subprocess.Popen[bytes]":
-    """Start JupyterLab on loopback, quiet and without asking anybody outside."""
+def start_server(
+    notebooks: Path, port: int, token: str, tabs: str = ""
+) -> "subprocess.Popen[bytes]":
+    """Start JupyterLab on loopback, quiet and without asking anybody outside.
+
+    It keeps what is open, and where, in the folder `tabs`, if one is given.
+    """
+    from jupyter_core.paths import jupyter_runtime_dir
+
     command = [sys.executable, "-m", "jupyterlab", "--no-browser"]
-    command += ["--ServerApp.log_level=ERROR", "--LabApp.log_level=ERROR"]
+    command += options(jupyter_runtime_dir())
     command += ["--ServerApp.ip=127.0.0.1", f"--ServerApp.port={port}"]
     command += ["--ServerApp.port_retries=0", f"--ServerApp.root_dir={notebooks}"]
     command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
@@ -125,6 +167,8 @@ def start_server(notebooks: Path, port: int, token: str) -> "subprocess.Popen[by
         command.append("--allow-root")
     # The token goes by the environment, which other users cannot read; the kernel is this Python.
     environment = os.environ | {"JUPYTER_TOKEN": token, "JUPYTER_PREFER_ENV_PATH": "1"}
+    if tabs:
+        environment["JUPYTERLAB_WORKSPACES_DIR"] = tabs
     # Our settings, beside those of the user: no question about Jupyter news on the first page.
     settings = [str(Path(__file__).parent / "jupyter"), os.environ.get("JUPYTER_CONFIG_PATH", "")]
     environment["JUPYTER_CONFIG_PATH"] = os.pathsep.join(filter(None, settings))

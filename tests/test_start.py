@@ -1,0 +1,421 @@
+"""`start.py`: whatever state `.venv` is in, the course starts or one sentence says what to do."""
+
+import importlib.util
+import json
+import os
+import re
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+import urllib.request
+import venv
+from pathlib import Path
+
+import pytest
+
+from cvnotes.commands.quiet import transport
+
+START = Path(__file__).resolve().parents[1] / "start.py"
+posix = pytest.mark.skipif(os.name == "nt", reason="signals and terminals of POSIX")
+BIN = "Scripts/python.exe" if os.name == "nt" else "bin/python"
+
+
+def load(path):
+    spec = importlib.util.spec_from_file_location("start_of_the_course", path)
+    start = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(start)
+    return start
+
+
+@pytest.fixture
+def start():
+    return load(START)
+
+
+@pytest.fixture(autouse=True)
+def no_environment_of_ours(monkeypatch):
+    for name in ("CVNOTES_VENV", "PIP_CONSTRAINT", "PYTHONPATH"):
+        monkeypatch.delenv(name, raising=False)
+    create = venv.create
+
+    def without_pip(folder, with_pip=False, clear=False):  # pip would take seconds, for nothing
+        assert with_pip
+        create(folder, clear=clear, symlinks=True)
+
+    monkeypatch.setattr("venv.create", without_pip)
+
+
+class Clone:
+    """A folder that looks like a clone; what pip would do to its environment is written down."""
+
+    def __init__(self, root):
+        self.root, self.asked = root, []
+        if not root.exists():
+            (root / "cvnotes").mkdir(parents=True)
+            (root / "cvnotes" / "__init__.py").touch()
+            (root / "pyproject.toml").write_text("[project]")
+            shutil.copy(START, root)
+        self.start = load(root / "start.py")
+        self.start.pip = self.pip
+
+    def pip(self, python, _, what):
+        """Install in editable form: leave a path in the environment."""
+        self.asked.append(what)
+        if what[0] == "--editable":
+            [packages] = python.parents[1].glob("lib/python*/site-packages")
+            (packages / "course.pth").write_text(what[1].split("[")[0])
+
+    def python(self, extra="lab"):
+        return self.start.environment(extra)
+
+    def imports(self, python):
+        """Give the folder of the course that an environment's Python imports."""
+        ask = [python, "-I", "-c", "import cvnotes; print(cvnotes.__file__)"]
+        return Path(subprocess.check_output(ask, text=True).strip()).parents[1]
+
+
+@pytest.fixture
+def clone(tmp_path):
+    return Clone(tmp_path / "course")
+
+
+# --- What is typed ------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def becomes(start, monkeypatch):
+    monkeypatch.setattr(start, "environment", lambda extra: Path(extra))
+    monkeypatch.setattr(start, "become", lambda command: command)
+    return start.main
+
+
+def test_options_without_a_command_go_to_the_course(becomes):
+    assert becomes([]) == ["lab", "-m", "cvnotes", "lab"]
+    assert becomes(["--no-browser"]) == ["lab", "-m", "cvnotes", "lab", "--no-browser"]
+    assert becomes(["lab", "--port", "9"]) == ["lab", "-m", "cvnotes", "lab", "--port", "9"]
+    assert becomes(["test", "-k", "lens"]) == ["dev", "-m", "pytest", "-k", "lens"]
+    assert becomes(["check"]) == ["dev", "tools/check.py"]
+
+
+def test_a_wrong_command_is_named_and_help_is_the_docstring(becomes, start, capsys):
+    assert becomes(["foo"]) == 2
+    said = capsys.readouterr()
+    assert said.err.startswith("start.py knows no command 'foo'; there are lab, check, test, site")
+    assert said.err.count("\n") == 1
+    assert becomes(["--help"]) == 0
+    assert capsys.readouterr().out.strip() == start.__doc__.strip()
+
+
+def test_what_is_installed_is_declared(start):
+    text = (START.parent / "pyproject.toml").read_text()
+    for extra in start.EXTRAS.values():
+        assert re.search(rf"^{extra} = \[", text, re.M), extra
+        assert extra in start.SIZE
+
+
+# --- The environment ----------------------------------------------------------------------------
+
+
+@posix
+class TestEnvironment:
+    def test_it_is_made_once_and_again_when_the_recipe_changes(self, clone):
+        python = clone.python()
+        assert python == clone.root / ".venv" / BIN
+        assert clone.imports(python) == clone.root
+        assert len(clone.asked) == 2
+        clone.python()
+        assert len(clone.asked) == 2
+        (clone.root / "pyproject.toml").write_text("[project]\nname = 'other'")
+        clone.python()
+        assert len(clone.asked) == 4
+        clone.python("dev")
+        assert clone.asked[-2] == ["--editable", f"{clone.root}[dev]"]
+
+    def test_what_tests_need_contains_what_readers_need(self, clone):
+        clone.python("dev")
+        clone.python("lab")
+        assert len(clone.asked) == 2
+
+    def test_a_moved_clone_gets_a_new_one(self, clone, tmp_path):
+        clone.python()
+        (clone.root / ".venv" / "old").touch()
+        moved = Clone(clone.root.rename(tmp_path / "elsewhere"))
+        python = moved.python()
+        assert moved.imports(python) == tmp_path / "elsewhere"
+        assert str(tmp_path / "elsewhere") in (moved.root / ".venv/bin/activate").read_text()
+        assert not (moved.root / ".venv" / "old").exists()
+
+    def test_a_copied_clone_does_not_import_the_original(self, clone, tmp_path):
+        clone.python()
+        shutil.copytree(clone.root, tmp_path / "copy", symlinks=True)
+        copy = Clone(tmp_path / "copy")
+        assert clone.imports(copy.root / ".venv" / BIN) == clone.root  # silently, today
+        assert copy.imports(copy.python()) == copy.root
+        assert clone.imports(clone.python()) == clone.root
+
+    def test_an_interpreter_that_is_gone_is_replaced(self, clone):
+        python = clone.python()
+        python.unlink()
+        python.symlink_to("/nowhere/python3")
+        assert clone.imports(clone.python()) == clone.root
+
+    def test_a_relative_folder_is_meant_from_here(self, clone, tmp_path, monkeypatch):
+        (tmp_path / "here").mkdir()
+        monkeypatch.chdir(tmp_path / "here")
+        monkeypatch.setenv("CVNOTES_VENV", "envs/one")
+        assert clone.python() == tmp_path / "here" / "envs" / "one" / BIN
+        assert not (clone.root / ".venv").exists()
+
+    def test_an_environment_made_by_others_is_used_and_kept(self, clone):
+        venv.EnvBuilder(symlinks=True).create(clone.root / ".venv")
+        (clone.root / ".venv" / "theirs").touch()
+        assert clone.imports(clone.python()) == clone.root
+        assert (clone.root / ".venv" / "theirs").exists()
+
+    def test_a_broken_one_elsewhere_is_not_deleted(self, clone, tmp_path, monkeypatch):
+        other = tmp_path / "other"
+        venv.EnvBuilder(symlinks=True).create(other)
+        (other / BIN).unlink()
+        monkeypatch.setenv("CVNOTES_VENV", str(other))
+        with pytest.raises(clone.start.CannotError, match="does not start; delete that folder"):
+            clone.python()
+        assert (other / "pyvenv.cfg").exists()
+
+    def test_a_folder_of_other_things_is_left_alone(self, clone, tmp_path, monkeypatch):
+        (tmp_path / "letters").mkdir()
+        (tmp_path / "letters" / "to_ada.txt").write_text("Dear Ada")
+        monkeypatch.setenv("CVNOTES_VENV", str(tmp_path / "letters"))
+        with pytest.raises(clone.start.CannotError, match="holds something else"):
+            clone.python()
+        assert [path.name for path in (tmp_path / "letters").iterdir()] == ["to_ada.txt"]
+
+    def test_where_nothing_can_be_written_that_is_said(self, clone, tmp_path, monkeypatch):
+        (tmp_path / "file").touch()
+        monkeypatch.setenv("CVNOTES_VENV", str(tmp_path / "file" / "venv"))
+        with pytest.raises(clone.start.CannotError, match=r"cannot be written .* set CVNOTES_VENV"):
+            clone.python()
+        monkeypatch.setenv("CVNOTES_VENV", str(tmp_path / "file"))
+        with pytest.raises(clone.start.CannotError, match="is no folder"):
+            clone.python()
+
+    def test_without_ensurepip_it_names_the_package_to_install(self, clone, monkeypatch):
+        found = importlib.util.find_spec
+        monkeypatch.setattr(
+            "importlib.util.find_spec", lambda name: None if name == "ensurepip" else found(name)
+        )
+        with pytest.raises(clone.start.CannotError, match="sudo apt install python3-venv"):
+            clone.python()
+        assert not (clone.root / ".venv").exists()
+
+    def test_what_only_some_machines_have_is_optional(self, clone, capsys):
+        def pip(python, found, what):
+            if what[0] != "--editable":
+                raise clone.start.CannotError("no matching distribution")
+            clone.pip(python, found, what)
+
+        clone.start.pip = pip
+        assert clone.imports(clone.python()) == clone.root
+        assert "the course goes without" in capsys.readouterr().out
+
+    def test_without_a_network_what_was_installed_before_goes_on(self, clone, capsys):
+        python = clone.python()
+
+        def pip(*_):
+            raise clone.start.CannotError("the packages cannot be reached")
+
+        clone.start.pip = pip
+        (clone.root / "pyproject.toml").write_text("[project]\nname = 'newer'")
+        assert clone.python() == python
+        assert "goes on with the packages that it had" in capsys.readouterr().out
+        with pytest.raises(clone.start.CannotError, match="cannot be reached"):
+            clone.python("docs")
+
+
+@pytest.mark.slow
+def test_without_a_network_the_reason_is_told_soon(start, monkeypatch, tmp_path):
+    for name in [name for name in os.environ if name.startswith("PIP_")]:
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("PIP_CONFIG_FILE", os.devnull)
+    monkeypatch.setenv("PIP_INDEX_URL", "http://127.0.0.1:9/simple")  # nobody listens there
+    monkeypatch.setenv("PIP_TARGET", str(tmp_path))
+    started = time.monotonic()
+    with pytest.raises(start.CannotError, match="is this machine connected to a network"):
+        start.pip(Path(sys.executable), {"pip": True}, ["cvnotes-asks-for-nothing"])
+    assert time.monotonic() - started < 60  # it was 163 s
+
+
+@pytest.mark.slow
+@posix
+def test_an_environment_of_uv_gets_pip(start, tmp_path):
+    venv.EnvBuilder(symlinks=True).create(tmp_path / "env")
+    found = start.probe(tmp_path / "env" / BIN)
+    assert found["pip"] is False
+    start.pip(tmp_path / "env" / BIN, found, ["--help"])
+    assert start.probe(tmp_path / "env" / BIN)["pip"] is True
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("Downloading numpy-2.3.5-cp311-cp311-x.whl (16.9 MB)", "numpy 2.3.5, 16.9 MB"),
+        ("Downloading https://a/b/scipy-1.16-cp311-x.whl (35 MB)", "scipy 1.16, 35 MB"),
+        ("Downloading idna-3.11-py3-none-any.whl (71 kB)", None),
+        ("Installing collected packages: a, b, c", "putting 3 packages in place …"),
+        ("Requirement already satisfied: pip", None),
+    ],
+)
+def test_what_is_loaded_is_told_if_it_takes_a_while(start, line, told):
+    assert start.progress(line) == told
+
+
+@posix
+def test_kernels_are_spoken_to_by_files_where_their_names_are_short_enough():
+    assert transport("/run/user/1000/jupyter/runtime") == "ipc"
+    assert transport("/home/" + 60 * "a") == "tcp"
+    assert transport("/home/" + 30 * "ö") == "tcp"  # bytes count
+
+
+# --- Ctrl-C -------------------------------------------------------------------------------------
+
+# What `cvnotes lab` is to a terminal: it has a server, and takes its time to end it.
+STAND_IN = """
+    import signal, subprocess, sys, time
+    def end(*_): raise KeyboardInterrupt
+    signal.signal(signal.SIGTERM, end)
+    signal.signal(signal.SIGINT, end)
+    wait = [sys.executable, "-c", "import time; time.sleep(600)"]
+    server = subprocess.Popen(wait, start_new_session=True)
+    try:
+        print("server", server.pid, "up", flush=True)
+        server.wait()
+    except KeyboardInterrupt:
+        time.sleep(0.4)
+        server.terminate()
+        server.wait()
+        print("closed", flush=True)
+        sys.exit(130)
+"""
+# start.py with this Python for its environment, and perhaps another program behind a command.
+DRIVER = """
+    import importlib.util, sys
+    from pathlib import Path
+    spec = importlib.util.spec_from_file_location("start", {path!r})
+    start = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(start)
+    start.environment = lambda extra: Path(sys.executable)
+    start.RUN.update({run!r})
+    try:
+        sys.exit(start.main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        sys.exit(130)
+"""
+
+
+class Terminal:
+    """A program in a pseudo-terminal, where Ctrl-C is a key."""
+
+    def __init__(self, folder, run, *arguments):
+        import pty
+
+        code = textwrap.dedent(DRIVER).format(path=str(START), run=run)
+        self.said = ""
+        self.pid, self.keyboard = pty.fork()
+        if self.pid == 0:
+            os.environ["PYTHONPATH"] = str(START.parent)
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+            os.chdir(folder)
+            os.execv(sys.executable, [sys.executable, "-c", code, *arguments])
+
+    def read(self, pattern, seconds=60):
+        """Read until a pattern has come, or the end; gives the match."""
+        end = time.monotonic() + seconds
+        while not (found := re.search(pattern, self.said)) and time.monotonic() < end:
+            if select.select([self.keyboard], [], [], 0.1)[0]:
+                try:
+                    self.said += os.read(self.keyboard, 4096).decode()
+                except OSError:
+                    return re.search(pattern, self.said)
+        return found
+
+    def press_ctrl_c(self):
+        os.write(self.keyboard, b"\x03")
+
+    def ends(self):
+        """Read to the end; gives the exit code."""
+        self.read("a text that never comes", seconds=60)
+        code = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+        os.close(self.keyboard)
+        return code
+
+
+def runs(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return "Z" not in subprocess.run(["ps", "-o", "stat=", "-p", str(pid)],
+                                     capture_output=True, text=True).stdout  # fmt: skip
+
+
+@posix
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [signal.SIGINT] * 8 + [signal.SIGTERM])
+def test_stopped_in_a_terminal_it_leaves_nothing_running(kind, tmp_path):
+    (tmp_path / "lab.py").write_text(textwrap.dedent(STAND_IN))
+    terminal = Terminal(tmp_path, {"lab": [str(tmp_path / "lab.py")]})
+    server = int(terminal.read(r"server (\d+) up")[1])
+    if kind == signal.SIGINT:
+        terminal.press_ctrl_c()
+    else:
+        os.kill(terminal.pid, kind)
+    assert terminal.ends() == 130
+    assert "closed" in terminal.said
+    assert not runs(server)
+
+
+@posix
+@pytest.mark.slow
+def test_jupyterlab_and_its_kernels_end_with_ctrl_c_without_a_word_too_much(tmp_path, monkeypatch):
+    pytest.importorskip("jupyterlab")
+    monkeypatch.setenv("JUPYTER_CONFIG_DIR", str(tmp_path / "config"))
+    folder = str(tmp_path / "mine")
+    terminal = Terminal(tmp_path, {}, "lab", folder, "--no-browser", "--port", "0")
+    address = terminal.read(r"(http://127\.0\.0\.1:\d+)/lab\S+token=(\S+)\s")
+    terminal.read("Ctrl-C ends it")
+    url = f"{address[1]}/api/kernels?token={address[2]}"
+    with urllib.request.urlopen(url, data=b'{"name": "python3"}', timeout=30) as answer:
+        kernel = json.load(answer)["id"]
+    terminal.read("eavesdropping", seconds=4)  # time for a kernel to say so
+    processes = [
+        int(line.split()[0])
+        for line in subprocess.check_output(["ps", "-wweo", "pid,args"], text=True).splitlines()
+        if kernel in line or (folder in line and "jupyterlab" in line)
+    ]
+    assert len(processes) >= 2
+    terminal.press_ctrl_c()
+    terminal.press_ctrl_c()  # nobody presses it once only
+    assert terminal.ends() == 130
+    assert not any(map(runs, processes))
+    assert "The course is closed; what you saved is kept." in terminal.said
+    assert "eavesdropping" not in terminal.said
+    assert "\x1b" not in terminal.said
+
+
+@posix
+@pytest.mark.slow
+def test_interrupted_tests_tell_how_far_they_came(tmp_path):
+    (tmp_path / "pytest.ini").write_text("[pytest]")
+    (tmp_path / "test_it.py").write_text(
+        "import time\ndef test_a(): pass\ndef test_b():\n    print('asleep')\n    time.sleep(600)\n"
+    )
+    run = ["-m", "pytest", "-s", "-c", str(tmp_path / "pytest.ini"), str(tmp_path / "test_it.py")]
+    terminal = Terminal(tmp_path, {"test": run}, "test")
+    terminal.read("asleep")
+    terminal.press_ctrl_c()
+    assert terminal.ends() == 2
+    assert "KeyboardInterrupt" in terminal.said
+    assert "1 passed" in re.sub(r"\x1b\[\d*m", "", terminal.said)
