@@ -1,11 +1,14 @@
 """The rational lens and the fisheye, held against OpenCV and against themselves."""
 
+import warnings
+
 import cv2
 import numpy as np
 import pytest
 
-from cvnotes.base import CvnotesError, ShapeError
-from cvnotes.calibration import calibrate
+from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError
+from cvnotes.calibration import Calibration, calibrate, choose_lens
+from cvnotes.calibration.reliability import by_radius
 from cvnotes.camera import (
     Camera,
     FisheyeLens,
@@ -17,6 +20,7 @@ from cvnotes.camera import (
     rotation_from_vector,
 )
 from cvnotes.camera.model import project_with_derivative
+from cvnotes.files import read_camera
 from cvnotes.pictures import render
 from cvnotes.targets import Chessboard, refine_edges
 from cvnotes.warping import undistort_image, undistortion_map
@@ -258,3 +262,62 @@ def test_opencv_comes_to_no_better_rational_minimum():
     )
     found = calibrate(W, m.astype(float), camera.size, lens=name)
     assert found.rms < rms * (1 + 1e-3)
+
+
+# --- which lens? ------------------------------------------------------------------------------
+
+
+def test_views_left_out_choose_the_model_that_took_the_pictures():
+    rng = np.random.default_rng(4)
+    cameras = {
+        "k1 k2": Camera(intrinsics(800, 804, 325, 238), lens=Lens((-0.25, 0.1))),
+        "fisheye": Camera(intrinsics(220, 221, 325, 238), lens=FisheyeLens((-0.03, 0.005))),
+    }
+    for name, camera in cameras.items():
+        W, m = seen_by(camera, 15)
+        found = calibrate(W, m + rng.normal(0, 0.1, m.shape), camera.size, lens="auto")
+        assert choose_lens(found.left_out) == name
+        assert isinstance(found.lens, type(camera.lens))
+        # what is left out is predicted as well as its noise (0.14 px per point) allows
+        assert found.left_out[name] == pytest.approx(0.1 * np.sqrt(2), rel=0.1)
+
+
+def test_a_lens_that_is_too_small_is_never_reliable():
+    camera = Camera(intrinsics(300, 300, 325, 238), lens=FisheyeLens())
+    W, m = seen_by(camera, 15)
+    m = m + np.random.default_rng(5).normal(0, 0.05, m.shape)
+    for lens in ("k1 k2", "k1 k2 p1 p2"):
+        with pytest.warns(CalibrationWarning):
+            assert not calibrate(W, m, camera.size, lens=lens).reliable
+    assert calibrate(W, m, camera.size, lens="fisheye").reliable
+
+
+def test_by_radius_tells_what_a_lens_would_explain_from_noise():
+    rng = np.random.default_rng(6)
+    m = rng.uniform(0, 600, (10, 54, 2))
+    noise, centre = rng.normal(0, 0.2, m.shape), np.array([320.0, 240])
+    outwards = 1e-8 * ((m - centre) ** 2).sum(-1, keepdims=True) * (m - centre)
+    assert by_radius(noise, m, centre) == 0
+    assert by_radius(outwards, m, centre) > 0.99
+    assert 0.3 < by_radius(noise + outwards, m, centre) < 1
+    assert by_radius(1e-9 * outwards, m, centre) == 0  # nothing that matters
+
+
+def test_leaving_out_takes_four_views():
+    W, m = seen_by(Camera(intrinsics(800, 804, 325, 238)), 3)
+    with pytest.raises(DegenerateError, match="at least 4"):
+        calibrate(W, m, (640, 480), lens="auto")
+
+
+@pytest.mark.parametrize("lens", ["rational", "fisheye"])
+def test_a_wide_calibration_comes_back_from_its_file(tmp_path, lens):
+    camera = Camera(intrinsics(300, 300, 325, 238), lens=FisheyeLens((-0.02, 0.003)))
+    W, m = seen_by(camera, 8)
+    m = m + np.random.default_rng(7).normal(0, 0.05, m.shape)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CalibrationWarning)
+        found = calibrate(W, m, camera.size, lens=lens)
+    found.save(tmp_path / "calibration.json")
+    back = Calibration.load(tmp_path / "calibration.json")
+    assert (back.lens, back.names, back.std) == (found.lens, found.names, found.std)
+    assert read_camera(tmp_path / "calibration.json").lens == found.lens

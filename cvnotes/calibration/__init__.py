@@ -7,6 +7,7 @@ from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, rese
 from cvnotes.calibration.refinement import LENSES
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.uncertainty import prediction_std, std_with_view
+from cvnotes.calibration.which_lens import choose_lens, left_out_rms
 from cvnotes.calibration.zhang import (
     constraints,
     extrinsics,
@@ -23,6 +24,8 @@ __all__ = [
     "calibrate",
     "Calibration",
     "LENSES",
+    "left_out_rms",
+    "choose_lens",
     "v_ij",
     "constraints",
     "solve_b",

@@ -1,6 +1,7 @@
 """Calibration: from corners seen in several views to a camera with error bars (notes 2b.4)."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from cvnotes.base import DegenerateError, image_size
@@ -9,6 +10,7 @@ from cvnotes.calibration.refinement import Problem, refuse_too_few
 from cvnotes.calibration.reliability import Evidence, judge
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.starts import Search
+from cvnotes.calibration.which_lens import choose_lens, left_out_rms
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
 from cvnotes.homography import dlt
 
@@ -35,8 +37,10 @@ def calibrate(
         The same corners in the pictures, in pixels.
     size : (width, height)
         Size of the pictures.
-    lens : {"none", "k1", "k1 k2", "k1 k2 k3", "k1 k2 p1 p2", "k1 k2 p1 p2 k3"}
-        Which lens coefficients are estimated; the others are zero.
+    lens : {"none", "k1", "k1 k2", "k1 k2 k3", "k1 k2 p1 p2", "k1 k2 p1 p2 k3", ...}
+        Which lens coefficients are estimated; the others are zero. Wide lenses are "rational" or
+        "fisheye" (see `RationalLens` and `FisheyeLens`). With "auto" views that are left out
+        decide (see `left_out_rms`); there must be 4 of them.
     skew : bool
         Estimate the skew too; three views are then needed, else two.
     homography : callable
@@ -97,6 +101,10 @@ def calibrate(
     """
     size = image_size(size)
     data = Correspondences.of(board_points, image_points)
+    left_out = {}
+    if lens == "auto":
+        left_out = left_out_rms(board_points, image_points, size, skew=skew)
+        lens = choose_lens(left_out)
     problem = Problem.of(data, size, lens, skew)
     _refuse_too_few(problem)
 
@@ -120,7 +128,7 @@ def calibrate(
     best = search.best()
 
     # Is the answer to be believed? Reprojection errors alone do not tell.
-    found = Calibration.of(problem, data, best)
+    found = replace(Calibration.of(problem, data, best), left_out=left_out)
     residuals = problem.residuals(found.camera, best.x)
     return found.judged(*judge(Evidence.of(found, residuals, problem.m, problem.freedom)))
 

@@ -40,6 +40,9 @@ class Evidence:
         Whether the refinement ended at a minimum.
     likeness : float
         Correlation between the residuals of corners that follow each other; about 0 for noise.
+    by_radius : float
+        Part of the residuals' squares that goes outwards or inwards by the distance from the
+        piercing point; 0 where that tells nothing.
     """
 
     A: Array
@@ -52,6 +55,7 @@ class Evidence:
     corners: Array
     converged: bool
     likeness: float = 0.0
+    by_radius: float = 0.0
 
     @staticmethod
     def of(
@@ -72,6 +76,7 @@ class Evidence:
             corners=corners,
             converged=found.converged,
             likeness=0.0 if freedom is None else likeness(residuals, freedom),
+            by_radius=by_radius(residuals, corners, found.A[:2, 2]),
         )
 
     @cached_property
@@ -123,6 +128,32 @@ def likeness(residuals: Array, freedom: int) -> float:
     return float((r[:, 1:] * r[:, :-1]).sum()) / squares
 
 
+def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
+    """Tell which part of the residuals a better lens would explain.
+
+    Notes
+    -----
+    The residuals' components along the radius are fitted by odd powers of the radius, r to r⁹, as
+    a lens of more coefficients would. 0 if that part is no larger than noise makes it.
+
+    Examples
+    --------
+    >>> m = np.random.default_rng(0).uniform(-1, 1, (5, 50, 2))
+    >>> by_radius(0.1 * (m**2).sum(-1, keepdims=True) * m, m, np.zeros(2)) > 0.99
+    True
+    """
+    seen = np.isfinite(residuals).all(-1) & (residuals != 0).any(-1)
+    r, d = residuals[seen], corners[seen] - centre
+    rho = np.hypot(d[:, 0], d[:, 1])
+    squares = float(np.vdot(r, r))
+    if len(r) < 2 * _POWERS or squares < len(r) * _NEGLIGIBLE**2 or not rho.max() > 0:
+        return 0.0
+    along = np.vecdot(r, d) / np.maximum(rho, 1e-9)
+    Q = np.linalg.qr((rho / rho.max())[:, None] ** np.arange(1, 2 * _POWERS, 2)).Q
+    part = float(np.sum((Q.T @ along) ** 2))
+    return part / squares if part > _POWERS * _CHANCE * squares / r.size else 0.0
+
+
 def widest_angle(poses: Array) -> float:
     """Give the largest angle between the planes of two boards (n, 4, 4), in degrees.
 
@@ -146,6 +177,9 @@ def widest_angle(poses: Array) -> float:
 _UNDETERMINED, _WEAK = 0.0023, 0.01  # second smallest over largest singular value of V
 _PARALLEL, _FLAT = 5.0, 15.0  # largest angle between two boards, degrees
 _UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over its value
+_POWERS, _CHANCE = 5, 5.0  # of the radius; F from which on they are no chance
+_NEGLIGIBLE = 0.02  # px: what a lens misses below this does not matter
+_TOO_SMALL = 0.15  # part of the residuals by radius; 0.02 at most with a lens that fits
 _ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
 _MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
@@ -245,7 +279,13 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
             f"{e.view_rms[worst]:.2f} px, typical {typical:.2f} px): moved, zoomed, rotated or "
             "badly found? Leave them out and see what changes"
         )
-    if e.likeness > _ALIKE and typical > _MOVED * max(e.size):
+    if e.by_radius > _TOO_SMALL:
+        yield (
+            f"corners miss their places outwards or inwards by their distance from the middle "
+            f"({e.by_radius:.0%} of the residuals): this lens has too few coefficients; let views "
+            'that are left out choose one (lens="auto")'
+        )
+    elif e.likeness > _ALIKE and typical > _MOVED * max(e.size):
         yield _NO_NOISE
 
 

@@ -1,6 +1,6 @@
 """What a calibration gives: a camera, its error bars, and what is doubtful about it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
@@ -41,6 +41,9 @@ class Calibration:
         False when the views do not determine the answer, however small the residuals are.
     converged : bool
         Whether the refinement reached its minimum.
+    left_out : dict
+        With ``lens="auto"``, how well each lens predicts views left out (px); else empty. It is
+        not kept in files.
     """
 
     A: Array
@@ -54,6 +57,7 @@ class Calibration:
     warnings: tuple[str, ...] = ()
     reliable: bool = True
     converged: bool = True
+    left_out: Mapping[str, float] = field(default_factory=dict, repr=False)
     _data: Correspondences | None = field(default=None, repr=False)
     _pose_covariance: Callable[[], Array] | None = field(default=None, repr=False)
 

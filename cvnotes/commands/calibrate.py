@@ -26,6 +26,8 @@ _RESULTS = re.compile(
     r"calibration\.(json|yml)|photographs\.csv|(coverage|residuals|view_rms|corners(-\d+)?)\.png"
 )
 
+_OF_FEW = "k1 k2 p1 p2"  # the lens of fewer views than can be left out
+
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     """Describe the command's arguments."""
@@ -44,9 +46,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "have them counted in the photographs")  # fmt: skip
     add("--square", type=length, required=True, metavar="25", help="side of a square, in mm")
     add("--out", type=Path, required=True, metavar="FOLDER", help="folder for the results")
-    add("--lens", type=lens, default="k1 k2 p1 p2", metavar='"k1 k2"',
-        help='lens coefficients to estimate, such as none, k1, "k1 k2", "k1 k2 p1 p2" (default) '
-        'or "k1 k2 p1 p2 k3"')  # fmt: skip
+    add("--lens", type=lens, default="auto", metavar='"k1 k2"',
+        help='lens to estimate: auto (default: views left out decide), none, k1, "k1 k2", '
+        '"k1 k2 p1 p2", "k1 k2 p1 p2 k3", rational, fisheye')  # fmt: skip
     add("--skew", action="store_true", help="estimate the skew of the pixels' axes too")
     parser.set_defaults(run=run)
 
@@ -116,7 +118,9 @@ def _calibrate(
     m = m if whole else [x[s] for x, s in zip(m, seen, strict=True)]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CalibrationWarning)  # the report has them
-        return calibrate(W, m, examined[0].size, lens=args.lens, skew=args.skew)
+        # (to leave views out takes four of them)
+        lens = _OF_FEW if args.lens == "auto" and len(m) < 4 else args.lens
+        return calibrate(W, m, examined[0].size, lens=lens, skew=args.skew)
 
 
 def _contents(
@@ -178,7 +182,7 @@ def lens(text: str) -> str:
     from cvnotes.calibration import LENSES
 
     name = " ".join(text.replace(",", " ").split())
-    if name not in LENSES:
-        known = ", ".join(f'"{known}"' for known in LENSES)
+    if name not in (*LENSES, "auto"):
+        known = ", ".join(f'"{known}"' for known in (*LENSES, "auto"))
         raise argparse.ArgumentTypeError(f"expected one of {known}, got {text!r}")
     return name

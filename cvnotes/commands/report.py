@@ -75,7 +75,25 @@ def camera_report(result: "Calibration") -> str:
         f"Tilt            boards differ by up to {widest_angle(result.poses):.0f}°",
         f"Coverage        corners in {cells.sum()} of {cells.size} cells of the picture",
     ]
+    if result.left_out:
+        lines += ["", _lenses(result)]
     return "\n".join(lines)
+
+
+def _lenses(result: "Calibration") -> str:
+    """Return how well each lens predicts photographs that it has not seen."""
+    from cvnotes.calibration import choose_lens
+
+    chosen = choose_lens(dict(result.left_out))
+    rows = [
+        [
+            name,
+            f"{rms:.3f}" if np.isfinite(rms) else "no camera",
+            "chosen" if name == chosen else "",
+        ]
+        for name, rms in result.left_out.items()
+    ]
+    return text_table([["Lens", "px off in photographs left out", ""], *rows])
 
 
 def doubts(

@@ -1,0 +1,149 @@
+"""Which lens do the views speak for? Those that were left out decide.
+
+More coefficients always fit the corners better from which they were estimated. What counts is how
+well the camera predicts corners that it has not seen.
+"""
+
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import ConvergenceError, CvnotesError, DegenerateError, Minimum, image_size
+from cvnotes.calibration.correspondences import Correspondences, PointSets
+from cvnotes.calibration.refinement import Arrow, Problem, State, minimise, poses_follow
+from cvnotes.calibration.starts import Search
+from cvnotes.calibration.zhang import extrinsics, radial_distortion
+from cvnotes.homography import dlt
+
+# From the fewest coefficients to the most: 2, 4, 4, 5 and 8.
+CANDIDATES = ("k1 k2", "k1 k2 p1 p2", "fisheye", "k1 k2 p1 p2 k3", "rational")
+# A lens with more coefficients has to be better by this much.
+_BETTER = 1.03
+_PARTS = 5  # the views are left out a part at a time
+_STEPS = 10  # of a pose that follows a camera; it starts close
+
+
+def left_out_rms(
+    board_points: PointSets,
+    image_points: PointSets,
+    size: tuple[int, int],
+    *,
+    lenses: Sequence[str] = CANDIDATES,
+    skew: bool = False,
+) -> dict[str, float]:
+    """Predict the corners of views that were left out, with each of several lenses.
+
+    Parameters
+    ----------
+    board_points, image_points, size, skew
+        As for `calibrate`; at least 4 views.
+    lenses : sequence of str
+        Names that `calibrate` knows.
+
+    Returns
+    -------
+    dict
+        For each lens the root mean square distance, in pixels per point, of the corners of views
+        left out; infinite where the lens does not come to a camera.
+
+    Raises
+    ------
+    DegenerateError
+        There are fewer than 4 views.
+
+    Notes
+    -----
+    The views are dealt into five parts. A camera is estimated without one of them, then held
+    while the poses of the views left out are fitted; what remains in these counts.
+
+    References
+    ----------
+    .. [1] M. Stone, Cross-validatory choice and assessment of statistical predictions, J. R.
+       Statist. Soc. B 36 (1974) 111-147.
+
+    Examples
+    --------
+    >>> from cvnotes.pictures import course
+    >>> m = course.measured_corners()
+    >>> out = left_out_rms(course.board().points, m, (640, 480), lenses=("none", "k1 k2"))
+    >>> out["none"] > 3 * out["k1 k2"]
+    True
+    """
+    size = image_size(size)
+    data = Correspondences.of(board_points, image_points)
+    if len(data) < 4:
+        raise DegenerateError(f"to leave views out takes at least 4 of them, got {len(data)}")
+    return {name: _one(Problem.of(data, size, name, skew)) for name in lenses}
+
+
+def choose_lens(by_lens: dict[str, float]) -> str:
+    """Name the lens with the fewest coefficients that predicts as well as any.
+
+    Examples
+    --------
+    >>> choose_lens({"k1 k2": 0.170, "k1 k2 p1 p2": 0.169, "rational": 0.168})
+    'k1 k2'
+    >>> choose_lens({"k1 k2": 1.67, "fisheye": 0.42, "rational": 0.43})
+    'fisheye'
+    """
+    best = min(by_lens.values())
+    if not np.isfinite(best):
+        raise ConvergenceError(
+            "no lens leads to a camera: the corners are probably paired with the wrong points of "
+            "the board, or the views do not determine the camera"
+        )
+    return next(name for name, rms in by_lens.items() if rms <= _BETTER * best)
+
+
+def _one(problem: Problem) -> float:
+    """RMS over views left out, of one lens."""
+    n_views = len(problem.m)
+    squares = 0.0
+    try:
+        whole = _estimated(problem)
+        for out in _parts(n_views):
+            kept = np.setdiff1d(np.arange(n_views), out)
+            without = minimise(problem.some(kept), _some(whole.x, kept), tolerance=1e-8)
+            squares += _follow(problem.some(out), _some(whole.x, out), without)
+    except (ConvergenceError, DegenerateError, CvnotesError):
+        return np.inf
+    return float(np.sqrt(squares / problem.n_seen)) if np.isfinite(squares) else np.inf
+
+
+def _estimated(problem: Problem) -> Minimum[State, Arrow]:
+    """Estimate a camera from all views, as `calibrate` does by itself."""
+    search = Search(problem)
+    for start in search.starts():
+        with start.attempt():
+            H = start.homographies(dlt)
+            A = start.intrinsics(None, H)
+            G = start.extrinsics(extrinsics, A, H)
+            start.refine(A, G, start.distortion(radial_distortion, A, G))
+    return search.best()
+
+
+def _parts(n_views: int) -> Iterator[npt.NDArray[np.intp]]:
+    """Deal the views into parts; neighbours, which are often alike, into different ones."""
+    for i in range(min(_PARTS, n_views)):
+        yield np.arange(i, n_views, _PARTS)
+
+
+def _some(x: State, views: npt.NDArray[np.intp]) -> State:
+    return State(x.shared, x.R[views], x.T[views])
+
+
+def _follow(problem: Problem, x: State, camera: Minimum[State, Arrow]) -> float:
+    """Fit the poses of views to a camera that does not know them; gives the sum of squares."""
+    x = State(camera.x.shared, x.R, x.T)
+    cost, system = problem.linearise(x)
+    with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(DegenerateError):
+        for _ in range(_STEPS):
+            tried = poses_follow(x, system)
+            new_cost, new_system = problem.linearise(tried)
+            if not new_cost < cost * (1 - 1e-9):
+                break
+            x, cost, system = tried, new_cost, new_system
+    return cost
