@@ -125,7 +125,7 @@ def test_photographs_become_a_camera_within_its_error_bars(calibrated):
     for i, j, name in ((0, 0, "alpha_u"), (1, 1, "alpha_v"), (0, 2, "u0"), (1, 2, "v0")):
         assert abs(found.A[i, j] - A[i, j]) < 4 * keys["standard_deviations"][name] + 0.05
     assert np.allclose(read_camera(out / "calibration.yml").A, found.A, rtol=0, atol=0)
-    assert keys["lens"] == "k1 k2 p1 p2"
+    assert keys["lens"] == "k1 k2"  # views left out chose it
 
 
 @pytest.mark.slow
