@@ -130,8 +130,8 @@ def test_importing_the_geometry_loads_numpy_only():
 
 def test_nothing_in_the_package_prints_or_seeds_globally():
     for path in FILES:
-        if _name(path).startswith("commands"):
-            continue
+        if _name(path).startswith("commands") or "__main__" in path.read_text():
+            continue  # whoever is run on a command line speaks to it
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Call):
                 assert ast.unparse(node.func) not in ("print", "np.random.seed"), path.name
