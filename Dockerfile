@@ -3,6 +3,7 @@ FROM python:3.12-slim
 
 WORKDIR /course
 COPY pyproject.toml README.md LICENSE LICENSE-notes ./
+COPY tools/package_page.py tools/package_page.py
 COPY cvnotes cvnotes
 COPY notebooks notebooks
 COPY data data
