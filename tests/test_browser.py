@@ -324,11 +324,14 @@ def test_an_exploration_follows_the_keyboard_and_does_not_lag_behind(page, cours
 # What somebody types who reads the tasks of chapter 6: right, a classic mistake, and no end.
 TYPED = {
     "dlt": """def my_dlt(src, dst):
-    D = []
-    for (x, y), (u, v) in zip(src, dst):
+    def normal(x):
+        s, (a, b) = 2**0.5 / np.linalg.norm(x - x.mean(0), axis=1).mean(), x.mean(0)
+        return np.array([[s, 0, -s * a], [0, s, -s * b], [0, 0, 1]])
+    T, U, D = normal(src), normal(dst), []
+    for (x, y), (u, v) in zip(src @ T[:2, :2] + T[:2, 2], dst @ U[:2, :2] + U[:2, 2]):
         D.append([0, 0, 0, -x, -y, -1, v * x, v * y, v])
         D.append([x, y, 1, 0, 0, 0, -u * x, -u * y, -u])
-    return np.linalg.svd(np.array(D))[2][-1].reshape(3, 3)""",
+    return np.linalg.inv(U) @ np.linalg.svd(np.array(D))[2][-1].reshape(3, 3) @ T""",
     "four_points": "def my_four_points(src, dst):\n    return my_dlt(dst, src)",
     "normaliser": """def my_normaliser(x):
     scale = 1.0
