@@ -57,10 +57,20 @@ def numbers(x: Any, name: str, *, largest: float = LARGEST) -> Array:
     given = real(x, name)
     with np.errstate(over="ignore") if given.dtype.itemsize > 8 else nullcontext():
         array = given.astype(np.float64)
-    # One pass tells in nearly all cases that no number is too large, and none NaN.
-    if not np.vdot(array, array) < largest * largest:
+    if not _moderate(array, largest):
         _refuse_extremes(array, name, largest)
     return array
+
+
+# From here on OpenBLAS spreads a product over threads, which then keep their cores busy for 20 ms.
+_LONG = 10_000
+
+
+def _moderate(array: Array, largest: float) -> bool:
+    """Tell at once, in nearly all cases, that no number is too large, and none NaN."""
+    if array.size < _LONG:
+        return bool(np.vdot(array, array) < largest * largest)
+    return bool(max(array.max(), -array.min()) <= largest)
 
 
 def number(x: Any, name: str, *, at_least: float = -np.inf) -> float:

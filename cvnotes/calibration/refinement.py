@@ -169,7 +169,7 @@ class Problem:
 
         NaN where the lens folds.
         """
-        r = self.m - camera.project(self.W @ x.R.mT + x.T[:, None])
+        r = self.m - Camera.project.inside(camera, self.W @ x.R.mT + x.T[:, None])
         return r if self.seen is None else np.where(self.seen[..., None], r, 0.0)
 
     def jacobian(self, x: State) -> tuple[Array, Array]:
@@ -323,7 +323,12 @@ class Arrow:
         right = np.concatenate([self.border, self.g_poses[..., None]], axis=-1)
         inner = solved(np.linalg.solve, self.poses, right, why=_UNDETERMINED)
         q = len(self.shared)
-        return inner, right.reshape(-1, q + 1)[:, :q].T @ inner.reshape(-1, q + 1)
+        # (in parts, for which OpenBLAS does not call on threads)
+        total = sum(
+            right[part].reshape(-1, q + 1)[:, :q].T @ inner[part].reshape(-1, q + 1)
+            for part in chunks(len(inner), _CHUNK)
+        )
+        return inner, np.asarray(total)
 
 
 def solve_arrow(system: Arrow, damping: float) -> tuple[tuple[Array, Array], float]:

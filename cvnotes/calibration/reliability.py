@@ -11,7 +11,7 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.zhang import constraints
-from cvnotes.camera import Camera, FisheyeLens
+from cvnotes.camera import FisheyeLens, xy_from_px
 from cvnotes.camera.model import AnyLens
 
 _FAR = 100  # boards compared with each other; all pairs of thousands would take too long
@@ -321,14 +321,15 @@ def _outside(e: Evidence) -> Iterator[str]:
             f"corners lie outside of the {w}×{h} picture: is size (width, height), and of these "
             "pictures?"
         )
-    edges = [[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]]
+    reach = e.lens.max_radius
     # (the picture of a fisheye may well be a disc that ends before)
-    camera = Camera(e.A, lens=e.lens, size=e.size)
-    if not isinstance(e.lens, FisheyeLens) and np.isnan(camera.ideal(edges)).any():
-        yield (
-            "the estimated lens folds over before it reaches the corners of the picture: it "
-            "holds only where corners were seen; bring the board into the corners too"
-        )
+    if np.isfinite(reach) and not isinstance(e.lens, FisheyeLens):
+        xy = xy_from_px(e.A, [[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]])
+        if np.linalg.norm(xy, axis=-1).max() > reach * abs(e.lens.L(reach)):
+            yield (
+                "the estimated lens folds over before it reaches the corners of the picture: it "
+                "holds only where corners were seen; bring the board into the corners too"
+            )
 
 
 def _listed(indices: npt.NDArray[np.intp]) -> str:

@@ -169,7 +169,7 @@ class Start:
         own = self._is_own(step, dlt, "homography")
         if not own and self.problem.seen is None:
             with suppress(DegenerateError):  # one by one, so that the message names the view
-                return dlt(self.problem.W[..., :2], self.m)
+                return dlt.inside(self.problem.W[..., :2], self.m)
         return np.array([self._homography(step, own, i) for i in range(len(self.m))])
 
     def _homography(self, step: Callable[..., Any], own: bool, i: int) -> Array:
@@ -197,7 +197,7 @@ class Start:
             self.may_fail = True
             return A
         V = constraints(H)
-        b = solve_b(V, skew=self.problem.skew)
+        b = solve_b.inside(V, skew=self.problem.skew)
         self.may_fail = True
         return self.guess(V, b)
 
@@ -260,7 +260,7 @@ class Start:
 
 def resumed(search: Search, camera: Camera) -> Start:
     """Start all views from what a few of them say about the camera."""
-    as_seen = xy_from_px(camera.A, search.problem.m)
+    as_seen = xy_from_px.inside(camera.A, search.problem.m)
     ideal = camera.lens.undistort(as_seen)
     m = np.where(np.isnan(ideal), as_seen, ideal)
     if isinstance(camera.lens, FisheyeLens):  # rays near 90° and beyond: as far out as may be
@@ -281,7 +281,7 @@ def _wide_cameras(problem: Problem) -> Iterator[Camera]:
 
 
 def _focal_lengths_alone(V: Array, b: Array) -> Array:  # noqa: ARG001
-    return np.diag([*focal_lengths_from_v(V), 1.0])
+    return np.diag([*focal_lengths_from_v.inside(V), 1.0])
 
 
 def _closed_form(V: Array, b: Array) -> Array:  # noqa: ARG001
