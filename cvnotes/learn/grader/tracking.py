@@ -28,7 +28,7 @@ def end(process: "subprocess.Popen[bytes]", token: str) -> None:
     search goes on until it finds nobody. Elsewhere only the process group is ended.
     """
     deadline = time.monotonic() + _SECONDS
-    found = {process.pid} if process.poll() is None else set()
+    found = {process.pid} if _PROC.is_dir() and process.poll() is None else set()
     while found:
         # First they are stopped, so that none starts another while they are ended.
         _send(found, signal.SIGSTOP)
@@ -36,7 +36,8 @@ def end(process: "subprocess.Popen[bytes]", token: str) -> None:
         if more == found or time.monotonic() > deadline:
             break
         found = more
-    _send(found, signal.SIGKILL)
+    if found:
+        _send(found, signal.SIGKILL)
     if hasattr(os, "killpg"):
         with contextlib.suppress(OSError):
             os.killpg(process.pid, signal.SIGKILL)
@@ -45,7 +46,7 @@ def end(process: "subprocess.Popen[bytes]", token: str) -> None:
     while (left := marked(token)) and time.monotonic() < deadline:
         _send(left, signal.SIGKILL)
         time.sleep(0.01)
-    while _PROC.is_dir() and any(map(alive, found)) and time.monotonic() < deadline:
+    while any(map(alive, found)) and time.monotonic() < deadline:
         time.sleep(0.01)
 
 
