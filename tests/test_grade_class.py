@@ -13,6 +13,8 @@ from test_grade import IMPORTS, command, hand_over, notebook
 from cvnotes.base import FileError
 from cvnotes.learn import EXERCISES
 from cvnotes.learn.grader.assignment import read_assignment
+from cvnotes.learn.grader.feedback import class_picture
+from cvnotes.learn.grader.grading import grade_folder
 from cvnotes.learn.grader.handed_in import listed
 from cvnotes.learn.grader.marks import Mark, Verdict
 from cvnotes.learn.grader.source import fingerprint, own_code
@@ -401,3 +403,20 @@ def test_two_copies_are_remarked_without_an_assignment_too():
     assert (ada.points, ada.of) == (1, 1)
     assert sum(said in text for text in ada.remarks) == 1
     assert remarked([replace(mark, student="") for mark in marks]) == [[], []]
+
+
+def test_an_untouched_notebook_used_no_id(tmp_path):
+    stub = EXERCISES["own_camera"].stub
+    notebook(tmp_path / "ada" / "09_a.ipynb", IMPORTS, stub, hand_over("own_camera"))
+    [mark] = grade_folder(tmp_path)[1]
+    assert mark.reports["own_camera"].is_open
+    assert (mark.ids, remarked([mark])) == ((), [[]])
+
+
+def test_the_longest_name_has_room_in_the_picture():
+    marks = [Mark("ada", "a.ipynb", {}, tuple(EXERCISES))]
+    picture = class_picture(totals(marks))
+    longest = max(EXERCISES, key=len)
+    right_edge = int(re.search(rf'<text x="(\d+)"[^>]*>{longest}<', picture)[1])
+    assert right_edge > 6.6 * len(longest)  # px of a usual font of 13 px
+    assert picture.count("<rect") == 4 + len(EXERCISES)

@@ -7,7 +7,7 @@ from html import escape
 from cvnotes.learn.exercises import CHAPTERS, EXERCISES, notebook_of
 from cvnotes.learn.grader.assignment import Item
 from cvnotes.learn.grader.marks import Mark, Verdict
-from cvnotes.learn.grader.tables import misconceptions, number
+from cvnotes.learn.grader.tables import counted, misconceptions, number
 from cvnotes.learn.grader.totals import Total
 
 # Okabe's and Ito's blue and vermilion stay apart for every eye; each has a sign of its own, too.
@@ -162,7 +162,8 @@ def class_page(marks: Sequence[Mark], sums: Sequence[Total], title: str) -> str:
     points, of = sum(t.points for t in sums), sum(t.of for t in sums)
     parts = [f"<h1>{escape(title)}</h1>"]
     parts.append(
-        f'<p class="sum">{len(sums)} students, {number(points)} of {number(of)} points</p>'
+        f'<p class="sum">{counted(len(sums), "student")}, '
+        f"{number(points)} of {number(of)} points</p>"
     )
     parts.append(class_picture(sums))
     met = misconceptions(marks).most_common(12)
@@ -192,7 +193,8 @@ def class_picture(sums: Sequence[Total]) -> str:
     """
     asked = {name for total in sums for name in total.items}
     names = [name for name in EXERCISES if name in asked]
-    left, width, row, top = 160, 172, 22, 60
+    left = 20 + 7 * max(map(len, names), default=0)
+    width, row, top = 332 - left, 22, 60
     height = top + row * len(names) + 8
     shapes = [_legend()]
     for i, name in enumerate(names):

@@ -48,7 +48,8 @@ def judged(
             verdicts[name] = _verdict(asked(name, student), answers[name], seed)
         except Exception:  # whatever forged results lead to is their own affair
             verdicts[name] = Verdict(WRONG, "The results cannot be judged.", note=FORGED)
-        ids += [student] if student and student not in ids else []
+        if student and student not in ids and not verdicts[name].is_open:
+            ids.append(student)
     return verdicts, tuple(ids)
 
 

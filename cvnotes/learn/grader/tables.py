@@ -109,13 +109,13 @@ def summary(marks: Sequence[Mark], assignment: Assignment | None = None) -> str:
     Examples
     --------
     >>> print(summary([Mark("ada", "06.ipynb", expected=("dlt",))]))
-    1 notebooks, 0 of 1 points
+    1 notebook, 0 of 1 points
     dlt                           0 of 1
     """
     sums = totals(marks, assignment)
     points, possible = sum(t.points for t in sums), sum(t.of for t in sums)
     if assignment:
-        lines = [f"{len(sums)} students, {number(points)} of {number(possible)} points"]
+        lines = [f"{counted(len(sums), 'student')}, {number(points)} of {number(possible)} points"]
         lines += [
             f"{name:<29} {sum(name in t.verdicts and t.verdicts[name].passed for t in sums)}"
             f" of {len(sums)}"
@@ -124,7 +124,7 @@ def summary(marks: Sequence[Mark], assignment: Assignment | None = None) -> str:
     else:
         points, possible = sum(m.points for m in marks), sum(len(m.expected) for m in marks)
         n = sum(bool(mark.notebook) for mark in marks)
-        lines = [f"{n} notebooks, {points} of {possible} points"]
+        lines = [f"{counted(n, 'notebook')}, {points} of {possible} points"]
         for name in EXERCISES:
             expected = [mark for mark in marks if name in mark.expected]
             if expected:
@@ -139,6 +139,17 @@ def summary(marks: Sequence[Mark], assignment: Assignment | None = None) -> str:
 def misconceptions(marks: Iterable[Mark]) -> Counter[tuple[str, str]]:
     """Count the misconceptions of a class: (exercise, misconception)."""
     return Counter(pair for mark in marks for pair in mark.misconceptions.items())
+
+
+def counted(n: int, what: str) -> str:
+    """Write a number with its noun.
+
+    Examples
+    --------
+    >>> counted(1, "student"), counted(30, "student")
+    ('1 student', '30 students')
+    """
+    return f"{n} {what}{'s' * (n != 1)}"
 
 
 def number(x: float) -> str:
