@@ -8,6 +8,7 @@ reference that is not right on every random case, a mistake that passes or is ta
 # ruff: noqa: N999
 
 import argparse
+import sys
 from pathlib import Path
 
 from cvnotes.base import CvnotesError
@@ -38,7 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
         added = [name for path in args.added for name in add_exercises(path)]
         return max([_tried(name) for name in args.names or added or EXERCISES], default=0)
     except CvnotesError as error:
-        print(f"cvnotes.learn.try: {error}")
+        _say(f"cvnotes.learn.try: {error}")
         return 1
 
 
@@ -47,10 +48,14 @@ def _tried(name: str) -> int:
     found = list(faults(exercise))
     mistakes = len(exercise.misconceptions)
     known = f"{mistakes} mistake{'s' * (mistakes != 1)} known by name"
-    print(f"{name}: {'sound' if not found else 'not sound'}, {known}")
+    _say(f"{name}: {'sound' if not found else 'not sound'}, {known}")
     for fault in found:
-        print(f"  {fault}")
+        _say(f"  {fault}")
     return int(bool(found))
+
+
+def _say(line: str) -> None:
+    sys.stdout.write(f"{line}\n")
 
 
 if __name__ == "__main__":

@@ -11,6 +11,9 @@ from cvnotes.learn.checker.equality import TOLERANCE, Same, tolerance
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception
 from cvnotes.learn.checker.outcome import Outcome
 
+# A slip repeats a mistake to the last digits; what merely comes near is another one.
+_AS_NEAR = 0.01
+
 Tried = tuple[Case, Outcome]
 
 
@@ -61,7 +64,9 @@ def _explains(
             if outcome.value is not None and np.isfinite(outcome.value).all():
                 return False
             continue
-        if outcome.value is None or not same(outcome.value, given, tolerance(outcome.dtype)):
+        if outcome.value is None or not same(
+            outcome.value, given, _AS_NEAR * tolerance(outcome.dtype)
+        ):
             return False
         if id(case) in wrong and exercise.same(given, case.right, TOLERANCE):
             return False
