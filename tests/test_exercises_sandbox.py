@@ -251,6 +251,38 @@ def test_children_of_a_function_end_with_it():
     assert time.monotonic() - started < 60  # not the 600 seconds that the children sleep
 
 
+@needs_fork
+def test_on_a_busy_machine_waiting_for_a_turn_is_neither_sleep_nor_work(tmp_path):
+    clock = sandbox._Clock(os.getpid(), 1.0)
+    clock.started -= 5.0
+    clock.statistics = tmp_path / "schedstat"
+    clock.statistics.write_text("300000000 4600000000 7")  # 0.3 s of work, 4.6 s in the queue
+    assert clock.left() > 0.8
+    clock.statistics.write_text("300000000 100000000 7")  # 4.6 s asleep
+    assert clock.left() < 0
+    clock.statistics.unlink()  # no such statistics on this system
+    assert clock.left() > 0
+    clock.started -= 20.0
+    assert clock.left() < 0
+
+
+@needs_fork
+def test_the_limit_is_of_the_processors_time():
+    def half_a_second_of_work():
+        started = time.process_time()
+        while time.process_time() - started < 0.5:
+            pass
+        return 1.0
+
+    def stops_itself():
+        os.kill(os.getpid(), signal.SIGSTOP)
+
+    [enough] = run(half_a_second_of_work, [()], seconds=1.0)
+    [too_little] = run(half_a_second_of_work, [()], seconds=0.2)
+    assert (enough.kind, too_little.kind) == ("numbers", "late")
+    assert run(stops_itself, [()], seconds=0.3)[0].kind == "late"
+
+
 # --- right answers in odd clothes -----------------------------------------------------------
 
 

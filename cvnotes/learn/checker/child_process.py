@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from cvnotes.learn.checker.attempt import attempt
+from cvnotes.learn.checker.in_process import PATIENCE
 from cvnotes.learn.checker.outcome import encode
 
 
@@ -31,7 +32,7 @@ def work(
     writing : int
         Descriptor of the pipe to the parent.
     seconds, megabytes : float and int
-        What all calls together may use.
+        What all calls together may use: time of the processor, and memory.
     """
     os.setpgid(0, 0)
     faulthandler.disable()  # a crash is reported by the parent, in a sentence
@@ -58,9 +59,12 @@ def _limit(seconds: float, megabytes: int) -> None:
     """Set limits that hold even if the notebook dies before the child does."""
     import resource
 
-    # 1. time: one second after the parent would have stopped it
-    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.alarm(int(seconds) + 2)
+    # 1. time: of the processor, so that a busy machine changes no verdict; and in all, should
+    #    the parent not be there to stop what sleeps
+    for name in (signal.SIGPROF, signal.SIGALRM):
+        signal.signal(name, signal.SIG_DFL)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.alarm(int(PATIENCE * seconds) + 2)
     # 2. memory: linear algebra sets some aside for each processor
     headroom = (megabytes + 64 * (os.cpu_count() or 1)) * 2**20
     with contextlib.suppress(OSError, ValueError):

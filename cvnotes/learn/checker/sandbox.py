@@ -22,7 +22,7 @@ from cvnotes.base import CvnotesError
 from cvnotes.learn.checker.attempt import attempt
 from cvnotes.learn.checker.child_process import work
 from cvnotes.learn.checker.exercise import Exercise
-from cvnotes.learn.checker.in_process import run_here
+from cvnotes.learn.checker.in_process import PATIENCE, run_here
 from cvnotes.learn.checker.outcome import Outcome, decode
 
 SECONDS = 5.0
@@ -48,7 +48,8 @@ def run(
     arguments : sequence of tuple
         What to call it with; it is given copies.
     seconds : float
-        Time for all calls together.
+        Time of the processor for all calls together, and the longest that they may sleep. How
+        busy the machine is with other things changes nothing.
     megabytes : int
         Memory that the calls may use beyond what is used already.
 
@@ -104,19 +105,43 @@ def _run_in_child(
             os._exit(0)
     try:
         os.close(writing)
-        lines, late = _read(reading, len(arguments), seconds)
+        lines, late = _read(reading, len(arguments), _Clock(child, seconds))
     finally:
         os.close(reading)
         status = _end(child)
     outcomes = [_decoded(line) for line in lines]
+    late = late or (os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGPROF)
     rest = Outcome("late", words=f"{seconds:g}") if late else Outcome("died", words=_why(status))
     return outcomes + [rest] * (len(arguments) - len(outcomes))
 
 
-def _read(reading: int, n: int, seconds: float) -> tuple[list[bytes], bool]:
+class _Clock:
+    """Tells when a child has slept for too long; for what it calculates it has a limit itself.
+
+    On a busy machine a child waits for its turn: that is neither sleep nor calculation, and
+    counts as neither where the system tells (Linux).
+    """
+
+    def __init__(self, child: int, seconds: float) -> None:
+        self.seconds, self.started = seconds, time.monotonic()
+        self.statistics = f"/proc/{child}/schedstat"
+
+    def left(self) -> float:
+        """Give how many seconds the child may still sleep; 0 or less ends it."""
+        passed = time.monotonic() - self.started
+        at_most = PATIENCE * self.seconds - passed
+        try:
+            with open(self.statistics, "rb") as stream:  # noqa: PTH123
+                running, waiting = stream.read().split()[:2]
+        except (OSError, ValueError):
+            return at_most
+        return min(at_most, self.seconds - (passed - (int(running) + int(waiting)) / 1e9))
+
+
+def _read(reading: int, n: int, clock: _Clock) -> tuple[list[bytes], bool]:
     """Read up to n lines until the time is over; tells whether it was."""
     buffer = bytearray()
-    for chunk in _chunks(reading, time.monotonic() + seconds):
+    for chunk in _chunks(reading, clock):
         if chunk is None or len(buffer) > _MAX_BYTES:
             return bytes(buffer).split(b"\n")[:-1][:n], True
         buffer += chunk
@@ -125,11 +150,11 @@ def _read(reading: int, n: int, seconds: float) -> tuple[list[bytes], bool]:
     return bytes(buffer).split(b"\n")[:-1][:n], False
 
 
-def _chunks(reading: int, deadline: float) -> Iterator[bytes | None]:
+def _chunks(reading: int, clock: _Clock) -> Iterator[bytes | None]:
     """Yield what arrives until the other end is closed; None when the time is over."""
     poll = select.poll()
     poll.register(reading, select.POLLIN)
-    while (left := deadline - time.monotonic()) > 0:
+    while (left := clock.left()) > 0:
         if poll.poll(1000 * left):
             chunk = os.read(reading, 1 << 16)
             if not chunk:
