@@ -9,7 +9,7 @@ from cvnotes.projective import from_homogeneous, to_homogeneous
 
 
 def _homogeneous_points(rng: Rng) -> list[Case]:
-    by_hand = np.array([[4.0, 6.0, 2.0], [3.0, 9.0, -3.0]])
+    by_hand = np.array([[4.0, 6.0, 2.0], [3.0, 9.0, -3.0], [5.0, 7.0, 1.0]])
     many = to_homogeneous(rounded(rng.uniform(-5, 5, (5, 3))))
     infinite = np.array([[8.0, -6.0, 2.0], [3.0, 1.0, 0.0], [0.0, -2.0, 0.0]])
     return [

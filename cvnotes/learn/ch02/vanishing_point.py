@@ -31,7 +31,7 @@ def _directions(rng: Rng) -> list[Case]:
     return [
         Case((TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 3.0]))),
         Case((A, R, ahead)),
-        Case((A, R, -ahead), about="away"),
+        Case((A, R, -0.5 * ahead), about="away"),
         Case((TIDY_A, ABOUT_Y, np.array([0.0, 1.0, 0.0])), about="parallel"),
     ]
 

@@ -31,7 +31,7 @@ def _observed_points(rng: Rng) -> list[Case]:
     k_hand = np.array([-0.2, 0.05])
     cases = [(np.array([[0.5, 0.0], [0.3, 0.4]]), k_hand), (rng.uniform(-0.5, 0.5, (6, 2)), k)]
     strong = np.array([-0.35, 0.1])
-    cases.append((rng.uniform(0.3, 0.5, (4, 2)) * rng.choice([-1, 1], (4, 2)), strong))
+    cases.append((np.array([[0.5, 0.5], [-0.4, 0.5], [0.3, -0.5], [-0.5, -0.3]]), strong))
     return [Case((rounded(xy * lens_factor(xy, c), 4), c)) for xy, c in cases]
 
 

@@ -44,8 +44,8 @@ def _looked_up(image: Array, m: Array, size: tuple[int, int]) -> Array:
 
 
 def _warps(rng: Rng) -> list[Case]:
-    shift = np.array([[1.0, 0, 1], [0, 1, 0], [0, 0, 1]])
-    cases = [Case((np.array([[1.0, 2, 3], [4, 5, 6]]), shift, (4, 3)))]
+    shift = np.array([[1.0, 0, 1], [0, 1, 1], [0, 0, 1]])
+    cases = [Case((np.array([[1.0, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12]]), shift, (4, 3)))]
     while len(cases) < 3:
         H = np.eye(3) + rng.uniform(-0.25, 0.25, (3, 3)) * [[1, 1, 8], [1, 1, 8], [0.05, 0.05, 0]]
         H[:2, :2] *= 1.3
