@@ -41,7 +41,8 @@ _COMMANDS = ("lab", "target", "calibrate", "undistort", "grade", "completion")
 
 def parser(command: str = "") -> argparse.ArgumentParser:
     """Describe the command and its sub-commands; only one of them, if it is known which."""
-    names = (command,) if command in _COMMANDS else _COMMANDS
+    alone = command in _COMMANDS and command != "completion"  # which is about all of them
+    names = (command,) if alone else _COMMANDS
 
     top = _Parser(
         prog="cvnotes",

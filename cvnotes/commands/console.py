@@ -36,11 +36,11 @@ def complain(command: str, text: str) -> None:
     print(_fitting(line, sys.stderr.encoding), file=sys.stderr)
 
 
-def progress(items: Iterable[T], *, total: int) -> Iterator[T]:
-    """Pass photographs on, with a bar on stderr where that is a terminal."""
+def progress(items: Iterable[T], *, total: int, unit: str = "photographs") -> Iterator[T]:
+    """Pass things on, with a bar on stderr where that is a terminal."""
     from tqdm import tqdm
 
-    yield from tqdm(items, total=total, unit=" photographs", disable=None, leave=False)
+    yield from tqdm(items, total=total, unit=f" {unit}", disable=None, leave=False)
 
 
 def _fitting(text: str, encoding: str | None) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from cvnotes.base import Array, chunks
 from cvnotes.calibration.coverage import covered_cells
 from cvnotes.commands.canvas import ESTIMATED, FAINT, LENS, MUTED, WORLD, Canvas, known_runs, ticks
+from cvnotes.commands.console import progress
 from cvnotes.commands.examined import Examined
 from cvnotes.files.writing import printable
 from cvnotes.targets import Chessboard
@@ -19,6 +20,8 @@ _COLUMNS, _ROWS = 4, 10  # of a sheet
 _TILE = 320  # px wide
 _HEAD = 24  # px for a title
 _WIDE = 900  # px, of a picture of its own
+_BAR = 18  # px that a bar and its name need
+_MOST_LINES = 1000  # that can be told apart
 
 
 def pictures(
@@ -43,7 +46,8 @@ def pictures(
         "residuals.png": _residuals(result),
         **corner_sheets(examined, board),
     }
-    return {name: sheet.png() for name, sheet in drawn.items()}
+    sheets = progress(drawn.items(), total=len(drawn), unit="pictures")
+    return {name: sheet.png() for name, sheet in sheets}
 
 
 def corner_sheets(examined: Sequence[Examined], board: Chessboard) -> dict[str, Canvas]:
@@ -96,14 +100,15 @@ def _draw_lattice(sheet: Canvas, lattice: Array) -> None:
 def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
     """Draw the RMS of each view as a bar, beside that of all."""
     rms, height = np.asarray(result.view_rms), 420
-    step = -(-len(rms) // 40)  # labels stay legible up to forty
+    wide = min(max(_WIDE, 150 + _BAR * len(rms)), 4 * _WIDE)
+    step = -(-_BAR * len(rms) // (wide - 150))  # every name, as long as they are legible
     longest = max(len(_shortened(name)) for name in names)
     # A digit or a letter of this size is about 6 px wide.
-    flat = 6.5 * longest < step * (_WIDE - 150) / len(rms)
-    left, right, top = 62, _WIDE - 88, 18
+    flat = 6.5 * longest < step * (wide - 150) / len(rms)
+    left, right, top = 62, wide - 88, 18
     bottom = height - (40 if flat else min(24 + 7 * longest, 200))
     high = 1.05 * max(float(rms.max()), result.rms, 1e-12)
-    sheet, across, up = Canvas(_WIDE, height), (right - left) / len(rms), (bottom - top) / high
+    sheet, across, up = Canvas(wide, height), (right - left) / len(rms), (bottom - top) / high
     for tick in ticks(0, high):
         y = bottom - tick * up
         sheet.line([(left, y), (right, y)], FAINT)
@@ -165,18 +170,34 @@ def _residuals(result: "Calibration") -> Canvas:
     m, r = np.concatenate(result.image_points), np.concatenate(result.residuals)
     known = np.isfinite(r).all(-1)
     m, r = m[known], r[known]
-    longer = float(np.percentile(np.hypot(*r.T), 95)) if len(r) else 0.0
+    places, mean, word = m - r, r, "Residuals"
+    if len(r) > _MOST_LINES:  # of so many, what they have in common in a place is to be seen
+        places, mean = _cell_means(places, r, result.size)
+        word = "Mean residuals of places"
+    longer = float(np.percentile(np.hypot(*mean.T), 95)) if len(mean) else 0.0
     magnify = _round_number(0.04 * result.size[0] / longer) if longer > 0 else 1.0
-    title = f"Residuals, {magnify:,g} times as long (RMS {result.rms:.3f} px per point)"
+    title = f"{word}, {magnify:,g} times as long (RMS {result.rms:.3f} px per point)"
     sheet, zoom = _picture(result.size, title, more=_CLOUD)
-    start = (m - r + 0.5) * zoom + [_EDGE, _HEAD + _EDGE]
-    end = start + zoom * magnify * r
+    start = (places + 0.5) * zoom + [_EDGE, _HEAD + _EDGE]
+    end = start + zoom * magnify * mean
     for a, b in zip(start, end, strict=True):
         sheet.line([a, b], ESTIMATED)
     sheet.dots(end, ESTIMATED, 1.5)
     _frame(sheet, result.size, zoom)
     _cloud(sheet, r, result.rms / np.sqrt(2))
     return sheet
+
+
+def _cell_means(m: Array, r: Array, size: tuple[int, int]) -> tuple[Array, Array]:
+    """Average positions and residuals over the cells of a grid, 32 across; without empty cells."""
+    side = size[0] / 32
+    cell = np.floor((m + 0.5) / side).astype(int)
+    _, index, count = np.unique(cell, axis=0, return_inverse=True, return_counts=True)
+    sums = np.zeros((2, len(count), 2))
+    np.add.at(sums[0], index.ravel(), m)
+    np.add.at(sums[1], index.ravel(), r)
+    places, mean = sums / count[:, None]
+    return places, mean
 
 
 _CLOUD = 420  # px wide
