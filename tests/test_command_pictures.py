@@ -1,6 +1,7 @@
 """The pictures of a large calibration: every name is legible, and residuals are no hedgehog."""
 
 import io
+import itertools
 from types import SimpleNamespace
 
 import numpy as np
@@ -34,7 +35,7 @@ def test_every_bar_has_its_name(views):
     blank = ink(_view_rms(result(views, 4), [" " * len(name) for name in names]))
     written = (given != blank).any(axis=(0, 2))
     columns = np.linspace(62, given.shape[1] - 88, views + 1).round().astype(int)
-    assert all(written[a:b].any() for a, b in zip(columns, columns[1:], strict=False))
+    assert all(written[a:b].any() for a, b in itertools.pairwise(columns))
 
 
 def test_of_many_residuals_the_mean_of_each_place_is_drawn():
