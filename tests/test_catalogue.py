@@ -439,6 +439,7 @@ EXEMPT = {
     "homogeneous": "a guard",
     "homogeneous_columns": "for use inside maps",
     "homographies": "a guard",
+    "joined": "for use inside; `covered_cells` is tried",
     "pairs": "a guard",
     "Scene.moved": "guarded by `rigid.rigid_motion`; see test_meshes.py",
     "render": "a target and a camera; see test_synthetic.py",
