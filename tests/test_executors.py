@@ -19,6 +19,8 @@ from benchmarks.convergence import LENSES, counted, one
 from cvnotes.base import InputTypeError
 from cvnotes.commands.cli import main
 from cvnotes.learn.grader.grading import grade_folder
+from cvnotes.learn.grader.process import Limits
+from cvnotes.learn.grader.records import Records, read_records
 from cvnotes.learn.grader.tables import marks_csv
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -178,3 +180,30 @@ def test_what_is_no_function_or_executor_is_refused_in_a_sentence():
 def test_the_convergence_study_counts_every_set():
     k, f = LENSES["mild"]
     assert counted(k, f, 5, 3).total() == 3
+
+
+def test_exercises_that_were_added_are_known_to_other_processes(tmp_path, monkeypatch):
+    from cvnotes.learn import EXERCISES, exercises
+
+    monkeypatch.setattr(exercises, "_ADDED", {})
+    source = (
+        "from dataclasses import replace\n"
+        "from cvnotes.learn.ch01 import EXERCISES as OF_CHAPTER\n"
+        "EXERCISES = (replace(OF_CHAPTER[0], name='raise_points'),)\n"
+    )
+    (tmp_path / "own.py").write_text(source)
+    lift = source_of("lift").replace("my_lift", "mine")
+    notebook(tmp_path / "in" / "ada" / "a.ipynb", IMPORTS, lift, "check('raise_points', mine)")
+    try:
+        exercises.add_exercises(tmp_path / "own.py")
+        with processes() as executor:
+            [mark] = grade_folder(tmp_path / "in", executor=executor)[1]
+        assert mark.earned("raise_points") == 1
+        rows = Records(tmp_path / "rows.jsonl", {}, Limits())
+        rows.add(mark)
+        rows.__exit__(None, None, None)
+        assert len(read_records(tmp_path / "rows.jsonl", Limits())) == 1
+        (tmp_path / "own.py").write_text(source + "# changed")
+        assert read_records(tmp_path / "rows.jsonl", Limits()) == {}
+    finally:
+        EXERCISES.pop("raise_points", None)

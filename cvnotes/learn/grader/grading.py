@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from cvnotes.learn.checker.outcome import clean
+from cvnotes.learn.exercises import add_exercises, added_files
 from cvnotes.learn.grader.belonging import expected_exercises
 from cvnotes.learn.grader.handed_in import Handin, listed
 from cvnotes.learn.grader.handin import code_cells
@@ -87,7 +88,7 @@ def _marks(
                 yield mark
                 continue
             try:
-                waiting[pool.submit(grade, one, limits, hidden, batch)] = one
+                waiting[pool.submit(grade, one, limits, hidden, batch, added_files())] = one
             except Exception as error:  # a pool whose worker died takes nothing more
                 yield _lost(one, error)
         for future in waiting:
@@ -117,9 +118,18 @@ def _lost(one: Handin, error: Exception) -> Mark:
     return Mark(one.student, one.notebook, {}, expected, remark=f"could not be graded: {why}")
 
 
-def grade(one: Handin, limits: Limits, hidden: tuple[Path, ...] = (), batch: str = "") -> Mark:
-    """Grade one notebook; whatever goes wrong is a remark."""
+def grade(
+    one: Handin,
+    limits: Limits,
+    hidden: tuple[Path, ...] = (),
+    batch: str = "",
+    added: tuple[Path, ...] = (),
+) -> Mark:
+    """Grade one notebook, perhaps on another machine; whatever goes wrong is a remark."""
     try:
+        for path in added:
+            if path not in added_files():
+                add_exercises(path)
         return _graded(one, limits, hidden, batch)
     except Exception as error:
         return _lost(one, error)

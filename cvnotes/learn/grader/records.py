@@ -8,6 +8,7 @@ import contextlib
 import json
 import os
 from collections.abc import Mapping
+from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
@@ -15,6 +16,7 @@ from typing import IO, Self
 from cvnotes import __version__
 from cvnotes.base import FileError
 from cvnotes.files.writing import printable, write_whole
+from cvnotes.learn.exercises import added_files
 from cvnotes.learn.grader.marks import Mark, as_fields, from_fields
 from cvnotes.learn.grader.process import Limits
 
@@ -102,11 +104,17 @@ def read_records(path: Path, limits: Limits) -> Known:
     for line in lines:
         with contextlib.suppress(ValueError, TypeError, KeyError, AttributeError, RecursionError):
             fields = json.loads(line)
-            if fields["version"] == __version__ and fields["limits"] == _limited(limits):
+            if fields["version"] == _version() and fields["limits"] == _limited(limits):
                 mark = from_fields(fields["mark"])
                 if mark.content:  # what had no file is looked at again
                     known[mark.student, mark.notebook, mark.content] = mark
     return known
+
+
+def _version() -> str:
+    """Give the version of all that decides a mark, exercises that were added among it."""
+    added = (sha256(path.read_bytes()).hexdigest()[:12] for path in added_files())
+    return "+".join([__version__, *added])
 
 
 def _limited(limits: Limits) -> list[float]:
@@ -114,5 +122,5 @@ def _limited(limits: Limits) -> list[float]:
 
 
 def _line(mark: Mark, limits: Limits) -> bytes:
-    fields = {"version": __version__, "limits": _limited(limits), "mark": as_fields(mark)}
+    fields = {"version": _version(), "limits": _limited(limits), "mark": as_fields(mark)}
     return json.dumps(fields, ensure_ascii=True, allow_nan=False).encode() + b"\n"
