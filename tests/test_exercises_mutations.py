@@ -24,7 +24,7 @@ from cvnotes.learn import EXERCISES
 from cvnotes.learn.checker import in_process
 from cvnotes.learn.checker.judge import judge
 
-WANTED = int(os.environ.get("CVNOTES_MUTATIONS", "150"))
+WANTED = int(os.environ.get("CVNOTES_MUTATIONS", "90"))
 SEED = 2024
 OTHERS = (11, 12, 13, 14, 15, 16)
 NAMES = [name for name, e in EXERCISES.items() if e.answer == "function"]

@@ -94,3 +94,12 @@ def test_noise_is_normal():
 def test_an_id_is_a_text(student):
     with pytest.raises(CvnotesError, match="expected your id"):
         personal_camera(student)
+
+
+@pytest.mark.parametrize("student", ["your id", " Your ID", "student id"])
+def test_an_id_left_as_it_stands_counts_for_nothing(student):
+    found = personal_camera(student).camera.A[[0, 1, 0, 1], [0, 1, 2, 2]]
+    report = check("own_camera", found, student=student)
+    assert not report.passed
+    assert "Put your own id" in report.message
+    assert check("own_camera", ..., student=student).verdict == "not solved yet"

@@ -14,7 +14,7 @@ from cvnotes.learn.checker.judge import judge
 
 FUNCTIONS = [name for name, e in EXERCISES.items() if e.answer == "function"]
 # All 60 with CVNOTES_SEEDS=60; the usual run tries some.
-SEEDS = range(int(os.environ.get("CVNOTES_SEEDS", "6")))
+SEEDS = range(int(os.environ.get("CVNOTES_SEEDS", "3")))
 
 
 STYLES = {
