@@ -23,7 +23,7 @@ System = TypeVar("System")
 Step = TypeVar("Step")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Minimum(Generic[X, System]):
     """Where a minimisation ended, its cost, and the linear system that led there.
 

@@ -52,7 +52,7 @@ class State(NamedTuple):
     T: Array  # (n_views, 3)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
     """Corners seen in several views, and which parameters of the camera are to be estimated.
 

@@ -18,7 +18,7 @@ _FAR = 100  # boards compared with each other; all pairs of thousands would take
 _ROUNDING = 1e-6  # px, more than rounding leaves
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Evidence:
     """What a calibration is judged by.
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
 from cvnotes.camera.lens_fold import horner
@@ -99,7 +98,7 @@ class FisheyeLens:
         """
         slopes = np.zeros(9)
         slopes[::2] = [1.0, *(k * (2 * i + 1) for i, k in enumerate(self.k, 1))]
-        ends = sign_changes(Polynomial(slopes), np.pi)
+        ends = sign_changes(np.polynomial.Polynomial(slopes), np.pi)
         return min(ends, default=np.pi)
 
     @property

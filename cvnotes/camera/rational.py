@@ -11,7 +11,6 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from numpy.polynomial import Polynomial
 
 from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
 from cvnotes.camera.lens_fold import horner
@@ -123,8 +122,8 @@ class RationalLens:
         tangential terms, at which the Jacobian is singular in some direction. The thin prism and
         the tilt, which are small, are left out of account.
         """
-        above, below = Polynomial([1.0, *self.k[:3]]), Polynomial([1.0, *self.k[3:]])
-        t = Polynomial([0.0, 1.0])
+        t = np.polynomial.Polynomial([0.0, 1.0])  # loaded here, as few lenses need it
+        above, below = (1 + t * (a + t * (b + t * c)) for a, b, c in (self.k[:3], self.k[3:]))
         # d(r L)/dr times below²
         slope = above * below + 2 * t * (above.deriv() * below - above * below.deriv())
         ends = [np.sqrt(root) for f in (slope, below) for root in sign_changes(f, _FARTHEST)]
@@ -294,14 +293,14 @@ class RationalLens:
         return target * np.where(d > 0, ratio, 1)
 
 
-def sign_changes(f: Polynomial, beyond: float) -> list[float]:
+def sign_changes(f: "np.polynomial.Polynomial", beyond: float) -> list[float]:
     """Find the positive roots up to `beyond` at which a polynomial changes its sign.
 
     Examples
     --------
-    >>> sign_changes(Polynomial([-4.0, 2.0]), 10.0)
+    >>> sign_changes(np.polynomial.Polynomial([-4.0, 2.0]), 10.0)
     [2.0]
-    >>> sign_changes(Polynomial([4.0, -4.0, 1.0]), 10.0)
+    >>> sign_changes(np.polynomial.Polynomial([4.0, -4.0, 1.0]), 10.0)
     []
     """
     roots = np.asarray(f.trim().roots(), complex)

@@ -32,7 +32,7 @@ class StereoState(NamedTuple):
         return State(self.right, self.R @ self.left.R, self.left.T @ self.R.T + self.T)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StereoProblem:
     """The same boards seen by two cameras.
 
