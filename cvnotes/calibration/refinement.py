@@ -25,7 +25,7 @@ from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens, rotation_from_vector
 from cvnotes.camera.fisheye import through_angle
 from cvnotes.camera.lens_fold import horner, radial_factor
-from cvnotes.camera.model import AnyLens
+from cvnotes.camera.model import AnyLens, with_values
 from cvnotes.camera.rational import through_quotient
 
 # What `lens=` may name: the model, how many radial terms, and whether the tangential ones too.
@@ -134,7 +134,9 @@ class Problem:
 
     def camera_of(self, shared: Array) -> Camera:
         """Give the camera that the shared parameters stand for; what is not sought is zero."""
-        return self._plain.with_parameters(dict(zip(self.names, shared.tolist(), strict=True)))
+        sought = dict(zip(self.names, shared.tolist(), strict=True))
+        A, lens = with_values(np.eye(3), self.model(), sought)
+        return Camera(A, lens=lens, size=self.size)
 
     def linearise(self, x: State) -> "tuple[float, Arrow]":
         """Give the cost and the normal equations at x."""
@@ -180,11 +182,6 @@ class Problem:
         views = (slice(i, i + 1) for i in range(len(self.m)))
         both = np.concatenate([self._jacobian(x, i).transpose(2, 3, 1, 0).copy() for i in views])
         return both[..., :-1], both[..., -1]
-
-    @cached_property
-    def _plain(self) -> Camera:
-        """A camera of that size in which all that can be sought is 0, but for α = 1."""
-        return Camera(np.eye(3), lens=self.model(), size=self.size)
 
     @cached_property
     def _by_coordinate(self) -> tuple[Array, Array]:

@@ -1,7 +1,7 @@
 """The camera: what it is made of, and what it sees (notes 2b.1-2b.3)."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -127,13 +127,8 @@ class Camera:
         >>> camera.with_parameters({"alpha_u": 810, "k1": -0.2}).parameters
         {'alpha_u': 810.0, 'alpha_v': 805.0, 'skew': 0.0, 'u0': 320.0, 'v0': 240.0, 'k1': -0.2}
         """
-        A, of_lens = self.A.copy(), {}
-        for name, value in values.items():
-            if name in SENSOR:
-                A[SENSOR[name]] = value
-            else:
-                of_lens[name] = value
-        return replace(self, A=A, lens=self.lens.with_parameters(of_lens))
+        A, lens = with_values(self.A, self.lens, values)
+        return Camera(A, self.G, lens, self.size)
 
     def depth(self, W: npt.ArrayLike) -> Array:
         """Distance of world points (..., 3) from the plane z = 0 of the CRF, along its axis."""
@@ -245,6 +240,23 @@ class Camera:
             f"Camera(alpha_u={a[0, 0]:.2f}, alpha_v={a[1, 1]:.2f}, u0={a[0, 2]:.2f}, "
             f"v0={a[1, 2]:.2f}, skew={a[0, 1]:.2f}, lens={self.lens}, size={w})"
         )
+
+
+def with_values(A: Array, lens: AnyLens, values: Mapping[str, float]) -> tuple[Array, AnyLens]:
+    """Give A and lens with other values of the parameters that are named.
+
+    Examples
+    --------
+    >>> with_values(np.eye(3), Lens(), {"u0": 320.0, "k1": -0.2})[1].k
+    (-0.2,)
+    """
+    A, of_lens = A.copy(), {}
+    for name, value in values.items():
+        if name in SENSOR:
+            A[SENSOR[name]] = value
+        else:
+            of_lens[name] = value
+    return A, lens.with_parameters(of_lens)
 
 
 def is_camera(x: Any, name: str) -> Camera:
