@@ -18,13 +18,15 @@ from cvnotes.base import (
     solve_dense,
 )
 from cvnotes.calibration.ppm import ppm_dlt
+from cvnotes.calibration.turning import turned_over
 from cvnotes.calibration.zhang import extrinsics
 from cvnotes.camera import Camera, nearest_rotation, pose, rotation_from_vector, skew_matrix
 from cvnotes.camera.model import is_camera, project_with_derivative
 from cvnotes.homography import dlt
 
-# Flat to this fraction of its size, a target is treated as a plane.
-_FLAT = 1e-9
+# Thickness over size. Nearly flat, a target has the two poses of a plane, and noise decides what its
+# PPM says about its depth; below _FLAT the PPM is not asked.
+_NEARLY_FLAT, _FLAT = 0.1, 0.01
 
 Pose = tuple[Array, Array]  # R (3, 3) and T (3,) while the target is scaled to unit size
 
@@ -60,7 +62,8 @@ def pose_from_view(
     1. Sensor and lens are undone; 2. the homography of the ideal points (or, in space, their
     PPM) gives a first pose; 3. Levenberg–Marquardt on its six parameters. A flat target that is
     small or far has a second pose with nearly the same picture, tilted to the other side of the
-    line of sight; both are refined and the better one is taken.
+    line of sight; both are refined and the better one is taken. So they are when the target is flat
+    but for a hundredth of its size, like a bent board; up to a tenth the PPM competes with them.
 
     References
     ----------
@@ -115,54 +118,55 @@ def _ideal(camera: Camera, m: Array) -> Array:
     return xy
 
 
-def _start(W: Array, xy: Array, flat: bool) -> Pose:
-    """Give the pose to refine from, in closed form."""
-    if not flat:
-        P = ppm_dlt(W, xy)
-        s = np.cbrt(np.linalg.det(P[:, :3]))
-        if s <= 0:
-            raise DegenerateError(
-                "the points would lie behind the camera: is the picture mirrored, or (v, u) given "
-                "for (u, v)?"
-            )
-        return nearest_rotation(P[:, :3] / s), P[:, 3] / s
-    # A frame on the plane: its axes are the columns of F.
-    F = np.linalg.svd(W, full_matrices=False)[2].T
-    F *= np.linalg.det(F)
+def _best(camera: Camera, W: Array, m: Array, xy: Array) -> Pose:
+    """Refine every start that the target's shape allows, and take what fits best."""
+    flatness, F = _plane(W)
+    minima, why = [], None
+    try:
+        if flatness <= _NEARLY_FLAT:
+            x = _start_in_plane(W, xy, F)
+            minima.append(_refine(camera, x, W, m))
+            x = minima[0].x
+            turned = turned_over(x[0], x[1], F[:, 2])
+            with suppress(ConvergenceError, DegenerateError):  # the other pose may lead nowhere
+                minima.append(_refine(camera, (turned, x[1]), W, m))
+    except (ConvergenceError, DegenerateError) as error:
+        why = error
+    try:
+        if flatness > _FLAT:
+            minima.append(_refine(camera, _start_in_space(W, xy), W, m))
+    except (ConvergenceError, DegenerateError) as error:
+        why = error
+    if why and not minima:
+        raise why
+    return min(minima, key=lambda minimum: minimum.cost).x
+
+
+def _plane(W: Array) -> tuple[float, Array]:
+    """Tell how flat centred points are (0: entirely), and give a frame (3, 3) on their plane.
+
+    Its axes are the columns: two in the plane, and the normal.
+    """
+    _, s, Vt = np.linalg.svd(W, full_matrices=False)
+    return float(s[2] / s[0]), Vt.T * np.linalg.det(Vt)
+
+
+def _start_in_plane(W: Array, xy: Array, F: Array) -> Pose:
+    """Give a pose of a target that is flat, or taken for flat, from its homography."""
     G = extrinsics(np.eye(3), dlt((W @ F)[:, :2], xy))
     return G[:3, :3] @ F.T, G[:3, 3]
 
 
-def _other_tilt(x: Pose, normal: Array) -> Pose:
-    """Tilt a flat target to the other side of the line of sight.
-
-    The mirror across the line of sight leaves the picture of a distant target as it is; a second
-    mirror, along the target's normal, changes no point of the target and makes it a rotation.
-    """
-    R, T = x
-    sight = T / np.linalg.norm(T)
-    return _mirror(sight) @ R @ _mirror(normal), T
-
-
-def _mirror(n: Array) -> Array:
-    return np.eye(3) - 2 * np.outer(n, n)
-
-
-def _best(camera: Camera, W: Array, m: Array, xy: Array) -> Pose:
-    """Refine the start, and for a flat target also the other tilt; take what fits better."""
-    flat, normal = _plane(W)
-    found = _refine(camera, _start(W, xy, flat), W, m)
-    if flat:
-        with suppress(ConvergenceError, DegenerateError):  # the other tilt may lead nowhere
-            other = _refine(camera, _other_tilt(found.x, normal), W, m)
-            found = min(found, other, key=lambda minimum: minimum.cost)
-    return found.x
-
-
-def _plane(W: Array) -> tuple[bool, Array]:
-    """Tell whether centred points are flat, and give the direction in which they are flattest."""
-    _, s, Vt = np.linalg.svd(W, full_matrices=False)
-    return bool(s[2] <= _FLAT * s[0]), Vt[2]
+def _start_in_space(W: Array, xy: Array) -> Pose:
+    """Give a pose of a target in space from its perspective projection matrix."""
+    P = ppm_dlt(W, xy)
+    s = np.cbrt(np.linalg.det(P[:, :3]))
+    if s <= 0:
+        raise DegenerateError(
+            "the points would lie behind the camera: is the picture mirrored, or (v, u) given for "
+            "(u, v)?"
+        )
+    return nearest_rotation(P[:, :3] / s), P[:, 3] / s
 
 
 def _refine(camera: Camera, start: Pose, W: Array, m: Array) -> Minimum[Pose, Array]:

@@ -180,7 +180,7 @@ _UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over
 _POWERS, _CHANCE = 5, 5.0  # of the radius; F from which on they are no chance
 _NEGLIGIBLE = 0.02  # px: what a lens misses below this does not matter
 _TOO_SMALL = 0.15  # part of the residuals by radius; 0.02 at most with a lens that fits
-_ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
+ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
 _MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
 _NO_NOISE = (
@@ -285,13 +285,13 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
             f"({e.by_radius:.0%} of the residuals): this lens has too few coefficients; let views "
             'that are left out choose one (lens="auto")'
         )
-    elif e.likeness > _ALIKE and typical > _MOVED * max(e.size):
+    elif e.likeness > ALIKE and typical > _MOVED * max(e.size):
         yield _NO_NOISE
 
 
 def _systematic(e: Evidence) -> Iterator[str]:
     """Find residuals that are small, but of which the error bars are not a measure."""
-    if e.likeness > _ALIKE and e.typical_rms <= _MOVED * max(e.size):
+    if e.likeness > ALIKE and e.typical_rms <= _MOVED * max(e.size):
         yield f"{_NO_NOISE} The true error is then larger than the error bars say"
 
 

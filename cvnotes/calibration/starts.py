@@ -8,6 +8,9 @@ focal lengths alone for an A. In reserve, when that leads nowhere, are
 3. of many views first a few, which know the camera well enough to place all others;
 4. for wide lenses, corners straightened as equidistant lenses of several fields of view would.
 
+A flat board has two poses that look alike; `turning` looks whether a minimum has a board in the
+wrong one.
+
 Steps see the board centred and scaled to unit size and the picture centred and scaled to [−1, 1].
 A student's step gets copies, and what it gives back is looked at before it is used.
 """
@@ -33,6 +36,8 @@ from cvnotes.base import (
     rigid_motion,
 )
 from cvnotes.calibration.refinement import Arrow, Problem, State, minimise
+from cvnotes.calibration.reliability import ALIKE, likeness
+from cvnotes.calibration.turning import FEW_VIEWS, best_turned
 from cvnotes.calibration.zhang import (
     constraints,
     extrinsics,
@@ -60,6 +65,8 @@ _MANY_VIEWS, _VIEWS_FOR_START = 150, 16
 # RMS over the picture's longer side: a start that leaves more than this is not trusted before the
 # others were tried.
 _SUSPICIOUS = 0.002
+# The same, when the residuals of few views are no noise.
+_SYSTEMATIC = 0.0003
 # A student's H is wrong when it puts half of the corners this far off; the picture's width is 2.
 _WRONG = 0.25
 
@@ -106,7 +113,16 @@ class Search:
 
     def _is_good(self, minimum: Minimum[State, Arrow]) -> bool:
         allowed = (_SUSPICIOUS * max(self.problem.size)) ** 2 * self.problem.n_seen
-        return minimum.converged and minimum.cost < allowed
+        if not minimum.converged or minimum.cost >= allowed:
+            return False
+        return len(self.problem.m) > FEW_VIEWS or not self._is_systematic(minimum)
+
+    def _is_systematic(self, minimum: Minimum[State, Arrow]) -> bool:
+        """Tell whether more than noise is left: few views bend a wrong camera until it fits."""
+        if minimum.cost < (_SYSTEMATIC * max(self.problem.size)) ** 2 * self.problem.n_seen:
+            return False
+        r = self.problem.residuals(self.problem.camera_of(minimum.x.shared), minimum.x)
+        return likeness(r, self.problem.freedom) > ALIKE
 
     def best(self) -> Minimum[State, Arrow]:
         """Give the lowest minimum that was found."""
@@ -243,9 +259,9 @@ class Start:
         return self.problem.state(Camera(self.to_px @ A, lens=lens, size=self.problem.size), G)
 
     def refine(self, A: Array, G: Array, lens: AnyLens) -> None:
-        """5. Minimise from here, and keep what is found."""
+        """5. Minimise from here, with no board in the wrong pose, and keep what is found."""
         found = minimise(self.problem, self.state(A, G, lens), tolerance=self.search.tolerance)
-        self.search.minima.append(found)
+        self.search.minima.append(best_turned(self.problem, found))
 
     def _is_own(self, step: Any, library: Any, name: str) -> bool:
         """Tell whether a step is the student's, and take note of it."""
