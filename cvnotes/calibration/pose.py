@@ -24,8 +24,8 @@ from cvnotes.camera import Camera, nearest_rotation, pose, rotation_from_vector,
 from cvnotes.camera.model import is_camera, project_with_derivative
 from cvnotes.homography import dlt
 
-# Thickness over size. Nearly flat, a target has the two poses of a plane, and noise decides what its
-# PPM says about its depth; below _FLAT the PPM is not asked.
+# Thickness over size. A target that is nearly flat has the two poses of a plane, and noise decides
+# what its PPM says about depth; below _FLAT the PPM is not asked.
 _NEARLY_FLAT, _FLAT = 0.1, 0.01
 
 Pose = tuple[Array, Array]  # R (3, 3) and T (3,) while the target is scaled to unit size
