@@ -1,9 +1,12 @@
 """What `cvnotes calibrate` says of boards that are hidden, miscounted, copied or left out."""
 
+import io
 import json
 import re
 import threading
 import time
+import warnings
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,16 +14,15 @@ import pytest
 from PIL import Image
 from test_cli import SIZE, TILTS, A, board_pose, photograph
 
+from cvnotes.calibration import calibrate as calibration
+from cvnotes.commands import pictures
 from cvnotes.commands.cli import main
+from cvnotes.commands.examined import Examined
 from cvnotes.commands.parallel import in_order
 from cvnotes.commands.report import named
+from cvnotes.targets import Chessboard
 
-pytestmark = pytest.mark.usefixtures("undrawn")
-
-
-@pytest.fixture
-def undrawn(monkeypatch):
-    monkeypatch.setattr("cvnotes.commands.pictures.pictures", lambda *_: {})
+BOARD = Chessboard((9, 6), 20.0)
 
 
 @pytest.fixture
@@ -163,3 +165,86 @@ def test_an_error_is_raised_where_its_result_is_asked_for():
     assert [next(results) for _ in range(3)] == [0, 0, 1]
     with pytest.raises(ZeroDivisionError):
         next(results)
+
+
+def drawn(name, sheets):
+    """Decode one of the pictures."""
+    return np.asarray(Image.open(io.BytesIO(sheets[name]))).astype(int)
+
+
+@pytest.fixture(scope="module")
+def solved():
+    """A calibration of three boards, one corner of which is hidden."""
+    W = BOARD.points
+    views = [project(board_pose(tilt)) for tilt in TILTS[:4]]
+    noise = np.random.default_rng(0)
+    m = [v + 0.1 * noise.standard_normal(v.shape) for v in views]
+    seen = [np.ones(54, bool) for _ in m]
+    seen[1][20] = False
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        result = calibration(
+            [W[s] for s in seen], [x[s] for x, s in zip(m, seen, strict=True)], SIZE
+        )
+    whole = [np.where(s[:, None], x, np.nan) for x, s in zip(m, seen, strict=True)]
+    return result, whole
+
+
+def project(placed):
+    R, T = placed
+    x, y, z = A @ (R @ BOARD.points.T + T[:, None])
+    return np.stack([x / z, y / z], axis=-1)
+
+
+def photographed(corners, **more):
+    grey = np.full((SIZE[1], SIZE[0]), 200, np.uint8)
+    return Examined(Path("a.png"), SIZE, grey, corners, False, "", **more)
+
+
+def test_a_sheet_shows_found_corners_hidden_ones_and_what_was_taken_for_a_board(solved):
+    result, corners = solved
+    examined = [photographed(m) for m in corners]
+    examined.append(photographed(None, found=np.array([[100.0, 60.0], [200.0, 180.0]])))
+    sheets = pictures.pictures(result, examined, BOARD, [f"{i}.png" for i in range(4)])
+    assert list(sheets) == ["view_rms.png", "coverage.png", "residuals.png", "corners.png"]
+    sheet = drawn("corners.png", sheets)
+    orange, blue = (np.abs(sheet - rgb).sum(-1) < 90 for rgb in ((213, 94, 0), (0, 114, 178)))
+
+    def place(tile, m):  # tiles of 320 px, as wide as the photographs
+        x, y = 324 * (tile % 4) + 2 + m[0] + 0.5, 264 * (tile // 4) + 24 + m[1] + 0.5
+        return np.s_[round(y) - 2 : round(y) + 3, round(x) - 2 : round(x) + 3]
+
+    for i in (13, 30, 53):
+        assert orange[place(0, corners[0][i])].any()
+    assert orange[place(1, corners[1][21])].any()
+    assert not orange[place(1, project(board_pose(TILTS[1]))[20])].any()
+    for m in ([100.0, 60.0], [200.0, 180.0]):
+        assert blue[place(4, m)].any()
+
+
+def test_bars_are_as_high_as_the_views_rms(solved):
+    result, corners = solved
+    rms = drawn(
+        "view_rms.png", pictures.pictures(result, [photographed(corners[0])], BOARD, "abcd")
+    )
+    orange = (np.abs(rms - (213, 94, 0)).sum(-1) < 30).sum(0)
+    columns = [62 + (i + 0.5) * (900 - 88 - 62) / 4 for i in range(4)]
+    heights = np.array([orange[round(x)] for x in columns])
+    np.testing.assert_allclose(
+        heights / heights[0], result.view_rms / result.view_rms[0], atol=0.02
+    )
+
+
+def test_residuals_that_are_nan_are_not_drawn_and_no_error(solved):
+    result, corners = solved
+    folded = SimpleNamespace(
+        size=result.size,
+        rms=np.nan,
+        view_rms=np.array([0.1, np.nan, 0.2, 0.1]),
+        image_points=result.image_points,
+        residuals=[
+            np.full_like(r, np.nan) if i == 1 else r for i, r in enumerate(result.residuals)
+        ],
+    )
+    sheets = pictures.pictures(folded, [photographed(corners[0])], BOARD, "abcd")
+    assert all(np.ptp(drawn(name, sheets)) > 100 for name in sheets)

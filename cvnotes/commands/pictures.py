@@ -99,7 +99,9 @@ def _draw_lattice(sheet: Canvas, lattice: Array) -> None:
 
 def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
     """Draw the RMS of each view as a bar, beside that of all."""
-    rms, height = np.asarray(result.view_rms), 420
+    # Where a lens folds there is no residual, and no bar.
+    rms, all_rms = np.nan_to_num(result.view_rms), float(np.nan_to_num(result.rms))
+    height = 420
     wide = min(max(_WIDE, 150 + _BAR * len(rms)), 4 * _WIDE)
     step = -(-_BAR * len(rms) // (wide - 150))  # every name, as long as they are legible
     longest = max(len(_shortened(name)) for name in names)
@@ -107,7 +109,7 @@ def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
     flat = 6.5 * longest < step * (wide - 150) / len(rms)
     left, right, top = 62, wide - 88, 18
     bottom = height - (40 if flat else min(24 + 7 * longest, 200))
-    high = 1.05 * max(float(rms.max()), result.rms, 1e-12)
+    high = 1.05 * max(float(rms.max()), all_rms, 1e-12)
     sheet, across, up = Canvas(wide, height), (right - left) / len(rms), (bottom - top) / high
     for tick in ticks(0, high):
         y = bottom - tick * up
@@ -122,7 +124,7 @@ def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
             sheet.text((x, bottom + 16), _shortened(names[i]), size=12)
         elif i % step == 0:
             sheet.upright((x, bottom + 5), _shortened(names[i]), size=11)
-    y = bottom - result.rms * up
+    y = bottom - all_rms * up
     sheet.line([(left, y), (right, y)], MUTED)
     sheet.text((right + 5, y), f"all: {result.rms:.3f}", MUTED, anchor="lm")
     sheet.text((left - 52, top - 5), "RMS (px per point)", anchor="ls", size=12)
@@ -215,7 +217,8 @@ def _cloud(sheet: Canvas, r: Array, sigma: float) -> None:
         sheet.text((x, middle[1] + half + 15), f"{tick:.3g}", MUTED, size=11)
         sheet.text((middle[0] - half - 4, y), f"{tick:.3g}", MUTED, size=11, anchor="rm")
     sheet.dots(middle + r / reach * half, ESTIMATED, 1.5)
-    sheet.ring(middle, sigma / reach * half, "black")
+    if np.isfinite(sigma):
+        sheet.ring(middle, sigma / reach * half, "black")
     place = (float(middle[0]), float(middle[1] + half + 36))
     sheet.text(
         place,
