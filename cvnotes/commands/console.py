@@ -38,6 +38,9 @@ def complain(command: str, text: str) -> None:
 
 def progress(items: Iterable[T], *, total: int, unit: str = "photographs") -> Iterator[T]:
     """Pass things on, with a bar on stderr where that is a terminal."""
+    if not sys.stderr.isatty():
+        yield from items
+        return
     from tqdm import tqdm
 
     yield from tqdm(items, total=total, unit=f" {unit}", disable=None, leave=False)

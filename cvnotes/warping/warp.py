@@ -1,11 +1,14 @@
 """The two ways to move a picture by a map: forward, and backward (notes 2b.5)."""
 
-from typing import Any, NamedTuple
+import os
+from collections import deque
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import (
+    Array,
     CvnotesError,
     Image,
     ShapeError,
@@ -18,6 +21,11 @@ from cvnotes.base import (
 from cvnotes.warping.interpolation import Border, Method, Sampler
 from cvnotes.warping.maps import plane_map
 from cvnotes.warping.pixel_map import Mapping, tiles
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+_FETCHERS = max(1, min(os.cpu_count() or 1, 4) - 1)
 
 
 class ForwardWarp(NamedTuple):
@@ -147,6 +155,8 @@ def backward_warp(
     array([[3., 1.],
            [4., 2.]])
     """
+    from concurrent.futures import ThreadPoolExecutor
+
     sampler = Sampler(image, method, border, fill)
     if size is None and not callable(mapping):
         shape = np.shape(mapping)
@@ -155,8 +165,19 @@ def backward_warp(
         size = (shape[1], shape[0])
     width, height = target_size((sampler.width, sampler.height) if size is None else size)
     target = np.empty((height * width, *sampler.channels), sampler.dtype)
-    for part, m in tiles(mapping, (width, height)):
+
+    def fetch(part: slice, m: Array) -> None:
         target[part] = sampler(m).reshape(-1, *sampler.channels)
+
+    # One thread asks the map for the next tile while others look the picture up.
+    with ThreadPoolExecutor(_FETCHERS) as fetchers:
+        under_way: deque[Future[None]] = deque()
+        for part, m in tiles(mapping, (width, height)):
+            under_way.append(fetchers.submit(fetch, part, m))
+            if len(under_way) > 2 * _FETCHERS:
+                under_way.popleft().result()
+        for fetched in under_way:
+            fetched.result()
     return target.reshape(height, width, *sampler.channels)
 
 
