@@ -1,5 +1,6 @@
 """The photographs of a calibration: which of them show the board, and why the others do not."""
 
+import os
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from cvnotes.commands.console import progress
 from cvnotes.commands.ownership import photographs
 from cvnotes.commands.parallel import in_order
 from cvnotes.files import Photo, Rejected, open_photos, read_photo
+from cvnotes.files.decoding import header_size
 from cvnotes.files.photos import COPY, fingerprint
 from cvnotes.files.writing import printable
 from cvnotes.targets import Chessboard, find_corners
@@ -20,6 +22,7 @@ from cvnotes.targets.finding import count_corners
 from cvnotes.targets.opencv_finders import one_thread_each
 
 _THUMBNAIL = 480  # px wide
+_AT_ONCE, _PIXELS_AT_ONCE = 8, 80_000_000  # a pixel takes about 12 bytes while it is looked at
 _SURE = 3  # photographs that agree on the board's count
 
 
@@ -74,7 +77,8 @@ def examine(paths: Sequence[str], board: Chessboard) -> tuple[list[Examined], li
     examined = []
     first: dict[bytes, Path] = {}
     with one_thread_each():
-        looked = list(progress(in_order(lambda p: _looked_at(p, board), files), total=len(files)))
+        found = in_order(lambda path: _looked_at(path, board), files, workers=_workers(files))
+        looked = list(progress(found, total=len(files)))
     for path, (content, item) in zip(files, looked, strict=True):
         same = first.setdefault(content, path)
         if isinstance(item, Rejected):
@@ -98,13 +102,21 @@ def counted(paths: Sequence[str]) -> tuple[int, int]:
     """
     files, _ = _photographs(paths)
     counts: Counter[tuple[int, int]] = Counter()
-    for count in in_order(_count, files):
+    for count in in_order(_count, files, workers=_workers(files)):
         counts.update([count] if count else [])
         if counts and counts.most_common(1)[0][1] == _SURE:
             break
     if not counts:
         raise DegenerateError("no chessboard with 3×3 inner corners or more was found in any")
     return counts.most_common(1)[0][0]
+
+
+def _workers(files: Sequence[Path]) -> int:
+    """Say how many photographs may be looked at at once: as many as cores, or as memory holds."""
+    if not files:
+        return 1
+    width, height = header_size(files[0])
+    return max(1, min(os.cpu_count() or 1, _AT_ONCE, _PIXELS_AT_ONCE // (width * height)))
 
 
 def _count(path: Path) -> tuple[int, int] | None:

@@ -10,8 +10,6 @@ from typing import Any, Generic, TypeVar
 T = TypeVar("T")
 R = TypeVar("R")
 
-_MOST = 8  # each holds a photograph in memory
-
 
 class _Answer(Generic[R]):
     """What a call gave or raised, once it is there."""
@@ -36,14 +34,14 @@ def in_order(function: Callable[[T], R], items: Iterable[T], workers: int = 0) -
     items : iterable
         With what.
     workers : int
-        How many threads; by default one per core, at most eight.
+        How many threads; by default one per core.
 
     Examples
     --------
     >>> list(in_order(lambda x: x * x, range(5)))
     [0, 1, 4, 9, 16]
     """
-    workers = workers or min(os.cpu_count() or 1, _MOST)
+    workers = workers or os.cpu_count() or 1
     tasks: SimpleQueue[Any] = SimpleQueue()
 
     def work() -> None:
