@@ -76,6 +76,7 @@ def peer(x):
     axes[0].plot([0, x])
     plt.show()
 ipywidgets.interact(peer, x=(0.0, 10.0));"""
+FOCUSED_SWITCH = "() => document.activeElement.type === 'checkbox'"
 FOCUSED_SLIDER = "() => document.activeElement.classList.contains('noUi-handle')"
 PICTURE = "img => fetch(img.src).then(r => r.arrayBuffer()).then(b => new Uint8Array(b).join())"
 # Milliseconds from each key to the first frame with another picture in it.
@@ -287,10 +288,11 @@ def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, course):
         start = picture.evaluate(PICTURE)
         handle.focus()
         for setting in model(name).settings:
-            assert _tab_to(page, FOCUSED_SLIDER), f"{name}: {setting.name}"
+            wanted = FOCUSED_SWITCH if setting.is_choice else FOCUSED_SLIDER
+            assert _tab_to(page, wanted), f"{name}: {setting.name}"
             before = picture.evaluate(PICTURE)
-            for _ in range(3):
-                page.keyboard.press("ArrowRight")
+            for key in ["Space"] if setting.is_choice else ["ArrowRight"] * 3:
+                page.keyboard.press(key)
             assert _becomes(page, picture, lambda now, seen=before: now != seen), setting.name
             page.keyboard.press("Tab")
         assert _tab_to(page, "() => document.activeElement.textContent === 'Reset'"), name

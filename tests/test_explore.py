@@ -466,13 +466,29 @@ def test_sliders_say_what_they_are_and_can_be_moved_by_keys(name):
     widget = getattr(explore, f"explore_{name}")()
     for s in MODELS[name].settings:
         slider = widget.sliders[s.name]
-        assert type(slider).__name__ in ("IntSlider", "FloatSlider")
         assert len(slider.tooltip) > 4
+        if s.is_choice:
+            assert type(slider).__name__ == "Checkbox"
+            continue
+        assert type(slider).__name__ in ("IntSlider", "FloatSlider")
         assert (slider.min, slider.max, slider.step) == (s.low, s.high, s.step)
         assert slider.continuous_update
     assert MODELS[name].about in html.unescape(widget.sentence.value)
     assert 'aria-live="polite"' in widget.sentence.value
     assert not any("Output" in type(w).__name__ for w in widget.children)
+    widget.close_all()
+
+
+def test_a_choice_is_a_switch_that_changes_the_picture_and_goes_back_with_the_rest():
+    widget = explore.explore_warp()
+    start = widget.image.value
+    assert widget.values["bilinear"] == 0
+    widget.sliders["bilinear"].value = True
+    assert widget.values["bilinear"] == 1
+    assert widget.image.value != start
+    widget.reset_button.click()
+    assert widget.sliders["bilinear"].value is False
+    assert widget.image.value == start
     widget.close_all()
 
 

@@ -396,3 +396,24 @@ def test_a_colour_is_the_same_under_the_viewers_lamp_and_seen_in_the_shade_too()
     lit = np.asarray(paint.baseColorFactor[:3]) / 255 + paint.emissiveFactor
     assert np.allclose(lit, np.array([0x00, 0x9E, 0x73]) / 255, atol=0.003)
     assert (paint.emissiveFactor >= 0.5 * lit).all()
+
+
+@pytest.mark.parametrize("view", [(20, -40), (25, -75), (0, 0), (90, 0)])
+def test_a_viewer_starts_where_the_still_is_seen_from_and_sees_everything(view):
+    shapes = [*camera_shapes(Camera(intrinsics(800, 800, 320, 240)), 100), *axes_shapes(length=80)]
+    scene = build_scene(*shapes, view=view)
+    G = scene.camera_transform
+    elevation, azimuth = np.radians(view)
+    level = np.cos(elevation)  # in OpenGL's frame y points up, and z against the course's
+    way = [level * np.cos(azimuth), np.sin(elevation), -level * np.sin(azimuth)]
+    assert np.allclose(G[:3, 2], way)
+    assert np.allclose(G[:3, :3] @ G[:3, :3].T, np.eye(3))
+    assert np.linalg.det(G[:3, :3]) > 0
+    assert G[1, 1] >= -1e-12  # upright
+    corners = np.concatenate([mesh.vertices for mesh in scene.dump()])
+    x, y, z = ((corners - G[:3, 3]) @ G[:3, :3]).T
+    high = np.abs(y / z).max() / np.tan(np.radians(22.5))
+    wide = np.abs(x / z).max() / np.tan(np.radians(22.5)) / 1.2
+    assert 0.8 < max(high, wide) < 1  # all of it, and it fills the frame
+    assert scene.camera.z_near < -z.max()
+    assert -z.min() < scene.camera.z_far < 2000 * scene.camera.z_near  # depths are told apart

@@ -89,7 +89,7 @@ def meshes() -> dict[str, bytes]:
     with tempfile.TemporaryDirectory() as folder:
         for scene in (scenes.rails, scenes.blocks, scenes.corridor, scenes.room):
             path = Path(folder) / f"{scene.__name__}.glb"
-            export_glb(build_scene(*scene_shapes(scene())), path)
+            export_glb(build_scene(*scene_shapes(scene()), view=None), path)
             files[f"meshes/{path.name}"] = path.read_bytes()
     return files
 

@@ -41,6 +41,11 @@ class Setting(NamedTuple):
     value: float
     help: str
 
+    @property
+    def is_choice(self) -> bool:
+        """Tell that this is yes or no, 1 or 0: a switch and no slider."""
+        return (self.low, self.high, self.step) == (0, 1, 1)
+
 
 class Sight(NamedTuple):
     """What a model shows for one set of values: a picture, and its numbers in a sentence."""

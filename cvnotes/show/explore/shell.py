@@ -3,6 +3,7 @@
 from html import escape
 from typing import Any
 
+from ipywidgets.widgets.widget_bool import Checkbox
 from ipywidgets.widgets.widget_box import GridBox, VBox
 from ipywidgets.widgets.widget_button import Button
 from ipywidgets.widgets.widget_float import FloatSlider
@@ -43,7 +44,7 @@ class Explorer(VBox):
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.sliders = {s.name: _slider(s) for s in model.settings}
+        self.sliders = {s.name: _control(s) for s in model.settings}
         self.reset_button = Button(
             description="Reset", icon="undo", tooltip="Move every slider back to where it started"
         )
@@ -79,7 +80,7 @@ class Explorer(VBox):
     @property
     def values(self) -> dict[str, float]:
         """Where the sliders are, without what the browser adds in the sixteenth digit."""
-        return {name: round(slider.value, 9) for name, slider in self.sliders.items()}
+        return {name: round(float(slider.value), 9) for name, slider in self.sliders.items()}
 
     def redraw(self, _: Any = None) -> None:
         """Show the picture of the present values, unless it is shown already."""
@@ -102,10 +103,24 @@ class Explorer(VBox):
         self._held = True
         try:
             for setting in self.model.settings:
-                self.sliders[setting.name].value = setting.value
+                started = bool(setting.value) if setting.is_choice else setting.value
+                self.sliders[setting.name].value = started
         finally:
             self._held = False
         self.redraw()
+
+
+def _control(setting: Setting) -> Any:
+    """Make what a setting is moved by: a switch for a choice, else a slider."""
+    if not setting.is_choice:
+        return _slider(setting)
+    return Checkbox(
+        value=bool(setting.value),
+        description=setting.label,
+        tooltip=setting.help,
+        layout={"width": "auto"},
+        style={"description_width": "85px"},
+    )
 
 
 def _slider(setting: Setting) -> Any:

@@ -22,7 +22,7 @@ def warp_model(camera: Camera, board: Chessboard) -> Model:
     settings = (
         Setting("angle", "rotation (°)", -180, 180, 1, 20, "clockwise on the screen: v runs down"),
         Setting("zoom", "zoom", 0.25, 4, 0.05, 1.2, "by how much distances grow"),
-        Setting("bilinear", "bilinear", 0, 1, 1, 0, "backward: 0 nearest neighbour, 1 bilinear"),
+        Setting("bilinear", "bilinear", 0, 1, 1, 0, "backward: bilinear, else nearest neighbour"),
     )
     about = (
         "A small picture turned and zoomed twice by the same map: forward, where pixels that "

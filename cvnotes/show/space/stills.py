@@ -8,6 +8,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-u
 from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]
 
 from cvnotes.base import Array
+from cvnotes.show.space.directions import towards
 from cvnotes.show.space.frame import frame
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent, places
 from cvnotes.show.style import DPI, FONT
@@ -50,7 +51,7 @@ def draw_scene(
     ax = _axes() if ax is None else ax
     # All in one collection: matplotlib sorts by distance only within one. Its own limits would
     # come from memory it never wrote where the polygons have different numbers of corners.
-    corners, colours = _painted(shapes, reach, _towards(view))
+    corners, colours = _painted(shapes, reach, towards(view))
     polygons = Poly3DCollection(corners, facecolors=colours, edgecolors=colours, lw=0.3)
     ax.add_collection(polygons, autolim=False)
     for shape in shapes:
@@ -101,13 +102,6 @@ def _ribbons(ends: Array, width: float, towards: Array) -> Array:
     across = np.divide(across, length, out=np.zeros_like(across), where=length > 0) * width / 2
     near, far = ends[:, 0], ends[:, 1]
     return np.asarray(np.stack([near - across, far - across, far + across, near + across], axis=1))
-
-
-def _towards(view: tuple[float, float]) -> Array:
-    """Return the direction to the viewer in the WRF."""
-    elevation, azimuth = np.deg2rad(view)
-    level = np.cos(elevation)
-    return np.array([level * np.cos(azimuth), -np.sin(elevation), level * np.sin(azimuth)])
 
 
 def _axes() -> Axes3D:

@@ -14,14 +14,22 @@ from matplotlib.colors import to_rgba
 
 from cvnotes.base import Array
 from cvnotes.show.guards import length
+from cvnotes.show.space.directions import towards
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent
 
 GL_FROM_CV = np.diag([1.0, -1.0, -1.0, 1.0])
 # Colours have meanings, so they must be seen on the far side of the viewer's lamp too.
 _GLOW = 0.7
+_ANGLE = 45.0  # degrees that a viewer sees from top to bottom
+_FRAME = 1.2  # its width by its height, at least
+_ROOM = 1.03  # around the scene
 
 
-def build_scene(*shapes: Shape, thickness: float | None = None) -> Any:
+def build_scene(
+    *shapes: Shape,
+    thickness: float | None = None,
+    view: tuple[float, float] | None = (20.0, -40.0),
+) -> Any:
     """Put shapes into a ``trimesh.Scene``; its ``show()`` turns it in a notebook, offline.
 
     Parameters
@@ -30,6 +38,8 @@ def build_scene(*shapes: Shape, thickness: float | None = None) -> Any:
         What the functions of `cvnotes.show.space.shapes` give. Labels are left to the still.
     thickness : float, optional
         Of lines, in the unit of the scene; by default 1/500 of its extent.
+    view : (elevation, azimuth)
+        Where a viewer first sees it from, in degrees, as for `draw_scene`; None leaves that to it.
 
     Returns
     -------
@@ -61,7 +71,28 @@ def build_scene(*shapes: Shape, thickness: float | None = None) -> Any:
             # Names must differ: one colour of a shape, or one of two cameras, would hide another.
             unique = name if name not in scene.geometry else f"{name} ({len(scene.geometry)})"
             scene.add_geometry(mesh, node_name=unique, geom_name=unique)
+    if scene.geometry and view is not None:
+        scene.camera = trimesh.scene.Camera("camera", fov=(_FRAME * _ANGLE, _ANGLE))
+        scene.camera_transform = _seen_from(GL_FROM_CV[:3, :3] @ towards(view), scene)
     return scene
+
+
+def _seen_from(way: Array, scene: Any) -> Array:
+    """Place OpenGL's camera on a way from the scene's middle, just where all of it is seen."""
+    right = np.cross([0.0, 1.0, 0.0], way)
+    right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
+    R = np.stack([right, np.cross(way, right), way], axis=1)
+    middle = scene.bounds.mean(axis=0)
+    corners = np.concatenate([mesh.vertices for mesh in scene.dump()]) - middle
+    x, y, z = (corners @ R).T
+    tangent = np.tan(np.radians(_ANGLE / 2))
+    away = (z + np.maximum(np.abs(x) / _FRAME, np.abs(y)) / tangent).max()
+    # Between a near and a far that are not further apart, depths are told apart: planes that cross
+    # meet in a line and do not speckle.
+    scene.camera.z_near, scene.camera.z_far = 0.02 * away, 20 * away
+    G = np.eye(4)
+    G[:3, :3], G[:3, 3] = R, middle + _ROOM * away * way
+    return G
 
 
 def export_glb(scene: Any, path: str | os.PathLike[str]) -> None:
