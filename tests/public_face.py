@@ -12,7 +12,9 @@ from cvnotes.calibration import calibrate, ppm, prediction_std, std_with_view, z
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import (
     Camera,
+    FisheyeLens,
     Lens,
+    RationalLens,
     intrinsics,
     look_at,
     pose,
@@ -26,6 +28,7 @@ from cvnotes.pictures.meshes import quads
 from cvnotes.pictures.pixel_means import polygon_means
 from cvnotes.pictures.raycast import first_hits
 from cvnotes.targets import Chessboard, TwoPlanes, edge_corners, find_corners
+from cvnotes.targets.finding import count_corners
 from cvnotes.warping import interpolation
 
 
@@ -78,6 +81,8 @@ PICTURE = Argument(picture=True)
 
 A = intrinsics(800, 804, 325, 238)
 LENS = Lens(k=(-0.2, 0.05), p=(0.001, -0.0005))
+WIDE = RationalLens((0.3, 0.05, 0.0, 0.6, 0.1, 0.01), (0.001, -0.002))
+FISHEYE = FisheyeLens((0.05, -0.01))
 CAMERA = Camera(A, look_at([100, -150, -600], [100, 60, 0]), LENS)
 BOARD = Chessboard((9, 6), 25.0)
 W = BOARD.points
@@ -183,6 +188,26 @@ FUNCTIONS = [
     function(LENS.distort, {"xy": (XY, rows(2))}, "lens.Lens.distort"),
     function(LENS.undistort, {"xy_lens": (XY, rows(2))}, "lens.Lens.undistort"),
     function(LENS.jacobian, {"xy": (XY, rows(2))}, "lens.Lens.jacobian"),
+    function(
+        RationalLens,
+        {
+            "k": (np.array([0.3, 0.05, 0.0, 0.6, 0.1, 0.01]), SINGLE),
+            "p": (np.array([0.001, 0.002]), several(2)),
+            "s": (np.array([0.001, 0.0, 0.002, 0.0]), several(4)),
+            "tilt": (np.array([0.01, -0.02]), several(2)),
+        },
+        "rational.RationalLens",
+    ),
+    function(WIDE.L, {"r": (np.array([0.1, 0.2]), ONE)}, "rational.RationalLens.L"),
+    function(WIDE.distort, {"xy": (XY, rows(2))}, "rational.RationalLens.distort"),
+    function(WIDE.undistort, {"xy_lens": (XY, rows(2))}, "rational.RationalLens.undistort"),
+    function(WIDE.jacobian, {"xy": (XY, rows(2))}, "rational.RationalLens.jacobian"),
+    function(FisheyeLens, {"k": (np.array([0.05, -0.01]), SINGLE)}, "fisheye.FisheyeLens"),
+    function(FISHEYE.distort, {"xy": (XY, rows(2))}, "fisheye.FisheyeLens.distort"),
+    function(FISHEYE.undistort, {"xy_lens": (XY, rows(2))}, "fisheye.FisheyeLens.undistort"),
+    function(FISHEYE.jacobian, {"xy": (XY, rows(2))}, "fisheye.FisheyeLens.jacobian"),
+    function(FISHEYE.of_rays, {"M": (W, rows(3))}, "fisheye.FisheyeLens.of_rays"),
+    function(FISHEYE.rays, {"xy_lens": (XY, rows(2))}, "fisheye.FisheyeLens.rays"),
     # camera
     function(
         camera.intrinsics,
@@ -361,6 +386,15 @@ FUNCTIONS = [
         {"board_points": (W, EITHER), "image_points": (SEEN, SETS)},
         "correspondences.Correspondences.of",
         paired=("board_points", "image_points"),
+    ),
+    function(
+        calibration.left_out_rms,
+        {"board_points": (W, EITHER), "image_points": (SEEN, SETS)},
+        "which_lens.left_out_rms",
+        sizes=("size",),
+        paired=("board_points", "image_points"),
+        size=(640, 480),
+        lenses=("k1 k2",),
     ),
     function(prediction_std, {"m": (M, rows(2))}, calibration=RESULT),
     function(std_with_view, {"G": (POSES[1], SINGLE)}, calibration=RESULT),
@@ -571,6 +605,7 @@ FUNCTIONS = [
         "warping.rectify_plane",
     ),
     function(find_corners, {"image": (GREY, PICTURE)}, board=BOARD),
+    function(count_corners, {"image": (GREY, PICTURE)}),
     function(targets.harris, {"image": (NOISE, PICTURE)}, "targets.harris"),
     function(targets.local_maxima, {"response": (NOISE, PICTURE)}, "targets.local_maxima"),
     function(

@@ -1,4 +1,4 @@
-"""Guards of arrays: real and finite numbers, of the shape that was asked for."""
+"""Guards of arguments: arrays of real and finite numbers, and what a camera is made of."""
 
 from contextlib import nullcontext
 from typing import Any

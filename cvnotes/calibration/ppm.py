@@ -1,4 +1,4 @@
-"""Points in space and their pixels: guarded, normalised, refused where they leave P open."""
+"""The PPM of one picture of a target in space: by the DLT, then refined (notes 2b.4)."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,4 +1,4 @@
-"""What a calibration is judged by: its numbers, and those that follow from them."""
+"""Is a calibration to be believed? The evidence, and the sentences that judge it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a calibration is worth: how sure a predicted pixel is, and what one more view would give."""
+"""How far predictions may be off: a pixel, and the error bars if one more view were taken."""
 
 import numpy as np
 import numpy.typing as npt

@@ -180,6 +180,7 @@ class FisheyeLens:
         return np.where(reached[..., None], d, np.nan)
 
     @guarded(xy=Points(2))
+    @np.errstate(over="ignore", invalid="ignore")  # far from all lenses
     def jacobian(self, xy: Array) -> Array:
         """Differentiate the observed point by the ideal one: (..., 2, 2).
 

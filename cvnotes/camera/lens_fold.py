@@ -1,4 +1,4 @@
-"""Polynomials of the radius."""
+"""Where a lens folds the picture over: its polynomial L(r), and the largest valid radius."""
 
 from collections.abc import Sequence
 from functools import reduce

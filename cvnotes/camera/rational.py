@@ -228,6 +228,7 @@ class RationalLens:
         )
 
     @guarded(xy=Points(2))
+    @np.errstate(over="ignore", invalid="ignore")  # far from all lenses
     def jacobian(self, xy: Array) -> Array:
         """Differentiate the distorted point by the ideal one: (..., 2, 2).
 

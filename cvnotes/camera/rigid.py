@@ -1,4 +1,4 @@
-"""Rotations R (..., 3, 3): from axes and angles and back, and the one nearest to a matrix."""
+"""Rotations and rigid motions: R and T, made, turned into each other, and chained (notes 2b.2)."""
 
 from functools import reduce
 

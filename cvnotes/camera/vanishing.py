@@ -1,4 +1,4 @@
-"""Vanishing points and horizons found in a picture."""
+"""Vanishing points and horizons: found in a picture, and the camera they give away (notes 2b.1)."""
 
 import itertools
 from contextlib import suppress

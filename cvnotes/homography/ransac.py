@@ -1,4 +1,4 @@
-"""What chance would give: how many samples it takes, and how many inliers are too few."""
+"""RANSAC: a homography from pairs of which many are wrong, and what chance alone would give."""
 
 from math import ceil, inf, lgamma, log, log1p
 from typing import Any

@@ -1,4 +1,4 @@
-"""A scene as arrays, and what is around it."""
+"""Scenes of triangles: as arrays with what is around them, and built of boxes and walls."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property

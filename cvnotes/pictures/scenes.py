@@ -1,4 +1,4 @@
-"""Whole places: rails, blocks on a plain, a corridor, a room."""
+"""Scenes to photograph: rails, blocks on a plain, a corridor, a room, a calibration target."""
 
 from dataclasses import replace
 

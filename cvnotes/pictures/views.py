@@ -1,4 +1,4 @@
-"""Random turns, directions and places, from which sets of views are made."""
+"""Sets of views of a board: good ones, the misleading ones, and the turns they are made of."""
 
 import numpy as np
 

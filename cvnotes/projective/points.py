@@ -1,4 +1,4 @@
-"""Points, lines and planes of projective space, at infinity too (notes 2b.1).
+"""Points of projective space, at infinity too (notes 2b.1).
 
 A homogeneous coordinate vector stands for a whole class of vectors that differ by a factor;
 nothing here depends on that factor. A last coordinate of exactly zero is a point at infinity:

@@ -1,4 +1,4 @@
-"""A sheet as what a printer reads: PDF or SVG."""
+"""The printable sheet of a board: its layout on paper, what is drawn, and its PDF or SVG."""
 
 import os
 from dataclasses import dataclass

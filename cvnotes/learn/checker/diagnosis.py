@@ -1,4 +1,4 @@
-"""Recognising a mistake by what it gives."""
+"""Recognising a mistake by what it gives; the mistakes that reading a pixel off invites."""
 
 import warnings
 from collections.abc import Callable, Sequence
