@@ -149,7 +149,7 @@ def test_json_has_the_keys_that_were_promised(tmp_path):
 def test_a_calibration_comes_back_bit_for_bit(tmp_path, written):
     write_calibration(written, tmp_path / "calibration.json")
     back = read_calibration(tmp_path / "calibration.json")
-    assert back.keys() == written.keys()
+    assert back.keys() == written.keys() - {"left_out"}  # which is not kept
     for name in ("names", "lens", "size", "rms", "warnings", "reliable", "converged"):
         assert back[name] == written[name], name
     for name in ("A", "poses", "view_rms", "covariance"):

@@ -7,7 +7,7 @@ import textwrap
 import numpy as np
 import pytest
 
-from cvnotes.camera import Camera, Lens, intrinsics
+from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics
 from cvnotes.camera.lens_fold import fold_radius as fold_radius_of_the_library
 from cvnotes.learn.ch03.field_of_view import field_of_view
 from cvnotes.learn.ch04.fold_radius import fold_radius
@@ -77,14 +77,14 @@ SIMILARITIES = {"apply_similarity", "inverse_similarity"}
 # The subjects of exercises before.
 BEFORE = {
     "line_through": {"to_homogeneous"},
-    "project": {"distort"},  # of an ideal lens; it comes in chapter 4
-    "form_image": {"radial_factor"},
+    "project": {"of_rays"},  # of a fisheye, which is beyond the notes
+    "form_image": {"of_rays", "radial_factor"},
     "design_matrix": {"to_homogeneous"},
     "dlt": {"to_homogeneous", "_svd_of_many"} | SIMILARITIES,  # of many, beside the SVD of one
     "four_points": {"to_homogeneous", "normaliser", "_svd_of_many"} | SIMILARITIES,
     "geometric_error": {"to_homogeneous"},
     "depth": {"rectified_baseline"},
-    "residuals": {"radial_factor"},
+    "residuals": {"of_rays", "radial_factor"},
 }
 
 
@@ -103,7 +103,7 @@ def test_no_call_of_ours_hides_the_step_that_was_asked_for(name):
 
 def test_the_tests_know_a_hidden_step():
     project = inspect.unwrap(Camera.project)
-    assert inspect.unwrap(Lens.distort) in set(calls(project))
+    assert inspect.unwrap(FisheyeLens.of_rays) in set(calls(project))
     assert fold_radius_of_the_library in set(calls(Lens.__dict__["max_radius"].func))
 
 
