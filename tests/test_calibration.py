@@ -320,8 +320,8 @@ def test_the_result_reads_well_in_a_terminal_and_in_a_notebook(board, noisy):
     text, html = repr(result), result._repr_html_()
     assert text.startswith("Calibration from 15 views, 1280×960 px\n  alpha_u ")
     # two digits of each standard deviation, and the value to the same place
-    assert f"{result.A[0, 0]:.2f} ± {result.std['alpha_u']:.2f} px" in text
-    assert f"{result.lens.k[0]:.4f} ± {result.std['k1']:.4f}" in text
+    assert f"{result.A[0, 0]:.2f} ± {result.std_of_views['alpha_u']:.2f} px" in text
+    assert f"{result.lens.k[0]:.4f} ± {result.std_of_views['k1']:.4f}" in text
     assert f"RMS {result.rms:.4f} px per point; worst view {result.view_rms.argmax()}" in text
     assert "NOT RELIABLE" not in text
     assert f"<td>{result.A[0, 0]:.2f}</td>" in html

@@ -297,7 +297,7 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
 def _systematic(e: Evidence) -> Iterator[str]:
     """Find residuals that are small, but of which the error bars are not a measure."""
     if e.likeness > ALIKE and e.typical_rms <= _MOVED * max(e.size):
-        yield f"{_NO_NOISE} The true error is then larger than the error bars say"
+        yield f"{_NO_NOISE} The true error is then larger than noise alone would make it"
 
 
 def _outliers(e: Evidence) -> Iterator[str]:

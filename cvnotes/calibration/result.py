@@ -15,6 +15,9 @@ from cvnotes.calibration.refinement import Arrow, Problem, State, covariance, po
 from cvnotes.camera import Camera
 from cvnotes.camera.model import SENSOR, AnyLens
 
+_MORE = 1.5  # from which ratio on the two kinds of deviations are said to differ
+_ROUNDED_RMS = 1e-6  # px; what is left of exact corners is rounding, whose deviations say nothing
+
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
@@ -59,6 +62,7 @@ class Calibration:
     converged: bool = True
     left_out: Mapping[str, float] = field(default_factory=dict, repr=False)
     _data: Correspondences | None = field(default=None, repr=False)
+    _covariance_of_views: Array | None = field(default=None, repr=False)
     _pose_covariance: Callable[[], Array] | None = field(default=None, repr=False)
 
     @staticmethod
@@ -103,8 +107,61 @@ class Calibration:
 
     @property
     def std(self) -> dict[str, float]:
-        """Standard deviation of each estimated parameter, by name."""
+        """Standard deviation of each estimated parameter, by name, if residuals are only noise."""
         return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
+
+    @cached_property
+    def covariance_of_views(self) -> Array:
+        """Covariance (q, q) of the parameters from the scatter between views; see `jackknife`.
+
+        It holds for bent boards and lenses that do not quite fit, too, as far as their effect
+        differs from view to view: what moves all views alike, such as a board that is arched
+        towards the camera, no comparison of views shows. Infinite on its diagonal where a view
+        less would leave the camera undetermined.
+        """
+        from cvnotes.calibration.jackknife import covariance_over_views
+
+        if self._covariance_of_views is not None:
+            return self._covariance_of_views
+        if self._data is None:
+            raise CvnotesError(
+                "the scatter between views is not known: this result has neither its corners nor "
+                "a covariance of views"
+            )
+        return covariance_over_views(self.camera, self.names, self._data, self.poses)
+
+    @property
+    def std_of_views(self) -> dict[str, float]:
+        """Standard deviation of each estimated parameter, by name, from the scatter of views."""
+        variance = np.diag(self.covariance_of_views)
+        return dict(zip(self.names, np.sqrt(variance).tolist(), strict=True))
+
+    @property
+    def _honest_std(self) -> dict[str, float]:
+        """The deviations that are printed: those of views, or of noise if these are not known."""
+        if self._covariance_of_views is None and self._data is None:
+            return self.std
+        honest = self.std_of_views
+        return honest if np.isfinite(list(honest.values())).all() else self.std
+
+    @property
+    def notes_on_deviations(self) -> tuple[str, ...]:
+        """One sentence if the deviations of views and of noise tell different things."""
+        if self._covariance_of_views is None and self._data is None:
+            return ()
+        honest, noise = (np.array([*std.values()]) for std in (self.std_of_views, self.std))
+        if not np.isfinite(honest).all():
+            return (
+                "±: from noise alone, as without one view the others do not determine the camera; "
+                "the true error may be several times larger",
+            )
+        if self.rms < _ROUNDED_RMS or (times := float(np.median(honest / noise))) <= _MORE:
+            return ()
+        return (
+            f"±: from the scatter between views, {times:.1f} times what noise alone would give; "
+            "corners of a view miss their places together, as with a bent board or a lens that "
+            "does not quite fit",
+        )
 
     @cached_property
     def pose_covariance(self) -> Array:
@@ -145,7 +202,10 @@ class Calibration:
         ``Calibration(**mapping)`` makes it again, but for the uncertainty of its poses.
         """
         kept = [f.name for f in fields(self) if f.name != "_pose_covariance"]
-        return {name: getattr(self, name) for name in kept}
+        mapping = {name: getattr(self, name) for name in kept}
+        if self._data is not None:
+            mapping["_covariance_of_views"] = self.covariance_of_views
+        return mapping
 
     def save(self, path: Any) -> None:
         """Write the result to a JSON file, whole or not at all; see `files`."""
@@ -161,8 +221,11 @@ class Calibration:
         return Calibration(**read_calibration(path))
 
     def table(self) -> list[tuple[str, float, float, str]]:
-        """Give the rows of the result: name, value, standard deviation, unit."""
-        std = self.std
+        """Give the rows of the result: name, value, standard deviation, unit.
+
+        The deviation is that of `std_of_views` where the views determine it, else of `std`.
+        """
+        std = self._honest_std
         return [(n, v, std[n], "px" if n in SENSOR else "") for n, v in self.parameters.items()]
 
     def __repr__(self) -> str:
@@ -173,6 +236,7 @@ class Calibration:
         worst = int(np.argmax(self.view_rms))
         lines.append(f"  RMS {self.rms:.4f} px per point; worst view {worst}: "
                      f"{self.view_rms[worst]:.4f} px")  # fmt: skip
+        lines += [f"  {note}" for note in self.notes_on_deviations]
         return "\n".join([*lines, *doubts_as_text(self.warnings, self.reliable)])
 
     def _repr_html_(self) -> str:
@@ -182,6 +246,7 @@ class Calibration:
             rows += f"<tr>{left_cell(name)}{cells}{left_cell(unit)}</tr>"
         caption = f"{len(self.poses)} views, RMS {self.rms:.4f} px per point"
         table = f"<table><caption>{caption}</caption>{rows}</table>"
+        table += "".join(f"<p>{note}</p>" for note in self.notes_on_deviations)
         return table + doubts_as_html(self.warnings, self.reliable)
 
 

@@ -75,6 +75,7 @@ def calibration_json(
         "rms": float(result["rms"]),
         "standard_deviations": dict(zip(names, std, strict=True)),
         "covariance": covariance.tolist(),
+        **_of_views(result, names),
         "rejected": [{"file": r.file, "reason": r.reason} for r in rejected],
     }
     views: list[dict[str, Any]] = []
@@ -91,6 +92,18 @@ def calibration_json(
             f"not used takes {size} bytes as a file; at most {MAX_BYTES} are read"
         )
     return text
+
+
+def _of_views(result: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
+    """Give the covariance over views, unless views do not determine it."""
+    covariance = result.get("_covariance_of_views")
+    if covariance is None or not np.isfinite(covariance).all():
+        return {}
+    std = np.sqrt(np.diag(covariance)).tolist()
+    return {
+        "standard_deviations_of_views": dict(zip(names, std, strict=True)),
+        "covariance_of_views": covariance.tolist(),
+    }
 
 
 def _with_corners(views: list[dict[str, Any]], data: Correspondences | None) -> dict[str, Any]:
@@ -120,6 +133,11 @@ def read_calibration(path: PathLike) -> dict[str, Any]:
         raise entry.error("the list of views is empty")
     rms, view_rms = _rms(entry, views)
     names, covariance = _error_bars(entry, camera)
+    of_views = None
+    if entry.get("covariance_of_views") is not None:
+        same, of_views = _error_bars(entry, camera, "_of_views")
+        if same != names:
+            raise entry["standard_deviations_of_views"].error("other parameters than before")
     return {
         "A": camera.A,
         "lens": camera.lens,
@@ -133,6 +151,7 @@ def read_calibration(path: PathLike) -> dict[str, Any]:
         "reliable": entry["reliable"].flag(),
         "converged": entry["converged"].flag(),
         "_data": _corners(entry, views),
+        "_covariance_of_views": of_views,
     }
 
 
@@ -149,9 +168,9 @@ def _rms(entry: Entry, views: list[Entry]) -> tuple[float, Array]:
     return rms, each
 
 
-def _error_bars(entry: Entry, camera: Camera) -> tuple[tuple[str, ...], Array]:
+def _error_bars(entry: Entry, camera: Camera, of: str = "") -> tuple[tuple[str, ...], Array]:
     """Read parameters' names and covariance: of this camera, and such as a covariance can be."""
-    listed, C = entry["standard_deviations"], entry["covariance"]
+    listed, C = entry["standard_deviations" + of], entry["covariance" + of]
     std = {name: item.number() for name, item in listed.items().items()}
     known = {*camera.parameters, "p1", "p2"}
     for name in std:

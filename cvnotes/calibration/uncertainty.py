@@ -1,5 +1,7 @@
 """How far predictions may be off: a pixel, and the error bars if one more view were taken."""
 
+from typing import Literal
+
 import numpy as np
 import numpy.typing as npt
 
@@ -11,7 +13,9 @@ from cvnotes.calibration.result import Calibration
 _STEP = 1e-6  # of a parameter, relative to its standard deviation or to 1
 
 
-def prediction_std(calibration: Calibration, m: npt.ArrayLike) -> Array:
+def prediction_std(
+    calibration: Calibration, m: npt.ArrayLike, *, of: Literal["noise", "views"] = "noise"
+) -> Array:
     """How far off, in pixels, the image of a ray may be that the camera shows at pixels m.
 
     Parameters
@@ -20,6 +24,9 @@ def prediction_std(calibration: Calibration, m: npt.ArrayLike) -> Array:
         The camera and the covariance of its parameters.
     m : array_like, shape (..., 2)
         Pixels, for example the corners of the picture.
+    of : {"noise", "views"}
+        Which covariance: ``covariance``, for residuals that are only noise, or
+        ``covariance_of_views``, from the scatter between views.
 
     Returns
     -------
@@ -48,6 +55,11 @@ def prediction_std(calibration: Calibration, m: npt.ArrayLike) -> Array:
     True
     """
     m = points(m, "m", 2)
+    if of not in ("noise", "views"):
+        raise CvnotesError(f'of: expected "noise" or "views", got {of!r}')
+    C = calibration.covariance if of == "noise" else calibration.covariance_of_views
+    if not np.isfinite(C).all():  # known not at all
+        return np.full(m.shape[:-1], np.inf)
     camera = calibration.camera
     xy = camera.ideal(m)
     reached = np.isfinite(xy).all(-1)
@@ -58,7 +70,7 @@ def prediction_std(calibration: Calibration, m: npt.ArrayLike) -> Array:
         h = _STEP * max(1.0, abs(value[name]))
         up, down = (camera.with_parameters({name: value[name] + s * h}) for s in (1, -1))
         J[..., i] = (up.project(rays) - down.project(rays)) / (2 * h)
-    variance = np.einsum("...ci,ij,...cj->...", J, calibration.covariance, J)
+    variance = np.einsum("...ci,ij,...cj->...", J, C, J)
     return np.where(reached, np.sqrt(variance), np.nan)
 
 

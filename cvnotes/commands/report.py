@@ -69,6 +69,7 @@ def camera_report(result: "Calibration") -> str:
     lines = [
         f"Camera of {width}×{height} pixels",
         text_table([["", "value", "± 1 σ", ""], *rows]),
+        *result.notes_on_deviations,
         f"Field of view   {field_of_view(result)}",
         f"RMS             {result.rms:.3f} px per point, of {corners} corners in "
         f"{len(result.poses)} photographs",

@@ -1,0 +1,112 @@
+"""Error bars that hold when the model is not exact: the jackknife over views.
+
+The classical covariance believes that residuals are noise, independent from corner to corner. A
+board that is bent, a lens that needs more terms or a blur that differs from view to view moves
+many corners of a view together, and then it promises two or three times too much. What is nearly
+independent are whole views: each is left out in turn, and the scatter of the cameras shows how well
+the camera is known.
+"""
+
+import numpy as np
+
+from cvnotes.base import Array, DegenerateError, solved
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Problem, State
+from cvnotes.camera import Camera
+
+_SINGULAR = 1e-13  # smallest over largest eigenvalue of a normal matrix with a diagonal of 1
+_WHY = "a view does not determine its own pose"
+
+
+def covariance_over_views(
+    camera: Camera, names: tuple[str, ...], data: Correspondences, poses: Array
+) -> Array:
+    """Estimate the covariance (q, q) of a camera's parameters from the scatter between its views.
+
+    Parameters
+    ----------
+    camera : Camera
+        As it was estimated, together with the poses (n_views, 4, 4).
+    names : tuple of str
+        Names of the estimated parameters.
+    data : Correspondences
+        What they were estimated from.
+
+    Returns
+    -------
+    ndarray, shape (q, q)
+        Infinite on its diagonal where the other views do not determine the camera.
+
+    Notes
+    -----
+    With S_i and g_i the normal matrix and the gradient of view i, its pose eliminated, the camera
+    without view i is off by δ_i = (Σ S − S_i)⁻¹ g_i: one Gauss–Newton step, which differs from a
+    new refinement by less than a hundredth of the deviation. The covariance is
+    (n − 1)/n Σ (δ_i − δ̄)(δ_i − δ̄)ᵀ.
+
+    References
+    ----------
+    .. [1] B. Efron and C. Stein, The jackknife estimate of variance, Annals of Statistics 9 (1981)
+       586-596.
+    """
+    n, q = len(data), len(names)
+    if n - 1 < (3 if "skew" in names else 2):  # so few determine no camera
+        return undetermined(q)
+    problem = _problem(camera, names, data)
+    x = problem.state(camera, data.pose_in_scaled_units(poses))
+    try:
+        S, g = eliminated_by_view(problem, x)
+        d = _without_each(S, g)
+    except DegenerateError:
+        return undetermined(q)
+    d -= d.mean(0)
+    return np.asarray((n - 1) / n * d.T @ d)
+
+
+def undetermined(q: int) -> Array:
+    """Give the covariance of q parameters of which nothing is known."""
+    return np.diag(np.full(q, np.inf))
+
+
+def eliminated_by_view(problem: Problem, x: State) -> tuple[Array, Array]:
+    """Give normal matrix (n_views, q, q) and gradient (n_views, q) of each view, without its pose.
+
+    S = U − Bᵀ V⁻¹ B and g = g_shared − Bᵀ V⁻¹ g_pose, where U, B and V are blocks of JᵀJ: shared by
+    shared, pose by shared, pose by pose.
+    """
+    J, r = problem.jacobian(x)
+    n, q = len(J), len(x.shared)
+    J, r = J.reshape(n, -1, q + 6), r.reshape(n, -1, 1)
+    N, g = J.mT @ J, J.mT @ r
+    B, V = N[:, q:, :q], N[:, q:, q:]
+    inner = solved(np.linalg.solve, V, np.concatenate([B, g[:, q:]], axis=-1), why=_WHY)
+    S = N[:, :q, :q] - B.mT @ inner[..., :-1]
+    return S, (g[:, :q] - B.mT @ inner[..., -1:])[..., 0]
+
+
+def _without_each(S: Array, g: Array) -> Array:
+    """Solve (Σ S − S_i) δ_i = g_i for all views; (n_views, q)."""
+    left = S.sum(0) - S
+    diagonal = np.diagonal(left, axis1=1, axis2=2)
+    if not (diagonal > 0).all():
+        raise DegenerateError(_WHY)
+    scale = np.sqrt(diagonal)
+    left = left / (scale[:, :, None] * scale[:, None])
+    eigenvalues = np.linalg.eigvalsh(left)
+    if not (eigenvalues[:, 0] > _SINGULAR * eigenvalues[:, -1]).all():
+        raise DegenerateError(_WHY)
+    d = solved(np.linalg.solve, left, (g / scale)[..., None], why=_WHY)[..., 0]
+    return np.asarray(d / scale)
+
+
+def _problem(camera: Camera, names: tuple[str, ...], data: Correspondences) -> Problem:
+    """Make the problem that such parameters were the answer of."""
+    return Problem(
+        data.W,
+        data.m,
+        data.seen,
+        skew="skew" in names,
+        n_radial=sum(name[0] == "k" for name in names),
+        tangential="p1" in names,
+        model=type(camera.lens),
+    )
