@@ -223,7 +223,10 @@ def test_doubts_that_the_error_bars_do_not_cover_make_it_unreliable(changes, wor
         ),
         ({"distances": with_one(np.nan, (3, 54), 0, 0)}, "where the estimated lens folds over"),
         ({"size": (900, 900)}, "corners lie outside of the 900×900 picture"),
-        ({"likeness": 0.6}, "so this is no noise: .*error is then larger than noise alone would make it"),
+        (
+            {"likeness": 0.6},
+            "so this is no noise: .*error is then larger than noise alone would make it",
+        ),
         ({"lens": Lens(k=(-0.8,))}, "folds over before it reaches the corners of the picture"),
     ],
 )

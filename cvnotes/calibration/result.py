@@ -201,7 +201,8 @@ class Calibration:
 
         ``Calibration(**mapping)`` makes it again, but for the uncertainty of its poses.
         """
-        kept = [f.name for f in fields(self) if f.name != "_pose_covariance"]
+        not_kept = ("_pose_covariance", "left_out")
+        kept = [f.name for f in fields(self) if f.name not in not_kept]
         mapping = {name: getattr(self, name) for name in kept}
         if self._data is not None:
             mapping["_covariance_of_views"] = self.covariance_of_views
