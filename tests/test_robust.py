@@ -92,6 +92,25 @@ def test_it_is_closer_to_the_truth_than_opencv_on_most_sets():
     assert max(ours) < 1.5
 
 
+@pytest.mark.parametrize(
+    ("n", "fraction", "sigma", "threshold"),
+    [(40, 0.5, 0.5, 1.5), (80, 0.5, 1, 1.5), (150, 0.7, 1, 2)],
+)
+def test_the_worst_of_twenty_seeds_is_no_worse_than_opencvs(n, fraction, sigma, threshold):
+    # Without local optimisation 4.9 px against 3.2 in the first set, the median 1.31 against 1.19
+    # in the last.
+    ours, theirs = [], []
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        src, dst, _ = _pairs(n, fraction, rng, sigma)
+        ours.append(_off(ransac_homography(src, dst, threshold=threshold, rng=rng)[0]))
+        theirs.append(
+            _off(cv2.findHomography(src, dst, cv2.RANSAC, threshold, confidence=0.999)[0])
+        )
+    assert max(ours) < 0.8 * max(theirs)
+    assert np.median(ours) < np.median(theirs)
+
+
 def test_the_seed_decides():
     src, dst, _ = _pairs(100, 0.5, np.random.default_rng(3))
     a = ransac_homography(src, dst, threshold=2, rng=np.random.default_rng(7))
