@@ -277,7 +277,10 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
         output = _output(page, cells, rf"^explore_{name}\(")
         output.locator("img.widget-image").wait_for(state="visible", timeout=20_000)
         assert output.locator("img").count() == 1
-        assert output.locator(".noUi-handle").count() == len(model(name).settings)
+        settings = model(name).settings
+        switches = sum(setting.is_choice for setting in settings)
+        assert output.locator(".noUi-handle").count() == len(settings) - switches
+        assert output.locator("input[type=checkbox]").count() == switches
     _shut_down(page)
 
 

@@ -32,7 +32,7 @@ def test_what_it_copies_is_there_and_holds_what_the_installation_needs():
             assert all((ROOT / source).exists() for source in sources), rest
             copied |= set(sources)
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert copied >= {"pyproject.toml", "cvnotes", "notebooks", "data", project["readme"]}
+    assert copied >= {"pyproject.toml", "cvnotes", "notebooks", "data", "README.md"}
     assert copied >= set(project["license-files"])
 
 

@@ -1,6 +1,7 @@
 """Pictures from known cameras, for all chapters: boards and scenes by the exact model."""
 
 from cvnotes.pictures import course
+from cvnotes.pictures.antialiasing import pixel_centres
 from cvnotes.pictures.boards import clutter, render
 from cvnotes.pictures.exposure import compress, expose, gaussian_blur, motion_blur
 from cvnotes.pictures.meshes import Scene
@@ -44,6 +45,7 @@ __all__ = [
     "facing",
     "hold_at",
     # from light to grey levels
+    "pixel_centres",
     "expose",
     "gaussian_blur",
     "motion_blur",
