@@ -23,6 +23,7 @@ examples:
   cvnotes target --corners 9x6 --square 25 --out board.pdf
   cvnotes calibrate photos/ --corners 9x6 --square 25 --out result/
   cvnotes undistort photos/ --camera result/calibration.json --out straight/
+  cvnotes stereo left/ right/ --corners 9x6 --square 25 --out rig/
 """
 
 
@@ -36,7 +37,7 @@ class _Parser(argparse.ArgumentParser):
         sys.exit(2)
 
 
-_COMMANDS = ("lab", "target", "calibrate", "undistort", "grade", "completion")
+_COMMANDS = ("lab", "target", "calibrate", "undistort", "stereo", "grade", "completion")
 
 
 def parser(command: str = "") -> argparse.ArgumentParser:

@@ -16,6 +16,7 @@ _HEAD = 2000  # bytes of a file, among which the words stand
 _PNG_HEADER = 8 + 25  # the signature and the chunk IHDR
 _REASONS = {
     "calibrate": "a picture of results that cvnotes calibrate made, no photograph",
+    "stereo": "made by cvnotes stereo: a rectified picture, no photograph",
     "undistort": "made by cvnotes undistort: the lens is out of it already",
 }
 
