@@ -64,6 +64,11 @@ OPEN_WITHOUT_KERNEL = """async path => {
     await app.shell.currentWidget.context.ready;
 }"""
 READY = "() => window.jupyterapp.shell.currentWidget.context.ready.then(() => true)"
+# Tabs of before may be restored first.
+IN_FRONT = """name => {
+    const widget = window.jupyterapp?.shell.currentWidget;
+    return widget?.context?.path.endsWith(name) ?? false;
+}"""
 SHOW_CELL = """async i => {
     const notebook = window.jupyterapp.shell.currentWidget.content;
     notebook.activeCellIndex = i;
@@ -177,6 +182,7 @@ def _write_scratch(path, *sources):
 def _open(page, address, name):
     page.goto(f"{address}/lab/workspaces/auto-{Path(name).stem}/tree/{name}?token={TOKEN}")
     page.wait_for_selector(".jp-Notebook .jp-CodeCell", timeout=60_000)
+    page.wait_for_function(IN_FRONT, arg=Path(name).name, timeout=60_000)
 
 
 def _open_and_run(page, address, name):

@@ -682,6 +682,7 @@ def test_an_interrupt_in_the_middle_of_writing_leaves_no_temporary_file(tmp_path
         import os, signal, sys
         from pathlib import Path
         from cvnotes.files import write_whole
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's & had it ignored
         written = os.fsync
         def interrupted(handle):
             written(handle)
