@@ -20,7 +20,7 @@ def test_the_board_asked_for_is_written_and_the_user_told_to_check_the_ruler(tmp
     assert cvnotes("target", *options) == 0
     assert out.read_bytes() == Chessboard((7, 4), 22.5).sheet("Letter").pdf()
     said = capsys.readouterr()
-    assert "ruler is 100 mm long" in said.out
+    assert "both rulers are 100 mm" in said.out
     assert said.err == ""
 
 

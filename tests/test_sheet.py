@@ -8,6 +8,7 @@ import pytest
 
 from cvnotes.base import CvnotesError
 from cvnotes.targets import PAPERS, Chessboard
+from cvnotes.targets.page import Line
 from cvnotes.targets.sheet import lay_out
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -57,16 +58,33 @@ def test_a_printed_sheet_has_squares_of_25_mm(paper, tmp_path):
         assert np.allclose(steps.mean(), 25.0, atol=0.005)
 
 
-def test_the_ruler_is_100_mm_long_on_the_printed_sheet(tmp_path):
-    picture = printed(lay_out((9, 6), 25.0), tmp_path)
-    # Some row of pixels below the board is dark over exactly the ruler's length.
-    foot = picture[2200:] < 200
+def longest_line(rows):
+    """The longest run of dark pixels in any row, of those that are no side of the frame."""
     longest = 0
-    for row in foot:
+    for row in rows:
         edges = np.flatnonzero(np.diff(np.r_[0, row, 0]))
         runs = edges[1::2] - edges[::2]
         longest = max(longest, *(run for run in runs if run < 1500), 0)
-    assert longest / 300 * 25.4 == pytest.approx(100, abs=0.25)
+    return longest
+
+
+@pytest.mark.parametrize("corners", [(9, 6), (6, 9)])
+def test_both_rulers_are_100_mm_long_on_the_printed_sheet(corners, tmp_path):
+    sheet = lay_out(corners, 20.0)
+    picture = printed(sheet, tmp_path) < 200
+    below, left = np.array([sheet.page.size[1] - 17, 14.0]) / 25.4 * 300
+    assert longest_line(picture[int(below) :]) / 300 * 25.4 == pytest.approx(100, abs=0.25)
+    beside = picture.T[: int(left)]
+    assert longest_line(beside) / 300 * 25.4 == pytest.approx(100, abs=0.25)
+
+
+def test_a_stretched_page_shows_on_one_ruler_only():
+    """What the second ruler is for: each runs along one direction of the paper."""
+    rulers = [line for line in lay_out((9, 6), 25.0).page.shapes if isinstance(line, Line)]
+    ends = np.array([line.places for line in rulers if len(line.places) == 2])
+    sides = np.abs(ends[:, 1] - ends[:, 0])
+    assert (np.isclose(sides, [100, 0]).all(axis=1)).sum() == 1
+    assert (np.isclose(sides, [0, 100]).all(axis=1)).sum() == 1
 
 
 @pytest.mark.parametrize(("corners", "square"), [((9, 6), 25.0), ((5, 8), 20.0), ((4, 3), 12.5)])

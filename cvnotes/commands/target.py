@@ -15,8 +15,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser = subparsers.add_parser(
         "target",
         help="write a chessboard to print, in true millimetres",
-        description="Write a chessboard to print, as PDF or SVG in true millimetres, with a ruler "
-        "that shows whether the printer kept the scale.",
+        description="Write a chessboard to print, as PDF or SVG in true millimetres, with two "
+        "rulers that show whether the printer kept the scale.",
     )
     parser.add_argument(
         "--corners", type=corners, default=(9, 6), metavar="9x6", help="inner corners (default 9x6)"
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     except CvnotesError as error:
         complain("target", str(error))
         return 1
-    say(f"{printable(args.out)}: print it at 100 %, and check that its ruler is 100 mm long")
+    say(f"{printable(args.out)}: print it at 100 %, and check that both rulers are 100 mm")
     return 0
 
 

@@ -67,7 +67,8 @@ class Sheet:
 
 
 EDGE = 5.0  # what a printer cannot reach
-FOOT = 12.0  # height of the words and the ruler
+FOOT = 12.0  # height of the words and the ruler along x
+SIDE = 9.0  # width of the ruler along y
 _GREY = 0.45
 _RULER = 100
 
@@ -104,8 +105,21 @@ def foot(
         Text(words, y + 4.5, f"{columns} by {rows} inner corners", 3.4, "Helvetica-Bold"),
         Text(words, y + 8, f"{columns + 1} by {rows + 1} squares of {square:g} mm", 2.8),
         Text(words, y + 11.4, code, 2.5, "Courier", _GREY),
-        *_ruler(x + width - _RULER, y + 2.5),
+        *_ruler_along_x(x + width - _RULER, y + 2.5),
     ]
+
+
+def side(x: float, y: float) -> list[Shape]:
+    """Draw what stands left of the board: a ruler that ends at x and begins at y, downwards."""
+    shapes: list[Shape] = [Line(((x, y), (x, y + _RULER)), 0.15)]
+    for mm in range(_RULER + 1):
+        shapes.append(Line(((x, y + mm), (x - _tick(mm), y + mm)), 0.1 if mm % 10 else 0.15))
+    for cm in range(0, _RULER + 1, 10):
+        label = str(cm)
+        shapes.append(
+            Text(x - 3.6 - len(label) * _DIGIT, y + cm + 0.35 * _SMALL, label, _SMALL, grey=_GREY)
+        )
+    return shapes
 
 
 def _key(x: float, y: float) -> list[Shape]:
@@ -127,19 +141,23 @@ def _key(x: float, y: float) -> list[Shape]:
     ]
 
 
-def _ruler(x: float, y: float) -> list[Shape]:
-    """Draw a ruler of 100 mm with a line for each."""
+_SMALL = 2.2  # size of the rulers' digits
+_DIGIT = 0.556 * _SMALL  # a digit of Helvetica is 0.556 of its size wide
+
+
+def _tick(mm: int) -> float:
+    return 3.0 if mm % 10 == 0 else 2.2 if mm % 5 == 0 else 1.4
+
+
+def _ruler_along_x(x: float, y: float) -> list[Shape]:
+    """Draw a ruler of 100 mm with a line for each, and what to do with both rulers."""
     shapes: list[Shape] = [Line(((x, y), (x + _RULER, y)), 0.15)]
     for mm in range(_RULER + 1):
-        length = 3.0 if mm % 10 == 0 else 2.2 if mm % 5 == 0 else 1.4
-        shapes.append(Line(((x + mm, y), (x + mm, y + length)), 0.1 if mm % 10 else 0.15))
+        shapes.append(Line(((x + mm, y), (x + mm, y + _tick(mm))), 0.1 if mm % 10 else 0.15))
     for cm in range(0, _RULER + 1, 10):
-        label, size = str(cm), 2.2
-        # A digit of Helvetica is 0.556 of its size wide.
-        shapes.append(Text(x + cm - len(label) * 0.278 * size, y + 5.2, label, size, grey=_GREY))
-    advice = (
-        "Print at 100 %, then measure: this ruler is 100 mm long. Glue the sheet to something flat."
-    )
+        label = str(cm)
+        shapes.append(Text(x + cm - len(label) * _DIGIT / 2, y + 5.2, label, _SMALL, grey=_GREY))
+    advice = "Print at 100 %, then measure: both rulers are 100 mm. Glue the sheet to something flat."
     shapes.append(Text(x, y + 8.9, advice, 2.4))
     return shapes
 
@@ -168,8 +186,9 @@ def lay_out(corners: tuple[int, int], square: float, paper: str = "A4") -> Sheet
     Notes
     -----
     Around the squares stays a white margin of up to one square, closed by a thin line: finding
-    the corners needs it, so cut outside of the line. The ruler under the board is 100 mm long
-    if, and only if, the sheet was printed at its true size.
+    the corners needs it, so cut outside of the line. The rulers under the board and left of it
+    are 100 mm long if, and only if, the sheet was printed at its true size; one ruler could not
+    tell a printer that stretches one direction only, which would change α_u / α_v.
 
     References
     ----------
@@ -188,12 +207,14 @@ squares of up to 25 mm do
     columns, rows = corners
     title = f"Chessboard, {columns} by {rows} inner corners, squares of {square:g} mm"
     width, height = (columns + 1) * square, (rows + 1) * square
-    left = _on_raster((size[0] - width) / 2 + square) - square
+    middle = max((size[0] - width) / 2, EDGE + SIDE + quiet)
+    left = _on_raster(middle + square) - square
     top = _on_raster((size[1] - FOOT - height) / 2 + square) - square
     border = frame(left - quiet, top - quiet, width + 2 * quiet, height + 2 * quiet)
     shapes = (
         squares(columns, rows, square, left, top),
         border,
+        *side(left - quiet - 1.5, top - quiet),
         *foot(corners, square, size, max(width + 2 * quiet, _FOOT_WIDTH)),
     )
     return Sheet(Page(title, size, shapes))
@@ -227,7 +248,7 @@ def _ways(paper: str) -> tuple[tuple[float, float], tuple[float, float]]:
 
 def _margin(corners: tuple[int, int], square: float, size: tuple[float, float]) -> float:
     """White that stays around the squares; negative if they do not even fit."""
-    across = size[0] - (corners[0] + 1) * square - 2 * EDGE
+    across = size[0] - (corners[0] + 1) * square - 2 * EDGE - SIDE
     down = size[1] - (corners[1] + 1) * square - 2 * EDGE - FOOT
     return min(across, down) / 2
 
