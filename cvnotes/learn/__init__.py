@@ -2,6 +2,7 @@
 
 from cvnotes.learn.cases.pictures import board_picture, rails_picture, stereo_pictures
 from cvnotes.learn.exercises import EXERCISES, add_exercises, check, hint, progress, solution
+from cvnotes.learn.guesses import answer, guess
 from cvnotes.learn.personal import personal_camera
 from cvnotes.learn.truth.verification import NotVerified, verify
 
@@ -10,6 +11,8 @@ __all__ = [
     "hint",
     "solution",
     "progress",
+    "guess",
+    "answer",
     "EXERCISES",
     "add_exercises",
     "verify",

@@ -1,8 +1,8 @@
-"""What was solved, remembered over kernels and days in a small file beside the notebooks.
+"""What was solved and guessed, remembered over kernels and days in a file beside the notebooks.
 
-The file holds names of exercises and days, nothing else; it is never sent anywhere. It is written
-where somebody works interactively (a notebook, IPython), not by scripts and tests. Whoever
-deletes it starts anew.
+The file holds names of exercises, days and guesses, nothing else; it is never sent anywhere. It
+is written where somebody works interactively (a notebook, IPython), not by scripts and tests.
+Whoever deletes it starts anew.
 """
 
 import contextlib
@@ -45,14 +45,12 @@ def shell() -> Any:
 
 def solved_before() -> dict[str, str]:
     """Read what was solved, and on which day; nothing if the file is not there or not readable."""
-    path = place()
-    try:
-        if path is None or path.stat().st_size > _LARGEST:
-            return {}
-        solved = json.loads(path.read_text(encoding="utf-8"))["solved"]
-        return {str(name): str(day)[:10] for name, day in solved.items()}
-    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
-        return {}
+    return {str(name): str(day)[:10] for name, day in _read("solved").items()}
+
+
+def guessed_before() -> dict[str, Any]:
+    """Read what was guessed: numbers, words, or lists of numbers."""
+    return _read("guesses")
 
 
 def remember(names: Iterable[str]) -> None:
@@ -60,12 +58,33 @@ def remember(names: Iterable[str]) -> None:
 
     Where the file cannot be written nothing happens: the notebook still knows, until it ends.
     """
-    path = place()
     known = solved_before()
-    new = [name for name in names if name not in known]
-    if path is None or not new:
-        return
     today = datetime.date.today().isoformat()
-    text = json.dumps({"solved": known | dict.fromkeys(new, today)}, indent=1, sort_keys=True)
+    if new := {name: today for name in names if name not in known}:
+        _write(solved=known | new, guesses=guessed_before())
+
+
+def remember_guess(name: str, value: Any) -> None:
+    """Write down a guess in place of an earlier one of that name."""
+    _write(solved=solved_before(), guesses=guessed_before() | {name: value})
+
+
+def _read(part: str) -> dict[str, Any]:
+    path = place()
+    try:
+        if path is None or path.stat().st_size > _LARGEST:
+            return {}
+        return dict(json.loads(path.read_text(encoding="utf-8")).get(part, {}))
+    except (OSError, ValueError, TypeError, AttributeError, RecursionError):
+        return {}
+
+
+def _write(**parts: dict[str, Any]) -> None:
+    path = place()
+    if path is None:
+        return
+    text = json.dumps(
+        {part: known for part, known in parts.items() if known}, indent=1, sort_keys=True
+    )
     with contextlib.suppress(OSError, CvnotesError):
         write_whole({path: f"{text}\n".encode()})
