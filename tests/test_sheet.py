@@ -72,10 +72,10 @@ def longest_line(rows):
 def test_both_rulers_are_100_mm_long_on_the_printed_sheet(corners, tmp_path):
     sheet = lay_out(corners, 20.0)
     picture = printed(sheet, tmp_path) < 200
-    below, left = np.array([sheet.page.size[1] - 17, 14.0]) / 25.4 * 300
-    assert longest_line(picture[int(below) :]) / 300 * 25.4 == pytest.approx(100, abs=0.25)
-    beside = picture.T[: int(left)]
-    assert longest_line(beside) / 300 * 25.4 == pytest.approx(100, abs=0.25)
+    border = next(shape.places for shape in sheet.page.shapes if isinstance(shape, Line))
+    left, below = np.array([border[0][0] - 0.5, border[2][1] + 0.5]) / 25.4 * 300
+    for rows in (picture[int(below) :], picture.T[: int(left)]):
+        assert longest_line(rows) / 300 * 25.4 == pytest.approx(100, abs=0.25)
 
 
 def test_a_stretched_page_shows_on_one_ruler_only():

@@ -157,7 +157,7 @@ def _ruler_along_x(x: float, y: float) -> list[Shape]:
     for cm in range(0, _RULER + 1, 10):
         label = str(cm)
         shapes.append(Text(x + cm - len(label) * _DIGIT / 2, y + 5.2, label, _SMALL, grey=_GREY))
-    advice = "Print at 100 %, then measure: both rulers are 100 mm. Glue the sheet to something flat."
+    advice = "Print at 100 %, then measure: both rulers are 100 mm. Glue it to something flat."
     shapes.append(Text(x, y + 8.9, advice, 2.4))
     return shapes
 
