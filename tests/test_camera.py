@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
 from cvnotes.camera import (
     Camera,
+    FisheyeLens,
     Lens,
     centre_of,
     decompose,
@@ -18,6 +19,8 @@ from cvnotes.camera import (
     rotation_from_vector,
     xy_from_px,
 )
+from cvnotes.pictures import render
+from cvnotes.targets import Chessboard
 
 RNG = np.random.default_rng(4)
 A = intrinsics(800, 805, 320, 240, 0.7)
@@ -319,3 +322,71 @@ def test_integer_pixels_are_not_computed_in_integers():
     camera = Camera(A, G, LENS)
     m = np.array([[100, 200], [600, 30]], dtype=np.uint16)
     np.testing.assert_array_equal(camera.ray(m), camera.ray(m.astype(float)))
+
+
+def test_a_fisheyes_field_of_view_may_be_more_than_half_of_all_directions():
+    camera = Camera(intrinsics(100, 100, 199.5, 149.5), lens=FisheyeLens(), size=(400, 300))
+    assert camera.field_of_view == pytest.approx((4.0, 3.0))  # r = f θ: 400 px, 100 px a radian
+
+
+def test_the_field_of_view_is_the_angle_between_the_border_rays_however_the_camera_is_turned():
+    camera = Camera(intrinsics(500, 400, 99.5, 239.5), G, size=(1200, 480))
+    right, down = np.arctan(1100 / 500), np.arctan(240 / 400)
+    assert camera.field_of_view == pytest.approx((np.arctan(100 / 500) + right, 2 * down))
+
+
+# --- a part of a picture, and a picture made smaller -----------------------------------------
+
+CROSSING = Chessboard((9, 6), 25.0)
+HELD = Camera(A, look_at([150, 40, -330], [100, 62, 0]), LENS)
+
+
+def test_a_part_of_a_picture_is_the_picture_of_the_cropped_camera():
+    whole = render(CROSSING, HELD, blur=0.7)
+    part = HELD.cropped((150, 90), (300, 200))
+    cut = whole[90:290, 150:450].astype(float)
+    assert np.abs(render(CROSSING, part, blur=0.7) - cut).max() <= 1  # grey level: a rounded half
+    m = HELD.project(CROSSING.points)
+    np.testing.assert_allclose(part.project(CROSSING.points), m - [150, 90], atol=1e-9)
+
+
+@pytest.mark.parametrize("size", [(320, 240), (160, 240), (128, 96)])
+def test_a_picture_averaged_to_a_smaller_one_is_the_picture_of_the_resized_camera(size):
+    whole = render(CROSSING, HELD).astype(float)
+    a, b = 640 // size[0], 480 // size[1]
+    means = whole.reshape(size[1], b, size[0], a).mean(axis=(1, 3))
+    small = render(CROSSING, HELD.resized(size)).astype(float)
+    assert np.abs(means - small).max() <= 1  # grey level: both are rounded
+
+
+@pytest.mark.parametrize("size", [(320, 240), (800, 480), (1280, 960)])
+def test_opencv_resizes_pictures_by_the_same_rule(size):
+    u, v = np.meshgrid(np.arange(640.0), np.arange(480.0))
+    inner = (slice(8, -8), slice(8, -8))  # at the border it repeats the outermost pixels
+    seen = [cv2.resize(x, size, interpolation=cv2.INTER_LINEAR)[inner] for x in (u, v)]
+    m = np.stack(np.meshgrid(np.arange(size[0]), np.arange(size[1])), -1)[inner]
+    ideal = Camera(A)
+    rays = ideal.resized(size).ray(m)
+    np.testing.assert_allclose(ideal.project(rays), np.stack(seen, -1), atol=2e-3)  # px; cv2: /2048
+
+
+def test_a_picture_resized_and_resized_back_has_its_first_camera():
+    there = HELD.resized((1000, 240))
+    assert there.size == (1000, 240)
+    np.testing.assert_allclose(there.resized(HELD.size).A, HELD.A, atol=1e-9)
+    assert there.lens is HELD.lens
+    assert there.A[0, 1] == pytest.approx(0.7 * 1000 / 640)  # the skew moves along u
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (((400, 0), (320, 240)), r"320 × 240 from pixel \(400, 0\) on is not inside .* 640 × 480"),
+        (((0, -1), (320, 240)), "row before column"),
+        (((0.5, 0), (320, 240)), "two whole numbers"),
+        (((0, 0), (0, 240)), "two positive whole numbers"),
+    ],
+)
+def test_a_part_that_is_no_part_is_refused(arguments, words):
+    with pytest.raises(CvnotesError, match=words):
+        HELD.cropped(*arguments)

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError, InputTypeError
-from cvnotes.camera import Camera, Lens, intrinsics, look_at, move, pose, rotation_from_vector
+from cvnotes.camera import (
+    Camera,
+    FisheyeLens,
+    Lens,
+    intrinsics,
+    look_at,
+    move,
+    pose,
+    rotation_from_vector,
+)
 from cvnotes.pictures import Scene, corridor, depth_map, radiance, render_scene, target_scene
 from cvnotes.pictures.meshes import Surroundings, box, join, quads
 from cvnotes.pictures.raycast import has_embree
@@ -227,3 +236,20 @@ def test_what_cannot_be_rendered_is_refused_in_words(arguments, options, error, 
     if not options:
         with pytest.raises(error, match=words):
             depth_map(*arguments)
+
+
+def test_a_rendered_fisheye_shows_each_side_of_a_room_where_the_lens_puts_its_edges():
+    colours = np.arange(1, 7)[:, None, None] / 8 * np.ones(3)
+    room = box((-90, 90), (-90, 90), (-90, 90), np.repeat(colours, 2, axis=1))
+    camera = Camera(intrinsics(60, 60, 199.5, 199.5), lens=FisheyeLens((-0.01,)), size=(400, 400))
+    picture = render_scene(replace(room, around=Surroundings(ambient=1.0)), camera)[..., 0]
+    # along the middle row: the wall ahead, that on the right, and behind, whose edges are at
+    # 45° and 135° from the axis
+    row = picture[199].astype(int)
+    steps = np.flatnonzero(np.abs(np.diff(row)) > 4)
+    assert len(set(row[[199, 270, 385]])) == 3
+    theta = np.radians([45, 135])
+    edges = 199.5 + 60 * theta * (1 - 0.01 * theta**2)
+    for edge in (*edges, *(399 - edges)):
+        assert np.abs(steps + 0.5 - edge).min() < 1
+    assert (picture[0, 0] == 0).all()  # 200√2/60 rad from the axis: more than there is

@@ -1,6 +1,6 @@
 """The camera: what it is made of, and what it sees (notes 2b.1-2b.3)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -16,6 +16,7 @@ from cvnotes.base import (
     guarded,
     image_size,
     intrinsic_matrix,
+    numbers,
     points,
     rigid_motion,
 )
@@ -101,6 +102,75 @@ class Camera:
     def moved(self, G: npt.ArrayLike) -> "Camera":
         """Give the same camera with another pose G (4, 4)."""
         return Camera(self.A, rigid_motion(G), self.lens, self.size)
+
+    def cropped(self, corner: Sequence[int], size: tuple[int, int]) -> "Camera":
+        """Give the camera whose pictures are a part of this one's.
+
+        Parameters
+        ----------
+        corner : (left, top)
+            The pixel of the whole picture that becomes pixel (0, 0): columns cut off on the left,
+            rows cut off above.
+        size : (width, height)
+            Of the part.
+
+        Returns
+        -------
+        Camera
+            It would have taken ``picture[top : top + height, left : left + width]``.
+
+        Raises
+        ------
+        CvnotesError
+            The part reaches out of the picture.
+
+        Notes
+        -----
+        u0 − left and v0 − top. Nothing is stretched, so focal lengths, skew and lens stay.
+
+        Examples
+        --------
+        >>> from cvnotes.camera import Camera, intrinsics
+        >>> part = Camera(intrinsics(800, 804, 325, 238)).cropped((100, 60), (320, 240))
+        >>> part.parameters["u0"], part.parameters["v0"], part.size
+        (225.0, 178.0, (320, 240))
+        """
+        at, (width, height) = _whole_pair(corner, "corner"), image_size(size)
+        whole = f"{self.size[0]} × {self.size[1]}"
+        if min(at) < 0 or at[0] + width > self.size[0] or at[1] + height > self.size[1]:
+            raise CvnotesError(
+                f"a part of {width} × {height} from pixel {at} on is not inside of a picture of "
+                f"{whole} (row before column?)"
+            )
+        shift = np.array([[1, 0, -at[0]], [0, 1, -at[1]], [0, 0, 1.0]])
+        return Camera(shift @ self.A, self.G, self.lens, (width, height))
+
+    def resized(self, size: tuple[int, int]) -> "Camera":
+        """Give the camera whose pictures are this one's, made larger or smaller.
+
+        Parameters
+        ----------
+        size : (width, height)
+            Of the new picture. It shows the same as the old one, from border to border.
+
+        Notes
+        -----
+        With s = width / old width, the left border, u = −½, has to stay the left border: so it is
+        u + ½ that is multiplied, u' = s (u + ½) − ½. Of A, α_u and the skew are multiplied by s,
+        and u0 becomes s (u0 + ½) − ½; likewise for v. The lens acts before there are pixels, and
+        stays. ``cv2.resize`` keeps to the same rule.
+
+        Examples
+        --------
+        >>> from cvnotes.camera import Camera, intrinsics
+        >>> half = Camera(intrinsics(800, 804, 325, 238)).resized((320, 240))
+        >>> half.parameters["alpha_u"], half.parameters["u0"], half.parameters["v0"]
+        (400.0, 162.25, 118.75)
+        """
+        size = image_size(size)
+        s_u, s_v = size[0] / self.size[0], size[1] / self.size[1]
+        stretch = np.array([[s_u, 0, (s_u - 1) / 2], [0, s_v, (s_v - 1) / 2], [0, 0, 1]])
+        return Camera(stretch @ self.A, self.G, self.lens, size)
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -222,8 +292,9 @@ class Camera:
         w, h = self.size
         u, v = self.A[0, 2], self.A[1, 2]
         edges = [[-0.5, v], [w - 0.5, v], [u, -0.5], [u, h - 0.5]]
-        left, right, top, bottom = self.ray(edges)
-        return float(np.arccos(left @ right)), float(np.arccos(top @ bottom))
+        x, y, z = (self.ray(edges) @ self.R.T).T
+        left, right, top, bottom = np.arctan2([x[0], x[1], y[2], y[3]], z)
+        return float(right - left), float(bottom - top)
 
     @property
     def is_invertible(self) -> bool:
@@ -257,6 +328,14 @@ def with_values(A: Array, lens: AnyLens, values: Mapping[str, float]) -> tuple[A
         else:
             of_lens[name] = value
     return A, lens.with_parameters(of_lens)
+
+
+def _whole_pair(x: Any, name: str) -> tuple[int, int]:
+    """Guard a pixel that is named by two whole numbers, (column, row)."""
+    pair = numbers(x, name)
+    if pair.shape != (2,) or (pair != np.round(pair)).any():
+        raise CvnotesError(f"{name}: expected (column, row), two whole numbers, got {x!r}")
+    return int(pair[0]), int(pair[1])
 
 
 def is_camera(x: Any, name: str) -> Camera:

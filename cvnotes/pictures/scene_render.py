@@ -4,8 +4,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, InputTypeError, chunks, target_size
-from cvnotes.camera import Camera, move
+from cvnotes.camera import Camera, FisheyeLens, move
 from cvnotes.camera.model import is_camera
+from cvnotes.pictures.all_round import through_a_cube
 from cvnotes.pictures.antialiasing import (
     TILE,
     changing,
@@ -37,7 +38,8 @@ def render_scene(
     camera : Camera
         The pixel that shows a vertex is ``camera.project(scene.vertices)``.
     samples : int
-        Rays through each pixel in which something changes.
+        Rays through each pixel in which something changes. A fisheye's picture, up to 180° and
+        beyond, is put together from six such pictures, the sides of a cube.
     engine : {"auto", "own", "embree"}
         See `cvnotes.pictures.raycast.first_hits`.
 
@@ -83,6 +85,10 @@ def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "
     True
     """
     _guard(scene, camera, samples)
+    if isinstance(camera.lens, FisheyeLens):
+        return through_a_cube(
+            camera, lambda side: radiance(scene, side, samples=samples, engine=engine)
+        )
     # 1. one ray through the middle of each pixel
     surfaces = Surfaces.seen_by(camera, scene)
     middle = pixel_centres(camera.size)

@@ -30,6 +30,8 @@ def _observed_points(rng: Rng) -> list[Case]:
     k, _ = some_lens(rng)
     k_hand = np.array([-0.2, 0.05])
     cases = [(np.array([[0.5, 0.0], [0.3, 0.4]]), k_hand), (rng.uniform(-0.5, 0.5, (6, 2)), k)]
+    # Near its fold, at r = 0.913 and r' = 0.609, dividing by L needs a hundred rounds.
+    cases.append((np.array([[0.51, 0.68], [-0.75, 0.4]]), np.array([-0.4, 0.0])))
     strong = np.array([-0.35, 0.1])
     cases.append((np.array([[0.5, 0.5], [-0.4, 0.5], [0.3, -0.5], [-0.5, -0.3]]), strong))
     return [Case((rounded(xy * lens_factor(xy, c), 4), c)) for xy, c in cases]
@@ -75,7 +77,9 @@ UNDISTORT = Exercise(
     hints=(
         "You want xy with L(r) xy = xy_lens, where r is the radius of the xy you want.",
         "If you knew r you could divide. Guess xy = xy_lens, divide, and use the better guess.",
-        "Repeat this 50 times, or until the change is below 1e-10. Newton's method is quicker.",
+        "Repeat until the change is below 1e-10, near a fold a hundred times. Or use Newton's "
+        "method: r ← r − (r L(r) − r') / (1 + 3 k1 r² + 5 k2 r⁴), from r = r'; then xy = xy_lens "
+        "/ L(r).",
     ),
     cases=_observed_points,
     properties=(
@@ -135,6 +139,8 @@ UNDISTORT = Exercise(
                 lambda xy_lens, k: _divided(xy_lens, k, 7),
                 lambda xy_lens, k: _divided(xy_lens, k, 8),
                 lambda xy_lens, k: _divided(xy_lens, k, 10),
+                lambda xy_lens, k: _divided(xy_lens, k, 20),
+                lambda xy_lens, k: _divided(xy_lens, k, 50),
             ),
         ),
         Misconception(
