@@ -40,6 +40,8 @@ suppress_warnings = ["ref.python"]  # a word that names several things is then j
 html_static_path = ["site.css", "site.js"]
 html_css_files = ["site.css"]
 html_js_files = ["site.js"]
+if tags.has("live"):  # type: ignore[name-defined] # noqa: F821  (Sphinx's: the site has Python)
+    html_static_path.append("static")
 
 
 def escape_initials(*event: Any) -> None:

@@ -1,6 +1,7 @@
 """What several test files share: a board, its views by a known camera, where photographs lie."""
 
 import os
+import sys
 from pathlib import Path
 
 # Before NumPy is loaded, here and in every process that a test starts: threads of two workers that
@@ -32,6 +33,18 @@ collect_ignore = [] if PHOTOGRAPHS.is_dir() else ["test_photographs.py"]
 def processor_time():
     """Give the seconds that this process and its ended children computed: others do not count."""
     return sum(os.times()[:4])
+
+
+@pytest.fixture(scope="session")
+def browser_parts():
+    """Give the folder with the checked parts of Python for the browser, or skip for want of it."""
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
+    from browser_parts import PartsMissingError, gather
+
+    try:
+        return gather()
+    except PartsMissingError as error:
+        pytest.skip(f"no Python for the browser: {error}")
 
 
 @pytest.fixture(scope="session")

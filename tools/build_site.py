@@ -1,10 +1,16 @@
 """Build the site: notebooks, docs and the package's reference as one folder of pages.
 
-    python tools/build_site.py              into docs/_build/site
+    python tools/build_site.py                      into docs/_build/site
     python tools/build_site.py --out FOLDER
+    python tools/build_site.py --parts FOLDER       Pyodide from a folder of yours
+    python tools/build_site.py --without-python     the pages alone, which can only be read
 
 Needs the extra `docs` (`python3 start.py site` sets it up). The notebooks appear as they are
 committed; nothing is executed. The pages load nothing from elsewhere, formulas included.
+
+With the parts of Python for the browser (`tools/browser_parts.py` says where they come from), the
+pages also run the course's own code: they are in `python/`, and the scripts of `docs/static/live`
+in `_static/live`. Without the parts the site is built plain, and says so.
 """
 
 import argparse
@@ -14,6 +20,7 @@ import tempfile
 from importlib import import_module
 from pathlib import Path
 
+from browser_parts import PartsMissingError, gather, lay_out
 from sphinx.cmd.build import build_main
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -88,18 +95,28 @@ def collect(source: Path) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "_build" / "site")
-    out = parser.parse_args().out
+    parser.add_argument("--parts", type=Path, help="a folder that has the parts of Pyodide")
+    parser.add_argument("--without-python", action="store_true", help="pages to be read only")
+    given = parser.parse_args()
+    out, parts = given.out, None
+    if not given.without_python:
+        try:
+            parts = gather(given.parts)
+        except PartsMissingError as error:
+            print(f"The pages will be plain, without Python: {error}")
     with tempfile.TemporaryDirectory() as folder:
         source, made = Path(folder) / "source", Path(folder) / "site"
         source.mkdir()
         collect(source)
-        options = ["--fail-on-warning", "--quiet"]
+        options = ["--fail-on-warning", "--quiet", *(["--tag", "live"] if parts else [])]
         failed = int(build_main([*options, "-c", str(ROOT / "docs"), str(source), str(made)]))
         if failed:
             return failed
         for path in (made / "_static" / "mathjax").iterdir():
             if path.name not in MATHJAX:
                 path.unlink() if path.is_file() else shutil.rmtree(path)
+        if parts:
+            lay_out(parts, made / "python")
         if out.exists():
             shutil.rmtree(out)
         shutil.copytree(made, out, ignore=shutil.ignore_patterns(".doctrees", ".buildinfo"))
