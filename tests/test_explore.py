@@ -5,6 +5,7 @@ import html
 import io
 import itertools
 import re
+import sys
 import time
 
 import numpy as np
@@ -16,8 +17,9 @@ from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import course
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
 from cvnotes.show.explore.lens import polynomial
+from cvnotes.show.explore.lettering import LETTERS
 from cvnotes.show.explore.model import Model, Setting, Sight, pack_png
-from cvnotes.show.explore.paper import Paper
+from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.explore.rectification import lines_from
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
@@ -112,6 +114,20 @@ def test_a_picture_is_made_and_packed_sooner_than_an_empty_figure_of_matplotlib(
 
     ours = fastest(lambda: pack_png(MODELS[name].picture()))
     assert ours < fastest(lambda: encode(panels(2).flat[0].figure))
+
+
+@each_model
+def test_all_that_is_written_is_among_the_letters_that_a_page_brings(name, monkeypatch):
+    written = set()
+
+    def note(self, _xy, words, *_, **__):
+        written.update(words + self.title)
+
+    monkeypatch.setattr(Panel, "text", note)
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        MODELS[name].picture(**random_values(MODELS[name], rng))
+    assert written <= set(LETTERS)
 
 
 @each_model
@@ -252,6 +268,12 @@ def test_a_lens_with_k1_of_minus_four_thirds_folds_at_one_half():
     for direction in ([1, 0], [-1, 0], [0, 1], [0, -1]):
         u, v = np.rint(middle + reach * np.array(direction)).astype(int)
         assert count(sight.picture[v - 2 : v + 3, u - 2 : u + 3], ESTIMATED) > 0
+
+
+@pytest.mark.parametrize("name", ["homography", "warp"])
+def test_without_scipy_a_photograph_has_the_same_digits(name, monkeypatch):
+    monkeypatch.setitem(sys.modules, "scipy.special", None)
+    assert np.array_equal(explore.model(name).picture(), MODELS[name].picture())
 
 
 def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():

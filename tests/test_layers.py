@@ -130,6 +130,27 @@ def test_importing_the_geometry_loads_numpy_only():
     assert run.stdout.strip() == "[]"
 
 
+def test_explorations_and_exercises_need_nothing_but_numpy_and_pillow():
+    # A page that runs them in the browser fetches each library over the network.
+    script = (
+        "import importlib.abc, sys\n"
+        "class Absent(importlib.abc.MetaPathFinder):\n"
+        "    def find_spec(self, name, path, target=None):\n"
+        "        if name.split('.')[0] in {'scipy', 'cv2', 'matplotlib', 'trimesh', 'ipywidgets',\n"
+        "                                  'mpl_toolkits', 'yaml', 'tqdm', 'IPython'}:\n"
+        "            raise ImportError(name)\n"
+        "import os\n"
+        "from cvnotes.show.explore.lettering import font_file\n"
+        "os.environ['CVNOTES_FONT'] = str(font_file())\n"
+        "sys.meta_path.insert(0, Absent())\n"
+        "import cvnotes.learn\n"
+        "from cvnotes.show.explore import NAMES, model\n"
+        "print([model(name).sight().picture.shape[2] for name in NAMES])"
+    )
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert run.stdout.strip() == str([3] * 7), run.stderr
+
+
 def test_nothing_in_the_package_prints_or_seeds_globally():
     for path in FILES:
         if _name(path).startswith("commands") or "__main__" in path.read_text():

@@ -6,6 +6,8 @@ crosses du columns adds its jump times du times the part of the pixel below it. 
 and squares smaller than a pixel are then all alike, and nothing is sampled.
 """
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -205,9 +207,21 @@ def _spread(y: Array, x: Array, sigma: float) -> tuple[Array, Array]:
     its mean of a blurred step exceeds that of the row above by: a second difference of the
     twofold integral of the Gaussian, z Φ(z) + φ(z).
     """
-    from scipy.special import ndtr
-
     x = np.append(x, x[:, -1:] + 1, axis=1) / sigma
     y = np.concatenate([y[:, :1] - 1, y, y[:, -1:] + 1], axis=1) / sigma
-    twofold = y * ndtr(y) + np.exp(-y * y / 2) / np.sqrt(2 * np.pi)
-    return sigma * np.diff(twofold, n=2, axis=1), np.diff(ndtr(x), axis=1)
+    twofold = y * _below(y) + np.exp(-y * y / 2) / np.sqrt(2 * np.pi)
+    return sigma * np.diff(twofold, n=2, axis=1), np.diff(_below(x), axis=1)
+
+
+def _below(z: Array) -> Array:
+    """Φ(z), the part of a Gaussian below z.
+
+    SciPy's takes a third of the time of Python's own, which gives the same digits and is there
+    without SciPy too: on a page.
+    """
+    try:
+        from scipy.special import ndtr
+    except ImportError:
+        erfc = np.frompyfunc(math.erfc, 1, 1)
+        return 0.5 * np.asarray(erfc(z * -math.sqrt(0.5)), dtype=np.float64)
+    return np.asarray(ndtr(z))

@@ -5,13 +5,15 @@ import io
 import sys
 from dataclasses import dataclass
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from cvnotes.base import CvnotesError
 from cvnotes.show.style import DPI
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # A figure with more colours than this holds a photograph.
 _MANY_COLOURS = 4096
@@ -72,14 +74,16 @@ def show(figure: Any, *, alt: str, width: int | None = None) -> Picture:
     return Picture(data, alt, width or round(figure.get_figwidth() * DPI), mime)
 
 
-def figure_of(drawn: Any) -> Figure:
+def figure_of(drawn: Any) -> "Figure":
     """Return the figure that axes, or the first of several, belong to."""
+    from matplotlib.figure import Figure
+
     while not isinstance(drawn, Figure):
         drawn = np.ravel(drawn)[0].figure
     return drawn
 
 
-def encode(figure: Figure, *, jpeg: bool = True) -> tuple[bytes, str]:
+def encode(figure: "Figure", *, jpeg: bool = True) -> tuple[bytes, str]:
     """Encode a figure at 200 dpi, small; gives the bytes and their type.
 
     Line drawings become PNG with a palette of 256 colours, which suffices for their blended

@@ -4,10 +4,10 @@ The colours are those of Okabe and Ito, chosen so that any two that meet in a fi
 for readers with red or green blindness too; each meaning also has its own marker.
 """
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 WORLD = "#009E73"
 CAMERA = "#56B4E9"
@@ -58,6 +58,8 @@ def panels(
     """
     if height is None:
         height = round(0.75 * width / columns * rows)
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **kwargs)
     for ax in axes.flat:
@@ -67,7 +69,7 @@ def panels(
     return axes[0] if columns > 1 else axes[0, 0]
 
 
-def dress(ax: Axes) -> Axes:
+def dress(ax: "Axes") -> "Axes":
     """Return axes the course's look: a light frame, small type."""
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(MUTED)
@@ -78,13 +80,32 @@ def dress(ax: Axes) -> Axes:
     return ax
 
 
+def halo() -> list[Any]:
+    """Return the white rim that keeps words and lines readable over a picture."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=3, foreground="white")]
+
+
+def rgb(colour: str) -> tuple[float, float, float]:
+    """Return one of the colours above as red, green and blue from 0 to 1.
+
+    Examples
+    --------
+    >>> rgb("#0033FF")
+    (0.0, 0.2, 1.0)
+    """
+    red, green, blue = bytes.fromhex(colour[1:])
+    return red / 255, green / 255, blue / 255
+
+
 def picture_axes(size: tuple[int, int]) -> Any:
     """Make axes that fit a picture of (width, height): 640 px wide, not absurdly high."""
     width, height = size
     return panels(height=round(min(max(560 * height / width, 160), 760) + 60))
 
 
-def as_picture(ax: Axes, size: tuple[int, int]) -> Axes:
+def as_picture(ax: "Axes", size: tuple[int, int]) -> "Axes":
     """Let axes show pixels: v downwards, equal scales, a picture's limits, units in the labels."""
     width, height = size
     ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), aspect="equal")

@@ -1,13 +1,21 @@
 """Words as pixels, written once and kept: stamps for a panel, and its title."""
 
 import math
+import os
 from functools import lru_cache
+from importlib.util import find_spec
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
+
+from cvnotes.base import FileError
+
+# All that explorations write: Latin, Greek, and a little mathematics.
+LETTERS = "".join(map(chr, (*range(32, 127), *range(160, 256), *range(0x391, 0x3CA)))) + (
+    "–—…′″√∞∝≈≤≥≠±−·×ᵀ⁻¹₀₁₂₃←→↑↓²³"
+)
 
 
 @lru_cache(maxsize=512)
@@ -35,5 +43,23 @@ def title_strip(words: str, size: tuple[int, int], left: int, scale: int) -> npt
 
 @lru_cache(maxsize=16)
 def _font(size: int) -> ImageFont.FreeTypeFont:
-    """Matplotlib's own type, so that drawings and figures look alike and have Greek letters."""
-    return ImageFont.truetype(Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf"), size)
+    return ImageFont.truetype(font_file(), size)
+
+
+def font_file() -> Path:
+    """Find matplotlib's own type: drawings and figures look alike, and there are Greek letters.
+
+    Matplotlib is not loaded for it. On a page it is not there either; whoever runs the
+    explorations there names a file with the letters of `LETTERS` in CVNOTES_FONT.
+
+    Examples
+    --------
+    >>> font_file().name
+    'DejaVuSans.ttf'
+    """
+    if given := os.environ.get("CVNOTES_FONT"):
+        return Path(given)
+    found = find_spec("matplotlib")
+    if found is None or found.origin is None:
+        raise FileError("there is no type to write with: matplotlib, which brings it, is missing")
+    return Path(found.origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf"

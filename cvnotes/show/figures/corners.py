@@ -1,19 +1,23 @@
 """Figures of corners: how strongly pixels look like one, and how far off measured ones are."""
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
 
 from cvnotes.base import CvnotesError, DegenerateError, ShapeError, numbers, points
 from cvnotes.show.guards import length, thing
 from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, MUTED, as_picture, panels
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
 _CLOUDS = (COLOURS["lens"], ESTIMATED, COLOURS["world"])
 
 
-def draw_response(response: npt.ArrayLike, *, ax: Axes | None = None, title: str = "") -> Axes:
+def draw_response(response: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
     """Draw a corner response: blue where it is positive, orange where negative.
 
     Parameters
@@ -38,7 +42,7 @@ def draw_response(response: npt.ArrayLike, *, ax: Axes | None = None, title: str
     return as_picture(ax, (R.shape[1], R.shape[0]))
 
 
-def draw_clouds(errors: Mapping[str, npt.ArrayLike], *, reach: float | None = None) -> Axes:
+def draw_clouds(errors: Mapping[str, npt.ArrayLike], *, reach: float | None = None) -> "Axes":
     """Draw the errors of several methods as clouds about the truth, one panel for each.
 
     Parameters

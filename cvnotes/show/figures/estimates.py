@@ -1,26 +1,28 @@
 """Figures of estimates: how they scatter, and which sets of views they can be trusted for."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
 
 from cvnotes.base import CvnotesError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
 from cvnotes.show.guards import length, one_point, thing
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, panels
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 def draw_plane_error(
     m: npt.ArrayLike,
     predicted: npt.ArrayLike,
     *,
-    ax: Axes | None = None,
+    ax: "Axes | None" = None,
     magnify: float = 10.0,
     title: str = "",
-) -> Axes:
+) -> "Axes":
     """Draw how far predicted points are from the true ones, as magnified arrows.
 
     Parameters

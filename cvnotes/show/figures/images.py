@@ -4,21 +4,31 @@ Each ``draw_<thing>(data, *, ax=None)`` draws on the axes it is given, or on new
 them; nothing is shown and no global state is touched. `cvnotes.show.show` puts them on a page.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
-from matplotlib.patheffects import withStroke
 
 from cvnotes.base import Array, CvnotesError, ShapeError, image_size, points, positions
 from cvnotes.show.guards import picture as checked
 from cvnotes.show.guards import thing
-from cvnotes.show.style import COLOURS, ESTIMATED, FONT, MARKERS, WORLD, as_picture, picture_axes
+from cvnotes.show.style import (
+    COLOURS,
+    ESTIMATED,
+    FONT,
+    MARKERS,
+    WORLD,
+    as_picture,
+    halo,
+    picture_axes,
+)
 from cvnotes.targets import Chessboard
 
-_HALO = withStroke(linewidth=3, foreground="white")
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
-def draw_image(image: npt.ArrayLike, *, ax: Axes | None = None, title: str = "") -> Axes:
+def draw_image(image: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
     """Draw a picture with its pixel coordinates.
 
     Parameters
@@ -45,11 +55,11 @@ def draw_image(image: npt.ArrayLike, *, ax: Axes | None = None, title: str = "")
 def draw_points(
     m: npt.ArrayLike,
     *,
-    ax: Axes | None = None,
+    ax: "Axes | None" = None,
     size: tuple[int, int] = (640, 480),
     meaning: str = "estimated",
     label: str = "",
-) -> Axes:
+) -> "Axes":
     """Draw pixels as markers, over a picture or on an empty one.
 
     Parameters
@@ -81,7 +91,7 @@ def draw_points(
         marker=MARKERS[meaning],
         color=COLOURS[meaning],
         linewidths=1.4,
-        path_effects=[_HALO],
+        path_effects=halo(),
         label=label or None,
         zorder=3,
     )
@@ -95,9 +105,9 @@ def draw_corners(
     corners: npt.ArrayLike,
     board: Chessboard,
     *,
-    ax: Axes | None = None,
+    ax: "Axes | None" = None,
     title: str = "",
-) -> Axes:
+) -> "Axes":
     """Draw the corners of a board over its picture, so that their order can be seen.
 
     Each row is joined, and the outermost corners have their numbers; the ring is the origin of
@@ -132,12 +142,12 @@ def draw_corners(
     return ax
 
 
-def _write(ax: Axes, text: str, where: Array, colour: str) -> None:
+def _write(ax: "Axes", text: str, where: Array, colour: str) -> None:
     """Write a short text that stays legible over a picture, and inside of it."""
     right, bottom = ax.get_xlim()[1], ax.get_ylim()[0]
     margin = 0.04 * max(right, bottom)
     u, v = np.clip(where, margin, [right - margin, bottom - margin])
     ax.text(
         u, v, text, color=colour, fontsize=FONT, fontweight="bold",
-        ha="center", va="center", path_effects=[_HALO],
+        ha="center", va="center", path_effects=halo(),
     )  # fmt: skip

@@ -1,20 +1,22 @@
 """Figures of lenses: what they do to a grid, and how far they can be believed."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.camera import Lens
 from cvnotes.show.guards import count, length, thing
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, panels
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 def draw_grid(
-    lens: Lens, *, ax: Axes | None = None, extent: float = 0.5, lines: int = 11, title: str = ""
-) -> Axes:
+    lens: Lens, *, ax: "Axes | None" = None, extent: float = 0.5, lines: int = 11, title: str = ""
+) -> "Axes":
     """Draw a square grid on the plane z = 1, and where the lens shows it.
 
     Parameters
@@ -66,7 +68,7 @@ def draw_lenses(lenses: Sequence[tuple[str, Lens]], *, extent: float = 0.5) -> A
     return axes
 
 
-def draw_radius(lens: Lens, *, ax: Axes | None = None, up_to: float = 1.5) -> Axes:
+def draw_radius(lens: Lens, *, ax: "Axes | None" = None, up_to: float = 1.5) -> "Axes":
     """Draw the observed radius r' = r L(r) over the ideal radius r, and where the lens ends.
 
     Parameters
@@ -102,7 +104,7 @@ def draw_radius(lens: Lens, *, ax: Axes | None = None, up_to: float = 1.5) -> Ax
     return ax
 
 
-def draw_displacement(lens: Lens, *, ax: Axes | None = None, extent: float = 0.5) -> Axes:
+def draw_displacement(lens: Lens, *, ax: "Axes | None" = None, extent: float = 0.5) -> "Axes":
     """Draw where the lens moves points of the plane z = 1, as arrows in true length.
 
     Examples
@@ -121,5 +123,5 @@ def draw_displacement(lens: Lens, *, ax: Axes | None = None, extent: float = 0.5
     return ax
 
 
-def _square(ax: Axes, reach: float) -> None:
+def _square(ax: "Axes", reach: float) -> None:
     ax.set(xlim=(-reach, reach), ylim=(reach, -reach), aspect="equal", xlabel="x", ylabel="y")

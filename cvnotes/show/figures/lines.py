@@ -1,12 +1,10 @@
 """Figures of projective geometry: lines, segments, and the classes of coordinates."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
-from matplotlib.patheffects import withStroke
 
 from cvnotes.base import Array, CvnotesError, ShapeError, image_size, matrix, points
 from cvnotes.show.guards import length
@@ -18,24 +16,26 @@ from cvnotes.show.style import (
     MUTED,
     WORLD,
     as_picture,
+    halo,
     panels,
     picture_axes,
 )
 
-_HALO = withStroke(linewidth=3, foreground="white")
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def draw_lines(
     lines: npt.ArrayLike,
     *,
-    ax: Axes | None = None,
+    ax: "Axes | None" = None,
     size: tuple[int, int] = (640, 480),
     meaning: str = "estimated",
     label: str = "",
     linewidth: float = 1.4,
     linestyle: str = "-",
     color: str | None = None,
-) -> Axes:
+) -> "Axes":
     """Draw whole lines of P², as far as the axes reach.
 
     Parameters
@@ -63,7 +63,7 @@ def draw_lines(
         "linewidth": linewidth,
         "linestyle": linestyle,
     }
-    style["path_effects"] = [_HALO]
+    style["path_effects"] = halo()
     middle = np.array([np.mean(ax.get_xlim()), np.mean(ax.get_ylim())])
     for a, b, c in lines[(lines[:, :2] != 0).any(axis=1)]:
         n = np.array([a, b]) / np.hypot(a, b)
@@ -76,15 +76,15 @@ def draw_lines(
 def draw_segments(
     segments: npt.ArrayLike,
     *,
-    ax: Axes | None = None,
+    ax: "Axes | None" = None,
     size: tuple[int, int] = (640, 480),
     meaning: str = "estimated",
     label: str = "",
     linewidth: float = 1.8,
     linestyle: str = "-",
     color: str | None = None,
-    path_effects: Sequence[Any] = (_HALO,),
-) -> Axes:
+    path_effects: Sequence[Any] | None = None,
+) -> "Axes":
     """Draw segments, each between its two end points.
 
     Parameters
@@ -108,13 +108,13 @@ def draw_segments(
         "linewidth": linewidth,
         "linestyle": linestyle,
     }
-    style["path_effects"] = list(path_effects)
+    style["path_effects"] = halo() if path_effects is None else list(path_effects)
     for i, pair in enumerate(ends):
         ax.plot(*pair.T, label=label if label and i == 0 else None, **style)
     return ax
 
 
-def draw_classes(x_h: npt.ArrayLike, *, ax: Axes | None = None, reach: float = 5.0) -> Axes:
+def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None, reach: float = 5.0) -> "Axes":
     """Draw points of P¹, the projective line: classes [kx k] are lines through the origin.
 
     Where such a line crosses k = 1 is the Euclidean point x. The class of [1 0] never does: it is
@@ -150,7 +150,7 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: Axes | None = None, reach: float = 5
             ax.plot(x, k, "o", color=ESTIMATED if ideal else IDEAL, markersize=5, zorder=3)
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=8, zorder=4)
     text: dict[str, Any] = {"textcoords": "offset points", "fontsize": FONT, "zorder": 5}
-    text["path_effects"] = [_HALO]
+    text["path_effects"] = halo()
     ax.annotate("R, at\nk = 1", (reach, 1), (6, 0), va="center", color=WORLD, **text)
     ax.annotate("[0 0]", (0, 0), (0, -20), ha="center", color=MUTED, **text)
     ax.set(xlim=(-reach, reach), ylim=(-0.35 * reach, 0.65 * reach), aspect="equal")
@@ -172,7 +172,7 @@ def segment_ends(segments: npt.ArrayLike) -> Array:
     return ends.reshape(-1, 2, 2)
 
 
-def pixel_axes(ax: Axes | None, size: tuple[int, int]) -> Axes:
+def pixel_axes(ax: "Axes | None", size: tuple[int, int]) -> "Axes":
     """Return axes for pixels: those that there are, or new ones for a picture of a size.
 
     Examples

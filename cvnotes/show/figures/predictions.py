@@ -1,18 +1,21 @@
 """Figures of what a calibration is worth, and of sets of photographs at a glance."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
 
 from cvnotes.base import ShapeError
 from cvnotes.calibration import Calibration, prediction_std
 from cvnotes.show.guards import calibrated, count, eight_bits, pictures
 from cvnotes.show.style import ESTIMATED, as_picture, picture_axes
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-def draw_prediction_error(calibration: Calibration, *, ax: Axes | None = None) -> Axes:
+
+def draw_prediction_error(calibration: Calibration, *, ax: "Axes | None" = None) -> "Axes":
     """Draw, over the picture, how far off the image of a fixed ray may be, as lines of equal px.
 
     Parameters
@@ -36,7 +39,7 @@ def draw_prediction_error(calibration: Calibration, *, ax: Axes | None = None) -
     return as_picture(ax, calibration.size)
 
 
-def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5, title: str = "") -> Axes:
+def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5, title: str = "") -> "Axes":
     """Draw small copies of grey pictures side by side, as on a contact sheet.
 
     Parameters

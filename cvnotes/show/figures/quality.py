@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
-from matplotlib.patches import Circle, Rectangle
 
 from cvnotes.base import Array, DegenerateError, ShapeError, image_size, number
 from cvnotes.calibration.coverage import covered_cells, joined
@@ -18,12 +16,14 @@ from cvnotes.show.guards import calibrated
 from cvnotes.show.style import ESTIMATED, FONT, MUTED, as_picture, panels, picture_axes
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from cvnotes.calibration import Calibration
 
 
 def draw_residuals(
-    calibration: "Calibration", *, ax: Axes | None = None, magnify: float | None = None
-) -> Axes:
+    calibration: "Calibration", *, ax: "Axes | None" = None, magnify: float | None = None
+) -> "Axes":
     """Draw where each corner was seen relative to where the camera predicts it, magnified.
 
     Arrows that point all over the place are noise; arrows that agree with their neighbours are
@@ -54,12 +54,14 @@ def draw_residuals(
     return ax
 
 
-def draw_residual_scatter(calibration: "Calibration", *, ax: Axes | None = None) -> Axes:
+def draw_residual_scatter(calibration: "Calibration", *, ax: "Axes | None" = None) -> "Axes":
     """Draw all residuals about one origin, with the circle of one standard deviation.
 
     Noise gives a round cloud about 0; the circle's radius is the standard deviation per axis,
     which is the RMS per point over √2.
     """
+    from matplotlib.patches import Circle
+
     _corners_of(calibration)
     r = np.concatenate(calibration.residuals)
     sigma = calibration.rms / np.sqrt(2)
@@ -81,8 +83,8 @@ def draw_coverage(
     image_points: npt.ArrayLike | Sequence[npt.ArrayLike],
     size: tuple[int, int],
     *,
-    ax: Axes | None = None,
-) -> Axes:
+    ax: "Axes | None" = None,
+) -> "Axes":
     """Draw where in the picture corners were seen, and which parts saw none.
 
     The lens is known where corners were; in the empty parts, which are hatched, it is guessed.
@@ -99,6 +101,8 @@ def draw_coverage(
     >>> draw_coverage([[[10, 10], [600, 400]]], (640, 480)).get_title()
     'Corners in 2 of 48 cells of the picture'
     """
+    from matplotlib.patches import Rectangle
+
     size = image_size(size)
     m, seen = joined(image_points), covered_cells(image_points, size)
     side = np.array(size) / seen.shape
@@ -112,8 +116,8 @@ def draw_coverage(
 
 
 def draw_view_rms(
-    calibration: "Calibration", *, ax: Axes | None = None, names: Sequence[str] = ()
-) -> Axes:
+    calibration: "Calibration", *, ax: "Axes | None" = None, names: Sequence[str] = ()
+) -> "Axes":
     """Draw the RMS of each view as a bar, beside that of all.
 
     A view that stands out has wrong corners, or was taken with another focus or zoom.

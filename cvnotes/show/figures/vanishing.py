@@ -1,10 +1,10 @@
 """Figures of vanishing points: where segments lead, and the triangle that gives a camera away."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
 
 from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
@@ -13,16 +13,19 @@ from cvnotes.show.figures.lines import draw_segments, pixel_axes, segment_ends
 from cvnotes.show.space.shapes import colour_of
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 def draw_vanishing(
     segments: npt.ArrayLike,
     v_h: npt.ArrayLike,
     *,
-    ax: Axes | None = None,
+    ax: "Axes | None" = None,
     size: tuple[int, int] = (640, 480),
     meaning: str = "estimated",
     label: str = "",
-) -> Axes:
+) -> "Axes":
     """Draw segments and, dashed, the way on to their vanishing point; the axes grow to show it.
 
     Parameters
@@ -59,10 +62,10 @@ def draw_vanishing(
 def draw_heights(
     v: npt.ArrayLike,
     *,
-    ax: Axes | None = None,
+    ax: "Axes | None" = None,
     size: tuple[int, int] = (640, 480),
     names: Sequence[str] = ("X", "Y", "Z"),
-) -> Axes:
+) -> "Axes":
     """Draw the triangle of three vanishing points, its heights, and the point that they share.
 
     For three orthogonal directions and square pixels that point is the piercing point.
@@ -117,7 +120,7 @@ def _foot(corner: Array, a: Array, b: Array) -> Array:
     return np.asarray(a + (corner - a) @ side / (side @ side) * side)
 
 
-def _widened(ax: Axes, m: Array) -> Axes:
+def _widened(ax: "Axes", m: Array) -> "Axes":
     """Let the axes of a picture reach to points (n, 2) outside of it."""
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     span = np.ptp(np.concatenate([m, [[left, top], [right, bottom]]]), axis=0).max()

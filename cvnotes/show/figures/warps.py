@@ -1,20 +1,21 @@
 """Figures of warps: pixels that were hit or missed, the cell between four pixels, shared rows."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
-from matplotlib.patches import Patch
 
 from cvnotes.base import CvnotesError, ShapeError, number, numbers
 from cvnotes.show.figures.images import draw_image
 from cvnotes.show.guards import count, one_point, pictures
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL, LENS, MUTED, panels
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-def draw_hits(hits: npt.ArrayLike, *, ax: Axes | None = None) -> Axes:
+
+def draw_hits(hits: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     """Draw how often each target pixel of a forward warp was hit: never, once, or more often.
 
     Parameters
@@ -27,6 +28,9 @@ def draw_hits(hits: npt.ArrayLike, *, ax: Axes | None = None) -> Axes:
     >>> draw_hits([[0, 1], [2, 1]]).get_xlabel()
     'u (px)'
     """
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
     counts = numbers(hits, "hits")
     if counts.ndim != 2 or counts.size == 0:
         raise ShapeError(f"hits: expected (height, width), got {counts.shape}")
@@ -41,7 +45,7 @@ def draw_hits(hits: npt.ArrayLike, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def draw_cell(values: npt.ArrayLike, du: float, dv: float, *, ax: Axes | None = None) -> Axes:
+def draw_cell(values: npt.ArrayLike, du: float, dv: float, *, ax: "Axes | None" = None) -> "Axes":
     """Draw the four pixels I1 to I4 around a point, and the way to its interpolated value.
 
     Parameters

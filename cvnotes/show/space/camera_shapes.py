@@ -2,14 +2,13 @@
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.colors import to_rgb
 
 from cvnotes.base import Array, CvnotesError, ShapeError, number, points
 from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
 from cvnotes.show.guards import eight_bits, one_point
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes, colour_of
-from cvnotes.show.style import COLOURS
+from cvnotes.show.style import COLOURS, rgb
 
 
 def camera_shapes(
@@ -141,7 +140,7 @@ def sheet_shapes(
     steps = ((0, 0), (0, 1), (1, 1), (1, 0))
     corners = np.stack([grid[:, i : i + 8, j : j + 28] for i, j in steps], axis=-2)
     corners = corners.reshape(-1, 4, 3)
-    return (Faces(name, corners, np.tile([*to_rgb(colour_of(meaning)), 0.22], (len(corners), 1))),)
+    return (Faces(name, corners, np.tile([*rgb(colour_of(meaning)), 0.22], (len(corners), 1))),)
 
 
 def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shapes:
@@ -194,7 +193,7 @@ def dot_shapes(
         [[belt[i], belt[(i + 1) % 4], tip] for tip in (z, -z) for i in range(4)]
     )
     colour = colour_of(meaning)
-    colours = np.tile([*to_rgb(colour), 1.0], (8, 1))
+    colours = np.tile([*rgb(colour), 1.0], (8, 1))
     return Faces(f"{name} dot", corners, colours), Label(name, at - 3.0 * y, colour)
 
 

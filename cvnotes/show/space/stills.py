@@ -1,27 +1,25 @@
 """Stills of 3-D figures, for the page: the same shapes as in `cvnotes.show.space.viewer`."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
-from matplotlib.colors import to_rgba
-from matplotlib.patheffects import withStroke
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
-from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]
 
 from cvnotes.base import Array
 from cvnotes.show.space.directions import towards
-from cvnotes.show.space.frame import frame
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent, places
-from cvnotes.show.style import DPI, FONT
+from cvnotes.show.style import DPI, FONT, halo
 
-_HALO = withStroke(linewidth=3, foreground="white")
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]
 
 
 def draw_scene(
     *shapes: Shape,
-    ax: Axes3D | None = None,
+    ax: "Axes3D | None" = None,
     view: tuple[float, float] = (20.0, -40.0),
     unit: str = "mm",
-) -> Axes3D:
+) -> "Axes3D":
     """Draw a still of shapes.
 
     Parameters
@@ -47,6 +45,10 @@ def draw_scene(
     >>> draw_scene(*axes_shapes()).get_zlabel()
     'y (mm)'
     """
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
+
+    from cvnotes.show.space.frame import frame
+
     reach = extent(*shapes)
     ax = _axes() if ax is None else ax
     # All in one collection: matplotlib sorts by distance only within one. Its own limits would
@@ -57,7 +59,7 @@ def draw_scene(
     for shape in shapes:
         if isinstance(shape, Label):
             text = ax.text(*_upright(shape.at), shape.name, color=shape.colour, zorder=1e6)
-            text.set(fontsize=FONT - 1, ha="center", va="center", path_effects=[_HALO])
+            text.set(fontsize=FONT - 1, ha="center", va="center", path_effects=halo())
     ax.view_init(*view)
     frame(ax, _upright(places(*shapes)), unit)
     return ax
@@ -65,6 +67,8 @@ def draw_scene(
 
 def _painted(shapes: tuple[Shape, ...], reach: float, towards: Array) -> tuple[list[Array], Array]:
     """Turn shapes into coloured polygons, lines into ribbons that face the viewer."""
+    from matplotlib.colors import to_rgba
+
     polygons: list[Array] = []
     colours: list[Array] = []
     for shape in shapes:
@@ -104,7 +108,7 @@ def _ribbons(ends: Array, width: float, towards: Array) -> Array:
     return np.asarray(np.stack([near - across, far - across, far + across, near + across], axis=1))
 
 
-def _axes() -> Axes3D:
+def _axes() -> "Axes3D":
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(640 / DPI, 520 / DPI), dpi=DPI)

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.colors import to_rgba
 
 from cvnotes.base import Array
 from cvnotes.show.guards import length
@@ -53,6 +52,7 @@ def build_scene(
     ['WRF axes']
     """
     import trimesh
+    from matplotlib.colors import to_rgba
 
     scene = trimesh.Scene()
     thickness = extent(*shapes) / 500 if thickness is None else length(thickness, "thickness")
