@@ -143,18 +143,21 @@ def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
     True
     """
     (u, v), (x, y) = np.moveaxis(residuals, -1, 0), np.moveaxis(corners - centre, -1, 0)
-    distance2 = u * u + v * v
-    seen = np.isfinite(distance2) & (distance2 > 0)
-    n, squares = int(seen.sum()), float(distance2[seen].sum())
-    r2 = (x * x + y * y)[seen]
+    squares_of, outwards, r2 = u * u + v * v, u * x + v * y, x * x + y * y
+    if not 0 < squares_of.min() < np.inf:  # some were not seen, or lie where the lens folds
+        seen = np.isfinite(squares_of) & (squares_of > 0)
+        squares_of, outwards, r2 = squares_of[seen], outwards[seen], r2[seen]
+    n, squares = squares_of.size, float(squares_of.sum())
     if n < 2 * _POWERS or squares < n * _NEGLIGIBLE**2 or not r2.max() > 0:
         return 0.0
     # Normal equations of r, r³, …, the largest radius being 1: sums of powers of r² alone. (A QR
     # of all corners would take longer than the rest of the judgement.)
-    powers = np.vander(r2 / r2.max(), 2 * _POWERS, increasing=True)
+    powers, relative = np.ones((2 * _POWERS, n)), r2.ravel() / r2.max()
+    for i in range(1, 2 * _POWERS):
+        np.multiply(powers[i - 1], relative, out=powers[i])
     i = np.arange(_POWERS)
-    N = powers.sum(0)[1 + i + i[:, None]]
-    g = np.einsum("n,ni->i", (u * x + v * y)[seen], powers[:, :_POWERS]) / np.sqrt(r2.max())
+    N = powers.sum(1)[1 + i + i[:, None]]
+    g = powers[:_POWERS] @ outwards.ravel() / np.sqrt(r2.max())
     part = float(g @ np.linalg.lstsq(N, g, rcond=1e-13)[0])
     return part / squares if part > _POWERS * _CHANCE * squares / (2 * n) else 0.0
 
