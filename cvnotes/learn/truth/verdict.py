@@ -1,0 +1,142 @@
+"""A verdict on a calibration whose truth nobody knows, in words: what holds, and what to mend."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from html import escape
+
+import numpy as np
+
+from cvnotes.base import CvnotesError
+from cvnotes.calibration import Calibration
+from cvnotes.calibration.coverage import covered_cells
+from cvnotes.calibration.reliability import widest_angle
+
+_FEW = 8  # pictures
+_FLAT = 30.0  # degrees between the two boards that differ most
+_LARGE = 6e-4  # RMS over the longer side of the picture
+_OUT = 1.5  # worst view's RMS over the median
+_OPTIMISTIC = 1.5  # deviations from the scatter of views over those of noise
+_VAGUE = 0.005  # deviation of the focal length over its value
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Sentences about a calibration, each with whether it is good news."""
+
+    lines: tuple[tuple[bool, str], ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether every line is good."""
+        return all(good for good, _ in self.lines)
+
+    def __bool__(self) -> bool:
+        return self.holds
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{'✓' if good else '✗'} {words}" for good, words in self.lines)
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{'✓' if good else '✗'}</td>"
+            f'<td style="text-align: left">{escape(words)}</td></tr>'
+            for good, words in self.lines
+        )
+        return f"<table>{rows}</table>"
+
+
+def verdict(calibration: Calibration) -> Verdict:
+    """Judge a calibration without the truth: by its pictures, residuals and error bars.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        With its corners, as `calibrate` gives it.
+
+    Returns
+    -------
+    Verdict
+        One line for each question: are there enough pictures, are the boards tilted, were the
+        picture's four corners reached, do the views determine the camera, is the RMS normal, does
+        a picture stand out, are the residuals noise, is the focal length known?
+
+    Notes
+    -----
+    A verdict teaches, and `Calibration.reliable` decides: a camera may be reliable with some lines
+    that say what would make it better.
+
+    Examples
+    --------
+    >>> from cvnotes.calibration import calibrate
+    >>> from cvnotes.pictures import course
+    >>> found = calibrate(course.board().points, course.measured_corners(), (640, 480))
+    >>> print(verdict(found).lines[1][1])
+    boards differ by up to 87° in tilt
+    """
+    if not isinstance(calibration, Calibration) or not calibration.image_points:
+        raise CvnotesError(
+            "verdict: expected the result of calibrate, with its corners, "
+            f"got {type(calibration).__name__}"
+        )
+    return Verdict((*_of_pictures(calibration), *_of_fit(calibration)))
+
+
+def _of_pictures(found: Calibration) -> Iterator[tuple[bool, str]]:
+    n, angle = len(found.poses), widest_angle(found.poses)
+    few = "" if n >= _FEW else f" only: take {_FEW} or more"
+    yield n >= _FEW, f"{n} pictures{few}"
+    flat = "" if angle >= _FLAT else " only: tilt the board by 30° to 45°, towards every side"
+    yield angle >= _FLAT, f"boards differ by up to {angle:.0f}° in tilt{flat}"
+    seen = covered_cells(list(found.image_points), found.size)
+    missed = 4 - int(seen[[0, 0, -1, -1], [0, -1, 0, -1]].sum())
+    yield (
+        missed == 0,
+        (
+            f"no board in {missed} of the picture's four corners: hold a small one there"
+            if missed
+            else "boards reach into all four corners of the picture"
+        ),
+    )
+
+
+def _of_fit(found: Calibration) -> Iterator[tuple[bool, str]]:
+    yield (
+        found.reliable,
+        ("the pictures determine the camera" if found.reliable else found.warnings[0]),
+    )
+    part = found.rms / max(found.size)
+    yield (
+        part < _LARGE,
+        (
+            f"RMS {found.rms:.3f} px, {100 * part:.2g} % of the picture's width"
+            + (
+                ": normal or better"
+                if part < _LARGE
+                else ": look at the residuals, something moved"
+            )
+        ),
+    )
+    times = float(found.view_rms.max() / max(np.median(found.view_rms), 1e-12))
+    words = f"the worst picture, {found.view_rms.argmax()}, has {times:.1f} times the usual RMS"
+    yield times < _OUT, words + ("" if times < _OUT else ": look at it, or leave it out")
+    yield from _of_error_bars(found)
+
+
+def _of_error_bars(found: Calibration) -> Iterator[tuple[bool, str]]:
+    honest, noise = (np.array([*std.values()]) for std in (found.std_of_views, found.std))
+    if not np.isfinite(honest).all():
+        yield False, "without one of the pictures the others do not determine the camera"
+        return
+    times, part = float(np.median(honest / noise)), honest[0] / found.A[0, 0]
+    yield (
+        times < _OPTIMISTIC,
+        (
+            f"error bars from the scatter between pictures are {times:.1f} times those of noise"
+            + ("" if times < _OPTIMISTIC else ": is the board bent? Believe the larger ones")
+        ),
+    )
+    yield (
+        part < _VAGUE,
+        f"the focal length is known to {100 * part:.2g} %"
+        + ("" if part < _VAGUE else " only: more pictures, more tilt"),
+    )
