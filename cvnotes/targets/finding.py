@@ -13,8 +13,9 @@ from cvnotes.targets.doubts import NotABoard, check_board, check_pattern_ends, t
 from cvnotes.targets.edge_corners import EdgeFit, fit_edges
 from cvnotes.targets.growing import grown_board
 from cvnotes.targets.lattice import completed, ordered
-from cvnotes.targets.opencv_finders import Grey8, find_classic, find_sb, shrink
+from cvnotes.targets.opencv_finders import Grey8, find_classic, find_sb, has_opencv, shrink
 from cvnotes.targets.patches import grey_picture
+from cvnotes.targets.saddle_points import find_saddles
 
 
 def find_corners(image: npt.ArrayLike, board: Chessboard, *, partial: bool = False) -> Array:
@@ -146,12 +147,18 @@ _ATTEMPTS = (
     ("classic finder", find_classic, 1_300_000),
     ("SB finder", find_sb, 12_000_000),
 )
+_ATTEMPTS_WITHOUT_OPENCV = (
+    ("saddle points", find_saddles, 500_000),
+    ("saddle points", find_saddles, 1_300_000),
+    ("growing a part", _find_grown, _PART_PIXELS),
+    ("saddle points", find_saddles, 12_000_000),
+)
 
 
 def _attempts(grey: Grey8) -> Iterator[tuple[str, Any, Grey8]]:
     """Give each finder with the copy of the picture that it should look at, no pair twice."""
     seen = set()
-    for name, finder, most in _ATTEMPTS:
+    for name, finder, most in _ATTEMPTS if has_opencv() else _ATTEMPTS_WITHOUT_OPENCV:
         copy = _reduced(grey, most)
         if (name, copy.shape) not in seen:
             seen.add((name, copy.shape))

@@ -9,7 +9,8 @@ from cvnotes.base import Array, DegenerateError, Image
 from cvnotes.targets.edge_corners import fit_edges
 from cvnotes.targets.gradient_corners import refine_subpixel
 from cvnotes.targets.lattice import Mask, completed
-from cvnotes.targets.opencv_finders import Grey8, find_part
+from cvnotes.targets.opencv_finders import Grey8, find_part, has_opencv
+from cvnotes.targets.saddle_points import find_saddle_part
 
 _FAR = 0.35  # of a square: farther from where it was expected, it is another corner
 _WINDOW = 0.4  # half a window in which gradients lead to a corner, of a square
@@ -35,12 +36,13 @@ def grown_board(grey: Grey8) -> Array | None:
 
     Notes
     -----
-    OpenCV finds a part of the board, of which the surest square is taken. Its neighbours on each
-    side are expected where the rows before them lead, the model of two edges is fitted there, and
-    a row is taken over if at least half of it are corners: in their place, alternating, with a
-    contrast like the others'. That is repeated until no side has such a row.
+    OpenCV finds a part of the board, or without it `find_saddle_part`; of that the surest square
+    is taken. Its neighbours on each side are expected where the rows before them lead, the model of
+    two edges is fitted there, and a row is taken over if at least half of it are corners: in their
+    place, alternating, with a contrast like the others'. That is repeated until no side has such a
+    row.
     """
-    part = find_part(grey)
+    part = find_part(grey) if has_opencv() else find_saddle_part(grey)
     best = np.full((0, 0, 2), np.nan)
     if part is None:
         return None

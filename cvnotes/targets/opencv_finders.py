@@ -2,6 +2,9 @@
 
 Since version 5 the finders give (n, 2), before it (n, 1, 2). They raise for pictures that are too
 small and for boards with fewer than three corners along a side; here, all of these are not found.
+
+In a browser there is no OpenCV. `has_opencv` says so to those who then find boards by their saddle
+points (`cvnotes.targets.saddle_points`).
 """
 
 from collections.abc import Callable, Iterator
@@ -14,6 +17,15 @@ import numpy.typing as npt
 from cvnotes.base import Array
 
 Grey8 = npt.NDArray[np.uint8]
+
+
+def has_opencv() -> bool:
+    """Tell whether OpenCV can be imported here."""
+    try:
+        import cv2  # noqa: F401
+    except ModuleNotFoundError:
+        return False
+    return True
 
 
 def find_sb(grey: Grey8, corners: tuple[int, int]) -> Array | None:
@@ -77,6 +89,9 @@ def one_thread_each() -> Iterator[None]:
 
     Its own threads wait busily for a while after each piece of work.
     """
+    if not has_opencv():
+        yield
+        return
     import cv2
 
     before = cv2.getNumThreads()
@@ -95,9 +110,29 @@ def shrink(grey: Grey8, size: tuple[int, int]) -> Grey8:
     >>> shrink(np.array([[0, 100, 8, 8]], np.uint8), (2, 1))
     array([[50,  8]], dtype=uint8)
     """
+    if not has_opencv():
+        means = area_means(area_means(grey, size[1]).T, size[0]).T
+        return np.rint(means).astype(np.uint8)
     import cv2
 
     return np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+def area_means(rows: npt.NDArray[Any], count: int) -> Array:
+    """Reduce the first axis to so many rows, each the mean of those, and parts of those, it covers.
+
+    Examples
+    --------
+    >>> area_means(np.array([[0.0], [6.0], [12.0]]), 2)
+    array([[ 2.],
+           [10.]])
+    """
+    n = len(rows)
+    sums = np.concatenate([np.zeros((1, *rows.shape[1:])), np.cumsum(rows, axis=0, dtype=float)])
+    ends = np.linspace(0, n, count + 1)
+    whole = np.minimum(ends.astype(np.intp), n - 1)
+    upto = sums[whole] + (ends - whole)[:, None] * rows[whole]
+    return np.asarray(np.diff(upto, axis=0) * (count / n))
 
 
 def _found(

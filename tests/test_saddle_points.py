@@ -1,0 +1,128 @@
+"""Boards found without OpenCV, as in a browser, held against how they are found with it."""
+
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from cvnotes.base import CornersNotFound
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.pictures import clutter, render
+from cvnotes.targets import Chessboard, find_corners
+from cvnotes.targets import opencv_finders as _cv
+from cvnotes.targets.finding import count_corners
+from cvnotes.targets.saddle_points import edges_of, find_saddle_part, find_saddles, saddle_points
+
+ROOT = Path(__file__).resolve().parents[1]
+VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
+BOARD = Chessboard((9, 6), 25.0)
+CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))
+
+
+@pytest.fixture
+def no_opencv(monkeypatch):
+    """Hide OpenCV from whoever imports it from now on."""
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    assert not _cv.has_opencv()
+
+
+def read_image(path):
+    return np.asarray(Image.open(path))
+
+
+def view(distance=520.0):
+    R = rotation_from_vector((0.3, -0.4, 0.2))
+    return CAMERA.moved(pose(R, np.array([0, 0, distance]) - R @ BOARD.points.mean(0)))
+
+
+def test_where_four_squares_meet_is_a_saddle_with_its_place_its_edges_and_its_light_quadrant():
+    v, u = np.indices((41, 41)) - 20.0
+    t = np.array([[np.cos(0.3), np.sin(0.3)], [np.cos(1.6), np.sin(1.6)]])  # of the two edges
+    sides = [np.tanh((a * (v - 0.25) - b * (u - 0.4)) / 0.7) for a, b in t]
+    found = saddle_points(128 + 100 * sides[0] * sides[1], 1.5)
+    np.testing.assert_allclose(found.m[0], [20.4, 20.25], atol=0.05)
+    normals = np.stack([-t[:, 1], t[:, 0]], axis=-1)
+    aside = np.abs(edges_of(found.H[:1])[0] @ normals.T).min(1)
+    assert aside.max() < 0.15  # sine of the angle; the pixel is 0.5 px away
+    # the quadrant between both directions is on different sides of the edges: dark
+    assert t[0] @ found.H[0] @ t[1] < 0
+
+
+def test_in_all_rendered_views_corners_are_where_opencv_leads_to(monkeypatch):
+    pictures = [read_image(path) for path in VIEWS]
+    expected = [find_corners(picture, BOARD) for picture in pictures]
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    found = [find_corners(picture, BOARD) for picture in pictures]
+    assert len(found) == 12
+    np.testing.assert_allclose(found, expected, rtol=0, atol=0.005)
+
+
+@pytest.mark.parametrize("n", range(0, len(VIEWS), 4))
+def test_the_row_of_corners_where_the_outer_squares_end_is_not_taken_for_corners(n):
+    part = find_saddle_part(read_image(VIEWS[n]))
+    assert sorted(part.shape[:2]) == [6, 9]
+
+
+@pytest.mark.parametrize(
+    ("effects", "limit"),
+    [
+        ({"noise": 10.0}, 0.04),
+        ({"blur": 2.5}, 0.03),
+        ({"light": (0.5, 0.4)}, 0.012),
+        ({"margin": 0.2}, 0.01),
+        ({"background": "clutter"}, 0.01),
+    ],
+    ids=str,
+)
+@pytest.mark.usefixtures("no_opencv")
+def test_pictures_of_all_kinds(effects, limit):
+    rng = np.random.default_rng(2)
+    if "background" in effects:
+        effects = {"background": clutter(CAMERA.size, rng=np.random.default_rng(3))}
+    camera = view()
+    picture = render(BOARD, camera, **({"blur": 0.7, "noise": 2.0, "rng": rng} | effects))
+    off = find_corners(picture, BOARD) - camera.project(BOARD.points)
+    assert np.sqrt(np.mean(off**2)) < limit
+
+
+@pytest.mark.usefixtures("no_opencv")
+def test_the_count_that_is_there_is_named():
+    picture = read_image(VIEWS[0])
+    assert count_corners(picture) == (9, 6)
+    with pytest.raises(CornersNotFound, match="a board of 9×6 inner corners is there"):
+        find_corners(picture, Chessboard((8, 5), 25.0))
+
+
+@pytest.mark.usefixtures("no_opencv")
+def test_a_hidden_corner_is_lost_and_the_others_are_not():
+    camera = view(480.0)
+    picture = render(BOARD, camera, blur=0.7, noise=2.0, rng=np.random.default_rng(1))
+    truth = camera.project(BOARD.points)
+    v, u = np.indices(picture.shape)
+    picture[np.hypot(u - truth[22, 0], v - truth[22, 1]) < 14] = 90
+    with pytest.raises(CornersNotFound):
+        find_corners(picture, BOARD)
+    m = find_corners(picture, BOARD, partial=True)
+    assert np.flatnonzero(np.isnan(m).any(-1)).tolist() == [22]
+    assert np.nanmax(np.abs(m - truth)) < 0.2
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (3, 400), (40, 40)])
+@pytest.mark.usefixtures("no_opencv")
+def test_where_there_is_no_board_none_is_found(shape):
+    for picture in (np.zeros(shape, np.uint8), np.random.default_rng(0).integers(0, 255, shape, np.uint8)):
+        assert find_saddles(picture, (9, 6)) is None
+        assert find_saddle_part(picture) is None
+        with pytest.raises(CornersNotFound, match=f"picture of {shape[1]}×{shape[0]} pixels"):
+            find_corners(picture, BOARD)
+
+
+@pytest.mark.parametrize("size", [(320, 240), (417, 300), (639, 479), (1, 1)])
+def test_a_picture_is_reduced_as_opencv_does_it(size, monkeypatch):
+    picture = read_image(VIEWS[3])
+    expected = cv2.resize(picture, size, interpolation=cv2.INTER_AREA).astype(float)
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    np.testing.assert_allclose(_cv.shrink(picture, size), expected, atol=1)
