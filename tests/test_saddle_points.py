@@ -113,7 +113,8 @@ def test_a_hidden_corner_is_lost_and_the_others_are_not():
 @pytest.mark.parametrize("shape", [(1, 1), (3, 400), (40, 40)])
 @pytest.mark.usefixtures("no_opencv")
 def test_where_there_is_no_board_none_is_found(shape):
-    for picture in (np.zeros(shape, np.uint8), np.random.default_rng(0).integers(0, 255, shape, np.uint8)):
+    noise = np.random.default_rng(0).integers(0, 255, shape, np.uint8)
+    for picture in (np.zeros(shape, np.uint8), noise):
         assert find_saddles(picture, (9, 6)) is None
         assert find_saddle_part(picture) is None
         with pytest.raises(CornersNotFound, match=f"picture of {shape[1]}×{shape[0]} pixels"):
