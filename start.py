@@ -3,6 +3,7 @@
     python3 start.py                open the course in JupyterLab (options go to `cvnotes lab`)
     python3 start.py check          lint, types and unit tests: for every change, in a minute
     python3 start.py test           run every test, the notebooks included
+    python3 start.py slides         make slides of the notebooks
     python3 start.py site           build the course as pages; --without-python: to be read only
 
 On Windows write `py` for `python3`. The first call makes a virtual environment in .venv and
@@ -22,12 +23,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
 WINDOWS = os.name == "nt"
-EXTRAS = {"lab": "lab", "check": "dev", "test": "dev", "site": "docs"}
+EXTRAS = {"lab": "lab", "check": "dev", "test": "dev", "site": "docs", "slides": "docs"}
 RUN = {
     "lab": ["-m", "cvnotes", "lab"],
     "check": ["tools/check.py"],
     "test": ["-m", "pytest"],
     "site": ["tools/build_site.py"],
+    "slides": ["tools/build_slides.py"],
 }
 # Nice to have: large scenes are drawn faster. Not every machine finds it ready to use.
 RAYS = "embreex>=2.17.7"

@@ -649,6 +649,7 @@ def spoilt(change):
         ("zoom of 1.1", "did zoom, focus or orientation change between the pictures"),
     ],
 )
+@pytest.mark.slow
 def test_what_should_not_be_believed_says_so(board, views_of, noisy, change, words):
     W, m, size = spoilt(change)(board, views_of, noisy)
     result = quietly(W, m, size)

@@ -317,6 +317,7 @@ def test_the_same_numbers_in_another_dress_give_the_same_answer(function, arrays
 
 
 @row(13)
+@pytest.mark.slow
 def test_read_only_input_is_read_and_no_input_is_written_to(function, arrays):
     for name in arrays:
         x = np.array(function.good[name])

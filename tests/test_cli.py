@@ -222,6 +222,7 @@ def test_a_missing_or_empty_folder_is_said_in_one_line(tmp_path, capsys, name):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_board_that_was_counted_wrongly_is_not_found(photos, tmp_path, capsys):
     assert calibrate(photos, "--out", tmp_path / "out", corners="10x7") == 1
     assert "a board of 10×7 inner corners was found in none" in capsys.readouterr().err
@@ -229,6 +230,7 @@ def test_a_board_that_was_counted_wrongly_is_not_found(photos, tmp_path, capsys)
 
 
 @pytest.mark.usefixtures("plain")
+@pytest.mark.slow
 def test_views_that_do_not_determine_the_camera_are_written_and_marked(tmp_path, capsys):
     folder, out = tmp_path / "flat", tmp_path / "out"
     folder.mkdir()
@@ -246,6 +248,7 @@ def test_views_that_do_not_determine_the_camera_are_written_and_marked(tmp_path,
 
 
 @pytest.mark.usefixtures("plain")
+@pytest.mark.slow
 def test_a_half_turn_symmetric_board_is_accepted_and_that_is_said(tmp_path, capsys):
     for i, tilt in enumerate(TILTS[:5]):
         made = photograph(*board_pose(tilt, corners=(8, 6)), corners=(8, 6))
@@ -255,6 +258,7 @@ def test_a_half_turn_symmetric_board_is_accepted_and_that_is_said(tmp_path, caps
 
 
 @pytest.mark.usefixtures("plain")
+@pytest.mark.slow
 def test_an_exif_rotation_is_pointed_out(tmp_path, capsys):
     exif = Image.Exif()
     exif[274] = 6
@@ -654,6 +658,7 @@ def test_a_browser_is_started_with_a_page_of_its_owners_and_not_with_the_token(t
 
 
 @posix
+@pytest.mark.slow
 def test_the_token_is_in_no_command_line(notebooks, tmp_path):
     pytest.importorskip("jupyterlab")
     browser = tmp_path / "browser"
@@ -683,6 +688,7 @@ def test_the_token_is_in_no_command_line(notebooks, tmp_path):
 
 
 @posix
+@pytest.mark.slow
 def test_the_course_is_served_on_loopback_until_ctrl_c(notebooks, tmp_path):
     pytest.importorskip("jupyterlab")
     environment = os.environ | {"JUPYTER_CONFIG_DIR": str(tmp_path / "config")}

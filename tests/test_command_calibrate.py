@@ -58,6 +58,7 @@ grows = pytest.mark.skipif(
 
 
 @grows
+@pytest.mark.slow
 def test_one_covered_corner_does_not_lose_the_board(photos, capsys):
     Image.fromarray(with_coin(TILTS[2], 4, 3)).save(photos / "view 2.png")
     code, out = calibrate(photos)
@@ -70,6 +71,7 @@ def test_one_covered_corner_does_not_lose_the_board(photos, capsys):
     assert keys["rms"] < 0.1
 
 
+@pytest.mark.slow
 def test_the_count_is_found_in_the_photographs_and_said(photos, capsys):
     wall = Image.fromarray(np.full(SIZE[::-1], 128, np.uint8))
     wall.save(photos / "a wall.png")
@@ -91,12 +93,14 @@ def test_a_count_that_is_nowhere_is_said(tmp_path, capsys):
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_the_count_that_is_there_stands_beside_the_photograph(photos, capsys):
     assert calibrate(photos, corners="8x5")[0] == 1
     assert re.search(r"^view 0\.png +–  .*: 9×6 corners are there$", capsys.readouterr().out, re.M)
 
 
 @grows
+@pytest.mark.slow
 def test_every_photograph_that_is_not_used_has_a_reason_of_its_own(photos, capsys):
     larger = photograph(*board_pose(TILTS[1], corners=(9, 8)), corners=(9, 8))
     Image.fromarray(larger).save(photos / "larger.png")
@@ -109,6 +113,7 @@ def test_every_photograph_that_is_not_used_has_a_reason_of_its_own(photos, capsy
     assert re.search(r"^wall\.png +–  .* of 320×240 pixels$", said, re.M)
 
 
+@pytest.mark.slow
 def test_many_photographs_without_the_board_are_a_doubt(photos, capsys):
     for i in range(9):
         wall = np.full(SIZE[::-1], 120 + i, np.uint8)
@@ -129,6 +134,7 @@ def test_the_same_view_several_times_over_is_said(photos, capsys):
     assert "! 1 of 10 photographs are copies of others" in said
 
 
+@pytest.mark.slow
 def test_a_rotation_asked_for_by_a_photograph_that_is_not_used_is_no_matter(photos, capsys):
     exif = Image.Exif()
     exif[274] = 6

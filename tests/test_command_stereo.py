@@ -76,6 +76,7 @@ def _stereo(folder, out, *more):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_rendered_pairs_become_the_rig_within_its_error_bars(photographs, tmp_path, capsys):
     assert _stereo(photographs, tmp_path) == 0
     said = capsys.readouterr().out
@@ -182,6 +183,7 @@ def test_rows_of_true_partners_agree_in_the_rectified_pictures():
     assert (np.abs(shifted) > 0.9).all()
 
 
+@pytest.mark.slow
 def test_the_jackknife_agrees_with_how_much_repetitions_scatter():
     # Each pair is disturbed as a whole, which the bars of noise alone do not know.
     rng = np.random.default_rng(0)

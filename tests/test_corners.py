@@ -95,6 +95,7 @@ class TestFound:
         m = find_corners(photograph(large, blur=1.2), BOARD)
         assert rms(m - large.project(BOARD.points)) < 0.012
 
+    @pytest.mark.slow
     def test_a_small_board_in_a_large_picture(self):
         camera = Camera(intrinsics(3000, 3000, 1280, 960), size=(2560, 1920))
         camera = camera.moved(pose(np.eye(3), [-300, 100, 6500]))
@@ -154,6 +155,7 @@ class TestWideLenses:
 
 class TestEdgesAlongPixelRows:
     @pytest.mark.parametrize("phase_v", np.arange(4) / 4)
+    @pytest.mark.slow
     def test_a_sharp_board_is_found_in_all_phases(self, phase_v):
         # Where an edge is as sharp as may be, a step may turn it over with its crossing at rest.
         side = 24.3
@@ -173,6 +175,7 @@ class TestEdgesAlongPixelRows:
 
 class TestHiddenCorners:
     @pytest.mark.parametrize("corner", [0, 4, 13, 22, 31, 40, 53])
+    @pytest.mark.slow
     def test_a_coin_takes_one_corner_and_leaves_the_others(self, corner):
         camera = view((0.3, -0.4, 0.2), (0, 0, 480))
         image = with_coin(photograph(camera), camera, corner)
@@ -182,6 +185,7 @@ class TestHiddenCorners:
         with pytest.raises(CornersNotFound):
             find_corners(image, BOARD)
 
+    @pytest.mark.slow
     def test_a_coin_on_a_board_seen_through_a_wide_lens(self):
         camera = close_up(*CLOSE[1])
         image = with_coin(photograph(camera), camera, 30)
@@ -219,11 +223,13 @@ class TestHiddenCorners:
 
 class TestCount:
     @pytest.mark.parametrize("corners", [(9, 6), (8, 6), (7, 4), (4, 3), (13, 12)])
+    @pytest.mark.slow
     def test_the_count_is_found_in_the_picture(self, corners):
         board = Chessboard(corners, 200 / max(corners), half_turn_symmetric=sum(corners) % 2 == 0)
         for turn in ((0.3, -0.2, 0.1), (-0.4, 0.3, 1.4)):
             assert count_corners(photograph(view(turn, board=board), board)) == corners
 
+    @pytest.mark.slow
     def test_a_covered_corner_does_not_change_it(self):
         camera = view((0.3, -0.4, 0.2), (0, 0, 480))
         for corner in (0, 13, 31, 53):

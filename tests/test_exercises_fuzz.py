@@ -46,6 +46,7 @@ def _judged(exercise, outcomes):
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.slow
 def test_arrays_of_one_thing_and_of_any_shape_get_a_report_and_do_not_pass(name):
     exercise, cases = EXERCISES[name], CASES[name]
     for filled in FILLED_WITH.values():

@@ -152,6 +152,7 @@ CHOSEN = _chosen()
 
 
 @pytest.mark.parametrize("name", sorted({name for name, _ in CHOSEN}, key=NAMES.index))
+@pytest.mark.slow
 def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
     exercise = EXERCISES[name]
     source = inspect.getsource(getattr(test_exercises_second, f"my_{name}"))
@@ -172,6 +173,7 @@ def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
             assert names <= {report.misconception}, (report.misconception, names, code)
 
 
+@pytest.mark.slow
 def test_there_are_thousands_of_them():
     total = sum(
         sum(1 for _ in mutants(inspect.getsource(getattr(test_exercises_second, f"my_{name}"))))

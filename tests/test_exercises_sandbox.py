@@ -267,6 +267,7 @@ def test_on_a_busy_machine_waiting_for_a_turn_is_neither_sleep_nor_work(tmp_path
 
 
 @needs_fork
+@pytest.mark.slow
 def test_the_limit_is_of_the_processors_time():
     def half_a_second_of_work():
         started = time.process_time()

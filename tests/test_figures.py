@@ -352,6 +352,7 @@ def test_a_picture_is_white_behind_its_labels():
         assert picture.convert("RGB").getpixel((0, 0)) == (255, 255, 255)
 
 
+@pytest.mark.slow
 def test_line_drawings_are_small_png_and_photographs_jpeg_where_allowed():
     figure = draw_residuals(NOISE).figure
     data, mime = encode(figure)

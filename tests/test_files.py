@@ -184,6 +184,7 @@ def test_a_matrix_is_laid_out_a_row_per_line(tmp_path):
     assert "    [0.0, 799.1, 1e-05]," in lines
 
 
+@pytest.mark.slow
 def test_corners_are_left_out_rather_than_writing_a_file_that_cannot_be_read(tmp_path):
     many = np.random.default_rng(1).uniform(0, 640, (200_000, 2))
     large = made(corners=(many, many), board_points=(np.pad(many, ((0, 0), (0, 1))),) * 2)
@@ -193,6 +194,7 @@ def test_corners_are_left_out_rather_than_writing_a_file_that_cannot_be_read(tmp
     assert back["rms"] == 0.25
 
 
+@pytest.mark.slow
 def test_what_is_written_of_more_than_a_thousand_photographs_is_read(tmp_path):
     rng = np.random.default_rng(1)
     poses = np.stack([pose(rotation_from_vector(r), r * 900) for r in rng.normal(size=(1500, 3))])
@@ -361,6 +363,7 @@ def test_a_lens_of_a_thousand_coefficients_is_refused_at_once(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["unterminated", "many texts", "many lists", "many keys"])
+@pytest.mark.slow
 def test_hostile_json_of_the_largest_size_takes_no_longer_than_an_honest_one(tmp_path, kind):
     size = 2_000_000
     hostile = {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError
-from cvnotes.learn import EXERCISES, answer, check, guess, guesses
+from cvnotes.learn import EXERCISES, answer, check, exercises, guess, guesses
 from cvnotes.learn.remembered import FILE, VARIABLE, solved_before
 
 
@@ -14,6 +14,7 @@ from cvnotes.learn.remembered import FILE, VARIABLE, solved_before
 def file(tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path / FILE))
     monkeypatch.setattr(guesses, "_kept", {})
+    monkeypatch.setattr(exercises, "_SESSION", exercises._Session())
     return tmp_path / FILE
 
 

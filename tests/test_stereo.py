@@ -463,6 +463,7 @@ def test_strongly_converging_cameras_keep_a_part_or_everything():
 
 
 @pytest.mark.parametrize("keep", ["valid", "all"])
+@pytest.mark.slow
 def test_where_the_lens_model_ends_before_the_corner_the_pictures_end_too(keep):
     lens = Lens(k=(-0.5,))  # ends at a radius of 0.82, which is seen at 0.54
     wide = Camera(intrinsics(500, 500, 320, 240), lens=lens)
@@ -767,6 +768,7 @@ def test_pictures_of_different_moments_are_noticed():
     assert not rig.reliable
 
 
+@pytest.mark.slow
 def test_boards_that_are_all_parallel_are_not_believed():
     tilt = rotation_from_vector([0.3, 0.1, 0])
     poses = np.array([pose(tilt, [x, y, 600]) for x in (-150, -100) for y in (-100, -50)])

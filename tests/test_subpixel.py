@@ -74,6 +74,7 @@ class TestHarris:
         turned = np.rot90(harris(np.rot90(image).copy()), -1)
         np.testing.assert_allclose(turned, harris(image), atol=1e-12)
 
+    @pytest.mark.slow
     def test_it_finds_every_corner_of_a_board_to_a_pixel(self, blurred):
         image, m = blurred[5]
         found = local_maxima(harris(eight_bits(image)), radius=8)
@@ -198,6 +199,7 @@ class TestRefineEdges:
         assert rms(errors) < 0.004
         assert np.abs(errors).max() < 0.03
 
+    @pytest.mark.slow
     def test_without_any_blur_it_stays_below_a_twentieth_of_a_pixel(self):
         errors = []
         for turn in TURNS[:2]:

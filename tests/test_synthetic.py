@@ -252,6 +252,7 @@ def near(**effects):
     return render(BOARD, camera, **effects), camera
 
 
+@pytest.mark.slow
 def test_blur_is_that_of_the_scene_before_the_pixels_average_it():
     _, camera = near()
     w, h, n, sigma = *camera.size, 16, 0.7

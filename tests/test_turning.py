@@ -43,6 +43,7 @@ def test_four_boards_with_one_in_the_wrong_pose():
 
 
 @pytest.mark.parametrize("n_views", [3, 4, 5])
+@pytest.mark.slow
 def test_exact_corners_give_the_exact_camera(n_views):
     missed = 0
     for seed in range(100):

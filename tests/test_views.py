@@ -238,6 +238,7 @@ class BackToBack:
     faces = ((np.eye(4), BOARD), (pose(rotation_from_vector([0, np.pi, 0]), [0, 0, 9]), BOARD))
 
 
+@pytest.mark.slow
 def test_impossible_wishes_are_refused_in_words():
     with pytest.raises(DegenerateError, match="look in opposite directions"):
         views(good_views, 3, target=BackToBack())

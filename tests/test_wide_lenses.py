@@ -267,6 +267,7 @@ def test_opencv_comes_to_no_better_rational_minimum():
 # --- which lens? ------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_views_left_out_choose_the_model_that_took_the_pictures():
     rng = np.random.default_rng(4)
     cameras = {

@@ -1,0 +1,86 @@
+"""Slides made of the notebooks: nothing that a class must see is lost, nothing from elsewhere."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+CHROMIUM = "/usr/bin/chromium"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    out = tmp_path_factory.mktemp("slides") / "out"
+    command = [sys.executable, ROOT / "tools/build_slides.py", "--out", out]
+    run = subprocess.run(command, capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
+    return out
+
+
+@pytest.mark.slow
+def test_every_figure_heading_and_trap_of_the_notebooks_is_on_a_slide(made):
+    for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
+        cells = json.loads(path.read_text())["cells"]
+        page = (made / f"{path.stem}.html").read_text()
+        alts = [
+            alt
+            for cell in cells
+            for output in cell.get("outputs", [])
+            for alt in re.findall(
+                r'<img alt="([^"]*)"', "".join(output.get("data", {}).get("text/html", ""))
+            )
+            if not re.search(r"^check\(", "".join(cell["source"]), re.M)
+        ]
+        assert len(re.findall('class="slide picture"', page)) >= 0.9 * len(alts)
+        assert [alt for alt in alts if alt not in page] == []
+        prose = "\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "markdown")
+        traps = len(re.findall(r"^\*\*Careful", prose, re.M))
+        assert len(re.findall('class="slide careful"', page)) == traps
+        headings = re.findall(r"^## (.+)$", prose, re.M)
+        assert len(set(re.findall(r"<h2>(.*?)</h2>", page))) >= 0.7 * len(headings)
+
+
+@pytest.mark.slow
+def test_the_slides_load_nothing_from_elsewhere(made):
+    for path in made.glob("*.html"):
+        text = re.sub(r"<pre.*?</pre>|<aside.*?</aside>", "", path.read_text(), flags=re.S)
+        assert re.findall(r'(?:src|href)="(?!data:|#)([^"]*//[^"]*)"', text) == []
+        for link in re.findall(r'<(?:link|script)[^>]*(?:src|href)="([^"]+)"', text):
+            assert (made / link).exists(), link
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path(CHROMIUM).exists(), reason="no chromium: apt-get install chromium")
+def test_keys_move_the_slides_and_formulas_are_set(made):
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as p:
+        browser = p.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1280, "height": 720})
+        wrong = []
+        page.on("console", lambda m: wrong.append(m.text) if m.type == "error" else None)
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.goto((made / "07_zhang_calibration.html").as_uri())
+        page.wait_for_selector("mjx-math")
+        shown = page.locator(".slide.now")
+        first = shown.inner_text()
+        page.keyboard.press("ArrowRight")
+        assert shown.inner_text() != first
+        assert page.url.endswith("#2")
+        page.keyboard.press("End")
+        n = page.locator(".slide").count()
+        assert page.url.endswith(f"#{n}")
+        for number in range(1, n + 1):  # no picture is cut, no formula wider than the room
+            page.evaluate(f"go({number - 1})")
+            widest = page.evaluate(
+                "Math.max(0, ...[...document.querySelectorAll('.slide.now img, "
+                '.slide.now mjx-container[display="true"] mjx-math\')]'
+                ".map(e => e.getBoundingClientRect().right))"
+            )
+            assert widest <= 1280, f"slide {number}"
+        browser.close()
+    assert wrong == []

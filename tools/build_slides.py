@@ -1,0 +1,250 @@
+"""Make slides of the notebooks: for the room, offline, one page of HTML for each notebook.
+
+    python tools/build_slides.py                    into docs/_build/slides
+    python tools/build_slides.py --out FOLDER
+    python tools/build_slides.py notebooks/07*      of one notebook
+
+Needs the extra `docs` (`python3 start.py slides` sets it up). Nothing is executed: headings,
+theses, formulas, traps and figures are taken from the notebooks as they are committed. What a
+slide leaves out stands in its notes, for the lecturer; of a cell the code is there, too. Printed by
+the browser, each slide is a page.
+"""
+
+import argparse
+import json
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from markdown_it import MarkdownIt
+from mdit_py_plugins.dollarmath import dollarmath_plugin
+
+ROOT = Path(__file__).resolve().parents[1]
+LOOKS = ROOT / "docs" / "slides"
+MATHJAX = ("tex-chtml.js", "input", "output")
+# Sections that are read, and not shown.
+NOT_SHOWN = ("further reading", "what comes next", "the same in opencv")
+_DISPLAY = re.compile(r"\$\$.+?\$\$", re.S)
+_QUESTION = re.compile(r"^guess\(\"[^\"]+\", \.\.\., \"([^\"]+)\"", re.M)
+
+_markdown = (
+    MarkdownIt("commonmark", {"html": False})
+    .enable("table")
+    .use(
+        dollarmath_plugin,
+        renderer=lambda text, options: (
+            f"\\[{escape(text)}\\]" if options["display_mode"] else f"\\({escape(text)}\\)"
+        ),
+    )
+)
+
+
+@dataclass
+class Slide:
+    """What is shown at once, and what the lecturer has beside it."""
+
+    title: str
+    shown: list[str] = field(default_factory=list)  # HTML
+    notes: list[str] = field(default_factory=list)  # Markdown
+    code: str = ""
+    kind: str = "words"
+
+    def html(self, number: int) -> str:
+        """Give the slide as a part of a page."""
+        code = f'<pre class="code">{escape(self.code)}</pre>' if self.code else ""
+        notes = _markdown.render("\n\n".join(self.notes)) if self.notes else ""
+        shown = "\n".join(self.shown)
+        return (
+            f'<section class="slide {self.kind}" id="s{number}"><h2>{inline(self.title)}</h2>'
+            f'<div class="shown">{shown}</div>{code}<aside class="notes">{notes}</aside></section>'
+        )
+
+
+def inline(text: str) -> str:
+    """Render a line of Markdown."""
+    return str(_markdown.renderInline(text))
+
+
+def slides_of(notebook: dict[str, Any]) -> list[Slide]:
+    """Give the slides of a notebook, in its order."""
+    slides: list[Slide] = []
+    before = ""  # the paragraph in front of a cell: it says what to look for
+    skipped = False
+    for cell in notebook["cells"]:
+        source = "".join(cell["source"])
+        if cell["cell_type"] == "markdown":
+            for title, text in parts_of(source):
+                if title is not None:
+                    skipped = title.lower().startswith(NOT_SHOWN)
+                    if not skipped:
+                        slides.append(Slide(title, kind="title" if not slides else "words"))
+                if not skipped and slides:
+                    add_words(slides, text)
+            before = paragraphs(source)[-1] if paragraphs(source) else ""
+        elif not skipped and slides:
+            slides.extend(shown_by(cell, source, slides[-1].title, before))
+    for slide in slides:
+        if (
+            slide.kind == "words"
+            and slide.notes
+            and not any("thesis" not in x for x in slide.shown)
+        ):
+            slide.shown.append(f"<p>{inline(first_sentences(slide.notes[0]))}</p>")
+    return [slide for slide in slides if slide.shown or slide.kind == "title"]
+
+
+def parts_of(source: str) -> Iterator[tuple[str | None, str]]:
+    """Cut a cell at its headings; what stands before the first has none."""
+    pieces = re.split(r"^##? (.+)$", source, flags=re.M)
+    if pieces[0].strip():
+        yield None, pieces[0]
+    yield from zip(pieces[1::2], pieces[2::2], strict=True)
+
+
+def paragraphs(text: str) -> list[str]:
+    """Cut a text where a line is empty."""
+    return [part.strip() for part in re.split(r"\n\s*\n", text) if part.strip()]
+
+
+def add_words(slides: list[Slide], text: str) -> None:
+    """Show of a text its thesis, formulas, lists, tables, questions and traps; keep the rest."""
+    slide = slides[-1]
+    for part in paragraphs(text):
+        if part.startswith("**Careful"):
+            slides.append(Slide(slide.title, [_markdown.render(part)], kind="careful"))
+        elif part.startswith(">"):
+            slide.shown.insert(0, f'<p class="thesis">{inline(part.lstrip("> ").strip("*"))}</p>')
+        elif slide.kind in ("picture", "careful"):  # a new thought, after what was shown
+            slides.append(Slide(slide.title))
+            add_words(slides, part)
+            slide = slides[-1]
+        else:
+            slide.notes.append(part)
+            if shown := essence(part):
+                slide.shown.append(shown)
+
+
+def essence(part: str) -> str:
+    """Give what of a paragraph is to be seen from the last row."""
+    if part.startswith(("|", "* ", "- ", "1. ")):
+        return str(_markdown.render(part))
+    formulas = "".join(f"<div>{_markdown.render(f)}</div>" for f in _DISPLAY.findall(part))
+    without = _DISPLAY.sub(" ", part)
+    asked = re.findall(r"(?:(?<=[.!?:] )|^)([A-Z*$][^.!?]*\?)", without)
+    questions = "".join(f'<p class="question">{inline(q)}</p>' for q in asked)
+    defined = re.match(r"\*\*(You will learn|Change this and run again)\.?\*\*", part)
+    return (_markdown.render(part) if defined else "") + formulas + questions
+
+
+def shown_by(cell: dict[str, Any], source: str, title: str, before: str) -> Iterator[Slide]:
+    """Give a slide for each figure of a cell, and one for what it prints."""
+    if question := _QUESTION.search(source):
+        yield Slide(title, [f'<p class="question">Guess: {inline(question[1])}?</p>'])
+        return
+    if re.search(r"^check\(", source, re.M):
+        return
+    for output in cell.get("outputs", []):
+        data = output.get("data", {})
+        html = "".join(data.get("text/html", ""))
+        text = "".join(output.get("text", "")) or "".join(data.get("text/plain", ""))
+        if "<img" in html or "<svg" in html:
+            caption = f'<p class="caption">{inline(last_sentences(before))}</p>'
+            yield Slide(title, [html, caption], [before], source, "picture")
+        elif html or text.strip():
+            said = f"<p>{inline(last_sentences(before))}</p>"
+            printed = html or f"<pre>{escape(text.rstrip())}</pre>"
+            yield Slide(title, [said, printed], [before], source, "printed")
+
+
+def sentences_of(text: str) -> list[str]:
+    """Cut a paragraph into its sentences, without its formulas on lines of their own."""
+    return re.split(r"(?<=[.?!]) (?=[A-Z*])", " ".join(_DISPLAY.sub(" ", text).split()))
+
+
+def first_sentences(text: str, longest: int = 220) -> str:
+    """Give the beginning of a paragraph, in whole sentences, as far as it is short."""
+    first, *others = sentences_of(text)
+    for sentence in others:
+        if len(first) + len(sentence) > longest:
+            break
+        first = f"{first} {sentence}"
+    return first
+
+
+def last_sentences(text: str, longest: int = 220) -> str:
+    """Give the end of a paragraph, in whole sentences, as far as it is short."""
+    *others, last = sentences_of(text)
+    for sentence in reversed(others):
+        if len(sentence) + len(last) > longest:
+            break
+        last = f"{sentence} {last}"
+    return last
+
+
+def page(name: str, slides: list[Slide]) -> str:
+    """Give the whole page of one notebook."""
+    template = Template((LOOKS / "slides.html").read_text(encoding="utf-8"))
+    body = "\n".join(slide.html(i) for i, slide in enumerate(slides, 1))
+    return template.substitute(title=escape(slides[0].title), name=name, slides=body)
+
+
+def index(made: dict[str, list[Slide]]) -> str:
+    """Give the page that leads to all."""
+    links = [
+        f'<li><a href="{name}.html">{inline(slides[0].title)}</a> ({len(slides)} slides)</li>'
+        for name, slides in made.items()
+    ]
+    return (
+        '<!doctype html><html lang="en"><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width"><title>Slides</title>'
+        '<link rel="stylesheet" href="slides.css"><body class="index"><h1>Slides of the course</h1>'
+        f"<ul>{''.join(links)}</ul></body></html>"
+    )
+
+
+def formulas() -> Path:
+    """Find MathJax, which the site uses, too."""
+    for folder in map(Path, sys.path):
+        found = folder / "sphinx-mathjax-offline" / "static" / "mathjax"
+        if (found / "tex-chtml.js").exists():
+            return found
+    raise SystemExit("The slides need the extra `docs`: python3 start.py slides installs it.")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("notebooks", nargs="*", type=Path, help="default: all")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "_build" / "slides")
+    given = parser.parse_args()
+    mathjax = formulas()
+    made = {}
+    for path in given.notebooks or sorted((ROOT / "notebooks").glob("*.ipynb")):
+        made[path.stem] = slides_of(json.loads(path.read_text(encoding="utf-8")))
+    with tempfile.TemporaryDirectory() as folder:
+        new = Path(folder) / "slides"
+        new.mkdir()
+        for name, slides in made.items():
+            (new / f"{name}.html").write_text(page(name, slides), encoding="utf-8")
+        (new / "index.html").write_text(index(made), encoding="utf-8")
+        for looks in ("slides.css", "slides.js"):
+            shutil.copy(LOOKS / looks, new)
+        for part in MATHJAX:
+            copy = shutil.copytree if (mathjax / part).is_dir() else shutil.copy
+            (new / "mathjax").mkdir(exist_ok=True)
+            copy(mathjax / part, new / "mathjax" / part)
+        if given.out.exists():
+            shutil.rmtree(given.out)
+        shutil.copytree(new, given.out)
+    print(f"The slides are in {given.out / 'index.html'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
