@@ -373,7 +373,9 @@ _RIDGE, _WITH_RIDGE = 0.1, 1e-6
 _ROUNDING = 1e-25
 
 
-def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Minimum[State, Arrow]:
+def minimise(
+    problem: Problem, start: State, *, tolerance: float = 1e-12, steps: int = 100
+) -> Minimum[State, Arrow]:
     """Minimise the reprojection error from a start, by Levenberg–Marquardt.
 
     Raises
@@ -391,7 +393,7 @@ def minimise(problem: Problem, start: State, *, tolerance: float = 1e-12) -> Min
     if problem.model is RationalLens:
         found = _minimise_quotient(problem, start, tolerance)
     else:
-        found = _descend(problem, start, tolerance)
+        found = _descend(problem, start, tolerance, steps=steps)
     # (a fisheye may see a board beside it, and shows it elsewhere than one behind)
     behind = problem.model is not FisheyeLens and found.x.T[:, 2].min() <= 0
     if found.x.shared[:2].min() <= 0 or behind:

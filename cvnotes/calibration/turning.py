@@ -20,6 +20,7 @@ FEW_VIEWS = 8
 _STANDS_OUT = 2.0  # RMS of a view over that of a typical one
 _POSE_STEPS = 3  # with the camera held; the other pose is then near enough to be judged
 _IN_QUESTION = 4.0  # RMS of a view in its other pose over the larger of its own and that of all
+_STEPS = 25  # by which a turned board has led downhill, or it does not
 _NOISELESS = 1e-6  # px; what fits so well needs no other pose
 _BETTER = 1e-6  # of the cost
 
@@ -81,9 +82,9 @@ def _lower_minima(
         R = found.x.R.copy()
         R[views] = turned_over(R[views], found.x.T[views])
         with suppress(ConvergenceError, DegenerateError):
-            other = minimise(problem, State(found.x.shared, R, found.x.T))
+            other = minimise(problem, State(found.x.shared, R, found.x.T), steps=_STEPS)
             if other.cost < found.cost * (1 - _BETTER):
-                yield other
+                yield other if other.converged else minimise(problem, other.x)
 
 
 def _in_question(problem: Problem, found: Minimum[State, Arrow]) -> npt.NDArray[np.intp]:
