@@ -4,6 +4,7 @@ import base64
 import html
 import io
 import itertools
+import json
 import re
 import sys
 import time
@@ -13,12 +14,21 @@ import pytest
 from PIL import Image
 
 from cvnotes.base import CvnotesError, DegenerateError, ShapeError
-from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.camera import (
+    Camera,
+    Lens,
+    intrinsics,
+    pose,
+    rotation_from_angles,
+    rotation_from_vector,
+)
 from cvnotes.pictures import course
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
+from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.lettering import LETTERS
 from cvnotes.show.explore.model import Model, Setting, Sight, pack_png
+from cvnotes.show.explore.page import asked
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.explore.rectification import lines_from
 
@@ -556,3 +566,151 @@ def test_a_sentence_cannot_smuggle_markup_into_the_page():
     assert "1 &lt; 2 &amp; &lt;b&gt;no" in widget.sentence.value
     assert "<b>" not in widget._repr_mimebundle_()["text/html"]
     widget.close_all()
+
+
+# Taken hold of by hand.
+
+PULLED = [(name, grip) for name in explore.NAMES for grip in MODELS[name].drags]
+
+
+def grip_of(sight, name):
+    return next(grip for grip in sight.grips if grip.name == name)
+
+
+@pytest.mark.parametrize(("name", "held"), PULLED)
+@pytest.mark.parametrize("by", [(40, 0), (0, -30), (-25, 20)])
+def test_what_is_pulled_follows_the_hand(name, held, by):
+    model = MODELS[name]
+    start = model.values(heading=5) if name == "projection" else model.values()
+    before = grip_of(model.sight(**start), held)
+    wanted = np.array(before.at) + np.array(by) * before.unit
+    after = grip_of(model.sight(**model.dragged(held, tuple(wanted), **start)), held)
+    off = np.abs(after.at - wanted) / np.abs(before.unit)
+    if held == "camera":  # it goes round, on a sphere; see below
+        assert after.at != before.at
+    elif held == "rails":  # its length stays, its direction follows
+        turned = np.arctan2(*wanted) - np.arctan2(*after.at)
+        assert abs(np.degrees(turned)) <= 0.5 + 1e-9
+    else:
+        assert off.max() < 9, off  # px; whole degrees are up to 8 px apart
+
+
+@pytest.mark.parametrize(("name", "held"), PULLED)
+def test_what_is_pulled_far_away_stops_where_the_sliders_do(name, held):
+    model = MODELS[name]
+    for at in ((1e9, -1e9), (0, 0), (-1e4, 3)):
+        check_sight(name, model.dragged(held, at))
+    with pytest.raises(CvnotesError, match="two finite numbers"):
+        model.dragged(held, (np.nan, 0))
+
+
+def test_a_camera_carried_round_the_board_keeps_its_middle_where_it_is_in_the_picture():
+    model, board = MODELS["camera"], course.board()
+    middle = board.points.mean(axis=0)
+
+    def seen(values):
+        angles = np.radians([values["angle_x"], values["angle_y"], values["angle_z"]])
+        G = pose(rotation_from_angles(*angles), [values["T_x"], values["T_y"], values["T_z"]])
+        camera = pinhole(course.camera()).moved(G)
+        x, y, z = camera.centre - middle
+        radius = np.linalg.norm([x, y, z])
+        return radius, np.array([np.arctan2(x, -z), np.arcsin(y / radius)]), camera.project(middle)
+
+    radius, before, pixel = seen(model.values())
+    grip = grip_of(model.sight(), "camera")
+    for by in ((30, 10), (-60, 0), (0, -40)):
+        at = tuple(np.array(grip.at) + np.array(by) * grip.unit)
+        distance, after, now = seen(model.dragged("camera", at))
+        assert abs(distance / radius - 1) < 0.01
+        assert np.abs(after - before - 2 * np.array(by) * grip.unit / radius).max() < np.radians(
+            1.5
+        )
+        assert np.linalg.norm(now - pixel) < 12  # px; T is in whole millimetres, R in degrees
+
+
+@each_model
+def test_on_a_narrow_page_panels_come_below_each_other(name):
+    model = MODELS[name]
+    wide = model.sight()
+    narrow = model.drawn_on(Paper(narrow=True), model.values())
+    assert narrow.picture.shape[1] < 0.6 * wide.picture.shape[1]
+    assert narrow.sentence == wide.sentence
+    inked = [np.abs(sight.picture.astype(int) - 255).sum() for sight in (wide, narrow)]
+    assert inked[0] == inked[1]
+    for grip in narrow.grips:
+        assert 0 <= grip.place[0] <= narrow.picture.shape[1]
+        assert grip.at == grip_of(wide, grip.name).at
+
+
+def test_grips_are_where_the_picture_shows_their_marks():
+    for narrow in (False, True):
+        sight = MODELS["homography"].drawn_on(
+            Paper(2, narrow=narrow), MODELS["homography"].values()
+        )
+        for grip in sight.grips:
+            u, v = np.rint(2 * np.array(grip.place)).astype(int)
+            assert count(sight.picture[v - 3 : v + 4, u - 3 : u + 4], ESTIMATED) > 10, grip.name
+
+
+# Matrices beside the camera.
+
+
+def test_beside_the_camera_stand_its_matrices_on_the_colours_of_their_sliders():
+    moved = {"alpha": 900, "u0": 300, "skew": -20, "T_x": -70}
+    sight = MODELS["camera"].sight(**moved)
+    tables = [
+        [[cell.replace("−", "-") for cell in re.findall(r">([^<]+)</td>", row)] for row in rows]
+        for rows in (re.findall(r"<tr>(.*?)</tr>", t) for t in sight.matrices.split("<table")[1:])
+    ]
+    A, G, P = (np.array(table, dtype=float) for table in tables)
+    assert A.tolist() == [[900, -20, 300], [0, round(900 * 804 / 800), 238], [0, 0, 1]]
+    assert np.allclose(np.linalg.det(G[:3, :3]), 1, atol=0.05)
+    assert G[0, 3] == -70
+    assert np.allclose(P, A @ G[:3], rtol=0.03, atol=15)
+    tints = {s.name: s.tint for s in MODELS["camera"].settings}
+    for name, number in (("alpha", "900"), ("u0", "300"), ("skew", "−20"), ("T_x", "−70")):
+        assert f'background:{tints[name]};color:#000">{number}</td>' in sight.matrices
+
+
+# On a page without a kernel.
+
+
+def data_of(explorer):
+    shown = explorer._repr_mimebundle_()["text/html"]
+    return json.loads(html.unescape(re.search(r'data-explore="([^"]*)"', shown)[1]))
+
+
+@each_model
+def test_a_page_is_told_what_its_sliders_need_and_is_answered_with_the_same_picture(name):
+    told = data_of(getattr(explore, f"explore_{name}")())
+    model = MODELS[name]
+    assert [s["name"] for s in told["settings"]] == [s.name for s in model.settings]
+    assert told["sentence"] == model.sight().sentence
+    drawn = random_values(model, np.random.default_rng(5))
+    values = {key: float(value) for key, value in drawn.items()}
+    shown = asked(json.dumps({**told, "values": values}))
+    rest = json.loads(shown.rest)
+    width, height = rest["size"]
+    pixels = np.frombuffer(shown.pixels, np.uint8).reshape(height, width, 4)
+    assert np.array_equal(pixels[..., :3], model.picture(**values))
+    assert (pixels[..., 3] == 255).all()
+    assert rest["values"] == values
+
+
+def test_a_page_shows_the_camera_and_the_board_that_were_given():
+    camera = Camera(intrinsics(500, 505, 250, 190), lens=Lens(k=(-1.7, 0.2)), size=(500, 400))
+    told = data_of(explore.explore_lens(camera=camera))
+    own = explore.model("lens", camera)
+    assert json.loads(asked(json.dumps(told)).rest)["sentence"] == own.sight().sentence
+    board = course.Chessboard((6, 5), 40.0)
+    told = data_of(explore.explore_camera(camera=camera, board=board))
+    own = explore.model("camera", camera, board)
+    assert json.loads(asked(json.dumps(told)).rest)["sentence"] == own.sight().sentence
+
+
+def test_a_page_may_pull_a_grip():
+    told = data_of(explore.explore_homography())
+    grip = told["grips"][0]
+    at = [grip["at"][0] + 12, grip["at"][1] - 7]
+    rest = json.loads(asked(json.dumps({**told, "grip": grip["name"], "at": at})).rest)
+    assert (rest["values"]["du1"], rest["values"]["dv1"]) == (12, -7)

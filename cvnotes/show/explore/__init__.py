@@ -138,7 +138,7 @@ def explore_rectification(
 def _explorer(name: str, camera: Camera | None, board: Chessboard | None = None) -> "Explorer":
     from cvnotes.show.explore.shell import Explorer
 
-    return Explorer(model(name, camera, board))
+    return Explorer(model(name, camera, board), camera, board)
 
 
 __all__ = [

@@ -5,7 +5,9 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
 from cvnotes.show.explore.boards import draw_board, draw_in_space, in_space, on_sheet, pinhole
+from cvnotes.show.explore.matrices import FOCAL, PIERCING, SHIFT, SKEW, TURN, matrix_table
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.orbit import round_the_board
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
 from cvnotes.show.space.shapes import axes_shapes, target_shapes
@@ -18,19 +20,20 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
     alpha, (u0, v0), (w, h) = camera.A[0, 0], camera.A[:2, 2], camera.size
     reach = float(np.ceil(np.linalg.norm(board.points[-1])))
     x, y, _ = -board.points.mean(axis=0)
+    axis = "in which the optical axis pierces the picture"
     turn = "turns the board about the camera's {} axis: R = Rz Ry Rx"
     shift = "where the board's origin lies along the camera's {} axis, mm"
     settings = (
-        _whole("alpha", "α (px)", 0.3 * alpha, 2 * alpha, alpha, "focal length in pixels"),
-        _whole("u0", "u0 (px)", 0, w, u0, "column in which the optical axis pierces the picture"),
-        _whole("v0", "v0 (px)", 0, h, v0, "row in which the optical axis pierces the picture"),
-        _whole("skew", "skew (px)", -0.4 * alpha, 0.4 * alpha, camera.A[0, 1], "entry A12"),
-        Setting("angle_x", "angle x (°)", -75, 75, 1, -25, turn.format("x")),
-        Setting("angle_y", "angle y (°)", -75, 75, 1, 20, turn.format("y")),
-        Setting("angle_z", "angle z (°)", -180, 180, 1, 5, turn.format("z")),
-        _whole("T_x", "T x (mm)", -reach, reach, 0.9 * x, shift.format("x")),
-        _whole("T_y", "T y (mm)", -reach, reach, 0.9 * y, shift.format("y")),
-        _whole("T_z", "T z (mm)", 0, 4 * reach, 2.6 * reach, shift.format("z")),
+        _whole("alpha", "α (px)", 0.3 * alpha, 2 * alpha, alpha, "focal length in pixels", FOCAL),
+        _whole("u0", "u0 (px)", 0, w, u0, f"column {axis}", PIERCING),
+        _whole("v0", "v0 (px)", 0, h, v0, f"row {axis}", PIERCING),
+        _whole("skew", "skew (px)", -0.4 * alpha, 0.4 * alpha, camera.A[0, 1], "entry A12", SKEW),
+        Setting("angle_x", "angle x (°)", -75, 75, 1, -25, turn.format("x"), TURN),
+        Setting("angle_y", "angle y (°)", -75, 75, 1, 20, turn.format("y"), TURN),
+        Setting("angle_z", "angle z (°)", -180, 180, 1, 5, turn.format("z"), TURN),
+        _whole("T_x", "T x (mm)", -reach, reach, 0.9 * x, shift.format("x"), SHIFT),
+        _whole("T_y", "T y (mm)", -reach, reach, 0.9 * y, shift.format("y"), SHIFT),
+        _whole("T_z", "T z (mm)", 0, 4 * reach, 2.6 * reach, shift.format("z"), SHIFT),
     )
     about = (
         "The picture that a camera takes of a chessboard; beside it camera and board in space, "
@@ -40,12 +43,25 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
     def draw(paper: Paper, values: Values) -> Sight:
         return _draw(_moved(camera, values), board, paper)
 
-    return Model("camera", about, settings, draw)
+    def carried(values: Values, at: Array) -> Values:
+        return round_the_board(_moved(camera, values), board, at)
+
+    def shifted(values: Values, at: Array) -> Values:
+        x, y, _ = np.linalg.solve(_moved(camera, values).A, [*at, 1]) * values["T_z"]
+        return {"T_x": float(x), "T_y": float(y)}
+
+    def pierced(_: Values, at: Array) -> Values:
+        return {"u0": float(at[0]), "v0": float(at[1])}
+
+    drags = {"camera": carried, "board": shifted, "piercing point": pierced}
+    return Model("camera", about, settings, draw, drags)
 
 
-def _whole(name: str, label: str, low: float, high: float, value: float, help: str) -> Setting:  # noqa: A002
+def _whole(
+    name: str, label: str, low: float, high: float, value: float, about: str, tint: str
+) -> Setting:
     """Make a setting in steps of 1."""
-    return Setting(name, label, round(low), round(high), 1, round(value), help)
+    return Setting(name, label, round(low), round(high), 1, round(value), about, tint)
 
 
 def _moved(camera: Camera, values: Values) -> Camera:
@@ -63,8 +79,11 @@ def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Sight:
     picture.mark(camera.A[:2, 2], "ideal", 9)
     origin = camera.project([0, 0, 0])
     picture.mark(origin, "world", 5)
+    picture.grip("piercing point", "where the optical axis pierces the picture", camera.A[:2, 2], 5)
+    picture.grip("board", "the board's origin in the picture", origin, 5)
     space = _space(camera, board, paper)
-    return Sight(paper.join((picture, space)), _sentence(camera, board, complete))
+    sentence = _sentence(camera, board, complete)
+    return Sight(paper.join((picture, space)), sentence, _matrices(camera))
 
 
 def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
@@ -91,6 +110,7 @@ def _draw_T(panel: Panel, camera: Camera) -> None:
     ends = on_sheet(np.stack([camera.centre, np.zeros(3)]))
     panel.line(ends, WORLD, 1, dash=4)
     panel.mark(ends[0], "camera", 5)
+    panel.grip("camera", "the camera, to carry it round the board", ends[0], 6)
     panel.text(ends.mean(axis=0), "T", WORLD, size=12)
 
 
@@ -104,6 +124,19 @@ def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
     m = camera.project(board.points)
     inside = ((m >= -0.5) & (m <= np.array(camera.size) - 0.5)).all(axis=-1)
     return said if inside.any() else f"{said} All inner corners are outside of the picture."
+
+
+def _matrices(camera: Camera) -> str:
+    """Write A, G and P = A [R|T]; what mixes several parameters has no colour."""
+    of_A = {(0, 0): FOCAL, (1, 1): FOCAL, (0, 1): SKEW, (0, 2): PIERCING, (1, 2): PIERCING}
+    of_G = {(i, j): TURN if j < 3 else SHIFT for i in range(3) for j in range(4)}
+    rotations = np.array([[2, 2, 2, 0]] * 3 + [[0, 0, 0, 0]])
+    products = np.array([[1, 1, 1, 0], [1, 1, 1, 0], [3, 3, 3, 0]])
+    return (
+        matrix_table(camera.A, "A: the sensor (px)", np.zeros((3, 3), int), of_A)
+        + matrix_table(camera.G, "G: camera ← board (T in mm)", rotations, of_G)
+        + matrix_table(camera.P, "P = A [R | T]", products, {})
+    )
 
 
 def _words(x: Array) -> str:

@@ -47,7 +47,14 @@ def homography_model(camera: Camera, board: Chessboard) -> Model:
     def draw(paper: Paper, values: Values) -> Sight:
         return _draw(photo, shown(paper.sharpness), view, board, paper, values)
 
-    return Model("homography", about, settings, draw)
+    exact = view.project(_outer(board))
+
+    def pulled(i: int, at: Array) -> Values:
+        du, dv = (at - exact[i - 1]).tolist()
+        return {f"du{i}": du, f"dv{i}": dv}
+
+    drags = {f"corner {i}": lambda _, at, i=i: pulled(i, at) for i in range(1, 5)}
+    return Model("homography", about, settings, draw, drags)
 
 
 def _draw(
@@ -61,6 +68,7 @@ def _draw(
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 1.8)
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):
+        picture.grip(f"corner {i}", f"corner {i}, {_NAMES[i - 1]}", at, 1)
         picture.text(
             at + 22 * np.sign(at - m.mean(axis=0)), f"{i}", ESTIMATED, anchor="mm", size=14
         )

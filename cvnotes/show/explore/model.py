@@ -4,14 +4,14 @@ import io
 import re
 import zlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from struct import pack
 from typing import NamedTuple
 
 import numpy as np
 
-from cvnotes.base import CvnotesError, ShapeError
-from cvnotes.show.explore.paper import Drawn, Paper
+from cvnotes.base import Array, CvnotesError, ShapeError
+from cvnotes.show.explore.paper import Drawn, Grip, Paper
 from cvnotes.show.picture import Picture
 from cvnotes.show.style import ESTIMATED
 
@@ -31,6 +31,8 @@ class Setting(NamedTuple):
         Range, step and start.
     help : str
         What it means, for the tooltip.
+    tint : str
+        Colour behind its label, where matrices show what it moves on the same one.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Setting(NamedTuple):
     step: float
     value: float
     help: str
+    tint: str = ""
 
     @property
     def is_choice(self) -> bool:
@@ -48,10 +51,27 @@ class Setting(NamedTuple):
 
 
 class Sight(NamedTuple):
-    """What a model shows for one set of values: a picture, and its numbers in a sentence."""
+    """What a model shows for one set of values.
+
+    Attributes
+    ----------
+    picture : ndarray
+        (height, width, 3) of uint8.
+    sentence : str
+        Its numbers, in words.
+    matrices : str
+        Matrices that stand beside it, as HTML; empty if there are none.
+    grips : tuple of Grip
+        Where a hand can take hold of the picture.
+    """
 
     picture: Drawn
     sentence: str
+    matrices: str = ""
+    grips: tuple[Grip, ...] = ()
+
+
+Drag = Callable[[Values, Array], Values]
 
 
 @dataclass(frozen=True)
@@ -68,6 +88,9 @@ class Model:
         What can be moved.
     draw : callable
         (paper, values) → `Sight`.
+    drags : mapping
+        What a hand that takes hold of the picture changes, by the name of the grip: (values, where
+        it is pulled to, in its panel's coordinates) → changed values.
 
     Examples
     --------
@@ -85,6 +108,7 @@ class Model:
     about: str
     settings: tuple[Setting, ...]
     draw: Callable[[Paper, Values], Sight]
+    drags: Mapping[str, Drag] = field(default_factory=dict)
 
     def values(self, **given: float) -> dict[str, float]:
         """Fill up given values with the starting ones; refuse what no slider could say."""
@@ -103,12 +127,14 @@ class Model:
 
     def sight(self, **values: float) -> Sight:
         """Return picture and sentence; where there is no answer, the sentence says why."""
-        return self._sight(Paper(), self.values(**values))
+        return self.drawn_on(Paper(), self.values(**values))
 
-    def _sight(self, paper: Paper, values: Values) -> Sight:
+    def drawn_on(self, paper: Paper, values: Values) -> Sight:
+        """Draw all values on some paper: sharper than usual, or narrow."""
         try:
-            picture, sentence = self.draw(paper, values)
-            return Sight(picture, re.sub(r"-(?=\d)", "−", sentence))
+            sight = self.draw(paper, values)
+            sentence = re.sub(r"-(?=\d)", "−", sight.sentence)
+            return sight._replace(sentence=sentence, grips=paper.grips)
         except CvnotesError as reason:
             panel = paper.panel((660, 120), (0, 1), (0, 1))
             panel.text([0.5, 0.5], "no answer for these values", ESTIMATED, anchor="mm", size=14)
@@ -118,11 +144,34 @@ class Model:
         """Return the picture alone, (height, width, 3) of uint8."""
         return self.sight(**values).picture
 
+    def dragged(self, name: str, at: tuple[float, float], **values: float) -> dict[str, float]:
+        """Give the values after a grip was pulled to a place in the coordinates of its panel.
+
+        They are such as sliders can show: in steps, and no farther than these go.
+
+        Examples
+        --------
+        >>> from cvnotes.show.explore import model
+        >>> model("projection").dragged("vanishing point", (325, 200))["slope"]
+        3.0
+        """
+        values = self.values(**values)
+        if name not in self.drags:
+            raise CvnotesError(f"{self.name}: {name!r} is none of {', '.join(self.drags)}")
+        if not np.isfinite(at).all():
+            raise CvnotesError(f"at: expected two finite numbers, got {at}")
+        moved = {**values, **self.drags[name](values, np.array(at, dtype=np.float64))}
+        for s in self.settings:
+            if moved[s.name] != values[s.name]:
+                steps = round((moved[s.name] - s.low) / s.step)
+                moved[s.name] = min(max(round(s.low + steps * s.step, 9) + 0.0, s.low), s.high)
+        return moved
+
     def still(self, **values: float) -> Picture:
         """Return the picture for a page: at twice the resolution, with its alternative text."""
         from PIL import Image
 
-        sight = self._sight(Paper(2), self.values(**values))
+        sight = self.drawn_on(Paper(2), self.values(**values))
         encoded = io.BytesIO()
         palette = Image.fromarray(sight.picture).quantize(256, dither=Image.Dither.NONE)
         palette.save(encoded, "PNG", optimize=True)

@@ -4,6 +4,8 @@ Matplotlib takes a tenth of a second for a figure, too long for a picture that f
 Here Pillow draws at twice the size, and taking the mean of 2 × 2 pixels makes the lines smooth.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw
@@ -25,11 +27,40 @@ _BEYOND = 8  # px by which lines are drawn over the border, where they are cut o
 _GRID = "#DDDDDD"
 
 
-class Paper:
-    """Something to draw panels on, in pixels of the page times `sharpness`."""
+class Grip(NamedTuple):
+    """A place of a picture that a hand can take hold of.
 
-    def __init__(self, sharpness: int = 1) -> None:
-        self.sharpness = sharpness
+    Attributes
+    ----------
+    name, label : str
+        Whose it is, and what is read out.
+    place : (x, y)
+        On the whole picture, in px of the page.
+    at : (x, y)
+        In the coordinates of its panel.
+    unit : (x, y)
+        How much these grow from one px of the page to the next.
+    step : float
+        How many px an arrow key moves it.
+    """
+
+    name: str
+    label: str
+    place: tuple[float, float]
+    at: tuple[float, float]
+    unit: tuple[float, float]
+    step: float
+
+
+class Paper:
+    """Something to draw panels on, in pixels of the page times `sharpness`.
+
+    On a `narrow` page, a telephone's, panels that else stand side by side come below each other.
+    """
+
+    def __init__(self, sharpness: int = 1, *, narrow: bool = False) -> None:
+        self.sharpness, self.narrow = sharpness, narrow
+        self.grips: tuple[Grip, ...] = ()
 
     def panel(self, size: tuple[int, int], x: Range, y: Range, title: str = "") -> "Panel":
         """Make a panel of (width, height) px that shows x from left to right, y downwards."""
@@ -43,8 +74,18 @@ class Paper:
 
     def join(self, *rows: tuple["Panel", ...]) -> Drawn:
         """Lay panels side by side, and rows below each other: (height, width, 3)."""
-        strips = [np.hstack([panel.finish() for panel in row]) for row in rows]
-        return strips[0] if len(strips) == 1 else np.vstack(strips)
+        if self.narrow:
+            rows = tuple((panel,) for row in rows for panel in row)
+        strips, top = [], 0
+        for row in rows:
+            sheets = [panel.finish() for panel in row]
+            left = np.cumsum([0, *(sheet.shape[1] for sheet in sheets)])
+            for panel, x in zip(row, left.tolist(), strict=False):
+                self.grips += tuple(panel.grips(x / self.sharpness, top / self.sharpness))
+            strips.append(np.hstack(sheets))
+            top += strips[-1].shape[0]
+        width = max(strip.shape[1] for strip in strips)
+        return np.vstack([_widened(strip, width) for strip in strips])
 
 
 class Panel:
@@ -55,6 +96,7 @@ class Panel:
         self.width, self.height = scale * size[0], scale * size[1]
         self._image = Image.new("RGB", (self.width, self.height), "white")
         self._draw = ImageDraw.Draw(self._image)
+        self._grips: list[tuple[str, str, Array, float]] = []
 
     @property
     def pixel(self) -> float:
@@ -100,6 +142,25 @@ class Panel:
         for at in np.atleast_2d(self.place(xy)):
             if np.isfinite(at).all() and (np.abs(at) < 10 * max(self.width, self.height)).all():
                 self._marker(at, MARKERS[meaning], COLOURS[meaning], reach)
+
+    def grip(self, name: str, label: str, xy: npt.ArrayLike, step: float = 1) -> None:
+        """Let a hand take hold of a point; one that lies outside is held at the border."""
+        at = np.asarray(xy, dtype=np.float64)
+        if np.isfinite(at).all():
+            ends = np.array([self.x, self.y])
+            at = np.clip(at, ends.min(axis=1), ends.max(axis=1))
+            self._grips.append((name, label, at, step))
+
+    def grips(self, left: float, top: float) -> list[Grip]:
+        """Give the grips of this panel, which begins at (left, top) px of the picture."""
+        unit = np.ptp([self.x, self.y], axis=1) * self.scale / [self.width, self.height]
+        unit = unit * np.sign([self.x[1] - self.x[0], self.y[1] - self.y[0]])
+        origin = np.array([left + _GAP // 2, top + _TITLE])
+        found = []
+        for name, label, at, step in self._grips:
+            place = _pair(origin + self.place(at) / self.scale)
+            found.append(Grip(name, label, place, _pair(at), _pair(unit), step))
+        return found
 
     def image(self, picture: Drawn, smooth: bool = True) -> None:
         """Fill the panel with a picture, grey or RGB; whole pixels stay as they are."""
@@ -178,3 +239,13 @@ class Panel:
         for ink, part in (("white", 0.6), (colour, 0.28)):
             for stroke in (one, two):
                 self._draw.line(stroke, ink, max(1, round(part * reach)))
+
+
+def _widened(strip: Drawn, width: int) -> Drawn:
+    """Add white columns to a strip that is narrower than the others."""
+    return np.pad(strip, ((0, 0), (0, width - strip.shape[1]), (0, 0)), constant_values=255)
+
+
+def _pair(xy: Array) -> tuple[float, float]:
+    x, y = xy.tolist()
+    return x, y

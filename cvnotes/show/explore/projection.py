@@ -12,6 +12,7 @@ from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD
 _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before the camera
 _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
 _WOOD = "#A8A8A8"
+_REACH = 7.0  # m: how far away the direction is taken hold of
 _PLANE = 2.5  # m: how far away the image plane is drawn from above
 
 
@@ -27,7 +28,19 @@ def projection_model(camera: Camera) -> Model:
         "from above, with the ray through the camera's centre that is parallel to the rails."
     )
     ideal = pinhole(camera)
-    return Model("projection", about, settings, lambda paper, values: _draw(ideal, paper, values))
+
+    def draw(paper: Paper, values: Values) -> Sight:
+        return _draw(ideal, paper, values)
+
+    def pointed(_: Values, at: Array) -> Values:
+        x, y, z = np.linalg.solve(ideal.A, [*at, 1])
+        slope = np.arctan2(-y, np.hypot(x, z))
+        return {"heading": float(np.degrees(np.arctan2(x, z))), "slope": float(np.degrees(slope))}
+
+    def turned(_: Values, at: Array) -> Values:
+        return {"heading": float(np.degrees(np.arctan2(*at)))}
+
+    return Model("projection", about, settings, draw, {"vanishing point": pointed, "rails": turned})
 
 
 def _draw(camera: Camera, paper: Paper, values: Values) -> Sight:
@@ -61,6 +74,7 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
         panel.line(camera.project(rail), WORLD, 2.5)
     end = camera.vanishing_point(along)
     panel.mark(end, "ideal", 9)
+    panel.grip("vanishing point", "the vanishing point", end, 10)
     u, v = end.tolist()
     if 0 <= u < w and 0 <= v < h:
         left, above = u > 0.7 * w, v > 40
@@ -80,6 +94,7 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.line([[left, _PLANE], [right, _PLANE]], CAMERA, 3)
     panel.line(np.outer([0, 20], along[::2]), IDEAL, 1.2, dash=5)
     panel.mark([0, 0], "camera", 8)
+    panel.grip("rails", "the direction of the rails, from above", _REACH * along[::2], 5)
     if along[2] > 0:
         panel.mark(_PLANE * along[::2] / along[2], "ideal", 9)
     # On the side that the rails leave free, and over all lines.

@@ -11,7 +11,10 @@ from ipywidgets.widgets.widget_int import IntSlider
 from ipywidgets.widgets.widget_media import Image
 from ipywidgets.widgets.widget_string import HTML
 
+from cvnotes.camera import Camera
 from cvnotes.show.explore.model import Model, Setting, pack_png
+from cvnotes.show.explore.page import told
+from cvnotes.targets import Chessboard
 
 _UNSEEN = "position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%)"
 _TWO_LINES = "min-height: 2.8em; line-height: 1.4"  # so that the picture stays where it is
@@ -30,6 +33,8 @@ class Explorer(VBox):
     ----------
     model : Model
         What is shown.
+    camera, board : optional
+        As they were given for the model: a page makes the same one of them.
 
     Examples
     --------
@@ -42,13 +47,16 @@ class Explorer(VBox):
     -0.3
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(
+        self, model: Model, camera: Camera | None = None, board: Chessboard | None = None
+    ) -> None:
         self.model = model
+        self._given = camera, board
         self.sliders = {s.name: _control(s) for s in model.settings}
         self.reset_button = Button(
             description="Reset", icon="undo", tooltip="Move every slider back to where it started"
         )
-        self.sentence = HTML()
+        self.sentence, self.matrices = HTML(), HTML()
         self.image = Image(format="png")
         self._drawn: dict[str, float] | None = None
         self._held = False
@@ -64,18 +72,24 @@ class Explorer(VBox):
                 "width": "100%",
             },
         )
-        super().__init__([controls, self.sentence, self.image])  # type: ignore[no-untyped-call]
+        beside = [self.matrices] if self.matrices.value else []
+        super().__init__([controls, self.sentence, self.image, *beside])  # type: ignore[no-untyped-call]
 
     def __repr__(self) -> str:
         return f"explore {self.model.name}: run this cell to move its sliders"
 
     def _repr_mimebundle_(self, **kwargs: Any) -> dict[str, Any]:
-        """Return the view of the widget, and the still for whoever cannot show that."""
+        """Return the view of the widget, and the still for whoever cannot show that.
+
+        With the still comes, as data, what a page needs to make it follow the hand.
+        """
         bundle: dict[str, Any] = super()._repr_mimebundle_(**kwargs)  # type: ignore[no-untyped-call]
-        said = escape(self.model.sight(**self.values).sentence)
+        sight = self.model.sight(**self.values)
+        data = escape(told(self.model, *self._given, self.values))
         still = self.model.still(**self.values)._repr_html_()
-        words = f"<p>{said} <em>Run this cell to move its sliders.</em></p>"
-        return bundle | {"text/html": still + words}
+        words = f"<p>{escape(sight.sentence)} <em>Run this cell to move its sliders.</em></p>"
+        for_page = f'<span class="cvnotes-explore" hidden data-explore="{data}"></span>'
+        return bundle | {"text/html": still + words + for_page}
 
     @property
     def values(self) -> dict[str, float]:
@@ -91,6 +105,7 @@ class Explorer(VBox):
         sight = self.model.sight(**values)
         self.image.width = str(sight.picture.shape[1])
         self.image.value = pack_png(sight.picture)
+        self.matrices.value = sight.matrices
         # An image widget has no alternative text; its description stands here, for the ear only.
         self.sentence.value = (
             f'<span style="{_UNSEEN}">{escape(self.model.about)}</span>'
@@ -116,7 +131,8 @@ def _control(setting: Setting) -> Any:
         return _slider(setting)
     return Checkbox(
         value=bool(setting.value),
-        description=setting.label,
+        description=_label(setting),
+        description_allow_html=bool(setting.tint),
         tooltip=setting.help,
         layout={"width": "auto"},
         style={"description_width": "85px"},
@@ -134,9 +150,18 @@ def _slider(setting: Setting) -> Any:
         min=number(setting.low),
         max=number(setting.high),
         step=number(setting.step),
-        description=setting.label,
+        description=_label(setting),
+        description_allow_html=bool(setting.tint),
         tooltip=setting.help,
         readout_format="d" if whole else f".{digits}f",
         layout={"width": "auto"},
         style={"description_width": "85px"},
     )
+
+
+def _label(setting: Setting) -> str:
+    """Write the label, on the colour that its entries of a matrix have."""
+    if not setting.tint:
+        return setting.label
+    style = f"background:{setting.tint};color:#000;padding:1px 4px;border-radius:3px"
+    return f'<span style="{style}">{escape(setting.label)}</span>'

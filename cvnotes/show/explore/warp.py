@@ -3,6 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
+from cvnotes.base import Array
 from cvnotes.camera import Camera, pose, rotation_from_vector
 from cvnotes.pictures import render
 from cvnotes.show.explore.boards import pinhole
@@ -14,6 +15,7 @@ from cvnotes.warping import backward_warp, compose, forward_warp, rotation_map, 
 
 _WIDTH = 108  # px of the source: few enough to see each one
 _LARGER = 4  # px of the page for a pixel
+_ARM = 0.25  # of the width, from the middle to where the picture is taken hold of
 _PAPER = 255  # grey level where the source has nothing to show
 
 
@@ -29,7 +31,18 @@ def warp_model(camera: Camera, board: Chessboard) -> Model:
         "receive nothing are orange holes, and backward, without holes."
     )
     source = _source(camera, board)
-    return Model("warp", about, settings, lambda paper, values: _draw(source, paper, values))
+    height, width = source.shape
+    middle = np.array([width - 1, height - 1]) / 2
+
+    def pulled(_: Values, at: Array) -> Values:
+        x, y = at - middle
+        zoom = np.hypot(x, y) / (_ARM * width)
+        return {"angle": float(np.degrees(np.arctan2(y, x))), "zoom": float(zoom)}
+
+    def draw(paper: Paper, values: Values) -> Sight:
+        return _draw(source, paper, values)
+
+    return Model("warp", about, settings, draw, {"right side": pulled})
 
 
 def _draw(source: Drawn, paper: Paper, values: Values) -> Sight:
@@ -54,6 +67,9 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Sight:
     right.image(backward.astype(np.uint8), smooth=False)
     for panel in (left, right):
         panel.mark(middle, "ideal", 6)
+    arm = zoom * _ARM * width * np.array([np.cos(angle), np.sin(angle)])
+    right.mark(middle + arm, "ideal", 6)
+    right.grip("right side", "a point of the picture, to turn and zoom it", middle + arm, 4)
     return Sight(paper.join((left, right)), _sentence(holes, covered, forward.folds))
 
 
