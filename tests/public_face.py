@@ -404,6 +404,15 @@ FUNCTIONS = [
         size=(640, 480),
         lenses=("k1 k2",),
     ),
+    function(
+        calibration.left_out_rms_of_boards,
+        {"board_points": (W, EITHER), "image_points": (SEEN, SETS)},
+        "which_board.left_out_rms_of_boards",
+        sizes=("size",),
+        paired=("board_points", "image_points"),
+        size=(640, 480),
+        boards=("flat", "bent"),
+    ),
     function(prediction_std, {"m": (M, rows(2))}, calibration=RESULT),
     function(std_with_view, {"G": (POSES[1], SINGLE)}, calibration=RESULT),
     # resection

@@ -1,5 +1,6 @@
 """Chapter 7: a camera from its pictures of a board, with error bars (notes 2b.4)."""
 
+from cvnotes.calibration.board_shape import BOARDS, BoardShape
 from cvnotes.calibration.driver import calibrate
 from cvnotes.calibration.one_view import calibrate_one_view
 from cvnotes.calibration.pose import pose_from_view
@@ -7,6 +8,7 @@ from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, rese
 from cvnotes.calibration.refinement import LENSES
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.uncertainty import prediction_std, std_with_view
+from cvnotes.calibration.which_board import choose_board, left_out_rms_of_boards
 from cvnotes.calibration.which_lens import choose_lens, left_out_rms
 from cvnotes.calibration.zhang import (
     constraints,
@@ -26,6 +28,10 @@ __all__ = [
     "LENSES",
     "left_out_rms",
     "choose_lens",
+    "BOARDS",
+    "BoardShape",
+    "left_out_rms_of_boards",
+    "choose_board",
     "v_ij",
     "constraints",
     "solve_b",

@@ -1,7 +1,8 @@
 """Corners on the board and in the pictures, paired, checked and brought to one scale."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,8 @@ class Correspondences:
         Which of them were seen; None when all were.
     centre, scale : ndarray (3,) and float
         The board point that became 0, and the length that became 1.
+    before : Correspondences or None
+        The same with W as it was given, when these are on the board that was found.
     """
 
     W: Array
@@ -38,6 +41,7 @@ class Correspondences:
     seen: npt.NDArray[np.bool_] | None
     centre: Array
     scale: float
+    before: "Correspondences | None" = None
 
     @staticmethod
     def of(
@@ -96,6 +100,36 @@ class Correspondences:
     def given(self) -> list[tuple[Array, Array]]:
         """List the (W, m) of each view in the units that were given."""
         return [(W * self.scale + self.centre, m) for W, m in self.views()]
+
+    def on_one_board(self) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+        """List each corner of the board once: W (N, 3), m (n_views, N, 2), seen (n_views, N).
+
+        Corners of views that have only some of them are told by where they are on the board, and
+        then come row by row.
+        """
+        if self.W.ndim == 2:
+            return self.W, self.m, np.ones(self.m.shape[:2], dtype=bool)
+        W, place = self._places
+        m, seen = np.empty((len(self), len(W), 2)), np.zeros((len(self), len(W)), dtype=bool)
+        given = np.ones(place.shape, dtype=bool) if self.seen is None else self.seen
+        for i in range(len(self)):
+            at = place[i, given[i]]
+            m[i], seen[i, at] = self.m[i, 0], True
+            m[i, at] = self.m[i, given[i]]
+            if seen[i].sum() < len(at):
+                raise CvnotesError(f"view {i}: a corner of the board is given twice")
+        return W, m, seen
+
+    def on_board(self, W: Array) -> "Correspondences":
+        """Give the same with the corners of `on_one_board` elsewhere, at W (N, 3)."""
+        W = W if self.W.ndim == 2 else W[self._places[1]]
+        return replace(self, W=W, before=self)
+
+    @cached_property
+    def _places(self) -> tuple[Array, npt.NDArray[np.intp]]:
+        """All corners that any view has, row by row, and which of them each point is."""
+        W, place = np.unique(self.W[..., ::-1].reshape(-1, 3), axis=0, return_inverse=True)
+        return W[:, ::-1], place.reshape(self.W.shape[:2])
 
     def pose_in_given_units(self, R: Array, T: Array) -> Array:
         """Give G (n_views, 4, 4) of the board as it was given: T ← s T − R c."""

@@ -5,11 +5,13 @@ from dataclasses import replace
 from typing import Any
 
 from cvnotes.base import DegenerateError, image_size
+from cvnotes.calibration.board_shape import is_board, released, shape_found, with_shape
 from cvnotes.calibration.correspondences import Correspondences, PointSets
 from cvnotes.calibration.refinement import Problem, refuse_too_few
 from cvnotes.calibration.reliability import Evidence, judge
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.starts import Search
+from cvnotes.calibration.which_board import choose_board, left_out_rms_of_boards
 from cvnotes.calibration.which_lens import choose_lens, left_out_rms
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
 from cvnotes.homography import dlt
@@ -21,6 +23,7 @@ def calibrate(
     size: tuple[int, int],
     *,
     lens: str = "k1 k2",
+    board: str = "flat",
     skew: bool = False,
     homography: Callable[..., Any] = dlt,
     intrinsics: Callable[..., Any] | None = None,
@@ -41,6 +44,11 @@ def calibrate(
         Which lens coefficients are estimated; the others are zero. Wide lenses are "rational" or
         "fisheye" (see `RationalLens` and `FisheyeLens`). With "auto" views that are left out
         decide (see `left_out_rms`); there must be 4 of them.
+    board : {"flat", "bent", "free", "auto"}
+        Whether the board is as it was given, or bends smoothly (heights of degree 4), or has every
+        corner where the views say. With "auto" views that are left out decide (see
+        `left_out_rms_of_boards`). A board that is not flat takes 4 views, and 10 to be sure of it;
+        its points are in ``shape`` of the result.
     skew : bool
         Estimate the skew too; three views are then needed, else two.
     homography : callable
@@ -107,6 +115,10 @@ def calibrate(
         lens = choose_lens(left_out)
     problem = Problem.of(data, size, lens, skew)
     _refuse_too_few(problem)
+    by_board = {}
+    if is_board(board, "auto") == "auto":
+        by_board = left_out_rms_of_boards(board_points, image_points, size, lens=lens, skew=skew)
+        board = choose_board(by_board)
 
     search = Search(problem)
     for start in search.starts():  # the first is nearly always good
@@ -127,10 +139,22 @@ def calibrate(
             start.refine(A, G, k)
     best = search.best()
 
+    #    and of the board's shape with them, unless it is flat
+    shape = None
+    if board != "flat":
+        problem = with_shape(problem, data, board)
+        best = released(problem, best)
+        shape, data = shape_found(problem, data, board, best)
+
     # Is the answer to be believed? Reprojection errors alone do not tell.
-    found = replace(Calibration.of(problem, data, best), left_out=left_out)
-    residuals = problem.residuals(found.camera, best.x)
-    return found.judged(*judge(Evidence.of(found, residuals, problem.m, problem.freedom)))
+    found = replace(
+        Calibration.of(problem, data, best),
+        shape=shape,
+        left_out=left_out,
+        left_out_boards=by_board,
+    )
+    residuals = Problem.of(data, size, lens, skew).residuals(found.camera, best.x)
+    return found.judged(*judge(Evidence.of(found, residuals, data.m, problem.freedom)))
 
 
 def _refuse_too_few(problem: Problem) -> None:

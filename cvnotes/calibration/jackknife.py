@@ -10,6 +10,7 @@ the camera is known.
 import numpy as np
 
 from cvnotes.base import Array, DegenerateError, solved
+from cvnotes.calibration.board_shape import BoardShape, with_shape
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Problem, State
 from cvnotes.camera import Camera
@@ -19,7 +20,11 @@ _WHY = "a view does not determine its own pose"
 
 
 def covariance_over_views(
-    camera: Camera, names: tuple[str, ...], data: Correspondences, poses: Array
+    camera: Camera,
+    names: tuple[str, ...],
+    data: Correspondences,
+    poses: Array,
+    shape: BoardShape | None = None,
 ) -> Array:
     """Estimate the covariance (q, q) of a camera's parameters from the scatter between its views.
 
@@ -31,6 +36,8 @@ def covariance_over_views(
         Names of the estimated parameters.
     data : Correspondences
         What they were estimated from.
+    shape : BoardShape, optional
+        The board, if its shape was estimated too; each time it is estimated anew.
 
     Returns
     -------
@@ -53,10 +60,13 @@ def covariance_over_views(
     if n - 1 < (3 if "skew" in names else 2):  # so few determine no camera
         return undetermined(q)
     problem = _problem(camera, names, data)
-    x = problem.state(camera, data.pose_in_scaled_units(poses))
+    poses, W = data.pose_in_scaled_units(poses), None
     try:
-        S, g = eliminated_by_view(problem, x)
-        d = _without_each(S, g)
+        if shape is not None and data.before is not None:
+            problem = with_shape(problem, data.before, shape.kind)
+            W = (shape.points - data.centre) / data.scale
+        S, g = eliminated_by_view(problem, problem.state(camera, poses, W))
+        d = _without_each(S, g, problem.held)[:, :q]
     except DegenerateError:
         return undetermined(q)
     d -= d.mean(0)
@@ -75,7 +85,7 @@ def eliminated_by_view(problem: Problem, x: State) -> tuple[Array, Array]:
     shared, pose by shared, pose by pose.
     """
     J, r = problem.jacobian(x)
-    n, q = len(J), len(x.shared)
+    n, q = len(J), len(x.shared)  # with the coefficients of the board's shape, if there are any
     J, r = J.reshape(n, -1, q + 6), r.reshape(n, -1, 1)
     N, g = J.mT @ J, J.mT @ r
     B, V = N[:, q:, :q], N[:, q:, q:]
@@ -84,9 +94,12 @@ def eliminated_by_view(problem: Problem, x: State) -> tuple[Array, Array]:
     return S, (g[:, :q] - B.mT @ inner[..., -1:])[..., 0]
 
 
-def _without_each(S: Array, g: Array) -> Array:
-    """Solve (Σ S − S_i) δ_i = g_i for all views; (n_views, q)."""
-    left = S.sum(0) - S
+def _without_each(S: Array, g: Array, held: Array) -> Array:
+    """Solve (Σ S − S_i) δ_i = g_i for all views; (n_views, q).
+
+    What holds parameters near zero, on the diagonal, stays when a view goes.
+    """
+    left = S.sum(0) + np.diag(held) - S
     diagonal = np.diagonal(left, axis1=1, axis2=2)
     if not (diagonal > 0).all():
         raise DegenerateError(_WHY)

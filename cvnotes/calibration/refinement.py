@@ -47,7 +47,7 @@ _CHUNK = 128
 class State(NamedTuple):
     """Where the optimiser stands: the shared parameters and the pose of each view."""
 
-    shared: Array  # (q,), in the order of Problem.names
+    shared: Array  # (q,), in the order of Problem.names, then the coefficients of the shape
     R: Array  # (n_views, 3, 3)
     T: Array  # (n_views, 3)
 
@@ -76,6 +76,11 @@ class Problem:
         `Lens`, `RationalLens` (with its 6 radial coefficients) or `FisheyeLens` (4).
     ridge : float
         Pixels that each radial coefficient adds to the residuals, per unit; holds them near zero.
+    shape : ndarray, shape (s, n, 3), or None
+        Ways in which the board may differ from W, which then is one (n, 3) for all views: their
+        coefficients are estimated with the camera. See `board_shape`.
+    hold : float
+        Pixels that each coefficient of the shape adds, per unit.
     """
 
     W: Array
@@ -87,6 +92,8 @@ class Problem:
     size: tuple[int, int] = (640, 480)
     model: type[AnyLens] = Lens
     ridge: float = 0.0
+    shape: Array | None = None
+    hold: float = 0.0
     names: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -124,26 +131,49 @@ class Problem:
     @property
     def freedom(self) -> int:
         """How many coordinates were measured beyond those that the parameters need."""
-        return 2 * self.n_seen - len(self.names) - 6 * len(self.m)
+        of_shape = 0 if self.shape is None else len(self.shape)
+        return 2 * self.n_seen - len(self.names) - of_shape - 6 * len(self.m)
 
-    def state(self, camera: Camera, poses: Array) -> State:
-        """Give the state that stands for a camera and its poses (n_views, 4, 4)."""
+    def state(self, camera: Camera, poses: Array, W: Array | None = None) -> State:
+        """Give the state that stands for a camera, its poses (n_views, 4, 4), and a board."""
         value = camera.parameters
         shared = np.array([value.get(name, 0.0) for name in self.names])
+        if self.shape is not None:
+            offsets = np.zeros_like(self.W) if W is None else W - self.W
+            shared = np.concatenate([shared, np.tensordot(self.shape, offsets, 2)])
         return State(shared, poses[:, :3, :3], poses[:, :3, 3])
 
     def camera_of(self, shared: Array) -> Camera:
         """Give the camera that the shared parameters stand for; what is not sought is zero."""
-        sought = dict(zip(self.names, shared.tolist(), strict=True))
+        sought = dict(zip(self.names, shared.tolist(), strict=self.shape is None))
         A, lens = with_values(np.eye(3), self.model(), sought)
         return Camera(A, lens=lens, size=self.size)
 
+    @property
+    def held(self) -> Array:
+        """What holds each shared parameter near zero: squared pixels per unit squared."""
+        k = 4 + self.skew
+        of_shape = 0 if self.shape is None else len(self.shape)
+        held = np.zeros(len(self.names) + of_shape)
+        held[k : k + self.n_radial], held[len(self.names) :] = self.ridge**2, self.hold**2
+        return held
+
+    def board(self, shared: Array) -> Array:
+        """Give the board's points: W, and what the coefficients of its shape add."""
+        if self.shape is None:
+            return self.W
+        return self.W + np.tensordot(shared[len(self.names) :], self.shape, 1)
+
     def linearise(self, x: State) -> "tuple[float, Arrow]":
         """Give the cost and the normal equations at x."""
-        q, n_views = len(x.shared), len(self.m)
+        q, n_views = len(self.names), len(self.m)
         normal, costs = np.empty((n_views, q + 7, q + 6)), np.empty(n_views)
+        corners = None if self.shape is None else CornerSums(self.shape, q)
         for part in chunks(n_views, _CHUNK):
-            u, v = self._jacobian(x, part).transpose(1, 2, 0, 3)
+            J = self._jacobian(x, part)
+            if corners:
+                corners.add(J, x.R[part])
+            u, v = J.transpose(1, 2, 0, 3)
             # Two factors of different shape: for J Jᵀ with itself NumPy takes a slower road.
             np.matmul(u, u[:, :-1].mT, out=normal[part])
             normal[part] += v @ v[:, :-1].mT
@@ -158,12 +188,14 @@ class Problem:
             costs,
         )
         cost = float(costs.sum())
-        if self.ridge:
-            k = slice(4 + self.skew, 4 + self.skew + self.n_radial)
-            arrow.g_shared[k] += self.ridge**2 * x.shared[k]
+        if corners:
+            arrow = corners.joined(arrow)
+        if self.ridge or self.hold:
+            held = self.held
+            arrow.g_shared[:] += held * x.shared
             diagonal = np.einsum("ii->i", arrow.shared)
-            diagonal[k] += self.ridge**2
-            cost += self.ridge**2 * float(x.shared[k] @ x.shared[k])
+            diagonal += held
+            cost += float(held @ x.shared**2)
         return cost, arrow
 
     def residuals(self, camera: Camera, x: State) -> Array:
@@ -171,7 +203,8 @@ class Problem:
 
         NaN where the lens folds.
         """
-        r = self.m - Camera.project.inside(camera, self.W @ x.R.mT + x.T[:, None])
+        W = self.board(x.shared)
+        r = self.m - Camera.project.inside(camera, W @ x.R.mT + x.T[:, None])
         return r if self.seen is None else np.where(self.seen[..., None], r, 0.0)
 
     def jacobian(self, x: State) -> tuple[Array, Array]:
@@ -179,9 +212,14 @@ class Problem:
 
         J is (n_views, n, 2, q + 6): the shared parameters, then ω and T; r is (n_views, n, 2).
         """
-        views = (slice(i, i + 1) for i in range(len(self.m)))
+        views = [slice(i, i + 1) for i in range(len(self.m))]
         both = np.concatenate([self._jacobian(x, i).transpose(2, 3, 1, 0).copy() for i in views])
-        return both[..., :-1], both[..., -1]
+        J, r = both[..., :-1], both[..., -1]
+        if self.shape is not None:
+            by_corner = np.einsum("vnct,vtj->vncj", J[..., -3:], x.R)
+            by_shape = np.einsum("vncj,snj->vncs", by_corner, self.shape, optimize=True)
+            J = np.concatenate([J[..., :-6], by_shape, J[..., -6:]], axis=-1)
+        return J, r
 
     @cached_property
     def _by_coordinate(self) -> tuple[Array, Array]:
@@ -205,10 +243,12 @@ class Problem:
         dM = ω × (R W) + dT. Coordinates stand before views and points, so that each operation
         below runs through one piece of memory.
         """
-        q, first = len(x.shared), 4 + self.skew  # where the pose and the lens begin
+        q, first = len(self.names), 4 + self.skew  # where the pose and the lens begin
         alpha, centre = x.shared[:2, None, None], x.shared[first - 2 : first, None, None]
         skew = x.shared[2] if self.skew else 0.0
         W, m = self._by_coordinate
+        if self.shape is not None:
+            W = np.ascontiguousarray(self.board(x.shared).T)
         m = m[:, part]
         J = self._workspace[:, :, : m.shape[1]]
         by_lens, by_omega, by_T, residual = J[first:q], J[q : q + 3], J[q + 3 : -1], J[-1]
@@ -223,9 +263,9 @@ class Problem:
         # 3. the lens
         fisheye = self.model is FisheyeLens
         if fisheye:  # which goes by the angle of the ray, not by x and y
-            xy_lens, by_M, by_lens[:] = through_angle(x.shared[first:].tolist(), M)
+            xy_lens, by_M, by_lens[:] = through_angle(x.shared[first:q].tolist(), M)
         else:
-            xy_lens, D = self._through_lens(x.shared[first:], xy, by_lens)
+            xy_lens, D = self._through_lens(x.shared[first:q], xy, by_lens)
 
         # 4. the sensor turns x', y' and all their derivatives into pixels
         J[0, 0], J[1, 1] = xy_lens
@@ -289,6 +329,47 @@ class Problem:
             by_xy = np.array([[6 * p2, 2 * p1], [2 * p1, 2 * p2], [2 * p2, 6 * p1]])
             D += (by_xy @ xy.reshape(2, -1)).reshape(D.shape)
         return xy_lens, D
+
+
+@dataclass(eq=False)
+class CornerSums:
+    """The part of the normal equations that belongs to the shape of the board.
+
+    A corner that moves by dW on the board moves by R dW before the camera, and no other corner
+    does. So sums are taken for each corner by itself, and only then for the ways in which the board
+    may differ, `shape` (s, n, 3).
+    """
+
+    shape: Array
+    q: int  # parameters of the camera
+    own: Array | float = 0.0  # (n, 3, 3) corner by corner
+    with_camera: Array | float = 0.0  # (q, n, 3)
+    gradient: Array | float = 0.0  # (n, 3)
+    with_poses: list[Array] = field(default_factory=list)  # (views, 6, n, 3) of each chunk
+
+    def add(self, J: Array, R: Array) -> None:
+        """Add views, from the [J r]ᵀ (q + 7, 2, views, n) of their poses."""
+        by_corner = np.einsum("tcvn,vtj->jcvn", J[-4:-1], R)
+        both = np.einsum("acvn,jcvn->vanj", J, by_corner)
+        self.own += np.einsum("icvn,jcvn->nij", by_corner, by_corner)
+        self.with_camera += both[:, : self.q].sum(0)
+        self.gradient += both[:, -1].sum(0)
+        self.with_poses.append(both[:, self.q : -1])
+
+    def joined(self, arrow: "Arrow") -> "Arrow":
+        """Put the coefficients of the shape beside the parameters of the camera."""
+        s = len(self.shape)
+        ways = self.shape.reshape(s, -1).T
+        with_camera = np.reshape(self.with_camera, (self.q, -1)) @ ways
+        own = np.einsum("sni,nij->snj", self.shape, self.own).reshape(s, -1) @ ways
+        by_pose = np.concatenate(self.with_poses)
+        border = by_pose.reshape(*by_pose.shape[:2], -1) @ ways
+        return replace(
+            arrow,
+            shared=np.block([[arrow.shared, with_camera], [with_camera.T, own]]),
+            border=np.concatenate([arrow.border, border], axis=-1),
+            g_shared=np.concatenate([arrow.g_shared, np.ravel(self.gradient) @ ways]),
+        )
 
 
 _UNDETERMINED = (

@@ -10,6 +10,7 @@ import numpy as np
 
 from cvnotes.base import Array, CalibrationWarning, CvnotesError, Minimum
 from cvnotes.base.digits import with_deviation
+from cvnotes.calibration.board_shape import BoardShape
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Arrow, Problem, State, covariance, pose_covariance
 from cvnotes.camera import Camera
@@ -47,6 +48,10 @@ class Calibration:
     left_out : dict
         With ``lens="auto"``, how well each lens predicts views left out (px); else empty. It is
         not kept in files.
+    left_out_boards : dict
+        With ``board="auto"``, the same for each kind of board.
+    shape : BoardShape or None
+        The board as it was found, unless it was taken for flat; `board_points` then are on it.
     """
 
     A: Array
@@ -61,6 +66,8 @@ class Calibration:
     reliable: bool = True
     converged: bool = True
     left_out: Mapping[str, float] = field(default_factory=dict, repr=False)
+    left_out_boards: Mapping[str, float] = field(default_factory=dict, repr=False)
+    shape: BoardShape | None = None
     _data: Correspondences | None = field(default=None, repr=False)
     _covariance_of_views: Array | None = field(default=None, repr=False)
     _pose_covariance: Callable[[], Array] | None = field(default=None, repr=False)
@@ -68,12 +75,14 @@ class Calibration:
     @staticmethod
     def of(problem: Problem, data: Correspondences, best: Minimum[State, Arrow]) -> "Calibration":
         """Undo the scaling of the board, and add the error bars; not judged yet."""
-        camera = problem.camera_of(best.x.shared)
-        variance = best.cost / problem.freedom
+        camera, q = problem.camera_of(best.x.shared), len(problem.names)
+        # (what holds the board's corners belongs to no view)
+        cost = best.cost - float(problem.held @ best.x.shared**2)
+        variance = cost / problem.freedom
         unit = covariance(best.system)
         # The cost of each view is of the last step's beginning, and all together of its end.
         by_view = best.system.view_costs
-        by_view = by_view * (best.cost / max(by_view.sum(), np.finfo(float).tiny))
+        by_view = by_view * (cost / max(by_view.sum(), np.finfo(float).tiny))
 
         def of_poses() -> Array:
             J = data.pose_jacobian(best.x.R)
@@ -84,10 +93,10 @@ class Calibration:
             lens=camera.lens,
             size=camera.size,
             poses=data.pose_in_given_units(best.x.R, best.x.T),
-            rms=float(np.sqrt(best.cost / problem.n_seen)),
+            rms=float(np.sqrt(cost / problem.n_seen)),
             view_rms=np.sqrt(by_view / problem.n_seen_by_view),
             names=problem.names,
-            covariance=variance * unit,
+            covariance=variance * unit[:q, :q],
             converged=best.converged,
             _data=data,
             _pose_covariance=of_poses,
@@ -128,7 +137,7 @@ class Calibration:
                 "the scatter between views is not known: this result has neither its corners nor "
                 "a covariance of views"
             )
-        return covariance_over_views(self.camera, self.names, self._data, self.poses)
+        return covariance_over_views(self.camera, self.names, self._data, self.poses, self.shape)
 
     @property
     def std_of_views(self) -> dict[str, float]:
@@ -182,7 +191,10 @@ class Calibration:
 
     @cached_property
     def board_points(self) -> tuple[Array, ...]:
-        """The corners on the board, (n_i, 3) for each view; empty when read from a file."""
+        """The corners on the board, (n_i, 3) for each view, where they were found to be.
+
+        Empty when the file that this was read from has no corners.
+        """
         return tuple(W for W, _ in self._data.given()) if self._data else ()
 
     @cached_property
@@ -201,7 +213,7 @@ class Calibration:
 
         ``Calibration(**mapping)`` makes it again, but for the uncertainty of its poses.
         """
-        not_kept = ("_pose_covariance", "left_out")
+        not_kept = ("_pose_covariance", "left_out", "left_out_boards")
         kept = [f.name for f in fields(self) if f.name not in not_kept]
         mapping = {name: getattr(self, name) for name in kept}
         if self._data is not None:
@@ -237,6 +249,7 @@ class Calibration:
         worst = int(np.argmax(self.view_rms))
         lines.append(f"  RMS {self.rms:.4f} px per point; worst view {worst}: "
                      f"{self.view_rms[worst]:.4f} px")  # fmt: skip
+        lines += [f"  {self.shape}"] * (self.shape is not None)
         lines += [f"  {note}" for note in self.notes_on_deviations]
         return "\n".join([*lines, *doubts_as_text(self.warnings, self.reliable)])
 
@@ -247,7 +260,8 @@ class Calibration:
             rows += f"<tr>{left_cell(name)}{cells}{left_cell(unit)}</tr>"
         caption = f"{len(self.poses)} views, RMS {self.rms:.4f} px per point"
         table = f"<table><caption>{caption}</caption>{rows}</table>"
-        table += "".join(f"<p>{note}</p>" for note in self.notes_on_deviations)
+        of_shape = (str(self.shape),) if self.shape is not None else ()
+        table += "".join(f"<p>{note}</p>" for note in (*of_shape, *self.notes_on_deviations))
         return table + doubts_as_html(self.warnings, self.reliable)
 
 

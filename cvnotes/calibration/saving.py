@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
+from cvnotes.calibration.board_shape import BOARDS, BoardShape
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import Camera
 from cvnotes.files import Rejected, write_whole
@@ -76,6 +77,7 @@ def calibration_json(
         "standard_deviations": dict(zip(names, std, strict=True)),
         "covariance": covariance.tolist(),
         **_of_views(result, names),
+        **_of_shape(result.get("shape")),
         "rejected": [{"file": r.file, "reason": r.reason} for r in rejected],
     }
     views: list[dict[str, Any]] = []
@@ -103,6 +105,20 @@ def _of_views(result: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]
     return {
         "standard_deviations_of_views": dict(zip(names, std, strict=True)),
         "covariance_of_views": covariance.tolist(),
+    }
+
+
+def _of_shape(shape: BoardShape | None) -> dict[str, Any]:
+    """Give the board's shape, unless it was taken for flat."""
+    if shape is None:
+        return {}
+    return {
+        "board_shape": {
+            "kind": shape.kind,
+            "given": shape.given.tolist(),
+            "points": shape.points.tolist(),
+            "standard_deviations": shape.std.tolist(),
+        }
     }
 
 
@@ -152,7 +168,22 @@ def read_calibration(path: PathLike) -> dict[str, Any]:
         "converged": entry["converged"].flag(),
         "_data": _corners(entry, views),
         "_covariance_of_views": of_views,
+        "shape": _shape(entry.get("board_shape")),
     }
+
+
+def _shape(entry: Entry | None) -> BoardShape | None:
+    """Read the shape of the board, if it was estimated."""
+    if entry is None:
+        return None
+    kind = entry["kind"].text()
+    if kind not in BOARDS[1:]:
+        raise entry["kind"].error(f"expected one of {', '.join(BOARDS[1:])}, got {kind!r}")
+    given = entry["given"].array(None, 3)
+    points, std = (entry[key].array(len(given), 3) for key in ("points", "standard_deviations"))
+    if std.min(initial=0.0) < 0:
+        raise entry["standard_deviations"].error("a standard deviation is not negative")
+    return BoardShape(kind, given, points, std)
 
 
 def _rms(entry: Entry, views: list[Entry]) -> tuple[float, Array]:

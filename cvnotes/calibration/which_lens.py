@@ -115,20 +115,24 @@ def _is_narrow(found: dict[str, float]) -> bool:
 
 def _one(problem: Problem) -> float:
     """RMS over views left out, of one lens."""
-    n_views = len(problem.m)
-    squares = 0.0
     try:
-        whole = _estimated(problem)
-        for out in _parts(n_views):
-            kept = np.setdiff1d(np.arange(n_views), out)
-            without = minimise(problem.some(kept), _some(whole.x, kept), tolerance=1e-8)
-            squares += _follow(problem.some(out), _some(whole.x, out), without)
+        return rms_of_parts(problem, estimated(problem))
     except (ConvergenceError, DegenerateError, CvnotesError):
         return np.inf
+
+
+def rms_of_parts(problem: Problem, whole: Minimum[State, Arrow]) -> float:
+    """RMS over views left out a part at a time, of what starts at the minimum of them all."""
+    n_views = len(problem.m)
+    squares = 0.0
+    for out in _parts(n_views):
+        kept = np.setdiff1d(np.arange(n_views), out)
+        without = minimise(problem.some(kept), _some(whole.x, kept), tolerance=1e-8)
+        squares += _follow(problem.some(out), _some(whole.x, out), without)
     return float(np.sqrt(squares / problem.n_seen)) if np.isfinite(squares) else np.inf
 
 
-def _estimated(problem: Problem) -> Minimum[State, Arrow]:
+def estimated(problem: Problem) -> Minimum[State, Arrow]:
     """Estimate a camera from all views, as `calibrate` does by itself."""
     search = Search(problem)
     for start in search.starts():

@@ -1,0 +1,103 @@
+"""Is the board flat? Views that were left out decide, as they do about the lens.
+
+Corners that may go anywhere always fit better than those of a flat board. What counts is whether
+the board that some views speak of is the board that the others see.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cvnotes.base import ConvergenceError, CvnotesError, DegenerateError, Minimum, image_size
+from cvnotes.calibration.board_shape import BOARDS, is_board, released, with_shape
+from cvnotes.calibration.correspondences import Correspondences, PointSets
+from cvnotes.calibration.refinement import Arrow, Problem, State
+from cvnotes.calibration.which_lens import estimated, rms_of_parts
+
+# A board with more coefficients has to be better by this much.
+_BETTER = 1.05
+_ROUNDING = 1e-6  # px, more than is left of exact corners
+
+
+def left_out_rms_of_boards(
+    board_points: PointSets,
+    image_points: PointSets,
+    size: tuple[int, int],
+    *,
+    lens: str = "k1 k2",
+    boards: Sequence[str] = BOARDS,
+    skew: bool = False,
+) -> dict[str, float]:
+    """Predict the corners of views that were left out, with a flat board, a bent and a free one.
+
+    Parameters
+    ----------
+    board_points, image_points, size, skew
+        As for `calibrate`; at least 4 views.
+    lens : str
+        A name that `calibrate` knows, but "auto".
+    boards : sequence of {"flat", "bent", "free"}
+        What the board may be.
+
+    Returns
+    -------
+    dict
+        For each board the root mean square distance, in pixels per point, of the corners of views
+        left out; infinite where the views do not determine such a board.
+
+    Raises
+    ------
+    DegenerateError
+        There are fewer than 4 views.
+
+    Notes
+    -----
+    As `left_out_rms` does for lenses: the views are dealt into five parts, camera and board are
+    estimated without one of them, and held while the poses of the views left out are fitted.
+
+    Examples
+    --------
+    >>> from cvnotes.pictures import course
+    >>> real = course.real_corners()
+    >>> out = left_out_rms_of_boards(real.board.points, real.left, real.size)
+    >>> out["free"] < out["bent"] < out["flat"]
+    True
+    """
+    size = image_size(size)
+    data = Correspondences.of(board_points, image_points)
+    if len(data) < 4:
+        raise DegenerateError(f"to leave views out takes at least 4 of them, got {len(data)}")
+    problem = Problem.of(data, size, lens, skew)
+    flat = estimated(problem)
+    return {is_board(board): _one(problem, data, board, flat) for board in boards}
+
+
+def choose_board(by_board: dict[str, float]) -> str:
+    """Name the simplest board that predicts about as well as any.
+
+    Examples
+    --------
+    >>> choose_board({"flat": 0.156, "bent": 0.153, "free": 0.152})
+    'flat'
+    >>> choose_board({"flat": 0.171, "bent": 0.150, "free": 0.110})
+    'free'
+    """
+    best = min(by_board.values())
+    if not np.isfinite(best):
+        raise ConvergenceError(
+            "no board leads to a camera: the corners are probably paired with the wrong points of "
+            "the board, or the views do not determine the camera"
+        )
+    limit = max(_BETTER * best, _ROUNDING)
+    return next(name for name, rms in by_board.items() if rms <= limit)
+
+
+def _one(problem: Problem, data: Correspondences, board: str, flat: Minimum[State, Arrow]) -> float:
+    """RMS over views left out, of one kind of board."""
+    try:
+        if board == "flat":
+            return rms_of_parts(problem, flat)
+        free = with_shape(problem, data, board)
+        return rms_of_parts(free, released(free, flat))
+    except (ConvergenceError, DegenerateError, CvnotesError):
+        return np.inf

@@ -1,0 +1,274 @@
+"""Boards that are not flat: their shape, estimated with the camera."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from cvnotes.base import CvnotesError, DegenerateError
+from cvnotes.calibration import Calibration, calibrate, choose_board, left_out_rms_of_boards
+from cvnotes.calibration.board_shape import deformations
+from cvnotes.calibration.refinement import Problem, State
+from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
+from cvnotes.pictures import course, good_views
+from cvnotes.targets import Chessboard
+
+pytestmark = pytest.mark.filterwarnings("ignore::cvnotes.base.CalibrationWarning")
+
+BOARD = Chessboard((9, 6), 25.0)
+CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.1)))
+TRUTH = np.array([800, 804, 325, 238, -0.25, 0.1])
+MIDDLE = np.append(BOARD.points.mean(0)[:2], 0)
+
+
+def arched(by):
+    """Give the board's corners on an arch, highest along the middle of its length."""
+    W = BOARD.points.copy()
+    along = (W[:, 0] - MIDDLE[0]) / MIDDLE[0]
+    W[:, 2] = by * (1 - along**2)
+    return W
+
+
+def seen(W, n_views, noise=0.0, seed=0):
+    rng = np.random.default_rng(seed)
+    poses = good_views(BOARD, CAMERA, n_views, rng=rng)
+    m = np.stack([CAMERA.moved(G).project(W) for G in poses])
+    return m + rng.normal(0, noise, m.shape) if noise else m
+
+
+@pytest.mark.parametrize("board", ["bent", "free"])
+def test_exact_corners_of_a_flat_board_give_a_flat_board(board):
+    found = calibrate(BOARD.points, seen(BOARD.points, 10), CAMERA.size, board=board)
+    assert found.rms < 1e-9
+    assert np.abs(found.shape.offsets).max() < 1e-8
+    np.testing.assert_allclose([*found.parameters.values()], TRUTH, rtol=1e-8)
+
+
+def test_exact_corners_of_an_arched_board_give_its_heights():
+    found = calibrate(BOARD.points, seen(arched(1.0), 10), CAMERA.size, board="bent")
+    np.testing.assert_allclose([*found.parameters.values()], TRUTH, rtol=1e-8)
+    # what no view tells is the plane that heights are counted from
+    x, y, _ = BOARD.points.T
+    plane = np.stack([np.ones_like(x), x, y], axis=1)
+    z = arched(1.0)[:, 2]
+    z = z - plane @ np.linalg.lstsq(plane, z)[0]
+    np.testing.assert_allclose(found.shape.heights, z, atol=1e-8)
+    assert np.abs(found.shape.offsets[:, :2]).max() == 0
+
+
+def test_exact_corners_of_a_crumpled_board_give_each_of_them():
+    W = BOARD.points + np.random.default_rng(1).normal(0, 0.5, (54, 3))
+    found = calibrate(BOARD.points, seen(W, 10), CAMERA.size, board="free")
+    np.testing.assert_allclose([*found.parameters.values()], TRUTH, rtol=1e-7)
+    # the same board but for a motion and a scale: all its distances are alike
+    i, j = np.triu_indices(54, 1)
+    ratio = np.linalg.norm(W[i] - W[j], axis=1) / np.linalg.norm(
+        found.shape.points[i] - found.shape.points[j], axis=1
+    )
+    np.testing.assert_allclose(ratio, ratio[0], rtol=1e-7)
+
+
+def test_an_optimum_is_that_of_opencv():
+    cv2 = pytest.importorskip("cv2")
+    m = seen(arched(1.0), 12, noise=0.1)
+    found = calibrate(BOARD.points, m, CAMERA.size, lens="k1 k2 p1 p2", board="free")
+    rms, A, dist, *_ = cv2.calibrateCameraRO(
+        [BOARD.points.astype(np.float32)] * 12,
+        list(m.astype(np.float32)),
+        CAMERA.size,
+        8,  # the corner that holds the board together with the first and the last but one
+        None,
+        None,
+        flags=cv2.CALIB_FIX_K3 | cv2.CALIB_USE_LU,
+        criteria=(cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 300, 1e-14),
+    )
+    assert found.rms == pytest.approx(rms, rel=1e-6)
+    np.testing.assert_allclose(found.A, A, rtol=2e-5)
+    np.testing.assert_allclose([*found.lens.k, *found.lens.p], dist.ravel()[:4], atol=2e-4)
+
+
+@pytest.mark.parametrize("lens", ["k1 k2 p1 p2 k3", "rational", "fisheye"])
+@pytest.mark.parametrize("kind", ["bent", "free"])
+def test_the_normal_equations_are_those_of_the_residuals(lens, kind):
+    rng = np.random.default_rng(3)
+    W = (BOARD.points - MIDDLE) / 120
+    model = Problem.of.__globals__["LENSES"][lens]
+    shape = deformations(kind, W)
+    m = rng.uniform(0, 480, (3, 54, 2))
+    problem = Problem(
+        W, m, rng.random((3, 54)) < 0.8, True, model[1], model[2], (640, 480), model[0], shape=shape
+    )
+    q = len(problem.names)
+    start = [810.0, 790, 2, 310, 250, *([0.01] * (q - 5))]
+    x = State(
+        np.array([*start, *rng.normal(0, 0.01, len(shape))]),
+        rotation_from_vector(rng.normal(0, 0.3, (3, 3))),
+        rng.normal(0, 0.1, (3, 3)) + [0, 0, 4],
+    )
+    J, r = problem.jacobian(x)
+    way = rng.normal(0, 1, len(x.shared))
+
+    def residuals(h):
+        there = State(x.shared + h * way, x.R, x.T)
+        return -problem.residuals(problem.camera_of(there.shared), there)
+
+    np.testing.assert_allclose(residuals(0), r, atol=1e-9)
+    numeric = (residuals(1e-6) - residuals(-1e-6)) / 2e-6
+    np.testing.assert_allclose(J[..., :-6] @ way, numeric, rtol=1e-5, atol=1e-4)
+    cost, arrow = problem.linearise(x)
+    J, r = J.reshape(3, 108, -1), r.reshape(3, 108)
+    shared, pose = J[..., :-6], J[..., -6:]
+    assert cost == pytest.approx((r**2).sum())
+    np.testing.assert_allclose(arrow.shared, (shared.mT @ shared).sum(0), rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(arrow.border, pose.mT @ shared, rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(
+        arrow.g_shared, (shared.mT @ r[..., None]).sum(0)[:, 0], rtol=1e-9, atol=1e-6
+    )
+
+
+def test_ways_to_differ_neither_move_nor_scale_the_board():
+    W = (BOARD.points - MIDDLE) / 120
+    for kind in ("bent", "free"):
+        shape = deformations(kind, W).reshape(-1, 162)
+        np.testing.assert_allclose(shape @ shape.T, np.eye(len(shape)), atol=1e-12)
+        motions = [np.tile(e, (54, 1)) for e in np.eye(3)] + [np.cross(e, W) for e in np.eye(3)]
+        assert np.abs(shape @ np.reshape([*motions, W], (7, -1)).T).max() < 1e-12
+    assert len(deformations("bent", W)) == 12
+    assert len(deformations("free", W)) == 3 * 54 - 7
+
+
+def test_two_cameras_find_the_same_board():
+    real = course.real_corners()
+    W, heights = real.board.points, []
+    for m, flat_rms, free_rms in ((real.left, 0.167, 0.099), (real.right, 0.170, 0.083)):
+        found = calibrate(W, m, real.size, lens="k1 k2 p1 p2", board="auto")
+        assert found.left_out_boards["flat"] == pytest.approx(flat_rms, abs=0.002)
+        assert found.left_out_boards["free"] == pytest.approx(free_rms, abs=0.002)
+        assert found.shape.kind == "free"
+        assert found.rms < 0.085
+        heights.append(found.shape.heights)
+    assert np.corrcoef(heights)[0, 1] > 0.95
+    # and how far they differ is what each says of itself
+    assert np.std(heights[0] - heights[1]) < 0.05 < 0.1 < np.std(heights[0])
+
+
+def test_error_bars_hold_for_heights():
+    """Of an arched board, seen with noise: heights over their deviations scatter by about 1."""
+    z = []
+    for seed in range(12):
+        m = seen(arched(1.0), 12, noise=0.1, seed=seed)
+        found = calibrate(BOARD.points, m, CAMERA.size, board="bent")
+        truth = calibrate(BOARD.points, seen(arched(1.0), 12, seed=seed), CAMERA.size, board="bent")
+        z.append((found.shape.heights - truth.shape.heights) / found.shape.std[:, 2])
+    assert 0.7 < np.sqrt(np.mean(np.square(z))) < 1.4
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_camera_is_within_its_error_bars_where_a_flat_board_misleads(seed):
+    m = seen(arched(1.0), 14, noise=0.05, seed=seed)
+    for board in ("bent", "free"):
+        found = calibrate(BOARD.points, m, CAMERA.size, board=board)
+        off = np.array([*found.parameters.values()]) - TRUTH
+        assert np.abs(off / [*found.std_of_views.values()]).max() < 3.5
+    flat = calibrate(BOARD.points, m, CAMERA.size)
+    assert np.abs((np.array([*flat.parameters.values()]) - TRUTH) / [*flat.std.values()]).max() > 5
+
+
+def test_views_left_out_choose_the_board():
+    crumpled = BOARD.points + np.random.default_rng(1).normal(0, 0.3, (54, 3))
+    for W, board in ((BOARD.points, "flat"), (arched(1.0), "bent"), (crumpled, "free")):
+        found = calibrate(BOARD.points, seen(W, 12, noise=0.1), CAMERA.size, board="auto")
+        assert choose_board(found.left_out_boards) == board
+        assert (found.shape is None) == (board == "flat")
+        assert found.shape is None or found.shape.kind == board
+    exact = calibrate(BOARD.points, seen(BOARD.points, 6), CAMERA.size, board="auto")
+    assert exact.shape is None
+
+
+@pytest.mark.parametrize("n_views", [4, 5, 7])
+def test_few_views_of_a_flat_board_are_held_near_it(n_views):
+    """Corners that noise alone would move by millimetres stay where they were printed."""
+    m = seen(BOARD.points, n_views, noise=0.1)
+    found = calibrate(BOARD.points, m, CAMERA.size, board="free")
+    assert np.abs(found.shape.offsets).max() < 1.0
+    flat = calibrate(BOARD.points, m, CAMERA.size)
+    assert found.rms < flat.rms
+    assert found.view_rms @ found.view_rms / n_views == pytest.approx(found.rms**2)
+    out = left_out_rms_of_boards(BOARD.points, m, CAMERA.size)
+    assert choose_board(out) == "flat"
+
+
+def test_what_is_not_determined_is_refused_in_words():
+    m = seen(BOARD.points, 5)
+    with pytest.raises(DegenerateError, match=r"takes at least 4 views, got 3.*board=\"flat\""):
+        calibrate(BOARD.points, m[:3], CAMERA.size, board="bent")
+    with pytest.raises(CvnotesError, match="board: expected one of 'flat', 'bent', 'free', 'auto'"):
+        calibrate(BOARD.points, m, CAMERA.size, board="round")
+    W, parts = [BOARD.points[1:]] * 4 + [BOARD.points], [*(view[1:] for view in m[:4]), m[4]]
+    with pytest.raises(DegenerateError, match=r"corner at \(0, 0\) of the board was seen in one"):
+        calibrate(W, parts, CAMERA.size, board="free")
+    assert calibrate(W, parts, CAMERA.size, board="bent").rms < 1e-9
+    twice = [np.r_[BOARD.points, BOARD.points[:1]]] * 5
+    with pytest.raises(CvnotesError, match="view 0: a corner of the board is given twice"):
+        calibrate([*twice[:4], BOARD.points], [*(np.r_[v, v[:1]] for v in m[:4]), m[4]],
+                  CAMERA.size, board="free")  # fmt: skip
+
+
+def test_views_with_some_corners_find_the_same_board_in_any_order():
+    rng = np.random.default_rng(5)
+    m = seen(arched(1.0), 12, noise=0.05)
+    whole = calibrate(BOARD.points, m, CAMERA.size, board="free")
+    order = rng.permutation(54)
+    W = [BOARD.points, *[BOARD.points[order]] * 11]
+    shuffled = calibrate(W, [m[0], *m[1:, order]], CAMERA.size, board="free")
+    np.testing.assert_allclose(shuffled.shape.points, whole.shape.points, atol=1e-6)
+    np.testing.assert_allclose(shuffled.residuals[1], whole.residuals[1][order], atol=1e-6)
+    for a, b in zip(shuffled.std_of_views.values(), whole.std_of_views.values(), strict=True):
+        assert a == pytest.approx(b, rel=1e-5)
+    kept = [np.sort(rng.permutation(54)[:45]) for _ in m]
+    part = calibrate(
+        [BOARD.points[k] for k in kept], [v[k] for v, k in zip(m, kept, strict=True)],
+        CAMERA.size, board="free",
+    )  # fmt: skip
+    assert [len(r) for r in part.residuals] == [45] * 12
+    rms = np.sqrt(np.mean([(r**2).sum(1).mean() for r in part.residuals]))
+    assert part.rms == pytest.approx(rms, rel=1e-6)
+    apart = part.shape.points - whole.shape.points
+    assert np.abs(apart).max() < 5 * part.shape.std.max()
+
+
+def test_a_jackknife_is_what_leaving_each_view_out_gives():
+    m = seen(arched(1.0), 12, noise=0.05)
+    for board in ("bent", "free"):
+        found = calibrate(BOARD.points, m, CAMERA.size, board=board)
+        each = np.array(
+            [
+                [*calibrate(BOARD.points, np.delete(m, i, 0), CAMERA.size, board=board)
+                 .parameters.values()]
+                for i in range(12)
+            ]
+        )  # fmt: skip
+        std = np.sqrt(11 / 12 * ((each - each.mean(0)) ** 2).sum(0))
+        np.testing.assert_allclose([*found.std_of_views.values()], std, rtol=0.1)
+
+
+def test_a_shape_is_kept_in_files(tmp_path):
+    found = calibrate(BOARD.points, seen(arched(1.0), 10, 0.1), CAMERA.size, board="free")
+    found.save(tmp_path / "bent.json")
+    again = Calibration.load(tmp_path / "bent.json")
+    assert again.shape.kind == "free"
+    for name in ("given", "points", "std"):
+        np.testing.assert_array_equal(getattr(again.shape, name), getattr(found.shape, name))
+    assert again.std_of_views == pytest.approx(found.std_of_views)
+    np.testing.assert_allclose(np.stack(again.residuals), np.stack(found.residuals), atol=1e-9)
+    assert repr(found.shape) in repr(again)
+    assert "free board" in again._repr_html_()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        flat = calibrate(BOARD.points, seen(BOARD.points, 10, 0.1), CAMERA.size)
+    flat.save(tmp_path / "flat.json")
+    assert Calibration.load(tmp_path / "flat.json").shape is None
+    text = (tmp_path / "bent.json").read_text()
+    (tmp_path / "bent.json").write_text(text.replace('"free"', '"round"'))
+    with pytest.raises(CvnotesError, match=r"kind.*expected one of bent, free, got 'round'"):
+        Calibration.load(tmp_path / "bent.json")
