@@ -31,6 +31,7 @@ from public_face import (
     several,
 )
 
+from cvnotes.calibration import calibrate
 from cvnotes.show.figures import (
     corners,
     estimates,
@@ -52,6 +53,7 @@ from cvnotes.show.space import viewer as scenes
 PIXELS = Argument((2,), empty=True, picture=True)
 SMALL = GREY[:24, :32].copy()
 PAIR = np.stack([SMALL, SMALL + 5])
+FREE = calibrate(BOARD.points, SEEN, CAMERA.size, lens="k1 k2 p1 p2", board="free")
 CLOUD = np.random.default_rng(3).normal(0, 0.2, (20, 2))
 
 
@@ -132,6 +134,7 @@ FIGURES = [
     # predictions
     figure(predictions.draw_wall, {"images": (PAIR, PICTURE), "columns": (2, ONE)}),
     # quality
+    figure(quality.draw_board_shape, {"magnify": (50.0, ONE)}, calibration=FREE),
     figure(quality.draw_residuals, {"magnify": (50.0, ONE)}, calibration=RESULT),
     figure(
         quality.draw_coverage, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480)

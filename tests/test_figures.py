@@ -9,12 +9,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.contour import ContourSet
 from matplotlib.patches import Circle, Rectangle
 from matplotlib.quiver import Quiver
 from PIL import Image
 
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.calibration import BoardShape
 from cvnotes.show import (
+    draw_board_shape,
     draw_corners,
     draw_coverage,
     draw_image,
@@ -53,6 +56,10 @@ def calibration(residuals, image_points=None, size=(64, 48)):
 
 NOISE = calibration(RNG.normal(0, 0.1, (5, 12, 2)), [CORNERS + i for i in range(5)])
 
+BENT = BOARD.points + RNG.normal(0, 0.1, BOARD.points.shape)
+FREE = BoardShape("free", BOARD.points, BENT, np.full_like(BENT, 0.02))
+NOISE.shape = FREE
+
 DRAWN = {
     "image": lambda ax: draw_image(GREY, ax=ax, title="a picture"),
     "points": lambda ax: draw_points(CORNERS, size=(64, 48), ax=ax, label="seen"),
@@ -60,6 +67,7 @@ DRAWN = {
     "residuals": lambda ax: draw_residuals(NOISE, ax=ax),
     "scatter": lambda ax: draw_residual_scatter(NOISE, ax=ax),
     "coverage": lambda ax: draw_coverage(NOISE.image_points, (64, 48), ax=ax),
+    "board": lambda ax: draw_board_shape(NOISE, ax=ax),
     "view rms": lambda ax: draw_view_rms(NOISE, ax=ax, names=["a very long name.jpg"] * 5),
 }
 
@@ -79,8 +87,8 @@ def test_a_figure_is_drawn_on_the_axes_it_is_given_and_on_no_others(name):
 @pytest.mark.parametrize("name", DRAWN)
 def test_every_axis_has_a_label_with_its_unit(name):
     ax = DRAWN[name](None)
-    assert ax.get_ylabel().endswith(("(px)", "(px per point)"))
-    assert ax.get_xlabel().endswith("(px)") or ax.get_xlabel() == "view"
+    assert ax.get_ylabel().endswith(("(px)", "(px per point)", "(mm)"))
+    assert ax.get_xlabel().endswith(("(px)", "(mm)")) or ax.get_xlabel() == "view"
 
 
 def texts_of(ax):
@@ -249,6 +257,29 @@ def test_residuals_need_corners():
     for draw in (draw_residuals, draw_residual_scatter):
         with pytest.raises(DegenerateError, match="read from a file that has no corners"):
             draw(made)
+
+
+def test_a_board_is_drawn_with_its_heights_in_colours_and_the_rest_as_arrows():
+    ax = draw_board_shape(NOISE, magnify=10)
+    (arrows,) = [c for c in ax.collections if isinstance(c, Quiver)]
+    np.testing.assert_allclose(np.stack([arrows.U, arrows.V], -1), 10 * FREE.offsets[:, :2])
+    (colours,) = [c for c in ax.collections if isinstance(c, ContourSet) and c.filled]
+    assert colours.levels[-1] == -colours.levels[0] == pytest.approx(np.abs(FREE.heights).max())
+    z = FREE.heights
+    assert f"from {z.min():.2f} to {z.max():.2f} mm (± 0.02)".replace("-", "−") in ax.get_title()
+    bottom, top = ax.get_ylim()
+    assert bottom > top  # as in the picture
+
+
+def test_a_bent_board_has_no_arrows_and_a_flat_one_no_figure():
+    W = BOARD.points + [0, 0, 1] * FREE.offsets
+    bent = SimpleNamespace(**vars(NOISE) | {"shape": BoardShape("bent", BOARD.points, W, FREE.std)})
+    ax = draw_board_shape(bent)
+    assert not [c for c in ax.collections if isinstance(c, Quiver)]
+    assert "arrows" not in ax.get_title()
+    flat = SimpleNamespace(**vars(NOISE) | {"shape": None})
+    with pytest.raises(DegenerateError, match='taken for flat; calibrate with board="free"'):
+        draw_board_shape(flat)
 
 
 def hatched(ax):

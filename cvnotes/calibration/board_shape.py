@@ -136,11 +136,11 @@ def with_shape(problem: Problem, data: Correspondences, kind: str) -> Problem:
             'take the board for flat (board="flat")'
         )
     W, m, seen = data.on_one_board()
-    once = np.flatnonzero(seen.sum(0) < 2) if kind == "free" else ()
-    if len(once):
-        x, y, _ = (W[once[0]] * data.scale + data.centre).round(6).tolist()
+    once = seen.sum(0) < 2
+    if kind == "free" and once.any():
+        x, y, _ = (W[once][0] * data.scale + data.centre).round(6) + 0.0
         raise DegenerateError(
-            f"the corner at ({x + 0:g}, {y + 0:g}) of the board was seen in one view only, so its own "
+            f"the corner at ({x:g}, {y:g}) of the board was seen in one view only, so its own "
             'place is not known: leave it out, or let the board bend smoothly (board="bent")'
         )
     hold = _HOLD if n_views < _ENOUGH else 0.0

@@ -17,6 +17,7 @@ from cvnotes.show.figures.lenses import draw_displacement, draw_grid, draw_lense
 from cvnotes.show.figures.lines import draw_classes, draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import (
+    draw_board_shape,
     draw_coverage,
     draw_residual_scatter,
     draw_residuals,
@@ -75,6 +76,7 @@ __all__ = [
     "draw_residual_scatter",
     "draw_coverage",
     "draw_view_rms",
+    "draw_board_shape",
     "draw_plane_error",
     "draw_error_bars",
     "draw_view_families",
