@@ -35,6 +35,7 @@ from cvnotes.calibration import calibrate
 from cvnotes.show.figures import (
     corners,
     estimates,
+    ideas,
     lenses,
     lines,
     predictions,
@@ -114,6 +115,10 @@ FIGURES = [
         {"image": (SMALL, PICTURE), "corners": (SEEN[0], several(2))},
         board=BOARD,
     ),
+    # ideas
+    figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
+    figure(ideas.draw_mapped, {"H": (np.diag([2.0, 1, 1]), SINGLE)}),
+    figure(ideas.draw_pinhole, {"y": (1.5, ONE), "z": (4.0, ONE), "f": (1.5, ONE)}),
     # lenses
     figure(lenses.draw_grid, {"extent": (0.5, ONE), "lines": (3, ONE)}, lens=LENS),
     figure(lenses.draw_lenses, {"extent": (0.5, ONE)}, lenses=[("a", LENS), ("b", LENS)]),
@@ -149,7 +154,9 @@ FIGURES = [
         sizes=("size",),
         size=(640, 480),
     ),
-    figure(vanishing.draw_heights, {"v": (TRIANGLE, several(2))}, sizes=("size",), size=(640, 480)),
+    figure(
+        vanishing.draw_altitudes, {"v": (TRIANGLE, several(2))}, sizes=("size",), size=(640, 480)
+    ),
     # warps
     figure(warps.draw_hits, {"hits": (np.array([[0.0, 1], [2, 1]]), SINGLE)}),
     figure(

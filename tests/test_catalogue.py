@@ -447,6 +447,7 @@ EXEMPT = {
     "pairs": "a guard",
     "Scene.moved": "guarded by `rigid.rigid_motion`; see test_meshes.py",
     "render": "a target and a camera; see test_synthetic.py",
+    "room_with": "guarded by `target_scene`",
     "target_scene": "guarded by `rigid.rigid_motion`; see test_scenes.py",
     "vectors": "a guard",
 }

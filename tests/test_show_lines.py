@@ -69,7 +69,7 @@ def test_segments_are_drawn_from_end_to_end():
 # Classes.
 
 
-def test_a_class_is_a_line_through_the_origin_and_its_point_stands_at_k_1():
+def test_a_class_is_a_line_through_the_origin_and_its_point_stands_at_w_1():
     ax = draw_classes([[4, 2]])
     (line,) = (line for line in ax.lines if line.get_color() == IDEAL and hasattr(line, "get_xy1"))
     assert np.allclose(two_points(line), [[0, 0], [4, 2]])
@@ -77,7 +77,7 @@ def test_a_class_is_a_line_through_the_origin_and_its_point_stands_at_k_1():
     assert np.allclose(squares, [[[2, 1]]])
 
 
-def test_the_point_at_infinity_has_no_place_on_the_line_k_1():
+def test_the_point_at_infinity_has_no_place_on_the_line_w_1():
     ax = draw_classes([[-3, 0]])
     assert not [line for line in ax.lines if line.get_marker() == "s"]
     assert ESTIMATED in {line.get_color() for line in ax.lines}

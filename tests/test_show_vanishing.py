@@ -3,7 +3,7 @@ import pytest
 
 from cvnotes.base import DegenerateError, ShapeError
 from cvnotes.camera import Camera, intrinsics, look_at
-from cvnotes.show import draw_heights, draw_vanishing
+from cvnotes.show import draw_altitudes, draw_vanishing
 
 
 def ends(line):
@@ -45,29 +45,29 @@ def test_a_vanishing_point_at_infinity_is_not_drawn():
 # The triangle.
 
 
-def test_the_heights_meet_in_the_piercing_point_of_the_camera_that_saw_a_box():
+def test_the_altitudes_meet_in_the_piercing_point_of_the_camera_that_saw_a_box():
     camera = Camera(intrinsics(800, 800, 333, 222), look_at([9, -7, -8], [0, 0, 0]))
-    ax = draw_heights(camera.vanishing_point(np.eye(3)))
+    ax = draw_altitudes(camera.vanishing_point(np.eye(3)))
     assert np.allclose(crosses(ax)[0], [333, 222], atol=1e-6)
 
 
 def test_the_feet_of_a_triangle_worked_out_by_hand():
-    ax = draw_heights([[0, 0], [4, 0], [1, 3]], size=(10, 10))
+    ax = draw_altitudes([[0, 0], [4, 0], [1, 3]], size=(10, 10))
     dashed = np.array([ends(line) for line in ax.lines if line.get_linestyle() == "--"])
     assert np.allclose(dashed[:, 1], [[2, 2], [0.4, 1.2], [1, 0]])
     assert np.allclose(crosses(ax)[0], [1, 1])
 
 
 def test_the_corners_carry_their_names():
-    ax = draw_heights([[0, 0], [900, 0], [400, 700]], names=["a", "b", "c"])
+    ax = draw_altitudes([[0, 0], [900, 0], [400, 700]], names=["a", "b", "c"])
     assert [text.get_text() for text in ax.texts] == ["a", "b", "c"]
 
 
 def test_points_on_a_line_are_no_triangle():
     with pytest.raises(DegenerateError, match="there is no triangle"):
-        draw_heights([[0, 0], [1, 1], [2, 2]])
+        draw_altitudes([[0, 0], [1, 1], [2, 2]])
     with pytest.raises(DegenerateError, match="there is no triangle"):
-        draw_heights([[0, 0], [0, 0], [2, 2]])
+        draw_altitudes([[0, 0], [0, 0], [2, 2]])
 
 
 # What cannot be drawn.
@@ -78,8 +78,8 @@ def test_points_on_a_line_are_no_triangle():
     [
         (lambda: draw_vanishing([[[1, 2], [3, 4]]], np.eye(3)), "one point"),
         (lambda: draw_vanishing([[1, 2], [3, 4], [5, 6]], [1, 2, 1]), "two ends each"),
-        (lambda: draw_heights([[[0, 0], [4, 0], [1, 3]]]), "three points"),
-        (lambda: draw_heights([[0, 0], [4, 0], [1, 3]], names="XY"), "three names"),
+        (lambda: draw_altitudes([[[0, 0], [4, 0], [1, 3]]]), "three points"),
+        (lambda: draw_altitudes([[0, 0], [4, 0], [1, 3]], names="XY"), "three names"),
     ],
 )
 def test_the_wrong_shape_is_named(draw, message):

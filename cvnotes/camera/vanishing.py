@@ -223,8 +223,9 @@ def intrinsics_from_vanishing_points(v: npt.ArrayLike) -> Array:
     Notes
     -----
     Square pixels without skew. The rays to the three points are orthogonal in pairs, so
-    (v1 − c)ᵀ(v2 − v3) = 0 and so on: the piercing point c is where the heights of the triangle
-    meet. A vanishing point at infinity leaves c undetermined; guess it, and use `focal_length`.
+    (v1 − c)ᵀ(v2 − v3) = 0 and so on: the piercing point c is where the altitudes of the triangle
+    meet, its orthocentre. A vanishing point at infinity leaves c undetermined; guess it, and use
+    `focal_length`.
 
     References
     ----------

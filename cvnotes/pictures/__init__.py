@@ -7,7 +7,7 @@ from cvnotes.pictures.exposure import compress, expose, gaussian_blur, motion_bl
 from cvnotes.pictures.meshes import Scene
 from cvnotes.pictures.placing import facing, hold_at
 from cvnotes.pictures.scene_render import depth_map, radiance, render_scene
-from cvnotes.pictures.scenes import blocks, corridor, rails, room, target_scene
+from cvnotes.pictures.scenes import blocks, corridor, rails, room, room_with, target_scene
 from cvnotes.pictures.views import (
     centre_only_views,
     fronto_parallel_views,
@@ -32,6 +32,7 @@ __all__ = [
     "blocks",
     "corridor",
     "room",
+    "room_with",
     "target_scene",
     # sets of poses: one that is good, and those of chapter 7 that are not
     "good_views",

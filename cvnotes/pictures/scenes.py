@@ -134,6 +134,18 @@ def room() -> Scene:
     return join(shell, *furniture, *hung)
 
 
+def room_with(target: Chessboard | TwoPlanes | ThreePlanes, G: npt.ArrayLike) -> Scene:
+    """Build the room with a calibration target held in it, G (4, 4) leading from target to WRF.
+
+    Examples
+    --------
+    >>> held = room_with(TwoPlanes(), pose(np.eye(3), [0, 0, 1000]))
+    >>> len(held.vertices) - len(room().vertices)
+    24
+    """
+    return join(room(), target_scene(target, G))
+
+
 def _shell(
     x: Span,
     y: Span,

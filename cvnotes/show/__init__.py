@@ -12,6 +12,7 @@ from cvnotes.show.explore import (
 )
 from cvnotes.show.figures.corners import draw_clouds, draw_response
 from cvnotes.show.figures.estimates import draw_error_bars, draw_plane_error, draw_view_families
+from cvnotes.show.figures.ideas import draw_mapped, draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lenses import draw_displacement, draw_grid, draw_lenses, draw_radius
 from cvnotes.show.figures.lines import draw_classes, draw_lines, draw_segments
@@ -23,7 +24,7 @@ from cvnotes.show.figures.quality import (
     draw_residuals,
     draw_view_rms,
 )
-from cvnotes.show.figures.vanishing import draw_heights, draw_vanishing
+from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
 from cvnotes.show.figures.warps import draw_cell, draw_hits, draw_rows
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
@@ -60,9 +61,14 @@ __all__ = [
     "draw_lines",
     "draw_segments",
     "draw_classes",
+    # ideas: the colours, P², maps of the plane, the pinhole
+    "draw_meanings",
+    "draw_rays",
+    "draw_mapped",
+    "draw_pinhole",
     # chapter 2: vanishing points
     "draw_vanishing",
-    "draw_heights",
+    "draw_altitudes",
     # chapter 4: lenses
     "draw_grid",
     "draw_lenses",

@@ -115,15 +115,15 @@ def draw_segments(
 
 
 def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None, reach: float = 5.0) -> "Axes":
-    """Draw points of P¹, the projective line: classes [kx k] are lines through the origin.
+    """Draw points of P¹, the projective line: classes [wx w] are lines through the origin.
 
-    Where such a line crosses k = 1 is the Euclidean point x. The class of [1 0] never does: it is
+    Where such a line crosses w = 1 is the Euclidean point x. The class of [1 0] never does: it is
     the point at infinity. All of them pass through [0 0], which therefore is no point.
 
     Parameters
     ----------
     x_h : array_like, shape (n, 2)
-        One member (kx, k) of each class; a dot marks it where it is not the one with k = 1.
+        One member (wx, w) of each class; a dot marks it where it is not the one with w = 1.
     reach : float
         Of the axes, to both sides.
 
@@ -131,7 +131,7 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None, reach: float =
     --------
     >>> ax = draw_classes([[1, 1], [4, 2], [1, 0]])
     >>> ax.get_xlabel(), ax.get_ylabel()
-    ('first coordinate, kx', 'last coordinate, k')
+    ('first coordinate, wx', 'last coordinate, w')
     """
     x_h = matrix(x_h, "x_h", 2).reshape(-1, 2)
     if len(x_h) == 0:
@@ -141,20 +141,20 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None, reach: float =
     reach = length(reach, "reach")
     ax = panels(height=370) if ax is None else ax
     ax.axhline(1, color=WORLD, linewidth=2.2, zorder=1)
-    for x, k in x_h:
-        ideal = abs(k) < 1e-100 * abs(x)
-        ax.axline((0, 0), (x, k), color=ESTIMATED if ideal else IDEAL, linewidth=1.1, zorder=2)
+    for x, w in x_h:
+        ideal = abs(w) < 1e-100 * abs(x)
+        ax.axline((0, 0), (x, w), color=ESTIMATED if ideal else IDEAL, linewidth=1.1, zorder=2)
         if not ideal:
-            ax.plot(x / k, 1, "s", color=WORLD, markersize=6, zorder=3)
-        if k != 1:
-            ax.plot(x, k, "o", color=ESTIMATED if ideal else IDEAL, markersize=5, zorder=3)
+            ax.plot(x / w, 1, "s", color=WORLD, markersize=6, zorder=3)
+        if w != 1:
+            ax.plot(x, w, "o", color=ESTIMATED if ideal else IDEAL, markersize=5, zorder=3)
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=8, zorder=4)
     text: dict[str, Any] = {"textcoords": "offset points", "fontsize": FONT, "zorder": 5}
     text["path_effects"] = halo()
-    ax.annotate("R, at\nk = 1", (reach, 1), (6, 0), va="center", color=WORLD, **text)
+    ax.annotate("R, at\nw = 1", (reach, 1), (6, 0), va="center", color=WORLD, **text)
     ax.annotate("[0 0]", (0, 0), (0, -20), ha="center", color=MUTED, **text)
     ax.set(xlim=(-reach, reach), ylim=(-0.35 * reach, 0.65 * reach), aspect="equal")
-    ax.set(xlabel="first coordinate, kx", ylabel="last coordinate, k")
+    ax.set(xlabel="first coordinate, wx", ylabel="last coordinate, w")
     return ax
 
 

@@ -59,16 +59,17 @@ def draw_vanishing(
     return _widened(ax, v[None])
 
 
-def draw_heights(
+def draw_altitudes(
     v: npt.ArrayLike,
     *,
     ax: "Axes | None" = None,
     size: tuple[int, int] = (640, 480),
     names: Sequence[str] = ("X", "Y", "Z"),
 ) -> "Axes":
-    """Draw the triangle of three vanishing points, its heights, and the point that they share.
+    """Draw the triangle of three vanishing points, its altitudes, and their orthocentre.
 
-    For three orthogonal directions and square pixels that point is the piercing point.
+    For three orthogonal directions and square pixels that point is the principal point, which
+    the notes call the piercing point.
 
     Parameters
     ----------
@@ -86,7 +87,7 @@ def draw_heights(
 
     Examples
     --------
-    >>> ax = draw_heights([[0, 0], [900, 0], [400, 700]])
+    >>> ax = draw_altitudes([[0, 0], [900, 0], [400, 700]])
     >>> [text.get_text() for text in ax.texts]
     ['X', 'Y', 'Z']
     """
@@ -98,8 +99,8 @@ def draw_heights(
     ax.plot(*np.concatenate([v, v[:1]]).T, color=ESTIMATED, linewidth=1.2)
     for corner, foot in zip(v, feet, strict=True):
         ax.plot(*np.stack([corner, foot]).T, "--", color=IDEAL, linewidth=0.9)
-    heights = [join(*to_homogeneous([v[i], feet[i]])) for i in range(2)]
-    draw_points(from_homogeneous(meet(*heights)), ax=ax, meaning="ideal", label="heights meet")
+    altitudes = [join(*to_homogeneous([v[i], feet[i]])) for i in range(2)]
+    draw_points(from_homogeneous(meet(*altitudes)), ax=ax, meaning="ideal", label="orthocentre")
     draw_points(v, ax=ax, meaning="estimated", label="vanishing points")
     ax.legend(loc="lower right", fontsize=FONT - 1)
     _widened(ax, v)
