@@ -22,6 +22,7 @@ from public_face import (
     SEEN,
     SINGLE,
     TRIANGLE,
+    A,
     Argument,
     G,
     M,
@@ -35,6 +36,7 @@ from cvnotes.calibration import calibrate
 from cvnotes.show.figures import (
     corners,
     estimates,
+    formation,
     ideas,
     lenses,
     lines,
@@ -119,7 +121,31 @@ FIGURES = [
     figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
     figure(ideas.draw_mapped, {"H": (np.diag([2.0, 1, 1]), SINGLE)}),
     figure(ideas.draw_pinhole, {"y": (1.5, ONE), "z": (4.0, ONE), "f": (1.5, ONE)}),
+    # formation
+    figure(
+        formation.box_lines,
+        {n: (np.array([0.0, 9.0]), several(2)) for n in "xyz"},
+    ),
+    figure(
+        formation.draw_formation,
+        {"lines": (W[:6].reshape(2, 3, 3), several(3)), "point": (W[3], several(3))},
+        camera=CAMERA,
+    ),
+    figure(formation.draw_sensor, {"A": (A, SINGLE), "step": (80, ONE)}),
+    figure(
+        formation.draw_pixels,
+        {"image": (SMALL, PICTURE), "corner": ((4, 3), SINGLE)},
+        sizes=("size",),
+        size=(8, 6),
+    ),
+    figure(formation.draw_half_pixels, {"factor": (2, ONE)}),
     # lenses
+    figure(
+        lenses.draw_newton,
+        {"r_lens": (0.4, ONE), "steps": (3, ONE), "start": (0.3, ONE)},
+        lens=LENS,
+    ),
+    figure(lenses.draw_angles, {"up_to": (2.0, ONE)}, lenses={"a": LENS}),
     figure(lenses.draw_grid, {"extent": (0.5, ONE), "lines": (3, ONE)}, lens=LENS),
     figure(lenses.draw_lenses, {"extent": (0.5, ONE)}, lenses=[("a", LENS), ("b", LENS)]),
     figure(lenses.draw_radius, {"up_to": (1.5, ONE)}, lens=LENS),
@@ -179,6 +205,10 @@ FIGURES = [
         "show.scene.build_scene",
     ),
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
+    figure(
+        shapes.arrow_shapes,
+        {"start": (np.array([1.0, 2, 3]), several(3)), "end": (np.array([4.0, 2, 9]), several(3))},
+    ),
     figure(shapes.target_shapes, {"world_from_target": (G, SINGLE)}, target=BOARD),
     figure(
         shapes.horizon_shapes, {"centre": (np.array([1.0, 2, 3]), several(3)), "radius": (9.0, ONE)}

@@ -102,6 +102,15 @@ def my_field_of_view(A, width):
     return np.arccos(left @ right / np.linalg.norm(left) / np.linalg.norm(right))
 
 
+def my_new_intrinsics(A, corner, s):
+    out = np.array(A, dtype=float)
+    out[:2] *= s
+    for i in (0, 1):
+        before = A[i, 2] - corner[i]  # from the middle of the first pixel
+        out[i, 2] = (before + 0.5) * s - 0.5
+    return out
+
+
 # Chapter 4
 
 

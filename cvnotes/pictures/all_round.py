@@ -42,13 +42,15 @@ def through_a_cube(camera: Camera, radiance: Callable[[Camera], Array]) -> Array
     pinhole = intrinsics(half, half, middle, middle)
     size = (2 * half + 2, 2 * half + 2)
     d = camera.ray(pixel_centres(camera.size)) @ camera.R.T
+    turns = rotation_from_vector(_SIDES)
+    ahead = d @ turns[:, 2].T  # of each side, how far along its axis
+    nearest = np.where(np.isnan(ahead[..., 0]), -1, np.argmax(ahead, axis=-1))
     light = np.zeros((*d.shape[:2], 3))
-    for w in _SIDES:
-        turn = rotation_from_vector(w)
-        x, y, z = np.moveaxis(d @ turn.T, -1, 0)
-        here = z >= np.maximum(np.abs(x), np.abs(y))
+    for i, turn in enumerate(turns):
+        here = nearest == i
         if here.any():
             side = Camera(pinhole, pose(turn, np.zeros(3)) @ camera.G, size=size)
-            m = half * np.stack([x[here], y[here]], -1) / z[here, None] + middle
+            x, y, z = turn @ d[here].T
+            m = middle + half * np.stack([x, y], axis=-1) / z[:, None]
             light[here] = interpolate(radiance(side), m)
     return light

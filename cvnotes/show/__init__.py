@@ -12,9 +12,24 @@ from cvnotes.show.explore import (
 )
 from cvnotes.show.figures.corners import draw_clouds, draw_response
 from cvnotes.show.figures.estimates import draw_error_bars, draw_plane_error, draw_view_families
+from cvnotes.show.figures.formation import (
+    box_lines,
+    draw_field_of_view,
+    draw_formation,
+    draw_half_pixels,
+    draw_pixels,
+    draw_sensor,
+)
 from cvnotes.show.figures.ideas import draw_mapped, draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
-from cvnotes.show.figures.lenses import draw_displacement, draw_grid, draw_lenses, draw_radius
+from cvnotes.show.figures.lenses import (
+    draw_angles,
+    draw_displacement,
+    draw_grid,
+    draw_lenses,
+    draw_newton,
+    draw_radius,
+)
 from cvnotes.show.figures.lines import draw_classes, draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import (
@@ -39,6 +54,7 @@ from cvnotes.show.space.shapes import (
     Label,
     Lines,
     Photo,
+    arrow_shapes,
     axes_shapes,
     colour_of,
     horizon_shapes,
@@ -69,11 +85,20 @@ __all__ = [
     # chapter 2: vanishing points
     "draw_vanishing",
     "draw_altitudes",
+    # chapter 3: how an image is formed
+    "draw_formation",
+    "box_lines",
+    "draw_field_of_view",
+    "draw_sensor",
+    "draw_pixels",
+    "draw_half_pixels",
     # chapter 4: lenses
     "draw_grid",
     "draw_lenses",
     "draw_radius",
     "draw_displacement",
+    "draw_newton",
+    "draw_angles",
     # chapter 5: corners
     "draw_response",
     "draw_clouds",
@@ -97,6 +122,7 @@ __all__ = [
     "build_scene",
     "export_glb",
     "axes_shapes",
+    "arrow_shapes",
     "target_shapes",
     "horizon_shapes",
     "scene_shapes",

@@ -5,6 +5,7 @@ from cvnotes.learn.ch03.camera_centre import CENTRE
 from cvnotes.learn.ch03.field_of_view import FIELD
 from cvnotes.learn.ch03.intrinsics_from_sensor import INTRINSICS
 from cvnotes.learn.ch03.nearest_rotation import NEAREST
+from cvnotes.learn.ch03.new_intrinsics import NEW
 from cvnotes.learn.ch03.project import PROJECT
 
-EXERCISES = (INTRINSICS, PROJECT, CENTRE, CHAIN, NEAREST, FIELD)
+EXERCISES = (INTRINSICS, PROJECT, CENTRE, CHAIN, NEW, NEAREST, FIELD)

@@ -1,14 +1,14 @@
 """Figures of lenses: what they do to a grid, and how far they can be believed."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.camera import Lens
+from cvnotes.camera import FisheyeLens, Lens
 from cvnotes.show.guards import count, length, thing
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, panels
+from cvnotes.show.style import COLOURS, ESTIMATED, FONT, IDEAL, LENS, MUTED, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -100,6 +100,109 @@ def draw_radius(lens: Lens, *, ax: "Axes | None" = None, up_to: float = 1.5) -> 
         )  # fmt: skip
     ax.set(xlabel="ideal radius r", ylabel="observed radius r'", xlim=(0, up_to))
     ax.set_ylim(0, 1.1 * max(float(np.max(observed[good])), 0.5 * up_to))
+    ax.legend(loc="upper left", frameon=False)
+    return ax
+
+
+def draw_newton(
+    lens: Lens,
+    r_lens: float,
+    *,
+    ax: "Axes | None" = None,
+    steps: int = 3,
+    start: float | None = None,
+) -> "Axes":
+    """Draw Newton's way back: from r' along tangents of the curve r L(r) to the level r'.
+
+    Parameters
+    ----------
+    lens : Lens
+        Its radial part is inverted.
+    r_lens : float
+        The observed radius r', below the fold's.
+    steps : int
+        How many tangents are drawn.
+    start : float, optional
+        The first guess of r; by default r'.
+
+    Examples
+    --------
+    >>> ax = draw_newton(Lens(k=(-0.4,)), 0.55)
+    >>> [text.get_text() for text in ax.texts][:2]
+    ["r' = 0.55", 'r₀']
+    """
+    r_lens, steps = length(r_lens, "r_lens"), count(steps, "steps")
+    r = r_lens if start is None else length(start, "start")
+    reach = min(thing(lens, "lens", Lens).max_radius, 2.5 * r_lens)
+    if reach * float(lens.L(reach)) < r_lens:
+        raise CvnotesError(f"r' = {r_lens:g} is beyond the fold: no r is shown there")
+    ax = panels() if ax is None else ax
+    low = max(0.0, r - 0.4 * (reach - r))
+    fine = np.linspace(low, reach, 300)
+    ax.plot(fine, fine * lens.L(fine), color=LENS, lw=2, label="r L(r)")
+    ax.axhline(r_lens, color=IDEAL, lw=1)
+    ax.annotate(f"r' = {r_lens:g}", (0, r_lens), (6, 6), textcoords="offset points", color=IDEAL)
+    tiny = 1e-6
+    for i in range(steps):
+        value = r * float(lens.L(r))
+        slope = ((r + tiny) * float(lens.L(r + tiny)) - value) / tiny
+        following = r - (value - r_lens) / slope
+        ax.plot([r, r, following], [r_lens, value, r_lens], color=ESTIMATED, lw=1.3)
+        ax.plot(r, value, "x", color=ESTIMATED, ms=7)
+        if i < 3:  # later ones are too close to be told apart
+            ax.annotate(
+                f"r{'₀₁₂'[i]}", (r, r_lens), (-4, 6), textcoords="offset points",
+                color=ESTIMATED, ha="right",
+            )  # fmt: skip
+        r = following
+    ax.set(xlim=(low, reach), ylim=(low * float(lens.L(low)), 1.05 * reach * float(lens.L(reach))))
+    ax.set(xlabel="ideal radius r", ylabel="observed radius r'")
+    ax.legend(loc="lower right", frameon=False)
+    return ax
+
+
+def draw_angles(
+    lenses: Mapping[str, Lens | FisheyeLens], *, ax: "Axes | None" = None, up_to: float = 2.1
+) -> "Axes":
+    """Draw how far from the middle each lens shows a ray, over the ray's angle from the axis.
+
+    Parameters
+    ----------
+    lenses : mapping from names to Lens or FisheyeLens
+        Up to five. The plane z = 1 ends at 90°, and with it a `Lens`.
+    up_to : float
+        Largest angle in radians, at most π.
+
+    Examples
+    --------
+    >>> draw_angles({"pinhole": Lens(), "fisheye": FisheyeLens()}).get_xlabel()
+    'angle θ from the axis (degrees)'
+    """
+    colours = (IDEAL, LENS, ESTIMATED, COLOURS["world"], COLOURS["camera"])
+    if not isinstance(lenses, Mapping) or not 1 <= len(lenses) <= len(colours):
+        raise CvnotesError(f"lenses: expected one to {len(colours)} by name")
+    up_to = length(up_to, "up_to")
+    if up_to > np.pi:
+        raise CvnotesError(f"up_to = {up_to:g} but no ray is further from the axis than π")
+    ax = panels() if ax is None else ax
+    theta = np.linspace(0, up_to, 400)[1:]
+    before = theta < 0.999 * np.pi / 2
+    for (name, lens), colour in zip(lenses.items(), colours, strict=False):
+        if isinstance(lens, FisheyeLens):
+            M = np.stack([np.sin(theta), 0 * theta, np.cos(theta)], axis=-1)
+            shown = lens.of_rays(M)[:, 0]
+        else:
+            x = np.tan(np.where(before, theta, 0.0))
+            seen = thing(lens, name, Lens).distort(np.stack([x, 0 * x], axis=-1))[:, 0]
+            shown = np.where(before, seen, np.nan)
+        ax.plot(np.degrees(theta), shown, color=colour, lw=2, label=name)
+    ax.axvline(90, color=MUTED, ls=":")
+    ax.annotate(
+        "here the plane z = 1 ends", (90, 0), (-5, 8), textcoords="offset points",
+        color=MUTED, ha="right", fontsize=FONT - 1,
+    )  # fmt: skip
+    ax.set(xlabel="angle θ from the axis (degrees)", ylabel="distance from the middle, in f")
+    ax.set(xlim=(0, np.degrees(up_to)), ylim=(0, 3.2))
     ax.legend(loc="upper left", frameon=False)
     return ax
 

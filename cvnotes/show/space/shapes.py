@@ -103,6 +103,30 @@ def axes_shapes(
     return Lines(f"{name} axes", move(G, np.array(ends)), colour, 2.2), Label(name, origin, colour)
 
 
+def arrow_shapes(
+    start: npt.ArrayLike, end: npt.ArrayLike, name: str = "", *, meaning: str = "estimated"
+) -> Shapes:
+    """Return an arrow from one point of the world to another, with its name beside its middle.
+
+    Examples
+    --------
+    >>> line, label = arrow_shapes([0, 0, 0], [0, 0, 10], "T")
+    >>> line.ends[0]
+    array([[ 0.,  0.,  0.],
+           [ 0.,  0., 10.]])
+    """
+    start, end = one_point(start, "start", 3), one_point(end, "end", 3)
+    way = end - start
+    if not way.any():
+        raise CvnotesError("start and end coincide: an arrow needs a length")
+    side = np.cross(way, np.eye(3)[np.argmin(np.abs(way))])
+    side = side / np.linalg.norm(side) * np.linalg.norm(way)
+    wings = [[end, end - 0.06 * way + s * 0.025 * side] for s in (-1, 1)]
+    colour = colour_of(meaning)
+    arrow = Lines(f"{name} arrow", np.array([[start, end], *wings]), colour, 2.2)
+    return (arrow, Label(name, start + 0.5 * way + 0.08 * side, colour)) if name else (arrow,)
+
+
 def target_shapes(
     target: Chessboard | TwoPlanes | ThreePlanes,
     world_from_target: npt.ArrayLike | None = None,

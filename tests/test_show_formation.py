@@ -1,0 +1,111 @@
+"""Figures of image formation: what they show is where the camera puts it."""
+
+import numpy as np
+import pytest
+
+from cvnotes.base import CvnotesError, ShapeError
+from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, look_at
+from cvnotes.show import (
+    arrow_shapes,
+    box_lines,
+    draw_angles,
+    draw_field_of_view,
+    draw_formation,
+    draw_half_pixels,
+    draw_newton,
+    draw_pixels,
+    draw_sensor,
+)
+
+CAMERA = Camera(intrinsics(400, 402, 325, 238), look_at([240, 90, -140], [95, 60, 10]))
+BOX = box_lines((0, 200), (0, 125), (0, 80))
+
+
+def crosses(ax):
+    """Where the axes have a cross."""
+    return [line.get_xydata()[0] for line in ax.lines if line.get_marker() == "x"]
+
+
+def test_a_box_has_twelve_edges_of_three_lengths():
+    length = np.linalg.norm(BOX[:, -1] - BOX[:, 0], axis=-1)
+    assert sorted(length) == pytest.approx([80] * 4 + [125] * 4 + [200] * 4)
+
+
+@pytest.mark.parametrize("lens", [Lens(), Lens((-0.35, 0.08))])
+def test_each_panel_of_the_chain_shows_the_point_after_its_step(lens):
+    camera = Camera(CAMERA.A, CAMERA.G, lens)
+    W = np.array([200.0, 0, 80])
+    axes = draw_formation(camera, BOX, W)
+    x, y, z = M = camera.R @ W + camera.T
+    xy = np.array([x / z, y / z])
+    steps = [W[[0, 2]], M[[0, 2]], xy]
+    if lens.k:
+        steps.append(xy * (1 - 0.35 * (xy @ xy) + 0.08 * (xy @ xy) ** 2))
+    steps.append(camera.project(W))
+    assert len(axes) == len(steps)
+    for ax, expected in zip(axes, steps, strict=True):
+        (found,) = crosses(ax)
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_lines_that_are_points_are_refused():
+    with pytest.raises(ShapeError, match="lines of n points"):
+        draw_formation(CAMERA, BOX[0], [0, 0, 0])
+
+
+def test_the_angles_that_two_cameras_see_are_written_beside_them():
+    cameras = {f: Camera(intrinsics(f, f, 319.5, 239.5)) for f in (320, 1200)}
+    ax = draw_field_of_view({f"{f} px": camera for f, camera in cameras.items()})
+    assert [t.get_text() for t in ax.texts] == ["320 px: 90.0°", "1200 px: 29.9°"]
+
+
+def test_the_lines_of_a_leaning_sensor_lean():
+    A = intrinsics(800, 800, 320, 240, -80.0)
+    down = draw_sensor(A).lines[0].get_xydata()  # u = 0
+    across, along = down[1] - down[0]
+    assert along == pytest.approx(480 / 800)
+    assert across == pytest.approx(0.1 * along)  # 80 px of 800 for each unit of y
+
+
+def test_pixels_are_squares_around_whole_numbers():
+    ax = draw_pixels(np.zeros((48, 64), np.uint8), (10, 20), (4, 3))
+    assert ax.get_xlim() == (9.5, 13.5)
+    assert ax.get_ylim() == (22.5, 19.5)
+    assert len(ax.patches) == 12
+    with pytest.raises(CvnotesError, match="not inside"):
+        draw_pixels(np.zeros((48, 64), np.uint8), (62, 20), (4, 3))
+
+
+def test_the_borders_of_many_and_of_few_pixels_are_the_same():
+    ax = draw_half_pixels(4)
+    spans = [(min(r.get_x() for r in row), max(r.get_x() + r.get_width() for r in row))
+             for row in (ax.patches[:8], ax.patches[8:])]  # fmt: skip
+    assert spans == [(0, 8), (0, 8)]
+    assert len(ax.patches) == 10
+
+
+def test_newtons_tangents_lead_to_the_radius():
+    lens, r = Lens((-0.4,)), 0.7
+    ax = draw_newton(lens, r * (1 - 0.4 * r**2), steps=5)
+    last = ax.lines[-2].get_xydata()[-1]
+    np.testing.assert_allclose(last, [r, r * (1 - 0.4 * r**2)], rtol=1e-6)
+    with pytest.raises(CvnotesError, match="beyond the fold"):
+        draw_newton(lens, 0.7)
+
+
+def test_a_polynomial_ends_before_90_degrees_and_a_fisheye_does_not():
+    ax = draw_angles({"polynomial": Lens(), "fisheye": FisheyeLens()}, up_to=2.0)
+    polynomial, fisheye = (line.get_xydata() for line in ax.lines[:2])
+    assert np.isnan(polynomial[polynomial[:, 0] > 90, 1]).all()
+    np.testing.assert_allclose(fisheye[:, 1], np.radians(fisheye[:, 0]), rtol=1e-9)
+    with pytest.raises(CvnotesError, match="further from the axis"):
+        draw_angles({"fisheye": FisheyeLens()}, up_to=4)
+
+
+def test_an_arrow_leads_from_its_start_to_its_end():
+    lines, label = arrow_shapes([1, 2, 3], [1, 2, 9], "T")
+    np.testing.assert_array_equal(lines.ends[0], [[1, 2, 3], [1, 2, 9]])
+    assert (lines.ends[1:, 0] == [1, 2, 9]).all()
+    assert label.name == "T"
+    with pytest.raises(CvnotesError, match="coincide"):
+        arrow_shapes([1, 2, 3], [1, 2, 3])
