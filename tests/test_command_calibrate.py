@@ -20,7 +20,8 @@ from cvnotes.commands import pictures
 from cvnotes.commands.cli import main
 from cvnotes.commands.examined import Examined
 from cvnotes.commands.parallel import in_order
-from cvnotes.commands.report import named
+from cvnotes.commands.report import camera_report, named
+from cvnotes.pictures import course
 from cvnotes.targets import Chessboard
 
 BOARD = Chessboard((9, 6), 20.0)
@@ -35,9 +36,9 @@ def photos(tmp_path):
     return folder
 
 
-def calibrate(photos, corners="9x6", square=20):
+def calibrate(photos, corners="9x6", square=20, *more):
     out = photos.parent / "out"
-    arguments = ["calibrate", photos, "--corners", corners, "--square", square, "--out", out]
+    arguments = ["calibrate", photos, "--corners", corners, "--square", square, "--out", out, *more]
     return main([*map(str, arguments)]), out
 
 
@@ -141,6 +142,31 @@ def test_a_rotation_asked_for_by_a_photograph_that_is_not_used_is_no_matter(phot
     Image.fromarray(np.full(SIZE[::-1], 128, np.uint8)).save(photos / "wall.png", exif=exif)
     assert calibrate(photos)[0] == 0
     assert "EXIF" not in capsys.readouterr().out.split("Camera of")[1]
+
+
+@pytest.mark.filterwarnings("ignore::cvnotes.base.CalibrationWarning")
+def test_whether_the_board_is_flat_is_said_with_the_table():
+    real = course.real_corners()
+    found = calibration(real.board.points, real.left, real.size, lens="k1 k2 p1 p2", board="auto")
+    said = camera_report(found)
+    assert re.search(r"^Board +not flat: -0\.22 to 0\.3\d mm out of its plane \(± 0\.03\), corners "
+                     r"up to 0\.26 mm beside their places$", said, re.M)  # fmt: skip
+    assert re.search(r"^Board +px off in photographs left out", said, re.M)
+    assert re.search(r"^flat +0\.167\nbent +0\.15\d\nfree +0\.099  chosen$", said, re.M)
+    assert "not flat" not in camera_report(calibration(real.board.points, real.left, real.size))
+
+
+@pytest.mark.slow
+def test_the_shape_of_the_board_is_estimated_as_asked(photos, capsys):
+    code, out = calibrate(photos)
+    said = capsys.readouterr().out
+    assert code == 0
+    assert re.search(r"^flat +0\.\d+  chosen$", said, re.M)
+    assert "board_shape" not in json.loads((out / "calibration.json").read_text())
+    code, out = calibrate(photos, "9x6", 20, "--board-shape", "bent")
+    said = capsys.readouterr().out
+    assert re.search(r"^Board +not flat: -?0\.\d\d to 0\.\d\d mm out of its plane", said, re.M)
+    assert json.loads((out / "calibration.json").read_text())["board_shape"]["kind"] == "bent"
 
 
 def test_doubts_name_files_and_places():

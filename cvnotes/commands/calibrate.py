@@ -49,6 +49,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     add("--lens", type=lens, default="auto", metavar='"k1 k2"',
         help='lens to estimate: auto (default: views left out decide), none, k1, "k1 k2", '
         '"k1 k2 p1 p2", "k1 k2 p1 p2 k3", rational, fisheye')  # fmt: skip
+    add("--board-shape", choices=("flat", "bent", "free", "auto"), default="auto",
+        help="the board as it was drawn, bent smoothly, or every corner where the photographs say; "
+        "auto (default): views left out decide")  # fmt: skip
     add("--skew", action="store_true", help="estimate the skew of the pixels' axes too")
     parser.set_defaults(run=run)
 
@@ -120,7 +123,8 @@ def _calibrate(
         warnings.simplefilter("ignore", CalibrationWarning)  # the report has them
         # (to leave views out takes four of them)
         lens = _OF_FEW if args.lens == "auto" and len(m) < 4 else args.lens
-        return calibrate(W, m, examined[0].size, lens=lens, skew=args.skew)
+        shape = "flat" if args.board_shape == "auto" and len(m) < 4 else args.board_shape
+        return calibrate(W, m, examined[0].size, lens=lens, board=shape, skew=args.skew)
 
 
 def _contents(

@@ -3,7 +3,7 @@
 import csv
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +19,7 @@ from cvnotes.files.photos import COPY
 from cvnotes.files.writing import harmless
 
 if TYPE_CHECKING:
-    from cvnotes.calibration import Calibration
+    from cvnotes.calibration import BoardShape, Calibration
 
 _MANY_LEFT_OUT = 0.5  # of the photographs
 _SAME_PLACE = 0.5  # px, between two pictures of a board that did not move
@@ -60,6 +60,8 @@ def photo_csv(
 
 def camera_report(result: "Calibration") -> str:
     """Return the camera with its error bars, and what the result rests on."""
+    from cvnotes.calibration import choose_board, choose_lens
+
     width, height = result.size
     rows = [
         [name, *with_deviation(value, error), unit] for name, value, error, unit in result.table()
@@ -76,25 +78,38 @@ def camera_report(result: "Calibration") -> str:
         f"Tilt            boards differ by up to {widest_angle(result.poses):.0f}°",
         f"Coverage        corners in {cells.sum()} of {cells.size} cells of the picture",
     ]
+    if result.shape is not None:
+        lines.append(f"Board           {_in_mm(result.shape)}")
     if result.left_out:
-        lines += ["", _lenses(result)]
+        lines += ["", _choice("Lens", result.left_out, choose_lens(dict(result.left_out)))]
+    if result.left_out_boards:
+        chosen = choose_board(dict(result.left_out_boards))
+        lines += ["", _choice("Board", result.left_out_boards, chosen)]
     return "\n".join(lines)
 
 
-def _lenses(result: "Calibration") -> str:
-    """Return how well each lens predicts photographs that it has not seen."""
-    from cvnotes.calibration import choose_lens
-
-    chosen = choose_lens(dict(result.left_out))
+def _choice(what: str, left_out: Mapping[str, float], chosen: str) -> str:
+    """Return how well each lens, or board, predicts photographs that it has not seen."""
     rows = [
         [
             name,
             f"{rms:.3f}" if np.isfinite(rms) else "no camera",
             "chosen" if name == chosen else "",
         ]
-        for name, rms in result.left_out.items()
+        for name, rms in left_out.items()
     ]
-    return text_table([["Lens", "px off in photographs left out", ""], *rows])
+    return text_table([[what, "px off in photographs left out", ""], *rows])
+
+
+def _in_mm(shape: "BoardShape") -> str:
+    """Say how far a board is from flat."""
+    z, aside = shape.heights, np.linalg.norm(shape.offsets[:, :2], axis=1)
+    words = (
+        f"not flat: {z.min():.2f} to {z.max():.2f} mm out of its plane "
+        f"(± {np.median(shape.std[:, 2]):.2f})"
+    )
+    moved = f", corners up to {aside.max():.2f} mm beside their places"
+    return words + moved * (shape.kind == "free")
 
 
 def doubts(
