@@ -38,6 +38,7 @@ from cvnotes.show.figures import (
     estimates,
     formation,
     ideas,
+    least_squares,
     lenses,
     lines,
     predictions,
@@ -139,6 +140,24 @@ FIGURES = [
         size=(8, 6),
     ),
     figure(formation.draw_half_pixels, {"factor": (2, ONE)}),
+    # least squares
+    figure(least_squares.draw_stretched_circle, {"D": (np.array([[2.0, 1], [1, 1]]), SINGLE)}),
+    figure(
+        least_squares.draw_two_errors,
+        {
+            "points_h": (np.array([[1.0, 2], [-1, 5]]), several(2)),
+            "m": (np.array([0.6, -0.1]), SINGLE),
+        },
+    ),
+    figure(
+        lambda cost, path: least_squares.draw_valley([0, 1, 2], [0, 1], cost, {"path": path}),
+        {
+            "cost": (np.array([[1.0, 2, 3], [4, 5, 6]]), SINGLE),
+            "path": (np.array([[1.0, 1], [0, 0]]), several(2)),
+        },
+        "show.least_squares.draw_valley",
+    ),
+    figure(least_squares.draw_singular_values, {"s": (np.array([2.0, 1, 1e-15]), SINGLE)}),
     # lenses
     figure(
         lenses.draw_newton,

@@ -22,6 +22,12 @@ from cvnotes.show.figures.formation import (
 )
 from cvnotes.show.figures.ideas import draw_mapped, draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
+from cvnotes.show.figures.least_squares import (
+    draw_singular_values,
+    draw_stretched_circle,
+    draw_two_errors,
+    draw_valley,
+)
 from cvnotes.show.figures.lenses import (
     draw_angles,
     draw_displacement,
@@ -102,6 +108,11 @@ __all__ = [
     # chapter 5: corners
     "draw_response",
     "draw_clouds",
+    # chapters 5 and 6: least squares
+    "draw_singular_values",
+    "draw_stretched_circle",
+    "draw_two_errors",
+    "draw_valley",
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_residual_scatter",

@@ -1,0 +1,108 @@
+"""A poster on a wall: letters in rows that grow smaller, and a switch beside them."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array
+from cvnotes.camera import pose
+from cvnotes.pictures.meshes import Scene, box, join, quads
+from cvnotes.pictures.scenes import room
+
+# Five rows of five, from the top; a letter's cell is dark where there is an x.
+_LETTERS = {
+    "A": " xxx |x   x|xxxxx|x   x|x   x",
+    "B": "xxxx |x   x|xxxx |x   x|xxxx ",
+    "D": "xxxx |x   x|x   x|x   x|xxxx ",
+    "E": "xxxxx|x    |xxxx |x    |xxxxx",
+    "F": "xxxxx|x    |xxxx |x    |x    ",
+    "G": " xxxx|x    |x  xx|x   x| xxxx",
+    "H": "x   x|x   x|xxxxx|x   x|x   x",
+    "I": " xxx |  x  |  x  |  x  | xxx ",
+    "L": "x    |x    |x    |x    |xxxxx",
+    "M": "x   x|xx xx|x x x|x   x|x   x",
+    "N": "x   x|xx  x|x x x|x  xx|x   x",
+    "O": " xxx |x   x|x   x|x   x| xxx ",
+    "P": "xxxx |x   x|xxxx |x    |x    ",
+    "Q": " xxx |x   x|x x x|x  x | xx x",
+    "R": "xxxx |x   x|xxxx |x  x |x   x",
+    "S": " xxxx|x    | xxx |    x|xxxx ",
+    "T": "xxxxx|  x  |  x  |  x  |  x  ",
+    "U": "x   x|x   x|x   x|x   x| xxx ",
+    "V": "x   x|x   x|x   x| x x |  x  ",
+    "Y": "x   x| x x |  x  |  x  |  x  ",
+}
+# The rows: their words, the upper edge of their letters, and the letters' height, mm.
+ROWS = (
+    ("H", 45.0, 120.0),
+    ("DLT", 205.0, 85.0),
+    ("PLANE", 325.0, 55.0),
+    ("FOURPAIRS", 410.0, 34.0),
+    ("HOMOGRAPHY", 472.0, 22.0),
+    ("LEVENBERGMARQUARDT", 518.0, 14.0),
+    ("THESMALLESTSINGULARVALUE", 552.0, 9.0),
+)
+SIZE = (420.0, 594.0)  # A2
+SWITCH = (-330.0, 470.0)  # its middle, in the chart's frame, mm
+_INK, _PAPER = (0.07, 0.09, 0.16), (1.0, 0.99, 0.95)
+
+
+def letter(name: str) -> npt.NDArray[np.bool_]:
+    """Give the cells (5, 5) of a letter, True where it is dark.
+
+    Examples
+    --------
+    >>> letter("L").astype(int)[-2:]
+    array([[1, 0, 0, 0, 0],
+           [1, 1, 1, 1, 1]])
+    """
+    return np.array([[cell == "x" for cell in row] for row in _LETTERS[name].split("|")])
+
+
+def chart_room() -> Scene:
+    """Build the room with a chart of letters, a sheet of A2, on one of its walls.
+
+    The frame is the chart's: the origin in its upper left corner, x to the right, y down, z into
+    the wall. The chart's corners are (0, 0), (420, 0), (420, 594) and (0, 594) mm; a light switch
+    has its middle at `SWITCH`, on the same wall.
+
+    Examples
+    --------
+    >>> chart_room().vertices[:4]
+    array([[  0.,   0.,   0.],
+           [420.,   0.,   0.],
+           [420., 594.,   0.],
+           [  0., 594.,   0.]])
+    """
+    wall_from_room = pose([[0, 0, -1], [0, 1, 0], [1, 0, 0]], [5200, 250, -2999.0])
+    u, v = SWITCH
+    plate = box((u - 40, u + 40), (v - 40, v + 40), (-1, 0), (0.97, 0.97, 0.95))
+    rocker = box((u - 22, u + 22), (v - 28, v + 28), (-4, -1), (0.80, 0.42, 0.30))
+    return join(_paper(), _ink(), plate, rocker, room().moved(wall_from_room))
+
+
+def _paper() -> Scene:
+    width, height = SIZE
+    corners = [[0.0, 0, 0], [width, 0, 0], [width, height, 0], [0, height, 0]]
+    return quads(np.array(corners), [[0, 1, 2, 3]], _PAPER)
+
+
+def _ink() -> Scene:
+    """Build all letters as strips, one for each run of dark cells."""
+    strips = np.concatenate([_word(*row) for row in ROWS])
+    places = np.concatenate([strips, np.full((*strips.shape[:2], 1), -0.2)], axis=-1)
+    return quads(places.reshape(-1, 3), np.arange(4 * len(strips)).reshape(-1, 4), _INK)
+
+
+def _word(word: str, top: float, height: float) -> Array:
+    """Give the strips (n, 4, 2) of a word in the middle of the chart."""
+    cell = height / 5
+    left = (SIZE[0] - (6 * len(word) - 1) * cell) / 2
+    strips = []
+    for k, name in enumerate(word):
+        for j, cells in enumerate(letter(name)):
+            edges = np.flatnonzero(np.diff(np.r_[False, cells, False].astype(int)))
+            for begin, end in edges.reshape(-1, 2):
+                x0, x1 = (left + (6 * k + i) * cell for i in (begin, end))
+                y0, y1 = top + j * cell, top + (j + 1) * cell
+                strips.append([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+    return np.array(strips)

@@ -1,0 +1,73 @@
+import numpy as np
+import pytest
+
+from cvnotes.base import CvnotesError, DegenerateError, ShapeError
+from cvnotes.show import (
+    ESTIMATED,
+    LENS,
+    draw_singular_values,
+    draw_stretched_circle,
+    draw_two_errors,
+    draw_valley,
+)
+
+
+def test_the_arrow_of_the_smallest_singular_value_ends_nearest_to_the_origin():
+    D = np.array([[3.0, 1.0], [1.0, 2.0]])
+    left, right = draw_stretched_circle(D)
+    ends = {text.arrow_patch.get_edgecolor(): np.array(text.xy) for text in right.texts}
+    lengths = sorted(np.linalg.norm(end) for end in ends.values())
+    # The product of both half axes is the determinant, the sum of squares that of all entries.
+    assert np.prod(lengths) == pytest.approx(5)
+    assert np.sum(np.square(lengths)) == pytest.approx(15)
+    ellipse = right.lines[0].get_xydata()
+    assert np.linalg.norm(ellipse, axis=1).min() == pytest.approx(lengths[0], rel=1e-3)
+    assert np.linalg.norm(left.lines[0].get_xydata(), axis=1) == pytest.approx(1)
+
+
+def test_the_algebraic_error_is_the_geometric_one_at_the_depth_of_the_point():
+    ax = draw_two_errors([[2.0, 4.0]], [0.75])
+    gaps = {
+        line.get_color(): np.ptp(line.get_ydata())
+        for line in ax.lines
+        if line.get_linewidth() == 4 and len(line.get_xdata())
+    }
+    assert gaps[ESTIMATED] == pytest.approx(0.25)
+    assert gaps[LENS] == pytest.approx(1.0)
+
+
+def test_points_behind_the_camera_have_no_rays():
+    with pytest.raises(DegenerateError, match="behind the camera"):
+        draw_two_errors([[1.0, -2.0]], [0.5])
+    with pytest.raises(ShapeError, match="one number for each"):
+        draw_two_errors([[1.0, 2.0]], [0.5, 0.6])
+
+
+def test_ways_are_drawn_where_they_went_and_the_map_in_logarithms():
+    way = [[0.0, 1.0], [2.0, 0.5], [1.0, 0.0]]
+    ax = draw_valley([0, 1, 2], [0, 1], [[1, 10, 100], [1, 10, 1000]], {"a way": way})
+    assert ax.lines[0].get_xydata().tolist() == way
+    levels = ax.collections[0].levels
+    assert (levels.min(), levels.max()) == pytest.approx((0, 3), abs=0.3)
+
+
+@pytest.mark.parametrize(
+    ("cost", "paths", "words"),
+    [
+        ([[1, 2, 3]], {"a": [[0, 0]]}, "cost: expected"),
+        ([[1, 2], [3, 0]], {"a": [[0, 0]]}, "positive"),
+        ([[1, 2], [3, 4]], {}, "one to three"),
+    ],
+)
+def test_what_is_no_map_is_refused(cost, paths, words):
+    with pytest.raises(CvnotesError, match=words):
+        draw_valley([0, 1], [0, 1], cost, paths)
+
+
+def test_singular_values_that_are_rounding_have_another_colour():
+    ax = draw_singular_values([5.0, 1.0, 1e-12])
+    colours = [bar.get_facecolor() for bar in ax.patches]
+    assert colours[0] == colours[1] != colours[2]
+    assert [bar.get_height() for bar in ax.patches] == pytest.approx([5, 1, 1e-12])
+    with pytest.raises(CvnotesError, match="singular values"):
+        draw_singular_values([1.0, -1.0])
