@@ -302,7 +302,7 @@ class TestKindsOfPictures:
             find_corners(np.full((40, 40), np.nan), BOARD)
         with pytest.raises(InputTypeError, match="None"):
             find_corners(None, BOARD)
-        with pytest.raises(InputTypeError, match="expected a Chessboard, got tuple"):
+        with pytest.raises(InputTypeError, match="a Chessboard or CharucoBoard, got tuple"):
             find_corners(shot[0], (9, 6))
 
     @pytest.mark.parametrize("shape", [(1, 1), (1, 500), (7, 500), (20, 20)])

@@ -9,9 +9,13 @@ import pytest
 from cvnotes.base import CvnotesError
 from cvnotes.targets import PAPERS, Chessboard
 from cvnotes.targets.page import Line
-from cvnotes.targets.sheet import lay_out
 
 SVG = "{http://www.w3.org/2000/svg}"
+
+
+def lay_out(corners, square, paper="A4"):
+    same = isinstance(corners, tuple) and (corners[0] - corners[1]) % 2 == 0
+    return Chessboard(corners, square, half_turn_symmetric=same).sheet(paper)
 
 
 def dark_squares(sheet):

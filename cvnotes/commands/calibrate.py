@@ -16,7 +16,7 @@ from cvnotes.commands.ownership import earlier, made_by, marked
 from cvnotes.commands.target import corners, length
 from cvnotes.files import Rejected, write_whole
 from cvnotes.files.writing import check_folder, printable
-from cvnotes.targets import Chessboard
+from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration
@@ -45,6 +45,15 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="inner corners of the board along x and y: where four squares meet; or auto to "
         "have them counted in the photographs")  # fmt: skip
     add("--square", type=length, required=True, metavar="25", help="side of a square, in mm")
+    add(
+        "--charuco",
+        nargs="?",
+        const="4x4_50",
+        metavar="4x4_50",
+        help="the board is a ChArUco board, its markers of this dictionary (default 4x4_50)",
+    )
+    add("--marker", type=length, metavar="18.75",
+        help="side of its markers, in mm (default: three quarters of a square)")  # fmt: skip
     add("--out", type=Path, required=True, metavar="FOLDER", help="folder for the results")
     add("--lens", type=lens, default="auto", metavar='"k1 k2"',
         help='lens to estimate: auto (default: views left out decide), none, k1, "k1 k2", '
@@ -62,6 +71,9 @@ def run(args: argparse.Namespace) -> int:
     from cvnotes.commands.report import camera_report, doubts, named, photo_table
 
     if args.corners is None:
+        if args.charuco:
+            complain("calibrate", "--corners auto counts chessboards; say how many corners it has")
+            return 2
         try:
             args.corners = counted(args.photos)
         except DegenerateError as error:
@@ -69,9 +81,9 @@ def run(args: argparse.Namespace) -> int:
             return 1
         say("A board of {}×{} inner corners, as counted in the photographs\n".format(*args.corners))
     columns, rows = args.corners
-    symmetric = (columns - rows) % 2 == 0
+    symmetric = (columns - rows) % 2 == 0 and not args.charuco
     try:
-        board = Chessboard(args.corners, args.square, half_turn_symmetric=symmetric)
+        board = asked_board(args)
     except CvnotesError as error:
         complain("calibrate", str(error))
         return 2
@@ -104,8 +116,19 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
+def asked_board(args: argparse.Namespace) -> "Chessboard | CharucoBoard":
+    """Make the board that the options describe."""
+    if args.charuco:
+        return CharucoBoard(args.corners, args.square, args.marker, args.charuco.lower())
+    if args.marker:
+        raise CvnotesError("--marker is of ChArUco boards: say --charuco as well")
+    columns, rows = args.corners
+    symmetric = (columns - rows) % 2 == 0
+    return Chessboard(args.corners, args.square, half_turn_symmetric=symmetric)
+
+
 def _calibrate(
-    examined: "Sequence[Examined]", board: Chessboard, args: argparse.Namespace
+    examined: "Sequence[Examined]", board: "Chessboard | CharucoBoard", args: argparse.Namespace
 ) -> "Calibration":
     from cvnotes.calibration import calibrate
 
@@ -130,7 +153,7 @@ def _calibrate(
 def _contents(
     result: "Calibration",
     examined: "Sequence[Examined]",
-    board: Chessboard,
+    board: "Chessboard | CharucoBoard",
     files: Sequence[str],
     rejected: Sequence[Rejected],
 ) -> dict[str, bytes]:

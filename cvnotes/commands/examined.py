@@ -17,7 +17,7 @@ from cvnotes.files import Photo, Rejected, open_photos, read_photo
 from cvnotes.files.decoding import header_size
 from cvnotes.files.photos import COPY, fingerprint
 from cvnotes.files.writing import printable
-from cvnotes.targets import Chessboard, find_corners
+from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
 from cvnotes.targets.opencv_finders import one_thread_each
 
@@ -68,7 +68,9 @@ class Examined:
         return np.asarray((m + 0.5) * self.thumbnail.shape[1] / self.size[0] - 0.5)
 
 
-def examine(paths: Sequence[str], board: Chessboard) -> tuple[list[Examined], list[Rejected]]:
+def examine(
+    paths: Sequence[str], board: Chessboard | CharucoBoard
+) -> tuple[list[Examined], list[Rejected]]:
     """Look for the board in photographs; gives those looked at, and those that cannot be used.
 
     A photograph without the board is in both lists.
@@ -133,7 +135,7 @@ def _photographs(paths: Sequence[str]) -> tuple[list[Path], list[Rejected]]:
     return files, rejected
 
 
-def _looked_at(path: Path, board: Chessboard) -> tuple[bytes, Examined | Rejected]:
+def _looked_at(path: Path, board: Chessboard | CharucoBoard) -> tuple[bytes, Examined | Rejected]:
     """Read and examine one photograph; gives what its pixels are known by, too."""
     photo = next(open_photos([path]))
     if isinstance(photo, Rejected):
@@ -141,7 +143,7 @@ def _looked_at(path: Path, board: Chessboard) -> tuple[bytes, Examined | Rejecte
     return fingerprint(photo), _examine(photo, board)
 
 
-def _examine(photo: Photo, board: Chessboard) -> Examined:
+def _examine(photo: Photo, board: Chessboard | CharucoBoard) -> Examined:
     corners, found, note = None, None, photo.note
     try:
         corners = find_corners(photo.grey, board, partial=True)

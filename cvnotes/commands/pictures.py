@@ -11,7 +11,7 @@ from cvnotes.commands.canvas import ESTIMATED, FAINT, LENS, MUTED, WORLD, Canvas
 from cvnotes.commands.console import progress
 from cvnotes.commands.examined import Examined
 from cvnotes.files.writing import printable
-from cvnotes.targets import Chessboard
+from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration
@@ -25,7 +25,10 @@ _MOST_LINES = 1000  # that can be told apart
 
 
 def pictures(
-    result: "Calibration", examined: Sequence[Examined], board: Chessboard, names: Sequence[str]
+    result: "Calibration",
+    examined: Sequence[Examined],
+    board: Chessboard | CharucoBoard,
+    names: Sequence[str],
 ) -> dict[str, bytes]:
     """Draw all pictures; gives PNG by file name.
 
@@ -35,7 +38,7 @@ def pictures(
         What came out.
     examined : sequence of Examined
         All photographs looked at, also those without the board.
-    board : Chessboard
+    board : Chessboard or CharucoBoard
         The board.
     names : sequence of str
         Names of those that were used.
@@ -50,7 +53,9 @@ def pictures(
     return {name: sheet.png() for name, sheet in sheets}
 
 
-def corner_sheets(examined: Sequence[Examined], board: Chessboard) -> dict[str, Canvas]:
+def corner_sheets(
+    examined: Sequence[Examined], board: Chessboard | CharucoBoard
+) -> dict[str, Canvas]:
     """Draw all photographs small with the corners found in them, on as many sheets as it takes."""
     sheets = [examined[part] for part in chunks(len(examined), _COLUMNS * _ROWS)]
     if len(sheets) == 1:
@@ -58,7 +63,7 @@ def corner_sheets(examined: Sequence[Examined], board: Chessboard) -> dict[str, 
     return {f"corners-{i}.png": _sheet(sheet, board) for i, sheet in enumerate(sheets, start=1)}
 
 
-def _sheet(examined: Sequence[Examined], board: Chessboard) -> Canvas:
+def _sheet(examined: Sequence[Examined], board: Chessboard | CharucoBoard) -> Canvas:
     width, height = examined[0].size
     tile = (_TILE, max(round(_TILE * height / width), 1))
     # Three tiles at least, so that a title has its place.

@@ -7,7 +7,7 @@ from cvnotes.base import CvnotesError
 from cvnotes.commands.console import complain, say
 from cvnotes.files import write_whole
 from cvnotes.files.writing import printable
-from cvnotes.targets import PAPERS, Chessboard
+from cvnotes.targets import PAPERS, CharucoBoard, Chessboard
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -39,13 +39,30 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         action="store_true",
         help="allow a board whose origin no picture can tell",
     )
+    parser.add_argument(
+        "--charuco",
+        nargs="?",
+        const="4x4_50",
+        metavar="4x4_50",
+        help="with numbered markers of this dictionary (default 4x4_50) in the light squares",
+    )
+    parser.add_argument(
+        "--marker",
+        type=length,
+        metavar="18.75",
+        help="side of its markers in mm (default: three quarters of a square)",
+    )
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Write the sheet; give the exit code: 0 done, 1 cannot, 2 no such board."""
     try:
-        board = Chessboard(args.corners, args.square, args.half_turn_symmetric)
+        board: Chessboard | CharucoBoard
+        if args.charuco:
+            board = CharucoBoard(args.corners, args.square, args.marker, args.charuco.lower())
+        else:
+            board = Chessboard(args.corners, args.square, args.half_turn_symmetric)
     except CvnotesError as error:
         option = str(error).replace("say half_turn_symmetric=True", "say --half-turn-symmetric")
         complain("target", option)

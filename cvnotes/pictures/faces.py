@@ -151,15 +151,12 @@ def folds(faces: list[Face]) -> list[Array]:
 
 def _print(board: Any, margin: float, plain: bool) -> tuple[Array, Array, Array]:
     """Say where the lines of a printed board lie, and how grey the fields between them are."""
-    x, y = (
-        np.unique([-1 - margin, *range(-1, n + 1), n + margin]) * board.square
-        for n in board.corners
-    )
-    grey = np.full((len(y) - 1, len(x) - 1), PAPER)
-    if not plain:
-        border, (columns, rows) = int(margin > 0), board.squares
-        squares = grey[border : border + rows, border : border + columns]
-        squares[np.indices(squares.shape).sum(axis=0) % 2 == 0] = INK
+    x, y, dark = board.printed
+    grey = np.where(dark & (not plain), INK, PAPER)
+    if margin > 0:
+        grey = np.pad(grey, 1, constant_values=PAPER)
+        white = margin * board.square
+        x, y = (np.concatenate([[z[0] - white], z, [z[-1] + white]]) for z in (x, y))
     return x, y, grey
 
 

@@ -1,5 +1,6 @@
 """Chapter 5: what is photographed, and its corners found in the photograph (notes 2b.4)."""
 
+from cvnotes.targets.charuco import CharucoBoard
 from cvnotes.targets.chessboard import Chessboard
 from cvnotes.targets.edge_corners import refine_edges
 from cvnotes.targets.finding import find_corners
@@ -10,6 +11,7 @@ from cvnotes.targets.sheet import PAPERS
 
 __all__ = [
     "Chessboard",
+    "CharucoBoard",
     "TwoPlanes",
     "ThreePlanes",
     "PAPERS",

@@ -3,11 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, image_size, number
 from cvnotes.targets.sheet import Sheet, lay_out
 
 Faces = tuple[tuple[Array, "Chessboard"], ...]
+Print = tuple[Array, Array, npt.NDArray[np.bool_]]  # lines along x, along y, and dark fields
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,13 @@ class Chessboard:
         return self.corners[0] + 1, self.corners[1] + 1
 
     @property
+    def printed(self) -> Print:
+        """What is printed: lines along x and y, and which fields between them are dark."""
+        x, y = (self.square * np.arange(-1.0, n + 1) for n in self.corners)
+        i, j = np.indices(self.squares)
+        return x, y, (i + j).T % 2 == 0
+
+    @property
     def faces(self) -> Faces:
         """The board itself, in the pose (4, 4) that leaves it where it is."""
         return ((np.eye(4), self),)
@@ -105,4 +114,4 @@ class Chessboard:
         >>> Chessboard((9, 6), 25.0).sheet().pdf()[:4]
         b'%PDF'
         """
-        return lay_out(self.corners, self.square, paper)
+        return lay_out(self, paper)

@@ -67,14 +67,25 @@ def gradient_axes(grey: Image, m: Array, half: int) -> Array:
 
 
 def cut_out(
-    grey: Image, m: Array, half: int, axes: Array, reach: Array | None
+    grey: Image,
+    m: Array,
+    half: int,
+    axes: Array,
+    reach: Array | None,
+    strip: Array | None = None,
 ) -> tuple[Array, Window]:
-    """Cut windows out around the pixels next to m, which are given too."""
+    """Cut windows out around the pixels next to m, which are given too.
+
+    In steps to the neighbours, pixels count that lie within the `reach`, and no farther from one of
+    the edges than half the width (n, 2) of its `strip`.
+    """
     u, v, pixels, counts = patches(grey, m, half)
     if reach is not None:
         q = np.stack([u - m[:, :1], v - m[:, 1:]], axis=1)
         along = np.linalg.inv(axes).mT @ q  # in steps to the neighbours
         counts &= ((along >= -reach[..., :1]) & (along <= reach[..., 1:])).all(1)
+        if strip is not None:
+            counts &= (np.abs(along) <= strip[..., None]).any(1)
     y, x = np.indices((2 * half + 1, 2 * half + 1)).reshape(2, -1) - half
     single = [z.astype(np.float32) for z in (np.stack([x, y, np.ones_like(x)]), pixels, counts)]
     return np.rint(m), Window(*single)
@@ -163,6 +174,7 @@ def fit_edges(
     *,
     window: int = 8,
     grid: tuple[int, int] | None = None,
+    clear: float | None = None,
 ) -> EdgeFit:
     """Fit the model of two crossing blurred edges around each corner.
 
@@ -178,6 +190,9 @@ def fit_edges(
         Says that m are the inner corners of a board, row by row. The windows then end before the
         neighbouring corners and hardly reach beyond the outermost ones; without it, the window
         must be small enough for that.
+    clear : float, optional
+        How far from the edges something else is printed, such as a marker, in squares; needs
+        `grid`. Only pixels nearer to an edge than that, less the blur, then count.
 
     Returns
     -------
@@ -210,7 +225,7 @@ def fit_edges(
         raise ShapeError(f"m: expected corners (n, 2), got {m.shape}")
     near = (half + 1) // 2
     axes, reach = board_axes(m, grid) if grid else (gradient_axes(grey, m, near), None)
-    middle, small = cut_out(grey, m, near, axes, reach)
+    middle, small = cut_out(grey, m, near, axes, reach, _strip(axes, clear, 0.0))
     start = sharp_crossing(m - middle, axes, small)
     # So few pixels do not tell the lighting's slope from the rest: it stays 0 for now.
     p, _, _ = minimise(start, small, tolerance=0.03, free=SLOPES)
@@ -220,12 +235,22 @@ def fit_edges(
     found, blur = middle + crossing(p), _typical(_blur(p))
     if grid:
         axes, reach = board_axes(found, grid, blur)
-    again, large = cut_out(grey, found, half, axes, reach)
+    again, large = cut_out(grey, found, half, axes, reach, _strip(axes, clear, blur))
     # A slope of the lighting looks like an edge as blurred as this: then there shall be none.
     free = SLOPES if blur > _VERY_BLURRED * half else PARAMETERS
     p, system, good = minimise(_shifted(p, again - middle), large, tolerance=0.01, free=free)
     good &= ~lost & (np.abs(again + crossing(p) - m).max(-1) <= near)
     return _result(again, _facing(p, axes), system[:, [*range(free), -1]], large, good)
+
+
+def _strip(axes: Array, clear: float | None, blur: float) -> Array | None:
+    """Give half the width (n, 2) of the strips along the edges that show nothing but them."""
+    if clear is None:
+        return None
+    height = (
+        np.abs(_cross(axes[:, 0], axes[:, 1]))[:, None] / np.linalg.norm(axes, axis=-1)[:, ::-1]
+    )
+    return np.asarray(clear - np.maximum(1.0, _BEYOND_BLUR * blur) / height)
 
 
 def _shifted(p: Array, by: Array) -> Array:

@@ -8,6 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CornersNotFound, DegenerateError, Image, InputTypeError, stretched
+from cvnotes.targets.charuco import CharucoBoard
+from cvnotes.targets.charuco_corners import find_numbered
 from cvnotes.targets.chessboard import Chessboard
 from cvnotes.targets.doubts import NotABoard, check_board, check_pattern_ends, trusted
 from cvnotes.targets.edge_corners import EdgeFit, fit_edges
@@ -18,22 +20,26 @@ from cvnotes.targets.patches import grey_picture
 from cvnotes.targets.saddle_points import find_saddles
 
 
-def find_corners(image: npt.ArrayLike, board: Chessboard, *, partial: bool = False) -> Array:
+def find_corners(
+    image: npt.ArrayLike, board: Chessboard | CharucoBoard, *, partial: bool = False
+) -> Array:
     """Find the inner corners of a chessboard in a picture.
 
     Parameters
     ----------
     image : array_like, shape (height, width) or (height, width, 3 or 4)
         The picture: grey, RGB or RGBA; uint8, uint16 or floating point of any range.
-    board : Chessboard
+    board : Chessboard or CharucoBoard
         What was photographed.
     partial : bool
-        Accept a board of which up to a quarter of the corners are hidden, dirty or out of line.
+        Accept a board of which up to a quarter of the corners are hidden, dirty or out of line. Of
+        a `CharucoBoard` any four corners are accepted, always.
 
     Returns
     -------
     ndarray, shape (n, 2)
-        Pixels (u, v), in the order of ``board.points``; with `partial`, NaN for lost corners.
+        Pixels (u, v), in the order of ``board.points``; with `partial`, and of a `CharucoBoard`,
+        NaN for lost corners.
 
     Raises
     ------
@@ -67,10 +73,14 @@ def find_corners(image: npt.ArrayLike, board: Chessboard, *, partial: bool = Fal
     >>> bool(np.abs(m - camera.project(board.points)).max() < 0.01)
     True
     """
-    if not isinstance(board, Chessboard):
-        raise InputTypeError(f"board: expected a Chessboard, got {type(board).__name__}")
+    if not isinstance(board, Chessboard | CharucoBoard):
+        raise InputTypeError(
+            f"board: expected a Chessboard or CharucoBoard, got {type(board).__name__}"
+        )
     picture = grey_picture(image)
     grey = _eight_bits(picture)
+    if isinstance(board, CharucoBoard):
+        return find_numbered(picture, grey, board)
     tried: list[str] = []
     others: list[tuple[int, int]] = []
     shown: Array | None = None

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array
+from cvnotes.base import Array, CvnotesError
 
 Grey8 = npt.NDArray[np.uint8]
 
@@ -81,6 +81,60 @@ def find_part(grey: Grey8) -> Array | None:
     if not found or squares is None:
         return None
     return np.asarray(m, dtype=np.float64).reshape(*np.shape(squares)[:2], 2)
+
+
+# Markers of so many bits a side, and how many there are.
+DICTIONARIES = tuple(f"{n}x{n}_{many}" for n in (4, 5, 6, 7) for many in (50, 100, 250, 1000))
+
+
+def marker_cells(dictionary: str, count: int) -> npt.NDArray[np.bool_]:
+    """Give which cells (count, n, n) of the first markers are dark, their dark border included.
+
+    Examples
+    --------
+    >>> marker_cells("4x4_50", 1)[0].astype(int)
+    array([[1, 1, 1, 1, 1, 1],
+           [1, 0, 1, 0, 0, 1],
+           [1, 1, 0, 1, 0, 1],
+           [1, 1, 1, 0, 0, 1],
+           [1, 1, 1, 0, 1, 1],
+           [1, 1, 1, 1, 1, 1]])
+    """
+    markers, n = _dictionary(dictionary), int(dictionary[0]) + 2
+    return np.array([markers.generateImageMarker(i, n) == 0 for i in range(count)])
+
+
+def find_charuco(
+    grey: Grey8, squares: tuple[int, int], marker: float, dictionary: str
+) -> tuple[Array, npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Look for the corners of a ChArUco board, whose markers have the side `marker` in squares.
+
+    Gives the corners (n, 2), their numbers (n,), and the numbers of all markers that were read.
+
+    Examples
+    --------
+    >>> m, ids, markers = find_charuco(np.zeros((40, 40), np.uint8), (5, 4), 0.75, "4x4_50")
+    >>> m.shape, len(ids), len(markers)
+    ((0, 2), 0, 0)
+    """
+    import cv2
+
+    board = cv2.aruco.CharucoBoard(squares, 1.0, marker, _dictionary(dictionary))
+    m, ids, _, markers = cv2.aruco.CharucoDetector(board).detectBoard(np.ascontiguousarray(grey))
+    corners, numbers, read = ([] if x is None else x for x in (m, ids, markers))
+    return (
+        np.asarray(corners, dtype=np.float64).reshape(-1, 2),
+        np.ravel(numbers).astype(np.intp),
+        np.ravel(read).astype(np.intp),
+    )
+
+
+def _dictionary(name: str) -> Any:
+    if not has_opencv():
+        raise CvnotesError("markers are drawn and read by OpenCV, which is not installed here")
+    import cv2
+
+    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{name.upper()}"))
 
 
 @contextmanager

@@ -2,8 +2,11 @@
 
 import os
 from dataclasses import dataclass
+from typing import Any
 
-from cvnotes.base import CvnotesError, image_size, number
+import numpy as np
+
+from cvnotes.base import CvnotesError
 from cvnotes.targets.page import Area, Line, Page, Shape, Text, rectangle
 
 PathLike = str | os.PathLike[str]
@@ -20,8 +23,8 @@ class Sheet:
 
     Examples
     --------
-    >>> from cvnotes.targets.sheet import lay_out
-    >>> lay_out((9, 6), 25.0).page.size
+    >>> from cvnotes.targets import Chessboard
+    >>> Chessboard((9, 6), 25.0).sheet().page.size
     (297.0, 210.0)
     """
 
@@ -51,8 +54,8 @@ class Sheet:
 
         Examples
         --------
-        >>> from cvnotes.targets.sheet import lay_out
-        >>> lay_out((9, 6), 25.0).encoded("board.pdf")[:4]
+        >>> from cvnotes.targets import Chessboard
+        >>> Chessboard((9, 6), 25.0).sheet().encoded("board.pdf")[:4]
         b'%PDF'
         """
         suffix = os.path.splitext(path)[1].lower()  # noqa: PTH122 (pathlib costs 4 ms to import)
@@ -73,16 +76,19 @@ _GREY = 0.45
 _RULER = 100
 
 
-def squares(columns: int, rows: int, square: float, left: float, top: float) -> Area:
-    """Draw the dark squares; the one in the top left corner is dark."""
-    return Area(
-        tuple(
-            rectangle(left + i * square, top + j * square, square, square)
-            for j in range(rows + 1)
-            for i in range(columns + 1)
-            if (i + j) % 2 == 0
-        )
-    )
+def dark_fields(board: Any, left: float, top: float) -> Area:
+    """Draw what is dark of a board, the first square's corner being at (left, top).
+
+    Fields beside each other in a row are one rectangle.
+    """
+    x, y, dark = board.printed
+    x, y = x - x[0] + left, y - y[0] + top
+    rectangles = []
+    for row, above, below in zip(dark, y[:-1], y[1:], strict=True):
+        begins, ends = (np.flatnonzero(np.diff(np.r_[0, row, 0]) == step) for step in (1, -1))
+        for x0, x1 in zip(x[begins].tolist(), x[ends].tolist(), strict=True):
+            rectangles.append(rectangle(x0, float(above), x1 - x0, float(below - above)))
+    return Area(tuple(rectangles))
 
 
 def frame(x: float, y: float, width: float, height: float) -> Line:
@@ -91,15 +97,15 @@ def frame(x: float, y: float, width: float, height: float) -> Line:
     return Line((*corners, corners[0]), 0.15, _GREY)
 
 
-def foot(
-    corners: tuple[int, int], square: float, size: tuple[float, float], width: float
-) -> list[Shape]:
+def foot(board: Any, size: tuple[float, float], width: float) -> list[Shape]:
     """Draw what stands under the board: its frame, its numbers, and the ruler."""
-    columns, rows = corners
+    (columns, rows), square = board.corners, board.square
     x, y = (size[0] - width) / 2, size[1] - EDGE - FOOT
     words = x + 18
-    symmetric = ", True" if (columns - rows) % 2 == 0 else ""
-    code = f"Chessboard(({columns}, {rows}), {square:g}{symmetric})"
+    more = ", True" if getattr(board, "half_turn_symmetric", False) else ""
+    if dictionary := getattr(board, "dictionary", ""):
+        more = f', {board.marker:g}, "{dictionary}"'
+    code = f"{type(board).__name__}(({columns}, {rows}), {square:g}{more})"
     return [
         *_key(x, y + 2.5),
         Text(words, y + 4.5, f"{columns} by {rows} inner corners", 3.4, "Helvetica-Bold"),
@@ -166,15 +172,13 @@ PAPERS = {"A4": (210.0, 297.0), "Letter": (215.9, 279.4), "A3": (297.0, 420.0)} 
 _FOOT_WIDTH = 190.0  # what the words and the ruler under the board need
 
 
-def lay_out(corners: tuple[int, int], square: float, paper: str = "A4") -> Sheet:
-    """Lay a chessboard out on paper, upright or across, whichever suits it.
+def lay_out(board: Any, paper: str = "A4") -> Sheet:
+    """Lay a board out on paper, upright or across, whichever suits it.
 
     Parameters
     ----------
-    corners : (columns, rows)
-        Inner corners.
-    square : float
-        Side of a square in millimetres.
+    board : Chessboard or CharucoBoard
+        Its lengths are read as millimetres.
     paper : {"A4", "Letter", "A3"}
         The paper to print on.
 
@@ -196,26 +200,28 @@ def lay_out(corners: tuple[int, int], square: float, paper: str = "A4") -> Sheet
 
     Examples
     --------
-    >>> lay_out((9, 6), 40.0)
+    >>> from cvnotes.targets import Chessboard
+    >>> lay_out(Chessboard((9, 6), 40.0))
     Traceback (most recent call last):
         ...
     cvnotes.base.errors.CvnotesError: a board of 10 by 7 squares of 40 mm does not fit on A4; \
 squares of up to 25 mm do
     """
-    corners, square = image_size(corners, "corners"), number(square, "square")
+    corners, square = board.corners, board.square
     size, quiet = _oriented(corners, square, paper)
     columns, rows = corners
-    title = f"Chessboard, {columns} by {rows} inner corners, squares of {square:g} mm"
+    kind = "ChArUco board" if hasattr(board, "dictionary") else "Chessboard"
+    title = f"{kind}, {columns} by {rows} inner corners, squares of {square:g} mm"
     width, height = (columns + 1) * square, (rows + 1) * square
     middle = max((size[0] - width) / 2, EDGE + SIDE + quiet)
     left = _on_raster(middle + square) - square
     top = _on_raster((size[1] - FOOT - height) / 2 + square) - square
     border = frame(left - quiet, top - quiet, width + 2 * quiet, height + 2 * quiet)
     shapes = (
-        squares(columns, rows, square, left, top),
+        dark_fields(board, left, top),
         border,
         *side(left - quiet - 1.5, top - quiet),
-        *foot(corners, square, size, max(width + 2 * quiet, _FOOT_WIDTH)),
+        *foot(board, size, max(width + 2 * quiet, _FOOT_WIDTH)),
     )
     return Sheet(Page(title, size, shapes))
 

@@ -22,7 +22,7 @@ from cvnotes.show.style import (
     halo,
     picture_axes,
 )
-from cvnotes.targets import Chessboard
+from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,7 +103,7 @@ def draw_points(
 def draw_corners(
     image: npt.ArrayLike,
     corners: npt.ArrayLike,
-    board: Chessboard,
+    board: Chessboard | CharucoBoard,
     *,
     ax: "Axes | None" = None,
     title: str = "",
@@ -118,11 +118,13 @@ def draw_corners(
     image : array_like, shape (height, width) or (height, width, 3)
         The picture.
     corners : array_like, shape (n, 2)
-        Pixels, ordered as ``board.points``.
-    board : Chessboard
+        Pixels, ordered as ``board.points``; NaN for those that were not found.
+    board : Chessboard or CharucoBoard
         Tells how many corners a row has.
     """
-    m, (columns, rows) = points(corners, "corners", 2), thing(board, "board", Chessboard).corners
+    if not isinstance(board, CharucoBoard):
+        thing(board, "board", Chessboard)
+    m, (columns, rows) = points(corners, "corners", 2), board.corners
     if m.shape != (columns * rows, 2):
         raise ShapeError(
             f"corners: a board of {columns}×{rows} has {columns * rows}, got {m.shape}"
@@ -131,14 +133,18 @@ def draw_corners(
     grid = m.reshape(rows, columns, 2)
     for row in grid:
         ax.plot(*row.T, "-", color=ESTIMATED, linewidth=1, marker=".", markersize=4)
-    for name, end in (("x", grid[0, min(2, columns - 1)]), ("y", grid[min(2, rows - 1), 0])):
+    ends = (("x", grid[0, min(2, columns - 1)]), ("y", grid[min(2, rows - 1), 0]))
+    for name, end in ends:
+        if np.isnan([end, m[0]]).any():
+            continue
         arrow = {"arrowstyle": "-|>", "color": WORLD, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", end, m[0], arrowprops=arrow)
         _write(ax, name, m[0] + 1.25 * (end - m[0]), WORLD)
     ax.plot(*m[0], "o", color=WORLD, markersize=9, fillstyle="none", markeredgewidth=1.6)
     for i in (0, columns - 1, columns * (rows - 1), columns * rows - 1):
-        outwards = m[i] - m.mean(axis=0)
-        _write(ax, str(i), m[i] + 0.12 * outwards, ESTIMATED)
+        if np.isfinite(m[i]).all():
+            outwards = m[i] - np.nanmean(m, axis=0)
+            _write(ax, str(i), m[i] + 0.12 * outwards, ESTIMATED)
     return ax
 
 

@@ -1,0 +1,146 @@
+"""The ChArUco board: a chessboard whose light squares carry numbered markers."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, CvnotesError, image_size, number
+from cvnotes.targets.chessboard import Print
+from cvnotes.targets.opencv_finders import DICTIONARIES, marker_cells
+from cvnotes.targets.sheet import Sheet, lay_out
+
+
+@dataclass(frozen=True)
+class CharucoBoard:
+    """A chessboard with numbered markers: each corner is known by itself.
+
+    A picture needs to show only a part of it, so the board may reach beyond the picture's corners;
+    and its origin is known whatever its counts are.
+
+    Parameters
+    ----------
+    corners : (columns, rows)
+        Inner corners along x and along y; both at least 2.
+    square : float
+        Side of a square; it sets the unit of all lengths (the course uses millimetres).
+    marker : float, optional
+        Side of a marker, three quarters of a square unless given.
+    dictionary : str
+        Which markers, as OpenCV names them: ``"4x4_50"`` has 50 of 4 by 4 bits.
+
+    Notes
+    -----
+    The WRF and the order of the corners are those of `Chessboard`; the square outside of the
+    origin corner is dark. Markers are numbered from 0, row by row through the light squares.
+    OpenCV's ``CharucoBoard`` counts squares, one more than inner corners, and has its origin one
+    square before ours; boards in OpenCV's legacy pattern with an even number of rows of squares,
+    whose first square is light, are others.
+
+    References
+    ----------
+    .. [1] Absent from the notes.
+    .. [2] S. Garrido-Jurado et al., Automatic generation and detection of highly reliable fiducial
+       markers under occlusion, Pattern Recognition 47 (2014) 2280-2292.
+
+    Examples
+    --------
+    >>> board = CharucoBoard((9, 6), 25.0)
+    >>> board.marker, len(board.ids), board.n_markers
+    (18.75, 54, 35)
+    """
+
+    corners: tuple[int, int] = (9, 6)
+    square: float = 25.0
+    marker: float | None = None
+    dictionary: str = "4x4_50"
+
+    def __post_init__(self) -> None:
+        columns, rows = image_size(self.corners, "corners")
+        square = number(self.square, "square")
+        marker = 0.75 * square if self.marker is None else number(self.marker, "marker")
+        if min(columns, rows) < 2:
+            raise CvnotesError(f"corners: a board needs at least 2×2 inner corners, got {self}")
+        if not 0 < marker < square:
+            raise CvnotesError(
+                f"marker: a marker of {marker:g} does not fit into a square of {square:g} with "
+                "white around it"
+            )
+        if self.dictionary not in DICTIONARIES:
+            known = ", ".join(DICTIONARIES)
+            raise CvnotesError(f"dictionary: expected one of {known}, got {self.dictionary!r}")
+        most = int(self.dictionary.split("_")[1])
+        needed = (columns + 1) * (rows + 1) // 2
+        if needed > most:
+            raise CvnotesError(
+                f"dictionary: {self.dictionary} has {most} markers and a board of {columns}×{rows} "
+                f"inner corners needs {needed}"
+            )
+        for name, value in (("corners", (columns, rows)), ("square", square), ("marker", marker)):
+            object.__setattr__(self, name, value)
+
+    @property
+    def points(self) -> Array:
+        """Inner corners (n, 3), row by row: x runs fastest, z = 0."""
+        columns, rows = self.corners
+        x, y = np.meshgrid(np.arange(columns), np.arange(rows))
+        return self.square * np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3).astype(float)
+
+    @property
+    def ids(self) -> npt.NDArray[np.intp]:
+        """Numbers (n,) of the inner corners, which are their places in `points`."""
+        return np.arange(self.corners[0] * self.corners[1], dtype=np.intp)
+
+    @property
+    def squares(self) -> tuple[int, int]:
+        """Numbers of squares along x and y, one more than inner corners."""
+        return self.corners[0] + 1, self.corners[1] + 1
+
+    @property
+    def n_markers(self) -> int:
+        """How many markers the board carries: one in each light square."""
+        return self.squares[0] * self.squares[1] // 2
+
+    @property
+    def clear(self) -> float:
+        """Width of the white between a marker and its square's sides, in squares."""
+        return (1 - float(self.marker or 0) / self.square) / 2
+
+    @property
+    def printed(self) -> Print:
+        """What is printed: lines along x and y, and which fields between them are dark."""
+        cells = marker_cells(self.dictionary, self.n_markers)
+        within = np.concatenate([[0], np.linspace(self.clear, 1 - self.clear, cells.shape[1] + 1)])
+        x, y = (
+            self.square * np.append((np.arange(-1, n)[:, None] + within).ravel(), n)
+            for n in self.corners
+        )
+        columns, rows = self.squares
+        dark = np.ones((rows, len(within), columns, len(within)), dtype=bool)
+        for marker, (i, j) in zip(cells, self._light_squares, strict=True):
+            dark[j, :, i, :] = False
+            dark[j, 1:-1, i, 1:-1] = marker
+        return x, y, dark.reshape(rows * len(within), -1)
+
+    @property
+    def _light_squares(self) -> list[tuple[int, int]]:
+        columns, rows = self.squares
+        return [(i, j) for j in range(rows) for i in range(columns) if (i + j) % 2]
+
+    @property
+    def faces(self) -> tuple[tuple[Array, Any], ...]:
+        """The board itself, in the pose (4, 4) that leaves it where it is."""
+        return ((np.eye(4), self),)
+
+    def sheet(self, paper: str = "A4") -> Sheet:
+        """Lay the board out for printing, `square` read as millimetres.
+
+        Parameters and errors are those of `Chessboard.sheet`.
+
+        Examples
+        --------
+        >>> CharucoBoard((9, 6), 25.0).sheet().pdf()[:4]
+        b'%PDF'
+        """
+        return lay_out(self, paper)

@@ -1,0 +1,191 @@
+"""Boards whose corners have numbers: drawn as OpenCV draws them, and found better."""
+
+import re
+from xml.etree import ElementTree
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from cvnotes.base import CornersNotFound, CvnotesError
+from cvnotes.calibration import calibrate
+from cvnotes.camera import Camera, Lens, intrinsics, look_at
+from cvnotes.commands.cli import main
+from cvnotes.pictures import render
+from cvnotes.targets import CharucoBoard, Chessboard, find_corners
+
+BOARD = CharucoBoard((9, 6), 25.0)
+SIZE = (640, 480)
+A = intrinsics(800, 804, 325, 238)
+
+
+def theirs(squares, dictionary="4X4_50", marker=18.75):
+    markers = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{dictionary}"))
+    return cv2.aruco.CharucoBoard(squares, 25.0, marker, markers)
+
+
+LENS = Lens(k=(-0.25, 0.10))
+
+
+def camera(eye, at=(100, 62, 0)):
+    return Camera(A, look_at(eye, at), LENS, SIZE)
+
+
+@pytest.mark.parametrize(
+    ("corners", "dictionary"), [((9, 6), "4x4_50"), ((6, 9), "5x5_100"), ((4, 4), "6x6_250")]
+)
+def test_it_is_the_board_that_opencv_draws(corners, dictionary):
+    # 40 px a square, 4 px a cell, of which a marker has two more than bits
+    marker = 25 * (int(dictionary[0]) + 2) * 4 / 40
+    squares = (corners[0] + 1, corners[1] + 1)
+    drawn = theirs(squares, dictionary.upper(), marker).generateImage(
+        (40 * squares[0], 40 * squares[1])
+    )
+    x, y, dark = CharucoBoard(corners, 25.0, marker, dictionary).printed
+    columns, rows = (np.rint((z - z[0]) * 40 / 25).astype(int) for z in (x, y))
+    ours = np.where(np.repeat(np.repeat(dark, np.diff(rows), 0), np.diff(columns), 1), 0, 255)
+    assert np.array_equal(ours, drawn)
+
+
+def test_numbers_and_places_of_corners_are_those_of_opencv_but_for_the_origin():
+    at = theirs((10, 7)).getChessboardCorners()
+    assert np.allclose(np.asarray(at).reshape(-1, 3) - [25, 25, 0], BOARD.points)
+    assert BOARD.ids.tolist() == list(range(54))
+    assert BOARD.n_markers == len(theirs((10, 7)).getIds())
+    assert np.array_equal(BOARD.points, Chessboard((9, 6), 25.0).points)
+
+
+def test_a_picture_of_it_has_ink_and_paper_where_they_are():
+    # 40 px a square; the board's middle, 200 and 140 px from its edges, is at (179.5, 119.5)
+    G = look_at([100, 62.5, -25], [100, 62.5, 0])
+    picture = render(BOARD, Camera(intrinsics(40, 40, 179.5, 119.5), G, size=(400, 280)))
+    drawn = theirs((10, 7)).generateImage((400, 280))[20:, 20:]
+    shown = picture[: drawn.shape[0], : drawn.shape[1]]
+    assert np.array_equal(shown, np.where(drawn == 0, 30, 220))
+
+
+@pytest.mark.parametrize("noise", [0.0, 5.0])
+def test_corners_are_several_times_better_than_opencvs(noise):
+    rng = np.random.default_rng(0)
+    ours, opencvs = [], []
+    for eye in ([60, 40, -330], [200, -60, -450], [-60, 140, -600]):
+        known = camera(eye)
+        picture = render(BOARD, known, blur=0.7, noise=noise, rng=rng)
+        truth, m = known.project(BOARD.points), find_corners(picture, BOARD)
+        found, ids, *_ = cv2.aruco.CharucoDetector(theirs((10, 7))).detectBoard(picture)
+        assert np.isfinite(m).all()
+        ours.append(m - truth)
+        opencvs.append(np.reshape(found, (-1, 2)) - truth[np.ravel(ids)])
+    rms = [np.sqrt(np.mean(np.concatenate(e) ** 2)) for e in (ours, opencvs)]
+    assert rms[0] < (0.006 if noise == 0 else 0.02)
+    assert rms[1] > 3 * rms[0]
+
+
+def test_a_board_cut_at_the_border_gives_the_corners_that_are_there():
+    known = camera([20, 20, -200], at=(20, 20, 0))
+    truth = known.project(BOARD.points)
+    m = find_corners(render(BOARD, known, blur=0.7), BOARD)
+    seen = np.isfinite(m[:, 0])
+    inside = ((truth > 0) & (truth < np.array(SIZE) - 1)).all(-1)
+    assert 10 < seen.sum() < 54
+    assert not (seen & ~inside).any()
+    assert np.abs(m[seen] - truth[seen]).max() < 0.03
+    with pytest.raises(CornersNotFound):  # of a plain board that is no picture at all
+        find_corners(render(Chessboard((9, 6), 25.0), known, blur=0.7), Chessboard((9, 6), 25.0))
+
+
+def test_a_board_that_looks_the_same_after_half_a_turn_knows_its_origin():
+    board, known = CharucoBoard((8, 6), 25.0), camera([80, 60, -400], at=(80, 60, 0))
+    upside_down = render(board, known, blur=0.7)[::-1, ::-1]
+    m = find_corners(upside_down, board)
+    assert np.allclose(m, np.array(SIZE) - 1 - known.project(board.points), atol=0.03)
+
+
+def test_from_cut_boards_to_the_camera():
+    rng = np.random.default_rng(4)
+    eyes = [(-80, -60, -260), (260, -80, -260), (-60, 180, -280), (240, 200, -270),
+            (100, -160, -330), (100, 260, -330), (320, 60, -300), (-140, 60, -300)]  # fmt: skip
+    targets = [(20, 10, 0), (190, 20, 0), (10, 110, 0), (180, 110, 0), (100, 62, 0)]
+    W, m = [], []
+    for i, eye in enumerate(eyes):
+        known = camera(eye, targets[i % 5])
+        found = find_corners(render(BOARD, known, blur=0.7, noise=3, rng=rng), BOARD)
+        seen = np.isfinite(found[:, 0])
+        W.append(BOARD.points[seen])
+        m.append(found[seen])
+    assert min(map(len, m)) < 54
+    result = calibrate(W, m, SIZE, lens="k1 k2")
+    std = result.std
+    for name, truth in {"alpha_u": 800, "alpha_v": 804, "u0": 325, "v0": 238, "k1": -0.25}.items():
+        assert abs(result.parameters[name] - truth) < 3 * std[name], name
+
+
+@pytest.mark.parametrize(
+    ("board", "said"),
+    [
+        (CharucoBoard((9, 6), 25.0, dictionary="5x5_100"), "there are markers of 4x4"),
+        (CharucoBoard((5, 4), 25.0), "markers 0 to 14, and 34 is there"),
+    ],
+)
+def test_another_board_is_named(board, said):
+    picture = render(BOARD, camera([60, 40, -330]), blur=0.7)
+    with pytest.raises(CornersNotFound, match=said):
+        find_corners(picture, board)
+
+
+def test_without_any_marker_that_is_said():
+    with pytest.raises(CornersNotFound, match="not one marker can be read"):
+        find_corners(render(Chessboard((9, 6), 25.0), camera([60, 40, -330]), blur=0.7), BOARD)
+    with pytest.raises(CornersNotFound, match="not one marker can be read"):
+        find_corners(np.zeros((40, 40)), BOARD)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (((9, 6), 25.0, 25.0), "does not fit into a square"),
+        (((9, 6), 25.0, -1.0), "does not fit into a square"),
+        (((1, 6), 25.0), "at least 2×2"),
+        (((9, 6), 25.0, None, "8x8_50"), "expected one of 4x4_50"),
+        (((12, 9), 25.0), "has 50 markers and a board of 12×9"),
+    ],
+)
+def test_boards_that_cannot_be_are_refused_in_words(arguments, said):
+    with pytest.raises(CvnotesError, match=said):
+        CharucoBoard(*arguments)
+
+
+def test_the_sheet_shows_every_dark_field_in_millimetres():
+    sheet = BOARD.sheet()
+    area = ElementTree.fromstring(sheet.svg()).find(
+        "{http://www.w3.org/2000/svg}path[@fill='#000000']"
+    )
+    ways = re.findall(r"M([^Z]*)Z", area.get("d"))
+    boxes = [np.array(re.findall(r"[\d.]+", way), float).reshape(-1, 2) for way in ways]
+    inked = sum(np.prod(np.ptp(box, axis=0)) for box in boxes)
+    x, y, dark = BOARD.printed
+    assert inked == pytest.approx((np.outer(np.diff(y), np.diff(x)) * dark).sum(), rel=1e-6)
+    assert 'CharucoBoard((9, 6), 25, 18.75, "4x4_50")' in sheet.svg().replace("&quot;", '"')
+
+
+def test_the_command_prints_and_calibrates_it(tmp_path, capsys):
+    assert main(["target", "--charuco", "--out", str(tmp_path / "board.pdf")]) == 0
+    assert (tmp_path / "board.pdf").read_bytes().startswith(b"%PDF")
+    photos = tmp_path / "photos"
+    photos.mkdir()
+    rng = np.random.default_rng(5)
+    for i, eye in enumerate(
+        [(-80, -60, -300), (260, -80, -320), (-60, 220, -330), (240, 200, -300)]
+    ):
+        made = render(BOARD, camera(eye, (40 + 40 * i, 62, 0)), blur=0.7, noise=3, rng=rng)
+        Image.fromarray(made).save(photos / f"{i}.png")
+    plain = ["calibrate", str(photos), "--corners", "9x6", "--square", "25", "--lens", "k1 k2"]
+    out = tmp_path / "out"
+    assert main([*plain, "--charuco", "--board-shape", "flat", "--out", str(out)]) == 0
+    assert (out / "corners.png").exists()
+    assert "4 photographs" in capsys.readouterr().out
+    assert main([*plain, "--marker", "18", "--out", str(out)]) == 2
+    assert "--marker is of ChArUco boards" in capsys.readouterr().err
+    assert main([*plain, "--charuco", "5x5_100", "--out", str(out)]) == 1
+    assert "there are markers of 4x4" in capsys.readouterr().out
