@@ -3,12 +3,16 @@
 import numpy as np
 import pytest
 
+from cvnotes.base import CvnotesError
+from cvnotes.calibration import calibrate
 from cvnotes.camera import Lens
+from cvnotes.pictures import course
 from cvnotes.show import (
     draw_cell,
     draw_clouds,
     draw_displacement,
     draw_hits,
+    draw_prediction_error,
     draw_radius,
     draw_rows,
     draw_wall,
@@ -49,3 +53,15 @@ def test_the_lens_ends_at_its_fold_and_arrows_are_its_displacement():
     assert ax.texts[0].get_text() == "max_radius = 0.50"  # 1 + 3 k1 r² = 0
     arrows = draw_displacement(Lens(k=(0.4,)), extent=0.5).collections[0]
     assert (arrows.U[0], arrows.V[0]) == pytest.approx((-0.1, -0.1), abs=1e-12)  # k1 r² = 0.2
+
+
+def test_maps_of_the_uncertainty_share_their_colours_where_they_are_to_be_compared():
+    course_board, m = course.board(), course.measured_corners()
+    colours = []
+    for n in (6, 12):
+        found = calibrate(course_board.points, m[:n], (640, 480))
+        ax = draw_prediction_error(found, between=(0.0, 0.05))
+        colours.append(ax.collections[0].get_clim())
+    assert colours[0] == colours[1]
+    with pytest.raises(CvnotesError, match=r"between: expected \(least, most\), got \(2, 1\)"):
+        draw_prediction_error(found, between=(2, 1))

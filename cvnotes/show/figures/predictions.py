@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import ShapeError
+from cvnotes.base import CvnotesError, ShapeError, number
 from cvnotes.calibration import Calibration, prediction_std
 from cvnotes.show.guards import calibrated, count, eight_bits, pictures
 from cvnotes.show.style import ESTIMATED, as_picture, picture_axes
@@ -15,13 +15,21 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def draw_prediction_error(calibration: Calibration, *, ax: "Axes | None" = None) -> "Axes":
+def draw_prediction_error(
+    calibration: Calibration,
+    *,
+    ax: "Axes | None" = None,
+    between: tuple[float, float] | None = None,
+) -> "Axes":
     """Draw, over the picture, how far off the image of a fixed ray may be, as lines of equal px.
 
     Parameters
     ----------
     calibration : Calibration
         Its corners, if it has them, are drawn too: where they end, extrapolation begins.
+    between : (least, most), optional
+        Deviations in px at the ends of the colours, so that two maps can be compared; by default
+        those of this map.
     """
     calibrated(calibration)
     w, h = calibration.size
@@ -29,8 +37,13 @@ def draw_prediction_error(calibration: Calibration, *, ax: "Axes | None" = None)
         ax = picture_axes(calibration.size)
     u, v = np.meshgrid(np.linspace(0, w - 1, 65), np.linspace(0, h - 1, 49))
     std = prediction_std(calibration, np.stack([u, v], axis=-1))
-    levels = np.linspace(float(np.nanmin(std)), float(np.nanmax(std)), 13)
-    ax.contourf(u, v, std, levels=levels, cmap="cividis")
+    least, most = float(np.nanmin(std)), float(np.nanmax(std))
+    if between is not None:
+        least, most = (number(x, "between", at_least=0) for x in between)
+        if not least < most:
+            raise CvnotesError(f"between: expected (least, most), got ({least:g}, {most:g})")
+    levels = np.linspace(least, most, 13)
+    ax.contourf(u, v, std, levels=levels, cmap="cividis", extend="both")
     lines = ax.contour(u, v, std, levels=levels[1::2], colors="white", linewidths=0.8)
     ax.clabel(lines, fmt=lambda x: f"{x:.2g} px", fontsize=8)
     for m in calibration.image_points:
