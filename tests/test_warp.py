@@ -1,3 +1,6 @@
+import sys
+import threading
+
 import cv2
 import numpy as np
 import pytest
@@ -255,6 +258,16 @@ def test_a_picture_much_wider_than_a_tile_is_warped_row_by_row():
 
 
 # --- forward -------------------------------------------------------------------------------------
+
+
+def test_a_browser_which_has_no_threads_warps_to_the_same_picture(monkeypatch):
+    image = np.random.default_rng(5).integers(0, 255, (70, 90), np.uint8)
+    expected = backward_warp(image, rotation_map(0.3, centre=(40, 30)))
+    monkeypatch.setattr(sys, "platform", "emscripten")
+    monkeypatch.setattr(threading.Thread, "start", lambda self: pytest.fail(f"{self} starts"))
+    np.testing.assert_array_equal(
+        backward_warp(image, rotation_map(0.3, centre=(40, 30))), expected
+    )
 
 
 def test_forward_by_two_leaves_three_holes_for_every_pixel():

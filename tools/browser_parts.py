@@ -82,6 +82,7 @@ PURE = {
 }
 NEEDED = ["numpy", "scipy", "matplotlib", "pillow", "pyyaml", "tqdm", "trimesh", "ipywidgets"]
 # What only a desktop has a use for.
+COMPILED = {".so", ".pyd", ".pyc"}
 LEFT_OUT = {"__pycache__", "tests", "nbextension", "labextension"}
 
 
@@ -311,9 +312,9 @@ def _member(place: str) -> zipfile.ZipInfo:
 
 
 def _installed(name: str) -> Iterator[tuple[str, Path]]:
-    """Give the files of Python of an installed distribution."""
+    """Give the files of an installed distribution, without what was compiled for this machine."""
     for file in metadata.files(name) or ():
-        used = file.suffix in {".py", ".json", ".typed"} and not LEFT_OUT & set(file.parts)
+        used = file.suffix not in COMPILED and not LEFT_OUT & set(file.parts)
         inside = ".." not in file.parts and not file.parts[0].endswith(".dist-info")
         if used and inside and Path(str(file.locate())).is_file():
             yield file.as_posix(), Path(str(file.locate()))

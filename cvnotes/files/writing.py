@@ -5,7 +5,7 @@ import secrets
 import time
 from collections.abc import Mapping
 from contextlib import ExitStack, suppress
-from importlib import import_module, util
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,18 @@ PathLike = str | os.PathLike[str]
 
 _PREFIX, _SUFFIX = ".cvnotes-", ".tmp"
 _HOUR = 3600  # s; no writing takes so long
-fcntl: Any = import_module("fcntl") if util.find_spec("fcntl") else None  # not on Windows
+
+
+def _locks() -> Any:
+    """Give the module that locks files, or None: on Windows, and where it is empty (a browser)."""
+    try:
+        module = import_module("fcntl")
+    except ImportError:
+        return None
+    return module if hasattr(module, "flock") else None
+
+
+fcntl = _locks()
 
 
 def printable(path: PathLike) -> str:

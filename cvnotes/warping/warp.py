@@ -1,7 +1,9 @@
 """The two ways to move a picture by a map: forward, and backward (notes 2b.5)."""
 
 import os
+import sys
 from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -155,8 +157,6 @@ def backward_warp(
     array([[3., 1.],
            [4., 2.]])
     """
-    from concurrent.futures import ThreadPoolExecutor
-
     sampler = Sampler(image, method, border, fill)
     if size is None and not callable(mapping):
         shape = np.shape(mapping)
@@ -169,16 +169,28 @@ def backward_warp(
     def fetch(part: slice, m: Array) -> None:
         target[part] = sampler(m).reshape(-1, *sampler.channels)
 
-    # One thread asks the map for the next tile while others look the picture up.
+    if sys.platform == "emscripten":  # a browser, which has no threads
+        for part, m in tiles(mapping, (width, height)):
+            fetch(part, m)
+    else:
+        _fetch_side_by_side(mapping, (width, height), fetch)
+    return target.reshape(height, width, *sampler.channels)
+
+
+def _fetch_side_by_side(
+    mapping: Mapping, size: tuple[int, int], fetch: Callable[[slice, Array], None]
+) -> None:
+    """Ask the map for the next tile in one thread, while others look the picture up."""
+    from concurrent.futures import ThreadPoolExecutor
+
     with ThreadPoolExecutor(_FETCHERS) as fetchers:
         under_way: deque[Future[None]] = deque()
-        for part, m in tiles(mapping, (width, height)):
+        for part, m in tiles(mapping, size):
             under_way.append(fetchers.submit(fetch, part, m))
             if len(under_way) > 2 * _FETCHERS:
                 under_way.popleft().result()
         for fetched in under_way:
             fetched.result()
-    return target.reshape(height, width, *sampler.channels)
 
 
 def rectify_plane(

@@ -84,10 +84,11 @@ def _clock(seconds: float) -> Iterator[None]:
 
 def _time_used_by(thread: int) -> Callable[[], float]:
     """Give a function that tells how long a thread has calculated from now on."""
-    if not hasattr(time, "pthread_getcpuclockid"):
+    try:
+        clock = time.pthread_getcpuclockid(thread)
+    except (AttributeError, OSError):  # not on every system; in a browser it is only a name
         started = time.monotonic()
         return lambda: time.monotonic() - started
-    clock = time.pthread_getcpuclockid(thread)
     before = time.clock_gettime(clock)
     return lambda: time.clock_gettime(clock) - before
 
