@@ -26,8 +26,8 @@ def lens_model(camera: Camera) -> Model:
         _around("k1", 1.5, 0.01, k1, what),
         _around("k2", 2.0, 0.01, k2, "radial, of the fourth power of r"),
         _around("k3", 2.0, 0.01, k3, "radial, of the sixth power of r"),
-        _around("p1", 0.1, 0.001, p1, "tangential: a lens tilted about x"),
-        _around("p2", 0.1, 0.001, p2, "tangential: a lens tilted about y"),
+        _around("p1", 0.1, 0.001, p1, "tangential: an element of the lens off the axis, along y"),
+        _around("p2", 0.1, 0.001, p2, "tangential: an element of the lens off the axis, along x"),
     )
     about = (
         "A square grid and the same grid seen through a lens; beside it the observed radius "
