@@ -186,7 +186,7 @@ def draw_singular_values(s: npt.ArrayLike, *, ax: Axes | None = None, title: str
     for i, value in zip(number, values, strict=True):
         words = f"{value:.2g}" if value >= 1e-3 * values.max() else f"{value:.0e}"
         ax.annotate(words, (i, drawn[i - 1]), (0, 3), textcoords="offset points", ha="center",
-                    fontsize=FONT - 1)  # fmt: skip
+                    fontsize=FONT - 1 if len(values) <= 12 else FONT - 3)  # fmt: skip
     ax.set(xticks=number, xlabel="number", ylabel="singular value", title=title)
     return ax
 
