@@ -2,6 +2,7 @@
 
 from cvnotes.calibration.board_shape import BOARDS, BoardShape
 from cvnotes.calibration.driver import calibrate
+from cvnotes.calibration.next_view import NextView, next_view, where_to_hold
 from cvnotes.calibration.one_view import calibrate_one_view
 from cvnotes.calibration.pose import pose_from_view
 from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, resect
@@ -43,6 +44,9 @@ __all__ = [
     "radial_distortion",
     "prediction_std",
     "std_with_view",
+    "NextView",
+    "next_view",
+    "where_to_hold",
     "ppm_design_matrix",
     "ppm_dlt",
     "refine_ppm",

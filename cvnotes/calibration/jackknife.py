@@ -59,7 +59,7 @@ def covariance_over_views(
     n, q = len(data), len(names)
     if n - 1 < (3 if "skew" in names else 2):  # so few determine no camera
         return undetermined(q)
-    problem = _problem(camera, names, data)
+    problem = problem_at(camera, names, data)
     poses, W = data.pose_in_scaled_units(poses), None
     try:
         if shape is not None and data.before is not None:
@@ -112,7 +112,7 @@ def _without_each(S: Array, g: Array, held: Array) -> Array:
     return np.asarray(d / scale)
 
 
-def _problem(camera: Camera, names: tuple[str, ...], data: Correspondences) -> Problem:
+def problem_at(camera: Camera, names: tuple[str, ...], data: Correspondences) -> Problem:
     """Make the problem that such parameters were the answer of."""
     return Problem(
         data.W,

@@ -212,8 +212,8 @@ class Problem:
 
         J is (n_views, n, 2, q + 6): the shared parameters, then ω and T; r is (n_views, n, 2).
         """
-        views = [slice(i, i + 1) for i in range(len(self.m))]
-        both = np.concatenate([self._jacobian(x, i).transpose(2, 3, 1, 0).copy() for i in views])
+        parts = chunks(len(self.m), _CHUNK)
+        both = np.concatenate([self._jacobian(x, i).transpose(2, 3, 1, 0).copy() for i in parts])
         J, r = both[..., :-1], both[..., -1]
         if self.shape is not None:
             by_corner = np.einsum("vnct,vtj->vncj", J[..., -3:], x.R)

@@ -146,7 +146,7 @@ class Calibration:
         return dict(zip(self.names, np.sqrt(variance).tolist(), strict=True))
 
     @property
-    def _honest_std(self) -> dict[str, float]:
+    def honest_std(self) -> dict[str, float]:
         """The deviations that are printed: those of views, or of noise if these are not known."""
         if self._covariance_of_views is None and self._data is None:
             return self.std
@@ -238,7 +238,7 @@ class Calibration:
 
         The deviation is that of `std_of_views` where the views determine it, else of `std`.
         """
-        std = self._honest_std
+        std = self.honest_std
         return [(n, v, std[n], "px" if n in SENSOR else "") for n, v in self.parameters.items()]
 
     def __repr__(self) -> str:

@@ -60,6 +60,15 @@ def prediction_std(
     C = calibration.covariance if of == "noise" else calibration.covariance_of_views
     if not np.isfinite(C).all():  # known not at all
         return np.full(m.shape[:-1], np.inf)
+    J = pixel_jacobian(calibration, m)
+    return np.asarray(np.sqrt(np.einsum("...ci,ij,...cj->...", J, C, J)))
+
+
+def pixel_jacobian(calibration: Calibration, m: Array) -> Array:
+    """Differentiate the images of the rays that pixels m (..., 2) show by the parameters.
+
+    (..., 2, q); NaN where the lens model does not reach.
+    """
     camera = calibration.camera
     xy = camera.ideal(m)
     reached = np.isfinite(xy).all(-1)
@@ -70,8 +79,8 @@ def prediction_std(
         h = _STEP * max(1.0, abs(value[name]))
         up, down = (camera.with_parameters({name: value[name] + s * h}) for s in (1, -1))
         J[..., i] = (up.project(rays) - down.project(rays)) / (2 * h)
-    variance = np.einsum("...ci,ij,...cj->...", J, C, J)
-    return np.where(reached, np.sqrt(variance), np.nan)
+    J[~reached] = np.nan
+    return J
 
 
 def std_with_view(calibration: Calibration, G: npt.ArrayLike) -> dict[str, float]:
