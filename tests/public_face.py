@@ -3,12 +3,22 @@
 `tests/test_catalogue.py` spoils them one at a time, row by row of its catalogue of bad input.
 """
 
+import re
 from dataclasses import dataclass
+from functools import wraps
 
 import numpy as np
 
 from cvnotes import calibration, camera, homography, projective, stereo, targets, warping
-from cvnotes.calibration import calibrate, ppm, prediction_std, std_with_view, zhang
+from cvnotes.calibration import (
+    calibrate,
+    next_view,
+    ppm,
+    prediction_std,
+    std_with_view,
+    where_to_hold,
+    zhang,
+)
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import (
     Camera,
@@ -132,6 +142,16 @@ def function(call, arrays, name=None, *, sizes=(), paired=(), **fixed):
     known = {key: argument for key, (_, argument) in arrays.items()}
     full = name or f"{call.__module__.removeprefix('cvnotes.')}.{call.__name__}"
     return Function(full, call, good, known, tuple(sizes), tuple(paired))
+
+
+@wraps(next_view)
+def proposed_pose(*args, **kwargs):
+    return next_view(*args, **kwargs).G
+
+
+@wraps(where_to_hold)
+def numbers_in_words(*args, **kwargs):
+    return np.array(re.findall(r"\d+", where_to_hold(*args, **kwargs)), dtype=float)
 
 
 W2 = W[:, :2].copy()
@@ -414,6 +434,12 @@ FUNCTIONS = [
         boards=("flat", "bent"),
     ),
     function(prediction_std, {"m": (M, rows(2))}, calibration=RESULT),
+    function(proposed_pose, {"outline": (W, several(3))}, calibration=RESULT),
+    function(
+        numbers_in_words,
+        {"G": (POSES[1], SINGLE), "W": (W, several(3))},
+        camera=Camera(A, lens=LENS),
+    ),
     function(std_with_view, {"G": (POSES[1], SINGLE)}, calibration=RESULT),
     # resection
     function(

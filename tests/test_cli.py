@@ -158,6 +158,9 @@ def test_the_report_has_error_bars_and_what_the_result_rests_on(calibrated):
     assert re.search(r"^Tilt +boards differ by up to [56]\d°$", said, re.M)
     assert re.search(r"^Coverage +corners in \d+ of 48 cells of the picture$", said, re.M)
     assert "± 1 σ" in said
+    assert re.search(
+        r"^Next photograph: .* cm away, .*: a pixel is then known to \S+ px", said, re.M
+    )
     assert calibrated[0].stderr == ""  # no bar where nobody watches
 
 
@@ -165,7 +168,7 @@ def test_the_report_has_error_bars_and_what_the_result_rests_on(calibrated):
 def test_pictures_are_left_beside_the_numbers_and_nothing_else(calibrated):
     out = calibrated[1]
     names = ["calibration.json", "calibration.yml", "corners.png", "coverage.png"]
-    names += ["photographs.csv", "residuals.png", "view_rms.png"]
+    names += ["next_view.png", "photographs.csv", "residuals.png", "view_rms.png"]
     assert sorted(path.name for path in out.iterdir()) == names
     for path in out.glob("*.png"):
         with Image.open(path) as picture:

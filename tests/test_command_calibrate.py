@@ -16,6 +16,7 @@ from PIL import Image
 from test_cli import SIZE, TILTS, A, board_pose, photograph
 
 from cvnotes.calibration import calibrate as calibration
+from cvnotes.calibration import next_view
 from cvnotes.commands import pictures
 from cvnotes.commands.cli import main
 from cvnotes.commands.examined import Examined
@@ -261,6 +262,22 @@ def test_a_sheet_shows_found_corners_hidden_ones_and_what_was_taken_for_a_board(
     assert not orange[place(1, project(board_pose(TILTS[1]))[20])].any()
     for m in ([100.0, 60.0], [200.0, 180.0]):
         assert blue[place(4, m)].any()
+
+
+def test_the_next_view_is_drawn_where_its_corners_would_be(solved):
+    result, corners = solved
+    proposal, photos = next_view(result), [photographed(corners[0])]
+    sheet = drawn("next_view.png", pictures.pictures(result, photos, BOARD, "abcd", proposal))
+    zoom = (900 - 12) / SIZE[0]
+    m = (proposal.image_points + 0.5) * zoom + [6, 30]
+    for u, v in m.round().astype(int):
+        around = sheet[v - 3 : v + 4, u - 3 : u + 4].reshape(-1, 3).astype(int)
+        assert np.abs(around - [255, 255, 255]).sum(1).max() > 150
+    # thick and blue, around them, the board itself
+    blue = (np.abs(sheet - (0, 114, 178)).sum(-1) < 60).nonzero()
+    low, high = (x[::-1].round().astype(int) for x in (np.min(blue, 1), np.max(blue, 1)))
+    outline = (proposal.outline + 0.5) * zoom + [6, 30]
+    assert np.abs([outline.min(0) - low, outline.max(0) - high]).max() < 5
 
 
 def test_bars_are_as_high_as_the_views_rms(solved):

@@ -67,9 +67,17 @@ def test_no_other_view_is_better():
     found, _, rng = few_views()
     view = next_view(found)
     others = good_views(BOARD, CAMERA, 200, rng=rng, tilt=(0.0, np.radians(50)))
+    nearest = distances(found.poses).min()
+    assert distances(view.G) > 0.8 * nearest - 1e-6  # the lens is not focused any nearer
+    others = others[distances(others) > 0.8 * nearest]
+    assert len(others) > 50
     least = min(prediction_rms_with(found, G) for G in others)
     assert view.after == pytest.approx(prediction_rms_with(found, view.G), rel=1e-6)
     assert view.after < least
+
+
+def distances(G):
+    return np.linalg.norm(G[..., :3, :3] @ BOARD.points.mean(0) + G[..., :3, 3], axis=-1)
 
 
 def prediction_rms_with(found, G):

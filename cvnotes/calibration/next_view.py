@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, points
+from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, points, rigid_motion
 from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.jackknife import eliminated_by_view, problem_at
@@ -20,6 +20,7 @@ from cvnotes.camera import Camera, rotation_from_vector
 
 _STEEPEST = float(np.radians(50))  # tilt at which corners are still found well
 _FARTHER = 2.5  # times the nearest distance at which the board fits into the picture
+_NEARER = 0.8  # times the nearest distance so far: the lens is not focused any nearer
 _ROOM = 6.0  # px kept free along the border of the picture
 _FIRST, _BEST, _AROUND, _ROUNDS = 512, 8, 16, 6  # views tried
 _WIDEST = 0.15  # of the range of each number, in the first round; halved from round to round
@@ -72,8 +73,9 @@ def next_view(calibration: Calibration, *, outline: npt.ArrayLike | None = None)
     Returns
     -------
     NextView
-        Of all poses in which the whole board is in the picture, tilted by at most 50°, the one
-        that leaves the smallest uncertainty of a pixel, averaged over the picture.
+        Of all poses in which the whole board is in the picture, tilted by at most 50° and hardly
+        nearer than any before (the focus must not be touched), the one that leaves the smallest
+        uncertainty of a pixel, averaged over the picture.
 
     Raises
     ------
@@ -104,6 +106,8 @@ def next_view(calibration: Calibration, *, outline: npt.ArrayLike | None = None)
     """
     W = _board(calibration)
     border = _around(W) if outline is None else points(outline, "outline", 3)
+    if border.ndim != 2 or len(border) < 3:
+        raise ShapeError(f"outline: expected at least three points (k, 3), got {border.shape}")
     search = _Search.of(calibration, W, border)
     p = _low_discrepancy(_FIRST)
     p, score = search.best(p)
@@ -144,9 +148,11 @@ def where_to_hold(camera: Camera, G: npt.ArrayLike, W: npt.ArrayLike) -> str:
     >>> camera = Camera(intrinsics(800, 800, 320, 240))
     >>> W = [[0, 0, 0], [200, 0, 0], [0, 100, 0], [200, 100, 0]]
     >>> where_to_hold(camera, pose(rotation_from_vector([0, -0.5, 0]), [-250, -50, 500]), W)
-    'left in the picture, 57 cm away, tilted by 13° with its right side farther away'
+    'left in the picture, 57 cm away, tilted by 12° with its right side farther away'
     """
-    G, W = np.asarray(G, dtype=float), np.asarray(W, dtype=float)
+    G, W = rigid_motion(G), points(W, "W", 3)
+    if G.ndim != 2 or W.ndim != 2 or len(W) == 0:
+        raise ShapeError(f"expected one pose (4, 4) and W (n, 3), got {G.shape} and {W.shape}")
     R, middle = G[:3, :3], G[:3, :3] @ W.mean(0) + G[:3, 3]
     distance = float(np.linalg.norm(middle))
     to_sight = _facing((middle / distance)[None])[0].T
@@ -155,7 +161,10 @@ def where_to_hold(camera: Camera, G: npt.ArrayLike, W: npt.ArrayLike) -> str:
     tilt = float(np.degrees(np.arccos(min(1.0, -normal[2]))))
     roll = to_sight @ R[:, 0]
     roll = float(np.degrees(np.arctan2(roll[1], roll[0])))
-    where = _place(camera.moved(G).project(W).mean(0), camera.size)
+    seen = camera.moved(G).project(W).mean(0)
+    if not np.isfinite(seen).all():
+        raise DegenerateError("the camera does not see the whole board in this pose")
+    where = _place(seen, camera.size)
     words = f"{where}, {distance / 10:.0f} cm away, "
     if tilt < 5:
         words += "facing the camera"
@@ -226,6 +235,7 @@ class _Search:
     normal: Array  # (q, q), in units in which the covariance of views is its inverse
     wanted: Array  # (q, q), mean JᵀJ of the picture's pixels
     scale: Array  # (q,) parameters per such unit
+    focused: float  # the least distance, scaled
 
     @staticmethod
     def of(calibration: Calibration, W: Array, outline: Array) -> "_Search":
@@ -238,6 +248,7 @@ class _Search:
         J = pixel_jacobian(calibration, m) * np.array([*calibration.honest_std.values()])
         J = J[np.isfinite(J).all((1, 2))]
         correlation = calibration.covariance / np.outer(noise, noise)
+        so_far = data.pose_in_scaled_units(calibration.poses)[:, :3, 3]
         residual = np.sqrt(_variance(calibration, W))
         return _Search(
             calibration.camera,
@@ -247,6 +258,7 @@ class _Search:
             np.linalg.inv(correlation),
             np.einsum("mci,mcj->ij", J, J) / max(len(J), 1),
             noise / max(residual, np.finfo(float).tiny),
+            _NEARER * float(np.linalg.norm(so_far, axis=-1).min()),
         )
 
     @property
@@ -295,7 +307,7 @@ class _Search:
         R = _facing(sight) @ rotation_from_vector(tilt[:, None] * axis)
         R = R @ rotation_from_vector(upright)
         nearest, fits = self._nearest(R, sight)
-        far = nearest * (1 + (_FARTHER - 1) * p[:, 5])
+        far = np.maximum(nearest, self.focused) * (1 + (_FARTHER - 1) * p[:, 5])
         T = far[:, None] * sight
         return R, T, known & fits & self._inside(R, T)
 

@@ -5,6 +5,7 @@ import os
 import re
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,11 +20,11 @@ from cvnotes.files.writing import check_folder, printable
 from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
-    from cvnotes.calibration import Calibration
+    from cvnotes.calibration import Calibration, NextView
     from cvnotes.commands.examined import Examined
 
 _RESULTS = re.compile(
-    r"calibration\.(json|yml)|photographs\.csv|(coverage|residuals|view_rms|corners(-\d+)?)\.png"
+    r"calibration\.(json|yml)|photographs\.csv|(coverage|next_view|residuals|view_rms|corners(-\d+)?)\.png"
 )
 
 _OF_FEW = "k1 k2 p1 p2"  # the lens of fewer views than can be left out
@@ -103,7 +104,10 @@ def run(args: argparse.Namespace) -> int:
     say(camera_report(result) + "\n")
     for sentence in doubts(result, examined, files, rejected, symmetric=symmetric):
         say(f"! {sentence}")
-    contents = _contents(result, examined, board, files, rejected)
+    proposal = _proposal(result, board)
+    if proposal:
+        say(f"Next photograph: {proposal}")
+    contents = _contents(result, examined, board, files, rejected, proposal)
     write_whole({args.out / name: data for name, data in contents.items()})
     for stale in (path for path in before if path.name not in contents):
         stale.unlink(missing_ok=True)  # a sheet that an earlier run had more than this one
@@ -150,12 +154,26 @@ def _calibrate(
         return calibrate(W, m, examined[0].size, lens=lens, board=shape, skew=args.skew)
 
 
+def _proposal(result: "Calibration", board: "Chessboard | CharucoBoard") -> "NextView | None":
+    """Say where the next photograph should be, unless the board cannot be seen whole."""
+    from cvnotes.calibration import next_view
+
+    columns, rows = board.squares
+    x, y = (board.square * (np.linspace(0, n, 5) - 1) for n in (columns, rows))
+    border = [*((a, y[0]) for a in x), *((x[-1], b) for b in y[1:]),
+              *((a, y[-1]) for a in x[-2::-1]), *((x[0], b) for b in y[-2:0:-1])]  # fmt: skip
+    with suppress(CvnotesError, np.linalg.LinAlgError):
+        return next_view(result, outline=[(*xy, 0.0) for xy in border])
+    return None
+
+
 def _contents(
     result: "Calibration",
     examined: "Sequence[Examined]",
     board: "Chessboard | CharucoBoard",
     files: Sequence[str],
     rejected: Sequence[Rejected],
+    proposal: "NextView | None",
 ) -> dict[str, bytes]:
     """Give all files to write, by name."""
     from cvnotes.calibration.saving import calibration_json
@@ -164,7 +182,7 @@ def _contents(
     from cvnotes.files.exchange import opencv_yaml
 
     note = made_by("calibrate")
-    drawn = pictures(result, examined, board, files)
+    drawn = pictures(result, examined, board, files, proposal)
     notes = [photo.note for photo in examined if photo.corners is not None]
     made = calibration_json(result.as_mapping(), files=files, rejected=rejected, note=note)
     return {

@@ -14,7 +14,7 @@ from cvnotes.files.writing import printable
 from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
-    from cvnotes.calibration import Calibration
+    from cvnotes.calibration import Calibration, NextView
 
 _COLUMNS, _ROWS = 4, 10  # of a sheet
 _TILE = 320  # px wide
@@ -29,6 +29,7 @@ def pictures(
     examined: Sequence[Examined],
     board: Chessboard | CharucoBoard,
     names: Sequence[str],
+    proposal: "NextView | None" = None,
 ) -> dict[str, bytes]:
     """Draw all pictures; gives PNG by file name.
 
@@ -42,6 +43,8 @@ def pictures(
         The board.
     names : sequence of str
         Names of those that were used.
+    proposal : NextView, optional
+        Where the next photograph should be.
     """
     drawn = {
         "view_rms.png": _view_rms(result, names),
@@ -49,6 +52,8 @@ def pictures(
         "residuals.png": _residuals(result),
         **corner_sheets(examined, board),
     }
+    if proposal is not None:
+        drawn["next_view.png"] = _next_view(result, proposal, board)
     sheets = progress(drawn.items(), total=len(drawn), unit="pictures")
     return {name: sheet.png() for name, sheet in sheets}
 
@@ -148,6 +153,23 @@ def _coverage(result: "Calibration") -> Canvas:
         sheet.rectangle(low, low + side, fill=FAINT, line="#C4C4C4")
     m = np.concatenate(result.image_points)
     sheet.dots((m + 0.5) * zoom + [_EDGE, _HEAD + _EDGE], ESTIMATED, 1.7)
+    _frame(sheet, result.size, zoom)
+    return sheet
+
+
+def _next_view(
+    result: "Calibration", proposal: "NextView", board: Chessboard | CharucoBoard
+) -> Canvas:
+    """Draw the board as it should be seen next, over all corners that were seen so far."""
+    sheet, zoom = _picture(result.size, f"Next: {proposal.words}")
+
+    def place(m: Array) -> Array:
+        return (m + 0.5) * zoom + [_EDGE, _HEAD + _EDGE]
+
+    sheet.dots(place(np.concatenate(result.image_points)), MUTED, 1.2)
+    sheet.line(place(np.concatenate([proposal.outline, proposal.outline[:1]])), LENS, 3)
+    m = result.camera.moved(proposal.G).project(board.points)
+    _draw_lattice(sheet, place(m).reshape(*board.corners[::-1], 2))
     _frame(sheet, result.size, zoom)
     return sheet
 
