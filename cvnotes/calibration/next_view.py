@@ -22,8 +22,8 @@ _STEEPEST = float(np.radians(50))  # tilt at which corners are still found well
 _FARTHER = 2.5  # times the nearest distance at which the board fits into the picture
 _NEARER = 0.8  # times the nearest distance so far: the lens is not focused any nearer
 _ROOM = 6.0  # px kept free along the border of the picture
-_FIRST, _BEST, _AROUND, _ROUNDS = 512, 8, 16, 6  # views tried
-_WIDEST = 0.15  # of the range of each number, in the first round; halved from round to round
+_FIRST, _BEST, _AROUND, _ROUNDS = 512, 4, 48, 8  # views tried
+_WIDEST = 0.25  # of the range of each number, in the first round; halved from round to round
 _GRID = (9, 7)  # pixels for which the camera is wanted
 _SIDES = ("right side", "lower right corner", "lower side", "lower left corner",
           "left side", "upper left corner", "upper side", "upper right corner")  # fmt: skip
