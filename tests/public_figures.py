@@ -34,6 +34,7 @@ from public_face import (
 
 from cvnotes.calibration import calibrate
 from cvnotes.show.figures import (
+    calibration,
     corners,
     estimates,
     formation,
@@ -58,6 +59,7 @@ PIXELS = Argument((2,), empty=True, picture=True)
 SMALL = GREY[:24, :32].copy()
 PAIR = np.stack([SMALL, SMALL + 5])
 FREE = calibrate(BOARD.points, SEEN, CAMERA.size, lens="k1 k2 p1 p2", board="free")
+TURNED = np.diag([400.0, 400, 1]) @ [[0.8, -0.36, 1], [0.6, 0.48, 0], [0.2, -0.8, 5]]
 CLOUD = np.random.default_rng(3).normal(0, 0.2, (20, 2))
 
 
@@ -108,7 +110,17 @@ FIGURES = [
         names=("a", "b"),
     ),
     figure(
-        estimates.draw_view_families, {"truth": (800.0, ONE)}, results={"a": RESULT, "b": RESULT}
+        estimates.draw_view_families,
+        {"truth": (800.0, ONE)},
+        results={"a": [RESULT], "b": [RESULT, RESULT]},
+    ),
+    # calibration
+    figure(calibration.draw_right_angles, {"H": (TURNED, SINGLE), "side": (1.0, ONE)}),
+    figure(calibration.draw_arrow, {"J": (np.eye(14), SINGLE)}, shared=2),
+    figure(
+        calibration.draw_cube,
+        {"side": (20.0, ONE), "origin": (np.array([5.0, 5]), several(2))},
+        camera=CAMERA.moved(G),
     ),
     # figures
     figure(figures.draw_image, {"image": (SMALL, PICTURE)}),

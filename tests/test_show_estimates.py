@@ -17,16 +17,24 @@ def colours(ax):
             for p in ax.patches]  # fmt: skip
 
 
-def test_families_stand_side_by_side_with_their_rms_and_the_error_of_their_focal_length():
-    doubtful = replace(RESULT, reliable=False, rms=2 * RESULT.rms)
+def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to_be_expected():
+    A = RESULT.A.copy()
+    A[0, 0] *= 1.2
+    doubtful = replace(RESULT, A=A, reliable=False, rms=2 * RESULT.rms)
     assert RESULT.reliable
-    left, right = draw_view_families({"good": RESULT, "bad": doubtful}, truth=ALPHA / 1.25)
+    results = {"good": [RESULT, RESULT], "bad": [doubtful, doubtful, RESULT]}
+    left, right = draw_view_families(results, truth=ALPHA / 1.25)
     assert [t.get_text() for t in left.get_yticklabels()] == ["good", "bad"]
     assert left.yaxis_inverted()  # the first family on top
-    assert np.allclose([p.get_width() for p in left.patches], [RESULT.rms, 2 * RESULT.rms], 1e-12)
-    assert np.allclose([p.get_width() for p in right.patches], 25.0, atol=1e-9)  # per cent
+    rms = [line.get_xdata() for line in left.lines]
+    assert np.allclose(np.concatenate(rms), RESULT.rms * np.array([1, 1, 2, 2, 1]))
+    # (50² + 50² + 25²) / 3 = 1875, and its root is 43.3
+    assert np.allclose([p.get_width() for p in right.patches], [25.0, 43.3], atol=0.01)  # per cent
     assert colours(right) == [LENS, ESTIMATED]
-    assert [t.get_text() for t in right.texts] == ["25 %", "25 %  not reliable"]
+    assert [t.get_text() for t in right.texts] == ["25 %", "43 %  not reliable"]
+    dots, promise = right.lines[:2]
+    assert np.allclose(dots.get_xdata(), 25)
+    assert np.allclose(promise.get_xdata(), 125 * RESULT.std["alpha_u"] / ALPHA)
     assert right.get_xscale() == "log"
     assert (left.get_title(), right.get_title()) == ("what is looked at", "what counts")
     assert left.get_xlabel() == "RMS (px per point)"
@@ -36,8 +44,10 @@ def test_families_stand_side_by_side_with_their_rms_and_the_error_of_their_focal
 def test_what_is_no_calibration_is_refused_by_its_name():
     with pytest.raises(InputTypeError, match=r"results: expected a Mapping, got list"):
         draw_view_families([RESULT], truth=800)
+    with pytest.raises(InputTypeError, match=r"results\['a'\]: expected a list of calibrations"):
+        draw_view_families({"a": RESULT}, truth=800)
     with pytest.raises(InputTypeError, match=r"results\['a'\]: expected a Calibration, got str"):
-        draw_view_families({"a": "left.json"}, truth=800)
+        draw_view_families({"a": ["left.json"]}, truth=800)
 
 
 def test_an_arrow_leads_from_the_truth_to_the_prediction_ten_times_as_long():
@@ -54,4 +64,6 @@ def test_estimates_far_from_the_truth_leave_their_panel_empty_but_for_what_was_p
     assert [len(ax.lines) for ax in (near, far)] == [2, 2]
     assert far.lines[1].get_xdata() == [0, 0]
     assert (near.get_xlabel(), far.get_xlabel()) == ("estimate (px)", "estimate")
+    (greek,) = draw_error_bars([[0.1], [0.2]], [0], [1], names=["α_u"])
+    assert greek.get_xlabel() == "estimate (px)"
     assert float(np.max(near.lines[0].get_ydata())) == pytest.approx(0.3989, abs=1e-3)

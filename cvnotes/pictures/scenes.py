@@ -1,4 +1,4 @@
-"""Scenes to photograph: rails, blocks on a plain, a corridor, a room, a calibration target."""
+"""Scenes to photograph: rails, blocks on a plain, a corridor, a room, a desk, a target."""
 
 from dataclasses import replace
 
@@ -169,6 +169,25 @@ def _beside(side: int, x: Span, y: Span, z: Span, colours: npt.ArrayLike) -> Sce
     """Build a box on the right (side 1) or, mirrored, on the left (side −1)."""
     low, high = sorted(side * value for value in x)
     return box((low, high), y, z, colours)
+
+
+def desk(target: Chessboard) -> Scene:
+    """Build a desk with a board lying on it, beside a book and a box; its WRF is the board's.
+
+    Examples
+    --------
+    >>> from cvnotes.targets import Chessboard
+    >>> desk(Chessboard((9, 6), 25.0))
+    Scene(52 vertices, 72 triangles)
+    """
+    return join(
+        box((-3000, 3000), (-1500, -1450), (-2500, 700), (0.90, 0.88, 0.83)),  # the wall
+        box((-700, 900), (-450, 600), (_THICK, 43), (0.78, 0.57, 0.36)),
+        box((-330, -130), (-60, 230), (-38, _THICK), (0.24, 0.40, 0.46)),
+        box((-326, -128), (-58, 232), (-32, -4), (0.95, 0.93, 0.88)),  # its pages
+        box((300, 385), (-150, -65), (-95, _THICK), (0.78, 0.33, 0.28)),
+        target_scene(target),
+    )
 
 
 _PRINT = ((0.06, 0.06, 0.07), (0.98, 0.98, 0.97))

@@ -10,6 +10,7 @@ from cvnotes.show.explore import (
     explore_warp,
     still,
 )
+from cvnotes.show.figures.calibration import draw_arrow, draw_cube, draw_right_angles
 from cvnotes.show.figures.corners import draw_clouds, draw_response
 from cvnotes.show.figures.estimates import draw_error_bars, draw_plane_error, draw_view_families
 from cvnotes.show.figures.formation import (
@@ -124,6 +125,10 @@ __all__ = [
     "draw_view_families",
     "draw_prediction_error",
     "draw_wall",
+    # chapter 7: a board's right angles, the picture of J, a cube on the board
+    "draw_right_angles",
+    "draw_arrow",
+    "draw_cube",
     # chapter 8: warps
     "draw_hits",
     "draw_cell",

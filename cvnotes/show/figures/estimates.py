@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import CvnotesError, ShapeError, number, paired, points
+from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
 from cvnotes.show.guards import length, one_point, thing
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, panels
@@ -104,7 +104,7 @@ def draw_error_bars(
             span, np.exp(-(((span - t) / s) ** 2) / 2) / (s * np.sqrt(2 * np.pi)), color=ESTIMATED
         )
         ax.axvline(t, color=IDEAL, lw=1.2)
-        unit = " (px)" if name[0] in "asuv" else ""
+        unit = " (px)" if name[0] in "aαsuv" else ""
         ax.set(title=name, yticks=[], xlabel=f"estimate{unit}")
         ax.spines["left"].set_visible(False)
         ax.locator_params(axis="x", nbins=4)
@@ -112,38 +112,51 @@ def draw_error_bars(
     return axes
 
 
-def draw_view_families(results: Mapping[str, Calibration], *, truth: float) -> Any:
-    """Draw RMS and error of the focal length of several calibrations, side by side.
+def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: float) -> Any:
+    """Draw RMS and error of the focal length of calibrations repeated for several sets of views.
 
     Parameters
     ----------
-    results : mapping from name to Calibration
-        One for each set of views.
+    results : mapping from name to sequence of Calibration
+        For each set of views its repetitions, with other noise each time.
     truth : float
         The true α_u in pixels.
 
     Returns
     -------
     ndarray of two Axes
-        The RMS on the left; on the right the relative error of α_u, on a logarithmic axis.
+        The RMS on the left; on the right the relative errors of α_u on a logarithmic axis: a dot
+        for each repetition, a bar for their root mean square, which is the error to be expected,
+        and a line for what the standard deviations promised, by their median.
     """
     if not thing(results, "results", Mapping):  # type: ignore[type-abstract]
-        raise CvnotesError("results: expected at least one calibration")
-    for name, result in results.items():
-        thing(result, f"results[{name!r}]", Calibration)
+        raise CvnotesError("results: expected at least one set of views")
+    for name, runs in results.items():
+        if not isinstance(runs, list | tuple) or not runs:
+            raise InputTypeError(f"results[{name!r}]: expected a list of calibrations")
+        for run in runs:
+            thing(run, f"results[{name!r}]", Calibration)
     truth = length(truth, "truth")
-    left, right = axes = panels(2, width=900, height=80 + 46 * len(results), sharey=True)
-    names, y = list(results), np.arange(len(results))
-    error = [max(abs(r.A[0, 0] / truth - 1), 1e-5) * 100 for r in results.values()]
-    colours = [LENS if r.reliable else ESTIMATED for r in results.values()]
-    left.barh(y, [r.rms for r in results.values()], color=MUTED, height=0.55)
-    right.barh(y, error, color=colours, height=0.55, left=0)
+    left, right = axes = panels(2, width=900, height=90 + 52 * len(results), sharey=True)
+    for y, runs in enumerate(results.values()):
+        reliable = sum(run.reliable for run in runs) > len(runs) / 2
+        colour = LENS if reliable else ESTIMATED
+        error = np.array([100 * max(abs(run.A[0, 0] / truth - 1), 1e-5) for run in runs])
+        promised = 100 / truth * float(np.median([run.std["alpha_u"] for run in runs]))
+        expected = float(np.sqrt(np.mean(error**2)))
+        spread = y + np.linspace(-0.24, 0.24, len(runs))
+        left.plot([run.rms for run in runs], spread, ".", color=MUTED, markersize=4)
+        right.barh(y, expected, color=colour, alpha=0.3, height=0.62)
+        right.plot(error, spread, ".", color=colour, markersize=4)
+        right.plot([promised] * 2, [y - 0.36, y + 0.36], color=IDEAL, linewidth=1.6)
+        words = f"{float(f'{expected:.2g}'):g} %" + ("" if reliable else "  not reliable")
+        end = max(expected, float(error.max()), promised)
+        right.annotate(words, (end, y), (7, 0), textcoords="offset points", va="center", size=9)
     right.set_xscale("log")
-    right.set_xlim(1e-3, 3e3)
-    for i, (value, r) in enumerate(zip(error, results.values(), strict=True)):
-        words = f"{float(f'{value:.2g}'):g} %" + ("" if r.reliable else "  not reliable")
-        right.annotate(words, (value, i), (5, 0), textcoords="offset points", va="center", size=9)
-    left.set(yticks=y, yticklabels=names, xlabel="RMS (px per point)", title="what is looked at")
+    right.set_xlim(1e-3, 1e5)
+    left.set_xlim(0, None)
+    left.set(yticks=range(len(results)), yticklabels=list(results), title="what is looked at")
+    left.set(xlabel="RMS (px per point)")
     right.set(xlabel="error of the focal length (%)", title="what counts")
     left.invert_yaxis()
     return axes

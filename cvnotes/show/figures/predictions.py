@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import CvnotesError, ShapeError, number
+from cvnotes.base import CvnotesError, ShapeError, number, points
 from cvnotes.calibration import Calibration, prediction_std
 from cvnotes.show.guards import calibrated, count, eight_bits, pictures
 from cvnotes.show.style import ESTIMATED, as_picture, picture_axes
@@ -52,7 +52,13 @@ def draw_prediction_error(
     return as_picture(ax, calibration.size)
 
 
-def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5, title: str = "") -> "Axes":
+def draw_wall(
+    images: Sequence[npt.ArrayLike],
+    *,
+    columns: int = 5,
+    title: str = "",
+    corners: npt.ArrayLike | None = None,
+) -> "Axes":
     """Draw small copies of grey pictures side by side, as on a contact sheet.
 
     Parameters
@@ -61,6 +67,8 @@ def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5, title: str =
         All of one size.
     columns : int
         Pictures in a row.
+    corners : array_like, shape (n_images, n, 2), optional
+        Pixels of each picture, to be marked in its copy.
 
     Examples
     --------
@@ -79,6 +87,14 @@ def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5, title: str =
         wall[top : top + h, left : left + w] = image
     ax: Axes = picture_axes((wall.shape[1], wall.shape[0]))
     ax.imshow(wall, cmap="gray", vmin=0, vmax=255)
+    if corners is not None:
+        m = points(corners, "corners", 2)
+        if m.ndim != 3 or len(m) != len(small):
+            raise ShapeError(f"corners: expected ({len(small)}, n, 2), got {m.shape}")
+        i = np.arange(len(m))
+        places = np.stack([(i % columns) * (w + gap), (i // columns) * (h + gap)], axis=-1)
+        marks = (m / 4 + places[:, None]).reshape(-1, 2)
+        ax.plot(*marks.T, ".", color=ESTIMATED, markersize=4, markeredgewidth=0)
     ax.set_title(title)
     ax.axis("off")
     return ax

@@ -1,0 +1,269 @@
+"""Figures of chapter 7: the right angles of a board, the picture of J, a cube on the board."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, DegenerateError, ShapeError, matrix, numbers
+from cvnotes.camera import Camera
+from cvnotes.camera.model import is_camera
+from cvnotes.projective import apply
+from cvnotes.show.figures.lines import pixel_axes
+from cvnotes.show.guards import count, length, one_point
+from cvnotes.show.style import ESTIMATED, FONT, IDEAL, LENS, MUTED, panels
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Corner i of the cube has the bits of i as its x, y and height; each face goes round clockwise as
+# whoever looks at its outside sees it.
+_FACES = {
+    "top": (4, 5, 7, 6),
+    "y = 0": (0, 1, 5, 4),
+    "x = 0": (2, 0, 4, 6),
+    "x = 1": (1, 3, 7, 5),
+    "y = 1": (3, 2, 6, 7),
+}
+_SHADES = {"top": 1.0, "y = 1": 0.82, "x = 0": 0.72, "x = 1": 0.6, "y = 0": 0.48}
+_PER_EDGE = 16  # short pieces that a lens may bend
+_SHADOW = np.array([0.5, -0.35])  # where the light throws the shadow of height 1
+
+
+def draw_right_angles(H: npt.ArrayLike, side: float, *, ax: "Axes | None" = None) -> "Axes":
+    """Draw where a square on the board vanishes, and the eye that sees two right angles there.
+
+    The sides vanish in h1 and h2, the diagonals in h1 + h2 and h1 − h2. Each pair is perpendicular
+    on the board, so an eye before the picture sees each pair of vanishing points at 90°: it lies on
+    two circles of Thales. It is drawn folded into the picture about the horizon.
+
+    Parameters
+    ----------
+    H : array_like, shape (3, 3)
+        Homography, board → picture, of a camera without distortion and with square pixels.
+    side : float
+        Of the square, which begins in the board's origin.
+    ax : Axes, optional
+        With the picture on it; it grows to show the vanishing points.
+
+    Raises
+    ------
+    DegenerateError
+        A vanishing point is at infinity, or the right angles do not fit together.
+
+    Examples
+    --------
+    >>> tilted = [[0.8, -0.36, 1], [0.6, 0.48, 0], [0.2, -0.8, 5]]
+    >>> ax = draw_right_angles(np.diag([400.0, 400, 1]) @ tilted, 1.0)
+    >>> [text.get_text() for text in ax.texts]
+    ['x', 'y', 'x + y', 'x − y', 'eye']
+    """
+    H, side = matrix(H, "H", 3, 3), length(side, "side")
+    if H.ndim != 2:
+        raise ShapeError(f"H: expected one homography (3, 3), got {H.shape}")
+    v = _vanishing(H)
+    square = apply(H, side * np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]))
+    eye = _eye(v, square.mean(0))
+    ax = pixel_axes(ax, (640, 480))
+    ax.plot(*v[[v[:, 0].argmin(), v[:, 0].argmax()]].T, color=IDEAL, linewidth=1)
+    for i, edges in enumerate((((0, 1), (3, 2)), ((0, 3), (1, 2)), ((0, 2),), ((1, 3),))):
+        colour = ESTIMATED if i < 2 else LENS
+        for edge in edges:
+            ends = square[list(edge)]
+            start = ends[np.linalg.norm(ends - v[i], axis=-1).argmin()]
+            ax.plot(*ends.T, color=colour, linewidth=1.8)
+            ax.plot(*np.stack([start, v[i]]).T, "--", color=colour, linewidth=0.8)
+        ax.plot(*np.stack([eye, v[i]]).T, color=colour, linewidth=1.2)
+        ax.plot(*v[i], "x", color=colour, markersize=7, markeredgewidth=1.8)
+    for pair in (v[:2], v[2:]):
+        _half_circle(ax, pair, eye)
+    for i, reach in ((0, 0.1), (2, 0.16)):
+        towards = (v[i : i + 2] - eye) / np.linalg.norm(v[i : i + 2] - eye, axis=-1)[:, None]
+        a, b = reach * np.ptp(v[:, 0]) * towards / 2
+        ax.plot(*np.stack([eye + a, eye + a + b, eye + b]).T, color=ESTIMATED if i == 0 else LENS)
+    names = ("x", "y", "x + y", "x − y")
+    for i, (name, place) in enumerate(zip((*names, "eye"), (*v, eye), strict=True)):
+        colour = (ESTIMATED, ESTIMATED, LENS, LENS, IDEAL)[i]
+        ax.annotate(name, place, (0, 11), textcoords="offset points", ha="center", va="center",
+                    color=colour, fontsize=FONT, fontweight="bold")  # fmt: skip
+    ax.plot(*eye, "o", color=IDEAL, markersize=6)
+    return _around(ax, np.concatenate([v, eye[None]]))
+
+
+def _vanishing(H: Array) -> Array:
+    """Vanishing points (4, 2) of the directions x, y, x + y and x − y of a board."""
+    h1, h2 = H[:, 0], H[:, 1]
+    v_h = np.stack([h1, h2, h1 + h2, h1 - h2])
+    if (np.abs(v_h[:, 2]) * 1e6 <= np.abs(v_h[:, :2]).max(-1)).any():
+        raise DegenerateError("sides or diagonals vanish at infinity: turn and tilt the board more")
+    return np.asarray(v_h[:, :2] / v_h[:, 2:])
+
+
+def _eye(v: Array, board: Array) -> Array:
+    """Fold the eye into the picture: where two circles meet, on the side away from the board.
+
+    On the horizon, counted from the first vanishing point, the ends of a pair are a and b. The eye
+    stands at s, h from the horizon, with (s − a)(s − b) + h² = 0: that is Thales.
+    """
+    along = (v[1] - v[0]) / np.linalg.norm(v[1] - v[0])
+    a, b, c, d = (v - v[0]) @ along
+    pairs = (a + b) - (c + d)
+    if abs(pairs) <= 1e-9 * np.ptp([a, b, c, d]):
+        raise DegenerateError("both circles have one centre: turn the board in its plane")
+    s = (a * b - c * d) / pairs
+    h2 = -(s - a) * (s - b)
+    if h2 <= 0:
+        raise DegenerateError("no eye sees these as right angles: H is of no camera")
+    across = np.array([-along[1], along[0]])
+    away = -np.sign((board - v[0]) @ across)
+    return np.asarray(v[0] + s * along + away * np.sqrt(h2) * across)
+
+
+def _half_circle(ax: "Axes", ends: Array, through: Array) -> None:
+    """Draw half a circle over its diameter, on the side of a point."""
+    middle, radius = ends.mean(0), (ends[1] - ends[0]) / 2
+    across = np.array([-radius[1], radius[0]])
+    across = across * np.sign((through - middle) @ across)
+    t = np.linspace(0, np.pi, 90)[:, None]
+    ax.plot(*(middle + np.cos(t) * radius + np.sin(t) * across).T, color=MUTED, linewidth=0.6)
+
+
+def _around(ax: "Axes", m: Array) -> "Axes":
+    """Let axes of pixels reach a little beyond points (n, 2)."""
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    m = np.concatenate([m, [[left, top], [right, bottom]]])
+    low, high = m.min(0), m.max(0)
+    room = 0.04 * float((high - low).max())
+    ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
+    return ax
+
+
+def draw_arrow(J: npt.ArrayLike, shared: int) -> Any:
+    """Draw the Jacobian of a calibration, and JᵀJ, which has the shape of an arrow.
+
+    Parameters
+    ----------
+    J : array_like, shape (n, shared + 6 n_views)
+        One row for each measured coordinate, one column for each unknown; the shared ones first.
+    shared : int
+        How many columns belong to the camera, which all views share.
+
+    Returns
+    -------
+    ndarray of two Axes
+        J on the left, JᵀJ on the right, each column scaled to length 1; darker is larger.
+
+    Examples
+    --------
+    >>> J = np.zeros((8, 14))
+    >>> J[:, :2] = J[:4, 2:8] = J[4:, 8:] = 1
+    >>> [ax.get_title() for ax in draw_arrow(J, 2)]
+    ['J: 8 rows, 14 columns', 'JᵀJ: 14 × 14']
+    """
+    J, shared = numbers(J, "J"), count(shared, "shared")
+    if J.ndim != 2 or len(J) == 0 or J.shape[1] <= shared or (J.shape[1] - shared) % 6:
+        raise ShapeError(f"J: expected (n, {shared} + 6 n_views), got {J.shape}")
+    lengths = np.linalg.norm(J, axis=0)
+    J = J / np.where(lengths > 0, lengths, 1)
+    left, right = axes = panels(2, width=900, height=430)
+    rows, columns = J.shape
+    left.imshow(_dark(J), cmap="Blues", vmin=0, vmax=1, aspect="auto", interpolation="nearest")
+    right.imshow(_dark(J.T @ J), cmap="Blues", vmin=0, vmax=1, interpolation="nearest")
+    left.set_title(f"J: {rows} rows, {columns} columns", pad=18)
+    right.set_title(f"JᵀJ: {columns} × {columns}", pad=18)
+    ticks = [shared - 0.5 + 6 * i for i in range((columns - shared) // 6)]
+    for ax in axes:
+        ax.set(xticks=ticks, xticklabels=[], xlabel="unknowns")
+        ax.tick_params(length=2)
+        for middle, name in (((shared - 1) / 2, "camera"), ((shared + columns - 1) / 2, "poses")):
+            ax.annotate(
+                name, (middle, 1), (0, 3), xycoords=("data", "axes fraction"), ha="center",
+                textcoords="offset points", color=MUTED, fontsize=FONT - 1,
+            )  # fmt: skip
+        ax.axvline(shared - 0.5, color=ESTIMATED, linewidth=0.8)
+    right.axhline(shared - 0.5, color=ESTIMATED, linewidth=0.8)
+    right.set(yticks=ticks, yticklabels=[])
+    left.set_ylabel("measured coordinates, view after view")
+    return axes
+
+
+def _dark(x: Array) -> Array:
+    """Shades from 0 to 1 in which small numbers can be told from none."""
+    largest = float(np.abs(x).max())
+    return np.asarray((np.abs(x) / largest) ** 0.35 if largest else np.abs(x))
+
+
+def draw_cube(
+    camera: Camera,
+    side: float,
+    *,
+    origin: npt.ArrayLike = (0, 0),
+    ax: "Axes | None" = None,
+    colour: tuple[float, float, float] = (0.96, 0.55, 0.16),
+) -> "Axes":
+    """Draw a cube that stands on a board, with its shadow, as the camera would photograph it.
+
+    Parameters
+    ----------
+    camera : Camera
+        With the board as its WRF; its lens bends the edges.
+    side : float
+        Length of an edge, in the unit of the board.
+    origin : array_like, shape (2,)
+        Where on the board its first corner stands; the others are at larger x and y.
+    ax : Axes, optional
+        With the photograph on it.
+    colour : (red, green, blue)
+        Of the side that is lit best, from 0 to 1.
+
+    Raises
+    ------
+    DegenerateError
+        A corner has no image: it lies behind the camera, or beyond the lens.
+
+    Notes
+    -----
+    The cube is convex: a face is seen from outside exactly if its picture goes round the same way
+    as the face itself, and then nothing of the cube hides it. Others are not drawn. z leads into
+    the board, so the cube reaches from 0 to −side.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics, look_at
+    >>> camera = Camera(intrinsics(800, 800, 320, 240), look_at([200, 300, -400], [25, 25, 0]))
+    >>> len(draw_cube(camera, 50.0).patches)  # three faces and the shadow
+    4
+    """
+    camera, side = is_camera(camera, "camera"), length(side, "side")
+    x0, y0 = one_point(origin, "origin", 2)
+    bits = np.array([[i & 1, i >> 1 & 1, -(i >> 2)] for i in range(8)], float)
+    W = [x0, y0, 0] + side * bits
+    ax = pixel_axes(ax, camera.size)
+    limits = ax.get_xlim(), ax.get_ylim()
+    floor = W[[2, 0, 0, 1, 3, 3], :2]  # in turn round the outline of the cube and its shadow
+    floor[2:5] += side * _SHADOW
+    shadow = _outline(camera, np.column_stack([floor, np.zeros(6)]))
+    ax.fill(*shadow.T, color="black", alpha=0.35, linewidth=0, zorder=2)
+    for name, corners in _FACES.items():
+        face = _outline(camera, W[list(corners)])
+        if _turns_right(face):
+            shade = np.array(colour) * _SHADES[name]
+            ax.fill(*face.T, facecolor=shade, edgecolor="white", linewidth=1.2, zorder=3)
+    ax.set(xlim=limits[0], ylim=limits[1])
+    return ax
+
+
+def _outline(camera: Camera, W: Array) -> Array:
+    """Picture (n, 2) of a closed polygon in space, its edges in short pieces."""
+    t = np.arange(_PER_EDGE)[:, None] / _PER_EDGE
+    pieces = [a + t * (b - a) for a, b in zip(W, np.roll(W, -1, axis=0), strict=True)]
+    m = camera.project(np.concatenate(pieces))
+    if np.isnan(m).any():
+        raise DegenerateError("a corner of the cube has no image: it is not before the camera")
+    return m
+
+
+def _turns_right(m: Array) -> bool:
+    """Whether a closed polygon of pixels goes round clockwise, as v downwards shows it."""
+    u, v = m.T
+    return bool(np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0)

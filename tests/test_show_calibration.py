@@ -1,0 +1,138 @@
+"""Figures of chapter 7: where the eye stands, what of a cube is seen, how the arrow is made."""
+
+import numpy as np
+import pytest
+
+from cvnotes.base import DegenerateError, ShapeError
+from cvnotes.camera import Camera, Lens, intrinsics, look_at
+from cvnotes.show import draw_arrow, draw_cube, draw_right_angles, draw_wall
+
+CENTRE = np.array([320.0, 240])
+SENSOR = intrinsics(400, 400, *CENTRE)
+DESK = look_at([226, 345, -185], [100, 62, 0], up=(0, 0, -1))
+
+
+def homography(A, G):
+    return A @ G[:3][:, [0, 1, 3]]
+
+
+def crosses(ax):
+    return np.array([line.get_xydata()[0] for line in ax.lines if line.get_marker() == "x"])
+
+
+def eye_of(ax):
+    (eye,) = [line.get_xydata()[0] for line in ax.lines if line.get_marker() == "o"]
+    return eye
+
+
+def angle(a, b):
+    return np.degrees(np.arccos(a @ b / np.linalg.norm(a) / np.linalg.norm(b)))
+
+
+# Two right angles.
+
+
+def test_sides_and_diagonals_vanish_where_the_camera_sees_their_directions():
+    ax = draw_right_angles(homography(SENSOR, DESK), 100)
+    directions = [[1, 0, 0], [0, 1, 0], [1, 1, 0], [1, -1, 0]]
+    assert np.allclose(crosses(ax), Camera(SENSOR, DESK).vanishing_point(directions))
+
+
+def test_the_eye_sees_both_pairs_at_90_degrees_from_as_far_as_the_focal_length_says():
+    ax = draw_right_angles(homography(SENSOR, DESK), 100)
+    v, eye = crosses(ax), eye_of(ax)
+    assert angle(v[0] - eye, v[1] - eye) == pytest.approx(90)
+    assert angle(v[2] - eye, v[3] - eye) == pytest.approx(90)
+    along = (v[1] - v[0]) / np.linalg.norm(v[1] - v[0])
+    foot = v[0] + (CENTRE - v[0]) @ along * along  # of the principal point on the horizon
+    assert np.linalg.norm(eye - foot) == pytest.approx(np.hypot(400, np.linalg.norm(CENTRE - foot)))
+    assert eye[1] < v[:, 1].min()  # above the horizon, and the board is below
+
+
+def test_what_vanishes_at_infinity_is_refused():
+    with pytest.raises(DegenerateError, match="vanish at infinity"):
+        draw_right_angles(np.diag([400.0, 400, 1]), 1)
+    with pytest.raises(ShapeError, match="one homography"):
+        draw_right_angles(np.stack([homography(SENSOR, DESK)] * 2), 1)
+
+
+# The arrow.
+
+
+def test_the_arrow_has_a_border_and_a_block_for_each_view():
+    J = np.zeros((8, 14))
+    J[:, :2], J[:4, 2:8], J[4:, 8:] = np.random.default_rng(0).normal(size=(8, 14)).T[:2].T, 1, 1
+    left, right = draw_arrow(J, 2)
+    shades = right.images[0].get_array()
+    assert (shades[2:8, 8:] == 0).all()  # two views have nothing to say to each other
+    assert (shades[:2] > 0).all()
+    assert np.array_equal(left.images[0].get_array() > 0, J != 0)
+    with pytest.raises(ShapeError, match=r"expected \(n, 3 \+ 6 n_views\), got \(8, 14\)"):
+        draw_arrow(J, 3)
+
+
+# The cube.
+
+SIDE = 50.0
+
+
+def seen(camera):
+    """The faces drawn, as the corners of their polygons, without the shadow."""
+    ax = draw_cube(camera, SIDE, origin=(25, 0))
+    return [patch.get_xy()[:-1][::16] for patch in ax.patches[1:]]
+
+
+def same_face(face, expected):
+    return all(np.isclose(face, corner, atol=1e-9).all(1).any() for corner in expected)
+
+
+def test_from_above_only_the_top_is_seen():
+    camera = Camera(SENSOR, look_at([50, 25, -600], [50, 25, 0]))
+    (top,) = seen(camera)
+    corners = [[25, 0, -50], [75, 0, -50], [75, 50, -50], [25, 50, -50]]
+    assert same_face(top, camera.project(corners))
+
+
+@pytest.mark.parametrize(
+    ("eye", "x", "y"),
+    [([400, 400], 75, 50), ([-300, 400], 25, 50), ([-300, -300], 25, 0), ([400, -300], 75, 0)],
+)
+def test_from_aside_the_top_and_the_two_sides_towards_the_eye_are_seen(eye, x, y):
+    camera = Camera(SENSOR, look_at([*eye, -300], [50, 25, 0], up=(0, 0, -1)))
+    faces = seen(camera)
+    assert len(faces) == 3
+    wall_x = camera.project([[x, 0, 0], [x, 50, 0], [x, 50, -50], [x, 0, -50]])
+    wall_y = camera.project([[25, y, 0], [75, y, 0], [75, y, -50], [25, y, -50]])
+    for wall in (wall_x, wall_y):
+        assert sum(same_face(face, wall) for face in faces) == 1
+
+
+def test_the_lens_bends_the_edges():
+    G = look_at([150, 100, -250], [50, 25, 0])
+    straight, bent = (
+        draw_cube(Camera(SENSOR, G, Lens(k=k)), SIDE).patches[1].get_xy() for k in ((), (-0.3,))
+    )
+    edge = straight[16] - straight[0]
+    off = [
+        abs(np.linalg.det([edge, outline[8] - outline[0]])) / np.linalg.norm(edge)
+        for outline in (straight, bent)
+    ]
+    assert off[0] < 1e-9
+    assert np.linalg.norm(bent[8] - (bent[0] + bent[16]) / 2) > 0.02
+
+
+def test_a_cube_behind_the_camera_is_refused():
+    with pytest.raises(DegenerateError, match="no image"):
+        draw_cube(Camera(SENSOR), SIDE)
+
+
+# Corners on the wall.
+
+
+def test_corners_are_marked_in_the_small_copy_that_they_belong_to():
+    images = [np.zeros((48, 64), np.uint8)] * 3
+    corners = [[[0, 0]], [[40, 20]], [[8, 4]]]
+    (marks,) = draw_wall(images, columns=2, corners=corners).lines
+    assert marks.get_xydata().tolist() == [[0, 0], [20 + 10, 5], [2, 16 + 1]]
+    with pytest.raises(ShapeError, match=r"expected \(3, n, 2\), got \(2, 1, 2\)"):
+        draw_wall(images, corners=corners[:2])
