@@ -10,7 +10,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
-from cvnotes.pictures.antialiasing import pixel_centres
+from cvnotes.pictures.antialiasing import pixel_centres, within_pixel
 from cvnotes.warping import interpolate
 
 # Forward, right, back, left, down and up: how the camera turns to look there.
@@ -18,6 +18,7 @@ _SIDES = (
     np.pi / 2 * np.array([[0, 0, 0], [0, -1, 0], [0, 2, 0], [0, 1, 0], [1, 0, 0], [-1, 0, 0.0]])
 )
 _FINER = 1.5  # pixels of a side for each of the fisheye, in its middle
+_RAYS = 4  # through each pixel of the fisheye
 
 
 def through_a_cube(camera: Camera, radiance: Callable[[Camera], Array]) -> Array:
@@ -41,16 +42,19 @@ def through_a_cube(camera: Camera, radiance: Callable[[Camera], Array]) -> Array
     middle = half + 0.5  # a side is 90° wide, and a pixel wider on each border
     pinhole = intrinsics(half, half, middle, middle)
     size = (2 * half + 2, 2 * half + 2)
-    d = camera.ray(pixel_centres(camera.size)) @ camera.R.T
     turns = rotation_from_vector(_SIDES)
-    ahead = d @ turns[:, 2].T  # of each side, how far along its axis
-    nearest = np.where(np.isnan(ahead[..., 0]), -1, np.argmax(ahead, axis=-1))
-    light = np.zeros((*d.shape[:2], 3))
-    for i, turn in enumerate(turns):
-        here = nearest == i
-        if here.any():
-            side = Camera(pinhole, pose(turn, np.zeros(3)) @ camera.G, size=size)
-            x, y, z = turn @ d[here].T
+    sides = [Camera(pinhole, pose(turn, np.zeros(3)) @ camera.G, size=size) for turn in turns]
+    pictures: dict[int, Array] = {}
+    light = np.zeros((camera.size[1], camera.size[0], 3))
+    for offset in within_pixel(_RAYS):
+        d = camera.ray(pixel_centres(camera.size) + offset) @ camera.R.T
+        ahead = d @ turns[:, 2].T  # of each side, how far along its axis
+        nearest = np.where(np.isnan(ahead[..., 0]), -1, np.argmax(ahead, axis=-1))
+        for i in np.unique(nearest[nearest >= 0]):
+            if i not in pictures:
+                pictures[i] = radiance(sides[i])
+            here = nearest == i
+            x, y, z = turns[i] @ d[here].T
             m = middle + half * np.stack([x, y], axis=-1) / z[:, None]
-            light[here] = interpolate(radiance(side), m)
+            light[here] += interpolate(pictures[i], m) / _RAYS
     return light
