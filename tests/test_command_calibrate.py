@@ -59,6 +59,18 @@ grows = pytest.mark.skipif(
 )
 
 
+@pytest.mark.slow
+def test_mirrored_beside_upright_photographs_are_named(tmp_path, capsys):
+    folder = tmp_path / "photos"
+    folder.mkdir()
+    for i, photo in enumerate(course.photos()):
+        photo = photo[:, ::-1] if i in (3, 8) else photo
+        Image.fromarray(np.ascontiguousarray(photo)).save(folder / f"{i:02}.png")
+    calibrate(folder, "9x6", 25, "--lens", "k1 k2", "--board-shape", "flat")
+    said = capsys.readouterr().out
+    assert re.search(r"^! 03\.png, 08\.png: left and right seem exchanged", said, re.M)
+
+
 @grows
 @pytest.mark.slow
 def test_one_covered_corner_does_not_lose_the_board(photos, capsys):

@@ -81,8 +81,6 @@ def run(args: argparse.Namespace) -> int:
             complain("calibrate", str(error))
             return 1
         say("A board of {}×{} inner corners, as counted in the photographs\n".format(*args.corners))
-    columns, rows = args.corners
-    symmetric = (columns - rows) % 2 == 0 and not args.charuco
     try:
         board = asked_board(args)
     except CvnotesError as error:
@@ -102,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
         return 1
     say(photo_table(files, notes, rejected, result) + "\n")
     say(camera_report(result) + "\n")
-    for sentence in doubts(result, examined, files, rejected, symmetric=symmetric):
+    for sentence in doubts(result, examined, files, rejected, board):
         say(f"! {sentence}")
     proposal = _proposal(result, board)
     if proposal:

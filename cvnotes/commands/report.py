@@ -3,26 +3,31 @@
 import csv
 import io
 import re
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cvnotes.base import Array, text_table
+from cvnotes.base import Array, CalibrationWarning, CvnotesError, text_table
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.coverage import covered_cells
 from cvnotes.calibration.reliability import widest_angle
+from cvnotes.camera import Camera
 from cvnotes.commands.examined import Examined
 from cvnotes.commands.ownership import TABLE_HEADER
 from cvnotes.files import Rejected
 from cvnotes.files.photos import COPY
 from cvnotes.files.writing import harmless
+from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.calibration import BoardShape, Calibration
 
 _MANY_LEFT_OUT = 0.5  # of the photographs
 _SAME_PLACE = 0.5  # px, between two pictures of a board that did not move
+_BETTER_MIRRORED = 0.7  # RMS of a mirrored photograph over that of the photograph as it is
+_MOST_TURNED = 200  # photographs that are looked at for that
 _WIDE = 80  # letters that a reason may have in the table
 
 
@@ -117,8 +122,7 @@ def doubts(
     examined: Sequence[Examined],
     files: Sequence[str],
     rejected: Sequence[Rejected],
-    *,
-    symmetric: bool,
+    board: Chessboard | CharucoBoard,
 ) -> list[str]:
     """List what whoever uses the result should know, in sentences that name the photographs."""
     used = [photo for photo in examined if photo.corners is not None]
@@ -130,12 +134,14 @@ def doubts(
             "found in them: the camera is only known where the others saw it"
         )
     sentences += _repeated(used, files, rejected)
+    if isinstance(board, Chessboard) and result.warnings:
+        sentences += _mirrored(used, files, result, board)
     if any(photo.turned for photo in used):
         sentences.append(
             "some photographs ask to be turned by their EXIF data; the camera is that of the "
             "pixels as stored (read them with cv2.IMREAD_IGNORE_ORIENTATION)"
         )
-    if symmetric:
+    if getattr(board, "half_turn_symmetric", False):
         sentences.append(
             "this board looks the same after half a turn: poses may be turned by 180°, which "
             "does not change the camera"
@@ -143,6 +149,43 @@ def doubts(
     if "skew" in result.names:
         sentences.append("OpenCV keeps the skew in calibration.yml but does not use it")
     return sentences
+
+
+def _mirrored(
+    used: Sequence[Examined], files: Sequence[str], result: "Calibration", board: Chessboard
+) -> Iterator[str]:
+    """Find photographs that the camera explains better when left and right are exchanged."""
+    columns, rows = board.corners
+    mirrored = []
+    for photo, file in zip(used[:_MOST_TURNED], files, strict=False):
+        m = np.asarray(photo.corners)
+        # The corners are numbered from the other side, too, so that they stay right-handed.
+        flipped = np.stack([result.size[0] - 1 - m[:, 0], m[:, 1]], axis=-1)
+        other = flipped.reshape(rows, columns, 2)[:, ::-1]
+        as_is, turned = (_misses(result.camera, board.points, x) for x in (m, other.reshape(-1, 2)))
+        if turned < _BETTER_MIRRORED * as_is:
+            mirrored.append(file)
+    if mirrored:
+        yield (
+            f"{', '.join(mirrored)}: left and right seem exchanged, for the camera fits "
+            f"{'it' if len(mirrored) == 1 else 'them'} better so; was it a front camera, or an "
+            "editing program? Leave out what is mirrored, or turn it back"
+        )
+
+
+def _misses(camera: Camera, W: Array, m: Array) -> float:
+    """Give the RMS distance of corners, those that are known, from a board held as fits best."""
+    from cvnotes.calibration import pose_from_view
+
+    seen = np.isfinite(m).all(-1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CalibrationWarning)
+        try:
+            G = pose_from_view(camera, W[seen], m[seen])
+        except CvnotesError:
+            return np.inf
+    r = camera.moved(G).project(W[seen]) - m[seen]
+    return float(np.sqrt(np.mean((r**2).sum(-1))))
 
 
 def named(sentence: str, result: "Calibration", files: Sequence[str]) -> str:
