@@ -182,6 +182,65 @@ def test_the_shape_of_the_board_is_estimated_as_asked(photos, capsys):
     assert json.loads((out / "calibration.json").read_text())["board_shape"]["kind"] == "bent"
 
 
+def zoomed(image, by=2.0):
+    h, w = image.shape
+    larger = np.asarray(Image.fromarray(image).resize((int(by * w), int(by * h)), Image.BICUBIC))
+    return larger[h // 2 : h // 2 + h, w // 2 : w // 2 + w]
+
+
+@pytest.mark.slow
+def test_a_photograph_that_does_not_fit_is_left_out_and_that_is_said(photos, capsys):
+    good = calibrate(photos)[1]
+    without = json.loads((good / "calibration.json").read_text())
+    grey = photograph(*board_pose(TILTS[1], depth=900))
+    Image.fromarray(zoomed(grey)).save(photos / "view zoomed.png")
+    capsys.readouterr()
+    code, out = calibrate(photos)
+    said = capsys.readouterr().out
+    assert code == 0
+    row = re.search(
+        r"^view zoomed\.png +– +does not fit the others: (\S+) px, a typical photograph", said, re.M
+    )
+    assert float(row[1]) > 0.5
+    made = json.loads((out / "calibration.json").read_text())
+    assert made["rms"] == without["rms"]
+    (rejected,) = made["rejected"]
+    assert rejected["file"] == "view zoomed.png"
+    assert "left out; --keep-all uses it" in rejected["reason"]
+    code, out = calibrate(photos, "9x6", 20, "--keep-all")
+    assert json.loads((out / "calibration.json").read_text())["rms"] > 3 * without["rms"]
+    assert re.search(r"^view zoomed\.png +\d", capsys.readouterr().out, re.M)
+
+
+@pytest.mark.slow
+def test_of_views_that_all_disagree_none_is_left_out(tmp_path, capsys):
+    """Half of the photographs are zoomed: which of them are wrong, nobody can tell."""
+    folder = tmp_path / "photos"
+    folder.mkdir()
+    for i, tilt in enumerate(TILTS):
+        grey = photograph(*board_pose(tilt, depth=900 if i % 2 else 520))
+        Image.fromarray(zoomed(grey) if i % 2 else grey).save(folder / f"view {i}.png")
+    code, _ = calibrate(folder)
+    assert code == 3
+    assert "does not fit" not in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_photographs_are_left_out_as_asked_by_name_or_path(photos, capsys):
+    more = ("--leave-out", "view 1.png", photos / "view 2.png")
+    code, out = calibrate(photos, "9x6", 20, *more)
+    said = capsys.readouterr().out
+    assert code == 0
+    for i in range(len(TILTS)):
+        row = rf"^view {i}\.png +– +left out, as asked$" if i in (1, 2) else rf"^view {i}\.png +0\."
+        assert re.search(row, said, re.M)
+    table = (out / "photographs.csv").read_text()
+    assert 'view 1.png,,"left out, as asked"' in table
+    assert calibrate(photos, "9x6", 20, "--leave-out", "view 99.png")[0] == 1
+    words = "--leave-out view 99.png: none of the photographs has this name"
+    assert words in capsys.readouterr().err
+
+
 def test_doubts_name_files_and_places():
     m = [np.array([[20.0, 460.0], [320.0, 240.0], [600.0, 230.0], [300.0, 10.0]])] * 3
     result = SimpleNamespace(image_points=m, size=(640, 480))

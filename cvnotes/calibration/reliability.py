@@ -269,6 +269,22 @@ def _mirrored(e: Evidence) -> Iterator[str]:
         yield f"boards seen from behind in views {_listed(behind)}: mirrored labels or pictures?"
 
 
+def misfits(view_rms: Array) -> npt.NDArray[np.intp]:
+    """List the views whose corners miss their places by far more than those of a typical view.
+
+    Parameters
+    ----------
+    view_rms : ndarray, shape (n_views,)
+        Root mean square reprojection distance of each view, px.
+
+    Examples
+    --------
+    >>> misfits(np.array([0.1, 0.2, 3.0, 0.15])).tolist()
+    [2]
+    """
+    return np.flatnonzero(view_rms > np.maximum(4 * np.median(view_rms), 0.5))
+
+
 def _badly_fitted(e: Evidence) -> Iterator[str]:
     """Find views and whole sets that no camera of this kind explains."""
     typical = e.typical_rms
@@ -279,7 +295,7 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
             "view: are the board's counts and the order of its corners right?"
         )
         return
-    bad = np.flatnonzero(e.view_rms > np.maximum(4 * typical, 0.5))
+    bad = misfits(e.view_rms)
     if len(bad):
         worst = int(np.argmax(e.view_rms))
         yield (

@@ -6,6 +6,7 @@ import re
 import warnings
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 _RESULTS = re.compile(
     r"calibration\.(json|yml)|photographs\.csv|(coverage|next_view|residuals|view_rms|corners(-\d+)?)\.png"
 )
+
+_ROUNDS = 3  # in which photographs that do not fit are left out
+_KEPT, _MOST = 4, 2 / 3  # how many must stay, and which part of all
 
 _OF_FEW = "k1 k2 p1 p2"  # the lens of fewer views than can be left out
 
@@ -62,6 +66,13 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     add("--board-shape", choices=("flat", "bent", "free", "auto"), default="auto",
         help="the board as it was drawn, bent smoothly, or every corner where the photographs say; "
         "auto (default): views left out decide")  # fmt: skip
+    add("--leave-out", nargs="+", default=[], metavar="PHOTO", action="extend",
+        help="photographs not to use, by their names")  # fmt: skip
+    add(
+        "--keep-all",
+        action="store_true",
+        help="use photographs that do not fit the others too; they are left out otherwise",
+    )
     add("--skew", action="store_true", help="estimate the skew of the pixels' axes too")
     parser.set_defaults(run=run)
 
@@ -88,16 +99,21 @@ def run(args: argparse.Namespace) -> int:
         return 2
     check_folder(args.out)
     before = earlier(args.out, _RESULTS.fullmatch, "calibrate")
-    examined, rejected = examine(args.photos, board)
+    examined, rejected = examine(args.photos, board, leave_out=args.leave_out)
     used = [photo for photo in examined if photo.corners is not None]
-    files, rejected = _brief([printable(photo.path) for photo in used], rejected)
-    notes = [photo.note for photo in used]
     try:
         result = _calibrate(used, board, args)
     except CvnotesError as error:
-        say(photo_table(files, notes, rejected))
+        files, rejected = _brief([printable(photo.path) for photo in used], rejected)
+        say(photo_table(files, [photo.note for photo in used], rejected))
         complain("calibrate", f"{len(used)} usable photographs; {error}")
         return 1
+    if not args.keep_all:
+        result, used, misfits = _without_misfits(result, used, board, args)
+        examined = [misfits.get(photo.path, photo) for photo in examined]
+        rejected += [Rejected(printable(path), photo.note) for path, photo in misfits.items()]
+    files, rejected = _brief([printable(photo.path) for photo in used], rejected)
+    notes = [photo.note for photo in used]
     say(photo_table(files, notes, rejected, result) + "\n")
     say(camera_report(result) + "\n")
     for sentence in doubts(result, examined, files, rejected, board):
@@ -150,6 +166,41 @@ def _calibrate(
         lens = _OF_FEW if args.lens == "auto" and len(m) < 4 else args.lens
         shape = "flat" if args.board_shape == "auto" and len(m) < 4 else args.board_shape
         return calibrate(W, m, examined[0].size, lens=lens, board=shape, skew=args.skew)
+
+
+def _without_misfits(
+    result: "Calibration",
+    used: "list[Examined]",
+    board: "Chessboard | CharucoBoard",
+    args: argparse.Namespace,
+) -> "tuple[Calibration, list[Examined], dict[Path, Examined]]":
+    """Calibrate again without photographs that do not fit the others, if these are many enough.
+
+    Gives the result, what it is made of, and those left out with the reason as their note.
+    """
+    from cvnotes.calibration.reliability import misfits
+
+    first, left_out = len(used), dict[Path, "Examined"]()
+    for _ in range(_ROUNDS):
+        bad = misfits(result.view_rms).tolist()
+        kept = [photo for i, photo in enumerate(used) if i not in bad]
+        if not bad or len(kept) < max(_KEPT, _MOST * first):
+            break
+        try:
+            again = _calibrate(kept, board, args)
+        except CvnotesError:  # these alone do not determine the camera
+            break
+        typical = np.median(result.view_rms)
+        for i in bad:
+            reason = (
+                f"does not fit the others: {result.view_rms[i]:.2f} px, a typical photograph "
+                f"{typical:.2f} px (moved, zoomed, rotated or badly found; left out; --keep-all "
+                "uses it all the same)"
+            )
+            photo = replace(used[i], corners=None, found=used[i].corners, note=reason)
+            left_out[photo.path] = photo
+        result, used = again, kept
+    return result, used, left_out
 
 
 def _proposal(result: "Calibration", board: "Chessboard | CharucoBoard") -> "NextView | None":

@@ -21,6 +21,7 @@ from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
 from cvnotes.targets.opencv_finders import one_thread_each
 
+LEFT_OUT = "left out, as asked"
 _THUMBNAIL = 480  # px wide
 _AT_ONCE, _PIXELS_AT_ONCE = 8, 80_000_000  # a pixel takes about 12 bytes while it is looked at
 _SURE = 3  # photographs that agree on the board's count
@@ -69,13 +70,17 @@ class Examined:
 
 
 def examine(
-    paths: Sequence[str], board: Chessboard | CharucoBoard
+    paths: Sequence[str], board: Chessboard | CharucoBoard, *, leave_out: Sequence[str] = ()
 ) -> tuple[list[Examined], list[Rejected]]:
     """Look for the board in photographs; gives those looked at, and those that cannot be used.
 
-    A photograph without the board is in both lists.
+    A photograph without the board is in both lists. Those to leave out are named by their paths or
+    by their names alone.
     """
     files, rejected = _photographs(paths)
+    unwanted = {path for name in leave_out for path in _named(name, files)}
+    rejected += [Rejected(printable(path), LEFT_OUT) for path in files if path in unwanted]
+    files = [path for path in files if path not in unwanted]
     examined = []
     first: dict[bytes, Path] = {}
     with one_thread_each():
@@ -92,6 +97,15 @@ def examine(
             if item.corners is None:
                 rejected.append(Rejected(printable(path), item.note))
     return examined, rejected
+
+
+def _named(name: str, files: Sequence[Path]) -> list[Path]:
+    """List the files that go by a name, of which there must be one."""
+    exact = [path for path in files if path.resolve() == Path(name).resolve()]
+    found = exact or [path for path in files if path.name == name]
+    if not found:
+        raise FileError(f"--leave-out {printable(name)}: none of the photographs has this name")
+    return found
 
 
 def counted(paths: Sequence[str]) -> tuple[int, int]:

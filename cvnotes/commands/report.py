@@ -191,16 +191,16 @@ def _misses(camera: Camera, W: Array, m: Array) -> float:
 def named(sentence: str, result: "Calibration", files: Sequence[str]) -> str:
     """Name photographs and places in a sentence that counts views and corners from 0."""
 
-    def corner(match: re.Match[str]) -> str:
-        view = int(match[1])
-        m = result.image_points[view][int(match[2])]
+    def name(match: re.Match[str]) -> str:
+        if not match["corner"]:
+            return ", ".join(files[int(i)] for i in match["views"].split(", "))
+        view = int(match["view"])
+        m = result.image_points[view][int(match["corner"])]
         return f"{_place(m, result.size)} of {files[view]}"
 
-    def view(match: re.Match[str]) -> str:
-        return ", ".join(files[int(i)] for i in match[1].split(", "))
-
-    sentence = re.sub(r"view (\d+), corner (\d+)", corner, sentence)
-    return re.sub(r"\bviews? (\d+(?:, \d+)*)\b", view, sentence)
+    # (in one go, as files may well be called "view 7.png")
+    pattern = r"\bview (?P<view>\d+), corner (?P<corner>\d+)|\bviews? (?P<views>\d+(?:, \d+)*)\b"
+    return re.sub(pattern, name, sentence)
 
 
 def _place(m: Array, size: tuple[int, int]) -> str:
