@@ -719,3 +719,16 @@ def test_the_course_is_served_on_loopback_until_ctrl_c(notebooks, tmp_path):
             urllib.request.urlopen(address[0], timeout=5)
     finally:
         running.terminate()
+
+
+@pytest.mark.slow
+def test_matrices_are_not_shared_out_to_threads_that_wait():
+    """Unless whoever calls the command has said otherwise."""
+    ask = "import os, sys; from cvnotes.commands import cli; sys.argv[1:] = ['calibrate', '-h']\n"
+    ask += "try: cli.main()\nexcept SystemExit: print(os.environ['OPENBLAS_NUM_THREADS'])"
+    for given, told in (({}, "1"), ({"OPENBLAS_NUM_THREADS": "7"}, "7")):
+        clean = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"}
+        run = subprocess.run(
+            [sys.executable, "-c", ask], env=clean | given, capture_output=True, text=True
+        )
+        assert run.stdout.splitlines()[-1] == told, run.stderr

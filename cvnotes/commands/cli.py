@@ -5,6 +5,7 @@ go to stderr, one line each; nobody is shown a traceback.
 """
 
 import argparse
+import os
 import signal
 import sys
 import threading
@@ -37,6 +38,7 @@ class _Parser(argparse.ArgumentParser):
         sys.exit(2)
 
 
+_SMALL_MATRICES = ("calibrate", "stereo", "undistort")
 _COMMANDS = ("lab", "target", "calibrate", "undistort", "stereo", "grade", "completion")
 
 
@@ -64,6 +66,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with _termination_as_interrupt():
             given = sys.argv[1:] if arguments is None else list(arguments)
+            if given[:1] and given[0] in _SMALL_MATRICES:
+                _one_thread_for_matrices()
             args = parser(*given[:1]).parse_args(given)
             command = args.command
             code: int = args.run(args)
@@ -73,6 +77,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
     except Exception as error:
         return _cannot(command, error)
+
+
+def _one_thread_for_matrices() -> None:
+    """Keep NumPy's linear algebra from sharing out matrices that are small.
+
+    Its threads would mostly wait for each other, at three times the processor's time.
+    """
+    if "numpy" not in sys.modules:  # it looks once, when it is imported
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 @contextmanager
