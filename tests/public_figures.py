@@ -215,6 +215,14 @@ FIGURES = [
         vanishing.draw_altitudes, {"v": (TRIANGLE, several(2))}, sizes=("size",), size=(640, 480)
     ),
     # warps
+    figure(
+        warps.draw_forward,
+        {"image": (np.zeros((2, 2), np.uint8), PICTURE), "hits": (np.ones((2, 2)), SINGLE)},
+    ),
+    figure(
+        warps.draw_disparity,
+        {"point": (np.array([120.0, 400]), several(2)), "b": (100.0, ONE), "f": (150.0, ONE)},
+    ),
     figure(warps.draw_hits, {"hits": (np.array([[0.0, 1], [2, 1]]), SINGLE)}),
     figure(
         warps.draw_cell,

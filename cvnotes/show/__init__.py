@@ -47,7 +47,7 @@ from cvnotes.show.figures.quality import (
     draw_view_rms,
 )
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
-from cvnotes.show.figures.warps import draw_cell, draw_hits, draw_rows
+from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits, draw_rows
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
@@ -130,9 +130,11 @@ __all__ = [
     "draw_arrow",
     "draw_cube",
     # chapter 8: warps
+    "draw_forward",
     "draw_hits",
     "draw_cell",
     "draw_rows",
+    "draw_disparity",
     # in space
     "draw_scene",
     "build_scene",
