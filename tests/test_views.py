@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError
+from cvnotes.calibration.coverage import covered_cells
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import (
     centre_only_views,
+    covering_views,
     facing,
     fronto_parallel_views,
     good_views,
@@ -84,6 +86,29 @@ def test_good_views_are_tilted_by_20_to_45_degrees_to_all_sides():
     quarters, _ = np.histogram(towards, bins=4, range=(-np.pi, np.pi))
     assert quarters.min() >= 8
     assert tilts(views(good_views, 9, tilt=(0.0, 0.1))).max() < np.degrees(0.1)
+
+
+def covered(G, camera=CAMERA):
+    return covered_cells([camera.moved(G_i).project(BOARD.points) for G_i in G], camera.size)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_covering_views_reach_all_four_corners_of_the_picture(seed):
+    wide = Camera(intrinsics(420, 420, 320, 240), lens=Lens(k=(-0.2, 0.05)))
+    for camera in (CAMERA, wide):
+        G = views(covering_views, 12, seed=seed, camera=camera)
+        seen = covered(G, camera)
+        assert seen[[0, -1]][:, [0, -1]].all()
+        assert seen.sum() >= 44
+        assert all(squares_lie_inside(BOARD, camera, G_i) for G_i in G)
+        angle = np.degrees(np.arccos(G[:, 2, 2]))
+        assert angle.min() >= 20
+        assert angle.max() <= 45
+
+
+def test_three_views_reach_no_four_corners():
+    with pytest.raises(CvnotesError, match="n: there are four corners to be reached, so at least"):
+        views(covering_views, 3)
 
 
 def test_good_views_cover_the_picture():

@@ -11,6 +11,7 @@ from cvnotes.pictures.scene_render import depth_map, radiance, render_scene
 from cvnotes.pictures.scenes import blocks, corridor, desk, rails, room, room_with, target_scene
 from cvnotes.pictures.views import (
     centre_only_views,
+    covering_views,
     fronto_parallel_views,
     good_views,
     nearly_parallel_views,
@@ -39,6 +40,7 @@ __all__ = [
     "target_scene",
     # sets of poses: one that is good, and those of chapter 7 that are not
     "good_views",
+    "covering_views",
     "fronto_parallel_views",
     "pure_translation_views",
     "nearly_parallel_views",

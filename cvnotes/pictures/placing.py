@@ -3,10 +3,11 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, DegenerateError, points, rotation
+from cvnotes.base import Array, DegenerateError, points, rigid_motion, rotation
 from cvnotes.camera import Camera, move, pose
 from cvnotes.pictures.faces import Target
 
+_PUSHES = 20  # after which a target no longer moves
 _ROOM = 4.0  # pixels kept free along the border of the picture
 
 
@@ -83,6 +84,51 @@ def hold_at(
     raise DegenerateError(
         f"the target does not fit into a picture of {camera.size[0]}×{camera.size[1]} pixels"
     )
+
+
+def pushed_into_corner(
+    target: Target, camera: Camera, G: npt.ArrayLike, corner: tuple[int, int]
+) -> Array:
+    """Move a target in pose G, turned and as far away as it is, into a corner of the picture.
+
+    Parameters
+    ----------
+    target : Target
+        Anything with ``faces``.
+    camera : Camera
+        Who looks; its own pose does not matter.
+    G : array_like, shape (4, 4)
+        Where the target is, whole in the picture.
+    corner : (−1 or 1, −1 or 1)
+        Left or right, upper or lower.
+
+    Raises
+    ------
+    DegenerateError
+        The lens shows nothing there, or the target is too large.
+
+    Examples
+    --------
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera, board = Camera(intrinsics(800, 800, 320, 240)), Chessboard((9, 6), 25.0)
+    >>> G = hold_at(board, camera, np.eye(3), [320, 240], 1.6)
+    >>> seen = camera.moved(pushed_into_corner(board, camera, G, (-1, 1))).project(board.points)
+    >>> seen[:, 0].min().round(), seen[:, 1].max().round()
+    (np.float64(43.0), np.float64(436.0))
+    """
+    G, side, outline = rigid_motion(G), np.array(corner), _outline(target)
+    half = (np.array(camera.size) - 1) / 2
+    middle = (outline.min(axis=0) + outline.max(axis=0)) / 2
+    distance = (G[:3, :3] @ middle + G[:3, 3])[2]
+    aim = camera.project(G[:3, :3] @ middle + G[:3, 3])
+    for _ in range(_PUSHES):
+        T = distance * np.append(camera.ideal(aim), 1.0) - G[:3, :3] @ middle
+        m = (camera.moved(pose(G[:3, :3], T)).project(outline) - half) * side
+        aim = aim + side * (half - _ROOM - m.max(axis=0))
+    if not (np.isfinite(m).all() and (np.abs(m) <= half - _ROOM / 2).all()):
+        raise DegenerateError("the target cannot be pushed into this corner of the picture")
+    return pose(G[:3, :3], T)
 
 
 def every_face_seen(target: Target, G: Array) -> bool:

@@ -1,12 +1,14 @@
 """Sets of views of a board: good ones, the misleading ones, and the turns they are made of."""
 
+from contextlib import suppress
+
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, InputTypeError, generator, numbers
-from cvnotes.camera import Camera, rotation_from_vector
+from cvnotes.camera import Camera, move, rotation_from_vector
 from cvnotes.camera.model import is_camera
 from cvnotes.pictures.faces import Target
-from cvnotes.pictures.placing import every_face_seen, facing, hold_at
+from cvnotes.pictures.placing import every_face_seen, facing, hold_at, pushed_into_corner
 
 TILT = (float(np.radians(20)), float(np.radians(45)))
 
@@ -121,6 +123,87 @@ def good_views(
             raise DegenerateError("tilted like this, a face of the target is hidden; tilt it less")
         views.append(G)
     return np.stack(views)
+
+
+def covering_views(
+    target: Target,
+    camera: Camera,
+    n: int,
+    *,
+    rng: np.random.Generator,
+    tilt: tuple[float, float] = TILT,
+) -> Array:
+    """Hold a target as in `good_views`, but four times in the corners of the picture.
+
+    A lens bends most in the corners of the picture, and what no board has shown there is only
+    guessed; on the other hand, boards in a corner are smaller.
+
+    Parameters
+    ----------
+    target, camera, n, rng, tilt
+        As in `good_views`; n is at least 4.
+
+    Returns
+    -------
+    ndarray, shape (n, 4, 4)
+        Poses G of the target, those in the corners first.
+
+    Raises
+    ------
+    DegenerateError
+        The target cannot be seen whole like this, or not in a corner.
+
+    Examples
+    --------
+    >>> from cvnotes.calibration.coverage import covered_cells
+    >>> from cvnotes.camera import intrinsics
+    >>> from cvnotes.targets import Chessboard
+    >>> camera, board = Camera(intrinsics(800, 804, 325, 238)), Chessboard((9, 6), 25.0)
+    >>> G = covering_views(board, camera, 10, rng=np.random.default_rng(1))
+    >>> seen = covered_cells([camera.moved(G_i).project(board.points) for G_i in G], camera.size)
+    >>> seen[[0, -1]][:, [0, -1]].all()
+    np.True_
+    """
+    views = good_views(target, camera, n, rng=rng, tilt=tilt)
+    if n < len(_CORNERS):
+        raise CvnotesError(f"n: there are four corners to be reached, so at least 4, got {n}")
+    for i, towards in enumerate(all_sides(len(_CORNERS), rng)):
+        views[i] = _in_corner(target, camera, _CORNERS[i], towards, tilt, rng)
+    return views
+
+
+_CORNERS = ((-1, -1), (1, -1), (-1, 1), (1, 1))
+_NEAR = 1 / 9  # of the picture's longer side, from its corner to the nearest one of the board
+_TRIES = 60
+
+
+def _in_corner(
+    target: Target,
+    camera: Camera,
+    corner: tuple[int, int],
+    towards: float,
+    tilt: tuple[float, float],
+    rng: np.random.Generator,
+) -> Array:
+    """Hold a target in a corner of the picture, so that corners of its board come close to it."""
+    half = (np.array(camera.size) - 1) / 2
+    W = np.concatenate([move(G, board.points) for G, board in target.faces])
+    best, nearest = None, np.inf
+    for _ in range(_TRIES):
+        R = turned(np.array([towards]), rng.uniform(*tilt, 1), rng)[0] @ facing(target)
+        with suppress(DegenerateError):
+            G = hold_at(target, camera, R, half, rng.uniform(1.3, 1.9))
+            G = pushed_into_corner(target, camera, G, corner)
+            m = camera.moved(G).project(W)
+            apart = float(np.abs(m - half - half * corner).max(axis=1).min())
+            if apart < nearest and every_face_seen(target, G):
+                best, nearest = G, apart
+        if nearest < _NEAR * max(camera.size):
+            break
+        towards = rng.uniform(0, 2 * np.pi)
+    if best is None:
+        raise DegenerateError("the target cannot be held whole in a corner of the picture")
+    return best
 
 
 def fronto_parallel_views(
