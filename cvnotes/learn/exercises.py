@@ -154,8 +154,8 @@ def check(name: str, answer: Any, *, student: str | None = None) -> Report:
 
     Examples
     --------
-    >>> check("lift", lambda x, k: x).misconception
-    >>> def my_lift(x, k): ...
+    >>> check("lift", lambda x, w: x).misconception
+    >>> def my_lift(x, w): ...
     >>> check("lift", my_lift).verdict
     'not solved yet'
     """
@@ -192,7 +192,7 @@ def hint(name: str) -> Words:
     --------
     >>> hint("lift")
     lift, hint 1 of 3
-      For k = 1 the point (x, y) becomes (x, y, 1).
+      For w = 1 the point (x, y) becomes (x, y, 1).
     """
     exercise = find(name)
     number = min(_SESSION.hints[name], len(exercise.hints) - 1)

@@ -8,9 +8,9 @@ from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Proper
 from cvnotes.projective import to_homogeneous
 
 
-def lift(x: Array, k: float) -> Array:
-    """Lift points (n, d) to homogeneous coordinates (n, d + 1) with the factor k."""
-    return k * to_homogeneous(x)
+def lift(x: Array, w: float) -> Array:
+    """Lift points (n, d) to homogeneous coordinates (n, d + 1) with the factor w."""
+    return w * to_homogeneous(x)
 
 
 def _points_and_factor(rng: Rng) -> list[Case]:
@@ -27,12 +27,12 @@ LIFT = Exercise(
     chapter=1,
     title="Lift points to projective space",
     task="Give homogeneous coordinates, shape (n, d + 1), of points x, shape (n, d): those of the "
-    "whole class whose last coordinate is k.",
-    stub='''def my_lift(x, k):
-    """Give homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate k."""
+    "whole class whose last coordinate is w.",
+    stub='''def my_lift(x, w):
+    """Give homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate w."""
     ...''',
     hints=(
-        "For k = 1 the point (x, y) becomes (x, y, 1).",
+        "For w = 1 the point (x, y) becomes (x, y, 1).",
         "A class of coordinates differs by a factor that multiplies every one of them.",
         "np.hstack or np.concatenate(…, axis=1) joins columns; the new one has shape (n, 1).",
     ),
@@ -43,63 +43,63 @@ LIFT = Exercise(
             lambda x_h, case: np.allclose(x_h[:, :-1] / x_h[:, -1:], case.args[0], atol=1e-6),
         ),
         Property(
-            "The last coordinate of every point is k.",
+            "The last coordinate of every point is w.",
             lambda x_h, case: np.allclose(x_h[:, -1], case.args[1], atol=1e-6),
         ),
     ),
     misconceptions=(
         Misconception(
-            "k appended only",
-            "You appended k but left the other coordinates as they were: [x y k] is the point "
-            "(x/k, y/k). The factor multiplies all of them (the notes' first formula slips here).",
-            lambda x, k: np.hstack([x, np.full((len(x), 1), k)]),
+            "w appended only",
+            "You appended w but left the other coordinates as they were: [x y w] is the point "
+            "(x/w, y/w). The factor multiplies all of them (the notes' first formula slips here).",
+            lambda x, w: np.hstack([x, np.full((len(x), 1), w)]),
         ),
         Misconception(
             "factor on the coordinates only",
-            "You multiplied the coordinates but appended 1: that is the point (kx, ky). "
+            "You multiplied the coordinates but appended 1: that is the point (wx, wy). "
             "The last coordinate takes the factor too.",
-            lambda x, k: np.hstack([k * x, np.ones((len(x), 1))]),
+            lambda x, w: np.hstack([w * x, np.ones((len(x), 1))]),
         ),
         Misconception(
             "factor forgotten",
             "These are the right points, with the factor 1; asked is the member of the class "
-            "whose last coordinate is k.",
+            "whose last coordinate is w.",
             lambda x, _: np.hstack([x, np.ones((len(x), 1))]),
         ),
         Misconception(
             "zero appended",
             "You appended 0: that makes a point at infinity, a direction. A point in a place has "
             "a last coordinate that is not 0.",
-            lambda x, k: np.hstack([k * x, np.zeros((len(x), 1))]),
+            lambda x, w: np.hstack([w * x, np.zeros((len(x), 1))]),
         ),
         Misconception(
             "new coordinate in front",
             "You put the new coordinate first. Here, as in the notes, it is the last one.",
-            lambda x, k: np.hstack([np.full((len(x), 1), k), k * x]),
+            lambda x, w: np.hstack([np.full((len(x), 1), w), w * x]),
         ),
         Misconception(
             "a row instead of a column",
             "You added a row: another point. Points are rows here, so a coordinate is a column: "
             "axis=1.",
-            lambda x, k: np.vstack([k * x, np.full((1, x.shape[1]), k)]),
+            lambda x, w: np.vstack([w * x, np.full((1, x.shape[1]), w)]),
         ),
         Misconception(
-            "divided by k",
-            "You divided by k: the last coordinate is then 1/k. Multiply.",
-            lambda x, k: to_homogeneous(x) / k,
+            "divided by w",
+            "You divided by w: the last coordinate is then 1/w. Multiply.",
+            lambda x, w: to_homogeneous(x) / w,
         ),
         Misconception(
             "coordinates divided",
             (
-                "You divided the coordinates and appended k: that is the point (x/k², y/k²). The "
+                "You divided the coordinates and appended w: that is the point (x/w², y/w²). The "
                 "factor multiplies all of them."
             ),
-            lambda x, k: np.hstack([x / k, np.full((len(x), 1), k)]),
+            lambda x, w: np.hstack([x / w, np.full((len(x), 1), w)]),
         ),
         Misconception(
             "factor added",
-            "You added k to the coordinates; a factor multiplies them.",
-            lambda x, k: to_homogeneous(x) + k,
+            "You added w to the coordinates; a factor multiplies them.",
+            lambda x, w: to_homogeneous(x) + w,
         ),
     ),
     reference=lift,
