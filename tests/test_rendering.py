@@ -241,15 +241,20 @@ def test_what_cannot_be_rendered_is_refused_in_words(arguments, options, error, 
 def test_a_rendered_fisheye_shows_each_side_of_a_room_where_the_lens_puts_its_edges():
     colours = np.arange(1, 7)[:, None, None] / 8 * np.ones(3)
     room = box((-90, 90), (-90, 90), (-90, 90), np.repeat(colours, 2, axis=1))
-    camera = Camera(intrinsics(60, 60, 199.5, 199.5), lens=FisheyeLens((-0.01,)), size=(400, 400))
+    turned = pose(rotation_from_vector([0, 0.35, 0]), np.zeros(3))
+    camera = Camera(
+        intrinsics(60, 60, 199.5, 199.5), turned, FisheyeLens((-0.01,)), size=(400, 400)
+    )
     picture = render_scene(replace(room, around=Surroundings(ambient=1.0)), camera)[..., 0]
-    # along the middle row: the wall ahead, that on the right, and behind, whose edges are at
-    # 45° and 135° from the axis
+    # upright edges at 45° and 135° on both sides, seen in the middle row, 0.35 rad further right
     row = picture[199].astype(int)
-    steps = np.flatnonzero(np.abs(np.diff(row)) > 4)
-    assert len(set(row[[199, 270, 385]])) == 3
-    theta = np.radians([45, 135])
+    theta = np.radians([45, 135, -45, -135]) + 0.35
     edges = 199.5 + 60 * theta * (1 - 0.01 * theta**2)
-    for edge in (*edges, *(399 - edges)):
-        assert np.abs(steps + 0.5 - edge).min() < 1
+    levels = np.unique(row[[120, 199, 270, 385]])
+    assert len(levels) >= 3
+    for edge_at in edges:
+        u = int(edge_at)
+        before, after = row[u - 4], row[u + 5]
+        crossing = u - 4 + np.sum((row[u - 4 : u + 6] - after) / (before - after)) - 0.5
+        assert crossing == pytest.approx(edge_at, abs=0.1)
     assert (picture[0, 0] == 0).all()  # 200√2/60 rad from the axis: more than there is
