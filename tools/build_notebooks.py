@@ -108,6 +108,7 @@ def build(path: Path) -> list[str]:
         record_timing=False,
         config=Config({"KernelManager": _connection()}),
         store_widget_state=False,
+        coalesce_streams=True,
     )
     try:
         client.execute()
