@@ -11,7 +11,7 @@ from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.refinement import Problem, State
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.pictures import course, good_views
-from cvnotes.targets import Chessboard
+from cvnotes.targets import Chessboard, find_corners
 
 pytestmark = pytest.mark.filterwarnings("ignore::cvnotes.base.CalibrationWarning")
 
@@ -135,6 +135,52 @@ def test_ways_to_differ_neither_move_nor_scale_the_board():
         assert np.abs(shape @ np.reshape([*motions, W], (7, -1)).T).max() < 1e-12
     assert len(deformations("bent", W)) == 12
     assert len(deformations("free", W)) == 3 * 54 - 7
+
+
+PER_PIXEL = 4  # rays along each side of a pixel
+
+
+def photograph(G, xy, by):
+    """Photograph an arched board with rays xy (h, k, w, k, 2), and a blur of 0.7 px."""
+    import cv2
+
+    R, T = G[:3, :3], G[:3, 3]
+    rays, centre = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1) @ R, -R.T @ T
+    z = 0.0
+    for _ in range(4):  # the height where the ray meets the board changes where it meets it
+        x, y = (centre[i] + (z - centre[2]) / rays[..., 2] * rays[..., i] for i in (0, 1))
+        z = by * (1 - ((x - MIDDLE[0]) / MIDDLE[0]) ** 2)
+    column, row = np.floor(x / 25) + 1, np.floor(y / 25) + 1
+    printed = (column >= 0) & (column <= 9) & (row >= 0) & (row <= 6)
+    grey = np.where(printed & ((column + row) % 2 == 0), 40.0, 215.0).mean(axis=(1, 3))
+    return cv2.GaussianBlur(grey, (0, 0), 0.7)
+
+
+@pytest.mark.slow
+def test_photographs_of_a_board_that_is_bent_by_a_millimetre():
+    w, h = CAMERA.size
+    part = (np.arange(PER_PIXEL) - (PER_PIXEL - 1) / 2) / PER_PIXEL
+    u, v = ((np.arange(n)[:, None] + part).ravel() for n in (w, h))
+    rng = np.random.default_rng(4)
+    m = np.stack(np.meshgrid(u, v), axis=-1)
+    m += rng.uniform(-0.5, 0.5, m.shape) / PER_PIXEL  # or edges along columns would jump
+    xy = CAMERA.ideal(m).reshape(h, PER_PIXEL, w, PER_PIXEL, 2)
+    found = []
+    for G in good_views(BOARD, CAMERA, 12, rng=rng):
+        grey = photograph(G, xy, 1.0) + rng.normal(0, 2, (h, w))
+        found.append(find_corners(grey.clip(0, 255).round().astype(np.uint8), BOARD))
+        exact = CAMERA.moved(G).project(arched(1.0))
+        assert np.abs(found[-1] - exact).max() < 0.1
+    result = calibrate(BOARD.points, found, CAMERA.size, board="auto")
+    assert result.shape.kind == "bent"
+    off = np.array([*result.parameters.values()]) - TRUTH
+    assert np.abs(off / [*result.std_of_views.values()]).max() < 3
+    x, y, _ = BOARD.points.T
+    plane = np.stack([np.ones_like(x), x, y], axis=1)
+    z = arched(1.0)[:, 2]
+    z = z - plane @ np.linalg.lstsq(plane, z)[0]
+    assert np.abs(result.shape.heights - z).max() < 0.1
+    assert result.rms < 0.5 * calibrate(BOARD.points, found, CAMERA.size).rms
 
 
 def test_two_cameras_find_the_same_board():
