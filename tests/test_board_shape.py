@@ -231,12 +231,13 @@ def test_views_left_out_choose_the_board():
     assert exact.shape is None
 
 
-@pytest.mark.parametrize("n_views", [4, 5, 7])
-def test_few_views_of_a_flat_board_are_held_near_it(n_views):
-    """Corners that noise alone would move by millimetres stay where they were printed."""
-    m = seen(BOARD.points, n_views, noise=0.1)
+@pytest.mark.parametrize(("n_views", "seed"), [(4, 1), (4, 3), (5, 0), (7, 0)])
+def test_few_views_of_a_flat_board_are_held_near_it(n_views, seed):
+    """Corners that noise alone moved by a millimetre, of four views, stay near their places."""
+    m = seen(BOARD.points, n_views, noise=0.1, seed=seed)
     found = calibrate(BOARD.points, m, CAMERA.size, board="free")
-    assert np.abs(found.shape.offsets).max() < 1.0
+    assert np.abs(found.shape.offsets).max() < 0.3
+    assert abs(found.A[0, 0] - 800) < 5
     flat = calibrate(BOARD.points, m, CAMERA.size)
     assert found.rms < flat.rms
     assert found.view_rms @ found.view_rms / n_views == pytest.approx(found.rms**2)
