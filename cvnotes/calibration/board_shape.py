@@ -159,9 +159,14 @@ def with_shape(problem: Problem, data: Correspondences, kind: str) -> Problem:
 
 def released(free: Problem, flat: Minimum[State, Arrow]) -> Minimum[State, Arrow]:
     """Go on from the minimum of a flat board to that of its shape."""
+    return minimise(free, released_start(free, flat))
+
+
+def released_start(free: Problem, flat: Minimum[State, Arrow]) -> State:
+    """Give the minimum of a flat board as a board whose shape is sought, but flat so far."""
     of_shape = 0 if free.shape is None else len(free.shape)
     shared = np.concatenate([flat.x.shared, np.zeros(of_shape)])
-    return minimise(free, State(shared, flat.x.R, flat.x.T))
+    return State(shared, flat.x.R, flat.x.T)
 
 
 def shape_found(

@@ -9,13 +9,20 @@ from collections.abc import Sequence
 import numpy as np
 
 from cvnotes.base import ConvergenceError, CvnotesError, DegenerateError, Minimum, image_size
-from cvnotes.calibration.board_shape import BOARDS, is_board, released, with_shape
+from cvnotes.calibration.board_shape import (
+    BOARDS,
+    is_board,
+    released,
+    released_start,
+    with_shape,
+)
 from cvnotes.calibration.correspondences import Correspondences, PointSets
-from cvnotes.calibration.refinement import Arrow, Problem, State
+from cvnotes.calibration.refinement import Arrow, Problem, State, solve_arrow
 from cvnotes.calibration.which_lens import estimated, rms_of_parts
 
 # A board with more coefficients has to be better by this much.
 _BETTER = 1.05
+_CHANCE = 1.5  # F up to which the shape of a board is noise
 _ROUNDING = 1e-6  # px, more than is left of exact corners
 
 
@@ -43,7 +50,8 @@ def left_out_rms_of_boards(
     -------
     dict
         For each board the root mean square distance, in pixels per point, of the corners of views
-        left out; infinite where the views do not determine such a board.
+        left out; infinite where the views do not determine such a board. A free board is not tried
+        where the residuals of a flat one are no more than noise.
 
     Raises
     ------
@@ -69,7 +77,12 @@ def left_out_rms_of_boards(
         raise DegenerateError(f"to leave views out takes at least 4 of them, got {len(data)}")
     problem = Problem.of(data, size, lens, skew)
     flat = estimated(problem)
-    return {is_board(board): _one(problem, data, board, flat) for board in boards}
+    found: dict[str, float] = {}
+    for board in boards:
+        if is_board(board) == "free" and "flat" in found and _is_flat(problem, data, flat):
+            continue
+        found[board] = _one(problem, data, board, flat)
+    return found
 
 
 def choose_board(by_board: dict[str, float]) -> str:
@@ -90,6 +103,23 @@ def choose_board(by_board: dict[str, float]) -> str:
         )
     limit = max(_BETTER * best, _ROUNDING)
     return next(name for name, rms in by_board.items() if rms <= limit)
+
+
+def _is_flat(problem: Problem, data: Correspondences, flat: Minimum[State, Arrow]) -> bool:
+    """Tell whether corners that may go anywhere would gain no more than noise gives them.
+
+    From one linear step: what each of their coefficients takes from the cost, over what each
+    coordinate that was measured leaves there (the F of the coefficients together).
+    """
+    try:
+        free = with_shape(problem, data, "free")
+        x = released_start(free, flat)
+        cost, system = free.linearise(x)
+        _, gain = solve_arrow(system, 0.0)
+    except (DegenerateError, CvnotesError):
+        return False  # which is said by trying it
+    of_shape = len(x.shared) - len(flat.x.shared)
+    return gain / of_shape < _CHANCE * max(cost - gain, 0.0) / free.freedom
 
 
 def _one(problem: Problem, data: Correspondences, board: str, flat: Minimum[State, Arrow]) -> float:
