@@ -33,15 +33,20 @@ add_module_names = False
 
 html_theme = "sphinx_book_theme"
 html_title = "cvnotes"
+html_context = {"default_mode": "auto"}  # light or dark, as the reader's machine is
+html_favicon = "figures/favicon.svg"
 html_theme_options = {"navbar_persistent": [], "home_page_in_toc": True}
 
 numpydoc_show_class_members = False
 suppress_warnings = ["ref.python"]  # a word that names several things is then just a word
 html_static_path = ["site.css", "site.js"]
 html_css_files = ["site.css"]
-html_js_files = ["site.js"]
+html_js_files: list[Any] = ["site.js"]
 if tags.has("live"):  # type: ignore[name-defined] # noqa: F821  (Sphinx's: the site has Python)
     html_static_path.append("static")
+    html_css_files.append("live/live.css")
+    defer = {"defer": "defer"}  # in this order, once the page is there
+    html_js_files += [(f"live/{name}.js", defer) for name in ("page", "explore", "exercises")]
 
 
 def escape_initials(*event: Any) -> None:

@@ -1,10 +1,13 @@
 """The design of the package: who may import whom, and what an import costs."""
 
 import ast
+import os
 import subprocess
 import sys
 from graphlib import TopologicalSorter
 from pathlib import Path
+
+from cvnotes.show.explore.lettering import font_file
 
 PACKAGE = Path(__file__).resolve().parents[1] / "cvnotes"
 
@@ -139,15 +142,13 @@ def test_explorations_and_exercises_need_nothing_but_numpy_and_pillow():
         "        if name.split('.')[0] in {'scipy', 'cv2', 'matplotlib', 'trimesh', 'ipywidgets',\n"
         "                                  'mpl_toolkits', 'yaml', 'tqdm', 'IPython'}:\n"
         "            raise ImportError(name)\n"
-        "import os\n"
-        "from cvnotes.show.explore.lettering import font_file\n"
-        "os.environ['CVNOTES_FONT'] = str(font_file())\n"
         "sys.meta_path.insert(0, Absent())\n"
         "import cvnotes.learn\n"
         "from cvnotes.show.explore import NAMES, model\n"
         "print([model(name).sight().picture.shape[2] for name in NAMES])"
     )
-    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    named = {**os.environ, "CVNOTES_FONT": str(font_file())}
+    run = subprocess.run([sys.executable, "-c", script], env=named, capture_output=True, text=True)
     assert run.stdout.strip() == str([3] * 7), run.stderr
 
 

@@ -21,6 +21,7 @@ pages, JupyterLite included)::
     python/pyodide.js            importScripts(…), then loadPyodide({indexURL: ".../python/"})
     python/pyodide-lock.json     knows numpy, scipy, …, and cvnotes with all that it needs, so that
                                  loadPackagesFromImports("import cvnotes") brings everything
+    python/letters.ttf           the type that explorations write with (CVNOTES_FONT)
     python/parts.json            {"cvnotes": "cvnotes-….whl", "data": "cvnotes_data-….whl",
                                  "bytes": {file: size}}
 
@@ -35,6 +36,7 @@ go on without Python if `PartsMissingError` is raised: its text is one sentence.
 import argparse
 import hashlib
 import json
+import logging
 import os
 import shutil
 import subprocess
@@ -50,6 +52,7 @@ from urllib.error import URLError
 from urllib.request import urlopen
 
 import cvnotes
+from cvnotes.show.explore import lettering
 
 Entry = dict[str, Any]  # of one package in the lock
 
@@ -81,6 +84,7 @@ PURE = {
     "ipywidgets": (["ipywidgets"], ["comm", "jupyterlab-widgets", "ipython", "traitlets"]),
 }
 NEEDED = ["numpy", "scipy", "matplotlib", "pillow", "pyyaml", "tqdm", "trimesh", "ipywidgets"]
+LETTERS = "letters.ttf"
 # What only a desktop has a use for.
 COMPILED = {".so", ".pyd", ".pyc"}
 LEFT_OUT = {"__pycache__", "tests", "nbextension", "labextension"}
@@ -265,10 +269,26 @@ def lay_out(parts: Path, folder: Path) -> Path:
     lock = json.loads((parts / "pyodide-lock.json").read_text(encoding="utf-8"))
     lock["packages"] = entries
     (folder / "pyodide-lock.json").write_text(json.dumps(lock), encoding="utf-8")
+    write_letters(folder / LETTERS)
     sizes = {path.name: path.stat().st_size for path in sorted(folder.iterdir())}
     listed = {"cvnotes": code["file_name"], "data": data["file_name"], "bytes": sizes}
     (folder / "parts.json").write_text(json.dumps(listed, indent=1), encoding="utf-8")
     return folder
+
+
+def write_letters(path: Path) -> None:
+    """Write the type of explorations with the letters that they need: a tenth of matplotlib's."""
+    from fontTools import subset
+
+    logging.getLogger("fontTools").setLevel(logging.WARNING)
+    options: Any = subset.Options(drop_tables=["FFTM"])  # type: ignore[no-untyped-call]
+    font = subset.load_font(str(lettering.font_file()), options)
+    letters: Any = subset.Subsetter(options)  # type: ignore[no-untyped-call]
+    letters.populate(text=lettering.LETTERS)
+    letters.subset(font)
+    font.recalcTimestamp = False  # the same bytes each time
+    subset.save_font(font, str(path), options)
+    font.close()
 
 
 def pack(
@@ -321,15 +341,18 @@ def _installed(name: str) -> Iterator[tuple[str, Path]]:
 
 
 def _code() -> Iterator[tuple[str, Path]]:
+    """Give the package, and of its data the cameras and measured corners: few bytes, used often."""
     for path in (ROOT / "cvnotes").rglob("*"):
         if path.is_file() and "__pycache__" not in path.parts:
             yield path.relative_to(ROOT).as_posix(), path
+    for path in (ROOT / "data").glob("*.json"):
+        yield f"cvnotes/course/data/{path.name}", path
 
 
 def _data() -> Iterator[tuple[str, Path]]:
-    """Give the course's data where an installed package has them."""
+    """Give the rest of the course's data where an installed package has them."""
     for path in (ROOT / "data").rglob("*"):
-        if path.is_file():
+        if path.is_file() and (path.suffix, path.parent.name) != (".json", "data"):
             yield f"cvnotes/course/{path.relative_to(ROOT).as_posix()}", path
 
 

@@ -1,15 +1,17 @@
 """Figures of least squares: the singular vectors, two kinds of error, the way into a valley."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, matrix, numbers, points
 from cvnotes.show.guards import thing
 from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD, panels
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def draw_stretched_circle(D: npt.ArrayLike) -> Any:
@@ -60,7 +62,9 @@ def draw_stretched_circle(D: npt.ArrayLike) -> Any:
     return axes
 
 
-def draw_two_errors(points_h: npt.ArrayLike, m: npt.ArrayLike, *, ax: Axes | None = None) -> Axes:
+def draw_two_errors(
+    points_h: npt.ArrayLike, m: npt.ArrayLike, *, ax: "Axes | None" = None
+) -> "Axes":
     """Draw the geometric and the algebraic error of points, in a side view.
 
     The geometric error of a point is the gap between two rays, that of its prediction (x, w) and
@@ -117,8 +121,8 @@ def draw_valley(
     cost: npt.ArrayLike,
     paths: Mapping[str, npt.ArrayLike],
     *,
-    ax: Axes | None = None,
-) -> Axes:
+    ax: "Axes | None" = None,
+) -> "Axes":
     """Draw a cost over two unknowns as a map with contours, and ways that steps took over it.
 
     Parameters
@@ -161,7 +165,7 @@ def draw_valley(
     return ax
 
 
-def draw_singular_values(s: npt.ArrayLike, *, ax: Axes | None = None, title: str = "") -> Axes:
+def draw_singular_values(s: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
     """Draw singular values as bars on a logarithmic axis; those that are mere rounding, orange.
 
     Parameters
@@ -191,6 +195,6 @@ def draw_singular_values(s: npt.ArrayLike, *, ax: Axes | None = None, title: str
     return ax
 
 
-def _arrow(ax: Axes, start: Array, end: Array, colour: str) -> None:
+def _arrow(ax: "Axes", start: Array, end: Array, colour: str) -> None:
     style = {"arrowstyle": "-|>", "color": colour, "lw": 2, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", tuple(end), tuple(start), arrowprops=style)

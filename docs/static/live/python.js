@@ -8,7 +8,7 @@
 // folder python/ at the root of the site is the work of tools/browser_parts.py.
 
 const PYTHON = new URL("../../python/", self.location.href).href;
-const RUNTIME = ["pyodide.js", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json"];
+const RUNTIME = ["pyodide.js", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json", "letters.ttf"];
 
 // Packages, and whatever they depend on.
 function allOf(packages, lock) {
@@ -69,5 +69,9 @@ async function wakePython({ packages = ["numpy", "pillow"], data = false, say = 
   const quiet = { messageCallback() {}, errorCallback() {} };
   // By its address a wheel comes without what it depends on.
   await python.loadPackage([...packages, ...wheels.map((wheel) => PYTHON + wheel)], quiet);
+  // What could not be fetched is no error to loadPackage.
+  const arrived = Object.keys(python.loadedPackages).map((name) => name.toLowerCase());
+  for (const name of [...packages, "cvnotes"])
+    if (!arrived.includes(name.toLowerCase())) throw new Error(`${name} did not arrive`);
   return python;
 }

@@ -1,0 +1,469 @@
+"""The site's pages with Python in them, in a real browser: explorations, exercises, bad luck.
+
+The site is built once; without the parts of Pyodide all is skipped. CVNOTES_SITE names one that is
+built already.
+"""
+
+import csv
+import functools
+import http.server
+import json
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import pytest
+
+from cvnotes.commands.cli import main as cvnotes
+from cvnotes.show import explore
+
+ROOT = Path(__file__).resolve().parents[1]
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+if CHROMIUM is None:
+    pytest.skip("no Chromium on this machine", allow_module_level=True)
+pytest.importorskip("sphinx", reason="the extra docs is not installed")
+sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+pytestmark = pytest.mark.slow
+
+NOWHERE = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
+ARGUMENTS = ["--no-sandbox", "--disable-gpu", NOWHERE]
+AWAKE = 120_000  # ms; Python is compiled anew for each page
+MODELS = {name: explore.model(name) for name in explore.NAMES}
+ARTICLE = re.compile(r'(<article class="bd-article"[^>]*>)')
+# What the canvas shows, as a number that changes with the picture.
+SHOWN = """box => {
+    const canvas = box.querySelector('canvas[role=img]');
+    if (canvas.hidden) return 0;
+    const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let sum = 0;
+    for (let i = 0; i < data.length; i += 4) sum = (31 * sum + data[i] + 2 * data[i + 1]) % 1000003;
+    return sum;
+}"""
+# Milliseconds from the movement of a slider to its picture.
+LATENCY = """async box => {
+    const slider = box.querySelector('input[type=range]');
+    const stage = box.querySelector('.explore-stage');
+    const waited = [];
+    for (let i = 0; i < 15; i++) {
+        delete stage.dataset.took;
+        const start = performance.now();
+        slider.value = Number(slider.value) + (i % 2 ? -1 : 1) * Number(slider.step);
+        slider.dispatchEvent(new Event('input', {bubbles: true}));
+        while (!stage.dataset.took) await new Promise(resolve => setTimeout(resolve));
+        await new Promise(resolve => requestAnimationFrame(resolve));
+        waited.push(performance.now() - start);
+    }
+    return waited;
+}"""
+MEGABYTES = r"() => /[1-9]\d*\.\d of 1\d\.\d MB/.test(document.body.innerText)"
+PIXELS = """canvas => {
+    const all = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    return Array.from(all.data);
+}"""
+CHECKED = """box => {
+    const done = box.querySelector('.exercise-report').textContent;
+    return done && !box.querySelector('button').disabled;
+}"""
+
+
+@pytest.fixture(scope="module")
+def site(request, tmp_path_factory):
+    """Build the site, and add a page with all explorations; gives its folder."""
+    if given := os.environ.get("CVNOTES_SITE"):
+        out = Path(given)
+    else:
+        parts = request.getfixturevalue("browser_parts")
+        out = tmp_path_factory.mktemp("site") / "built"
+        command = [sys.executable, ROOT / "tools" / "build_site.py", "--out", out, "--parts", parts]
+        run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+        assert run.returncode == 0, run.stdout + run.stderr
+    page = (out / "notebooks" / "04_lens_distortion.html").read_text()
+    outputs = "".join(_output(name) for name in explore.NAMES)
+    page = ARTICLE.sub(lambda found: found[1] + outputs, page)
+    (out / "notebooks" / "all_explorations.html").write_text(page)
+    return out
+
+
+def _output(name):
+    shown = getattr(explore, f"explore_{name}")()._repr_mimebundle_()["text/html"]
+    return f'<div class="cell"><div class="cell_output"><div>{shown}</div></div></div>'
+
+
+@pytest.fixture(scope="module")
+def address(site):
+    class Quiet(http.server.SimpleHTTPRequestHandler):
+        def log_message(self, *_):
+            pass
+
+    handler = functools.partial(Quiet, directory=site)
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    server.server_close()
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(chromium, address):
+    """Open pages of the site; hold at the end that all went well and nobody else was asked."""
+    contexts, outside, errors = [], [], []
+
+    def opened(name, script="", **how):
+        context = chromium.new_context(**{"viewport": {"width": 1400, "height": 900}, **how})
+        contexts.append(context)
+        page = context.new_page()
+        ours = (address, "data:", "blob:")
+        context.on("request", lambda r: r.url.startswith(ours) or outside.append(r.url))
+        page.on("console", lambda m: errors.append(m.text) if m.type == "error" else None)
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        if script:
+            page.add_init_script(script)
+        page.goto(f"{address}/notebooks/{name}.html")
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    assert outside == []
+    assert errors == []
+
+
+def explorations(page):
+    page.wait_for_selector(".explore")
+    boxes = page.locator(".explore")
+    return {name: boxes.nth(i) for i, name in enumerate(explore.NAMES)}
+
+
+def becomes_another(page, box, before):
+    """Wait for another picture."""
+    for _ in range(AWAKE // 50):
+        now = box.evaluate(SHOWN)
+        if now not in (0, before):
+            return now
+        page.wait_for_timeout(50)
+    raise AssertionError(box.locator(".explore-state").inner_text())
+
+
+def middle(grip):
+    grip.scroll_into_view_if_needed()
+    box = grip.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def value(box, label):
+    number = box.locator(".explore-control", has=box.page.get_by_text(label, exact=True))
+    return float(number.locator("output").inner_text().replace("−", "-"))
+
+
+# Explorations.
+
+
+def test_a_page_is_read_at_once_and_python_comes_with_the_first_touch(open_page):
+    page = open_page("all_explorations")
+    box = explorations(page)["lens"]
+    assert box.locator("img").evaluate("img => img.naturalWidth") > 1000
+    assert box.locator("canvas[role=img]").is_hidden()
+    assert box.locator(".explore-sentence").inner_text() == MODELS["lens"].sight().sentence
+    assert not page.workers
+    box.locator("input").first.focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function(MEGABYTES, timeout=AWAKE)
+    becomes_another(page, box, 0)
+    assert box.locator("img").is_hidden()
+
+
+def test_every_exploration_follows_the_keyboard_as_the_notebook_would(open_page, tmp_path):
+    page = open_page("all_explorations")
+    median = {}
+    for name, box in explorations(page).items():
+        shown = box.evaluate(SHOWN)
+        setting = MODELS[name].settings[0]
+        slider = box.locator("input").first
+        slider.focus()
+        for _ in range(3):
+            page.keyboard.press("ArrowLeft")
+        shown = becomes_another(page, box, shown)
+        page.wait_for_function("() => !document.querySelector('.explore-state').textContent")
+        page.wait_for_timeout(300)
+        values = {setting.name: float(slider.input_value())}
+        assert values[setting.name] == pytest.approx(setting.value - 3 * setting.step)
+        sight = MODELS[name].sight(**values)
+        assert box.locator(".explore-sentence").inner_text() == sight.sentence
+        assert box.locator("canvas[role=img]").get_attribute("aria-label").endswith(sight.sentence)
+        median[name] = statistics.median(box.evaluate(LATENCY)[3:])
+        box.locator("button", has_text="Reset").click()
+        page.wait_for_timeout(500)
+        assert box.locator(".explore-sentence").inner_text() == MODELS[name].sight().sentence
+    (tmp_path / "median.json").write_text(json.dumps(median))
+    print(median)
+
+
+def test_the_browsers_picture_is_the_notebooks(open_page):
+    page = open_page("all_explorations")
+    box = explorations(page)["camera"]
+    slider = box.locator("input").first
+    slider.focus()
+    page.keyboard.press("ArrowRight")
+    becomes_another(page, box, 0)
+    page.wait_for_timeout(300)
+    seen = box.locator("canvas[role=img]").evaluate(PIXELS)
+    expected = MODELS["camera"].picture(alpha=float(slider.input_value()))
+    pixels = np.array(seen, np.uint8).reshape(*expected.shape[:2], 4)[..., :3]
+    # Two versions of Pillow draw some lines and letters in other shades.
+    turned = MODELS["camera"].picture(angle_x=-26)
+    off, by_a_degree = (np.abs(pixels - other.astype(float)).mean() for other in (expected, turned))
+    assert off < min(1, 0.5 * by_a_degree)
+    rows = box.locator(".explore-matrices td").all_inner_texts()
+    assert rows[0] == "801"
+
+
+def test_a_mouse_pulls_corners_directions_and_the_camera(open_page):
+    page = open_page("all_explorations")
+    boxes = explorations(page)
+    for name, grip, labels in (
+        ("homography", "corner 1, top left", ["corner 1 u", "corner 1 v"]),
+        ("projection", "the vanishing point", ["heading (°)", "slope (°)"]),
+        ("camera", "the camera, to carry it round the board", ["angle x (°)", "angle y (°)"]),
+    ):
+        box = boxes[name]
+        before = [value(box, label) for label in labels]
+        shown = box.evaluate(SHOWN)
+        handle = box.get_by_label(grip)
+        x, y = middle(handle)
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x - 20, y - 15, steps=4)
+        page.mouse.move(x - 40, y - 30, steps=4)
+        becomes_another(page, box, shown)
+        page.wait_for_timeout(600)
+        page.mouse.up()
+        after = [value(box, label) for label in labels]
+        assert all(a != b for a, b in zip(after, before, strict=True)), (name, before, after)
+        if name != "camera":  # it stays under the hand
+            assert np.hypot(*np.subtract(middle(handle), (x - 40, y - 30))) < 8
+
+
+def test_arrow_keys_move_what_a_hand_would_pull(open_page):
+    page = open_page("all_explorations")
+    box = explorations(page)["homography"]
+    box.get_by_label("corner 3, bottom right").focus()
+    page.keyboard.press("ArrowRight")
+    becomes_another(page, box, 0)
+    page.wait_for_timeout(500)
+    first = value(box, "corner 3 u")
+    assert 0 < first < 5
+    for _ in range(4):  # quicker than pictures are drawn
+        page.keyboard.press("ArrowRight")
+    page.wait_for_timeout(1000)
+    assert value(box, "corner 3 u") > 3 * first
+    assert value(box, "corner 3 v") == 0
+
+
+def test_a_thumb_on_a_telephone_moves_slider_and_corner(open_page):
+    page = open_page(
+        "all_explorations", viewport={"width": 400, "height": 800}, has_touch=True, is_mobile=True
+    )
+    box = explorations(page)["homography"]
+    slider = box.locator("input[type=range]").first
+    slider.scroll_into_view_if_needed()
+    place = slider.bounding_box()
+    assert place["height"] >= 24
+    page.touchscreen.tap(place["x"] + 0.8 * place["width"], place["y"] + place["height"] / 2)
+    becomes_another(page, box, 0)
+    assert value(box, "corner 1 u") > 20
+    page.wait_for_timeout(1000)
+    size = box.locator("canvas[role=img]").evaluate("canvas => [canvas.width, canvas.height]")
+    assert size[0] < size[1]  # panels below each other
+    assert page.evaluate("document.documentElement.scrollWidth") <= 400
+    handle = box.get_by_label("corner 2, top right")
+    x, y = middle(handle)
+    assert handle.bounding_box()["width"] >= 44
+    touch = page.context.new_cdp_session(page)
+
+    def finger(kind, *points):
+        at = [{"x": px, "y": py} for px, py in points]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": at})
+
+    before = page.evaluate("scrollY")
+    finger("touchStart", (x, y))
+    for i in range(1, 6):
+        finger("touchMove", (x - 4 * i, y + 6 * i))
+        page.wait_for_timeout(60)
+    finger("touchEnd")
+    page.wait_for_timeout(1000)
+    assert value(box, "corner 2 u") < -5
+    assert value(box, "corner 2 v") > 10
+    assert page.evaluate("scrollY") == before
+
+
+# Exercises.
+
+ANSWERS = {
+    "normaliser": """def my_normaliser(x):
+    centre = x.mean(axis=0)
+    s = 2**0.5 / np.linalg.norm(x - centre, axis=1).mean()
+    return np.array([[s, 0, -s * centre[0]], [0, s, -s * centre[1]], [0, 0, 1]])""",
+    "four_points": "def my_four_points(src, dst):\n    return my_dlt(dst, src)",
+    "dlt": """def my_dlt(src, dst):
+    T, U, D = my_normaliser(src), my_normaliser(dst), []
+    for (x, y), (u, v) in zip(src @ T[:2, :2] + T[:2, 2], dst @ U[:2, :2] + U[:2, 2]):
+        D.append([0, 0, 0, -x, -y, -1, v * x, v * y, v])
+        D.append([x, y, 1, 0, 0, 0, -u * x, -u * y, -u])
+    return np.linalg.inv(U) @ np.linalg.svd(np.array(D))[2][-1].reshape(3, 3) @ T""",
+}
+ENDLESS = "def my_normaliser(x):\n    while True:\n        pass"
+
+
+def write(page, name, text):
+    box = page.locator(".exercise", has=page.locator(f"#answer-{name}"))
+    area = box.locator("textarea")
+    area.fill(text)
+    return box
+
+
+def checked(page, name, text):
+    box = write(page, name, text)
+    box.get_by_role("button", name="Check").click()
+    page.wait_for_function(CHECKED, arg=box.element_handle(), timeout=AWAKE)
+    return box.locator(".exercise-report").inner_text()
+
+
+def test_exercises_answer_right_wrong_and_endless_and_can_be_handed_in(open_page, tmp_path):
+    page = open_page("06_homography_dlt", accept_downloads=True)
+    first = checked(page, "normaliser", ENDLESS)
+    assert "Your function was stopped after 10 seconds: does a loop never end?" in first
+    assert "normaliser: ✓ right." in checked(page, "normaliser", ANSWERS["normaliser"])
+    said = checked(page, "dlt", ANSWERS["dlt"])
+    assert "dlt: ✓ right." in said
+    assert re.search(r"Chapter 6: 2 of \d+ solved", said)
+    wrong = checked(page, "four_points", ANSWERS["four_points"])
+    assert "four_points: ✗ not yet right." in wrong
+    assert "Did you exchange src and dst?" in wrong
+    assert re.search(r"yours = np\.array\(\[", wrong)
+    box = page.locator(".exercise", has=page.locator("#answer-four_points"))
+    box.get_by_role("button", name="Hint").click()
+    page.wait_for_selector(".exercise-help:has-text('hint 1 of')")
+    box.get_by_role("button", name="Hint").click()
+    page.wait_for_selector(".exercise-help:has-text('hint 2 of')")
+    box.get_by_role("button", name="Solution").click()
+    page.wait_for_selector(".exercise-help:has-text('one solution, from')")
+    with page.expect_download() as loading:
+        box.get_by_role("button", name="Save as a notebook").click()
+    saved = tmp_path / "handed_in" / loading.value.suggested_filename
+    loading.value.save_as(saved)
+    assert saved.name == "06_homography_dlt.ipynb"
+    cells = [cell.source for cell in nbformat.read(saved, as_version=4).cells]
+    assert f'{ANSWERS["dlt"]}\n\n\ncheck("dlt", my_dlt)' in cells
+    page.reload()
+    assert page.locator("#answer-dlt").input_value() == ANSWERS["dlt"]
+    assert page.locator("label[for=answer-dlt]").inner_text().endswith("✓ solved")
+    marks = tmp_path / "marks.csv"
+    assert cvnotes(["grade", str(saved.parent), "--out", str(marks)]) == 0
+    with marks.open(newline="", encoding="utf-8") as table:
+        [row] = csv.DictReader(table)
+    assert [row[name] for name in ("normaliser", "dlt", "four_points")] == ["1", "1", "0"], row
+
+
+def test_the_keyboard_alone_writes_checks_and_leaves(open_page):
+    page = open_page("06_homography_dlt")
+    area = page.locator("#answer-normaliser")
+    area.focus()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("def my_normaliser(x):\nreturn 1")
+    assert area.input_value() == "def my_normaliser(x):\n    return 1"
+    page.keyboard.press("Shift+Tab")
+    assert area.input_value() == "def my_normaliser(x):\nreturn 1"
+    page.keyboard.press("Tab")
+    assert area.input_value().endswith("return 1    ")
+    page.keyboard.press("Control+z")
+    assert not area.input_value().endswith(" ")
+    area.fill("def my_normaliser(x):\nreturn 1")
+    page.keyboard.press("Escape")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Check"
+    area.focus()
+    page.keyboard.press("Control+Enter")
+    said = ".exercise-report:has-text('Line 2, `return 1`, cannot be read')"
+    page.wait_for_selector(said, timeout=AWAKE)
+
+
+# Bad luck.
+
+
+def test_without_webassembly_a_sentence_says_so_and_the_page_is_read(open_page):
+    page = open_page("all_explorations", "delete globalThis.WebAssembly")
+    box = explorations(page)["lens"]
+    box.locator("input").first.focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_selector(".explore-state:has-text('This browser has no WebAssembly')")
+    assert box.locator("img").is_visible()
+
+
+def test_without_storage_exercises_work_and_a_sentence_says_that_nothing_is_kept(open_page):
+    refuse = """const own = Storage.prototype.setItem;
+    Storage.prototype.setItem = function (key, text) {
+        if (key.startsWith('cvnotes')) throw new DOMException('full');
+        own.call(this, key, text);
+    }"""
+    page = open_page("06_homography_dlt", refuse)
+    page.wait_for_selector(".exercise-state:has-text('This browser keeps nothing')")
+    box = write(page, "normaliser", ANSWERS["normaliser"])
+    assert "save it as a notebook" in box.locator(".exercise-state").inner_text()
+
+
+def test_a_worker_that_dies_takes_nothing_with_it(open_page):
+    die = """const Own = Worker; let first = true;
+    globalThis.Worker = class extends Own {
+        constructor(...given) {
+            super(...given);
+            const event = {preventDefault() {}, message: 'out of memory'};
+            if (first) setTimeout(() => this.onerror(event), 50);
+            first = false;
+        }
+    };"""
+    page = open_page("all_explorations", die)
+    box = explorations(page)["lens"]
+    box.locator("input").first.focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_selector(".explore-state:has-text('Python ended (out of memory)')")
+    page.keyboard.press("ArrowRight")
+    becomes_another(page, box, 0)
+
+
+def test_a_broken_line_is_said_and_tried_again(open_page):
+    page = open_page("all_explorations")
+    page.context.route("**/numpy-*.whl", lambda route: route.fulfill(status=503, body=""))
+    box = explorations(page)["lens"]
+    box.locator("input").first.focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_selector(".explore-state:has-text('Python could not be loaded')", timeout=AWAKE)
+    page.context.unroute("**/numpy-*.whl")
+    page.keyboard.press("ArrowRight")
+    becomes_another(page, box, 0)
+
+
+def test_two_tabs_keep_what_was_written_last(open_page):
+    page = open_page("06_homography_dlt")
+    other = page.context.new_page()
+    other.goto(page.url)
+    write(page, "dlt", "def my_dlt(src, dst):\n    return 1")
+    other.wait_for_function("document.querySelector('#answer-dlt').value.includes('return 1')")
+    other.locator("#answer-dlt").focus()
+    write(page, "dlt", "def my_dlt(src, dst):\n    return 2")
+    other.wait_for_selector(".exercise-state:has-text('Another tab has written into this box too')")
+    assert "return 1" in other.locator("#answer-dlt").input_value()
