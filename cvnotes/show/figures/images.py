@@ -118,17 +118,21 @@ def draw_corners(
     image : array_like, shape (height, width) or (height, width, 3)
         The picture.
     corners : array_like, shape (n, 2)
-        Pixels, ordered as ``board.points``; NaN for those that were not found.
+        Pixels, ordered as ``board.points``; NaN for those of a `CharucoBoard` not found.
     board : Chessboard or CharucoBoard
         Tells how many corners a row has.
     """
-    if not isinstance(board, CharucoBoard):
+    if isinstance(board, CharucoBoard):  # of which a part may be seen
+        m = positions(corners, "corners")
+    else:
         thing(board, "board", Chessboard)
-    m, (columns, rows) = points(corners, "corners", 2), board.corners
+        m = points(corners, "corners", 2)
+    columns, rows = board.corners
     if m.shape != (columns * rows, 2):
         raise ShapeError(
             f"corners: a board of {columns}×{rows} has {columns * rows}, got {m.shape}"
         )
+    m = np.where(np.isfinite(m), m, np.nan)
     ax = draw_image(image, ax=ax, title=title)
     grid = m.reshape(rows, columns, 2)
     for row in grid:
