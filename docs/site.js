@@ -64,3 +64,10 @@
   addEventListener("load", () => narrow.matches && stackAll());
   narrow.addEventListener("change", () => narrow.matches && stackAll());
 })();
+
+// What the theme and docutils say of themselves, so that every reader program understands it.
+addEventListener("load", () => {
+  for (const button of document.querySelectorAll(".search-button-field")) button.removeAttribute("aria-label");
+  for (const entry of document.querySelectorAll('[role="list"] > [role="doc-biblioentry"]'))
+    entry.setAttribute("role", "listitem");
+});

@@ -163,5 +163,7 @@ def _label(setting: Setting) -> str:
     """Write the label, on the colour that its entries of a matrix have."""
     if not setting.tint:
         return setting.label
-    style = f"background:{setting.tint};color:#000;padding:1px 4px;border-radius:3px"
-    return f'<span style="{style}">{escape(setting.label)}</span>'
+    style = f"background:{setting.tint};color:#000;padding:1px 4px;border-radius:3px;"
+    style += "font-weight:normal"
+    # The front end lets a <b> pass with its style, and no <span>.
+    return f'<b style="{style}">{escape(setting.label)}</b>'
