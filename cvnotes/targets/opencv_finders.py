@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError
+from cvnotes.base import Array
 
 Grey8 = npt.NDArray[np.uint8]
 
@@ -131,7 +131,7 @@ def find_charuco(
 
 def _dictionary(name: str) -> Any:
     if not has_opencv():
-        raise CvnotesError("markers are drawn and read by OpenCV, which is not installed here")
+        raise ImportError("markers are drawn and read by OpenCV, which is not installed here")
     import cv2
 
     return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{name.upper()}"))
