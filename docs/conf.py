@@ -42,11 +42,23 @@ suppress_warnings = ["ref.python"]  # a word that names several things is then j
 html_static_path = ["site.css", "site.js"]
 html_css_files = ["site.css"]
 html_js_files: list[Any] = ["site.js"]
-if tags.has("live"):  # type: ignore[name-defined] # noqa: F821  (Sphinx's: the site has Python)
+
+# Sphinx's own tags: the site has Python for the browser, and JupyterLite.
+LIVE, LITE = (tags.has(name) for name in ("live", "lite"))  # type: ignore[name-defined] # noqa: F821
+if LIVE:
     html_static_path.append("static")
     html_css_files.append("live/live.css")
     defer = {"defer": "defer"}  # in this order, once the page is there
-    html_js_files += [(f"live/{name}.js", defer) for name in ("page", "explore", "exercises")]
+    scripts = ("page", "explore", "exercises", "visit")
+    html_js_files += [(f"live/{name}.js", defer) for name in scripts]
+    templates_path = ["templates"]
+    html_sidebars = {
+        "**": ["navbar-logo.html", "search-button-field.html", "run.html", "sbt-sidebar-nav.html"]
+    }
+RUN = (
+    '<p class="run"><a href="{address}">Run this chapter in this browser</a> '
+    "Nothing is installed: Python comes with the page, 66 MB once.</p>"
+)
 
 
 def escape_initials(*event: Any) -> None:
@@ -55,6 +67,19 @@ def escape_initials(*event: Any) -> None:
     lines[:] = [re.sub(r"^(\s*\.\. \[\d+\] [A-Z])\. ", r"\1\\. ", line) for line in lines]
 
 
+def offer_to_run(*event: Any) -> None:
+    """Lead from a chapter to its notebook in JupyterLite, below the title and beside each page."""
+    _, page, _, context, _ = event
+    context["lite"] = LITE
+    context["chapter"] = chapter = page.removeprefix("notebooks/") if "notebooks/" in page else ""
+    if LITE and chapter and "body" in context:
+        address = context["pathto"]("lite/notebooks/index.html", 1)
+        link = RUN.format(address=f"{address}?path={page}.ipynb")
+        context["body"] = context["body"].replace("</h1>", f"</h1>\n{link}", 1)
+
+
 def setup(app: Any) -> None:
-    """Have Sphinx call us before numpydoc."""
+    """Have Sphinx call us before numpydoc, and when a page is written."""
     app.connect("autodoc-process-docstring", escape_initials, priority=100)
+    if LIVE:
+        app.connect("html-page-context", offer_to_run)

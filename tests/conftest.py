@@ -1,7 +1,11 @@
 """What several test files share: a board, its views by a known camera, where photographs lie."""
 
 import os
+import subprocess
 import sys
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 # Before NumPy is loaded, here and in every process that a test starts: threads of two workers that
@@ -45,6 +49,29 @@ def browser_parts():
         return gather()
     except PartsMissingError as error:
         pytest.skip(f"no Python for the browser: {error}")
+
+
+@pytest.fixture(scope="session")
+def live_site(browser_parts, tmp_path_factory):
+    """Build the site with Python for the browser and serve it below a folder; give its address."""
+    root = Path(__file__).resolve().parents[1]
+    folder = tmp_path_factory.mktemp("live_site")
+    command = [sys.executable, root / "tools/build_site.py", "--out", folder / "some" / "folder"]
+    command += ["--parts", browser_parts]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=root)
+    assert run.returncode == 0, run.stdout + run.stderr
+    handler = partial(QuietHandler, directory=folder)
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/some/folder"
+        server.shutdown()
+
+
+class QuietHandler(SimpleHTTPRequestHandler):
+    """What `python -m http.server` serves, without its log."""
+
+    def log_message(self, *_):
+        """Say nothing."""
 
 
 @pytest.fixture(scope="session")

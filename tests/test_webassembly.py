@@ -15,10 +15,14 @@ ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 IGNORED = {"no-save-output", "nbval-ignore-output"}
 # What may differ, and why: a part of the cell that says it.
-DIFFERS: dict[str, str] = {
-    "with suppress(ImportError):": "a browser has no OpenCV",
-    "with suppress(NameError):": "nor corners found by it",
+DIFFERS = {
+    "cv2.": "there is no OpenCV in a browser",
+    "with suppress(ImportError):": "so such a cell says nothing",
+    "with suppress(NameError):": "nor are there corners found by it",
+    "with ThreadPoolExecutor(": "nor are there threads",
+    "found = calibrate(board.points, corners, camera.size)": "another finder: 0.003 px in v0",
 }
+SAID = ("no OpenCV in a browser", "can't start new thread")
 NUMBER = re.compile(r"(?<![\w.])[-−+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")
 SANITISE = (
     (re.compile("0x[0-9a-fA-F]{6,}"), "ADDRESS"),
@@ -52,10 +56,14 @@ def texts(outputs):
 
 
 def _texts(outputs):
+    """Give each; what a cell prints arrives in one piece or in several."""
+    printed = "".join(o["text"] for o in outputs if o["output_type"] == "stream")
+    if printed:
+        yield printed
     for output in outputs:
         if output["output_type"] == "stream":
-            yield output["text"]
-        elif output["output_type"] == "error":
+            continue
+        if output["output_type"] == "error":
             yield f"{output['ename']}: {output['evalue']}"
         else:
             data = output["data"]
@@ -96,9 +104,11 @@ def test_a_notebook_says_the_same_in_webassembly(path, told):
     for cell, there in zip(cells, outputs, strict=True):
         tags = set(cell.metadata.get("tags", []))
         errors = [o for o in there if o["output_type"] == "error"]
-        if errors and "raises-exception" not in tags:
-            different.append((cell.id, errors))
-        if tags & IGNORED or any(part in cell.source for part in DIFFERS):
+        allowed = any(part in cell.source for part in DIFFERS)
+        unexpected = [e for e in errors if not (allowed and any(w in e["evalue"] for w in SAID))]
+        if unexpected and "raises-exception" not in tags:
+            different.append((cell.id, unexpected))
+        if tags & IGNORED or allowed:
             continue
         expected, found = list(texts(cell.outputs)), list(texts(there))
         compared += len(expected)

@@ -261,6 +261,9 @@ def lay_out(parts: Path, folder: Path) -> Path:
         entry = pack(folder, name, metadata.version(name), _installed(name), imports, depends)
         entries[entry["name"]] = entry
     version = cvnotes.__version__
+    place = Path(__file__).with_name("webassembly") / "no_opencv.py"
+    entry = pack(folder, "no_opencv", version, iter([("cv2.py", place)]), ["cv2"], [])
+    entries[entry["name"]] = entry
     entry = pack(folder, "cvnotes_data", version, _data(), [], [])
     entries[entry["name"]] = data = entry
     needs = [*NEEDED, entry["name"]]

@@ -14,13 +14,15 @@ in `_static/live`. Without the parts the site is built plain, and says so.
 """
 
 import argparse
+import hashlib
 import shutil
 import sys
 import tempfile
 from importlib import import_module
 from pathlib import Path
 
-from browser_parts import PartsMissingError, gather, lay_out
+from browser_parts import VERSION, PartsMissingError, gather, lay_out
+from build_lite import build_lite
 from sphinx.cmd.build import build_main
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,8 +74,8 @@ def toctree(caption: str, pages: list[str]) -> str:
     return "\n".join(lines)
 
 
-def collect(source: Path) -> None:
-    """Put the pages together in a folder."""
+def collect(source: Path, live: bool) -> None:
+    """Put the pages together in a folder, with those that need Python if it is there."""
     for path in sorted(path for pattern in PAGES for path in ROOT.glob(pattern)):
         target = source / path.relative_to(ROOT)
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -82,6 +84,11 @@ def collect(source: Path) -> None:
     notebooks = sorted(path.stem for path in ROOT.glob("notebooks/*.ipynb"))
     contents = toctree("The course", [f"notebooks/{name}" for name in notebooks])
     docs = [f"docs/{path.stem}" for path in sorted(ROOT.glob("docs/*.md"))]
+    if live:
+        pages = sorted((ROOT / "docs" / "live").glob("*.md"))
+        for path in pages:
+            shutil.copy(path, source / path.name)
+        contents += toctree("In this browser", [path.stem for path in pages])
     contents += toctree("To look things up", [*docs, "data/README"])
     (source / "reference").mkdir()
     for caption, names in REFERENCE.items():
@@ -90,6 +97,30 @@ def collect(source: Path) -> None:
         contents += toctree(caption, [f"reference/{name}" for name in names])
     contents += toctree("The project", ["CONTRIBUTING", "CHANGELOG"])
     (source / "index.md").write_text((ROOT / "README.md").read_text() + contents)
+
+
+def add_lite(folder: Path) -> bool:
+    """Put JupyterLite into the site, if it can be had; tells whether it could."""
+    try:
+        build_lite(folder)
+    except PartsMissingError as error:
+        print(f"The site will be without JupyterLite: {error}")
+        return False
+    return True
+
+
+def keep_offline(made: Path) -> None:
+    """Write the service worker, which is another one whenever anything of the site is."""
+    digest = hashlib.sha256()
+    for path in sorted(made.rglob("*")):
+        if path.is_file() and ".doctrees" not in path.parts:
+            digest.update(path.relative_to(made).as_posix().encode() + path.read_bytes())
+    script = (ROOT / "docs" / "offline.js").read_text(encoding="utf-8")
+    script = script.replace("@BUILD@", digest.hexdigest()[:16]).replace("@RUNTIME@", VERSION)
+    (made / "offline.js").write_text(script, encoding="utf-8")
+    theirs = made / "lite" / "service-worker.js"
+    if theirs.is_file():  # ours comes first, and leaves to theirs what notebooks ask of the page
+        theirs.write_text(f"{script}\n{theirs.read_text(encoding='utf-8')}", encoding="utf-8")
 
 
 def main() -> int:
@@ -107,8 +138,10 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         source, made = Path(folder) / "source", Path(folder) / "site"
         source.mkdir()
-        collect(source)
-        options = ["--fail-on-warning", "--quiet", *(["--tag", "live"] if parts else [])]
+        lite = bool(parts) and add_lite(made / "lite")
+        collect(source, bool(parts))
+        options = ["--fail-on-warning", "--quiet"]
+        options += ["--tag", "live"] * bool(parts) + ["--tag", "lite"] * lite
         failed = int(build_main([*options, "-c", str(ROOT / "docs"), str(source), str(made)]))
         if failed:
             return failed
@@ -117,6 +150,7 @@ def main() -> int:
                 path.unlink() if path.is_file() else shutil.rmtree(path)
         if parts:
             lay_out(parts, made / "python")
+            keep_offline(made)
         if out.exists():
             shutil.rmtree(out)
         shutil.copytree(made, out, ignore=shutil.ignore_patterns(".doctrees", ".buildinfo"))

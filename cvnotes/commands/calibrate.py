@@ -102,14 +102,14 @@ def run(args: argparse.Namespace) -> int:
     examined, rejected = examine(args.photos, board, leave_out=args.leave_out)
     used = [photo for photo in examined if photo.corners is not None]
     try:
-        result = _calibrate(used, board, args)
+        result = calibrated(used, board, args)
     except CvnotesError as error:
         files, rejected = _brief([printable(photo.path) for photo in used], rejected)
         say(photo_table(files, [photo.note for photo in used], rejected))
         complain("calibrate", f"{len(used)} usable photographs; {error}")
         return 1
     if not args.keep_all:
-        result, used, misfits = _without_misfits(result, used, board, args)
+        result, used, misfits = without_misfits(result, used, board, args)
         examined = [misfits.get(photo.path, photo) for photo in examined]
         rejected += [Rejected(printable(path), photo.note) for path, photo in misfits.items()]
     files, rejected = _brief([printable(photo.path) for photo in used], rejected)
@@ -118,10 +118,10 @@ def run(args: argparse.Namespace) -> int:
     say(camera_report(result) + "\n")
     for sentence in doubts(result, examined, files, rejected, board):
         say(f"! {sentence}")
-    proposal = _proposal(result, board)
+    proposal = proposal_of(result, board)
     if proposal:
         say(f"Next photograph: {proposal}")
-    contents = _contents(result, examined, board, files, rejected, proposal)
+    contents = contents_of(result, examined, board, files, rejected, proposal)
     write_whole({args.out / name: data for name, data in contents.items()})
     for stale in (path for path in before if path.name not in contents):
         stale.unlink(missing_ok=True)  # a sheet that an earlier run had more than this one
@@ -145,9 +145,16 @@ def asked_board(args: argparse.Namespace) -> "Chessboard | CharucoBoard":
     return Chessboard(args.corners, args.square, half_turn_symmetric=symmetric)
 
 
-def _calibrate(
+def calibrated(
     examined: "Sequence[Examined]", board: "Chessboard | CharucoBoard", args: argparse.Namespace
 ) -> "Calibration":
+    """Calibrate with the photographs that show the board, with the options' lens and board shape.
+
+    Raises
+    ------
+    DegenerateError
+        They do not determine a camera.
+    """
     from cvnotes.calibration import calibrate
 
     if not examined:
@@ -168,7 +175,7 @@ def _calibrate(
         return calibrate(W, m, examined[0].size, lens=lens, board=shape, skew=args.skew)
 
 
-def _without_misfits(
+def without_misfits(
     result: "Calibration",
     used: "list[Examined]",
     board: "Chessboard | CharucoBoard",
@@ -187,7 +194,7 @@ def _without_misfits(
         if not bad or len(kept) < max(_KEPT, _MOST * first):
             break
         try:
-            again = _calibrate(kept, board, args)
+            again = calibrated(kept, board, args)
         except CvnotesError:  # these alone do not determine the camera
             break
         typical = np.median(result.view_rms)
@@ -203,7 +210,7 @@ def _without_misfits(
     return result, used, left_out
 
 
-def _proposal(result: "Calibration", board: "Chessboard | CharucoBoard") -> "NextView | None":
+def proposal_of(result: "Calibration", board: "Chessboard | CharucoBoard") -> "NextView | None":
     """Say where the next photograph should be, unless the board cannot be seen whole."""
     from cvnotes.calibration import next_view
 
@@ -216,7 +223,7 @@ def _proposal(result: "Calibration", board: "Chessboard | CharucoBoard") -> "Nex
     return None
 
 
-def _contents(
+def contents_of(
     result: "Calibration",
     examined: "Sequence[Examined]",
     board: "Chessboard | CharucoBoard",

@@ -84,7 +84,7 @@ def examine(
     examined = []
     first: dict[bytes, Path] = {}
     with one_thread_each():
-        found = in_order(lambda path: _looked_at(path, board), files, workers=_workers(files))
+        found = in_order(lambda path: look_at(path, board), files, workers=_workers(files))
         looked = list(progress(found, total=len(files)))
     for path, (content, item) in zip(files, looked, strict=True):
         same = first.setdefault(content, path)
@@ -149,8 +149,8 @@ def _photographs(paths: Sequence[str]) -> tuple[list[Path], list[Rejected]]:
     return files, rejected
 
 
-def _looked_at(path: Path, board: Chessboard | CharucoBoard) -> tuple[bytes, Examined | Rejected]:
-    """Read and examine one photograph; gives what its pixels are known by, too."""
+def look_at(path: Path, board: Chessboard | CharucoBoard) -> tuple[bytes, Examined | Rejected]:
+    """Read and examine one photograph; gives what its pixels are known by, and what was seen."""
     photo = next(open_photos([path]))
     if isinstance(photo, Rejected):
         return bytes(path), photo

@@ -20,10 +20,10 @@ Grey8 = npt.NDArray[np.uint8]
 
 
 def has_opencv() -> bool:
-    """Tell whether OpenCV can be imported here."""
+    """Tell whether OpenCV can be used here; a browser has only a place where it would be."""
     try:
-        import cv2  # noqa: F401
-    except ModuleNotFoundError:
+        from cv2 import findChessboardCorners  # noqa: F401
+    except ImportError:
         return False
     return True
 

@@ -1,9 +1,10 @@
 """A board found without OpenCV: saddle points of the grey levels, joined into a lattice.
 
 Where four squares meet, the smoothed grey levels have a saddle: light along one diagonal, dark
-along the other. The matrix of second derivatives there says all that is needed, by its
-determinant how much of a saddle it is, by the directions in which it vanishes where the two edges
-run, and by its sign which quadrant is light.
+along the other. The matrix H of second derivatives says there how much of a saddle it is, by its
+determinant, and which quadrants are light. The directions of the two edges it does not tell: around
+a crossing of straight edges its trace is 0, whatever their angle. The gradients around tell them
+(`cvnotes.targets.edge_corners.gradient_axes`).
 """
 
 from collections import deque
@@ -12,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, Image
+from cvnotes.targets.edge_corners import gradient_axes
 from cvnotes.targets.harris_corners import local_maxima
 from cvnotes.targets.lattice import Mask
 
@@ -20,6 +22,7 @@ _WEAK = 0.01  # of the strongest saddle; the square of a contrast, which light a
 _MOST = 3000  # saddle points that are looked at
 _SEEDS = 40  # of these, tried as a beginning
 _NEAR = 12  # neighbours among which the next corners are
+_HALF = 4  # half a window, px, whose gradients tell the directions of the edges
 _ASIDE = 0.3  # sine of the angle between an edge and the way to the next corner
 _QUADRANT = 0.3  # of both steps: there the grey levels of the quadrants are looked at
 _ALIKE = 0.3  # of the contrast: so much is the darker light quadrant lighter than the lighter dark
@@ -77,23 +80,6 @@ def saddle_points(grey: Image, sigma: float) -> Saddles:
     return Saddles(m, H, np.sqrt(response[v, u]), L[1:-1, 1:-1])
 
 
-def edges_of(H: Array) -> Array:
-    """Give the unit directions t (n, 2, 2) of the two edges of saddles: tᵀ H t = 0.
-
-    Examples
-    --------
-    >>> np.abs(edges_of(np.array([[[-1.0, 0], [0, 4]]]))).round(3)
-    array([[[0.894, 0.447],
-            [0.894, 0.447]]])
-    """
-    values, vectors = np.linalg.eigh(H)
-    low, high = np.sqrt(np.abs(values)).T[..., None]
-    e_low, e_high = vectors[..., 0], vectors[..., 1]
-    # λ1 < 0 < λ2: along √λ2 e1 ± √−λ1 e2 the two terms of tᵀ H t cancel.
-    t = np.stack([high * e_low + low * e_high, high * e_low - low * e_high], axis=1)
-    return np.asarray(t / np.maximum(np.linalg.norm(t, axis=-1, keepdims=True), 1e-300))
-
-
 def find_saddles(grey: Image, corners: tuple[int, int]) -> Array | None:
     """Look for a board; corners (n, 2) row by row, NaN for hidden ones, or None.
 
@@ -139,9 +125,10 @@ def _largest(found: Saddles) -> Array:
     best, used = np.full((0, 0, 3), np.nan), np.zeros(len(found.m), dtype=bool)
     if len(found.m) < 9:
         return best
-    tree, edges = cKDTree(found.m), edges_of(found.H)
-    _, near = tree.query(found.m, k=min(_NEAR, len(found.m)))
-    for seed in range(min(_SEEDS, len(found.m))):
+    tree, seeds = cKDTree(found.m), found.m[:_SEEDS]
+    edges = gradient_axes(found.L, seeds, _HALF)
+    _, near = tree.query(seeds, k=min(_NEAR, len(found.m)))
+    for seed in range(len(seeds)):
         if used[seed]:
             continue
         places = _grown(found, tree, seed, _first_steps(found, edges, near, seed))

@@ -12,7 +12,7 @@ const [folder, result, ...notebooks] = process.argv.slice(2);
 const { loadPyodide } = await import(pathToFileURL(resolve(folder, "pyodide.mjs")).href);
 const python = await loadPyodide({ indexURL: resolve(folder) + "/" });
 const quiet = { messageCallback() {}, errorCallback() {} };
-await python.loadPackagesFromImports("import IPython, cvnotes", quiet);
+await python.loadPackagesFromImports("import IPython, cvnotes, cv2", quiet);
 python.runPython("import matplotlib.font_manager"); // which says so when it is first imported
 python.runPython(readFileSync(new URL("execute.py", import.meta.url), "utf8"));
 const execute = python.globals.get("execute");

@@ -1,0 +1,260 @@
+"use strict";
+// The page "Calibrate your camera": photographs go to a worker one by one, and what it says of each
+// is shown at once. When the worker dies, another one takes over; the photographs stay here.
+(() => {
+  const page = document.getElementById("camera-page");
+  const $ = (selector) => page.querySelector(selector);
+  const board = $("form.board");
+  const said = $(".said");
+  const bar = $("progress");
+  const shots = new Map(); // name -> {file, item, state}
+  let worker = null;
+  let waiting = null; // for the worker's answer
+  let number = 0;
+  let working = false;
+  let again = false;
+
+  page.hidden = false;
+  const say = (text) => (said.textContent = text);
+
+  // --- The worker ------------------------------------------------------------------------------
+
+  function wake() {
+    if (worker) return;
+    worker = new Worker(new URL("_static/live/camera_worker.js", document.baseURI));
+    worker.onmessage = ({ data }) => {
+      if (data.say) return say(data.say);
+      if (!waiting || data.id !== waiting.id) return;
+      const { resolve } = waiting;
+      waiting = null;
+      resolve(data);
+    };
+    worker.onerror = (event) => end(event.message || "it could not be started");
+  }
+
+  function end(why) {
+    worker?.terminate();
+    worker = null;
+    const lost = waiting;
+    waiting = null;
+    lost?.resolve({ error: why, dead: true });
+  }
+
+  async function ask(task, more = {}, moved = []) {
+    if (!worker) {
+      wake();
+      if (task !== "board") {
+        const answer = await ask("board", size());
+        if (answer.error) return answer;
+        for (const [name, shot] of shots) if (shot.state === "looked at" && name !== more.name) shot.state = "new";
+      }
+    }
+    const id = ++number;
+    const answer = await new Promise((resolve) => {
+      waiting = { id, resolve };
+      worker.postMessage({ id, task, ...more }, moved);
+    });
+    if (answer.dead) end(answer.error);
+    return answer;
+  }
+
+  const size = () => ({
+    columns: +board.columns.value,
+    rows: +board.rows.value,
+    square: +board.square.value,
+  });
+
+  // --- What is dropped ---------------------------------------------------------------------------
+
+  function add(files) {
+    for (const file of files) {
+      let name = file.name.replaceAll("/", "_") || "photograph";
+      const same = shots.get(name)?.file;
+      if (same && same.size === file.size && same.lastModified === file.lastModified) continue;
+      for (let n = 2; shots.has(name); n++) name = `${n} ${file.name}`;
+      const item = document.createElement("li");
+      item.innerHTML = "<canvas></canvas><strong></strong><span></span>";
+      item.querySelector("strong").textContent = name;
+      item.querySelector("span").textContent = "waits";
+      const remove = document.createElement("button");
+      remove.type = "button";
+      remove.textContent = "Leave out";
+      remove.setAttribute("aria-label", `Leave ${name} out`);
+      remove.onclick = () => leaveOut(name);
+      item.append(remove);
+      $(".shots").append(item);
+      shots.set(name, { file, item, state: "new" });
+    }
+    $("h2.photographs").hidden = !shots.size;
+    work();
+  }
+
+  async function leaveOut(name) {
+    const shot = shots.get(name);
+    shots.delete(name);
+    shot.item.remove();
+    $(".files input, .drop input")?.focus();
+    forgotten.push(name);
+    work();
+  }
+  const forgotten = [];
+
+  const next = () => [...shots].find(([, shot]) => shot.state === "new");
+
+  // Do what is to be done, one thing after the other; what changes meanwhile is done after it.
+  async function work() {
+    again = true;
+    if (working) return;
+    working = true;
+    while (again) {
+      again = false;
+      try {
+        await workOnce();
+      } catch (error) {
+        say(`Something went wrong: ${error.message || error}`);
+      }
+    }
+    working = false;
+  }
+
+  async function workOnce() {
+    if (!board.reportValidity()) return;
+    while (forgotten.length) if (worker) await ask("forget", { name: forgotten.pop() }); else forgotten.pop();
+    for (let found = next(); found; found = next()) {
+      const [name, shot] = found;
+      const all = [...shots.values()];
+      const done = all.filter((each) => each.state !== "new").length;
+      bar.hidden = false;
+      bar.value = done / all.length;
+      if (worker) say(`Photograph ${done + 1} of ${all.length}: ${name}`);
+      shot.state = "looked at";
+      await look(name, shot);
+    }
+    bar.hidden = true;
+    const used = [...shots.values()].filter((shot) => shot.used).length;
+    if (used) await calibrate(used);
+    else {
+      $(".result").hidden = true;
+      if (shots.size) say("The board was found in none of the photographs; each says why.");
+    }
+  }
+
+  async function look(name, shot) {
+    let content;
+    try {
+      content = await shot.file.arrayBuffer();
+    } catch {
+      return show(shot, { words: "the browser cannot read this file (was it moved or changed?)" });
+    }
+    const answer = await ask("look", { name, content }, [content]);
+    if (answer.dead)
+      return show(shot, { words: `Python stopped at this photograph (${answer.error}); it is left out` });
+    show(shot, answer.error ? { words: answer.error } : answer);
+  }
+
+  function show(shot, { used = false, words, png, corners = [] }) {
+    shot.used = used;
+    shot.corners = corners;
+    shot.item.className = used ? "used" : "refused";
+    const text = [used ? "✓ board found" : "✗ not used", words].filter(Boolean).join(": ");
+    shot.item.querySelector("span").textContent = text;
+    if (png) draw(shot.item.querySelector("canvas"), png, corners);
+  }
+
+  async function draw(canvas, png, corners) {
+    const picture = await createImageBitmap(new Blob([png], { type: "image/png" }));
+    [canvas.width, canvas.height] = [picture.width, picture.height];
+    const pen = canvas.getContext("2d");
+    pen.drawImage(picture, 0, 0);
+    pen.strokeStyle = "#d1495b"; // the course's colour of what was measured
+    pen.lineWidth = 2;
+    for (let i = 0; i < corners.length; i += 2) {
+      pen.beginPath();
+      pen.arc(corners[i] + 0.5, corners[i + 1] + 0.5, 4, 0, 7);
+      pen.stroke();
+    }
+  }
+
+  // --- The camera --------------------------------------------------------------------------------
+
+  async function calibrate(used) {
+    say(`Calibrating with ${used} photographs …`);
+    const answer = await ask("calibrate", { lens: board.lens.value });
+    if (next()) return; // dropped meanwhile: it is done again with these
+    if (answer.error) {
+      $(".result").hidden = true;
+      if (answer.dead) {
+        for (const shot of shots.values()) shot.state = "new";
+        say(`Python stopped while it calibrated (${answer.error}). Change something to try again.`);
+      } else say(`No camera yet: ${answer.error}.`.replace("..", "."));
+      return;
+    }
+    say(`The camera is known from ${used} of ${shots.size} photographs.`);
+    $(".result").hidden = false;
+    const verdict = $(".verdict");
+    verdict.textContent = answer.reliable
+      ? "✓ The photographs determine this camera."
+      : "✗ Not reliable: the photographs do not determine this camera. The sentences say what to do.";
+    verdict.className = `verdict ${answer.reliable ? "good" : "bad"}`;
+    $(".doubts").replaceChildren(
+      ...answer.doubts.map((sentence) => Object.assign(document.createElement("li"), { textContent: sentence })),
+    );
+    $(".next").textContent = answer.next ? `Next photograph: ${answer.next}` : "";
+    $(".result pre").textContent = answer.report;
+    $(".table").textContent = answer.table;
+    keep(answer.files);
+  }
+
+  let addresses = [];
+  function keep(files) {
+    addresses.forEach((address) => URL.revokeObjectURL(address));
+    addresses = [];
+    const links = Object.entries(files).map(([name, content]) => {
+      const link = document.createElement("a");
+      const type = name.endsWith(".png") ? "image/png" : "text/plain";
+      link.href = URL.createObjectURL(new Blob([content], { type }));
+      addresses.push(link.href);
+      link.download = link.textContent = name;
+      if (name === "coverage.png") $(".coverage").src = link.href;
+      if (name === "residuals.png") $(".residuals").src = link.href;
+      return link;
+    });
+    $(".files").replaceChildren("Keep: ", ...links.flatMap((link) => [link, " "]));
+  }
+
+  // --- Hands -------------------------------------------------------------------------------------
+
+  $(".drop input").onchange = (event) => {
+    add(event.target.files);
+    event.target.value = "";
+  };
+  const area = $(".drop");
+  for (const kind of ["dragenter", "dragover"])
+    page.addEventListener(kind, (event) => {
+      event.preventDefault();
+      area.classList.add("over");
+    });
+  page.addEventListener("dragleave", () => area.classList.remove("over"));
+  page.addEventListener("drop", (event) => {
+    event.preventDefault();
+    area.classList.remove("over");
+    add(event.dataTransfer.files);
+  });
+  board.addEventListener("submit", (event) => event.preventDefault());
+  board.addEventListener("change", async (event) => {
+    if (event.target.name !== "lens") {
+      // another board: all photographs are looked at again, by a worker that knows it
+      end("another board");
+      for (const shot of shots.values()) shot.state = "new";
+    }
+    if (shots.size) work();
+  });
+  if (typeof WebAssembly !== "object" || typeof Worker !== "function" || !location.protocol.startsWith("http")) {
+    say(
+      location.protocol.startsWith("http")
+        ? "This browser has no WebAssembly or no workers, which Python needs; cvnotes calibrate does the same."
+        : "A page that is opened as a file may not run Python: serve the folder, python3 -m http.server, and open it from there.",
+    );
+    area.hidden = true;
+  }
+})();

@@ -1,0 +1,126 @@
+"""The site with Python in it, in a real browser: nothing outside is asked, and it works offline."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.slow
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+if CHROMIUM is None:
+    pytest.skip("no Chromium on this machine", allow_module_level=True)
+sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+
+ROOT = Path(__file__).resolve().parents[1]
+VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
+ANSWERED = """() => /The camera is known|No camera|found in none|stopped|wrong|missing/.test(
+    document.querySelector('#camera-page .said').textContent)"""
+RUN_ALL = """async () => {
+    const app = window.jupyterapp;
+    await app.restored;
+    const panel = app.shell.currentWidget;
+    await panel.context.ready;
+    await panel.sessionContext.ready;
+    await panel.sessionContext.session.kernel.info;
+    await app.commands.execute('notebook:run-all-cells');
+    return panel.content.model.toJSON().cells.filter(cell => cell.cell_type === 'code')
+        .map(cell => cell.outputs);
+}"""
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with sync_api.sync_playwright() as playwright:
+        arguments = ["--no-sandbox", "--disable-dev-shm-usage"]
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(chromium, live_site):
+    """Give an empty page; at its end it has asked nobody but the site, and met no error."""
+    context = chromium.new_context(viewport={"width": 1280, "height": 900})
+    outside, errors = [], []
+    ours = (live_site.removesuffix("/some/folder"), "data:", "blob:")
+    context.on("request", lambda r: None if r.url.startswith(ours) else outside.append(r.url))
+    page = context.new_page()
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    yield page
+    context.close()
+    assert (outside, errors) == ([], [])
+
+
+def drop(page, files, live_site=None):
+    if live_site:
+        page.goto(f"{live_site}/your_camera.html")
+    page.locator("#camera-page .said").evaluate("said => said.textContent = ''")
+    page.set_input_files("#camera-page .drop input", files)
+    page.wait_for_function(ANSWERED, timeout=240_000)
+    return page.inner_text("#camera-page .said")
+
+
+def test_dropped_photographs_give_the_camera_of_the_desktop(page, live_site, tmp_path, monkeypatch):
+    from cvnotes.commands.dropped import Dropped
+
+    foreign = tmp_path / "foreign.jpg"
+    foreign.write_text("no picture")
+    said = drop(page, [*VIEWS, foreign], live_site)
+    assert said == "The camera is known from 12 of 13 photographs."
+    refused = page.inner_text(".shots li.refused")
+    assert "foreign.jpg" in refused
+    assert "not a picture" in refused
+    with page.expect_download() as download:
+        page.click(".files a >> text=calibration.json")
+    found = json.loads(Path(download.value.path()).read_text())
+    monkeypatch.setitem(__import__("sys").modules, "cv2", None)
+    here = Dropped(9, 6, 25.0)
+    for path in VIEWS:
+        here.look(str(path))
+    result = here.calibrate()
+    assert page.inner_text(".result pre").split() == result["report"].split()
+    expected = json.loads(result["files"]["calibration.json"])
+    ours, theirs = found["camera_matrix"], expected["camera_matrix"]
+    assert str(ours)[:4] == str(theirs)[:4]
+    assert found["rms"] == pytest.approx(expected["rms"], rel=1e-6)
+
+
+def test_a_worker_that_dies_takes_no_photograph_with_it(page, live_site):
+    assert "from 4 of 4" in drop(page, VIEWS[:4], live_site)
+    page.evaluate(
+        "() => { window.Worker = class { constructor() { setTimeout(() => "
+        "this.onerror({message: 'out of memory'}), 50); } postMessage() {} terminate() {} } }"
+    )
+    page.fill("#camera-page [name=square]", "30")
+    page.locator("#camera-page [name=square]").blur()
+    page.wait_for_selector(".shots li.refused", timeout=60_000)
+    assert "Python stopped at this photograph (out of memory)" in page.inner_text(".shots")
+    assert page.locator(".shots li").count() == 4
+
+
+def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
+    page.goto(f"{live_site}/notebooks/03_camera_model.html")
+    page.click("text=Run this chapter in this browser")
+    page.wait_for_function(
+        "() => window.jupyterapp?.shell?.currentWidget?.context", timeout=120_000
+    )
+    outputs = page.evaluate(RUN_ALL)
+    assert len(outputs) > 10
+    errors = [o["evalue"] for cell in outputs for o in cell if o["output_type"] == "error"]
+    assert all("no OpenCV in a browser" in words for words in errors), errors
+    assert any("check" in str(cell) or "solved" in str(cell) for cell in outputs)
+
+
+def test_after_one_visit_pages_and_python_are_there_without_a_network(page, live_site):
+    assert "from 4 of 4" in drop(page, VIEWS[:4], live_site)
+    page.goto(f"{live_site}/notebooks/07_zhang_calibration.html")
+    page.goto(f"{live_site}/your_camera.html")
+    assert "from 4 of 4" in drop(page, VIEWS[:4])
+    page.context.set_offline(True)
+    page.goto(f"{live_site}/notebooks/07_zhang_calibration.html")
+    assert "Zhang" in page.inner_text("h1")
+    assert "from 5 of 5" in drop(page, VIEWS[:5], live_site)
+    page.goto(f"{live_site}/notebooks/01_projective_space.html")
+    assert "no network, and this page has not been visited" in page.inner_text("body")
