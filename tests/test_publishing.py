@@ -1,5 +1,6 @@
 """For whoever publishes the course: metadata, release notes, workflows."""
 
+import json
 import re
 import shutil
 import subprocess
@@ -12,6 +13,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tools"))
+import badges  # noqa: E402
 import release  # noqa: E402
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
@@ -99,6 +101,45 @@ def test_the_workflow_tests_every_system_every_python_and_the_oldest_versions():
     for name in re.findall(r"--ignore=([\w./]+)", str(jobs)):
         assert (ROOT / name).is_file(), name
     assert workflow["permissions"] == {"contents": "read"}
+
+
+def test_the_site_is_published_by_a_workflow_that_may_do_no_more_than_that():
+    workflow = yaml.safe_load((ROOT / ".github/workflows/pages.yml").read_text())
+    build, deploy = workflow["jobs"]["build"], workflow["jobs"]["deploy"]
+    assert workflow["permissions"] == {"contents": "read"}
+    assert deploy["permissions"] == {"pages": "write", "id-token": "write"}
+    runs = [step["run"] for step in build["steps"] if "run" in step]
+    assert runs == ["python start.py site"]
+    uploaded = next(s["with"]["path"] for s in build["steps"] if "upload" in s.get("uses", ""))
+    assert (
+        f'ROOT / "{uploaded.replace("/", chr(34) + " / " + chr(34))}"'
+        in (ROOT / "tools" / "build_site.py").read_text()
+    )
+    for name in re.findall(r"'([\w/]+\.py)'", str(build)):
+        assert (ROOT / name).is_file(), name
+
+
+def test_a_development_container_installs_the_course_by_its_own_command():
+    container = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
+    assert "python start.py check" in container["postCreateCommand"]
+    version = container["image"].rpartition(":")[2]
+    assert f"{version}" in pythons()
+
+
+def test_badges_lead_to_the_repository_and_are_refused_without_one():
+    made = badges.badges("https://github.com/Somebody/course")
+    parts = (
+        "Somebody/course/actions/workflows/tests.yml",
+        "somebody.github.io/course/",
+        "mybinder.org/v2/gh/Somebody/course/main",
+        "colab.research.google.com/github/Somebody/course/",
+    )
+    for part in parts:
+        assert part in made
+    assert (ROOT / badges.FIRST).is_file()
+    for address in (f"https://{release.PLACEHOLDER}/cvnotes", "https://example.org/a/b"):
+        with pytest.raises(ValueError, match="is no repository on GitHub"):
+            badges.badges(address)
 
 
 def test_the_script_of_the_tests_is_valid_and_takes_nobody_for_root():
