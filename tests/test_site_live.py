@@ -25,6 +25,7 @@ from cvnotes.commands.cli import main as cvnotes
 from cvnotes.show import explore
 
 ROOT = Path(__file__).resolve().parents[1]
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 if CHROMIUM is None:
     pytest.skip("no Chromium on this machine", allow_module_level=True)
@@ -309,6 +310,20 @@ def test_a_thumb_on_a_telephone_moves_slider_and_corner(open_page):
     assert value(box, "corner 2 u") < -5
     assert value(box, "corner 2 v") > 10
     assert page.evaluate("scrollY") == before
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_each_chapter_has_its_explorations_and_its_exercises_on_any_width(notebook, open_page):
+    cells = nbformat.read(notebook, as_version=4).cells
+    sources = [cell.source for cell in cells if cell.cell_type == "code"]
+    wanted = [
+        sum(bool(re.search(call, source, re.MULTILINE)) for source in sources)
+        for call in (r"^explore_\w+\(", r'^check\("\w+", ')
+    ]
+    page = open_page(notebook.stem, viewport={"width": 400, "height": 800})
+    page.wait_for_load_state()
+    assert [page.locator(kind).count() for kind in (".explore", ".exercise")] == wanted
+    assert page.evaluate("document.documentElement.scrollWidth") <= 400
 
 
 # Exercises.
