@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -33,7 +34,8 @@ RUN_ALL = """async () => {
 @pytest.fixture(scope="module")
 def chromium():
     with sync_api.sync_playwright() as playwright:
-        arguments = ["--no-sandbox", "--disable-dev-shm-usage"]
+        arguments = ["--no-sandbox", "--disable-dev-shm-usage", "--use-fake-ui-for-media-stream"]
+        arguments += ["--use-fake-device-for-media-stream"]  # a test picture that moves
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
         yield browser
         browser.close()
@@ -75,7 +77,7 @@ def test_dropped_photographs_give_the_camera_of_the_desktop(page, live_site, tmp
     with page.expect_download() as download:
         page.click(".files a >> text=calibration.json")
     found = json.loads(Path(download.value.path()).read_text())
-    monkeypatch.setitem(__import__("sys").modules, "cv2", None)
+    monkeypatch.setitem(sys.modules, "cv2", None)
     here = Dropped(9, 6, 25.0)
     for path in VIEWS:
         here.look(str(path))
@@ -98,6 +100,17 @@ def test_a_worker_that_dies_takes_no_photograph_with_it(page, live_site):
     page.wait_for_selector(".shots li.refused", timeout=60_000)
     assert "Python stopped at this photograph (out of memory)" in page.inner_text(".shots")
     assert page.locator(".shots li").count() == 4
+
+
+def test_the_machines_own_camera_takes_photographs(page, live_site):
+    page.goto(f"{live_site}/your_camera.html")
+    page.click("text=Use this machine's camera")
+    page.wait_for_selector("section.live video", state="visible", timeout=20_000)
+    page.click("text=Take a photograph")
+    page.wait_for_selector(".shots li.refused", timeout=120_000)
+    assert "no board of 9×6 inner corners found" in page.inner_text(".shots")
+    page.click("text=Stop the camera")
+    assert page.is_visible("text=Use this machine's camera")
 
 
 def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):

@@ -2,6 +2,7 @@
 // The page "Calibrate your camera": photographs go to a worker one by one, and what it says of each
 // is shown at once. When the worker dies, another one takes over; the photographs stay here.
 (() => {
+  const COLOUR = "#D55E00"; // the course's, of what was measured
   const page = document.getElementById("camera-page");
   const $ = (selector) => page.querySelector(selector);
   const board = $("form.board");
@@ -166,7 +167,7 @@
     [canvas.width, canvas.height] = [picture.width, picture.height];
     const pen = canvas.getContext("2d");
     pen.drawImage(picture, 0, 0);
-    pen.strokeStyle = "#d1495b"; // the course's colour of what was measured
+    pen.strokeStyle = COLOUR;
     pen.lineWidth = 2;
     for (let i = 0; i < corners.length; i += 2) {
       pen.beginPath();
@@ -220,6 +221,66 @@
       return link;
     });
     $(".files").replaceChildren("Keep: ", ...links.flatMap((link) => [link, " "]));
+  }
+
+  // --- The machine's own camera ------------------------------------------------------------------
+
+  const live = $("section.live");
+  const video = $("video");
+  const webcam = $(".webcam");
+  let stream = null;
+  webcam.hidden = !navigator.mediaDevices?.getUserMedia;
+
+  webcam.onclick = async () => {
+    try {
+      const wanted = { video: { facingMode: "environment", width: { ideal: 1920 } }, audio: false };
+      stream = await navigator.mediaDevices.getUserMedia(wanted);
+    } catch (error) {
+      return say(`The machine's camera cannot be used: ${error.message || error.name}.`);
+    }
+    video.srcObject = stream;
+    await video.play();
+    live.hidden = false;
+    webcam.hidden = true;
+    cover();
+    $(".take").focus();
+  };
+  $(".stop").onclick = () => {
+    stream?.getTracks().forEach((track) => track.stop());
+    video.srcObject = stream = null;
+    live.hidden = true;
+    webcam.hidden = false;
+    webcam.focus();
+  };
+  $(".take").onclick = async () => {
+    const picture = new OffscreenCanvas(video.videoWidth, video.videoHeight);
+    picture.getContext("2d").drawImage(video, 0, 0);
+    const blob = await picture.convertToBlob({ type: "image/png" });
+    const taken = [...shots.keys()].filter((name) => name.startsWith("camera ")).length + 1;
+    add([new File([blob], `camera ${String(taken).padStart(2, "0")}.png`)]);
+  };
+
+  // Over what the camera sees: the corners of all photographs so far, so that gaps are seen.
+  function cover() {
+    if (!stream) return;
+    const canvas = $(".live canvas");
+    [canvas.width, canvas.height] = [video.clientWidth, video.clientHeight];
+    const pen = canvas.getContext("2d");
+    pen.fillStyle = COLOUR;
+    let seen = 0;
+    for (const { used, item, corners } of shots.values()) {
+      if (!used) continue;
+      seen += 1;
+      const small = item.querySelector("canvas");
+      const scale = canvas.width / small.width;
+      for (let i = 0; i < corners.length; i += 2) {
+        pen.beginPath();
+        pen.arc((corners[i] + 0.5) * scale, (corners[i + 1] + 0.5) * scale, 3, 0, 7);
+        pen.fill();
+      }
+    }
+    $(".live p").textContent = `${seen} photographs with the board: dots are where corners were seen.`;
+    setTimeout(cover, 500);
   }
 
   // --- Hands -------------------------------------------------------------------------------------
