@@ -27,7 +27,14 @@ from sphinx.cmd.build import build_main
 
 ROOT = Path(__file__).resolve().parents[1]
 # Whatever the README leads to, at the place where it stands in the repository.
-PAGES = ("CHANGELOG.md", "CONTRIBUTING.md", "data/README.md", "docs/*.md", "notebooks/*.ipynb")
+PAGES = (
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "data/README.md",
+    "docs/*.md",
+    "docs/sheets/*.md",
+    "notebooks/*.ipynb",
+)
 FIGURES = "docs/figures"
 # Of MathJax, whose many bundles contain one another: the one in use, what it loads when a formula
 # asks for it, and what its menu loads for those who listen to formulas.
@@ -83,7 +90,8 @@ def collect(source: Path, live: bool) -> None:
     shutil.copytree(ROOT / FIGURES, source / FIGURES)
     notebooks = sorted(path.stem for path in ROOT.glob("notebooks/*.ipynb"))
     contents = toctree("The course", [f"notebooks/{name}" for name in notebooks])
-    docs = [f"docs/{path.stem}" for path in sorted(ROOT.glob("docs/*.md"))]
+    paths = [*sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("docs/sheets/*.md"))]
+    docs = [str(path.relative_to(ROOT).with_suffix("")) for path in paths]
     if live:
         pages = sorted((ROOT / "docs" / "live").glob("*.md"))
         for path in pages:
