@@ -12,6 +12,7 @@ import nbformat
 import pytest
 
 from cvnotes.base.material import is_clone
+from cvnotes.commands.working_copy import pages
 
 ROOT = Path(__file__).resolve().parents[1]
 EXECUTE = """
@@ -74,6 +75,8 @@ def test_notebooks_and_data_are_in_the_wheel_and_nothing_else_of_the_clone(wheel
             if path.is_file():
                 assert f"cvnotes/course/{path.relative_to(ROOT).as_posix()}" in names
     assert {name.split("/")[0].split("-")[0] for name in names} == {"cvnotes"}
+    docs = {name.removeprefix("cvnotes/course/") for name in names if "/docs/" in name}
+    assert docs == set(pages(ROOT / "notebooks"))  # those to which notebooks lead, and no others
 
 
 def test_the_data_of_the_course_are_found(elsewhere):
@@ -86,6 +89,7 @@ def test_lab_makes_a_working_copy_where_it_is_called(elsewhere):
     said = elsewhere("-m", "cvnotes", "lab", "--copy").stdout
     assert f"Your working copy of the course: {elsewhere.folder / 'my_course'}" in said
     assert len(list((elsewhere.folder / "my_course").glob("*.ipynb"))) == 11
+    assert (elsewhere.folder / "my_course" / "docs" / "notation.md").is_file()
 
 
 def test_photographs_are_calibrated(elsewhere):

@@ -2,6 +2,7 @@
 
 import json
 import platform
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -190,7 +191,41 @@ def test_the_committed_notebooks_arrive_as_they_are(tmp_path):
     done = deliver(material("notebooks"), tmp_path / "copy")
     assert len(done.new) == 11
     for path in material("notebooks").glob("*.ipynb"):
-        assert cells_of(path.read_bytes()) == cells_of((tmp_path / "copy" / path.name).read_bytes())
+        source = path.read_bytes().replace(b"](../docs/", b"](docs/")
+        assert cells_of(source) == cells_of((tmp_path / "copy" / path.name).read_bytes())
+
+
+def test_every_link_of_a_chapter_leads_to_a_file_in_the_copy(tmp_path):
+    deliver(material("notebooks"), tmp_path / "copy")
+    links = 0
+    for path in [*tmp_path.glob("copy/*.ipynb"), *tmp_path.glob("copy/docs/*.md")]:
+        for target in re.findall(r"\]\(([\w./-]+\.(?:md|ipynb|svg|png))[#)]", path.read_text()):
+            place = (path.parent / target).resolve()
+            assert place.is_file(), (path.name, target)
+            assert place.is_relative_to(tmp_path / "copy")  # JupyterLab shows nothing above it
+            links += path.name.startswith("00") or path.suffix == ".md"
+    assert links >= 12 + 7  # chapters and pages from notebook 0, figures from the pages
+    copied = {path.name for path in tmp_path.glob("copy/docs/*.md")}
+    assert copied == {"notation.md", "errata.md"}
+
+
+def test_a_page_comes_up_to_date_and_one_that_was_changed_is_left_alone(course, mine):
+    (course.parent / "docs").mkdir()
+    page, copy = course.parent / "docs" / "axes.md", mine / "docs" / "axes.md"
+    page.write_text("x to the right")
+    notebook = nbformat.read(course / CHAPTERS[0], as_version=4)
+    notebook.cells.append(nbformat.v4.new_markdown_cell("see [axes](../docs/axes.md#x)", id="see"))
+    nbformat.write(notebook, course / CHAPTERS[0])
+    deliver(course, mine)
+    assert copy.read_text() == "x to the right"
+    assert "[axes](docs/axes.md#x)" in (mine / CHAPTERS[0]).read_text()
+    page.write_text("y downwards")
+    deliver(course, mine)
+    assert copy.read_text() == "y downwards"
+    copy.write_text("y downwards; my remark")
+    page.write_text("z forwards")
+    deliver(course, mine)
+    assert copy.read_text() == "y downwards; my remark"
 
 
 @pytest.mark.skipif(not (is_clone() and shutil.which("git")), reason="asks git about the clone")

@@ -18,6 +18,8 @@ from pathlib import Path
 
 from browser_parts import PartsMissingError, cache_folder
 
+from cvnotes.commands.working_copy import pages
+
 ROOT = Path(__file__).resolve().parents[1]
 # 0.7 and later need a newer Pyodide, which switches on what Safari and Firefox do not have.
 PINNED = (
@@ -37,6 +39,7 @@ CONFIG = {
         },
     },
 }
+SETTINGS = Path("cvnotes/commands/jupyter/labconfig/default_setting_overrides.json")
 APPS = ("lab", "notebooks", "tree")
 
 
@@ -83,7 +86,11 @@ def build_lite(out: Path) -> None:
         (source / "files" / "notebooks").mkdir(parents=True)
         for path in sorted(ROOT.glob("notebooks/*.ipynb")):
             shutil.copy(path, source / "files" / "notebooks" / path.name)
+        for page, content in pages(ROOT / "notebooks").items():
+            (source / "files" / page).parent.mkdir(parents=True, exist_ok=True)
+            (source / "files" / page).write_bytes(content)
         (source / "jupyter-lite.json").write_text(json.dumps(CONFIG))
+        shutil.copy(ROOT / SETTINGS, source / "overrides.json")
         command = [str(python), "-m", "jupyterlite_core", "build", "--no-sourcemaps"]
         command += ["--lite-dir", str(source), "--output-dir", str(made)]
         command += ["--contents", str(source / "files"), "--no-libarchive"]

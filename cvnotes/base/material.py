@@ -1,4 +1,4 @@
-"""Where the course's notebooks and data are, in a clone and in an installed package."""
+"""Where the course's notebooks, data and docs are, in a clone and in an installed package."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ CLONE = _PACKAGE.parent  # of the repository, unless the package was installed
 
 
 def material(name: str) -> Path:
-    """Give the folder ``notebooks`` or ``data`` of the course.
+    """Give the folder ``notebooks``, ``data`` or ``docs`` of the course.
 
     In a clone they stand beside the package; a package that was installed brings them along.
 

@@ -20,6 +20,8 @@ from cvnotes.files.writing import check_folder, printable
 
 FOLDER = "my_course"
 RECORD = ".cvnotes-course.json"
+_PAGE = re.compile(r"\]\(\.\./docs/([\w-]+\.md)")
+_FIGURE = re.compile(r"\]\((figures/[\w-]+\.\w+)\)")
 
 
 @dataclass
@@ -46,7 +48,7 @@ def default_folder() -> Path:
 
 
 def deliver(course: Path, folder: Path) -> Delivery:
-    """Bring the chapters of the course into a working copy.
+    """Bring the chapters of the course, and the pages they lead to, into a working copy.
 
     Parameters
     ----------
@@ -58,8 +60,8 @@ def deliver(course: Path, folder: Path) -> Delivery:
     Returns
     -------
     Delivery
-        What is new. A chapter that the student has not changed is replaced by its newer version;
-        the newer version of one that was changed comes beside it, once.
+        What chapters are new. A chapter that the student has not changed is replaced by its newer
+        version; the newer version of one that was changed comes beside it, once.
 
     Raises
     ------
@@ -75,7 +77,7 @@ def deliver(course: Path, folder: Path) -> Delivery:
     record, done = _Record.read(folder), Delivery()
     contents: dict[Path, bytes] = {}
     for chapter in sorted(course.glob("*.ipynb")):
-        name, content = chapter.name, _for_this_python(chapter.read_bytes())
+        name, content = chapter.name, _for_the_copy(chapter.read_bytes())
         latest, there = cells_of(content), _cells_there(folder / name)
         if there == latest:
             pass
@@ -91,8 +93,32 @@ def deliver(course: Path, folder: Path) -> Delivery:
         else:
             continue
         record.delivered[name] = latest
+    for name, content in pages(course).items():
+        latest, there = cells_of(content), _cells_there(folder / name)
+        if there in (None, record.delivered.get(name)):
+            record.delivered[name] = latest
+            if there != latest:
+                contents[folder / name] = content
     write_whole(contents | {folder / RECORD: record.encoded()})
     return done
+
+
+def pages(course: Path) -> dict[str, bytes]:
+    """Give the pages of the docs to which chapters lead, and their figures, by their place.
+
+    Parameters
+    ----------
+    course : Path
+        The folder of the course's notebooks; the docs are beside it.
+    """
+    docs = course.parent / "docs"
+    linked = "".join(path.read_text(encoding="utf-8") for path in course.glob("*.ipynb"))
+    found = {}
+    for page in sorted(set(_PAGE.findall(linked))):
+        found[f"docs/{page}"] = (docs / page).read_bytes()
+        for figure in _FIGURE.findall(found[f"docs/{page}"].decode()):
+            found[f"docs/{figure}"] = (docs / figure).read_bytes()
+    return found
 
 
 def start_over(course: Path, folder: Path, chapter: str) -> tuple[str, str]:
@@ -111,7 +137,7 @@ def start_over(course: Path, folder: Path, chapter: str) -> tuple[str, str]:
         There is no such chapter.
     """
     name = _chapter_name(course, chapter)
-    content = _for_this_python((course / name).read_bytes())
+    content = _for_the_copy((course / name).read_bytes())
     kept = next(n for n in _numbered(Path(name).stem, "kept") if not (folder / n).exists())
     record = _Record.read(folder)
     record.delivered[name] = cells_of(content)
@@ -200,11 +226,13 @@ def _chapter_name(course: Path, asked: str) -> str:
     raise FileError(f"{printable(asked)} is no chapter; the chapters are {', '.join(names)}")
 
 
-def _for_this_python(content: bytes) -> bytes:
-    """Say in a notebook which Python runs it, as JupyterLab does when it opens it.
+def _for_the_copy(content: bytes) -> bytes:
+    """Lead to the docs in the working copy, and say in a notebook which Python runs it.
 
-    What it would write anyway is there already, so that opening a chapter does not change it.
+    JupyterLab shows nothing above the folder that it opens. What it would write into a notebook
+    anyway is there already, so that opening a chapter does not change it.
     """
+    content = _PAGE.sub(r"](docs/\1", content.decode()).encode()
     notebook = json.loads(content)
     language = notebook.get("metadata", {}).get("language_info", {})
     if "version" not in language:
