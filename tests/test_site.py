@@ -183,7 +183,13 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
     assert len(long) >= 2
     assert min(long) > -1  # px: what is left of a box cannot be scrolled to
     telephone.goto((site / "notebooks" / "08_image_warping.html").as_uri())
-    telephone.wait_for_selector(".panels canvas", timeout=30_000)
+    for figure in telephone.locator("img[data-cuts]").all():  # fetched when they come into sight
+        figure.evaluate("image => image.parentElement.scrollIntoView()")
+    telephone.wait_for_function(
+        "document.querySelectorAll('img[data-cuts]').length"
+        " === document.querySelectorAll('.panels').length",
+        timeout=30_000,
+    )
     stacks = telephone.evaluate(
         """() => [...document.querySelectorAll(".panels")].map((stack) =>
             [getComputedStyle(stack.nextElementSibling).display,
@@ -195,6 +201,18 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
         assert len(widths) in (2, 3)
         assert len(set(widths)) == 1
         assert widths[0] > 300
+
+
+def test_a_chapter_is_half_a_megabyte_and_its_figures_come_when_they_are_seen(site):
+    pages = sorted((site / "notebooks").glob("*.html"))
+    for page in pages:
+        text = page.read_text()
+        assert len(text.encode()) < 500_000, page.name
+        figures = re.findall(r'<img [^>]*loading="lazy"[^>]*src="([^"]+)"', text)
+        assert figures, page.name
+        assert all((page.parent / figure).is_file() for figure in figures)
+        assert not re.search(r"data:image/(png|jpeg)", text)
+    assert len(pages) == 11
 
 
 def test_references_are_not_read_as_lists(site):

@@ -23,6 +23,7 @@ from pathlib import Path
 
 from browser_parts import VERSION, PartsMissingError, gather, lay_out
 from build_lite import build_lite
+from site_figures import put_into_files
 from sphinx.cmd.build import build_main
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -156,6 +157,7 @@ def main() -> int:
         for path in (made / "_static" / "mathjax").iterdir():
             if path.name not in MATHJAX:
                 path.unlink() if path.is_file() else shutil.rmtree(path)
+        put_into_files(made)
         if parts:
             lay_out(parts, made / "python")
             keep_offline(made)
