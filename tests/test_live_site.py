@@ -123,7 +123,9 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     assert len(outputs) > 10
     errors = [o["evalue"] for cell in outputs for o in cell if o["output_type"] == "error"]
     assert all("no OpenCV in a browser" in words for words in errors), errors
-    assert any("check" in str(cell) or "solved" in str(cell) for cell in outputs)
+    # (what stands behind a cell that needs OpenCV is left alone when all are run)
+    pictures = sum("<img" in str(cell) for cell in outputs)
+    assert pictures >= 3, outputs
 
 
 def test_after_one_visit_pages_and_python_are_there_without_a_network(page, live_site):
