@@ -12,6 +12,8 @@ and 1.2 GB to test it; later calls start at once. Whatever follows the command g
 `start.py test tests/test_lens.py`. CVNOTES_VENV names another folder for the environment.
 """
 
+from __future__ import annotations  # an older Python reads on, to say that it is too old
+
 import hashlib
 import importlib.util
 import json
@@ -58,7 +60,10 @@ class CannotError(Exception):
 def main(arguments: list[str]) -> int:
     """Install if needed, then become the command."""
     if sys.version_info < (3, 11):
-        print(f"The course needs Python 3.11 or newer; this is {sys.version.split()[0]}.")
+        print(
+            f"The course needs Python 3.11 or newer; this is {sys.version.split()[0]}.",
+            file=sys.stderr,
+        )
         return 1
     if arguments[:1] in (["-h"], ["--help"]):
         print(__doc__)
@@ -200,12 +205,7 @@ def prepare(folder: Path, python: Path, found: dict[str, object] | None) -> dict
     usable = found is not None and (foreign or (is_ours(found) and scripts_start(folder)))
     if usable and found is not None:
         return found
-    if importlib.util.find_spec("ensurepip") is None or importlib.util.find_spec("venv") is None:
-        minor = f"{sys.version_info[0]}.{sys.version_info[1]}"
-        raise CannotError(
-            "this Python comes without venv and ensurepip, which Debian and Ubuntu keep apart; "
-            f"install them with: sudo apt install python3-venv   (or python{minor}-venv)"
-        )
+    check_whole()
     import venv
 
     print(f"  a new environment with Python {sys.version.split()[0]}", flush=True)
@@ -222,6 +222,16 @@ def prepare(folder: Path, python: Path, found: dict[str, object] | None) -> dict
     return found
 
 
+def check_whole() -> None:
+    """Refuse a Python that lacks what makes environments."""
+    if importlib.util.find_spec("ensurepip") is None or importlib.util.find_spec("venv") is None:
+        minor = f"{sys.version_info[0]}.{sys.version_info[1]}"
+        raise CannotError(
+            "this Python comes without venv and ensurepip, which Debian and Ubuntu keep apart; "
+            f"install them with: sudo apt install python3-venv   (or python{minor}-venv)"
+        )
+
+
 def scripts_start(folder: Path) -> bool:
     """Tell if the commands of an environment name this Python: they do not once it has moved."""
     config = folder / ("Scripts/activate" if WINDOWS else "bin/activate")
@@ -236,6 +246,7 @@ def pip(python: Path, found: dict[str, object], what: list[str]) -> None:
     if not found["pip"]:  # uv makes environments without
         subprocess.run([str(python), "-m", "ensurepip"], capture_output=True)
         if not (probe(python) or {}).get("pip"):
+            check_whole()  # what `python3 -m venv` leaves without them
             raise CannotError(
                 f"the environment in {python.parents[1]} has no pip and cannot get one; "
                 "delete that folder"

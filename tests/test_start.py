@@ -1,6 +1,8 @@
 """`start.py`: whatever state `.venv` is in, the course starts or one sentence says what to do."""
 
+import ast
 import importlib.util
+import inspect
 import json
 import os
 import re
@@ -84,6 +86,30 @@ def clone(tmp_path):
 
 
 # --- What is typed ------------------------------------------------------------------------------
+
+
+def test_an_older_python_is_told_so(start, monkeypatch, capsys):
+    monkeypatch.setattr("sys.version_info", (3, 8, 10))
+    assert start.main([]) == 1
+    assert "needs Python 3.11 or newer" in capsys.readouterr().err
+
+
+def test_an_older_python_can_read_so_far(start):
+    ast.parse(START.read_text(encoding="utf-8"), feature_version=(3, 8))
+    functions = [value for value in vars(start).values() if inspect.isfunction(value)]
+    annotations = [each for f in functions for each in f.__annotations__.values()]
+    assert len(annotations) > 20
+    assert {type(each) for each in annotations} == {str}  # not evaluated: 3.9 has no `X | None`
+
+
+def test_the_command_without_its_packages_says_how_to_get_them():
+    code = "import sys; sys.modules['numpy'] = None; from cvnotes.commands.cli import main; "
+    code += "sys.exit(main(['lab', '--copy']))"
+    command, env = [sys.executable, "-c", code], os.environ | {"PYTHONPATH": str(START.parent)}
+    ran = subprocess.run(command, capture_output=True, text=True, env=env)
+    assert ran.returncode == 1
+    assert "has no numpy, which the course needs; in a clone call python3 start.py" in ran.stderr
+    assert len(ran.stderr.splitlines()) == 1
 
 
 @pytest.fixture
@@ -201,6 +227,18 @@ class TestEnvironment:
         monkeypatch.setenv("CVNOTES_VENV", str(tmp_path / "file"))
         with pytest.raises(clone.start.CannotError, match="is no folder"):
             clone.python()
+
+    def test_so_it_does_where_venv_left_an_environment_without_pip(self, start, monkeypatch):
+        found = importlib.util.find_spec
+        monkeypatch.setattr(
+            "importlib.util.find_spec", lambda name: None if name == "ensurepip" else found(name)
+        )
+        start.probe = lambda _: {"pip": False}
+        monkeypatch.setattr(
+            "subprocess.run", lambda command, **_: subprocess.CompletedProcess(command, 1)
+        )
+        with pytest.raises(start.CannotError, match="sudo apt install python3-venv"):
+            start.pip(Path("somewhere/bin/python"), {"pip": False}, ["course"])
 
     def test_without_ensurepip_it_names_the_package_to_install(self, clone, monkeypatch):
         found = importlib.util.find_spec

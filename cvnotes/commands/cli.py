@@ -112,6 +112,14 @@ def _termination_as_interrupt() -> Iterator[None]:
 
 def _cannot(command: str, error: Exception) -> int:
     """Say in one line why the command could not; gives the exit code."""
+    if isinstance(error, ModuleNotFoundError) and not _is_ours(error.name):
+        print(
+            f"cvnotes: this Python ({sys.executable}) has no {error.name}, which the course needs; "
+            "in a clone call python3 start.py, elsewhere install the course with "
+            'pip install "cvnotes[lab]"',
+            file=sys.stderr,
+        )
+        return 1
     from cvnotes.base import CvnotesError
     from cvnotes.commands.console import complain, stop_printing
 
@@ -126,3 +134,7 @@ def _cannot(command: str, error: Exception) -> int:
         where = f"{Path(place.filename).name}, line {place.lineno}"
         complain(command, f"a mistake of ours, please report it: {error!r} in {where}")
     return 1
+
+
+def _is_ours(module: str | None) -> bool:
+    return module is None or module.partition(".")[0] == "cvnotes"
