@@ -449,15 +449,23 @@ def _damp(N: Array, damping: float) -> Array:
 
 
 # Pixels that a coefficient of a quotient costs per unit, and how far that sum is brought down.
-_RIDGE, _WITH_RIDGE = 0.1, 1e-6
+_RIDGE, _WITH_RIDGE, _PATIENCE = 0.1, 1e-6, 20
 # Squared pixels per coordinate that rounding alone may leave.
 _ROUNDING = 1e-25
 
 
 def minimise(
-    problem: Problem, start: State, *, tolerance: float = 1e-12, steps: int = 100
+    problem: Problem,
+    start: State,
+    *,
+    tolerance: float = 1e-12,
+    steps: int = 100,
+    patience: int | None = None,
 ) -> Minimum[State, Arrow]:
     """Minimise the reprojection error from a start, by Levenberg–Marquardt.
+
+    For the numbers see `levenberg_marquardt`; with a quotient for a lens, which has a valley in
+    place of a minimum, `patience` says how often its bottom is felt for.
 
     Raises
     ------
@@ -472,7 +480,7 @@ def minimise(
     .. [2] Triggs et al., Bundle adjustment: a modern synthesis (2000), section 6.
     """
     if problem.model is RationalLens:
-        found = _minimise_quotient(problem, start, tolerance)
+        found = _minimise_quotient(problem, start, tolerance, patience)
     else:
         found = _descend(problem, start, tolerance, steps=steps)
     # (a fisheye may see a board beside it, and shows it elsewhere than one behind)
@@ -506,7 +514,9 @@ def _descend(
     )
 
 
-def _minimise_quotient(problem: Problem, start: State, tolerance: float) -> Minimum[State, Arrow]:
+def _minimise_quotient(
+    problem: Problem, start: State, tolerance: float, patience: int | None
+) -> Minimum[State, Arrow]:
     """Minimise where numerator and denominator of the lens nearly cancel each other.
 
     Along the valley where they do, noise would carry the coefficients away for ever. A ridge,
@@ -514,10 +524,13 @@ def _minimise_quotient(problem: Problem, start: State, tolerance: float) -> Mini
     them; from there the few steps are taken that lead to the exact answer, if the data have one.
     """
     held = _descend(
-        replace(problem, ridge=_RIDGE), start, max(tolerance, _WITH_RIDGE), steps=400, patience=20
+        replace(problem, ridge=_RIDGE),
+        start,
+        max(tolerance, _WITH_RIDGE),
+        steps=400,
+        patience=_PATIENCE if patience is None else patience,
     )
-    free = _descend(problem, held.x, tolerance)
-    return free
+    return _descend(problem, held.x, tolerance, patience=patience)
 
 
 def take_step(x: State, step: tuple[Array, Array]) -> State:

@@ -67,16 +67,32 @@ _MANY_VIEWS, _VIEWS_FOR_START = 150, 16
 _SUSPICIOUS = 0.002
 # The same, when the residuals of few views are no noise.
 _SYSTEMATIC = 0.0003
+# Where lenses are only compared: minima are alike that differ by this part of the cost, and a
+# lens is beaten by another that leaves this part of its cost.
+_ALIKE, _BEATEN = 1e-3, 0.25
 # A student's H is wrong when it puts half of the corners this far off; the picture's width is 2.
 _WRONG = 0.25
 
 
 @dataclass(eq=False)
 class Search:
-    """The search for the best minimum: the starts one after the other, until one is good."""
+    """The search for the best minimum: the starts one after the other, until one is good.
+
+    Parameters
+    ----------
+    problem : Problem
+        Whose minimum is sought.
+    tolerance, patience : float, int
+        Of each minimisation, see `levenberg_marquardt`.
+    rival : float, optional
+        Cost that another lens leaves of the same corners, where lenses are only compared; fewer
+        starts then do for a lens that does not fit.
+    """
 
     problem: Problem
     tolerance: float = 1e-12
+    patience: int | None = None
+    rival: float | None = None
     minima: list[Minimum[State, Arrow]] = field(default_factory=list)
     own: list[str] = field(default_factory=list)  # the steps that are the student's
 
@@ -84,7 +100,7 @@ class Search:
         """Give the starts, the most robust first, until one has led to a good minimum."""
         for start in self._all_starts():
             yield start
-            if self.minima and self._is_good(self.minima[-1]):
+            if self.minima and (self._is_good(self.minima[-1]) or self._is_decided()):
                 break
 
     def _all_starts(self) -> "Iterator[Start]":
@@ -116,6 +132,18 @@ class Search:
         if not minimum.converged or minimum.cost >= allowed:
             return False
         return len(self.problem.m) > FEW_VIEWS or not self._is_systematic(minimum)
+
+    def _is_decided(self) -> bool:
+        """Tell whether two starts ended alike, for a lens that is only compared with others.
+
+        Either in the valley of a quotient, or where its rival is far below: what is left is then
+        the lens's fault, and not that of the start.
+        """
+        if self.rival is None or len(self.minima) < 2:
+            return False
+        lower, higher = sorted(minimum.cost for minimum in self.minima[-2:])
+        beaten = self.rival < _BEATEN * lower
+        return higher < (1 + _ALIKE) * lower and (beaten or self.problem.model is RationalLens)
 
     def _is_systematic(self, minimum: Minimum[State, Arrow]) -> bool:
         """Tell whether more than noise is left: few views bend a wrong camera until it fits."""
@@ -260,7 +288,13 @@ class Start:
 
     def refine(self, A: Array, G: Array, lens: AnyLens) -> None:
         """5. Minimise from here, with no board in the wrong pose, and keep what is found."""
-        found = minimise(self.problem, self.state(A, G, lens), tolerance=self.search.tolerance)
+        search = self.search
+        found = minimise(
+            self.problem,
+            self.state(A, G, lens),
+            tolerance=search.tolerance,
+            patience=search.patience,
+        )
         self.search.minima.append(best_turned(self.problem, found))
 
     def _is_own(self, step: Any, library: Any, name: str) -> bool:
