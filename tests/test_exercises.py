@@ -260,7 +260,7 @@ def test_what_holds_and_what_does_not_is_said_in_words():
     assert "not yet right" in text
     assert "✗ does not hold: The optical axis, (0, 0, 1), is seen at (u0, v0)." in text
     right = check("lift", solution_of("lift"))
-    assert "✓ holds: The last coordinate of every point is k." in repr(right)
+    assert "✓ holds: The last coordinate of every point is w." in repr(right)
     assert "right" in repr(right)
 
 

@@ -57,7 +57,7 @@ def find(words: str) -> tuple[Concept, ...]:
     Examples
     --------
     >>> print(*(concept.what for concept in find("vanishing cosines")))
-    Direction cosines; lines parallel to z vanish in the piercing point
+    Direction cosines; lines parallel to z vanish in the principal point
     """
     wanted = words.lower().split()
     if not wanted:

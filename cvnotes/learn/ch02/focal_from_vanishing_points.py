@@ -24,14 +24,14 @@ FOCAL = Exercise(
     name="focal_from_vanishing_points",
     chapter=2,
     title="The focal length in a picture of a box",
-    task="Give the focal length in pixels of a camera with square pixels and known piercing point "
+    task="Give the focal length in pixels of a camera with square pixels and known principal point "
     "`centre`, from the vanishing points v1 and v2 of two perpendicular directions, shape (2,) "
     "each.",
     stub='''def my_focal_from_vanishing_points(v1, v2, centre):
     """Give f in pixels."""
     ...''',
     hints=(
-        "Measured from the piercing point, v = f (a/c, b/c): the ray of v is (v − centre, f).",
+        "Measured from the principal point, v = f (a/c, b/c): the ray of v is (v − centre, f).",
         "The rays of v1 and v2 are perpendicular: their dot product is 0.",
         "(v1 − centre)·(v2 − centre) + f² = 0.",
     ),
@@ -47,14 +47,14 @@ FOCAL = Exercise(
     ),
     misconceptions=(
         Misconception(
-            "piercing point forgotten",
-            "You took v1·v2 from pixel (0, 0); measure both from the piercing point.",
+            "principal point forgotten",
+            "You took v1·v2 from pixel (0, 0); measure both from the principal point.",
             lambda v1, v2, centre: np.sqrt(-v1 @ v2),
             (lambda v1, v2, centre: np.sqrt(np.abs(v1 @ v2)),),
         ),
         Misconception(
             "sign under the root",
-            "The root of a negative number is NaN. Measured from the piercing point the dot "
+            "The root of a negative number is NaN. Measured from the principal point the dot "
             "product of the two is negative, and f² is minus that.",
             lambda v1, v2, centre: np.sqrt((v1 - centre) @ (v2 - centre)),
         ),
@@ -65,8 +65,8 @@ FOCAL = Exercise(
         ),
         Misconception(
             "lengths multiplied",
-            "You multiplied the two distances from the piercing point; it is the dot product, "
-            "which is the same only if both points lie on one line with the piercing point.",
+            "You multiplied the two distances from the principal point; it is the dot product, "
+            "which is the same only if both points lie on one line with the principal point.",
             lambda v1, v2, centre: np.sqrt(
                 np.linalg.norm(v1 - centre) * np.linalg.norm(v2 - centre)
             ),
@@ -95,7 +95,7 @@ FOCAL = Exercise(
         ),
         Misconception(
             "one point measured from pixel 0",
-            "Only one of the two vanishing points is measured from the piercing point.",
+            "Only one of the two vanishing points is measured from the principal point.",
             lambda v1, v2, centre: np.sqrt(-(v1 - centre) @ v2),
             variants=(lambda v1, v2, centre: np.sqrt(-v1 @ (v2 - centre)),),
         ),

@@ -87,8 +87,8 @@ VANISHING = Exercise(
             lambda A, R, d: (A @ R @ d)[:2],
         ),
         Misconception(
-            "piercing point left out",
-            "f a/c and f b/c are measured from the piercing point; add u0 and v0.",
+            "principal point left out",
+            "f a/c and f b/c are measured from the principal point; add u0 and v0.",
             lambda A, R, d: _seen(A @ R @ d) - A[:2, 2],
         ),
         Misconception(
@@ -142,7 +142,7 @@ VANISHING = Exercise(
             variants=(lambda A, R, d: _seen(A @ R @ d) if (R @ d)[2] else (A @ R @ d)[:2],),
         ),
         Misconception(
-            "piercing point added before the division",
+            "principal point added before the division",
             (
                 "You added u0 and v0 before dividing by z: they belong to the pixel, so they are "
                 "added at the end."

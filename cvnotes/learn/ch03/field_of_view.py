@@ -32,22 +32,24 @@ FIELD = Exercise(
     chapter=3,
     title="How much the camera sees",
     task="Give the angle in radians between the rays through the left and the right border of a "
-    "picture of given width, at the height of the piercing point. Integers are pixel centres, so "
-    "the borders are u = −½ and u = width − ½; the piercing point need not be in the middle.",
+    "picture of given width, at the height of the principal point. Integers are pixel centres, so "
+    "the borders are u = −½ and u = width − ½; the principal point need not be in the middle.",
     stub='''def my_field_of_view(A, width):
     """Give the horizontal field of view in radians."""
     ...''',
     hints=(
-        "Draw the triangle of centre, piercing point and border: its sides are α_u and pixels.",
+        "Draw the triangle of centre, principal point and border: its sides are α_u and pixels.",
         "Two such triangles, one to the left and one to the right, with two different angles.",
         "Each is arctan(pixels / α_u).",
     ),
     cases=_off_centre,
-    properties=(Property("It is the angle between the two rays, wherever the piercing point is."),),
+    properties=(
+        Property("It is the angle between the two rays, wherever the principal point is."),
+    ),
     misconceptions=(
         Misconception(
-            "piercing point in the middle",
-            "2 arctan(width / 2α_u) holds if the piercing point is in the middle; in general it "
+            "principal point in the middle",
+            "2 arctan(width / 2α_u) holds if the principal point is in the middle; in general it "
             "is not. Take the two sides one by one.",
             lambda A, width: 2 * np.arctan(width / 2 / A[0, 0]),
         ),
@@ -58,7 +60,7 @@ FIELD = Exercise(
         ),
         Misconception(
             "one triangle for both sides",
-            "arctan(width / α_u) is the angle if the piercing point were at the border.",
+            "arctan(width / α_u) is the angle if the principal point were at the border.",
             lambda A, width: np.arctan(width / A[0, 0]),
         ),
         Misconception(
@@ -114,9 +116,9 @@ FIELD = Exercise(
             ),
         ),
         Misconception(
-            "piercing point in the middle, in degrees",
+            "principal point in the middle, in degrees",
             (
-                "In degrees, and with the piercing point in the middle: asked are radians, and "
+                "In degrees, and with the principal point in the middle: asked are radians, and "
                 "the two sides one by one."
             ),
             lambda A, width: np.degrees(2 * np.arctan(width / 2 / A[0, 0])),

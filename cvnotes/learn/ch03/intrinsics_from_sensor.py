@@ -12,7 +12,7 @@ from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Proper
 
 
 def intrinsics_from_sensor(f: float, du: float, dv: float, u0: float, v0: float) -> Array:
-    """Give A (3, 3) from focal length and pixel sizes in mm, piercing point in pixels."""
+    """Give A (3, 3) from focal length and pixel sizes in mm, principal point in pixels."""
     return intrinsics(f / du, f / dv, u0, v0)
 
 
@@ -31,7 +31,7 @@ INTRINSICS = Exercise(
     chapter=3,
     title="The sensor's matrix",
     task="Give A (3, 3) of a camera with focal length f and pixels du wide and dv high, all in "
-    "millimetres; its piercing point (u0, v0) is in pixels. No skew.",
+    "millimetres; its principal point (u0, v0) is in pixels. No skew.",
     stub='''def my_intrinsics_from_sensor(f, du, dv, u0, v0):
     """Give A (3, 3); f, du and dv in mm, u0 and v0 in pixels."""
     ...''',
@@ -61,17 +61,17 @@ INTRINSICS = Exercise(
             lambda f, du, dv, u0, v0: _matrix(f / dv, f / du, u0, v0),
         ),
         Misconception(
-            "piercing point exchanged",
+            "principal point exchanged",
             "u0 and v0 are exchanged: u runs along the columns, and its row of A is the first.",
             lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, v0, u0),
         ),
         Misconception(
-            "piercing point divided by the pixel size",
+            "principal point divided by the pixel size",
             "u0 and v0 are in pixels already; only lengths on the sensor are divided.",
             lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0 / du, v0 / dv),
         ),
         Misconception(
-            "piercing point left out",
+            "principal point left out",
             "u0 and v0 are missing: the axis would be seen at pixel (0, 0). (The notes' formula "
             "for u loses them in its middle term too.)",
             lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, 0, 0),
@@ -110,7 +110,7 @@ INTRINSICS = Exercise(
             lambda f, du, dv, u0, v0: _matrix(f / du, f / du, u0, v0),
         ),
         Misconception(
-            "sign of the piercing point",
+            "sign of the principal point",
             "u0 and v0 are added to what the division gives: they stand in A with a plus.",
             lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, -u0, -v0),
         ),

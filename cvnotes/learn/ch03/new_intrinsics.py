@@ -38,7 +38,7 @@ def _changed(
 
 
 def _only_centre(du: float, dv: float | None = None) -> Array:
-    """Give what is added to A to move its piercing point."""
+    """Give what is added to A to move its principal point."""
     return np.array([[0, 0, du], [0, 0, du if dv is None else dv], [0, 0, 0]])
 
 

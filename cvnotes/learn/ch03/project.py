@@ -144,7 +144,7 @@ PROJECT = Exercise(
             lambda A, R, T, W: _seen(W @ R.T + T, without_skew(A)),
         ),
         Misconception(
-            "piercing point added before the division",
+            "principal point added before the division",
             (
                 "You added u0 and v0 before dividing by z: they belong to the pixel, so they are "
                 "added at the end."
@@ -152,8 +152,8 @@ PROJECT = Exercise(
             lambda A, R, T, W: centre_divided_too(A, W @ R.T + T),
         ),
         Misconception(
-            "piercing point left out",
-            "u0 and v0 are missing: your pixels are measured from the piercing point.",
+            "principal point left out",
+            "u0 and v0 are missing: your pixels are measured from the principal point.",
             lambda A, R, T, W: _seen(W @ R.T + T, A) - A[:2, 2],
         ),
         Misconception(

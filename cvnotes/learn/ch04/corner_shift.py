@@ -73,7 +73,7 @@ SHIFT = Exercise(
         Misconception(
             "where the corner is seen",
             (
-                "That is the distance from the piercing point at which the corner is seen; by how "
+                "That is the distance from the principal point at which the corner is seen; by how "
                 "much it has moved is the difference to 400."
             ),
             lambda: 800 * _R + corner_shift(),

@@ -158,8 +158,8 @@ FORM = Exercise(
             lambda A, R, T, k, W: form_image(A, R, T, k, W)[:, ::-1],
         ),
         Misconception(
-            "piercing point left out",
-            "u0 and v0 are missing: your pixels are measured from the piercing point.",
+            "principal point left out",
+            "u0 and v0 are missing: your pixels are measured from the principal point.",
             lambda A, R, T, k, W: form_image(A, R, T, k, W) - A[:2, 2],
         ),
         Misconception(

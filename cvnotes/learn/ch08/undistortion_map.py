@@ -26,7 +26,7 @@ def _small_cameras(rng: Rng) -> list[Case]:
 
 
 def _moved(A: Array, k: Array, size: tuple[int, int], *, radius: str = "ideal") -> Array:
-    """Move each pixel away from the piercing point, by L of a radius that may be wrong."""
+    """Move each pixel away from the principal point, by L of a radius that may be wrong."""
     m = pixel_centres(size)
     offset = m - (0 if radius == "from pixel 0" else A[:2, 2])
     xy = offset / (1 if radius == "pixels" else A[[0, 1], [0, 1]])
@@ -41,7 +41,7 @@ def _undone(A: Array, k: Array, size: tuple[int, int]) -> Array:
 
 
 def _at_piercing_point(m: Array, case: Case) -> float:
-    """Give by how much the map moves the pixel nearest to the piercing point, minus what it may."""
+    """Give by how much the map moves the pixel nearest to the principal point, less what it may."""
     u, v = np.round(case.args[0][:2, 2]).astype(int)
     return float(np.linalg.norm(m[v, u] - case.right[v, u]))
 
@@ -86,7 +86,7 @@ UNDISTORTION = Exercise(
     cases=_small_cameras,
     properties=(
         Property(
-            "The piercing point stays where it is, as nothing is distorted there.",
+            "The principal point stays where it is, as nothing is distorted there.",
             lambda m, c: abs(_at_piercing_point(m, c)) < 0.05,
         ),
         Property("Each pixel is looked up where the lens shows it."),
@@ -105,7 +105,7 @@ UNDISTORTION = Exercise(
         ),
         Misconception(
             "about pixel (0, 0)",
-            "You distorted about pixel (0, 0); the centre is the piercing point (u0, v0).",
+            "You distorted about pixel (0, 0); the centre is the principal point (u0, v0).",
             lambda A, k, size: _moved(A, k, size, radius="from pixel 0"),
         ),
         Misconception(
@@ -154,8 +154,8 @@ UNDISTORTION = Exercise(
             lambda A, k, size: _by(A, _with_r(A, k, size), size),
         ),
         Misconception(
-            "piercing point not added back",
-            "You left the result measured from the piercing point: add u0 and v0.",
+            "principal point not added back",
+            "You left the result measured from the principal point: add u0 and v0.",
             lambda A, k, size: undistortion_map(A, k, size) - A[:2, 2],
         ),
         Misconception(

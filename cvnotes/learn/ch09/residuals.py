@@ -157,7 +157,7 @@ RESIDUALS = Exercise(
             lambda A, k, G, W, m: m - (m - residuals(A, k, G, W, m))[:, ::-1],
         ),
         Misconception(
-            "piercing point left out",
+            "principal point left out",
             "u0 and v0 are missing in your prediction.",
             lambda A, k, G, W, m: residuals(A, k, G, W, m) + A[:2, 2],
         ),
