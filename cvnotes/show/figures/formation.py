@@ -143,7 +143,8 @@ def _frame(ax: "Axes", frame: Array, colour: str) -> None:
 def _plane(ax: "Axes", camera: Camera, xy: Array, shape: tuple[int, ...], colour: str) -> None:
     """Draw the plane z = 1, with the picture's border."""
     _trace(ax, xy, shape, colour)
-    _border(ax, xy_from_px(camera.A, _corners(camera)), "x / z → , y / z ↓")
+    axes = "x / z → , y / z ↓" if colour == IDEAL else "x' → , y' ↓"
+    _border(ax, xy_from_px(camera.A, _corners(camera)), axes)
     ax.plot(0, 0, "+", color=IDEAL, ms=8)
 
 
