@@ -14,14 +14,15 @@ import numpy as np
 from benchmarks import screen
 from cvnotes.base import Array
 from cvnotes.show import explore
-from cvnotes.show.explore.model import Model, pack_png
+from cvnotes.base.png import pack_png
+from cvnotes.show.explore.model import Model
 
 READY = """import io
 import numpy as np
 import ipywidgets
 from PIL import Image
 from cvnotes.show.explore import model
-from cvnotes.show.explore.model import pack_png
+from cvnotes.base.png import pack_png
 packed = [pack_png(model("camera").picture(alpha=alpha)) for alpha in (600, 800)]
 ready, slider = ipywidgets.Image(value=packed[0]), ipywidgets.IntSlider()
 def follow(change):

@@ -14,6 +14,7 @@ import pytest
 from PIL import Image
 
 from cvnotes.base import CvnotesError, DegenerateError, ShapeError
+from cvnotes.base.png import pack_png
 from cvnotes.camera import (
     Camera,
     Lens,
@@ -27,7 +28,7 @@ from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.lettering import LETTERS
-from cvnotes.show.explore.model import Model, Setting, Sight, pack_png
+from cvnotes.show.explore.model import Model, Setting, Sight
 from cvnotes.show.explore.page import asked
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.explore.rectification import lines_from

@@ -1,6 +1,5 @@
 """A sheet to draw on with Pillow: no figure library is loaded, and each picture is encoded once."""
 
-import io
 from collections.abc import Iterable
 from functools import cache
 from typing import Any
@@ -9,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
+from cvnotes.base.png import pack_png
 
 # The meanings of the course's figures, and shades of grey.
 ESTIMATED, WORLD, LENS = "#D55E00", "#009E73", "#0072B2"
@@ -90,13 +90,12 @@ class Canvas:
 
         x, y = where
         large = (_FINE * size[0], _FINE * size[1])
-        self._image.paste(Image.fromarray(grey).resize(large), (_FINE * x, _FINE * y))
+        fine = Image.fromarray(grey).resize(size).resize(large, Image.Resampling.NEAREST)
+        self._image.paste(fine, (_FINE * x, _FINE * y))
 
     def png(self) -> bytes:
         """Encode it."""
-        data = io.BytesIO()
-        self._image.reduce(_FINE).save(data, "PNG", compress_level=2)
-        return data.getvalue()
+        return pack_png(np.asarray(self._image.reduce(_FINE)))
 
 
 def ticks(low: float, high: float, most: int = 6) -> Array:

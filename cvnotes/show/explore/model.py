@@ -2,15 +2,13 @@
 
 import io
 import re
-import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from struct import pack
 from typing import NamedTuple
 
 import numpy as np
 
-from cvnotes.base import Array, CvnotesError, ShapeError
+from cvnotes.base import Array, CvnotesError
 from cvnotes.show.explore.paper import Drawn, Grip, Paper
 from cvnotes.show.picture import Picture
 from cvnotes.show.style import ESTIMATED
@@ -177,31 +175,3 @@ class Model:
         palette.save(encoded, "PNG", optimize=True)
         alt = f"{self.about} {sight.sentence}"
         return Picture(encoded.getvalue(), alt, sight.picture.shape[1] // 2)
-
-
-def pack_png(picture: Drawn) -> bytes:
-    r"""Pack a picture (height, width, 3) of uint8 as PNG, in few milliseconds.
-
-    Each row is stored as its difference from the row above (filter 2, "up"), which turns most of
-    a drawing into zeros, and compressed at level 1: 2 ms, where Pillow at the same level takes 5
-    to 8 of the 40 that a moved slider may take.
-
-    Examples
-    --------
-    >>> pack_png(np.zeros((2, 3, 3), np.uint8))[:8]
-    b'\x89PNG\r\n\x1a\n'
-    """
-    if picture.ndim != 3 or picture.shape[2] != 3 or picture.dtype != np.uint8:
-        raise ShapeError(f"picture: expected uint8 (height, width, 3), got {picture.shape}")
-    height, width = picture.shape[:2]
-    rows = np.empty((height, 1 + 3 * width), np.uint8)
-    flat = picture.reshape(height, -1)
-    rows[:, 0] = 2
-    rows[0, 1:] = flat[0]
-    np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
-    header = pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 1)), (b"IEND", b""))
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        pack(">I", len(data)) + kind + data + pack(">I", zlib.crc32(kind + data))
-        for kind, data in chunks
-    )

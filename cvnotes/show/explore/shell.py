@@ -11,8 +11,9 @@ from ipywidgets.widgets.widget_int import IntSlider
 from ipywidgets.widgets.widget_media import Image
 from ipywidgets.widgets.widget_string import HTML
 
+from cvnotes.base.png import pack_png
 from cvnotes.camera import Camera
-from cvnotes.show.explore.model import Model, Setting, pack_png
+from cvnotes.show.explore.model import Model, Setting
 from cvnotes.show.explore.page import told
 from cvnotes.targets import Chessboard
 
