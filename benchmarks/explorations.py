@@ -13,8 +13,8 @@ import numpy as np
 
 from benchmarks import screen
 from cvnotes.base import Array
-from cvnotes.show import explore
 from cvnotes.base.png import pack_png
+from cvnotes.show import explore
 from cvnotes.show.explore.model import Model
 
 READY = """import io
