@@ -33,8 +33,8 @@ _MEANINGS = {
     "world": "what stands in the world",
     "camera": "the camera: its centre, its image plane",
     "ideal": "the truth, or what an exact formula says",
-    "lens": "measured in a picture, as the lens shows it",
-    "estimated": "computed from measurements: an estimate",
+    "lens": "a point in a picture, as the lens shows it",
+    "estimated": "found by a computation: corners, lines, cameras",
 }
 
 
@@ -44,7 +44,7 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     Examples
     --------
     >>> [text.get_text().split(":")[0] for text in draw_meanings().texts][2:4]
-    ['the truth, or what an exact formula says', 'measured in a picture, as the lens shows it']
+    ['the truth, or what an exact formula says', 'a point in a picture, as the lens shows it']
     """
     ax = panels(height=170) if ax is None else ax
     for row, (meaning, words) in enumerate(_MEANINGS.items()):
