@@ -434,7 +434,7 @@ FUNCTIONS = [
         boards=("flat", "bent"),
     ),
     function(prediction_std, {"m": (M, rows(2))}, calibration=RESULT),
-    function(proposed_pose, {"outline": (W, several(3))}, calibration=RESULT),
+    function(proposed_pose, {"outline": (W[[0, 8, 45, 53]], several(3))}, calibration=RESULT),
     function(
         numbers_in_words,
         {"G": (POSES[1], SINGLE), "W": (W, several(3))},

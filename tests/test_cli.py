@@ -12,6 +12,7 @@ import sys
 import textwrap
 import time
 import urllib.request
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,12 @@ TILTS += [(-0.4, -0.3, -0.2), (0.45, -0.35, 0.1), (-0.2, 0.5, 0.0)]
 
 def photograph(R, T, corners=(9, 6), square=20.0):
     """Photograph a chessboard with an ideal lens: each pixel is the mean of 5 × 5 rays."""
+    return exposed((*map(tuple, R),), tuple(T), corners, square).copy()
+
+
+@cache  # many tests calibrate from the same photographs
+def exposed(R, T, corners, square):
+    R = np.array(R)
     columns, rows = corners
     part = (np.arange(5) - 2) / 5
     v, u = np.meshgrid(

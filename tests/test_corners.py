@@ -173,12 +173,18 @@ class TestEdgesAlongPixelRows:
             np.testing.assert_allclose(find_corners(image, BOARD), truth, atol=0.12)
 
 
+@pytest.fixture(scope="module")
+def whole():
+    camera = view((0.3, -0.4, 0.2), (0, 0, 480))
+    return photograph(camera), camera
+
+
 class TestHiddenCorners:
     @pytest.mark.parametrize("corner", [0, 4, 13, 22, 31, 40, 53])
     @pytest.mark.slow
-    def test_a_coin_takes_one_corner_and_leaves_the_others(self, corner):
-        camera = view((0.3, -0.4, 0.2), (0, 0, 480))
-        image = with_coin(photograph(camera), camera, corner)
+    def test_a_coin_takes_one_corner_and_leaves_the_others(self, corner, whole):
+        image, camera = whole
+        image = with_coin(image, camera, corner)
         m, truth = find_corners(image, BOARD, partial=True), camera.project(BOARD.points)
         assert np.flatnonzero(np.isnan(m).any(-1)).tolist() == [corner]
         assert np.nanmax(np.abs(m - truth)) < 0.2
@@ -197,9 +203,8 @@ class TestHiddenCorners:
         expected = find_corners(shot[0], BOARD)
         np.testing.assert_array_equal(find_corners(shot[0], BOARD, partial=True), expected)
 
-    def test_of_a_board_mostly_hidden_nothing_is_believed(self):
-        camera = view((0.3, -0.4, 0.2), (0, 0, 480))
-        image = photograph(camera)
+    def test_of_a_board_mostly_hidden_nothing_is_believed(self, whole):
+        image, camera = whole
         for corner in np.random.default_rng(0).choice(54, 24, replace=False):
             image = with_coin(image, camera, corner)
         with pytest.raises(CornersNotFound):
@@ -232,8 +237,9 @@ class TestCount:
     @pytest.mark.slow
     def test_a_covered_corner_does_not_change_it(self):
         camera = view((0.3, -0.4, 0.2), (0, 0, 480))
+        image = photograph(camera)
         for corner in (0, 13, 31, 53):
-            assert count_corners(with_coin(photograph(camera), camera, corner)) == (9, 6)
+            assert count_corners(with_coin(image, camera, corner)) == (9, 6)
 
     @pytest.mark.parametrize("shot", CLOSE, ids=str)
     def test_a_wide_lens_does_not_change_it(self, shot):

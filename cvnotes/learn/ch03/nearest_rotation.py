@@ -15,7 +15,14 @@ def _nearly_rotations(rng: Rng) -> list[Case]:
     by_hand = rounded(ABOUT_Y + [[0.1, 0.0, 0.2], [0.2, 0.1, 0.0], [0.0, 0.1, 0.1]], 2)
     noisy = rounded(some_rotation(rng) + 0.1 * rng.standard_normal((3, 3)), 3)
     mirrored = rounded(some_rotation(rng) @ np.diag([1, 1, -0.2]) + 0.03 * noisy, 3)
-    return [Case((by_hand,)), Case((noisy,)), Case((mirrored,), about="mirrored")]
+    # the direction that counts least is not always the last one
+    other = rounded(some_rotation(rng) @ np.diag([0.9, -0.3, 1.2]) + 0.01 * noisy, 3)
+    return [
+        Case((by_hand,)),
+        Case((noisy,)),
+        Case((mirrored,), about="mirrored"),
+        Case((other,), about="mirrored"),
+    ]
 
 
 def _left(M: Array) -> tuple[Array, Array]:
