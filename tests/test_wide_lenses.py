@@ -8,7 +8,11 @@ import pytest
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError
 from cvnotes.calibration import Calibration, calibrate, choose_lens
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Problem
 from cvnotes.calibration.reliability import by_radius
+from cvnotes.calibration.starts import Search
+from cvnotes.calibration.zhang import extrinsics, radial_distortion
 from cvnotes.camera import (
     Camera,
     FisheyeLens,
@@ -21,6 +25,7 @@ from cvnotes.camera import (
 )
 from cvnotes.camera.model import project_with_derivative
 from cvnotes.files import read_camera
+from cvnotes.homography import dlt
 from cvnotes.pictures import render
 from cvnotes.targets import Chessboard, refine_edges
 from cvnotes.warping import undistort_image, undistortion_map
@@ -281,6 +286,23 @@ def test_views_left_out_choose_the_model_that_took_the_pictures():
         assert isinstance(found.lens, type(camera.lens))
         # what is left out is predicted as well as its noise (0.14 px per point) allows
         assert found.left_out[name] == pytest.approx(0.1 * np.sqrt(2), rel=0.1)
+
+
+def test_a_lens_that_another_beats_is_not_started_over_and_over():
+    """All starts of a polynomial end alike with the picture of a fisheye: two of them say so."""
+    W, m = seen_by(Camera(intrinsics(200, 200, 320, 240), lens=FisheyeLens((0.01,))), 10)
+    problem = Problem.of(Correspondences.of(W, m), (640, 480), "k1 k2", skew=False)
+    every, beaten = Search(problem), Search(problem, rival=0.0)
+    for search in (every, beaten):
+        for start in search.starts():
+            with start.attempt():
+                H = start.homographies(dlt)
+                A = start.intrinsics(None, H)
+                G = start.extrinsics(extrinsics, A, H)
+                start.refine(A, G, start.distortion(radial_distortion, A, G))
+    assert len(every.minima) > 6
+    assert len(beaten.minima) < 4
+    assert beaten.best().cost == pytest.approx(every.best().cost, rel=1e-3)
 
 
 def test_a_lens_that_is_too_small_is_never_reliable():

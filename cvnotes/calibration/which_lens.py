@@ -144,7 +144,7 @@ def estimated(problem: Problem, rival: float = np.inf) -> Minimum[State, Arrow]:
 
     `rival` is the least cost of a lens so far.
     """
-    search = Search(problem, patience=_PATIENCE, rival=rival)
+    search = Search(problem, tolerance=_CLOSE, patience=_PATIENCE, rival=rival)
     for start in search.starts():
         with start.attempt():
             H = start.homographies(dlt)
