@@ -198,6 +198,7 @@ def test_two_cameras_find_the_same_board():
     assert np.std(heights[0] - heights[1]) < 0.05 < 0.1 < np.std(heights[0])
 
 
+@pytest.mark.slow
 def test_error_bars_hold_for_heights():
     """Of an arched board, seen with noise: heights over their deviations scatter by about 1."""
     z = []

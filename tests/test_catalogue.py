@@ -347,7 +347,8 @@ def test_whole_numbers_are_computed_with_like_any_others(function, arrays):
         of_floats = {}  # most wholes are the same in 16 bits as in 64
         for dtype in (np.int64, np.int16, np.uint8, np.int8):
             info = np.iinfo(dtype)
-            fitting = x * min(1, info.max / np.abs(x).max(initial=1))  # a smaller picture, if need be
+            # a smaller picture if need be: cut off at 127, its views would be of no board
+            fitting = x * min(1, info.max / np.abs(x).max(initial=1))
             whole = np.clip(np.rint(fitting), info.min, info.max).astype(dtype)
             result = outcome(function, **{name: whole})
             same = whole.astype(float)

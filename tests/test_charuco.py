@@ -128,6 +128,7 @@ def test_from_cut_boards_to_the_camera():
         (CharucoBoard((5, 4), 25.0), "markers 0 to 14, and 34 is there"),
     ],
 )
+@pytest.mark.slow
 def test_another_board_is_named(board, said):
     picture = render(BOARD, camera([60, 40, -330]), blur=0.7)
     with pytest.raises(CornersNotFound, match=said):
@@ -169,6 +170,7 @@ def test_the_sheet_shows_every_dark_field_in_millimetres():
     assert 'CharucoBoard((9, 6), 25, 18.75, "4x4_50")' in sheet.svg().replace("&quot;", '"')
 
 
+@pytest.mark.slow
 def test_the_command_prints_and_calibrates_it(tmp_path, capsys):
     assert main(["target", "--charuco", "--out", str(tmp_path / "board.pdf")]) == 0
     assert (tmp_path / "board.pdf").read_bytes().startswith(b"%PDF")

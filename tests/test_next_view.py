@@ -63,6 +63,7 @@ def test_the_promise_is_kept():
     assert view.after < 0.8 * view.before
 
 
+@pytest.mark.slow
 def test_no_other_view_is_better():
     found, _, rng = few_views()
     view = next_view(found)

@@ -102,6 +102,7 @@ def test_pictures_of_all_kinds(effects, limit):
 
 
 @pytest.mark.usefixtures("no_opencv")
+@pytest.mark.slow
 def test_the_count_that_is_there_is_named():
     picture = read_image(VIEWS[0])
     assert count_corners(picture) == (9, 6)
@@ -110,6 +111,7 @@ def test_the_count_that_is_there_is_named():
 
 
 @pytest.mark.usefixtures("no_opencv")
+@pytest.mark.slow
 def test_a_hidden_corner_is_lost_and_the_others_are_not():
     camera = view(480.0)
     picture = render(BOARD, camera, blur=0.7, noise=2.0, rng=np.random.default_rng(1))

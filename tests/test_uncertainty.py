@@ -20,6 +20,7 @@ def repeated():
     return [calibrate(W, m, CAMERA.size, lens="k1 k2 p1 p2") for m in noisy]
 
 
+@pytest.mark.slow
 def test_the_scatter_of_predicted_pixels_is_the_one_that_was_promised(repeated):
     rays = CAMERA.ray(PLACES)
     seen = np.array([found.camera.project(rays) for found in repeated])
