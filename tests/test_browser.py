@@ -388,3 +388,24 @@ def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, course
     # the notebook lives on
     assert "dlt: ✓ right." in _answer(page, cells, "dlt")
     _shut_down(page)
+
+
+def test_names_of_chapters_are_listed_whole_and_nothing_else_of_ours(page, course):
+    folder, address = course
+    (folder / "open-the-course.html").touch()  # which `cvnotes lab` has there for a minute
+    _write_scratch(folder / "05_calibration_targets.ipynb")
+    _open(page, address, "saved.ipynb")
+    page.wait_for_selector(".jp-DirListing-itemText", timeout=60_000)
+    names = page.locator(".jp-DirListing-itemText")
+    listed = names.all_inner_texts()
+    assert "05_calibration_targets.ipynb" in listed
+    assert "open-the-course.html" not in listed
+    cut = "each => each.filter(e => e.scrollWidth > e.clientWidth).map(e => e.innerText)"
+    assert names.evaluate_all(cut) == []
+
+
+def test_a_page_of_the_docs_is_shown_set_not_as_its_source(page, course):
+    folder, address = course
+    (folder / "page.md").write_text("# Frames\n\nOne *letter*.")
+    page.goto(f"{address}/lab/workspaces/auto-page/tree/page.md?token={TOKEN}")
+    page.wait_for_selector(".jp-MarkdownViewer em", timeout=60_000)

@@ -21,7 +21,7 @@ from cvnotes.base import FileError
 from cvnotes.base.material import material
 from cvnotes.commands.console import say
 from cvnotes.commands.quiet import options
-from cvnotes.commands.redirect import leading_to
+from cvnotes.commands.redirect import NAME, leading_to
 from cvnotes.commands.working_copy import FOLDER, default_folder, deliver, start_over
 from cvnotes.files.writing import printable
 
@@ -161,6 +161,8 @@ def start_server(
     command += options(jupyter_runtime_dir())
     command += ["--ServerApp.ip=127.0.0.1", f"--ServerApp.port={port}"]
     command += ["--ServerApp.port_retries=0", f"--ServerApp.root_dir={notebooks}"]
+    for hidden in ("__pycache__", "*~", ".DS_Store", NAME):  # from the list of chapters
+        command.append(f"--ContentsManager.hide_globs={hidden}")
     command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
     command += ["--LabApp.extension_manager=readonly"]
     if hasattr(os, "geteuid") and os.geteuid() == 0:
