@@ -1,4 +1,4 @@
-"""Text for terminals: columns that stand below each other."""
+"""Text for terminals: columns that stand below each other, and lines that are not too long."""
 
 from collections.abc import Collection, Sequence
 
@@ -28,4 +28,24 @@ def text_table(lines: Sequence[Sequence[str]], *, left: Collection[int] = (0, -1
             for i, (cell, width) in enumerate(zip(line, widths, strict=True))
         ).rstrip()
         for line in lines
+    )
+
+
+def clipped(line: str, width: int) -> str:
+    """Cut a line that is too long, between two words if there are any, and say so by dots.
+
+    Examples
+    --------
+    >>> clipped("the board is held too far away", 20)
+    'the board is held …'
+    >>> clipped("0123456789", 6), clipped("short", 6)
+    ('01234…', 'short')
+    """
+    if len(line) <= width:
+        return line
+    words = line[:width].rpartition(" ")[0].rstrip()
+    return (
+        f"{words} …"
+        if 2 * len(words) > width and len(words) + 2 <= width
+        else f"{line[: width - 1]}…"
     )

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array, FileError
+from cvnotes.base.text import clipped
 
 
 @dataclass(frozen=True)
@@ -103,4 +104,4 @@ class Entry:
 
 def _kind(value: Any) -> str:
     names = {dict: "keys and values", list: "a list", bool: "true or false", type(None): "nothing"}
-    return names.get(type(value), repr(value)[:40])
+    return names.get(type(value), clipped(repr(value), 40))

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
+from cvnotes.base.text import clipped
 from cvnotes.learn.checker.literals import as_code, readable
 
 RIGHT, OPEN, WRONG = "right", "not solved yet", "not yet right"
@@ -107,7 +108,7 @@ class Report:
     def printed_lines(self) -> list[str]:
         """Give the first lines that the function printed."""
         lines = self.printed.splitlines()
-        return [line[:100] for line in lines[:8]] + ["…"] * (len(lines) > 8)
+        return [clipped(line, 100) for line in lines[:8]] + ["…"] * (len(lines) > 8)
 
 
 @dataclass(frozen=True)
