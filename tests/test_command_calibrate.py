@@ -137,6 +137,7 @@ def test_many_photographs_without_the_board_are_a_doubt(photos, capsys):
     assert words in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_the_same_view_several_times_over_is_said(photos, capsys):
     again = photograph(*board_pose(TILTS[3])).astype(int)
     again += np.random.default_rng(0).integers(-1, 2, again.shape)

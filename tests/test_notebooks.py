@@ -43,6 +43,7 @@ def _html(notebook):
             yield cell, "".join(output.get("data", {}).get("text/html", ""))
 
 
+@pytest.mark.slow
 def test_the_notebooks_are_committed_as_the_builder_leaves_them():
     run = subprocess.run(
         [sys.executable, ROOT / "tools/build_notebooks.py", "--check", *NOTEBOOKS],
