@@ -188,7 +188,7 @@ def exercise_cells(path, solved):
             call = re.search(r"^check\(.*", cell, re.M | re.S)[0]
             source = source_of(name).replace("'demo'", "'s123456'")
             cell = f"{source}\n{variable} = {own}\n{call}".replace("your id", "s123456")
-        if asked or re.search(r"^(def )?my_\w+", cell, re.M):
+        if asked:
             kept.append(cell)
     return kept
 
