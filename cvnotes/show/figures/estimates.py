@@ -154,7 +154,7 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
         right.annotate(words, (end, y), (7, 0), textcoords="offset points", va="center", size=9)
     right.set_xscale("log")
     right.set_xlim(1e-3, 1e5)
-    left.set_xlim(0, None)
+    left.set_xlim(0, 1.08 * max(run.rms for runs in results.values() for run in runs) or None)
     left.set(yticks=range(len(results)), yticklabels=list(results), title="what is looked at")
     left.set(xlabel="RMS (px per point)")
     right.set(xlabel="error of the focal length (%)", title="what counts")
