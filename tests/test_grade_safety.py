@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -372,3 +373,25 @@ def test_no_notebook_gets_the_seed(tmp_path):
     notebook(tmp_path / "01_x.ipynb", cell)
     [mark] = graded(tmp_path).values()
     assert mark.remark == ""
+
+
+def test_no_two_threads_parse_at_once(monkeypatch):
+    """In Python 3.11 a second one makes the first fail, and a student lost the marks."""
+    from cvnotes.learn.checker import parsing
+
+    inside, most = [], []
+
+    def slow(source):
+        inside.append(source)
+        most.append(len(inside))
+        time.sleep(0.01)
+        inside.pop()
+        return source
+
+    monkeypatch.setattr(parsing.ast, "parse", slow)
+    threads = [threading.Thread(target=parsing.parsed, args=(str(i),)) for i in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert most == [1] * 8

@@ -101,6 +101,7 @@ def test_the_command_finds_the_published_camera(tmp_path, monkeypatch):
     monkeypatch.setattr("cvnotes.commands.pictures.pictures", lambda *_: {})
     photos = sorted(PHOTOGRAPHS.glob("left*.jpg"))
     options = ["--corners", "9x6", "--square", "30", "--out", str(tmp_path)]
+    options += ["--board-shape", "flat"]  # as for whoever published it
     assert main(["calibrate", *map(str, photos), *options]) == 0
     keys = json.loads((tmp_path / "calibration.json").read_text())
     assert (len(keys["views"]), keys["rejected"]) == (13, [])

@@ -10,6 +10,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.checker.equality import Same, close
+from cvnotes.learn.checker.parsing import parsed
 
 Rng = np.random.Generator
 
@@ -140,7 +141,7 @@ class Exercise:
     @property
     def variable(self) -> str:
         """What the stub calls the answer: ``my_drop``."""
-        for node in ast.walk(ast.parse(self.stub)):
+        for node in ast.walk(parsed(self.stub)):
             if isinstance(node, ast.FunctionDef):
                 return node.name
             if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
@@ -150,7 +151,7 @@ class Exercise:
     @property
     def arguments(self) -> tuple[str, ...]:
         """Names of the arguments, as the stub has them."""
-        for node in ast.walk(ast.parse(self.stub)):
+        for node in ast.walk(parsed(self.stub)):
             if isinstance(node, ast.FunctionDef):
                 return tuple(argument.arg for argument in node.args.args)
         return ()

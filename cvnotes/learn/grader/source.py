@@ -15,6 +15,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from cvnotes.learn.checker.parsing import parsed
 from cvnotes.learn.exercises import EXERCISES
 from cvnotes.learn.grader.belonging import COURSE
 from cvnotes.learn.grader.handin import code_cells
@@ -92,7 +93,7 @@ def own_code(cells: list[str]) -> Code:
     for cell in cells:
         lines = ["" if line.lstrip()[:1] in ("%", "!") else line for line in cell.splitlines()]
         try:
-            tree = ast.parse("\n".join(lines))
+            tree = parsed("\n".join(lines))
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             continue
         for node in tree.body:
@@ -173,7 +174,7 @@ def _shapes(sources: tuple[Any, ...]) -> Iterator[tuple[str, str]]:
     for source in sources:
         function = getattr(source, "fget", None) or getattr(source, "func", None) or source
         try:
-            tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+            tree = parsed(textwrap.dedent(inspect.getsource(function)))
         except (OSError, TypeError, SyntaxError):
             continue
         for node in tree.body:
