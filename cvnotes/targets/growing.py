@@ -17,6 +17,7 @@ _WINDOW = 0.4  # half a window in which gradients lead to a corner, of a square
 _FAINT = 0.6  # of the board's contrast: what is fainter is no edge of its squares
 _UNLIKE = 0.15  # of the contrast: so much more may a corner leave unexplained than most
 _TRIES = 3  # squares to begin with
+_LOOKS = 2  # of OpenCV
 _LARGEST = 60  # corners along a side
 
 
@@ -42,14 +43,17 @@ def grown_board(grey: Grey8) -> Array | None:
     place, alternating, with a contrast like the others'. That is repeated until no side has such a
     row.
     """
-    part = find_part(grey) if has_opencv() else find_saddle_part(grey)
+    # OpenCV's part is not the same each time; in one of a hundred a board cannot grow from it.
+    parts = [find_part(grey) for _ in range(_LOOKS)] if has_opencv() else [find_saddle_part(grey)]
     best = np.full((0, 0, 2), np.nan)
-    if part is None:
-        return None
-    for square in islice(_squares(grey, part), _TRIES):
-        best = max(best, _grown(grey, square), key=np.size)
-        if best.size >= part.size:
-            break
+    for part in parts:
+        if part is None:
+            continue
+        for square in islice(_squares(grey, part), _TRIES):
+            grown = _grown(grey, square)
+            best = max(best, grown, key=np.size)
+            if grown.size >= part.size:
+                break
     if min(best.shape[:2]) < 3:
         return None
     # Half a turn does not matter here: finders give their corners in any order.
