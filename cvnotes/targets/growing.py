@@ -17,7 +17,7 @@ _WINDOW = 0.4  # half a window in which gradients lead to a corner, of a square
 _FAINT = 0.6  # of the board's contrast: what is fainter is no edge of its squares
 _UNLIKE = 0.15  # of the contrast: so much more may a corner leave unexplained than most
 _TRIES = 3  # squares to begin with
-_LOOKS = 2  # of OpenCV
+_LOOKS = 5  # of OpenCV, at most
 _LARGEST = 60  # corners along a side
 
 
@@ -43,21 +43,33 @@ def grown_board(grey: Grey8) -> Array | None:
     place, alternating, with a contrast like the others'. That is repeated until no side has such a
     row.
     """
-    # OpenCV's part is not the same each time; in one of a hundred a board cannot grow from it.
-    parts = [find_part(grey) for _ in range(_LOOKS)] if has_opencv() else [find_saddle_part(grey)]
-    best = np.full((0, 0, 2), np.nan)
-    for part in parts:
+    # OpenCV's part is not the same each time, and from some of them not all of the board grows: the
+    # largest lattice is looked for until it came twice.
+    look, looks = (find_part, _LOOKS) if has_opencv() else (find_saddle_part, 1)
+    grown: list[Array] = [np.full((0, 0, 2), np.nan)]
+    for _ in range(looks):
+        part = look(grey)
         if part is None:
-            continue
-        for square in islice(_squares(grey, part), _TRIES):
-            grown = _grown(grey, square)
-            best = max(best, grown, key=np.size)
-            if grown.size >= part.size:
-                break
+            break
+        grown.append(_grown_from(grey, part))
+        sizes = [lattice.size for lattice in grown]
+        if max(sizes) > 0 and sizes.count(max(sizes)) > 1:
+            break
+    best = max(grown, key=np.size)
     if min(best.shape[:2]) < 3:
         return None
     # Half a turn does not matter here: finders give their corners in any order.
     return best if best.shape[1] >= best.shape[0] else np.rot90(best)
+
+
+def _grown_from(grey: Grey8, part: Array) -> Array:
+    """Grow the surest squares of a part, until what they grow to is as large as the part."""
+    best = np.full((0, 0, 2), np.nan)
+    for square in islice(_squares(grey, part), _TRIES):
+        best = max(best, _grown(grey, square), key=np.size)
+        if best.size >= part.size:
+            break
+    return best
 
 
 def _grown(grey: Image, lattice: Array) -> Array:
