@@ -18,7 +18,7 @@ from cvnotes.calibration.board_shape import (
 )
 from cvnotes.calibration.correspondences import Correspondences, PointSets
 from cvnotes.calibration.refinement import Arrow, Problem, State, solve_arrow
-from cvnotes.calibration.which_lens import estimated, rms_of_parts
+from cvnotes.calibration.which_lens import enough_views, estimated, least, rms_of_parts
 
 # A board with more coefficients has to be better by this much.
 _BETTER = 1.05
@@ -71,10 +71,7 @@ def left_out_rms_of_boards(
     >>> out["free"] < out["bent"] < out["flat"]
     True
     """
-    size = image_size(size)
-    data = Correspondences.of(board_points, image_points)
-    if len(data) < 4:
-        raise DegenerateError(f"to leave views out takes at least 4 of them, got {len(data)}")
+    size, data = image_size(size), enough_views(board_points, image_points)
     problem = Problem.of(data, size, lens, skew)
     flat = estimated(problem)
     found: dict[str, float] = {}
@@ -95,13 +92,7 @@ def choose_board(by_board: dict[str, float]) -> str:
     >>> choose_board({"flat": 0.171, "bent": 0.150, "free": 0.110})
     'free'
     """
-    best = min(by_board.values())
-    if not np.isfinite(best):
-        raise ConvergenceError(
-            "no board leads to a camera: the corners are probably paired with the wrong points of "
-            "the board, or the views do not determine the camera"
-        )
-    limit = max(_BETTER * best, _ROUNDING)
+    limit = max(_BETTER * least(by_board, "board"), _ROUNDING)
     return next(name for name, rms in by_board.items() if rms <= limit)
 
 

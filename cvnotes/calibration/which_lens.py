@@ -75,10 +75,7 @@ def left_out_rms(
     >>> out["none"] > 3 * out["k1 k2"]
     True
     """
-    size = image_size(size)
-    data = Correspondences.of(board_points, image_points)
-    if len(data) < 4:
-        raise DegenerateError(f"to leave views out takes at least 4 of them, got {len(data)}")
+    size, data = image_size(size), enough_views(board_points, image_points)
     found: dict[str, float] = {}
     rival = np.inf
     # (the fisheye first: it fits narrow lenses nearly as well, and wide ones as nothing else does)
@@ -100,13 +97,26 @@ def choose_lens(by_lens: dict[str, float]) -> str:
     >>> choose_lens({"k1 k2": 1.67, "fisheye": 0.42, "rational": 0.43})
     'fisheye'
     """
-    best = min(by_lens.values())
+    return next(name for name, rms in by_lens.items() if rms <= _BETTER * least(by_lens, "lens"))
+
+
+def enough_views(board_points: PointSets, image_points: PointSets) -> Correspondences:
+    """Pair points of enough views for some of them to be left out."""
+    data = Correspondences.of(board_points, image_points)
+    if len(data) < 4:
+        raise DegenerateError(f"to leave views out takes at least 4 of them, got {len(data)}")
+    return data
+
+
+def least(by_name: dict[str, float], what: str) -> float:
+    """Give the smallest RMS, of any lens or any board, or refuse if none came to a camera."""
+    best = min(by_name.values())
     if not np.isfinite(best):
         raise ConvergenceError(
-            "no lens leads to a camera: the corners are probably paired with the wrong points of "
-            "the board, or the views do not determine the camera"
+            f"no {what} leads to a camera: the corners are probably paired with the wrong points "
+            "of the board, or the views do not determine the camera"
         )
-    return next(name for name, rms in by_lens.items() if rms <= _BETTER * best)
+    return best
 
 
 def _is_narrow(found: dict[str, float]) -> bool:
@@ -165,7 +175,10 @@ def _some(x: State, views: npt.NDArray[np.intp]) -> State:
 
 
 def _follow(problem: Problem, x: State, camera: Minimum[State, Arrow]) -> float:
-    """Fit the poses of views to a camera that does not know them; gives the sum of squares."""
+    """Fit the poses of views to a camera that does not know them; gives the sum of squares.
+
+    What few views hold the shape of a board with is a part of it.
+    """
     shared, q = camera.x.shared, len(problem.names)
     held = float(problem.held @ shared**2)
     problem = replace(problem, W=problem.board(shared), shape=None, hold=0.0)  # it is known now
