@@ -84,3 +84,13 @@ def test_keys_move_the_slides_and_formulas_are_set(made):
             assert widest <= 1280, f"slide {number}"
         browser.close()
     assert wrong == []
+
+
+@pytest.mark.parametrize("tool", ["build_slides.py", "build_site.py"])
+def test_a_folder_of_somebody_else_is_not_replaced(tool, tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    command = [sys.executable, ROOT / "tools" / tool, "--out", tmp_path]
+    run = subprocess.run(command, capture_output=True, text=True)
+    assert run.returncode == 1
+    assert "is in the way" in run.stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]

@@ -139,6 +139,9 @@ def main() -> int:
     parser.add_argument("--without-python", action="store_true", help="pages to be read only")
     given = parser.parse_args()
     out, parts = given.out, None
+    if out.exists() and not (out / "_static").is_dir():
+        print(f"{out} is in the way: it is no folder of a site, and is not replaced")
+        return 1
     if not given.without_python:
         try:
             parts = gather(given.parts)

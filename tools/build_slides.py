@@ -223,6 +223,9 @@ def main() -> int:
     parser.add_argument("notebooks", nargs="*", type=Path, help="default: all")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "_build" / "slides")
     given = parser.parse_args()
+    if given.out.exists() and not (given.out / "slides.js").is_file():
+        print(f"{given.out} is in the way: it is no folder of slides, and is not replaced")
+        return 1
     mathjax = formulas()
     made = {}
     for path in given.notebooks or sorted((ROOT / "notebooks").glob("*.ipynb")):
