@@ -456,6 +456,7 @@ EXEMPT = {
     "box": "three intervals; its colours are guarded by `quads`",
     "checked_fill": "a guard",
     "coordinates": "a guard",
+    "enough_views": "a guard; the choices that call it are tried",
     "hold_at": "a target and a camera; see test_views.py",
     "pushed_into_corner": "a target and a camera; see test_views.py",
     "homogeneous": "a guard",
