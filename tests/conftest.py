@@ -52,19 +52,40 @@ def browser_parts():
 
 
 @pytest.fixture(scope="session")
-def live_site(browser_parts, tmp_path_factory):
-    """Build the site with Python for the browser and serve it below a folder; give its address."""
+def live_site(request, tmp_path_factory):
+    """Build the site with Python for the browser and serve it below a folder; give its address.
+
+    CVNOTES_SITE names one that is built already.
+    """
     root = Path(__file__).resolve().parents[1]
     folder = tmp_path_factory.mktemp("live_site")
-    command = [sys.executable, root / "tools/build_site.py", "--out", folder / "some" / "folder"]
-    command += ["--parts", browser_parts]
-    run = subprocess.run(command, capture_output=True, text=True, cwd=root)
-    assert run.returncode == 0, run.stdout + run.stderr
+    (folder / "some").mkdir()
+    if given := os.environ.get("CVNOTES_SITE"):
+        (folder / "some" / "folder").symlink_to(Path(given).resolve())
+    else:
+        parts = request.getfixturevalue("browser_parts")
+        command = [sys.executable, root / "tools/build_site.py", "--parts", parts]
+        command += ["--out", folder / "some" / "folder"]
+        run = subprocess.run(command, capture_output=True, text=True, cwd=root)
+        assert run.returncode == 0, run.stdout + run.stderr
     handler = partial(QuietHandler, directory=folder)
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}/some/folder"
         server.shutdown()
+
+
+@pytest.fixture(scope="session")
+def camera_of_the_views():
+    """Calibrate with the rendered photographs as a page does, here: without OpenCV."""
+    from cvnotes.commands.dropped import Dropped
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "cv2", None)
+        here = Dropped(9, 6, 25.0)
+        for path in sorted((Path(__file__).resolve().parents[1] / "data" / "views").glob("*.png")):
+            here.look(str(path))
+        return here.calibrate()
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

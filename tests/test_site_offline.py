@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import sys
 from pathlib import Path
 
 import pytest
@@ -64,9 +63,9 @@ def drop(page, files, live_site=None):
     return page.inner_text("#camera-page .said")
 
 
-def test_dropped_photographs_give_the_camera_of_the_desktop(page, live_site, tmp_path, monkeypatch):
-    from cvnotes.commands.dropped import Dropped
-
+def test_dropped_photographs_give_the_camera_of_the_desktop(
+    page, live_site, camera_of_the_views, tmp_path
+):
     foreign = tmp_path / "foreign.jpg"
     foreign.write_text("no picture")
     said = drop(page, [*VIEWS, foreign], live_site)
@@ -77,13 +76,8 @@ def test_dropped_photographs_give_the_camera_of_the_desktop(page, live_site, tmp
     with page.expect_download() as download:
         page.click(".files a >> text=calibration.json")
     found = json.loads(Path(download.value.path()).read_text())
-    monkeypatch.setitem(sys.modules, "cv2", None)
-    here = Dropped(9, 6, 25.0)
-    for path in VIEWS:
-        here.look(str(path))
-    result = here.calibrate()
-    assert page.inner_text(".result pre").split() == result["report"].split()
-    expected = json.loads(result["files"]["calibration.json"])
+    assert page.inner_text(".result pre").split() == camera_of_the_views["report"].split()
+    expected = json.loads(camera_of_the_views["files"]["calibration.json"])
     ours, theirs = found["camera_matrix"], expected["camera_matrix"]
     assert str(ours)[:4] == str(theirs)[:4]
     assert found["rms"] == pytest.approx(expected["rms"], rel=1e-6)

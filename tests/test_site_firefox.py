@@ -1,0 +1,150 @@
+"""The site with Python in it, in Firefox: explorations move, exercises answer, photographs do."""
+
+import json
+from pathlib import Path
+
+import pytest
+from firefox import PROGRAM, Firefox
+
+from cvnotes.show import explore
+
+pytestmark = pytest.mark.slow
+if PROGRAM is None:
+    pytest.skip("no Firefox on this machine", allow_module_level=True)
+pytest.importorskip("websocket", reason="websocket-client is not installed (extra: lab)")
+
+ROOT = Path(__file__).resolve().parents[1]
+VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
+SHOWN = """() => {
+    const canvas = document.querySelector('.explore canvas');
+    if (canvas.hidden) return 0;
+    const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let sum = 0;
+    for (let i = 0; i < data.length; i += 4) sum = (31 * sum + data[i] + 2 * data[i + 1]) % 1000003;
+    return sum;
+}"""
+ANOTHER = f"before => {{ const now = ({SHOWN})(); return now !== before && now; }}"
+SENTENCE = "words => document.querySelector('.explore-sentence').textContent === words"
+GRIP = """label => {
+    const grip = document.querySelector(`.explore-grip[aria-label^="${label}"]`);
+    grip.scrollIntoView({block: 'center', behavior: 'instant'});
+    const {x, y, width, height} = grip.getBoundingClientRect();
+    return [x + width / 2, y + height / 2];
+}"""
+# Whether a corner was pulled to the left, and downwards.
+MOVED = """number => {
+    const [u, v] = [...document.querySelectorAll('.explore input')].slice(2 * number - 2);
+    return u.value < -20 && v.value > 12;
+}"""
+WRITE = """(name, text) => {
+    const area = document.querySelector(`#answer-${name}`);
+    area.value = text;
+    area.dispatchEvent(new Event('input', {bubbles: true}));
+    area.closest('.exercise').querySelector('.exercise-report').replaceChildren();
+    area.closest('.exercise').querySelector('button').click();
+}"""
+REPORT = """name => document.querySelector(`#answer-${name}`).closest('.exercise')
+    .querySelector('.exercise-report').textContent"""
+# The ten seconds that an endless loop is given, made one.
+IMPATIENT = """() => {
+    const own = window.setTimeout;
+    window.setTimeout = (act, ms, ...more) => own(act, ms === 10000 ? 1000 : ms, ...more);
+}"""
+# Files that were chosen in an input of our own, dropped as if by a hand.
+DROP = """() => {
+    const carried = new DataTransfer();
+    for (const file of document.querySelector('#carried').files) carried.items.add(file);
+    document.querySelector('#camera-page .drop').dispatchEvent(
+        new DragEvent('drop', {bubbles: true, cancelable: true, dataTransfer: carried}));
+}"""
+CARRIER = """() => {
+    const input = document.createElement('input');
+    Object.assign(input, {type: 'file', multiple: true, id: 'carried'});
+    document.body.append(input);
+}"""
+RIGHT = """def my_normaliser(x):
+    centre = x.mean(axis=0)
+    s = 2**0.5 / np.linalg.norm(x - centre, axis=1).mean()
+    return np.array([[s, 0, -s * centre[0]], [0, s, -s * centre[1]], [0, 0, 1]])"""
+EXCHANGED = "def my_four_points(src, dst):\n    return my_dlt(dst, src)"
+ENDLESS = "def my_normaliser(x):\n    while True:\n        pass"
+DLT = """def my_dlt(src, dst):
+    T, U, D = my_normaliser(src), my_normaliser(dst), []
+    for (x, y), (u, v) in zip(src @ T[:2, :2] + T[:2, 2], dst @ U[:2, :2] + U[:2, 2]):
+        D.append([0, 0, 0, -x, -y, -1, v * x, v * y, v])
+        D.append([x, y, 1, 0, 0, 0, -u * x, -u * y, -u])
+    return np.linalg.inv(U) @ np.linalg.svd(np.array(D))[2][-1].reshape(3, 3) @ T"""
+
+
+@pytest.fixture(scope="module")
+def firefox():
+    with Firefox() as browser:
+        browser.resize(1300, 900)
+        yield browser
+
+
+@pytest.fixture
+def page(firefox, live_site):
+    """Give the page; at the end it has asked nobody but the site, and met no error."""
+    firefox.requests.clear()
+    yield firefox
+    firefox.run("() => 0")  # what came last is heard
+    ours = (live_site, "data:", "blob:")
+    assert [url for url in firefox.requests if not url.startswith(ours)] == []
+    assert firefox.errors == []
+
+
+def test_in_firefox_an_exploration_follows_keys_mouse_and_thumb(page, live_site):
+    page.open(f"{live_site}/notebooks/06_homography_dlt.html")
+    page.run("() => document.querySelector('.explore input').focus()")
+    page.press("ArrowRight", "ArrowRight")
+    page.wait(ANOTHER, 0)
+    assert page.wait(SENTENCE, explore.model("homography").sight(du1=2).sentence)
+    for number, kind in ((2, "mouse"), (3, "touch")):
+        x, y = page.run(GRIP, f"corner {number}")
+        shown = page.run(SHOWN)
+        page.drag([(x, y), (x - 20, y + 12), (x - 30, y + 20)], kind)
+        assert page.wait(MOVED, number, seconds=20)
+        page.wait(ANOTHER, shown)
+    page.run("() => document.querySelector('.explore-grip[aria-label^=\"corner 4\"]').focus()")
+    page.press("ArrowLeft")
+    page.wait("() => +document.querySelectorAll('.explore input')[6].value < 0", seconds=20)
+
+
+def test_in_firefox_an_exercise_is_right_wrong_by_a_known_mistake_and_endless(page, live_site):
+    page.open(f"{live_site}/notebooks/06_homography_dlt.html")
+    page.run(IMPATIENT)
+
+    def checked(name, text):
+        page.run(WRITE, name, text)
+        return page.wait(REPORT, name)
+
+    assert "does a loop never end?" in checked("normaliser", ENDLESS)
+    assert "normaliser: ✓ right." in checked("normaliser", RIGHT)
+    assert "dlt: ✓ right." in checked("dlt", DLT)
+    assert "Did you exchange src and dst?" in checked("four_points", EXCHANGED)
+
+
+def test_in_firefox_dropped_photographs_give_the_camera_of_the_desktop(
+    page, live_site, camera_of_the_views, tmp_path
+):
+    foreign = tmp_path / "foreign.jpg"
+    foreign.write_text("no picture")
+    page.open(f"{live_site}/your_camera.html")
+    page.run(CARRIER)
+    page.choose("#carried", [*VIEWS, foreign])
+    page.run(DROP)
+    said = "() => document.querySelector('#camera-page .said').textContent"
+    page.wait(f"() => /^The camera is known|No camera|found in none/.test(({said})())", seconds=240)
+    assert page.run(said) == "The camera is known from 12 of 13 photographs."
+    assert "not a picture" in page.run(
+        "() => document.querySelector('.shots li.refused').textContent"
+    )
+    report = page.run("() => document.querySelector('.result pre').textContent")
+    assert report.split() == camera_of_the_views["report"].split()
+    found = page.run(
+        "() => fetch(document.querySelector('.files a[download=\"calibration.json\"]').href)"
+        ".then(answer => answer.json())"
+    )
+    expected = json.loads(camera_of_the_views["files"]["calibration.json"])
+    assert found["rms"] == pytest.approx(expected["rms"], rel=1e-6)
