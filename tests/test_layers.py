@@ -2,12 +2,20 @@
 
 import ast
 import os
+import re
 import subprocess
 import sys
+import warnings
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+import numpy as np
+
+from cvnotes.calibration import calibrate
+from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.pictures import good_views
 from cvnotes.show.explore.lettering import font_file
+from cvnotes.targets import Chessboard
 
 PACKAGE = Path(__file__).resolve().parents[1] / "cvnotes"
 
@@ -182,4 +190,58 @@ def test_one_place_alone_relies_on_numpy_to_refuse_a_singular_matrix():
         and node.type is not None
         and ast.unparse(node.type) == "np.linalg.LinAlgError"
     }
-    assert found == {"base.optimise"}
+    assert found == {"base.numerics"}
+
+
+# To read how `calibrate` computes, one need not open guards, nor what only judges the result.
+NO_STEPS = {"base/guarded.py", "base/guards.py", "calibration/reliability.py"}
+BOARD = Chessboard((9, 6), 25.0)
+
+
+def _came_by(board_points, m, **options):
+    """The (file, function) of ours that one `calibrate` of flat boards comes by."""
+    seen = set()
+
+    def look(frame, event, _):
+        code = frame.f_code
+        if event == "call" and code.co_filename.startswith(f"{PACKAGE}{os.sep}"):
+            file = Path(code.co_filename).relative_to(PACKAGE).as_posix()
+            seen.add((file, code.co_qualname))
+
+    before = sys.getprofile()
+    sys.setprofile(look)
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            calibrate(board_points, m, (640, 480), **options)
+    finally:
+        sys.setprofile(before)
+    guard = ("calibration/board_shape.py", "is_board")
+    return {(file, name) for file, name in seen - {guard} if file not in NO_STEPS}
+
+
+def _corners(camera, poses, rng):
+    m = np.array([camera.moved(G).project(BOARD.points) for G in poses])
+    return m + rng.normal(0, 0.5, m.shape)
+
+
+def test_to_read_calibrate_down_to_numpy_one_opens_twelve_files():
+    rng = np.random.default_rng(1)
+    camera = Camera(intrinsics(800, 804, 325, 238), lens=Lens((-0.25, 0.1)))
+    few, many = (_corners(camera, good_views(BOARD, camera, n, rng=rng), rng) for n in (5, 160))
+    came_by = _came_by(BOARD.points, few)
+    on_the_straight_way = {file for file, _ in came_by}
+    # what is in reserve: for parts of boards, for many of them, for small ones in either pose
+    came_by |= _came_by([BOARD.points[i:] for i in range(5)], [x[i:] for i, x in enumerate(few)])
+    came_by |= _came_by(BOARD.points, many)
+    turns = rotation_from_vector(rng.normal(0, 0.4, (4, 3)))
+    far = [
+        pose(R, [-100 + x, -60 + y, 2500])
+        for R, (x, y) in zip(turns, rng.normal(0, 200, (4, 2)), strict=True)
+    ]
+    came_by |= _came_by(BOARD.points, _corners(camera, far, rng))
+    functions = {name for _, name in came_by}
+    assert {"Start._homography", "resumed", "turned_over", "likeness"} <= functions
+    files = {file for file, _ in came_by}
+    page = (PACKAGE.parent / "docs/house.md").read_text().split("How to read")[1].split("## ")[0]
+    assert files == on_the_straight_way == set(re.findall(r"`([a-z]+/[a-z]+\.py)`", page))
+    assert len(files) == 12

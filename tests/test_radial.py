@@ -4,8 +4,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from cvnotes.camera import Lens
-from cvnotes.camera.lens_fold import fold_radius, horner, radial_factor
-from cvnotes.camera.lens_inverse import Inverse
+from cvnotes.camera.lens import Inverse, fold_radius, horner, radial_factor
 
 
 def wild_lenses(count, seed):

@@ -9,7 +9,8 @@ import pytest
 
 from cvnotes.base import CalibrationWarning, DegenerateError
 from cvnotes.calibration import calibrate
-from cvnotes.calibration.reliability import Evidence, judge, likeness
+from cvnotes.calibration.refinement import likeness
+from cvnotes.calibration.reliability import Evidence, judge
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 CAMERA = Camera(intrinsics(1000, 1000, 640, 480), lens=Lens(k=(-0.2, 0.1)), size=(1280, 960))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics
-from cvnotes.camera.lens_fold import fold_radius as fold_radius_of_the_library
+from cvnotes.camera.lens import fold_radius as fold_radius_of_the_library
 from cvnotes.learn.ch03.field_of_view import field_of_view
 from cvnotes.learn.ch04.fold_radius import fold_radius
 from cvnotes.learn.ch04.undistort import undistort

@@ -54,8 +54,7 @@ REFERENCE = {
     ),
     "Beside the chapters": ("pictures", "pictures.course", "show", "learn", "files", "base"),
     "Further inside": (
-        "camera.lens_fold",
-        "camera.lens_inverse",
+        "camera.lens",
         "targets.sheet",
         "calibration.starts",
         "calibration.refinement",

@@ -1,6 +1,5 @@
 """What everybody stands on: errors that teach, guards of input, the least-squares loop."""
 
-from cvnotes.base.chunks import chunks
 from cvnotes.base.errors import (
     CalibrationWarning,
     ConvergenceError,
@@ -32,8 +31,9 @@ from cvnotes.base.guards import (
     target_size,
 )
 from cvnotes.base.images import Image, checked_fill, checked_image, luma, positions, stretched
-from cvnotes.base.optimise import (
+from cvnotes.base.numerics import (
     Minimum,
+    chunks,
     levenberg_marquardt,
     numerical_jacobian,
     solve_dense,

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base.chunks import chunks
 from cvnotes.base.errors import CvnotesError, InputTypeError, ShapeError
 from cvnotes.base.guards import Array, numbers, real
+from cvnotes.base.numerics import chunks
 
 Image = npt.NDArray[np.uint8 | np.uint16 | np.float32 | np.float64]
 

@@ -18,7 +18,7 @@ from cvnotes.base import (
     solve_dense,
 )
 from cvnotes.calibration.ppm import ppm_dlt
-from cvnotes.calibration.turning import turned_over
+from cvnotes.calibration.starts import turned_over
 from cvnotes.calibration.zhang import extrinsics
 from cvnotes.camera import Camera, nearest_rotation, pose, rotation_from_vector, skew_matrix
 from cvnotes.camera.model import is_camera, project_with_derivative

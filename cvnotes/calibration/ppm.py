@@ -14,7 +14,7 @@ from cvnotes.base import (
 )
 from cvnotes.homography.refinement import refine_projection
 from cvnotes.projective import to_homogeneous
-from cvnotes.projective.normaliser import apply_similarity, inverse_similarity, normaliser
+from cvnotes.projective.points import apply_similarity, inverse_similarity, normaliser
 
 # Relative singular value, after normalisation, below which a rank is called deficient.
 RANK = 1e-9

@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
+from cvnotes.calibration.refinement import ALIKE, likeness
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.zhang import constraints
 from cvnotes.camera import FisheyeLens, xy_from_px
 from cvnotes.camera.model import AnyLens
 
 _FAR = 100  # boards compared with each other; all pairs of thousands would take too long
-_ROUNDING = 1e-6  # px, more than rounding leaves
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,25 +109,6 @@ class Evidence:
         return float(max(self.std["alpha_u"] / self.A[0, 0], self.std["alpha_v"] / self.A[1, 1]))
 
 
-def likeness(residuals: Array, freedom: int) -> float:
-    """Correlate the residuals (n_views, n, 2) of corners that follow each other.
-
-    0 where that tells nothing: when there are hardly more measured coordinates than unknowns (the
-    difference is `freedom`), or when only rounding errors are left.
-
-    Examples
-    --------
-    >>> drift = np.linspace(-1, 1, 50).reshape(1, 25, 2)
-    >>> likeness(drift, 40) > 0.8, likeness(drift, 10), likeness(1e-12 * drift, 40)
-    (True, 0.0, 0.0)
-    """
-    r = residuals if np.isfinite(residuals.sum()) else np.nan_to_num(residuals)
-    squares = float((r * r).sum())
-    if 2 * freedom < r.size or squares < r.size * _ROUNDING**2:
-        return 0.0
-    return float((r[:, 1:] * r[:, :-1]).sum()) / squares
-
-
 def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
     """Tell which part of the residuals a better lens would explain.
 
@@ -188,7 +169,6 @@ _UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over
 _POWERS, _CHANCE = 5, 5.0  # of the radius; F from which on they are no chance
 _NEGLIGIBLE = 0.02  # px: what a lens misses below this does not matter
 _TOO_SMALL = 0.15  # part of the residuals by radius; 0.02 at most with a lens that fits
-ALIKE = 0.4  # correlation of neighbouring residuals; photographs with a fitting lens reach 0.3
 _MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
 _NO_NOISE = (

@@ -3,8 +3,13 @@
 from cvnotes.camera.factors import centre_of, decompose
 from cvnotes.camera.fisheye import FisheyeLens
 from cvnotes.camera.lens import Lens
-from cvnotes.camera.model import Camera
-from cvnotes.camera.pixels import intrinsics, intrinsics_from_pixel_size, px_from_xy, xy_from_px
+from cvnotes.camera.model import (
+    Camera,
+    intrinsics,
+    intrinsics_from_pixel_size,
+    px_from_xy,
+    xy_from_px,
+)
 from cvnotes.camera.rational import RationalLens
 from cvnotes.camera.rigid import (
     board_from_board,

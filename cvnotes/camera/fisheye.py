@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
-from cvnotes.camera.lens_fold import horner
+from cvnotes.camera.lens import horner
 from cvnotes.camera.rational import sign_changes
 
 _STEPS = 50  # of Newton's method; near the end a dozen are needed

@@ -1,4 +1,4 @@
-"""The lens: where it moves ideal image points, and back (notes 2b.3).
+"""The lens: where it moves ideal image points, where that ends, and the way back (notes 2b.3).
 
 Everything here happens on the plane z = 1, between the projection and the pixels. With d the
 offset from the distortion centre and r = ‖d‖,
@@ -8,22 +8,55 @@ offset from the distortion centre and r = ‖d‖,
 where p = (p2, p1) collects the notes' tangential terms in one vector.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
-from cvnotes.camera.lens_fold import fold_radius, horner, radial_factor
-from cvnotes.camera.lens_inverse import Inverse
+from cvnotes.base import Array, CvnotesError, Points, ShapeError, chunks, guarded, numbers
 
 # Far from all lenses powers of r overflow: to infinity, or to NaN, and in silence.
 _beyond_all_numbers = np.errstate(over="ignore", invalid="ignore")
 
 # Nobody fits more coefficients to a lens, and the roots of a long polynomial take minutes.
 _MOST = 32
+# Radii beyond this are infinite for our purpose: a ray 0.0001 degrees before 90.
+_INFINITE = 1e6
+# Knots of the table that Newton's method starts from; more of them would only save steps.
+_KNOTS = 4096
+# Points at a time: the dozen temporaries then stay in the cache.
+_CHUNK = 12288
+
+
+def horner(coefficients: Sequence[float], t: Array) -> Array:
+    """Evaluate c0 + c1 t + c2 t² + … from its coefficients.
+
+    Examples
+    --------
+    >>> horner([1, 2], np.array([0.0, 10.0]))
+    array([ 1., 21.])
+    """
+    if len(coefficients) < 2:
+        return np.full_like(t, coefficients[0] if len(coefficients) else 0.0)
+    value = coefficients[-1] * t
+    for c in coefficients[-2:0:-1]:
+        value += c
+        value *= t
+    value += coefficients[0]
+    return value
+
+
+def radial_factor(k: Sequence[float], r2: Array) -> Array:
+    """Give L = 1 + k1 r² + k2 r⁴ + … as a function of r².
+
+    Examples
+    --------
+    >>> radial_factor((-0.25,), np.array([0.0, 1.0]))
+    array([1.  , 0.75])
+    """
+    return horner((1.0, *k), r2)
 
 
 @dataclass(frozen=True)
@@ -126,7 +159,7 @@ class Lens:
         return fold_radius(self.k, float(np.hypot(*self.p)))
 
     @cached_property
-    def _inverse(self) -> Inverse:
+    def _inverse(self) -> "Inverse":
         return Inverse(self.k, self.p[::-1], self.centre)
 
     @guarded(xy=Points(2))
@@ -176,7 +209,7 @@ class Lens:
     def undistort(self, xy_lens: Array) -> Array:
         """Move observed image points back to where an ideal lens would show them.
 
-        Newton's method on the radius, to 1e-12; see `cvnotes.camera.lens_inverse`.
+        Newton's method on the radius, to 1e-12; see `Inverse`.
 
         Parameters
         ----------
@@ -227,3 +260,250 @@ class Lens:
 def _is_radial(name: str) -> bool:
     """Tell whether a name is k1, k2 or so on."""
     return name[:1] == "k" and name[1:].isdecimal() and 1 <= int(name[1:]) <= 99
+
+
+# --- where it ends
+
+
+def fold_radius(k: Sequence[float], p_norm: float = 0.0) -> float:
+    """Give the smallest ideal radius at which the picture folds over; inf if there is none.
+
+    It folds where the smaller eigenvalue of the Jacobian, a symmetric matrix, reaches 0. With
+    a = r dL/dr and m = 4 ‖p‖ r, the smallest value of this eigenvalue on a circle is
+
+        L + a − 3m/2              if a ≤ 2m/3, in the direction −p,
+        L − a/8 − m²/(2a)         if 2m/3 < a < 2m, beside it,
+        L − m/2                   if a ≥ 2m; it grows there, so it never reaches 0 first,
+
+    so that every fold is a root of one of two polynomials in r. Without tangential terms
+    L + a = d(r L)/dr decides alone.
+
+    Examples
+    --------
+    >>> fold_radius([-4 / 3]), fold_radius([0.1])
+    (0.5, inf)
+    """
+    L = np.array([1.0, *k])  # ascending powers of r², like a
+    a = 2 * np.arange(L.size) * L
+    towards = np.zeros(2 * L.size)  # ascending powers of r
+    towards[::2], towards[1] = L + a, -6 * p_norm
+    candidates = _positive_roots(towards, _INFINITE)
+    if p_norm > 0 and k:
+        beside = np.convolve(a[1:], 8 * L - a)  # 8a (L − a/8 − m²/(2a)) / r², powers of r²
+        beside[0] -= 64 * p_norm**2
+        candidates += [t**0.5 for t in _positive_roots(beside, _INFINITE**2)]
+    candidates.sort()
+    curves = L.tolist(), a.tolist()
+    for i, r in enumerate(candidates):
+        beyond = (r + candidates[i + 1]) / 2 if i + 1 < len(candidates) else 2 * r
+        if _smallest_eigenvalue(curves, p_norm, beyond) < 0:
+            return r
+    return np.inf
+
+
+def _smallest_eigenvalue(curves: tuple[list[float], list[float]], p_norm: float, r: float) -> float:
+    """Give the smallest eigenvalue of the Jacobian on a circle, by `fold_radius`'s formulas."""
+    L, a = (_value(curve, r * r) for curve in curves)
+    m = 4 * p_norm * r
+    if 2 * m < 3 * a < 6 * m:
+        return L - a / 8 - m**2 / (2 * a)
+    return min(L + a - 1.5 * m, L - m / 2)
+
+
+def _positive_roots(ascending: Array, beyond: float) -> list[float]:
+    """Give the positive roots of a polynomial, up to `beyond`, polished by a step of Newton's."""
+    # Read backwards the polynomial has the reciprocals as roots, and small roots come out best.
+    reciprocal = np.roots(np.where(np.abs(ascending) < 1e-100, 0, ascending))
+    real = np.abs(reciprocal.imag) <= 1e-7 * np.abs(reciprocal)
+    roots = (1 / reciprocal.real[real & (reciprocal.real > 1 / beyond)]).tolist()
+    c = ascending.tolist()
+    derivative = [i * c_i for i, c_i in enumerate(c)][1:]
+    polished = [r - _value(c, r) / (_value(derivative, r) or np.inf) for r in roots]
+    # Beside a double root, where the slope is all but 0, the step may lead anywhere.
+    return [new if r / 2 < new < 2 * r else r for r, new in zip(roots, polished, strict=True)]
+
+
+def _value(ascending: list[float], t: float) -> float:
+    return reduce(lambda value, c: value * t + c, reversed(ascending), 0.0)
+
+
+# --- the way back
+
+
+class Inverse:
+    """The way back through a lens: from where it shows a point to the ideal point.
+
+    Parameters
+    ----------
+    k : sequence of float
+        Radial coefficients k1, k2, …
+    p : (2,) sequence of float
+        The tangential vector p = (p2, p1).
+    centre : (2,) sequence of float
+        The distortion centre.
+
+    Notes
+    -----
+    With d the offset from the centre at which a point is shown, and x its ideal offset, write S =
+    ‖d‖², r² = q² S, a = q² p·d, b = q⁴ ‖p‖² S and n = ‖d − r² p‖/‖d‖ = √(1 − 2a + b). Since d − r²
+    p = (L + 2 p·x) x, its length gives L + 2 p·x = n/q and its product with p gives p·x; together
+
+        q L n = 1 − 4a + 3b,    x = (q/n) (d − r² p).
+
+    Before the fold the Jacobian is symmetric and positive definite, so no two points share their
+    image: the equation has at most one root, and left − right passes from − to + there.
+    Newton's method starts from a table of q for p = 0. Its argument w is chosen such that q is
+    smooth in it, at the fold too, so that linear interpolation is right to about 1e-7.
+    """
+
+    def __init__(
+        self, k: Sequence[float], p: Sequence[float], centre: Sequence[float] = (0.0, 0.0)
+    ) -> None:
+        self.k, self.p, self.centre = tuple(k), tuple(p), tuple(centre)
+        self.k_slope = tuple((2 * i + 1) * k_i for i, k_i in enumerate(k, start=1))
+        self.p_norm2 = p[0] ** 2 + p[1] ** 2
+        self.r_max = fold_radius(k, self.p_norm2**0.5)
+        self._tabulate(fold_radius(k))
+
+    def __call__(self, xy_lens: Array) -> Array:
+        """Map points (..., 2); rows that no point before the fold is shown at become NaN."""
+        rows = xy_lens.reshape(-1, 2)
+        out = np.empty_like(rows)
+        x0, y0 = self.centre
+        for part in chunks(len(rows), _CHUNK):
+            x, y = self._offsets_of(rows[part, 0] - x0, rows[part, 1] - y0)
+            x += x0
+            y += y0
+            out[part, 0], out[part, 1] = x, y
+        return out.reshape(xy_lens.shape)
+
+    @np.errstate(all="ignore")  # rows without an answer may overflow on their way to NaN
+    def _offsets_of(self, dx: Array, dy: Array) -> tuple[Array, Array]:
+        S = dx * dx
+        S += dy * dy
+        e = self.p[0] * dx + self.p[1] * dy if self.p_norm2 else np.zeros(1)
+        q = self._start(S, e)
+        for _ in range(2 if self.p_norm2 else 1):
+            f, slope = self._newton(q, S, e)
+            step = f / slope
+            step *= q
+            q -= step
+        # Newton's step squares the error; where that may not be enough yet, take care. Whether
+        # there are such rows at all, the largest error and the smallest slope tell at less cost.
+        np.abs(f, out=f)
+        least = slope.min(initial=1.0)
+        if not f.max(initial=0.0) <= 1e-7 * least * abs(least):
+            late = np.flatnonzero(~(f <= 1e-7 * np.minimum(slope, slope * slope)))
+            q[late] = self._search(q[late], S[late], e[late] if self.p_norm2 else e)
+        return self._offsets(q, S, dx, dy)
+
+    def _offsets(self, q: Array, S: Array, dx: Array, dy: Array) -> tuple[Array, Array]:
+        """Give x = (q/n) (d − r² p), NaN beyond the fold."""
+        r2 = q * q
+        r2 *= S
+        if self.p_norm2:
+            dx, dy = dx - self.p[0] * r2, dy - self.p[1] * r2  # d − r² p points along x
+            length2 = dx * dx
+            length2 += dy * dy
+            length2 += 1e-300  # in the centre
+            q = np.divide(r2, length2, out=length2)
+            np.sqrt(q, out=q)
+        if not r2.max(initial=0.0) <= self.r_max**2:
+            q[~(r2 <= self.r_max**2)] = np.nan
+        return q * dx, q * dy
+
+    def _newton(self, q: Array, S: Array, e: Array) -> tuple[Array, Array]:
+        """Give f = left − right and its slope q df/dq; e = p·d.
+
+        f = q L n − 1 − 3 (b − a) + a and q df/dq = q (L + r dL/dr) n + 2 q L n (b − a)/n²
+        − 12 (b − a) − 4a, step by step in as few arrays as can be.
+        """
+        q2 = q * q
+        r2 = q2 * S
+        f, slope = radial_factor(self.k, r2), radial_factor(self.k_slope, r2)
+        if not self.p_norm2:
+            f *= q
+            f -= 1
+            slope *= q
+            return f, slope
+        a = q2 * e
+        b_a = np.multiply(q2, r2, out=r2)
+        b_a *= self.p_norm2
+        b_a -= a
+        n2 = np.subtract(b_a, a, out=q2)
+        n2 += 1
+        qn = np.sqrt(n2)
+        qn *= q
+        f *= qn
+        slope *= qn
+        np.divide(b_a, n2, out=n2)
+        n2 *= 2
+        n2 *= f
+        slope += n2
+        b_a *= 3
+        f -= b_a
+        b_a *= 4
+        slope -= b_a
+        f += a
+        f -= 1
+        a *= 4
+        slope -= a
+        return f, slope
+
+    def _search(self, q: Array, S: Array, e: Array) -> Array:
+        """Solve the rows that need care: stay between bounds, and halve these while far."""
+        lower, upper = np.zeros_like(q), self.r_max / np.sqrt(S)
+        if np.isfinite(self.r_max):
+            beyond = self._newton(upper, S, e)[0] < 0
+            lower[beyond] = upper[beyond] = np.nan  # no root before the fold
+        for _ in range(100):
+            middle = np.where(np.isinf(upper), 2 * lower + 1, (lower + upper) / 2)
+            q = np.where((lower < q) & (q < upper), q, middle)
+            f, slope = self._newton(q, S, e)
+            lower, upper = np.where(f < 0, q, lower), np.where(f < 0, upper, q)
+            if not ((np.abs(f) > 1e-13 * slope) & (upper - lower > 1e-15 * q)).any():
+                break
+            q = np.where(np.abs(f) < 0.1 * slope, q - q * f / slope, np.inf)
+        return q
+
+    def _start(self, S: Array, e: Array) -> Array:
+        """Look q up; to first order the tangential terms scale ‖d‖ by 1/c = 1 + 3a."""
+        c = np.ones(1)
+        if self.p_norm2:
+            q = 1 + (self.k[0] if self.k else 0.0) * S  # its reciprocal, to first order
+            c = 1 - 3 * e / (q * q)
+        w = self._w(c * c * S)
+        i = w.astype(np.intp)
+        w -= i
+        w *= self.q_step.take(i, mode="clip")
+        w += self.q.take(i, mode="clip")
+        w *= c
+        return w
+
+    def _w(self, S: Array) -> Array:
+        """Place S in the table, from 0 (the fold, or infinity) to _KNOTS (the centre)."""
+        if self.folds:
+            w = S * (-(_KNOTS**2) / self.S_scale)
+            w += _KNOTS**2
+            np.maximum(w, 0, out=w)
+        else:
+            w = S * (1 / self.S_scale)
+            w += 1
+            np.divide(_KNOTS**2, w, out=w)
+        return np.sqrt(w, out=w)
+
+    def _tabulate(self, fold: float) -> None:
+        """Tabulate q for p = 0 at equal steps of w."""
+        w = np.linspace(1, 0, _KNOTS, endpoint=False)
+        self.folds = bool(np.isfinite(fold))
+        if self.folds:
+            r = fold * np.append(1 - w, 1)
+            self.S_scale = float(fold * radial_factor(self.k, np.array(fold**2))) ** 2
+        else:
+            reach = [abs(k_i) ** (-0.5 / i) for i, k_i in enumerate(self.k, start=1) if k_i]
+            self.S_scale = min([1.0, *reach]) ** 2
+            r = np.sqrt(self.S_scale * (1 / w**2 - 1))
+        L = radial_factor(self.k, r * r)
+        knots = np.arange(_KNOTS + 1)
+        self.q = np.interp(knots, self._w((r * L) ** 2)[::-1], (1 / L)[::-1])
+        self.q_step = np.diff(self.q, append=self.q[-1])

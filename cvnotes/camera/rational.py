@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
-from cvnotes.camera.lens_fold import horner
+from cvnotes.camera.lens import horner
 
 NAMES = ("k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2")
 _FARTHEST = 1e12  # r², a ray almost at 90°

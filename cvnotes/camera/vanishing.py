@@ -18,11 +18,10 @@ from cvnotes.base import (
     rotation,
     solve_dense,
 )
-from cvnotes.camera.model import Camera
-from cvnotes.camera.pixels import intrinsics
+from cvnotes.camera.model import Camera, intrinsics
 from cvnotes.camera.rigid import nearest_rotation
 from cvnotes.projective import from_homogeneous, join, to_homogeneous
-from cvnotes.projective.normaliser import apply_similarity, normaliser
+from cvnotes.projective.points import apply_similarity, normaliser
 
 
 def vanishing_point(segments: npt.ArrayLike) -> Array:

@@ -4,7 +4,7 @@ from cvnotes.homography.four_points import four_points_h9_one, four_points_unit_
 from cvnotes.homography.linear import design_matrix, dlt
 from cvnotes.homography.ransac import ransac_homography, trials_needed
 from cvnotes.homography.refinement import geometric_error, refine_homography
-from cvnotes.projective.normaliser import normaliser
+from cvnotes.projective.points import normaliser
 
 __all__ = [
     "design_matrix",

@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, Points, guarded
 from cvnotes.projective import to_homogeneous
-from cvnotes.projective.normaliser import apply_similarity, inverse_similarity, normaliser
+from cvnotes.projective.points import apply_similarity, inverse_similarity, normaliser
 
 Mask = npt.NDArray[np.bool_]
 

@@ -10,7 +10,7 @@ from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, numbe
 from cvnotes.homography.linear import dlt
 from cvnotes.homography.refinement import refine_homography
 from cvnotes.projective import apply, to_homogeneous
-from cvnotes.projective.normaliser import normaliser
+from cvnotes.projective.points import normaliser
 
 HOPELESS = (
     "only {count} of {n} pairs agree on a homography, no more than chance would give: the "

@@ -14,7 +14,7 @@ from cvnotes.base import (
 )
 from cvnotes.homography.linear import RANK
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.projective.normaliser import apply_similarity, inverse_similarity, normaliser
+from cvnotes.projective.points import apply_similarity, inverse_similarity, normaliser
 
 
 def _equally_many(H: Array, src: Array, dst: Array) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Lens
-from cvnotes.camera.lens_fold import horner, radial_factor
+from cvnotes.camera.lens import horner, radial_factor
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 

@@ -1,11 +1,11 @@
-"""One Levenberg–Marquardt loop for all who refine (notes 2b.4).
+"""Arrays in parts, matrices that may be singular, one Levenberg–Marquardt loop (notes 2b.4).
 
-The cost is a sum of squares rᵀr with Jacobian J. A step solves (JᵀJ + μ D) δ = −Jᵀr with
-D = diag(JᵀJ). Who refines says how to linearise, how to solve and how to move; the loop only
-decides how far to trust the linear model.
+The loop is the same for all who refine. The cost is a sum of squares rᵀr with Jacobian J. A step
+solves (JᵀJ + μ D) δ = −Jᵀr with D = diag(JᵀJ). Who refines says how to linearise, how to solve and
+how to move; the loop only decides how far to trust the linear model.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
@@ -21,6 +21,43 @@ _SHRINKS = 1e-3
 X = TypeVar("X")
 System = TypeVar("System")
 Step = TypeVar("Step")
+
+
+def chunks(n: int, size: int) -> Iterator[slice]:
+    """Cut n rows into slices of at most `size`.
+
+    Examples
+    --------
+    >>> list(chunks(5, 2))
+    [slice(0, 2, None), slice(2, 4, None), slice(4, 5, None)]
+    """
+    return (slice(first, min(first + size, n)) for first in range(0, n, size))
+
+
+def solved(operation: Callable[..., Any], *arguments: Array, why: str) -> Array:
+    """Give what an operation of `numpy.linalg` gives, or refuse a singular matrix.
+
+    Where the machine has no flags of floating-point errors (WebAssembly), NumPy cannot raise and
+    gives NaN instead, so both are looked for.
+
+    Raises
+    ------
+    DegenerateError
+        The matrix is singular; `why` says what that means.
+
+    Examples
+    --------
+    >>> solved(np.linalg.inv, np.diag([2.0, 4.0]), why="two axes coincide")
+    array([[0.5 , 0.  ],
+           [0.  , 0.25]])
+    """
+    try:
+        answer = np.asarray(operation(*arguments))
+    except np.linalg.LinAlgError:
+        raise DegenerateError(why) from None
+    if not np.isfinite(answer).all():
+        raise DegenerateError(why)
+    return answer
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,32 +166,6 @@ def levenberg_marquardt(
         else:
             damping, previous = max(10 * damping, 1e-3), 0.0
     return Minimum(x, cost, system, iteration, False)
-
-
-def solved(operation: Callable[..., Any], *arguments: Array, why: str) -> Array:
-    """Give what an operation of `numpy.linalg` gives, or refuse a singular matrix.
-
-    Where the machine has no flags of floating-point errors (WebAssembly), NumPy cannot raise and
-    gives NaN instead, so both are looked for.
-
-    Raises
-    ------
-    DegenerateError
-        The matrix is singular; `why` says what that means.
-
-    Examples
-    --------
-    >>> solved(np.linalg.inv, np.diag([2.0, 4.0]), why="two axes coincide")
-    array([[0.5 , 0.  ],
-           [0.  , 0.25]])
-    """
-    try:
-        answer = np.asarray(operation(*arguments))
-    except np.linalg.LinAlgError:
-        raise DegenerateError(why) from None
-    if not np.isfinite(answer).all():
-        raise DegenerateError(why)
-    return answer
 
 
 def solve_dense(system: Array, damping: float) -> tuple[Array, float]:
