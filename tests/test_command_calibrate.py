@@ -283,7 +283,7 @@ def test_an_error_is_raised_where_its_result_is_asked_for():
 
 def drawn(name, sheets):
     """Decode one of the pictures."""
-    return np.asarray(Image.open(io.BytesIO(sheets[name]))).astype(int)
+    return np.asarray(Image.open(io.BytesIO(sheets[name])).convert("RGB")).astype(int)
 
 
 @pytest.fixture(scope="module")

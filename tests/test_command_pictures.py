@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from cvnotes.commands.canvas import ESTIMATED, FAINT, INK, WORLD, Canvas
 from cvnotes.commands.pictures import _cell_means, _residuals, _view_rms
 
 
@@ -49,3 +50,35 @@ def test_of_many_residuals_the_mean_of_each_place_is_drawn():
 def test_a_picture_of_thousands_of_residuals_has_more_paper_than_ink():
     picture = ink(_residuals(result(60, 54)))[40:, 10:880]
     assert (picture < 250).any(-1).mean() < 0.15
+
+
+def test_a_line_is_as_wide_as_asked_and_cut_off_at_the_border():
+    sheet = Canvas(60, 40)
+    sheet.line([(-1e9, 20.5), (1e9, 20.5)], INK, 3)  # along the middle of row 20
+    sheet.line([(-50, -20), (-20, -50)], INK, 3)
+    sheet.dots([(30, 1e9)], INK)
+    rows = ink(sheet)
+    assert np.array_equal(np.flatnonzero((rows[..., 0] < 128).all(1)), [19, 20, 21])
+    assert (np.delete(rows, [19, 20, 21], axis=0) == 255).all()
+
+
+def test_a_slanted_line_darkens_by_its_area_and_a_dot_by_its_disc():
+    sheet, dots = Canvas(120, 80), Canvas(50, 50)
+    sheet.line([(10, 10), (90, 70)], INK, 2)  # 100 px long
+    assert np.isclose((255 - ink(sheet)[..., 0]).sum() / 255, 2 * 100 + np.pi, rtol=0.05)
+    dots.dots([(25.3, 24.6)], INK, 8)
+    assert np.isclose((255 - ink(dots)[..., 0]).sum() / 255, 64 * np.pi, rtol=0.03)
+
+
+def test_faint_lines_lie_below_dots_and_words_above_a_photograph():
+    sheet = Canvas(80, 60)
+    sheet.photograph(np.full((30, 40), 100, np.uint8), (0, 0), (80, 60))
+    sheet.dots([(40, 30)], ESTIMATED, 6)
+    sheet.line([(0, 30), (80, 30)], FAINT, 4)
+    sheet.text((40, 55), "x", WORLD, size=24, halo=True)
+    picture = ink(sheet)
+    assert np.abs(picture[30, 40] - [213, 94, 0]).max() <= 1
+    assert (picture[30, 5] >= 236).all()
+    assert np.abs(picture[10, 5] - 100).max() <= 1
+    assert (np.abs(picture - [0, 158, 115]).sum(-1) < 40).any()
+    assert (picture[35:] == 255).all(-1).any()

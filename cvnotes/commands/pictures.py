@@ -7,7 +7,18 @@ import numpy as np
 
 from cvnotes.base import Array, chunks
 from cvnotes.calibration.coverage import covered_cells
-from cvnotes.commands.canvas import ESTIMATED, FAINT, LENS, MUTED, WORLD, Canvas, known_runs, ticks
+from cvnotes.commands.canvas import (
+    ESTIMATED,
+    FAINT,
+    INK,
+    LENS,
+    MUTED,
+    PALE,
+    WORLD,
+    Canvas,
+    known_runs,
+    ticks,
+)
 from cvnotes.commands.console import progress
 from cvnotes.commands.examined import Examined
 from cvnotes.files.writing import printable
@@ -135,7 +146,7 @@ def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
         elif i % step == 0:
             sheet.upright((x, bottom + 5), _shortened(names[i]), size=11)
     y = bottom - all_rms * up
-    sheet.line([(left, y), (right, y)], MUTED)
+    sheet.line([(left, y), (right, y)], INK)
     sheet.text((right + 5, y), f"all: {result.rms:.3f}", MUTED, anchor="lm")
     sheet.text((left - 52, top - 5), "RMS (px per point)", anchor="ls", size=12)
     return sheet
@@ -150,7 +161,7 @@ def _coverage(result: "Calibration") -> Canvas:
     side = zoom * np.array(result.size) / cells.shape
     for cell in np.argwhere(~cells):
         low = cell * side + [_EDGE, _HEAD + _EDGE]
-        sheet.rectangle(low, low + side, fill=FAINT, line="#C4C4C4")
+        sheet.rectangle(low, low + side, fill=FAINT, line=PALE)
     m = np.concatenate(result.image_points)
     sheet.dots((m + 0.5) * zoom + [_EDGE, _HEAD + _EDGE], ESTIMATED, 1.7)
     _frame(sheet, result.size, zoom)
@@ -209,8 +220,7 @@ def _residuals(result: "Calibration") -> Canvas:
     sheet, zoom = _picture(result.size, title, more=_CLOUD)
     start = (places + 0.5) * zoom + [_EDGE, _HEAD + _EDGE]
     end = start + zoom * magnify * mean
-    for a, b in zip(start, end, strict=True):
-        sheet.line([a, b], ESTIMATED)
+    sheet.segments(start, end, ESTIMATED)
     sheet.dots(end, ESTIMATED, 1.5)
     _frame(sheet, result.size, zoom)
     _cloud(sheet, r, result.rms / np.sqrt(2))
@@ -245,7 +255,7 @@ def _cloud(sheet: Canvas, r: Array, sigma: float) -> None:
         sheet.text((middle[0] - half - 4, y), f"{tick:.3g}", MUTED, size=11, anchor="rm")
     sheet.dots(middle + r / reach * half, ESTIMATED, 1.5)
     if np.isfinite(sigma):
-        sheet.ring(middle, sigma / reach * half, "black")
+        sheet.ring(middle, sigma / reach * half, INK)
     place = (float(middle[0]), float(middle[1] + half + 36))
     sheet.text(
         place,
