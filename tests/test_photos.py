@@ -15,6 +15,7 @@ from PIL import Image
 
 from cvnotes.base import FileError
 from cvnotes.files import Photo, list_photos, open_photos, read_photo, read_photos
+from cvnotes.files.photos import open_photo
 from cvnotes.files.writing import printable
 
 posix = pytest.mark.skipif(os.name == "nt", reason="pipes and links of POSIX")
@@ -343,3 +344,18 @@ def test_a_large_picture_of_sixteen_bits_takes_no_memory_but_its_own(tmp_path):
     said = subprocess.run(run, check=True, capture_output=True, text=True).stdout
     unit = 1 if sys.platform == "darwin" else 1024
     assert int(said) * unit < 10 * 20_000_000  # bytes a pixel; in floating point it were 25
+
+
+def test_of_a_jpeg_the_grey_levels_are_read_alone(tmp_path):
+    v, u = np.indices((48, 64))
+    colours = np.stack([60 + 2 * u, 200 - 3 * v, 90 + u + v], axis=-1).astype(np.uint8)
+    for name in ("a.jpg", "a.png"):
+        Image.fromarray(colours).save(tmp_path / name)
+    jpeg, png = (open_photo(tmp_path / name, grey=True) for name in ("a.jpg", "a.png"))
+    assert jpeg.image.shape == (48, 64)
+    assert np.array_equal(jpeg.grey, jpeg.image)
+    expected = np.rint(colours @ np.array([0.299, 0.587, 0.114]))
+    assert np.abs(jpeg.grey - expected).max() <= 4  # what the JPEG loses
+    assert np.array_equal(png.grey, expected)
+    assert open_photo(tmp_path / "a.jpg").image.shape == (48, 64, 3)
+    assert open_photo(tmp_path / "none.jpg", grey=True).reason == "there is no such file"

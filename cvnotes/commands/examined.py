@@ -13,9 +13,9 @@ from cvnotes.base import Array, CornersNotFound, DegenerateError, FileError
 from cvnotes.commands.console import progress
 from cvnotes.commands.ownership import photographs
 from cvnotes.commands.parallel import in_order
-from cvnotes.files import Photo, Rejected, open_photos, read_photo
+from cvnotes.files import Photo, Rejected, read_photo
 from cvnotes.files.decoding import header_size
-from cvnotes.files.photos import COPY, fingerprint
+from cvnotes.files.photos import COPY, fingerprint, open_photo
 from cvnotes.files.writing import printable
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
@@ -151,7 +151,7 @@ def _photographs(paths: Sequence[str]) -> tuple[list[Path], list[Rejected]]:
 
 def look_at(path: Path, board: Chessboard | CharucoBoard) -> tuple[bytes, Examined | Rejected]:
     """Read and examine one photograph; gives what its pixels are known by, and what was seen."""
-    photo = next(open_photos([path]))
+    photo = open_photo(path, grey=True)
     if isinstance(photo, Rejected):
         return bytes(path), photo
     return fingerprint(photo), _examine(photo, board)

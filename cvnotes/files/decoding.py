@@ -41,14 +41,19 @@ def header_size(path: Path) -> tuple[int, int]:
         raise FileError(f"cannot be opened: {error.strerror or error}") from error
 
 
-def decode(path: Path) -> tuple[npt.NDArray[Any], int, list[str]]:
-    """Give pixels as stored, EXIF orientation and notes; raises FileError with the reason alone."""
+def decode(path: Path, *, grey: bool = False) -> tuple[npt.NDArray[Any], int, list[str]]:
+    """Give pixels as stored, EXIF orientation and notes; raises FileError with the reason alone.
+
+    A JPEG holds its grey levels beside its colours: for `grey`, the colours are not decoded.
+    """
     _refuse_unopened(path)
     try:
         data = path.read_bytes()
     except OSError as error:
         raise FileError(f"cannot be opened: {error.strerror or error}") from error
     with _opened(io.BytesIO(data)) as picture:
+        if grey:
+            picture.draft("L", None)
         upright, orientation = _load(picture)
         image, notes = _pixels(upright)
         if _has_second(picture):
@@ -149,7 +154,8 @@ def _pixels(picture: "Image") -> tuple[npt.NDArray[Any], list[str]]:
         if values.min() < 0 or values.max() > 65535:
             raise FileError("pixels have more than 16 bits; save it with 8 or 16 bits")
         return values.astype(np.uint16), [*notes, "16 bit"]
-    return np.array(picture.convert("L" if picture.mode in ("1", "L", "LA") else "RGB")), notes
+    mode = "L" if picture.mode in ("1", "L", "LA") else "RGB"
+    return np.array(picture if picture.mode == mode else picture.convert(mode)), notes
 
 
 def _has_second(picture: "Image") -> bool:

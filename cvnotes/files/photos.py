@@ -137,17 +137,20 @@ def open_photos(files: Iterable[Path]) -> Iterator[Photo | Rejected]:
     """Read photographs one after the other; a picture seen before is rejected as a copy."""
     seen: dict[bytes, Path] = {}
     for path in files:
-        try:
-            photo = _read(path)
-        except FileError as error:
-            yield Rejected(printable(path), str(error))
-            continue
-        content = blake2b(np.ascontiguousarray(photo.image).data, digest_size=16).digest()
-        first = seen.setdefault(content, path)
+        photo = open_photo(path)
+        first = path if isinstance(photo, Rejected) else seen.setdefault(fingerprint(photo), path)
         if first != path:
-            yield Rejected(printable(path), f"the same picture as {printable(first)}")
+            yield Rejected(printable(path), f"{COPY} {printable(first)}")
         else:
             yield photo
+
+
+def open_photo(path: Path, *, grey: bool = False) -> Photo | Rejected:
+    """Read a photograph, or say why not; for its `grey` alone, a JPEG in half the time."""
+    try:
+        return _read(path, grey=grey)
+    except FileError as error:
+        return Rejected(printable(path), str(error))
 
 
 def fingerprint(photo: Photo) -> bytes:
@@ -170,8 +173,8 @@ def _natural(path: Path) -> list[tuple[int, str]]:
     return [(int(part), "") if i % 2 else (0, part) for i, part in enumerate(parts)]
 
 
-def _read(path: Path) -> Photo:
-    image, orientation, notes = decode(path)
+def _read(path: Path, *, grey: bool = False) -> Photo:
+    image, orientation, notes = decode(path, grey=grey)
     if orientation != 1:
         notes.append(f"EXIF orientation {orientation} not applied: sensor frame")
     return Photo(path, image, orientation, "; ".join(notes))

@@ -152,9 +152,9 @@ def _find_grown(grey: Grey8, corners: tuple[int, int]) -> Array | None:
 _PART_PIXELS = 1_300_000
 _ATTEMPTS = (
     ("classic finder", find_classic, 500_000),
+    ("classic finder", find_classic, 1_300_000),
     ("SB finder", find_sb, 1_300_000),
     ("growing a part", _find_grown, _PART_PIXELS),
-    ("classic finder", find_classic, 1_300_000),
     ("SB finder", find_sb, 12_000_000),
 )
 _ATTEMPTS_WITHOUT_OPENCV = (
@@ -163,6 +163,10 @@ _ATTEMPTS_WITHOUT_OPENCV = (
     ("growing a part", _find_grown, _PART_PIXELS),
     ("saddle points", find_saddles, 12_000_000),
 )
+
+
+# So much smaller, a pixel of a copy is more than the edge model's start may be off.
+_MUCH_SMALLER = 2.5
 
 
 def _attempts(grey: Grey8) -> Iterator[tuple[str, Any, Grey8]]:
@@ -183,16 +187,16 @@ def _measure(
     board: Chessboard,
     partial: bool,
 ) -> Array:
-    """Refine what a finder found in a copy, in the copy and then in the picture itself."""
+    """Refine what a finder found in a copy, in the picture itself; first in a copy much smaller."""
     if found is None:
         raise NotABoard("not found")
     columns, rows = board.corners
     found = completed(found.reshape(rows, columns, 2)).reshape(-1, 2)
     try:
-        if copy.shape != grey.shape:
+        if copy.shape[1] * _MUCH_SMALLER < grey.shape[1]:
             refined = fit_edges(copy, found, grid=board.corners).m
             found = np.where(np.isfinite(refined), refined, found)
-            found = _in_full(found, copy, grey)
+        found = _in_full(found, copy, grey)
         fit = _fit_twice(picture, found, board.corners)
         check_board(fit, board.corners, partial=partial)
         good = trusted(fit, board.corners)[:, None]
@@ -232,6 +236,8 @@ def _window(m: Array, rows: int) -> int:
 
 def _eight_bits(picture: Image) -> Grey8:
     """Give what OpenCV reads: 8-bit pictures as they are, whatever type holds them."""
+    if picture.dtype == np.uint8:
+        return picture.astype(np.uint8, copy=False)
     if picture.min() >= 0 and picture.max() <= 255:
         whole = picture.astype(np.uint8)
         if np.array_equal(whole, picture):

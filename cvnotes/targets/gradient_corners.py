@@ -54,19 +54,24 @@ def refine_subpixel(image: npt.ArrayLike, m: npt.ArrayLike, *, window: int = 5) 
     array([[9.5, 9.5]])
     """
     grey, start = grey_picture(image), points(m, "m", 2)
-    half = whole(window, "window")
+    led = led_by_gradients(grey, start.reshape(-1, 2), whole(window, "window"), _CLOSE)
+    return led.reshape(start.shape)
+
+
+def led_by_gradients(grey: Image, start: Array, half: int, close: float) -> Array:
+    """Do what `refine_subpixel` does, until steps (n, 2) are shorter than `close` pixels."""
     out = np.full(start.shape, np.nan)
-    where, at = np.arange(start.size // 2), start.reshape(-1, 2).copy()
+    where, at = np.arange(len(start)), start.copy()
     middle = np.rint(at)
     for _ in range(_ITERATIONS):
         # The window follows by whole pixels, but not to and fro between two of them.
         far = np.abs(at - middle).max(-1) > 0.75
         middle[far] = np.rint(at[far])
         moved = _crossing(grey, at, middle, half)
-        close = np.abs(moved - at).max(-1) < _CLOSE
-        out.reshape(-1, 2)[where[close]] = moved[close]
-        stays = np.abs(moved - start.reshape(-1, 2)[where]).max(-1) <= half
-        goes_on = stays & ~close
+        arrived = np.abs(moved - at).max(-1) < close
+        out[where[arrived]] = moved[arrived]
+        stays = np.abs(moved - start[where]).max(-1) <= half
+        goes_on = stays & ~arrived
         where, at, middle = where[goes_on], moved[goes_on], middle[goes_on]
         if not where.size:
             break

@@ -7,13 +7,14 @@ import numpy as np
 
 from cvnotes.base import Array, DegenerateError, Image
 from cvnotes.targets.edge_corners import fit_edges
-from cvnotes.targets.gradient_corners import refine_subpixel
+from cvnotes.targets.gradient_corners import led_by_gradients
 from cvnotes.targets.lattice import Mask, completed
 from cvnotes.targets.opencv_finders import Grey8, find_part, has_opencv
 from cvnotes.targets.saddle_points import find_saddle_part
 
 _FAR = 0.35  # of a square: farther from where it was expected, it is another corner
 _WINDOW = 0.4  # half a window in which gradients lead to a corner, of a square
+_LED = 0.1  # px, to which gradients need to lead: the model of two edges goes on from there
 _FAINT = 0.6  # of the board's contrast: what is fainter is no edge of its squares
 _UNLIKE = 0.15  # of the contrast: so much more may a corner leave unexplained than most
 _TRIES = 3  # squares to begin with
@@ -47,11 +48,14 @@ def grown_board(grey: Grey8) -> Array | None:
     # largest lattice is looked for until it came twice.
     look, looks = (find_part, _LOOKS) if has_opencv() else (find_saddle_part, 1)
     grown: list[Array] = [np.full((0, 0, 2), np.nan)]
+    parts: list[Array] = []
     for _ in range(looks):
         part = look(grey)
         if part is None:
             break
-        grown.append(_grown_from(grey, part))
+        same = next((i for i, other in enumerate(parts, 1) if np.array_equal(other, part)), None)
+        parts.append(part)
+        grown.append(grown[same] if same else _grown_from(grey, part))
         sizes = [lattice.size for lattice in grown]
         if max(sizes) > 0 and sizes.count(max(sizes)) > 1:
             break
@@ -133,7 +137,7 @@ def _corners(grey: Image, expected: Array) -> Array | None:
     side = np.minimum(*sides)
     # Gradients lead from farther away than the model of two sharp edges does.
     half = int(np.clip(_WINDOW * np.median(side), 4, 30))
-    led = refine_subpixel(grey, expected.reshape(-1, 2), window=half)
+    led = led_by_gradients(grey, expected.reshape(-1, 2), half, _LED)
     start = np.where(np.isfinite(led), led, expected.reshape(-1, 2))
     try:
         fit = fit_edges(grey, start, grid=(columns, rows))
