@@ -350,12 +350,12 @@ def test_of_a_jpeg_the_grey_levels_are_read_alone(tmp_path):
     v, u = np.indices((48, 64))
     colours = np.stack([60 + 2 * u, 200 - 3 * v, 90 + u + v], axis=-1).astype(np.uint8)
     for name in ("a.jpg", "a.png"):
-        Image.fromarray(colours).save(tmp_path / name)
+        Image.fromarray(colours).save(tmp_path / name, quality=95)
     jpeg, png = (open_photo(tmp_path / name, grey=True) for name in ("a.jpg", "a.png"))
     assert jpeg.image.shape == (48, 64)
     assert np.array_equal(jpeg.grey, jpeg.image)
-    expected = np.rint(colours @ np.array([0.299, 0.587, 0.114]))
+    expected = colours @ np.array([0.299, 0.587, 0.114])
     assert np.abs(jpeg.grey - expected).max() <= 4  # what the JPEG loses
-    assert np.array_equal(png.grey, expected)
+    assert np.abs(png.grey - expected).max() <= 0.501
     assert open_photo(tmp_path / "a.jpg").image.shape == (48, 64, 3)
     assert open_photo(tmp_path / "none.jpg", grey=True).reason == "there is no such file"
