@@ -10,8 +10,9 @@ import pytest
 from cvnotes.base import CalibrationWarning, DegenerateError
 from cvnotes.calibration import calibrate
 from cvnotes.calibration.refinement import likeness
-from cvnotes.calibration.reliability import Evidence, judge
+from cvnotes.calibration.reliability import Evidence, judge, missed_together
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.targets import Chessboard
 
 CAMERA = Camera(intrinsics(1000, 1000, 640, 480), lens=Lens(k=(-0.2, 0.1)), size=(1280, 960))
 
@@ -195,6 +196,11 @@ def with_one(value, shape, *place):
             {"likeness": 0.6, "view_rms": np.array([0.9, 1.0, 1.1])},
             "neighbouring corners miss their places in the same direction",
         ),
+        (
+            {"together": 0.9, "view_rms": np.array([0.9, 1.0, 1.1])},
+            "neighbouring corners miss their places in the same direction",
+        ),
+        ({"distances": with_one(np.nan, (3, 54), 0, 0)}, "where the estimated lens folds over"),
     ],
 )
 def test_doubts_that_the_error_bars_do_not_cover_make_it_unreliable(changes, words):
@@ -222,7 +228,6 @@ def test_doubts_that_the_error_bars_do_not_cover_make_it_unreliable(changes, wor
             {"distances": with_one(7.0, (3, 54), 1, 17)},
             r"corners far from their place: view 1, corner 17 \(7.0 px\)",
         ),
-        ({"distances": with_one(np.nan, (3, 54), 0, 0)}, "where the estimated lens folds over"),
         ({"size": (900, 900)}, "corners lie outside of the 900×900 picture"),
         (
             {"likeness": 0.6},
@@ -295,3 +300,21 @@ def test_likeness_is_0_for_noise_and_1_for_drift():
 def test_likeness_tells_nothing_of_rounding_errors_or_without_spare_measurements():
     assert likeness(np.full((3, 54, 2), 1e-9), 300) == 0
     assert likeness(np.ones((15, 4, 2)), 20) == 0
+
+
+def test_what_corners_miss_together_is_told_from_noise_in_any_part_of_a_board():
+    rng, W = np.random.default_rng(2), Chessboard((9, 6), 25.0).points
+    noise = rng.normal(0, 1.0, (9, 54, 2))
+    x, y = (W / 100)[:, :2].T
+    slow = np.stack([x**3 - x, x * y], axis=-1)[None] * rng.normal(0, 3, (9, 1, 2))
+    rms = np.median(np.sqrt((slow**2).sum((1, 2)) / 54))
+    assert missed_together(noise, W) < 0.3
+    assert missed_together(slow + 0.2 * noise, W) == pytest.approx(rms, rel=0.1)
+    part = rng.uniform(size=(9, 54)) < 0.8
+    part[0] = False
+    partly = np.where(part[..., None], slow + 0.2 * noise, rng.choice([0, np.nan], (9, 54, 1)))
+    assert missed_together(partly, W) == pytest.approx(rms, rel=0.2)
+    one = noise.copy()
+    one[4] += 100 * slow[4]
+    assert missed_together(one, W) < 0.3  # one view does not decide
+    assert missed_together(slow[:, :8], W[:8]) == 0.0

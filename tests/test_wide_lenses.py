@@ -189,9 +189,9 @@ def test_bad_coefficients_are_refused(make):
 # --- calibration ------------------------------------------------------------------------------
 
 
-def seen_by(camera, n, seed=0):
+def seen_by(camera, n, seed=0, corners=(9, 6)):
     """Boards all over the picture of a wide camera, in front of it and beside it."""
-    rng, board = np.random.default_rng(seed), Chessboard((9, 6), 25.0)
+    rng, board = np.random.default_rng(seed), Chessboard(corners, 25.0)
     W, size, views = board.points, np.array(camera.size), []
     while len(views) < n:
         d = camera.ray(rng.uniform(0.1 * size, 0.9 * size))
@@ -313,6 +313,21 @@ def test_a_lens_that_is_too_small_is_never_reliable():
         with pytest.warns(CalibrationWarning):
             assert not calibrate(W, m, camera.size, lens=lens).reliable
     assert calibrate(W, m, camera.size, lens="fisheye").reliable
+
+
+@pytest.mark.parametrize("lens", ["k1", "k1 k2", "k1 k2 k3", "k1 k2 p1 p2 k3"])
+def test_few_corners_of_a_fisheye_are_not_believed_to_be_a_pinholes(lens):
+    """Boards of 5×4 corners have no long rows in which residuals could be alike."""
+    camera = Camera(intrinsics(200, 200, 320, 320), lens=FisheyeLens((-0.01,)), size=(640, 640))
+    for seed in range(4):
+        W, m = seen_by(camera, 10, seed, corners=(5, 4))
+        m = m[[np.isfinite(camera.ideal(one)).all() for one in m]]  # before the camera
+        m = m + np.random.default_rng(seed).normal(0, 0.1, m.shape)
+        with pytest.warns(CalibrationWarning):
+            found = calibrate(W, m, camera.size, lens=lens)
+        assert 0.5 < found.rms < 2
+        assert not found.reliable
+        assert calibrate(W, m, camera.size, lens="fisheye").reliable
 
 
 def test_by_radius_tells_what_a_lens_would_explain_from_noise():

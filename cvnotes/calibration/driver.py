@@ -154,7 +154,7 @@ def calibrate(
         left_out_boards=by_board,
     )
     residuals = Problem.of(data, size, lens, skew).residuals(found.camera, best.x)
-    return found.judged(*judge(Evidence.of(found, residuals, data.m, problem.freedom)))
+    return found.judged(*judge(Evidence.of(found, residuals, data.m, data.W, problem.freedom)))
 
 
 def _refuse_too_few(problem: Problem) -> None:

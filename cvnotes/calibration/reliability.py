@@ -43,6 +43,8 @@ class Evidence:
     by_radius : float
         Part of the residuals' squares that goes outwards or inwards by the distance from the
         piercing point; 0 where that tells nothing.
+    together : float
+        Distance in pixels by which corners of a typical view miss their places together.
     """
 
     A: Array
@@ -56,14 +58,20 @@ class Evidence:
     converged: bool
     likeness: float = 0.0
     by_radius: float = 0.0
+    together: float = 0.0
 
     @staticmethod
     def of(
-        found: Calibration, residuals: Array, corners: Array, freedom: int | None = None
+        found: Calibration,
+        residuals: Array,
+        corners: Array,
+        board: Array,
+        freedom: int | None = None,
     ) -> "Evidence":
         """Gather what a calibration is judged by; residuals and corners are (n_views, n, 2).
 
-        `freedom` is that of the residuals; without it their likeness is not looked at.
+        They are of the points `board`, (n, 3) or (n_views, n, 3). `freedom` is that of the
+        residuals; without it their likeness is not looked at.
         """
         return Evidence(
             A=found.A,
@@ -77,6 +85,7 @@ class Evidence:
             converged=found.converged,
             likeness=0.0 if freedom is None else likeness(residuals, freedom),
             by_radius=by_radius(residuals, corners, found.A[:2, 2]),
+            together=missed_together(residuals, board),
         )
 
     @cached_property
@@ -143,6 +152,53 @@ def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
     return part / squares if part > _POWERS * _CHANCE * squares / (2 * n) else 0.0
 
 
+def missed_together(residuals: Array, board: Array) -> float:
+    """Tell by how many pixels the corners of a typical view miss their places together.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (n_views, n, 2)
+        0 where no corner was seen, NaN where the lens folds.
+    board : ndarray, shape (n, 3) or (n_views, n, 3)
+        Places of the corners on the board.
+
+    Returns
+    -------
+    float
+        Root mean square distance, of the median view. 0 for fewer than 12 corners.
+
+    Notes
+    -----
+    What a camera of the wrong kind leaves varies slowly over the board; noise does not. So cubics
+    in x and y (of few corners parabolas) are fitted to the residuals of each view: of squares that
+    are noise they take one share for each coefficient that the pose has not taken before.
+
+    Examples
+    --------
+    >>> rng, W = np.random.default_rng(0), np.array([[x, y, 0] for y in range(6) for x in range(9)])
+    >>> noise, bend = rng.normal(0, 0.5, (9, 54, 2)), 0.1 * (W[:, :2] - [4, 2.5]) ** 2
+    >>> missed_together(noise, W) < 0.2, missed_together(noise + bend, W) > 0.7
+    (True, True)
+    """
+    squares = (residuals * residuals).sum(-1)
+    seen = np.isfinite(squares) & (squares > 0)
+    n = seen.sum(1)
+    order = 3 if np.median(n) >= 20 else 2
+    x, y = np.moveaxis(board[..., :2], -1, 0)
+    powers = [x ** (i - j) * y**j for i in range(order + 1) for j in range(i + 1)]
+    if np.median(n) < 2 * len(powers):
+        return 0.0
+    smooth = np.stack(powers, axis=-1, dtype=float)
+    if not seen.all():
+        residuals, smooth = np.where(seen[..., None], residuals, 0.0), smooth * seen[..., None]
+        squares = np.where(seen, squares, 0.0)
+    of_noise = 2 * len(powers)  # in x and in y, of which six are the pose's
+    part = np.square(np.linalg.qr(smooth).Q.mT @ residuals).sum((1, 2))
+    variance = np.median((squares.sum(1) - part) / np.maximum(2 * n - of_noise, 1))
+    beyond = (part - (of_noise - 6) * variance) / np.maximum(n, 1)
+    return float(np.sqrt(max(np.median(beyond), 0.0)))
+
+
 def widest_angle(poses: Array) -> float:
     """Give the largest angle between the planes of two boards (n, 4, 4), in degrees.
 
@@ -169,7 +225,7 @@ _UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over
 _POWERS, _CHANCE = 5, 5.0  # of the radius; F from which on they are no chance
 _NEGLIGIBLE = 0.02  # px: what a lens misses below this does not matter
 _TOO_SMALL = 0.15  # part of the residuals by radius; 0.02 at most with a lens that fits
-_MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed
+_MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed or be another
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
 _NO_NOISE = (
     "neighbouring corners miss their places in the same direction, so this is no noise: is the "
@@ -289,22 +345,31 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
             f"({e.by_radius:.0%} of the residuals): this lens has too few coefficients; let views "
             'that are left out choose one (lens="auto")'
         )
-    elif e.likeness > ALIKE and typical > _MOVED * max(e.size):
+    elif _is_no_noise(e):
         yield _NO_NOISE
+    if np.isnan(e.distances).any():
+        yield (
+            "some corners lie where the estimated lens folds over, so it shows nothing there: let "
+            'views that are left out choose a lens (lens="auto"), or bring the board into the '
+            "corners of the picture in more views"
+        )
+
+
+def _is_no_noise(e: Evidence) -> bool:
+    """Tell whether corners miss their places together, by more than bent boards do."""
+    most = _MOVED * max(e.size)
+    return e.together > most or (e.likeness > ALIKE and e.typical_rms > most)
 
 
 def _systematic(e: Evidence) -> Iterator[str]:
     """Find residuals that are small, but of which the error bars are not a measure."""
-    if e.likeness > ALIKE and e.typical_rms <= _MOVED * max(e.size):
+    if e.likeness > ALIKE and not _is_no_noise(e):
         yield f"{_NO_NOISE} The true error is then larger than noise alone would make it"
 
 
 def _outliers(e: Evidence) -> Iterator[str]:
     """Find single corners far from their place."""
-    d = e.distances
-    if np.isnan(d).any():
-        yield "some corners lie where the estimated lens folds over: estimate fewer coefficients"
-        d = np.nan_to_num(d)
+    d = np.nan_to_num(e.distances)
     # A distance with Gaussian coordinates exceeds 5 of its medians once in 30 million corners.
     limit = max(5 * np.median(d[d > 0]), 0.2) if d.any() else np.inf
     worst = d.argmax(1)

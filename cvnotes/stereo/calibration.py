@@ -217,7 +217,8 @@ def refined(
         covariance=cov,
         converged=best.converged,
     )
-    sentences, reliable = judge_rig(result, (problem.left.m, problem.right.m), residuals, strangers)
+    corners = problem.left.m, problem.right.m
+    sentences, reliable = judge_rig(result, pairs[0].W, corners, residuals, strangers)
     for sentence in sentences:
         warn(sentence, CalibrationWarning, stacklevel=3)
     return replace(result, warnings=sentences, reliable=reliable)
@@ -260,12 +261,14 @@ def _cameras(
     return left, right.moved(G)
 
 
+SIDES = ("left", "right")
 # Typical distance from the model, over the longer side of the picture, that no noise explains.
 _MISFIT = 0.005
 
 
 def judge_rig(
     result: StereoCalibration,
+    board: Array,
     corners: tuple[Array, Array],
     residuals: tuple[Array, Array],
     strangers: list[int],
@@ -276,6 +279,8 @@ def judge_rig(
     ----------
     result : StereoCalibration
         Not judged yet.
+    board : ndarray, shape (n, 3) or (n_views, n, 3)
+        The points of the board.
     corners, residuals : pair of ndarray, shape (n_views, n, 2)
         Where the corners were seen in the left and right pictures, and how far from where the
         model puts them; 0 where none was seen, NaN where the lens folds.
@@ -292,14 +297,20 @@ def judge_rig(
     if not result.converged:
         fatal.append("the refinement stopped before it reached a minimum")
     if len(result.names) == 6:  # the cameras were known
-        fatal += _misfits(result)
+        fatal += _misfits(result, residuals)
         return tuple(fatal), not fatal
-    sentences, reliable = _judge_cameras(result, corners, residuals)
+    sentences, reliable = _judge_cameras(result, board, corners, residuals)
     return (*fatal, *sentences), reliable and not fatal
 
 
-def _misfits(result: StereoCalibration) -> list[str]:
+def _misfits(result: StereoCalibration, residuals: tuple[Array, Array]) -> list[str]:
     """Say when known cameras do not explain the corners."""
+    folded = [side for side, r in zip(SIDES, residuals, strict=True) if np.isnan(r).any()]
+    if folded:
+        return [
+            f"{' and '.join(folded)} camera: some corners lie where its lens folds over, so it "
+            "shows nothing there: do A and lens belong to these pictures?"
+        ]
     typical = float(np.median(result.view_rms))
     if typical <= _MISFIT * max(result.left.size):
         return []
@@ -310,14 +321,17 @@ def _misfits(result: StereoCalibration) -> list[str]:
 
 
 def _judge_cameras(
-    result: StereoCalibration, corners: tuple[Array, Array], residuals: tuple[Array, Array]
+    result: StereoCalibration,
+    board: Array,
+    corners: tuple[Array, Array],
+    residuals: tuple[Array, Array],
 ) -> tuple[list[str], bool]:
     """Judge each camera by what `calibrate` judges it by, at the joint minimum."""
     sentences: list[str] = []
     reliable = True
-    for i, side in enumerate(("left", "right")):
+    for i, side in enumerate(SIDES):
         one = replace(result.of_camera(i), converged=True)  # said above
-        found, believed = judge(Evidence.of(one, residuals[i], corners[i]))
+        found, believed = judge(Evidence.of(one, residuals[i], corners[i], board))
         sentences += [f"{side} camera: {sentence}" for sentence in found]
         reliable = reliable and believed
     return sentences, reliable
