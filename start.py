@@ -48,6 +48,7 @@ print(json.dumps({
     "version": list(sys.version_info[:2]),
     "own": sys.prefix != sys.base_prefix,
     "pip": importlib.util.find_spec("pip") is not None,
+    "ensurepip": importlib.util.find_spec("ensurepip") is not None,
     "cvnotes": found.origin if found else None,
 }))
 """
@@ -112,9 +113,12 @@ def environment(extra: str) -> Path:
     if found is not None and is_ours(found) and installed(folder, extra) == wanted:
         return python
     ran_before = found is not None and is_ours(found) and installed(folder, extra) is not None
-    print(f"Installing the course into {folder}: about {SIZE[extra]}, once.", flush=True)
     try:
-        found = prepare(folder, python, found)
+        usable = reusable(folder, found)
+        if usable is None or not (usable["pip"] or usable["ensurepip"]):
+            check_whole()  # before anything is promised or written
+        print(f"Installing the course into {folder}: about {SIZE[extra]}, once.", flush=True)
+        found = usable or create(folder, python)
         try:
             pip(python, found, ["--editable", f"{ROOT}[{extra}]"])
         except CannotError as error:
@@ -181,8 +185,8 @@ def is_ours(found: dict[str, object]) -> bool:
     return isinstance(origin, str) and Path(origin).resolve() == ROOT / "cvnotes" / "__init__.py"
 
 
-def prepare(folder: Path, python: Path, found: dict[str, object] | None) -> dict[str, object]:
-    """Make the environment if there is none, or none that works; gives what it says of itself."""
+def reusable(folder: Path, found: dict[str, object] | None) -> dict[str, object] | None:
+    """Give what an environment says of itself if it can be kept, or None if it is made anew."""
     made_here = any(folder.glob("installed-*")) if folder.is_dir() else False
     if folder.exists() and not folder.is_dir():
         raise CannotError(f"{folder} is no folder; set CVNOTES_VENV to one for the environment")
@@ -202,10 +206,13 @@ def prepare(folder: Path, python: Path, found: dict[str, object] | None) -> dict
             f"the Python of the environment in {folder} does not start; "
             "delete that folder, or set CVNOTES_VENV to another"
         )
-    usable = found is not None and (foreign or (is_ours(found) and scripts_start(folder)))
-    if usable and found is not None:
+    if found is not None and (foreign or (is_ours(found) and scripts_start(folder))):
         return found
-    check_whole()
+    return None
+
+
+def create(folder: Path, python: Path) -> dict[str, object]:
+    """Make the environment; gives what it says of itself."""
     import venv
 
     print(f"  a new environment with Python {sys.version.split()[0]}", flush=True)

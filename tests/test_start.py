@@ -240,7 +240,9 @@ class TestEnvironment:
         with pytest.raises(start.CannotError, match="sudo apt install python3-venv"):
             start.pip(Path("somewhere/bin/python"), {"pip": False}, ["course"])
 
-    def test_without_ensurepip_it_names_the_package_to_install(self, clone, monkeypatch):
+    def test_without_ensurepip_it_names_the_package_before_all_else(
+        self, clone, monkeypatch, capsys
+    ):
         found = importlib.util.find_spec
         monkeypatch.setattr(
             "importlib.util.find_spec", lambda name: None if name == "ensurepip" else found(name)
@@ -248,6 +250,14 @@ class TestEnvironment:
         with pytest.raises(clone.start.CannotError, match="sudo apt install python3-venv"):
             clone.python()
         assert not (clone.root / ".venv").exists()
+        # What Debian's `python3 -m venv` leaves behind when it refuses.
+        venv.EnvBuilder(symlinks=True).create(clone.root / ".venv")
+        found_there = clone.start.probe(clone.root / ".venv" / BIN)
+        assert found_there["ensurepip"]
+        clone.start.probe = lambda _: found_there | {"ensurepip": False}
+        with pytest.raises(clone.start.CannotError, match="sudo apt install python3-venv"):
+            clone.python()
+        assert capsys.readouterr().out == ""  # no download is announced that does not come
 
     def test_what_only_some_machines_have_is_optional(self, clone, capsys):
         def pip(python, found, what):
@@ -390,13 +400,26 @@ class Terminal:
         return code
 
 
-def runs(pid):
+def processes():
+    """Give the words by which each process was called; a bare Debian has no `ps`."""
+    if Path("/proc/self/cmdline").exists():
+        folders = [path for path in Path("/proc").iterdir() if path.name.isdecimal()]
+        return {int(path.name): _words(path / "cmdline") for path in folders}
+    lines = subprocess.check_output(["ps", "-wweo", "pid,stat,args"], text=True).splitlines()[1:]
+    words = [line.split(maxsplit=2) for line in lines]
+    return {int(pid): "" if "Z" in state else called for pid, state, called in words}
+
+
+def _words(path):
+    """Read what a process was called by: nothing if it has ended, or waits to be buried."""
     try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return "Z" not in subprocess.run(["ps", "-o", "stat=", "-p", str(pid)],
-                                     capture_output=True, text=True).stdout  # fmt: skip
+        return path.read_bytes().replace(b"\0", b" ").decode(errors="replace")
+    except OSError:
+        return ""
+
+
+def runs(pid):
+    return bool(processes().get(pid))
 
 
 @posix
@@ -428,16 +451,16 @@ def test_jupyterlab_and_its_kernels_end_with_ctrl_c_without_a_word_too_much(tmp_
     with urllib.request.urlopen(url, data=b'{"name": "python3"}', timeout=30) as answer:
         kernel = json.load(answer)["id"]
     terminal.read("eavesdropping", seconds=4)  # time for a kernel to say so
-    processes = [
-        int(line.split()[0])
-        for line in subprocess.check_output(["ps", "-wweo", "pid,args"], text=True).splitlines()
-        if kernel in line or (folder in line and "jupyterlab" in line)
+    ours = [
+        pid
+        for pid, words in processes().items()
+        if kernel in words or (folder in words and "jupyterlab" in words)
     ]
-    assert len(processes) >= 2
+    assert len(ours) >= 2
     terminal.press_ctrl_c()
     terminal.press_ctrl_c()  # nobody presses it once only
     assert terminal.ends() == 130
-    assert not any(map(runs, processes))
+    assert not any(map(runs, ours))
     assert "The course is closed; what you saved is kept." in terminal.said
     assert "eavesdropping" not in terminal.said
     assert "\x1b" not in terminal.said
