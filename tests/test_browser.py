@@ -9,9 +9,11 @@ import sys
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 
 from cvnotes.commands.lab import free_port, start_server, stop, wait_until_up
+from cvnotes.show import IDEAL, WORLD, Lines, build_scene, show_scene
 from cvnotes.show.explore import NAMES, model
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
@@ -288,6 +290,28 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
         assert output.locator(".noUi-handle").count() == len(settings) - switches
         assert output.locator("input[type=checkbox]").count() == switches
     _shut_down(page)
+
+
+def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(page):
+    black = Lines("ideal", np.array([[[0.0, 0, 0], [0, 0, 9]]]), IDEAL, 2)
+    green = Lines("rail", np.array([[[1.0, 0, 0], [1, 0, 9]]]), WORLD, 2)
+    viewer = show_scene(build_scene(black, green), alt="Two <rails>")
+    page.set_content(f'<body style="background: #111"><section>{viewer._repr_html_()}</section>')
+    page.get_by_title("Two <rails>").wait_for()
+    frame = page.frames[1]
+    seen = """paper => {
+        if (typeof camera === 'undefined' || !camera) return null;
+        if (scene.background.getHexString() !== paper) return null;
+        const glow = {};
+        scene.traverse(n => { if (n.material) glow[n.name] = n.material.emissive.getHexString(); });
+        return glow;
+    }"""
+    dark = frame.wait_for_function(seen, arg="111111", timeout=20_000).json_value()
+    page.evaluate("() => { document.body.style.background = '#fff'; }")  # another theme is chosen
+    light = frame.wait_for_function(seen, arg="ffffff", timeout=20_000).json_value()
+    assert light["ideal"] == "000000"
+    assert min(bytes.fromhex(dark["ideal"])) > 0x80
+    assert dark["rail"] == light["rail"] != "000000"
 
 
 def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, course):

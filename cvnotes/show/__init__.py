@@ -69,7 +69,7 @@ from cvnotes.show.space.shapes import (
     target_shapes,
 )
 from cvnotes.show.space.stills import draw_scene
-from cvnotes.show.space.viewer import build_scene, export_glb
+from cvnotes.show.space.viewer import Viewer, build_scene, export_glb, show_scene
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, panels
 
 __all__ = [
@@ -138,6 +138,8 @@ __all__ = [
     # in space
     "draw_scene",
     "build_scene",
+    "show_scene",
+    "Viewer",
     "export_glb",
     "axes_shapes",
     "arrow_shapes",

@@ -5,13 +5,15 @@ a turn about x, lies between the two and is its own inverse.
 """
 
 import os
+from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array
+from cvnotes.base import Array, CvnotesError
 from cvnotes.show.guards import length
 from cvnotes.show.space.directions import towards
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent
@@ -22,6 +24,56 @@ _GLOW = 0.7
 _ANGLE = 45.0  # degrees that a viewer sees from top to bottom
 _FRAME = 1.2  # its width by its height, at least
 _ROOM = 1.03  # around the scene
+_HEIGHT = 500  # px on the page, at most
+# In the frame of trimesh's viewer. The paper is that of the page around the frame, and changes when
+# JupyterLab changes its theme; black lines turn light on a dark one, where nobody would see them.
+_PAPER = """<script>(() => {
+  const lit = c => Math.max(c.r, c.g, c.b);
+  let before = "";
+  const follow = () => {
+    if (typeof scene === "undefined" || typeof camera === "undefined" || !camera) return;
+    let paper = "rgb(255, 255, 255)";
+    try {
+      for (let e = window.frameElement; e; e = e.parentElement) {
+        const its = e.ownerDocument.defaultView.getComputedStyle(e).backgroundColor;
+        if (/^rgb\\(/.test(its)) { paper = its; break; }
+      }
+    } catch (foreign) { /* a page that keeps to itself: white, as paper is */ }
+    if (paper === before) return;
+    before = paper;
+    scene.background.set(paper);
+    const dark = paper.match(/\\d+/g).reduce((sum, n) => sum + +n, 0) < 384;
+    scene.traverse(({material}) => {
+      if (!material || !material.emissive || material.map) return;
+      const own = material.userData;
+      own.first ??= [material.color.clone(), material.emissive.clone()];
+      const [colour, glow] = own.first;
+      const black = dark && lit(colour) + lit(glow) < 0.1;
+      material.color.copy(colour).addScalar(black ? 0.25 : 0);
+      material.emissive.copy(glow).addScalar(black ? 0.55 : 0);
+    });
+    render();
+  };
+  setInterval(follow, 200);
+})();</script>"""
+
+
+@dataclass(frozen=True)
+class Viewer:
+    """A scene to turn in the hand, and its description everywhere else."""
+
+    html: str
+    alt: str
+
+    def __repr__(self) -> str:
+        return self.alt
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<div><iframe title="{escape(self.alt)}" srcdoc="{escape(self.html)}" '
+            f'style="border: none; width: 100%; max-height: {_HEIGHT}px; aspect-ratio: {_FRAME}">'
+            "</iframe></div>"
+        )
 
 
 def build_scene(
@@ -29,7 +81,7 @@ def build_scene(
     thickness: float | None = None,
     view: tuple[float, float] | None = (20.0, -40.0),
 ) -> Any:
-    """Put shapes into a ``trimesh.Scene``; its ``show()`` turns it in a notebook, offline.
+    """Put shapes into a ``trimesh.Scene``, which `show_scene` turns in a notebook.
 
     Parameters
     ----------
@@ -93,6 +145,34 @@ def _seen_from(way: Array, scene: Any) -> Array:
     G = np.eye(4)
     G[:3, :3], G[:3, 3] = R, middle + _ROOM * away * way
     return G
+
+
+def show_scene(scene: Any, *, alt: str) -> Viewer:
+    """Show a scene to be turned by the hand, on the page's own paper: dark where the page is.
+
+    Parameters
+    ----------
+    scene : trimesh.Scene
+        What `build_scene` gave. It is seen from its view at first.
+    alt : str
+        What the scene shows, in a sentence, for those who cannot see it.
+
+    Returns
+    -------
+    Viewer
+        Shown by a notebook, without asking any network; its repr is `alt`.
+
+    Examples
+    --------
+    >>> from cvnotes.show import axes_shapes
+    >>> show_scene(build_scene(*axes_shapes()), alt="Three axes, to be turned.")
+    Three axes, to be turned.
+    """
+    from trimesh.viewer import scene_to_html
+
+    if not alt.strip():
+        raise CvnotesError("alt: say in a sentence what the scene shows")
+    return Viewer(scene_to_html(scene).replace("</body>", f"{_PAPER}</body>"), alt)
 
 
 def export_glb(scene: Any, path: str | os.PathLike[str]) -> None:
