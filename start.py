@@ -117,7 +117,8 @@ def environment(extra: str) -> Path:
         usable = reusable(folder, found)
         if usable is None or not (usable["pip"] or usable["ensurepip"]):
             check_whole()  # before anything is promised or written
-        print(f"Installing the course into {folder}: about {SIZE[extra]}, once.", flush=True)
+        size = "what has changed since" if ran_before else f"about {SIZE[extra]}, once"
+        print(f"Installing the course into {folder}: {size}.", flush=True)
         found = usable or create(folder, python)
         try:
             pip(python, found, ["--editable", f"{ROOT}[{extra}]"])

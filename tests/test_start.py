@@ -148,8 +148,9 @@ def test_what_is_installed_is_declared(start):
 
 @posix
 class TestEnvironment:
-    def test_it_is_made_once_and_again_when_the_recipe_changes(self, clone):
+    def test_it_is_made_once_and_again_when_the_recipe_changes(self, clone, capsys):
         python = clone.python()
+        assert "190 MB to download" in capsys.readouterr().out
         assert python == clone.root / ".venv" / BIN
         assert clone.imports(python) == clone.root
         assert len(clone.asked) == 2
@@ -158,6 +159,7 @@ class TestEnvironment:
         (clone.root / "pyproject.toml").write_text("[project]\nname = 'other'")
         clone.python()
         assert len(clone.asked) == 4
+        assert "what has changed since" in capsys.readouterr().out
         clone.python("dev")
         assert clone.asked[-2] == ["--editable", f"{clone.root}[dev]"]
 

@@ -414,7 +414,8 @@ def _worth_it(problem: Problem, found: Minimum[State, Arrow]) -> bool:
     if found.cost <= _NOISELESS**2 * problem.n_seen:
         return False
     by_view = found.system.view_costs / problem.n_seen_by_view
-    return len(by_view) <= _FEW_VIEWS or by_view.max() > _STANDS_OUT**2 * np.median(by_view)
+    stands_out = by_view.max() > _STANDS_OUT**2 * np.median(by_view)
+    return bool(len(by_view) <= _FEW_VIEWS or stands_out)
 
 
 def _lower_minima(
@@ -447,7 +448,7 @@ def _in_question(problem: Problem, found: Minimum[State, Arrow]) -> npt.NDArray[
     ratio = costs / np.maximum(own, found.cost / problem.n_seen)
     fell_back = _distance(x.R, found.x.R) < _distance(x.R, turned_R)  # there is no other pose
     ratio = np.where(fell_back, np.inf, ratio)
-    order = np.argsort(ratio)
+    order: npt.NDArray[np.intp] = np.argsort(ratio)
     return order[ratio[order] < _IN_QUESTION**2]
 
 
