@@ -212,11 +212,27 @@ def _search(
                 needed = trials_needed(float(best.mean()), confidence)
         drawn += BATCH
         trials += counted
-    return best
+    return _grown(best, src, dst, t)
 
 
 # Multiples of the threshold at which a new best map is fitted again, one after the other.
-_SHRINKING = (4.0, 2.5, 1.6, 1.0)
+_SHRINKING = (8.0, 4.0, 2.5, 1.6, 1.0)
+
+
+def _grown(best: Mask, src: Array, dst: Array, t: float) -> Mask:
+    """Let the fit of all who agree find those whom it lost so far, until nobody joins.
+
+    Most pairs may lie close together, and one far away is then missed by several thresholds.
+    """
+    while best.sum() >= 4:
+        try:
+            agree = _optimised(dlt(src[best], dst[best]), src, dst, t)
+        except DegenerateError:  # a line of neighbours
+            break
+        if agree.sum() <= best.sum():
+            break
+        best = agree
+    return best
 
 
 def _optimised(H: Array, src: Array, dst: Array, t: float) -> Mask:
