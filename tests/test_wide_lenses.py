@@ -11,7 +11,8 @@ from cvnotes.calibration import Calibration, calibrate, choose_lens
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Problem
 from cvnotes.calibration.reliability import by_radius
-from cvnotes.calibration.starts import Search
+from cvnotes.calibration.starts import Search, as_quotient
+from cvnotes.calibration.which_lens import AtLeast, left_out_rms
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
 from cvnotes.camera import (
     Camera,
@@ -286,6 +287,39 @@ def test_views_left_out_choose_the_model_that_took_the_pictures():
         assert isinstance(found.lens, type(camera.lens))
         # what is left out is predicted as well as its noise (0.14 px per point) allows
         assert found.left_out[name] == pytest.approx(0.1 * np.sqrt(2), rel=0.1)
+
+
+def test_a_beaten_lens_is_left_early_but_never_below_what_is_said_of_it():
+    rng = np.random.default_rng(6)
+    W, m = seen_by(Camera(intrinsics(220, 221, 325, 238), lens=FisheyeLens((-0.03, 0.005))), 10)
+    m = m + rng.normal(0, 0.1, m.shape)
+    lenses = ("k1 k2", "k1 k2 p1 p2", "fisheye", "k1 k2 p1 p2 k3")
+    quick, thorough = (
+        left_out_rms(W, m, (640, 480), lenses=lenses, to_the_end=end) for end in (False, True)
+    )
+    assert list(quick) == list(thorough) == list(lenses)
+    assert choose_lens(quick) == choose_lens(thorough) == "fisheye"
+    bounds = [name for name, rms in quick.items() if isinstance(rms, AtLeast)]
+    assert bounds == ["k1 k2", "k1 k2 p1 p2", "k1 k2 p1 p2 k3"]
+    for name in bounds:
+        assert 1.1 * quick["fisheye"] < quick[name] <= thorough[name]
+    assert np.isclose(quick["fisheye"], thorough["fisheye"], rtol=1e-4)
+    assert not any(isinstance(rms, AtLeast) for rms in thorough.values())
+
+
+def test_a_quotient_starts_from_what_a_fisheye_came_to():
+    fisheye = FisheyeLens((0.05, -0.02, 0.01, -0.004))
+    camera = Camera(intrinsics(400, 410, 322, 241), lens=fisheye)
+    _, m = seen_by(camera, 5)
+    found = as_quotient(camera, m)
+    farthest = np.linalg.norm((m - [322, 241]) / [400, 410], axis=-1).max()
+    theta = np.linspace(0.01, 1.3, 60)
+    shown = fisheye.of_rays(np.stack([np.sin(theta), 0 * theta, np.cos(theta)], -1))[:, 0]
+    r = np.tan(theta)
+    seen = shown < farthest
+    assert seen.sum() > 20
+    assert np.abs(r * found.lens.L(r) - shown)[seen].max() < 1e-3
+    assert np.array_equal(found.A, camera.A)
 
 
 def test_a_lens_that_another_beats_is_not_started_over_and_over():

@@ -111,7 +111,7 @@ def calibrate(
     data = Correspondences.of(board_points, image_points)
     left_out = {}
     if lens == "auto":
-        left_out = left_out_rms(board_points, image_points, size, skew=skew)
+        left_out = left_out_rms(board_points, image_points, size, skew=skew, to_the_end=False)
         lens = choose_lens(left_out)
     problem = Problem.of(data, size, lens, skew)
     _refuse_too_few(problem)

@@ -551,7 +551,7 @@ def _minimise_quotient(
     held = _descend(
         replace(problem, ridge=_RIDGE),
         start,
-        max(tolerance, _WITH_RIDGE),
+        max(0.1 * tolerance, _WITH_RIDGE),
         steps=400,
         patience=_PATIENCE if patience is None else patience,
     )

@@ -96,12 +96,15 @@ class Search:
     rival : float, optional
         Cost that another lens leaves of the same corners, where lenses are only compared; fewer
         starts then do for a lens that does not fit.
+    fisheye : Camera, optional
+        What the same views say of a camera with a `FisheyeLens`, for a quotient to start from.
     """
 
     problem: Problem
     tolerance: float = 1e-12
     patience: int | None = None
     rival: float | None = None
+    fisheye: Camera | None = None
     minima: list[Minimum[State, Arrow]] = field(default_factory=list)
     own: list[str] = field(default_factory=list)  # the steps that are the student's
 
@@ -124,6 +127,8 @@ class Search:
         if self.problem.model is FisheyeLens:
             yield from (resumed(self, camera) for camera in _wide_cameras(self.problem))
             return
+        if self.problem.model is RationalLens and self.fisheye is not None:
+            yield resumed(self, as_quotient(self.fisheye, self.problem.m))
         to_px = _px_from_normalised(self.problem.size)
         m = (self.problem.m - to_px[:2, 2]) / to_px[0, 0]
         for bend in _BENDS if self.problem.n_radial else _BENDS[:1]:
@@ -337,6 +342,27 @@ def _wide_cameras(problem: Problem) -> Iterator[Camera]:
         if problem.model is RationalLens:
             lens = RationalLens(_LIKE_EQUIDISTANT)
         yield Camera(intrinsics(f, f, (w - 1) / 2, (h - 1) / 2), lens=lens, size=problem.size)
+
+
+def as_quotient(camera: Camera, m: Array) -> Camera:
+    """Give the camera with a quotient for a lens that shows rays up to 80° as a fisheye does.
+
+    Where pixels m were seen: r' (1 + k4 r² + k5 r⁴ + k6 r⁶) = r (1 + k1 r² + k2 r⁴ + k3 r⁶) is
+    linear in its coefficients, with r = tan θ and r' the fisheye's radius.
+    """
+    farthest = np.linalg.norm(xy_from_px.inside(camera.A, m), axis=-1).max()
+    theta = np.linspace(0, _STEEPEST, 100)[1:]
+    rays = np.stack([np.sin(theta), np.zeros_like(theta), np.cos(theta)], axis=-1)
+    lens = FisheyeLens(tuple(camera.lens.parameters.values()))
+    shown, r = lens.of_rays(rays)[:, 0], np.tan(theta)
+    powers = r[:, None] ** [2, 4, 6]
+    weight = 1 / (r * (1 + r**2) ** 3)
+    sides = np.concatenate([r[:, None] * powers, -shown[:, None] * powers], axis=1)
+    seen = shown <= farthest
+    k = np.linalg.lstsq((weight[:, None] * sides)[seen], (weight * (shown - r))[seen], rcond=None)[
+        0
+    ]
+    return Camera(camera.A, lens=RationalLens(tuple(k)), size=camera.size)
 
 
 def _focal_lengths_alone(V: Array, b: Array) -> Array:  # noqa: ARG001

@@ -7,7 +7,7 @@ well the camera predicts corners that it has not seen.
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ from cvnotes.calibration.correspondences import Correspondences, PointSets
 from cvnotes.calibration.refinement import Arrow, Problem, State, minimise, poses_follow
 from cvnotes.calibration.starts import Search
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
+from cvnotes.camera import Camera, RationalLens
 from cvnotes.homography import dlt
 
 # From the fewest coefficients to the most: 2, 4, 4, 5 and 8.
@@ -26,6 +27,14 @@ _BETTER = 1.03
 _PARTS = 5  # the views are left out a part at a time
 _STEPS = 10  # of a pose that follows a camera; it starts close
 _CLOSE, _PATIENCE = 1e-8, 3  # tolerance and patience with minima that are only compared
+_COARSE = 1e-4  # tolerance of a minimum from which the parts go on
+# A lens that fits so many times worse than another predicts speaks for those that it contains, too.
+_HOPELESS = 2.0
+_BEATEN = 1.1  # so many times worse than another, a lens need not be followed to the end
+
+
+class AtLeast(float):
+    """What a root mean square is not below, where that was enough to know."""
 
 
 def left_out_rms(
@@ -35,6 +44,7 @@ def left_out_rms(
     *,
     lenses: Sequence[str] = CANDIDATES,
     skew: bool = False,
+    to_the_end: bool = True,
 ) -> dict[str, float]:
     """Predict the corners of views that were left out, with each of several lenses.
 
@@ -44,6 +54,9 @@ def left_out_rms(
         As for `calibrate`; at least 4 views.
     lenses : sequence of str
         Names that `calibrate` knows.
+    to_the_end : bool
+        If false, a lens is left as soon as it cannot be chosen any more, and what is given for it
+        is an `AtLeast`.
 
     Returns
     -------
@@ -62,6 +75,11 @@ def left_out_rms(
     The views are dealt into five parts. A camera is estimated without one of them, then held
     while the poses of the views left out are fitted; what remains in these counts.
 
+    No view is fitted better by the others than by all: with θ the best camera of all views and θ'
+    that without view i, Σ c(θ) ≤ Σ c(θ') while Σ' c(θ') ≤ Σ' c(θ), where Σ' leaves out the cost of
+    view i, and so c_i(θ') ≥ c_i(θ). What all views leave is therefore a lower bound from the start;
+    each part that is left out raises it.
+
     References
     ----------
     .. [1] M. Stone, Cross-validatory choice and assessment of statistical predictions, J. R.
@@ -76,15 +94,56 @@ def left_out_rms(
     True
     """
     size, data = image_size(size), enough_views(board_points, image_points)
+    compared = Comparison(to_the_end)
     found: dict[str, float] = {}
-    rival = np.inf
-    # (the fisheye first: it fits narrow lenses nearly as well, and wide ones as nothing else does)
-    for name in sorted(lenses, key=lambda name: name != "fisheye"):
+    # (the fisheye first: it fits narrow lenses nearly as well, and wide ones as nothing else does;
+    # then the polynomial that contains the others)
+    first = ("fisheye", "k1 k2 p1 p2 k3")
+    for name in sorted(lenses, key=lambda name: (*first, name).index(name)):
         if name == "rational" and _is_narrow(found):
             continue
-        found[name], cost = _one(Problem.of(data, size, name, skew), rival)
-        rival = min(rival, cost)
+        found[name] = compared.add(name, Problem.of(data, size, name, skew))
     return {name: found[name] for name in lenses if name in found}
+
+
+@dataclass(eq=False)
+class Comparison:
+    """Lenses that were compared so far.
+
+    Parameters
+    ----------
+    to_the_end : bool
+        Whether a lens that cannot be chosen any more is worked out all the same.
+    """
+
+    to_the_end: bool
+    best: float = np.inf  # RMS over views left out
+    rival: float = np.inf  # cost of all views
+    fisheye: Camera | None = None
+    polynomial: float = 0.0  # RMS of all views, with the polynomial that contains the others
+
+    def add(self, name: str, problem: Problem) -> float:
+        """Give the RMS over views left out of one more lens, or what it is not below."""
+        # (the quotient, which takes longest, has nothing to add once it is not the best)
+        limit = self.best if name == "rational" else _BEATEN * self.best
+        if self.to_the_end:
+            limit = np.inf
+        if name.startswith("k") and self.polynomial > _HOPELESS * limit:
+            return AtLeast(self.polynomial)
+        try:
+            # (from the bottom of a quotient's valley, the parts have less far to go)
+            close = self.to_the_end or problem.model is RationalLens
+            tolerance = _CLOSE if close else _COARSE
+            whole = estimated(problem, self.rival, self.fisheye, tolerance)
+            rms = rms_of_parts(problem, whole, limit)
+        except (ConvergenceError, DegenerateError, CvnotesError):
+            return np.inf
+        self.best, self.rival = min(self.best, rms), min(self.rival, whole.cost)
+        if name == "fisheye":
+            self.fisheye = problem.camera_of(whole.x.shared)
+        if name == "k1 k2 p1 p2 k3":
+            self.polynomial = float(np.sqrt(whole.cost / problem.n_seen))
+        return rms
 
 
 def choose_lens(by_lens: dict[str, float]) -> str:
@@ -128,33 +187,36 @@ def _is_narrow(found: dict[str, float]) -> bool:
     return min(polynomials, default=np.inf) <= found.get("fisheye", 0.0)
 
 
-def _one(problem: Problem, rival: float) -> tuple[float, float]:
-    """RMS over views left out, and the cost of them all, of one lens."""
-    try:
-        whole = estimated(problem, rival)
-        return rms_of_parts(problem, whole), whole.cost
-    except (ConvergenceError, DegenerateError, CvnotesError):
-        return np.inf, np.inf
+def rms_of_parts(problem: Problem, whole: Minimum[State, Arrow], limit: float = np.inf) -> float:
+    """RMS over views left out a part at a time, of what starts at the minimum of them all.
 
-
-def rms_of_parts(problem: Problem, whole: Minimum[State, Arrow]) -> float:
-    """RMS over views left out a part at a time, of what starts at the minimum of them all."""
-    n_views = len(problem.m)
-    squares = 0.0
+    Beyond the limit it is not worked out to the end, see `left_out_rms`.
+    """
+    n_views, n = len(problem.m), problem.n_seen
+    squares, to_come = 0.0, whole.system.view_costs.copy()
     for out in _parts(n_views):
+        at_least = float(np.sqrt((squares + to_come.sum()) / n))
+        if at_least > limit:
+            return AtLeast(at_least)
         kept = np.setdiff1d(np.arange(n_views), out)
         start = _some(whole.x, kept)
         without = minimise(problem.some(kept), start, tolerance=_CLOSE, patience=_PATIENCE)
         squares += _follow(problem.some(out), _some(whole.x, out), without)
-    return float(np.sqrt(squares / problem.n_seen)) if np.isfinite(squares) else np.inf
+        to_come[out] = 0
+    return float(np.sqrt(squares / n)) if np.isfinite(squares) else np.inf
 
 
-def estimated(problem: Problem, rival: float = np.inf) -> Minimum[State, Arrow]:
+def estimated(
+    problem: Problem,
+    rival: float = np.inf,
+    fisheye: Camera | None = None,
+    tolerance: float = _CLOSE,
+) -> Minimum[State, Arrow]:
     """Estimate a camera from all views, as `calibrate` does by itself, to compare it with others.
 
-    `rival` is the least cost of a lens so far.
+    `rival` is the least cost of a lens so far; a quotient may start from a fisheye.
     """
-    search = Search(problem, tolerance=_CLOSE, patience=_PATIENCE, rival=rival)
+    search = Search(problem, tolerance=tolerance, patience=_PATIENCE, rival=rival, fisheye=fisheye)
     for start in search.starts():
         with start.attempt():
             H = start.homographies(dlt)

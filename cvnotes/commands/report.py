@@ -13,6 +13,7 @@ from cvnotes.base import Array, CalibrationWarning, CvnotesError, text_table
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.coverage import covered_cells
 from cvnotes.calibration.reliability import widest_angle
+from cvnotes.calibration.which_lens import AtLeast
 from cvnotes.camera import Camera
 from cvnotes.commands.examined import Examined
 from cvnotes.commands.ownership import TABLE_HEADER
@@ -99,7 +100,7 @@ def _choice(what: str, left_out: Mapping[str, float], chosen: str) -> str:
         [
             name,
             f"{rms:.3f}" if np.isfinite(rms) else "no camera",
-            "chosen" if name == chosen else "",
+            "chosen" if name == chosen else "at least" * isinstance(rms, AtLeast),
         ]
         for name, rms in left_out.items()
     ]
