@@ -78,8 +78,30 @@ def offer_to_run(*event: Any) -> None:
         context["body"] = context["body"].replace("</h1>", f"</h1>\n{link}", 1)
 
 
+CONTENTS: dict[tuple[Any, ...], str] = {}
+
+
+def share_contents(*event: Any) -> None:
+    """Write the table of contents once for all pages that are not in it and lie equally deep.
+
+    A hundred pages of source have the same, and it takes longer than all else of such a page.
+    """
+    _, page, _, context, doctree = event
+    if doctree is None:
+        own, depth = context["toctree"], page.count("/")
+
+        def toctree(**how: Any) -> str:
+            key = (depth, *sorted(how.items()))
+            if key not in CONTENTS:
+                CONTENTS[key] = own(**how)
+            return CONTENTS[key]
+
+        context["toctree"] = toctree
+
+
 def setup(app: Any) -> None:
     """Have Sphinx call us before numpydoc, and when a page is written."""
     app.connect("autodoc-process-docstring", escape_initials, priority=100)
+    app.connect("html-page-context", share_contents)
     if LIVE:
         app.connect("html-page-context", offer_to_run)

@@ -1,9 +1,12 @@
 """What several test files share: a board, its views by a known camera, where photographs lie."""
 
 import os
+import shutil
 import subprocess
 import sys
 import threading
+import time
+from contextlib import contextmanager
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -28,9 +31,17 @@ settings.register_profile(
 )
 settings.load_profile("course")
 
+ROOT = Path(__file__).resolve().parents[1]
+OF_CHROMIUM = [
+    "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-quic", "--no-first-run",
+    "--disable-sync", "--disable-background-networking", "--disable-component-update",
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+    "--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream",
+]  # fmt: skip
+
 # Photographs of others are not part of the project. Where they lie beside it, the finder is held
 # against them too; the corners measured in them are committed, and everybody tests with those.
-PHOTOGRAPHS = Path(__file__).resolve().parents[2] / "shared" / "data" / "left_right"
+PHOTOGRAPHS = ROOT.parent / "shared" / "data" / "left_right"
 collect_ignore = [] if PHOTOGRAPHS.is_dir() else ["test_photographs.py"]
 
 
@@ -40,38 +51,88 @@ def processor_time():
 
 
 @pytest.fixture(scope="session")
-def browser_parts():
+def shared(tmp_path_factory):
+    """Give what lets one worker of a run in at a time, into a folder that all of them share."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent
+
+    @contextmanager
+    def alone(name):
+        lock = folder / f"{name}.lock"
+        while True:
+            try:
+                lock.mkdir()
+                break
+            except FileExistsError:
+                time.sleep(0.5)
+        try:
+            yield folder
+        finally:
+            lock.rmdir()
+
+    return alone
+
+
+@pytest.fixture(scope="session")
+def browser_parts(shared):
     """Give the folder with the checked parts of Python for the browser, or skip for want of it."""
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
+    sys.path.insert(0, str(ROOT / "tools"))
     from browser_parts import PartsMissingError, gather
 
     try:
-        return gather()
+        with shared("parts"):
+            return gather()
     except PartsMissingError as error:
         pytest.skip(f"no Python for the browser: {error}")
 
 
 @pytest.fixture(scope="session")
-def live_site(request, tmp_path_factory):
-    """Build the site with Python for the browser and serve it below a folder; give its address.
+def live_folder(request, shared):
+    """Build the site with Python for the browser, once for all workers; give its folder.
 
     CVNOTES_SITE names one that is built already.
     """
-    root = Path(__file__).resolve().parents[1]
-    folder = tmp_path_factory.mktemp("live_site")
-    (folder / "some").mkdir()
     if given := os.environ.get("CVNOTES_SITE"):
-        (folder / "some" / "folder").symlink_to(Path(given).resolve())
-    else:
-        parts = request.getfixturevalue("browser_parts")
-        command = [sys.executable, root / "tools/build_site.py", "--parts", parts]
-        command += ["--out", folder / "some" / "folder"]
-        run = subprocess.run(command, capture_output=True, text=True, cwd=root)
-        assert run.returncode == 0, run.stdout + run.stderr
-    handler = partial(QuietHandler, directory=folder)
+        return Path(given).resolve()
+    parts = request.getfixturevalue("browser_parts")
+    with shared("site") as place:
+        folder = place / "live_site" / "some" / "folder"
+        if not folder.is_dir():
+            command = [sys.executable, ROOT / "tools/build_site.py"]
+            command += ["--parts", parts, "--out", folder]
+            run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+            assert run.returncode == 0, run.stdout + run.stderr
+    return folder
+
+
+@pytest.fixture(scope="session")
+def live_site(live_folder):
+    """Serve the site with Python in it below a folder; give its address."""
+    below, name = live_folder.parents[1], live_folder.parent.name
+    with serving(partial(QuietHandler, directory=below)) as address:
+        yield f"{address}/{name}/{live_folder.name}"
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    """Give a browser that knows no other machine and whose camera is a test picture that moves."""
+    program = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+    if program is None:
+        pytest.skip("no Chromium on this machine")
+    sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=OF_CHROMIUM)
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def serving(handler):
+    """Serve on loopback while it is needed; give the address."""
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{server.server_port}/some/folder"
+        yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
 
 
@@ -83,7 +144,7 @@ def camera_of_the_views():
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "cv2", None)
         here = Dropped(9, 6, 25.0)
-        for path in sorted((Path(__file__).resolve().parents[1] / "data" / "views").glob("*.png")):
+        for path in sorted((ROOT / "data" / "views").glob("*.png")):
             here.look(str(path))
         return here.calibrate()
 

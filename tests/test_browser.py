@@ -16,11 +16,7 @@ from cvnotes.commands.lab import free_port, start_server, stop, wait_until_up
 from cvnotes.show import IDEAL, WORLD, Lines, build_scene, show_scene
 from cvnotes.show.explore import NAMES, model
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
-if CHROMIUM is None:
-    pytest.skip("no Chromium on this machine", allow_module_level=True)
 pytest.importorskip("jupyterlab", reason="JupyterLab is not installed")
-sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
 
 pytestmark = pytest.mark.slow
 
@@ -30,11 +26,6 @@ EXPLORES = re.compile(r"^explore_\w+\(", re.MULTILINE)
 # Handles, keys and the way to the kernel are the same for all; test_explore.py tries each model.
 ONE = ("noise",)
 TOKEN = "of-this-test-alone"
-ARGUMENTS = [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
-    "--disable-background-networking", "--disable-component-update",
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
-]  # fmt: skip
 
 RUN_ALL = """async () => {
     const run = async () => {
@@ -149,14 +140,6 @@ def course(tmp_path_factory):
         yield folder, f"http://127.0.0.1:{port}"
     finally:
         stop(server)
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture

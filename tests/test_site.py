@@ -2,7 +2,6 @@
 
 import inspect
 import re
-import shutil
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -17,7 +16,6 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 # These serve the command, the build or others of the package.
 INTERNAL = {"commands"}
 
@@ -130,34 +128,22 @@ def test_everything_public_is_in_the_reference(pages):
                 assert f"cvnotes.{name}.{key}" in ids, (name, key)
 
 
-def test_formulas_are_set_without_a_network(site):
-    if CHROMIUM is None:
-        pytest.skip("no Chromium on this machine")
-    sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+def test_formulas_are_set_without_a_network(site, chromium):
     asked = []
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page = browser.new_page()
-        page.on("request", lambda request: asked.append(request.url))
-        page.goto((site / "notebooks" / "07_zhang_calibration.html").as_uri())
-        page.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
-        assert not page.query_selector("mjx-merror")
-        title = page.inner_text("h1")
-        browser.close()
-    assert re.match("7 · Zhang’s calibration", title)
+    page = chromium.new_page()
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto((site / "notebooks" / "07_zhang_calibration.html").as_uri())
+    page.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
+    assert not page.query_selector("mjx-merror")
+    assert re.match("7 · Zhang’s calibration", page.inner_text("h1"))
+    page.close()
     assert all(url.startswith(("file:", "data:")) for url in asked), asked
 
 
 @pytest.fixture(scope="module")
-def telephone():
+def telephone(chromium):
     """Give a page 400 px wide."""
-    if CHROMIUM is None:
-        pytest.skip("no Chromium on this machine")
-    sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield browser.new_page(viewport={"width": 400, "height": 900})
-        browser.close()
+    return chromium.new_page(viewport={"width": 400, "height": 900})
 
 
 @pytest.mark.parametrize(

@@ -1,41 +1,29 @@
 """The site's pages with Python in them, in a real browser: explorations, exercises, bad luck.
 
-The site is built once; without the parts of Pyodide all is skipped. CVNOTES_SITE names one that is
-built already.
+Without the parts of Pyodide all is skipped.
 """
 
 import csv
 import functools
-import http.server
+import io
 import json
-import os
 import re
-import shutil
 import statistics
-import subprocess
-import sys
-import threading
 from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
-from conftest import QuietHandler
+from conftest import QuietHandler, serving
 
 from cvnotes.commands.cli import main as cvnotes
 from cvnotes.show import explore
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
-if CHROMIUM is None:
-    pytest.skip("no Chromium on this machine", allow_module_level=True)
 pytest.importorskip("sphinx", reason="the extra docs is not installed")
-sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
 pytestmark = pytest.mark.slow
 
-NOWHERE = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
-ARGUMENTS = ["--no-sandbox", "--disable-gpu", NOWHERE]
 AWAKE = 120_000  # ms; Python is compiled anew for each page
 MODELS = {name: explore.model(name) for name in explore.NAMES}
 ARTICLE = re.compile(r'(<article class="bd-article"[^>]*>)')
@@ -76,44 +64,29 @@ CHECKED = """box => {
 
 
 @pytest.fixture(scope="module")
-def site(request, tmp_path_factory):
-    """Build the site, and add a page with all explorations; gives its folder."""
-    if given := os.environ.get("CVNOTES_SITE"):
-        out = Path(given)
-    else:
-        parts = request.getfixturevalue("browser_parts")
-        out = tmp_path_factory.mktemp("site") / "built"
-        command = [sys.executable, ROOT / "tools" / "build_site.py", "--out", out, "--parts", parts]
-        run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
-        assert run.returncode == 0, run.stdout + run.stderr
-    page = (out / "notebooks" / "04_lens_distortion.html").read_text()
+def address(live_folder):
+    """Serve the site with one more page, on which are all explorations."""
+    page = (live_folder / "notebooks" / "04_lens_distortion.html").read_text()
     outputs = "".join(_output(name) for name in explore.NAMES)
-    page = ARTICLE.sub(lambda found: found[1] + outputs, page)
-    (out / "notebooks" / "all_explorations.html").write_text(page)
-    return out
+    page = ARTICLE.sub(lambda found: found[1] + outputs, page).encode()
+
+    class Handler(QuietHandler):
+        def send_head(self):
+            if self.path != "/notebooks/all_explorations.html":
+                return super().send_head()
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html; charset=utf-8")
+            self.send_header("Content-Length", str(len(page)))
+            self.end_headers()
+            return io.BytesIO(page)
+
+    with serving(functools.partial(Handler, directory=live_folder)) as at:
+        yield at
 
 
 def _output(name):
     shown = getattr(explore, f"explore_{name}")()._repr_mimebundle_()["text/html"]
     return f'<div class="cell"><div class="cell_output"><div>{shown}</div></div></div>'
-
-
-@pytest.fixture(scope="module")
-def address(site):
-    handler = functools.partial(QuietHandler, directory=site)
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}"
-    server.shutdown()
-    server.server_close()
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-CHROMIUM = "/usr/bin/chromium"
 
 
 @pytest.fixture(scope="module")
@@ -54,35 +53,30 @@ def test_the_slides_load_nothing_from_elsewhere(made):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not Path(CHROMIUM).exists(), reason="no chromium: apt-get install chromium")
-def test_keys_move_the_slides_and_formulas_are_set(made):
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as p:
-        browser = p.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1280, "height": 720})
-        wrong = []
-        page.on("console", lambda m: wrong.append(m.text) if m.type == "error" else None)
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.goto((made / "07_zhang_calibration.html").as_uri())
-        page.wait_for_selector("mjx-math")
-        shown = page.locator(".slide.now")
-        first = shown.inner_text()
-        page.keyboard.press("ArrowRight")
-        assert shown.inner_text() != first
-        assert page.url.endswith("#2")
-        page.keyboard.press("End")
-        n = page.locator(".slide").count()
-        assert page.url.endswith(f"#{n}")
-        for number in range(1, n + 1):  # no picture is cut, no formula wider than the room
-            page.evaluate(f"go({number - 1})")
-            widest = page.evaluate(
-                "Math.max(0, ...[...document.querySelectorAll('.slide.now img, "
-                '.slide.now mjx-container[display="true"] mjx-math\')]'
-                ".map(e => e.getBoundingClientRect().right))"
-            )
-            assert widest <= 1280, f"slide {number}"
-        browser.close()
+def test_keys_move_the_slides_and_formulas_are_set(made, chromium):
+    page = chromium.new_page(viewport={"width": 1280, "height": 720})
+    wrong = []
+    page.on("console", lambda m: wrong.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.goto((made / "07_zhang_calibration.html").as_uri())
+    page.wait_for_selector("mjx-math")
+    shown = page.locator(".slide.now")
+    first = shown.inner_text()
+    page.keyboard.press("ArrowRight")
+    assert shown.inner_text() != first
+    assert page.url.endswith("#2")
+    page.keyboard.press("End")
+    n = page.locator(".slide").count()
+    assert page.url.endswith(f"#{n}")
+    for number in range(1, n + 1):  # no picture is cut, no formula wider than the room
+        page.evaluate(f"go({number - 1})")
+        widest = page.evaluate(
+            "Math.max(0, ...[...document.querySelectorAll('.slide.now img, "
+            '.slide.now mjx-container[display="true"] mjx-math\')]'
+            ".map(e => e.getBoundingClientRect().right))"
+        )
+        assert widest <= 1280, f"slide {number}"
+    page.close()
     assert wrong == []
 
 
