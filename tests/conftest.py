@@ -50,6 +50,21 @@ def processor_time():
     return sum(os.times()[:4])
 
 
+def busyness():
+    """Give how many times longer than on a quiet machine things take now: 1 or more."""
+    began, worked = time.monotonic(), time.process_time()
+    while time.process_time() - worked < 0.1:
+        sum(range(1000))
+    return max(1.0, (time.monotonic() - began) / (time.process_time() - worked))
+
+
+@pytest.fixture(autouse=True)
+def same_chances():
+    """Let OpenCV's finders draw the same, whichever tests ran before."""
+    if hasattr(cv2 := sys.modules.get("cv2"), "setRNGSeed"):
+        cv2.setRNGSeed(0)
+
+
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory):
     """Give what lets one worker of a run in at a time, into a folder that all of them share."""

@@ -214,6 +214,7 @@ def _shut_down(page):
     page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.shutdown()")
 
 
+@pytest.mark.once
 def test_every_notebook_opens_with_its_pictures(page, course):
     _open(page, course[1], "saved.ipynb")
     for path in NOTEBOOKS:
@@ -250,6 +251,7 @@ def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, chapter,
     _shut_down(page)
 
 
+@pytest.mark.once
 def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alone(
     page, course, tmp_path
 ):
@@ -318,6 +320,7 @@ def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, course):
     _shut_down(page)
 
 
+@pytest.mark.once
 def test_an_exploration_follows_the_keyboard_and_does_not_lag_behind(page, course, tmp_path):
     cells = _open_and_run(page, course[1], "all_explorers.ipynb")
     waited = {}
@@ -379,6 +382,7 @@ def _answer(page, cells, name):
     return page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea").inner_text()
 
 
+@pytest.mark.once
 def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, course, tmp_path):
     path = next(path for path in NOTEBOOKS if path.name.startswith("06"))
     cells = _open_and_run(page, course[1], path.name)
@@ -397,6 +401,7 @@ def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, course
     _shut_down(page)
 
 
+@pytest.mark.once
 def test_names_of_chapters_are_listed_whole_and_nothing_else_of_ours(page, course):
     folder, address = course
     (folder / "open-the-course.html").touch()  # which `cvnotes lab` has there for a minute
@@ -411,6 +416,7 @@ def test_names_of_chapters_are_listed_whole_and_nothing_else_of_ours(page, cours
     assert names.evaluate_all(cut) == []
 
 
+@pytest.mark.once
 def test_a_page_of_the_docs_is_shown_set_not_as_its_source(page, course):
     folder, address = course
     (folder / "page.md").write_text("# Frames\n\nOne *letter*.")

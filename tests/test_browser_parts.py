@@ -15,6 +15,8 @@ sys.path.insert(0, str(ROOT / "tools"))
 import browser_parts  # noqa: E402
 from browser_parts import PartsMissingError, gather, lay_out, missing, pack  # noqa: E402
 
+pytestmark = pytest.mark.once
+
 WHEEL = b"numpy, as it was published"
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 SCRIPT = Path(__file__).resolve().parents[1] / "tools" / "build_notebooks.py"
 VIEW = "application/vnd.jupyter.widget-view+json"

@@ -7,6 +7,8 @@ import pytest
 
 from cvnotes.commands.cli import main
 
+pytestmark = pytest.mark.once
+
 
 def offered(line, capsys, folder):
     """Give what bash offers for the last word of a line."""

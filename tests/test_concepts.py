@@ -13,6 +13,8 @@ from cvnotes.base import CvnotesError
 from cvnotes.learn import EXERCISES
 from cvnotes.learn.concepts import Concept, concepts, find
 
+pytestmark = pytest.mark.once
+
 ROOT = Path(__file__).resolve().parents[1]
 each_concept = pytest.mark.parametrize("concept", concepts().values(), ids=concepts().keys())
 

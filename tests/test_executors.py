@@ -88,7 +88,7 @@ NEEDS = {
 INSTALLED = [make for make, module in NEEDS.items() if not module or find_spec(module)]
 each_executor = pytest.mark.parametrize("make", INSTALLED, ids=lambda make: make.__name__)
 # What the libraries of others complain of is theirs.
-pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow]
+pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow, pytest.mark.once]
 
 
 @pytest.fixture(autouse=True)

@@ -24,6 +24,8 @@ from cvnotes.learn import EXERCISES
 from cvnotes.learn.checker import in_process
 from cvnotes.learn.checker.judge import judge
 
+pytestmark = pytest.mark.once
+
 WANTED = int(os.environ.get("CVNOTES_MUTATIONS", "90"))
 SEED = 2024
 OTHERS = (11, 12, 13, 14, 15, 16)
@@ -44,15 +46,18 @@ SISTERS = {
 }  # fmt: skip
 
 
-def mutants(source):
-    """Yield the trees of all mutants of a function, one slip each."""
+def slips(name):
+    """Give the tree of a right answer and all slips in it: the place of a node and its change."""
+    source = inspect.getsource(getattr(test_exercises_second, f"my_{name}"))
     tree = ast.parse(textwrap.dedent(source))
-    for i, node in enumerate(ast.walk(tree)):
-        for change in _changes(node):
-            mutant = copy.deepcopy(tree)
-            target = next(islice(ast.walk(mutant), i, None))
-            if change(target) is not False:
-                yield ast.fix_missing_locations(mutant)
+    return tree, [(i, change) for i, node in enumerate(ast.walk(tree)) for change in _changes(node)]
+
+
+def mutant(tree, place, change):
+    """Give the tree with one slip in it."""
+    tree = copy.deepcopy(tree)
+    change(next(islice(ast.walk(tree), place, None)))
+    return ast.fix_missing_locations(tree)
 
 
 def _changes(node):
@@ -139,10 +144,7 @@ def _report(exercise, function, seed):
 
 def _chosen():
     """Choose some of all mutants, evenly, as (name, number)."""
-    found = []
-    for name in NAMES:
-        source = inspect.getsource(getattr(test_exercises_second, f"my_{name}"))
-        found += [(name, i) for i, _ in enumerate(mutants(source))]
+    found = [(name, i) for name in NAMES for i in range(len(slips(name)[1]))]
     rng = np.random.default_rng(5)
     chosen = rng.permutation(len(found))[:WANTED]
     return sorted((found[i] for i in chosen), key=lambda x: (NAMES.index(x[0]), x[1]))
@@ -155,10 +157,10 @@ CHOSEN = _chosen()
 @pytest.mark.slow
 def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
     exercise = EXERCISES[name]
-    source = inspect.getsource(getattr(test_exercises_second, f"my_{name}"))
-    wanted = {i for n, i in CHOSEN if n == name}
-    for i, tree in enumerate(mutants(source)):
-        function = _function(tree, name) if i in wanted else None
+    right, found = slips(name)
+    for i in [i for n, i in CHOSEN if n == name]:
+        tree = mutant(right, *found[i])
+        function = _function(tree, name)
         if function is None:
             continue
         report = _report(exercise, function, SEED)
@@ -173,10 +175,5 @@ def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
             assert names <= {report.misconception}, (report.misconception, names, code)
 
 
-@pytest.mark.slow
 def test_there_are_thousands_of_them():
-    total = sum(
-        sum(1 for _ in mutants(inspect.getsource(getattr(test_exercises_second, f"my_{name}"))))
-        for name in NAMES
-    )
-    assert total >= 2000
+    assert sum(len(slips(name)[1]) for name in NAMES) >= 2000

@@ -26,6 +26,8 @@ from cvnotes.learn.checker.outcome import Outcome, decode, encode
 from cvnotes.learn.checker.report import RIGHT
 from cvnotes.learn.checker.sandbox import run
 
+pytestmark = pytest.mark.once
+
 X = np.arange(6.0).reshape(3, 2)
 needs_fork = pytest.mark.skipif(not sandbox.can_fork(), reason="no fork on this system")
 

@@ -373,10 +373,10 @@ def test_hostile_json_of_the_largest_size_takes_no_longer_than_an_honest_one(tmp
         "many keys": "{" + ",".join(f'"{i}":0' for i in range(size // 9)) + "}",
     }
     (tmp_path / "camera.json").write_text(hostile[kind])
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(FileError):
         read_camera(tmp_path / "camera.json")
-    assert time.perf_counter() - start < 20  # of quadratic work they would take hours
+    assert time.process_time() - start < 20  # of quadratic work they would take hours
 
 
 @posix

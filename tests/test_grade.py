@@ -112,6 +112,7 @@ def mistaken(exercise, which):
     return f"from cvnotes.learn.exercises import EXERCISES\n{source}"
 
 
+@pytest.mark.once
 def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
     for n in NUMBERS:
         solved = cells_for(in_notebook(n), lambda e: source_of(e.name))
@@ -132,6 +133,7 @@ def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
         assert sorted(expected) == sorted(EXERCISES)
 
 
+@pytest.mark.once
 def test_a_misconception_costs_exactly_its_exercise(tmp_path):
     exercises = [one for one in EXERCISES.values() if notebook_of(one) in MARKED_IN_FULL]
     for one in exercises:
@@ -150,6 +152,7 @@ def test_a_misconception_costs_exactly_its_exercise(tmp_path):
         assert mark.misconceptions == {mark.student: wrong}
 
 
+@pytest.mark.once
 def test_courses_answered_by_misconceptions_alone_score_nothing_and_each_is_named(tmp_path):
     """Copy after copy hands in each exercise's next misconception, as long as it has one."""
     having, met = {}, set()
@@ -271,6 +274,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.once
 @needs_posix
 def test_a_hostile_notebook_costs_its_own_row_only(tmp_path):
     for name, cell in HOSTILE.items():
@@ -305,6 +309,7 @@ def test_a_hostile_notebook_costs_its_own_row_only(tmp_path):
     assert marks["folder/02_pipe.ipynb"].remark == "not a regular file"
 
 
+@pytest.mark.once
 @needs_posix
 def test_what_cannot_be_interrupted_is_ended_and_its_first_answers_kept(tmp_path):
     stuck = "import signal, time\nsignal.signal(signal.SIGALRM, signal.SIG_IGN)\ntime.sleep(600)"

@@ -20,7 +20,7 @@ from cvnotes.learn.grader.marks import Mark, Verdict
 from cvnotes.learn.grader.source import fingerprint, own_code
 from cvnotes.learn.grader.totals import remarked, totals
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.once]
 ASSIGNMENT = """
 title = "Homework 1"
 students = "students.csv"

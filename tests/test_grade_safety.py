@@ -14,6 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from conftest import busyness, processor_time
 from test_exercises_second import source_of
 from test_grade import IMPORTS, answered, command, graded, notebook
 
@@ -28,7 +29,7 @@ from cvnotes.learn.grader.process import Limits
 from cvnotes.learn.grader.records import Records, read_records
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes as on Linux")
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.once]
 LIFT = (IMPORTS, *answered("lift", source_of("lift")))
 
 
@@ -93,8 +94,8 @@ def test_an_interruption_leaves_rows_and_nothing_else(tmp_path):
     wait_for(lambda: len(sleepers(word)) == 2)
     before = time.monotonic()
     process.send_signal(signal.SIGINT)
-    said, reason = process.communicate(timeout=30)
-    assert time.monotonic() - before < 3
+    said, reason = process.communicate(timeout=30 * busyness())
+    assert time.monotonic() - before < 3 * busyness()
     assert process.returncode == 130
     assert reason.count("\n") == 1
     assert "3 finished rows of 5 are kept, --resume" in reason
@@ -118,7 +119,7 @@ def test_a_killed_grader_leaves_its_rows_and_no_process(tmp_path):
     wait_for(lambda: sleepers(word))
     process.kill()
     process.communicate()
-    wait_for(lambda: not sleepers(word), 5)
+    wait_for(lambda: not sleepers(word), 5 * busyness())
     assert [row["student"] for row in rows(out)] == ["a"]
     [line] = (tmp_path / "marks.rows.jsonl").read_text().splitlines()
     assert json.loads(line)["mark"]["reports"]["lift"]["verdict"] == "right"
@@ -266,7 +267,7 @@ def test_thousands_of_forged_lines_cost_no_more_than_one(tmp_path):
     )
     notebook(tmp_path / "01_x.ipynb", *LIFT, flood)
     notebook(tmp_path / "01_y.ipynb", *LIFT)
-    before = time.monotonic()
+    before = processor_time()
     [quiet] = [m for m in graded(tmp_path).values() if m.notebook == "01_y.ipynb"]
     assert quiet.points == 1
     mark = grading.grade(
@@ -274,7 +275,7 @@ def test_thousands_of_forged_lines_cost_no_more_than_one(tmp_path):
     )
     assert mark.reports["pipeline"].note == FORGED
     assert mark.earned("lift") == 1
-    assert time.monotonic() - before < 12
+    assert processor_time() - before < 12
 
 
 def test_a_flood_of_results_is_ended(tmp_path, monkeypatch):
@@ -357,7 +358,7 @@ def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(
     assert bool(ran.finished) != interrupted
     if interrupted:
         assert ran.ended == process.INTERRUPTED
-        assert time.monotonic() - before < 3
+        assert time.monotonic() - before < 3 * busyness()
     assert not ran.sealed
     assert sleepers(word) == []
 

@@ -38,7 +38,7 @@ def photographs(W, n_views, noise, rng):
     return np.array(seen) + rng.normal(0, noise, (n_views, len(W), 2))
 
 
-@pytest.mark.slow
+@pytest.mark.sampling
 def test_the_scatter_of_views_covers_what_a_bent_board_does():
     """400 calibrations by a twisted board: 68 % and 95 % of the true values are in the bars."""
     sets, z = 400, []
@@ -71,7 +71,7 @@ def _kinds(found):
     return [(one.std, one.std_of_views) for one in found]
 
 
-@pytest.mark.slow
+@pytest.mark.sampling
 @pytest.mark.parametrize("side", ["left", "right"])
 @pytest.mark.parametrize("lens", ["k1", "k1 k2", "k1 k2 p1 p2", "k1 k2 p1 p2 k3"])
 def test_halves_of_real_photographs_differ_as_predicted(lens, side):

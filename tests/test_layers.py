@@ -10,12 +10,15 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from cvnotes.calibration import calibrate
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import good_views
 from cvnotes.show.explore.lettering import font_file
 from cvnotes.targets import Chessboard
+
+pytestmark = pytest.mark.once
 
 PACKAGE = Path(__file__).resolve().parents[1] / "cvnotes"
 

@@ -13,6 +13,8 @@ import pytest
 
 from cvnotes.learn import EXERCISES
 
+pytestmark = pytest.mark.once
+
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 CHAPTERS = [path for path in NOTEBOOKS if path.name[:2] in {f"{n:02d}" for n in range(1, 10)}]

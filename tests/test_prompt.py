@@ -7,6 +7,8 @@ import pytest
 
 from cvnotes.commands import prompt
 
+pytestmark = pytest.mark.once
+
 
 class Handler:
     def __init__(self):

@@ -16,6 +16,8 @@ sys.path.insert(0, str(ROOT / "tools"))
 import badges  # noqa: E402
 import release  # noqa: E402
 
+pytestmark = pytest.mark.once
+
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 

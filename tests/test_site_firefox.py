@@ -8,7 +8,7 @@ from firefox import PROGRAM, Firefox
 
 from cvnotes.show import explore
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.once]
 if PROGRAM is None:
     pytest.skip("no Firefox on this machine", allow_module_level=True)
 pytest.importorskip("websocket", reason="websocket-client is not installed (extra: lab)")

@@ -21,6 +21,8 @@ import pytest
 
 from cvnotes.commands.quiet import transport
 
+pytestmark = pytest.mark.once
+
 START = Path(__file__).resolve().parents[1] / "start.py"
 posix = pytest.mark.skipif(os.name == "nt", reason="signals and terminals of POSIX")
 BIN = "Scripts/python.exe" if os.name == "nt" else "bin/python"

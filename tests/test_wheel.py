@@ -24,6 +24,7 @@ EXECUTE = """
 
 pytestmark = [
     pytest.mark.slow,
+    pytest.mark.once,
     pytest.mark.skipif(not is_clone(), reason="builds the package from a clone"),
 ]
 

@@ -16,6 +16,8 @@ from cvnotes.commands import lab
 from cvnotes.commands.cli import main
 from cvnotes.commands.working_copy import RECORD, cells_of, default_folder, deliver, start_over
 
+pytestmark = pytest.mark.once
+
 CHAPTERS = ["00_start_here.ipynb", "01_points.ipynb", "02_lines.ipynb", "03_camera.ipynb"]
 
 
