@@ -415,7 +415,7 @@ ELSEWHERE = {
     ),
     133: (
         "notebooks run again, in any order",
-        "catalogue::the_cells_of_a_notebook_may_be_run_twice",
+        "wheel::a_notebook_runs_and_each_of_its_cells_a_second_time",
     ),
     134: ("random seeds", "layers::nothing_in_the_package_prints_or_seeds_globally"),
     135: (

@@ -32,6 +32,14 @@ settings.register_profile(
 settings.load_profile("course")
 
 ROOT = Path(__file__).resolve().parents[1]
+# The files that take longest, and begin: what is short fills the gaps at the end. Where two use
+# one site, another stands between, so that no worker waits while the other builds it.
+LONG = (
+    "site_live", "webassembly", "grade", "browser", "catalogue", "site_offline", "site_firefox",
+    "site", "quality", "command_calibrate", "jackknife", "cli", "grade_safety", "corners",
+    "grade_class", "explore", "wheel", "build_notebooks", "board_shape", "synthetic", "executors",
+    "start", "charuco", "exercises_sandbox",
+)  # fmt: skip
 OF_CHROMIUM = [
     "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-quic", "--no-first-run",
     "--disable-sync", "--disable-background-networking", "--disable-component-update",
@@ -48,6 +56,12 @@ collect_ignore = [] if PHOTOGRAPHS.is_dir() else ["test_photographs.py"]
 def processor_time():
     """Give the seconds that this process and its ended children computed: others do not count."""
     return sum(os.times()[:4])
+
+
+def pytest_collection_modifyitems(items):
+    """Let long files begin."""
+    order = {f"test_{name}.py": place for place, name in enumerate(LONG)}
+    items.sort(key=lambda item: order.get(item.path.name, len(order)))
 
 
 def busyness():

@@ -12,11 +12,9 @@ from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
-import nbformat
 import numpy as np
 import pytest
 from catalogue import ELSEWHERE, HERE
-from nbclient import NotebookClient
 from public_face import FUNCTIONS as COMPUTING
 from public_figures import FIGURES
 
@@ -424,14 +422,6 @@ def test_the_first_nan_is_shown_its_place():
     H[2, 0, 1] = np.nan
     with pytest.raises(CvnotesError, match=r"^H contains NaN .*first at \[2, 0, 1\]"):
         matrix(H, "H", 3, 3)
-
-
-@pytest.mark.slow
-def test_the_cells_of_a_notebook_may_be_run_twice():
-    notebook = nbformat.read(TESTS.parent / "notebooks/00_start_here.ipynb", as_version=4)
-    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    notebook.cells = [cell for cell in cells for _ in range(2)]
-    NotebookClient(notebook, timeout=120).execute()
 
 
 def names_of_tests():
