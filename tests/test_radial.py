@@ -122,3 +122,17 @@ def test_every_lens_has_a_fold_or_none_and_is_one_to_one_before_it(k, p):
     J = lens.jacobian(xy)
     size = np.abs(J).max((-2, -1))
     assert (np.linalg.eigvalsh(J)[..., 0] > -1e-9 * size).all()
+
+
+@given(
+    st.lists(st.floats(-2, 2), max_size=4),
+    st.floats(0, 0.2),
+    st.floats(0, 2 * np.pi),
+)
+def test_the_radius_that_needs_no_roots_is_below_the_fold(k, p_norm, angle):
+    lens = Lens(tuple(k), (p_norm * np.sin(angle), p_norm * np.cos(angle)))
+    assert 0 < lens._certain <= lens.max_radius
+    for r in lens._certain * np.array([0.5, 0.999999, 1.5]):
+        fold = lens.max_radius
+        shown_at = float(lens.L(r)) * r
+        assert lens.reaches(shown_at) == (fold == np.inf or fold * abs(lens.L(fold)) >= shown_at)

@@ -1,7 +1,6 @@
 """Calibration: from corners seen in several views to a camera with error bars (notes 2b.4)."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 from cvnotes.base import DegenerateError, image_size
@@ -147,11 +146,8 @@ def calibrate(
         shape, data = shape_found(problem, data, board, best)
 
     # Is the answer to be believed? Reprojection errors alone do not tell.
-    found = replace(
-        Calibration.of(problem, data, best),
-        shape=shape,
-        left_out=left_out,
-        left_out_boards=by_board,
+    found = Calibration.of(
+        problem, data, best, shape=shape, left_out=left_out, left_out_boards=by_board
     )
     residuals = Problem.of(data, size, lens, skew).residuals(found.camera, best.x)
     return found.judged(*judge(Evidence.of(found, residuals, data.m, data.W, problem.freedom)))

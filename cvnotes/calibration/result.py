@@ -73,7 +73,9 @@ class Calibration:
     _pose_covariance: Callable[[], Array] | None = field(default=None, repr=False)
 
     @staticmethod
-    def of(problem: Problem, data: Correspondences, best: Minimum[State, Arrow]) -> "Calibration":
+    def of(
+        problem: Problem, data: Correspondences, best: Minimum[State, Arrow], **also: Any
+    ) -> "Calibration":
         """Undo the scaling of the board, and add the error bars; not judged yet."""
         camera, q = problem.camera_of(best.x.shared), len(problem.names)
         # (what holds the board's corners belongs to no view)
@@ -100,6 +102,7 @@ class Calibration:
             converged=best.converged,
             _data=data,
             _pose_covariance=of_poses,
+            **also,
         )
 
     def judged(self, sentences: tuple[str, ...], reliable: bool) -> "Calibration":

@@ -254,7 +254,7 @@ class Start:
             A = intrinsic_matrix(step(H.copy()), "the A of your intrinsics")
             self.may_fail = True
             return A
-        V = constraints(H)
+        V = (constraints if "homography" in self.search.own else constraints.inside)(H)
         b = solve_b.inside(V, skew=self.problem.skew)
         self.may_fail = True
         return self.guess(V, b)
@@ -440,8 +440,10 @@ def _worth_it(problem: Problem, found: Minimum[State, Arrow]) -> bool:
     if found.cost <= _NOISELESS**2 * problem.n_seen:
         return False
     by_view = found.system.view_costs / problem.n_seen_by_view
-    stands_out = by_view.max() > _STANDS_OUT**2 * np.median(by_view)
-    return bool(len(by_view) <= _FEW_VIEWS or stands_out)
+    if len(by_view) <= _FEW_VIEWS:
+        return True
+    stands_out = by_view.max() / _STANDS_OUT**2
+    return bool(stands_out > by_view.min() and stands_out > np.median(by_view))
 
 
 def _lower_minima(

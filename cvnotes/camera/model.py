@@ -127,6 +127,11 @@ def xy_from_px(A: Array, m: Array) -> Array:
     return np.stack([x, y], axis=-1)
 
 
+# The pose of a camera whose frame is that of the world: good already, as nobody can write to it.
+_AT_ITS_OWN_FRAME = np.eye(4)
+_AT_ITS_OWN_FRAME.setflags(write=False)
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
     """A camera: sensor A, pose G, lens and picture size.
@@ -152,14 +157,15 @@ class Camera:
     """
 
     A: Array
-    G: Array = field(default_factory=lambda: np.eye(4))
+    G: Array = field(default_factory=lambda: _AT_ITS_OWN_FRAME)
     lens: AnyLens = field(default_factory=Lens)
     size: tuple[int, int] = (640, 480)
 
     def __post_init__(self) -> None:
         if not isinstance(self.lens, AnyLens):
             raise CvnotesError(f"lens: expected a Lens, got {type(self.lens).__name__}")
-        A, G = intrinsic_matrix(self.A), rigid_motion(self.G)
+        A = intrinsic_matrix(self.A)
+        G = self.G if self.G is _AT_ITS_OWN_FRAME else rigid_motion(self.G)
         if G.ndim != 2:
             raise CvnotesError(f"G: a camera has one pose (4, 4), got {G.shape}")
         for array in (A, G):

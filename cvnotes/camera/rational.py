@@ -129,6 +129,11 @@ class RationalLens:
         ends = [np.sqrt(root) for f in (slope, below) for root in sign_changes(f, _FARTHEST)]
         return self._narrowed(min(ends, default=np.inf))
 
+    def reaches(self, r: float) -> bool:
+        """Tell whether some ideal point before the fold is shown at distance r from the centre."""
+        fold = self.max_radius
+        return not np.isfinite(fold) or bool(fold * abs(self.L(fold)) >= r)
+
     def _narrowed(self, end: float) -> float:
         """Where tangential terms fold the picture, at the latest where it folds without them.
 
