@@ -148,15 +148,15 @@ class Search:
         return len(self.problem.m) > _FEW_VIEWS or not self._is_systematic(minimum)
 
     def _is_decided(self) -> bool:
-        """Tell whether two starts ended alike, for a lens that is only compared with others.
+        """Tell whether two starts ended alike, where a third would end there too.
 
-        Either in the valley of a quotient, or where its rival is far below: what is left is then
-        the lens's fault, and not that of the start.
+        Either in the valley of a quotient, or, for a lens that is only compared with others, where
+        its rival is far below: what is left is then the lens's fault, and not that of the start.
         """
-        if self.rival is None or len(self.minima) < 2:
+        if len(self.minima) < 2:
             return False
         lower, higher = sorted(minimum.cost for minimum in self.minima[-2:])
-        beaten = self.rival < _BEATEN * lower
+        beaten = self.rival is not None and self.rival < _BEATEN * lower
         return higher < (1 + _ALIKE) * lower and (beaten or self.problem.model is RationalLens)
 
     def _is_systematic(self, minimum: Minimum[State, Arrow]) -> bool:
