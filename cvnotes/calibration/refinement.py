@@ -575,6 +575,32 @@ def poses_follow(x: State, system: Arrow) -> State:
     return take_step(x, (np.zeros_like(x.shared), -step[..., 0]))
 
 
+def poses_at_rest(problem: Problem, x: State, steps: int = 10) -> tuple[State, Array]:
+    """Fit the poses of views, that are close already, to a camera that is held.
+
+    Gives the sum of squares of each view (n_views,) beside the state.
+    """
+    _, system = problem.linearise(x)
+    with np.errstate(all="ignore"):
+        for _ in range(steps):
+            tried = poses_follow(x, system)
+            _, new = problem.linearise(tried)
+            better = new.view_costs < system.view_costs * (1 - 1e-9)
+            if not better.any():
+                break
+            x = State(x.shared, _taken(better, tried.R, x.R), _taken(better, tried.T, x.T))
+            blocks = {
+                name: _taken(better, getattr(new, name), getattr(system, name))
+                for name in ("poses", "g_poses", "view_costs")
+            }
+            system = replace(system, **blocks)
+    return x, system.view_costs
+
+
+def _taken(views: npt.NDArray[np.bool_], new: Array, old: Array) -> Array:
+    return np.where(views.reshape(-1, *[1] * (new.ndim - 1)), new, old)
+
+
 def refuse_too_few(measured: int, unknowns: int, remedy: str) -> None:
     """Refuse fewer measured coordinates than there are unknowns, or as many."""
     if measured <= unknowns:

@@ -4,9 +4,7 @@ More coefficients always fit the corners better from which they were estimated. 
 well the camera predicts corners that it has not seen.
 """
 
-import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +12,7 @@ import numpy.typing as npt
 
 from cvnotes.base import ConvergenceError, CvnotesError, DegenerateError, Minimum, image_size
 from cvnotes.calibration.correspondences import Correspondences, PointSets
-from cvnotes.calibration.refinement import Arrow, Problem, State, minimise, poses_follow
+from cvnotes.calibration.refinement import Arrow, Problem, State, minimise, poses_at_rest
 from cvnotes.calibration.starts import Search
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
 from cvnotes.camera import Camera, RationalLens
@@ -244,13 +242,5 @@ def _follow(problem: Problem, x: State, camera: Minimum[State, Arrow]) -> float:
     shared, q = camera.x.shared, len(problem.names)
     held = float(problem.held @ shared**2)
     problem = replace(problem, W=problem.board(shared), shape=None, hold=0.0)  # it is known now
-    x = State(shared[:q], x.R, x.T)
-    cost, system = problem.linearise(x)
-    with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(DegenerateError):
-        for _ in range(_STEPS):
-            tried = poses_follow(x, system)
-            new_cost, new_system = problem.linearise(tried)
-            if not new_cost < cost * (1 - 1e-9):
-                break
-            x, cost, system = tried, new_cost, new_system
-    return cost + held
+    _, costs = poses_at_rest(problem, State(shared[:q], x.R, x.T), _STEPS)
+    return float(costs.sum()) + held

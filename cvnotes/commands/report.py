@@ -3,18 +3,16 @@
 import csv
 import io
 import re
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cvnotes.base import Array, CalibrationWarning, CvnotesError, text_table
+from cvnotes.base import Array, text_table
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.coverage import covered_cells
 from cvnotes.calibration.reliability import widest_angle
 from cvnotes.calibration.which_lens import AtLeast
-from cvnotes.camera import Camera
 from cvnotes.commands.examined import Examined
 from cvnotes.commands.ownership import TABLE_HEADER
 from cvnotes.files import Rejected
@@ -156,37 +154,28 @@ def _mirrored(
     used: Sequence[Examined], files: Sequence[str], result: "Calibration", board: Chessboard
 ) -> Iterator[str]:
     """Find photographs that the camera explains better when left and right are exchanged."""
+    from cvnotes.calibration.pose import rms_of_views
+
+    # (the flat board in both, so that only the exchange makes a difference)
+    used, poses = used[:_MOST_TURNED], result.poses[:_MOST_TURNED]
+    m = np.array([photo.corners for photo in used])
     columns, rows = board.corners
-    mirrored = []
-    for photo, file in zip(used[:_MOST_TURNED], files, strict=False):
-        m = np.asarray(photo.corners)
-        # The corners are numbered from the other side, too, so that they stay right-handed.
-        flipped = np.stack([result.size[0] - 1 - m[:, 0], m[:, 1]], axis=-1)
-        other = flipped.reshape(rows, columns, 2)[:, ::-1]
-        as_is, turned = (_misses(result.camera, board.points, x) for x in (m, other.reshape(-1, 2)))
-        if turned < _BETTER_MIRRORED * as_is:
-            mirrored.append(file)
+    # The corners are numbered from the other side, too, so that they stay right-handed.
+    other = m.reshape(len(m), rows, columns, 2)[:, :, ::-1].reshape(m.shape)
+    other[..., 0] = result.size[0] - 1 - other[..., 0]
+    # Exchanged are left and right of the camera, and of the board around its middle.
+    flip, back = np.diag([-1.0, 1, 1, 1]), np.diag([-1.0, 1, 1, 1])
+    back[0, 3] = (columns - 1) * board.square
+    held = result.camera, result.names, board.points
+    as_is = rms_of_views(*held, m, poses)
+    turned = rms_of_views(*held, other, flip @ poses @ back)
+    mirrored = [files[int(i)] for i in np.flatnonzero(turned < _BETTER_MIRRORED * as_is)]
     if mirrored:
         yield (
             f"{', '.join(mirrored)}: left and right seem exchanged, for the camera fits "
             f"{'it' if len(mirrored) == 1 else 'them'} better so; was it a front camera, or an "
             "editing program? Leave out what is mirrored, or turn it back"
         )
-
-
-def _misses(camera: Camera, W: Array, m: Array) -> float:
-    """Give the RMS distance of corners, those that are known, from a board held as fits best."""
-    from cvnotes.calibration import pose_from_view
-
-    seen = np.isfinite(m).all(-1)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", CalibrationWarning)
-        try:
-            G = pose_from_view(camera, W[seen], m[seen])
-        except CvnotesError:
-            return np.inf
-    r = camera.moved(G).project(W[seen]) - m[seen]
-    return float(np.sqrt(np.mean((r**2).sum(-1))))
 
 
 def named(sentence: str, result: "Calibration", files: Sequence[str]) -> str:
