@@ -44,7 +44,8 @@ class Evidence:
         Part of the residuals' squares that goes outwards or inwards by the distance from the
         piercing point; 0 where that tells nothing.
     together : float
-        Distance in pixels by which corners of a typical view miss their places together.
+        Distance in pixels by which corners of a typical view miss their places together; not
+        looked at, and 0, where no view misses by so much that it would matter.
     """
 
     A: Array
@@ -73,6 +74,7 @@ class Evidence:
         They are of the points `board`, (n, 3) or (n_views, n, 3). `freedom` is that of the
         residuals; without it their likeness is not looked at.
         """
+        may_matter = found.view_rms.max() > _MOVED * max(found.size)
         return Evidence(
             A=found.A,
             lens=found.lens,
@@ -85,7 +87,7 @@ class Evidence:
             converged=found.converged,
             likeness=0.0 if freedom is None else likeness(residuals, freedom),
             by_radius=by_radius(residuals, corners, found.A[:2, 2]),
-            together=missed_together(residuals, board),
+            together=missed_together(residuals, board) if may_matter else 0.0,
         )
 
     @cached_property
@@ -180,16 +182,17 @@ def missed_together(residuals: Array, board: Array) -> float:
     >>> missed_together(noise, W) < 0.2, missed_together(noise + bend, W) > 0.7
     (True, True)
     """
-    squares = (residuals * residuals).sum(-1)
+    squares = residuals[..., 0] ** 2 + residuals[..., 1] ** 2
     seen = np.isfinite(squares) & (squares > 0)
-    n = seen.sum(1)
-    order = 3 if np.median(n) >= 20 else 2
-    x, y = np.moveaxis(board[..., :2], -1, 0)
-    powers = [x ** (i - j) * y**j for i in range(order + 1) for j in range(i + 1)]
-    if np.median(n) < 2 * len(powers):
+    n, all_seen = seen.sum(1), bool(seen.all())
+    usual = n[0] if all_seen else np.median(n)
+    order = 3 if usual >= 20 else 2
+    x, y = ([np.ones_like(t), t, t * t, t * t * t] for t in np.moveaxis(board[..., :2], -1, 0))
+    powers = [x[i - j] * y[j] for i in range(order + 1) for j in range(i + 1)]
+    if usual < 2 * len(powers):
         return 0.0
     smooth = np.stack(powers, axis=-1, dtype=float)
-    if not seen.all():
+    if not all_seen:
         residuals, smooth = np.where(seen[..., None], residuals, 0.0), smooth * seen[..., None]
         squares = np.where(seen, squares, 0.0)
     of_noise = 2 * len(powers)  # in x and in y, of which six are the pose's
