@@ -286,6 +286,23 @@ def my_radial_fit(xy, xy_lens):
 my_bad_views = " b "
 
 
+def my_focal_from_turn(H):
+    # Hᵀ diag(1, 1, f²) H = diag(1, 1, f²) where det H = 1: linear in f², by all nine entries.
+    H = H / np.cbrt(np.linalg.det(H))
+    known, factor = H[:2].T @ H[:2] - np.diag([1, 1, 0]), np.diag([0, 0, 1]) - np.outer(H[2], H[2])
+    return np.sqrt((known * factor).sum() / (factor * factor).sum())
+
+
+def my_camera_covariance(Jc, Jp):
+    # The whole JᵀJ, inverted at once.
+    n, m, c = Jc.shape
+    own = np.zeros((n * m, n * Jp.shape[2]))
+    for i, block in enumerate(Jp):
+        own[i * m : (i + 1) * m, i * Jp.shape[2] : (i + 1) * Jp.shape[2]] = block
+    J = np.hstack([np.vstack(Jc), own])
+    return np.linalg.pinv(J.T @ J)[:c, :c]
+
+
 # Chapter 8
 
 

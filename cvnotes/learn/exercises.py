@@ -34,6 +34,8 @@ FURTHER = (
     "geometric_error",
     "radial_fit",
     "b_from_views",
+    "focal_from_turn",
+    "camera_covariance",
     "bilinear",
     "rectifying_rotation",
     "how_far",

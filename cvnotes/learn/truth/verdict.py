@@ -108,7 +108,7 @@ def _of_fit(found: Calibration) -> Iterator[tuple[bool, str]]:
     yield (
         part < _LARGE,
         (
-            f"RMS {found.rms:.3f} px, {100 * part:.2g} % of the picture's width"
+            f"RMS {found.rms:.3f} px, {100 * part:.2g} % of the picture's longer side"
             + (
                 ": normal or better"
                 if part < _LARGE

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
 from cvnotes.show.guards import length, one_point, thing
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, panels
+from cvnotes.show.style import ESTIMATED, FONT, IDEAL, LENS, MUTED, as_picture, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,22 +93,23 @@ def draw_error_bars(
     if not (std > 1e-12 * (np.abs(truth) + 1e-88)).all():
         raise CvnotesError("std: expected positive numbers, not negligible beside the true values")
     rows = -(-q // 3)
-    axes = np.ravel(panels(min(q, 3), rows, width=900, height=250 * rows))[:q]
+    axes = np.ravel(panels(min(q, 3), rows, width=900, height=250 * rows + 30))[:q]
     for ax, x, t, s, name in zip(axes, estimates.T, truth, std, names, strict=True):
         span = np.linspace(t - 4.2 * s, t + 4.2 * s, 200)
         if (np.abs(x - t) <= 4.2 * s).any():  # a density of nothing would be NaN
-            ax.hist(
-                x, bins=np.linspace(span[0], span[-1], 22), color=LENS, alpha=0.45, density=True
-            )
-        ax.plot(
-            span, np.exp(-(((span - t) / s) ** 2) / 2) / (s * np.sqrt(2 * np.pi)), color=ESTIMATED
-        )
-        ax.axvline(t, color=IDEAL, lw=1.2)
+            bins = np.linspace(span[0], span[-1], 22)
+            seen = f"{len(estimates)} estimates"
+            ax.hist(x, bins=bins, color=LENS, alpha=0.45, density=True, label=seen)
+        bell = np.exp(-(((span - t) / s) ** 2) / 2) / (s * np.sqrt(2 * np.pi))
+        ax.plot(span, bell, color=ESTIMATED, label="what the error bar promised")
+        ax.axvline(t, color=IDEAL, lw=1.2, label="the truth")
         unit = " (px)" if name[0] in "aαsuv" else ""
         ax.set(title=name, yticks=[], xlabel=f"estimate{unit}")
         ax.spines["left"].set_visible(False)
         ax.locator_params(axis="x", nbins=4)
         ax.ticklabel_format(axis="x", useOffset=False)
+    lines, words = axes[-1].get_legend_handles_labels()
+    axes[0].figure.legend(lines, words, loc="outside lower center", ncols=3, fontsize=FONT)
     return axes
 
 

@@ -168,6 +168,9 @@ def draw_valley(
 def draw_singular_values(s: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
     """Draw singular values as bars on a logarithmic axis; those that are mere rounding, orange.
 
+    Of more than a dozen, whose numbers would run into each other, only the first, the last and
+    those of rounding are written above their bars.
+
     Parameters
     ----------
     s : array_like, shape (n,)
@@ -188,9 +191,11 @@ def draw_singular_values(s: npt.ArrayLike, *, ax: "Axes | None" = None, title: s
     ax.bar(number, drawn, color=np.where(zero, ESTIMATED, LENS), width=0.65)
     ax.set_yscale("log")
     for i, value in zip(number, values, strict=True):
+        if len(values) > 12 and 1 < i < len(values) and not zero[i - 1]:
+            continue
         words = f"{value:.2g}" if value >= 1e-3 * values.max() else f"{value:.0e}"
         ax.annotate(words, (i, drawn[i - 1]), (0, 3), textcoords="offset points", ha="center",
-                    fontsize=FONT - 1 if len(values) <= 12 else FONT - 3)  # fmt: skip
+                    fontsize=FONT - 1)  # fmt: skip
     ax.set(xticks=number, xlabel="number", ylabel="singular value", title=title)
     return ax
 

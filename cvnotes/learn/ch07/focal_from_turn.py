@@ -1,0 +1,147 @@
+"""The focal length from a camera that turns on the spot: no board, no distances."""
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, rounded, some_factors, some_rotation
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+
+
+def focal_from_turn(H: Array) -> float:
+    """Give f from H ≈ A R A⁻¹ with A = diag(f, f, 1), of any scale and sign.
+
+    The last column of a rotation is as long as its last row, and both share r33. In H the first
+    two entries of the column carry f, those of the row 1 / f.
+    """
+    return float(np.sqrt(np.linalg.norm(H[:2, 2]) / np.linalg.norm(H[2, :2])))
+
+
+def _turn(f: float, R: Array, factor: float = 1.0) -> Array:
+    A = np.diag([f, f, 1.0])
+    return np.asarray(factor * A @ R @ np.linalg.inv(A))
+
+
+def _turns(rng: Rng) -> list[Case]:
+    f, g = rounded(rng.uniform(500, 900, 2), 1)
+    first, second = some_factors(rng, 2)
+    return [
+        Case((_turn(500.0, ABOUT_Y),), about="about the vertical"),
+        Case((_turn(500.0, ABOUT_X @ ABOUT_Y),)),
+        Case((_turn(float(f), some_rotation(rng), float(first)),)),
+        Case((_turn(float(g), some_rotation(rng), float(second)),)),
+    ]
+
+
+def _to_det_1(H: Array) -> Array:
+    return np.asarray(H / np.cbrt(np.linalg.det(H)))
+
+
+def _by_column(H: Array) -> float:
+    """Give the root of f² = (h13² + h23²) / (1 − h33²), which holds where det H = 1."""
+    with np.errstate(all="ignore"):
+        return float(np.sqrt(H[:2, 2] @ H[:2, 2] / (1 - H[2, 2] ** 2)))
+
+
+def _by_entries(H: Array) -> float:
+    with np.errstate(all="ignore"):
+        return float(np.sqrt(abs(H[0, 2] / H[2, 0])))
+
+
+def _by_rows(H: Array) -> float:
+    """Give f from the right angle of the first two rows alone."""
+    with np.errstate(all="ignore"):
+        return float(np.sqrt(-H[0, 2] * H[1, 2] / (H[0, 0] * H[1, 0] + H[0, 1] * H[1, 1])))
+
+
+TURN = Exercise(
+    name="focal_from_turn",
+    chapter=7,
+    title="The focal length without a board",
+    task="A camera with square pixels is turned on the spot between two pictures. Pixels are "
+    "counted from the principal point, and H (3, 3), of any scale and sign, takes the pixels of "
+    "the first picture to those of the second. Give the focal length in pixels. The axis of the "
+    "turn is any but the optical one; it may be the vertical.",
+    stub='''def my_focal_from_turn(H):
+    """Give f in pixels from H (3, 3), of any scale and sign."""
+    ...''',
+    hints=(
+        "T plays no part: H ≈ A R A⁻¹ with A = diag(f, f, 1). Multiply that out.",
+        "h13 = f r13 and h23 = f r23, but h31 = r31 / f and h32 = r32 / f, all times one factor.",
+        "The last row and the last column of R have length 1 and share r33: so "
+        "r13² + r23² = r31² + r32².",
+    ),
+    cases=_turns,
+    properties=(
+        Property("It is the focal length of the camera that turned."),
+        Property(
+            "A turn about the vertical alone, as for a panorama, is enough.",
+            about="about the vertical",
+        ),
+    ),
+    misconceptions=(
+        Misconception(
+            "root forgotten",
+            "The column has f and the row 1 / f, so their ratio is f²: take the root.",
+            lambda H: focal_from_turn(H) ** 2,
+        ),
+        Misconception(
+            "upside down",
+            "That is 1 / f: the long one, the column, belongs above.",
+            lambda H: 1 / focal_from_turn(H),
+            variants=(lambda H: focal_from_turn(H.T),),
+        ),
+        Misconception(
+            "scale believed",
+            "You took 1 − h33² for r13² + r23². That is so only if H is scaled to determinant 1, "
+            "and H comes in any scale.",
+            _by_column,
+            variants=(lambda H: _by_column(H / np.linalg.norm(H)),),
+        ),
+        Misconception(
+            "h33 made 1",
+            "H with h33 = 1 is no turn: r33 is the cosine between the two optical axes. Use a "
+            "ratio in which the scale cancels.",
+            lambda H: float(np.linalg.norm(H[:2, 2] / H[2, 2])),
+        ),
+        Misconception(
+            "entries for lengths",
+            "r13 and r31 have equal size only if the camera turns about the vertical: compare the "
+            "lengths of both entries, (h13, h23) and (h31, h32).",
+            _by_entries,
+            variants=(
+                lambda H: float(np.sqrt(abs(H[1, 2] / H[2, 1]))),
+                lambda H: float(np.sqrt(np.abs(H[:2, 2] / H[2, :2]).mean())),
+            ),
+        ),
+        Misconception(
+            "one right angle",
+            "You used that the first two rows are perpendicular. It holds, but about the vertical "
+            "it reads 0 = 0 and says nothing: take lengths as well.",
+            _by_rows,
+        ),
+        Misconception(
+            "only the column",
+            "That is f times the sine of the angle between the two optical axes.",
+            lambda H: float(np.linalg.norm(_to_det_1(H)[:2, 2])),
+            variants=(lambda H: float(np.linalg.norm(H[:2, 2])),),
+        ),
+        Misconception(
+            "whole columns",
+            "You took whole columns and rows. Their last entry, h33, has no f: leave it out.",
+            lambda H: float(np.sqrt(np.linalg.norm(H[:, 2]) / np.linalg.norm(H[2]))),
+        ),
+        Misconception(
+            "sums for lengths",
+            "Entries may have either sign: add their squares, not the entries.",
+            lambda H: float(np.sqrt(np.abs(H[:2, 2]).sum() / np.abs(H[2, :2]).sum())),
+            variants=(lambda H: float(np.sqrt(abs(H[:2, 2].sum() / H[2, :2].sum()))),),
+        ),
+        Misconception(
+            "the first two rows' lengths",
+            "(h11, h12) has no f in it: it is the last column and the last row that have.",
+            lambda H: float(np.sqrt(np.linalg.norm(H[:2, 2]) / np.linalg.norm(H[0, :2]))),
+        ),
+    ),
+    reference=focal_from_turn,
+    concepts=("56", "q"),
+)
