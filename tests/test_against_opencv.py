@@ -114,7 +114,7 @@ LENS_KINDS = {
 
 
 def random_camera(kind, rng):
-    """A focal length from 400 to 1500, a piercing point up to 10 % of the picture off."""
+    """A focal length from 400 to 1500, a principal point up to 10 % of the picture off."""
     alpha = rng.uniform(400, 1500)
     u0, v0 = 639.5 + rng.uniform(-128, 128), 479.5 + rng.uniform(-96, 96)
     lens = Lens(k=LENS_KINDS[kind](rng), p=rng.uniform(-0.002, 0.002, 2))

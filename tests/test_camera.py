@@ -44,7 +44,7 @@ def test_the_intrinsic_matrix_by_hand():
 
 
 def test_focal_lengths_are_counted_in_pixels():
-    # 12 mm before pixels of 5 µm × 6 µm; both columns of E8 shifted by the piercing point
+    # 12 mm before pixels of 5 µm × 6 µm; both columns of E8 shifted by the principal point
     A = intrinsics_from_pixel_size(12.0, 0.005, 0.006, 640, 480)
     np.testing.assert_allclose(A, [[2400, 0, 640], [0, 2000, 480], [0, 0, 1]], rtol=1e-15)
 

@@ -71,19 +71,42 @@ def _prose(notebook):
     return "\n\n".join(c.source for c in notebook.cells if c.cell_type == "markdown")
 
 
+def _words(prose):
+    """Count what is read: a formula is one word, and bars, rules, stars and arrows are none."""
+    text = re.sub(r"\$\$.+?\$\$|\$[^$]+\$", "formula", prose, flags=re.S).replace("|", " ")
+    return sum(bool(re.search(r"\w", word)) for word in text.split())
+
+
+def test_bars_of_a_table_are_no_words():
+    assert _words("|here|`cv2`|\n|--|:-:|\n|`f(x)`|none → $a = b$|\n\n* ★ two words") == 7
+
+
 @each_notebook
 def test_prose_and_code_keep_a_balance(path):
     notebook = _read(path)
     lines = sum(len(_lines(cell)) for cell in _code(notebook))
-    # A formula is read as one word.
-    words = len(re.sub(r"\$\$.+?\$\$|\$[^$]+\$", "formula", _prose(notebook), flags=re.S).split())
+    words = _words(_prose(notebook))
     # Of the further exercises the tasks and projects, which begin with a bold number, are no prose.
     tasks = (
         re.findall(r"^\*\*(?:\d+|[A-I])\. .*$", _prose(notebook), re.M) if path == FURTHER else []
     )
-    told = words - sum(len(task.split()) for task in tasks)
+    told = words - sum(map(_words, tasks))
     assert words / lines >= 8, f"{words / lines:.1f} words of prose for a line of code"
     assert told / lines <= 15, f"{told / lines:.1f} words of prose for a line of code"
+
+
+@each_notebook
+def test_every_comparison_says_how_exact_it_is(path):
+    """A default of one in 100,000 would be far beyond what is seen, or far below it."""
+    vague = [
+        f"{cell.id}: {ast.unparse(node)}"
+        for cell in _code(_read(path))
+        for node in ast.walk(ast.parse(cell.source))
+        if isinstance(node, ast.Call)
+        and ast.unparse(node.func) in ("np.allclose", "np.isclose")
+        and not {"rtol", "atol"} & {keyword.arg for keyword in node.keywords}
+    ]
+    assert vague == []
 
 
 @each_notebook

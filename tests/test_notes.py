@@ -498,7 +498,7 @@ def test_a_zoom_by_nearest_repeats_pixels_and_by_bilinear_fills_between():
 
 
 def test_a_lens_is_compensated_by_asking_where_it_put_each_ideal_pixel():
-    # f = 2 px, piercing point (2, 0), k1 = −1/2: ũ = 3 is x̃ = ½, and is seen at 3 − 1/8
+    # f = 2 px, principal point (2, 0), k1 = −1/2: ũ = 3 is x̃ = ½, and is seen at 3 − 1/8
     camera = Camera(intrinsics(2, 2, 2, 0), lens=Lens(k=(-0.5,)), size=(5, 1))
     ramp = np.array([[0.0, 100, 200, 300, 400]])
     straight = backward_warp(ramp, undistortion_map(camera))

@@ -42,7 +42,7 @@ class Evidence:
         Correlation between the residuals of corners that follow each other; about 0 for noise.
     by_radius : float
         Part of the residuals' squares that goes outwards or inwards by the distance from the
-        piercing point; 0 where that tells nothing.
+        principal point; 0 where that tells nothing.
     together : float
         Distance in pixels by which corners of a typical view miss their places together; not
         looked at, and 0, where no view misses by so much that it would matter.

@@ -238,7 +238,7 @@ def intrinsics_from_homographies(H: npt.ArrayLike, *, skew: bool = False) -> Arr
 
 
 def focal_lengths_from_homographies(H: npt.ArrayLike, centre: npt.ArrayLike = (0, 0)) -> Array:
-    """Give A (3, 3) when its piercing point is known and its skew is zero.
+    """Give A (3, 3) when its principal point is known and its skew is zero.
 
     With the pixels measured from `centre`, B = diag(1/α_u², 1/α_v², 1): the same constraints,
     two unknowns. Less is asked of the views, so this start survives noise that the full closed

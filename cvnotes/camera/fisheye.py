@@ -79,7 +79,7 @@ class FisheyeLens:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Distortion centre on the plane z = 1: always the piercing point."""
+        """Distortion centre on the plane z = 1: always the principal point."""
         return (0.0, 0.0)
 
     @property

@@ -71,7 +71,7 @@ class Lens:
     p : (p1, p2)
         Tangential coefficients.
     centre : (x, y)
-        Distortion centre on the plane z = 1; (0, 0) is the piercing point.
+        Distortion centre on the plane z = 1; (0, 0) is the principal point.
 
     Notes
     -----

@@ -35,6 +35,8 @@ SENSOR = {"alpha_u": (0, 0), "alpha_v": (1, 1), "skew": (0, 1), "u0": (0, 2), "v
 def intrinsics(alpha_u: float, alpha_v: float, u0: float, v0: float, skew: float = 0.0) -> Array:
     """Build the intrinsic matrix A (3, 3), all entries in pixels.
 
+    (u0, v0) is the principal point, which the notes call the piercing point.
+
     Examples
     --------
     >>> intrinsics(800, 805, 320, 240)

@@ -93,7 +93,7 @@ class RationalLens:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Distortion centre on the plane z = 1: always the piercing point."""
+        """Distortion centre on the plane z = 1: always the principal point."""
         return (0.0, 0.0)
 
     @property

@@ -178,7 +178,7 @@ def focal_length(v1: npt.ArrayLike, v2: npt.ArrayLike, centre: npt.ArrayLike) ->
     v1, v2 : array_like, shape (2,)
         The vanishing points, in pixels.
     centre : array_like, shape (2,)
-        The piercing point; for an uncropped picture its middle is a fair guess.
+        The principal point; for an uncropped picture its middle is a fair guess.
 
     Raises
     ------
@@ -222,7 +222,7 @@ def intrinsics_from_vanishing_points(v: npt.ArrayLike) -> Array:
     Notes
     -----
     Square pixels without skew. The rays to the three points are orthogonal in pairs, so
-    (v1 − c)ᵀ(v2 − v3) = 0 and so on: the piercing point c is where the altitudes of the triangle
+    (v1 − c)ᵀ(v2 − v3) = 0 and so on: the principal point c is where the altitudes of the triangle
     meet, its orthocentre. A vanishing point at infinity leaves c undetermined; guess it, and use
     `focal_length`.
 

@@ -157,7 +157,7 @@ def opencv_coefficients(lens: AnyLens) -> Array:
         return np.array([k1, k2, *lens.p, k3, *others, *lens.s, *lens.tilt])[:size]
     if any(lens.centre) or any(lens.k[3:]):
         raise CvnotesError(
-            "OpenCV and ROS hold k1 k2 p1 p2 k3 about the piercing point; this lens has "
+            "OpenCV and ROS hold k1 k2 p1 p2 k3 about the principal point; this lens has "
             f"more ({lens}); keep it as JSON"
         )
     k1, k2, k3 = (*lens.k, 0.0, 0.0, 0.0)[:3]

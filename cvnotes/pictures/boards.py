@@ -62,7 +62,7 @@ def render(
         Lighting gradient: by which fraction it is brighter at the right and at the lower border
         than in the middle of the picture (and darker at the opposite ones).
     vignetting : float
-        Fraction of the light that is lost in the pixel farthest from the piercing point; the
+        Fraction of the light that is lost in the pixel farthest from the principal point; the
         loss grows with the square of the distance.
     gain : float
         Factor on the light; what exceeds 255 is clipped.

@@ -234,7 +234,7 @@ def pure_translation_views(
 
     Parallel planes have the same vanishing line, and the two constraints that a view puts on the
     intrinsics depend on nothing else: every view repeats those of the first. (A strong distortion
-    may hide this from the refinement, for it gives the piercing point away.)
+    may hide this from the refinement, for it gives the principal point away.)
 
     Examples
     --------

@@ -155,7 +155,7 @@ def calibrate_relative_pose(
     for name, camera in (("left", left), ("right", right)):
         if any(is_camera(camera, name).lens.centre):
             raise CvnotesError(
-                f"{name}: the refinement knows lenses centred on the piercing point only, got "
+                f"{name}: the refinement knows lenses centred on the principal point only, got "
                 f"{camera.lens}"
             )
     pairs = _pairs(board_points, left_points, right_points)

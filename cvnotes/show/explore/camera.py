@@ -53,7 +53,7 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
     def pierced(_: Values, at: Array) -> Values:
         return {"u0": float(at[0]), "v0": float(at[1])}
 
-    drags = {"camera": carried, "board": shifted, "piercing point": pierced}
+    drags = {"camera": carried, "board": shifted, "principal point": pierced}
     return Model("camera", about, settings, draw, drags)
 
 
@@ -79,7 +79,9 @@ def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Sight:
     picture.mark(camera.A[:2, 2], "ideal", 9)
     origin = camera.project([0, 0, 0])
     picture.mark(origin, "world", 5)
-    picture.grip("piercing point", "where the optical axis pierces the picture", camera.A[:2, 2], 5)
+    picture.grip(
+        "principal point", "where the optical axis pierces the picture", camera.A[:2, 2], 5
+    )
     picture.grip("board", "the board's origin in the picture", origin, 5)
     space = _space(camera, board, paper)
     sentence = _sentence(camera, board, complete)
