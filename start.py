@@ -3,7 +3,7 @@
     python3 start.py                open the course in JupyterLab (options go to `cvnotes lab`)
     python3 start.py check          lint, types and unit tests: for every change, in a minute
     python3 start.py test           run every test, the notebooks included
-    python3 start.py slides         make slides of the notebooks
+    python3 start.py slides         make slides of the notebooks; --serve: explorations move
     python3 start.py site           build the course as pages; --without-python: to be read only
 
 On Windows write `py` for `python3`. The first call makes a virtual environment in .venv and

@@ -1,12 +1,16 @@
 """Slides made of the notebooks: nothing that a class must see is lost, nothing from elsewhere."""
 
+import functools
+import http.server
 import json
 import re
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
+from conftest import QuietHandler
 
 pytestmark = pytest.mark.once
 
@@ -16,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     out = tmp_path_factory.mktemp("slides") / "out"
-    command = [sys.executable, ROOT / "tools/build_slides.py", "--out", out]
+    command = [sys.executable, ROOT / "tools/build_slides.py", "--out", out, "--without-python"]
     run = subprocess.run(command, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
     return out
@@ -50,7 +54,7 @@ def test_the_slides_load_nothing_from_elsewhere(made):
     for path in made.glob("*.html"):
         text = re.sub(r"<pre.*?</pre>|<aside.*?</aside>", "", path.read_text(), flags=re.S)
         assert re.findall(r'(?:src|href)="(?!data:|#)([^"]*//[^"]*)"', text) == []
-        for link in re.findall(r'<(?:link|script)[^>]*(?:src|href)="([^"]+)"', text):
+        for link in re.findall(r'<(?:link|script)[^>]*(?:src|href)="(?!data:)([^"]+)"', text):
             assert (made / link).exists(), link
 
 
@@ -79,6 +83,50 @@ def test_keys_move_the_slides_and_formulas_are_set(made, chromium):
         )
         assert widest <= 1280, f"slide {number}"
     page.close()
+    assert wrong == []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path(CHROMIUM).exists(), reason="no chromium: apt-get install chromium")
+def test_an_exploration_moves_where_the_slides_are_served_and_is_a_picture_in_a_file(
+    browser_parts, tmp_path
+):
+    from playwright.sync_api import sync_playwright
+
+    out, chapter = tmp_path / "out", "04_lens_distortion"
+    command = [sys.executable, ROOT / "tools/build_slides.py", "--out", out, "--parts"]
+    run = subprocess.run(
+        [*command, browser_parts, ROOT / f"notebooks/{chapter}.ipynb"],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+    handler = functools.partial(QuietHandler, directory=out)
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    offline = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
+    with sync_playwright() as p:
+        browser = p.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", offline])
+        page = browser.new_page(viewport={"width": 1280, "height": 720})
+        wrong = []
+        page.on("console", lambda m: wrong.append(m.text) if m.type == "error" else None)
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.goto(f"http://127.0.0.1:{server.server_port}/{chapter}.html")
+        page.wait_for_selector(".explore", state="attached")
+        number = page.evaluate("slides.findIndex(slide => slide.querySelector('.explore'))")
+        page.evaluate(f"go({number})")
+        said = page.locator(".slide.now .explore-sentence")
+        before = said.inner_text()
+        page.locator(".slide.now .explore input[type=range]").first.focus()
+        page.keyboard.press("ArrowRight")
+        page.wait_for_selector(".slide.now .explore-stage.live", timeout=120_000)
+        assert said.inner_text() != before
+        assert page.evaluate("now") == number  # the key was the slider's
+        page.goto((out / f"{chapter}.html").as_uri() + f"#{number + 1}")
+        assert page.locator(".slide.now img").is_visible()
+        assert page.locator(".explore").count() == 0
+        browser.close()
+    server.shutdown()
+    server.server_close()
     assert wrong == []
 
 

@@ -3,14 +3,24 @@
     python tools/build_slides.py                    into docs/_build/slides
     python tools/build_slides.py --out FOLDER
     python tools/build_slides.py notebooks/07*      of one notebook
+    python tools/build_slides.py --serve            and hand them out, for explorations that move
+    python tools/build_slides.py --parts FOLDER     Pyodide from a folder of yours
+    python tools/build_slides.py --without-python   the slides alone
 
 Needs the extra `docs` (`python3 start.py slides` sets it up). Nothing is executed: headings,
 theses, formulas, traps and figures are taken from the notebooks as they are committed. What a
 slide leaves out stands in its notes, for the lecturer; of a cell the code is there, too. Printed by
 the browser, each slide is a page.
+
+With the parts of Python for the browser (`tools/browser_parts.py` says where they come from) the
+explorations move as they do on the site, with the same scripts, and without a network. A browser
+runs Python only for pages that a server hands out: `--serve` is one, for this machine alone. Opened
+as files, the slides show each exploration as a picture.
 """
 
 import argparse
+import functools
+import http.server
 import json
 import re
 import shutil
@@ -23,12 +33,15 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
+from browser_parts import PartsMissingError, gather, lay_out
 from markdown_it import MarkdownIt
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 ROOT = Path(__file__).resolve().parents[1]
 LOOKS = ROOT / "docs" / "slides"
 MATHJAX = ("tex-chtml.js", "input", "output")
+# Of the site's scripts, those that let explorations move.
+LIVE = ("python.js", "worker.js", "page.js", "explore.js", "live.css")
 # Sections that are read, and not shown.
 NOT_SHOWN = ("further reading", "what comes next", "the same in opencv")
 _DISPLAY = re.compile(r"\$\$.+?\$\$", re.S)
@@ -156,7 +169,8 @@ def shown_by(cell: dict[str, Any], source: str, title: str, before: str) -> Iter
         text = "".join(output.get("text", "")) or "".join(data.get("text/plain", ""))
         if "<img" in html or "<svg" in html:
             caption = f'<p class="caption">{inline(last_sentences(before))}</p>'
-            yield Slide(title, [html, caption], [before], source, "picture")
+            shown = f'<div class="output">{html}</div>'
+            yield Slide(title, [shown, caption], [before], source, "picture")
         elif html or text.strip():
             said = f"<p>{inline(last_sentences(before))}</p>"
             printed = html or f"<pre>{escape(text.rstrip())}</pre>"
@@ -188,11 +202,12 @@ def last_sentences(text: str, longest: int = 220) -> str:
     return last
 
 
-def page(name: str, slides: list[Slide]) -> str:
-    """Give the whole page of one notebook."""
+def page(name: str, slides: list[Slide], *, live: bool) -> str:
+    """Give the whole page of one notebook; `live`: the folder has Python for the browser."""
     template = Template((LOOKS / "slides.html").read_text(encoding="utf-8"))
     body = "\n".join(slide.html(i) for i, slide in enumerate(slides, 1))
-    return template.substitute(title=escape(slides[0].title), name=name, slides=body)
+    has = ' data-live="yes"' if live else ""
+    return template.substitute(title=escape(slides[0].title), name=name, slides=body, live=has)
 
 
 def index(made: dict[str, list[Slide]]) -> str:
@@ -218,15 +233,39 @@ def formulas() -> Path:
     raise SystemExit("The slides need the extra `docs`: python3 start.py slides installs it.")
 
 
+def python_parts(folder: Path | None) -> Path | None:
+    """Find Python for the browser; without it the slides are as good, and nothing moves."""
+    try:
+        return gather(folder)
+    except PartsMissingError as error:
+        print(f"The explorations will be pictures: {error}")
+        return None
+
+
+def serve(folder: Path) -> None:
+    """Hand the slides out to this machine until Ctrl-C."""
+    handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=folder)
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        print(f"They move at http://127.0.0.1:{server.server_port}/ until Ctrl-C", flush=True)
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            print()
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("notebooks", nargs="*", type=Path, help="default: all")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "_build" / "slides")
+    parser.add_argument("--parts", type=Path, help="a folder that has the parts of Pyodide")
+    parser.add_argument("--without-python", action="store_true", help="explorations as pictures")
+    parser.add_argument("--serve", action="store_true", help="hand the slides out to this machine")
     given = parser.parse_args()
     if given.out.exists() and not (given.out / "slides.js").is_file():
         print(f"{given.out} is in the way: it is no folder of slides, and is not replaced")
         return 1
     mathjax = formulas()
+    parts = None if given.without_python else python_parts(given.parts)
     made = {}
     for path in given.notebooks or sorted((ROOT / "notebooks").glob("*.ipynb")):
         made[path.stem] = slides_of(json.loads(path.read_text(encoding="utf-8")))
@@ -234,7 +273,8 @@ def main() -> int:
         new = Path(folder) / "slides"
         new.mkdir()
         for name, slides in made.items():
-            (new / f"{name}.html").write_text(page(name, slides), encoding="utf-8")
+            text = page(name, slides, live=parts is not None)
+            (new / f"{name}.html").write_text(text, encoding="utf-8")
         (new / "index.html").write_text(index(made), encoding="utf-8")
         for looks in ("slides.css", "slides.js"):
             shutil.copy(LOOKS / looks, new)
@@ -242,10 +282,19 @@ def main() -> int:
             copy = shutil.copytree if (mathjax / part).is_dir() else shutil.copy
             (new / "mathjax").mkdir(exist_ok=True)
             copy(mathjax / part, new / "mathjax" / part)
+        if parts:
+            lay_out(parts, new / "python")
+            (new / "_static" / "live").mkdir(parents=True)
+            for script in LIVE:
+                shutil.copy(ROOT / "docs" / "static" / "live" / script, new / "_static" / "live")
         if given.out.exists():
             shutil.rmtree(given.out)
         shutil.copytree(new, given.out)
     print(f"The slides are in {given.out / 'index.html'}")
+    if given.serve:
+        serve(given.out)
+    elif parts:
+        print("Explorations move where a server hands them out: add --serve")
     return 0
 
 

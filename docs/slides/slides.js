@@ -31,6 +31,7 @@ const keys = {
 };
 addEventListener("keydown", (event) => {
   const onButton = event.target.closest("button, a") && event.key === " ";
+  if (event.target.closest(".explore") && event.key !== "PageDown" && event.key !== "PageUp") return;
   if (!(event.key in keys) || event.ctrlKey || event.metaKey || event.altKey || onButton) return;
   event.preventDefault();
   keys[event.key]();
@@ -38,13 +39,27 @@ addEventListener("keydown", (event) => {
 document.getElementById("back").addEventListener("click", () => go(now - 1));
 document.getElementById("on").addEventListener("click", () => go(now + 1));
 let from = null;
-addEventListener("touchstart", (event) => { from = event.changedTouches[0]; }, { passive: true });
+addEventListener("touchstart", (event) => {
+  from = event.target.closest(".explore") ? null : event.changedTouches[0];
+}, { passive: true });
 addEventListener("touchend", (event) => {
+  if (!from) return;
   const to = event.changedTouches[0];
   const across = to.clientX - from.clientX;
   if (Math.abs(across) > 60 && Math.abs(across) > 2 * Math.abs(to.clientY - from.clientY)) go(now - Math.sign(across));
 }, { passive: true });
 addEventListener("resize", () => fit(slides[now]));
 addEventListener("load", () => window.MathJax.startup.promise.then(() => fit(slides[now])));
+// Where a server hands the slides out, explorations move, as on the site; a file shows their stills.
+if (document.body.dataset.live && location.protocol.startsWith("http")) {
+  const style = document.createElement("link");
+  [style.rel, style.href] = ["stylesheet", "_static/live/live.css"];
+  document.head.append(style);
+  for (const name of ["page", "explore"]) {
+    const script = document.createElement("script");
+    [script.src, script.async] = [`_static/live/${name}.js`, false]; // in this order
+    document.head.append(script);
+  }
+}
 addEventListener("hashchange", () => go((parseInt(location.hash.slice(1), 10) || 1) - 1));
 go((parseInt(location.hash.slice(1), 10) || 1) - 1);
