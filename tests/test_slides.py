@@ -1,16 +1,14 @@
 """Slides made of the notebooks: nothing that a class must see is lost, nothing from elsewhere."""
 
 import functools
-import http.server
 import json
 import re
 import subprocess
 import sys
-import threading
 from pathlib import Path
 
 import pytest
-from conftest import QuietHandler
+from conftest import QuietHandler, serving
 
 pytestmark = pytest.mark.once
 
@@ -87,30 +85,20 @@ def test_keys_move_the_slides_and_formulas_are_set(made, chromium):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not Path(CHROMIUM).exists(), reason="no chromium: apt-get install chromium")
 def test_an_exploration_moves_where_the_slides_are_served_and_is_a_picture_in_a_file(
-    browser_parts, tmp_path
+    browser_parts, chromium, tmp_path
 ):
-    from playwright.sync_api import sync_playwright
-
     out, chapter = tmp_path / "out", "04_lens_distortion"
     command = [sys.executable, ROOT / "tools/build_slides.py", "--out", out, "--parts"]
-    run = subprocess.run(
-        [*command, browser_parts, ROOT / f"notebooks/{chapter}.ipynb"],
-        capture_output=True, text=True,
-    )  # fmt: skip
+    command += [browser_parts, ROOT / f"notebooks/{chapter}.ipynb"]
+    run = subprocess.run(command, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
-    handler = functools.partial(QuietHandler, directory=out)
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    offline = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
-    with sync_playwright() as p:
-        browser = p.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", offline])
-        page = browser.new_page(viewport={"width": 1280, "height": 720})
-        wrong = []
-        page.on("console", lambda m: wrong.append(m.text) if m.type == "error" else None)
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.goto(f"http://127.0.0.1:{server.server_port}/{chapter}.html")
+    page = chromium.new_page(viewport={"width": 1280, "height": 720})
+    wrong = []
+    page.on("console", lambda m: wrong.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    with serving(functools.partial(QuietHandler, directory=out)) as address:
+        page.goto(f"{address}/{chapter}.html")
         page.wait_for_selector(".explore", state="attached")
         number = page.evaluate("slides.findIndex(slide => slide.querySelector('.explore'))")
         page.evaluate(f"go({number})")
@@ -121,12 +109,10 @@ def test_an_exploration_moves_where_the_slides_are_served_and_is_a_picture_in_a_
         page.wait_for_selector(".slide.now .explore-stage.live", timeout=120_000)
         assert said.inner_text() != before
         assert page.evaluate("now") == number  # the key was the slider's
-        page.goto((out / f"{chapter}.html").as_uri() + f"#{number + 1}")
-        assert page.locator(".slide.now img").is_visible()
-        assert page.locator(".explore").count() == 0
-        browser.close()
-    server.shutdown()
-    server.server_close()
+    page.goto((out / f"{chapter}.html").as_uri() + f"#{number + 1}")
+    assert page.locator(".slide.now img").is_visible()
+    assert page.locator(".explore").count() == 0
+    page.close()
     assert wrong == []
 
 
