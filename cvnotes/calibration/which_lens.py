@@ -235,12 +235,8 @@ def _some(x: State, views: npt.NDArray[np.intp]) -> State:
 
 
 def _follow(problem: Problem, x: State, camera: Minimum[State, Arrow]) -> float:
-    """Fit the poses of views to a camera that does not know them; gives the sum of squares.
-
-    What few views hold the shape of a board with is a part of it.
-    """
+    """Fit the poses of views to a camera that does not know them; gives the sum of squares."""
     shared, q = camera.x.shared, len(problem.names)
-    held = float(problem.held @ shared**2)
     problem = replace(problem, W=problem.board(shared), shape=None, hold=0.0)  # it is known now
     _, costs = poses_at_rest(problem, State(shared[:q], x.R, x.T), _STEPS)
-    return float(costs.sum()) + held
+    return float(costs.sum())
