@@ -145,6 +145,12 @@ def photograph(G, xy, by):
     import cv2
 
     R, T = G[:3, :3], G[:3, 3]
+    # all around the board is as bright as its paper
+    around = CAMERA.moved(G).project(MIDDLE + 1.5 * (arched(by) - MIDDLE))
+    low, high = np.nanmin(around, axis=0).clip(0), np.nanmax(around, axis=0)
+    (left, top), (right, bottom) = (x.astype(int) for x in (low, high + 1))
+    grey = np.full((xy.shape[0], xy.shape[2]), 215.0)
+    xy = xy[top:bottom, :, left:right]
     rays, centre = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1) @ R, -R.T @ T
     z = 0.0
     for _ in range(4):  # the height where the ray meets the board changes where it meets it
@@ -152,7 +158,8 @@ def photograph(G, xy, by):
         z = by * (1 - ((x - MIDDLE[0]) / MIDDLE[0]) ** 2)
     column, row = np.floor(x / 25) + 1, np.floor(y / 25) + 1
     printed = (column >= 0) & (column <= 9) & (row >= 0) & (row <= 6)
-    grey = np.where(printed & ((column + row) % 2 == 0), 40.0, 215.0).mean(axis=(1, 3))
+    dark = printed & ((column + row) % 2 == 0)
+    grey[top:bottom, left:right] = np.where(dark, 40.0, 215.0).mean(axis=(1, 3))
     return cv2.GaussianBlur(grey, (0, 0), 0.7)
 
 

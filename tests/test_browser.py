@@ -38,7 +38,7 @@ RUN_ALL = """async () => {
         await app.commands.execute('notebook:run-all-cells');
         return 'done';
     };
-    const late = new Promise(resolve => setTimeout(() => resolve('not done in 60 s'), 60000));
+    const late = new Promise(resolve => setTimeout(() => resolve('not done in 300 s'), 300000));
     return Promise.race([run(), late]);
 }"""
 CELLS = """() => {
@@ -188,13 +188,13 @@ def _explorer(page, cells, call, image="img.widget-image"):
     """Bring the cell that makes a widget into view; gives its first handle and its picture."""
     output = _output(page, cells, call)
     handle, picture = output.locator(".noUi-handle").first, output.locator(image).first
-    picture.wait_for(state="visible", timeout=20_000)
+    picture.wait_for(state="visible", timeout=60_000)
     return handle, picture
 
 
 def _becomes(page, picture, wanted):
-    """Wait up to five seconds until a picture is as wanted."""
-    for _ in range(50):
+    """Wait until a picture is as wanted, the longer the busier the machine is."""
+    for _ in range(600):
         if wanted(picture.evaluate(PICTURE)):
             return True
         page.wait_for_timeout(100)
@@ -225,13 +225,13 @@ def test_every_notebook_opens_with_its_pictures(page, course):
         first = next(i for i, cell in enumerate(saved) if "<img" in str(cell.get("outputs", "")))
         page.evaluate(SHOW_CELL, first)
         picture = page.locator(".jp-mod-active .jp-OutputArea-output img:visible").first
-        picture.wait_for(state="visible", timeout=20_000)
+        picture.wait_for(state="visible", timeout=60_000)
         assert picture.evaluate("img => img.naturalWidth") > 100, path.stem
     _shut_down(page)
 
 
-# nbval runs all of them; what a browser adds is the same in each.
-@pytest.mark.parametrize("chapter", ["04", "07"])
+# nbval runs all of them; what a browser adds is the same in each, but for the 3-D viewer of one.
+@pytest.mark.parametrize("chapter", ["01", "04"])
 def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, chapter, tmp_path):
     path = next(path for path in NOTEBOOKS if path.name.startswith(chapter))
     cells = _open_and_run(page, course[1], path.name)
@@ -260,7 +260,7 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
     cells = page.evaluate(CELLS)
     for name in NAMES:
         picture = _output(page, cells, rf"^explore_{name}\(").locator("img")
-        picture.wait_for(state="visible", timeout=20_000)
+        picture.wait_for(state="visible", timeout=60_000)
         assert picture.count() == 1
         assert picture.evaluate("img => img.naturalWidth / img.width") >= 1.5
         assert picture.get_attribute("alt").startswith(model(name).about)
@@ -268,7 +268,7 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
     assert page.evaluate(RUN_ALL) == "done"
     for name in NAMES:
         output = _output(page, cells, rf"^explore_{name}\(")
-        output.locator("img.widget-image").wait_for(state="visible", timeout=20_000)
+        output.locator("img.widget-image").wait_for(state="visible", timeout=60_000)
         assert output.locator("img").count() == 1
         settings = model(name).settings
         switches = sum(setting.is_choice for setting in settings)
@@ -291,9 +291,9 @@ def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(page):
         scene.traverse(n => { if (n.material) glow[n.name] = n.material.emissive.getHexString(); });
         return glow;
     }"""
-    dark = frame.wait_for_function(seen, arg="111111", timeout=20_000).json_value()
+    dark = frame.wait_for_function(seen, arg="111111", timeout=60_000).json_value()
     page.evaluate("() => { document.body.style.background = '#fff'; }")  # another theme is chosen
-    light = frame.wait_for_function(seen, arg="ffffff", timeout=20_000).json_value()
+    light = frame.wait_for_function(seen, arg="ffffff", timeout=60_000).json_value()
     assert light["ideal"] == "000000"
     assert min(bytes.fromhex(dark["ideal"])) > 0x80
     assert dark["rail"] == light["rail"] != "000000"
@@ -378,7 +378,7 @@ def _answer(page, cells, name):
     page.keyboard.insert_text(f"{TYPED[name]}\n\n\n{call}")
     before = page.locator(PROMPT).inner_text()
     page.keyboard.press("Control+Enter")
-    page.wait_for_function(HAS_RUN, arg=[PROMPT, before], timeout=20_000)
+    page.wait_for_function(HAS_RUN, arg=[PROMPT, before], timeout=60_000)
     return page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea").inner_text()
 
 

@@ -79,6 +79,7 @@ def test_each_slider_may_stand_at_either_end_and_at_zero(name):
             check_sight(name, {s.name: value})
 
 
+@pytest.mark.once
 @pytest.mark.slow
 @each_model
 def test_all_sliders_may_stand_at_their_ends_in_every_combination(name):
@@ -109,6 +110,7 @@ def test_the_same_values_give_the_same_picture(name):
     assert np.array_equal(model.picture(), MODELS[name].picture())
 
 
+@pytest.mark.once
 @pytest.mark.slow
 @each_model
 def test_a_picture_is_made_and_packed_sooner_than_an_empty_figure_of_matplotlib(name):

@@ -133,7 +133,7 @@ def test_formulas_are_set_without_a_network(site, chromium):
     page = chromium.new_page()
     page.on("request", lambda request: asked.append(request.url))
     page.goto((site / "notebooks" / "07_zhang_calibration.html").as_uri())
-    page.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
+    page.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=60_000)
     assert not page.query_selector("mjx-merror")
     assert re.match("7 · Zhang’s calibration", page.inner_text("h1"))
     page.close()
@@ -159,7 +159,7 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
     site, telephone
 ):
     telephone.goto((site / "notebooks" / "07_zhang_calibration.html").as_uri())
-    telephone.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
+    telephone.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=60_000)
     long = telephone.evaluate(
         """() => [...document.querySelectorAll("div.math")]
             .filter((box) => box.scrollWidth > box.clientWidth + 1)
@@ -174,7 +174,7 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
     telephone.wait_for_function(
         "document.querySelectorAll('img[data-cuts]').length"
         " === document.querySelectorAll('.panels').length",
-        timeout=30_000,
+        timeout=60_000,
     )
     stacks = telephone.evaluate(
         """() => [...document.querySelectorAll(".panels")].map((stack) =>

@@ -83,7 +83,7 @@ def test_a_worker_that_dies_takes_no_photograph_with_it(page, live_site):
 def test_the_machines_own_camera_takes_photographs(page, live_site):
     page.goto(f"{live_site}/your_camera.html")
     page.click("text=Use this machine's camera")
-    page.wait_for_selector("section.live video", state="visible", timeout=20_000)
+    page.wait_for_selector("section.live video", state="visible", timeout=60_000)
     page.click("text=Take a photograph")
     page.wait_for_selector(".shots li.refused", timeout=120_000)
     assert "no board of 9×6 inner corners found" in page.inner_text(".shots")
