@@ -183,6 +183,13 @@ def test_the_command_makes_the_copy_and_says_where(course, tmp_path, capsys):
     assert f"Your working copy of the course: {folder}" in said
 
 
+def test_called_inside_of_a_copy_it_opens_that_one(mine, monkeypatch):
+    monkeypatch.chdir(mine.parent)
+    assert default_folder() != mine
+    monkeypatch.chdir(mine)
+    assert default_folder() == mine  # and makes no copy within the copy
+
+
 def test_the_copy_can_be_made_without_opening_anything(tmp_path, capsys):
     assert main(["lab", "--copy", str(tmp_path / "copy")]) == 0
     assert len(contents(tmp_path / "copy")) == 11

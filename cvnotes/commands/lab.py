@@ -41,7 +41,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     )
     add = parser.add_argument
     add("folder", nargs="?", type=Path, metavar="FOLDER",
-        help=f"your working copy (default {FOLDER}, in the clone or here)")  # fmt: skip
+        help=f"your working copy (default: this folder if it is one, else {FOLDER})")  # fmt: skip
     add("--fresh", metavar="CHAPTER", action="append", default=[],
         help="start a chapter over, such as 3; yours is kept beside it")  # fmt: skip
     add("--copy", action="store_true", help="bring the working copy up to date, and open nothing")

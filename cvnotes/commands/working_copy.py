@@ -43,7 +43,9 @@ class Delivery:
 
 
 def default_folder() -> Path:
-    """Give the folder of the working copy: in the clone if there is one, else here."""
+    """Give the folder of the working copy: this one if it is one; else in the clone, or here."""
+    if (Path.cwd() / RECORD).is_file():
+        return Path.cwd()
     return (CLONE if is_clone() else Path.cwd()) / FOLDER
 
 
