@@ -30,6 +30,20 @@ def test_a_paper_may_be_written_small(said, meant, tmp_path):
     assert (tmp_path / "board.svg").read_text() == Chessboard((9, 6), 25.0).sheet(meant).svg()
 
 
+@pytest.mark.parametrize("name", ["thesis.pdf", "thesis.svg"])
+def test_a_file_of_the_users_is_not_replaced_but_an_earlier_sheet_is(name, tmp_path, capsys):
+    out = tmp_path / name
+    out.write_text("five years of work")
+    assert cvnotes("target", "--out", out) == 1
+    assert out.read_text() == "five years of work"
+    assert f"{name} was not made by cvnotes target" in capsys.readouterr().err
+    out.unlink()
+    assert cvnotes("target", "--corners", "7x4", "--out", out) == 0
+    assert cvnotes("target", "--charuco", "--out", out) == 0
+    assert cvnotes("target", "--out", out) == 0
+    assert out.read_bytes() == Chessboard((9, 6), 25.0).sheet().encoded(out)
+
+
 def test_the_default_is_the_board_of_the_course_on_a4(tmp_path):
     assert cvnotes("target", "--out", tmp_path / "new" / "board.svg") == 0
     assert (tmp_path / "new" / "board.svg").read_text() == Chessboard((9, 6), 25.0).sheet().svg()

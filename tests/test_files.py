@@ -337,6 +337,7 @@ def test_hostile_json_is_refused_with_its_position(saved, content, message):
             "larger than both variances allow",
         ),
         ({"covariance": [[0.25, 1e-6, 0], [0, 1e-8, 0], [0, 0, 1e-10]]}, "it is not symmetric"),
+        ({"lens": "k1 k2"}, "lens: 'k1 k2', but what has error bars is k1 p1"),
         ({"rms": 0.4}, "rms: 0.4 does not lie between the smallest"),
         ({"rms": -0.25}, "rms: -0.25 does not lie between"),
     ],

@@ -72,7 +72,7 @@ def calibration_json(
         "converged": bool(result["converged"]),
         "warnings": list(result["warnings"]),
         **camera_to_dict(Camera(result["A"], lens=result["lens"], size=result["size"])),
-        "lens": " ".join(name for name in names if name[0] in "kp") or "none",
+        "lens": _of_lens(names),
         "rms": float(result["rms"]),
         "standard_deviations": dict(zip(names, std, strict=True)),
         "covariance": covariance.tolist(),
@@ -94,6 +94,11 @@ def calibration_json(
             f"not used takes {size} bytes as a file; at most {MAX_BYTES} are read"
         )
     return text
+
+
+def _of_lens(names: Sequence[str]) -> str:
+    """Name a lens by those of its coefficients that were estimated."""
+    return " ".join(name for name in names if name[0] in "kp") or "none"
 
 
 def _of_views(result: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
@@ -149,6 +154,9 @@ def read_calibration(path: PathLike) -> dict[str, Any]:
         raise entry.error("the list of views is empty")
     rms, view_rms = _rms(entry, views)
     names, covariance = _error_bars(entry, camera)
+    lens, said = _of_lens(names), entry.get("lens")
+    if said is not None and said.text() != lens:
+        raise said.error(f"{said.text()!r}, but what has error bars is {lens}")
     of_views = None
     if entry.get("covariance_of_views") is not None:
         same, of_views = _error_bars(entry, camera, "_of_views")

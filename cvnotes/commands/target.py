@@ -5,6 +5,7 @@ from pathlib import Path
 
 from cvnotes.base import CvnotesError
 from cvnotes.commands.console import complain, say
+from cvnotes.commands.ownership import maker
 from cvnotes.files import write_whole
 from cvnotes.files.writing import printable
 from cvnotes.targets import PAPERS, CharucoBoard, Chessboard
@@ -67,8 +68,16 @@ def run(args: argparse.Namespace) -> int:
         option = str(error).replace("say half_turn_symmetric=True", "say --half-turn-symmetric")
         complain("target", option)
         return 2
+    out = Path(args.out)
+    if out.is_file() and maker(out) != "target":
+        complain(
+            "target",
+            f"{printable(out)} was not made by cvnotes target, which would replace it; "
+            "choose another --out",
+        )
+        return 1
     try:
-        write_whole({Path(args.out): board.sheet(args.paper).encoded(args.out)})
+        write_whole({out: board.sheet(args.paper).encoded(args.out)})
     except CvnotesError as error:
         complain("target", str(error))
         return 1

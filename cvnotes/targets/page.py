@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 _POINTS_PER_MM = 72 / 25.4
+MADE_BY = "made by cvnotes target"  # by which the command knows its own sheets
 _FONTS = ("Helvetica", "Helvetica-Bold", "Courier")
 
 
@@ -109,7 +110,8 @@ class Page:
         width, height = map(_number, self.size)
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-            f'viewBox="0 0 {width} {height}">\n<title>{_escaped(self.title)}</title>\n'
+            f'viewBox="0 0 {width} {height}">\n<!-- {MADE_BY} -->\n'
+            f"<title>{_escaped(self.title)}</title>\n"
             f'<rect width="{width}" height="{height}" fill="#ffffff"/>\n'
             + "".join(map(_svg, self.shapes))
             + "</svg>\n"
@@ -153,7 +155,7 @@ def _svg(shape: Shape) -> str:
 
 def _pdf_file(objects: list[bytes]) -> bytes:
     """Return each object its number, and list at the end where each begins."""
-    file, starts = b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n", []
+    file, starts = b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n%" + MADE_BY.encode() + b"\n", []
     for i, body in enumerate(objects, start=1):
         starts.append(len(file))
         file += b"%d 0 obj\n%b\nendobj\n" % (i, body)
