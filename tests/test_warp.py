@@ -31,6 +31,7 @@ from cvnotes.warping import (
     rectify_plane,
     rotation_map,
     undistort_image,
+    undistortion,
     undistortion_map,
     zoom_map,
 )
@@ -597,3 +598,35 @@ def test_pictures_in_any_memory_order_are_read_and_none_is_written_to():
         np.testing.assert_array_equal(backward_warp(image, dress), expected)
     backward_warp(image, PixelMap(lambda m_h: m_h[:2]))
     np.testing.assert_array_equal(table, before)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])
+@pytest.mark.parametrize("channels", [(), (1,), (2,), (3,), (4,)])
+@pytest.mark.parametrize("border", ["constant", "replicate", "reflect"])
+def test_every_picture_of_a_camera_is_undistorted_like_its_first(dtype, channels, border):
+    rng = np.random.default_rng(3)
+    how = {"border": border, "new_A": [[60.0, 0, 48], [0, 60, 30], [0, 0, 1]], "size": (101, 61)}
+    camera = Camera(intrinsics(80, 82, 48, 31), lens=Lens(k=(-0.2, 0.05)), size=(96, 64))
+    for method in ("bilinear", "nearest"):
+        for _ in range(3):  # the third finds its pixels where the second left them
+            image = rng.integers(0, 256, (64, 96, *channels)).astype(dtype)
+            fresh = Camera(camera.A, lens=camera.lens, size=camera.size)
+            expected = undistort_image(image, fresh, fill=7, method=method, **how)
+            assert np.array_equal(
+                undistort_image(image, camera, fill=7, method=method, **how), expected
+            )
+
+
+def test_what_is_remembered_of_a_camera_is_of_what_was_asked_for_and_ends_with_it():
+    image = np.random.default_rng(4).integers(0, 256, (64, 96), np.uint8)
+    camera = Camera(intrinsics(80, 82, 48, 31), lens=Lens(k=(-0.2, 0.05)), size=(96, 64))
+    wide = np.array([[40.0, 0, 48], [0, 40, 31], [0, 0, 1]])
+    once = undistort_image(image, camera), undistort_image(image, camera, wide)
+    kept = len(undistortion._PLANS)
+    for _ in range(2):
+        for new_A, expected in zip((None, wide), once, strict=True):
+            for _ in range(3):
+                assert np.array_equal(undistort_image(image, camera, new_A), expected)
+    assert undistortion._PLANS[camera][1] is not None
+    del camera
+    assert len(undistortion._PLANS) == kept - 1

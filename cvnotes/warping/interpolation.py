@@ -1,6 +1,6 @@
 """A picture made ready to be looked up at many positions at once."""
 
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -97,6 +97,14 @@ def interpolate(
     return values.reshape(xy.shape[:-1] + sampler.channels)
 
 
+class Places(NamedTuple):
+    """Where positions lie in a framed picture: the same in all pictures of a size and type."""
+
+    pixel: npt.NDArray[np.integer[Any]]  # (n,) the one at the upper left, or the nearest
+    fractions: Real | None  # (2, n) Δu and Δv, to be interpolated
+    nowhere: npt.NDArray[np.intp] | None  # which positions show nothing
+
+
 class Sampler:
     """A picture made ready to be looked up at many positions; see `interpolate`."""
 
@@ -117,59 +125,88 @@ class Sampler:
         self.stride = self.width + 3
         self.strides = np.array([1.0, self.stride])
         self.limits = np.array([[self.width], [self.height]], dtype=np.float64)
+        # Three or four bytes of colour are looked up as one word.
+        self.in_words = picture.dtype == np.uint8 and self.channels in ((3,), (4,))
         self._pad(picture)
 
     def _pad(self, picture: Image) -> None:
         """Frame each channel with `fill`, so that no position needs a test of its own."""
-        planes = np.moveaxis(picture.reshape(self.height, self.width, -1), -1, 0)
-        shape = (len(planes), self.height + 3, self.stride)
-        framed = np.empty(shape, picture.dtype)
-        framed[:] = self.fill.reshape(-1, 1, 1)
-        framed[:, 1:-2, 1:-2] = planes
-        self.planes = framed.reshape(len(planes), -1)
-        self.all_finite = picture.dtype.kind != "f" or bool(np.isfinite(framed).all())
+        shape, inner = (self.height + 3, self.stride), np.s_[1:-2, 1:-2]
+        planes = picture.reshape(self.height, self.width, -1)
+        count = planes.shape[2]
+        if self.in_words:
+            framed = np.zeros((*shape, 4), picture.dtype)
+            channels = np.moveaxis(framed, -1, 0)
+            self.planes = framed.reshape(-1, 4).view(np.uint32).T
+        else:
+            channels = np.empty((count, *shape), picture.dtype)
+            self.planes = channels.reshape(count, -1)
+        for i in range(count):
+            channels[i] = self.fill[i]
+            channels[i][inner] = planes[..., i]
+        self.all_finite = picture.dtype.kind != "f" or bool(np.isfinite(self.planes).all())
 
-    @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
     def __call__(self, m: Array) -> Image:
         """Give the picture at m (2, n), rows u and v, as (n, channels); m is written over."""
+        values = np.empty((m.shape[1], self.fill.size), self.dtype)
+        self.look_up(self.places(m), values)
+        return values
+
+    def places(self, m: Array) -> Places:
+        """Find m (2, n) in the framed picture; m is written over."""
         nowhere = None
         if self.border != "constant":
-            nowhere = np.flatnonzero(~np.isfinite(m).all(axis=0))
+            unknown = ~np.isfinite(m).all(axis=0)
+            nowhere = np.flatnonzero(unknown) if unknown.any() else None
             m = np.where(np.isfinite(m), m, 0)
             m = np.stack(
                 [_fold(m[0], self.width, self.border), _fold(m[1], self.height, self.border)]
             )
-        values = self._nearest(m) if self.method == "nearest" else self._bilinear(m)
-        if nowhere is not None and nowhere.size:
-            values[nowhere] = self.fill
-        return values
-
-    def _nearest(self, m: Array) -> Image:
-        index = self._index(self._inside(np.floor(m + 0.5)))
-        return self.planes.take(index, axis=1).T
-
-    def _bilinear(self, m: Array) -> Image:
+        if self.method == "nearest":
+            return Places(self._index(self._inside(np.floor(m + 0.5))), None, nowhere)
         m = self._inside(m)
         m_k = np.floor(m)
         m -= m_k
         working = np.float32 if self.dtype == np.uint8 else np.float64
-        du, dv = m.astype(working, copy=False)
-        index = self._index(m_k)
-        values = np.empty((len(self.planes), index.size), self.dtype)
-        for plane, out in zip(self.planes, values, strict=True):
-            I1, I2, I3, I4 = (
-                plane[offset:].take(index, mode="clip").astype(working, copy=False)
-                for offset in (0, 1, self.stride, self.stride + 1)
-            )
-            if not self.all_finite:  # 0 · NaN is not 0
-                I2, I4 = np.where(du == 0, I1, I2), np.where(du == 0, I3, I4)
-                I3, I4 = np.where(dv == 0, I1, I3), np.where(dv == 0, I2, I4)
-            I_a, I_b = _between(I1, I2, du), _between(I3, I4, du)
-            value = _between(I_a, I_b, dv)
-            if self.dtype.kind == "u":
-                value += 0.5
-            out[:] = value
-        return values.T
+        return Places(self._index(m_k), m.astype(working, copy=False), nowhere)
+
+    @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
+    def look_up(self, places: Places, values: Image) -> None:
+        """Write the picture at places into values (n, channels)."""
+        pixel, fractions = places.pixel.astype(np.intp, copy=False), places.fractions
+        if self.in_words and fractions is not None:
+            each = np.empty((*fractions.shape, 4), fractions.dtype)
+            for k in range(4):  # for each byte of a word
+                each[..., k] = fractions
+            fractions = each.reshape(2, -1)
+        for k, plane in enumerate(self.planes):
+            if fractions is None:
+                found = plane.take(pixel)
+            else:
+                found = self._bilinear(plane, pixel, *fractions)
+            if not self.in_words:
+                values[:, k] = found
+                continue
+            for channel, byte in zip(values.T, found.view(np.uint8).reshape(-1, 4).T, strict=False):
+                channel[:] = byte
+        if places.nowhere is not None:
+            values[places.nowhere] = self.fill
+
+    def _bilinear(
+        self, plane: npt.NDArray[Any], index: npt.NDArray[np.intp], du: Real, dv: Real
+    ) -> npt.NDArray[Any]:
+        I1, I2, I3, I4 = (
+            plane[offset:].take(index, mode="clip").view(self.dtype).astype(du.dtype, copy=False)
+            for offset in (0, 1, self.stride, self.stride + 1)
+        )
+        if not self.all_finite:  # 0 · NaN is not 0
+            I2, I4 = np.where(du == 0, I1, I2), np.where(du == 0, I3, I4)
+            I3, I4 = np.where(dv == 0, I1, I3), np.where(dv == 0, I2, I4)
+        I_a, I_b = _between(I1, I2, du), _between(I3, I4, du)
+        value = _between(I_a, I_b, dv)
+        if self.dtype.kind == "u":
+            value += 0.5
+        return value.astype(self.dtype, copy=False)
 
     def _inside(self, m: Array) -> Array:
         """Keep positions between −1 and width or height, where the frame begins; NaN at −1."""

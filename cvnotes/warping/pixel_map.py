@@ -19,7 +19,7 @@ from cvnotes.base import (
 )
 
 # Pixels mapped at a time: a dozen arrays of them stay in the cache.
-TILE = 14_000
+TILE = 28_000
 
 
 @dataclass(frozen=True)

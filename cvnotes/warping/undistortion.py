@@ -1,6 +1,7 @@
 """Maps that take the lens out of a picture, or put it in (notes 2b.5)."""
 
 import warnings
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -13,11 +14,12 @@ from cvnotes.base import (
     checked_image,
     intrinsic_matrix,
     rotation,
+    target_size,
 )
 from cvnotes.camera import Camera, px_from_xy
-from cvnotes.warping.interpolation import Border, Method
+from cvnotes.warping.interpolation import Border, Method, Sampler
 from cvnotes.warping.pixel_map import PixelMap
-from cvnotes.warping.warp import backward_warp
+from cvnotes.warping.warp import Plan, backward_warp, planned, warped
 
 
 def undistortion_map(
@@ -135,6 +137,11 @@ def undistort_image(
     CalibrationWarning
         The lens model folds inside of the picture: what lies beyond is not shown.
 
+    Notes
+    -----
+    From the second picture of a camera on it is remembered where its pixels come from, as long as
+    the camera is (12 bytes a pixel, up to 16 million pixels).
+
     References
     ----------
     .. [1] Notes 2b.5, "Warping to compensate lens distortion".
@@ -161,8 +168,38 @@ def undistort_image(
             stacklevel=2,
         )
     mapping = undistortion_map(camera, new_A)
-    size = camera.size if size is None else size
-    return backward_warp(image, mapping, size=size, method=method, border=border, fill=fill)
+    size = camera.size if size is None else target_size(size)
+    sampler = Sampler(image, method, border, fill)
+    plan = _plan(camera, new_A, sampler, mapping, size)
+    if plan is None:
+        return backward_warp(image, mapping, size=size, method=method, border=border, fill=fill)
+    return warped(sampler, plan, size)
+
+
+# For each camera, what was asked for last, and where pixels come from if that was asked for twice.
+_PLANS: "WeakKeyDictionary[Camera, tuple[object, Plan | None]]" = WeakKeyDictionary()
+_LARGEST_PLAN = 16_000_000  # pixels, of 12 bytes each
+
+
+def _plan(
+    camera: Camera,
+    new_A: npt.ArrayLike | None,
+    sampler: Sampler,
+    mapping: PixelMap,
+    size: tuple[int, int],
+) -> Plan | None:
+    """Give the plan of a backward warp that is not the first of its kind with this camera."""
+    if size[0] * size[1] > _LARGEST_PLAN:
+        return None
+    ideal = None if new_A is None else np.asarray(new_A, dtype=float).tobytes()
+    asked = (ideal, size, sampler.method, sampler.border, sampler.dtype == np.uint8)
+    before, plan = _PLANS.get(camera, (None, None))
+    if asked == before and plan is None:
+        plan = planned(sampler, mapping, size)
+    elif asked != before:
+        plan = None
+    _PLANS[camera] = asked, plan
+    return plan
 
 
 def _one_rotation(R: npt.ArrayLike) -> Array:

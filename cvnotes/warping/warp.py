@@ -20,7 +20,7 @@ from cvnotes.base import (
     points,
     target_size,
 )
-from cvnotes.warping.interpolation import Border, Method, Sampler
+from cvnotes.warping.interpolation import Border, Method, Places, Sampler
 from cvnotes.warping.maps import plane_map
 from cvnotes.warping.pixel_map import Mapping, tiles
 
@@ -164,10 +164,10 @@ def backward_warp(
             raise ShapeError(f"map: expected shape (height, width, 2), got {shape}")
         size = (shape[1], shape[0])
     width, height = target_size((sampler.width, sampler.height) if size is None else size)
-    target = np.empty((height * width, *sampler.channels), sampler.dtype)
+    target = np.empty((height * width, sampler.fill.size), sampler.dtype)
 
     def fetch(part: slice, m: Array) -> None:
-        target[part] = sampler(m).reshape(-1, *sampler.channels)
+        sampler.look_up(sampler.places(m), target[part])
 
     if sys.platform == "emscripten":  # a browser, which has no threads
         for part, m in tiles(mapping, (width, height)):
@@ -191,6 +191,38 @@ def _fetch_side_by_side(
                 under_way.popleft().result()
         for fetched in under_way:
             fetched.result()
+
+
+# Where the pixels of a picture come from, tile by tile.
+Plan = list[tuple[slice, Places]]
+
+
+def planned(sampler: Sampler, mapping: Mapping, size: tuple[int, int]) -> Plan:
+    """Find where a backward warp looks pictures up that are like the sampler's."""
+    return [
+        (part, places._replace(pixel=places.pixel.astype(np.int32)))
+        for part, places in ((part, sampler.places(m)) for part, m in tiles(mapping, size))
+    ]
+
+
+def warped(sampler: Sampler, plan: Plan, size: tuple[int, int]) -> Image:
+    """Do what `backward_warp` does, where it is known from where pixels come."""
+    width, height = size
+    target = np.empty((height * width, sampler.fill.size), sampler.dtype)
+
+    def look_up(some: Plan) -> None:
+        for part, places in some:
+            sampler.look_up(places, target[part])
+
+    if sys.platform == "emscripten":
+        look_up(plan)
+    else:
+        from concurrent.futures import ThreadPoolExecutor
+
+        workers = _FETCHERS + 1
+        with ThreadPoolExecutor(workers) as pool:
+            list(pool.map(look_up, [plan[i::workers] for i in range(workers)]))
+    return target.reshape(height, width, *sampler.channels)
 
 
 def rectify_plane(
