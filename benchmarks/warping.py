@@ -116,7 +116,7 @@ def undistorted() -> None:
     print(f"\nA picture of {width}×{height} undistorted, as one of many, processor")
     for name, channels in (("grey", ()), ("colour", (3,))):
         image = cv2.blur(rng.integers(0, 256, (height, width, *channels), np.uint8), (9, 9))
-        ways = {
+        ways: dict[str, Callable[[], Any]] = {
             "cv2.remap": partial(cv2.remap, image, *maps, cv2.INTER_LINEAR),
             "cv2.undistort": partial(cv2.undistort, image, camera.A, np.array([*lens.k, *lens.p])),
             "undistort_image": partial(undistort_image, image, camera),
