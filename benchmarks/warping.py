@@ -105,7 +105,7 @@ def main() -> None:
     undistorted()
 
 
-def first(image: Image, camera: Camera) -> Any:
+def first(image: Any, camera: Camera) -> Any:
     """Undistort a picture of a camera that none was taken with before."""
     return undistort_image(image, Camera(camera.A, lens=camera.lens, size=camera.size))
 
