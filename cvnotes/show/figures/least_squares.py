@@ -194,8 +194,9 @@ def draw_singular_values(s: npt.ArrayLike, *, ax: "Axes | None" = None, title: s
         if len(values) > 12 and 1 < i < len(values) and not zero[i - 1]:
             continue
         words = f"{value:.2g}" if value >= 1e-3 * values.max() else f"{value:.0e}"
-        ax.annotate(words, (i, drawn[i - 1]), (0, 3), textcoords="offset points", ha="center",
-                    fontsize=FONT - 1)  # fmt: skip
+        last = len(values) > 12 and i == len(values)  # beside its neighbour, which may be higher
+        ax.annotate(words, (i, drawn[i - 1]), (-5 if last else 0, 3), textcoords="offset points",
+                    ha="left" if last else "center", fontsize=FONT - 1)  # fmt: skip
     ax.set(xticks=number, xlabel="number", ylabel="singular value", title=title)
     return ax
 
