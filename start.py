@@ -50,8 +50,12 @@ print(json.dumps({
     "pip": importlib.util.find_spec("pip") is not None,
     "ensurepip": importlib.util.find_spec("ensurepip") is not None,
     "cvnotes": found.origin if found else None,
+    "missing": [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None],
 }))
 """
+MADE_HERE = "made-by-start.py"  # in an environment that may be deleted when it is broken
+# What is not there any more if files of an environment were lost; pip would believe its lists.
+NEEDED = ("numpy", "scipy", "matplotlib", "cv2", "trimesh", "ipywidgets", "PIL", "yaml", "tqdm")
 
 
 class CannotError(Exception):
@@ -110,11 +114,14 @@ def environment(extra: str) -> Path:
     python = folder / ("Scripts/python.exe" if WINDOWS else "bin/python")
     wanted = recipe(folder)
     found = probe(python)
-    if found is not None and is_ours(found) and installed(folder, extra) == wanted:
+    complete = found is not None and is_ours(found) and installed(folder, extra) == wanted
+    lost: list[str] = found["missing"] if complete and found else []  # type: ignore[assignment]
+    if complete and not lost:
         return python
     ran_before = found is not None and is_ours(found) and installed(folder, extra) is not None
+    ran_before = ran_before and not lost
     try:
-        usable = reusable(folder, found)
+        usable = reusable(folder, found, lost)
         if usable is None or not (usable["pip"] or usable["ensurepip"]):
             check_whole()  # before anything is promised or written
         size = "what has changed since" if ran_before else f"about {SIZE[extra]}, once"
@@ -172,7 +179,7 @@ def probe(python: Path) -> dict[str, object] | None:
     """Ask an environment's Python about it; None if there is none that answers."""
     try:
         said = subprocess.run(
-            [str(python), "-I", "-c", PROBE], capture_output=True, text=True, timeout=60
+            [str(python), "-I", "-c", PROBE, *NEEDED], capture_output=True, text=True, timeout=60
         )
         found: dict[str, object] = json.loads(said.stdout)
     except (OSError, ValueError, subprocess.TimeoutExpired):
@@ -186,7 +193,9 @@ def is_ours(found: dict[str, object]) -> bool:
     return isinstance(origin, str) and Path(origin).resolve() == ROOT / "cvnotes" / "__init__.py"
 
 
-def reusable(folder: Path, found: dict[str, object] | None) -> dict[str, object] | None:
+def reusable(
+    folder: Path, found: dict[str, object] | None, lost: list[str]
+) -> dict[str, object] | None:
     """Give what an environment says of itself if it can be kept, or None if it is made anew."""
     made_here = any(folder.glob("installed-*")) if folder.is_dir() else False
     if folder.exists() and not folder.is_dir():
@@ -202,13 +211,17 @@ def reusable(folder: Path, found: dict[str, object] | None) -> dict[str, object]
             f"the environment in {folder} has a Python older than 3.11; delete that folder, "
             "or set CVNOTES_VENV to another"
         )
-    if foreign and found is None and folder != ROOT / ".venv":
+    kept = foreign or (found is not None and is_ours(found) and scripts_start(folder))
+    if found is not None and kept and not lost:
+        return found
+    mine = folder == ROOT / ".venv" or (folder / MADE_HERE).is_file()
+    if not mine and folder.is_dir() and any(folder.iterdir()):  # it may hold more than the course
+        reason = "was made for another clone" if found else "does not start"
+        reason = f"has lost {lost[0]}" if lost else reason
         raise CannotError(
-            f"the Python of the environment in {folder} does not start; "
+            f"the environment in {folder} {reason}; "
             "delete that folder, or set CVNOTES_VENV to another"
         )
-    if found is not None and (foreign or (is_ours(found) and scripts_start(folder))):
-        return found
     return None
 
 
@@ -224,6 +237,7 @@ def create(folder: Path, python: Path) -> dict[str, object]:
         raise CannotError(
             f"no environment could be made in {folder}: {words[-1] if words else error}"
         ) from None
+    (folder / MADE_HERE).touch()
     found = probe(python)
     if found is None:
         raise CannotError(f"the new Python in {folder} does not start; delete that folder")

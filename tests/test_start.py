@@ -65,6 +65,7 @@ class Clone:
             shutil.copy(START, root)
         self.start = load(root / "start.py")
         self.start.pip = self.pip
+        self.start.NEEDED = ()  # nothing is really installed
 
     def pip(self, python, _, what):
         """Install in editable form: leave a path in the environment."""
@@ -193,6 +194,16 @@ class TestEnvironment:
         python.symlink_to("/nowhere/python3")
         assert clone.imports(clone.python()) == clone.root
 
+    def test_one_that_has_lost_packages_is_made_anew(self, clone):
+        python = clone.python()
+        clone.start.NEEDED = ("json", "a_package_that_was_deleted")
+        clone.python()
+        assert len(clone.asked) == 4
+        assert clone.imports(python) == clone.root
+        clone.start.NEEDED = ("json",)
+        clone.python()
+        assert len(clone.asked) == 4
+
     def test_a_relative_folder_is_meant_from_here(self, clone, tmp_path, monkeypatch):
         (tmp_path / "here").mkdir()
         monkeypatch.chdir(tmp_path / "here")
@@ -214,6 +225,26 @@ class TestEnvironment:
         with pytest.raises(clone.start.CannotError, match="does not start; delete that folder"):
             clone.python()
         assert (other / "pyvenv.cfg").exists()
+
+    def test_nor_is_one_of_theirs_in_which_the_course_was_installed(
+        self, clone, tmp_path, monkeypatch
+    ):
+        theirs, own = tmp_path / "theirs", tmp_path / "own"
+        venv.EnvBuilder(symlinks=True).create(theirs)
+        for folder in (theirs, own):
+            monkeypatch.setenv("CVNOTES_VENV", str(folder))
+            clone.python()
+            (folder / "notes").touch()
+        clone.start.NEEDED = ("a_package_that_was_deleted",)
+        clone.python()  # made here, and made anew
+        assert not (own / "notes").exists()
+        monkeypatch.setenv("CVNOTES_VENV", str(theirs))
+        with pytest.raises(clone.start.CannotError, match="lost a_package_that_was_deleted; del"):
+            clone.python()
+        (theirs / BIN).unlink()
+        with pytest.raises(clone.start.CannotError, match="does not start"):
+            clone.python()
+        assert (theirs / "notes").exists()
 
     def test_a_folder_of_other_things_is_left_alone(self, clone, tmp_path, monkeypatch):
         (tmp_path / "letters").mkdir()
