@@ -8,7 +8,9 @@ import os
 import re
 import signal
 import stat
+import subprocess
 import sys
+import textwrap
 import threading
 import time
 import warnings
@@ -510,6 +512,25 @@ def test_without_fork_a_stubborn_loop_is_told_often_enough():
     outcomes = run_here(stubborn, [(np.zeros(2),)] * 3, 0.2)
     assert [outcome.kind for outcome in outcomes] == ["late"] * 3
     assert issubclass(TimeIsOver, BaseException)
+
+
+@pytest.mark.slow
+def test_without_fork_a_profiler_runs_afterwards():
+    """A raised exception that was taken back made Python go round in a circle under one."""
+    profiled = """
+        import sys
+        from cvnotes.learn.checker.in_process import run_here
+        def endless():
+            while True: pass
+        kinds = [run_here(f, [()], 0.2)[0].kind for f in (dict, endless, dict)]
+        sys.setprofile(lambda *_: None)
+        (lambda: 1)()
+        sys.setprofile(None)
+        print(*kinds)
+    """
+    command = [sys.executable, "-c", textwrap.dedent(profiled)]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert ran.stdout.split()[1] == "late", ran.stderr
 
 
 def test_without_fork_or_threads_a_check_still_works(without_fork, monkeypatch):

@@ -51,8 +51,8 @@ def run_here(
 @contextlib.contextmanager
 def _clock(seconds: float) -> Iterator[None]:
     """Raise `TimeIsOver` in this thread when the time is over; without threads there is none."""
-    thread, done, lock = threading.get_ident(), threading.Event(), threading.Lock()
-
+    thread, lock = threading.get_ident(), threading.Lock()
+    late, done = threading.Event(), threading.Event()
     used, patience = _time_used_by(thread), time.monotonic() + PATIENCE * seconds
 
     def watch() -> None:
@@ -63,6 +63,7 @@ def _clock(seconds: float) -> Iterator[None]:
                 continue  # the machine was busy with something else
             with lock:
                 if not done.is_set():
+                    late.set()
                     _raise_in(thread, TimeIsOver)
 
     watcher = threading.Thread(target=watch, daemon=True)
@@ -79,7 +80,12 @@ def _clock(seconds: float) -> Iterator[None]:
             with contextlib.suppress(TimeIsOver):
                 with lock:
                     done.set()
-                _raise_in(thread, None)
+                if late.is_set():
+                    # It must arrive: taken back, it would leave Python looking for it for ever,
+                    # slowly, and under a profiler or a debugger without an end.
+                    _raise_in(thread, TimeIsOver)
+                    while True:
+                        time.sleep(0)
 
 
 def _time_used_by(thread: int) -> Callable[[], float]:
@@ -93,7 +99,6 @@ def _time_used_by(thread: int) -> Callable[[], float]:
     return lambda: time.clock_gettime(clock) - before
 
 
-def _raise_in(thread: int, what: type[BaseException] | None) -> None:
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(
-        ctypes.c_ulong(thread), None if what is None else ctypes.py_object(what)
-    )
+def _raise_in(thread: int, what: type[BaseException]) -> None:
+    """Raise an exception in a thread, in the place of one that has not arrived yet."""
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(what))
