@@ -3,11 +3,12 @@
 Run ``python -m benchmarks.calibration``. A 9×6 board in 640×480, σ = 0.3 px, k1 k2 p1 p2. OpenCV
 runs once as its users run it (30 iterations, eps 2e-16) and once stopped after the 8 iterations
 that it needs to converge. Both start from the corners, in turns, in one process; a turn of a few
-views is several calibrations. Each time is the median, and behind the slash the shortest, of all
-turns: on a machine that others use too, the shortest is the steadier of the two. The difference
-of the RMS says that both ended in the same minimum. As in most programs that calibrate, a picture
-has been in memory before: only then does the C library keep what arrays gave back, instead of
-fetching each page anew (which would cost us 5 % at 20 views and 10 % at 50, and OpenCV nothing).
+views is several calibrations. Each time is that of the processor, the median, and behind the slash
+the shortest, of all turns: on a machine that others use too, the shortest is the steadier of the
+two. The difference of the RMS says that both ended in the same minimum. As in most programs that
+calibrate, a picture has been in memory before: only then does the C library keep what arrays gave
+back, instead of fetching each page anew (which would cost us 5 % at 20 views and 10 % at 50, and
+OpenCV nothing).
 
 ``python -m benchmarks.calibration PYTHON…`` names Pythons in which mrcal or pycolmap (Ceres) is
 installed; without names, this one and the system's are asked. They only refine, from the start
@@ -19,6 +20,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -96,7 +98,8 @@ def timed(n: int, ways: dict[str, Callable[[], Any]]) -> dict[str, Array]:
     """Time each way to calibrate from n views, in seconds a calibration."""
     rounds = max(1, 100 // n)
     repeated = {name: again(way, rounds) for name, way in ways.items()}
-    times = all_in_turns(repeated, repeats=max(3, min(15, 1000 // n)))
+    repeats = max(3, min(15, 1000 // n))
+    times = all_in_turns(repeated, repeats, time.process_time)
     return {name: spent / rounds for name, spent in times.items()}
 
 
@@ -147,7 +150,7 @@ def compare_free_boards(n: int) -> None:
             [W] * n, views, CAMERA.size, held, None, None, flags=cv2.CALIB_FIX_K3, **options
         )
 
-    times = all_in_turns({"ours": ours_free, "OpenCV": theirs}, repeats=3)
+    times = all_in_turns({"ours": ours_free, "OpenCV": theirs}, 3, time.process_time)
     row(n, times, f"{ours_free().rms - theirs()[0]:+11.0e} px")
 
 
