@@ -150,7 +150,7 @@ def compare_free_boards(n: int) -> None:
             [W] * n, views, CAMERA.size, held, None, None, flags=cv2.CALIB_FIX_K3, **options
         )
 
-    times = all_in_turns({"ours": ours_free, "OpenCV": theirs}, 3, time.process_time)
+    times = all_in_turns({"ours": ours_free, "OpenCV": theirs}, repeats=3)
     row(n, times, f"{ours_free().rms - theirs()[0]:+11.0e} px")
 
 
