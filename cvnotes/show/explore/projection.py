@@ -101,7 +101,10 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     side = 1.0 if along[0] >= 0 else -1.0
     anchor = "lm" if side > 0 else "rm"
     panel.text([0.4 * side, -0.6], "camera", CAMERA, anchor=anchor)
-    panel.text([side * (abs(right) + 0.5), _PLANE], "image plane", CAMERA, anchor=anchor)
+    beside = abs(right) + 0.5
+    if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH - 1.6:
+        beside = max(beside, out + 0.6)  # not upon the vanishing point
+    panel.text([side * beside, _PLANE], "image plane", CAMERA, anchor=anchor)
 
 
 def _sleepers(middle: Array, along: Array, across: Array) -> Array:
