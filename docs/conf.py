@@ -23,6 +23,8 @@ nb_execution_mode = "off"  # they are committed executed
 nb_render_markdown_format = "myst"
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
+# With Tab one goes from link to link and from slider to slider, not through a hundred formulas.
+mathjax3_config = {"options": {"menuOptions": {"settings": {"inTabOrder": False}}}}
 
 # `dlt` in a docstring leads to dlt where there is just one; shapes stand in the text, so that
 # signatures can stay short.
@@ -46,11 +48,11 @@ html_js_files: list[Any] = ["site.js"]
 # Sphinx's own tags: the site has Python for the browser, and JupyterLite.
 LIVE, LITE = (tags.has(name) for name in ("live", "lite"))  # type: ignore[name-defined] # noqa: F821
 if LIVE:
-    html_static_path.append("static")
+    html_static_path += ["static", "../cvnotes/show/explore/grips.js"]
     html_css_files.append("live/live.css")
     defer = {"defer": "defer"}  # in this order, once the page is there
     scripts = ("page", "explore", "exercises", "visit")
-    html_js_files += [(f"live/{name}.js", defer) for name in scripts]
+    html_js_files += [("grips.js", defer), *((f"live/{name}.js", defer) for name in scripts)]
     templates_path = ["templates"]
     html_sidebars = {
         "**": ["navbar-logo.html", "search-button-field.html", "run.html", "sbt-sidebar-nav.html"]

@@ -35,4 +35,7 @@ addEventListener("load", () => {
   for (const button of document.querySelectorAll(".search-button-field")) button.removeAttribute("aria-label");
   for (const entry of document.querySelectorAll('[role="list"] > [role="doc-biblioentry"]'))
     entry.setAttribute("role", "listitem");
+  // A formula that is wider than the page is scrolled by the keyboard too.
+  for (const formula of document.querySelectorAll("div.math"))
+    if (formula.scrollWidth > formula.clientWidth + 1) formula.tabIndex = 0;
 });

@@ -210,6 +210,11 @@ def _tab_to(page, found):
     return False
 
 
+def _middle(grip):
+    box = grip.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
 def _shut_down(page):
     page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.shutdown()")
 
@@ -339,6 +344,43 @@ def test_an_exploration_follows_the_keyboard_and_does_not_lag_behind(page, cours
     (tmp_path / "waited.json").write_text(json.dumps(waited))
     # 40 ms for pictures and 70 ms for figures on a quiet machine; a busy one delays all alike.
     assert all(waited[name] < waited["peer"] for name in ONE), waited
+    _shut_down(page)
+
+
+def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, course, tmp_path):
+    cells = _open_and_run(page, course[1], "saved.ipynb")
+    for name, label, moved in (
+        ("homography", "corner 1, top left", ("corner 1 u", "corner 1 v")),
+        ("projection", "the vanishing point", ("heading (°)", "slope (°)")),
+        ("camera", "the camera, to carry it", ("angle x (°)", "angle y (°)")),
+    ):
+        output = _output(page, cells, rf"^explore_{name}\(")
+        grip = output.get_by_label(label)
+        grip.wait_for(state="visible", timeout=20_000)
+        grip.scroll_into_view_if_needed()
+        readouts = [
+            output.locator(".widget-slider", has_text=words).locator(".widget-readout")
+            for words in moved
+        ]
+        before = [readout.inner_text() for readout in readouts]
+        x, y = _middle(grip)
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x - 15, y - 12, steps=4)
+        page.mouse.move(x - 30, y - 24, steps=4)
+        for readout, start in zip(readouts, before, strict=True):
+            sync_api.expect(readout).not_to_have_text(start)
+        page.mouse.up()
+        page.wait_for_timeout(600)
+        if name != "camera":  # it stays under the hand
+            assert np.hypot(*np.subtract(_middle(grip), (x - 30, y - 24))) < 8, name
+        page.screenshot(path=tmp_path / f"{name}.png")
+    output = _output(page, cells, r"^explore_homography\(")
+    output.get_by_label("corner 3, bottom right").focus()
+    for _ in range(5):  # quicker than pictures are drawn; the notebook keeps its cell
+        page.keyboard.press("ArrowDown")
+    readout = output.locator(".widget-slider", has_text="corner 3 v").locator(".widget-readout")
+    sync_api.expect(readout).to_have_text("7")  # 5 px of the page
     _shut_down(page)
 
 

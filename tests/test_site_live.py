@@ -14,6 +14,7 @@ from pathlib import Path
 import nbformat
 import numpy as np
 import pytest
+from accessible import violations
 from conftest import QuietHandler, serving
 
 from cvnotes.commands.cli import main as cvnotes
@@ -365,6 +366,7 @@ def test_exercises_answer_right_wrong_and_endless_and_can_be_handed_in(open_page
     page.wait_for_selector(".exercise-help:has-text('hint 2 of')")
     box.get_by_role("button", name="Solution").click()
     page.wait_for_selector(".exercise-help:has-text('one solution, from')")
+    assert violations(page, within=".explore, .exercise") == []
     with page.expect_download() as loading:
         box.get_by_role("button", name="Save as a notebook").click()
     saved = tmp_path / "handed_in" / loading.value.suggested_filename

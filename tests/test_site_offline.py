@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from accessible import violations
 
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
@@ -65,6 +66,7 @@ def test_dropped_photographs_give_the_camera_of_the_desktop(
     ours, theirs = found["camera_matrix"], expected["camera_matrix"]
     assert str(ours)[:4] == str(theirs)[:4]
     assert found["rms"] == pytest.approx(expected["rms"], rel=1e-6)
+    assert violations(page) == []
 
 
 def test_a_worker_that_dies_takes_no_photograph_with_it(page, live_site):

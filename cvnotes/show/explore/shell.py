@@ -1,31 +1,38 @@
 """The thin shell around a model: sliders, a reset button, and a picture that follows."""
 
+import json
 from html import escape
+from importlib.resources import files
 from typing import Any
 
 from ipywidgets.widgets.widget_bool import Checkbox
-from ipywidgets.widgets.widget_box import GridBox, VBox
+from ipywidgets.widgets.widget_box import Box, GridBox, VBox
 from ipywidgets.widgets.widget_button import Button
 from ipywidgets.widgets.widget_float import FloatSlider
 from ipywidgets.widgets.widget_int import IntSlider
 from ipywidgets.widgets.widget_media import Image
-from ipywidgets.widgets.widget_string import HTML
+from ipywidgets.widgets.widget_output import Output
+from ipywidgets.widgets.widget_string import HTML, Text
 
 from cvnotes.base.png import pack_png
 from cvnotes.camera import Camera
-from cvnotes.show.explore.model import Model, Setting
+from cvnotes.show.explore.model import Model, Setting, Sight, Values
 from cvnotes.show.explore.page import told
 from cvnotes.targets import Chessboard
 
 _UNSEEN = "position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%)"
 _TWO_LINES = "min-height: 2.8em; line-height: 1.4"  # so that the picture stays where it is
+_SCRIPTS = ("grips.js", "notebook.js")
+_HIDDEN = {"display": "none"}
+_NO_ROOM = {"height": "0", "overflow": "hidden", "margin": "0"}
 _COLUMNS = "repeat(auto-fit, minmax({}px, 1fr))"
 
 
 class Explorer(VBox):
     """Sliders of a model, its sentence and its picture, for a notebook.
 
-    Every slider can be reached with Tab and moved with the arrow keys. The front end sends the
+    Every slider can be reached with Tab and moved with the arrow keys, and what the picture offers
+    to a hand can be dragged, where the front end runs scripts. It sends the
     newest value only after the picture of the one before has arrived, so nothing piles up however
     quickly a slider is dragged. Where no kernel runs, on a page or in a file that was saved, the
     still of the same values stands in its place.
@@ -59,8 +66,10 @@ class Explorer(VBox):
         )
         self.sentence, self.matrices = HTML(), HTML()
         self.image = Image(format="png")
-        self._drawn: dict[str, float] | None = None
+        self._drawn: tuple[dict[str, float], Sight] | None = None
         self._held = False
+        self._pulled, self._told = Text(layout=_HIDDEN), HTML(layout=_HIDDEN)
+        self._number = 0  # of the pull that the picture answers
         self.redraw()
         for slider in self.sliders.values():
             slider.observe(self.redraw, "value")
@@ -74,7 +83,9 @@ class Explorer(VBox):
             },
         )
         beside = [self.matrices] if self.matrices.value else []
-        super().__init__([controls, self.sentence, self.image, *beside])  # type: ignore[no-untyped-call]
+        hands = [self._hands()] if model.drags else []
+        super().__init__([controls, self.sentence, self.image, *beside, *hands])  # type: ignore[no-untyped-call]
+        self.add_class("cvnotes-explorer")  # type: ignore[no-untyped-call]
 
     def __repr__(self) -> str:
         return f"explore {self.model.name}: run this cell to move its sliders"
@@ -100,13 +111,17 @@ class Explorer(VBox):
     def redraw(self, _: Any = None) -> None:
         """Show the picture of the present values, unless it is shown already."""
         values = self.values
-        if self._held or values == self._drawn:
+        if self._held:
             return
-        self._drawn = values
+        if self._drawn and self._drawn[0] == values:
+            self._tell(self._drawn[1])
+            return
         sight = self.model.sight(**values)
+        self._drawn = values, sight
         self.image.width = str(sight.picture.shape[1])
         self.image.value = pack_png(sight.picture)
         self.matrices.value = sight.matrices
+        self._tell(sight)
         # An image widget has no alternative text; its description stands here, for the ear only.
         self.sentence.value = (
             f'<span style="{_UNSEEN}">{escape(self.model.about)}</span>'
@@ -116,14 +131,49 @@ class Explorer(VBox):
 
     def reset(self, _: Any = None) -> None:
         """Move every slider back to where it started, and draw once."""
+        self.move(self.model.values())
+
+    def move(self, values: Values) -> None:
+        """Move sliders, and draw once."""
         self._held = True
         try:
             for setting in self.model.settings:
-                started = bool(setting.value) if setting.is_choice else setting.value
-                self.sliders[setting.name].value = started
+                value = values[setting.name]
+                self.sliders[setting.name].value = bool(value) if setting.is_choice else value
         finally:
             self._held = False
         self.redraw()
+
+    def _hands(self) -> Box:
+        """Make what lets a hand take hold of the picture: a script, and its two ways to Python."""
+        self._pulled.add_class("cvnotes-pulled")
+        self._told.add_class("cvnotes-told")
+        self._pulled.observe(self._pull, "value")
+        here = files("cvnotes.show.explore")
+        script = "\n".join((here / name).read_text("utf-8") for name in _SCRIPTS)
+        output = {
+            "output_type": "display_data",
+            "data": {"application/javascript": script},
+            "metadata": {},
+        }
+        return Box([self._pulled, self._told, Output(outputs=(output,))], layout=_NO_ROOM)
+
+    def _pull(self, change: dict[str, Any]) -> None:
+        """Move the sliders to where a hand has pulled what it holds."""
+        given = json.loads(change["new"])
+        self._number = given["number"]
+        self.move(self.model.dragged(given["grip"], tuple(given["at"]), **given["values"]))
+
+    def _tell(self, sight: Sight) -> None:
+        """Tell the script where a hand can take hold of the picture."""
+        height, width = sight.picture.shape[:2]
+        told = {
+            "number": self._number,
+            "size": [width, height],
+            "values": self.values,
+            "grips": [grip._asdict() for grip in sight.grips],
+        }
+        self._told.value = escape(json.dumps(told))
 
 
 def _control(setting: Setting) -> Any:

@@ -5,7 +5,6 @@
 (() => {
   const NARROW = 600; // px of the page: narrower, and panels come below each other
   const REST = 250; // ms without a touch, after which the picture is drawn as sharp as the screen
-  const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   let count = 0;
 
   function digits({ step }) {
@@ -29,7 +28,7 @@
       this.canvas = make("canvas", { hidden: true, role: "img" });
       this.stage = make("div", { className: "explore-stage" }, still, this.canvas);
       this.stage.style.setProperty("--width", `${told.size[0]}px`);
-      this.grips = new Map();
+      this.grips = new CvnotesGrips(this.stage, (wanted) => this.want(wanted));
       this.inputs = new Map();
       const controls = make("div", { className: "explore-controls" });
       for (const setting of told.settings) controls.append(this.control(setting));
@@ -39,7 +38,7 @@
       const name = `Exploration: ${told.name}`;
       const parts = [controls, this.state, this.sentence, this.stage, this.matrices];
       output.replaceChildren(make("div", { className: "explore", role: "group", ariaLabel: name }, ...parts));
-      this.place(told.grips, told.size);
+      this.grips.place(told.grips, told.size, this.values);
     }
 
     control(setting) {
@@ -106,9 +105,9 @@
       this.next = null;
       if (next) this.draw(next);
       else if (wanted.sharpness < devicePixelRatio) {
-        this.held = null;
+        this.grips.rest();
         this.rest = setTimeout(() => this.want({ sharpness: Math.min(Math.ceil(devicePixelRatio), 2) }), REST);
-      } else this.held = null;
+      } else this.grips.rest();
     }
 
     say(text) {
@@ -128,60 +127,7 @@
       this.sentence.textContent = shown.sentence;
       if (this.matrices.innerHTML !== shown.matrices) this.matrices.innerHTML = shown.matrices;
       if (wanted.grip && !this.next) this.show(shown.values);
-      this.place(shown.grips, [width / shown.sharpness, height / shown.sharpness]);
-    }
-
-    // Put what can be taken hold of where the picture has it.
-    place(grips, size) {
-      this.size = size;
-      const here = new Set(grips.map(({ name }) => name));
-      for (const [name, { button }] of this.grips) button.hidden = !here.has(name);
-      for (const grip of grips) {
-        if (!this.grips.has(grip.name)) this.grips.set(grip.name, this.grip(grip));
-        const own = this.grips.get(grip.name);
-        own.grip = grip;
-        own.button.style.left = `${(100 * grip.place[0]) / size[0]}%`;
-        own.button.style.top = `${(100 * grip.place[1]) / size[1]}%`;
-      }
-    }
-
-    grip({ name, label }) {
-      const button = make("button", { type: "button", className: "explore-grip" });
-      button.ariaLabel = `${label}: drag it, or move it with the arrow keys`;
-      button.title = label;
-      const own = { button };
-      let from = null; // where the hand took hold
-      button.addEventListener("pointerdown", (event) => {
-        if (event.button) return;
-        event.preventDefault();
-        button.focus();
-        button.setPointerCapture(event.pointerId);
-        from = { x: event.clientX, y: event.clientY, grip: own.grip, values: { ...this.values } };
-      });
-      button.addEventListener("pointermove", (event) => {
-        if (!from) return;
-        const page = this.size[0] / this.stage.getBoundingClientRect().width;
-        this.pull(from, (event.clientX - from.x) * page, (event.clientY - from.y) * page);
-      });
-      for (const over of ["pointerup", "pointercancel"]) button.addEventListener(over, () => (from = null));
-      button.addEventListener("keydown", (event) => {
-        const way = ARROWS[event.key];
-        if (!way || event.altKey || event.ctrlKey || event.metaKey) return;
-        event.preventDefault();
-        // Keys that come before the picture add up from where the first one found it.
-        if (this.held?.name !== name) this.held = { name, grip: own.grip, values: { ...this.values }, x: 0, y: 0 };
-        const step = own.grip.step * (event.shiftKey ? 5 : 1);
-        this.held.x += way[0] * step;
-        this.held.y += way[1] * step;
-        this.pull(this.held, this.held.x, this.held.y);
-      });
-      this.stage.append(button);
-      return own;
-    }
-
-    pull({ grip, values }, x, y) {
-      const at = [grip.at[0] + x * grip.unit[0], grip.at[1] + y * grip.unit[1]];
-      this.want({ grip: grip.name, at, values });
+      this.grips.place(shown.grips, [width / shown.sharpness, height / shown.sharpness], this.values);
     }
   }
 

@@ -1,0 +1,104 @@
+"use strict";
+// What a hand can take hold of in a picture, on the site's pages and in a notebook alike: buttons
+// over it that follow mouse, thumb and arrow keys. Whoever draws is told where they were pulled to.
+globalThis.CvnotesGrips = class {
+  static ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+  // stage: an element that lies over the picture; pull({grip, at, values}): where it is wanted.
+  constructor(stage, pull) {
+    this.stage = stage;
+    this.tell = pull;
+    this.own = new Map();
+    this.held = null; // by keys that came before their picture
+  }
+
+  // Put what can be taken hold of where the picture of this size, drawn for these values, has it.
+  place(grips, size, values) {
+    [this.size, this.values] = [size, values];
+    const here = new Set(grips.map(({ name }) => name));
+    for (const [name, { button }] of this.own) button.hidden = !here.has(name);
+    for (const grip of grips) {
+      if (!this.own.has(grip.name)) this.own.set(grip.name, this.make(grip));
+      const own = this.own.get(grip.name);
+      own.grip = grip;
+      own.button.style.left = `${(100 * grip.place[0]) / size[0]}%`;
+      own.button.style.top = `${(100 * grip.place[1]) / size[1]}%`;
+    }
+  }
+
+  // The newest picture is there: the next key goes on from it.
+  rest() {
+    this.held = null;
+  }
+
+  make({ name, label }) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "explore-grip";
+    button.ariaLabel = `${label}: drag it, or move it with the arrow keys`;
+    button.title = label;
+    const own = { button };
+    let from = null; // where the hand took hold
+    button.addEventListener("pointerdown", (event) => {
+      if (event.button) return;
+      event.preventDefault();
+      button.focus({ preventScroll: true });
+      button.setPointerCapture(event.pointerId);
+      from = { x: event.clientX, y: event.clientY, grip: own.grip, values: { ...this.values } };
+    });
+    button.addEventListener("pointermove", (event) => {
+      if (!from) return;
+      const page = this.size[0] / this.stage.getBoundingClientRect().width;
+      this.pull(from, (event.clientX - from.x) * page, (event.clientY - from.y) * page);
+    });
+    for (const over of ["pointerup", "pointercancel"]) button.addEventListener(over, () => (from = null));
+    button.addEventListener("keydown", (event) => {
+      const way = CvnotesGrips.ARROWS[event.key];
+      if (!way || event.altKey || event.ctrlKey || event.metaKey) return;
+      event.preventDefault();
+      // Keys that come before the picture add up from where the first one found it.
+      if (this.held?.name !== name) this.held = { name, grip: own.grip, values: { ...this.values }, x: 0, y: 0 };
+      const step = own.grip.step * (event.shiftKey ? 5 : 1);
+      this.held.x += way[0] * step;
+      this.held.y += way[1] * step;
+      this.pull(this.held, this.held.x, this.held.y);
+    });
+    this.stage.append(button);
+    return own;
+  }
+
+  pull({ grip, values }, x, y) {
+    const at = [grip.at[0] + x * grip.unit[0], grip.at[1] + y * grip.unit[1]];
+    this.tell({ grip: grip.name, at, values });
+  }
+};
+
+// Large for a thumb, and seen when it is near.
+document.getElementById("explore-grips")?.remove();
+document.head.append(
+  Object.assign(document.createElement("style"), {
+    id: "explore-grips",
+    textContent: `
+.explore-stage > button.explore-grip {
+  position: absolute;
+  width: 1.9rem;
+  height: 1.9rem;
+  transform: translate(-50%, -50%);
+  padding: 0;
+  border: 2px dashed #444;
+  border-radius: 50%;
+  background: rgb(255 255 255 / 0.15);
+  cursor: grab;
+  touch-action: none;
+  pointer-events: auto;
+}
+.explore-stage > button.explore-grip:is(:hover, :focus-visible) {
+  border: 2px solid #0072b2;
+  background: rgb(0 114 178 / 0.12);
+}
+.explore-stage > button.explore-grip:focus-visible { outline: 3px solid #0072b2; outline-offset: 2px; }
+.explore-stage > button.explore-grip:active { cursor: grabbing; }
+.explore-stage > button.explore-grip[hidden] { display: none; }
+@media (pointer: coarse) { .explore-stage > button.explore-grip { width: 2.75rem; height: 2.75rem; } }`,
+  }),
+);

@@ -1,0 +1,98 @@
+"""The site for everybody: an automated checker of WCAG 2.2 AA, and the keyboard alone.
+
+Pages on which Python is awake are checked where they are: with exercises answered in
+test_site_live.py, with photographs dropped in test_site_offline.py.
+"""
+
+import shutil
+
+import pytest
+from accessible import violations
+
+pytestmark = pytest.mark.slow
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+if CHROMIUM is None:
+    pytest.skip("no Chromium on this machine", allow_module_level=True)
+sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+
+# What has the focus: its kind and its name, how it is seen to have it, and whether it can be seen.
+FOCUSED = """() => {
+    const e = document.activeElement, style = getComputedStyle(e), box = e.getBoundingClientRect();
+    const name = e.getAttribute('aria-label') || e.labels?.[0]?.textContent || e.textContent;
+    const [x, y] = [box.left + box.width / 2, box.top + Math.min(box.height / 2, 300)];
+    const seen = document.elementFromPoint(x, y);
+    return {
+        kind: e.type || e.tagName.toLowerCase(), name: name.trim(),
+        marked: style.outlineStyle !== 'none' || style.boxShadow !== 'none',
+        hidden: !e.classList.contains('skip-link') && !e.closest('#pst-skip-link')
+            && !(seen && (e.contains(seen) || seen.contains(e) || seen.control === e)),
+    };
+}"""
+
+
+@pytest.fixture(scope="module")
+def page():
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser.new_page(viewport={"width": 1400, "height": 900})
+        browser.close()
+
+
+@pytest.mark.parametrize("name", ["index", "reference/homography"])
+def test_a_checker_of_wcag_has_nothing_to_say(page, live_site, name):
+    page.set_viewport_size({"width": 1400, "height": 900})
+    page.goto(f"{live_site}/{name}.html")
+    page.wait_for_load_state()
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize("name", ["notebooks/06_homography_dlt", "your_camera"])
+def test_nor_has_it_on_a_telephone(page, live_site, name):
+    page.set_viewport_size({"width": 400, "height": 900})
+    page.goto(f"{live_site}/{name}.html")
+    page.wait_for_load_state()
+    page.wait_for_timeout(1000)  # formulas that are too wide are found when they are set
+    assert violations(page, colours=False) == []
+
+
+def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
+    page.set_viewport_size({"width": 1400, "height": 900})
+    page.goto(f"{live_site}/notebooks/06_homography_dlt.html")
+    page.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
+    reached, moved = [], 0
+    for _ in range(200):
+        page.keyboard.press("Tab")
+        focused = page.evaluate(FOCUSED)
+        if focused["kind"] == "body":
+            break
+        reached.append((focused["kind"], focused["name"]))
+        assert focused["marked"], focused
+        assert not focused["hidden"], focused
+        if focused["kind"] == "range":
+            page.keyboard.press("ArrowRight")
+            moved += page.evaluate("document.activeElement.value") == "1"
+        if focused["kind"] == "textarea":  # as the line below it says
+            page.keyboard.press("Escape")
+    assert focused["kind"] == "body", reached[-5:]  # and goes on at the browser's own buttons
+    kinds = [kind for kind, _ in reached]
+    assert kinds.count("range") == moved == 8
+    assert kinds.count("textarea") == 4
+    corners = [name for _, name in reached if "move it with the arrow keys" in name]
+    assert len(corners) == 4
+    for name in ("Check", "Hint", "Solution", "Start again", "Save as a notebook"):
+        assert [n for _, n in reached].count(name) == 4, name
+    assert "mjx-container" not in kinds  # a hundred formulas are no stops
+
+
+def test_photographs_are_chosen_with_the_keyboard_alone(page, live_site):
+    page.goto(f"{live_site}/your_camera.html")
+    page.locator("#camera-page [name=lens]").focus()
+    page.keyboard.press("Tab")
+    focused = page.evaluate(FOCUSED)
+    assert (focused["kind"], focused["name"]) == ("file", "Choose photographs")
+    style = "getComputedStyle(document.activeElement.closest('label')).outlineStyle"
+    assert page.evaluate(style) == "solid"
+    with page.expect_file_chooser() as chooser:
+        page.keyboard.press("Space")
+    assert chooser.value.is_multiple()
