@@ -20,6 +20,7 @@ from cvnotes.calibration import (
     zhang,
 )
 from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.next_view import left_with
 from cvnotes.camera import (
     Camera,
     FisheyeLens,
@@ -442,6 +443,7 @@ FUNCTIONS = [
         camera=Camera(A, lens=LENS),
     ),
     function(std_with_view, {"G": (POSES[1], SINGLE)}, calibration=RESULT),
+    function(left_with, {"G": (POSES[1], SINGLE)}, calibration=RESULT),
     # resection
     function(
         calibration.resect,

@@ -28,6 +28,8 @@ def ready(tmp_path):
     for name in ("pyproject.toml", "CITATION.cff", "CHANGELOG.md", "cvnotes/__init__.py"):
         text = (ROOT / name).read_text().replace(release.PLACEHOLDER, "example.org")
         (tmp_path / name).write_text(text.replace("(unreleased)", "(2030-01-01)"))
+    made = badges.badges("https://github.com/Somebody/course")
+    (tmp_path / "README.md").write_text(f"# cvnotes\n\n{made}\n")
     return tmp_path
 
 
@@ -42,6 +44,13 @@ def test_a_release_is_refused_while_the_repository_is_a_placeholder(ready):
         )
         assert run.returncode == 1
         assert "pyproject.toml names repository.invalid" in run.stderr
+
+
+def test_a_release_needs_its_badges(ready):
+    shutil.copy(ROOT / "README.md", ready)
+    if "/actions/workflows/tests.yml" not in (ROOT / "README.md").read_text():
+        (said,) = release.missing(ready)
+        assert "README.md has no badges: tools/badges.py --write puts them there" in said
 
 
 def test_a_release_needs_its_notes_and_its_day(ready):

@@ -3,8 +3,10 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from accessible import violations
+from PIL import Image
 
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
@@ -22,6 +24,12 @@ RUN_ALL = """async () => {
     await app.commands.execute('notebook:run-all-cells');
     return panel.content.model.toJSON().cells.filter(cell => cell.cell_type === 'code')
         .map(cell => cell.outputs);
+}"""
+
+SHOW_CELL = """async words => {
+    const notebook = window.jupyterapp.shell.currentWidget.content;
+    const sources = notebook.widgets.map(cell => cell.model.sharedModel.getSource());
+    await notebook.scrollToItem(sources.findIndex(source => source.includes(words)), 'start');
 }"""
 
 
@@ -93,6 +101,38 @@ def test_the_machines_own_camera_takes_photographs(page, live_site):
     assert page.is_visible("text=Use this machine's camera")
 
 
+def film(path, pictures, seconds):
+    """Write pictures as a film of one frame a second, uncompressed, as a camera would give them."""
+    height, width = pictures[0].shape
+    colourless = bytes([128]) * (width * height // 2)
+    with path.open("wb") as out:
+        out.write(f"YUV4MPEG2 W{width} H{height} F1:1 Ip A1:1 C420jpeg\n".encode())
+        for picture in pictures:
+            out.write((b"FRAME\n" + picture.tobytes() + colourless) * seconds)
+
+
+def test_the_machines_own_camera_takes_a_picture_by_itself_of_each_new_view(
+    chromium, live_site, tmp_path
+):
+    pictures = [np.asarray(Image.open(path).convert("L")) for path in VIEWS[:3]]
+    film(tmp_path / "board.y4m", pictures, 8)
+    arguments = ["--no-sandbox", "--use-fake-ui-for-media-stream"]
+    arguments += ["--use-fake-device-for-media-stream"]
+    arguments += [f"--use-file-for-fake-video-capture={tmp_path / 'board.y4m'}"]
+    browser = chromium.browser_type.launch(executable_path=CHROMIUM, args=arguments)
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    page.goto(f"{live_site}/your_camera.html")
+    page.click("text=Use this machine's camera")
+    page.wait_for_function(
+        "() => document.querySelectorAll('.shots li.used').length === 3", timeout=240_000
+    )
+    page.wait_for_selector("text=there is such a photograph already", timeout=60_000)
+    page.uncheck(".by-itself")
+    assert page.locator(".shots li").count() == 3  # the film goes round: no view comes twice
+    page.click("text=Stop the camera")
+    browser.close()
+
+
 def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     page.goto(f"{live_site}/notebooks/03_camera_model.html")
     page.click("text=Run this chapter in this browser")
@@ -106,6 +146,15 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     # (what stands behind a cell that needs OpenCV is left alone when all are run)
     pictures = sum("<img" in str(cell) for cell in outputs)
     assert pictures >= 3, outputs
+    grip = page.get_by_label("the camera, to carry it round the board")
+    page.evaluate(SHOW_CELL, "explore_camera(")
+    grip.wait_for(state="visible", timeout=60_000)
+    grip.focus()
+    angle = page.locator(".widget-slider", has_text="angle x").locator(".widget-readout")
+    before = angle.inner_text()
+    for _ in range(3):
+        page.keyboard.press("Shift+ArrowDown")
+    sync_api.expect(angle).not_to_have_text(before, timeout=20_000)
 
 
 def test_after_one_visit_pages_and_python_are_there_without_a_network(page, live_site):

@@ -39,6 +39,8 @@ def missing(root: Path) -> list[str]:
         for name in FILLED_IN
         if PLACEHOLDER in (root / name).read_text(encoding="utf-8")
     ]
+    if not found and "/actions/workflows/tests.yml" not in (root / "README.md").read_text("utf-8"):
+        found.append("README.md has no badges: tools/badges.py --write puts them there")
     heading, text = notes(root)
     if not text:
         found.append(f"CHANGELOG.md has no notes of version {version(root)}")

@@ -131,6 +131,35 @@ def next_view(calibration: Calibration, *, outline: npt.ArrayLike | None = None)
     )
 
 
+def left_with(calibration: Calibration, G: npt.ArrayLike) -> float:
+    """Say how far off a pixel may be, px, with one more view of the board.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        With its corners.
+    G : array_like, shape (4, 4)
+        Pose of the board, CRF ← board, wherever it is; see `NextView.after`.
+
+    Examples
+    --------
+    >>> from cvnotes.calibration import calibrate
+    >>> from cvnotes.pictures import course
+    >>> few = calibrate(course.board().points, course.measured_corners()[:6], (640, 480))
+    >>> view = next_view(few)
+    >>> bool(np.isclose(left_with(few, view.G), view.after))
+    True
+    >>> bool(left_with(few, few.poses[0]) > view.after)
+    True
+    """
+    G, W = rigid_motion(G), _board(calibration)
+    if G.ndim != 2:
+        raise ShapeError(f"G: expected one pose (4, 4), got {G.shape}")
+    search = _Search.of(calibration, W, _around(W))
+    scaled = search.data.pose_in_scaled_units(G[None])
+    return float(search._left(scaled[:, :3, :3], scaled[:, :3, 3])[0])
+
+
 def where_to_hold(camera: Camera, G: npt.ArrayLike, W: npt.ArrayLike) -> str:
     """Say in words where a board is, as somebody who holds it needs to know.
 

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from cvnotes.base import CvnotesError, DegenerateError
+from cvnotes.base import Array, CvnotesError, DegenerateError
+from cvnotes.calibration import Calibration, NextView
 from cvnotes.commands.calibrate import (
     asked_board,
     calibrated,
@@ -51,6 +52,7 @@ class Dropped:
         self.examined: dict[str, Examined] = {}
         self.rejected: dict[str, Rejected] = {}
         self.first: dict[bytes, str] = {}  # photograph by its pixels
+        self.known: tuple[Calibration, NextView | None] | None = None
 
     def look(self, path: str) -> dict[str, Any]:
         """Look for the board in one more photograph.
@@ -106,6 +108,7 @@ class Dropped:
         CvnotesError
             The photographs do not determine a camera.
         """
+        self.known = None
         examined, rejected = self._of_one_size()
         used = [photo for photo in examined if photo.corners is not None]
         asked = argparse.Namespace(**vars(self.asked), lens=lens, board_shape="auto")
@@ -118,6 +121,7 @@ class Dropped:
         rejected += [Rejected(printable(path.name), at.note) for path, at in misfits.items()]
         names, notes = [printable(photo.path.name) for photo in used], [p.note for p in used]
         proposal = proposal_of(result, self.board)
+        self.known = result, proposal
         return {
             "report": camera_report(result),
             "table": photo_table(names, notes, rejected, result),
@@ -127,6 +131,11 @@ class Dropped:
             "parameters": [list(row) for row in result.table()],
             "files": contents_of(result, examined, self.board, names, rejected, proposal),
         }
+
+    def corners_of(self, size: tuple[int, int]) -> list[Array]:
+        """Give the corners (n, 2) in all photographs of a size, NaN for those that are hidden."""
+        seen = [photo for photo in self.examined.values() if photo.size == size]
+        return [photo.corners for photo in seen if photo.corners is not None]
 
     def _of_one_size(self) -> tuple[list[Examined], list[Rejected]]:
         """Give the photographs of the size that most have; the others are refused."""

@@ -37,6 +37,7 @@ globalThis.CvnotesGrips = class {
     button.className = "explore-grip";
     button.ariaLabel = `${label}: drag it, or move it with the arrow keys`;
     button.title = label;
+    button.dataset.lmSuppressShortcuts = "true"; // its arrows are not JupyterLab's
     const own = { button };
     let from = null; // where the hand took hold
     button.addEventListener("pointerdown", (event) => {

@@ -17,7 +17,6 @@
     const stage = document.createElement("div");
     stage.className = "explore-stage";
     stage.style.cssText = "position: absolute; pointer-events: none";
-    stage.dataset.lmSuppressShortcuts = "true"; // arrows are ours here, not the notebook's
     box.style.position = "relative";
     box.append(stage);
     let sent = 0;

@@ -3,6 +3,8 @@
 // is shown at once. When the worker dies, another one takes over; the photographs stay here.
 (() => {
   const COLOUR = "#D55E00"; // the course's, of what was measured
+  const NOW = "#56B4E9"; // the course's, of what a picture shows
+  const FRAME = 640; // px across: of the small copy in which the board is looked for
   const page = document.getElementById("camera-page");
   const $ = (selector) => page.querySelector(selector);
   const board = $("form.board");
@@ -41,11 +43,17 @@
     lost?.resolve({ error: why, dead: true });
   }
 
-  async function ask(task, more = {}, moved = []) {
+  // One question after the other, whoever asks.
+  let last = Promise.resolve();
+  function ask(...question) {
+    return (last = last.then(() => asked(...question)));
+  }
+
+  async function asked(task, more = {}, moved = []) {
     if (!worker) {
       wake();
       if (task !== "board") {
-        const answer = await ask("board", size());
+        const answer = await asked("board", size());
         if (answer.error) return answer;
         for (const [name, shot] of shots) if (shot.state === "looked at" && name !== more.name) shot.state = "new";
       }
@@ -243,6 +251,7 @@
     live.hidden = false;
     webcam.hidden = true;
     cover();
+    watch();
     $(".take").focus();
   };
   $(".stop").onclick = () => {
@@ -252,13 +261,49 @@
     webcam.hidden = false;
     webcam.focus();
   };
-  $(".take").onclick = async () => {
-    const picture = new OffscreenCanvas(video.videoWidth, video.videoHeight);
-    picture.getContext("2d").drawImage(video, 0, 0);
-    const blob = await picture.convertToBlob({ type: "image/png" });
+  // The whole picture of now, as it would be kept.
+  function picture() {
+    const canvas = new OffscreenCanvas(video.videoWidth, video.videoHeight);
+    canvas.getContext("2d", { alpha: false }).drawImage(video, 0, 0);
+    return canvas;
+  }
+
+  async function take(canvas) {
+    const blob = await canvas.convertToBlob({ type: "image/png" });
     const taken = [...shots.keys()].filter((name) => name.startsWith("camera ")).length + 1;
     add([new File([blob], `camera ${String(taken).padStart(2, "0")}.png`)]);
-  };
+  }
+  $(".take").onclick = () => take(picture());
+
+  // A small grey copy, in which the board is looked for.
+  function small(canvas) {
+    const width = Math.min(FRAME, canvas.width);
+    const height = Math.round((canvas.height * width) / canvas.width);
+    const pen = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+    pen.drawImage(canvas, 0, 0, width, height);
+    const { data } = pen.getImageData(0, 0, width, height);
+    const grey = new Uint8Array(width * height);
+    for (let i = 0; i < grey.length; i++)
+      grey[i] = 0.299 * data[4 * i] + 0.587 * data[4 * i + 1] + 0.114 * data[4 * i + 2] + 0.5;
+    return { grey: grey.buffer, size: [width, height], full: [canvas.width, canvas.height] };
+  }
+
+  // Frame after frame, as long as nothing else is done: Python says when a picture is taken.
+  let seen = { corners: [], words: "", size: [1, 1] };
+  async function watch() {
+    const own = stream;
+    while (own && stream === own) {
+      await new Promise((resolve) => setTimeout(resolve, 100));
+      if (working || !$(".by-itself").checked || !board.checkValidity()) continue;
+      const canvas = picture();
+      const frame = small(canvas);
+      const answer = await ask("see", frame, [frame.grey]);
+      if (answer.dead) return say(`Python stopped at the camera's picture (${answer.error}); take pictures by the button.`);
+      if (answer.error || stream !== own) continue;
+      seen = { ...answer, size: frame.size };
+      if (answer.take && !working) await take(canvas);
+    }
+  }
 
   // Over what the camera sees: the corners of all photographs so far, so that gaps are seen.
   function cover() {
@@ -267,10 +312,10 @@
     [canvas.width, canvas.height] = [video.clientWidth, video.clientHeight];
     const pen = canvas.getContext("2d");
     pen.fillStyle = COLOUR;
-    let seen = 0;
+    let count = 0;
     for (const { used, item, corners } of shots.values()) {
       if (!used) continue;
-      seen += 1;
+      count += 1;
       const small = item.querySelector("canvas");
       const scale = canvas.width / small.width;
       for (let i = 0; i < corners.length; i += 2) {
@@ -279,8 +324,19 @@
         pen.fill();
       }
     }
-    $(".live p").textContent = `${seen} photographs with the board: dots are where corners were seen.`;
-    setTimeout(cover, 500);
+    // and, as rings, where they are seen now
+    const itself = $(".by-itself").checked;
+    const scale = canvas.width / seen.size[0];
+    pen.strokeStyle = NOW;
+    pen.lineWidth = 2;
+    for (let i = 0; itself && i < seen.corners.length; i += 2) {
+      pen.beginPath();
+      pen.arc((seen.corners[i] + 0.5) * scale, (seen.corners[i + 1] + 0.5) * scale, 4, 0, 7);
+      pen.stroke();
+    }
+    const now = itself && seen.words ? ` Now: ${seen.words}.` : "";
+    $(".live p").textContent = `${count} photographs with the board: dots are where corners were seen.${now}`;
+    setTimeout(cover, 200);
   }
 
   // --- Hands -------------------------------------------------------------------------------------

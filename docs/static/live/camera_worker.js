@@ -5,14 +5,18 @@ const say = (text) => postMessage({ say: text });
 const ready = wakePython({ packages: ["numpy", "scipy", "pillow", "tqdm"], say }).then((python) => {
   python.FS.mkdirTree("/photographs");
   python.runPython("from cvnotes.commands.dropped import Dropped");
+  python.runPython("from cvnotes.commands.watching import Watch");
   return python;
 });
 let dropped = null;
+let watch = null;
 
 const tasks = {
   board(python, { columns, rows, square }) {
     dropped?.destroy();
+    watch?.destroy();
     dropped = python.globals.get("Dropped")(columns, rows, square);
+    watch = python.globals.get("Watch")(dropped);
     return {};
   },
   look(python, { name, content }) {
@@ -27,6 +31,12 @@ const tasks = {
   forget(_, { name }) {
     dropped.forget(name);
     return {};
+  },
+  see(python, { grey, size, full }) {
+    const given = [new Uint8Array(grey), size, full].map((each) => python.toPy(each));
+    const seen = plain(watch.see(...given));
+    given.forEach((each) => each.destroy());
+    return seen;
   },
   calibrate: (_, { lens }) => plain(dropped.calibrate(lens)),
 };
