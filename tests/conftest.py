@@ -36,10 +36,11 @@ ROOT = Path(__file__).resolve().parents[1]
 # one site, another stands between, so that no worker waits while the other builds it.
 LONG = (
     "site_live", "webassembly", "grade", "browser", "catalogue", "site_offline", "site_firefox",
-    "site", "quality", "command_calibrate", "jackknife", "cli", "grade_safety", "corners",
-    "grade_class", "explore", "wheel", "build_notebooks", "board_shape", "synthetic", "executors",
-    "start", "charuco", "exercises_sandbox",
+    "site", "site_access", "quality", "command_calibrate", "jackknife", "cli", "grade_safety",
+    "corners", "grade_class", "explore", "wheel", "build_notebooks", "board_shape", "synthetic",
+    "executors", "start", "charuco", "exercises_sandbox",
 )  # fmt: skip
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 OF_CHROMIUM = [
     "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-quic", "--no-first-run",
     "--disable-sync", "--disable-background-networking", "--disable-component-update",
@@ -146,12 +147,11 @@ def live_site(live_folder):
 @pytest.fixture(scope="module")
 def chromium():
     """Give a browser that knows no other machine and whose camera is a test picture that moves."""
-    program = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
-    if program is None:
+    if CHROMIUM is None:
         pytest.skip("no Chromium on this machine")
     sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
     with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=OF_CHROMIUM)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OF_CHROMIUM)
         yield browser
         browser.close()
 

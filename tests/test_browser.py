@@ -348,6 +348,7 @@ def test_an_exploration_follows_the_keyboard_and_does_not_lag_behind(page, cours
 
 
 def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, course, tmp_path):
+    expect = pytest.importorskip("playwright.sync_api").expect
     cells = _open_and_run(page, course[1], "saved.ipynb")
     for name, label, moved in (
         ("homography", "corner 1, top left", ("corner 1 u", "corner 1 v")),
@@ -369,7 +370,7 @@ def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, course,
         page.mouse.move(x - 15, y - 12, steps=4)
         page.mouse.move(x - 30, y - 24, steps=4)
         for readout, start in zip(readouts, before, strict=True):
-            sync_api.expect(readout).not_to_have_text(start)
+            expect(readout).not_to_have_text(start)
         page.mouse.up()
         page.wait_for_timeout(600)
         if name != "camera":  # it stays under the hand
@@ -380,7 +381,7 @@ def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, course,
     for _ in range(5):  # quicker than pictures are drawn; the notebook keeps its cell
         page.keyboard.press("ArrowDown")
     readout = output.locator(".widget-slider", has_text="corner 3 v").locator(".widget-readout")
-    sync_api.expect(readout).to_have_text("7")  # 5 px of the page
+    expect(readout).to_have_text("7")  # 5 px of the page
     _shut_down(page)
 
 

@@ -4,17 +4,10 @@ Pages on which Python is awake are checked where they are: with exercises answer
 test_site_live.py, with photographs dropped in test_site_offline.py.
 """
 
-import shutil
-
 import pytest
 from accessible import violations
 
-pytestmark = pytest.mark.slow
-
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
-if CHROMIUM is None:
-    pytest.skip("no Chromium on this machine", allow_module_level=True)
-sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 # What has the focus: its kind and its name, how it is seen to have it, and whether it can be seen.
 FOCUSED = """() => {
@@ -32,11 +25,10 @@ FOCUSED = """() => {
 
 
 @pytest.fixture(scope="module")
-def page():
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield browser.new_page(viewport={"width": 1400, "height": 900})
-        browser.close()
+def page(chromium):
+    context = chromium.new_context(viewport={"width": 1400, "height": 900})
+    yield context.new_page()
+    context.close()
 
 
 @pytest.mark.parametrize("name", ["index", "reference/homography"])
