@@ -264,7 +264,7 @@
   // The whole picture of now, as it would be kept.
   function picture() {
     const canvas = new OffscreenCanvas(video.videoWidth, video.videoHeight);
-    canvas.getContext("2d", { alpha: false }).drawImage(video, 0, 0);
+    canvas.getContext("2d").drawImage(video, 0, 0);
     return canvas;
   }
 
