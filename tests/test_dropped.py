@@ -72,7 +72,10 @@ def test_each_photograph_that_cannot_be_used_says_why(dropped, tmp_path):
     }  # fmt: skip
     Image.open(VIEWS[4]).resize((1280, 960)).save(large)
     assert dropped.look(str(large))["used"]
-    table = dropped.calibrate("k1")["table"]
+    answer = dropped.calibrate("k1")
+    assert answer["used"] == [path.name for path in VIEWS[:4]]
+    assert set(answer["unlike"]) == {"large.png"}
+    table = answer["table"]
     assert "1280×960 pixels where most photographs have 640×480" in table
     assert "foreign.jpg" in table
 

@@ -99,9 +99,11 @@ class Dropped:
         Returns
         -------
         dict
-            The ``report`` and the ``table`` of photographs as the command prints them, what is
-            doubtful (``doubts``), whether it is ``reliable``, where the ``next`` photograph should
-            be, the ``parameters`` with value and deviation, and the ``files``: contents by name.
+            The names that were ``used``, and why others were not after all (``unlike``: words by
+            name); the ``report`` and the ``table`` of photographs as the command prints them, what
+            is doubtful (``doubts``), whether it is ``reliable``, where the ``next`` photograph
+            should be, the ``parameters`` with value and deviation, and the ``files``: contents by
+            name.
 
         Raises
         ------
@@ -123,6 +125,8 @@ class Dropped:
         proposal = proposal_of(result, self.board)
         self.known = result, proposal
         return {
+            "used": [photo.path.name for photo in used],
+            "unlike": self._unlike() | {path.name: at.note for path, at in misfits.items()},
             "report": camera_report(result),
             "table": photo_table(names, notes, rejected, result),
             "doubts": doubts(result, examined, names, rejected, self.board),
@@ -139,13 +143,22 @@ class Dropped:
 
     def _of_one_size(self) -> tuple[list[Examined], list[Rejected]]:
         """Give the photographs of the size that most have; the others are refused."""
+        unlike = self._unlike()
+        rejected = list(self.rejected.values())
+        for name, words in unlike.items():
+            if name not in self.rejected:
+                rejected.append(Rejected(printable(name), words))
+        return [p for name, p in self.examined.items() if name not in unlike], rejected
+
+    def _unlike(self) -> dict[str, str]:
+        """Say of each photograph that has not the size of most what size it has."""
         sizes = Counter(photo.size for photo in self.examined.values())
         size = sizes.most_common(1)[0][0] if sizes else (0, 0)
-        rejected = list(self.rejected.values())
-        for name, photo in self.examined.items():
-            if photo.size != size and name not in self.rejected:
-                rejected.append(Rejected(printable(name), _SIZE.format(*photo.size, *size)))
-        return [photo for photo in self.examined.values() if photo.size == size], rejected
+        return {
+            name: _SIZE.format(*photo.size, *size)
+            for name, photo in self.examined.items()
+            if photo.size != size
+        }
 
     def _refuse(self, name: str, reason: str) -> dict[str, Any]:
         self.rejected[name] = Rejected(printable(name), reason)

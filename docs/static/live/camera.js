@@ -162,12 +162,17 @@
   }
 
   function show(shot, { used = false, words, png, corners = [] }) {
-    shot.used = used;
-    shot.corners = corners;
-    shot.item.className = used ? "used" : "refused";
-    const text = [used ? "✓ board found" : "✗ not used", words].filter(Boolean).join(": ");
-    shot.item.querySelector("span").textContent = text;
+    [shot.used, shot.words, shot.corners] = [used, words, corners];
+    tell(shot, used ? "" : words);
     if (png) draw(shot.item.querySelector("canvas"), png, corners);
+  }
+
+  // Say below a photograph whether it is used, or why it is not.
+  function tell(shot, against = "") {
+    const used = shot.used && !against;
+    shot.item.className = used ? "used" : "refused";
+    const text = [used ? "✓ board found" : "✗ not used", against || shot.words].filter(Boolean).join(": ");
+    shot.item.querySelector("span").textContent = text;
   }
 
   async function draw(canvas, png, corners) {
@@ -198,7 +203,8 @@
       } else say(`No camera yet: ${answer.error}.`.replace("..", "."));
       return;
     }
-    say(`The camera is known from ${used} of ${shots.size} photographs.`);
+    say(`The camera is known from ${answer.used.length} of ${shots.size} photographs.`);
+    for (const [name, shot] of shots) if (shot.used) tell(shot, answer.unlike[name]);
     $(".result").hidden = false;
     const verdict = $(".verdict");
     verdict.textContent = answer.reliable
