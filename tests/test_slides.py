@@ -116,6 +116,7 @@ def test_an_exploration_moves_where_the_slides_are_served_and_is_a_picture_in_a_
     assert wrong == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tool", ["build_slides.py", "build_site.py"])
 def test_a_folder_of_somebody_else_is_not_replaced(tool, tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
