@@ -98,7 +98,7 @@ class FisheyeLens:
         """
         slopes = np.zeros(9)
         slopes[::2] = [1.0, *(k * (2 * i + 1) for i, k in enumerate(self.k, 1))]
-        ends = sign_changes(np.polynomial.Polynomial(slopes), np.pi)
+        ends = sign_changes(slopes[::-1], np.pi)
         return min(ends, default=np.pi)
 
     @property
