@@ -7,7 +7,7 @@ power wins. A quotient can level off, as lenses do. It is OpenCV's model with 8 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -319,8 +319,10 @@ def sign_changes(f: Array | list[float], beyond: float) -> list[float]:
     near_real = np.abs(roots.imag) <= 1e-7 * np.abs(roots)
     real = sorted(roots.real[near_real & (roots.real > 0) & (roots.real < beyond)].tolist())
     between = [0.0, *[(a + b) / 2 for a, b in pairwise(real)], beyond]
-    signs = [float(np.sign(np.polyval(np.asarray(f), t))) for t in between]
-    signs = list(accumulate(signs, lambda before, sign: sign or before))  # 0 between equal roots
+    signs = [0.0]
+    for t in between:  # (between two equal roots it is 0: no change)
+        signs.append(float(np.sign(np.polyval(np.asarray(f), t))) or signs[-1])
+    del signs[0]
     return [t for t, (before, after) in zip(real, pairwise(signs), strict=False) if before != after]
 
 
