@@ -39,6 +39,16 @@ def test_every_bar_has_its_name(views):
     assert all(written[a:b].any() for a, b in itertools.pairwise(columns))
 
 
+def test_a_name_with_an_umlaut_can_be_read():
+    def written(text):
+        sheet = Canvas(120, 30)
+        sheet.text((60, 20), text, size=16)
+        return ink(sheet)
+
+    letters = ["a", "ä", "ö", "ü", "é", "ø", "\uffff"]  # the last is of no font
+    assert len({written(letter).tobytes() for letter in letters}) == len(letters)
+
+
 def test_of_many_residuals_the_mean_of_each_place_is_drawn():
     m = np.array([[5.0, 5.0], [7.0, 3.0], [100.0, 100.0]])
     r = np.array([[1.0, 0.0], [3.0, 2.0], [-1.0, 5.0]])

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, chunks
+from cvnotes.base import Array, FileError, chunks
 from cvnotes.base.png import pack_png
 
 # The meanings of the course's figures, and shades of grey.
@@ -226,7 +226,7 @@ def _letters(word: _Word, *, halo: bool = False) -> tuple[Places, Places, Paint]
     """Give the pixels x and y of a word, and how far its letters, or their halo, cover them."""
     from PIL import Image, ImageDraw
 
-    font, anchor = _font(word.size), "ls" if word.upright else word.anchor
+    font, anchor = _font(word.text, word.size), "ls" if word.upright else word.anchor
     left, top, right, bottom = font.getbbox(word.text, anchor=anchor, stroke_width=int(halo))
     left, top = int(left) - 1, int(top) - 1
     label = Image.new("L", (int(right) - left + 2, int(bottom) - top + 2))
@@ -271,11 +271,32 @@ def ticks(low: float, high: float, most: int = 6) -> Array:
     return np.asarray(step * np.arange(first, last + 1) + 0.0)
 
 
+def _font(text: str, size: int) -> Any:
+    """Give a font that has the letters of a text: Pillow's own has no umlauts."""
+    plain = text.translate(_LIGHT).isascii()
+    return _light(size) if plain else _with_accents(size)
+
+
+_LIGHT = str.maketrans("", "", "…°·")  # what Pillow's own has besides ASCII
+
+
 @cache
-def _font(size: int) -> Any:
+def _light(size: int) -> Any:
     from PIL import ImageFont
 
     return ImageFont.load_default(size)
+
+
+@cache
+def _with_accents(size: int) -> Any:
+    from PIL import ImageFont
+
+    from cvnotes.show.explore.lettering import font_file
+
+    try:
+        return ImageFont.truetype(font_file(), size)
+    except (FileError, OSError):
+        return _light(size)
 
 
 def known_runs(m: Array) -> Iterable[Array]:
