@@ -96,6 +96,7 @@ def test_what_the_network_sends_is_kept_only_if_it_is_what_was_published(
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_folder_for_pages_has_the_course_and_a_lock_that_agrees_with_it(published, tmp_path):
     folder = lay_out(published, tmp_path / "python")
     packages = json.loads((folder / "pyodide-lock.json").read_text())["packages"]

@@ -102,6 +102,7 @@ def test_a_board_that_looks_the_same_after_half_a_turn_knows_its_origin():
     assert np.allclose(m, np.array(SIZE) - 1 - known.project(board.points), atol=0.03)
 
 
+@pytest.mark.slow
 def test_from_cut_boards_to_the_camera():
     rng = np.random.default_rng(4)
     eyes = [(-80, -60, -260), (260, -80, -260), (-60, 180, -280), (240, 200, -270),
@@ -135,6 +136,7 @@ def test_another_board_is_named(board, said):
         find_corners(picture, board)
 
 
+@pytest.mark.slow
 def test_without_any_marker_that_is_said():
     with pytest.raises(CornersNotFound, match="not one marker can be read"):
         find_corners(render(Chessboard((9, 6), 25.0), camera([60, 40, -330]), blur=0.7), BOARD)

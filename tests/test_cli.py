@@ -200,6 +200,7 @@ def test_many_photographs_go_on_several_sheets():
 
 
 @pytest.mark.usefixtures("plain")
+@pytest.mark.slow
 def test_lens_and_skew_are_estimated_as_asked(photos, tmp_path, capsys):
     assert calibrate(photos, "--out", tmp_path, "--lens", "k1,k2", "--skew") == 0
     std = json.loads((tmp_path / "calibration.json").read_text())["standard_deviations"]

@@ -42,6 +42,7 @@ def test_what_comes_out_is_what_the_command_writes(dropped, tmp_path, capsys):
     assert ours["standard_deviations"] == theirs["standard_deviations"]
 
 
+@pytest.mark.slow
 def test_without_opencv_the_camera_is_the_same_within_its_error_bars(dropped, monkeypatch):
     for path in VIEWS[:6]:
         dropped.look(str(path))

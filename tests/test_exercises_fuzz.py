@@ -63,6 +63,7 @@ def test_arrays_of_one_thing_and_of_any_shape_get_a_report_and_do_not_pass(name)
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.slow
 def test_constants_of_the_shape_of_each_case_do_not_pass(name):
     exercise, cases = EXERCISES[name], CASES[name]
     if exercise.answer == "value":
@@ -73,6 +74,7 @@ def test_constants_of_the_shape_of_each_case_do_not_pass(name):
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.slow
 def test_one_case_that_goes_wrong_is_enough(name):
     exercise, cases = EXERCISES[name], CASES[name]
     right = [Outcome("numbers", case.right, "float64") for case in cases]

@@ -44,6 +44,7 @@ def test_a_misconception_is_named_with_the_notebooks_own_report():
     )
 
 
+@pytest.mark.slow
 def test_a_stub_is_not_solved_yet_for_every_exercise():
     for name, exercise in EXERCISES.items():
         student = ', student="me"' if exercise.personal else ""

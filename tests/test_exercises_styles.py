@@ -50,6 +50,7 @@ def test_what_is_right_is_right_for_every_seed_and_in_every_style(name):
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.slow
 def test_the_class_says_what_the_notebook_said(name):
     exercise = EXERCISES[name]
     for function in (exercise.reference, *(m.gives for m in exercise.misconceptions)):

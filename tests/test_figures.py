@@ -122,6 +122,7 @@ def test_pixels_have_v_downwards_equal_scales_and_centres_at_integers(name):
     assert ax.get_aspect() == 1
 
 
+@pytest.mark.slow
 def test_drawing_touches_no_global_state():
     code = (
         "import sys, numpy as np, matplotlib\n"

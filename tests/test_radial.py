@@ -111,6 +111,7 @@ tangential = st.floats(-1, 1) | st.floats(-1e-25, 1e-25)
 @given(k=st.lists(coefficient, max_size=4), p=st.tuples(tangential, tangential))
 @example(k=[0.0, 1.25, -1.0], p=(0.0, 7e-29))  # its tiniest root was polished to below 0
 @settings(max_examples=400, deadline=None, derandomize=True)
+@pytest.mark.slow
 def test_every_lens_has_a_fold_or_none_and_is_one_to_one_before_it(k, p):
     lens = Lens(tuple(k), p)
     end = lens.max_radius

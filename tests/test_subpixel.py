@@ -121,6 +121,7 @@ class TestRefineSubpixel:
         m = refine_subpixel(cross((20.3, 19.8)), [[21.4, 19.0]])
         np.testing.assert_allclose(m, [[20.3, 19.8]], atol=5e-3)
 
+    @pytest.mark.slow
     def test_it_is_closer_to_the_truth_than_opencv(self, blurred):
         ours, theirs = [], []
         for image, m in blurred:

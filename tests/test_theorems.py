@@ -1,6 +1,7 @@
 """The theorems of the notes as properties: they hold for whatever hypothesis draws."""
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -248,6 +249,7 @@ def rigs(draw):
 
 @theorem
 @given(rigs(), st.lists(vectors(3, 200), min_size=1, max_size=20).map(np.array))
+@pytest.mark.slow
 def test_rectified_correspondences_share_their_row(rig, W):
     pair = rectify(*rig, size=(64, 48), keep="all")
     assume(min(pair.left.depth(W).min(), pair.right.depth(W).min()) > 500)
@@ -269,6 +271,7 @@ def test_partners_lie_on_each_others_epipolar_lines(rig, W):
 
 @theorem
 @given(rigs(), vectors(3, 200))
+@pytest.mark.slow
 def test_triangulation_undoes_projection(rig, W):
     m = np.stack([camera.project(W) for camera in rig])
     assume(np.isfinite(m).all())

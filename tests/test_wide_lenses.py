@@ -322,6 +322,7 @@ def test_a_quotient_starts_from_what_a_fisheye_came_to():
     assert np.array_equal(found.A, camera.A)
 
 
+@pytest.mark.slow
 def test_a_lens_that_another_beats_is_not_started_over_and_over():
     """All starts of a polynomial end alike with the picture of a fisheye: two of them say so."""
     W, m = seen_by(Camera(intrinsics(200, 200, 320, 240), lens=FisheyeLens((0.01,))), 10)
@@ -350,6 +351,7 @@ def test_a_lens_that_is_too_small_is_never_reliable():
 
 
 @pytest.mark.parametrize("lens", ["k1", "k1 k2", "k1 k2 k3", "k1 k2 p1 p2 k3"])
+@pytest.mark.slow
 def test_few_corners_of_a_fisheye_are_not_believed_to_be_a_pinholes(lens):
     """Boards of 5×4 corners have no long rows in which residuals could be alike."""
     camera = Camera(intrinsics(200, 200, 320, 320), lens=FisheyeLens((-0.01,)), size=(640, 640))
