@@ -83,7 +83,7 @@ def distances(G):
 
 def prediction_rms_with(found, G):
     """How far off a pixel may be with a view more: from a calibration of all its equations."""
-    from cvnotes.calibration.uncertainty import _covariance_at
+    from cvnotes.calibration.prediction import _covariance_at
 
     poses = [*found.poses]
     before, after = (_covariance_at(found, p) for p in (poses, [*poses, G]))

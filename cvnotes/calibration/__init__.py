@@ -6,9 +6,9 @@ from cvnotes.calibration.next_view import NextView, next_view, where_to_hold
 from cvnotes.calibration.one_view import calibrate_one_view
 from cvnotes.calibration.pose import pose_from_view
 from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, resect
+from cvnotes.calibration.prediction import prediction_std, std_with_view
 from cvnotes.calibration.refinement import LENSES
 from cvnotes.calibration.result import Calibration
-from cvnotes.calibration.uncertainty import prediction_std, std_with_view
 from cvnotes.calibration.which_board import choose_board, left_out_rms_of_boards
 from cvnotes.calibration.which_lens import choose_lens, left_out_rms
 from cvnotes.calibration.zhang import (

@@ -14,8 +14,8 @@ from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, point
 from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.jackknife import eliminated_by_view, problem_at
+from cvnotes.calibration.prediction import pixel_jacobian
 from cvnotes.calibration.result import Calibration
-from cvnotes.calibration.uncertainty import pixel_jacobian
 from cvnotes.camera import Camera, rotation_from_vector
 
 _STEEPEST = float(np.radians(50))  # tilt at which corners are still found well
