@@ -117,6 +117,39 @@ DROP = Exercise(
             "x_h[-1] is the last point. The last coordinate of all points is x_h[:, -1:].",
             lambda x_h: x_h[:-1] / x_h[-1],
         ),
+        Misconception(
+            "infinity left out",
+            "Right, but points at infinity are missing: each row has its answer, and theirs is "
+            "NaN.",
+            lambda x_h: _divided(x_h, x_h[:, -1])[x_h[:, -1] != 0],
+        ),
+        Misconception(
+            "negative factors left out",
+            "You gave NaN where the last coordinate is negative. A factor may be negative: (3, 9, "
+            "−3) is the point (−1, −3).",
+            lambda x_h: np.where(x_h[:, -1:] > 0, _divided(x_h, x_h[:, -1]), np.nan),
+        ),
+        Misconception(
+            "one point at infinity spoils all",
+            "One point at infinity made all of them NaN: decide row by row, as np.where does.",
+            lambda x_h: _where_finite(x_h, np.nan) + (0 if x_h[:, -1].all() else np.nan),
+        ),
+        Misconception(
+            "last coordinate subtracted",
+            "You subtracted the last coordinate; it is a factor: divide by it.",
+            lambda x_h: x_h[:, :-1] - x_h[:, -1:],
+        ),
+        Misconception(
+            "divided by the largest",
+            "You divided each row by its largest number; the factor is the last one.",
+            lambda x_h: x_h[:, :-1] / x_h.max(axis=1, keepdims=True),
+            variants=(lambda x_h: x_h[:, :-1] / np.abs(x_h).max(axis=1, keepdims=True),),
+        ),
+        Misconception(
+            "lifted once more",
+            "You appended another coordinate; asked is the way back, one coordinate fewer.",
+            lambda x_h: np.hstack([x_h, np.ones((len(x_h), 1))]),
+        ),
     ),
     reference=from_homogeneous,
     concepts=("5", "8", "E3"),

@@ -101,6 +101,32 @@ LIFT = Exercise(
             "You added w to the coordinates; a factor multiplies them.",
             lambda x, w: to_homogeneous(x) + w,
         ),
+        Misconception(
+            "factor twice",
+            "You appended w first and then multiplied everything by w: the last coordinate is w² "
+            "now. Append 1, or multiply first.",
+            lambda x, w: w * np.hstack([x, np.full((len(x), 1), w)]),
+        ),
+        Misconception(
+            "divided, 1 appended",
+            "You divided by w and appended 1: that is the point (x/w, y/w).",
+            lambda x, w: to_homogeneous(x / w),
+        ),
+        Misconception(
+            "nothing appended",
+            "You multiplied, but appended nothing: the last coordinate w is missing.",
+            lambda x, w: w * x,
+        ),
+        Misconception(
+            "sign of the factor lost",
+            "The factor may be negative: it keeps its sign.",
+            lambda x, w: abs(w) * to_homogeneous(x),
+        ),
+        Misconception(
+            "appended twice",
+            "You appended both w and 1: one coordinate is added.",
+            lambda x, w: np.hstack([w * x, np.full((len(x), 1), w), np.ones((len(x), 1))]),
+        ),
     ),
     reference=lift,
     concepts=("2", "3", "4", "E1"),

@@ -30,6 +30,23 @@ def _slope_form(p: Array, q: Array, sign: float = -1.0) -> Array | None:
     return np.array([m, -1.0, -sign * (p[1] - m * p[0])])
 
 
+def _slope_and_intercept(p: Array, q: Array) -> Array | None:
+    if p[0] == q[0]:
+        return None
+    m = (q[1] - p[1]) / (q[0] - p[0])
+    return np.array([m, p[1] - m * p[0]])
+
+
+def _swapped(x: Array | None) -> Array | None:
+    return None if x is None else x[::-1]
+
+
+def _with_constant(p: Array, q: Array, part: list[int]) -> Array:
+    line = line_through(p, q)
+    line[2] = -line[:2] @ (p * part)
+    return line
+
+
 def _through(p: Array, q: Array, line: Array) -> bool:
     """Tell whether a line that is none of the zero vector contains both points."""
     far = np.abs(to_homogeneous([p, q])) @ np.abs(line)
@@ -117,6 +134,41 @@ LINE = Exercise(
             "constant left out",
             "Your line has the right direction but goes through pixel (0, 0): c is missing.",
             lambda p, q: line_through(p, q) * [1, 1, 0],
+        ),
+        Misconception(
+            "slope and intercept",
+            "That is m and c of y = m x + c, which no upright line has. Asked are three numbers: "
+            "m x − y + c = 0.",
+            _slope_and_intercept,
+            variants=(lambda p, q: _swapped(_slope_and_intercept(p, q)),),
+        ),
+        Misconception(
+            "sign of c",
+            "Your c has the wrong sign: a and b are right, and a x + b y = −c for both points.",
+            lambda p, q: line_through(p, q) * [1, 1, -1],
+        ),
+        Misconception(
+            "sign of a",
+            "Your a has the wrong sign: it is p_y − q_y, if b is q_x − p_x.",
+            lambda p, q: line_through(p, q) * [-1, 1, 1],
+        ),
+        Misconception(
+            "constant of one coordinate",
+            "Your c has only one of its two parts: c = −(a x + b y).",
+            lambda p, q: _with_constant(p, q, [1, 0]),
+            variants=(lambda p, q: _with_constant(p, q, [0, 1]),),
+        ),
+        Misconception(
+            "normal not turned",
+            "(a, b) is q − p here, with the constant of the right line: turn q − p by 90°.",
+            lambda p, q: np.array([*(q - p), line_through(p, q)[2]]),
+        ),
+        Misconception(
+            "Euclidean cross product",
+            "You crossed the points as they are, with two coordinates, which gives one number: "
+            "lift them first.",
+            lambda p, q: p[0] * q[1] - p[1] * q[0],
+            variants=(lambda p, q: q[0] * p[1] - q[1] * p[0],),
         ),
     ),
     reference=line_through,

@@ -33,6 +33,18 @@ def _on_both(x_h: Array, case: Case) -> bool:
     )
 
 
+def _at_infinity(l1: Array, l2: Array, point: Array) -> Array:
+    """Give the right point, but another one for parallel lines."""
+    x_h = np.cross(l1, l2)
+    return point if x_h[2] == 0 else x_h
+
+
+def _products_added(l1: Array, l2: Array, entry: int | None = None) -> Array:
+    """Give the cross product with a plus for its minus, in one entry or in all."""
+    right, added = np.cross(l1, l2), l1[[1, 2, 0]] * l2[[2, 0, 1]] + l1[[2, 0, 1]] * l2[[1, 2, 0]]
+    return added if entry is None else np.where(np.arange(3) == entry, added, right)
+
+
 def _finite(x: Array) -> Array | None:
     return x if np.isfinite(x).all() else None
 
@@ -113,6 +125,66 @@ MEET = Exercise(
                 "was not used."
             ),
             lambda _, l2: np.array([l2[1], -l2[0], 0.0]),
+        ),
+        Misconception(
+            "products added",
+            "The cross product subtracts: b1 c2 − c1 b2, and so on; you added.",
+            lambda l1, l2: _products_added(l1, l2),
+        ),
+        Misconception(
+            "one product added",
+            "In one entry of the cross product you added where it subtracts: (b1 c2 − c1 b2, c1 "
+            "a2 − a1 c2, a1 b2 − b1 a2).",
+            lambda l1, l2: _products_added(l1, l2, 0),
+            variants=(
+                lambda l1, l2: _products_added(l1, l2, 1),
+                lambda l1, l2: _products_added(l1, l2, 2),
+            ),
+        ),
+        Misconception(
+            "sign of the first entry",
+            "The first entry of the cross product has the other sign: b1 c2 − c1 b2.",
+            lambda l1, l2: np.cross(l1, l2) * [-1, 1, 1],
+        ),
+        Misconception(
+            "sign of the last entry",
+            "The last entry of the cross product has the other sign: a1 b2 − b1 a2. So your point "
+            "is mirrored at the origin.",
+            lambda l1, l2: np.cross(l1, l2) * [1, 1, -1],
+        ),
+        Misconception(
+            "x and y exchanged",
+            "You gave (y, x, 1): x comes first.",
+            lambda l1, l2: np.cross(l1, l2)[[1, 0, 2]],
+        ),
+        Misconception(
+            "normal for the direction",
+            "Right, except for parallel lines: they meet in the point at infinity of their "
+            "direction, (b, −a, 0); (a, b) is perpendicular to it.",
+            lambda l1, l2: _at_infinity(l1, l2, np.array([*l1[:2], 0.0])),
+        ),
+        Misconception(
+            "no point for parallel lines",
+            "Right, except for parallel lines: (0, 0, 0) is no point, and (0, 0, 1) is the "
+            "origin. The cross product gives the point at infinity by itself.",
+            lambda l1, l2: _at_infinity(l1, l2, np.zeros(3)),
+            variants=(lambda l1, l2: _at_infinity(l1, l2, np.array([0.0, 0, 1])),),
+        ),
+        Misconception(
+            "infinity in both coordinates",
+            "Right, except for parallel lines: their point has the direction (b, −a, 0), not the "
+            "same for all.",
+            lambda l1, l2: _at_infinity(l1, l2, np.array([1.0, 1, 0])),
+        ),
+        Misconception(
+            "dot product",
+            "l1·l2 is a number; the point that is on both lines is their cross product.",
+            lambda l1, l2: l1 @ l2,
+        ),
+        Misconception(
+            "last coordinate 0",
+            "Every point of yours is at infinity: the last coordinate a1 b2 − b1 a2 is missing.",
+            lambda l1, l2: np.cross(l1, l2) * [1, 1, 0],
         ),
     ),
     reference=meet,

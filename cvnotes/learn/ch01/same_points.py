@@ -27,6 +27,7 @@ def _pairs(rng: Rng) -> list[Case]:
             [0, 3, 1],
             [1, 2, 1],
             [1, 2, 1],
+            [1, 2, 1],
         ]
     )
     b = np.array(
@@ -42,6 +43,7 @@ def _pairs(rng: Rng) -> list[Case]:
             [0, 6, 2],
             [2, 3, 2],
             [3, 1, 2],
+            [1, -1, 1],
         ]
     )
     more = rounded(rng.uniform(-4, 4, (6, 3)), 1)
@@ -53,6 +55,11 @@ def _pairs(rng: Rng) -> list[Case]:
 
 def _unit(x: Array) -> Array:
     return np.asarray(x / np.linalg.norm(x, axis=1, keepdims=True))
+
+
+def _all_infinite_same(a: Array, b: Array) -> Array:
+    far = (a[:, 2] == 0) & (b[:, 2] == 0)
+    return far | np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1)
 
 
 SAME = Exercise(
@@ -138,6 +145,67 @@ SAME = Exercise(
             "the other way round",
             "You say True for points that differ.",
             lambda a, b: 1 - same_points(a, b),
+        ),
+        Misconception(
+            "quotients 0/0",
+            "You compared the quotients a/b, which are 0/0 wherever both have a 0: (0, 3, 1) and "
+            "(0, 6, 2) are the same point. The cross product divides nothing.",
+            lambda a, b: np.isclose(np.ptp(a / b, axis=1), 0),
+            variants=(
+                lambda a, b: (
+                    np.isclose(a[:, 0] / b[:, 0], a[:, 1] / b[:, 1])
+                    & np.isclose(a[:, 1] / b[:, 1], a[:, 2] / b[:, 2])
+                ),
+                lambda a, b: np.isclose(a / b, (a / b)[:, 2:]).all(1),
+            ),
+        ),
+        Misconception(
+            "all points at infinity the same",
+            "You take all points at infinity for one: (1, 2, 0) and (2, 1, 0) are two directions.",
+            _all_infinite_same,
+        ),
+        Misconception(
+            "one answer for all pairs",
+            "You gave one answer for all pairs together; asked is one for each row: all(axis=1).",
+            lambda a, b: bool(same_points(a, b).all()),
+            variants=(
+                lambda a, b: bool(same_points(a, b).any()),
+                lambda a, b: np.allclose(a, b),
+                lambda a, b: np.allclose(np.cross(a, b), 0),
+            ),
+        ),
+        Misconception(
+            "an answer for each number",
+            "You gave an answer for each number; a point is the same if all of its row is: "
+            "all(axis=1).",
+            lambda a, b: np.isclose(np.cross(a, b), 0),
+            variants=(
+                lambda a, b: a == b,
+                lambda a, b: np.isclose(a, b),
+                lambda a, b: np.isclose(a / a[:, 2:], b / b[:, 2:]),
+                lambda a, b: np.isclose(_unit(a), _unit(b)),
+                lambda a, b: np.cross(a, b) == 0,
+            ),
+        ),
+        Misconception(
+            "lengths compared",
+            "You compared lengths: two vectors of one length may lead to two points.",
+            lambda a, b: np.isclose(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)),
+        ),
+        Misconception(
+            "last coordinate alone",
+            "You compared the last coordinates alone.",
+            lambda a, b: np.isclose(a[:, 2], b[:, 2]),
+        ),
+        Misconception(
+            "order of the numbers ignored",
+            "You compared the numbers in any order; which coordinate is which matters.",
+            lambda a, b: np.isclose(np.sort(_unit(a), 1), np.sort(_unit(b), 1)).all(1),
+        ),
+        Misconception(
+            "never the same",
+            "You say that no two points are the same.",
+            lambda a, _: np.zeros(len(a)),
         ),
     ),
     reference=same_points,

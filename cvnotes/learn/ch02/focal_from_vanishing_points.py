@@ -104,6 +104,61 @@ FOCAL = Exercise(
             ("You have the square root of f: the dot product is −f² already, one root is enough."),
             lambda v1, v2, centre: np.sqrt(focal_length(v1, v2, centre)),
         ),
+        Misconception(
+            "entry by entry",
+            "* multiplies entry by entry and gives two numbers; the dot product is (v1 − centre) "
+            "@ (v2 − centre).",
+            lambda v1, v2, centre: np.sqrt(-(v1 - centre) * (v2 - centre)),
+            variants=(
+                lambda v1, v2, centre: -(v1 - centre) * (v2 - centre),
+                lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre) * (v2 - centre))),
+            ),
+        ),
+        Misconception(
+            "rows only",
+            "You multiplied the rows only; the dot product has the columns too.",
+            lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre)[1] * (v2 - centre)[1])),
+        ),
+        Misconception(
+            "absolute values added",
+            "You added the absolute values of both products; in the dot product their signs count.",
+            lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre) * (v2 - centre)).sum()),
+        ),
+        Misconception(
+            "one distance alone",
+            "That is how far one vanishing point is from the principal point; f needs both.",
+            lambda v1, v2, centre: np.linalg.norm(v1 - centre),
+            variants=(lambda v1, v2, centre: np.linalg.norm(v2 - centre),),
+        ),
+        Misconception(
+            "mean of the distances",
+            "You took a mean of the two distances from the principal point; it is their dot "
+            "product that is −f².",
+            lambda v1, v2, centre: (np.linalg.norm(v1 - centre) + np.linalg.norm(v2 - centre)) / 2,
+        ),
+        Misconception(
+            "centre added",
+            "You added the principal point; measure from it: v − centre.",
+            lambda v1, v2, centre: np.sqrt(np.abs((v1 + centre) @ (v2 + centre))),
+        ),
+        Misconception(
+            "cross product",
+            "You took the cross product, which is 0 for parallel vectors; perpendicular rays have "
+            "a dot product of 0.",
+            lambda v1, v2, centre: np.sqrt(np.abs(np.linalg.det([v1 - centre, v2 - centre]))),
+            variants=(lambda v1, v2, centre: np.linalg.det([v1 - centre, v2 - centre]),),
+        ),
+        Misconception(
+            "sign and root",
+            "That is −f²: change the sign, then take the root.",
+            lambda v1, v2, centre: (v1 - centre) @ (v2 - centre),
+        ),
+        Misconception(
+            "distance from the middle",
+            "That is how far the principal point is from the middle between the two vanishing "
+            "points.",
+            lambda v1, v2, centre: np.linalg.norm((v1 + v2) / 2 - centre),
+        ),
     ),
     reference=focal_length,
     concepts=("13", "20"),

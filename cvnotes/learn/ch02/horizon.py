@@ -4,11 +4,13 @@
 # ruff: noqa: ARG005
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, pose
 from cvnotes.camera import horizon as library_horizon
 from cvnotes.learn.cases.cameras import (
+    ABOUT_X,
     ABOUT_Y,
     TIDY_A,
     rounded,
@@ -35,6 +37,11 @@ def _ends_there(line: Array, case: Case) -> bool:
     )
 
 
+def _joined(A: Array, R: Array, d1: npt.ArrayLike, d2: npt.ArrayLike) -> Array:
+    """Give the line through the vanishing points of two directions."""
+    return np.cross(A @ R @ np.asarray(d1), A @ R @ np.asarray(d2))
+
+
 HORIZON = Exercise(
     name="horizon",
     chapter=2,
@@ -58,9 +65,19 @@ HORIZON = Exercise(
                 rounded(rng.uniform(0.3, 1, 3) * rng.choice([-1, 1], 3)),
             )
         ),
+        # the ground, and walls: whoever needs a direction in the plane must find one for these too
+        *(
+            Case((TIDY_A, ABOUT_X @ ABOUT_Y, np.array(n)), about="along an axis")
+            for n in ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0])
+        ),
     ],
     properties=(
         Property("The vanishing points of directions in the plane lie on it.", _ends_there),
+        Property(
+            "That is so for the ground and for walls, whose normal is an axis, too.",
+            _ends_there,
+            about="along an axis",
+        ),
     ),
     misconceptions=(
         Misconception(
@@ -121,6 +138,54 @@ HORIZON = Exercise(
             "n itself",
             "That is the normal itself, in the world: R and A are missing.",
             lambda A, R, n: n,
+        ),
+        Misconception(
+            "directions that vanish",
+            "Right, unless n is an axis: n × that axis is 0, and no direction. Choose the axes by "
+            "n, or use A⁻ᵀ R n.",
+            lambda A, R, n: _joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 1, 0])),
+            variants=(
+                lambda A, R, n: _joined(A, R, np.cross(n, [0, 1, 0]), np.cross(n, [0, 0, 1])),
+                lambda A, R, n: _joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 0, 1])),
+            ),
+        ),
+        Misconception(
+            "the horizon of an axis",
+            "You joined the vanishing points of two axes; the directions must lie in the plane "
+            "with normal n.",
+            lambda A, R, n: _joined(A, R, [1, 0, 0], [0, 1, 0]),
+            variants=(
+                lambda A, R, n: _joined(A, R, [0, 1, 0], [0, 0, 1]),
+                lambda A, R, n: _joined(A, R, [1, 0, 0], [0, 0, 1]),
+            ),
+        ),
+        Misconception(
+            "everything inverted",
+            "You have Rᵀ A⁻¹ n: n·(Rᵀ A⁻¹ m̃) = 0 is (A⁻ᵀ R n)·m̃ = 0.",
+            lambda A, R, n: np.linalg.inv(A @ R) @ n,
+            variants=(lambda A, R, n: np.linalg.inv(A) @ R.T @ n,),
+        ),
+        Misconception(
+            "everything transposed",
+            "You have the transpose of A R without its inverse: l = A⁻ᵀ R n.",
+            lambda A, R, n: (A @ R).T @ n,
+            variants=(lambda A, R, n: A.T @ R.T @ n,),
+        ),
+        Misconception(
+            "A R transposed",
+            "You used A Rᵀ n: a point, and with the rotation the wrong way round. l = A⁻ᵀ R n.",
+            lambda A, R, n: A @ R.T @ n,
+        ),
+        Misconception(
+            "transpose for inverse, nothing turned",
+            "You used Aᵀ n: the inverse and the rotation are missing.",
+            lambda A, R, n: A.T @ n,
+        ),
+        Misconception(
+            "the line at infinity",
+            "(0, 0, 1) is the line at infinity of the picture; the horizon is its image, and of "
+            "the plane.",
+            lambda A, R, n: np.array([0.0, 0, 1]),
         ),
     ),
     reference=horizon,

@@ -149,6 +149,50 @@ VANISHING = Exercise(
             ),
             lambda A, R, d: centre_divided_too(A, R @ d),
         ),
+        Misconception(
+            "everything transposed",
+            "A and R are both transposed: for a single column it is A @ R @ d.",
+            lambda A, R, d: _seen(A.T @ R.T @ d),
+            variants=(lambda A, R, d: _seen(R.T @ A.T @ d),),
+        ),
+        Misconception(
+            "A inverted",
+            "You used A⁻¹, which leads from pixels to rays: m̃ ≈ A R d.",
+            lambda A, R, d: _seen(np.linalg.inv(A) @ R @ d),
+            variants=(lambda A, R, d: _seen(R.T @ np.linalg.inv(A) @ d),),
+        ),
+        Misconception(
+            "nothing but d",
+            "That is d itself, divided by its third coordinate: R and A are missing.",
+            lambda A, R, d: _seen(d),
+        ),
+        Misconception(
+            "x and y of the direction only",
+            "You used the first two coordinates of the direction as they are: divide by the third.",
+            lambda A, R, d: (R @ d)[:2] * A[[0, 1], [0, 1]] + A[:2, 2],
+            variants=(lambda A, R, d: A[:2, :2] @ (R @ d)[:2] + A[:2, 2],),
+        ),
+        Misconception(
+            "u and v exchanged",
+            "You gave (v, u), row before column.",
+            lambda A, R, d: _seen(A @ R @ d)[::-1],
+        ),
+        Misconception(
+            "v counted upwards",
+            "Your v runs upwards; rows count downwards, as y does.",
+            lambda A, R, d: _seen(A @ np.diag([1, -1, 1]) @ R @ d),
+        ),
+        Misconception(
+            "mirrored",
+            "Your point is mirrored at the principal point: the sign of x/z and y/z is wrong.",
+            lambda A, R, d: 2 * A[:2, 2] - _seen(A @ R @ d),
+        ),
+        Misconception(
+            "principal point for infinity",
+            "Right, except for lines parallel to the image plane: they do not end in the "
+            "principal point. NaN is asked.",
+            lambda A, R, d: _seen(A @ R @ d) if (R @ d)[2] else A[:2, 2],
+        ),
     ),
     reference=vanishing_point,
     concepts=("5", "13", "14", "E5", "E6"),

@@ -14,6 +14,12 @@ def where_the_rails_meet() -> Array:
     return rails_camera().vanishing_point([0, 0, 1])
 
 
+def _rail(side: int) -> Array:
+    """Give the pixel in which the rail on one side, −1 or 1, leaves the picture below."""
+    end, near = where_the_rails_meet(), rails_camera().project([750.0 * side, 1600.0, 9000.0])
+    return np.asarray(end + (near - end) * (479 - end[1]) / (near[1] - end[1]))
+
+
 RAILS = Exercise(
     name="where_the_rails_meet",
     chapter=2,
@@ -29,7 +35,14 @@ RAILS = Exercise(
     cases=lambda _: [Case(())],
     properties=(Property("It is the pixel in which the rails meet, to within 12 pixels."),),
     misconceptions=(
-        *misreadings(where_the_rails_meet, (640, 480)),
+        Misconception(
+            "the picture of chapter 1",
+            "That is where the rails meet in the picture of chapter 1, by the course's camera, "
+            "which "
+            "looks along them. Look at rails_picture().",
+            lambda: np.array([325.0, 238.0]),
+            same=within(2.0),
+        ),
         Misconception(
             "the middle of the picture",
             "That is the middle of the picture. Rails end there only if the camera looks exactly "
@@ -37,11 +50,24 @@ RAILS = Exercise(
             lambda: np.array([319.5, 239.5]),
         ),
         Misconception(
+            "on the middle row",
+            "The column is right; but the camera is lowered, so that the horizon is not the "
+            "middle row.",
+            lambda: np.array([where_the_rails_meet()[0], 239.5]),
+        ),
+        Misconception(
+            "where the rails begin",
+            "That is where a rail, or both, leave the picture below: they meet at the other end.",
+            lambda: _rail(-1),
+            variants=(lambda: _rail(1), lambda: (_rail(-1) + _rail(1)) / 2),
+        ),
+        Misconception(
             "on the middle column",
             "The height of the horizon is right; but the camera is turned sideways, so that the "
             "rails do not end in the middle column.",
             lambda: np.array([319.5, where_the_rails_meet()[1]]),
         ),
+        *misreadings(where_the_rails_meet, (640, 480), 12.0),
     ),
     reference=where_the_rails_meet,
     same=within(12.0),

@@ -102,6 +102,73 @@ CHAIN = Exercise(
             "The rotation is right; the translation is missing.",
             lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, np.zeros(3)),
         ),
+        Misconception(
+            "both inverted",
+            "You inverted both motions, or G1 in place of G2: cam1_from_board stays, "
+            "board_from_cam2 is the inverse of G2.",
+            lambda G1, G2: np.linalg.inv(G1) @ np.linalg.inv(G2),
+            variants=(lambda G1, G2: np.linalg.inv(G2) @ np.linalg.inv(G1),),
+        ),
+        Misconception(
+            "entry by entry",
+            "* multiplies entry by entry; motions are chained by @.",
+            lambda G1, G2: G1 * np.linalg.inv(G2),
+            variants=(
+                lambda G1, G2: np.linalg.inv(G2) * G1.T,
+                lambda G1, G2: G1 * G2,
+            ),
+        ),
+        Misconception(
+            "divided entry by entry",
+            "G1 / G2 divides entry by entry; the inverse of a motion is np.linalg.inv.",
+            lambda G1, G2: G1 / G2,
+        ),
+        Misconception(
+            "rotation only",
+            "The rotation is right; asked is the whole motion (4, 4).",
+            lambda G1, G2: G1[:3, :3] @ G2[:3, :3].T,
+        ),
+        Misconception(
+            "last row left out",
+            "A motion is (4, 4): (0, 0, 0, 1) is missing below.",
+            lambda G1, G2: (G1 @ np.linalg.inv(G2))[:3],
+        ),
+        Misconception(
+            "sign of the translation",
+            "The rotation is right. The translation is T1 − R T2, with R = R1 R2ᵀ.",
+            lambda G1, G2: pose(
+                G1[:3, :3] @ G2[:3, :3].T, G1[:3, 3] + G1[:3, :3] @ G2[:3, :3].T @ G2[:3, 3]
+            ),
+            variants=(
+                lambda G1, G2: pose(
+                    G1[:3, :3] @ G2[:3, :3].T, G1[:3, :3] @ G2[:3, :3].T @ G2[:3, 3] - G1[:3, 3]
+                ),
+            ),
+        ),
+        Misconception(
+            "translations subtracted the other way",
+            "The rotation is right, but translations cannot just be subtracted, and T1 comes "
+            "first: T1 − R T2.",
+            lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G2[:3, 3] - G1[:3, 3]),
+        ),
+        Misconception(
+            "translations added",
+            "The rotation is right; the translation is T1 − R T2, with R = R1 R2ᵀ.",
+            lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G1[:3, 3] + G2[:3, 3]),
+        ),
+        Misconception(
+            "T2 not turned by the whole rotation",
+            "The rotation is right. T2 has to be turned by R1 R2ᵀ: T1 − R1 R2ᵀ T2.",
+            lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G1[:3, 3] - G2[:3, :3].T @ G2[:3, 3]),
+        ),
+        Misconception(
+            "rotations in the other order",
+            "The rotations are in the wrong order: R1 R2ᵀ, as first camera 2 is left.",
+            lambda G1, G2: pose(
+                G2[:3, :3].T @ G1[:3, :3], G1[:3, 3] - G2[:3, :3].T @ G1[:3, :3] @ G2[:3, 3]
+            ),
+            variants=(lambda G1, G2: pose(G2[:3, :3].T @ G1[:3, :3], G1[:3, 3] - G2[:3, 3]),),
+        ),
     ),
     reference=cam1_from_cam2,
     same=same_motion,

@@ -79,6 +79,42 @@ CENTRE = Exercise(
             "That is the camera's z axis in the world; its centre follows from T.",
             lambda R, T: R[2],
         ),
+        Misconception(
+            "T moved, not turned",
+            "You subtracted T and R one by one; R C + T = 0 is solved by C = −Rᵀ T.",
+            lambda R, T: -R.T @ T - T,
+            variants=(lambda R, T: T - R.T @ T,),
+        ),
+        Misconception(
+            "the origin",
+            "(0, 0, 0) is the centre in the camera's own frame; asked is where it is in the world.",
+            lambda R, T: np.zeros(3),
+        ),
+        Misconception(
+            "z axis in the world's frame",
+            "R[:, 2] is the world's z axis, seen by the camera.",
+            lambda R, T: R[:, 2],
+        ),
+        Misconception(
+            "distance of the camera",
+            "That is how far the camera is from the world's origin; asked are three coordinates.",
+            lambda R, T: np.linalg.norm(T),
+        ),
+        Misconception(
+            "homogeneous centre",
+            "The centre is right, with a 1 too many: leave it out.",
+            lambda R, T: np.append(-R.T @ T, 1.0),
+        ),
+        Misconception(
+            "R * T",
+            "* multiplies entry by entry: R.T @ T.",
+            lambda R, T: -R.T * T,
+            variants=(
+                lambda R, T: -R * T,
+                lambda R, T: R * T,
+                lambda R, T: R.T * T,
+            ),
+        ),
     ),
     reference=camera_centre,
     concepts=("22", "24", "E11"),

@@ -123,6 +123,81 @@ FIELD = Exercise(
             ),
             lambda A, width: np.degrees(2 * np.arctan(width / 2 / A[0, 0])),
         ),
+        Misconception(
+            "arcsin for arctan",
+            "The side along the picture and the focal length enclose the right angle: arctan, not "
+            "arcsin.",
+            lambda A, width: (
+                np.arcsin((A[0, 2] + 0.5) / A[0, 0]) + np.arcsin((width - 0.5 - A[0, 2]) / A[0, 0])
+            ),
+        ),
+        Misconception(
+            "tangent for arctan",
+            "tan gives the tangent of an angle; asked is the angle: arctan.",
+            lambda A, width: (
+                np.tan((A[0, 2] + 0.5) / A[0, 0]) + np.tan((width - 0.5 - A[0, 2]) / A[0, 0])
+            ),
+        ),
+        Misconception(
+            "focal length in the numerator",
+            "You turned the fraction around: arctan(pixels / α_u).",
+            lambda A, width: (
+                np.arctan(A[0, 0] / (A[0, 2] + 0.5)) + np.arctan(A[0, 0] / (width - 0.5 - A[0, 2]))
+            ),
+            variants=(
+                lambda A, width: 2 * np.arctan(2 * A[0, 0] / width),
+                lambda A, width: 2 * np.arctan(A[0, 0] / (width / 2)),
+            ),
+        ),
+        Misconception(
+            "the row of the principal point",
+            "You took v0 for u0: horizontal angles go with u0 = A[0, 2].",
+            lambda A, width: (
+                np.arctan((A[1, 2] + 0.5) / A[0, 0]) + np.arctan((width - 0.5 - A[1, 2]) / A[0, 0])
+            ),
+        ),
+        Misconception(
+            "half a pixel the wrong way",
+            "The borders are half a pixel outside of the first and last pixel centres: −½ and "
+            "width − ½.",
+            lambda A, width: _to_the_sides(A, 0.5, width - 1.5),
+            variants=(lambda A, width: _to_the_sides(A, 0.5, width + 0.5),),
+        ),
+        Misconception(
+            "from 0 to the last pixel's border",
+            "Nearly: one border is half a pixel off. They are u = −½ and u = width − ½.",
+            lambda A, width: _to_the_sides(A, 0, width - 0.5),
+            variants=(
+                lambda A, width: _to_the_sides(A, -0.5, width),
+                lambda A, width: _to_the_sides(A, -0.5, width - 1),
+                lambda A, width: _to_the_sides(A, -0.5, width + 0.5),
+            ),
+        ),
+        Misconception(
+            "twice one side",
+            "You took one side twice; the principal point is not in the middle.",
+            lambda A, width: 2 * np.arctan((A[0, 2] + 0.5) / A[0, 0]),
+            variants=(
+                lambda A, width: 2 * np.arctan((width - 0.5 - A[0, 2]) / A[0, 0]),
+                lambda A, width: 2 * np.arctan(A[0, 2] / A[0, 0]),
+            ),
+        ),
+        Misconception(
+            "the middle, half a pixel off",
+            "The principal point need not be in the middle: take the two sides one by one.",
+            lambda A, width: 2 * np.arctan((width - 1) / 2 / A[0, 0]),
+        ),
+        Misconception(
+            "both focal lengths",
+            "You took a mean of α_u and α_v; horizontal angles go with α_u.",
+            lambda A, width: _to_the_sides(A, -0.5, width - 0.5, alpha=(A[0, 0] + A[1, 1]) / 2),
+        ),
+        Misconception(
+            "sides one by one, in degrees",
+            "In degrees, and with borders at 0 and width: asked are radians, and −½ to width − ½.",
+            lambda A, width: np.degrees(_to_the_sides(A, 0, width)),
+            variants=(lambda A, width: np.degrees(_to_the_sides(A, 0, width - 1)),),
+        ),
     ),
     reference=field_of_view,
     concepts=("18", "20", "E7", "E45"),

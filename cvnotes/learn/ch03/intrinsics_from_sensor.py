@@ -119,6 +119,72 @@ INTRINSICS = Exercise(
             "That is A⁻¹, which leads from pixels to rays.",
             lambda f, du, dv, u0, v0: np.linalg.inv(_matrix(f / du, f / dv, u0, v0)),
         ),
+        Misconception(
+            "v upwards",
+            "α_v has the wrong sign: rows count downwards, as y does in the camera's frame.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, -f / dv, u0, v0),
+        ),
+        Misconception(
+            "dv for both",
+            "You took dv for both directions; the width of a pixel is du.",
+            lambda f, du, dv, u0, v0: _matrix(f / dv, f / dv, u0, v0),
+        ),
+        Misconception(
+            "one pixel size for both",
+            "You took one focal length for both directions; pixels need not be square.",
+            lambda f, du, dv, u0, v0: _matrix(2 * f / (du + dv), 2 * f / (du + dv), u0, v0),
+            variants=(
+                lambda f, du, dv, u0, v0: _matrix(
+                    (f / du + f / dv) / 2, (f / du + f / dv) / 2, u0, v0
+                ),
+            ),
+        ),
+        Misconception(
+            "principal point in millimetres",
+            "u0 and v0 stay in pixels: A takes rays to pixels.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0 * du, v0 * dv),
+            variants=(lambda f, du, dv, u0, v0: _matrix(f, f, u0 * du, v0 * dv),),
+        ),
+        Misconception(
+            "in metres",
+            "f and du are both in millimetres: their quotient needs no 1000.",
+            lambda f, du, dv, u0, v0: _matrix(f / du / 1000, f / dv / 1000, u0, v0),
+            variants=(lambda f, du, dv, u0, v0: _matrix(1000 * f / du, 1000 * f / dv, u0, v0),),
+        ),
+        Misconception(
+            "a skew where none is",
+            "There is no skew: A[0, 1] = 0.",
+            lambda f, du, dv, u0, v0: (
+                _matrix(f / du, f / dv, u0, v0) + [[0, 1, 0], [0, 0, 0], [0, 0, 0]]
+            ),
+        ),
+        Misconception(
+            "last column left out",
+            "u0 and v0 stand in a third column: A is (3, 3).",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0)[:, :2],
+        ),
+        Misconception(
+            "last row left out",
+            "A is (3, 3): its last row is (0, 0, 1).",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0)[:2],
+        ),
+        Misconception(
+            "pixel sizes left out",
+            "You have f in the place of both, and the pixel sizes in that of the 1 or of the "
+            "zeros: α_u = f / du.",
+            lambda f, du, dv, u0, v0: _matrix(du, dv, u0, v0),
+        ),
+        Misconception(
+            "f in the last entry",
+            "The last entry of A is 1; f is in α_u and α_v already.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0) + np.diag([0, 0, f - 1]),
+        ),
+        Misconception(
+            "half a pixel",
+            "u0 and v0 are given in pixels whose centres are whole numbers: nothing is added.",
+            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0 + 0.5, v0 + 0.5),
+            variants=(lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0 - 0.5, v0 - 0.5),),
+        ),
     ),
     reference=intrinsics_from_sensor,
     concepts=("17", "18", "19", "20", "E8"),

@@ -47,6 +47,29 @@ def _turned_around(M: Array, i: int) -> Array:
     return U @ Vt
 
 
+def _rq(M: Array, proper: bool = False) -> Array:
+    """Give the rotation of M = upper triangle @ rotation, diagonal positive."""
+    from scipy.linalg import rq
+
+    U, Q = rq(M)
+    Q = np.sign(np.diag(U))[:, None] * Q if proper else Q
+    return np.asarray(Q)
+
+
+def _proper(Q: Array) -> Array:
+    return np.asarray(Q if np.linalg.det(Q) > 0 else Q * [1, 1, -1])
+
+
+def _crossed(M: Array) -> Array:
+    return np.column_stack([M[:, 0], M[:, 1], np.cross(M[:, 0], M[:, 1])])
+
+
+def _last_column_turned(M: Array) -> Array:
+    U, Vt = _left(M)
+    R = U @ Vt
+    return np.asarray(R * [1, 1, np.linalg.det(R)])
+
+
 NEAREST = Exercise(
     name="nearest_rotation",
     chapter=3,
@@ -159,6 +182,69 @@ NEAREST = Exercise(
                 "is −1 it has to be."
             ),
             lambda M: _left(M)[0] @ np.diag([1, 1, -1]) @ _left(M)[1],
+        ),
+        Misconception(
+            "RQ",
+            "R of the RQ decomposition belongs to a camera's matrix A R; it favours the last row "
+            "of M, and is not the nearest rotation.",
+            lambda M: _rq(M),
+            variants=(lambda M: _rq(M, True),),
+        ),
+        Misconception(
+            "Gram and Schmidt, turned",
+            "That is a rotation, by QR with the signs set right. But it favours the first column: "
+            "it is not the nearest.",
+            lambda M: _proper(_gram_schmidt(M)),
+        ),
+        Misconception(
+            "cross product of the first two columns",
+            "You made r3 = r1 × r2 of the first columns as they are: they are neither of length 1 "
+            "nor perpendicular.",
+            lambda M: np.column_stack([M[:, 0], M[:, 1], np.cross(M[:, 0], M[:, 1])]),
+            variants=(lambda M: _crossed(M / np.linalg.norm(M, axis=0)),),
+        ),
+        Misconception(
+            "Vt alone",
+            "That is one of the two rotations of the SVD: the product U Vᵀ is asked.",
+            lambda M: _left(M)[1],
+            variants=(
+                lambda M: _left(M)[0],
+                lambda M: _left(M)[1].T,
+            ),
+        ),
+        Misconception(
+            "order of U and Vt",
+            "You multiplied in the wrong order: U @ Vt.",
+            lambda M: _left(M)[1] @ _left(M)[0],
+            variants=(lambda M: _left(M)[1].T @ _left(M)[0],),
+        ),
+        Misconception(
+            "first two singular values kept",
+            "You set some singular values to 1, or 0, but not all to 1: U diag(1, 1, ±1) Vᵀ.",
+            lambda M: _left(M)[0] @ np.diag([1, 1, 0]) @ _left(M)[1],
+        ),
+        Misconception(
+            "divided by the length of M",
+            "Dividing by one number makes no rotation: the columns have to be orthonormal.",
+            lambda M: M / np.linalg.norm(M),
+            variants=(
+                lambda M: M / np.linalg.norm(M, 2),
+                lambda M: M / np.sqrt((M**2).sum() / 3),
+                lambda M: M / np.linalg.det(M),
+            ),
+        ),
+        Misconception(
+            "the average of M and its inverse",
+            "One step of averaging with the inverse transpose comes nearer to a rotation, but has "
+            "to be repeated until nothing changes.",
+            lambda M: (M + np.linalg.inv(M).T) / 2,
+        ),
+        Misconception(
+            "the last column turned around",
+            "You turned around the last column of the result, not of U: that is another rotation. "
+            "R = U diag(1, 1, det(U Vᵀ)) Vᵀ.",
+            lambda M: _last_column_turned(M),
+            variants=(lambda M: _last_column_turned(M.T).T,),
         ),
     ),
     reference=nearest_rotation,

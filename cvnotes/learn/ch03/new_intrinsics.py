@@ -155,6 +155,84 @@ NEW = Exercise(
             "You divided by s: a smaller picture, s < 1, has a smaller focal length in pixels.",
             lambda A, corner, s: new_intrinsics(A, corner, 1 / s),
         ),
+        Misconception(
+            "half a pixel subtracted only",
+            "You subtracted ½ at the end and did not add it before scaling: u + ½ is what is "
+            "scaled.",
+            lambda A, corner, s: _changed(A, corner, s, shift=0.0) - _only_centre(0.5),
+        ),
+        Misconception(
+            "half a pixel added at the end",
+            "You added ½ at the end; it is added before scaling and subtracted after it.",
+            lambda A, corner, s: _changed(A, corner, s, shift=0.0) + _only_centre(0.5),
+        ),
+        Misconception(
+            "one direction only",
+            "s scales both directions: α_v and v0 as well as α_u and u0.",
+            lambda A, corner, s: np.vstack(
+                [new_intrinsics(A, corner, s)[0], new_intrinsics(A, corner, 1.0)[1:]]
+            ),
+            variants=(
+                lambda A, corner, s: np.vstack(
+                    [new_intrinsics(A, corner, 1.0)[0], new_intrinsics(A, corner, s)[1:]]
+                ),
+            ),
+        ),
+        Misconception(
+            "principal point kept",
+            "The focal lengths are right. The principal point moves too: by the crop, then by the "
+            "scaling.",
+            lambda A, corner, s: np.column_stack([new_intrinsics(A, corner, s)[:, :2], A[:, 2]]),
+        ),
+        Misconception(
+            "principal point not scaled",
+            "The focal lengths are right, and the crop. What is left is scaled: the principal "
+            "point too.",
+            lambda A, corner, s: np.column_stack(
+                [new_intrinsics(A, corner, s)[:, :2], new_intrinsics(A, corner, 1.0)[:, 2]]
+            ),
+        ),
+        Misconception(
+            "corner scaled only",
+            "You scaled the corner, but not the principal point: u0 − left is scaled as a whole.",
+            lambda A, corner, s: np.column_stack(
+                [new_intrinsics(A, corner, s)[:, :2], A[:, 2] - [*(s * corner), 0]]
+            ),
+        ),
+        Misconception(
+            "nothing changed",
+            "That is A as it was.",
+            lambda A, *_: A,
+        ),
+        Misconception(
+            "corner added after scaling",
+            "You scaled first, and added the corner: it is subtracted, before.",
+            lambda A, corner, s: new_intrinsics(A, 0 * corner, s) + _only_centre(*corner),
+        ),
+        Misconception(
+            "crop after scaling, half a pixel forgotten",
+            "You scaled first, and u0 itself: the corner is a pixel of the old picture, "
+            "subtracted before, and u + ½ is what is scaled.",
+            lambda A, corner, s: _changed(A, 0 * corner, s, shift=0.0) - _only_centre(*corner),
+        ),
+        Misconception(
+            "divided by s",
+            "You divided by s in part: focal lengths and principal point are multiplied.",
+            lambda A, corner, s: np.column_stack(
+                [new_intrinsics(A, corner, 1 / s)[:, :2], new_intrinsics(A, corner, s)[:, 2]]
+            ),
+            variants=(
+                lambda A, corner, s: np.column_stack(
+                    [new_intrinsics(A, corner, s)[:, :2], new_intrinsics(A, corner, 1 / s)[:, 2]]
+                ),
+            ),
+        ),
+        Misconception(
+            "skew lost, half a pixel forgotten",
+            "You lost the skew A[0, 1], which is scaled by s, and scaled u0 itself: u + ½ is what "
+            "is scaled.",
+            lambda A, corner, s: _changed(A, corner, s, shift=0.0, skew=0.0),
+        ),
     ),
     reference=new_intrinsics,
     concepts=("18", "19", "21", "i", "E45"),

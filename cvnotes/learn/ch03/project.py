@@ -19,6 +19,7 @@ from cvnotes.learn.cases.cameras import (
 )
 from cvnotes.learn.cases.slips import centre_divided_too
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.projective import from_homogeneous
 
 
 def project(A: Array, R: Array, T: Array, W: Array) -> Array:
@@ -185,6 +186,65 @@ PROJECT = Exercise(
             "divided, last coordinate kept",
             "You divided but kept the last coordinate, which is now 1: leave it out.",
             lambda A, R, T, W: (W @ R.T + T) @ A.T / ((W @ R.T + T) @ A.T)[:, 2:],
+        ),
+        Misconception(
+            "R and T taken for the camera's own pose",
+            "You used Rᵀ (W − T), as if R and T said how the camera stands in the world. They "
+            "lead from the world to the camera: M = R W + T.",
+            lambda A, R, T, W: _seen((W - T) @ R, A),
+        ),
+        Misconception(
+            "T added after A",
+            "You added T after A: T is in the camera's frame, so A (R W + T).",
+            lambda A, R, T, W: from_homogeneous.inside(W @ R.T @ A.T + T),
+        ),
+        Misconception(
+            "multiplied by the depth",
+            "You multiplied by the third coordinate: divide by it.",
+            lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] * (W @ R.T + T)[:, 2:],
+        ),
+        Misconception(
+            "divided twice",
+            "You divided by z twice: once is enough.",
+            lambda A, R, T, W: _seen(W @ R.T + T, A) / (W @ R.T + T)[:, 2:],
+        ),
+        Misconception(
+            "camera's coordinates",
+            "These are the points in the camera's frame, M = R W + T: A and the division by z are "
+            "missing.",
+            lambda A, R, T, W: W @ R.T + T,
+            variants=(lambda A, R, T, W: (W @ R.T + T)[:, :2],),
+        ),
+        Misconception(
+            "A inverted",
+            "You used A⁻¹, which leads from pixels to rays.",
+            lambda A, R, T, W: _seen(W @ R.T + T, np.linalg.inv(A)),
+        ),
+        Misconception(
+            "mirrored",
+            "Your picture stands on its head: x/z and y/z have the wrong sign.",
+            lambda A, R, T, W: _seen((W @ R.T + T) * [-1, -1, 1], A),
+        ),
+        Misconception(
+            "R W in place of R W + T, divided by T",
+            "You divided by T_z: every point has a depth of its own.",
+            lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] / T[2],
+        ),
+        Misconception(
+            "divided by the first coordinate",
+            "You divided by the first coordinate: depth is the third.",
+            lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] / (W @ R.T + T)[:, :1],
+            variants=(
+                lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, 1:] / ((W @ R.T + T) @ A.T)[:, :1],
+            ),
+        ),
+        Misconception(
+            "one depth for all",
+            "You divided all points by the depth of the first: each has its own.",
+            lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] / (W @ R.T + T)[0, 2],
+            variants=(
+                lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] / (W @ R.T + T)[:, 2].mean(),
+            ),
         ),
     ),
     reference=project,

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.learn.checker.equality import within
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
@@ -21,6 +22,11 @@ def _shift(k: tuple[float, ...], r: float) -> float:
 
 
 _R = float(np.hypot(*_OFFSET) / 800)
+
+
+def _nearly(answer: Array, case: Case) -> bool:
+    """Tell whether a number was read or rounded too coarsely."""
+    return bool(abs(answer - case.right) < 0.6)
 
 
 SHIFT = Exercise(
@@ -53,6 +59,7 @@ SHIFT = Exercise(
             "not in pixels",
             "That is the length on the plane z = 1: α turns it into pixels.",
             lambda: corner_shift() / 800,
+            same=within(0.003),
         ),
         Misconception(
             "horizontal part only",
@@ -90,6 +97,89 @@ SHIFT = Exercise(
             "sign lost and k2 left out",
             "That is what k1 does alone, and without its sign.",
             lambda: -_shift((-0.25,), _R),
+        ),
+        Misconception(
+            "L − 1",
+            "That is L − 1, a factor: times r it is a length on the plane z = 1, and times 800 "
+            "one in pixels.",
+            lambda: float(_CAMERA.lens.L(_R)) - 1,
+            same=within(0.003),
+        ),
+        Misconception(
+            "L itself",
+            "That is the factor L(r); the shift is (L − 1) r, in pixels.",
+            lambda: float(_CAMERA.lens.L(_R)),
+            same=within(0.003),
+        ),
+        Misconception(
+            "L − 1 times 800",
+            "You multiplied L − 1 by 800; the shift is (L − 1) r, and r is not 1.",
+            lambda: 800 * (float(_CAMERA.lens.L(_R)) - 1),
+        ),
+        Misconception(
+            "L − 1 without its sign",
+            "That is 1 − L, a factor: times r it is a length on the plane z = 1, and times 800 "
+            "one in pixels.",
+            lambda: 1 - float(_CAMERA.lens.L(_R)),
+            same=within(0.003),
+        ),
+        Misconception(
+            "in percent",
+            "That is by how many per cent the corner moves; asked are pixels.",
+            lambda: 100 * (float(_CAMERA.lens.L(_R)) - 1),
+        ),
+        Misconception(
+            "distance of the corner",
+            "That is how far the corner is from the principal point without a lens.",
+            lambda: 800 * _R,
+            same=within(0.6),
+        ),
+        Misconception(
+            "where the column is seen",
+            "That is the column, or the row, at which the corner is seen; asked is by how much it "
+            "has moved.",
+            lambda: 319.5 * (1 - float(_CAMERA.lens.L(_R))),
+            variants=(lambda: 239.5 * (1 - float(_CAMERA.lens.L(_R))),),
+        ),
+        Misconception(
+            "horizontal and vertical part added",
+            "You added both parts; the shift is the root of the sum of their squares.",
+            lambda: corner_shift() * _OFFSET.sum() / np.hypot(*_OFFSET),
+        ),
+        Misconception(
+            "r for r²",
+            "You used r and r² where L has r² and r⁴.",
+            lambda: 800 * (-0.25 * _R + 0.1 * _R**2) * _R,
+        ),
+        Misconception(
+            "r of the column alone",
+            "You took r from the column alone: r² = x² + y².",
+            lambda: _shift((-0.25, 0.1), 319.5 / 800),
+            variants=(lambda: _shift((-0.25, 0.1), 239.5 / 800),),
+        ),
+        Misconception(
+            "signs of k",
+            "k1 is negative and k2 positive: both have a sign of their own.",
+            lambda: _shift((-0.25, -0.1), _R),
+            variants=(lambda: _shift((0.25, 0.1), _R),),
+        ),
+        Misconception(
+            "k1 and k2 exchanged",
+            "k1 = −0.25 goes with r², k2 = 0.1 with r⁴.",
+            lambda: _shift((0.1, -0.25), _R),
+        ),
+        Misconception(
+            "half of it, or twice",
+            "That is half, or twice of it: α = 800 pixels, and r L(r) − r.",
+            lambda: corner_shift() / 2,
+            variants=(lambda: 2 * corner_shift(),),
+        ),
+        Misconception(
+            "not exact enough",
+            "Nearly: one decimal is asked. Do not round r or L before the end.",
+            lambda: corner_shift() + 0.3,
+            variants=(lambda: corner_shift() - 0.3,),
+            seen=_nearly,
         ),
     ),
     reference=corner_shift,

@@ -35,6 +35,11 @@ def _through(xy: Array, L: Array, p: Array, factor: float = 2.0, crossed: float 
     return np.asarray(L * xy + np.stack([dx, dy], axis=1))
 
 
+def _with_r2(xy: Array, k: Array, p: Array, r2: Array) -> Array:
+    """Apply L of another r², and the right tangential terms."""
+    return xy * (1 + k[0] * r2 + k[1] * r2**2) + _through(xy, 0 * xy, p)
+
+
 DISTORT = Exercise(
     name="distort",
     chapter=4,
@@ -158,6 +163,70 @@ DISTORT = Exercise(
             "tangential part alone",
             "The radial part is missing: L multiplies x and y.",
             lambda xy, k, p: _through(xy, np.ones((len(xy), 1)), p),
+        ),
+        Misconception(
+            "L added",
+            "You added L to the coordinates: it multiplies them.",
+            lambda xy, k, p: xy + lens_factor(xy, k) + _through(xy, 0 * xy, p),
+            variants=(lambda xy, k, p: xy + lens_factor(xy, k) - 1 + _through(xy, 0 * xy, p),),
+        ),
+        Misconception(
+            "tangential terms exchanged",
+            "The tangential terms of x stand in y and those of y in x.",
+            lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, ::-1],
+        ),
+        Misconception(
+            "r² of one coordinate",
+            "r² = x² + y²: you took one of the two squares.",
+            lambda xy, k, p: _with_r2(xy, k, p, xy[:, :1] ** 2),
+            variants=(lambda xy, k, p: _with_r2(xy, k, p, xy[:, 1:] ** 2),),
+        ),
+        Misconception(
+            "each coordinate by itself",
+            "You used x² in the x and y² in the y: r² = x² + y² belongs to both.",
+            lambda xy, k, p: _with_r2(xy, k, p, xy**2),
+            variants=(
+                lambda xy, k, p: xy * (1 + k[0] * xy**2 + k[1] * xy**4) + _through(xy, 0 * xy, p),
+            ),
+        ),
+        Misconception(
+            "one r² for all points",
+            "You summed over all points: each has an r² of its own, axis=1.",
+            lambda xy, k, p: xy * lens_factor(xy.reshape(1, -1), k) + _through(xy, 0 * xy, p),
+        ),
+        Misconception(
+            "k2 with r² squared twice",
+            "k2 belongs to r⁴ = (r²)²; you squared once more.",
+            lambda xy, k, p: (
+                _with_r2(xy, k * [1, 0], p, (xy**2).sum(1)[:, None])
+                + k[1] * xy * (xy**2).sum(1)[:, None] ** 4
+            ),
+        ),
+        Misconception(
+            "k1 with r",
+            "k1 belongs to r²; you have r.",
+            lambda xy, k, p: _through(
+                xy, 1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy**2).sum(1)[:, None] ** 2, p
+            ),
+        ),
+        Misconception(
+            "undistorted",
+            "That is the way back, from where points are seen to where they should be.",
+            lambda xy, k, p: Lens(tuple(k), tuple(p)).undistort(xy),
+        ),
+        Misconception(
+            "r² + 2x² for both",
+            "p1 goes with r² + 2y² in y: you have x² in both.",
+            lambda xy, k, p: (
+                _through(xy, lens_factor(xy, k), p)
+                + 2 * np.column_stack([0 * xy[:, 0], p[0] * (xy[:, 0] ** 2 - xy[:, 1] ** 2)])
+            ),
+            variants=(
+                lambda xy, k, p: (
+                    _through(xy, lens_factor(xy, k), p)
+                    + 2 * np.column_stack([p[1] * (xy[:, 1] ** 2 - xy[:, 0] ** 2), 0 * xy[:, 0]])
+                ),
+            ),
         ),
     ),
     reference=distort,

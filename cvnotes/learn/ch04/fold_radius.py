@@ -1,5 +1,8 @@
 """Where the model ends."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -56,6 +59,11 @@ def _one_root(a: float, b: float, sign: float) -> float | None:
     return float(np.sqrt(x)) if x > 0 else None
 
 
+def _unless(endless: Callable[[Array], bool], elsewhere: float | None = np.inf) -> Any:
+    """Give the right answer, except for lenses that are taken for endless."""
+    return lambda k: elsewhere if endless(k) else fold_radius(k)
+
+
 FOLD = Exercise(
     name="fold_radius",
     chapter=4,
@@ -77,6 +85,13 @@ FOLD = Exercise(
         Property("A lens that never folds has no such radius: np.inf.", about="endless"),
     ),
     misconceptions=(
+        Misconception(
+            "k2 = 0 left out",
+            "Right where k2 is not 0. Without k2 the equation is no quadratic one, and its "
+            "formula divides by 0: r² = −1 / (3 k1).",
+            _unless(lambda k: k[1] == 0, None),
+            variants=(_unless(lambda k: k[1] == 0),),
+        ),
         Misconception(
             "root of L",
             "There L(r) = 0: all points fall into the centre. The picture folds before that, "
@@ -160,6 +175,38 @@ FOLD = Exercise(
                 "negative."
             ),
             lambda k: _smallest_root(-3 * k[0], -5 * k[1]),
+        ),
+        Misconception(
+            "k1 positive thought endless",
+            "Right where k1 is negative. With k1 > 0 and k2 < 0 the picture folds too: the last "
+            "term wins in the end.",
+            _unless(lambda k: k[0] >= 0),
+        ),
+        Misconception(
+            "k2 positive thought endless",
+            "Right where k2 is not positive. A strongly negative k1 folds the picture before k2 "
+            "r⁵ can help.",
+            _unless(lambda k: k[1] > 0),
+        ),
+        Misconception(
+            "negative radius",
+            "A radius is positive.",
+            lambda k: -fold_radius(k),
+        ),
+        Misconception(
+            "signs of the roots lost",
+            "You took the root of |r²|: where r² is negative there is no radius.",
+            lambda k: np.sqrt(np.abs(np.roots([5 * k[1], 3 * k[0], 1.0])).min()),
+        ),
+        Misconception(
+            "slope of r L without the 1",
+            "The slope of r L(r) is 1 + 3 k1 r² + 5 k2 r⁴: its 1 is missing.",
+            lambda k: np.sqrt(-3 * k[0] / (5 * k[1])) if k[0] * k[1] < 0 else np.inf,
+        ),
+        Misconception(
+            "k1 and k2 exchanged",
+            "k1 goes with r², k2 with r⁴: they are exchanged.",
+            lambda k: fold_radius(k[::-1]),
         ),
     ),
     reference=fold_radius,

@@ -66,6 +66,16 @@ def _bent(R: Array, T: Array, k: Array, W: Array) -> Array:
     return xy * lens_factor(xy, k)
 
 
+def _by_r(xy: Array, k: Array) -> Array:
+    r = np.linalg.norm(xy, axis=1, keepdims=True)
+    return np.asarray(xy * (1 + k[0] * r + k[1] * r**2))
+
+
+def _on_sphere(M: Array, k: Array) -> Array:
+    xy = M[:, :2] / np.linalg.norm(M, axis=1, keepdims=True)
+    return np.asarray(xy * lens_factor(xy, k))
+
+
 FORM = Exercise(
     name="form_image",
     chapter=4,
@@ -166,6 +176,72 @@ FORM = Exercise(
             "pose left out",
             "You took W as if it were given in the camera's frame; R and T take it there.",
             lambda A, R, T, k, W: _pixels(A, _bent(np.eye(3), 0 * T, k, W)),
+        ),
+        Misconception(
+            "no division",
+            "You did not divide by z: the lens acts on x/z and y/z.",
+            lambda A, R, T, k, W: _pixels(
+                A, (W @ R.T + T)[:, :2] * lens_factor((W @ R.T + T)[:, :2], k)
+            ),
+            variants=(lambda A, R, T, k, W: _pixels(A, (W @ R.T + T)[:, :2]),),
+        ),
+        Misconception(
+            "R and T taken for the camera's own pose",
+            "You used Rᵀ (W − T), as if R and T said how the camera stands in the world: M = R W "
+            "+ T.",
+            lambda A, R, T, k, W: _pixels(A, _bent(R.T, -R.T @ T, k, W)),
+        ),
+        Misconception(
+            "T added before the rotation",
+            "You added T before rotating: M = R W + T, not R (W + T).",
+            lambda A, R, T, k, W: _pixels(A, _bent(R, R @ T, k, W)),
+        ),
+        Misconception(
+            "r for r²",
+            "You used r and r² where L has r² and r⁴.",
+            lambda A, R, T, k, W: _pixels(A, _by_r(_ideal(R, T, W), k)),
+        ),
+        Misconception(
+            "undistorted",
+            "You undid the lens, as a correction does. Image formation distorts: multiply by L.",
+            lambda A, R, T, k, W: _pixels(A, Lens(tuple(k)).undistort(_ideal(R, T, W))),
+        ),
+        Misconception(
+            "sign of k",
+            "You changed the sign of k: L = 1 + k1 r² + k2 r⁴, and k1 itself may be negative.",
+            lambda A, R, T, k, W: _pixels(A, _bent(R, T, -k, W)),
+        ),
+        Misconception(
+            "the 1 of L left out",
+            "L starts with 1: without distortion nothing moves.",
+            lambda A, R, T, k, W: _pixels(A, _bent(R, T, k, W) - _ideal(R, T, W)),
+        ),
+        Misconception(
+            "lens of the world's coordinates",
+            "You took r from the world's x and y; the lens acts in the camera, on x/z and y/z.",
+            lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W) * lens_factor(W[:, :2], k)),
+        ),
+        Misconception(
+            "divided by the distance",
+            "You divided by the distance; depth is the z of the camera's frame.",
+            lambda A, R, T, k, W: _pixels(A, _on_sphere(W @ R.T + T, k)),
+        ),
+        Misconception(
+            "radius of three coordinates",
+            "r² = x² + y² on the plane z = 1; you added z² = 1 too.",
+            lambda A, R, T, k, W: _pixels(
+                A, _ideal(R, T, W) * lens_factor((W @ R.T + T) / (W @ R.T + T)[:, 2:], k)
+            ),
+        ),
+        Misconception(
+            "homogeneous pixels",
+            "A 1 is left at the end of each row: leave it out.",
+            lambda A, R, T, k, W: np.column_stack([form_image(A, R, T, k, W), np.ones(len(W))]),
+        ),
+        Misconception(
+            "lens twice",
+            "You applied the lens twice.",
+            lambda A, R, T, k, W: _pixels(A, _bent(R, T, k, W) * lens_factor(_bent(R, T, k, W), k)),
         ),
     ),
     reference=form_image,

@@ -34,7 +34,11 @@ def _observed_points(rng: Rng) -> list[Case]:
     cases.append((np.array([[0.51, 0.68], [-0.75, 0.4]]), np.array([-0.4, 0.0])))
     strong = np.array([-0.35, 0.1])
     cases.append((np.array([[0.5, 0.5], [-0.4, 0.5], [0.3, -0.5], [-0.5, -0.3]]), strong))
-    return [Case((rounded(xy * lens_factor(xy, c), 4), c)) for xy, c in cases]
+    on_axis = (np.array([[0.0, 0.0], [0.3, -0.2]]), k_hand)
+    return [
+        *(Case((rounded(xy * lens_factor(xy, c), 4), c)) for xy, c in cases),
+        Case((rounded(on_axis[0] * lens_factor(*on_axis), 4), k_hand), about="on the axis"),
+    ]
 
 
 def _divided(xy_lens: Array, k: Array, times: int) -> Array:
@@ -65,6 +69,34 @@ def _with_r(xy_lens: Array, k: Array) -> Array:
     return xy
 
 
+def _newton(xy_lens: Array, k: Array, times: int) -> Array:
+    r_lens = np.linalg.norm(xy_lens, axis=1, keepdims=True)
+    r = r_lens
+    for _ in range(times):
+        slope = 1 + 3 * k[0] * r**2 + 5 * k[1] * r**4
+        r = r - (r + k[0] * r**3 + k[1] * r**5 - r_lens) / slope
+    return xy_lens * np.where(r_lens > 0, r / np.where(r_lens > 0, r_lens, 1), 1)
+
+
+def _subtracted(xy_lens: Array, k: Array, times: int) -> Array:
+    xy = xy_lens
+    for _ in range(times):
+        xy = xy_lens - xy * (lens_factor(xy, k) - 1)
+    return xy
+
+
+def _nearly_there(xy: Array, case: Case) -> bool:
+    """Tell whether points are on the right rays, and near to where they belong."""
+    right = case.right
+    across = xy[:, 0] * right[:, 1] - xy[:, 1] * right[:, 0]
+    off = np.linalg.norm(xy - right, axis=1)
+    return bool(
+        (np.abs(across) <= 1e-12).all()
+        and off.max() < 0.03
+        and not np.allclose(lens_factor(xy, case.args[1]) * xy, xy)
+    )
+
+
 UNDISTORT = Exercise(
     name="undistort",
     chapter=4,
@@ -90,8 +122,15 @@ UNDISTORT = Exercise(
             ),
         ),
         Property("Of all points with this property they are the nearest to the axis."),
+        Property("The point on the axis stays where it is.", about="on the axis"),
     ),
     misconceptions=(
+        Misconception(
+            "nothing on the axis",
+            "Right, except for the point on the axis, where you divided 0 by 0: divide by L(r), "
+            "which is 1 there, and not by r.",
+            lambda xy_lens, k: np.where(xy_lens.any(1)[:, None], undistort(xy_lens, k), np.nan),
+        ),
         Misconception(
             "divided once",
             "You divided by L at the radius that was seen. L is a function of the ideal radius, "
@@ -127,23 +166,6 @@ UNDISTORT = Exercise(
             lambda xy_lens, k: xy_lens,
         ),
         Misconception(
-            "a few rounds",
-            (
-                "Your way is right but stops too early: some rounds leave an error that is larger "
-                "than 1e-8. Go on until nothing changes."
-            ),
-            lambda xy_lens, k: _divided(xy_lens, k, 5),
-            variants=(
-                lambda xy_lens, k: _divided(xy_lens, k, 4),
-                lambda xy_lens, k: _divided(xy_lens, k, 6),
-                lambda xy_lens, k: _divided(xy_lens, k, 7),
-                lambda xy_lens, k: _divided(xy_lens, k, 8),
-                lambda xy_lens, k: _divided(xy_lens, k, 10),
-                lambda xy_lens, k: _divided(xy_lens, k, 20),
-                lambda xy_lens, k: _divided(xy_lens, k, 50),
-            ),
-        ),
-        Misconception(
             "divided what was divided already",
             (
                 "Each round divides xy_lens, what was seen, by L at the better radius. You "
@@ -177,6 +199,46 @@ UNDISTORT = Exercise(
             "r for r²",
             "You used r and r² where L has r² and r⁴.",
             lambda xy_lens, k: _with_r(xy_lens, k),
+        ),
+        Misconception(
+            "k1 and k2 exchanged",
+            "k1 goes with r², k2 with r⁴: they are exchanged.",
+            lambda xy_lens, k: undistort(xy_lens, k[::-1]),
+        ),
+        Misconception(
+            "both coefficients with r²",
+            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
+            lambda xy_lens, k: undistort(xy_lens, np.array([k.sum(), 0.0])),
+        ),
+        Misconception(
+            "sign of k",
+            "You undid a lens with −k1 and −k2.",
+            lambda xy_lens, k: undistort(xy_lens, -k),
+        ),
+        Misconception(
+            "ideal radius for the point",
+            "You gave the ideal radius r; asked is the point, xy_lens · r / r'.",
+            lambda xy_lens, k: np.linalg.norm(undistort(xy_lens, k), axis=1),
+        ),
+        Misconception(
+            "a few rounds",
+            (
+                "Your way is right but stops too early: some rounds leave an error that is larger "
+                "than 1e-8. Go on until nothing changes."
+            ),
+            lambda xy_lens, k: _divided(xy_lens, k, 5),
+            variants=(
+                lambda xy_lens, k: _divided(xy_lens, k, 4),
+                lambda xy_lens, k: _divided(xy_lens, k, 6),
+                lambda xy_lens, k: _divided(xy_lens, k, 7),
+                lambda xy_lens, k: _divided(xy_lens, k, 8),
+                lambda xy_lens, k: _divided(xy_lens, k, 10),
+                lambda xy_lens, k: _divided(xy_lens, k, 20),
+                lambda xy_lens, k: _divided(xy_lens, k, 50),
+                *(lambda xy_lens, k, n=n: _newton(xy_lens, k, n) for n in (1, 2, 3, 4)),
+                *(lambda xy_lens, k, n=n: _subtracted(xy_lens, k, n) for n in (2, 3, 5, 10)),
+            ),
+            seen=_nearly_there,
         ),
     ),
     reference=undistort,

@@ -126,6 +126,55 @@ BOARD = Exercise(
             ),
             lambda c, r, s: _grid(c + 1, r + 1, s),
         ),
+        Misconception(
+            "spread over all squares",
+            "Your last corner is at columns × square: n corners have n − 1 squares between them.",
+            lambda c, r, s: _grid(c, r, s) * [c / (c - 1), r / (r - 1), 1],
+        ),
+        Misconception(
+            "in metres",
+            "The corners are right, in metres; asked are millimetres.",
+            lambda c, r, s: _grid(c, r, s) / 1000,
+        ),
+        Misconception(
+            "as a picture",
+            "The corners are right, in an array of rows and columns; asked is one list (n, 3): "
+            "reshape(-1, 3).",
+            lambda c, r, s: _grid(c, r, s).reshape(r, c, 3),
+            variants=(lambda c, r, s: _grid(c, r, s).reshape(r, c, 3).transpose(1, 0, 2),),
+        ),
+        Misconception(
+            "y in z's place",
+            "Your board stands upright: y along the rows is the second coordinate, z = 0 the "
+            "third.",
+            lambda c, r, s: _grid(c, r, s)[:, [0, 2, 1]],
+            variants=(lambda c, r, s: _grid(c, r, s)[:, [2, 0, 1]],),
+        ),
+        Misconception(
+            "half a square off",
+            "Your corners are in the middles of the squares.",
+            lambda c, r, s: _grid(c, r, s) + [s / 2, s / 2, 0],
+        ),
+        Misconception(
+            "z = square",
+            "z = 0 on the board: its own plane.",
+            lambda c, r, s: _grid(c, r, s) + [0, 0, s],
+        ),
+        Misconception(
+            "diagonal only",
+            "x and y run together: each row of the board has all columns.",
+            lambda c, r, s: _grid(c, r, s)[:: c + 1],
+        ),
+        Misconception(
+            "one row only",
+            "That is the first row of corners alone: as many of them as the board has rows.",
+            lambda c, r, s: _grid(c, 1, s),
+        ),
+        Misconception(
+            "square too large",
+            "You multiplied by the square twice.",
+            lambda c, r, s: _grid(c, r, s * s),
+        ),
     ),
     reference=board_points,
     concepts=("39", "41"),

@@ -7,7 +7,7 @@ from cvnotes.learn.checker.equality import within
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
 
-def _corner(column: int, row: int) -> Array:
+def _corner(column: float, row: float) -> Array:
     return turned_board()[1].project([30.0 * column, 30.0 * row, 0.0])
 
 
@@ -57,7 +57,44 @@ FIRST = Exercise(
             "squares meet.",
             lambda: _corner(-1, -1),
         ),
-        *misreadings(first_corner, (320, 240)),
+        Misconception(
+            "middle of the dark square",
+            "That is the middle of the dark square outside; the corner is where four squares meet.",
+            lambda: _corner(-0.5, -0.5),
+        ),
+        Misconception(
+            "a neighbour",
+            "That is an inner corner, but not one of the four outermost: the first is at the end "
+            "of a row.",
+            lambda: _corner(1, 0),
+            variants=(
+                lambda: _corner(0, 1),
+                lambda: _corner(1, 1),
+                lambda: _corner(2, 0),
+                lambda: _corner(2, 1),
+                lambda: _corner(3, 1),
+                lambda: _corner(1, 2),
+                lambda: _corner(2, 2),
+            ),
+        ),
+        Misconception(
+            "corner of the board's edge",
+            "That is an outer corner of a square at the edge of the board. Inner corners are "
+            "those in which four squares meet.",
+            lambda: _corner(4, -1),
+            variants=(
+                lambda: _corner(-1, 3),
+                lambda: _corner(4, 3),
+                lambda: _corner(-1, 0),
+                lambda: _corner(0, -1),
+            ),
+        ),
+        Misconception(
+            "middle of the board",
+            "That is the middle of the board; its frame begins in the first corner.",
+            lambda: _corner(1.5, 1),
+        ),
+        *misreadings(first_corner, (320, 240), 4.0),
     ),
     reference=first_corner,
     same=within(4.0),

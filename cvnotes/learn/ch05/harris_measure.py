@@ -35,6 +35,15 @@ def _det_trace(Iu: Array, Iv: Array) -> tuple[float, float]:
     return uu * vv - uv**2, uu + vv
 
 
+def _measure(uu: Array, vv: Array, uv: Array, k: float) -> Array:
+    return uu * vv - uv**2 - k * (uu + vv) ** 2
+
+
+def _matrix(Iu: Array, Iv: Array) -> Array:
+    uu, vv, uv = _sums(Iu, Iv)
+    return np.array([[uu, uv], [uv, vv]])
+
+
 HARRIS = Exercise(
     name="harris_measure",
     chapter=5,
@@ -150,6 +159,110 @@ HARRIS = Exercise(
             "trace alone",
             "The determinant is missing: det M − k (trace M)².",
             lambda Iu, Iv, k: -k * _det_trace(Iu, Iv)[1] ** 2,
+        ),
+        Misconception(
+            "squares of the sums",
+            "You have (Σ Iu)² and (Σ Iv)²: square pixel by pixel first, then sum.",
+            lambda Iu, Iv, k: _measure(Iu.sum() ** 2, Iv.sum() ** 2, (Iu * Iv).sum(), k),
+        ),
+        Misconception(
+            "matrix product",
+            "Iu @ Iv multiplies rows by columns; pixel by pixel it is Iu * Iv.",
+            lambda Iu, Iv, k: _measure((Iu @ Iu).sum(), (Iv @ Iv).sum(), (Iu @ Iv).sum(), k),
+            variants=(
+                lambda Iu, Iv, k: _measure(
+                    np.trace(Iu @ Iu), np.trace(Iv @ Iv), np.trace(Iu @ Iv), k
+                ),
+            ),
+        ),
+        Misconception(
+            "the larger eigenvalue",
+            "That is the larger eigenvalue of M: an edge has a large one too.",
+            lambda Iu, Iv, k: (
+                _det_trace(Iu, Iv)[1] / 2
+                + np.sqrt(_det_trace(Iu, Iv)[1] ** 2 / 4 - _det_trace(Iu, Iv)[0])
+            ),
+        ),
+        Misconception(
+            "the trace",
+            "That is trace M, the sum of all squared gradients: det M − k (trace M)² is asked.",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[1],
+        ),
+        Misconception(
+            "M itself",
+            "That is the matrix M; asked is a number made of it.",
+            lambda Iu, Iv, k: _matrix(Iu, Iv),
+        ),
+        Misconception(
+            "a measure for each pixel",
+            "You gave a number for each pixel: M sums over the window.",
+            lambda Iu, Iv, k: _measure(Iu**2, Iv**2, Iu * Iv, k),
+            variants=(lambda Iu, Iv, k: Iu**2 * Iv**2 - k * (Iu**2 + Iv**2) ** 2,),
+        ),
+        Misconception(
+            "mixed sum in the trace",
+            "trace M = Σ Iu² + Σ Iv²: the mixed sum is not in it.",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - k * _sums(Iu, Iv).sum() ** 2,
+        ),
+        Misconception(
+            "trace and determinant exchanged",
+            "det M comes first, k multiplies the square of the trace: you exchanged them.",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[1] ** 2 - k * _det_trace(Iu, Iv)[0],
+            variants=(lambda Iu, Iv, k: _det_trace(Iu, Iv)[1] - k * _det_trace(Iu, Iv)[0] ** 2,),
+        ),
+        Misconception(
+            "determinant squared",
+            "The trace is squared, the determinant is not.",
+            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] ** 2 - k * _det_trace(Iu, Iv)[1] ** 2,
+        ),
+        Misconception(
+            "mixed sum doubled",
+            "The determinant is Σ Iu² Σ Iv² − (Σ Iu Iv)², without a 2.",
+            lambda Iu, Iv, k: (
+                np.prod(_sums(Iu, Iv)[:2])
+                - 2 * _sums(Iu, Iv)[2] ** 2
+                - k * _det_trace(Iu, Iv)[1] ** 2
+            ),
+            variants=(
+                lambda Iu, Iv, k: (
+                    np.prod(_sums(Iu, Iv)[:2])
+                    - 2 * _sums(Iu, Iv)[2]
+                    - k * _det_trace(Iu, Iv)[1] ** 2
+                ),
+            ),
+        ),
+        Misconception(
+            "difference of the sums in the trace",
+            "trace M = Σ Iu² + Σ Iv², with a plus.",
+            lambda Iu, Iv, k: (
+                _det_trace(Iu, Iv)[0] - k * (_sums(Iu, Iv)[0] - _sums(Iu, Iv)[1]) ** 2
+            ),
+        ),
+        Misconception(
+            "absolute gradients",
+            "You took absolute values: a gradient's sign tells its direction, and Σ Iu Iv needs "
+            "it.",
+            lambda Iu, Iv, k: harris_measure(np.abs(Iu), np.abs(Iv), k),
+        ),
+        Misconception(
+            "gradients not squared",
+            "M has Σ Iu² and Σ Iv²: you have sums of the gradients themselves.",
+            lambda Iu, Iv, k: _measure(Iu.sum(), Iv.sum(), (Iu * Iv).sum(), k),
+        ),
+        Misconception(
+            "first pixel only",
+            "That is the measure of a single pixel: sum over the window.",
+            lambda Iu, Iv, k: harris_measure(Iu[:1, :1], Iv[:1, :1], k),
+            variants=(lambda Iu, Iv, k: harris_measure(Iu[-1:, -1:], Iv[-1:, -1:], k),),
+        ),
+        Misconception(
+            "mean for sum in part",
+            "The mean of the products, or of the gradients, in one place and the sum in another: "
+            "M is sums throughout.",
+            lambda Iu, Iv, k: _measure((Iu**2).mean(), (Iv**2).mean(), (Iu * Iv).sum(), k),
+            variants=(
+                lambda Iu, Iv, k: _measure((Iu**2).sum(), (Iv**2).sum(), (Iu * Iv).mean(), k),
+            ),
         ),
     ),
     reference=harris_measure,

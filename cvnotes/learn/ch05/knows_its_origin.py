@@ -103,6 +103,47 @@ ORIGIN = Exercise(
             "You say that all boards do; 8 × 6 looks the same after half a turn.",
             lambda c, r: np.ones(len(c)),
         ),
+        Misconception(
+            "one count odd, the wide ones only",
+            "It is so for upright boards too: which count is larger does not matter.",
+            lambda c, r: ((c + r) % 2 == 1) & (c > r),
+        ),
+        Misconception(
+            "the upright ones only",
+            "It is so for wide boards too: which count is larger does not matter.",
+            lambda c, r: ((c + r) % 2 == 1) & (r > c),
+        ),
+        Misconception(
+            "odd columns, even rows",
+            "It is so the other way round too: an even number of columns and an odd one of rows.",
+            lambda c, r: (c % 2 == 1) & (r % 2 == 0),
+            variants=(lambda c, r: (c % 2 == 0) & (r % 2 == 1),),
+        ),
+        Misconception(
+            "both counts even",
+            "With two even counts the board looks the same after half a turn.",
+            lambda c, r: (c % 2 == 0) & (r % 2 == 0),
+        ),
+        Misconception(
+            "even columns",
+            "An even number of columns is not enough: 8 × 6 looks the same after half a turn.",
+            lambda c, r: c % 2 == 0,
+        ),
+        Misconception(
+            "odd rows",
+            "An odd number of rows is not enough: 7 × 7 looks the same after half a turn.",
+            lambda c, r: r % 2 == 1,
+        ),
+        Misconception(
+            "equal counts",
+            "7 × 7 looks the same even after a quarter turn.",
+            lambda c, r: c == r,
+        ),
+        Misconception(
+            "no board",
+            "You say that no board does; 9 × 6 looks different after half a turn.",
+            lambda c, r: np.zeros(len(c)),
+        ),
     ),
     reference=knows_its_origin,
     concepts=("39", "k", "E18"),

@@ -123,6 +123,68 @@ SADDLE = Exercise(
             "You took the coefficients as those of u², v², u v: they are a u² + b u v + c v².",
             lambda c: _solve(c[[0, 2, 1, 3, 4, 5]]),
         ),
+        Misconception(
+            "sign in the determinant",
+            "The determinant is 4 a c − b², with a minus.",
+            lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (4 * c[0] * c[2] + c[1] ** 2),
+            variants=(
+                lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (c[0] * c[2] - c[1] ** 2),
+            ),
+        ),
+        Misconception(
+            "value of the surface",
+            "That is the grey level at the saddle; asked is where it is.",
+            lambda c: c[5] + _solve(c) @ [c[3], c[4]] / 2,
+        ),
+        Misconception(
+            "slope at the origin",
+            "(d, e) is the slope at (0, 0); asked is where it vanishes.",
+            lambda c: c[3:5],
+            variants=(lambda c: -c[3:5],),
+        ),
+        Misconception(
+            "one sign",
+            "d and e both change sign when they go to the other side.",
+            lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [-c[3], c[4]]),
+            variants=(
+                lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [c[3], -c[4]]),
+            ),
+        ),
+        Misconception(
+            "one factor 2 lost",
+            "Both derivatives of a square have a 2: [[2a, b], [b, 2c]].",
+            lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], c[2]]], [-c[3], -c[4]]),
+            variants=(lambda c: np.linalg.solve([[c[0], c[1]], [c[1], 2 * c[2]]], [-c[3], -c[4]]),),
+        ),
+        Misconception(
+            "d and e halved",
+            "With [[2a, b], [b, 2c]] the right-hand side is (−d, −e), without a half.",
+            lambda c: _solve(c) / 2,
+        ),
+        Misconception(
+            "factor 2 lost, and the sign",
+            "The factor 2 is missing on the diagonal, and d and e change sign on the other side.",
+            lambda c: _solve(c, diagonal=1.0, sign=1.0),
+        ),
+        Misconception(
+            "axes one by one, without 2",
+            "Along u alone 2 a u + d = 0; and the term b u v couples both.",
+            lambda c: _solve(c, diagonal=1.0, mixed=0.0),
+            variants=(lambda c: _solve(c, mixed=0.0, sign=1.0),),
+        ),
+        Misconception(
+            "f for e",
+            "The coefficients are (a, b, c, d, e, f): d and e are the last but two and the last "
+            "but one.",
+            lambda c: _solve(c[[0, 1, 2, 4, 5, 3]]),
+            variants=(lambda c: _solve(c[[0, 1, 2, 3, 5, 4]]),),
+        ),
+        Misconception(
+            "three coordinates",
+            "Asked are (u, v) alone.",
+            lambda c: np.append(_solve(c), 1.0),
+            variants=(lambda c: np.append(_solve(c), c[5] + _solve(c) @ [c[3], c[4]] / 2),),
+        ),
     ),
     reference=saddle_point,
     concepts=("40", "E19"),

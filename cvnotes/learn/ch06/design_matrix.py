@@ -56,6 +56,13 @@ def _affine_last(src: Array, dst: Array) -> Array:
     return D
 
 
+def _u_alone(src: Array, dst: Array) -> Array:
+    """Give rows whose last block is −u or −v three times."""
+    D = design_matrix(src, dst)
+    D[:, 6:8] = D[:, 8:]
+    return D
+
+
 DESIGN = Exercise(
     name="design_matrix",
     chapter=6,
@@ -152,6 +159,41 @@ DESIGN = Exercise(
             "transposed",
             "D has a row for each equation; you have a column: D.T.",
             lambda src, dst: design_matrix(src, dst).T,
+        ),
+        Misconception(
+            "h9 = 1",
+            "You have eight columns, as if h9 were 1 and on the other side; asked are nine.",
+            lambda src, dst: design_matrix(src, dst)[:, :8],
+        ),
+        Misconception(
+            "divided by u and v",
+            "u and v multiply W̃' in the last block; you divided by them.",
+            lambda src, dst: design_matrix(src, 1 / dst),
+        ),
+        Misconception(
+            "zeros left out",
+            "The zeros are missing: each row has W̃' once, three zeros, and the last block.",
+            lambda src, dst: np.hstack(
+                [np.repeat(to_homogeneous(src), 2, 0), design_matrix(src, dst)[:, 6:]]
+            ),
+        ),
+        Misconception(
+            "sign of one block",
+            "In one of the two rows of each pair the last block has the wrong sign: −u W̃' and −v "
+            "W̃'.",
+            lambda src, dst: design_matrix(src, dst * [-1, 1]),
+            variants=(lambda src, dst: design_matrix(src, dst * [1, -1]),),
+        ),
+        Misconception(
+            "points not lifted",
+            "W̃' = (x, y, 1) has three coordinates: nine columns.",
+            lambda src, dst: design_matrix(src, dst)[:, [0, 1, 3, 4, 6, 7]],
+        ),
+        Misconception(
+            "dst not multiplied by x and y",
+            "The last block is −u W̃', so −u x, −u y, −u; you have −x, −y and −u, or −u three "
+            "times.",
+            lambda src, dst: _u_alone(src, dst),
         ),
     ),
     reference=design_matrix,

@@ -19,6 +19,7 @@ from cvnotes.learn.cases.cameras import (
     some_intrinsics,
     some_pose,
 )
+from cvnotes.learn.ch06.design_matrix import DESIGN
 from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
 from cvnotes.learn.checker.equality import up_to_scale, up_to_signs
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
@@ -98,6 +99,42 @@ def _inhomogeneous(src: Array, dst: Array) -> Array:
     D = design_matrix(src, dst)
     h = np.linalg.lstsq(D[:, :8], -D[:, 8], rcond=None)[0]
     return np.append(h, 1.0).reshape(3, 3)
+
+
+def _of_rows(rows: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
+    """Give the null vector, as H, of a design matrix that has slipped."""
+    return lambda src, dst: np.linalg.svd(rows(src, dst))[2][-1].reshape(3, 3)
+
+
+def of_slipped_rows(name: str, sentence: str) -> Misconception:
+    """Make a mistake of the design matrix one of the homography that follows from it."""
+    slip = next(m for m in DESIGN.misconceptions if m.name == name).gives
+    return Misconception(name, sentence, _of_rows(slip), (_normalised(_of_rows(slip)),))
+
+
+# What a slip in the rows of D does to H.
+OF_THE_ROWS = (
+    of_slipped_rows(
+        "sign of the last block",
+        "The last block of D has the wrong sign: W̃' and −u W̃'. So the last row of H has, too.",
+    ),
+    of_slipped_rows(
+        "u for both rows",
+        "D has u in both rows of a pair: u goes with the first row of H, v with the second.",
+    ),
+    of_slipped_rows(
+        "v for both rows",
+        "D has v in both rows of a pair: u goes with the first row of H, v with the second.",
+    ),
+    of_slipped_rows(
+        "sign of one block",
+        "In one of the two rows of each pair D has the wrong sign: −u W̃' and −v W̃'.",
+    ),
+    of_slipped_rows(
+        "one row for each pair",
+        "D has one row for each pair: both u and v have to be fixed, so it takes two.",
+    ),
+)
 
 
 DLT = Exercise(
@@ -221,6 +258,12 @@ DLT = Exercise(
             ),
             lambda src, dst: _hat(src, dst)[0] @ _hat(src, dst)[1],
             variants=(lambda src, dst: np.linalg.inv(_hat(src, dst)[2]) @ _hat(src, dst)[0],),
+        ),
+        *OF_THE_ROWS,
+        Misconception(
+            "h, not H",
+            "That is h, nine numbers in a row: h.reshape(3, 3).",
+            lambda src, dst: dlt(src, dst).ravel(),
         ),
     ),
     reference=dlt,

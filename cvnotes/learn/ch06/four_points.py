@@ -12,6 +12,7 @@ from cvnotes.learn.cases.cameras import (
     rounded,
     some_homography,
 )
+from cvnotes.learn.ch06.dlt import OF_THE_ROWS
 from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
@@ -36,6 +37,11 @@ def _with_h9(src: Array, dst: Array, sign: float = -1.0) -> Array | None:
     if np.linalg.cond(D[:, :8] / np.abs(D).max(0)[:8]) > 1e10:
         return None
     return np.append(np.linalg.solve(D[:, :8], sign * D[:, 8]), 1.0).reshape(3, 3)
+
+
+def _with_zero(src: Array, dst: Array) -> Array:
+    D = design_matrix(src, dst)
+    return np.append(np.linalg.svd(D[:, :8])[2][-1], 0.0).reshape(3, 3)
 
 
 def _exactly(H: Array, case: Case) -> bool:
@@ -113,6 +119,40 @@ FOUR = Exercise(
             "x and y exchanged",
             "Your H expects (y, x): its first column belongs to x.",
             lambda src, dst: dlt(src[:, ::-1], dst),
+        ),
+        *OF_THE_ROWS[:4],
+        Misconception(
+            "an affine map",
+            "The last row of your H is (0, 0, 1): an affine map keeps parallels parallel, which a "
+            "camera does not.",
+            lambda src, dst: affine_fit(src, dst),
+        ),
+        Misconception(
+            "the largest singular value",
+            "You took the first singular vector, for which ‖D h‖ is largest. The null vector "
+            "comes last.",
+            lambda src, dst: np.linalg.svd(design_matrix(src, dst))[2][0].reshape(3, 3),
+        ),
+        Misconception(
+            "the trivial solution",
+            "h = 0 solves D h = 0 and means nothing. Ask for ‖h‖ = 1.",
+            lambda *_: np.zeros((3, 3)),
+        ),
+        Misconception(
+            "h, not H",
+            "That is h in a row: h.reshape(3, 3).",
+            lambda src, dst: dlt(src, dst).ravel(),
+            variants=(lambda src, dst: dlt(src, dst).ravel()[:8],),
+        ),
+        Misconception(
+            "h9 = 0",
+            "You set h9 to 0, which is right only if the origin of src is seen at infinity.",
+            lambda src, dst: _with_zero(src, dst),
+        ),
+        Misconception(
+            "the last pair left out",
+            "You used three of the four pairs: D needs eight rows.",
+            lambda src, dst: np.linalg.svd(design_matrix(src[:3], dst[:3]))[2][-1].reshape(3, 3),
         ),
     ),
     reference=dlt,

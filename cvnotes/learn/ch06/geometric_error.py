@@ -27,6 +27,11 @@ def _mapped(H: Array, src: Array) -> Array:
     return from_homogeneous.inside(to_homogeneous(src) @ H.T)
 
 
+def _algebraic(H: Array, src: Array, dst: Array) -> Array:
+    m_h = to_homogeneous(src) @ H.T
+    return np.asarray(np.linalg.norm(m_h[:, :2] - m_h[:, 2:] * dst, axis=1))
+
+
 GEOMETRIC = Exercise(
     name="geometric_error",
     chapter=6,
@@ -92,6 +97,11 @@ GEOMETRIC = Exercise(
                 "each row."
             ),
             lambda H, src, dst: dst - _mapped(H, src),
+            variants=(
+                lambda H, src, dst: _mapped(H, src) - dst,
+                lambda H, src, dst: np.abs(_mapped(H, src) - dst),
+                lambda H, src, dst: (_mapped(H, src) - dst) ** 2,
+            ),
         ),
         Misconception(
             "columns for rows",
@@ -125,6 +135,89 @@ GEOMETRIC = Exercise(
             "src not mapped",
             "You compared dst with src itself: H takes src to the plane of dst.",
             lambda H, src, dst: np.linalg.norm(dst - src, axis=1),
+        ),
+        Misconception(
+            "divided by h33",
+            "You divided H by h33; every point has a third coordinate of its own to be divided by.",
+            lambda H, src, dst: np.linalg.norm(
+                dst - (to_homogeneous(src) @ (H / H[2, 2]).T)[:, :2], axis=1
+            ),
+        ),
+        Misconception(
+            "both directions",
+            "You added the error in the other plane; asked is the distance in the plane of dst.",
+            lambda H, src, dst: (
+                geometric_error(H, src, dst)
+                + np.linalg.norm(src - _mapped(np.linalg.inv(H), dst), axis=1)
+            ),
+            variants=(
+                lambda H, src, dst: np.sqrt(
+                    geometric_error(H, src, dst) ** 2
+                    + np.linalg.norm(src - _mapped(np.linalg.inv(H), dst), axis=1) ** 2
+                ),
+            ),
+        ),
+        Misconception(
+            "mean of the squares",
+            "That is a mean or a sum of squared distances; asked is one distance for each pair.",
+            lambda H, src, dst: (geometric_error(H, src, dst) ** 2).mean(),
+            variants=(
+                lambda H, src, dst: (geometric_error(H, src, dst) ** 2).sum(),
+                lambda H, src, dst: ((dst - _mapped(H, src)) ** 2).mean(),
+            ),
+        ),
+        Misconception(
+            "root of the mean of each row",
+            "You took the mean of Δu² and Δv²; the distance is the root of their sum.",
+            lambda H, src, dst: geometric_error(H, src, dst) / np.sqrt(2),
+        ),
+        Misconception(
+            "mean of each row",
+            "You took the mean of |Δu| and |Δv|; the distance is √(Δu² + Δv²).",
+            lambda H, src, dst: np.abs(dst - _mapped(H, src)).mean(1),
+            variants=(
+                lambda H, src, dst: (dst - _mapped(H, src)).mean(1),
+                lambda H, src, dst: (_mapped(H, src) - dst).mean(1),
+            ),
+        ),
+        Misconception(
+            "sum of the differences",
+            "Δu + Δv may cancel; the distance is √(Δu² + Δv²).",
+            lambda H, src, dst: (dst - _mapped(H, src)).sum(1),
+            variants=(lambda H, src, dst: (_mapped(H, src) - dst).sum(1),),
+        ),
+        Misconception(
+            "larger of the two",
+            "You took the larger of |Δu| and |Δv|; the distance is √(Δu² + Δv²).",
+            lambda H, src, dst: np.abs(dst - _mapped(H, src)).max(1),
+        ),
+        Misconception(
+            "rows only",
+            "You compared v only; the distance is √(Δu² + Δv²).",
+            lambda H, src, dst: np.abs(dst - _mapped(H, src))[:, 1],
+        ),
+        Misconception(
+            "length with the homogeneous 1",
+            "You took the length of homogeneous vectors that still have their third coordinate: "
+            "divide, leave it out, then subtract.",
+            lambda H, src, dst: np.linalg.norm(_mapped(H, src), axis=1),
+            variants=(lambda H, src, dst: np.linalg.norm(to_homogeneous(_mapped(H, src)), axis=1),),
+        ),
+        Misconception(
+            "src and dst exchanged",
+            "You mapped dst and compared with src: H takes src to dst.",
+            lambda H, src, dst: np.linalg.norm(src - _mapped(H, dst), axis=1),
+        ),
+        Misconception(
+            "algebraic error",
+            "That is the algebraic error, as D h = 0 has it: it depends on the scale of H and is "
+            "no distance.",
+            lambda H, src, dst: _algebraic(H, src, dst),
+        ),
+        Misconception(
+            "every pair with every other",
+            "You compared every point with every other: (n, n). Subtract row by row.",
+            lambda H, src, dst: np.linalg.norm(dst[:, None] - _mapped(H, src)[None], axis=2),
         ),
     ),
     reference=geometric_error,

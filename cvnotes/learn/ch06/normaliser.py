@@ -30,6 +30,11 @@ def _scaled_by(x: Array, distance: float) -> Array:
     return _similarity(s, -s * x.mean(0))
 
 
+def _scaled_about(x: Array, centre: Array, distances_from: Array) -> Array:
+    s = np.sqrt(2) / np.linalg.norm(x - distances_from, axis=1).mean()
+    return _similarity(s, -s * centre)
+
+
 NORMALISER = Exercise(
     name="normaliser",
     chapter=6,
@@ -170,6 +175,111 @@ NORMALISER = Exercise(
                 "distance."
             ),
             lambda x: _scaled_by(x, float(np.sqrt(((x - x.mean(0)) ** 2).sum() / (len(x) - 1)))),
+        ),
+        Misconception(
+            "one mean for both coordinates",
+            "x.mean() is the mean of all numbers; the centroid is x.mean(axis=0).",
+            lambda x: _scaled_about(x, np.full(2, x.mean()), x.mean(0)),
+            variants=(lambda x: _scaled_about(x, np.full(2, x.mean()), np.full(2, x.mean())),),
+        ),
+        Misconception(
+            "the points, not the matrix",
+            "These are the normalised points; asked is the matrix that makes them.",
+            lambda x: apply(normaliser(x), x),
+        ),
+        Misconception(
+            "median for mean",
+            "The centroid is the mean; you took the median.",
+            lambda x: _scaled_about(x, np.median(x, axis=0), np.median(x, axis=0)),
+            variants=(
+                lambda x: _scaled_about(x, np.median(x, axis=0), x.mean(0)),
+                lambda x: _scaled_by(x, float(np.median(np.linalg.norm(x - x.mean(0), axis=1)))),
+            ),
+        ),
+        Misconception(
+            "scaled to [−1, 1]",
+            "You scaled so that all points lie between −1 and 1; asked is a mean distance of √2 "
+            "from the centroid.",
+            lambda x: _similarity(
+                2 / np.ptp(x, axis=0), -2 * (x.max(0) + x.min(0)) / 2 / np.ptp(x, axis=0)
+            ),
+            variants=(
+                lambda x: _similarity(
+                    1 / np.abs(x - x.mean(0)).max(), -x.mean(0) / np.abs(x - x.mean(0)).max()
+                ),
+            ),
+        ),
+        Misconception(
+            "scaled by the largest number",
+            "You divided by the largest coordinate; asked is a mean distance of √2 from the "
+            "centroid.",
+            lambda x: _similarity(1 / x.max(), -x.mean(0) / x.max()),
+            variants=(lambda x: _similarity(1 / x.max(0), -x.mean(0) / x.max(0)),),
+        ),
+        Misconception(
+            "mean distance in each direction",
+            "You scaled each direction by its own mean distance; one scale for both is asked.",
+            lambda x: _similarity(
+                1 / np.abs(x - x.mean(0)).mean(0), -x.mean(0) / np.abs(x - x.mean(0)).mean(0)
+            ),
+            variants=(
+                lambda x: _similarity(
+                    np.sqrt(2) / np.abs(x - x.mean(0)).mean(0),
+                    -np.sqrt(2) * x.mean(0) / np.abs(x - x.mean(0)).mean(0),
+                ),
+            ),
+        ),
+        Misconception(
+            "each direction by itself, √2",
+            "You divided each direction by its own standard deviation, and multiplied by √2; one "
+            "scale for both is asked.",
+            lambda x: _similarity(np.sqrt(2) / x.std(0), -np.sqrt(2) * x.mean(0) / x.std(0)),
+            variants=(lambda x: _similarity(1 / x.std(0, ddof=1), -x.mean(0) / x.std(0, ddof=1)),),
+        ),
+        Misconception(
+            "mean square distance",
+            "You took the mean of the squared distances, without a root; asked is the mean "
+            "distance.",
+            lambda x: _scaled_by(x, float(((x - x.mean(0)) ** 2).sum(1).mean())),
+        ),
+        Misconception(
+            "shift scaled twice",
+            "The shift in the last column is −s c: you multiplied by s twice.",
+            lambda x: _similarity(
+                np.sqrt(2) / _centred(x)[1], -2 * x.mean(0) / _centred(x)[1] ** 2
+            ),
+        ),
+        Misconception(
+            "no scale in v",
+            "Both directions are scaled: N[1, 1] = s too.",
+            lambda x: normaliser(x) * [[1, 1, 1], [1, 0, 1], [1, 1, 1]] + np.diag([0, 1, 0]),
+            variants=(
+                lambda x: normaliser(x) * [[0, 1, 1], [1, 1, 1], [1, 1, 1]] + np.diag([1, 0, 0]),
+            ),
+        ),
+        Misconception(
+            "shift exchanged",
+            "c_x and c_y are exchanged in the last column.",
+            lambda x: _similarity(
+                np.sqrt(2) / _centred(x)[1], -np.sqrt(2) / _centred(x)[1] * x.mean(0)[::-1]
+            ),
+        ),
+        Misconception(
+            "divided by √2",
+            "The mean distance became 1/√2, or 1/2: s = √2 / d.",
+            lambda x: _scaled_by(x, _centred(x)[1] * 2),
+            variants=(lambda x: _scaled_by(x, _centred(x)[1] * 2 * np.sqrt(2)),),
+        ),
+        Misconception(
+            "sum of |x| and |y|",
+            "You took |Δx| + |Δy| for the distance; it is √(Δx² + Δy²).",
+            lambda x: _scaled_by(x, float(np.abs(x - x.mean(0)).sum(1).mean())),
+        ),
+        Misconception(
+            "length of all differences",
+            "You took the length of all differences together: axis=1 gives one for each point, "
+            "then the mean.",
+            lambda x: _scaled_by(x, float(np.linalg.norm(x - x.mean(0)))),
         ),
     ),
     reference=normaliser,

@@ -58,6 +58,26 @@ def _without_skew(b: Array) -> Array:
     return A
 
 
+def _solved(b: Array) -> Array | None:
+    """Factorise as A_from_b does; None where that cannot be."""
+    B = _B(b)
+    B = B * np.sign(B[0, 0])
+    if not (np.linalg.eigvalsh(B) > 0).all():
+        return None
+    return _last_one(np.linalg.inv(np.linalg.cholesky(B)).T)
+
+
+def _exchanged_centre(A: Array) -> Array:
+    A[:2, 2] = A[[1, 0], 2]
+    return A
+
+
+def _simple_centre(b: Array) -> Array:
+    A = A_from_b(b)
+    A[:2, 2] = -b[3] / b[0], -b[4] / b[2]
+    return A
+
+
 A_FROM_B = Exercise(
     name="A_from_b",
     chapter=7,
@@ -157,6 +177,104 @@ A_FROM_B = Exercise(
             "scaled to length 1",
             "Your A is right up to scale: divide it by its last entry.",
             lambda b: A_from_b(b) / np.linalg.norm(A_from_b(b)),
+        ),
+        Misconception(
+            "B13 and B23 exchanged",
+            "You filled B in another order: b = (B11, B12, B22, B13, B23, B33).",
+            lambda b: _solved(b[[0, 1, 2, 4, 3, 5]]),
+        ),
+        Misconception(
+            "absolute values",
+            "You took absolute values of b: its entries have signs of their own, only a common "
+            "one is free.",
+            lambda b: _solved(np.abs(b)),
+        ),
+        Misconception(
+            "A Aᵀ",
+            "That is A Aᵀ = B⁻¹, up to scale: it has to be factorised.",
+            lambda b: _last_one(np.linalg.inv(_B(b))),
+            variants=(
+                lambda b: np.linalg.inv(_B(b)),
+                lambda b: np.linalg.inv(_B(b * np.sign(b[0]))),
+            ),
+        ),
+        Misconception(
+            "B itself",
+            "That is B; A is in its factors.",
+            lambda b: _last_one(_B(b)),
+            variants=(lambda b: _B(b),),
+        ),
+        Misconception(
+            "last entry not 1, any sign",
+            "Right up to scale, for either sign of b: divide A by its last entry.",
+            lambda b: np.linalg.inv(np.linalg.cholesky(_B(b * np.sign(b[0])))).T,
+        ),
+        Misconception(
+            "divided by the first entry",
+            "You divided A by its first entry; it is the last one that is 1.",
+            lambda b: A_from_b(b) / A_from_b(b)[0, 0],
+        ),
+        Misconception(
+            "the inverse transposed",
+            "That is A⁻ᵀ, the factor of B.",
+            lambda b: np.linalg.inv(A_from_b(b)).T,
+            variants=(lambda b: _last_one(np.linalg.cholesky(_B(b * np.sign(b[0])))),),
+        ),
+        Misconception(
+            "B not symmetric",
+            "You left the lower triangle of B at 0: B is symmetric, B21 = B12.",
+            lambda b: _last_one(np.linalg.inv(np.triu(_B(b)))),
+            variants=(lambda b: _last_one(np.linalg.inv(np.triu(_B(b))).T),),
+        ),
+        Misconception(
+            "one focal length for both",
+            "You took one focal length for both directions: α_v follows from B22 as well.",
+            lambda b: (
+                A_from_b(b) * [[1, 1, 1], [1, 0, 1], [1, 1, 1]] + np.diag([0, A_from_b(b)[0, 0], 0])
+            ),
+            variants=(
+                lambda b: (
+                    A_from_b(b) * [[0, 1, 1], [1, 1, 1], [1, 1, 1]]
+                    + np.diag([A_from_b(b)[1, 1], 0, 0])
+                ),
+            ),
+        ),
+        Misconception(
+            "u0 and v0 exchanged",
+            "u0 and v0 are exchanged: u0 = A[0, 2].",
+            lambda b: _exchanged_centre(A_from_b(b)),
+        ),
+        Misconception(
+            "α_u and α_v exchanged",
+            "α_u and α_v are exchanged: α_u = A[0, 0].",
+            lambda b: (
+                A_from_b(b) * (1 - np.diag([1, 1, 0]))
+                + np.diag([A_from_b(b)[1, 1], A_from_b(b)[0, 0], 0])
+            ),
+        ),
+        Misconception(
+            "u0 without the skew",
+            "All but u0 is right: u0 = γ v0 / β − B13 α² / s; you left out γ v0 / β.",
+            lambda b: (
+                A_from_b(b)
+                - [
+                    [0, 0, A_from_b(b)[0, 1] * A_from_b(b)[1, 2] / A_from_b(b)[1, 1]],
+                    [0, 0, 0],
+                    [0, 0, 0],
+                ]
+            ),
+        ),
+        Misconception(
+            "centre of a camera without skew",
+            "You took u0 = −B13/B11 and v0 = −B23/B22, which holds without skew only: B12 mixes "
+            "both.",
+            lambda b: _simple_centre(b),
+        ),
+        Misconception(
+            "the numbers, not the matrix",
+            "Asked is the matrix A (3, 3).",
+            lambda b: A_from_b(b)[[0, 1, 0, 1], [0, 1, 2, 2]],
+            variants=(lambda b: A_from_b(b)[[0, 1, 0, 1, 0], [0, 1, 2, 2, 1]],),
         ),
     ),
     reference=A_from_b,

@@ -20,7 +20,7 @@ def b_from_views(H: Array) -> Array:
 
 
 def _tilted_views(rng: Rng) -> list[Case]:
-    A = _UNIT @ some_intrinsics(rng)
+    A = _UNIT @ some_intrinsics(rng, skew=True)
     three = [plane_image(np.diag([2.0, 2.5, 1]), R, np.array([0.5, 0, 4])) for R in _TILTS]
     noisy = some_views(rng, A, 12)
     noisy = noisy / np.linalg.norm(noisy, axis=(1, 2), keepdims=True)
@@ -45,8 +45,79 @@ def _rows(H: Array, sign: float = -1.0) -> Array:
     return np.concatenate(pairs)
 
 
+def _only(which: Callable[[Array], Array]) -> Callable[[Array, Case], bool]:
+    """Recognise what solves some of the equations exactly, and not all of them."""
+
+    def seen(b: Array, case: Case) -> bool:
+        H = case.args[0]
+        V = _rows(H / np.linalg.norm(H, axis=(1, 2), keepdims=True))
+        size = np.linalg.norm(V, axis=1) * np.linalg.norm(b)
+        misfit = np.abs(V @ b)
+        some = which(np.arange(len(V)))
+        return bool((misfit[some] <= 1e-9 * size[some]).all() and b.any())
+
+    return seen
+
+
+def _of_some(which: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    def gives(H: Array) -> Array:
+        V = _rows(H)
+        return _null(V[which(np.arange(len(V)))])
+
+    return gives
+
+
+def _right_angles(rows: Array) -> Array:
+    return rows % 2 == 0
+
+
+def _equal_lengths(rows: Array) -> Array:
+    return rows % 2 == 1
+
+
+def _last_view(rows: Array) -> Array:
+    return rows >= len(rows) - 2
+
+
+def _first_view(rows: Array) -> Array:
+    return rows < 2
+
+
+def _scaled_alike(H: Array) -> Array:
+    """Scale views so that columns are about one long, as a right answer may."""
+    return np.asarray(H / np.linalg.norm(H, axis=(1, 2), keepdims=True))
+
+
+def _matrix(b: Array) -> Array:
+    return np.asarray(b[[0, 1, 3, 1, 2, 4, 3, 4, 5]].reshape(3, 3))
+
+
+def _b_of(B: Array) -> Array:
+    return np.asarray(B[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]])
+
+
+def _slipped_rows(H: Array, second: list[int]) -> Array:
+    """Stack rows whose mixed products are one product doubled."""
+    first, mixed = [0, 0, 1, 0, 1, 2], np.array([1, 2, 1, 2, 2, 1])
+
+    def v(a: Array, b: Array) -> Array:
+        return np.asarray(mixed * a[first] * b[second])
+
+    return np.concatenate(
+        [(v(X[:, 0], X[:, 1]), v(X[:, 0], X[:, 0]) - v(X[:, 1], X[:, 1])) for X in H]
+    )
+
+
+def _without_skew(H: Array) -> Array:
+    return np.insert(_null(_rows(_scaled_alike(H))[:, [0, 2, 3, 4, 5]]), 1, 0.0)
+
+
 def _at_any_scale(
-    name: str, sentence: str, gives: Callable[[Array], Array], same: Same | None = None
+    name: str,
+    sentence: str,
+    gives: Callable[[Array], Array],
+    same: Same | None = None,
+    seen: Callable[[Array, Case], bool] | None = None,
 ) -> Misconception:
     """Name a mistake whose result depends on how the student scaled the H."""
     scales: tuple[Callable[[Array], Array], ...] = (
@@ -55,7 +126,7 @@ def _at_any_scale(
         lambda H: np.asarray(H / np.cbrt(np.linalg.det(H))[:, None, None]),
     )
     variants = tuple(lambda H, scale=scale: gives(scale(H)) for scale in scales)
-    return Misconception(name, sentence, gives, variants, same)
+    return Misconception(name, sentence, gives, variants, same, seen)
 
 
 def _both_constraints(b: Array, case: Case) -> bool:
@@ -133,11 +204,73 @@ B_FROM_VIEWS = Exercise(
             "first view only",
             "One view gives two equations for five unknowns: stack the rows of all views.",
             lambda H: _null(_rows(H[:1])),
+            seen=_only(_first_view),
         ),
         Misconception(
             "another order of b",
             "Your b is (B11, B12, B13, B22, B23, B33); the notes have B22 before B13.",
             lambda H: b_from_views(H)[[0, 1, 3, 2, 4, 5]],
+        ),
+        _at_any_scale(
+            "the last view only",
+            "Your b fits the last view alone: does each round of the loop overwrite the rows of "
+            "the one before? Stack the rows of all views.",
+            lambda H: _null(_rows(H[-1:])),
+            seen=_only(_last_view),
+        ),
+        _at_any_scale(
+            "right angles only",
+            "You asked for h1ᵀ B h2 = 0 alone. Each view gives a second equation, for the equal "
+            "lengths: h1ᵀ B h1 = h2ᵀ B h2.",
+            _of_some(_right_angles),
+            seen=_only(_right_angles),
+        ),
+        _at_any_scale(
+            "equal lengths only",
+            "You asked for h1ᵀ B h1 = h2ᵀ B h2 alone. Each view gives a second equation, for the "
+            "right angle: h1ᵀ B h2 = 0.",
+            _of_some(_equal_lengths),
+            seen=_only(_equal_lengths),
+        ),
+        Misconception(
+            "B12 for 0",
+            "You set B12 to 0, as for a camera without skew. Here A may have one: six unknowns.",
+            _without_skew,
+            variants=(
+                lambda H: b_from_views(H) * [1, 0, 1, 1, 1, 1],
+                lambda H: np.delete(_without_skew(H), 1),
+                lambda H: np.insert(_null(_rows(H)[:, [0, 2, 3, 4, 5]]), 1, 0.0),
+            ),
+        ),
+        Misconception(
+            "B, not b",
+            "That is the matrix B; asked are its six entries b = (B11, B12, B22, B13, B23, B33).",
+            lambda H: _matrix(b_from_views(H)),
+            variants=(
+                lambda H: np.triu(_matrix(b_from_views(H))),
+                lambda H: _matrix(b_from_views(H)).ravel(),
+            ),
+        ),
+        _at_any_scale(
+            "columns h2 and h3",
+            "You took the second and third column of H, as if columns were counted from 0: h1 and "
+            "h2 are H[:, 0] and H[:, 1].",
+            lambda H: _null(_rows(np.roll(H, -1, axis=2))),
+        ),
+        _at_any_scale(
+            "mixed products doubled",
+            "Your v doubles a1 b2 in place of a1 b2 + a2 b1: check v_ij by itself.",
+            lambda H: _null(_slipped_rows(H, [0, 1, 1, 2, 2, 2])),
+        ),
+        _at_any_scale(
+            "the second smallest singular value",
+            "You took the last but one singular vector; the smallest singular value comes last.",
+            lambda H: np.asarray(np.linalg.svd(_rows(H))[2][-2]),
+        ),
+        Misconception(
+            "A⁻ᵀ A⁻¹ inverted",
+            "That is A Aᵀ, the inverse of B.",
+            lambda H: _b_of(np.linalg.inv(_matrix(b_from_views(H)))),
         ),
     ),
     reference=b_from_views,

@@ -95,9 +95,41 @@ def _rotation_by_qr(A: Array, H: Array) -> Array:
     return G
 
 
+def _behind(G: Array) -> Array:
+    return np.asarray(G * [-1, -1, 1, -1] * [[1], [1], [1], [-1]])
+
+
+def _T_below(G: Array) -> Array:
+    G[3, :3], G[:3, 3] = G[:3, 3].copy(), 0
+    return G
+
+
 def _transposed(G: Array) -> Array:
     G[:3, :3] = G[:3, :3].T
     return G
+
+
+def _T_not_divided(G: Array, case: Case) -> bool:
+    """Tell whether all but T is right, and T is A⁻¹ h3, or minus that."""
+    A, H = case.args
+    c = np.linalg.inv(A) @ H[:, 2]
+    rest = np.linalg.norm(G[:3, :3] - case.right[:3, :3]) < 0.05
+    off = min(np.linalg.norm(G[:3, 3] - c), np.linalg.norm(G[:3, 3] + c))
+    return bool(rest and off <= 1e-6 * np.linalg.norm(c))
+
+
+def _sign_in_T_only(A: Array, H: Array) -> Array:
+    G = extrinsics(A, H)
+    if _parts(A, H)[3] < 0:
+        G[:3, :2] *= -1  # r3 = r1 × r2 comes out the same
+    return G
+
+
+def _nearest_to(A: Array, H: Array, *, third: str) -> Array:
+    """Give the nearest rotation of three columns that do not belong together."""
+    a, b, c, scale = _parts(A, H)
+    r3 = {"T": c / scale, "T / |T|": c / np.linalg.norm(c) * np.sign(scale)}[third]
+    return pose(nearest_rotation(np.column_stack([a / scale, b / scale, r3])), c / scale)
 
 
 EXTRINSICS = Exercise(
@@ -129,9 +161,16 @@ EXTRINSICS = Exercise(
     ),
     misconceptions=(
         Misconception(
+            "sign in T only",
+            "Right for a positive scale. With a negative one you changed the sign of T alone: λ "
+            "has one sign, for r1, r2 and T.",
+            _sign_in_T_only,
+        ),
+        Misconception(
             "T not divided",
             "R is right, but T is still multiplied by λ: all three columns are divided.",
             lambda A, H: _G(A, H, T_scale=_parts(A, H)[3]),
+            seen=_T_not_divided,
         ),
         Misconception(
             "λ for 1/λ",
@@ -243,6 +282,62 @@ EXTRINSICS = Exercise(
             lambda A, H: pose(
                 extrinsics(A, H)[:3, :3], -extrinsics(A, H)[:3, :3].T @ extrinsics(A, H)[:3, 3]
             ),
+        ),
+        Misconception(
+            "nearest rotation of [r1 r2 T]",
+            "You made a rotation of [r1 r2 T]: its third column is T, not r3 = r1 × r2.",
+            lambda A, H: _nearest_to(A, H, third="T"),
+            variants=(lambda A, H: _nearest_to(A, H, third="T / |T|"),),
+        ),
+        Misconception(
+            "r3 left out",
+            "r3 = r1 × r2 is missing: R has three columns.",
+            lambda A, H: extrinsics(A, H) * [1, 1, 0, 1],
+            variants=(lambda A, H: extrinsics(A, H)[:3, [0, 1, 3]],),
+        ),
+        Misconception(
+            "T from H itself",
+            "T = λ⁻¹ A⁻¹ h3: you left out A⁻¹.",
+            lambda A, H: pose(extrinsics(A, H)[:3, :3], H[:, 2] / _parts(A, H)[3]),
+            variants=(lambda A, H: pose(extrinsics(A, H)[:3, :3], H[:, 2]),),
+        ),
+        Misconception(
+            "T scaled to length 1",
+            "T has the length it has: it is divided by λ, not by its own length.",
+            lambda A, H: pose(
+                extrinsics(A, H)[:3, :3],
+                extrinsics(A, H)[:3, 3] / np.linalg.norm(extrinsics(A, H)[:3, 3]),
+            ),
+        ),
+        Misconception(
+            "R only",
+            "R is right; asked is the pose (4, 4), with T.",
+            lambda A, H: extrinsics(A, H)[:3, :3],
+        ),
+        Misconception(
+            "λ from the third column",
+            "λ is the length of the first two columns of A⁻¹ H, as r1 and r2 are unit vectors; T "
+            "may have any.",
+            lambda A, H: pose(
+                extrinsics(A, H)[:3, :3], _parts(A, H)[2] / np.linalg.det(np.linalg.inv(A) @ H)
+            ),
+        ),
+        Misconception(
+            "r1 and r2 exchanged",
+            "r1 belongs to the first column of H, r2 to the second.",
+            lambda A, H: extrinsics(A, H[:, [1, 0, 2]]),
+        ),
+        Misconception(
+            "board behind the camera",
+            "Your board stands behind the camera: choose the sign for which T_z > 0, for r1, r2 "
+            "and T.",
+            lambda A, H: _behind(extrinsics(A, H)),
+        ),
+        Misconception(
+            "T in the last row",
+            "T stands in the last column of G, (0, 0, 0, 1) in its last row.",
+            lambda A, H: extrinsics(A, H).T,
+            variants=(lambda A, H: _T_below(extrinsics(A, H)),),
         ),
     ),
     reference=extrinsics,

@@ -37,6 +37,8 @@ def _bent(xy: Array, radius_of: Array) -> Array:
 
 
 def _fit(D: Array, d: Array) -> Array:
+    if not (np.isfinite(D).all() and np.isfinite(d).all()):
+        return np.full(D.shape[-1], np.nan)  # a point on an axis, divided by its 0
     return np.asarray(np.linalg.lstsq(D.reshape(d.size, -1), d.ravel(), rcond=None)[0])
 
 
@@ -55,6 +57,21 @@ def _radii_quotient(xy: Array, xy_lens: Array) -> Array:
     r2 = (xy**2).sum(1)
     D = np.column_stack([r2, r2**2])
     return _fit(D, np.sqrt((xy_lens**2).sum(1) / r2) - 1)
+
+
+def _powers(xy: Array, first: int, second: int) -> Array:
+    r = np.linalg.norm(xy, axis=1)[:, None]
+    return np.stack([xy * r**first, xy * r**second], axis=-1)
+
+
+def _polynomial(xy: Array, xy_lens: Array) -> Array:
+    """Give (c, k1, k2) of r'/r = c + k1 r² + k2 r⁴."""
+    r2 = (xy**2).sum(1)
+    return _fit(np.column_stack([r2**0, r2, r2**2]), np.sqrt((xy_lens**2).sum(1) / r2))
+
+
+def _fit_with_constant(xy: Array, xy_lens: Array) -> Array:
+    return _fit(np.concatenate([xy[..., None], _bent(xy, xy)], axis=-1), xy_lens)
 
 
 RADIAL = Exercise(
@@ -178,6 +195,58 @@ RADIAL = Exercise(
                 lambda xy, xy_lens: _fit(_bent(xy[:1], xy[:1]), (xy_lens - xy)[:1]),
                 lambda xy, xy_lens: radial_fit(xy[:3], xy_lens[:3]),
             ),
+        ),
+        Misconception(
+            "a constant fitted too",
+            "You fitted L = c + k1 r² + k2 r⁴ with a constant of its own: it is 1. On exact data "
+            "that is the same, with noise it is not.",
+            lambda xy, xy_lens: _polynomial(xy, xy_lens)[1:],
+            variants=(lambda xy, xy_lens: _fit_with_constant(xy, xy_lens)[1:],),
+        ),
+        Misconception(
+            "highest power first",
+            "np.polyfit gives the highest power first, (k2, k1, c): turn it around, and fix the "
+            "constant to 1.",
+            lambda xy, xy_lens: _polynomial(xy, xy_lens)[:0:-1],
+            variants=(lambda xy, xy_lens: _polynomial(xy, xy_lens)[::-1],),
+        ),
+        Misconception(
+            "three coefficients",
+            "Asked are k1 and k2: the constant of L is 1, and nothing follows after r⁴.",
+            lambda xy, xy_lens: _polynomial(xy, xy_lens),
+            variants=(lambda xy, xy_lens: _fit_with_constant(xy, xy_lens),),
+        ),
+        Misconception(
+            "r² and r³",
+            "k2 belongs to r⁴; you have r³.",
+            lambda xy, xy_lens: _fit(_powers(xy, 2, 3), xy_lens - xy),
+        ),
+        Misconception(
+            "both with r²",
+            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
+            lambda xy, xy_lens: _fit(_powers(xy, 2, 2), xy_lens - xy),
+        ),
+        Misconception(
+            "each coordinate by itself",
+            "You fitted x and y separately; both share k1 and k2: two rows for each point, one "
+            "fit.",
+            lambda xy, xy_lens: (
+                (
+                    _fit(_bent(xy, xy)[:, 0], (xy_lens - xy)[:, 0])
+                    + _fit(_bent(xy, xy)[:, 1], (xy_lens - xy)[:, 1])
+                )
+                / 2
+            ),
+        ),
+        Misconception(
+            "quotient for difference",
+            "You fitted xy_lens / xy without subtracting 1: L = 1 + k1 r² + k2 r⁴.",
+            lambda xy, xy_lens: _fit(_bent(xy, xy) / xy[..., None], xy_lens / xy),
+        ),
+        Misconception(
+            "nothing fitted",
+            "You gave (0, 0): an ideal lens.",
+            lambda *_: np.zeros(2),
         ),
     ),
     reference=radial_fit,

@@ -40,6 +40,10 @@ def _outer(a: Array, b: Array) -> tuple[Array, Array]:
     return a[rows] * b[columns], a[columns] * b[rows]
 
 
+def _of(a: Array, b: Array) -> Array:
+    return v_ij(np.column_stack([a, b, a]), 1, 2)
+
+
 _MIXED = np.array([0.0, 1, 0, 1, 1, 0])
 
 
@@ -138,6 +142,60 @@ V_IJ = Exercise(
             "columns counted from the last",
             "h_1 is H[:, 0]: you took i − 2, which Python counts from the end.",
             lambda H, i, j: v_ij(np.roll(H, 1, axis=1), i, j),
+        ),
+        Misconception(
+            "nine products",
+            "You have all nine products; B is symmetric, b has six entries: B12 and B21 are one "
+            "unknown, and its two products add up.",
+            lambda H, i, j: np.outer(H[:, i - 1], H[:, j - 1]).ravel(),
+            variants=(lambda H, i, j: np.outer(H[:, i - 1], H[:, j - 1]),),
+        ),
+        Misconception(
+            "three products",
+            "You multiplied entry by entry: the mixed entries of B have their products too, six "
+            "in all.",
+            lambda H, i, j: H[:, i - 1] * H[:, j - 1],
+        ),
+        Misconception(
+            "dot product",
+            "That is h_i·h_j, a number, as if B were the identity.",
+            lambda H, i, j: H[:, i - 1] @ H[:, j - 1],
+        ),
+        Misconception(
+            "rows of H, counted from 0",
+            "You took rows, and counted from 0: h_1 is H[:, 0].",
+            lambda H, i, j: v_ij(H.T, i + 1, j + 1) if max(i, j) < 3 else None,
+        ),
+        Misconception(
+            "one mixed product twice",
+            "You repeated one of the mixed products: they belong to B12, B13 and B23, in this "
+            "order.",
+            lambda H, i, j: v_ij(H, i, j)[[0, 1, 2, 1, 4, 5]],
+            variants=(lambda H, i, j: v_ij(H, i, j)[[0, 1, 2, 3, 3, 5]],),
+        ),
+        Misconception(
+            "B13 and B23 exchanged",
+            "b ends with B13, B23, B33: you have B23 before B13.",
+            lambda H, i, j: v_ij(H, i, j)[[0, 1, 2, 4, 3, 5]],
+        ),
+        Misconception(
+            "diagonal first",
+            "Your v goes with (B11, B22, B33, B12, B13, B23); the notes' b is (B11, B12, B22, "
+            "B13, B23, B33).",
+            lambda H, i, j: v_ij(H, i, j)[[0, 2, 5, 1, 3, 4]],
+            variants=(lambda H, i, j: v_ij(H, i, j)[[0, 2, 5, 1, 4, 3]],),
+        ),
+        Misconception(
+            "row i and column j",
+            "You took one row and one column: both are columns.",
+            lambda H, i, j: _of(H[i - 1], H[:, j - 1]),
+            variants=(lambda H, i, j: _of(H[:, i - 1], H[j - 1]),),
+        ),
+        Misconception(
+            "everything doubled",
+            "The squares a1 b1 stand once: only mixed entries of B have two products.",
+            lambda H, i, j: v_ij(H, i, j) * (2 - _MIXED),
+            variants=(lambda H, i, j: v_ij(H, i, j) * (1 + _MIXED),),
         ),
     ),
     reference=v_ij,

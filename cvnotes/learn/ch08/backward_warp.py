@@ -46,7 +46,9 @@ def _looked_up(image: Array, m: Array, size: tuple[int, int]) -> Array:
 def _warps(rng: Rng) -> list[Case]:
     shift = np.array([[1.0, 0, 1], [0, 1, 1], [0, 0, 1]])
     cases = [Case((np.array([[1.0, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12]]), shift, (4, 3)))]
-    while len(cases) < 3:
+    # smaller than the source, and from its far corner
+    cases.append(Case((cases[0].args[0], shift * [[1, 1, -1], [1, 1, -1], [1, 1, 1]], (2, 2))))
+    while len(cases) < 4:
         H = np.eye(3) + rng.uniform(-0.25, 0.25, (3, 3)) * [[1, 1, 8], [1, 1, 8], [0.05, 0.05, 0]]
         H[:2, :2] *= 1.3
         H, size = rounded(H, 3), (14, 9)
@@ -111,6 +113,23 @@ def _interpolated(image: Array, H: Array, size: tuple[int, int]) -> Array:
 def _outside_nan(image: Array, H: Array, size: tuple[int, int]) -> Array:
     inside = backward_warp(np.ones_like(image), H, size)
     return np.where(inside > 0, backward_warp(image, H, size), np.nan)
+
+
+def _inside_of(image: Array, H: Array, size: tuple[int, int]) -> Array:
+    """Leave out what lies outside of the target, in place of the source."""
+    sources = np.round(_sources(np.linalg.inv(H), size))
+    inside = ((sources >= 0) & (sources < size)).all(1).reshape(size[::-1])
+    return np.where(inside, backward_warp(image, H, size), 0.0)
+
+
+def _outside(image: Array, H: Array, size: tuple[int, int], value: float) -> Array:
+    inside = backward_warp(np.ones_like(image), H, size)
+    return np.where(inside > 0, backward_warp(image, H, size), value)
+
+
+def _modulo(image: Array, H: Array, size: tuple[int, int]) -> Array:
+    u, v = np.round(_sources(np.linalg.inv(H), size)).astype(int).T
+    return np.asarray(image[v % image.shape[0], u % image.shape[1]].reshape(size[::-1]))
 
 
 BACKWARD = Exercise(
@@ -241,6 +260,54 @@ BACKWARD = Exercise(
             "bilinear",
             "You interpolated between four pixels; asked is the nearest one.",
             _interpolated,
+        ),
+        Misconception(
+            "rows and columns exchanged at the look-up",
+            "image[u, v] reads row u: rows come first, image[v, u].",
+            lambda image, H, size: _looked_up(image.T, _sources(np.linalg.inv(H), size), size),
+            variants=(
+                lambda image, H, size: _looked_up(
+                    image, _sources(np.linalg.inv(H), size)[:, ::-1], size
+                ),
+            ),
+        ),
+        Misconception(
+            "u and v exchanged in the target",
+            "You went through the target with (v, u): u counts its columns.",
+            lambda image, H, size: backward_warp(image, H, size[::-1]).T,
+        ),
+        Misconception(
+            "forward with H⁻¹",
+            "You sent source pixels to the target, and with H⁻¹: go through the target's pixels, "
+            "and look up at H⁻¹.",
+            lambda image, H, size: _forward(image, np.linalg.inv(H), size),
+        ),
+        Misconception(
+            "border of the target's size",
+            "You asked whether the position lies inside of the target; it is looked up in the "
+            "source.",
+            lambda image, H, size: _inside_of(image, H, size),
+        ),
+        Misconception(
+            "value outside",
+            "Outside of the source the task asks for 0; you have another value there.",
+            lambda image, H, size: _outside(image, H, size, 255.0),
+            variants=(
+                lambda image, H, size: _outside(image, H, size, -1.0),
+                lambda image, H, size: _outside(image, H, size, image.mean()),
+            ),
+        ),
+        Misconception(
+            "wrapped around",
+            "Outside of the source you went on at its other side, as % does; the task asks for 0 "
+            "there.",
+            lambda image, H, size: _modulo(image, H, size),
+        ),
+        Misconception(
+            "upside down",
+            "Your picture stands on its head: rows count downwards.",
+            lambda image, H, size: backward_warp(image, H, size)[::-1],
+            variants=(lambda image, H, size: backward_warp(image[::-1], H, size),),
         ),
     ),
     reference=backward_warp,

@@ -65,6 +65,31 @@ def _along_v(image: Array, u: float, v: float) -> float:
     return (1 - dv) * I1 + dv * I3
 
 
+def _without_mixed(image: Array, u: float, v: float) -> float:
+    i, j, du, dv = _split(u, v)
+    I1, I2, I3, _ = _four(image, i, j)
+    return I1 + du * (I2 - I1) + dv * (I3 - I1)
+
+
+def _inwards(image: Array, u: float, v: float) -> float:
+    i, j, du, dv = _split(u, v)
+    i, j = min(i, image.shape[1] - 2), min(j, image.shape[0] - 2)
+    return _blend(*_four(image, i, j), du, dv)
+
+
+def _blend_two(image: Array, u: float, v: float) -> float:
+    i, j, du, dv = _split(u, v)
+    I1, _, _, I4 = _four(image, i, j)
+    return (1 - du * dv) * I1 + du * dv * I4
+
+
+def _by_distance(image: Array, u: float, v: float) -> float:
+    i, j, du, dv = _split(u, v)
+    far = np.hypot([du, 1 - du, du, 1 - du], [dv, dv, 1 - dv, 1 - dv])
+    weights = 1 / np.maximum(far, 1e-12)
+    return float(weights @ np.array(_four(image, i, j)) / weights.sum())
+
+
 BILINEAR = Exercise(
     name="bilinear",
     chapter=8,
@@ -113,6 +138,10 @@ BILINEAR = Exercise(
             "nearest pixel",
             "That is the nearest pixel; the other three count too.",
             lambda image, u, v: image[round(v), round(u)],
+            variants=(
+                lambda image, u, v: image[int(np.floor(v + 0.5)), int(np.floor(u + 0.5))],
+                lambda image, u, v: image[int(np.ceil(v - 0.5)), int(np.ceil(u - 0.5))],
+            ),
         ),
         Misconception(
             "pixel at the left and above",
@@ -181,6 +210,45 @@ BILINEAR = Exercise(
             "ceil for floor",
             "You took the ceiling: the first pixel is at (⌊u⌋, ⌊v⌋).",
             lambda image, u, v: image[int(np.ceil(v)), int(np.ceil(u))],
+        ),
+        Misconception(
+            "mixed term left out",
+            "You added what changes along u and along v; the term with ΔuΔv is missing: I4 − I3 − "
+            "I2 + I1.",
+            lambda image, u, v: _without_mixed(image, u, v),
+        ),
+        Misconception(
+            "border moved inwards",
+            "In the last column or row you took the pixel before it: at whole numbers Δ is 0, and "
+            "the pixel itself counts.",
+            lambda image, u, v: _inwards(image, u, v),
+        ),
+        Misconception(
+            "rounded result",
+            "You rounded the result, or cut its decimals off: it is a number between the four.",
+            lambda image, u, v: float(np.rint(bilinear(image, u, v))),
+            variants=(lambda image, u, v: float(int(bilinear(image, u, v))),),
+        ),
+        Misconception(
+            "sum of the four",
+            "You added the four pixels without weights.",
+            lambda image, u, v: np.sum(_four(image, *_split(u, v)[:2])),
+        ),
+        Misconception(
+            "diagonal pixels only",
+            "You interpolated between I1 and I4 only: I2 and I3 count too.",
+            lambda image, u, v: _blend_two(image, u, v),
+        ),
+        Misconception(
+            "weights of the distance",
+            "You weighted by the inverse of the distance; bilinear weights are products of 1 − Δ "
+            "and Δ.",
+            lambda image, u, v: _by_distance(image, u, v),
+        ),
+        Misconception(
+            "half-pixel centres",
+            "You took pixel centres at halves. Here whole numbers are the centres.",
+            lambda image, u, v: bilinear(image, max(u - 0.5, 0.0), max(v - 0.5, 0.0)),
         ),
     ),
     reference=bilinear,

@@ -62,6 +62,19 @@ def _wrapped_around(m: Array, size: tuple[int, int]) -> int | None:
     return size[0] * size[1] - len(np.unique(pixels % size, axis=0))
 
 
+def _tested_first(m: Array, size: tuple[int, int], beyond: float) -> int:
+    """Leave out what is outside of the pixel centres, or of pixels from 0 to width."""
+    inside = (m >= 0).all(1) & (m <= np.array(size) - 1 + beyond).all(1)
+    return size[0] * size[1] - len(_hit(m[inside], size))
+
+
+def _picture(m: Array, size: tuple[int, int]) -> Array:
+    picture = np.zeros(size[::-1])
+    u, v = _hit(m, size).astype(int).T
+    picture[v, u] = 1
+    return picture
+
+
 HOLES = Exercise(
     name="count_holes",
     chapter=8,
@@ -150,6 +163,70 @@ HOLES = Exercise(
             "positions that land inside",
             "That is how many positions land inside; the holes are pixels on which none does.",
             _landed_inside,
+        ),
+        Misconception(
+            "tested before rounding",
+            "You asked whether a position lies between the outermost pixel centres before "
+            "rounding: −0.4 is rounded to pixel 0, and colours it.",
+            lambda m, size: _tested_first(m, size, 0.0),
+            variants=(lambda m, size: _tested_first(m, size, 1.0),),
+        ),
+        Misconception(
+            "not rounded",
+            "You compared positions as they are: several within one pixel colour it once.",
+            lambda m, size: (
+                size[0] * size[1] - len(np.unique(m[((m >= 0) & (m < size)).all(1)], axis=0))
+            ),
+        ),
+        Misconception(
+            "columns and rows one by one",
+            "You counted columns and rows that are hit, one by one: a pixel is hit if one "
+            "position has both.",
+            lambda m, size: (
+                size[0] * size[1]
+                - len(np.unique(_hit(m, size)[:, 0])) * len(np.unique(_hit(m, size)[:, 1]))
+            ),
+            variants=(lambda m, size: size[0] * size[1] - len(np.unique(_hit(m, size))),),
+        ),
+        Misconception(
+            "one row and column too few",
+            "The target has width × height pixels, from 0 to width − 1 and height − 1.",
+            lambda m, size: (
+                (size[0] - 1) * (size[1] - 1) - len(_hit(m, (size[0] - 1, size[1] - 1)))
+            ),
+            variants=(lambda m, size: (size[0] - 1) * (size[1] - 1) - len(_hit(m, size)),),
+        ),
+        Misconception(
+            "one row and column too many",
+            "The target has width × height pixels, from 0 to width − 1: position width is outside.",
+            lambda m, size: (
+                (size[0] + 1) * (size[1] + 1) - len(_hit(m, (size[0] + 1, size[1] + 1)))
+            ),
+        ),
+        Misconception(
+            "border repeated",
+            "You moved positions outside to the border; they colour nothing.",
+            lambda m, size: (
+                size[0] * size[1]
+                - len(np.unique(np.clip(np.rint(m), 0, np.array(size) - 1), axis=0))
+            ),
+        ),
+        Misconception(
+            "pixel 0 left out",
+            "Row 0 and column 0 are inside: u ≥ 0, not u > 0.",
+            lambda m, size: size[0] * size[1] - int((_hit(m, size) > 0).all(1).sum()),
+        ),
+        Misconception(
+            "source pixels without a target",
+            "That is how many source pixels colour nothing, or nothing new; holes are pixels of "
+            "the target.",
+            lambda m, size: len(m) - len(_hit(m, size)),
+        ),
+        Misconception(
+            "where the holes are",
+            "You gave the picture, or a list; asked is how many holes there are.",
+            lambda m, size: _picture(m, size),
+            variants=(lambda m, size: 1 - _picture(m, size),),
         ),
     ),
     reference=count_holes,

@@ -130,6 +130,56 @@ DEPTH = Exercise(
             "You took the baseline twice.",
             lambda alpha, b, left, right: 2 * alpha * b / (left - right),
         ),
+        Misconception(
+            "distance in pixels",
+            "That is the disparity; the depth is α b divided by it.",
+            lambda alpha, b, left, right: left - right,
+            variants=(lambda alpha, b, left, right: right - left,),
+        ),
+        Misconception(
+            "a small number added",
+            "You added a small number to the disparity so as not to divide by 0; np.inf is asked "
+            "there, and NumPy gives it by itself.",
+            lambda alpha, b, left, right: alpha * b / (left - right + 1e-9),
+            variants=(
+                lambda alpha, b, left, right: alpha * b / np.maximum(left - right, 1e-9),
+                lambda alpha, b, left, right: alpha * b / (left - right + 1e-6),
+                lambda alpha, b, left, right: alpha * b / (left - right + 1e-12),
+            ),
+        ),
+        Misconception(
+            "the other picture only",
+            "You divided by the column of the right picture; the disparity is the difference of "
+            "both.",
+            lambda alpha, b, left, right: alpha * b / right,
+        ),
+        Misconception(
+            "square of the disparity",
+            "Depth falls with the disparity itself, not with its square.",
+            lambda alpha, b, left, right: alpha * b / (left - right) ** 2,
+        ),
+        Misconception(
+            "one depth for all",
+            "You gave one depth for all points: each has its own.",
+            lambda alpha, b, left, right: float(np.mean(alpha * b / (left - right))),
+            variants=(lambda alpha, b, left, right: float(alpha * b / np.mean(left - right)),),
+        ),
+        Misconception(
+            "α divided by b",
+            "You divided the focal length by the baseline: Z = α b / d.",
+            lambda alpha, b, left, right: alpha / (b * (left - right)),
+        ),
+        Misconception(
+            "one pixel off",
+            "The disparity is u_left − u_right, without a 1.",
+            lambda alpha, b, left, right: alpha * b / (left - right + 1),
+            variants=(lambda alpha, b, left, right: alpha * b / (left - right - 1),),
+        ),
+        Misconception(
+            "points at infinity left out",
+            "Right, but points at infinity are missing: np.inf in their place.",
+            lambda alpha, b, left, right: (alpha * b / (left - right))[left != right],
+        ),
     ),
     reference=depth,
     concepts=("70",),

@@ -23,6 +23,28 @@ _ALPHA, _BASELINE, _U0 = 640.0, 800.0, 319.5
 _D = float(np.subtract(*_seen(nearest_edge())))
 
 
+def _edges() -> Array:
+    """Give the depths of the upright edges: four of the tall block, then those of the others."""
+    from cvnotes.pictures import blocks
+
+    tops = blocks().vertices.reshape(-1, 4, 3)[:6].reshape(-1, 3)
+    upper = tops[tops[:, 1] < 1000]
+    return np.asarray(stereo_cameras()[0].depth(upper))
+
+
+def _edge(i: int) -> float:
+    return float(_edges()[i])
+
+
+def _of_an_edge(answer: Array, _: Case) -> bool:
+    """Tell whether a depth is that of something else in the picture."""
+    return bool(9500 < answer < 25_000)
+
+
+def _nearly(answer: Array, case: Case) -> bool:
+    return bool(abs(answer - case.right) < 0.2 * case.right)
+
+
 FAR = Exercise(
     name="how_far",
     chapter=8,
@@ -91,6 +113,86 @@ FAR = Exercise(
                 "the right."
             ),
             lambda: -how_far(),
+        ),
+        Misconception(
+            "another edge of the tall block",
+            "That is an edge of the tall block, but not the nearest one: it is the one in the "
+            "middle, where the light and the dark side meet.",
+            lambda: _edge(0),
+            variants=(
+                lambda: _edge(3),
+                lambda: _edge(2),
+            ),
+            same=within_part(0.011),
+        ),
+        Misconception(
+            "an edge of another block",
+            "That is an edge of one of the lower blocks.",
+            lambda: _edge(8),
+            variants=(
+                lambda: _edge(5),
+                lambda: _edge(6),
+                lambda: _edge(7),
+                lambda: _edge(10),
+            ),
+            same=within_part(0.011),
+        ),
+        Misconception(
+            "the column for the disparity",
+            "You divided by the column of one picture; the disparity is the difference of both.",
+            lambda: _ALPHA * _BASELINE / _seen(nearest_edge())[0],
+            variants=(lambda: _ALPHA * _BASELINE / _seen(nearest_edge())[1],),
+        ),
+        Misconception(
+            "the right picture only",
+            "You measured from the middle of the right picture. One picture knows no depths: take "
+            "the difference of both columns.",
+            lambda: _ALPHA * _BASELINE / (_seen(nearest_edge())[1] - _U0),
+        ),
+        Misconception(
+            "upside down",
+            "You turned the fraction around: larger disparities mean nearer points, Z = α b / d.",
+            lambda: _D * _BASELINE / _ALPHA,
+            variants=(
+                lambda: _D * _ALPHA / _BASELINE,
+                lambda: _D / (_ALPHA * _BASELINE),
+            ),
+        ),
+        Misconception(
+            "proportional to the disparity",
+            "You multiplied by the disparity: divide, Z = α b / d.",
+            lambda: _ALPHA * _BASELINE * _D,
+        ),
+        Misconception(
+            "α and b divided",
+            "You divided α by b, or b by α: Z = α b / d.",
+            lambda: _BASELINE / (_ALPHA * _D),
+            variants=(lambda: _ALPHA / (_BASELINE * _D),),
+        ),
+        Misconception(
+            "twice the baseline",
+            "You took the baseline twice: the cameras are 800 mm apart.",
+            lambda: 2 * how_far(),
+            same=within_part(0.011),
+        ),
+        Misconception(
+            "α b",
+            "That is α b; divide it by the disparity.",
+            lambda: _ALPHA * _BASELINE,
+        ),
+        Misconception(
+            "columns not exact enough",
+            "That is near: each pixel of the disparity counts 2 %. Enlarge both pictures, and "
+            "read the edge at the same height.",
+            lambda: 1.1 * how_far(),
+            seen=_nearly,
+        ),
+        Misconception(
+            "something else in the picture",
+            "That is the depth of something else, or one of the columns is: the edge must be the "
+            "same in both pictures.",
+            lambda: 1.9 * how_far(),
+            seen=_of_an_edge,
         ),
     ),
     reference=how_far,

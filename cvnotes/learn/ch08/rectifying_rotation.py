@@ -166,6 +166,57 @@ RECTIFY = Exercise(
             "You kept z and made x perpendicular to it: x has to lie along the baseline.",
             _old_z,
         ),
+        Misconception(
+            "the world's z axis",
+            "You took the world's z axis, (0, 0, 1); asked is nearness to the left camera's, R[2].",
+            lambda R, left, right: _from_x(np.array([0.0, 0, 1]), right - left),
+        ),
+        Misconception(
+            "multiplied by R once more",
+            "The rows are axes in the world already: that is the rotation, R does not come once "
+            "more.",
+            lambda R, left, right: rectifying_rotation(R, left, right) @ R,
+            variants=(
+                lambda R, left, right: R @ rectifying_rotation(R, left, right),
+                lambda R, left, right: rectifying_rotation(R, left, right) @ R.T,
+                lambda R, left, right: R.T @ rectifying_rotation(R, left, right),
+            ),
+        ),
+        Misconception(
+            "the turn from the old rotation",
+            "That is by how much the left camera is turned; asked is the rotation itself, CRF ← "
+            "WRF.",
+            lambda R, left, right: R @ rectifying_rotation(R, left, right).T,
+        ),
+        Misconception(
+            "a column of R for y",
+            "You made z = x × R[:, 1] or the like: a column of R is an axis of the world.",
+            lambda R, left, right: _old_y(R.T, left, right),
+        ),
+        Misconception(
+            "y not perpendicular",
+            "You kept the old y axis as it is: it need not be perpendicular to the baseline.",
+            lambda R, left, right: np.array(
+                [_unit(right - left), R[1], np.cross(_unit(right - left), R[1])]
+            ),
+            variants=(lambda R, left, right: np.array([_unit(right - left), R[1], R[2]]),),
+        ),
+        Misconception(
+            "sum of the centres",
+            "You added the centres; the baseline is their difference, right − left.",
+            lambda R, left, right: _from_x(R[2], right + left),
+        ),
+        Misconception(
+            "baseline alone",
+            "That is the x axis; y = z_old × x and z = x × y are missing.",
+            lambda R, left, right: _unit(right - left),
+        ),
+        Misconception(
+            "y from the world",
+            "You took the world's y axis for the new one's neighbour; asked is that z stays near "
+            "R[2].",
+            lambda R, left, right: _old_y(np.eye(3), left, right),
+        ),
     ),
     reference=rectifying_rotation,
     concepts=("70", "j"),

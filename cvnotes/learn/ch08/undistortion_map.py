@@ -67,6 +67,17 @@ def _half_pixels(A: Array, k: Array, size: tuple[int, int]) -> Array:
     return moved.reshape(size[1], size[0], 2)
 
 
+def _centred(A: Array, size: tuple[int, int], less: int) -> Array:
+    B = np.array(A)
+    B[:2, 2] = (np.array(size) - less) / 2
+    return B
+
+
+def _twice(A: Array, k: Array, size: tuple[int, int]) -> Array:
+    offset = undistortion_map(A, k, size) - A[:2, 2]
+    return np.asarray(A[:2, 2] + offset * lens_factor(offset / A[[0, 1], [0, 1]], k))
+
+
 UNDISTORTION = Exercise(
     name="undistortion_map",
     chapter=8,
@@ -181,6 +192,54 @@ UNDISTORTION = Exercise(
             "You took pixel centres at halves. Here whole numbers are the centres.",
             lambda A, k, size: _half_pixels(A, k, size),
             variants=(lambda A, k, size: _half_pixels(A, k, size) - 0.5,),
+        ),
+        Misconception(
+            "u multiplied, not u − u0",
+            "The radius is right, but L multiplies u − u0 and v − v0, not u and v themselves.",
+            lambda A, k, size: (
+                pixel_centres(size).reshape(size[1], size[0], 2)
+                * _factors(A, k, size).reshape(size[1], size[0], 1)
+            ),
+        ),
+        Misconception(
+            "principal point in the middle",
+            "You took the middle of the picture for the principal point: it is (A[0, 2], A[1, 2]).",
+            lambda A, k, size: undistortion_map(_centred(A, size, 1), k, size),
+            variants=(lambda A, k, size: undistortion_map(_centred(A, size, 0), k, size),),
+        ),
+        Misconception(
+            "the factors alone",
+            "These are the factors L; they multiply u − u0 and v − v0.",
+            lambda A, k, size: _factors(A, k, size).reshape(size[1], size[0]),
+        ),
+        Misconception(
+            "radius from the pixels' corner",
+            "You measured the radius from pixel (0, 0); its centre is the principal point.",
+            lambda A, k, size: _by(
+                A, lens_factor(pixel_centres(size) / A[[0, 1], [0, 1]], k), size
+            ),
+        ),
+        Misconception(
+            "u and v first",
+            "You have two pictures, one of u and one of v; asked is the shape (height, width, 2): "
+            "axis=-1.",
+            lambda A, k, size: np.moveaxis(undistortion_map(A, k, size), -1, 0),
+        ),
+        Misconception(
+            "coefficients exchanged",
+            "k1 goes with r², k2 with r⁴.",
+            lambda A, k, size: undistortion_map(A, k[::-1], size),
+        ),
+        Misconception(
+            "rows and columns exchanged",
+            "You went through the picture with rows for columns: np.meshgrid(np.arange(width), "
+            "np.arange(height)).",
+            lambda A, k, size: undistortion_map(A, k, size[::-1]).transpose(1, 0, 2)[..., ::-1],
+        ),
+        Misconception(
+            "the lens twice",
+            "You applied the lens twice.",
+            lambda A, k, size: _twice(A, k, size),
         ),
     ),
     reference=undistortion_map,

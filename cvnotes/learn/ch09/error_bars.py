@@ -130,6 +130,79 @@ ERRORS = Exercise(
             "You divided Σ r² by p: n − p.",
             lambda J, r: _with_variance(J, r @ r / J.shape[1]),
         ),
+        Misconception(
+            "σ² outside of the root",
+            "σ² stands under the root: σ² √ is one σ too many.",
+            lambda J, r: r @ r / (len(r) - J.shape[1]) * np.sqrt(np.diag(np.linalg.inv(J.T @ J))),
+        ),
+        Misconception(
+            "divided by the root of n",
+            "You divided by √n, as for a mean; (JᵀJ)⁻¹ has counted the residuals already.",
+            lambda J, r: error_bars(J, r) / np.sqrt(len(r)),
+        ),
+        Misconception(
+            "roots of the whole covariance",
+            "You took the root of the whole matrix; asked are the roots of its diagonal.",
+            lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1]) * np.linalg.inv(J.T @ J)),
+            variants=(
+                lambda J, r: np.sqrt(
+                    np.abs(r @ r / (len(r) - J.shape[1]) * np.linalg.inv(J.T @ J))
+                ),
+            ),
+        ),
+        Misconception(
+            "sum of the residuals",
+            "You added residuals without squaring them; they cancel: σ² = Σ r² / (n − p).",
+            lambda J, r: _with_variance(J, np.abs(r).sum() / (len(r) - J.shape[1])),
+            variants=(lambda J, r: _with_variance(J, r.sum() ** 2 / (len(r) - J.shape[1])),),
+        ),
+        Misconception(
+            "mean of absolute values",
+            "You took the mean of |r| for σ: σ² = Σ r² / (n − p).",
+            lambda J, r: _with_variance(J, np.abs(r).mean() ** 2),
+            variants=(lambda J, r: _with_variance(J, np.abs(r).mean()),),
+        ),
+        Misconception(
+            "root of the diagonal first",
+            "You took the diagonal of JᵀJ, or its root, before the inverse: invert the whole "
+            "matrix first.",
+            lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1])) / np.diag(J.T @ J),
+            variants=(lambda J, r: 1 / np.sqrt(np.diag(J.T @ J)),),
+        ),
+        Misconception(
+            "J not transposed",
+            "JᵀJ is (p, p); J Jᵀ is (n, n), one for each residual.",
+            lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1]) * np.abs(np.diag(J @ J.T))),
+            variants=(
+                lambda J, r: np.sqrt(
+                    r @ r / (len(r) - J.shape[1]) * np.abs(np.diag(np.linalg.pinv(J @ J.T)))
+                ),
+            ),
+        ),
+        Misconception(
+            "pairs for residuals",
+            "You counted half as many residuals: r has n of them already.",
+            lambda J, r: (
+                _with_variance(J, r @ r / (len(r) / 2 - J.shape[1]))
+                if len(r) > 2 * J.shape[1]
+                else None
+            ),
+            variants=(lambda J, r: _with_variance(J, r @ r / (2 * len(r) - J.shape[1])),),
+        ),
+        Misconception(
+            "two or three sigma",
+            "You gave a wider interval: asked is one standard deviation.",
+            lambda J, r: 1.96 * error_bars(J, r),
+            variants=(
+                lambda J, r: 2 * error_bars(J, r),
+                lambda J, r: 3 * error_bars(J, r),
+            ),
+        ),
+        Misconception(
+            "n − p − 1",
+            "You divided Σ r² by n − p − 1: p counts all parameters already.",
+            lambda J, r: _with_variance(J, r @ r / (len(r) - J.shape[1] - 1)),
+        ),
     ),
     reference=error_bars,
     concepts=("m", "64"),

@@ -1,5 +1,8 @@
 """What refinement makes small."""
 
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -64,6 +67,23 @@ def _without_T(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
 def _undistorted(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
     seen = Camera(A, lens=Lens(tuple(k))).ideal(m) @ A[:2, :2].T + A[:2, 2]
     return np.asarray(_without_lens(A, k, G, W, m) - m + seen)
+
+
+def _pixels(A: Array, xy: Array) -> Array:
+    return np.asarray(xy @ A[:2, :2].T + A[:2, 2])
+
+
+def _undivided(G: Array, W: Array) -> Array:
+    return np.asarray((W @ G[:3, :3].T + G[:3, 3])[:, :2])
+
+
+def _by_r(xy: Array, k: Array) -> Array:
+    r = np.linalg.norm(xy, axis=1, keepdims=True)
+    return np.asarray(xy * (1 + k[0] * r + k[1] * r**2))
+
+
+def _at_one(A: Array, m: Array) -> Array:
+    return np.asarray(np.linalg.solve(A[:2, :2], (m - A[:2, 2]).T).T)
 
 
 RESIDUALS = Exercise(
@@ -175,6 +195,77 @@ RESIDUALS = Exercise(
             "lens of the wrong points",
             "You undistorted what was seen; prediction distorts the ideal points.",
             lambda A, k, G, W, m: _undistorted(A, k, G, W, m),
+        ),
+        Misconception(
+            "r for r²",
+            "You used r and r² where L has r² and r⁴.",
+            lambda A, k, G, W, m: m - _pixels(A, _by_r(_ideal(G, W), k)),
+        ),
+        Misconception(
+            "no division",
+            "You did not divide by z before the lens.",
+            lambda A, k, G, W, m: (
+                m - _pixels(A, _undivided(G, W) * lens_factor(_undivided(G, W), k))
+            ),
+            variants=(lambda A, k, G, W, m: m - _pixels(A, _undivided(G, W)),),
+        ),
+        Misconception(
+            "lens before the division",
+            "You distorted before dividing by z: the lens acts on x/z and y/z.",
+            lambda A, k, G, W, m: m - _pixels(A, _ideal(G, W) * lens_factor(_undivided(G, W), k)),
+        ),
+        Misconception(
+            "predicted minus observed, lens left out",
+            "The sign is the other way round, and the lens is missing.",
+            lambda A, k, G, W, m: -_without_lens(A, k, G, W, m),
+        ),
+        Misconception(
+            "the 1 of L left out",
+            "L starts with 1: without distortion nothing moves.",
+            lambda A, k, G, W, m: m - _pixels(A, _ideal(G, W) * (lens_factor(_ideal(G, W), k) - 1)),
+        ),
+        Misconception(
+            "undistorted",
+            "You undid the lens in the prediction: image formation distorts.",
+            lambda A, k, G, W, m: m - _pixels(A, Lens(tuple(k)).undistort(_ideal(G, W))),
+        ),
+        Misconception(
+            "on the plane z = 1",
+            "You compared on the plane z = 1; corners are measured in pixels, and so are "
+            "residuals.",
+            lambda A, k, G, W, m: _at_one(A, m) - _ideal(G, W) * lens_factor(_ideal(G, W), k),
+            variants=(lambda A, k, G, W, m: m - _ideal(G, W) * lens_factor(_ideal(G, W), k),),
+        ),
+        Misconception(
+            "one number",
+            "That is one number for all; least squares wants all differences.",
+            lambda A, k, G, W, m: np.linalg.norm(residuals(A, k, G, W, m)),
+            variants=(
+                lambda A, k, G, W, m: np.sqrt((residuals(A, k, G, W, m) ** 2).sum(1).mean()),
+                lambda A, k, G, W, m: np.sqrt((residuals(A, k, G, W, m) ** 2).mean()),
+                lambda A, k, G, W, m: (residuals(A, k, G, W, m) ** 2).sum(),
+            ),
+        ),
+        Misconception(
+            "squared distances",
+            "These are squared distances, one for each corner; asked are the differences "
+            "themselves.",
+            lambda A, k, G, W, m: (residuals(A, k, G, W, m) ** 2).sum(1),
+        ),
+        Misconception(
+            "observed plus predicted",
+            "You added them: observed minus predicted.",
+            lambda A, k, G, W, m: 2 * m - residuals(A, k, G, W, m),
+        ),
+        Misconception(
+            "centred",
+            "You subtracted the mean of the residuals: it says how far the whole board is off.",
+            lambda A, k, G, W, m: residuals(A, k, G, W, m) - residuals(A, k, G, W, m).mean(0),
+        ),
+        Misconception(
+            "divided by what was observed",
+            "Those are relative errors; asked are pixels.",
+            lambda A, k, G, W, m: residuals(A, k, G, W, m) / m,
         ),
     ),
     reference=residuals,

@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,13 @@ from cvnotes.learn.checker.outcome import Outcome
 _AS_NEAR = 0.01
 
 Tried = tuple[Case, Outcome]
+
+
+class Found(NamedTuple):
+    """A mistake that was recognised: its name, and a sentence that helps."""
+
+    name: str
+    sentence: str
 
 
 def mistake_behind(
@@ -34,18 +41,47 @@ def mistake_behind(
     Returns
     -------
     Misconception or None
-        The first that agrees with every outcome, and is wrong where the student is.
+        The first that agrees with every outcome, and is wrong where the student is. Without one,
+        the first that agrees with all usual inputs, two of them at least: whoever made another
+        slip with what is special, a point at infinity or the last row, has made this one too.
     """
-    wrong = {id(case) for case in failing}
+    usual = [one for one in tried if not one[0].about and one[1].value is not None]
+    some = {id(case) for case, _ in usual} & {id(case) for case in failing}
+    found = _first_behind(exercise, tried, {id(case) for case in failing})
+    if found is None and len(some) > 1 and len(usual) < len(tried):
+        found = _first_behind(exercise, usual, some)
+    return found
+
+
+def _first_behind(
+    exercise: Exercise, tried: Sequence[Tried], wrong: set[int]
+) -> Misconception | None:
     for mistake in exercise.misconceptions:
         same = mistake.same or exercise.same
         for gives in (mistake.gives, *mistake.variants):
-            if _explains(exercise, gives, same, tried, wrong):
+            if explains(exercise, gives, same, tried, wrong):
                 return mistake
+        if mistake.seen is not None and _is_seen(mistake.seen, tried, wrong):
+            return mistake
     return None
 
 
-def _explains(
+def _is_seen(seen: Callable[[Array, Case], bool], tried: Sequence[Tried], wrong: set[int]) -> bool:
+    """Tell whether all wrong answers look like a mistake that has many results."""
+    try:
+        return all(
+            outcome.value is not None
+            and outcome.value.shape == case.right.shape
+            and bool(np.isfinite(outcome.value).all())
+            and seen(outcome.value, case)
+            for case, outcome in tried
+            if id(case) in wrong
+        )
+    except (np.linalg.LinAlgError, CvnotesError):
+        return False
+
+
+def explains(
     exercise: Exercise,
     gives: Callable[..., Any],
     same: Same,
@@ -91,12 +127,17 @@ def what_it_gives(function: Callable[..., Any], args: tuple[Any, ...]) -> Array 
     return None if given is None else np.asarray(given, dtype=np.float64)
 
 
-def misreadings(pixel: Callable[[], Array], size: tuple[int, int]) -> tuple[Misconception, ...]:
+def misreadings(
+    pixel: Callable[[], Array], size: tuple[int, int], near: float
+) -> tuple[Misconception, ...]:
     """Give what comes out if a pixel (2,) of a picture of size (width, height) is misread.
+
+    What is nearer than `near` to the pixel is right. The last ones are general: they go behind the
+    exercise's own.
 
     Examples
     --------
-    >>> slips = misreadings(lambda: np.array([600.0, 20.0]), (640, 480))
+    >>> slips = misreadings(lambda: np.array([600.0, 20.0]), (640, 480), 5.0)
     >>> {slip.name: slip.gives().tolist() for slip in slips}["v counted from below"]
     [600.0, 459.0]
     """
@@ -122,4 +163,36 @@ def misreadings(pixel: Callable[[], Array], size: tuple[int, int]) -> tuple[Misc
             "You measured from the middle of the picture; pixel (0, 0) is at its top left.",
             lambda: pixel() - last / 2,
         ),
+        Misconception(
+            "read on another scale",
+            "Both numbers are too large, or too small, by one factor: you measured in the pixels "
+            "of your screen. Count in those of the picture, as the axes of imshow do.",
+            lambda: 1.5 * pixel(),
+            variants=(lambda: 2 * pixel(), lambda: pixel() / 2),
+            seen=lambda answer, _: _on_another_scale(answer, pixel(), near),
+        ),
+        Misconception(
+            "the column alone",
+            "The column u is right; look at the row v again.",
+            lambda: pixel() - [0.0, 7 * near],
+            seen=lambda answer, _: bool(abs(answer[0] - pixel()[0]) < near),
+        ),
+        Misconception(
+            "the row alone",
+            "The row v is right; look at the column u again.",
+            lambda: pixel() - [7 * near, 0.0],
+            seen=lambda answer, _: bool(abs(answer[1] - pixel()[1]) < near),
+        ),
+        Misconception(
+            "near, not near enough",
+            "That is near, and not yet near enough: enlarge the picture.",
+            lambda: pixel() + 1.5 * near,
+            seen=lambda answer, _: bool(np.linalg.norm(answer - pixel()) < 4 * near),
+        ),
     )
+
+
+def _on_another_scale(answer: Array, pixel: Array, near: float) -> bool:
+    """Tell whether a pixel was read in a picture that was shown larger or smaller."""
+    scale = float(answer @ pixel / (pixel @ pixel))
+    return 0.2 < scale < 6 and bool(np.linalg.norm(answer / scale - pixel) < near / 2)

@@ -73,6 +73,8 @@ class Misconception:
     `gives` takes what the student's function takes; None where the mistake gives no numbers:
     an exception, NaN or infinity, as it happens. `variants` make the same mistake on other ways.
     `same` tells when two results of it are equal, if that is not what the exercise calls equal.
+    `seen`, (answer, case) → bool, recognises a mistake with many results by what all of them have
+    in common, and right answers have not; it is asked about each wrong answer.
     """
 
     name: str
@@ -80,6 +82,7 @@ class Misconception:
     gives: Callable[..., Any]
     variants: tuple[Callable[..., Any], ...] = ()
     same: Same | None = None
+    seen: Callable[[Array, Case], bool] | None = None
 
 
 @dataclass(frozen=True, eq=False)

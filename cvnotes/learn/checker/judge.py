@@ -8,9 +8,9 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.learn.checker.diagnosis import Tried, mistake_behind
-from cvnotes.learn.checker.difference import difference
 from cvnotes.learn.checker.equality import of_size_one, slack, tolerance, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Property
+from cvnotes.learn.checker.general import general_mistake
 from cvnotes.learn.checker.outcome import Outcome
 from cvnotes.learn.checker.remarks import other_shape, remarks, trouble
 from cvnotes.learn.checker.report import OPEN, RIGHT, WRONG, Report
@@ -152,12 +152,17 @@ def _wrong(
     alike = [x for x in failing if x[0] == failing[0][0]]
     _, why, case, outcome = min(alike, key=lambda x: x[2].size)
     sentences = [sentence for sentence, *_ in failing if sentence]
-    mistake = mistake_behind(exercise, tried, [x[2] for x in failing]) if sentences else None
+    wrong = [x[2] for x in failing]
+    mistake = mistake_behind(exercise, tried, wrong) if sentences else None
+    found = None
+    if mistake is None and not outcome.changed:
+        found = general_mistake(exercise, tried, wrong, case, why)
     if mistake is not None:
         why = mistake.sentence
+    elif found is not None:
+        why = found.sentence if why else f"{found.sentence} {hint_at(exercise)}"
     elif not why:
-        measured = difference(exercise, tried, [x[2] for x in failing])
-        why = f"{measured or 'Look at what does not hold;'} {hint_at(exercise)}"
+        why = f"Look at what does not hold; {hint_at(exercise)}"
     wanted = _scaled(exercise, case.right, outcome)
     shown = exercise.answer == "function"
     compared = shown and not outcome.changed
@@ -166,7 +171,7 @@ def _wrong(
         exercise.name,
         WRONG,
         why,
-        misconception=mistake.name if mistake else None,
+        misconception=mistake.name if mistake else found.name if found else None,
         holds=holding,
         fails=sentences[0] if sentences and came else "",
         counterexample=dict(zip(exercise.arguments, case.args, strict=True)) if shown else {},

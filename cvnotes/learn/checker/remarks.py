@@ -49,7 +49,7 @@ def other_shape(exercise: Exercise, answer: Array, case: Case) -> str:
     """Say what is probably wrong with a shape; what can be measured is measured."""
     given, wanted = answer.shape, case.right.shape
     text = f"The answer has shape {given}, wanted is {wanted}"
-    many = _one_for_each_point(exercise, case)
+    many = one_for_each_point(exercise, case)
     if wanted == ():
         return f"{text}: a single number is wanted."
     if given == wanted[::-1]:
@@ -73,10 +73,19 @@ def other_shape(exercise: Exercise, answer: Array, case: Case) -> str:
         return f"{text}: only one of several points came back; is the return inside of the loop?"
     if given == wanted[1:]:
         return f"{text}: only one row came back; is the return inside of a loop?"
+    if len(given) == 1 and len(wanted) > 1:
+        return f"{text}: all in one row; np.append and np.concatenate take an axis."
+    if len(given) > len(wanted) and given[: len(wanted)] == wanted:
+        last = "axis=1" if len(given) == 2 else "axis=-1"
+        return f"{text}: an axis too many; is a sum, a norm or an all along {last} missing?"
+    if len(given) == len(wanted) and given[1:] == wanted[1:]:
+        rows = "row" if len(wanted) > 1 else "number"
+        fewer = given[0] < wanted[0]
+        return f"{text}: {rows}s are missing." if fewer else f"{text}: there are {rows}s too many."
     return f"{text}."
 
 
-def _one_for_each_point(exercise: Exercise, case: Case) -> bool:
+def one_for_each_point(exercise: Exercise, case: Case) -> bool:
     """Tell whether an answer has a row for each of n points that were given."""
     wanted = case.right.shape
     return "(n" in exercise.task and any(

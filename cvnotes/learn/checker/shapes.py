@@ -1,0 +1,275 @@
+"""Answers of another shape than asked: how the numbers were laid out, measured where it can be."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.learn.checker.diagnosis import Found, Tried
+from cvnotes.learn.checker.equality import Same, tolerance
+from cvnotes.learn.checker.exercise import Case, Exercise
+from cvnotes.learn.checker.remarks import one_for_each_point, other_shape
+
+# What is compared: two arrays of one shape, equal or not.
+Equal = Callable[[Array, Array], bool]
+
+
+def misshapen(exercise: Exercise, tried: Sequence[Tried], shown: Case) -> Found | None:
+    """Name what is wrong with the shape of the answers.
+
+    Parameters
+    ----------
+    exercise : Exercise
+        What was asked.
+    tried : sequence of (Case, Outcome)
+        All cases, with what came of them.
+    shown : Case
+        The one that the student sees.
+
+    Returns
+    -------
+    Found or None
+        If the numbers are right and only laid out otherwise, in every case, it says how; if they
+        are not, what the shape alone tells. None if an answer is missing or the shapes are right.
+    """
+    pairs = [(o.value, c, tolerance(o.dtype)) for c, o in tried if o.value is not None]
+    others = [(value, c, bound) for value, c, bound in pairs if value.shape != c.right.shape]
+    if not others or len(pairs) < len(tried):
+        return None
+    here = next(((v, c) for v, c, _ in others if c is shown), others[0][:2])
+    head = f"The answer has shape {here[0].shape}, wanted is {here[1].right.shape}"
+    # Elsewhere a row of numbers may happen to have the shape that is asked.
+    rest_is_right = all(
+        value.shape != c.right.shape or exercise.same(value, c.right, bound)
+        for value, c, bound in pairs
+    )
+    if rest_is_right and exercise.answer == "function":  # a value would be given away
+        rows = one_for_each_point(exercise, here[1])
+        for name, sentence, fits in _LAYOUTS:
+            if all(_fits(fits, value, c.right, exercise.same, bound) for value, c, bound in others):
+                said = _ABOUT_POINTS.get(name, (name, sentence)) if rows else (name, sentence)
+                return Found(said[0], f"{head}: {said[1]}")
+    names = {_by_shape(exercise, value, c) for value, c, _ in others}
+    name = names.pop() if len(names) == 1 else "another shape"
+    return Found(name, other_shape(exercise, *here))
+
+
+def _fits(
+    fits: Callable[[Array, Array, Equal], bool],
+    answer: Array,
+    right: Array,
+    same: Same,
+    bound: float,
+) -> bool:
+    def equal(a: Array, b: Array) -> bool:
+        if a.shape == right.shape:
+            return same(a, b, bound)
+        if a.shape != b.shape or not np.array_equal(np.isnan(a), np.isnan(b)):
+            return False
+        size = float(np.abs(right[np.isfinite(right)]).max(initial=0.0)) or 1e-3
+        return np.allclose(a, b, rtol=0, atol=bound * size, equal_nan=True)
+
+    with np.errstate(all="ignore"):
+        return bool(answer.size and fits(answer, right, equal))
+
+
+def _turned(a: Array, right: Array, equal: Equal) -> bool:
+    """Tell whether the axes are in another order."""
+    if a.ndim != right.ndim or a.ndim < 2:
+        return False
+    orders = [(1, 0)] if a.ndim == 2 else [(1, 0, 2), (2, 1, 0), (2, 0, 1), (1, 2, 0), (0, 2, 1)]
+    turned = (np.transpose(a, order) for order in orders if len(order) == a.ndim)
+    return any(x.shape == right.shape and equal(x, right) for x in turned)
+
+
+def _column(a: Array, right: Array, equal: Equal) -> bool:
+    return a.shape == (*right.shape, 1) and right.ndim > 0 and equal(a[..., 0], right)
+
+
+def _in_brackets(a: Array, right: Array, equal: Equal) -> bool:
+    return a.size == right.size and a.ndim > right.ndim and equal(a.reshape(right.shape), right)
+
+
+def _flat(a: Array, right: Array, equal: Equal) -> bool:
+    if a.ndim != 1 or a.size != right.size or right.ndim < 2:
+        return False
+    return any(equal(a.reshape(right.shape, order=order), right) for order in ("C", "F"))
+
+
+def _rearranged(a: Array, right: Array, equal: Equal) -> bool:
+    return a.size == right.size and any(
+        equal(a.reshape(right.shape, order=order), right) for order in ("C", "F", "A")
+    )
+
+
+def _homogeneous(a: Array, right: Array, equal: Equal) -> bool:
+    if not _wider(a, right):
+        return False
+    finite = np.abs(a[..., -1:]) > 1e-12 * np.abs(a).max()
+    return equal(np.where(finite, a[..., :-1] / a[..., -1:], np.nan), right)
+
+
+def _lifted(a: Array, right: Array, equal: Equal) -> bool:
+    return _wider(a, right) and np.isin(a[..., -1], (0, 1)).all() and equal(a[..., :-1], right)
+
+
+def _wider(a: Array, right: Array) -> bool:
+    return a.ndim == right.ndim > 0 and a.shape == (*right.shape[:-1], right.shape[-1] + 1)
+
+
+def _too_wide(a: Array, right: Array, equal: Equal) -> bool:
+    if a.ndim != right.ndim or right.ndim == 0 or a.shape[:-1] != right.shape[:-1]:
+        return False
+    n = right.shape[-1]
+    return a.shape[-1] > n and (equal(a[..., :n], right) or equal(a[..., -n:], right))
+
+
+def _too_narrow(a: Array, right: Array, equal: Equal) -> bool:
+    if a.ndim != right.ndim or right.ndim == 0 or a.shape[:-1] != right.shape[:-1]:
+        return False
+    n = a.shape[-1]
+    return n < right.shape[-1] and (equal(a, right[..., :n]) or equal(a, right[..., -n:]))
+
+
+def _first(a: Array, right: Array, equal: Equal) -> bool:
+    return _one_of(a, right, equal, 0)
+
+
+def _last(a: Array, right: Array, equal: Equal) -> bool:
+    return _one_of(a, right, equal, -1)
+
+
+def _one_of(a: Array, right: Array, equal: Equal, i: int) -> bool:
+    if right.ndim == 0 or len(right) < 2:
+        return False
+    one = right[i]
+    return a.shape in (one.shape, (1, *one.shape)) and equal(a.reshape(one.shape), one)
+
+
+def _rows_left_out(a: Array, right: Array, equal: Equal) -> bool:
+    return a.ndim == right.ndim > 0 and len(a) < len(right) and _within(a, right, equal)
+
+
+def _rows_too_many(a: Array, right: Array, equal: Equal) -> bool:
+    return a.ndim == right.ndim > 0 and len(a) > len(right) and _within(right, a, equal)
+
+
+def _within(few: Array, many: Array, equal: Equal) -> bool:
+    """Tell whether the rows of one are among those of the other, in the same order."""
+    if few.shape[1:] != many.shape[1:]:
+        return False
+    rows = iter(many)
+    return all(any(equal(row, other) for other in rows) for row in few)
+
+
+def _diagonal(a: Array, right: Array, equal: Equal) -> bool:
+    return right.ndim == 2 and a.ndim == 1 and equal(a, np.diag(right))
+
+
+def _on_diagonal(a: Array, right: Array, equal: Equal) -> bool:
+    return right.ndim == 1 and a.shape == (len(right),) * 2 and equal(np.diag(a), right)
+
+
+def _whole(summary: Callable[[Array], Any]) -> Callable[[Array, Array, Equal], bool]:
+    def fits(a: Array, right: Array, equal: Equal) -> bool:
+        if right.size < 2 or not np.isfinite(right).all():
+            return False
+        return any(
+            np.shape(one) == a.shape and equal(a, np.asarray(one)) for one in _along(summary, right)
+        )
+
+    return fits
+
+
+def _along(summary: Callable[..., Any], right: Array) -> Iterator[Any]:
+    """Summarise everything, and each axis by itself."""
+    yield summary(right)
+    for axis in range(right.ndim):
+        yield np.apply_along_axis(summary, axis, right)
+
+
+_LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
+    ("transposed", "the numbers are right; an array has its rows first, so transpose it.", _turned),
+    (
+        "a column, not a row",
+        "the numbers are right, each in a bracket of its own: .ravel() or [:, 0] takes them out.",
+        _column,
+    ),
+    (
+        "brackets too many",
+        "the numbers are right, within brackets too many: take what is inside, or .reshape.",
+        _in_brackets,
+    ),
+    (
+        "all in one row",
+        "the numbers are right, one after the other; see np.reshape, or leave out a ravel, or "
+        "give np.append and np.concatenate an axis.",
+        _flat,
+    ),
+    ("arranged otherwise", "the numbers are right, the arrangement is not.", _rearranged),
+    (
+        "still homogeneous",
+        "still homogeneous: divide by the last coordinate, then leave it out.",
+        _homogeneous,
+    ),
+    ("last coordinate kept", "the numbers are right, with a 1 too many: leave it out.", _lifted),
+    ("columns too many", "the right numbers are among them: leave out the others.", _too_wide),
+    ("columns left out", "what is there is right, but numbers are missing.", _too_narrow),
+    ("the first only", "only the first came back; is the return inside of a loop?", _first),
+    (
+        "the last only",
+        "only the last came back; does each round of a loop overwrite the one before?",
+        _last,
+    ),
+    (
+        "rows left out",
+        "the rows are right, but some are missing: each of them is asked.",
+        _rows_left_out,
+    ),
+    ("rows too many", "the right rows are among them, but there are more.", _rows_too_many),
+    ("the diagonal only", "that is the diagonal only.", _diagonal),
+    ("a matrix for its diagonal", "asked is the diagonal alone: see np.diag.", _on_diagonal),
+    ("the mean", "that is the mean of what is asked; leave it out.", _whole(np.mean)),
+    ("the sum", "that is the sum of what is asked; leave it out.", _whole(np.sum)),
+    ("the length", "that is the length of what is asked; leave it out.", _whole(np.linalg.norm)),
+    ("the largest", "that is the largest of what is asked; leave it out.", _whole(np.max)),
+    ("the smallest", "that is the smallest of what is asked; leave it out.", _whole(np.min)),
+)
+# The same, where an answer has a row for each of n points.
+_ABOUT_POINTS = {
+    "transposed": (
+        "points as columns",
+        "the numbers are right; points are rows here, so transpose it.",
+    ),
+    "columns left out": (
+        "columns left out",
+        "what is there is right, but each row lacks a number.",
+    ),
+}
+
+
+def _by_shape(exercise: Exercise, answer: Array, case: Case) -> str:
+    """Name a shape, whatever the numbers are."""
+    given, wanted = answer.shape, case.right.shape
+    many = one_for_each_point(exercise, case)
+    if wanted == ():
+        return "several numbers for one"
+    if given == wanted[::-1]:
+        return "points as columns" if many and len(wanted) == 2 else "rows and columns exchanged"
+    if given == ():
+        return "one NaN for all" if np.isnan(answer) else "one number for all"
+    if answer.size == case.right.size:
+        return "arranged otherwise"
+    if given == wanted[1:]:
+        return "one of several"
+    if len(given) == 1 and len(wanted) > 1:
+        return "all in one row"
+    if len(given) > len(wanted) and given[: len(wanted)] == wanted:
+        return "an axis too many"
+    if len(given) == len(wanted):
+        if given[1:] == wanted[1:]:
+            return "rows too few" if given[0] < wanted[0] else "rows too many"
+        if given[:-1] == wanted[:-1]:
+            return "columns too few" if given[-1] < wanted[-1] else "columns too many"
+    return "another shape"
