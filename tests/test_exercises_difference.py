@@ -1,4 +1,7 @@
-"""Where no mistake has a name, the report says what differs, and says it truly."""
+"""Slips that any exercise knows: the report measures what differs, names it, and says it truly."""
+
+# Functions that go wrong use names that are not there.
+# ruff: noqa: F821
 
 import numpy as np
 import pytest
@@ -10,8 +13,8 @@ from cvnotes.learn.checker.judge import judge
 SEED = 2024
 
 
-def said(name, change):
-    """Give the report's message for a right answer that was changed."""
+def reported(name, change):
+    """Give the report on a right answer that was changed."""
     exercise = EXERCISES[name]
     outcomes = [
         attempt(lambda *given: change(np.asarray(exercise.reference(*given))), args)
@@ -19,31 +22,191 @@ def said(name, change):
     ]
     report = judge(exercise, outcomes, SEED)
     assert not report.passed
-    assert report.misconception is None
-    return report.message
+    return report
+
+
+def said(name, change):
+    """Give the report's message for a right answer that was changed."""
+    return reported(name, change).message
 
 
 @pytest.mark.parametrize(
-    ("name", "change", "sentence"),
+    ("name", "change", "called", "sentence"),
     [
-        ("project", lambda x: -x, "Your answer is right but for its sign"),
-        ("error_bars", lambda x: 2 * x, "the right one times 2, in every case."),
-        ("field_of_view", lambda x: x * np.pi, "the right one times π, in every case."),
-        ("v_ij", lambda x: x / 3, "the right one times 0.333333, in every case."),
-        ("project", lambda x: x + 0.5, "the right one plus 0.5 everywhere."),
-        ("project", lambda x: x + [1, 2], "Every row is the right one plus (1, 2)."),
-        ("camera_centre", lambda x: x[::-1], "The entries are the right ones, in the opposite"),
-        ("v_ij", lambda x: np.roll(x, 1), "The entries are the right ones, moved on by one place."),
-        ("distort", lambda x: x[[1, 0, *range(2, len(x))]], "The rows are the right ones, in"),
-        ("horizon", lambda x: x[[1, 0, 2]], "The numbers are the right ones, in another order."),
-        ("nearest_rotation", lambda R: R * [1, -1, 1], "sizes are right, signs are wrong in [0, 1"),
-        ("A_from_b", lambda A: A + [[0, 0, 0], [0, 0, 3.0], [0, 0, 0]],
+        ("project", lambda x: -x, "sign", "Your answer is right but for its sign"),
+        ("error_bars", lambda x: 7 * x, "a factor", "the right one times 7, in every case."),
+        ("field_of_view", lambda x: x * np.pi, "a factor", "times π, in every case."),
+        ("vanishing_point", np.degrees, "degrees for radians", "times 180/π: degrees"),
+        ("v_ij", lambda x: x / 3, "a factor", "the right one times 0.333333, in every case."),
+        ("project", lambda x: x + 0.5, "half a pixel", "the right one plus 0.5 everywhere."),
+        ("project", lambda x: x + [1, 2], "every row moved", "is the right one plus (1, 2)."),
+        ("camera_centre", lambda x: x[::-1], "entries in the opposite order", "right ones, in the"),
+        ("v_ij", lambda x: np.roll(x, 1), "entries moved on", "moved on by one place."),
+        ("distort", lambda x: x[[1, 0, *range(2, len(x))]], "rows in another order", "right ones"),
+        ("horizon", lambda x: x[[1, 0, 2]], "another order", "The numbers are the right ones, in"),
+        ("nearest_rotation", lambda R: R * [1, -1, 1], "signs of some numbers", "wrong in [0, 1"),
+        ("A_from_b", lambda A: A + [[0, 0, 0], [0, 0, 3.0], [0, 0, 0]], "a few numbers",
          "All is right but what stands in [1, 2]."),
-        ("residuals", lambda r: r * [1, 1.5], "Only column 1 of your answer is wrong."),
+        ("residuals", lambda r: r * [1, 1.5], "one column", "Only column 1 of your answer is"),
+        ("v_ij", lambda x: x**2, "squared", "take the roots"),
+        ("camera_centre", lambda x: 1 / x, "upside down", "turn the fraction around"),
+        ("error_bars", lambda x: np.round(x, 2), "few decimals", "rounded to two decimals"),
+        ("project", np.rint, "rounded", "rounded: leave them as they are"),
+        ("project", np.trunc, "decimals cut off", "as int() or an integer array"),
+        ("camera_centre", lambda x: x / np.linalg.norm(x), "scaled to length 1", "to length 1"),
+        ("form_image", lambda m: m.T.reshape(m.shape), "reshaped for transposed", "Take .T."),
+        ("distort", lambda x: 0 * x + x[:1], "one row for all", "the same row for all points"),
+        ("same_points", lambda x: x * [0, *[1] * (len(x) - 1)], "False too often", "[0]"),
+        ("drop", lambda x: np.where(x == x[0, 0], np.nan, x), "NaN too often", "is right, but"),
+        ("camera_centre", lambda x: 0 * x + [1, 2, 3], "one answer for all", "to every input"),
     ],
 )  # fmt: skip
-def test_what_differs_is_measured(name, change, sentence):
-    assert sentence in said(name, change)
+def test_what_differs_is_measured_and_named(name, change, called, sentence):
+    report = reported(name, change)
+    assert report.misconception == called
+    assert sentence in report.message
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "called", "sentence"),
+    [
+        ("project", np.transpose, "points as columns", "points are rows here, so transpose"),
+        ("nearest_rotation", np.ravel, "all in one row", "one after the other"),
+        ("geometric_error", lambda x: x[:, None], "a column, not a row", ".ravel()"),
+        ("camera_centre", lambda x: x[None], "brackets too many", "within brackets too many"),
+        ("distort", lambda x: x[-1], "the last only", "overwrite the one before?"),
+        ("distort", lambda x: x[:1], "the first only", "inside of a loop?"),
+        ("distort", lambda x: x[1:], "rows left out", "some are missing"),
+        ("distort", lambda x: np.vstack([x[:1], x]), "rows too many", "but there are more"),
+        ("distort", lambda x: np.column_stack([3 * x, 0 * x[:, 0] + 3]), "still homogeneous",
+         "divide by the last coordinate"),
+        ("distort", lambda x: np.column_stack([x, 0 * x[:, 0] + 1]), "still homogeneous", "last"),
+        ("error_bars", np.diag, "a matrix for its diagonal", "see np.diag"),
+        ("nearest_rotation", np.diag, "the diagonal only", "the diagonal only"),
+        ("error_bars", np.mean, "the mean", "the mean of what is asked"),
+        ("undistortion_map", lambda x: x.transpose(2, 1, 0), "transposed", "has its rows first"),
+        ("undistortion_map", lambda x: 2 * x.ravel(), "all in one row", "may be right"),
+        ("radial_fit", lambda x: np.append(x, 7.5), "columns too many", "among them"),
+        ("same_points", lambda x: np.column_stack([x] * 3), "an axis too many", "axis=1"),
+        ("how_far", lambda x: [x, x], "several numbers for one", "a single number"),
+    ],
+)  # fmt: skip
+def test_another_shape_is_named_by_what_was_done(name, change, called, sentence):
+    report = reported(name, change)
+    assert report.misconception == called
+    assert sentence in report.message
+
+
+def tried(name, function):
+    """Give the report on a function."""
+    exercise = EXERCISES[name]
+    return judge(exercise, [attempt(function, args) for args in exercise.inputs(SEED)], SEED)
+
+
+def right(name):
+    return EXERCISES[name].reference
+
+
+@pytest.mark.parametrize(
+    ("name", "function", "called"),
+    [
+        ("radial_fit", lambda a, b: right("radial_fit")(a, 0 * a + b[:, ::-1]),
+         "columns exchanged in xy"),
+        ("residuals", lambda A, k, G, W, m: right("residuals")(A, k, G, -W, m), "sign of W"),
+        ("residuals", lambda A, k, G, W, m: right("residuals")(A, k[::-1], G, W, m),
+         "k the wrong way round"),
+        ("form_image", lambda A, R, T, k, W: right("form_image")(A, R, T[::-1], k, W),
+         "T the wrong way round"),
+        ("form_image", lambda A, R, T, k, W: right("form_image")(A, R, T, k, np.trunc(W)),
+         "W without decimals"),
+        ("project", lambda A, R, T, W: right("project")(A, R, T * [1, 0, 1], W), "T[1] left out"),
+        ("error_bars", lambda J, r: right("error_bars")(J - J.mean(), r),
+         "J less the mean of all its numbers"),
+        ("dlt", lambda src, dst: right("dlt")(src[::-1], dst),
+         "src in the opposite order"),
+        ("cam1_from_cam2", lambda G1, _: right("cam1_from_cam2")(G1, G1), "G1 for G2"),
+        ("harris_measure", lambda u, v, k: right("harris_measure")(u, v, 1 / k), "k upside down"),
+        ("undistortion_map", lambda A, k, size: right("undistortion_map")(
+            np.diag([A[1, 1], A[0, 0], 1]) + A * [[0, 0, 1], [0, 0, 1], [0, 0, 0]], k, size),
+         "A with α_u and α_v exchanged"),
+    ],
+)  # fmt: skip
+def test_a_right_function_of_a_slipped_input_is_named_by_the_slip(name, function, called):
+    assert tried(name, function).misconception == called
+
+
+def test_a_slip_in_some_cases_alone_is_none_of_the_input():
+    rights = right("form_image")
+
+    def now_and_then(A, R, T, k, W):
+        return rights(A, R, -T if len(W) == 4 else 1.1 * T, k, W)
+
+    assert tried("form_image", now_and_then).misconception is None
+
+
+@pytest.mark.parametrize(
+    ("name", "function", "called"),
+    [
+        ("depth", lambda a, b, u, v: np.inf if u == v else a * b / (u - v), "if on arrays"),
+        ("project", lambda A, R, T, W: A @ (R @ W + T), "shapes that do not fit"),
+        ("lift", lambda x, _: x[len(x)], "an index too large"),
+        ("drop", lambda x_h: undefined / x_h, "an unknown name"),
+        ("drop", lambda x_h: print(x_h), "nothing returned"),
+        ("lift", lambda x: x, "other arguments"),
+        ("drop", lambda x_h: x_h.tolist().T, "a list for an array"),
+    ],
+)  # fmt: skip
+def test_what_was_raised_is_named_and_explained(name, function, called):
+    report = tried(name, function)
+    assert report.misconception == called
+    assert "None" in report.message or "raised" in report.message
+
+
+def test_whoever_slips_in_a_special_case_too_is_told_of_the_mistake_in_all_the_others():
+    def my_vanishing_point(A, R, d):
+        m = A @ R.T @ d
+        return m[:2] / m[2] if (R @ d)[2] > 0 else np.zeros(2)
+
+    assert tried("vanishing_point", my_vanishing_point).misconception == "rotation transposed"
+
+    def my_bilinear(image, u, v):  # and an IndexError at the border
+        j, i = int(v), int(u)
+        a, b = u - i, v - j
+        top = a * image[j, i] + (1 - a) * image[j, i + 1]
+        return (1 - b) * top + b * (a * image[j + 1, i] + (1 - a) * image[j + 1, i + 1])
+
+    assert tried("bilinear", my_bilinear).misconception == "Δ for 1 − Δ in u"
+
+
+def test_a_mistake_with_many_results_is_seen_by_what_they_share():
+    rng = np.random.default_rng(3)
+
+    def some_solution(rows):
+        """Give any b that solves the rows of V that are chosen."""
+
+        def my_b_from_views(H):
+            H = H / np.linalg.norm(H, axis=(1, 2), keepdims=True)
+            V = rows([_constraints(h) for h in H])
+            null = np.linalg.svd(V)[2][np.linalg.matrix_rank(V) :]
+            return rng.standard_normal(len(null)) @ null
+
+        return my_b_from_views
+
+    def last(views):
+        return views[-1]
+
+    assert tried("b_from_views", some_solution(last)).misconception == "the last view only"
+    assert tried("b_from_views", some_solution(lambda v: v[1])).misconception is None
+
+
+def _constraints(h):
+    def v(a, b):
+        return np.array([
+            a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[1] * b[1],
+            a[0] * b[2] + a[2] * b[0], a[1] * b[2] + a[2] * b[1], a[2] * b[2],
+        ])  # fmt: skip
+
+    return np.array([v(h[:, 0], h[:, 1]), v(h[:, 0], h[:, 0]) - v(h[:, 1], h[:, 1])])
 
 
 def test_a_factor_of_one_case_alone_is_no_factor():

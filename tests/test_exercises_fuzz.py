@@ -144,9 +144,13 @@ def test_the_pipeline_says_which_steps_are_missing():
     report = check("pipeline", steps)
     assert report.verdict == "not solved yet"
     assert "This step is missing: b_from_views." in report.message
+    assert report.misconception == "steps missing"
 
     def my_radial_fit(xy, xy_lens): ...
 
     report = check("pipeline", steps | {"radial_fit": my_radial_fit})
     assert "These steps are missing: b_from_views and radial_fit." in report.message
     assert "missing" not in check("pipeline", {}).message
+    report = check("pipeline", {"homography": steps["dlt"], **steps})
+    assert report.misconception == "steps by other names"
+    assert "A_from_b, extrinsics, radial_fit; yours: homography." in report.message

@@ -169,8 +169,9 @@ def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
         if report.passed:
             # how near an answer comes on noisy data differs from one noise to the next
             assert all(r.passed or "noise" in r.fails for r in again), code
-        # NaN has many causes; what is said of it is said of NaN
-        if report.misconception is not None and np.isfinite(report.yours).all():
+        # NaN has many causes, and so has an exception: what is said of them is said of them alone
+        finite = report.yours is not None and np.isfinite(report.yours).all()
+        if report.misconception is not None and finite:
             names = {r.misconception for r in again if not r.passed}
             assert names <= {report.misconception}, (report.misconception, names, code)
 

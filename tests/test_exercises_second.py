@@ -382,7 +382,7 @@ my_which_to_trust = "B"
 def solution_of(name, student=None):
     """Give the second answer to an exercise."""
     if name == "own_camera":
-        A = personal_camera(student or "demo").camera.A
+        A = personal_camera(student or "demo").truth().A
         return [A[0, 0] + 3, A[1, 1] - 2, round(A[0, 2]), A[1, 2]]
     if name == "pipeline":
         return {part.name: solution_of(part.name) for part in EXERCISES[name].parts}
@@ -392,7 +392,7 @@ def solution_of(name, student=None):
 def source_of(name):
     """Give the second answer as the code of a notebook's cell."""
     if name == "own_camera":
-        return "my_own_camera = personal_camera('demo').camera.A[[0, 1, 0, 1], [0, 1, 2, 2]]"
+        return "my_own_camera = personal_camera('demo').truth().A[[0, 1, 0, 1], [0, 1, 2, 2]]"
     if name == "pipeline":
         parts = [part.name for part in EXERCISES[name].parts]
         steps = ", ".join(f"'{part}': my_{part}" for part in parts)

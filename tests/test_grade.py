@@ -364,7 +364,7 @@ def test_the_table_and_the_class_summary(tmp_path, capsys):
 
 
 def test_ids_show_who_handed_in_whose_numbers(tmp_path):
-    numbers = "A = personal_camera('eve').camera.A[[0, 1, 0, 1], [0, 1, 2, 2]]"
+    numbers = "A = personal_camera('eve').truth().A[[0, 1, 0, 1], [0, 1, 2, 2]]"
     own, copied = (f"check('own_camera', A, student='{who}')" for who in ("eve", "bob"))
     notebook(tmp_path / "09_a.ipynb", IMPORTS, numbers, own)
     notebook(tmp_path / "bob" / "09_a.ipynb", IMPORTS, numbers, copied)

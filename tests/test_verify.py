@@ -54,16 +54,16 @@ def test_errors_up_to_four_standard_deviations_hold():
 
 def test_a_calibration_is_held_against_its_camera_with_its_own_error_bars():
     own = personal_camera("demo")
-    result = calibrate(own.board.points, own.corners, own.camera.size)
-    table = verify(result, own.camera)
+    result = calibrate(own.board.points, own.corners, own.size)
+    table = verify(result, own.truth())
     assert [row.name for row in table.rows] == ["alpha_u", "alpha_v", "u0", "v0", "k1", "k2"]
     assert [row.std for row in table.rows] == list(result.std.values())
     assert "alpha_u (px)" in repr(table)
-    wrong = Camera(intrinsics(1.1 * own.camera.A[0, 0], own.camera.A[1, 1], 320, 240))
+    wrong = Camera(intrinsics(1.1 * own.truth().A[0, 0], own.truth().A[1, 1], 320, 240))
     with pytest.raises(NotVerified, match="alpha_u"):
         verify(result, wrong)
     with pytest.raises(NotVerified, match="off: alpha_u, alpha_v"):
-        verify(result, own.camera, tolerance=1e-6)
+        verify(result, own.truth(), tolerance=1e-6)
 
 
 def test_a_camera_is_compared_with_its_pose_and_lens():

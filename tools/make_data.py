@@ -97,7 +97,7 @@ def meshes() -> dict[str, bytes]:
 def personal() -> dict[str, bytes]:
     """The cameras of a few ids, so that a test can hold them over versions and systems."""
     people = {
-        student: rounded(personal_camera(student).camera.A[[0, 1, 0, 1], [0, 1, 2, 2]], 9)
+        student: rounded(personal_camera(student).truth().A[[0, 1, 0, 1], [0, 1, 2, 2]], 9)
         for student in ("ada", "grace", "emmy")
     }
     return {"personal.json": text({"about": "alpha_u, alpha_v, u0, v0 (px) by id", **people})}

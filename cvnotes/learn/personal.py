@@ -30,8 +30,6 @@ class PersonalCamera:
     ----------
     student : str
         The id, as it was understood.
-    camera : Camera
-        The truth, with the WRF of the camera itself.
     board : Chessboard
         What is photographed.
     poses : ndarray, shape (10, 4, 4)
@@ -39,19 +37,37 @@ class PersonalCamera:
 
     Examples
     --------
-    >>> personal_camera("Ada").camera.size
+    >>> personal_camera("Ada").size
     (640, 480)
     """
 
     student: str
-    camera: Camera
+    _camera: Camera
     board: Chessboard
     poses: Array
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the pictures."""
+        return _SIZE
+
+    def truth(self) -> Camera:
+        """Give the camera itself, with its own frame as the WRF: what a calibration should find.
+
+        It is a method, so that nobody who looks around in the object, or presses tab, is told the
+        answer before the question. Whoever asks for it wants to compare.
+
+        Examples
+        --------
+        >>> personal_camera("Ada").truth().A.shape
+        (3, 3)
+        """
+        return self._camera
 
     @cached_property
     def corners(self) -> Array:
         """The corners found in each picture, (10, n, 2), with noise of 0.2 px."""
-        exact = [self.camera.moved(G).project(self.board.points) for G in self.poses]
+        exact = [self._camera.moved(G).project(self.board.points) for G in self.poses]
         noise = normals(self.student, "noise", 2 * _VIEWS * len(self.board.points))
         return np.round(np.stack(exact) + _NOISE * noise.reshape(_VIEWS, -1, 2), 4)
 
@@ -60,7 +76,7 @@ class PersonalCamera:
         from cvnotes.pictures import render
 
         rng = np.random.Generator(np.random.PCG64(_whole(self.student, "photos")))
-        cameras = [self.camera.moved(G) for G in self.poses]
+        cameras = [self._camera.moved(G) for G in self.poses]
         return [render(self.board, camera, blur=0.7, noise=2.0, rng=rng) for camera in cameras]
 
     def __repr__(self) -> str:
@@ -93,7 +109,7 @@ def personal_camera(student: str) -> PersonalCamera:
     --------
     >>> personal_camera("Ada").corners.shape
     (10, 54, 2)
-    >>> personal_camera(" ada").camera.A.tolist() == personal_camera("Ada").camera.A.tolist()
+    >>> personal_camera(" ada").student == personal_camera("Ada").student
     True
     """
     if not isinstance(student, str) or not student.strip():

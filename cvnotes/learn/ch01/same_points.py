@@ -59,7 +59,7 @@ def _unit(x: Array) -> Array:
 
 def _all_infinite_same(a: Array, b: Array) -> Array:
     far = (a[:, 2] == 0) & (b[:, 2] == 0)
-    return far | np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1)
+    return np.asarray(far | np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1), dtype=float)
 
 
 SAME = Exercise(

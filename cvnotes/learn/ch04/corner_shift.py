@@ -7,7 +7,8 @@ from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.learn.checker.equality import within
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 
-_CAMERA = Camera(intrinsics(800, 800, 319.5, 239.5), lens=Lens((-0.25, 0.1)), size=(640, 480))
+_LENS = Lens((-0.25, 0.1))
+_CAMERA = Camera(intrinsics(800, 800, 319.5, 239.5), lens=_LENS, size=(640, 480))
 _OFFSET = np.array([319.5, 239.5])
 
 
@@ -102,31 +103,31 @@ SHIFT = Exercise(
             "L − 1",
             "That is L − 1, a factor: times r it is a length on the plane z = 1, and times 800 "
             "one in pixels.",
-            lambda: float(_CAMERA.lens.L(_R)) - 1,
+            lambda: float(_LENS.L(_R)) - 1,
             same=within(0.003),
         ),
         Misconception(
             "L itself",
             "That is the factor L(r); the shift is (L − 1) r, in pixels.",
-            lambda: float(_CAMERA.lens.L(_R)),
+            lambda: float(_LENS.L(_R)),
             same=within(0.003),
         ),
         Misconception(
             "L − 1 times 800",
             "You multiplied L − 1 by 800; the shift is (L − 1) r, and r is not 1.",
-            lambda: 800 * (float(_CAMERA.lens.L(_R)) - 1),
+            lambda: 800 * (float(_LENS.L(_R)) - 1),
         ),
         Misconception(
             "L − 1 without its sign",
             "That is 1 − L, a factor: times r it is a length on the plane z = 1, and times 800 "
             "one in pixels.",
-            lambda: 1 - float(_CAMERA.lens.L(_R)),
+            lambda: 1 - float(_LENS.L(_R)),
             same=within(0.003),
         ),
         Misconception(
             "in percent",
             "That is by how many per cent the corner moves; asked are pixels.",
-            lambda: 100 * (float(_CAMERA.lens.L(_R)) - 1),
+            lambda: 100 * (float(_LENS.L(_R)) - 1),
         ),
         Misconception(
             "distance of the corner",
@@ -138,8 +139,8 @@ SHIFT = Exercise(
             "where the column is seen",
             "That is the column, or the row, at which the corner is seen; asked is by how much it "
             "has moved.",
-            lambda: 319.5 * (1 - float(_CAMERA.lens.L(_R))),
-            variants=(lambda: 239.5 * (1 - float(_CAMERA.lens.L(_R))),),
+            lambda: 319.5 * (1 - float(_LENS.L(_R))),
+            variants=(lambda: 239.5 * (1 - float(_LENS.L(_R))),),
         ),
         Misconception(
             "horizontal and vertical part added",

@@ -37,7 +37,7 @@ def _through(xy: Array, L: Array, p: Array, factor: float = 2.0, crossed: float 
 
 def _with_r2(xy: Array, k: Array, p: Array, r2: Array) -> Array:
     """Apply L of another r², and the right tangential terms."""
-    return xy * (1 + k[0] * r2 + k[1] * r2**2) + _through(xy, 0 * xy, p)
+    return np.asarray(xy * (1 + k[0] * r2 + k[1] * r2**2) + _through(xy, 0 * xy, p))
 
 
 DISTORT = Exercise(

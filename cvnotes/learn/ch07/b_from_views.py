@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.calibration import constraints, solve_b, v_ij
@@ -45,7 +46,11 @@ def _rows(H: Array, sign: float = -1.0) -> Array:
     return np.concatenate(pairs)
 
 
-def _only(which: Callable[[Array], Array]) -> Callable[[Array, Case], bool]:
+# Which rows of V are asked for.
+Which = Callable[[npt.NDArray[np.intp]], npt.NDArray[np.bool_]]
+
+
+def _only(which: Which) -> Callable[[Array, Case], bool]:
     """Recognise what solves some of the equations exactly, and not all of them."""
 
     def seen(b: Array, case: Case) -> bool:
@@ -59,7 +64,7 @@ def _only(which: Callable[[Array], Array]) -> Callable[[Array, Case], bool]:
     return seen
 
 
-def _of_some(which: Callable[[Array], Array]) -> Callable[[Array], Array]:
+def _of_some(which: Which) -> Callable[[Array], Array]:
     def gives(H: Array) -> Array:
         V = _rows(H)
         return _null(V[which(np.arange(len(V)))])
@@ -67,20 +72,20 @@ def _of_some(which: Callable[[Array], Array]) -> Callable[[Array], Array]:
     return gives
 
 
-def _right_angles(rows: Array) -> Array:
-    return rows % 2 == 0
+def _right_angles(rows: npt.NDArray[np.intp]) -> npt.NDArray[np.bool_]:
+    return np.asarray(rows % 2 == 0)
 
 
-def _equal_lengths(rows: Array) -> Array:
-    return rows % 2 == 1
+def _equal_lengths(rows: npt.NDArray[np.intp]) -> npt.NDArray[np.bool_]:
+    return np.asarray(rows % 2 == 1)
 
 
-def _last_view(rows: Array) -> Array:
-    return rows >= len(rows) - 2
+def _last_view(rows: npt.NDArray[np.intp]) -> npt.NDArray[np.bool_]:
+    return np.asarray(rows >= len(rows) - 2)
 
 
-def _first_view(rows: Array) -> Array:
-    return rows < 2
+def _first_view(rows: npt.NDArray[np.intp]) -> npt.NDArray[np.bool_]:
+    return np.asarray(rows < 2)
 
 
 def _scaled_alike(H: Array) -> Array:
@@ -270,7 +275,7 @@ B_FROM_VIEWS = Exercise(
         Misconception(
             "A⁻ᵀ A⁻¹ inverted",
             "That is A Aᵀ, the inverse of B.",
-            lambda H: _b_of(np.linalg.inv(_matrix(b_from_views(H)))),
+            lambda H: _b_of(np.asarray(np.linalg.inv(_matrix(b_from_views(H))))),
         ),
     ),
     reference=b_from_views,

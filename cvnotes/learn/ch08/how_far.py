@@ -1,5 +1,7 @@
 """Read it off: how far away is the block."""
 
+from functools import cache
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -23,6 +25,7 @@ _ALPHA, _BASELINE, _U0 = 640.0, 800.0, 319.5
 _D = float(np.subtract(*_seen(nearest_edge())))
 
 
+@cache
 def _edges() -> Array:
     """Give the depths of the upright edges: four of the tall block, then those of the others."""
     from cvnotes.pictures import blocks

@@ -19,7 +19,7 @@ _NEAR = 10.0  # px; the corners determine each number to about 2 px
 
 def numbers_of(own: PersonalCamera) -> Array:
     """Give (α_u, α_v, u0, v0) of a student's camera."""
-    return own.camera.A[[0, 1, 0, 1], [0, 1, 2, 2]]
+    return own.truth().A[[0, 1, 0, 1], [0, 1, 2, 2]]
 
 
 def _each_within(distance: float) -> Same:
@@ -157,7 +157,7 @@ check("own_camera", my_own_camera, student="your id").""",
     stub="my_own_camera = ...  # (alpha_u, alpha_v, u0, v0)",
     hints=(
         "find_corners finds the board in each picture; calibrate takes it from there.",
-        "calibrate(mine.board.points, mine.corners, (640, 480)) starts from the corners.",
+        "calibrate(mine.board.points, mine.corners, mine.size) starts from the corners.",
         "α_u = A[0, 0], α_v = A[1, 1], u0 = A[0, 2], v0 = A[1, 2].",
     ),
     cases=lambda _: [Case(())],

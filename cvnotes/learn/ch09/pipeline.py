@@ -92,7 +92,7 @@ def _real_board(_: Rng) -> list[Case]:
         real = real_corners()
     except FileError:
         own = personal_camera("demo")
-        return [Case((own.board.points, own.corners, own.camera.size))]
+        return [Case((own.board.points, own.corners, own.size))]
     return [Case((real.board.points, real.left, real.size))]
 
 

@@ -374,6 +374,6 @@ def _some(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
     return None
 
 
-_TELLERS = (_sign, _order, _factor, _each_number, _constant, _some)
+_TELLERS = (_sign, _order, _each_number, _factor, _constant, _some)
 # These say something even if it is a single number of a single case.
 _CERTAIN_ALONE = {name for name, *_ in _NO_NUMBERS} | {"NaN"}

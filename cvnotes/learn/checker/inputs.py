@@ -84,7 +84,7 @@ def _slips(
     for i, (name, arg) in enumerate(zip(names, args, strict=True)):
         for what, instead, change in _changes(name, arg):
             yield (
-                f"{what} {name}".strip() if what.endswith("of") else f"{name} {what}",
+                what.format(name),
                 f"That is the right answer with {instead.format(name)} in place of {name}.",
                 partial(_changed, i, change),
             )
@@ -109,14 +109,14 @@ def _changed(i: int, change: Callable[[Any], Any], *args: Any) -> tuple[Any, ...
 def _changes(name: str, arg: Any) -> Iterator[Slip]:
     """Give what may have happened to one argument."""
     if isinstance(arg, tuple):
-        yield "the wrong way round", "{0}[::-1]", lambda x: x[::-1]
-        yield "one too many", "1 more in both numbers of {0}", lambda x: tuple(n + 1 for n in x)
-        yield "one too few", "1 less in both numbers of {0}", lambda x: tuple(n - 1 for n in x)
+        yield "{0} the wrong way round", "{0}[::-1]", lambda x: x[::-1]
+        yield "{0} one too many", "1 more in both numbers of {0}", lambda x: tuple(n + 1 for n in x)
+        yield "{0} one too few", "1 less in both numbers of {0}", lambda x: tuple(n - 1 for n in x)
     elif isinstance(arg, int):
-        yield "one too many", "{0} + 1", lambda x: x + 1
-        yield "one too few", "{0} − 1", lambda x: x - 1
-        yield "one too few, then one too many", "{0} − 2", lambda x: x - 2
-        yield "doubled", "2 {0}", lambda x: 2 * x
+        yield "{0} one too many", "{0} + 1", lambda x: x + 1
+        yield "{0} one too few", "{0} − 1", lambda x: x - 1
+        yield "{0} one too few, then one too many", "{0} − 2", lambda x: x - 2
+        yield "{0} doubled", "2 {0}", lambda x: 2 * x
     elif isinstance(arg, float):
         yield from _NUMBER
     elif isinstance(arg, np.ndarray) and arg.ndim == 1:
@@ -134,71 +134,79 @@ def _changes(name: str, arg: Any) -> Iterator[Slip]:
 
 
 _NUMBER: tuple[Slip, ...] = (
-    ("sign of", "−{0}", lambda x: -x),
-    ("upside down", "1 / {0}", lambda x: 1 / x),
-    ("left out", "1", lambda _: 1.0),
-    ("for 0", "0", lambda _: 0.0),
-    ("doubled", "2 {0}", lambda x: 2 * x),
-    ("halved", "{0} / 2", lambda x: x / 2),
-    ("squared", "the square of {0}", lambda x: x * x),
-    ("under a root", "the root of {0}", np.sqrt),
-    ("rounded", "a rounded {0}", lambda x: float(np.floor(x + 0.5))),
-    ("without decimals", "int({0})", lambda x: float(int(x))),
+    ("sign of {0}", "−{0}", lambda x: -x),
+    ("{0} upside down", "1 / {0}", lambda x: 1 / x),
+    ("{0} left out", "1", lambda _: 1.0),
+    ("{0} for 0", "0", lambda _: 0.0),
+    ("{0} doubled", "2 {0}", lambda x: 2 * x),
+    ("{0} halved", "{0} / 2", lambda x: x / 2),
+    ("{0} squared", "the square of {0}", lambda x: x * x),
+    ("{0} under a root", "the root of {0}", np.sqrt),
+    ("{0} rounded", "a rounded {0}", lambda x: float(np.floor(x + 0.5))),
+    ("{0} without decimals", "int({0})", lambda x: float(int(x))),
 )
 _VECTOR: tuple[Slip, ...] = (
-    ("sign of", "−{0}", np.negative),
-    ("left out", "0", lambda x: 0 * x),
-    ("the wrong way round", "{0}[::-1]", lambda x: x[::-1]),
-    ("moved on", "np.roll({0}, 1)", lambda x: np.roll(x, 1)),
-    ("moved back", "np.roll({0}, -1)", lambda x: np.roll(x, -1)),
-    ("absolute values of", "the absolute values of {0}", np.abs),
-    ("squared", "the squares of {0}", np.square),
-    ("scaled to length 1", "{0}, scaled to length 1,", lambda x: x / np.linalg.norm(x)),
-    ("less its mean", "{0} − {0}.mean()", lambda x: x - x.mean()),
-    ("without decimals", "{0} without its decimals", np.trunc),
+    ("sign of {0}", "−{0}", np.negative),
+    ("{0} left out", "0", lambda x: 0 * x),
+    ("{0} the wrong way round", "{0}[::-1]", lambda x: x[::-1]),
+    ("{0} moved on", "np.roll({0}, 1)", lambda x: np.roll(x, 1)),
+    ("{0} moved back", "np.roll({0}, -1)", lambda x: np.roll(x, -1)),
+    ("absolute values of {0}", "the absolute values of {0}", np.abs),
+    ("{0} squared", "the squares of {0}", np.square),
+    ("{0} scaled to length 1", "{0}, scaled to length 1,", lambda x: x / np.linalg.norm(x)),
+    ("{0} less its mean", "{0} − {0}.mean()", lambda x: x - x.mean()),
+    ("{0} without decimals", "{0} without its decimals", np.trunc),
 )
 _SQUARE: tuple[Slip, ...] = (
-    ("transposed", "the transpose of {0}", np.transpose),
-    ("inverted", "the inverse of {0}", np.linalg.inv),
-    ("inverted and transposed", "the inverse transpose of {0}", lambda x: np.linalg.inv(x).T),
-    ("left out", "the identity", lambda x: np.eye(len(x))),
-    ("sign of", "−{0}", np.negative),
-    ("by columns", "{0}, its columns in the opposite order,", lambda x: x[:, ::-1]),
-    ("by rows", "{0}, its rows in the opposite order,", lambda x: x[::-1]),
-    ("made symmetric", "({0} + its transpose) / 2", lambda x: (x + x.T) / 2),
-    ("scaled by its last number", "{0} / {0}[-1, -1]", lambda x: x / x[-1, -1]),
-    ("upper triangle of", "the upper triangle of {0}", np.triu),
-    ("lower triangle of", "the lower triangle of {0}", np.tril),
-    ("diagonal of", "the diagonal of {0} alone", lambda x: np.diag(np.diag(x))),
+    ("{0} transposed", "the transpose of {0}", np.transpose),
+    ("{0} inverted", "the inverse of {0}", np.linalg.inv),
+    ("{0} inverted and transposed", "the inverse transpose of {0}", lambda x: np.linalg.inv(x).T),
+    ("{0} left out", "the identity", lambda x: np.eye(len(x))),
+    ("sign of {0}", "−{0}", np.negative),
+    ("{0} by columns", "{0}, its columns in the opposite order,", lambda x: x[:, ::-1]),
+    ("{0} by rows", "{0}, its rows in the opposite order,", lambda x: x[::-1]),
+    ("{0} made symmetric", "({0} + its transpose) / 2", lambda x: (x + x.T) / 2),
+    ("{0} scaled by its last number", "{0} / {0}[-1, -1]", lambda x: x / x[-1, -1]),
+    ("upper triangle of {0}", "the upper triangle of {0}", np.triu),
+    ("lower triangle of {0}", "the lower triangle of {0}", np.tril),
+    ("diagonal of {0}", "the diagonal of {0} alone", lambda x: np.diag(np.diag(x))),
 )
 _ROWS: tuple[Slip, ...] = (
-    ("columns exchanged in", "{0}[:, ::-1]", lambda x: x[:, ::-1]),
-    ("in the opposite order", "{0}[::-1]", lambda x: x[::-1]),
+    ("columns exchanged in {0}", "{0}[:, ::-1]", lambda x: x[:, ::-1]),
+    ("{0} in the opposite order", "{0}[::-1]", lambda x: x[::-1]),
     (
-        "reshaped, not transposed",
+        "{0} reshaped, not transposed",
         "{0}, reshaped where it should be transposed,",
         lambda x: x.reshape(x.shape[::-1]).T,
     ),
-    ("transposed by a reshape", "{0}.T.reshape", lambda x: x.T.reshape(x.shape)),
-    ("the first row only of", "the first row of {0} alone", lambda x: x[:1]),
-    ("the last row only of", "the last row of {0} alone", lambda x: x[-1:]),
-    ("the first row left out of", "{0}[1:]", lambda x: x[1:]),
-    ("the last row left out of", "{0}[:-1]", lambda x: x[:-1]),
-    ("every other row of", "{0}[::2]", lambda x: x[::2]),
-    ("the first row for all of", "the first row of {0} for all", lambda x: 0 * x + x[:1]),
-    ("the last row for all of", "the last row of {0} for all", lambda x: 0 * x + x[-1:]),
-    ("sign of", "−{0}", np.negative),
-    ("second column's sign of", "{0}, the sign of its second column changed,", lambda x: _flip(x)),
-    ("about its mean", "{0} − {0}.mean(axis=0)", lambda x: x - x.mean(0)),
-    ("less the mean of all its numbers", "{0} − {0}.mean()", lambda x: x - x.mean()),
-    ("without decimals", "{0} without its decimals, as whole numbers,", np.trunc),
-    ("as bytes", "{0} as np.uint8", lambda x: x.astype(np.uint8).astype(float)),
-    ("moved by half a pixel", "{0} + ½", lambda x: x + 0.5),
-    ("moved back by half a pixel", "{0} − ½", lambda x: x - 0.5),
-    ("counted from one", "{0} + 1", lambda x: x + 1),
-    ("counted from one less", "{0} − 1", lambda x: x - 1),
-    ("rows scaled to length 1 in", "{0}, each row scaled to length 1,", lambda x: _rows_unit(x)),
-    ("divided by its last column", "{0} / {0}[:, -1:]", lambda x: x / x[:, -1:]),
+    ("{0} transposed by a reshape", "{0}.T.reshape", lambda x: x.T.reshape(x.shape)),
+    ("the first row only of {0}", "the first row of {0} alone", lambda x: x[:1]),
+    ("the last row only of {0}", "the last row of {0} alone", lambda x: x[-1:]),
+    ("the first row left out of {0}", "{0}[1:]", lambda x: x[1:]),
+    ("the last row left out of {0}", "{0}[:-1]", lambda x: x[:-1]),
+    ("every other row of {0}", "{0}[::2]", lambda x: x[::2]),
+    ("the first row for all of {0}", "the first row of {0} for all", lambda x: 0 * x + x[:1]),
+    ("the last row for all of {0}", "the last row of {0} for all", lambda x: 0 * x + x[-1:]),
+    ("sign of {0}", "−{0}", np.negative),
+    (
+        "second column's sign of {0}",
+        "{0}, the sign of its second column changed,",
+        lambda x: _flip(x),
+    ),
+    ("{0} about its mean", "{0} − {0}.mean(axis=0)", lambda x: x - x.mean(0)),
+    ("{0} less the mean of all its numbers", "{0} − {0}.mean()", lambda x: x - x.mean()),
+    ("{0} without decimals", "{0} without its decimals, as whole numbers,", np.trunc),
+    ("{0} as bytes", "{0} as np.uint8", lambda x: x.astype(np.uint8).astype(float)),
+    ("{0} moved by half a pixel", "{0} + ½", lambda x: x + 0.5),
+    ("{0} moved back by half a pixel", "{0} − ½", lambda x: x - 0.5),
+    ("{0} counted from one", "{0} + 1", lambda x: x + 1),
+    ("{0} counted from one less", "{0} − 1", lambda x: x - 1),
+    (
+        "rows scaled to length 1 in {0}",
+        "{0}, each row scaled to length 1,",
+        lambda x: _rows_unit(x),
+    ),
+    ("{0} divided by its last column", "{0} / {0}[:, -1:]", lambda x: x / x[:, -1:]),
 )
 
 
@@ -218,7 +226,7 @@ def _one_left_out(j: int) -> Slip:
         x[j] = 0
         return x
 
-    return f"[{j}] left out", f"{{0}} with 0 for {{0}}[{j}]", change
+    return f"{{0}}[{j}] left out", f"{{0}} with 0 for {{0}}[{j}]", change
 
 
 def _put(**places: Callable[[Array], float]) -> Callable[[Array], Array]:
@@ -235,42 +243,42 @@ def _put(**places: Callable[[Array], float]) -> Callable[[Array], Array]:
 
 
 _INTRINSICS: tuple[Slip, ...] = (
-    ("without its skew", "{0} without its skew {0}[0, 1]", _put(skew=lambda _: 0.0)),
-    ("with α_u for both", "{0} with α_u for α_v", _put(av=lambda A: A[0, 0])),
-    ("with α_v for both", "{0} with α_v for α_u", _put(au=lambda A: A[1, 1])),
+    ("{0} without its skew", "{0} without its skew {0}[0, 1]", _put(skew=lambda _: 0.0)),
+    ("{0} with α_u for both", "{0} with α_u for α_v", _put(av=lambda A: A[0, 0])),
+    ("{0} with α_v for both", "{0} with α_v for α_u", _put(au=lambda A: A[1, 1])),
     (
-        "with the mean focal length",
+        "{0} with the mean focal length",
         "{0} with the mean of α_u and α_v for both",
         _put(au=lambda A: (A[0, 0] + A[1, 1]) / 2, av=lambda A: (A[0, 0] + A[1, 1]) / 2),
     ),
     (
-        "with α_u and α_v exchanged",
+        "{0} with α_u and α_v exchanged",
         "{0} with α_u and α_v exchanged",
         _put(au=lambda A: A[1, 1], av=lambda A: A[0, 0]),
     ),
     (
-        "with u0 and v0 exchanged",
+        "{0} with u0 and v0 exchanged",
         "{0} with u0 and v0 exchanged",
         _put(u0=lambda A: A[1, 2], v0=lambda A: A[0, 2]),
     ),
     (
-        "without its principal point",
+        "{0} without its principal point",
         "{0} without u0 and v0",
         _put(u0=lambda _: 0.0, v0=lambda _: 0.0),
     ),
     (
-        "with the principal point subtracted",
+        "{0} with the principal point subtracted",
         "{0} with −u0 and −v0",
         _put(u0=lambda A: -A[0, 2], v0=lambda A: -A[1, 2]),
     ),
-    ("with v upwards", "{0} with −α_v", _put(av=lambda A: -A[1, 1])),
-    ("with u0 for both", "{0} with u0 for v0", _put(v0=lambda A: A[0, 2])),
+    ("{0} with v upwards", "{0} with −α_v", _put(av=lambda A: -A[1, 1])),
+    ("{0} with u0 for both", "{0} with u0 for v0", _put(v0=lambda A: A[0, 2])),
     (
-        "without focal lengths",
+        "{0} without focal lengths",
         "{0} with 1 for α_u and α_v",
         _put(au=lambda _: 1.0, av=lambda _: 1.0),
     ),
-    ("with the sign of the skew", "{0} with −γ for its skew", _put(skew=lambda A: -A[0, 1])),
+    ("{0} with the sign of the skew", "{0} with −γ for its skew", _put(skew=lambda A: -A[0, 1])),
 )
 
 
@@ -284,17 +292,17 @@ def _moved(turn: Callable[[Array], Array], shift: Callable[[Array], Array]) -> A
 
 
 _MOTION: tuple[Slip, ...] = (
-    ("with Rᵀ for R", "{0} with Rᵀ for R", _moved(np.transpose, lambda G: G[:3, 3])),
-    ("with −T for T", "{0} with −T for T", _moved(np.array, lambda G: -G[:3, 3])),
-    ("without T", "{0} without T", _moved(np.array, lambda G: 0 * G[:3, 3])),
-    ("without R", "{0} without R", _moved(lambda R: np.eye(len(R)), lambda G: G[:3, 3])),
+    ("{0} with Rᵀ for R", "{0} with Rᵀ for R", _moved(np.transpose, lambda G: G[:3, 3])),
+    ("{0} with −T for T", "{0} with −T for T", _moved(np.array, lambda G: -G[:3, 3])),
+    ("{0} without T", "{0} without T", _moved(np.array, lambda G: 0 * G[:3, 3])),
+    ("{0} without R", "{0} without R", _moved(lambda R: np.eye(len(R)), lambda G: G[:3, 3])),
     (
-        "with T for the camera's position",
+        "{0} with T for the camera's position",
         "{0} with −R T for T, as for a camera that stands at T,",
         _moved(np.array, lambda G: -G[:3, :3] @ G[:3, 3]),
     ),
     (
-        "with T turned before",
+        "{0} with T turned before",
         "{0} with R T for T, as in R (W + T),",
         _moved(np.array, lambda G: G[:3, :3] @ G[:3, 3]),
     ),

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.learn.checker.diagnosis import Tried, mistake_behind
+from cvnotes.learn.checker.diagnosis import Found, Tried, mistake_behind
 from cvnotes.learn.checker.equality import of_size_one, slack, tolerance, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Property
 from cvnotes.learn.checker.general import general_mistake
@@ -35,7 +35,7 @@ def judge(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
         Passed only if every property holds on every case.
     """
     if any(outcome.kind == "unfinished" for outcome in outcomes):
-        return Report(exercise.name, OPEN, _not_solved_yet(exercise, outcomes, seed))
+        return _not_solved_yet(exercise, outcomes, seed)
     if any(outcome.kind == "result" for outcome in outcomes):
         return Report(exercise.name, WRONG, _not_a_function(exercise))
     if exercise.refusal:
@@ -73,15 +73,21 @@ def _by_part(
     return by_part, rest
 
 
-def _not_solved_yet(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> str:
-    """Say what is asked; and of several steps, which are missing."""
+def _not_solved_yet(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
+    """Say what is asked; and of several steps, which are missing, or have other names."""
     by_part, rest = _by_part(exercise, outcomes, seed)
     missing = [p.name for p, own in by_part if any(o.kind == "unfinished" for o in own)]
-    said = f"{_sentence(exercise.title)} "
+    said, name = f"{_sentence(exercise.title)} ", None
+    others = next((o.words for o in outcomes if o.kind == "unfinished" and o.words), "")
+    if rest and others:
+        names = ", ".join(part.name for part, _ in by_part)
+        said += f"Steps go by the names of their exercises, {names}; yours: {others}. "
+        name = "steps by other names"
     if rest and 0 < len(missing) < len(by_part):
         steps = f"{', '.join(missing[:-1])} and {missing[-1]}" if missing[1:] else missing[0]
         said += f"{'These steps are' if missing[1:] else 'This step is'} missing: {steps}. "
-    return said + hint_at(exercise)
+        name = name or "steps missing"
+    return Report(exercise.name, OPEN, said + hint_at(exercise), misconception=name)
 
 
 def _sentence(title: str) -> str:
@@ -155,7 +161,9 @@ def _wrong(
     wrong = [x[2] for x in failing]
     mistake = mistake_behind(exercise, tried, wrong) if sentences else None
     found = None
-    if mistake is None and not outcome.changed:
+    if mistake is None and outcome.changed and outcome.value is not None:
+        found = Found("an argument changed", why)
+    elif mistake is None:
         found = general_mistake(exercise, tried, wrong, case, why)
     if mistake is not None:
         why = mistake.sentence

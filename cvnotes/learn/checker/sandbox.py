@@ -15,6 +15,7 @@ import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -23,7 +24,7 @@ from cvnotes.learn.checker.attempt import attempt
 from cvnotes.learn.checker.child_process import work
 from cvnotes.learn.checker.exercise import Exercise
 from cvnotes.learn.checker.in_process import PATIENCE, run_here
-from cvnotes.learn.checker.outcome import Outcome, decode
+from cvnotes.learn.checker.outcome import Outcome, clean, decode
 
 SECONDS = 5.0
 MEGABYTES = 1024
@@ -211,8 +212,12 @@ def ask(exercise: Exercise, answer: Any, seed: int, **limits: Any) -> list[Outco
         return run(lambda: exercise.number_of(answer), [()], **limits)
     if exercise.assemble is not None and isinstance(answer, dict):
         tried = []
+        known = [part.name for part in exercise.parts]
+        others = ", ".join(clean(name, 40) for name in answer if name not in known)
         for part in exercise.parts:
             outcomes = ask(part, answer.get(part.name), seed, **limits)
+            if part.name not in answer:  # under another name, perhaps
+                outcomes = [replace(outcome, words=others) for outcome in outcomes]
             # A step that is no function gives one outcome; it counts for all of the part's cases.
             tried += outcomes * (len(part.inputs(seed)) if len(outcomes) == 1 else 1)
         return tried + run(exercise.assemble(answer), exercise.inputs(seed), **limits)

@@ -111,7 +111,9 @@ def _homogeneous(a: Array, right: Array, equal: Equal) -> bool:
 
 
 def _lifted(a: Array, right: Array, equal: Equal) -> bool:
-    return _wider(a, right) and np.isin(a[..., -1], (0, 1)).all() and equal(a[..., :-1], right)
+    return (
+        _wider(a, right) and bool(np.isin(a[..., -1], (0, 1)).all()) and equal(a[..., :-1], right)
+    )
 
 
 def _wider(a: Array, right: Array) -> bool:
@@ -259,12 +261,12 @@ def _by_shape(exercise: Exercise, answer: Array, case: Case) -> str:
         return "points as columns" if many and len(wanted) == 2 else "rows and columns exchanged"
     if given == ():
         return "one NaN for all" if np.isnan(answer) else "one number for all"
-    if answer.size == case.right.size:
-        return "arranged otherwise"
     if given == wanted[1:]:
         return "one of several"
     if len(given) == 1 and len(wanted) > 1:
         return "all in one row"
+    if answer.size == case.right.size:
+        return "arranged otherwise"
     if len(given) > len(wanted) and given[: len(wanted)] == wanted:
         return "an axis too many"
     if len(given) == len(wanted):
