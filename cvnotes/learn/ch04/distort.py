@@ -228,6 +228,22 @@ DISTORT = Exercise(
                 ),
             ),
         ),
+        Misconception(
+            "columns for rows",
+            "You summed x² over all points, and y²: r² = x² + y² of each point is a sum along its "
+            "row, axis=1.",
+            lambda xy, k, p: _with_r2(xy, k, p, (xy**2).sum(0)),
+        ),
+        Misconception(
+            "one tangential term for both",
+            "You added the same tangential term to x and to y: p2 (r² + 2x²) belongs to x, p1 (r² "
+            "+ 2y²) to y.",
+            lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, :1],
+            variants=(
+                lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, 1:],
+                lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p).sum(1)[:, None],
+            ),
+        ),
     ),
     reference=distort,
     concepts=("28", "29", "31", "32", "E14", "E15"),

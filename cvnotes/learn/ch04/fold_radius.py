@@ -118,6 +118,7 @@ FOLD = Exercise(
             "k2 left out",
             "You left k2 out: √(−1 / 3k1) is the answer for k2 = 0 only.",
             lambda k: np.sqrt(-1 / (3 * k[0])) if k[0] < 0 else np.inf,
+            variants=(lambda k: np.sqrt(-1 / (3 * k[0])) if k[0] < 0 else None,),
         ),
         Misconception(
             "the outer root",

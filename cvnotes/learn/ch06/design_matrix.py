@@ -195,6 +195,11 @@ DESIGN = Exercise(
             "times.",
             lambda src, dst: _u_alone(src, dst),
         ),
+        Misconception(
+            "lifted with −1",
+            "W̃' = (x, y, 1), with a plus.",
+            lambda src, dst: _design(src, dst, lift=-1.0),
+        ),
     ),
     reference=design_matrix,
     same=same_row_space,

@@ -101,6 +101,22 @@ def _inhomogeneous(src: Array, dst: Array) -> Array:
     return np.append(h, 1.0).reshape(3, 3)
 
 
+def _row_of_eigenvectors(src: Array, dst: Array, which: int) -> Array:
+    D = design_matrix(src, dst)
+    return np.asarray(np.linalg.eigh(D.T @ D)[1][which].reshape(3, 3))
+
+
+A_ROW_OF_EIGENVECTORS = Misconception(
+    "a row of the eigenvectors",
+    "np.linalg.eigh gives eigenvectors as columns, with the smallest eigenvalue first: "
+    "take "
+    "V[:, 0].",
+    lambda src, dst: _row_of_eigenvectors(src, dst, 0),
+    variants=(lambda src, dst: _row_of_eigenvectors(src, dst, -1),),
+    same=up_to_signs,
+)
+
+
 def _of_rows(rows: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
     """Give the null vector, as H, of a design matrix that has slipped."""
     return lambda src, dst: np.linalg.svd(rows(src, dst))[2][-1].reshape(3, 3)
@@ -265,6 +281,7 @@ DLT = Exercise(
             "That is h, nine numbers in a row: h.reshape(3, 3).",
             lambda src, dst: dlt(src, dst).ravel(),
         ),
+        A_ROW_OF_EIGENVECTORS,
     ),
     reference=dlt,
     same=up_to_scale,

@@ -12,7 +12,7 @@ from cvnotes.learn.cases.cameras import (
     rounded,
     some_homography,
 )
-from cvnotes.learn.ch06.dlt import OF_THE_ROWS
+from cvnotes.learn.ch06.dlt import A_ROW_OF_EIGENVECTORS, OF_THE_ROWS
 from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
@@ -154,6 +154,7 @@ FOUR = Exercise(
             "You used three of the four pairs: D needs eight rows.",
             lambda src, dst: np.linalg.svd(design_matrix(src[:3], dst[:3]))[2][-1].reshape(3, 3),
         ),
+        A_ROW_OF_EIGENVECTORS,
     ),
     reference=dlt,
     sources=(design_matrix, dlt),

@@ -72,6 +72,11 @@ def _exchanged_centre(A: Array) -> Array:
     return A
 
 
+def _from_quotients(b: Array) -> Array:
+    alpha, beta = np.sqrt(np.abs(b[5] / b[[0, 2]]))
+    return np.array([[alpha, 0, -b[3] / b[0]], [0, beta, -b[4] / b[2]], [0, 0, 1]])
+
+
 def _simple_centre(b: Array) -> Array:
     A = A_from_b(b)
     A[:2, 2] = -b[3] / b[0], -b[4] / b[2]
@@ -113,6 +118,7 @@ A_FROM_B = Exercise(
             "Your A is lower triangular. From B = L Lᵀ and B = A⁻ᵀ A⁻¹ follows L = A⁻ᵀ, so A is "
             "the transpose of L⁻¹.",
             lambda b: A_from_b(b).T,
+            variants=(lambda b: np.linalg.inv(np.linalg.cholesky(_B(b * np.sign(b[0])))),),
         ),
         Misconception(
             "inverse forgotten",
@@ -275,6 +281,11 @@ A_FROM_B = Exercise(
             "Asked is the matrix A (3, 3).",
             lambda b: A_from_b(b)[[0, 1, 0, 1], [0, 1, 2, 2]],
             variants=(lambda b: A_from_b(b)[[0, 1, 0, 1, 0], [0, 1, 2, 2, 1]],),
+        ),
+        Misconception(
+            "α² = B33 / B11",
+            "B33 is not 1 / s: it has u0² / α_u² and v0² / α_v² in it, too. Find the scale first.",
+            lambda b: _from_quotients(b),
         ),
     ),
     reference=A_from_b,

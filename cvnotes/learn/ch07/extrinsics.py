@@ -95,6 +95,13 @@ def _rotation_by_qr(A: Array, H: Array) -> Array:
     return G
 
 
+def _signed(A: Array, H: Array) -> Array:
+    """Give A⁻¹ H with the right sign, and nothing else."""
+    a, b, c, scale = _parts(A, H)
+    s = np.sign(scale)
+    return _joined(s * a, s * b, np.cross(a, b), s * c)
+
+
 def _behind(G: Array) -> Array:
     return np.asarray(G * [-1, -1, 1, -1] * [[1], [1], [1], [-1]])
 
@@ -338,6 +345,13 @@ EXTRINSICS = Exercise(
             "T stands in the last column of G, (0, 0, 0, 1) in its last row.",
             lambda A, H: extrinsics(A, H).T,
             variants=(lambda A, H: _T_below(extrinsics(A, H)),),
+        ),
+        Misconception(
+            "λ left out",
+            "r1, r2 and T are still multiplied by λ: r1 is a unit vector, so divide all three by "
+            "the length of the first column of A⁻¹ H.",
+            lambda A, H: _joined(*_parts(A, H)[:2], np.cross(*_parts(A, H)[:2]), _parts(A, H)[2]),
+            variants=(lambda A, H: _signed(A, H),),
         ),
     ),
     reference=extrinsics,

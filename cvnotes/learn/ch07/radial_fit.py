@@ -106,6 +106,7 @@ RADIAL = Exercise(
             "You computed r from the observed points, as the notes print it. L(r) was defined "
             "with the ideal radius: even exact data give wrong coefficients otherwise.",
             lambda xy, xy_lens: _fit(_bent(xy, xy_lens), xy_lens - xy),
+            variants=(lambda xy, xy_lens: _fit(_bent(xy_lens, xy_lens), xy_lens - xy),),
         ),
         Misconception(
             "ideal and observed exchanged",

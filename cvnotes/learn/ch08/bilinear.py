@@ -90,6 +90,14 @@ def _by_distance(image: Array, u: float, v: float) -> float:
     return float(weights @ np.array(_four(image, i, j)) / weights.sum())
 
 
+def _in_bytes(image: Array, u: float, v: float) -> float:
+    """Interpolate along u, then along v, with differences of bytes."""
+    i, j, du, dv = _split(u, v)
+    I1, I2, I3, I4 = np.array(_four(image, i, j)).astype(np.uint8)
+    above, below = I1 + (I2 - I1) * du, I3 + (I4 - I3) * du
+    return float(above + (below - above) * dv)
+
+
 BILINEAR = Exercise(
     name="bilinear",
     chapter=8,
@@ -249,6 +257,11 @@ BILINEAR = Exercise(
             "half-pixel centres",
             "You took pixel centres at halves. Here whole numbers are the centres.",
             lambda image, u, v: bilinear(image, max(u - 0.5, 0.0), max(v - 0.5, 0.0)),
+        ),
+        Misconception(
+            "bytes that wrap around",
+            "You calculated with bytes: 50 − 90 is 216 there. Convert the image to float first.",
+            lambda image, u, v: _in_bytes(image, u, v),
         ),
     ),
     reference=bilinear,

@@ -178,15 +178,16 @@ RECTIFY = Exercise(
             lambda R, left, right: rectifying_rotation(R, left, right) @ R,
             variants=(
                 lambda R, left, right: R @ rectifying_rotation(R, left, right),
-                lambda R, left, right: rectifying_rotation(R, left, right) @ R.T,
                 lambda R, left, right: R.T @ rectifying_rotation(R, left, right),
             ),
         ),
         Misconception(
-            "the turn from the old rotation",
-            "That is by how much the left camera is turned; asked is the rotation itself, CRF ← "
-            "WRF.",
-            lambda R, left, right: R @ rectifying_rotation(R, left, right).T,
+            "axes in the camera's frame",
+            "Your axes are seen in the left camera's frame: that is by how much it is turned. CRF "
+            "← "
+            "WRF needs them in the world: multiply by R.",
+            lambda R, left, right: rectifying_rotation(R, left, right) @ R.T,
+            variants=(lambda R, left, right: R @ rectifying_rotation(R, left, right).T,),
         ),
         Misconception(
             "a column of R for y",

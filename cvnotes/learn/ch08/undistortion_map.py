@@ -241,6 +241,11 @@ UNDISTORTION = Exercise(
             "You applied the lens twice.",
             lambda A, k, size: _twice(A, k, size),
         ),
+        Misconception(
+            "the 1 of L left out",
+            "L starts with 1: without distortion nothing moves.",
+            lambda A, k, size: _by(A, _factors(A, k, size) - 1, size),
+        ),
     ),
     reference=undistortion_map,
     concepts=("69", "77", "E44"),

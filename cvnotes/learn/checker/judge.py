@@ -37,7 +37,8 @@ def judge(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
     if any(outcome.kind == "unfinished" for outcome in outcomes):
         return _not_solved_yet(exercise, outcomes, seed)
     if any(outcome.kind == "result" for outcome in outcomes):
-        return Report(exercise.name, WRONG, _not_a_function(exercise))
+        what = "no steps by name" if exercise.answer == "steps" else "a result, not the function"
+        return Report(exercise.name, WRONG, _not_a_function(exercise), misconception=what)
     if exercise.refusal:
         return Report(exercise.name, WRONG, exercise.refusal)
     by_part, rest = _by_part(exercise, outcomes, seed)

@@ -111,9 +111,7 @@ def _homogeneous(a: Array, right: Array, equal: Equal) -> bool:
 
 
 def _lifted(a: Array, right: Array, equal: Equal) -> bool:
-    return (
-        _wider(a, right) and bool(np.isin(a[..., -1], (0, 1)).all()) and equal(a[..., :-1], right)
-    )
+    return _wider(a, right) and bool((a[..., -1] == 1).all()) and equal(a[..., :-1], right)
 
 
 def _wider(a: Array, right: Array) -> bool:
