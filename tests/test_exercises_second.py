@@ -134,7 +134,7 @@ def my_undistort(xy_lens, k):
         seen = r = np.hypot(*point)
         for _ in range(30):  # Newton
             r -= (r + k[0] * r**3 + k[1] * r**5 - seen) / (1 + 3 * k[0] * r**2 + 5 * k[1] * r**4)
-        out[i] = point * r / seen
+        out[i] = point * r / seen if seen else 0  # the axis stays
     return out
 
 

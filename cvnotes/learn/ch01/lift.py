@@ -27,7 +27,7 @@ LIFT = Exercise(
     chapter=1,
     title="Lift points to projective space",
     task="Give homogeneous coordinates, shape (n, d + 1), of points x, shape (n, d): those of the "
-    "whole class whose last coordinate is w.",
+    "whole class whose last coordinate is the number w.",
     stub='''def my_lift(x, w):
     """Give homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate w."""
     ...''',

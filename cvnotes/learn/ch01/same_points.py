@@ -74,7 +74,8 @@ SAME = Exercise(
     hints=(
         "Equal up to a factor, which may be negative, and which you do not know.",
         "Dividing by the last coordinate is not allowed at infinity.",
-        "Vectors that differ by a factor are parallel. What is their cross product?",
+        "Vectors that differ by a factor are parallel. What is their cross product? Numbers are "
+        "rounded, so ask for nearly 0: np.isclose.",
     ),
     cases=_pairs,
     properties=(Property("Points are the same exactly if a factor apart, at infinity too."),),

@@ -120,11 +120,6 @@ FOCAL = Exercise(
             lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre)[1] * (v2 - centre)[1])),
         ),
         Misconception(
-            "absolute values added",
-            "You added the absolute values of both products; in the dot product their signs count.",
-            lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre) * (v2 - centre)).sum()),
-        ),
-        Misconception(
             "one distance alone",
             "That is how far one vanishing point is from the principal point; f needs both.",
             lambda v1, v2, centre: np.linalg.norm(v1 - centre),
@@ -158,6 +153,11 @@ FOCAL = Exercise(
             "That is how far the principal point is from the middle between the two vanishing "
             "points.",
             lambda v1, v2, centre: np.linalg.norm((v1 + v2) / 2 - centre),
+        ),
+        Misconception(
+            "products subtracted",
+            "You subtracted one product from the other; the dot product adds both.",
+            lambda v1, v2, centre: np.sqrt(np.abs(np.subtract(*((v1 - centre) * (v2 - centre))))),
         ),
     ),
     reference=focal_length,

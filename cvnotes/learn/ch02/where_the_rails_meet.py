@@ -28,7 +28,8 @@ RAILS = Exercise(
     "pixel (u, v) do the rails meet? To within 12 pixels is good enough.",
     stub="my_where_the_rails_meet = ...  # (u, v)",
     hints=(
-        "u counts columns from the left, v rows from the top.",
+        "u counts columns from the left, v rows from the top, in pixels of the picture as the axes "
+        "of imshow show them, not in those of your screen.",
         "They meet on the horizon. Lay a ruler along both rails.",
         "Draw the picture with a grid, or compute it: rails_camera().vanishing_point([0, 0, 1]).",
     ),

@@ -77,7 +77,9 @@ FOLD = Exercise(
     hints=(
         "r L(r) = r + k1 r³ + k2 r⁵. Where does its slope become 0?",
         "1 + 3 k1 r² + 5 k2 r⁴ = 0 is a quadratic equation for r².",
-        "Of its positive roots the smallest counts. For k = (−4/3, 0) the answer is 0.5.",
+        "Of its positive roots the smallest counts; without one, as for k = (0.2, 0), it is "
+        "np.inf. "
+        "For k = (−4/3, 0) the answer is 0.5.",
     ),
     cases=_lenses,
     properties=(

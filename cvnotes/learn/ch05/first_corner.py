@@ -27,8 +27,8 @@ FIRST = Exercise(
     stub="my_first_corner = ...  # (u, v)",
     hints=(
         "Two of the four outermost squares are dark; the first corner is at one of them.",
-        "Stand on either corner and look along the side with 4 corners: the board must lie to "
-        "your right.",
+        "Stand on either corner and look along the side with 4 corners: that is x. The board must "
+        "lie to your right, for y leads there: turn x clockwise by 90°, and it points along y.",
         "Zoom in, and count pixels: u from the left, v from the top.",
     ),
     cases=lambda _: [Case(())],

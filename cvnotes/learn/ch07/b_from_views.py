@@ -40,10 +40,18 @@ def _null(V: Array) -> Array:
     return np.asarray(np.linalg.svd(V)[2][-1])
 
 
+def _products(a: Array, b: Array) -> Array:
+    """Give v with aᵀ B b = v·b for columns a and b (n, 3) of n views."""
+    first, second = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
+    both = a[:, first] * b[:, second] + a[:, second] * b[:, first]
+    return np.asarray(both * [0.5, 1, 0.5, 1, 1, 0.5])
+
+
 def _rows(H: Array, sign: float = -1.0) -> Array:
-    """Stack v_12 and v_11 − v_22 of all views."""
-    pairs = [(v_ij(X, 1, 2), v_ij(X, 1, 1) + sign * v_ij(X, 2, 2)) for X in H]
-    return np.concatenate(pairs)
+    """Stack v_12 and v_11 − v_22 of all views, view by view."""
+    h1, h2 = H[..., 0], H[..., 1]
+    pairs = _products(h1, h2), _products(h1, h1) + sign * _products(h2, h2)
+    return np.stack(pairs, axis=1).reshape(-1, 6)
 
 
 # Which rows of V are asked for.
@@ -161,7 +169,8 @@ B_FROM_VIEWS = Exercise(
     """Give b (6,) from the homographies H (n, 3, 3)."""
     ...''',
     hints=(
-        "Each view gives two rows of V: v_12 and v_11 − v_22, with your v_ij.",
+        "Each view gives two rows of V: v_12 and v_11 − v_22, with your v_ij. The H are scaled to "
+        "[−1, 1] already: nothing has to be undone.",
         "V b = 0 is solved by b = 0; you want ‖b‖ = 1.",
         "So b is the right singular vector of the smallest singular value: the last row of Vt.",
     ),

@@ -150,9 +150,12 @@ EXTRINSICS = Exercise(
     """Give G (4, 4), CRF ← board."""
     ...''',
     hints=(
-        "A⁻¹ H = λ [r1 r2 T], and r1 and r2 are unit vectors: that gives |λ|.",
+        "A⁻¹ H = λ [r1 r2 T], and r1 and r2 are unit vectors: |λ| is the length of the first "
+        "column, "
+        "of the second, or the mean of both, which noise makes differ a little.",
         "Its sign is the one that makes T_z positive.",
-        "r3 = r1 × r2; the nearest rotation to [r1 r2 r3] cures what noise did to it. G has R and "
+        "r3 = r1 × r2; the nearest rotation to [r1 r2 r3], or one by Gram and Schmidt, cures what "
+        "noise did to it. G has R and "
         "T in its first three rows and (0, 0, 0, 1) below.",
     ),
     cases=_posed,

@@ -145,7 +145,8 @@ BACKWARD = Exercise(
     hints=(
         "Go through the pixels of the target, not of the source: then none is left out.",
         "Where does target pixel (u', v') come from? (u, v, 1) ≈ H⁻¹ (u', v', 1).",
-        "Divide, round both, and look up image[v, u] if that is inside.",
+        "Divide, round both, and look up image[v, u] if the rounded pixel is one of the source: "
+        "0 ≤ u ≤ width − 1. (No position lies halfway between two pixels.)",
     ),
     cases=_warps,
     properties=(Property("Each target pixel shows the source pixel that H takes nearest to it."),),

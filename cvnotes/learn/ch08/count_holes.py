@@ -86,7 +86,8 @@ HOLES = Exercise(
     """Count the target pixels that receive no source pixel."""
     ...''',
     hints=(
-        "Round both coordinates, and keep those inside of the target.",
+        "Round both coordinates first, then keep pixels of the target: −0.4 is rounded to pixel 0, "
+        "which is inside. (No position lies halfway between two pixels.)",
         "Make an array of zeros, shape (height, width), and set the pixels that are hit to 1.",
         "Several may hit the same pixel: count what is still 0 at the end.",
     ),

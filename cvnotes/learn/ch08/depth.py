@@ -40,8 +40,8 @@ DEPTH = Exercise(
     """Give the depths (n,) in millimetres."""
     ...''',
     hints=(
-        "The disparity d = u_left − u_right is positive: nearer points lie more to the left in "
-        "the right picture.",
+        "The disparity d = u_left − u_right is never negative: nearer points lie more to the left "
+        "in the right picture.",
         "Similar triangles: d / alpha = b / Z.",
         "With NumPy arrays x / 0 is inf, by itself.",
     ),

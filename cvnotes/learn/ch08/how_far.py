@@ -59,7 +59,9 @@ FAR = Exercise(
     stub="my_how_far = ...  # mm",
     hints=(
         "It is the edge at which the light and the dark side of the tall block meet.",
-        "In which column is it in the left picture, in which in the right one?",
+        "In which column is it in the left picture, in which in the right one? Columns are those "
+        "of "
+        "the pictures, as the axes of imshow count them, not of your screen.",
         "The difference of the two columns is the disparity d, and Z = α b / d.",
     ),
     cases=lambda _: [Case(())],

@@ -63,7 +63,9 @@ RECTIFY = Exercise(
     hints=(
         "The rows of a rotation CRF ← WRF are the camera's axes, seen in the world.",
         "First row: the unit vector from left to right. The old z axis is R[2].",
-        "y = z_old × x, scaled to length 1; then z = x × y.",
+        "y = z_old × x, scaled to length 1: it points down, as y does in every camera's frame. "
+        "Then "
+        "z = x × y.",
     ),
     cases=_stereo_pairs,
     properties=(

@@ -48,7 +48,7 @@ def difference(exercise: Exercise, tried: Sequence[Tried], failing: Sequence[Cas
         return _truths(pairs)
     # What a few of several cases have in common may be chance, where it is a single number.
     lonely = all(right.size == 1 for _, right in pairs) and len(pairs) == 1
-    tellers = _TELLERS if all(_both_finite(*pair) for pair in pairs) else (_not_finite,)
+    tellers = _TELLERS if all(_both_finite(*pair) for pair in pairs) else (_not_finite, _some)
     try:
         found_ = (tell(pairs, exercise.same, bound) for tell in tellers)
         found = next((one for one in found_ if one), None)
