@@ -124,7 +124,7 @@ def right(name):
          "J less the mean of all its numbers"),
         ("dlt", lambda src, dst: right("dlt")(src[::-1], dst),
          "src in the opposite order"),
-        ("cam1_from_cam2", lambda G1, _: right("cam1_from_cam2")(G1, G1), "G1 for G2"),
+        ("geometric_error", lambda H, _, dst: right("geometric_error")(H, dst, dst), "dst for src"),
         ("harris_measure", lambda u, v, k: right("harris_measure")(u, v, 1 / k), "k upside down"),
         ("undistortion_map", lambda A, k, size: right("undistortion_map")(
             np.diag([A[1, 1], A[0, 0], 1]) + A * [[0, 0, 1], [0, 0, 1], [0, 0, 0]], k, size),

@@ -48,7 +48,9 @@ def difference(exercise: Exercise, tried: Sequence[Tried], failing: Sequence[Cas
         return _truths(pairs)
     # What a few of several cases have in common may be chance, where it is a single number.
     lonely = all(right.size == 1 for _, right in pairs) and len(pairs) == 1
-    tellers = _TELLERS if all(_both_finite(*pair) for pair in pairs) else (_not_finite, _some)
+    tellers = _TELLERS if all(_both_finite(*pair) for pair in pairs) else (_not_finite,)
+    # Pictures of several sizes have no entries and columns in common.
+    tellers += (_some,) * (len({case.right.shape[-1:] for case, _ in tried}) == 1)
     try:
         found_ = (tell(pairs, exercise.same, bound) for tell in tellers)
         found = next((one for one in found_ if one), None)
@@ -67,7 +69,7 @@ def _same_for_all(tried: Sequence[Tried], same: Same) -> Found | None:
     rights = [case.right for case, _ in tried]
     if len({v.shape for v in values}) != 1 or not np.isfinite(values[0]).all():
         return None
-    if not all(np.array_equal(v, values[0]) for v in values[1:]):
+    if not all(np.allclose(v, values[0], rtol=1e-9, atol=1e-12) for v in values[1:]):
         return None
     if all(r.shape == rights[0].shape and same(r, rights[0], 1e-6) for r in rights[1:]):
         return None
@@ -185,7 +187,7 @@ def _factor(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
     if same is up_to_scale:
         return None
     factors = [_common_factor(answer, right) for answer, right in pairs]
-    if any(f is None or f == 0 for f in factors):
+    if any(f is None or f == 0 for f in factors) or _few_counts(pairs):
         return None
     f = float(factors[0])  # type: ignore[arg-type]
     several = len(factors) > 1
@@ -206,6 +208,11 @@ def _common_factor(answer: Array, right: Array) -> float | None:
         return None
     f = float(np.vdot(a, r) / np.vdot(r, r))
     return f if np.allclose(a, f * r, rtol=0, atol=1e-6 * np.abs(a).max()) else None
+
+
+def _few_counts(pairs: Sequence[Pair]) -> bool:
+    """Tell whether these are one or two counts, which may differ by 1, or by half, by chance."""
+    return len(pairs) < 3 and all(r.ndim == 0 and r == np.round(r) for _, r in pairs)
 
 
 _NAMED = {
@@ -230,7 +237,7 @@ def _constant(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
     if not abs(first) > 1e-6 * size:
         return None
     if all(np.allclose(d, first, rtol=0, atol=1e-6 * size) for d in steps):
-        if sum(d.size for d in steps) == 1:
+        if sum(d.size for d in steps) == 1 or _few_counts(pairs):
             return None
         name = "half a pixel" if np.isclose(abs(first), 0.5) and size > 5 else "a constant added"
         return Found(name, f"Your answer is the right one plus {_said(first)} everywhere.")
@@ -276,7 +283,7 @@ _DONE: tuple[tuple[str, str, Change], ...] = (
      "they are.", lambda r: np.round(r, 3)),
     ("absolute values", "These are absolute values: the signs belong to the answer.", np.abs),
     ("scaled to length 1", "You scaled the right answer to length 1.",
-     lambda r: r / np.linalg.norm(r)),
+     lambda r: r / np.linalg.norm(r) if r.ndim else r),
     ("rows scaled to length 1", "You scaled each row of the right answer to length 1.",
      lambda r: r / np.linalg.norm(r, axis=-1, keepdims=True) if r.ndim > 1 else r),
     ("divided by the last number", "You divided the right answer by its last number.",
@@ -374,6 +381,12 @@ def _some(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
     return None
 
 
-_TELLERS = (_sign, _order, _each_number, _factor, _constant, _some)
+_TELLERS: tuple[Callable[..., Found | None], ...] = (
+    _sign,
+    _order,
+    _each_number,
+    _factor,
+    _constant,
+)
 # These say something even if it is a single number of a single case.
 _CERTAIN_ALONE = {name for name, *_ in _NO_NUMBERS} | {"NaN"}
