@@ -79,7 +79,7 @@ def test_what_differs_is_measured_and_named(name, change, called, sentence):
         ("distort", lambda x: x[1:], "rows left out", "some are missing"),
         ("distort", lambda x: np.vstack([x[:1], x]), "rows too many", "but there are more"),
         ("distort", lambda x: np.column_stack([3 * x, 0 * x[:, 0] + 3]), "still homogeneous",
-         "divide by the last coordinate"),
+         "Divide by the last coordinate"),
         ("distort", lambda x: np.column_stack([x, 0 * x[:, 0] + 1]), "still homogeneous", "last"),
         ("error_bars", np.diag, "a matrix for its diagonal", "see np.diag"),
         ("nearest_rotation", np.diag, "the diagonal only", "the diagonal only"),

@@ -176,7 +176,7 @@ MISBEHAVING = {
     "number": (lambda x_h: 1.5, "shape (), wanted is"),
     "transposed": (lambda x_h: right_drop(x_h).T, "wanted is"),
     "still homogeneous": (lambda x_h: x_h, "still homogeneous?"),
-    "NaN": (lambda x_h: x_h[:, :-1] * np.nan, "Look at what does not hold"),
+    "NaN": (lambda x_h: x_h[:, :-1] * np.nan, "Your answer is NaN: 0/0, or the root"),
     "huge": (lambda x_h: np.zeros(3_000_000), "far too large"),
     "always equal": (lambda x_h: (x_h[:, :-1] + 9).view(AlwaysEqual), "does not hold"),
     "no array": (lambda x_h: NoArray(), "interrupted"),

@@ -101,22 +101,6 @@ def _inhomogeneous(src: Array, dst: Array) -> Array:
     return np.append(h, 1.0).reshape(3, 3)
 
 
-def _row_of_eigenvectors(src: Array, dst: Array, which: int) -> Array:
-    D = design_matrix(src, dst)
-    return np.asarray(np.linalg.eigh(D.T @ D)[1][which].reshape(3, 3))
-
-
-A_ROW_OF_EIGENVECTORS = Misconception(
-    "a row of the eigenvectors",
-    "np.linalg.eigh gives eigenvectors as columns, with the smallest eigenvalue first: "
-    "take "
-    "V[:, 0].",
-    lambda src, dst: _row_of_eigenvectors(src, dst, 0),
-    variants=(lambda src, dst: _row_of_eigenvectors(src, dst, -1),),
-    same=up_to_signs,
-)
-
-
 def _of_rows(rows: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
     """Give the null vector, as H, of a design matrix that has slipped."""
     return lambda src, dst: np.linalg.svd(rows(src, dst))[2][-1].reshape(3, 3)
@@ -128,27 +112,15 @@ def of_slipped_rows(name: str, sentence: str) -> Misconception:
     return Misconception(name, sentence, _of_rows(slip), (_normalised(_of_rows(slip)),))
 
 
-# What a slip in the rows of D does to H.
+# What a slip in the rows of D does to H, where it leaves one null vector.
 OF_THE_ROWS = (
     of_slipped_rows(
         "sign of the last block",
         "The last block of D has the wrong sign: W̃' and −u W̃'. So the last row of H has, too.",
     ),
     of_slipped_rows(
-        "u for both rows",
-        "D has u in both rows of a pair: u goes with the first row of H, v with the second.",
-    ),
-    of_slipped_rows(
-        "v for both rows",
-        "D has v in both rows of a pair: u goes with the first row of H, v with the second.",
-    ),
-    of_slipped_rows(
         "sign of one block",
         "In one of the two rows of each pair D has the wrong sign: −u W̃' and −v W̃'.",
-    ),
-    of_slipped_rows(
-        "one row for each pair",
-        "D has one row for each pair: both u and v have to be fixed, so it takes two.",
     ),
 )
 
@@ -281,7 +253,6 @@ DLT = Exercise(
             "That is h, nine numbers in a row: h.reshape(3, 3).",
             lambda src, dst: dlt(src, dst).ravel(),
         ),
-        A_ROW_OF_EIGENVECTORS,
     ),
     reference=dlt,
     same=up_to_scale,

@@ -1,5 +1,7 @@
 """Four points fix a homography."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -12,7 +14,7 @@ from cvnotes.learn.cases.cameras import (
     rounded,
     some_homography,
 )
-from cvnotes.learn.ch06.dlt import A_ROW_OF_EIGENVECTORS, OF_THE_ROWS
+from cvnotes.learn.ch06.dlt import OF_THE_ROWS
 from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
@@ -42,6 +44,12 @@ def _with_h9(src: Array, dst: Array, sign: float = -1.0) -> Array | None:
 def _with_zero(src: Array, dst: Array) -> Array:
     D = design_matrix(src, dst)
     return np.append(np.linalg.svd(D[:, :8])[2][-1], 0.0).reshape(3, 3)
+
+
+def _fits_three(H: Array, case: Case) -> bool:
+    """Tell whether H takes three of the four points to their partners, and not the last."""
+    src, dst = case.args
+    return _exactly(H, replace(case, args=(src[:3], dst[:3]))) and not _exactly(H, case)
 
 
 def _exactly(H: Array, case: Case) -> bool:
@@ -120,7 +128,7 @@ FOUR = Exercise(
             "Your H expects (y, x): its first column belongs to x.",
             lambda src, dst: dlt(src[:, ::-1], dst),
         ),
-        *OF_THE_ROWS[:4],
+        *OF_THE_ROWS,
         Misconception(
             "an affine map",
             "The last row of your H is (0, 0, 1): an affine map keeps parallels parallel, which a "
@@ -153,8 +161,8 @@ FOUR = Exercise(
             "the last pair left out",
             "You used three of the four pairs: D needs eight rows.",
             lambda src, dst: np.linalg.svd(design_matrix(src[:3], dst[:3]))[2][-1].reshape(3, 3),
+            seen=_fits_three,
         ),
-        A_ROW_OF_EIGENVECTORS,
     ),
     reference=dlt,
     sources=(design_matrix, dlt),

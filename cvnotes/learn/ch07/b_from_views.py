@@ -266,12 +266,6 @@ B_FROM_VIEWS = Exercise(
             ),
         ),
         _at_any_scale(
-            "columns h2 and h3",
-            "You took the second and third column of H, as if columns were counted from 0: h1 and "
-            "h2 are H[:, 0] and H[:, 1].",
-            lambda H: _null(_rows(np.roll(H, -1, axis=2))),
-        ),
-        _at_any_scale(
             "mixed products doubled",
             "Your v doubles a1 b2 in place of a1 b2 + a2 b1: check v_ij by itself.",
             lambda H: _null(_slipped_rows(H, [0, 1, 1, 2, 2, 2])),

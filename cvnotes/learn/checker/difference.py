@@ -294,6 +294,9 @@ _DONE: tuple[tuple[str, str, Change], ...] = (
 )  # fmt: skip
 
 
+NOT_A_NUMBER = Found("NaN", "Your answer is NaN: 0/0, or the root of a negative number?")
+
+
 def _not_finite(pairs: Sequence[Pair], _: Same, bound: float) -> Found | None:
     """Say where NaN and infinity are mistaken, if all that both have as numbers is right."""
     places = [(a, r, np.isfinite(a) & np.isfinite(r)) for a, r in pairs]
@@ -304,7 +307,7 @@ def _not_finite(pairs: Sequence[Pair], _: Same, bound: float) -> Found | None:
     a, r = (x[~((a == r) | (np.isnan(a) & np.isnan(r)))] for x in (a, r))
     if not any(both.any() for *_, both in places) and np.isfinite(r).all():
         if np.isnan(a).all():
-            return Found("NaN", "Your answer is NaN: 0/0, or the root of a negative number?")
+            return NOT_A_NUMBER
         return None
     for name, sentence, mine, wanted in _NO_NUMBERS:
         if mine(a).all() and wanted(r).all():

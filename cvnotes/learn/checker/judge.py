@@ -8,6 +8,7 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.learn.checker.diagnosis import Found, Tried, mistake_behind
+from cvnotes.learn.checker.difference import NOT_A_NUMBER
 from cvnotes.learn.checker.equality import of_size_one, slack, tolerance, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Property
 from cvnotes.learn.checker.general import general_mistake
@@ -186,7 +187,9 @@ def _wrong(
         counterexample=dict(zip(exercise.arguments, case.args, strict=True)) if shown else {},
         yours=_as_given(outcome.value, outcome) if compared else None,
         wanted=_as_given(wanted, outcome) if compared else None,
-        remarks=() if mistake else remarks(exercise, outcome, case, wanted),
+        remarks=()
+        if mistake or found == NOT_A_NUMBER
+        else remarks(exercise, outcome, case, wanted),
         printed=outcome.printed,
     )
 

@@ -210,7 +210,7 @@ _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
     ("arranged otherwise", "the numbers are right, the arrangement is not.", _rearranged),
     (
         "still homogeneous",
-        "still homogeneous: divide by the last coordinate, then leave it out.",
+        "still homogeneous? Divide by the last coordinate, then leave it out.",
         _homogeneous,
     ),
     ("last coordinate kept", "the numbers are right, with a 1 too many: leave it out.", _lifted),
