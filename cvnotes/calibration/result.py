@@ -163,10 +163,12 @@ class Calibration:
             return ()
         honest, noise = (np.array([*std.values()]) for std in (self.std_of_views, self.std))
         if not np.isfinite(honest).all():
-            return (
-                "±: from noise alone, as without one view the others do not determine the camera; "
-                "the true error may be several times larger",
+            why = (
+                "as without one view the others do not determine the camera"
+                if len(self.poses) > 1
+                else "as there is no other view"
             )
+            return (f"±: from noise alone, {why}; the true error may be several times larger",)
         if self.rms < _ROUNDED_RMS or (times := float(np.median(honest / noise))) <= _MORE:
             return ()
         return (
@@ -245,7 +247,8 @@ class Calibration:
         return [(n, v, std[n], "px" if n in SENSOR else "") for n, v in self.parameters.items()]
 
     def __repr__(self) -> str:
-        lines = [f"Calibration from {len(self.poses)} views, {self.size[0]}×{self.size[1]} px"]
+        n = len(self.poses)
+        lines = [f"Calibration from {n} view{'s' * (n > 1)}, {self.size[0]}×{self.size[1]} px"]
         for name, value, std, unit in self.table():
             number, error = with_deviation(value, std)
             lines.append(f"  {name:<8}{number:>14} ± {error} {unit}".rstrip())
