@@ -21,8 +21,9 @@ CHAPTERS = [path for path in NOTEBOOKS if path.name[:2] in {f"{n:02d}" for n in 
 FURTHER = ROOT / "notebooks/10_more_exercises.ipynb"
 each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
 each_chapter = pytest.mark.parametrize("path", CHAPTERS, ids=lambda p: p.stem)
-MAX_LINES, MEDIAN_LINES, IMPORT_LINES, MAX_BYTES = 12, 5, 20, 1_500_000
+MAX_LINES, MEDIAN_LINES, IMPORT_LINES, MAX_BYTES = 12, 5, 8, 1_500_000
 KEY = ROOT / "docs/teacher/answers"  # the lecturer's answers to the questions in the prose
+WINGS = {"cvnotes", *(f"cvnotes.{file.parent.name}" for file in ROOT.glob("cvnotes/*/__init__.py"))}
 # Sections of a chapter that tell rather than show.
 TELLING = ("summary", "further reading", "what comes next", "exercises", "explore", "careful")
 
@@ -65,6 +66,25 @@ def test_code_cells_are_short_and_follow_prose(path):
     for before, cell in zip(notebook.cells, notebook.cells[1:], strict=False):
         if cell.cell_type == "code":
             assert before.cell_type == "markdown", f"{cell.id} has no prose before it"
+
+
+@each_notebook
+def test_imports_are_a_few_lines_where_they_are_needed(path):
+    imported, used = {}, {}
+    for i, cell in enumerate(_code(_read(path))):
+        for node in ast.walk(ast.parse(cell.source)):
+            if isinstance(node, ast.Name):
+                used.setdefault(node.id, i)
+            elif isinstance(node, ast.Import | ast.ImportFrom):
+                if getattr(node, "module", "").startswith("cvnotes"):
+                    assert node.module in WINGS, f"{cell.id} imports from {node.module}"
+                for alias in node.names:
+                    name = alias.asname or alias.name
+                    assert name not in imported, f"{cell.id} imports {name} once more"
+                    imported[name] = i
+    early = [name for name, i in imported.items() if used.get(name, i) < i]
+    assert early == [], "these are used in a cell above their import"
+    assert sum(i > 0 for i in imported.values()) > 3
 
 
 def _prose(notebook):
