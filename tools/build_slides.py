@@ -41,7 +41,14 @@ ROOT = Path(__file__).resolve().parents[1]
 LOOKS = ROOT / "docs" / "slides"
 MATHJAX = ("tex-chtml.js", "input", "output")
 # Of the site's scripts, those that let explorations move.
-LIVE = ("python.js", "worker.js", "page.js", "explore.js", "live.css")
+LIVE = tuple(
+    ROOT / folder / name
+    for folder, names in (
+        ("docs/static/live", ("python.js", "worker.js", "page.js", "explore.js", "live.css")),
+        ("cvnotes/show/explore", ("grips.js",)),  # shared with the notebook
+    )
+    for name in names
+)
 # Sections that are read, and not shown.
 NOT_SHOWN = ("further reading", "what comes next", "the same in opencv")
 _DISPLAY = re.compile(r"\$\$.+?\$\$", re.S)
@@ -286,7 +293,7 @@ def main() -> int:
             lay_out(parts, new / "python")
             (new / "_static" / "live").mkdir(parents=True)
             for script in LIVE:
-                shutil.copy(ROOT / "docs" / "static" / "live" / script, new / "_static" / "live")
+                shutil.copy(script, new / "_static" / "live")
         if given.out.exists():
             shutil.rmtree(given.out)
         shutil.copytree(new, given.out)

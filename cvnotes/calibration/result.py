@@ -264,7 +264,8 @@ class Calibration:
         for name, value, std, unit in self.table():
             cells = "<td>{}</td><td>± {}</td>".format(*with_deviation(value, std))
             rows += f"<tr>{left_cell(name)}{cells}{left_cell(unit)}</tr>"
-        caption = f"{len(self.poses)} views, RMS {self.rms:.4f} px per point"
+        n = len(self.poses)
+        caption = f"{n} view{'s' * (n > 1)}, RMS {self.rms:.4f} px per point"
         table = f"<table><caption>{caption}</caption>{rows}</table>"
         of_shape = (str(self.shape),) if self.shape is not None else ()
         table += "".join(f"<p>{note}</p>" for note in (*of_shape, *self.notes_on_deviations))

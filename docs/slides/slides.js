@@ -55,7 +55,7 @@ if (document.body.dataset.live && location.protocol.startsWith("http")) {
   const style = document.createElement("link");
   [style.rel, style.href] = ["stylesheet", "_static/live/live.css"];
   document.head.append(style);
-  for (const name of ["page", "explore"]) {
+  for (const name of ["page", "grips", "explore"]) {
     const script = document.createElement("script");
     [script.src, script.async] = [`_static/live/${name}.js`, false]; // in this order
     document.head.append(script);
