@@ -101,9 +101,36 @@ def share_contents(*event: Any) -> None:
         context["toctree"] = toctree
 
 
+WAY_BACK = re.compile(r'(reference/[\w.]+)\.html#([\w.]+)"')
+
+
+def lead_back(*event: Any) -> None:
+    """Let a page of source lead back to where each of its names is documented.
+
+    viewcode takes all names of a file for names of the module that it met first; ours are
+    documented with their chapters.
+    """
+    app, page, _, context, _ = event
+    if not page.startswith("_modules/"):
+        return
+    documented = app.env.domains["py"].objects
+
+    def known(match: re.Match[str]) -> str:
+        document, name = match.groups()
+        parts = name.split(".")
+        for tail in (".".join(parts[i:]) for i in range(len(parts))):
+            for full, entry in documented.items():
+                if entry.docname == document and f".{full}".endswith(f".{tail}"):
+                    return f'{document}.html#{full}"'
+        return match[0]
+
+    context["body"] = WAY_BACK.sub(known, context["body"])
+
+
 def setup(app: Any) -> None:
     """Have Sphinx call us before numpydoc, and when a page is written."""
     app.connect("autodoc-process-docstring", escape_initials, priority=100)
     app.connect("html-page-context", share_contents)
+    app.connect("html-page-context", lead_back)
     if LIVE:
         app.connect("html-page-context", offer_to_run)

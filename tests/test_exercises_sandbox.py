@@ -14,6 +14,7 @@ import textwrap
 import threading
 import time
 import warnings
+from multiprocessing import resource_tracker
 from pathlib import Path
 
 import numpy as np
@@ -144,7 +145,8 @@ def say_passed(x_h):
 
 
 def scribble(x_h):
-    pipes = [fd for fd in range(3, 64) if _is_pipe(fd)]
+    tracker = getattr(resource_tracker._resource_tracker, "_fd", None)  # not the checker's
+    pipes = [fd for fd in range(3, 64) if _is_pipe(fd) and fd != tracker]
     os.write(pipes[-1], b'{"kind": "numbers"}\nnonsense')
     return right_drop(x_h)
 
