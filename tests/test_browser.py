@@ -166,7 +166,7 @@ def _write_scratch(path, *sources):
 
 def _open(page, address, name):
     page.goto(f"{address}/lab/workspaces/auto-{Path(name).stem}/tree/{name}?token={TOKEN}")
-    page.wait_for_selector(".jp-Notebook .jp-CodeCell", timeout=60_000)
+    page.wait_for_selector(".jp-Notebook .jp-CodeCell", state="attached", timeout=60_000)
     page.wait_for_function(IN_FRONT, arg=Path(name).name, timeout=60_000)
 
 

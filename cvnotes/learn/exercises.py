@@ -157,6 +157,7 @@ def check(name: str, answer: Any, *, student: str | None = None) -> Report:
     Examples
     --------
     >>> check("lift", lambda x, w: x).misconception
+    'columns too few'
     >>> def my_lift(x, w): ...
     >>> check("lift", my_lift).verdict
     'not solved yet'
