@@ -77,10 +77,12 @@ def hold_at(
         raise DegenerateError(f"aim: pixel {aim.tolist()} is beyond the reach of the lens")
     half = (np.array(camera.size) - 1) / 2
     nearest = np.linalg.norm(outline - middle, axis=1).max()
-    for distance in nearest * 1.03 ** np.arange(200):
-        m = camera.moved(pose(R, distance * ray - R @ middle)).project(outline)
-        if (np.abs(m - half) <= half - _ROOM).all():  # never true for NaN
-            return pose(R, farther * distance * ray - R @ middle)
+    camera, turned = camera.moved(np.eye(4)), (outline - middle) @ R.T
+    for distances in np.split(nearest * 1.03 ** np.arange(200), 10):
+        m = camera.project(turned + (distances[:, None] * ray)[:, None])
+        inside = (np.abs(m - half) <= half - _ROOM).all(axis=(1, 2))  # never true for NaN
+        if inside.any():
+            return pose(R, farther * distances[inside.argmax()] * ray - R @ middle)
     raise DegenerateError(
         f"the target does not fit into a picture of {camera.size[0]}×{camera.size[1]} pixels"
     )

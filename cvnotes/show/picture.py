@@ -3,11 +3,13 @@
 import base64
 import io
 import sys
+import zlib
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import CvnotesError
 from cvnotes.show.style import DPI
@@ -91,16 +93,38 @@ def encode(figure: "Figure", *, jpeg: bool = True) -> tuple[bytes, str]:
     """
     from PIL import Image
 
-    drawn, encoded = io.BytesIO(), io.BytesIO()
-    figure.savefig(drawn, format="png", dpi=2 * DPI, facecolor="white")
-    picture = Image.open(drawn).convert("RGB")
+    picture, encoded = Image.fromarray(_drawn(figure)).convert("RGB"), io.BytesIO()
     if picture.getcolors(_MANY_COLOURS) is not None:
-        picture.quantize(256, dither=Image.Dither.NONE).save(encoded, "PNG", optimize=True)
-        if encoded.tell() < _LARGE or not jpeg:
-            return encoded.getvalue(), "image/png"
+        few = picture.quantize(256, dither=Image.Dither.NONE)
+        if not (jpeg and _never_small(few.tobytes())):
+            few.save(encoded, "PNG", optimize=True)
+            if encoded.tell() < _LARGE or not jpeg:
+                return encoded.getvalue(), "image/png"
         encoded = io.BytesIO()  # a grey photograph: few colours, but noise that no PNG packs
     if jpeg:
         picture.save(encoded, "JPEG", quality=85, subsampling=0, optimize=True)
         return encoded.getvalue(), "image/jpeg"
     picture.save(encoded, "PNG")
     return encoded.getvalue(), "image/png"
+
+
+def _drawn(figure: "Figure") -> npt.NDArray[np.uint8]:
+    """Draw a figure once, as (height, width, 4); its own `savefig` draws it twice, and packs it."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas, dpi, paper = figure.canvas, figure.dpi, figure.get_facecolor()
+    try:
+        figure.set_facecolor("white")
+        ours = FigureCanvasAgg(figure)
+        figure.dpi = 2 * DPI
+        ours.draw()
+        return np.array(ours.buffer_rgba())
+    finally:
+        figure.set_canvas(canvas)
+        figure.set_facecolor(paper)
+        figure.dpi = dpi
+
+
+def _never_small(pixels: bytes) -> bool:
+    """Tell in a hurry that pixels will not be small, not even when they are packed with care."""
+    return len(zlib.compress(pixels, 1)) > 3 * _LARGE
