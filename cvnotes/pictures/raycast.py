@@ -118,7 +118,8 @@ def _own_search(n: Array, det: Array, xy: Array) -> Indices:
         touched = _may_touch(n[some], low, high)
         for i in np.flatnonzero(touched.any(axis=1)):
             groups = np.flatnonzero(touched[i])
-            e0, e1, e2 = (a * x[groups] + b * y[groups] + c for a, b, c in n[some.start + i])
+            there = x[groups], y[groups]
+            e0, e1, e2 = (a * there[0] + b * there[1] + c for a, b, c in n[some.start + i])
             inverse_z = (e0 + e1 + e2) / det[some.start + i]
             seen = (e0 >= 0) & (e1 >= 0) & (e2 >= 0) & (inverse_z > nearness[groups])
             row, ray = np.nonzero(seen)

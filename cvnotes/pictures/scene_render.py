@@ -21,7 +21,7 @@ from cvnotes.pictures.meshes import Scene
 from cvnotes.pictures.raycast import first_hits
 from cvnotes.pictures.surfaces import Surfaces
 
-_PIXELS = 2048  # looked at closely at a time
+_RAYS = 131_072  # at a time, of pixels that are looked at closely
 
 
 def render_scene(
@@ -140,7 +140,7 @@ def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
 def _supersampled(surfaces: Surfaces, camera: Camera, m: Array, samples: int, engine: str) -> Array:
     """Return the mean colours (n, 3) that `samples` rays in each of the pixels m (n, 2) see."""
     out, order, offsets = np.empty((len(m), 3)), tile_order(m), within_pixel(samples)
-    for part in chunks(len(m), _PIXELS):
+    for part in chunks(len(m), max(TILE, _RAYS // samples)):
         some = order[part]
         some = np.resize(some, -(-len(some) // TILE) * TILE)  # whole groups; a few twice
         xy = camera.ideal(m[some, None] + offsets).reshape(-1, TILE * samples, 2)
