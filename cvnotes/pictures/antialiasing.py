@@ -98,8 +98,8 @@ def changing(signature: Array) -> Mask:
     high = low = np.pad(signature, ((1, 1), (1, 1), (0, 0)), mode="edge")
     for axis in (0, 1):
         cuts = [(slice(None),) * axis + (slice(i, i - 2 or None),) for i in range(3)]
-        high = np.maximum.reduce([high[cut] for cut in cuts])
-        low = np.minimum.reduce([low[cut] for cut in cuts])
+        high = np.maximum(np.maximum(high[cuts[0]], high[cuts[1]]), high[cuts[2]])
+        low = np.minimum(np.minimum(low[cuts[0]], low[cuts[1]]), low[cuts[2]])
     return np.asarray((high - low >= 1).any(axis=-1))
 
 
@@ -124,8 +124,8 @@ def crossed(camera: Camera, ends: Array, xy: Array) -> Mask:
     array([32])
     """
     width, height = camera.size
-    flat = xy.reshape(-1, 2)
-    a, b = _clipped(ends, np.fmin.reduce(flat), np.fmax.reduce(flat))
+    low, high = (f.reduce(f.reduce(xy)) for f in (np.fmin, np.fmax))  # both axes: 80 times slower
+    a, b = _clipped(ends, low, high)
     a, b = a[:, :2] / a[:, 2:], b[:, :2] / b[:, 2:]
     # Straight in the ideal image: two points a pixel, each its part of the way.
     count = np.ceil(2 * np.linalg.norm((b - a) * np.diag(camera.A)[:2], axis=-1)).astype(int) + 1

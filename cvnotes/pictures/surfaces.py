@@ -47,7 +47,7 @@ class Surfaces(NamedTuple):
         x, y = np.moveaxis(xy, -1, 0).copy()
         none = triangle < 0
         square = self._squares(triangle, x, y)
-        odd = (square.sum(axis=0) % 2).astype(np.intp)
+        odd = square.sum(axis=0).astype(np.intp) & 1
         colour = np.take(self.palette, np.where(none, 0, 2 * triangle + odd), axis=1)
         if np.isfinite(self.around.haze):
             clear = np.exp(-depth * np.sqrt(1 + x * x + y * y) / self.around.haze)
