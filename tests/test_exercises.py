@@ -14,8 +14,8 @@ from test_exercises_second import solution_of
 
 from cvnotes.base import CvnotesError
 from cvnotes.learn import EXERCISES, check, exercises, hint, progress, solution
-from cvnotes.learn.checker.diagnosis import what_it_gives
 from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.foreseen import what_it_gives
 from cvnotes.learn.checker.judge import judge
 from cvnotes.learn.checker.literals import as_code
 from cvnotes.learn.checker.outcome import Outcome, outcome_of

@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.pictures import rails_camera
-from cvnotes.learn.checker.diagnosis import misreadings
+from cvnotes.learn.cases.slips import misreadings
 from cvnotes.learn.checker.equality import within
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 

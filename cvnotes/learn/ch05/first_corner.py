@@ -2,7 +2,7 @@
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.pictures import turned_board
-from cvnotes.learn.checker.diagnosis import misreadings
+from cvnotes.learn.cases.slips import misreadings
 from cvnotes.learn.checker.equality import within
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 

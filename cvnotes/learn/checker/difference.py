@@ -1,65 +1,85 @@
 """What a wrong answer and a right one differ by: measured, and named, in every exercise."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.learn.checker.diagnosis import Found, Tried
 from cvnotes.learn.checker.equality import Same, close, tolerance, up_to_scale
-from cvnotes.learn.checker.exercise import Case, Exercise
+from cvnotes.learn.checker.wrong_answer import Found, Tried, WrongAnswer
 
 Pair = tuple[Array, Array]
 Change = Callable[..., Any]
 
 
-def difference(exercise: Exercise, tried: Sequence[Tried], failing: Sequence[Case]) -> Found | None:
+@dataclass(frozen=True, eq=False)
+class _Wrong:
+    """What is compared: the wrong answers beside right ones, that of the case shown first.
+
+    Attributes
+    ----------
+    pairs : tuple of (answer, right)
+        Of the same shape, for each case on which the answer is wrong.
+    same : callable
+        When the exercise calls two of them equal.
+    bound : float
+        How far they may be apart.
+    """
+
+    pairs: tuple[Pair, ...]
+    same: Same
+    bound: float
+
+    @property
+    def up_to_scale(self) -> bool:
+        """Whether a factor, and so the size of a number, is free."""
+        return self.same is up_to_scale
+
+    def right_after(self, change: Change) -> bool:
+        """Tell whether one change makes all answers right."""
+        return all(self.same(change(a), right, self.bound) for a, right in self.pairs)
+
+    def equal(self, change: Change) -> bool:
+        """Tell whether answers and right ones are equal in what a function makes of both."""
+        return all(self.same(change(a), change(right), self.bound) for a, right in self.pairs)
+
+
+def difference(answer: WrongAnswer) -> Found | None:
     """Say by what the answers differ from right ones, in the same way in all failing cases.
 
-    Parameters
-    ----------
-    exercise : Exercise
-        What was asked.
-    tried : sequence of (Case, Outcome)
-        All cases, with what came of them.
-    failing : sequence of Case
-        Those on which the answer is wrong, of which the first is shown to the student.
-
-    Returns
-    -------
-    Found or None
-        A name and a sentence; nothing if there is nothing simple to say.
+    Nothing is said if there is nothing simple to say, or if that gave a number away.
     """
-    wrong = {id(case) for case in failing}
-    pairs, bound = [], 0.0
+    exercise, tried = answer.exercise, answer.tried
+    if exercise.answer == "value":
+        return None
+    pairs = []
     for case, outcome in tried:
         if outcome.value is None or outcome.value.shape != case.right.shape:
             return None
-        if id(case) in wrong:
-            pairs.append((outcome.value, case.right))
-            bound = max(bound, tolerance(outcome.dtype))
-    if not pairs or exercise.answer == "value":  # which would give the number away
-        return None
+        pairs.append((outcome.value, case.right))
     if len(tried) > 1 and (found := _same_for_all(tried, exercise.same)):
         return found
-    if all(np.isin(case.right, (0, 1)).all() and case.right.ndim for case, _ in tried):
-        return _truths(pairs)
+    bound = max(tolerance(outcome.dtype) for _, outcome in answer.failing)
+    wrong = _Wrong(tuple(pairs[: answer.wrong]), exercise.same, bound)
+    if all(np.isin(right, (0, 1)).all() and right.ndim for _, right in pairs):
+        return _truths(wrong.pairs)
     # What a few of several cases have in common may be chance, where it is a single number.
-    lonely = all(right.size == 1 for _, right in pairs) and len(pairs) == 1
-    tellers = _TELLERS if all(_both_finite(*pair) for pair in pairs) else (_not_finite,)
+    lonely = answer.wrong == 1 and wrong.pairs[0][1].size == 1
+    alike = all(_alike_finite(*pair) for pair in wrong.pairs)
+    tellers = (_not_finite, *_TELLERS) if alike else (_not_finite,)
     # Pictures of several sizes have no entries and columns in common.
-    tellers += (_some,) * (len({case.right.shape[-1:] for case, _ in tried}) == 1)
+    tellers += (_some,) * (len({right.shape[-1:] for _, right in pairs}) == 1)
     try:
-        found_ = (tell(pairs, exercise.same, bound) for tell in tellers)
-        found = next((one for one in found_ if one), None)
+        found = next((one for tell in tellers if (one := tell(wrong))), None)
     except (np.linalg.LinAlgError, CvnotesError):
         return None
     return None if lonely and found and found.name not in _CERTAIN_ALONE else found
 
 
-def _both_finite(answer: Array, right: Array) -> bool:
+def _alike_finite(answer: Array, right: Array) -> bool:
     return bool(np.array_equal(np.isfinite(answer), np.isfinite(right)))
 
 
@@ -94,17 +114,15 @@ def _truths(pairs: Sequence[Pair]) -> Found | None:
     if not answers.any():
         return Found("always False", "You say False always.")
     if (answers >= rights).all():
-        return Found("True too often", f"Where it is True you say so, but {_where(pairs)} is not.")
+        return Found("True too often", f"You say True too often: {_where(pairs)} is False.")
     if (answers <= rights).all():
-        return Found(
-            "False too often", f"Where it is False you say so, but {_where(pairs)} is not."
-        )
+        return Found("False too often", f"You say False too often: {_where(pairs)} is True.")
     return None
 
 
 def _where(pairs: Sequence[Pair]) -> str:
-    answer, right = min(pairs, key=lambda pair: pair[0].size)
-    return f"[{int(np.flatnonzero(answer.ravel() != right.ravel())[0])}], counted from 0,"
+    answer, right = pairs[0]
+    return f"entry [{int(np.flatnonzero(answer.ravel() != right.ravel())[0])}], counted from 0,"
 
 
 def _flipped(axis: int) -> Change:
@@ -115,62 +133,61 @@ def _moved_on(axis: int, step: int) -> Change:
     return lambda a: np.roll(a, step, axis)
 
 
-def _all(pairs: Sequence[Pair], same: Same, bound: float, change: Change) -> bool:
-    """Tell whether the answers become right ones by one change."""
-    return all(same(change(answer), right, bound) for answer, right in pairs)
-
-
-def _sign(pairs: Sequence[Pair], same: Same, bound: float) -> Found | None:
-    if _all(pairs, same, bound, np.negative):
+def _sign(wrong: _Wrong) -> Found | None:
+    if wrong.right_after(np.negative):
         return Found("sign", "Your answer is right but for its sign: it is the right one times −1.")
-    if all(np.size(r) > 1 for _, r in pairs) and _all(
-        [(np.abs(a), np.abs(r)) for a, r in pairs], same, bound, np.array
-    ):
+    if all(right.size > 1 for _, right in wrong.pairs) and wrong.equal(np.abs):
         return Found(
             "signs of some numbers",
-            f"The sizes are right, signs are wrong{_entries(pairs, same)}.",
+            f"The sizes are right, but signs are wrong{_entries(wrong)}.",
         )
     return None
 
 
-def _order(pairs: Sequence[Pair], same: Same, bound: float) -> Found | None:
-    dimensions = {answer.ndim for answer, _ in pairs}
-    if dimensions == {2} and all(a.shape[0] == a.shape[1] for a, _ in pairs):
-        if _all(pairs, same, bound, np.transpose):
-            return Found("transposed", "Your answer is the transpose of the right one.")
-        if all(np.linalg.matrix_rank(a) == len(a) for a, _ in pairs):
-            if _all(pairs, same, bound, np.linalg.inv):
-                return Found("the inverse", "Your answer is the inverse of the right one.")
-            if _all(pairs, same, bound, lambda a: np.linalg.inv(a).T):
-                return Found(
-                    "the inverse transposed",
-                    "Your answer is the inverse transpose of the right one.",
-                )
+def _order(wrong: _Wrong) -> Found | None:
+    dimensions = {answer.ndim for answer, _ in wrong.pairs}
+    if dimensions == {2} and (found := _turned(wrong)):
+        return found
+    if dimensions == {0}:
+        return None
     for axis, what in ((-1, "columns" if dimensions != {1} else "entries"), (0, "rows")):
-        if dimensions != {0} and _all(pairs, same, bound, _flipped(axis)):
+        if wrong.right_after(_flipped(axis)):
             return Found(
                 f"{what} in the opposite order",
                 f"The {what} are the right ones, in the opposite order.",
             )
-        for step in (1, -1):
-            if dimensions != {0} and _all(pairs, same, bound, _moved_on(axis, step)):
-                return Found(
-                    f"{what} moved on",
-                    f"The {what} are the right ones, moved on by one place.",
-                )
-    if dimensions != {0} and _all(pairs, same, bound, _refilled):
+        if any(wrong.right_after(_moved_on(axis, step)) for step in (1, -1)):
+            return Found(
+                f"{what} moved on",
+                f"The {what} are the right ones, moved on by one place.",
+            )
+    if wrong.right_after(_refilled):
         return Found(
             "reshaped for transposed",
-            "The numbers are right and in the wrong places: reshape fills row by row, it does "
+            "The numbers are right, but in the wrong places: reshape fills row by row, it does "
             "not transpose. Take .T.",
         )
-    if dimensions == {2} and _all(
-        [(_sorted_rows(a), _sorted_rows(r)) for a, r in pairs], same, bound, np.array
-    ):
+    if dimensions == {2} and wrong.equal(_sorted_rows):
         return Found("rows in another order", "The rows are the right ones, in another order.")
-    sorts = [(np.sort(a, None), np.sort(r, None)) for a, r in pairs if a.size > 1]
-    if len(sorts) == len(pairs) and _all(sorts, same, bound, np.array):
+    if all(answer.size > 1 for answer, _ in wrong.pairs) and wrong.equal(_sorted):
         return Found("another order", "The numbers are the right ones, in another order.")
+    return None
+
+
+def _turned(wrong: _Wrong) -> Found | None:
+    """Tell whether square matrices are the transpose, or the inverse, of the right ones."""
+    if any(answer.shape[0] != answer.shape[1] for answer, _ in wrong.pairs):
+        return None
+    if wrong.right_after(np.transpose):
+        return Found("transposed", "Your answer is the transpose of the right one.")
+    if any(np.linalg.matrix_rank(answer) < len(answer) for answer, _ in wrong.pairs):
+        return None
+    if wrong.right_after(np.linalg.inv):
+        return Found("the inverse", "Your answer is the inverse of the right one.")
+    if wrong.right_after(lambda a: np.linalg.inv(a).T):
+        return Found(
+            "the inverse transposed", "Your answer is the inverse transpose of the right one."
+        )
     return None
 
 
@@ -179,22 +196,26 @@ def _refilled(a: Array) -> Array:
     return a.ravel().reshape(a.shape[::-1]).T if a.ndim == 2 else a
 
 
+def _sorted(x: Array) -> Array:
+    return np.sort(x, None)
+
+
 def _sorted_rows(x: Array) -> Array:
     return np.asarray(x[np.lexsort(np.round(x, 6).T)])
 
 
-def _factor(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
-    if same is up_to_scale:
+def _factor(wrong: _Wrong) -> Found | None:
+    if wrong.up_to_scale:
         return None
-    factors = [_common_factor(answer, right) for answer, right in pairs]
-    if any(f is None or f == 0 for f in factors) or _few_counts(pairs):
+    factors = [_common_factor(answer, right) for answer, right in wrong.pairs]
+    if any(f is None or f == 0 or abs(f - 1) < 1e-5 for f in factors) or _few_counts(wrong):
         return None
     f = float(factors[0])  # type: ignore[arg-type]
     several = len(factors) > 1
     if several and np.allclose(np.array(factors, dtype=float), f, rtol=1e-5):
         name = _said(f).partition(": ")[2] or "a factor"
         return Found(name, f"Your answer is the right one times {_said(f)}, in every case.")
-    if all(np.size(right) > 1 for _, right in pairs):
+    if all(right.size > 1 for _, right in wrong.pairs):
         return Found(
             "up to a factor", f"Your answer is right up to a factor, which is {_said(f)} here."
         )
@@ -210,9 +231,9 @@ def _common_factor(answer: Array, right: Array) -> float | None:
     return f if np.allclose(a, f * r, rtol=0, atol=1e-6 * np.abs(a).max()) else None
 
 
-def _few_counts(pairs: Sequence[Pair]) -> bool:
+def _few_counts(wrong: _Wrong) -> bool:
     """Tell whether these are one or two counts, which may differ by 1, or by half, by chance."""
-    return len(pairs) < 3 and all(r.ndim == 0 and r == np.round(r) for _, r in pairs)
+    return len(wrong.pairs) < 3 and all(r.ndim == 0 and r == np.round(r) for _, r in wrong.pairs)
 
 
 _NAMED = {
@@ -228,16 +249,17 @@ def _said(f: float) -> str:
     return f"{f:.6g}".replace("-", "−")
 
 
-def _constant(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
-    if same is up_to_scale:
+def _constant(wrong: _Wrong) -> Found | None:
+    if wrong.up_to_scale:
         return None
+    pairs = wrong.pairs
     steps = [(a - r)[np.isfinite(r)] for a, r in pairs]
     first = float(steps[0].flat[0]) if steps[0].size else 0.0
     size = max(float(np.abs(r[np.isfinite(r)]).max(initial=0)) for _, r in pairs)
     if not abs(first) > 1e-6 * size:
         return None
     if all(np.allclose(d, first, rtol=0, atol=1e-6 * size) for d in steps):
-        if sum(d.size for d in steps) == 1 or _few_counts(pairs):
+        if sum(d.size for d in steps) == 1 or _few_counts(wrong):
             return None
         name = "half a pixel" if np.isclose(abs(first), 0.5) and size > 5 else "a constant added"
         return Found(name, f"Your answer is the right one plus {_said(first)} everywhere.")
@@ -250,15 +272,15 @@ def _constant(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
     return None
 
 
-def _each_number(pairs: Sequence[Pair], same: Same, bound: float) -> Found | None:
+def _each_number(wrong: _Wrong) -> Found | None:
     """Say what was done to every number of a right answer."""
-    if same is up_to_scale:
+    if wrong.up_to_scale:
         return None
     for name, sentence, done in _DONE:
-        made = [(a, done(r)) for a, r in pairs]
+        made = [(a, r, done(r)) for a, r in wrong.pairs]
         if all(
-            np.isfinite(m).all() and not close(m, r, bound) and close(a, m, bound)
-            for (a, m), (_, r) in zip(made, pairs, strict=True)
+            np.isfinite(m).all() and not close(m, r, wrong.bound) and close(a, m, wrong.bound)
+            for a, r, m in made
         ):
             return Found(name, sentence)
     return None
@@ -297,10 +319,10 @@ _DONE: tuple[tuple[str, str, Change], ...] = (
 NOT_A_NUMBER = Found("NaN", "Your answer is NaN: 0/0, or the root of a negative number?")
 
 
-def _not_finite(pairs: Sequence[Pair], _: Same, bound: float) -> Found | None:
+def _not_finite(wrong: _Wrong) -> Found | None:
     """Say where NaN and infinity are mistaken, if all that both have as numbers is right."""
-    places = [(a, r, np.isfinite(a) & np.isfinite(r)) for a, r in pairs]
-    if not all(close(a[both], r[both], bound) for a, r, both in places if both.any()):
+    places = [(a, r, np.isfinite(a) & np.isfinite(r)) for a, r in wrong.pairs]
+    if not all(close(a[both], r[both], wrong.bound) for a, r, both in places if both.any()):
         return None
     a = np.concatenate([a[~both] for a, _, both in places])
     r = np.concatenate([r[~both] for _, r, both in places])
@@ -310,7 +332,7 @@ def _not_finite(pairs: Sequence[Pair], _: Same, bound: float) -> Found | None:
             return NOT_A_NUMBER
         return None
     for name, sentence, mine, wanted in _NO_NUMBERS:
-        if mine(a).all() and wanted(r).all():
+        if a.size and mine(a).all() and wanted(r).all():
             return Found(name, sentence)
     return None
 
@@ -332,16 +354,15 @@ _NO_NUMBERS: tuple[tuple[str, str, Change, Change], ...] = (
 )  # fmt: skip
 
 
-def _entries(pairs: Sequence[Pair], same: Same) -> str:
+def _entries(wrong: _Wrong) -> str:
     """Name the entries that are wrong in every case, if it is a few."""
-    places = [_wrong_entries(a, r) for a, r in pairs]
-    shapes = {r.shape for _, r in pairs}
-    if same is up_to_scale or len(shapes) != 1 or shapes == {()}:
+    shapes = {right.shape for _, right in wrong.pairs}
+    if wrong.up_to_scale or len(shapes) != 1 or shapes == {()}:
         return ""
-    wrong = np.any(places, axis=0)
-    if wrong.ndim > 2 or not 0 < wrong.sum() <= max(1, wrong.size // 3):
+    places = np.any([_wrong_entries(*pair) for pair in wrong.pairs], axis=0)
+    if places.ndim > 2 or not 0 < places.sum() <= max(1, places.size // 3):
         return ""
-    named = [_index(i) for i in np.argwhere(wrong)]
+    named = [_index(i) for i in np.argwhere(places)]
     return f" in {', '.join(named)}"
 
 
@@ -356,12 +377,13 @@ def _index(i: npt.NDArray[np.intp]) -> str:
     return f"[{', '.join(map(str, i.tolist()))}]"
 
 
-def _some(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
+def _some(wrong: _Wrong) -> Found | None:
     """Say which entries, columns or rows are wrong, if the others are right."""
-    if same is up_to_scale or any(a.ndim == 0 for a, _ in pairs):
+    pairs = wrong.pairs
+    if wrong.up_to_scale or any(a.ndim == 0 for a, _ in pairs):
         return None
-    places = [_wrong_entries(a, r) for a, r in pairs]
-    if few := _entries(pairs, same):
+    places = [_wrong_entries(*pair) for pair in pairs]
+    if few := _entries(wrong):
         return Found("a few numbers", f"All is right but what stands{few}.")
     if any(p.ndim != 2 for p in places):
         return None
@@ -369,13 +391,13 @@ def _some(pairs: Sequence[Pair], same: Same, _: float) -> Found | None:
     if len({p.shape[1] for p in places}) == 1:
         columns = np.any([p.any(0) for p in places], axis=0)
         if 0 < columns.sum() <= len(columns) / 2 and several:
-            wrong = ", ".join(map(str, np.flatnonzero(columns)))
-            return Found("one column", f"Only column {wrong} of your answer is wrong.")
+            named = ", ".join(map(str, np.flatnonzero(columns)))
+            return Found("one column", f"Only column {named} of your answer is wrong.")
     rows = [np.flatnonzero(p.any(1)) for p in places]
     for name, i in (("the first row", 0), ("the last row", -1)):
         if all(
-            len(p) > 2 and len(wrong) == 1 and wrong[0] == range(len(p))[i]
-            for p, wrong in zip(places, rows, strict=True)
+            len(p) > 2 and len(bad) == 1 and bad[0] == range(len(p))[i]
+            for p, bad in zip(places, rows, strict=True)
         ):
             return Found(name, f"Only {name} of your answer is wrong.")
     first = pairs[0][0]

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.learn.checker.diagnosis import Found, Tried, mistake_behind
+from cvnotes.learn.checker.diagnosis import diagnosis
 from cvnotes.learn.checker.difference import NOT_A_NUMBER
 from cvnotes.learn.checker.equality import of_size_one, slack, tolerance, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Property
-from cvnotes.learn.checker.general import general_mistake
 from cvnotes.learn.checker.outcome import Outcome
 from cvnotes.learn.checker.remarks import other_shape, remarks, trouble
 from cvnotes.learn.checker.report import OPEN, RIGHT, WRONG, Report
+from cvnotes.learn.checker.wrong_answer import Tried, WrongAnswer
 
 
 @np.errstate(all="ignore")
@@ -157,22 +157,17 @@ def _holds(exercise: Exercise, p: Property, case: Case, outcome: Outcome) -> boo
 def _wrong(
     exercise: Exercise, tried: list[Tried], holding: tuple[str, ...], failing: Failing
 ) -> Report:
-    alike = [x for x in failing if x[0] == failing[0][0]]
-    _, why, case, outcome = min(alike, key=lambda x: x[2].size)
+    answer = _wrong_answer(exercise, tried, failing)
+    case, outcome = answer.shown
+    found = diagnosis(answer)
+    if found is None:
+        message = answer.why or f"Look at what does not hold; {hint_at(exercise)}"
+    elif found.enough or answer.why:
+        message = found.sentence
+    else:
+        message = f"{found.sentence} {hint_at(exercise)}"
+    said_all = found is not None and (found.enough or found == NOT_A_NUMBER)
     sentences = [sentence for sentence, *_ in failing if sentence]
-    wrong = [x[2] for x in failing]
-    mistake = mistake_behind(exercise, tried, wrong) if sentences else None
-    found = None
-    if mistake is None and outcome.changed and outcome.value is not None:
-        found = Found("an argument changed", why)
-    elif mistake is None:
-        found = general_mistake(exercise, tried, wrong, case, why)
-    if mistake is not None:
-        why = mistake.sentence
-    elif found is not None:
-        why = found.sentence if why else f"{found.sentence} {hint_at(exercise)}"
-    elif not why:
-        why = f"Look at what does not hold; {hint_at(exercise)}"
     wanted = _scaled(exercise, case.right, outcome)
     shown = exercise.answer == "function"
     compared = shown and not outcome.changed
@@ -180,18 +175,28 @@ def _wrong(
     return Report(
         exercise.name,
         WRONG,
-        why,
-        misconception=mistake.name if mistake else found.name if found else None,
+        message,
+        misconception=found.name if found else None,
         holds=holding,
         fails=sentences[0] if sentences and came else "",
         counterexample=dict(zip(exercise.arguments, case.args, strict=True)) if shown else {},
         yours=_as_given(outcome.value, outcome) if compared else None,
         wanted=_as_given(wanted, outcome) if compared else None,
-        remarks=()
-        if mistake or found == NOT_A_NUMBER
-        else remarks(exercise, outcome, case, wanted),
+        remarks=() if said_all else remarks(exercise, outcome, case, wanted),
         printed=outcome.printed,
     )
+
+
+def _wrong_answer(exercise: Exercise, tried: list[Tried], failing: Failing) -> WrongAnswer:
+    """Gather what is wrong; of what fails first the student sees the shortest case."""
+    alike = [x for x in failing if x[0] == failing[0][0]]
+    _, why, shown, _ = min(alike, key=lambda x: x[2].size)
+    wrong = {id(case) for _, _, case, _ in failing}
+
+    def first_shown_then_short(one: Tried) -> tuple[bool, bool, int]:
+        return one[0] is not shown, id(one[0]) not in wrong, one[0].size
+
+    return WrongAnswer(exercise, tuple(sorted(tried, key=first_shown_then_short)), len(wrong), why)
 
 
 def _as_given(x: Any, outcome: Outcome) -> Any:

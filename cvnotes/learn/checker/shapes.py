@@ -1,58 +1,48 @@
 """Answers of another shape than asked: how the numbers were laid out, measured where it can be."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.learn.checker.diagnosis import Found, Tried
 from cvnotes.learn.checker.equality import Same, tolerance
 from cvnotes.learn.checker.exercise import Case, Exercise
 from cvnotes.learn.checker.remarks import one_for_each_point, other_shape
+from cvnotes.learn.checker.wrong_answer import Found, WrongAnswer
 
 # What is compared: two arrays of one shape, equal or not.
 Equal = Callable[[Array, Array], bool]
 
 
-def misshapen(exercise: Exercise, tried: Sequence[Tried], shown: Case) -> Found | None:
+def misshapen(answer: WrongAnswer) -> Found | None:
     """Name what is wrong with the shape of the answers.
 
-    Parameters
-    ----------
-    exercise : Exercise
-        What was asked.
-    tried : sequence of (Case, Outcome)
-        All cases, with what came of them.
-    shown : Case
-        The one that the student sees.
-
-    Returns
-    -------
-    Found or None
-        If the numbers are right and only laid out otherwise, in every case, it says how; if they
-        are not, what the shape alone tells. None if an answer is missing or the shapes are right.
+    If the numbers are right and only laid out otherwise, in every case, it says how; if they are
+    not, what the shape alone tells. Nothing is said if an answer is missing or the shapes are
+    right.
     """
-    pairs = [(o.value, c, tolerance(o.dtype)) for c, o in tried if o.value is not None]
+    exercise = answer.exercise
+    pairs = [(o.value, c, tolerance(o.dtype)) for c, o in answer.tried if o.value is not None]
     others = [(value, c, bound) for value, c, bound in pairs if value.shape != c.right.shape]
-    if not others or len(pairs) < len(tried):
+    if not others or len(pairs) < len(answer.tried):
         return None
-    here = next(((v, c) for v, c, _ in others if c is shown), others[0][:2])
-    head = f"The answer has shape {here[0].shape}, wanted is {here[1].right.shape}"
+    here, case, _ = others[0]
+    head = f"The answer has shape {here.shape}, wanted is {case.right.shape}"
     # Elsewhere a row of numbers may happen to have the shape that is asked.
     rest_is_right = all(
         value.shape != c.right.shape or exercise.same(value, c.right, bound)
         for value, c, bound in pairs
     )
     if rest_is_right and exercise.answer == "function":  # a value would be given away
-        rows = one_for_each_point(exercise, here[1])
+        rows = one_for_each_point(exercise, case)
         for name, sentence, fits in _LAYOUTS:
             if all(_fits(fits, value, c.right, exercise.same, bound) for value, c, bound in others):
                 said = _ABOUT_POINTS.get(name, (name, sentence)) if rows else (name, sentence)
                 return Found(said[0], f"{head}: {said[1]}")
     names = {_by_shape(exercise, value, c) for value, c, _ in others}
     name = names.pop() if len(names) == 1 else "another shape"
-    return Found(name, other_shape(exercise, *here))
+    return Found(name, other_shape(exercise, here, case))
 
 
 def _fits(
