@@ -125,26 +125,25 @@ class Sampler:
         self.stride = self.width + 3
         self.strides = np.array([1.0, self.stride])
         self.limits = np.array([[self.width], [self.height]], dtype=np.float64)
-        # Three or four bytes of colour are looked up as one word.
-        self.in_words = picture.dtype == np.uint8 and self.channels in ((3,), (4,))
-        self._pad(picture)
+        # Two neighbours in a row are looked up as one number of twice their size.
+        self.bits = 8 * picture.dtype.itemsize
+        self.in_pairs = picture.dtype.kind == "u" and method == "bilinear"
+        self.planes = [self._framed(picture, k) for k in range(self.fill.size)]
+        self.all_finite = picture.dtype.kind != "f" or all(
+            np.isfinite(plane).all() for plane in self.planes
+        )
 
-    def _pad(self, picture: Image) -> None:
-        """Frame each channel with `fill`, so that no position needs a test of its own."""
-        shape, inner = (self.height + 3, self.stride), np.s_[1:-2, 1:-2]
-        planes = picture.reshape(self.height, self.width, -1)
-        count = planes.shape[2]
-        if self.in_words:
-            framed = np.zeros((*shape, 4), picture.dtype)
-            channels = np.moveaxis(framed, -1, 0)
-            self.planes = framed.reshape(-1, 4).view(np.uint32).T
-        else:
-            channels = np.empty((count, *shape), picture.dtype)
-            self.planes = channels.reshape(count, -1)
-        for i in range(count):
-            channels[i] = self.fill[i]
-            channels[i][inner] = planes[..., i]
-        self.all_finite = picture.dtype.kind != "f" or bool(np.isfinite(self.planes).all())
+    def _framed(self, picture: Image, k: int) -> npt.NDArray[Any]:
+        """Frame channel k with `fill`, so that no position needs a test of its own."""
+        framed = np.full((self.height + 3, self.stride), self.fill[k], picture.dtype)
+        framed[1:-2, 1:-2] = picture.reshape(self.height, self.width, -1)[..., k]
+        plane = framed.reshape(-1)
+        if not self.in_pairs:
+            return plane
+        pairs = np.zeros(plane.size, f"u{2 * picture.dtype.itemsize}")
+        np.left_shift(plane[1:], self.bits, out=pairs[:-1], dtype=pairs.dtype)
+        pairs |= plane
+        return pairs
 
     def __call__(self, m: Array) -> Image:
         """Give the picture at m (2, n), rows u and v, as (n, channels); m is written over."""
@@ -174,21 +173,11 @@ class Sampler:
     def look_up(self, places: Places, values: Image) -> None:
         """Write the picture at places into values (n, channels)."""
         pixel, fractions = places.pixel.astype(np.intp, copy=False), places.fractions
-        if self.in_words and fractions is not None:
-            each = np.empty((*fractions.shape, 4), fractions.dtype)
-            for k in range(4):  # for each byte of a word
-                each[..., k] = fractions
-            fractions = each.reshape(2, -1)
         for k, plane in enumerate(self.planes):
             if fractions is None:
-                found = plane.take(pixel)
+                values[:, k] = plane.take(pixel)
             else:
-                found = self._bilinear(plane, pixel, *fractions)
-            if not self.in_words:
-                values[:, k] = found
-                continue
-            for channel, byte in zip(values.T, found.view(np.uint8).reshape(-1, 4).T, strict=False):
-                channel[:] = byte
+                values[:, k] = self._bilinear(plane, pixel, *fractions)
         if places.nowhere is not None:
             values[places.nowhere] = self.fill
 
@@ -196,8 +185,9 @@ class Sampler:
         self, plane: npt.NDArray[Any], index: npt.NDArray[np.intp], du: Real, dv: Real
     ) -> npt.NDArray[Any]:
         I1, I2, I3, I4 = (
-            plane[offset:].take(index, mode="clip").view(self.dtype).astype(du.dtype, copy=False)
-            for offset in (0, 1, self.stride, self.stride + 1)
+            found.astype(du.dtype, copy=False)
+            for row in (plane, plane[self.stride :])
+            for found in self._neighbours(row, index)
         )
         if not self.all_finite:  # 0 · NaN is not 0
             I2, I4 = np.where(du == 0, I1, I2), np.where(du == 0, I3, I4)
@@ -207,6 +197,15 @@ class Sampler:
         if self.dtype.kind == "u":
             value += 0.5
         return value.astype(self.dtype, copy=False)
+
+    def _neighbours(
+        self, row: npt.NDArray[Any], index: npt.NDArray[np.intp]
+    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+        """Give pixels, and those to the right of them."""
+        if not self.in_pairs:
+            return row.take(index), row[1:].take(index)
+        pair = row.take(index)
+        return pair & (2**self.bits - 1), pair >> self.bits
 
     def _inside(self, m: Array) -> Array:
         """Keep positions between −1 and width or height, where the frame begins; NaN at −1."""
