@@ -9,6 +9,7 @@ from cvnotes.base import CvnotesError, DegenerateError
 from cvnotes.calibration import Calibration, calibrate, choose_board, left_out_rms_of_boards
 from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.refinement import Problem, State
+from cvnotes.calibration.which_lens import AtLeast
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.pictures import course, good_views
 from cvnotes.targets import Chessboard, find_corners
@@ -253,6 +254,22 @@ def test_few_views_of_a_flat_board_are_held_near_it(n_views, seed):
     assert found.view_rms @ found.view_rms / n_views == pytest.approx(found.rms**2)
     out = left_out_rms_of_boards(BOARD.points, m, CAMERA.size)
     assert choose_board(out) == "flat"
+
+
+def test_a_bent_board_is_left_early_where_a_free_one_beat_it():
+    real = course.real_corners()
+    quick, thorough = (
+        left_out_rms_of_boards(
+            real.board.points, real.left, real.size, lens="k1 k2 p1 p2", to_the_end=end
+        )
+        for end in (False, True)
+    )
+    assert list(quick) == list(thorough) == ["flat", "bent", "free"]
+    assert [name for name, rms in quick.items() if isinstance(rms, AtLeast)] == ["bent"]
+    assert 1.05 * quick["free"] < quick["bent"] < thorough["bent"]
+    assert choose_board(quick) == choose_board(thorough) == "free"
+    assert quick["flat"] == thorough["flat"]
+    assert not any(isinstance(rms, AtLeast) for rms in thorough.values())
 
 
 def test_what_is_not_determined_is_refused_in_words():

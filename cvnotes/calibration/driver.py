@@ -116,7 +116,9 @@ def calibrate(
     _refuse_too_few(problem)
     by_board = {}
     if is_board(board, "auto") == "auto":
-        by_board = left_out_rms_of_boards(board_points, image_points, size, lens=lens, skew=skew)
+        by_board = left_out_rms_of_boards(
+            board_points, image_points, size, lens=lens, skew=skew, to_the_end=False
+        )
         board = choose_board(by_board)
 
     search = Search(problem)

@@ -34,6 +34,7 @@ def left_out_rms_of_boards(
     lens: str = "k1 k2",
     boards: Sequence[str] = BOARDS,
     skew: bool = False,
+    to_the_end: bool = True,
 ) -> dict[str, float]:
     """Predict the corners of views that were left out, with a flat board, a bent and a free one.
 
@@ -45,6 +46,9 @@ def left_out_rms_of_boards(
         A name that `calibrate` knows, but "auto".
     boards : sequence of {"flat", "bent", "free"}
         What the board may be.
+    to_the_end : bool
+        If false, a bent board that a free one beat is left as soon as it cannot be chosen any more,
+        and what is given for it is an `AtLeast`.
 
     Returns
     -------
@@ -75,11 +79,13 @@ def left_out_rms_of_boards(
     problem = Problem.of(data, size, lens, skew)
     flat = estimated(problem)
     found: dict[str, float] = {}
-    for board in boards:
-        if is_board(board) == "free" and "flat" in found and _is_flat(problem, data, flat):
+    # (the free board before the bent one, which seldom is worth its time beside it)
+    for board in sorted(boards, key=lambda board: ("flat", "free", "bent").index(is_board(board))):
+        if board == "free" and "flat" in found and _is_flat(problem, data, flat):
             continue
-        found[board] = _one(problem, data, board, flat)
-    return found
+        limit = np.inf if to_the_end else _chosen_up_to(min(found.values(), default=np.inf))
+        found[board] = _one(problem, data, board, flat, limit)
+    return {board: found[board] for board in boards if board in found}
 
 
 def choose_board(by_board: dict[str, float]) -> str:
@@ -92,8 +98,13 @@ def choose_board(by_board: dict[str, float]) -> str:
     >>> choose_board({"flat": 0.171, "bent": 0.150, "free": 0.110})
     'free'
     """
-    limit = max(_BETTER * least(by_board, "board"), _ROUNDING)
+    limit = _chosen_up_to(least(by_board, "board"))
     return next(name for name, rms in by_board.items() if rms <= limit)
+
+
+def _chosen_up_to(best: float) -> float:
+    """Give the RMS up to which a board predicts about as well as the best."""
+    return max(_BETTER * best, _ROUNDING)
 
 
 def _is_flat(problem: Problem, data: Correspondences, flat: Minimum[State, Arrow]) -> bool:
@@ -113,12 +124,18 @@ def _is_flat(problem: Problem, data: Correspondences, flat: Minimum[State, Arrow
     return gain / of_shape < _CHANCE * max(cost - gain, 0.0) / free.freedom
 
 
-def _one(problem: Problem, data: Correspondences, board: str, flat: Minimum[State, Arrow]) -> float:
+def _one(
+    problem: Problem,
+    data: Correspondences,
+    board: str,
+    flat: Minimum[State, Arrow],
+    limit: float,
+) -> float:
     """RMS over views left out, of one kind of board."""
     try:
         if board == "flat":
             return rms_of_parts(problem, flat)
         free = with_shape(problem, data, board)
-        return rms_of_parts(free, released(free, flat))
+        return rms_of_parts(free, released(free, flat), limit)
     except (ConvergenceError, DegenerateError, CvnotesError):
         return np.inf

@@ -196,7 +196,7 @@ def rms_of_parts(problem: Problem, whole: Minimum[State, Arrow], limit: float = 
         at_least = float(np.sqrt((squares + to_come.sum()) / n))
         if at_least > limit:
             return AtLeast(at_least)
-        kept = np.setdiff1d(np.arange(n_views), out)
+        kept = np.delete(np.arange(n_views), out)
         start = _some(whole.x, kept)
         without = minimise(problem.some(kept), start, tolerance=_CLOSE, patience=_PATIENCE)
         squares += _follow(problem.some(out), _some(whole.x, out), without)

@@ -1,7 +1,7 @@
 """A sheet to draw on: no figure library is loaded, and a pixel is one byte of a fixed palette."""
 
 from collections.abc import Iterable, Iterator
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -124,9 +124,10 @@ class Canvas:
             if colour in self._strokes:
                 self._lay(*self._covered(np.concatenate(self._strokes[colour])), colour)
         for word in self._words:
-            if word.halo:
-                self._lay(*self._on_sheet(*_letters(word, halo=True)), "#FFFFFF")
-            self._lay(*self._on_sheet(*_letters(word)), word.colour)
+            x, y = (round(at) for at in word.where)
+            for halo in (True, False)[not word.halo :]:
+                u, v, paint = _letters(word.text, word.size, word.anchor, word.upright, halo)
+                self._lay(*self._on_sheet(x + u, y + v, paint), "#FFFFFF" if halo else word.colour)
         inked = 128 + ((self._ink - 1) << 2) + (self._grey >> 6)
         return pack_png(np.where(self._ink, inked, self._grey >> 1), _palette())
 
@@ -222,23 +223,25 @@ def _within(ends: Array, size: Array, margin: float) -> tuple[Array, Array]:
     return cut[:, 0], cut[:, 1]
 
 
-def _letters(word: _Word, *, halo: bool = False) -> tuple[Places, Places, Paint]:
-    """Give the pixels x and y of a word, and how far its letters, or their halo, cover them."""
+@lru_cache(64)  # what is written on every photograph
+def _letters(
+    text: str, size: int, anchor: str, upright: bool, halo: bool
+) -> tuple[Places, Places, Paint]:
+    """Give the pixels of a word, seen from its place, and how far letters or halo cover them."""
     from PIL import Image, ImageDraw
 
-    font, anchor = _font(word.text, word.size), "ls" if word.upright else word.anchor
-    left, top, right, bottom = font.getbbox(word.text, anchor=anchor, stroke_width=int(halo))
+    font, anchor = _font(text, size), "ls" if upright else anchor
+    left, top, right, bottom = font.getbbox(text, anchor=anchor, stroke_width=int(halo))
     left, top = int(left) - 1, int(top) - 1
     label = Image.new("L", (int(right) - left + 2, int(bottom) - top + 2))
     ImageDraw.Draw(label).text(
-        (-left, -top), word.text, 255, font, anchor, stroke_width=int(halo), stroke_fill=255
+        (-left, -top), text, 255, font, anchor, stroke_width=int(halo), stroke_fill=255
     )
     paint: Paint = np.asarray(label).astype(np.float32) / np.float32(255)
-    x, y = (round(at) for at in word.where)
-    if word.upright:
+    if upright:
         paint, left, top = np.rot90(paint), -paint.shape[0] // 2, 0
-    v, u = np.indices(paint.shape)
-    return np.asarray(x + left + u), np.asarray(y + top + v), paint
+    v, u = np.nonzero(paint)
+    return u + left, v + top, paint[v, u]
 
 
 @cache

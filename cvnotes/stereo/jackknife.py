@@ -61,7 +61,7 @@ def std_of_pairs(
     board = [board_points] * n if isinstance(board_points, np.ndarray) else board_points
     found = []
     for group in groups:
-        kept = np.setdiff1d(np.arange(n), order[group]).tolist()
+        kept = np.delete(np.arange(n), order[group]).tolist()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", CalibrationWarning)
             one = calibrate_stereo(
