@@ -166,7 +166,9 @@ def test_whether_the_board_is_flat_is_said_with_the_table():
     assert re.search(r"^Board +not flat: -0\.22 to 0\.3\d mm out of its plane \(± 0\.03\), corners "
                      r"up to 0\.26 mm beside their places$", said, re.M)  # fmt: skip
     assert re.search(r"^Board +px off in photographs left out", said, re.M)
-    assert re.search(r"^flat +0\.167\nbent +0\.1[45]\d  at least\nfree +0\.099  chosen$", said, re.M)
+    assert re.search(
+        r"^flat +0\.167\nbent +0\.1[45]\d  at least\nfree +0\.099  chosen$", said, re.M
+    )
     assert "not flat" not in camera_report(calibration(real.board.points, real.left, real.size))
 
 
