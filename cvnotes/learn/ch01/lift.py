@@ -85,7 +85,7 @@ LIFT = Exercise(
         ),
         Misconception(
             "divided by w",
-            "You divided by w: the last coordinate is then 1/w. Multiply.",
+            "You divided everything by w, so that the last coordinate is 1/w: multiply by w.",
             lambda x, w: to_homogeneous(x) / w,
         ),
         Misconception(
@@ -119,13 +119,8 @@ LIFT = Exercise(
         ),
         Misconception(
             "sign of the factor lost",
-            "The factor may be negative: it keeps its sign.",
+            "You took the absolute value of w: a factor may be negative, and keeps its sign.",
             lambda x, w: abs(w) * to_homogeneous(x),
-        ),
-        Misconception(
-            "appended twice",
-            "You appended both w and 1: one coordinate is added.",
-            lambda x, w: np.hstack([w * x, np.full((len(x), 1), w), np.ones((len(x), 1))]),
         ),
     ),
     reference=lift,

@@ -127,7 +127,7 @@ LINE = Exercise(
         ),
         Misconception(
             "sum of the points",
-            "p̃ + q̃ is the point halfway between them, not the line.",
+            "p̃ + q̃ is a point, halfway between both, and not the line.",
             lambda p, q: np.array([*(p + q), 2.0]),
         ),
         Misconception(
@@ -160,7 +160,7 @@ LINE = Exercise(
         ),
         Misconception(
             "normal not turned",
-            "(a, b) is q − p here, with the constant of the right line: turn q − p by 90°.",
+            "Your c is right, but your (a, b) is q − p, along the line: turn it by 90°.",
             lambda p, q: np.array([*(q - p), line_through(p, q)[2]]),
         ),
         Misconception(

@@ -172,8 +172,8 @@ MEET = Exercise(
         ),
         Misconception(
             "infinity in both coordinates",
-            "Right, except for parallel lines: their point has the direction (b, −a, 0), not the "
-            "same for all.",
+            "Right, except for parallel lines: you gave one point for all of them, but theirs "
+            "is in their own direction, (b, −a, 0).",
             lambda l1, l2: _at_infinity(l1, l2, np.array([1.0, 1, 0])),
         ),
         Misconception(

@@ -143,11 +143,6 @@ SAME = Exercise(
             lambda a, b: np.isclose((a * b).sum(1), 0),
         ),
         Misconception(
-            "the other way round",
-            "You say True for points that differ.",
-            lambda a, b: 1 - same_points(a, b),
-        ),
-        Misconception(
             "quotients 0/0",
             "You compared the quotients a/b, which are 0/0 wherever both have a 0: (0, 3, 1) and "
             "(0, 6, 2) are the same point. The cross product divides nothing.",
@@ -202,11 +197,6 @@ SAME = Exercise(
             "order of the numbers ignored",
             "You compared the numbers in any order; which coordinate is which matters.",
             lambda a, b: np.isclose(np.sort(_unit(a), 1), np.sort(_unit(b), 1)).all(1),
-        ),
-        Misconception(
-            "never the same",
-            "You say that no two points are the same.",
-            lambda a, _: np.zeros(len(a)),
         ),
     ),
     reference=same_points,

@@ -59,11 +59,6 @@ FOCAL = Exercise(
             lambda v1, v2, centre: np.sqrt((v1 - centre) @ (v2 - centre)),
         ),
         Misconception(
-            "root forgotten",
-            "That is f²: take the root.",
-            lambda v1, v2, centre: -(v1 - centre) @ (v2 - centre),
-        ),
-        Misconception(
             "lengths multiplied",
             "You multiplied the two distances from the principal point; it is the dot product, "
             "which is the same only if both points lie on one line with the principal point.",
@@ -73,8 +68,8 @@ FOCAL = Exercise(
         ),
         Misconception(
             "half the distance",
-            "The circle over v1 and v2 is a good idea: the camera's centre lies on a sphere over "
-            "them. But f is its height above the picture, not its radius.",
+            "That is half the distance between v1 and v2, the radius of the sphere over them. "
+            "The camera's centre lies on that sphere, but f is its height above the picture.",
             lambda v1, v2, centre: np.linalg.norm(v1 - v2) / 2,
         ),
         Misconception(
@@ -82,11 +77,6 @@ FOCAL = Exercise(
             "That is how far apart the two vanishing points are. It depends on how the box "
             "stands, f does not.",
             lambda v1, v2, centre: np.linalg.norm(v1 - v2),
-        ),
-        Misconception(
-            "negative root",
-            "Both roots solve the equation; a focal length is positive.",
-            lambda v1, v2, centre: -focal_length(v1, v2, centre),
         ),
         Misconception(
             "columns only",
@@ -98,11 +88,6 @@ FOCAL = Exercise(
             "Only one of the two vanishing points is measured from the principal point.",
             lambda v1, v2, centre: np.sqrt(-(v1 - centre) @ v2),
             variants=(lambda v1, v2, centre: np.sqrt(-v1 @ (v2 - centre)),),
-        ),
-        Misconception(
-            "square of the product",
-            ("You have the square root of f: the dot product is −f² already, one root is enough."),
-            lambda v1, v2, centre: np.sqrt(focal_length(v1, v2, centre)),
         ),
         Misconception(
             "entry by entry",

@@ -16,7 +16,6 @@ from cvnotes.learn.cases.cameras import (
     rounded,
     some_intrinsics,
     some_rotation,
-    without_skew,
 )
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
@@ -125,13 +124,8 @@ HORIZON = Exercise(
             lambda A, R, n: R @ np.linalg.inv(A).T @ n,
         ),
         Misconception(
-            "skew left out",
-            "You left out the skew A[0, 1].",
-            lambda A, R, n: np.linalg.inv(without_skew(A)).T @ R @ n,
-        ),
-        Misconception(
             "sign of the constant",
-            "All but the last entry is right: its sign is the other one.",
+            "The last entry has the wrong sign; all others are right.",
             lambda A, R, n: horizon(A, R, n) * [1, 1, -1],
         ),
         Misconception(
@@ -141,8 +135,8 @@ HORIZON = Exercise(
         ),
         Misconception(
             "directions that vanish",
-            "Right, unless n is an axis: n × that axis is 0, and no direction. Choose the axes by "
-            "n, or use A⁻ᵀ R n.",
+            "Right, unless n is an axis: n × that axis is 0, which is no direction. Take "
+            "another axis there, or use A⁻ᵀ R n.",
             lambda A, R, n: _joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 1, 0])),
             variants=(
                 lambda A, R, n: _joined(A, R, np.cross(n, [0, 1, 0]), np.cross(n, [0, 0, 1])),
@@ -161,7 +155,7 @@ HORIZON = Exercise(
         ),
         Misconception(
             "everything inverted",
-            "You have Rᵀ A⁻¹ n: n·(Rᵀ A⁻¹ m̃) = 0 is (A⁻ᵀ R n)·m̃ = 0.",
+            "You have Rᵀ A⁻¹ n, the inverse of A R: the horizon is A⁻ᵀ R n.",
             lambda A, R, n: np.linalg.inv(A @ R) @ n,
             variants=(lambda A, R, n: np.linalg.inv(A) @ R.T @ n,),
         ),
@@ -183,8 +177,8 @@ HORIZON = Exercise(
         ),
         Misconception(
             "the line at infinity",
-            "(0, 0, 1) is the line at infinity of the picture; the horizon is its image, and of "
-            "the plane.",
+            "(0, 0, 1) is the line at infinity of a plane; the horizon is where the camera sees "
+            "that line, A⁻ᵀ R n.",
             lambda A, R, n: np.array([0.0, 0, 1]),
         ),
     ),

@@ -13,7 +13,6 @@ from cvnotes.learn.cases.cameras import (
     rounded,
     some_intrinsics,
     some_rotation,
-    without_skew,
 )
 from cvnotes.learn.cases.slips import centre_divided_too
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
@@ -118,11 +117,6 @@ VANISHING = Exercise(
             "A transposed",
             "You used Aᵀ: for a single column it is A @ (R @ d).",
             lambda A, R, d: _seen(A.T @ R @ d),
-        ),
-        Misconception(
-            "skew left out",
-            "You left out the skew A[0, 1]: u = (α_u x + γ y) / z + u0.",
-            lambda A, R, d: _seen(without_skew(A) @ R @ d),
         ),
         Misconception(
             "divided by the absolute depth",

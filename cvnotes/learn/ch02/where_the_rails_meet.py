@@ -58,7 +58,8 @@ RAILS = Exercise(
         ),
         Misconception(
             "where the rails begin",
-            "That is where a rail, or both, leave the picture below: they meet at the other end.",
+            "That is where a rail leaves the picture below, or the middle between both: the "
+            "rails meet at their other end.",
             lambda: _rail(-1),
             variants=(lambda: _rail(1), lambda: (_rail(-1) + _rail(1)) / 2),
         ),

@@ -55,8 +55,8 @@ CHAIN = Exercise(
         ),
         Misconception(
             "the board moved back",
-            "G2⁻¹ G1 ends where it starts, in the board's frame: it moves a board, in front of "
-            "one camera.",
+            "G2⁻¹ G1 begins and ends in the board's frame: it moves a board, in front of one "
+            "camera.",
             lambda G1, G2: np.linalg.inv(G2) @ G1,
         ),
         Misconception(
@@ -104,8 +104,8 @@ CHAIN = Exercise(
         ),
         Misconception(
             "both inverted",
-            "You inverted both motions, or G1 in place of G2: cam1_from_board stays, "
-            "board_from_cam2 is the inverse of G2.",
+            "You inverted both motions: only that of camera 2 is turned around, cam1_from_board @ "
+            "board_from_cam2.",
             lambda G1, G2: np.linalg.inv(G1) @ np.linalg.inv(G2),
             variants=(lambda G1, G2: np.linalg.inv(G2) @ np.linalg.inv(G1),),
         ),

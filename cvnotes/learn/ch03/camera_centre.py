@@ -71,17 +71,18 @@ CENTRE = Exercise(
         ),
         Misconception(
             "divided entry by entry",
-            ("You divided by the columns; R C = −T is solved by the inverse of R, its transpose."),
-            lambda R, T: -T / R.sum(0),
+            "/ divides entry by entry; R C = −T is solved by the inverse of R, its transpose.",
+            lambda R, T: -T / R,
+            variants=(lambda R, T: T / R,),
         ),
         Misconception(
-            "R in place of T",
-            "That is the camera's z axis in the world; its centre follows from T.",
+            "the camera's z axis",
+            "That is the camera's z axis, seen in the world; its centre follows from T.",
             lambda R, T: R[2],
         ),
         Misconception(
-            "T moved, not turned",
-            "You subtracted T and R one by one; R C + T = 0 is solved by C = −Rᵀ T.",
+            "T added to the centre",
+            "You added T to the centre, or subtracted it: C = −Rᵀ T is all.",
             lambda R, T: -R.T @ T - T,
             variants=(lambda R, T: T - R.T @ T,),
         ),
@@ -91,23 +92,13 @@ CENTRE = Exercise(
             lambda R, T: np.zeros(3),
         ),
         Misconception(
-            "z axis in the world's frame",
-            "R[:, 2] is the world's z axis, seen by the camera.",
+            "the world's z axis",
+            "R[:, 2] is the world's z axis, seen by the camera; its centre follows from T.",
             lambda R, T: R[:, 2],
         ),
         Misconception(
-            "distance of the camera",
-            "That is how far the camera is from the world's origin; asked are three coordinates.",
-            lambda R, T: np.linalg.norm(T),
-        ),
-        Misconception(
-            "homogeneous centre",
-            "The centre is right, with a 1 too many: leave it out.",
-            lambda R, T: np.append(-R.T @ T, 1.0),
-        ),
-        Misconception(
             "R * T",
-            "* multiplies entry by entry: R.T @ T.",
+            "* multiplies entry by entry; the product of a matrix and a vector is R.T @ T.",
             lambda R, T: -R.T * T,
             variants=(
                 lambda R, T: -R * T,

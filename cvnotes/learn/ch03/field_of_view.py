@@ -64,11 +64,6 @@ FIELD = Exercise(
             lambda A, width: np.arctan(width / A[0, 0]),
         ),
         Misconception(
-            "degrees",
-            "The angle is right, in degrees; asked are radians.",
-            lambda A, width: np.degrees(_to_the_sides(A, -0.5, width - 0.5)),
-        ),
-        Misconception(
             "borders at whole pixels",
             "Nearly: the first and last pixels have their centres at 0 and width − 1, and reach "
             "half a pixel further.",
@@ -79,11 +74,6 @@ FIELD = Exercise(
             "Nearly: you have the borders at 0 and width, as if whole numbers were the borders "
             "of pixels. Here they are their centres.",
             lambda A, width: _to_the_sides(A, 0, width),
-        ),
-        Misconception(
-            "the vertical focal length",
-            "Horizontal angles go with α_u = A[0, 0]; you took α_v.",
-            lambda A, width: _to_the_sides(A, -0.5, width - 0.5, alpha=A[1, 1]),
         ),
         Misconception(
             "twice the whole width",
@@ -150,13 +140,6 @@ FIELD = Exercise(
             ),
         ),
         Misconception(
-            "the row of the principal point",
-            "You took v0 for u0: horizontal angles go with u0 = A[0, 2].",
-            lambda A, width: (
-                np.arctan((A[1, 2] + 0.5) / A[0, 0]) + np.arctan((width - 0.5 - A[1, 2]) / A[0, 0])
-            ),
-        ),
-        Misconception(
             "half a pixel the wrong way",
             "The borders are half a pixel outside of the first and last pixel centres: −½ and "
             "width − ½.",
@@ -186,11 +169,6 @@ FIELD = Exercise(
             "the middle, half a pixel off",
             "The principal point need not be in the middle: take the two sides one by one.",
             lambda A, width: 2 * np.arctan((width - 1) / 2 / A[0, 0]),
-        ),
-        Misconception(
-            "both focal lengths",
-            "You took a mean of α_u and α_v; horizontal angles go with α_u.",
-            lambda A, width: _to_the_sides(A, -0.5, width - 0.5, alpha=(A[0, 0] + A[1, 1]) / 2),
         ),
         Misconception(
             "sides one by one, in degrees",

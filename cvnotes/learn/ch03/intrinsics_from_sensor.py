@@ -56,16 +56,6 @@ INTRINSICS = Exercise(
             lambda f, du, dv, u0, v0: _matrix(f * du, f * dv, u0, v0),
         ),
         Misconception(
-            "pixel sizes exchanged",
-            "α_u belongs to u: it takes the width du of a pixel, α_v the height dv.",
-            lambda f, du, dv, u0, v0: _matrix(f / dv, f / du, u0, v0),
-        ),
-        Misconception(
-            "principal point exchanged",
-            "u0 and v0 are exchanged: u runs along the columns, and its row of A is the first.",
-            lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, v0, u0),
-        ),
-        Misconception(
             "principal point divided by the pixel size",
             "u0 and v0 are in pixels already; only lengths on the sensor are divided.",
             lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0 / du, v0 / dv),
@@ -101,13 +91,8 @@ INTRINSICS = Exercise(
         ),
         Misconception(
             "upside down",
-            "You have du / f: α_u is how many pixels fit into f.",
+            "You have du / f: turn the fraction around, α_u = f / du.",
             lambda f, du, dv, u0, v0: _matrix(du / f, dv / f, u0, v0),
-        ),
-        Misconception(
-            "du for both",
-            "You took du for both directions; the height of a pixel is dv.",
-            lambda f, du, dv, u0, v0: _matrix(f / du, f / du, u0, v0),
         ),
         Misconception(
             "sign of the principal point",
@@ -115,19 +100,9 @@ INTRINSICS = Exercise(
             lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, -u0, -v0),
         ),
         Misconception(
-            "inverse",
-            "That is A⁻¹, which leads from pixels to rays.",
-            lambda f, du, dv, u0, v0: np.linalg.inv(_matrix(f / du, f / dv, u0, v0)),
-        ),
-        Misconception(
             "v upwards",
             "α_v has the wrong sign: rows count downwards, as y does in the camera's frame.",
             lambda f, du, dv, u0, v0: _matrix(f / du, -f / dv, u0, v0),
-        ),
-        Misconception(
-            "dv for both",
-            "You took dv for both directions; the width of a pixel is du.",
-            lambda f, du, dv, u0, v0: _matrix(f / dv, f / dv, u0, v0),
         ),
         Misconception(
             "one pixel size for both",
@@ -169,9 +144,8 @@ INTRINSICS = Exercise(
             lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0)[:2],
         ),
         Misconception(
-            "pixel sizes left out",
-            "You have f in the place of both, and the pixel sizes in that of the 1 or of the "
-            "zeros: α_u = f / du.",
+            "pixel sizes for focal lengths",
+            "You have du and dv themselves in the place of α_u and α_v: α_u = f / du.",
             lambda f, du, dv, u0, v0: _matrix(du, dv, u0, v0),
         ),
         Misconception(

@@ -219,8 +219,8 @@ NEAREST = Exercise(
             variants=(lambda M: _left(M)[1].T @ _left(M)[0],),
         ),
         Misconception(
-            "first two singular values kept",
-            "You set some singular values to 1, or 0, but not all to 1: U diag(1, 1, ±1) Vᵀ.",
+            "last singular value 0",
+            "You set the last singular value to 0: it becomes 1 or −1, R = U diag(1, 1, ±1) Vᵀ.",
             lambda M: _left(M)[0] @ np.diag([1, 1, 0]) @ _left(M)[1],
         ),
         Misconception(

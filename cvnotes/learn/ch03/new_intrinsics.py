@@ -122,11 +122,6 @@ NEW = Exercise(
             lambda A, corner, s: _changed(A, corner[::-1], s),
         ),
         Misconception(
-            "crop forgotten",
-            "You scaled and did not crop: left and top are missing.",
-            lambda A, corner, s: _changed(A, 0 * corner, s),
-        ),
-        Misconception(
             "crop after scaling",
             "You scaled first. The corner is a pixel of the old picture, so it is subtracted "
             "before, and scaled along.",
@@ -201,7 +196,7 @@ NEW = Exercise(
         ),
         Misconception(
             "nothing changed",
-            "That is A as it was.",
+            "You gave A as it was: the crop and the scaling both change it.",
             lambda A, *_: A,
         ),
         Misconception(
@@ -217,7 +212,8 @@ NEW = Exercise(
         ),
         Misconception(
             "divided by s",
-            "You divided by s in part: focal lengths and principal point are multiplied.",
+            "You divided by s in the focal lengths, or in the principal point: both are "
+            "multiplied by s.",
             lambda A, corner, s: np.column_stack(
                 [new_intrinsics(A, corner, 1 / s)[:, :2], new_intrinsics(A, corner, s)[:, 2]]
             ),

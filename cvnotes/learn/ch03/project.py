@@ -137,14 +137,6 @@ PROJECT = Exercise(
             lambda A, R, T, W: _seen(W @ R.T - T, A),
         ),
         Misconception(
-            "rotation left out", "R is missing: M = R W + T.", lambda A, R, T, W: _seen(W + T, A)
-        ),
-        Misconception(
-            "skew left out",
-            "You left out the skew A[0, 1]: u = (α_u x + γ y) / z + u0.",
-            lambda A, R, T, W: _seen(W @ R.T + T, without_skew(A)),
-        ),
-        Misconception(
             "principal point added before the division",
             (
                 "You added u0 and v0 before dividing by z: they belong to the pixel, so they are "
@@ -175,19 +167,6 @@ PROJECT = Exercise(
             lambda A, R, T, W: _seen((W @ R.T + T) * [1, -1, 1], A),
         ),
         Misconception(
-            "homogeneous pixels",
-            (
-                "These are three homogeneous coordinates of each pixel: divide by the last, then "
-                "leave it out."
-            ),
-            lambda A, R, T, W: (W @ R.T + T) @ A.T,
-        ),
-        Misconception(
-            "divided, last coordinate kept",
-            "You divided but kept the last coordinate, which is now 1: leave it out.",
-            lambda A, R, T, W: (W @ R.T + T) @ A.T / ((W @ R.T + T) @ A.T)[:, 2:],
-        ),
-        Misconception(
             "R and T taken for the camera's own pose",
             "You used Rᵀ (W − T), as if R and T said how the camera stands in the world. They "
             "lead from the world to the camera: M = R W + T.",
@@ -216,17 +195,12 @@ PROJECT = Exercise(
             variants=(lambda A, R, T, W: (W @ R.T + T)[:, :2],),
         ),
         Misconception(
-            "A inverted",
-            "You used A⁻¹, which leads from pixels to rays.",
-            lambda A, R, T, W: _seen(W @ R.T + T, np.linalg.inv(A)),
-        ),
-        Misconception(
             "mirrored",
             "Your picture stands on its head: x/z and y/z have the wrong sign.",
             lambda A, R, T, W: _seen((W @ R.T + T) * [-1, -1, 1], A),
         ),
         Misconception(
-            "R W in place of R W + T, divided by T",
+            "divided by T",
             "You divided by T_z: every point has a depth of its own.",
             lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] / T[2],
         ),

@@ -160,7 +160,7 @@ SHIFT = Exercise(
         ),
         Misconception(
             "signs of k",
-            "k1 is negative and k2 positive: both have a sign of their own.",
+            "You have one of k1 and k2 with the wrong sign: k1 is negative, k2 is positive.",
             lambda: _shift((-0.25, -0.1), _R),
             variants=(lambda: _shift((0.25, 0.1), _R),),
         ),
@@ -171,7 +171,7 @@ SHIFT = Exercise(
         ),
         Misconception(
             "half of it, or twice",
-            "That is half, or twice of it: α = 800 pixels, and r L(r) − r.",
+            "That is half of the shift, or twice the shift, which is 800 (L − 1) r pixels.",
             lambda: corner_shift() / 2,
             variants=(lambda: 2 * corner_shift(),),
         ),

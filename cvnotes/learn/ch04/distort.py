@@ -114,11 +114,6 @@ DISTORT = Exercise(
             lambda xy, k, p: _through(xy, lens_factor(xy, k) - 1, p),
         ),
         Misconception(
-            "k2 left out",
-            "k2 r⁴ is missing.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, k * [1, 0]), p),
-        ),
-        Misconception(
             "r⁶ for r⁴",
             "k2 belongs to r⁴, which is (r²)²; you have r⁶.",
             lambda xy, k, p: _through(
@@ -138,16 +133,6 @@ DISTORT = Exercise(
             lambda xy, k, p: (
                 _through(xy, lens_factor(xy, k), p) + 2 * (xy[:, ::-1] ** 2 - xy**2) * p[::-1]
             ),
-        ),
-        Misconception(
-            "sign of the tangential terms",
-            "The tangential terms are added, not subtracted.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, k), -p),
-        ),
-        Misconception(
-            "sign of k",
-            "L = 1 + k1 r² + k2 r⁴, with plus signs: k1 itself may be negative.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, -k), p),
         ),
         Misconception(
             "tangential terms multiplied by L",

@@ -192,11 +192,6 @@ FOLD = Exercise(
             _unless(lambda k: k[1] > 0),
         ),
         Misconception(
-            "negative radius",
-            "A radius is positive.",
-            lambda k: -fold_radius(k),
-        ),
-        Misconception(
             "signs of the roots lost",
             "You took the root of |r²|: where r² is negative there is no radius.",
             lambda k: np.sqrt(np.abs(np.roots([5 * k[1], 3 * k[0], 1.0])).min()),

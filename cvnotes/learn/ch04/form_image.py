@@ -17,7 +17,6 @@ from cvnotes.learn.cases.cameras import (
     some_intrinsics,
     some_lens,
     some_pose,
-    without_skew,
 )
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
@@ -138,24 +137,9 @@ FORM = Exercise(
             lambda A, R, T, k, W: form_image(A, R.T, T, k, W),
         ),
         Misconception(
-            "T left out",
-            "T is missing: M = R W + T.",
-            lambda A, R, T, k, W: form_image(A, R, 0 * T, k, W),
-        ),
-        Misconception(
             "T subtracted",
             "You subtracted T: M = R W + T.",
             lambda A, R, T, k, W: _pixels(A, _bent(R, -T, k, W)),
-        ),
-        Misconception(
-            "skew left out",
-            "You left out the skew A[0, 1]: u = α_u x' + γ y' + u0.",
-            lambda A, R, T, k, W: form_image(without_skew(A), R, T, k, W),
-        ),
-        Misconception(
-            "k2 left out",
-            "k2 r⁴ is missing in L.",
-            lambda A, R, T, k, W: form_image(A, R, T, k * [1, 0], W),
         ),
         Misconception(
             "both coefficients with r²",
@@ -207,11 +191,6 @@ FORM = Exercise(
             lambda A, R, T, k, W: _pixels(A, Lens(tuple(k)).undistort(_ideal(R, T, W))),
         ),
         Misconception(
-            "sign of k",
-            "You changed the sign of k: L = 1 + k1 r² + k2 r⁴, and k1 itself may be negative.",
-            lambda A, R, T, k, W: _pixels(A, _bent(R, T, -k, W)),
-        ),
-        Misconception(
             "the 1 of L left out",
             "L starts with 1: without distortion nothing moves.",
             lambda A, R, T, k, W: _pixels(A, _bent(R, T, k, W) - _ideal(R, T, W)),
@@ -232,11 +211,6 @@ FORM = Exercise(
             lambda A, R, T, k, W: _pixels(
                 A, _ideal(R, T, W) * lens_factor((W @ R.T + T) / (W @ R.T + T)[:, 2:], k)
             ),
-        ),
-        Misconception(
-            "homogeneous pixels",
-            "A 1 is left at the end of each row: leave it out.",
-            lambda A, R, T, k, W: np.column_stack([form_image(A, R, T, k, W), np.ones(len(W))]),
         ),
         Misconception(
             "lens twice",

@@ -191,11 +191,6 @@ UNDISTORT = Exercise(
             ),
         ),
         Misconception(
-            "k2 left out",
-            "You undid k1 alone: L = 1 + k1 r² + k2 r⁴.",
-            lambda xy_lens, k: undistort(xy_lens, k * [1, 0]),
-        ),
-        Misconception(
             "r for r²",
             "You used r and r² where L has r² and r⁴.",
             lambda xy_lens, k: _with_r(xy_lens, k),
@@ -209,11 +204,6 @@ UNDISTORT = Exercise(
             "both coefficients with r²",
             "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
             lambda xy_lens, k: undistort(xy_lens, np.array([k.sum(), 0.0])),
-        ),
-        Misconception(
-            "sign of k",
-            "You undid a lens with −k1 and −k2.",
-            lambda xy_lens, k: undistort(xy_lens, -k),
         ),
         Misconception(
             "ideal radius for the point",

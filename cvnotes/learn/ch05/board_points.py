@@ -56,11 +56,6 @@ BOARD = Exercise(
             lambda c, r, s: _grid(c, r, s).reshape(r, c, 3).transpose(1, 0, 2).reshape(-1, 3),
         ),
         Misconception(
-            "columns and rows exchanged",
-            "You have as many corners along x as the board has rows: `columns` counts along x.",
-            lambda c, r, s: _grid(r, c, s),
-        ),
-        Misconception(
             "squares for millimetres",
             "You counted in squares; multiply by the side of a square.",
             lambda c, r, s: _grid(c, r, 1.0),
@@ -96,14 +91,6 @@ BOARD = Exercise(
             "z left out",
             "The corners are right, in their plane; z = 0 is missing.",
             lambda c, r, s: _grid(c, r, s)[:, :2],
-        ),
-        Misconception(
-            "lifted",
-            (
-                "You lifted the points of the plane with a 1 in place of z, or in addition to it; "
-                "asked are x, y and z = 0."
-            ),
-            lambda c, r, s: np.column_stack([_grid(c, r, s), np.ones(c * r)]),
         ),
         Misconception(
             "y upwards",
@@ -152,17 +139,18 @@ BOARD = Exercise(
         ),
         Misconception(
             "half a square off",
-            "Your corners are in the middles of the squares.",
+            "Your corners are in the middles of the squares: the first corner is the origin.",
             lambda c, r, s: _grid(c, r, s) + [s / 2, s / 2, 0],
         ),
         Misconception(
             "z = square",
-            "z = 0 on the board: its own plane.",
+            "You put z = square; the board is its own plane, z = 0.",
             lambda c, r, s: _grid(c, r, s) + [0, 0, s],
         ),
         Misconception(
             "diagonal only",
-            "x and y run together: each row of the board has all columns.",
+            "You let x and y run together, along a diagonal: every row of the board has all "
+            "columns.",
             lambda c, r, s: _grid(c, r, s)[:: c + 1],
         ),
         Misconception(
@@ -172,7 +160,7 @@ BOARD = Exercise(
         ),
         Misconception(
             "square too large",
-            "You multiplied by the square twice.",
+            "You multiplied by the side of a square twice: once is enough.",
             lambda c, r, s: _grid(c, r, s * s),
         ),
     ),

@@ -98,7 +98,7 @@ HARRIS = Exercise(
         ),
         Misconception(
             "mixed sum not squared",
-            "The determinant has the square of Σ Iu Iv.",
+            "You did not square the mixed sum: the determinant is Σ Iu² Σ Iv² − (Σ Iu Iv)².",
             lambda Iu, Iv, k: (
                 np.prod(_sums(Iu, Iv)[:2]) - _sums(Iu, Iv)[2] - k * _det_trace(Iu, Iv)[1] ** 2
             ),
@@ -124,7 +124,7 @@ HARRIS = Exercise(
         ),
         Misconception(
             "sign in the determinant",
-            "det M = Σ Iu² Σ Iv² − (Σ Iu Iv)², with a minus.",
+            "You added in the determinant: det M = Σ Iu² Σ Iv² − (Σ Iu Iv)², with a minus.",
             lambda Iu, Iv, k: (
                 np.prod(_sums(Iu, Iv)[:2]) + _sums(Iu, Iv)[2] ** 2 - k * _det_trace(Iu, Iv)[1] ** 2
             ),
@@ -139,11 +139,6 @@ HARRIS = Exercise(
                 _det_trace(Iu, Iv)[1] / 2
                 - np.sqrt(_det_trace(Iu, Iv)[1] ** 2 / 4 - _det_trace(Iu, Iv)[0])
             ),
-        ),
-        Misconception(
-            "k squared",
-            "k is not squared: k (trace M)².",
-            lambda Iu, Iv, k: harris_measure(Iu, Iv, k * k),
         ),
         Misconception(
             "determinant over trace",
@@ -212,12 +207,12 @@ HARRIS = Exercise(
         ),
         Misconception(
             "determinant squared",
-            "The trace is squared, the determinant is not.",
+            "You squared the determinant; only the trace is squared.",
             lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] ** 2 - k * _det_trace(Iu, Iv)[1] ** 2,
         ),
         Misconception(
             "mixed sum doubled",
-            "The determinant is Σ Iu² Σ Iv² − (Σ Iu Iv)², without a 2.",
+            "You doubled the mixed sum: the determinant is Σ Iu² Σ Iv² − (Σ Iu Iv)², without a 2.",
             lambda Iu, Iv, k: (
                 np.prod(_sums(Iu, Iv)[:2])
                 - 2 * _sums(Iu, Iv)[2] ** 2
@@ -233,7 +228,7 @@ HARRIS = Exercise(
         ),
         Misconception(
             "difference of the sums in the trace",
-            "trace M = Σ Iu² + Σ Iv², with a plus.",
+            "You subtracted in the trace: trace M = Σ Iu² + Σ Iv², with a plus.",
             lambda Iu, Iv, k: (
                 _det_trace(Iu, Iv)[0] - k * (_sums(Iu, Iv)[0] - _sums(Iu, Iv)[1]) ** 2
             ),
@@ -257,8 +252,7 @@ HARRIS = Exercise(
         ),
         Misconception(
             "mean for sum in part",
-            "The mean of the products, or of the gradients, in one place and the sum in another: "
-            "M is sums throughout.",
+            "You took the mean in one place and the sum in another: all entries of M are sums.",
             lambda Iu, Iv, k: _measure((Iu**2).mean(), (Iv**2).mean(), (Iu * Iv).sum(), k),
             variants=(
                 lambda Iu, Iv, k: _measure((Iu**2).sum(), (Iv**2).sum(), (Iu * Iv).mean(), k),

@@ -63,13 +63,13 @@ ORIGIN = Exercise(
         ),
         Misconception(
             "no common divisor",
-            "What the counts share does not matter, 9 × 6 is fine although both are divisible by "
-            "3. Only even or odd counts.",
+            "What the counts share does not matter: 9 × 6 is fine, although both are divisible "
+            "by 3. One count must be even and the other odd.",
             lambda c, r: np.gcd(c, r) == 1,
         ),
         Misconception(
             "counts that differ by one",
-            "Counts one apart do, but so does every odd difference.",
+            "Counts that differ by 1 do, but those that differ by 3, or by 5, do so too.",
             lambda c, r: np.abs(c - r) == 1,
         ),
         Misconception(
@@ -95,7 +95,7 @@ ORIGIN = Exercise(
         ),
         Misconception(
             "more columns than rows",
-            "Which count is larger does not matter, only even or odd.",
+            "Which count is larger does not matter: one must be even and the other odd.",
             lambda c, r: c > r,
         ),
         Misconception(
@@ -105,17 +105,18 @@ ORIGIN = Exercise(
         ),
         Misconception(
             "one count odd, the wide ones only",
-            "It is so for upright boards too: which count is larger does not matter.",
+            "You say so of wide boards alone; which count is larger does not matter.",
             lambda c, r: ((c + r) % 2 == 1) & (c > r),
         ),
         Misconception(
             "the upright ones only",
-            "It is so for wide boards too: which count is larger does not matter.",
+            "You say so of upright boards alone; which count is larger does not matter.",
             lambda c, r: ((c + r) % 2 == 1) & (r > c),
         ),
         Misconception(
             "odd columns, even rows",
-            "It is so the other way round too: an even number of columns and an odd one of rows.",
+            "You want one count odd and the other even in this order alone; the other order is "
+            "as good.",
             lambda c, r: (c % 2 == 1) & (r % 2 == 0),
             variants=(lambda c, r: (c % 2 == 0) & (r % 2 == 1),),
         ),

@@ -78,11 +78,6 @@ SADDLE = Exercise(
             lambda c: _solve(c, mixed=0.0),
         ),
         Misconception(
-            "u and v exchanged",
-            "You gave (v, u).",
-            lambda c: _solve(c)[::-1],
-        ),
-        Misconception(
             "not divided by the determinant",
             "That is the right direction: by Cramer's rule, divide by the determinant 4 a c − b².",
             lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2),
@@ -125,7 +120,7 @@ SADDLE = Exercise(
         ),
         Misconception(
             "sign in the determinant",
-            "The determinant is 4 a c − b², with a minus.",
+            "You have another determinant: it is 4 a c − b², with a minus.",
             lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (4 * c[0] * c[2] + c[1] ** 2),
             variants=(
                 lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (c[0] * c[2] - c[1] ** 2),
@@ -174,16 +169,9 @@ SADDLE = Exercise(
         ),
         Misconception(
             "f for e",
-            "The coefficients are (a, b, c, d, e, f): d and e are the last but two and the last "
-            "but one.",
+            "You took f for d or e: the coefficients are (a, b, c, d, e, f).",
             lambda c: _solve(c[[0, 1, 2, 4, 5, 3]]),
             variants=(lambda c: _solve(c[[0, 1, 2, 3, 5, 4]]),),
-        ),
-        Misconception(
-            "three coordinates",
-            "Asked are (u, v) alone.",
-            lambda c: np.append(_solve(c), 1.0),
-            variants=(lambda c: np.append(_solve(c), c[5] + _solve(c) @ [c[3], c[4]] / 2),),
         ),
     ),
     reference=saddle_point,

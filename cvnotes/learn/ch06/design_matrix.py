@@ -89,11 +89,6 @@ DESIGN = Exercise(
             lambda src, dst: design_matrix(src, dst)[:, [0, 3, 6, 1, 4, 7, 2, 5, 8]],
         ),
         Misconception(
-            "src and dst exchanged",
-            "Your equations are those of dst → src: W̃' is the point of src, m that of dst.",
-            lambda src, dst: design_matrix(dst, src),
-        ),
-        Misconception(
             "sign of the last block",
             "The last block has the wrong sign: u (h3·W̃') = h1·W̃' gives W̃' and −u W̃'.",
             lambda src, dst: _design(src, dst, last=-1.0),
@@ -154,11 +149,6 @@ DESIGN = Exercise(
             "last block without u and v",
             "The last block is −u W̃' and −v W̃': u and v are missing.",
             lambda src, dst: design_matrix(src, np.ones_like(dst)),
-        ),
-        Misconception(
-            "transposed",
-            "D has a row for each equation; you have a column: D.T.",
-            lambda src, dst: design_matrix(src, dst).T,
         ),
         Misconception(
             "h9 = 1",

@@ -239,20 +239,12 @@ DLT = Exercise(
             variants=(_normalised(lambda src, dst: _right_vectors(src, dst)[-2].reshape(3, 3)),),
         ),
         Misconception(
-            "src not normalised",
-            (
-                "You normalised only one of the two sets of points rightly: undo N1 with N1, on "
-                "the right, and N2 with N2⁻¹, on the left."
-            ),
+            "undone on one side only",
+            "You undid the normalisation on one side only: H = N2⁻¹ Ĥ N1.",
             lambda src, dst: _hat(src, dst)[0] @ _hat(src, dst)[1],
             variants=(lambda src, dst: np.linalg.inv(_hat(src, dst)[2]) @ _hat(src, dst)[0],),
         ),
         *OF_THE_ROWS,
-        Misconception(
-            "h, not H",
-            "That is h, nine numbers in a row: h.reshape(3, 3).",
-            lambda src, dst: dlt(src, dst).ravel(),
-        ),
     ),
     reference=dlt,
     same=up_to_scale,

@@ -147,12 +147,6 @@ FOUR = Exercise(
             lambda *_: np.zeros((3, 3)),
         ),
         Misconception(
-            "h, not H",
-            "That is h in a row: h.reshape(3, 3).",
-            lambda src, dst: dlt(src, dst).ravel(),
-            variants=(lambda src, dst: dlt(src, dst).ravel()[:8],),
-        ),
-        Misconception(
             "h9 = 0",
             "You set h9 to 0, which is right only if the origin of src is seen at infinity.",
             lambda src, dst: _with_zero(src, dst),

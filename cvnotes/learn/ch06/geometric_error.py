@@ -58,16 +58,11 @@ GEOMETRIC = Exercise(
         ),
         Misconception(
             "difference of homogeneous vectors",
-            "That is the difference the notes print, of vectors with three coordinates. Their "
-            "scales are arbitrary: divide both by their last coordinate first.",
+            "You subtracted vectors with three coordinates, as the notes print it. Their scales "
+            "are arbitrary: divide both by their last coordinate first.",
             lambda H, src, dst: np.linalg.norm(
                 to_homogeneous(dst) - to_homogeneous(src) @ H.T, axis=1
             ),
-        ),
-        Misconception(
-            "squared",
-            "These are the squares of the distances: take the root.",
-            lambda H, src, dst: geometric_error(H, src, dst) ** 2,
         ),
         Misconception(
             "H transposed",
@@ -86,11 +81,6 @@ GEOMETRIC = Exercise(
             lambda H, src, dst: np.linalg.norm(src - _mapped(np.linalg.inv(H), dst), axis=1),
         ),
         Misconception(
-            "one number for all",
-            "That is the mean of the distances; asked is one for each pair.",
-            lambda H, src, dst: geometric_error(H, src, dst).mean(),
-        ),
-        Misconception(
             "differences, not lengths",
             (
                 "These are the differences of both coordinates; the distance is the length of "
@@ -107,11 +97,6 @@ GEOMETRIC = Exercise(
             "columns for rows",
             "You took the length of each column: axis=1 gives one for each row.",
             lambda H, src, dst: np.linalg.norm(dst - _mapped(H, src), axis=0),
-        ),
-        Misconception(
-            "H inverted",
-            "You used H⁻¹: H takes src to dst.",
-            lambda H, src, dst: np.linalg.norm(dst - _mapped(np.linalg.inv(H), src), axis=1),
         ),
         Misconception(
             "root of the mean square",
@@ -197,16 +182,10 @@ GEOMETRIC = Exercise(
             lambda H, src, dst: np.abs(dst - _mapped(H, src))[:, 1],
         ),
         Misconception(
-            "length with the homogeneous 1",
-            "You took the length of homogeneous vectors that still have their third coordinate: "
-            "divide, leave it out, then subtract.",
+            "length of the mapped points",
+            "You took the length of the mapped points themselves: subtract dst first.",
             lambda H, src, dst: np.linalg.norm(_mapped(H, src), axis=1),
             variants=(lambda H, src, dst: np.linalg.norm(to_homogeneous(_mapped(H, src)), axis=1),),
-        ),
-        Misconception(
-            "src and dst exchanged",
-            "You mapped dst and compared with src: H takes src to dst.",
-            lambda H, src, dst: np.linalg.norm(src - _mapped(H, dst), axis=1),
         ),
         Misconception(
             "algebraic error",

@@ -75,6 +75,7 @@ NORMALISER = Exercise(
             "You divided each direction by its own standard deviation; one scale for both is "
             "asked, so that circles stay circles.",
             lambda x: _similarity(1 / x.std(0), -x.mean(0) / x.std(0)),
+            variants=(lambda x: _similarity(1 / x.std(0, ddof=1), -x.mean(0) / x.std(0, ddof=1)),),
         ),
         Misconception(
             "root mean square distance",
@@ -234,7 +235,6 @@ NORMALISER = Exercise(
             "You divided each direction by its own standard deviation, and multiplied by √2; one "
             "scale for both is asked.",
             lambda x: _similarity(np.sqrt(2) / x.std(0), -np.sqrt(2) * x.mean(0) / x.std(0)),
-            variants=(lambda x: _similarity(1 / x.std(0, ddof=1), -x.mean(0) / x.std(0, ddof=1)),),
         ),
         Misconception(
             "mean square distance",

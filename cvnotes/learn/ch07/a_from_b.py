@@ -180,20 +180,9 @@ A_FROM_B = Exercise(
             "the inverse", "That is A⁻¹: B = A⁻ᵀ A⁻¹.", lambda b: np.linalg.inv(A_from_b(b))
         ),
         Misconception(
-            "scaled to length 1",
-            "Your A is right up to scale: divide it by its last entry.",
-            lambda b: A_from_b(b) / np.linalg.norm(A_from_b(b)),
-        ),
-        Misconception(
             "B13 and B23 exchanged",
             "You filled B in another order: b = (B11, B12, B22, B13, B23, B33).",
             lambda b: _solved(b[[0, 1, 2, 4, 3, 5]]),
-        ),
-        Misconception(
-            "absolute values",
-            "You took absolute values of b: its entries have signs of their own, only a common "
-            "one is free.",
-            lambda b: _solved(np.abs(b)),
         ),
         Misconception(
             "A Aᵀ",

@@ -87,8 +87,8 @@ CAMERA_COVARIANCE = Exercise(
     misconceptions=(
         Misconception(
             "poses held fixed",
-            "(Σ JcᵀJc)⁻¹ is what would be known if every pose were given: too short. The poses "
-            "take their share first.",
+            "(Σ JcᵀJc)⁻¹ is the covariance if every pose were given, which is too small. The "
+            "poses take their share first.",
             lambda Jc, Jp: np.linalg.inv((Jc.mT @ Jc).sum(0)),
         ),
         Misconception(
@@ -147,7 +147,7 @@ CAMERA_COVARIANCE = Exercise(
         ),
         Misconception(
             "camera and poses exchanged",
-            "You eliminated the camera and kept the poses.",
+            "You eliminated the camera and kept the poses: it is the other way round.",
             lambda Jc, Jp: camera_covariance(Jp, Jc),
         ),
     ),

@@ -18,7 +18,6 @@ from cvnotes.learn.cases.cameras import (
     some_factors,
     some_intrinsics,
     some_pose,
-    without_skew,
 )
 from cvnotes.learn.checker.equality import same_motion, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
@@ -86,13 +85,6 @@ def _each_by_itself(A: Array, H: Array, first: float = 0.5) -> Array:
     a, b, c, scale = _parts(A, H)
     la, lb = np.sign(scale) * np.linalg.norm([a, b], axis=1)
     return _joined(a / la, b / lb, np.cross(a / la, b / lb), c / (first * la + (1 - first) * lb))
-
-
-def _rotation_by_qr(A: Array, H: Array) -> Array:
-    G = _no_rotation(A, H, lambda a, b: (a + b) / 2)
-    Q, U = np.linalg.qr(G[:3, :3])
-    G[:3, :3] = Q * np.sign(np.diag(U))
-    return G
 
 
 def _signed(A: Array, H: Array) -> Array:
@@ -277,16 +269,6 @@ EXTRINSICS = Exercise(
             lambda A, H: pose(extrinsics(A, H)[:3, :3], -extrinsics(A, H)[:3, 3]),
         ),
         Misconception(
-            "skew left out",
-            "You left out the skew of A.",
-            lambda A, H: extrinsics(without_skew(A), H),
-        ),
-        Misconception(
-            "H inverted",
-            "You used H⁻¹: H leads from the board to the picture, as A [r1 r2 T] does.",
-            lambda A, H: extrinsics(A, np.linalg.inv(H)),
-        ),
-        Misconception(
             "camera's position for T",
             "You gave where the camera stands, −Rᵀ T, beside R: G has T itself.",
             lambda A, H: pose(
@@ -325,9 +307,9 @@ EXTRINSICS = Exercise(
             lambda A, H: extrinsics(A, H)[:3, :3],
         ),
         Misconception(
-            "λ from the third column",
-            "λ is the length of the first two columns of A⁻¹ H, as r1 and r2 are unit vectors; T "
-            "may have any.",
+            "λ from the determinant",
+            "You divided T by the determinant of A⁻¹ H. λ is the length of its first two "
+            "columns, as r1 and r2 are unit vectors.",
             lambda A, H: pose(
                 extrinsics(A, H)[:3, :3], _parts(A, H)[2] / np.linalg.det(np.linalg.inv(A) @ H)
             ),

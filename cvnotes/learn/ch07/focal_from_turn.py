@@ -80,17 +80,6 @@ TURN = Exercise(
     ),
     misconceptions=(
         Misconception(
-            "root forgotten",
-            "The column has f and the row 1 / f, so their ratio is f²: take the root.",
-            lambda H: focal_from_turn(H) ** 2,
-        ),
-        Misconception(
-            "upside down",
-            "That is 1 / f: the long one, the column, belongs above.",
-            lambda H: 1 / focal_from_turn(H),
-            variants=(lambda H: focal_from_turn(H.T),),
-        ),
-        Misconception(
             "scale believed",
             "You took 1 − h33² for r13² + r23². That is so only if H is scaled to determinant 1, "
             "and H comes in any scale.",

@@ -232,12 +232,6 @@ BILINEAR = Exercise(
             lambda image, u, v: _inwards(image, u, v),
         ),
         Misconception(
-            "rounded result",
-            "You rounded the result, or cut its decimals off: it is a number between the four.",
-            lambda image, u, v: float(np.rint(bilinear(image, u, v))),
-            variants=(lambda image, u, v: float(int(bilinear(image, u, v))),),
-        ),
-        Misconception(
             "sum of the four",
             "You added the four pixels without weights.",
             lambda image, u, v: np.sum(_four(image, *_split(u, v)[:2])),

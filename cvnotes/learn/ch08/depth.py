@@ -85,8 +85,8 @@ DEPTH = Exercise(
         Misconception(
             "0 for infinity",
             (
-                "Right, except without disparity: you gave 0, which is right here at the camera. "
-                "The task asks for np.inf."
+                "Right, except where the disparity is 0: you gave the depth 0, which is at the "
+                "camera itself. The task asks for np.inf."
             ),
             lambda alpha, b, left, right: np.where(
                 left == right, 0.0, depth(alpha, b, left, right)
@@ -95,7 +95,7 @@ DEPTH = Exercise(
         Misconception(
             "no answer at infinity",
             (
-                "Right, except without disparity, where you have no answer: the point is "
+                "Right, except where the disparity is 0 and you have no answer: the point is "
                 "infinitely far, np.inf."
             ),
             lambda alpha, b, left, right: (
@@ -171,7 +171,7 @@ DEPTH = Exercise(
         ),
         Misconception(
             "one pixel off",
-            "The disparity is u_left − u_right, without a 1.",
+            "You added 1 to the disparity, or subtracted it: d = u_left − u_right.",
             lambda alpha, b, left, right: alpha * b / (left - right + 1),
             variants=(lambda alpha, b, left, right: alpha * b / (left - right - 1),),
         ),

@@ -106,7 +106,7 @@ RECTIFY = Exercise(
         ),
         Misconception(
             "y axis not of length 1",
-            "z_old × x is shorter than 1 unless both are perpendicular: scale it.",
+            "Your y axis is not of length 1: z_old × x is shorter, unless both are perpendicular.",
             lambda R, left, right: _unscaled(R, _unit(right - left)),
         ),
         Misconception(
@@ -131,7 +131,7 @@ RECTIFY = Exercise(
         ),
         Misconception(
             "x axis not of length 1",
-            "The baseline has to be scaled to length 1.",
+            "Your x axis is not of length 1: divide the baseline by its length.",
             lambda R, left, right: (
                 rectifying_rotation(R, left, right) * [[np.linalg.norm(right - left)], [1], [1]]
             ),

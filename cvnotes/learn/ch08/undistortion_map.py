@@ -111,7 +111,7 @@ UNDISTORTION = Exercise(
         ),
         Misconception(
             "radius in pixels",
-            "r² is taken in pixels. k1 and k2 belong to x = (u − u0) / α_u and y = (v − v0) / α_v.",
+            "You took r² in pixels. k1 and k2 belong to x = (u − u0) / α_u and y = (v − v0) / α_v.",
             lambda A, k, size: _moved(A, k, size, radius="pixels"),
         ),
         Misconception(
@@ -150,11 +150,6 @@ UNDISTORTION = Exercise(
             lambda A, k, size: _by(A, 1 / _factors(A, k, size), size),
         ),
         Misconception(
-            "k2 left out",
-            "k2 r⁴ is missing.",
-            lambda A, k, size: undistortion_map(A, k * [1, 0], size),
-        ),
-        Misconception(
             "both coefficients with r²",
             "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
             lambda A, k, size: undistortion_map(A, np.array([k.sum(), 0.0]), size),
@@ -168,11 +163,6 @@ UNDISTORTION = Exercise(
             "principal point not added back",
             "You left the result measured from the principal point: add u0 and v0.",
             lambda A, k, size: undistortion_map(A, k, size) - A[:2, 2],
-        ),
-        Misconception(
-            "sign of k",
-            "You subtracted the distortion: u' = u + (k1 r² + k2 r⁴)(u − u0).",
-            lambda A, k, size: undistortion_map(A, -k, size),
         ),
         Misconception(
             "a list of positions",
@@ -213,8 +203,8 @@ UNDISTORTION = Exercise(
             lambda A, k, size: _factors(A, k, size).reshape(size[1], size[0]),
         ),
         Misconception(
-            "radius from the pixels' corner",
-            "You measured the radius from pixel (0, 0); its centre is the principal point.",
+            "radius from pixel (0, 0)",
+            "You measured the radius from pixel (0, 0): measure it from the principal point.",
             lambda A, k, size: _by(
                 A, lens_factor(pixel_centres(size) / A[[0, 1], [0, 1]], k), size
             ),
@@ -224,11 +214,6 @@ UNDISTORTION = Exercise(
             "You have two pictures, one of u and one of v; asked is the shape (height, width, 2): "
             "axis=-1.",
             lambda A, k, size: np.moveaxis(undistortion_map(A, k, size), -1, 0),
-        ),
-        Misconception(
-            "coefficients exchanged",
-            "k1 goes with r², k2 with r⁴.",
-            lambda A, k, size: undistortion_map(A, k[::-1], size),
         ),
         Misconception(
             "rows and columns exchanged",

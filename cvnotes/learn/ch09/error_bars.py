@@ -59,11 +59,6 @@ ERRORS = Exercise(
             lambda J, r: _with_variance(J, 1.0),
         ),
         Misconception(
-            "variances",
-            "These are variances: take the roots.",
-            lambda J, r: error_bars(J, r) ** 2,
-        ),
-        Misconception(
             "correlations left out",
             "You inverted the diagonal of JᵀJ. That holds the other parameters fixed, and makes "
             "error bars too short: invert the whole matrix, then take the diagonal.",
@@ -77,7 +72,7 @@ ERRORS = Exercise(
         ),
         Misconception(
             "σ for σ²",
-            "σ² belongs in front of (JᵀJ)⁻¹, before the root is taken.",
+            "You used σ where σ² belongs: σ² stands before (JᵀJ)⁻¹, and the root is taken of both.",
             lambda J, r: _with_variance(J, np.sqrt(r @ r / (len(r) - J.shape[1]))),
         ),
         Misconception(
@@ -112,8 +107,8 @@ ERRORS = Exercise(
         Misconception(
             "rows of J⁻¹",
             (
-                "You added up without squares: the standard deviation is the root of a sum of "
-                "squares."
+                "You added the entries of J⁻¹ without squaring them: a standard deviation is the "
+                "root of a sum of squares."
             ),
             lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1])) * np.abs(np.linalg.pinv(J)).sum(1),
         ),
@@ -132,23 +127,13 @@ ERRORS = Exercise(
         ),
         Misconception(
             "σ² outside of the root",
-            "σ² stands under the root: σ² √ is one σ too many.",
+            "You have σ² before the root, which is one σ too many: σ² stands under the root.",
             lambda J, r: r @ r / (len(r) - J.shape[1]) * np.sqrt(np.diag(np.linalg.inv(J.T @ J))),
         ),
         Misconception(
             "divided by the root of n",
             "You divided by √n, as for a mean; (JᵀJ)⁻¹ has counted the residuals already.",
             lambda J, r: error_bars(J, r) / np.sqrt(len(r)),
-        ),
-        Misconception(
-            "roots of the whole covariance",
-            "You took the root of the whole matrix; asked are the roots of its diagonal.",
-            lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1]) * np.linalg.inv(J.T @ J)),
-            variants=(
-                lambda J, r: np.sqrt(
-                    np.abs(r @ r / (len(r) - J.shape[1]) * np.linalg.inv(J.T @ J))
-                ),
-            ),
         ),
         Misconception(
             "sum of the residuals",
@@ -171,7 +156,7 @@ ERRORS = Exercise(
         ),
         Misconception(
             "J not transposed",
-            "JᵀJ is (p, p); J Jᵀ is (n, n), one for each residual.",
+            "You used J Jᵀ, which is (n, n), one row for each residual: JᵀJ is (p, p).",
             lambda J, r: np.sqrt(r @ r / (len(r) - J.shape[1]) * np.abs(np.diag(J @ J.T))),
             variants=(
                 lambda J, r: np.sqrt(

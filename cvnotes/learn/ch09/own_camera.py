@@ -126,8 +126,8 @@ def _slips(own: PersonalCamera) -> tuple[Misconception, ...]:
         ),
         Misconception(
             "focal lengths off",
-            "The principal point is right, the focal lengths are not: is the lens left out of the "
-            "model, or are the tilted boards?",
+            "The principal point is right, the focal lengths are not: is the lens left out of "
+            "the model, or were pictures of tilted boards left out?",
             lambda: right + [40, 40, 0, 0],
             seen=lambda answer, _: bool(np.abs(answer - right)[2:].max() < _NEAR),
         ),

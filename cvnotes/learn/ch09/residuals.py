@@ -14,7 +14,6 @@ from cvnotes.learn.cases.cameras import (
     some_intrinsics,
     some_lens,
     some_pose_matrix,
-    without_skew,
 )
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 
@@ -140,11 +139,6 @@ RESIDUALS = Exercise(
             lambda A, k, G, W, m: m - residuals(A, k, G, W, m),
         ),
         Misconception(
-            "skew left out",
-            "You left out the skew A[0, 1]: u = α_u x' + γ y' + u0.",
-            lambda A, k, G, W, m: residuals(without_skew(A), k, G, W, m),
-        ),
-        Misconception(
             "T left out",
             "T is missing: M = R W + T.",
             lambda A, k, G, W, m: _without_T(A, k, G, W, m),
@@ -153,11 +147,6 @@ RESIDUALS = Exercise(
             "G inverted",
             "You used G⁻¹: G takes points of the board to the camera's frame already.",
             lambda A, k, G, W, m: _by_hand(A, k, np.linalg.inv(G), W, m),
-        ),
-        Misconception(
-            "k2 left out",
-            "k2 r⁴ is missing in L.",
-            lambda A, k, G, W, m: residuals(A, k * [1, 0], G, W, m),
         ),
         Misconception(
             "both coefficients with r²",
@@ -180,11 +169,6 @@ RESIDUALS = Exercise(
             "principal point left out",
             "u0 and v0 are missing in your prediction.",
             lambda A, k, G, W, m: residuals(A, k, G, W, m) + A[:2, 2],
-        ),
-        Misconception(
-            "one row of all",
-            "The numbers are right, in one row; asked is a row for each corner, (n, 2).",
-            lambda A, k, G, W, m: residuals(A, k, G, W, m).ravel(),
         ),
         Misconception(
             "absolute values",

@@ -4,7 +4,7 @@ The exercise's own misconceptions come first. All others are known in every exer
 they are what stands between the answers and right ones, in all cases alike.
 """
 
-from cvnotes.learn.checker.difference import difference
+from cvnotes.learn.checker.difference import VAGUE, difference
 from cvnotes.learn.checker.foreseen import foreseen
 from cvnotes.learn.checker.inputs import slipped_input
 from cvnotes.learn.checker.raised import without_numbers
@@ -24,4 +24,7 @@ def diagnosis(answer: WrongAnswer) -> Found | None:
         return without_numbers(answer)
     if outcome.changed and outcome.value.shape == case.right.shape:
         return Found("an argument changed", answer.why)
-    return misshapen(answer) or difference(answer) or slipped_input(answer)
+    found = misshapen(answer) or difference(answer)
+    if found is None or found.name in VAGUE:
+        found = slipped_input(answer) or found
+    return found

@@ -415,3 +415,8 @@ _TELLERS: tuple[Callable[..., Found | None], ...] = (
 )
 # These say something even if it is a single number of a single case.
 _CERTAIN_ALONE = {name for name, *_ in _NO_NUMBERS} | {"NaN"}
+# These say where an answer is wrong, or how little: a slip of an input, if it is one, says why.
+VAGUE = {
+    "a few numbers", "one column", "the first row", "the last row", "another order",
+    "rows in another order", "signs of some numbers", "up to a factor",
+}  # fmt: skip

@@ -146,8 +146,8 @@ _COUNT = (
 _NUMBER = (
     _used("sign of {0}", "−{0}", lambda x: -x),
     _used("{0} upside down", "1 / {0}", lambda x: 1 / x),
-    _used("1 for {0}", "1", lambda _: 1.0),
-    _used("0 for {0}", "0", lambda _: 0.0),
+    Slip("1 for {0}", "left out {0}, or took 1 for it", lambda _: 1.0),
+    Slip("0 for {0}", "left out {0}, or took 0 for it", lambda _: 0.0),
     _used("{0} doubled", "2 {0}", lambda x: 2 * x),
     _used("{0} halved", "{0} / 2", lambda x: x / 2),
     _used("{0} squared", "the square of {0}", lambda x: x * x),
@@ -157,7 +157,7 @@ _NUMBER = (
 )
 _VECTOR = (
     _used("sign of {0}", "−{0}", np.negative),
-    _used("{0} left out", "0", lambda x: 0 * x),
+    Slip("{0} left out", "left out {0}, or took 0 for it", lambda x: 0 * x),
     _used("{0} the wrong way round", "{0}[::-1]", lambda x: x[::-1]),
     _used("{0} moved on", "np.roll({0}, 1)", lambda x: np.roll(x, 1)),
     _used("{0} moved back", "np.roll({0}, -1)", lambda x: np.roll(x, -1)),
@@ -175,7 +175,7 @@ _SQUARE = (
         "the inverse transpose of {0}",
         lambda x: np.linalg.inv(x).T,
     ),
-    _used("{0} left out", "the identity", lambda x: np.eye(len(x))),
+    Slip("{0} left out", "left out {0}, or took the identity for it", lambda x: np.eye(len(x))),
     _used("{0} made symmetric", "({0} + {0}.T) / 2", lambda x: (x + x.T) / 2),
     Slip(
         "{0} scaled by its last number",

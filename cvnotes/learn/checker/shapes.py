@@ -188,7 +188,7 @@ _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
     ),
     (
         "brackets too many",
-        "the numbers are right, within brackets too many: take what is inside, or .reshape.",
+        "the numbers are right, in too many brackets: take what is inside, or .reshape.",
         _in_brackets,
     ),
     (
@@ -198,13 +198,13 @@ _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
         _flat,
     ),
     ("arranged otherwise", "the numbers are right, the arrangement is not.", _rearranged),
+    ("last coordinate kept", "the numbers are right, with a 1 too many: leave it out.", _lifted),
     (
         "still homogeneous",
         "still homogeneous? Divide by the last coordinate, then leave it out.",
         _homogeneous,
     ),
-    ("last coordinate kept", "the numbers are right, with a 1 too many: leave it out.", _lifted),
-    ("columns too many", "the right numbers are among them: leave out the others.", _too_wide),
+    ("columns too many", "the right numbers are among them; leave out the others.", _too_wide),
     ("columns left out", "what is there is right, but numbers are missing.", _too_narrow),
     ("the first only", "only the first came back; is the return inside of a loop?", _first),
     (
@@ -220,11 +220,23 @@ _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
     ("rows too many", "the right rows are among them, but there are more.", _rows_too_many),
     ("the diagonal only", "that is the diagonal only.", _diagonal),
     ("a matrix for its diagonal", "asked is the diagonal alone: see np.diag.", _on_diagonal),
-    ("the mean", "that is the mean of what is asked; leave it out.", _whole(np.mean)),
-    ("the sum", "that is the sum of what is asked; leave it out.", _whole(np.sum)),
-    ("the length", "that is the length of what is asked; leave it out.", _whole(np.linalg.norm)),
-    ("the largest", "that is the largest of what is asked; leave it out.", _whole(np.max)),
-    ("the smallest", "that is the smallest of what is asked; leave it out.", _whole(np.min)),
+    ("the mean", "that is the mean of the right numbers; all of them are asked.", _whole(np.mean)),
+    ("the sum", "that is the sum of the right numbers; all of them are asked.", _whole(np.sum)),
+    (
+        "the length",
+        "that is the length of the right numbers; all of them are asked.",
+        _whole(np.linalg.norm),
+    ),
+    (
+        "the largest",
+        "that is the largest of the right numbers; all of them are asked.",
+        _whole(np.max),
+    ),
+    (
+        "the smallest",
+        "that is the smallest of the right numbers; all of them are asked.",
+        _whole(np.min),
+    ),
 )
 # The same, where an answer has a row for each of n points.
 _ABOUT_POINTS = {
