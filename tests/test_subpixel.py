@@ -13,8 +13,13 @@ from cvnotes.base import (
 )
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.targets import Chessboard, harris, local_maxima, refine_edges, refine_subpixel
-from cvnotes.targets.edge_corners import fit_edges
-from cvnotes.targets.edge_model import Window, crossing, crossing_jacobian, jacobian
+from cvnotes.targets.edge_corners import (
+    Window,
+    crossing,
+    crossing_jacobian,
+    fit_edges,
+    jacobian,
+)
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))

@@ -20,8 +20,7 @@ from cvnotes.base import (
 )
 from cvnotes.camera import Camera
 from cvnotes.pictures.exposure import Image, expose, gaussian_blur
-from cvnotes.pictures.faces import Target
-from cvnotes.pictures.outlines import edges_in_picture
+from cvnotes.pictures.faces import Target, edges_in_picture
 from cvnotes.pictures.pixel_means import edge_means, polygon_means
 
 _OCCLUDER = 90.0  # grey level of what stands in the way

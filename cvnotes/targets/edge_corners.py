@@ -1,121 +1,39 @@
-"""Corners to a hundredth of a pixel, by the two edges that cross there; the finder ends with it."""
+"""Corners to a hundredth of a pixel, by the two blurred edges that cross there.
+
+What a camera shows where two edges cross is
+
+    I(x, y) = (1 + sx x + sy y) (level + contrast · erf(t1) · erf(t2)),   t_i = a_i x + b_i y + c_i
+
+x and y count pixels from the middle of a window. Edge i is the line t_i = 0; its step is seen
+through a Gaussian blur of 1 / (√2 ‖(a_i, b_i)‖) pixels, which may differ from edge to edge. The
+pixel's own width belongs to it: a variance of 1/12 px² adds to that of the lens. (sx, sy) is a
+slight slope of the lighting. The model is fitted to many windows at once; the finder ends with it.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, DegenerateError, Image, ShapeError, image_size, points
-from cvnotes.targets.edge_model import (
-    PARAMETERS,
-    SLOPES,
-    Mask,
-    Window,
-    crossing,
-    crossing_jacobian,
-    minimise,
-)
+from cvnotes.base import Array, DegenerateError, Image, ShapeError, chunks, image_size, points
 from cvnotes.targets.gradient_corners import whole
 from cvnotes.targets.patches import grey_picture, patch_gradients, patches
 
+Mask = npt.NDArray[np.bool_]
+Single = npt.NDArray[np.float32]
+
+# Parameters, in this order: a1, b1, c1, a2, b2, c2, contrast, level, sx, sy.
+PARAMETERS = 10
+SLOPES = 8  # where the slopes of the lighting begin
+_TOGETHER = 6000  # pixels differentiated at a time: their numbers then stay in the cache
+_SHARPEST = 1 / (np.sqrt(2) * 0.25)  # of a pixel's own width remain 0.29 px
 # How far a window reaches towards the neighbouring corner, and beyond the outermost corners, as
 # fractions of a square; what comes after those (narrow squares, paper, stray light) is unknown.
 _TOWARDS_NEIGHBOUR, _BEYOND_BOARD = 0.7, 0.1
 _BEYOND_PX, _BEYOND_BLUR = 2.0, 1.5  # but at least so many pixels, and widths of the blur
-
-
-def board_axes(m: Array, grid: tuple[int, int], blur: float = 0.0) -> tuple[Array, Array]:
-    """Give each corner's two steps to the next ones (n, 2, 2), and its reach (n, 2, 2) in them.
-
-    Of the reach, the last index is that of backward and forward.
-    """
-    columns, rows = image_size(grid, "grid")
-    if len(m) != columns * rows or min(columns, rows) < 2:
-        raise ShapeError(f"grid: {columns}×{rows} corners cannot be {len(m)} points")
-    lattice = m.reshape(rows, columns, 2)
-    axes = np.stack([np.gradient(lattice, axis=1), np.gradient(lattice, axis=0)], axis=-2)
-    area, sides = np.abs(_cross(axes[..., 0, :], axes[..., 1, :])), np.linalg.norm(axes, axis=-1)
-    if not (area > 0.01 * sides.prod(-1)).all():
-        raise DegenerateError(
-            f"m: neighbours on the {columns}×{rows} grid lie on a line; are the corners row by row?"
-        )
-    height = area[..., None] / sides[..., ::-1]
-    outside = max(_BEYOND_PX, _BEYOND_BLUR * blur) / height
-    beyond = outside.clip(_BEYOND_BOARD, _TOWARDS_NEIGHBOUR)
-    reach = np.full((rows, columns, 2, 2), _TOWARDS_NEIGHBOUR)
-    reach[:, 0, 0, 0], reach[:, -1, 0, 1] = beyond[:, 0, 0], beyond[:, -1, 0]
-    reach[0, :, 1, 0], reach[-1, :, 1, 1] = beyond[0, :, 1], beyond[-1, :, 1]
-    return axes.reshape(-1, 2, 2), reach.reshape(-1, 2, 2)
-
-
-def gradient_axes(grey: Image, m: Array, half: int) -> Array:
-    """Give the directions of the two edges (n, 2, 2) that the gradients around m show.
-
-    Gradients point across one edge or the other, so that (t1ᵀ g)(t2ᵀ g) = gᵀ Q g is 0 for all of
-    them. The three coefficients of Q are the null vector of the sum of fourth powers of g.
-    """
-    _, _, g_u, g_v = patch_gradients(grey, m, half)
-    powers = np.stack([g_u * g_u, g_u * g_v, g_v * g_v], axis=1)
-    a, b, c = np.linalg.eigh(powers @ powers.mT)[1][:, :, 0].T
-    values, vectors = np.linalg.eigh(np.stack([2 * a, b, b, 2 * c], -1).reshape(-1, 2, 2))
-    # λ2 (e2ᵀ g)² − |λ1| (e1ᵀ g)² is the product of a sum and a difference.
-    e1, e2 = (np.sqrt(np.abs(values))[:, None] * vectors).transpose(2, 0, 1)
-    axes = np.stack([e2 + e1, e2 - e1], axis=1)
-    axes /= np.maximum(np.linalg.norm(axes, axis=-1, keepdims=True), 1e-300)
-    axes[np.abs(_cross(axes[:, 0], axes[:, 1])) < 0.1] = np.eye(2)  # there are no two edges
-    return np.asarray(axes)
-
-
-def cut_out(
-    grey: Image,
-    m: Array,
-    half: int,
-    axes: Array,
-    reach: Array | None,
-    strip: Array | None = None,
-) -> tuple[Array, Window]:
-    """Cut windows out around the pixels next to m, which are given too.
-
-    In steps to the neighbours, pixels count that lie within the `reach`, and no farther from one of
-    the edges than half the width (n, 2) of its `strip`.
-    """
-    u, v, pixels, counts = patches(grey, m, half)
-    if reach is not None:
-        q = np.stack([u - m[:, :1], v - m[:, 1:]], axis=1)
-        along = np.linalg.inv(axes).mT @ q  # in steps to the neighbours
-        counts &= ((along >= -reach[..., :1]) & (along <= reach[..., 1:])).all(1)
-        if strip is not None:
-            counts &= (np.abs(along) <= strip[..., None]).any(1)
-    y, x = np.indices((2 * half + 1, 2 * half + 1)).reshape(2, -1) - half
-    single = [z.astype(np.float32) for z in (np.stack([x, y, np.ones_like(x)]), pixels, counts)]
-    return np.rint(m), Window(*single)
-
-
-def sharp_crossing(offset: Array, axes: Array, window: Window) -> Array:
-    """Give parameters to start from: the crossing of both axes, with a blur of 0.7 px."""
-    p = np.zeros((len(offset), PARAMETERS))
-    across = normals(axes)
-    p[:, 0:2], p[:, 3:5] = across[:, 0], across[:, 1]
-    p[:, [2, 5]] = -(across @ offset[:, :, None])[..., 0]
-    quadrant = np.sign((p[:, 0:3] @ window.place) * (p[:, 3:6] @ window.place)) * window.weight
-    count = np.maximum(window.weight.sum(-1), 1)
-    p[:, 7] = (window.weight * window.grey).sum(-1) / count
-    p[:, 6] = (quadrant * (window.grey - p[:, 7:8])).sum(-1) / count
-    return p
-
-
-def normals(axes: Array) -> Array:
-    """Give unit normals (n, 2, 2) of both edges that point into the quadrant between the axes."""
-    across = np.stack([-axes[..., 1], axes[..., 0]], axis=-1) * [[1.0], [-1.0]]
-    turned = np.where(_cross(axes[:, 0], axes[:, 1]) < 0, -1.0, 1.0)[:, None, None]
-    return np.asarray(turned * across / np.linalg.norm(across, axis=-1, keepdims=True))
-
-
-def _cross(a: Array, b: Array) -> Array:
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
-
-
 _VERY_BLURRED = 0.2  # of half a window
+# Sum of squares, in grey levels, that single precision leaves in a window.
+_ROUNDING = 3.0
 _SINGULAR = 1e-30  # determinant of the parameters' correlations; on a board it is above 1e-6
 
 
@@ -144,6 +62,28 @@ class EdgeFit:
     level: Array
     residual: Array
     covariance: Array
+
+
+@dataclass(frozen=True)
+class Window:
+    """The pixels to be explained: as many for every corner, but not all of them count.
+
+    Attributes
+    ----------
+    place : ndarray, shape (3, pixels)
+        x, y and 1 of the pixels, seen from the middle one.
+    grey, weight : ndarray, shape (n, pixels)
+        Grey levels, and 1 where a pixel counts, 0 elsewhere. Single precision: twice as quick, and
+        still 16 bits finer than the grey levels.
+    """
+
+    place: Single
+    grey: Single
+    weight: Single
+
+    def rows(self, k: slice | npt.NDArray[np.intp]) -> "Window":
+        """Give the same for some of the corners."""
+        return Window(self.place, self.grey[k], self.weight[k])
 
 
 def refine_edges(
@@ -202,10 +142,10 @@ def fit_edges(
 
     Notes
     -----
-    The model is that of `cvnotes.targets.edge_model`. Its ten parameters are fitted by least
-    squares on the grey levels, first in a window of half the size. With white noise that is the
-    maximum likelihood estimate: no unbiased method that sees the same pixels spreads less. The
-    quadrants of a crossing are point-symmetric, so that an unknown response curve, clipping or
+    The model is written at the top of `cvnotes.targets.edge_corners`. Its ten parameters are fitted
+    by least squares on the grey levels, first in a window of half the size. With white noise that
+    is the maximum likelihood estimate: no unbiased method that sees the same pixels spreads less.
+    The quadrants of a crossing are point-symmetric, so that an unknown response curve, clipping or
     an elongated blur do not move it.
 
     References
@@ -309,3 +249,248 @@ def _blur(p: Array) -> Array:
 def _typical(blur: Array) -> float:
     """Blur of most corners, across the more blurred edge."""
     return float(np.median(blur.max(-1))) if len(blur) else 0.0
+
+
+# --- where to look, and where to start
+
+
+def board_axes(m: Array, grid: tuple[int, int], blur: float = 0.0) -> tuple[Array, Array]:
+    """Give each corner's two steps to the next ones (n, 2, 2), and its reach (n, 2, 2) in them.
+
+    Of the reach, the last index is that of backward and forward.
+    """
+    columns, rows = image_size(grid, "grid")
+    if len(m) != columns * rows or min(columns, rows) < 2:
+        raise ShapeError(f"grid: {columns}×{rows} corners cannot be {len(m)} points")
+    lattice = m.reshape(rows, columns, 2)
+    axes = np.stack([np.gradient(lattice, axis=1), np.gradient(lattice, axis=0)], axis=-2)
+    area, sides = np.abs(_cross(axes[..., 0, :], axes[..., 1, :])), np.linalg.norm(axes, axis=-1)
+    if not (area > 0.01 * sides.prod(-1)).all():
+        raise DegenerateError(
+            f"m: neighbours on the {columns}×{rows} grid lie on a line; are the corners row by row?"
+        )
+    height = area[..., None] / sides[..., ::-1]
+    outside = max(_BEYOND_PX, _BEYOND_BLUR * blur) / height
+    beyond = outside.clip(_BEYOND_BOARD, _TOWARDS_NEIGHBOUR)
+    reach = np.full((rows, columns, 2, 2), _TOWARDS_NEIGHBOUR)
+    reach[:, 0, 0, 0], reach[:, -1, 0, 1] = beyond[:, 0, 0], beyond[:, -1, 0]
+    reach[0, :, 1, 0], reach[-1, :, 1, 1] = beyond[0, :, 1], beyond[-1, :, 1]
+    return axes.reshape(-1, 2, 2), reach.reshape(-1, 2, 2)
+
+
+def gradient_axes(grey: Image, m: Array, half: int) -> Array:
+    """Give the directions of the two edges (n, 2, 2) that the gradients around m show.
+
+    Gradients point across one edge or the other, so that (t1ᵀ g)(t2ᵀ g) = gᵀ Q g is 0 for all of
+    them. The three coefficients of Q are the null vector of the sum of fourth powers of g.
+    """
+    _, _, g_u, g_v = patch_gradients(grey, m, half)
+    powers = np.stack([g_u * g_u, g_u * g_v, g_v * g_v], axis=1)
+    a, b, c = np.linalg.eigh(powers @ powers.mT)[1][:, :, 0].T
+    values, vectors = np.linalg.eigh(np.stack([2 * a, b, b, 2 * c], -1).reshape(-1, 2, 2))
+    # λ2 (e2ᵀ g)² − |λ1| (e1ᵀ g)² is the product of a sum and a difference.
+    e1, e2 = (np.sqrt(np.abs(values))[:, None] * vectors).transpose(2, 0, 1)
+    axes = np.stack([e2 + e1, e2 - e1], axis=1)
+    axes /= np.maximum(np.linalg.norm(axes, axis=-1, keepdims=True), 1e-300)
+    axes[np.abs(_cross(axes[:, 0], axes[:, 1])) < 0.1] = np.eye(2)  # there are no two edges
+    return np.asarray(axes)
+
+
+def cut_out(
+    grey: Image,
+    m: Array,
+    half: int,
+    axes: Array,
+    reach: Array | None,
+    strip: Array | None = None,
+) -> tuple[Array, Window]:
+    """Cut windows out around the pixels next to m, which are given too.
+
+    In steps to the neighbours, pixels count that lie within the `reach`, and no farther from one of
+    the edges than half the width (n, 2) of its `strip`.
+    """
+    u, v, pixels, counts = patches(grey, m, half)
+    if reach is not None:
+        q = np.stack([u - m[:, :1], v - m[:, 1:]], axis=1)
+        along = np.linalg.inv(axes).mT @ q  # in steps to the neighbours
+        counts &= ((along >= -reach[..., :1]) & (along <= reach[..., 1:])).all(1)
+        if strip is not None:
+            counts &= (np.abs(along) <= strip[..., None]).any(1)
+    y, x = np.indices((2 * half + 1, 2 * half + 1)).reshape(2, -1) - half
+    single = [z.astype(np.float32) for z in (np.stack([x, y, np.ones_like(x)]), pixels, counts)]
+    return np.rint(m), Window(*single)
+
+
+def sharp_crossing(offset: Array, axes: Array, window: Window) -> Array:
+    """Give parameters to start from: the crossing of both axes, with a blur of 0.7 px."""
+    p = np.zeros((len(offset), PARAMETERS))
+    across = normals(axes)
+    p[:, 0:2], p[:, 3:5] = across[:, 0], across[:, 1]
+    p[:, [2, 5]] = -(across @ offset[:, :, None])[..., 0]
+    quadrant = np.sign((p[:, 0:3] @ window.place) * (p[:, 3:6] @ window.place)) * window.weight
+    count = np.maximum(window.weight.sum(-1), 1)
+    p[:, 7] = (window.weight * window.grey).sum(-1) / count
+    p[:, 6] = (quadrant * (window.grey - p[:, 7:8])).sum(-1) / count
+    return p
+
+
+def normals(axes: Array) -> Array:
+    """Give unit normals (n, 2, 2) of both edges that point into the quadrant between the axes."""
+    across = np.stack([-axes[..., 1], axes[..., 0]], axis=-1) * [[1.0], [-1.0]]
+    turned = np.where(_cross(axes[:, 0], axes[:, 1]) < 0, -1.0, 1.0)[:, None, None]
+    return np.asarray(turned * across / np.linalg.norm(across, axis=-1, keepdims=True))
+
+
+def _cross(a: Array, b: Array) -> Array:
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+# --- the model and its least squares
+
+
+def jacobian(p: Array, window: Window) -> Single:
+    """Differentiate the model by its parameters p (n, 10).
+
+    Returns
+    -------
+    ndarray, shape (n, 11, pixels)
+        The derivatives, and in the last row the pixels minus the model; all times the weight.
+    """
+    q = p.astype(np.float32)
+    contrast, level = q[:, 6:7], q[:, 7:8]
+    t1, t2 = q[:, 0:3] @ window.place, q[:, 3:6] @ window.place
+    (S1, E1), (S2, E2) = _erf(t1), _erf(t2)
+    light = (1 + q[:, 8:10] @ window.place[:2]) * window.weight
+    M = light * S1 * S2
+    slope = np.float32(2 / np.sqrt(np.pi)) * contrast * light  # d(erf t)/dt = 2/√π exp(−t²)
+    A1, A2 = slope * S2 * E1, slope * S1 * E2
+    shade = window.weight * (level + contrast * S1 * S2)
+    J = np.empty((len(p), PARAMETERS + 1, window.place.shape[1]), dtype=np.float32)
+    np.multiply(A1[:, None], window.place, out=J[:, 0:3])
+    np.multiply(A2[:, None], window.place, out=J[:, 3:6])
+    J[:, 6], J[:, 7] = M, light
+    np.multiply(shade[:, None], window.place[:2], out=J[:, 8:10])
+    J[:, 10] = window.weight * window.grey - (level * light + contrast * M)
+    return J
+
+
+def crossing(p: Array) -> Array:
+    """Give where the two edges cross, (n, 2), from the middle of the window.
+
+    Examples
+    --------
+    >>> crossing(np.array([[1.0, 0, -2, 0, 1, -3, 1, 0, 0, 0]]))
+    array([[2., 3.]])
+    """
+    a1, b1, c1, a2, b2, c2 = p.T[:6]
+    m = np.empty((len(p), 2))
+    with np.errstate(divide="ignore", invalid="ignore"):  # parallel edges cross nowhere
+        area = a1 * b2 - a2 * b1
+        m[:, 0] = (b1 * c2 - b2 * c1) / area
+        m[:, 1] = (a2 * c1 - a1 * c2) / area
+    return m
+
+
+def crossing_jacobian(p: Array) -> Array:
+    """Differentiate `crossing` by the parameters, (n, 2, 10).
+
+    N m + c = 0 with the rows of N the (a_i, b_i), so that N dm = −(x da_i + y db_i + dc_i).
+    """
+    m_h = np.concatenate([crossing(p), np.ones((len(p), 1))], axis=-1)
+    inverse = np.linalg.inv(p[:, [[0, 1], [3, 4]]])
+    D = np.zeros((len(p), 2, PARAMETERS))
+    D[:, :, 0:3] = -inverse[:, :, :1] * m_h[:, None]
+    D[:, :, 3:6] = -inverse[:, :, 1:] * m_h[:, None]
+    return D
+
+
+def minimise(
+    p: Array, window: Window, *, tolerance: float, free: int = PARAMETERS, iterations: int = 15
+) -> tuple[Array, Array, Mask]:
+    """Fit the model to every window, each by a Levenberg–Marquardt of its own, all at once.
+
+    Only the first `free` parameters change.
+
+    Returns
+    -------
+    p : ndarray, shape (n, 10)
+        The parameters found.
+    system : ndarray, shape (n, 11, 11)
+        [J r]ᵀ [J r] before the last step: the normal matrix, the gradient, the sum of squares.
+    converged : ndarray of bool, shape (n,)
+        Whether the crossing came to rest: to about `tolerance` pixels.
+    """
+    p, moved, damping = p.copy(), np.full(len(p), np.inf), np.zeros(len(p))
+    system = _system(p, window)
+    k, part = np.arange(len(p)), window
+    for _ in range(iterations):
+        step = _solve(system[k], damping[k], free)
+        gain, cost = (system[k, :PARAMETERS, -1] * step).sum(-1), system[k, -1, -1]
+        p_new = _limited(p[k] + step)
+        moved[k] = np.abs(crossing(p_new) - crossing(p[k])).max(-1)
+        # A step this small needs no proof that it leads downhill, unless it promises much: at a
+        # symmetric start the crossing rests while everything else may go astray. Nor may an edge
+        # turn over unproved: as sharp as it may be, it does so with its crossing at rest.
+        close = (moved[k] < tolerance) & (gain < 0.1 * cost + _ROUNDING) & ~_overturned(p[k], p_new)
+        p[k[close]] = p_new[close]
+        if close.any():
+            k, p_new = k[~close], p_new[~close]
+            part = window.rows(k)
+        if not k.size:
+            break
+        system_new = _system(p_new, part)
+        better = system_new[:, -1, -1] < system[k, -1, -1]
+        p[k[better]], system[k[better]] = p_new[better], system_new[better]
+        damping[k] = np.where(better, 0.1 * damping[k], np.maximum(10 * damping[k], 1e-2))
+        damping[damping < 1e-4] = 0.0
+    # Edges that would be sharper than they may be keep swaying by a little.
+    return p, system, moved < 10 * tolerance
+
+
+def _system(p: Array, window: Window) -> Array:
+    system = np.empty((len(p), PARAMETERS + 1, PARAMETERS + 1))
+    for part in chunks(len(p), max(1, _TOGETHER // window.place.shape[1])):
+        J = jacobian(p[part], window.rows(part))
+        system[part] = J @ J.mT
+    return system
+
+
+def _erf(t: Single) -> tuple[Single, Single]:
+    """Give erf t and exp(−t²) at once, to single precision, in a third of the usual time.
+
+    Formula 7.1.26 of Abramowitz and Stegun, Handbook of Mathematical Functions (1964).
+    """
+    bell = np.exp(-t * t)
+    k = 1 / (1 + np.float32(0.3275911) * np.abs(t))
+    tail = np.float32(1.061405429) * k
+    for coefficient in (-1.453152027, 1.421413741, -0.284496736, 0.254829592):
+        tail += np.float32(coefficient)
+        tail *= k
+    return np.copysign(1 - tail * bell, t), bell
+
+
+def _overturned(p: Array, p_new: Array) -> Mask:
+    """Tell for which windows (n,) an edge's normal turns by more than 90°."""
+    along = p[:, [0, 1, 3, 4]] * p_new[:, [0, 1, 3, 4]]
+    return np.asarray(along.reshape(-1, 2, 2).sum(-1).min(-1) <= 0)
+
+
+def _limited(p: Array) -> Array:
+    """Keep edges from becoming sharper than pixels are wide."""
+    for line in (slice(0, 3), slice(3, 6)):
+        sharpness = np.hypot(p[:, line.start], p[:, line.start + 1])
+        p[:, line] /= np.maximum(sharpness / _SHARPEST, 1)[:, None]
+    return p
+
+
+def _solve(system: Array, damping: Array, free: int) -> Array:
+    """Solve the damped normal equations of each window for its first `free` parameters."""
+    normal = system[:, :free, :free]
+    scale = np.sqrt(np.diagonal(normal, axis1=1, axis2=2))
+    scale[scale == 0] = 1.0
+    scaled = normal / (scale[:, :, None] * scale[:, None, :])
+    scaled += (damping[:, None, None] + 1e-6) * np.eye(free)
+    gradient = system[:, :free, PARAMETERS] / scale
+    step = np.zeros((len(system), PARAMETERS))
+    step[:, :free] = np.linalg.solve(scaled, gradient[..., None])[..., 0] / scale
+    return step
