@@ -420,7 +420,7 @@ FUNCTIONS = [
     function(
         calibration.left_out_rms,
         {"board_points": (W, EITHER), "image_points": (SEEN, SETS)},
-        "which_lens.left_out_rms",
+        "left_out.left_out_rms",
         sizes=("size",),
         paired=("board_points", "image_points"),
         size=(640, 480),
@@ -429,7 +429,7 @@ FUNCTIONS = [
     function(
         calibration.left_out_rms_of_boards,
         {"board_points": (W, EITHER), "image_points": (SEEN, SETS)},
-        "which_board.left_out_rms_of_boards",
+        "left_out.left_out_rms_of_boards",
         sizes=("size",),
         paired=("board_points", "image_points"),
         size=(640, 480),

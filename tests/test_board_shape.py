@@ -8,8 +8,8 @@ import pytest
 from cvnotes.base import CvnotesError, DegenerateError
 from cvnotes.calibration import Calibration, calibrate, choose_board, left_out_rms_of_boards
 from cvnotes.calibration.board_shape import deformations
+from cvnotes.calibration.left_out import AtLeast
 from cvnotes.calibration.refinement import Problem, State
-from cvnotes.calibration.which_lens import AtLeast
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.pictures import course, good_views
 from cvnotes.targets import Chessboard, find_corners

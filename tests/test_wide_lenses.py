@@ -9,10 +9,10 @@ import pytest
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError
 from cvnotes.calibration import Calibration, calibrate, choose_lens
 from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.left_out import AtLeast, left_out_rms
 from cvnotes.calibration.refinement import Problem
 from cvnotes.calibration.reliability import by_radius
 from cvnotes.calibration.starts import Search, as_quotient
-from cvnotes.calibration.which_lens import AtLeast, left_out_rms
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
 from cvnotes.camera import (
     Camera,

@@ -2,6 +2,12 @@
 
 from cvnotes.calibration.board_shape import BOARDS, BoardShape
 from cvnotes.calibration.driver import calibrate
+from cvnotes.calibration.left_out import (
+    choose_board,
+    choose_lens,
+    left_out_rms,
+    left_out_rms_of_boards,
+)
 from cvnotes.calibration.next_view import NextView, next_view, where_to_hold
 from cvnotes.calibration.one_view import calibrate_one_view
 from cvnotes.calibration.pose import pose_from_view
@@ -9,8 +15,6 @@ from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, rese
 from cvnotes.calibration.prediction import prediction_std, std_with_view
 from cvnotes.calibration.refinement import LENSES
 from cvnotes.calibration.result import Calibration
-from cvnotes.calibration.which_board import choose_board, left_out_rms_of_boards
-from cvnotes.calibration.which_lens import choose_lens, left_out_rms
 from cvnotes.calibration.zhang import (
     constraints,
     extrinsics,

@@ -6,12 +6,16 @@ from typing import Any
 from cvnotes.base import DegenerateError, image_size
 from cvnotes.calibration.board_shape import is_board, released, shape_found, with_shape
 from cvnotes.calibration.correspondences import Correspondences, PointSets
+from cvnotes.calibration.left_out import (
+    choose_board,
+    choose_lens,
+    left_out_rms,
+    left_out_rms_of_boards,
+)
 from cvnotes.calibration.refinement import Problem, refuse_too_few
 from cvnotes.calibration.reliability import Evidence, judge
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.starts import Search
-from cvnotes.calibration.which_board import choose_board, left_out_rms_of_boards
-from cvnotes.calibration.which_lens import choose_lens, left_out_rms
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
 from cvnotes.homography import dlt
 

@@ -11,8 +11,8 @@ import numpy as np
 from cvnotes.base import Array, text_table
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.coverage import covered_cells
+from cvnotes.calibration.left_out import AtLeast
 from cvnotes.calibration.reliability import widest_angle
-from cvnotes.calibration.which_lens import AtLeast
 from cvnotes.commands.examined import Examined
 from cvnotes.commands.ownership import TABLE_HEADER
 from cvnotes.files import Rejected
