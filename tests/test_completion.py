@@ -1,5 +1,6 @@
-"""Shells complete the command: what bash offers is asked of bash itself."""
+"""Shells complete the command: what they offer is asked of themselves."""
 
+import os
 import shutil
 import subprocess
 
@@ -52,11 +53,47 @@ def test_every_shell_knows_every_command_and_option(shell, capsys):
         assert word in script
 
 
-@pytest.mark.parametrize("shell", ["zsh", "fish"])
-def test_what_is_printed_is_of_that_shells_grammar(shell, capsys, tmp_path):
-    if shutil.which(shell) is None:
-        pytest.skip(f"{shell} is not here")
-    main(["completion", shell])
+ASKED = [
+    ("cvnotes cal", ["calibrate"]),
+    ("cvnotes --v", ["--version"]),
+    ("cvnotes target --pap", ["--paper"]),
+    ("cvnotes target --paper ", ["A3", "A4", "Letter"]),
+    ("cvnotes undistort photos --cam", ["--camera"]),
+]
+
+
+@pytest.mark.skipif(shutil.which("fish") is None, reason="fish is not here")
+@pytest.mark.parametrize(("line", "words"), ASKED)
+def test_fish_offers_them(line, words, capsys, tmp_path):
+    main(["completion", "fish"])
     (tmp_path / "script").write_text(capsys.readouterr().out)
-    done = subprocess.run([shell, "-n", tmp_path / "script"], capture_output=True, check=False)
-    assert (done.returncode, done.stderr) == (0, b"")
+    run = ["fish", "--no-config", "-c", f"source script; complete -C '{line}'"]
+    done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert [offer.split("\t")[0] for offer in done.stdout.splitlines()] == words
+    assert done.stderr == ""
+
+
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not here")
+def test_zsh_offers_them(capsys, tmp_path):
+    """On a terminal, as only there zsh completes: one word is written out, several are listed."""
+    pexpect = pytest.importorskip("pexpect")
+    main(["completion", "zsh"])
+    (tmp_path / "script").write_text(capsys.readouterr().out)
+    variables = {"TERM": "dumb", "PATH": os.environ["PATH"], "HOME": str(tmp_path)}
+    shell = pexpect.spawn(
+        "zsh", ["-f", "-i"], env=variables, cwd=tmp_path, encoding="utf-8", timeout=60
+    )
+    try:
+        shell.sendline(
+            "PS1='ready> '; autoload -Uz compinit; compinit -u -D; source ./script; echo read in"
+        )
+        shell.expect("read in\r\n.*ready> ")
+        for line, words in ASKED:
+            shell.send(line + "\t")
+            if len(words) == 1:
+                shell.expect_exact(f"{line[: line.rindex(' ')]} {words[0]} ")
+            else:
+                shell.expect(" +".join(words))
+            shell.sendcontrol("u")  # away with the line
+    finally:
+        shell.close(force=True)

@@ -102,15 +102,15 @@ def _fish(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) ->
                 values = (
                     f" -a {_quoted(' '.join(map(str, action.choices)))}" if action.choices else ""
                 )
-                takes = "" if action.nargs == 0 else " -r"
+                takes = "" if action.nargs == 0 else " -x" if action.choices else " -r"
                 flag = f"{kind} {option.lstrip('-')}"
                 lines.append(f"complete -c cvnotes -n '{when}' {flag}{takes}{values} -d {said}")
         if words := _choices(actions):
             lines.append(f"complete -c cvnotes -f -n '{when}' -a {_quoted(' '.join(words))}")
+    before = "complete -c cvnotes -f -n __fish_use_subcommand"
+    lines += [f"{before} -s h -l help", f"{before} -s V -l version"]
     for name, said in helps.items():
-        lines.append(
-            f"complete -c cvnotes -f -n __fish_use_subcommand -a {name} -d {_quoted(said)}"
-        )
+        lines.append(f"{before} -a {name} -d {_quoted(said)}")
     return "\n".join(lines)
 
 
