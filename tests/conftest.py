@@ -19,7 +19,9 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
-from cvnotes.calibration import extrinsics, radial_distortion
+from cvnotes.calibration import Calibration, extrinsics, radial_distortion
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.refinement import Problem, minimise
 from cvnotes.calibration.starts import Search
 from cvnotes.camera import pose, rotation_from_vector
 from cvnotes.homography import dlt
@@ -232,3 +234,21 @@ def first_start():
         return start.state(A, G, start.distortion(radial_distortion, A, G))
 
     return state_of
+
+
+@pytest.fixture(scope="session")
+def refined():
+    """Give a function that calibrates by step 5 alone, from a camera and poses near the answer.
+
+    Where a test repeats calibrations whose search for a start is not what it asks about.
+    """
+
+    def calibration(board_points, image_points, near, poses, *, lens="k1 k2", skew=False):
+        data = Correspondences.of(board_points, image_points)
+        problem = Problem.of(data, near.size, lens, skew)
+        start = problem.state(near, data.pose_in_scaled_units(np.asarray(poses)))
+        found = Calibration.of(problem, data, minimise(problem, start))
+        assert found.converged
+        return found
+
+    return calibration
