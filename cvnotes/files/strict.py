@@ -8,6 +8,8 @@ nesting, more than 16 megabytes) is refused with a sentence that names the key o
 import json
 import re
 from collections.abc import Iterator
+from itertools import chain
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +20,7 @@ from cvnotes.files.writing import PathLike, printable
 MAX_BYTES = 16_000_000  # a calibration of 6,000 photographs with all corners, in JSON
 MAX_YAML_BYTES = 100_000  # a camera; and YAML is read slowly
 MAX_DEPTH = 16
+_DEEPER = {"[": 1, "{": 1, "]": -1, "}": -1}
 
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?")
 _YAML = "tag:yaml.org,2002:"
@@ -69,7 +72,7 @@ def parse_json(text: str, file: str) -> Entry:
     # A text takes all it can and gives nothing back (*+), so that one without an end costs as
     # much as one with: looking for its end anew from each escaped quote would take minutes.
     for token in re.finditer(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', text, re.DOTALL):
-        depth += {"[": 1, "{": 1, "]": -1, "}": -1}.get(token[0], 0)
+        depth += _DEEPER.get(token[0], 0)
         if depth > MAX_DEPTH:
             raise FileError(
                 f"{file}: nested more than {MAX_DEPTH} deep at character {token.start()}"
@@ -89,12 +92,25 @@ def parse_json(text: str, file: str) -> Entry:
         where = f"line {error.lineno}, column {error.colno}"
         raise FileError(f"{file}: not valid JSON at {where}: {error.msg}") from error
     root = Entry(value, file)
-    _refuse_infinite(root)
+    if not _is_finite(value):
+        _refuse_infinite(root)
     return root
 
 
+def _is_finite(value: Any) -> bool:
+    """Tell whether no number is NaN, Infinity or beyond float64: of large files in a tenth."""
+    level = [value]
+    while level:
+        numbers = [x for x in level if type(x) is float]
+        if not all(map(isfinite, numbers)):
+            return False
+        inner = [x.values() if type(x) is dict else x for x in level if type(x) in (dict, list)]
+        level = list(chain.from_iterable(inner))
+    return True
+
+
 def _refuse_infinite(entry: Entry) -> None:
-    """Find NaN, Infinity and numbers beyond float64 wherever they hide, also in unused keys."""
+    """Name the first such number, wherever it hides, also in unused keys."""
     if isinstance(entry.value, float):
         entry.number()
     elif isinstance(entry.value, list):
