@@ -82,6 +82,49 @@ def same_chances():
         cv2.setRNGSeed(0)
 
 
+@pytest.fixture(scope="module")
+def worked_out_once():
+    """Let a file of tests work out each exercise's cases once for a seed, and each mistake on them.
+
+    A check does so again for every answer; a thousand answers to one exercise need not.
+    """
+    # Both functions are asked by other modules, which look for them where they are.
+    from cvnotes.learn import EXERCISES
+    from cvnotes.learn.checker import foreseen
+    from cvnotes.learn.checker.exercise import Exercise
+
+    every = [*EXERCISES.values(), *(part for e in EXERCISES.values() for part in e.parts)]
+    ways = {way for e in every for m in e.misconceptions for way in (m.gives, *m.variants)}
+    solve, give = Exercise.solved_cases, foreseen.what_it_gives
+    cases, known, given = {}, {}, {}
+
+    def solved_cases(exercise, seed):
+        if (exercise, seed) not in cases:
+            solved = list(solve(exercise, seed))
+            for args in (case.args for case in solved):
+                known[id(args)] = args
+                for array in (x for x in args if isinstance(x, np.ndarray)):
+                    array.flags.writeable = False
+            cases[exercise, seed] = solved
+        return iter(cases[exercise, seed])
+
+    def inputs(exercise, seed):
+        return [case.args for case in exercise.solved_cases(seed)]
+
+    def what_it_gives(function, args):
+        if function not in ways or known.get(id(args)) is not args:
+            return give(function, args)
+        if (function, id(args)) not in given:
+            given[function, id(args)] = give(function, args)
+        return given[function, id(args)]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Exercise, "solved_cases", solved_cases)
+        patch.setattr(Exercise, "inputs", inputs)
+        patch.setattr(foreseen, "what_it_gives", what_it_gives)
+        yield
+
+
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory):
     """Give what lets one worker of a run in at a time, into a folder that all of them share."""

@@ -14,13 +14,15 @@ from test_exercises_second import solution_of
 
 from cvnotes.base import CvnotesError
 from cvnotes.learn import EXERCISES, check, exercises, hint, progress, solution
+from cvnotes.learn.checker import foreseen
 from cvnotes.learn.checker.equality import up_to_scale
-from cvnotes.learn.checker.foreseen import what_it_gives
 from cvnotes.learn.checker.judge import judge
 from cvnotes.learn.checker.literals import as_code
 from cvnotes.learn.checker.outcome import Outcome, outcome_of
 from cvnotes.learn.checker.sandbox import ask
 from cvnotes.learn.exercises import notebook_of
+
+pytestmark = pytest.mark.usefixtures("worked_out_once")
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -46,7 +48,7 @@ def _tried(exercise, function, seed):
     for part in exercise.parts:
         outcomes += _tried(part, part.reference, seed)
     for args in exercise.inputs(seed):
-        given = what_it_gives(function, args)
+        given = foreseen.what_it_gives(function, args)
         outcomes.append(Outcome("raised") if given is None else outcome_of(given))
     return outcomes
 
@@ -94,6 +96,15 @@ def test_what_an_exercise_practises_is_named_by_its_number():
 def test_the_stub_takes_what_the_cases_give(exercise):
     for args in exercise.inputs(0):
         assert len(args) == len(exercise.arguments) or exercise.answer != "function"
+
+
+@EACH
+def test_the_cases_of_a_seed_are_the_same_each_time(exercise):
+    for seed in (0, 2024):
+        one, other = ([c.args for c in exercise.cases(np.random.default_rng(seed))] for _ in "ab")
+        assert len(one) == len(other) > 0
+        for a, b in zip(one, other, strict=True):
+            assert all(np.array_equal(x, y) for x, y in zip(a, b, strict=True))
 
 
 @EACH

@@ -15,6 +15,8 @@ from cvnotes.learn.checker.attempt import attempt
 from cvnotes.learn.checker.judge import judge
 from cvnotes.learn.checker.outcome import Outcome
 
+pytestmark = pytest.mark.usefixtures("worked_out_once")
+
 SEED = 2024
 CASES = {name: list(e.solved_cases(SEED)) for name, e in EXERCISES.items() if not e.parts}
 FILLED_WITH = {

@@ -24,7 +24,7 @@ from cvnotes.learn import EXERCISES
 from cvnotes.learn.checker import in_process
 from cvnotes.learn.checker.judge import judge
 
-pytestmark = pytest.mark.once
+pytestmark = [pytest.mark.once, pytest.mark.usefixtures("worked_out_once")]
 
 WANTED = int(os.environ.get("CVNOTES_MUTATIONS", "90"))
 SEED = 2024

@@ -12,6 +12,8 @@ from cvnotes.learn.checker.attempt import attempt
 from cvnotes.learn.checker.equality import up_to_scale
 from cvnotes.learn.checker.judge import judge
 
+pytestmark = pytest.mark.usefixtures("worked_out_once")
+
 FUNCTIONS = [name for name, e in EXERCISES.items() if e.answer == "function"]
 # All 60 with CVNOTES_SEEDS=60; the usual run tries some.
 SEEDS = range(int(os.environ.get("CVNOTES_SEEDS", "3")))
