@@ -197,10 +197,10 @@ MISBEHAVING = {
 }
 
 DEADLY = {
-    "endless loop": (endless, "stopped after 1 seconds"),
-    "swallows interrupts": (stubborn, "stopped after 1 seconds"),
-    "sleeps": (sleepy, "stopped after 1 seconds"),
-    "regular expression": (backtracking, "stopped after 1 seconds"),
+    "endless loop": (endless, "stopped after 0.3 seconds"),
+    "swallows interrupts": (stubborn, "stopped after 0.3 seconds"),
+    "sleeps": (sleepy, "stopped after 0.3 seconds"),
+    "regular expression": (backtracking, "stopped after 0.3 seconds"),
     "crash": (crash, "SIGSEGV"),
     "too deep": (too_deep, "Your function"),
     "kills itself": (kill, "SIGKILL"),
@@ -228,7 +228,7 @@ def test_a_misbehaving_function_gets_an_exact_sentence(function, words):
 @pytest.mark.parametrize(("function", "words"), DEADLY.values(), ids=list(DEADLY))
 def test_what_would_take_the_notebook_along_ends_in_a_sentence(function, words, monkeypatch):
     # Only who would never end waits until the time is over, however busy the machine is.
-    seconds = 1.0 if function in ENDLESS else 60.0
+    seconds = 0.3 if function in ENDLESS else 60.0
     monkeypatch.setattr(run, "__kwdefaults__", {"seconds": seconds, "megabytes": 300})
     started = processor_time()
     report = check("drop", function)

@@ -401,6 +401,7 @@ def source_of(name):
     return inspect.getsource(answer) if callable(answer) else f"my_{name} = {answer!r}"
 
 
+@pytest.mark.usefixtures("worked_out_once")
 @pytest.mark.parametrize("name", EXERCISES)
 def test_a_second_differently_written_answer_passes(name):
     for seed in (2024, 7, 8):

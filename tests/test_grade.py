@@ -153,6 +153,7 @@ def test_a_misconception_costs_exactly_its_exercise(tmp_path):
 
 
 @pytest.mark.once
+@pytest.mark.usefixtures("worked_out_once")
 def test_courses_answered_by_misconceptions_alone_score_nothing_and_each_is_named(tmp_path):
     """Copy after copy hands in each exercise's next misconception, as long as it has one."""
     having, met = {}, set()

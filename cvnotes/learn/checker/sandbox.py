@@ -84,9 +84,12 @@ def can_fork() -> bool:
     """
     if not hasattr(os, "fork") or sys.platform in ("emscripten", "wasi", "win32"):
         return False
+    # What is imported now, each child has.
+    import resource  # noqa: F401
+
     import numpy as np
 
-    attempt(np.linalg.norm, (np.eye(3),))  # what is imported now, each child has
+    attempt(np.linalg.norm, (np.eye(3),))
     [outcome] = _run_in_child(np.linalg.norm, [(np.eye(3),)], 5.0, MEGABYTES)
     return outcome.kind == "numbers"
 
