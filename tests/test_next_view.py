@@ -14,6 +14,7 @@ from cvnotes.calibration import (
     std_with_view,
     where_to_hold,
 )
+from cvnotes.calibration.prediction import _covariance_at, pixel_jacobian
 from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import course, good_views
 from cvnotes.targets import Chessboard
@@ -72,33 +73,30 @@ def test_no_other_view_is_better():
     assert distances(view.G) > 0.8 * nearest - 1e-6  # the lens is not focused any nearer
     others = others[distances(others) > 0.8 * nearest]
     assert len(others) > 50
-    least = min(prediction_rms_with(found, G) for G in others)
-    assert view.after == pytest.approx(prediction_rms_with(found, view.G), rel=1e-6)
-    assert view.after < least
+    made = Calibration(**found.as_mapping() | {"covariance": covariance_with(found, view.G)})
+    after = np.sqrt(np.mean(prediction_std(made, PIXELS) ** 2))
+    assert view.after == pytest.approx(after, rel=1e-6)
+    J = pixel_jacobian(found, PIXELS)  # the same for all of them
+    N = np.einsum("mci,mcj->ij", J, J) / len(PIXELS)
+    assert after == pytest.approx(np.sqrt(np.trace(N @ covariance_with(found, view.G))))
+    assert after < min(np.sqrt(np.trace(N @ covariance_with(found, G))) for G in others)
 
 
 def distances(G):
     return np.linalg.norm(G[..., :3, :3] @ BOARD.points.mean(0) + G[..., :3, 3], axis=-1)
 
 
-def prediction_rms_with(found, G):
-    """How far off a pixel may be with a view more: from a calibration of all its equations."""
-    from cvnotes.calibration.prediction import _covariance_at
-
-    poses = [*found.poses]
-    before, after = (_covariance_at(found, p) for p in (poses, [*poses, G]))
-    C = found.covariance * np.sqrt(np.outer(np.diag(after), np.diag(after)))
-    variance = np.diag(found.covariance)[0] / np.diag(before)[0]
-    C = variance * after
-    made = Calibration(**found.as_mapping() | {"covariance": C})
-    return np.sqrt(np.mean(prediction_std(made, PIXELS) ** 2))
+def covariance_with(found, G):
+    """The camera's covariance with a view more: from a calibration of all its equations."""
+    before, after = (_covariance_at(found, p) for p in (found.poses, [*found.poses, G]))
+    return found.covariance[0, 0] / before[0, 0] * after
 
 
 @pytest.mark.slow
 def test_cameras_become_better_than_with_views_at_random():
-    """30 cameras from 3 views and 3 more, proposed or at random: how far off pixels truly are."""
+    """15 cameras from 3 views and 3 more, proposed or at random: how far off pixels truly are."""
     errors = []
-    for seed in range(30):
+    for seed in range(15):  # the quotient scatters by 0.075 around 0.59
         rng = np.random.default_rng(seed)
         proposed = seen(good_views(BOARD, CAMERA, 3, rng=rng), rng)
         at_random = np.concatenate([proposed, seen(good_views(BOARD, CAMERA, 3, rng=rng), rng)])
