@@ -1,5 +1,6 @@
 """Stereo calibration: two cameras and how they stand to each other, from pairs of pictures."""
 
+from contextlib import suppress
 from dataclasses import replace
 from warnings import catch_warnings, simplefilter, warn
 
@@ -239,6 +240,9 @@ def _start(
 
 def _poses(data: Correspondences, camera: Camera) -> Array:
     """Poses (n_views, 4, 4) of the scaled boards from the homographies of the ideal points."""
+    if data.seen is None and not np.isnan(ideal := camera.ideal(data.m)).any():
+        with suppress(DegenerateError):  # one by one, so that the message names the view
+            return extrinsics(np.eye(3), dlt.inside(data.W[..., :2], ideal))
     H = []
     for i, (W, m) in enumerate(data.views()):
         xy = camera.ideal(m)
