@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -33,6 +34,15 @@ settings.register_profile(
 )
 settings.load_profile("course")
 
+# What one process has compiled, the others read: hundreds of them are started.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+# With it, each that imports nbformat waits a second for the grammar of addresses in any letters.
+sys.modules.setdefault("rfc3987_syntax", None)
+# A shell has what it runs in the background ignore Ctrl-C, and with it all that tests start there.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, lambda *_: None)
+
 ROOT = Path(__file__).resolve().parents[1]
 # The files that take longest, and begin: what is short fills the gaps at the end. Where two use
 # one site, another stands between, so that no worker waits while the other builds it.
@@ -61,18 +71,18 @@ def processor_time():
     return sum(os.times()[:4])
 
 
+def wait_for(condition, seconds=300.0):
+    """Wait until something holds that comes by itself, the later the busier the machine is."""
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
 def pytest_collection_modifyitems(items):
     """Let long files begin."""
     order = {f"test_{name}.py": place for place, name in enumerate(LONG)}
     items.sort(key=lambda item: order.get(item.path.name, len(order)))
-
-
-def busyness():
-    """Give how many times longer than on a quiet machine things take now: 1 or more."""
-    began, worked = time.monotonic(), time.process_time()
-    while time.process_time() - worked < 0.1:
-        sum(range(1000))
-    return max(1.0, (time.monotonic() - began) / (time.process_time() - worked))
 
 
 @pytest.fixture(autouse=True)

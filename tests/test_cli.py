@@ -10,13 +10,13 @@ import stat
 import subprocess
 import sys
 import textwrap
-import time
 import urllib.request
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import wait_for
 from PIL import Image
 
 from cvnotes import __version__
@@ -416,7 +416,7 @@ PATCHES = {
     import cvnotes.commands.examined as examined
     def slow(*_):
         Path("ready").touch()
-        time.sleep(60)
+        time.sleep(900)
     examined._examine = slow
     """,
     "while writing": """
@@ -427,7 +427,7 @@ PATCHES = {
     def slow(handle):
         synced(handle)
         Path("ready").touch()
-        time.sleep(60)
+        time.sleep(900)
     os.fsync = slow
     """,
 }
@@ -447,12 +447,9 @@ def test_an_interruption_leaves_the_old_result_whole_and_nothing_else(photos, tm
         [sys.executable, "-c", code, *map(str, arguments)],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    for _ in range(600):
-        if (tmp_path / "ready").exists():
-            break
-        time.sleep(0.05)
+    wait_for((tmp_path / "ready").exists)
     running.send_signal(kind)
-    _, error = running.communicate(timeout=30)
+    _, error = running.communicate(timeout=300)
     assert running.returncode == 130
     assert "Traceback" not in error
     assert old.read_text() == "old, made by cvnotes calibrate"
@@ -668,6 +665,12 @@ def test_a_browser_is_started_with_a_page_of_its_owners_and_not_with_the_token(t
     assert not path.exists()
 
 
+def ended(server):
+    """Leave nothing of a server to the tests that follow, whatever has gone wrong."""
+    server.terminate()  # which it answers by ending JupyterLab too
+    server.communicate()
+
+
 @posix
 @pytest.mark.slow
 def test_the_token_is_in_no_command_line(notebooks, tmp_path):
@@ -684,17 +687,15 @@ def test_the_token_is_in_no_command_line(notebooks, tmp_path):
     try:
         said = [running.stdout.readline() for _ in range(5)]
         token = re.search(r"token=(\S+)", said[2])[1]
-        for _ in range(200):
-            if (tmp_path / "called").exists():
-                break
-            time.sleep(0.05)
+        wait_for((tmp_path / "called").exists)
         given = (tmp_path / "called").read_text()
         assert token not in given
         page = Path(urllib.request.url2pathname(given.strip().removeprefix("file://")))
         assert token in page.read_text()
-    finally:
         running.send_signal(signal.SIGINT)
-        running.communicate(timeout=30)
+        running.communicate(timeout=300)
+    finally:
+        ended(running)
     assert not page.exists()
 
 
@@ -714,19 +715,19 @@ def test_the_course_is_served_on_loopback_until_ctrl_c(notebooks, tmp_path):
         assert address, said
         assert address[1] == lab.START
         assert "No browser could be opened here" in said[4]
-        with urllib.request.urlopen(address[0], timeout=20) as page:
+        with urllib.request.urlopen(address[0], timeout=300) as page:
             html = page.read().decode()
         assert "JupyterLab" in html
         assert "apputils-extension:announcements" in html  # switched off: it asks about news
         with pytest.raises(urllib.error.HTTPError, match="403"):
             urllib.request.urlopen(f"{address[0].split('/lab')[0]}/api/contents?token=guess")
         running.send_signal(signal.SIGINT)
-        assert "The course is closed" in running.communicate(timeout=30)[0]
+        assert "The course is closed" in running.communicate(timeout=300)[0]
         assert running.returncode == 130
         with pytest.raises(urllib.error.URLError):
             urllib.request.urlopen(address[0], timeout=5)
     finally:
-        running.terminate()
+        ended(running)
 
 
 @pytest.mark.slow

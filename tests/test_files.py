@@ -714,7 +714,7 @@ def test_the_next_run_clears_away_what_a_killed_one_left_but_not_what_is_being_w
         from cvnotes.files import write_whole
         def stuck(handle):
             print("here", flush=True)
-            time.sleep(60)
+            time.sleep(900)
         os.fsync = stuck
         write_whole({Path(sys.argv[1]): b"x"})
     """

@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from conftest import busyness, processor_time
+from conftest import processor_time, wait_for
 from test_exercises_second import source_of
 from test_grade import IMPORTS, answered, command, graded, notebook
 
@@ -48,13 +48,6 @@ def started(folder, out, *options, scratch=None):
     )
 
 
-def wait_for(condition, seconds=60.0):
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
-
-
 def finished_rows(path, n):
     """Wait until a table has so many rows."""
     wait_for(lambda: path.exists() and len(path.read_text("utf-8-sig").splitlines()) > n)
@@ -74,7 +67,7 @@ def sleepers(word):
 
 SLEEPER = (
     "import subprocess, sys\n"
-    "subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(99)', {!r}],"
+    "subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(999)', {!r}],"
     " start_new_session=True)"
 )
 
@@ -84,7 +77,7 @@ def test_an_interruption_leaves_rows_and_nothing_else(tmp_path):
     for name in "abc":
         notebook(tmp_path / "in" / name / "01_x.ipynb", *LIFT)
     word = f"left-{tmp_path.name}-{os.getpid()}"
-    slow = "import time\ntime.sleep(60)"
+    slow = "import time\ntime.sleep(900)"
     for name in ("slow1", "slow2"):
         notebook(tmp_path / "in" / name / "01_x.ipynb", *LIFT, SLEEPER.format(word), slow)
     scratch, out = tmp_path / "scratch", tmp_path / "marks.csv"
@@ -92,10 +85,8 @@ def test_an_interruption_leaves_rows_and_nothing_else(tmp_path):
     process = started(tmp_path / "in", out, "--jobs", "3", scratch=scratch)
     finished_rows(out, 3)
     wait_for(lambda: len(sleepers(word)) == 2)
-    before = time.monotonic()
     process.send_signal(signal.SIGINT)
-    said, reason = process.communicate(timeout=30 * busyness())
-    assert time.monotonic() - before < 3 * busyness()
+    said, reason = process.communicate(timeout=300)  # not the 900 seconds that notebooks sleep
     assert process.returncode == 130
     assert reason.count("\n") == 1
     assert "3 finished rows of 5 are kept, --resume" in reason
@@ -110,7 +101,7 @@ def test_a_killed_grader_leaves_its_rows_and_no_process(tmp_path):
     for name in ("a", "z"):
         notebook(tmp_path / "in" / name / "01_x.ipynb", *LIFT)
     word = f"left-{tmp_path.name}-{os.getpid()}"
-    slow = "import time\ntime.sleep(60)"
+    slow = "import time\ntime.sleep(900)"
     notebook(tmp_path / "in" / "m" / "01_x.ipynb", SLEEPER.format(word), slow)
     scratch, out = tmp_path / "scratch", tmp_path / "marks.csv"
     scratch.mkdir()
@@ -119,7 +110,7 @@ def test_a_killed_grader_leaves_its_rows_and_no_process(tmp_path):
     wait_for(lambda: sleepers(word))
     process.kill()
     process.communicate()
-    wait_for(lambda: not sleepers(word), 5 * busyness())
+    wait_for(lambda: not sleepers(word))
     assert [row["student"] for row in rows(out)] == ["a"]
     [line] = (tmp_path / "marks.rows.jsonl").read_text().splitlines()
     assert json.loads(line)["mark"]["reports"]["lift"]["verdict"] == "right"
@@ -337,7 +328,7 @@ def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(
     word = f"left-{tmp_path.name}-{os.getpid()}"
     cells = [*LIFT, SLEEPER.format(word)]
     if interrupted:
-        cells += ["import time\ntime.sleep(60)"]
+        cells += ["import time\ntime.sleep(900)"]
     run = subprocess.Popen
 
     def unsealed(arguments, **options):
@@ -349,16 +340,14 @@ def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(
 
     monkeypatch.setattr(process.subprocess, "Popen", unsealed)
     with ThreadPoolExecutor() as pool:
-        future = pool.submit(process.run_notebook, cells, 7, Limits(60.0), (), word)
+        future = pool.submit(process.run_notebook, cells, 7, Limits(900.0), (), word)
         if interrupted:
             wait_for(lambda: sleepers(word))
-            before = time.monotonic()
             process.stop(word)
         ran = future.result()
     assert bool(ran.finished) != interrupted
     if interrupted:
         assert ran.ended == process.INTERRUPTED
-        assert time.monotonic() - before < 3 * busyness()
     assert not ran.sealed
     assert sleepers(word) == []
 

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import warnings
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -57,16 +58,25 @@ def _name(path):
     return ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__")
 
 
+@cache
+def _nodes(path):
+    return tuple(ast.walk(ast.parse(path.read_text())))
+
+
+@cache
 def _imports(path):
     """All that a module imports, inside functions too, except for type checkers only."""
-    tree = ast.parse(path.read_text())
+    return tuple(_imported(path))
+
+
+def _imported(path):
     skipped = {
         id(child)
-        for node in ast.walk(tree)
+        for node in _nodes(path)
         if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
         for child in ast.walk(node)
     }
-    for node in ast.walk(tree):
+    for node in _nodes(path):
         if id(node) in skipped:
             continue
         if isinstance(node, ast.Import):
@@ -78,6 +88,7 @@ def _imports(path):
             yield from known or [base]
 
 
+@cache
 def _is_module(dotted):
     path = PACKAGE.parent / Path(*dotted.split("."))
     return path.with_suffix(".py").exists() or (path / "__init__.py").exists()
@@ -167,7 +178,7 @@ def test_nothing_in_the_package_prints_or_seeds_globally():
     for path in FILES:
         if _name(path).startswith("commands") or "__main__" in path.read_text():
             continue  # whoever is run on a command line speaks to it
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in _nodes(path):
             if isinstance(node, ast.Call):
                 assert ast.unparse(node.func) not in ("print", "np.random.seed"), path.name
 
@@ -177,7 +188,7 @@ def test_places_in_arrays_are_of_the_machines_own_size():
     found = [
         _name(path)
         for path in FILES
-        for node in ast.walk(ast.parse(path.read_text()))
+        for node in _nodes(path)
         if isinstance(node, ast.Attribute) and node.attr == "int64"
     ]
     assert not found
@@ -188,7 +199,7 @@ def test_one_place_alone_relies_on_numpy_to_refuse_a_singular_matrix():
     found = {
         _name(path)
         for path in FILES
-        for node in ast.walk(ast.parse(path.read_text()))
+        for node in _nodes(path)
         if isinstance(node, ast.ExceptHandler)
         and node.type is not None
         and ast.unparse(node.type) == "np.linalg.LinAlgError"

@@ -413,7 +413,7 @@ class Terminal:
             os.chdir(folder)
             os.execv(sys.executable, [sys.executable, "-c", code, *arguments])
 
-    def read(self, pattern, seconds=60):
+    def read(self, pattern, seconds=300):
         """Read until a pattern has come, or the end; gives the match."""
         end = time.monotonic() + seconds
         while not (found := re.search(pattern, self.said)) and time.monotonic() < end:
@@ -429,7 +429,7 @@ class Terminal:
 
     def ends(self):
         """Read to the end; gives the exit code."""
-        self.read("a text that never comes", seconds=60)
+        self.read("a text that never comes", seconds=300)
         code = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
         os.close(self.keyboard)
         return code

@@ -284,9 +284,9 @@ def write_letters(path: Path) -> None:
     from fontTools import subset
 
     logging.getLogger("fontTools").setLevel(logging.WARNING)
-    options: Any = subset.Options(drop_tables=["FFTM"])  # type: ignore[no-untyped-call]
+    options: Any = subset.Options(drop_tables=["FFTM"])
     font = subset.load_font(str(lettering.font_file()), options)
-    letters: Any = subset.Subsetter(options)  # type: ignore[no-untyped-call]
+    letters: Any = subset.Subsetter(options)
     letters.populate(text=lettering.LETTERS)
     letters.subset(font)
     font.recalcTimestamp = False  # the same bytes each time

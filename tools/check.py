@@ -6,10 +6,12 @@
 Notebooks, browser, site, the grader and long experiments are left to ``python3 start.py test``.
 """
 
+import os
 import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -19,6 +21,14 @@ TOOLS = {
     "format": ["ruff", "format", "--check"],
 }
 TESTS = ["pytest", "-m", "not slow and not sampling", "-q", "tests", "cvnotes"]
+
+
+def without_notebooks() -> list[str]:
+    """Give the options by which pytest, and what it starts, loads nothing that runs notebooks."""
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    options = settings["tool"]["pytest"]["ini_options"]["addopts"]
+    kept = " ".join(option for option in options if not option.startswith("--nbval"))
+    return ["-p", "xdist", "-p", "hypothesispytest", "-o", f"addopts={kept}"]
 
 
 def main(arguments: list[str]) -> int:
@@ -32,7 +42,9 @@ def main(arguments: list[str]) -> int:
                 command = [sys.executable, "-m", *tool]
                 running[name] = subprocess.Popen(command, cwd=ROOT, stdout=stream, stderr=stream)
         try:
-            tests = subprocess.run([sys.executable, "-m", *TESTS, *arguments], cwd=ROOT).returncode
+            command = [sys.executable, "-m", *TESTS, *without_notebooks(), *arguments]
+            asked_for = os.environ | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+            tests = subprocess.run(command, cwd=ROOT, env=asked_for).returncode
             for name, process in running.items():
                 if process.wait() != 0:
                     failed.append(name)
