@@ -304,7 +304,8 @@ def test_a_right_answer_is_shown_at_the_scale_and_sign_of_the_students():
         return H + [[0.01, 0, 0], [0, 0, 0], [0, 0, 0]]
 
     report = check("dlt", my_dlt)
-    assert report.misconception is None
+    assert report.misconception == "a few numbers"
+    assert "All is right but what stands in [0, 0]." in report.message
     assert np.abs(report.yours - report.wanted).max() < 0.02
     assert "A factor of the whole answer does not matter" in repr(report)
     assert "A factor of the whole" not in repr(check("lift", lambda x, k: x * 1.1))

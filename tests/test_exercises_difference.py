@@ -60,6 +60,12 @@ def said(name, change):
         ("same_points", lambda x: x * [0, *[1] * (len(x) - 1)], "False too often", "[0]"),
         ("drop", lambda x: np.where(x == x[0, 0], np.nan, x), "NaN too often", "is right, but"),
         ("camera_centre", lambda x: 0 * x + [1, 2, 3], "one answer for all", "to every input"),
+        ("rectifying_rotation", lambda R: R * [[2], [3], [-4]], "each row up to a factor",
+         "Each row of your answer is right up to a factor of its own."),
+        ("distort", lambda x: x * [2, -3], "each column up to a factor", "Each column of your"),
+        ("normaliser", lambda N: -3 * N * [[1, 1, 1], [1, 1, 5], [1, 1, 1]], "a few numbers",
+         "All is right but what stands in [1, 2]."),
+        ("horizon", lambda x: 7 * x * [1, -1, 1], "signs of some numbers", "wrong in [1]"),
     ],
 )  # fmt: skip
 def test_what_differs_is_measured_and_named(name, change, called, sentence):
@@ -91,6 +97,11 @@ def test_what_differs_is_measured_and_named(name, change, called, sentence):
         ("radial_fit", lambda x: np.append(x, 7.5), "columns too many", "among them"),
         ("same_points", lambda x: np.column_stack([x] * 3), "an axis too many", "axis=1"),
         ("how_far", lambda x: [x, x], "several numbers for one", "a single number"),
+        ("distort", lambda x: 7 * x[:, 0], "one number for each row", "one number came back for"),
+        ("distort", lambda x: 7 * x[0], "one of several", "only one of several points came back"),
+        ("v_ij", lambda x: 7 * x[2:], "numbers too few", "numbers are missing."),
+        ("distort", lambda x: 7 * x[2:], "rows too few", "rows are missing."),
+        ("distort", lambda x: 7 * np.hstack([x, x]), "columns too many", "too many in each row."),
     ],
 )  # fmt: skip
 def test_another_shape_is_named_by_what_was_done(name, change, called, sentence):
@@ -131,10 +142,24 @@ def right(name):
         ("undistortion_map", lambda A, k, size: right("undistortion_map")(
             np.diag([A[1, 1], A[0, 0], 1]) + A * [[0, 0, 1], [0, 0, 1], [0, 0, 0]], k, size),
          "A with α_u and α_v exchanged"),
+        ("project", lambda A, R, T, W: right("project")(
+            np.diag([A[0, 0], A[0, 0], 1]) + A * [[0, 0, 1], [0, 0, 1], [0, 0, 0]], R, T, W),
+         "A with one focal length and no skew"),
+        ("distort", lambda xy, k, p: right("distort")(xy, k[[0, 0]], p), "k[0] for k[1]"),
+        ("camera_centre", lambda R, T: right("camera_centre")(R, T[[0, 2, 2]]), "T[2] for T[1]"),
+        ("form_image", lambda A, R, T, k, W: _by_hand(A, (W - T) @ R.T, k),
+         "T taken for the camera's position"),
     ],
 )  # fmt: skip
 def test_a_right_function_of_a_slipped_input_is_named_by_the_slip(name, function, called):
     assert tried(name, function).misconception == called
+
+
+def _by_hand(A, M, k):
+    """Form an image of points that may lie behind the camera."""
+    xy = M[:, :2] / M[:, 2:]
+    r2 = (xy**2).sum(axis=1, keepdims=True)
+    return xy * (1 + k[0] * r2 + k[1] * r2**2) @ A[:2, :2].T + A[:2, 2]
 
 
 def test_a_slip_in_some_cases_alone_is_none_of_the_input():

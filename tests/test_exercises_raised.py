@@ -87,7 +87,7 @@ RAISES = [
     (lambda: np.stack([row, np.ones(2)]), "shapes that do not fit", "joined"),
     (lambda: np.array([[1, 2], [3]]), "shapes that do not fit", "joined"),
     (lambda: np.linalg.det(wide), "shapes that do not fit", "a square matrix"),
-    (lambda: np.linalg.inv(row), "shapes that do not fit", "a square matrix"),
+    (lambda: np.linalg.inv(row), "shapes that do not fit", "with rows and columns"),
     (lambda: np.cross(np.ones(4), np.ones(4)), "shapes that do not fit", "vectors of three"),
     (lambda: np.zeros(3, 3), "a shape without brackets", "np.zeros((3, 3))"),
     (_two_names_for_three_values, "unpacked into too few or too many names", "as many names"),

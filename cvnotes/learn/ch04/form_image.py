@@ -124,7 +124,7 @@ FORM = Exercise(
         Misconception(
             "T taken for the camera's position",
             "You used R (W − T), as if the camera stood at T: M = R W + T.",
-            lambda A, R, T, k, W: form_image(A, R, -R @ T, k, W),
+            lambda A, R, T, k, W: _pixels(A, _bent(R, -R @ T, k, W)),
         ),
         Misconception(
             "no pixels yet",

@@ -38,6 +38,13 @@ class _Wrong:
         """Whether a factor, and so the size of a number, is free."""
         return self.same is up_to_scale
 
+    @property
+    def aligned(self) -> tuple[Pair, ...]:
+        """The pairs without a factor that is free: that which most entries have in common."""
+        if not self.up_to_scale:
+            return self.pairs
+        return tuple((answer / _usual_factor(answer, right), right) for answer, right in self.pairs)
+
     def right_after(self, change: Change) -> bool:
         """Tell whether one change makes all answers right."""
         return all(self.same(change(a), right, self.bound) for a, right in self.pairs)
@@ -72,6 +79,7 @@ def difference(answer: WrongAnswer) -> Found | None:
     tellers = (_not_finite, *_TELLERS) if alike else (_not_finite,)
     # Pictures of several sizes have no entries and columns in common.
     tellers += (_some,) * (len({right.shape[-1:] for _, right in pairs}) == 1)
+    tellers += (_each_up_to_a_factor,) * alike
     try:
         found = next((one for tell in tellers if (one := tell(wrong))), None)
     except (np.linalg.LinAlgError, CvnotesError):
@@ -231,6 +239,35 @@ def _common_factor(answer: Array, right: Array) -> float | None:
     return f if np.allclose(a, f * r, rtol=0, atol=1e-6 * np.abs(a).max()) else None
 
 
+def _usual_factor(answer: Array, right: Array) -> float:
+    """Give the factor between two arrays that more than half of their entries have, if one has."""
+    there = np.abs(right) > 1e-9 * np.abs(right).max(initial=0.0)
+    factors = np.sort(answer[there] / right[there])
+    f = float(factors[len(factors) // 2]) if factors.size else 1.0
+    return f if np.isfinite(f) and f != 0 else 1.0
+
+
+def _each_up_to_a_factor(wrong: _Wrong) -> Found | None:
+    """Tell whether each row, or each column, has a factor of its own."""
+    if wrong.up_to_scale or any(a.ndim != 2 or min(a.shape) < 1 for a, _ in wrong.pairs):
+        return None
+    for what, turn in (("row", np.asarray), ("column", np.transpose)):
+        lines = [turn(x) for pair in wrong.pairs for x in pair]
+        if max(map(len, lines)) < 2 or min(x.shape[1] for x in lines) < 2:
+            continue
+        factors = [
+            _common_factor(a, r)
+            for answer, right in zip(lines[::2], lines[1::2], strict=True)
+            for a, r in zip(answer, right, strict=True)
+        ]
+        if all(factors):  # neither none nor 0
+            return Found(
+                f"each {what} up to a factor",
+                f"Each {what} of your answer is right up to a factor of its own.",
+            )
+    return None
+
+
 def _few_counts(wrong: _Wrong) -> bool:
     """Tell whether these are one or two counts, which may differ by 1, or by half, by chance."""
     return len(wrong.pairs) < 3 and all(r.ndim == 0 and r == np.round(r) for _, r in wrong.pairs)
@@ -357,9 +394,9 @@ _NO_NUMBERS: tuple[tuple[str, str, Change, Change], ...] = (
 def _entries(wrong: _Wrong) -> str:
     """Name the entries that are wrong in every case, if it is a few."""
     shapes = {right.shape for _, right in wrong.pairs}
-    if wrong.up_to_scale or len(shapes) != 1 or shapes == {()}:
+    if len(shapes) != 1 or shapes == {()}:
         return ""
-    places = np.any([_wrong_entries(*pair) for pair in wrong.pairs], axis=0)
+    places = np.any([_wrong_entries(*pair) for pair in wrong.aligned], axis=0)
     if places.ndim > 2 or not 0 < places.sum() <= max(1, places.size // 3):
         return ""
     named = [_index(i) for i in np.argwhere(places)]
@@ -379,8 +416,8 @@ def _index(i: npt.NDArray[np.intp]) -> str:
 
 def _some(wrong: _Wrong) -> Found | None:
     """Say which entries, columns or rows are wrong, if the others are right."""
-    pairs = wrong.pairs
-    if wrong.up_to_scale or any(a.ndim == 0 for a, _ in pairs):
+    pairs = wrong.aligned
+    if any(a.ndim == 0 for a, _ in pairs):
         return None
     places = [_wrong_entries(*pair) for pair in pairs]
     if few := _entries(wrong):
@@ -419,4 +456,5 @@ _CERTAIN_ALONE = {name for name, *_ in _NO_NUMBERS} | {"NaN"}
 VAGUE = {
     "a few numbers", "one column", "the first row", "the last row", "another order",
     "rows in another order", "signs of some numbers", "up to a factor",
+    "each row up to a factor", "each column up to a factor",
 }  # fmt: skip

@@ -7,7 +7,7 @@ has a name in every exercise, without being foreseen for any.
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from itertools import combinations
+from itertools import combinations, permutations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -114,6 +114,8 @@ def _changes(name: str, arg: Any) -> Iterator[Slip]:
         yield from _VECTOR
         if arg.size <= 6:
             yield from (_one_left_out(j) for j in range(arg.size))
+        if arg.size <= 3:
+            yield from (_one_for_another(i, j) for i, j in permutations(range(arg.size), 2))
     elif isinstance(arg, np.ndarray) and arg.ndim == 2:
         if name == "A":
             yield from _INTRINSICS
@@ -262,6 +264,16 @@ def _one_left_out(j: int) -> Slip:
     return Slip(f"{{0}}[{j}] left out", f"left out {{0}}[{j}], or took 0 for it", change)
 
 
+def _one_for_another(i: int, j: int) -> Slip:
+    def change(x: Array) -> Array:
+        x = np.array(x)
+        x[j] = x[i]
+        return x
+
+    what = f"{{0}}[{i}] in place of {{0}}[{j}]"
+    return Slip(f"{{0}}[{i}] for {{0}}[{j}]", f"used {what}", change)
+
+
 def _put(**places: Callable[[Array], float]) -> Callable[[Array], Array]:
     """Make a change of A that puts something in the place of its entries, by their names."""
     where = {"au": (0, 0), "av": (1, 1), "u0": (0, 2), "v0": (1, 2), "skew": (0, 1)}
@@ -283,6 +295,11 @@ _INTRINSICS = (
         "{0} with the mean focal length",
         "used the mean of α_u and α_v for both",
         _put(au=lambda A: (A[0, 0] + A[1, 1]) / 2, av=lambda A: (A[0, 0] + A[1, 1]) / 2),
+    ),
+    Slip(
+        "{0} with one focal length and no skew",
+        "used α_u for both focal lengths, and left out the skew",
+        _put(av=lambda A: A[0, 0], skew=lambda _: 0.0),
     ),
     Slip(
         "{0} with α_u and α_v exchanged",

@@ -129,7 +129,7 @@ def _unusable(exercise: Exercise, case: Case, outcome: Outcome) -> str:
     if outcome.value is None:
         return trouble(outcome, exercise)
     if outcome.value.shape != case.right.shape:
-        return other_shape(exercise, outcome.value, case)
+        return other_shape(outcome.value, case.right)
     if outcome.changed:
         name = exercise.arguments[outcome.changed[0]]
         return (

@@ -88,9 +88,14 @@ RAISED: tuple[tuple[str, str, str], ...] = (
         "What is joined into one array must have the same length in all other axes.",
     ),
     (
-        r"must be square|must be (at least )?two-dimensional",
+        r"must be square",
         "shapes that do not fit",
         "This function needs a square matrix.",
+    ),
+    (
+        r"must be (at least )?two-dimensional",
+        "shapes that do not fit",
+        "This function needs a matrix, an array with rows and columns.",
     ),
     (
         r"cross product",

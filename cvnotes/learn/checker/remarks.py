@@ -45,58 +45,9 @@ def trouble(outcome: Outcome, exercise: Exercise) -> str:
             return f"The answer is {outcome.words}; an array of numbers is wanted."
 
 
-def other_shape(exercise: Exercise, answer: Array, case: Case) -> str:
-    """Say what is probably wrong with a shape; what can be measured is measured."""
-    given, wanted = answer.shape, case.right.shape
-    text = f"The answer has shape {given}, wanted is {wanted}"
-    many = one_for_each_point(exercise, case)
-    if wanted == ():
-        return f"{text}: a single number is wanted."
-    if given == wanted[::-1]:
-        rows = (
-            "points are rows here" if many and len(wanted) == 2 else "an array has its rows first"
-        )
-        return f"{text}: {rows}, so transpose it."
-    if given == () and np.isnan(answer):
-        return f"{text}: one NaN for all of it; np.full({wanted}, np.nan) has the shape."
-    if np.prod(given) == np.prod(wanted):
-        return f"{text}: the values may be right, the arrangement is not; see np.reshape."
-    if given and wanted and given[:-1] == wanted[:-1] and given[-1] == wanted[-1] + 1:
-        if np.allclose(_dropped(answer), case.right, equal_nan=True):
-            return f"{text}: still homogeneous? Divide by the last coordinate, then leave it out."
-        return f"{text}: one number too many{' in each row' * (len(wanted) > 1)}."
-    if given == () and many:
-        return f"{text}: one number for all of them; is an axis=1 missing?"
-    if given == ():
-        return f"{text}: one number alone."
-    if given == wanted[1:] and many:
-        return f"{text}: only one of several points came back; is the return inside of the loop?"
-    if given == wanted[1:]:
-        return f"{text}: only one row came back; is the return inside of a loop?"
-    if len(given) == 1 and len(wanted) > 1:
-        return f"{text}: all in one row; np.append and np.concatenate take an axis."
-    if len(given) > len(wanted) and given[: len(wanted)] == wanted:
-        last = "axis=1" if len(given) == 2 else "axis=-1"
-        return f"{text}: an axis too many; is a sum, a norm or an all along {last} missing?"
-    if len(given) == len(wanted) and given[1:] == wanted[1:]:
-        rows = "row" if len(wanted) > 1 else "number"
-        fewer = given[0] < wanted[0]
-        return f"{text}: {rows}s are missing." if fewer else f"{text}: there are {rows}s too many."
-    return f"{text}."
-
-
-def one_for_each_point(exercise: Exercise, case: Case) -> bool:
-    """Tell whether an answer has a row for each of n points that were given."""
-    wanted = case.right.shape
-    return "(n" in exercise.task and any(
-        isinstance(x, np.ndarray) and x.shape[:1] == wanted[:1] != () for x in case.args
-    )
-
-
-def _dropped(answer: Array) -> Array:
-    """Divide by the last coordinate, and leave it out."""
-    with np.errstate(all="ignore"):
-        return np.asarray(answer[..., :-1] / answer[..., -1:])
+def other_shape(answer: Array, right: Array) -> str:
+    """Say that an answer has another shape than a right one."""
+    return f"The answer has shape {answer.shape}, wanted is {right.shape}."
 
 
 def remarks(exercise: Exercise, outcome: Outcome, case: Case, wanted: Array) -> tuple[str, ...]:

@@ -8,18 +8,19 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.checker.equality import Same, tolerance
 from cvnotes.learn.checker.exercise import Case, Exercise
-from cvnotes.learn.checker.remarks import one_for_each_point, other_shape
+from cvnotes.learn.checker.remarks import other_shape
 from cvnotes.learn.checker.wrong_answer import Found, WrongAnswer
 
 # What is compared: two arrays of one shape, equal or not.
 Equal = Callable[[Array, Array], bool]
+Shape = tuple[int, ...]
 
 
 def misshapen(answer: WrongAnswer) -> Found | None:
     """Name what is wrong with the shape of the answers.
 
     If the numbers are right and only laid out otherwise, in every case, it says how; if they are
-    not, what the shape alone tells. Nothing is said if an answer is missing or the shapes are
+    not, what the shapes alone tell. Nothing is said if an answer is missing or the shapes are
     right.
     """
     exercise = answer.exercise
@@ -28,21 +29,34 @@ def misshapen(answer: WrongAnswer) -> Found | None:
     if not others or len(pairs) < len(answer.tried):
         return None
     here, case, _ = others[0]
-    head = f"The answer has shape {here.shape}, wanted is {case.right.shape}"
+    head = other_shape(here, case.right).rstrip(".")
+    rows = _one_for_each_point(exercise, case)
     # Elsewhere a row of numbers may happen to have the shape that is asked.
     rest_is_right = all(
         value.shape != c.right.shape or exercise.same(value, c.right, bound)
         for value, c, bound in pairs
     )
     if rest_is_right and exercise.answer == "function":  # a value would be given away
-        rows = one_for_each_point(exercise, case)
         for name, sentence, fits in _LAYOUTS:
             if all(_fits(fits, value, c.right, exercise.same, bound) for value, c, bound in others):
                 said = _ABOUT_POINTS.get(name, (name, sentence)) if rows else (name, sentence)
                 return Found(said[0], f"{head}: {said[1]}")
-    names = {_by_shape(exercise, value, c) for value, c, _ in others}
-    name = names.pop() if len(names) == 1 else "another shape"
-    return Found(name, other_shape(exercise, here, case))
+    if all(np.ndim(value) == 0 and np.isnan(value) for value, *_ in others):
+        name, sentence = _ONE_NAN
+        return Found(name, f"{head}: {sentence.format(wanted=case.right.shape)}")
+    for name, sentence, of_shape in _SHAPES:
+        if all(of_shape(value.shape, c.right.shape) for value, c, _ in others):
+            said = _ABOUT_POINTS.get(name, (name, sentence)) if rows else (name, sentence)
+            return Found(said[0], f"{head}: {said[1]}")
+    return Found("another shape", f"{head}.")
+
+
+def _one_for_each_point(exercise: Exercise, case: Case) -> bool:
+    """Tell whether an answer has a row for each of n points that were given."""
+    wanted = case.right.shape
+    return "(n" in exercise.task and any(
+        isinstance(x, np.ndarray) and x.shape[:1] == wanted[:1] != () for x in case.args
+    )
 
 
 def _fits(
@@ -238,6 +252,77 @@ _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
         _whole(np.min),
     ),
 )
+_ONE_NAN = ("one NaN for all", "one NaN for all of it; np.full({wanted}, np.nan) has the shape.")
+# What shapes alone tell, (given, wanted), whatever the numbers are.
+_SHAPES: tuple[tuple[str, str, Callable[[Shape, Shape], bool]], ...] = (
+    ("several numbers for one", "a single number is wanted.", lambda _, wanted: wanted == ()),
+    (
+        "rows and columns exchanged",
+        "an array has its rows first, so transpose it.",
+        lambda given, wanted: given == wanted[::-1],
+    ),
+    ("one number for all", "one number alone.", lambda given, _: given == ()),
+    (
+        "one of several",
+        "only one row came back; is the return inside of a loop?",
+        lambda given, wanted: given == wanted[1:],
+    ),
+    (
+        "one number for each row",
+        "one number came back for each row; each number of it is wanted.",
+        lambda given, wanted: len(wanted) > 1 and given == wanted[:1],
+    ),
+    (
+        "all in one row",
+        "the values may be right, the arrangement is not; see np.reshape.",
+        lambda given, wanted: len(given) == 1 < len(wanted) and np.prod(given) == np.prod(wanted),
+    ),
+    (
+        "all in one row",
+        "all in one row; np.append and np.concatenate take an axis.",
+        lambda given, wanted: len(given) == 1 < len(wanted),
+    ),
+    (
+        "arranged otherwise",
+        "the values may be right, the arrangement is not; see np.reshape.",
+        lambda given, wanted: bool(np.prod(given) == np.prod(wanted)),
+    ),
+    (
+        "an axis too many",
+        "an axis too many; is a sum, a norm or an all along axis=-1 missing?",
+        lambda given, wanted: len(given) > len(wanted) and given[: len(wanted)] == wanted,
+    ),
+    (
+        "numbers too few",
+        "numbers are missing.",
+        lambda given, wanted: len(given) == len(wanted) == 1 and given < wanted,
+    ),
+    (
+        "numbers too many",
+        "there are numbers too many.",
+        lambda given, wanted: len(given) == len(wanted) == 1 and given > wanted,
+    ),
+    (
+        "rows too few",
+        "rows are missing.",
+        lambda given, wanted: _alike_but(given, wanted, 0) and given[0] < wanted[0],
+    ),
+    (
+        "rows too many",
+        "there are rows too many.",
+        lambda given, wanted: _alike_but(given, wanted, 0) and given[0] > wanted[0],
+    ),
+    (
+        "columns too few",
+        "numbers are missing in each row.",
+        lambda given, wanted: _alike_but(given, wanted, -1) and given[-1] < wanted[-1],
+    ),
+    (
+        "columns too many",
+        "there are numbers too many in each row.",
+        lambda given, wanted: _alike_but(given, wanted, -1) and given[-1] > wanted[-1],
+    ),
+)
 # The same, where an answer has a row for each of n points.
 _ABOUT_POINTS = {
     "transposed": (
@@ -248,30 +333,27 @@ _ABOUT_POINTS = {
         "columns left out",
         "what is there is right, but each row lacks a number.",
     ),
+    "rows and columns exchanged": (
+        "points as columns",
+        "points are rows here, so transpose it.",
+    ),
+    "one number for all": (
+        "one number for all",
+        "one number for all of them; is an axis=1 missing?",
+    ),
+    "one of several": (
+        "one of several",
+        "only one of several points came back; is the return inside of the loop?",
+    ),
+    "an axis too many": (
+        "an axis too many",
+        "an axis too many; is a sum, a norm or an all along axis=1 missing?",
+    ),
 }
 
 
-def _by_shape(exercise: Exercise, answer: Array, case: Case) -> str:
-    """Name a shape, whatever the numbers are."""
-    given, wanted = answer.shape, case.right.shape
-    many = one_for_each_point(exercise, case)
-    if wanted == ():
-        return "several numbers for one"
-    if given == wanted[::-1]:
-        return "points as columns" if many and len(wanted) == 2 else "rows and columns exchanged"
-    if given == ():
-        return "one NaN for all" if np.isnan(answer) else "one number for all"
-    if given == wanted[1:]:
-        return "one of several"
-    if len(given) == 1 and len(wanted) > 1:
-        return "all in one row"
-    if answer.size == case.right.size:
-        return "arranged otherwise"
-    if len(given) > len(wanted) and given[: len(wanted)] == wanted:
-        return "an axis too many"
-    if len(given) == len(wanted):
-        if given[1:] == wanted[1:]:
-            return "rows too few" if given[0] < wanted[0] else "rows too many"
-        if given[:-1] == wanted[:-1]:
-            return "columns too few" if given[-1] < wanted[-1] else "columns too many"
-    return "another shape"
+def _alike_but(given: Shape, wanted: Shape, axis: int) -> bool:
+    """Tell whether two shapes differ along one axis alone, the first or the last."""
+    if len(given) != len(wanted) or not wanted:
+        return False
+    return given[1:] == wanted[1:] if axis == 0 else given[:-1] == wanted[:-1]
