@@ -49,15 +49,16 @@ def patches(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Mas
     >>> patches(np.arange(12.0).reshape(3, 4), np.array([[2.2, 0.9]]), 1)[2]
     array([[ 1.,  2.,  3.,  5.,  6.,  7.,  9., 10., 11.]])
     """
-    height, width = image.shape
-    step = np.arange(-half, half + 1)
-    du, dv = np.meshgrid(step, step)
+    n, k, (height, width) = len(m), 2 * half + 1, image.shape
     far = max(height, width) + half + 1.0  # how far outside does not matter
     centre = np.rint(np.clip(m, -far, far + max(height, width))).astype(np.intp)
-    u, v = centre[:, :1] + du.ravel(), centre[:, 1:] + dv.ravel()
-    inside = (u >= 0) & (u < width) & (v >= 0) & (v < height)
+    u, v = (centre + np.arange(-half, half + 1)[:, None, None]).T  # of each column and each row
+    u, v = u[:, None], v[:, :, None]
     grey = image[v.clip(0, height - 1), u.clip(0, width - 1)]
-    return u.astype(np.float64), v.astype(np.float64), grey.astype(np.float64), inside
+    inside = ((v >= 0) & (v < height)) & ((u >= 0) & (u < width))
+    every = [np.broadcast_to(x, (n, k, k)).reshape(n, -1) for x in (u, v, grey)]
+    u, v, grey = (x.astype(np.float64) for x in every)
+    return u, v, grey, inside.reshape(n, -1)
 
 
 def patch_gradients(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Array]:
@@ -74,10 +75,11 @@ def patch_gradients(image: Image, m: Array, half: int) -> tuple[Array, Array, Ar
     square = (len(m), 2 * half + 3, 2 * half + 3)
     u, v, pixels, within = patches(image, m, half + 1)
     grey, inside = pixels.reshape(square), within.reshape(square)
-    known_u = inside[:, 1:-1, 2:] & inside[:, 1:-1, :-2]
-    known_v = inside[:, 2:, 1:-1] & inside[:, :-2, 1:-1]
-    g_u = np.where(known_u, grey[:, 1:-1, 2:] - grey[:, 1:-1, :-2], 0.0) / 2
-    g_v = np.where(known_v, grey[:, 2:, 1:-1] - grey[:, :-2, 1:-1], 0.0) / 2
+    g_u = (grey[:, 1:-1, 2:] - grey[:, 1:-1, :-2]) / 2
+    g_v = (grey[:, 2:, 1:-1] - grey[:, :-2, 1:-1]) / 2
+    if not inside.all():
+        g_u[~(inside[:, 1:-1, 2:] & inside[:, 1:-1, :-2])] = 0.0
+        g_v[~(inside[:, 2:, 1:-1] & inside[:, :-2, 1:-1])] = 0.0
     flat = (len(m), (2 * half + 1) ** 2)
     u, v = (x.reshape(square)[:, 1:-1, 1:-1].reshape(flat) for x in (u, v))
     return u, v, g_u.reshape(flat), g_v.reshape(flat)
