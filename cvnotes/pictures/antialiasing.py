@@ -7,7 +7,7 @@ rays stay close together.
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array
+from cvnotes.base import Array, chunks
 from cvnotes.camera import Camera, px_from_xy
 
 Mask = npt.NDArray[np.bool_]
@@ -95,12 +95,18 @@ def changing(signature: Array) -> Mask:
     >>> changing(np.array([[0, 0, 0, 3, 3.2]])[..., None])
     array([[False, False,  True,  True, False]])
     """
-    high = low = np.pad(signature, ((1, 1), (1, 1), (0, 0)), mode="edge")
-    for axis in (0, 1):
-        cuts = [(slice(None),) * axis + (slice(i, i - 2 or None),) for i in range(3)]
-        high = np.maximum(np.maximum(high[cuts[0]], high[cuts[1]]), high[cuts[2]])
-        low = np.minimum(np.minimum(low[cuts[0]], low[cuts[1]]), low[cuts[2]])
-    return np.asarray((high - low >= 1).any(axis=-1))
+    framed = np.pad(np.moveaxis(signature, -1, 0), ((0, 0), (1, 1), (1, 1)), mode="edge")
+    mask = np.zeros(signature.shape[:2], dtype=bool)
+    for rows in chunks(len(mask), TILE):  # so few that the processor has them at hand
+        for part in framed[:, rows.start : rows.stop + 2]:
+            mask[rows] |= _of_nine(np.maximum, part) - _of_nine(np.minimum, part) >= 1
+    return mask
+
+
+def _of_nine(choose: np.ufunc, x: Array) -> Array:
+    """Choose among each inner value of x and its 8 neighbours."""
+    of_three = choose(choose(x[:-2], x[1:-1]), x[2:])
+    return np.asarray(choose(choose(of_three[:, :-2], of_three[:, 1:-1]), of_three[:, 2:]))
 
 
 def crossed(camera: Camera, ends: Array, xy: Array) -> Mask:

@@ -44,7 +44,7 @@ def box_lines(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> Array:
 
 
 def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -> Any:
-    """Draw the chain from the world to the picture, each step a panel; gives their axes.
+    """Draw the chain from the world to the picture, its steps between panels; gives their axes.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     >>> camera = Camera(intrinsics(800, 800, 320, 240))
     >>> axes = draw_formation(camera, [[[0, 0, 5], [1, 0, 5]]], [1, 0, 5])
     >>> [ax.get_title() for ax in axes][-1]
-    '4. the picture'
+    'the picture'
     """
     lines, point = points(lines, "lines", 3), one_point(point, "point", 3)
     if lines.ndim != 3 or lines.size == 0:
@@ -88,15 +88,15 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     steps = ["G", "÷ z", "lens", "A"]
     if not bent:
         del names[3], steps[2]
-    for i, (ax, name) in enumerate(zip(axes, names, strict=True), start=1):
-        ax.set_title(f"{i}. {name}", fontsize=FONT)
+    for ax, name in zip(axes, names, strict=True):
+        ax.set_title(name, fontsize=FONT)
         ax.tick_params(labelsize=FONT - 2)
         ax.locator_params(nbins=4)
         ax.set_box_aspect(1)
         ax.set_aspect("equal", adjustable="datalim")
-    for step, ax in zip(steps, axes, strict=False):
+    for i, (step, ax) in enumerate(zip(steps, axes, strict=False), start=1):
         ax.annotate(
-            f"— {step} →", (1.12, 0), (0, -44), xycoords="axes fraction",
+            f"{i}. {step} →", (1.12, 0), (0, -44), xycoords="axes fraction",
             textcoords="offset points", ha="center", color=ESTIMATED, fontsize=FONT + 2,
             fontweight="bold", annotation_clip=False,
         )  # fmt: skip

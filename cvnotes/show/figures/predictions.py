@@ -9,7 +9,7 @@ import numpy.typing as npt
 from cvnotes.base import CvnotesError, ShapeError, number, points
 from cvnotes.calibration import Calibration, prediction_std
 from cvnotes.show.guards import calibrated, count, eight_bits, pictures
-from cvnotes.show.style import ESTIMATED, as_picture, picture_axes
+from cvnotes.show.style import ESTIMATED, FONT, as_picture, picture_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +21,7 @@ def draw_prediction_error(
     ax: "Axes | None" = None,
     between: tuple[float, float] | None = None,
 ) -> "Axes":
-    """Draw, over the picture, how far off the image of a fixed ray may be, as lines of equal px.
+    """Draw, over the picture, how far off the image of a fixed ray may be, in colours and lines.
 
     Parameters
     ----------
@@ -43,9 +43,13 @@ def draw_prediction_error(
         if not least < most:
             raise CvnotesError(f"between: expected (least, most), got ({least:g}, {most:g})")
     levels = np.linspace(least, most, 13)
-    ax.contourf(u, v, std, levels=levels, cmap="cividis", extend="both")
+    colours = ax.contourf(u, v, std, levels=levels, cmap="cividis", extend="both")
     lines = ax.contour(u, v, std, levels=levels[1::2], colors="white", linewidths=0.8)
-    ax.clabel(lines, fmt=lambda x: f"{x:.2g} px", fontsize=8)
+    bar = ax.figure.colorbar(colours, ax=ax, shrink=0.7, pad=0.02, aspect=16, format="%.2g")
+    bar.add_lines(lines)
+    bar.set_ticks(list(levels[1::2]))
+    bar.set_label("σ (px)", fontsize=FONT - 1)
+    bar.ax.tick_params(labelsize=FONT - 1)
     for m in calibration.image_points:
         ax.plot(*m.T, ".", color=ESTIMATED, ms=1.5)
     ax.set_title("standard deviation of a predicted pixel")
