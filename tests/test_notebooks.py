@@ -69,6 +69,14 @@ def test_code_cells_are_short_and_follow_prose(path):
 
 
 @each_notebook
+def test_the_first_code_says_what_a_reader_without_the_course_runs_before_it(path):
+    first = _code(_read(path))[0].source.splitlines()[0]
+    command = re.search(r"%pip install (.*)", first)
+    assert first.startswith("# ")
+    assert command[1].split() == ["-q", "cvnotes"]
+
+
+@each_notebook
 def test_imports_are_a_few_lines_where_they_are_needed(path):
     imported, used = {}, {}
     for i, cell in enumerate(_code(_read(path))):
