@@ -56,9 +56,9 @@ def patches(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Mas
     u, v = u[:, None], v[:, :, None]
     grey = image[v.clip(0, height - 1), u.clip(0, width - 1)]
     inside = ((v >= 0) & (v < height)) & ((u >= 0) & (u < width))
-    every = [np.broadcast_to(x, (n, k, k)).reshape(n, -1) for x in (u, v, grey)]
+    every = [np.broadcast_to(x, (n, k, k)).reshape(n, k * k) for x in (u, v, grey)]
     u, v, grey = (x.astype(np.float64) for x in every)
-    return u, v, grey, inside.reshape(n, -1)
+    return u, v, grey, inside.reshape(n, k * k)
 
 
 def patch_gradients(image: Image, m: Array, half: int) -> tuple[Array, Array, Array, Array]:
