@@ -12,7 +12,6 @@ from cvnotes.homography import design_matrix, dlt, geometric_error, normaliser
 from cvnotes.learn.cases.cameras import (
     SQUARE,
     SQUARE_SEEN,
-    affine_fit,
     board_grid,
     plane_image,
     some_homography,
@@ -20,7 +19,7 @@ from cvnotes.learn.cases.cameras import (
     some_pose,
 )
 from cvnotes.learn.ch06.design_matrix import DESIGN
-from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
+from cvnotes.learn.ch06.slips import AFFINE, EXCHANGED, TRANSPOSED, V_BEFORE_U, Y_BEFORE_X
 from cvnotes.learn.checker.equality import up_to_scale, up_to_signs
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply
@@ -182,17 +181,8 @@ DLT = Exercise(
             lambda src, dst: _undone_wrongly(src, dst, order=False),
         ),
         V_BEFORE_U,
-        Misconception(
-            "x and y exchanged",
-            "Your H expects (y, x): its first column belongs to x.",
-            lambda src, dst: dlt(src[:, ::-1], dst),
-        ),
-        Misconception(
-            "an affine map",
-            "The last row of your H is (0, 0, 1): an affine map keeps parallels parallel, which a "
-            "camera does not.",
-            affine_fit,
-        ),
+        Y_BEFORE_X,
+        AFFINE,
         Misconception(
             "full_matrices=False",
             (

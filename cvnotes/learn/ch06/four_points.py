@@ -15,8 +15,8 @@ from cvnotes.learn.cases.cameras import (
     some_homography,
 )
 from cvnotes.learn.ch06.dlt import OF_THE_ROWS
-from cvnotes.learn.ch06.slips import EXCHANGED, TRANSPOSED, V_BEFORE_U
-from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.ch06.slips import AFFINE, EXCHANGED, TRANSPOSED, V_BEFORE_U, Y_BEFORE_X
+from cvnotes.learn.checker.equality import up_to_scale, up_to_signs
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
 
@@ -122,19 +122,11 @@ FOUR = Exercise(
                 "singular vectors, so take Vt[-1]."
             ),
             lambda src, dst: np.linalg.svd(design_matrix(src, dst))[2][:, -1].reshape(3, 3),
+            same=up_to_signs,
         ),
-        Misconception(
-            "x and y exchanged",
-            "Your H expects (y, x): its first column belongs to x.",
-            lambda src, dst: dlt(src[:, ::-1], dst),
-        ),
+        Y_BEFORE_X,
         *OF_THE_ROWS,
-        Misconception(
-            "an affine map",
-            "The last row of your H is (0, 0, 1): an affine map keeps parallels parallel, which a "
-            "camera does not.",
-            lambda src, dst: affine_fit(src, dst),
-        ),
+        AFFINE,
         Misconception(
             "the largest singular value",
             "You took the first singular vector, for which ‖D h‖ is largest. The null vector "

@@ -22,7 +22,11 @@ def _seen(W: Array) -> tuple[float, float]:
 
 
 _ALPHA, _BASELINE, _U0 = 640.0, 800.0, 319.5
-_D = float(np.subtract(*_seen(nearest_edge())))
+
+
+@cache
+def _disparity() -> float:
+    return float(np.subtract(*_seen(nearest_edge())))
 
 
 @cache
@@ -75,17 +79,17 @@ FAR = Exercise(
         Misconception(
             "baseline left out",
             "α / d is the depth in baselines: multiply by 800 mm.",
-            lambda: _ALPHA / _D,
+            lambda: _ALPHA / _disparity(),
         ),
         Misconception(
             "focal length left out",
             "b / d has the unit mm per pixel: multiply by α, which is in pixels.",
-            lambda: _BASELINE / _D,
+            lambda: _BASELINE / _disparity(),
         ),
         Misconception(
             "the disparity itself",
             "That is the disparity in pixels. The depth is α b divided by it.",
-            lambda: _D,
+            lambda: _disparity(),
         ),
         Misconception(
             "one picture only",
@@ -157,22 +161,22 @@ FAR = Exercise(
         Misconception(
             "upside down",
             "You turned the fraction around: larger disparities mean nearer points, Z = α b / d.",
-            lambda: _D * _BASELINE / _ALPHA,
+            lambda: _disparity() * _BASELINE / _ALPHA,
             variants=(
-                lambda: _D * _ALPHA / _BASELINE,
-                lambda: _D / (_ALPHA * _BASELINE),
+                lambda: _disparity() * _ALPHA / _BASELINE,
+                lambda: _disparity() / (_ALPHA * _BASELINE),
             ),
         ),
         Misconception(
             "proportional to the disparity",
             "You multiplied by the disparity: divide, Z = α b / d.",
-            lambda: _ALPHA * _BASELINE * _D,
+            lambda: _ALPHA * _BASELINE * _disparity(),
         ),
         Misconception(
             "α and b divided",
             "You divided α by b, or b by α: Z = α b / d.",
-            lambda: _BASELINE / (_ALPHA * _D),
-            variants=(lambda: _ALPHA / (_BASELINE * _D),),
+            lambda: _BASELINE / (_ALPHA * _disparity()),
+            variants=(lambda: _ALPHA / (_BASELINE * _disparity()),),
         ),
         Misconception(
             "twice the baseline",

@@ -15,7 +15,6 @@ from cvnotes.learn.ch07.extrinsics import EXTRINSICS
 from cvnotes.learn.ch07.radial_fit import RADIAL
 from cvnotes.learn.checker.exercise import Case, Exercise, Property, Rng
 from cvnotes.learn.personal import personal_camera
-from cvnotes.pictures.course import real_corners
 
 _PARTS = (DLT, B_FROM_VIEWS, A_FROM_B, EXTRINSICS, RADIAL)
 Step = Callable[..., Any]
@@ -88,6 +87,8 @@ def by_the_library(board_points: Array, image_points: Array, size: tuple[int, in
 
 def _real_board(_: Rng) -> list[Case]:
     """Take the corners of real photographs; where the data are not at hand, those of a student."""
+    from cvnotes.pictures.course import real_corners
+
     try:
         real = real_corners()
     except FileError:
