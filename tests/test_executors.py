@@ -98,27 +98,42 @@ def workers_find_us(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", path)
 
 
-@each_executor
-def test_a_study_and_a_class_are_the_same_everywhere(make, tmp_path):
-    notebook(tmp_path / "ada" / "01_a.ipynb", IMPORTS, *answered("lift", source_of("lift")))
-    notebook(tmp_path / "bob" / "01_a.ipynb", IMPORTS, "check('drop', lambda x_h: x_h[:, :-1])")
-    notebook(tmp_path / "eve" / "01_a.ipynb", "import os; os._exit(3)")
-    (tmp_path / "sam").mkdir()
-    (tmp_path / "sam" / "01_a.ipynb").write_text("no notebook")
-    k, f = LENSES["barrel"]
-    with make() as executor:
-        found = cvnotes.study(partial(one, n=4, k=k, f=f), range(4), executor)
-        n, marks = grade_folder(tmp_path, executor=executor)
-        table = marks_csv(sorted(marks, key=lambda mark: mark.name))
-    assert found == cvnotes.study(partial(one, n=4, k=k, f=f), range(4))
-    assert n == 4
-    plain = sorted(grade_folder(tmp_path)[1], key=lambda mark: mark.name)
-    assert table == marks_csv(plain)
+@pytest.fixture(scope="module")
+def class_of_four(tmp_path_factory):
+    """Give four notebooks, of which one ends its process and one is none, and their marks."""
+    folder = tmp_path_factory.mktemp("class")
+    notebook(folder / "ada" / "01_a.ipynb", IMPORTS, *answered("lift", source_of("lift")))
+    notebook(folder / "bob" / "01_a.ipynb", IMPORTS, "check('drop', lambda x_h: x_h[:, :-1])")
+    notebook(folder / "eve" / "01_a.ipynb", "import os; os._exit(3)")
+    (folder / "sam").mkdir()
+    (folder / "sam" / "01_a.ipynb").write_text("no notebook")
+    return folder, in_order(grade_folder(folder)[1])
+
+
+def in_order(marks):
+    return sorted(marks, key=lambda mark: mark.name)
+
+
+def test_a_class_is_graded_one_after_the_other_unless_asked(class_of_four):
+    _, plain = class_of_four
     assert [mark.points for mark in plain] == [1, 0, 0, 0]
     assert [mark.remark for mark in plain][2:] == [
         "ended its process (exit code 3)",
         "not a notebook",
     ]
+
+
+@each_executor
+def test_a_study_and_a_class_are_the_same_everywhere(make, class_of_four):
+    folder, plain = class_of_four
+    k, f = LENSES["barrel"]
+    with make() as executor:
+        found = cvnotes.study(partial(one, n=4, k=k, f=f), range(4), executor)
+        n, marks = grade_folder(folder, executor=executor)
+        table = marks_csv(in_order(marks))
+    assert found == cvnotes.study(partial(one, n=4, k=k, f=f), range(4))
+    assert n == 4
+    assert table == marks_csv(plain)
 
 
 @pytest.mark.skipif(not find_spec("distributed"), reason="Dask is not installed")
