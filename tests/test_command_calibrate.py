@@ -60,15 +60,28 @@ grows = pytest.mark.skipif(
 
 
 @pytest.mark.slow
-def test_mirrored_beside_upright_photographs_are_named(tmp_path, capsys):
+def test_mirrored_beside_upright_photographs_are_named_and_left_out(tmp_path, capsys):
     folder = tmp_path / "photos"
     folder.mkdir()
     for i, photo in enumerate(course.photos()):
         photo = photo[:, ::-1] if i in (3, 8) else photo
         Image.fromarray(np.ascontiguousarray(photo)).save(folder / f"{i:02}.png")
-    calibrate(folder, "9x6", 25, "--lens", "k1 k2", "--board-shape", "flat")
+    options = ("--lens", "k1 k2", "--board-shape", "flat")
+    code, _ = calibrate(folder, "9x6", 25, *options)
     said = capsys.readouterr().out
     assert re.search(r"^! 03\.png, 08\.png: left and right seem exchanged", said, re.M)
+    for name in ("03", "08"):
+        assert re.search(rf"^{name}\.png +–  left and right seem exchanged", said, re.M)
+    assert code == 0
+
+    # kept, they spoil the camera: no camera shows both kinds
+    code, out = calibrate(folder, "9x6", 25, *options, "--keep-all")
+    said = capsys.readouterr()
+    words = "03.png, 08.png: left and right seem exchanged"
+    assert re.search(rf"^! {re.escape(words)}", said.out, re.M)
+    assert f"written, but not reliable: {words}" in said.err
+    assert code == 3
+    assert json.loads((out / "calibration.json").read_text())["reliable"] is False
 
 
 @grows

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CornersNotFound, CvnotesError, InputTypeError, ShapeError
-from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
+from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import clutter, good_views, render
 from cvnotes.targets import Chessboard, doubts, find_corners, finding
 from cvnotes.targets import opencv_finders as _cv
@@ -244,6 +244,24 @@ class TestHiddenCorners:
         wrong[[7, 30]] += 12.0
         monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: wrong, 10**6),))
         np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
+
+    @pytest.mark.parametrize(
+        ("turn", "place", "most"),
+        [
+            ((-0.712, -0.75, -0.139), (-272.6, -45.1, 39.9), 9),  # the paper ends at 90°
+            ((1.186, -0.722, -0.469), (-91.6, -38.5, 8.3), 2),  # a corner beyond the picture
+        ],
+    )
+    def test_corners_that_edges_do_not_vouch_for_are_left_out(self, monkeypatch, turn, place, most):
+        camera = Camera(intrinsics(190, 190, 320, 240), lens=FisheyeLens((0.02, -0.01, 0.003)))
+        camera = camera.moved(pose(rotation_from_vector(turn), place))
+        truth, picture = camera.project(BOARD.points), photograph(camera)
+        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: truth + 0.3, 10**6),))
+        m = find_corners(picture, BOARD, partial=True)
+        assert 0 < np.count_nonzero(np.isnan(m).any(-1)) <= most
+        assert np.nanmax(np.abs(m - truth)) < 0.15
+        with pytest.raises(CornersNotFound):
+            find_corners(picture, BOARD)
 
     def test_gaps_of_a_lattice_are_filled_as_its_neighbours_bend(self):
         lattice = close_up(*CLOSE[0]).project(BOARD.points).reshape(6, 9, 2)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError
-from cvnotes.commands.console import complain, say
+from cvnotes.commands.console import EXIT_CODES, complain, say
 from cvnotes.commands.ownership import earlier, made_by, marked
 from cvnotes.commands.target import corners, length
 from cvnotes.files import Rejected, write_whole
@@ -42,7 +42,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         description="Calibrate a camera from photographs of a chessboard. Take ten or more, with "
         "the board tilted by 30 to 45 degrees in different directions and reaching into the "
         "corners of the picture, without touching focus or zoom.",
-        epilog="example: cvnotes calibrate photos/ --corners 9x6 --square 25 --out result/",
+        epilog="example: cvnotes calibrate photos/ --corners 9x6 --square 25 --out result/. "
+        f"{EXIT_CODES}",
     )
     add = parser.add_argument
     add("photos", nargs="+", metavar="PHOTO", help="photographs, or folders of photographs")
@@ -80,6 +81,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 def run(args: argparse.Namespace) -> int:
     """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no such board, 3 not reliable."""
     from cvnotes.commands.examined import counted, examine
+    from cvnotes.commands.mirrored import doubted, mirrored
     from cvnotes.commands.report import camera_report, doubts, named, photo_table
 
     if args.corners is None:
@@ -112,6 +114,7 @@ def run(args: argparse.Namespace) -> int:
         result, used, misfits = without_misfits(result, used, board, args)
         examined = [misfits.get(photo.path, photo) for photo in examined]
         rejected += [Rejected(printable(path), photo.note) for path, photo in misfits.items()]
+    result = doubted(result, mirrored(used, result, board))
     files, rejected = _brief([printable(photo.path) for photo in used], rejected)
     notes = [photo.note for photo in used]
     say(photo_table(files, notes, rejected, result) + "\n")
@@ -186,10 +189,12 @@ def without_misfits(
     Gives the result, what it is made of, and those left out with the reason as their note.
     """
     from cvnotes.calibration.reliability import misfits
+    from cvnotes.commands.mirrored import EXCHANGED, mirrored
 
     first, left_out = len(used), dict[Path, "Examined"]()
     for _ in range(_ROUNDS):
-        bad = misfits(result.view_rms).tolist()
+        exchanged = mirrored(used, result, board)
+        bad = sorted({*exchanged, *misfits(result.view_rms).tolist()})
         kept = [photo for i, photo in enumerate(used) if i not in bad]
         if not bad or len(kept) < max(_KEPT, _MOST * first):
             break
@@ -200,7 +205,9 @@ def without_misfits(
         typical = np.median(result.view_rms)
         for i in bad:
             reason = (
-                f"does not fit the others: {result.view_rms[i]:.2f} px, a typical photograph "
+                f"{EXCHANGED} (left out; --keep-all uses it all the same)"
+                if i in exchanged
+                else f"does not fit the others: {result.view_rms[i]:.2f} px, a typical photograph "
                 f"{typical:.2f} px (moved, zoomed, rotated or badly found; left out; --keep-all "
                 "uses it all the same)"
             )

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from cvnotes import __version__
+from cvnotes.commands.console import EXIT_CODES
 
 _EXAMPLES = """\
 examples:
@@ -25,6 +26,7 @@ examples:
   cvnotes calibrate photos/ --corners 9x6 --square 25 --out result/
   cvnotes undistort photos/ --camera result/calibration.json --out straight/
   cvnotes stereo left/ right/ --corners 9x6 --square 25 --out rig/
+
 """
 
 
@@ -50,7 +52,7 @@ def parser(command: str = "") -> argparse.ArgumentParser:
     top = _Parser(
         prog="cvnotes",
         description="A course on camera calibration, and its tools for your own photographs.",
-        epilog=_EXAMPLES,
+        epilog=_EXAMPLES + EXIT_CODES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument("-V", "--version", action="version", version=f"cvnotes {__version__}")

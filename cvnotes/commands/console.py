@@ -7,6 +7,8 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
+EXIT_CODES = "exit codes: 0 done, 1 cannot, 2 wrong usage, 3 written but not reliable"
+
 # For terminals and files that hold ASCII only.
 _PLAIN = str.maketrans(
     {"×": "x", "±": "+-", "σ": "sigma", "–": "-", "−": "-", "°": " deg", "…": "..."}

@@ -22,6 +22,7 @@ from cvnotes.commands.calibrate import (
     without_misfits,
 )
 from cvnotes.commands.examined import Examined, look_at
+from cvnotes.commands.mirrored import doubted, mirrored
 from cvnotes.commands.report import camera_report, doubts, photo_table
 from cvnotes.files import Rejected
 from cvnotes.files.photos import COPY
@@ -121,6 +122,7 @@ class Dropped:
         result, used, misfits = without_misfits(result, used, self.board, asked)
         examined = [misfits.get(photo.path, photo) for photo in examined]
         rejected += [Rejected(printable(path.name), at.note) for path, at in misfits.items()]
+        result = doubted(result, mirrored(used, result, self.board))
         names, notes = [printable(photo.path.name) for photo in used], [p.note for p in used]
         proposal = proposal_of(result, self.board)
         self.known = result, proposal

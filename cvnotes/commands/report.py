@@ -14,6 +14,7 @@ from cvnotes.calibration.coverage import covered_cells
 from cvnotes.calibration.left_out import AtLeast
 from cvnotes.calibration.reliability import widest_angle
 from cvnotes.commands.examined import Examined
+from cvnotes.commands.mirrored import EXCHANGED
 from cvnotes.commands.ownership import TABLE_HEADER
 from cvnotes.files import Rejected
 from cvnotes.files.photos import COPY
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 
 _MANY_LEFT_OUT = 0.5  # of the photographs
 _SAME_PLACE = 0.5  # px, between two pictures of a board that did not move
-_BETTER_MIRRORED = 0.7  # RMS of a mirrored photograph over that of the photograph as it is
-_MOST_TURNED = 200  # photographs that are looked at for that
 _WIDE = 80  # letters that a reason may have in the table
 
 
@@ -133,8 +132,12 @@ def doubts(
             "found in them: the camera is only known where the others saw it"
         )
     sentences += _repeated(used, files, rejected)
-    if isinstance(board, Chessboard) and result.warnings:
-        sentences += _mirrored(used, files, result, board)
+    exchanged = [r.file for r in rejected if r.reason.startswith(EXCHANGED)]
+    if exchanged:
+        sentences.append(
+            f"{', '.join(exchanged)}: {EXCHANGED}, so the camera was calibrated without; was it a "
+            "front camera, or an editing program?"
+        )
     if any(photo.turned for photo in used):
         sentences.append(
             "some photographs ask to be turned by their EXIF data; the camera is that of the "
@@ -148,34 +151,6 @@ def doubts(
     if "skew" in result.names:
         sentences.append("OpenCV keeps the skew in calibration.yml but does not use it")
     return sentences
-
-
-def _mirrored(
-    used: Sequence[Examined], files: Sequence[str], result: "Calibration", board: Chessboard
-) -> Iterator[str]:
-    """Find photographs that the camera explains better when left and right are exchanged."""
-    from cvnotes.calibration.pose import rms_of_views
-
-    # (the flat board in both, so that only the exchange makes a difference)
-    used, poses = used[:_MOST_TURNED], result.poses[:_MOST_TURNED]
-    m = np.array([photo.corners for photo in used])
-    columns, rows = board.corners
-    # The corners are numbered from the other side, too, so that they stay right-handed.
-    other = m.reshape(len(m), rows, columns, 2)[:, :, ::-1].reshape(m.shape)
-    other[..., 0] = result.size[0] - 1 - other[..., 0]
-    # Exchanged are left and right of the camera, and of the board around its middle.
-    flip, back = np.diag([-1.0, 1, 1, 1]), np.diag([-1.0, 1, 1, 1])
-    back[0, 3] = (columns - 1) * board.square
-    held = result.camera, result.names, board.points
-    as_is = rms_of_views(*held, m, poses)
-    turned = rms_of_views(*held, other, flip @ poses @ back)
-    mirrored = [files[int(i)] for i in np.flatnonzero(turned < _BETTER_MIRRORED * as_is)]
-    if mirrored:
-        yield (
-            f"{', '.join(mirrored)}: left and right seem exchanged, for the camera fits "
-            f"{'it' if len(mirrored) == 1 else 'them'} better so; was it a front camera, or an "
-            "editing program? Leave out what is mirrored, or turn it back"
-        )
 
 
 def named(sentence: str, result: "Calibration", files: Sequence[str]) -> str:

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, CalibrationWarning, CvnotesError, DegenerateError, text_table
 from cvnotes.commands.calibrate import lens
-from cvnotes.commands.console import complain, say
+from cvnotes.commands.console import EXIT_CODES, complain, say
 from cvnotes.commands.ownership import earlier, made_by, marked
 from cvnotes.commands.target import corners, length
 from cvnotes.files import Rejected, read_photo, write_whole
@@ -38,7 +38,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         description="Calibrate two cameras that stand firmly side by side, from pairs of "
         "photographs of a chessboard that were taken at the same moment. Left and right belong "
         "together when the last numbers in their names agree, or else in the order of names.",
-        epilog="example: cvnotes stereo left/ right/ --corners 9x6 --square 25 --out rig/",
+        epilog="example: cvnotes stereo left/ right/ --corners 9x6 --square 25 --out rig/. "
+        f"{EXIT_CODES}",
     )
     add = parser.add_argument
     add("left", metavar="LEFT", help='folder of the left photographs, or a pattern: "a/left*.jpg"')

@@ -1,5 +1,7 @@
 """Whether what a finder found is the board that was asked for."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from cvnotes.base import Array, Image
@@ -10,6 +12,10 @@ from cvnotes.targets.lattice import Mask, alternating, completed, out_of_line
 _UNEVEN = 0.5
 # A fit may leave so much of the contrast unexplained; noise of 30 grey levels leaves 0.3.
 _UNEXPLAINED = 0.5
+# A corner may leave so many times as much of it as the others do, if it is that much at all. In
+# photographs it is twice as much at most, where paper ends beside a corner 4 to 16 times.
+_UNLIKE, _NOTICED = 3.0, 0.12
+_SMEARED = 4.0  # blur over that of the others, from which on it is no edge of the board
 _MOST_LOST = 0.25  # of a board's corners; with more of them, nothing holds it together
 _PAST = 1.2  # squares beyond the outermost corners: past the outer squares
 _GOES_ON = 0.6  # of 1, were the pattern to go on there
@@ -23,6 +29,35 @@ class NotABoard(Exception):
     ) -> None:
         super().__init__(reason)
         self.count, self.found = count, found
+
+
+def vouched(fit: EdgeFit, picture: Image, corners: tuple[int, int]) -> EdgeFit:
+    """Give the same fit, with NaN for corners that the pixels do not vouch for.
+
+    They lie beyond the picture, where the edges were only prolonged, or are much more blurred than
+    others; or, being the last that are seen of a row or column, they have surroundings that two
+    edges explain much worse than those of others, as where the paper ends beside them. (What
+    covers a corner further inside hardly moves its neighbours: their edges go on elsewhere.)
+    """
+    height, width = picture.shape
+    inside = ((fit.m >= 0) & (fit.m <= [width - 1, height - 1])).all(-1)
+    if not inside.any():
+        return replace(fit, m=np.full_like(fit.m, np.nan))
+    unexplained, blur = np.full(len(fit.m), np.inf), fit.blur.max(-1)
+    np.divide(fit.residual, np.abs(fit.contrast), out=unexplained, where=fit.contrast != 0)
+    usual, sharp = np.median([unexplained[inside], blur[inside]], axis=1)
+    clear = (inside & (blur <= _SMEARED * sharp)).reshape(corners[::-1])
+    unlike = (unexplained > max(_UNLIKE * usual, _NOTICED)).reshape(corners[::-1])
+    while (bad := unlike & _outermost(clear)).any():
+        clear &= ~bad
+    return replace(fit, m=np.where(clear.reshape(-1, 1), fit.m, np.nan))
+
+
+def _outermost(seen: Mask) -> Mask:
+    """Mark the first and the last corner that is seen of each row and column."""
+    up_to = [np.cumsum(seen, axis) for axis in (0, 1)]
+    of_all = [n.take([-1], axis) for axis, n in enumerate(up_to)]
+    return seen & np.any([(n == 1) | (n == N) for n, N in zip(up_to, of_all, strict=True)], axis=0)
 
 
 def trusted(fit: EdgeFit, corners: tuple[int, int]) -> Mask:

@@ -11,7 +11,7 @@ from cvnotes.base import Array, CornersNotFound, DegenerateError, Image, InputTy
 from cvnotes.targets.charuco import CharucoBoard
 from cvnotes.targets.charuco_corners import find_numbered
 from cvnotes.targets.chessboard import Chessboard
-from cvnotes.targets.doubts import NotABoard, check_board, check_pattern_ends, trusted
+from cvnotes.targets.doubts import NotABoard, check_board, check_pattern_ends, trusted, vouched
 from cvnotes.targets.edge_corners import EdgeFit, fit_edges
 from cvnotes.targets.growing import grown_board
 from cvnotes.targets.lattice import completed, ordered
@@ -218,12 +218,13 @@ def _fit_twice(picture: Image, found: Array, corners: tuple[int, int]) -> EdgeFi
     """Fit edges, for corners that come to nothing once more from where the others expect them."""
     columns, rows = corners
     window = _window(found, rows)
-    fit = fit_edges(picture, found, window=window, grid=corners)
+    fit = vouched(fit_edges(picture, found, window=window, grid=corners), picture, corners)
     good = trusted(fit, corners)
     if good.all() or 2 * np.count_nonzero(good) < len(good):
         return fit
     kept = np.where(good[:, None], fit.m, np.nan).reshape(rows, columns, 2)
-    again = fit_edges(picture, completed(kept).reshape(-1, 2), window=window, grid=corners)
+    places = completed(kept).reshape(-1, 2)
+    again = vouched(fit_edges(picture, places, window=window, grid=corners), picture, corners)
     better = np.count_nonzero(trusted(again, corners)) > np.count_nonzero(good)
     return again if better else fit
 

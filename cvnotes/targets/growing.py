@@ -95,7 +95,8 @@ def _squares(grey: Image, part: Array) -> Iterator[Array]:
     x, y = np.diff(part, axis=1), np.diff(part, axis=0)
     sides = np.stack([x[:-1], x[1:], y[:, :-1], y[:, 1:]])
     lengths = np.linalg.norm(sides, axis=-1)
-    oblong = lengths.max(0) / lengths.min(0)
+    with np.errstate(divide="ignore", invalid="ignore"):  # two corners in one place: no square
+        oblong = lengths.max(0) / lengths.min(0)
     for k in np.argsort(oblong, axis=None):
         i, j = np.unravel_index(k, oblong.shape)
         found = _corners(grey, part[i : i + 2, j : j + 2])
