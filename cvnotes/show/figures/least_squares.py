@@ -95,11 +95,13 @@ def draw_two_errors(
     for xi, wi, mi in zip(x, w, seen, strict=True):
         ax.plot([0, wi], [0, xi], color=MUTED, lw=1)
         ax.plot([0, wi], [0, mi * wi], color=MUTED, lw=1, ls="--")
-        for depth, colour in ((1.0, ESTIMATED), (wi, LENS)):
+        outwards = 16 if xi < 0 else -16  # there no ray passes
+        beside = ((1.0, ESTIMATED, (-7, outwards), "right"), (wi, LENS, (7, 0), "left"))
+        for depth, colour, offset, side in beside:
             gap = np.array([xi / wi, mi]) * depth
             ax.plot([depth, depth], gap, color=colour, lw=4, solid_capstyle="butt")
             ax.annotate(
-                f"{abs(gap[1] - gap[0]):.2f}", (depth, gap.mean()), (7, 0), va="center",
+                f"{abs(gap[1] - gap[0]):.2f}", (depth, gap.mean()), offset, ha=side, va="center",
                 textcoords="offset points", color=colour, fontsize=FONT,
             )  # fmt: skip
         ax.plot(wi, xi, "s", color=WORLD, ms=6)
