@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from cvnotes.commands.canvas import ESTIMATED, FAINT, INK, WORLD, Canvas
-from cvnotes.commands.pictures import _cell_means, _residuals, _view_rms
+from cvnotes.commands.pictures import _cell_means, _picture, _residuals, _view_rms
 
 
 def result(views, points):
@@ -92,3 +92,23 @@ def test_faint_lines_lie_below_dots_and_words_above_a_photograph():
     assert np.abs(picture[10, 5] - 100).max() <= 1
     assert (np.abs(picture - [0, 158, 115]).sum(-1) < 40).any()
     assert (picture[35:] == 255).all(-1).any()
+
+
+@pytest.mark.parametrize("size", [(640, 480), (640, 720), (300, 1800), (1800, 200)])
+def test_words_end_before_the_sheet_does(size):
+    words = "at the bottom of the picture, 6 cm away, tilted by 49° with its lower left corner "
+    found = result(5, 54)
+    found.image_points = [(0.25 + m / 1000) * size for m in found.image_points]
+    found.size = size
+    drawn = [
+        _picture(size, f"Next: {words} farther away, turned by 38° clockwise").sheet,
+        _residuals(found),
+    ]
+    for sheet in map(ink, drawn):
+        assert (sheet < 250).any()
+        for border in (sheet[:, 0], sheet[:, -1], sheet[0], sheet[-1]):
+            assert (border == 255).all()
+    # a title is no wider than what it stands over
+    title = np.flatnonzero((ink(drawn[0])[:60] < 250).any((0, 2)))
+    assert title[0] >= 3
+    assert title[-1] <= ink(drawn[0]).shape[1] - 4

@@ -274,6 +274,24 @@ def ticks(low: float, high: float, most: int = 6) -> Array:
     return np.asarray(step * np.arange(first, last + 1) + 0.0)
 
 
+def wrapped(text: str, width: float, size: int = 13) -> list[str]:
+    """Break a text between words into lines no wider than so many pixels.
+
+    Examples
+    --------
+    >>> wrapped("the board, tilted by 40° to the left", 120)
+    ['the board, tilted by', '40° to the left']
+    """
+    font, lines = _font(text, size), [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if font.getlength(longer) <= width or not lines[-1]:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
 def _font(text: str, size: int) -> Any:
     """Give a font that has the letters of a text: Pillow's own has no umlauts."""
     plain = text.translate(_LIGHT).isascii()

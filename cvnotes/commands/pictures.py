@@ -1,7 +1,7 @@
 """The pictures that `cvnotes calibrate` leaves beside its numbers."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from cvnotes.commands.canvas import (
     Canvas,
     known_runs,
     ticks,
+    wrapped,
 )
 from cvnotes.commands.console import progress
 from cvnotes.commands.examined import Examined
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 _COLUMNS, _ROWS = 4, 10  # of a sheet
 _TILE = 320  # px wide
 _HEAD = 24  # px for a title
-_WIDE = 900  # px, of a picture of its own
+_WIDE, _NARROWEST = 900, 480  # px, of a picture of its own
 _BAR = 18  # px that a bar and its name need
 _MOST_LINES = 1000  # that can be told apart
 
@@ -155,50 +156,63 @@ def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
 def _coverage(result: "Calibration") -> Canvas:
     """Draw where corners were seen: the lens is known there, and guessed in grey cells."""
     cells = covered_cells(result.image_points, result.size)
-    sheet, zoom = _picture(
-        result.size, f"Corners in {cells.sum()} of {cells.size} cells of the picture"
-    )
-    side = zoom * np.array(result.size) / cells.shape
+    drawn = _picture(result.size, f"Corners in {cells.sum()} of {cells.size} cells of the picture")
+    side = drawn.zoom * np.array(result.size) / cells.shape
     for cell in np.argwhere(~cells):
-        low = cell * side + [_EDGE, _HEAD + _EDGE]
-        sheet.rectangle(low, low + side, fill=FAINT, line=PALE)
-    m = np.concatenate(result.image_points)
-    sheet.dots((m + 0.5) * zoom + [_EDGE, _HEAD + _EDGE], ESTIMATED, 1.7)
-    _frame(sheet, result.size, zoom)
-    return sheet
+        low = cell * side + drawn.corner
+        drawn.sheet.rectangle(low, low + side, fill=FAINT, line=PALE)
+    drawn.sheet.dots(drawn.place(np.concatenate(result.image_points)), ESTIMATED, 1.7)
+    drawn.frame()
+    return drawn.sheet
 
 
 def _next_view(
     result: "Calibration", proposal: "NextView", board: Chessboard | CharucoBoard
 ) -> Canvas:
     """Draw the board as it should be seen next, over all corners that were seen so far."""
-    sheet, zoom = _picture(result.size, f"Next: {proposal.words}")
-
-    def place(m: Array) -> Array:
-        return (m + 0.5) * zoom + [_EDGE, _HEAD + _EDGE]
-
+    drawn = _picture(result.size, f"Next: {proposal.words}")
+    sheet, place = drawn.sheet, drawn.place
     sheet.dots(place(np.concatenate(result.image_points)), MUTED, 1.2)
     sheet.line(place(np.concatenate([proposal.outline, proposal.outline[:1]])), LENS, 3)
     m = result.camera.moved(proposal.G).project(board.points)
     _draw_lattice(sheet, place(m).reshape(*board.corners[::-1], 2))
-    _frame(sheet, result.size, zoom)
+    drawn.frame()
     return sheet
 
 
 _EDGE = 6  # px around a picture
+_TITLE = 14  # size of a title's letters, px
+_LINE = 20  # px from one line of a title to the next
 
 
-def _picture(size: tuple[int, int], title: str, more: int = 0) -> tuple[Canvas, float]:
-    """Give a sheet for something drawn on a picture of a size, and pixels per pixel."""
+class _Picture(NamedTuple):
+    """A sheet with a frame for what is drawn on a picture."""
+
+    sheet: Canvas
+    zoom: float  # px per pixel of the picture
+    corner: Array  # where the picture's upper left corner is
+    size: Array  # of the frame
+
+    def place(self, m: Array) -> Array:
+        """Give where pixels (n, 2) of the picture are on the sheet."""
+        return np.asarray((m + 0.5) * self.zoom + self.corner)
+
+    def frame(self) -> None:
+        self.sheet.rectangle(self.corner, self.corner + self.size, line=MUTED)
+
+
+def _picture(size: tuple[int, int], title: str, *, beside: int = 0, tall: int = 0) -> _Picture:
+    """Give a sheet for something drawn on a picture, with so much room beside it, so tall."""
     zoom = min((_WIDE - 2 * _EDGE) / size[0], 900 / size[1])
-    sheet = Canvas(_WIDE + more, round(zoom * size[1]) + _HEAD + 2 * _EDGE)
-    sheet.text((_WIDE / 2, _HEAD - 6), title, size=14)
-    return sheet, zoom
-
-
-def _frame(sheet: Canvas, size: tuple[int, int], zoom: float) -> None:
-    low = np.array([_EDGE, _HEAD + _EDGE])
-    sheet.rectangle(low, low + zoom * np.array(size), line=MUTED)
+    frame = zoom * np.array(size)
+    width = max(round(frame[0]) + 2 * _EDGE, _NARROWEST)
+    lines = wrapped(title, width - 2 * _EDGE, _TITLE)
+    corner = np.array([(width - frame[0]) / 2, _HEAD + _LINE * (len(lines) - 1) + _EDGE])
+    height = max(round(corner[1] + frame[1]) + _EDGE, tall)
+    sheet = Canvas(width + beside, height)
+    for i, line in enumerate(lines):
+        sheet.text((width / 2, _HEAD - 6 + _LINE * i), line, size=_TITLE)
+    return _Picture(sheet, zoom, corner, frame)
 
 
 def _residuals(result: "Calibration") -> Canvas:
@@ -217,14 +231,14 @@ def _residuals(result: "Calibration") -> Canvas:
     longer = float(np.percentile(np.hypot(*mean.T), 95)) if len(mean) else 0.0
     magnify = _round_number(0.04 * result.size[0] / longer) if longer > 0 else 1.0
     title = f"{word}, {magnify:,g} times as long (RMS {result.rms:.3f} px per point)"
-    sheet, zoom = _picture(result.size, title, more=_CLOUD)
-    start = (places + 0.5) * zoom + [_EDGE, _HEAD + _EDGE]
-    end = start + zoom * magnify * mean
-    sheet.segments(start, end, ESTIMATED)
-    sheet.dots(end, ESTIMATED, 1.5)
-    _frame(sheet, result.size, zoom)
-    _cloud(sheet, r, result.rms / np.sqrt(2))
-    return sheet
+    drawn = _picture(result.size, title, beside=_CLOUD, tall=_CLOUD + _HEAD)
+    start = drawn.place(places)
+    end = start + drawn.zoom * magnify * mean
+    drawn.sheet.segments(start, end, ESTIMATED)
+    drawn.sheet.dots(end, ESTIMATED, 1.5)
+    drawn.frame()
+    _cloud(drawn, r, result.rms / np.sqrt(2))
+    return drawn.sheet
 
 
 def _cell_means(m: Array, r: Array, size: tuple[int, int]) -> tuple[Array, Array]:
@@ -242,10 +256,11 @@ def _cell_means(m: Array, r: Array, size: tuple[int, int]) -> tuple[Array, Array
 _CLOUD = 420  # px wide
 
 
-def _cloud(sheet: Canvas, r: Array, sigma: float) -> None:
-    """Draw residuals around 0, with a circle of one standard deviation."""
+def _cloud(drawn: _Picture, r: Array, sigma: float) -> None:
+    """Draw residuals around 0 beside a picture, with a circle of one standard deviation."""
     reach = 1.08 * max(float(np.abs(r).max(initial=0.0)), 1e-9)
-    middle, half = np.array([_WIDE + _CLOUD / 2 + 15, _HEAD + _EDGE + 190]), 170
+    sheet, half = drawn.sheet, 170
+    middle = drawn.corner + [drawn.size[0] + _CLOUD / 2 + 15, half]
     sheet.rectangle(middle - half, middle + half, line=MUTED)
     for tick in ticks(-reach, reach, 5):
         x, y = middle + tick / reach * half
@@ -256,12 +271,9 @@ def _cloud(sheet: Canvas, r: Array, sigma: float) -> None:
     sheet.dots(middle + r / reach * half, ESTIMATED, 1.5)
     if np.isfinite(sigma):
         sheet.ring(middle, sigma / reach * half, INK)
-    place = (float(middle[0]), float(middle[1] + half + 36))
-    sheet.text(
-        place,
-        f"observed - predicted (px); the circle is one standard deviation: {sigma:.3f} px",
-        size=12,
-    )
+    x, y = (float(at) for at in middle)
+    sheet.text((x, y + half + 36), "observed - predicted (px)", size=12)
+    sheet.text((x, y + half + 53), f"circle: one standard deviation, {sigma:.3f} px", size=12)
 
 
 def _round_number(x: float) -> float:

@@ -57,7 +57,8 @@ def _outermost(seen: Mask) -> Mask:
     """Mark the first and the last corner that is seen of each row and column."""
     up_to = [np.cumsum(seen, axis) for axis in (0, 1)]
     of_all = [n.take([-1], axis) for axis, n in enumerate(up_to)]
-    return seen & np.any([(n == 1) | (n == N) for n, N in zip(up_to, of_all, strict=True)], axis=0)
+    ends = [(n == 1) | (n == N) for n, N in zip(up_to, of_all, strict=True)]
+    return np.asarray(seen & (ends[0] | ends[1]))
 
 
 def trusted(fit: EdgeFit, corners: tuple[int, int]) -> Mask:
