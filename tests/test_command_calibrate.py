@@ -26,10 +26,13 @@ from cvnotes.pictures import course
 from cvnotes.targets import Chessboard
 
 BOARD = Chessboard((9, 6), 20.0)
+CHOSEN = ("9x6", 20, "--lens", "k1 k2", "--board-shape", "flat")  # so that neither is looked for
 
 
 @pytest.fixture
-def photos(tmp_path):
+def photos(tmp_path, monkeypatch):
+    """Save photographs; pictures of results are drawn in other tests."""
+    monkeypatch.setattr("cvnotes.commands.pictures.pictures", lambda *_: {})
     folder = tmp_path / "photos"
     folder.mkdir()
     for i, tilt in enumerate(TILTS):
@@ -88,7 +91,7 @@ def test_mirrored_beside_upright_photographs_are_named_and_left_out(tmp_path, ca
 @pytest.mark.slow
 def test_one_covered_corner_does_not_lose_the_board(photos, capsys):
     Image.fromarray(with_coin(TILTS[2], 4, 3)).save(photos / "view 2.png")
-    code, out = calibrate(photos)
+    code, out = calibrate(photos, *CHOSEN)
     said = capsys.readouterr().out
     assert code == 0
     assert re.search(r"^view 2\.png +0\.\d+  1 of 54 corners left out: they cannot be", said, re.M)
@@ -102,7 +105,9 @@ def test_one_covered_corner_does_not_lose_the_board(photos, capsys):
 def test_the_count_is_found_in_the_photographs_and_said(photos, capsys):
     wall = Image.fromarray(np.full(SIZE[::-1], 128, np.uint8))
     wall.save(photos / "a wall.png")
-    code, _ = calibrate(photos, corners="auto")
+    for other in sorted(photos.iterdir())[5:]:  # four and the wall
+        other.unlink()
+    code, _ = calibrate(photos, "auto", *CHOSEN[1:])
     assert code == 0
     assert capsys.readouterr().out.startswith(
         "A board of 9×6 inner corners, as counted in the photographs\n"
@@ -122,6 +127,8 @@ def test_a_count_that_is_nowhere_is_said(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_the_count_that_is_there_stands_beside_the_photograph(photos, capsys):
+    for other in sorted(photos.iterdir())[1:]:  # in each of them they would be counted anew
+        other.unlink()
     assert calibrate(photos, corners="8x5")[0] == 1
     assert re.search(r"^view 0\.png +–  .*: 9×6 corners are there$", capsys.readouterr().out, re.M)
 
@@ -132,7 +139,7 @@ def test_every_photograph_that_is_not_used_has_a_reason_of_its_own(photos, capsy
     larger = photograph(*board_pose(TILTS[1], corners=(9, 8)), corners=(9, 8))
     Image.fromarray(larger).save(photos / "larger.png")
     Image.fromarray(np.full(SIZE[::-1], 128, np.uint8)).save(photos / "wall.png")
-    assert calibrate(photos)[0] == 0
+    assert calibrate(photos, *CHOSEN)[0] == 0
     said = capsys.readouterr().out
     assert re.search(
         r"^larger\.png +–  .*: (9×8 corners are there|squares go on bey.*)$", said, re.M
@@ -145,7 +152,7 @@ def test_many_photographs_without_the_board_are_a_doubt(photos, capsys):
     for i in range(9):
         wall = np.full(SIZE[::-1], 120 + i, np.uint8)
         Image.fromarray(wall).save(photos / f"wall {i}.png")
-    assert calibrate(photos)[0] == 0
+    assert calibrate(photos, *CHOSEN)[0] == 0
     words = "! 9 of 17 photographs were left out, because the board was not found in them"
     assert words in capsys.readouterr().out
 
@@ -156,7 +163,7 @@ def test_the_same_view_several_times_over_is_said(photos, capsys):
     again += np.random.default_rng(0).integers(-1, 2, again.shape)
     Image.fromarray(again.clip(0, 255).astype(np.uint8)).save(photos / "view 3b.png")
     (photos / "copy.png").write_bytes((photos / "view 0.png").read_bytes())
-    assert calibrate(photos)[0] == 0
+    assert calibrate(photos, *CHOSEN)[0] == 0
     said = capsys.readouterr().out
     assert "! the board and the camera did not move between view 3.png and view 3b.png" in said
     assert "! 1 of 10 photographs are copies of others" in said
@@ -167,7 +174,7 @@ def test_a_rotation_asked_for_by_a_photograph_that_is_not_used_is_no_matter(phot
     exif = Image.Exif()
     exif[274] = 6
     Image.fromarray(np.full(SIZE[::-1], 128, np.uint8)).save(photos / "wall.png", exif=exif)
-    assert calibrate(photos)[0] == 0
+    assert calibrate(photos, *CHOSEN)[0] == 0
     assert "EXIF" not in capsys.readouterr().out.split("Camera of")[1]
 
 
@@ -206,12 +213,12 @@ def zoomed(image, by=2.0):
 
 @pytest.mark.slow
 def test_a_photograph_that_does_not_fit_is_left_out_and_that_is_said(photos, capsys):
-    good = calibrate(photos)[1]
+    good = calibrate(photos, *CHOSEN)[1]
     without = json.loads((good / "calibration.json").read_text())
     grey = photograph(*board_pose(TILTS[1], depth=900))
     Image.fromarray(zoomed(grey)).save(photos / "view zoomed.png")
     capsys.readouterr()
-    code, out = calibrate(photos)
+    code, out = calibrate(photos, *CHOSEN)
     said = capsys.readouterr().out
     assert code == 0
     row = re.search(
@@ -223,7 +230,7 @@ def test_a_photograph_that_does_not_fit_is_left_out_and_that_is_said(photos, cap
     (rejected,) = made["rejected"]
     assert rejected["file"] == "view zoomed.png"
     assert "left out; --keep-all uses it" in rejected["reason"]
-    code, out = calibrate(photos, "9x6", 20, "--keep-all")
+    code, out = calibrate(photos, *CHOSEN, "--keep-all")
     assert json.loads((out / "calibration.json").read_text())["rms"] > 3 * without["rms"]
     assert re.search(r"^view zoomed\.png +\d", capsys.readouterr().out, re.M)
 
@@ -236,7 +243,7 @@ def test_of_views_that_all_disagree_none_is_left_out(tmp_path, capsys):
     for i, tilt in enumerate(TILTS):
         grey = photograph(*board_pose(tilt, depth=900 if i % 2 else 520))
         Image.fromarray(zoomed(grey) if i % 2 else grey).save(folder / f"view {i}.png")
-    code, _ = calibrate(folder)
+    code, _ = calibrate(folder, *CHOSEN)
     assert code == 3
     assert "does not fit" not in capsys.readouterr().out
 
@@ -244,7 +251,7 @@ def test_of_views_that_all_disagree_none_is_left_out(tmp_path, capsys):
 @pytest.mark.slow
 def test_photographs_are_left_out_as_asked_by_name_or_path(photos, capsys):
     more = ("--leave-out", "view 1.png", photos / "view 2.png")
-    code, out = calibrate(photos, "9x6", 20, *more)
+    code, out = calibrate(photos, *CHOSEN, *more)
     said = capsys.readouterr().out
     assert code == 0
     for i in range(len(TILTS)):
