@@ -348,11 +348,11 @@ def test_what_a_file_does_not_keep_is_not_made_up():
 
 
 @pytest.mark.sampling
-def test_the_covariance_of_the_poses_is_their_scatter(board, views_of):
+def test_the_covariance_of_the_poses_is_their_scatter(board, views_of, refined):
     poses, m = views_of(RADIAL, 6, np.random.default_rng(6))
     R, n, scatter, claimed = poses[:, :3, :3], 300, 0.0, 0.0
     for seed in range(n):
-        result = calibrate(board.points, noise(m, np.random.default_rng(seed)), SIZE)
+        result = refined(board.points, noise(m, np.random.default_rng(seed)), RADIAL, poses)
         dR = result.poses[:, :3, :3] @ R.mT
         omega = 0.5 * np.stack(
             [dR[:, 2, 1] - dR[:, 1, 2], dR[:, 0, 2] - dR[:, 2, 0], dR[:, 1, 0] - dR[:, 0, 1]], -1

@@ -90,13 +90,13 @@ def test_a_rendered_vertex_of_a_plain_quad_is_where_its_sides_meet():
 @pytest.mark.slow
 def test_every_grey_value_is_the_mean_over_the_pixels_square():
     board = target_scene(Chessboard(), pose(rotation_from_vector([0.4, 0.3, 0.5]), [-90, -70, 500]))
-    camera = Camera(intrinsics(80, 80, 39.5, 29.5), lens=Lens((-0.2,)), size=(80, 60))
+    camera = Camera(intrinsics(40, 40, 19.5, 14.5), lens=Lens((-0.2,)), size=(40, 30))
     picture = render_scene(board, camera).astype(float)
     n = 16  # a picture of n times the size, whose pixels fill those of the small one
-    A_fine = intrinsics(80 * n, 80 * n, 39.5 * n + (n - 1) / 2, 29.5 * n + (n - 1) / 2)
-    fine = Camera(A_fine, lens=camera.lens, size=(80 * n, 60 * n))
+    A_fine = intrinsics(40 * n, 40 * n, 19.5 * n + (n - 1) / 2, 14.5 * n + (n - 1) / 2)
+    fine = Camera(A_fine, lens=camera.lens, size=(40 * n, 30 * n))
     reference = render_scene(board, fine, samples=1).astype(float)
-    reference = reference.reshape(60, n, 80, n, 3).mean(axis=(1, 3))
+    reference = reference.reshape(30, n, 40, n, 3).mean(axis=(1, 3))
     assert np.sqrt(np.mean((picture - reference) ** 2)) < 1.2
     assert np.abs(picture - reference).max() < 15
     assert abs((picture - reference).mean()) < 0.05
