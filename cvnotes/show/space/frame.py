@@ -19,6 +19,16 @@ _STEP = 3.0  # points by which a label moves away from the numbers, as often as 
 _MOST_STEPS = 12
 
 
+class _Paper(RendererAgg):
+    """Paper on which words are placed and measured; nothing is drawn, as that takes most time."""
+
+    def draw_text(self, *_: Any, **__: Any) -> None:
+        """Leave the word out."""
+
+    def draw_path(self, *_: Any, **__: Any) -> None:
+        """Leave the line out."""
+
+
 def frame(ax: Axes3D, shown: Array, unit: str) -> None:
     """Return axes that are looked at from where they will be seen a box around points.
 
@@ -59,7 +69,7 @@ def _fill(ax: Axes3D) -> None:
     """Return the box all the room of the axes' place; matplotlib leaves half of it empty."""
     figure = ax.get_figure()
     place = ax.get_position(original=True).transformed(figure.transFigure)
-    paper = RendererAgg(round(figure.bbox.width), round(figure.bbox.height), figure.dpi)  # type: ignore[no-untyped-call]
+    paper = _Paper(round(figure.bbox.width), round(figure.bbox.height), figure.dpi)  # type: ignore[no-untyped-call]
     ax.apply_aspect()
     _zoom(ax, place, _box(ax))
     for axis, length in zip(_axes(ax), _lengths(ax), strict=True):
