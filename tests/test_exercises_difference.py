@@ -99,6 +99,7 @@ def test_what_differs_is_measured_and_named(name, change, called, sentence):
         ("how_far", lambda x: [x, x], "several numbers for one", "a single number"),
         ("distort", lambda x: 7 * x[:, 0], "one number for each row", "one number came back for"),
         ("distort", lambda x: 7 * x[0], "one of several", "only one of several points came back"),
+        ("meet", lambda x: x[:2], "columns left out", "numbers are missing."),
         ("v_ij", lambda x: 7 * x[2:], "numbers too few", "numbers are missing."),
         ("distort", lambda x: 7 * x[2:], "rows too few", "rows are missing."),
         ("distort", lambda x: 7 * np.hstack([x, x]), "columns too many", "too many in each row."),
@@ -233,6 +234,8 @@ def bare(name, function):
         ("depth", np.negative, "sign"),
         ("depth", lambda z: np.where(np.isinf(z), 0, z), "a number for infinity"),
         ("drop", lambda x: np.nan_to_num(x), "a number for NaN"),
+        ("drop", np.floor, "decimals cut off"),
+        ("depth", np.square, "squared"),
     ],
 )
 def test_nan_is_told_from_infinity(name, change, called):

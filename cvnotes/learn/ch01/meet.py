@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.learn.checker.equality import up_to_scale
+from cvnotes.learn.checker.equality import close, up_to_scale
 from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import from_homogeneous, meet
 
@@ -117,6 +117,7 @@ MEET = Exercise(
                 "parallel lines too."
             ),
             lambda l1, l2: _finite(from_homogeneous(np.cross(l1, l2))),
+            same=close,
         ),
         Misconception(
             "direction of the second line",

@@ -316,7 +316,7 @@ def _each_number(wrong: _Wrong) -> Found | None:
     for name, sentence, done in _DONE:
         made = [(a, r, done(r)) for a, r in wrong.pairs]
         if all(
-            np.isfinite(m).all() and not close(m, r, wrong.bound) and close(a, m, wrong.bound)
+            _alike_finite(m, r) and not close(m, r, wrong.bound) and close(a, m, wrong.bound)
             for a, r, m in made
         ):
             return Found(name, sentence)

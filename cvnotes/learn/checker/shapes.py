@@ -269,7 +269,7 @@ _SHAPES: tuple[tuple[str, str, Callable[[Shape, Shape], bool]], ...] = (
     ),
     (
         "one number for each row",
-        "one number came back for each row; each number of it is wanted.",
+        "one number came back for each row; the whole row is wanted.",
         lambda given, wanted: len(wanted) > 1 and given == wanted[:1],
     ),
     (
