@@ -51,6 +51,24 @@ def test_exact_corners_of_a_flat_board_give_a_flat_board(board):
     np.testing.assert_allclose([*found.parameters.values()], TRUTH, rtol=1e-8)
 
 
+def test_a_board_that_changed_between_pictures_is_told_from_one_that_is_bent():
+    rng = np.random.default_rng(3)
+    poses = good_views(BOARD, CAMERA, 12, rng=rng)
+
+    def doubts(bends, board):
+        m = [CAMERA.moved(G).project(arched(by)) for G, by in zip(poses, bends, strict=True)]
+        m = np.stack(m) + rng.normal(0, 0.05, (12, 54, 2))
+        return " ".join(calibrate(BOARD.points, m, CAMERA.size, board=board).warnings)
+
+    always, changing = [3.0] * 12, [3.0, -3.0] * 6
+    for bends in (always, changing):
+        assert "bent, or did it change its shape between the pictures" in doubts(bends, "flat")
+    for board in ("bent", "auto"):
+        assert "did it bend differently from picture to picture" in doubts(changing, board)
+        assert "is the board bent" not in doubts(changing, board)
+        assert "no noise" not in doubts(always, board)
+
+
 def test_exact_corners_of_an_arched_board_give_its_heights():
     found = calibrate(BOARD.points, seen(arched(1.0), 10), CAMERA.size, board="bent")
     np.testing.assert_allclose([*found.parameters.values()], TRUTH, rtol=1e-8)

@@ -46,6 +46,8 @@ class Evidence:
     together : float
         Distance in pixels by which corners of a typical view miss their places together; not
         looked at, and 0, where no view misses by so much that it would matter.
+    shape_tried : bool
+        Whether the board was allowed a shape of its own, the same in all views.
     """
 
     A: Array
@@ -60,6 +62,7 @@ class Evidence:
     likeness: float = 0.0
     by_radius: float = 0.0
     together: float = 0.0
+    shape_tried: bool = False
 
     @staticmethod
     def of(
@@ -88,6 +91,7 @@ class Evidence:
             likeness=0.0 if freedom is None else likeness(residuals, freedom),
             by_radius=by_radius(residuals, corners, found.A[:2, 2]),
             together=missed_together(residuals, board) if may_matter else 0.0,
+            shape_tried=found.shape is not None or bool(found.left_out_boards),
         )
 
     @cached_property
@@ -230,11 +234,6 @@ _NEGLIGIBLE = 0.02  # px: what a lens misses below this does not matter
 _TOO_SMALL = 0.15  # part of the residuals by radius; 0.02 at most with a lens that fits
 _MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed or be another
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
-_NO_NOISE = (
-    "neighbouring corners miss their places in the same direction, so this is no noise: is the "
-    "board bent, did zoom, focus or orientation change between the pictures, or does the lens "
-    "need more coefficients?"
-)
 
 
 def judge(evidence: Evidence) -> tuple[tuple[str, ...], bool]:
@@ -349,7 +348,7 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
             'that are left out choose one (lens="auto")'
         )
     elif _is_no_noise(e):
-        yield _NO_NOISE
+        yield _no_noise(e)
     if np.isnan(e.distances).any():
         yield (
             "some corners lie where the estimated lens folds over, so it shows nothing there: let "
@@ -364,10 +363,24 @@ def _is_no_noise(e: Evidence) -> bool:
     return e.together > most or (e.likeness > ALIKE and e.typical_rms > most)
 
 
+def _no_noise(e: Evidence) -> str:
+    """Say that residuals are alike, and ask what may be the cause; one that is ruled out is not."""
+    what = (
+        "this is no noise, and no shape that the board has in all pictures explains it: did it "
+        "bend differently from picture to picture"
+        if e.shape_tried
+        else "this is no noise: is the board bent, or did it change its shape between the pictures"
+    )
+    return (
+        f"neighbouring corners miss their places in the same direction, so {what}, did zoom, focus "
+        "or orientation change, or does the lens need more coefficients?"
+    )
+
+
 def _systematic(e: Evidence) -> Iterator[str]:
     """Find residuals that are small, but of which the error bars are not a measure."""
     if e.likeness > ALIKE and not _is_no_noise(e):
-        yield f"{_NO_NOISE} The true error is then larger than noise alone would make it"
+        yield f"{_no_noise(e)} The true error is then larger than noise alone would make it"
 
 
 def _outliers(e: Evidence) -> Iterator[str]:
