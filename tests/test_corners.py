@@ -230,6 +230,7 @@ class TestHiddenCorners:
         expected = find_corners(shot[0], BOARD)
         np.testing.assert_array_equal(find_corners(shot[0], BOARD, partial=True), expected)
 
+    @pytest.mark.slow
     def test_of_a_board_mostly_hidden_nothing_is_believed(self, whole):
         image, camera = whole
         for corner in np.random.default_rng(0).choice(54, 24, replace=False):
@@ -245,6 +246,7 @@ class TestHiddenCorners:
         monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: wrong, 10**6),))
         np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("turn", "place", "most"),
         [
@@ -285,6 +287,7 @@ class TestCount:
         for corner in (0, 13, 31, 53):
             assert count_corners(with_coin(image, camera, corner)) == (9, 6)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("shot", CLOSE, ids=str)
     def test_a_wide_lens_does_not_change_it(self, shot):
         assert count_corners(photograph(close_up(*shot))) == (9, 6)
@@ -294,6 +297,7 @@ class TestCount:
         noise = np.random.default_rng(0).integers(0, 255, (480, 640), dtype=np.uint8)
         assert count_corners(noise) is None
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("asked", "words"),
         [
@@ -307,6 +311,7 @@ class TestCount:
         with pytest.raises(CornersNotFound, match=words):
             find_corners(shot[0], Chessboard(asked, 25.0))
 
+    @pytest.mark.slow
     def test_it_is_not_guessed_where_a_finder_found_the_board_that_was_asked_for(self):
         camera = view((0.3, -0.4, 0.2), (0, 0, 480))
         image = photograph(camera)
@@ -440,6 +445,7 @@ class TestRefused:
         with pytest.raises(CornersNotFound, match="whole board"):
             find_corners(image[:, : int(np.sort(m[:, 0])[-4])].copy(), BOARD)
 
+    @pytest.mark.slow
     def test_a_hidden_corner(self, shot):
         image, m = shot
         u, v = m[31]
