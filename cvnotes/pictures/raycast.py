@@ -91,15 +91,21 @@ def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike, *, engine: str = "auto
         raise ShapeError(f"corners: expected triangles (m, 3, 3), got {corners.shape}")
     if xy.ndim != 3 or xy.shape[-1] != 2:
         raise ShapeError(f"xy: expected groups of rays (groups, k, 2), got {xy.shape}")
+    triangle = search(corners, xy, engine)
+    return Hits(triangle, depth_along(corners, triangle, xy))
+
+
+def search(corners: Array, xy: Array, engine: str) -> Indices:
+    """Give the number of the triangle that each ray meets first, as `first_hits` does."""
     if engine not in ("auto", "own", "embree"):
         raise CvnotesError(f"engine: expected 'auto', 'own' or 'embree', got {engine!r}")
     if engine == "embree" and not has_embree():
         raise CvnotesError("engine: embree is not installed; pip install 'cvnotes[rays]' adds it")
     if engine == "auto":
         engine = "embree" if len(corners) >= _MANY and has_embree() else "own"
-    n, det = edge_functions(corners)
-    triangle = _embree_search(corners, xy) if engine == "embree" else _own_search(n, det, xy)
-    return Hits(triangle, _depth(n, det, triangle, xy))
+    if engine == "embree":
+        return _embree_search(corners, xy)
+    return _own_search(*edge_functions(corners), xy)
 
 
 def has_embree() -> bool:
@@ -156,8 +162,9 @@ def _embree_search(corners: Array, xy: Array) -> Indices:
     return first
 
 
-def _depth(n: Array, det: Array, triangle: Indices, xy: Array) -> Array:
+def depth_along(corners: Array, triangle: Indices, xy: Array) -> Array:
     """Return z of the triangles' planes along the rays, NaN where there is no triangle."""
+    n, det = edge_functions(corners)
     z = np.full(triangle.shape, np.nan)
     hit = triangle >= 0
     inverse = (n.sum(axis=1) / det[:, None]).T.copy()

@@ -8,7 +8,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, move
 from cvnotes.pictures.antialiasing import Mask
 from cvnotes.pictures.meshes import Scene, Surroundings
-from cvnotes.pictures.raycast import Indices, edge_functions, first_hits
+from cvnotes.pictures.raycast import Indices, depth_along, edge_functions, search
 
 
 class Surfaces(NamedTuple):
@@ -43,13 +43,14 @@ class Surfaces(NamedTuple):
 
     def colours_along(self, xy: Array, engine: str) -> tuple[Array, Array]:
         """Return the colours (3, groups, k) that rays (groups, k, 2) see, and squares (2, …)."""
-        triangle, depth = first_hits(self.corners, xy, engine=engine)
+        triangle = search(self.corners, xy, engine)
         x, y = np.moveaxis(xy, -1, 0).copy()
         none = triangle < 0
         square = self._squares(triangle, x, y)
         odd = square.sum(axis=0).astype(np.intp) & 1
         colour = np.take(self.palette, np.where(none, 0, 2 * triangle + odd), axis=1)
         if np.isfinite(self.around.haze):
+            depth = depth_along(self.corners, triangle, xy)
             clear = np.exp(-depth * np.sqrt(1 + x * x + y * y) / self.around.haze)
             horizon = np.array(self.around.horizon)[:, None, None]
             colour = horizon + clear * (colour - horizon)
