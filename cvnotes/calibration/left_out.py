@@ -151,7 +151,7 @@ class Comparison:
             tolerance = _CLOSE if close else _COARSE
             whole = estimated(problem, self.rival, self.fisheye, tolerance)
             rms = rms_of_parts(problem, whole, limit)
-        except (ConvergenceError, DegenerateError, CvnotesError):
+        except CvnotesError:  # this lens has no camera here
             return np.inf
         self.best, self.rival = min(self.best, rms), min(self.rival, whole.cost)
         if name == "fisheye":
@@ -263,7 +263,7 @@ def _one(
             return rms_of_parts(problem, flat)
         free = with_shape(problem, data, board)
         return rms_of_parts(free, released(free, flat), limit)
-    except (ConvergenceError, DegenerateError, CvnotesError):
+    except CvnotesError:  # the views do not determine such a board
         return np.inf
 
 
@@ -278,7 +278,7 @@ def _is_flat(problem: Problem, data: Correspondences, flat: Minimum[State, Arrow
         x = released_start(free, flat)
         cost, system = free.linearise(x)
         _, gain = solve_arrow(system, 0.0)
-    except (DegenerateError, CvnotesError):
+    except CvnotesError:
         return False  # which is said by trying it
     of_shape = len(x.shared) - len(flat.x.shared)
     return gain / of_shape < _CHANCE * max(cost - gain, 0.0) / free.freedom

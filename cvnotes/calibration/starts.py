@@ -359,9 +359,8 @@ def as_quotient(camera: Camera, m: Array) -> Camera:
     weight = 1 / (r * (1 + r**2) ** 3)
     sides = np.concatenate([r[:, None] * powers, -shown[:, None] * powers], axis=1)
     seen = shown <= farthest
-    k = np.linalg.lstsq((weight[:, None] * sides)[seen], (weight * (shown - r))[seen], rcond=None)[
-        0
-    ]
+    sides, missing = weight[:, None] * sides, weight * (shown - r)
+    k = np.linalg.lstsq(sides[seen], missing[seen], rcond=None)[0]
     return Camera(camera.A, lens=RationalLens(tuple(k)), size=camera.size)
 
 

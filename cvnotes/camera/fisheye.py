@@ -214,7 +214,7 @@ class FisheyeLens:
 
 
 def bent_angle(k: Sequence[float], theta: Array) -> tuple[Array, Array]:
-    """Evaluate θ' and its slope; unguarded."""
+    """Evaluate θ' = θ (1 + k1 θ² + k2 θ⁴ + …) and dθ'/dθ = 1 + 3 k1 θ² + 5 k2 θ⁴ + …; unguarded."""
     t = theta * theta
     slopes = [(2 * i + 1) * k_i for i, k_i in enumerate(k, 1)]
     return theta * horner((1.0, *k), t), horner((1.0, *slopes), t)
