@@ -246,7 +246,6 @@ class TestHiddenCorners:
         monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: wrong, 10**6),))
         np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
 
-    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("turn", "place", "most"),
         [

@@ -28,6 +28,7 @@ from cvnotes.camera.model import project_with_derivative
 from cvnotes.files import read_camera
 from cvnotes.homography import dlt
 from cvnotes.pictures import render
+from cvnotes.pictures.faces import edges_in_picture
 from cvnotes.targets import Chessboard, refine_edges
 from cvnotes.warping import undistort_image, undistortion_map
 
@@ -395,3 +396,18 @@ def test_a_wide_calibration_comes_back_from_its_file(tmp_path, lens):
     back = Calibration.load(tmp_path / "calibration.json")
     assert (back.lens, back.names, back.std) == (found.lens, found.names, found.std)
     assert read_camera(tmp_path / "calibration.json").lens == found.lens
+
+
+def test_a_board_near_90_degrees_of_a_fisheye_has_no_more_pieces_than_its_edges_are_long():
+    lens = FisheyeLens((0.02, -0.01, 0.003))
+    for turn, place in (
+        ((-0.712, -0.75, -0.139), (-272.6, -45.1, 39.9)),
+        ((0.0, 0.5, 0.1), (-100, -60, 60)),
+    ):
+        camera = Camera(
+            intrinsics(190, 190, 320, 240), pose(rotation_from_vector(turn), place), lens
+        )
+        start, end, _ = edges_in_picture(Chessboard((9, 6), 25.0), camera, step=1.0)
+        lengths = np.linalg.norm(end - start, axis=1)
+        assert lengths.max() < 1.2
+        assert len(lengths) < 3 * lengths.sum()

@@ -223,15 +223,31 @@ def edges_in_picture(
     angle, rim_jump = _rim(faces, lines, centre, radius)
     # Straight pieces first, then those along the rim, whose coordinate is the angle.
     length = step / max(camera.A[0, 0], camera.A[1, 1])
-    xy, piece = subdivide(a, b, length)
+    # Near 90° millions of such pieces on z = 1 would be one pixel of a fisheye.
+    fisheye = isinstance(camera.lens, FisheyeLens)
+    xy, piece = (_by_angle if fisheye else subdivide)(a, b, length)
     if len(angle):
-        phi, rim_piece = subdivide(angle[:, :1], angle[:, 1:], length / radius)
+        shown = min(radius, np.pi / 2) if fisheye else radius
+        phi, rim_piece = subdivide(angle[:, :1], angle[:, 1:], length / shown)
         xy = np.concatenate([xy, _on_rim(phi[:, 0], centre, radius)])
         piece = np.concatenate([piece, len(a) + rim_piece])
         jump = np.concatenate([jump, rim_jump])
     m = px_from_xy(camera.A, camera.lens.distort(xy))
     first = np.flatnonzero(piece[1:] == piece[:-1])
     return m.take(first, axis=0), m.take(first + 1, axis=0), jump.take(piece[first], axis=0)
+
+
+def _by_angle(start: Array, end: Array, length: float) -> tuple[Array, Indices]:
+    """Lay points along pieces (n, 2) of z = 1 as `subdivide` does, but evenly in angle.
+
+    On a circle about the line of sight a fisheye shows an angle up to π/2 times as large.
+    """
+    p, q = (np.column_stack([x, np.ones(len(x))]) for x in (start, end))
+    p, q = (x / np.linalg.norm(x, axis=1, keepdims=True) for x in (p, q))
+    w = np.arctan2(np.linalg.norm(np.cross(p, q), axis=1), (p * q).sum(1)).clip(1e-12)
+    t, piece = subdivide(np.zeros((len(w), 1)), w[:, None], length * 2 / np.pi)
+    ray = np.sin(w[piece, None] - t) * p[piece] + np.sin(t) * q[piece]
+    return ray[:, :2] / ray[:, 2:], piece
 
 
 def _separating(faces: list[Face], a: Array, b: Array) -> tuple[Array, Array, Array]:
