@@ -113,14 +113,17 @@ def lead_back(*event: Any) -> None:
     app, page, _, context, _ = event
     if not page.startswith("_modules/"):
         return
-    documented = app.env.domains["py"].objects
+    documented: dict[str, list[str]] = {}  # names by document
+    for full, entry in app.env.domains["py"].objects.items():
+        documented.setdefault(entry.docname, []).append(full)
 
     def known(match: re.Match[str]) -> str:
+        """Put the documented name in place of the one that has most of its last parts."""
         document, name = match.groups()
         parts = name.split(".")
-        for tail in (".".join(parts[i:]) for i in range(len(parts))):
-            for full, entry in documented.items():
-                if entry.docname == document and f".{full}".endswith(f".{tail}"):
+        for tail in (".".join(["", *parts[i:]]) for i in range(len(parts))):
+            for full in documented.get(document, ()):
+                if f".{full}".endswith(tail):
                     return f'{document}.html#{full}"'
         return match[0]
 
