@@ -1,5 +1,6 @@
 """What several test files share: a board, its views by a known camera, where photographs lie."""
 
+import gc
 import os
 import shutil
 import signal
@@ -83,6 +84,12 @@ def pytest_collection_modifyitems(items):
     """Let long files begin."""
     order = {f"test_{name}.py": place for place, name in enumerate(LONG)}
     items.sort(key=lambda item: order.get(item.path.name, len(order)))
+
+
+def pytest_collection_finish():
+    """Let no search for garbage go through thousands of tests, and through libraries, each time."""
+    gc.freeze()
+    gc.set_threshold(10_000, 10, 10)
 
 
 @pytest.fixture(autouse=True)
