@@ -10,6 +10,11 @@ import pytest
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 SCRIPT = Path(__file__).resolve().parents[1] / "tools" / "build_notebooks.py"
+# The script, without what conftest.py spares these processes too.
+RUN = (
+    "import runpy, sys; sys.modules['rfc3987_syntax'] = None; del sys.argv[0];"
+    "runpy.run_path(sys.argv[0], run_name='__main__')"
+)
 VIEW = "application/vnd.jupyter.widget-view+json"
 
 
@@ -24,7 +29,8 @@ def write(path, *cells):
 
 
 def run(*arguments):
-    return subprocess.run([sys.executable, SCRIPT, *arguments], capture_output=True, text=True)
+    command = [sys.executable, "-c", RUN, SCRIPT, *arguments]
+    return subprocess.run(command, capture_output=True, text=True)
 
 
 def built(path):

@@ -16,7 +16,9 @@ from cvnotes.commands.working_copy import pages
 
 ROOT = Path(__file__).resolve().parents[1]
 EXECUTE = """
-    import sys, nbformat
+    import sys
+    sys.modules["rfc3987_syntax"] = None  # see conftest.py
+    import nbformat
     from nbclient import NotebookClient
     notebook = nbformat.read(sys.argv[1], as_version=4)
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
