@@ -61,7 +61,7 @@ def supersampled(target, camera, margin=1.0, everywhere=False):
     nine = [lattice[i : i + 2 * h : 2, j : j + 2 * w : 2] for i in range(3) for j in range(3)]
     picture = nine[4].copy()
     mixed = np.argwhere(everywhere | differ(nine))
-    for part in np.array_split(mixed, len(mixed) // 400 + 1):
+    for part in np.array_split(mixed, len(mixed) // (100 if everywhere else 400) + 1):
         v, u = part.T[..., None, None]
         if everywhere:
             xy = samples(camera, u, v, (np.arange(32) + 0.5) / 32 - 0.5)
