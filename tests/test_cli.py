@@ -46,19 +46,20 @@ def photograph(R, T, corners=(9, 6), square=20.0):
 def exposed(R, T, corners, square):
     R = np.array(R)
     columns, rows = corners
-    part = (np.arange(5) - 2) / 5
-    v, u = np.meshgrid(
-        (np.arange(SIZE[1])[:, None] + part).ravel(),
-        (np.arange(SIZE[0])[:, None] + part).ravel(),
-        indexing="ij",
-    )
+    part, band = (np.arange(5) - 2) / 5, 4  # so few rows at a time stay in the cache
+    u = (np.arange(SIZE[0])[:, None] + part).ravel()
     H = A @ np.column_stack([R[:, 0], R[:, 1], T])
-    x, y, w = np.linalg.inv(H) @ np.stack([u.ravel(), v.ravel(), np.ones(u.size)])
-    x, y = np.floor(x / w / square) + 1, np.floor(y / w / square) + 1
-    dark = (x + y) % 2 == 0
-    on_board = (x >= 0) & (x <= columns) & (y >= 0) & (y <= rows)
-    grey = np.where(on_board & dark, 30.0, 220.0).reshape(SIZE[1], 5, SIZE[0], 5)
-    return grey.mean(axis=(1, 3)).round().astype(np.uint8)
+    (x_u, y_u, w_u), (x_v, y_v, w_v), (x_1, y_1, w_1) = np.linalg.inv(H).T
+    grey = np.empty((SIZE[1], SIZE[0]))
+    for top in range(0, SIZE[1], band):
+        v = (np.arange(top, top + band)[:, None] + part).reshape(-1, 1)
+        w = (w_u * u + w_1 + w_v * v) * square
+        x = np.floor((x_u * u + x_1 + x_v * v) / w) + 1
+        y = np.floor((y_u * u + y_1 + y_v * v) / w) + 1
+        dark = (x >= 0) & (x <= columns) & (y >= 0) & (y <= rows) & ((x + y) % 2 == 0)
+        rays = np.where(dark, 30.0, 220.0).reshape(band, 5, SIZE[0], 5)
+        grey[top : top + band] = rays.mean(axis=(1, 3))
+    return grey.round().astype(np.uint8)
 
 
 def board_pose(tilt, depth=520.0, corners=(9, 6), square=20.0):

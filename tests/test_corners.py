@@ -1,3 +1,4 @@
+from functools import cache
 from hashlib import blake2b
 
 import cv2
@@ -31,6 +32,11 @@ def views(n, board=BOARD, seed=0):
 def photograph(camera, board=BOARD, noise=2.0, seed=1, **effects):
     effects = {"blur": 0.7, **effects}
     return render(board, camera, noise=noise, rng=np.random.default_rng(seed), **effects)
+
+
+@cache
+def cluttered():
+    return clutter((640, 480), rng=np.random.default_rng(5))
 
 
 def rms(x):
@@ -95,7 +101,7 @@ class TestFound:
     )
     def test_pictures_of_all_kinds(self, effects, limit):
         if effects.get("background") == "clutter":
-            effects = {**effects, "background": clutter((640, 480), rng=np.random.default_rng(5))}
+            effects = {**effects, "background": cluttered()}
         errors = []
         for camera in views(3, seed=2):
             m = find_corners(photograph(camera, **effects), BOARD)
