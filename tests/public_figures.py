@@ -230,7 +230,7 @@ FIGURES = [
     ),
     figure(
         warps.draw_rows,
-        {"before": (PAIR, PICTURE), "after": (PAIR, PICTURE), "lines": (9, ONE)},
+        {"before": (PAIR, PICTURE), "after": (PAIR, PICTURE), "lines": (3, ONE)},
     ),
     # what 3-D figures are made of
     figure(

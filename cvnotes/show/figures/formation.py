@@ -273,7 +273,7 @@ def draw_pixels(
     for u in range(u0, u0 + columns):
         for v in range(v0, v0 + rows):
             ax.add_patch(Rectangle((u - 0.5, v - 0.5), 1, 1, fc="none", ec=MUTED, lw=0.8))
-            ax.plot(u, v, ".", color=LENS, ms=4)
+    ax.plot(*np.mgrid[u0 : u0 + columns, v0 : v0 + rows].reshape(2, -1), ".", color=LENS, ms=4)
     ax.set(xlim=(u0 - 0.5, u0 + columns - 0.5), ylim=(v0 + rows - 0.5, v0 - 0.5))
     ax.set(xticks=range(u0, u0 + columns), yticks=range(v0, v0 + rows))
     return ax
