@@ -9,12 +9,13 @@ the camera is known.
 
 import numpy as np
 
-from cvnotes.base import Array, DegenerateError, solved
+from cvnotes.base import Array, DegenerateError, chunks, solved
 from cvnotes.calibration.board_shape import BoardShape, with_shape
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Problem, State
 from cvnotes.camera import Camera
 
+_NUMBERS = 100_000  # in an array at a time: they then stay in the cache
 _SINGULAR = 1e-13  # smallest squared pivot of a normal matrix with a diagonal of 1
 _WHY = "a view does not determine its own pose"
 
@@ -84,6 +85,14 @@ def eliminated_by_view(problem: Problem, x: State) -> tuple[Array, Array]:
     S = U − Bᵀ V⁻¹ B and g = g_shared − Bᵀ V⁻¹ g_pose, where U, B and V are blocks of JᵀJ: shared by
     shared, pose by shared, pose by pose.
     """
+    most = max(1, _NUMBERS // (problem.m[0].size * (len(x.shared) + 6)))
+    views = chunks(len(problem.m), most)
+    parts = [_eliminated(problem.some(some), x.some(some)) for some in views]
+    S, g = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return S, g
+
+
+def _eliminated(problem: Problem, x: State) -> tuple[Array, Array]:
     J, r = problem.jacobian(x)
     n, q = len(J), len(x.shared)  # with the coefficients of the board's shape, if there are any
     J, r = J.reshape(n, -1, q + 6), r.reshape(n, -1, 1)
@@ -99,7 +108,14 @@ def _without_each(S: Array, g: Array, held: Array) -> Array:
 
     What holds parameters near zero, on the diagonal, stays when a view goes.
     """
-    left = S.sum(0) + np.diag(held) - S
+    whole, d = S.sum(0) + np.diag(held), np.empty_like(g)
+    for some in chunks(len(S), max(1, _NUMBERS // whole.size)):
+        d[some] = _without(whole - S[some], g[some])
+    return d
+
+
+def _without(left: Array, g: Array) -> Array:
+    """Solve left_i δ_i = g_i, unless one of them is singular."""
     diagonal = np.diagonal(left, axis1=1, axis2=2)
     if not (diagonal > 0).all():
         raise DegenerateError(_WHY)

@@ -357,9 +357,9 @@ def rms_of_parts(problem: Problem, whole: Minimum[State, Arrow], limit: float = 
         if at_least > limit:
             return AtLeast(at_least)
         kept = np.delete(np.arange(n_views), out)
-        start = _some(whole.x, kept)
+        start = whole.x.some(kept)
         without = minimise(problem.some(kept), start, tolerance=_CLOSE, patience=_PATIENCE)
-        squares += _follow(problem.some(out), _some(whole.x, out), without)
+        squares += _follow(problem.some(out), whole.x.some(out), without)
         to_come[out] = 0
     return float(np.sqrt(squares / n)) if np.isfinite(squares) else np.inf
 
@@ -368,10 +368,6 @@ def _parts(n_views: int) -> Iterator[npt.NDArray[np.intp]]:
     """Deal the views into parts; neighbours, which are often alike, into different ones."""
     for i in range(min(_PARTS, n_views)):
         yield np.arange(i, n_views, _PARTS)
-
-
-def _some(x: State, views: npt.NDArray[np.intp]) -> State:
-    return State(x.shared, x.R[views], x.T[views])
 
 
 def _follow(problem: Problem, x: State, camera: Minimum[State, Arrow]) -> float:

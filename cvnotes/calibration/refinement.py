@@ -51,6 +51,10 @@ class State(NamedTuple):
     R: Array  # (n_views, 3, 3)
     T: Array  # (n_views, 3)
 
+    def some(self, views: npt.NDArray[np.intp] | slice) -> "State":
+        """Keep the poses of some of the views."""
+        return State(self.shared, self.R[views], self.T[views])
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:
@@ -122,7 +126,7 @@ class Problem:
         n_views, n = self.m.shape[:2]
         return np.full(n_views, float(n)) if self.seen is None else self.seen.sum(1, dtype=float)
 
-    def some(self, views: npt.NDArray[np.intp]) -> "Problem":
+    def some(self, views: npt.NDArray[np.intp] | slice) -> "Problem":
         """Keep some of the views."""
         W = self.W if self.W.ndim == 2 else self.W[views]
         seen = None if self.seen is None else self.seen[views]

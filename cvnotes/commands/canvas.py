@@ -53,6 +53,7 @@ class Canvas:
         self._grey = np.full((height, width), 255, np.uint8)
         # 0 without ink; else 8 times its number in _INKS, and how thick it is, 1 to 8
         self._ink = np.zeros((height, width), np.uint8)
+        self._thick = np.zeros(height * width, np.float32)  # how thick one colour lies
         self._strokes: dict[str, list[Array]] = {}  # by colour: rows of x, y, x, y, radius
         self._fills: dict[str, list[tuple[slice, slice]]] = {}
         self._words: list[_Word] = []
@@ -150,14 +151,15 @@ class Canvas:
     def _covered(self, strokes: Array) -> tuple[Places, Paint]:
         """Give the pixels under strokes (n, 5): x, y, x, y, radius."""
         height, width = self._grey.shape
-        thick = np.zeros(height * width, np.float32)
+        thick = self._thick
         for radius in np.unique(strokes[:, 4]):
             some = strokes[strokes[:, 4] == radius, :4]
             for dabs in _dabs(*_within(some, np.array([width, height]), radius + 1)):
                 place, paint = self._on_sheet(*_around(dabs, radius))
                 np.maximum.at(thick, place, paint)  # the thicker paint counts
         place = np.flatnonzero(thick > 0)
-        return place, thick[place]
+        paint, thick[place] = thick[place], 0
+        return place, paint
 
     def _on_sheet(self, x: Any, y: Any, paint: Paint) -> tuple[Places, Paint]:
         """Give the places in memory of pixels (x, y) with paint on them, those on the sheet."""
