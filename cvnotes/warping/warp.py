@@ -27,6 +27,7 @@ from cvnotes.warping.pixel_map import Mapping, tiles
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
+_LOOKED_UP = 56_000  # pixels at a time: threads that look up less get into each other's way
 _FETCHERS = max(1, min(os.cpu_count() or 1, 4) - 1)
 
 
@@ -201,7 +202,9 @@ def planned(sampler: Sampler, mapping: Mapping, size: tuple[int, int]) -> Plan:
     """Find where a backward warp looks pictures up that are like the sampler's."""
     return [
         (part, places._replace(pixel=places.pixel.astype(np.int32)))
-        for part, places in ((part, sampler.places(m)) for part, m in tiles(mapping, size))
+        for part, places in (
+            (part, sampler.places(m)) for part, m in tiles(mapping, size, _LOOKED_UP)
+        )
     ]
 
 
