@@ -166,8 +166,9 @@ def pythons_with_peers(candidates: list[str]) -> dict[str, str]:
 
 
 def first_start(problem: Problem) -> State:
-    """Give the state that the first four steps of `calibrate` lead to."""
-    start = next(Search(problem).starts())
+    """Give the state that the first four steps of `calibrate` lead to, from all views."""
+    search = Search(problem)
+    start = next(start for start in search.starts() if start.search is search)
     H = start.homographies(dlt)
     A = start.intrinsics(None, H)
     G = start.extrinsics(extrinsics, A, H)
