@@ -23,8 +23,7 @@ from cvnotes.learn.grader.judging import FORGED
 from cvnotes.learn.grader.marks import Mark, Verdict
 from cvnotes.learn.grader.tables import marks_csv
 
-# Notebooks are judged in threads, and one that restores Python's filters undoes those of another.
-pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow]
+pytestmark = pytest.mark.slow
 
 IMPORTS = "import numpy as np\nfrom cvnotes.learn.exercises import check\n"
 IMPORTS += "from cvnotes.learn.personal import personal_camera"

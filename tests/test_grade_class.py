@@ -20,8 +20,7 @@ from cvnotes.learn.grader.marks import Mark, Verdict
 from cvnotes.learn.grader.source import fingerprint, own_code
 from cvnotes.learn.grader.totals import remarked, totals
 
-# Notebooks are judged in threads, and one that restores Python's filters undoes those of another.
-pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow, pytest.mark.once]
+pytestmark = [pytest.mark.slow, pytest.mark.once]
 ASSIGNMENT = """
 title = "Homework 1"
 students = "students.csv"

@@ -29,8 +29,7 @@ from cvnotes.learn.grader.process import Limits
 from cvnotes.learn.grader.records import Records, read_records
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes as on Linux")
-# Notebooks are judged in threads, and one that restores Python's filters undoes those of another.
-pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow, pytest.mark.once]
+pytestmark = [pytest.mark.slow, pytest.mark.once]
 LIFT = (IMPORTS, *answered("lift", source_of("lift")))
 
 

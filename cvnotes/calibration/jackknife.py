@@ -85,10 +85,10 @@ def eliminated_by_view(problem: Problem, x: State) -> tuple[Array, Array]:
     S = U − Bᵀ V⁻¹ B and g = g_shared − Bᵀ V⁻¹ g_pose, where U, B and V are blocks of JᵀJ: shared by
     shared, pose by shared, pose by pose.
     """
-    most = max(1, _NUMBERS // (problem.m[0].size * (len(x.shared) + 6)))
-    views = chunks(len(problem.m), most)
-    parts = [_eliminated(problem.some(some), x.some(some)) for some in views]
-    S, g = (np.concatenate(part) for part in zip(*parts, strict=True))
+    at_a_time = max(1, _NUMBERS // (problem.m[0].size * (len(x.shared) + 6)))
+    views = chunks(len(problem.m), at_a_time)
+    of_parts = [_eliminated(problem.some(part), x.some(part)) for part in views]
+    S, g = (np.concatenate(each) for each in zip(*of_parts, strict=True))
     return S, g
 
 
@@ -109,8 +109,8 @@ def _without_each(S: Array, g: Array, held: Array) -> Array:
     What holds parameters near zero, on the diagonal, stays when a view goes.
     """
     whole, d = S.sum(0) + np.diag(held), np.empty_like(g)
-    for some in chunks(len(S), max(1, _NUMBERS // whole.size)):
-        d[some] = _without(whole - S[some], g[some])
+    for part in chunks(len(S), max(1, _NUMBERS // whole.size)):
+        d[part] = _without(whole - S[part], g[part])
     return d
 
 

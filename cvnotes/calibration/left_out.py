@@ -209,8 +209,8 @@ def left_out_rms_of_boards(
     boards : sequence of {"flat", "bent", "free"}
         What the board may be.
     to_the_end : bool
-        If false, a bent board that a free one beat is left as soon as it cannot be chosen any more,
-        and what is given for it is an `AtLeast`.
+        If false, a board is left as soon as it cannot be chosen any more, and what is given for it
+        is an `AtLeast`. The free board is tried before the bent one.
 
     Returns
     -------
@@ -241,7 +241,7 @@ def left_out_rms_of_boards(
     problem = Problem.of(data, size, lens, skew)
     flat = estimated(problem)
     found: dict[str, float] = {}
-    # (the free board before the bent one, which seldom is worth its time beside it)
+    # (where a free board is the better one, a glance at the bent one is then enough)
     for board in sorted(boards, key=lambda board: ("flat", "free", "bent").index(is_board(board))):
         if board == "free" and "flat" in found and _is_flat(problem, data, flat):
             continue

@@ -126,7 +126,7 @@ class Canvas:
                 self._lay(*self._covered(np.concatenate(self._strokes[colour])), colour)
         for word in self._words:
             x, y = (round(at) for at in word.where)
-            for halo in (True, False)[not word.halo :]:
+            for halo in (True, False) if word.halo else (False,):
                 u, v, paint = _letters(word.text, word.size, word.anchor, word.upright, halo)
                 self._lay(*self._on_sheet(x + u, y + v, paint), "#FFFFFF" if halo else word.colour)
         inked = 128 + ((self._ink - 1) << 2) + (self._grey >> 6)

@@ -1,5 +1,6 @@
 """From what a notebook handed over to verdicts: nothing in it is believed."""
 
+import threading
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -13,6 +14,9 @@ from cvnotes.learn.grader.marks import Verdict, verdict_of
 
 # Judging the answers of a whole course takes less than two seconds.
 _SECONDS = 60.0
+# Python has one list of warnings to ignore for all threads: each that restores it undoes what
+# another, whose exercise's own mathematics may warn, has just set.
+ALONE = threading.Lock()
 FORGED = "its results are none that an answer gives"
 
 
@@ -35,6 +39,13 @@ def judged(
     ids : tuple of str
         The student ids that were used.
     """
+    with ALONE:
+        return _judged(answers, seed)
+
+
+def _judged(
+    answers: Mapping[str, Mapping[str, Any]], seed: int
+) -> tuple[dict[str, Verdict], tuple[str, ...]]:
     verdicts: dict[str, Verdict] = {}
     ids: list[str] = []
     deadline = time.monotonic() + _SECONDS

@@ -23,6 +23,7 @@ from typing import IO, Any
 
 from cvnotes.learn.exercises import EXERCISES, added_files
 from cvnotes.learn.grader.handin import Arguments, Task
+from cvnotes.learn.grader.judging import ALONE
 from cvnotes.learn.grader.tracking import MARKER, alive, end
 from cvnotes.pictures.course import DATA
 
@@ -120,7 +121,8 @@ def _inputs(seed: int) -> dict[str, list[Arguments]]:
     asked = {**EXERCISES}
     for exercise in EXERCISES.values():
         asked |= {part.name: part for part in exercise.parts}
-    return {name: exercise.inputs(seed) for name, exercise in asked.items()}
+    with ALONE:
+        return {name: exercise.inputs(seed) for name, exercise in asked.items()}
 
 
 def _run(task: Task, scratch: Path, seconds: float, batch: str) -> Ran:
