@@ -56,7 +56,7 @@ def said(name, change):
         ("project", np.trunc, "decimals cut off", "as int() or an integer array"),
         ("camera_centre", lambda x: x / np.linalg.norm(x), "scaled to length 1", "to length 1"),
         ("form_image", lambda m: m.T.reshape(m.shape), "reshaped for transposed", "Take .T."),
-        ("distort", lambda x: 0 * x + x[:1], "one row for all", "the same row for all points"),
+        ("distort", lambda x: 0 * x + x[:1], "one row for all", "All rows of your answer are the"),
         ("same_points", lambda x: x * [0, *[1] * (len(x) - 1)], "False too often", "[0]"),
         ("drop", lambda x: np.where(x == x[0, 0], np.nan, x), "NaN too often", "is right, but"),
         ("camera_centre", lambda x: 0 * x + [1, 2, 3], "one answer for all", "to every input"),
@@ -99,6 +99,9 @@ def test_what_differs_is_measured_and_named(name, change, called, sentence):
         ("how_far", lambda x: [x, x], "several numbers for one", "a single number"),
         ("distort", lambda x: 7 * x[:, 0], "one number for each row", "one number came back for"),
         ("distort", lambda x: 7 * x[0], "one of several", "only one of several points came back"),
+        ("nearest_rotation", lambda R: 7 * abs(R).sum(axis=1), "one row of a matrix",
+         "or one number for each row; the whole matrix"),
+        ("nearest_rotation", lambda R: 7 * R[0, :2], "all in one row", "one row alone; np.append"),
         ("meet", lambda x: x[:2], "columns left out", "numbers are missing."),
         ("v_ij", lambda x: 7 * x[2:], "numbers too few", "numbers are missing."),
         ("distort", lambda x: 7 * x[2:], "rows too few", "rows are missing."),
@@ -140,6 +143,10 @@ def right(name):
          "src in the opposite order"),
         ("geometric_error", lambda H, _, dst: right("geometric_error")(H, dst, dst), "dst for src"),
         ("harris_measure", lambda u, v, k: right("harris_measure")(u, v, 1 / k), "k upside down"),
+        ("undistortion_map", lambda A, k, size: right("undistortion_map")(A, k, size[::-1]),
+         "size the wrong way round"),
+        ("backward_warp", lambda image, H, size: right("backward_warp")(
+            image, H, (size[0] + 1, size[1] + 1)), "size too large by 1"),
         ("undistortion_map", lambda A, k, size: right("undistortion_map")(
             np.diag([A[1, 1], A[0, 0], 1]) + A * [[0, 0, 1], [0, 0, 1], [0, 0, 0]], k, size),
          "A with α_u and α_v exchanged"),
@@ -262,6 +269,34 @@ def test_what_is_said_of_here_is_said_of_the_input_that_is_shown():
     report = bare("same_points", the_last_pair_too)
     wrong = np.flatnonzero(report.yours != report.wanted)
     assert f"entry [{wrong[0]}], counted from 0, is False" in report.message
+
+
+def test_a_slip_that_changes_the_shape_says_the_shape_too():
+    def the_other_way_round(A, k, size):
+        return right("undistortion_map")(A, k, size[::-1])
+
+    report = tried("undistortion_map", the_other_way_round)
+    shape = report.wanted.shape
+    said = f"The answer has shape {(shape[1], shape[0], 2)}, wanted is {shape}. It looks as if you"
+    assert report.message.startswith(said)
+
+
+def test_a_factor_of_some_cases_is_not_said_of_all():
+    def my_depth(alpha, b, left, right_):
+        return (1.1 if len(left) > 1 else 1) * right("depth")(alpha, b, left, right_)
+
+    def my_distort(xy, k, p):
+        return (1.1 if len(xy) > 2 else 1) * right("distort")(xy, k, p)
+
+    for name, function in (("depth", my_depth), ("distort", my_distort)):
+        cases = EXERCISES[name].inputs(SEED)
+        given = [function(*args) for args in cases]
+        wanted = [right(name)(*args) for args in cases]
+        alike = [np.array_equal(g, w) for g, w in zip(given, wanted, strict=True)]
+        assert any(alike)
+        assert sum(alike) < len(alike) - 1
+        message = bare(name, function).message
+        assert "the right one times 1.1, wherever it is wrong." in message
 
 
 def test_a_list_of_another_shape_is_no_argument_that_was_changed():

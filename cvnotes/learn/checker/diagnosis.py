@@ -8,7 +8,7 @@ from cvnotes.learn.checker.difference import VAGUE, difference
 from cvnotes.learn.checker.foreseen import foreseen
 from cvnotes.learn.checker.inputs import slipped_input
 from cvnotes.learn.checker.raised import without_numbers
-from cvnotes.learn.checker.shapes import misshapen
+from cvnotes.learn.checker.shapes import laid_out_otherwise, misshapen
 from cvnotes.learn.checker.wrong_answer import Found, WrongAnswer
 
 
@@ -24,7 +24,15 @@ def diagnosis(answer: WrongAnswer) -> Found | None:
         return without_numbers(answer)
     if outcome.changed and outcome.value.shape == case.right.shape:
         return Found("an argument changed", answer.why)
-    found = misshapen(answer) or difference(answer)
+    found = laid_out_otherwise(answer) or difference(answer)
     if found is None or found.name in VAGUE:
-        found = slipped_input(answer) or found
-    return found
+        found = _slipped(answer) or found
+    return found or misshapen(answer)
+
+
+def _slipped(answer: WrongAnswer) -> Found | None:
+    """Name the input that slipped, behind what is said of an answer that cannot be compared."""
+    found = slipped_input(answer)
+    if found is None or not answer.why:
+        return found
+    return Found(found.name, f"{answer.why} {found.sentence}")

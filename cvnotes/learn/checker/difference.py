@@ -27,11 +27,14 @@ class _Wrong:
         When the exercise calls two of them equal.
     bound : float
         How far they may be apart.
+    always : bool
+        Whether the answer is wrong in all cases.
     """
 
     pairs: tuple[Pair, ...]
     same: Same
     bound: float
+    always: bool
 
     @property
     def up_to_scale(self) -> bool:
@@ -70,7 +73,8 @@ def difference(answer: WrongAnswer) -> Found | None:
     if len(tried) > 1 and (found := _same_for_all(tried, exercise.same)):
         return found
     bound = max(tolerance(outcome.dtype) for _, outcome in answer.failing)
-    wrong = _Wrong(tuple(pairs[: answer.wrong]), exercise.same, bound)
+    always = answer.wrong == len(tried)
+    wrong = _Wrong(tuple(pairs[: answer.wrong]), exercise.same, bound, always)
     if all(np.isin(right, (0, 1)).all() and right.ndim for _, right in pairs):
         return _truths(wrong.pairs)
     # What a few of several cases have in common may be chance, where it is a single number.
@@ -222,7 +226,8 @@ def _factor(wrong: _Wrong) -> Found | None:
     several = len(factors) > 1
     if several and np.allclose(np.array(factors, dtype=float), f, rtol=1e-5):
         name = _said(f).partition(": ")[2] or "a factor"
-        return Found(name, f"Your answer is the right one times {_said(f)}, in every case.")
+        where = "in every case" if wrong.always else "wherever it is wrong"
+        return Found(name, f"Your answer is the right one times {_said(f)}, {where}.")
     if all(right.size > 1 for _, right in wrong.pairs):
         return Found(
             "up to a factor", f"Your answer is right up to a factor, which is {_said(f)} here."
@@ -437,10 +442,16 @@ def _some(wrong: _Wrong) -> Found | None:
             for p, bad in zip(places, rows, strict=True)
         ):
             return Found(name, f"Only {name} of your answer is wrong.")
-    first = pairs[0][0]
-    if all(len(a) > 1 and np.allclose(a, a[:1]) for a, _ in pairs) and np.isfinite(first).all():
-        return Found("one row for all", "You give the same row for all points.")
+    if all(_one_row(a) and not _one_row(right) for a, right in pairs):
+        return Found(
+            "one row for all",
+            "All rows of your answer are the same row; those of the right one are not.",
+        )
     return None
+
+
+def _one_row(a: Array) -> bool:
+    return len(a) > 1 and bool(np.isfinite(a).all() and np.allclose(a, a[:1]))
 
 
 _TELLERS: tuple[Callable[..., Found | None], ...] = (

@@ -16,39 +16,62 @@ Equal = Callable[[Array, Array], bool]
 Shape = tuple[int, ...]
 
 
-def misshapen(answer: WrongAnswer) -> Found | None:
-    """Name what is wrong with the shape of the answers.
+def laid_out_otherwise(answer: WrongAnswer) -> Found | None:
+    """Say how right numbers were laid out, where that alone is wrong, in all cases.
 
-    If the numbers are right and only laid out otherwise, in every case, it says how; if they are
-    not, what the shapes alone tell. Nothing is said if an answer is missing or the shapes are
-    right.
+    Nothing is said if an answer is missing, or if the shapes are right.
     """
-    exercise = answer.exercise
-    pairs = [(o.value, c, tolerance(o.dtype)) for c, o in answer.tried if o.value is not None]
-    others = [(value, c, bound) for value, c, bound in pairs if value.shape != c.right.shape]
-    if not others or len(pairs) < len(answer.tried):
+    others = _of_another_shape(answer)
+    # A value would be given away.
+    if not others or answer.exercise.answer != "function":
         return None
-    here, case, _ = others[0]
-    head = other_shape(here, case.right).rstrip(".")
-    rows = _one_for_each_point(exercise, case)
+    same = answer.exercise.same
     # Elsewhere a row of numbers may happen to have the shape that is asked.
-    rest_is_right = all(
-        value.shape != c.right.shape or exercise.same(value, c.right, bound)
-        for value, c, bound in pairs
-    )
-    if rest_is_right and exercise.answer == "function":  # a value would be given away
-        for name, sentence, fits in _LAYOUTS:
-            if all(_fits(fits, value, c.right, exercise.same, bound) for value, c, bound in others):
-                said = _ABOUT_POINTS.get(name, (name, sentence)) if rows else (name, sentence)
-                return Found(said[0], f"{head}: {said[1]}")
+    alike = [(v, c, bound) for v, c, bound in _all_answers(answer) if v.shape == c.right.shape]
+    if not all(same(value, c.right, bound) for value, c, bound in alike):
+        return None
+    for name, sentence, fits in _LAYOUTS:
+        if all(_fits(fits, value, c.right, same, bound) for value, c, bound in others):
+            return _said(answer, others[0], name, sentence)
+    return None
+
+
+def misshapen(answer: WrongAnswer) -> Found | None:
+    """Say what the shapes of the answers tell, whatever their numbers are.
+
+    Nothing is said if an answer is missing, or if the shapes are right.
+    """
+    others = _of_another_shape(answer)
+    if not others:
+        return None
     if all(np.ndim(value) == 0 and np.isnan(value) for value, *_ in others):
         name, sentence = _ONE_NAN
-        return Found(name, f"{head}: {sentence.format(wanted=case.right.shape)}")
+        return _said(answer, others[0], name, sentence.format(wanted=others[0][1].right.shape))
     for name, sentence, of_shape in _SHAPES:
         if all(of_shape(value.shape, c.right.shape) for value, c, _ in others):
-            said = _ABOUT_POINTS.get(name, (name, sentence)) if rows else (name, sentence)
-            return Found(said[0], f"{head}: {said[1]}")
-    return Found("another shape", f"{head}.")
+            return _said(answer, others[0], name, sentence)
+    return Found("another shape", other_shape(others[0][0], others[0][1].right))
+
+
+Answer = tuple[Array, Case, float]
+
+
+def _all_answers(answer: WrongAnswer) -> list[Answer]:
+    """Give all answers with their cases and bounds; none if one is missing."""
+    there = [(o.value, c, tolerance(o.dtype)) for c, o in answer.tried if o.value is not None]
+    return there if len(there) == len(answer.tried) else []
+
+
+def _of_another_shape(answer: WrongAnswer) -> list[Answer]:
+    return [(v, c, bound) for v, c, bound in _all_answers(answer) if v.shape != c.right.shape]
+
+
+def _said(answer: WrongAnswer, here: Answer, name: str, sentence: str) -> Found:
+    """Say what is wrong with the shape of one of the answers, in words about points if it is."""
+    value, case, _ = here
+    if _one_for_each_point(answer.exercise, case):
+        name, sentence = _ABOUT_POINTS.get(name, (name, sentence))
+    return Found(name, f"{other_shape(value, case.right).rstrip('.')}: {sentence}")
 
 
 def _one_for_each_point(exercise: Exercise, case: Case) -> bool:
@@ -263,6 +286,11 @@ _SHAPES: tuple[tuple[str, str, Callable[[Shape, Shape], bool]], ...] = (
     ),
     ("one number for all", "one number alone.", lambda given, _: given == ()),
     (
+        "one row of a matrix",
+        "one row of it, or one number for each row; the whole matrix is wanted.",
+        lambda given, wanted: len(wanted) == 2 and given == wanted[1:] == wanted[:1],
+    ),
+    (
         "one of several",
         "only one row came back; is the return inside of a loop?",
         lambda given, wanted: given == wanted[1:],
@@ -279,7 +307,7 @@ _SHAPES: tuple[tuple[str, str, Callable[[Shape, Shape], bool]], ...] = (
     ),
     (
         "all in one row",
-        "all in one row; np.append and np.concatenate take an axis.",
+        "one row alone; np.append and np.concatenate take an axis.",
         lambda given, wanted: len(given) == 1 < len(wanted),
     ),
     (
