@@ -21,7 +21,7 @@ from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.pictures import good_views, render
 from cvnotes.pictures.exposure import Image
 from cvnotes.targets import Chessboard, refine_edges, refine_subpixel
-from cvnotes.targets.edge_corners import fit_edges
+from cvnotes.targets.subpixel import fit_edges
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))

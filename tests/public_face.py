@@ -38,7 +38,7 @@ from cvnotes.pictures import expose, render
 from cvnotes.pictures.meshes import quads
 from cvnotes.pictures.pixel_means import polygon_means
 from cvnotes.pictures.raycast import first_hits
-from cvnotes.targets import Chessboard, TwoPlanes, edge_corners, find_corners
+from cvnotes.targets import Chessboard, TwoPlanes, find_corners, subpixel
 from cvnotes.targets.finding import count_corners
 from cvnotes.warping import interpolation
 
@@ -665,9 +665,9 @@ FUNCTIONS = [
         "targets.refine_edges",
     ),
     function(
-        edge_corners.fit_edges,
+        subpixel.fit_edges,
         {"image": (GREY, PICTURE), "m": (PLANE[0].round(), rows(2))},
-        "edge_corners.fit_edges",
+        "subpixel.fit_edges",
     ),
     # making pictures
     function(expose, {"radiance": (NOISE, PICTURE), "motion": (np.array([1.0, 2]), several(2))}),

@@ -8,11 +8,12 @@ import pytest
 from cvnotes.base import CornersNotFound, CvnotesError, InputTypeError, ShapeError
 from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import clutter, good_views, render
-from cvnotes.targets import Chessboard, doubts, find_corners, finding
+from cvnotes.targets import Chessboard, find_corners, finders, finding
+from cvnotes.targets import lattice as _lattice
 from cvnotes.targets import opencv_finders as _cv
-from cvnotes.targets.edge_corners import fit_edges
 from cvnotes.targets.finding import count_corners
 from cvnotes.targets.lattice import completed, handedness, ordered, out_of_line
+from cvnotes.targets.subpixel import fit_edges
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))
@@ -60,9 +61,11 @@ def once(find):
 def asked_once():
     asked = {find: once(find) for find in (_cv.find_classic, _cv.find_sb)}
     with pytest.MonkeyPatch.context() as patch:
-        attempts = [(name, asked.get(find, find), n) for name, find, n in finding._ATTEMPTS]
-        patch.setattr(finding, "_ATTEMPTS", tuple(attempts))
-        patch.setattr(finding, "grown_board", once(finding.grown_board))
+        attempts = [(name, asked.get(find, find), n) for name, find, n in finders.ATTEMPTS]
+        patch.setattr(finders, "ATTEMPTS", tuple(attempts))
+        grown = once(finders.grown_board)
+        for module in (finders, finding):
+            patch.setattr(module, "grown_board", grown)
         yield
 
 
@@ -177,12 +180,12 @@ class TestWideLenses:
     @pytest.mark.parametrize("shot", CLOSE[3:], ids=str)
     def test_a_wrong_corner_is_seen_there_too(self, shot):
         lattice = close_up(*shot).project(BOARD.points).reshape(6, 9, 2)
-        assert not out_of_line(lattice, doubts._UNEVEN, 5).any()
+        assert not out_of_line(lattice, _lattice._UNEVEN, 5).any()
         for i, j in ((2, 3), (0, 4), (3, 8), (5, 7)):
             wrong = lattice.copy()
             wrong[i, j] += 0.3 * (lattice[i, j - 1] - lattice[i, j])
             np.testing.assert_array_equal(
-                np.argwhere(out_of_line(wrong, doubts._UNEVEN, 5)), [[i, j]]
+                np.argwhere(out_of_line(wrong, _lattice._UNEVEN, 5)), [[i, j]]
             )
 
 
@@ -201,7 +204,7 @@ class TestEdgesAlongPixelRows:
                 truth = camera.project(BOARD.points)
                 for start in (truth, np.rint(truth)):
                     fit = fit_edges(image, start, grid=(9, 6))
-                    doubts.check_board(fit, (9, 6))
+                    _lattice.check_board(fit, (9, 6))
                     np.testing.assert_allclose(fit.m, truth, atol=0.12)
             np.testing.assert_allclose(find_corners(image, BOARD), truth, atol=0.12)
 
@@ -249,7 +252,7 @@ class TestHiddenCorners:
     ):
         wrong = shot[1].copy()
         wrong[[7, 30]] += 12.0
-        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: wrong, 10**6),))
+        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", lambda *_: wrong, 10**6),))
         np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
 
     @pytest.mark.parametrize(
@@ -263,7 +266,7 @@ class TestHiddenCorners:
         camera = Camera(intrinsics(190, 190, 320, 240), lens=FisheyeLens((0.02, -0.01, 0.003)))
         camera = camera.moved(pose(rotation_from_vector(turn), place))
         truth, picture = camera.project(BOARD.points), photograph(camera)
-        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: truth + 0.3, 10**6),))
+        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", lambda *_: truth + 0.3, 10**6),))
         m = find_corners(picture, BOARD, partial=True)
         assert 0 < np.count_nonzero(np.isnan(m).any(-1)) <= most
         assert np.nanmax(np.abs(m - truth)) < 0.15
@@ -397,7 +400,7 @@ class TestOrder:
             found = _cv.find_sb(grey, corners)
             return found.reshape(6, 9, 2)[flip].reshape(-1, 2)
 
-        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", in_another_order, 10**6),))
+        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", in_another_order, 10**6),))
         np.testing.assert_allclose(find_corners(shot[0], BOARD), expected, atol=2e-3)
 
     @pytest.mark.parametrize("corners", [(8, 6), (7, 5), (7, 7)])
@@ -479,7 +482,7 @@ class TestRefused:
         camera = view((0.3, -0.5, 0.4), board=larger)
         image = photograph(camera, larger, light=light)
         found = camera.project(larger.points).reshape(*corners[::-1], 2)[part].reshape(-1, 2)
-        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: found, 10**6),))
+        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", lambda *_: found, 10**6),))
         with pytest.raises(CornersNotFound, match="squares go on beyond 9×6 corners"):
             find_corners(image, BOARD)
 
@@ -494,16 +497,16 @@ class TestRefused:
     def test_a_corner_out_of_line(self, shot):
         image, m = shot
         fit = fit_edges(image, m, grid=(9, 6))
-        doubts.check_board(fit, (9, 6))
+        _lattice.check_board(fit, (9, 6))
         fit.m[20] += 3.0
-        with pytest.raises(doubts.NotABoard, match=r"out of line by \d+\.\d px"):
-            doubts.check_board(fit, (9, 6))
+        with pytest.raises(_lattice.NotABoard, match=r"out of line by \d+\.\d px"):
+            _lattice.check_board(fit, (9, 6))
 
     def test_squares_that_do_not_alternate(self, shot):
         fit = fit_edges(shot[0], shot[1], grid=(9, 6))
         fit.contrast[20] *= -1
-        with pytest.raises(doubts.NotABoard, match="not alternately light and dark"):
-            doubts.check_board(fit, (9, 6))
+        with pytest.raises(_lattice.NotABoard, match="not alternately light and dark"):
+            _lattice.check_board(fit, (9, 6))
 
     @pytest.mark.slow
     def test_noise_is_no_board(self):
@@ -516,7 +519,7 @@ class TestRefused:
 
     @pytest.mark.parametrize("found", [np.zeros((54, 2)), np.arange(108.0).reshape(54, 2)])
     def test_garbage_of_a_finder_is_no_board(self, shot, monkeypatch, found):
-        monkeypatch.setattr(finding, "_ATTEMPTS", (("SB", lambda *_: found, 10**6),))
+        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", lambda *_: found, 10**6),))
         with pytest.raises(CornersNotFound, match="found, but its corners lie on a line"):
             find_corners(shot[0], BOARD)
 
@@ -525,21 +528,21 @@ class TestRefused:
             ("wrong", lambda grey, corners: _cv.find_sb(grey, corners) + 40, 10**6),
             ("right", _cv.find_sb, 10**6),
         )
-        monkeypatch.setattr(finding, "_ATTEMPTS", attempts)
+        monkeypatch.setattr(finders, "ATTEMPTS", attempts)
         np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
 
 
 class TestFinders:
     def test_large_pictures_are_looked_at_in_reduced_copies(self, monkeypatch):
         seen = []
-        for i, (name, _, most) in enumerate(finding._ATTEMPTS):
+        for i, (name, _, most) in enumerate(finders.ATTEMPTS):
 
             def look(grey, _, i=i):
                 seen.append((i, grey.size))
 
-            attempts = list(finding._ATTEMPTS)
+            attempts = list(finders.ATTEMPTS)
             attempts[i] = (name, look, most)
-            monkeypatch.setattr(finding, "_ATTEMPTS", tuple(attempts))
+            monkeypatch.setattr(finders, "ATTEMPTS", tuple(attempts))
         with pytest.raises(CornersNotFound, match="SB finder at 1316×987"):
             find_corners(np.zeros((6000, 8000), np.uint8), BOARD)
         assert [i for i, _ in seen] == [0, 1, 2, 3, 4]
@@ -565,7 +568,7 @@ class TestFinders:
 
     def test_a_pixel_of_a_reduced_copy_is_the_mean_of_those_it_covers(self):
         grey = np.random.default_rng(0).integers(0, 256, (6, 8), dtype=np.uint8)
-        small = _cv.shrink(grey, (4, 3))
+        small = finders.shrink(grey, (4, 3))
         np.testing.assert_allclose(small, grey.reshape(3, 2, 4, 2).mean((1, 3)), atol=0.51)
 
 

@@ -42,7 +42,7 @@ ONLY_IN = {
     "cv2": {
         "files.decoding",
         "pictures.exposure",
-        "targets.finding",
+        "targets.finders",
         "targets.opencv_finders",
         "warping",
     },

@@ -21,7 +21,7 @@ from test_stereo import (
 from cvnotes.commands.cli import main
 from cvnotes.files import read_camera, read_photo
 from cvnotes.pictures import course
-from cvnotes.targets import Chessboard, find_corners, finding
+from cvnotes.targets import Chessboard, find_corners, finders
 from cvnotes.targets.lattice import handedness
 from cvnotes.targets.opencv_finders import find_classic, find_sb
 
@@ -56,7 +56,7 @@ def test_the_committed_corners_are_those_measured_in_the_photographs(monkeypatch
     kept = course.real_corners()
     # They were measured from where OpenCV's SB finder had led.
     attempts = (("SB finder", find_sb, 1_300_000),)
-    monkeypatch.setattr(finding, "_ATTEMPTS", attempts)
+    monkeypatch.setattr(finders, "ATTEMPTS", attempts)
     np.testing.assert_allclose(corners_of(kept), [kept.left, kept.right], atol=5e-3)
 
 
@@ -127,8 +127,8 @@ def test_every_photograph_through_a_wide_lens_in_which_opencv_finds_the_board(na
     board, n = Chessboard(corners, 30.0, half_turn_symmetric=True), 0
     for file in files:
         image = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
-        finders = (find(image, corners) for find in (find_classic, find_sb))  # asked if needed
-        near = (m for m in finders if m is not None)
+        looks = (find(image, corners) for find in (find_classic, find_sb))  # asked if needed
+        near = (m for m in looks if m is not None)
         if (first := next(near, None)) is None:
             continue
         m = find_corners(image, board)

@@ -13,7 +13,7 @@ from cvnotes.base import (
 )
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.targets import Chessboard, harris, local_maxima, refine_edges, refine_subpixel
-from cvnotes.targets.edge_corners import (
+from cvnotes.targets.subpixel import (
     Window,
     crossing,
     crossing_jacobian,

@@ -2,12 +2,11 @@
 
 from cvnotes.targets.charuco import CharucoBoard
 from cvnotes.targets.chessboard import Chessboard
-from cvnotes.targets.edge_corners import refine_edges
 from cvnotes.targets.finding import find_corners
-from cvnotes.targets.gradient_corners import refine_subpixel
 from cvnotes.targets.harris_corners import harris, local_maxima
 from cvnotes.targets.planes import ThreePlanes, TwoPlanes
 from cvnotes.targets.sheet import PAPERS
+from cvnotes.targets.subpixel import refine_edges, refine_subpixel
 
 __all__ = [
     "Chessboard",

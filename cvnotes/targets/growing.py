@@ -6,11 +6,11 @@ from itertools import islice
 import numpy as np
 
 from cvnotes.base import Array, DegenerateError, Image
-from cvnotes.targets.edge_corners import fit_edges
-from cvnotes.targets.gradient_corners import led_by_gradients
+from cvnotes.targets.grey import Grey8
 from cvnotes.targets.lattice import Mask, completed
-from cvnotes.targets.opencv_finders import Grey8, find_part, has_opencv
+from cvnotes.targets.opencv_finders import find_part, has_opencv
 from cvnotes.targets.saddle_points import find_saddle_part
+from cvnotes.targets.subpixel import fit_edges, led_by_gradients
 
 _FAR = 0.35  # of a square: farther from where it was expected, it is another corner
 _WINDOW = 0.4  # half a window in which gradients lead to a corner, of a square
@@ -141,7 +141,7 @@ def _corners(grey: Image, expected: Array) -> Array | None:
     led = led_by_gradients(grey, expected.reshape(-1, 2), half, _LED)
     start = np.where(np.isfinite(led), led, expected.reshape(-1, 2))
     try:
-        fit = fit_edges(grey, start, grid=(columns, rows))
+        fit = fit_edges.inside(grey, start, grid=(columns, rows))
     except DegenerateError:
         return None
     m, contrast = fit.m.reshape(*shape, 2), fit.contrast.reshape(shape)

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, ShapeError, number, numbers
-from cvnotes.targets.patches import grey_picture
+from cvnotes.targets.grey import grey_picture
 
 
 def harris(image: npt.ArrayLike, *, sigma: float = 1.5, k: float = 0.04) -> Array:

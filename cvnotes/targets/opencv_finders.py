@@ -9,14 +9,13 @@ points (`cvnotes.targets.saddle_points`).
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
-
-Grey8 = npt.NDArray[np.uint8]
+from cvnotes.targets.grey import Grey8
 
 
 def has_opencv() -> bool:
@@ -85,6 +84,7 @@ def find_part(grey: Grey8) -> Array | None:
 
 # Markers of so many bits a side, and how many there are.
 DICTIONARIES = tuple(f"{n}x{n}_{many}" for n in (4, 5, 6, 7) for many in (50, 100, 250, 1000))
+_SURE = 4  # markers of a dictionary: one alone may be read into anything
 
 
 def marker_cells(dictionary: str, count: int) -> npt.NDArray[np.bool_]:
@@ -104,19 +104,43 @@ def marker_cells(dictionary: str, count: int) -> npt.NDArray[np.bool_]:
     return np.array([markers.generateImageMarker(i, n) == 0 for i in range(count)])
 
 
-def find_charuco(
-    grey: Grey8, squares: tuple[int, int], marker: float, dictionary: str
-) -> tuple[Array, npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-    """Look for the corners of a ChArUco board, whose markers have the side `marker` in squares.
+class Numbered(NamedTuple):
+    """What can be read of a ChArUco board in a picture.
 
-    Gives the corners (n, 2), their numbers (n,), and the numbers of all markers that were read.
+    Its corners m (n, 2) and their numbers (n,); the numbers of all markers that were read; and the
+    dictionary of the markers that are there, if not one is of that asked for, else "".
+    """
+
+    m: Array
+    numbers: npt.NDArray[np.intp]
+    markers: npt.NDArray[np.intp]
+    other: str
+
+
+def find_numbered(
+    grey: Grey8, squares: tuple[int, int], marker: float, dictionary: str
+) -> Numbered:
+    """Look for the corners of a ChArUco board, whose markers have the side `marker` in squares.
 
     Examples
     --------
-    >>> m, ids, markers = find_charuco(np.zeros((40, 40), np.uint8), (5, 4), 0.75, "4x4_50")
-    >>> m.shape, len(ids), len(markers)
-    ((0, 2), 0, 0)
+    >>> find_numbered(np.zeros((40, 40), np.uint8), (5, 4), 0.75, "4x4_50").m.shape
+    (0, 2)
     """
+    m, numbers, markers = _detected(grey, squares, marker, dictionary)
+    other = ""
+    if not len(markers):
+        # Of the dictionaries with as many bits, the smaller ones are parts of the largest.
+        largest = [name for name in DICTIONARIES if name.endswith("_1000")]
+        read = {name: len(_detected(grey, squares, marker, name)[2]) for name in largest}
+        best = max(read, key=lambda name: read[name])
+        other = best.split("_")[0] if read[best] >= _SURE else ""
+    return Numbered(m, numbers, markers, other)
+
+
+def _detected(
+    grey: Grey8, squares: tuple[int, int], marker: float, dictionary: str
+) -> tuple[Array, npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     import cv2
 
     board = cv2.aruco.CharucoBoard(squares, 1.0, marker, _dictionary(dictionary))
@@ -154,39 +178,6 @@ def one_thread_each() -> Iterator[None]:
         yield
     finally:
         cv2.setNumThreads(before)
-
-
-def shrink(grey: Grey8, size: tuple[int, int]) -> Grey8:
-    """Reduce a picture to (width, height), each pixel the mean of the area it covers.
-
-    Examples
-    --------
-    >>> shrink(np.array([[0, 100, 8, 8]], np.uint8), (2, 1))
-    array([[50,  8]], dtype=uint8)
-    """
-    if not has_opencv():
-        means = area_means(area_means(grey, size[1]).T, size[0]).T
-        return np.rint(means).astype(np.uint8)
-    import cv2
-
-    return np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-
-
-def area_means(rows: npt.NDArray[Any], count: int) -> Array:
-    """Reduce the first axis to so many rows, each the mean of those, and parts of those, it covers.
-
-    Examples
-    --------
-    >>> area_means(np.array([[0.0], [6.0], [12.0]]), 2)
-    array([[ 2.],
-           [10.]])
-    """
-    n = len(rows)
-    sums = np.concatenate([np.zeros((1, *rows.shape[1:])), np.cumsum(rows, axis=0, dtype=float)])
-    ends = np.linspace(0, n, count + 1)
-    whole = np.minimum(ends.astype(np.intp), n - 1)
-    upto = sums[whole] + (ends - whole)[:, None] * rows[whole]
-    return np.asarray(np.diff(upto, axis=0) * (count / n))
 
 
 def _found(

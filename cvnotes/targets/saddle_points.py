@@ -4,7 +4,7 @@ Where four squares meet, the smoothed grey levels have a saddle: light along one
 along the other. The matrix H of second derivatives says there how much of a saddle it is, by its
 determinant, and which quadrants are light. The directions of the two edges it does not tell: around
 a crossing of straight edges its trace is 0, whatever their angle. The gradients around tell them
-(`cvnotes.targets.edge_corners.gradient_axes`).
+(`cvnotes.targets.subpixel.gradient_axes`).
 """
 
 from collections import deque
@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, Image
-from cvnotes.targets.edge_corners import gradient_axes
 from cvnotes.targets.harris_corners import local_maxima
-from cvnotes.targets.lattice import Mask
+from cvnotes.targets.subpixel import Mask, gradient_axes
 
 SCALES = (1.5, 2.5, 4.0)  # px: what is blurred or noisy shows at the larger ones
 _WEAK = 0.01  # of the strongest saddle; the square of a contrast, which light and slant reduce
