@@ -94,9 +94,14 @@ def pytest_collection_finish():
 
 @pytest.fixture(autouse=True)
 def same_chances():
-    """Let OpenCV's finders draw the same, whichever tests ran before."""
-    if hasattr(cv2 := sys.modules.get("cv2"), "setRNGSeed"):
-        cv2.setRNGSeed(0)
+    """Let OpenCV's finders draw the same, whichever tests ran before; give what does so again."""
+
+    def again():
+        if hasattr(cv2 := sys.modules.get("cv2"), "setRNGSeed"):
+            cv2.setRNGSeed(0)
+
+    again()
+    return again
 
 
 @pytest.fixture(scope="module")

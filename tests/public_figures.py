@@ -149,7 +149,7 @@ FIGURES = [
         formation.draw_pixels,
         {"image": (SMALL, PICTURE), "corner": ((4, 3), SINGLE)},
         sizes=("size",),
-        size=(8, 6),
+        size=(4, 3),
     ),
     figure(formation.draw_half_pixels, {"factor": (2, ONE)}),
     # least squares

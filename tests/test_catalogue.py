@@ -1,12 +1,14 @@
 """The catalogue of bad input and faults: what each of its 135 rows leads to.
 
-Rows 1 to 18 concern every public function that takes arrays: they are tried here on all of them
-(`public_face.FUNCTIONS`, `public_figures.FIGURES`), and a test's id begins with its row.
+Rows 1 to 18 concern every public function that takes arrays. Each is a test here that asks all of
+them (`public_face.FUNCTIONS`, `public_figures.FIGURES`) and names every function that fails, with
+the row: an item of pytest's for each function would take longer than most of the questions.
 `catalogue.ELSEWHERE` says which tests hold the other rows; that these tests exist is tested.
 """
 
 import ast
 import inspect
+import re
 import warnings
 from decimal import Decimal
 from fractions import Fraction
@@ -15,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from catalogue import ELSEWHERE, HERE
+from matplotlib.axis import Axis
 from public_face import FUNCTIONS as COMPUTING
 from public_figures import FIGURES
 
@@ -38,6 +41,15 @@ class Unwilling:
 
 class Relative(np.ndarray):
     """An array that is a little more than one."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def axes_without_ticks():
+    """Let matplotlib make no ticks: they are most of what axes cost, and none is drawn here."""
+    with pytest.MonkeyPatch.context() as patch:
+        for change in ("grid", "set_clip_path", "set_tick_params"):
+            patch.setattr(Axis, change, lambda *_, **__: None)
+        yield
 
 
 def answer(function, /, **changed):
@@ -102,18 +114,40 @@ def with_first(x, value):
     return x
 
 
-def each(keep=lambda _: True):
-    """Choose all functions with array arguments that `keep` wants, for parametrisation."""
+def every_array(keep):
+    """Give all functions, each with those of its array arguments that `keep` wants, if any."""
     for function in FUNCTIONS:
-        arrays = {name: a for name, a in function.arrays.items() if keep(a)}
-        if arrays:
-            yield pytest.param(function, arrays, id=str(function))
+        if arrays := {name: a for name, a in function.arrays.items() if keep(a)}:
+            yield function, arrays
 
 
 def row(number, keep=lambda _: True):
-    """Parametrise a test over functions, with the catalogue's row in its id."""
-    cases = [pytest.param(*p.values, id=f"row {number}: {p.id}") for p in each(keep)]
-    return pytest.mark.parametrize(("function", "arrays"), cases)
+    """Make one test of what is asked of a function and its arrays; all that fail are named."""
+    return of_all(f"row {number}", list(every_array(keep)))
+
+
+def of_all(what, cases):
+    """Make one test that asks the same of all cases, and says which functions fail, and how."""
+    assert cases
+
+    def asking(ask):
+        def test(same_chances):
+            failed, first = [], None
+            for function, *more in cases:
+                same_chances()
+                try:
+                    ask(function, *more)
+                except (Exception, pytest.fail.Exception) as error:
+                    first = first or error
+                    failed.append(f"{function}: {type(error).__name__}: {error}")
+            if failed:
+                text = f"{what}: {len(failed)} of {len(cases)} functions fail\n"
+                raise AssertionError(text + "\n".join(failed)) from first
+
+        test.__name__, test.__doc__ = ask.__name__, ask.__doc__
+        return test
+
+    return asking
 
 
 def is_numeric(argument):
@@ -124,7 +158,7 @@ def has_columns(argument):
     return argument.columns is not None
 
 
-@pytest.mark.parametrize("function", FUNCTIONS, ids=str)
+@of_all("good arguments", [(function,) for function in FUNCTIONS])
 def test_good_arguments_are_answered_without_a_doubt_that_is_not_ours(function):
     good_answer(function)  # neither an error nor a warning, which would be one here
 
@@ -157,7 +191,8 @@ def test_numbers_near_the_largest_never_overflow_and_never_come_out_as_garbage(f
     for name, argument in arrays.items():
         good = np.asarray(function.good[name], dtype=float)
         for huge in (1e100, 1e150, 7e153, 1e200, 1e308, -1e308, 1e-308, 5e-324):
-            for x in (with_first(good, huge), np.full(good.shape, huge), good * (huge / 1e5)):
+            spoilt = (with_first(good, huge), np.full(good.shape, huge), good * (huge / 1e5))
+            for x in {x.tobytes(): x for x in spoilt}.values():  # of one number, two are the same
                 result = outcome(function, **{name: x})
                 if argument.homogeneous or argument.picture or np.abs(x).max() < 1e180:
                     continue
@@ -226,9 +261,7 @@ def test_a_column_too_few_or_too_many_is_refused_with_both_shapes(function, arra
             assert name in message or "of one space" in message, message
 
 
-@pytest.mark.parametrize(
-    "function", [pytest.param(f, id=f"row 7: {f}") for f in FUNCTIONS if f.paired]
-)
+@of_all("row 7", [(function,) for function in FUNCTIONS if function.paired])
 def test_points_without_partners_are_refused_with_both_numbers(function):
     short, full = (np.asarray(function.good[name]) for name in function.paired)
     n = full.shape[-2]
@@ -305,36 +338,43 @@ def test_what_fails_while_becoming_an_array_is_an_error_of_type_with_its_reason(
 @pytest.mark.slow
 @row(12)
 def test_the_same_numbers_in_another_dress_give_the_same_answer(function, arrays):
-    expected = good_answer(function)
-    for name in arrays:
-        x = np.asarray(function.good[name])
-        dresses = {
-            "list": x.tolist(),
-            "tuple": tuple(x.tolist()) if x.ndim else float(x),
-            "big-endian": x.astype(x.dtype.newbyteorder(">")),
-            "subclass": x.view(Relative) if x.ndim else x,
-        }
-        if x.ndim:
-            dresses["Fortran order"] = np.asfortranarray(x)
-            dresses["strided"] = np.repeat(x, 2, axis=0)[::2]
-            dresses["backwards"] = np.flip(np.flip(x).copy())
-        for dress, value in dresses.items():
-            if function.arrays[name].picture and dress == "list":
-                continue  # a picture's dtype would be lost
-            result = numbers_of(answer(function, **{name: value}))
-            assert np.allclose(result, expected, rtol=1e-9, atol=1e-9, equal_nan=True), dress
+    dressed = {name: dresses(function.good[name], arrays[name].picture) for name in arrays}
+    for turn in range(max(map(len, dressed.values()))):
+        # Each array wears each dress once, and another one than the array beside it.
+        chosen = {}
+        for place, (name, wardrobe) in enumerate(dressed.items()):
+            chosen[name] = list(wardrobe)[(turn + place) % len(wardrobe)]
+        worn = {name: dressed[name][dress] for name, dress in chosen.items()}
+        result = numbers_of(answer(function, **worn))
+        expected = good_answer(function)
+        assert np.allclose(result, expected, rtol=1e-9, atol=1e-9, equal_nan=True), chosen
 
 
-@row(13)
+def dresses(good, picture):
+    """Give the same numbers as other objects, by what they are."""
+    x = np.asarray(good)
+    worn = {"big-endian": x.astype(x.dtype.newbyteorder(">"))}
+    if not picture:  # its dtype would be lost in a list
+        worn["list"] = x.tolist()
+    worn["tuple"] = tuple(x.tolist()) if x.ndim else float(x)
+    if x.ndim:
+        worn["subclass"] = x.view(Relative)
+        worn["Fortran order"] = np.asfortranarray(x)
+        worn["strided"] = np.repeat(x, 2, axis=0)[::2]
+        worn["backwards"] = np.flip(np.flip(x).copy())
+    return worn
+
+
 @pytest.mark.slow
+@row(13)
 def test_read_only_input_is_read_and_no_input_is_written_to(function, arrays):
-    for name in arrays:
-        x = np.array(function.good[name])
-        before = x.copy()
-        numbers_of(answer(function, **{name: x}))
-        assert np.array_equal(x, before)
+    before = {name: np.array(function.good[name]) for name in arrays}
+    own = {name: x.copy() for name, x in before.items()}
+    numbers_of(answer(function, **own))
+    for name, x in own.items():
+        assert np.array_equal(x, before[name]), name
         x.setflags(write=False)
-        numbers_of(answer(function, **{name: x}))
+    numbers_of(answer(function, **own))
 
 
 @pytest.mark.slow
@@ -366,9 +406,11 @@ def test_masks_are_not_dropped_in_silence_and_long_doubles_are_read(function, ar
         assert "masked" in refusal(function, name, np.ma.array(x, mask=x == x.max()))
         if x.ndim:
             assert "masked" in refusal(function, name, [np.ma.array(r, mask=True) for r in x])
-        if not function.arrays[name].picture:
-            result = numbers_of(answer(function, **{name: x.astype(np.longdouble)}))
-            assert np.array_equal(result, good_answer(function), equal_nan=True)
+    good = {name: function.good[name] for name in arrays if not arrays[name].picture}
+    if good:
+        wide = {name: np.asarray(x).astype(np.longdouble) for name, x in good.items()}
+        result = numbers_of(answer(function, **wide))
+        assert np.array_equal(result, good_answer(function), equal_nan=True)
 
 
 BAD_SIZES = [
@@ -394,9 +436,7 @@ BAD_SIZES = [
 ]
 
 
-@pytest.mark.parametrize(
-    "function", [pytest.param(f, id=f"row 16: {f}") for f in FUNCTIONS if f.sizes]
-)
+@of_all("row 16", [(function,) for function in FUNCTIONS if function.sizes])
 def test_a_size_is_width_and_height_in_whole_pixels(function):
     for name in function.sizes:
         for size in BAD_SIZES:
@@ -411,7 +451,7 @@ def test_opencvs_coefficients_are_four_or_five(n):
         lens_from_opencv(np.full(n, 0.1))
 
 
-@pytest.mark.parametrize("function", [pytest.param(f, id=f"row 18: {f}") for f in FUNCTIONS])
+@of_all("row 18", [(function,) for function in FUNCTIONS])
 def test_a_misspelt_keyword_is_never_swallowed(function):
     with pytest.raises(TypeError, match="unexpected keyword argument"):
         answer(function, lense="k1 k2")
@@ -427,9 +467,8 @@ def test_the_first_nan_is_shown_its_place():
 def names_of_tests():
     """Give the names of all tests, as file::test, without ``test_``."""
     for path in TESTS.glob("test_*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
-                yield f"{path.stem.removeprefix('test_')}::{node.name.removeprefix('test_')}"
+        for name in re.findall(r"^ *def test_(\w+)\(", path.read_text("utf-8"), re.MULTILINE):
+            yield f"{path.stem.removeprefix('test_')}::{name}"
 
 
 def test_every_row_of_the_catalogue_has_its_tests():
