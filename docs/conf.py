@@ -118,7 +118,7 @@ def lead_back(*event: Any) -> None:
         documented.setdefault(entry.docname, []).append(full)
 
     def known(match: re.Match[str]) -> str:
-        """Put the documented name in place of the one that has most of its last parts."""
+        """Lead to the documented name that has most of its last parts in common with this one."""
         document, name = match.groups()
         parts = name.split(".")
         for tail in (".".join(["", *parts[i:]]) for i in range(len(parts))):

@@ -399,6 +399,16 @@ def test_the_same_figure_gives_the_same_bytes():
     assert encode(draw_residuals(NOISE).figure) == encode(draw_residuals(NOISE).figure)
 
 
+def test_a_figure_is_afterwards_what_it_was():
+    figure = draw_view_rms(NOISE).figure
+    figure.set_facecolor("yellow")
+    before = figure.canvas, figure.dpi, figure.get_facecolor(), tuple(figure.get_size_inches())
+    picture = decoded(show(figure, alt="x")).convert("RGB")
+    assert picture.getpixel((0, 0)) == (255, 255, 255)
+    now = figure.canvas, figure.dpi, figure.get_facecolor(), tuple(figure.get_size_inches())
+    assert now == before
+
+
 def test_axes_rows_of_axes_and_figures_can_be_shown():
     axes = panels(2)
     for thing in (axes, axes[0], axes[0].figure):

@@ -238,14 +238,39 @@ def test_what_cannot_be_rendered_is_refused_in_words(arguments, options, error, 
             depth_map(*arguments)
 
 
-def test_a_rendered_fisheye_shows_each_side_of_a_room_where_the_lens_puts_its_edges():
+def room_of_greys():
+    """Give a cube around the camera, each of its sides of another grey."""
     colours = np.arange(1, 7)[:, None, None] / 8 * np.ones(3)
     room = box((-90, 90), (-90, 90), (-90, 90), np.repeat(colours, 2, axis=1))
+    return replace(room, around=Surroundings(ambient=1.0))
+
+
+def crossing(row, u):
+    """Give where a row of grey levels passes from one level to the next, near u."""
+    before, after = row[u - 4], row[u + 5]
+    return u - 4 + np.sum((row[u - 4 : u + 6] - after) / (before - after)) - 0.5
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_narrow_fisheye_shows_an_edge_where_the_lens_puts_it(axis):
+    # The camera is turned by 0.6 rad: it sees a part of two sides, neither from its corner on.
+    turned = pose(rotation_from_vector([[0, 0.6, 0], [-0.6, 0, 0]][axis]), np.zeros(3))
+    camera = Camera(intrinsics(150, 150, 120, 60), turned, FisheyeLens((-0.01,)), size=(241, 121))
+    picture = render_scene(room_of_greys(), camera)[..., 0].astype(int)
+    theta = np.radians(-45) + 0.6
+    edge_at = [120, 60][axis] + 150 * theta * (1 - 0.01 * theta**2)
+    along = picture[60] if axis == 0 else picture[:, 120]
+    assert crossing(along, int(edge_at)) == pytest.approx(edge_at, abs=0.1)
+    assert len(np.unique(along[: int(edge_at) - 3])) == 1
+    assert len(np.unique(along[int(edge_at) + 4 :])) == 1
+
+
+def test_a_rendered_fisheye_shows_each_side_of_a_room_where_the_lens_puts_its_edges():
     turned = pose(rotation_from_vector([0, 0.35, 0]), np.zeros(3))
     camera = Camera(
         intrinsics(60, 60, 199.5, 199.5), turned, FisheyeLens((-0.01,)), size=(400, 400)
     )
-    picture = render_scene(replace(room, around=Surroundings(ambient=1.0)), camera)[..., 0]
+    picture = render_scene(room_of_greys(), camera)[..., 0]
     # upright edges at 45° and 135° on both sides, seen in the middle row, 0.35 rad further right
     row = picture[199].astype(int)
     theta = np.radians([45, 135, -45, -135]) + 0.35
@@ -253,8 +278,5 @@ def test_a_rendered_fisheye_shows_each_side_of_a_room_where_the_lens_puts_its_ed
     levels = np.unique(row[[120, 199, 270, 385]])
     assert len(levels) >= 3
     for edge_at in edges:
-        u = int(edge_at)
-        before, after = row[u - 4], row[u + 5]
-        crossing = u - 4 + np.sum((row[u - 4 : u + 6] - after) / (before - after)) - 0.5
-        assert crossing == pytest.approx(edge_at, abs=0.1)
+        assert crossing(row, int(edge_at)) == pytest.approx(edge_at, abs=0.1)
     assert (picture[0, 0] == 0).all()  # 200√2/60 rad from the axis: more than there is

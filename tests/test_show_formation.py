@@ -43,6 +43,9 @@ def test_each_panel_of_the_chain_shows_the_point_after_its_step(lens):
         steps.append(xy * (1 - 0.35 * (xy @ xy) + 0.08 * (xy @ xy) ** 2))
     steps.append(camera.project(W))
     assert len(axes) == len(steps)
+    numbered = ["1. G →", "2. ÷ z →", "3. lens →", "4. A →"] if lens.k else [
+        "1. G →", "2. ÷ z →", "3. A →"]  # fmt: skip
+    assert [t.get_text() for ax in axes for t in ax.texts if "→" in t.get_text()] == numbered
     for ax, expected in zip(axes, steps, strict=True):
         (found,) = crosses(ax)
         np.testing.assert_allclose(found, expected, rtol=1e-9)
@@ -72,6 +75,9 @@ def test_pixels_are_squares_around_whole_numbers():
     assert ax.get_xlim() == (9.5, 13.5)
     assert ax.get_ylim() == (22.5, 19.5)
     assert len(ax.patches) == 12
+    (centres,) = ax.lines
+    middles = [np.add(square.get_xy(), 0.5).tolist() for square in ax.patches]
+    assert centres.get_xydata().tolist() == middles
     with pytest.raises(CvnotesError, match="not inside"):
         draw_pixels(np.zeros((48, 64), np.uint8), (62, 20), (4, 3))
 

@@ -83,6 +83,9 @@ def test_maps_of_the_uncertainty_share_their_colours_where_they_are_to_be_compar
         found = calibrate(course_board.points, m[:n], (640, 480))
         ax = draw_prediction_error(found, between=(0.0, 0.05))
         colours.append(ax.collections[0].get_clim())
+        _, bar = ax.figure.axes
+        assert bar.get_ylabel() == "σ (px)"
+        assert bar.get_yticks() == pytest.approx(ax.collections[1].levels)
     assert colours[0] == colours[1]
     with pytest.raises(CvnotesError, match=r"between: expected \(least, most\), got \(2, 1\)"):
         draw_prediction_error(found, between=(2, 1))

@@ -200,8 +200,8 @@ def edges_in_picture(
     start, end : ndarray, shape (n, 2)
         Pieces of edge in pixels, also outside of the picture.
     jump : ndarray, shape (n, 2)
-        By how much the two sides of each piece differ, as in `coverage.edge_means`: in grey level
-        (0 where the target is not), and in whether the target is there (0 or 1).
+        By how much the two sides of each piece differ, as in `pixel_means.edge_means`: in grey
+        level (0 where the target is not), and in whether the target is there (0 or 1).
 
     Examples
     --------
