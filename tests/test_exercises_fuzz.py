@@ -113,7 +113,9 @@ def test_infinity_is_no_line_and_no_point():
 def test_real_numbers_in_other_clothes_are_numbers():
     drop = EXERCISES["drop"].reference
     assert check("drop", lambda x_h: drop(x_h) + 0j).passed
-    assert check("field_of_view", lambda *x: Fraction(EXERCISES["field_of_view"].reference(*x)))
+    assert check(
+        "field_of_view", lambda *x: Fraction(EXERCISES["field_of_view"].reference(*x))
+    ).passed
     assert check("count_holes", lambda *x: Decimal(EXERCISES["count_holes"].reference(*x)))
     assert "complex numbers" in check("drop", lambda x_h: drop(x_h) + 1j).message
 
@@ -138,6 +140,19 @@ def test_words_about_shapes_are_measured():
 def test_a_choice_is_no_number():
     assert check("bad_views", 1).message == "The answer is one of A, B, C, D; '1' is none."
     assert not check("which_to_trust", True).passed
+
+
+def test_a_value_is_spoken_of_as_no_function():
+    for name in ("corner_shift", "bad_views"):
+        message = check(name, None).message
+        assert (
+            message == "The answer is None: is a return missing in the function that worked it out?"
+        )
+    uncalled = check("corner_shift", check).message
+    assert uncalled.endswith("was not called: are the brackets missing? Numbers are wanted.")
+    assert check("corner_shift", [object()]).message.endswith("; numbers are wanted.")
+    words = check("drop", lambda x_h: x_h.astype(str)).message
+    assert words == "The answer is an ndarray of text; an array of numbers is wanted."
 
 
 def test_the_pipeline_says_which_steps_are_missing():

@@ -166,13 +166,13 @@ def _array(data: str, shape: list[int]) -> Array:
 
 def _what(answer: Any, array: npt.NDArray[Any], kind: str) -> str:
     """Say what was returned in place of numbers."""
+    article = "an" if kind[:1].lower() in "aeiou" or kind == "ndarray" else "a"
     if callable(answer):
-        return f"a {kind} that was not called: are the brackets missing?"
+        return f"{article} {kind} that was not called: are the brackets missing?"
     if array.dtype.kind == "c":
         return "complex numbers"
     if array.dtype.kind in "US":
-        return f"a {kind} of text"
+        return f"{article} {kind} of text"
     if array.ndim:
-        return f"a {kind} of things that are not all numbers"
-    article = "an" if kind[:1].lower() in "aeiou" else "a"
+        return f"{article} {kind} of things that are not all numbers"
     return f"{article} {clean(kind, 40)}"

@@ -17,7 +17,10 @@ _RAISED = {
 
 def trouble(outcome: Outcome, exercise: Exercise) -> str:
     """Say kindly and exactly what happened instead of an answer."""
+    value = exercise.answer == "value"
     match outcome.kind:
+        case "none" if value:
+            return "The answer is None: is a return missing in the function that worked it out?"
         case "none":
             return (
                 "Your function gives None: is a return missing? Or is a function that it uses "
@@ -42,7 +45,10 @@ def trouble(outcome: Outcome, exercise: Exercise) -> str:
             name = outcome.words.split(":")[0].split(",")[0]
             return _RAISED.get(name, f"Your function raised {outcome.words}.")
         case _:
-            return f"The answer is {outcome.words}; an array of numbers is wanted."
+            wanted = "numbers are wanted." if value else "an array of numbers is wanted."
+            if outcome.words.endswith("?"):
+                return f"The answer is {outcome.words} {wanted.capitalize()}"
+            return f"The answer is {outcome.words}; {wanted}"
 
 
 def other_shape(answer: Array, right: Array) -> str:
