@@ -216,6 +216,8 @@ def test_two_cameras_find_the_same_board():
         assert found.left_out_boards["free"] == pytest.approx(free_rms, abs=0.002)
         assert found.shape.kind == "free"
         assert found.rms < 0.085
+        (note,) = found.notes_on_deviations
+        assert "as with a board that bends differently from picture to picture or" in note
         heights.append(found.shape.heights)
     assert np.corrcoef(heights)[0, 1] > 0.95
     # and how far they differ is what each says of itself

@@ -171,10 +171,13 @@ class Calibration:
             return (f"±: from noise alone, {why}; the true error may be several times larger",)
         if self.rms < _ROUNDED_RMS or (times := float(np.median(honest / noise))) <= _MORE:
             return ()
+        board = "a bent board"
+        if self.shape is not None:
+            board = "a board that bends differently from picture to picture"
         return (
             f"±: from the scatter between views, {times:.1f} times what noise alone would give; "
-            "corners of a view miss their places together, as with a bent board or a lens that "
-            "does not quite fit",
+            f"corners of a view miss their places together, as with {board} or a lens that does "
+            "not quite fit",
         )
 
     @cached_property
