@@ -145,10 +145,12 @@ def test_learning_does_not_draw():
 def test_importing_the_geometry_loads_numpy_only():
     script = (
         "import sys, numpy; before = set(sys.modules)\n"
-        "import cvnotes, cvnotes.calibration, cvnotes.stereo\n"
+        "import cvnotes, cvnotes.calibration, cvnotes.stereo, cvnotes.camera\n"
+        "cvnotes.camera.Lens((-0.1, 0.1))\n"
         "heavy = {'scipy', 'cv2', 'matplotlib', 'trimesh', 'ipywidgets', 'PIL', 'yaml', 'tqdm'}\n"
         "loaded = set(sys.modules) - before\n"
         "heavy |= {'numpy.polynomial', 'cvnotes.files', 'html', 'json', 'pathlib'} - before\n"
+        "heavy |= {'numpy.ma'} - before\n"
         "print(sorted(heavy & (loaded | {m.split('.')[0] for m in loaded})))"
     )
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)

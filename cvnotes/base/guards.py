@@ -1,5 +1,6 @@
 """Guards of arguments: arrays of real and finite numbers, and what a camera is made of."""
 
+import sys
 from contextlib import nullcontext
 from typing import Any
 
@@ -152,9 +153,9 @@ def matrix(x: Any, name: str, *shape: int) -> Array:
 
 def is_masked(x: Any) -> bool:
     """Tell whether x is a masked array, or a list of such, whose masks NumPy would drop."""
-    if isinstance(x, list | tuple):
-        return any(isinstance(item, np.ma.MaskedArray) for item in x)
-    return isinstance(x, np.ma.MaskedArray)
+    # Whoever has one has loaded what makes them; everybody else starts sooner without it.
+    masked = getattr(sys.modules.get("numpy.ma"), "MaskedArray", ())
+    return any(isinstance(item, masked) for item in (x if isinstance(x, list | tuple) else [x]))
 
 
 def _refuse_extremes(array: Array, name: str, largest: float) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base.errors import CvnotesError, InputTypeError, ShapeError
-from cvnotes.base.guards import Array, numbers, real
+from cvnotes.base.guards import Array, is_masked, numbers, real
 from cvnotes.base.numerics import chunks
 
 Image = npt.NDArray[np.uint8 | np.uint16 | np.float32 | np.float64]
@@ -27,7 +27,7 @@ def checked_image(x: Any, name: str = "image") -> Image:
     """
     if not isinstance(x, np.ndarray):
         x = numbers(x, name)
-    if isinstance(x, np.ma.MaskedArray):
+    if is_masked(x):
         raise InputTypeError(f"{name}: masked arrays are not read; put NaN where nothing is known")
     x = x.view(np.ndarray)
     if x.dtype.kind + str(x.dtype.itemsize) not in ("u1", "u2", "f4", "f8"):

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, numbers, points
+from cvnotes.base.guards import is_masked
 from cvnotes.camera import skew_matrix
 
 PointSets = npt.ArrayLike | Sequence[npt.ArrayLike]
@@ -156,7 +157,7 @@ class Correspondences:
 
 def _stack(sets: Any, name: str, dims: tuple[int, ...]) -> tuple[Array, Any]:
     """Give all views as one array (n_views, n, d), filled up, and which points are real."""
-    masked = any(isinstance(s, np.ma.MaskedArray) for s in (sets, *_list(sets)))
+    masked = any(is_masked(s) for s in (sets, *_list(sets)))
     try:
         one = np.asarray(sets)
         uniform = one.dtype.kind in "iuf" and not masked

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
+from cvnotes.base.guards import is_masked
 
 # More values than this answer no exercise.
 MAX_VALUES = 2_000_000
@@ -94,7 +95,7 @@ def outcome_of(answer: Any) -> Outcome:
         return Outcome("unfinished")
     if isinstance(answer, str | bytes):
         return Outcome("text", words=clean(repr(answer[:60]), 60))
-    if isinstance(answer, np.ma.MaskedArray) and np.ma.is_masked(answer):
+    if isinstance(answer, np.ndarray) and is_masked(answer) and np.ma.is_masked(answer):
         return Outcome("other", words="a masked array with masked entries")
     kind = type(answer).__name__
     try:
