@@ -147,6 +147,18 @@ def worked_out_once():
         yield
 
 
+@pytest.fixture
+def course_again():
+    """Let a test add exercises: afterwards the course has its own ones again."""
+    from cvnotes.learn import EXERCISES, exercises
+
+    before = dict(EXERCISES)
+    yield
+    EXERCISES.clear()
+    EXERCISES.update(before)
+    exercises._ADDED.clear()
+
+
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory):
     """Give what lets one worker of a run in at a time, into a folder that all of them share."""

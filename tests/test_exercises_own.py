@@ -23,16 +23,12 @@ RIGHT = (
 
 
 @pytest.fixture
-def own(tmp_path, monkeypatch):
-    """Give the file of the page; afterwards the course has its own exercises again."""
+def own(tmp_path, monkeypatch, course_again):  # noqa: ARG001
+    """Give the file of the page."""
     monkeypatch.setattr(exercises, "_SESSION", exercises._Session())
-    before = dict(EXERCISES)
     path = tmp_path / "my_exercises.py"
     path.write_text(CODE, encoding="utf-8")
-    yield path
-    EXERCISES.clear()
-    EXERCISES.update(before)
-    exercises._ADDED.clear()
+    return path
 
 
 def _right():

@@ -8,7 +8,6 @@ import ast
 import copy
 import inspect
 import textwrap
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import sha256
@@ -64,10 +63,10 @@ class Code:
         >>> own_code(cells).borrowed("dlt")
         "uses the library's own dlt"
         """
-        handed = self.handed.get(name)
-        if handed is None or EXERCISES[name].answer == "value":
+        handed, exercise = self.handed.get(name), EXERCISES[name]
+        if handed is None or exercise.answer == "value":
             return ""
-        theirs = _sources(name)
+        theirs = _shapes(exercise.sources or (exercise.reference,))
         own = self.functions(name)
         for tree in (handed, *own):
             for node in ast.walk(tree):
@@ -164,13 +163,9 @@ def _is_theirs(node: ast.Attribute, theirs: dict[str, str], imported: dict[str, 
 
 
 @cache
-def _sources(name: str) -> dict[str, str]:
+def _shapes(sources: tuple[Any, ...]) -> dict[str, str]:
     """Give the library's functions that answer an exercise: name and shape."""
-    exercise = EXERCISES[name]
-    return dict(_shapes(exercise.sources or (exercise.reference,)))
-
-
-def _shapes(sources: tuple[Any, ...]) -> Iterator[tuple[str, str]]:
+    shapes = {}
     for source in sources:
         function = getattr(source, "fget", None) or getattr(source, "func", None) or source
         try:
@@ -179,7 +174,8 @@ def _shapes(sources: tuple[Any, ...]) -> Iterator[tuple[str, str]]:
             continue
         for node in tree.body:
             if isinstance(node, ast.FunctionDef):
-                yield node.name, _shape(node, rename=False)
+                shapes[node.name] = _shape(node, rename=False)
+    return shapes
 
 
 def _shape(tree: ast.AST, *, rename: bool) -> str:
