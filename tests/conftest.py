@@ -38,8 +38,6 @@ settings.load_profile("course")
 # What one process has compiled, the others read: hundreds of them are started.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
-# With it, each that imports nbformat waits a second for the grammar of addresses in any letters.
-sys.modules.setdefault("rfc3987_syntax", None)
 # A shell has what it runs in the background ignore Ctrl-C, and with it all that tests start there.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, lambda *_: None)

@@ -1,8 +1,11 @@
 """The builder keeps what a page can show, drops what it cannot, and gives the same file twice."""
 
+import contextlib
+import io
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import nbformat
 import pytest
@@ -10,7 +13,7 @@ import pytest
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 SCRIPT = Path(__file__).resolve().parents[1] / "tools" / "build_notebooks.py"
-# The script, without what conftest.py spares these processes too.
+# The script, without what early.py spares these processes too.
 RUN = (
     "import runpy, sys; sys.modules['rfc3987_syntax'] = None; del sys.argv[0];"
     "runpy.run_path(sys.argv[0], run_name='__main__')"
@@ -29,12 +32,21 @@ def write(path, *cells):
 
 
 def run(*arguments):
-    command = [sys.executable, "-c", RUN, SCRIPT, *arguments]
-    return subprocess.run(command, capture_output=True, text=True)
+    """Call the script here, where what it imports is loaded."""
+    said = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(said):
+        patch.syspath_prepend(SCRIPT.parent)
+        patch.setattr(sys, "argv", [SCRIPT.name, *map(str, arguments)])
+        from build_notebooks import main
+
+        code = main()
+    return SimpleNamespace(returncode=code, stdout=said.getvalue())
 
 
 def built(path):
-    result = run(path)
+    """Call the script as its users do, to hear what the kernels say."""
+    command = [sys.executable, "-c", RUN, SCRIPT, path]
+    result = subprocess.run(command, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
     assert "eavesdropping" not in result.stderr
     return nbformat.read(path, as_version=4).cells
@@ -78,7 +90,7 @@ def test_built_twice_it_is_the_same_file_and_the_check_agrees(page):
     path, _ = page
     before = path.read_bytes()
     assert run("--check", path).returncode == 0
-    built(path)
+    assert run(path).returncode == 0
     assert path.read_bytes() == before
 
 

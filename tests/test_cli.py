@@ -13,6 +13,7 @@ import textwrap
 import urllib.request
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -236,7 +237,8 @@ def test_a_missing_or_empty_folder_is_said_in_one_line(tmp_path, capsys, name):
 
 @pytest.mark.slow
 def test_a_board_that_was_counted_wrongly_is_not_found(photos, tmp_path, capsys):
-    assert calibrate(photos, "--out", tmp_path / "out", corners="10x7") == 1
+    four = sorted(photos.iterdir())[::2]
+    assert calibrate(*four, "--out", tmp_path / "out", corners="10x7") == 1
     assert "a board of 10×7 inner corners was found in none" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
@@ -664,6 +666,18 @@ def test_a_browser_is_started_with_a_page_of_its_owners_and_not_with_the_token(t
         path = Path(urllib.request.url2pathname(page.removeprefix("file://")))
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert not path.exists()
+
+
+def test_jupyterlab_does_not_wait_for_a_grammar_that_none_of_its_settings_needs(monkeypatch):
+    from cvnotes.commands import jupyterlab
+
+    loaded = {}
+    app = SimpleNamespace(main=lambda: loaded.update(sys.modules))
+    monkeypatch.setitem(sys.modules, "jupyterlab.labapp", app)
+    monkeypatch.delitem(sys.modules, "rfc3987_syntax", raising=False)
+    jupyterlab.main()
+    assert loaded["rfc3987_syntax"] is None
+    monkeypatch.delitem(sys.modules, "rfc3987_syntax")
 
 
 def ended(server):

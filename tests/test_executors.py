@@ -26,13 +26,13 @@ from cvnotes.learn.grader.tables import marks_csv
 ROOT = Path(__file__).resolve().parents[1]
 
 
-@contextlib.contextmanager
+@pytest.fixture
 def threads():
     with ThreadPoolExecutor(2) as pool:
         yield pool
 
 
-@contextlib.contextmanager
+@pytest.fixture(scope="module")
 def processes():
     import multiprocessing
 
@@ -40,7 +40,7 @@ def processes():
         yield pool
 
 
-@contextlib.contextmanager
+@pytest.fixture
 def loky():
     from joblib.externals.loky import get_reusable_executor
 
@@ -49,14 +49,17 @@ def loky():
     pool.shutdown(kill_workers=True)
 
 
-@contextlib.contextmanager
-def dask():
-    with scheduler() as address, client(address) as connected:
+@pytest.fixture
+def dask(scheduler):
+    from distributed import Client
+
+    with Client(scheduler) as connected:
         yield connected.get_executor()
 
 
-@contextlib.contextmanager
+@pytest.fixture(scope="module")
 def scheduler():
+    """Give the address of a scheduler with two workers, to whom one client after another comes."""
     from distributed import LocalCluster
 
     options = {"dashboard_address": None, "host": "127.0.0.1", "threads_per_worker": 1}
@@ -64,13 +67,7 @@ def scheduler():
         yield cluster.scheduler_address
 
 
-def client(address):
-    from distributed import Client
-
-    return Client(address)
-
-
-@contextlib.contextmanager
+@pytest.fixture
 def ipyparallel():
     import ipyparallel
 
@@ -79,23 +76,24 @@ def ipyparallel():
 
 
 NEEDS = {
-    threads: "",
-    processes: "",
-    loky: "joblib",
-    dask: "distributed",
-    ipyparallel: "ipyparallel",
+    "threads": "",
+    "processes": "",
+    "loky": "joblib",
+    "dask": "distributed",
+    "ipyparallel": "ipyparallel",
 }
-INSTALLED = [make for make, module in NEEDS.items() if not module or find_spec(module)]
-each_executor = pytest.mark.parametrize("make", INSTALLED, ids=lambda make: make.__name__)
+INSTALLED = [name for name, module in NEEDS.items() if not module or find_spec(module)]
 # What the libraries of others complain of is theirs.
 pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow, pytest.mark.once]
 
 
-@pytest.fixture(autouse=True)
-def workers_find_us(monkeypatch):
+@pytest.fixture(autouse=True, scope="module")
+def workers_find_us():
     """Let workers that are started as commands import the tests' modules."""
     path = os.pathsep.join([str(ROOT), str(ROOT / "tests"), os.environ.get("PYTHONPATH", "")])
-    monkeypatch.setenv("PYTHONPATH", path)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", path)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -123,25 +121,24 @@ def test_a_class_is_graded_one_after_the_other_unless_asked(class_of_four):
     ]
 
 
-@each_executor
-def test_a_study_and_a_class_are_the_same_everywhere(make, class_of_four):
+@pytest.mark.parametrize("name", INSTALLED)
+def test_a_study_and_a_class_are_the_same_everywhere(name, request, class_of_four):
     folder, plain = class_of_four
     k, f = LENSES["barrel"]
-    with make() as executor:
-        found = cvnotes.study(partial(one, n=4, k=k, f=f), range(4), executor)
-        n, marks = grade_folder(folder, executor=executor)
-        table = marks_csv(in_order(marks))
+    executor = request.getfixturevalue(name)
+    found = cvnotes.study(partial(one, n=4, k=k, f=f), range(4), executor)
+    n, marks = grade_folder(folder, executor=executor)
+    table = marks_csv(in_order(marks))
     assert found == cvnotes.study(partial(one, n=4, k=k, f=f), range(4))
     assert n == 4
     assert table == marks_csv(plain)
 
 
 @pytest.mark.skipif(not find_spec("distributed"), reason="Dask is not installed")
-def test_the_command_grades_on_a_scheduler(tmp_path, capsys):
+def test_the_command_grades_on_a_scheduler(scheduler, tmp_path, capsys):
     notebook(tmp_path / "in" / "ada" / "01_a.ipynb", IMPORTS, *answered("lift", source_of("lift")))
     arguments = ["grade", str(tmp_path / "in"), "--out", str(tmp_path / "marks.csv")]
-    with scheduler() as address:
-        assert main([*arguments, "--cluster", address]) == 0
+    assert main([*arguments, "--cluster", scheduler]) == 0
     assert "ada/01_a.ipynb: 1 of 4" in capsys.readouterr().out
 
 
@@ -197,7 +194,7 @@ def test_the_convergence_study_counts_every_set():
     assert counted(k, f, 5, 3).total() == 3
 
 
-def test_exercises_that_were_added_are_known_to_other_processes(tmp_path, monkeypatch):
+def test_exercises_that_were_added_are_known_to_other_processes(processes, tmp_path, monkeypatch):
     from cvnotes.learn import EXERCISES, exercises
 
     monkeypatch.setattr(exercises, "_ADDED", {})
@@ -211,8 +208,7 @@ def test_exercises_that_were_added_are_known_to_other_processes(tmp_path, monkey
     notebook(tmp_path / "in" / "ada" / "a.ipynb", IMPORTS, lift, "check('raise_points', mine)")
     try:
         exercises.add_exercises(tmp_path / "own.py")
-        with processes() as executor:
-            [mark] = grade_folder(tmp_path / "in", executor=executor)[1]
+        [mark] = grade_folder(tmp_path / "in", executor=processes)[1]
         assert mark.earned("raise_points") == 1
         rows = Records(tmp_path / "rows.jsonl", {}, Limits())
         rows.add(mark)

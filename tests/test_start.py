@@ -505,7 +505,8 @@ def test_jupyterlab_and_its_kernels_end_with_ctrl_c_without_a_word_too_much(tmp_
 
 @posix
 @pytest.mark.slow
-def test_interrupted_tests_tell_how_far_they_came(tmp_path):
+def test_interrupted_tests_tell_how_far_they_came(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # which take seconds to load
     (tmp_path / "pytest.ini").write_text("[pytest]")
     (tmp_path / "test_it.py").write_text(
         "import time\ndef test_a(): pass\ndef test_b():\n    print('asleep')\n    time.sleep(600)\n"

@@ -32,15 +32,23 @@ def write(folder, name, *sources, version="3.11.0"):
     nbformat.write(notebook, folder / name)
 
 
-def run_and_save(path, change=None):
-    """Run a chapter and save it, as a student does."""
+@pytest.fixture(scope="module")
+def run_and_save():
+    """Give a function that runs a chapter and saves it, as a student does, who restarts nothing."""
     from nbclient import NotebookClient
 
-    notebook = nbformat.read(path, as_version=4)
-    if change:
-        notebook.cells[0].source = change
-    NotebookClient(notebook, kernel_name="python3").execute()
-    nbformat.write(notebook, path)
+    client = NotebookClient(nbformat.v4.new_notebook(), kernel_name="python3")
+
+    def run(path, change=None):
+        client.nb = nbformat.read(path, as_version=4)
+        if change:
+            client.nb.cells[0].source = change
+        client.execute(cleanup_kc=False)
+        nbformat.write(client.nb, path)
+
+    yield run
+    client.nb = nbformat.v4.new_notebook()
+    client.execute()  # which ends the kernel
 
 
 @pytest.fixture
@@ -63,7 +71,9 @@ def contents(folder):
 
 
 @pytest.mark.slow
-def test_three_chapters_run_and_saved_stay_when_a_changed_version_arrives(course, mine):
+def test_three_chapters_run_and_saved_stay_when_a_changed_version_arrives(
+    course, mine, run_and_save
+):
     original = contents(course)
     for name in CHAPTERS[:3]:
         run_and_save(mine / name, change=f"'my own {name}'")
@@ -87,7 +97,7 @@ def test_three_chapters_run_and_saved_stay_when_a_changed_version_arrives(course
 
 
 @pytest.mark.slow
-def test_running_alone_is_work_too(course, mine):
+def test_running_alone_is_work_too(course, mine, run_and_save):
     run_and_save(mine / CHAPTERS[1])
     before = (mine / CHAPTERS[1]).read_bytes()
     write(course, CHAPTERS[1], "'corrected'")
@@ -109,7 +119,9 @@ def test_a_chapter_that_was_only_opened_is_brought_up_to_date(course, mine):
 
 
 @pytest.mark.slow
-def test_a_newer_version_that_was_worked_in_is_not_overwritten_by_the_next(course, mine):
+def test_a_newer_version_that_was_worked_in_is_not_overwritten_by_the_next(
+    course, mine, run_and_save
+):
     run_and_save(mine / CHAPTERS[1], change="'mine'")
     write(course, CHAPTERS[1], "'second'")
     deliver(course, mine)
@@ -140,7 +152,7 @@ def test_a_file_that_is_no_notebook_any_more_is_left_alone(course, mine):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("asked", ["1", "01", "01_points", "01_points.ipynb"])
-def test_a_chapter_starts_over_and_the_old_one_is_kept(course, mine, asked):
+def test_a_chapter_starts_over_and_the_old_one_is_kept(course, mine, run_and_save, asked):
     fresh = (mine / CHAPTERS[1]).read_bytes()
     run_and_save(mine / CHAPTERS[1], change="'mine'")
     work = (mine / CHAPTERS[1]).read_bytes()

@@ -24,7 +24,6 @@ from pathlib import Path
 from browser_parts import VERSION, PartsMissingError, gather, lay_out
 from build_lite import build_lite
 from site_figures import put_into_files
-from sphinx.cmd.build import build_main
 
 ROOT = Path(__file__).resolve().parents[1]
 # Whatever the README leads to, at the place where it stands in the repository.
@@ -146,6 +145,8 @@ def main() -> int:
             parts = gather(given.parts)
         except PartsMissingError as error:
             print(f"The pages will be plain, without Python: {error}")
+    from sphinx.cmd.build import build_main  # after what may be said at once
+
     with tempfile.TemporaryDirectory() as folder:
         source, made = Path(folder) / "source", Path(folder) / "site"
         source.mkdir()

@@ -157,7 +157,7 @@ def start_server(
     """
     from jupyter_core.paths import jupyter_runtime_dir
 
-    command = [sys.executable, "-m", "jupyterlab", "--no-browser"]
+    command = [sys.executable, "-m", "cvnotes.commands.jupyterlab", "--no-browser"]
     command += options(jupyter_runtime_dir())
     command += ["--ServerApp.ip=127.0.0.1", f"--ServerApp.port={port}"]
     command += ["--ServerApp.port_retries=0", f"--ServerApp.root_dir={notebooks}"]
