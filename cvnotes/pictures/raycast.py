@@ -23,7 +23,8 @@ Indices = npt.NDArray[np.int32]
 
 # From here on embree's search tree is worth its building, and its single precision.
 _MANY = 1000
-_CHUNK = 256  # triangles at a time
+_CHUNK = 32  # triangles at a time
+_GROUPS = 64  # of rays at a time, so that they stay in the cache
 
 
 class Hits(NamedTuple):
@@ -116,35 +117,61 @@ def has_embree() -> bool:
 def _own_search(n: Array, det: Array, xy: Array) -> Indices:
     """Go through the triangles; keep for each ray the nearest so far."""
     x, y = np.moveaxis(xy, -1, 0).copy()
-    low = np.stack([np.fmin.reduce(x, axis=1), np.fmin.reduce(y, axis=1)])
-    high = np.stack([np.fmax.reduce(x, axis=1), np.fmax.reduce(y, axis=1)])
+    touched = _may_be_seen(n, det, x, y)
     first = np.full(x.shape, -1, dtype=np.int32)
     nearness = np.zeros(x.shape)  # 1 / z
-    for some in chunks(len(n), _CHUNK):
-        touched = _may_touch(n[some], low, high)
-        for i in np.flatnonzero(touched.any(axis=1)):
-            groups = np.flatnonzero(touched[i])
-            there = x[groups], y[groups]
-            e0, e1, e2 = (a * there[0] + b * there[1] + c for a, b, c in n[some.start + i])
-            inverse_z = (e0 + e1 + e2) / det[some.start + i]
-            seen = (e0 >= 0) & (e1 >= 0) & (e2 >= 0) & (inverse_z > nearness[groups])
-            row, ray = np.nonzero(seen)
-            first[groups[row], ray] = some.start + i
-            nearness[groups[row], ray] = inverse_z[row, ray]
+    for i in np.flatnonzero(touched.any(axis=1)):
+        every = np.flatnonzero(touched[i])
+        for part in chunks(len(every), _GROUPS):
+            groups = every[part]
+            there, near = (x[groups], y[groups]), nearness[groups]
+            e0, e1, e2 = (a * there[0] + b * there[1] + c for a, b, c in n[i])
+            seen = (e0 >= 0) & (e1 >= 0) & (e2 >= 0)
+            inverse_z = (e0 + e1 + e2) / det[i]
+            seen &= inverse_z > near
+            if seen.any():
+                nearness[groups] = np.where(seen, inverse_z, near)
+                first[groups] = np.where(seen, np.int32(i), first[groups])
     return first
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of rays along the picture's plane, nearly
-def _may_touch(n: Array, low: Array, high: Array) -> npt.NDArray[np.bool_]:
-    """Tell which triangles (rows) may be seen within the rectangles low..high (columns).
+def _may_be_seen(n: Array, det: Array, x: Array, y: Array) -> npt.NDArray[np.bool_]:
+    """Tell which triangles (rows) may be what a ray of which group (columns) meets first.
 
-    A triangle is out of the question if one e_i is negative in the whole rectangle, that is in
-    the corner where it is largest.
+    A triangle is out of the question if one e_i is negative all over the rectangle around a
+    group's rays, or if another triangle fills the rectangle and is nearer throughout.
     """
-    a, b, c = n.reshape(-1, 3, 1).swapaxes(0, 1)
-    largest = np.where(a > 0, a * high[0], a * low[0])
-    largest += np.where(b > 0, b * high[1], b * low[1]) + c
-    return np.asarray((largest >= 0).reshape(len(n), 3, -1).all(axis=1))
+    rectangle = np.stack([f.reduce(m, axis=1) for m in (x, y) for f in (np.fmin, np.fmax)])
+    seeing = ~np.isnan(rectangle[0])
+    forms, size = n.reshape(-1, 3), np.abs(n)
+    inverse_z, size_z = n.sum(axis=1) / det[:, None], size.sum(axis=1) / det[:, None]
+    touched = np.empty((len(n), len(x)), dtype=bool)
+    filled = np.zeros(len(x))  # 1 / z of the nearest that fills a rectangle, where it is farthest
+    for some in chunks(len(n), _CHUNK):
+        e = slice(3 * some.start, 3 * some.stop)
+        low, high = _range_of(forms[e], size.reshape(-1, 3)[e], rectangle)
+        touched[some] = ~(high < 0).reshape(-1, 3, len(x)).any(axis=1)
+        fills = (low >= 0).reshape(-1, 3, len(x)).all(axis=1)
+        least, _ = _range_of(inverse_z[some], size_z[some], rectangle)
+        filled = np.maximum(filled, np.where(fills, least, 0).max(axis=0))
+    for some in chunks(len(n), _CHUNK):
+        _, most = _range_of(inverse_z[some], size_z[some], rectangle)
+        touched[some] &= seeing & ~(most < filled)
+    return touched & np.isfinite(det)[:, None]
+
+
+def _range_of(forms: Array, size: Array, rectangle: Array) -> tuple[Array, Array]:
+    """Bound forms (k, 3), a x + b y + c, over rectangles (4, groups) = (x0, x1, y0, y1).
+
+    By more than what rounding does to numbers of their size (k, 3) the bounds are too wide.
+    """
+    x0, x1, y0, y1 = rectangle
+    middle = np.stack([(x0 + x1) / 2, (y0 + y1) / 2, np.ones_like(x0)])
+    half = np.stack([(x1 - x0) / 2, (y1 - y0) / 2, np.zeros_like(x0)])
+    reach = np.abs(forms) @ half + 1e-12 * size @ (np.abs(middle) + half)
+    value = forms @ middle
+    return value - reach, value + reach
 
 
 def _embree_search(corners: Array, xy: Array) -> Indices:

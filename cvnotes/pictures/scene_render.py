@@ -94,13 +94,13 @@ def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "
     middle = pixel_centres(camera.size)
     xy = camera.ideal(middle)
     colour, square = surfaces.colours_along(in_tiles(xy), engine)
-    signature = np.moveaxis(np.concatenate([255 * colour, square]), 0, -1)
+    planes = np.stack([out_of_tiles(x, camera.size) for x in (*(255 * colour), *square)])
     # 2. many, where a colour or a square changes or an edge passes
-    busy = changing(out_of_tiles(signature, camera.size))
+    busy = changing(np.moveaxis(planes, 0, -1))
     busy |= crossed(camera, move(camera.G, scene.vertices)[scene.edges], xy)
-    picture = out_of_tiles(np.moveaxis(colour, 0, -1), camera.size)
-    picture[busy] = _supersampled(surfaces, camera, middle[busy], samples, engine)
-    return 255 * picture
+    picture: Array = np.stack([*planes[:3]], axis=-1)
+    picture[busy] = 255 * _supersampled(surfaces, camera, middle[busy], samples, engine)
+    return picture
 
 
 def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:

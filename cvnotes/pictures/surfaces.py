@@ -63,15 +63,15 @@ class Surfaces(NamedTuple):
         Around the checker it is (−1, 0), which is odd: the second colour.
         """
         square = np.zeros((2, *x.shape))
-        on = (triangle >= 0) & self.checkered[triangle]
-        t, x, y = triangle[on], x[on], y[on]
+        on = np.flatnonzero((triangle >= 0) & self.checkered[triangle])
+        t, x, y = triangle.ravel()[on], x.ravel()[on], y.ravel()[on]
         f = np.take(self.forms, t, axis=1)
         w = f[6] * x + f[7] * y + f[8]
         u, v = (f[0] * x + f[1] * y + f[2]) / w, (f[3] * x + f[4] * y + f[5]) / w
         columns, rows = np.take(self.extent, t, axis=1)
         around = ((u < 0) | (u >= columns)) & np.isfinite(columns)
         around |= ((v < 0) | (v >= rows)) & np.isfinite(rows)
-        square[:, on] = np.where(around, [[-1], [0]], np.floor([u, v]))
+        square.reshape(2, -1)[:, on] = np.where(around, [[-1], [0]], np.floor([u, v]))
         return square
 
     def _sky(self, x: Array, y: Array) -> Array:
