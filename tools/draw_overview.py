@@ -49,6 +49,8 @@ def main() -> None:
         names=names,
     )
     figures = [figure_of(drawn) for drawn in (first, scene, bars)]
+    for legend in list(figures[2].legends):  # wider than the panel, which would cut it off
+        legend.remove()
     for ax in figures[2].axes:
         ax.set_title("how well it is known", fontsize=TEXT)
         ax.tick_params(labelsize=TEXT - 1)
