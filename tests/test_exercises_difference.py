@@ -9,6 +9,8 @@ import pytest
 
 from cvnotes.learn import EXERCISES
 from cvnotes.learn.checker.attempt import attempt
+from cvnotes.learn.checker.equality import within
+from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 from cvnotes.learn.checker.judge import judge
 
 SEED = 2024
@@ -324,3 +326,73 @@ def test_a_number_that_was_read_off_is_not_given_away():
 
 def test_truth_values_have_no_sign_or_order():
     assert "order" not in said("same_points", lambda x: np.roll(x, 1))
+
+
+def named(function, reference, inputs, *slips, special=()):
+    """Name the mistake of a function in an exercise of one argument, x."""
+    foreseen = tuple(Misconception(n, f"It is {n}.", gives, same=s) for n, gives, s in slips)
+    cases = [Case((x,)) for x in inputs] + [Case((x,), about="special") for x in special]
+    properties = Property("It is right."), Property("It is right there, too.", about="special")
+    exercise = Exercise(
+        "one", 1, "One.", "Of x.", "def my_one(x): ...", ("",), lambda _: cases, properties,
+        foreseen, reference,
+    )  # fmt: skip
+    outcomes = [attempt(function, args) for args in exercise.inputs(SEED)]
+    return judge(exercise, outcomes, SEED).misconception
+
+
+DOUBLED = ("doubled", lambda x: 2 * x, None)
+
+
+def test_a_mistake_beside_another_has_to_be_wrong_on_two_usual_inputs():
+    def my_square(x):
+        return 2 * x if x else 7.0
+
+    assert named(my_square, np.square, [1.0, 2.0, 3.0], DOUBLED, special=[0.0]) == "doubled"
+    assert named(my_square, np.square, [1.0, 2.0], DOUBLED, special=[0.0]) != "doubled"
+
+
+def test_a_mistake_is_known_though_one_input_gave_no_numbers():
+    def my_square(x):
+        return 2 * x / (x != 4.0) if x != 4.0 else None
+
+    assert named(my_square, np.square, [1.0, 3.0, 4.0], DOUBLED) == "doubled"
+
+
+def test_a_mistake_that_is_right_where_the_student_is_wrong_is_another_one():
+    near = ("near", np.square, within(1.0))
+    assert named(lambda x: x * x + 0.5, np.square, [1.0, 3.0], near) != "near"
+
+
+def test_an_input_that_slipped_has_an_answer_in_every_case():
+    def inverse(x):
+        if x == 0:
+            raise ValueError
+        return 6 / x
+
+    assert named(lambda x: 6 / int(x), inverse, [1.5, 2.5]) == "x without decimals"
+    assert named(lambda x: 6 / int(x) if x > 1 else np.nan, inverse, [0.5, 2.5]) is None
+
+
+def test_a_single_number_of_a_single_case_may_be_right_but_for_its_sign_by_chance():
+    assert named(lambda x: -x * x, np.square, [1.0, 2.0, 3.0]) == "sign"
+    assert named(lambda x: x * x if x < 3 else -9.0, np.square, [1.0, 2.0, 3.0]) is None
+
+
+def test_one_row_for_all_is_no_mistake_where_it_is_right():
+    def rows(x):
+        return np.full((4, 2), x)
+
+    assert named(lambda x: rows(x) ** [2, 3], rows, [2.0, 3.0]) != "one row for all"
+    different = np.arange(8.0).reshape(4, 2)
+    assert named(lambda x: rows(x) ** 3, lambda x: x * different, [2.0, 3.0]) == "one row for all"
+
+
+def test_numbers_are_laid_out_otherwise_only_if_all_others_are_right():
+    one, three = np.array([5.0]), np.array([1.0, 2.0, 4.0])
+
+    def my_copy(x):
+        return x[:1] if len(x) > 1 else 3 * x
+
+    assert named(lambda x: x[:1], np.copy, [one, three]) == "columns left out"
+    assert named(my_copy, np.copy, [one, three]) == "numbers too few"
