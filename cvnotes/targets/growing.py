@@ -78,11 +78,20 @@ def _grown_from(grey: Grey8, part: Array) -> Array:
 
 def _grown(grey: Image, lattice: Array) -> Array:
     """Put rows on all sides of a lattice until there are no more."""
-    blocked = 0
-    while blocked < 4 and max(lattice.shape) < _LARGEST:
-        larger = _one_row_more(grey, lattice)
-        blocked = blocked + 1 if larger is None else 0
-        lattice = np.rot90(lattice if larger is None else larger)
+    ended = [0, 0, 0, 0]  # the size of the lattice that had no further row on a side
+    while max(lattice.shape) < _LARGEST:
+        if all(ended):
+            # A lattice that has grown since may have one: of a longer row, more can be seen.
+            ended = [size if size == lattice.size else 0 for size in ended]
+            if all(ended):
+                break
+        if not ended[0]:
+            larger = _one_row_more(grey, lattice)
+            if larger is None:
+                ended[0] = lattice.size
+            else:
+                lattice = larger
+        lattice, ended = np.rot90(lattice), [*ended[1:], ended[0]]
     return lattice
 
 
@@ -113,7 +122,8 @@ def _one_row_more(grey: Image, lattice: Array) -> Array | None:
     known = np.concatenate([2 * known[:1] - known[1:2], known])
     height, width = grey.shape
     inside = ((known[1] >= 0) & (known[1] <= [width - 1, height - 1])).all(-1)
-    found = _corners(grey, known) if 2 * inside.sum() >= inside.size else None
+    # The two rows that are known there tell what corners look like.
+    found = _corners(grey, known[:4]) if 2 * inside.sum() >= inside.size else None
     if found is None:
         return None
     row = np.where(inside[:, None], found[1], np.nan)
@@ -132,20 +142,25 @@ def _differences(rows: Array) -> Array:
 
 
 def _corners(grey: Image, expected: Array) -> Array | None:
-    """Fit edges to a lattice of expected corners: NaN where there are none, None for no lattice."""
+    """Fit edges to a lattice of expected corners: NaN where there are none, None for no lattice.
+
+    Of more than two rows, those after the first two are known already.
+    """
     rows, columns = shape = expected.shape[:2]
     sides = [np.linalg.norm(np.gradient(expected, axis=axis), axis=-1) for axis in (0, 1)]
     side = np.minimum(*sides)
     # Gradients lead from farther away than the model of two sharp edges does.
     half = int(np.clip(_WINDOW * np.median(side), 4, 30))
-    led = led_by_gradients(grey, expected.reshape(-1, 2), half, _LED)
-    start = np.where(np.isfinite(led), led, expected.reshape(-1, 2))
+    start = expected.reshape(-1, 2).copy()
+    unknown = start[: 2 * columns]
+    led = led_by_gradients(grey, unknown, half, _LED)
+    unknown[:] = np.where(np.isfinite(led), led, unknown)
     try:
         fit = fit_edges.inside(grey, start, grid=(columns, rows))
     except DegenerateError:
         return None
     m, contrast = fit.m.reshape(*shape, 2), fit.contrast.reshape(shape)
-    judged = slice(2, None) if rows > 2 else slice(None)  # by these, the others are judged
+    judged = slice(2, None) if rows > 2 else slice(None)  # what is known, if anything
     seen: Mask = np.asarray(np.isfinite(m).all(-1))
     i, j = np.indices(shape)
     alike = contrast * (-1.0) ** (i + j)
