@@ -8,7 +8,7 @@ import pytest
 from cvnotes.base import CornersNotFound, CvnotesError, InputTypeError, ShapeError
 from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import clutter, good_views, render
-from cvnotes.targets import Chessboard, find_corners, finders, finding
+from cvnotes.targets import Chessboard, find_corners, finders, finding, growing
 from cvnotes.targets import lattice as _lattice
 from cvnotes.targets import opencv_finders as _cv
 from cvnotes.targets.finding import count_corners
@@ -211,7 +211,7 @@ class TestEdgesAlongPixelRows:
 
 @pytest.fixture(scope="module")
 def whole():
-    camera = view((0.3, -0.4, 0.2), (0, 0, 480))
+    camera = view((0.3, -0.4, 0.2), (0, 0, 480), half=True)
     return photograph(camera), camera
 
 
@@ -273,6 +273,24 @@ class TestHiddenCorners:
         with pytest.raises(CornersNotFound):
             find_corners(picture, BOARD)
 
+    def test_a_side_without_a_row_is_asked_again_when_the_row_is_longer(self, monkeypatch):
+        # Of its first row, the four corners on the left are hidden: as long as there are no five on
+        # the right, it is none.
+        board = np.stack(np.meshgrid(np.arange(9.0), np.arange(6.0)), axis=-1)
+        board[0, :4] = np.nan
+
+        def more(_, lattice):
+            u, v = np.rint(2 * lattice[0] - lattice[1]).astype(int).T
+            if min(u.min(), v.min()) < 0 or u.max() > 8 or v.max() > 5:
+                return None
+            seen = np.isfinite(board[v, u]).all(-1)
+            row = np.stack([u, v], axis=-1).astype(float)
+            return np.concatenate([row[None], lattice]) if 2 * seen.sum() >= len(seen) else None
+
+        monkeypatch.setattr(growing, "_one_row_more", more)
+        found = growing._grown(np.zeros((9, 9)), board[2:4, :2])
+        assert sorted(found.shape[:2]) == [6, 9]
+
     def test_gaps_of_a_lattice_are_filled_as_its_neighbours_bend(self):
         lattice = close_up(*CLOSE[0]).project(BOARD.points).reshape(6, 9, 2)
         gaps = lattice.copy()
@@ -321,7 +339,7 @@ class TestCount:
 
     @pytest.mark.slow
     def test_it_is_not_guessed_where_a_finder_found_the_board_that_was_asked_for(self):
-        camera = view((0.3, -0.4, 0.2), (0, 0, 480))
+        camera = view((0.3, -0.4, 0.2), (0, 0, 480), half=True)
         image = photograph(camera)
         for corner in (3, 4, 5):
             image = with_coin(image, camera, corner, radius=7)
