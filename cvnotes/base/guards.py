@@ -155,7 +155,9 @@ def is_masked(x: Any) -> bool:
     """Tell whether x is a masked array, or a list of such, whose masks NumPy would drop."""
     # Whoever has one has loaded what makes them; everybody else starts sooner without it.
     masked = getattr(sys.modules.get("numpy.ma"), "MaskedArray", ())
-    return any(isinstance(item, masked) for item in (x if isinstance(x, list | tuple) else [x]))
+    if isinstance(x, list | tuple):
+        return any(isinstance(item, masked) for item in x)
+    return isinstance(x, masked)
 
 
 def _refuse_extremes(array: Array, name: str, largest: float) -> None:
