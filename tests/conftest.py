@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
@@ -108,15 +108,16 @@ def worked_out_once():
 
     A check does so again for every answer; a thousand answers to one exercise need not.
     """
-    # Both functions are asked by other modules, which look for them where they are.
+    # The functions are asked by other modules, which look for them where they are.
     from cvnotes.learn import EXERCISES
-    from cvnotes.learn.checker import foreseen
+    from cvnotes.learn.checker import foreseen, inputs
     from cvnotes.learn.checker.exercise import Exercise
 
     every = [*EXERCISES.values(), *(part for e in EXERCISES.values() for part in e.parts)]
     ways = {way for e in every for m in e.misconceptions for way in (m.gives, *m.variants)}
     solve, give = Exercise.solved_cases, foreseen.what_it_gives
-    cases, known, given = {}, {}, {}
+    slip, slipped = inputs._slips, inputs._with_inputs
+    cases, known, given, slips = {}, {}, {}, {}
 
     def solved_cases(exercise, seed):
         if (exercise, seed) not in cases:
@@ -128,7 +129,7 @@ def worked_out_once():
             cases[exercise, seed] = solved
         return iter(cases[exercise, seed])
 
-    def inputs(exercise, seed):
+    def arguments(exercise, seed):
         return [case.args for case in exercise.solved_cases(seed)]
 
     def what_it_gives(function, args):
@@ -138,9 +139,24 @@ def worked_out_once():
             given[function, id(args)] = give(function, args)
         return given[function, id(args)]
 
+    def slips_of(names, args):
+        if known.get(id(args)) is not args:
+            return slip(names, args)
+        if (names, id(args)) not in slips:
+            slips[names, id(args)] = list(slip(names, args))
+        return iter(slips[names, id(args)])
+
+    @cache
+    def with_inputs(change, reference):
+        gives = slipped(change, reference)
+        ways.add(gives)
+        return gives
+
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(inputs, "_slips", slips_of)
+        patch.setattr(inputs, "_with_inputs", with_inputs)
         patch.setattr(Exercise, "solved_cases", solved_cases)
-        patch.setattr(Exercise, "inputs", inputs)
+        patch.setattr(Exercise, "inputs", arguments)
         patch.setattr(foreseen, "what_it_gives", what_it_gives)
         yield
 

@@ -57,8 +57,8 @@ def test_arrays_of_one_thing_and_of_any_shape_get_a_report_and_do_not_pass(name)
         for shape in _shapes(cases[0].right) if usual else [cases[0].right.shape]:
             handed = np.full(shape, filled)
             handed = handed.tolist() if handed.dtype == object else handed
-            came = [attempt(lambda *_, x=handed: x, case.args) for case in cases]
-            report = _judged(exercise, came)
+            # Each case would get the same: what the arguments are, it does not look at.
+            report = _judged(exercise, [attempt(lambda x=handed: x, ())] * len(cases))
             if report.passed:
                 assert exercise.answer == "value"
                 assert exercise.same(np.asarray(handed, dtype=float), cases[0].right, 1e-6)

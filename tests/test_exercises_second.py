@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from cvnotes.learn import EXERCISES, personal_camera
+from cvnotes.learn.checker import sandbox
 from cvnotes.learn.checker.judge import judge
 from cvnotes.learn.checker.sandbox import ask
 
@@ -403,7 +404,9 @@ def source_of(name):
 
 @pytest.mark.usefixtures("worked_out_once")
 @pytest.mark.parametrize("name", EXERCISES)
-def test_a_second_differently_written_answer_passes(name):
+def test_a_second_differently_written_answer_passes(name, monkeypatch):
     for seed in (2024, 7, 8):
+        if seed != 2024:  # as where no process can be had, which is sooner done
+            monkeypatch.setattr(sandbox, "can_fork", lambda: False)
         report = judge(EXERCISES[name], ask(EXERCISES[name], solution_of(name), seed), seed)
         assert report.passed, report
