@@ -76,16 +76,17 @@ class Paper:
         """Lay panels side by side, and rows below each other: (height, width, 3)."""
         if self.narrow:
             rows = tuple((panel,) for row in rows for panel in row)
-        strips, top = [], 0
+        height = sum(max(panel.sheet[1] for panel in row) for row in rows)
+        width = max(sum(panel.sheet[0] for panel in row) for row in rows)
+        page, top = np.full((height, width, 3), 255, np.uint8), 0
         for row in rows:
-            sheets = [panel.finish() for panel in row]
-            left = np.cumsum([0, *(sheet.shape[1] for sheet in sheets)])
-            for panel, x in zip(row, left.tolist(), strict=False):
-                self.grips += tuple(panel.grips(x / self.sharpness, top / self.sharpness))
-            strips.append(np.hstack(sheets))
-            top += strips[-1].shape[0]
-        width = max(strip.shape[1] for strip in strips)
-        return np.vstack([_widened(strip, width) for strip in strips])
+            left = 0
+            for panel in row:
+                panel.finish(page[top:, left:])
+                self.grips += tuple(panel.grips(left / self.sharpness, top / self.sharpness))
+                left += panel.sheet[0]
+            top += max(panel.sheet[1] for panel in row)
+        return page
 
 
 class Panel:
@@ -97,6 +98,12 @@ class Panel:
         self._image = Image.new("RGB", (self.width, self.height), "white")
         self._draw = ImageDraw.Draw(self._image)
         self._grips: list[tuple[str, str, Array, float]] = []
+
+    @property
+    def sheet(self) -> tuple[int, int]:
+        """Return (width, height) of the whole: with its title above, and the gap around."""
+        sharpness = self.scale // 2
+        return self.width // 2 + sharpness * _GAP, self.height // 2 + sharpness * (_TITLE + _GAP)
 
     @property
     def pixel(self) -> float:
@@ -199,8 +206,10 @@ class Panel:
             number = f"{value:g}".replace("-", "−")
             self.text([x0 + 0.01 * (x1 - x0), value], number, size=9)
 
-    def finish(self) -> Drawn:
-        """Return the panel with frame and title, at its final size."""
+    def finish(self, page: Drawn | None = None) -> Drawn:
+        """Put the panel, with frame and title, on the top left of a white page, or of its own."""
+        if page is None:
+            page = np.full((*self.sheet[::-1], 3), 255, np.uint8)
         sharpness = self.scale // 2
         strip, gap = sharpness * _TITLE, sharpness * _GAP
         self._draw.rectangle(
@@ -208,12 +217,12 @@ class Panel:
         )
         panel = np.asarray(self._image.reduce(2))
         height, width = panel.shape[:2]
-        sheet = np.full((height + strip + gap, width + gap, 3), 255, np.uint8)
-        sheet[strip : strip + height, gap // 2 : gap // 2 + width] = panel
+        page[strip : strip + height, gap // 2 : gap // 2 + width] = panel
         left = self.scale * (_GAP // 2 + 2)
-        title = title_strip(self.title, (width + gap, strip), left, self.scale)
-        sheet[:strip] = title
-        return sheet
+        page[:strip, : width + gap] = title_strip(
+            self.title, (width + gap, strip), left, self.scale
+        )
+        return page
 
     def _limits(self) -> tuple[Array, Array]:
         beyond = _BEYOND * self.scale
@@ -239,11 +248,6 @@ class Panel:
         for ink, part in (("white", 0.6), (colour, 0.28)):
             for stroke in (one, two):
                 self._draw.line(stroke, ink, max(1, round(part * reach)))
-
-
-def _widened(strip: Drawn, width: int) -> Drawn:
-    """Add white columns to a strip that is narrower than the others."""
-    return np.pad(strip, ((0, 0), (0, width - strip.shape[1]), (0, 0)), constant_values=255)
 
 
 def _pair(xy: Array) -> tuple[float, float]:
