@@ -167,11 +167,16 @@ class Model:
 
     def still(self, **values: float) -> Picture:
         """Return the picture for a page: at twice the resolution, with its alternative text."""
-        from PIL import Image
-
         sight = self.drawn_on(Paper(2), self.values(**values))
-        encoded = io.BytesIO()
-        palette = Image.fromarray(sight.picture).quantize(256, dither=Image.Dither.NONE)
-        palette.save(encoded, "PNG", optimize=True)
         alt = f"{self.about} {sight.sentence}"
-        return Picture(encoded.getvalue(), alt, sight.picture.shape[1] // 2)
+        return Picture(_small_png(sight.picture), alt, sight.picture.shape[1] // 2)
+
+
+def _small_png(picture: Drawn) -> bytes:
+    """Pack a picture in 256 colours, as small as it gets."""
+    from PIL import Image
+
+    encoded = io.BytesIO()
+    palette = Image.fromarray(picture).quantize(256, dither=Image.Dither.NONE)
+    palette.save(encoded, "PNG", optimize=True)
+    return encoded.getvalue()
