@@ -114,6 +114,7 @@ def has_embree() -> bool:
     return importlib.util.find_spec("embreex") is not None
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of rays along the picture's plane, nearly
 def _own_search(n: Array, det: Array, xy: Array) -> Indices:
     """Go through the triangles; keep for each ray the nearest so far."""
     x, y = np.moveaxis(xy, -1, 0).copy()
@@ -135,7 +136,6 @@ def _own_search(n: Array, det: Array, xy: Array) -> Indices:
     return first
 
 
-@np.errstate(over="ignore", invalid="ignore")  # of rays along the picture's plane, nearly
 def _may_be_seen(n: Array, det: Array, x: Array, y: Array) -> npt.NDArray[np.bool_]:
     """Tell which triangles (rows) may be what a ray of which group (columns) meets first.
 
@@ -151,8 +151,8 @@ def _may_be_seen(n: Array, det: Array, x: Array, y: Array) -> npt.NDArray[np.boo
     for some in chunks(len(n), _CHUNK):
         e = slice(3 * some.start, 3 * some.stop)
         low, high = _range_of(forms[e], size.reshape(-1, 3)[e], rectangle)
-        touched[some] = ~(high < 0).reshape(-1, 3, len(x)).any(axis=1)
-        fills = (low >= 0).reshape(-1, 3, len(x)).all(axis=1)
+        touched[some] = ~(high < 0).reshape(some.stop - some.start, 3, -1).any(axis=1)
+        fills = (low >= 0).reshape(some.stop - some.start, 3, -1).all(axis=1)
         least, _ = _range_of(inverse_z[some], size_z[some], rectangle)
         filled = np.maximum(filled, np.where(fills, least, 0).max(axis=0))
     for some in chunks(len(n), _CHUNK):
