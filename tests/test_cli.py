@@ -446,6 +446,7 @@ def test_an_interruption_leaves_the_old_result_whole_and_nothing_else(photos, tm
     old.write_text("old, made by cvnotes calibrate")
     code = textwrap.dedent(SLOW).replace("PATCH", textwrap.dedent(PATCHES[when]))
     arguments = ["calibrate", photos, "--corners", "9x6", "--square", "20", "--out", "out"]
+    arguments += ["--lens", "k1 k2"]
     running = subprocess.Popen(
         [sys.executable, "-c", code, *map(str, arguments)],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -464,6 +465,7 @@ def test_an_interruption_leaves_the_old_result_whole_and_nothing_else(photos, tm
 def test_output_that_cannot_be_printed_is_a_failure_but_a_closed_pipe_is_not(photos, tmp_path):
     out = tmp_path / "out"
     arguments = ["calibrate", photos, "--corners", "9x6", "--square", "20", "--out", out]
+    arguments += ["--lens", "k1 k2"]
     with Path("/dev/full").open("w") as full:
         done = process(*arguments, capture_output=False, stdout=full, stderr=subprocess.PIPE)
     assert done.returncode == 1

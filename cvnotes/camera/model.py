@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import pi, sin, tan
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -205,7 +205,7 @@ class Camera:
 
     def moved(self, G: npt.ArrayLike) -> "Camera":
         """Give the same camera with another pose G (4, 4)."""
-        return Camera(self.A, rigid_motion(G), self.lens, self.size)
+        return Camera(self.A, cast(Array, G), self.lens, self.size)  # guards it
 
     def cropped(self, corner: Sequence[int], size: tuple[int, int]) -> "Camera":
         """Give the camera whose pictures are a part of this one's.

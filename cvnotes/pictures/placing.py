@@ -77,7 +77,8 @@ def hold_at(
         raise DegenerateError(f"aim: pixel {aim.tolist()} is beyond the reach of the lens")
     half = (np.array(camera.size) - 1) / 2
     nearest = np.linalg.norm(outline - middle, axis=1).max()
-    camera, turned = camera.moved(np.eye(4)), (outline - middle) @ R.T
+    camera = Camera(camera.A, lens=camera.lens, size=camera.size)
+    turned = (outline - middle) @ R.T
     for distances in np.split(nearest * 1.03 ** np.arange(200), 10):
         m = camera.project(turned + (distances[:, None] * ray)[:, None])
         inside = (np.abs(m - half) <= half - _ROOM).all(axis=(1, 2))  # never true for NaN
