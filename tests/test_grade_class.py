@@ -2,27 +2,22 @@
 
 import csv
 import io
-import json
 import re
 import shutil
-import warnings
 from dataclasses import dataclass, replace
 
 import pytest
 from test_exercises_second import source_of
-from test_grade import IMPORTS, command, hand_over, notebook
+from test_grade import IMPORTS, command, hand_over, notebook, run_here_if_harmless
 
 from cvnotes.base import FileError
 from cvnotes.learn import EXERCISES
-from cvnotes.learn.grader import grading, process
+from cvnotes.learn.grader import grading
 from cvnotes.learn.grader.assignment import read_assignment
 from cvnotes.learn.grader.feedback import class_picture
 from cvnotes.learn.grader.grading import grade_folder
 from cvnotes.learn.grader.handed_in import listed
-from cvnotes.learn.grader.handin import _recorder
-from cvnotes.learn.grader.judging import ALONE
 from cvnotes.learn.grader.marks import Mark, Verdict
-from cvnotes.learn.grader.process import _inputs
 from cvnotes.learn.grader.source import fingerprint, own_code
 from cvnotes.learn.grader.totals import remarked, totals
 
@@ -179,21 +174,6 @@ def planted(folder):
     lines += [f"{s},,,{s}@example.org" for s in CLASS if s not in ("zed", "zoe")]
     lines += ["zoe,Zoe Quist,s77,zoe@example.org"]
     (folder / "students.csv").write_text("\n".join(lines), encoding="utf-8-sig")
-
-
-def run_here_if_harmless(cells, seed, *others):
-    """Run a notebook without a process of its own, unless it fails, ends, or writes itself."""
-    if any(word in cell for cell in cells for word in ("raise", "import os", "import sys")):
-        return process.run_notebook(cells, seed, *others)
-    ran = process.Ran(finished={"finished": True, "failed": 0, "first": ""}, sealed=True)
-    check = _recorder(_inputs(seed), lambda line: process._keep(json.dumps(line).encode(), ran))
-    names = {}
-    with ALONE, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # which are errors in tests only
-        for cell in cells:
-            exec(cell, names)
-            names["check"] = check
-    return ran
 
 
 @pytest.fixture(scope="module")

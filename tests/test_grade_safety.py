@@ -16,13 +16,13 @@ from pathlib import Path
 import pytest
 from conftest import processor_time, wait_for
 from test_exercises_second import source_of
-from test_grade import IMPORTS, answered, command, graded, notebook
+from test_grade import IMPORTS, answered, command, graded, notebook, run_here_if_harmless
+from test_grade import in_this_process as in_this_process
 
 from cvnotes.learn.checker.agreement import NOTEBOOK_SEED
 from cvnotes.learn.checker.outcome import Outcome, encode
 from cvnotes.learn.exercises import EXERCISES
 from cvnotes.learn.grader import grading
-from cvnotes.learn.grader.handed_in import Handin
 from cvnotes.learn.grader.judging import FORGED, judged
 from cvnotes.learn.grader.marks import Mark, Verdict
 from cvnotes.learn.grader.process import Limits
@@ -125,6 +125,7 @@ def test_resuming_runs_only_what_is_new_or_changed(tmp_path, capsys, monkeypatch
     for name in ("ada", "bob"):
         notebook(tmp_path / "in" / name / "01_x.ipynb", *LIFT)
     out = tmp_path / "marks.csv"
+    monkeypatch.setattr(grading, "run_notebook", run_here_if_harmless)
     assert command(tmp_path / "in", "--out", out) == 0
     first = out.read_bytes()
     ran = []
@@ -144,12 +145,12 @@ def test_resuming_runs_only_what_is_new_or_changed(tmp_path, capsys, monkeypatch
 
 def test_a_class_interrupted_at_random_gives_the_same_table(tmp_path):
     rng = random.Random(16)
-    for i in range(5):
+    for i in range(4):
         cells = LIFT if i % 2 else (IMPORTS, "check('drop', lambda x_h: x_h[:, :-1])")
         notebook(tmp_path / "in" / f"s{i}" / "01_x.ipynb", *cells)
     whole, pieces = tmp_path / "whole.csv", tmp_path / "pieces.csv"
     assert command(tmp_path / "in", "--out", whole) == 0
-    signals = [signal.SIGINT, signal.SIGTERM, signal.SIGKILL, signal.SIGKILL]
+    signals = [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]
     rng.shuffle(signals)
     for kept, number in enumerate(signals):
         process = started(tmp_path / "in", pieces, "--resume", "--jobs", "2", scratch=tmp_path)
@@ -205,18 +206,18 @@ def test_any_exception_stays_in_its_row(tmp_path, monkeypatch):
     for name in "ab":
         notebook(tmp_path / name / "01_x.ipynb", f"# {name}")
 
-    def failing(cells, *_):
+    def failing(cells, *others):
         if "a" in cells[0]:
             raise RuntimeError("a\nsurprise")
-        return run(cells, *_)
+        return run_here_if_harmless(cells, *others)
 
-    run = grading.run_notebook
     monkeypatch.setattr(grading, "run_notebook", failing)
     marks = graded(tmp_path)
     assert marks["a/01_x.ipynb"].remark == "could not be graded: RuntimeError: a surprise"
     assert marks["b/01_x.ipynb"].remark == ""
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_the_table_opens_in_spreadsheets_with_its_umlauts(tmp_path, capsys):
     notebook(tmp_path / "in" / "Jürgen" / "01_x.ipynb", "1")
     assert command(tmp_path / "in", "--out", tmp_path / "m.csv") == 0
@@ -258,11 +259,9 @@ def test_thousands_of_forged_lines_cost_no_more_than_one(tmp_path):
     notebook(tmp_path / "01_x.ipynb", *LIFT, flood)
     notebook(tmp_path / "01_y.ipynb", *LIFT)
     before = processor_time()
-    [quiet] = [m for m in graded(tmp_path).values() if m.notebook == "01_y.ipynb"]
-    assert quiet.points == 1
-    mark = grading.grade(
-        Handin("", "01_x.ipynb", (tmp_path / "01_x.ipynb").read_bytes()), Limits(60.0)
-    )
+    marks = graded(tmp_path)
+    assert marks["01_y.ipynb"].points == 1
+    mark = marks["01_x.ipynb"]
     assert mark.reports["pipeline"].note == FORGED
     assert mark.earned("lift") == 1
     assert processor_time() - before < 12
@@ -349,19 +348,6 @@ def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(
         assert ran.ended == process.INTERRUPTED
     assert not ran.sealed
     assert sleepers(word) == []
-
-
-def test_no_notebook_gets_the_seed(tmp_path):
-    cell = (
-        "import gc, sys\n"
-        "from cvnotes.learn.grader.handin import Task\n"
-        "tasks = [t for t in gc.get_objects() if type(t).__name__ == 'Task']\n"
-        "assert not any('seed' in f for t in [Task, *tasks] for f in t.__dict__), 'seen'\n"
-        "assert not any('seed' in argument for argument in sys.argv), sys.argv"
-    )
-    notebook(tmp_path / "01_x.ipynb", cell)
-    [mark] = graded(tmp_path).values()
-    assert mark.remark == ""
 
 
 def test_no_two_threads_parse_at_once(monkeypatch):

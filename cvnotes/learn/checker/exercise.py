@@ -4,6 +4,7 @@ import ast
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -141,7 +142,7 @@ class Exercise:
     personal: "Callable[[str], Exercise] | None" = None
     refusal: str = ""
 
-    @property
+    @cached_property
     def variable(self) -> str:
         """What the stub calls the answer: ``my_drop``."""
         for node in ast.walk(parsed(self.stub)):
@@ -151,7 +152,7 @@ class Exercise:
                 return node.targets[0].id
         return f"my_{self.name}"
 
-    @property
+    @cached_property
     def arguments(self) -> tuple[str, ...]:
         """Names of the arguments, as the stub has them."""
         for node in ast.walk(parsed(self.stub)):
