@@ -80,25 +80,41 @@ def offer_to_run(*event: Any) -> None:
         context["body"] = context["body"].replace("</h1>", f"</h1>\n{link}", 1)
 
 
-CONTENTS: dict[tuple[Any, ...], str] = {}
+CONTENTS: dict[tuple[Any, ...], tuple[str, str]] = {}
+LINK = '<li class="toctree-l1"><a class="reference internal" href="{}.html">'
+HERE = '<li class="toctree-l1 current"><a class="current reference internal" href="#">'
 
 
 def share_contents(*event: Any) -> None:
-    """Write the table of contents once for all pages that are not in it and lie equally deep.
+    """Write the table of contents once for all pages of a folder, and for all of source.
 
-    A hundred pages of source have the same, and it takes longer than all else of such a page.
+    It takes longer than all else of most pages, and differs but for the mark at the page itself.
     """
     _, page, _, context, doctree = event
-    if doctree is None:
-        own, depth = context["toctree"], page.count("/")
+    own = context["toctree"]
+    where = page.count("/") if doctree is None else page.rpartition("/")[0]
 
-        def toctree(**how: Any) -> str:
-            key = (depth, *sorted(how.items()))
-            if key not in CONTENTS:
-                CONTENTS[key] = own(**how)
-            return CONTENTS[key]
+    def toctree(**how: Any) -> str:
+        key = (where, *sorted(how.items()))
+        if key not in CONTENTS:
+            CONTENTS[key] = page, own(**how)
+        first, text = CONTENTS[key]
+        if doctree is None or page == first:
+            return text
+        return move_mark(text, first, page) or own(**how)
 
-        context["toctree"] = toctree
+    context["toctree"] = toctree
+
+
+def move_mark(text: str, first: str, page: str) -> str:
+    """Mark another page of the folder as the one that is read; gives nothing if it is not there."""
+    name, old = (each.rpartition("/")[2] for each in (page, first))
+    text = text.replace(HERE, LINK.format(old)).replace('<ul class="current">', "<ul>")
+    before, link, after = text.partition(LINK.format(name))
+    if not link:
+        return ""
+    outside, _, inside = before.rpartition("<ul>")
+    return f'{outside}<ul class="current">{inside}{HERE}{after}'
 
 
 WAY_BACK = re.compile(r'(reference/[\w.]+)\.html#([\w.]+)"')
