@@ -300,7 +300,7 @@
     const own = stream;
     while (own && stream === own) {
       await new Promise((resolve) => setTimeout(resolve, 100));
-      if (working || !$(".by-itself").checked || !board.checkValidity()) continue;
+      if (stream !== own || working || !$(".by-itself").checked || !board.checkValidity()) continue;
       const canvas = picture();
       const frame = small(canvas);
       const answer = await ask("see", frame, [frame.grey]);
