@@ -56,7 +56,18 @@ OPEN_WITHOUT_KERNEL = """async path => {
     await app.commands.execute('docmanager:open', {path, factory: 'Notebook', kernelPreference});
     await app.shell.currentWidget.context.ready;
 }"""
+OPEN = """async path => {
+    await window.jupyterapp.restored;
+    await window.jupyterapp.commands.execute('docmanager:open', {path});
+}"""
 READY = "() => window.jupyterapp.shell.currentWidget.context.ready.then(() => true)"
+SHUT_DOWN = """async () => {
+    const panel = window.jupyterapp.shell.currentWidget;
+    await panel.sessionContext.shutdown();
+    panel.dispose();
+}"""
+LIST_AGAIN = "() => window.jupyterapp.commands.execute('filebrowser:refresh')"
+ACTIVE = ".jp-NotebookPanel:not(.lm-mod-hidden) .jp-CodeCell.jp-mod-active"
 # Tabs of before may be restored first.
 IN_FRONT = """name => {
     const widget = window.jupyterapp?.shell.currentWidget;
@@ -120,11 +131,13 @@ def course(tmp_path_factory):
     """Serve a copy of the notebooks as `cvnotes lab` does; gives its folder and its address."""
     place = tmp_path_factory.mktemp("lab")
     folder = shutil.copytree(NOTEBOOKS[0].parent, place / "notebooks") if NOTEBOOKS else place
-    calls = [f"explore_{name}()" for name in NAMES]
-    _write_scratch(folder / "all_explorers.ipynb", *calls, PEER)
-    _write_scratch(folder / "saved.ipynb", *calls)
-    build = [sys.executable, ROOT / "tools" / "build_notebooks.py", folder / "saved.ipynb"]
+    saved = folder / "saved.ipynb"
+    _write_scratch(saved, *(f"explore_{name}()" for name in NAMES))
+    build = [sys.executable, ROOT / "tools" / "build_notebooks.py", saved]
     subprocess.run(build, check=True, capture_output=True)
+    notebook = nbformat.read(saved, as_version=4)
+    notebook.cells.append(nbformat.v4.new_code_cell(PEER))
+    nbformat.write(notebook, saved)
     (place / "config").mkdir()
     config = {"LabApp": {"expose_app_in_browser": True}}
     (place / "config" / "jupyter_server_config.json").write_text(json.dumps(config))
@@ -142,18 +155,79 @@ def course(tmp_path_factory):
         stop(server)
 
 
-@pytest.fixture
-def page(chromium, course):
-    """Give an empty page, and hold at its end that it asked nobody but the server."""
+@pytest.fixture(scope="module")
+def watched(chromium, course):
+    """Give what opens pages, and what they asked of others than the server."""
     _, address = course
     context = chromium.new_context(viewport={"width": 1280, "height": 900})
-    page, outside = context.new_page(), []
+    outside = []
     ours = (address, address.replace("http", "ws", 1), "data:", "blob:")
-    page.on("request", lambda r: None if r.url.startswith(ours) else outside.append(r.url))
-    page.on("websocket", lambda w: None if w.url.startswith(ours) else outside.append(w.url))
-    yield page
+
+    def opened():
+        page = context.new_page()
+        page.on("request", lambda r: None if r.url.startswith(ours) else outside.append(r.url))
+        page.on("websocket", lambda w: None if w.url.startswith(ours) else outside.append(w.url))
+        return page
+
+    yield opened, outside
     context.close()
+
+
+@pytest.fixture
+def empty_page(watched):
+    """Give an empty page, and hold at its end that it asked nobody but the server."""
+    opened, outside = watched
+    page = opened()
+    yield page
+    page.close()
     assert outside == []
+
+
+@pytest.fixture(scope="module")
+def lab(watched, course):
+    """Give JupyterLab, loaded once: a notebook was opened by its address, and has not run."""
+    page, (_, address) = watched[0](), course
+    page.goto(f"{address}/lab/workspaces/auto-saved/tree/saved.ipynb?token={TOKEN}")
+    page.wait_for_selector(".jp-Notebook .jp-CodeCell", state="attached", timeout=60_000)
+    page.wait_for_function(IN_FRONT, arg="saved.ipynb", timeout=60_000, polling=100)
+    page.evaluate(READY)
+    return page
+
+
+@pytest.fixture
+def page(lab, watched):
+    """Give JupyterLab, and hold after each test that it asked nobody but the server."""
+    yield lab
+    assert watched[1] == []
+
+
+@pytest.fixture(scope="module")
+def seen_saved(lab, tmp_path_factory):
+    """Give how each exploration is seen before it is run: pictures, pixels over width, words."""
+    cells, seen = lab.evaluate(CELLS), {}
+    screens = tmp_path_factory.mktemp("saved")
+    for name in NAMES:
+        picture = _output(lab, cells, rf"^explore_{name}\(").locator("img")
+        picture.wait_for(state="visible", timeout=60_000)
+        sharpness = picture.evaluate("img => img.naturalWidth / img.width")
+        seen[name] = picture.count(), sharpness, picture.get_attribute("alt")
+        lab.screenshot(path=screens / f"{name}.png")
+    return seen
+
+
+@pytest.fixture(scope="module")
+def run_once(lab, seen_saved):  # noqa: ARG001
+    """Run all explorations, once they have been seen as they are saved; give the cells."""
+    _open(lab, "saved.ipynb")
+    assert lab.evaluate(RUN_ALL) == "done"
+    return lab.evaluate(CELLS)
+
+
+@pytest.fixture
+def explorers(page, run_once):
+    """Bring the notebook with all explorations to the front; gives its cells."""
+    _open(page, "saved.ipynb")
+    return run_once
 
 
 def _write_scratch(path, *sources):
@@ -164,15 +238,15 @@ def _write_scratch(path, *sources):
     nbformat.write(notebook, path)
 
 
-def _open(page, address, name):
-    page.goto(f"{address}/lab/workspaces/auto-{Path(name).stem}/tree/{name}?token={TOKEN}")
-    page.wait_for_selector(".jp-Notebook .jp-CodeCell", state="attached", timeout=60_000)
-    page.wait_for_function(IN_FRONT, arg=Path(name).name, timeout=60_000)
+def _open(page, name):
+    """Open a notebook, or bring it to the front."""
+    page.evaluate(OPEN, name)
+    page.wait_for_function(IN_FRONT, arg=name, timeout=60_000, polling=100)
 
 
-def _open_and_run(page, address, name):
+def _open_and_run(page, name):
     """Open a notebook, run all its cells, and give them with their outputs."""
-    _open(page, address, name)
+    _open(page, name)
     assert page.evaluate(RUN_ALL) == "done"
     return page.evaluate(CELLS)
 
@@ -181,7 +255,7 @@ def _output(page, cells, call):
     """Bring the cell that makes a call into view; gives its output."""
     index = next(i for i, cell in enumerate(cells) if re.search(call, cell["source"]))
     page.evaluate(SHOW_CELL, index)
-    return page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea-output").first
+    return page.locator(f"{ACTIVE} .jp-OutputArea-output").first
 
 
 def _explorer(page, cells, call, image="img.widget-image"):
@@ -215,31 +289,11 @@ def _middle(grip):
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
-def _shut_down(page):
-    page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.shutdown()")
-
-
-@pytest.mark.once
-def test_every_notebook_opens_with_its_pictures(page, course):
-    _open(page, course[1], "saved.ipynb")
-    for path in NOTEBOOKS:
-        page.evaluate(OPEN_WITHOUT_KERNEL, path.name)
-        saved = nbformat.read(path, as_version=4).cells
-        page.evaluate(READY)
-        assert [cell["source"] for cell in page.evaluate(CELLS)] == [c.source for c in saved]
-        first = next(i for i, cell in enumerate(saved) if "<img" in str(cell.get("outputs", "")))
-        page.evaluate(SHOW_CELL, first)
-        picture = page.locator(".jp-mod-active .jp-OutputArea-output img:visible").first
-        picture.wait_for(state="visible", timeout=60_000)
-        assert picture.evaluate("img => img.naturalWidth") > 100, path.stem
-    _shut_down(page)
-
-
 # nbval runs all of them; what a browser adds is the same in each, but for the 3-D viewer of one.
 @pytest.mark.parametrize("chapter", ["01", "04"])
-def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, chapter, tmp_path):
+def test_a_notebook_runs_and_its_slider_moves_the_picture(page, chapter, tmp_path):
     path = next(path for path in NOTEBOOKS if path.name.startswith(chapter))
-    cells = _open_and_run(page, course[1], path.name)
+    cells = _open_and_run(page, path.name)
     for cell in cells:
         for output in cell["outputs"]:
             unexpected = "raises-exception" not in cell["tags"]
@@ -253,36 +307,30 @@ def test_a_notebook_runs_and_its_slider_moves_the_picture(page, course, chapter,
     page.keyboard.press("ArrowRight")
     assert _becomes(page, picture, lambda now: now != before)
     page.screenshot(path=tmp_path / f"{path.stem}.png")
-    _shut_down(page)
+    page.evaluate(SHUT_DOWN)
 
 
 @pytest.mark.once
 def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alone(
-    page, course, tmp_path
+    page, seen_saved, explorers
 ):
-    _open(page, course[1], "saved.ipynb")
-    page.evaluate(READY)
-    cells = page.evaluate(CELLS)
     for name in NAMES:
-        picture = _output(page, cells, rf"^explore_{name}\(").locator("img")
-        picture.wait_for(state="visible", timeout=60_000)
-        assert picture.count() == 1
-        assert picture.evaluate("img => img.naturalWidth / img.width") >= 1.5
-        assert picture.get_attribute("alt").startswith(model(name).about)
-        page.screenshot(path=tmp_path / f"{name}_saved.png")
-    assert page.evaluate(RUN_ALL) == "done"
+        pictures, sharpness, alt = seen_saved[name]
+        assert pictures == 1
+        assert sharpness >= 1.5
+        assert alt.startswith(model(name).about)
     for name in NAMES:
-        output = _output(page, cells, rf"^explore_{name}\(")
+        output = _output(page, explorers, rf"^explore_{name}\(")
         output.locator("img.widget-image").wait_for(state="visible", timeout=60_000)
         assert output.locator("img").count() == 1
         settings = model(name).settings
         switches = sum(setting.is_choice for setting in settings)
         assert output.locator(".noUi-handle").count() == len(settings) - switches
         assert output.locator("input[type=checkbox]").count() == switches
-    _shut_down(page)
 
 
-def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(page):
+def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(empty_page):
+    page = empty_page
     black = Lines("ideal", np.array([[[0.0, 0, 0], [0, 0, 9]]]), IDEAL, 2)
     green = Lines("rail", np.array([[[1.0, 0, 0], [1, 0, 9]]]), WORLD, 2)
     viewer = show_scene(build_scene(black, green), alt="Two <rails>")
@@ -304,10 +352,9 @@ def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(page):
     assert dark["rail"] == light["rail"] != "000000"
 
 
-def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, course):
-    cells = _open_and_run(page, course[1], "saved.ipynb")
+def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, explorers):
     for name in ONE:
-        handle, picture = _explorer(page, cells, rf"^explore_{name}\(")
+        handle, picture = _explorer(page, explorers, rf"^explore_{name}\(")
         start = picture.evaluate(PICTURE)
         handle.focus()
         for setting in model(name).settings:
@@ -322,40 +369,36 @@ def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, course):
         page.wait_for_timeout(500)  # the front end still sends what the arrows did
         page.keyboard.press("Enter")
         assert _becomes(page, picture, lambda now, seen=start: now == seen), name
-    _shut_down(page)
 
 
 @pytest.mark.once
-def test_an_exploration_follows_the_keyboard_and_does_not_lag_behind(page, course, tmp_path):
-    cells = _open_and_run(page, course[1], "all_explorers.ipynb")
+def test_an_exploration_follows_the_keyboard_and_does_not_lag_behind(page, explorers, tmp_path):
     waited = {}
     for name in ONE:
-        handle, picture = _explorer(page, cells, rf"^explore_{name}\(")
+        handle, picture = _explorer(page, explorers, rf"^explore_{name}\(")
         start = picture.evaluate(PICTURE)
         waited[name] = statistics.median(handle.evaluate(LATENCY))
         page.screenshot(path=tmp_path / f"{name}.png")
         assert _becomes(page, picture, lambda now, start=start: now != start), name
         # sixty pictures that wait are a backlog, not a machine on which each takes long
         assert handle.evaluate(HELD_DOWN) < max(1000, 5 * waited[name]), f"{name} has a backlog"
-        page.locator(".jp-CodeCell.jp-mod-active button", has_text="Reset").click()
+        page.locator(f"{ACTIVE} button", has_text="Reset").click()
         assert _becomes(page, picture, lambda now, start=start: now == start), name
-    handle, _ = _explorer(page, cells, "def peer", "img")
+    handle, _ = _explorer(page, explorers, "def peer", "img")
     waited["peer"] = statistics.median(handle.evaluate(LATENCY))
     (tmp_path / "waited.json").write_text(json.dumps(waited))
     # 40 ms for pictures and 70 ms for figures on a quiet machine; a busy one delays all alike.
     assert all(waited[name] < waited["peer"] for name in ONE), waited
-    _shut_down(page)
 
 
-def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, course, tmp_path):
+def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, explorers, tmp_path):
     expect = pytest.importorskip("playwright.sync_api").expect
-    cells = _open_and_run(page, course[1], "saved.ipynb")
     for name, label, moved in (
         ("homography", "corner 1, top left", ("corner 1 u", "corner 1 v")),
         ("projection", "the vanishing point", ("heading (°)", "slope (°)")),
         ("camera", "the camera, to carry it", ("angle x (°)", "angle y (°)")),
     ):
-        output = _output(page, cells, rf"^explore_{name}\(")
+        output = _output(page, explorers, rf"^explore_{name}\(")
         grip = output.get_by_label(label)
         grip.wait_for(state="visible", timeout=20_000)
         grip.scroll_into_view_if_needed()
@@ -376,13 +419,12 @@ def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, course,
         if name != "camera":  # it stays under the hand
             assert np.hypot(*np.subtract(_middle(grip), (x - 30, y - 24))) < 8, name
         page.screenshot(path=tmp_path / f"{name}.png")
-    output = _output(page, cells, r"^explore_homography\(")
+    output = _output(page, explorers, r"^explore_homography\(")
     output.get_by_label("corner 3, bottom right").focus()
     for _ in range(5):  # quicker than pictures are drawn; the notebook keeps its cell
         page.keyboard.press("ArrowDown")
     readout = output.locator(".widget-slider", has_text="corner 3 v").locator(".widget-readout")
     expect(readout).to_have_text("7")  # 5 px of the page
-    _shut_down(page)
 
 
 # What somebody types who reads the tasks of chapter 6: right, a classic mistake, and no end.
@@ -403,7 +445,7 @@ TYPED = {
         scale *= 0.999
     return np.diag([scale, scale, 1])""",
 }
-PROMPT = ".jp-CodeCell.jp-mod-active .jp-InputPrompt"
+PROMPT = f"{ACTIVE} .jp-InputPrompt"
 # Whether a cell has another number than before, and no star: it has run.
 HAS_RUN = """([prompt, before]) => {
     const now = document.querySelector(prompt).innerText;
@@ -416,19 +458,19 @@ def _answer(page, cells, name):
     call = f'check("{name}", my_{name})'
     index = next(i for i, cell in enumerate(cells) if call in cell["source"])
     page.evaluate(SHOW_CELL, index)
-    page.locator(".jp-CodeCell.jp-mod-active .cm-content").click()
+    page.locator(f"{ACTIVE} .cm-content").click()
     page.keyboard.press("Control+a")
     page.keyboard.insert_text(f"{TYPED[name]}\n\n\n{call}")
     before = page.locator(PROMPT).inner_text()
     page.keyboard.press("Control+Enter")
-    page.wait_for_function(HAS_RUN, arg=[PROMPT, before], timeout=60_000)
-    return page.locator(".jp-CodeCell.jp-mod-active .jp-OutputArea").inner_text()
+    page.wait_for_function(HAS_RUN, arg=[PROMPT, before], timeout=60_000, polling=100)
+    return page.locator(f"{ACTIVE} .jp-OutputArea").inner_text()
 
 
 @pytest.mark.once
-def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, course, tmp_path):
+def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, tmp_path):
     path = next(path for path in NOTEBOOKS if path.name.startswith("06"))
-    cells = _open_and_run(page, course[1], path.name)
+    cells = _open_and_run(page, path.name)
     shown = {}
     for name in TYPED:
         shown[name] = _answer(page, cells, name)
@@ -441,17 +483,17 @@ def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, course
     assert "stopped after 5 seconds: does a loop never end?" in shown["normaliser"]
     # the notebook lives on
     assert "dlt: ✓ right." in _answer(page, cells, "dlt")
-    _shut_down(page)
+    page.evaluate(SHUT_DOWN)
 
 
 @pytest.mark.once
 def test_names_of_chapters_are_listed_whole_and_nothing_else_of_ours(page, course):
-    folder, address = course
+    folder, _ = course
     (folder / "open-the-course.html").touch()  # which `cvnotes lab` has there for a minute
-    _write_scratch(folder / "05_calibration_targets.ipynb")
-    _open(page, address, "saved.ipynb")
-    page.wait_for_selector(".jp-DirListing-itemText", timeout=60_000)
+    _write_scratch(folder / "written_just_now.ipynb")
+    page.evaluate(LIST_AGAIN)
     names = page.locator(".jp-DirListing-itemText")
+    names.get_by_text("written_just_now.ipynb").wait_for(timeout=60_000)
     listed = names.all_inner_texts()
     assert "05_calibration_targets.ipynb" in listed
     assert "open-the-course.html" not in listed
@@ -461,7 +503,22 @@ def test_names_of_chapters_are_listed_whole_and_nothing_else_of_ours(page, cours
 
 @pytest.mark.once
 def test_a_page_of_the_docs_is_shown_set_not_as_its_source(page, course):
-    folder, address = course
+    folder, _ = course
     (folder / "page.md").write_text("# Frames\n\nOne *letter*.")
-    page.goto(f"{address}/lab/workspaces/auto-page/tree/page.md?token={TOKEN}")
+    page.evaluate(LIST_AGAIN)
+    page.locator(".jp-DirListing-item", has_text="page.md").dblclick(timeout=60_000)
     page.wait_for_selector(".jp-MarkdownViewer em", timeout=60_000)
+
+
+@pytest.mark.once
+def test_every_notebook_opens_with_its_pictures(page):
+    for path in NOTEBOOKS:
+        page.evaluate(OPEN_WITHOUT_KERNEL, path.name)
+        saved = nbformat.read(path, as_version=4).cells
+        page.evaluate(READY)
+        assert [cell["source"] for cell in page.evaluate(CELLS)] == [c.source for c in saved]
+        first = next(i for i, cell in enumerate(saved) if "<img" in str(cell.get("outputs", "")))
+        page.evaluate(SHOW_CELL, first)
+        picture = page.locator(".jp-mod-active .jp-OutputArea-output img:visible").first
+        picture.wait_for(state="visible", timeout=60_000)
+        assert picture.evaluate("img => img.naturalWidth") > 100, path.stem

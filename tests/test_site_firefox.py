@@ -83,19 +83,25 @@ def firefox():
         yield browser
 
 
+@pytest.fixture(scope="module")
+def chapter(firefox, live_site):
+    """Open chapter 6, on which Python is woken once, by the first who asks."""
+    firefox.open(f"{live_site}/notebooks/06_homography_dlt.html")
+
+
 @pytest.fixture
 def page(firefox, live_site):
     """Give the page; at the end it has asked nobody but the site, and met no error."""
-    firefox.requests.clear()
     yield firefox
     firefox.run("() => 0")  # what came last is heard
     ours = (live_site, "data:", "blob:")
-    assert [url for url in firefox.requests if not url.startswith(ours)] == []
+    asked, firefox.requests = firefox.requests, []
+    assert [url for url in asked if not url.startswith(ours)] == []
     assert firefox.errors == []
 
 
-def test_in_firefox_an_exploration_follows_keys_mouse_and_thumb(page, live_site):
-    page.open(f"{live_site}/notebooks/06_homography_dlt.html")
+@pytest.mark.usefixtures("chapter")
+def test_in_firefox_an_exploration_follows_keys_mouse_and_thumb(page):
     page.run("() => document.querySelector('.explore input').focus()")
     page.press("ArrowRight", "ArrowRight")
     page.wait(ANOTHER, 0)
@@ -111,8 +117,8 @@ def test_in_firefox_an_exploration_follows_keys_mouse_and_thumb(page, live_site)
     page.wait("() => +document.querySelectorAll('.explore input')[6].value < 0", seconds=20)
 
 
-def test_in_firefox_an_exercise_is_right_wrong_by_a_known_mistake_and_endless(page, live_site):
-    page.open(f"{live_site}/notebooks/06_homography_dlt.html")
+@pytest.mark.usefixtures("chapter")
+def test_in_firefox_an_exercise_is_right_wrong_by_a_known_mistake_and_endless(page):
     page.run(IMPATIENT)
 
     def checked(name, text):

@@ -15,6 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
 ANSWERED = """() => /The camera is known|No camera|found in none|stopped|wrong|missing/.test(
     document.querySelector('#camera-page .said').textContent)"""
+LEFT_OUT = "() => !document.querySelector('.shots li')"
 RUN_ALL = """async () => {
     const app = window.jupyterapp;
     await app.restored;
@@ -33,18 +34,52 @@ SHOW_CELL = """async words => {
 }"""
 
 
+@pytest.fixture(scope="module")
+def watched(chromium, live_site):
+    """Give what makes contexts, and whom but the site they asked and what errors they met."""
+    told, ours = [], (live_site.rsplit("/", 2)[0], "data:", "blob:")
+
+    def made():
+        context = chromium.new_context(viewport={"width": 1280, "height": 900})
+        context.on("request", lambda r: None if r.url.startswith(ours) else told.append(r.url))
+        context.on("weberror", lambda e: told.append(str(e.error)))
+        return context
+
+    return made, told
+
+
+def taken(told):
+    """Empty a list; gives what was in it, for one test to answer for."""
+    found, told[:] = told[:], []
+    return found
+
+
 @pytest.fixture
-def page(chromium, live_site):
+def page(watched):
     """Give an empty page; at its end it has asked nobody but the site, and met no error."""
-    context = chromium.new_context(viewport={"width": 1280, "height": 900})
-    outside, errors = [], []
-    ours = (live_site.rsplit("/", 2)[0], "data:", "blob:")
-    context.on("request", lambda r: None if r.url.startswith(ours) else outside.append(r.url))
-    page = context.new_page()
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    yield page
+    context = watched[0]()
+    yield context.new_page()
     context.close()
-    assert (outside, errors) == ([], [])
+    assert taken(watched[1]) == []
+
+
+@pytest.fixture(scope="module")
+def first_visit(watched, live_site, tmp_path_factory):
+    """Drop photographs at a first visit, and a file that is none; gives the page and its answer."""
+    foreign = tmp_path_factory.mktemp("dropped") / "foreign.jpg"
+    foreign.write_text("no picture")
+    context = watched[0]()
+    page = context.new_page()
+    said = drop(page, [*VIEWS, foreign], live_site)
+    yield page, said
+    context.close()
+
+
+@pytest.fixture
+def camera_page(first_visit, watched):
+    """Give the page with Python awake; at its end it asked nobody but the site, without error."""
+    yield first_visit[0]
+    assert taken(watched[1]) == []
 
 
 def drop(page, files, live_site=None):
@@ -52,16 +87,20 @@ def drop(page, files, live_site=None):
         page.goto(f"{live_site}/your_camera.html")
     page.locator("#camera-page .said").evaluate("said => said.textContent = ''")
     page.set_input_files("#camera-page .drop input", files)
-    page.wait_for_function(ANSWERED, timeout=240_000)
+    page.wait_for_function(ANSWERED, timeout=240_000, polling=100)
     return page.inner_text("#camera-page .said")
 
 
+def leave_all_out(page):
+    for _ in range(page.locator(".shots li").count()):
+        page.locator(".shots li button").first.click()
+    page.wait_for_function(LEFT_OUT, polling=100)
+
+
 def test_dropped_photographs_give_the_camera_of_the_desktop(
-    page, live_site, camera_of_the_views, tmp_path
+    camera_page, first_visit, camera_of_the_views
 ):
-    foreign = tmp_path / "foreign.jpg"
-    foreign.write_text("no picture")
-    said = drop(page, [*VIEWS, foreign], live_site)
+    page, said = camera_page, first_visit[1]
     assert said == "The camera is known from 12 of 13 photographs."
     refused = page.inner_text(".shots li.refused")
     assert "foreign.jpg" in refused
@@ -77,8 +116,22 @@ def test_dropped_photographs_give_the_camera_of_the_desktop(
     assert violations(page) == []
 
 
-def test_a_worker_that_dies_takes_no_photograph_with_it(page, live_site):
-    assert "from 4 of 4" in drop(page, VIEWS[:4], live_site)
+def test_the_machines_own_camera_takes_photographs(camera_page):
+    page = camera_page
+    leave_all_out(page)
+    page.click("text=Use this machine's camera")
+    page.wait_for_selector("section.live video", state="visible", timeout=60_000)
+    page.click("text=Take a photograph")
+    page.wait_for_selector(".shots li.refused", timeout=120_000)
+    assert "no board of 9×6 inner corners found" in page.inner_text(".shots")
+    page.click("text=Stop the camera")
+    assert page.is_visible("text=Use this machine's camera")
+
+
+def test_a_worker_that_dies_takes_no_photograph_with_it(camera_page):
+    page = camera_page
+    leave_all_out(page)
+    assert "from 4 of 4" in drop(page, VIEWS[:4])
     page.evaluate(
         "() => { window.Worker = class { constructor() { setTimeout(() => "
         "this.onerror({message: 'out of memory'}), 50); } postMessage() {} terminate() {} } }"
@@ -88,17 +141,6 @@ def test_a_worker_that_dies_takes_no_photograph_with_it(page, live_site):
     page.wait_for_selector(".shots li.refused", timeout=60_000)
     assert "Python stopped at this photograph (out of memory)" in page.inner_text(".shots")
     assert page.locator(".shots li").count() == 4
-
-
-def test_the_machines_own_camera_takes_photographs(page, live_site):
-    page.goto(f"{live_site}/your_camera.html")
-    page.click("text=Use this machine's camera")
-    page.wait_for_selector("section.live video", state="visible", timeout=60_000)
-    page.click("text=Take a photograph")
-    page.wait_for_selector(".shots li.refused", timeout=120_000)
-    assert "no board of 9×6 inner corners found" in page.inner_text(".shots")
-    page.click("text=Stop the camera")
-    assert page.is_visible("text=Use this machine's camera")
 
 
 def film(path, pictures, seconds):
@@ -160,14 +202,18 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     expect(angle).not_to_have_text(before, timeout=20_000)
 
 
-def test_after_one_visit_pages_and_python_are_there_without_a_network(page, live_site):
-    assert "from 4 of 4" in drop(page, VIEWS[:4], live_site)
+def test_after_one_visit_pages_and_python_are_there_without_a_network(
+    first_visit, watched, live_site
+):
+    context = first_visit[0].context
+    page = context.new_page()
     page.goto(f"{live_site}/notebooks/07_zhang_calibration.html")
     page.goto(f"{live_site}/your_camera.html")
     assert "from 4 of 4" in drop(page, VIEWS[:4])
-    page.context.set_offline(True)
+    context.set_offline(True)
     page.goto(f"{live_site}/notebooks/07_zhang_calibration.html")
     assert "Zhang" in page.inner_text("h1")
     assert "from 5 of 5" in drop(page, VIEWS[:5], live_site)
     page.goto(f"{live_site}/notebooks/01_projective_space.html")
     assert "no network, and this page has not been visited" in page.inner_text("body")
+    assert taken(watched[1]) == []
