@@ -314,6 +314,24 @@ class TestCount:
             assert count_corners(with_coin(image, camera, corner)) == (9, 6)
 
     @pytest.mark.slow
+    @pytest.mark.parametrize(
+        ("corners", "turn", "far", "blur"),
+        [
+            ((4, 3), (0.01, 0.45, -0.36), 1159, 1.0),
+            ((9, 6), (-0.41, -0.26, 0.3), 866, 0.7),
+            ((9, 6), (0.44, 0.01, 0.48), 465, 1.0),
+            ((12, 9), (0.31, 0.31, 0.02), 629, 1.3),
+        ],
+    )
+    def test_nor_does_how_far_away_and_how_large_the_board_is(self, corners, turn, far, blur):
+        # Where the outer squares end two edges cross as well, at one dark quadrant of four.
+        board = Chessboard(corners, 25.0)
+        camera = view(turn, (0, 0, far), board=board)
+        image = photograph(camera, board, blur=blur)
+        assert count_corners(image) == corners
+        assert count_corners(with_coin(image, camera, 0)) == corners
+
+    @pytest.mark.slow
     @pytest.mark.parametrize("shot", CLOSE, ids=str)
     def test_a_wide_lens_does_not_change_it(self, shot):
         assert count_corners(photograph(close_up(*shot))) == (9, 6)

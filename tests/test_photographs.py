@@ -22,6 +22,7 @@ from cvnotes.commands.cli import main
 from cvnotes.files import read_camera, read_photo
 from cvnotes.pictures import course
 from cvnotes.targets import Chessboard, find_corners, finders
+from cvnotes.targets.finding import count_corners
 from cvnotes.targets.lattice import handedness
 from cvnotes.targets.opencv_finders import find_classic, find_sb
 
@@ -117,6 +118,17 @@ def test_opencvs_own_example_is_read():
     assert camera.lens.k[2] == 2.3839153080878486e-01
     assert camera.lens.p == (1.7831947042852964e-03, -2.8122100441115472e-04)
     assert camera.size == (640, 480)
+
+
+@pytest.mark.parametrize("n", range(1, 14, 3))
+def test_the_count_is_seen_though_eight_corners_are_hidden(n):
+    path = sorted(PHOTOGRAPHS.glob("left*.jpg"))[n - 1]
+    image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    m = find_corners(image, BOARD)
+    radius = int(0.35 * np.linalg.norm(m[1] - m[0]))
+    for u, v in np.rint(np.random.default_rng(n).choice(m, 8, replace=False)).astype(int).tolist():
+        cv2.circle(image, (u, v), radius, 150, -1, cv2.LINE_AA)
+    assert count_corners(image) == BOARD.corners
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from cvnotes.pictures import clutter, course, desk, render, render_scene
 from cvnotes.targets import Chessboard, find_corners, finders
 from cvnotes.targets import opencv_finders as _cv
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.saddle_points import find_saddle_part, find_saddles, saddle_points
+from cvnotes.targets.saddle_points import find_saddles, saddle_lattice, saddle_points
 
 ROOT = Path(__file__).resolve().parents[1]
 VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
@@ -75,7 +75,7 @@ def test_in_all_rendered_views_corners_are_where_opencv_leads_to(monkeypatch):
 
 @pytest.mark.parametrize("n", range(0, len(VIEWS), 4))
 def test_the_row_of_corners_where_the_outer_squares_end_is_not_taken_for_corners(n):
-    part = find_saddle_part(read_image(VIEWS[n]))
+    part = saddle_lattice(read_image(VIEWS[n]))
     assert sorted(part.shape[:2]) == [6, 9]
 
 
@@ -131,7 +131,7 @@ def test_where_there_is_no_board_none_is_found(shape):
     noise = np.random.default_rng(0).integers(0, 255, shape, np.uint8)
     for picture in (np.zeros(shape, np.uint8), noise):
         assert find_saddles(picture, (9, 6)) is None
-        assert find_saddle_part(picture) is None
+        assert saddle_lattice(picture) is None
         with pytest.raises(CornersNotFound, match=f"picture of {shape[1]}×{shape[0]} pixels"):
             find_corners(picture, BOARD)
 

@@ -44,7 +44,7 @@ def find_corners(
     Notes
     -----
     1. OpenCV's finders say where the board is, in a reduced copy if the picture is large; if they
-       find none or only part of it, it is grown from that part (`cvnotes.targets.growing`).
+       find none, whatever board there is is grown (`cvnotes.targets.growing`).
     2. The model of two blurred edges is fitted to the pixels of the whole picture (`fit_edges`).
     3. Seen from its front, a board is right-handed, and the square outside of its origin is dark:
        that puts the corners in order. A board that looks the same after half a turn gets its

@@ -1,15 +1,11 @@
-"""A board grown from one square of it: its count, and its corners though some are hidden."""
-
-from collections.abc import Iterator
-from itertools import islice
+"""Whatever board is in a picture: its count, and its corners though some are hidden."""
 
 import numpy as np
 
 from cvnotes.base import Array, DegenerateError, Image
 from cvnotes.targets.grey import Grey8
-from cvnotes.targets.lattice import Mask, completed
-from cvnotes.targets.opencv_finders import find_part, has_opencv
-from cvnotes.targets.saddle_points import find_saddle_part
+from cvnotes.targets.lattice import Mask, completed, trimmed
+from cvnotes.targets.saddle_points import saddle_lattice
 from cvnotes.targets.subpixel import fit_edges, led_by_gradients
 
 _FAR = 0.35  # of a square: farther from where it was expected, it is another corner
@@ -17,8 +13,8 @@ _WINDOW = 0.4  # half a window in which gradients lead to a corner, of a square
 _LED = 0.1  # px, to which gradients need to lead: the model of two edges goes on from there
 _FAINT = 0.6  # of the board's contrast: what is fainter is no edge of its squares
 _UNLIKE = 0.15  # of the contrast: so much more may a corner leave unexplained than most
-_TRIES = 3  # squares to begin with
-_LOOKS = 5  # of OpenCV, at most
+_QUADRANT = np.array([0.2, 0.3, 0.4])  # of both steps: there the quadrants are looked at
+_ALIKE = 0.3  # of the contrast: so much is the darker light quadrant lighter than the lighter dark
 _LARGEST = 60  # corners along a side
 
 
@@ -38,79 +34,30 @@ def grown_board(grey: Grey8) -> Array | None:
 
     Notes
     -----
-    OpenCV finds a part of the board, or without it `find_saddle_part`; of that the surest square
-    is taken. Its neighbours on each side are expected where the rows before them lead, the model of
-    two edges is fitted there, and a row is taken over if at least half of it are corners: in their
-    place, alternating, with a contrast like the others'. That is repeated until no side has such a
-    row.
+    Saddle points that go on from each other are taken (`saddle_lattice`), and the model of two
+    edges is fitted to all of them. On each side the next row is expected where the rows before it
+    lead, and is taken over if at least half of it are corners: in their place, alternating, with a
+    contrast like the others'. That is repeated until no side has such a row.
     """
-    # OpenCV's part is not the same each time, and from some of them not all of the board grows: the
-    # largest lattice is looked for until it came twice.
-    look, looks = (find_part, _LOOKS) if has_opencv() else (find_saddle_part, 1)
-    grown: list[Array] = [np.full((0, 0, 2), np.nan)]
-    parts: list[Array] = []
-    for _ in range(looks):
-        part = look(grey)
-        if part is None:
-            break
-        same = next((i for i, other in enumerate(parts, 1) if np.array_equal(other, part)), None)
-        parts.append(part)
-        grown.append(grown[same] if same else _grown_from(grey, part))
-        sizes = [lattice.size for lattice in grown]
-        if max(sizes) > 0 and sizes.count(max(sizes)) > 1:
-            break
-    best = max(grown, key=np.size)
-    if min(best.shape[:2]) < 3:
+    start = saddle_lattice(grey)
+    found = None if start is None else _corners(grey, completed(start), new=0)
+    lattice = np.full((0, 0, 2), np.nan) if found is None else trimmed(found)
+    if min(lattice.shape[:2]) >= 2:
+        lattice = _grown(grey, lattice)
+    if min(lattice.shape[:2]) < 3:
         return None
     # Half a turn does not matter here: finders give their corners in any order.
-    return best if best.shape[1] >= best.shape[0] else np.rot90(best)
-
-
-def _grown_from(grey: Grey8, part: Array) -> Array:
-    """Grow the surest squares of a part, until what they grow to is as large as the part."""
-    best = np.full((0, 0, 2), np.nan)
-    for square in islice(_squares(grey, part), _TRIES):
-        best = max(best, _grown(grey, square), key=np.size)
-        if best.size >= part.size:
-            break
-    return best
+    return lattice if lattice.shape[1] >= lattice.shape[0] else np.rot90(lattice)
 
 
 def _grown(grey: Image, lattice: Array) -> Array:
     """Put rows on all sides of a lattice until there are no more."""
-    ended = [0, 0, 0, 0]  # the size of the lattice that had no further row on a side
-    while max(lattice.shape) < _LARGEST:
-        if all(ended):
-            # A lattice that has grown since may have one: of a longer row, more can be seen.
-            ended = [size if size == lattice.size else 0 for size in ended]
-            if all(ended):
-                break
-        if not ended[0]:
-            larger = _one_row_more(grey, lattice)
-            if larger is None:
-                ended[0] = lattice.size
-            else:
-                lattice = larger
-        lattice, ended = np.rot90(lattice), [*ended[1:], ended[0]]
+    blocked = 0
+    while blocked < 4 and max(lattice.shape) < _LARGEST:
+        larger = _one_row_more(grey, lattice)
+        blocked = blocked + 1 if larger is None else 0
+        lattice = np.rot90(lattice if larger is None else larger)
     return lattice
-
-
-def _squares(grey: Image, part: Array) -> Iterator[Array]:
-    """Give the corners (2, 2, 2) of a part's squares, those first that look most like squares.
-
-    OpenCV passes over hidden rows. The corners beside them do not alternate, and no square is
-    between them.
-    """
-    x, y = np.diff(part, axis=1), np.diff(part, axis=0)
-    sides = np.stack([x[:-1], x[1:], y[:, :-1], y[:, 1:]])
-    lengths = np.linalg.norm(sides, axis=-1)
-    with np.errstate(divide="ignore", invalid="ignore"):  # two corners in one place: no square
-        oblong = lengths.max(0) / lengths.min(0)
-    for k in np.argsort(oblong, axis=None):
-        i, j = np.unravel_index(k, oblong.shape)
-        found = _corners(grey, part[i : i + 2, j : j + 2])
-        if found is not None and np.isfinite(found).all():
-            yield found
 
 
 def _one_row_more(grey: Image, lattice: Array) -> Array | None:
@@ -119,11 +66,10 @@ def _one_row_more(grey: Image, lattice: Array) -> Array | None:
     # Newton's formula: the differences of the highest order stay the same. The row after the
     # next one is only there to be looked past.
     known = np.concatenate([known[:1] + _differences(known), known])
-    known = np.concatenate([2 * known[:1] - known[1:2], known])
+    known = np.concatenate([2 * known[:1] - known[1:2], known])[:4]
     height, width = grey.shape
     inside = ((known[1] >= 0) & (known[1] <= [width - 1, height - 1])).all(-1)
-    # The two rows that are known there tell what corners look like.
-    found = _corners(grey, known[:4]) if 2 * inside.sum() >= inside.size else None
+    found = _corners(grey, known, new=2) if 2 * inside.sum() >= inside.size else None
     if found is None:
         return None
     row = np.where(inside[:, None], found[1], np.nan)
@@ -141,10 +87,10 @@ def _differences(rows: Array) -> Array:
     return total
 
 
-def _corners(grey: Image, expected: Array) -> Array | None:
+def _corners(grey: Image, expected: Array, new: int) -> Array | None:
     """Fit edges to a lattice of expected corners: NaN where there are none, None for no lattice.
 
-    Of more than two rows, those after the first two are known already.
+    The first `new` rows are only expected, and by what the others look like they are judged.
     """
     rows, columns = shape = expected.shape[:2]
     sides = [np.linalg.norm(np.gradient(expected, axis=axis), axis=-1) for axis in (0, 1)]
@@ -152,24 +98,38 @@ def _corners(grey: Image, expected: Array) -> Array | None:
     # Gradients lead from farther away than the model of two sharp edges does.
     half = int(np.clip(_WINDOW * np.median(side), 4, 30))
     start = expected.reshape(-1, 2).copy()
-    unknown = start[: 2 * columns]
-    led = led_by_gradients(grey, unknown, half, _LED)
-    unknown[:] = np.where(np.isfinite(led), led, unknown)
+    led = led_by_gradients(grey, start[: new * columns], half, _LED)
+    start[: new * columns] = np.where(np.isfinite(led), led, start[: new * columns])
     try:
         fit = fit_edges.inside(grey, start, grid=(columns, rows))
     except DegenerateError:
         return None
     m, contrast = fit.m.reshape(*shape, 2), fit.contrast.reshape(shape)
-    judged = slice(2, None) if rows > 2 else slice(None)  # what is known, if anything
     seen: Mask = np.asarray(np.isfinite(m).all(-1))
+    judges = seen & (np.arange(rows) >= new)[:, None]
+    if not judges.any():
+        return None
     i, j = np.indices(shape)
     alike = contrast * (-1.0) ** (i + j)
-    alike *= np.sign(alike[judged][seen[judged]].sum())
-    usual = np.abs(contrast[judged][seen[judged]])
+    alike *= np.sign(alike[judges].sum())
     unexplained = fit.residual.reshape(shape) / np.maximum(np.abs(contrast), 1e-9)
-    if not usual.size:
-        return None
-    plain = unexplained < np.median(unexplained[judged][seen[judged]]) + _UNLIKE
+    plain = unexplained < np.median(unexplained[judges]) + _UNLIKE
+    strong = alike > _FAINT * np.median(np.abs(contrast[judges]))
     near = np.linalg.norm(m - expected, axis=-1) < _FAR * side
-    good = seen & near & plain & (alike > _FAINT * np.median(usual))
+    good = seen & near & plain & strong & _alternate(grey, m, expected)
     return np.where(good[..., None], m, np.nan)
+
+
+def _alternate(grey: Image, m: Array, expected: Array) -> Mask:
+    """Tell around which corners two opposite quadrants are light, and both of the others dark.
+
+    Where only one of four quadrants is dark, at the end of a board, two edges cross as well.
+    """
+    a, b = (np.gradient(expected, axis=axis) for axis in (1, 0))
+    ways = np.stack([a + b, -a - b, a - b, b - a])
+    places = m + _QUADRANT[:, None, None, None, None] * ways
+    height, width = grey.shape
+    u, v = np.rint(np.nan_to_num(places)).astype(np.intp).clip(0, [width - 1, height - 1]).T
+    one, other = grey[v, u].mean(-1, dtype=float).T.reshape(2, 2, *m.shape[:2])
+    clear = np.maximum(one.min(0) - other.max(0), other.min(0) - one.max(0))
+    return np.asarray(clear > _ALIKE * np.ptp([*one, *other], axis=0))

@@ -310,6 +310,25 @@ def completed(lattice: Array) -> Array:
     return m.reshape(shape)
 
 
+def trimmed(lattice: Array) -> Array:
+    """Take border rows and columns off of which less than half is there, the others are NaN.
+
+    Examples
+    --------
+    >>> lattice = np.zeros((4, 5, 2))
+    >>> lattice[0, :3] = np.nan
+    >>> trimmed(lattice).shape
+    (3, 5, 2)
+    """
+    kept = 0
+    while kept < 4 and lattice.size:
+        if 2 * np.count_nonzero(np.isfinite(lattice[0]).all(-1)) < lattice.shape[1]:
+            lattice, kept = lattice[1:], 0
+        else:
+            lattice, kept = np.rot90(lattice), kept + 1
+    return lattice
+
+
 def unevenness(lattice: Array) -> Iterator[Array]:
     """Measure how far corners in line depart from a smooth course, in squares of their own place.
 

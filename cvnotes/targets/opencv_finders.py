@@ -58,30 +58,6 @@ def find_classic(grey: Grey8, corners: tuple[int, int]) -> Array | None:
     return _found(cv2.findChessboardCorners, grey, corners, flags)
 
 
-def find_part(grey: Grey8) -> Array | None:
-    """Look for the largest part without gaps of a board of any count with OpenCV's SB finder.
-
-    Gives its inner corners (rows, columns, 2), at least 3×3 of them, or None.
-
-    Examples
-    --------
-    >>> find_part(np.zeros((40, 40), np.uint8)) is None
-    True
-    """
-    import cv2
-
-    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
-    try:
-        found, m, squares = cv2.findChessboardCornersSBWithMeta(
-            np.ascontiguousarray(grey), (3, 3), flags
-        )
-    except cv2.error:
-        return None
-    if not found or squares is None:
-        return None
-    return np.asarray(m, dtype=np.float64).reshape(*np.shape(squares)[:2], 2)
-
-
 # Markers of so many bits a side, and how many there are.
 DICTIONARIES = tuple(f"{n}x{n}_{many}" for n in (4, 5, 6, 7) for many in (50, 100, 250, 1000))
 _SURE = 4  # markers of a dictionary: one alone may be read into anything

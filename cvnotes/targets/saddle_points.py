@@ -14,7 +14,8 @@ import numpy as np
 
 from cvnotes.base import Array, Image
 from cvnotes.targets.harris_corners import local_maxima
-from cvnotes.targets.subpixel import Mask, gradient_axes
+from cvnotes.targets.lattice import Mask, trimmed
+from cvnotes.targets.subpixel import gradient_axes
 
 SCALES = (1.5, 2.5, 4.0)  # px: what is blurred or noisy shows at the larger ones
 _WEAK = 0.01  # of the strongest saddle; the square of a contrast, which light and slant reduce
@@ -102,19 +103,16 @@ def find_saddles(grey: Image, corners: tuple[int, int]) -> Array | None:
     return best[..., :2].reshape(-1, 2)
 
 
-def find_saddle_part(grey: Image) -> Array | None:
-    """Look for a part of a board of any count; corners (rows, columns, 2) without gaps, or None.
+def saddle_lattice(grey: Image) -> Array | None:
+    """Look for a board of any count; corners (rows, columns, 2), NaN for hidden ones, or None.
 
     Examples
     --------
-    >>> find_saddle_part(np.zeros((40, 40))) is None
+    >>> saddle_lattice(np.zeros((40, 40))) is None
     True
     """
-    for sigma in SCALES:
-        part = _without_gaps(_largest(saddle_points(grey, sigma)))
-        if min(part.shape[:2]) >= 3:
-            return part[..., :2]
-    return None
+    best = max((_largest(saddle_points(grey, sigma)) for sigma in SCALES), key=_seen)
+    return best[..., :2] if min(best.shape[:2]) >= 3 else None
 
 
 def _largest(found: Saddles) -> Array:
@@ -132,7 +130,7 @@ def _largest(found: Saddles) -> Array:
             continue
         places = _grown(found, tree, seed, _first_steps(found, edges, near, seed))
         used[list(places.values())] = True
-        lattice = _trimmed(_as_lattice(places, found))
+        lattice = trimmed(_as_lattice(places, found))
         if _seen(lattice) > _seen(best):
             best = lattice
         if 2 * _seen(best) > np.count_nonzero(~used):  # no other can have more of them
@@ -210,17 +208,6 @@ def _as_lattice(places: dict[tuple[int, int], int], found: Saddles) -> Array:
     return lattice
 
 
-def _trimmed(lattice: Array) -> Array:
-    """Take border rows and columns off of which less than half is there."""
-    kept = 0
-    while kept < 4 and lattice.size:
-        if 2 * np.count_nonzero(_there(lattice)[0]) < lattice.shape[1]:
-            lattice, kept = lattice[1:], 0
-        else:
-            lattice, kept = np.rot90(lattice), kept + 1
-    return lattice
-
-
 def _strongest(lattice: Array, rows: int, columns: int) -> Array | None:
     """Give the part of that many rows and columns whose corners are strongest together.
 
@@ -232,18 +219,6 @@ def _strongest(lattice: Array, rows: int, columns: int) -> Array | None:
         for j in range(lattice.shape[1] - columns + 1)
     ]
     return max(parts, key=lambda part: float(np.nansum(part[..., 2])), default=None)
-
-
-def _without_gaps(lattice: Array) -> Array:
-    """Take off the border row or column with most gaps until none is left."""
-    while lattice.size and not _there(lattice).all():
-        gaps = [np.mean(~_there(np.rot90(lattice, k))[0]) for k in range(4)]
-        k = int(np.argmax(gaps))
-        if gaps[k] == 0:  # the gaps are inside: what is above them is left
-            lattice = lattice[: int(np.argmin(_there(lattice).all(1)))]
-        else:
-            lattice = np.rot90(np.rot90(lattice, k)[1:], -k)
-    return lattice
 
 
 def _there(lattice: Array) -> Mask:
