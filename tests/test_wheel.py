@@ -17,7 +17,7 @@ from cvnotes.commands.working_copy import pages
 ROOT = Path(__file__).resolve().parents[1]
 EXECUTE = """
     import sys
-    sys.modules["rfc3987_syntax"] = None  # see early.py
+    sys.modules["rfc3987_syntax"] = None  # see conftest.py
     import nbformat
     from nbclient import NotebookClient
     notebook = nbformat.read(sys.argv[1], as_version=4)
