@@ -75,6 +75,12 @@ def shot():
     return photograph(camera), camera.project(BOARD.points)
 
 
+@pytest.fixture(scope="module")
+def small_shot():
+    camera = view(half=True)
+    return photograph(camera), camera.project(BOARD.points)
+
+
 class TestFound:
     def test_corners_lie_where_the_camera_put_them_in_the_boards_order(self):
         for camera in views(6):
@@ -351,9 +357,9 @@ class TestCount:
             ((12, 7), "only 9×6 of them can be seen: is the whole board in the picture"),
         ],
     )
-    def test_the_count_that_is_there_is_named(self, shot, asked, words):
+    def test_the_count_that_is_there_is_named(self, small_shot, asked, words):
         with pytest.raises(CornersNotFound, match=words):
-            find_corners(shot[0], Chessboard(asked, 25.0))
+            find_corners(small_shot[0], Chessboard(asked, 25.0))
 
     @pytest.mark.slow
     def test_it_is_not_guessed_where_a_finder_found_the_board_that_was_asked_for(self):
@@ -476,25 +482,25 @@ class TestRefused:
         assert "is the whole board in the picture" in message
         assert message.count("SB finder") == 1  # the same picture is not searched twice
 
-    def test_squares_counted_for_corners(self, shot):
+    def test_squares_counted_for_corners(self, small_shot):
         with pytest.raises(CornersNotFound, match="a board of 9×6 inner corners is there: were"):
-            find_corners(shot[0], Chessboard((10, 7), 25.0))
+            find_corners(small_shot[0], Chessboard((10, 7), 25.0))
 
     def test_boards_that_no_finder_finds(self, shot):
         with pytest.raises(CornersNotFound, match="at least 3 inner corners along each side"):
             find_corners(shot[0], Chessboard((9, 2), 25.0))
 
-    def test_a_board_that_is_cut_off(self, shot):
-        image, m = shot
+    def test_a_board_that_is_cut_off(self, small_shot):
+        image, m = small_shot
         with pytest.raises(CornersNotFound, match="whole board"):
             find_corners(image[:, : int(np.sort(m[:, 0])[-4])].copy(), BOARD)
 
     @pytest.mark.slow
-    def test_a_hidden_corner(self, shot):
-        image, m = shot
+    def test_a_hidden_corner(self, small_shot):
+        image, m = small_shot
         u, v = m[31]
         v_all, u_all = np.indices(image.shape)
-        hidden = np.where(np.hypot(u_all - u, v_all - v) < 14, 140, image).astype(np.uint8)
+        hidden = np.where(np.hypot(u_all - u, v_all - v) < 7, 140, image).astype(np.uint8)
         with pytest.raises(CornersNotFound):
             find_corners(hidden, BOARD)
 
