@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError
-from cvnotes.calibration import Calibration, calibrate, choose_lens
+from cvnotes.calibration import Calibration, calibrate, choose_lens, starts
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.left_out import AtLeast, left_out_rms
 from cvnotes.calibration.refinement import Problem
@@ -351,20 +351,40 @@ def test_a_lens_that_is_too_small_is_never_reliable():
     assert calibrate(W, m, camera.size, lens="fisheye").reliable
 
 
+def few_corners(camera, seed):
+    W, m = seen_by(camera, 10, seed, corners=(5, 4))
+    m = m[[np.isfinite(camera.ideal(one)).all() for one in m]]  # before the camera
+    return W, m + np.random.default_rng(seed).normal(0, 0.1, m.shape)
+
+
 @pytest.mark.parametrize("lens", ["k1", "k1 k2", "k1 k2 k3", "k1 k2 p1 p2 k3"])
 @pytest.mark.slow
 def test_few_corners_of_a_fisheye_are_not_believed_to_be_a_pinholes(lens):
     """Boards of 5×4 corners have no long rows in which residuals could be alike."""
     camera = Camera(intrinsics(200, 200, 320, 320), lens=FisheyeLens((-0.01,)), size=(640, 640))
     for seed in range(4):
-        W, m = seen_by(camera, 10, seed, corners=(5, 4))
-        m = m[[np.isfinite(camera.ideal(one)).all() for one in m]]  # before the camera
-        m = m + np.random.default_rng(seed).normal(0, 0.1, m.shape)
+        W, m = few_corners(camera, seed)
         with pytest.warns(CalibrationWarning):
             found = calibrate(W, m, camera.size, lens=lens)
         assert 0.5 < found.rms < 2
         assert not found.reliable
         assert calibrate(W, m, camera.size, lens="fisheye").reliable
+
+
+def test_starts_that_end_alike_turn_the_boards_over_once(monkeypatch):
+    camera = Camera(intrinsics(200, 200, 320, 320), lens=FisheyeLens((-0.01,)), size=(640, 640))
+    W, m = few_corners(camera, 0)
+    ended, turned = [], []
+    for name, asked in (("best_turned", ended), ("_lower_minima", turned)):
+        ask = getattr(starts, name)
+        monkeypatch.setattr(
+            starts, name, lambda *a, ask=ask, asked=asked: asked.append(a) or ask(*a)
+        )
+    with pytest.warns(CalibrationWarning):
+        calibrate(W, m, camera.size, lens="k1")
+    assert np.ptp([found.cost for _, found, _ in ended]) < 1e-6
+    assert len(ended) > 10
+    assert len(turned) == 1
 
 
 def test_by_radius_tells_what_a_lens_would_explain_from_noise():

@@ -17,7 +17,7 @@ Steps see the board centred and scaled to unit size and the picture centred and 
 A student's step gets copies, and what it gives back is looked at before it is used.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -107,6 +107,7 @@ class Search:
     fisheye: Camera | None = None
     minima: list[Minimum[State, Arrow]] = field(default_factory=list)
     own: list[str] = field(default_factory=list)  # the steps that are the student's
+    ends: list[Minimum[State, Arrow]] = field(default_factory=list)  # before boards were turned
 
     def starts(self) -> "Iterator[Start]":
         """Give the starts, the most robust first, until one has led to a good minimum."""
@@ -140,6 +141,15 @@ class Search:
                 if self.problem.model is RationalLens:
                     yield from (resumed(self, camera) for camera in _wide_cameras(self.problem))
                     return
+
+    def keep(self, found: Minimum[State, Arrow]) -> None:
+        """Note where a start led, with no board in the wrong pose; from the same end, to the same.
+
+        Where no start is good, many of them end alike, and to turn boards over takes longest.
+        """
+        known = list(zip(self.ends + self.minima, self.minima + self.minima, strict=True))
+        self.ends.append(found)
+        self.minima.append(best_turned(self.problem, found, known))
 
     def _is_good(self, minimum: Minimum[State, Arrow]) -> bool:
         allowed = (_SUSPICIOUS * max(self.problem.size)) ** 2 * self.problem.n_seen
@@ -309,7 +319,7 @@ class Start:
             tolerance=search.tolerance,
             patience=search.patience,
         )
-        self.search.minima.append(best_turned(self.problem, found))
+        search.keep(found)
 
     def _is_own(self, step: Any, library: Any, name: str) -> bool:
         """Tell whether a step is the student's, and take note of it."""
@@ -423,13 +433,23 @@ def _mirror(n: Array) -> Array:
     return np.asarray(np.eye(3) - 2 * n[..., :, None] * n[..., None, :])
 
 
-def best_turned(problem: Problem, found: Minimum[State, Arrow]) -> Minimum[State, Arrow]:
-    """Turn boards over as long as that leads to a lower minimum."""
+def best_turned(
+    problem: Problem,
+    found: Minimum[State, Arrow],
+    known: Sequence[tuple[Minimum[State, Arrow], Minimum[State, Arrow]]] = (),
+) -> Minimum[State, Arrow]:
+    """Turn boards over as long as that leads to a lower minimum.
+
+    Of some minima it is `known` already to which others that leads.
+    """
     if not _worth_it(problem, found):
         return found
     better: Minimum[State, Arrow] | None = found
     while better is not None:
         found = better
+        for end, lowest in known:
+            if _is_same(end, found):
+                return lowest
         better = next(_lower_minima(problem, found), None)
     return found
 
@@ -477,6 +497,14 @@ def _in_question(problem: Problem, found: Minimum[State, Arrow]) -> npt.NDArray[
     ratio = np.where(fell_back, np.inf, ratio)
     order: npt.NDArray[np.intp] = np.argsort(ratio)
     return order[ratio[order] < _IN_QUESTION**2]
+
+
+def _is_same(one: Minimum[State, Arrow], other: Minimum[State, Arrow]) -> bool:
+    """Tell whether two minimisations ended in the same minimum, up to rounding."""
+    if not (one.converged and other.converged and np.isclose(one.cost, other.cost, 1e-9, 0)):
+        return False
+    pairs = [(getattr(one.x, name), getattr(other.x, name)) for name in ("shared", "R", "T")]
+    return all(np.abs(a - b).max() <= 1e-6 * np.abs(a).max() for a, b in pairs)
 
 
 def _distance(R: Array, S: Array) -> Array:
