@@ -125,4 +125,4 @@ def test_a_notebook_runs_and_each_of_its_cells_a_second_time(elsewhere):
     code = "from cvnotes.base.material import material; print(material('notebooks'))"
     notebooks = Path(elsewhere("-c", code).stdout.strip())
     assert not notebooks.is_relative_to(ROOT)
-    elsewhere("-c", textwrap.dedent(EXECUTE), notebooks / "01_projective_space.ipynb")
+    elsewhere("-c", textwrap.dedent(EXECUTE), notebooks / "02_vanishing_points.ipynb")
