@@ -145,6 +145,8 @@ def main() -> int:
             parts = gather(given.parts)
         except PartsMissingError as error:
             print(f"The pages will be plain, without Python: {error}")
+    # With it, whatever reads notebooks first compiles the grammar of addresses in any letters.
+    sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]
     from sphinx.cmd.build import build_main  # after what may be said at once
 
     with tempfile.TemporaryDirectory() as folder:
