@@ -128,6 +128,16 @@ def test_everything_public_is_in_the_reference(pages):
                 assert f"cvnotes.{name}.{key}" in ids, (name, key)
 
 
+def test_each_page_has_its_mark_in_the_table_of_contents(site, pages):
+    marked = re.compile(r'<li class="toctree-l1 current active"><a class="current [^>]*>(.*?)</a>')
+    for path in pages:
+        if path.parent.parts and path.parts[0] != "_modules":
+            text = (site / path).read_text()
+            title = re.search(r"<title>\s*(.*?) &#8212;", text, re.DOTALL)
+            assert marked.findall(text) == [title[1]], path
+            assert text.count('<ul class="current nav') == 1, path
+
+
 def test_formulas_are_set_without_a_network(site, chromium):
     asked = []
     page = chromium.new_page()
