@@ -13,7 +13,7 @@ import pytest
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 SCRIPT = Path(__file__).resolve().parents[1] / "tools" / "build_notebooks.py"
-# The script, without what early.py spares these processes too.
+# The script, without what conftest.py spares these processes too.
 RUN = (
     "import runpy, sys; sys.modules['rfc3987_syntax'] = None; del sys.argv[0];"
     "runpy.run_path(sys.argv[0], run_name='__main__')"
