@@ -9,7 +9,6 @@ import warnings
 from pathlib import Path
 from types import SimpleNamespace
 
-import cv2
 import numpy as np
 import pytest
 from PIL import Image
@@ -56,12 +55,6 @@ def with_coin(tilt, column, row):
     return image
 
 
-grows = pytest.mark.skipif(
-    int(cv2.__version__.split(".")[0]) < 5,
-    reason="OpenCV 4's SB finder grows no part of a board in pictures as small as these",
-)
-
-
 @pytest.mark.slow
 def test_mirrored_beside_upright_photographs_are_named_and_left_out(tmp_path, capsys):
     folder = tmp_path / "photos"
@@ -87,7 +80,6 @@ def test_mirrored_beside_upright_photographs_are_named_and_left_out(tmp_path, ca
     assert json.loads((out / "calibration.json").read_text())["reliable"] is False
 
 
-@grows
 @pytest.mark.slow
 def test_one_covered_corner_does_not_lose_the_board(photos, capsys):
     Image.fromarray(with_coin(TILTS[2], 4, 3)).save(photos / "view 2.png")
@@ -133,7 +125,6 @@ def test_the_count_that_is_there_stands_beside_the_photograph(photos, capsys):
     assert re.search(r"^view 0\.png +–  .*: 9×6 corners are there$", capsys.readouterr().out, re.M)
 
 
-@grows
 @pytest.mark.slow
 def test_every_photograph_that_is_not_used_has_a_reason_of_its_own(photos, capsys):
     larger = photograph(*board_pose(TILTS[1], corners=(9, 8)), corners=(9, 8))
