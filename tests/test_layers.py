@@ -43,6 +43,7 @@ ONLY_IN = {
         "files.decoding",
         "pictures.exposure",
         "targets.finders",
+        "targets.grey",
         "targets.opencv_finders",
         "warping",
     },

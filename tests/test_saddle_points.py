@@ -14,7 +14,8 @@ from cvnotes.pictures import clutter, course, desk, render, render_scene
 from cvnotes.targets import Chessboard, find_corners, finders
 from cvnotes.targets import opencv_finders as _cv
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.saddle_points import find_saddles, saddle_lattice, saddle_points
+from cvnotes.targets.grey import largest_around, smoothed
+from cvnotes.targets.saddle_points import SCALES, find_saddles, saddle_lattice, saddle_points
 
 ROOT = Path(__file__).resolve().parents[1]
 VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
@@ -142,3 +143,14 @@ def test_a_picture_is_reduced_as_opencv_does_it(size, monkeypatch):
     expected = cv2.resize(picture, size, interpolation=cv2.INTER_AREA).astype(float)
     monkeypatch.setitem(sys.modules, "cv2", None)
     np.testing.assert_allclose(finders.shrink(picture, size), expected, atol=1)
+
+
+@pytest.mark.parametrize("size", [(417, 300), (5, 2), (1, 1)])
+@pytest.mark.parametrize("sigma", SCALES)
+def test_scipy_smooths_and_seeks_the_largest_as_opencv_does(size, sigma, monkeypatch):
+    picture = np.random.default_rng(0).uniform(0, 255, size[::-1])
+    around = 2 * int(1.5 * sigma) + 1
+    smooth, largest = smoothed(picture.astype(np.float32), sigma), largest_around(picture, around)
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    np.testing.assert_allclose(smoothed(picture.astype(np.float32), sigma), smooth, atol=2e-3)
+    np.testing.assert_array_equal(largest_around(picture, around), largest)

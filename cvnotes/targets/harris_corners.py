@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, ShapeError, number, numbers
-from cvnotes.targets.grey import grey_picture
+from cvnotes.targets.grey import grey_picture, largest_around
 
 
 def harris(image: npt.ArrayLike, *, sigma: float = 1.5, k: float = 0.04) -> Array:
@@ -79,18 +79,16 @@ def local_maxima(
     >>> local_maxima([[0, 0, 0, 0], [0, 9, 8, 0], [0, 0, 0, 0]], radius=1)
     array([[1., 1.]])
     """
-    from scipy.ndimage import maximum_filter
-
     response, size = numbers(response, "response"), 2 * int(_positive(radius, "radius")) + 1
     if response.ndim != 2:
         raise ShapeError(f"response: expected one value per pixel, got shape {response.shape}")
     high = response > max(threshold * response.max(initial=0.0), 0.0)
-    v, u = np.nonzero(high & (response == maximum_filter(response, size)))
+    v, u = np.nonzero(high & (response == largest_around(response, size)))
     # Equal responses side by side are all maxima; of these, the first row counts.
     order = np.argsort(-response[v, u], kind="stable")
     rank = np.zeros(response.shape)
     rank[v[order], u[order]] = np.arange(len(order), 0, -1)
-    strongest = rank[v[order], u[order]] == maximum_filter(rank, size)[v[order], u[order]]
+    strongest = rank[v[order], u[order]] == largest_around(rank, size)[v[order], u[order]]
     m: Array = np.stack([u[order], v[order]], axis=-1)[strongest].astype(np.float64)
     return m if count is None else m[: int(_positive(count, "count"))]
 

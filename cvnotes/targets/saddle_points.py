@@ -11,8 +11,10 @@ from collections import deque
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array, Image
+from cvnotes.targets.grey import smoothed
 from cvnotes.targets.harris_corners import local_maxima
 from cvnotes.targets.lattice import Mask, trimmed
 from cvnotes.targets.subpixel import gradient_axes
@@ -63,9 +65,7 @@ def saddle_points(grey: Image, sigma: float) -> Saddles:
     >>> saddle_points(np.sign(u * v), 1.5).m[0].round(6)
     array([10., 10.])
     """
-    from scipy.ndimage import gaussian_filter
-
-    L = np.pad(gaussian_filter(np.asarray(grey, dtype=np.float32), sigma), 1, mode="edge")
+    L = np.pad(smoothed(np.asarray(grey, dtype=np.float32), sigma), 1, mode="edge")
     L_u, L_v = (L[1:-1, 2:] - L[1:-1, :-2]) / 2, (L[2:, 1:-1] - L[:-2, 1:-1]) / 2
     L_uu = L[1:-1, 2:] - 2 * L[1:-1, 1:-1] + L[1:-1, :-2]
     L_vv = L[2:, 1:-1] - 2 * L[1:-1, 1:-1] + L[:-2, 1:-1]
@@ -117,18 +117,16 @@ def saddle_lattice(grey: Image) -> Array | None:
 
 def _largest(found: Saddles) -> Array:
     """Grow lattices from the strongest saddles; gives that with most corners: u, v, strength."""
-    from scipy.spatial import cKDTree
-
     best, used = np.full((0, 0, 3), np.nan), np.zeros(len(found.m), dtype=bool)
     if len(found.m) < 9:
         return best
-    tree, seeds = cKDTree(found.m), found.m[:_SEEDS]
+    seeds = found.m[:_SEEDS]
     edges = gradient_axes(found.L, seeds, _HALF)
-    _, near = tree.query(seeds, k=min(_NEAR, len(found.m)))
+    near = np.argsort(np.linalg.norm(found.m - seeds[:, None], axis=-1))[:, :_NEAR]
     for seed in range(len(seeds)):
         if used[seed]:
             continue
-        places = _grown(found, tree, seed, _first_steps(found, edges, near, seed))
+        places = _grown(found, seed, _first_steps(found, edges, near, seed))
         used[list(places.values())] = True
         lattice = trimmed(_as_lattice(places, found))
         if _seen(lattice) > _seen(best):
@@ -138,7 +136,9 @@ def _largest(found: Saddles) -> Array:
     return best
 
 
-def _first_steps(found: Saddles, edges: Array, near: Array, seed: int) -> list[Array]:
+def _first_steps(
+    found: Saddles, edges: Array, near: npt.NDArray[np.intp], seed: int
+) -> list[Array]:
     """Give the steps from a saddle to the next ones along its two edges, those that there are."""
     steps = []
     others = near[seed][near[seed] != seed]
@@ -152,9 +152,7 @@ def _first_steps(found: Saddles, edges: Array, near: Array, seed: int) -> list[A
     return steps
 
 
-def _grown(
-    found: Saddles, tree: object, seed: int, steps: list[Array]
-) -> dict[tuple[int, int], int]:
+def _grown(found: Saddles, seed: int, steps: list[Array]) -> dict[tuple[int, int], int]:
     """Go from a saddle to its neighbours and theirs; gives which stands at each (row, column)."""
     at = {(0, 0): seed}
     if len(steps) < 2:
@@ -174,14 +172,15 @@ def _grown(
                 continue
             if back in at:
                 way = found.m[p] - found.m[at[back]]
-            distance, q = tree.query(found.m[p] + way)  # type: ignore[attr-defined]
-            if q in taken or distance > _FAR * np.linalg.norm(way):
+            away = np.hypot(*(found.m - found.m[p] - way).T)
+            q = int(away.argmin())
+            if q in taken or away[q] > _FAR * np.linalg.norm(way):
                 continue
             way = found.m[q] - found.m[p]
             onward = (way * dj, b) if dj else (a, way * di)
             if not _is_crossing(found, q, onward, light * (-1) ** (there[0] + there[1])):
                 continue
-            at[there], ways[there] = int(q), onward
+            at[there], ways[there] = q, onward
             taken.add(q)
             todo.append(there)
     return at
