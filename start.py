@@ -7,9 +7,10 @@
     python3 start.py site           build the course as pages; --without-python: to be read only
 
 On Windows write `py` for `python3`. The first call makes a virtual environment in .venv and
-installs the course into it: about 190 MB to download and 770 MB on disk to read the course, 250 MB
-and 1.2 GB to test it; later calls start at once. Whatever follows the command goes to it, as in
-`start.py test tests/test_lens.py`. CVNOTES_VENV names another folder for the environment.
+installs the course into it, by uv where that is installed and else by pip: about 190 MB to download
+and 770 MB on disk to read the course, 250 MB and 1.2 GB to test it; later calls start at once.
+Whatever follows the command goes to it, as in `start.py test tests/test_lens.py`. CVNOTES_VENV
+names another folder for the environment.
 """
 
 from __future__ import annotations  # an older Python reads on, to say that it is too old
@@ -19,6 +20,7 @@ import importlib.util
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +35,7 @@ RUN = {
     "site": ["tools/build_site.py"],
     "slides": ["tools/build_slides.py"],
 }
+UV = shutil.which("uv")  # which installs in a fifth of pip's time
 # Nice to have: large scenes are drawn faster. Not every machine finds it ready to use.
 RAYS = "embreex>=2.17.7"
 UNREACHABLE = re.compile(
@@ -122,20 +125,20 @@ def environment(extra: str) -> Path:
     ran_before = ran_before and not lost
     try:
         usable = reusable(folder, found, lost)
-        if usable is None or not (usable["pip"] or usable["ensurepip"]):
+        if not UV and (usable is None or not (usable["pip"] or usable["ensurepip"])):
             check_whole()  # before anything is promised or written
         size = "what has changed since" if ran_before else f"about {SIZE[extra]}, once"
         print(f"Installing the course into {folder}: {size}.", flush=True)
         found = usable or create(folder, python)
         try:
-            pip(python, found, ["--editable", f"{ROOT}[{extra}]"])
+            install(python, found, ["--editable", f"{ROOT}[{extra}]"])
         except CannotError as error:
             if not ran_before:
                 raise
             print(f"  {error}\n  The course goes on with the packages that it had.", flush=True)
             return python
         try:
-            pip(python, found, ["--only-binary", "embreex", RAYS])
+            install(python, found, ["--only-binary", "embreex", RAYS])
         except CannotError:
             print("  (embreex is not to be had for this machine; the course goes without)")
         (folder / f"installed-{extra}").write_text(wanted, encoding="utf-8")
@@ -229,9 +232,10 @@ def create(folder: Path, python: Path) -> dict[str, object]:
     """Make the environment; gives what it says of itself."""
     import venv
 
-    print(f"  a new environment with Python {sys.version.split()[0]}", flush=True)
+    pip_too = "" if UV else "; to put pip into it takes some ten seconds …"
+    print(f"  a new environment with Python {sys.version.split()[0]}{pip_too}", flush=True)
     try:
-        venv.create(folder, with_pip=True, clear=folder.is_dir())
+        venv.create(folder, with_pip=not UV, clear=folder.is_dir())
     except subprocess.CalledProcessError as error:
         words = (error.output or b"").decode(errors="replace").strip().splitlines()
         raise CannotError(
@@ -263,6 +267,21 @@ def scripts_start(folder: Path) -> bool:
         return False
 
 
+def install(python: Path, found: dict[str, object], what: list[str]) -> None:
+    """Install with uv where there is one, in a fifth of the time; else, or if it fails, by pip."""
+    print("  asking which packages that takes …", flush=True)
+    if UV:
+        own = {"PIP_CONSTRAINT": "UV_CONSTRAINT", "PIP_INDEX_URL": "UV_DEFAULT_INDEX"}
+        given = {uvs: os.environ[pips] for pips, uvs in own.items() if pips in os.environ}
+        command = [UV, "pip", "install", "--python", str(python), *what]
+        code, said = run_and_tell(command, given | dict(os.environ))
+        if code == 0:
+            return
+        reason = next((line for line in reversed(said) if line), f"it ends with code {code}")
+        print(f"  (uv could not: {reason}; pip is asked)", flush=True)
+    pip(python, found, what)
+
+
 def pip(python: Path, found: dict[str, object], what: list[str]) -> None:
     """Install with pip, naming what is loaded; raises CannotError with the reason if it fails."""
     if not found["pip"]:  # uv makes environments without
@@ -280,21 +299,8 @@ def pip(python: Path, found: dict[str, object], what: list[str]) -> None:
     patience = {"PIP_RETRIES": "1"}
     if "PIP_DEFAULT_TIMEOUT" not in os.environ:
         patience["PIP_TIMEOUT"] = "15"
-    said = []
-    with subprocess.Popen(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        env=patience | dict(os.environ) | {"PYTHONUNBUFFERED": "1"},
-    ) as running:
-        for line in running.stdout or ():
-            said.append(line.strip())
-            told = progress(line.strip())
-            if told:
-                print(f"  {told}", flush=True)
-    code = running.returncode
+    environment = patience | dict(os.environ) | {"PYTHONUNBUFFERED": "1"}
+    code, said = run_and_tell(command, environment)
     if code == 0:
         return
     whole = "\n".join(said)
@@ -306,11 +312,33 @@ def pip(python: Path, found: dict[str, object], what: list[str]) -> None:
     raise CannotError("pip could not install the course:\n  " + "\n  ".join(reasons))
 
 
+def run_and_tell(command: list[str], environment: dict[str, str]) -> tuple[int, list[str]]:
+    """Run what installs, and print how far it is; gives its exit code and all that it printed."""
+    said = []
+    with subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        env=environment,
+    ) as running:
+        for line in running.stdout or ():
+            said.append(line.strip())
+            told = progress(line.strip())
+            if told:
+                print(f"  {told}", flush=True)
+    return running.returncode, said
+
+
 def progress(line: str) -> str | None:
-    """Give what is worth telling of a line that pip prints."""
+    """Give what is worth telling of a line that pip or uv prints."""
     loaded = re.match(r"Downloading (?:\S*/)?([\w.]+)-([\w.]+?)-\S+ \(([\d.]+ [MG]B)\)", line)
     if loaded:
         return f"{loaded[1]} {loaded[2]}, {loaded[3]}"
+    loaded = re.match(r"Downloading (\S+) \(([\d.]+)([MG])iB\)", line)
+    if loaded:
+        return f"{loaded[1]}, {loaded[2]} {loaded[3]}B"
     if line.startswith("Installing collected packages"):
         return f"putting {line.count(',') + 1} packages in place …"
     return None

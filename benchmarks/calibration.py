@@ -48,7 +48,7 @@ PEERS = {"mrcal": "mrcal_refinement.py", "pycolmap": "ceres_refinement.py"}
 
 
 def corners(n: int) -> Array:
-    """Give the corners (n, 54, 2) of n views, with noise, exact in OpenCV's float32."""
+    """Return the corners (n, 54, 2) of n views, with noise, exact in OpenCV's float32."""
     rng = np.random.default_rng(n)
     poses = good_views(BOARD, CAMERA, n, rng=rng)
     m = np.array([CAMERA.moved(G).project(BOARD.points) for G in poses])
@@ -65,7 +65,7 @@ def ours_with_error_bars(m: Array) -> Array:
 
 
 def opencv(function: Callable[..., Any], m: Array) -> Callable[..., Any]:
-    """Give OpenCV's function of the same corners, converted beforehand."""
+    """Return OpenCV's function of the same corners, converted beforehand."""
     W, views = BOARD.points.astype(np.float32), list(m.astype(np.float32))
 
     def run(**options: Any) -> Any:
@@ -126,7 +126,7 @@ def compare_error_bars(n: int) -> None:
 
 
 def crumpled_corners(n: int) -> Array:
-    """Give the corners of n views of a board whose corners are out of place by 0.3 mm."""
+    """Return the corners of n views of a board whose corners are out of place by 0.3 mm."""
     rng = np.random.default_rng(n)
     W = BOARD.points + rng.normal(0, 0.3, BOARD.points.shape)
     poses = good_views(BOARD, CAMERA, n, rng=rng)
@@ -166,7 +166,7 @@ def pythons_with_peers(candidates: list[str]) -> dict[str, str]:
 
 
 def first_start(problem: Problem) -> State:
-    """Give the state that the first four steps of `calibrate` lead to, from all views."""
+    """Return the state that the first four steps of `calibrate` lead to, from all views."""
     search = Search(problem)
     start = next(start for start in search.starts() if start.search is search)
     H = start.homographies(dlt)
@@ -176,7 +176,7 @@ def first_start(problem: Problem) -> State:
 
 
 def start_of(m: Array) -> tuple[Problem, State, dict[str, Any]]:
-    """Give the problem, our closed form's start, and the same start in the peers' terms."""
+    """Return the problem, our closed form's start, and the same start in the peers' terms."""
     data = Correspondences.of(BOARD.points, m)
     problem = Problem.of(data, CAMERA.size, "k1 k2 p1 p2", skew=False)
     start = first_start(problem)

@@ -64,7 +64,7 @@ def rendered(folder: Path) -> list[Path]:
 
 
 def cost(arguments: list[str], compiled: Path, repeats: int = 3) -> tuple[float, float]:
-    """Give the processor time and the wall time of a process, in seconds: the least of some.
+    """Return the processor time and the wall time of a process, in seconds: the least of some.
 
     Modules are `compiled` by the first, as those of an installed package are.
     """

@@ -39,13 +39,13 @@ VIEWS = (3, 4, 5, 8, 15)
 
 
 def random_camera(k: tuple[float, float], f: tuple[int, int], rng: np.random.Generator) -> Camera:
-    """Give a camera with the piercing point somewhere near the middle."""
+    """Return a camera with the piercing point somewhere near the middle."""
     alpha, (u0, v0) = rng.uniform(*f), rng.normal([319.5, 239.5], 15)
     return Camera(intrinsics(alpha, 1.005 * alpha, u0, v0), lens=Lens(k, (0.001, -0.0005)))
 
 
 def random_corners(camera: Camera, n: int, rng: np.random.Generator) -> Array:
-    """Give the noisy corners (n, 54, 2) of boards that lie within the picture."""
+    """Return the noisy corners (n, 54, 2) of boards that lie within the picture."""
     seen: list[Array] = []
     while len(seen) < n:
         R = rotation_from_vector(rng.normal(0, [0.5, 0.5, 0.6]))
@@ -60,7 +60,7 @@ def random_corners(camera: Camera, n: int, rng: np.random.Generator) -> Array:
 
 
 def two_poses(n: int, rng: np.random.Generator) -> tuple[float, Array]:
-    """Give f and the exact corners (n, 54, 2) of boards that look alike in two poses."""
+    """Return f and the exact corners (n, 54, 2) of boards that look alike in two poses."""
     seen: list[Array] = []
     while len(seen) < n:
         f = rng.uniform(1, 2.5) * 640
@@ -79,7 +79,7 @@ def two_poses(n: int, rng: np.random.Generator) -> tuple[float, Array]:
 
 
 def is_wrong(seed: int, *, n: int) -> tuple[bool, bool]:
-    """Tell whether our camera is not the exact one, and whether OpenCV's is not."""
+    """Return whether our camera is not the exact one, and whether OpenCV's is not."""
     f, m = two_poses(n, np.random.default_rng([n, seed]))
     boards = [BOARD.points.astype(np.float32)] * n
     only_k1 = cv2.CALIB_ZERO_TANGENT_DIST | cv2.CALIB_FIX_K2 | cv2.CALIB_FIX_K3
@@ -104,7 +104,7 @@ def outcome(m: Array) -> str:
 
 
 def one(seed: int, *, n: int, k: tuple[float, float], f: tuple[int, int]) -> str:
-    """Give the outcome of one random set: a function of its seed alone."""
+    """Return the outcome of one random set: a function of its seed alone."""
     rng = np.random.default_rng([n, seed])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CalibrationWarning)
@@ -120,7 +120,7 @@ def counted(
 
 @contextmanager
 def workers(jobs: int, cluster: str | None) -> Iterator[Executor | None]:
-    """Give those who do it: this process, several, or the workers of a Dask scheduler."""
+    """Return those who do it: this process, several, or the workers of a Dask scheduler."""
     if cluster:
         from distributed import Client
 

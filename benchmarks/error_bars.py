@@ -35,7 +35,7 @@ SETS = ((0.0, 0.2, "flat"), (0.3, 0.02, "flat"), (0.3, 0.02, "bent"))
 
 
 def seen(twist: float, noise: float, rng: np.random.Generator) -> Array:
-    """Give the corners of a board at random places and tilts, exact in OpenCV's float32."""
+    """Return the corners of a board at random places and tilts, exact in OpenCV's float32."""
     W = BOARD.points.copy()
     xy = (W - W.mean(0))[:, :2]
     W[:, 2] = twist * (xy / np.abs(xy).max(0)).prod(1)
@@ -53,7 +53,7 @@ def seen(twist: float, noise: float, rng: np.random.Generator) -> Array:
 
 
 def by_opencv(W: Array, m: Array, size: tuple[int, int]) -> tuple[Array, Array]:
-    """Give OpenCV's fx, fy, cx, cy, k1, k2, p1, p2 and the deviations that it promises."""
+    """Return OpenCV's fx, fy, cx, cy, k1, k2, p1, p2 and the deviations that it promises."""
     boards = [W.astype(np.float32)] * len(m)
     function: Any = cv2.calibrateCameraExtended  # (whose stubs know of no first guess that is none)
     _, A, d, _, _, std, *_ = function(
@@ -63,7 +63,7 @@ def by_opencv(W: Array, m: Array, size: tuple[int, int]) -> tuple[Array, Array]:
 
 
 def both(found: Calibration) -> tuple[Array, Array, Array]:
-    """Give our parameters, the deviations by noise alone, and those of views."""
+    """Return our parameters, the deviations by noise alone, and those of views."""
     return tuple(  # type: ignore[return-value]
         np.array([*x.values()]) for x in (found.parameters, found.std, found.std_of_views)
     )

@@ -39,7 +39,7 @@ PEERS = {"(picture made in advance)": READY, "(new matplotlib figure)": FIGURE}
 
 
 def kernel_times(model: Model, repeats: int = 25) -> Array:
-    """Give milliseconds (repeats, 2) of the answer and of the packing, for two values in turns."""
+    """Return milliseconds (repeats, 2) of answer and packing, for two values in turns."""
     first, spent = model.settings[0], np.empty((repeats + 3, 2))
     for i in range(len(spent)):
         begin = time.perf_counter()

@@ -43,7 +43,7 @@ _ASIDE = np.cos(np.radians(75))
 
 
 def corners(camera: Camera, n: int) -> Array:
-    """Give the noisy corners (n, 54, 2) of boards all over the picture, exact in float32."""
+    """Return the noisy corners (n, 54, 2) of boards all over the picture, exact in float32."""
     rng, size = np.random.default_rng(n), np.array(camera.size)
     seen: list[Array] = []
     while len(seen) < n:
@@ -62,7 +62,7 @@ def corners(camera: Camera, n: int) -> Array:
 
 
 def by_opencv(name: str, m: Array) -> Callable[[], tuple[float, Camera]]:
-    """Give OpenCV's calibration of the same corners: its RMS per point and its camera."""
+    """Return OpenCV's calibration of the same corners: its RMS per point and its camera."""
     size = CAMERAS[name].size
     if name == "rational":
         W = [BOARD.points.astype(np.float32)] * len(m)
@@ -92,7 +92,7 @@ def by_opencv(name: str, m: Array) -> Callable[[], tuple[float, Camera]]:
 
 
 def off(camera: Camera, true: Camera) -> float:
-    """Tell how far a camera's rays are from the true ones, in pixels of the true camera."""
+    """Return how far a camera's rays are from the true ones, in pixels of the true camera."""
     u, v = np.meshgrid(np.linspace(0, 639, 33), np.linspace(0, 479, 25))
     m = np.stack([u, v], axis=-1).reshape(-1, 2)
     M, d = true.ray(m), camera.ray(m)

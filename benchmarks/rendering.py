@@ -29,7 +29,7 @@ BEHIND, PAPER, INK = 110, 220, 30
 
 
 def camera(scale: int) -> Camera:
-    """Give the course's camera, with `scale` times as many pixels either way."""
+    """Return the course's camera, with `scale` times as many pixels either way."""
     A = intrinsics(800 * scale, 804 * scale, 325 * scale, 238 * scale)
     return Camera(A, lens=LENS, size=(640 * scale, 480 * scale))
 
@@ -44,7 +44,7 @@ def texture() -> Image:
 
 
 def texel_from_xy(G: Array) -> Array:
-    """Give the homography (3, 3) from ideal image points to texels (centres are integers)."""
+    """Return the homography (3, 3) from ideal image points to texels (centres are integers)."""
     scale, first = TEXEL / BOARD.square, 2 * TEXEL - 0.5
     texel_from_board = np.array([[scale, 0, first], [0, scale, first], [0, 0, 1]])
     return np.asarray(texel_from_board @ np.linalg.inv(G[:3, [0, 1, 3]]), np.float64)
@@ -61,7 +61,7 @@ def remap_at_4x(rays: Rays, sheet: Image, G: Array, size: tuple[int, int]) -> Im
 
 
 def fine_rays(seen_by: Camera) -> Rays:
-    """Give the ideal points at the centres of the peer's fine pixels."""
+    """Return the ideal points at the centres of the peer's fine pixels."""
     u, v = ((np.arange(FINE * n) + 0.5) / FINE - 0.5 for n in seen_by.size)
     return seen_by.ideal(np.stack(np.meshgrid(u, v), axis=-1)).astype(np.float32)
 
@@ -94,7 +94,7 @@ def _grey(shot: Camera, xy: Array) -> Array:
 
 
 def corner_errors(image: Image, shot: Camera) -> Array:
-    """Give found minus projected corners, by cornerSubPix started at the truth."""
+    """Return found minus projected corners, by cornerSubPix started at the truth."""
     m = shot.project(BOARD.points)
     start = np.ascontiguousarray(m[:, None], dtype=np.float32)
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 100, 1e-5)

@@ -95,7 +95,7 @@ def _lab(sources: Mapping[str, str]) -> Iterator[str]:
         port = free_port(0)
         server = start_server(Path(folder), port, TOKEN)
         try:
-            wait_until_up(server, port)
+            wait_until_up(server, port, TOKEN)
             yield f"http://127.0.0.1:{port}/lab/tree/sliders.ipynb?token={TOKEN}"
         finally:
             stop(server)

@@ -14,7 +14,7 @@ def all_in_turns(
     repeats: int = 15,
     clock: Callable[[], float] = time.perf_counter,
 ) -> dict[str, Array]:
-    """Give the times (repeats,) in seconds of each way, after one round that is not counted.
+    """Return the times (repeats,) in seconds of each way, after one round that is not counted.
 
     With `time.process_time` as the clock they are those of the processor, in all threads.
     """
@@ -33,6 +33,6 @@ def in_turns(
     repeats: int = 15,
     clock: Callable[[], float] = time.perf_counter,
 ) -> dict[str, float]:
-    """Give the median time in seconds of each way."""
+    """Return the median time in seconds of each way."""
     spent = all_in_turns(ways, repeats, clock)
     return {name: float(np.median(times)) for name, times in spent.items()}

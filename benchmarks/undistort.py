@@ -32,7 +32,7 @@ def disc(radius: float, count: int) -> Array:
 
 
 def coefficients(lens: Lens) -> Array:
-    """Give OpenCV's (k1, k2, p1, p2, k3)."""
+    """Return OpenCV's (k1, k2, p1, p2, k3)."""
     k1, k2, k3 = [*lens.k, 0.0, 0.0, 0.0][:3]
     return np.array([k1, k2, *lens.p, k3])
 

@@ -1,9 +1,16 @@
 """How Sphinx makes the site; `tools/build_site.py` puts its pages together and calls it."""
 
 import re
+import sys
+from html import escape
+from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 import cvnotes
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
+from front_page import ROOT, sentence
 
 project = "cvnotes"
 author = "The cvnotes authors"
@@ -21,6 +28,8 @@ exclude_patterns: list[str] = []
 
 nb_execution_mode = "off"  # they are committed executed
 nb_render_markdown_format = "myst"
+nb_code_prompt_show = "Show the code"
+nb_code_prompt_hide = "Hide the code"
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
 # With Tab one goes from link to link and from slider to slider, not through a hundred formulas.
@@ -146,9 +155,31 @@ def lead_back(*event: Any) -> None:
     context["body"] = WAY_BACK.sub(known, context["body"])
 
 
+FRONT = sentence((ROOT / "README.md").read_text(encoding="utf-8"))
+DESCRIBED = 160  # letters: what searches and previews show
+
+
+def describe(*event: Any) -> None:
+    """Say what a page is about to those who show links: its first paragraph, and the picture."""
+    _, page, _, context, doctree = event
+    if doctree is None:
+        return
+    shown = (each.astext() for each in doctree.findall(lambda node: node.tagname == "paragraph"))
+    first = FRONT if page == "index" else next((text for text in shown if len(text) > 40), FRONT)
+    words = shorten(first, DESCRIBED, placeholder=" …")
+    address = context["pathto"]("_figures/front.png", 1)
+    if base := event[0].config.html_baseurl:
+        address = f"{base.rstrip('/')}/_figures/front.png"
+    about = {"og:title": context["title"], "og:description": words, "og:image": address}
+    tags = [f'<meta name="description" content="{escape(words)}">']
+    tags += [f'<meta property="{key}" content="{escape(said)}">' for key, said in about.items()]
+    context["metatags"] = context.get("metatags", "") + "\n".join(tags)
+
+
 def setup(app: Any) -> None:
     """Have Sphinx call us before numpydoc, and when a page is written."""
     app.connect("autodoc-process-docstring", escape_initials, priority=100)
+    app.connect("html-page-context", describe)
     app.connect("html-page-context", share_contents)
     app.connect("html-page-context", lead_back)
     if LIVE:

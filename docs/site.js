@@ -39,3 +39,56 @@ addEventListener("load", () => {
   for (const formula of document.querySelectorAll("div.math"))
     if (formula.scrollWidth > formula.clientWidth + 1) formula.tabIndex = 0;
 });
+
+// What is folded: plumbing (the tag hide-input) and answers. A button opens all of it, paper shows
+// all of it, and on a narrow page the rest of the code is folded too, but for exercises.
+(() => {
+  const all = () => [...document.querySelectorAll(".bd-article details")];
+
+  function fold(input) {
+    if (input.closest("details") || /^check\(/m.test(input.textContent)) return;
+    const folded = document.createElement("details");
+    folded.className = "admonition hide above-input";
+    folded.innerHTML =
+      '<summary><p class="collapsed admonition-title">Show the code</p>' +
+      '<p class="expanded admonition-title">Hide the code</p></summary>';
+    input.replaceWith(folded);
+    folded.append(input);
+  }
+
+  function offer() {
+    const button = document.createElement("button");
+    const say = (open) => (button.textContent = open ? "Close them again" : "Open all answers and code");
+    button.type = "button";
+    button.className = "open-all";
+    button.addEventListener("click", () => {
+      const open = all().some((folded) => !folded.open);
+      for (const folded of all()) folded.open = open;
+      say(open);
+    });
+    say(false);
+    document.querySelector(".bd-article h1").after(button);
+  }
+
+  addEventListener("DOMContentLoaded", () => {
+    const cells = document.querySelectorAll(".bd-article div.cell div.cell_input");
+    if (matchMedia("(max-width: 40rem)").matches) cells.forEach(fold);
+    if (cells.length && all().length) offer();
+  });
+  let closed = [];
+  addEventListener("beforeprint", () => {
+    closed = all().filter((folded) => !folded.open);
+    for (const folded of closed) folded.open = true;
+  });
+  addEventListener("afterprint", () => closed.forEach((folded) => (folded.open = false)));
+})();
+
+// Figures are fetched when they come into sight; on paper all are: so, where the screen is wide and
+// nobody saves data, the others follow when there is nothing else to do.
+addEventListener("load", () => {
+  const fetchAll = () => {
+    for (const image of document.querySelectorAll("img[loading=lazy]")) image.loading = "eager";
+  };
+  addEventListener("beforeprint", fetchAll);
+  if (!navigator.connection?.saveData && matchMedia("(min-width: 60rem)").matches) setTimeout(fetchAll, 1500);
+});

@@ -46,7 +46,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # The files that take longest, and begin: what is short fills the gaps at the end. Where two use
 # one site, another stands between, so that no worker waits while the other builds it.
 LONG = (
-    "site_live", "webassembly", "grade", "browser", "catalogue", "site_offline", "site_firefox",
+    "site_live", "webassembly", "grade", "browser", "catalogue", "site_offline", "site_engines",
     "site", "site_access", "quality", "command_calibrate", "jackknife", "cli", "grade_safety",
     "corners", "grade_class", "explore", "wheel", "build_notebooks", "board_shape", "synthetic",
     "executors", "start", "charuco", "exercises_sandbox",
@@ -59,10 +59,22 @@ OF_CHROMIUM = [
     "--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream",
 ]  # fmt: skip
 
+# On a page of the site: the ten seconds that an endless loop is given, made one.
+IMPATIENT = """() => {
+    const own = window.patiently = window.setTimeout;
+    window.setTimeout = (act, ms, ...more) => own(act, ms === 10000 ? 1000 : ms, ...more);
+}"""
+
 # Photographs of others are not part of the project. Where they lie beside it, the finder is held
 # against them too; the corners measured in them are committed, and everybody tests with those.
 PHOTOGRAPHS = ROOT.parent / "shared" / "data" / "left_right"
 collect_ignore = [] if PHOTOGRAPHS.is_dir() else ["test_photographs.py"]
+
+
+def taken(told):
+    """Empty a list; gives what was in it, for one test to answer for."""
+    found, told[:] = told[:], []
+    return found
 
 
 def processor_time():
@@ -110,8 +122,8 @@ def worked_out_once():
     """
     # The functions are asked by other modules, which look for them where they are.
     from cvnotes.learn import EXERCISES
-    from cvnotes.learn.checker import foreseen, inputs
-    from cvnotes.learn.checker.exercise import Exercise
+    from cvnotes.tutor.checker import foreseen, inputs
+    from cvnotes.tutor.checker.exercise import Exercise
 
     every = [*EXERCISES.values(), *(part for e in EXERCISES.values() for part in e.parts)]
     ways = {way for e in every for m in e.misconceptions for way in (m.gives, *m.variants)}
@@ -164,13 +176,13 @@ def worked_out_once():
 @pytest.fixture
 def course_again():
     """Let a test add exercises: afterwards the course has its own ones again."""
-    from cvnotes.learn import EXERCISES, exercises
+    from cvnotes.learn.exercises import COURSE, EXERCISES
 
     before = dict(EXERCISES)
     yield
     EXERCISES.clear()
     EXERCISES.update(before)
-    exercises._ADDED.clear()
+    COURSE.added.clear()
 
 
 @pytest.fixture(scope="session")

@@ -13,6 +13,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from driven import Driven
+
 PROGRAM = next(filter(None, map(shutil.which, ("firefox", "firefox-esr"))), None)
 # Nothing but this machine can be reached, and Firefox asks for nothing by itself.
 PREFERENCES = {
@@ -29,11 +31,12 @@ PREFERENCES = {
     "remote.active-protocols": 1,
     "dom.disable_open_during_load": False,
 }
-KEYS = {"ArrowLeft": "\ue012", "ArrowRight": "\ue014", "Tab": "\ue004", "Enter": "\ue007"}
 
 
-class Firefox:
+class Firefox(Driven):
     """A Firefox with one page; ``with Firefox() as page``."""
+
+    name = "Firefox"
 
     def __enter__(self):
         import websocket
@@ -112,15 +115,6 @@ class Firefox:
             raise RuntimeError(told["exceptionDetails"]["text"])
         return json.loads(told["result"].get("value", "null"))
 
-    def wait(self, function, *given, seconds=120):
-        """Wait until a function of JavaScript gives something; gives that."""
-        until = time.monotonic() + seconds
-        while time.monotonic() < until:
-            if found := self.run(function, *given):
-                return found
-            time.sleep(0.1)
-        raise TimeoutError(f"not in {seconds} s: {function} {given}")
-
     def choose(self, selector, paths):
         """Choose files in an input."""
         found = self.send(
@@ -132,23 +126,12 @@ class Firefox:
         files = [str(path) for path in paths]
         self.send("input.setFiles", context=self.context, element=element, files=files)
 
-    def press(self, *keys):
-        """Press keys one after the other."""
-        strokes = []
-        for key in keys:
-            value = KEYS.get(key, key)
-            strokes += [{"type": "keyDown", "value": value}, {"type": "keyUp", "value": value}]
-        self._act({"type": "key", "id": "keys", "actions": strokes})
-
-    def drag(self, places, kind="mouse"):
-        """Take hold at the first place, in px of the window, and let go at the last."""
-        moves = [
-            {"type": "pointerMove", "x": round(x), "y": round(y), "duration": 60} for x, y in places
-        ]
-        down, up = {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}
-        actions = [moves[0], down, *moves[1:], up]
-        parameters = {"pointerType": kind}
-        self._act({"type": "pointer", "id": kind, "parameters": parameters, "actions": actions})
-
-    def _act(self, source):
+    def perform(self, source):
+        """Do what a device of WebDriver's does, act by act."""
         self.send("input.performActions", context=self.context, actions=[source])
+
+    def asked(self):
+        """Give what was asked for since the last time, and forget it."""
+        self.run("() => 0")  # what came last is heard
+        found, self.requests = self.requests, []
+        return found

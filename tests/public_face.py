@@ -34,7 +34,7 @@ from cvnotes.camera import (
     vanishing,
 )
 from cvnotes.files import lens_from_opencv
-from cvnotes.pictures import expose, render
+from cvnotes.pictures import expose, gaussian_blur, motion_blur, render
 from cvnotes.pictures.meshes import quads
 from cvnotes.pictures.pixel_means import polygon_means
 from cvnotes.pictures.raycast import first_hits
@@ -209,7 +209,7 @@ FUNCTIONS = [
     function(LENS.L, {"r": (np.array([0.1, 0.2]), ONE)}, "lens.Lens.L"),
     function(LENS.distort, {"xy": (XY, rows(2))}, "lens.Lens.distort"),
     function(LENS.undistort, {"xy_lens": (XY, rows(2))}, "lens.Lens.undistort"),
-    function(LENS.jacobian, {"xy": (XY, rows(2))}, "lens.Lens.jacobian"),
+    function(LENS.jacobian, {"xy": (XY, rows(2))}, "any_lens.AnyLens.jacobian"),
     function(
         RationalLens,
         {
@@ -223,11 +223,11 @@ FUNCTIONS = [
     function(WIDE.L, {"r": (np.array([0.1, 0.2]), ONE)}, "rational.RationalLens.L"),
     function(WIDE.distort, {"xy": (XY, rows(2))}, "rational.RationalLens.distort"),
     function(WIDE.undistort, {"xy_lens": (XY, rows(2))}, "rational.RationalLens.undistort"),
-    function(WIDE.jacobian, {"xy": (XY, rows(2))}, "rational.RationalLens.jacobian"),
+    function(WIDE.of_rays, {"M": (W, rows(3))}, "any_lens.PlaneLens.of_rays"),
+    function(WIDE.rays, {"xy_lens": (XY, rows(2))}, "any_lens.PlaneLens.rays"),
     function(FisheyeLens, {"k": (np.array([0.05, -0.01]), SINGLE)}, "fisheye.FisheyeLens"),
-    function(FISHEYE.distort, {"xy": (XY, rows(2))}, "fisheye.FisheyeLens.distort"),
-    function(FISHEYE.undistort, {"xy_lens": (XY, rows(2))}, "fisheye.FisheyeLens.undistort"),
-    function(FISHEYE.jacobian, {"xy": (XY, rows(2))}, "fisheye.FisheyeLens.jacobian"),
+    function(FISHEYE.distort, {"xy": (XY, rows(2))}, "any_lens.AnyLens.distort"),
+    function(FISHEYE.undistort, {"xy_lens": (XY, rows(2))}, "any_lens.AnyLens.undistort"),
     function(FISHEYE.of_rays, {"M": (W, rows(3))}, "fisheye.FisheyeLens.of_rays"),
     function(FISHEYE.rays, {"xy_lens": (XY, rows(2))}, "fisheye.FisheyeLens.rays"),
     # camera
@@ -320,14 +320,6 @@ FUNCTIONS = [
         "projective.plane_through",
     ),
     function(
-        projective.point_of_planes,
-        {
-            n: (np.array(x), POINT4)
-            for n, x in zip("pqr", ([1.0, 0, 0, 1], [0, 1.0, 0, 1], [0, 0, 1.0, 1]), strict=True)
-        },
-        "projective.point_of_planes",
-    ),
-    function(
         projective.line_through,
         {
             n: (np.array(x), POINT4)
@@ -356,14 +348,6 @@ FUNCTIONS = [
         },
         "projective.meet_plane",
     ),
-    function(
-        projective.join_point,
-        {
-            "L": (projective.line_through([1.0, 0, 0, 1], [0, 1.0, 0, 1]), MATRIX),
-            "x": (np.array([0, 0, 1.0, 3]), POINT4),
-        },
-        "projective.join_point",
-    ),
     # homography and zhang
     function(homography.normaliser, {"x": (W2, several(2, 3))}),
     function(homography.design_matrix, PAIRS, paired=("src", "dst")),
@@ -377,10 +361,6 @@ FUNCTIONS = [
     function(zhang.solve_b, {"V": (V, several(6))}),
     function(zhang.intrinsics_from_b, {"b": (B, several(6))}),
     function(zhang.intrinsics_from_b_by_formulas, {"b": (B, several(6))}),
-    function(zhang.intrinsics_from_homographies, {"H": (HS, MATRIX)}),
-    function(
-        zhang.focal_lengths_from_homographies, {"H": (HS, MATRIX), "centre": (A[:2, 2], several(2))}
-    ),
     function(
         zhang.focal_lengths_from_v,
         {
@@ -418,21 +398,13 @@ FUNCTIONS = [
         paired=("board_points", "image_points"),
     ),
     function(
-        calibration.left_out_rms,
+        calibration.choose_model,
         {"board_points": (W, EITHER), "image_points": (SEEN, SETS)},
-        "left_out.left_out_rms",
+        "choice.choose_model",
         sizes=("size",),
         paired=("board_points", "image_points"),
         size=(640, 480),
         lenses=("k1 k2",),
-    ),
-    function(
-        calibration.left_out_rms_of_boards,
-        {"board_points": (W, EITHER), "image_points": (SEEN, SETS)},
-        "left_out.left_out_rms_of_boards",
-        sizes=("size",),
-        paired=("board_points", "image_points"),
-        size=(640, 480),
         boards=("flat", "bent"),
     ),
     function(prediction_std, {"m": (M, rows(2))}, calibration=RESULT),
@@ -543,11 +515,6 @@ FUNCTIONS = [
         {"normal": (np.array([0, 1.0, 0.1]), several(3))},
         "vanishing.horizon",
         camera=CAMERA,
-    ),
-    function(
-        vanishing.horizon_from_vanishing_points,
-        {"v_h": (V_H, several(3))},
-        "vanishing.horizon_from_vanishing_points",
     ),
     function(
         vanishing.focal_length,
@@ -670,6 +637,8 @@ FUNCTIONS = [
         "subpixel.fit_edges",
     ),
     # making pictures
+    function(gaussian_blur, {"light": (NOISE, PICTURE)}, sigma=1.5),
+    function(motion_blur, {"light": (NOISE, PICTURE), "motion": (np.array([1.0, 2]), several(2))}),
     function(expose, {"radiance": (NOISE, PICTURE), "motion": (np.array([1.0, 2]), several(2))}),
     function(polygon_means, {"outline": (SQUARE, several(2))}, sizes=("size",), size=(64, 48)),
     function(

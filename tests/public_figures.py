@@ -249,9 +249,6 @@ FIGURES = [
         {"start": (np.array([1.0, 2, 3]), several(3)), "end": (np.array([4.0, 2, 9]), several(3))},
     ),
     figure(shapes.target_shapes, {"world_from_target": (G, SINGLE)}, target=BOARD),
-    figure(
-        shapes.horizon_shapes, {"centre": (np.array([1.0, 2, 3]), several(3)), "radius": (9.0, ONE)}
-    ),
     figure(sights.camera_shapes, {"depth": (100.0, ONE), "image": (SMALL, PICTURE)}, camera=CAMERA),
     figure(sights.ray_shapes, {"m": (M, rows(2)), "length": (9.0, ONE)}, camera=CAMERA),
     figure(

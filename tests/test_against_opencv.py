@@ -42,7 +42,8 @@ def predicted_by_opencv(board, A, dist, rvecs, tvecs):
 
 
 def true_camera(lens):
-    _, n_radial, tangential = LENSES[lens]
+    _, names = LENSES[lens]
+    n_radial, tangential = sum(name[0] == "k" for name in names), "p1" in names
     k, p = (-0.2, 0.08, -0.02)[:n_radial], (0.001, -0.0005) if tangential else (0.0, 0.0)
     return Camera(intrinsics(1000, 1004, 650, 470), lens=Lens(k=k, p=p), size=SIZE)
 

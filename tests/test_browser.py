@@ -61,6 +61,11 @@ OPEN = """async path => {
     await window.jupyterapp.commands.execute('docmanager:open', {path});
 }"""
 READY = "() => window.jupyterapp.shell.currentWidget.context.ready.then(() => true)"
+KERNEL_IS_THERE = """async () => {
+    const { sessionContext } = window.jupyterapp.shell.currentWidget;
+    await sessionContext.ready;
+    await sessionContext.session.kernel.info;
+}"""
 SHUT_DOWN = """async () => {
     const panel = window.jupyterapp.shell.currentWidget;
     await panel.sessionContext.shutdown();
@@ -149,7 +154,7 @@ def course(tmp_path_factory):
         port = free_port(0)
         server = start_server(folder, port, TOKEN)
     try:
-        wait_until_up(server, port)
+        wait_until_up(server, port, TOKEN)
         yield folder, f"http://127.0.0.1:{port}"
     finally:
         stop(server)
@@ -327,6 +332,28 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
         switches = sum(setting.is_choice for setting in settings)
         assert output.locator(".noUi-handle").count() == len(settings) - switches
         assert output.locator("input[type=checkbox]").count() == switches
+
+
+@pytest.mark.once
+def test_a_chapter_that_was_run_and_saved_opens_with_the_picture_and_no_error(page, course):
+    saved = course[0] / "run_and_saved.ipynb"
+    _write_scratch(saved, *(f"explore_{name}()" for name in ONE))
+    cells = _open_and_run(page, saved.name)
+    page.locator(".jp-NotebookPanel:not(.lm-mod-hidden) img.widget-image").wait_for()
+    page.evaluate("() => window.jupyterapp.shell.currentWidget.context.save()")
+    page.evaluate(SHUT_DOWN)
+    assert "widget-view+json" in saved.read_text()  # JupyterLab saves what means nothing later
+    _open(page, saved.name)
+    page.evaluate(READY)
+    page.evaluate(KERNEL_IS_THERE)
+    for name in ONE:
+        picture = _output(page, cells, rf"^explore_{name}\(").locator("img")
+        picture.wait_for(timeout=60_000)
+        assert picture.get_attribute("alt").startswith(model(name).about)
+    shown = page.locator(".jp-NotebookPanel:not(.lm-mod-hidden)").inner_text()
+    assert "Error displaying widget" not in shown
+    assert "Run this cell to move its sliders" in shown
+    page.evaluate(SHUT_DOWN)
 
 
 def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(empty_page):

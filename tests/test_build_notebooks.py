@@ -62,6 +62,7 @@ def page(tmp_path_factory):
         "import ipywidgets\nipywidgets.IntSlider()",
         "'a value'",
         "from IPython.display import display\nwidget = explore_lens()\ndisplay(widget, 5)",
+        ("# What is drawn: nothing.\n6", "hide-input"),
     )
     return path, built(path)
 
@@ -84,6 +85,11 @@ def test_a_widget_without_a_still_and_a_viewer_leave_nothing(page):
 
 def test_everything_else_is_kept(page):
     assert page[1][3].outputs[0].data == {"text/plain": "'a value'"}
+
+
+def test_a_cell_of_plumbing_is_folded_in_jupyterlab_and_on_the_site(page):
+    folded = {"tags": ["hide-input"], "jupyter": {"source_hidden": True}}
+    assert [dict(cell.metadata) for cell in page[1][-2:]] == [{}, folded]
 
 
 def test_built_twice_it_is_the_same_file_and_the_check_agrees(page):

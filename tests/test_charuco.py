@@ -83,6 +83,15 @@ def test_corners_are_several_times_better_than_opencvs(noise):
     assert rms[1] > 3 * rms[0]
 
 
+def test_the_side_of_a_square_that_is_no_round_number_loses_no_corner():
+    board, side = CharucoBoard((30, 15), 49.33, dictionary="4x4_250"), 49.33
+    squares = board.points[:, :2] / side
+    assert (squares != np.rint(squares)).any()  # or there is nothing to be tried
+    G = look_at([15 * side, 7.5 * side, -1150], [15 * side, 7.5 * side, 0])
+    known = Camera(intrinsics(900, 900, 639.5, 399.5), G, size=(1280, 800))
+    assert np.isfinite(find_corners(render(board, known, blur=0.7), board)).all()
+
+
 def test_a_board_cut_at_the_border_gives_the_corners_that_are_there():
     known = camera([20, 20, -200], at=(20, 20, 0))
     truth = known.project(BOARD.points)
@@ -158,6 +167,25 @@ def test_without_any_marker_that_is_said():
 def test_boards_that_cannot_be_are_refused_in_words(arguments, said):
     with pytest.raises(CvnotesError, match=said):
         CharucoBoard(*arguments)
+
+
+@pytest.mark.parametrize(
+    ("dictionary", "largest", "too_large"),
+    # squares: 10×10 and 17×6, of which half are light; 29×7, where one more is dark than light
+    [("4x4_50", (9, 9), (16, 5)), ("5x5_100", (19, 9), (28, 6))],
+)
+def test_a_board_may_need_every_marker_of_its_dictionary_but_not_one_more(
+    dictionary, largest, too_large
+):
+    columns, rows = largest
+    opencvs = theirs((columns + 1, rows + 1), dictionary.upper())
+    board = CharucoBoard(largest, 25.0, dictionary=dictionary)
+    assert board.n_markers == len(opencvs.getIds()) == len(opencvs.getDictionary().bytesList)
+
+    most, (columns, rows) = board.n_markers, too_large
+    said = f"{dictionary} has {most} markers and a board of {columns}×{rows} .* needs {most + 1}$"
+    with pytest.raises(CvnotesError, match=said):
+        CharucoBoard(too_large, 25.0, dictionary=dictionary)
 
 
 def test_the_sheet_shows_every_dark_field_in_millimetres():

@@ -80,12 +80,12 @@ def test_a_slanted_line_darkens_by_its_area_and_a_dot_by_its_disc():
     assert np.isclose((255 - ink(dots)[..., 0]).sum() / 255, 64 * np.pi, rtol=0.03)
 
 
-def test_faint_lines_lie_below_dots_and_words_above_a_photograph():
+def test_what_is_drawn_later_lies_above_and_words_above_all():
     sheet = Canvas(80, 60)
     sheet.photograph(np.full((30, 40), 100, np.uint8), (0, 0), (80, 60))
-    sheet.dots([(40, 30)], ESTIMATED, 6)
-    sheet.line([(0, 30), (80, 30)], FAINT, 4)
     sheet.text((40, 55), "x", WORLD, size=24, halo=True)
+    sheet.line([(0, 30), (80, 30)], FAINT, 4)
+    sheet.dots([(40, 30)], ESTIMATED, 6)
     picture = ink(sheet)
     assert np.abs(picture[30, 40] - [213, 94, 0]).max() <= 1
     assert (picture[30, 5] >= 236).all()

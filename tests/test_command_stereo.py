@@ -11,14 +11,16 @@ from PIL import Image
 from cvnotes.base import CalibrationWarning, DegenerateError
 from cvnotes.camera import Camera, Lens, chain, intrinsics, pose, rotation_from_vector
 from cvnotes.commands.cli import main
-from cvnotes.commands.examined import Examined
-from cvnotes.commands.ownership import made_by, maker
-from cvnotes.commands.stereo import _calibrated, differences, paired
+from cvnotes.commands.stereo import differences
+from cvnotes.files import read_rig
+from cvnotes.files.ownership import made_by, maker
+from cvnotes.files.reasons import Rejected, Unreadable
+from cvnotes.photographs import Detection, Photographs, calibrate_pairs
+from cvnotes.photographs.pairs import paired
 from cvnotes.pictures import render
 from cvnotes.stereo import calibrate_stereo, rectify
 from cvnotes.stereo.half_turn import half_turns
 from cvnotes.stereo.jackknife import std_of_pairs
-from cvnotes.stereo.saving import read_rig
 from cvnotes.targets import Chessboard
 
 SIZE = (480, 360)
@@ -53,7 +55,7 @@ def _seen(board, sigma=0.1, seed=0):
 
 
 def _examined(corners, name):
-    return Examined(Path(name), SIZE, np.zeros((4, 4), np.uint8), corners, turned=False, note="")
+    return Detection(Path(name), SIZE, np.zeros((4, 4), np.uint8), corners)
 
 
 @pytest.fixture(scope="module")
@@ -115,30 +117,31 @@ def test_files_of_others_are_not_replaced(photographs, tmp_path, capsys):
 def test_partners_are_told_by_their_numbers_or_by_their_order_and_never_guessed():
     corners = BOARD.points[:, :2]
 
-    def side(*names):
-        return [_examined(corners, name) for name in names]
+    def side(*names, missing=0):
+        photos = [_examined(corners, name) for name in names]
+        lost = [Rejected(f"lost {i}.png", Unreadable("cut off")) for i in range(missing)]
+        return Photographs(BOARD, photos, lost)
 
-    pairs, how, alone = paired((side("a1.png", "a3.png", "a2.png"), side("b2.png", "b3.png")))
-    assert [(a.path.name, b.path.name) for a, b in pairs] == [
+    found = paired(side("a1.png", "a3.png", "a2.png"), side("b2.png", "b3.png"))
+    assert [(a.path.name, b.path.name) for a, b in found.pairs] == [
         ("a3.png", "b3.png"),
         ("a2.png", "b2.png"),
     ]
-    assert "number" in how
-    assert [r.file for r in alone] == ["a1.png"]
-    pairs, how, _ = paired((side("x.png", "y.png"), side("p.png", "q.png")))
-    assert [(a.path.name, b.path.name) for a, b in pairs] == [
+    assert found.by_number
+    assert [r.file for r in found.rejected] == ["a1.png"]
+    found = paired(side("x.png", "y.png"), side("p.png", "q.png"))
+    assert [(a.path.name, b.path.name) for a, b in found.pairs] == [
         ("x.png", "p.png"),
         ("y.png", "q.png"),
     ]
-    assert "order" in how
+    assert not found.by_number
     with pytest.raises(DegenerateError, match="2 left photographs but 1 right"):
-        paired((side("x.png", "y.png"), side("p.png")))
+        paired(side("x.png", "y.png"), side("p.png"))
     with pytest.raises(DegenerateError, match="same number"):  # which of them is missing?
-        paired((side("x.png", "y.png"), side("p.png", "q.png")), (1, 1))
-    one = _examined(None, "b1.png")
-    pairs, _, alone = paired((side("a1.png"), [one]))
-    assert not pairs
-    assert "the board was not found in its partner b1.png" in alone[0].reason
+        paired(side("x.png", "y.png", missing=1), side("p.png", "q.png", missing=1))
+    found = paired(side("a1.png"), Photographs(BOARD, [_examined(None, "b1.png")]))
+    assert not found.pairs
+    assert str(found.rejected[-1].reason) == "the board was not found in its partner b1.png"
 
 
 def test_corners_of_a_symmetric_board_are_counted_from_one_end():
@@ -151,7 +154,7 @@ def test_corners_of_a_symmetric_board_are_counted_from_one_end():
         (_examined(a, f"a{i}.png"), _examined(b, f"b{i}.png"))
         for i, (a, b) in enumerate(zip(left, right, strict=True))
     ]
-    rig = _calibrated(pairs, board, "k1 k2")
+    rig = calibrate_pairs(pairs, board, "k1 k2")
     assert rig.result.rms < 0.17  # 0.1 px in u and in v; 100 px and more when counted wrongly
     assert (np.abs(rig.result.T - RIGHT.T) < 4 * np.array([rig.std[f"T_{a}"] for a in "xyz"])).all()
 
@@ -161,10 +164,10 @@ def test_the_lens_is_chosen_by_left_photographs_that_were_left_out():
         sides = list(zip(*_seen(BOARD), strict=True))[:n]
         return [tuple(_examined(m, f"{i}.png") for m in both) for i, both in enumerate(sides)]
 
-    rig = _calibrated(pairs(8), BOARD, "auto").result
-    assert rig.names == _calibrated(pairs(8), BOARD, "k1 k2").result.names
-    with pytest.raises(DegenerateError, match="at least 4 pairs"):
-        _calibrated(pairs(3), BOARD, "auto")
+    rig = calibrate_pairs(pairs(8), BOARD, "auto").result
+    assert rig.names == calibrate_pairs(pairs(8), BOARD, "k1 k2").result.names
+    few = calibrate_pairs(pairs(3), BOARD, "auto").result  # of which none is left out
+    assert few.names == rig.names
 
 
 def test_half_turns_are_told_from_poses_alone():

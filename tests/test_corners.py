@@ -1,5 +1,4 @@
 from functools import cache
-from hashlib import blake2b
 
 import cv2
 import numpy as np
@@ -8,11 +7,11 @@ import pytest
 from cvnotes.base import CornersNotFound, CvnotesError, InputTypeError, ShapeError
 from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import clutter, good_views, render
-from cvnotes.targets import Chessboard, find_corners, finders, finding, growing
+from cvnotes.targets import Chessboard, find_corners, finding
 from cvnotes.targets import lattice as _lattice
-from cvnotes.targets import opencv_finders as _cv
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.lattice import completed, handedness, ordered, out_of_line
+from cvnotes.targets.grey import reduced
+from cvnotes.targets.lattice import completed, handedness, measured, ordered, out_of_line
 from cvnotes.targets.subpixel import fit_edges
 
 BOARD = Chessboard((9, 6), 25.0)
@@ -42,31 +41,6 @@ def cluttered():
 
 def rms(x):
     return float(np.sqrt(np.mean(np.square(x))))
-
-
-def once(find):
-    """Ask a finder once of each picture: many tests look at the same one."""
-    known = {}
-
-    def found(grey, *corners):
-        key = (blake2b(grey.tobytes()).digest(), grey.shape, *corners)
-        if key not in known:
-            known[key] = find(grey, *corners)
-        return None if known[key] is None else known[key].copy()
-
-    return found
-
-
-@pytest.fixture(scope="module", autouse=True)
-def asked_once():
-    asked = {find: once(find) for find in (_cv.find_classic, _cv.find_sb)}
-    with pytest.MonkeyPatch.context() as patch:
-        attempts = [(name, asked.get(find, find), n) for name, find, n in finders.ATTEMPTS]
-        patch.setattr(finders, "ATTEMPTS", tuple(attempts))
-        grown = once(finders.grown_board)
-        for module in (finders, finding):
-            patch.setattr(module, "grown_board", grown)
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -253,13 +227,11 @@ class TestHiddenCorners:
         with pytest.raises(CornersNotFound):
             find_corners(image, BOARD, partial=True)
 
-    def test_a_corner_that_a_finder_missed_is_looked_for_where_the_others_expect_it(
-        self, shot, monkeypatch
-    ):
+    def test_a_corner_that_a_finder_missed_is_looked_for_where_the_others_expect_it(self, shot):
         wrong = shot[1].copy()
         wrong[[7, 30]] += 12.0
-        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", lambda *_: wrong, 10**6),))
-        np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
+        m = measured(shot[0], wrong.reshape(6, 9, 2))
+        np.testing.assert_allclose(m, shot[1], atol=0.06)
 
     @pytest.mark.parametrize(
         ("turn", "place", "most"),
@@ -268,34 +240,16 @@ class TestHiddenCorners:
             ((1.186, -0.722, -0.469), (-91.6, -38.5, 8.3), 2),  # a corner beyond the picture
         ],
     )
-    def test_corners_that_edges_do_not_vouch_for_are_left_out(self, monkeypatch, turn, place, most):
+    def test_corners_that_edges_do_not_vouch_for_are_left_out(self, turn, place, most):
         camera = Camera(intrinsics(190, 190, 320, 240), lens=FisheyeLens((0.02, -0.01, 0.003)))
         camera = camera.moved(pose(rotation_from_vector(turn), place))
         truth, picture = camera.project(BOARD.points), photograph(camera)
-        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", lambda *_: truth + 0.3, 10**6),))
-        m = find_corners(picture, BOARD, partial=True)
+        start = truth.reshape(6, 9, 2) + 0.3
+        m = measured(picture, start, partial=True)
         assert 0 < np.count_nonzero(np.isnan(m).any(-1)) <= most
         assert np.nanmax(np.abs(m - truth)) < 0.15
-        with pytest.raises(CornersNotFound):
-            find_corners(picture, BOARD)
-
-    def test_a_side_without_a_row_is_asked_again_when_the_row_is_longer(self, monkeypatch):
-        # Of its first row, the four corners on the left are hidden: as long as there are no five on
-        # the right, it is none.
-        board = np.stack(np.meshgrid(np.arange(9.0), np.arange(6.0)), axis=-1)
-        board[0, :4] = np.nan
-
-        def more(_, lattice):
-            u, v = np.rint(2 * lattice[0] - lattice[1]).astype(int).T
-            if min(u.min(), v.min()) < 0 or u.max() > 8 or v.max() > 5:
-                return None
-            seen = np.isfinite(board[v, u]).all(-1)
-            row = np.stack([u, v], axis=-1).astype(float)
-            return np.concatenate([row[None], lattice]) if 2 * seen.sum() >= len(seen) else None
-
-        monkeypatch.setattr(growing, "_one_row_more", more)
-        found = growing._grown(np.zeros((9, 9)), board[2:4, :2])
-        assert sorted(found.shape[:2]) == [6, 9]
+        with pytest.raises(_lattice.NotABoard):
+            measured(picture, start)
 
     def test_gaps_of_a_lattice_are_filled_as_its_neighbours_bend(self):
         lattice = close_up(*CLOSE[0]).project(BOARD.points).reshape(6, 9, 2)
@@ -435,15 +389,9 @@ class TestOrder:
         np.testing.assert_allclose(m, [639, 0] - expected * [1, -1], atol=0.06)
 
     @pytest.mark.parametrize("flip", [np.s_[::-1, ::-1], np.s_[::-1], np.s_[:, ::-1]], ids=str)
-    def test_the_finders_own_order_does_not_matter(self, shot, monkeypatch, flip):
-        expected = find_corners(shot[0], BOARD)
-
-        def in_another_order(grey, corners):
-            found = _cv.find_sb(grey, corners)
-            return found.reshape(6, 9, 2)[flip].reshape(-1, 2)
-
-        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", in_another_order, 10**6),))
-        np.testing.assert_allclose(find_corners(shot[0], BOARD), expected, atol=2e-3)
+    def test_the_order_in_which_they_were_found_does_not_matter(self, shot, flip):
+        m = measured(shot[0], shot[1].reshape(6, 9, 2)[flip])
+        np.testing.assert_allclose(m, find_corners(shot[0], BOARD), atol=2e-3)
 
     @pytest.mark.parametrize("corners", [(8, 6), (7, 5), (7, 7)])
     @pytest.mark.parametrize("turn", [0.3, 1.9, 3.3, -1.2])
@@ -478,9 +426,8 @@ class TestRefused:
             find_corners(image, BOARD)
         message = str(error.value)
         assert "no board of 9×6 inner corners found in a picture of 640×480 pixels" in message
-        assert "classic finder at 640×480: not found; SB finder at 640×480: not found" in message
+        assert "(320×240: not found; 640×480: not found)" in message
         assert "is the whole board in the picture" in message
-        assert message.count("SB finder") == 1  # the same picture is not searched twice
 
     def test_squares_counted_for_corners(self, small_shot):
         with pytest.raises(CornersNotFound, match="a board of 9×6 inner corners is there: were"):
@@ -519,17 +466,16 @@ class TestRefused:
         ids=str,
     )
     @pytest.mark.parametrize("light", [(0.0, 0.0), (0.5, 0.4)])
-    def test_part_of_a_larger_board(self, monkeypatch, corners, part, light):
+    def test_part_of_a_larger_board(self, corners, part, light):
         larger = Chessboard(corners, 20.0)
         camera = view((0.3, -0.5, 0.4), board=larger)
         image = photograph(camera, larger, light=light)
-        found = camera.project(larger.points).reshape(*corners[::-1], 2)[part].reshape(-1, 2)
-        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", lambda *_: found, 10**6),))
-        with pytest.raises(CornersNotFound, match="squares go on beyond 9×6 corners"):
-            find_corners(image, BOARD)
+        found = camera.project(larger.points).reshape(*corners[::-1], 2)[part]
+        with pytest.raises(_lattice.NotABoard, match="squares go on beyond 9×6 corners"):
+            measured(image, found)
 
     @pytest.mark.slow
-    def test_larger_boards_are_not_taken_for_it_by_the_finders_either(self):
+    def test_larger_boards_are_not_taken_for_it(self):
         for corners in ((10, 7), (11, 6), (9, 8)):
             board = Chessboard(corners, 20.0)
             camera = view((0.2, -0.3, 0.1), board=board, half=True)
@@ -560,57 +506,23 @@ class TestRefused:
                 find_corners(noise, board)
 
     @pytest.mark.parametrize("found", [np.zeros((54, 2)), np.arange(108.0).reshape(54, 2)])
-    def test_garbage_of_a_finder_is_no_board(self, shot, monkeypatch, found):
-        monkeypatch.setattr(finders, "ATTEMPTS", (("SB", lambda *_: found, 10**6),))
-        with pytest.raises(CornersNotFound, match="found, but its corners lie on a line"):
-            find_corners(shot[0], BOARD)
-
-    def test_a_second_finder_is_asked_when_the_first_is_not_believed(self, shot, monkeypatch):
-        attempts = (
-            ("wrong", lambda grey, corners: _cv.find_sb(grey, corners) + 40, 10**6),
-            ("right", _cv.find_sb, 10**6),
-        )
-        monkeypatch.setattr(finders, "ATTEMPTS", attempts)
-        np.testing.assert_allclose(find_corners(shot[0], BOARD), shot[1], atol=0.06)
+    def test_points_on_a_line_are_no_board(self, shot, found):
+        with pytest.raises(_lattice.NotABoard, match="found, but its corners lie on a line"):
+            measured(shot[0], found.reshape(6, 9, 2))
 
 
-class TestFinders:
+class TestCopies:
     def test_large_pictures_are_looked_at_in_reduced_copies(self, monkeypatch):
         seen = []
-        for i, (name, _, most) in enumerate(finders.ATTEMPTS):
-
-            def look(grey, _, i=i):
-                seen.append((i, grey.size))
-
-            attempts = list(finders.ATTEMPTS)
-            attempts[i] = (name, look, most)
-            monkeypatch.setattr(finders, "ATTEMPTS", tuple(attempts))
-        with pytest.raises(CornersNotFound, match="SB finder at 1316×987"):
+        monkeypatch.setattr(finding, "lattices", lambda grey: seen.append(grey.shape) or [])
+        with pytest.raises(CornersNotFound, match="333×250: not found; 666×500: not found"):
             find_corners(np.zeros((6000, 8000), np.uint8), BOARD)
-        assert [i for i, _ in seen] == [0, 1, 2, 3, 4]
-        assert seen[0][1] <= 500_000  # the classic finder
-        assert max(size for _, size in seen[1:4]) <= 1_300_000
-        assert seen[4][1] <= 12_000_000
-
-    @pytest.mark.parametrize("shape", [(54, 1, 2), (54, 2)])
-    def test_both_shapes_that_opencv_gives(self, monkeypatch, shape):
-        m = np.random.default_rng(0).random(shape).astype(np.float32)
-        monkeypatch.setattr(cv2, "findChessboardCornersSB", lambda *_, **__: (True, m))
-        monkeypatch.setattr(cv2, "findChessboardCorners", lambda *_, **__: (True, m))
-        for finder in (_cv.find_sb, _cv.find_classic):
-            found = finder(np.zeros((40, 40), np.uint8), (9, 6))
-            assert found.shape == (54, 2)
-            assert found.dtype == np.float64
-
-    def test_both_find_a_board(self, shot):
-        for finder in (_cv.find_sb, _cv.find_classic):
-            found = finder(shot[0], (9, 6))
-            nearest = np.linalg.norm(found[:, None] - shot[1], axis=-1).min(1)
-            assert nearest.max() < 1.5
+        assert seen == [(250, 333), (500, 666), (1000, 1333), (2000, 2666)]
+        assert 6000 * 8000 > finding._LARGEST >= 3000 * 4000
 
     def test_a_pixel_of_a_reduced_copy_is_the_mean_of_those_it_covers(self):
         grey = np.random.default_rng(0).integers(0, 256, (6, 8), dtype=np.uint8)
-        small = finders.shrink(grey, (4, 3))
+        small = reduced(grey, 2)
         np.testing.assert_allclose(small, grey.reshape(3, 2, 4, 2).mean((1, 3)), atol=0.51)
 
 

@@ -140,7 +140,12 @@ def nan_at(x, *place):
         ),
         ([*OTHER_W[:2], W[:0]], [*OTHER_M[:2], M[2, :0]], DegenerateError, "view without points"),
         (W + [0, 0, 1], M, CvnotesError, "Z must be 0 on a flat board"),
-        (W + np.c_[0 * W[:, :2], 0.01 * W[:, 0]], M, CvnotesError, "not flat see resection"),
+        (
+            W + np.c_[0 * W[:, :2], 0.01 * W[:, 0]],
+            M,
+            CvnotesError,
+            "there is calibrate_one_view",
+        ),
         (np.full((54, 2), 5.0), M, DegenerateError, "all board points coincide"),
         (W * 1e200, M, CvnotesError, "beyond 1e[+]100 products overflow; choose another unit"),
     ],

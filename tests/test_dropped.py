@@ -10,9 +10,13 @@ from PIL import Image
 from cvnotes.base import CvnotesError
 from cvnotes.commands.cli import main
 from cvnotes.commands.dropped import Dropped
+from cvnotes.photographs import calibrate_photographs
+from cvnotes.photographs.driver import chessboard
 
 ROOT = Path(__file__).resolve().parents[1]
 VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
+FISHEYE = sorted((ROOT.parent / "shared/data/fisheye").glob("*.jpg"))
+where_it_is = pytest.mark.skipif(not FISHEYE, reason="photographs that are not in the repository")
 
 
 @pytest.fixture
@@ -56,6 +60,30 @@ def test_without_opencv_the_camera_is_the_same_within_its_error_bars(dropped, mo
     ):
         assert name == same
         assert abs(value - found) < std
+
+
+@pytest.mark.parametrize(
+    ("photographs", "corners", "square"),
+    [
+        pytest.param(VIEWS[:5], (9, 6), 25.0, id="rendered"),
+        pytest.param(FISHEYE, (6, 4), 30.0, id="fisheye", marks=[pytest.mark.slow, where_it_is]),
+    ],
+)
+def test_page_command_and_library_use_the_same_photographs_to_the_same_digits(
+    photographs, corners, square, tmp_path
+):
+    page = Dropped(*corners, square)
+    for path in photographs:
+        page.look(str(path))
+    found = page.calibrate()
+    options = ["--corners", "{}x{}".format(*corners), "--square", str(square)]
+    main(["calibrate", *map(str, photographs), *options, "--out", str(tmp_path)])
+    for name in ("calibration.json", "photographs.csv", "calibration.yml"):
+        assert found["files"][name] == (tmp_path / name).read_bytes()
+    library = calibrate_photographs(photographs, chessboard(corners, square))
+    assert found["used"] == [path.name for path in photographs]
+    assert [photo.path.name for photo in library.photographs.used] == found["used"]
+    assert [list(row) for row in library.calibration.table()] == found["parameters"]
 
 
 def test_each_photograph_that_cannot_be_used_says_why(dropped, tmp_path):

@@ -18,10 +18,11 @@ import cvnotes
 from benchmarks.convergence import LENSES, counted, one
 from cvnotes.base import InputTypeError
 from cvnotes.commands.cli import main
-from cvnotes.learn.grader.grading import grade_folder
-from cvnotes.learn.grader.process import Limits
-from cvnotes.learn.grader.records import Records, read_records
-from cvnotes.learn.grader.tables import marks_csv
+from cvnotes.learn.exercises import COURSE
+from cvnotes.tutor.grader.grading import grade_folder
+from cvnotes.tutor.grader.process import Limits
+from cvnotes.tutor.grader.records import Records, read_records
+from cvnotes.tutor.grader.tables import marks_csv
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -105,7 +106,7 @@ def class_of_four(tmp_path_factory):
     notebook(folder / "eve" / "01_a.ipynb", "import os; os._exit(3)")
     (folder / "sam").mkdir()
     (folder / "sam" / "01_a.ipynb").write_text("no notebook")
-    return folder, in_order(grade_folder(folder)[1])
+    return folder, in_order(grade_folder(folder, COURSE)[1])
 
 
 def in_order(marks):
@@ -127,11 +128,11 @@ def test_a_study_and_a_class_are_the_same_everywhere(name, request, class_of_fou
     k, f = LENSES["barrel"]
     executor = request.getfixturevalue(name)
     found = cvnotes.study(partial(one, n=4, k=k, f=f), range(4), executor)
-    n, marks = grade_folder(folder, executor=executor)
-    table = marks_csv(in_order(marks))
+    n, marks = grade_folder(folder, COURSE, executor=executor)
+    table = marks_csv(in_order(marks), COURSE)
     assert found == cvnotes.study(partial(one, n=4, k=k, f=f), range(4))
     assert n == 4
-    assert table == marks_csv(plain)
+    assert table == marks_csv(plain, COURSE)
 
 
 @pytest.mark.skipif(not find_spec("distributed"), reason="Dask is not installed")
@@ -195,9 +196,7 @@ def test_the_convergence_study_counts_every_set():
 
 
 def test_exercises_that_were_added_are_known_to_other_processes(processes, tmp_path, monkeypatch):
-    from cvnotes.learn import EXERCISES, exercises
-
-    monkeypatch.setattr(exercises, "_ADDED", {})
+    monkeypatch.setattr(COURSE, "added", {})
     source = (
         "from dataclasses import replace\n"
         "from cvnotes.learn.ch01 import EXERCISES as OF_CHAPTER\n"
@@ -207,14 +206,14 @@ def test_exercises_that_were_added_are_known_to_other_processes(processes, tmp_p
     lift = source_of("lift").replace("my_lift", "mine")
     notebook(tmp_path / "in" / "ada" / "a.ipynb", IMPORTS, lift, "check('raise_points', mine)")
     try:
-        exercises.add_exercises(tmp_path / "own.py")
-        [mark] = grade_folder(tmp_path / "in", executor=processes)[1]
+        COURSE.add_exercises(tmp_path / "own.py")
+        [mark] = grade_folder(tmp_path / "in", COURSE, executor=processes)[1]
         assert mark.earned("raise_points") == 1
-        rows = Records(tmp_path / "rows.jsonl", {}, Limits())
+        rows = Records(tmp_path / "rows.jsonl", {}, Limits(), COURSE)
         rows.add(mark)
         rows.__exit__(None, None, None)
-        assert len(read_records(tmp_path / "rows.jsonl", Limits())) == 1
+        assert len(read_records(tmp_path / "rows.jsonl", Limits(), COURSE)) == 1
         (tmp_path / "own.py").write_text(source + "# changed")
-        assert read_records(tmp_path / "rows.jsonl", Limits()) == {}
+        assert read_records(tmp_path / "rows.jsonl", Limits(), COURSE) == {}
     finally:
-        EXERCISES.pop("raise_points", None)
+        COURSE.exercises.pop("raise_points", None)

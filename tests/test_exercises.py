@@ -13,14 +13,15 @@ import pytest
 from test_exercises_second import solution_of
 
 from cvnotes.base import CvnotesError
-from cvnotes.learn import EXERCISES, check, exercises, hint, progress, solution
-from cvnotes.learn.checker import foreseen
-from cvnotes.learn.checker.equality import up_to_scale
-from cvnotes.learn.checker.judge import judge
-from cvnotes.learn.checker.literals import as_code
-from cvnotes.learn.checker.outcome import Outcome, outcome_of
-from cvnotes.learn.checker.sandbox import ask
-from cvnotes.learn.exercises import asked, notebook_of
+from cvnotes.learn import EXERCISES, check, hint, progress, solution
+from cvnotes.learn.exercises import CHAPTERS, COURSE
+from cvnotes.tutor.checker import foreseen
+from cvnotes.tutor.checker.equality import up_to_scale
+from cvnotes.tutor.checker.judge import judge
+from cvnotes.tutor.checker.literals import as_code
+from cvnotes.tutor.checker.outcome import Outcome, outcome_of
+from cvnotes.tutor.checker.sandbox import ask
+from cvnotes.tutor.course import MORE, Session, short_name
 
 pytestmark = pytest.mark.usefixtures("worked_out_once")
 
@@ -33,7 +34,7 @@ EACH = pytest.mark.parametrize("exercise", EXERCISES.values(), ids=list(EXERCISE
 @pytest.fixture(autouse=True)
 def new_session(monkeypatch):
     """Let each test begin with nothing solved."""
-    monkeypatch.setattr(exercises, "_SESSION", exercises._Session())
+    monkeypatch.setattr(COURSE, "session", Session())
 
 
 def _stub_of(exercise):
@@ -61,11 +62,13 @@ def _mistakes():
 
 
 def test_there_are_enough_exercises_and_misconceptions():
-    assert {e.chapter for e in EXERCISES.values()} == set(range(1, 10))
+    assert {f"ch{e.chapter:02d}" for e in EXERCISES.values()} == {*CHAPTERS}
     assert len(EXERCISES) >= 30
     assert len(_mistakes()) >= max(150, 5 * len(EXERCISES))
-    for chapter in range(1, 10):  # a notebook has room for two to six
-        assert 2 <= sum(notebook_of(e) == chapter for e in EXERCISES.values()) <= 6
+    asked_in = [COURSE.notebook_of(e) for e in EXERCISES.values()]
+    assert asked_in.count("00") == 1  # the first taste
+    for chapter in CHAPTERS[1:]:  # a notebook has room for two to six
+        assert 2 <= asked_in.count(chapter[2:]) <= 6
 
 
 @EACH
@@ -279,7 +282,7 @@ def test_what_holds_and_what_does_not_is_said_in_words():
 
 @EACH
 def test_a_title_that_asks_gets_no_full_stop(exercise):
-    given = asked(exercise.name, "demo")
+    given = COURSE.asked(exercise.name, "demo")
     message = judge(given, [Outcome("unfinished")], 2024).message
     assert message.startswith((f"{exercise.title}. ", f"{exercise.title} "))
     assert "?." not in message
@@ -488,19 +491,19 @@ def test_no_notebook_holds_the_text_of_a_solution(path):
 def test_the_exercises_of_a_notebook_exist_and_belong_to_its_chapter(path):
     for cell in _cells(path):
         for name in re.findall(r"^check\(\"(\w+)\"", cell.source, re.M):
-            # the last notebook has further exercises to all chapters
-            assert int(path.name[:2]) in (EXERCISES[name].chapter, 10)
+            # further exercises belong to all chapters
+            assert short_name(path.name) in (f"{EXERCISES[name].chapter:02d}", MORE)
 
 
 @pytest.mark.skipif(not NOTEBOOKS, reason="no notebooks yet")
 def test_every_exercise_is_asked_for_in_exactly_one_notebook():
     asked = [
-        (name, int(path.name[:2]))
+        (name, short_name(path.name))
         for path in NOTEBOOKS
         for cell in _cells(path)
         for name in re.findall(r"^check\(\"(\w+)\"", cell.source, re.M)
     ]
-    assert sorted(asked) == sorted((name, notebook_of(e)) for name, e in EXERCISES.items())
+    assert sorted(asked) == sorted((name, COURSE.notebook_of(e)) for name, e in EXERCISES.items())
 
 
 @pytest.mark.skipif(not NOTEBOOKS, reason="no notebooks yet")

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from cvnotes.learn import EXERCISES
-from cvnotes.learn.checker.attempt import attempt
-from cvnotes.learn.checker.equality import within
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
-from cvnotes.learn.checker.judge import judge
+from cvnotes.tutor.checker.attempt import attempt
+from cvnotes.tutor.checker.equality import within
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.judge import judge
 
 SEED = 2024
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from cvnotes.learn import EXERCISES, check
-from cvnotes.learn.checker.attempt import attempt
-from cvnotes.learn.checker.judge import judge
-from cvnotes.learn.checker.outcome import Outcome
+from cvnotes.tutor.checker.attempt import attempt
+from cvnotes.tutor.checker.judge import judge
+from cvnotes.tutor.checker.outcome import Outcome
 
 pytestmark = pytest.mark.usefixtures("worked_out_once")
 

@@ -21,8 +21,8 @@ import pytest
 import test_exercises_second
 
 from cvnotes.learn import EXERCISES
-from cvnotes.learn.checker import in_process
-from cvnotes.learn.checker.judge import judge
+from cvnotes.tutor.checker import in_process
+from cvnotes.tutor.checker.judge import judge
 
 pytestmark = [pytest.mark.once, pytest.mark.usefixtures("worked_out_once")]
 

@@ -10,8 +10,10 @@ import pytest
 
 from cvnotes.base import CvnotesError
 from cvnotes.commands.cli import main
-from cvnotes.learn import EXERCISES, add_exercises, check, exercises, hint, progress, solution
-from cvnotes.learn.checker.soundness import faults
+from cvnotes.learn import EXERCISES, add_exercises, check, hint, progress, solution
+from cvnotes.learn.exercises import COURSE
+from cvnotes.tutor.checker.soundness import faults
+from cvnotes.tutor.course import Session
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "docs" / "exercises.md").read_text(encoding="utf-8")
@@ -25,7 +27,7 @@ RIGHT = (
 @pytest.fixture
 def own(tmp_path, monkeypatch, course_again):  # noqa: ARG001
     """Give the file of the page."""
-    monkeypatch.setattr(exercises, "_SESSION", exercises._Session())
+    monkeypatch.setattr(COURSE, "session", Session())
     path = tmp_path / "my_exercises.py"
     path.write_text(CODE, encoding="utf-8")
     return path

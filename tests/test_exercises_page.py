@@ -4,8 +4,10 @@ import json
 
 import pytest
 
-from cvnotes.learn import EXERCISES, check, exercises
+from cvnotes.learn import EXERCISES, check
+from cvnotes.learn.exercises import COURSE
 from cvnotes.learn.page import answered, helped, late, solved
+from cvnotes.tutor.course import Session
 
 RIGHT = """def my_drop(x_h):
     with np.errstate(all="ignore"):
@@ -14,7 +16,7 @@ RIGHT = """def my_drop(x_h):
 
 @pytest.fixture(autouse=True)
 def nothing_solved(monkeypatch):
-    monkeypatch.setattr(exercises, "_SESSION", exercises._Session())
+    monkeypatch.setattr(COURSE, "session", Session())
 
 
 def asked(exercise, box, **more):

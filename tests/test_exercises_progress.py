@@ -12,8 +12,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from cvnotes.learn import EXERCISES, check, exercises, hint, progress, solution
-from cvnotes.learn.remembered import FILE, VARIABLE, place, remember, solved_before
+from cvnotes.learn import EXERCISES, check, exercises, progress
+from cvnotes.learn.exercises import COURSE
+from cvnotes.tutor import course
+from cvnotes.tutor.course import Session
+from cvnotes.tutor.remembered import FILE, VARIABLE, place, remember, solved_before
 
 LIFT = EXERCISES["lift"].reference
 DROP = EXERCISES["drop"].reference
@@ -28,7 +31,7 @@ def file(tmp_path, monkeypatch):
 
 
 def new_kernel(monkeypatch):
-    monkeypatch.setattr(exercises, "_SESSION", exercises._Session())
+    monkeypatch.setattr(COURSE, "session", Session())
 
 
 def test_the_next_kernel_knows_what_was_solved(file, monkeypatch):
@@ -41,10 +44,10 @@ def test_the_next_kernel_knows_what_was_solved(file, monkeypatch):
 
 def test_two_notebooks_do_not_overwrite_each_other(file, monkeypatch):
     check("lift", LIFT)
-    first = exercises._SESSION
+    first = COURSE.session
     new_kernel(monkeypatch)
     check("drop", DROP)
-    monkeypatch.setattr(exercises, "_SESSION", first)
+    monkeypatch.setattr(COURSE, "session", first)
     check("lift", LIFT)
     assert sorted(solved_before()) == ["drop", "lift"]
     assert [p.name for p in file.parent.iterdir()] == [FILE]
@@ -98,9 +101,9 @@ def test_scripts_and_whoever_wants_none_leave_no_file(tmp_path, monkeypatch):
 def test_what_a_report_names_is_at_hand_in_the_notebook(monkeypatch):
     mine = object()
     running = SimpleNamespace(user_ns={"progress": mine})
-    monkeypatch.setattr(exercises, "shell", lambda: running)
+    monkeypatch.setattr(course, "shell", lambda: running)
     assert 'hint("lift")' in check("lift", ...).message
-    assert running.user_ns == {"hint": hint, "solution": solution, "progress": mine}
+    assert running.user_ns == {"hint": COURSE.hint, "solution": COURSE.solution, "progress": mine}
 
 
 def test_what_is_too_long_to_show_is_named_so_that_it_can_be_had():

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from cvnotes.learn import EXERCISES
-from cvnotes.learn.checker import raised
-from cvnotes.learn.checker.attempt import attempt
-from cvnotes.learn.checker.judge import judge
+from cvnotes.tutor.checker import raised
+from cvnotes.tutor.checker.attempt import attempt
+from cvnotes.tutor.checker.judge import judge
 
 SEED = 2024
 

@@ -22,12 +22,12 @@ import pytest
 from conftest import processor_time
 
 from cvnotes.learn import check
-from cvnotes.learn.checker import sandbox
-from cvnotes.learn.checker.attempt import is_empty
-from cvnotes.learn.checker.in_process import TimeIsOver, run_here
-from cvnotes.learn.checker.outcome import Outcome, decode, encode
-from cvnotes.learn.checker.report import RIGHT
-from cvnotes.learn.checker.sandbox import run
+from cvnotes.tutor.checker import sandbox
+from cvnotes.tutor.checker.attempt import is_empty
+from cvnotes.tutor.checker.in_process import TimeIsOver, run_here
+from cvnotes.tutor.checker.outcome import Outcome, decode, encode
+from cvnotes.tutor.checker.report import RIGHT
+from cvnotes.tutor.checker.sandbox import run
 
 pytestmark = pytest.mark.once
 
@@ -527,7 +527,7 @@ def test_without_fork_a_profiler_runs_afterwards():
     """A raised exception that was taken back made Python go round in a circle under one."""
     profiled = """
         import sys
-        from cvnotes.learn.checker.in_process import run_here
+        from cvnotes.tutor.checker.in_process import run_here
         def endless():
             while True: pass
         kinds = [run_here(f, [()], 0.2)[0].kind for f in (dict, endless, dict)]

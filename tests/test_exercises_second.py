@@ -9,9 +9,18 @@ import numpy as np
 import pytest
 
 from cvnotes.learn import EXERCISES, personal_camera
-from cvnotes.learn.checker import sandbox
-from cvnotes.learn.checker.judge import judge
-from cvnotes.learn.checker.sandbox import ask
+from cvnotes.tutor.checker import sandbox
+from cvnotes.tutor.checker.judge import judge
+from cvnotes.tutor.checker.sandbox import ask
+
+# Chapter 0
+
+
+def my_bend(row):
+    (u1, v1), (u2, v2) = row[0], row[-1]
+    areas = [(u2 - u1) * (v - v1) - (v2 - v1) * (u - u1) for u, v in row]
+    return max(abs(area) for area in areas) / np.hypot(u2 - u1, v2 - v1)
+
 
 # Chapter 1
 

@@ -7,10 +7,10 @@ import pytest
 from test_exercises_second import solution_of
 
 from cvnotes.learn import EXERCISES
-from cvnotes.learn.checker.agreement import NOTEBOOK_SEED, RIGHT_THERE_NOT_HERE, verdict
-from cvnotes.learn.checker.attempt import attempt
-from cvnotes.learn.checker.equality import up_to_scale
-from cvnotes.learn.checker.judge import judge
+from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED, RIGHT_THERE_NOT_HERE, verdict
+from cvnotes.tutor.checker.attempt import attempt
+from cvnotes.tutor.checker.equality import up_to_scale
+from cvnotes.tutor.checker.judge import judge
 
 pytestmark = pytest.mark.usefixtures("worked_out_once")
 

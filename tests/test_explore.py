@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cvnotes.base import CvnotesError, DegenerateError, ShapeError
+from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError
 from cvnotes.base.png import pack_png
+from cvnotes.calibration import calibrate
 from cvnotes.camera import (
     Camera,
     Lens,
@@ -23,9 +24,13 @@ from cvnotes.camera import (
     rotation_from_angles,
     rotation_from_vector,
 )
+from cvnotes.homography import dlt
 from cvnotes.pictures import course
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
 from cvnotes.show.explore.boards import pinhole
+from cvnotes.show.explore.columns import Believed
+from cvnotes.show.explore.finding import Finding, rms
+from cvnotes.show.explore.fold import angles, circle_of, photographs
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.lettering import LETTERS
 from cvnotes.show.explore.model import Model, Setting, Sight
@@ -36,6 +41,7 @@ from cvnotes.show.explore.rectification import lines_from
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
 MODELS = {name: explore.model(name) for name in explore.NAMES}
+STORIES = ("fold", "finding", "columns")  # of the course's own photographs
 each_model = pytest.mark.parametrize("name", explore.NAMES)
 
 
@@ -219,6 +225,10 @@ def test_another_camera_and_another_board_may_be_given():
     camera = Camera(intrinsics(500, 505, 250, 190), lens=Lens(k=(-1.7, 0.2)), size=(500, 400))
     board = course.Chessboard((6, 5), 40.0)
     for name in explore.NAMES:
+        if name in STORIES:
+            with pytest.raises(CvnotesError, match=f"{name}: shows photographs of the course"):
+                explore.model(name, camera)
+            continue
         model = explore.model(name, camera, board)
         rng = np.random.default_rng(1)
         assert model.picture(**random_values(model, rng)).any()
@@ -450,6 +460,90 @@ def test_epipolar_lines_pass_through_the_points_they_were_drawn_for():
     assert 7 <= rows[0].sum() <= 24  # eight lines of one to three px
 
 
+@pytest.fixture(scope="module")
+def finding():
+    return Finding()
+
+
+def test_the_way_of_the_finding_begins_at_the_closed_form_and_ends_at_the_calibration(finding):
+    board, m = course.board(), course.measured_corners()
+    start, _ = finding.at(0)
+    assert np.allclose(start.A[0, 2], 313.93, atol=0.01)
+    assert np.allclose(start.lens.k, (0.0891, -0.8532), atol=1e-4)
+    end, misses = finding.at(3)
+    found = calibrate(board.points, m, course.camera().size)
+    assert abs(rms(misses) / found.rms - 1) < 1e-3
+    for name, std in found.std.items():
+        assert abs(end.parameters[name] - found.parameters[name]) < 0.05 * std
+    fell = [rms(finding.at(step)[1]) for step in (0, 1, 2, 3)]
+    assert np.allclose(fell, (3.7317, 0.3742, 0.0278, 0.0081), rtol=0.005)
+
+
+def test_on_the_way_of_the_finding_each_part_of_a_step_is_nearer(finding):
+    assert (np.diff(finding.way[:, 1]) < 0).all()
+
+
+@pytest.fixture(scope="module")
+def believed():
+    real = course.real_corners()
+    return Believed(real.left), Believed(real.right)
+
+
+def test_the_misses_of_the_real_board_are_those_of_whole_calibrations(believed):
+    real = course.real_corners()
+    W, none = real.board.points, np.zeros(9)
+    sides = zip(believed, (real.left, real.right), believed[::-1], strict=True)
+    for one, m, other in sides:
+        moved = W + np.outer(np.tile(other.columns, 6), [1, 0, 0])
+        for points, board, said in (
+            (W, "flat", one.misses(0, none)),
+            (W, "free", one.misses(3, none)),
+            (moved, "flat", one.misses(0, other.columns)),
+        ):
+            with pytest.warns(CalibrationWarning):
+                found = calibrate(points, m, real.size, lens="k1 k2 p1 p2", board=board)
+            assert abs(rms(said) / found.rms - 1) < 0.01
+
+
+def test_heights_explain_a_fifth_and_shifts_two_thirds_of_the_squared_misses(believed):
+    none = np.zeros(9)
+    for one, gone in zip(believed, ((0.18, 0.60, 0.76), (0.22, 0.66, 0.82)), strict=True):
+        costs = [rms(one.misses(free, none)) ** 2 for free in range(4)]
+        assert np.allclose(1 - np.array(costs[1:]) / costs[0], gone, atol=0.008)
+
+
+def test_both_cameras_find_the_same_nine_columns_and_each_mends_the_other(believed):
+    left, right = believed
+    assert np.corrcoef(left.columns, right.columns)[0, 1] > 0.98
+    assert np.allclose(left.columns, right.columns, atol=0.03)
+    assert rms(left.misses(0, right.columns)) < 0.80 * rms(left.misses(0, 0 * right.columns))
+    assert rms(right.misses(0, left.columns)) < 0.75 * rms(right.misses(0, 0 * left.columns))
+    mirrored = rms(left.misses(0, right.columns[::-1]))
+    assert mirrored > rms(left.misses(0, 0 * right.columns))
+
+
+def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():
+    said = [numbers(MODELS["tilt"].sight(tilt=tilt).sentence)[1] for tilt in (0, 10, 20, 30, 45)]
+    assert said == [0.0, 0.6, 2.2, 3.9, 6.0]
+
+
+def test_every_place_of_the_half_circle_sees_both_right_angles_and_one_those_of_two_pictures():
+    W, true = course.board().points, np.array([319.5, 239.5, 400])
+    one, two = (dlt(W[:, :2], camera.project(W)) for camera in photographs())
+    circles = circle_of(one), circle_of(two)
+    assert abs(circles[0].radius - 465.9) < 0.05
+    for fold in range(20, 131, 10):
+        eye = circles[0].place(fold)
+        assert np.allclose(angles(one, eye), 90, rtol=1e-9)
+        assert not np.allclose(angles(two, eye), 90, atol=0.05)
+    for h, circle in zip((one, two), circles, strict=True):
+        fold = np.degrees(np.arcsin(400 / circle.radius))
+        assert np.allclose(circle.place(fold), true, rtol=1e-9)
+        assert np.allclose(angles(h, true), 90, rtol=1e-9)
+    assert "this is the camera" in MODELS["fold"].sight(fold=59, second=1).sentence
+    assert "not the camera" in MODELS["fold"].sight(fold=50, second=1).sentence
+
+
 # Paper and packing.
 
 
@@ -610,6 +704,15 @@ def test_a_sentence_cannot_smuggle_markup_into_the_page():
 PULLED = [(name, grip) for name in explore.NAMES for grip in MODELS[name].drags]
 
 
+FREE_TO_MOVE = {  # where the hand may pull to either side
+    "projection": {"heading": 5},
+    "finding": {"step": 1.5},
+    "tilt": {"tilt": 30},
+    "columns": {"amount": 0.7, "free": 1},
+}
+ON_A_WAY = {("finding", "step"), ("tilt", "tilt"), ("fold", "fold")}  # along a curve, by its x
+
+
 def grip_of(sight, name):
     return next(grip for grip in sight.grips if grip.name == name)
 
@@ -618,13 +721,19 @@ def grip_of(sight, name):
 @pytest.mark.parametrize("by", [(40, 0), (0, -30), (-25, 20)])
 def test_what_is_pulled_follows_the_hand(name, held, by):
     model = MODELS[name]
-    start = model.values(heading=5) if name == "projection" else model.values()
+    start = model.values(**FREE_TO_MOVE.get(name, {}))
     before = grip_of(model.sight(**start), held)
     wanted = np.array(before.at) + np.array(by) * before.unit
     after = grip_of(model.sight(**model.dragged(held, tuple(wanted), **start)), held)
     off = np.abs(after.at - wanted) / np.abs(before.unit)
     if held == "camera":  # it goes round, on a sphere; see below
         assert after.at != before.at
+    elif (name, held) in ON_A_WAY:
+        assert off[0] < 9
+    elif (name, held) == ("columns", "free"):  # from bar to bar
+        assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
+    elif held in ("nine", "eye"):  # up and down; to the nearest place of the half circle
+        assert off[1] < 9 or held == "eye"
     elif held == "rails":  # its length stays, its direction follows
         turned = np.arctan2(*wanted) - np.arctan2(*after.at)
         assert abs(np.degrees(turned)) <= 0.5 + 1e-9

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 import yaml
 
-from cvnotes.base import CvnotesError, FileError
+from cvnotes.base import CvnotesError, FileError, writing
 from cvnotes.calibration import Calibration, calibrate_one_view, saving
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.saving import read_calibration, write_calibration
@@ -151,7 +151,7 @@ def test_json_has_the_keys_that_were_promised(tmp_path):
 def test_a_calibration_comes_back_bit_for_bit(tmp_path, written):
     write_calibration(written, tmp_path / "calibration.json")
     back = read_calibration(tmp_path / "calibration.json")
-    assert back.keys() == written.keys() - {"left_out"}  # which is not kept
+    assert back.keys() == written.keys() - {"choice"}  # which is not kept
     for name in ("names", "lens", "size", "rms", "warnings", "reliable", "converged"):
         assert back[name] == written[name], name
     for name in ("A", "poses", "view_rms", "covariance"):
@@ -198,6 +198,18 @@ def test_corners_are_left_out_rather_than_writing_a_file_that_cannot_be_read(tmp
     back = read_calibration(tmp_path / "calibration.json")
     assert back["_data"] is None
     assert back["rms"] == 0.25
+
+
+@pytest.mark.parametrize("moved", [0.0, 1.0])
+def test_a_board_that_all_views_share_is_written_once(tmp_path, moved):
+    boards = (BOARD, BOARD + [moved, 0, 0])
+    write_calibration(made(board_points=boards), tmp_path / "calibration.json")
+    written = json.loads((tmp_path / "calibration.json").read_text())
+    assert ["board" in view for view in written["views"]] == [moved > 0] * 2
+    assert ("board" in written) == (moved == 0)
+    back = read_calibration(tmp_path / "calibration.json")["_data"].given()
+    for (W, _), board in zip(back, boards, strict=True):
+        np.testing.assert_allclose(W, board, atol=1e-9)
 
 
 @pytest.mark.slow
@@ -733,3 +745,44 @@ def test_the_next_run_clears_away_what_a_killed_one_left_but_not_what_is_being_w
         busy.kill()
     write_whole({tmp_path / "next": b"z"})
     assert [path.name for path in tmp_path.iterdir()] == ["next"]
+
+
+@pytest.mark.skipif(writing.fcntl is None, reason="there are no locks on Windows")
+def test_what_was_left_empty_is_cleared_away_at_once_and_a_new_file_survives_that(
+    tmp_path, monkeypatch
+):
+    (tmp_path / ".cvnotes-left.tmp").touch()  # killed before the first byte
+    writing.check_folder(tmp_path)
+    assert not list(tmp_path.iterdir())
+    flock, cleared = writing.fcntl.flock, []
+
+    def late(stream, how):  # another run looks in before the lock is there
+        if not cleared:
+            cleared.append(Path(stream.name))
+            Path(stream.name).unlink()
+        flock(stream, how)
+
+    monkeypatch.setattr(writing.fcntl, "flock", late)
+    write_whole({tmp_path / "next": b"y"})
+    assert (tmp_path / "next").read_bytes() == b"y"
+    assert cleared
+
+
+@pytest.mark.parametrize("without", ["a module", "a folder that can"])
+def test_where_nothing_locks_what_was_left_is_cleared_away_after_an_hour(
+    tmp_path, monkeypatch, without
+):
+    class Refusing:
+        LOCK_EX = LOCK_NB = 0
+
+        @staticmethod
+        def flock(*_):
+            raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(writing, "fcntl", None if without == "a module" else Refusing)
+    for name, minutes in (("busy", 59), ("left", 61)):
+        path = tmp_path / f".cvnotes-{name}.tmp"
+        path.write_bytes(b"half")
+        os.utime(path, (time.time() - 60 * minutes,) * 2)
+    write_whole({tmp_path / "next": b"y"})
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".cvnotes-busy.tmp", "next"]

@@ -17,42 +17,42 @@ from test_exercises_second import source_of
 
 from cvnotes.commands.grade import add_parser
 from cvnotes.learn import EXERCISES, add_exercises
-from cvnotes.learn.checker import sandbox
-from cvnotes.learn.checker.agreement import NOTEBOOK_SEED, RIGHT_THERE_NOT_HERE
-from cvnotes.learn.checker.outcome import encode
-from cvnotes.learn.checker.sandbox import ask
-from cvnotes.learn.exercises import asked, notebook_of
-from cvnotes.learn.grader import belonging as expected
-from cvnotes.learn.grader import grading, process
-from cvnotes.learn.grader.belonging import expected_exercises
-from cvnotes.learn.grader.grading import grade_folder
-from cvnotes.learn.grader.handin import CellTimeout, _recorder
-from cvnotes.learn.grader.handin import _alarm as alarm
-from cvnotes.learn.grader.judging import ALONE, FORGED, judged
-from cvnotes.learn.grader.marks import Mark, Verdict
-from cvnotes.learn.grader.tables import marks_csv
+from cvnotes.learn.exercises import CHAPTERS, COURSE
+from cvnotes.tutor.checker import sandbox
+from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED, RIGHT_THERE_NOT_HERE
+from cvnotes.tutor.checker.outcome import encode
+from cvnotes.tutor.checker.sandbox import ask
+from cvnotes.tutor.course import MORE, short_name
+from cvnotes.tutor.grader import grading, process
+from cvnotes.tutor.grader.belonging import expected_exercises
+from cvnotes.tutor.grader.grading import grade_folder
+from cvnotes.tutor.grader.handin import CellTimeout, _recorder
+from cvnotes.tutor.grader.handin import _alarm as alarm
+from cvnotes.tutor.grader.judging import ALONE, FORGED, judged
+from cvnotes.tutor.grader.marks import Mark, Verdict
+from cvnotes.tutor.grader.tables import marks_csv
 
 pytestmark = pytest.mark.slow
 
 IMPORTS = "import numpy as np\nfrom cvnotes.learn.exercises import check\n"
 IMPORTS += "from cvnotes.learn.personal import personal_camera"
-NUMBERS = range(1, 11)
-COURSE = sorted(
+ASKING = [*(chapter[2:] for chapter in CHAPTERS), MORE]
+PAGES = sorted(
     path
     for path in (Path(__file__).resolve().parents[1] / "notebooks").glob("*.ipynb")
-    if int(path.name[:2]) in NUMBERS
+    if short_name(path.name) in ASKING
 )
 # Every exercise is answered rightly, and each misconception judged; the course's own notebooks, and
 # all misconceptions in a process of their own, take long: the DLT and the chapter that knows its
 # student stand for the others.
-MARKED_IN_FULL = (6, 9)
+MARKED_IN_FULL = ("06", "09")
 needs_posix = pytest.mark.skipif(os.name != "posix", reason="limits as on Linux")
 
 
 @pytest.fixture(autouse=True)
 def all_exercises_are_placed(monkeypatch, tmp_path):
     """Expect every exercise in its notebook, whatever the course's own notebooks ask for."""
-    monkeypatch.setattr(expected, "COURSE", tmp_path / "none")
+    monkeypatch.setattr(COURSE, "notebooks", tmp_path / "none")
 
 
 def notebook(path, *cells):
@@ -72,8 +72,8 @@ def answered(name, source):
     return [source, hand_over(name)]
 
 
-def in_notebook(number):
-    return [e for e in EXERCISES.values() if notebook_of(e) == number]
+def in_notebook(name):
+    return [e for e in EXERCISES.values() if COURSE.notebook_of(e) == name]
 
 
 def cells_for(exercises, sources):
@@ -85,7 +85,7 @@ def cells_for(exercises, sources):
 
 
 def graded(folder, **limits):
-    n, marks = grade_folder(folder, **limits)
+    n, marks = grade_folder(folder, COURSE, **limits)
     marks = list(marks)
     assert n == len(marks)
     return {m.name: m for m in sorted(marks, key=lambda m: m.name)}
@@ -98,13 +98,15 @@ def command(*arguments):
     return args.run(args)
 
 
-def run_here_if_harmless(cells, seed, *others):
+def run_here_if_harmless(cells, seed, course, *others):
     """Run a notebook without a process of its own, unless it fails, ends, or writes itself."""
     if any(word in cell for cell in cells for word in ("raise", "import os", "import sys")):
-        return process.run_notebook(cells, seed, *others)
+        return process.run_notebook(cells, seed, course, *others)
     ran = process.Ran(finished={"finished": True, "failed": 0, "first": ""}, sealed=True)
     check = _recorder(
-        process._inputs(seed), lambda line: process._keep(json.dumps(line).encode(), ran)
+        course,
+        process._inputs(seed, course),
+        lambda line: process._keep(json.dumps(line).encode(), ran, course),
     )
     names = {}
     with ALONE, warnings.catch_warnings():
@@ -147,17 +149,17 @@ def mistaken(exercise, which):
 
 @pytest.mark.once
 def test_a_solved_course_scores_all_and_an_untouched_one_nothing(tmp_path):
-    others = [n for n in NUMBERS if n not in MARKED_IN_FULL]
+    others = [n for n in ASKING if n not in MARKED_IN_FULL]
     for n in others:
         solved = cells_for(in_notebook(n), lambda e: source_of(e.name))
-        notebook(tmp_path / "ada" / f"{n:02d}_chapter.ipynb", *solved)
+        notebook(tmp_path / "ada" / f"{n}_chapter.ipynb", *solved)
     notebook(tmp_path / "bob" / "course.ipynb", *cells_for(EXERCISES.values(), stub))
     started = processor_time()
     marks = graded(tmp_path)
     assert 60 * len(marks) / (processor_time() - started) > 10  # notebooks a minute
     bob = marks.pop("bob/course.ipynb")
     for n in others:
-        ada = marks[f"ada/{n:02d}_chapter.ipynb"]
+        ada = marks[f"ada/{n}_chapter.ipynb"]
         assert ada.remark == ""
         assert {*ada.expected} == {e.name for e in in_notebook(n)}
         assert ada.points == len(ada.expected), ada.reports
@@ -172,7 +174,7 @@ def left_behind(exercise, which):
     exec(f"{IMPORTS}\n{mistaken(exercise, which)}", names)
     student = "demo" if exercise.personal else None
     answer = names["my_steps" if exercise.parts else f"my_{exercise.name}"]
-    outcomes = ask(asked(exercise.name, student), answer, NOTEBOOK_SEED)
+    outcomes = ask(COURSE.asked(exercise.name, student), answer, NOTEBOOK_SEED)
     return {"student": student, "outcomes": [encode(outcome).decode() for outcome in outcomes]}
 
 
@@ -184,7 +186,9 @@ def judged_here(worked_out_once):  # noqa: ARG001
         patch.setattr(sandbox, "can_fork", lambda: False)
         for which in range(max(map(mistakes_of, EXERCISES.values()))):
             having = [e for e in EXERCISES.values() if which < mistakes_of(e)]
-            given, _ = judged({e.name: left_behind(e, which) for e in having}, seed=7)
+            given, _ = judged(
+                {e.name: left_behind(e, which) for e in having}, seed=7, course=COURSE
+            )
             verdicts |= {(name, which): verdict for name, verdict in given.items()}
     return verdicts
 
@@ -265,12 +269,12 @@ def exercise_cells(path, solved):
     return kept
 
 
-@pytest.mark.skipif(not COURSE, reason="no notebooks yet")
+@pytest.mark.skipif(not PAGES, reason="no notebooks yet")
 def test_the_courses_own_notebooks_score_nothing_untouched_and_all_when_solved(
     tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(expected, "COURSE", COURSE[0].parent)
-    in_full = [path for path in COURSE if int(path.name[:2]) in MARKED_IN_FULL]
+    monkeypatch.setattr(COURSE, "notebooks", PAGES[0].parent)
+    in_full = [path for path in PAGES if short_name(path.name) in MARKED_IN_FULL]
     for path in in_full:
         for who in ("solved", "untouched"):
             cells = exercise_cells(path, who == "solved")
@@ -286,8 +290,8 @@ def test_the_courses_own_notebooks_score_nothing_untouched_and_all_when_solved(
 
 
 def test_each_of_the_courses_own_notebooks_asks_for_its_exercises(monkeypatch):
-    monkeypatch.setattr(expected, "COURSE", COURSE[0].parent)
-    asked = [name for path in COURSE for name in expected_exercises(path.name, [])]
+    monkeypatch.setattr(COURSE, "notebooks", PAGES[0].parent)
+    asked = [name for path in PAGES for name in expected_exercises(path.name, [], COURSE)]
     assert sorted(asked) == sorted(EXERCISES)
 
 
@@ -325,7 +329,7 @@ HOSTILE = {
     "exits": "import os; os._exit(0)",
     "crashes": "import ctypes; ctypes.string_at(0)",
     "greedy": "x = bytearray(10**12)",
-    "patches": "import cvnotes.learn.checker.judge as j\nj.judge = lambda *a: None\n"
+    "patches": "import cvnotes.tutor.checker.judge as j\nj.judge = lambda *a: None\n"
     "import numpy as np\nnp.allclose = lambda *a, **k: True\nnp.array_equal = np.allclose",
     "praises": "check = lambda *a, **k: print('PASSED')",
     "forges": "import json, os\n"
@@ -412,7 +416,7 @@ def test_no_notebook_gets_the_seed_or_sees_the_graders_environment(tmp_path, mon
     cell = (
         "import gc, os, sys\n"
         "assert 'GRADER_TOKEN' not in os.environ, 'seen'\n"
-        "from cvnotes.learn.grader.handin import Task\n"
+        "from cvnotes.tutor.grader.handin import Task\n"
         "tasks = [t for t in gc.get_objects() if type(t).__name__ == 'Task']\n"
         "assert not any('seed' in f for t in [Task, *tasks] for f in t.__dict__), 'seen'\n"
         "assert not any('seed' in argument for argument in sys.argv), sys.argv"
@@ -425,7 +429,8 @@ def test_no_notebook_gets_the_seed_or_sees_the_graders_environment(tmp_path, mon
 @pytest.mark.usefixtures("in_this_process")
 def test_an_answer_made_for_the_notebooks_own_inputs_does_not_pass(tmp_path):
     memorised = (
-        "from cvnotes.learn.exercises import EXERCISES, _SEED\n"
+        "from cvnotes.learn import EXERCISES\n"
+        "from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED as _SEED\n"
         "known = [(a[0].tobytes(), EXERCISES['drop'].reference(*a))"
         " for a in EXERCISES['drop'].inputs(_SEED)]\n"
         "my_drop = lambda x_h: dict(known).get(x_h.tobytes(), x_h[:, :-1])"
@@ -472,7 +477,7 @@ def test_ids_show_who_handed_in_whose_numbers(tmp_path):
 
 def test_a_spreadsheet_takes_no_text_for_a_formula():
     mark = Mark("=cmd()", "@x.ipynb", {}, ("dlt",), ids=("+1",), remark="-1")
-    row = next(csv.DictReader(marks_csv([mark]).splitlines()))
+    row = next(csv.DictReader(marks_csv([mark], COURSE).splitlines()))
     assert [row[k] for k in ("student", "notebook", "id", "remark")] == [
         "'=cmd()", "'@x.ipynb", "'+1", "'-1; id +1 is not the folder's",
     ]  # fmt: skip
@@ -481,21 +486,21 @@ def test_a_spreadsheet_takes_no_text_for_a_formula():
 def test_exercises_that_a_notebook_does_not_have_are_left_blank():
     one = Mark("a", "01.ipynb", {"lift": Verdict("right")}, ("lift",))
     two = Mark("a", "06.ipynb", {}, ("dlt",))
-    rows = list(csv.DictReader(marks_csv([one, two]).splitlines()))
+    rows = list(csv.DictReader(marks_csv([one, two], COURSE).splitlines()))
     assert [(r["lift"], r["dlt"]) for r in rows] == [("1", ""), ("", "0")]
 
 
 def test_the_number_in_a_notebooks_name_says_what_belongs_to_it():
-    assert "dlt" in expected_exercises("06_anything.ipynb", ["lift"])
-    assert "lift" not in expected_exercises("06_anything.ipynb", ["lift"])
-    assert "drop" in expected_exercises("ada.ipynb", ["lift"])
-    assert expected_exercises("ada.ipynb", []) == ()
+    assert "dlt" in expected_exercises("06_anything.ipynb", ["lift"], COURSE)
+    assert "lift" not in expected_exercises("06_anything.ipynb", ["lift"], COURSE)
+    assert "drop" in expected_exercises("ada.ipynb", ["lift"], COURSE)
+    assert expected_exercises("ada.ipynb", [], COURSE) == ()
 
 
 def test_only_what_the_course_itself_asks_for_is_expected(tmp_path, monkeypatch):
     notebook(tmp_path / "06_dlt.ipynb", 'check("dlt", my_dlt)', "check('normaliser', my_n)")
-    monkeypatch.setattr(expected, "COURSE", tmp_path)
-    assert expected_exercises("06_dlt.ipynb", []) == ("normaliser", "dlt")
+    monkeypatch.setattr(COURSE, "notebooks", tmp_path)
+    assert expected_exercises("06_dlt.ipynb", [], COURSE) == ("normaliser", "dlt")
 
 
 @pytest.mark.parametrize(

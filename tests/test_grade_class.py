@@ -12,14 +12,15 @@ from test_grade import IMPORTS, command, hand_over, notebook, run_here_if_harmle
 
 from cvnotes.base import FileError
 from cvnotes.learn import EXERCISES
-from cvnotes.learn.grader import grading
-from cvnotes.learn.grader.assignment import read_assignment
-from cvnotes.learn.grader.feedback import class_picture
-from cvnotes.learn.grader.grading import grade_folder
-from cvnotes.learn.grader.handed_in import listed
-from cvnotes.learn.grader.marks import Mark, Verdict
-from cvnotes.learn.grader.source import fingerprint, own_code
-from cvnotes.learn.grader.totals import remarked, totals
+from cvnotes.learn.exercises import COURSE
+from cvnotes.tutor.grader import grading
+from cvnotes.tutor.grader.assignment import read_assignment
+from cvnotes.tutor.grader.feedback import class_picture
+from cvnotes.tutor.grader.grading import grade_folder
+from cvnotes.tutor.grader.handed_in import listed
+from cvnotes.tutor.grader.marks import Mark, Verdict
+from cvnotes.tutor.grader.source import fingerprint, own_code
+from cvnotes.tutor.grader.totals import remarked, totals
 
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 ASSIGNMENT = """
@@ -42,7 +43,7 @@ FORGED = (
     '{"exercise": "dlt", "student": null, "outcomes": ["{}"]}\\n\')\n    except OSError: pass'
 )
 MEMORY = (
-    "from cvnotes.learn.checker.agreement import NOTEBOOK_SEED\n"
+    "from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED\n"
     "from cvnotes.learn import EXERCISES\n"
     "cases = EXERCISES['drop'].inputs(NOTEBOOK_SEED)\n"
     "answers = [np.where(x[:, -1:] == 0, np.nan, x[:, :-1] / x[:, -1:]) for x, in cases]\n"
@@ -265,10 +266,12 @@ def test_a_resumed_class_is_the_same_in_every_file(graded_class, tmp_path, capsy
 
 
 def test_canvas_gets_two_rows_before_the_first_student():
-    from cvnotes.learn.grader.tables import for_canvas
+    from cvnotes.tutor.grader.tables import for_canvas
 
     marks = [Mark("", "lovelaceada_77_88_06_x.ipynb", {"dlt": Verdict("right")}, ("dlt",))]
-    header, possible, ada = csv.reader(io.StringIO(for_canvas(totals(marks), "Homework (12)")))
+    header, possible, ada = csv.reader(
+        io.StringIO(for_canvas(totals(marks, COURSE), "Homework (12)"))
+    )
     assert header == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Homework (12)"]
     assert possible == ["    Points Possible", "", "", "", "", "1"]
     assert (ada[1], ada[-1]) == ("77", "1")
@@ -298,33 +301,33 @@ def test_what_is_no_assignment_is_said_in_a_sentence(text, words, tmp_path):
     path = tmp_path / "a.toml"
     path.write_text(text)
     with pytest.raises(FileError, match=re.escape(words)):
-        read_assignment(path)
+        read_assignment(path, COURSE)
 
 
 def test_lists_of_students_come_with_semicolons_too(tmp_path):
     (tmp_path / "s.csv").write_text("Student;Name;Id\nada;Ada L.;s1\n;;\n", encoding="utf-8-sig")
     (tmp_path / "a.toml").write_text("students = 's.csv'\n[exercises]\ndlt = 1")
-    [ada] = read_assignment(tmp_path / "a.toml").students
+    [ada] = read_assignment(tmp_path / "a.toml", COURSE).students
     assert (ada.student, ada.name, ada.id) == ("ada", "Ada L.", "s1")
 
 
 def test_equal_parts_make_the_points(tmp_path):
     (tmp_path / "a.toml").write_text("[exercises]\ndrop = { points = 3, parts = true }")
-    item = read_assignment(tmp_path / "a.toml").items["drop"]
+    item = read_assignment(tmp_path / "a.toml", COURSE).items["drop"]
     first = EXERCISES["drop"].properties[0].sentence
-    assert item.earned("drop", Verdict("not yet right", holds=(first,))) == 1.5
-    assert item.earned("drop", Verdict("right")) == 3
-    assert item.earned("drop", None) == 0
+    assert item.earned(Verdict("not yet right", holds=(first,))) == 1.5
+    assert item.earned(Verdict("right")) == 3
+    assert item.earned(None) == 0
 
 
 def test_a_collection_counts_what_it_answers_and_a_group_is_no_chapter():
-    from cvnotes.learn.grader.belonging import expected_exercises
+    from cvnotes.tutor.grader.belonging import expected_exercises
 
     names = ["lift", "project", "dlt"]
-    assert expected_exercises("homework1.ipynb", names) == ("lift", "project", "dlt")
-    chapter = expected_exercises("06_homography_dlt.ipynb", [])
-    assert expected_exercises("07_ada_06_homography_dlt.ipynb", []) == chapter
-    assert expected_exercises("06_ada_07_calibration.ipynb", ["dlt"]) == chapter
+    assert expected_exercises("homework1.ipynb", names, COURSE) == ("lift", "project", "dlt")
+    chapter = expected_exercises("06_homography_dlt.ipynb", [], COURSE)
+    assert expected_exercises("07_ada_06_homography_dlt.ipynb", [], COURSE) == chapter
+    assert expected_exercises("06_ada_07_calibration.ipynb", ["dlt"], COURSE) == chapter
 
 
 @pytest.mark.parametrize(
@@ -343,7 +346,7 @@ def test_a_collection_counts_what_it_answers_and_a_group_is_no_chapter():
     ],
 )
 def test_borrowed_functions_are_seen_and_others_are_not(cells, said):
-    found = own_code(cells).borrowed("dlt")
+    found = own_code(cells).borrowed(EXERCISES["dlt"])
     assert (said in found) if said else found == ""
 
 
@@ -353,12 +356,12 @@ def test_a_copy_of_the_librarys_source_is_seen():
     from cvnotes.homography import dlt
 
     source = inspect.getsource(dlt).replace("def dlt(", "def my_dlt(")
-    assert own_code([source, "check('dlt', my_dlt)"]).borrowed("dlt")
+    assert own_code([source, "check('dlt', my_dlt)"]).borrowed(EXERCISES["dlt"])
 
 
 def test_short_functions_are_not_compared_and_renamed_ones_are_equal():
     def code(name, source):
-        return fingerprint(name, own_code([source, hand_over(name)]))
+        return fingerprint(name, own_code([source, hand_over(name)]), COURSE.notebooks)
 
     assert code("lift", LIFT) == ""
     assert code("dlt", DLT) == code("dlt", RENAMED) != ""
@@ -368,7 +371,7 @@ def test_short_functions_are_not_compared_and_renamed_ones_are_equal():
 def test_ids_of_the_list_are_the_folders_own(tmp_path):
     (tmp_path / "s.csv").write_text("student,id\nada,s77\n")
     (tmp_path / "a.toml").write_text("students = 's.csv'\n[exercises]\ndlt = 1")
-    assignment = read_assignment(tmp_path / "a.toml")
+    assignment = read_assignment(tmp_path / "a.toml", COURSE)
     mark = Mark("ada", "a.ipynb", ids=("S77", "your id"))
     assert remarked([mark], assignment) == [["id your id is not the folder's"]]
 
@@ -402,7 +405,7 @@ def test_two_copies_are_remarked_without_an_assignment_too():
     ]
     said = "two copies: 06_a.ipynb and 06_b.ipynb, the better answers count"
     assert remarked(marks) == [[], [said]]
-    [ada] = totals(marks)
+    [ada] = totals(marks, COURSE)
     assert (ada.points, ada.of) == (1, 1)
     assert sum(said in text for text in ada.remarks) == 1
     assert remarked([replace(mark, student="") for mark in marks]) == [[], []]
@@ -411,14 +414,14 @@ def test_two_copies_are_remarked_without_an_assignment_too():
 def test_an_untouched_notebook_used_no_id(tmp_path):
     stub = EXERCISES["own_camera"].stub
     notebook(tmp_path / "ada" / "09_a.ipynb", IMPORTS, stub, hand_over("own_camera"))
-    [mark] = grade_folder(tmp_path)[1]
+    [mark] = grade_folder(tmp_path, COURSE)[1]
     assert mark.reports["own_camera"].is_open
     assert (mark.ids, remarked([mark])) == ((), [[]])
 
 
 def test_the_longest_name_has_room_in_the_picture():
     marks = [Mark("ada", "a.ipynb", {}, tuple(EXERCISES))]
-    picture = class_picture(totals(marks))
+    picture = class_picture(totals(marks, COURSE), COURSE)
     longest = max(EXERCISES, key=len)
     right_edge = int(re.search(rf'<text x="(\d+)"[^>]*>{longest}<', picture)[1])
     assert right_edge > 6.6 * len(longest)  # px of a usual font of 13 px

@@ -19,14 +19,14 @@ from test_exercises_second import source_of
 from test_grade import IMPORTS, answered, command, graded, notebook, run_here_if_harmless
 from test_grade import in_this_process as in_this_process
 
-from cvnotes.learn.checker.agreement import NOTEBOOK_SEED
-from cvnotes.learn.checker.outcome import Outcome, encode
-from cvnotes.learn.exercises import EXERCISES
-from cvnotes.learn.grader import grading
-from cvnotes.learn.grader.judging import FORGED, judged
-from cvnotes.learn.grader.marks import Mark, Verdict
-from cvnotes.learn.grader.process import Limits
-from cvnotes.learn.grader.records import Records, read_records
+from cvnotes.learn.exercises import COURSE, EXERCISES
+from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED
+from cvnotes.tutor.checker.outcome import Outcome, encode
+from cvnotes.tutor.grader import grading
+from cvnotes.tutor.grader.judging import FORGED, judged
+from cvnotes.tutor.grader.marks import Mark, Verdict
+from cvnotes.tutor.grader.process import Limits
+from cvnotes.tutor.grader.records import Records, read_records
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes as on Linux")
 pytestmark = [pytest.mark.slow, pytest.mark.once]
@@ -165,22 +165,22 @@ def test_a_class_interrupted_at_random_gives_the_same_table(tmp_path):
 def test_a_line_that_was_cut_off_or_is_none_of_ours_is_no_row(tmp_path):
     path, limits = tmp_path / "rows.jsonl", Limits()
     mark = Mark("ada", "06.ipynb", {"dlt": Verdict("right")}, ("dlt",), content="c0")
-    with Records(path, {}, limits) as records:
+    with Records(path, {}, limits, COURSE) as records:
         records.add(mark)
     whole = path.read_bytes()
     key = ("ada", "06.ipynb", "c0")
-    assert read_records(path, limits) == {key: mark}
+    assert read_records(path, limits, COURSE) == {key: mark}
     foreign = [b"[]", b"{}", b"\xff\xfe", b"[" * 100_000, whole.replace(b'"reports"', b'"report"')]
     path.write_bytes(b"\n".join([*foreign, whole.strip(), whole[:-20]]))
-    assert read_records(path, limits) == {key: mark}
+    assert read_records(path, limits, COURSE) == {key: mark}
     path.write_bytes(whole.replace(b'"version": "', b'"version": "9.'))
-    assert read_records(path, limits) == {}
-    assert read_records(tmp_path / "none", limits) == {}
+    assert read_records(path, limits, COURSE) == {}
+    assert read_records(tmp_path / "none", limits, COURSE) == {}
 
 
 def test_what_a_notebook_writes_into_the_records_does_not_stay(tmp_path):
     path = tmp_path / "rows.jsonl"
-    with Records(path, {}, Limits()) as records:
+    with Records(path, {}, Limits(), COURSE) as records:
         records.add(Mark("ada", "a.ipynb", content="c0"))
         with path.open("ab") as stream:
             stream.write(b'{"forged": 1}\n')
@@ -232,7 +232,7 @@ def numbers(value, **fields):
 
 @pytest.mark.parametrize("lines", [["{}"], "text", None, [1], [[]], ["[" * 100_000], ["1"] * 9])
 def test_forged_results_are_a_remark(lines):
-    verdicts, _ = judged({"lift": {"outcomes": lines, "again": lines}}, 7)
+    verdicts, _ = judged({"lift": {"outcomes": lines, "again": lines}}, 7, COURSE)
     assert not verdicts["lift"].passed
     assert verdicts["lift"].note == FORGED
 
@@ -243,8 +243,10 @@ def test_a_forged_change_of_no_argument_is_a_remark(which):
     honest = [numbers(x) for x in right]
     forged = [numbers(x, changed=(which,)) for x in right]
     again = [numbers(case.right) for case in EXERCISES["lift"].solved_cases(7)]
-    assert judged({"lift": {"outcomes": honest, "again": again}}, 7)[0]["lift"].passed
-    assert judged({"lift": {"outcomes": forged, "again": again}}, 7)[0]["lift"].note == FORGED
+    assert judged({"lift": {"outcomes": honest, "again": again}}, 7, COURSE)[0]["lift"].passed
+    assert (
+        judged({"lift": {"outcomes": forged, "again": again}}, 7, COURSE)[0]["lift"].note == FORGED
+    )
 
 
 def test_thousands_of_forged_lines_cost_no_more_than_one(tmp_path):
@@ -268,7 +270,7 @@ def test_thousands_of_forged_lines_cost_no_more_than_one(tmp_path):
 
 
 def test_a_flood_of_results_is_ended(tmp_path, monkeypatch):
-    from cvnotes.learn.grader import process
+    from cvnotes.tutor.grader import process
 
     monkeypatch.setattr(process, "_MAX_RESULTS", 100_000)
     flood = (
@@ -321,7 +323,7 @@ def test_a_sealed_notebook_finds_no_network_no_neighbour_and_no_process(tmp_path
 def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(
     interrupted, tmp_path, monkeypatch
 ):
-    from cvnotes.learn.grader import process
+    from cvnotes.tutor.grader import process
 
     word = f"left-{tmp_path.name}-{os.getpid()}"
     cells = [*LIFT, SLEEPER.format(word)]
@@ -331,14 +333,14 @@ def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(
 
     def unsealed(arguments, **options):
         blocked = (
-            "import runpy; import cvnotes.learn.grader.seal as s; s.sealed = lambda *_: False;"
-            "runpy.run_module('cvnotes.learn.grader.handin', run_name='__main__')"
+            "import runpy; import cvnotes.tutor.grader.seal as s; s.sealed = lambda *_: False;"
+            "runpy.run_module('cvnotes.tutor.grader.handin', run_name='__main__')"
         )
         return run([arguments[0], "-c", blocked], **options)
 
     monkeypatch.setattr(process.subprocess, "Popen", unsealed)
     with ThreadPoolExecutor() as pool:
-        future = pool.submit(process.run_notebook, cells, 7, Limits(900.0), (), word)
+        future = pool.submit(process.run_notebook, cells, 7, COURSE, Limits(900.0), (), word)
         if interrupted:
             wait_for(lambda: sleepers(word))
             process.stop(word)
@@ -352,7 +354,7 @@ def test_where_nothing_can_be_sealed_leftovers_are_found_all_the_same(
 
 def test_no_two_threads_parse_at_once(monkeypatch):
     """In Python 3.11 a second one makes the first fail, and a student lost the marks."""
-    from cvnotes.learn.checker import parsing
+    from cvnotes.tutor.checker import parsing
 
     inside, most = [], []
 

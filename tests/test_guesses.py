@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError
-from cvnotes.learn import EXERCISES, answer, check, exercises, guess, guesses
-from cvnotes.learn.remembered import FILE, VARIABLE, solved_before
+from cvnotes.learn import EXERCISES, answer, check, guess, guesses
+from cvnotes.learn.exercises import COURSE
+from cvnotes.tutor.course import Session
+from cvnotes.tutor.remembered import FILE, VARIABLE, solved_before
 
 
 @pytest.fixture(autouse=True)
 def file(tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path / FILE))
     monkeypatch.setattr(guesses, "_kept", {})
-    monkeypatch.setattr(exercises, "_SESSION", exercises._Session())
+    monkeypatch.setattr(COURSE, "session", Session())
     return tmp_path / FILE
 
 

@@ -11,8 +11,8 @@ from PIL import Image
 
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.commands.cli import main
-from cvnotes.commands.ownership import maker, marked
 from cvnotes.files import read_camera, write_camera
+from cvnotes.files.ownership import maker, marked
 
 SIZE = (320, 240)
 CAMERA = Camera(intrinsics(420, 424, 161, 118), lens=Lens(k=(-0.25, 0.1)), size=SIZE)

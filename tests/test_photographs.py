@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 import pytest
 from conftest import PHOTOGRAPHS
+from opencv_finders import find_classic, find_sb
 from test_stereo import (
     photographed_rig,  # noqa: F401
     test_rectified_rows_of_the_photographs_agree,  # noqa: F401
@@ -21,10 +22,9 @@ from test_stereo import (
 from cvnotes.commands.cli import main
 from cvnotes.files import read_camera, read_photo
 from cvnotes.pictures import course
-from cvnotes.targets import Chessboard, find_corners, finders
+from cvnotes.targets import Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.lattice import handedness
-from cvnotes.targets.opencv_finders import find_classic, find_sb
+from cvnotes.targets.lattice import handedness, measured
 
 pytestmark = pytest.mark.slow
 
@@ -32,14 +32,11 @@ BOARD = Chessboard((9, 6), 30.0)
 SIDES = ("left", "right")
 
 
-def corners_of(kept):
+def corners_of(kept, find):
     """Measure the corners (2, 13, 54, 2) in the photographs."""
     return np.array(
         [
-            [
-                find_corners(read_photo(PHOTOGRAPHS / f"{side}{n}.jpg").image, BOARD)
-                for n in kept.names
-            ]
+            [find(read_photo(PHOTOGRAPHS / f"{side}{n}.jpg").image) for n in kept.names]
             for side in SIDES
         ]
     )
@@ -50,15 +47,17 @@ def photographed():
     """Corners (2, 13, 54, 2), measured now; the tests of `test_stereo` above are given these."""
     kept = course.real_corners()
     assert kept.board == BOARD
-    return corners_of(kept)
+    return corners_of(kept, lambda image: find_corners(image, BOARD))
 
 
-def test_the_committed_corners_are_those_measured_in_the_photographs(monkeypatch):
+def test_the_committed_corners_are_those_measured_in_the_photographs():
     kept = course.real_corners()
-    # They were measured from where OpenCV's SB finder had led.
-    attempts = (("SB finder", find_sb, 1_300_000),)
-    monkeypatch.setattr(finders, "ATTEMPTS", attempts)
-    np.testing.assert_allclose(corners_of(kept), [kept.left, kept.right], atol=5e-3)
+
+    def from_where_opencv_leads(image):
+        return measured(image, find_sb(image, BOARD.corners).reshape(6, 9, 2))
+
+    corners = corners_of(kept, from_where_opencv_leads)
+    np.testing.assert_allclose(corners, [kept.left, kept.right], atol=5e-3)
 
 
 def test_who_led_to_a_corner_hardly_matters(photographed):
@@ -90,8 +89,8 @@ def test_thirteen_of_thirteen_calibrate_as_published(photographed, side, alpha_u
 
 def test_the_origin_stays_on_the_same_corner_of_the_board(photographed):
     # The board is held upright or turned to its left, never upside down.
-    for side, measured in zip(SIDES, photographed, strict=True):
-        for n, m in zip(course.real_corners().names, measured.reshape(-1, 6, 9, 2), strict=True):
+    for side, corners in zip(SIDES, photographed, strict=True):
+        for n, m in zip(course.real_corners().names, corners.reshape(-1, 6, 9, 2), strict=True):
             image = read_photo(PHOTOGRAPHS / f"{side}{n}.jpg").image
             assert handedness(m) > 0
             outside = np.rint(m[0, 0] + 0.2 * (2 * m[0, 0] - m[0, 1] - m[1, 0])).astype(int)
@@ -132,10 +131,17 @@ def test_the_count_is_seen_though_eight_corners_are_hidden(n):
 
 
 @pytest.mark.parametrize(
-    ("name", "corners", "found"), [("wide", (8, 6), 17), ("fisheye", (6, 4), 13)]
+    ("name", "corners", "found"),
+    [
+        ("wide", (8, 6), 17),
+        ("fisheye", (6, 4), 13),
+        ("sony", (6, 4), 13),
+        ("depth", (9, 6), 21),
+        ("left_right", (9, 6), 26),
+    ],
 )
-def test_every_photograph_through_a_wide_lens_in_which_opencv_finds_the_board(name, corners, found):
-    files = sorted((PHOTOGRAPHS.parent / name).glob("*.jpg"))
+def test_every_photograph_in_which_one_of_opencvs_finders_finds_the_board(name, corners, found):
+    files = sorted((PHOTOGRAPHS.parent / name).glob("*.[jp][pn]g"))
     board, n = Chessboard(corners, 30.0, half_turn_symmetric=True), 0
     for file in files:
         image = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)

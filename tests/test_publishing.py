@@ -95,17 +95,24 @@ def test_the_project_says_where_it_lives_and_what_it_runs_on():
 def pythons():
     """Give the versions of Python that the workflow tests."""
     jobs = yaml.safe_load((ROOT / ".github/workflows/tests.yml").read_text())["jobs"]
-    return jobs["newest"]["strategy"]["matrix"]["python"]
+    return jobs["everywhere"]["strategy"]["matrix"]["python"]
 
 
 def test_the_workflow_tests_every_system_every_python_and_the_oldest_versions():
     workflow = yaml.safe_load((ROOT / ".github/workflows/tests.yml").read_text())
     jobs = workflow["jobs"]
-    systems = {name.split("-")[0] for name in jobs["newest"]["strategy"]["matrix"]["os"]}
+    systems = {name.split("-")[0] for name in jobs["everywhere"]["strategy"]["matrix"]["os"]}
     assert systems == {"ubuntu", "macos", "windows"}
     assert pythons() == ["3.11", "3.12", "3.13", "3.14"]
     assert PROJECT["requires-python"] == f">={pythons()[0]}"
     assert jobs["oldest"]["env"]["PIP_CONSTRAINT"].endswith("/tests/oldest.txt")
+    # on a push the newest and the oldest; all of them once a week, and by hand
+    (newest,) = (step["with"]["python-version"] for step in jobs["newest"]["steps"][1:2])
+    assert newest == pythons()[-1]
+    assert {name for name, job in jobs.items() if "if" not in job} == {"newest", "oldest"}
+    when = workflow[True]  # YAML reads `on` as yes
+    assert {"push", "pull_request", "schedule", "workflow_dispatch"} <= {*when}
+    assert re.fullmatch(r"\d+ \d+ \* \* [0-6]", when["schedule"][0]["cron"])
     for job in jobs.values():
         for step in job["steps"]:
             assert len({"uses", "run"} & step.keys()) == 1, step
@@ -120,7 +127,7 @@ def test_the_site_is_published_by_a_workflow_that_may_do_no_more_than_that():
     assert workflow["permissions"] == {"contents": "read"}
     assert deploy["permissions"] == {"pages": "write", "id-token": "write"}
     runs = [step["run"] for step in build["steps"] if "run" in step]
-    assert runs == ["python start.py site"]
+    assert runs == ['python start.py site --address "$ADDRESS"']
     uploaded = next(s["with"]["path"] for s in build["steps"] if "upload" in s.get("uses", ""))
     assert (
         f'ROOT / "{uploaded.replace("/", chr(34) + " / " + chr(34))}"'

@@ -9,8 +9,8 @@ import pytest
 
 from cvnotes.base import CalibrationWarning, DegenerateError
 from cvnotes.calibration import calibrate
-from cvnotes.calibration.refinement import likeness
-from cvnotes.calibration.reliability import Evidence, judge, missed_together
+from cvnotes.calibration.refinement import autocorrelation
+from cvnotes.calibration.reliability import Diagnostics, judge, missed_together
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.targets import Chessboard
 
@@ -134,7 +134,7 @@ def good_evidence(**changes):
     rng = np.random.default_rng(0)
     R = np.array([about(a, 35) for a in (0, 2, 4)])
     return replace(
-        Evidence(
+        Diagnostics(
             A=CAMERA.A,
             lens=Lens(k=(-0.1,)),
             size=(1280, 960),
@@ -193,7 +193,7 @@ def with_one(value, shape, *place):
             r"views 2 do not fit the others \(view 2: 3.00 px, typical 0.40 px\)",
         ),
         (
-            {"likeness": 0.6, "view_rms": np.array([0.9, 1.0, 1.1])},
+            {"autocorrelation": 0.6, "view_rms": np.array([0.9, 1.0, 1.1])},
             "neighbouring corners miss their places in the same direction",
         ),
         (
@@ -230,7 +230,7 @@ def test_doubts_that_the_error_bars_do_not_cover_make_it_unreliable(changes, wor
         ),
         ({"size": (900, 900)}, "corners lie outside of the 900×900 picture"),
         (
-            {"likeness": 0.6},
+            {"autocorrelation": 0.6},
             "so this is no noise: .*error is then larger than noise alone would make it",
         ),
         ({"lens": Lens(k=(-0.8,))}, "folds over before it reaches the corners of the picture"),
@@ -287,19 +287,20 @@ def tilted_cosine():
     return min(abs(c * c + s * s * np.cos(a)) for a in (2, 4, 2))
 
 
-def test_likeness_is_0_for_noise_and_1_for_drift():
+def test_autocorrelation_is_0_for_noise_and_1_for_drift():
     rng = np.random.default_rng(1)
     noise = rng.normal(size=(20, 54, 2))
-    assert abs(likeness(noise, 2000)) < 0.1
+    assert abs(autocorrelation(noise, 2000)) < 0.1
     drift = np.ones((20, 54, 2)) + 0.1 * noise
-    assert likeness(drift, 2000) > 0.9
-    assert likeness(noise + drift, 2000) == pytest.approx(0.47, abs=0.07)
-    assert likeness(np.where(rng.uniform(size=(20, 54, 1)) < 0.01, np.nan, drift), 2000) > 0.9
+    assert autocorrelation(drift, 2000) > 0.9
+    assert autocorrelation(noise + drift, 2000) == pytest.approx(0.47, abs=0.07)
+    some_unseen = np.where(rng.uniform(size=(20, 54, 1)) < 0.01, np.nan, drift)
+    assert autocorrelation(some_unseen, 2000) > 0.9
 
 
-def test_likeness_tells_nothing_of_rounding_errors_or_without_spare_measurements():
-    assert likeness(np.full((3, 54, 2), 1e-9), 300) == 0
-    assert likeness(np.ones((15, 4, 2)), 20) == 0
+def test_autocorrelation_tells_nothing_of_rounding_errors_or_without_spare_measurements():
+    assert autocorrelation(np.full((3, 54, 2), 1e-9), 300) == 0
+    assert autocorrelation(np.ones((15, 4, 2)), 20) == 0
 
 
 def test_what_corners_miss_together_is_told_from_noise_in_any_part_of_a_board():

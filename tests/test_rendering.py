@@ -227,7 +227,12 @@ def test_light_is_unrounded_and_lamps_are_brighter_than_white():
     [
         ((Chessboard(), SMALL), {}, InputTypeError, "got Chessboard; .*target_scene makes one"),
         ((box((0, 1), (0, 1), (5, 6)), A), {}, InputTypeError, "expected a Camera, got ndarray"),
-        ((box((0, 1), (0, 1), (5, 6)), SMALL), {"samples": 0}, CvnotesError, "at least 1, got 0"),
+        (
+            (box((0, 1), (0, 1), (5, 6)), SMALL),
+            {"samples": 0},
+            CvnotesError,
+            "whole number from 1 to 10000, got 0",
+        ),
     ],
 )
 def test_what_cannot_be_rendered_is_refused_in_words(arguments, options, error, words):

@@ -120,3 +120,11 @@ def test_a_number_is_a_single_finite_one():
     assert number(3, "x") == 3.0
     with pytest.raises(InputTypeError, match="x: expected a numeric array"):
         number("3", "x")
+
+
+@pytest.mark.parametrize("level", [0.5, -1.0, 256.0, np.nan])
+def test_only_grey_levels_of_eight_bits_are_compressed(level):
+    picture = np.full((8, 8), 100.0)
+    picture[3, 4] = level
+    with pytest.raises(CvnotesError, match="image"):
+        compress(picture, 90)

@@ -28,13 +28,18 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     assert left.yaxis_inverted()  # the first family on top
     rms = [line.get_xdata() for line in left.lines]
     assert np.allclose(np.concatenate(rms), RESULT.rms * np.array([1, 1, 2, 2, 1]))
-    # (50² + 50² + 25²) / 3 = 1875, and its root is 43.3
-    assert np.allclose([p.get_width() for p in right.patches], [25.0, 43.3], atol=0.01)  # per cent
-    assert colours(right) == [LENS, ESTIMATED]
-    assert [t.get_text() for t in right.texts] == ["25 %", "43 %  not reliable"]
+    assert np.allclose([p.get_width() for p in right.patches], [25.0, 50.0], atol=0.01)  # medians
+    assert colours(right) == [ESTIMATED, ESTIMATED]  # such errors were never promised
+    assert [t.get_text() for t in right.texts] == [
+        "25 %  more than promised", "50 %  more than promised"
+    ]  # fmt: skip
+    std = RESULT.std["alpha_u"]
+    near = draw_view_families({"kept": [RESULT]}, truth=RESULT.A[0, 0] - 1.9 * std)[1]
+    far = draw_view_families({"broken": [RESULT]}, truth=RESULT.A[0, 0] - 2.1 * std)[1]
+    assert (colours(near), colours(far)) == ([LENS], [ESTIMATED])
     dots, promise = right.lines[:2]
     assert np.allclose(dots.get_xdata(), 25)
-    assert np.allclose(promise.get_xdata(), 125 * RESULT.std["alpha_u"] / ALPHA)
+    assert np.allclose(promise.get_xdata(), 0.674 * 125 * RESULT.std["alpha_u"] / ALPHA)
     assert right.get_xscale() == "log"
     assert (left.get_title(), right.get_title()) == ("what is looked at", "what counts")
     assert left.get_xlabel() == "RMS (px per point)"

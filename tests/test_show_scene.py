@@ -21,7 +21,6 @@ from cvnotes.show import (
     camera_shapes,
     draw_scene,
     export_glb,
-    horizon_shapes,
     plane_shapes,
     ray_shapes,
     scene_shapes,
@@ -46,7 +45,6 @@ def all_shapes():
         *camera_shapes(BENT, image=image),
         *ray_shapes(BENT, [320, 240], 500.0),
         *plane_shapes(BENT, 100.0),
-        *horizon_shapes(radius=800.0),
         *scene_shapes(box((0, 50), (0, 50), (0, 50))),
     )
 
@@ -156,14 +154,6 @@ def test_axes_are_as_long_as_asked_and_stand_in_their_frame():
     assert {(60, 20, 30), (10, 70, 30), (10, 20, 80)} <= tips
 
 
-def test_the_horizon_is_seen_at_the_vanishing_points_of_level_directions():
-    camera = Camera(A, pose(STRAIGHT.R, -STRAIGHT.R @ [0, -300, 0]))
-    on = named(horizon_shapes([0, -300, 0], 5000.0), Lines).ends[:, 0]
-    seen = camera.depth(on) > 0
-    expected = camera.vanishing_point(on[seen] - [0, -300, 0])
-    assert np.allclose(camera.project(on[seen]), expected, atol=1e-6)
-
-
 def test_what_is_estimated_has_its_own_colour():
     assert named(camera_shapes(STRAIGHT), Lines).colour == CAMERA
     assert named(camera_shapes(STRAIGHT, meaning="estimated"), Lines).colour == ESTIMATED
@@ -176,7 +166,7 @@ def test_what_is_estimated_has_its_own_colour():
 def test_a_scene_holds_every_shape_with_y_up():
     scene = build_scene(*all_shapes())
     expected = {"board", "board border", "WRF axes", "camera pyramid", "camera picture", "rays"}
-    expected |= {"z = 1 plane", "z = 1 outline", "horizon", "scene"}
+    expected |= {"z = 1 plane", "z = 1 outline", "scene"}
     assert expected <= set(scene.geometry)
     board = target_shapes(BOARD)[0].corners.reshape(-1, 3)
     low, high = build_scene(*target_shapes(BOARD)[:1]).bounds
@@ -243,7 +233,7 @@ def test_a_still_has_equal_scales_and_y_downwards():
 def test_a_still_names_what_it_shows():
     shapes = (*all_shapes(), *camera_shapes(STRAIGHT, name="camera 2"))
     texts = [text.get_text() for text in draw_scene(*shapes, unit="m").texts]
-    assert texts == ["board", "WRF", "camera", "z = 1", "horizon", "camera 2"]
+    assert texts == ["board", "WRF", "camera", "z = 1", "camera 2"]
 
 
 VIEWS = [(20, -40), (5, -90), (60, 10), (-20, 120), (25, -62), (89, -90), (18, 0)]

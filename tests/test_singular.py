@@ -5,7 +5,7 @@ import pytest
 
 from cvnotes.base import DegenerateError, solve_dense
 from cvnotes.calibration import calibrate, intrinsics_from_b
-from cvnotes.calibration.refinement import covariance, pose_covariance, solve_arrow
+from cvnotes.calibration.refinement import covariance, pose_covariance, solve_by_schur
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.homography import four_points_h9_one
 from cvnotes.projective import map_lines
@@ -42,13 +42,15 @@ def test_a_singular_matrix_is_refused_in_words(call, why):
         call()
 
 
-def _arrow(monkeypatch):
+def _normal_equations(monkeypatch):
     """Give the normal equations of a calibration."""
     from cvnotes.calibration import refinement
 
     kept = []
     usual = refinement.covariance
-    monkeypatch.setattr(refinement, "solve_arrow", lambda s, d: kept.append(s) or solve_arrow(s, d))
+    monkeypatch.setattr(
+        refinement, "solve_by_schur", lambda s, d: kept.append(s) or solve_by_schur(s, d)
+    )
     assert usual is covariance
     camera = Camera(intrinsics(800, 800, 320, 240))
     W = Chessboard((5, 4), 30.0).points
@@ -61,7 +63,7 @@ def _arrow(monkeypatch):
 
 @pytest.mark.parametrize("broken", ["solve", "inv"])
 def test_normal_equations_that_gave_nan_are_refused(monkeypatch, broken):
-    system = _arrow(monkeypatch)
+    system = _normal_equations(monkeypatch)
     good = covariance(system)
 
     def nan(a, *b):
@@ -70,7 +72,7 @@ def test_normal_equations_that_gave_nan_are_refused(monkeypatch, broken):
     monkeypatch.setattr(np.linalg, broken, nan)
     system = system.damped(0.5)  # without what is remembered of the undamped ones
     calls = {
-        "solve": [lambda: solve_arrow(system, 0.0), lambda: covariance(system)],
+        "solve": [lambda: solve_by_schur(system, 0.0), lambda: covariance(system)],
         "inv": [lambda: covariance(system), lambda: pose_covariance(system, good)],
     }
     for call in calls[broken]:

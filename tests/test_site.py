@@ -2,6 +2,7 @@
 
 import inspect
 import re
+import shutil
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -197,6 +198,50 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
         assert len(widths) in (2, 3)
         assert len(set(widths)) == 1
         assert widths[0] > 300
+
+
+def test_at_1280_px_a_line_of_100_letters_fits_and_what_is_printed_wraps(site, chromium):
+    page = chromium.new_page(viewport={"width": 1280, "height": 900})
+    longest = 0
+    for name in ("06_homography_dlt", "more_exercises"):
+        page.goto((site / "notebooks" / f"{name}.html").as_uri())
+        cut = """() => [...document.querySelectorAll(".bd-article .cell pre")]
+            .filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.innerText)"""
+        assert page.evaluate(cut) == []
+        code = page.locator(".cell_input pre").all_inner_texts()
+        lines = [line for text in code for line in text.splitlines()]
+        longest = max(longest, *map(len, lines))
+    assert longest == 100
+    page.close()
+
+
+def test_on_paper_a_chapter_has_all_its_lines_and_figures(site, chromium, tmp_path):
+    if not shutil.which("pdftotext"):
+        pytest.skip("no pdftotext on this machine (Debian: poppler-utils)")
+    (path,) = (path for path in NOTEBOOKS if path.name.startswith("07"))
+    page = chromium.new_page(viewport={"width": 1280, "height": 900})
+    page.goto((site / "notebooks" / f"{path.stem}.html").as_uri())
+    page.wait_for_function(
+        "[...document.images].every((image) => image.complete && image.naturalWidth)"
+    )
+    page.pdf(path=tmp_path / "chapter.pdf", format="A4")
+    page.close()
+    read = ["pdftotext", "-layout", tmp_path / "chapter.pdf", "-"]
+    text = subprocess.run(read, capture_output=True, text=True, check=True).stdout
+    printed = re.sub(r"\s", "", text)
+    cells = [c for c in nbformat.read(path, as_version=4).cells if c.cell_type == "code"]
+    lost = [
+        line
+        for cell in cells
+        for line in cell.source.splitlines()
+        if re.sub(r"\s", "", line) not in printed
+    ]
+    assert lost == []
+    listed = subprocess.run(
+        ["pdfimages", "-list", tmp_path / "chapter.pdf"], capture_output=True, text=True, check=True
+    ).stdout
+    figures = sum("<img" in str(cell.outputs) for cell in cells)
+    assert len(re.findall(r"\bimage\b", listed)) >= figures
 
 
 def test_a_chapter_is_half_a_megabyte_and_its_figures_come_when_they_are_seen(site):

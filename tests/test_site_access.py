@@ -88,3 +88,31 @@ def test_photographs_are_chosen_with_the_keyboard_alone(page, live_site):
     with page.expect_file_chooser() as chooser:
         page.keyboard.press("Space")
     assert chooser.value.is_multiple()
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_the_first_page_shows_its_sentence_its_ways_in_and_a_grip_at_once(page, live_site, width):
+    page.set_viewport_size({"width": width, "height": 800})
+    page.goto(f"{live_site}/index.html")
+    page.wait_for_selector(".explore-grip")
+    for shown in (".front-sentence", ".front-buttons a >> nth=2", ".explore-grip >> nth=3"):
+        box = page.locator(shown).bounding_box()
+        assert 0 < box["y"] < box["y"] + box["height"] < 800, shown
+        assert 0 <= box["x"] < box["x"] + box["width"] <= width, shown
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    picture = page.locator(".front picture img")
+    assert picture.evaluate("img => img.complete && img.naturalWidth") > 600
+    page.locator(".explore-grip").first.focus()
+    page.keyboard.press("ArrowDown")
+    page.wait_for_selector(".front .explore-stage.live", timeout=120_000)
+    assert violations(page, colours=False) == []
+
+
+def test_on_a_narrow_page_the_picture_stands_above_its_sliders_and_stays_in_sight(page, live_site):
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(f"{live_site}/notebooks/04_lens_distortion.html")
+    explored = page.locator(".explore").first
+    stage, sliders = explored.locator(".explore-stage"), explored.locator(".explore-controls")
+    assert stage.bounding_box()["y"] < sliders.bounding_box()["y"]
+    page.set_viewport_size({"width": 1280, "height": 844})
+    assert stage.bounding_box()["y"] > sliders.bounding_box()["y"]

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from accessible import violations
-from conftest import CHROMIUM, OF_CHROMIUM
+from conftest import CHROMIUM, OF_CHROMIUM, taken
 from PIL import Image
 
 pytestmark = [pytest.mark.slow, pytest.mark.once]
@@ -27,6 +27,12 @@ RUN_ALL = """async () => {
     return panel.content.model.toJSON().cells.filter(cell => cell.cell_type === 'code')
         .map(cell => cell.outputs);
 }"""
+KERNEL_IS_THERE = """async () => {
+    const { context, sessionContext } = window.jupyterapp.shell.currentWidget;
+    await context.ready;
+    await sessionContext.ready;
+    await sessionContext.session.kernel.info;
+}"""
 SHOW_CELL = """async words => {
     const notebook = window.jupyterapp.shell.currentWidget.content;
     const sources = notebook.widgets.map(cell => cell.model.sharedModel.getSource());
@@ -46,12 +52,6 @@ def watched(chromium, live_site):
         return context
 
     return made, told
-
-
-def taken(told):
-    """Empty a list; gives what was in it, for one test to answer for."""
-    found, told[:] = told[:], []
-    return found
 
 
 @pytest.fixture
@@ -187,6 +187,8 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     assert len(outputs) > 10
     errors = [o["evalue"] for cell in outputs for o in cell if o["output_type"] == "error"]
     assert all("no OpenCV in a browser" in words for words in errors), errors
+    red = [o["text"] for cell in outputs for o in cell if o.get("name") == "stderr"]
+    assert red == []
     # (what stands behind a cell that needs OpenCV is left alone when all are run)
     pictures = sum("<img" in str(cell) for cell in outputs)
     assert pictures >= 3, outputs
@@ -200,6 +202,19 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     for _ in range(3):
         page.keyboard.press("Shift+ArrowDown")
     expect(angle).not_to_have_text(before, timeout=20_000)
+    # Saved and opened again, with another kernel: the picture, and no error in its place.
+    page.evaluate("() => window.jupyterapp.shell.currentWidget.context.save()")
+    page.reload()
+    page.wait_for_function(
+        "() => window.jupyterapp?.shell?.currentWidget?.context", timeout=120_000
+    )
+    page.evaluate(KERNEL_IS_THERE)
+    page.evaluate(SHOW_CELL, "explore_camera(")
+    still = page.locator(".jp-OutputArea-output").filter(
+        has_text="Run this cell to move its sliders"
+    )
+    still.first.locator("img").wait_for(timeout=60_000)
+    assert page.locator("text=Error displaying widget").count() == 0
 
 
 def test_after_one_visit_pages_and_python_are_there_without_a_network(

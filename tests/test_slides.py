@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from conftest import QuietHandler, serving
 
+from cvnotes.learn import EXERCISES
+
 pytestmark = pytest.mark.once
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -45,6 +47,62 @@ def test_every_figure_heading_and_trap_of_the_notebooks_is_on_a_slide(made):
         assert len(re.findall('class="slide careful"', page)) == traps
         headings = re.findall(r"^## (.+)$", prose, re.M)
         assert len(set(re.findall(r"<h2>(.*?)</h2>", page))) >= 0.7 * len(headings)
+
+
+def test_what_is_folded_under_a_question_is_in_the_notes_and_not_shown(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "tools")
+    from build_slides import slides_of
+
+    asked = "# A\n\nHow far?\n\n<details><summary>Answer</summary>\n\nTen\n\nmetres.\n\n</details>"
+    (slide,) = slides_of({"cells": [{"cell_type": "markdown", "source": asked}]})
+    assert slide.shown == ['<p class="question">How far?</p>']
+    assert slide.notes == ["How far?", "Answer: Ten metres."]
+
+
+def test_each_chapter_has_a_lecture_of_90_minutes_whose_sections_and_exercises_there_are(
+    monkeypatch,
+):
+    monkeypatch.syspath_prepend(ROOT / "tools")
+    from build_slides import slides_of
+    from lectures import numbered, plan
+
+    made = {
+        path.stem: slides_of(json.loads(path.read_text()))
+        for path in sorted((ROOT / "notebooks").glob("*.ipynb"))
+    }
+    teaching = (ROOT / "docs" / "teaching.md").read_text()
+    lectures = plan(teaching, made)
+    assert list(lectures) == list("123456789")
+    for number, lecture in lectures.items():
+        shown, _, exercises = lecture.partition("; exercises: ")
+        ranges = re.findall(r"\((\d+)(?:–(\d+))?\)", shown.partition("; explore: ")[0])
+        assert 15 <= sum(int(last or first) - int(first) + 1 for first, last in ranges) <= 32, (
+            number
+        )
+        names = re.findall(r"`(\w+)`", exercises)
+        assert [EXERCISES[name].chapter for name in names] == 2 * [int(number)]
+    slides = made["01_projective_space"]
+    at = next(i for i, slide in enumerate(slides, 1) if slide.title == "Points at infinity")
+    assert f"Points at infinity ({at}" in numbered(teaching, made)
+
+
+@pytest.mark.slow
+def test_code_is_shown_whole(made, chromium):
+    page = chromium.new_page(viewport={"width": 1280, "height": 720})
+    page.goto((made / "07_zhang_calibration.html").as_uri())
+    page.wait_for_selector("mjx-container", state="attached", timeout=60_000)
+    page.keyboard.press("c")
+    cut, shown = [], 0
+    for number in range(1, page.locator(".slide").count() + 1):
+        page.evaluate(f"go({number - 1})")
+        for code in page.locator(".slide.now pre.code:visible").all():
+            shown += 1
+            sizes = "c => [c.scrollHeight - c.clientHeight, c.scrollWidth - c.clientWidth]"
+            if max(code.evaluate(sizes)) > 1:
+                cut.append(number)
+    page.close()
+    assert shown > 10
+    assert cut == []
 
 
 @pytest.mark.slow

@@ -44,10 +44,11 @@ def start():
 def no_environment_of_ours(monkeypatch):
     for name in ("CVNOTES_VENV", "PIP_CONSTRAINT", "PYTHONPATH"):
         monkeypatch.delenv(name, raising=False)
-    create = venv.create
+    create, which = venv.create, shutil.which
+    monkeypatch.setattr("shutil.which", lambda name: None if name == "uv" else which(name))
 
     def without_pip(folder, with_pip=False, clear=False):  # pip would take seconds, for nothing
-        assert with_pip
+        assert with_pip or load(START).UV
         create(folder, clear=clear, symlinks=True)
 
     monkeypatch.setattr("venv.create", without_pip)
@@ -343,9 +344,51 @@ def test_an_environment_of_uv_gets_pip(start, tmp_path):
     assert start.probe(tmp_path / "env" / BIN)["pip"] is True
 
 
+@posix
+class TestUv:
+    """A program in place of uv: it notes what it is asked, and succeeds or not."""
+
+    @pytest.fixture
+    def uv(self, tmp_path, monkeypatch):
+        def made(code):
+            path = tmp_path / "uv"
+            path.write_text(
+                "#!/bin/sh\n"
+                f'echo "$@ constraint=$UV_CONSTRAINT" >> {tmp_path}/asked\n'
+                f"echo 'Downloading numpy (16.0MiB)'\necho 'error: no such index'\nexit {code}\n"
+            )
+            path.chmod(0o700)
+            monkeypatch.setattr("shutil.which", lambda name: str(path) if name == "uv" else None)
+
+        return made
+
+    def test_it_installs_where_it_is_and_pip_is_not_needed(self, uv, tmp_path, monkeypatch, capsys):
+        uv(0)
+        monkeypatch.setenv("PIP_CONSTRAINT", "oldest.txt")
+        clone = Clone(tmp_path / "course")
+        clone.start.check_whole = lambda: pytest.fail("venv and ensurepip are not needed")
+        python = clone.python()
+        assert not clone.start.probe(python)["pip"]
+        course, rays = (tmp_path / "asked").read_text().splitlines()
+        assert course == (
+            f"pip install --python {python} --editable {clone.root}[lab] constraint=oldest.txt"
+        )
+        assert "--only-binary embreex embreex" in rays
+        assert clone.asked == []
+        assert "numpy, 16.0 MB" in capsys.readouterr().out
+
+    def test_where_it_fails_pip_goes_on(self, uv, tmp_path, capsys):
+        uv(2)
+        clone = Clone(tmp_path / "course")
+        clone.python()
+        assert len(clone.asked) == 2
+        assert "(uv could not: error: no such index; pip is asked)" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("line", "told"),
     [
+        ("Downloading opencv-python-headless (51.2MiB)", "opencv-python-headless, 51.2 MB"),
         ("Downloading numpy-2.3.5-cp311-cp311-x.whl (16.9 MB)", "numpy 2.3.5, 16.9 MB"),
         ("Downloading https://a/b/scipy-1.16-cp311-x.whl (35 MB)", "scipy 1.16, 35 MB"),
         ("Downloading idna-3.11-py3-none-any.whl (71 kB)", None),

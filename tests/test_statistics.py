@@ -11,7 +11,7 @@ import pytest
 from cvnotes.base import levenberg_marquardt
 from cvnotes.calibration import calibrate
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import Problem, solve_arrow, take_step
+from cvnotes.calibration.refinement import Problem, solve_by_schur, take_step
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 
 pytestmark = pytest.mark.sampling
@@ -154,11 +154,11 @@ def test_the_bands_refuse_what_is_not_refined_to_the_end(
     d = []
     for m in simulated(views):
         data = Correspondences.of(board.points, m)
-        problem = Problem(data.W, data.m, n_radial=3, tangential=True, size=SIZE)
+        problem = Problem(data.W, data.m, coefficients=("k1", "k2", "k3", "p1", "p2"), size=SIZE)
         x = first_start(problem, intrinsics)
         if iterations:
             x = levenberg_marquardt(
-                x, problem.linearise, solve_arrow, take_step, max_iterations=iterations
+                x, problem.linearise, solve_by_schur, take_step, max_iterations=iterations
             ).x
         d.append(x.shared - TRUTH)
     assert refused(np.array(d), bound)

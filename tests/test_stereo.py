@@ -593,9 +593,10 @@ def test_the_joint_gradient_and_normal_matrix_are_those_of_the_residuals(known):
     rng = np.random.default_rng(0)
     W = BOARD.points[[0, 5, 20, 33, 53]]
     at = [0, 5, 20, 33, 53]
+    names = ("k1", "k2", "p1", "p2")
     problem = StereoProblem(
         *(
-            Problem(W, m[few, at] + rng.normal(0, 1, (2, 5, 2)), n_radial=2, tangential=True)
+            Problem(W, m[few, at] + rng.normal(0, 1, (2, 5, 2)), coefficients=names)
             for m in (SEEN_LEFT, SEEN_RIGHT)
         ),
         cameras_known=known,
@@ -613,19 +614,19 @@ def test_the_joint_gradient_and_normal_matrix_are_those_of_the_residuals(known):
 
     J = numerical_jacobian(residuals, np.zeros(n_shared + 12), step=1e-5)
     r = residuals(np.zeros(n_shared + 12))
-    cost, arrow = problem.linearise(x)
+    cost, equations = problem.linearise(x)
     assert cost == pytest.approx(r @ r, rel=1e-12)
     N = J.T @ J
     scale = np.sqrt(np.outer(np.diag(N), np.diag(N)))
     dense = np.zeros_like(N)
-    dense[:n_shared, :n_shared] = arrow.shared
+    dense[:n_shared, :n_shared] = equations.shared
     for i in range(2):
         rows = slice(n_shared + 6 * i, n_shared + 6 * i + 6)
-        dense[rows, rows] = arrow.poses[i]
-        dense[rows, :n_shared] = arrow.border[i]
-        dense[:n_shared, rows] = arrow.border[i].T
+        dense[rows, rows] = equations.poses[i]
+        dense[rows, :n_shared] = equations.border[i]
+        dense[:n_shared, rows] = equations.border[i].T
     np.testing.assert_allclose(dense / scale, N / scale, atol=1e-6)
-    gradient = np.concatenate([arrow.g_shared, arrow.g_poses.ravel()])
+    gradient = np.concatenate([equations.g_shared, equations.g_poses.ravel()])
     np.testing.assert_allclose(
         gradient / np.sqrt(np.diag(N)), (J.T @ r) / np.sqrt(np.diag(N)), atol=1e-5
     )

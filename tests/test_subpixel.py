@@ -158,7 +158,7 @@ class TestRefineSubpixel:
 
     @pytest.mark.parametrize("window", [0, 2.5, -1])
     def test_half_a_window_is_a_whole_number(self, window):
-        with pytest.raises(CvnotesError, match="window: expected a positive whole number"):
+        with pytest.raises(CvnotesError, match="window: expected a whole number from 1"):
             refine_subpixel(cross(), [[20.0, 20.0]], window=window)
 
 

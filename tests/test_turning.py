@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.convergence import two_poses
 from cvnotes.calibration import calibrate, pose_from_view
-from cvnotes.calibration.starts import turned_over
+from cvnotes.calibration.reserve import turned_over
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.targets import Chessboard
 

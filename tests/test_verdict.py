@@ -67,6 +67,16 @@ def test_few_pictures_and_a_bad_one_are_named():
     assert any(words.startswith("the worst picture, 4,") for words in lines)
 
 
+def test_a_picture_that_stands_out_is_to_be_looked_at_and_one_that_does_not_is_not():
+    m = seen(GOOD)
+    advised = ": look at it, or leave it out"
+    assert sum(words.endswith(advised) for _, words in judged(m).lines) == 0
+    m[7] += np.random.default_rng(3).normal(0, 0.4, m[7].shape)
+    [words] = [words for words in bad_lines(m) if "worst" in words]
+    assert words.startswith("the worst picture, 7, has ")
+    assert words.endswith(f" times the usual RMS{advised}")
+
+
 def test_noise_of_a_thousandth_of_the_width_is_not_normal():
     assert any("look at the residuals" in words for words in bad_lines(seen(GOOD, sigma=0.5)))
 

@@ -282,8 +282,8 @@ def test_impossible_wishes_are_refused_in_words():
     [
         ({"target": 5}, InputTypeError, "target: expected a Chessboard or the like, got int"),
         ({"camera": None}, InputTypeError, "camera: expected a Camera, got NoneType"),
-        ({"n": 0}, CvnotesError, "at least 1, got 0"),
-        ({"n": 2.5}, CvnotesError, "at least 1, got 2.5"),
+        ({"n": 0}, CvnotesError, "from 1 to 10000, got 0"),
+        ({"n": 2.5}, CvnotesError, "from 1 to 10000, got 2.5"),
         ({"rng": 1}, InputTypeError, r"rng: expected a numpy\.random\.Generator, got int"),
     ],
 )

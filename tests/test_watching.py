@@ -57,8 +57,8 @@ def test_once_there_is_a_camera_only_views_that_teach_much_are_taken(watch):
     for path in VIEWS[:6]:
         watch.dropped.look(str(path))
     watch.dropped.calibrate("k1 k2")
-    result, proposal = watch.dropped.known
-    board, camera = watch.dropped.board, result.camera
+    found = watch.dropped.found
+    board, camera, proposal = watch.dropped.board, found.camera, found.next_view
     best = render(board, camera.moved(proposal.G)).astype(np.uint8)
     seen(watch, best)
     assert seen(watch, best)["take"]

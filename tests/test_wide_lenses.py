@@ -6,13 +6,12 @@ import cv2
 import numpy as np
 import pytest
 
-from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError
-from cvnotes.calibration import Calibration, calibrate, choose_lens, starts
+from cvnotes.base import CalibrationWarning, CvnotesError, ShapeError
+from cvnotes.calibration import Calibration, calibrate, choose_model, reserve
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.left_out import AtLeast, left_out_rms
 from cvnotes.calibration.refinement import Problem
 from cvnotes.calibration.reliability import by_radius
-from cvnotes.calibration.starts import Search, as_quotient
+from cvnotes.calibration.starts import Search
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
 from cvnotes.camera import (
     Camera,
@@ -110,9 +109,9 @@ def test_derivatives_by_the_coefficients_are_those_of_what_is_shown(lens):
         value = np.array([*lens.parameters.values()]) + change
         if fisheye:
             return FisheyeLens(value).derivatives(M)[0]
-        return RationalLens(value[:6], value[6:], lens.s, lens.tilt).derivatives(*M[:2])[0]
+        return RationalLens(value[:6], value[6:], lens.s, lens.tilt).derivatives(M)[0]
 
-    C = (lens.derivatives(M) if fisheye else lens.derivatives(*M[:2]))[2]
+    C = lens.derivatives(M)[2]
     for i, e in enumerate(1e-6 * np.eye(len(C))):
         assert np.allclose(C[i], (shown(e) - shown(-e)) / 2e-6, rtol=0, atol=1e-8), i
 
@@ -284,43 +283,25 @@ def test_views_left_out_choose_the_model_that_took_the_pictures():
     for name, camera in cameras.items():
         W, m = seen_by(camera, 15)
         found = calibrate(W, m + rng.normal(0, 0.1, m.shape), camera.size, lens="auto")
-        assert choose_lens(found.left_out) == name
+        assert found.choice.lens == name
         assert isinstance(found.lens, type(camera.lens))
         # what is left out is predicted as well as its noise (0.14 px per point) allows
-        assert found.left_out[name] == pytest.approx(0.1 * np.sqrt(2), rel=0.1)
+        assert found.choice.by_lens[name] == pytest.approx(0.1 * np.sqrt(2), rel=0.1)
 
 
-def test_a_beaten_lens_is_left_early_but_never_below_what_is_said_of_it():
+def test_each_lens_is_worked_out_however_badly_it_predicts():
     rng = np.random.default_rng(6)
     W, m = seen_by(Camera(intrinsics(220, 221, 325, 238), lens=FisheyeLens((-0.03, 0.005))), 10)
     m = m + rng.normal(0, 0.1, m.shape)
-    lenses = ("k1 k2", "k1 k2 p1 p2", "fisheye", "k1 k2 p1 p2 k3")
-    quick, thorough = (
-        left_out_rms(W, m, (640, 480), lenses=lenses, to_the_end=end) for end in (False, True)
-    )
-    assert list(quick) == list(thorough) == list(lenses)
-    assert choose_lens(quick) == choose_lens(thorough) == "fisheye"
-    bounds = [name for name, rms in quick.items() if isinstance(rms, AtLeast)]
-    assert bounds == ["k1 k2", "k1 k2 p1 p2", "k1 k2 p1 p2 k3"]
-    for name in bounds:
-        assert 1.1 * quick["fisheye"] < quick[name] <= thorough[name]
-    assert np.isclose(quick["fisheye"], thorough["fisheye"], rtol=1e-4)
-    assert not any(isinstance(rms, AtLeast) for rms in thorough.values())
-
-
-def test_a_quotient_starts_from_what_a_fisheye_came_to():
-    fisheye = FisheyeLens((0.05, -0.02, 0.01, -0.004))
-    camera = Camera(intrinsics(400, 410, 322, 241), lens=fisheye)
-    _, m = seen_by(camera, 5)
-    found = as_quotient(camera, m)
-    farthest = np.linalg.norm((m - [322, 241]) / [400, 410], axis=-1).max()
-    theta = np.linspace(0.01, 1.3, 60)
-    shown = fisheye.of_rays(np.stack([np.sin(theta), 0 * theta, np.cos(theta)], -1))[:, 0]
-    r = np.tan(theta)
-    seen = shown < farthest
-    assert seen.sum() > 20
-    assert np.abs(r * found.lens.L(r) - shown)[seen].max() < 1e-3
-    assert np.array_equal(found.A, camera.A)
+    lenses = ("k1 k2", "k1 k2 p1 p2", "k1 k2 p1 p2 k3", "fisheye")
+    choice = choose_model(W, m, (640, 480), lenses=lenses, boards=["flat"])
+    rms = choice.by_lens
+    assert list(rms) == list(lenses)
+    assert choice.lens == "fisheye"
+    # views left out are predicted no better than they are fitted with all of them
+    for name in lenses:
+        with warnings.catch_warnings(action="ignore"):
+            assert rms[name] > calibrate(W, m, (640, 480), lens=name).rms
 
 
 @pytest.mark.slow
@@ -376,9 +357,9 @@ def test_starts_that_end_alike_turn_the_boards_over_once(monkeypatch):
     W, m = few_corners(camera, 0)
     ended, turned = [], []
     for name, asked in (("best_turned", ended), ("_lower_minima", turned)):
-        ask = getattr(starts, name)
+        ask = getattr(reserve, name)
         monkeypatch.setattr(
-            starts, name, lambda *a, ask=ask, asked=asked: asked.append(a) or ask(*a)
+            reserve, name, lambda *a, ask=ask, asked=asked: asked.append(a) or ask(*a)
         )
     with pytest.warns(CalibrationWarning):
         calibrate(W, m, camera.size, lens="k1")
@@ -398,10 +379,16 @@ def test_by_radius_tells_what_a_lens_would_explain_from_noise():
     assert by_radius(1e-9 * outwards, m, centre) == 0  # nothing that matters
 
 
-def test_leaving_out_takes_four_views():
-    W, m = seen_by(Camera(intrinsics(800, 804, 325, 238)), 3)
-    with pytest.raises(DegenerateError, match="at least 4"):
-        calibrate(W, m, (640, 480), lens="auto")
+@pytest.mark.parametrize("name", ["k1 k2", "fisheye"])
+def test_of_three_views_none_is_left_out_and_the_lens_is_right_all_the_same(name):
+    narrow = Camera(intrinsics(800, 804, 325, 238), lens=Lens((-0.25, 0.1)))
+    wide = Camera(intrinsics(220, 221, 325, 238), lens=FisheyeLens((-0.03, 0.005)))
+    camera = narrow if name == "k1 k2" else wide
+    W, m = seen_by(camera, 3)
+    m = m + np.random.default_rng(1).normal(0, 0.1, m.shape)
+    with warnings.catch_warnings(action="ignore"):
+        found = calibrate(W, m, camera.size, lens="auto", board="auto")
+    assert (found.choice.lens, found.choice.board) == (name, "flat")
 
 
 @pytest.mark.parametrize("lens", ["rational", "fisheye"])

@@ -110,6 +110,7 @@ def test_a_chapter_that_was_only_opened_is_brought_up_to_date(course, mine):
     notebook = nbformat.read(path, as_version=4)
     notebook.metadata.language_info = {"name": "python", "version": "3.99"}  # what a server writes
     notebook.metadata.kernelspec = {"name": "python3", "display_name": "Python"}
+    notebook.cells[0].metadata = {"jupyter": {"source_hidden": False}}  # its code is unfolded
     nbformat.write(notebook, path)
     assert list(deliver(course, mine).sentences()) == []
     write(course, CHAPTERS[1], "'corrected'")
@@ -186,6 +187,27 @@ def test_a_chapter_says_the_python_that_opens_it_so_that_opening_does_not_change
     assert (mine / CHAPTERS[0]).read_text() == again
 
 
+def test_a_notebook_that_has_no_number_starts_over_by_its_name(course, mine):
+    write(course, "more.ipynb", "'new'")
+    assert deliver(course, mine).new == ["more.ipynb"]
+    assert start_over(course, mine, "more") == ("more.ipynb", "more-kept.ipynb")
+    with pytest.raises(FileError, match=r"17 is no .* 02_lines\.ipynb, more\.ipynb"):
+        start_over(course, mine, "17")
+
+
+@pytest.mark.parametrize("changed", [False, True])
+def test_a_notebook_that_has_another_name_now_stays_as_it_is(course, mine, changed):
+    old, new = course / CHAPTERS[2], course / "lines.ipynb"
+    if changed:
+        write(mine, old.name, "'mine'")
+    before = (mine / old.name).read_bytes()
+    old.rename(new)
+    done = deliver(course, mine)
+    assert (done.new, done.updated, done.beside) == ([new.name], [], [])
+    assert (mine / old.name).read_bytes() == before
+    assert (mine / new.name).is_file()
+
+
 def test_the_command_makes_the_copy_and_says_where(course, tmp_path, capsys):
     folder = lab.prepare(course, tmp_path / "deep" / "copy", ["1"])
     said = capsys.readouterr().out
@@ -204,13 +226,14 @@ def test_called_inside_of_a_copy_it_opens_that_one(mine, monkeypatch):
 
 def test_the_copy_can_be_made_without_opening_anything(tmp_path, capsys):
     assert main(["lab", "--copy", str(tmp_path / "copy")]) == 0
-    assert len(contents(tmp_path / "copy")) == 11
+    notebooks = [*material("notebooks").glob("*.ipynb")]
+    assert len(contents(tmp_path / "copy")) == len(notebooks) > 10
     assert capsys.readouterr().out.startswith("New chapters: 00_start_here.ipynb")
 
 
 def test_the_committed_notebooks_arrive_as_they_are(tmp_path):
     done = deliver(material("notebooks"), tmp_path / "copy")
-    assert len(done.new) == 11
+    assert len(done.new) == len([*material("notebooks").glob("*.ipynb")]) > 10
     for path in material("notebooks").glob("*.ipynb"):
         source = path.read_bytes().replace(b"](../docs/", b"](docs/")
         assert cells_of(source) == cells_of((tmp_path / "copy" / path.name).read_bytes())
@@ -227,7 +250,7 @@ def test_every_link_of_a_chapter_leads_to_a_file_in_the_copy(tmp_path):
             links += path.name.startswith("00") or path.suffix == ".md"
     assert links >= 12 + 7  # chapters and pages from notebook 0, figures from the pages
     copied = {path.name for path in tmp_path.glob("copy/docs/*.md")}
-    assert copied == {"notation.md", "errata.md"}
+    assert copied == {"notation.md", "errata.md", "notes.md"}
 
 
 def test_a_page_comes_up_to_date_and_one_that_was_changed_is_left_alone(course, mine):

@@ -19,7 +19,7 @@ FIRST = "notebooks/00_start_here.ipynb"
 
 
 def badges(address: str) -> str:
-    """Give the badges of a repository on GitHub.
+    """Return the badges of a repository on GitHub.
 
     Raises
     ------

@@ -98,7 +98,7 @@ class PartsMissingError(Exception):
 
 
 def gather(folder: Path | None = None, *, network: bool = True) -> Path:
-    """Give a folder in which all parts are, each checked.
+    """Return a folder in which all parts are, each checked.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def gather(folder: Path | None = None, *, network: bool = True) -> Path:
 
 
 def cache_folder() -> Path:
-    """Give where downloads are kept."""
+    """Return where downloads are kept."""
     if given := os.environ.get("CVNOTES_CACHE"):
         return Path(given)
     base = os.environ.get("LOCALAPPDATA" if os.name == "nt" else "XDG_CACHE_HOME")
@@ -153,7 +153,7 @@ def missing(folder: Path) -> list[str]:
 
 
 def wanted(folder: Path) -> dict[str, Entry]:
-    """Give the lock's entries of the packages and of all that they depend on."""
+    """Return the lock's entries of the packages and of all that they depend on."""
     official = json.loads((folder / "pyodide-lock.json").read_text(encoding="utf-8"))["packages"]
     found: dict[str, Entry] = {}
     todo = list(PACKAGES)
@@ -335,7 +335,7 @@ def _member(place: str) -> zipfile.ZipInfo:
 
 
 def _installed(name: str) -> Iterator[tuple[str, Path]]:
-    """Give the files of an installed distribution, without what was compiled for this machine."""
+    """Return the files of an installed distribution, without what was compiled for this machine."""
     for file in metadata.files(name) or ():
         used = file.suffix not in COMPILED and not LEFT_OUT & set(file.parts)
         inside = ".." not in file.parts and not file.parts[0].endswith(".dist-info")
@@ -344,7 +344,7 @@ def _installed(name: str) -> Iterator[tuple[str, Path]]:
 
 
 def _code() -> Iterator[tuple[str, Path]]:
-    """Give the package, and of its data the cameras and measured corners: few bytes, used often."""
+    """Yield the package, and of its data the cameras and measured corners: few bytes."""
     for path in (ROOT / "cvnotes").rglob("*"):
         if path.is_file() and "__pycache__" not in path.parts:
             yield path.relative_to(ROOT).as_posix(), path
@@ -353,7 +353,7 @@ def _code() -> Iterator[tuple[str, Path]]:
 
 
 def _data() -> Iterator[tuple[str, Path]]:
-    """Give the rest of the course's data where an installed package has them."""
+    """Return the rest of the course's data where an installed package has them."""
     for path in (ROOT / "data").rglob("*"):
         if path.is_file() and (path.suffix, path.parent.name) != (".json", "data"):
             yield f"cvnotes/course/{path.relative_to(ROOT).as_posix()}", path

@@ -35,11 +35,16 @@ CONFIG = {
         "appName": "cvnotes",
         "exposeAppInBrowser": True,  # for the tests
         "litePluginSettings": {
-            KERNEL: {"pyodideUrl": "./../python/pyodide.js", "disablePyPIFallback": True}
+            KERNEL: {
+                "pyodideUrl": "./../python/pyodide.js",
+                "disablePyPIFallback": True,
+                # On by itself in this version, and needs what Safari and Firefox do not have.
+                "loadPyodideOptions": {"enableRunUntilComplete": False},
+            }
         },
     },
 }
-SETTINGS = Path("cvnotes/commands/jupyter/labconfig/default_setting_overrides.json")
+OURS = ROOT / "cvnotes" / "commands" / "jupyter"  # as `cvnotes lab` has it
 APPS = ("lab", "notebooks", "tree")
 # As `python -m jupyterlite_core`, without the grammar of addresses that checks no notebook: a third
 # of the time.
@@ -47,7 +52,7 @@ RUN = "import sys; sys.modules['rfc3987_syntax'] = None; import jupyterlite_core
 
 
 def environment() -> Path:
-    """Give the Python of an environment with JupyterLite, making it if need be.
+    """Return the Python of an environment with JupyterLite, making it if need be.
 
     Raises
     ------
@@ -93,10 +98,13 @@ def build_lite(out: Path) -> None:
             (source / "files" / page).parent.mkdir(parents=True, exist_ok=True)
             (source / "files" / page).write_bytes(content)
         (source / "jupyter-lite.json").write_text(json.dumps(CONFIG))
-        shutil.copy(ROOT / SETTINGS, source / "overrides.json")
+        settings = OURS / "labconfig" / "default_setting_overrides.json"
+        shutil.copy(settings, source / "overrides.json")
         command = [str(python), "-c", RUN, "build", "--no-sourcemaps"]
         command += ["--lite-dir", str(source), "--output-dir", str(made)]
         command += ["--contents", str(source / "files"), "--no-libarchive"]
+        ours = OURS / "labextensions"
+        command += [f"--FederatedExtensionAddon.extra_labextensions_path={ours}"]
         command += [part for app in APPS for part in ("--apps", app)]
         ran = subprocess.run(command, cwd=source, capture_output=True, text=True)
         if ran.returncode or not (made / "lab" / "index.html").is_file():

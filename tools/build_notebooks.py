@@ -6,8 +6,9 @@
 
 Cells with the tag ``no-save-output`` (3-D viewers) run, but their output is not kept: it would be
 large, and an untrusted notebook does not show it. Of a widget its still is kept, not the view,
-which means nothing without its kernel. Ids, metadata and execution counts are set so that two
-runs give the same file.
+which means nothing without its kernel. A cell with the tag ``hide-input`` is plumbing: it gets the
+key by which JupyterLab folds its code, as the site does by the tag. Ids, metadata and execution
+counts are set so that two runs give the same file.
 """
 
 import argparse
@@ -37,6 +38,7 @@ METADATA = {
         "version": "3.11.0",  # cvnotes lab puts the version there that opens it
     },
 }
+FOLDED = "hide-input"
 WIDGET_VIEW = "application/vnd.jupyter.widget-view+json"
 
 
@@ -47,7 +49,8 @@ def tidy(notebook: nbformat.NotebookNode) -> None:
     count = 0
     for i, cell in enumerate(notebook.cells):
         tags = cell.metadata.get("tags", [])
-        cell.metadata = nbformat.from_dict({"tags": tags} if tags else {})
+        folded = {"jupyter": {"source_hidden": True}} if FOLDED in tags else {}
+        cell.metadata = nbformat.from_dict({"tags": tags, **folded} if tags else {})
         cell.id = f"cell-{i:02d}"
         if cell.cell_type == "code":
             count += 1
@@ -64,13 +67,13 @@ def tidy(notebook: nbformat.NotebookNode) -> None:
 
 
 def _is_widget_alone(output: nbformat.NotebookNode) -> bool:
-    """Tell if nothing would be left of an output but the words that replace a widget."""
+    """Return whether nothing would be left of an output but the words that replace a widget."""
     data = output.get("data", {})
     return WIDGET_VIEW in data and not data.keys() - {WIDGET_VIEW, "text/plain"}
 
 
 def problems(notebook: nbformat.NotebookNode) -> list[str]:
-    """Say what an executed notebook must not contain."""
+    """Describe what an executed notebook must not contain."""
     found = []
     for cell in notebook.cells:
         tags = cell.metadata.get("tags", [])
@@ -83,7 +86,7 @@ def problems(notebook: nbformat.NotebookNode) -> list[str]:
 
 
 def _unseen(notebook: nbformat.NotebookNode) -> list[str]:
-    """Say which widgets and viewers leave nothing to see on a page without a kernel."""
+    """Describe which widgets and viewers leave nothing to see on a page without a kernel."""
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     seen = ["<img" in str(cell.outputs) for cell in cells]
     found = []
@@ -122,7 +125,7 @@ def build(path: Path) -> list[str]:
 
 
 def _connection() -> dict[str, str]:
-    """Give the way to a kernel; over files it needs a name that both sides know beforehand."""
+    """Return the way to a kernel; over files it needs a name that both sides know beforehand."""
     runtime = Path(jupyter_runtime_dir())
     runtime.mkdir(parents=True, exist_ok=True)
     name = runtime / f"kernel-{uuid.uuid4()}.json"
@@ -130,7 +133,7 @@ def _connection() -> dict[str, str]:
 
 
 def check(path: Path) -> list[str]:
-    """Tell whether a notebook is as `build` leaves it, without executing it."""
+    """Return whether a notebook is as `build` leaves it, without executing it."""
     notebook = nbformat.read(path, as_version=4)
     before = nbformat.writes(notebook)
     tidy(notebook)

@@ -4,6 +4,7 @@
     python tools/build_site.py --out FOLDER
     python tools/build_site.py --parts FOLDER       Pyodide from a folder of yours
     python tools/build_site.py --without-python     the pages alone, which can only be read
+    python tools/build_site.py --address https://…  where it will be, for previews of its links
 
 Needs the extra `docs` (`python3 start.py site` sets it up). The notebooks appear as they are
 committed; nothing is executed. The pages load nothing from elsewhere, formulas included.
@@ -15,6 +16,7 @@ in `_static/live`. Without the parts the site is built plain, and says so.
 
 import argparse
 import hashlib
+import json
 import shutil
 import sys
 import tempfile
@@ -23,11 +25,15 @@ from pathlib import Path
 
 from browser_parts import VERSION, PartsMissingError, gather, lay_out
 from build_lite import build_lite
+from build_slides import slides_of
+from front_page import front_page, put_pictures
+from lectures import numbered
 from site_figures import put_into_files
 
 ROOT = Path(__file__).resolve().parents[1]
 # Whatever the README leads to, at the place where it stands in the repository.
 PAGES = (
+    "README.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
     "data/README.md",
@@ -51,15 +57,23 @@ REFERENCE = {
         "warping",
         "stereo",
     ),
-    "Beside the chapters": ("pictures", "pictures.course", "show", "learn", "files", "base"),
+    "Beside the chapters": (
+        "pictures",
+        "pictures.course",
+        "show",
+        "learn",
+        "tutor",
+        "files",
+        "base",
+    ),
     "Further inside": (
         "camera.lens",
         "targets.sheet",
         "calibration.starts",
+        "calibration.reserve",
         "calibration.refinement",
         "calibration.reliability",
         "pictures.raycast",
-        "learn.concepts",
     ),
 }
 
@@ -80,12 +94,18 @@ def toctree(caption: str, pages: list[str]) -> str:
     return "\n".join(lines)
 
 
-def collect(source: Path, live: bool) -> None:
+def collect(source: Path, live: bool, lite: bool) -> None:
     """Put the pages together in a folder, with those that need Python if it is there."""
     for path in sorted(path for pattern in PAGES for path in ROOT.glob(pattern)):
         target = source / path.relative_to(ROOT)
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(path, target)
+    teaching = source / "docs" / "teaching.md"
+    made = {
+        path.stem: slides_of(json.loads(path.read_text(encoding="utf-8")))
+        for path in sorted(ROOT.glob("notebooks/*.ipynb"))
+    }
+    teaching.write_text(numbered(teaching.read_text(encoding="utf-8"), made), encoding="utf-8")
     shutil.copytree(ROOT / FIGURES, source / FIGURES)
     notebooks = sorted(path.stem for path in ROOT.glob("notebooks/*.ipynb"))
     contents = toctree("The course", [f"notebooks/{name}" for name in notebooks])
@@ -102,8 +122,8 @@ def collect(source: Path, live: bool) -> None:
         for name in names:
             (source / "reference" / f"{name}.md").write_text(reference_page(name))
         contents += toctree(caption, [f"reference/{name}" for name in names])
-    contents += toctree("The project", ["CONTRIBUTING", "CHANGELOG"])
-    (source / "index.md").write_text((ROOT / "README.md").read_text() + contents)
+    contents += toctree("The project", ["About <README>", "CONTRIBUTING", "CHANGELOG"])
+    (source / "index.md").write_text(front_page(live, lite) + contents)
 
 
 def add_lite(folder: Path) -> bool:
@@ -134,6 +154,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "_build" / "site")
     parser.add_argument("--parts", type=Path, help="a folder that has the parts of Pyodide")
+    parser.add_argument("--address", default="", help="where it will be: https://…, for previews")
     parser.add_argument("--without-python", action="store_true", help="pages to be read only")
     given = parser.parse_args()
     out, parts = given.out, None
@@ -153,8 +174,8 @@ def main() -> int:
         source, made = Path(folder) / "source", Path(folder) / "site"
         source.mkdir()
         lite = bool(parts) and add_lite(made / "lite")
-        collect(source, bool(parts))
-        options = ["--fail-on-warning", "--quiet"]
+        collect(source, bool(parts), lite)
+        options = ["--fail-on-warning", "--quiet", "-D", f"html_baseurl={given.address}"]
         options += ["--tag", "live"] * bool(parts) + ["--tag", "lite"] * lite
         failed = int(build_main([*options, "-c", str(ROOT / "docs"), str(source), str(made)]))
         if failed:
@@ -163,6 +184,7 @@ def main() -> int:
             if path.name not in MATHJAX:
                 path.unlink() if path.is_file() else shutil.rmtree(path)
         put_into_files(made)
+        put_pictures(made)
         if parts:
             lay_out(parts, made / "python")
             keep_offline(made)

@@ -34,6 +34,7 @@ from string import Template
 from typing import Any
 
 from browser_parts import PartsMissingError, gather, lay_out
+from lectures import plan
 from markdown_it import MarkdownIt
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
@@ -51,6 +52,8 @@ LIVE = tuple(
 )
 # Sections that are read, and not shown.
 NOT_SHOWN = ("further reading", "what comes next", "the same in opencv")
+# An answer is folded under its question; on slides it stands in the notes.
+_ANSWER = re.compile(r"^ *<details><summary>Answer</summary>\n(.+?)^ *</details>$", re.M | re.S)
 _DISPLAY = re.compile(r"\$\$.+?\$\$", re.S)
 _QUESTION = re.compile(r"^guess\(\"[^\"]+\", \.\.\., \"([^\"]+)\"", re.M)
 
@@ -77,7 +80,7 @@ class Slide:
     kind: str = "words"
 
     def html(self, number: int) -> str:
-        """Give the slide as a part of a page."""
+        """Return the slide as a part of a page."""
         code = f'<pre class="code">{escape(self.code)}</pre>' if self.code else ""
         notes = _markdown.render("\n\n".join(self.notes)) if self.notes else ""
         shown = "\n".join(self.shown)
@@ -93,13 +96,14 @@ def inline(text: str) -> str:
 
 
 def slides_of(notebook: dict[str, Any]) -> list[Slide]:
-    """Give the slides of a notebook, in its order."""
+    """Return the slides of a notebook, in its order."""
     slides: list[Slide] = []
     before = ""  # the paragraph in front of a cell: it says what to look for
     skipped = False
     for cell in notebook["cells"]:
         source = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
+            source = _ANSWER.sub(lambda folded: f"Answer: {' '.join(folded[1].split())}", source)
             for title, text in parts_of(source):
                 if title is not None:
                     skipped = title.lower().startswith(NOT_SHOWN)
@@ -107,7 +111,8 @@ def slides_of(notebook: dict[str, Any]) -> list[Slide]:
                         slides.append(Slide(title, kind="title" if not slides else "words"))
                 if not skipped and slides:
                     add_words(slides, text)
-            before = paragraphs(source)[-1] if paragraphs(source) else ""
+            said = [part for part in paragraphs(source) if not part.startswith("Answer: ")]
+            before = said[-1] if said else ""
         elif not skipped and slides:
             slides.extend(shown_by(cell, source, slides[-1].title, before))
     for slide in slides:
@@ -137,7 +142,9 @@ def add_words(slides: list[Slide], text: str) -> None:
     """Show of a text its thesis, formulas, lists, tables, questions and traps; keep the rest."""
     slide = slides[-1]
     for part in paragraphs(text):
-        if part.startswith("**Careful"):
+        if part.startswith("Answer: "):
+            slide.notes.append(part)
+        elif part.startswith("**Careful"):
             slides.append(Slide(slide.title, [_markdown.render(part)], kind="careful"))
         elif part.startswith(">"):
             slide.shown.insert(0, f'<p class="thesis">{inline(part.lstrip("> ").strip("*"))}</p>')
@@ -152,7 +159,7 @@ def add_words(slides: list[Slide], text: str) -> None:
 
 
 def essence(part: str) -> str:
-    """Give what of a paragraph is to be seen from the last row."""
+    """Return what of a paragraph is to be seen from the last row."""
     if part.startswith(("|", "* ", "- ", "1. ")):
         return str(_markdown.render(part))
     formulas = "".join(f"<div>{_markdown.render(f)}</div>" for f in _DISPLAY.findall(part))
@@ -164,7 +171,7 @@ def essence(part: str) -> str:
 
 
 def shown_by(cell: dict[str, Any], source: str, title: str, before: str) -> Iterator[Slide]:
-    """Give a slide for each figure of a cell, and one for what it prints."""
+    """Return a slide for each figure of a cell, and one for what it prints."""
     if question := _QUESTION.search(source):
         yield Slide(title, [f'<p class="question">Guess: {inline(question[1])}?</p>'])
         return
@@ -190,7 +197,7 @@ def sentences_of(text: str) -> list[str]:
 
 
 def first_sentences(text: str, longest: int = 220) -> str:
-    """Give the beginning of a paragraph, in whole sentences, as far as it is short."""
+    """Return the beginning of a paragraph, in whole sentences, as far as it is short."""
     first, *others = sentences_of(text)
     for sentence in others:
         if len(first) + len(sentence) > longest:
@@ -200,7 +207,7 @@ def first_sentences(text: str, longest: int = 220) -> str:
 
 
 def last_sentences(text: str, longest: int = 220) -> str:
-    """Give the end of a paragraph, in whole sentences, as far as it is short."""
+    """Return the end of a paragraph, in whole sentences, as far as it is short."""
     *others, last = sentences_of(text)
     for sentence in reversed(others):
         if len(sentence) + len(last) > longest:
@@ -210,7 +217,7 @@ def last_sentences(text: str, longest: int = 220) -> str:
 
 
 def page(name: str, slides: list[Slide], *, live: bool) -> str:
-    """Give the whole page of one notebook; `live`: the folder has Python for the browser."""
+    """Return the whole page of one notebook; `live`: the folder has Python for the browser."""
     template = Template((LOOKS / "slides.html").read_text(encoding="utf-8"))
     body = "\n".join(slide.html(i) for i, slide in enumerate(slides, 1))
     has = ' data-live="yes"' if live else ""
@@ -218,9 +225,14 @@ def page(name: str, slides: list[Slide], *, live: bool) -> str:
 
 
 def index(made: dict[str, list[Slide]]) -> str:
-    """Give the page that leads to all."""
+    """Return the page that leads to all."""
+    teaching = (ROOT / "docs" / "teaching.md").read_text(encoding="utf-8")
+    whole = len(made) == len(list(ROOT.glob("notebooks/*.ipynb")))
+    lectures = plan(teaching, made) if whole else {}
     links = [
-        f'<li><a href="{name}.html">{inline(slides[0].title)}</a> ({len(slides)} slides)</li>'
+        f'<li><a href="{name}.html">{inline(slides[0].title)}</a> ({len(slides)} slides)'
+        + (f"<p>In 90 minutes: {inline(lectures[name[1]])}</p>" if name[1] in lectures else "")
+        + "</li>"
         for name, slides in made.items()
     ]
     return (

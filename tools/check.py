@@ -24,7 +24,7 @@ TESTS = ["pytest", "-m", "not slow and not sampling", "-q", "tests", "cvnotes"]
 
 
 def without_notebooks() -> list[str]:
-    """Give the options by which pytest, and what it starts, loads nothing that runs notebooks."""
+    """Return the options by which pytest, and what it starts, loads nothing that runs notebooks."""
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     options = settings["tool"]["pytest"]["ini_options"]["addopts"]
     kept = " ".join(option for option in options if not option.startswith("--nbval"))

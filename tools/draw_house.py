@@ -1,5 +1,6 @@
 """Draw the plan of docs/house.md: python tools/draw_house.py
 
+`FLOORS` says who may lean on whom; ``tests/test_layers.py`` holds the imports to it, and the page.
 Plain boxes with a fill of their own, so that the picture reads on a light page and on a dark one.
 """
 
@@ -10,15 +11,25 @@ OUT = Path(__file__).resolve().parents[1] / "docs" / "figures" / "house.svg"
 # Floors from the ground up; a wing leans on those below it. Beside each, what a reader looks for.
 FLOORS = (
     (("base", "errors, guards"),),
-    (("projective", "chapter 1"),),
+    (("projective", "chapter 1"), ("tutor", "checks, marks")),
     (("camera", "chapters 2 to 4"), ("homography", "chapter 6")),
-    (("targets", "chapter 5"), ("warping", "chapter 8"), ("files", "chapter 9")),
+    (("targets", "chapter 5"), ("warping", "chapter 8"), ("files", "photographs, cameras")),
     (("calibration", "chapters 7, 9"), ("pictures", "in all chapters")),
     (("stereo", "chapter 8"),),
+    (("photographs", "chapter 9"),),
     (("show", "figures, sliders"), ("learn", "exercises")),
     (("commands", "cvnotes …"),),
 )
 WIDTH, HEIGHT, GAP, STEP, MARGIN = 170, 48, 30, 78, 16
+
+
+def in_words() -> str:
+    """Return the floors as a sentence, for those who do not see the picture."""
+    floors = [[wing for wing, _ in floor] for floor in FLOORS]
+    named = (
+        " and ".join([", ".join(wings[:-1])] * (len(wings) > 1) + wings[-1:]) for wings in floors
+    )
+    return f"{len(FLOORS)} floors: {'; '.join(named)}"
 
 
 def plan() -> str:

@@ -18,7 +18,7 @@ mpl.rcParams.update({"svg.hashsalt": "cvnotes", "svg.fonttype": "none", "font.si
 
 
 def canvas(width: float, height: float, x: tuple[float, float], y: tuple[float, float]) -> Any:
-    """Give empty axes, v downwards."""
+    """Return empty axes, v downwards."""
     ax = Figure(figsize=(width, height)).add_axes((0, 0, 1, 1))
     ax.set(xlim=x, ylim=(y[1], y[0]), aspect="equal")
     ax.axis("off")

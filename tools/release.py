@@ -18,14 +18,14 @@ FILLED_IN = ("pyproject.toml", "CITATION.cff")
 
 
 def version(root: Path) -> str:
-    """Give the version of the package."""
+    """Return the version of the package."""
     text = (root / "cvnotes" / "__init__.py").read_text(encoding="utf-8")
     found = re.search(r'__version__ = "(.+)"', text)
     return found[1] if found else ""
 
 
 def notes(root: Path) -> tuple[str, str]:
-    """Give the heading and the text of this version's release notes; empty if there are none."""
+    """Return the heading and the text of this version's release notes; empty if there are none."""
     text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
     name = re.escape(version(root))
     found = re.search(rf"^## ({name}\b[^\n]*)\n(.*?)(?=^## |\Z)", text, re.M | re.S)
@@ -33,7 +33,7 @@ def notes(root: Path) -> tuple[str, str]:
 
 
 def missing(root: Path) -> list[str]:
-    """Say what keeps this version from being released."""
+    """Describe what keeps this version from being released."""
     found = [
         f"{name} names {PLACEHOLDER}: put the address of the repository there"
         for name in FILLED_IN

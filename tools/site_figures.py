@@ -50,7 +50,7 @@ def _fetched(found: re.Match[str], folder: Path) -> str:
 
 
 def places_to_cut(picture: npt.NDArray[np.uint8]) -> list[int]:
-    """Give the columns of a picture (height, width, 3) in which its panels meet.
+    """Return the columns of a picture (height, width, 3) in which its panels meet.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def places_to_cut(picture: npt.NDArray[np.uint8]) -> list[int]:
 
 
 def _gap(empty: npt.NDArray[np.bool_], begin: float, end: float) -> int | None:
-    """Give the middle of the widest run of empty columns in a part of the width; None if narrow."""
+    """Return the middle of the widest run of empty columns in a part; None if narrow."""
     first, last = round(begin * len(empty)), round(end * len(empty))
     edges = np.flatnonzero(np.diff(np.r_[0, empty[first:last], 0]))
     runs = edges.reshape(-1, 2)

@@ -13,7 +13,7 @@ import pycolmap
 
 
 def scene(given: dict[str, np.ndarray]) -> pycolmap.Reconstruction:
-    """Give the start: one camera, an image for each view, the board's points."""
+    """Return the start: one camera, an image for each view, the board's points."""
     found = pycolmap.Reconstruction()
     width, height = given["size"].tolist()
     camera = pycolmap.Camera.create_from_model_name(1, "OPENCV", 1.0, width, height)

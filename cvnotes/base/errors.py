@@ -16,9 +16,28 @@ class DegenerateError(CvnotesError):
 
 
 class CornersNotFound(CvnotesError):
-    """The board was not found in the picture; `found` (n, 2) is what was taken for it, if any."""
+    """The board was not found in the picture.
 
-    found: Any = None
+    Attributes
+    ----------
+    brief : str
+        What is wrong, without what was tried.
+    found : ndarray, shape (n, 2), or None
+        What was taken for the board.
+    count : (columns, rows) or None
+        Inner corners of the largest other board that is there, the larger number first.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        brief: str = "",
+        found: Any = None,
+        count: tuple[int, int] | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.brief, self.found, self.count = brief or message, found, count
 
 
 class ConvergenceError(CvnotesError):

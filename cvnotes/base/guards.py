@@ -17,7 +17,7 @@ LARGEST, LARGEST_ENTRY = 1e100, 7e153
 
 
 def real(x: Any, name: str) -> npt.NDArray[Any]:
-    """Give `x` as an array of real numbers of any kind, uncopied, NaN and infinity among them.
+    """Return `x` as an array of real numbers of any kind, uncopied, NaN and infinity among them.
 
     Examples
     --------
@@ -74,8 +74,8 @@ def _moderate(array: Array, largest: float) -> bool:
     return bool(max(array.max(), -array.min()) <= largest)
 
 
-def number(x: Any, name: str, *, at_least: float = -np.inf) -> float:
-    """Guard one finite number, not smaller than `at_least`.
+def number(x: Any, name: str, *, at_least: float = -np.inf, at_most: float = np.inf) -> float:
+    """Guard one finite number from `at_least` to `at_most`.
 
     Examples
     --------
@@ -87,7 +87,57 @@ def number(x: Any, name: str, *, at_least: float = -np.inf) -> float:
         raise ShapeError(f"{name}: expected one number, got an array of shape {value.shape}")
     if value < at_least:
         raise CvnotesError(f"{name} = {value:g} but must be at least {at_least:g}")
+    if value > at_most:
+        raise CvnotesError(f"{name} = {value:g} but must be at most {at_most:g}")
     return float(value)
+
+
+# What is asked for by number, and how far light may be smeared, in pixels: more is a slip, and
+# would take gigabytes or minutes.
+MOST, MOST_BLUR = 10_000, 1000
+
+
+def blur_width(x: Any, name: str) -> float:
+    """Guard the standard deviation of a blur in pixels; one that nobody would see is none.
+
+    Examples
+    --------
+    >>> blur_width(0.7, "blur"), blur_width(1e-300, "blur")
+    (0.7, 0.0)
+    """
+    value = number(x, name, at_least=0, at_most=MOST_BLUR)
+    return value if value > 1e-6 else 0.0
+
+
+def whole(x: Any, name: str, *, at_least: int = 1, at_most: int = MOST) -> int:
+    """Guard a whole number: of views, of lines, of pixels along a window.
+
+    Examples
+    --------
+    >>> whole(5.0, "window")
+    5
+    >>> whole(1e5, "window")
+    Traceback (most recent call last):
+    cvnotes.base.errors.CvnotesError: window: expected a whole number from 1 to 10000, got 100000.0
+    """
+    value = number(x, name)
+    if not at_least <= value <= at_most or value != int(value):
+        wanted = f"expected a whole number from {at_least} to {at_most}"
+        raise CvnotesError(f"{name}: {wanted}, got {x!r}")
+    return int(value)
+
+
+def flag(x: Any, name: str) -> bool:
+    """Guard what is true or false.
+
+    Examples
+    --------
+    >>> flag(True, "skew")
+    True
+    """
+    if not isinstance(x, bool | np.bool_):
+        raise InputTypeError(f"{name}: expected True or False, got {x!r:.80}")
+    return bool(x)
 
 
 def points(x: Any, name: str, *dims: int) -> Array:
@@ -123,7 +173,7 @@ def paired(a: Array, b: Array, names: tuple[str, str], *, at_least: int) -> None
 
 
 def equally_many(names: str, *stacks: tuple[int, ...]) -> tuple[int, ...]:
-    """Give the leading axes that several arrays share, or refuse axes that do not fit.
+    """Return the leading axes that several arrays share, or refuse axes that do not fit.
 
     Examples
     --------
@@ -152,7 +202,7 @@ def matrix(x: Any, name: str, *shape: int) -> Array:
 
 
 def is_masked(x: Any) -> bool:
-    """Tell whether x is a masked array, or a list of such, whose masks NumPy would drop."""
+    """Return whether x is a masked array, or a list of such, whose masks NumPy would drop."""
     # Whoever has one has loaded what makes them; everybody else starts sooner without it.
     masked = getattr(sys.modules.get("numpy.ma"), "MaskedArray", ())
     if isinstance(x, list | tuple):
@@ -185,7 +235,7 @@ def rotation(x: Any, name: str = "R") -> Array:
     if deviation > 1e-6:
         raise CvnotesError(
             f"{name} is not orthonormal (R Rᵀ deviates from I by {deviation:.2g}); "
-            "rigid.nearest_rotation gives the closest rotation"
+            "cvnotes.camera.nearest_rotation gives the closest rotation"
         )
     if (np.linalg.det(R) < 0).any():
         raise CvnotesError(f"{name} has det = -1: a reflection, not a rotation")

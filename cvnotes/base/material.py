@@ -7,7 +7,7 @@ CLONE = _PACKAGE.parent  # of the repository, unless the package was installed
 
 
 def material(name: str) -> Path:
-    """Give the folder ``notebooks``, ``data`` or ``docs`` of the course.
+    """Return the folder ``notebooks``, ``data`` or ``docs`` of the course.
 
     In a clone they stand beside the package; a package that was installed brings them along.
 
@@ -20,5 +20,5 @@ def material(name: str) -> Path:
 
 
 def is_clone() -> bool:
-    """Tell whether the package runs from a clone of the repository."""
+    """Return whether the package runs from a clone of the repository."""
     return (CLONE / "notebooks").is_dir() and (CLONE / "pyproject.toml").is_file()

@@ -35,7 +35,7 @@ def chunks(n: int, size: int) -> Iterator[slice]:
 
 
 def solved(operation: Callable[..., Any], *arguments: Array, why: str) -> Array:
-    """Give what an operation of `numpy.linalg` gives, or refuse a singular matrix.
+    """Return what an operation of `numpy.linalg` gives, or refuse a singular matrix.
 
     Where the machine has no flags of floating-point errors (WebAssembly), NumPy cannot raise and
     gives NaN instead, so both are looked for.
@@ -200,3 +200,58 @@ def numerical_jacobian(f: Callable[[Array], Array], x: Array, step: float = 1e-6
         e[i] = h
         columns.append((f(x + e) - f(x - e)).ravel() / (2 * h))
     return np.stack(columns, axis=-1)
+
+
+def clipped_segments(ends: Array, depth: Array) -> Array:
+    """Cut segments to a convex region: (m, 2, d), without those that lie outside of it.
+
+    Parameters
+    ----------
+    ends : ndarray, shape (n, 2, d)
+        Both ends of each; NaN where there is none.
+    depth : ndarray, shape (n, 2, k)
+        How deep each end lies inside of each of the k half-spaces whose intersection the region
+        is; negative outside, in any unit.
+
+    References
+    ----------
+    .. [1] Y.-D. Liang and B. Barsky, A new concept and method for line clipping, ACM Trans.
+       Graphics 3 (1984) 1-22.
+
+    Examples
+    --------
+    >>> ends = np.array([[[-1.0, 0], [3, 0]], [[-1, 0], [-2, 0]]])
+    >>> clipped_segments(ends, ends[..., :1])  # where x is positive
+    array([[[0., 0.],
+            [3., 0.]]])
+    """
+    slope = depth[:, 1] - depth[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = -depth[:, 0] / slope
+    enter = np.where(slope > 0, t, 0.0).max(axis=1, initial=0.0)
+    leave = np.where(slope < 0, t, 1.0).min(axis=1, initial=1.0)
+    beside = ((slope == 0) & (depth[:, 0] < 0)).any(axis=1)  # parallel to a border, and outside
+    kept = (enter < leave) & ~beside & np.isfinite(slope).all(axis=1)
+    start, way = ends[kept, :1], ends[kept, 1:] - ends[kept, :1]
+    return np.asarray(start + np.stack([enter, leave], axis=1)[kept, :, None] * way)
+
+
+def student(z: float, freedom: float) -> float:
+    """Return the quantile of Student's t that has the same probability as z has among normal ones.
+
+    References
+    ----------
+    .. [1] M. Abramowitz and I. Stegun, Handbook of Mathematical Functions (1964), 26.7.5.
+
+    Examples
+    --------
+    >>> [round(student(1.96, n), 2) for n in (4, 14, 1000)]
+    [2.77, 2.14, 1.96]
+    """
+    terms = (
+        z**3 + z,
+        5 * z**5 + 16 * z**3 + 3 * z,
+        3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z,
+    )
+    scaled = zip(terms, (4, 96, 384), strict=True)
+    return z + sum(t / (w * freedom**i) for i, (t, w) in enumerate(scaled, 1))

@@ -72,7 +72,7 @@ def study(
 
 
 def _named(result: Callable[[], Result], seed: Seed) -> Result:
-    """Give a result, or raise what went wrong with a note of the seed."""
+    """Return a result, or raise what went wrong with a note of the seed."""
     try:
         return result()
     except Exception as error:

@@ -2,9 +2,13 @@
 
 from collections.abc import Collection, Sequence
 
+_LONGEST = 72  # letters of a cell, the last of a row excepted
+
 
 def text_table(lines: Sequence[Sequence[str]], *, left: Collection[int] = (0, -1)) -> str:
     """Lay out rows of text in columns, numbers to the right.
+
+    A name that would push all other columns aside is shortened in its middle.
 
     Parameters
     ----------
@@ -20,6 +24,7 @@ def text_table(lines: Sequence[Sequence[str]], *, left: Collection[int] = (0, -1
     left01   0.2
     b       11.5  far off
     """
+    lines = [[*map(shortened, line[:-1]), line[-1]] for line in lines]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     starts = {i % len(widths) for i in left}
     return "\n".join(
@@ -29,6 +34,18 @@ def text_table(lines: Sequence[Sequence[str]], *, left: Collection[int] = (0, -1
         ).rstrip()
         for line in lines
     )
+
+
+def shortened(name: str, width: int = _LONGEST) -> str:
+    """Leave the middle out of a name that is too long: its beginning and its end tell it apart.
+
+    Examples
+    --------
+    >>> shortened("photographs_of_the_first_camera_0001.png", 20)
+    'photograph…_0001.png'
+    """
+    half = width // 2
+    return name if len(name) <= width else f"{name[:half]}…{name[half + 1 - width :]}"
 
 
 def clipped(line: str, width: int) -> str:

@@ -1,49 +1,38 @@
 """Chapter 7: a camera from its pictures of a board, with error bars (notes 2b.4)."""
 
 from cvnotes.calibration.board_shape import BOARDS, BoardShape
+from cvnotes.calibration.choice import Choice, choose_model
 from cvnotes.calibration.driver import calibrate
-from cvnotes.calibration.left_out import (
-    choose_board,
-    choose_lens,
-    left_out_rms,
-    left_out_rms_of_boards,
-)
 from cvnotes.calibration.next_view import NextView, next_view, where_to_hold
 from cvnotes.calibration.one_view import calibrate_one_view
 from cvnotes.calibration.pose import pose_from_view
 from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, resect
 from cvnotes.calibration.prediction import prediction_std, std_with_view
-from cvnotes.calibration.refinement import LENSES
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.zhang import (
     constraints,
     extrinsics,
-    focal_lengths_from_homographies,
     intrinsics_from_b,
     intrinsics_from_b_by_formulas,
-    intrinsics_from_homographies,
     radial_distortion,
     solve_b,
     v_ij,
 )
+from cvnotes.camera.any_lens import LENSES
 
 __all__ = [
     "calibrate",
     "Calibration",
     "LENSES",
-    "left_out_rms",
-    "choose_lens",
+    "choose_model",
+    "Choice",
     "BOARDS",
     "BoardShape",
-    "left_out_rms_of_boards",
-    "choose_board",
     "v_ij",
     "constraints",
     "solve_b",
     "intrinsics_from_b",
     "intrinsics_from_b_by_formulas",
-    "intrinsics_from_homographies",
-    "focal_lengths_from_homographies",
     "extrinsics",
     "radial_distortion",
     "prediction_std",

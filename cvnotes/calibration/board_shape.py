@@ -14,7 +14,7 @@ import numpy as np
 from cvnotes.base import Array, CvnotesError, DegenerateError, Minimum
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import (
-    Arrow,
+    NormalEquations,
     Problem,
     State,
     covariance,
@@ -26,9 +26,11 @@ BOARDS = ("flat", "bent", "free")
 _DEGREE = 4  # of the heights over the board
 _DEPENDENT = 1e-6  # smallest part of a power of x and y that the powers before do not contain
 _AT_LEAST = 4  # views; from fewer a plane alone is known only up to its camera
-# Of fewer views than these noise makes a shape; then corners are held near the places that were
-# given, as if known to 1/200 of half the board's diagonal by corners seen to 0.1 px.
-_ENOUGH, _HOLD = 10, 20.0
+_CLOSE = 1e-4  # tolerance while the size of a shape is sought
+# The board is about 1 large: 1/1000 is some 0.5 % of a square. Where its size is sought from, what
+# it is at least, and when it is found.
+_EXPECTED, _SMALLEST, _FOUND = 1e-3, 2e-6, 0.05
+_ROUNDS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,12 +46,15 @@ class BoardShape:
         the board is neither moved nor turned nor scaled.
     std : ndarray, shape (n, 3)
         Standard deviations of `points`, for noise as large as the residuals show.
+    hold : ndarray or None
+        By how many pixels each coefficient of the shape was held back, per unit; not kept in files.
     """
 
     kind: str
     given: Array
     points: Array
     std: Array
+    hold: Array | None = None
 
     @property
     def offsets(self) -> Array:
@@ -79,9 +84,10 @@ def is_board(name: Any, *more: str) -> str:
 
 
 def deformations(kind: str, W: Array) -> Array:
-    """Give the ways in which a board W (n, 3), centred and flat, may differ: (s, n, 3).
+    """Return the ways in which a board W (n, 3), centred and flat, may differ: (s, n, 3).
 
-    They are orthonormal, and orthogonal to every small motion of the board and to its scale.
+    They are orthonormal, and orthogonal to every small motion of the board and to its scale. Those
+    of a bent board come first: heights that are a polynomial over the board.
 
     References
     ----------
@@ -94,13 +100,14 @@ def deformations(kind: str, W: Array) -> Array:
     >>> deformations("bent", W).shape, deformations("free", W).shape
     ((6, 9, 3), (20, 9, 3))
     """
+    bends = _bends(W)
     if kind == "bent":
-        return _bends(W)
+        return bends
     e = np.eye(3)
-    gauge = [np.broadcast_to(axis, W.shape) for axis in e]
-    gauge += [np.cross(axis, W) for axis in e] + [W]
-    Q: Array = np.linalg.qr(np.reshape(gauge, (7, -1)).T, mode="complete").Q
-    return Q[:, 7:].T.reshape(-1, len(W), 3)
+    known = [np.broadcast_to(axis, W.shape) for axis in e]
+    known += [np.cross(axis, W) for axis in e] + [W, *bends]
+    Q: Array = np.linalg.qr(np.reshape(known, (len(known), -1)).T, mode="complete").Q
+    return np.concatenate([bends, Q[:, len(known) :].T.reshape(-1, *W.shape)])
 
 
 def _bends(W: Array) -> Array:
@@ -121,8 +128,10 @@ def _bends(W: Array) -> Array:
     return shape
 
 
-def with_shape(problem: Problem, data: Correspondences, kind: str) -> Problem:
-    """Give the problem in which the shape of the board is sought too.
+def with_shape(
+    problem: Problem, data: Correspondences, kind: str, hold: Array | None = None
+) -> Problem:
+    """Return the problem in which the shape of the board is sought too.
 
     Raises
     ------
@@ -143,39 +152,72 @@ def with_shape(problem: Problem, data: Correspondences, kind: str) -> Problem:
             f"the corner at ({x:g}, {y:g}) of the board was seen in one view only, so its own "
             'place is not known: leave it out, or let the board bend smoothly (board="bent")'
         )
-    hold = _HOLD if n_views < _ENOUGH else 0.0
+    shape = deformations(kind, W)
     free = replace(
         problem,
         W=W,
         m=m,
         seen=None if seen.all() else seen,
-        shape=deformations(kind, W),
+        shape=shape,
         hold=hold,
     )
-    unknowns = 2 * free.n_seen - free.freedom
+    unknowns = len(free.names) + len(shape) + 6 * n_views
     refuse_too_few(2 * free.n_seen, unknowns, "add views, or take the board for flat")
     return free
 
 
-def released(free: Problem, flat: Minimum[State, Arrow]) -> Minimum[State, Arrow]:
-    """Go on from the minimum of a flat board to that of its shape."""
-    return minimise(free, released_start(free, flat))
+def shaped(
+    problem: Problem, data: Correspondences, kind: str, flat: Minimum[State, NormalEquations]
+) -> tuple[Problem, Minimum[State, NormalEquations]]:
+    """Go on from the minimum of a flat board to that of its shape.
+
+    Notes
+    -----
+    With noise of variance σ² and a shape whose n coefficients s have the variance τ², the sum of
+    squares grows by h² Σ s², h = σ/τ. Of each coefficient the views tell the part 1 − h² C_ss,
+    where C is the inverse of the normal matrix; with γ the sum of these parts, τ² = Σ s²/γ and
+    σ² = cost/(freedom + n − γ), until h stays.
+
+    References
+    ----------
+    .. [1] D. J. C. MacKay, Bayesian interpolation, Neural Computation 4 (1992) 415-447.
+    """
+    free = with_shape(problem, data, kind)
+    q, groups = len(problem.names), _groups(free)
+    hold = np.full(free.n_shape, np.sqrt(flat.cost / max(problem.freedom, 1)) / _EXPECTED)
+    x = State(np.concatenate([flat.x.shared, 0 * hold]), flat.x.R, flat.x.T)
+    for _ in range(_ROUNDS):
+        free = replace(free, hold=hold)
+        best = minimise(free, x, tolerance=_CLOSE)
+        x, told = best.x, 1 - hold**2 * np.diag(covariance(best.system))[q:]
+        before, s, free = hold, best.x.shared[q:], replace(free, told=float(told.sum()))
+        noise = (best.cost - float(hold**2 @ s**2)) / free.freedom
+        hold = np.concatenate([_held(noise, s[part], told[part]) for part in groups])
+        if (np.abs(hold - before) < _FOUND * before).all():
+            break
+    return free, minimise(free, x)
 
 
-def released_start(free: Problem, flat: Minimum[State, Arrow]) -> State:
-    """Give the minimum of a flat board as a board whose shape is sought, but flat so far."""
-    of_shape = 0 if free.shape is None else len(free.shape)
-    shared = np.concatenate([flat.x.shared, np.zeros(of_shape)])
-    return State(shared, flat.x.R, flat.x.T)
+def _groups(free: Problem) -> list[slice]:
+    """Return which coefficients of a shape are expected to be alike: the bends, and the others."""
+    n = len(_bends(free.W))
+    return [slice(0, n), slice(n, free.n_shape)]
+
+
+def _held(noise: float, s: Array, told: Array) -> Array:
+    """Return h = σ/τ for coefficients of which the views tell these parts."""
+    size = float(s @ s) / max(float(told.sum()), 1e-3)
+    return np.full(len(s), np.sqrt(noise / max(size, _SMALLEST**2)))
 
 
 def shape_found(
-    free: Problem, data: Correspondences, kind: str, best: Minimum[State, Arrow]
+    free: Problem, data: Correspondences, kind: str, best: Minimum[State, NormalEquations]
 ) -> tuple[BoardShape, Correspondences]:
-    """Give the shape in the units of the board as it was given, and the data on such a board."""
+    """Return the shape in the units of the board as it was given, and the data on such a board."""
     W, q = free.board(best.x.shared), len(free.names)
     C = best.cost / free.freedom * covariance(best.system)[q:, q:]
     ways = np.zeros((len(C), 0)) if free.shape is None else free.shape.reshape(len(C), -1)
     std = np.sqrt(np.vecdot(ways.T, ways.T @ C)).reshape(W.shape)
     given, points = (w * data.scale + data.centre for w in (free.W, W))
-    return BoardShape(kind, given, points, std * data.scale), data.on_board(W)
+    shape = BoardShape(kind, given, points, std * data.scale, free.hold)
+    return shape, data.on_board(W)

@@ -122,7 +122,7 @@ class Correspondences:
         return W, m, seen
 
     def on_board(self, W: Array) -> "Correspondences":
-        """Give the same with the corners of `on_one_board` elsewhere, at W (N, 3)."""
+        """Return the same with the corners of `on_one_board` elsewhere, at W (N, 3)."""
         W = W if self.W.ndim == 2 else W[self._places[1]]
         return replace(self, W=W, before=self)
 
@@ -133,7 +133,7 @@ class Correspondences:
         return W[:, ::-1], place.reshape(self.W.shape[:2])
 
     def pose_in_given_units(self, R: Array, T: Array) -> Array:
-        """Give G (n_views, 4, 4) of the board as it was given: T ← s T − R c."""
+        """Return G (n_views, 4, 4) of the board as it was given: T ← s T − R c."""
         G = np.zeros((len(R), 4, 4))
         G[:, :3, :3], G[:, 3, 3] = R, 1
         G[:, :3, 3] = self.scale * T - R @ self.centre
@@ -156,7 +156,7 @@ class Correspondences:
 
 
 def _stack(sets: Any, name: str, dims: tuple[int, ...]) -> tuple[Array, Any]:
-    """Give all views as one array (n_views, n, d), filled up, and which points are real."""
+    """Return all views as one array (n_views, n, d), filled up, and which points are real."""
     masked = any(is_masked(s) for s in (sets, *_list(sets)))
     try:
         one = np.asarray(sets)
@@ -228,12 +228,12 @@ def _refuse_lines(m: Array) -> None:
 
 
 def _in_plane(W: Array) -> Array:
-    """Give board points (..., 3) in the plane Z = 0, or refuse a board that is not flat."""
+    """Return board points (..., 3) in the plane Z = 0, or refuse a board that is not flat."""
     if W.shape[-1] == 2:
         return np.concatenate([W, np.zeros_like(W[..., :1])], axis=-1)
     if np.abs(W[..., 2]).max(initial=0) > 1e-9 * np.abs(W).max(initial=0):
         raise CvnotesError(
             "board_points: Z must be 0 on a flat board, whose frame lies on it; for targets that "
-            "are not flat see resection"
+            "are not flat there is calibrate_one_view"
         )
     return W

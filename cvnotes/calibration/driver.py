@@ -4,16 +4,11 @@ from collections.abc import Callable
 from typing import Any
 
 from cvnotes.base import DegenerateError, image_size
-from cvnotes.calibration.board_shape import is_board, released, shape_found, with_shape
+from cvnotes.calibration.board_shape import BOARDS, is_board, shape_found, shaped
+from cvnotes.calibration.choice import CANDIDATES, choose_model
 from cvnotes.calibration.correspondences import Correspondences, PointSets
-from cvnotes.calibration.left_out import (
-    choose_board,
-    choose_lens,
-    left_out_rms,
-    left_out_rms_of_boards,
-)
 from cvnotes.calibration.refinement import Problem, refuse_too_few
-from cvnotes.calibration.reliability import Evidence, judge
+from cvnotes.calibration.reliability import Diagnostics, judge
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.starts import Search
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
@@ -46,12 +41,12 @@ def calibrate(
     lens : {"none", "k1", "k1 k2", "k1 k2 k3", "k1 k2 p1 p2", "k1 k2 p1 p2 k3", ...}
         Which lens coefficients are estimated; the others are zero. Wide lenses are "rational" or
         "fisheye" (see `RationalLens` and `FisheyeLens`). With "auto" views that are left out
-        decide (see `left_out_rms`); there must be 4 of them.
+        decide (see `choose_model`).
     board : {"flat", "bent", "free", "auto"}
         Whether the board is as it was given, or bends smoothly (heights of degree 4), or has every
         corner where the views say. With "auto" views that are left out decide (see
-        `left_out_rms_of_boards`). A board that is not flat takes 4 views, and 10 to be sure of it;
-        its points are in ``shape`` of the result.
+        `choose_model`). A board that is not flat takes 4 views; its points are in ``shape`` of
+        the result.
     skew : bool
         Estimate the skew too; three views are then needed, else two.
     homography : callable
@@ -87,7 +82,7 @@ def calibrate(
     to [−1, 1], which keeps their systems well conditioned. Each H stays the one of step 1: the
     notes refine it by itself, but step 5 refines everything at once. The homographies were fitted
     to distorted corners, so steps 2 to 4 are biased (erratum E35); they are only a start. What is
-    tried when it leads nowhere stands in `cvnotes.calibration.starts`.
+    tried when it leads nowhere stands in `cvnotes.calibration.reserve`.
 
     References
     ----------
@@ -112,18 +107,16 @@ def calibrate(
     """
     size = image_size(size)
     data = Correspondences.of(board_points, image_points)
-    left_out = {}
-    if lens == "auto":
-        left_out = left_out_rms(board_points, image_points, size, skew=skew, to_the_end=False)
-        lens = choose_lens(left_out)
+    choice = None
+    if "auto" in (lens, is_board(board, "auto")):
+        lenses = CANDIDATES if lens == "auto" else [lens]
+        boards = BOARDS if board == "auto" else [board]
+        choice = choose_model(
+            board_points, image_points, size, lenses=lenses, boards=boards, skew=skew
+        )
+        lens, board = choice.lens, choice.board
     problem = Problem.of(data, size, lens, skew)
     _refuse_too_few(problem)
-    by_board = {}
-    if is_board(board, "auto") == "auto":
-        by_board = left_out_rms_of_boards(
-            board_points, image_points, size, lens=lens, skew=skew, to_the_end=False
-        )
-        board = choose_board(by_board)
 
     search = Search(problem)
     for start in search.starts():  # the first is nearly always good
@@ -147,16 +140,13 @@ def calibrate(
     #    and of the board's shape with them, unless it is flat
     shape = None
     if board != "flat":
-        problem = with_shape(problem, data, board)
-        best = released(problem, best)
+        problem, best = shaped(problem, data, board, best)
         shape, data = shape_found(problem, data, board, best)
 
     # Is the answer to be believed? Reprojection errors alone do not tell.
-    found = Calibration.of(
-        problem, data, best, shape=shape, left_out=left_out, left_out_boards=by_board
-    )
+    found = Calibration.of(problem, data, best, shape=shape, choice=choice)
     residuals = Problem.of(data, size, lens, skew).residuals(found.camera, best.x)
-    return found.judged(*judge(Evidence.of(found, residuals, data.m, data.W, problem.freedom)))
+    return found.judged(*judge(Diagnostics.of(found, residuals, data.m, data.W, problem.freedom)))
 
 
 def _refuse_too_few(problem: Problem) -> None:

@@ -7,12 +7,15 @@ independent are whole views: each is left out in turn, and the scatter of the ca
 the camera is known.
 """
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from cvnotes.base import Array, DegenerateError, chunks, solved
 from cvnotes.calibration.board_shape import BoardShape, with_shape
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import Problem, State
+from cvnotes.calibration.jacobian import jacobian
+from cvnotes.calibration.refinement import RIDGE, Problem, State
 from cvnotes.camera import Camera
 
 _NUMBERS = 100_000  # in an array at a time: they then stay in the cache
@@ -60,27 +63,65 @@ def covariance_over_views(
     n, q = len(data), len(names)
     if n - 1 < (3 if "skew" in names else 2):  # so few determine no camera
         return undetermined(q)
-    problem = problem_at(camera, names, data)
+    problem = Problem.at(camera, names, data)
     poses, W = data.pose_in_scaled_units(poses), None
     try:
         if shape is not None and data.before is not None:
-            problem = with_shape(problem, data.before, shape.kind)
+            problem = with_shape(problem, data.before, shape.kind, shape.hold)
             W = (shape.points - data.centre) / data.scale
-        S, g = eliminated_by_view(problem, problem.state(camera, poses, W))
-        d = _without_each(S, g, problem.held)[:, :q]
+        return Influence.of(problem, problem.state(camera, poses, W)).covariance[:q, :q]
     except DegenerateError:
         return undetermined(q)
-    d -= d.mean(0)
-    return np.asarray((n - 1) / n * d.T @ d)
+
+
+@dataclass(frozen=True, eq=False)
+class Influence:
+    """What each view does to what all views determine together.
+
+    Attributes
+    ----------
+    S, g : ndarray, shape (n_views, q, q), (n_views, q)
+        Normal matrix and gradient of each view, its pose eliminated.
+    without : ndarray, shape (n_views, q)
+        By how much the parameters change where a view is left out.
+    """
+
+    S: Array
+    g: Array
+    without: Array
+
+    @staticmethod
+    def of(problem: Problem, x: State) -> "Influence":
+        """Work out the influence of each view at a minimum."""
+        S, g = eliminated_by_view(problem, x)
+        if problem.model.cancelling:  # whose valley would be walked along without an end
+            problem = replace(problem, ridge=RIDGE)
+        return Influence(S, g, _without_each(S, g, problem.held))
+
+    @property
+    def covariance(self) -> Array:
+        """(n − 1)/n Σ (δ_i − δ̄)(δ_i − δ̄)ᵀ, (q, q)."""
+        n, d = len(self.without), self.without - self.without.mean(0)
+        return np.asarray((n - 1) / n * d.T @ d)
+
+    def costs_left_out(self, costs: Array) -> Array:
+        """Return what is left of each view (n_views,) that is predicted by the others.
+
+        A view costs c_i at the minimum of all, and c_i + 2 g_iᵀ δ_i + δ_iᵀ S_i δ_i where the
+        others alone have their minimum, its pose being fitted again.
+        """
+        d = self.without
+        S_d = (self.S @ d[..., None])[..., 0]  # np.matvec is younger than the NumPy of a browser
+        return np.asarray(costs + 2 * np.vecdot(self.g, d) + np.vecdot(d, S_d))
 
 
 def undetermined(q: int) -> Array:
-    """Give the covariance of q parameters of which nothing is known."""
+    """Return the covariance of q parameters of which nothing is known."""
     return np.diag(np.full(q, np.inf))
 
 
 def eliminated_by_view(problem: Problem, x: State) -> tuple[Array, Array]:
-    """Give normal matrix (n_views, q, q) and gradient (n_views, q) of each view, without its pose.
+    """Return each view's normal matrix (n_views, q, q) and gradient (n_views, q), without its pose.
 
     S = U − Bᵀ V⁻¹ B and g = g_shared − Bᵀ V⁻¹ g_pose, where U, B and V are blocks of JᵀJ: shared by
     shared, pose by shared, pose by pose.
@@ -93,7 +134,7 @@ def eliminated_by_view(problem: Problem, x: State) -> tuple[Array, Array]:
 
 
 def _eliminated(problem: Problem, x: State) -> tuple[Array, Array]:
-    J, r = problem.jacobian(x)
+    J, r = jacobian(problem, x)
     n, q = len(J), len(x.shared)  # with the coefficients of the board's shape, if there are any
     J, r = J.reshape(n, -1, q + 6), r.reshape(n, -1, 1)
     N, g = J.mT @ J, J.mT @ r
@@ -127,16 +168,3 @@ def _without(left: Array, g: Array) -> Array:
         raise DegenerateError(_WHY)
     d = solved(np.linalg.solve, left, (g / scale)[..., None], why=_WHY)[..., 0]
     return np.asarray(d / scale)
-
-
-def problem_at(camera: Camera, names: tuple[str, ...], data: Correspondences) -> Problem:
-    """Make the problem that such parameters were the answer of."""
-    return Problem(
-        data.W,
-        data.m,
-        data.seen,
-        skew="skew" in names,
-        n_radial=sum(name[0] == "k" for name in names),
-        tangential="p1" in names,
-        model=type(camera.lens),
-    )

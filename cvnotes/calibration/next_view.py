@@ -13,8 +13,9 @@ import numpy.typing as npt
 from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, points, rigid_motion
 from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.jackknife import eliminated_by_view, problem_at
+from cvnotes.calibration.jackknife import eliminated_by_view
 from cvnotes.calibration.prediction import pixel_jacobian
+from cvnotes.calibration.refinement import Problem
 from cvnotes.calibration.result import Calibration
 from cvnotes.camera import Camera, rotation_from_vector
 
@@ -132,7 +133,7 @@ def next_view(calibration: Calibration, *, outline: npt.ArrayLike | None = None)
 
 
 def left_with(calibration: Calibration, G: npt.ArrayLike) -> float:
-    """Say how far off a pixel may be, px, with one more view of the board.
+    """Describe how far off a pixel may be, px, with one more view of the board.
 
     Parameters
     ----------
@@ -207,7 +208,7 @@ def where_to_hold(camera: Camera, G: npt.ArrayLike, W: npt.ArrayLike) -> str:
 
 
 def _place(m: Array, size: tuple[int, int]) -> str:
-    """Say in which part of the picture a board is, by its middle."""
+    """Describe in which part of the picture a board is, by its middle."""
     fifth = np.floor(5 * (m + 0.5) / size).clip(0, 4).astype(int)
     across, down = (fifth > 1).astype(int) + (fifth > 2)
     height, side = ("upper", "", "lower")[down], ("left", "", "right")[across]
@@ -219,7 +220,7 @@ def _place(m: Array, size: tuple[int, int]) -> str:
 
 
 def _board(calibration: Calibration) -> Array:
-    """Give all corners of the board, (n, 3), row by row."""
+    """Return all corners of the board, (n, 3), row by row."""
     if not calibration.board_points:
         raise CvnotesError("the views must come with their corners")
     if calibration.shape is not None:
@@ -275,7 +276,10 @@ class _Search:
         data = Correspondences.in_unit_frame(W, np.zeros((1, len(W), 2)))
         u, v = (np.linspace(0, n - 1, k) for n, k in zip(calibration.size, _GRID, strict=True))
         m = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
-        J = pixel_jacobian(calibration, m) * np.array([*calibration.honest_std.values()])
+        rays = calibration.camera.ray(m)
+        J = pixel_jacobian(calibration.camera, calibration.names, rays) * np.array(
+            [*calibration.honest_std.values()]
+        )
         J = J[np.isfinite(J).all((1, 2))]
         correlation = calibration.covariance / np.outer(noise, noise)
         so_far = data.pose_in_scaled_units(calibration.poses)[:, :3, 3]
@@ -302,7 +306,7 @@ class _Search:
         return self.data.pose_in_given_units(R, T)
 
     def best(self, p: Array) -> tuple[Array, Array]:
-        """Give the best of many views (k, 6), and what they leave of the uncertainty, px."""
+        """Return the best of many views (k, 6), and what they leave of the uncertainty, px."""
         R, T, seen = self._placed(p)
         left = np.full(len(p), np.inf)
         if seen.any():
@@ -316,7 +320,7 @@ class _Search:
         many = Correspondences(
             data.W, np.zeros((len(R), len(data.W), 2)), None, data.centre, data.scale
         )
-        problem = problem_at(self.camera, self.names, many)
+        problem = Problem.at(self.camera, self.names, many)
         G = np.concatenate([R, T[..., None]], axis=-1)
         S, _ = eliminated_by_view(problem, problem.state(self.camera, G))
         after = np.linalg.inv(self.normal + S * np.outer(self.scale, self.scale))
@@ -342,7 +346,7 @@ class _Search:
         return R, T, known & fits & self._inside(R, T)
 
     def _nearest(self, R: Array, sight: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
-        """Give the least distances at which boards are whole in the picture, by bisection."""
+        """Return the least distances at which boards are whole in the picture, by bisection."""
         low, high = np.full(len(R), 0.1), np.full(len(R), 30.0)  # of half the board's diagonal
         fits = self._inside(R, high[:, None] * sight)
         for _ in range(_HALVINGS):
@@ -352,7 +356,7 @@ class _Search:
         return high, fits
 
     def _inside(self, R: Array, T: Array) -> npt.NDArray[np.bool_]:
-        """Tell which boards (k,) have their whole outline in the picture, and before the camera."""
+        """Return which boards (k,) have their outline in the picture, and before the camera."""
         M = self.outline @ R.mT + T[:, None]
         with np.errstate(all="ignore"):
             m = Camera.project.inside(self.camera, M)

@@ -100,7 +100,7 @@ def _start(W: Array, m: Array, size: tuple[int, int]) -> tuple[Camera, Array]:
 
 
 def _judge(found: Calibration) -> tuple[tuple[str, ...], bool]:
-    """Say what is doubtful, and whether the result is reliable all the same."""
+    """Describe what is doubtful, and whether the result is reliable all the same."""
     if found.rms > _MISFIT * max(found.size):
         return (
             f"the points are {found.rms:.1f} px away from where the model puts them: are they "

@@ -18,10 +18,9 @@ from cvnotes.base import (
     solve_dense,
 )
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.jackknife import problem_at
 from cvnotes.calibration.ppm import ppm_dlt
-from cvnotes.calibration.refinement import poses_at_rest
-from cvnotes.calibration.starts import turned_over
+from cvnotes.calibration.refinement import Problem, refit_poses
+from cvnotes.calibration.reserve import turned_over
 from cvnotes.calibration.zhang import extrinsics
 from cvnotes.camera import Camera, nearest_rotation, pose, rotation_from_vector, skew_matrix
 from cvnotes.camera.model import is_camera, project_with_derivative
@@ -109,7 +108,7 @@ def pose_from_view(
 
 
 def rms_of_views(camera: Camera, names: tuple[str, ...], W: Array, m: Array, poses: Array) -> Array:
-    """Give how far views of a board miss a camera that is held, at the best poses near given ones.
+    """Return how far views of a board miss a held camera, at the best poses near given ones.
 
     Parameters
     ----------
@@ -131,9 +130,9 @@ def rms_of_views(camera: Camera, names: tuple[str, ...], W: Array, m: Array, pos
     """
     seen = np.asarray(np.isfinite(m).all(-1))
     data = Correspondences.in_unit_frame(W, np.where(seen[..., None], m, 0.0), seen)
-    problem = problem_at(camera, names, data)
+    problem = Problem.at(camera, names, data)
     state = problem.state(camera, data.pose_in_scaled_units(poses))
-    _, squares = poses_at_rest(problem, state)
+    _, squares = refit_poses(problem, state)
     return np.asarray(np.sqrt(squares / seen.sum(1)))
 
 
@@ -175,7 +174,7 @@ def _best(camera: Camera, W: Array, m: Array, xy: Array) -> Pose:
 
 
 def _plane(W: Array) -> tuple[float, Array]:
-    """Tell how flat centred points are (0: entirely), and give a frame (3, 3) on their plane.
+    """Return how flat centred points are (0: entirely), and give a frame (3, 3) on their plane.
 
     Its axes are the columns: two in the plane, and the normal.
     """
@@ -184,13 +183,13 @@ def _plane(W: Array) -> tuple[float, Array]:
 
 
 def _start_in_plane(W: Array, xy: Array, F: Array) -> Pose:
-    """Give a pose of a target that is flat, or taken for flat, from its homography."""
+    """Return a pose of a target that is flat, or taken for flat, from its homography."""
     G = extrinsics(np.eye(3), dlt((W @ F)[:, :2], xy))
     return G[:3, :3] @ F.T, G[:3, 3]
 
 
 def _start_in_space(W: Array, xy: Array) -> Pose:
-    """Give a pose of a target in space from its perspective projection matrix."""
+    """Return a pose of a target in space from its perspective projection matrix."""
     P = ppm_dlt(W, xy)
     s = np.cbrt(np.linalg.det(P[:, :3]))
     if s <= 0:

@@ -59,7 +59,7 @@ def _several(W: npt.ArrayLike) -> Array:
 
 
 def ppm_design_matrix(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
-    """Give D (2n, 12) of D p = 0, two rows for each point, p = the rows of P stacked.
+    """Return D (2n, 12) of D p = 0, two rows for each point, p = the rows of P stacked.
 
     m̃ × P W̃ = 0 has three rows, of which two suffice, as for a homography:
     [0ᵀ, −W̃ᵀ, v W̃ᵀ] and [W̃ᵀ, 0ᵀ, −u W̃ᵀ].

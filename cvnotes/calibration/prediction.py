@@ -1,15 +1,18 @@
 """How far predictions may be off: a pixel, and the error bars if one more view were taken."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, points, rigid_motion
+from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, points, rigid_motion
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Problem, covariance
 from cvnotes.calibration.result import Calibration
+from cvnotes.camera import Camera
 
+_EDGE_ON = 1e-9  # part of the distance by which a board seen from its edge misses the camera
 _STEP = 1e-6  # of a parameter, relative to its standard deviation or to 1
 
 
@@ -57,29 +60,42 @@ def prediction_std(
     m = points(m, "m", 2)
     if of not in ("noise", "views"):
         raise CvnotesError(f'of: expected "noise" or "views", got {of!r}')
-    C = calibration.covariance if of == "noise" else calibration.covariance_of_views
+    camera, rays, names = calibration.camera, calibration.camera.ray(m), calibration.names
+    if of == "noise":
+        return np.asarray(np.sqrt(_variance(camera, names, calibration.covariance, rays)))
+    C = calibration.covariance_of_views
     if not np.isfinite(C).all():  # known not at all
         return np.full(m.shape[:-1], np.inf)
-    J = pixel_jacobian(calibration, m)
-    return np.asarray(np.sqrt(np.einsum("...ci,ij,...cj->...", J, C, J)))
+    if calibration.choice is None:
+        return np.asarray(np.sqrt(_variance(camera, names, C, rays)))
+    # Parameters of different lenses are not to be compared, but what they predict is.
+    widest = _variance(camera, names, calibration.choice.chosen.covariance, rays)
+    for other in calibration.choice.close:
+        off = other.camera.project(np.nan_to_num(rays, nan=1.0)) - m
+        variance = _variance(other.camera, other.names, other.covariance, rays)
+        widest = np.fmax(widest, variance + np.vecdot(off, off))
+    return np.asarray(np.sqrt(np.where(np.isfinite(rays).all(-1), widest, np.nan)))
 
 
-def pixel_jacobian(calibration: Calibration, m: Array) -> Array:
-    """Differentiate the images of the rays that pixels m (..., 2) show by the parameters.
+def _variance(camera: Camera, names: Sequence[str], C: Array, rays: Array) -> Array:
+    """Variance (...) of the pixels that rays (..., 3) have, both coordinates together."""
+    J = pixel_jacobian(camera, names, rays)
+    return np.asarray(np.einsum("...ci,ij,...cj->...", J, C, J))
+
+
+def pixel_jacobian(camera: Camera, names: Sequence[str], rays: Array) -> Array:
+    """Differentiate the images of rays (..., 3) of the CRF by the parameters.
 
     (..., 2, q); NaN where the lens model does not reach.
     """
-    camera = calibration.camera
-    xy = camera.ideal(m)
-    reached = np.isfinite(xy).all(-1)
-    rays = np.concatenate([np.nan_to_num(xy), np.ones_like(xy[..., :1])], axis=-1)
-    J = np.empty((*m.shape[:-1], 2, len(calibration.names)))
-    value = calibration.parameters
-    for i, name in enumerate(calibration.names):
-        h = _STEP * max(1.0, abs(value[name]))
-        up, down = (camera.with_parameters({name: value[name] + s * h}) for s in (1, -1))
-        J[..., i] = (up.project(rays) - down.project(rays)) / (2 * h)
-    J[~reached] = np.nan
+    J = np.full((*rays.shape[:-1], 2, len(names)), np.nan)
+    reached = np.isfinite(rays).all(-1)
+    value = camera.parameters
+    for i, name in enumerate(names):
+        at = value.get(name, 0.0)
+        h = _STEP * max(1.0, abs(at))
+        up, down = (camera.with_parameters({name: at + s * h}) for s in (1, -1))
+        J[reached, :, i] = (up.project(rays[reached]) - down.project(rays[reached])) / (2 * h)
     return J
 
 
@@ -97,6 +113,11 @@ def std_with_view(calibration: Calibration, G: npt.ArrayLike) -> dict[str, float
     -------
     dict
         Standard deviation of each parameter, by name, for corners as noisy as those so far.
+
+    Raises
+    ------
+    DegenerateError
+        No camera sees a board there: it is behind it, edge-on, or all of it outside the picture.
 
     Notes
     -----
@@ -118,6 +139,8 @@ def std_with_view(calibration: Calibration, G: npt.ArrayLike) -> dict[str, float
     boards = calibration.board_points
     if not boards or any(W.shape != boards[0].shape for W in boards):
         raise CvnotesError("the views must come with their corners, all of one board")
+    if not _seen(calibration.camera, G, boards[0]):
+        raise DegenerateError("G: no camera sees a board there; hold it into the picture")
     poses = [*calibration.poses, G]
     before = _covariance_at(calibration, poses[:-1])
     after = _covariance_at(calibration, poses)
@@ -125,19 +148,20 @@ def std_with_view(calibration: Calibration, G: npt.ArrayLike) -> dict[str, float
     return {n: float(s * k) for (n, s), k in zip(calibration.std.items(), scale, strict=True)}
 
 
+def _seen(camera: Camera, G: Array, W: Array) -> bool:
+    """Return whether a camera shows all of a board, or what of it would fall into the picture."""
+    at = camera.moved(G)
+    m = at.project(W)
+    edge_on = abs(G[:3, 2] @ G[:3, 3]) <= _EDGE_ON * np.linalg.norm(G[:3, 3])
+    within = ((m >= -0.5) & (m <= np.array(camera.size) - 0.5)).all(axis=-1)
+    return bool((at.depth(W) > 0).all() and np.isfinite(m).all() and within.any() and not edge_on)
+
+
 def _covariance_at(calibration: Calibration, poses: list[Array]) -> Array:
     """Covariance of the shared parameters for noise of 1 px, if the board stood at these poses."""
     W = calibration.board_points[0]
     anywhere = np.zeros((len(poses), len(W), 2))  # does not change the Jacobian
     data = Correspondences.in_unit_frame(W, anywhere)
-    names = calibration.names
-    problem = Problem(
-        data.W,
-        data.m,
-        skew="skew" in names,
-        n_radial=sum(n.startswith("k") for n in names),
-        tangential="p1" in names,
-        model=type(calibration.lens),
-    )
+    problem = Problem.at(calibration.camera, calibration.names, data)
     state = problem.state(calibration.camera, data.pose_in_scaled_units(np.array(poses)))
     return covariance(problem.linearise(state)[1])

@@ -1,7 +1,7 @@
 """Step 5, the refinement: what is sought, how the corners depend on it, and the best of it.
 
-In this order: the parameters; the Jacobian; the normal equations, which have the shape of an arrow,
-as each view meets the others only in the camera that they share; Levenberg–Marquardt.
+In this order: the parameters; the Jacobian; the normal equations, whose matrix is an
+arrow, as each view meets the others only in the camera that they share; Levenberg–Marquardt.
 """
 
 from dataclasses import dataclass, field, replace
@@ -18,29 +18,17 @@ from cvnotes.base import (
     DegenerateError,
     Minimum,
     chunks,
+    flag,
     levenberg_marquardt,
     solved,
 )
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens, rotation_from_vector
-from cvnotes.camera.fisheye import through_angle
-from cvnotes.camera.lens import horner, radial_factor
-from cvnotes.camera.model import AnyLens, with_values
-from cvnotes.camera.rational import through_quotient
+from cvnotes.camera import AnyLens, Camera, Lens, rotation_from_vector
+from cvnotes.camera.any_lens import LENSES
+from cvnotes.camera.model import SENSOR, with_values
 
-# What `lens=` may name: the model, how many radial terms, and whether the tangential ones too.
-LENSES: dict[str, tuple[type[AnyLens], int, bool]] = {
-    "none": (Lens, 0, False),
-    "k1": (Lens, 1, False),
-    "k1 k2": (Lens, 2, False),
-    "k1 k2 k3": (Lens, 3, False),
-    "k1 k2 p1 p2": (Lens, 2, True),
-    "k1 k2 p1 p2 k3": (Lens, 3, True),
-    "rational": (RationalLens, 6, True),
-    "fisheye": (FisheyeLens, 4, False),
-}
-
-# Views worked on at a time: their arrays of one number per point then stay in the cache.
+# Views worked on at a time: their arrays of one number per point then stay in the cache. (All at
+# once, the normal equations of 1,000 views take twice as long; those of 100 do not notice.)
 _CHUNK = 128
 
 
@@ -70,41 +58,40 @@ class Problem:
         False where a row of `m` is only there to fill up a view with fewer points.
     skew : bool
         Estimate the skew; otherwise it is zero.
-    n_radial : int
-        Radial coefficients to estimate.
-    tangential : bool
-        Estimate p1 and p2; otherwise they are zero.
+    coefficients : tuple of str
+        Those of the lens that are to be estimated, one of its ``choices``; the others are zero.
     size : (width, height)
         Size of the pictures.
     model : type
-        `Lens`, `RationalLens` (with its 6 radial coefficients) or `FisheyeLens` (4).
+        The class of the lens.
     ridge : float
-        Pixels that each radial coefficient adds to the residuals, per unit; holds them near zero.
+        Pixels that each coefficient that another may cancel adds to the residuals, per unit; holds
+        them near zero.
     shape : ndarray, shape (s, n, 3), or None
         Ways in which the board may differ from W, which then is one (n, 3) for all views: their
         coefficients are estimated with the camera. See `board_shape`.
-    hold : float
+    hold : ndarray, shape (s,)
         Pixels that each coefficient of the shape adds, per unit.
+    told : float, optional
+        How many of these coefficients the views tell, where `hold` tells the rest; else all.
     """
 
     W: Array
     m: Array
     seen: npt.NDArray[np.bool_] | None = None
     skew: bool = False
-    n_radial: int = 2
-    tangential: bool = False
+    coefficients: tuple[str, ...] = ("k1", "k2")
     size: tuple[int, int] = (640, 480)
     model: type[AnyLens] = Lens
     ridge: float = 0.0
     shape: Array | None = None
-    hold: float = 0.0
+    hold: Array | None = None
+    told: float | None = None
     names: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         names = ["alpha_u", "alpha_v", *["skew"] * self.skew, "u0", "v0"]
-        names += [f"k{i}" for i in range(1, self.n_radial + 1)]
-        names += ["p1", "p2"] * self.tangential
-        object.__setattr__(self, "names", tuple(names))
+        object.__setattr__(self, "names", (*names, *self.coefficients))
 
     @staticmethod
     def of(data: Correspondences, size: tuple[int, int], lens: Any, skew: bool) -> "Problem":
@@ -112,8 +99,15 @@ class Problem:
         if not isinstance(lens, str) or lens not in LENSES:
             known = ", ".join(map(repr, LENSES))
             raise CvnotesError(f"lens: expected one of {known}, got {lens!r}")
-        model, n_radial, tangential = LENSES[lens]
-        return Problem(data.W, data.m, data.seen, skew, n_radial, tangential, size, model)
+        model, coefficients = LENSES[lens]
+        return Problem(data.W, data.m, data.seen, flag(skew, "skew"), coefficients, size, model)
+
+    @staticmethod
+    def at(camera: Camera, names: tuple[str, ...], data: Correspondences) -> "Problem":
+        """Make the problem of corners of which such parameters were the answer."""
+        coefficients = tuple(name for name in names if name not in SENSOR)
+        skew, model = "skew" in names, type(camera.lens)
+        return Problem(data.W, data.m, data.seen, skew, coefficients, camera.size, model)
 
     @property
     def n_seen(self) -> int:
@@ -133,13 +127,18 @@ class Problem:
         return replace(self, W=W, m=self.m[views], seen=seen)
 
     @property
-    def freedom(self) -> int:
+    def n_shape(self) -> int:
+        """How many coefficients the shape of the board has."""
+        return 0 if self.shape is None else len(self.shape)
+
+    @property
+    def freedom(self) -> float:
         """How many coordinates were measured beyond those that the parameters need."""
-        of_shape = 0 if self.shape is None else len(self.shape)
+        of_shape = self.n_shape if self.told is None else self.told
         return 2 * self.n_seen - len(self.names) - of_shape - 6 * len(self.m)
 
     def state(self, camera: Camera, poses: Array, W: Array | None = None) -> State:
-        """Give the state that stands for a camera, its poses (n_views, 4, 4), and a board."""
+        """Return the state that stands for a camera, its poses (n_views, 4, 4), and a board."""
         value = camera.parameters
         shared = np.array([value.get(name, 0.0) for name in self.names])
         if self.shape is not None:
@@ -148,7 +147,7 @@ class Problem:
         return State(shared, poses[:, :3, :3], poses[:, :3, 3])
 
     def camera_of(self, shared: Array) -> Camera:
-        """Give the camera that the shared parameters stand for; what is not sought is zero."""
+        """Return the camera that the shared parameters stand for; what is not sought is zero."""
         sought = dict(zip(self.names, shared.tolist(), strict=self.shape is None))
         A, lens = with_values(np.eye(3), self.model(), sought)
         return Camera(A, lens=lens, size=self.size)
@@ -156,20 +155,18 @@ class Problem:
     @property
     def held(self) -> Array:
         """What holds each shared parameter near zero: squared pixels per unit squared."""
-        k = 4 + self.skew
-        of_shape = 0 if self.shape is None else len(self.shape)
-        held = np.zeros(len(self.names) + of_shape)
-        held[k : k + self.n_radial], held[len(self.names) :] = self.ridge**2, self.hold**2
-        return held
+        ridge = [self.ridge**2 * (name in self.model.cancelling) for name in self.names]
+        hold = np.zeros(self.n_shape) if self.hold is None else self.hold**2
+        return np.concatenate([ridge, hold])
 
     def board(self, shared: Array) -> Array:
-        """Give the board's points: W, and what the coefficients of its shape add."""
+        """Return the board's points: W, and what the coefficients of its shape add."""
         if self.shape is None:
             return self.W
         return self.W + np.tensordot(shared[len(self.names) :], self.shape, 1)
 
-    def linearise(self, x: State) -> "tuple[float, Arrow]":
-        """Give the cost and the normal equations at x."""
+    def linearise(self, x: State) -> "tuple[float, NormalEquations]":
+        """Return the cost and the normal equations at x."""
         q, n_views = len(self.names), len(self.m)
         normal, costs = np.empty((n_views, q + 7, q + 6)), np.empty(n_views)
         corners = None if self.shape is None else CornerSums(self.shape, q)
@@ -183,7 +180,7 @@ class Problem:
             normal[part] += v @ v[:, :-1].mT
             costs[part] = np.vecdot(u[:, -1], u[:, -1]) + np.vecdot(v[:, -1], v[:, -1])
         by_shared = normal[..., :q].sum(0)
-        arrow = Arrow(
+        equations = NormalEquations(
             by_shared[:q],
             normal[:, q:-1, :q],
             normal[:, q:-1, q:],
@@ -193,14 +190,14 @@ class Problem:
         )
         cost = float(costs.sum())
         if corners:
-            arrow = corners.joined(arrow)
-        if self.ridge or self.hold:
+            equations = corners.joined(equations)
+        if self.ridge or self.shape is not None:
             held = self.held
-            arrow.g_shared[:] += held * x.shared
-            diagonal = np.einsum("ii->i", arrow.shared)
+            equations.g_shared[:] += held * x.shared
+            diagonal = np.einsum("ii->i", equations.shared)
             diagonal += held
             cost += float(held @ x.shared**2)
-        return cost, arrow
+        return cost, equations
 
     def residuals(self, camera: Camera, x: State) -> Array:
         """Observed minus predicted pixels (n_views, n, 2): 0 where none was seen.
@@ -210,20 +207,6 @@ class Problem:
         W = self.board(x.shared)
         r = self.m - Camera.project.inside(camera, W @ x.R.mT + x.T[:, None])
         return r if self.seen is None else np.where(self.seen[..., None], r, 0.0)
-
-    def jacobian(self, x: State) -> tuple[Array, Array]:
-        """Give J and r (predicted minus observed) of each view, for whoever wants to check them.
-
-        J is (n_views, n, 2, q + 6): the shared parameters, then ω and T; r is (n_views, n, 2).
-        """
-        parts = chunks(len(self.m), _CHUNK)
-        both = np.concatenate([self._jacobian(x, i).transpose(2, 3, 1, 0).copy() for i in parts])
-        J, r = both[..., :-1], both[..., -1]
-        if self.shape is not None:
-            by_corner = np.einsum("vnct,vtj->vncj", J[..., -3:], x.R)
-            by_shape = np.einsum("vncj,snj->vncs", by_corner, self.shape, optimize=True)
-            J = np.concatenate([J[..., :-6], by_shape, J[..., -6:]], axis=-1)
-        return J, r
 
     @cached_property
     def _by_coordinate(self) -> tuple[Array, Array]:
@@ -239,9 +222,9 @@ class Problem:
         return J
 
     def _jacobian(self, x: State, part: slice) -> Array:
-        """Give [J r]ᵀ of some views, (q + 7, 2, views, n), until it is asked for others.
+        """Return [J r]ᵀ of some views, (q + 7, 2, views, n), until it is asked for others.
 
-        One row for each parameter, then r.
+        One row for each parameter, then r. `jacobian.jacobian` has the same to be read.
 
         The residual is m̂ − m. The pose moves as R ← exp(ω) R, T ← T + dT, so a point moves by
         dM = ω × (R W) + dT. Coordinates stand before views and points, so that each operation
@@ -257,21 +240,17 @@ class Problem:
         J = self._workspace[:, :, : m.shape[1]]
         by_lens, by_omega, by_T, residual = J[first:q], J[q : q + 3], J[q + 3 : -1], J[-1]
 
-        # 1. into the CRF, 2. divided by z
+        # 1. into the CRF
         R, T = x.R[part], x.T[part].T[..., None]
         RW = R.transpose(1, 0, 2) @ W if W.ndim == 2 else (R @ W[part]).transpose(1, 0, 2).copy()
         M = RW + T
-        over_z = 1 / M[2]
-        X, Y = xy = M[:2] * over_z
 
-        # 3. the lens
-        fisheye = self.model is FisheyeLens
-        if fisheye:  # which goes by the angle of the ray, not by x and y
-            xy_lens, by_M, by_lens[:] = through_angle(x.shared[first:q].tolist(), M)
-        else:
-            xy_lens, D = self._through_lens(x.shared[first:q], xy, by_lens)
+        # 2. through the lens
+        values = dict(zip(self.coefficients, x.shared[first:q].tolist(), strict=True))
+        lens = self.model.unchecked(values)
+        xy_lens = lens.derivatives(M, self.coefficients, (by_T.swapaxes(0, 1), by_lens))[0]
 
-        # 4. the sensor turns x', y' and all their derivatives into pixels
+        # 3. onto the sensor, which turns x', y' and all their derivatives into pixels
         J[0, 0], J[1, 1] = xy_lens
         np.multiply(alpha, xy_lens, out=residual)
         residual += centre
@@ -279,70 +258,27 @@ class Problem:
         if self.skew:
             J[2, 0] = xy_lens[1]
             residual[0] += skew * xy_lens[1]
-            by_lens[:, 0] += (skew / alpha[0]) * by_lens[:, 1]
+            by_lens[:, 0] += skew / alpha[0] * by_lens[:, 1]
+            by_T[:, 0] += skew / alpha[0] * by_T[:, 1]
         by_lens *= alpha
+        by_T *= alpha
 
-        # and the pose: by T, where dT acts on x and y through 1/z, then by ω, where dM = ω × R W
+        # and the pose: by T, where dM = dT, and by ω, where dM = ω × R W
         by_X, by_Y, by_Z = by_T
-        if fisheye:
-            np.multiply(alpha, by_M.transpose(1, 0, 2, 3), out=by_T)
-            by_T[:, 0] += skew * by_M[1]
-        else:
-            alpha_over_z = alpha * over_z
-            np.multiply(alpha_over_z, D[:2], out=by_X)
-            np.multiply(alpha_over_z, D[1:], out=by_Y)
-            if self.skew:
-                by_X[0] += skew * over_z * D[1]
-                by_Y[0] += skew * over_z * D[2]
-            np.negative(X * by_X + Y * by_Y, out=by_Z)
         np.subtract(RW[1] * by_Z, RW[2] * by_Y, out=by_omega[0])
         np.subtract(RW[2] * by_X, RW[0] * by_Z, out=by_omega[1])
         np.subtract(RW[0] * by_Y, RW[1] * by_X, out=by_omega[2])
         return J if self.seen is None else J * self.seen[part]
 
-    def _through_lens(self, lens: Array, xy: Array, by_lens: Array) -> tuple[Array, Array]:
-        """Distort xy (2, views, n), and differentiate the x', y' that come out.
-
-        Into `by_lens` by the coefficients, in their order; D by x and y, (3, views, n), as it is
-        symmetric: D11, D12, D22.
-        """
-        if self.model is RationalLens:
-            xy_lens, by_xy, by_lens[:] = through_quotient(lens[:6].tolist(), lens[6:].tolist(), *xy)
-            return xy_lens, np.stack([by_xy[0, 0], by_xy[0, 1], by_xy[1, 1]])
-        X, Y = xy
-        k = lens[: self.n_radial].tolist()
-        products = np.empty((3, *X.shape))
-        np.multiply(xy, X, out=products[:2])
-        np.multiply(Y, Y, out=products[2])
-        r2 = products[0] + products[2]
-        power = xy
-        for i in range(self.n_radial):
-            power = np.multiply(power, r2, out=by_lens[i])
-        L, slope = radial_factor(k, r2), horner([2 * i * ki for i, ki in enumerate(k, 1)], r2)
-        xy_lens = L * xy
-        D = slope * products
-        D[::2] += L
-        if self.tangential:
-            p1, p2 = lens[-2:].tolist()
-            by_p1, by_p2 = by_lens[-2:]
-            np.multiply(2, products[1:], out=by_p1)
-            np.multiply(2, products[:2], out=by_p2)
-            by_p1[1] += r2
-            by_p2[0] += r2
-            xy_lens += p1 * by_p1 + p2 * by_p2
-            by_xy = np.array([[6 * p2, 2 * p1], [2 * p1, 2 * p2], [2 * p2, 6 * p1]])
-            D += (by_xy @ xy.reshape(2, -1)).reshape(D.shape)
-        return xy_lens, D
-
 
 # Correlation of neighbouring residuals from which on they are no noise; photographs with a lens
 # that fits reach 0.3.
-ALIKE = 0.4
+CORRELATED = 0.4
 _ONLY_ROUNDING = 1e-6  # px, more than rounding leaves
 
 
-def likeness(residuals: Array, freedom: int) -> float:
-    """Correlate the residuals (n_views, n, 2) of corners that follow each other.
+def autocorrelation(residuals: Array, freedom: float) -> float:
+    """Return the autocorrelation of residuals (n_views, n, 2) at lag 1: corner and next corner.
 
     0 where that tells nothing: when there are hardly more measured coordinates than unknowns (the
     difference is `freedom`), or when only rounding errors are left.
@@ -350,8 +286,10 @@ def likeness(residuals: Array, freedom: int) -> float:
     Examples
     --------
     >>> drift = np.linspace(-1, 1, 50).reshape(1, 25, 2)
-    >>> likeness(drift, 40) > 0.8, likeness(drift, 10), likeness(1e-12 * drift, 40)
-    (True, 0.0, 0.0)
+    >>> autocorrelation(drift, 40) > 0.8
+    True
+    >>> autocorrelation(drift, 10), autocorrelation(1e-12 * drift, 40)
+    (0.0, 0.0)
     """
     r = residuals if np.isfinite(residuals.sum()) else np.nan_to_num(residuals)
     squares = float((r * r).sum())
@@ -385,7 +323,7 @@ class CornerSums:
         self.gradient += both[:, -1].sum(0)
         self.with_poses.append(both[:, self.q : -1])
 
-    def joined(self, arrow: "Arrow") -> "Arrow":
+    def joined(self, equations: "NormalEquations") -> "NormalEquations":
         """Put the coefficients of the shape beside the parameters of the camera."""
         s = len(self.shape)
         ways = self.shape.reshape(s, -1).T
@@ -394,10 +332,10 @@ class CornerSums:
         by_pose = np.concatenate(self.with_poses)
         border = by_pose.reshape(*by_pose.shape[:2], -1) @ ways
         return replace(
-            arrow,
-            shared=np.block([[arrow.shared, with_camera], [with_camera.T, own]]),
-            border=np.concatenate([arrow.border, border], axis=-1),
-            g_shared=np.concatenate([arrow.g_shared, np.ravel(self.gradient) @ ways]),
+            equations,
+            shared=np.block([[equations.shared, with_camera], [with_camera.T, own]]),
+            border=np.concatenate([equations.border, border], axis=-1),
+            g_shared=np.concatenate([equations.g_shared, np.ravel(self.gradient) @ ways]),
         )
 
 
@@ -408,8 +346,8 @@ _UNDETERMINED = (
 
 
 @dataclass(frozen=True, eq=False)
-class Arrow:
-    """The normal equations, in blocks: JᵀJ and Jᵀr."""
+class NormalEquations:
+    """JᵀJ and Jᵀr in blocks: the poses' on the diagonal, bordered by the shared parameters."""
 
     shared: Array  # (q, q) border corner
     border: Array  # (n_views, 6, q)
@@ -418,7 +356,7 @@ class Arrow:
     g_poses: Array  # (n_views, 6)
     view_costs: Array  # (n_views,) rᵀr of each view
 
-    def damped(self, damping: float) -> "Arrow":
+    def damped(self, damping: float) -> "NormalEquations":
         """Multiply the diagonal by 1 + damping."""
         if not damping:
             return self
@@ -438,8 +376,11 @@ class Arrow:
         return inner, np.asarray(total)
 
 
-def solve_arrow(system: Arrow, damping: float) -> tuple[tuple[Array, Array], float]:
-    """Solve the damped normal equations; gives the step (shared, poses) and the predicted gain."""
+def solve_by_schur(system: NormalEquations, damping: float) -> tuple[tuple[Array, Array], float]:
+    """Solve the damped normal equations, the poses eliminated by the Schur complement S.
+
+    Gives the step (shared, poses) and the predicted gain.
+    """
     system = system.damped(damping)
     inner, from_poses = system.eliminated
     S, g = system.shared - from_poses[:, :-1], from_poses[:, -1] - system.g_shared
@@ -449,18 +390,22 @@ def solve_arrow(system: Arrow, damping: float) -> tuple[tuple[Array, Array], flo
     return (d_shared, d_poses), float(gain)
 
 
-def covariance(system: Arrow) -> Array:
+def covariance(system: NormalEquations) -> Array:
     """Invert the normal matrix for the shared parameters, (q, q), for noise of 1 px."""
     S = system.shared - system.eliminated[1][:, :-1]
     diagonal = np.diagonal(S)
     if not (diagonal > 0).all():
         raise DegenerateError(_UNDETERMINED)
     scale = np.sqrt(diagonal[:, None] * diagonal)
-    inverse = solved(np.linalg.inv, S / scale, why=_UNDETERMINED) / scale
+    inverse = solved(np.linalg.inv, S / scale, why=_UNDETERMINED)
+    if not (np.diagonal(inverse) > 0).all():  # singular but for rounding: as large as that leaves
+        w, V = np.linalg.eigh(S / scale)
+        inverse = V / np.maximum(w, np.finfo(float).eps * w.max()) @ V.T
+    inverse = inverse / scale
     return np.asarray((inverse + inverse.T) / 2)
 
 
-def pose_covariance(system: Arrow, shared: Array) -> Array:
+def pose_covariance(system: NormalEquations, shared: Array) -> Array:
     """Invert the normal matrix for each pose (ω, T), (n_views, 6, 6), for noise of 1 px.
 
     The uncertainty of the shared parameters, from `covariance`, is included.
@@ -477,8 +422,9 @@ def _damp(N: Array, damping: float) -> Array:
     return N
 
 
-# Pixels that a coefficient of a quotient costs per unit, and how far that sum is brought down.
-_RIDGE, _WITH_RIDGE, _PATIENCE = 0.1, 1e-6, 20
+# Pixels that a coefficient which another may cancel costs per unit, and how far that sum is
+# brought down.
+RIDGE, _WITH_RIDGE, _PATIENCE = 0.1, 1e-6, 20
 # Squared pixels per coordinate that rounding alone may leave.
 _ROUNDING = 1e-25
 
@@ -490,11 +436,11 @@ def minimise(
     tolerance: float = 1e-12,
     steps: int = 100,
     patience: int | None = None,
-) -> Minimum[State, Arrow]:
+) -> Minimum[State, NormalEquations]:
     """Minimise the reprojection error from a start, by Levenberg–Marquardt.
 
-    For the numbers see `levenberg_marquardt`; with a quotient for a lens, which has a valley in
-    place of a minimum, `patience` says how often its bottom is felt for.
+    For the numbers see `levenberg_marquardt`; of a lens that has a valley in place of a minimum,
+    `patience` says how often its bottom is felt for.
 
     Raises
     ------
@@ -508,12 +454,12 @@ def minimise(
     .. [1] Notes 2b.4, "Refinement by non-linear optimization".
     .. [2] Triggs et al., Bundle adjustment: a modern synthesis (2000), section 6.
     """
-    if problem.model is RationalLens:
-        found = _minimise_quotient(problem, start, tolerance, patience)
+    if problem.model.cancelling:
+        found = _minimise_in_valley(problem, start, tolerance, patience)
     else:
         found = _descend(problem, start, tolerance, steps=steps)
-    # (a fisheye may see a board beside it, and shows it elsewhere than one behind)
-    behind = problem.model is not FisheyeLens and found.x.T[:, 2].min() <= 0
+    # (a wide lens may see a board beside it, and shows it elsewhere than one behind)
+    behind = not problem.model.wide and found.x.T[:, 2].min() <= 0
     if found.x.shared[:2].min() <= 0 or behind:
         raise ConvergenceError(
             "the refinement left the space of cameras (a focal length or the depth of a board is "
@@ -529,11 +475,11 @@ def _descend(
     *,
     steps: int = 100,
     patience: int | None = None,
-) -> Minimum[State, Arrow]:
+) -> Minimum[State, NormalEquations]:
     return levenberg_marquardt(
         start,
         problem.linearise,
-        solve_arrow,
+        solve_by_schur,
         take_step,
         follow=poses_follow,
         max_iterations=steps,
@@ -543,17 +489,17 @@ def _descend(
     )
 
 
-def _minimise_quotient(
+def _minimise_in_valley(
     problem: Problem, start: State, tolerance: float, patience: int | None
-) -> Minimum[State, Arrow]:
-    """Minimise where numerator and denominator of the lens nearly cancel each other.
+) -> Minimum[State, NormalEquations]:
+    """Minimise where coefficients nearly cancel each other, as in a quotient.
 
     Along the valley where they do, noise would carry the coefficients away for ever. A ridge,
-    which holds them near zero as if each had been measured with an uncertainty of 1/`_RIDGE`, keeps
+    which holds them near zero as if each had been measured with an uncertainty of 1/`RIDGE`, keeps
     them; from there the few steps are taken that lead to the exact answer, if the data have one.
     """
     held = _descend(
-        replace(problem, ridge=_RIDGE),
+        replace(problem, ridge=RIDGE),
         start,
         max(0.1 * tolerance, _WITH_RIDGE),
         steps=400,
@@ -570,7 +516,7 @@ def take_step(x: State, step: tuple[Array, Array]) -> State:
     )
 
 
-def poses_follow(x: State, system: Arrow) -> State:
+def poses_follow(x: State, system: NormalEquations) -> State:
     """Take a step of the poses alone, the camera being held."""
     try:
         step = solved(np.linalg.solve, system.poses, system.g_poses[..., None], why=_UNDETERMINED)
@@ -579,7 +525,7 @@ def poses_follow(x: State, system: Arrow) -> State:
     return take_step(x, (np.zeros_like(x.shared), -step[..., 0]))
 
 
-def poses_at_rest(problem: Problem, x: State, steps: int = 10) -> tuple[State, Array]:
+def refit_poses(problem: Problem, x: State, steps: int = 10) -> tuple[State, Array]:
     """Fit the poses of views, that are close already, to a camera that is held.
 
     Gives the sum of squares of each view (n_views,) beside the state.

@@ -9,17 +9,35 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
-from cvnotes.calibration.refinement import ALIKE, likeness
+from cvnotes.calibration.doubts import Corner, Doubt, View, Views
+from cvnotes.calibration.refinement import CORRELATED, autocorrelation
 from cvnotes.calibration.result import Calibration
+from cvnotes.calibration.thresholds import (
+    BY_CHANCE,
+    FLAT,
+    MISFIT,
+    MOVED,
+    NEGLIGIBLE,
+    OF_PICTURE,
+    OUTLIER,
+    PARALLEL,
+    PIXEL_RATIO,
+    TIMES_MEDIAN,
+    TIMES_TYPICAL,
+    TOO_SMALL,
+    UNCERTAIN,
+    UNDETERMINED,
+    UNKNOWN,
+    WEAK,
+)
 from cvnotes.calibration.zhang import constraints
-from cvnotes.camera import FisheyeLens, xy_from_px
-from cvnotes.camera.model import AnyLens
+from cvnotes.camera import AnyLens, xy_from_px
 
 _FAR = 100  # boards compared with each other; all pairs of thousands would take too long
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class Diagnostics:
     """What a calibration is judged by.
 
     Parameters
@@ -38,7 +56,7 @@ class Evidence:
         Where the corners were seen, px.
     converged : bool
         Whether the refinement ended at a minimum.
-    likeness : float
+    autocorrelation : float
         Correlation between the residuals of corners that follow each other; about 0 for noise.
     by_radius : float
         Part of the residuals' squares that goes outwards or inwards by the distance from the
@@ -59,7 +77,7 @@ class Evidence:
     distances: Array
     corners: Array
     converged: bool
-    likeness: float = 0.0
+    autocorrelation: float = 0.0
     by_radius: float = 0.0
     together: float = 0.0
     shape_tried: bool = False
@@ -70,15 +88,15 @@ class Evidence:
         residuals: Array,
         corners: Array,
         board: Array,
-        freedom: int | None = None,
-    ) -> "Evidence":
+        freedom: float | None = None,
+    ) -> "Diagnostics":
         """Gather what a calibration is judged by; residuals and corners are (n_views, n, 2).
 
         They are of the points `board`, (n, 3) or (n_views, n, 3). `freedom` is that of the
-        residuals; without it their likeness is not looked at.
+        residuals; without it their autocorrelation is not looked at.
         """
-        may_matter = found.view_rms.max() > _MOVED * max(found.size)
-        return Evidence(
+        may_matter = found.view_rms.max() > MOVED * max(found.size)
+        return Diagnostics(
             A=found.A,
             lens=found.lens,
             size=found.size,
@@ -88,10 +106,11 @@ class Evidence:
             distances=np.sqrt(residuals[..., 0] ** 2 + residuals[..., 1] ** 2),
             corners=corners,
             converged=found.converged,
-            likeness=0.0 if freedom is None else likeness(residuals, freedom),
+            autocorrelation=0.0 if freedom is None else autocorrelation(residuals, freedom),
             by_radius=by_radius(residuals, corners, found.A[:2, 2]),
             together=missed_together(residuals, board) if may_matter else 0.0,
-            shape_tried=found.shape is not None or bool(found.left_out_boards),
+            shape_tried=found.shape is not None
+            or (found.choice is not None and len(found.choice.by_board) > 1),
         )
 
     @cached_property
@@ -125,7 +144,7 @@ class Evidence:
 
 
 def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
-    """Tell which part of the residuals a better lens would explain.
+    """Return which part of the residuals a better lens would explain.
 
     Notes
     -----
@@ -144,7 +163,7 @@ def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
         seen = np.isfinite(squares_of) & (squares_of > 0)
         squares_of, outwards, r2 = squares_of[seen], outwards[seen], r2[seen]
     n, squares = squares_of.size, float(squares_of.sum())
-    if n < 2 * _POWERS or squares < n * _NEGLIGIBLE**2 or not r2.max() > 0:
+    if n < 2 * _POWERS or squares < n * NEGLIGIBLE**2 or not r2.max() > 0:
         return 0.0
     # Normal equations of r, r³, …, the largest radius being 1: sums of powers of r² alone. (A QR
     # of all corners would take longer than the rest of the judgement.)
@@ -155,7 +174,7 @@ def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
     N = powers[:-1] @ powers[1:].T
     g = powers[:-1] @ outwards.ravel() / np.sqrt(largest)
     part = float(g @ np.linalg.lstsq(N, g, rcond=1e-13)[0])
-    return part / squares if part > _POWERS * _CHANCE * squares / (2 * n) else 0.0
+    return part / squares if part > _POWERS * BY_CHANCE * squares / (2 * n) else 0.0
 
 
 def missed_together(residuals: Array, board: Array) -> float:
@@ -207,7 +226,7 @@ def missed_together(residuals: Array, board: Array) -> float:
 
 
 def widest_angle(poses: Array) -> float:
-    """Give the largest angle between the planes of two boards (n, 4, 4), in degrees.
+    """Return the largest angle between the planes of two boards (n, 4, 4), in degrees.
 
     Of very many boards, only those farthest from their mean are compared.
 
@@ -224,25 +243,17 @@ def widest_angle(poses: Array) -> float:
     return degrees(acos(min(1.0, float(np.abs(normals @ normals.T).min()))))
 
 
-# Thresholds between sets that give the focal length and sets that do not, measured on 25 noisy
-# sets of each family in tests/test_reliability.py.
-_UNDETERMINED, _WEAK = 0.0023, 0.01  # second smallest over largest singular value of V
-_PARALLEL, _FLAT = 5.0, 15.0  # largest angle between two boards, degrees
-_UNCERTAIN, _UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over its value
-_POWERS, _CHANCE = 5, 5.0  # of the radius; F from which on they are no chance
-_NEGLIGIBLE = 0.02  # px: what a lens misses below this does not matter
-_TOO_SMALL = 0.15  # part of the residuals by radius; 0.02 at most with a lens that fits
-_MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed or be another
+_POWERS = 5  # of the radius
 _ADVICE = "tilt the board by 30 to 45 degrees, in different directions"
 
 
-def judge(evidence: Evidence) -> tuple[tuple[str, ...], bool]:
-    """Give sentences about what is doubtful, and whether the result is reliable all the same.
+def judge(evidence: Diagnostics) -> tuple[tuple[Doubt, ...], bool]:
+    """Return sentences about what is doubtful, and whether the result is reliable all the same.
 
     Returns
     -------
-    warnings : tuple of str
-        Empty if nothing is doubtful.
+    warnings : tuple of Doubt
+        Sentences that know their views. Empty if nothing is doubtful.
     reliable : bool
         False when the answer may be wrong by more than its error bars say.
     """
@@ -250,51 +261,52 @@ def judge(evidence: Evidence) -> tuple[tuple[str, ...], bool]:
     doubtful = [*_systematic(evidence), *_outside(evidence), *_outliers(evidence)]
     if not fatal:
         doubtful = [*_weak(evidence), *doubtful]
-    return tuple(fatal + doubtful), not fatal
+    sentences = (s if isinstance(s, Doubt) else Doubt(s) for s in fatal + doubtful)
+    return tuple(sentences), not fatal
 
 
-def _undetermined(e: Evidence) -> Iterator[str]:
+def _undetermined(e: Diagnostics) -> Iterator[str]:
     if not e.converged:
         yield "the refinement stopped before it reached a minimum; the answer is only a start"
-    if e.tilt_between < _PARALLEL:
+    if e.tilt_between < PARALLEL:
         yield (
             f"all boards are nearly parallel (at most {e.tilt_between:.1f}° between two), which "
             f"leaves the focal length open: {_ADVICE}"
         )
-    elif e.determinacy < _UNDETERMINED:
+    elif e.determinacy < UNDETERMINED:
         yield (
             f"these views do not determine the camera (V is singular to {e.determinacy:.4f}): "
             f"{_ADVICE}"
         )
-    elif e.focal_uncertainty > _UNKNOWN:
+    elif e.focal_uncertainty > UNKNOWN:
         yield f"the focal length is known to {e.focal_uncertainty:.0%} only: {_ADVICE}"
     ratio = e.A[1, 1] / e.A[0, 0]
-    if not 0.5 < ratio < 2:
+    if not 1 / PIXEL_RATIO < ratio < PIXEL_RATIO:
         yield (
             f"pixels {ratio:.2g} times as high as wide are unlikely: are rows and columns of the "
             "board swapped, or its squares not square?"
         )
 
 
-def _weak(e: Evidence) -> Iterator[str]:
+def _weak(e: Diagnostics) -> Iterator[str]:
     if len(e.poses) == 2:
         yield (
             "two views give as many constraints as A has unknowns, so nothing checks the answer: "
             "add views"
         )
-    elif e.tilt_between < _FLAT or e.determinacy < _WEAK:
+    elif e.tilt_between < FLAT or e.determinacy < WEAK:
         yield (
             f"the boards' tilts (at most {e.tilt_between:.0f}° between two) determine the focal "
             f"length only weakly: {_ADVICE}"
         )
-    elif e.focal_uncertainty > _UNCERTAIN:
+    elif e.focal_uncertainty > UNCERTAIN:
         yield (
             f"the focal length has a standard deviation of {e.focal_uncertainty:.1%}: add views, "
             "fill more of the picture, or tilt the board more"
         )
 
 
-def _mirrored(e: Evidence) -> Iterator[str]:
+def _mirrored(e: Diagnostics) -> Iterator[str]:
     """Find boards seen from behind: the sign of det H, which no RMS shows."""
     facing = np.vecdot(e.poses[:, :3, 2], e.poses[:, :3, 3])
     behind = np.flatnonzero(facing < 0)
@@ -304,7 +316,7 @@ def _mirrored(e: Evidence) -> Iterator[str]:
             "(u, v)?"
         )
     elif len(behind):
-        yield f"boards seen from behind in views {_listed(behind)}: mirrored labels or pictures?"
+        yield Doubt("boards seen from behind in {}: mirrored labels or pictures?", _views(behind))
 
 
 def misfits(view_rms: Array) -> npt.NDArray[np.intp]:
@@ -320,13 +332,15 @@ def misfits(view_rms: Array) -> npt.NDArray[np.intp]:
     >>> misfits(np.array([0.1, 0.2, 3.0, 0.15])).tolist()
     [2]
     """
-    misfit = view_rms > 0.5
-    return np.flatnonzero(misfit & (view_rms > 4 * np.median(view_rms)) if misfit.any() else misfit)
+    misfit = view_rms > MISFIT
+    if misfit.any():
+        misfit &= view_rms > TIMES_TYPICAL * np.median(view_rms)
+    return np.flatnonzero(misfit)
 
 
-def _badly_fitted(e: Evidence) -> Iterator[str]:
+def _badly_fitted(e: Diagnostics) -> Iterator[str]:
     """Find views and whole sets that no camera of this kind explains."""
-    limit = 0.005 * max(e.size)
+    limit = OF_PICTURE * max(e.size)
     if e.view_rms.max() > limit and e.typical_rms > limit:
         yield (
             f"the corners are {e.typical_rms:.1f} px away from where the model puts them, in a "
@@ -336,12 +350,14 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
     bad = misfits(e.view_rms)
     if len(bad):
         worst = int(np.argmax(e.view_rms))
-        yield (
-            f"views {_listed(bad)} do not fit the others (view {worst}: "
+        yield Doubt(
+            "{} do not fit the others ({}: "
             f"{e.view_rms[worst]:.2f} px, typical {e.typical_rms:.2f} px): moved, zoomed, rotated "
-            "or badly found? Leave them out and see what changes"
+            "or badly found? Leave them out and see what changes",
+            _views(bad),
+            View(worst),
         )
-    if e.by_radius > _TOO_SMALL:
+    if e.by_radius > TOO_SMALL:
         yield (
             f"corners miss their places outwards or inwards by their distance from the middle "
             f"({e.by_radius:.0%} of the residuals): this lens has too few coefficients; let views "
@@ -357,13 +373,13 @@ def _badly_fitted(e: Evidence) -> Iterator[str]:
         )
 
 
-def _is_no_noise(e: Evidence) -> bool:
-    """Tell whether corners miss their places together, by more than bent boards do."""
-    most = _MOVED * max(e.size)
-    return e.together > most or (e.likeness > ALIKE and e.typical_rms > most)
+def _is_no_noise(e: Diagnostics) -> bool:
+    """Return whether corners miss their places together, by more than bent boards do."""
+    most = MOVED * max(e.size)
+    return e.together > most or (e.autocorrelation > CORRELATED and e.typical_rms > most)
 
 
-def _no_noise(e: Evidence) -> str:
+def _no_noise(e: Diagnostics) -> str:
     """Say that residuals are alike, and ask what may be the cause; one that is ruled out is not."""
     what = (
         "this is no noise, and no shape that the board has in all pictures explains it: did it "
@@ -377,30 +393,29 @@ def _no_noise(e: Evidence) -> str:
     )
 
 
-def _systematic(e: Evidence) -> Iterator[str]:
+def _systematic(e: Diagnostics) -> Iterator[str]:
     """Find residuals that are small, but of which the error bars are not a measure."""
-    if e.likeness > ALIKE and not _is_no_noise(e):
+    if e.autocorrelation > CORRELATED and not _is_no_noise(e):
         yield f"{_no_noise(e)} The true error is then larger than noise alone would make it"
 
 
-def _outliers(e: Evidence) -> Iterator[str]:
+def _outliers(e: Diagnostics) -> Iterator[str]:
     """Find single corners far from their place."""
     d = np.nan_to_num(e.distances)
-    # A distance with Gaussian coordinates exceeds 5 of its medians once in 30 million corners.
-    if 2 * np.count_nonzero(5 * d > d.max()) > d.size:  # sooner counted than the median is found
+    # (sooner counted than the median is found)
+    if 2 * np.count_nonzero(TIMES_MEDIAN * d > d.max()) > d.size:
         return
-    limit = max(5 * np.median(d[d > 0]), 0.2) if d.any() else np.inf
+    limit = max(TIMES_MEDIAN * np.median(d[d > 0]), OUTLIER) if d.any() else np.inf
     worst = d.argmax(1)
-    found = [
-        f"view {i}, corner {worst[i]} ({d[i, worst[i]]:.1f} px)"
-        for i in np.flatnonzero(d.max(1) > limit)
-    ]
+    found = np.flatnonzero(d.max(1) > limit).tolist()
     if found:
+        first = ", ".join(f"{{}} ({d[i, worst[i]]:.1f} px)" for i in found[:3])
         more = f" and in {len(found) - 3} more views" if len(found) > 3 else ""
-        yield f"corners far from their place: {', '.join(found[:3])}{more}"
+        places = (Corner(i, int(worst[i])) for i in found[:3])
+        yield Doubt(f"corners far from their place: {first}{more}", *places)
 
 
-def _outside(e: Evidence) -> Iterator[str]:
+def _outside(e: Diagnostics) -> Iterator[str]:
     w, h = e.size
     u, v = e.corners[..., 0], e.corners[..., 1]
     if min(u.min(), v.min()) < -0.5 or u.max() > w - 0.5 or v.max() > h - 0.5:
@@ -408,7 +423,7 @@ def _outside(e: Evidence) -> Iterator[str]:
             f"corners lie outside of the {w}×{h} picture: is size (width, height), and of these "
             "pictures?"
         )
-    if isinstance(e.lens, FisheyeLens):  # whose picture may well be a disc that ends before
+    if e.lens.wide:  # whose picture may well be a disc that ends before
         return
     xy = xy_from_px.inside(e.A, np.array([[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]]))
     if not e.lens.reaches(float(np.hypot(*xy.T).max())):
@@ -418,6 +433,5 @@ def _outside(e: Evidence) -> Iterator[str]:
         )
 
 
-def _listed(indices: npt.NDArray[np.intp]) -> str:
-    words = [str(i) for i in indices[:5]]
-    return ", ".join(words) + (" …" if len(indices) > 5 else "")
+def _views(indices: npt.NDArray[np.intp]) -> Views:
+    return Views(tuple(indices.tolist()))

@@ -1,9 +1,9 @@
 """What a calibration gives: a camera, its error bars, and what is doubtful about it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from warnings import warn
 
 import numpy as np
@@ -12,11 +12,20 @@ from cvnotes.base import Array, CalibrationWarning, CvnotesError, Minimum
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.board_shape import BoardShape
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import Arrow, Problem, State, covariance, pose_covariance
-from cvnotes.camera import Camera
-from cvnotes.camera.model import SENSOR, AnyLens
+from cvnotes.calibration.refinement import (
+    NormalEquations,
+    Problem,
+    State,
+    covariance,
+    pose_covariance,
+)
+from cvnotes.calibration.thresholds import TIMES_NOISE
+from cvnotes.camera import AnyLens, Camera
+from cvnotes.camera.model import SENSOR
 
-_MORE = 1.5  # from which ratio on the two kinds of deviations are said to differ
+if TYPE_CHECKING:
+    from cvnotes.calibration.choice import Choice
+
 _ROUNDED_RMS = 1e-6  # px; what is left of exact corners is rounding, whose deviations say nothing
 
 
@@ -40,16 +49,13 @@ class Calibration:
     covariance : ndarray, shape (q, q)
         Their covariance, for noise as large as the residuals show.
     warnings : tuple of str
-        What is doubtful, in sentences.
+        What is doubtful, in sentences; those of `calibrate` are `Doubt`, which know their views.
     reliable : bool
         False when the views do not determine the answer, however small the residuals are.
     converged : bool
         Whether the refinement reached its minimum.
-    left_out : dict
-        With ``lens="auto"``, how well each lens predicts views left out (px); else empty. It is
-        not kept in files.
-    left_out_boards : dict
-        With ``board="auto"``, the same for each kind of board.
+    choice : Choice or None
+        With "auto" for lens or board, how well each predicts views left out; not kept in files.
     shape : BoardShape or None
         The board as it was found, unless it was taken for flat; `board_points` then are on it.
     """
@@ -65,8 +71,7 @@ class Calibration:
     warnings: tuple[str, ...] = ()
     reliable: bool = True
     converged: bool = True
-    left_out: Mapping[str, float] = field(default_factory=dict, repr=False)
-    left_out_boards: Mapping[str, float] = field(default_factory=dict, repr=False)
+    choice: "Choice | None" = field(default=None, repr=False)
     shape: BoardShape | None = None
     _data: Correspondences | None = field(default=None, repr=False)
     _covariance_of_views: Array | None = field(default=None, repr=False)
@@ -74,7 +79,7 @@ class Calibration:
 
     @staticmethod
     def of(
-        problem: Problem, data: Correspondences, best: Minimum[State, Arrow], **also: Any
+        problem: Problem, data: Correspondences, best: Minimum[State, NormalEquations], **also: Any
     ) -> "Calibration":
         """Undo the scaling of the board, and add the error bars; not judged yet."""
         camera, q = problem.camera_of(best.x.shared), len(problem.names)
@@ -106,7 +111,7 @@ class Calibration:
         )
 
     def judged(self, sentences: tuple[str, ...], reliable: bool) -> "Calibration":
-        """Give the same with what is doubtful, and warn of it whoever called the caller."""
+        """Return the same with what is doubtful, and warn of it whoever called the caller."""
         for sentence in sentences:
             warn(sentence, CalibrationWarning, stacklevel=3)
         return replace(self, warnings=sentences, reliable=reliable)
@@ -129,7 +134,8 @@ class Calibration:
         It holds for bent boards and lenses that do not quite fit, too, as far as their effect
         differs from view to view: what moves all views alike, such as a board that is arched
         towards the camera, no comparison of views shows. Infinite on its diagonal where a view
-        less would leave the camera undetermined.
+        less would leave the camera undetermined. Where lens or board were chosen, what fits about
+        as well widens it; see `Choice`.
         """
         from cvnotes.calibration.jackknife import covariance_over_views
 
@@ -140,7 +146,8 @@ class Calibration:
                 "the scatter between views is not known: this result has neither its corners nor "
                 "a covariance of views"
             )
-        return covariance_over_views(self.camera, self.names, self._data, self.poses, self.shape)
+        C = covariance_over_views(self.camera, self.names, self._data, self.poses, self.shape)
+        return C if self.choice is None else self.choice.covariance(C)
 
     @property
     def std_of_views(self) -> dict[str, float]:
@@ -158,7 +165,7 @@ class Calibration:
 
     @property
     def notes_on_deviations(self) -> tuple[str, ...]:
-        """One sentence if the deviations of views and of noise tell different things."""
+        """Sentences on what the deviations contain: other models, and more than noise."""
         if self._covariance_of_views is None and self._data is None:
             return ()
         honest, noise = (np.array([*std.values()]) for std in (self.std_of_views, self.std))
@@ -169,16 +176,30 @@ class Calibration:
                 else "as there is no other view"
             )
             return (f"±: from noise alone, {why}; the true error may be several times larger",)
-        if self.rms < _ROUNDED_RMS or (times := float(np.median(honest / noise))) <= _MORE:
+        if self.rms < _ROUNDED_RMS:
             return ()
-        board = "a bent board"
-        if self.shape is not None:
-            board = "a board that bends differently from picture to picture"
-        return (
-            f"±: from the scatter between views, {times:.1f} times what noise alone would give; "
-            f"corners of a view miss their places together, as with {board} or a lens that does "
-            "not quite fit",
-        )
+        notes = []
+        if self.choice is not None and (close := self.choice.close_by()):
+            other, name, times = close
+            board = f" on a {other.board} board" * (other.board != self.choice.board)
+            notes.append(
+                f"±: contain that {other.lens}{board} fits as well; its {name} differs by "
+                f"{times:.1f} σ"
+            )
+        if (times := float(np.median(honest / noise))) > TIMES_NOISE:
+            note = (
+                f"±: from the scatter between views, {times:.1f} times what noise alone would give"
+            )
+            if self.choice is None:  # else other boards and lenses were tried already
+                board = "a bent board"
+                if self.shape is not None:
+                    board = "a board that bends differently from picture to picture"
+                note += (
+                    f"; corners of a view miss their places together, as with {board} or a lens "
+                    "that does not quite fit"
+                )
+            notes.append(note)
+        return tuple(notes)
 
     @cached_property
     def pose_covariance(self) -> Array:
@@ -217,11 +238,11 @@ class Calibration:
         return tuple(m - camera.project(W) for camera, W, m in views)
 
     def as_mapping(self) -> dict[str, Any]:
-        """Give all that makes this calibration, by name; `cvnotes.calibration.saving` writes it.
+        """Return all that makes this calibration, by name; `cvnotes.calibration.saving` writes it.
 
         ``Calibration(**mapping)`` makes it again, but for the uncertainty of its poses.
         """
-        not_kept = ("_pose_covariance", "left_out", "left_out_boards")
+        not_kept = ("_pose_covariance", "choice")
         kept = [f.name for f in fields(self) if f.name not in not_kept]
         mapping = {name: getattr(self, name) for name in kept}
         if self._data is not None:
@@ -242,7 +263,7 @@ class Calibration:
         return Calibration(**read_calibration(path))
 
     def table(self) -> list[tuple[str, float, float, str]]:
-        """Give the rows of the result: name, value, standard deviation, unit.
+        """Return the rows of the result: name, value, standard deviation, unit.
 
         The deviation is that of `std_of_views` where the views determine it, else of `std`.
         """
@@ -276,17 +297,17 @@ class Calibration:
 
 
 def left_cell(text: str) -> str:
-    """Give a cell of an HTML table, with its text to the left."""
+    """Return a cell of an HTML table, with its text to the left."""
     return f"<td style='text-align:left'>{text}</td>"
 
 
 def doubts_as_text(sentences: tuple[str, ...], reliable: bool) -> list[str]:
-    """Give the last lines of a result: the verdict, and a line for each sentence."""
+    """Return the last lines of a result: the verdict, and a line for each sentence."""
     return ["  NOT RELIABLE:"] * (not reliable) + [f"  ! {sentence}" for sentence in sentences]
 
 
 def doubts_as_html(sentences: tuple[str, ...], reliable: bool) -> str:
-    """Give the same for a notebook."""
+    """Return the same for a notebook."""
     from html import escape
 
     notes = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)

@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
+from cvnotes.base.writing import PathLike, printable
 from cvnotes.calibration.board_shape import BOARDS, BoardShape
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import Camera
+from cvnotes.camera.model import SENSOR
 from cvnotes.files import Rejected, write_whole
 from cvnotes.files.cameras import (
     VERSION,
@@ -21,7 +23,6 @@ from cvnotes.files.cameras import (
 )
 from cvnotes.files.entry import Entry
 from cvnotes.files.strict import MAX_BYTES, parse_json, read_text
-from cvnotes.files.writing import PathLike, printable
 
 FORMAT = "cvnotes calibration"
 _ROUNDED = 1e-6  # numbers that agree to so much, whoever rounded them, are the same
@@ -78,7 +79,7 @@ def calibration_json(
         "covariance": covariance.tolist(),
         **_of_views(result, names),
         **_of_shape(result.get("shape")),
-        "rejected": [{"file": r.file, "reason": r.reason} for r in rejected],
+        "rejected": [{"file": r.file, "reason": str(r.reason)} for r in rejected],
     }
     views: list[dict[str, Any]] = []
     for G, rms in zip(result["poses"], result["view_rms"], strict=True):
@@ -98,11 +99,11 @@ def calibration_json(
 
 def _of_lens(names: Sequence[str]) -> str:
     """Name a lens by those of its coefficients that were estimated."""
-    return " ".join(name for name in names if name[0] in "kp") or "none"
+    return " ".join(name for name in names if name not in SENSOR) or "none"
 
 
 def _of_views(result: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
-    """Give the covariance over views, unless views do not determine it."""
+    """Return the covariance over views, unless views do not determine it."""
     covariance = result.get("_covariance_of_views")
     if covariance is None or not np.isfinite(covariance).all():
         return {}
@@ -114,7 +115,7 @@ def _of_views(result: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]
 
 
 def _of_shape(shape: BoardShape | None) -> dict[str, Any]:
-    """Give the board's shape, unless it was taken for flat."""
+    """Return the board's shape, unless it was taken for flat."""
     if shape is None:
         return {}
     return {
@@ -128,7 +129,7 @@ def _of_shape(shape: BoardShape | None) -> dict[str, Any]:
 
 
 def _with_corners(views: list[dict[str, Any]], data: Correspondences | None) -> dict[str, Any]:
-    """Give each view its corners, and its board unless all views share one."""
+    """Return each view its corners, and its board unless all views share one."""
     if data is None:
         return {"views": views}
     corners = [{"corners": m.tolist(), "board": W.tolist()} for W, m in data.given()]
@@ -214,7 +215,7 @@ def _error_bars(entry: Entry, camera: Camera, of: str = "") -> tuple[tuple[str, 
     known = {*camera.parameters, "p1", "p2"}
     for name in std:
         if name not in known:
-            count = len(camera.lens.k)
+            count = sum(key[0] == "k" for key in camera.lens.parameters)
             few = f"; the lens has {count or 'no'} radial coefficients" if name[:1] == "k" else ""
             raise listed.error(f"{name!r} is no parameter of this camera{few}")
     covariance = C.array(len(std), len(std))

@@ -3,6 +3,8 @@
 Each view constrains B = A⁻ᵀ A⁻¹ twice; b holds its six different entries.
 """
 
+from functools import partial
+
 import numpy as np
 import numpy.typing as npt
 
@@ -21,6 +23,7 @@ from cvnotes.base import (
     points,
     rigid_motion,
     solved,
+    whole,
 )
 from cvnotes.camera import nearest_rotation, skew_matrix, xy_from_px
 
@@ -63,20 +66,18 @@ def _six(x: npt.ArrayLike, name: str) -> Array:
 
 
 def _columns(i: int, j: int, **_: Array) -> None:
-    if i not in (1, 2, 3) or j not in (1, 2, 3):
-        raise CvnotesError(f"i and j number the columns of H, 1 to 3; got {i} and {j}")
+    if not all(isinstance(x, int | np.integer) and 1 <= x <= 3 for x in (i, j)):
+        raise CvnotesError(f"i and j number the columns of H, 1 to 3; got {i!r} and {j!r}")
 
 
 def _views(A: Array, G: Array, W: Array, m: Array, terms: int = 2) -> None:  # noqa: ARG001
-    if not isinstance(terms, int) or terms < 1:
-        raise CvnotesError(f"terms: expected how many coefficients, 1 or more, got {terms!r}")
     if 0 in equally_many("G, W and m", G.shape[:-2], W.shape[:-2], m.shape[:-2]):
         raise DegenerateError("need at least one view, got none")
 
 
 @guarded(H=Matrix(3, 3), also=_columns)
 def v_ij(H: Array, i: int, j: int) -> Array:
-    """Give v_ij (..., 6) with h_iᵀ B h_j = v_ijᵀ b; i and j count columns of H from 1.
+    """Return v_ij (..., 6) with h_iᵀ B h_j = v_ijᵀ b; i and j count columns of H from 1.
 
     Examples
     --------
@@ -155,7 +156,7 @@ def solve_b(V: Array, *, skew: bool = False) -> Array:
 
 @guarded(b=_six)
 def intrinsics_from_b(b: Array) -> Array:
-    """Give A (3, 3) from b (6,) by Cholesky: B = L Lᵀ and B ∝ A⁻ᵀ A⁻¹, so A ∝ L⁻ᵀ.
+    """Return A (3, 3) from b (6,) by Cholesky: B = L Lᵀ and B ∝ A⁻ᵀ A⁻¹, so A ∝ L⁻ᵀ.
 
     Raises
     ------
@@ -178,7 +179,7 @@ def intrinsics_from_b(b: Array) -> Array:
 
 @guarded(b=_six)
 def intrinsics_from_b_by_formulas(b: Array) -> Array:
-    """Give A (3, 3) from b (6,) by Zhang's six formulas; the same A as `intrinsics_from_b`.
+    """Return A (3, 3) from b (6,) by Zhang's six formulas; the same A as `intrinsics_from_b`.
 
     The notes leave them out (erratum E31). u0 = γ v0 / β − B13 α² / s, with β in the
     denominator; the α often printed there is wrong.
@@ -214,58 +215,6 @@ def intrinsics_from_b_by_formulas(b: Array) -> Array:
     return np.array([[alpha, gamma, u0], [0, beta, v0], [0, 0, 1]])
 
 
-def intrinsics_from_homographies(H: npt.ArrayLike, *, skew: bool = False) -> Array:
-    """Give A (3, 3) from the homographies (n, 3, 3) of n views: V, then b, then A.
-
-    Pixels far from the origin make V badly conditioned; `calibrate` hands over homographies
-    into a picture scaled to about [−1, 1].
-
-    Raises
-    ------
-    DegenerateError
-        Fewer than 2 views (3 with skew), or views that do not determine A.
-
-    Examples
-    --------
-    >>> A = np.array([[2.0, 0, 1], [0, 2, 1], [0, 0, 1]])
-    >>> R = [[[1, 0, 0], [0, 0.8, 0], [0, 0.6, 5]], [[0.8, 0, 0], [0, 1, 0], [0.6, 0, 5]]]
-    >>> intrinsics_from_homographies(A @ R).round(9) + 0.0
-    array([[2., 0., 1.],
-           [0., 2., 1.],
-           [0., 0., 1.]])
-    """
-    return intrinsics_from_b(solve_b(constraints(H), skew=skew))
-
-
-def focal_lengths_from_homographies(H: npt.ArrayLike, centre: npt.ArrayLike = (0, 0)) -> Array:
-    """Give A (3, 3) when its principal point is known and its skew is zero.
-
-    With the pixels measured from `centre`, B = diag(1/α_u², 1/α_v², 1): the same constraints,
-    two unknowns. Less is asked of the views, so this start survives noise that the full closed
-    form does not.
-
-    Raises
-    ------
-    DegenerateError
-        The constraints have no solution with positive focal lengths.
-
-    Examples
-    --------
-    >>> R = [[[1, 0, 0], [0, 0.8, 0], [0, 0.6, 5]], [[0.8, 0, 0], [0, 1, 0], [0.6, 0, 5]]]
-    >>> focal_lengths_from_homographies(np.diag([2.0, 2, 1]) @ R).round(9)
-    array([[2., 0., 0.],
-           [0., 2., 0.],
-           [0., 0., 1.]])
-    """
-    middle = points(centre, "centre", 2)
-    if middle.ndim != 1:
-        raise ShapeError(f"centre: expected one point (u0, v0), got {middle.shape}")
-    u0, v0 = middle
-    to_centre = np.array([[1, 0, -u0], [0, 1, -v0], [0, 0, 1]])
-    alpha_u, alpha_v = focal_lengths_from_v(constraints(to_centre @ matrix(H, "H", 3, 3)))
-    return np.array([[alpha_u, 0, u0], [0, alpha_v, v0], [0, 0, 1]])
-
-
 @guarded(V=_rows)
 def focal_lengths_from_v(V: Array) -> tuple[float, float]:
     """Solve V b = 0 with b = (1/α_u², 0, 1/α_v², 0, 0, 1) for the two focal lengths.
@@ -288,7 +237,7 @@ def focal_lengths_from_v(V: Array) -> tuple[float, float]:
 
 @guarded(A=intrinsic_matrix, H=homographies)
 def extrinsics(A: Array, H: Array) -> Array:
-    """Give the pose G (..., 4, 4) of each view, CRF ← board, from A and H (..., 3, 3).
+    """Return the pose G (..., 4, 4) of each view, CRF ← board, from A and H (..., 3, 3).
 
     λ r1 = A⁻¹ h1 and λ r2 = A⁻¹ h2 with two sizes of λ when there is noise; their mean is
     taken (erratum E32), with the sign that puts the board in front of the camera (T_z > 0).
@@ -321,7 +270,15 @@ def extrinsics(A: Array, H: Array) -> Array:
     return G
 
 
-@guarded(A=intrinsic_matrix, G=rigid_motion, W=Points(3), m=Points(2), pair=("W", "m"), also=_views)
+@guarded(
+    A=intrinsic_matrix,
+    G=rigid_motion,
+    W=Points(3),
+    m=Points(2),
+    terms=partial(whole, at_most=100),
+    pair=("W", "m"),
+    also=_views,
+)
 def radial_distortion(A: Array, G: Array, W: Array, m: Array, *, terms: int = 2) -> Array:
     """Estimate k (terms,) by linear least squares, A and the poses being known: D k = d.
 

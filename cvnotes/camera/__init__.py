@@ -1,5 +1,6 @@
 """Chapters 2 to 4: vanishing points, the camera and its lens (notes 2b.1 to 2b.3)."""
 
+from cvnotes.camera.any_lens import AnyLens, PlaneLens
 from cvnotes.camera.factors import centre_of, decompose
 from cvnotes.camera.fisheye import FisheyeLens
 from cvnotes.camera.lens import Lens
@@ -28,7 +29,6 @@ from cvnotes.camera.rigid import (
 from cvnotes.camera.vanishing import (
     focal_length,
     horizon,
-    horizon_from_vanishing_points,
     intrinsics_from_vanishing_points,
     normal_from_horizon,
     rotation_from_vanishing_points,
@@ -37,6 +37,8 @@ from cvnotes.camera.vanishing import (
 
 __all__ = [
     "Camera",
+    "AnyLens",
+    "PlaneLens",
     "Lens",
     "RationalLens",
     "FisheyeLens",
@@ -60,7 +62,6 @@ __all__ = [
     "skew_matrix",
     "vanishing_point",
     "horizon",
-    "horizon_from_vanishing_points",
     "focal_length",
     "intrinsics_from_vanishing_points",
     "rotation_from_vanishing_points",

@@ -67,7 +67,7 @@ def decompose(P: npt.ArrayLike) -> tuple[Array, Array, Array]:
 
 
 def centre_of(P: npt.ArrayLike) -> Array:
-    """Give the camera centre as the null vector of P, homogeneous (4,).
+    """Return the camera centre as the null vector of P, homogeneous (4,).
 
     Also defined for cameras at infinity, whose centre has a zero last coordinate.
 

@@ -4,13 +4,15 @@ The plane z = 1 of the notes (2b.3) ends at 90° from the axis: a ray at 90° me
 fisheye sees such rays, and those behind. Its picture is laid out by the angle θ itself.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
+from cvnotes.camera.any_lens import AnyLens
 from cvnotes.camera.lens import horner
 from cvnotes.camera.rational import sign_changes
 
@@ -18,7 +20,7 @@ _STEPS = 50  # of Newton's method; near the end a dozen are needed
 
 
 @dataclass(frozen=True)
-class FisheyeLens:
+class FisheyeLens(AnyLens):
     """An equidistant lens, corrected by a polynomial of the angle.
 
     Parameters
@@ -30,8 +32,8 @@ class FisheyeLens:
     Notes
     -----
     A ray at angle θ is shown at the distance θ' from the centre, in its own direction. Rays beyond
-    90° have no point on the plane z = 1: `of_rays` and `rays` reach them, `distort` and
-    `undistort` do not.
+    90° have no point on the plane z = 1: `of_rays` and `rays` reach them, ``distort``
+    and ``undistort`` do not.
 
     References
     ----------
@@ -44,6 +46,11 @@ class FisheyeLens:
     np.float64(1.0)
     """
 
+    model: ClassVar[str] = "equidistant"
+    choices: ClassVar[Mapping[str, tuple[str, ...]]] = {"fisheye": ("k1", "k2", "k3", "k4")}
+    wide: ClassVar[bool] = True
+    ros_name: ClassVar[str] = "equidistant"
+
     k: tuple[float, ...] = (0.0,) * 4
 
     def __post_init__(self) -> None:
@@ -53,39 +60,6 @@ class FisheyeLens:
         if (np.abs(given) > 1e50).any():
             raise CvnotesError(f"k = {given.tolist()}: no lens has such coefficients")
         object.__setattr__(self, "k", (*given.tolist(), *[0.0] * (4 - given.size)))
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """The coefficients by name, k1 … k4."""
-        return {f"k{i}": k for i, k in enumerate(self.k, 1)}
-
-    def with_parameters(self, values: Mapping[str, float]) -> "FisheyeLens":
-        """Give the same lens with other values of the coefficients that are named.
-
-        Examples
-        --------
-        >>> FisheyeLens().with_parameters({"k1": 0.1})
-        FisheyeLens(k=(0.1, 0.0, 0.0, 0.0))
-        """
-        unknown = values.keys() - self.parameters.keys()
-        if unknown:
-            raise CvnotesError(f"{min(unknown)!r} is no coefficient of a fisheye: k1 … k4 are")
-        return FisheyeLens(tuple((self.parameters | dict(values)).values()))
-
-    @property
-    def p(self) -> tuple[float, float]:
-        """Tangential coefficients: a fisheye has none."""
-        return (0.0, 0.0)
-
-    @property
-    def centre(self) -> tuple[float, float]:
-        """Distortion centre on the plane z = 1: always the principal point."""
-        return (0.0, 0.0)
-
-    @property
-    def is_ideal(self) -> bool:
-        """Tell whether this lens moves nothing: never."""
-        return False
 
     @cached_property
     def max_angle(self) -> float:
@@ -100,37 +74,6 @@ class FisheyeLens:
         slopes[::2] = [1.0, *(k * (2 * i + 1) for i, k in enumerate(self.k, 1))]
         ends = sign_changes(slopes[::-1], np.pi)
         return min(ends, default=np.pi)
-
-    @property
-    def max_radius(self) -> float:
-        """Largest ideal radius tan θ that the lens shows; inf from 90° on."""
-        return float(np.tan(self.max_angle)) if self.max_angle < np.pi / 2 else np.inf
-
-    @guarded(xy=Points(2))
-    def distort(self, xy: Array) -> Array:
-        """Move ideal image points (..., 2) to where the lens shows them; NaN beyond its end.
-
-        Examples
-        --------
-        >>> FisheyeLens(k=(0.1,)).distort([0.0, 0.0])
-        array([0., 0.])
-        """
-        M = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1)
-        return FisheyeLens.of_rays.inside(self, M)
-
-    @guarded(xy_lens=Points(2))
-    def undistort(self, xy_lens: Array) -> Array:
-        """Move observed points (..., 2) to the plane z = 1; NaN from 90° on, and beyond the end.
-
-        Examples
-        --------
-        >>> FisheyeLens().undistort([np.pi / 4, 0.0]).round(12)
-        array([1., 0.])
-        """
-        d = FisheyeLens.rays.inside(self, xy_lens)
-        return np.where(
-            d[..., 2:] > 1e-12, d[..., :2] / np.where(d[..., 2:] > 0, d[..., 2:], 1), np.nan
-        )
 
     @guarded(M=Points(3))
     @np.errstate(all="ignore")  # of points too far away
@@ -179,65 +122,44 @@ class FisheyeLens:
         d = np.concatenate([np.sin(theta)[..., None] * unit, np.cos(theta)[..., None]], axis=-1)
         return np.where(reached[..., None], d, np.nan)
 
-    @guarded(xy=Points(2))
-    @np.errstate(over="ignore", invalid="ignore")  # far from all lenses
-    def jacobian(self, xy: Array) -> Array:
-        """Differentiate the observed point by the ideal one: (..., 2, 2).
-
-        Examples
-        --------
-        >>> FisheyeLens().jacobian([1.0, 0.0]).round(6) + 0.0
-        array([[0.5     , 0.      ],
-               [0.      , 0.785398]])
-        """
-        M = np.stack([xy[..., 0], xy[..., 1], np.ones_like(xy[..., 0])])
-        return np.moveaxis(self.derivatives(M)[1][:, :2], (0, 1), (-2, -1))
-
-    def derivatives(self, M: Array) -> tuple[Array, Array, Array]:
-        """Show M (3, ...) through the lens, with derivatives; unguarded, for whoever refines.
-
-        Returns
-        -------
-        xy_lens : ndarray, shape (2, ...)
-        by_M : ndarray, shape (2, 3, ...)
-        by_coefficients : ndarray, shape (4, 2, ...)
+    def derivatives(
+        self,
+        M: Array,
+        names: tuple[str, ...] | None = None,
+        out: tuple[Array, Array] | None = None,
+    ) -> tuple[Array, Array, Array]:
+        """Show M (3, ...) through the lens, with derivatives; see `AnyLens.derivatives`.
 
         Notes
         -----
         With ρ = √(X² + Y²) and θ = atan2(ρ, Z): ∂θ/∂(X, Y) = Z (X, Y)/(ρ ‖M‖²), ∂θ/∂Z = −ρ/‖M‖².
         """
-        return through_angle(self.k, M)
+        D, C = self.room(M, names) if out is None else out  # always by all four
+        X, Y, Z = M
+        rho2 = X * X + Y * Y
+        rho = np.sqrt(rho2)
+        norm2 = rho2 + Z * Z
+        theta = np.arctan2(rho, Z)
+        shown, slope = self._shown(theta)
+        on_axis = rho2 <= 1e-24 * norm2
+        safe = np.where(on_axis, 1.0, rho)
+        # θ'/ρ, whose limit on the axis is 1/Z; (slope Z/‖M‖² − θ'/ρ)/ρ² there is left out
+        ratio = np.where(on_axis, 1 / np.where(Z == 0, 1, Z), shown / safe)
+        bend = np.where(on_axis, 0.0, (slope * Z / norm2 - ratio) / safe**2)
+        seen = ratio * M[:2]
+        D[0, 0], D[1, 1] = ratio + bend * X * X, ratio + bend * Y * Y
+        D[0, 1] = D[1, 0] = bend * X * Y
+        D[:, 2] = -slope / norm2 * M[:2]
+        unit = np.where(on_axis, 0.0, M[:2] / safe)
+        C[...] = np.stack([theta ** (2 * i + 1) * unit for i in range(1, 5)])
+        return seen, D, C
+
+    def opencv_coefficients(self) -> Array:
+        """Return k1 … k4, for the functions of ``cv2.fisheye``."""
+        return np.array(self.k)
 
     def _shown(self, theta: Array) -> tuple[Array, Array]:
-        """θ' and its slope."""
-        return bent_angle(self.k, theta)
-
-
-def bent_angle(k: Sequence[float], theta: Array) -> tuple[Array, Array]:
-    """Evaluate θ' = θ (1 + k1 θ² + k2 θ⁴ + …) and dθ'/dθ = 1 + 3 k1 θ² + 5 k2 θ⁴ + …; unguarded."""
-    t = theta * theta
-    slopes = [(2 * i + 1) * k_i for i, k_i in enumerate(k, 1)]
-    return theta * horner((1.0, *k), t), horner((1.0, *slopes), t)
-
-
-def through_angle(k: Sequence[float], M: Array) -> tuple[Array, Array, Array]:
-    """Show M (3, ...) by k1 … k4, with derivatives; see `FisheyeLens.derivatives`."""
-    X, Y, Z = M
-    rho2 = X * X + Y * Y
-    rho = np.sqrt(rho2)
-    norm2 = rho2 + Z * Z
-    theta = np.arctan2(rho, Z)
-    shown, slope = bent_angle(k, theta)
-    on_axis = rho2 <= 1e-24 * norm2
-    safe = np.where(on_axis, 1.0, rho)
-    # θ'/ρ, whose limit on the axis is 1/Z; (slope Z/‖M‖² − θ'/ρ)/ρ² there is left out
-    ratio = np.where(on_axis, 1 / np.where(Z == 0, 1, Z), shown / safe)
-    bend = np.where(on_axis, 0.0, (slope * Z / norm2 - ratio) / safe**2)
-    seen = ratio * M[:2]
-    D = np.empty((2, 3, *X.shape))
-    D[0, 0], D[1, 1] = ratio + bend * X * X, ratio + bend * Y * Y
-    D[0, 1] = D[1, 0] = bend * X * Y
-    D[:, 2] = -slope / norm2 * M[:2]
-    unit = np.where(on_axis, 0.0, M[:2] / safe)
-    C = np.stack([theta ** (2 * i + 1) * unit for i in range(1, 5)])
-    return seen, D, C
+        """Return θ' = θ (1 + k1 θ² + …) and its slope dθ'/dθ = 1 + 3 k1 θ² + …."""
+        t = theta * theta
+        slopes = [(2 * i + 1) * k_i for i, k_i in enumerate(self.k, 1)]
+        return theta * horner((1.0, *self.k), t), horner((1.0, *slopes), t)

@@ -11,11 +11,13 @@ where p = (p2, p1) collects the notes' tangential terms in one vector.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, Points, ShapeError, chunks, guarded, numbers
+from cvnotes.camera.any_lens import PlaneLens
 
 # Far from all lenses powers of r overflow: to infinity, or to NaN, and in silence.
 _beyond_all_numbers = np.errstate(over="ignore", invalid="ignore")
@@ -50,7 +52,7 @@ def horner(coefficients: Sequence[float], t: Array) -> Array:
 
 
 def radial_factor(k: Sequence[float], r2: Array) -> Array:
-    """Give L = 1 + k1 r² + k2 r⁴ + … as a function of r².
+    """Return L = 1 + k1 r² + k2 r⁴ + … as a function of r².
 
     Examples
     --------
@@ -61,7 +63,7 @@ def radial_factor(k: Sequence[float], r2: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Lens:
+class Lens(PlaneLens):
     """A lens with radial and tangential distortion; ``Lens()`` is perfect.
 
     Parameters
@@ -90,6 +92,19 @@ class Lens:
     0.5
     """
 
+    model: ClassVar[str] = "polynomial"
+    choices: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "none": (),
+        "k1": ("k1",),
+        "k1 k2": ("k1", "k2"),
+        "k1 k2 k3": ("k1", "k2", "k3"),
+        "k1 k2 p1 p2": ("k1", "k2", "p1", "p2"),
+        "k1 k2 p1 p2 k3": ("k1", "k2", "k3", "p1", "p2"),
+    }
+    linear_terms: ClassVar[int] = 3
+    ros_name: ClassVar[str] = "plumb_bob"
+    seldom: ClassVar[tuple[str, ...]] = ("centre",)
+
     k: tuple[float, ...] = ()
     p: tuple[float, float] = _ZERO
     centre: tuple[float, float] = _ZERO
@@ -111,7 +126,7 @@ class Lens:
 
     @property
     def is_ideal(self) -> bool:
-        """Tell whether this lens moves nothing."""
+        """Return whether this lens moves nothing."""
         return not any(self.k) and not any(self.p)
 
     @property
@@ -124,7 +139,7 @@ class Lens:
         return radial | (dict(zip(("p1", "p2"), self.p, strict=True)) if any(self.p) else {})
 
     def with_parameters(self, values: Mapping[str, float]) -> "Lens":
-        """Give the same lens with other values of the coefficients that are named.
+        """Return the same lens with other values of the coefficients that are named.
 
         Examples
         --------
@@ -141,9 +156,18 @@ class Lens:
         k = tuple(value.get(f"k{i}", 0.0) for i in range(1, terms + 1))
         return replace(self, k=k, p=(value.get("p1", 0.0), value.get("p2", 0.0)))
 
+    @classmethod
+    def unchecked(cls, values: Mapping[str, float]) -> "Lens":
+        """Make the lens of such coefficients, whatever they are; see `AnyLens.unchecked`."""
+        lens = object.__new__(cls)
+        radial = [x for name, x in values.items() if name[0] == "k"]
+        object.__setattr__(lens, "k", tuple(radial))
+        object.__setattr__(lens, "p", (values.get("p1", 0.0), values.get("p2", 0.0)))
+        return lens
+
     @_beyond_all_numbers
     def L(self, r: npt.ArrayLike) -> Array:
-        """Give the radial factor L(r) = 1 + k1 r² + k2 r⁴ + …, same shape as r.
+        """Return the radial factor L(r) = 1 + k1 r² + k2 r⁴ + …, same shape as r.
 
         Examples
         --------
@@ -175,7 +199,7 @@ class Lens:
 
     @_beyond_all_numbers
     def reaches(self, r: float) -> bool:
-        """Tell whether some ideal point before the fold is shown at distance r from the centre.
+        """Return whether some ideal point before the fold is shown at distance r from the centre.
 
         Examples
         --------
@@ -264,30 +288,70 @@ class Lens:
             return xy_lens
         return self._inverse(xy_lens)
 
-    @guarded(xy=Points(2))
-    @_beyond_all_numbers
-    def jacobian(self, xy: Array) -> Array:
-        """Differentiate the distorted point by the ideal one: (..., 2, 2).
+    def on_plane(
+        self, xy: Array, names: tuple[str, ...], by_coefficients: Array
+    ) -> tuple[Array, tuple[Array, Array]]:
+        """Distort xy (2, ...), with derivatives; see `PlaneLens.on_plane`.
 
-        Examples
-        --------
-        >>> Lens(k=(-4 / 3,)).jacobian([0.5, 0.0])[0, 0].round(12) + 0.0
-        np.float64(0.0)
+        Notes
+        -----
+        With d = (x, y) from the centre and D the derivative by it, which is symmetric,
+
+            D = L I + (L'/r) d dᵀ + [6 p2 x + 2 p1 y,  2 p1 x + 2 p2 y;  …,  2 p2 x + 6 p1 y],
+
+        by k_i: r²ⁱ d; by p1: (2 x y, r² + 2 y²); by p2: (r² + 2 x², 2 x y).
         """
-        d = xy - self.centre
-        x, y = d[..., 0], d[..., 1]
-        p1, p2 = self.p
-        r2 = x * x + y * y
-        L = radial_factor(self.k, r2)
+        if any(self.centre):
+            xy = xy - np.reshape(self.centre, (2, *[1] * (xy.ndim - 1)))
+        x, y = xy
+        tangential = "p1" in names
+        n_radial = len(names) - 2 * tangential
+        products = np.empty((3, *x.shape))  # x², x y, y²
+        np.multiply(xy, x, out=products[:2])
+        np.multiply(y, y, out=products[2, ...])
+        r2 = products[0] + products[2]
+        power = xy
+        for i in range(n_radial):
+            power = np.multiply(power, r2, out=by_coefficients[i])
         slope = horner([2 * i * k for i, k in enumerate(self.k, start=1)], r2)  # L'(r) / r
-        J11 = L + slope * x * x + 6 * p2 * x + 2 * p1 * y
-        J12 = slope * x * y + 2 * (p1 * x + p2 * y)
-        J22 = L + slope * y * y + 2 * p2 * x + 6 * p1 * y
-        return np.stack([np.stack([J11, J12], -1), np.stack([J12, J22], -1)], -2)
+        L = radial_factor(self.k, r2)
+        xy_lens = L * xy
+        D = slope * products  # D11, D12, D22
+        D[::2] += L
+        p1, p2 = self.p
+        if tangential or p1 or p2:
+            by_p = by_coefficients[-2:] if tangential else np.empty((2, *xy.shape))
+            by_p1, by_p2 = by_p
+            np.multiply(2, products[1:], out=by_p1)
+            np.multiply(2, products[:2], out=by_p2)
+            by_p1[1] += r2
+            by_p2[0] += r2
+            xy_lens += p1 * by_p1 + p2 * by_p2
+            by_xy = np.array([[6 * p2, 2 * p1], [2 * p1, 2 * p2], [2 * p2, 6 * p1]])
+            D += (by_xy @ xy.reshape(2, -1)).reshape(D.shape)
+        if any(self.centre):
+            xy_lens += np.reshape(self.centre, (2, *[1] * (xy.ndim - 1)))
+        return xy_lens, (D[:2], D[1:])
+
+    def opencv_coefficients(self) -> Array:
+        """Return k1, k2, p1, p2, k3, as OpenCV orders them.
+
+        Raises
+        ------
+        CvnotesError
+            The lens has more radial coefficients, or a distortion centre of its own.
+        """
+        if any(self.centre) or any(self.k[3:]):
+            raise CvnotesError(
+                "OpenCV and ROS hold k1 k2 p1 p2 k3 about the principal point; this lens has "
+                f"more ({self}); keep it as JSON"
+            )
+        k1, k2, k3 = (*self.k, 0.0, 0.0, 0.0)[:3]
+        return np.array([k1, k2, *self.p, k3])
 
 
 def _is_radial(name: str) -> bool:
-    """Tell whether a name is k1, k2 or so on."""
+    """Return whether a name is k1, k2 or so on."""
     return name[:1] == "k" and name[1:].isdecimal() and 1 <= int(name[1:]) <= 99
 
 
@@ -295,7 +359,7 @@ def _is_radial(name: str) -> bool:
 
 
 def fold_radius(k: Sequence[float], p_norm: float = 0.0) -> float:
-    """Give the smallest ideal radius at which the picture folds over; inf if there is none.
+    """Return the smallest ideal radius at which the picture folds over; inf if there is none.
 
     It folds where the smaller eigenvalue of the Jacobian, a symmetric matrix, reaches 0. With
     a = r dL/dr and m = 4 ‖p‖ r, the smallest value of this eigenvalue on a circle is
@@ -331,7 +395,7 @@ def fold_radius(k: Sequence[float], p_norm: float = 0.0) -> float:
 
 
 def _smallest_eigenvalue(curves: tuple[list[float], list[float]], p_norm: float, r: float) -> float:
-    """Give the smallest eigenvalue of the Jacobian on a circle, by `fold_radius`'s formulas."""
+    """Return the smallest eigenvalue of the Jacobian on a circle, by `fold_radius`'s formulas."""
     L, a = (_value(curve, r * r) for curve in curves)
     m = 4 * p_norm * r
     if 2 * m < 3 * a < 6 * m:
@@ -340,7 +404,7 @@ def _smallest_eigenvalue(curves: tuple[list[float], list[float]], p_norm: float,
 
 
 def _positive_roots(ascending: Array, beyond: float) -> list[float]:
-    """Give the positive roots of a polynomial, up to `beyond`, polished by a step of Newton's."""
+    """Return the positive roots of a polynomial, up to `beyond`, polished by a step of Newton's."""
     # Read backwards the polynomial has the reciprocals as roots, and small roots come out best.
     reciprocal = np.roots(np.where(np.abs(ascending) < 1e-100, 0, ascending))
     real = np.abs(reciprocal.imag) <= 1e-7 * np.abs(reciprocal)
@@ -427,7 +491,7 @@ class Inverse:
         return self._offsets(q, S, dx, dy)
 
     def _offsets(self, q: Array, S: Array, dx: Array, dy: Array) -> tuple[Array, Array]:
-        """Give x = (q/n) (d − r² p), NaN beyond the fold."""
+        """Return x = (q/n) (d − r² p), NaN beyond the fold."""
         r2 = q * q
         r2 *= S
         if self.p_norm2:
@@ -442,7 +506,7 @@ class Inverse:
         return q * dx, q * dy
 
     def _newton(self, q: Array, S: Array, e: Array) -> tuple[Array, Array]:
-        """Give f = left − right and its slope q df/dq; e = p·d.
+        """Return f = left − right and its slope q df/dq; e = p·d.
 
         f = q L n − 1 − 3 (b − a) + a and q df/dq = q (L + r dL/dr) n + 2 q L n (b − a)/n²
         − 12 (b − a) − 4a, step by step in as few arrays as can be.

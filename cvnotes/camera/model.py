@@ -22,12 +22,10 @@ from cvnotes.base import (
     points,
     rigid_motion,
 )
-from cvnotes.camera.fisheye import FisheyeLens
+from cvnotes.camera.any_lens import AnyLens
 from cvnotes.camera.lens import Lens
-from cvnotes.camera.rational import RationalLens
 from cvnotes.projective import from_homogeneous
 
-AnyLens = Lens | RationalLens | FisheyeLens
 # Where the five numbers of the sensor stand in A.
 SENSOR = {"alpha_u": (0, 0), "alpha_v": (1, 1), "skew": (0, 1), "u0": (0, 2), "v0": (1, 2)}
 
@@ -144,7 +142,7 @@ class Camera:
         Intrinsic matrix in pixels; see `intrinsics`.
     G : array_like, shape (4, 4)
         Rigid motion that carries world points into the camera's frame (CRF ← WRF).
-    lens : Lens, RationalLens or FisheyeLens
+    lens : Lens, RationalLens, FisheyeLens, or another `AnyLens`
         Distortion on the plane z = 1; a fisheye's depends on the angle of the ray.
     size : (width, height)
         The picture's size in pixels. Pixel centres are integers.
@@ -204,11 +202,11 @@ class Camera:
         return -self.R.T @ self.T + 0.0
 
     def moved(self, G: npt.ArrayLike) -> "Camera":
-        """Give the same camera with another pose G (4, 4)."""
+        """Return the same camera with another pose G (4, 4)."""
         return Camera(self.A, cast(Array, G), self.lens, self.size)  # guards it
 
     def cropped(self, corner: Sequence[int], size: tuple[int, int]) -> "Camera":
-        """Give the camera whose pictures are a part of this one's.
+        """Return the camera whose pictures are a part of this one's.
 
         Parameters
         ----------
@@ -250,7 +248,7 @@ class Camera:
         return Camera(shift @ self.A, self.G, self.lens, (width, height))
 
     def resized(self, size: tuple[int, int]) -> "Camera":
-        """Give the camera whose pictures are this one's, made larger or smaller.
+        """Return the camera whose pictures are this one's, made larger or smaller.
 
         Parameters
         ----------
@@ -292,7 +290,7 @@ class Camera:
         return sensor | self.lens.parameters
 
     def with_parameters(self, values: Mapping[str, float]) -> "Camera":
-        """Give the same camera with other values of the parameters that are named.
+        """Return the same camera with other values of the parameters that are named.
 
         Examples
         --------
@@ -336,13 +334,10 @@ class Camera:
         """
         # 1. WRF → CRF
         M = W @ self.R.T + self.T
-        if isinstance(self.lens, FisheyeLens):  # its picture goes by the angle, 90° and beyond
-            return px_from_xy.inside(self.A, FisheyeLens.of_rays.inside(self.lens, M))
-        # 2. divide by z; what is not in front has no image
-        z = M[..., 2:]
-        xy = np.divide(M[..., :2], z, out=np.full_like(M[..., :2], np.nan), where=z > 0)
-        # 3. lens, 4. sensor
-        return px_from_xy.inside(self.A, self.lens.distort.inside(self.lens, xy))
+        # 2. divide by z, and 3. lens (one step: a fisheye goes by the angle, not by x/z and y/z)
+        xy_lens = self.lens.of_rays.inside(self.lens, M)
+        # 4. sensor
+        return px_from_xy.inside(self.A, xy_lens)
 
     @guarded(m=Points(2))
     def ideal(self, m: Array) -> Array:
@@ -359,7 +354,7 @@ class Camera:
         return self.lens.undistort.inside(self.lens, xy_from_px.inside(self.A, m))
 
     def ray(self, m: npt.ArrayLike) -> Array:
-        """Give the direction in the WRF of the ray that pixels (..., 2) see, as unit vectors.
+        """Return the direction in the WRF of the ray that pixels (..., 2) see, as unit vectors.
 
         The ray starts at ``centre``. Rows that the lens model does not reach are NaN.
 
@@ -369,15 +364,11 @@ class Camera:
         >>> Camera(intrinsics(800, 800, 320, 240)).ray([320, 240])
         array([0., 0., 1.])
         """
-        if isinstance(self.lens, FisheyeLens):
-            return np.asarray(self.lens.rays(xy_from_px(self.A, m)) @ self.R)
-        xy = self.ideal(m)
-        d = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1) @ self.R
-        return np.asarray(d / np.linalg.norm(d, axis=-1, keepdims=True))
+        return np.asarray(self.lens.rays.inside(self.lens, xy_from_px(self.A, m)) @ self.R)
 
     @guarded(d=Points(3))
     def vanishing_point(self, d: Array) -> Array:
-        """Give the pixel (..., 2) where lines of world direction d (..., 3) seem to end.
+        """Return the pixel (..., 2) where lines of world direction d (..., 3) seem to end.
 
         Through an ideal lens: m̃ ≈ P [d; 0]. A direction parallel to the image plane has its
         vanishing point at infinity (NaN). d and −d share one vanishing point.
@@ -402,7 +393,7 @@ class Camera:
 
     @property
     def is_invertible(self) -> bool:
-        """Tell whether every pixel of the picture shows a point that the lens model reaches."""
+        """Return whether every pixel of the picture shows a point that the lens model reaches."""
         w, h = self.size
         u, v = np.arange(w), np.arange(h)
         border = [(u, 0 * u), (u, 0 * u + h - 1), (0 * v, v), (0 * v + w - 1, v)]
@@ -418,7 +409,7 @@ class Camera:
 
 
 def with_values(A: Array, lens: AnyLens, values: Mapping[str, float]) -> tuple[Array, AnyLens]:
-    """Give A and lens with other values of the parameters that are named.
+    """Return A and lens with other values of the parameters that are named.
 
     Examples
     --------
@@ -464,7 +455,7 @@ def project_with_derivative(camera: Camera, M: Array) -> tuple[Array, Array]:
 
     Notes
     -----
-    dm/dM = A₂ₓ₂ · d(x', y')/d(x, y) · [1 0 −x; 0 1 −y] / z.
+    dm/dM = A₂ₓ₂ · d(x', y')/dM.
 
     Examples
     --------
@@ -474,14 +465,8 @@ def project_with_derivative(camera: Camera, M: Array) -> tuple[Array, Array]:
     (array([[320., 320.]]), array([[[80.,  0.,  0.],
             [ 0., 80., -8.]]]))
     """
-    if isinstance(camera.lens, FisheyeLens):
-        seen = px_from_xy.inside(camera.A, FisheyeLens.of_rays.inside(camera.lens, M))
-        return seen, camera.A[:2, :2] @ np.moveaxis(camera.lens.derivatives(M.T)[1], -1, 0)
-    z = np.where(M[:, 2:] > 0, M[:, 2:], np.nan)
-    xy = M[:, :2] / z
-    m = px_from_xy.inside(camera.A, camera.lens.distort.inside(camera.lens, xy))
-    by_xy = np.full((len(M), 2, 2), np.nan)
+    m = px_from_xy.inside(camera.A, camera.lens.of_rays.inside(camera.lens, M))
+    by_M = np.full((len(M), 2, 3), np.nan)
     valid = np.isfinite(m).all(-1)
-    by_xy[valid] = camera.A[:2, :2] @ camera.lens.jacobian(xy[valid])
-    along_z = -by_xy @ xy[:, :, None]
-    return m, np.concatenate([by_xy, along_z], axis=-1) / z[:, :, None]
+    by_M[valid] = camera.A[:2, :2] @ np.moveaxis(camera.lens.derivatives(M[valid].T)[1], -1, 0)
+    return m, by_M

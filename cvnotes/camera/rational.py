@@ -4,25 +4,29 @@ The polynomial of the notes (2b.3) bends away from a wide lens: far from the cen
 power wins. A quotient can level off, as lenses do. It is OpenCV's model with 8 to 14 coefficients.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, Points, ShapeError, guarded, numbers
+from cvnotes.camera.any_lens import PlaneLens
 from cvnotes.camera.lens import horner
 
 NAMES = ("k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2")
 _FARTHEST = 1e12  # r², a ray almost at 90°
 _STEPS = 50  # of Newton's method; points near the fold need a dozen
 _CLOSE = 1e-13  # how near to the observed point the answer must be shown
+# The quotient that shows rays up to 75° where an equidistant lens does, to 0.001 of its radius.
+_LIKE_EQUIDISTANT = (0.693219, 0.077366, 0.000712, 1.02607, 0.221729, 0.007531)
 
 
 @dataclass(frozen=True)
-class RationalLens:
+class RationalLens(PlaneLens):
     """A lens whose radial factor is a quotient, with tangential and further terms.
 
     Parameters
@@ -53,6 +57,12 @@ class RationalLens:
     array([0.5, 0. ])
     """
 
+    model: ClassVar[str] = "rational"
+    choices: ClassVar[Mapping[str, tuple[str, ...]]] = {"rational": NAMES}
+    linear_terms: ClassVar[int] = 2  # of the quotient's numerator
+    cancelling: ClassVar[tuple[str, ...]] = NAMES[:6]
+    ros_name: ClassVar[str] = "rational_polynomial"
+
     k: tuple[float, ...] = (0.0,) * 6
     p: tuple[float, float] = (0.0, 0.0)
     s: tuple[float, float, float, float] = (0.0,) * 4
@@ -71,34 +81,14 @@ class RationalLens:
         if max(map(abs, self.tilt)) > 1.5:
             raise CvnotesError(f"tilt = {list(self.tilt)}: radians below 1.5 (degrees?)")
 
-    @property
-    def parameters(self) -> dict[str, float]:
-        """The coefficients that a calibration estimates, by name: k1 … k6, p1 and p2."""
-        return dict(zip(NAMES, (*self.k, *self.p), strict=True))
-
-    def with_parameters(self, values: Mapping[str, float]) -> "RationalLens":
-        """Give the same lens with other values of the coefficients that are named.
-
-        Examples
-        --------
-        >>> RationalLens().with_parameters({"k4": 0.5}).k
-        (0.0, 0.0, 0.0, 0.5, 0.0, 0.0)
-        """
-        value = self.parameters | dict(values)
-        unknown = value.keys() - set(NAMES)
-        if unknown:
-            raise CvnotesError(f"{min(unknown)!r} is no coefficient of a rational lens")
-        k1_to_k6, p = [value[n] for n in NAMES[:6]], (value["p1"], value["p2"])
-        return replace(self, k=tuple(k1_to_k6), p=p)
-
-    @property
-    def centre(self) -> tuple[float, float]:
-        """Distortion centre on the plane z = 1: always the principal point."""
-        return (0.0, 0.0)
+    @classmethod
+    def usual(cls) -> "tuple[RationalLens, ...]":
+        """Return the quotient that is like an equidistant lens; see `AnyLens.usual`."""
+        return (cls(_LIKE_EQUIDISTANT),)
 
     @property
     def is_ideal(self) -> bool:
-        """Tell whether this lens moves nothing."""
+        """Return whether this lens moves nothing."""
         return self.k[:3] == self.k[3:] and not any((*self.p, *self.s, *self.tilt))
 
     def L(self, r: npt.ArrayLike) -> Array:
@@ -133,7 +123,7 @@ class RationalLens:
         return self._narrowed(min(ends, default=np.inf))
 
     def reaches(self, r: float) -> bool:
-        """Tell whether some ideal point before the fold is shown at distance r from the centre."""
+        """Return whether an ideal point before the fold is shown at distance r from the centre."""
         fold = self.max_radius
         return not np.isfinite(fold) or bool(fold * abs(self.L(fold)) >= r)
 
@@ -161,7 +151,7 @@ class RationalLens:
 
     @np.errstate(all="ignore")  # at a pole
     def _smallest_eigenvalue(self, r: Array, p_norm: float) -> Array:
-        L, by_t = self._quotient(r * r)
+        L, by_t, _ = self._quotient(r * r)
         a, m = 2 * r * r * by_t, 4 * p_norm * r
         beside = L - a / 8 - m * m / (2 * np.where(a > 0, a, 1))
         straight = np.minimum(L + a - 1.5 * m, L - m / 2)
@@ -178,7 +168,7 @@ class RationalLens:
         array([0.4875, 0.    ])
         """
         x, y = xy[..., 0], xy[..., 1]
-        seen = np.moveaxis(self.derivatives(x, y)[0], 0, -1)
+        seen = np.moveaxis(self._with_derivatives(np.stack([x, y]))[0], 0, -1)
         inside = (x * x + y * y <= self.max_radius**2)[..., None]
         return np.where(inside & np.isfinite(seen), seen, np.nan)
 
@@ -200,7 +190,7 @@ class RationalLens:
         """
         target = np.moveaxis(xy_lens, -1, 0).reshape(2, -1)
         xy = self._start(target)
-        seen, D, _ = self.derivatives(*xy)
+        seen, D, _ = self._with_derivatives(xy)
         miss = seen - target
         for _ in range(_STEPS):
             det = D[0, 0] * D[1, 1] - D[0, 1] * D[1, 0]
@@ -216,7 +206,7 @@ class RationalLens:
             length = np.ones(late.size)
             for _ in range(8):  # halve the steps that lead away
                 tried = xy[:, late] - length * step[:, late]
-                seen, by_xy, _ = self.derivatives(*tried)
+                seen, by_xy, _ = self._with_derivatives(tried)
                 off = seen - target[:, late]
                 worse = ~((off**2).sum(0) < (miss[:, late] ** 2).sum(0))
                 if not worse.any():
@@ -235,30 +225,24 @@ class RationalLens:
             .transpose(*range(1, xy_lens.ndim), 0)
         )
 
-    @guarded(xy=Points(2))
-    @np.errstate(over="ignore", invalid="ignore")  # far from all lenses
-    def jacobian(self, xy: Array) -> Array:
-        """Differentiate the distorted point by the ideal one: (..., 2, 2).
+    def on_plane(
+        self, xy: Array, names: tuple[str, ...], by_coefficients: Array
+    ) -> tuple[Array, tuple[Array, Array]]:
+        """Distort xy (2, ...), with derivatives by all of k1 … k6, p1 and p2."""
+        del names
+        xy_lens, D, by_coefficients[...] = self._with_derivatives(xy)
+        return xy_lens, (D[:, 0], D[:, 1])
 
-        Examples
-        --------
-        >>> RationalLens(k=(-4 / 3,)).jacobian([0.5, 0.0])[0, 0].round(12) + 0.0
-        np.float64(0.0)
-        """
-        return np.moveaxis(self.derivatives(xy[..., 0], xy[..., 1])[1], (0, 1), (-2, -1))
+    def opencv_coefficients(self) -> Array:
+        """Return k1, k2, p1, p2, k3, …, k6, then s1 … s4 and the tilt if it has them."""
+        k1, k2, k3, *others = self.k
+        size = 14 if any(self.tilt) else 12 if any(self.s) else 8
+        return np.array([k1, k2, *self.p, k3, *others, *self.s, *self.tilt])[:size]
 
-    def derivatives(self, x: Array, y: Array) -> tuple[Array, Array, Array]:
-        """Distort, with derivatives; unguarded, for whoever refines.
-
-        Returns
-        -------
-        xy_lens : ndarray, shape (2, ...)
-        by_xy : ndarray, shape (2, 2, ...)
-            By the ideal point.
-        by_coefficients : ndarray, shape (8, 2, ...)
-            By k1 … k6, p1 and p2.
-        """
-        seen, D, C = through_quotient(self.k, self.p, x, y)
+    def _with_derivatives(self, xy: Array) -> tuple[Array, Array, Array]:
+        """Distort xy (2, ...), with derivatives: by xy (2, 2, ...), by NAMES (8, 2, ...)."""
+        x, y = xy
+        seen, D, C = self._through_quotient(xy)
         if any(self.s):
             t, (s1, s2, s3, s4) = x * x + y * y, self.s
             seen += np.stack([s1 * t + s2 * t * t, s3 * t + s4 * t * t])
@@ -285,9 +269,28 @@ class RationalLens:
         onto = [[R[2, 2], 0, -R[0, 2]], [0, R[2, 2], -R[1, 2]], [0, 0, 1]]
         return np.asarray(np.array(onto) @ R)
 
-    def _quotient(self, t: Array) -> tuple[Array, Array]:
-        """L and its derivative by t = r²."""
-        return quotient(self.k, t)[:2]
+    def _quotient(self, t: Array) -> tuple[Array, Array, Array]:
+        """L(r), its derivative by t = r², and what L is divided by."""
+        a, b = (1.0, *self.k[:3]), (1.0, *self.k[3:])
+        above, below = horner(a, t), horner(b, t)
+        slopes = [horner([i * c for i, c in enumerate(ks)][1:], t) for ks in (a, b)]
+        return above / below, (slopes[0] * below - above * slopes[1]) / below**2, below
+
+    def _through_quotient(self, xy: Array) -> tuple[Array, Array, Array]:
+        """Distort by k and p alone, with derivatives."""
+        x, y = xy
+        t = x * x + y * y
+        L, by_t, below = self._quotient(t)
+        p1, p2 = self.p
+        by_p1, by_p2 = np.stack([2 * x * y, t + 2 * y * y]), np.stack([t + 2 * x * x, 2 * x * y])
+        seen = L * xy + p1 * by_p1 + p2 * by_p2
+        D = (2 * by_t * xy)[:, None] * xy  # dt/d(x, y) = 2 (x, y)
+        D[0, 0] += L + 2 * p1 * y + 6 * p2 * x
+        D[0, 1] += 2 * (p1 * x + p2 * y)
+        D[1, 0] += 2 * (p1 * x + p2 * y)
+        D[1, 1] += L + 2 * p2 * x + 6 * p1 * y
+        powers = np.stack([t, t * t, t * t * t])[:, None] / below * xy
+        return seen, D, np.concatenate([powers, -L * powers, [by_p1, by_p2]])
 
     def _start(self, target: Array) -> Array:
         """Interpolate the radius in a table of r L(r); the direction is that of the target."""
@@ -324,29 +327,3 @@ def sign_changes(f: Array | list[float], beyond: float) -> list[float]:
         signs.append(float(np.sign(np.polyval(np.asarray(f), t))) or signs[-1])
     del signs[0]
     return [t for t, (before, after) in zip(real, pairwise(signs), strict=False) if before != after]
-
-
-def quotient(k: Sequence[float], t: Array) -> tuple[Array, Array, Array]:
-    """Evaluate L(r), its derivative by t = r², and what L is divided by; unguarded."""
-    a, b = (1.0, *k[:3]), (1.0, *k[3:])
-    above, below = horner(a, t), horner(b, t)
-    slopes = [horner([i * c for i, c in enumerate(ks)][1:], t) for ks in (a, b)]
-    return above / below, (slopes[0] * below - above * slopes[1]) / below**2, below
-
-
-def through_quotient(
-    k: Sequence[float], p: Sequence[float], x: Array, y: Array
-) -> tuple[Array, Array, Array]:
-    """Distort ideal points by k1 … k6 and p, with derivatives; see `RationalLens.derivatives`."""
-    xy, t = np.stack([x, y]), x * x + y * y
-    L, by_t, below = quotient(k, t)
-    p1, p2 = p
-    by_p1, by_p2 = np.stack([2 * x * y, t + 2 * y * y]), np.stack([t + 2 * x * x, 2 * x * y])
-    seen = L * xy + p1 * by_p1 + p2 * by_p2
-    D = (2 * by_t * xy)[:, None] * xy  # dt/d(x, y) = 2 (x, y)
-    D[0, 0] += L + 2 * p1 * y + 6 * p2 * x
-    D[0, 1] += 2 * (p1 * x + p2 * y)
-    D[1, 0] += 2 * (p1 * x + p2 * y)
-    D[1, 1] += L + 2 * p2 * x + 6 * p1 * y
-    powers = np.stack([t, t * t, t * t * t])[:, None] / below * xy
-    return seen, D, np.concatenate([powers, -L * powers, [by_p1, by_p2]])

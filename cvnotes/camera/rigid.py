@@ -49,7 +49,7 @@ def rotation_from_vector(w: Array) -> Array:
 
 
 def vector_from_rotation(R: npt.ArrayLike) -> Array:
-    """Give the axis times the angle (..., 3), angle in [0, π], of rotations (..., 3, 3).
+    """Return the axis times the angle (..., 3), angle in [0, π], of rotations (..., 3, 3).
 
     Goes through the quaternion of R, whose largest component is never small, so that angles
     near 0 and near π keep all their digits.
@@ -93,7 +93,7 @@ def rotation_from_angles(x: float, y: float, z: float) -> Array:
 
 @guarded(M=Matrix(3, 3))
 def nearest_rotation(M: Array) -> Array:
-    """Give the rotation closest to M (..., 3, 3): R = U diag(1, 1, det(U Vᵀ)) Vᵀ.
+    """Return the rotation closest to M (..., 3, 3): R = U diag(1, 1, det(U Vᵀ)) Vᵀ.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def nearest_rotation(M: Array) -> Array:
 
 @guarded(v=Points(3))
 def skew_matrix(v: Array) -> Array:
-    """Give [v]× (..., 3, 3), the matrix of the cross product: [v]× w = v × w.
+    """Return [v]× (..., 3, 3), the matrix of the cross product: [v]× w = v × w.
 
     Examples
     --------
@@ -176,7 +176,7 @@ def move(G: npt.ArrayLike, W: npt.ArrayLike) -> Array:
 
 
 def look_at(eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike = (0, -1, 0)) -> Array:
-    """Give the G of a camera at `eye` that looks at `target`, both (3,) in the WRF.
+    """Return the G of a camera at `eye` that looks at `target`, both (3,) in the WRF.
 
     `up` is the world direction that points up in the picture (the default: y runs down, as in
     the camera's own frame).

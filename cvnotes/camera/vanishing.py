@@ -1,7 +1,6 @@
 """Vanishing points and horizons: found in a picture, and the camera they give away (notes 2b.1)."""
 
 import itertools
-from contextlib import suppress
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +19,7 @@ from cvnotes.base import (
 )
 from cvnotes.camera.model import Camera, intrinsics
 from cvnotes.camera.rigid import nearest_rotation
-from cvnotes.projective import from_homogeneous, join, to_homogeneous
+from cvnotes.projective import to_homogeneous
 from cvnotes.projective.points import apply_similarity, normaliser
 
 
@@ -48,7 +47,7 @@ def vanishing_point(segments: npt.ArrayLike) -> Array:
     Minimises the distances in pixels of the end points to the line through the segment's middle
     and the vanishing point, by Levenberg-Marquardt. Nothing else would be fair to segments of
     different lengths. It starts from the point v that minimises Σ (lᵢᵀ v)² over the segments'
-    lines lᵢ, found by SVD.
+    lines lᵢ, found by SVD. Segments of another direction are not recognised: sort them before.
 
     References
     ----------
@@ -90,7 +89,7 @@ def vanishing_point(segments: npt.ArrayLike) -> Array:
 
 
 def horizon(camera: Camera, normal: npt.ArrayLike) -> Array:
-    """Give the line (3,) in which the picture shows the far end of planes with a normal (3,).
+    """Return the line (3,) in which the picture shows the far end of planes with a normal (3,).
 
     l ≈ A⁻ᵀ R n, of unit normal (l1, l2) if it is not itself at infinity; n is in the WRF. It
     contains the vanishing points of all directions in the plane.
@@ -113,34 +112,8 @@ def horizon(camera: Camera, normal: npt.ArrayLike) -> Array:
     )
 
 
-def horizon_from_vanishing_points(v_h: npt.ArrayLike) -> Array:
-    """Give the line (3,) closest to homogeneous vanishing points (n, 3) of one plane.
-
-    Two points are joined; with more, Σ (lᵀ vᵢ)² over points of unit length in normalised pixels is
-    minimised.
-
-    Examples
-    --------
-    >>> horizon_from_vanishing_points([[100, 240, 1], [900, 240, 1]])
-    array([   0.,    1., -240.])
-    """
-    v = matrix(v_h, "v_h", 3)
-    if v.ndim != 2 or len(v) < 2:
-        raise ShapeError(f"v_h: expected at least two points (n, 3), got {v.shape}")
-    if len(v) == 2:
-        return _unit_line(join(*v))
-    N = np.eye(3)
-    with suppress(DegenerateError):  # fewer than two points in the picture leave its pixels
-        N = normaliser(from_homogeneous.inside(v[v[:, 2] != 0]))
-    v = v @ N.T
-    _, s, Vt = np.linalg.svd(v / np.linalg.norm(v, axis=1, keepdims=True))
-    if s[1] <= 1e-12 * s[0]:
-        raise DegenerateError("the vanishing points coincide: many lines pass through them")
-    return _unit_line(N.T @ Vt[2])
-
-
 def _linearise(v: Array, end: Array, middle: Array) -> tuple[float, Array]:
-    """Give the cost and [J r]ᵀ[J r] of the ends' distances to the lines from the middles to v."""
+    """Return the cost and [J r]ᵀ[J r] of the ends' distances to the lines from the middles to v."""
     n = np.cross(middle, end)
     line = np.cross(v, middle)
     length = np.hypot(line[:, 0], line[:, 1])
@@ -155,7 +128,7 @@ def _linearise(v: Array, end: Array, middle: Array) -> tuple[float, Array]:
 
 
 def _tangents(v: Array) -> Array:
-    """Give two unit directions (3, 2) in which a unit vector can move."""
+    """Return two unit directions (3, 2) in which a unit vector can move."""
     return np.linalg.svd(v[None])[2][1:].T
 
 
@@ -171,7 +144,7 @@ def _unit_line(line: Array) -> Array:
 
 
 def focal_length(v1: npt.ArrayLike, v2: npt.ArrayLike, centre: npt.ArrayLike) -> float:
-    """Give the focal length in pixels from two vanishing points (2,) of orthogonal directions.
+    """Return the focal length in pixels from two vanishing points (2,) of orthogonal directions.
 
     Parameters
     ----------
@@ -317,7 +290,7 @@ def rotation_from_vanishing_points(
 
 
 def normal_from_horizon(A: npt.ArrayLike, line: npt.ArrayLike) -> Array:
-    """Give the normal (3,) in the CRF of the planes whose horizon is a line (3,): n ≈ Aᵀ l.
+    """Return the normal (3,) in the CRF of the planes whose horizon is a line (3,): n ≈ Aᵀ l.
 
     Of unit length; upwards or downwards, as the line's own sign says.
 

@@ -1,37 +1,25 @@
 """``cvnotes calibrate``: from photographs of a chessboard to a camera with error bars."""
 
 import argparse
-import os
 import re
-import warnings
-from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError
-from cvnotes.commands.console import EXIT_CODES, complain, say
-from cvnotes.commands.ownership import earlier, made_by, marked
+from cvnotes.base import CvnotesError, DegenerateError
+from cvnotes.base.writing import check_folder, printable
+from cvnotes.commands.console import EXIT_CODES, complain, progress, say, shortfall
 from cvnotes.commands.target import corners, length
-from cvnotes.files import Rejected, write_whole
-from cvnotes.files.writing import check_folder, printable
+from cvnotes.files import write_whole
+from cvnotes.files.ownership import earlier, made_by, marked
+from cvnotes.files.reasons import unread
 from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
-    from cvnotes.calibration import Calibration, NextView
-    from cvnotes.commands.examined import Examined
+    from cvnotes.photographs import CalibratedPhotographs, Photographs
 
 _RESULTS = re.compile(
     r"calibration\.(json|yml)|photographs\.csv|(coverage|next_view|residuals|view_rms|corners(-\d+)?)\.png"
 )
-
-_ROUNDS = 3  # in which photographs that do not fit are left out
-_KEPT, _MOST = 4, 2 / 3  # how many must stay, and which part of all
-
-_OF_FEW = "k1 k2 p1 p2"  # the lens of fewer views than can be left out
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -79,21 +67,10 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 def run(args: argparse.Namespace) -> int:
-    """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no such board, 3 not reliable."""
-    from cvnotes.commands.examined import counted, examine
-    from cvnotes.commands.mirrored import doubted, mirrored
-    from cvnotes.commands.report import camera_report, doubts, named, photo_table
+    """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no board, 3 doubtful, not all read."""
+    from cvnotes.commands.report import camera_report, photo_table
+    from cvnotes.photographs import NoCamera, calibrate_photographs
 
-    if args.corners is None:
-        if args.charuco:
-            complain("calibrate", "--corners auto counts chessboards; say how many corners it has")
-            return 2
-        try:
-            args.corners = counted(args.photos)
-        except DegenerateError as error:
-            complain("calibrate", str(error))
-            return 1
-        say("A board of {}×{} inner corners, as counted in the photographs\n".format(*args.corners))
     try:
         board = asked_board(args)
     except CvnotesError as error:
@@ -101,171 +78,83 @@ def run(args: argparse.Namespace) -> int:
         return 2
     check_folder(args.out)
     before = earlier(args.out, _RESULTS.fullmatch, "calibrate")
-    examined, rejected = examine(args.photos, board, leave_out=args.leave_out)
-    used = [photo for photo in examined if photo.corners is not None]
     try:
-        result = calibrated(used, board, args)
-    except CvnotesError as error:
-        files, rejected = _brief([printable(photo.path) for photo in used], rejected)
-        say(photo_table(files, [photo.note for photo in used], rejected))
-        complain("calibrate", f"{len(used)} usable photographs; {error}")
+        found = calibrate_photographs(
+            args.photos,
+            board,
+            lens=args.lens,
+            board_shape=args.board_shape,
+            skew=args.skew,
+            leave_out=args.leave_out,
+            keep_all=args.keep_all,
+            progress=progress,
+        )
+    except NoCamera as error:
+        _say_count(error.photographs)
+        say(photo_table(error.photographs))
+        complain("calibrate", str(error))
         return 1
-    if not args.keep_all:
-        result, used, misfits = without_misfits(result, used, board, args)
-        examined = [misfits.get(photo.path, photo) for photo in examined]
-        rejected += [Rejected(printable(path), photo.note) for path, photo in misfits.items()]
-    result = doubted(result, mirrored(used, result, board))
-    files, rejected = _brief([printable(photo.path) for photo in used], rejected)
-    notes = [photo.note for photo in used]
-    say(photo_table(files, notes, rejected, result) + "\n")
-    say(camera_report(result) + "\n")
-    for sentence in doubts(result, examined, files, rejected, board):
+    except DegenerateError as error:
+        complain("calibrate", str(error))
+        return 1
+    _say_count(found.photographs)
+    say(photo_table(found.photographs, found.calibration) + "\n")
+    say(camera_report(found.calibration) + "\n")
+    for sentence in found.doubts:
         say(f"! {sentence}")
-    proposal = proposal_of(result, board)
-    if proposal:
-        say(f"Next photograph: {proposal}")
-    contents = contents_of(result, examined, board, files, rejected, proposal)
+    if found.next_view:
+        say(f"Next photograph: {found.next_view}")
+    contents = contents_of(found)
     write_whole({args.out / name: data for name, data in contents.items()})
     for stale in (path for path in before if path.name not in contents):
         stale.unlink(missing_ok=True)  # a sheet that an earlier run had more than this one
     say(f"Written to {printable(args.out)}: {', '.join(contents)}")
-    if not result.reliable:
-        complain(
-            "calibrate", f"written, but not reliable: {named(result.warnings[0], result, files)}"
-        )
+    if not found.reliable:
+        complain("calibrate", f"written, but not reliable: {found.doubts[0]}")
         return 3
-    return 0
+    missing = unread(found.photographs.rejected, map(str, args.photos))
+    asked = missing + len(found.photographs.used)
+    return shortfall("calibrate", missing, asked, "could not be read")
 
 
-def asked_board(args: argparse.Namespace) -> "Chessboard | CharucoBoard":
-    """Make the board that the options describe."""
+def asked_board(args: argparse.Namespace) -> Chessboard | CharucoBoard | float:
+    """Make the board that the options describe; the side of its squares if it is to be counted."""
+    from cvnotes.photographs.driver import chessboard
+
     if args.charuco:
+        if args.corners is None:
+            raise CvnotesError("--corners auto counts chessboards; say how many corners it has")
         return CharucoBoard(args.corners, args.square, args.marker, args.charuco.lower())
     if args.marker:
         raise CvnotesError("--marker is of ChArUco boards: say --charuco as well")
-    columns, rows = args.corners
-    symmetric = (columns - rows) % 2 == 0
-    return Chessboard(args.corners, args.square, half_turn_symmetric=symmetric)
+    if args.corners is None:
+        side: float = args.square
+        return side
+    return chessboard(args.corners, args.square)
 
 
-def calibrated(
-    examined: "Sequence[Examined]", board: "Chessboard | CharucoBoard", args: argparse.Namespace
-) -> "Calibration":
-    """Calibrate with the photographs that show the board, with the options' lens and board shape.
-
-    Raises
-    ------
-    DegenerateError
-        They do not determine a camera.
-    """
-    from cvnotes.calibration import calibrate
-
-    if not examined:
-        raise DegenerateError(
-            "a board of {}×{} inner corners was found in none (count where four squares meet, "
-            "not squares)".format(*args.corners)
-        )
-    seen = [np.isfinite(photo.corners).all(-1) for photo in examined if photo.corners is not None]
-    m = [photo.corners for photo in examined if photo.corners is not None]
-    whole = all(s.all() for s in seen)
-    W = board.points if whole else [board.points[s] for s in seen]
-    m = m if whole else [x[s] for x, s in zip(m, seen, strict=True)]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", CalibrationWarning)  # the report has them
-        # (to leave views out takes four of them)
-        lens = _OF_FEW if args.lens == "auto" and len(m) < 4 else args.lens
-        shape = "flat" if args.board_shape == "auto" and len(m) < 4 else args.board_shape
-        return calibrate(W, m, examined[0].size, lens=lens, board=shape, skew=args.skew)
+def _say_count(photographs: "Photographs") -> None:
+    if photographs.counted:
+        columns, rows = photographs.board.corners
+        say(f"A board of {columns}×{rows} inner corners, as counted in the photographs\n")
 
 
-def without_misfits(
-    result: "Calibration",
-    used: "list[Examined]",
-    board: "Chessboard | CharucoBoard",
-    args: argparse.Namespace,
-) -> "tuple[Calibration, list[Examined], dict[Path, Examined]]":
-    """Calibrate again without photographs that do not fit the others, if these are many enough.
-
-    Gives the result, what it is made of, and those left out with the reason as their note.
-    """
-    from cvnotes.calibration.reliability import misfits
-    from cvnotes.commands.mirrored import EXCHANGED, mirrored
-
-    first, left_out = len(used), dict[Path, "Examined"]()
-    for _ in range(_ROUNDS):
-        exchanged = mirrored(used, result, board)
-        bad = sorted({*exchanged, *misfits(result.view_rms).tolist()})
-        kept = [photo for i, photo in enumerate(used) if i not in bad]
-        if not bad or len(kept) < max(_KEPT, _MOST * first):
-            break
-        try:
-            again = calibrated(kept, board, args)
-        except CvnotesError:  # these alone do not determine the camera
-            break
-        typical = np.median(result.view_rms)
-        for i in bad:
-            reason = (
-                f"{EXCHANGED} (left out; --keep-all uses it all the same)"
-                if i in exchanged
-                else f"does not fit the others: {result.view_rms[i]:.2f} px, a typical photograph "
-                f"{typical:.2f} px (moved, zoomed, rotated or badly found; left out; --keep-all "
-                "uses it all the same)"
-            )
-            photo = replace(used[i], corners=None, found=used[i].corners, note=reason)
-            left_out[photo.path] = photo
-        result, used = again, kept
-    return result, used, left_out
-
-
-def proposal_of(result: "Calibration", board: "Chessboard | CharucoBoard") -> "NextView | None":
-    """Say where the next photograph should be, unless the board cannot be seen whole."""
-    from cvnotes.calibration import next_view
-
-    columns, rows = board.squares
-    x, y = (board.square * (np.linspace(0, n, 5) - 1) for n in (columns, rows))
-    border = [*((a, y[0]) for a in x), *((x[-1], b) for b in y[1:]),
-              *((a, y[-1]) for a in x[-2::-1]), *((x[0], b) for b in y[-2:0:-1])]  # fmt: skip
-    with suppress(CvnotesError, np.linalg.LinAlgError):
-        return next_view(result, outline=[(*xy, 0.0) for xy in border])
-    return None
-
-
-def contents_of(
-    result: "Calibration",
-    examined: "Sequence[Examined]",
-    board: "Chessboard | CharucoBoard",
-    files: Sequence[str],
-    rejected: Sequence[Rejected],
-    proposal: "NextView | None",
-) -> dict[str, bytes]:
-    """Give all files to write, by name."""
+def contents_of(found: "CalibratedPhotographs") -> dict[str, bytes]:
+    """Return all files to write, by name."""
     from cvnotes.calibration.saving import calibration_json
     from cvnotes.commands.pictures import pictures
     from cvnotes.commands.report import photo_csv
     from cvnotes.files.exchange import opencv_yaml
 
-    note = made_by("calibrate")
-    drawn = pictures(result, examined, board, files, proposal)
-    notes = [photo.note for photo in examined if photo.corners is not None]
-    made = calibration_json(result.as_mapping(), files=files, rejected=rejected, note=note)
+    note, result = made_by("calibrate"), found.calibration
+    names, rejected = found.photographs.named()
+    made = calibration_json(result.as_mapping(), files=names, rejected=rejected, note=note)
     return {
         "calibration.json": made.encode(),
         "calibration.yml": opencv_yaml(result.camera, note=note).encode(),
-        "photographs.csv": photo_csv(files, notes, rejected, result).encode(),
-        **{name: marked(png, "calibrate") for name, png in drawn.items()},
+        "photographs.csv": photo_csv(found.photographs, result).encode(),
+        **{name: marked(png, "calibrate") for name, png in pictures(found).items()},
     }
-
-
-def _brief(files: Sequence[str], rejected: Sequence[Rejected]) -> tuple[list[str], list[Rejected]]:
-    """Name photographs without the folder that they have in common."""
-    every = [*files, *(r.file for r in rejected)]
-    try:
-        common = os.path.commonpath([Path(file).parent for file in every])
-    except ValueError:  # some are absolute and some are not
-        return list(files), list(rejected)
-    short = [str(Path(file).relative_to(common)) for file in every]
-    kept = [Rejected(name, r.reason) for name, r in zip(short[len(files) :], rejected, strict=True)]
-    return short[: len(files)], kept
 
 
 def corners_or_auto(text: str) -> tuple[int, int] | None:

@@ -1,25 +1,21 @@
-"""A sheet to draw on: no figure library is loaded, and a pixel is one byte of a fixed palette."""
+"""A sheet to draw on, with Pillow at twice the size: no figure library is loaded."""
 
-from collections.abc import Iterable, Iterator
-from functools import cache, lru_cache
+from collections.abc import Iterable
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, FileError, chunks
+from cvnotes.base import Array, FileError
 from cvnotes.base.png import pack_png
 
 # The meanings of the course's figures, and shades of grey.
 ESTIMATED, WORLD, LENS = "#D55E00", "#009E73", "#0072B2"
 MUTED, PALE, FAINT, INK = "#6E6E6E", "#C4C4C4", "#EEEEEE", "#000000"
+_FINE = 2  # times finer than the sheet is drawn what has edges
+_THINNEST = 3  # fine pixels: thinner lines fade at some slopes
 _INKS = (LENS, ESTIMATED, WORLD, INK)
-_LAYERS = (FAINT, PALE, MUTED, *_INKS)  # from the lowest to the topmost
-_DABS = 4096  # looked at together: their pixels then stay in the cache
-
-Bytes = npt.NDArray[np.uint8]
-Places = npt.NDArray[np.intp]
-Paint = npt.NDArray[np.float32]
 
 
 class _Word(NamedTuple):
@@ -37,9 +33,7 @@ class _Word(NamedTuple):
 class Canvas:
     """A white sheet of (width, height) pixels; places are (x, y) from its upper left corner.
 
-    Photographs are put on it at once. What is drawn lies above them, colour by colour, all of a
-    colour in one go: the faint lowest, then grey, blue, orange, green and black. Words lie above
-    all.
+    What is drawn later lies above what was drawn before, and words lie above all.
 
     Examples
     --------
@@ -50,12 +44,11 @@ class Canvas:
     """
 
     def __init__(self, width: int, height: int) -> None:
-        self._grey = np.full((height, width), 255, np.uint8)
-        # 0 without ink; else 8 times its number in _INKS, and how thick it is, 1 to 8
-        self._ink = np.zeros((height, width), np.uint8)
-        self._thick = np.zeros(height * width, np.float32)  # how thick one colour lies
-        self._strokes: dict[str, list[Array]] = {}  # by colour: rows of x, y, x, y, radius
-        self._fills: dict[str, list[tuple[slice, slice]]] = {}
+        from PIL import Image, ImageDraw
+
+        self._size = width, height
+        self._sheet = Image.new("RGB", (_FINE * width, _FINE * height), "white")
+        self._draw = ImageDraw.Draw(self._sheet)
         self._words: list[_Word] = []
 
     def line(self, m: npt.ArrayLike, colour: str, width: float = 1) -> None:
@@ -65,19 +58,37 @@ class Canvas:
 
     def segments(self, start: Array, end: Array, colour: str, width: float = 1) -> None:
         """Draw a line from each point (n, 2) to the other."""
-        radius = np.full((len(start), 1), width / 2)
-        self._strokes.setdefault(colour, []).append(np.concatenate([start, end, radius], axis=1))
+        thick = max(round(_FINE * width), _THINNEST)
+        for ends in _fine(np.concatenate(self._near(start, end), axis=1)).tolist():
+            self._draw.line(ends, colour, thick)
+        if width > 1:  # so that lines of a corner meet
+            self.dots(np.concatenate([start, end]), colour, width / 2)
+
+    def _near(self, start: Array, end: Array) -> tuple[Array, Array]:
+        """Cut lines off far outside of the sheet, where Pillow cannot count."""
+        reach = 2.0 * sum(self._size)
+        length = np.hypot(*(end - start).T)[:, None]
+        along = (end - start) / np.where(length > 0, length, 1)
+        # as far as the point of each that is nearest to the middle of the sheet
+        far = ((np.array(self._size) / 2 - start) * along).sum(1, keepdims=True).clip(0, length)
+        nearest = start + far * along
+        seen = (np.abs(nearest) < reach).all(1)
+        start = nearest - np.minimum(far, reach) * along
+        end = nearest + np.minimum(length - far, reach) * along
+        return start[seen], end[seen]
 
     def dots(self, m: npt.ArrayLike, colour: str, radius: float = 2) -> None:
         """Put a dot on each point (n, 2)."""
         m = np.asarray(m, dtype=float).reshape(-1, 2)
-        self.segments(m, m, colour, 2 * radius)
+        seen = ((m > -radius) & (m < np.array(self._size) + radius)).all(1)
+        for x, y in _fine(m[seen]).tolist():
+            r = _FINE * radius - 0.5
+            self._draw.ellipse((x - r, y - r, x + r, y + r), colour)
 
     def ring(self, centre: npt.ArrayLike, radius: float, colour: str, width: float = 1.5) -> None:
         """Draw a circle."""
-        angle = np.linspace(0, 2 * np.pi, max(16, int(2 * radius)))
-        round_it = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        self.line(np.asarray(centre, dtype=float) + round_it, colour, width)
+        (x, y), r = _fine(np.asarray(centre, dtype=float)).tolist(), _FINE * (radius + width / 2)
+        self._draw.ellipse((x - r, y - r, x + r, y + r), outline=colour, width=round(_FINE * width))
 
     def rectangle(
         self,
@@ -90,9 +101,9 @@ class Canvas:
         """Draw a rectangle between its upper left and its lower right."""
         (x0, y0), (x1, y1) = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
         if fill:
-            left, top, right, bottom = (max(round(x), 0) for x in (x0, y0, x1, y1))
-            area = np.s_[top:bottom, left:right]
-            self._fills.setdefault(fill, []).append(area)
+            left, top, right, bottom = (_FINE * round(x) for x in (x0, y0, x1, y1))
+            if right > left and bottom > top:
+                self._draw.rectangle((left, top, right - 1, bottom - 1), fill)
         if line:
             self.line([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], line)
 
@@ -115,154 +126,63 @@ class Canvas:
 
         (x, y), (width, height) = where, size
         small = Image.fromarray(grey).resize(size, Image.Resampling.BILINEAR)
-        self._grey[y : y + height, x : x + width] = np.asarray(small)
+        fine = small.resize((_FINE * width, _FINE * height), Image.Resampling.NEAREST)
+        self._sheet.paste(fine, (_FINE * x, _FINE * y))
 
     def png(self) -> bytes:
         """Encode it."""
-        for colour in _LAYERS:
-            for area in self._fills.get(colour, ()):
-                self._fill(area, colour)
-            if colour in self._strokes:
-                self._lay(*self._covered(np.concatenate(self._strokes[colour])), colour)
+        from PIL import Image, ImageDraw
+
+        sheet = self._sheet.reduce(_FINE)
+        draw = ImageDraw.Draw(sheet)
         for word in self._words:
+            font = _font(word.text, word.size)
             x, y = (round(at) for at in word.where)
-            for halo in (True, False) if word.halo else (False,):
-                u, v, paint = _letters(word.text, word.size, word.anchor, word.upright, halo)
-                self._lay(*self._on_sheet(x + u, y + v, paint), "#FFFFFF" if halo else word.colour)
-        inked = 128 + ((self._ink - 1) << 2) + (self._grey >> 6)
-        return pack_png(np.where(self._ink, inked, self._grey >> 1), _palette())
-
-    def _fill(self, area: tuple[slice, slice], colour: str) -> None:
-        self._ink[area] = 8 * _INKS.index(colour) + 8 if colour in _INKS else 0
-        if colour not in _INKS:
-            self._grey[area] = _rgb(colour)[0]
-
-    def _lay(self, place: Places, paint: Paint, colour: str) -> None:
-        """Lay paint, 0 to 1, on pixels: mixed with grey, or as ink, of which the thicker counts."""
-        grey, ink = self._grey.reshape(-1), self._ink.reshape(-1)
-        if colour in _INKS:
-            level = np.rint(8 * paint).astype(np.uint8)
-            seen = (level > 3) | ((level > 0) & (ink[place] == 0))
-            ink[place[seen]] = 8 * _INKS.index(colour) + level[seen]
-            return
-        grey[place] = np.rint(grey[place] + paint * (np.float32(_rgb(colour)[0]) - grey[place]))
-        ink[place[paint > 0.5]] = 0
-
-    def _covered(self, strokes: Array) -> tuple[Places, Paint]:
-        """Give the pixels under strokes (n, 5): x, y, x, y, radius."""
-        height, width = self._grey.shape
-        thick = self._thick
-        for radius in np.unique(strokes[:, 4]):
-            some = strokes[strokes[:, 4] == radius, :4]
-            for dabs in _dabs(*_within(some, np.array([width, height]), radius + 1)):
-                place, paint = self._on_sheet(*_around(dabs, radius))
-                np.maximum.at(thick, place, paint)  # the thicker paint counts
-        place = np.flatnonzero(thick > 0)
-        paint, thick[place] = thick[place], 0
-        return place, paint
-
-    def _on_sheet(self, x: Any, y: Any, paint: Paint) -> tuple[Places, Paint]:
-        """Give the places in memory of pixels (x, y) with paint on them, those on the sheet."""
-        height, width = self._grey.shape
-        seen = (paint > 0) & (x >= 0) & (x < width) & (y >= 0) & (y < height)
-        return y[seen].astype(np.intp) * width + x[seen].astype(np.intp), paint[seen]
+            if word.upright:
+                left, top, right, bottom = (int(at) for at in font.getbbox(word.text, anchor="ls"))
+                label = Image.new("L", (right - left + 2, bottom - top + 2))
+                ImageDraw.Draw(label).text((1 - left, 1 - top), word.text, 255, font, "ls")
+                turned = label.transpose(Image.Transpose.ROTATE_90)
+                sheet.paste(word.colour, (x - turned.width // 2, y), turned)
+            else:
+                draw.text(
+                    (x, y), word.text, word.colour, font, word.anchor,
+                    stroke_width=int(word.halo), stroke_fill="white",
+                )  # fmt: skip
+        return _packed(sheet)
 
 
-def _dabs(start: Array, end: Array) -> Iterator[Paint]:
-    """Give places along strokes, a pixel apart at most, each with its stroke, some at a time.
-
-    Rows of (k, 7) are the place x, y, the stroke's start x, y and direction x, y, and its length.
-    """
-    along = end - start
-    length = np.hypot(*along.T)
-    direction = along / np.where(length > 0, length, 1)[:, None]
-    stroke = np.column_stack([start, direction, length]).astype(np.float32)
-    count = np.ceil(length).astype(np.intp) + 1
-    which, first = np.repeat(np.arange(len(start)), count), np.cumsum(count) - count
-    far = (np.arange(len(which)) - first[which]) * (length / np.maximum(count - 1, 1))[which]
-    place = (start[which] + far[:, None] * direction[which]).astype(np.float32)
-    for part in chunks(len(which), _DABS):
-        yield np.concatenate([place[part], stroke[which[part]]], axis=1)
+def _fine(m: Array) -> Array:
+    """Return places on the fine sheet, where Pillow counts from the middle of the first pixel."""
+    return _FINE * m - 0.5
 
 
-def _around(dabs: Paint, radius: float) -> tuple[Paint, Paint, Paint]:
-    """Give pixels x and y around places on strokes (n, 7), and how far the strokes cover them.
+def _packed(sheet: Any) -> bytes:
+    """Encode a picture in the colours of a palette: greys exactly, inks as Pillow sees them."""
+    from PIL import Image
 
-    A pixel is covered as far as its middle lies inside the stroke, up to half a pixel beyond its
-    edge.
-    """
-    reach = int(np.ceil(radius + 0.5))
-    dy, dx = np.mgrid[-reach : reach + 1, -reach : reach + 1].reshape(2, -1, 1).astype(np.float32)
-    x, y, x0, y0, u, v, length = dabs.T
-    x, y = np.floor(x) + dx, np.floor(y) + dy
-    from_x, from_y = x + (0.5 - x0), y + (0.5 - y0)
-    # How far the middle of each pixel is before or past the stroke. What is left goes across.
-    past = from_x * u + from_y * v
-    past = np.clip(past, 0, length, out=past)
-    from_x -= past * u
-    from_y -= past * v
-    paint = np.float32(radius + 0.5) - np.sqrt(from_x * from_x + from_y * from_y)
-    return x, y, np.minimum(paint, 1, out=paint)
-
-
-def _within(ends: Array, size: Array, margin: float) -> tuple[Array, Array]:
-    """Cut strokes (n, 4) off outside of a sheet: (k, 2) and (k, 2), without those that miss it.
-
-    References
-    ----------
-    .. [1] Y.-D. Liang and B. Barsky, A new concept and method for line clipping, ACM Trans.
-       Graphics 3 (1984) 1-22.
-    """
-    start, along = ends[:, :2], ends[:, 2:] - ends[:, :2]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = np.sort([(-margin - start) / along, (size + margin - start) / along], axis=0)
-    inside = (start >= -margin) & (start <= size + margin)
-    still = along == 0
-    t[:, still] = np.where(inside[still], [[0.0], [1.0]], np.nan)
-    first, last = t[0].max(1).clip(0), t[1].min(1).clip(max=1)
-    seen = first <= last
-    cut = start[seen, None] + np.stack([first, last], 1)[seen, :, None] * along[seen, None]
-    return cut[:, 0], cut[:, 1]
-
-
-@lru_cache(64)  # what is written on every photograph
-def _letters(
-    text: str, size: int, anchor: str, upright: bool, halo: bool
-) -> tuple[Places, Places, Paint]:
-    """Give the pixels of a word, seen from its place, and how far letters or halo cover them."""
-    from PIL import Image, ImageDraw
-
-    font, anchor = _font(text, size), "ls" if upright else anchor
-    left, top, right, bottom = font.getbbox(text, anchor=anchor, stroke_width=int(halo))
-    left, top = int(left) - 1, int(top) - 1
-    label = Image.new("L", (int(right) - left + 2, int(bottom) - top + 2))
-    ImageDraw.Draw(label).text(
-        (-left, -top), text, 255, font, anchor, stroke_width=int(halo), stroke_fill=255
-    )
-    paint: Paint = np.asarray(label).astype(np.float32) / np.float32(255)
-    if upright:
-        paint, left, top = np.rot90(paint), -paint.shape[0] // 2, 0
-    v, u = np.nonzero(paint)
-    return u + left, v + top, paint[v, u]
+    colours, rgb = Image.new("P", (1, 1)), np.asarray(sheet)
+    colours.putpalette(_palette().tobytes())
+    inked = np.asarray(sheet.quantize(palette=colours, dither=Image.Dither.NONE))
+    grey = (rgb == rgb[..., :1]).all(-1)
+    return pack_png(np.where(grey, rgb[..., 0] >> 1, inked), _palette())
 
 
 @cache
-def _palette() -> Bytes:
-    """Give the colours (256, 3): 128 greys, then each ink in 8 thicknesses over 4 greys."""
+def _palette() -> npt.NDArray[np.uint8]:
+    """Return the colours (256, 3): 128 greys, then each ink in 8 thicknesses over 4 greys."""
+    from PIL import ImageColor
+
     i = np.arange(128)
     greys = np.repeat((2 * i + (i > 63))[:, None], 3, axis=1)
-    inks = np.array([_rgb(ink) for ink in _INKS], dtype=float)[:, None, None]
+    inks = np.array([ImageColor.getrgb(ink) for ink in _INKS], dtype=float)[:, None, None]
     thick, under = np.arange(1, 9)[:, None, None] / 8, np.arange(4)[:, None] * 85.0
-    mixed = under + thick * (inks - under)
-    return np.concatenate([greys, np.rint(mixed).reshape(-1, 3)]).astype(np.uint8)
-
-
-def _rgb(colour: str) -> Bytes:
-    return np.frombuffer(bytes.fromhex(colour[1:]), np.uint8)
+    mixed = (under + thick * (inks - under)).reshape(-1, 3)
+    return np.asarray(np.rint(np.concatenate([greys, mixed])), dtype=np.uint8)
 
 
 def ticks(low: float, high: float, most: int = 6) -> Array:
-    """Give round numbers between two, at most so many.
+    """Return round numbers between two, at most so many.
 
     Examples
     --------
@@ -295,7 +215,7 @@ def wrapped(text: str, width: float, size: int = 13) -> list[str]:
 
 
 def _font(text: str, size: int) -> Any:
-    """Give a font that has the letters of a text: Pillow's own has no umlauts."""
+    """Return a font that has the letters of a text: Pillow's own has no umlauts."""
     plain = text.translate(_LIGHT).isascii()
     return _light(size) if plain else _with_accents(size)
 
@@ -323,7 +243,7 @@ def _with_accents(size: int) -> Any:
 
 
 def known_runs(m: Array) -> Iterable[Array]:
-    """Give the parts of a line (n, 2) between its gaps (NaN), at least two points each.
+    """Return the parts of a line (n, 2) between its gaps (NaN), at least two points each.
 
     Examples
     --------

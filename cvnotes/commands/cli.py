@@ -1,7 +1,7 @@
 """The ``cvnotes`` command.
 
-Exit codes: 0 done, 1 cannot, 2 wrong usage, 3 written but not reliable, 130 interrupted. Reasons
-go to stderr, one line each; nobody is shown a traceback.
+Exit codes: 0 done, 1 cannot, 2 wrong usage, 3 written, not reliable or not all, 130
+interrupted. Reasons go to stderr, one line each; nobody is shown a traceback.
 """
 
 import argparse
@@ -11,13 +11,13 @@ import sys
 import threading
 import traceback
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NoReturn
 
 from cvnotes import __version__
-from cvnotes.commands.console import EXIT_CODES
+from cvnotes.commands.console import EXIT_CODES, complain, open_streams, unprinted
 
 _EXAMPLES = """\
 examples:
@@ -34,8 +34,6 @@ class _Parser(argparse.ArgumentParser):
     """A parser whose complaints are one line."""
 
     def error(self, message: str) -> NoReturn:
-        from cvnotes.commands.console import complain
-
         complain(self.prog.removeprefix("cvnotes").strip(), f"{message} (see {self.prog} --help)")
         sys.exit(2)
 
@@ -55,16 +53,20 @@ def parser(command: str = "") -> argparse.ArgumentParser:
         epilog=_EXAMPLES + EXIT_CODES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    top.add_argument("-V", "--version", action="version", version=f"cvnotes {__version__}")
+    version: dict[str, Any] = {"action": "version", "version": f"cvnotes {__version__}"}
+    top.add_argument("-V", "--version", **version)
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for name in names:
         import_module(f"cvnotes.commands.{name}").add_parser(commands)
+    for each in commands.choices.values():  # its help would repeat what the first one says
+        each.add_argument("-V", "--version", help=argparse.SUPPRESS, **version)
     return top
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; gives its exit code."""
     command = ""
+    open_streams()
     try:
         with _termination_as_interrupt():
             given = sys.argv[1:] if arguments is None else list(arguments)
@@ -74,11 +76,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
             command = args.command
             code: int = args.run(args)
             sys.stdout.flush()  # a full disk behind stdout shows itself here
+            if failed := unprinted():
+                complain(command, f"not all could be printed: {failed.strerror or failed}")
+                return code or 1
             return code
     except KeyboardInterrupt:
+        if arguments is None:
+            _leave(130)
         return 130
     except Exception as error:
         return _cannot(command, error)
+
+
+def _leave(code: int) -> NoReturn:
+    """End this process at once; all that was open has been closed, and nothing half is left.
+
+    A thread of OpenCV's that is still at work when Python takes itself apart aborts the process.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):
+            stream.flush()
+    os._exit(code)
 
 
 def _one_thread_for_matrices() -> None:
@@ -123,7 +141,7 @@ def _cannot(command: str, error: Exception) -> int:
         )
         return 1
     from cvnotes.base import CvnotesError
-    from cvnotes.commands.console import complain, stop_printing
+    from cvnotes.commands.console import stop_printing
 
     if isinstance(error, OSError):
         stop_printing()  # perhaps it was stdout that failed; it would fail again at the end

@@ -30,7 +30,10 @@ def run(
     args: argparse.Namespace, commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
 ) -> int:
     """Print a shell's completion of all commands; gives the exit code."""
-    arguments = {name: list(parser._actions) for name, parser in commands.choices.items()}
+    arguments = {
+        name: [action for action in parser._actions if action.help != argparse.SUPPRESS]
+        for name, parser in commands.choices.items()
+    }
     helps = {choice.dest: choice.help or "" for choice in commands._choices_actions}
     write = {"bash": _bash, "zsh": _zsh, "fish": _fish}
     say(write[args.shell](arguments, helps))
@@ -42,7 +45,7 @@ def _options(actions: list[argparse.Action]) -> list[str]:
 
 
 def _choices(actions: list[argparse.Action]) -> list[str]:
-    """Give the words that an argument without an option may be."""
+    """Return the words that an argument without an option may be."""
     return [str(c) for a in actions if not a.option_strings for c in a.choices or ()]
 
 

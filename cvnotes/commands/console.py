@@ -3,11 +3,13 @@
 import os
 import sys
 from collections.abc import Iterable, Iterator
+from errno import EBADF
+from pathlib import Path
 from typing import TypeVar
 
 T = TypeVar("T")
 
-EXIT_CODES = "exit codes: 0 done, 1 cannot, 2 wrong usage, 3 written but not reliable"
+EXIT_CODES = "exit codes: 0 done, 1 cannot, 2 wrong usage, 3 written, not reliable or not all"
 
 # For terminals and files that hold ASCII only.
 _PLAIN = str.maketrans(
@@ -15,13 +17,36 @@ _PLAIN = str.maketrans(
 )
 
 
+_failed: list[OSError] = []  # what kept words from being printed
+
+
 def say(text: str = "") -> None:
-    """Print to stdout, in whatever letters it can hold."""
+    """Print to stdout, in whatever letters it can hold; where it cannot, the work goes on."""
     try:
         print(_fitting(text, sys.stdout.encoding))
         sys.stdout.flush()
-    except BrokenPipeError:  # whoever reads has seen enough; the work goes on
+    except BrokenPipeError:  # whoever reads has seen enough
         stop_printing()
+    except OSError as error:
+        _failed.append(error)
+        stop_printing()
+
+
+def open_streams() -> None:
+    """Open what the caller has closed (``>&-``): else the next file would be taken for stdout."""
+    _failed.clear()
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is not None:
+            continue
+        nowhere = os.open(os.devnull, os.O_RDWR)  # the lowest number that is free: its own
+        setattr(sys, name, os.fdopen(nowhere, mode, encoding="utf-8"))
+        if name == "stdout":
+            _failed.append(OSError(EBADF, os.strerror(EBADF)))
+
+
+def unprinted() -> OSError | None:
+    """Return what kept words from being printed, if anything did."""
+    return _failed[0] if _failed else None
 
 
 def stop_printing() -> None:
@@ -34,11 +59,27 @@ def stop_printing() -> None:
 def complain(command: str, text: str) -> None:
     """Print one line of reason to stderr."""
     name = f"cvnotes {command}".strip()
+    if not _is_somewhere():
+        text = f"the current folder has been deleted; go to another: {text}"
     line = " ".join(f"{name}: {text}".split())
     print(_fitting(line, sys.stderr.encoding), file=sys.stderr)
 
 
-def progress(items: Iterable[T], *, total: int, unit: str = "photographs") -> Iterator[T]:
+def _is_somewhere() -> bool:
+    try:
+        return bool(Path.cwd())
+    except OSError:
+        return False
+
+
+def shortfall(command: str, missing: int, asked: int, what: str) -> int:
+    """Say how much of what was asked for is missing; gives the exit code: 3, or 0 if nothing."""
+    if missing:
+        complain(command, f"{missing} of {asked} photographs {what}; the table says why")
+    return 3 if missing else 0
+
+
+def progress(items: Iterable[T], total: int, *, unit: str = "photographs") -> Iterator[T]:
     """Pass things on, with a bar on stderr where that is a terminal."""
     if not sys.stderr.isatty():
         yield from items

@@ -12,18 +12,18 @@ from pathlib import Path
 from typing import Any
 
 from cvnotes.base import CvnotesError, FileError
+from cvnotes.base.writing import check_folder, printable
 from cvnotes.commands.console import complain, say
-from cvnotes.commands.ownership import maker
 from cvnotes.files import write_whole
-from cvnotes.files.writing import check_folder, printable
-from cvnotes.learn.exercises import add_exercises
-from cvnotes.learn.grader.assignment import Assignment, read_assignment
-from cvnotes.learn.grader.feedback import class_page, class_picture, file_name, student_page
-from cvnotes.learn.grader.grading import grade_folder
-from cvnotes.learn.grader.marks import Mark
-from cvnotes.learn.grader.process import Limits
-from cvnotes.learn.grader.records import Records, read_records
-from cvnotes.learn.grader.tables import (
+from cvnotes.files.ownership import maker
+from cvnotes.learn.exercises import COURSE
+from cvnotes.tutor.grader.assignment import Assignment, read_assignment
+from cvnotes.tutor.grader.feedback import class_page, class_picture, file_name, student_page
+from cvnotes.tutor.grader.grading import grade_folder
+from cvnotes.tutor.grader.marks import Mark
+from cvnotes.tutor.grader.process import Limits
+from cvnotes.tutor.grader.records import Records, read_records
+from cvnotes.tutor.grader.tables import (
     FORMATS,
     HEADER,
     for_canvas,
@@ -32,7 +32,7 @@ from cvnotes.learn.grader.tables import (
     number,
     summary,
 )
-from cvnotes.learn.grader.totals import totals
+from cvnotes.tutor.grader.totals import totals
 
 _FORMATS = {"moodle": for_moodle, "canvas": for_canvas}
 # How the tables of this command begin.
@@ -137,10 +137,10 @@ class Outputs:
         return self.assignment.title if self.assignment else "Exercises"
 
     def contents(self, marks: Sequence[Mark]) -> dict[Path, bytes]:
-        """Give all files but the records."""
+        """Return all files but the records."""
         marks = sorted(marks, key=lambda mark: (mark.student, mark.notebook))
-        contents = {self.table: _for_spreadsheets(marks_csv(marks, self.assignment))}
-        sums = totals(marks, self.assignment)
+        contents = {self.table: _for_spreadsheets(marks_csv(marks, COURSE, self.assignment))}
+        sums = totals(marks, COURSE, self.assignment)
         if self.platform:
             text = _FORMATS[self.platform](sums, self.title)
             contents[self.platform_table] = _for_spreadsheets(text)
@@ -148,11 +148,11 @@ class Outputs:
             taken: list[str] = []
             for total in sums:
                 taken.append(file_name(total, taken))
-                page = student_page(total, self.title)
+                page = student_page(total, COURSE, self.title)
                 contents[self.feedback / taken[-1]] = page.encode()
         if self.summary:
-            contents[self.summary] = class_page(marks, sums, self.title).encode()
-            contents[self.summary.with_suffix(".svg")] = class_picture(sums).encode()
+            contents[self.summary] = class_page(marks, sums, COURSE, self.title).encode()
+            contents[self.summary.with_suffix(".svg")] = class_picture(sums, COURSE).encode()
         return contents
 
 
@@ -167,8 +167,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _grade(args: argparse.Namespace) -> int:
     for path in args.added:
-        add_exercises(path)
-    assignment = read_assignment(Path(args.assignment)) if args.assignment else None
+        COURSE.add_exercises(path)
+    assignment = read_assignment(Path(args.assignment), COURSE) if args.assignment else None
     outputs = Outputs(
         Path(args.out),
         assignment,
@@ -178,10 +178,11 @@ def _grade(args: argparse.Namespace) -> int:
     )
     folder, limits = Path(args.folder), Limits(args.seconds, int(args.megabytes))
     _check(outputs)
-    known = read_records(outputs.records, limits) if args.resume else {}
+    known = read_records(outputs.records, limits, COURSE) if args.resume else {}
     with ExitStack() as stack:
         n, marks = grade_folder(
             folder,
+            COURSE,
             seconds=limits.seconds,
             megabytes=limits.megabytes,
             jobs=int(args.jobs) if args.jobs else None,
@@ -192,7 +193,7 @@ def _grade(args: argparse.Namespace) -> int:
         stack.enter_context(_one_interruption())
         graded: list[Mark] = []
         try:
-            records = stack.enter_context(Records(outputs.records, known, limits))
+            records = stack.enter_context(Records(outputs.records, known, limits, COURSE))
             for mark in stack.enter_context(closing(marks)):  # type: ignore[type-var]
                 records.add(mark)
                 graded.append(mark)
@@ -225,7 +226,7 @@ def _check(outputs: Outputs) -> None:
 
 
 def _is_ours(path: Path) -> bool:
-    """Tell whether this command made a file, or nobody has written into it."""
+    """Return whether this command made a file, or nobody has written into it."""
     if path.suffix == ".csv":
         head = path.read_bytes()[:200].removeprefix(codecs.BOM_UTF8).decode(errors="replace")
         return not head or head.startswith(_HEADS)
@@ -236,7 +237,7 @@ def _is_ours(path: Path) -> bool:
 
 def _tell(graded: Sequence[Mark], outputs: Outputs) -> None:
     say()
-    say(summary(graded, outputs.assignment))
+    say(summary(graded, COURSE, outputs.assignment))
     if not all(mark.sealed for mark in graded):
         say(
             "This system does not let a notebook be sealed off: network, files and other "
@@ -262,7 +263,7 @@ def one_line(mark: Mark, assignment: Assignment | None = None) -> str:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    """Give the workers of a Dask scheduler as an executor."""
+    """Return the workers of a Dask scheduler as an executor."""
     try:
         from distributed import Client
     except ImportError:

@@ -2,6 +2,7 @@
 
 import argparse
 import importlib.util
+import json
 import os
 import secrets
 import signal
@@ -19,13 +20,14 @@ from threading import current_thread, main_thread
 
 from cvnotes.base import FileError
 from cvnotes.base.material import material
+from cvnotes.base.writing import printable
 from cvnotes.commands.console import say
 from cvnotes.commands.quiet import options
 from cvnotes.commands.redirect import NAME, leading_to
 from cvnotes.commands.working_copy import FOLDER, default_folder, deliver, start_over
-from cvnotes.files.writing import printable
 
 START = "00_start_here.ipynb"
+_JUPYTER = Path(__file__).parent / "jupyter"  # what is ours in JupyterLab
 _SECONDS_TO_OPEN = 60  # after which no browser still reads the page that leads to the course
 
 
@@ -43,7 +45,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     add("folder", nargs="?", type=Path, metavar="FOLDER",
         help=f"your working copy (default: this folder if it is one, else {FOLDER})")  # fmt: skip
     add("--fresh", metavar="CHAPTER", action="append", default=[],
-        help="start a chapter over, such as 3; yours is kept beside it")  # fmt: skip
+        help="start one over, by its number or name; yours is kept beside it")  # fmt: skip
     add("--copy", action="store_true", help="bring the working copy up to date, and open nothing")
     add("--notebooks", type=Path, metavar="FOLDER",
         help="open the notebooks of this folder themselves, without a working copy")  # fmt: skip
@@ -61,20 +63,39 @@ def run(args: argparse.Namespace) -> int:
     if importlib.util.find_spec("jupyterlab") is None:
         raise FileError('JupyterLab is not installed; install it with: pip install "cvnotes[lab]"')
     notebooks = course if args.notebooks else prepare(course, args.folder, args.fresh)
-    port, token = free_port(args.port), secrets.token_hex(24)
+    if there := already_open(notebooks):
+        say(f"This folder is open already, at\n\n    {there}\n")
+        say("Ctrl-C ends it, in the terminal where it was started.")
+        return 0
+    token = secrets.token_hex(24)
     with TemporaryDirectory(prefix="cvnotes-tabs-") as tabs:  # those of last time do not come back
-        return _serve(notebooks, port, token, tabs, args.no_browser)
+        for port in (args.port, 0, 0):
+            code = _serve(notebooks, free_port(port), token, tabs, args.no_browser)
+            if code is not None:
+                return code
+    raise FileError("JupyterLab found no port that stayed free; see its words above")
 
 
-def _serve(notebooks: Path, port: int, token: str, tabs: str, no_browser: bool) -> int:
-    """Serve until Ctrl-C, and end whatever was started; gives the exit code."""
+def _serve(notebooks: Path, port: int, token: str, tabs: str, no_browser: bool) -> int | None:
+    """Serve until Ctrl-C, and end whatever was started.
+
+    Returns
+    -------
+    int or None
+        The exit code; None if another program took the port before JupyterLab could.
+    """
     with _undisturbed() as came:
         server = start_server(notebooks, port, token, tabs)
     try:
         if came:
             raise KeyboardInterrupt
-        wait_until_up(server, port)
-        address = f"http://127.0.0.1:{port}/lab/tree/{START}?token={token}"
+        try:
+            wait_until_up(server, port, token)
+        except FileError:
+            if free_port(port) != port:
+                return None
+            raise
+        address = _address(port, token)
         say(f"The course is open at\n\n    {address}\n")
         with leading_to(address, notebooks) as page:
             if not no_browser and not open_browser(page):
@@ -137,7 +158,7 @@ def prepare(course: Path, given: Path | None, fresh: Sequence[str]) -> Path:
 
 
 def free_port(first: int) -> int:
-    """Give the first port if nobody listens there, else one that is free."""
+    """Return the first port if nobody listens there, else one that is free."""
     for port in (first, 0):
         with socket.socket() as probe:
             try:
@@ -165,6 +186,7 @@ def start_server(
         command.append(f"--ContentsManager.hide_globs={hidden}")
     command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
     command += ["--LabApp.extension_manager=readonly"]
+    command += [f"--LabApp.extra_labextensions_path={_JUPYTER / 'labextensions'}"]
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         command.append("--allow-root")
     # The token goes by the environment, which other users cannot read; the kernel is this Python.
@@ -172,29 +194,53 @@ def start_server(
     if tabs:
         environment["JUPYTERLAB_WORKSPACES_DIR"] = tabs
     # Our settings, beside those of the user: no question about Jupyter news on the first page.
-    settings = [str(Path(__file__).parent / "jupyter"), os.environ.get("JUPYTER_CONFIG_PATH", "")]
+    settings = [str(_JUPYTER), os.environ.get("JUPYTER_CONFIG_PATH", "")]
     environment["JUPYTER_CONFIG_PATH"] = os.pathsep.join(filter(None, settings))
     # In a session of its own, so that Ctrl-C reaches us and not its question whether to stop.
     return subprocess.Popen(command, env=environment, start_new_session=True)
 
 
-def wait_until_up(server: "subprocess.Popen[bytes]", port: int, seconds: float = 60) -> None:
-    """Wait until the server answers; raises FileError if it ends or never does."""
+def wait_until_up(
+    server: "subprocess.Popen[bytes]", port: int, token: str, seconds: float = 60
+) -> None:
+    """Wait until the server answers to its token; raises FileError if it ends or never does."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if server.poll() is not None:
             raise FileError(f"JupyterLab ended with code {server.returncode}; see its words above")
-        connection = HTTPConnection("127.0.0.1", port, timeout=5)
-        try:
-            connection.request("GET", "/api")
-            connection.getresponse()
-        except (HTTPException, OSError):
-            time.sleep(0.1)
-        else:
+        if _answers(port, token):
             return
-        finally:
-            connection.close()
+        time.sleep(0.1)
     raise FileError(f"JupyterLab did not answer within {seconds:.0f} s")
+
+
+def already_open(notebooks: Path) -> str | None:
+    """Return the address at which a JupyterLab of this user serves a folder, if one does."""
+    from jupyter_core.paths import jupyter_runtime_dir
+
+    for path in sorted(Path(jupyter_runtime_dir()).glob("jpserver-*.json")):
+        with suppress(OSError, ValueError, KeyError, TypeError):  # written just now, or gone
+            told = json.loads(path.read_text(encoding="utf-8"))
+            same = Path(told["root_dir"]).resolve() == notebooks.resolve()
+            if same and _answers(told["port"], told["token"]):
+                return _address(told["port"], told["token"])
+    return None
+
+
+def _address(port: int, token: str) -> str:
+    return f"http://127.0.0.1:{port}/lab/tree/{START}?token={token}"
+
+
+def _answers(port: int, token: str) -> bool:
+    """Tell whether a server listens that takes the token for its own."""
+    connection = HTTPConnection("127.0.0.1", port, timeout=5)
+    try:
+        connection.request("GET", "/api/status", headers={"Authorization": f"token {token}"})
+        return connection.getresponse().status == 200
+    except (HTTPException, OSError):
+        return False
+    finally:
+        connection.close()
 
 
 def open_browser(address: str) -> bool:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, chunks
+from cvnotes.base.writing import printable
 from cvnotes.calibration.coverage import covered_cells
 from cvnotes.commands.canvas import (
     ESTIMATED,
@@ -21,12 +22,11 @@ from cvnotes.commands.canvas import (
     wrapped,
 )
 from cvnotes.commands.console import progress
-from cvnotes.commands.examined import Examined
-from cvnotes.files.writing import printable
-from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration, NextView
+    from cvnotes.photographs import CalibratedPhotographs, Detection
+    from cvnotes.photographs.detection import Board
 
 _COLUMNS, _ROWS = 4, 10  # of a sheet
 _TILE = 320  # px wide
@@ -36,58 +36,37 @@ _BAR = 18  # px that a bar and its name need
 _MOST_LINES = 1000  # that can be told apart
 
 
-def pictures(
-    result: "Calibration",
-    examined: Sequence[Examined],
-    board: Chessboard | CharucoBoard,
-    names: Sequence[str],
-    proposal: "NextView | None" = None,
-) -> dict[str, bytes]:
-    """Draw all pictures; gives PNG by file name.
-
-    Parameters
-    ----------
-    result : Calibration
-        What came out.
-    examined : sequence of Examined
-        All photographs looked at, also those without the board.
-    board : Chessboard or CharucoBoard
-        The board.
-    names : sequence of str
-        Names of those that were used.
-    proposal : NextView, optional
-        Where the next photograph should be.
-    """
+def pictures(found: "CalibratedPhotographs") -> dict[str, bytes]:
+    """Draw all pictures of what came out; gives PNG by file name."""
+    result, photographs = found.calibration, found.photographs
     drawn = {
-        "view_rms.png": _view_rms(result, names),
+        "view_rms.png": _view_rms(result, photographs.named()[0]),
         "coverage.png": _coverage(result),
         "residuals.png": _residuals(result),
-        **corner_sheets(examined, board),
+        **corner_sheets(photographs.looked_at, photographs.board),
     }
-    if proposal is not None:
-        drawn["next_view.png"] = _next_view(result, proposal, board)
+    if found.next_view is not None:
+        drawn["next_view.png"] = _next_view(result, found.next_view, photographs.board)
     sheets = progress(drawn.items(), total=len(drawn), unit="pictures")
     return {name: sheet.png() for name, sheet in sheets}
 
 
-def corner_sheets(
-    examined: Sequence[Examined], board: Chessboard | CharucoBoard
-) -> dict[str, Canvas]:
+def corner_sheets(looked_at: "Sequence[Detection]", board: "Board") -> dict[str, Canvas]:
     """Draw all photographs small with the corners found in them, on as many sheets as it takes."""
-    sheets = [examined[part] for part in chunks(len(examined), _COLUMNS * _ROWS)]
+    sheets = [looked_at[part] for part in chunks(len(looked_at), _COLUMNS * _ROWS)]
     if len(sheets) == 1:
         return {"corners.png": _sheet(sheets[0], board)}
     return {f"corners-{i}.png": _sheet(sheet, board) for i, sheet in enumerate(sheets, start=1)}
 
 
-def _sheet(examined: Sequence[Examined], board: Chessboard | CharucoBoard) -> Canvas:
-    width, height = examined[0].size
+def _sheet(photographs: "Sequence[Detection]", board: "Board") -> Canvas:
+    width, height = photographs[0].size
     tile = (_TILE, max(round(_TILE * height / width), 1))
     # Three tiles at least, so that a title has its place.
-    columns = min(_COLUMNS, max(len(examined), 3))
-    rows = -(-len(examined) // columns)
+    columns = min(_COLUMNS, max(len(photographs), 3))
+    rows = -(-len(photographs) // columns)
     sheet = Canvas(columns * (_TILE + 4), rows * (tile[1] + _HEAD))
-    for k, photo in enumerate(examined):
+    for k, photo in enumerate(photographs):
         x, y = k % columns * (_TILE + 4) + 2, k // columns * (tile[1] + _HEAD) + _HEAD
         sheet.photograph(photo.thumbnail, (x, y), tile)
         zoom, name = _TILE / photo.size[0], _shortened(printable(photo.path.name))
@@ -166,9 +145,7 @@ def _coverage(result: "Calibration") -> Canvas:
     return drawn.sheet
 
 
-def _next_view(
-    result: "Calibration", proposal: "NextView", board: Chessboard | CharucoBoard
-) -> Canvas:
+def _next_view(result: "Calibration", proposal: "NextView", board: "Board") -> Canvas:
     """Draw the board as it should be seen next, over all corners that were seen so far."""
     drawn = _picture(result.size, f"Next: {proposal.words}")
     sheet, place = drawn.sheet, drawn.place
@@ -194,7 +171,7 @@ class _Picture(NamedTuple):
     size: Array  # of the frame
 
     def place(self, m: Array) -> Array:
-        """Give where pixels (n, 2) of the picture are on the sheet."""
+        """Return where pixels (n, 2) of the picture are on the sheet."""
         return np.asarray((m + 0.5) * self.zoom + self.corner)
 
     def frame(self) -> None:
@@ -202,7 +179,7 @@ class _Picture(NamedTuple):
 
 
 def _picture(size: tuple[int, int], title: str, *, beside: int = 0, tall: int = 0) -> _Picture:
-    """Give a sheet for something drawn on a picture, with so much room beside it, so tall."""
+    """Return a sheet for something drawn on a picture, with so much room beside it, so tall."""
     zoom = min((_WIDE - 2 * _EDGE) / size[0], 900 / size[1])
     frame = zoom * np.array(size)
     width = max(round(frame[0]) + 2 * _EDGE, _NARROWEST)
@@ -277,7 +254,7 @@ def _cloud(drawn: _Picture, r: Array, sigma: float) -> None:
 
 
 def _round_number(x: float) -> float:
-    """Give the largest of 1, 2, 5, 10, 20, … below a number."""
+    """Return the largest of 1, 2, 5, 10, 20, … below a number."""
     power = 10.0 ** np.floor(np.log10(x))
     return float(power * max(f for f in (1, 2, 5) if f * power <= x * (1 + 1e-9)))
 

@@ -19,7 +19,7 @@ def _load_jupyter_server_extension(server: Any) -> None:
 
 
 def prompt(usual: Any) -> Any:
-    """Give a server's class of connections to kernels with its small messages sent at once.
+    """Return a server's class of connections to kernels with its small messages sent at once.
 
     Examples
     --------

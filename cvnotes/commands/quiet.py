@@ -13,26 +13,26 @@ class WithoutFarewell(logging.Filter):
     """Drops the critical remark that the server was told to end, which it was, by us."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Tell if a record is worth a line."""
+        """Return whether a record is worth a line."""
         return not record.getMessage().startswith("received signal")
 
 
 def transport(runtime: Path | str) -> str:
-    """Give how a kernel is spoken to: by files of its owner where the system has such sockets.
+    """Return how a kernel is spoken to: by files of its owner where the system has such sockets.
 
     Over TCP any user of the machine could listen, and every kernel warns of that.
 
     Parameters
     ----------
     runtime : Path or str
-        Folder of the sockets, as `jupyter_core.paths.jupyter_runtime_dir` gives it.
+        Folder of the sockets, as ``jupyter_core.paths.jupyter_runtime_dir`` gives it.
     """
     fits = len(os.fsencode(runtime)) <= _LONGEST_FOLDER
     return "ipc" if os.name == "posix" and fits else "tcp"
 
 
 def options(runtime: Path | str) -> list[str]:
-    """Give JupyterLab's options that keep it quiet."""
+    """Return JupyterLab's options that keep it quiet."""
     name = f"{__name__}.{WithoutFarewell.__name__}"
     logs = {
         "filters": {"farewell": {"()": name}},

@@ -24,7 +24,7 @@ NAME = "open-the-course.html"
 
 @contextmanager
 def leading_to(address: str, folder: Path) -> Iterator[str]:
-    """Give an address of a file that leads on to another, as long as the block lasts.
+    """Return an address of a file that leads on to another, as long as the block lasts.
 
     Parameters
     ----------

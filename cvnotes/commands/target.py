@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 
 from cvnotes.base import CvnotesError
+from cvnotes.base.writing import printable
 from cvnotes.commands.console import complain, say
-from cvnotes.commands.ownership import maker
 from cvnotes.files import write_whole
-from cvnotes.files.writing import printable
+from cvnotes.files.ownership import maker
 from cvnotes.targets import PAPERS, CharucoBoard, Chessboard
 
 

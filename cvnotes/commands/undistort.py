@@ -8,9 +8,9 @@ from itertools import chain
 from pathlib import Path
 
 from cvnotes.base import CalibrationWarning, CvnotesError, text_table
+from cvnotes.base.writing import check_folder, printable
 from cvnotes.camera import Camera
-from cvnotes.commands.console import complain, progress, say
-from cvnotes.commands.ownership import free_name, made_by, marked, numbered, photographs
+from cvnotes.commands.console import complain, progress, say, shortfall
 from cvnotes.files import (
     Photo,
     Rejected,
@@ -19,7 +19,8 @@ from cvnotes.files import (
     write_camera,
     write_whole,
 )
-from cvnotes.files.writing import check_folder, printable
+from cvnotes.files.ownership import free_name, made_by, marked, numbered, photographs
+from cvnotes.files.reasons import OtherSize, Unreadable, unread
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -41,7 +42,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 def run(args: argparse.Namespace) -> int:
-    """Undistort; gives the exit code: 0 if any photograph could be, else 1."""
+    """Undistort; gives the exit code: 0 done, 3 if only some could be, 1 if none."""
     camera = read_camera(args.camera)
     check_folder(args.out)
     files, rejected = photographs(args.photos, size=camera.size, straightened=False)
@@ -57,8 +58,8 @@ def run(args: argparse.Namespace) -> int:
             write_whole({target: picture})
             written.append([printable(photo.path), printable(target.name), note])
         except CvnotesError as error:
-            rejected.append(Rejected(printable(photo.path), str(error)))
-    rows = [*written, *([r.file, "–", r.reason] for r in rejected)]
+            rejected.append(Rejected(printable(photo.path), Unreadable(str(error))))
+    rows = [*written, *([r.file, "–", str(r.reason)] for r in rejected)]
     say(text_table([["photograph", "written as", "note"], *rows]))
     if not written:
         complain("undistort", "no photograph could be undistorted")
@@ -67,7 +68,8 @@ def run(args: argparse.Namespace) -> int:
     target = free_name(names, args.out, "undistort", taken)
     write_camera(Camera(camera.A, size=camera.size), target, note=made_by("undistort"))
     say(f"Written to {printable(args.out)}, with {target.name} for them")
-    return 0
+    missing = sum(isinstance(r.reason, OtherSize) for r in rejected) + unread(rejected, args.photos)
+    return shortfall("undistort", missing, missing + len(written), "were not undistorted")
 
 
 def straightened(photo: Photo, camera: Camera) -> tuple[bytes, str]:
@@ -88,7 +90,7 @@ def straightened(photo: Photo, camera: Camera) -> tuple[bytes, str]:
 
 
 def _names(path: Path) -> Iterator[str]:
-    """Give the names that the result for a photograph may have, the best first."""
+    """Return the names that the result for a photograph may have, the best first."""
     yield f"{path.stem}.png"
     if path.suffix.lower() != ".png":
         yield f"{path.name}.png"

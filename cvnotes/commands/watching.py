@@ -14,7 +14,7 @@ from cvnotes.calibration import pose_from_view
 from cvnotes.calibration.coverage import covered_cells
 from cvnotes.calibration.next_view import left_with
 from cvnotes.commands.dropped import Dropped
-from cvnotes.targets.saddle_points import find_saddles
+from cvnotes.targets.finding import rough_corners
 
 STILL = 0.4  # px of the small frame that corners move between two frames, root mean square
 _OTHER = 0.5  # of a cell: how far corners are, on average, from those of any photograph so far
@@ -53,7 +53,7 @@ class Watch:
         (width, height), full = size, (full[0], full[1])
         picture = np.frombuffer(grey, np.uint8).reshape(height, width)
         corners = self.dropped.board.corners
-        m = find_saddles(picture, corners)
+        m = rough_corners(picture, corners)
         before, self._before = self._before, None
         if m is None or np.isnan(m).any():
             return {"corners": [], "take": False, "words": "the board is not seen whole"}
@@ -71,24 +71,25 @@ class Watch:
         cell = max(size) / 8
         if so_far and min(_apart(m, other) for other in so_far) < _OTHER * cell:
             return False, f"there is such a photograph already{self._wish()}"
-        result, proposal = self.dropped.known or (None, None)
-        if result is None or proposal is None or result.size != size:
+        found = self.dropped.found
+        if found is None or found.next_view is None or found.calibration.size != size:
             new = covered_cells(m, size)
             if so_far:
                 new &= ~covered_cells(so_far, size)
             return bool(new.any()) or len(so_far) < 4, "hold the board where no dots are"
         board = self.dropped.board
         try:
-            G = pose_from_view(result.camera, board.points, m)
-            left = left_with(result, G)
+            G = pose_from_view(found.camera, board.points, m)
+            left = left_with(found.calibration, G)
         except CvnotesError:
             return False, "this view of the board cannot be judged"
-        best, gain = np.log(proposal.before / proposal.after), np.log(proposal.before / left)
-        return bool(gain >= _PART * best), f"another view would help more{self._wish()}"
+        now, best = found.next_view.before, found.next_view.after
+        helps = np.log(now / left) >= _PART * np.log(now / best)
+        return bool(helps), f"another view would help more{self._wish()}"
 
     def _wish(self) -> str:
-        known = self.dropped.known
-        return f": {known[1].words}" if known and known[1] else ""
+        found = self.dropped.found
+        return f": {found.next_view.words}" if found and found.next_view else ""
 
 
 def _apart(m: Array, other: Array) -> float:

@@ -15,8 +15,8 @@ from typing import Any
 
 from cvnotes.base import FileError
 from cvnotes.base.material import CLONE, is_clone
+from cvnotes.base.writing import check_folder, printable
 from cvnotes.files import write_whole
-from cvnotes.files.writing import check_folder, printable
 
 FOLDER = "my_course"
 RECORD = ".cvnotes-course.json"
@@ -43,7 +43,7 @@ class Delivery:
 
 
 def default_folder() -> Path:
-    """Give the folder of the working copy: this one if it is one; else in the clone, or here."""
+    """Return the folder of the working copy: this one if it is one; else in the clone, or here."""
     if (Path.cwd() / RECORD).is_file():
         return Path.cwd()
     return (CLONE if is_clone() else Path.cwd()) / FOLDER
@@ -106,7 +106,7 @@ def deliver(course: Path, folder: Path) -> Delivery:
 
 
 def pages(course: Path) -> dict[str, bytes]:
-    """Give the pages of the docs to which chapters lead, and their figures, by their place.
+    """Return the pages of the docs to which chapters lead, and their figures, by their place.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def start_over(course: Path, folder: Path, chapter: str) -> tuple[str, str]:
 
 
 def cells_of(content: bytes) -> str:
-    """Give a fingerprint of what a notebook's cells say and show, however the file is laid out.
+    """Return a fingerprint of what a notebook's cells say and show, however the file is laid out.
 
     Examples
     --------
@@ -208,7 +208,7 @@ def _name_beside(folder: Path, stem: str, record: _Record) -> str:
 
 
 def _numbered(stem: str, word: str) -> Iterator[str]:
-    """Give stem-word.ipynb, stem-word-2.ipynb, … without end."""
+    """Return stem-word.ipynb, stem-word-2.ipynb, … without end."""
     yield f"{stem}-{word}.ipynb"
     i = 2
     while True:

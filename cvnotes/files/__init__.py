@@ -1,9 +1,16 @@
 """Photographs read; cameras written and read, in our format and in those of others."""
 
-from cvnotes.files.cameras import read_camera, read_camera_info, write_camera, write_camera_info
+from cvnotes.base.writing import write_whole
+from cvnotes.files.cameras import (
+    read_camera,
+    read_camera_info,
+    read_rig,
+    write_camera,
+    write_camera_info,
+)
 from cvnotes.files.exchange import CameraInfo, lens_from_opencv, opencv_coefficients
-from cvnotes.files.photos import Photo, Rejected, list_photos, open_photos, read_photo, read_photos
-from cvnotes.files.writing import write_whole
+from cvnotes.files.photos import Photo, list_photos, open_photos, read_photo, read_photos
+from cvnotes.files.reasons import Reason, Rejected
 
 __all__ = [
     "read_photo",
@@ -11,11 +18,13 @@ __all__ = [
     "list_photos",
     "open_photos",
     "Photo",
+    "Reason",
     "Rejected",
     "read_camera",
     "write_camera",
     "read_camera_info",
     "write_camera_info",
+    "read_rig",
     "CameraInfo",
     "lens_from_opencv",
     "opencv_coefficients",

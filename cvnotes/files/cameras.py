@@ -1,20 +1,21 @@
 """Cameras as files: our JSON, OpenCV's YAML, ROS's YAML."""
 
 import json
+from dataclasses import Field, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from cvnotes.base import CvnotesError, FileError, intrinsic_matrix
-from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens, pose
-from cvnotes.camera.model import AnyLens
+from cvnotes.base.writing import PathLike, printable, write_whole
+from cvnotes.camera import AnyLens, Camera, Lens, pose
+from cvnotes.camera.any_lens import MODELS
 from cvnotes.files.entry import Entry
 from cvnotes.files.exchange import CameraInfo, camera_info, opencv_yaml, ros_yaml
 from cvnotes.files.strict import MAX_YAML_BYTES, parse_json, parse_yaml, read_text
-from cvnotes.files.writing import PathLike, printable, write_whole
 
-FORMAT = "cvnotes camera"
+FORMAT, RIG = "cvnotes camera", "cvnotes rig"
 VERSION = 1
 
 
@@ -72,8 +73,30 @@ def read_camera_info(path: PathLike) -> CameraInfo:
     return camera_info(parse_yaml(read_text(path, MAX_YAML_BYTES), printable(path)))
 
 
+def read_rig(path: PathLike) -> tuple[Camera, Camera]:
+    """Read the two cameras of a ``rig.json``; the WRF is the left camera's frame.
+
+    Raises
+    ------
+    FileError
+        The file does not describe a rig; the message names the key or the position.
+
+    Examples
+    --------
+    >>> left, right = read_rig("rig/rig.json")
+    Traceback (most recent call last):
+    cvnotes.base.errors.FileError: rig/rig.json: there is no such file, or it is not a regular one
+    """
+    entry: Any = parse_json(read_text(path), printable(path))
+    form = entry["format"]
+    if form.text() != RIG:
+        raise form.error(f"expected a {RIG!r}, got {form.text()!r:.40}")
+    left, right = (camera_from_entry(entry[side]) for side in ("left", "right"))
+    return left, right
+
+
 def camera_to_dict(camera: Camera) -> dict[str, Any]:
-    """Give a camera as plain values under the keys of our JSON.
+    """Return a camera as plain values under the keys of our JSON.
 
     Examples
     --------
@@ -108,34 +131,36 @@ def camera_from_entry(entry: Entry) -> Camera:
 
 
 def _lens_to_dict(lens: AnyLens) -> dict[str, Any]:
-    """Spell a lens as its model, unless that is the polynomial, and its coefficients."""
-    match lens:
-        case FisheyeLens():
-            return {"model": "equidistant", "k": list(lens.k)}
-        case RationalLens():
-            keys = {"k": lens.k, "p": lens.p, "s": lens.s, "tilt": lens.tilt}
-            return {"model": "rational", **{name: list(values) for name, values in keys.items()}}
-    centre = {"centre": list(lens.centre)} if any(lens.centre) else {}
-    return {"k": list(lens.k), "p": list(lens.p), **centre}
+    """Spell a lens as its model, unless that is the polynomial, and the fields of its class."""
+    keys: dict[str, Any] = {} if lens.model == Lens.model else {"model": lens.model}
+    for f in fields(cast(Any, lens)):
+        value = getattr(lens, f.name)
+        if f.name not in lens.seldom or value != f.default:
+            keys[f.name] = list(value) if isinstance(value, tuple) else value
+    return keys
 
 
 def _lens_from_entry(entry: Entry) -> AnyLens:
     """Make the lens that `_lens_to_dict` spelt."""
-    model, k = entry.get("model"), tuple(entry["k"].array(None))
-    name = "polynomial" if model is None else model.text()
-    if name == "equidistant":
-        return FisheyeLens(k)
-    p = tuple(entry["p"].array(2))
-    if name == "rational":
-        return RationalLens(k, p, tuple(entry["s"].array(4)), tuple(entry["tilt"].array(2)))
-    if model is not None and name != "polynomial":
-        raise model.error(f"expected polynomial, rational or equidistant, got {name!r:.40}")
-    centre = entry.get("centre")
-    return Lens(k, p, (0.0, 0.0) if centre is None else tuple(centre.array(2)))
+    model = entry.get("model")
+    name = Lens.model if model is None else model.text()
+    if model is not None and name not in MODELS:
+        *some, last = MODELS
+        raise model.error(f"expected {', '.join(some)} or {last}, got {name!r:.40}")
+    lens = MODELS[name]
+    given = [f for f in fields(cast(Any, lens)) if f.name not in lens.seldom or entry.get(f.name)]
+    return lens(**{f.name: _coefficients(entry[f.name], f) for f in given})
+
+
+def _coefficients(entry: Entry, f: "Field[Any]") -> Any:
+    """Read the number or the numbers of a field; of the radial ones there may be fewer."""
+    if not isinstance(f.default, tuple):
+        return entry.number()
+    return tuple(entry.array(None if f.name == "k" else len(f.default)))
 
 
 def pose_to_dict(G: Any) -> dict[str, Any]:
-    """Give a rigid motion as R and T."""
+    """Return a rigid motion as R and T."""
     G = np.asarray(G)
     return {"R": G[:3, :3].tolist(), "T": G[:3, 3].tolist()}
 

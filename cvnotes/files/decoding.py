@@ -32,7 +32,7 @@ _WIDTH, _HEIGHT, _ORIENTATION = 256, 257, 274  # TIFF and EXIF tags
 
 
 def header_size(path: Path) -> tuple[int, int]:
-    """Give (width, height) by a picture's header; raises FileError with the reason alone."""
+    """Return (width, height) by a picture's header; raises FileError with the reason alone."""
     _refuse_unopened(path)
     try:
         with path.open("rb") as stream, _opened(stream) as picture:
@@ -42,7 +42,7 @@ def header_size(path: Path) -> tuple[int, int]:
 
 
 def decode(path: Path, *, grey: bool = False) -> tuple[npt.NDArray[Any], int, list[str]]:
-    """Give pixels as stored, EXIF orientation and notes; raises FileError with the reason alone.
+    """Return pixels as stored, EXIF orientation and notes; raises FileError with the reason alone.
 
     A JPEG holds its grey levels beside its colours: for `grey`, the colours are not decoded.
     """
@@ -112,7 +112,7 @@ def _opened(stream: IO[bytes]) -> "Iterator[Image]":
 
 
 def _stored_size(picture: "Image") -> tuple[int, int]:
-    """Give the size of what is stored: for TIFF, Pillow's own is that after rotation."""
+    """Return the size of what is stored: for TIFF, Pillow's own is that after rotation."""
     tags = getattr(picture, "tag_v2", None)
     if tags is None:
         return picture.size

@@ -52,13 +52,13 @@ class Entry:
             yield Entry(item, self.file, f"{self.key}[{i}]")
 
     def items(self) -> dict[str, "Entry"]:
-        """Give the entries of a mapping by name."""
+        """Return the entries of a mapping by name."""
         if not isinstance(self.value, dict):
             raise self.error(f"expected keys and values, got {_kind(self.value)}")
         return {name: self[name] for name in self.value}
 
     def number(self) -> float:
-        """Give a finite number."""
+        """Return a finite number."""
         if isinstance(self.value, bool) or not isinstance(self.value, int | float):
             raise self.error(f"expected a number, got {_kind(self.value)}")
         number = float(self.value)
@@ -67,26 +67,26 @@ class Entry:
         return number
 
     def whole(self) -> int:
-        """Give a whole number."""
+        """Return a whole number."""
         number = self.number()
         if number != int(number):
             raise self.error(f"expected a whole number, got {number:g}")
         return int(number)
 
     def text(self) -> str:
-        """Give a text."""
+        """Return a text."""
         if not isinstance(self.value, str):
             raise self.error(f"expected a text, got {_kind(self.value)}")
         return self.value
 
     def flag(self) -> bool:
-        """Give true or false."""
+        """Return true or false."""
         if not isinstance(self.value, bool):
             raise self.error(f"expected true or false, got {_kind(self.value)}")
         return self.value
 
     def array(self, *shape: int | None) -> Array:
-        """Give nested lists of numbers as an array; None stands for any length.
+        """Return nested lists of numbers as an array; None stands for any length.
 
         Examples
         --------
@@ -106,7 +106,7 @@ class Entry:
 
 
 def _plain(value: Any, shape: tuple[int | None, ...]) -> Array | None:
-    """Give the array if that is how it is: only who finds fault has to know every entry's key."""
+    """Return the array if that is how it is: only who finds fault has to know every entry's key."""
     found: list[int] = []
     level = [value]
     for n in shape:

@@ -12,17 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, FileError, intrinsic_matrix, matrix, numbers, rotation
-from cvnotes.camera import Camera, FisheyeLens, Lens, RationalLens
-from cvnotes.camera.model import AnyLens
+from cvnotes.base.writing import printable
+from cvnotes.camera import AnyLens, Camera, FisheyeLens, Lens, RationalLens
 from cvnotes.files.entry import Entry
-from cvnotes.files.writing import printable
 
-# What ROS calls them; OpenCV's own files have no name for a model.
-_MODELS: dict[type, str] = {
-    Lens: "plumb_bob",
-    RationalLens: "rational_polynomial",
-    FisheyeLens: "equidistant",
-}
+# What ROS calls the lenses that it and OpenCV know; OpenCV's own files have no name for a model.
+_MODELS = tuple(lens.ros_name for lens in (Lens, RationalLens, FisheyeLens))
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +77,10 @@ def opencv_yaml(camera: Camera, *, note: str = "") -> str:
     size = f"image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
     skew = "# OpenCV keeps the skew in the matrix but does not use it.\n" if camera.A[0, 1] else ""
     K = _opencv_matrix("camera_matrix", camera.A)
-    D = _opencv_matrix("distortion_coefficients", opencv_coefficients(camera.lens)[None])
-    fisheye = isinstance(camera.lens, FisheyeLens)
-    model = "distortion_model: equidistant\n" if fisheye else ""
+    d = camera.lens.opencv_coefficients()
+    D = _opencv_matrix("distortion_coefficients", d[None])
+    # (four numbers could also be k1, k2, p1, p2)
+    model = f"distortion_model: {camera.lens.ros_name}\n" if d.size == 4 else ""
     return f"%YAML:1.0\n---\n{remark}{size}{skew}{K}{model}{D}"
 
 
@@ -105,8 +101,8 @@ def ros_yaml(info: CameraInfo) -> str:
         f"image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
         f'camera_name: "{info.name}"\n'
         + _ros_matrix("camera_matrix", camera.A)
-        + f"distortion_model: {_MODELS[type(camera.lens)]}\n"
-        + _ros_matrix("distortion_coefficients", opencv_coefficients(camera.lens)[None])
+        + f"distortion_model: {camera.lens.ros_name}\n"
+        + _ros_matrix("distortion_coefficients", camera.lens.opencv_coefficients()[None])
         + _ros_matrix("rectification_matrix", info.rectification)
         + _ros_matrix("projection_matrix", np.asarray(info.projection))
     )
@@ -115,15 +111,16 @@ def ros_yaml(info: CameraInfo) -> str:
 def camera_info(entry: Entry) -> CameraInfo:
     """Understand the YAML of OpenCV or of ROS; OpenCV's has no name and no rectification."""
     model = entry.get("distortion_model")
-    if model is not None and model.text() not in _MODELS.values():
-        ours = ", ".join(_MODELS.values())
+    if model is not None and model.text() not in _MODELS:
+        ours = ", ".join(_MODELS)
         raise model.error(f"the lens model {model.text()!r} is not one of ours: {ours}")
     name = entry.get("camera_name")
     R, P = entry.get("rectification_matrix"), entry.get("projection_matrix")
     size = (entry["image_width"].whole(), entry["image_height"].whole())
     A, d = _read_matrix(entry["camera_matrix"]), _read_matrix(entry["distortion_coefficients"])
     try:
-        fisheye = model is not None and model.text() == _MODELS[FisheyeLens]
+        # (their four numbers could also be k1, k2, p1, p2: only the name tells)
+        fisheye = model is not None and model.text() == FisheyeLens.ros_name
         lens = lens_from_opencv(d.ravel(), fisheye=fisheye)
         return CameraInfo(
             Camera(intrinsic_matrix(A, "camera_matrix"), lens=lens, size=size),
@@ -149,19 +146,7 @@ def opencv_coefficients(lens: AnyLens) -> Array:
     >>> opencv_coefficients(Lens(k=(-0.25,), p=(0.001, 0.002)))
     array([-0.25 ,  0.   ,  0.001,  0.002,  0.   ])
     """
-    if isinstance(lens, FisheyeLens):
-        return np.array(lens.k)
-    if isinstance(lens, RationalLens):
-        k1, k2, k3, *others = lens.k
-        size = 14 if any(lens.tilt) else 12 if any(lens.s) else 8
-        return np.array([k1, k2, *lens.p, k3, *others, *lens.s, *lens.tilt])[:size]
-    if any(lens.centre) or any(lens.k[3:]):
-        raise CvnotesError(
-            "OpenCV and ROS hold k1 k2 p1 p2 k3 about the principal point; this lens has "
-            f"more ({lens}); keep it as JSON"
-        )
-    k1, k2, k3 = (*lens.k, 0.0, 0.0, 0.0)[:3]
-    return np.array([k1, k2, *lens.p, k3])
+    return lens.opencv_coefficients()
 
 
 def lens_from_opencv(coefficients: npt.ArrayLike, *, fisheye: bool = False) -> AnyLens:
@@ -183,6 +168,7 @@ def lens_from_opencv(coefficients: npt.ArrayLike, *, fisheye: bool = False) -> A
     FisheyeLens(k=(0.1, 0.01, 0.0, 0.0))
     """
     d = numbers(coefficients, "coefficients").reshape(-1)
+    # OpenCV's files do not name a model: how many numbers there are tells all but the fisheye
     if fisheye:
         if d.size != 4:
             raise CvnotesError(f"coefficients: a fisheye has 4 (k1 … k4), got {d.size}")

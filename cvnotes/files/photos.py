@@ -12,23 +12,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from hashlib import blake2b
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import FileError, luma, stretched
+from cvnotes.base.writing import PathLike, printable
 from cvnotes.files.decoding import decode, header_size
-from cvnotes.files.writing import PathLike, printable
-
-COPY = "the same picture as"  # another, which follows
-
-
-class Rejected(NamedTuple):
-    """A photograph that was not used, and why."""
-
-    file: str
-    reason: str
+from cvnotes.files.reasons import Copy, OtherSize, Rejected, Unreadable
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,15 +114,19 @@ def list_photos(
         try:
             sizes[path] = header_size(path)
         except FileError as error:
-            rejected.append(Rejected(printable(path), str(error)))
-    whose = "most photographs have" if size is None else "the camera has"
-    width, height = size or Counter(sizes.values() or [(0, 0)]).most_common(1)[0][0]
-    for path, (w, h) in sizes.items():
-        if (w, h) != (width, height):
-            turned = "; was it turned by an editor?" if (h, w) == (width, height) else ""
-            reason = f"{w}×{h} pixels where {whose} {width}×{height}{turned}"
-            rejected.append(Rejected(printable(path), reason))
-    return [path for path in sizes if sizes[path] == (width, height)], rejected
+            rejected.append(Rejected(printable(path), Unreadable(str(error))))
+    expected = size or usual_size(sizes.values())
+    rejected += [
+        Rejected(printable(path), OtherSize(own, expected, of_camera=size is not None))
+        for path, own in sizes.items()
+        if own != expected
+    ]
+    return [path for path in sizes if sizes[path] == expected], rejected
+
+
+def usual_size(sizes: Iterable[tuple[int, int]]) -> tuple[int, int]:
+    """Return the (width, height) that most photographs have."""
+    return Counter(sizes or [(0, 0)]).most_common(1)[0][0]
 
 
 def open_photos(files: Iterable[Path]) -> Iterator[Photo | Rejected]:
@@ -140,7 +136,7 @@ def open_photos(files: Iterable[Path]) -> Iterator[Photo | Rejected]:
         photo = open_photo(path)
         first = path if isinstance(photo, Rejected) else seen.setdefault(fingerprint(photo), path)
         if first != path:
-            yield Rejected(printable(path), f"{COPY} {printable(first)}")
+            yield Rejected(printable(path), Copy(printable(first)))
         else:
             yield photo
 
@@ -150,11 +146,11 @@ def open_photo(path: Path, *, grey: bool = False) -> Photo | Rejected:
     try:
         return _read(path, grey=grey)
     except FileError as error:
-        return Rejected(printable(path), str(error))
+        return Rejected(printable(path), Unreadable(str(error)))
 
 
 def fingerprint(photo: Photo) -> bytes:
-    """Give a few bytes by which a photograph's pixels are known, whatever its name and format."""
+    """Return a few bytes by which a photograph's pixels are known, whatever its name and format."""
     return blake2b(np.ascontiguousarray(photo.image).data, digest_size=16).digest()
 
 

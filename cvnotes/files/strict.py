@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from cvnotes.base import FileError
+from cvnotes.base.writing import PathLike, printable
 from cvnotes.files.entry import Entry
-from cvnotes.files.writing import PathLike, printable
 
 MAX_BYTES = 16_000_000  # a calibration of 6,000 photographs with all corners, in JSON
 MAX_YAML_BYTES = 100_000  # a camera; and YAML is read slowly
@@ -98,7 +98,7 @@ def parse_json(text: str, file: str) -> Entry:
 
 
 def _is_finite(value: Any) -> bool:
-    """Tell whether no number is NaN, Infinity or beyond float64: of large files in a tenth."""
+    """Return whether no number is NaN, Infinity or beyond float64: of large files in a tenth."""
     level = [value]
     while level:
         numbers = [x for x in level if type(x) is float]

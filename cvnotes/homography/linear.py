@@ -15,7 +15,7 @@ RANK = 1e-9
 
 @guarded(src=Points(2), dst=Points(2), pair=("src", "dst"))
 def design_matrix(src: Array, dst: Array) -> Array:
-    """Give D (..., 2n, 9) of D h = 0, two rows for each point pair, h = the rows of H stacked.
+    """Return D (..., 2n, 9) of D h = 0, two rows for each point pair, h = the rows of H stacked.
 
     m̃ × H W̃' = 0 has three rows for W̃' = (x, y, 1) and m = (u, v); the first two suffice:
     [0ᵀ, −W̃'ᵀ, v W̃'ᵀ] and [W̃'ᵀ, 0ᵀ, −u W̃'ᵀ]. The third is −u times the first minus v times the
@@ -62,6 +62,9 @@ def dlt(src: Array, dst: Array) -> Array:
     the right singular vector of D of the smallest singular value, H = N₂⁻¹ Ĥ N₁. It needs no
     h9 ≠ 0.
 
+    It is not the most likely H of noisy points, which `refine_homography` finds from here, and one
+    wrong pair carries it away: see `ransac_homography`.
+
     References
     ----------
     .. [1] Notes 2b.4, "Estimating H_i".
@@ -78,10 +81,8 @@ def dlt(src: Array, dst: Array) -> Array:
     """
     N1, N2 = normaliser.inside(src), normaliser.inside(dst)
     src, dst = apply_similarity(N1, src), apply_similarity(N2, dst)
-    if max(src.ndim, dst.ndim) > 2:
-        s, Vt = _svd_of_many(src, dst)
-    else:
-        _, s, Vt = np.linalg.svd(design_matrix.inside(src, dst), full_matrices=len(src) < 5)
+    # D = Q R, and as QᵀQ = I, the 9 × 9 of R has D's singular values and right singular vectors.
+    _, s, Vt = np.linalg.svd(np.linalg.qr(design_matrix.inside(src, dst), mode="r"))
     refuse_sets(np.asarray(s[..., 7] <= RANK * s[..., 0]), src, dst)
     H = Vt[..., 8, :].reshape(*Vt.shape[:-2], 3, 3)
     refuse_singular(H, src, dst)
@@ -89,39 +90,6 @@ def dlt(src: Array, dst: Array) -> Array:
     sign = np.where(H[..., 2, 2] < 0, -1.0, 1.0)[..., None, None]
     H = inverse_similarity(N2) @ H @ N1
     return np.asarray(H * (sign / np.sqrt((H * H).sum((-2, -1), keepdims=True))))
-
-
-def _svd_of_many(src: Array, dst: Array) -> tuple[Array, Array]:
-    """Give singular values (..., 9) and right vectors of stacks of D, at a quarter of the price.
-
-    The eigenvectors of DᵀD are the right singular vectors of D, with half of the digits; where
-    those are needed, the SVD of D itself is taken.
-    """
-    values, vectors = np.linalg.eigh(_normal_matrices(src, dst))
-    s, Vt = np.sqrt(values[..., ::-1].clip(0)), vectors.mT[..., ::-1, :]
-    doubtful = values[..., 1] < 1e-5 * values[..., 8]
-    if doubtful.any():
-        D = design_matrix.inside(*(x[doubtful] for x in np.broadcast_arrays(src, dst)))
-        _, s_few, Vt[doubtful] = np.linalg.svd(D, full_matrices=D.shape[-2] < 9)
-        s[doubtful, : s_few.shape[-1]] = s_few
-    return s, Vt
-
-
-def _normal_matrices(src: Array, dst: Array) -> Array:
-    """Give DᵀD of stacks, (..., 9, 9), without making D.
-
-    Its 3 × 3 blocks are sums of W̃'W̃'ᵀ over the points, weighted by 1, u, v and u² + v².
-    """
-    W, u, v = to_homogeneous.inside(src), dst[..., 0], dst[..., 1]
-    WW = (W[..., :, None] * W[..., None, :]).reshape(*W.shape[:-1], 9)
-    weights = np.stack([np.ones_like(u), u, v, u * u + v * v], axis=-2)
-    sums = (weights @ WW).reshape(*np.broadcast_shapes(weights.shape[:-2], WW.shape[:-2]), 4, 3, 3)
-    N = np.zeros((*sums.shape[:-3], 3, 3, 3, 3))  # block row, row, block column, column
-    N[..., 0, :, 0, :] = N[..., 1, :, 1, :] = sums[..., 0, :, :]
-    N[..., 0, :, 2, :] = N[..., 2, :, 0, :] = -sums[..., 1, :, :]
-    N[..., 1, :, 2, :] = N[..., 2, :, 1, :] = -sums[..., 2, :, :]
-    N[..., 2, :, 2, :] = sums[..., 3, :, :]
-    return N.reshape(*sums.shape[:-3], 9, 9)
 
 
 def refuse_singular(H: Array, src: Array, dst: Array) -> None:

@@ -6,12 +6,22 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, numbers, paired, points
+from cvnotes.base import (
+    Array,
+    CvnotesError,
+    DegenerateError,
+    ShapeError,
+    numbers,
+    paired,
+    points,
+    whole,
+)
 from cvnotes.homography.linear import dlt
 from cvnotes.homography.refinement import refine_homography
 from cvnotes.projective import apply, to_homogeneous
 from cvnotes.projective.points import normaliser
 
+_MOST_TRIALS = 10**7
 HOPELESS = (
     "only {count} of {n} pairs agree on a homography, no more than chance would give: the "
     "correspondences are wrong, or the threshold does not fit their noise"
@@ -19,7 +29,7 @@ HOPELESS = (
 
 
 def trials_needed(inlier_fraction: float, confidence: float = 0.999, sample: int = 4) -> float:
-    """Give how many samples must be drawn to meet one without an outlier with `confidence`.
+    """Return how many samples must be drawn to meet one without an outlier with `confidence`.
 
     A sample of s pairs is clean with probability wˢ, and N of them are all spoilt with
     probability (1 − wˢ)ᴺ, so N = log(1 − confidence) / log(1 − wˢ), rounded up.
@@ -34,7 +44,7 @@ def trials_needed(inlier_fraction: float, confidence: float = 0.999, sample: int
     >>> trials_needed(0.5, 0.99)  # table 4.3 of [2]
     72
     """
-    clean = fraction(inlier_fraction, "inlier_fraction") ** sample
+    clean = fraction(inlier_fraction, "inlier_fraction") ** whole(sample, "sample")
     spoilt = log1p(-fraction(confidence, "confidence", below=1.0))
     if clean in (0, 1):
         return 1 if clean else inf
@@ -80,7 +90,7 @@ def samples(rng: "np.random.Generator", n: int) -> npt.NDArray[np.intp]:
 
 
 def of_four(src: Array, dst: Array) -> tuple[Array, int]:
-    """Give the H (k, 3, 3) that map four normalised points (s, 4, 2) exactly, where one does.
+    """Return the H (k, 3, 3) that map four normalised points (s, 4, 2) exactly, where one does.
 
     Four points, no three of them collinear, are a projective basis: the fourth is
     λ1 a + λ2 b + λ3 c, so [λ1 a, λ2 b, λ3 c] maps the standard basis and (1, 1, 1)ᵀ to the four,
@@ -98,7 +108,7 @@ def of_four(src: Array, dst: Array) -> tuple[Array, int]:
 
 
 def _basis(x: Array) -> tuple[Array, Array]:
-    """Give M diag(λ) (..., 3, 3), and the four triangles' signed areas (..., 4), twice.
+    """Return M diag(λ) (..., 3, 3), and the four triangles' signed areas (..., 4), twice.
 
     By Cramer's rule λ_i is a triangle's area over another's, so the areas serve as λ.
     """
@@ -188,7 +198,8 @@ def ransac_homography(
     if src.ndim != 2 or dst.ndim != 2:
         raise ShapeError(f"expected point pairs (n, 2), got {src.shape} and {dst.shape}")
     paired(src, dst, ("src", "dst"), at_least=5)
-    threshold, confidence = _guard(threshold, confidence, max_trials, rng)
+    threshold, confidence = _guard(threshold, confidence, rng)
+    max_trials = whole(max_trials, "max_trials", at_most=_MOST_TRIALS)
     N1, N2 = normaliser(src), normaliser(dst)
     src_n, dst_n, t = apply(N1, src), apply(N2, dst), threshold * N2[0, 0]
     inliers = _search(src_n, dst_n, t, rng, confidence, max_trials)
@@ -269,7 +280,7 @@ def _polish(src: Array, dst: Array, threshold: float, inliers: Mask) -> tuple[Ar
 
 
 def _agreement(H: Array, src: Array, dst: Array, threshold: float) -> Mask:
-    """Tell which pairs (..., n) lie within the threshold, on the near side of infinity.
+    """Return which pairs (..., n) lie within the threshold, on the near side of infinity.
 
     ‖m̂ − m‖ ≤ t is asked as (w û − w u)² + (w v̂ − w v)² ≤ (t w)², without a division.
     """
@@ -280,7 +291,7 @@ def _agreement(H: Array, src: Array, dst: Array, threshold: float) -> Mask:
     return np.asarray((off[..., 0, :] + off[..., 1, :] <= threshold**2 * w * w) & (w > 0))
 
 
-def _guard(threshold: Any, confidence: Any, most: Any, rng: Any) -> tuple[float, float]:
+def _guard(threshold: Any, confidence: Any, rng: Any) -> tuple[float, float]:
     if not isinstance(rng, np.random.Generator):
         raise CvnotesError(
             f"rng: expected a numpy.random.Generator (np.random.default_rng(seed)), got {rng!r}"
@@ -288,6 +299,4 @@ def _guard(threshold: Any, confidence: Any, most: Any, rng: Any) -> tuple[float,
     t = numbers(threshold, "threshold")
     if t.ndim or not 0 < t < 1e100:
         raise CvnotesError(f"threshold: expected a positive distance, got {threshold!r}")
-    if isinstance(most, bool) or not isinstance(most, int | np.integer) or most < 1:
-        raise CvnotesError(f"max_trials: expected a positive whole number, got {most!r}")
     return float(t), fraction(confidence, "confidence", below=1.0)

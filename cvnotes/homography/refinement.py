@@ -57,6 +57,9 @@ def refine_homography(H: Array, src: Array, dst: Array) -> Array:
     entries: h itself is a direction in which nothing changes, so h hᵀ is added to JᵀJ and the
     step stays perpendicular to h.
 
+    The minimum is the one nearest to the start. src is taken to be exact, as the corners of a
+    board are; between two pictures both sides are noisy, and this minimises one of them.
+
     References
     ----------
     .. [1] Notes 2b.4, "Estimating H_i".

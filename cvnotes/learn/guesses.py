@@ -8,7 +8,7 @@ from numbers import Real
 from typing import Any
 
 from cvnotes.base import CvnotesError
-from cvnotes.learn.remembered import guessed_before, remember_guess
+from cvnotes.tutor.remembered import guessed_before, remember_guess
 
 _kept: dict[str, Any] = {}  # of this kernel, where nothing is remembered on disk
 
@@ -41,7 +41,7 @@ def guess(name: str, value: Any = ..., question: str = "") -> Said:
     Returns
     -------
     Said
-        A sentence. The guess outlives the kernel where progress does (`cvnotes.learn.remembered`).
+        A sentence. The guess outlives the kernel where progress does (`cvnotes.tutor.remembered`).
 
     Raises
     ------

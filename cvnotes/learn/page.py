@@ -13,12 +13,11 @@ from collections.abc import Sequence
 from html import escape
 from typing import Any
 
-from cvnotes.learn import exercises
-from cvnotes.learn.checker.attempt import Printed
-from cvnotes.learn.checker.outcome import Outcome, clean
-from cvnotes.learn.checker.remarks import trouble
-from cvnotes.learn.checker.report import WRONG, Report
-from cvnotes.learn.exercises import check, find, hint, progress, solution
+from cvnotes.learn.exercises import COURSE, check, hint, progress, solution
+from cvnotes.tutor.checker.attempt import Printed
+from cvnotes.tutor.checker.outcome import Outcome, clean
+from cvnotes.tutor.checker.remarks import trouble
+from cvnotes.tutor.checker.report import WRONG, Report
 
 Space = dict[str, Any]
 
@@ -45,7 +44,7 @@ def answered(question: str) -> str:
     '<div><strong>drop: ✗ not yet right.</strong>'
     """
     given = json.loads(question)
-    exercises._SESSION.solved |= set(given.get("solved", ())) & set(exercises.EXERCISES)
+    COURSE.session.solved |= set(given.get("solved", ())) & set(COURSE.exercises)
     space, printed = _space(given.get("cells", ()), given.get("before", ())), Printed()
     report: Any = None
     try:
@@ -59,25 +58,25 @@ def answered(question: str) -> str:
         shown += f"<p>The cell printed:</p><pre>{escape(printed.text)}</pre>"
     passed = isinstance(report, Report) and report.passed
     return json.dumps(
-        {"html": shown, "passed": passed, "solved": sorted(exercises._SESSION.solved)},
+        {"html": shown, "passed": passed, "solved": sorted(COURSE.session.solved)},
         ensure_ascii=False,
     )
 
 
 def helped(name: str, given: int) -> str:
-    """Give one more hint, as HTML, after so many.
+    """Return one more hint, as HTML, after so many.
 
     Examples
     --------
     >>> helped("lift", 1)[:47]
     '<div><strong>lift, hint 2 of 3</strong><ul styl'
     """
-    exercises._SESSION.hints[name] = given
+    COURSE.session.hints[name] = given
     return hint(name)._repr_html_()
 
 
 def solved(name: str) -> str:
-    """Give a solution, as HTML."""
+    """Return a solution, as HTML."""
     return solution(name)._repr_html_()
 
 
@@ -89,7 +88,7 @@ def late(name: str, seconds: float) -> str:
     >>> late("lift", 5)[45:]
     'Your function was stopped after 5 seconds: does a loop never end?</div>'
     """
-    return _refused(name, trouble(Outcome("late", words=f"{seconds:g}"), find(name)))
+    return _refused(name, trouble(Outcome("late", words=f"{seconds:g}"), COURSE.find(name)))
 
 
 def run_cell(source: str, space: Space, name: str) -> Any:
@@ -109,7 +108,7 @@ def run_cell(source: str, space: Space, name: str) -> Any:
 
 
 def _space(cells: Sequence[str], before: Sequence[str]) -> Space:
-    """Give what a cell finds: the page's imports, and what the boxes above define."""
+    """Return what a cell finds: the page's imports, and what the boxes above define."""
     space: Space = {
         "__name__": "__page__", "check": check, "hint": hint, "solution": solution,
         "progress": progress,
@@ -147,7 +146,7 @@ def _refused(exercise: str, why: str) -> str:
 
 
 def _what(error: BaseException, cell: str, name: str) -> str:
-    """Say in which line of the cell something went wrong, and what."""
+    """Describe in which line of the cell something went wrong, and what."""
     words = clean(error) or "without words"
     line, said = 0, f"raised {type(error).__name__}: {words}"
     if isinstance(error, SyntaxError):

@@ -52,7 +52,7 @@ class PersonalCamera:
         return _SIZE
 
     def truth(self) -> Camera:
-        """Give the camera itself, with its own frame as the WRF: what a calibration should find.
+        """Return the camera itself, with its own frame as the WRF: what a calibration should find.
 
         It is a method, so that nobody who looks around in the object, or presses tab, is told the
         answer before the question. Whoever asks for it wants to compare.
@@ -88,7 +88,7 @@ class PersonalCamera:
 
 
 def personal_camera(student: str) -> PersonalCamera:
-    """Give the camera, board and pictures of one student.
+    """Return the camera, board and pictures of one student.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def personal_camera(student: str) -> PersonalCamera:
 
 
 def uniforms(name: str, purpose: str, n: int) -> Array:
-    """Give n numbers in [0, 1) that depend on a name and a purpose only.
+    """Return n numbers in [0, 1) that depend on a name and a purpose only.
 
     Examples
     --------
@@ -141,7 +141,7 @@ def uniforms(name: str, purpose: str, n: int) -> Array:
 
 
 def normals(name: str, purpose: str, n: int) -> Array:
-    """Give n numbers with a standard normal distribution, rounded to 4 decimals."""
+    """Return n numbers with a standard normal distribution, rounded to 4 decimals."""
     u = uniforms(name, purpose, 2 * n).reshape(2, n)
     return np.asarray(np.round(np.sqrt(-2 * np.log1p(-u[0])) * np.cos(2 * np.pi * u[1]), 4))
 

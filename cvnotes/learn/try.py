@@ -12,8 +12,8 @@ import sys
 from pathlib import Path
 
 from cvnotes.base import CvnotesError
-from cvnotes.learn.checker.soundness import faults
-from cvnotes.learn.exercises import EXERCISES, add_exercises, find
+from cvnotes.learn.exercises import COURSE
+from cvnotes.tutor.checker.soundness import by_rules, faults
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -34,17 +34,23 @@ def main(arguments: list[str] | None = None) -> int:
         metavar="my_exercises.py",
         help="a file with exercises of your own",
     )
+    parser.add_argument(
+        "--rules",
+        action="store_true",
+        help="say of each mistake of the list what the rules say of it without the list",
+    )
     args = parser.parse_args(arguments)
     try:
-        added = [name for path in args.added for name in add_exercises(path)]
-        return max([_tried(name) for name in args.names or added or EXERCISES], default=0)
+        tried = _by_rules if args.rules else _tried
+        added = [name for path in args.added for name in COURSE.add_exercises(path)]
+        return max([tried(name) for name in args.names or added or COURSE.exercises], default=0)
     except CvnotesError as error:
         _say(f"cvnotes.learn.try: {error}")
         return 1
 
 
 def _tried(name: str) -> int:
-    exercise = find(name)
+    exercise = COURSE.find(name)
     found = list(faults(exercise))
     mistakes = len(exercise.misconceptions)
     known = f"{mistakes} mistake{'s' * (mistakes != 1)} known by name"
@@ -52,6 +58,14 @@ def _tried(name: str) -> int:
     for fault in found:
         _say(f"  {fault}")
     return int(bool(found))
+
+
+def _by_rules(name: str) -> int:
+    exercise = COURSE.find(name)
+    _say(f"{name}:")
+    for mistake, said in by_rules(exercise):
+        _say(f"  {mistake:<40} {said}")
+    return 0
 
 
 def _say(line: str) -> None:

@@ -26,7 +26,7 @@ _MARGIN = 2  # pixels of a side around those that are looked up
 
 
 def through_a_cube(camera: Camera, radiance: Callable[[Camera], Array]) -> Array:
-    """Give the light (height, width, 3) on the pixels of any camera, the rays' sides joined.
+    """Return the light (height, width, 3) on the pixels of any camera, the rays' sides joined.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def through_a_cube(camera: Camera, radiance: Callable[[Camera], Array]) -> Array
 
 
 def _looked_up(camera: Camera, turns: Array) -> list[tuple[Pixels, Array]]:
-    """Give for each side the pixels whose rays pass through it, and where, on its plane z = 1."""
+    """Return for each side the pixels whose rays pass through it, and where, on its plane z = 1."""
     found: list[list[tuple[Pixels, Array]]] = [[] for _ in turns]
     for offset in within_pixel(_RAYS):
         d = camera.ray(pixel_centres(camera.size) + offset) @ camera.R.T

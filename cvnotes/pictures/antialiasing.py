@@ -7,7 +7,7 @@ rays stay close together.
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, chunks
+from cvnotes.base import Array, chunks, clipped_segments, target_size
 from cvnotes.camera import Camera, px_from_xy
 
 Mask = npt.NDArray[np.bool_]
@@ -24,7 +24,8 @@ def pixel_centres(size: tuple[int, int]) -> Array:
     >>> pixel_centres((640, 480))[1, 2]
     array([2., 1.])
     """
-    u, v = np.meshgrid(np.arange(size[0], dtype=float), np.arange(size[1], dtype=float))
+    width, height = target_size(size)
+    u, v = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
     return np.stack([u, v], axis=-1)
 
 
@@ -88,7 +89,7 @@ def tile_order(m: Array) -> npt.NDArray[np.intp]:
 
 
 def changing(signature: Array) -> Mask:
-    """Tell in which pixels (height, width, d) a value differs by 1 from one of the 8 neighbours.
+    """Mark in which pixels (height, width, d) a value differs by 1 from one of the 8 neighbours.
 
     Examples
     --------
@@ -110,7 +111,7 @@ def _of_nine(choose: np.ufunc, x: Array) -> Array:
 
 
 def crossed(camera: Camera, ends: Array, xy: Array) -> Mask:
-    """Tell through which pixels line segments pass, so that none is too thin to be noticed.
+    """Mark through which pixels line segments pass, so that none is too thin to be noticed.
 
     Parameters
     ----------
@@ -149,20 +150,11 @@ def crossed(camera: Camera, ends: Array, xy: Array) -> Mask:
 def _clipped(ends: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """Cut segments (k, 2, 3) to the pyramid of rays between the ideal points low and high.
 
-    After Liang and Barsky, with planes through the camera: what is behind it goes too.
+    The planes go through the camera: what is behind it goes too.
     """
     planes = np.array(
         [[1, 0, -low[0]], [-1, 0, high[0]], [0, 1, -low[1]], [0, -1, high[1]], [0, 0, 1]]
     )
-    inside = ends @ planes.T  # (k, 2, 5), positive inside
-    slope = inside[:, 1] - inside[:, 0]
-    t = np.divide(-inside[:, 0], slope, out=np.zeros_like(slope), where=slope != 0)
-    enter = np.where(slope > 0, t, 0).max(axis=1)
-    leave = np.where(slope < 0, t, 1).min(axis=1)
-    seen = np.where(slope == 0, inside[:, 0], 1).min(axis=1) > 0
-    enter, leave = np.maximum(enter, 0), np.minimum(leave, 1)
-    seen &= enter < leave
-    start, way = ends[seen, 0], ends[seen, 1] - ends[seen, 0]
-    a, b = start + enter[seen, None] * way, start + leave[seen, None] * way
+    a, b = np.moveaxis(clipped_segments(ends, ends @ planes.T), 1, 0)
     front = (a[:, 2] > 0) & (b[:, 2] > 0)
     return a[front], b[front]

@@ -1,28 +1,32 @@
 """Pictures from known cameras: every estimate can then be held against the truth.
 
 A pixel is the mean of the scene over its square area, seen through the lens and its blur, and
-not a sample of it: `edges` finds the curves between flat colours, `coverage` integrates them
-exactly, `sensor` makes 8-bit numbers of the result.
+not a sample of it: `faces` finds the curves between flat colours, `pixel_means` integrates them
+exactly, `exposure` makes 8-bit numbers of the result.
 """
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import (
+    MOST,
     Array,
     CvnotesError,
     InputTypeError,
     ShapeError,
+    blur_width,
     generator,
     number,
     numbers,
     target_size,
+    whole,
 )
 from cvnotes.camera import Camera
 from cvnotes.pictures.exposure import Image, expose, gaussian_blur
 from cvnotes.pictures.faces import Target, edges_in_picture
 from cvnotes.pictures.pixel_means import edge_means, polygon_means
 
+_MOST_THINGS = 1000  # each is drawn into the whole picture
 _OCCLUDER = 90.0  # grey level of what stands in the way
 
 
@@ -87,7 +91,8 @@ def render(
     Notes
     -----
     Grey levels are exact to 0.01 before they are rounded; a corner lies where
-    ``camera.project`` says to 0.0002 px. Pixel centres are integers.
+    ``camera.project`` says to 0.0002 px. Pixel centres are integers. There is no depth of field, no
+    rolling shutter and no mosaic of colours, and paper is as bright from the side as from above.
 
     Examples
     --------
@@ -108,7 +113,8 @@ def render(
         raise InputTypeError(
             f"target: expected a Chessboard or the like, got {type(target).__name__}"
         )
-    sigma, white = number(blur, "blur", at_least=0), number(margin, "margin", at_least=0)
+    sigma = blur_width(blur, "blur")
+    white = number(margin, "margin", at_least=0, at_most=MOST)
     behind = _background(background, target_size(camera.size), colour)
     picture = _paint(target, camera, behind, white, sigma)
     if occluder is not None:
@@ -149,6 +155,7 @@ def clutter(
     """
     width, height = size = target_size(size)
     generator(rng)
+    things = whole(things, "things", at_least=0, at_most=_MOST_THINGS)
     picture = np.full((3 if colour else 1, height, width), 110.0)
     for _ in range(things):
         # Corners in order of their angle as seen from the middle, so that no sides cross.
@@ -186,7 +193,7 @@ def _paint(target: Target, camera: Camera, behind: Array, margin: float, blur: f
         painted += behind
         return np.asarray(painted)
     if blur:
-        behind = np.stack([gaussian_blur(channel, blur) for channel in behind])
+        behind = np.stack([gaussian_blur.inside(channel, blur) for channel in behind])
     grey, covered = edge_means(start, end, jump, camera.size, blur=blur)
     painted = (1 - covered) * behind
     painted += grey

@@ -11,11 +11,20 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, InputTypeError, ShapeError, guarded, number, numbers
+from cvnotes.base import (
+    MOST_BLUR,
+    Array,
+    CvnotesError,
+    InputTypeError,
+    ShapeError,
+    blur_width,
+    guarded,
+    number,
+    numbers,
+    whole,
+)
 
 Image = npt.NDArray[np.uint8]
-
-_LONGEST = 10_000  # pixels that the picture may move; its memory grows with the square
 
 
 def _picture(x: npt.ArrayLike, name: str) -> Array:
@@ -32,8 +41,8 @@ def _path(x: npt.ArrayLike, name: str) -> Array:
     path = numbers(x, name)
     if path.shape != (2,):
         raise ShapeError(f"{name}: expected (du, dv) in pixels, got shape {path.shape}")
-    if np.abs(path).max() > _LONGEST:
-        raise CvnotesError(f"{name}: expected at most {_LONGEST} pixels, got {x!r}")
+    if np.abs(path).max() > MOST_BLUR:
+        raise CvnotesError(f"{name}: expected at most {MOST_BLUR} pixels, got {x!r}")
     return path
 
 
@@ -49,15 +58,24 @@ def _noise_from_somewhere(noise: float = 0.0, rng: object = None, **_: object) -
 
 
 _positive = partial(number, at_least=0)
+_quality = partial(whole, at_most=100)
+
+
+def _eight_bits(x: npt.ArrayLike, name: str) -> Image:
+    picture = np.asarray(_picture(x, name))
+    if not (picture == np.clip(np.rint(picture), 0, 255)).all():
+        raise CvnotesError(f"{name}: expected grey levels of 8 bits, whole numbers from 0 to 255")
+    return picture.astype(np.uint8)
 
 
 @guarded(
     radiance=_picture,
-    blur=_positive,
+    blur=blur_width,
     motion=_path,
     noise=_positive,
     gain=_positive,
     rng=_generator,
+    jpeg=lambda x, name: None if x is None else _quality(x, name),
     also=_noise_from_somewhere,
 )
 def expose(
@@ -100,7 +118,7 @@ def expose(
     -----
     Beyond its border the picture is taken to go on as its last pixels. The blur works on what
     the pixels have already averaged, and shifts a sharp edge by up to 0.02 px (at 0.7 px blur);
-    `synthetic.render` blurs before it averages, and shifts nothing.
+    `render` blurs before it averages, and shifts nothing.
 
     Examples
     --------
@@ -109,16 +127,17 @@ def expose(
     """
     light = radiance  # a copy already
     if blur:
-        light = gaussian_blur(light, blur)
+        light = gaussian_blur.inside(light, blur)
     if np.any(motion):
-        light = motion_blur(light, np.asarray(motion))
+        light = motion_blur.inside(light, np.asarray(motion))
     light *= gain
     if noise and rng is not None:
         light += rng.normal(0.0, noise, light.shape)
     image = np.rint(light).clip(0, 255).astype(np.uint8, order="C")
-    return image if jpeg is None else compress(image, jpeg)
+    return image if jpeg is None else compress.inside(image, jpeg)
 
 
+@guarded(light=_picture, sigma=blur_width)
 def gaussian_blur(light: Array, sigma: float) -> Array:
     """Blur a picture (height, width, …) by a Gaussian of `sigma` pixels.
 
@@ -129,11 +148,12 @@ def gaussian_blur(light: Array, sigma: float) -> Array:
     """
     from scipy.ndimage import gaussian_filter1d
 
-    for axis in (0, 1):
+    for axis in (0, 1) if sigma else ():
         light = gaussian_filter1d(light, sigma, axis=axis, mode="nearest", truncate=5.0)
     return light
 
 
+@guarded(light=_picture, motion=_path)
 def motion_blur(light: Array, motion: Array) -> Array:
     """Smear a picture (height, width, …) along the straight way (du, dv), half to either side.
 
@@ -145,7 +165,7 @@ def motion_blur(light: Array, motion: Array) -> Array:
     from scipy.ndimage import correlate
 
     # The mean over the way of bilinear interpolation, as weights of the neighbours.
-    n = 64 * int(np.ceil(np.abs(motion).max()))
+    n = max(1, 64 * int(np.ceil(np.abs(motion).max())))
     way = ((np.arange(n) + 0.5) / n - 0.5)[:, None] * motion
     reach = np.ceil(np.abs(motion) / 2).astype(int)
     hats = [
@@ -157,6 +177,7 @@ def motion_blur(light: Array, motion: Array) -> Array:
     return np.asarray(correlate(light, kernel, mode="nearest"))
 
 
+@guarded(image=_eight_bits, quality=_quality)
 def compress(image: Image, quality: int) -> Image:
     """Write a picture (height, width) or (height, width, 3) as JPEG and read it again.
 
@@ -167,9 +188,6 @@ def compress(image: Image, quality: int) -> Image:
     """
     from PIL import Image as PillowImage
 
-    level = number(quality, "jpeg")
-    if level not in range(1, 101):
-        raise CvnotesError(f"jpeg: quality is a whole number from 1 to 100, got {quality}")
     file = io.BytesIO()
-    PillowImage.fromarray(image).save(file, "JPEG", quality=int(level))
+    PillowImage.fromarray(image).save(file, "JPEG", quality=quality)
     return np.asarray(PillowImage.open(file))

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, rigid_motion
-from cvnotes.camera import Camera, FisheyeLens, px_from_xy
+from cvnotes.camera import Camera, px_from_xy
 from cvnotes.pictures.pixel_means import Indices, subdivide
 
 Mask = npt.NDArray[np.bool_]
@@ -60,7 +60,7 @@ class Face:
     grey: Array
 
     def grey_along(self, d: Array) -> tuple[Mask, Array]:
-        """Tell which directions (m, 3) meet the face, and the grey levels (m,) they find."""
+        """Return which directions (m, 3) meet the face, and the grey levels (m,) they find."""
         beyond = d @ self.passed.T > 0
         rows, columns = self.grey.shape
         i, j = beyond[:, : columns + 1].sum(axis=1) - 1, beyond[:, columns + 1 :].sum(axis=1) - 1
@@ -159,7 +159,7 @@ def folds(faces: list[Face]) -> list[Array]:
 
 
 def _print(board: Any, margin: float, plain: bool) -> tuple[Array, Array, Array]:
-    """Say where the lines of a printed board lie, and how grey the fields between them are."""
+    """Describe where the lines of a printed board lie, and how grey the fields between them are."""
     x, y, dark = board.printed
     grey = np.where(dark & (not plain), INK, PAPER)
     if margin > 0:
@@ -205,8 +205,7 @@ def edges_in_picture(
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import look_at
+    >>> from cvnotes.camera import intrinsics, look_at
     >>> from cvnotes.targets import Chessboard
     >>> camera = Camera(intrinsics(800, 800, 320, 240), look_at([100, 60, -600], [100, 60, 0]))
     >>> start, end, jump = edges_in_picture(Chessboard((9, 6), 25.0), camera, step=10.0)
@@ -223,11 +222,11 @@ def edges_in_picture(
     angle, rim_jump = _rim(faces, lines, centre, radius)
     # Straight pieces first, then those along the rim, whose coordinate is the angle.
     length = step / max(camera.A[0, 0], camera.A[1, 1])
-    # Near 90° millions of such pieces on z = 1 would be one pixel of a fisheye.
-    fisheye = isinstance(camera.lens, FisheyeLens)
-    xy, piece = (_by_angle if fisheye else subdivide)(a, b, length)
+    # Near 90° millions of such pieces on z = 1 would be one pixel of a wide lens.
+    wide = camera.lens.wide
+    xy, piece = (_by_angle if wide else subdivide)(a, b, length)
     if len(angle):
-        shown = min(radius, np.pi / 2) if fisheye else radius
+        shown = min(radius, np.pi / 2) if wide else radius
         phi, rim_piece = subdivide(angle[:, :1], angle[:, 1:], length / shown)
         xy = np.concatenate([xy, _on_rim(phi[:, 0], centre, radius)])
         piece = np.concatenate([piece, len(a) + rim_piece])
@@ -285,7 +284,7 @@ def _cut(lines: Array, centre: Array, radius: float) -> tuple[Array, Array]:
 
 
 def _repeated(lines: Array, normals: Array, line: Indices, middle: Array) -> Mask:
-    """Tell which pieces of lines lie, as the camera sees it, on an earlier line."""
+    """Return which pieces of lines lie, as the camera sees it, on an earlier line."""
     repeated = np.zeros(len(line), dtype=bool)
     unit = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     same = np.linalg.norm(np.cross(unit[:, None], unit), axis=-1) < 0.1 * _BESIDE
@@ -327,6 +326,6 @@ def _visible_radius(camera: Camera) -> float:
     ]
     reach = np.linalg.norm(camera.ideal(np.concatenate(border)) - camera.lens.centre, axis=1).max()
     limit = (1 - 1e-9) * camera.lens.max_radius
-    if isinstance(camera.lens, FisheyeLens):
+    if camera.lens.wide:
         limit = min(limit, _GRAZING)
     return float(min(1.1 * reach, limit)) if np.isfinite(reach) else limit

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, numbers, points
+from cvnotes.base import Array, CvnotesError, ShapeError, numbers, points, real
 from cvnotes.camera import move
 
 Triangles = npt.NDArray[np.intp]
@@ -169,7 +169,10 @@ def quads(
     if colours.shape not in ((3,), (2, 3), (len(loops), 1, 3), (len(loops), 2, 3)):
         raise ShapeError(f"colours: expected (3,), (2, 3) or (q, 2, 3), got {colours.shape}")
     a, b, d = (vertices[loops[:, i]] for i in (0, 1, 3))
-    across, down = (np.linalg.norm(p - a, axis=-1) / tile for p in (b, d))
+    side = real(tile, "tile").astype(np.float64)
+    if side.shape not in ((), (len(loops),)) or not (side > 1e-50).all():
+        raise CvnotesError(f"tile: expected a positive length, or one a face, got {tile!r}")
+    across, down = (np.linalg.norm(p - a, axis=-1) / side for p in (b, d))
     zero = np.zeros(len(loops))
     u, v = np.stack([zero, across, across, zero], -1), np.stack([zero, zero, down, down], -1)
     halves = np.array([[0, 1, 2], [0, 2, 3]])

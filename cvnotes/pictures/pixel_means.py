@@ -11,7 +11,15 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, chunks, number, points, target_size
+from cvnotes.base import (
+    Array,
+    CvnotesError,
+    DegenerateError,
+    blur_width,
+    chunks,
+    points,
+    target_size,
+)
 
 Indices = npt.NDArray[np.intp]
 
@@ -108,6 +116,7 @@ def polygon_means(outline: npt.ArrayLike, size: tuple[int, int], *, blur: float 
            [0.5, 0. ]])
     """
     outline, size = points(outline, "outline", 2), target_size(size)
+    sigma = blur_width(blur, "blur")
     if outline.ndim != 2 or len(outline) < 3:
         raise DegenerateError(f"outline: a polygon has at least 3 corners, got {outline.shape}")
     if np.abs(outline).max() > _FARTHEST:
@@ -117,7 +126,7 @@ def polygon_means(outline: npt.ArrayLike, size: tuple[int, int], *, blur: float 
     if area == 0:
         raise DegenerateError("outline: the polygon has no area; its corners lie on one line")
     jump = np.full((len(outline), 1), np.sign(area))
-    covered = edge_means(outline, following, jump, size, blur=number(blur, "blur"))[0]
+    covered = edge_means(outline, following, jump, size, blur=sigma)[0]
     return np.asarray(covered.clip(0.0, 1.0, out=covered))
 
 

@@ -3,12 +3,32 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, DegenerateError, points, rigid_motion, rotation
+from cvnotes.base import (
+    MOST,
+    Array,
+    DegenerateError,
+    InputTypeError,
+    ShapeError,
+    number,
+    points,
+    rigid_motion,
+    rotation,
+)
 from cvnotes.camera import Camera, move, pose
+from cvnotes.camera.model import is_camera
 from cvnotes.pictures.faces import Target
 
 _PUSHES = 20  # after which a target no longer moves
 _ROOM = 4.0  # pixels kept free along the border of the picture
+
+
+def target_and_camera(target: Target, camera: Camera) -> None:
+    """Refuse what has no faces, and what is no camera."""
+    if not hasattr(target, "faces"):
+        raise InputTypeError(
+            f"target: expected a Chessboard or the like, got {type(target).__name__}"
+        )
+    is_camera(camera, "camera")
 
 
 def facing(target: Target) -> Array:
@@ -70,7 +90,11 @@ def hold_at(
     array([[ 70.,  83.],
            [570., 397.]])
     """
+    target_and_camera(target, camera)
     R, aim, outline = rotation(R), points(aim, "aim", 2), _outline(target)
+    if R.ndim != 2 or aim.ndim != 1:
+        raise ShapeError(f"expected one rotation R and one pixel aim, got {R.shape}, {aim.shape}")
+    farther = number(farther, "farther", at_least=1e-3, at_most=MOST)
     middle = (outline.min(axis=0) + outline.max(axis=0)) / 2
     ray = np.append(camera.ideal(aim), 1.0)
     if not np.isfinite(ray).all():
@@ -135,7 +159,7 @@ def pushed_into_corner(
 
 
 def every_face_seen(target: Target, G: Array) -> bool:
-    """Tell whether in pose G the camera sees each face from its printed side, by 15° at least.
+    """Return whether in pose G the camera sees each face from its printed side, by 15° at least.
 
     Examples
     --------

@@ -47,7 +47,7 @@ _INK, _PAPER = (0.07, 0.09, 0.16), (1.0, 0.99, 0.95)
 
 
 def letter(name: str) -> npt.NDArray[np.bool_]:
-    """Give the cells (5, 5) of a letter, True where it is dark.
+    """Return the cells (5, 5) of a letter, True where it is dark.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def _ink() -> Scene:
 
 
 def _word(word: str, top: float, height: float) -> Array:
-    """Give the strips (n, 4, 2) of a word in the middle of the chart."""
+    """Return the strips (n, 4, 2) of a word in the middle of the chart."""
     cell = height / 5
     left = (SIZE[0] - (6 * len(word) - 1) * cell) / 2
     strips = []

@@ -97,7 +97,7 @@ def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike, *, engine: str = "auto
 
 
 def search(corners: Array, xy: Array, engine: str) -> Indices:
-    """Give the number of the triangle that each ray meets first, as `first_hits` does."""
+    """Return the number of the triangle that each ray meets first, as `first_hits` does."""
     if engine not in ("auto", "own", "embree"):
         raise CvnotesError(f"engine: expected 'auto', 'own' or 'embree', got {engine!r}")
     if engine == "embree" and not has_embree():
@@ -110,7 +110,7 @@ def search(corners: Array, xy: Array, engine: str) -> Indices:
 
 
 def has_embree() -> bool:
-    """Tell whether embree is installed (the extra ``rays``)."""
+    """Return whether embree is installed (the extra ``rays``)."""
     return importlib.util.find_spec("embreex") is not None
 
 
@@ -137,7 +137,7 @@ def _own_search(n: Array, det: Array, xy: Array) -> Indices:
 
 
 def _may_be_seen(n: Array, det: Array, x: Array, y: Array) -> npt.NDArray[np.bool_]:
-    """Tell which triangles (rows) may be what a ray of which group (columns) meets first.
+    """Return which triangles (rows) may be what a ray of which group (columns) meets first.
 
     A triangle is out of the question if one e_i is negative all over the rectangle around a
     group's rays, or if another triangle fills the rectangle and is nearer throughout.

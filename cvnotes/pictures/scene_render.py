@@ -3,8 +3,8 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, InputTypeError, chunks, target_size
-from cvnotes.camera import Camera, FisheyeLens, move
+from cvnotes.base import Array, InputTypeError, chunks, target_size, whole
+from cvnotes.camera import Camera, move
 from cvnotes.camera.model import is_camera
 from cvnotes.pictures.all_round import through_a_cube
 from cvnotes.pictures.antialiasing import (
@@ -84,8 +84,8 @@ def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "
     >>> bool(radiance(lamp, Camera(intrinsics(80, 80, 32, 24), size=(64, 48))).max() > 255)
     True
     """
-    _guard(scene, camera, samples)
-    if isinstance(camera.lens, FisheyeLens):
+    samples = _guard(scene, camera, samples)
+    if camera.lens.wide:
         return through_a_cube(
             camera, lambda side: radiance(scene, side, samples=samples, engine=engine)
         )
@@ -111,6 +111,11 @@ def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:
     ndarray, shape (height, width)
         In the unit of the scene; NaN where there is nothing, or where the lens model ends.
 
+    Notes
+    -----
+    This is z, not the distance along the ray, and of one point in each pixel: at an edge it is the
+    depth of one side, and no mean of both.
+
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
@@ -125,7 +130,7 @@ def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:
     return out_of_tiles(hits.depth, camera.size)
 
 
-def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
+def _guard(scene: Scene, camera: Camera, samples: int = 1) -> int:
     if not isinstance(scene, Scene):
         raise InputTypeError(
             f"scene: expected a Scene, got {type(scene).__name__}; "
@@ -133,8 +138,7 @@ def _guard(scene: Scene, camera: Camera, samples: int = 1) -> None:
         )
     is_camera(camera, "camera")
     target_size(camera.size)
-    if not isinstance(samples, int) or samples < 1:
-        raise CvnotesError(f"samples: expected a whole number of rays, at least 1, got {samples!r}")
+    return whole(samples, "samples")
 
 
 def _supersampled(surfaces: Surfaces, camera: Camera, m: Array, samples: int, engine: str) -> Array:

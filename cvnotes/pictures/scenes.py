@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from cvnotes.base import MOST, InputTypeError, number
 from cvnotes.camera import pose, rotation_from_vector
 from cvnotes.pictures.meshes import Scene, Surroundings, box, join, quads
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
@@ -217,6 +218,11 @@ def target_scene(
     >>> target_scene(TwoPlanes())
     Scene(24 vertices, 24 triangles)
     """
+    if not hasattr(target, "faces"):
+        raise InputTypeError(
+            f"target: expected a Chessboard or the like, got {type(target).__name__}"
+        )
+    margin = number(margin, "margin", at_least=0, at_most=MOST)
     boards = [_board(board, margin).moved(G) for G, board in target.faces]
     return join(*boards).moved(np.eye(4) if world_from_target is None else world_from_target)
 

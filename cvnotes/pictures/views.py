@@ -4,25 +4,25 @@ from contextlib import suppress
 
 import numpy as np
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, InputTypeError, generator, numbers
+from cvnotes.base import Array, CvnotesError, DegenerateError, generator, numbers, whole
 from cvnotes.camera import Camera, move, rotation_from_vector
-from cvnotes.camera.model import is_camera
 from cvnotes.pictures.faces import Target
-from cvnotes.pictures.placing import every_face_seen, facing, hold_at, pushed_into_corner
+from cvnotes.pictures.placing import (
+    every_face_seen,
+    facing,
+    hold_at,
+    pushed_into_corner,
+    target_and_camera,
+)
 
 TILT = (float(np.radians(20)), float(np.radians(45)))
 
 
-def guard(target: Target, camera: Camera, n: int, rng: np.random.Generator) -> None:
-    """Refuse what no set of views can be made of."""
-    if not hasattr(target, "faces"):
-        raise InputTypeError(
-            f"target: expected a Chessboard or the like, got {type(target).__name__}"
-        )
-    is_camera(camera, "camera")
+def guard(target: Target, camera: Camera, n: int, rng: np.random.Generator) -> int:
+    """Refuse what no set of views can be made of; return n."""
+    target_and_camera(target, camera)
     generator(rng)
-    if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
-        raise CvnotesError(f"n: expected a number of views, at least 1, got {n!r}")
+    return whole(n, "n")
 
 
 def turned(towards: Array, angle: Array, rng: np.random.Generator) -> Array:
@@ -104,7 +104,7 @@ def good_views(
     >>> bool((tilts > 20).all() and (tilts < 45).all())
     True
     """
-    guard(target, camera, n, rng)
+    n = guard(target, camera, n, rng)
     angles = numbers(tilt, "tilt")
     if angles.shape != (2,) or not 0 <= angles[0] <= angles[1] < np.pi / 2:
         raise CvnotesError(
@@ -223,7 +223,7 @@ def fronto_parallel_views(
     >>> G[:, 2, 2]
     array([1., 1., 1.])
     """
-    guard(target, camera, n, rng)
+    n = guard(target, camera, n, rng)
     return spread(target, camera, turned(np.zeros(n), np.zeros(n), rng), rng)
 
 
@@ -245,7 +245,7 @@ def pure_translation_views(
     >>> bool((G[:, :3, :3] == G[0, :3, :3]).all())
     True
     """
-    guard(target, camera, n, rng)
+    n = guard(target, camera, n, rng)
     return spread(target, camera, np.repeat(one_tilt(rng), n, axis=0), rng)
 
 
@@ -266,7 +266,7 @@ def nearly_parallel_views(
     >>> bool((np.degrees(np.arccos(G[1:, :3, 2] @ G[0, :3, 2])) < 5).all())
     True
     """
-    guard(target, camera, n, rng)
+    n = guard(target, camera, n, rng)
     wobble = rotation_from_vector.inside(rng.normal(0, np.radians(1), (n, 3)))
     return spread(target, camera, wobble @ one_tilt(rng), rng)
 
@@ -287,7 +287,7 @@ def one_axis_views(target: Target, camera: Camera, n: int, *, rng: np.random.Gen
     >>> G[:, 0, 0]  # x stays along u
     array([1., 1., 1.])
     """
-    guard(target, camera, n, rng)
+    n = guard(target, camera, n, rng)
     angle = np.where(np.arange(n) % 2, 1, -1) * np.radians(rng.uniform(28, 32, n))
     return spread(
         target, camera, rotation_from_vector.inside(angle[:, None] * [1.0, 0.0, 0.0]), rng
@@ -310,7 +310,7 @@ def centre_only_views(target: Target, camera: Camera, n: int, *, rng: np.random.
     >>> camera.moved(G[0]).project([100, 62.5, 0]).round()  # the middle of the board
     array([320., 240.])
     """
-    guard(target, camera, n, rng)
+    n = guard(target, camera, n, rng)
     R = turned(all_sides(n, rng), rng.uniform(*TILT, n), rng) @ facing(target)
     middle = (np.array(camera.size) - 1) / 2
     return np.stack([hold_at(target, camera, R_i, middle, rng.uniform(2.0, 2.5)) for R_i in R])
@@ -333,5 +333,6 @@ def repeated_views(
     >>> bool((G[2] == G[0]).all()), bool((G[1] == G[0]).all())
     (True, False)
     """
-    guard(target, camera, n, rng)
+    n = guard(target, camera, n, rng)
+    distinct = whole(distinct, "distinct")
     return good_views(target, camera, distinct, rng=rng)[np.arange(n) % distinct]

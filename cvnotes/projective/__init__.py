@@ -11,12 +11,10 @@ from cvnotes.projective.points import (
 from cvnotes.projective.space import (
     PLANE_AT_INFINITY,
     dual,
-    join_point,
     line_of_planes,
     line_through,
     meet_plane,
     plane_through,
-    point_of_planes,
 )
 
 __all__ = [
@@ -33,10 +31,8 @@ __all__ = [
     "cross_ratio",
     "PLANE_AT_INFINITY",
     "plane_through",
-    "point_of_planes",
     "line_through",
     "line_of_planes",
     "dual",
     "meet_plane",
-    "join_point",
 ]

@@ -30,7 +30,7 @@ def _as_many(**two: Array) -> None:
 
 @guarded(a=_point, b=_point, also=_as_many)
 def join(a: Array, b: Array) -> Array:
-    """Give the line (..., 3) through two points of P², (..., 3) each: l = a × b.
+    """Return the line (..., 3) through two points of P², (..., 3) each: l = a × b.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def join(a: Array, b: Array) -> Array:
 
 @guarded(k=_line, m=_line, also=_as_many)
 def meet(k: Array, m: Array) -> Array:
-    """Give the point (..., 3) that two lines of P² share: x = k × m.
+    """Return the point (..., 3) that two lines of P² share: x = k × m.
 
     Parallel lines share a point at infinity, whose last coordinate is 0.
 
@@ -73,7 +73,7 @@ def meet(k: Array, m: Array) -> Array:
 
 
 def lies_on(x: npt.ArrayLike, line: npt.ArrayLike, atol: float = 1e-12) -> npt.NDArray[np.bool_]:
-    """Tell whether points (..., d) lie on lines or planes (..., d), whatever their factors.
+    """Return whether points (..., d) lie on lines or planes (..., d), whatever their factors.
 
     Both are scaled to unit length, so `atol` is the cosine of an angle, not a distance.
 
@@ -118,7 +118,7 @@ def map_lines(H: npt.ArrayLike, lines: npt.ArrayLike) -> Array:
 
 
 def cross_ratio(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.ArrayLike) -> float:
-    """Give the cross-ratio (a, b; c, d) of four collinear homogeneous points, (3,) or (4,) each.
+    """Return the cross-ratio (a, b; c, d) of four collinear homogeneous points, (3,) or (4,) each.
 
     On a line with coordinate t it is (c − a)(d − b) / ((c − b)(d − a)); for d at infinity, the
     ratio (c − a)/(c − b). No projective map changes it.

@@ -117,7 +117,7 @@ def apply(H: Array, x: Array) -> Array:
 
 
 def same_up_to_scale(a: npt.ArrayLike, b: npt.ArrayLike, atol: float = 1e-9) -> bool:
-    """Tell whether two vectors or matrices differ only by a factor (the sign ≈ of the notes).
+    """Return whether two vectors or matrices differ only by a factor (the sign ≈ of the notes).
 
     Both are scaled to unit norm, so `atol` is relative to the size of the whole array. The zero
     vector stands for nothing, so it equals nothing.
@@ -172,7 +172,7 @@ def _set_of_points(x: npt.ArrayLike, name: str) -> Array:
 
 @guarded(x=_set_of_points)
 def normaliser(x: Array) -> Array:
-    """Give Hartley's similarity N: N x has centroid 0 and mean distance √d from it.
+    """Return Hartley's similarity N: N x has centroid 0 and mean distance √d from it.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ def _one_each(L: Array, **other: Array) -> None:
 
 @guarded(a=_point, b=_point, c=_point, also=_as_many)
 def plane_through(a: Array, b: Array, c: Array) -> Array:
-    """Give the plane (..., 4) through three points of P³, (..., 4) each.
+    """Return the plane (..., 4) through three points of P³, (..., 4) each.
 
     Raises
     ------
@@ -55,28 +55,9 @@ def plane_through(a: Array, b: Array, c: Array) -> Array:
     return plane + 0.0
 
 
-@guarded(p=_plane, q=_plane, r=_plane, also=_as_many)
-def point_of_planes(p: Array, q: Array, r: Array) -> Array:
-    """Give the point (..., 4) that three planes of P³ share.
-
-    Raises
-    ------
-    DegenerateError
-        The planes share a whole line.
-
-    Examples
-    --------
-    >>> point_of_planes([1, 0, 0, -2], [0, 1, 0, -3], [0, 0, 1, -4])  # x = 2, y = 3, z = 4
-    array([2., 3., 4., 1.])
-    """
-    point = -_wedge(p, q, r)
-    refuse_zero(point, (p, q, r), "the planes share a whole line")
-    return point + 0.0
-
-
 @guarded(a=_point, b=_point, also=_as_many)
 def line_through(a: Array, b: Array) -> Array:
-    """Give the line of P³ through two points (..., 4), as L = a bᵀ − b aᵀ of shape (..., 4, 4).
+    """Return the line of P³ through two points (..., 4), as L = a bᵀ − b aᵀ of shape (..., 4, 4).
 
     Raises
     ------
@@ -101,7 +82,7 @@ def line_through(a: Array, b: Array) -> Array:
 
 @guarded(p=_plane, q=_plane, also=_as_many)
 def line_of_planes(p: Array, q: Array) -> Array:
-    """Give the line of P³ that two planes (..., 4) share, as a matrix L (..., 4, 4).
+    """Return the line of P³ that two planes (..., 4) share, as a matrix L (..., 4, 4).
 
     Parallel planes share a line at infinity.
 
@@ -140,7 +121,7 @@ def dual(L: Array) -> Array:
 
 @guarded(L=_line, p=_plane, also=_one_each)
 def meet_plane(L: Array, p: Array) -> Array:
-    """Give the point (..., 4) where a line L of P³ meets a plane (..., 4): x = L p.
+    """Return the point (..., 4) where a line L of P³ meets a plane (..., 4): x = L p.
 
     Raises
     ------
@@ -158,28 +139,8 @@ def meet_plane(L: Array, p: Array) -> Array:
     return np.asarray(point) + 0.0
 
 
-@guarded(L=_line, x=_point, also=_one_each)
-def join_point(L: Array, x: Array) -> Array:
-    """Give the plane (..., 4) through a line L of P³ and a point (..., 4): p = L* x.
-
-    Raises
-    ------
-    DegenerateError
-        The point lies on the line.
-
-    Examples
-    --------
-    >>> z_axis = line_through([0, 0, 0, 1], [0, 0, 1, 1])
-    >>> join_point(z_axis, [3, 0, 0, 1])  # y = 0
-    array([0., 3., 0., 0.])
-    """
-    plane = (dual.inside(L) @ x[..., None])[..., 0]
-    refuse_zero(plane, (_flat(L), x), "the point lies on the line: many planes contain both")
-    return np.asarray(plane) + 0.0
-
-
 def _wedge(*three: Array) -> Array:
-    """Give the vector (..., 4) that is orthogonal to three: the cross product of P³."""
+    """Return the vector (..., 4) that is orthogonal to three: the cross product of P³."""
     M = np.stack(np.broadcast_arrays(*three), axis=-2)
     with np.errstate(divide="ignore"):  # factors so small that their logarithm is infinite
         minors = [(-1) ** i * np.linalg.det(np.delete(M, i, axis=-1)) for i in range(4)]

@@ -1,12 +1,17 @@
 """Figures on axes, scenes in space and explorations with sliders, for all chapters."""
 
+from cvnotes.show.banner import one_corner
 from cvnotes.show.explore import (
     explore_camera,
+    explore_columns,
+    explore_finding,
+    explore_fold,
     explore_homography,
     explore_lens,
     explore_noise,
     explore_projection,
     explore_rectification,
+    explore_tilt,
     explore_warp,
     still,
 )
@@ -42,9 +47,7 @@ from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import (
     draw_board_shape,
     draw_coverage,
-    draw_residual_scatter,
     draw_residuals,
-    draw_view_rms,
 )
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
 from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits, draw_rows
@@ -64,7 +67,6 @@ from cvnotes.show.space.shapes import (
     arrow_shapes,
     axes_shapes,
     colour_of,
-    horizon_shapes,
     scene_shapes,
     target_shapes,
 )
@@ -77,6 +79,7 @@ __all__ = [
     "show",
     "Picture",
     "panels",
+    "one_corner",
     # pictures, and what is drawn into them
     "draw_image",
     "draw_points",
@@ -116,9 +119,7 @@ __all__ = [
     "draw_valley",
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
-    "draw_residual_scatter",
     "draw_coverage",
-    "draw_view_rms",
     "draw_board_shape",
     "draw_plane_error",
     "draw_error_bars",
@@ -144,7 +145,6 @@ __all__ = [
     "axes_shapes",
     "arrow_shapes",
     "target_shapes",
-    "horizon_shapes",
     "scene_shapes",
     "camera_shapes",
     "ray_shapes",
@@ -167,8 +167,12 @@ __all__ = [
     "explore_camera",
     "explore_lens",
     "explore_homography",
+    "explore_fold",
+    "explore_finding",
     "explore_noise",
     "explore_warp",
     "explore_rectification",
+    "explore_tilt",
+    "explore_columns",
     "still",
 ]

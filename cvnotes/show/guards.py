@@ -14,6 +14,7 @@ from cvnotes.base import (
     points,
     real,
     rigid_motion,
+    whole,
 )
 
 Kind = TypeVar("Kind")
@@ -46,10 +47,20 @@ def count(x: Any, name: str) -> int:
     >>> count(9, "lines")
     9
     """
-    value = number(x, name)
-    if not 1 <= value <= _MOST or value != int(value):
-        raise CvnotesError(f"{name}: expected a whole number from 1 to {_MOST}, got {value:g}")
-    return int(value)
+    return whole(x, name, at_most=_MOST)
+
+
+def texts(x: Any, name: str) -> list[str]:
+    """Guard names that are written into a figure: several strings, or letters.
+
+    Examples
+    --------
+    >>> texts(("a", "b"), "names")
+    ['a', 'b']
+    """
+    if not isinstance(x, str | list | tuple) or not all(isinstance(item, str) for item in x):
+        raise InputTypeError(f"{name}: expected a list of names, got {x!r:.80}")
+    return list(x)
 
 
 def thing(x: Any, name: str, kind: type[Kind]) -> Kind:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import CvnotesError
-from cvnotes.show.style import DPI
+from cvnotes.base import CvnotesError, whole
+from cvnotes.show.style import DPI, darken_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,10 +73,11 @@ def show(figure: Any, *, alt: str, width: int | None = None) -> Picture:
     if not alt.strip():
         raise CvnotesError("alt: say in a sentence what the picture shows")
     figure = figure_of(figure)
+    width = round(figure.get_figwidth() * DPI) if width is None else whole(width, "width")
     data, mime = encode(figure)
     if pyplot := sys.modules.get("matplotlib.pyplot"):
         pyplot.close(figure)
-    return Picture(data, alt, width or round(figure.get_figwidth() * DPI), mime)
+    return Picture(data, alt, width, mime)
 
 
 def figure_of(drawn: Any) -> "Figure":
@@ -111,7 +112,7 @@ def encode(figure: "Figure", *, jpeg: bool = True) -> tuple[bytes, str]:
 
 
 def with_palette(picture: "PillowImage") -> "PillowImage | None":
-    """Give a drawing in 256 of its colours, or None if it has more than 4096.
+    """Return a drawing in 256 of its colours, or None if it has more than 4096.
 
     The palette is chosen by median cut, where a colour counts by the square root of its pixels:
     paper has nearly all of them, and the blended edges need the colours.
@@ -145,9 +146,10 @@ def _in_one_number(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32]:
 
 
 def _drawn(figure: "Figure") -> npt.NDArray[np.uint8]:
-    """Draw a figure once, as (height, width, 4); its own `savefig` draws it twice, and packs it."""
+    """Draw a figure once, as (height, width, 4); savefig draws it twice, and packs it."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+    darken_words(figure)
     canvas, dpi, paper = figure.canvas, figure.dpi, figure.get_facecolor()
     try:
         figure.set_facecolor("white")

@@ -4,10 +4,18 @@ The colours are those of Okabe and Ito, chosen so that any two that meet in a fi
 for readers with red or green blindness too; each meaning also has its own marker.
 """
 
+import logging
+import sys
 from typing import TYPE_CHECKING, Any
+
+from cvnotes.base import whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+if sys.platform == "emscripten":  # matplotlib warns there, in red, each time it lists its fonts
+    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
 
 WORLD = "#009E73"
 CAMERA = "#56B4E9"
@@ -22,6 +30,8 @@ COLOURS = {
     "lens": LENS,
     "estimated": ESTIMATED,
 }
+# The same hues for words, dark enough to be read on white: at least 4.5 : 1 (WCAG 2.2 AA).
+INK = {WORLD: "#00805D", CAMERA: "#2279AD", ESTIMATED: "#BC5200"}
 MARKERS = {"world": "s", "camera": "^", "ideal": "+", "lens": "o", "estimated": "x"}
 MUTED = "#6E6E6E"  # frames, grids, remarks
 
@@ -56,8 +66,11 @@ def panels(
     >>> left.figure is right.figure
     True
     """
+    columns, rows = whole(columns, "columns", at_most=99), whole(rows, "rows", at_most=99)
+    width = whole(width, "width")
     if height is None:
         height = round(0.75 * width / columns * rows)
+    height = whole(height, "height")
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, layout="constrained")
@@ -78,6 +91,16 @@ def dress(ax: "Axes") -> "Axes":
     for axis in (ax.xaxis, ax.yaxis):
         axis.label.set_fontsize(FONT)
     return ax
+
+
+def darken_words(figure: "Figure") -> None:
+    """Draw words that have one of the colours above in its darker ink."""
+    from matplotlib.colors import to_hex
+    from matplotlib.text import Text
+
+    for words in figure.findobj(Text):
+        colour = to_hex(words.get_color()).upper()
+        words.set_color(INK.get(colour, colour))
 
 
 def halo() -> list[Any]:
@@ -105,10 +128,13 @@ def picture_axes(size: tuple[int, int]) -> Any:
     return panels(height=round(min(max(560 * height / width, 160), 760) + 60))
 
 
-def as_picture(ax: "Axes", size: tuple[int, int]) -> "Axes":
+def as_picture(ax: "Axes", size: tuple[int, int], *, ticks: bool = True) -> "Axes":
     """Let axes show pixels: v downwards, equal scales, a picture's limits, units in the labels."""
     width, height = size
     ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), aspect="equal")
-    ax.set(xlabel="u (px)", ylabel="v (px)")
+    if ticks:
+        ax.set(xlabel="u (px)", ylabel="v (px)")
+    else:
+        ax.set(xticks=[], yticks=[])
     ax.spines[["top", "right"]].set(visible=True, color=MUTED)
     return ax

@@ -17,7 +17,7 @@ from cvnotes.base import (
 from cvnotes.calibration import calibrate, extrinsics
 from cvnotes.calibration.correspondences import Correspondences, PointSets
 from cvnotes.calibration.refinement import Problem, covariance, refuse_too_few
-from cvnotes.calibration.reliability import Evidence, judge
+from cvnotes.calibration.reliability import Diagnostics, judge
 from cvnotes.camera import (
     Camera,
     chain,
@@ -85,8 +85,7 @@ def calibrate_stereo(
     Examples
     --------
     >>> import numpy as np
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import chain, pose, rotation_from_vector
+    >>> from cvnotes.camera import chain, intrinsics, pose, rotation_from_vector
     >>> from cvnotes.targets import Chessboard
     >>> board = Chessboard((9, 6), 25.0)
     >>> left = Camera(intrinsics(800, 804, 325, 238))
@@ -142,8 +141,7 @@ def calibrate_relative_pose(
     Examples
     --------
     >>> import numpy as np
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import chain, nearest_rotation, pose
+    >>> from cvnotes.camera import chain, intrinsics, nearest_rotation, pose
     >>> from cvnotes.targets import Chessboard
     >>> board = Chessboard((9, 6), 25.0)
     >>> left = Camera(intrinsics(800, 804, 325, 238))
@@ -161,7 +159,7 @@ def calibrate_relative_pose(
             )
     pairs = _pairs(board_points, left_points, right_points)
     problems = [
-        Problem(d.W, d.m, d.seen, bool(c.A[0, 1]), len(c.lens.k), any(c.lens.p), c.size)
+        Problem.at(c, tuple(name for name, x in c.parameters.items() if name != "skew" or x), d)
         for d, c in zip(pairs, (left, right), strict=True)
     ]
     problem = StereoProblem(problems[0], problems[1], cameras_known=True)
@@ -228,7 +226,7 @@ def refined(
 def _start(
     problem: StereoProblem, pairs: tuple[Correspondences, Correspondences], cameras: list[Camera]
 ) -> tuple[StereoState, list[int]]:
-    """Give the state from which to refine, and the pairs that do not agree with the others."""
+    """Return the state from which to refine, and the pairs that do not agree with the others."""
     poses = [_poses(data, camera) for data, camera in zip(pairs, cameras, strict=True)]
     G = chain(poses[1], inverse(poses[0]))  # right ← left, as each pair has it
     R, T = nearest_rotation(np.median(G[:, :3, :3], axis=0)), np.median(G[:, :3, 3], axis=0)
@@ -257,7 +255,7 @@ def _poses(data: Correspondences, camera: Camera) -> Array:
 def _cameras(
     problem: StereoProblem, x: StereoState, scale: float, given: list[Camera]
 ) -> tuple[Camera, Camera]:
-    """Give both cameras in the left one's frame."""
+    """Return both cameras in the left one's frame."""
     G = pose(nearest_rotation(x.R), scale * x.T)
     if problem.cameras_known:
         return given[0].moved(np.eye(4)), given[1].moved(G)
@@ -277,7 +275,7 @@ def judge_rig(
     residuals: tuple[Array, Array],
     strangers: list[int],
 ) -> tuple[tuple[str, ...], bool]:
-    """Give sentences about what is doubtful, and whether the result is reliable all the same.
+    """Return sentences about what is doubtful, and whether the result is reliable all the same.
 
     Parameters
     ----------
@@ -335,7 +333,7 @@ def _judge_cameras(
     reliable = True
     for i, side in enumerate(SIDES):
         one = replace(result.of_camera(i), converged=True)  # said above
-        found, believed = judge(Evidence.of(one, residuals[i], corners[i], board))
+        found, believed = judge(Diagnostics.of(one, residuals[i], corners[i], board))
         sentences += [f"{side} camera: {sentence}" for sentence in found]
         reliable = reliable and believed
     return sentences, reliable

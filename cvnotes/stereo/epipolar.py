@@ -15,14 +15,13 @@ from cvnotes.projective import to_homogeneous
 
 
 def relative_pose(left: Camera, right: Camera) -> Array:
-    """Give the rigid motion (4, 4) from the left camera's frame into the right one's.
+    """Return the rigid motion (4, 4) from the left camera's frame into the right one's.
 
     right ← left = (right ← world) (world ← left).
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import pose
+    >>> from cvnotes.camera import intrinsics, pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> relative_pose(left, left.moved(pose(np.eye(3), [-100, 0, 0])))[:3, 3]
     array([-100.,    0.,    0.])
@@ -31,7 +30,7 @@ def relative_pose(left: Camera, right: Camera) -> Array:
 
 
 def baseline(left: Camera, right: Camera) -> Array:
-    """Give the vector (3,) from the left centre to the right one, in the WRF.
+    """Return the vector (3,) from the left centre to the right one, in the WRF.
 
     Raises
     ------
@@ -40,8 +39,7 @@ def baseline(left: Camera, right: Camera) -> Array:
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import pose
+    >>> from cvnotes.camera import intrinsics, pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> baseline(left, left.moved(pose(np.eye(3), [-100, 0, 0])))
     array([100.,   0.,   0.])
@@ -56,7 +54,7 @@ def baseline(left: Camera, right: Camera) -> Array:
 
 
 def essential_matrix(left: Camera, right: Camera) -> Array:
-    """Give E (3, 3) with (x, y, 1)_right E (x, y, 1)_leftᵀ = 0 on the planes z = 1: E = [T]× R.
+    """Return E (3, 3) with (x, y, 1)_right E (x, y, 1)_leftᵀ = 0 on the planes z = 1: E = [T]× R.
 
     R and T are those of `relative_pose`; its singular values are ‖T‖, ‖T‖ and 0.
 
@@ -71,8 +69,7 @@ def essential_matrix(left: Camera, right: Camera) -> Array:
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import pose
+    >>> from cvnotes.camera import intrinsics, pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> essential_matrix(left, left.moved(pose(np.eye(3), [-100, 0, 0]))) + 0.0
     array([[   0.,    0.,    0.],
@@ -85,7 +82,7 @@ def essential_matrix(left: Camera, right: Camera) -> Array:
 
 
 def fundamental_matrix(left: Camera, right: Camera) -> Array:
-    """Give F (3, 3), ‖F‖ = 1, with m̃_rightᵀ F m̃_left = 0 for ideal pixels: F ≈ A_r⁻ᵀ E A_l⁻¹.
+    """Return F (3, 3), ‖F‖ = 1, with m̃_rightᵀ F m̃_left = 0 for ideal pixels: F ≈ A_r⁻ᵀ E A_l⁻¹.
 
     Raises
     ------
@@ -98,8 +95,7 @@ def fundamental_matrix(left: Camera, right: Camera) -> Array:
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import pose
+    >>> from cvnotes.camera import intrinsics, pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> right = left.moved(pose(np.eye(3), [-100, 0, 0]))
     >>> F = fundamental_matrix(left, right)
@@ -113,7 +109,7 @@ def fundamental_matrix(left: Camera, right: Camera) -> Array:
 
 
 def epipolar_lines(F: npt.ArrayLike, m: npt.ArrayLike) -> Array:
-    """Give the lines (..., 3) in the right picture on which partners of left pixels lie.
+    """Return the lines (..., 3) in the right picture on which partners of left pixels lie.
 
     l = F m̃, scaled to a² + b² = 1, so that l · m̃ is a distance in pixels. With ``F.T`` the
     lines in the left picture. The epipole itself has no line: NaN.
@@ -136,7 +132,7 @@ def epipolar_lines(F: npt.ArrayLike, m: npt.ArrayLike) -> Array:
 
 
 def epipole(left: Camera, right: Camera) -> Array:
-    """Give where the left picture shows the right camera's centre, homogeneous (3,).
+    """Return where the left picture shows the right camera's centre, homogeneous (3,).
 
     All epipolar lines of the left picture meet there. A last coordinate of 0 is a point at
     infinity: the lines are parallel, as in a rectified pair.
@@ -148,8 +144,7 @@ def epipole(left: Camera, right: Camera) -> Array:
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import pose
+    >>> from cvnotes.camera import intrinsics, pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> epipole(left, left.moved(pose(np.eye(3), [0, 0, -100])))
     array([320., 240.,   1.])

@@ -7,7 +7,7 @@ from cvnotes.camera import pose, vector_from_rotation
 
 
 def half_turns(board: Array, left_poses: Array, right_poses: Array) -> Array:
-    """Tell in which pairs one picture's corners are numbered from the other end of the board.
+    """Mark in which pairs one picture's corners are numbered from the other end of the board.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ def std_of_pairs(
     lens: str,
     skew: bool = False,
 ) -> dict[str, float]:
-    """Give standard deviations by the jackknife over pairs: their disagreement counts too.
+    """Return standard deviations by the jackknife over pairs: their disagreement counts too.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def std_of_pairs(
 
 
 def _parameters(one: StereoCalibration, among: StereoCalibration) -> Array:
-    """Give what `names` names, with ω as the rotation from that of `among`, and the base line."""
+    """Return what `names` names, with ω as the rotation from that of `among`, and the base line."""
     cameras = [
         camera.parameters.get(name.removeprefix(side), 0.0)
         for side, camera in (("left.", one.left), ("right.", one.right))

@@ -89,6 +89,8 @@ def rectify(
     Z = α b / (u − u'); 4. each rectified pixel's ray is looked up in the photograph, through its
     lens, which therefore is undone too.
 
+    Partners are not searched for: that is stereo matching, which this package leaves to others.
+
     References
     ----------
     .. [1] Notes 2b.5, which name stereo rectification only.
@@ -97,9 +99,7 @@ def rectify(
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import Lens
-    >>> from cvnotes.camera import rotation_from_vector
+    >>> from cvnotes.camera import Lens, intrinsics, rotation_from_vector
     >>> left = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-0.2,)))
     >>> right = left.moved(pose(rotation_from_vector([0.01, -0.05, 0.02]), [-99, 3, 5]))
     >>> pair = rectify(left, right)
@@ -129,7 +129,7 @@ def rectify(
 
 
 def _rectifying_rotation(left: Camera, right: Camera) -> Array:
-    """Give the rotation (3, 3) from the WRF to the frame that both cameras are turned to."""
+    """Return the rotation (3, 3) from the WRF to the frame that both cameras are turned to."""
     # 1. halfway between the two cameras
     between = vector_from_rotation(relative_pose(left, right)[:3, :3])
     R = rotation_from_vector.inside(between / 2) @ left.R
@@ -145,7 +145,7 @@ def _rectifying_rotation(left: Camera, right: Camera) -> Array:
 
 
 def _border(camera: Camera, R: Array) -> list[Array]:
-    """Give the picture's left, right, top and bottom pixels on the plane z = 1 of the frame R."""
+    """Return the picture's left, right, top and bottom pixels on the plane z = 1 of the frame R."""
     w, h = camera.size
     u, v = np.arange(w, dtype=float), np.arange(h, dtype=float)
     edges = [

@@ -2,7 +2,7 @@
 
 The normal matrix is an arrow again. Shared are the parameters of both cameras and the relative
 pose; each pair of pictures adds the pose of its board in the left camera's frame. The right
-camera's poses are no unknowns: G_right = G · G_left, so its normal equations, as `refine` gives
+camera's poses are no unknowns: G_right = G · G_left, so its normal equations, as `Problem` gives
 them, are carried over by the chain rule.
 """
 
@@ -12,7 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, DegenerateError, Minimum, levenberg_marquardt
-from cvnotes.calibration.refinement import Arrow, Problem, State, solve_arrow, take_step
+from cvnotes.calibration.refinement import (
+    NormalEquations,
+    Problem,
+    State,
+    solve_by_schur,
+    take_step,
+)
 from cvnotes.camera import rotation_from_vector, skew_matrix
 
 # Squared pixels per coordinate that rounding alone may leave.
@@ -28,7 +34,7 @@ class StereoState(NamedTuple):
     T: Array
 
     def of_right(self) -> State:
-        """Give the state of the right camera, whose poses follow: R R_left, R T_left + T."""
+        """Return the state of the right camera, whose poses follow: R R_left, R T_left + T."""
         return State(self.right, self.R @ self.left.R, self.left.T @ self.R.T + self.T)
 
 
@@ -56,19 +62,19 @@ class StereoProblem:
         pose = ("omega_x", "omega_y", "omega_z", "T_x", "T_y", "T_z")
         return pose if self.cameras_known else (*cameras, *pose)
 
-    def linearise(self, x: StereoState) -> tuple[float, Arrow]:
-        """Give the cost and the normal equations at x."""
+    def linearise(self, x: StereoState) -> tuple[float, NormalEquations]:
+        """Return the cost and the normal equations at x."""
         cost_left, left = self.left.linearise(x.left)
         cost_right, right = self.right.linearise(x.of_right())
-        arrow = _joined(left, _carried_over(right, x))
+        equations = _joined(left, _carried_over(right, x))
         if self.cameras_known:
-            arrow = replace(
-                arrow,
-                shared=arrow.shared[-6:, -6:],
-                border=arrow.border[..., -6:],
-                g_shared=arrow.g_shared[-6:],
+            equations = replace(
+                equations,
+                shared=equations.shared[-6:, -6:],
+                border=equations.border[..., -6:],
+                g_shared=equations.g_shared[-6:],
             )
-        return cost_left + cost_right, arrow
+        return cost_left + cost_right, equations
 
     def take_step(self, x: StereoState, step: tuple[Array, Array]) -> StereoState:
         """Take a step: rotations from the left, everything else by addition."""
@@ -82,7 +88,7 @@ class StereoProblem:
             x.T + shared[-3:],
         )
 
-    def minimise(self, start: StereoState) -> Minimum[StereoState, Arrow]:
+    def minimise(self, start: StereoState) -> Minimum[StereoState, NormalEquations]:
         """Minimise the reprojection error in both pictures, by Levenberg–Marquardt.
 
         Raises
@@ -91,7 +97,9 @@ class StereoProblem:
             The pairs do not determine the parameters.
         """
         floor = _ROUNDING * (self.left.m.size + self.right.m.size)
-        found = levenberg_marquardt(start, self.linearise, solve_arrow, self.take_step, floor=floor)
+        found = levenberg_marquardt(
+            start, self.linearise, solve_by_schur, self.take_step, floor=floor
+        )
         depths = np.concatenate([found.x.left.T[:, 2], found.x.of_right().T[:, 2]])
         if depths.min() <= 0:
             raise DegenerateError(
@@ -101,7 +109,7 @@ class StereoProblem:
         return found
 
 
-def _carried_over(right: Arrow, x: StereoState) -> Arrow:
+def _carried_over(right: NormalEquations, x: StereoState) -> NormalEquations:
     """Write the right camera's normal equations in terms of G and of the left camera's poses.
 
     With R ← exp(ω) R and T ← T + dT for each of the poses,
@@ -120,7 +128,7 @@ def _carried_over(right: Arrow, x: StereoState) -> Arrow:
     shared[q:, :q] = (C.mT @ right.border).sum(0)
     shared[:q, q:] = shared[q:, :q].T
     by_G = right.poses @ C  # how each pose of the right camera is tied to G
-    return Arrow(
+    return NormalEquations(
         shared,
         D.T @ np.concatenate([right.border, by_G], axis=-1),
         D.T @ right.poses @ D,
@@ -130,13 +138,13 @@ def _carried_over(right: Arrow, x: StereoState) -> Arrow:
     )
 
 
-def _joined(left: Arrow, right: Arrow) -> Arrow:
+def _joined(left: NormalEquations, right: NormalEquations) -> NormalEquations:
     """Add normal equations that have the poses in common but none of the shared parameters."""
     q = len(left.shared)
     p = q + len(right.shared)
     shared = np.zeros((p, p))
     shared[:q, :q], shared[q:, q:] = left.shared, right.shared
-    return Arrow(
+    return NormalEquations(
         shared,
         np.concatenate([left.border, right.border], axis=-1),
         left.poses + right.poses,

@@ -77,7 +77,7 @@ class StereoCalibration:
         return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
 
     def of_camera(self, i: int) -> Calibration:
-        """Give what was found out about the left camera (0), or about the right one (1)."""
+        """Return what was found out about the left camera (0), or about the right one (1)."""
         camera, side = self.cameras[i], ("left.", "right.")[i]
         own = [at for at, name in enumerate(self.names) if name.startswith(side)]
         return Calibration(
@@ -93,7 +93,7 @@ class StereoCalibration:
         )
 
     def table(self) -> list[tuple[str, float, float, float, float]]:
-        """Give name, left value and deviation, right value and deviation of what was estimated."""
+        """Return name, left value and deviation, right value and deviation of each parameter."""
         left, right = (self.of_camera(i).table() for i in (0, 1))
         both = zip(left, right, strict=True)
         return [(name, a, da, b, db) for (name, a, da, _), (_, b, db, _) in both]

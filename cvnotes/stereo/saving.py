@@ -1,18 +1,12 @@
 """A rig as a file: two cameras, how they stand to each other, and how well that is known."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
-from cvnotes.camera import Camera
-from cvnotes.files.cameras import VERSION, camera_from_entry, camera_to_dict, dump, pose_to_dict
-from cvnotes.files.photos import Rejected
-from cvnotes.files.strict import parse_json, read_text
-from cvnotes.files.writing import PathLike, printable
+from cvnotes.files import Rejected
+from cvnotes.files.cameras import RIG, VERSION, camera_to_dict, dump, pose_to_dict
 from cvnotes.stereo.result import StereoCalibration
-
-FORMAT = "cvnotes rig"
 
 
 def rig_json(
@@ -47,7 +41,7 @@ def rig_json(
         for (left, right), rms, G in zip(files, rig.view_rms, rig.poses, strict=True)
     ]
     keys = {
-        "format": FORMAT,
+        "format": RIG,
         "version": VERSION,
         **({"note": note} if note else {}),
         "reliable": bool(rig.reliable),
@@ -61,23 +55,7 @@ def rig_json(
         "rms_of_rows": rows,
         "standard_deviations": dict(std_of_pairs),
         "standard_deviations_of_noise_alone": rig.std,
-        "rejected": [{"file": r.file, "reason": r.reason} for r in rejected],
+        "rejected": [{"file": r.file, "reason": str(r.reason)} for r in rejected],
         "pairs": pairs,
     }
     return dump(keys)
-
-
-def read_rig(path: PathLike) -> tuple[Camera, Camera]:
-    """Read the two cameras of a ``rig.json``; the WRF is the left camera's frame.
-
-    Raises
-    ------
-    FileError
-        The file does not describe a rig; the message names the key or the position.
-    """
-    entry: Any = parse_json(read_text(path), printable(path))
-    form = entry["format"]
-    if form.text() != FORMAT:
-        raise form.error(f"expected a {FORMAT!r}, got {form.text()!r:.40}")
-    left, right = (camera_from_entry(entry[side]) for side in ("left", "right"))
-    return left, right

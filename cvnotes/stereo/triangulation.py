@@ -54,14 +54,15 @@ def triangulate(
     frame at the cameras' centroid, with their distance as the unit. The linear solution weighs
     the equations by depth; the refinement minimises pixels, as the notes do for homographies.
 
+    Pixels that do not belong together give a point all the same; project it to see how far off.
+
     References
     ----------
     .. [1] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 12.2 and 12.3.
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import pose
+    >>> from cvnotes.camera import intrinsics, pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> right = left.moved(pose(np.eye(3), [-100, 0, 0]))
     >>> W = [[30, 40, 500], [0, 0, 700]]
@@ -78,7 +79,8 @@ def triangulate(
     RT = np.stack([np.column_stack([c.R, (c.R @ origin + c.T) / unit]) for c in cameras])
     W = np.full((m.shape[1], 3), np.nan)
     known = ~np.isnan(xy).any((0, 2))
-    W[known] = _linear(RT, xy[:, known])
+    if known.any():
+        W[known] = _linear(RT, xy[:, known])
     W[_behind(RT, W)] = np.nan
     known = ~np.isnan(W).any(-1)
     if refine and known.any():
@@ -101,8 +103,7 @@ def disparity_to_depth(disparity: npt.ArrayLike, left: Camera, right: Camera) ->
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import pose
+    >>> from cvnotes.camera import intrinsics, pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> right = left.moved(pose(np.eye(3), [-100, 0, 0]))
     >>> disparity_to_depth([160, 80, 0], left, right)
@@ -117,7 +118,7 @@ def disparity_to_depth(disparity: npt.ArrayLike, left: Camera, right: Camera) ->
 
 
 def rectified_baseline(left: Camera, right: Camera) -> tuple[int, float]:
-    """Give the axis (0: side by side, 1: one above the other) and the signed baseline along it.
+    """Return the axis (0: side by side, 1: one above the other) and the signed baseline along it.
 
     Raises
     ------
@@ -126,8 +127,7 @@ def rectified_baseline(left: Camera, right: Camera) -> tuple[int, float]:
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import pose
+    >>> from cvnotes.camera import intrinsics, pose
     >>> left = Camera(intrinsics(800, 800, 320, 240))
     >>> rectified_baseline(left, left.moved(pose(np.eye(3), [-100, 0, 0])))
     (0, 100.0)
@@ -164,7 +164,7 @@ def _guard(cameras: Sequence[Camera], image_points: npt.ArrayLike) -> tuple[list
 
 
 def _frame(cameras: list[Camera]) -> tuple[Array, float]:
-    """Give the centroid of the camera centres and how far they stand apart."""
+    """Return the centroid of the camera centres and how far they stand apart."""
     centres = np.stack([camera.centre for camera in cameras])
     origin = centres.mean(0)
     unit = float(np.linalg.norm(centres - origin, axis=-1).max())
@@ -185,7 +185,7 @@ def _linear(RT: Array, xy: Array) -> Array:
 
 
 def _behind(RT: Array, W: Array) -> npt.NDArray[np.bool_]:
-    """Tell which points (n, 3) are not in front of every camera."""
+    """Return which points (n, 3) are not in front of every camera."""
     depths = W @ RT[:, 2, :3].T + RT[:, 2, 3]
     return np.asarray(~(depths > 0).all(-1))
 
@@ -207,6 +207,8 @@ def _refined(cameras: list[Camera], RT: Array, W: Array, m: Array) -> Array:
     def solve(system: tuple[Array, Array], damping: float) -> tuple[Array, float]:
         normal, gradient = system
         damped = normal * (1 + damping * np.eye(3))
+        still = np.linalg.det(damped) == 0  # seen along a line; the others are not kept waiting
+        damped[still], gradient = np.eye(3), np.where(still[:, None], 0.0, gradient)
         step = np.asarray(-np.linalg.solve(damped, gradient[:, :, None])[:, :, 0])
         return step, -float((gradient * step).sum())
 
@@ -217,7 +219,7 @@ def _refined(cameras: list[Camera], RT: Array, W: Array, m: Array) -> Array:
 
 
 def _moves(W: Array) -> Array:
-    """Give three moves (n, 3, 3) of each point that change its images about equally.
+    """Return three moves (n, 3, 3) of each point that change its images about equally.
 
     Across the line of sight that is the distance, along it the distance squared (in baselines):
     without these units the equations of far points are singular.

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, image_size, number
 from cvnotes.targets.chessboard import Print
-from cvnotes.targets.opencv_finders import DICTIONARIES, marker_cells
+from cvnotes.targets.markers import DICTIONARIES, marker_cells
 from cvnotes.targets.sheet import Sheet, lay_out
 
 

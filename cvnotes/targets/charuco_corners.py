@@ -6,7 +6,7 @@ from cvnotes.base import Array, CornersNotFound, DegenerateError, Image
 from cvnotes.homography import dlt
 from cvnotes.projective import apply
 from cvnotes.targets.charuco import CharucoBoard
-from cvnotes.targets.opencv_finders import Numbered
+from cvnotes.targets.markers import Numbered
 from cvnotes.targets.subpixel import fit_edges
 
 _FEWEST = 4  # corners that make a homography, and a view
@@ -25,9 +25,10 @@ def measured_numbered(picture: Image, seen: Numbered, board: CharucoBoard) -> Ar
         Fewer than four corners can be seen; the message says which markers are there instead.
     """
     if len(seen.m) < _FEWEST:
-        raise CornersNotFound(_lesson(picture, board, len(seen.m), seen))
+        raise _not_found(picture, board, len(seen.m), seen)
     columns, rows = board.corners
-    W = board.points[:, :2] / board.square
+    # (whole numbers: whether their sum is even tells dark squares from light ones)
+    W = np.rint(board.points[:, :2] / board.square)
     m = np.full((len(W), 2), np.nan)
     try:
         # Where it is not seen the board is continued, so that each corner has neighbours.
@@ -35,35 +36,44 @@ def measured_numbered(picture: Image, seen: Numbered, board: CharucoBoard) -> Ar
         lattice[seen.numbers] = seen.m
         fit = fit_edges.inside(picture, lattice, grid=board.corners, clear=board.clear)
     except DegenerateError:
-        raise CornersNotFound(_lesson(picture, board, 0, seen)) from None
+        raise _not_found(picture, board, 0, seen) from None
     sides = np.linalg.norm(np.gradient(lattice.reshape(rows, columns, 2), axis=1), axis=-1).ravel()
     moved = np.linalg.norm(fit.m - lattice, axis=-1)
     alternate = np.sign(fit.contrast) == -((-1.0) ** (W.sum(1)))  # the origin's square is dark
     good = [i for i in seen.numbers if moved[i] < _MOVED * sides[i] and alternate[i]]
     if len(good) < _FEWEST:
-        raise CornersNotFound(_lesson(picture, board, len(good), seen))
+        raise _not_found(picture, board, len(good), seen)
     m[good] = fit.m[good]
     return m
 
 
-def _lesson(picture: Image, board: CharucoBoard, corners: int, seen: Numbered) -> str:
-    """Say how far it went, and what probably went wrong."""
+def _not_found(
+    picture: Image, board: CharucoBoard, corners: int, seen: Numbered
+) -> CornersNotFound:
+    """Describe how far it went, and what probably went wrong."""
     (columns, rows), (height, width) = board.corners, picture.shape
     start = (
         f"no ChArUco board of {columns}×{rows} inner corners with markers {board.dictionary} "
         f"found in a picture of {width}×{height} pixels"
     )
+    there, question = _guess(board, corners, seen)
+    brief = f"{start}: {there}"
+    return CornersNotFound(f"{brief}; {question}", brief=brief)
+
+
+def _guess(board: CharucoBoard, corners: int, seen: Numbered) -> tuple[str, str]:
+    """Return what is there, and what may have gone wrong."""
     markers = seen.markers
     if len(markers) and markers.max() >= board.n_markers:
         return (
-            f"{start}: it has markers 0 to {board.n_markers - 1}, and {int(markers.max())} is "
-            "there; are the inner corners counted right?"
+            f"it has markers 0 to {board.n_markers - 1}, and {int(markers.max())} is there",
+            "are the inner corners counted right?",
         )
     if len(markers):
         return (
-            f"{start}: {len(markers)} markers can be read, but only {corners} corners between "
-            "them; is more of the board to be seen, and are the counts right?"
+            f"{len(markers)} markers can be read, but only {corners} corners between them",
+            "is more of the board to be seen, and are the counts right?",
         )
     if seen.other:
-        return f"{start}: there are markers of {seen.other}; was the board made with these?"
-    return f"{start}: not one marker can be read; is it in the picture, sharp and large enough?"
+        return f"there are markers of {seen.other}", "was the board made with these?"
+    return "not one marker can be read", "is it in the picture, sharp and large enough?"

@@ -8,6 +8,8 @@ import numpy.typing as npt
 from cvnotes.base import Array, CvnotesError, image_size, number
 from cvnotes.targets.sheet import Sheet, lay_out
 
+_MOST_CORNERS = 1000  # along a side
+
 Faces = tuple[tuple[Array, "Chessboard"], ...]
 Print = tuple[Array, Array, npt.NDArray[np.bool_]]  # lines along x, along y, and dark fields
 
@@ -54,6 +56,8 @@ class Chessboard:
         square = number(self.square, "square")
         if min(columns, rows) < 2:
             raise CvnotesError(f"corners: a board needs at least 2×2 inner corners, got {self}")
+        if max(columns, rows) > _MOST_CORNERS:
+            raise CvnotesError(f"corners: at most {_MOST_CORNERS} along a side, got {self}")
         if square <= 0:
             raise CvnotesError(f"square: the side of a square must be positive, got {square:g}")
         if (columns - rows) % 2 == 0 and not self.half_turn_symmetric:

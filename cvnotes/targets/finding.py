@@ -1,5 +1,7 @@
 """From a picture to the ordered corners of a board."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import numpy.typing as npt
 
@@ -7,11 +9,16 @@ from cvnotes.base import Array, CornersNotFound, InputTypeError
 from cvnotes.targets.charuco import CharucoBoard
 from cvnotes.targets.charuco_corners import measured_numbered
 from cvnotes.targets.chessboard import Chessboard
-from cvnotes.targets.finders import PART_PIXELS, attempts, reduced, sighted
-from cvnotes.targets.grey import eight_bits, grey_picture
-from cvnotes.targets.growing import grown_board
+from cvnotes.targets.grey import Grey8, eight_bits, grey_picture, reduced
 from cvnotes.targets.lattice import NotABoard, measured
-from cvnotes.targets.opencv_finders import find_numbered
+from cvnotes.targets.markers import find_numbered
+from cvnotes.targets.saddle_points import lattices, seen
+
+# Pixels of the smallest copy of a picture in which a board is looked for, and of the largest. In
+# the smallest, its squares are 10 px wide if it fills a quarter of the picture.
+_SMALLEST, _LARGEST = 80_000, 12_000_000
+_COUNTED = 1_300_000  # pixels of the largest copy in which corners are counted
+_SAME = 0.3  # of a square: nearer to each other, two corners are the same
 
 
 def find_corners(
@@ -43,8 +50,8 @@ def find_corners(
 
     Notes
     -----
-    1. OpenCV's finders say where the board is, in a reduced copy if the picture is large; if they
-       find none, whatever board there is is grown (`cvnotes.targets.growing`).
+    1. In a small copy of the picture, then in larger ones, saddle points of the grey levels are
+       joined into lattices (`cvnotes.targets.saddle_points`).
     2. The model of two blurred edges is fitted to the pixels of the whole picture (`fit_edges`).
     3. Seen from its front, a board is right-handed, and the square outside of its origin is dark:
        that puts the corners in order. A board that looks the same after half a turn gets its
@@ -75,29 +82,29 @@ def find_corners(
     grey = eight_bits(picture)
     if isinstance(board, CharucoBoard):
         side = 1 - 2 * board.clear  # of a marker, in squares
-        seen = find_numbered(grey, board.squares, side, board.dictionary)
-        return measured_numbered(picture, seen, board)
+        numbered = find_numbered(grey, board.squares, side, board.dictionary)
+        return measured_numbered(picture, numbered, board)
     tried: list[str] = []
-    others: list[tuple[int, int]] = []
-    shown: Array | None = None
+    doubts: list[NotABoard] = []
     best = np.full((0, 2), np.nan)
-    if min(board.corners) > 2:
-        for name, finder, copy in attempts(grey):
+    for k, copy in copies(grey) if min(board.corners) > 2 else ():
+        there = sorted(lattices(copy), key=lambda each: -each.shape[0] * each.shape[1])
+        at = f"{copy.shape[1]}×{copy.shape[0]}"
+        tried += [] if there else [f"{at}: not found"]
+        for lattice in there:
             try:
-                found = sighted(finder, copy, board.corners, grey)
-                m = measured(picture, copy, found, partial=partial)
+                found = _as_asked(lattice, board.corners, k)
+                m = measured(picture, found, copy=copy, k=k, partial=partial)
+                _check_whole(m, board.corners, doubts)
             except NotABoard as doubt:
-                tried.append(f"{name}: {doubt}")
-                others += [doubt.count] if doubt.count else []
-                shown = doubt.found if shown is None else shown
+                tried.append(f"{at}: {doubt}")
+                doubts.append(doubt)
                 continue
             best = max(best, m, key=lambda m: np.count_nonzero(np.isfinite(m)))
             if np.isfinite(best).all():
-                break
+                return best
     if not len(best):
-        error = CornersNotFound(_lesson(picture.shape, board, tried, others))
-        error.found = shown
-        raise error
+        raise _not_found(picture.shape, board, tried, doubts)
     return best
 
 
@@ -124,29 +131,106 @@ def count_corners(image: npt.ArrayLike) -> tuple[int, int] | None:
     >>> count_corners(render(Chessboard((9, 6), 25.0), camera, blur=0.7))
     (9, 6)
     """
-    lattice = grown_board(reduced(eight_bits(grey_picture(image)), PART_PIXELS))
-    return None if lattice is None else (lattice.shape[1], lattice.shape[0])
+    grey = eight_bits(grey_picture(image))
+    every = [each for _, copy in copies(grey, _COUNTED) for each in lattices(copy)]
+    if not every:
+        return None
+    rows, columns = max((each.shape[:2] for each in every), key=np.prod)
+    return max(columns, rows), min(columns, rows)
 
 
-def _lesson(
-    shape: tuple[int, ...], board: Chessboard, tried: list[str], others: list[tuple[int, int]]
-) -> str:
-    """Say what was looked for, what was tried, and what probably went wrong."""
+def rough_corners(grey: Grey8, corners: tuple[int, int]) -> Array | None:
+    """Look for a board of so many corners (columns, rows), to about a pixel, in a live picture.
+
+    Returns (n, 2) row by row, NaN for hidden ones, or None; their order is the picture's.
+
+    Examples
+    --------
+    >>> rough_corners(np.zeros((40, 40), np.uint8), (9, 6)) is None
+    True
+    """
+    for k, copy in copies(grey):
+        for lattice in lattices(copy):
+            try:
+                return ((_as_asked(lattice, corners, k) + 0.5) * k - 0.5).reshape(-1, 2)
+            except NotABoard:
+                continue
+    return None
+
+
+def copies(grey: Grey8, largest: int = _LARGEST) -> Iterator[tuple[int, Grey8]]:
+    """Yield reduced copies of a picture, and by how much they are, the smallest first."""
+    k = max(round(np.sqrt(grey.size / _SMALLEST)), 1)
+    while k:
+        if grey.size <= largest * k * k:
+            yield k, reduced(grey, k)
+        k //= 2
+
+
+def _as_asked(lattice: Array, corners: tuple[int, int], k: int) -> Array:
+    """Turn a lattice so that it has as many columns and rows as were asked for."""
+    columns, rows = corners
+    if lattice.shape[:2] == (columns, rows):
+        lattice = lattice.transpose(1, 0, 2)
+    if lattice.shape[:2] != (rows, columns):
+        count = max(lattice.shape[:2]), min(lattice.shape[:2])
+        found = (lattice[seen(lattice)] + 0.5) * k - 0.5
+        there = f"{count[0]}×{count[1]} corners"
+        raise NotABoard(f"found {there}", count, found, instead=f"{there} are there")
+    return lattice
+
+
+def _check_whole(m: Array, corners: tuple[int, int], doubts: list[NotABoard]) -> None:
+    """Refuse corners that are a part of a larger board that was seen before.
+
+    Raises
+    ------
+    NotABoard
+        With the larger board's count.
+    """
+    side = float(np.nanmedian(np.linalg.norm(np.diff(m, axis=0), axis=-1)))
+    for doubt in doubts:
+        if doubt.count is None or doubt.found is None or np.prod(doubt.count) <= np.prod(corners):
+            continue
+        away = np.linalg.norm(m[:, None] - doubt.found, axis=-1).min(1)
+        if 2 * np.count_nonzero(away < _SAME * side) > len(m):
+            columns, rows = doubt.count
+            part = f"a part of {columns}×{rows} corners"
+            raise NotABoard(part, doubt.count, doubt.found, instead=doubt.instead)
+
+
+def _largest(doubts: list[NotABoard]) -> tuple[int, int] | None:
+    """Return the count of the largest board among those found instead."""
+    counts = [doubt.count for doubt in doubts if doubt.count]
+    return max(counts, key=lambda count: count[0] * count[1], default=None)
+
+
+def _not_found(
+    shape: tuple[int, ...], board: Chessboard, tried: list[str], doubts: list[NotABoard]
+) -> CornersNotFound:
+    """Describe what was looked for, what was tried, and what probably went wrong."""
     (columns, rows), (height, width) = board.corners, shape
     start = (
         f"no board of {columns}×{rows} inner corners found in a picture of {width}×{height} pixels"
     )
     if not tried:
-        return f"{start}: boards need at least 3 inner corners along each side to be found"
-    return f"{start} ({'; '.join(tried)}); {_guess(board, tried, others)}"
+        few = f"{start}: boards need at least 3 inner corners along each side to be found"
+        return CornersNotFound(few)
+    lesson = f"{start} ({'; '.join(dict.fromkeys(tried))}); {_guess(board, doubts)}"
+    if not doubts:
+        return CornersNotFound(lesson, brief=start)
+    most = max(doubts, key=lambda doubt: 0 if doubt.found is None else len(doubt.found))
+    brief = f"{start}: {most.instead}"
+    return CornersNotFound(lesson, brief=brief, found=most.found, count=_largest(doubts))
 
 
-def _guess(board: Chessboard, tried: list[str], others: list[tuple[int, int]]) -> str:
-    """Guess what went wrong, from other boards (columns, rows) that were found instead."""
+def _guess(board: Chessboard, doubts: list[NotABoard]) -> str:
+    """Guess what went wrong, from what was found instead."""
     long, short = max(board.corners), min(board.corners)
-    # A finder that found the board that was asked for knows better than who grows a part of it.
-    if others and not any("found, but its" in words for words in tried):
-        columns, rows = others[0]
+    count = _largest(doubts)
+    # Where the board that was asked for was found, a smaller one is a part of it.
+    if count and (count[0] * count[1] > long * short or all(doubt.count for doubt in doubts)):
+        columns, rows = count
         there = f"but a board of {columns}×{rows} inner corners is there"
         if (columns, rows) == (long - 1, short - 1):
             return f"{there}: were its squares counted instead of its inner corners?"

@@ -1,4 +1,4 @@
-"""The grey levels of a picture: as they are, in eight bits, smoothed, the largest around each.
+"""The grey levels of a picture: as they are, in eight bits, reduced, smoothed, the largest around.
 
 Of whole pictures OpenCV is asked first: SciPy takes longer to load than most pictures to be looked
 at. Both give the same.
@@ -55,6 +55,27 @@ def eight_bits(picture: Image) -> Grey8:
     return stretched(picture)
 
 
+def reduced(grey: Grey8, k: int) -> Grey8:
+    """Reduce a picture to 1/k of its width and height, each pixel the mean of k×k.
+
+    What is left over on the right and below is cut off, so that pixel u of the copy lies at
+    k (u + ½) − ½.
+
+    Examples
+    --------
+    >>> reduced(np.array([[0, 100, 8], [0, 100, 8]], np.uint8), 2)
+    array([[50]], dtype=uint8)
+    """
+    if k == 1:
+        return grey
+    height, width = grey.shape[0] // k, grey.shape[1] // k
+    total = np.zeros((height, width), dtype=np.uint32)
+    for i in range(k):
+        for j in range(k):
+            total += grey[i : height * k : k, j : width * k : k]
+    return ((total + k * k // 2) // (k * k)).astype(np.uint8)
+
+
 def smoothed(grey: npt.NDArray[np.float32], sigma: float) -> npt.NDArray[np.float32]:
     """Smooth with a Gaussian of `sigma` pixels; beyond its border the picture is mirrored.
 
@@ -74,7 +95,7 @@ def smoothed(grey: npt.NDArray[np.float32], sigma: float) -> npt.NDArray[np.floa
 
 
 def largest_around(x: Array, size: int) -> Array:
-    """Give the largest number in a square of size × size pixels around each.
+    """Return the largest number in a square of size × size pixels around each.
 
     Examples
     --------

@@ -3,7 +3,16 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, number, numbers
+from cvnotes.base import (
+    MOST_BLUR,
+    MOST_PIXELS,
+    Array,
+    CvnotesError,
+    ShapeError,
+    number,
+    numbers,
+    whole,
+)
 from cvnotes.targets.grey import grey_picture, largest_around
 
 
@@ -43,7 +52,9 @@ def harris(image: npt.ArrayLike, *, sigma: float = 1.5, k: float = 0.04) -> Arra
     from scipy.ndimage import gaussian_filter
 
     grey = grey_picture(image).astype(np.float64)
-    sigma = _positive(sigma, "sigma")
+    sigma = number(sigma, "sigma", at_most=MOST_BLUR)
+    if sigma <= 0:
+        raise CvnotesError(f"sigma must be positive, got {sigma:g}")
     g_v, g_u = (_differences(grey, axis) for axis in (0, 1))
     S_uu, S_uv, S_vv = (gaussian_filter(g, sigma) for g in (g_u * g_u, g_u * g_v, g_v * g_v))
     return np.asarray(S_uu * S_vv - S_uv**2 - number(k, "k") * (S_uu + S_vv) ** 2)
@@ -79,9 +90,10 @@ def local_maxima(
     >>> local_maxima([[0, 0, 0, 0], [0, 9, 8, 0], [0, 0, 0, 0]], radius=1)
     array([[1., 1.]])
     """
-    response, size = numbers(response, "response"), 2 * int(_positive(radius, "radius")) + 1
+    response, size = numbers(response, "response"), 2 * whole(radius, "radius") + 1
     if response.ndim != 2:
         raise ShapeError(f"response: expected one value per pixel, got shape {response.shape}")
+    threshold = number(threshold, "threshold")
     high = response > max(threshold * response.max(initial=0.0), 0.0)
     v, u = np.nonzero(high & (response == largest_around(response, size)))
     # Equal responses side by side are all maxima; of these, the first row counts.
@@ -90,7 +102,7 @@ def local_maxima(
     rank[v[order], u[order]] = np.arange(len(order), 0, -1)
     strongest = rank[v[order], u[order]] == largest_around(rank, size)[v[order], u[order]]
     m: Array = np.stack([u[order], v[order]], axis=-1)[strongest].astype(np.float64)
-    return m if count is None else m[: int(_positive(count, "count"))]
+    return m if count is None else m[: whole(count, "count", at_most=MOST_PIXELS)]
 
 
 def _differences(grey: Array, axis: int) -> Array:
@@ -98,10 +110,3 @@ def _differences(grey: Array, axis: int) -> Array:
     if grey.shape[axis] == 1:
         return np.zeros_like(grey)
     return np.asarray(np.gradient(grey, axis=axis))
-
-
-def _positive(x: float, name: str) -> float:
-    value = number(x, name)
-    if value <= 0:
-        raise CvnotesError(f"{name} must be positive, got {value:g}")
-    return value

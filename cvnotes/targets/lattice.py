@@ -4,13 +4,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, Image
 from cvnotes.targets.grey import Grey8
-from cvnotes.targets.subpixel import EdgeFit, fit_edges, led_in_copy
-
-Mask = npt.NDArray[np.bool_]
+from cvnotes.targets.subpixel import EdgeFit, Mask, fit_edges
 
 # So much smaller, a pixel of a copy is more than the edge model's start may be off.
 _MUCH_SMALLER = 2.5
@@ -28,26 +25,42 @@ _GOES_ON = 0.6  # of 1, were the pattern to go on there
 
 
 class NotABoard(Exception):
-    """Why corners that were found are not to be trusted, and the count that is there if known."""
+    """Why corners that were found are not to be trusted, and the count that is there if known.
+
+    `instead` says what was found instead of the board, if anything was.
+    """
 
     def __init__(
-        self, reason: str, count: tuple[int, int] | None = None, found: Array | None = None
+        self,
+        reason: str,
+        count: tuple[int, int] | None = None,
+        found: Array | None = None,
+        instead: str = "",
     ) -> None:
         super().__init__(reason)
-        self.count, self.found = count, found
+        self.count, self.found, self.instead = count, found, instead
 
 
-def measured(picture: Image, copy: Grey8, found: Array, *, partial: bool = False) -> Array:
-    """Measure a board that was found in a copy, in the picture itself, and doubt it.
+def measured(
+    picture: Image,
+    found: Array,
+    *,
+    copy: Grey8 | None = None,
+    k: int = 1,
+    partial: bool = False,
+) -> Array:
+    """Measure a board that was found in a reduced copy, in the picture itself, and doubt it.
 
     Parameters
     ----------
     picture : ndarray, shape (height, width)
         Grey levels.
-    copy : ndarray, shape (height, width)
-        The picture, or a reduced copy of it, in which the board was found.
     found : ndarray, shape (rows, columns, 2)
-        Its corners in pixels of the picture, to about a pixel of the copy; NaN for hidden ones.
+        The corners to about a pixel, in pixels of the copy; NaN for hidden ones.
+    copy : ndarray of uint8, optional
+        The copy, reduced by `k`, in which they were found; by default the picture.
+    k : int
+        Pixels of the picture along a side of the copy's.
     partial : bool
         Whether a quarter of the corners may be lost.
 
@@ -64,11 +77,13 @@ def measured(picture: Image, copy: Grey8, found: Array, *, partial: bool = False
     rows, columns = found.shape[:2]
     corners = columns, rows
     start = completed(found).reshape(-1, 2)
-    window = _window(start, rows)
     tries: list[tuple[EdgeFit, Mask]] = []
     try:
-        if copy.shape[1] * _MUCH_SMALLER < picture.shape[1]:
-            start = led_in_copy(copy, start, corners, (picture.shape[1], picture.shape[0]))
+        if copy is not None and k > _MUCH_SMALLER:
+            led = fit_edges.inside(copy, start, grid=corners).m
+            start = np.where(np.isfinite(led), led, start)
+        start = (start + 0.5) * k - 0.5
+        window = _window(start, rows)
         # Corners that come to nothing are tried once more from where the others expect them.
         places = start
         while len(tries) < 2:
@@ -83,9 +98,10 @@ def measured(picture: Image, copy: Grey8, found: Array, *, partial: bool = False
         check_board(fit, corners, partial=partial)
         check_pattern_ends(picture, replace(fit, m=np.where(good, fit.m, np.nan)), corners)
     except DegenerateError:
-        raise NotABoard("found, but its corners lie on a line") from None
+        on_a_line = "its corners lie on a line"
+        raise NotABoard(f"found, but {on_a_line}", instead=on_a_line) from None
     except NotABoard as doubt:
-        raise NotABoard(f"found, but {doubt}", found=start) from None
+        raise NotABoard(f"found, but {doubt}", found=start, instead=str(doubt)) from None
     lattice = np.where(good, fit.m, np.nan).reshape(found.shape)
     return ordered(lattice, fit.contrast.reshape(rows, columns))
 
@@ -97,7 +113,7 @@ def _window(m: Array, rows: int) -> int:
 
 
 def vouched(fit: EdgeFit, picture: Image, corners: tuple[int, int]) -> EdgeFit:
-    """Give the same fit, with NaN for corners that the pixels do not vouch for.
+    """Return the same fit, with NaN for corners that the pixels do not vouch for.
 
     They lie beyond the picture, where the edges were only prolonged, or are much more blurred than
     others; or, being the last that are seen of a row or column, they have surroundings that two
@@ -127,7 +143,7 @@ def _outermost(seen: Mask) -> Mask:
 
 
 def trusted(fit: EdgeFit, corners: tuple[int, int]) -> Mask:
-    """Tell which corners (n,) are crossings of edges, alternate with the others and are in line."""
+    """Return which corners (n,) are crossings of edges, alternate, and are in line."""
     columns, rows = corners
     signs = _signs(fit, corners)
     seen = np.isfinite(fit.m).all(-1).reshape(rows, columns)
@@ -168,7 +184,7 @@ def check_board(fit: EdgeFit, corners: tuple[int, int], *, partial: bool = False
 
 
 def _signs(fit: EdgeFit, corners: tuple[int, int]) -> Array:
-    """Give the signs (rows, columns) of a chessboard's contrasts: all alike on a board."""
+    """Return the signs (rows, columns) of a chessboard's contrasts: all alike on a board."""
     columns, rows = corners
     i, j = np.indices((rows, columns))
     return np.asarray(np.sign(fit.contrast.reshape(rows, columns)) * (-1.0) ** (i + j))
@@ -263,7 +279,7 @@ def ordered(lattice: Array, contrast: Array) -> Array:
 
 
 def handedness(lattice: Array) -> float:
-    """Give the mean signed area of a board's squares, positive if seen from its front.
+    """Return the mean signed area of a board's squares, positive if seen from its front.
 
     Examples
     --------
@@ -311,7 +327,7 @@ def completed(lattice: Array) -> Array:
 
 
 def trimmed(lattice: Array) -> Array:
-    """Take border rows and columns off of which less than half is there, the others are NaN.
+    """Take off border rows and columns of which less than half is there; NaN is not.
 
     Examples
     --------

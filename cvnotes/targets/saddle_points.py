@@ -1,13 +1,18 @@
-"""A board found without OpenCV: saddle points of the grey levels, joined into a lattice.
+"""Saddle points of the grey levels, joined into the lattices of boards.
 
-Where four squares meet, the smoothed grey levels have a saddle: light along one diagonal, dark
-along the other. The matrix H of second derivatives says there how much of a saddle it is, by its
-determinant, and which quadrants are light. The directions of the two edges it does not tell: around
-a crossing of straight edges its trace is 0, whatever their angle. The gradients around tell them
-(`cvnotes.targets.subpixel.gradient_axes`).
+Where four squares meet, the smoothed grey levels L have a saddle: light along one diagonal, dark
+along the other. Two tests tell it from the many saddles along an edge or in a texture:
+
+* the second derivatives H have no trace: around a crossing of straight edges it is 0, whatever
+  their angle;
+* on a ring around it, light and dark change four times. The places of the changes are the
+  directions of the two edges.
+
+From one such point the next ones are looked for along its edges, from those the next, and so on.
 """
 
 from collections import deque
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -16,36 +21,46 @@ import numpy.typing as npt
 from cvnotes.base import Array, Image
 from cvnotes.targets.grey import smoothed
 from cvnotes.targets.harris_corners import local_maxima
-from cvnotes.targets.lattice import Mask, trimmed
-from cvnotes.targets.subpixel import gradient_axes
+from cvnotes.targets.lattice import trimmed
+from cvnotes.targets.subpixel import Mask
 
-SCALES = (1.5, 2.5, 4.0)  # px: what is blurred or noisy shows at the larger ones
+SIGMA = 1.0  # px: what is blurred or noisy shows in a reduced copy of the picture
+_RING = 3.0  # of sigma; the squares are larger than this
+_AROUND = np.exp(2j * np.pi * np.arange(16) / 16)
+_TRACE = 1.5  # of √(−det H): 0.7 in the worst of 4,000 corners in photographs
 _WEAK = 0.01  # of the strongest saddle; the square of a contrast, which light and slant reduce
 _MOST = 3000  # saddle points that are looked at
-_SEEDS = 40  # of these, tried as a beginning
-_NEAR = 12  # neighbours among which the next corners are
-_HALF = 4  # half a window, px, whose gradients tell the directions of the edges
+_SEEDS = 60  # of these, tried as a beginning
+_FEWEST = 9  # corners of a lattice: 3×3
 _ASIDE = 0.3  # sine of the angle between an edge and the way to the next corner
 _QUADRANT = 0.3  # of both steps: there the grey levels of the quadrants are looked at
 _ALIKE = 0.3  # of the contrast: so much is the darker light quadrant lighter than the lighter dark
-_FAR = 0.3  # of a step: farther from where it was expected, it is another corner
+_FAR = 0.35  # of a step: farther from where it was expected, it is another corner
 
 
 class Saddles(NamedTuple):
-    """Saddle points m (n, 2) in pixels, the strongest first, and their Hessians H (n, 2, 2).
+    """Saddle points at which two edges cross, the strongest first.
 
-    Their `strength` (n,), √(−det H), is proportional to the contrast. L are the smoothed grey
-    levels.
+    Attributes
+    ----------
+    m : ndarray, shape (n, 2)
+        Where they are, px.
+    H : ndarray, shape (n, 2, 2)
+        Second derivatives of the smoothed grey levels.
+    edges : ndarray, shape (n, 2, 2)
+        Unit vectors along both edges.
+    L : ndarray, shape (height, width)
+        The smoothed grey levels.
     """
 
     m: Array
     H: Array
-    strength: Array
-    L: Image
+    edges: Array
+    L: npt.NDArray[np.float32]
 
 
-def saddle_points(grey: Image, sigma: float) -> Saddles:
-    """Find where smoothed grey levels L have a saddle: det H < 0 and smallest around.
+def saddle_points(grey: Image, sigma: float = SIGMA) -> Saddles:
+    """Find where two edges cross: saddles of the smoothed grey levels L, their det H smallest.
 
     Parameters
     ----------
@@ -62,104 +77,117 @@ def saddle_points(grey: Image, sigma: float) -> Saddles:
     Examples
     --------
     >>> v, u = np.indices((21, 21)) - 10.0
-    >>> saddle_points(np.sign(u * v), 1.5).m[0].round(6)
-    array([10., 10.])
+    >>> saddle_points(np.sign(u * v)).m.round(6)
+    array([[10., 10.]])
     """
-    L = np.pad(smoothed(np.asarray(grey, dtype=np.float32), sigma), 1, mode="edge")
-    L_u, L_v = (L[1:-1, 2:] - L[1:-1, :-2]) / 2, (L[2:, 1:-1] - L[:-2, 1:-1]) / 2
-    L_uu = L[1:-1, 2:] - 2 * L[1:-1, 1:-1] + L[1:-1, :-2]
-    L_vv = L[2:, 1:-1] - 2 * L[1:-1, 1:-1] + L[:-2, 1:-1]
-    L_uv = (L[2:, 2:] - L[2:, :-2] - L[:-2, 2:] + L[:-2, :-2]) / 4
+    L = smoothed(np.asarray(grey, dtype=np.float32), sigma)
+    border = np.pad(L, 1, mode="edge")
+    L_uu = border[1:-1, 2:] - 2 * L + border[1:-1, :-2]
+    L_vv = border[2:, 1:-1] - 2 * L + border[:-2, 1:-1]
+    L_uv = (border[2:, 2:] - border[2:, :-2] - border[:-2, 2:] + border[:-2, :-2]) / 4
     response = L_uv**2 - L_uu * L_vv
-    m = local_maxima(response, radius=max(int(1.5 * sigma), 1), threshold=_WEAK, count=_MOST)
+    m = local_maxima(response, radius=max(int(1.5 * sigma), 1), threshold=_WEAK)
     u, v = m.astype(np.intp).T
+    untraced = np.abs(L_uu[v, u] + L_vv[v, u]) < _TRACE * np.sqrt(response[v, u])
+    m, u, v = m[untraced], u[untraced], v[untraced]
     H = np.stack([L_uu[v, u], L_uv[v, u], L_uv[v, u], L_vv[v, u]], axis=-1, dtype=np.float64)
     H = H.reshape(-1, 2, 2)
-    slope = np.stack([L_u[v, u], L_v[v, u]], axis=-1)[..., None]
-    m = m - np.linalg.solve(H, slope)[..., 0].clip(-1, 1)
-    return Saddles(m, H, np.sqrt(response[v, u]), L[1:-1, 1:-1])
+    slope = np.stack(
+        [border[v + 1, u + 2] - border[v + 1, u], border[v + 2, u + 1] - border[v, u + 1]], axis=-1
+    )
+    m = m - np.linalg.solve(H, slope[..., None] / 2)[..., 0].clip(-1, 1)
+    crossing, edges = _rings(L, m, _RING * sigma)
+    crossing = crossing[:_MOST]
+    return Saddles(m[crossing], H[crossing], edges[:_MOST], L)
 
 
-def find_saddles(grey: Image, corners: tuple[int, int]) -> Array | None:
-    """Look for a board; corners (n, 2) row by row, NaN for hidden ones, or None.
+def _rings(
+    L: npt.NDArray[np.float32], m: Array, radius: float
+) -> tuple[npt.NDArray[np.intp], Array]:
+    """Return around which points light and dark change four times, and the edges' directions.
+
+    The rings end within the picture: what is nearer to its border is no crossing.
+    """
+    height, width = L.shape
+    within = ((m >= radius) & (m <= np.array([width, height]) - 1 - radius)).all(-1)
+    where = np.flatnonzero(within)
+    places = (m[where] @ [1, 1j])[:, None] + radius * _AROUND
+    u, v = (np.rint(x).astype(np.intp) for x in (places.real, places.imag))
+    ring = L[v, u].astype(np.float64)
+    if not ring.size:
+        return where, np.empty((0, 2, 2))
+    ring -= (ring.max(1, keepdims=True) + ring.min(1, keepdims=True)) / 2
+    before = np.roll(ring, 1, axis=1)
+    change = (ring > 0) != (before > 0)
+    four = change.sum(1) == 4
+    n, k = np.nonzero(change & four[:, None])
+    # Between two pixels of the ring, where the grey levels pass their middle.
+    angle = (k - ring[n, k] / (ring[n, k] - before[n, k])) * (2 * np.pi / len(_AROUND))
+    ends = np.exp(1j * angle).reshape(-1, 4)
+    along = ends[:, :2] - ends[:, 2:]
+    along /= np.abs(along)
+    return where[four], np.stack([along.real, along.imag], axis=-1)
+
+
+def lattices(grey: Image) -> Iterator[Array]:
+    """Yield the boards in a picture, those with the strongest corners first.
+
+    Yields
+    ------
+    ndarray, shape (rows, columns, 2)
+        Pixels, NaN for corners that are hidden between the others; at least 3×3. The same board
+        may come more than once.
 
     Examples
     --------
-    >>> find_saddles(np.zeros((40, 40)), (9, 6)) is None
+    >>> next(lattices(np.zeros((40, 40))), None) is None
     True
     """
-    columns, rows = corners
-    best: Array | None = None
-    for sigma in SCALES:
-        lattice = _largest(saddle_points(grey, sigma))
-        for turned in (lattice, lattice.transpose(1, 0, 2)):
-            window = _strongest(turned, rows, columns)
-            if window is not None and (best is None or _seen(window) > _seen(best)):
-                best = window
-        if best is not None and _seen(best) == rows * columns:
-            break
-    if best is None or _seen(best) < 0.75 * rows * columns:
-        return None
-    return best[..., :2].reshape(-1, 2)
-
-
-def saddle_lattice(grey: Image) -> Array | None:
-    """Look for a board of any count; corners (rows, columns, 2), NaN for hidden ones, or None.
-
-    Examples
-    --------
-    >>> saddle_lattice(np.zeros((40, 40))) is None
-    True
-    """
-    best = max((_largest(saddle_points(grey, sigma)) for sigma in SCALES), key=_seen)
-    return best[..., :2] if min(best.shape[:2]) >= 3 else None
-
-
-def _largest(found: Saddles) -> Array:
-    """Grow lattices from the strongest saddles; gives that with most corners: u, v, strength."""
-    best, used = np.full((0, 0, 3), np.nan), np.zeros(len(found.m), dtype=bool)
-    if len(found.m) < 9:
-        return best
-    seeds = found.m[:_SEEDS]
-    edges = gradient_axes(found.L, seeds, _HALF)
-    near = np.argsort(np.linalg.norm(found.m - seeds[:, None], axis=-1))[:, :_NEAR]
-    for seed in range(len(seeds)):
+    found = saddle_points(grey)
+    z = found.m[:, 0] + 1j * found.m[:, 1]
+    used = np.zeros(len(z), dtype=bool)
+    for seed in range(min(len(z), _SEEDS)):
+        if np.count_nonzero(~used) < _FEWEST:
+            return
         if used[seed]:
             continue
-        places = _grown(found, seed, _first_steps(found, edges, near, seed))
+        places = _grown(found, z, seed)
+        if len(places) < _FEWEST:
+            continue
         used[list(places.values())] = True
-        lattice = trimmed(_as_lattice(places, found))
-        if _seen(lattice) > _seen(best):
-            best = lattice
-        if 2 * _seen(best) > np.count_nonzero(~used):  # no other can have more of them
-            break
-    return best
+        where = np.array(list(places))
+        where -= where.min(0)
+        lattice = np.full((*(where.max(0) + 1), 2), np.nan)
+        lattice[tuple(where.T)] = found.m[list(places.values())]
+        lattice = trimmed(lattice)
+        if min(lattice.shape[:2]) >= 3:
+            yield lattice
 
 
-def _first_steps(
-    found: Saddles, edges: Array, near: npt.NDArray[np.intp], seed: int
-) -> list[Array]:
-    """Give the steps from a saddle to the next ones along its two edges, those that there are."""
+def _first_steps(found: Saddles, z: npt.NDArray[np.complex128], seed: int) -> list[complex]:
+    """Return the steps from a saddle to the next ones along its two edges, those that there are."""
+    ways = z - z[seed]
+    far = np.abs(ways)
+    far[seed] = np.inf
     steps = []
-    others = near[seed][near[seed] != seed]
-    ways = found.m[others] - found.m[seed]
-    lengths = np.linalg.norm(ways, axis=-1)
-    for t in edges[seed]:
-        aside = np.abs(ways @ [-t[1], t[0]]) / lengths
-        along = np.flatnonzero(aside < _ASIDE)
-        if len(along):
-            steps.append(ways[along[np.argmin(lengths[along])]])
+    for t in found.edges[seed] @ [1, 1j]:
+        along = np.where(np.abs((ways * t.conjugate()).imag) < _ASIDE * far, far, np.inf)
+        nearest = along.argmin()
+        if np.isfinite(along[nearest]):
+            steps.append(complex(ways[nearest]))
     return steps
 
 
-def _grown(found: Saddles, seed: int, steps: list[Array]) -> dict[tuple[int, int], int]:
+def _grown(found: Saddles, z: npt.NDArray[np.complex128], seed: int) -> dict[tuple[int, int], int]:
     """Go from a saddle to its neighbours and theirs; gives which stands at each (row, column)."""
     at = {(0, 0): seed}
+    steps = _first_steps(found, z, seed)
     if len(steps) < 2:
         return at
-    light = np.sign(steps[0] @ found.H[seed] @ steps[1])  # of the quadrant between both
+    a, b = ([step.real, step.imag] for step in steps)
+    light = float(np.sign(a @ found.H[seed] @ b))  # of the quadrant between both
     first = steps[0], steps[1]
-    if not _is_crossing(found, seed, first, light):
+    if not _is_crossing(found.L, z[seed], first, light):
         return at
     ways = {(0, 0): first}  # to the next column and to the next row
     taken, todo = {seed}, deque([(0, 0)])
@@ -171,14 +199,14 @@ def _grown(found: Saddles, seed: int, steps: list[Array]) -> dict[tuple[int, int
             if there in at:
                 continue
             if back in at:
-                way = found.m[p] - found.m[at[back]]
-            away = np.hypot(*(found.m - found.m[p] - way).T)
+                way = z[p] - z[at[back]]
+            away = np.abs(z - (z[p] + way))
             q = int(away.argmin())
-            if q in taken or away[q] > _FAR * np.linalg.norm(way):
+            if q in taken or away[q] > _FAR * abs(way):
                 continue
-            way = found.m[q] - found.m[p]
+            way = complex(z[q] - z[p])
             onward = (way * dj, b) if dj else (a, way * di)
-            if not _is_crossing(found, q, onward, light * (-1) ** (there[0] + there[1])):
+            if not _is_crossing(found.L, z[q], onward, light * (-1) ** sum(there)):
                 continue
             at[there], ways[there] = q, onward
             taken.add(q)
@@ -186,43 +214,23 @@ def _grown(found: Saddles, seed: int, steps: list[Array]) -> dict[tuple[int, int
     return at
 
 
-def _is_crossing(found: Saddles, i: int, ways: tuple[Array, Array], light: float) -> bool:
-    """Tell whether both quadrants between two ways are light (or dark), and the others are not.
+def _is_crossing(
+    L: npt.NDArray[np.float32], p: complex, ways: tuple[complex, complex], light: float
+) -> bool:
+    """Return whether both quadrants between two ways are light (or dark), and the others are not.
 
     Where only one of four quadrants is dark, as at the end of a board, is a saddle too.
     """
-    (a, b), (height, width) = ways, found.L.shape
-    places = found.m[i] + _QUADRANT * np.stack([a + b, -a - b, a - b, b - a])
-    u, v = np.rint(places).astype(np.intp).T.clip(0, [[width - 1], [height - 1]])
-    one, other = light * found.L[v, u].reshape(2, 2)
-    return bool(one.min() - other.max() > _ALIKE * np.ptp([one, other]))
+    (height, width), (a, b) = L.shape, ways
+    levels: list[float] = []
+    for way in (a + b, -a - b, a - b, b - a):
+        q = p + _QUADRANT * way
+        u, v = round(q.real), round(q.imag)
+        levels.append(light * L[min(max(v, 0), height - 1), min(max(u, 0), width - 1)].item())
+    clear = min(levels[:2]) - max(levels[2:])
+    return bool(clear > _ALIKE * (max(levels) - min(levels)))
 
 
-def _as_lattice(places: dict[tuple[int, int], int], found: Saddles) -> Array:
-    where = np.array(list(places))
-    where -= where.min(0)
-    lattice = np.full((*(where.max(0) + 1), 3), np.nan)
-    points = np.column_stack([found.m, found.strength])
-    lattice[tuple(where.T)] = points[list(places.values())]
-    return lattice
-
-
-def _strongest(lattice: Array, rows: int, columns: int) -> Array | None:
-    """Give the part of that many rows and columns whose corners are strongest together.
-
-    Where a board's outer squares end is a row of saddles too, but of weak ones.
-    """
-    parts = [
-        lattice[i : i + rows, j : j + columns]
-        for i in range(lattice.shape[0] - rows + 1)
-        for j in range(lattice.shape[1] - columns + 1)
-    ]
-    return max(parts, key=lambda part: float(np.nansum(part[..., 2])), default=None)
-
-
-def _there(lattice: Array) -> Mask:
+def seen(lattice: Array) -> Mask:
+    """Return which corners (rows, columns) of a lattice are there."""
     return np.asarray(np.isfinite(lattice).all(-1))
-
-
-def _seen(lattice: Array) -> int:
-    return int(np.count_nonzero(_there(lattice)))

@@ -264,7 +264,7 @@ def _least_margin(square: float) -> float:
 
 
 def _refusal(corners: tuple[int, int], square: float, paper: str) -> str:
-    """Say what would fit: smaller squares on this paper, or this board on another."""
+    """Describe what would fit: smaller squares on this paper, or this board on another."""
 
     def fits(square: float, paper: str) -> bool:
         margins = (_margin(corners, square, size) for size in _ways(paper))

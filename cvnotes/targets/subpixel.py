@@ -15,13 +15,13 @@ slight slope of the lighting. The model is fitted to many windows at once; the f
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import (
     Array,
-    CvnotesError,
     DegenerateError,
     Image,
     Points,
@@ -29,8 +29,8 @@ from cvnotes.base import (
     chunks,
     guarded,
     image_size,
-    number,
     points,
+    whole,
 )
 from cvnotes.targets.grey import grey_picture
 
@@ -52,21 +52,8 @@ _BEYOND_PX, _BEYOND_BLUR = 2.0, 1.5  # but at least so many pixels, and widths o
 _VERY_BLURRED = 0.2  # of half a window
 # Sum of squares, in grey levels, that single precision leaves in a window.
 _ROUNDING = 3.0
+_window = partial(whole, at_most=250)  # half a side: its pixels grow with the square
 _SINGULAR = 1e-30  # determinant of the parameters' correlations; on a board it is above 1e-6
-
-
-def whole(x: float, name: str) -> int:
-    """Guard a positive whole number.
-
-    Examples
-    --------
-    >>> whole(5, "window")
-    5
-    """
-    value = number(x, name)
-    if value < 1 or value != int(value):
-        raise CvnotesError(f"{name}: expected a positive whole number, got {x!r}")
-    return int(value)
 
 
 # --- by gradients
@@ -116,7 +103,7 @@ def refine_subpixel(image: npt.ArrayLike, m: npt.ArrayLike, *, window: int = 5) 
     array([[9.5, 9.5]])
     """
     grey, start = grey_picture(image), points(m, "m", 2)
-    led = led_by_gradients(grey, start.reshape(-1, 2), whole(window, "window"), _CLOSE)
+    led = led_by_gradients(grey, start.reshape(-1, 2), _window(window, "window"), _CLOSE)
     return led.reshape(start.shape)
 
 
@@ -201,7 +188,7 @@ class Window:
     weight: Single
 
     def rows(self, k: slice | npt.NDArray[np.intp]) -> "Window":
-        """Give the same for some of the corners."""
+        """Return the same for some of the corners."""
         return Window(self.place, self.grey[k], self.weight[k])
 
 
@@ -227,7 +214,7 @@ def refine_edges(
     return fit_edges(image, m, window=window, grid=grid).m
 
 
-@guarded(image=grey_picture, m=Points(2), window=whole)
+@guarded(image=grey_picture, m=Points(2), window=_window)
 def fit_edges(
     image: Image,
     m: Array,
@@ -302,18 +289,8 @@ def fit_edges(
     return _result(again, _facing(p, axes), system[:, [*range(free), -1]], large, good)
 
 
-def led_in_copy(copy: Image, m: Array, grid: tuple[int, int], size: tuple[int, int]) -> Array:
-    """Do what `fit_edges` does in a reduced copy of a picture of that size, and return m alone.
-
-    Corners m (n, 2) are pixels of the picture, before and after; those that are lost stay.
-    """
-    zoom = np.array(size) / copy.shape[::-1]
-    led = (fit_edges.inside(copy, (m + 0.5) / zoom - 0.5, grid=grid).m + 0.5) * zoom - 0.5
-    return np.where(np.isfinite(led), led, m)
-
-
 def _strip(axes: Array, clear: float | None, blur: float) -> Array | None:
-    """Give half the width (n, 2) of the strips along the edges that show nothing but them."""
+    """Return half the width (n, 2) of the strips along the edges that show nothing but them."""
     if clear is None:
         return None
     height = (
@@ -323,7 +300,7 @@ def _strip(axes: Array, clear: float | None, blur: float) -> Array | None:
 
 
 def _shifted(p: Array, by: Array) -> Array:
-    """Give the same edges seen from the middle of another window."""
+    """Return the same edges seen from the middle of another window."""
     p = p.copy()
     for a in (0, 3):
         p[:, a + 2] += (p[:, a : a + 2] * by).sum(-1)
@@ -361,7 +338,7 @@ def _result(middle: Array, p: Array, system: Array, window: Window, good: Mask) 
 
 
 def _determined(normal: Array) -> Mask:
-    """Tell which normal matrices (n, free, free) are regular: the pixels tell all parameters."""
+    """Return which normal matrices (n, free, free) are regular: the pixels tell all parameters."""
     scale = np.sqrt(np.diagonal(normal, axis1=1, axis2=2))
     scale = np.where(scale > 0, scale, np.inf)
     correlation = normal / (scale[:, :, None] * scale[:, None, :])
@@ -384,7 +361,7 @@ def _typical(blur: Array) -> float:
 
 
 def board_axes(m: Array, grid: tuple[int, int], blur: float = 0.0) -> tuple[Array, Array]:
-    """Give each corner's two steps to the next ones (n, 2, 2), and its reach (n, 2, 2) in them.
+    """Return each corner's two steps to the next ones (n, 2, 2), and its reach (n, 2, 2) in them.
 
     Of the reach, the last index is that of backward and forward.
     """
@@ -408,7 +385,7 @@ def board_axes(m: Array, grid: tuple[int, int], blur: float = 0.0) -> tuple[Arra
 
 
 def gradient_axes(grey: Image, m: Array, half: int) -> Array:
-    """Give the directions of the two edges (n, 2, 2) that the gradients around m show.
+    """Return the directions of the two edges (n, 2, 2) that the gradients around m show.
 
     Gradients point across one edge or the other, so that (t1ᵀ g)(t2ᵀ g) = gᵀ Q g is 0 for all of
     them. The three coefficients of Q are the null vector of the sum of fourth powers of g.
@@ -451,7 +428,7 @@ def cut_out(
 
 
 def sharp_crossing(offset: Array, axes: Array, window: Window) -> Array:
-    """Give parameters to start from: the crossing of both axes, with a blur of 0.7 px."""
+    """Return parameters to start from: the crossing of both axes, with a blur of 0.7 px."""
     p = np.zeros((len(offset), PARAMETERS))
     across = normals(axes)
     p[:, 0:2], p[:, 3:5] = across[:, 0], across[:, 1]
@@ -464,7 +441,7 @@ def sharp_crossing(offset: Array, axes: Array, window: Window) -> Array:
 
 
 def normals(axes: Array) -> Array:
-    """Give unit normals (n, 2, 2) of both edges that point into the quadrant between the axes."""
+    """Return unit normals (n, 2, 2) of both edges that point into the quadrant between the axes."""
     across = np.stack([-axes[..., 1], axes[..., 0]], axis=-1) * [[1.0], [-1.0]]
     turned = np.where(_cross(axes[:, 0], axes[:, 1]) < 0, -1.0, 1.0)[:, None, None]
     return np.asarray(turned * across / np.linalg.norm(across, axis=-1, keepdims=True))
@@ -504,7 +481,7 @@ def jacobian(p: Array, window: Window) -> Single:
 
 
 def crossing(p: Array) -> Array:
-    """Give where the two edges cross, (n, 2), from the middle of the window.
+    """Return where the two edges cross, (n, 2), from the middle of the window.
 
     Examples
     --------
@@ -585,7 +562,7 @@ def _system(p: Array, window: Window) -> Array:
 
 
 def _erf(t: Single) -> tuple[Single, Single]:
-    """Give erf t and exp(−t²) at once, to single precision, in a third of the usual time.
+    """Return erf t and exp(−t²) at once, to single precision, in a third of the usual time.
 
     Formula 7.1.26 of Abramowitz and Stegun, Handbook of Mathematical Functions (1964).
     """
@@ -599,7 +576,7 @@ def _erf(t: Single) -> tuple[Single, Single]:
 
 
 def _overturned(p: Array, p_new: Array) -> Mask:
-    """Tell for which windows (n,) an edge's normal turns by more than 90°."""
+    """Mark for which windows (n,) an edge's normal turns by more than 90°."""
     along = p[:, [0, 1, 3, 4]] * p_new[:, [0, 1, 3, 4]]
     return np.asarray(along.reshape(-1, 2, 2).sum(-1).min(-1) <= 0)
 

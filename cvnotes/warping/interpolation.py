@@ -146,7 +146,7 @@ class Sampler:
         return pairs
 
     def __call__(self, m: Array) -> Image:
-        """Give the picture at m (2, n), rows u and v, as (n, channels); m is written over."""
+        """Return the picture at m (2, n), rows u and v, as (n, channels); m is written over."""
         values = np.empty((m.shape[1], self.fill.size), self.dtype)
         self.look_up(self.places(m), values)
         return values
@@ -201,7 +201,7 @@ class Sampler:
     def _neighbours(
         self, row: npt.NDArray[Any], index: npt.NDArray[np.intp]
     ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
-        """Give pixels, and those to the right of them."""
+        """Return pixels, and those to the right of them."""
         if not self.in_pairs:
             return row.take(index), row[1:].take(index)
         pair = row.take(index)
@@ -220,7 +220,7 @@ class Sampler:
 
 
 def _between(a: Real, b: Real, t: Real) -> Real:
-    """Give a + (b − a) t, written over b: the steps of `bilinear`."""
+    """Return a + (b − a) t, written over b: the steps of `bilinear`."""
     b -= a
     b *= t
     b += a

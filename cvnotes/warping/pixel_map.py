@@ -128,7 +128,7 @@ def tiles(
 
 
 def columns_of(mapping: Mapping) -> Callable[[Array], Array]:
-    """Give a map as a function from homogeneous columns (3, n) to columns (2, n)."""
+    """Return a map as a function from homogeneous columns (3, n) to columns (2, n)."""
     if isinstance(mapping, PixelMap):
         return mapping.columns
     if not callable(mapping):

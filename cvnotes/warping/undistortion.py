@@ -54,8 +54,7 @@ def undistortion_map(
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import Lens
+    >>> from cvnotes.camera import Lens, intrinsics
     >>> camera = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-0.25,)))
     >>> undistortion_map(camera)([720, 240])  # x = 1/2: 320 + 400 (1 − 1/16)
     array([695., 240.])
@@ -83,8 +82,7 @@ def distortion_map(camera: Camera, new_A: npt.ArrayLike | None = None) -> PixelM
 
     Examples
     --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.camera import Lens
+    >>> from cvnotes.camera import Lens, intrinsics
     >>> camera = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-0.25,)))
     >>> distortion_map(camera)([695, 240]).round(9)
     array([720., 240.])
@@ -125,7 +123,7 @@ def undistort_image(
     size : (width, height), optional
         Size of the new picture; by default that of the old one.
     method, border, fill
-        See `cvnotes.warping.interpolation.interpolate`.
+        As in `interpolate`.
 
     Returns
     -------
@@ -139,6 +137,9 @@ def undistort_image(
 
     Notes
     -----
+    What the ideal camera does not show is lost, and what is stretched near the border gets no
+    sharper; `new_A` and `size` choose what is shown.
+
     From the second picture of a camera on it is remembered where its pixels come from, as long as
     the camera is (12 bytes a pixel, up to 16 million pixels).
 
@@ -188,7 +189,7 @@ def _plan(
     mapping: PixelMap,
     size: tuple[int, int],
 ) -> Plan | None:
-    """Give the plan of a backward warp that is not the first of its kind with this camera."""
+    """Return the plan of a backward warp that is not the first of its kind with this camera."""
     if size[0] * size[1] > _LARGEST_PLAN:
         return None
     ideal = None if new_A is None else np.asarray(new_A, dtype=float).tobytes()
@@ -210,5 +211,5 @@ def _one_rotation(R: npt.ArrayLike) -> Array:
 
 
 def _is_identity(camera: Camera, new_A: Array) -> bool:
-    """Tell whether nothing moves; then it must not move by rounding either."""
+    """Return whether nothing moves; then it must not move by rounding either."""
     return camera.lens.is_ideal and bool((new_A == camera.A).all())

@@ -1,16 +1,12 @@
 """The two ways to move a picture by a map: forward, and backward (notes 2b.5)."""
 
 import os
-import sys
-from collections import deque
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import (
-    Array,
     CvnotesError,
     Image,
     ShapeError,
@@ -20,15 +16,13 @@ from cvnotes.base import (
     points,
     target_size,
 )
+from cvnotes.base.parallel import in_order
 from cvnotes.warping.interpolation import Border, Method, Places, Sampler
 from cvnotes.warping.maps import plane_map
 from cvnotes.warping.pixel_map import Mapping, tiles
 
-if TYPE_CHECKING:
-    from concurrent.futures import Future
-
 _LOOKED_UP = 56_000  # pixels at a time: threads that look up less get into each other's way
-_FETCHERS = max(1, min(os.cpu_count() or 1, 4) - 1)
+_WORKERS = max(2, min(os.cpu_count() or 1, 4))
 
 
 class ForwardWarp(NamedTuple):
@@ -127,13 +121,8 @@ def backward_warp(
         them; NaN where there is nothing to show.
     size : (width', height'), optional
         Size of the target; by default that of the table, or else that of the source.
-    method : {"bilinear", "nearest"}
-        Between four pixels, or the closest one; half-way to the right and downwards.
-    border : {"constant", "replicate", "reflect"}
-        What lies outside of the source: `fill`, the outermost pixel, or the picture mirrored at
-        the outermost pixel centres.
-    fill : number, or one per channel
-        What lies outside of a constant border, and what NaN shows under every border.
+    method, border, fill
+        As in `interpolate`.
 
     Returns
     -------
@@ -166,32 +155,9 @@ def backward_warp(
         size = (shape[1], shape[0])
     width, height = target_size((sampler.width, sampler.height) if size is None else size)
     target = np.empty((height * width, sampler.fill.size), sampler.dtype)
-
-    def fetch(part: slice, m: Array) -> None:
+    for part, m in tiles(mapping, (width, height)):
         sampler.look_up(sampler.places(m), target[part])
-
-    if sys.platform == "emscripten":  # a browser, which has no threads
-        for part, m in tiles(mapping, (width, height)):
-            fetch(part, m)
-    else:
-        _fetch_side_by_side(mapping, (width, height), fetch)
     return target.reshape(height, width, *sampler.channels)
-
-
-def _fetch_side_by_side(
-    mapping: Mapping, size: tuple[int, int], fetch: Callable[[slice, Array], None]
-) -> None:
-    """Ask the map for the next tile in one thread, while others look the picture up."""
-    from concurrent.futures import ThreadPoolExecutor
-
-    with ThreadPoolExecutor(_FETCHERS) as fetchers:
-        under_way: deque[Future[None]] = deque()
-        for part, m in tiles(mapping, size):
-            under_way.append(fetchers.submit(fetch, part, m))
-            if len(under_way) > 2 * _FETCHERS:
-                under_way.popleft().result()
-        for fetched in under_way:
-            fetched.result()
 
 
 # Where the pixels of a picture come from, tile by tile.
@@ -217,14 +183,8 @@ def warped(sampler: Sampler, plan: Plan, size: tuple[int, int]) -> Image:
         for part, places in some:
             sampler.look_up(places, target[part])
 
-    if sys.platform == "emscripten":
-        look_up(plan)
-    else:
-        from concurrent.futures import ThreadPoolExecutor
-
-        workers = _FETCHERS + 1
-        with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(look_up, [plan[i::workers] for i in range(workers)]))
+    for _ in in_order(look_up, [plan[i::_WORKERS] for i in range(_WORKERS)], _WORKERS):
+        pass
     return target.reshape(height, width, *sampler.channels)
 
 

@@ -63,7 +63,7 @@ class Shell(InteractiveShell):
 
 
 def execute(notebook: str) -> str:
-    """Give the outputs of the code cells as JSON, from a notebook's text."""
+    """Return the outputs of the code cells as JSON, from a notebook's text."""
     Shell.clear_instance()
     shell = Shell.instance()
     os.makedirs("/tmp/course", exist_ok=True)  # noqa: PTH103

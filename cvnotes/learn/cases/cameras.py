@@ -23,7 +23,7 @@ SQUARE_SEEN = np.array([[100.0, 120.0], [300.0, 100.0], [280.0, 260.0], [120.0, 
 
 
 def some_intrinsics(rng: np.random.Generator, *, skew: bool = False) -> Array:
-    """Give an intrinsic matrix with two focal lengths that are clearly different.
+    """Return an intrinsic matrix with two focal lengths that are clearly different.
 
     Examples
     --------
@@ -37,90 +37,90 @@ def some_intrinsics(rng: np.random.Generator, *, skew: bool = False) -> Array:
 
 
 def without_skew(A: Array) -> Array:
-    """Give an intrinsic matrix with a skew of 0 and all else as it is."""
+    """Return an intrinsic matrix with a skew of 0 and all else as it is."""
     A = np.array(A)
     A[0, 1] = 0.0
     return A
 
 
 def some_rotation(rng: np.random.Generator, largest: float = 0.7) -> Array:
-    """Give a rotation by 0.3 to `largest` radians about a random axis."""
+    """Return a rotation by 0.3 to `largest` radians about a random axis."""
     axis = rng.standard_normal(3)
     return rotation_from_vector(axis / np.linalg.norm(axis) * rng.uniform(0.3, largest))
 
 
 def some_pose(rng: np.random.Generator) -> tuple[Array, Array]:
-    """Give R and T of a camera about half a metre away from the world's origin."""
+    """Return R and T of a camera about half a metre away from the world's origin."""
     return some_rotation(rng), np.round(rng.uniform([-80, -60, 400], [80, 60, 700]), 1)
 
 
 def points_in_front(rng: np.random.Generator, R: Array, T: Array, n: int) -> Array:
-    """Give world points (n, 3) that the camera has in front of it and in its picture."""
+    """Return world points (n, 3) that the camera has in front of it and in its picture."""
     z = rng.uniform(300, 900, (n, 1))
     M = np.concatenate([z * rng.uniform(-0.35, 0.35, (n, 2)), z], axis=1)
     return np.asarray(np.round((M - T) @ R, 1))
 
 
 def board_grid(columns: int = 4, rows: int = 3, square: float = 30.0) -> Array:
-    """Give the corners of a board, (n, 2), in its plane."""
+    """Return the corners of a board, (n, 2), in its plane."""
     x, y = np.meshgrid(square * np.arange(columns), square * np.arange(rows))
     return np.stack([x.ravel(), y.ravel()], axis=1)
 
 
 def plane_image(A: Array, R: Array, T: Array) -> Array:
-    """Give H ≈ A [r1 r2 T], which takes the plane Z = 0 to the picture."""
+    """Return H ≈ A [r1 r2 T], which takes the plane Z = 0 to the picture."""
     return np.asarray(A @ np.stack([R[:, 0], R[:, 1], T], axis=1))
 
 
 def some_homography(rng: np.random.Generator) -> Array:
-    """Give the homography (3, 3) of a board in front of a camera."""
+    """Return the homography (3, 3) of a board in front of a camera."""
     return plane_image(some_intrinsics(rng), *some_pose(rng))
 
 
 def affine_fit(src: Array, dst: Array) -> Array:
-    """Give the affine map (3, 3) nearest to points (n, 2) → points (n, 2)."""
+    """Return the affine map (3, 3) nearest to points (n, 2) → points (n, 2)."""
     lifted = np.column_stack([src, np.ones(len(src))])
     M = np.linalg.lstsq(lifted, dst, rcond=None)[0]
     return np.vstack([M.T, [0, 0, 1]])
 
 
 def some_views(rng: np.random.Generator, A: Array, n: int) -> Array:
-    """Give homographies (n, 3, 3) of a tilted board, each of a scale and sign of its own."""
+    """Return homographies (n, 3, 3) of a tilted board, each of a scale and sign of its own."""
     H = np.stack([plane_image(A, *some_pose(rng)) for _ in range(n)])
     return H * some_factors(rng, n)[:, None, None]
 
 
 def some_factors(rng: np.random.Generator, n: int) -> Array:
-    """Give factors that are not 0, of either sign."""
+    """Return factors that are not 0, of either sign."""
     factors = np.round(rng.uniform(0.3, 3.0, n), 2) * rng.choice([-1.0, 1.0], n)
     return np.asarray(factors)
 
 
 def some_lens(rng: np.random.Generator) -> tuple[Array, Array]:
-    """Give k (2,) and p (2,) of a lens that is valid up to a radius of 0.7 at least."""
+    """Return k (2,) and p (2,) of a lens that is valid up to a radius of 0.7 at least."""
     k = np.round([rng.uniform(-0.3, -0.1), rng.uniform(0.03, 0.12)], 3)
     return k, np.round(rng.uniform(0.002, 0.01, 2) * rng.choice([-1, 1], 2), 4)
 
 
 def some_pose_matrix(rng: np.random.Generator) -> Array:
-    """Give a pose as G (4, 4)."""
+    """Return a pose as G (4, 4)."""
     return pose(*some_pose(rng))
 
 
 def lens_factor(xy: Array, k: Array) -> Array:
-    """Give L(r) of a lens with k (2,) as a column, r being the length of the rows of xy (n, 2)."""
+    """Return L(r) of a lens with k (2,) as a column; r is the length of the rows of xy (n, 2)."""
     r2 = (xy**2).sum(-1, keepdims=True)
     return np.asarray(1 + k[0] * r2 + k[1] * r2**2)
 
 
 def pixel_centres(size: tuple[int, int]) -> Array:
-    """Give all pixel centres (n, 2) of a picture of size (width, height), row by row."""
+    """Return all pixel centres (n, 2) of a picture of size (width, height), row by row."""
     v, u = np.mgrid[: size[1], : size[0]]
     return np.stack([u.ravel(), v.ravel()], axis=1).astype(float)
 
 
 def image_of_noise(rng: np.random.Generator, width: int, height: int) -> Array:
-    """Give a picture (height, width) of whole grey levels that nothing repeats."""
+    """Return a picture (height, width) of whole grey levels that nothing repeats."""
     return rng.integers(0, 256, (height, width)).astype(float)
 
 

@@ -9,7 +9,7 @@ from cvnotes.targets import Chessboard
 
 
 def rails_camera() -> Camera:
-    """Give the camera of `rails_picture`: turned a little to the left, and lowered.
+    """Return the camera of `rails_picture`: turned a little to the left, and lowered.
 
     Examples
     --------
@@ -28,7 +28,7 @@ def rails_picture() -> npt.NDArray[np.uint8]:
 
 
 def turned_board() -> tuple[Chessboard, Camera]:
-    """Give the board of `board_picture`, and the camera that sees it turned.
+    """Return the board of `board_picture`, and the camera that sees it turned.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def board_picture() -> npt.NDArray[np.uint8]:
 
 
 def stereo_cameras() -> tuple[Camera, Camera]:
-    """Give the two cameras of `stereo_pictures`, 800 mm apart, with parallel axes.
+    """Return the two cameras of `stereo_pictures`, 800 mm apart, with parallel axes.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def stereo_cameras() -> tuple[Camera, Camera]:
 
 
 def nearest_edge() -> Array:
-    """Give the top (3,) of the nearest upright edge of the tall block in `stereo_pictures`.
+    """Return the top (3,) of the nearest upright edge of the tall block in `stereo_pictures`.
 
     Examples
     --------

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.learn.checker.exercise import Misconception
+from cvnotes.tutor.checker.exercise import Misconception
 
 
 def centre_divided_too(A: Array, M: Array) -> Array:
@@ -22,7 +22,7 @@ def centre_divided_too(A: Array, M: Array) -> Array:
 def misreadings(
     pixel: Callable[[], Array], size: tuple[int, int], near: float
 ) -> tuple[Misconception, ...]:
-    """Give what comes out if a pixel (2,) of a picture of size (width, height) is misread.
+    """Return what comes out if a pixel (2,) of a picture of size (width, height) is misread.
 
     What is nearer than `near` to the pixel is right. The last ones are general: they go behind the
     exercise's own.
@@ -85,6 +85,6 @@ def misreadings(
 
 
 def _on_another_scale(answer: Array, pixel: Array, near: float) -> bool:
-    """Tell whether a pixel was read in a picture that was shown larger or smaller."""
+    """Return whether a pixel was read in a picture that was shown larger or smaller."""
     scale = float(answer @ pixel / (pixel @ pixel))
     return 0.2 < scale < 6 and bool(np.linalg.norm(answer / scale - pixel) < near / 2)

@@ -1,11 +1,13 @@
 """Lift points to projective space."""
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import to_homogeneous
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def lift(x: Array, w: float) -> Array:
@@ -22,6 +24,41 @@ def _points_and_factor(rng: Rng) -> list[Case]:
     ]
 
 
+def _steps(x: Array, w: float) -> Any:
+    one = np.ones((len(x), 1))  # a column of ones
+    x_h = np.hstack([x, one])  # the points with last coordinate 1
+    return w * x_h
+
+
+MISTAKES = mistakes(
+    ("w appended only",
+     "You appended w and did not multiply the other coordinates by it. The factor multiplies"
+     " all of them (the notes' first formula slips here).",
+     lambda x, w: np.hstack([x, np.full((len(x), 1), w)]),
+     lambda x, w: np.hstack([x / w, np.full((len(x), 1), w)])),
+    ("factor on the coordinates only", "The last coordinate takes the factor too: yours is 1.",
+     lambda x, w: np.hstack([w * x, np.ones((len(x), 1))]), lambda x, w: to_homogeneous(x / w)),
+    ("factor forgotten",
+     "These are the right points, with the factor 1; asked is the member of the class whose "
+     "last coordinate is w.",
+     lambda x, _: np.hstack([x, np.ones((len(x), 1))])),
+    ("zero appended",
+     "You appended 0: that makes a point at infinity, a direction. A point in a place has a "
+     "last coordinate that is not 0.",
+     lambda x, w: np.hstack([w * x, np.zeros((len(x), 1))])),
+    ("a row instead of a column",
+     "You added a row: another point. Points are rows here, so a coordinate is a column: "
+     "axis=1.",
+     lambda x, w: np.vstack([w * x, np.full((1, x.shape[1]), w)])),
+    ("factor added", "You added w to the coordinates; a factor multiplies them.",
+     lambda x, w: to_homogeneous(x) + w),
+    ("factor twice",
+     "You appended w first and then multiplied everything by w: the last coordinate has the "
+     "factor twice now.",
+     lambda x, w: w * np.hstack([x, np.full((len(x), 1), w)])),
+)  # fmt: skip
+
+
 LIFT = Exercise(
     name="lift",
     chapter=1,
@@ -29,7 +66,7 @@ LIFT = Exercise(
     task="Give homogeneous coordinates, shape (n, d + 1), of points x, shape (n, d): those of the "
     "whole class whose last coordinate is the number w.",
     stub='''def my_lift(x, w):
-    """Give homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate w."""
+    """Return homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate w."""
     ...''',
     hints=(
         "For w = 1 the point (x, y) becomes (x, y, 1).",
@@ -47,83 +84,9 @@ LIFT = Exercise(
             lambda x_h, case: np.allclose(x_h[:, -1], case.args[1], atol=1e-6),
         ),
     ),
-    misconceptions=(
-        Misconception(
-            "w appended only",
-            "You appended w but left the other coordinates as they were: [x y w] is the point "
-            "(x/w, y/w). The factor multiplies all of them (the notes' first formula slips here).",
-            lambda x, w: np.hstack([x, np.full((len(x), 1), w)]),
-        ),
-        Misconception(
-            "factor on the coordinates only",
-            "You multiplied the coordinates but appended 1: that is the point (wx, wy). "
-            "The last coordinate takes the factor too.",
-            lambda x, w: np.hstack([w * x, np.ones((len(x), 1))]),
-        ),
-        Misconception(
-            "factor forgotten",
-            "These are the right points, with the factor 1; asked is the member of the class "
-            "whose last coordinate is w.",
-            lambda x, _: np.hstack([x, np.ones((len(x), 1))]),
-        ),
-        Misconception(
-            "zero appended",
-            "You appended 0: that makes a point at infinity, a direction. A point in a place has "
-            "a last coordinate that is not 0.",
-            lambda x, w: np.hstack([w * x, np.zeros((len(x), 1))]),
-        ),
-        Misconception(
-            "new coordinate in front",
-            "You put the new coordinate first. Here, as in the notes, it is the last one.",
-            lambda x, w: np.hstack([np.full((len(x), 1), w), w * x]),
-        ),
-        Misconception(
-            "a row instead of a column",
-            "You added a row: another point. Points are rows here, so a coordinate is a column: "
-            "axis=1.",
-            lambda x, w: np.vstack([w * x, np.full((1, x.shape[1]), w)]),
-        ),
-        Misconception(
-            "divided by w",
-            "You divided everything by w, so that the last coordinate is 1/w: multiply by w.",
-            lambda x, w: to_homogeneous(x) / w,
-        ),
-        Misconception(
-            "coordinates divided",
-            (
-                "You divided the coordinates and appended w: that is the point (x/w², y/w²). The "
-                "factor multiplies all of them."
-            ),
-            lambda x, w: np.hstack([x / w, np.full((len(x), 1), w)]),
-        ),
-        Misconception(
-            "factor added",
-            "You added w to the coordinates; a factor multiplies them.",
-            lambda x, w: to_homogeneous(x) + w,
-        ),
-        Misconception(
-            "factor twice",
-            "You appended w first and then multiplied everything by w: the last coordinate is w² "
-            "now. Append 1, or multiply first.",
-            lambda x, w: w * np.hstack([x, np.full((len(x), 1), w)]),
-        ),
-        Misconception(
-            "divided, 1 appended",
-            "You divided by w and appended 1: that is the point (x/w, y/w).",
-            lambda x, w: to_homogeneous(x / w),
-        ),
-        Misconception(
-            "nothing appended",
-            "You multiplied, but appended nothing: the last coordinate w is missing.",
-            lambda x, w: w * x,
-        ),
-        Misconception(
-            "sign of the factor lost",
-            "You took the absolute value of w: a factor may be negative, and keeps its sign.",
-            lambda x, w: abs(w) * to_homogeneous(x),
-        ),
-    ),
+    misconceptions=MISTAKES,
     reference=lift,
+    steps=_steps,
     concepts=("2", "3", "4", "E1"),
     sources=(lift, to_homogeneous),
 )

@@ -1,16 +1,18 @@
 """The line through two points."""
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.learn.checker.equality import up_to_scale
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import join, to_homogeneous
+from cvnotes.tutor.checker.equality import up_to_scale
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def line_through(p: Array, q: Array) -> Array:
-    """Give the line (3,) through two points (2,): l with l·x̃ = 0 for all its points."""
+    """Return the line (3,) through two points (2,): l with l·x̃ = 0 for all its points."""
     return join(to_homogeneous(p), to_homogeneous(q))
 
 
@@ -48,9 +50,50 @@ def _with_constant(p: Array, q: Array, part: list[int]) -> Array:
 
 
 def _through(p: Array, q: Array, line: Array) -> bool:
-    """Tell whether a line that is none of the zero vector contains both points."""
+    """Return whether a line that is none of the zero vector contains both points."""
     far = np.abs(to_homogeneous([p, q])) @ np.abs(line)
     return bool((np.abs(to_homogeneous([p, q]) @ line) <= 1e-6 * far).all() and line.any())
+
+
+def _steps(p: Array, q: Array) -> Any:
+    x, y, w = np.array([p[0], p[1], 1.0])
+    s, t, z = np.array([q[0], q[1], 1.0])
+    a = y * z - w * t  # a of the line
+    b = w * s - x * z  # b of the line
+    c = x * t - y * s  # c of the line
+    return np.array([a, b, c])
+
+
+MISTAKES = mistakes(
+    ("lifted with 0",
+     "You lifted the points with 0, as directions: their line is the line at infinity. "
+     "Points get a 1.",
+     lambda p, q: np.cross([*p, 0], [*q, 0])),
+    ("upright lines left out", "Right where the line has a slope. An upright line has none.",
+     _slope_form),
+    ("sign of the constant",
+     "The direction is right but the constant has the wrong sign: bring all terms to one "
+     "side.",
+     lambda p, q: _slope_form(p, q, sign=1.0)),
+    ("direction taken for the normal", "(a, b) is perpendicular to the line, not along it.",
+     lambda p, q: np.array([*q - p, -(q - p) @ p]),
+     lambda p, q: np.array([*q - p, line_through(p, q)[2]])),
+    ("difference of the points",
+     "The difference of the lifted points is the direction of the line, their sum a point "
+     "between: neither is the line.",
+     lambda p, q: np.array([*q - p, 0.0]), lambda p, q: np.array([*p + q, 2.0])),
+    ("entry by entry",
+     "You multiplied entry by entry; another product is perpendicular to both.",
+     lambda p, q: np.array([*p * q, 1.0])),
+    ("constant left out",
+     "Your line has the right direction, but c is missing, or one of its two parts.",
+     lambda p, q: line_through(p, q) * [1, 1, 0], lambda p, q: _with_constant(p, q, [1, 0]),
+     lambda p, q: _with_constant(p, q, [0, 1])),
+    ("slope and intercept",
+     "That is slope and intercept, which no upright line has. Asked are the three numbers of"
+     " the line.",
+     _slope_and_intercept, lambda p, q: _swapped(_slope_and_intercept(p, q))),
+)  # fmt: skip
 
 
 LINE = Exercise(
@@ -60,7 +103,7 @@ LINE = Exercise(
     task="Give the line l = (a, b, c), of any scale, through two pixels p and q, shape (2,) each: "
     "a x + b y + c = 0 for both, l·x̃ = 0 in short.",
     stub='''def my_line_through(p, q):
-    """Give the line (3,) through the points p and q, (2,) each."""
+    """Return the line (3,) through the points p and q, (2,) each."""
     ...''',
     hints=(
         "l is perpendicular to both homogeneous points, as vectors of three numbers.",
@@ -78,100 +121,9 @@ LINE = Exercise(
             about="vertical",
         ),
     ),
-    misconceptions=(
-        Misconception(
-            "lifted with 0",
-            "You lifted the points with 0, as directions: their line is the line at infinity. "
-            "Points get a 1.",
-            lambda p, q: np.cross([*p, 0], [*q, 0]),
-        ),
-        Misconception(
-            "upright lines left out",
-            "Right where the line has a slope. An upright line has none: y = m x + c cannot "
-            "express it, the cross product of the lifted points can.",
-            _slope_form,
-        ),
-        Misconception(
-            "sign of the constant",
-            "The direction is right but the constant has the wrong sign: from y = m x + c follows "
-            "m x − y + c = 0.",
-            lambda p, q: _slope_form(p, q, sign=1.0),
-        ),
-        Misconception(
-            "direction taken for the normal",
-            "(a, b) is perpendicular to the line, not along it: turn q − p by 90°.",
-            lambda p, q: np.array([*(q - p), -(q - p) @ p]),
-        ),
-        Misconception(
-            "difference of the points",
-            "q̃ − p̃ is the point at infinity on the line, its direction, and not the line.",
-            lambda p, q: np.array([*(q - p), 0.0]),
-        ),
-        Misconception(
-            "x and y exchanged",
-            "Your line goes through (y, x) of both points: a belongs to x, b to y.",
-            lambda p, q: np.cross([*p[::-1], 1], [*q[::-1], 1]),
-        ),
-        Misconception(
-            "sign of b",
-            (
-                "Your b has the wrong sign: the second entry of the cross product is q_x − p_x, "
-                "if the first is p_y − q_y."
-            ),
-            lambda p, q: line_through(p, q) * [1, -1, 1],
-        ),
-        Misconception(
-            "entry by entry",
-            "p̃ * q̃ multiplies entry by entry; perpendicular to both is their cross product.",
-            lambda p, q: np.array([*(p * q), 1.0]),
-        ),
-        Misconception(
-            "sum of the points",
-            "p̃ + q̃ is a point, halfway between both, and not the line.",
-            lambda p, q: np.array([*(p + q), 2.0]),
-        ),
-        Misconception(
-            "constant left out",
-            "Your line has the right direction but goes through pixel (0, 0): c is missing.",
-            lambda p, q: line_through(p, q) * [1, 1, 0],
-        ),
-        Misconception(
-            "slope and intercept",
-            "That is m and c of y = m x + c, which no upright line has. Asked are three numbers: "
-            "m x − y + c = 0.",
-            _slope_and_intercept,
-            variants=(lambda p, q: _swapped(_slope_and_intercept(p, q)),),
-        ),
-        Misconception(
-            "sign of c",
-            "Your c has the wrong sign: a and b are right, and a x + b y = −c for both points.",
-            lambda p, q: line_through(p, q) * [1, 1, -1],
-        ),
-        Misconception(
-            "sign of a",
-            "Your a has the wrong sign: it is p_y − q_y, if b is q_x − p_x.",
-            lambda p, q: line_through(p, q) * [-1, 1, 1],
-        ),
-        Misconception(
-            "constant of one coordinate",
-            "Your c has only one of its two parts: c = −(a x + b y).",
-            lambda p, q: _with_constant(p, q, [1, 0]),
-            variants=(lambda p, q: _with_constant(p, q, [0, 1]),),
-        ),
-        Misconception(
-            "normal not turned",
-            "Your c is right, but your (a, b) is q − p, along the line: turn it by 90°.",
-            lambda p, q: np.array([*(q - p), line_through(p, q)[2]]),
-        ),
-        Misconception(
-            "Euclidean cross product",
-            "You crossed the points as they are, with two coordinates, which gives one number: "
-            "lift them first.",
-            lambda p, q: p[0] * q[1] - p[1] * q[0],
-            variants=(lambda p, q: q[0] * p[1] - q[1] * p[0],),
-        ),
-    ),
+    misconceptions=MISTAKES,
     reference=line_through,
+    steps=_steps,
     same=up_to_scale,
     concepts=("2", "12"),
     sources=(line_through, join),

@@ -3,11 +3,14 @@
 # A mistake is often an argument that was left out.
 # ruff: noqa: ARG005
 
+from typing import Any
+
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.camera import focal_length
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def _perpendicular(rng: Rng) -> list[Case]:
@@ -20,6 +23,47 @@ def _perpendicular(rng: Rng) -> list[Case]:
     return [Case(by_hand), Case((v1, v2, centre))]
 
 
+def _steps(v1: Array, v2: Array, centre: Array) -> Any:
+    a = v1 - centre  # v1 measured from the principal point
+    b = v2 - centre  # v2 measured from the principal point
+    f2 = -(a @ b)  # f², minus the dot product
+    return np.sqrt(f2)
+
+
+MISTAKES = mistakes(
+    ("sign under the root",
+     "The root of a negative number is NaN. Measured from the principal point the dot "
+     "product of the two is negative.",
+     lambda v1, v2, centre: np.sqrt((v1 - centre) @ (v2 - centre))),
+    ("sign and root",
+     "Sign and root are missing: the number is the square of what is asked, with a minus.",
+     lambda v1, v2, centre: (v1 - centre) @ (v2 - centre)),
+    ("lengths for the dot product",
+     "You took lengths, of one or both; the dot product of the two vectors is another "
+     "number, unless they point along one line.",
+     lambda v1, v2, centre: np.sqrt(np.linalg.norm(v1 - centre) * np.linalg.norm(v2 - centre)),
+     lambda v1, v2, centre: np.linalg.norm(v1 - centre),
+     lambda v1, v2, centre: np.linalg.norm(v2 - centre),
+     lambda v1, v2, centre: (np.linalg.norm(v1 - centre) + np.linalg.norm(v2 - centre)) / 2),
+    ("half the distance",
+     "That is a distance between points of the picture. It depends on how the box stands, f "
+     "does not.",
+     lambda v1, v2, centre: np.linalg.norm(v1 - v2) / 2,
+     lambda v1, v2, centre: np.linalg.norm(v1 - v2),
+     lambda v1, v2, centre: np.linalg.norm((v1 + v2) / 2 - centre)),
+    ("columns only", "The dot product adds what the columns give and what the rows give.",
+     lambda v1, v2, centre: np.sqrt(-(v1 - centre)[0] * (v2 - centre)[0]),
+     lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre)[1] * (v2 - centre)[1])),
+     lambda v1, v2, centre: np.sqrt(np.abs(np.subtract(*(v1 - centre) * (v2 - centre))))),
+    ("centre added", "You added the principal point; measure from it.",
+     lambda v1, v2, centre: np.sqrt(np.abs((v1 + centre) @ (v2 + centre)))),
+    ("cross product",
+     "You took the cross product, which is 0 for parallel vectors; these are perpendicular.",
+     lambda v1, v2, centre: np.sqrt(np.abs(np.linalg.det([v1 - centre, v2 - centre]))),
+     lambda v1, v2, centre: np.linalg.det([v1 - centre, v2 - centre])),
+)  # fmt: skip
+
+
 FOCAL = Exercise(
     name="focal_from_vanishing_points",
     chapter=2,
@@ -28,7 +72,7 @@ FOCAL = Exercise(
     "`centre`, from the vanishing points v1 and v2 of two perpendicular directions, shape (2,) "
     "each.",
     stub='''def my_focal_from_vanishing_points(v1, v2, centre):
-    """Give f in pixels."""
+    """Return f in pixels."""
     ...''',
     hints=(
         "Measured from the principal point, v = f (a/c, b/c): the ray of v is (v − centre, f).",
@@ -45,106 +89,8 @@ FOCAL = Exercise(
         ),
         Property("f is positive.", lambda f, _: bool(f > 0)),
     ),
-    misconceptions=(
-        Misconception(
-            "principal point forgotten",
-            "You took v1·v2 from pixel (0, 0); measure both from the principal point.",
-            lambda v1, v2, centre: np.sqrt(-v1 @ v2),
-            (lambda v1, v2, centre: np.sqrt(np.abs(v1 @ v2)),),
-        ),
-        Misconception(
-            "sign under the root",
-            "The root of a negative number is NaN. Measured from the principal point the dot "
-            "product of the two is negative, and f² is minus that.",
-            lambda v1, v2, centre: np.sqrt((v1 - centre) @ (v2 - centre)),
-        ),
-        Misconception(
-            "lengths multiplied",
-            "You multiplied the two distances from the principal point; it is the dot product, "
-            "which is the same only if both points lie on one line with the principal point.",
-            lambda v1, v2, centre: np.sqrt(
-                np.linalg.norm(v1 - centre) * np.linalg.norm(v2 - centre)
-            ),
-        ),
-        Misconception(
-            "half the distance",
-            "That is half the distance between v1 and v2, the radius of the sphere over them. "
-            "The camera's centre lies on that sphere, but f is its height above the picture.",
-            lambda v1, v2, centre: np.linalg.norm(v1 - v2) / 2,
-        ),
-        Misconception(
-            "the distance itself",
-            "That is how far apart the two vanishing points are. It depends on how the box "
-            "stands, f does not.",
-            lambda v1, v2, centre: np.linalg.norm(v1 - v2),
-        ),
-        Misconception(
-            "columns only",
-            "You multiplied the columns only; the dot product has the rows too.",
-            lambda v1, v2, centre: np.sqrt(-(v1 - centre)[0] * (v2 - centre)[0]),
-        ),
-        Misconception(
-            "one point measured from pixel 0",
-            "Only one of the two vanishing points is measured from the principal point.",
-            lambda v1, v2, centre: np.sqrt(-(v1 - centre) @ v2),
-            variants=(lambda v1, v2, centre: np.sqrt(-v1 @ (v2 - centre)),),
-        ),
-        Misconception(
-            "entry by entry",
-            "* multiplies entry by entry and gives two numbers; the dot product is (v1 − centre) "
-            "@ (v2 − centre).",
-            lambda v1, v2, centre: np.sqrt(-(v1 - centre) * (v2 - centre)),
-            variants=(
-                lambda v1, v2, centre: -(v1 - centre) * (v2 - centre),
-                lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre) * (v2 - centre))),
-            ),
-        ),
-        Misconception(
-            "rows only",
-            "You multiplied the rows only; the dot product has the columns too.",
-            lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre)[1] * (v2 - centre)[1])),
-        ),
-        Misconception(
-            "one distance alone",
-            "That is how far one vanishing point is from the principal point; f needs both.",
-            lambda v1, v2, centre: np.linalg.norm(v1 - centre),
-            variants=(lambda v1, v2, centre: np.linalg.norm(v2 - centre),),
-        ),
-        Misconception(
-            "mean of the distances",
-            "You took a mean of the two distances from the principal point; it is their dot "
-            "product that is −f².",
-            lambda v1, v2, centre: (np.linalg.norm(v1 - centre) + np.linalg.norm(v2 - centre)) / 2,
-        ),
-        Misconception(
-            "centre added",
-            "You added the principal point; measure from it: v − centre.",
-            lambda v1, v2, centre: np.sqrt(np.abs((v1 + centre) @ (v2 + centre))),
-        ),
-        Misconception(
-            "cross product",
-            "You took the cross product, which is 0 for parallel vectors; perpendicular rays have "
-            "a dot product of 0.",
-            lambda v1, v2, centre: np.sqrt(np.abs(np.linalg.det([v1 - centre, v2 - centre]))),
-            variants=(lambda v1, v2, centre: np.linalg.det([v1 - centre, v2 - centre]),),
-        ),
-        Misconception(
-            "sign and root",
-            "That is −f²: change the sign, then take the root.",
-            lambda v1, v2, centre: (v1 - centre) @ (v2 - centre),
-        ),
-        Misconception(
-            "distance from the middle",
-            "That is how far the principal point is from the middle between the two vanishing "
-            "points.",
-            lambda v1, v2, centre: np.linalg.norm((v1 + v2) / 2 - centre),
-        ),
-        Misconception(
-            "products subtracted",
-            "You subtracted one product from the other; the dot product adds both.",
-            lambda v1, v2, centre: np.sqrt(np.abs(np.subtract(*((v1 - centre) * (v2 - centre))))),
-        ),
-    ),
+    misconceptions=MISTAKES,
     reference=focal_length,
+    steps=_steps,
     concepts=("13", "20"),
 )

@@ -5,17 +5,17 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.pictures import rails_camera
 from cvnotes.learn.cases.slips import misreadings
-from cvnotes.learn.checker.equality import within
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.equality import within
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
 
 
 def where_the_rails_meet() -> Array:
-    """Give the pixel (2,) in which the rails meet: the vanishing point of z."""
+    """Return the pixel (2,) in which the rails meet: the vanishing point of z."""
     return rails_camera().vanishing_point([0, 0, 1])
 
 
 def _rail(side: int) -> Array:
-    """Give the pixel in which the rail on one side, −1 or 1, leaves the picture below."""
+    """Return the pixel in which the rail on one side, −1 or 1, leaves the picture below."""
     end, near = where_the_rails_meet(), rails_camera().project([750.0 * side, 1600.0, 9000.0])
     return np.asarray(end + (near - end) * (479 - end[1]) / (near[1] - end[1]))
 

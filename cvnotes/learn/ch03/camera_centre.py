@@ -3,17 +3,46 @@
 # A mistake is often an argument that was left out.
 # ruff: noqa: ARG005
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, pose
 from cvnotes.learn.cases.cameras import ABOUT_Y, some_pose
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
 
 
 def camera_centre(R: Array, T: Array) -> Array:
-    """Give the camera's position in the world, (3,)."""
+    """Return the camera's position in the world, (3,)."""
     return Camera(np.eye(3), pose(R, T)).centre
+
+
+def _steps(R: Array, T: Array) -> Any:
+    B = R.T  # the rotation back into the world
+    return -B @ T
+
+
+MISTAKES = mistakes(
+    ("T itself",
+     "T is where the world's origin is seen from the camera, not where the camera stands. It"
+     " is the most frequent confusion of all.",
+     lambda R, T: T),
+    ("minus T",
+     "−T would be the position if the camera were not rotated; it is still in the camera's "
+     "frame. Turn it into the world's.",
+     lambda R, T: -T),
+    ("rotated the wrong way",
+     "R leads from the world to the camera; the way back needs its inverse, and a sign.",
+     lambda R, T: -R @ T, lambda R, T: R @ T),
+    ("an axis for the centre",
+     "That is an axis, of the camera or of the world, seen from the other; the centre "
+     "follows from T.",
+     lambda R, T: R[2], lambda R, T: R[:, 2]),
+    ("T added to the centre",
+     "You added T to the centre, or subtracted it; it has been used already.",
+     lambda R, T: -R.T @ T - T, lambda R, T: T - R.T @ T),
+)  # fmt: skip
 
 
 CENTRE = Exercise(
@@ -22,7 +51,7 @@ CENTRE = Exercise(
     title="Where the camera stands",
     task="Give the camera's centre in the world, shape (3,), from R and T.",
     stub='''def my_camera_centre(R, T):
-    """Give the camera's centre (3,) in the WRF."""
+    """Return the camera's centre (3,) in the WRF."""
     ...''',
     hints=(
         "In the camera's own frame its centre is (0, 0, 0).",
@@ -41,73 +70,9 @@ CENTRE = Exercise(
             ),
         ),
     ),
-    misconceptions=(
-        Misconception(
-            "T itself",
-            "T is where the world's origin is seen from the camera, not where the camera stands. "
-            "It is the most frequent confusion of all.",
-            lambda R, T: T,
-        ),
-        Misconception(
-            "minus T",
-            "−T would be the position if the camera were not rotated; it is still in the "
-            "camera's frame. Turn it into the world's.",
-            lambda R, T: -T,
-        ),
-        Misconception(
-            "sign lost",
-            "The direction is right, the sign is not: R C = −T.",
-            lambda R, T: R.T @ T,
-        ),
-        Misconception(
-            "rotated the wrong way",
-            "You used R where its inverse belongs: from R C = −T follows C = −Rᵀ T.",
-            lambda R, T: -R @ T,
-        ),
-        Misconception(
-            "rotated the wrong way, sign lost",
-            "You gave R T: from R C + T = 0 follows C = −Rᵀ T.",
-            lambda R, T: R @ T,
-        ),
-        Misconception(
-            "divided entry by entry",
-            "/ divides entry by entry; R C = −T is solved by the inverse of R, its transpose.",
-            lambda R, T: -T / R,
-            variants=(lambda R, T: T / R,),
-        ),
-        Misconception(
-            "the camera's z axis",
-            "That is the camera's z axis, seen in the world; its centre follows from T.",
-            lambda R, T: R[2],
-        ),
-        Misconception(
-            "T added to the centre",
-            "You added T to the centre, or subtracted it: C = −Rᵀ T is all.",
-            lambda R, T: -R.T @ T - T,
-            variants=(lambda R, T: T - R.T @ T,),
-        ),
-        Misconception(
-            "the origin",
-            "(0, 0, 0) is the centre in the camera's own frame; asked is where it is in the world.",
-            lambda R, T: np.zeros(3),
-        ),
-        Misconception(
-            "the world's z axis",
-            "R[:, 2] is the world's z axis, seen by the camera; its centre follows from T.",
-            lambda R, T: R[:, 2],
-        ),
-        Misconception(
-            "R * T",
-            "* multiplies entry by entry; the product of a matrix and a vector is R.T @ T.",
-            lambda R, T: -R.T * T,
-            variants=(
-                lambda R, T: -R * T,
-                lambda R, T: R * T,
-                lambda R, T: R.T * T,
-            ),
-        ),
-    ),
+    misconceptions=MISTAKES,
     reference=camera_centre,
+    steps=_steps,
     concepts=("22", "24", "E11"),
     sources=(Camera.centre,),
 )

@@ -1,7 +1,6 @@
 """Through the lens."""
 
-# A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
+from typing import Any
 
 import numpy as np
 
@@ -9,11 +8,11 @@ from cvnotes.base import Array
 from cvnotes.camera import Lens
 from cvnotes.camera.lens import horner, radial_factor
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def distort(xy: Array, k: Array, p: Array) -> Array:
-    """Give where a lens with k (2,) and p (2,) shows ideal points (n, 2)."""
+    """Return where a lens with k (2,) and p (2,) shows ideal points (n, 2)."""
     return Lens(tuple(k), tuple(p)).distort(xy)
 
 
@@ -40,6 +39,56 @@ def _with_r2(xy: Array, k: Array, p: Array, r2: Array) -> Array:
     return np.asarray(xy * (1 + k[0] * r2 + k[1] * r2**2) + _through(xy, 0 * xy, p))
 
 
+def _steps(xy: Array, k: Array, p: Array) -> Any:
+    x, y = xy.T
+    r2 = x**2 + y**2  # r²
+    L = 1 + k[0] * r2 + k[1] * r2**2  # the radial factor L
+    dx = 2 * p[0] * x * y + p[1] * (r2 + 2 * x**2)  # the tangential term of x
+    dy = p[0] * (r2 + 2 * y**2) + 2 * p[1] * x * y  # the tangential term of y
+    return np.stack([L * x + dx, L * y + dy], axis=1)
+
+
+MISTAKES = mistakes(
+    ("r for r²", "L is a polynomial in r², and you have r.",
+     lambda xy, k, p: _through(xy, 1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy ** 2).sum(1,
+         keepdims=True), p),
+     lambda xy, k, p: _through(xy, 1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy ** 2).sum(1)[:,
+         None] ** 2, p)),
+    ("the way back",
+     "That is the way back, from where points are seen to where they should be; the lens "
+     "multiplies by L.",
+     lambda xy, k, p: _through(xy, 1 / lens_factor(xy, k), p),
+     lambda xy, k, p: Lens(tuple(k), tuple(p)).undistort(xy)),
+    ("L added", "You added L to the coordinates: it multiplies them.",
+     lambda xy, k, p: xy + lens_factor(xy, k) + _through(xy, 0 * xy, p),
+     lambda xy, k, p: xy + lens_factor(xy, k) - 1 + _through(xy, 0 * xy, p)),
+    ("factor 2 lost everywhere",
+     "The tangential terms have factors 2, before x y and before the squares; both are "
+     "missing.",
+     lambda xy, k, p: _through(xy, lens_factor(xy, k), p, factor=1.0, crossed=1.0)),
+    ("tangential terms of the moved point",
+     "The tangential terms are those of the ideal point, and L does not multiply them.",
+     lambda xy, k, p: lens_factor(xy, k) * _through(xy, np.ones((len(xy), 1)), p),
+     lambda xy, k, p: _through(xy * lens_factor(xy, k), np.ones((len(xy), 1)), p)),
+    ("tangential terms exchanged",
+     "In the tangential terms something of x stands in y, or of y in x.",
+     lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, ::-1],
+     lambda xy, k, p: _through(xy, lens_factor(xy, k), p) + 2 * (xy[:, ::-1] ** 2 - xy ** 2) *
+         p[::-1], lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, :1],
+     lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, 1:],
+     lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p).sum(1)[:, None]),
+    ("r² of one coordinate", "r² is the sum of both squares, and the same for x and y.",
+     lambda xy, k, p: _with_r2(xy, k, p, xy[:, :1] ** 2),
+     lambda xy, k, p: _with_r2(xy, k, p, xy[:, 1:] ** 2),
+     lambda xy, k, p: _with_r2(xy, k, p, xy ** 2),
+     lambda xy, k, p: xy * (1 + k[0] * xy ** 2 + k[1] * xy ** 4) + _through(xy, 0 * xy, p)),
+    ("one r² for all points",
+     "You summed over all points: each has an r² of its own, along its row.",
+     lambda xy, k, p: xy * lens_factor(xy.reshape(1, -1), k) + _through(xy, 0 * xy, p),
+     lambda xy, k, p: _with_r2(xy, k, p, (xy ** 2).sum(0))),
+)  # fmt: skip
+
+
 DISTORT = Exercise(
     name="distort",
     chapter=4,
@@ -47,7 +96,7 @@ DISTORT = Exercise(
     task="Give where a lens with radial coefficients k = (k1, k2) and tangential ones "
     "p = (p1, p2) shows ideal points xy (n, 2) of the plane z = 1.",
     stub='''def my_distort(xy, k, p):
-    """Give the points (n, 2) that a lens makes of ideal points xy (n, 2)."""
+    """Return the points (n, 2) that a lens makes of ideal points xy (n, 2)."""
     ...''',
     hints=(
         "r² = x² + y², and L = 1 + k1 r² + k2 r⁴ multiplies both coordinates.",
@@ -62,175 +111,9 @@ DISTORT = Exercise(
         ),
         Property("With them it is what the notes' formula says."),
     ),
-    misconceptions=(
-        Misconception(
-            "factor 2 lost on the mixed term",
-            "The mixed terms are 2 p1 x y and 2 p2 x y: your factor 2 is missing.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, k), p, crossed=1.0),
-        ),
-        Misconception(
-            "factor 2 lost on the square",
-            "The tangential terms have r² + 2x² and r² + 2y²: your factor 2 is missing.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, k), p, factor=1.0),
-        ),
-        Misconception(
-            "factor 2 lost everywhere",
-            "The tangential terms have a factor 2 before x y and before x² and y²; both are "
-            "missing.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, k), p, factor=1.0, crossed=1.0),
-        ),
-        Misconception(
-            "p1 and p2 exchanged",
-            "p1 and p2 are exchanged: p2 goes with r² + 2x² in x, p1 with r² + 2y² in y.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, k), p[::-1]),
-        ),
-        Misconception(
-            "tangential terms left out",
-            "The radial part is right; the tangential terms are missing.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, k), 0 * p),
-        ),
-        Misconception(
-            "r for r²",
-            "You used r and r² where L has r² and r⁴: only even powers.",
-            lambda xy, k, p: _through(
-                xy,
-                1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy**2).sum(1, keepdims=True),
-                p,
-            ),
-        ),
-        Misconception(
-            "both coefficients with r²",
-            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, np.array([k.sum(), 0.0])), p),
-        ),
-        Misconception(
-            "divided by L",
-            "You divided by L: that is about the way back. The lens multiplies.",
-            lambda xy, k, p: _through(xy, 1 / lens_factor(xy, k), p),
-        ),
-        Misconception(
-            "the 1 of L left out",
-            "L starts with 1: without distortion nothing moves. You gave the displacement only.",
-            lambda xy, k, p: _through(xy, lens_factor(xy, k) - 1, p),
-        ),
-        Misconception(
-            "r⁶ for r⁴",
-            "k2 belongs to r⁴, which is (r²)²; you have r⁶.",
-            lambda xy, k, p: _through(
-                xy, 1 + k[0] * (xy**2).sum(1)[:, None] + k[1] * (xy**2).sum(1)[:, None] ** 3, p
-            ),
-        ),
-        Misconception(
-            "r² lost in the tangential terms",
-            "The tangential terms have r² + 2x² and r² + 2y²: your r² is missing.",
-            lambda xy, k, p: (
-                _through(xy, lens_factor(xy, k), p) - (xy**2).sum(1)[:, None] * p[::-1]
-            ),
-        ),
-        Misconception(
-            "x² and y² exchanged",
-            "p2 goes with r² + 2x² in x, p1 with r² + 2y² in y: your squares are exchanged.",
-            lambda xy, k, p: (
-                _through(xy, lens_factor(xy, k), p) + 2 * (xy[:, ::-1] ** 2 - xy**2) * p[::-1]
-            ),
-        ),
-        Misconception(
-            "tangential terms multiplied by L",
-            "L multiplies x and y only; the tangential terms are added afterwards.",
-            lambda xy, k, p: lens_factor(xy, k) * _through(xy, np.ones((len(xy), 1)), p),
-        ),
-        Misconception(
-            "tangential terms of the moved point",
-            ("The tangential terms are those of the ideal point, not of the one that L has moved."),
-            lambda xy, k, p: _through(xy * lens_factor(xy, k), np.ones((len(xy), 1)), p),
-        ),
-        Misconception(
-            "tangential part alone",
-            "The radial part is missing: L multiplies x and y.",
-            lambda xy, k, p: _through(xy, np.ones((len(xy), 1)), p),
-        ),
-        Misconception(
-            "L added",
-            "You added L to the coordinates: it multiplies them.",
-            lambda xy, k, p: xy + lens_factor(xy, k) + _through(xy, 0 * xy, p),
-            variants=(lambda xy, k, p: xy + lens_factor(xy, k) - 1 + _through(xy, 0 * xy, p),),
-        ),
-        Misconception(
-            "tangential terms exchanged",
-            "The tangential terms of x stand in y and those of y in x.",
-            lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, ::-1],
-        ),
-        Misconception(
-            "r² of one coordinate",
-            "r² = x² + y²: you took one of the two squares.",
-            lambda xy, k, p: _with_r2(xy, k, p, xy[:, :1] ** 2),
-            variants=(lambda xy, k, p: _with_r2(xy, k, p, xy[:, 1:] ** 2),),
-        ),
-        Misconception(
-            "each coordinate by itself",
-            "You used x² in the x and y² in the y: r² = x² + y² belongs to both.",
-            lambda xy, k, p: _with_r2(xy, k, p, xy**2),
-            variants=(
-                lambda xy, k, p: xy * (1 + k[0] * xy**2 + k[1] * xy**4) + _through(xy, 0 * xy, p),
-            ),
-        ),
-        Misconception(
-            "one r² for all points",
-            "You summed over all points: each has an r² of its own, axis=1.",
-            lambda xy, k, p: xy * lens_factor(xy.reshape(1, -1), k) + _through(xy, 0 * xy, p),
-        ),
-        Misconception(
-            "k2 with r² squared twice",
-            "k2 belongs to r⁴ = (r²)²; you squared once more.",
-            lambda xy, k, p: (
-                _with_r2(xy, k * [1, 0], p, (xy**2).sum(1)[:, None])
-                + k[1] * xy * (xy**2).sum(1)[:, None] ** 4
-            ),
-        ),
-        Misconception(
-            "k1 with r",
-            "k1 belongs to r²; you have r.",
-            lambda xy, k, p: _through(
-                xy, 1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy**2).sum(1)[:, None] ** 2, p
-            ),
-        ),
-        Misconception(
-            "undistorted",
-            "That is the way back, from where points are seen to where they should be.",
-            lambda xy, k, p: Lens(tuple(k), tuple(p)).undistort(xy),
-        ),
-        Misconception(
-            "r² + 2x² for both",
-            "p1 goes with r² + 2y² in y: you have x² in both.",
-            lambda xy, k, p: (
-                _through(xy, lens_factor(xy, k), p)
-                + 2 * np.column_stack([0 * xy[:, 0], p[0] * (xy[:, 0] ** 2 - xy[:, 1] ** 2)])
-            ),
-            variants=(
-                lambda xy, k, p: (
-                    _through(xy, lens_factor(xy, k), p)
-                    + 2 * np.column_stack([p[1] * (xy[:, 1] ** 2 - xy[:, 0] ** 2), 0 * xy[:, 0]])
-                ),
-            ),
-        ),
-        Misconception(
-            "columns for rows",
-            "You summed x² over all points, and y²: r² = x² + y² of each point is a sum along its "
-            "row, axis=1.",
-            lambda xy, k, p: _with_r2(xy, k, p, (xy**2).sum(0)),
-        ),
-        Misconception(
-            "one tangential term for both",
-            "You added the same tangential term to x and to y: p2 (r² + 2x²) belongs to x, p1 (r² "
-            "+ 2y²) to y.",
-            lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, :1],
-            variants=(
-                lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, 1:],
-                lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p).sum(1)[:, None],
-            ),
-        ),
-    ),
+    misconceptions=MISTAKES,
     reference=distort,
+    steps=_steps,
     concepts=("28", "29", "31", "32", "E14", "E15"),
     sources=(Lens.distort, radial_factor, horner),
 )

@@ -3,6 +3,8 @@
 # A mistake is often an argument that was left out.
 # ruff: noqa: ARG005
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -18,11 +20,12 @@ from cvnotes.learn.cases.cameras import (
     some_lens,
     some_pose,
 )
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def form_image(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array:
-    """Give the pixels (n, 2) of world points (n, 3), through a lens with k (2,)."""
+    """Return the pixels (n, 2) of world points (n, 3), through a lens with k (2,)."""
     return Camera(A, pose(R, T), Lens(tuple(k))).project(W)
 
 
@@ -75,6 +78,63 @@ def _on_sphere(M: Array, k: Array) -> Array:
     return np.asarray(xy * lens_factor(xy, k))
 
 
+def _steps(A: Array, R: Array, T: Array, k: Array, W: Array) -> Any:
+    M = W @ R.T + T  # the points in the camera's frame
+    xy = M[:, :2] / M[:, 2:]  # the ideal points, in the plane z = 1
+    r2 = (xy**2).sum(axis=1, keepdims=True)  # r²
+    L = 1 + k[0] * r2 + k[1] * r2**2  # the radial factor L
+    bent = L * xy  # the points as the lens bends them
+    return bent @ A[:2, :2].T + A[:2, 2]
+
+
+MISTAKES = mistakes(
+    ("lens before the division",
+     "You distorted before dividing by z: r is then in millimetres. The lens acts on x/z and"
+     " y/z.",
+     _lens_before_division),
+    ("lens after the pixels",
+     "You distorted the pixels themselves, about pixel (0, 0). The lens acts before the "
+     "sensor.",
+     _lens_after_pixels),
+    ("radius in pixels",
+     "You distorted about (u0, v0), which is right, but with r in pixels. k1 and k2 belong "
+     "to the r of the plane z = 1.",
+     _radius_in_pixels),
+    ("the way back", "You undid the lens, as a correction does. Image formation distorts.",
+     lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W) / lens_factor(_ideal(R, T, W), k)),
+     lambda A, R, T, k, W: _pixels(A, Lens(tuple(k)).undistort(_ideal(R, T, W)))),
+    ("T taken for the camera's position",
+     "You used R and T as if they said where the camera stands; they lead from the world to "
+     "the camera.",
+     lambda A, R, T, k, W: _pixels(A, _bent(R, -R @ T, k, W)),
+     lambda A, R, T, k, W: _pixels(A, _bent(R.T, -R.T @ T, k, W))),
+    ("T subtracted", "T has the wrong sign: which way does it lead?",
+     edited(_steps, "+ T", "- T")),
+    ("T added before the rotation", "T is added after the rotation, in the camera's frame.",
+     lambda A, R, T, k, W: _pixels(A, _bent(R, R @ T, k, W))),
+    ("pose left out",
+     "You took W as if it were given in the camera's frame; R and T take it there.",
+     lambda A, R, T, k, W: _pixels(A, _bent(np.eye(3), 0 * T, k, W))),
+    ("no division",
+     "The division by the depth is missing, or comes too late: the lens acts on ideal "
+     "points.",
+     lambda A, R, T, k, W: _pixels(A, (W @ R.T + T)[:, :2] * lens_factor((W @ R.T + T)[:, :2], k)),
+     lambda A, R, T, k, W: _pixels(A, (W @ R.T + T)[:, :2])),
+    ("divided by the distance",
+     "You divided by the distance; depth is the z of the camera's frame.",
+     lambda A, R, T, k, W: _pixels(A, _on_sphere(W @ R.T + T, k))),
+    ("another radius",
+     "That is not the radius of the lens: it takes r² of the ideal point, on the plane z = "
+     "1.",
+     lambda A, R, T, k, W: _pixels(A, _by_r(_ideal(R, T, W), k)),
+     lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W) * lens_factor(W[:, :2], k)),
+     lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W) * lens_factor((W @ R.T + T) / (W @ R.T +
+         T)[:, 2:], k))),
+    ("lens twice", "You applied the lens twice.",
+     lambda A, R, T, k, W: _pixels(A, _bent(R, T, k, W) * lens_factor(_bent(R, T, k, W), k))),
+)  # fmt: skip
+
+
 FORM = Exercise(
     name="form_image",
     chapter=4,
@@ -82,7 +142,7 @@ FORM = Exercise(
     task="Give the pixels (n, 2) of world points W (n, 3), through a lens with k = (k1, k2), for a "
     "camera with A, R and T. All points are in front of it.",
     stub='''def my_form_image(A, R, T, k, W):
-    """Give the pixels (n, 2) of world points W (n, 3)."""
+    """Return the pixels (n, 2) of world points W (n, 3)."""
     ...''',
     hints=(
         "Four steps, in this order: into the camera's frame, divide by z, lens, sensor.",
@@ -91,134 +151,9 @@ FORM = Exercise(
     ),
     cases=_photographs,
     properties=(Property("Every point is where the four steps, in their order, put it."),),
-    misconceptions=(
-        Misconception(
-            "lens left out",
-            "These are the pixels of an ideal lens: the third step is missing.",
-            lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W)),
-        ),
-        Misconception(
-            "lens before the division",
-            "You distorted before dividing by z: r is then in millimetres. The lens acts on "
-            "x/z and y/z.",
-            _lens_before_division,
-        ),
-        Misconception(
-            "lens after the pixels",
-            "You distorted the pixels themselves, about pixel (0, 0). The lens acts before the "
-            "sensor, on x/z and y/z.",
-            _lens_after_pixels,
-        ),
-        Misconception(
-            "radius in pixels",
-            "You distorted about (u0, v0), which is right, but with r in pixels. k1 and k2 belong "
-            "to the r of the plane z = 1.",
-            _radius_in_pixels,
-        ),
-        Misconception(
-            "the way back",
-            "You divided by L. The lens multiplies: image formation distorts, correction "
-            "undistorts.",
-            lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W) / lens_factor(_ideal(R, T, W), k)),
-        ),
-        Misconception(
-            "T taken for the camera's position",
-            "You used R (W − T), as if the camera stood at T: M = R W + T.",
-            lambda A, R, T, k, W: _pixels(A, _bent(R, -R @ T, k, W)),
-        ),
-        Misconception(
-            "no pixels yet",
-            "These are x' and y' on the plane z = 1: the sensor's A is missing.",
-            lambda A, R, T, k, W: _ideal(R, T, W) * lens_factor(_ideal(R, T, W), k),
-        ),
-        Misconception(
-            "rotation transposed",
-            "W @ R applies Rᵀ to points that are rows: W @ R.T.",
-            lambda A, R, T, k, W: form_image(A, R.T, T, k, W),
-        ),
-        Misconception(
-            "T subtracted",
-            "You subtracted T: M = R W + T.",
-            lambda A, R, T, k, W: _pixels(A, _bent(R, -T, k, W)),
-        ),
-        Misconception(
-            "both coefficients with r²",
-            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
-            lambda A, R, T, k, W: form_image(A, R, T, np.array([k.sum(), 0]), W),
-        ),
-        Misconception(
-            "u and v exchanged",
-            "You gave (v, u), row before column; pixels are (u, v) here.",
-            lambda A, R, T, k, W: form_image(A, R, T, k, W)[:, ::-1],
-        ),
-        Misconception(
-            "principal point left out",
-            "u0 and v0 are missing: your pixels are measured from the principal point.",
-            lambda A, R, T, k, W: form_image(A, R, T, k, W) - A[:2, 2],
-        ),
-        Misconception(
-            "pose left out",
-            "You took W as if it were given in the camera's frame; R and T take it there.",
-            lambda A, R, T, k, W: _pixels(A, _bent(np.eye(3), 0 * T, k, W)),
-        ),
-        Misconception(
-            "no division",
-            "You did not divide by z: the lens acts on x/z and y/z.",
-            lambda A, R, T, k, W: _pixels(
-                A, (W @ R.T + T)[:, :2] * lens_factor((W @ R.T + T)[:, :2], k)
-            ),
-            variants=(lambda A, R, T, k, W: _pixels(A, (W @ R.T + T)[:, :2]),),
-        ),
-        Misconception(
-            "R and T taken for the camera's own pose",
-            "You used Rᵀ (W − T), as if R and T said how the camera stands in the world: M = R W "
-            "+ T.",
-            lambda A, R, T, k, W: _pixels(A, _bent(R.T, -R.T @ T, k, W)),
-        ),
-        Misconception(
-            "T added before the rotation",
-            "You added T before rotating: M = R W + T, not R (W + T).",
-            lambda A, R, T, k, W: _pixels(A, _bent(R, R @ T, k, W)),
-        ),
-        Misconception(
-            "r for r²",
-            "You used r and r² where L has r² and r⁴.",
-            lambda A, R, T, k, W: _pixels(A, _by_r(_ideal(R, T, W), k)),
-        ),
-        Misconception(
-            "undistorted",
-            "You undid the lens, as a correction does. Image formation distorts: multiply by L.",
-            lambda A, R, T, k, W: _pixels(A, Lens(tuple(k)).undistort(_ideal(R, T, W))),
-        ),
-        Misconception(
-            "the 1 of L left out",
-            "L starts with 1: without distortion nothing moves.",
-            lambda A, R, T, k, W: _pixels(A, _bent(R, T, k, W) - _ideal(R, T, W)),
-        ),
-        Misconception(
-            "lens of the world's coordinates",
-            "You took r from the world's x and y; the lens acts in the camera, on x/z and y/z.",
-            lambda A, R, T, k, W: _pixels(A, _ideal(R, T, W) * lens_factor(W[:, :2], k)),
-        ),
-        Misconception(
-            "divided by the distance",
-            "You divided by the distance; depth is the z of the camera's frame.",
-            lambda A, R, T, k, W: _pixels(A, _on_sphere(W @ R.T + T, k)),
-        ),
-        Misconception(
-            "radius of three coordinates",
-            "r² = x² + y² on the plane z = 1; you added z² = 1 too.",
-            lambda A, R, T, k, W: _pixels(
-                A, _ideal(R, T, W) * lens_factor((W @ R.T + T) / (W @ R.T + T)[:, 2:], k)
-            ),
-        ),
-        Misconception(
-            "lens twice",
-            "You applied the lens twice.",
-            lambda A, R, T, k, W: _pixels(A, _bent(R, T, k, W) * lens_factor(_bent(R, T, k, W), k)),
-        ),
-    ),
+    misconceptions=MISTAKES,
     reference=form_image,
+    steps=_steps,
     concepts=("34", "35", "E13", "E16"),
     sources=(Camera.project, Lens.distort, px_from_xy),
 )

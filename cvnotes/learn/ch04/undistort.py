@@ -1,18 +1,17 @@
 """Back through the lens."""
 
-# A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
+from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
-from cvnotes.learn.checker.equality import close_to
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.equality import close_to
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
 
 
 def undistort(xy_lens: Array, k: Array) -> Array:
-    """Give the ideal points (n, 2) that a lens with k (2,) shows at xy_lens.
+    """Return the ideal points (n, 2) that a lens with k (2,) shows at xy_lens.
 
     Newton's method on the radius: r L(r) = r_lens. `Lens.undistort` starts it from a table, and
     watches over it near the fold.
@@ -86,7 +85,7 @@ def _subtracted(xy_lens: Array, k: Array, times: int) -> Array:
 
 
 def _nearly_there(xy: Array, case: Case) -> bool:
-    """Tell whether points are on the right rays, and near to where they belong."""
+    """Return whether points are on the right rays, and near to where they belong."""
     right = case.right
     across = xy[:, 0] * right[:, 1] - xy[:, 1] * right[:, 0]
     off = np.linalg.norm(xy - right, axis=1)
@@ -97,6 +96,46 @@ def _nearly_there(xy: Array, case: Case) -> bool:
     )
 
 
+def _steps(xy_lens: Array, k: Array) -> Any:
+    k1, k2 = k
+    s = np.linalg.norm(xy_lens, axis=1, keepdims=True)  # the radius at which each point is seen
+    r = s  # the first guess of the ideal radius
+    for _ in range(50):
+        r = r - (r + k1 * r**3 + k2 * r**5 - s) / (1 + 3 * k1 * r**2 + 5 * k2 * r**4)  # the radius
+    L = 1 + k1 * r**2 + k2 * r**4  # the radial factor L at the ideal radius
+    return xy_lens / L
+
+
+MISTAKES = mistakes(
+    ("nothing on the axis",
+     "Right, except for the point on the axis, where you divided 0 by 0: divide by L there "
+     "too, and not by r.",
+     lambda xy_lens, k: np.where(xy_lens.any(1)[:, None], undistort(xy_lens, k), np.nan)),
+    ("divided once",
+     "You divided by L at the radius that was seen. L is a function of the ideal radius, "
+     "which you now know better.",
+     lambda xy_lens, k: _divided(xy_lens, k, 1)),
+    ("distorted once more", "You distorted the points a second time: that leads on, not back.",
+     lambda xy_lens, k: xy_lens * lens_factor(xy_lens, k)),
+    ("signs of k changed",
+     "A lens with −k1 and −k2 undoes the distortion only roughly: the inverse of a "
+     "polynomial is no such polynomial.",
+     lambda xy_lens, k: xy_lens * lens_factor(xy_lens, -k)),
+    ("divided what was divided already",
+     "Each round divides xy_lens, what was seen, by L at the better radius. You divided the "
+     "last result again, which goes on for ever.",
+     lambda xy_lens, k: _divided_again(xy_lens, k, 2),
+     *(lambda xy_lens, k, n=n: _divided_again(xy_lens, k, n) for n in (5, 10, 20, 30, 50, 100))),
+    ("multiplied in each round",
+     "In each round you multiplied, or subtracted, where a division belongs.",
+     lambda xy_lens, k: _multiplied(xy_lens, k, 2),
+     *(lambda xy_lens, k, n=n: _multiplied(xy_lens, k, n) for n in (5, 10, 20, 30, 50, 100))),
+    ("r for r²", "L is a polynomial in r², with r⁴ in its last term; you have other powers.",
+     lambda xy_lens, k: _with_r(xy_lens, k),
+     lambda xy_lens, k: undistort(xy_lens, np.array([k.sum(), 0.0]))),
+)  # fmt: skip
+
+
 UNDISTORT = Exercise(
     name="undistort",
     chapter=4,
@@ -104,7 +143,7 @@ UNDISTORT = Exercise(
     task="Give the ideal points (n, 2) that a lens with k = (k1, k2), and no tangential terms, "
     "shows at xy_lens (n, 2). There is no closed form: iterate until nothing changes any more.",
     stub='''def my_undistort(xy_lens, k):
-    """Give the ideal points (n, 2) seen at xy_lens (n, 2), to 1e-8."""
+    """Return the ideal points (n, 2) seen at xy_lens (n, 2), to 1e-8."""
     ...''',
     hints=(
         "You want xy with L(r) xy = xy_lens, where r is the radius of the xy you want.",
@@ -125,99 +164,15 @@ UNDISTORT = Exercise(
         Property("The point on the axis stays where it is.", about="on the axis"),
     ),
     misconceptions=(
-        Misconception(
-            "nothing on the axis",
-            "Right, except for the point on the axis, where you divided 0 by 0: divide by L(r), "
-            "which is 1 there, and not by r.",
-            lambda xy_lens, k: np.where(xy_lens.any(1)[:, None], undistort(xy_lens, k), np.nan),
-        ),
-        Misconception(
-            "divided once",
-            "You divided by L at the radius that was seen. L is a function of the ideal radius, "
-            "which you now know better: repeat.",
-            lambda xy_lens, k: _divided(xy_lens, k, 1),
-        ),
-        Misconception(
-            "divided twice",
-            "Two rounds are better than one and not enough yet: go on until nothing changes.",
-            lambda xy_lens, k: _divided(xy_lens, k, 2),
-        ),
-        Misconception(
-            "divided three times",
-            "Three rounds leave an error that can be seen in a picture's corner: go on until "
-            "nothing changes.",
-            lambda xy_lens, k: _divided(xy_lens, k, 3),
-        ),
-        Misconception(
-            "distorted once more",
-            "You distorted the points a second time: L(r) times a point leads to the observed "
-            "point, not back.",
-            lambda xy_lens, k: xy_lens * lens_factor(xy_lens, k),
-        ),
-        Misconception(
-            "signs of k changed",
-            "A lens with −k1 and −k2 undoes the distortion only roughly: the inverse of a "
-            "polynomial is no such polynomial.",
-            lambda xy_lens, k: xy_lens * lens_factor(xy_lens, -k),
-        ),
-        Misconception(
-            "nothing done",
-            "You gave the points back as they were seen.",
-            lambda xy_lens, k: xy_lens,
-        ),
-        Misconception(
-            "divided what was divided already",
-            (
-                "Each round divides xy_lens, what was seen, by L at the better radius. You "
-                "divided the last result again, which goes on for ever."
-            ),
-            lambda xy_lens, k: _divided_again(xy_lens, k, 2),
-            variants=(
-                *(
-                    lambda xy_lens, k, n=n: _divided_again(xy_lens, k, n)
-                    for n in (5, 10, 20, 30, 50, 100)
-                ),
-            ),
-        ),
-        Misconception(
-            "multiplied in each round",
-            "Each round divides by L; you multiplied.",
-            lambda xy_lens, k: _multiplied(xy_lens, k, 2),
-            variants=(
-                *(
-                    lambda xy_lens, k, n=n: _multiplied(xy_lens, k, n)
-                    for n in (5, 10, 20, 30, 50, 100)
-                ),
-            ),
-        ),
-        Misconception(
-            "r for r²",
-            "You used r and r² where L has r² and r⁴.",
-            lambda xy_lens, k: _with_r(xy_lens, k),
-        ),
-        Misconception(
-            "k1 and k2 exchanged",
-            "k1 goes with r², k2 with r⁴: they are exchanged.",
-            lambda xy_lens, k: undistort(xy_lens, k[::-1]),
-        ),
-        Misconception(
-            "both coefficients with r²",
-            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
-            lambda xy_lens, k: undistort(xy_lens, np.array([k.sum(), 0.0])),
-        ),
-        Misconception(
-            "ideal radius for the point",
-            "You gave the ideal radius r; asked is the point, xy_lens · r / r'.",
-            lambda xy_lens, k: np.linalg.norm(undistort(xy_lens, k), axis=1),
-        ),
+        *MISTAKES,
         Misconception(
             "a few rounds",
-            (
-                "Your way is right but stops too early: some rounds leave an error that is larger "
-                "than 1e-8. Go on until nothing changes."
-            ),
-            lambda xy_lens, k: _divided(xy_lens, k, 5),
+            "Your way is right but stops too early: some rounds leave an error that is larger "
+            "than 1e-8. Go on until nothing changes.",
+            lambda xy_lens, k: _divided(xy_lens, k, 2),
             variants=(
+                lambda xy_lens, k: _divided(xy_lens, k, 3),
+                lambda xy_lens, k: _divided(xy_lens, k, 5),
                 lambda xy_lens, k: _divided(xy_lens, k, 4),
                 lambda xy_lens, k: _divided(xy_lens, k, 6),
                 lambda xy_lens, k: _divided(xy_lens, k, 7),
@@ -232,6 +187,7 @@ UNDISTORT = Exercise(
         ),
     ),
     reference=undistort,
+    steps=_steps,
     same=close_to(1e-8),
     concepts=("29", "34", "69", "E13"),
 )

@@ -3,8 +3,8 @@
 from cvnotes.base import Array
 from cvnotes.learn.cases.pictures import turned_board
 from cvnotes.learn.cases.slips import misreadings
-from cvnotes.learn.checker.equality import within
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.equality import within
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
 
 
 def _corner(column: float, row: float) -> Array:
@@ -12,8 +12,34 @@ def _corner(column: float, row: float) -> Array:
 
 
 def first_corner() -> Array:
-    """Give the pixel (2,) of the board's first inner corner."""
+    """Return the pixel (2,) of the board's first inner corner."""
     return _corner(0, 0)
+
+
+MISTAKES = mistakes(
+    ("mirrored",
+     "That is the other corner beside a dark outer square, the end of the first row. With "
+     "the origin there, x and y would be a mirror image: y is clockwise from x.",
+     lambda: _corner(3, 0)),
+    ("half a turn",
+     "That is a corner of the last row. Its outer square is light; the one at the first "
+     "corner is dark.",
+     lambda: _corner(3, 2), lambda: _corner(0, 2)),
+    ("outer corner",
+     "Inner corners are those in which four squares meet; you are outside of them, at the "
+     "edge or in a square.",
+     lambda: _corner(-1, -1), lambda: _corner(-0.5, -0.5), lambda: _corner(4, -1),
+     lambda: _corner(-1, 3), lambda: _corner(4, 3), lambda: _corner(-1, 0),
+     lambda: _corner(0, -1)),
+    ("a neighbour",
+     "That is an inner corner, but not one of the four outermost: the first is at the end of"
+     " a row.",
+     lambda: _corner(1, 0), lambda: _corner(0, 1), lambda: _corner(1, 1), lambda: _corner(2, 0),
+     lambda: _corner(2, 1), lambda: _corner(3, 1), lambda: _corner(1, 2), lambda: _corner(2, 2)),
+    ("middle of the board",
+     "That is the middle of the board; its frame begins in the first corner.",
+     lambda: _corner(1.5, 1)),
+)  # fmt: skip
 
 
 FIRST = Exercise(
@@ -34,66 +60,7 @@ FIRST = Exercise(
     cases=lambda _: [Case(())],
     properties=(Property("It is the first corner, to within 4 pixels."),),
     misconceptions=(
-        Misconception(
-            "mirrored",
-            "That is the other corner beside a dark outer square, the end of the first row. With "
-            "the origin there, x and y would be a mirror image: y is clockwise from x.",
-            lambda: _corner(3, 0),
-        ),
-        Misconception(
-            "half a turn",
-            "That is the last corner. Its outer square is light; the one at the first corner is "
-            "dark.",
-            lambda: _corner(3, 2),
-        ),
-        Misconception(
-            "start of the last row",
-            "That is where the last row starts. Its outer square is light.",
-            lambda: _corner(0, 2),
-        ),
-        Misconception(
-            "outer corner",
-            "That is the outer corner of the dark square. Inner corners are those in which four "
-            "squares meet.",
-            lambda: _corner(-1, -1),
-        ),
-        Misconception(
-            "middle of the dark square",
-            "That is the middle of the dark square outside; the corner is where four squares meet.",
-            lambda: _corner(-0.5, -0.5),
-        ),
-        Misconception(
-            "a neighbour",
-            "That is an inner corner, but not one of the four outermost: the first is at the end "
-            "of a row.",
-            lambda: _corner(1, 0),
-            variants=(
-                lambda: _corner(0, 1),
-                lambda: _corner(1, 1),
-                lambda: _corner(2, 0),
-                lambda: _corner(2, 1),
-                lambda: _corner(3, 1),
-                lambda: _corner(1, 2),
-                lambda: _corner(2, 2),
-            ),
-        ),
-        Misconception(
-            "corner of the board's edge",
-            "That is an outer corner of a square at the edge of the board. Inner corners are "
-            "those in which four squares meet.",
-            lambda: _corner(4, -1),
-            variants=(
-                lambda: _corner(-1, 3),
-                lambda: _corner(4, 3),
-                lambda: _corner(-1, 0),
-                lambda: _corner(0, -1),
-            ),
-        ),
-        Misconception(
-            "middle of the board",
-            "That is the middle of the board; its frame begins in the first corner.",
-            lambda: _corner(1.5, 1),
-        ),
+        *MISTAKES,
         *misreadings(first_corner, (320, 240), 4.0),
     ),
     reference=first_corner,

@@ -3,15 +3,17 @@
 # A mistake is often an argument that was left out.
 # ruff: noqa: ARG005
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def harris_measure(Iu: Array, Iv: Array, k: float) -> float:
-    """Give det M − k (trace M)², where M sums the products of gradients over a window."""
+    """Return det M − k (trace M)², where M sums the products of gradients over a window."""
     uu, vv, uv = (Iu * Iu).sum(), (Iv * Iv).sum(), (Iu * Iv).sum()
     return float(uu * vv - uv**2 - k * (uu + vv) ** 2)
 
@@ -39,9 +41,62 @@ def _measure(uu: Array, vv: Array, uv: Array, k: float) -> Array:
     return uu * vv - uv**2 - k * (uu + vv) ** 2
 
 
-def _matrix(Iu: Array, Iv: Array) -> Array:
-    uu, vv, uv = _sums(Iu, Iv)
-    return np.array([[uu, uv], [uv, vv]])
+def _steps(Iu: Array, Iv: Array, k: float) -> Any:
+    uu = (Iu * Iu).sum()  # the sum of the squares of Iu
+    vv = (Iv * Iv).sum()  # the sum of the squares of Iv
+    uv = (Iu * Iv).sum()  # the sum of the mixed products
+    det = uu * vv - uv**2  # the determinant of M
+    trace = uu + vv  # the trace of M
+    return det - k * trace**2
+
+
+MISTAKES = mistakes(
+    ("sums before products",
+     "You summed the gradients before multiplying. Gradients of opposite sign then cancel; "
+     "multiply pixel by pixel, then sum.",
+     lambda Iu, Iv, k: harris_measure(Iu.sum(keepdims=True), Iv.sum(keepdims=True), k),
+     lambda Iu, Iv, k: _measure(Iu.sum() ** 2, Iv.sum() ** 2, (Iu * Iv).sum(), k)),
+    ("matrix product",
+     "You multiplied rows by columns, as matrices; here it is pixel by pixel.",
+     lambda Iu, Iv, k: _measure((Iu @ Iu).sum(), (Iv @ Iv).sum(), (Iu @ Iv).sum(), k),
+     lambda Iu, Iv, k: _measure(np.trace(Iu @ Iu), np.trace(Iv @ Iv), np.trace(Iu @ Iv), k)),
+    ("pixel by pixel",
+     "That measures single pixels, of which none is a corner: sum over the window first.",
+     lambda Iu, Iv, k: -k * ((Iu ** 2 + Iv ** 2) ** 2).sum(),
+     lambda Iu, Iv, k: harris_measure(Iu[:1, :1], Iv[:1, :1], k),
+     lambda Iu, Iv, k: harris_measure(Iu[-1:, -1:], Iv[-1:, -1:], k)),
+    ("squares of the trace's parts", "The trace is squared as a whole, not part by part.",
+     lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - k * (_sums(Iu, Iv)[:2] ** 2).sum()),
+    ("mixed sum in the wrong place", "The mixed sum stands in the determinant alone, and once.",
+     lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - k * _sums(Iu, Iv).sum() ** 2,
+     lambda Iu, Iv, k: np.prod(_sums(Iu, Iv)[:2]) - 2 * _sums(Iu, Iv)[2] ** 2 - k * _det_trace(Iu,
+         Iv)[1] ** 2,
+     lambda Iu, Iv, k: np.prod(_sums(Iu, Iv)[:2]) - 2 * _sums(Iu, Iv)[2] - k * _det_trace(Iu,
+         Iv)[1] ** 2),
+    ("trace and determinant exchanged",
+     "Of determinant and trace it is the trace that is squared and multiplied by k.",
+     lambda Iu, Iv, k: _det_trace(Iu, Iv)[1] ** 2 - k * _det_trace(Iu, Iv)[0],
+     lambda Iu, Iv, k: _det_trace(Iu, Iv)[1] - k * _det_trace(Iu, Iv)[0] ** 2,
+     lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] ** 2 - k * _det_trace(Iu, Iv)[1] ** 2),
+    ("another measure",
+     "That is another measure of M: an eigenvalue, the trace, or the determinant over the "
+     "trace.",
+     lambda Iu, Iv, k: _det_trace(Iu, Iv)[1] / 2 - np.sqrt(_det_trace(Iu, Iv)[1] ** 2 / 4 -
+         _det_trace(Iu, Iv)[0]),
+     lambda Iu, Iv, k: _det_trace(Iu, Iv)[1] / 2 + np.sqrt(_det_trace(Iu, Iv)[1] ** 2 / 4 -
+         _det_trace(Iu, Iv)[0]), lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] / _det_trace(Iu, Iv)[1],
+     lambda Iu, Iv, k: _det_trace(Iu, Iv)[1]),
+    ("absolute gradients",
+     "You took absolute values: a gradient's sign tells its direction, and the mixed sum "
+     "needs it.",
+     lambda Iu, Iv, k: harris_measure(np.abs(Iu), np.abs(Iv), k)),
+    ("mean for sum",
+     "M is made of sums over the window; a mean in its place is smaller by the number of "
+     "pixels.",
+     lambda Iu, Iv, k: harris_measure(Iu, Iv, k) / Iu.size ** 2,
+     lambda Iu, Iv, k: _measure((Iu ** 2).mean(), (Iv ** 2).mean(), (Iu * Iv).sum(), k),
+     lambda Iu, Iv, k: _measure((Iu ** 2).sum(), (Iv ** 2).sum(), (Iu * Iv).mean(), k)),
+)  # fmt: skip
 
 
 HARRIS = Exercise(
@@ -51,7 +106,7 @@ HARRIS = Exercise(
     task="Give Harris' measure det M − k (trace M)² of a window, from the gradients Iu and Iv of "
     "its pixels (both of one shape): M = Σ [Iu², Iu Iv; Iu Iv, Iv²] over the window.",
     stub='''def my_harris_measure(Iu, Iv, k):
-    """Give Harris' measure of the window, a number."""
+    """Return Harris' measure of the window, a number."""
     ...''',
     hints=(
         "Multiply pixel by pixel first, then sum: three sums, Σ Iu², Σ Iv² and Σ Iu Iv.",
@@ -68,197 +123,8 @@ HARRIS = Exercise(
         ),
         Property("It gets exactly −k (trace M)², as det M is 0 there.", about="edge"),
     ),
-    misconceptions=(
-        Misconception(
-            "sums before products",
-            "You summed the gradients before multiplying. Gradients of opposite sign then cancel; "
-            "multiply pixel by pixel, then sum.",
-            lambda Iu, Iv, k: harris_measure(Iu.sum(keepdims=True), Iv.sum(keepdims=True), k),
-        ),
-        Misconception(
-            "trace not squared",
-            "det M grows with the fourth power of the gradients, so the trace is squared.",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - k * _det_trace(Iu, Iv)[1],
-        ),
-        Misconception(
-            "trace added",
-            "The term k (trace M)² is subtracted: it punishes edges.",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] + k * _det_trace(Iu, Iv)[1] ** 2,
-        ),
-        Misconception(
-            "k left out",
-            "k is missing before (trace M)²; without it no corner ever gets a positive measure.",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - _det_trace(Iu, Iv)[1] ** 2,
-        ),
-        Misconception(
-            "mixed sum left out",
-            "The determinant is Σ Iu² Σ Iv² − (Σ Iu Iv)²: without the last term slanted edges "
-            "pass for corners.",
-            lambda Iu, Iv, k: np.prod(_sums(Iu, Iv)[:2]) - k * _det_trace(Iu, Iv)[1] ** 2,
-        ),
-        Misconception(
-            "mixed sum not squared",
-            "You did not square the mixed sum: the determinant is Σ Iu² Σ Iv² − (Σ Iu Iv)².",
-            lambda Iu, Iv, k: (
-                np.prod(_sums(Iu, Iv)[:2]) - _sums(Iu, Iv)[2] - k * _det_trace(Iu, Iv)[1] ** 2
-            ),
-        ),
-        Misconception(
-            "determinant only",
-            "det M is a measure too, but large on strong edges with a little noise; subtract "
-            "k (trace M)².",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0],
-        ),
-        Misconception(
-            "mean for sum",
-            (
-                "M is the sum over the window; with the mean, det M is smaller by n², and (trace "
-                "M)² too."
-            ),
-            lambda Iu, Iv, k: harris_measure(Iu, Iv, k) / Iu.size**2,
-        ),
-        Misconception(
-            "squares of the trace's parts",
-            "(trace M)² is (Σ Iu² + Σ Iv²)², not the sum of the squares.",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - k * (_sums(Iu, Iv)[:2] ** 2).sum(),
-        ),
-        Misconception(
-            "sign in the determinant",
-            "You added in the determinant: det M = Σ Iu² Σ Iv² − (Σ Iu Iv)², with a minus.",
-            lambda Iu, Iv, k: (
-                np.prod(_sums(Iu, Iv)[:2]) + _sums(Iu, Iv)[2] ** 2 - k * _det_trace(Iu, Iv)[1] ** 2
-            ),
-        ),
-        Misconception(
-            "the smaller eigenvalue",
-            (
-                "That is the smaller eigenvalue of M, Shi and Tomasi's measure; asked is det M − "
-                "k (trace M)²."
-            ),
-            lambda Iu, Iv, k: (
-                _det_trace(Iu, Iv)[1] / 2
-                - np.sqrt(_det_trace(Iu, Iv)[1] ** 2 / 4 - _det_trace(Iu, Iv)[0])
-            ),
-        ),
-        Misconception(
-            "determinant over trace",
-            "det M / trace M is another measure; asked is det M − k (trace M)².",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] / _det_trace(Iu, Iv)[1],
-        ),
-        Misconception(
-            "pixel by pixel",
-            "You took the determinant of each pixel before summing: there it is 0. Sum first.",
-            lambda Iu, Iv, k: -k * ((Iu**2 + Iv**2) ** 2).sum(),
-        ),
-        Misconception(
-            "trace alone",
-            "The determinant is missing: det M − k (trace M)².",
-            lambda Iu, Iv, k: -k * _det_trace(Iu, Iv)[1] ** 2,
-        ),
-        Misconception(
-            "squares of the sums",
-            "You have (Σ Iu)² and (Σ Iv)²: square pixel by pixel first, then sum.",
-            lambda Iu, Iv, k: _measure(Iu.sum() ** 2, Iv.sum() ** 2, (Iu * Iv).sum(), k),
-        ),
-        Misconception(
-            "matrix product",
-            "Iu @ Iv multiplies rows by columns; pixel by pixel it is Iu * Iv.",
-            lambda Iu, Iv, k: _measure((Iu @ Iu).sum(), (Iv @ Iv).sum(), (Iu @ Iv).sum(), k),
-            variants=(
-                lambda Iu, Iv, k: _measure(
-                    np.trace(Iu @ Iu), np.trace(Iv @ Iv), np.trace(Iu @ Iv), k
-                ),
-            ),
-        ),
-        Misconception(
-            "the larger eigenvalue",
-            "That is the larger eigenvalue of M: an edge has a large one too.",
-            lambda Iu, Iv, k: (
-                _det_trace(Iu, Iv)[1] / 2
-                + np.sqrt(_det_trace(Iu, Iv)[1] ** 2 / 4 - _det_trace(Iu, Iv)[0])
-            ),
-        ),
-        Misconception(
-            "the trace",
-            "That is trace M, the sum of all squared gradients: det M − k (trace M)² is asked.",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[1],
-        ),
-        Misconception(
-            "M itself",
-            "That is the matrix M; asked is a number made of it.",
-            lambda Iu, Iv, k: _matrix(Iu, Iv),
-        ),
-        Misconception(
-            "a measure for each pixel",
-            "You gave a number for each pixel: M sums over the window.",
-            lambda Iu, Iv, k: _measure(Iu**2, Iv**2, Iu * Iv, k),
-            variants=(lambda Iu, Iv, k: Iu**2 * Iv**2 - k * (Iu**2 + Iv**2) ** 2,),
-        ),
-        Misconception(
-            "mixed sum in the trace",
-            "trace M = Σ Iu² + Σ Iv²: the mixed sum is not in it.",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] - k * _sums(Iu, Iv).sum() ** 2,
-        ),
-        Misconception(
-            "trace and determinant exchanged",
-            "det M comes first, k multiplies the square of the trace: you exchanged them.",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[1] ** 2 - k * _det_trace(Iu, Iv)[0],
-            variants=(lambda Iu, Iv, k: _det_trace(Iu, Iv)[1] - k * _det_trace(Iu, Iv)[0] ** 2,),
-        ),
-        Misconception(
-            "determinant squared",
-            "You squared the determinant; only the trace is squared.",
-            lambda Iu, Iv, k: _det_trace(Iu, Iv)[0] ** 2 - k * _det_trace(Iu, Iv)[1] ** 2,
-        ),
-        Misconception(
-            "mixed sum doubled",
-            "You doubled the mixed sum: the determinant is Σ Iu² Σ Iv² − (Σ Iu Iv)², without a 2.",
-            lambda Iu, Iv, k: (
-                np.prod(_sums(Iu, Iv)[:2])
-                - 2 * _sums(Iu, Iv)[2] ** 2
-                - k * _det_trace(Iu, Iv)[1] ** 2
-            ),
-            variants=(
-                lambda Iu, Iv, k: (
-                    np.prod(_sums(Iu, Iv)[:2])
-                    - 2 * _sums(Iu, Iv)[2]
-                    - k * _det_trace(Iu, Iv)[1] ** 2
-                ),
-            ),
-        ),
-        Misconception(
-            "difference of the sums in the trace",
-            "You subtracted in the trace: trace M = Σ Iu² + Σ Iv², with a plus.",
-            lambda Iu, Iv, k: (
-                _det_trace(Iu, Iv)[0] - k * (_sums(Iu, Iv)[0] - _sums(Iu, Iv)[1]) ** 2
-            ),
-        ),
-        Misconception(
-            "absolute gradients",
-            "You took absolute values: a gradient's sign tells its direction, and Σ Iu Iv needs "
-            "it.",
-            lambda Iu, Iv, k: harris_measure(np.abs(Iu), np.abs(Iv), k),
-        ),
-        Misconception(
-            "gradients not squared",
-            "M has Σ Iu² and Σ Iv²: you have sums of the gradients themselves.",
-            lambda Iu, Iv, k: _measure(Iu.sum(), Iv.sum(), (Iu * Iv).sum(), k),
-        ),
-        Misconception(
-            "first pixel only",
-            "That is the measure of a single pixel: sum over the window.",
-            lambda Iu, Iv, k: harris_measure(Iu[:1, :1], Iv[:1, :1], k),
-            variants=(lambda Iu, Iv, k: harris_measure(Iu[-1:, -1:], Iv[-1:, -1:], k),),
-        ),
-        Misconception(
-            "mean for sum in part",
-            "You took the mean in one place and the sum in another: all entries of M are sums.",
-            lambda Iu, Iv, k: _measure((Iu**2).mean(), (Iv**2).mean(), (Iu * Iv).sum(), k),
-            variants=(
-                lambda Iu, Iv, k: _measure((Iu**2).sum(), (Iv**2).sum(), (Iu * Iv).mean(), k),
-            ),
-        ),
-    ),
+    misconceptions=MISTAKES,
     reference=harris_measure,
+    steps=_steps,
     concepts=("40", "E19"),
 )

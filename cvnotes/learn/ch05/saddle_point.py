@@ -1,14 +1,16 @@
 """The corner between the pixels."""
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def saddle_point(c: Array) -> Array:
-    """Give where the gradient of a quadratic surface with coefficients c (6,) vanishes, (2,)."""
+    """Return where the gradient of a quadratic surface with coefficients c (6,) vanishes, (2,)."""
     return np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [-c[3], -c[4]])
 
 
@@ -26,6 +28,46 @@ def _solve(c: Array, diagonal: float = 2.0, mixed: float = 1.0, sign: float = -1
     return np.linalg.solve(M, [sign * c[3], sign * c[4]])
 
 
+def _steps(c: Array) -> Any:
+    M = np.array([[2 * c[0], c[1]], [c[1], 2 * c[2]]])  # the second derivatives
+    g = np.array([c[3], c[4]])  # the derivatives at (0, 0)
+    return np.linalg.solve(M, -g)
+
+
+MISTAKES = mistakes(
+    ("factor 2 on the mixed term", "The derivative of b u v by u has no factor 2.",
+     lambda c: _solve(c, mixed=2.0)),
+    ("factor 2 lost, and the sign",
+     "A square has a factor 2 in its derivative; and what goes to the other side changes its"
+     " sign.",
+     lambda c: _solve(c, diagonal=1.0, sign=1.0)),
+    ("one sign",
+     "A sign is wrong: of the mixed term, or of one of those that go to the other side.",
+     lambda c: _solve(c, mixed=-1.0),
+     lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [-c[3], c[4]]),
+     lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [c[3], -c[4]])),
+    ("axes one by one",
+     "You looked for the level point along u and along v separately; the mixed term couples "
+     "them.",
+     lambda c: _solve(c, diagonal=1.0, mixed=0.0), lambda c: _solve(c, mixed=0.0, sign=1.0)),
+    ("not divided by the determinant",
+     "The determinant of the two equations is left out, or is another: look at its signs.",
+     lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2),
+     lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (4 * c[0] * c[2] + c[1] ** 2),
+     lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (c[0] * c[2] - c[1] ** 2)),
+    ("multiplied, not solved",
+     "You multiplied by the matrix of the second derivatives: solve with it.",
+     lambda c: np.array([[2 * c[0], c[1]], [c[1], 2 * c[2]]]) @ [-c[3], -c[4]]),
+    ("coefficients in another order",
+     "You took the coefficients in another order than the task has them.",
+     lambda c: _solve(c[[0, 2, 1, 3, 4, 5]]), lambda c: _solve(c[[2, 1, 0, 3, 4, 5]]),
+     lambda c: _solve(c[[0, 1, 2, 4, 3, 5]]), lambda c: _solve(c[[0, 1, 2, 4, 5, 3]]),
+     lambda c: _solve(c[[0, 1, 2, 3, 5, 4]])),
+    ("slope at the origin", "That is the slope at (0, 0); asked is where it vanishes.",
+     lambda c: c[3:5], lambda c: -c[3:5]),
+)  # fmt: skip
+
+
 SADDLE = Exercise(
     name="saddle_point",
     chapter=5,
@@ -34,7 +76,7 @@ SADDLE = Exercise(
     "a u² + b u v + c v² + d u + e v + f. Give the point (u, v), shape (2,), in which the surface "
     "is level, from its coefficients (a, b, c, d, e, f).",
     stub='''def my_saddle_point(coefficients):
-    """Give (u, v) of the saddle, shape (2,)."""
+    """Return (u, v) of the saddle, shape (2,)."""
     ...''',
     hints=(
         "Level means that both derivatives are 0.",
@@ -55,125 +97,8 @@ SADDLE = Exercise(
             ),
         ),
     ),
-    misconceptions=(
-        Misconception(
-            "factor 2 lost",
-            "The derivative of a u² is 2 a u: the factor 2 is missing on the diagonal.",
-            lambda c: _solve(c, diagonal=1.0),
-        ),
-        Misconception(
-            "factor 2 on the mixed term",
-            "The derivative of b u v by u is b v, without a factor 2.",
-            lambda c: _solve(c, mixed=2.0),
-        ),
-        Misconception(
-            "sign",
-            "d and e change sign when they go to the other side: your point is mirrored.",
-            lambda c: _solve(c, sign=1.0),
-        ),
-        Misconception(
-            "axes one by one",
-            "You looked for the level point along u and along v separately; the term b u v "
-            "couples them.",
-            lambda c: _solve(c, mixed=0.0),
-        ),
-        Misconception(
-            "not divided by the determinant",
-            "That is the right direction: by Cramer's rule, divide by the determinant 4 a c − b².",
-            lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2),
-        ),
-        Misconception(
-            "multiplied, not solved",
-            (
-                "You multiplied by the matrix of the second derivatives: solve with it, which is "
-                "multiplying by its inverse."
-            ),
-            lambda c: np.array([[2 * c[0], c[1]], [c[1], 2 * c[2]]]) @ [-c[3], -c[4]],
-        ),
-        Misconception(
-            "half of the mixed term",
-            (
-                "With [[a, b/2], [b/2, c]] you have half of the derivatives: the point is twice "
-                "as far away."
-            ),
-            lambda c: _solve(c, diagonal=1.0, mixed=0.5),
-        ),
-        Misconception(
-            "a and c exchanged",
-            "a belongs to u², c to v²: they are exchanged.",
-            lambda c: _solve(c[[2, 1, 0, 3, 4, 5]]),
-        ),
-        Misconception(
-            "d and e exchanged",
-            "d belongs to u, e to v: they are exchanged.",
-            lambda c: _solve(c[[0, 1, 2, 4, 3, 5]]),
-        ),
-        Misconception(
-            "sign of the mixed term",
-            "The mixed term has the wrong sign: 2 a u + b v + d = 0.",
-            lambda c: _solve(c, mixed=-1.0),
-        ),
-        Misconception(
-            "coefficients in another order",
-            "You took the coefficients as those of u², v², u v: they are a u² + b u v + c v².",
-            lambda c: _solve(c[[0, 2, 1, 3, 4, 5]]),
-        ),
-        Misconception(
-            "sign in the determinant",
-            "You have another determinant: it is 4 a c − b², with a minus.",
-            lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (4 * c[0] * c[2] + c[1] ** 2),
-            variants=(
-                lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (c[0] * c[2] - c[1] ** 2),
-            ),
-        ),
-        Misconception(
-            "value of the surface",
-            "That is the grey level at the saddle; asked is where it is.",
-            lambda c: c[5] + _solve(c) @ [c[3], c[4]] / 2,
-        ),
-        Misconception(
-            "slope at the origin",
-            "(d, e) is the slope at (0, 0); asked is where it vanishes.",
-            lambda c: c[3:5],
-            variants=(lambda c: -c[3:5],),
-        ),
-        Misconception(
-            "one sign",
-            "d and e both change sign when they go to the other side.",
-            lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [-c[3], c[4]]),
-            variants=(
-                lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [c[3], -c[4]]),
-            ),
-        ),
-        Misconception(
-            "one factor 2 lost",
-            "Both derivatives of a square have a 2: [[2a, b], [b, 2c]].",
-            lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], c[2]]], [-c[3], -c[4]]),
-            variants=(lambda c: np.linalg.solve([[c[0], c[1]], [c[1], 2 * c[2]]], [-c[3], -c[4]]),),
-        ),
-        Misconception(
-            "d and e halved",
-            "With [[2a, b], [b, 2c]] the right-hand side is (−d, −e), without a half.",
-            lambda c: _solve(c) / 2,
-        ),
-        Misconception(
-            "factor 2 lost, and the sign",
-            "The factor 2 is missing on the diagonal, and d and e change sign on the other side.",
-            lambda c: _solve(c, diagonal=1.0, sign=1.0),
-        ),
-        Misconception(
-            "axes one by one, without 2",
-            "Along u alone 2 a u + d = 0; and the term b u v couples both.",
-            lambda c: _solve(c, diagonal=1.0, mixed=0.0),
-            variants=(lambda c: _solve(c, mixed=0.0, sign=1.0),),
-        ),
-        Misconception(
-            "f for e",
-            "You took f for d or e: the coefficients are (a, b, c, d, e, f).",
-            lambda c: _solve(c[[0, 1, 2, 4, 5, 3]]),
-            variants=(lambda c: _solve(c[[0, 1, 2, 3, 5, 4]]),),
-        ),
-    ),
+    misconceptions=MISTAKES,
     reference=saddle_point,
+    steps=_steps,
     concepts=("40", "E19"),
 )

@@ -1,6 +1,7 @@
 """Four points fix a homography."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -15,10 +16,11 @@ from cvnotes.learn.cases.cameras import (
     some_homography,
 )
 from cvnotes.learn.ch06.dlt import OF_THE_ROWS
-from cvnotes.learn.ch06.slips import AFFINE, EXCHANGED, TRANSPOSED, V_BEFORE_U, Y_BEFORE_X
-from cvnotes.learn.checker.equality import up_to_scale, up_to_signs
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.learn.ch06.slips import AFFINE, EXCHANGED, TRANSPOSED
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
+from cvnotes.tutor.checker.equality import up_to_scale, up_to_signs
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
+from cvnotes.tutor.checker.steps import edited
 
 
 def _four(rng: Rng) -> list[Case]:
@@ -41,13 +43,8 @@ def _with_h9(src: Array, dst: Array, sign: float = -1.0) -> Array | None:
     return np.append(np.linalg.solve(D[:, :8], sign * D[:, 8]), 1.0).reshape(3, 3)
 
 
-def _with_zero(src: Array, dst: Array) -> Array:
-    D = design_matrix(src, dst)
-    return np.append(np.linalg.svd(D[:, :8])[2][-1], 0.0).reshape(3, 3)
-
-
 def _fits_three(H: Array, case: Case) -> bool:
-    """Tell whether H takes three of the four points to their partners, and not the last."""
+    """Return whether H takes three of the four points to their partners, and not the last."""
     src, dst = case.args
     return _exactly(H, replace(case, args=(src[:3], dst[:3]))) and not _exactly(H, case)
 
@@ -57,6 +54,50 @@ def _exactly(H: Array, case: Case) -> bool:
     return np.allclose(mapped, case.args[1], rtol=0, atol=1e-3 * max(1.0, case.slack / 20))
 
 
+def _steps(src: Array, dst: Array) -> Any:
+    u, v = dst[:, :1], dst[:, 1:]
+    W = np.column_stack([src, np.ones(4)])  # the points of src, homogeneous
+    first = np.hstack([W, 0 * W, -u * W])  # the rows of u
+    second = np.hstack([0 * W, W, -v * W])  # the rows of v
+    D = np.vstack([first, second])  # the equations, two rows for each pair
+    Vt = np.linalg.svd(D)[2]  # the right singular vectors
+    h = Vt[-1]  # the null vector
+    return h.reshape(3, 3)
+
+
+_MISTAKES = (
+    TRANSPOSED,
+    EXCHANGED,
+    *OF_THE_ROWS,
+    AFFINE,
+    *mistakes(
+        ("h9 = 1", "Right unless the true h9 is 0, which neither h9 = 1 nor the notes' formula for "
+         "h9 can express: both solve the same 8×8 system, and it is singular then.",
+         _with_h9),
+        ("sign of the right-hand side", "With h9 = 1 the ninth column goes to the other side: with "
+         "which sign?",
+         lambda src, dst: _with_h9(src, dst, sign=1.0)),
+        ("three points only", "That is the affine map of the first three points; the fourth says "
+         "how far it is from one.",
+         lambda src, dst: affine_fit(src[:3], dst[:3])),
+        ("full_matrices=False", "Eight equations have a null vector that full_matrices=False "
+         "leaves out.",
+         edited(_steps, "svd(D)", "svd(D, full_matrices=False)")),
+    ),
+    Misconception(
+        "a column of Vt",
+        "You took the last column of Vt. np.linalg.svd gives Vᵀ: where are the singular vectors?",
+        edited(_steps, "Vt[-1]", "Vt[:, -1]"),
+        same=up_to_signs,
+    ),
+    Misconception(
+        "the last pair left out",
+        "You used three of the four pairs: how many equations are needed?",
+        lambda src, dst: np.linalg.svd(design_matrix(src[:3], dst[:3]))[2][-1].reshape(3, 3),
+        seen=_fits_three,
+    ),
+)  # fmt: skip
+
 FOUR = Exercise(
     name="four_points",
     chapter=6,
@@ -65,7 +106,7 @@ FOUR = Exercise(
     "(4, 2) each, no three of them on a line. It must work too when the origin of src is seen at "
     "infinity.",
     stub='''def my_four_points(src, dst):
-    """Give H (3, 3) with dst ≈ H src for four pairs (4, 2)."""
+    """Return H (3, 3) with dst ≈ H src for four pairs (4, 2)."""
     ...''',
     hints=(
         "Four pairs give D (8, 9): nine unknowns, and one of them is only a scale.",
@@ -83,74 +124,9 @@ FOUR = Exercise(
             about="h9 = 0",
         ),
     ),
-    misconceptions=(
-        Misconception(
-            "h9 = 1",
-            "Right unless the true h9 is 0, which neither h9 = 1 nor the notes' formula for h9 "
-            "can express: both solve the same 8×8 system, and it is singular then. Take the null "
-            "vector of D.",
-            _with_h9,
-        ),
-        Misconception(
-            "sign of the right-hand side",
-            "With h9 = 1 the ninth column goes to the other side with a minus: Ã h̃ = −A9.",
-            lambda src, dst: _with_h9(src, dst, sign=1.0),
-        ),
-        TRANSPOSED,
-        EXCHANGED,
-        Misconception(
-            "three points only",
-            "That is the affine map of the first three points; the fourth says how far it is from "
-            "one.",
-            lambda src, dst: affine_fit(src[:3], dst[:3]),
-        ),
-        V_BEFORE_U,
-        Misconception(
-            "full_matrices=False",
-            (
-                "The null vector of D (8, 9) is the ninth row of Vt: full_matrices=False leaves "
-                "it out."
-            ),
-            lambda src, dst: np.linalg.svd(design_matrix(src, dst), full_matrices=False)[2][
-                -1
-            ].reshape(3, 3),
-        ),
-        Misconception(
-            "a column of Vt",
-            (
-                "You took the last column of Vt. np.linalg.svd gives Vᵀ: its rows are the "
-                "singular vectors, so take Vt[-1]."
-            ),
-            lambda src, dst: np.linalg.svd(design_matrix(src, dst))[2][:, -1].reshape(3, 3),
-            same=up_to_signs,
-        ),
-        Y_BEFORE_X,
-        *OF_THE_ROWS,
-        AFFINE,
-        Misconception(
-            "the largest singular value",
-            "You took the first singular vector, for which ‖D h‖ is largest. The null vector "
-            "comes last.",
-            lambda src, dst: np.linalg.svd(design_matrix(src, dst))[2][0].reshape(3, 3),
-        ),
-        Misconception(
-            "the trivial solution",
-            "h = 0 solves D h = 0 and means nothing. Ask for ‖h‖ = 1.",
-            lambda *_: np.zeros((3, 3)),
-        ),
-        Misconception(
-            "h9 = 0",
-            "You set h9 to 0, which is right only if the origin of src is seen at infinity.",
-            lambda src, dst: _with_zero(src, dst),
-        ),
-        Misconception(
-            "the last pair left out",
-            "You used three of the four pairs: D needs eight rows.",
-            lambda src, dst: np.linalg.svd(design_matrix(src[:3], dst[:3]))[2][-1].reshape(3, 3),
-            seen=_fits_three,
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=dlt,
+    steps=_steps,
     sources=(design_matrix, dlt),
     same=up_to_scale,
     concepts=("51", "52", "53", "E27"),

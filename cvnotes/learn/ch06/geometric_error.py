@@ -1,15 +1,17 @@
 """How far off is H."""
 
 # A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
+
+from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.homography import geometric_error
 from cvnotes.learn.cases.cameras import board_grid, rounded, some_factors, some_homography
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.steps import edited
 
 
 def _with_errors(rng: Rng) -> list[Case]:
@@ -23,13 +25,49 @@ def _with_errors(rng: Rng) -> list[Case]:
     ]
 
 
-def _mapped(H: Array, src: Array) -> Array:
-    return from_homogeneous.inside(to_homogeneous(src) @ H.T)
+def _other_plane(H: Array, src: Array, dst: Array) -> Array:
+    return geometric_error(np.linalg.inv(H), dst, src)
 
 
-def _algebraic(H: Array, src: Array, dst: Array) -> Array:
-    m_h = to_homogeneous(src) @ H.T
-    return np.asarray(np.linalg.norm(m_h[:, :2] - m_h[:, 2:] * dst, axis=1))
+def _steps(H: Array, src: Array, dst: Array) -> Any:
+    s_h = np.column_stack([src, np.ones(len(src))])  # src, lifted
+    m_h = s_h @ H.T  # where H takes src, homogeneous
+    m = m_h[:, :2] / m_h[:, 2:]  # where H takes src
+    d = m - dst  # the differences
+    return np.sqrt((d**2).sum(axis=1))
+
+
+_LENGTH = "np.sqrt((d**2).sum(axis=1))"
+_MISTAKES = mistakes(
+    ("no division", "You subtracted before dividing by the third coordinate, so the scale of H "
+     "enters.",
+     edited(_steps, " / m_h[:, 2:]", "")),
+    ("difference of homogeneous vectors", "You subtracted vectors with three coordinates, as the "
+     "notes print it. Their scales are arbitrary.",
+     lambda H, src, dst: np.linalg.norm(to_homogeneous(dst) - to_homogeneous(src) @ H.T, axis=1)),
+    ("algebraic error", "That is the algebraic error, as D h = 0 has it: it depends on the scale "
+     "of H and is no distance.",
+     edited(_steps, _LENGTH, "np.linalg.norm(m_h[:, :2] - m_h[:, 2:] * dst, axis=1)")),
+    ("divided by h33", "You divided H by h33; every point has a third coordinate of its own.",
+     edited(_steps, "m_h[:, 2:]", "H[2, 2]")),
+    ("error in the other plane", "That is the distance in the plane of src; asked is that of dst.",
+     _other_plane),
+    ("both directions", "You added the error in the other plane; asked is that in the plane of "
+     "dst.",
+     lambda H, src, dst: geometric_error(H, src, dst) + _other_plane(H, src, dst),
+     lambda H, src, dst: np.hypot(geometric_error(H, src, dst), _other_plane(H, src, dst))),
+    ("src not mapped", "You compared dst with src itself, which lies in another plane.",
+     edited(_steps, "m - dst", "src - dst")),
+    ("one coordinate only", "You compared one coordinate only; a distance has both.",
+     edited(_steps, _LENGTH, "abs(d[:, 0])"), edited(_steps, _LENGTH, "abs(d[:, 1])")),
+    ("sum of absolute differences", "You added both differences, or took the larger one; what is "
+     "their distance?",
+     edited(_steps, _LENGTH, "abs(d).sum(axis=1)"), edited(_steps, _LENGTH, "abs(d).max(axis=1)"),
+     edited(_steps, _LENGTH, "d.sum(axis=1)"), edited(_steps, _LENGTH, "-d.sum(axis=1)")),
+    ("mean of each row", "You took the mean of both differences; what is their distance?",
+     edited(_steps, _LENGTH, "abs(d).mean(axis=1)"), edited(_steps, _LENGTH, "d.mean(axis=1)"),
+     edited(_steps, _LENGTH, "-d.mean(axis=1)")),
+)  # fmt: skip
 
 
 GEOMETRIC = Exercise(
@@ -39,7 +77,7 @@ GEOMETRIC = Exercise(
     task="Give for each pair the distance in pixels between dst (n, 2) and where H (3, 3), of any "
     "scale, takes src (n, 2): shape (n,).",
     stub='''def my_geometric_error(H, src, dst):
-    """Give the distances (n,) between dst and the image of src under H."""
+    """Return the distances (n,) between dst and the image of src under H."""
     ...''',
     hints=(
         "Lift src, multiply by H, divide by the third coordinate.",
@@ -50,156 +88,9 @@ GEOMETRIC = Exercise(
     properties=(
         Property("They are distances in the plane of dst, and the scale of H does not matter."),
     ),
-    misconceptions=(
-        Misconception(
-            "no division",
-            "You subtracted before dividing by the third coordinate, so the scale of H enters.",
-            lambda H, src, dst: np.linalg.norm(dst - (to_homogeneous(src) @ H.T)[:, :2], axis=1),
-        ),
-        Misconception(
-            "difference of homogeneous vectors",
-            "You subtracted vectors with three coordinates, as the notes print it. Their scales "
-            "are arbitrary: divide both by their last coordinate first.",
-            lambda H, src, dst: np.linalg.norm(
-                to_homogeneous(dst) - to_homogeneous(src) @ H.T, axis=1
-            ),
-        ),
-        Misconception(
-            "H transposed",
-            "You applied Hᵀ: rows of points are multiplied by H.T from the right.",
-            lambda H, src, dst: np.linalg.norm(dst - _mapped(H.T, src), axis=1),
-        ),
-        Misconception(
-            "sum of absolute differences",
-            "You added |Δu| and |Δv|; the distance is √(Δu² + Δv²).",
-            lambda H, src, dst: np.abs(dst - _mapped(H, src)).sum(1),
-        ),
-        Misconception(
-            "error in the other plane",
-            "That is the error in the plane of src. Corners are measured in the picture, so the "
-            "distance belongs there.",
-            lambda H, src, dst: np.linalg.norm(src - _mapped(np.linalg.inv(H), dst), axis=1),
-        ),
-        Misconception(
-            "differences, not lengths",
-            (
-                "These are the differences of both coordinates; the distance is the length of "
-                "each row."
-            ),
-            lambda H, src, dst: dst - _mapped(H, src),
-            variants=(
-                lambda H, src, dst: _mapped(H, src) - dst,
-                lambda H, src, dst: np.abs(_mapped(H, src) - dst),
-                lambda H, src, dst: (_mapped(H, src) - dst) ** 2,
-            ),
-        ),
-        Misconception(
-            "columns for rows",
-            "You took the length of each column: axis=1 gives one for each row.",
-            lambda H, src, dst: np.linalg.norm(dst - _mapped(H, src), axis=0),
-        ),
-        Misconception(
-            "root of the mean square",
-            ("That is the root of the mean squared distance; asked is one distance for each pair."),
-            lambda H, src, dst: np.sqrt((geometric_error(H, src, dst) ** 2).mean()),
-        ),
-        Misconception(
-            "length of all differences",
-            (
-                "That is the length of all differences taken together; asked is one distance for "
-                "each pair: axis=1."
-            ),
-            lambda H, src, dst: np.linalg.norm(dst - _mapped(H, src)),
-        ),
-        Misconception(
-            "one coordinate only",
-            "You compared u only; the distance is √(Δu² + Δv²).",
-            lambda H, src, dst: np.abs(dst - _mapped(H, src))[:, 0],
-        ),
-        Misconception(
-            "src not mapped",
-            "You compared dst with src itself: H takes src to the plane of dst.",
-            lambda H, src, dst: np.linalg.norm(dst - src, axis=1),
-        ),
-        Misconception(
-            "divided by h33",
-            "You divided H by h33; every point has a third coordinate of its own to be divided by.",
-            lambda H, src, dst: np.linalg.norm(
-                dst - (to_homogeneous(src) @ (H / H[2, 2]).T)[:, :2], axis=1
-            ),
-        ),
-        Misconception(
-            "both directions",
-            "You added the error in the other plane; asked is the distance in the plane of dst.",
-            lambda H, src, dst: (
-                geometric_error(H, src, dst)
-                + np.linalg.norm(src - _mapped(np.linalg.inv(H), dst), axis=1)
-            ),
-            variants=(
-                lambda H, src, dst: np.sqrt(
-                    geometric_error(H, src, dst) ** 2
-                    + np.linalg.norm(src - _mapped(np.linalg.inv(H), dst), axis=1) ** 2
-                ),
-            ),
-        ),
-        Misconception(
-            "mean of the squares",
-            "That is a mean or a sum of squared distances; asked is one distance for each pair.",
-            lambda H, src, dst: (geometric_error(H, src, dst) ** 2).mean(),
-            variants=(
-                lambda H, src, dst: (geometric_error(H, src, dst) ** 2).sum(),
-                lambda H, src, dst: ((dst - _mapped(H, src)) ** 2).mean(),
-            ),
-        ),
-        Misconception(
-            "root of the mean of each row",
-            "You took the mean of Δu² and Δv²; the distance is the root of their sum.",
-            lambda H, src, dst: geometric_error(H, src, dst) / np.sqrt(2),
-        ),
-        Misconception(
-            "mean of each row",
-            "You took the mean of |Δu| and |Δv|; the distance is √(Δu² + Δv²).",
-            lambda H, src, dst: np.abs(dst - _mapped(H, src)).mean(1),
-            variants=(
-                lambda H, src, dst: (dst - _mapped(H, src)).mean(1),
-                lambda H, src, dst: (_mapped(H, src) - dst).mean(1),
-            ),
-        ),
-        Misconception(
-            "sum of the differences",
-            "Δu + Δv may cancel; the distance is √(Δu² + Δv²).",
-            lambda H, src, dst: (dst - _mapped(H, src)).sum(1),
-            variants=(lambda H, src, dst: (_mapped(H, src) - dst).sum(1),),
-        ),
-        Misconception(
-            "larger of the two",
-            "You took the larger of |Δu| and |Δv|; the distance is √(Δu² + Δv²).",
-            lambda H, src, dst: np.abs(dst - _mapped(H, src)).max(1),
-        ),
-        Misconception(
-            "rows only",
-            "You compared v only; the distance is √(Δu² + Δv²).",
-            lambda H, src, dst: np.abs(dst - _mapped(H, src))[:, 1],
-        ),
-        Misconception(
-            "length of the mapped points",
-            "You took the length of the mapped points themselves: subtract dst first.",
-            lambda H, src, dst: np.linalg.norm(_mapped(H, src), axis=1),
-            variants=(lambda H, src, dst: np.linalg.norm(to_homogeneous(_mapped(H, src)), axis=1),),
-        ),
-        Misconception(
-            "algebraic error",
-            "That is the algebraic error, as D h = 0 has it: it depends on the scale of H and is "
-            "no distance.",
-            lambda H, src, dst: _algebraic(H, src, dst),
-        ),
-        Misconception(
-            "every pair with every other",
-            "You compared every point with every other: (n, n). Subtract row by row.",
-            lambda H, src, dst: np.linalg.norm(dst[:, None] - _mapped(H, src)[None], axis=2),
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=geometric_error,
+    steps=_steps,
     sources=(geometric_error, from_homogeneous),
     concepts=("49", "50", "E25"),
 )

@@ -2,7 +2,7 @@
 
 from cvnotes.homography import dlt
 from cvnotes.learn.cases.cameras import affine_fit
-from cvnotes.learn.checker.exercise import Misconception
+from cvnotes.tutor.checker.exercise import Misconception
 
 EXCHANGED = Misconception(
     "src and dst exchanged",

@@ -1,6 +1,7 @@
 """What all views say about B."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -8,29 +9,38 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.calibration import constraints, solve_b, v_ij
 from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, plane_image, some_intrinsics, some_views
-from cvnotes.learn.checker.equality import Same, up_to_scale, up_to_signs
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.equality import Same, up_to_scale, up_to_signs
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
+from cvnotes.tutor.checker.steps import edited
 
 # The picture scaled to about [−1, 1], in which the entries of b are of one size.
 _UNIT = np.array([[1 / 320, 0, -0.85], [0, 1 / 320, -0.6], [0, 0, 1]])
 
 
 def b_from_views(H: Array) -> Array:
-    """Give b (6,), up to scale, from the homographies (n, 3, 3) of n views."""
+    """Return b (6,), up to scale, from the homographies (n, 3, 3) of n views."""
     return solve_b(constraints(H), skew=True)
 
 
 def _tilted_views(rng: Rng) -> list[Case]:
     A = _UNIT @ some_intrinsics(rng, skew=True)
     three = [plane_image(np.diag([2.0, 2.5, 1]), R, np.array([0.5, 0, 4])) for R in _TILTS]
-    noisy = some_views(rng, A, 12)
-    noisy = noisy / np.linalg.norm(noisy, axis=(1, 2), keepdims=True)
-    noisy = noisy + 2e-4 * rng.standard_normal(noisy.shape)
     return [
         Case((np.array(three),)),
         Case((some_views(rng, A, 4),)),
-        Case((noisy,), about="noisy"),
+        Case((_noisy_views(rng, A),), about="noisy"),
     ]
+
+
+def _noisy_views(rng: Rng, A: Array) -> Array:
+    """Return twelve views, of which neither the first nor the last three are enough."""
+    while True:
+        views = some_views(rng, A, 12)
+        views = views / np.linalg.norm(views, axis=(1, 2), keepdims=True)
+        views = views + 2e-4 * rng.standard_normal(views.shape)
+        best = _misfit(b_from_views(views), views)
+        if all(_misfit(b_from_views(views[i : i + 3]), views) > 2 * best for i in (0, 9)):
+            return np.asarray(views)
 
 
 _TILTS = (ABOUT_X, ABOUT_Y, ABOUT_X @ ABOUT_Y)
@@ -41,7 +51,7 @@ def _null(V: Array) -> Array:
 
 
 def _products(a: Array, b: Array) -> Array:
-    """Give v with aᵀ B b = v·b for columns a and b (n, 3) of n views."""
+    """Return v with aᵀ B b = v·b for columns a and b (n, 3) of n views."""
     first, second = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
     both = a[:, first] * b[:, second] + a[:, second] * b[:, first]
     return np.asarray(both * [0.5, 1, 0.5, 1, 1, 0.5])
@@ -105,10 +115,6 @@ def _matrix(b: Array) -> Array:
     return np.asarray(b[[0, 1, 3, 1, 2, 4, 3, 4, 5]].reshape(3, 3))
 
 
-def _b_of(B: Array) -> Array:
-    return np.asarray(B[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]])
-
-
 def _slipped_rows(H: Array, second: list[int]) -> Array:
     """Stack rows whose mixed products are one product doubled."""
     first, mixed = [0, 0, 1, 0, 1, 2], np.array([1, 2, 1, 2, 2, 1])
@@ -144,19 +150,92 @@ def _at_any_scale(
 
 def _both_constraints(b: Array, case: Case) -> bool:
     V = constraints(case.args[0])
-    return bool((np.abs(V @ b) <= 1e-6 * np.linalg.norm(V, axis=1) * np.linalg.norm(b)).all())
+    size = np.linalg.norm(V, axis=1) * np.linalg.norm(b)
+    return bool((np.abs(V @ b) <= 1e-6 * case.slack * size).all())
 
 
-def _misfit(b: Array, case: Case) -> float:
-    """Give how much the constraints are violated, for views of size one and b of length one."""
-    H = case.args[0]
+def _misfit(b: Array, H: Array) -> float:
+    """Return how much the constraints are violated, for views of size one and b of length one."""
     V = _rows(H / np.linalg.norm(H, axis=(1, 2), keepdims=True))
     return float(np.linalg.norm(V @ b) / np.linalg.norm(b))
 
 
 def _fits_noise(b: Array, case: Case) -> bool:
-    return _misfit(b, case) <= 1.5 * _misfit(case.right, case)
+    return _misfit(b, *case.args) <= 1.5 * _misfit(case.right, *case.args)
 
+
+def _steps(H: Array) -> Any:
+    H = H / np.linalg.norm(H, axis=(1, 2), keepdims=True)  # the homographies, each of size 1
+    g, h = H[:, :, 0], H[:, :, 1]
+    i, j = np.array([0, 0, 1, 0, 1, 2]), np.array([0, 1, 1, 2, 2, 2])
+    once = np.where(i == j, 0.5, 1)  # half where a product is counted twice
+    v12 = once * (g[:, i] * h[:, j] + g[:, j] * h[:, i])  # the rows of the right angles
+    v11 = 2 * once * g[:, i] * g[:, j]  # the rows of the length of h1
+    v22 = 2 * once * h[:, i] * h[:, j]  # the rows of the length of h2
+    V = np.vstack([v12, v11 - v22])  # the equations of all views
+    Vt = np.linalg.svd(V)[2]  # the right singular vectors
+    return Vt[-1]
+
+
+_MISTAKES = (
+    _at_any_scale(
+        "sum for difference", "You added the equations of both lengths; what is said of them?",
+        edited(_steps, "v11 - v22", "v11 + v22"),
+    ),
+    _at_any_scale(
+        "rows of H", "You took the rows of H; what are h1 and h2?",
+        edited(_steps, "H[:, :, 0], H[:, :, 1]", "H[:, 0], H[:, 1]"),
+    ),
+    _at_any_scale(
+        "a column of Vt", "You took the last column of Vt. Where are the singular vectors?",
+        lambda H: np.linalg.svd(_rows(H))[2][:, -1], same=up_to_signs,
+    ),
+    _at_any_scale(
+        "the largest singular value", "You took the first singular vector, for which ‖V b‖ is "
+        "largest; for which one is it smallest?",
+        edited(_steps, "Vt[-1]", "Vt[0]"),
+    ),
+    _at_any_scale(
+        "first view only", "One view gives two equations for five unknowns: what do the others "
+        "say?",
+        lambda H: _null(_rows(H[:1])), seen=_only(_first_view),
+    ),
+    _at_any_scale(
+        "the last view only", "Your b fits the last view alone: does each round of the loop "
+        "overwrite the rows of the one before?",
+        lambda H: _null(_rows(H[-1:])), seen=_only(_last_view),
+    ),
+    _at_any_scale(
+        "right angles only", "You asked that h1 and h2 are at right angles. Each view gives a "
+        "second equation: what of their lengths?",
+        _of_some(_right_angles), seen=_only(_right_angles),
+    ),
+    _at_any_scale(
+        "equal lengths only", "You asked that h1 and h2 are of one length. Each view gives a "
+        "second equation: what of their angle?",
+        _of_some(_equal_lengths), seen=_only(_equal_lengths),
+    ),
+    _at_any_scale(
+        "mixed products doubled", "You doubled one of the mixed products, where both belong: check "
+        "v_ij by itself.",
+        lambda H: _null(_slipped_rows(H, [0, 1, 1, 2, 2, 2])),
+    ),
+    *mistakes(
+        ("the first three views only", "Right on exact data. With noise every view counts.",
+         lambda H: b_from_views(H[:3])),
+        ("the trivial solution", "b = 0 solves V b = 0, as least squares will tell you, and means "
+         "nothing.",
+         lambda _: np.zeros(6)),
+        ("B12 for 0", "You set B12 to 0, as for a camera without skew. Here A may have one.",
+         _without_skew,
+         lambda H: b_from_views(H) * [1, 0, 1, 1, 1, 1],
+         lambda H: np.delete(_without_skew(H), 1),
+         lambda H: np.insert(_null(_rows(H)[:, [0, 2, 3, 4, 5]]), 1, 0.0)),
+        ("B, not b", "That is the matrix B; asked are its six entries.",
+         lambda H: _matrix(b_from_views(H)), lambda H: np.triu(_matrix(b_from_views(H))),
+         lambda H: _matrix(b_from_views(H)).ravel()),
+    ),
+)  # fmt: skip
 
 B_FROM_VIEWS = Exercise(
     name="b_from_views",
@@ -166,7 +245,7 @@ B_FROM_VIEWS = Exercise(
     "(n, 3, 3) of n ≥ 3 views, each of a scale of its own, into a picture scaled to about "
     "[−1, 1].",
     stub='''def my_b_from_views(H):
-    """Give b (6,) from the homographies H (n, 3, 3)."""
+    """Return b (6,) from the homographies H (n, 3, 3)."""
     ...''',
     hints=(
         "Each view gives two rows of V: v_12 and v_11 − v_22, with your v_ij. The H are scaled to "
@@ -184,104 +263,9 @@ B_FROM_VIEWS = Exercise(
             about="noisy",
         ),
     ),
-    misconceptions=(
-        _at_any_scale(
-            "sum for difference",
-            "You asked for v_11·b + v_22·b = 0. Both columns have the same length, so it is their "
-            "difference that is 0.",
-            lambda H: _null(_rows(H, sign=1.0)),
-        ),
-        _at_any_scale(
-            "rows of H",
-            "You took the rows of H; h1 and h2 are its columns.",
-            lambda H: _null(_rows(H.mT)),
-        ),
-        _at_any_scale(
-            "a column of Vt",
-            "You took the last column of Vt. Its rows are the singular vectors: Vt[-1].",
-            lambda H: np.linalg.svd(_rows(H))[2][:, -1],
-            same=up_to_signs,
-        ),
-        _at_any_scale(
-            "the largest singular value",
-            "You took the first singular vector, for which ‖V b‖ is largest. The last one makes "
-            "it small.",
-            lambda H: np.linalg.svd(_rows(H))[2][0],
-        ),
-        Misconception(
-            "the trivial solution",
-            "b = 0 solves V b = 0, as least squares will tell you, and means nothing. Ask for "
-            "‖b‖ = 1.",
-            lambda _: np.zeros(6),
-        ),
-        _at_any_scale(
-            "first view only",
-            "One view gives two equations for five unknowns: stack the rows of all views.",
-            lambda H: _null(_rows(H[:1])),
-            seen=_only(_first_view),
-        ),
-        Misconception(
-            "another order of b",
-            "Your b is (B11, B12, B13, B22, B23, B33); the notes have B22 before B13.",
-            lambda H: b_from_views(H)[[0, 1, 3, 2, 4, 5]],
-        ),
-        _at_any_scale(
-            "the last view only",
-            "Your b fits the last view alone: does each round of the loop overwrite the rows of "
-            "the one before? Stack the rows of all views.",
-            lambda H: _null(_rows(H[-1:])),
-            seen=_only(_last_view),
-        ),
-        _at_any_scale(
-            "right angles only",
-            "You asked for h1ᵀ B h2 = 0 alone. Each view gives a second equation, for the equal "
-            "lengths: h1ᵀ B h1 = h2ᵀ B h2.",
-            _of_some(_right_angles),
-            seen=_only(_right_angles),
-        ),
-        _at_any_scale(
-            "equal lengths only",
-            "You asked for h1ᵀ B h1 = h2ᵀ B h2 alone. Each view gives a second equation, for the "
-            "right angle: h1ᵀ B h2 = 0.",
-            _of_some(_equal_lengths),
-            seen=_only(_equal_lengths),
-        ),
-        Misconception(
-            "B12 for 0",
-            "You set B12 to 0, as for a camera without skew. Here A may have one: six unknowns.",
-            _without_skew,
-            variants=(
-                lambda H: b_from_views(H) * [1, 0, 1, 1, 1, 1],
-                lambda H: np.delete(_without_skew(H), 1),
-                lambda H: np.insert(_null(_rows(H)[:, [0, 2, 3, 4, 5]]), 1, 0.0),
-            ),
-        ),
-        Misconception(
-            "B, not b",
-            "That is the matrix B; asked are its six entries b = (B11, B12, B22, B13, B23, B33).",
-            lambda H: _matrix(b_from_views(H)),
-            variants=(
-                lambda H: np.triu(_matrix(b_from_views(H))),
-                lambda H: _matrix(b_from_views(H)).ravel(),
-            ),
-        ),
-        _at_any_scale(
-            "mixed products doubled",
-            "Your v doubles a1 b2 in place of a1 b2 + a2 b1: check v_ij by itself.",
-            lambda H: _null(_slipped_rows(H, [0, 1, 1, 2, 2, 2])),
-        ),
-        _at_any_scale(
-            "the second smallest singular value",
-            "You took the last but one singular vector; the smallest singular value comes last.",
-            lambda H: np.asarray(np.linalg.svd(_rows(H))[2][-2]),
-        ),
-        Misconception(
-            "A⁻ᵀ A⁻¹ inverted",
-            "That is A Aᵀ, the inverse of B.",
-            lambda H: _b_of(np.asarray(np.linalg.inv(_matrix(b_from_views(H))))),
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=b_from_views,
+    steps=_steps,
     same=up_to_scale,
     concepts=("55", "58", "E29", "E30"),
     sources=(v_ij, constraints, solve_b),

@@ -7,12 +7,12 @@ import numpy as np
 from cvnotes.calibration import constraints
 from cvnotes.camera import rotation_from_vector
 from cvnotes.learn.cases.cameras import plane_image
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
 
 
 @cache
 def determinacy() -> tuple[float, ...]:
-    """Give for each set of the question how well it determines A: 0 is not at all."""
+    """Return for each set of the question how well it determines A: 0 is not at all."""
     A = np.diag([2.0, 2.0, 1.0])
     # rotation vectors in degrees, CRF ← board
     sets = (
@@ -35,7 +35,7 @@ def determinacy() -> tuple[float, ...]:
 
 
 def bad_views() -> float:
-    """Give the number of the set that does not determine the camera."""
+    """Return the number of the set that does not determine the camera."""
     return float(np.argmin(determinacy()))
 
 

@@ -3,15 +3,17 @@
 # A mistake is often an argument that was left out.
 # ruff: noqa: ARG005
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def camera_covariance(Jc: Array, Jp: Array) -> Array:
-    """Give the covariance (c, c) of what all views share, for noise of variance 1.
+    """Return the covariance (c, c) of what all views share, for noise of variance 1.
 
     Jc (n, m, c) and Jp (n, m, p): derivatives of the m residuals of each of n views, by the
     shared unknowns and by those of the view's own pose.
@@ -33,13 +35,13 @@ def _views(rng: Rng) -> list[Case]:
 
 
 def _information(Jc: Array, Jp: Array, sign: float = -1.0) -> Array:
-    """Give the Schur complement of each view, (n, c, c)."""
+    """Return the Schur complement of each view, (n, c, c)."""
     own = np.linalg.inv(Jp.mT @ Jp)
     return np.asarray(Jc.mT @ Jc + sign * Jc.mT @ Jp @ own @ Jp.mT @ Jc)
 
 
 def _whole(Jc: Array, Jp: Array) -> Array:
-    """Give the inverse of JᵀJ of all unknowns, camera first."""
+    """Return the inverse of JᵀJ of all unknowns, camera first."""
     n, m, c = Jc.shape
     p = Jp.shape[2]
     J = np.zeros((n * m, c + n * p))
@@ -55,10 +57,40 @@ def _one_pose(Jc: Array, Jp: Array) -> Array:
     return np.asarray(np.linalg.inv(J.T @ J)[: Jc.shape[2], : Jc.shape[2]])
 
 
-def _not_inverted(Jc: Array, Jp: Array) -> Array:
-    N = (Jc.mT @ Jc - Jc.mT @ Jp @ (Jp.mT @ Jp) @ Jp.mT @ Jc).sum(0)
-    return np.asarray(np.linalg.inv(N))
+def _steps(Jc: Array, Jp: Array) -> Any:
+    CC = Jc.mT @ Jc  # what each view knows of the camera
+    CP = Jc.mT @ Jp  # the mixed block of each view
+    PP = np.linalg.inv(Jp.mT @ Jp)  # the inverse of each pose's own block
+    share = CP @ PP @ CP.mT  # what each pose takes
+    S = (CC - share).sum(axis=0)  # the sum over all views of what is left
+    return np.linalg.inv(S)
 
+
+_MISTAKES = mistakes(
+    ("poses held fixed", "That is the covariance if every pose were given, which is too small. "
+     "Who else takes a share of what is seen?",
+     lambda Jc, Jp: np.linalg.inv((Jc.mT @ Jc).sum(0))),
+    ("share added", "A pose that has to be estimated costs information; yours adds some.",
+     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp, 1.0).sum(0))),
+    ("mean over the views", "You took the mean over the views. Information adds up: more views, "
+     "less uncertainty.",
+     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp).mean(0))),
+    ("inverted view by view", "You inverted each view's share and added the inverses. "
+     "Information adds up, not covariance.",
+     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).sum(0),
+     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).mean(0)),
+    ("one pose for all", "You stacked all views over one pose. Each view has a pose of its own, "
+     "and its derivatives stand in columns of their own.",
+     _one_pose),
+    ("standard deviations", "These are standard deviations; asked is the whole covariance, (c, "
+     "c).",
+     lambda Jc, Jp: np.sqrt(np.diag(camera_covariance(Jc, Jp)))),
+    ("the first view alone", "That is what the first view knows; there are n of them.",
+     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)[0])),
+    ("all unknowns", "That is the covariance of the poses, too; asked is the camera's corner, c "
+     "× c.",
+     _whole),
+)  # fmt: skip
 
 CAMERA_COVARIANCE = Exercise(
     name="camera_covariance",
@@ -69,7 +101,7 @@ CAMERA_COVARIANCE = Exercise(
     "pose. Give the covariance (c, c) of the camera's unknowns for noise of variance 1: the "
     "camera's corner of (JᵀJ)⁻¹, however many views there are.",
     stub='''def my_camera_covariance(Jc, Jp):
-    """Give (c, c) from Jc (n, m, c) and Jp (n, m, p)."""
+    """Return (c, c) from Jc (n, m, c) and Jp (n, m, p)."""
     ...''',
     hints=(
         "JᵀJ is an arrow: the views meet in the camera's c × c corner only.",
@@ -84,73 +116,8 @@ CAMERA_COVARIANCE = Exercise(
         ),
         Property("It is the camera's corner of the inverse of the whole JᵀJ."),
     ),
-    misconceptions=(
-        Misconception(
-            "poses held fixed",
-            "(Σ JcᵀJc)⁻¹ is the covariance if every pose were given, which is too small. The "
-            "poses take their share first.",
-            lambda Jc, Jp: np.linalg.inv((Jc.mT @ Jc).sum(0)),
-        ),
-        Misconception(
-            "not inverted",
-            "That is the information, the Schur complement S; the covariance is its inverse.",
-            lambda Jc, Jp: _information(Jc, Jp).sum(0),
-        ),
-        Misconception(
-            "share added",
-            "A pose that has to be estimated costs information: subtract its share.",
-            lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp, 1.0).sum(0)),
-        ),
-        Misconception(
-            "mean over the views",
-            "You took the mean over the views. Information adds up: more views, less uncertainty.",
-            lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp).mean(0)),
-        ),
-        Misconception(
-            "inverted view by view",
-            "You inverted each view's share and added the inverses. Information adds up, not "
-            "covariance: add first, invert once.",
-            lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).sum(0),
-            variants=(lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).mean(0),),
-        ),
-        Misconception(
-            "one pose for all",
-            "You stacked all views over one pose. Each view has a pose of its own, and its "
-            "derivatives stand in columns of their own.",
-            _one_pose,
-        ),
-        Misconception(
-            "middle not inverted",
-            "Between JcᵀJp and JpᵀJc stands the inverse of JpᵀJp.",
-            _not_inverted,
-        ),
-        Misconception(
-            "standard deviations",
-            "These are standard deviations; asked is the whole covariance, (c, c).",
-            lambda Jc, Jp: np.sqrt(np.diag(camera_covariance(Jc, Jp))),
-        ),
-        Misconception(
-            "variances alone",
-            "These are the variances; asked is the whole covariance, (c, c).",
-            lambda Jc, Jp: np.diag(camera_covariance(Jc, Jp)),
-            variants=(lambda Jc, Jp: np.diag(np.diag(camera_covariance(Jc, Jp))),),
-        ),
-        Misconception(
-            "the first view alone",
-            "That is what the first view knows: add all n.",
-            lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)[0]),
-        ),
-        Misconception(
-            "all unknowns",
-            "That is the covariance of the poses, too; asked is the camera's corner, c × c.",
-            _whole,
-        ),
-        Misconception(
-            "camera and poses exchanged",
-            "You eliminated the camera and kept the poses: it is the other way round.",
-            lambda Jc, Jp: camera_covariance(Jp, Jc),
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=camera_covariance,
+    steps=_steps,
     concepts=("r",),
 )

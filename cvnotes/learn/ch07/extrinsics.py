@@ -1,15 +1,14 @@
 """Where the board was."""
 
 # A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import extrinsics
-from cvnotes.camera import nearest_rotation, pose
+from cvnotes.camera import nearest_rotation
 from cvnotes.learn.cases.cameras import (
     ABOUT_Y,
     TIDY_A,
@@ -19,8 +18,9 @@ from cvnotes.learn.cases.cameras import (
     some_intrinsics,
     some_pose,
 )
-from cvnotes.learn.checker.equality import same_motion, up_to_scale
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.equality import same_motion, up_to_scale
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.steps import edited
 
 
 def _posed(rng: Rng) -> list[Case]:
@@ -36,23 +36,10 @@ def _posed(rng: Rng) -> list[Case]:
 
 
 def _parts(A: Array, H: Array) -> tuple[Array, Array, Array, float]:
-    """Give λ r1, λ r2, λ T and λ, with the sign that puts the board in front."""
+    """Return λ r1, λ r2, λ T and λ, with the sign that puts the board in front."""
     rays = np.linalg.inv(A) @ H
     scale = float(np.linalg.norm(rays[:, 0])) * (1.0 if rays[2, 2] > 0 else -1.0)
     return rays[:, 0], rays[:, 1], rays[:, 2], scale
-
-
-def _joined(r1: Array, r2: Array, r3: Array, T: Array) -> Array:
-    G = np.eye(4)
-    G[:3] = np.stack([r1, r2, r3, T], axis=1)
-    return G
-
-
-def _G(A: Array, H: Array, *, T_scale: float = 1.0, r3: float = 1.0, sign: bool = True) -> Array:
-    a, b, c, scale = _parts(A, H)
-    if not sign:
-        scale = abs(scale)
-    return _joined(a / scale, b / scale, r3 * np.cross(a, b) / scale**2, c / scale * T_scale)
 
 
 def _is_view(G: Array, case: Case) -> bool:
@@ -61,7 +48,7 @@ def _is_view(G: Array, case: Case) -> bool:
 
 
 def _is_near(G: Array, case: Case) -> bool:
-    """Tell whether G is a rigid motion, and as near to the truth as the noise allows."""
+    """Return whether G is a rigid motion, and as near to the truth as the noise allows."""
     (R, T), near = case.truth, 0.05
     rigid = np.abs(G[:3, :3] @ G[:3, :3].T - np.eye(3)).max() <= 1e-6 * case.slack
     return bool(
@@ -73,50 +60,6 @@ def _is_near(G: Array, case: Case) -> bool:
     )
 
 
-def _no_rotation(A: Array, H: Array, length: Callable[[float, float], float]) -> Array:
-    """Give [r1 r2 r1×r2 T] as it is, with a λ made of the lengths of both columns."""
-    a, b, c, scale = _parts(A, H)
-    scale = np.sign(scale) * length(*np.linalg.norm([a, b], axis=1))
-    return _joined(a / scale, b / scale, np.cross(a, b) / scale**2, c / scale)
-
-
-def _each_by_itself(A: Array, H: Array, first: float = 0.5) -> Array:
-    """Scale r1 and r2 to length 1 one by one; T with a mean of both factors."""
-    a, b, c, scale = _parts(A, H)
-    la, lb = np.sign(scale) * np.linalg.norm([a, b], axis=1)
-    return _joined(a / la, b / lb, np.cross(a / la, b / lb), c / (first * la + (1 - first) * lb))
-
-
-def _signed(A: Array, H: Array) -> Array:
-    """Give A⁻¹ H with the right sign, and nothing else."""
-    a, b, c, scale = _parts(A, H)
-    s = np.sign(scale)
-    return _joined(s * a, s * b, np.cross(a, b), s * c)
-
-
-def _behind(G: Array) -> Array:
-    return np.asarray(G * [-1, -1, 1, -1] * [[1], [1], [1], [-1]])
-
-
-def _T_below(G: Array) -> Array:
-    G[3, :3], G[:3, 3] = G[:3, 3].copy(), 0
-    return G
-
-
-def _transposed(G: Array) -> Array:
-    G[:3, :3] = G[:3, :3].T
-    return G
-
-
-def _T_not_divided(G: Array, case: Case) -> bool:
-    """Tell whether all but T is right, and T is A⁻¹ h3, or minus that."""
-    A, H = case.args
-    c = np.linalg.inv(A) @ H[:, 2]
-    rest = np.linalg.norm(G[:3, :3] - case.right[:3, :3]) < 0.05
-    off = min(np.linalg.norm(G[:3, 3] - c), np.linalg.norm(G[:3, 3] + c))
-    return bool(rest and off <= 1e-6 * np.linalg.norm(c))
-
-
 def _sign_in_T_only(A: Array, H: Array) -> Array:
     G = extrinsics(A, H)
     if _parts(A, H)[3] < 0:
@@ -124,12 +67,64 @@ def _sign_in_T_only(A: Array, H: Array) -> Array:
     return G
 
 
-def _nearest_to(A: Array, H: Array, *, third: str) -> Array:
-    """Give the nearest rotation of three columns that do not belong together."""
-    a, b, c, scale = _parts(A, H)
-    r3 = {"T": c / scale, "T / |T|": c / np.linalg.norm(c) * np.sign(scale)}[third]
-    return pose(nearest_rotation(np.column_stack([a / scale, b / scale, r3])), c / scale)
+def _steps(A: Array, H: Array) -> Any:
+    X = np.linalg.inv(A) @ H  # the columns λ r1, λ r2 and λ T
+    size = np.linalg.norm(X[:, 0])  # the size of λ
+    scale = np.sign(X[2, 2]) * size  # λ, with the sign that puts the board in front
+    r1 = X[:, 0] / scale  # r1
+    r2 = X[:, 1] / scale  # r2
+    T = X[:, 2] / scale  # T
+    r3 = np.cross(r1, r2)  # r3
+    U, _, Vt = np.linalg.svd(np.column_stack([r1, r2, r3]))  # what the nearest rotation is made of
+    R = U @ Vt  # the nearest rotation
+    return np.vstack([np.column_stack([R, T]), [0, 0, 0, 1]])
 
+
+# The steps without the line that cures what noise did.
+_RAW = ("R = U @ Vt", "R = np.column_stack([r1, r2, r3])")
+_MISTAKES = mistakes(
+    ("sign of λ", "Right for a positive scale. With a negative one your board stands behind the "
+     "camera: which sign has T_z?",
+     edited(_steps, "np.sign(X[2, 2]) * size", "size", *_RAW),
+     edited(_steps, "np.sign(X[2, 2]) * size", "size")),
+    ("sign in T only", "Right for a positive scale. With a negative one you changed the sign of T "
+     "alone: λ has one sign, for all three columns.",
+     _sign_in_T_only),
+    ("T not divided", "R is right, but T is still multiplied by λ, as the other columns were.",
+     edited(_steps, "X[:, 2] / scale", "X[:, 2]", *_RAW),
+     edited(_steps, "X[:, 2] / scale", "X[:, 2]"),
+     edited(_steps, "X[:, 2] / scale", "X[:, 2] * np.sign(X[2, 2])")),
+    ("r3 the wrong way round", "Your R is a reflection: in which order are r1 and r2 multiplied?",
+     edited(_steps, "(r1, r2)", "(r2, r1)", *_RAW), edited(_steps, "(r1, r2)", "(r2, r1)")),
+    ("R transposed", "You have r1, r2 and r3 as rows of R; what are they?",
+     edited(_steps, "[R, T]", "[R.T, T]")),
+    ("A⁻¹ forgotten", "You took r1 and r2 from H itself, which is in pixels.",
+     edited(_steps, "np.linalg.inv(A) @ H", "H", *_RAW),
+     edited(_steps, "np.linalg.inv(A) @ H", "H")),
+    ("A for A⁻¹", "You multiplied by A, which H has in it already.",
+     edited(_steps, "np.linalg.inv(A)", "A", *_RAW), edited(_steps, "np.linalg.inv(A)", "A")),
+    ("r3 the third column", "The third column of A⁻¹ H is λ T, not r3: the board's own z axis is "
+     "not seen.",
+     edited(_steps, "np.cross(r1, r2)", "T", *_RAW), edited(_steps, "np.cross(r1, r2)", "T"),
+     edited(_steps, "np.cross(r1, r2)", "T / np.linalg.norm(T)")),
+    ("no rotation with noise", "Right on exact data. With noise r1 and r2 are neither of one "
+     "length nor perpendicular: which rotation is nearest?",
+     edited(_steps, *_RAW), edited(_steps, "[:, 0])", "[:, 1])", *_RAW),
+     edited(_steps, "np.linalg.norm(X[:, 0])", "np.linalg.norm(X[:, :2], axis=0).mean()", *_RAW),
+     edited(_steps, "np.linalg.norm(X[:, 0])",
+            "np.sqrt(np.prod(np.linalg.norm(X[:, :2], axis=0)))", *_RAW)),
+    ("r1 and r2 scaled each by itself", "Right on exact data. You scaled r1 and r2 to length 1 one "
+     "by one: with noise they are still not perpendicular.",
+     *(edited(_steps, "    r3 =", "    n = np.linalg.norm(r2); r2 = r2 / n; "
+              f"T = T / (1 + {w} * (n - 1)); r3 =", *_RAW) for w in (0, 0.5, 1))),
+    ("camera's position for T", "You gave where the camera stands beside R: G has T itself.",
+     edited(_steps, "[R, T]", "[R, -R.T @ T]")),
+    ("r1 and r2 exchanged", "r1 and r2 are exchanged: to which column of H belongs which?",
+     lambda A, H: extrinsics(A, H[:, [1, 0, 2]])),
+    ("λ left out", "r1, r2 and T are still multiplied by λ: how long is r1?",
+     edited(_steps, "np.sign(X[2, 2]) * size", "1", *_RAW),
+     edited(_steps, "np.sign(X[2, 2]) * size", "np.sign(X[2, 2])", *_RAW)),
+)  # fmt: skip
 
 EXTRINSICS = Exercise(
     name="extrinsics",
@@ -139,7 +134,7 @@ EXTRINSICS = Exercise(
     "homography H, of any scale and sign. The board was in front of the camera, and H has a "
     "little noise: make R a rotation all the same.",
     stub='''def my_extrinsics(A, H):
-    """Give G (4, 4), CRF ← board."""
+    """Return G (4, 4), CRF ← board."""
     ...''',
     hints=(
         "A⁻¹ H = λ [r1 r2 T], and r1 and r2 are unit vectors: |λ| is the length of the first "
@@ -161,185 +156,9 @@ EXTRINSICS = Exercise(
         ),
         Property("A negative scale of H still puts the board in front: T_z > 0.", about="negative"),
     ),
-    misconceptions=(
-        Misconception(
-            "sign in T only",
-            "Right for a positive scale. With a negative one you changed the sign of T alone: λ "
-            "has one sign, for r1, r2 and T.",
-            _sign_in_T_only,
-        ),
-        Misconception(
-            "T not divided",
-            "R is right, but T is still multiplied by λ: all three columns are divided.",
-            lambda A, H: _G(A, H, T_scale=_parts(A, H)[3]),
-            seen=_T_not_divided,
-        ),
-        Misconception(
-            "λ for 1/λ",
-            "You multiplied T by λ where it is divided. Zhang's λ is the reciprocal of the notes'.",
-            lambda A, H: _G(A, H, T_scale=_parts(A, H)[3] ** 2),
-        ),
-        Misconception(
-            "sign of λ",
-            "Right for a positive scale. With a negative one your board stands behind the camera: "
-            "choose the sign for which T_z > 0.",
-            lambda A, H: _G(A, H, sign=False),
-        ),
-        Misconception(
-            "r3 the wrong way round",
-            "r3 = r1 × r2, in this order; with r2 × r1 the determinant of R is −1, a reflection.",
-            lambda A, H: _G(A, H, r3=-1.0),
-        ),
-        Misconception(
-            "R transposed",
-            "r1, r2 and r3 are the columns of R; you have them as rows.",
-            lambda A, H: _transposed(extrinsics(A, H)),
-        ),
-        Misconception(
-            "A⁻¹ forgotten",
-            "You took r1 and r2 from H itself. H = λ A [r1 r2 T]: multiply by A⁻¹ first.",
-            lambda A, H: _G(np.eye(3), H),
-        ),
-        Misconception(
-            "the way back",
-            "That is the pose of the camera in the board's frame, G⁻¹.",
-            lambda A, H: np.linalg.inv(extrinsics(A, H)),
-        ),
-        Misconception(
-            "r3 the third column",
-            "The third column of A⁻¹ H is λ T, not r3: the board's own z axis is not seen. "
-            "r3 = r1 × r2.",
-            lambda A, H: _joined(
-                *(x / _parts(A, H)[3] for x in (*_parts(A, H)[:3], _parts(A, H)[2]))
-            ),
-        ),
-        Misconception(
-            "no rotation with noise",
-            (
-                "Right on exact data. With noise r1 and r2 are neither of one length nor "
-                "perpendicular: take the rotation nearest to [r1 r2 r3]."
-            ),
-            lambda A, H: _no_rotation(A, H, lambda a, b: (a + b) / 2),
-            variants=(
-                lambda A, H: _no_rotation(A, H, lambda a, b: a),
-                lambda A, H: _no_rotation(A, H, lambda a, b: b),
-                lambda A, H: _no_rotation(A, H, lambda a, b: np.sqrt(a * b)),
-            ),
-        ),
-        Misconception(
-            "r1 and r2 scaled each by itself",
-            (
-                "Right on exact data. You scaled r1 and r2 to length 1 one by one: with noise "
-                "they are still not perpendicular. Take the rotation nearest to [r1 r2 r3]."
-            ),
-            lambda A, H: _each_by_itself(A, H),
-            variants=(
-                lambda A, H: _each_by_itself(A, H, 1.0),
-                lambda A, H: _each_by_itself(A, H, 0.0),
-            ),
-        ),
-        Misconception(
-            "T left out",
-            "R is right; T = λ⁻¹ A⁻¹ h3 is missing.",
-            lambda A, H: pose(extrinsics(A, H)[:3, :3], np.zeros(3)),
-        ),
-        Misconception(
-            "last row left out",
-            "G is a motion (4, 4): (0, 0, 0, 1) is missing below.",
-            lambda A, H: extrinsics(A, H)[:3],
-        ),
-        Misconception(
-            "last row of zeros",
-            "The last row of G is (0, 0, 0, 1): without its 1 no translation is ever added.",
-            lambda A, H: np.diag([1, 1, 1, 0]) @ extrinsics(A, H),
-        ),
-        Misconception(
-            "A for A⁻¹",
-            "You multiplied by A: H = λ A [r1 r2 T], so A has to be undone.",
-            lambda A, H: _G(np.linalg.inv(A), H),
-        ),
-        Misconception(
-            "rows of H",
-            "You took the rows of H; h1, h2 and h3 are its columns.",
-            lambda A, H: extrinsics(A, H.T),
-        ),
-        Misconception(
-            "T negated",
-            "Your board stands behind the camera: T has the wrong sign.",
-            lambda A, H: pose(extrinsics(A, H)[:3, :3], -extrinsics(A, H)[:3, 3]),
-        ),
-        Misconception(
-            "camera's position for T",
-            "You gave where the camera stands, −Rᵀ T, beside R: G has T itself.",
-            lambda A, H: pose(
-                extrinsics(A, H)[:3, :3], -extrinsics(A, H)[:3, :3].T @ extrinsics(A, H)[:3, 3]
-            ),
-        ),
-        Misconception(
-            "nearest rotation of [r1 r2 T]",
-            "You made a rotation of [r1 r2 T]: its third column is T, not r3 = r1 × r2.",
-            lambda A, H: _nearest_to(A, H, third="T"),
-            variants=(lambda A, H: _nearest_to(A, H, third="T / |T|"),),
-        ),
-        Misconception(
-            "r3 left out",
-            "r3 = r1 × r2 is missing: R has three columns.",
-            lambda A, H: extrinsics(A, H) * [1, 1, 0, 1],
-            variants=(lambda A, H: extrinsics(A, H)[:3, [0, 1, 3]],),
-        ),
-        Misconception(
-            "T from H itself",
-            "T = λ⁻¹ A⁻¹ h3: you left out A⁻¹.",
-            lambda A, H: pose(extrinsics(A, H)[:3, :3], H[:, 2] / _parts(A, H)[3]),
-            variants=(lambda A, H: pose(extrinsics(A, H)[:3, :3], H[:, 2]),),
-        ),
-        Misconception(
-            "T scaled to length 1",
-            "T has the length it has: it is divided by λ, not by its own length.",
-            lambda A, H: pose(
-                extrinsics(A, H)[:3, :3],
-                extrinsics(A, H)[:3, 3] / np.linalg.norm(extrinsics(A, H)[:3, 3]),
-            ),
-        ),
-        Misconception(
-            "R only",
-            "R is right; asked is the pose (4, 4), with T.",
-            lambda A, H: extrinsics(A, H)[:3, :3],
-        ),
-        Misconception(
-            "λ from the determinant",
-            "You divided T by the determinant of A⁻¹ H. λ is the length of its first two "
-            "columns, as r1 and r2 are unit vectors.",
-            lambda A, H: pose(
-                extrinsics(A, H)[:3, :3], _parts(A, H)[2] / np.linalg.det(np.linalg.inv(A) @ H)
-            ),
-        ),
-        Misconception(
-            "r1 and r2 exchanged",
-            "r1 belongs to the first column of H, r2 to the second.",
-            lambda A, H: extrinsics(A, H[:, [1, 0, 2]]),
-        ),
-        Misconception(
-            "board behind the camera",
-            "Your board stands behind the camera: choose the sign for which T_z > 0, for r1, r2 "
-            "and T.",
-            lambda A, H: _behind(extrinsics(A, H)),
-        ),
-        Misconception(
-            "T in the last row",
-            "T stands in the last column of G, (0, 0, 0, 1) in its last row.",
-            lambda A, H: extrinsics(A, H).T,
-            variants=(lambda A, H: _T_below(extrinsics(A, H)),),
-        ),
-        Misconception(
-            "λ left out",
-            "r1, r2 and T are still multiplied by λ: r1 is a unit vector, so divide all three by "
-            "the length of the first column of A⁻¹ H.",
-            lambda A, H: _joined(*_parts(A, H)[:2], np.cross(*_parts(A, H)[:2]), _parts(A, H)[2]),
-            variants=(lambda A, H: _signed(A, H),),
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=extrinsics,
+    steps=_steps,
     sources=(extrinsics, nearest_rotation),
     same=same_motion,
     concepts=("54", "60", "d", "E32"),

@@ -1,19 +1,25 @@
 """The focal length from a camera that turns on the spot: no board, no distances."""
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, rounded, some_factors, some_rotation
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
 def focal_from_turn(H: Array) -> float:
-    """Give f from H ≈ A R A⁻¹ with A = diag(f, f, 1), of any scale and sign.
+    """Return f from H ≈ A R A⁻¹ with A = diag(f, f, 1), of any scale and sign.
 
     The last column of a rotation is as long as its last row, and both share r33. In H the first
     two entries of the column carry f, those of the row 1 / f.
     """
     return float(np.sqrt(np.linalg.norm(H[:2, 2]) / np.linalg.norm(H[2, :2])))
+
+
+# About x and y at once, f = 300: the axis is at 45° to both.
+_ABOUT_BOTH = np.array([[2.0, 1, 600], [1, 2, -600], [-1 / 150, 1 / 150, 1]])
 
 
 def _turn(f: float, R: Array, factor: float = 1.0) -> Array:
@@ -27,6 +33,7 @@ def _turns(rng: Rng) -> list[Case]:
     return [
         Case((_turn(500.0, ABOUT_Y),), about="about the vertical"),
         Case((_turn(500.0, ABOUT_X @ ABOUT_Y),)),
+        Case((_ABOUT_BOTH,), about="an axis at 45°"),
         Case((_turn(float(f), some_rotation(rng), float(first)),)),
         Case((_turn(float(g), some_rotation(rng), float(second)),)),
     ]
@@ -37,7 +44,7 @@ def _to_det_1(H: Array) -> Array:
 
 
 def _by_column(H: Array) -> float:
-    """Give the root of f² = (h13² + h23²) / (1 − h33²), which holds where det H = 1."""
+    """Return the root of f² = (h13² + h23²) / (1 − h33²), which holds where det H = 1."""
     with np.errstate(all="ignore"):
         return float(np.sqrt(H[:2, 2] @ H[:2, 2] / (1 - H[2, 2] ** 2)))
 
@@ -47,11 +54,50 @@ def _by_entries(H: Array) -> float:
         return float(np.sqrt(abs(H[0, 2] / H[2, 0])))
 
 
+def _by_columns(H: Array) -> float:
+    """Return f from the equal lengths of the first two columns alone."""
+    with np.errstate(all="ignore"):
+        f2 = (H[2, 1] ** 2 - H[2, 0] ** 2) / (H[:2, 0] @ H[:2, 0] - H[:2, 1] @ H[:2, 1])
+        return float(np.sqrt(f2))
+
+
 def _by_rows(H: Array) -> float:
-    """Give f from the right angle of the first two rows alone."""
+    """Return f from the right angle of the first two rows alone."""
     with np.errstate(all="ignore"):
         return float(np.sqrt(-H[0, 2] * H[1, 2] / (H[0, 0] * H[1, 0] + H[0, 1] * H[1, 1])))
 
+
+def _steps(H: Array) -> Any:
+    column = np.hypot(H[0, 2], H[1, 2])  # the length of the last column without its last entry
+    row = np.hypot(H[2, 0], H[2, 1])  # the length of the last row without its last entry
+    return np.sqrt(column / row)
+
+
+_MISTAKES = mistakes(
+    ("scale believed", "You took the scale of H for that of a rotation, and H comes in any scale.",
+     _by_column, lambda H: _by_column(H / np.linalg.norm(H))),
+    ("h33 made 1", "You divided by h33, but H with h33 = 1 is no turn: in which ratio does the "
+     "scale cancel?",
+     lambda H: float(np.linalg.norm(H[:2, 2] / H[2, 2]))),
+    ("entries for lengths", "You compared single entries; they are of one size only if the "
+     "camera turns about the vertical.",
+     _by_entries, lambda H: float(np.sqrt(abs(H[1, 2] / H[2, 1]))),
+     lambda H: float(np.sqrt(np.abs(H[:2, 2] / H[2, :2]).mean()))),
+    ("one right angle", "You used that the first two rows are perpendicular. It holds, but about "
+     "the vertical it reads 0 = 0 and says nothing.",
+     _by_rows),
+    ("only the column", "That is f times the sine of the angle between the two optical axes.",
+     lambda H: float(np.linalg.norm(_to_det_1(H)[:2, 2])),
+     lambda H: float(np.linalg.norm(H[:2, 2]))),
+    ("whole columns", "You took whole columns and rows. Does f stand in all of their entries?",
+     lambda H: float(np.sqrt(np.linalg.norm(H[:, 2]) / np.linalg.norm(H[2])))),
+    ("sums for lengths", "You added entries for a length, and they may have either sign.",
+     lambda H: float(np.sqrt(np.abs(H[:2, 2]).sum() / np.abs(H[2, :2]).sum())),
+     lambda H: float(np.sqrt(abs(H[:2, 2].sum() / H[2, :2].sum())))),
+    ("two columns", "You compared the first two columns, or rows. About an axis at 45° that reads "
+     "0 = 0 and says nothing: which column and which row share an entry?",
+     _by_columns, lambda H: np.reciprocal(_by_columns(np.linalg.inv(H).T))),
+)  # fmt: skip
 
 TURN = Exercise(
     name="focal_from_turn",
@@ -62,7 +108,7 @@ TURN = Exercise(
     "the first picture to those of the second. Give the focal length in pixels. The axis of the "
     "turn is any but the optical one; it may be the vertical.",
     stub='''def my_focal_from_turn(H):
-    """Give f in pixels from H (3, 3), of any scale and sign."""
+    """Return f in pixels from H (3, 3), of any scale and sign."""
     ...''',
     hints=(
         "T plays no part: H ≈ A R A⁻¹ with A = diag(f, f, 1). Multiply that out.",
@@ -77,60 +123,10 @@ TURN = Exercise(
             "A turn about the vertical alone, as for a panorama, is enough.",
             about="about the vertical",
         ),
+        Property("So is one about an axis at 45° to the rows.", about="an axis at 45°"),
     ),
-    misconceptions=(
-        Misconception(
-            "scale believed",
-            "You took 1 − h33² for r13² + r23². That is so only if H is scaled to determinant 1, "
-            "and H comes in any scale.",
-            _by_column,
-            variants=(lambda H: _by_column(H / np.linalg.norm(H)),),
-        ),
-        Misconception(
-            "h33 made 1",
-            "H with h33 = 1 is no turn: r33 is the cosine between the two optical axes. Use a "
-            "ratio in which the scale cancels.",
-            lambda H: float(np.linalg.norm(H[:2, 2] / H[2, 2])),
-        ),
-        Misconception(
-            "entries for lengths",
-            "r13 and r31 have equal size only if the camera turns about the vertical: compare the "
-            "lengths of both entries, (h13, h23) and (h31, h32).",
-            _by_entries,
-            variants=(
-                lambda H: float(np.sqrt(abs(H[1, 2] / H[2, 1]))),
-                lambda H: float(np.sqrt(np.abs(H[:2, 2] / H[2, :2]).mean())),
-            ),
-        ),
-        Misconception(
-            "one right angle",
-            "You used that the first two rows are perpendicular. It holds, but about the vertical "
-            "it reads 0 = 0 and says nothing: take lengths as well.",
-            _by_rows,
-        ),
-        Misconception(
-            "only the column",
-            "That is f times the sine of the angle between the two optical axes.",
-            lambda H: float(np.linalg.norm(_to_det_1(H)[:2, 2])),
-            variants=(lambda H: float(np.linalg.norm(H[:2, 2])),),
-        ),
-        Misconception(
-            "whole columns",
-            "You took whole columns and rows. Their last entry, h33, has no f: leave it out.",
-            lambda H: float(np.sqrt(np.linalg.norm(H[:, 2]) / np.linalg.norm(H[2]))),
-        ),
-        Misconception(
-            "sums for lengths",
-            "Entries may have either sign: add their squares, not the entries.",
-            lambda H: float(np.sqrt(np.abs(H[:2, 2]).sum() / np.abs(H[2, :2]).sum())),
-            variants=(lambda H: float(np.sqrt(abs(H[:2, 2].sum() / H[2, :2].sum()))),),
-        ),
-        Misconception(
-            "the first two rows' lengths",
-            "(h11, h12) has no f in it: it is the last column and the last row that have.",
-            lambda H: float(np.sqrt(np.linalg.norm(H[:2, 2]) / np.linalg.norm(H[0, :2]))),
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=focal_from_turn,
+    steps=_steps,
     concepts=("56", "q"),
 )

@@ -1,16 +1,19 @@
 """The lens by least squares."""
 
+from typing import Any
+
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import radial_distortion
 from cvnotes.camera import xy_from_px
 from cvnotes.learn.cases.cameras import rounded, some_lens
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.steps import edited
 
 
 def radial_fit(xy: Array, xy_lens: Array) -> Array:
-    """Give k (2,) from ideal and observed points (n, 2) of the plane z = 1."""
+    """Return k (2,) from ideal and observed points (n, 2) of the plane z = 1."""
     W = np.column_stack([xy, np.zeros(len(xy))])
     at_one = np.eye(4)
     at_one[2, 3] = 1
@@ -22,7 +25,7 @@ def _ideal_and_seen(rng: Rng) -> list[Case]:
     for n in (3, 12):
         k, _ = some_lens(rng)
         xy = rounded(rng.uniform(-0.5, 0.5, (n, 2)), 2)
-        cases.append(Case((xy, rounded(xy + _bent(xy, xy) @ k, 10)), truth=k))
+        cases.append(Case((xy, rounded(xy + _bent(xy, xy) @ k, 13)), truth=k))
     k, _ = some_lens(rng)
     xy = rounded(rng.uniform(-0.5, 0.5, (9, 2)), 2)
     noisy = xy + _bent(xy, xy) @ k + 2e-3 * rng.standard_normal((9, 2))
@@ -31,7 +34,7 @@ def _ideal_and_seen(rng: Rng) -> list[Case]:
 
 
 def _bent(xy: Array, radius_of: Array) -> Array:
-    """Give (n, 2, 2): what k1 = 1 and k2 = 1 add to each point."""
+    """Return (n, 2, 2): what k1 = 1 and k2 = 1 add to each point."""
     r2 = (radius_of**2).sum(1)[:, None]
     return np.stack([xy * r2, xy * r2**2], axis=-1)
 
@@ -65,7 +68,7 @@ def _powers(xy: Array, first: int, second: int) -> Array:
 
 
 def _polynomial(xy: Array, xy_lens: Array) -> Array:
-    """Give (c, k1, k2) of r'/r = c + k1 r² + k2 r⁴."""
+    """Return (c, k1, k2) of r'/r = c + k1 r² + k2 r⁴."""
     r2 = (xy**2).sum(1)
     return _fit(np.column_stack([r2**0, r2, r2**2]), np.sqrt((xy_lens**2).sum(1) / r2))
 
@@ -74,6 +77,53 @@ def _fit_with_constant(xy: Array, xy_lens: Array) -> Array:
     return _fit(np.concatenate([xy[..., None], _bent(xy, xy)], axis=-1), xy_lens)
 
 
+def _steps(xy: Array, xy_lens: Array) -> Any:
+    r2 = (xy**2).sum(axis=1, keepdims=True)  # r² of the ideal points
+    first = xy * r2  # what k1 is multiplied by
+    second = xy * r2**2  # what k2 is multiplied by
+    D = np.column_stack([first.ravel(), second.ravel()])  # the matrix of the equations
+    d = (xy_lens - xy).ravel()  # what the lens has moved
+    return np.linalg.solve(D.T @ D, D.T @ d)
+
+
+_MISTAKES = mistakes(
+    ("r of the observed points", "You computed r from the observed points, as the notes print it: "
+     "even exact data give wrong coefficients then. Of which points is L(r)?",
+     lambda xy, xy_lens: _fit(_bent(xy, xy_lens), xy_lens - xy),
+     lambda xy, xy_lens: _fit(_bent(xy_lens, xy_lens), xy_lens - xy)),
+    ("the 1 of L left out", "You fitted all of what was observed: where is a point that the lens "
+     "does not move?",
+     edited(_steps, "xy_lens - xy", "xy_lens")),
+    ("k1 alone first", "You fitted k1 without k2, and then k2 to what was left. Both share the "
+     "same points.",
+     _one_by_one),
+    ("k1 only", "You fitted k1 alone, and gave 0 for k2: the fit has two unknowns.",
+     lambda xy, xy_lens: np.append(_fit(_bent(xy, xy)[..., 0], xy_lens - xy), 0)),
+    ("r for r²", "Which powers of r does L have? You have others.",
+     lambda xy, xy_lens: _fit(_powers(xy, 1, 2), xy_lens - xy),
+     lambda xy, xy_lens: _fit(_powers(xy, 2, 3), xy_lens - xy)),
+    ("one coordinate only", "You used the equations of one coordinate; with noise those of the "
+     "other count too.",
+     lambda xy, xy_lens: _fit(_bent(xy, xy)[:, 0], (xy_lens - xy)[:, 0]),
+     lambda xy, xy_lens: _fit(_bent(xy, xy)[:, 1], (xy_lens - xy)[:, 1])),
+    ("each coordinate by itself", "You fitted x and y separately; both share k1 and k2.",
+     lambda xy, xy_lens: sum(_fit(_bent(xy, xy)[:, i], (xy_lens - xy)[:, i]) for i in (0, 1)) / 2),
+    ("the factors, not the points", "You fitted L itself, the quotient of observed and ideal: "
+     "right on exact data. With noise, dividing by a small coordinate makes it large.",
+     lambda xy, xy_lens: _fit(_bent(xy, xy) / xy[..., None], xy_lens / xy - 1), _radii_quotient),
+    ("not multiplied by x and y", "You fitted k1 r² + k2 r⁴ itself to what the lens has moved: "
+     "which factor is left out?",
+     lambda xy, xy_lens: _fit(_bent(xy, xy) / xy[..., None], xy_lens - xy)),
+    ("a constant fitted too", "You fitted L with a constant of its own, which is known. On exact "
+     "data that is the same, with noise it is not.",
+     lambda xy, xy_lens: _polynomial(xy, xy_lens)[1:],
+     lambda xy, xy_lens: _fit_with_constant(xy, xy_lens)[1:]),
+    ("the first points only", "Right on exact data. With noise every point counts.",
+     lambda xy, xy_lens: radial_fit(xy[:2], xy_lens[:2]),
+     lambda xy, xy_lens: _fit(_bent(xy[:1], xy[:1]), (xy_lens - xy)[:1]),
+     lambda xy, xy_lens: radial_fit(xy[:3], xy_lens[:3])),
+)  # fmt: skip
+
 RADIAL = Exercise(
     name="radial_fit",
     chapter=7,
@@ -81,7 +131,7 @@ RADIAL = Exercise(
     task="Give k = (k1, k2) from points of the plane z = 1: where they should be (xy, ideal) and "
     "where they were seen (xy_lens), shape (n, 2) each. No tangential terms.",
     stub='''def my_radial_fit(xy, xy_lens):
-    """Give k (2,) with xy_lens = (1 + k1 r² + k2 r⁴) xy, by least squares."""
+    """Return k (2,) with xy_lens = (1 + k1 r² + k2 r⁴) xy, by least squares."""
     ...''',
     hints=(
         "xy_lens − xy = (k1 r² + k2 r⁴) xy is linear in k1 and k2.",
@@ -100,142 +150,9 @@ RADIAL = Exercise(
             about="noisy",
         ),
     ),
-    misconceptions=(
-        Misconception(
-            "r of the observed points",
-            "You computed r from the observed points, as the notes print it. L(r) was defined "
-            "with the ideal radius: even exact data give wrong coefficients otherwise.",
-            lambda xy, xy_lens: _fit(_bent(xy, xy_lens), xy_lens - xy),
-            variants=(lambda xy, xy_lens: _fit(_bent(xy_lens, xy_lens), xy_lens - xy),),
-        ),
-        Misconception(
-            "sign",
-            "Your coefficients have the wrong sign: d is observed minus ideal.",
-            lambda xy, xy_lens: -radial_fit(xy, xy_lens),
-        ),
-        Misconception(
-            "the 1 of L left out",
-            "You fitted xy_lens = (k1 r² + k2 r⁴) xy: L starts with 1, so subtract xy first.",
-            lambda xy, xy_lens: _fit(_bent(xy, xy), xy_lens),
-        ),
-        Misconception(
-            "k1 alone first",
-            "You fitted k1 without k2, and then k2 to what was left. Both share the same points: "
-            "solve for them together.",
-            _one_by_one,
-        ),
-        Misconception(
-            "r for r²",
-            "You used r and r² where L has r² and r⁴.",
-            lambda xy, xy_lens: _fit(
-                np.stack([xy * np.hypot(*xy.T)[:, None], xy * (xy**2).sum(1)[:, None]], -1),
-                xy_lens - xy,
-            ),
-        ),
-        Misconception(
-            "x only",
-            (
-                "You used the equations of x only; with noise those of y count too: two rows for "
-                "each point."
-            ),
-            lambda xy, xy_lens: _fit(_bent(xy, xy)[:, 0], (xy_lens - xy)[:, 0]),
-        ),
-        Misconception(
-            "y only",
-            (
-                "You used the equations of y only; with noise those of x count too: two rows for "
-                "each point."
-            ),
-            lambda xy, xy_lens: _fit(_bent(xy, xy)[:, 1], (xy_lens - xy)[:, 1]),
-        ),
-        Misconception(
-            "r⁶ for r⁴",
-            "k2 belongs to r⁴, which is (r²)²; you have r⁶.",
-            lambda xy, xy_lens: _fit(
-                np.stack([xy * (xy**2).sum(1)[:, None], xy * (xy**2).sum(1)[:, None] ** 3], -1),
-                xy_lens - xy,
-            ),
-        ),
-        Misconception(
-            "the factors, not the points",
-            (
-                "You fitted L itself, the quotient of observed and ideal: right on exact data. "
-                "With noise, dividing by a small coordinate makes it large; fit xy_lens − xy."
-            ),
-            lambda xy, xy_lens: _fit(_bent(xy, xy) / xy[..., None], xy_lens / xy - 1),
-            variants=(lambda xy, xy_lens: _radii_quotient(xy, xy_lens),),
-        ),
-        Misconception(
-            "not multiplied by x and y",
-            (
-                "You fitted xy_lens − xy = k1 r² + k2 r⁴: both sides belong to x and y, (k1 r² + "
-                "k2 r⁴) xy."
-            ),
-            lambda xy, xy_lens: _fit(_bent(xy, xy) / xy[..., None], xy_lens - xy),
-        ),
-        Misconception(
-            "k1 only",
-            "You fitted k1 alone, and gave 0 for k2: the fit has two unknowns.",
-            lambda xy, xy_lens: np.append(_fit(_bent(xy, xy)[..., 0], xy_lens - xy), 0),
-        ),
-        Misconception(
-            "the first points only",
-            ("Right on exact data. With noise every point counts: stack the rows of all of them."),
-            lambda xy, xy_lens: radial_fit(xy[:2], xy_lens[:2]),
-            variants=(
-                lambda xy, xy_lens: _fit(_bent(xy[:1], xy[:1]), (xy_lens - xy)[:1]),
-                lambda xy, xy_lens: radial_fit(xy[:3], xy_lens[:3]),
-            ),
-        ),
-        Misconception(
-            "a constant fitted too",
-            "You fitted L = c + k1 r² + k2 r⁴ with a constant of its own: it is 1. On exact data "
-            "that is the same, with noise it is not.",
-            lambda xy, xy_lens: _polynomial(xy, xy_lens)[1:],
-            variants=(lambda xy, xy_lens: _fit_with_constant(xy, xy_lens)[1:],),
-        ),
-        Misconception(
-            "highest power first",
-            "np.polyfit gives the highest power first, (k2, k1, c): turn it around, and fix the "
-            "constant to 1.",
-            lambda xy, xy_lens: _polynomial(xy, xy_lens)[:0:-1],
-            variants=(lambda xy, xy_lens: _polynomial(xy, xy_lens)[::-1],),
-        ),
-        Misconception(
-            "three coefficients",
-            "Asked are k1 and k2: the constant of L is 1, and nothing follows after r⁴.",
-            lambda xy, xy_lens: _polynomial(xy, xy_lens),
-            variants=(lambda xy, xy_lens: _fit_with_constant(xy, xy_lens),),
-        ),
-        Misconception(
-            "r² and r³",
-            "k2 belongs to r⁴; you have r³.",
-            lambda xy, xy_lens: _fit(_powers(xy, 2, 3), xy_lens - xy),
-        ),
-        Misconception(
-            "both with r²",
-            "k2 belongs to r⁴, which is (r²)²; you used r² for both.",
-            lambda xy, xy_lens: _fit(_powers(xy, 2, 2), xy_lens - xy),
-        ),
-        Misconception(
-            "each coordinate by itself",
-            "You fitted x and y separately; both share k1 and k2: two rows for each point, one "
-            "fit.",
-            lambda xy, xy_lens: (
-                (
-                    _fit(_bent(xy, xy)[:, 0], (xy_lens - xy)[:, 0])
-                    + _fit(_bent(xy, xy)[:, 1], (xy_lens - xy)[:, 1])
-                )
-                / 2
-            ),
-        ),
-        Misconception(
-            "quotient for difference",
-            "You fitted xy_lens / xy without subtracting 1: L = 1 + k1 r² + k2 r⁴.",
-            lambda xy, xy_lens: _fit(_bent(xy, xy) / xy[..., None], xy_lens / xy),
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=radial_fit,
+    steps=_steps,
     concepts=("62", "63", "E34", "E35"),
     sources=(radial_distortion, xy_from_px),
 )

@@ -1,13 +1,16 @@
 """Holes in a forward warp."""
 
 # A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
+
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import pixel_centres, rounded
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.steps import edited
 
 
 def count_holes(m: Array, size: tuple[int, int]) -> int:
@@ -18,7 +21,7 @@ def count_holes(m: Array, size: tuple[int, int]) -> int:
 
 
 def _hit(m: Array, size: tuple[int, int], rounding: np.ufunc = np.rint) -> Array:
-    """Give the target pixels (k, 2) that are hit, each once."""
+    """Return the target pixels (k, 2) that are hit, each once."""
     pixels = np.unique(rounding(m), axis=0)
     inside = (pixels >= 0).all(1) & (pixels < size).all(1)
     return np.asarray(pixels[inside])
@@ -42,10 +45,20 @@ def _landings(rng: Rng) -> list[Case]:
             [2.1, -1.6],
         ]
     )
-    grid = pixel_centres((8, 6)) * 1.3 - 1.0
-    moved = rounded(grid + rng.uniform(-0.9, 0.9, grid.shape))
-    moved[np.abs(moved % 1 - 0.5) < 0.02] += 0.05
-    return [Case((by_hand, (4, 2))), Case((moved, (10, 7)))]
+    grid, size = pixel_centres((8, 6)) * 1.3 - 1.0, (10, 7)
+    first = Case((by_hand, (4, 2)))
+    while True:  # no two mistakes give the same numbers, nor does one give the right ones
+        moved = rounded(grid + rng.uniform(-0.9, 0.9, grid.shape))
+        moved[np.abs(moved % 1 - 0.5) < 0.02] += 0.05
+        ways = (_steps, *_wrong_counts())
+        counts = {(gives(*first.args), gives(moved, size)) for gives in ways}
+        if len(counts) == len(ways):
+            return [first, Case((moved, size))]
+
+
+def _wrong_counts() -> Iterator[Callable[[Array, tuple[int, int]], Any]]:
+    for mistake in _MISTAKES:
+        yield from (mistake.gives, *mistake.variants)
 
 
 def _landed_inside(m: Array, size: tuple[int, int]) -> int:
@@ -53,27 +66,54 @@ def _landed_inside(m: Array, size: tuple[int, int]) -> int:
     return int(((pixels >= 0).all(1) & (pixels < size).all(1)).sum())
 
 
-def _wrapped_around(m: Array, size: tuple[int, int]) -> int | None:
-    """Colour without asking for u ≥ 0 and v ≥ 0; None where that raises an IndexError."""
-    pixels = np.rint(m).astype(int)
-    pixels = pixels[(pixels < size).all(1)]
-    if (pixels < -np.array(size)).any():
-        return None
-    return size[0] * size[1] - len(np.unique(pixels % size, axis=0))
+def _steps(m: Array, size: tuple[int, int]) -> Any:
+    width, height = size
+    pixels = np.rint(m)  # the nearest pixels
+    inside = (pixels >= 0).all(axis=1) & (pixels < size).all(axis=1)  # which the target has
+    hit = np.unique(pixels[inside], axis=0)  # the pixels that are hit, each once
+    return width * height - len(hit)
 
 
-def _tested_first(m: Array, size: tuple[int, int], beyond: float) -> int:
-    """Leave out what is outside of the pixel centres, or of pixels from 0 to width."""
-    inside = (m >= 0).all(1) & (m <= np.array(size) - 1 + beyond).all(1)
-    return size[0] * size[1] - len(_hit(m[inside], size))
-
-
-def _picture(m: Array, size: tuple[int, int]) -> Array:
-    picture = np.zeros(size[::-1])
-    u, v = _hit(m, size).astype(int).T
-    picture[v, u] = 1
-    return picture
-
+_MISTAKES = mistakes(
+    ("pixels hit", "That is how many pixels are coloured; the holes are the others.",
+     lambda m, size: len(_hit(m, size))),
+    ("folds not considered", "You subtracted the number of source pixels that land inside. Several "
+     "of them may land on one pixel (a fold), which is then coloured once.",
+     lambda m, size: size[0] * size[1] - _landed_inside(m, size)),
+    ("folds counted", "That is how many source pixels land where another one has landed already: "
+     "folds, not holes.",
+     lambda m, size: _landed_inside(m, size) - len(_hit(m, size))),
+    ("floored, not rounded", "You cut the decimals off: is that the nearest pixel?",
+     edited(_steps, "np.rint(m)", "np.floor(m)")),
+    ("rounded upwards", "You took the ceiling: is that the nearest pixel?",
+     edited(_steps, "np.rint(m)", "np.ceil(m)")),
+    ("positions outside counted", "You counted positions outside of the target as if they coloured "
+     "a pixel of it.",
+     edited(_steps, "pixels[inside]", "pixels")),
+    ("n subtracted", "Pixels of the target minus pixels of the source: but some land outside, and "
+     "some on the same pixel.",
+     lambda m, size: size[0] * size[1] - len(m)),
+    ("size exchanged", "size is (width, height): with which of both does u go?",
+     edited(_steps, "< size", "< (height, width)")),
+    ("negative indices that wrap", "A negative index does not fail in Python: it counts from the "
+     "end, and colours the other side. Is each position inside at the left and above as well?",
+     edited(_steps, "(pixels >= 0)", "(pixels >= -np.array(size))",
+            "pixels[inside]", "pixels[inside] % size")),
+    ("positions that land inside", "That is how many positions land inside; the holes are pixels "
+     "on which none does.",
+     _landed_inside),
+    ("tested before rounding", "You asked whether a position is inside before rounding: −0.4 is "
+     "rounded to pixel 0, and colours it.",
+     edited(_steps, "(pixels >= 0)", "(m >= 0)", "pixels < size", "m <= np.array(size) - 1"),
+     edited(_steps, "(pixels >= 0)", "(m >= 0)")),
+    ("columns and rows one by one", "You counted columns and rows that are hit, one by one: a "
+     "pixel is hit if one position has both.",
+     lambda m, size: size[0] * size[1] - np.prod([len(np.unique(x)) for x in _hit(m, size).T])),
+    ("border repeated", "You moved positions outside to the border; they colour nothing.",
+     edited(_steps, "pixels[inside]", "np.clip(pixels, 0, np.array(size) - 1)")),
+    ("pixel 0 left out", "Row 0 and column 0 are inside too.",
+     edited(_steps, ">= 0", "> 0")),
+)  # fmt: skip
 
 HOLES = Exercise(
     name="count_holes",
@@ -93,143 +133,8 @@ HOLES = Exercise(
     ),
     cases=_landings,
     properties=(Property("It is the number of target pixels that none is nearest to."),),
-    misconceptions=(
-        Misconception(
-            "pixels hit",
-            "That is how many pixels are coloured; the holes are the others.",
-            lambda m, size: len(_hit(m, size)),
-        ),
-        Misconception(
-            "folds not considered",
-            "You subtracted the number of source pixels that land inside. Several of them may "
-            "land on one pixel (a fold), which is then coloured once.",
-            lambda m, size: size[0] * size[1] - _landed_inside(m, size),
-        ),
-        Misconception(
-            "folds counted",
-            "That is how many source pixels land where another one has landed already: folds, "
-            "not holes.",
-            lambda m, size: _landed_inside(m, size) - len(_hit(m, size)),
-        ),
-        Misconception(
-            "floored, not rounded",
-            "You cut the decimals off; the nearest pixel is found by rounding.",
-            lambda m, size: size[0] * size[1] - len(_hit(m, size, np.floor)),
-        ),
-        Misconception(
-            "positions outside counted",
-            "You counted positions outside of the target as if they coloured a pixel of it.",
-            lambda m, size: size[0] * size[1] - len(np.unique(np.rint(m), axis=0)),
-        ),
-        Misconception(
-            "n subtracted",
-            "Pixels of the target minus pixels of the source: but some land outside, and some on "
-            "the same pixel.",
-            lambda m, size: size[0] * size[1] - len(m),
-        ),
-        Misconception(
-            "size exchanged",
-            "size is (width, height): u goes with the width, size[0].",
-            lambda m, size: count_holes(m, size[::-1]),
-        ),
-        Misconception(
-            "truncated, not rounded",
-            "int() cuts the decimals off, towards 0; the nearest pixel is found by rounding.",
-            lambda m, size: size[0] * size[1] - len(_hit(m, size, np.trunc)),
-        ),
-        Misconception(
-            "rounded upwards",
-            "You took the ceiling; the nearest pixel is found by rounding.",
-            lambda m, size: size[0] * size[1] - len(_hit(m, size, np.ceil)),
-        ),
-        Misconception(
-            "negative indices that wrap",
-            (
-                "A negative index does not fail in Python: it counts from the end, and colours "
-                "the other side. Ask for u ≥ 0 and v ≥ 0 as well."
-            ),
-            _wrapped_around,
-        ),
-        Misconception(
-            "pixels of the target",
-            "That is how many pixels the target has.",
-            lambda m, size: size[0] * size[1],
-        ),
-        Misconception(
-            "pixels outside",
-            "That is how many positions lie outside of the target.",
-            lambda m, size: len(m) - _landed_inside(m, size),
-        ),
-        Misconception(
-            "positions that land inside",
-            "That is how many positions land inside; the holes are pixels on which none does.",
-            _landed_inside,
-        ),
-        Misconception(
-            "tested before rounding",
-            "You asked whether a position lies between the outermost pixel centres before "
-            "rounding: −0.4 is rounded to pixel 0, and colours it.",
-            lambda m, size: _tested_first(m, size, 0.0),
-            variants=(lambda m, size: _tested_first(m, size, 1.0),),
-        ),
-        Misconception(
-            "not rounded",
-            "You compared positions as they are: several within one pixel colour it once.",
-            lambda m, size: (
-                size[0] * size[1] - len(np.unique(m[((m >= 0) & (m < size)).all(1)], axis=0))
-            ),
-        ),
-        Misconception(
-            "columns and rows one by one",
-            "You counted columns and rows that are hit, one by one: a pixel is hit if one "
-            "position has both.",
-            lambda m, size: (
-                size[0] * size[1]
-                - len(np.unique(_hit(m, size)[:, 0])) * len(np.unique(_hit(m, size)[:, 1]))
-            ),
-            variants=(lambda m, size: size[0] * size[1] - len(np.unique(_hit(m, size))),),
-        ),
-        Misconception(
-            "one row and column too few",
-            "The target has width × height pixels, from 0 to width − 1 and height − 1.",
-            lambda m, size: (
-                (size[0] - 1) * (size[1] - 1) - len(_hit(m, (size[0] - 1, size[1] - 1)))
-            ),
-            variants=(lambda m, size: (size[0] - 1) * (size[1] - 1) - len(_hit(m, size)),),
-        ),
-        Misconception(
-            "one row and column too many",
-            "The target has width × height pixels, from 0 to width − 1: position width is outside.",
-            lambda m, size: (
-                (size[0] + 1) * (size[1] + 1) - len(_hit(m, (size[0] + 1, size[1] + 1)))
-            ),
-        ),
-        Misconception(
-            "border repeated",
-            "You moved positions outside to the border; they colour nothing.",
-            lambda m, size: (
-                size[0] * size[1]
-                - len(np.unique(np.clip(np.rint(m), 0, np.array(size) - 1), axis=0))
-            ),
-        ),
-        Misconception(
-            "pixel 0 left out",
-            "Row 0 and column 0 are inside: u ≥ 0, not u > 0.",
-            lambda m, size: size[0] * size[1] - int((_hit(m, size) > 0).all(1).sum()),
-        ),
-        Misconception(
-            "source pixels without a target",
-            "That is how many source pixels colour nothing, or nothing new; holes are pixels of "
-            "the target.",
-            lambda m, size: len(m) - len(_hit(m, size)),
-        ),
-        Misconception(
-            "where the holes are",
-            "You gave the picture, or a list; asked is how many holes there are.",
-            lambda m, size: _picture(m, size),
-            variants=(lambda m, size: 1 - _picture(m, size),),
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=count_holes,
+    steps=_steps,
     concepts=("71", "72"),
 )

@@ -6,17 +6,17 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.pictures import nearest_edge, stereo_cameras
-from cvnotes.learn.checker.equality import within_part
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.equality import within_part
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, mistakes
 
 
 def how_far() -> float:
-    """Give the depth in millimetres of the block's nearest edge."""
+    """Return the depth in millimetres of the block's nearest edge."""
     return float(stereo_cameras()[0].depth(nearest_edge()))
 
 
 def _seen(W: Array) -> tuple[float, float]:
-    """Give the columns of a point in both pictures."""
+    """Return the columns of a point in both pictures."""
     left, right = (camera.project(W)[0] for camera in stereo_cameras())
     return left, right
 
@@ -31,7 +31,7 @@ def _disparity() -> float:
 
 @cache
 def _edges() -> Array:
-    """Give the depths of the upright edges: four of the tall block, then those of the others."""
+    """Return the depths of the upright edges: four of the tall block, then those of the others."""
     from cvnotes.pictures import blocks
 
     tops = blocks().vertices.reshape(-1, 4, 3)[:6].reshape(-1, 3)
@@ -44,13 +44,70 @@ def _edge(i: int) -> float:
 
 
 def _of_an_edge(answer: Array, _: Case) -> bool:
-    """Tell whether a depth is that of something else in the picture."""
+    """Return whether a depth is that of something else in the picture."""
     return bool(9500 < answer < 25_000)
 
 
 def _nearly(answer: Array, case: Case) -> bool:
     return bool(abs(answer - case.right) < 0.2 * case.right)
 
+
+_AB = _ALPHA * _BASELINE
+_MISTAKES = (
+    *mistakes(
+        ("in metres", "Right, in metres; asked are millimetres.", lambda: how_far() / 1000),
+        ("in centimetres", "Right, in centimetres; asked are millimetres.", lambda: how_far() / 10),
+        ("baseline left out", "That is the depth in baselines; how long is one?",
+         lambda: _ALPHA / _disparity()),
+        ("focal length left out", "That has the unit mm per pixel: what else is in pixels?",
+         lambda: _BASELINE / _disparity()),
+        ("the disparity itself", "That is the disparity in pixels. Which depth goes with it?",
+         lambda: _disparity()),
+        ("one picture only", "You measured from the middle of one picture. One picture knows no "
+         "depths: what differs between the two?",
+         lambda: _AB / (_seen(nearest_edge())[0] - _U0)),
+        ("the column for the disparity", "You divided by the column of one picture: what differs "
+         "between the two?",
+         lambda: _AB / _seen(nearest_edge())[0], lambda: _AB / _seen(nearest_edge())[1]),
+        ("sum of the columns", "You added the two columns: what differs between them?",
+         lambda: _AB / sum(_seen(nearest_edge()))),
+        ("sign of the disparity", "Your depth is negative: in which picture is the edge further to "
+         "the right?",
+         lambda: -how_far()),
+        ("half the baseline", "You measured from the middle between the cameras; the full baseline "
+         "goes with the full disparity.",
+         lambda: how_far() / 2),
+        ("upside down", "Your fraction is upside down: larger disparities mean nearer points.",
+         lambda: _disparity() * _BASELINE / _ALPHA, lambda: _disparity() * _ALPHA / _BASELINE,
+         lambda: _disparity() / _AB, lambda: _AB * _disparity(),
+         lambda: _BASELINE / (_ALPHA * _disparity()), lambda: _ALPHA / (_BASELINE * _disparity())),
+        ("α b", "Nothing that you read off is in that.", lambda: _AB),
+    ),
+    Misconception(
+        "another edge of the tall block",
+        "That is an edge of the tall block, but not the nearest one: where do its light and its "
+        "dark side meet?",
+        lambda: _edge(0), (lambda: _edge(3), lambda: _edge(2)), within_part(0.011),
+    ),
+    Misconception(
+        "an edge of another block", "That is an edge of one of the lower blocks.",
+        lambda: _edge(8), tuple(lambda i=i: _edge(i) for i in (5, 6, 7, 10)), within_part(0.011),
+    ),
+    Misconception(
+        "twice the baseline", "You took the baseline twice: the cameras are 800 mm apart.",
+        lambda: 2 * how_far(), (), within_part(0.011),
+    ),
+    Misconception(
+        "columns not exact enough", "That is near: each pixel of the disparity counts 2 %. Enlarge "
+        "both pictures, and read the edge at the same height.",
+        lambda: 1.1 * how_far(), seen=_nearly,
+    ),
+    Misconception(
+        "something else in the picture", "That is the depth of something else, or one of the "
+        "columns is: the edge must be the same in both pictures.",
+        lambda: 1.9 * how_far(), seen=_of_an_edge,
+    ),
+)  # fmt: skip
 
 FAR = Exercise(
     name="how_far",
@@ -70,140 +127,7 @@ FAR = Exercise(
     ),
     cases=lambda _: [Case(())],
     properties=(Property("It is the depth of that edge, to within 6 %."),),
-    misconceptions=(
-        Misconception(
-            "in metres",
-            "Right, in metres; asked are millimetres.",
-            lambda: how_far() / 1000,
-        ),
-        Misconception(
-            "baseline left out",
-            "α / d is the depth in baselines: multiply by 800 mm.",
-            lambda: _ALPHA / _disparity(),
-        ),
-        Misconception(
-            "focal length left out",
-            "b / d has the unit mm per pixel: multiply by α, which is in pixels.",
-            lambda: _BASELINE / _disparity(),
-        ),
-        Misconception(
-            "the disparity itself",
-            "That is the disparity in pixels. The depth is α b divided by it.",
-            lambda: _disparity(),
-        ),
-        Misconception(
-            "one picture only",
-            "You measured from the middle of the left picture. One picture knows no depths: take "
-            "the difference of both columns.",
-            lambda: _ALPHA * _BASELINE / (_seen(nearest_edge())[0] - _U0),
-        ),
-        Misconception(
-            "sum of the columns",
-            "You added the two columns; the disparity is their difference.",
-            lambda: _ALPHA * _BASELINE / sum(_seen(nearest_edge())),
-        ),
-        Misconception(
-            "half the baseline",
-            (
-                "You measured from the middle between the cameras; the full baseline goes with "
-                "the full disparity."
-            ),
-            lambda: how_far() / 2,
-        ),
-        Misconception(
-            "in centimetres",
-            "Right, in centimetres; asked are millimetres.",
-            lambda: how_far() / 10,
-        ),
-        Misconception(
-            "sign of the disparity",
-            (
-                "Your depth is negative: the disparity is the column on the left minus that on "
-                "the right."
-            ),
-            lambda: -how_far(),
-        ),
-        Misconception(
-            "another edge of the tall block",
-            "That is an edge of the tall block, but not the nearest one: it is the one in the "
-            "middle, where the light and the dark side meet.",
-            lambda: _edge(0),
-            variants=(
-                lambda: _edge(3),
-                lambda: _edge(2),
-            ),
-            same=within_part(0.011),
-        ),
-        Misconception(
-            "an edge of another block",
-            "That is an edge of one of the lower blocks.",
-            lambda: _edge(8),
-            variants=(
-                lambda: _edge(5),
-                lambda: _edge(6),
-                lambda: _edge(7),
-                lambda: _edge(10),
-            ),
-            same=within_part(0.011),
-        ),
-        Misconception(
-            "the column for the disparity",
-            "You divided by the column of one picture; the disparity is the difference of both.",
-            lambda: _ALPHA * _BASELINE / _seen(nearest_edge())[0],
-            variants=(lambda: _ALPHA * _BASELINE / _seen(nearest_edge())[1],),
-        ),
-        Misconception(
-            "the right picture only",
-            "You measured from the middle of the right picture. One picture knows no depths: take "
-            "the difference of both columns.",
-            lambda: _ALPHA * _BASELINE / (_seen(nearest_edge())[1] - _U0),
-        ),
-        Misconception(
-            "upside down",
-            "You turned the fraction around: larger disparities mean nearer points, Z = α b / d.",
-            lambda: _disparity() * _BASELINE / _ALPHA,
-            variants=(
-                lambda: _disparity() * _ALPHA / _BASELINE,
-                lambda: _disparity() / (_ALPHA * _BASELINE),
-            ),
-        ),
-        Misconception(
-            "proportional to the disparity",
-            "You multiplied by the disparity: divide, Z = α b / d.",
-            lambda: _ALPHA * _BASELINE * _disparity(),
-        ),
-        Misconception(
-            "α and b divided",
-            "You divided α by b, or b by α: Z = α b / d.",
-            lambda: _BASELINE / (_ALPHA * _disparity()),
-            variants=(lambda: _ALPHA / (_BASELINE * _disparity()),),
-        ),
-        Misconception(
-            "twice the baseline",
-            "You took the baseline twice: the cameras are 800 mm apart.",
-            lambda: 2 * how_far(),
-            same=within_part(0.011),
-        ),
-        Misconception(
-            "α b",
-            "That is α b; divide it by the disparity.",
-            lambda: _ALPHA * _BASELINE,
-        ),
-        Misconception(
-            "columns not exact enough",
-            "That is near: each pixel of the disparity counts 2 %. Enlarge both pictures, and "
-            "read the edge at the same height.",
-            lambda: 1.1 * how_far(),
-            seen=_nearly,
-        ),
-        Misconception(
-            "something else in the picture",
-            "That is the depth of something else, or one of the columns is: the edge must be the "
-            "same in both pictures.",
-            lambda: 1.9 * how_far(),
-            seen=_of_an_edge,
-        ),
-    ),
+    misconceptions=_MISTAKES,
     reference=how_far,
     same=within_part(0.06),
     concepts=("38", "70"),

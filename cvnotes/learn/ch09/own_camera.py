@@ -6,9 +6,9 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import calibrate
-from cvnotes.learn.checker.equality import Same
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
 from cvnotes.learn.personal import PersonalCamera, personal_camera
+from cvnotes.tutor.checker.equality import Same
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
 
 _COURSE = np.array([800.0, 804.0, 325.0, 238.0])
 _STILL_TO_FILL_IN = (
@@ -18,7 +18,7 @@ _NEAR = 10.0  # px; the corners determine each number to about 2 px
 
 
 def numbers_of(own: PersonalCamera) -> Array:
-    """Give (α_u, α_v, u0, v0) of a student's camera."""
+    """Return (α_u, α_v, u0, v0) of a student's camera."""
     return own.truth().A[[0, 1, 0, 1], [0, 1, 2, 2]]
 
 

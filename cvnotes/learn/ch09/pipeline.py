@@ -13,8 +13,8 @@ from cvnotes.learn.ch07.a_from_b import A_FROM_B
 from cvnotes.learn.ch07.b_from_views import B_FROM_VIEWS
 from cvnotes.learn.ch07.extrinsics import EXTRINSICS
 from cvnotes.learn.ch07.radial_fit import RADIAL
-from cvnotes.learn.checker.exercise import Case, Exercise, Property, Rng
 from cvnotes.learn.personal import personal_camera
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
 
 _PARTS = (DLT, B_FROM_VIEWS, A_FROM_B, EXTRINSICS, RADIAL)
 Step = Callable[..., Any]
@@ -64,7 +64,7 @@ def assemble(steps: Mapping[str, Step]) -> Callable[..., Array]:
 
 
 def _finished(step: Step | None) -> Step:
-    """Give the step; one that does nothing yet ends the whole pipeline as not solved."""
+    """Return the step; one that does nothing yet ends the whole pipeline as not solved."""
 
     def called(*args: Any) -> Any:
         answer = step(*args) if callable(step) else None
@@ -81,7 +81,7 @@ def _numbers(result: Any) -> Array:
 
 
 def by_the_library(board_points: Array, image_points: Array, size: tuple[int, int]) -> Array:
-    """Give (α_u, α_v, u0, v0, k1, k2) by the library's own steps."""
+    """Return (α_u, α_v, u0, v0, k1, k2) by the library's own steps."""
     return _numbers(calibrate(board_points, image_points, size))
 
 

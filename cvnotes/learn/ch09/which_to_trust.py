@@ -1,7 +1,7 @@
 """Which calibration would you trust."""
 
 from cvnotes.calibration import calibrate
-from cvnotes.learn.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
 
 TRUST = Exercise(
     name="which_to_trust",

@@ -7,7 +7,7 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError, InputTypeError
 from cvnotes.calibration import Calibration
-from cvnotes.camera import Camera, Lens, vector_from_rotation
+from cvnotes.camera import AnyLens, Camera, vector_from_rotation
 from cvnotes.camera.model import SENSOR
 
 # A value and its unit.
@@ -15,7 +15,7 @@ Named = dict[str, tuple[Array, str]]
 
 
 def named_values(x: Any, name: str = "", wanted: list[str] | None = None) -> Named:
-    """Give the numbers in x by name, each as an array with its unit.
+    """Return the numbers in x by name, each as an array with its unit.
 
     Parameters
     ----------
@@ -33,6 +33,7 @@ def named_values(x: Any, name: str = "", wanted: list[str] | None = None) -> Nam
 
     Examples
     --------
+    >>> from cvnotes.camera import Lens
     >>> named_values(Lens(k=(-0.25,)), wanted=["k1", "k2"])["k2"]
     (array(0.), '')
     """
@@ -40,14 +41,15 @@ def named_values(x: Any, name: str = "", wanted: list[str] | None = None) -> Nam
         values = _of_mapping(x.parameters)
     elif isinstance(x, Camera):
         values = of_camera(x)
-    elif isinstance(x, Lens):
+    elif isinstance(x, AnyLens):
         values = _of_mapping(x.parameters)
     elif isinstance(x, Mapping):
         values = _of_mapping(x)
     else:
         values = {name: (_array(x, name), "")}
+    # (what a lens or a camera does not name is zero; a mapping without a name has forgotten it)
     for key in wanted or ():
-        if key not in values and key[:1] in ("k", "p", "s") and isinstance(x, Lens | Camera):
+        if key not in values and key[:1] in ("k", "p", "s") and isinstance(x, AnyLens | Camera):
             values[key] = (np.zeros(()), "")
         if key not in values:
             raise CvnotesError(f"{key!r} is estimated, but the truth has only {', '.join(values)}")
@@ -55,7 +57,7 @@ def named_values(x: Any, name: str = "", wanted: list[str] | None = None) -> Nam
 
 
 def of_camera(camera: Camera) -> Named:
-    """Give a camera's intrinsics, lens, rotation vector and centre.
+    """Return a camera's intrinsics, lens, rotation vector and centre.
 
     Examples
     --------
@@ -73,7 +75,7 @@ def _of_mapping(x: Mapping[Any, Any]) -> Named:
 
 
 def _array(x: Any, name: str) -> Array:
-    """Give numbers as an array; NaN stays, as a point may have no image."""
+    """Return numbers as an array; NaN stays, as a point may have no image."""
     array = np.asarray(x)
     if array.dtype.kind not in "biuf":
         raise InputTypeError(f"{name or 'verify'}: expected numbers, got {type(x).__name__}")

@@ -38,7 +38,7 @@ class Row:
         return bool(abs(self.error) <= self.allowed)
 
     def cells(self) -> tuple[str, ...]:
-        """Give the row as text: name, estimate, truth, error, expected error, verdict."""
+        """Return the row as text: name, estimate, truth, error, expected error, verdict."""
         digits = _digits(self)
         name = f"{self.name} ({self.unit})" if self.unit else self.name
         expected = f"± {self.std:.2g}" if not isnan(self.std) else f"≤ {self.allowed:.2g}"
@@ -98,13 +98,14 @@ class Verification:
 
 
 def _digits(row: Row) -> int:
-    """Decimals that show the expected error, but at most five significant digits of the truth."""
+    """Decimals that show the expected error; of a tolerance at most five significant digits."""
     spread = row.allowed if isnan(row.std) else row.std
     size = max(abs(row.truth) or 1.0, spread) if not isnan(row.truth) else 1.0
     if size == float("inf"):
         return 0
     shown = decimals(spread) if spread > 0 else 12
-    return max(0, min(shown, 4 - floor(log10(size))))
+    most = 4 if isnan(row.std) else 6
+    return max(0, min(shown, most - floor(log10(size))))
 
 
 def _number(x: float, digits: int) -> str:

@@ -11,12 +11,16 @@ from typing import TYPE_CHECKING
 from cvnotes.base import CvnotesError
 from cvnotes.camera import Camera
 from cvnotes.show.explore.camera import camera_model
+from cvnotes.show.explore.columns import columns_model
+from cvnotes.show.explore.finding import finding_model
+from cvnotes.show.explore.fold import fold_model
 from cvnotes.show.explore.homography import homography_model
 from cvnotes.show.explore.lens import lens_model
 from cvnotes.show.explore.model import Model, Setting, Sight
 from cvnotes.show.explore.noise import noise_model
 from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
+from cvnotes.show.explore.tilt import tilt_model
 from cvnotes.show.explore.warp import warp_model
 from cvnotes.show.picture import Picture
 from cvnotes.targets import Chessboard
@@ -32,8 +36,15 @@ _MODELS: dict[str, Callable[[Camera, Chessboard], Model]] = {
     "noise": noise_model,
     "warp": warp_model,
     "rectification": rectification_model,
+    "tilt": tilt_model,
 }
-NAMES = tuple(_MODELS)
+# What the course itself has photographed: no other camera or board can be given.
+_STORIES: dict[str, Callable[[], Model]] = {
+    "fold": fold_model,
+    "finding": finding_model,
+    "columns": columns_model,
+}
+NAMES = (*_MODELS, *_STORIES)
 
 
 def model(name: str, camera: Camera | None = None, board: Chessboard | None = None) -> Model:
@@ -43,18 +54,26 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     ----------
     name : str
         One of `NAMES`.
-    camera : Camera, optional
-        By default the course's.
-    board : Chessboard, optional
-        By default the course's.
+    camera, board : optional
+        By default the course's. "fold", "finding" and "columns" show photographs of the course,
+        and take none.
+
+    Raises
+    ------
+    CvnotesError
+        There is no such exploration, or it takes no camera and no board.
 
     Examples
     --------
     >>> model("lens").sight(k1=-4 / 3, k2=0).sentence[:48]
     'The lens shows nothing beyond max_radius = 0.500'
     """
-    if name not in _MODELS:
+    if name not in NAMES:
         raise CvnotesError(f"name: expected one of {', '.join(NAMES)}, got {name!r}")
+    if name in _STORIES:
+        if camera is not None or board is not None:
+            raise CvnotesError(f"{name}: shows photographs of the course; give no camera or board")
+        return _STORIES[name]()
     if camera is None or board is None:
         from cvnotes.pictures import course
 
@@ -135,6 +154,26 @@ def explore_rectification(
     return _explorer("rectification", camera, board)
 
 
+def explore_tilt(*, camera: Camera | None = None, board: Chessboard | None = None) -> "Explorer":
+    """Tilt a board before two lenses, and watch when their pictures can be told apart."""
+    return _explorer("tilt", camera, board)
+
+
+def explore_fold() -> "Explorer":
+    """Turn the eye about a photograph's horizon; it goes on seeing both right angles."""
+    return _explorer("fold", None)
+
+
+def explore_finding() -> "Explorer":
+    """Follow a calibration from the closed form to the answer, and watch its misses."""
+    return _explorer("finding", None)
+
+
+def explore_columns() -> "Explorer":
+    """Let the corners of a real board move, and hold one camera's measurement against another's."""
+    return _explorer("columns", None)
+
+
 def _explorer(name: str, camera: Camera | None, board: Chessboard | None = None) -> "Explorer":
     from cvnotes.show.explore.shell import Explorer
 
@@ -147,11 +186,15 @@ __all__ = [
     "Setting",
     "Sight",
     "explore_camera",
+    "explore_columns",
+    "explore_finding",
+    "explore_fold",
     "explore_homography",
     "explore_lens",
     "explore_noise",
     "explore_projection",
     "explore_rectification",
+    "explore_tilt",
     "explore_warp",
     "model",
     "still",

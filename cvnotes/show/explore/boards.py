@@ -8,10 +8,12 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, rotation_from_vector
 from cvnotes.show.explore.paper import Panel
 from cvnotes.show.space.shapes import Faces, Label, Lines, Shape, places, target_shapes
-from cvnotes.show.style import MUTED
+from cvnotes.show.style import ESTIMATED, MUTED
 from cvnotes.targets import Chessboard
 
 _INK = "#262629"
+_PALE = "#E2E2E2"  # squares that arrows lie on
+_HEAD = 8  # px, of an arrow
 _ASIDE = 13  # px from what a name belongs to
 # Seen a little from above and from the right: x to the right, y down, z to the left and away.
 _VIEW = rotation_from_vector([0.35, 0, 0]) @ rotation_from_vector([0, -0.9, 0])
@@ -30,6 +32,29 @@ def draw_board(panel: Panel, camera: Camera, board: Chessboard) -> bool:
     panel.line(paper[[0, 1, 2, 3, 0]], MUTED, 0.8)
     panel.polygons(camera.project(squares), _INK)
     return bool(np.isfinite(paper).all())
+
+
+def draw_measured(panel: Panel, m: Array, board: Chessboard) -> None:
+    """Draw corners (n, 2) as they were measured, and pale the dark squares between them."""
+    columns, rows = board.corners
+    grid = m.reshape(rows, columns, 2)
+    squares = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
+    row, column = np.indices(squares.shape[:2])
+    panel.polygons(squares[(row + column) % 2 == 0], _PALE)
+    panel.mark(m, "lens", 2.5)
+
+
+def draw_arrows(panel: Panel, m: Array, d: Array) -> None:
+    """Draw arrows d (n, 2) from points m (n, 2), both in the coordinates of the panel."""
+    tip = m + d
+    length = np.linalg.norm(d, axis=-1, keepdims=True)
+    along = d / length.clip(1e-12)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+    head = np.minimum(_HEAD * panel.pixel, 0.4 * length)
+    back = tip - head * along
+    panel.segments(np.stack([m, tip], axis=1), ESTIMATED, 1.2)
+    wings = back + 0.4 * head * across, back - 0.4 * head * across
+    panel.polygons(np.stack([tip, *wings], axis=1), ESTIMATED)
 
 
 def in_space(shapes: tuple[Shape, ...], size: tuple[int, int]) -> tuple[Array, Array]:

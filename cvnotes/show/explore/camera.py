@@ -101,7 +101,7 @@ def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
         size, (low[0], high[0]), (low[1], high[1]), "space, in the frame of the board"
     )
     draw_in_space(panel, shapes)
-    for axis, letter in zip(np.eye(3), "xyz", strict=True):  # its strokes are too small to read
+    for axis, letter in zip(np.eye(3), "XYZ", strict=True):  # its strokes are too small to read
         panel.text(on_sheet(1.25 * length * axis), letter, WORLD, anchor="mm", size=12)
     _draw_T(panel, camera)
     return panel

@@ -100,6 +100,7 @@ document.head.append(
 .explore-stage > button.explore-grip:focus-visible { outline: 3px solid #0072b2; outline-offset: 2px; }
 .explore-stage > button.explore-grip:active { cursor: grabbing; }
 .explore-stage > button.explore-grip[hidden] { display: none; }
+@media (max-width: 40rem) { .cvnotes-explorer > .widget-image { order: -1; } } /* above its sliders */
 @media (pointer: coarse) { .explore-stage > button.explore-grip { width: 2.75rem; height: 2.75rem; } }`,
   }),
 );

@@ -83,7 +83,7 @@ def _draw(
 
 
 def _sentence(H: Array, camera: Camera, board: Chessboard, nudged: bool) -> str:
-    """Tell how far the board's inner corners land from where they are, on the plane."""
+    """Return how far the board's inner corners land from where they are, on the plane."""
     W = board.points
     found = from_homogeneous.inside(to_homogeneous(camera.project(W)) @ np.linalg.inv(H).T)
     off = float(np.linalg.norm(found - W[:, :2], axis=-1).max())

@@ -1,17 +1,20 @@
-"""Explore the lens: what k1, k2, k3, p1 and p2 do to a grid, and where the model folds."""
+"""Explore the lens: what k1, k2, k3, p1 and p2 do to a room and a grid, and where it folds."""
+
+from functools import cache
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, Lens
+from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.camera.lens import radial_factor
 from cvnotes.show.explore.model import Model, Setting, Sight, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explore.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
 _RADIUS = 1.0  # of the curve r L(r)
 _SIZE = (430, 360)
+_DETAIL = 200  # px of the photograph of the room for a length of 1 on the plane z = 1
 
 
 def lens_model(camera: Camera) -> Model:
@@ -30,7 +33,7 @@ def lens_model(camera: Camera) -> Model:
         _around("p2", 0.1, 0.001, p2, "tangential: an element of the lens off the axis, along x"),
     )
     about = (
-        "A square grid and the same grid seen through a lens; beside it the observed radius "
+        "A room and a square grid, both seen through a lens; beside it the observed radius "
         "r L(r) over the ideal radius r, with the fold where the model ends."
     )
     return Model("lens", about, settings, lambda paper, values: _draw(camera, paper, values))
@@ -47,11 +50,35 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Sight:
     reach = 1.25 * _EXTENT
     x = reach * _SIZE[0] / _SIZE[1]
     grid = paper.panel(_SIZE, (-x, x), (-reach, reach), "plane z = 1: ideal, and through the lens")
+    grid.image(_bent_room(lens, x, reach))
     _draw_grid(grid, lens)
     _draw_frame(grid, camera, lens)
     curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "radius: observed r L(r) over ideal r")
     _draw_curve(curve, lens)
     return Sight(paper.join((grid, curve)), _sentence(camera, lens))
+
+
+@cache
+def _room() -> Drawn:
+    """Photograph the room of the course once, through an ideal lens, wider than is shown."""
+    from cvnotes.pictures import render_scene, room
+
+    w, h = 3 * _DETAIL, 2 * _DETAIL
+    camera = Camera(intrinsics(_DETAIL, _DETAIL, (w - 1) / 2, (h - 1) / 2), size=(w, h))
+    picture: Drawn = render_scene(room(), camera, samples=4)
+    return (255 - (255 - picture.astype(int)) // 2).astype(np.uint8)  # light, under a grid
+
+
+def _bent_room(lens: Lens, x: float, y: float) -> Drawn:
+    """Show the room through a lens, from −x to x and −y to y; white where it shows nothing."""
+    room = _room()
+    h, w = room.shape[:2]
+    columns, rows = np.linspace(-x, x, _SIZE[0] // 2), np.linspace(-y, y, _SIZE[1] // 2)
+    ideal = lens.undistort(np.stack(np.meshgrid(columns, rows), -1))
+    at = np.rint(_DETAIL * ideal + [(w - 1) / 2, (h - 1) / 2])
+    seen = ((at >= 0) & (at < [w, h])).all(axis=-1)  # NaN is not
+    u, v = np.where(seen[..., None], at, 0).astype(int).transpose(2, 0, 1)
+    return np.where(seen[..., None], room[v, u], np.uint8(255))
 
 
 def _draw_grid(panel: Panel, lens: Lens) -> None:

@@ -143,7 +143,7 @@ class Model:
         return self.sight(**values).picture
 
     def dragged(self, name: str, at: tuple[float, float], **values: float) -> dict[str, float]:
-        """Give the values after a grip was pulled to a place in the coordinates of its panel.
+        """Return the values after a grip was pulled to a place in the coordinates of its panel.
 
         They are such as sliders can show: in steps, and no farther than these go.
 
@@ -167,7 +167,14 @@ class Model:
 
     def still(self, **values: float) -> Picture:
         """Return the picture for a page: at twice the resolution, with its alternative text."""
-        sight = self.drawn_on(Paper(2), self.values(**values))
+        return self._still(Paper(2), values)
+
+    def narrow_still(self, **values: float) -> Picture:
+        """Return the picture for a telephone, its panels one below the other."""
+        return self._still(Paper(2, narrow=True), values)
+
+    def _still(self, paper: Paper, values: Values) -> Picture:
+        sight = self.drawn_on(paper, self.values(**values))
         alt = f"{self.about} {sight.sentence}"
         return Picture(_small_png(sight.picture), alt, sight.picture.shape[1] // 2)
 

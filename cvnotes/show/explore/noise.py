@@ -29,7 +29,8 @@ class _Study:
         data = Correspondences.in_unit_frame(board.points, m)
         self.problem = Problem(
             data.W, m, skew=False,
-            n_radial=max(2, len(camera.lens.k)), tangential=any(camera.lens.p), size=camera.size,
+            coefficients=tuple(dict.fromkeys(["k1", "k2", *camera.lens.parameters])),
+            size=camera.size, model=type(camera.lens),
         )  # fmt: skip
         self.truth = self.problem.state(camera, data.pose_in_scaled_units(poses))
         counts = range(_FEWEST, _MOST + 1)

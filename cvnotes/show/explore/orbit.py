@@ -37,12 +37,12 @@ def round_the_board(camera: Camera, board: Chessboard, at: Array) -> Values:
 
 
 def _facing(aside: float, below: float) -> Array:
-    """Give the rotation (3, 3) from straight before the board to so far aside and below."""
+    """Return the rotation (3, 3) from straight before the board to so far aside and below."""
     return rotation_from_vector([0, -aside, 0]) @ rotation_from_vector([below, 0, 0])
 
 
 def angles_of(R: Array) -> Array:
-    """Give the angles (3,) about the fixed axes x, y, z of a rotation R = Rz Ry Rx.
+    """Return the angles (3,) about the fixed axes x, y, z of a rotation R = Rz Ry Rx.
 
     Examples
     --------

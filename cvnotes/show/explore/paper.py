@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw
 from cvnotes.base import Array
 from cvnotes.show.explore.lettering import stamp, title_strip
 from cvnotes.show.explore.strokes import clipped, dashed
-from cvnotes.show.style import COLOURS, MARKERS, MUTED
+from cvnotes.show.style import COLOURS, INK, MARKERS, MUTED
 
 Drawn = npt.NDArray[np.uint8]
 Range = tuple[float, float]
@@ -159,7 +159,7 @@ class Panel:
             self._grips.append((name, label, at, step))
 
     def grips(self, left: float, top: float) -> list[Grip]:
-        """Give the grips of this panel, which begins at (left, top) px of the picture."""
+        """Return the grips of this panel, which begins at (left, top) px of the picture."""
         unit = np.ptp([self.x, self.y], axis=1) * self.scale / [self.width, self.height]
         unit = unit * np.sign([self.x[1] - self.x[0], self.y[1] - self.y[0]])
         origin = np.array([left + _GAP // 2, top + _TITLE])
@@ -191,7 +191,7 @@ class Panel:
             rim, ink, (left, top) = stamp(words, anchor, size * self.scale, round(1.5 * self.scale))
             corner = (round(float(at[0])) + left, round(float(at[1])) + top)
             self._image.paste("white", corner, rim)
-            self._image.paste(colour, corner, ink)
+            self._image.paste(INK.get(colour, colour), corner, ink)
 
     def ticks(self, x: npt.ArrayLike = (), y: npt.ArrayLike = ()) -> None:
         """Draw light lines with their numbers at some x and y."""

@@ -2,22 +2,13 @@
 
 import numpy as np
 
-from cvnotes.base import Array
+from cvnotes.base import Array, clipped_segments
 
 
 def clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:
     """Cut segments a to b (n, 2) to a rectangle: (m, 2, 2), without what lies outside."""
-    d = b - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        one, two = (limits[0] - a) / d, (limits[1] - a) / d
-    still = d == 0  # parallel to a side: inside of it, or not at all
-    inside = (a >= limits[0]) & (a <= limits[1])
-    enter = np.where(still, np.where(inside, 0.0, np.nan), np.minimum(one, two)).max(1)
-    leave = np.where(still, np.where(inside, 1.0, np.nan), np.maximum(one, two)).min(1)
-    enter, leave = np.maximum(enter, 0), np.minimum(leave, 1)
-    seen = enter < leave
-    a, d, enter, leave = a[seen], d[seen], enter[seen, None], leave[seen, None]
-    return np.stack([a + enter * d, a + leave * d], axis=1)
+    ends = np.stack([a, b], axis=1)
+    return clipped_segments(ends, np.concatenate([ends - limits[0], limits[1] - ends], axis=-1))
 
 
 def dashed(pairs: Array, length: float) -> Array:

@@ -244,10 +244,13 @@ def draw_cube(
     floor[2:5] += side * _SHADOW
     shadow = _outline(camera, np.column_stack([floor, np.zeros(6)]))
     ax.fill(*shadow.T, color="black", alpha=0.35, linewidth=0, zorder=2)
+    shades = matrix(colour, "colour", 3)
+    if shades.shape != (3,) or not ((shades >= 0) & (shades <= 1)).all():
+        raise ShapeError(f"colour: expected red, green and blue from 0 to 1, got {colour!r}")
     for name, corners in _FACES.items():
         face = _outline(camera, W[list(corners)])
         if _turns_right(face):
-            shade = np.array(colour) * _SHADES[name]
+            shade = shades * _SHADES[name]
             ax.fill(*face.T, facecolor=shade, edgecolor="white", linewidth=1.2, zorder=3)
     ax.set(xlim=limits[0], ylim=limits[1])
     return ax

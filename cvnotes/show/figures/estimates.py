@@ -8,11 +8,13 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
-from cvnotes.show.guards import length, one_point, thing
+from cvnotes.show.guards import length, one_point, texts, thing
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL, LENS, MUTED, as_picture, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_HALF = 0.674  # standard deviations: half of all Gaussian errors are smaller
 
 
 def draw_plane_error(
@@ -83,6 +85,7 @@ def draw_error_bars(
     >>> len(draw_error_bars(rng.normal(size=(50, 2)), [0, 0], [1, 1], names=["a", "b"]))
     2
     """
+    names = texts(names, "names")
     q = len(names)
     if q == 0:
         raise CvnotesError("names: expected at least one, for its panel")
@@ -127,8 +130,9 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
     -------
     ndarray of two Axes
         The RMS on the left; on the right the relative errors of α_u on a logarithmic axis: a dot
-        for each repetition, a bar for their root mean square, which is the error to be expected,
-        and a line for what the standard deviations promised, by their median.
+        for each repetition, a bar for their median, and a line for what the standard deviations
+        promised for it: 0.674 times their own median, for half of all Gaussian errors are smaller.
+        Orange are those whose errors are more than twice what was promised.
     """
     if not thing(results, "results", Mapping):  # type: ignore[type-abstract]
         raise CvnotesError("results: expected at least one set of views")
@@ -140,17 +144,17 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
     truth = length(truth, "truth")
     left, right = axes = panels(2, width=900, height=90 + 52 * len(results), sharey=True)
     for y, runs in enumerate(results.values()):
-        reliable = sum(run.reliable for run in runs) > len(runs) / 2
-        colour = LENS if reliable else ESTIMATED
         error = np.array([100 * max(abs(run.A[0, 0] / truth - 1), 1e-5) for run in runs])
-        promised = 100 / truth * float(np.median([run.std["alpha_u"] for run in runs]))
-        expected = float(np.sqrt(np.mean(error**2)))
+        std = 100 / truth * np.array([run.std["alpha_u"] for run in runs])
+        kept = float(np.sqrt(np.mean((error / std) ** 2))) < 2
+        colour = LENS if kept else ESTIMATED
+        promised, expected = _HALF * float(np.median(std)), float(np.median(error))
         spread = y + np.linspace(-0.24, 0.24, len(runs))
         left.plot([run.rms for run in runs], spread, ".", color=MUTED, markersize=4)
         right.barh(y, expected, color=colour, alpha=0.3, height=0.62)
         right.plot(error, spread, ".", color=colour, markersize=4)
         right.plot([promised] * 2, [y - 0.36, y + 0.36], color=IDEAL, linewidth=1.6)
-        words = f"{float(f'{expected:.2g}'):g} %" + ("" if reliable else "  not reliable")
+        words = f"{float(f'{expected:.2g}'):g} %" + ("" if kept else "  more than promised")
         end = max(expected, float(error.max()), promised)
         right.annotate(words, (end, y), (7, 0), textcoords="offset points", va="center", size=9)
     right.set_xscale("log")

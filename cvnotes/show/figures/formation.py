@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def box_lines(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> Array:
-    """Give the twelve edges of a box from x[0] to x[1] and so on, as lines (12, 25, 3).
+    """Return the twelve edges of a box from x[0] to x[1] and so on, as lines (12, 25, 3).
 
     Examples
     --------
@@ -67,39 +67,36 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     if lines.ndim != 3 or lines.size == 0:
         raise ShapeError(f"lines: expected (k, n, 3), lines of n points, got {lines.shape}")
     bent = not is_camera(camera, "camera").lens.is_ideal
-    axes = panels(5 if bent else 4, width=960, height=225 if bent else 265)
+    columns = 3 if bent else 2
+    grid = panels(columns, 2, width=960, height=660 if bent else 840)
+    axes = grid.ravel()[: 5 if bent else 4]
+    for ax in grid.ravel()[5:]:
+        ax.axis("off")
     W = np.concatenate([lines.reshape(-1, 3), point[None]])
     M = move(camera.G, W)
     _from_above(axes[0], camera, W, lines.shape, camera.G)
     _from_above(axes[1], camera, M, lines.shape, None)
     xy = np.where(M[:, 2:] > 0, M[:, :2] / np.where(M[:, 2:] > 0, M[:, 2:], 1), np.nan)
     _plane(axes[2], camera, xy, lines.shape, IDEAL)
+    states = {"the world": W, "the camera's frame": M, "the plane z = 1": xy}
+    steps = ["G", "÷ z", "A"]
     if bent:
-        _plane(axes[3], camera, camera.lens.distort(np.nan_to_num(xy, nan=1e9)), lines.shape, LENS)
-    _trace(axes[-1], camera.project(W), lines.shape, LENS)
+        states["through the lens"] = camera.lens.distort(np.nan_to_num(xy, nan=1e9))
+        _plane(axes[3], camera, states["through the lens"], lines.shape, LENS)
+        steps.insert(2, "lens")
+    states["the picture"] = camera.project(W)
+    _trace(axes[-1], states["the picture"], lines.shape, LENS)
     _border(axes[-1], _corners(camera), "u → , v ↓ (px)")
-    names = [
-        "the world",
-        "the camera's frame",
-        "the plane z = 1",
-        "through the lens",
-        "the picture",
-    ]
-    steps = ["G", "÷ z", "lens", "A"]
-    if not bent:
-        del names[3], steps[2]
-    for ax, name in zip(axes, names, strict=True):
-        ax.set_title(name, fontsize=FONT)
-        ax.tick_params(labelsize=FONT - 2)
+    for ax, (name, (*_, place)) in zip(axes, states.items(), strict=True):
+        ax.set_title(name, fontsize=FONT + 1)
         ax.locator_params(nbins=4)
-        ax.set_box_aspect(1)
+        ax.set_box_aspect(0.85)
         ax.set_aspect("equal", adjustable="datalim")
-    for i, (step, ax) in enumerate(zip(steps, axes, strict=False), start=1):
-        ax.annotate(
-            f"{i}. {step} →", (1.12, 0), (0, -44), xycoords="axes fraction",
-            textcoords="offset points", ha="center", color=ESTIMATED, fontsize=FONT + 2,
-            fontweight="bold", annotation_clip=False,
-        )  # fmt: skip
+        digits = 0 if len(place) == 3 else 4 if np.abs(place).max() < 10 else 1
+        words = ", ".join(f"{number:.{digits}f}" for number in place)
+        ax.text(0.98, 0.03, f"({words})", transform=ax.transAxes, ha="right", color=ESTIMATED)
+    for i, (step, ax) in enumerate(zip(steps, axes[1:], strict=True), start=1):
+        ax.set_title(f"{i}. {step} →", loc="left", pad=20, color=ESTIMATED, fontweight="bold")
     return axes
 
 
@@ -124,15 +121,15 @@ def _from_above(
     frame = reach * np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1.0]])
     cone = np.concatenate([np.zeros((1, 3)), tips, np.zeros((1, 3))])
     if G is not None:
-        _frame(ax, frame, WORLD)
+        _frame(ax, frame, WORLD, "XZ")
         cone, frame = move(inverse(G), cone), move(inverse(G), frame)
     ax.plot(*cone[:, [0, 2]].T, color=CAMERA, lw=1.4)
-    _frame(ax, frame, CAMERA)
+    _frame(ax, frame, CAMERA, "xz")
     ax.set_xlabel("x → , z ↑" if G is None else "X → , Z ↑")
 
 
-def _frame(ax: "Axes", frame: Array, colour: str) -> None:
-    for tip, letter in zip(frame[1:], "xz", strict=True):
+def _frame(ax: "Axes", frame: Array, colour: str, letters: str) -> None:
+    for tip, letter in zip(frame[1:], letters, strict=True):
         arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.5}
         ax.annotate("", (tip[0], tip[2]), (frame[0, 0], frame[0, 2]), arrowprops=arrow)
         out = 1.22 * tip - 0.22 * frame[0]
@@ -149,7 +146,7 @@ def _plane(ax: "Axes", camera: Camera, xy: Array, shape: tuple[int, ...], colour
 
 
 def _corners(camera: Camera) -> Array:
-    """Give the corners (4, 2) of a camera's picture, in pixels."""
+    """Return the corners (4, 2) of a camera's picture, in pixels."""
     w, h = camera.size
     return np.array([[0, 0], [w, 0], [w, h], [0, h]]) - 0.5
 
@@ -269,7 +266,7 @@ def draw_pixels(
         raise CvnotesError("these pixels are not inside of the picture")
     u0, v0 = np.rint(first).astype(int)
     ax = panels(width=560) if ax is None else ax
-    draw_image(picture, ax=ax)
+    draw_image(picture, ax=ax, ticks=True)
     for u in range(u0, u0 + columns):
         for v in range(v0, v0 + rows):
             ax.add_patch(Rectangle((u - 0.5, v - 0.5), 1, 1, fc="none", ec=MUTED, lw=0.8))

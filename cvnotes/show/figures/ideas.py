@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, matrix
+from cvnotes.base import Array, CvnotesError, ShapeError, matrix, real
 from cvnotes.projective import apply
-from cvnotes.show.guards import length
+from cvnotes.show.guards import length, texts
 from cvnotes.show.style import (
     CAMERA,
     COLOURS,
@@ -86,10 +86,11 @@ def draw_rays(
     >>> [text.get_text() for text in ax.texts if text.get_text()]
     ['w = 1', 'a', 'b', 'l']
     """
-    x_h = matrix(x_h, "x_h", 3).reshape(-1, 3)
+    x_h, names = matrix(x_h, "x_h", 3).reshape(-1, 3), texts(names, "names")
     if len(x_h) == 0:
         raise CvnotesError("x_h: expected at least one point")
-    lines = matrix(lines, "lines", 3).reshape(-1, 3) if np.size(lines) else np.zeros((0, 3))
+    lines = real(lines, "lines")
+    lines = matrix(lines, "lines", 3).reshape(-1, 3) if lines.size else np.zeros((0, 3))
     if not (np.concatenate([x_h, lines]) != 0).any(axis=1).all():
         raise CvnotesError("the zero vector is neither a point nor a line")
     ax = panels(height=400) if ax is None else ax
@@ -138,7 +139,7 @@ def _draw_plane(ax: "Axes", line: Array, name: str, normals: bool) -> None:
 
 
 def _cut(line: Array) -> Array:
-    """Give the ends (2, 3) of a line in the piece of the plane w = 1, or none."""
+    """Return the ends (2, 3) of a line in the piece of the plane w = 1, or none."""
     a, b, c = line
     found = [[x, -(a * x + c) / b, 1.0] for x in (-_WIDE, _WIDE) if b != 0]
     found += [[-(b * y + c) / a, y, 1.0] for y in (-_DEEP, _DEEP) if a != 0]
@@ -217,8 +218,8 @@ def draw_pinhole(
     v = f * y / z
     ax = panels(width=760, height=330) if ax is None else ax
     ax.plot([-f, f, z], [-v, v, y], color=LENS, linewidth=1.6, zorder=3)
-    ax.fill([0, z, z], [0, 0, y], color=WORLD, alpha=0.14, linewidth=0)
-    ax.fill([0, f, f], [0, 0, v], color=CAMERA, alpha=0.35, linewidth=0)
+    ax.fill([0, z, z], [0, 0, y], color=WORLD, alpha=0.2, linewidth=0)
+    ax.fill([0, f, f], [0, 0, v], fill=False, hatch="///", edgecolor=ESTIMATED, linewidth=0)
     ax.axhline(0, color=MUTED, linewidth=1, linestyle="-.", zorder=1)
     half = 0.85 * y
     ax.plot([f, f], [-half, half], color=CAMERA, linewidth=2.5)

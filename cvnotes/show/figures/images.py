@@ -28,13 +28,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def draw_image(image: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
-    """Draw a picture with its pixel coordinates.
+def draw_image(
+    image: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "", ticks: bool = False
+) -> "Axes":
+    """Draw a picture on axes that count its pixels.
 
     Parameters
     ----------
     image : array_like, shape (height, width) or (height, width, 3)
         Grey values or RGB; uint8, uint16, bool, or float from 0 to 1 (NaN stays white).
+    ticks : bool
+        Whether pixels can be read off, by numbers along the border.
 
     Examples
     --------
@@ -49,7 +53,7 @@ def draw_image(image: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "
     ax = picture_axes(size) if ax is None else ax
     ax.imshow(picture, cmap="gray", vmin=0, vmax=white)
     ax.set_title(title)
-    return as_picture(ax, size)
+    return as_picture(ax, size, ticks=ticks)
 
 
 def draw_points(

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cvnotes.base import Array, CvnotesError
-from cvnotes.camera import FisheyeLens, Lens
+from cvnotes.base import Array, CvnotesError, InputTypeError
+from cvnotes.camera import AnyLens, Lens
 from cvnotes.show.guards import count, length, thing
 from cvnotes.show.style import COLOURS, ESTIMATED, FONT, IDEAL, LENS, MUTED, panels
 
@@ -162,19 +162,20 @@ def draw_newton(
 
 
 def draw_angles(
-    lenses: Mapping[str, Lens | FisheyeLens], *, ax: "Axes | None" = None, up_to: float = 2.1
+    lenses: Mapping[str, AnyLens], *, ax: "Axes | None" = None, up_to: float = 2.1
 ) -> "Axes":
     """Draw how far from the middle each lens shows a ray, over the ray's angle from the axis.
 
     Parameters
     ----------
-    lenses : mapping from names to Lens or FisheyeLens
+    lenses : mapping from names to Lens, RationalLens or FisheyeLens
         Up to five. The plane z = 1 ends at 90°, and with it a `Lens`.
     up_to : float
         Largest angle in radians, at most π.
 
     Examples
     --------
+    >>> from cvnotes.camera import FisheyeLens
     >>> draw_angles({"pinhole": Lens(), "fisheye": FisheyeLens()}).get_xlabel()
     'angle θ from the axis (degrees)'
     """
@@ -186,15 +187,9 @@ def draw_angles(
         raise CvnotesError(f"up_to = {up_to:g} but no ray is further from the axis than π")
     ax = panels() if ax is None else ax
     theta = np.linspace(0, up_to, 400)[1:]
-    before = theta < 0.999 * np.pi / 2
+    M = np.stack([np.sin(theta), 0 * theta, np.cos(theta)], axis=-1)
     for (name, lens), colour in zip(lenses.items(), colours, strict=False):
-        if isinstance(lens, FisheyeLens):
-            M = np.stack([np.sin(theta), 0 * theta, np.cos(theta)], axis=-1)
-            shown = lens.of_rays(M)[:, 0]
-        else:
-            x = np.tan(np.where(before, theta, 0.0))
-            seen = thing(lens, name, Lens).distort(np.stack([x, 0 * x], axis=-1))[:, 0]
-            shown = np.where(before, seen, np.nan)
+        shown = _lens(lens, name).of_rays(M)[:, 0]
         ax.plot(np.degrees(theta), shown, color=colour, lw=2, label=name)
     ax.axvline(90, color=MUTED, ls=":")
     ax.annotate(
@@ -224,6 +219,13 @@ def draw_displacement(lens: Lens, *, ax: "Axes | None" = None, extent: float = 0
     ax.quiver(*xy.T, *moved.T, color=LENS, angles="xy", scale_units="xy", scale=1, width=0.005)
     _square(ax, 1.25 * extent)
     return ax
+
+
+def _lens(x: Any, name: str) -> AnyLens:
+    """Guard a lens of any kind."""
+    if not isinstance(x, AnyLens):
+        raise InputTypeError(f"{name}: expected a Lens, got {type(x).__name__}")
+    return x
 
 
 def _square(ax: "Axes", reach: float) -> None:

@@ -57,6 +57,7 @@ def draw_lines(
     2
     """
     lines = points(lines, "lines", 3).reshape(-1, 3)
+    linewidth = length(linewidth, "linewidth")
     ax, colour = pixel_axes(ax, size), colour_of(meaning)
     style: dict[str, Any] = {
         "color": color or colour,
@@ -101,7 +102,7 @@ def draw_segments(
     >>> len(draw_segments([[[0, 0], [90, 90]], [[0, 90], [90, 0]]]).lines)
     2
     """
-    ends = segment_ends(segments)
+    ends, linewidth = segment_ends(segments), length(linewidth, "linewidth")
     ax, colour = pixel_axes(ax, size), colour_of(meaning)
     style: dict[str, Any] = {
         "color": color or colour,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, image_size, number
+from cvnotes.base import Array, CvnotesError, DegenerateError, image_size, number
 from cvnotes.calibration.coverage import covered_cells, joined
 from cvnotes.show.guards import calibrated
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED, as_picture, panels, picture_axes
@@ -51,31 +51,6 @@ def draw_residuals(
         units="width", width=0.0018, headwidth=4, headlength=4.5, headaxislength=4,
     )  # fmt: skip
     ax.set_title(f"Residuals × {magnify:,g} (RMS {calibration.rms:.3f} px per point)")
-    return ax
-
-
-def draw_residual_scatter(calibration: "Calibration", *, ax: "Axes | None" = None) -> "Axes":
-    """Draw all residuals about one origin, with the circle of one standard deviation.
-
-    Noise gives a round cloud about 0; the circle's radius is the standard deviation per axis,
-    which is the RMS per point over √2.
-    """
-    from matplotlib.patches import Circle
-
-    _corners_of(calibration)
-    r = np.concatenate(calibration.residuals)
-    sigma = calibration.rms / np.sqrt(2)
-    if ax is None:
-        ax = panels(width=480, height=470)
-    reach = 1.08 * max(float(np.abs(r).max()), 1e-9)
-    ax.axhline(0, color=MUTED, linewidth=0.6)
-    ax.axvline(0, color=MUTED, linewidth=0.6)
-    ax.plot(*r.T, ".", color=ESTIMATED, markersize=4, alpha=0.5, markeredgewidth=0)
-    ax.add_patch(Circle((0, 0), sigma, fill=False, linewidth=1.5))
-    ax.set(xlim=(-reach, reach), ylim=(reach, -reach), aspect="equal")
-    ax.set(xlabel="observed − predicted u (px)", ylabel="observed − predicted v (px)")
-    ax.spines[["top", "right"]].set(visible=True, color=MUTED)
-    ax.set_title(f"The circle is one σ per axis: {sigma:.3f} px")
     return ax
 
 
@@ -145,7 +120,7 @@ def draw_board_shape(
     >>> real = course.real_corners()
     >>> found = calibrate(real.board.points, real.left, real.size, board="free")
     >>> draw_board_shape(found).get_title()
-    'Heights from −0.23 to 0.31 mm (± 0.03), arrows × 50'
+    'Heights from −0.21 to 0.29 mm (± 0.03), arrows × 100'
     """
     from matplotlib.ticker import MaxNLocator
 
@@ -192,41 +167,6 @@ def draw_board_shape(
     ax.set(xlim=(x.min() - room, x.max() + room), ylim=(y.max() + room, y.min() - room))
     ax.set(aspect="equal", xlabel="x (mm)", ylabel="y (mm)")
     ax.set_title(title.replace("-", "−"))
-    return ax
-
-
-def draw_view_rms(
-    calibration: "Calibration", *, ax: "Axes | None" = None, names: Sequence[str] = ()
-) -> "Axes":
-    """Draw the RMS of each view as a bar, beside that of all.
-
-    A view that stands out has wrong corners, or was taken with another focus or zoom.
-
-    Parameters
-    ----------
-    calibration : Calibration
-        The result.
-    names : sequence of str
-        Names of the views; by default their numbers.
-    """
-    calibrated(calibration)
-    rms = np.asarray(calibration.view_rms)
-    names = list(names) or [str(i) for i in range(len(rms))]
-    if len(names) != len(rms):
-        raise ShapeError(f"names: expected {len(rms)}, one for each view, got {len(names)}")
-    ax = panels(height=360) if ax is None else ax
-    ax.bar(np.arange(len(rms)), rms, width=0.7, color=ESTIMATED, alpha=0.85)
-    ax.axhline(calibration.rms, color=MUTED, linewidth=1, linestyle="--")
-    ax.text(
-        1.0, calibration.rms, f" all: {calibration.rms:.3f}", transform=ax.get_yaxis_transform(),
-        color=MUTED, fontsize=FONT - 1, va="center",
-    )  # fmt: skip
-    step = -(-len(rms) // 40)  # labels stay legible up to forty
-    ticks = np.arange(0, len(rms), step)
-    longest = max(len(name) for name in names)
-    upright = longest * len(ticks) < 80
-    ax.set_xticks(ticks, [names[i] for i in ticks], rotation=0 if upright else 90)
-    ax.set(xlim=(-0.6, len(rms) - 0.4), ylabel="RMS (px per point)", xlabel="view")
     return ax
 
 

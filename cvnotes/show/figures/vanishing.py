@@ -10,6 +10,7 @@ from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
 from cvnotes.show.figures.images import draw_points
 from cvnotes.show.figures.lines import draw_segments, pixel_axes, segment_ends
+from cvnotes.show.guards import texts
 from cvnotes.show.space.shapes import colour_of
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL
 
@@ -91,7 +92,7 @@ def draw_altitudes(
     >>> [text.get_text() for text in ax.texts]
     ['X', 'Y', 'Z']
     """
-    v = matrix(v, "v", 3, 2)
+    v, names = matrix(v, "v", 3, 2), texts(names, "names")
     if v.ndim != 2 or len(names) != 3:
         raise ShapeError(f"expected three points (3, 2) and three names, got {v.shape}")
     feet = np.array([_foot(v[i], v[i - 1], v[i - 2]) for i in range(3)])

@@ -43,8 +43,7 @@ def frame(ax: Axes3D, shown: Array, unit: str) -> None:
 
     Examples
     --------
-    >>> from cvnotes.show import axes_shapes
-    >>> from cvnotes.show import draw_scene
+    >>> from cvnotes.show import axes_shapes, draw_scene
     >>> draw_scene(*axes_shapes(), unit="m").get_xlabel()
     'x (m)'
     """

@@ -55,9 +55,12 @@ Shapes = tuple[Shape, ...]
 
 # Letters as strokes on a unit square, x to the right and y down, so that 3-D files show them too.
 _STROKES = {
-    "x": (((0, 0), (1, 1)), ((1, 0), (0, 1))),
-    "y": (((0, 0), (0.5, 0.5)), ((1, 0), (0.5, 0.5)), ((0.5, 0.5), (0.5, 1))),
-    "z": (((0, 0), (1, 0)), ((1, 0), (0, 1)), ((0, 1), (1, 1))),
+    "X": (((0, 0), (1, 1)), ((1, 0), (0, 1))),
+    "Y": (((0, 0), (0.5, 0.5)), ((1, 0), (0.5, 0.5)), ((0.5, 0.5), (0.5, 1))),
+    "Z": (((0, 0), (1, 0)), ((1, 0), (0, 1)), ((0, 1), (1, 1))),
+    "x": (((0, 0.3), (0.7, 1)), ((0.7, 0.3), (0, 1))),
+    "y": (((0, 0.3), (0.35, 0.95)), ((0.7, 0.3), (0.1, 1.4))),
+    "z": (((0, 0.3), (0.7, 0.3)), ((0.7, 0.3), (0, 1)), ((0, 1), (0.7, 1))),
 }
 
 
@@ -68,7 +71,7 @@ def axes_shapes(
     name: str = "WRF",
     meaning: str = "world",
 ) -> Shapes:
-    """Return a frame: three arrows with their letters.
+    """Return a frame: three arrows with their letters, small ones for a camera's.
 
     Parameters
     ----------
@@ -96,7 +99,7 @@ def axes_shapes(
         ends += [[head, head - tip * axis + s * wing * side] for s in (-1, 1)]
         at = head + 1.2 * letter * axis
         right, down = np.eye(3)[[2 if i == 2 else 0, 1]] * letter
-        for stroke in _STROKES["xyz"[i]]:
+        for stroke in _STROKES[("xyz" if meaning == "camera" else "XYZ")[i]]:
             ends.append([at + (a - 0.5) * right + (b - 0.5) * down for a, b in stroke])
     colour = colour_of(meaning)
     origin = move(G, -0.12 * length * np.ones(3))
@@ -179,27 +182,6 @@ def target_shapes(
     return faces, border, Label(name, at, MUTED)
 
 
-def horizon_shapes(
-    centre: npt.ArrayLike = (0, 0, 0), radius: float = 1e4, *, name: str = "horizon"
-) -> Shapes:
-    """Return the horizon: where the plane at infinity meets all level planes.
-
-    A dashed circle stands for it, around `centre`, at the height of whoever looks from there;
-    every level direction ends in a point of it, and opposite directions in the same ideal point.
-
-    Examples
-    --------
-    >>> lines, label = horizon_shapes(radius=10.0)
-    >>> bool(np.allclose(np.linalg.norm(lines.ends, axis=-1), 10, atol=1e-9))
-    True
-    """
-    centre, radius = one_point(centre, "centre", 3), number(radius, "radius")
-    angle = np.linspace(0, 2 * np.pi, 145)
-    way = centre + radius * np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=-1)
-    dashes = np.stack([way[:-1], way[1:]], axis=1)[::2]
-    return Lines(name, dashes, COLOURS["ideal"], 1.0), Label(name, way[18], COLOURS["ideal"])
-
-
 def scene_shapes(scene: Scene, *, name: str = "scene") -> Shapes:
     """Return a scene's triangles; a checker shows as the mean of its two colours.
 
@@ -233,7 +215,7 @@ def extent(*shapes: Shape) -> float:
 
     Examples
     --------
-    >>> extent(*horizon_shapes(radius=10.0))
+    >>> extent(Lines("way", np.array([[[0.0, 0, 0], [3, 20, 4]]]), "black"))
     20.0
     """
     return float(np.ptp(places(*shapes), axis=0).max())

@@ -26,8 +26,11 @@
       this.sentence = make("p", { className: "explore-sentence", role: "status", textContent: told.sentence });
       this.matrices = make("div", { className: "explore-matrices", innerHTML: told.matrices });
       this.canvas = make("canvas", { hidden: true, role: "img" });
-      this.stage = make("div", { className: "explore-stage" }, still, this.canvas);
-      this.stage.style.setProperty("--width", `${told.size[0]}px`);
+      const picture = still.closest("picture");
+      const at = picture && matchMedia(picture.querySelector("source").media).matches ? told.narrow : told;
+      this.stage = make("div", { className: "explore-stage" }, picture ?? still, this.canvas);
+      this.stage.classList.toggle("of-this-width", !!picture);
+      this.stage.style.setProperty("--width", `${at.size[0]}px`);
       this.grips = new CvnotesGrips(this.stage, (wanted) => this.want(wanted));
       this.inputs = new Map();
       const controls = make("div", { className: "explore-controls" });
@@ -38,7 +41,7 @@
       const name = `Exploration: ${told.name}`;
       const parts = [controls, this.state, this.sentence, this.stage, this.matrices];
       output.replaceChildren(make("div", { className: "explore", role: "group", ariaLabel: name }, ...parts));
-      this.grips.place(told.grips, told.size, this.values);
+      this.grips.place(at.grips, at.size, this.values);
     }
 
     control(setting) {
@@ -116,6 +119,8 @@
 
     paint(pixels, shown, wanted) {
       const [width, height] = shown.size;
+      // What leaves room for sliders may stay in sight above them.
+      this.stage.classList.toggle("low", this.stage.clientWidth * height < 0.5 * innerHeight * width);
       if (this.canvas.width !== width || this.canvas.height !== height)
         [this.canvas.width, this.canvas.height] = [width, height];
       const image = new ImageData(new Uint8ClampedArray(pixels), width, height);

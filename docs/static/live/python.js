@@ -65,7 +65,8 @@ async function wakePython({ packages = ["numpy", "pillow"], data = false, say = 
   const total = [...RUNTIME, ...files, ...wheels].reduce((sum, file) => sum + (parts.bytes[file] || 0), 0);
   countMegabytes(total, say);
   importScripts(PYTHON + "pyodide.js");
-  const python = await loadPyodide({ indexURL: PYTHON });
+  // Switched on, as this version has it, it needs what Safari and Firefox do not have.
+  const python = await loadPyodide({ indexURL: PYTHON, enableRunUntilComplete: false });
   const quiet = { messageCallback() {}, errorCallback() {} };
   // By its address a wheel comes without what it depends on.
   await python.loadPackage([...packages, ...wheels.map((wheel) => PYTHON + wheel)], quiet);

@@ -1,0 +1,33 @@
+"""From where on a user is told something: all such limits, each with its unit and its reason."""
+
+# --- do the views determine the camera? Between sets that give the focal length and sets that do
+# not, measured on 25 noisy sets of each family in tests/test_reliability.py.
+UNDETERMINED, WEAK = 0.0023, 0.01  # second smallest over largest singular value of V
+PARALLEL, FLAT = 5.0, 15.0  # degrees, largest angle between two boards
+UNCERTAIN, UNKNOWN = 0.01, 0.10  # standard deviation of the focal length over its value
+PIXEL_RATIO = 2.0  # of a pixel's height and width; sensors have 1, anamorphic video less than 2
+
+# --- do the corners fit the camera?
+OF_PICTURE = 0.005  # of the picture's longer side, RMS of a view: no camera explains so much
+MISFIT, TIMES_TYPICAL = 0.5, 4  # px, and times the median view, from which a view is a stranger
+OUTLIER, TIMES_MEDIAN = 0.2, 5  # px, and times the median corner: once in 30 million by noise
+NEGLIGIBLE = 0.02  # px: what a lens misses below this does not matter
+TOO_SMALL = 0.15  # part of the residuals by radius; 0.02 at most with a lens that fits
+BY_CHANCE = 5.0  # F of the powers of the radius, from which they are no chance
+MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed or be another
+TIMES_NOISE = 1.5  # scatter between views over noise alone, from which both are told
+
+# --- which lens, which board? The simpler one is kept while it predicts views left out within this
+# of the other, and the other is not better in enough of them: the 95 % quantile of a normal
+# variable, from which that of Student's t is taken.
+AS_WELL, SURE = 1.10, 1.645
+HOPELESS = 2.0  # a lens so many times worse than the best is not tried with another board
+ALIKE_LEFT_OUT = 1.02  # times the best: models whose predictions nothing tells apart
+
+# --- which photographs?
+ROUNDS = 3  # in which photographs that do not fit are left out
+FEWEST_KEPT, PART_KEPT = 4, 2 / 3  # how many must stay, and which part of all
+EXCHANGED = 0.7  # RMS of a mirrored photograph over that of the photograph as it is
+MANY_VIEWS = 200  # that are looked at in a mirror: more take long, and say nothing new
+MANY_WITHOUT_BOARD = 0.5  # of the photographs
+SAME_PLACE = 0.5  # px, between two pictures of a board that did not move

@@ -1,0 +1,105 @@
+"""How much a row bends."""
+
+from typing import Any
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.learn.cases.cameras import rounded
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+
+
+def bend(row: Array) -> float:
+    """Return how far points (n, 2) lie at most from the line through first and last."""
+    d = row[-1] - row[0]
+    normal = np.array([-d[1], d[0]]) / np.linalg.norm(d)
+    return float(np.abs((row - row[0]) @ normal).max())
+
+
+def _along(row: Array) -> Array:
+    way = row[-1] - row[0]
+    return np.asarray(way / np.linalg.norm(way))
+
+
+def _across(row: Array) -> Array:
+    """Return how far points are from the line, with a sign."""
+    u, v = _along(row)
+    return np.asarray((row - row[0]) @ [-v, u])
+
+
+def _rows(rng: Rng) -> list[Case]:
+    by_hand = np.array([[0.0, 0.0], [2.0, 4.0], [6.0, 8.0]])
+    along = np.linspace(0, 300, 7)[:, None] * np.array([[0.6, 0.8]])
+    bow = np.array([0.0, 1.0, 1.8, 2.5, 1.6, 0.9, 0.0])[:, None] * np.array([[-0.8, 0.6]])
+    many = rng.uniform(20, 400, 2) + along + rng.choice([-1.0, 1.0]) * bow
+    wave = np.array([[0.0, 0.0], [12.0, 10.0], [18.0, 20.0], [32.0, 28.0], [40.0, 40.0]])
+    upright = np.array([[50.0, 10.0], [53.0, 40.0], [51.0, 70.0], [50.0, 100.0]])
+    return [
+        Case((by_hand,)),
+        Case((rounded(many, 2),)),
+        Case((rounded(many[:, ::-1], 2),)),
+        Case((wave,)),
+        Case((upright,), about="upright"),
+    ]
+
+
+def _steps(row: Array) -> Any:
+    d = row[-1] - row[0]  # the way from the first point to the last
+    n = np.array([-d[1], d[0]])  # a normal of the line
+    u = n / np.linalg.norm(d)  # the normal, of length 1
+    across = (row - row[0]) @ u  # how far each point is from the line, with a sign
+    return np.abs(across).max()
+
+
+MISTAKES = mistakes(
+    ("measured straight down",
+     "You measured along v, or along u. The distance from a line is measured at right angles"
+     " to it.",
+     lambda row: np.abs(_across(row)).max() / np.abs(_along(row)[0]),
+     lambda row: np.abs(_across(row)).max() / np.abs(_along(row)[1])),
+    ("sign kept",
+     "You took the largest without abs(): points on the other side count as negative.",
+     lambda row: _across(row).max(), lambda row: (-_across(row)).max()),
+    ("along for across",
+     "That is how far the points reach along the line. Turn its direction by 90° first.",
+     lambda row: np.abs((row - row[0]) @ _along(row)).max(),
+     lambda row: np.linalg.norm(row - row[0], axis=1).max()),
+    ("mean for the largest", "You took a mean of the distances; asked is the largest.",
+     lambda row: np.abs(_across(row)).mean(), lambda row: np.sqrt((_across(row) ** 2).mean())),
+    ("a level line",
+     "You measured from a level line through the first point. The row may be tilted.",
+     lambda row: np.abs(row[:, 1] - row[0, 1]).max(), lambda row: np.ptp(row[:, 1])),
+    ("the point in the middle",
+     "You measured the point in the middle; it need not be the farthest from the line.",
+     lambda row: np.abs(_across(row))[len(row) // 2]),
+    ("both sides added",
+     "You added the largest distances of the two sides; asked is the larger one.",
+     lambda row: np.ptp(_across(row))),
+)  # fmt: skip
+
+
+BEND = Exercise(
+    name="bend",
+    chapter=0,
+    title="How much does a row bend?",
+    task="Give the largest distance, in pixels, of points row, shape (n, 2), from the straight "
+    "line through the first and the last of them.",
+    stub='''def my_bend(row):
+    """Return how far points (n, 2) lie at most from the line through first and last."""
+    ...''',
+    hints=(
+        "row[-1] - row[0] leads along the line. Divide it by its length: np.linalg.norm.",
+        "Turned by 90°, (a, b) becomes (−b, a). The dot product of row - row[0] with it, for all "
+        "points at once by @, is how far they are from the line, with a sign.",
+        "np.abs(…).max() is the largest of these distances.",
+    ),
+    cases=_rows,
+    properties=(
+        Property("The distance is the one of the point that is farthest from the line."),
+        Property("It is right for a row that stands upright.", about="upright"),
+    ),
+    misconceptions=MISTAKES,
+    reference=bend,
+    steps=_steps,
+    concepts=("28",),
+)

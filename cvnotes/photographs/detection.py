@@ -1,0 +1,318 @@
+"""Photographs, and the board that was detected in each of them, or the reason why not."""
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, CornersNotFound, DegenerateError, FileError
+from cvnotes.base.parallel import in_order
+from cvnotes.base.writing import PathLike, printable
+from cvnotes.files import Photo, Reason, Rejected
+from cvnotes.files.decoding import header_size
+from cvnotes.files.ownership import photographs as listed_photographs
+from cvnotes.files.photos import fingerprint, open_photo, usual_size
+from cvnotes.files.reasons import Copy, OtherSize
+from cvnotes.photographs.reasons import LeftOut, NoBoard
+from cvnotes.targets import CharucoBoard, Chessboard, find_corners
+from cvnotes.targets.finding import count_corners
+from cvnotes.targets.markers import one_thread_each
+
+Board = Chessboard | CharucoBoard
+Given = PathLike | Photo | npt.ArrayLike  # one photograph, or a folder of them
+
+_THUMBNAIL = 480  # px wide
+_WORTH_THREADS = 500_000  # pixels; of smaller pictures threads mostly wait for the interpreter
+_AT_ONCE, _PIXELS_AT_ONCE = 8, 80_000_000  # a pixel takes about 12 bytes while it is looked at
+_SURE = 3  # photographs that agree on the board's count
+
+
+@dataclass(frozen=True, eq=False)
+class Detection:
+    """A photograph in which the board was looked for; its pixels are not kept.
+
+    Parameters
+    ----------
+    path : Path
+        Where it is, or what it is called.
+    size : (width, height)
+        Its size in pixels.
+    thumbnail : ndarray of uint8, shape (h, w)
+        A small copy.
+    corners : ndarray, shape (n, 2), or None
+        Where the board's corners are in the photograph, NaN for those that cannot be seen; None
+        if it is not used.
+    turned : bool
+        Whether its EXIF data ask for a rotation (which is not carried out).
+    note : str
+        What was done to it when it was read.
+    reason : Reason or None
+        Why it is not used.
+    found : ndarray, shape (n, 2), or None
+        What was taken for the board where it is not to be trusted.
+    pixels : bytes
+        What its pixels are known by.
+    """
+
+    path: Path
+    size: tuple[int, int]
+    thumbnail: npt.NDArray[np.uint8]
+    corners: Array | None
+    turned: bool = False
+    note: str = ""
+    reason: Reason | None = None
+    found: Array | None = None
+    pixels: bytes = b""
+
+    @property
+    def seen(self) -> npt.NDArray[np.bool_]:
+        """Which corners (n,) can be seen."""
+        corners = np.zeros((0, 2)) if self.corners is None else self.corners
+        return np.asarray(np.isfinite(corners).all(-1))
+
+    def on_thumbnail(self, m: Array) -> Array:
+        """Return where pixels (n, 2) of the photograph lie on the thumbnail."""
+        # Pixel centres are integers, so the picture's edge lies at −½ in both.
+        return np.asarray((m + 0.5) * self.thumbnail.shape[1] / self.size[0] - 0.5)
+
+    def without(self, reason: Reason) -> "Detection":
+        """Return the same, not to be used; what was found is still known."""
+        return replace(self, corners=None, found=self.corners, reason=reason)
+
+
+@dataclass(frozen=True, eq=False)
+class Photographs:
+    """All photographs of one calibration.
+
+    Parameters
+    ----------
+    board : Chessboard or CharucoBoard
+        What was photographed.
+    looked_at : sequence of Detection
+        Those in which the board was looked for, found or not.
+    rejected : sequence of Rejected
+        All that are not used, with their reasons.
+    counted : bool
+        Whether the board's corners were counted in them.
+    """
+
+    board: Board
+    looked_at: Sequence[Detection]
+    rejected: Sequence[Rejected] = ()
+    counted: bool = False
+
+    @property
+    def used(self) -> list[Detection]:
+        """Those that show the board."""
+        return [photo for photo in self.looked_at if photo.corners is not None]
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Their (width, height)."""
+        return self.looked_at[0].size
+
+    def correspondences(self) -> tuple[Array | list[Array], list[Array]]:
+        """Return the points of the board and their pixels, of those that are used.
+
+        One set of points (n, 3) if all of them can be seen in all photographs, else one for each.
+        """
+        used = [(photo.corners, photo.seen) for photo in self.used if photo.corners is not None]
+        m = [corners[seen] for corners, seen in used]
+        if all(seen.all() for _, seen in used):
+            return self.board.points, m
+        return [self.board.points[seen] for _, seen in used], m
+
+    def without(self, reasons: dict[int, Reason]) -> "Photographs":
+        """Return them without some of the used ones: reasons by their number among these."""
+        lost = {self.used[i].path: reason for i, reason in reasons.items()}
+        return replace(
+            self,
+            looked_at=[
+                photo.without(lost[photo.path]) if photo.path in lost else photo
+                for photo in self.looked_at
+            ],
+            rejected=[*self.rejected, *(_no(path, reason) for path, reason in lost.items())],
+        )
+
+    def named(self) -> tuple[list[str], list[Rejected]]:
+        """Return the names of the used ones, and the rejected, without their common folder."""
+        used = [printable(photo.path) for photo in self.used]
+        every = [*used, *(r.file for r in self.rejected)]
+        try:
+            common = os.path.commonpath([Path(file).parent for file in every])
+        except ValueError:  # some are absolute and some are not
+            return used, list(self.rejected)
+        short = [str(Path(file).relative_to(common)) for file in every]
+        lost = zip(short[len(used) :], self.rejected, strict=True)
+        return short[: len(used)], [Rejected(name, r.reason) for name, r in lost]
+
+
+# --- which photographs ---------------------------------------------------------------------------
+
+
+def listed(
+    given: Iterable[Given] | PathLike, leave_out: Iterable[PathLike] = ()
+) -> tuple[list[Path | Photo], list[Rejected]]:
+    """List photographs that were given as files, folders or arrays, without those to leave out.
+
+    Raises
+    ------
+    FileError
+        There are none, or none with the name of one to leave out.
+    """
+    given = [given] if isinstance(given, str | os.PathLike) else list(given)
+    paths = [item for item in given if isinstance(item, str | os.PathLike)]
+    files, rejected = listed_photographs(map(str, paths), straightened=True)
+    arrays = [
+        item if isinstance(item, Photo) else Photo(Path(f"photograph {i}"), np.asarray(item))
+        for i, item in enumerate(given)
+        if not isinstance(item, str | os.PathLike)
+    ]
+    if not files and not rejected and not arrays:
+        raise FileError(f"no photographs in {', '.join(map(printable, paths))}")
+    every: list[Path | Photo] = [*files, *arrays]
+    unwanted = {path for name in leave_out for path in _called(name, map(_path, every))}
+    rejected += [_no(_path(item), LeftOut()) for item in every if _path(item) in unwanted]
+    return [item for item in every if _path(item) not in unwanted], rejected
+
+
+def _called(name: PathLike, paths: Iterable[Path]) -> list[Path]:
+    """List the photographs that go by a name, of which there must be one."""
+    paths = list(paths)
+    exact = [path for path in paths if path.resolve() == Path(name).resolve()]
+    found = exact or [path for path in paths if path.name == str(name)]
+    if not found:
+        raise FileError(f"leave out {printable(name)}: none of the photographs has this name")
+    return found
+
+
+def _path(item: Path | Photo) -> Path:
+    return item.path if isinstance(item, Photo) else item
+
+
+def _no(path: Path, reason: Reason) -> Rejected:
+    return Rejected(printable(path), reason)
+
+
+# --- the board in each of them -------------------------------------------------------------------
+
+
+def count(photos: Sequence[Path | Photo]) -> tuple[int, int]:
+    """Count the inner corners (columns, rows) of the board in photographs: as most of them show.
+
+    Raises
+    ------
+    DegenerateError
+        There is no board in any of them.
+    """
+    counts: dict[tuple[int, int], int] = {}
+    for found in in_order(_count, photos, workers=_workers(photos)):
+        if found:
+            counts[found] = counts.get(found, 0) + 1
+            if counts[found] == _SURE:
+                break
+    if not counts:
+        raise DegenerateError("no chessboard with 3×3 inner corners or more was found in any")
+    return max(counts, key=lambda found: counts[found])
+
+
+def _count(item: Path | Photo) -> tuple[int, int] | None:
+    photo = item if isinstance(item, Photo) else open_photo(item)
+    return None if isinstance(photo, Rejected) else count_corners(photo.grey)
+
+
+def detect_all(photos: Sequence[Path | Photo], board: Board) -> Iterator[Detection | Rejected]:
+    """Look for the board in all photographs, on all cores."""
+    with one_thread_each():
+        yield from in_order(lambda item: detect(item, board), photos, workers=_workers(photos))
+
+
+def detect(item: Path | Photo, board: Board) -> Detection | Rejected:
+    """Look for the board in one photograph; those that cannot be read are rejected."""
+    photo = item if isinstance(item, Photo) else open_photo(item, grey=True)
+    if isinstance(photo, Rejected):
+        return photo
+    corners, found, reason = None, None, None
+    try:
+        corners = find_corners(photo.grey, board, partial=True)
+    except CornersNotFound as error:
+        found, reason = error.found, NoBoard(error)
+    return Detection(
+        path=photo.path,
+        size=photo.size,
+        thumbnail=_thumbnail(photo),
+        corners=corners,
+        turned=photo.orientation != 1,
+        note=photo.note,
+        reason=reason,
+        found=found,
+        pixels=fingerprint(photo),
+    )
+
+
+def _thumbnail(photo: Photo) -> npt.NDArray[np.uint8]:
+    from PIL import Image
+
+    width, height = photo.size
+    shrink = min(1.0, _THUMBNAIL / max(width, height))
+    small = (max(round(width * shrink), 1), max(round(height * shrink), 1))
+    return np.asarray(Image.fromarray(photo.grey).resize(small, Image.Resampling.BOX))
+
+
+def _workers(photos: Sequence[Path | Photo]) -> int:
+    """Return how many photographs to look at at once: as many as cores, or as memory holds.
+
+    Small ones come one after the other: two threads save a twentieth of the time, and cost as much
+    of the processor's.
+    """
+    if not photos:
+        return 1
+    first = photos[0]
+    width, height = first.size if isinstance(first, Photo) else header_size(first)
+    if width * height < _WORTH_THREADS:
+        return 1
+    return max(1, min(os.cpu_count() or 1, _AT_ONCE, _PIXELS_AT_ONCE // (width * height)))
+
+
+# --- those of one camera -------------------------------------------------------------------------
+
+
+def sorted_out(
+    board: Board,
+    seen: Iterable[Detection | Rejected],
+    rejected: Sequence[Rejected] = (),
+    *,
+    counted: bool = False,
+) -> Photographs:
+    """Put photographs together: of the size that most have, none twice, each other with a reason.
+
+    Parameters
+    ----------
+    board : Chessboard or CharucoBoard
+        What was photographed.
+    seen : iterable of Detection or Rejected
+        What came out for each photograph, in order.
+    rejected : sequence of Rejected
+        Those that are out already.
+    counted : bool
+        Whether the board's corners were counted in them.
+    """
+    seen, rejected = list(seen), list(rejected)
+    looked_at: list[Detection] = []
+    first: dict[bytes, Path] = {}
+    usual = usual_size([item.size for item in seen if isinstance(item, Detection)])
+    for item in seen:
+        if isinstance(item, Rejected):
+            rejected.append(item)
+        elif (same := first.setdefault(item.pixels, item.path)) != item.path:
+            rejected.append(_no(item.path, Copy(printable(same))))
+        elif item.size != usual:
+            rejected.append(_no(item.path, OtherSize(item.size, usual)))
+        else:
+            looked_at.append(item)
+            if item.reason is not None:
+                rejected.append(_no(item.path, item.reason))
+    return Photographs(board, looked_at, rejected, counted)

@@ -1,0 +1,83 @@
+"""Why photographs of a board are not used."""
+
+from dataclasses import dataclass
+
+from cvnotes.base import CornersNotFound
+from cvnotes.files import Reason
+
+_ALL_THE_SAME = "left out; --keep-all uses it all the same"
+
+
+@dataclass(frozen=True)
+class LeftOut(Reason):
+    """Whoever asked does not want it."""
+
+    def __str__(self) -> str:
+        return "left out, as asked"
+
+
+@dataclass(frozen=True)
+class NoBoard(Reason):
+    """The board was not found in it; `error` knows what was tried, and what is there instead."""
+
+    error: CornersNotFound
+
+    def __str__(self) -> str:
+        return str(self.error)
+
+    @property
+    def brief(self) -> str:
+        """What is there instead."""
+        return self.error.brief
+
+
+@dataclass(frozen=True)
+class Misfit(Reason):
+    """Its corners do not fit the camera of the others: its RMS, and that of a typical one, px."""
+
+    rms: float
+    typical: float
+
+    def __str__(self) -> str:
+        return f"{self.brief} (moved, zoomed, rotated or badly found; {_ALL_THE_SAME})"
+
+    @property
+    def brief(self) -> str:
+        """The two numbers."""
+        return (
+            f"does not fit the others: {self.rms:.2f} px, a typical photograph {self.typical:.2f} "
+            "px"
+        )
+
+
+@dataclass(frozen=True)
+class Exchanged(Reason):
+    """The camera explains it better with left and right exchanged."""
+
+    def __str__(self) -> str:
+        return f"{self.brief} ({_ALL_THE_SAME})"
+
+    @property
+    def brief(self) -> str:
+        """What it seems."""
+        return "left and right seem exchanged"
+
+
+@dataclass(frozen=True)
+class NoPartner(Reason):
+    """There is no photograph of the other camera that belongs to it."""
+
+    side: str
+
+    def __str__(self) -> str:
+        return f"no {self.side} photograph belongs to it"
+
+
+@dataclass(frozen=True)
+class PartnerWithoutBoard(Reason):
+    """The photograph that belongs to it does not show the board."""
+
+    partner: str
+
+    def __str__(self) -> str:
+        return f"the board was not found in its partner {self.partner}"

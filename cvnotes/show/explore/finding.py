@@ -1,0 +1,147 @@
+"""Explore the finding of a camera: one photograph's misses on the way from the closed form."""
+
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.calibration import (
+    constraints,
+    extrinsics,
+    intrinsics_from_b,
+    radial_distortion,
+    solve_b,
+)
+from cvnotes.calibration.refinement import Problem, State, solve_by_schur, take_step
+from cvnotes.camera import Camera, Lens
+from cvnotes.homography import dlt
+from cvnotes.pictures import course
+from cvnotes.show.explore.boards import draw_arrows, draw_measured
+from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+
+MAGNIFIED = (5, 50, 700, 3000)  # how much longer than true arrows are after each step
+_STEPS = len(MAGNIFIED) - 1
+_PICTURE, _CURVE = (440, 330), (410, 330)
+
+
+class Finding:
+    """The course's twelve photographs, and the camera after each Gauss–Newton step."""
+
+    def __init__(self) -> None:
+        self.size, self.m = course.camera().size, course.measured_corners()
+        W, m = course.board().points, self.m
+        H = dlt(W[:, :2], m)
+        A = intrinsics_from_b(solve_b(constraints(H)))
+        G = extrinsics(A, H)
+        k1, k2 = radial_distortion(A, G, W, m, terms=2)
+        self.problem = Problem(W, m, size=self.size)
+        start = self.problem.state(Camera(A, lens=Lens((k1, k2))), G)
+        self._states = [start]
+        self._strides: list[tuple[Array, Array]] = []
+        for _ in range(_STEPS):
+            stride, _ = solve_by_schur(self.problem.linearise(self._states[-1])[1], 0.0)
+            self._strides.append(stride)
+            self._states.append(take_step(self._states[-1], stride))
+
+    def at(self, step: float) -> tuple[Camera, Array]:
+        """Return the camera after so many steps, parts of them too, and m minus what it predicts.
+
+        The misses are (views, corners, 2), in pixels.
+        """
+        whole = min(int(step), _STEPS - 1)
+        shared, poses = self._strides[whole]
+        part = step - whole
+        x: State = take_step(self._states[whole], (part * shared, part * poses))
+        camera = self.problem.camera_of(x.shared)
+        return camera, self.problem.residuals(camera, x)
+
+    @cached_property
+    def way(self) -> Array:
+        """Steps and the RMS there, (n, 2)."""
+        steps = np.linspace(0, _STEPS, 10 * _STEPS + 1)
+        return np.array([[step, rms(self.at(float(step))[1])] for step in steps])
+
+
+def rms(misses: Array) -> float:
+    """Return the root mean square of misses (..., 2), per point."""
+    return float(np.sqrt(np.mean(np.sum(misses**2, axis=-1))))
+
+
+def finding_model() -> Model:
+    """Make the model of a photograph's misses while the camera is found."""
+    finding = Finding()
+    n = len(finding.m) - 1
+    settings = (
+        Setting("step", "step", 0, _STEPS, 0.05, 0, "steps of the refinement, parts of them too"),
+        Setting("photograph", "photograph", 0, n, 1, 2, "which of the twelve photographs"),
+    )
+    about = (
+        "The corners of one photograph, with arrows to where the camera predicts them, on the way "
+        "from the closed form to the answer; beside it how far all corners are missed."
+    )
+
+    def draw(paper: Paper, values: Values) -> Sight:
+        return _draw(finding, paper, values["step"], int(values["photograph"]))
+
+    drags = {"step": lambda _, at: {"step": float(at[0])}}
+    return Model("finding", about, settings, draw, drags)
+
+
+def _draw(finding: Finding, paper: Paper, step: float, i: int) -> Sight:
+    camera, misses = finding.at(step)
+    magnify = _magnified(step)
+    picture = paper.picture_panel(_PICTURE, finding.size, f"photograph {i}: misses × {magnify:.0f}")
+    draw_measured(picture, finding.m[i], course.board())
+    draw_arrows(picture, finding.m[i], -magnify * misses[i])
+    curve = _curve(paper, finding, step, camera)
+    value = camera.parameters
+    missed = rms(misses)
+    sentence = (
+        f"After {step:g} of {_STEPS} steps k1 = {value['k1']:+.3f} and u0 = {value['u0']:.1f} px; "
+        f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. {_seen(missed)}"
+    )
+    return Sight(paper.join((picture, curve)), sentence)
+
+
+def _magnified(step: float) -> float:
+    """Magnify the more the smaller the misses are, by equal factors within a step."""
+    return float(np.exp(np.interp(step, range(_STEPS + 1), np.log(MAGNIFIED))))
+
+
+def _digits(pixels: float) -> str:
+    return f"{pixels:.2f}" if pixels >= 1 else f"{pixels:.3f}"
+
+
+def _seen(missed: float) -> str:
+    if missed > 0.02:
+        return "Neighbouring arrows agree: something is not in the model yet."
+    return "The arrows point in all directions: what is left is noise."
+
+
+def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel:
+    """Draw the RMS over the steps, with a logarithmic scale, and the camera of this step."""
+    panel = paper.panel(
+        _CURVE, (-0.35, _STEPS + 0.5), (1.6, -2.6), "RMS of all corners (px) over steps"
+    )
+    for power in range(-2, 2):
+        panel.segments([[[panel.x[0], power], [panel.x[1], power]]], "#DDDDDD", 0.5)
+        panel.text([panel.x[0] + 0.04, power], f"{10.0**power:g}", size=9)
+    panel.ticks(x=range(_STEPS + 1))
+    way = np.column_stack([finding.way[:, 0], np.log10(finding.way[:, 1])])
+    for a, b in pairwise(way):
+        panel.line([a, b], LENS, 2.2)
+    for at in way[::10]:
+        panel.mark(at, "lens", 5)
+        panel.text(at + [0.08, 0.1], _digits(10 ** float(at[1])), IDEAL, anchor="ls")
+    here = [step, np.interp(step, *way.T)]
+    panel.mark(here, "estimated", 7)
+    panel.grip("step", "the step, to be moved along the curve", here, 4)
+    names = (("α_u", "alpha_u", ".1f"), ("u0", "u0", ".1f"), ("k1", "k1", "+.3f"))
+    for row, (label, name, how) in enumerate(names):
+        number = f"{camera.parameters[name]:{how}}".replace("-", "−")
+        colour = ESTIMATED if name == "k1" else MUTED
+        panel.text([1.7, 1.35 - 0.32 * row], f"{label} = {number}", colour, size=15)
+    return panel

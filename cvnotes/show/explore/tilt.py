@@ -1,0 +1,120 @@
+"""Explore the tilt: one board's picture by a long lens, and the best a lens half as long can do."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.calibration import pose_from_view
+from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
+from cvnotes.show.explore.boards import draw_arrows
+from cvnotes.show.explore.finding import rms
+from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.targets import Chessboard
+
+_PICTURE, _CURVE = (440, 330), (410, 330)
+_STEEPEST = 60  # degrees
+_FAR = 2.1625  # of the board's diagonal, to the long lens
+_MAGNIFIED = 10
+
+
+class _Lenses:
+    """A lens and one half as long; the second stands where its picture is most like the first."""
+
+    def __init__(self, camera: Camera, board: Chessboard) -> None:
+        w, h = camera.size
+        alpha, middle = float(camera.A[0, 0]), ((w - 1) / 2, (h - 1) / 2)
+        self.board = board
+        self.long = Camera(intrinsics(alpha, alpha, *middle), size=camera.size)
+        self.short = Camera(intrinsics(alpha / 2, alpha / 2, *middle), size=camera.size)
+        self.away = _FAR * float(np.linalg.norm(board.points[-1]))
+        self.seen = lru_cache(maxsize=None)(self._seen)
+
+    def _seen(self, tilt: float) -> tuple[Array, Array, float]:
+        """Return the corners (n, 2) by either lens, and how far the short one is away."""
+        R = rotation_from_vector([np.radians(tilt), 0, 0])
+        W, middle = self.board.points, self.board.points.mean(axis=0)
+        m = self.long.moved(pose(R, [0, 0, self.away] - R @ middle)).project(W)
+        G = pose_from_view(self.short, W, m)
+        near = float(G[2, :3] @ middle + G[2, 3])
+        return m, self.short.moved(G).project(W), near
+
+    def misfit(self, tilt: float) -> float:
+        """Return the RMS of the distances between the corners of both pictures, in pixels."""
+        one, other, _ = self.seen(tilt)
+        return rms(one - other)
+
+
+def tilt_model(camera: Camera, board: Chessboard) -> Model:
+    """Make the model of `board`, tilted before the lens of `camera` and before one half as long."""
+    lenses = _Lenses(camera, board)
+    settings = (
+        Setting("tilt", "tilt (°)", 0, _STEEPEST, 1, 30, "turns the board about its x axis"),
+    )
+    about = (
+        "One tilted board through two lenses, the second half as long and in its best place; "
+        "beside it how well the two pictures can be told apart, over the tilt."
+    )
+
+    def draw(paper: Paper, values: Values) -> Sight:
+        return _draw(lenses, paper, values["tilt"])
+
+    drags = {"tilt": lambda _, at: {"tilt": float(at[0])}}
+    return Model("tilt", about, settings, draw, drags)
+
+
+def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Sight:
+    one, other, near = lenses.seen(tilt)
+    alpha, short = lenses.long.A[0, 0], lenses.short.A[0, 0]
+    picture = paper.picture_panel(
+        _PICTURE, lenses.long.size, f"one board, two lenses (arrows × {_MAGNIFIED})"
+    )
+    for m, colour, width in ((one, LENS, 2.4), (other, ESTIMATED, 1.2)):
+        _draw_net(picture, m, lenses.board, colour, width)
+    draw_arrows(picture, one, _MAGNIFIED * (other - one))
+    w, h = lenses.long.size
+    picture.text([0.03 * w, 0.94 * h], f"blue: α = {alpha:.0f} px from {lenses.away:.0f} mm", LENS)
+    picture.text(
+        [0.97 * w, 0.94 * h], f"orange: α = {short:.0f} px from {near:.0f} mm", ESTIMATED,
+        anchor="rm",
+    )  # fmt: skip
+    misfit = lenses.misfit(tilt)
+    sentence = f"Tilted by {tilt:.0f}° the two pictures differ by {misfit:.1f} px (RMS): "
+    if misfit < 0.05:
+        sentence += "no picture of this board tells the one lens from the other."
+    else:
+        sentence += f"with corners good to 0.1 px that is {misfit / 0.1:.0f} times the noise."
+    return Sight(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
+
+
+def _draw_net(panel: Panel, m: Array, board: Chessboard, colour: str, width: float) -> None:
+    """Draw rows and columns of corners as lines."""
+    columns, rows = board.corners
+    grid = m.reshape(rows, columns, 2)
+    for line in (*grid, *grid.transpose(1, 0, 2)):
+        panel.line(line, colour, width)
+
+
+def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
+    """Draw the misfit up to the tilt, which the hand carries on."""
+    highest = 1.15 * lenses.misfit(_STEEPEST)
+    panel = paper.panel(
+        _CURVE,
+        (-6, _STEEPEST + 4),
+        (highest, -0.12 * highest),
+        "how far they differ (px) over tilt (°)",
+    )
+    panel.ticks(x=(0, 15, 30, 45, 60), y=np.arange(1, np.floor(highest) + 1))
+    at = np.arange(0, tilt + 1)
+    way = np.array([[t, lenses.misfit(float(t))] for t in at])
+    if len(way) > 1:
+        panel.line(way, ESTIMATED, 2.4)
+    panel.line([[-6, 0], [_STEEPEST + 4, 0]], MUTED, 0.8)
+    panel.mark(way[-1], "estimated", 8)
+    panel.text(
+        way[-1] + [1.5, -0.03 * highest], f"{way[-1, 1]:.1f} px", IDEAL, anchor="lm", size=13
+    )
+    panel.grip("tilt", "the board's tilt", way[-1], 4)
+    return panel

@@ -1,0 +1,97 @@
+"""The exercise's own misconceptions, each recognised by what it gives."""
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from cvnotes.base import Array, CvnotesError
+from cvnotes.tutor.checker.equality import TOLERANCE, Same, close, tolerance, up_to_scale
+from cvnotes.tutor.checker.exercise import Case
+from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
+
+# A slip repeats a mistake to the last digits; what merely comes near is another one.
+_AS_NEAR = 0.01
+
+
+def foreseen(answer: WrongAnswer) -> Found | None:
+    """Find the misconception that gives what the student's function gave.
+
+    That is the first that agrees with every outcome, and is wrong where the student is. Without
+    one, it is the first that agrees with all usual inputs, two of them wrong at least: whoever
+    made another slip with what is special, a point at infinity or the last row, has made this one
+    too.
+    """
+    usual = answer.on_usual_inputs
+    found = _first_behind(answer)
+    if found is None and usual.wrong > 1 and len(usual.tried) < len(answer.tried):
+        found = _first_behind(usual)
+    return found
+
+
+def _first_behind(answer: WrongAnswer) -> Found | None:
+    for mistake in answer.exercise.misconceptions:
+        same = mistake.same or answer.exercise.same
+        ways = (mistake.gives, *mistake.variants)
+        if any(explains(gives, answer, same) for gives in ways) or (
+            mistake.seen is not None and _is_seen(mistake.seen, answer)
+        ):
+            return Found(mistake.name, mistake.sentence, enough=True)
+    return None
+
+
+def _is_seen(seen: Callable[[Array, Case], bool], answer: WrongAnswer) -> bool:
+    """Return whether all wrong answers look like a mistake that has many results."""
+    try:
+        return all(
+            outcome.value is not None
+            and outcome.value.shape == case.right.shape
+            and bool(np.isfinite(outcome.value).all())
+            and seen(outcome.value, case)
+            for case, outcome in answer.failing
+        )
+    except (np.linalg.LinAlgError, CvnotesError):
+        return False
+
+
+def explains(gives: Callable[..., Any], answer: WrongAnswer, same: Same) -> bool:
+    """Return whether a mistake gives the same as the student's function, and is wrong where it is.
+
+    Where the mistake gives no numbers, neither must the function: what it gave instead, an
+    exception, NaN or infinity, depends on how it was written.
+    """
+    compared = 0
+    for i, (case, outcome) in enumerate(answer.tried):
+        given = what_it_gives(gives, case.args)
+        # Of a single number nothing is left without its scale.
+        equal = close if given is not None and given.size == 1 and same is up_to_scale else same
+        if given is None:
+            if outcome.value is not None and np.isfinite(outcome.value).all():
+                return False
+            continue
+        if outcome.value is None or not equal(
+            outcome.value, given, _AS_NEAR * tolerance(outcome.dtype)
+        ):
+            return False
+        if i < answer.wrong and answer.exercise.same(given, case.right, TOLERANCE):
+            return False
+        compared += 1
+    return compared > 0
+
+
+def what_it_gives(function: Callable[..., Any], args: tuple[Any, ...]) -> Array | None:
+    """Return the result of a mistake as numbers; None where it has none.
+
+    Examples
+    --------
+    >>> what_it_gives(np.linalg.inv, (np.zeros((2, 2)),)) is None
+    True
+    """
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            given = function(*(np.array(x) if isinstance(x, np.ndarray) else x for x in args))
+        except (np.linalg.LinAlgError, CvnotesError, IndexError):
+            return None
+    return None if given is None else np.asarray(given, dtype=np.float64)

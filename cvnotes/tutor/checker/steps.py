@@ -1,0 +1,382 @@
+"""The way to an answer in steps, and where a student's own way leaves it.
+
+An exercise may have `steps`: a function of a few lines as a student might write it, one for each
+thing to work out, with a comment that says in words what it is:
+
+>>> import numpy as np
+>>> def error_bars(J, r):
+...     n, p = J.shape
+...     s2 = r @ r / (n - p)  # the variance of the residuals
+...     C = np.linalg.inv(J.T @ J)  # the cofactors
+...     return np.sqrt(s2 * np.diag(C))
+
+What a student's expressions give is compared with what the lines give, on inputs without round
+numbers. A step is called missing only if that is proven: with the step's value in the place of one
+of the student's expressions, the student's own code comes out right, on every one of the inputs.
+"""
+
+import ast
+import copy
+import inspect
+import re
+import textwrap
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from types import FunctionType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cvnotes.base import Array, CvnotesError
+from cvnotes.tutor.checker.equality import TOLERANCE, Same, up_to_scale
+from cvnotes.tutor.checker.exercise import Exercise
+from cvnotes.tutor.checker.instrumented import Instrumented
+from cvnotes.tutor.checker.parsing import parsed
+from cvnotes.tutor.checker.sandbox import run
+
+# Two values are equal if they are nearer than that, relative to their largest entry.
+_NEAR = 1e-7
+_INPUTS = 3
+_SEEDS = range(9001, 9007)
+# What a search may take, in seconds of the processor; and how many numbers a value has at most.
+_SECONDS, _LARGEST = 0.12, 4000
+# One run that takes longer is not repeated; and what all may take where it can be ended.
+_SLOW, _PATIENCE = 0.03, 1.0
+
+
+class Line(NamedTuple):
+    """One line of the steps: what it gives, in words and as code; and where it stands."""
+
+    name: str
+    words: str
+    code: str
+
+
+@dataclass(frozen=True)
+class Located:
+    """How far a student's way is right, and what is missing first.
+
+    Attributes
+    ----------
+    agreed : tuple of (words, expression)
+        The steps that the student's own expressions give.
+    missing : Line or None
+        The first step that, put right, makes the rest come out right; None if that is not proven.
+    place : str
+        The student's expression in whose place it belongs.
+    """
+
+    agreed: tuple[tuple[str, str], ...]
+    missing: Line | None = None
+    place: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """What is said at first, without the formula."""
+        so_far = ", ".join(f"{words} (`{own}`)" for words, own in self.agreed)
+        if self.missing is None:
+            return f"Up to here it agrees: {so_far}."
+        right = f"Right so far: {so_far}. " if so_far else ""
+        return f"{right}First wrong: `{self.place}`; there belongs {self.missing.words}."
+
+
+def lines_of(steps: Callable[..., Any]) -> tuple[ast.FunctionDef, list[Line]]:
+    """Return the tree of a function of steps, and its lines: one for each statement."""
+    source = textwrap.dedent(inspect.getsource(steps))
+    function = next(n for n in ast.walk(parsed(source)) if isinstance(n, ast.FunctionDef))
+    if isinstance(function.body[0], ast.Expr):  # a docstring
+        del function.body[0]
+    rows = source.splitlines()
+    return function, [_line(statement, rows) for statement in function.body]
+
+
+def _line(statement: ast.stmt, rows: Sequence[str]) -> Line:
+    code = ast.unparse(statement)
+    said = re.search(r"#\s*(?!noqa)(.+)$", rows[(statement.end_lineno or 1) - 1])
+    if isinstance(statement, ast.Return):
+        name, words = "the answer", "what is returned"
+    else:
+        names = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and _is_set(n)]
+        name, words = ", ".join(dict.fromkeys(names)), ""
+    return Line(name, said[1].strip() if said else words or f"`{name}`", code)
+
+
+def _is_set(node: ast.Name) -> bool:
+    return isinstance(node.ctx, ast.Store)
+
+
+def edited(steps: Callable[..., Any], *changes: str) -> Callable[..., Any]:
+    """Return the steps with some of their code changed: a mistake, as it is written.
+
+    Parameters
+    ----------
+    steps : callable
+        A function of steps.
+    *changes : str
+        What stands there and what is to stand there instead, in turn; each wherever it occurs.
+
+    Raises
+    ------
+    CvnotesError
+        What is to be changed does not stand there; when the function that is given is called.
+
+    Examples
+    --------
+    >>> edited(_example, "x + 1", "x - 1")(3.0)
+    4.0
+    """
+
+    @cache
+    def made() -> Callable[..., Any]:
+        source = textwrap.dedent(inspect.getsource(steps))
+        for old, new in zip(changes[::2], changes[1::2], strict=True):
+            if old not in source:
+                raise CvnotesError(f"{steps.__qualname__}: {old!r} does not stand in these steps")
+            source = source.replace(old, new)
+        space = dict(steps.__globals__)
+        exec(compile(parsed(source), "<edited>", "exec"), space)
+        return space[steps.__name__]  # type: ignore[no-any-return]
+
+    def gives(*args: Any) -> Any:
+        return made()(*args)
+
+    return gives
+
+
+def _example(x: float) -> float:
+    y = x + 1
+    return 2 * y
+
+
+class _Trace(NamedTuple):
+    """One input, what each step gives for it, and a right answer."""
+
+    args: tuple[Any, ...]
+    steps: tuple[tuple[int, Array], ...]
+    right: Array
+
+
+@lru_cache(maxsize=64)
+def _traced(exercise: Exercise) -> tuple[list[Line], list[_Trace]]:
+    """Work out the steps on a few inputs without round numbers."""
+    assert exercise.steps is not None
+    function, lines = lines_of(exercise.steps)
+    code = [
+        compile(ast.fix_missing_locations(ast.Module([s], [])), "<steps>", "exec")
+        for s in function.body
+        if not isinstance(s, ast.Return)
+    ]
+    names = [argument.arg for argument in function.args.args]
+    traces = []
+    for args in _untidy(exercise):
+        space: dict[str, Any] = {
+            **exercise.steps.__globals__,
+            **dict(zip(names, copy.deepcopy(args), strict=True)),
+        }
+        found: dict[tuple[int, str], Array] = {}
+        with np.errstate(all="ignore"):
+            for i, one in enumerate(code):
+                exec(one, space)
+                names_set = lines[i].name.split(", ")
+                values = {name: space.get(name) for name in names_set}
+                if names_set[1:]:  # and all of them, as one array
+                    values = {lines[i].name: list(values.values()), **values}
+                for name, given in values.items():
+                    value = _numbers(given)
+                    if value is not None and not _says_nothing(given, args):
+                        found[i, name] = value.copy()
+            right = np.asarray(exercise.reference(*copy.deepcopy(args)), dtype=np.float64)
+        traces.append((args, found, right))
+    shared = [key for key in traces[0][1] if all(key in found for _, found, _ in traces)]
+    return lines, [
+        _Trace(args, tuple((key[0], found[key]) for key in shared), right)
+        for args, found, right in traces
+    ]
+
+
+def _untidy(exercise: Exercise) -> list[tuple[Any, ...]]:
+    """Return usual inputs that change with the seed: those that do not are tidy ones."""
+    by_seed = [exercise.cases(np.random.default_rng(seed)) for seed in _SEEDS]
+    found = []
+    for n, cases in enumerate(by_seed):
+        others = by_seed[n - 1]
+        random = [
+            case
+            for case, other in zip(cases, others, strict=False)
+            if _spelled(case.args) != _spelled(other.args)
+        ]
+        usual = [case for case in random if not case.about] or random
+        if usual:
+            found.append(max(usual, key=lambda case: min(case.size, 200)).args)
+    return found[:_INPUTS]
+
+
+def _spelled(args: Sequence[Any]) -> list[Any]:
+    return [np.asarray(x).tolist() for x in args]
+
+
+def _numbers(value: Any) -> Array | None:
+    """Return a value as numbers; None if it is none, or too much to be compared."""
+    if not isinstance(value, int | float | np.ndarray | np.generic | list | tuple):
+        return None
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (ValueError, TypeError):
+        return None
+    return array if 0 < array.size <= _LARGEST else None
+
+
+def _says_nothing(value: Any, args: Sequence[Any]) -> bool:
+    """Return whether being equal to zeros, ones, counts, or numbers of the input proves nothing."""
+    if np.isin(value, (-1, 0, 1)).all() or not np.isfinite(value).any():
+        return True
+    if np.asarray(value).dtype.kind in "iub":
+        return True
+    given = [_numbers(x) for x in args]
+    return any(x is not None and np.isin(value, x).all() for x in given)
+
+
+def _equal(a: Array, b: Array, same: Same) -> bool:
+    """Return whether two values are the same step, up to what the exercise forgives."""
+    if a.shape != b.shape or not np.array_equal(np.isfinite(a), np.isfinite(b)):
+        return False
+    there = np.isfinite(b)
+    size = float(np.abs(b[there]).max(initial=0)) or 1e-300
+    if (np.abs(a[there] - b[there]) <= _NEAR * size).all():
+        return True
+    if same is up_to_scale and b.size > 2:
+        return up_to_scale(a, b, _NEAR)
+    return False
+
+
+def _agree(a: Array, b: Array, same: Same) -> bool:
+    """Return whether two values are one step, also transposed or with rows in another order."""
+    if a.size != b.size:
+        return False
+    if _equal(a, b, same) or (a.ndim == 2 == b.ndim and _equal(a.T, b, same)):
+        return True
+    if a.shape != b.shape:
+        flat = np.squeeze(a), np.squeeze(b)
+        return a.ndim != b.ndim and _equal(*flat, same)
+    if a.ndim == 2 and len(a) > 2:
+        return _equal(a[np.lexsort(np.round(a, 9).T)], b[np.lexsort(np.round(b, 9).T)], same)
+    return False
+
+
+def located(function: Callable[..., Any], exercise: Exercise) -> Located | None:
+    """Find where a student's function leaves the way to an answer.
+
+    Nothing is found where the exercise has no steps, the function no source, or it agrees with no
+    step. The function runs where it can do no harm.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> located(np.linalg.inv, SimpleNamespace(steps=None)) is None
+    True
+    """
+    if exercise.steps is None or not isinstance(function, FunctionType):
+        return None
+    try:
+        own = Instrumented(function)
+    except (OSError, TypeError, ValueError, SyntaxError, RecursionError):
+        return None
+    lines, traces = _traced(exercise)  # here, so that the child has it already
+    [found] = run(lambda: _found(own, exercise, traces), [()], seconds=_PATIENCE)
+    return None if found.value is None else _worded(found.value, own, lines)
+
+
+def _found(own: Instrumented, exercise: Exercise, traces: Sequence[_Trace]) -> Array:
+    """Return numbers only: the step that is missing and the expression in whose place it belongs.
+
+    Both are −1 if that is not proven; behind them, a step and an expression for each that agrees.
+    """
+    started = time.process_time()
+    clock = started + _SECONDS
+    with np.errstate(all="ignore"):
+        seen = [own.values(trace.args) for trace in traces[:1]]
+        if time.process_time() - started > _SLOW:
+            return np.array([-1.0, -1.0])
+        seen += [own.values(trace.args) for trace in traces[1:]]
+        step, place = _proven(own, exercise, traces, seen, clock)
+        agreed = [
+            pair for pair in _agreed(own, exercise, traces, seen) if step < 0 or pair[0] < step
+        ]
+    return np.array([step, place, *(x for pair in agreed for x in pair)], dtype=float)
+
+
+Seen = dict[int, Array]
+
+
+def _agreed(
+    own: Instrumented, exercise: Exercise, traces: Sequence[_Trace], seen: Sequence[Seen]
+) -> Iterator[tuple[int, int]]:
+    """Yield the steps that expressions give on all inputs, each with the shortest of them."""
+    taken: set[int] = set()
+    for k, (i, _) in enumerate(traces[0].steps):
+        fits = [
+            e
+            for e in seen[0]
+            if all(
+                e in values and _agree(values[e], trace.steps[k][1], exercise.same)
+                for trace, values in zip(traces, seen, strict=True)
+            )
+        ]
+        if fits and i not in taken:
+            taken.add(i)
+            yield i, min(fits, key=lambda e: (own.is_repeated(e), len(own.text[e])))
+
+
+def _proven(
+    own: Instrumented,
+    exercise: Exercise,
+    traces: Sequence[_Trace],
+    seen: Sequence[Seen],
+    clock: float,
+) -> tuple[int, int]:
+    """Return the earliest step that makes the rest come out right, and the expression it is for."""
+
+    def right(answer: Any, trace: _Trace) -> bool:
+        value = _numbers(answer)
+        return value is not None and exercise.same(value, trace.right, TOLERANCE)
+
+    if not traces or all(right(own(trace.args), trace) for trace in traces):
+        return -1, -1  # it is wrong in special cases only
+    for k, (i, _) in enumerate(traces[0].steps):
+        fits = []
+        for e in seen[0]:
+            if time.process_time() > clock:
+                return -1, -1
+            if all(
+                e in values
+                and _is_candidate(values[e], trace.steps[k][1], trace, exercise.same)
+                and right(own(trace.args, {e: trace.steps[k][1]}), trace)
+                for trace, values in zip(traces, seen, strict=True)
+            ):
+                fits.append(e)
+        if fits:
+            return i, fits[0]  # where it is worked out, not where it is used
+    return -1, -1
+
+
+def _is_candidate(mine: Array, wanted: Array, trace: _Trace, same: Same) -> bool:
+    """Return whether a value might be a wrong one of a step, and the step is not the answer."""
+    if mine.size != wanted.size or _agree(mine, wanted, same):
+        return False
+    return wanted.size != trace.right.size or not _agree(wanted, trace.right, same)
+
+
+def _worded(found: Array, own: Instrumented, lines: Sequence[Line]) -> Located | None:
+    """Put numbers into words; None if nothing was found."""
+    text = own.text
+    step, place, *pairs = found.astype(int).tolist()
+    agreed = tuple(
+        (lines[i].words, text[e])
+        for i, e in zip(pairs[::2], pairs[1::2], strict=True)
+        if lines[i].words != f"`{text[e]}`"
+    )
+    if step >= 0:
+        return Located(agreed[-3:], lines[step], text[place])
+    return Located(agreed[-3:]) if agreed else None

@@ -1,0 +1,190 @@
+"""Grade handed-in notebooks: each runs in its own process, the verdict is worked out here.
+
+The processes have limits of time and memory, are sealed off where the system lets them, and what
+they hand back is numbers only. That keeps mistakes to the row of whoever made them.
+"""
+
+import os
+import queue
+import secrets
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cvnotes.base import CvnotesError
+from cvnotes.tutor.checker.outcome import clean
+from cvnotes.tutor.course import Course, course_named
+from cvnotes.tutor.grader.belonging import expected_exercises
+from cvnotes.tutor.grader.handed_in import Handin, listed
+from cvnotes.tutor.grader.handin import code_cells
+from cvnotes.tutor.grader.judging import judged
+from cvnotes.tutor.grader.marks import Mark, Verdict
+from cvnotes.tutor.grader.process import Limits, clear_abandoned, run_notebook, stop
+from cvnotes.tutor.grader.source import fingerprint, own_code
+
+
+def grade_folder(
+    folder: Path,
+    course: Course,
+    *,
+    seconds: float = 120.0,
+    megabytes: int = 4096,
+    jobs: int | None = None,
+    executor: Executor | None = None,
+    known: Mapping[tuple[str, str, str], Mark] | None = None,
+    ours: Collection[Path] = (),
+) -> tuple[int, Iterator[Mark]]:
+    """Grade all notebooks below a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they were handed in, in folders of their own or not.
+    course : Course
+        Whose exercises they answer.
+    seconds, megabytes : float and int
+        What each notebook may use.
+    jobs : int, optional
+        How many run at a time; by default one for each processor.
+    executor : concurrent.futures.Executor, optional
+        What runs them, on this machine or on others, in place of threads of our own. Its workers
+        need this package.
+    known : mapping, optional
+        Marks that were given already, by student, notebook and hash: these are not run again.
+    ours : collection of Path, optional
+        Files and folders that nobody handed in.
+
+    Returns
+    -------
+    n, marks
+        How many there are, and an iterator over their marks, as they come: close it to stop.
+
+    Raises
+    ------
+    FileError
+        There is no such folder, or no notebook in it.
+    CvnotesError
+        The course is not where it says: its processes would not find it.
+    """
+    if course_named(course.home) is not course:
+        raise CvnotesError(f"{course.home} is another course than the one to grade by")
+    handed_in = listed(folder, ours)
+    clear_abandoned()
+    return len(handed_in), _marks(
+        handed_in, course, Limits(seconds, megabytes), jobs, executor, known or {}, (folder,)
+    )
+
+
+def _marks(
+    handed_in: Sequence[Handin],
+    course: Course,
+    limits: Limits,
+    jobs: int | None,
+    executor: Executor | None,
+    known: Mapping[tuple[str, str, str], Mark],
+    hidden: tuple[Path, ...],
+) -> Iterator[Mark]:
+    batch = secrets.token_hex(8)
+    waiting: dict[Future[Mark], Handin] = {}
+    done: queue.SimpleQueue[Future[Mark]] = queue.SimpleQueue()
+    pool = executor or ThreadPoolExecutor(jobs or os.cpu_count())
+    try:
+        for one in handed_in:
+            mark = known.get((one.student, one.notebook, one.hash))
+            if mark is not None:
+                yield mark
+                continue
+            try:
+                waiting[pool.submit(grade, one, course, limits, hidden, batch)] = one
+            except Exception as error:  # a pool whose worker died takes nothing more
+                yield _lost(one, course, error)
+        for future in waiting:
+            future.add_done_callback(done.put)
+        for _ in range(len(waiting)):
+            future = done.get()
+            yield _result(future, waiting[future], course)
+    finally:
+        stop(batch)
+        for future in waiting:
+            future.cancel()
+        if executor is None:
+            pool.shutdown(cancel_futures=True)
+
+
+def _result(future: "Future[Mark]", one: Handin, course: Course) -> Mark:
+    """Return a mark; what a worker dies of stays in the row."""
+    try:
+        return future.result()
+    except Exception as error:
+        return _lost(one, course, error)
+
+
+def _lost(one: Handin, course: Course, error: Exception) -> Mark:
+    why = clean(f"{type(error).__name__}: {error}", 120)
+    expected = expected_exercises(one.notebook, [], course)
+    return Mark(one.student, one.notebook, {}, expected, remark=f"could not be graded: {why}")
+
+
+def grade(
+    one: Handin,
+    course: Course,
+    limits: Limits,
+    hidden: tuple[Path, ...] = (),
+    batch: str = "",
+) -> Mark:
+    """Grade one notebook, perhaps on another machine; whatever goes wrong is a remark."""
+    try:
+        return _graded(one, course, limits, hidden, batch)
+    except Exception as error:
+        return _lost(one, course, error)
+
+
+def _graded(
+    one: Handin, course: Course, limits: Limits, hidden: tuple[Path, ...], batch: str
+) -> Mark:
+    nothing = Mark(one.student, one.notebook, {}, expected_exercises(one.notebook, [], course))
+    if isinstance(one.content, str):
+        return replace(nothing, remark=one.content)
+    try:
+        cells = code_cells(one.content)
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return replace(nothing, remark="not a notebook", content=one.hash)
+    # Inputs that nobody knows before, and that are the same if the notebook is graded again.
+    seed = int(one.hash[:12], 16)
+    ran = run_notebook(cells, seed, course, limits, hidden, batch)
+    verdicts, ids = judged(ran.answers, seed, course)
+    verdicts = _looked_at(verdicts, cells, course)
+    return Mark(
+        one.student,
+        one.notebook,
+        verdicts,
+        expected_exercises(one.notebook, list(verdicts), course),
+        ids,
+        ran.ended or _remark(ran.finished),
+        one.hash,
+        ran.sealed,
+    )
+
+
+def _looked_at(
+    verdicts: dict[str, Verdict], cells: list[str], course: Course
+) -> dict[str, Verdict]:
+    """Add what the notebook's text says about its functions."""
+    written = own_code(cells)
+    return {
+        name: replace(
+            verdict,
+            code=fingerprint(name, written, course.notebooks),
+            note="; ".join(filter(None, (verdict.note, written.borrowed(course.exercises[name])))),
+        )
+        for name, verdict in verdicts.items()
+    }
+
+
+def _remark(finished: Mapping[str, Any]) -> str:
+    if not finished:
+        return "ended before its last cell"
+    failed = finished.get("failed")
+    return f"{failed} cells failed, first: {clean(finished.get('first'), 120)}" if failed else ""

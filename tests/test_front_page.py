@@ -1,0 +1,63 @@
+"""The first page: what README says, in ten seconds, and nothing on it that is not so."""
+
+import re
+import sys
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from cvnotes.show import explore
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tools"))
+front_page = pytest.importorskip("front_page", reason="the extra docs is not installed")
+
+
+def test_the_picture_is_the_exploration_before_it_is_touched(tmp_path):
+    (tmp_path / "still.png").write_bytes(explore.model(front_page.EXPLORED).still().data)
+    drawn, kept = (
+        np.asarray(Image.open(path).convert("RGB")).astype(int)
+        for path in (tmp_path / "still.png", front_page.PICTURE)
+    )
+    assert drawn.shape == kept.shape
+    assert np.abs(drawn - kept).mean() < 1  # else: python tools/draw_front.py
+
+
+def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "docs/figures/front.png" in readme.split("\n\n")[2]
+    alone, live, whole = (front_page.front_page(*has) for has in ((0, 0), (1, 0), (1, 1)))
+    for page in (alone, live, whole):
+        assert front_page.sentence(readme) in page
+        assert page.count('<li><a href="notebooks/') == 11
+        assert (
+            len(re.findall(r'<nav class="front-buttons".*?</nav>', page, re.S)[0].split("<a ")) == 4
+        )
+        assert not re.search(r"@[A-Z]+@", page)
+    assert "data-explore" not in alone
+    assert "lite/" not in live
+    assert "your_camera.html" in live
+    opened = re.search(r"lite/notebooks/index.html\?path=(\S+?)\"", whole)[1]
+    assert (ROOT / opened).is_file()  # JupyterLite has them in the repository's places
+
+
+def test_the_tutor_s_reply_is_the_one_that_the_mistake_on_the_page_gets():
+    page = front_page.front_page(live=True, lite=True)
+    code = re.search(r"```python\n(.*?)```", page, re.S)[1]
+    names = {}
+    exec(code, names)
+    said = front_page.check("camera_centre", names["my_camera_centre"])
+    assert said.misconception
+    assert said.message in unescape(page)
+
+
+def test_a_card_shows_what_is_drawn_without_the_numbers_along_its_axes():
+    figure = np.full((300, 400, 3), 255, np.uint8)
+    figure[20:240, 60:380] = (0, 90, 200)
+    figure[250:260, 100:110] = 0  # a number below the axis
+    card = np.asarray(front_page.fitted(Image.fromarray(figure)))
+    assert card.shape == (320, 480, 3)
+    assert (card == (0, 90, 200)).all()

@@ -1,0 +1,8 @@
+"""Draw the picture with which README and the site begin: python tools/draw_front.py."""
+
+from front_page import EXPLORED, PICTURE
+
+from cvnotes.show import explore
+
+if __name__ == "__main__":
+    PICTURE.write_bytes(explore.model(EXPLORED).still().data)

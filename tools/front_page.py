@@ -1,0 +1,158 @@
+"""The site's first page: what the course is in ten seconds, made of what the course is made of.
+
+The sentence and the questions are README's, the picture is docs/figures/front.png (tools/
+draw_front.py), the cards are the chapters' own figures, and the tutor's reply is what `check` says.
+"""
+
+import base64
+import io
+import json
+import re
+from html import escape
+from itertools import pairwise
+from pathlib import Path
+
+import nbformat
+import numpy as np
+from PIL import Image
+from site_figures import FOLDER, places_to_cut
+
+from cvnotes.learn import check
+from cvnotes.show import explore
+from cvnotes.show.explore.page import told
+from cvnotes.show.explore.paper import Paper
+
+ROOT = Path(__file__).resolve().parents[1]
+TEMPLATE = ROOT / "docs" / "templates" / "front.md"
+PICTURE = ROOT / "docs" / "figures" / "front.png"
+EXPLORED = "homography"
+CARD = (480, 320)  # px: twice what is shown
+_ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
+_IMAGE = re.compile(r'src="data:image/(?:png|jpeg);base64,([^"]+)"')
+
+# The most frequent mistake of all, as a student writes it.
+WRONG = """def my_camera_centre(R, T):
+    return T"""
+
+
+def camera_centre(R: object, T: object) -> object:  # noqa: ARG001
+    """Answer as in WRONG."""
+    return T
+
+
+def front_page(live: bool, lite: bool) -> str:
+    """Write the page: with an exploration that moves and what runs here, if there is Python."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    parts = {
+        "SENTENCE": sentence(readme),
+        "BUTTONS": buttons(live, lite),
+        "EXPLORATION": exploration(live),
+        "INVITATION": "Pull a corner." if live else "A picture, and what one matrix makes of it.",
+        "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
+        "WRONG": WRONG,
+        "REPLY": escape(check("camera_centre", camera_centre).message),
+    }
+    page = TEMPLATE.read_text(encoding="utf-8")
+    return re.sub(r"@([A-Z]+)@", lambda found: parts[found[1]], page)
+
+
+def sentence(readme: str) -> str:
+    """Return what README says first."""
+    found = re.search(r"^\*\*(.+?)\*\*", readme, re.M | re.S)
+    if not found:
+        raise ValueError("README.md says nothing in bold letters, which the front page repeats")
+    return " ".join(found[1].split())
+
+
+def buttons(live: bool, lite: bool) -> str:
+    """Write the three ways into the course, those first that need nothing."""
+    start = "notebooks/00_start_here"
+    run = (
+        "lite/notebooks/index.html?path=notebooks/00_start_here.ipynb"
+        if lite
+        else "docs/install.html"
+    )
+    own = "your_camera.html" if live else "notebooks/09_your_own_camera.html"
+    ways = (
+        (f"{start}.html", "Read", "chapter 0, ten minutes"),
+        (run, "Run", "here, nothing installed" if lite else "on your machine"),
+        (own, "Your own camera", "photographs in, camera out"),
+    )
+    return "\n".join(
+        f'<a href="{to}"><strong>{name}</strong> <span>{what}</span></a>' for to, name, what in ways
+    )
+
+
+def exploration(live: bool) -> str:
+    """Write the exploration as it is before Python comes: a picture for each width, and data."""
+    model = explore.model(EXPLORED)
+    wide = json.loads(told(model, None, None, {}))
+    sight = model.drawn_on(Paper(1, narrow=True), model.values())
+    height, width = sight.picture.shape[:2]
+    narrow = {"size": [width, height], "grips": [grip._asdict() for grip in sight.grips]}
+    picture = (
+        f'<picture><source media="(max-width: 40rem)" srcset="{FOLDER}/front-narrow.png" '
+        f'width="{width}" height="{height}">'
+        f'<img src="{FOLDER}/front.png" width="{wide["size"][0]}" height="{wide["size"][1]}" '
+        f'alt="{escape(model.still().alt)}"></picture>'
+    )
+    if not live:
+        return picture
+    data = escape(json.dumps(wide | {"narrow": narrow}, ensure_ascii=False))
+    return f'{picture}<span class="cvnotes-explore" hidden data-explore="{data}"></span>'
+
+
+def card(number: str, title: str, name: str, question: str) -> str:
+    """Write a chapter's card: its richest picture, its name and its question."""
+    label = title if number in ("00", "★") else f"{int(number)} · {title}"
+    question = re.sub(r"\*(.+?)\*", r"<em>\1</em>", escape(question))
+    return (
+        f'<li><a href="notebooks/{name}.html"><img src="{FOLDER}/card-{name}.jpg" alt="" '
+        f'width="{CARD[0] // 2}" height="{CARD[1] // 2}" loading="lazy">'
+        f"<strong>{escape(label)}</strong> <span>{question}</span></a></li>"
+    )
+
+
+def put_pictures(made: Path) -> None:
+    """Write the pictures of the page into the site."""
+    for path in sorted(ROOT.glob("notebooks/*.ipynb")):
+        richest(path).save(made / FOLDER / f"card-{path.stem}.jpg", quality=80, optimize=True)
+    (made / FOLDER / "front.png").write_bytes(PICTURE.read_bytes())
+    content = explore.model(EXPLORED).narrow_still().data
+    (made / FOLDER / "front-narrow.png").write_bytes(content)
+
+
+def richest(path: Path) -> Image.Image:
+    """Return the panel of a notebook's figures that has most colours and least paper."""
+    best, wealth = Image.new("RGB", CARD, "white"), 0.0
+    for cell in nbformat.read(path, as_version=4).cells:
+        for output in cell.get("outputs", []):
+            for found in _IMAGE.finditer(output.get("data", {}).get("text/html", "")):
+                figure = Image.open(io.BytesIO(base64.b64decode(found[1]))).convert("RGB")
+                cuts = [0, *places_to_cut(np.asarray(figure)), figure.width]
+                for left, right in pairwise(cuts):
+                    panel = figure.crop((left, 0, right, figure.height))
+                    if 0.9 < panel.width / panel.height < 1.8 and (own := _wealth(panel)) > wealth:
+                        best, wealth = panel, own
+    return fitted(best)
+
+
+def _wealth(panel: Image.Image) -> float:
+    small = panel.copy()
+    small.thumbnail((240, 240))
+    pixels = np.asarray(small)
+    colours = len(np.unique(pixels.reshape(-1, 3) // 16, axis=0))
+    return colours * float((pixels.min(axis=2) < 245).mean())
+
+
+def fitted(panel: Image.Image) -> Image.Image:
+    """Cut the middle of what is drawn, without the numbers along its axes."""
+    ink = np.asarray(panel).min(axis=2) < 245
+    rows, columns = (np.flatnonzero(ink.mean(axis=axis) > 0.5) for axis in (1, 0))
+    if len(rows) > 40 and len(columns) > 40:
+        panel = panel.crop((columns[0] + 3, rows[0] + 3, columns[-1] - 2, rows[-1] - 2))
+    width, height = panel.size
+    scale = max(CARD[0] / width, CARD[1] / height)
+    panel = panel.resize((round(width * scale), round(height * scale)), Image.Resampling.LANCZOS)
+    left, top = (panel.width - CARD[0]) // 2, (panel.height - CARD[1]) // 2
+    return panel.crop((left, top, left + CARD[0], top + CARD[1]))
