@@ -56,6 +56,7 @@ REFERENCE = {
         "calibration",
         "warping",
         "stereo",
+        "photographs",
     ),
     "Beside the chapters": (
         "pictures",
