@@ -56,6 +56,7 @@ def views() -> dict[str, bytes]:
     rng = np.random.default_rng(2026)
     # Later digits depend on the machine; 1e-12 of a rotation moves no corner by 1e-9 px.
     poses = good_views(BOARD, CAMERA, N_VIEWS, rng=rng).round(12)
+    poses[:, :3, 3] = poses[:, :3, 3].round(9)  # mm, of hundreds
     cameras = [CAMERA.moved(G) for G in poses]
     photos = [render(BOARD, c, blur=BLUR, noise=NOISE, rng=rng) for c in cameras]
     files = {f"views/view_{i:02d}.png": png(photo) for i, photo in enumerate(photos)}
