@@ -11,6 +11,8 @@ Mask = npt.NDArray[np.bool_]
 
 # Relative singular value, after normalisation, below which a rank is called deficient.
 RANK = 1e-9
+# The same of squared singular values, below which squares have too few digits.
+_DOUBTFUL = 1e-3
 
 
 @guarded(src=Points(2), dst=Points(2), pair=("src", "dst"))
@@ -81,10 +83,16 @@ def dlt(src: Array, dst: Array) -> Array:
     """
     N1, N2 = normaliser.inside(src), normaliser.inside(dst)
     src, dst = apply_similarity(N1, src), apply_similarity(N2, dst)
-    # D = Q R, and as QᵀQ = I, the 9 × 9 of R has D's singular values and right singular vectors.
-    _, s, Vt = np.linalg.svd(np.linalg.qr(design_matrix.inside(src, dst), mode="r"))
-    refuse_sets(np.asarray(s[..., 7] <= RANK * s[..., 0]), src, dst)
-    H = Vt[..., 8, :].reshape(*Vt.shape[:-2], 3, 3)
+    D = design_matrix.inside(src, dst)
+    # DᵀD has D's right singular vectors, for half of the price; where it has too few digits, D
+    # itself is asked. (D = Q R, and as QᵀQ = I, the 9 × 9 of R has the same vectors as D.)
+    squares, V = np.linalg.eigh(D.mT @ D)
+    h, bad = V[..., 0], np.asarray(squares[..., 1] < _DOUBTFUL * squares[..., 8])
+    if bad.any():
+        _, s, Vt = np.linalg.svd(np.linalg.qr(D[bad], mode="r"))
+        h[bad], bad[bad] = Vt[:, 8], s[:, 7] <= RANK * s[:, 0]
+        refuse_sets(bad, src, dst)
+    H = h.reshape(*h.shape[:-1], 3, 3)
     refuse_singular(H, src, dst)
     # Ĥ[2, 2] is the mean third coordinate of the points, whose centroid is the origin here.
     sign = np.where(H[..., 2, 2] < 0, -1.0, 1.0)[..., None, None]
