@@ -78,6 +78,8 @@ def _log_choose(n: int, k: int) -> float:
 BATCH = 64
 # Twice the area of a triangle of normalised points below which three of them count as collinear.
 _FLAT = 1e-6
+# The fourth point in place of the first, the second, the third; and the first three.
+_TRIANGLES = [[3, 1, 2], [0, 3, 2], [0, 1, 3], [0, 1, 2]]
 
 
 def samples(rng: "np.random.Generator", n: int) -> npt.NDArray[np.intp]:
@@ -113,13 +115,8 @@ def _basis(x: Array) -> tuple[Array, Array]:
     By Cramer's rule λ_i is a triangle's area over another's, so the areas serve as λ.
     """
     x_h = np.concatenate([x, np.ones_like(x[..., :1])], axis=-1)
-    a, b, c, d = (x_h[..., i, :] for i in range(4))
-    areas = np.stack([_det(d, b, c), _det(a, d, c), _det(a, b, d), _det(a, b, c)], axis=-1)
-    return np.stack([a, b, c], axis=-1) * areas[..., None, :3], areas
-
-
-def _det(a: Array, b: Array, c: Array) -> Array:
-    return np.asarray((np.cross(a, b) * c).sum(-1))
+    areas = np.linalg.det(x_h[..., _TRIANGLES, :])
+    return x_h[..., :3, :].mT * areas[..., None, :3], areas
 
 
 Mask = npt.NDArray[np.bool_]
@@ -217,10 +214,10 @@ def _search(
     while drawn < most and trials < needed:
         rows = samples(rng, len(src))
         H, counted = of_four(src[rows], dst[rows])
-        for i, agree in enumerate(_agreement(H, src, dst, t)):
-            if agree.sum() > best.sum():
-                best = _optimised(H[i], src, dst, t)
-                needed = trials_needed(float(best.mean()), confidence)
+        agree = (_missed(H, src, dst) <= t * t).sum(-1)
+        if len(H) and agree.max() > best.sum():
+            best = _optimised(H[agree.argmax()], src, dst, t)
+            needed = trials_needed(float(best.mean()), confidence)
         drawn += BATCH
         trials += counted
     return _grown(best, src, dst, t)
@@ -237,7 +234,7 @@ def _grown(best: Mask, src: Array, dst: Array, t: float) -> Mask:
     """
     while best.sum() >= 4:
         try:
-            agree = _optimised(dlt(src[best], dst[best]), src, dst, t)
+            agree = _optimised(dlt.inside(src[best], dst[best]), src, dst, t)
         except DegenerateError:  # a line of neighbours
             break
         if agree.sum() <= best.sum():
@@ -252,14 +249,15 @@ def _optimised(H: Array, src: Array, dst: Array, t: float) -> Mask:
     Four pairs extrapolate their own noise: a map through them loses right pairs far away, which
     a wider threshold still holds and a fit to many brings back.
     """
-    best = _agreement(H, src, dst, t)
+    missed = _missed(H, src, dst)
+    best = missed <= t * t
     for multiple in _SHRINKING:
-        near = _agreement(H, src, dst, multiple * t)
+        near = missed <= (multiple * t) ** 2
         try:
-            H = dlt(src[near], dst[near])
+            missed = _missed(dlt(src[near], dst[near]), src, dst)
         except DegenerateError:  # too few, or a line of neighbours
             break
-        agree = _agreement(H, src, dst, t)
+        agree = missed <= t * t
         if agree.sum() > best.sum():
             best = agree
     return best
@@ -270,25 +268,22 @@ def _polish(src: Array, dst: Array, threshold: float, inliers: Mask) -> tuple[Ar
     for _ in range(20):
         if inliers.sum() < 4:
             raise DegenerateError(HOPELESS.format(count=int(inliers.sum()), n=len(src)))
-        H = dlt(src[inliers], dst[inliers])
-        H = refine_homography(H, src[inliers], dst[inliers])
-        agree = _agreement(H, src, dst, threshold)
+        H = dlt.inside(src[inliers], dst[inliers])
+        H = refine_homography.inside(H, src[inliers], dst[inliers])
+        agree = _missed(H, src, dst) <= threshold**2
         if (agree == inliers).all():
             break
         inliers = agree
     return H, agree
 
 
-def _agreement(H: Array, src: Array, dst: Array, threshold: float) -> Mask:
-    """Return which pairs (..., n) lie within the threshold, on the near side of infinity.
-
-    ‖m̂ − m‖ ≤ t is asked as (w û − w u)² + (w v̂ − w v)² ≤ (t w)², without a division.
-    """
-    m_h = H @ to_homogeneous(src).T  # (..., 3, n)
+def _missed(H: Array, src: Array, dst: Array) -> Array:
+    """Return by how much each H misses pairs, ‖m̂ − m‖² (..., n); infinity beyond the horizon."""
+    m_h = H @ to_homogeneous.inside(src).T  # (..., 3, n)
     w = m_h[..., 2, :]
     off = m_h[..., :2, :] - w[..., None, :] * dst.T
     off *= off
-    return np.asarray((off[..., 0, :] + off[..., 1, :] <= threshold**2 * w * w) & (w > 0))
+    return np.divide(off.sum(-2), w * w, out=np.full_like(w, np.inf), where=w > 0)
 
 
 def _guard(threshold: Any, confidence: Any, rng: Any) -> tuple[float, float]:
