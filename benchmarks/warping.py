@@ -4,8 +4,9 @@ Run ``python -m benchmarks.warping``. All take turns in one process; every way e
 itself. scikit-image is shown where it is installed.
 
 Then pictures are undistorted: `undistort_image` against `cv2.remap` with its maps made before,
-which is what `undistort_image` has too from the third picture of a camera on. There the times are
-those of the processor, in all threads.
+which is what `undistort_image` has too from the second picture of a camera on; its first beside
+`cv2.undistort`, which makes its maps too. There the times are those of the processor, in all
+threads.
 """
 
 import importlib.util

@@ -63,13 +63,16 @@ def undistortion_map(
     if R is None and _is_identity(camera, new_A):
         return PixelMap(lambda m_h: m_h[:2])
     to_real = np.eye(3) if R is None else _one_rotation(R).T
-    ray = to_real @ np.linalg.inv(new_A)
+    ray, A = to_real @ np.linalg.inv(new_A), camera.A
 
     def columns(m_h: Array) -> Array:
-        x, y, z = ray @ m_h
-        z[z <= 0] = np.nan  # behind the real camera
-        seen = camera.lens.distort.inside(camera.lens, np.stack([x / z, y / z]).T)
-        return px_from_xy.inside(camera.A, seen).T
+        xy = ray[:2] @ m_h
+        if R is not None:
+            z = ray[2] @ m_h
+            z[z <= 0] = np.nan  # behind the real camera
+            xy /= z
+        seen = camera.lens.distort.inside(camera.lens, xy.T)
+        return A[:2, :2] @ seen.T + A[:2, 2:]
 
     return PixelMap(columns)
 
@@ -140,8 +143,8 @@ def undistort_image(
     What the ideal camera does not show is lost, and what is stretched near the border gets no
     sharper; `new_A` and `size` choose what is shown.
 
-    From the second picture of a camera on it is remembered where its pixels come from, as long as
-    the camera is (12 bytes a pixel, up to 16 million pixels).
+    It is remembered where the pixels come from, as long as the camera is (12 bytes a pixel, up to
+    16 million pixels): from the second picture of a camera on they are only looked up.
 
     References
     ----------
@@ -171,36 +174,20 @@ def undistort_image(
     mapping = undistortion_map(camera, new_A)
     size = camera.size if size is None else target_size(size)
     sampler = Sampler(image, method, border, fill)
-    plan = _plan(camera, new_A, sampler, mapping, size)
-    if plan is None:
+    if size[0] * size[1] > _LARGEST_PLAN:
         return backward_warp(image, mapping, size=size, method=method, border=border, fill=fill)
+    ideal = None if new_A is None else np.asarray(new_A, dtype=float).tobytes()
+    asked = (ideal, size, method, border, image.dtype == np.uint8)
+    before, plan = _PLANS.get(camera, (None, []))
+    if before != asked:
+        plan = planned(sampler, mapping, size)
+        _PLANS[camera] = asked, plan
     return warped(sampler, plan, size)
 
 
-# For each camera, what was asked for last, and where pixels come from if that was asked for twice.
-_PLANS: "WeakKeyDictionary[Camera, tuple[object, Plan | None]]" = WeakKeyDictionary()
+# For each camera, what was asked for last, and where pixels come from then.
+_PLANS: "WeakKeyDictionary[Camera, tuple[object, Plan]]" = WeakKeyDictionary()
 _LARGEST_PLAN = 16_000_000  # pixels, of 12 bytes each
-
-
-def _plan(
-    camera: Camera,
-    new_A: npt.ArrayLike | None,
-    sampler: Sampler,
-    mapping: PixelMap,
-    size: tuple[int, int],
-) -> Plan | None:
-    """Return the plan of a backward warp that is not the first of its kind with this camera."""
-    if size[0] * size[1] > _LARGEST_PLAN:
-        return None
-    ideal = None if new_A is None else np.asarray(new_A, dtype=float).tobytes()
-    asked = (ideal, size, sampler.method, sampler.border, sampler.dtype == np.uint8)
-    before, plan = _PLANS.get(camera, (None, None))
-    if asked == before and plan is None:
-        plan = planned(sampler, mapping, size)
-    elif asked != before:
-        plan = None
-    _PLANS[camera] = asked, plan
-    return plan
 
 
 def _one_rotation(R: npt.ArrayLike) -> Array:
