@@ -344,6 +344,104 @@ def test_nothing_of_this_machine_or_of_a_bad_run_is_left(path):
         assert not re.search(pattern, re.sub(r"base64,[A-Za-z0-9+/=]+", "", text)), pattern
 
 
+class _Names(ast.NodeVisitor):
+    """Which names a cell reads from above, and which it binds anew, in the order of its run.
+
+    To read the name of a function is to read what the function reads.
+    """
+
+    def __init__(self, functions, here=()):
+        self.functions, self.here = functions, set(here)
+        self.read, self.bound = set(), set()
+
+    def _reads(self, name):
+        if name not in self.here:
+            self.read.add(name)
+        for used in self.functions.get(name, ()):
+            self._reads(used)
+
+    def _binds(self, name):
+        self.here.add(name)
+        self.bound.add(name)
+
+    def visit_Name(self, node):
+        (self._reads if isinstance(node.ctx, ast.Load) else self._binds)(node.id)
+
+    def visit_alias(self, node):  # imported once more it is the same
+        self.here.add((node.asname or node.name).split(".")[0])
+
+    def visit_Subscript(self, node):
+        self.generic_visit(node)
+        if isinstance(node.ctx, ast.Store) and isinstance(node.value, ast.Name):
+            self._binds(node.value.id)
+
+    visit_Attribute = visit_Subscript  # noqa: N815
+
+    def visit_Assign(self, node):
+        for part in (node.value, *node.targets):
+            self.visit(part)
+
+    def visit_AugAssign(self, node):
+        self.visit(node.value)
+        for name in [each.id for each in ast.walk(node.target) if isinstance(each, ast.Name)][:1]:
+            self._reads(name)
+            self._binds(name)
+
+    def visit_For(self, node):
+        for part in (node.iter, node.target, *node.body, *node.orelse):
+            self.visit(part)
+
+    def visit_ExceptHandler(self, node):
+        self.here.add(node.name)
+        self.generic_visit(node)
+
+    def visit_FunctionDef(self, node):
+        local = {each.arg for each in ast.walk(node) if isinstance(each, ast.arg)}
+        local |= {
+            each.id
+            for each in ast.walk(node)
+            if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
+        }
+        inside = _Names(self.functions, {node.name, *local})
+        for part in node.body:
+            inside.visit(part)
+        self._binds(node.name)
+        self.functions[node.name] = inside.read
+
+    def visit_Lambda(self, node):
+        self._apart(
+            [node.body], [each.arg for each in ast.walk(node.args) if isinstance(each, ast.arg)]
+        )
+
+    def visit_ListComp(self, node):
+        parts = [part for each in node.generators for part in (each.iter, each.target, *each.ifs)]
+        results = [node.key, node.value] if isinstance(node, ast.DictComp) else [node.elt]
+        self._apart([*parts, *results])
+
+    visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_ListComp  # noqa: N815
+
+    def _apart(self, parts, names=()):
+        inside = _Names(self.functions, {*self.here, *names})
+        for part in parts:
+            inside.visit(part)
+        self.read |= inside.read
+
+
+@each_notebook
+def test_a_cell_can_be_run_again_after_later_ones(path):
+    """What a cell reads from above is bound anew neither in it nor below."""
+    functions, cells = {}, []
+    for cell in _code(_read(path)):
+        cells.append(_Names(functions))
+        cells[-1].visit(ast.parse(cell.source))
+    above, stale = set(), []
+    for i, cell in enumerate(cells):
+        anew = set().union(*(later.bound for later in cells[i:]))
+        stale += [f"code cell {i}: {name}" for name in sorted(cell.read & above & anew)]
+        above |= cell.bound
+    assert stale == []
+
+
 @each_notebook
 def test_links_to_other_files_lead_somewhere(path):
     for cell in _read(path).cells:

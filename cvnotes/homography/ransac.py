@@ -283,7 +283,8 @@ def _missed(H: Array, src: Array, dst: Array) -> Array:
     w = m_h[..., 2, :]
     off = m_h[..., :2, :] - w[..., None, :] * dst.T
     off *= off
-    return np.divide(off.sum(-2), w * w, out=np.full_like(w, np.inf), where=w > 0)
+    missed = np.divide(off.sum(-2), w * w, out=np.full_like(w, np.inf), where=w > 0)
+    return np.asarray(missed)
 
 
 def _guard(threshold: Any, confidence: Any, rng: Any) -> tuple[float, float]:
