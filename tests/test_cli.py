@@ -181,7 +181,7 @@ def test_the_report_has_error_bars_and_what_the_result_rests_on(calibrated):
 def test_pictures_are_left_beside_the_numbers_and_nothing_else(calibrated):
     out = calibrated[1]
     names = ["calibration.json", "calibration.yml", "corners.png", "coverage.png"]
-    names += ["next_view.png", "photographs.csv", "residuals.png", "view_rms.png"]
+    names += ["next_view.png", "ost.yaml", "photographs.csv", "residuals.png", "view_rms.png"]
     assert sorted(path.name for path in out.iterdir()) == names
     for path in out.glob("*.png"):
         with Image.open(path) as picture:
@@ -583,6 +583,33 @@ def test_photographs_come_out_as_an_ideal_lens_takes_them(bent, tmp_path, capsys
     assert np.array_equal(kept.A, A)
     assert (kept.lens, kept.size) == (Lens(), SIZE)
     assert re.search(r"bent\.png +bent\.png", capsys.readouterr().out)
+
+
+def test_zoom_size_and_all_of_a_photograph_may_be_asked_for(bent, tmp_path):
+    out = tmp_path / "out"
+    assert undistort(bent[0], "--camera", bent[1], "--out", out, "--size", "480x480",
+                     "--zoom", "0.8", "--keep-all") == 0  # fmt: skip
+    ideal = read_camera(out / "camera.json")
+    assert ideal.size == (480, 480)
+    assert ideal.A[0, 0] == ideal.A[1, 1]
+    with Image.open(out / "bent.png") as picture:
+        found = np.asarray(picture).astype(float)
+    u, v = np.meshgrid(np.arange(480), np.arange(480))
+    shown = np.isfinite(at := CAMERA.project(ideal.ray(np.stack([u, v], -1)))).all(-1)
+    shown &= ((at > 1) & (at < np.array(SIZE) - 2)).all(-1)
+    rays = ideal.ray(np.stack([u, v], -1))
+    assert np.abs(found - waves(rays[..., :2] / rays[..., 2:]))[shown].max() <= 6
+    border = ideal.project(CAMERA.ray([[0, 120], [319, 120], [160, 0], [160, 239]]))
+    # 479 px of the picture's longer side, four fifths of which are filled
+    assert border[1, 0] - border[0, 0] == pytest.approx(0.8 * 479, abs=30)
+    assert np.ptp(border[:, 0]) < 0.8 * 479 + 0.01
+    assert undistort(bent[0], "--camera", bent[1], "--out", tmp_path / "half", "--zoom", "2",
+                     "--size", "160x120") == 0  # fmt: skip
+    half = read_camera(tmp_path / "half" / "camera.json")
+    np.testing.assert_allclose(half.A[:2, :2], A[:2, :2])
+    np.testing.assert_allclose(half.A[:2, 2], A[:2, 2] - [80, 60])
+    with pytest.raises(SystemExit):
+        undistort(bent[0], "--camera", bent[1], "--out", out, "--size", "480")
 
 
 @pytest.mark.parametrize("suffix", [".yml", ".json"])

@@ -4,6 +4,7 @@ import json
 import warnings
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from PIL import Image
@@ -12,15 +13,14 @@ from cvnotes.base import CalibrationWarning, DegenerateError
 from cvnotes.camera import Camera, Lens, chain, intrinsics, pose, rotation_from_vector
 from cvnotes.commands.cli import main
 from cvnotes.commands.stereo import differences
-from cvnotes.files import read_rig
+from cvnotes.files import lens_from_opencv, read_camera_info, read_rig
 from cvnotes.files.ownership import made_by, maker
 from cvnotes.files.reasons import Rejected, Unreadable
-from cvnotes.photographs import Detection, Photographs, calibrate_pairs
+from cvnotes.photographs import Detection, Model, Photographs, calibrate_pairs
 from cvnotes.photographs.pairs import paired
 from cvnotes.pictures import render
 from cvnotes.stereo import calibrate_stereo, rectify
 from cvnotes.stereo.half_turn import half_turns
-from cvnotes.stereo.jackknife import std_of_pairs
 from cvnotes.targets import Chessboard
 
 SIZE = (480, 360)
@@ -54,8 +54,13 @@ def _seen(board, sigma=0.1, seed=0):
     ]
 
 
-def _examined(corners, name):
-    return Detection(Path(name), SIZE, np.zeros((4, 4), np.uint8), corners)
+def _examined(corners, name, size=SIZE):
+    return Detection(Path(name), size, np.zeros((4, 4), np.uint8), corners)
+
+
+def _photographed(board, corners, side, size=SIZE):
+    photos = [_examined(m, f"{side} {i + 1}.png", size) for i, m in enumerate(corners)]
+    return Photographs(board, photos)
 
 
 @pytest.fixture(scope="module")
@@ -81,12 +86,14 @@ def _stereo(folder, out, *more):
 
 @pytest.mark.slow
 def test_rendered_pairs_become_the_rig_within_its_error_bars(photographs, tmp_path, capsys):
-    own = ["rectified-left.png", "rectified-right.png", "rectified.png", "rig.json"]
+    own = ["calibration.yml", "left.yaml", "rectified-left.png", "rectified-right.png",
+           "rectified.png", "rig.json", "right.yaml"]  # fmt: skip
     for name in own:  # of a run before, which may be replaced
         (tmp_path / name).write_bytes(made_by("stereo").encode())
-    assert _stereo(photographs, tmp_path) == 0
+    assert _stereo(photographs, tmp_path, "--leave-out", "left 7.png") == 0
     said = capsys.readouterr().out
-    assert "7 pairs, by the number in their names" in said
+    assert "6 pairs, by the number in their names" in said
+    assert "left 7.png: left out, as asked" in said
     assert "left 8.png: no right photograph belongs to it" in said
     rig = json.loads((tmp_path / "rig.json").read_text())
     std = rig["standard_deviations"]
@@ -96,10 +103,22 @@ def test_rendered_pairs_become_the_rig_within_its_error_bars(photographs, tmp_pa
     assert (bars < [0.5, 0.5, 3.0]).all()
     assert abs(rig["baseline"] - np.linalg.norm(RIGHT.T)) < 4 * std["baseline"]
     assert rig["rms_of_rows"] < 0.1
-    assert [pair["left"] for pair in rig["pairs"]] == [f"left {i}.png" for i in range(1, 8)]
+    assert [pair["left"] for pair in rig["pairs"]] == [f"left {i}.png" for i in range(1, 7)]
     left, right = read_rig(tmp_path / "rig.json")
     np.testing.assert_allclose(right.T, T, atol=0)
     np.testing.assert_array_equal(left.G, np.eye(4))
+    stored = cv2.FileStorage(str(tmp_path / "calibration.yml"), cv2.FILE_STORAGE_READ)
+    theirs = {name: stored.getNode(name).mat() for name in ("M2", "D2", "R2", "P1", "P2", "Q")}
+    info = read_camera_info(tmp_path / "right.yaml")
+    np.testing.assert_array_equal(theirs["M2"], info.camera.A)
+    np.testing.assert_array_equal(theirs["R2"], info.rectification)
+    assert lens_from_opencv(theirs["D2"]) == info.camera.lens == right.lens
+    (u1, v1, w1), (u2, v2, w2) = (theirs[P] @ [40, -30, 600, 1] for P in ("P1", "P2"))
+    assert v1 / w1 == pytest.approx(v2 / w2, abs=1e-9)
+    X = theirs["Q"] @ [u1 / w1, v1 / w1, u1 / w1 - u2 / w2, 1]
+    np.testing.assert_allclose(X[:3] / X[3], [40, -30, 600], rtol=1e-9)
+    metres = theirs["P2"] / [1, 1, 1, 1000]
+    np.testing.assert_allclose(info.projection, metres, rtol=1e-12, atol=0)
     for name in ("rectified.png", "rectified-left.png", "rectified-right.png"):
         with Image.open(tmp_path / name) as picture:
             assert "cvnotes stereo" in picture.text["Comment"]
@@ -141,7 +160,11 @@ def test_partners_are_told_by_their_numbers_or_by_their_order_and_never_guessed(
         paired(side("x.png", "y.png", missing=1), side("p.png", "q.png", missing=1))
     found = paired(side("a1.png"), Photographs(BOARD, [_examined(None, "b1.png")]))
     assert not found.pairs
-    assert str(found.rejected[-1].reason) == "the board was not found in its partner b1.png"
+    assert str(found.rejected[-1].reason) == "its partner b1.png is not used"
+    right = corners.copy()
+    right[:50] = np.nan
+    found = paired(side("a1.png"), Photographs(BOARD, [_examined(right, "b1.png")]))
+    assert str(found.rejected[0].reason) == "only 4 corners are also seen in its partner b1.png"
 
 
 def test_corners_of_a_symmetric_board_are_counted_from_one_end():
@@ -150,24 +173,38 @@ def test_corners_of_a_symmetric_board_are_counted_from_one_end():
     turned = np.array([False, True, True, False, True, False, True, True])
     right = [m[::-1] if flip else m for m, flip in zip(right, turned, strict=True)]
     right[2][4] = np.nan  # a corner under a coin
-    pairs = [
-        (_examined(a, f"a{i}.png"), _examined(b, f"b{i}.png"))
-        for i, (a, b) in enumerate(zip(left, right, strict=True))
+    sides = [_photographed(board, m, side) for m, side in ((left, "a"), (right, "b"))]
+    rig = calibrate_pairs(*sides, Model("k1 k2", "flat")).result
+    assert rig.rms < 0.17  # 0.1 px in u and in v; 100 px and more when counted wrongly
+    assert (np.abs(rig.T - RIGHT.T) < 4 * np.array([rig.honest_std[f"T_{a}"] for a in "xyz"])).all()
+
+
+def test_each_camera_is_calibrated_as_by_itself_and_what_fits_neither_is_left_out():
+    left, right = _seen(BOARD)
+    right = [2 * m + 0.5 for m in right]  # a camera of twice the resolution
+    left[2][:, 0] += 10 * np.sin(left[2][:, 1] / 5)
+    right[5] = right[5] + [8, 5]  # the board was moved between both photographs
+    sides = _photographed(BOARD, left, "left"), _photographed(BOARD, right, "right", (960, 720))
+    rig = calibrate_pairs(*sides, Model("auto", "flat"))
+    assert [a.path.name for a, _ in rig.found.pairs] == [
+        f"left {i}.png" for i in (1, 2, 4, 5, 7, 8)
     ]
-    rig = calibrate_pairs(pairs, board, "k1 k2")
-    assert rig.result.rms < 0.17  # 0.1 px in u and in v; 100 px and more when counted wrongly
-    assert (np.abs(rig.result.T - RIGHT.T) < 4 * np.array([rig.std[f"T_{a}"] for a in "xyz"])).all()
-
-
-def test_the_lens_is_chosen_by_left_photographs_that_were_left_out():
-    def pairs(n):
-        sides = list(zip(*_seen(BOARD), strict=True))[:n]
-        return [tuple(_examined(m, f"{i}.png") for m in both) for i, both in enumerate(sides)]
-
-    rig = calibrate_pairs(pairs(8), BOARD, "auto").result
-    assert rig.names == calibrate_pairs(pairs(8), BOARD, "k1 k2").result.names
-    few = calibrate_pairs(pairs(3), BOARD, "auto").result  # of which none is left out
-    assert few.names == rig.names
+    why = {r.file: str(r.reason) for r in rig.found.rejected}
+    assert "does not fit the others" in why["left 3.png"]
+    assert why["right 3.png"] == "its partner left 3.png is not used"
+    assert "does not fit the others" in why["left 6.png"]
+    assert rig.result.names == tuple(
+        [f"{side}.{name}" for side in ("left", "right")
+         for name in ("alpha_u", "alpha_v", "u0", "v0", "k1", "k2")]
+        + [f"{way}_{axis}" for way in ("omega", "T") for axis in "xyz"]
+    )  # fmt: skip
+    assert rig.reliable
+    kept = calibrate_pairs(*sides, Model("k1 k2", "flat"), keep_all=True)
+    assert len(kept.found.pairs) == 8
+    assert "left camera: left 3.png do not fit the others" in " ".join(kept.doubts)
+    sides = _photographed(BOARD, _seen(BOARD)[0], "left"), sides[1]  # each is good by itself
+    kept = calibrate_pairs(*sides, Model("k1 k2", "flat"), keep_all=True)
+    assert "were partners taken at the same moment" in " ".join(kept.doubts)
 
 
 def test_half_turns_are_told_from_poses_alone():
@@ -205,8 +242,7 @@ def test_the_jackknife_agrees_with_how_much_repetitions_scatter():
             warnings.simplefilter("ignore", CalibrationWarning)
             rig = calibrate_stereo(BOARD.points, *sides, SIZE, lens="k1 k2")
         found.append(rig.T)
-        std = std_of_pairs(rig, BOARD.points, *sides, lens="k1 k2")
-        bars.append([std[f"T_{axis}"] for axis in "xyz"])
+        bars.append([rig.honest_std[f"T_{axis}"] for axis in "xyz"])
         noise_alone.append([rig.std[f"T_{axis}"] for axis in "xyz"])
     scatter = np.std(found, axis=0, ddof=1)
     ratio = scatter / np.sqrt(np.mean(np.square(bars), axis=0))
@@ -219,13 +255,7 @@ def test_what_cannot_be_is_said_in_a_line(photographs, tmp_path, capsys):
     assert main(["stereo", "nowhere", "neither", "--corners", "9x6", "--square", "20",
                  "--out", str(tmp_path)]) == 1  # fmt: skip
     assert capsys.readouterr().err.count("\n") == 1
-    small = tmp_path / "small"
-    small.mkdir()
-    for i in (1, 2, 3):
-        with Image.open(photographs / "right" / f"right {i}.png") as picture:
-            enlarged = picture.resize((640, 480), Image.Resampling.LANCZOS)
-        enlarged.save(small / f"r{i}.png")
-    assert main(["stereo", str(photographs / "left"), str(small), "--corners", "9x6",
-                 "--square", "20", "--out", str(tmp_path / "rig")]) == 1  # fmt: skip
-    assert "left and right pictures must have one size" in capsys.readouterr().err
-    assert not (tmp_path / "rig").exists()
+    sides = [str(photographs / side) for side in ("left", "right")]
+    assert main(["stereo", *sides, "--corners", "9x6", "--square", "20", "--out", str(tmp_path),
+                 "--leave-out", "left 3.png", "neither.png"]) == 1  # fmt: skip
+    assert "neither.png: none of the photographs has this name" in capsys.readouterr().err

@@ -78,7 +78,7 @@ def test_page_command_and_library_use_the_same_photographs_to_the_same_digits(
     found = page.calibrate()
     options = ["--corners", "{}x{}".format(*corners), "--square", str(square)]
     main(["calibrate", *map(str, photographs), *options, "--out", str(tmp_path)])
-    for name in ("calibration.json", "photographs.csv", "calibration.yml"):
+    for name in ("calibration.json", "photographs.csv", "calibration.yml", "ost.yaml"):
         assert found["files"][name] == (tmp_path / name).read_bytes()
     library = calibrate_photographs(photographs, chessboard(corners, square))
     assert found["used"] == [path.name for path in photographs]

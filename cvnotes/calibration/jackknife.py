@@ -96,7 +96,15 @@ class Influence:
         S, g = eliminated_by_view(problem, x)
         if problem.model.cancelling:  # whose valley would be walked along without an end
             problem = replace(problem, ridge=RIDGE)
-        return Influence(S, g, _without_each(S, g, problem.held))
+        return Influence.between(S, g, problem.held)
+
+    @staticmethod
+    def between(S: Array, g: Array, held: Array) -> "Influence":
+        """Work out the influence of views with these normal matrices and gradients.
+
+        `held` (q,), on the diagonal of all together, belongs to no view.
+        """
+        return Influence(S, g, _without_each(S, g, held))
 
     @property
     def covariance(self) -> Array:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from cvnotes.photographs import CalibratedPhotographs, Photographs
 
 _RESULTS = re.compile(
-    r"calibration\.(json|yml)|photographs\.csv|(coverage|next_view|residuals|view_rms|corners(-\d+)?)\.png"
+    r"calibration\.(json|yml)|ost\.yaml|photographs\.csv|(coverage|next_view|residuals|view_rms|corners(-\d+)?)\.png"
 )
 
 
@@ -33,8 +33,16 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         epilog="example: cvnotes calibrate photos/ --corners 9x6 --square 25 --out result/. "
         f"{EXIT_CODES}",
     )
+    parser.add_argument(
+        "photos", nargs="+", metavar="PHOTO", help="photographs, or folders of photographs"
+    )
+    add_options(parser)
+    parser.set_defaults(run=run)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Describe what a board and a camera have, one camera or two."""
     add = parser.add_argument
-    add("photos", nargs="+", metavar="PHOTO", help="photographs, or folders of photographs")
     add("--corners", type=corners_or_auto, required=True, metavar="9x6",
         help="inner corners of the board along x and y: where four squares meet; or auto to "
         "have them counted in the photographs")  # fmt: skip
@@ -63,7 +71,6 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="use photographs that do not fit the others too; they are left out otherwise",
     )
     add("--skew", action="store_true", help="estimate the skew of the pixels' axes too")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -90,14 +97,14 @@ def run(args: argparse.Namespace) -> int:
             progress=progress,
         )
     except NoCamera as error:
-        _say_count(error.photographs)
+        say_count(error.photographs)
         say(photo_table(error.photographs))
         complain("calibrate", str(error))
         return 1
     except DegenerateError as error:
         complain("calibrate", str(error))
         return 1
-    _say_count(found.photographs)
+    say_count(found.photographs)
     say(photo_table(found.photographs, found.calibration) + "\n")
     say(camera_report(found.calibration) + "\n")
     for sentence in found.doubts:
@@ -133,7 +140,8 @@ def asked_board(args: argparse.Namespace) -> Chessboard | CharucoBoard | float:
     return chessboard(args.corners, args.square)
 
 
-def _say_count(photographs: "Photographs") -> None:
+def say_count(photographs: "Photographs") -> None:
+    """Say which board was counted, if it was."""
     if photographs.counted:
         columns, rows = photographs.board.corners
         say(f"A board of {columns}×{rows} inner corners, as counted in the photographs\n")
@@ -144,7 +152,7 @@ def contents_of(found: "CalibratedPhotographs") -> dict[str, bytes]:
     from cvnotes.calibration.saving import calibration_json
     from cvnotes.commands.pictures import pictures
     from cvnotes.commands.report import photo_csv
-    from cvnotes.files.exchange import opencv_yaml
+    from cvnotes.files.exchange import CameraInfo, opencv_yaml, ros_yaml
 
     note, result = made_by("calibrate"), found.calibration
     names, rejected = found.photographs.named()
@@ -152,6 +160,7 @@ def contents_of(found: "CalibratedPhotographs") -> dict[str, bytes]:
     return {
         "calibration.json": made.encode(),
         "calibration.yml": opencv_yaml(result.camera, note=note).encode(),
+        "ost.yaml": ros_yaml(CameraInfo(result.camera), note=note).encode(),
         "photographs.csv": photo_csv(found.photographs, result).encode(),
         **{name: marked(png, "calibrate") for name, png in pictures(found).items()},
     }

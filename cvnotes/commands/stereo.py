@@ -5,25 +5,37 @@ import io
 import re
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cvnotes.base import Array, CalibrationWarning, CvnotesError, DegenerateError, text_table
+from cvnotes.base import (
+    Array,
+    CalibrationWarning,
+    CvnotesError,
+    DegenerateError,
+    FileError,
+    text_table,
+)
 from cvnotes.base.writing import check_folder, printable
-from cvnotes.commands.calibrate import lens
+from cvnotes.calibration.thresholds import TIMES_NOISE
+from cvnotes.commands.calibrate import add_options, asked_board, say_count
 from cvnotes.commands.console import EXIT_CODES, complain, progress, say, shortfall
-from cvnotes.commands.target import corners, length
-from cvnotes.files import read_photo, write_whole
+from cvnotes.files import list_photos, read_photo, write_whole
 from cvnotes.files.ownership import earlier, made_by, marked
 from cvnotes.files.reasons import unread
+from cvnotes.stereo.calibration import SIDES
 
 if TYPE_CHECKING:
-    from cvnotes.photographs.pairs import CalibratedPairs, Pair, Pairs
+    from cvnotes.photographs import Photographs
+    from cvnotes.photographs.pairs import CalibratedPairs, Pair
     from cvnotes.stereo import RectifiedPair, StereoCalibration
 
-_RESULTS = re.compile(r"rig\.json|rectified(-left|-right)?\.png")
+_RESULTS = re.compile(
+    r"rig\.json|calibration\.yml|(left|right)\.yaml|rectified(-left|-right)?\.png"
+)
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -40,56 +52,64 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     add = parser.add_argument
     add("left", metavar="LEFT", help='folder of the left photographs, or a pattern: "a/left*.jpg"')
     add("right", metavar="RIGHT", help="the same for the right ones")
-    add("--corners", type=corners, required=True, metavar="9x6",
-        help="inner corners of the board along x and y: where four squares meet")  # fmt: skip
-    add("--square", type=length, required=True, metavar="25", help="side of a square, in mm")
-    add("--out", type=Path, required=True, metavar="FOLDER", help="folder for the results")
-    add("--lens", type=lens, default="k1 k2 p1 p2", metavar='"k1 k2"',
-        help='lens of both cameras: none, k1, "k1 k2", "k1 k2 p1 p2" (default), '
-        '"k1 k2 p1 p2 k3", rational, fisheye, or auto: left photographs that are left out '
-        "decide")  # fmt: skip
+    add_options(parser)
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no board, 3 doubtful, not all read."""
-    from cvnotes.photographs.driver import chessboard, detect_photographs
-    from cvnotes.photographs.pairs import Pairs, calibrate_pairs, paired
+    from cvnotes.commands.report import photo_table
+    from cvnotes.photographs import Model, calibrate_pairs, detect_photographs
 
     try:
-        board = chessboard(args.corners, args.square)
+        board = asked_board(args)
     except CvnotesError as error:
         complain("stereo", str(error))
         return 2
     check_folder(args.out)
     before = earlier(args.out, _RESULTS.fullmatch, "stereo")
-    left, right = (
-        detect_photographs(_paths(side), board, progress=progress)
-        for side in (args.left, args.right)
-    )
-    found = Pairs([], False, [*left.rejected, *right.rejected])
+    sides: list[Photographs] = []
+    for files, unwanted in _sides(args):
+        seen = detect_photographs(files, board, leave_out=unwanted, progress=progress)
+        sides.append(seen)
+        board = seen.board
+    say_count(sides[0])
+    (left, right), model = sides, Model(args.lens, args.board_shape, args.skew)
     try:
-        found = paired(left, right)
-        rig = calibrate_pairs(found.pairs, board, args.lens)
+        rig = calibrate_pairs(left, right, model, keep_all=args.keep_all)
     except CvnotesError as error:
-        say(_table(found))
-        complain("stereo", f"{len(found.pairs)} usable pairs; {error}")
+        for seen in sides:
+            say(photo_table(seen))
+        complain("stereo", str(error))
         return 1
-    contents = _reported(rig, found)
-    if board.half_turn_symmetric:
-        say(
-            "! this board looks the same after half a turn: in each pair the right corners are "
-            "counted from the end that makes one rig of all pairs"
-        )
+    contents = _reported(rig)
     write_whole({args.out / name: data for name, data in contents.items()})
     for stale in (path for path in before if path.name not in contents):
         stale.unlink(missing_ok=True)  # pictures of an earlier rig
     say(f"Written to {printable(args.out)}: {', '.join(contents)}")
-    if not rig.result.reliable:
-        complain("stereo", f"written, but not reliable: {rig.result.warnings[0]}")
+    if not rig.reliable:
+        complain("stereo", f"written, but not reliable: {rig.doubts[0]}")
         return 3
-    missing = unread(found.rejected, [args.left, args.right])
-    return shortfall("stereo", missing, missing + 2 * len(found.pairs), "could not be read")
+    missing = unread(rig.found.rejected, [args.left, args.right])
+    return shortfall("stereo", missing, missing + 2 * len(rig.found.pairs), "could not be read")
+
+
+def _sides(args: argparse.Namespace) -> list[tuple[list[str], list[str]]]:
+    """Return the files of either side, and which of these not to use."""
+    sides = [_paths(side) for side in (args.left, args.right)]
+    there = [list_photos(paths)[0] for paths in sides]
+    unwanted = [
+        [name for name in args.leave_out if any(_is_called(path, name) for path in files)]
+        for files in there
+    ]
+    for name in args.leave_out:
+        if not any(name in names for names in unwanted):
+            raise FileError(f"leave out {printable(name)}: none of the photographs has this name")
+    return list(zip(sides, unwanted, strict=True))
+
+
+def _is_called(path: Path, name: str) -> bool:
+    return path.name == name or path.resolve() == Path(name).resolve()
 
 
 def _paths(text: str) -> list[str]:
@@ -112,62 +132,62 @@ def differences(
     """
     m = []
     for camera, ideal, seen in ((rig.left, pair.left, left), (rig.right, pair.right, right)):
-        rays = np.insert(camera.ideal(seen), 2, 1.0, axis=-1)
-        m_h = rays @ (ideal.A @ ideal.R @ camera.R.T).T
-        m.append(m_h[:, :2] / m_h[:, 2:])
+        xyz = camera.ray(seen) @ (ideal.A @ ideal.R).T
+        m.append(np.where(xyz[:, 2:] > 0, xyz[:, :2] / xyz[:, 2:], np.nan))
     return np.asarray((m[0] - m[1])[:, 1 - pair.axis])
 
 
-def _reported(rig: "CalibratedPairs", found: "Pairs") -> dict[str, bytes]:
+def _reported(rig: "CalibratedPairs") -> dict[str, bytes]:
     """Describe what came out; gives the files to write, by name."""
+    from cvnotes.files.exchange import ros_yaml
     from cvnotes.stereo import rectify
-    from cvnotes.stereo.saving import rig_json
+    from cvnotes.stereo.saving import camera_infos, opencv_rig_yaml, rig_json
 
-    result = rig.result
+    result, found = rig.result, rig.found
     how = "by the number in" if found.by_number else "in the order of"
     say(f"{len(found.pairs)} pairs, {how} their names")
-    say(_table(found, result) + "\n")
+    say(_table(rig) + "\n")
     drawn: dict[str, bytes] = {}
     rows: float | None = None
-    doubts = list(result.warnings)
+    pair: RectifiedPair | None = None
+    doubts = rig.doubts
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", CalibrationWarning)
         try:
             pair = rectify(result.left, result.right)
-            off = [
-                differences(result, pair, a, b) for a, b in zip(rig.left, rig.right, strict=True)
-            ]
-            rows = float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
-            drawn = _pictures(pair, found.pairs[int(np.argmin([abs(x).max() for x in off]))])
+            off = [differences(result, pair, a, b) for a, b in zip(*rig.corners, strict=True)]
+            rows = float(np.sqrt(np.nanmean(np.concatenate(off) ** 2)))
+            drawn = _pictures(pair, found.pairs[int(np.argmin([np.abs(x).max() for x in off]))])
         except DegenerateError as error:
             doubts.append(f"not rectified: {error}")
     doubts += [str(w.message) for w in caught if issubclass(w.category, CalibrationWarning)]
     say(_report(rig, rows) + "\n")
     for sentence in doubts:
         say(f"! {sentence}")
-    files = [(printable(a.path.name), printable(b.path.name)) for a, b in found.pairs]
+    note, infos = made_by("stereo"), camera_infos(result, pair)
     text = rig_json(
-        result,
-        files=files,
-        std_of_pairs=rig.std,
+        replace(result, warnings=tuple(rig.doubts), reliable=rig.reliable),
+        files=[(printable(a.path.name), printable(b.path.name)) for a, b in found.pairs],
         rows=rows,
         rejected=found.rejected,
-        note=made_by("stereo"),
+        note=note,
     )
-    return {"rig.json": text.encode(), **drawn}
+    return {
+        "rig.json": text.encode(),
+        "calibration.yml": opencv_rig_yaml(result, pair, note=note).encode(),
+        **{f"{info.name}.yaml": ros_yaml(info, note=note).encode() for info in infos},
+        **drawn,
+    }
 
 
-def _table(found: "Pairs", rig: "StereoCalibration | None" = None) -> str:
+def _table(rig: "CalibratedPairs") -> str:
     """Return the table of pairs with their RMS, then what was not used with reasons."""
-    rms = [["", ""]] * len(found.pairs)
-    if rig is not None:
-        rms = [[f"{x:.3f}" for x in r] for r in rig.view_rms]
     rows = [
-        [printable(a.path.name), printable(b.path.name), *r]
-        for (a, b), r in zip(found.pairs, rms, strict=True)
+        [printable(a.path.name), printable(b.path.name), *(f"{x:.3f}" for x in rms)]
+        for (a, b), rms in zip(rig.found.pairs, rig.result.view_rms, strict=True)
     ]
     table = text_table([["left", "right", "RMS left (px)", "RMS right (px)"], *rows])
-    return "\n".join([table, *(f"! {printable(r.file)}: {r.reason}" for r in found.rejected)])
+    return "\n".join([table, *(f"! {printable(r.file)}: {r.reason}" for r in rig.found.rejected)])
 
 
 def _report(rig: "CalibratedPairs", rows: float | None) -> str:
@@ -175,12 +195,14 @@ def _report(rig: "CalibratedPairs", rows: float | None) -> str:
     from cvnotes.base.digits import with_deviation
     from cvnotes.camera import vector_from_rotation
 
-    result, std = rig.result, rig.std
+    result, std = rig.result, rig.result.honest_std
     table = [["", "left", "± 1 σ", "right", "± 1 σ"]]
     for name, a, _, b, _ in result.table():
-        bars = (std.get(f"{side}.{name}", 0.0) for side in ("left", "right"))
-        both = zip((a, b), bars, strict=True)
-        table.append([name, *(cell for pair in both for cell in with_deviation(*pair))])
+        cells = [
+            ("", "") if np.isnan(x) else with_deviation(x, std.get(f"{side}.{name}", 0.0))
+            for side, x in zip(SIDES, (a, b), strict=True)
+        ]
+        table.append([name, *(text for cell in cells for text in cell)])
 
     def three(values: Array, names: str, of: Callable[[float], float] = float) -> str:
         bars = [of(std[f"{names}_{axis}"]) for axis in "xyz"]
@@ -189,19 +211,20 @@ def _report(rig: "CalibratedPairs", rows: float | None) -> str:
     base = " ± ".join(with_deviation(float(np.linalg.norm(result.T)), std["baseline"]))
     noise = max(std[f"T_{axis}"] / max(result.std[f"T_{axis}"], 1e-300) for axis in "xyz")
     turn = three(np.degrees(vector_from_rotation(result.R)), "omega", np.degrees)
+    alone = (camera.calibration.rms for camera in rig.alone)
     lines = [
         text_table(table),
         f"Rotation right ← left   {turn} degrees",
         f"T right ← left          {three(result.T, 'T')} mm",
         f"Base line               {base} mm",
-        f"RMS                     {result.rms:.3f} px per point",
+        f"RMS                     {result.rms:.3f} px per point; each camera by itself "
+        + ", ".join(f"{rms:.3f}" for rms in alone),
     ]
     if rows is not None:
         lines.append(f"Rows                    {rows:.3f} px RMS between partners, rectified")
-    if noise > 1.5:
+    if noise > TIMES_NOISE:
         lines.append(
-            f"The error bars are by leaving pairs out; noise alone would make T {noise:.1f} times "
-            "as sure: the pairs disagree by more (is the board flat, does the lens model fit?)"
+            f"±: from leaving out pairs, of T {noise:.1f} times what noise alone would give"
         )
     return "\n".join(lines)
 

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path
 
-from cvnotes.base import CalibrationWarning, CvnotesError, text_table
+from cvnotes.base import CalibrationWarning, CvnotesError, target_size, text_table
 from cvnotes.base.writing import check_folder, printable
 from cvnotes.camera import Camera
 from cvnotes.commands.console import complain, progress, say, shortfall
+from cvnotes.commands.target import length
 from cvnotes.files import (
     Photo,
     Rejected,
@@ -21,6 +22,7 @@ from cvnotes.files import (
 )
 from cvnotes.files.ownership import free_name, made_by, marked, numbered, photographs
 from cvnotes.files.reasons import OtherSize, Unreadable, unread
+from cvnotes.warping.framing import ideal_camera
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -38,12 +40,19 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     add("--camera", type=Path, required=True, metavar="FILE",
         help="calibration.json, or a camera in OpenCV's or ROS's YAML")  # fmt: skip
     add("--out", type=Path, required=True, metavar="FOLDER", help="folder for the results")
+    add("--keep-all", action="store_true",
+        help="show all that the photographs show, with black around it")  # fmt: skip
+    add("--zoom", type=length, default=1.0, metavar="0.8",
+        help="how much larger to show things; below 1 more is seen")  # fmt: skip
+    add("--size", type=size, metavar="1280x960",
+        help="pixels of what is written (default: as the photographs)")  # fmt: skip
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Undistort; gives the exit code: 0 done, 3 if only some could be, 1 if none."""
     camera = read_camera(args.camera)
+    ideal = ideal_camera(camera, zoom=args.zoom, size=args.size, keep_all=args.keep_all)
     check_folder(args.out)
     files, rejected = photographs(args.photos, size=camera.size, straightened=False)
     written: list[list[str]] = []
@@ -53,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
             rejected.append(photo)
             continue
         try:
-            picture, note = straightened(photo, camera)
+            picture, note = straightened(photo, camera, ideal)
             target = free_name(_names(photo.path), args.out, "undistort", taken)
             write_whole({target: picture})
             written.append([printable(photo.path), printable(target.name), note])
@@ -66,14 +75,14 @@ def run(args: argparse.Namespace) -> int:
         return 1
     names = chain(["camera.json"], numbered("camera", ".json"))
     target = free_name(names, args.out, "undistort", taken)
-    write_camera(Camera(camera.A, size=camera.size), target, note=made_by("undistort"))
+    write_camera(ideal, target, note=made_by("undistort"))
     say(f"Written to {printable(args.out)}, with {target.name} for them")
     missing = sum(isinstance(r.reason, OtherSize) for r in rejected) + unread(rejected, args.photos)
     return shortfall("undistort", missing, missing + len(written), "were not undistorted")
 
 
-def straightened(photo: Photo, camera: Camera) -> tuple[bytes, str]:
-    """Undistort one photograph; gives it as PNG, with its EXIF orientation, and a note."""
+def straightened(photo: Photo, camera: Camera, ideal: Camera) -> tuple[bytes, str]:
+    """Show a photograph as another camera would; gives PNG, oriented as before, and a note."""
     from PIL import Image
 
     from cvnotes.warping import undistort_image
@@ -83,10 +92,27 @@ def straightened(photo: Photo, camera: Camera) -> tuple[bytes, str]:
         exif[274] = photo.orientation
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", CalibrationWarning)
-        image = undistort_image(photo.image, camera)
+        image = undistort_image(photo.image, camera, ideal.A, size=ideal.size)
     Image.fromarray(image).save(encoded, "PNG", exif=exif)
     notes = [photo.note] * bool(photo.note) + [str(warning.message) for warning in caught]
     return marked(encoded.getvalue(), "undistort"), "; ".join(notes)
+
+
+def size(text: str) -> tuple[int, int]:
+    """Read a picture's size as ``1280x960``.
+
+    Examples
+    --------
+    >>> size("1280x960")
+    (1280, 960)
+    """
+    try:
+        width, height = map(int, text.lower().replace("×", "x").split("x"))
+        return target_size((width, height))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"expected a size such as 1280x960, got {text!r}"
+        ) from None
 
 
 def _names(path: Path) -> Iterator[str]:

@@ -76,15 +76,15 @@ def opencv_yaml(camera: Camera, *, note: str = "") -> str:
     remark = f"# {printable(note)}\n" if note else ""
     size = f"image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
     skew = "# OpenCV keeps the skew in the matrix but does not use it.\n" if camera.A[0, 1] else ""
-    K = _opencv_matrix("camera_matrix", camera.A)
+    K = opencv_matrix("camera_matrix", camera.A)
     d = camera.lens.opencv_coefficients()
-    D = _opencv_matrix("distortion_coefficients", d[None])
+    D = opencv_matrix("distortion_coefficients", d[None])
     # (four numbers could also be k1, k2, p1, p2)
     model = f"distortion_model: {camera.lens.ros_name}\n" if d.size == 4 else ""
     return f"%YAML:1.0\n---\n{remark}{size}{skew}{K}{model}{D}"
 
 
-def ros_yaml(info: CameraInfo) -> str:
+def ros_yaml(info: CameraInfo, *, note: str = "") -> str:
     """Spell a camera as ROS's camera_info_manager and calibrators read it.
 
     Examples
@@ -96,9 +96,9 @@ def ros_yaml(info: CameraInfo) -> str:
     """
     if not info.name.isprintable() or set(info.name) & {'"', "\\"}:
         raise CvnotesError(f"name: expected plain text without quotes, got {info.name!r}")
-    camera = info.camera
+    camera, remark = info.camera, f"# {printable(note)}\n" if note else ""
     return (
-        f"image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
+        f"{remark}image_width: {camera.size[0]}\nimage_height: {camera.size[1]}\n"
         f'camera_name: "{info.name}"\n'
         + _ros_matrix("camera_matrix", camera.A)
         + f"distortion_model: {camera.lens.ros_name}\n"
@@ -196,7 +196,8 @@ def _rows(M: Array) -> str:
     return ",\n      ".join(", ".join(_number(x) for x in row) for row in M)
 
 
-def _opencv_matrix(key: str, M: Array) -> str:
+def opencv_matrix(key: str, M: Array) -> str:
+    """Spell a matrix as ``cv2.FileStorage`` does."""
     rows, cols = M.shape
     head = f"{key}: !!opencv-matrix\n   rows: {rows}\n   cols: {cols}\n   dt: d\n"
     return f"{head}   data: [ {_rows(M)} ]\n"

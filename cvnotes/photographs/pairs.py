@@ -1,27 +1,28 @@
 """Photographs of two cameras on one rig: which belong together, and what they say of the rig."""
 
 import re
-import warnings
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
-from cvnotes.base import Array, CalibrationWarning, CvnotesError, DegenerateError
+from cvnotes.base import Array, DegenerateError
 from cvnotes.base.writing import printable
-from cvnotes.calibration import calibrate, choose_model
-from cvnotes.files import Rejected
+from cvnotes.calibration.doubts import Doubt, Place, Views
+from cvnotes.calibration.reliability import misfits
+from cvnotes.calibration.thresholds import FEWEST_KEPT, PART_KEPT
+from cvnotes.files import Reason, Rejected
+from cvnotes.photographs.choosing import Model, NoCamera
 from cvnotes.photographs.detection import Detection, Photographs
-from cvnotes.photographs.reasons import NoPartner, PartnerWithoutBoard
-from cvnotes.stereo import StereoCalibration, calibrate_stereo
+from cvnotes.photographs.driver import CalibratedPhotographs, calibrate_detected
+from cvnotes.photographs.reasons import FewInCommon, Misfit, NoPartner, PartnerNotUsed
+from cvnotes.stereo import StereoCalibration
+from cvnotes.stereo.calibration import SIDES, paired_points, together
 from cvnotes.stereo.half_turn import half_turns
-from cvnotes.stereo.jackknife import std_of_pairs
 from cvnotes.targets import Chessboard
 
 Pair = tuple[Detection, Detection]
-Mask = npt.NDArray[np.bool_]
+_IN_COMMON = 6  # corners that both must see: a pose, and more than chance
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,15 +43,62 @@ class Pairs:
     by_number: bool
     rejected: list[Rejected]
 
+    def without(self, reasons: dict[int, Reason]) -> "Pairs":
+        """Return them without some: reasons by their number."""
+        lost = [Rejected(printable(self.pairs[i][0].path), reason) for i, reason in reasons.items()]
+        kept = [pair for i, pair in enumerate(self.pairs) if i not in reasons]
+        return replace(self, pairs=kept, rejected=[*self.rejected, *lost])
+
 
 @dataclass(frozen=True, eq=False)
 class CalibratedPairs:
-    """What pairs of photographs say about a rig: error bars over pairs, and the corners used."""
+    """What pairs of photographs say about the rig that took them.
+
+    Attributes
+    ----------
+    result : StereoCalibration
+        The rig.
+    alone : list of CalibratedPhotographs
+        What the photographs of either camera say by themselves: left, right.
+    found : Pairs
+        The pairs, in the order of the result's, and the photographs that are in none.
+    corners : list of two lists of ndarray (n_i, 2)
+        Where both cameras saw the same corners: left, right.
+    """
 
     result: StereoCalibration
-    std: dict[str, float]
-    left: list[Array]
-    right: list[Array]
+    alone: list[CalibratedPhotographs]
+    found: Pairs
+    corners: list[list[Array]]
+
+    @property
+    def reliable(self) -> bool:
+        """Whether both cameras and the rig are to be believed."""
+        return self.result.reliable and all(camera.reliable for camera in self.alone)
+
+    @property
+    def doubts(self) -> list[str]:
+        """What whoever uses the rig should know, in sentences that name the photographs."""
+        names = [printable(left.path.name) for left, _ in self.found.pairs]
+
+        def name(place: Place) -> str:
+            return place.listed(names.__getitem__) if isinstance(place, Views) else str(place)
+
+        of_rig = [
+            doubt.naming(name) if isinstance(doubt, Doubt) else doubt
+            for doubt in self.result.warnings
+        ]
+        left, right = (camera.doubts for camera in self.alone)
+        both = [doubt for doubt in left if doubt in right]
+        # (first of the camera that is not to be believed, if one is)
+        order = sorted(zip(SIDES, self.alone, strict=True), key=lambda each: each[1].reliable)
+        of_cameras = [
+            f"{side} camera: {doubt}"
+            for side, camera in order
+            for doubt in camera.doubts
+            if doubt not in both
+        ]
+        return [*of_rig, *of_cameras, *both]
 
 
 def paired(left: Photographs, right: Photographs) -> Pairs:
@@ -87,7 +135,10 @@ def paired(left: Photographs, right: Photographs) -> Pairs:
             if partner is None:
                 alone.append(Rejected(printable(photo.path), NoPartner(side)))
             elif partner.corners is None:
-                reason = PartnerWithoutBoard(printable(partner.path.name))
+                reason: Reason = PartnerNotUsed(printable(partner.path.name))
+                alone.append(Rejected(printable(photo.path), reason))
+            elif (n := int((photo.seen & partner.seen).sum())) < _IN_COMMON:
+                reason = FewInCommon(printable(partner.path.name), n)
                 alone.append(Rejected(printable(photo.path), reason))
             elif side == "right":
                 pairs.append((photo, partner))
@@ -105,76 +156,76 @@ def _number(path: Path) -> int | None:
     return int(digits[-1]) if digits else None
 
 
-def calibrate_pairs(pairs: Sequence[Pair], board: Chessboard, lens: str) -> CalibratedPairs:
-    """Calibrate a rig from pairs of photographs that show the board.
+def calibrate_pairs(
+    left: Photographs, right: Photographs, model: Model | None = None, *, keep_all: bool = False
+) -> CalibratedPairs:
+    """Calibrate a rig from the photographs of its two cameras, as ``cvnotes stereo`` does.
 
     Parameters
     ----------
-    pairs : sequence of (Detection, Detection)
-        Left and right.
-    board : Chessboard
-        What was photographed.
-    lens : str
-        Of both cameras, as for `calibrate`; "auto" lets left photographs that are left out decide.
+    left, right : Photographs
+        Of the same board, in which it was looked for.
+    model : Model, optional
+        Of both cameras.
+    keep_all : bool
+        Use photographs and pairs that do not fit the others too; they are left out otherwise.
 
     Raises
     ------
+    NoCamera
+        The photographs of one side do not determine their camera.
     DegenerateError
-        They do not determine the rig.
+        Nothing pairs the photographs, or the pairs do not determine the rig.
+
+    Notes
+    -----
+    1. Photographs are paired, see `paired`; 2. each camera is calibrated by itself, with all its
+    photographs (`calibrate_detected`); 3. both together with their pairs; 4. pairs that do not fit
+    the others are out, and 3. is repeated.
     """
-    if not pairs:
+    if not paired(left, right).pairs:
         raise DegenerateError(
             "a board of {}×{} inner corners was found in both pictures of none".format(
-                *board.corners
+                *left.board.corners
             )
         )
-    sizes = {photo.size for pair in pairs for photo in pair}
-    if len(sizes) > 1:
-        listed = " and ".join(f"{w}×{h}" for w, h in sorted(sizes))
-        raise DegenerateError(
-            f"left and right pictures must have one size, got {listed} pixels: take both at the "
-            "same resolution"
-        )
-    (size,) = sizes
-    left, right = (np.array([pair[i].corners for pair in pairs]) for i in (0, 1))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", CalibrationWarning)  # the result has them
-        if lens == "auto":
-            lens = _chosen(board, left, size)
-        if board.half_turn_symmetric:
-            right = _same_end(board, left, right, size, lens)
-        W, (m_left, m_right) = _seen(board, left, right)
-        result = calibrate_stereo(W, m_left, m_right, size, lens=lens)
+    alone = []
+    for side, photographs in zip(SIDES, (left, right), strict=True):
         try:
-            std = std_of_pairs(result, W, m_left, m_right, lens=lens)
-        except CvnotesError as error:
-            raise DegenerateError(
-                f"without some of the pairs the rig is not determined ({error}): take more pairs, "
-                "or a lens with fewer coefficients"
-            ) from error
-    return CalibratedPairs(result, std, m_left, m_right)
+            alone.append(calibrate_detected(photographs, model, keep_all=keep_all))
+        except NoCamera as error:
+            raise NoCamera(f"{side} camera: {error}", error.photographs) from error
+    found = paired(*(camera.photographs for camera in alone))
+    result, corners = _rig(found, alone)
+    bad = misfits(result.view_rms.max(axis=1)).tolist()
+    fewest = max(FEWEST_KEPT, PART_KEPT * len(found.pairs))
+    if bad and not keep_all and len(found.pairs) - len(bad) >= fewest:
+        worst, typical = result.view_rms.max(axis=1), float(np.median(result.view_rms))
+        found = found.without({i: Misfit(float(worst[i]), typical) for i in bad})
+        result, corners = _rig(found, alone)
+    return CalibratedPairs(result, alone, found, corners)
 
 
-def _seen(board: Chessboard, *sides: Array) -> tuple[list[Array], list[list[Array]]]:
-    """Return board points and pixels of the corners that all sides (n_views, n, 2) see."""
-    seen: Mask = np.asarray(np.isfinite(sum(sides)).all(-1))
-    m = [[view[s] for view, s in zip(side, seen, strict=True)] for side in sides]
-    return [board.points[s] for s in seen], m
+def _rig(
+    found: Pairs, alone: list[CalibratedPhotographs]
+) -> tuple[StereoCalibration, list[list[Array]]]:
+    """Calibrate both cameras together, with the corners that both see in each pair."""
+    if not found.pairs:
+        raise DegenerateError("no pair is left of which both photographs fit the others")
+    board = alone[0].photographs.board
+    left, right = (np.array([pair[i].corners for pair in found.pairs]) for i in (0, 1))
+    if isinstance(board, Chessboard) and board.half_turn_symmetric:
+        turned = half_turns(board.points, *(_poses(found, alone, i) for i in (0, 1)))
+        right = np.where(turned[:, None, None], right[:, ::-1], right)
+    seen = np.isfinite(left + right).all(-1)
+    W = [board.points[s] for s in seen]
+    corners = [[m[s] for m, s in zip(side, seen, strict=True)] for side in (left, right)]
+    pairs = paired_points(W, *corners)
+    cameras = [camera.calibration for camera in alone]
+    return together(pairs, cameras, judged=True), corners
 
 
-def _chosen(board: Chessboard, left: Array, size: tuple[int, int]) -> str:
-    """Choose the lens of both cameras, which are nearly always alike, by the left photographs."""
-    W, (m,) = _seen(board, left)
-    return choose_model(W, m, size, boards=["flat"]).lens
-
-
-def _same_end(
-    board: Chessboard, left: Array, right: Array, size: tuple[int, int], lens: str
-) -> Array:
-    """Count the right corners of a symmetric board from the same end as the left ones."""
-    poses = []
-    for side in (left, right):
-        W, (m,) = _seen(board, side)
-        poses.append(calibrate(W, m, size, lens=lens).poses)
-    turned = half_turns(board.points, *poses)
-    return np.where(turned[:, None, None], right[:, ::-1], right)
+def _poses(found: Pairs, alone: list[CalibratedPhotographs], i: int) -> Array:
+    """Return the poses (n_pairs, 4, 4) of the board in one camera's photographs of the pairs."""
+    used = [photo.path for photo in alone[i].photographs.used]
+    return alone[i].calibration.poses[[used.index(pair[i].path) for pair in found.pairs]]

@@ -74,10 +74,21 @@ class NoPartner(Reason):
 
 
 @dataclass(frozen=True)
-class PartnerWithoutBoard(Reason):
-    """The photograph that belongs to it does not show the board."""
+class PartnerNotUsed(Reason):
+    """The photograph that belongs to it is not used; it has its own reason."""
 
     partner: str
 
     def __str__(self) -> str:
-        return f"the board was not found in its partner {self.partner}"
+        return f"its partner {self.partner} is not used"
+
+
+@dataclass(frozen=True)
+class FewInCommon(Reason):
+    """It and the photograph that belongs to it show other parts of the board."""
+
+    partner: str
+    corners: int
+
+    def __str__(self) -> str:
+        return f"only {self.corners} corners are also seen in its partner {self.partner}"

@@ -1,5 +1,6 @@
 """Stereo calibration: two cameras and how they stand to each other, from pairs of pictures."""
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from warnings import catch_warnings, simplefilter, warn
@@ -14,10 +15,13 @@ from cvnotes.base import (
     ShapeError,
     image_size,
 )
-from cvnotes.calibration import calibrate, extrinsics
+from cvnotes.calibration import Calibration, calibrate, extrinsics
+from cvnotes.calibration.board_shape import BOARDS, BoardShape, deformations, with_shape
 from cvnotes.calibration.correspondences import Correspondences, PointSets
+from cvnotes.calibration.doubts import Doubt, Views
 from cvnotes.calibration.refinement import Problem, covariance, refuse_too_few
 from cvnotes.calibration.reliability import Diagnostics, judge
+from cvnotes.calibration.thresholds import MOVED, OF_PICTURE
 from cvnotes.camera import (
     Camera,
     chain,
@@ -28,6 +32,7 @@ from cvnotes.camera import (
 )
 from cvnotes.camera.model import is_camera
 from cvnotes.homography import dlt
+from cvnotes.stereo.jackknife import covariance_over_pairs
 from cvnotes.stereo.refinement import StereoProblem, StereoState
 from cvnotes.stereo.result import StereoCalibration
 
@@ -39,6 +44,7 @@ def calibrate_stereo(
     size: tuple[int, int],
     *,
     lens: str = "k1 k2",
+    board: str = "flat",
     skew: bool = False,
 ) -> StereoCalibration:
     """Calibrate two cameras and their relative pose from pairs of pictures of a planar board.
@@ -51,10 +57,9 @@ def calibrate_stereo(
         The same corners in the left and right pictures, in pixels; pair i was taken at once.
     size : (width, height)
         Size of the pictures.
-    lens : {"none", "k1", "k1 k2", "k1 k2 k3", "k1 k2 p1 p2", "k1 k2 p1 p2 k3"}
-        Which lens coefficients of either camera are estimated.
-    skew : bool
-        Estimate the skew of both cameras too.
+    lens, board, skew
+        As for `calibrate`, of either camera; with "auto" each of them has the lens that its own
+        pictures speak for. The board is one: its shape is estimated if either asks for one.
 
     Returns
     -------
@@ -74,8 +79,8 @@ def calibrate_stereo(
     Notes
     -----
     1. Each camera is calibrated by itself; 2. every pair then gives a relative pose, of which the
-    median is taken; 3. both cameras, the relative pose and one board pose for each pair are
-    refined together (see `cvnotes.stereo.refinement`). One board pose for two pictures is what
+    median is taken; 3. both cameras, the relative pose, the board and one board pose for each pair
+    are refined together (see `cvnotes.stereo.refinement`). One board pose for two pictures is what
     sharpens both cameras.
 
     References
@@ -99,17 +104,24 @@ def calibrate_stereo(
     array([-100.,    0.,    0.])
     """
     size = image_size(size)
-    pairs = _pairs(board_points, left_points, right_points)
-    problems = [Problem.of(data, size, lens, skew) for data in pairs]
-    cameras = []
-    for side, points in (("left", left_points), ("right", right_points)):
-        with catch_warnings():  # what is doubtful is judged once, at the joint optimum
+    pairs = paired_points(board_points, left_points, right_points)
+    alone = []
+    for side, points in zip(SIDES, (left_points, right_points), strict=True):
+        with catch_warnings():  # said below, with the side
             simplefilter("ignore", CalibrationWarning)
             try:
-                cameras.append(calibrate(board_points, points, size, lens=lens, skew=skew).camera)
+                found = calibrate(board_points, points, size, lens=lens, board=board, skew=skew)
             except DegenerateError as error:
                 raise DegenerateError(f"{side} camera: {error}") from error
-    return refined(StereoProblem(problems[0], problems[1]), pairs, cameras)
+        alone.append(found)
+    return _warned(together(pairs, alone))
+
+
+def _warned(rig: StereoCalibration) -> StereoCalibration:
+    """Warn whoever called the caller of what is doubtful."""
+    for sentence in rig.warnings:
+        warn(sentence, CalibrationWarning, stacklevel=3)
+    return rig
 
 
 def calibrate_relative_pose(
@@ -157,16 +169,16 @@ def calibrate_relative_pose(
                 f"{name}: the refinement knows lenses centred on the principal point only, got "
                 f"{camera.lens}"
             )
-    pairs = _pairs(board_points, left_points, right_points)
+    pairs = paired_points(board_points, left_points, right_points)
     problems = [
         Problem.at(c, tuple(name for name, x in c.parameters.items() if name != "skew" or x), d)
         for d, c in zip(pairs, (left, right), strict=True)
     ]
     problem = StereoProblem(problems[0], problems[1], cameras_known=True)
-    return refined(problem, pairs, [left, right])
+    return _warned(refined(problem, pairs, [left, right]))
 
 
-def _pairs(
+def paired_points(
     board_points: PointSets, left_points: PointSets, right_points: PointSets
 ) -> tuple[Correspondences, Correspondences]:
     """Pair corners with the board in both pictures, or say what does not fit together."""
@@ -180,23 +192,77 @@ def _pairs(
     return left, right
 
 
+def together(
+    pairs: tuple[Correspondences, Correspondences],
+    alone: list[Calibration],
+    *,
+    judged: bool = False,
+) -> StereoCalibration:
+    """Refine two cameras that were calibrated by themselves together, from pairs of pictures.
+
+    If both have been judged already, it is only said what is doubtful about the rig.
+    """
+    problems = [Problem.at(c.camera, c.names, data) for c, data in zip(alone, pairs, strict=True)]
+    shapes = [c.shape for c in alone if c.shape is not None]
+    if shapes:
+        shape = max(shapes, key=lambda shape: BOARDS.index(shape.kind))
+        with suppress(DegenerateError):  # there are too few pairs for it
+            problems = _with_shape(problems, pairs, shape)
+    problem = StereoProblem(problems[0], problems[1])
+    rig = refined(problem, pairs, [c.camera for c in alone], judged=judged)
+    apart = float(np.sqrt(np.mean([c.rms**2 for c in alone])))
+    if rig.rms <= max(_TOGETHER * apart, MOVED * max(rig.left.size)):
+        return rig
+    doubt = Doubt(
+        f"two cameras on one rig miss the corners by {rig.rms:.2f} px, each by itself by "
+        f"{apart:.2f}: were partners taken at the same moment, and did the rig stay rigid?"
+    )
+    return replace(rig, warnings=(*rig.warnings, doubt))
+
+
+def _with_shape(
+    problems: list[Problem], pairs: tuple[Correspondences, Correspondences], shape: BoardShape
+) -> list[Problem]:
+    """Return the problems with one shape of the board, held as it was for a camera by itself."""
+    kind = shape.kind
+    left, right = (with_shape(p, data, kind) for p, data in zip(problems, pairs, strict=True))
+    if shape.hold is None:
+        return [left, right]
+    # (bends come first; of the corners, the pairs may show fewer than all photographs do)
+    bends = len(deformations("bent", left.W))
+    hold = np.where(np.arange(left.n_shape) < bends, shape.hold[0], shape.hold[-1])
+    return [replace(left, hold=hold), right]
+
+
 # A pair whose relative pose is this far from the others' (radians) does not belong to the rig.
 _APART = np.deg2rad(10)
+_TOGETHER = 2.0  # times the RMS of either camera by itself, from which they are no rig
 
 
 def refined(
-    problem: StereoProblem, pairs: tuple[Correspondences, Correspondences], cameras: list[Camera]
+    problem: StereoProblem,
+    pairs: tuple[Correspondences, Correspondences],
+    cameras: list[Camera],
+    *,
+    judged: bool = False,
 ) -> StereoCalibration:
     """Refine from a closed-form start, undo the scaling, add error bars, and judge."""
-    unknowns = len(problem.names) + 6 * len(pairs[0])
+    q = len(problem.names)
+    unknowns = q + 6 * len(pairs[0])
     measured = 2 * (problem.left.n_seen + problem.right.n_seen)
     refuse_too_few(measured, unknowns, "add pairs")
     start, strangers = _start(problem, pairs, cameras)
     best = problem.minimise(start)
-    variance = best.cost / (measured - unknowns)
-    scale = np.ones(len(problem.names))
+    unit = covariance(best.system)
+    # The shape of the board is held: neither belongs what that costs to a picture, nor is it free.
+    held = problem.left.held[len(problem.left.names) :]
+    s = best.x.left.shared[len(problem.left.names) :]
+    cost = best.cost - float(held @ s**2)
+    told = len(s) - float(held @ np.diag(unit)[q:])
+    variance = cost / (measured - unknowns - told)
+    scale = np.ones(q)
     scale[-3:] = pairs[0].scale  # T, back in the unit of the board
-    cov = variance * covariance(best.system) * np.outer(scale, scale)
+    scale = np.outer(scale, scale)
     left, right = _cameras(problem, best.x, pairs[0].scale, cameras)
     residuals = (
         problem.left.residuals(left.moved(np.eye(4)), best.x.left),
@@ -210,17 +276,22 @@ def refined(
         left=left,
         right=right,
         poses=pairs[0].pose_in_given_units(best.x.left.R, best.x.left.T),
-        rms=float(np.sqrt(2 * best.cost / measured)),
+        rms=float(np.sqrt(2 * cost / measured)),
         view_rms=np.stack(view_rms, axis=-1),
         names=problem.names,
-        covariance=cov,
+        covariance=variance * unit[:q, :q] * scale,
         converged=best.converged,
+        _covariance_of_pairs=lambda: covariance_over_pairs(problem, best.x)[:q, :q] * scale,
     )
-    corners = problem.left.m, problem.right.m
-    sentences, reliable = judge_rig(result, pairs[0].W, corners, residuals, strangers)
-    for sentence in sentences:
-        warn(sentence, CalibrationWarning, stacklevel=3)
-    return replace(result, warnings=sentences, reliable=reliable)
+    sentences = [*_doubts(result, residuals, strangers)]
+    reliable = not sentences
+    for i, side in enumerate(() if judged or problem.cameras_known else SIDES):
+        one = replace(result.of_camera(i), converged=True)  # said above
+        corners = (problem.left, problem.right)[i].m
+        found, believed = judge(Diagnostics.of(one, residuals[i], corners, problem.left.W))
+        sentences += [Doubt(f"{side} camera: {each.sentence}", *each.places) for each in found]
+        reliable = reliable and believed
+    return replace(result, warnings=tuple(sentences), reliable=reliable)
 
 
 def _start(
@@ -264,76 +335,42 @@ def _cameras(
 
 
 SIDES = ("left", "right")
-# Typical distance from the model, over the longer side of the picture, that no noise explains.
-_MISFIT = 0.005
 
 
-def judge_rig(
-    result: StereoCalibration,
-    board: Array,
-    corners: tuple[Array, Array],
-    residuals: tuple[Array, Array],
-    strangers: list[int],
-) -> tuple[tuple[str, ...], bool]:
-    """Return sentences about what is doubtful, and whether the result is reliable all the same.
+def _doubts(
+    result: StereoCalibration, residuals: tuple[Array, Array], strangers: list[int]
+) -> Iterator[Doubt]:
+    """Say why a rig is not to be believed.
 
     Parameters
     ----------
     result : StereoCalibration
         Not judged yet.
-    board : ndarray, shape (n, 3) or (n_views, n, 3)
-        The points of the board.
-    corners, residuals : pair of ndarray, shape (n_views, n, 2)
-        Where the corners were seen in the left and right pictures, and how far from where the
-        model puts them; 0 where none was seen, NaN where the lens folds.
+    residuals : pair of ndarray, shape (n_views, n, 2)
+        How far corners were seen from where the model puts them; 0 where none was seen, NaN where
+        the lens folds.
     strangers : list of int
         Pairs that show the cameras in another relative pose than the others do.
     """
-    fatal: list[str] = []
     if strangers:
-        fatal.append(
-            f"pairs {', '.join(map(str, strangers))} show the cameras turned by more than 10° "
-            "from where the others do: do left and right belong together, is the board numbered "
-            "from the same corner in both, did the rig stay rigid?"
+        yield Doubt(
+            "{} show the cameras turned by more than 10° from where the others do: do left and "
+            "right belong together, is the board numbered from the same corner in both, did the "
+            "rig stay rigid?",
+            Views(tuple(strangers)),
         )
     if not result.converged:
-        fatal.append("the refinement stopped before it reached a minimum")
-    if len(result.names) == 6:  # the cameras were known
-        fatal += _misfits(result, residuals)
-        return tuple(fatal), not fatal
-    sentences, reliable = _judge_cameras(result, board, corners, residuals)
-    return (*fatal, *sentences), reliable and not fatal
-
-
-def _misfits(result: StereoCalibration, residuals: tuple[Array, Array]) -> list[str]:
-    """Say when known cameras do not explain the corners."""
+        yield Doubt("the refinement stopped before it reached a minimum")
+    known = len(result.names) == 6
     folded = [side for side, r in zip(SIDES, residuals, strict=True) if np.isnan(r).any()]
-    if folded:
-        return [
+    if folded and known:
+        yield Doubt(
             f"{' and '.join(folded)} camera: some corners lie where its lens folds over, so it "
             "shows nothing there: do A and lens belong to these pictures?"
-        ]
-    typical = float(np.median(result.view_rms))
-    if typical <= _MISFIT * max(result.left.size):
-        return []
-    return [
-        f"the corners are {typical:.1f} px away from where the cameras put them, in a typical "
-        "picture: do A and lens belong to these pictures?"
-    ]
-
-
-def _judge_cameras(
-    result: StereoCalibration,
-    board: Array,
-    corners: tuple[Array, Array],
-    residuals: tuple[Array, Array],
-) -> tuple[list[str], bool]:
-    """Judge each camera by what `calibrate` judges it by, at the joint minimum."""
-    sentences: list[str] = []
-    reliable = True
-    for i, side in enumerate(SIDES):
-        one = replace(result.of_camera(i), converged=True)  # said above
-        found, believed = judge(Diagnostics.of(one, residuals[i], corners[i], board))
-        sentences += [f"{side} camera: {sentence}" for sentence in found]
-        reliable = reliable and believed
-    return sentences, reliable
+        )
+    elif (typical := float(np.median(result.view_rms))) > OF_PICTURE * max(result.left.size):
+        ask = "A and lens belong to these pictures" if known else "left and right belong together"
+        yield Doubt(
+            f"the corners are {typical:.1f} px away from where the cameras put them, in a typical "
+            f"picture: do {ask}?"
+        )

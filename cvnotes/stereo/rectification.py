@@ -6,13 +6,15 @@ from warnings import warn
 import numpy as np
 
 from cvnotes.base import Array, CalibrationWarning, CvnotesError, DegenerateError, image_size
-from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector, vector_from_rotation
+from cvnotes.camera import Camera, pose, rotation_from_vector, vector_from_rotation
 from cvnotes.camera.model import is_camera
 from cvnotes.stereo.epipolar import baseline, relative_pose
 from cvnotes.warping import map_array, undistortion_map
+from cvnotes.warping.framing import border, framing
 
-# Smallest z, on rays of unit z in their own camera, that a rectified camera may see them at.
-_SIDEWAYS = 0.1
+# How far from where the rectified cameras look a camera may look (a cosine): two that are to be
+# turned by more see each other, or nearly so.
+_TURNED = np.cos(np.deg2rad(50))
 _MOST_PIXELS = 80_000_000
 
 
@@ -62,7 +64,8 @@ def rectify(
         Size of the rectified pictures; by default that of the left camera.
     keep : {"valid", "all"}
         "valid": both rectified pictures are full, without empty borders; "all": nothing of
-        either photograph is lost. A photograph ends where its lens model does.
+        either photograph is lost. A photograph ends where its lens model does, and 70° away from
+        where the rectified cameras look.
 
     Returns
     -------
@@ -113,7 +116,15 @@ def rectify(
     if min(size) < 2 or size[0] * size[1] > _MOST_PIXELS:
         raise CvnotesError(f"size: cannot make rectified pictures of {size[0]}×{size[1]} pixels")
     R = _rectifying_rotation(left, right)
-    A = _common_intrinsics([_border(camera, R) for camera in (left, right)], size, keep)
+    for camera in (left, right):
+        if R[2] @ camera.R[2] < _TURNED:
+            raise DegenerateError(
+                "the cameras stand one behind the other, or look in too different directions: "
+                "their pictures cannot be turned to share rows. Move one camera sideways"
+            )
+    A = framing(
+        [border(camera, R @ camera.R.T) for camera in (left, right)], size, full=keep == "valid"
+    )
     cameras = [Camera(A, pose(R, -R @ camera.centre), size=size) for camera in (left, right)]
     maps = [map_array(undistortion_map(old, A, R=R @ old.R.T), size) for old in (left, right)]
     pair = RectifiedPair(cameras[0], cameras[1], maps[0], maps[1])
@@ -142,62 +153,3 @@ def _rectifying_rotation(left: Camera, right: Camera) -> Array:
     sine = np.linalg.norm(n)
     turn = n * (np.arctan2(sine, b @ e) / sine) if sine > 0 else n
     return np.asarray(rotation_from_vector.inside(turn) @ R)
-
-
-def _border(camera: Camera, R: Array) -> list[Array]:
-    """Return the picture's left, right, top and bottom pixels on the plane z = 1 of the frame R."""
-    w, h = camera.size
-    u, v = np.arange(w, dtype=float), np.arange(h, dtype=float)
-    edges = [
-        np.column_stack([np.zeros(h), v]),
-        np.column_stack([np.full(h, w - 1.0), v]),
-        np.column_stack([u, np.zeros(w)]),
-        np.column_stack([u, np.full(w, h - 1.0)]),
-    ]
-    seen = []
-    for edge in edges:
-        xy = _ideal_within_reach(camera, edge)
-        rays = np.column_stack([xy, np.ones(len(xy))]) @ (R @ camera.R.T).T
-        if not (rays[:, 2] > _SIDEWAYS).all():
-            raise DegenerateError(
-                "the cameras stand one behind the other, or look in too different directions: "
-                "their pictures cannot be turned to share rows. Move one camera sideways"
-            )
-        seen.append(rays[:, :2] / rays[:, 2:])
-    return seen
-
-
-def _ideal_within_reach(camera: Camera, edge: Array) -> Array:
-    """Undo sensor and lens; what the lens model does not reach is moved inwards until it does."""
-    xy = camera.ideal(edge)
-    lost = np.isnan(xy).any(-1)
-    if lost.any():
-        centre = camera.A[:2, 2] + camera.A[:2, :2] @ camera.lens.centre
-        inside, outside = np.zeros((lost.sum(), 1)), np.ones((lost.sum(), 1))
-        for _ in range(30):
-            middle = (inside + outside) / 2
-            reached = np.isfinite(camera.ideal(centre + middle * (edge[lost] - centre)))[:, :1]
-            inside, outside = np.where(reached, middle, inside), np.where(reached, outside, middle)
-        xy[lost] = camera.ideal(centre + inside * (edge[lost] - centre))
-    return xy
-
-
-def _common_intrinsics(borders: list[list[Array]], size: tuple[int, int], keep: str) -> Array:
-    """Choose α and (u0, v0) such that the wanted part of both pictures fills `size`."""
-    inner, outer = (np.max, np.min), (np.min, np.max)
-    low_of, high_of = inner if keep == "valid" else outer
-    low, high = np.empty(2), np.empty(2)
-    for axis in range(2):
-        low[axis] = low_of([low_of(border[2 * axis][:, axis]) for border in borders])
-        high[axis] = high_of([high_of(border[2 * axis + 1][:, axis]) for border in borders])
-    if not (low < high).all():
-        raise DegenerateError(
-            "the rectified pictures have no common full part, the cameras are turned too far from "
-            "each other; try keep='all'"
-        )
-    steps = np.array(size) - 1.0  # from the first pixel centre to the last
-    scales = steps / (high - low)
-    # A few thousandths of a pixel closer: the border was looked at in whole pixels only.
-    alpha = max(scales) * (1 + 1e-5) if keep == "valid" else min(scales) * (1 - 1e-5)
-    u0, v0 = steps / 2 - alpha * (low + high) / 2
-    return intrinsics(alpha, alpha, u0, v0)

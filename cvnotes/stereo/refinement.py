@@ -1,15 +1,17 @@
 """Maximum likelihood for two cameras: both, their relative pose and all board poses together.
 
-The normal matrix is an arrow again. Shared are the parameters of both cameras and the relative
-pose; each pair of pictures adds the pose of its board in the left camera's frame. The right
-camera's poses are no unknowns: G_right = G · G_left, so its normal equations, as `Problem` gives
-them, are carried over by the chain rule.
+The normal matrix is an arrow again. Shared are the parameters of both cameras, the relative pose
+and the shape of the board, which is one for both; each pair of pictures adds the pose of its board
+in the left camera's frame. The right camera's poses are no unknowns: G_right = G · G_left, so its
+normal equations, as `Problem` gives them, are carried over by the chain rule.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, Minimum, levenberg_marquardt
 from cvnotes.calibration.refinement import (
@@ -29,9 +31,13 @@ class StereoState(NamedTuple):
     """Where the optimiser stands: the left camera and its poses, the right camera, and G."""
 
     left: State
-    right: Array  # shared parameters of the right camera
+    right: Array  # shared parameters of the right camera; the board's shape, too, as in the left
     R: Array  # (3, 3) and T (3,): right ← left
     T: Array
+
+    def some(self, views: slice) -> "StereoState":
+        """Keep the poses of some of the pairs."""
+        return self._replace(left=self.left.some(views))
 
     def of_right(self) -> State:
         """Return the state of the right camera, whose poses follow: R R_left, R T_left + T."""
@@ -45,7 +51,8 @@ class StereoProblem:
     Parameters
     ----------
     left, right : Problem
-        Of the same views, with the same board points.
+        Of the same views, with the same board points, and the same ways in which these may differ;
+        what holds the shape of the board belongs to one of them.
     cameras_known : bool
         Hold A and lens of both cameras; only the relative pose and the boards are then sought.
     """
@@ -62,30 +69,52 @@ class StereoProblem:
         pose = ("omega_x", "omega_y", "omega_z", "T_x", "T_y", "T_z")
         return pose if self.cameras_known else (*cameras, *pose)
 
+    def some(self, views: slice) -> "StereoProblem":
+        """Keep some of the pairs."""
+        return replace(self, left=self.left.some(views), right=self.right.some(views))
+
+    @cached_property
+    def places(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Which of all shared parameters are of the left camera, of the right one, and of G.
+
+        Either camera's are followed by the shape of the board, which stands at the end of all.
+        """
+        a, b, shape = len(self.left.names), len(self.right.names), np.arange(self.left.n_shape)
+        last = a + b + 6
+        left, right = (
+            np.append(np.arange(a), last + shape),
+            np.append(a + np.arange(b), last + shape),
+        )
+        return left, right, np.arange(a + b, last)
+
     def linearise(self, x: StereoState) -> tuple[float, NormalEquations]:
         """Return the cost and the normal equations at x."""
         cost_left, left = self.left.linearise(x.left)
         cost_right, right = self.right.linearise(x.of_right())
-        equations = _joined(left, _carried_over(right, x))
+        of_left, of_right, of_G = self.places
+        of_right = np.append(of_right, of_G)
+        equations = _joined((left, of_left), (_carried_over(right, x), of_right))
         if self.cameras_known:
             equations = replace(
                 equations,
-                shared=equations.shared[-6:, -6:],
-                border=equations.border[..., -6:],
-                g_shared=equations.g_shared[-6:],
+                shared=equations.shared[np.ix_(of_G, of_G)],
+                border=equations.border[..., of_G],
+                g_shared=equations.g_shared[of_G],
             )
         return cost_left + cost_right, equations
 
     def take_step(self, x: StereoState, step: tuple[Array, Array]) -> StereoState:
         """Take a step: rotations from the left, everything else by addition."""
         shared, poses = step
-        q = len(x.left.shared)
-        cameras = np.zeros(q + len(x.right)) if self.cameras_known else shared[:-6]
+        of_left, of_right, of_G = self.places
+        if self.cameras_known:
+            shared = np.append(np.zeros(of_G[0]), shared)
+        G = shared[of_G]
         return StereoState(
-            take_step(x.left, (cameras[:q], poses)),
-            x.right + cameras[q:],
-            rotation_from_vector.inside(shared[-6:-3]) @ x.R,
-            x.T + shared[-3:],
+            take_step(x.left, (shared[of_left], poses)),
+            x.right + shared[of_right],
+            rotation_from_vector.inside(G[:3]) @ x.R,
+            x.T + G[3:],
         )
 
     def minimise(self, start: StereoState) -> Minimum[StereoState, NormalEquations]:
@@ -100,8 +129,9 @@ class StereoProblem:
         found = levenberg_marquardt(
             start, self.linearise, solve_by_schur, self.take_step, floor=floor
         )
-        depths = np.concatenate([found.x.left.T[:, 2], found.x.of_right().T[:, 2]])
-        if depths.min() <= 0:
+        sides = (self.left, found.x.left), (self.right, found.x.of_right())
+        # (a wide lens may see a board beside it)
+        if any(x.T[:, 2].min() <= 0 for side, x in sides if not side.model.wide):
             raise DegenerateError(
                 "the pairs do not fit two cameras on one rig: a board would be behind a camera. "
                 "Do left and right pictures belong together, numbered from the same corner?"
@@ -138,17 +168,21 @@ def _carried_over(right: NormalEquations, x: StereoState) -> NormalEquations:
     )
 
 
-def _joined(left: NormalEquations, right: NormalEquations) -> NormalEquations:
-    """Add normal equations that have the poses in common but none of the shared parameters."""
-    q = len(left.shared)
-    p = q + len(right.shared)
-    shared = np.zeros((p, p))
-    shared[:q, :q], shared[q:, q:] = left.shared, right.shared
+def _joined(*parts: tuple[NormalEquations, npt.NDArray[np.intp]]) -> NormalEquations:
+    """Add normal equations of the same poses, whose shared parameters have these places."""
+    p = 1 + max(int(places.max()) for _, places in parts)
+    n = len(parts[0][0].poses)
+    shared, border, g_shared = np.zeros((p, p)), np.zeros((n, 6, p)), np.zeros(p)
+    for each, places in parts:
+        shared[np.ix_(places, places)] += each.shared
+        border[..., places] += each.border
+        g_shared[places] += each.g_shared
+    (left, _), (right, _) = parts
     return NormalEquations(
         shared,
-        np.concatenate([left.border, right.border], axis=-1),
+        border,
         left.poses + right.poses,
-        np.append(left.g_shared, right.g_shared),
+        g_shared,
         left.g_poses + right.g_poses,
         left.view_costs + right.view_costs,
     )

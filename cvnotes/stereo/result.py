@@ -1,10 +1,12 @@
 """What a stereo calibration gives: two cameras on one rig, with error bars."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from cvnotes.base import Array
+from cvnotes.base import Array, CvnotesError
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration import Calibration
 from cvnotes.calibration.result import doubts_as_html, doubts_as_text, left_cell
@@ -50,6 +52,7 @@ class StereoCalibration:
     warnings: tuple[str, ...] = ()
     reliable: bool = True
     converged: bool = True
+    _covariance_of_pairs: Callable[[], Array] | None = field(default=None, repr=False)
 
     @property
     def cameras(self) -> tuple[Camera, Camera]:
@@ -76,6 +79,28 @@ class StereoCalibration:
         """Standard deviation of each estimated parameter, by name."""
         return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
 
+    @cached_property
+    def covariance_of_pairs(self) -> Array:
+        """Their covariance from the scatter between pairs; see `cvnotes.stereo.jackknife`.
+
+        Infinite on its diagonal where a pair less would leave the rig undetermined.
+        """
+        if self._covariance_of_pairs is None:
+            raise CvnotesError("the scatter between pairs is not kept in files")
+        return self._covariance_of_pairs()
+
+    @property
+    def honest_std(self) -> dict[str, float]:
+        """Standard deviations by name, and that of the distance between the cameras, ``baseline``.
+
+        From the scatter between pairs, or for noise alone where that is not known.
+        """
+        C = self.covariance_of_pairs
+        C = C if np.isfinite(C).all() else self.covariance
+        b = self.T / np.linalg.norm(self.T)
+        std = np.sqrt([*np.diag(C), b @ C[-3:, -3:] @ b])
+        return dict(zip((*self.names, "baseline"), std.tolist(), strict=True))
+
     def of_camera(self, i: int) -> Calibration:
         """Return what was found out about the left camera (0), or about the right one (1)."""
         camera, side = self.cameras[i], ("left.", "right.")[i]
@@ -93,10 +118,16 @@ class StereoCalibration:
         )
 
     def table(self) -> list[tuple[str, float, float, float, float]]:
-        """Return name, left value and deviation, right value and deviation of each parameter."""
-        left, right = (self.of_camera(i).table() for i in (0, 1))
-        both = zip(left, right, strict=True)
-        return [(name, a, da, b, db) for (name, a, da, _), (_, b, db, _) in both]
+        """Return name, left value and deviation, right value and deviation of each parameter.
+
+        NaN where only the other lens has it.
+        """
+        left, right = (
+            {name: (value, std) for name, value, std, _ in self.of_camera(i).table()}
+            for i in (0, 1)
+        )
+        none = np.nan, np.nan
+        return [(n, *left.get(n, none), *right.get(n, none)) for n in left | right]
 
     def __repr__(self) -> str:
         w, h = self.left.size
@@ -133,4 +164,5 @@ class StereoCalibration:
 
 
 def _both(left: float, left_std: float, right: float, right_std: float) -> tuple[str, ...]:
-    return with_deviation(left, left_std) + with_deviation(right, right_std)
+    cells = with_deviation(left, left_std) + with_deviation(right, right_std)
+    return tuple(cell.replace("nan", "–") for cell in cells)
