@@ -21,8 +21,7 @@ from collections import Counter
 
 import numpy as np
 import test_exercises_mutations as mutations
-import test_exercises_styles as styles
-from test_exercises_second import solution_of
+from test_exercises_second import solution_of, written
 
 from cvnotes.learn import EXERCISES
 from cvnotes.tutor.checker import in_process
@@ -55,8 +54,8 @@ def judged(exercise, function, seed=SEED):
 def right_answers(names):
     for name in names:
         for function in (EXERCISES[name].reference, solution_of(name)):
-            for _, written in styles._written(EXERCISES[name], function):
-                yield name, written
+            for _, answer in written(EXERCISES[name], function):
+                yield name, answer
 
 
 def listed(names):
@@ -135,7 +134,7 @@ def counted(answers):
 def main(arguments):
     """Print the table."""
     wanted = int(arguments[0]) if arguments else 400
-    names = arguments[1:] or styles.FUNCTIONS
+    names = arguments[1:] or mutations.NAMES
     np.seterr(all="ignore")
     rows = {"right answers": Counter()}
     for name, function in right_answers(names):

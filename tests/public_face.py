@@ -15,7 +15,6 @@ from cvnotes.calibration import (
     next_view,
     ppm,
     prediction_std,
-    std_with_view,
     where_to_hold,
     zhang,
 )
@@ -414,7 +413,6 @@ FUNCTIONS = [
         {"G": (POSES[1], SINGLE), "W": (W, several(3))},
         camera=Camera(A, lens=LENS),
     ),
-    function(std_with_view, {"G": (POSES[1], SINGLE)}, calibration=RESULT),
     function(left_with, {"G": (POSES[1], SINGLE)}, calibration=RESULT),
     # resection
     function(

@@ -52,14 +52,12 @@ from cvnotes.show.figures import (
 )
 from cvnotes.show.space import camera_shapes as sights
 from cvnotes.show.space import shapes
-from cvnotes.show.space import viewer as scenes
 
 # Pixels among which NaN means that a point has no image.
 PIXELS = Argument((2,), empty=True, picture=True)
 SMALL = GREY[:24, :32].copy()
 PAIR = np.stack([SMALL, SMALL + 5])
 FREE = calibrate(BOARD.points, SEEN, CAMERA.size, lens="k1 k2 p1 p2", board="free")
-TURNED = np.diag([400.0, 400, 1]) @ [[0.8, -0.36, 1], [0.6, 0.48, 0], [0.2, -0.8, 5]]
 CLOUD = np.random.default_rng(3).normal(0, 0.2, (20, 2))
 
 
@@ -101,21 +99,11 @@ FIGURES = [
         paired=("m", "predicted"),
     ),
     figure(
-        estimates.draw_error_bars,
-        {
-            "estimates": (CLOUD, several(2)),
-            "truth": (np.zeros(2), several(2)),
-            "std": (np.array([0.2, 0.3]), several(2)),
-        },
-        names=("a", "b"),
-    ),
-    figure(
         estimates.draw_view_families,
         {"truth": (800.0, ONE)},
         results={"a": [RESULT], "b": [RESULT, RESULT]},
     ),
     # calibration
-    figure(calibration.draw_right_angles, {"H": (TURNED, SINGLE), "side": (1.0, ONE)}),
     figure(calibration.draw_arrow, {"J": (np.eye(14), SINGLE)}, shared=2),
     figure(
         calibration.draw_cube,
@@ -133,7 +121,6 @@ FIGURES = [
     # ideas
     figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
     figure(ideas.draw_mapped, {"H": (np.diag([2.0, 1, 1]), SINGLE)}),
-    figure(ideas.draw_pinhole, {"y": (1.5, ONE), "z": (4.0, ONE), "f": (1.5, ONE)}),
     # formation
     figure(
         formation.box_lines,
@@ -144,7 +131,7 @@ FIGURES = [
         {"lines": (W[:6].reshape(2, 3, 3), several(3)), "point": (W[3], several(3))},
         camera=CAMERA,
     ),
-    figure(formation.draw_sensor, {"A": (A, SINGLE), "step": (80, ONE)}),
+    figure(formation.draw_sensor, {"A": (A, SINGLE)}),
     figure(
         formation.draw_pixels,
         {"image": (SMALL, PICTURE), "corner": ((4, 3), SINGLE)},
@@ -171,16 +158,12 @@ FIGURES = [
     ),
     figure(least_squares.draw_singular_values, {"s": (np.array([2.0, 1, 1e-15]), SINGLE)}),
     # lenses
-    figure(
-        lenses.draw_newton,
-        {"r_lens": (0.4, ONE), "steps": (3, ONE), "start": (0.3, ONE)},
-        lens=LENS,
-    ),
-    figure(lenses.draw_angles, {"up_to": (2.0, ONE)}, lenses={"a": LENS}),
-    figure(lenses.draw_grid, {"extent": (0.5, ONE), "lines": (3, ONE)}, lens=LENS),
-    figure(lenses.draw_lenses, {"extent": (0.5, ONE)}, lenses=[("a", LENS), ("b", LENS)]),
+    figure(lenses.draw_newton, {"r_lens": (0.4, ONE)}, lens=LENS),
+    figure(lenses.draw_angles, {}, lenses={"a": LENS}),
+    figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
+    figure(lenses.draw_lenses, {}, lenses=[("a", LENS), ("b", LENS)]),
     figure(lenses.draw_radius, {"up_to": (1.5, ONE)}, lens=LENS),
-    figure(lenses.draw_displacement, {"extent": (0.5, ONE)}, lens=LENS),
+    figure(lenses.draw_displacement, {}, lens=LENS),
     # lines
     figure(
         lines.draw_lines,
@@ -189,9 +172,7 @@ FIGURES = [
         size=(640, 480),
     ),
     figure(lines.draw_segments, {"segments": (LINES, rows(2))}, sizes=("size",), size=(640, 480)),
-    figure(
-        lines.draw_classes, {"x_h": (np.array([[1.0, 1], [4, 2]]), rows(2)), "reach": (5.0, ONE)}
-    ),
+    figure(lines.draw_classes, {"x_h": (np.array([[1.0, 1], [4, 2]]), rows(2))}),
     figure(lines.segment_ends, {"segments": (LINES, rows(2))}),
     # predictions
     figure(predictions.draw_wall, {"images": (PAIR, PICTURE), "columns": (2, ONE)}),
@@ -208,12 +189,8 @@ FIGURES = [
     figure(
         vanishing.draw_vanishing,
         {"segments": (LINES, several(2)), "v_h": (np.array([900.0, 95, 1]), several(3))},
-        sizes=("size",),
-        size=(640, 480),
     ),
-    figure(
-        vanishing.draw_altitudes, {"v": (TRIANGLE, several(2))}, sizes=("size",), size=(640, 480)
-    ),
+    figure(vanishing.draw_altitudes, {"v": (TRIANGLE, several(2))}),
     # warps
     figure(
         warps.draw_forward,
@@ -228,21 +205,8 @@ FIGURES = [
         warps.draw_cell,
         {"values": (np.array([0.0, 10, 20, 30]), several(4)), "du": (0.5, ONE), "dv": (0.25, ONE)},
     ),
-    figure(
-        warps.draw_rows,
-        {"before": (PAIR, PICTURE), "after": (PAIR, PICTURE), "lines": (3, ONE)},
-    ),
+    figure(warps.draw_rows, {"before": (PAIR, PICTURE), "after": (PAIR, PICTURE)}),
     # what 3-D figures are made of
-    figure(
-        lambda thickness=None: [
-            mesh.vertices
-            for mesh in scenes.build_scene(
-                *shapes.axes_shapes(), thickness=thickness
-            ).geometry.values()
-        ],
-        {"thickness": (1.0, ONE)},
-        "show.scene.build_scene",
-    ),
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
     figure(
         shapes.arrow_shapes,

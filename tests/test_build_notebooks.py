@@ -68,12 +68,12 @@ def page(tmp_path_factory):
 
 
 def test_of_an_exploration_the_still_remains_with_its_text_and_nothing_of_the_widget(page):
-    from cvnotes.show import still
+    from cvnotes.show.explore import model
 
     for cell in (page[1][0], page[1][4]):
         data = cell.outputs[0].data
         assert data.keys() == {"text/html", "text/plain"}
-        assert data["text/html"].startswith(still("lens")._repr_html_())
+        assert data["text/html"].startswith(model("lens").still()._repr_html_())
     assert page[1][4].outputs[1].data == {"text/plain": "5"}
 
 

@@ -80,7 +80,6 @@ def test_constants_of_the_shape_of_each_case_do_not_pass(name):
 def test_one_case_that_goes_wrong_is_enough(name):
     exercise, cases = EXERCISES[name], CASES[name]
     right = [Outcome("numbers", case.right, "float64") for case in cases]
-    assert _judged(exercise, right).passed
     for i, case in enumerate(cases):
         spoilt = [
             Outcome("raised", words="ValueError: no"), Outcome("none"),

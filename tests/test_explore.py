@@ -187,7 +187,7 @@ def test_no_figure_is_left_open(name):
 @each_model
 def test_a_still_shows_what_the_widget_shows_at_twice_the_resolution(name):
     s = MODELS[name].settings[0]
-    picture = explore.still(name, **{s.name: s.high})
+    picture = MODELS[name].still(**{s.name: s.high})
     live = MODELS[name].sight(**{s.name: s.high})
     assert picture.alt.endswith(live.sentence)
     assert picture.alt.startswith(MODELS[name].about)
@@ -202,13 +202,13 @@ def test_a_still_shows_what_the_widget_shows_at_twice_the_resolution(name):
 
 def test_values_no_slider_could_say_are_refused_in_words():
     with pytest.raises(CvnotesError, match="lens: 'k9' is none of k1, k2, k3, p1, p2"):
-        explore.still("lens", k9=0)
+        MODELS["lens"].still(k9=0)
     with pytest.raises(CvnotesError, match=r"k1: expected a number from -1\.5 to 1\.5, got 7"):
-        explore.still("lens", k1=7)
+        MODELS["lens"].still(k1=7)
     with pytest.raises(CvnotesError, match="got nan"):
-        explore.still("lens", k1=float("nan"))
+        MODELS["lens"].still(k1=float("nan"))
     with pytest.raises(CvnotesError, match="expected one of projection, camera, lens"):
-        explore.still("zoo")
+        explore.model("zoo")
 
 
 def test_where_there_is_no_answer_the_sentence_says_why():
@@ -677,12 +677,12 @@ def test_where_no_kernel_runs_the_still_of_the_same_values_is_seen(name):
     widget = getattr(explore, f"explore_{name}")()
     bundle = widget._repr_mimebundle_()
     assert bundle["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
-    assert bundle["text/html"].startswith(explore.still(name)._repr_html_())
+    assert bundle["text/html"].startswith(MODELS[name].still()._repr_html_())
     assert html.escape(MODELS[name].sight().sentence) in bundle["text/html"].partition(">")[2]
     assert len(bundle["text/html"]) < 160_000  # three bytes as four letters: 120 kB of picture
     slider = widget.sliders[MODELS[name].settings[0].name]
     slider.value = slider.max
-    still = explore.still(name, **widget.values)._repr_html_()
+    still = MODELS[name].still(**widget.values)._repr_html_()
     assert widget._repr_mimebundle_()["text/html"].startswith(still)
     widget.close_all()
 

@@ -37,7 +37,6 @@ from cvnotes.files import (
     CameraInfo,
     Rejected,
     lens_from_opencv,
-    opencv_coefficients,
     read_camera,
     read_camera_info,
     write_camera,
@@ -465,7 +464,7 @@ def test_a_lens_that_opencv_cannot_hold_is_refused_not_shortened(tmp_path):
 
 
 def test_coefficients_stand_in_opencvs_order():
-    assert opencv_coefficients(Lens(k=(1, 2, 3), p=(4, 5))).tolist() == [1, 2, 4, 5, 3]
+    assert Lens(k=(1, 2, 3), p=(4, 5)).opencv_coefficients().tolist() == [1, 2, 4, 5, 3]
     assert lens_from_opencv([1, 2, 4, 5, 3]) == Lens(k=(1, 2, 3), p=(4, 5))
     assert lens_from_opencv([1, 2, 4, 5]) == Lens(k=(1, 2), p=(4, 5))
 
@@ -482,7 +481,7 @@ def test_longer_lists_make_a_rational_lens_and_come_back(count):
     lens = lens_from_opencv(d)
     assert isinstance(lens, RationalLens)
     assert (lens.k, lens.p) == ((0.01, 0.02, 0.05, 0.06, 0.07, 0.08), (0.03, 0.04))
-    assert opencv_coefficients(lens).tolist() == d.tolist()
+    assert lens.opencv_coefficients().tolist() == d.tolist()
     assert lens_from_opencv([0.1, 0.2, 0, 0, 0, *[0.0] * (count - 5)]) == Lens((0.1, 0.2))
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from cvnotes.base import DegenerateError, ShapeError
 from cvnotes.camera import Camera, Lens, intrinsics, look_at
-from cvnotes.show import draw_arrow, draw_cube, draw_right_angles, draw_wall
+from cvnotes.show import draw_arrow, draw_cube, draw_wall
 
 CENTRE = np.array([320.0, 240])
 SENSOR = intrinsics(400, 400, *CENTRE)
@@ -27,33 +27,6 @@ def eye_of(ax):
 
 def angle(a, b):
     return np.degrees(np.arccos(a @ b / np.linalg.norm(a) / np.linalg.norm(b)))
-
-
-# Two right angles.
-
-
-def test_sides_and_diagonals_vanish_where_the_camera_sees_their_directions():
-    ax = draw_right_angles(homography(SENSOR, DESK), 100)
-    directions = [[1, 0, 0], [0, 1, 0], [1, 1, 0], [1, -1, 0]]
-    assert np.allclose(crosses(ax), Camera(SENSOR, DESK).vanishing_point(directions))
-
-
-def test_the_eye_sees_both_pairs_at_90_degrees_from_as_far_as_the_focal_length_says():
-    ax = draw_right_angles(homography(SENSOR, DESK), 100)
-    v, eye = crosses(ax), eye_of(ax)
-    assert angle(v[0] - eye, v[1] - eye) == pytest.approx(90)
-    assert angle(v[2] - eye, v[3] - eye) == pytest.approx(90)
-    along = (v[1] - v[0]) / np.linalg.norm(v[1] - v[0])
-    foot = v[0] + (CENTRE - v[0]) @ along * along  # of the principal point on the horizon
-    assert np.linalg.norm(eye - foot) == pytest.approx(np.hypot(400, np.linalg.norm(CENTRE - foot)))
-    assert eye[1] < v[:, 1].min()  # above the horizon, and the board is below
-
-
-def test_what_vanishes_at_infinity_is_refused():
-    with pytest.raises(DegenerateError, match="vanish at infinity"):
-        draw_right_angles(np.diag([400.0, 400, 1]), 1)
-    with pytest.raises(ShapeError, match="one homography"):
-        draw_right_angles(np.stack([homography(SENSOR, DESK)] * 2), 1)
 
 
 # The arrow.

@@ -7,7 +7,7 @@ import pytest
 from public_face import RESULT
 
 from cvnotes.base import InputTypeError
-from cvnotes.show import ESTIMATED, LENS, draw_error_bars, draw_plane_error, draw_view_families
+from cvnotes.show import ESTIMATED, LENS, draw_plane_error, draw_view_families
 
 ALPHA = float(RESULT.A[0, 0])
 
@@ -61,14 +61,3 @@ def test_an_arrow_leads_from_the_truth_to_the_prediction_ten_times_as_long():
     assert arrows.get_offsets().tolist() == [[10, 20], [30, 5]]
     assert (arrows.U.tolist(), arrows.V.tolist()) == ([5, 0], [0, -10])
     assert ax.get_title() == "(arrows × 10)"
-
-
-def test_estimates_far_from_the_truth_leave_their_panel_empty_but_for_what_was_promised():
-    near, far = draw_error_bars([[0.1, 90.0], [-0.2, 95]], [0, 0], [1, 1], names=["u0", "k1"])
-    assert (len(near.patches), len(far.patches)) == (21, 0)
-    assert [len(ax.lines) for ax in (near, far)] == [2, 2]
-    assert far.lines[1].get_xdata() == [0, 0]
-    assert (near.get_xlabel(), far.get_xlabel()) == ("estimate (px)", "estimate")
-    (greek,) = draw_error_bars([[0.1], [0.2]], [0], [1], names=["α_u"])
-    assert greek.get_xlabel() == "estimate (px)"
-    assert float(np.max(near.lines[0].get_ydata())) == pytest.approx(0.3989, abs=1e-3)

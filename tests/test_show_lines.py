@@ -53,7 +53,7 @@ def test_one_name_in_the_legend_for_many_lines_and_the_colour_of_their_meaning()
     ax = draw_lines([[1, 0, -5], [1, 0, -9]], meaning="world", label="grid")
     assert ax.get_legend_handles_labels()[1] == ["grid"]
     assert {line.get_color() for line in ax.lines} == {WORLD}
-    assert draw_lines([1, 0, -5], color="red", linewidth=3).lines[0].get_linewidth() == 3
+    assert draw_lines([1, 0, -5], linewidth=3).lines[0].get_linewidth() == 3
 
 
 # Segments.

@@ -40,7 +40,7 @@ BOARD = Chessboard()
 def all_shapes():
     image = np.zeros((480, 640, 3), np.uint8)
     return (
-        *target_shapes(BOARD, name="board"),
+        *target_shapes(BOARD),
         *axes_shapes(),
         *camera_shapes(BENT, image=image),
         *ray_shapes(BENT, [320, 240], 500.0),
@@ -156,7 +156,7 @@ def test_axes_are_as_long_as_asked_and_stand_in_their_frame():
 
 def test_what_is_estimated_has_its_own_colour():
     assert named(camera_shapes(STRAIGHT), Lines).colour == CAMERA
-    assert named(camera_shapes(STRAIGHT, meaning="estimated"), Lines).colour == ESTIMATED
+    assert named(axes_shapes(meaning="estimated"), Lines).colour == ESTIMATED
     assert named(axes_shapes(), Lines).colour == WORLD
 
 
@@ -165,7 +165,7 @@ def test_what_is_estimated_has_its_own_colour():
 
 def test_a_scene_holds_every_shape_with_y_up():
     scene = build_scene(*all_shapes())
-    expected = {"board", "board border", "WRF axes", "camera pyramid", "camera picture", "rays"}
+    expected = {"target", "target border", "WRF axes", "camera pyramid", "camera picture", "rays"}
     expected |= {"z = 1 plane", "z = 1 outline", "scene"}
     assert expected <= set(scene.geometry)
     board = target_shapes(BOARD)[0].corners.reshape(-1, 3)
@@ -180,11 +180,10 @@ def test_two_cameras_of_one_name_are_both_kept():
     assert len(scene.graph.nodes_geometry) == 2
 
 
-def test_lines_get_a_body_as_thick_as_asked():
-    bar = Lines("bar", np.array([[[0.0, 0, 0], [100, 0, 0]]]), WORLD, 2.0)
-    mesh = build_scene(bar, thickness=1.5).geometry["bar"]
-    assert np.allclose(np.ptp(mesh.vertices, axis=0), [100, 3 * 2**0.5, 3 * 2**0.5], atol=1.3)
-    assert np.allclose(np.ptp(mesh.vertices, axis=0)[0], 100, atol=1e-9)
+def test_lines_get_a_body_of_a_part_in_500_of_the_scene():
+    bar = Lines("bar", np.array([[[0.0, 0, 0], [750, 0, 0]]]), WORLD, 2.0)
+    mesh = build_scene(bar).geometry["bar"]
+    assert np.allclose(np.ptp(mesh.vertices, axis=0), [750, 3, 3], atol=1e-9)
 
 
 def test_a_glb_holds_everything_and_no_address_outside(tmp_path):
@@ -233,7 +232,7 @@ def test_a_still_has_equal_scales_and_y_downwards():
 def test_a_still_names_what_it_shows():
     shapes = (*all_shapes(), *camera_shapes(STRAIGHT, name="camera 2"))
     texts = [text.get_text() for text in draw_scene(*shapes, unit="m").texts]
-    assert texts == ["board", "WRF", "camera", "z = 1", "camera 2"]
+    assert texts == ["WRF", "camera", "z = 1", "camera 2"]
 
 
 VIEWS = [(20, -40), (5, -90), (60, 10), (-20, 120), (25, -62), (89, -90), (18, 0)]

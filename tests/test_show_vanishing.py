@@ -52,15 +52,15 @@ def test_the_altitudes_meet_in_the_piercing_point_of_the_camera_that_saw_a_box()
 
 
 def test_the_feet_of_a_triangle_worked_out_by_hand():
-    ax = draw_altitudes([[0, 0], [4, 0], [1, 3]], size=(10, 10))
+    ax = draw_altitudes([[0, 0], [4, 0], [1, 3]])
     dashed = np.array([ends(line) for line in ax.lines if line.get_linestyle() == "--"])
     assert np.allclose(dashed[:, 1], [[2, 2], [0.4, 1.2], [1, 0]])
     assert np.allclose(crosses(ax)[0], [1, 1])
 
 
 def test_the_corners_carry_their_names():
-    ax = draw_altitudes([[0, 0], [900, 0], [400, 700]], names=["a", "b", "c"])
-    assert [text.get_text() for text in ax.texts] == ["a", "b", "c"]
+    texts = draw_altitudes([[0, 0], [900, 0], [400, 700]]).texts
+    assert [text.get_text() for text in texts] == ["X", "Y", "Z"]
 
 
 def test_points_on_a_line_are_no_triangle():
@@ -79,7 +79,6 @@ def test_points_on_a_line_are_no_triangle():
         (lambda: draw_vanishing([[[1, 2], [3, 4]]], np.eye(3)), "one point"),
         (lambda: draw_vanishing([[1, 2], [3, 4], [5, 6]], [1, 2, 1]), "two ends each"),
         (lambda: draw_altitudes([[[0, 0], [4, 0], [1, 3]]]), "three points"),
-        (lambda: draw_altitudes([[0, 0], [4, 0], [1, 3]], names="XY"), "three names"),
     ],
 )
 def test_the_wrong_shape_is_named(draw, message):

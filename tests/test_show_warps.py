@@ -28,9 +28,9 @@ def test_a_wall_fills_rows_from_the_left_with_every_fourth_pixel():
 
 
 def test_rows_run_through_both_pictures_of_both_pairs():
-    axes = draw_rows([np.zeros((21, 9))] * 2, [np.ones((21, 9))] * 2, lines=3)
+    axes = draw_rows([np.zeros((21, 9))] * 2, [np.ones((21, 9))] * 2)
     for ax in axes.flat:
-        assert [line.get_ydata()[0] for line in ax.lines] == [5, 10, 15]
+        assert [line.get_ydata()[0] for line in ax.lines] == [2, 4, 6, 8, 10, 12, 14, 16, 18]
 
 
 def test_a_cell_interpolates_along_u_first():
@@ -72,7 +72,7 @@ def test_each_method_has_its_cloud_and_its_rms():
 def test_the_lens_ends_at_its_fold_and_arrows_are_its_displacement():
     ax = draw_radius(Lens(k=(-4 / 3,)))
     assert ax.texts[0].get_text() == "max_radius = 0.50"  # 1 + 3 k1 r² = 0
-    arrows = draw_displacement(Lens(k=(0.4,)), extent=0.5).collections[0]
+    arrows = draw_displacement(Lens(k=(0.4,))).collections[0]
     assert (arrows.U[0], arrows.V[0]) == pytest.approx((-0.1, -0.1), abs=1e-12)  # k1 r² = 0.2
 
 

@@ -3,8 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cvnotes.base import CvnotesError
-from cvnotes.calibration import calibrate, prediction_std, std_with_view
+from cvnotes.calibration import calibrate, prediction_std
 from cvnotes.camera import Lens
 from cvnotes.pictures import course
 
@@ -33,26 +32,3 @@ def test_beyond_the_reach_of_the_lens_nothing_is_promised(repeated):
     folding = replace(repeated[0], lens=Lens((-0.9, 0.0)))
     assert np.isnan(prediction_std(folding, [5000.0, 240]))
     assert np.isfinite(prediction_std(folding, [320.0, 240]))
-
-
-def test_a_view_that_was_taken_shrinks_the_error_bars_as_predicted():
-    rng = np.random.default_rng(4)
-    m = EXACT + rng.normal(scale=0.2, size=EXACT.shape)
-    before, after = (calibrate(W, m[:n], CAMERA.size) for n in (8, 9))
-    predicted = std_with_view(before, POSES[8])
-    noise = after.rms / before.rms
-    for name, std in after.std.items():
-        assert predicted[name] == pytest.approx(std / noise, rel=0.1)
-        assert predicted[name] < before.std[name]
-
-
-def test_the_same_view_again_helps_less_than_a_new_one():
-    found = calibrate(W, course.measured_corners()[:5], CAMERA.size)
-    again, new = (std_with_view(found, POSES[i])["alpha_u"] for i in (0, 9))
-    assert new < again < found.std["alpha_u"]
-
-
-def test_without_corners_nothing_can_be_predicted():
-    found = replace(calibrate(W, EXACT, CAMERA.size), _data=None)
-    with pytest.raises(CvnotesError, match="must come with their corners"):
-        std_with_view(found, POSES[0])

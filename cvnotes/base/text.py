@@ -1,12 +1,12 @@
 """Text for terminals: columns that stand below each other, and lines that are not too long."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
 _LONGEST = 72  # letters of a cell, the last of a row excepted
 
 
-def text_table(lines: Sequence[Sequence[str]], *, left: Collection[int] = (0, -1)) -> str:
-    """Lay out rows of text in columns, numbers to the right.
+def text_table(lines: Sequence[Sequence[str]]) -> str:
+    """Lay out rows of text in columns, all but the first and the last to the right.
 
     A name that would push all other columns aside is shortened in its middle.
 
@@ -14,8 +14,6 @@ def text_table(lines: Sequence[Sequence[str]], *, left: Collection[int] = (0, -1
     ----------
     lines : sequence of rows
         The header first, if there is one; as many cells in each.
-    left : collection of int
-        Columns whose text stands to the left, by default the first and the last.
 
     Examples
     --------
@@ -26,10 +24,10 @@ def text_table(lines: Sequence[Sequence[str]], *, left: Collection[int] = (0, -1
     """
     lines = [[*map(shortened, line[:-1]), line[-1]] for line in lines]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    starts = {i % len(widths) for i in left}
+    ends = (0, len(widths) - 1)
     return "\n".join(
         "  ".join(
-            cell.ljust(width) if i in starts else cell.rjust(width)
+            cell.ljust(width) if i in ends else cell.rjust(width)
             for i, (cell, width) in enumerate(zip(line, widths, strict=True))
         ).rstrip()
         for line in lines

@@ -7,7 +7,7 @@ from cvnotes.calibration.next_view import NextView, next_view, where_to_hold
 from cvnotes.calibration.one_view import calibrate_one_view
 from cvnotes.calibration.pose import pose_from_view
 from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, resect
-from cvnotes.calibration.prediction import prediction_std, std_with_view
+from cvnotes.calibration.prediction import prediction_std
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.zhang import (
     constraints,
@@ -36,7 +36,6 @@ __all__ = [
     "extrinsics",
     "radial_distortion",
     "prediction_std",
-    "std_with_view",
     "NextView",
     "next_view",
     "where_to_hold",

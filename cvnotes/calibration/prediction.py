@@ -1,4 +1,4 @@
-"""How far predictions may be off: a pixel, and the error bars if one more view were taken."""
+"""How far predictions may be off: the pixel at which a ray is seen."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -6,13 +6,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, points, rigid_motion
-from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import Problem, covariance
+from cvnotes.base import Array, CvnotesError, points
 from cvnotes.calibration.result import Calibration
 from cvnotes.camera import Camera
 
-_EDGE_ON = 1e-9  # part of the distance by which a board seen from its edge misses the camera
 _STEP = 1e-6  # of a parameter, relative to its standard deviation or to 1
 
 
@@ -97,71 +94,3 @@ def pixel_jacobian(camera: Camera, names: Sequence[str], rays: Array) -> Array:
         up, down = (camera.with_parameters({name: at + s * h}) for s in (1, -1))
         J[reached, :, i] = (up.project(rays[reached]) - down.project(rays[reached])) / (2 * h)
     return J
-
-
-def std_with_view(calibration: Calibration, G: npt.ArrayLike) -> dict[str, float]:
-    """Predict the standard deviations if one more view of the board were taken at pose G.
-
-    Parameters
-    ----------
-    calibration : Calibration
-        With its corners; the views must all show the same board points.
-    G : array_like, shape (4, 4)
-        Pose of the board in the view that is considered, CRF ← board.
-
-    Returns
-    -------
-    dict
-        Standard deviation of each parameter, by name, for corners as noisy as those so far.
-
-    Raises
-    ------
-    DegenerateError
-        No camera sees a board there: it is behind it, edge-on, or all of it outside the picture.
-
-    Notes
-    -----
-    The normal matrix at the estimate, with the rows of one more view, inverted: the noise of the
-    new corners does not matter, only where they would be.
-
-    Examples
-    --------
-    >>> from cvnotes.pictures import course
-    >>> from cvnotes.calibration import calibrate
-    >>> board, m = course.board(), course.measured_corners()
-    >>> few = calibrate(board.points, m[:6], (640, 480))
-    >>> std_with_view(few, course.poses()[7])["alpha_u"] < few.std["alpha_u"]
-    True
-    """
-    G = rigid_motion(G)
-    if G.ndim != 2:
-        raise ShapeError(f"G: expected one pose (4, 4), got {G.shape}")
-    boards = calibration.board_points
-    if not boards or any(W.shape != boards[0].shape for W in boards):
-        raise CvnotesError("the views must come with their corners, all of one board")
-    if not _seen(calibration.camera, G, boards[0]):
-        raise DegenerateError("G: no camera sees a board there; hold it into the picture")
-    poses = [*calibration.poses, G]
-    before = _covariance_at(calibration, poses[:-1])
-    after = _covariance_at(calibration, poses)
-    scale = np.sqrt(np.diag(after) / np.diag(before))
-    return {n: float(s * k) for (n, s), k in zip(calibration.std.items(), scale, strict=True)}
-
-
-def _seen(camera: Camera, G: Array, W: Array) -> bool:
-    """Return whether a camera shows all of a board, or what of it would fall into the picture."""
-    at = camera.moved(G)
-    m = at.project(W)
-    edge_on = abs(G[:3, 2] @ G[:3, 3]) <= _EDGE_ON * np.linalg.norm(G[:3, 3])
-    within = ((m >= -0.5) & (m <= np.array(camera.size) - 0.5)).all(axis=-1)
-    return bool((at.depth(W) > 0).all() and np.isfinite(m).all() and within.any() and not edge_on)
-
-
-def _covariance_at(calibration: Calibration, poses: list[Array]) -> Array:
-    """Covariance of the shared parameters for noise of 1 px, if the board stood at these poses."""
-    W = calibration.board_points[0]
-    anywhere = np.zeros((len(poses), len(W), 2))  # does not change the Jacobian
-    data = Correspondences.in_unit_frame(W, anywhere)
-    problem = Problem.at(calibration.camera, calibration.names, data)
-    state = problem.state(calibration.camera, data.pose_in_scaled_units(np.array(poses)))
-    return covariance(problem.linearise(state)[1])

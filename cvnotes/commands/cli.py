@@ -6,18 +6,17 @@ interrupted. Reasons go to stderr, one line each; nobody is shown a traceback.
 
 import argparse
 import os
-import signal
 import sys
-import threading
 import traceback
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NoReturn
 
 from cvnotes import __version__
 from cvnotes.commands.console import EXIT_CODES, complain, open_streams, unprinted
+from cvnotes.commands.signals import heard
 
 _EXAMPLES = """\
 examples:
@@ -68,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = ""
     open_streams()
     try:
-        with _termination_as_interrupt():
+        with heard(_interrupt, "SIGTERM", "SIGHUP"):
             given = sys.argv[1:] if arguments is None else list(arguments)
             if given[:1] and given[0] in _SMALL_MATRICES:
                 _one_thread_for_matrices()
@@ -108,26 +107,9 @@ def _one_thread_for_matrices() -> None:
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
-@contextmanager
-def _termination_as_interrupt() -> Iterator[None]:
+def _interrupt(*_: Any) -> NoReturn:
     """Let SIGTERM, or closing the terminal, end the command as Ctrl-C does: cleaned up."""
-
-    def interrupt(*_: Any) -> NoReturn:
-        raise KeyboardInterrupt
-
-    if threading.current_thread() is not threading.main_thread():
-        yield  # signals are the main thread's business
-        return
-    names = {"SIGTERM", "SIGHUP"} & set(dir(signal))  # there is no SIGHUP on Windows
-    before = {number: signal.getsignal(number) for number in (getattr(signal, n) for n in names)}
-    try:
-        for number, handler in before.items():
-            if handler != signal.SIG_IGN:  # nohup
-                signal.signal(number, interrupt)
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    raise KeyboardInterrupt
 
 
 def _cannot(command: str, error: Exception) -> int:

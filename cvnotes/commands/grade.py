@@ -3,17 +3,17 @@
 import argparse
 import codecs
 import signal
-import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from cvnotes.base import CvnotesError, FileError
 from cvnotes.base.writing import check_folder, printable
 from cvnotes.commands.console import complain, say
+from cvnotes.commands.signals import ENDING, heard, numbers_of
 from cvnotes.files import write_whole
 from cvnotes.files.ownership import maker
 from cvnotes.learn.exercises import COURSE
@@ -190,7 +190,7 @@ def _grade(args: argparse.Namespace) -> int:
             known=known,
             ours=[*outputs.all, *map(Path, [*args.added, *filter(None, [args.assignment])])],
         )
-        stack.enter_context(_one_interruption())
+        stack.enter_context(heard(_interrupt, *ENDING))
         graded: list[Mark] = []
         try:
             records = stack.enter_context(Records(outputs.records, known, limits, COURSE))
@@ -278,28 +278,11 @@ def _cluster(address: str) -> Iterator[Executor]:
         yield client.get_executor()
 
 
-@contextmanager
-def _one_interruption() -> Iterator[None]:
+def _interrupt(*_: Any) -> NoReturn:
     """Let the first Ctrl-C end the work and the second not end the tidying up."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def interrupt(*_: Any) -> None:
-        for number_ in before:
-            signal.signal(number_, signal.SIG_IGN)
-        raise KeyboardInterrupt
-
-    names = {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal))
-    every = {getattr(signal, name): signal.getsignal(getattr(signal, name)) for name in names}
-    before = {which: handler for which, handler in every.items() if handler != signal.SIG_IGN}
-    try:
-        for number_ in before:
-            signal.signal(number_, interrupt)
-        yield
-    finally:
-        for number_, handler in before.items():
-            signal.signal(number_, handler)
+    for number_ in numbers_of(*ENDING):
+        signal.signal(number_, signal.SIG_IGN)
+    raise KeyboardInterrupt
 
 
 def _for_spreadsheets(text: str) -> bytes:

@@ -11,12 +11,11 @@ import subprocess
 import sys
 import time
 import webbrowser
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import current_thread, main_thread
 
 from cvnotes.base import FileError
 from cvnotes.base.material import material
@@ -24,6 +23,7 @@ from cvnotes.base.writing import printable
 from cvnotes.commands.console import say
 from cvnotes.commands.quiet import options
 from cvnotes.commands.redirect import NAME, leading_to
+from cvnotes.commands.signals import ENDING, heard
 from cvnotes.commands.working_copy import FOLDER, default_folder, deliver, start_over
 
 START = "00_start_here.ipynb"
@@ -84,7 +84,8 @@ def _serve(notebooks: Path, port: int, token: str, tabs: str, no_browser: bool) 
     int or None
         The exit code; None if another program took the port before JupyterLab could.
     """
-    with _undisturbed() as came:
+    came: list[int] = []
+    with heard(lambda number, _: came.append(number), *ENDING):
         server = start_server(notebooks, port, token, tabs)
     try:
         if came:
@@ -109,23 +110,8 @@ def _serve(notebooks: Path, port: int, token: str, tabs: str, no_browser: bool) 
         say("\nThe course is closed; what you saved is kept.")
         return 130
     finally:
-        with _undisturbed():  # a second Ctrl-C would leave the kernels running
+        with heard(signal.SIG_IGN, *ENDING):  # a second Ctrl-C would leave the kernels running
             stop(server)
-
-
-@contextmanager
-def _undisturbed() -> Iterator[list[int]]:
-    """Keep Ctrl-C and its like waiting for a moment; gives those that came."""
-    came: list[int] = []
-    names = ("SIGINT", "SIGTERM", "SIGHUP") if current_thread() is main_thread() else ()
-    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    heard = [number for number in numbers if signal.getsignal(number) != signal.SIG_IGN]
-    before = {number: signal.signal(number, lambda n, _: came.append(n)) for number in heard}
-    try:
-        yield came
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def _port(text: str) -> int:

@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
     if not written:
         complain("undistort", "no photograph could be undistorted")
         return 1
-    names = chain(["camera.json"], numbered("camera", ".json"))
+    names = chain(["camera.json"], numbered("camera-straight", ".json"))
     target = free_name(names, args.out, "undistort", taken)
     write_camera(ideal, target, note=made_by("undistort"))
     say(f"Written to {printable(args.out)}, with {target.name} for them")
@@ -120,4 +120,4 @@ def _names(path: Path) -> Iterator[str]:
     yield f"{path.stem}.png"
     if path.suffix.lower() != ".png":
         yield f"{path.name}.png"
-    yield from numbered(path.stem, ".png")
+    yield from numbered(f"{path.stem}-straight", ".png")

@@ -17,6 +17,7 @@ from cvnotes.base import FileError
 from cvnotes.base.material import CLONE, is_clone
 from cvnotes.base.writing import check_folder, printable
 from cvnotes.files import write_whole
+from cvnotes.files.ownership import numbered
 
 FOLDER = "my_course"
 RECORD = ".cvnotes-course.json"
@@ -140,7 +141,9 @@ def start_over(course: Path, folder: Path, chapter: str) -> tuple[str, str]:
     """
     name = _chapter_name(course, chapter)
     content = _for_the_copy((course / name).read_bytes())
-    kept = next(n for n in _numbered(Path(name).stem, "kept") if not (folder / n).exists())
+    kept = next(
+        n for n in numbered(f"{Path(name).stem}-kept", ".ipynb") if not (folder / n).exists()
+    )
     record = _Record.read(folder)
     record.delivered[name] = cells_of(content)
     (folder / name).rename(folder / kept)
@@ -202,18 +205,9 @@ def _name_beside(folder: Path, stem: str, record: _Record) -> str:
     """Name a newer version: where nothing is, or an earlier one that was not touched."""
     return next(
         name
-        for name in _numbered(stem, "new")
+        for name in numbered(f"{stem}-new", ".ipynb")
         if _cells_there(folder / name) in (None, record.delivered.get(name))
     )
-
-
-def _numbered(stem: str, word: str) -> Iterator[str]:
-    """Return stem-word.ipynb, stem-word-2.ipynb, … without end."""
-    yield f"{stem}-{word}.ipynb"
-    i = 2
-    while True:
-        yield f"{stem}-{word}-{i}.ipynb"
-        i += 1
 
 
 def _chapter_name(course: Path, asked: str) -> str:

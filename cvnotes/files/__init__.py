@@ -8,7 +8,7 @@ from cvnotes.files.cameras import (
     write_camera,
     write_camera_info,
 )
-from cvnotes.files.exchange import CameraInfo, lens_from_opencv, opencv_coefficients
+from cvnotes.files.exchange import CameraInfo, lens_from_opencv
 from cvnotes.files.photos import Photo, list_photos, open_photos, read_photo, read_photos
 from cvnotes.files.reasons import Reason, Rejected
 
@@ -27,6 +27,5 @@ __all__ = [
     "read_rig",
     "CameraInfo",
     "lens_from_opencv",
-    "opencv_coefficients",
     "write_whole",
 ]

@@ -132,23 +132,6 @@ def camera_info(entry: Entry) -> CameraInfo:
         raise FileError(f"{entry.file}: {error}") from error
 
 
-def opencv_coefficients(lens: AnyLens) -> Array:
-    """Spell a lens as OpenCV's coefficients.
-
-    Returns
-    -------
-    ndarray, shape (5,), (8,), (12,), (14,) or (4,)
-        (k1, k2, p1, p2, k3) of a `Lens`; of a `RationalLens` also k4, k5, k6 and, if it has them,
-        s1 … s4 and the tilt; k1 … k4 of a `FisheyeLens`, for the functions of ``cv2.fisheye``.
-
-    Examples
-    --------
-    >>> opencv_coefficients(Lens(k=(-0.25,), p=(0.001, 0.002)))
-    array([-0.25 ,  0.   ,  0.001,  0.002,  0.   ])
-    """
-    return lens.opencv_coefficients()
-
-
 def lens_from_opencv(coefficients: npt.ArrayLike, *, fisheye: bool = False) -> AnyLens:
     """Make a lens of OpenCV's coefficients.
 

@@ -3,6 +3,7 @@
 import re
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import count
 from pathlib import Path
 
 from cvnotes.base import FileError
@@ -96,19 +97,16 @@ def free_name(names: Iterable[str], folder: Path, command: str, taken: set[str])
 
 
 def numbered(stem: str, suffix: str) -> Iterator[str]:
-    """Return stem-straight, stem-straight-2, stem-straight-3, … with the suffix, without end.
+    """Return stem, stem-2, stem-3, … with the suffix, without end.
 
     Examples
     --------
-    >>> names = numbered("a", ".png")
+    >>> names = numbered("a-straight", ".png")
     >>> next(names), next(names)
     ('a-straight.png', 'a-straight-2.png')
     """
-    yield f"{stem}-straight{suffix}"
-    i = 2
-    while True:
-        yield f"{stem}-straight-{i}{suffix}"
-        i += 1
+    yield stem + suffix
+    yield from (f"{stem}-{i}{suffix}" for i in count(2))
 
 
 def earlier(folder: Path, is_ours: Callable[[str], object], command: str) -> Sequence[Path]:

@@ -74,10 +74,7 @@ def line_through(a: Array, b: Array) -> Array:
     >>> meet_plane(z_axis, PLANE_AT_INFINITY)  # its direction
     array([ 0.,  0., -5.,  0.])
     """
-    abT = a[..., :, None] * b[..., None, :]
-    L = abT - abT.mT
-    refuse_zero(_flat(L), (a, b), "the points coincide: many lines pass through them")
-    return L
+    return _of_two(a, b, "the points coincide: many lines pass through them")
 
 
 @guarded(p=_plane, q=_plane, also=_as_many)
@@ -97,10 +94,7 @@ def line_of_planes(p: Array, q: Array) -> Array:
     >>> meet_plane(z_axis, [0, 0, 1, -7])
     array([ 0.,  0., -7., -1.])
     """
-    pqT = p[..., :, None] * q[..., None, :]
-    L = pqT - pqT.mT
-    refuse_zero(_flat(L), (p, q), "the planes coincide: they share all their points")
-    return dual.inside(L)
+    return dual.inside(_of_two(p, q, "the planes coincide: they share all their points"))
 
 
 @guarded(L=_line)
@@ -145,6 +139,14 @@ def _wedge(*three: Array) -> Array:
     with np.errstate(divide="ignore"):  # factors so small that their logarithm is infinite
         minors = [(-1) ** i * np.linalg.det(np.delete(M, i, axis=-1)) for i in range(4)]
     return np.stack(minors, axis=-1)
+
+
+def _of_two(a: Array, b: Array, words: str) -> Array:
+    """Return a bᵀ − b aᵀ, of shape (..., 4, 4); the words say what is wrong where it is zero."""
+    abT = a[..., :, None] * b[..., None, :]
+    L = abT - abT.mT
+    refuse_zero(_flat(L), (a, b), words)
+    return np.asarray(L)
 
 
 def _flat(L: Array) -> Array:

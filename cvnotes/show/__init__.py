@@ -13,11 +13,10 @@ from cvnotes.show.explore import (
     explore_rectification,
     explore_tilt,
     explore_warp,
-    still,
 )
-from cvnotes.show.figures.calibration import draw_arrow, draw_cube, draw_right_angles
+from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.corners import draw_clouds, draw_response
-from cvnotes.show.figures.estimates import draw_error_bars, draw_plane_error, draw_view_families
+from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
 from cvnotes.show.figures.formation import (
     box_lines,
     draw_field_of_view,
@@ -122,12 +121,10 @@ __all__ = [
     "draw_coverage",
     "draw_board_shape",
     "draw_plane_error",
-    "draw_error_bars",
     "draw_view_families",
     "draw_prediction_error",
     "draw_wall",
-    # chapter 7: a board's right angles, the picture of J, a cube on the board
-    "draw_right_angles",
+    # chapter 7: the picture of J, a cube on the board
     "draw_arrow",
     "draw_cube",
     # chapter 8: warps
@@ -174,5 +171,4 @@ __all__ = [
     "explore_rectification",
     "explore_tilt",
     "explore_columns",
-    "still",
 ]

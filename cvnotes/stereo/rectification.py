@@ -9,6 +9,7 @@ from cvnotes.base import Array, CalibrationWarning, CvnotesError, DegenerateErro
 from cvnotes.camera import Camera, pose, rotation_from_vector, vector_from_rotation
 from cvnotes.camera.model import is_camera
 from cvnotes.stereo.epipolar import baseline, relative_pose
+from cvnotes.stereo.triangulation import rectified_baseline
 from cvnotes.warping import map_array, undistortion_map
 from cvnotes.warping.framing import border, framing
 
@@ -38,16 +39,12 @@ class RectifiedPair(NamedTuple):
     @property
     def axis(self) -> int:
         """Axis of the disparity: 0, partners share their row; 1, they share their column."""
-        return int(np.argmax(np.abs(self._baseline[:2])))
+        return rectified_baseline(self.left, self.right)[0]
 
     @property
     def baseline(self) -> float:
         """Distance between the cameras, negative when left stands to the right of right."""
-        return float(self._baseline[self.axis])
-
-    @property
-    def _baseline(self) -> Array:
-        return np.asarray(self.left.R @ (self.right.centre - self.left.centre))
+        return rectified_baseline(self.left, self.right)[1]
 
 
 def rectify(

@@ -1,8 +1,8 @@
 """Explorations: pictures that follow sliders, and stills of the same pictures for the page.
 
-``explore_<name>()`` gives a widget for a running notebook, ``still(name, …)`` the picture it shows
-for some values, with its alternative text. Both call one pure model, so the page and the widget
-cannot disagree.
+``explore_<name>()`` gives a widget for a running notebook, ``model(name).still(…)`` the picture it
+shows for some values, with its alternative text. Both call one pure model, so the page and the
+widget cannot disagree.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,6 @@ from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
 from cvnotes.show.explore.tilt import tilt_model
 from cvnotes.show.explore.warp import warp_model
-from cvnotes.show.picture import Picture
 from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:
@@ -80,39 +79,6 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
         camera = course.camera() if camera is None else camera
         board = course.board() if board is None else board
     return _MODELS[name](camera, board)
-
-
-def still(
-    name: str,
-    *,
-    camera: Camera | None = None,
-    board: Chessboard | None = None,
-    **values: float,
-) -> Picture:
-    """Return the picture that an exploration shows for some values, for the page.
-
-    Parameters
-    ----------
-    name : str
-        One of `NAMES`.
-    camera, board
-        As for the widget.
-    **values
-        Positions of sliders, by the names in ``model(name).settings``; the others stay where the
-        widget starts.
-
-    Returns
-    -------
-    Picture
-        At twice the resolution of the widget; its alternative text describes the picture and
-        tells its numbers.
-
-    Examples
-    --------
-    >>> still("projection", heading=90).alt[-55:]
-    'at infinity, and in the picture too they stay parallel.'
-    """
-    return model(name, camera, board).still(**values)
 
 
 def explore_projection(*, camera: Camera | None = None) -> "Explorer":
@@ -197,5 +163,4 @@ __all__ = [
     "explore_tilt",
     "explore_warp",
     "model",
-    "still",
 ]

@@ -79,7 +79,7 @@ class Model:
     Parameters
     ----------
     name : str
-        As in ``still(name)``.
+        As in ``model(name)``.
     about : str
         What the picture shows, in a sentence; the beginning of its alternative text.
     settings : tuple of Setting

@@ -1,17 +1,16 @@
-"""Figures of chapter 7: the right angles of a board, the picture of J, a cube on the board."""
+"""Figures of chapter 7: the picture of J, a cube on the board."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, DegenerateError, ShapeError, matrix, numbers
+from cvnotes.base import Array, DegenerateError, ShapeError, numbers
 from cvnotes.camera import Camera
 from cvnotes.camera.model import is_camera
-from cvnotes.projective import apply
 from cvnotes.show.figures.lines import pixel_axes
 from cvnotes.show.guards import count, length, one_point
-from cvnotes.show.style import ESTIMATED, FONT, IDEAL, LENS, MUTED, panels
+from cvnotes.show.style import ESTIMATED, FONT, MUTED, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,117 +24,10 @@ _FACES = {
     "x = 1": (1, 3, 7, 5),
     "y = 1": (3, 2, 6, 7),
 }
+_COLOUR = np.array([0.96, 0.55, 0.16])  # of the side that is lit best
 _SHADES = {"top": 1.0, "y = 1": 0.82, "x = 0": 0.72, "x = 1": 0.6, "y = 0": 0.48}
 _PER_EDGE = 16  # short pieces that a lens may bend
 _SHADOW = np.array([0.5, -0.35])  # where the light throws the shadow of height 1
-
-
-def draw_right_angles(H: npt.ArrayLike, side: float, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw where a square on the board vanishes, and the eye that sees two right angles there.
-
-    The sides vanish in h1 and h2, the diagonals in h1 + h2 and h1 − h2. Each pair is perpendicular
-    on the board, so an eye before the picture sees each pair of vanishing points at 90°: it lies on
-    two circles of Thales. It is drawn folded into the picture about the horizon.
-
-    Parameters
-    ----------
-    H : array_like, shape (3, 3)
-        Homography, board → picture, of a camera without distortion and with square pixels.
-    side : float
-        Of the square, which begins in the board's origin.
-    ax : Axes, optional
-        With the picture on it; it grows to show the vanishing points.
-
-    Raises
-    ------
-    DegenerateError
-        A vanishing point is at infinity, or the right angles do not fit together.
-
-    Examples
-    --------
-    >>> tilted = [[0.8, -0.36, 1], [0.6, 0.48, 0], [0.2, -0.8, 5]]
-    >>> ax = draw_right_angles(np.diag([400.0, 400, 1]) @ tilted, 1.0)
-    >>> [text.get_text() for text in ax.texts]
-    ['x', 'y', 'x + y', 'x − y', 'eye']
-    """
-    H, side = matrix(H, "H", 3, 3), length(side, "side")
-    if H.ndim != 2:
-        raise ShapeError(f"H: expected one homography (3, 3), got {H.shape}")
-    v = _vanishing(H)
-    square = apply(H, side * np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]))
-    eye = _eye(v, square.mean(0))
-    ax = pixel_axes(ax, (640, 480))
-    ax.plot(*v[[v[:, 0].argmin(), v[:, 0].argmax()]].T, color=IDEAL, linewidth=1)
-    for i, edges in enumerate((((0, 1), (3, 2)), ((0, 3), (1, 2)), ((0, 2),), ((1, 3),))):
-        colour = ESTIMATED if i < 2 else LENS
-        for edge in edges:
-            ends = square[list(edge)]
-            start = ends[np.linalg.norm(ends - v[i], axis=-1).argmin()]
-            ax.plot(*ends.T, color=colour, linewidth=1.8)
-            ax.plot(*np.stack([start, v[i]]).T, "--", color=colour, linewidth=0.8)
-        ax.plot(*np.stack([eye, v[i]]).T, color=colour, linewidth=1.2)
-        ax.plot(*v[i], "x", color=colour, markersize=7, markeredgewidth=1.8)
-    for pair in (v[:2], v[2:]):
-        _half_circle(ax, pair, eye)
-    for i, reach in ((0, 0.1), (2, 0.16)):
-        towards = (v[i : i + 2] - eye) / np.linalg.norm(v[i : i + 2] - eye, axis=-1)[:, None]
-        a, b = reach * np.ptp(v[:, 0]) * towards / 2
-        ax.plot(*np.stack([eye + a, eye + a + b, eye + b]).T, color=ESTIMATED if i == 0 else LENS)
-    names = ("x", "y", "x + y", "x − y")
-    for i, (name, place) in enumerate(zip((*names, "eye"), (*v, eye), strict=True)):
-        colour = (ESTIMATED, ESTIMATED, LENS, LENS, IDEAL)[i]
-        ax.annotate(name, place, (0, 11), textcoords="offset points", ha="center", va="center",
-                    color=colour, fontsize=FONT, fontweight="bold")  # fmt: skip
-    ax.plot(*eye, "o", color=IDEAL, markersize=6)
-    return _around(ax, np.concatenate([v, eye[None]]))
-
-
-def _vanishing(H: Array) -> Array:
-    """Vanishing points (4, 2) of the directions x, y, x + y and x − y of a board."""
-    h1, h2 = H[:, 0], H[:, 1]
-    v_h = np.stack([h1, h2, h1 + h2, h1 - h2])
-    if (np.abs(v_h[:, 2]) * 1e6 <= np.abs(v_h[:, :2]).max(-1)).any():
-        raise DegenerateError("sides or diagonals vanish at infinity: turn and tilt the board more")
-    return np.asarray(v_h[:, :2] / v_h[:, 2:])
-
-
-def _eye(v: Array, board: Array) -> Array:
-    """Fold the eye into the picture: where two circles meet, on the side away from the board.
-
-    On the horizon, counted from the first vanishing point, the ends of a pair are a and b. The eye
-    stands at s, h from the horizon, with (s − a)(s − b) + h² = 0: that is Thales.
-    """
-    along = (v[1] - v[0]) / np.linalg.norm(v[1] - v[0])
-    a, b, c, d = (v - v[0]) @ along
-    pairs = (a + b) - (c + d)
-    if abs(pairs) <= 1e-9 * np.ptp([a, b, c, d]):
-        raise DegenerateError("both circles have one centre: turn the board in its plane")
-    s = (a * b - c * d) / pairs
-    h2 = -(s - a) * (s - b)
-    if h2 <= 0:
-        raise DegenerateError("no eye sees these as right angles: H is of no camera")
-    across = np.array([-along[1], along[0]])
-    away = -np.sign((board - v[0]) @ across)
-    return np.asarray(v[0] + s * along + away * np.sqrt(h2) * across)
-
-
-def _half_circle(ax: "Axes", ends: Array, through: Array) -> None:
-    """Draw half a circle over its diameter, on the side of a point."""
-    middle, radius = ends.mean(0), (ends[1] - ends[0]) / 2
-    across = np.array([-radius[1], radius[0]])
-    across = across * np.sign((through - middle) @ across)
-    t = np.linspace(0, np.pi, 90)[:, None]
-    ax.plot(*(middle + np.cos(t) * radius + np.sin(t) * across).T, color=MUTED, linewidth=0.6)
-
-
-def _around(ax: "Axes", m: Array) -> "Axes":
-    """Let axes of pixels reach a little beyond points (n, 2)."""
-    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
-    m = np.concatenate([m, [[left, top], [right, bottom]]])
-    low, high = m.min(0), m.max(0)
-    room = 0.04 * float((high - low).max())
-    ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
-    return ax
 
 
 def draw_arrow(J: npt.ArrayLike, shared: int) -> Any:
@@ -199,7 +91,6 @@ def draw_cube(
     *,
     origin: npt.ArrayLike = (0, 0),
     ax: "Axes | None" = None,
-    colour: tuple[float, float, float] = (0.96, 0.55, 0.16),
 ) -> "Axes":
     """Draw a cube that stands on a board, with its shadow, as the camera would photograph it.
 
@@ -213,8 +104,6 @@ def draw_cube(
         Where on the board its first corner stands; the others are at larger x and y.
     ax : Axes, optional
         With the photograph on it.
-    colour : (red, green, blue)
-        Of the side that is lit best, from 0 to 1.
 
     Raises
     ------
@@ -244,14 +133,16 @@ def draw_cube(
     floor[2:5] += side * _SHADOW
     shadow = _outline(camera, np.column_stack([floor, np.zeros(6)]))
     ax.fill(*shadow.T, color="black", alpha=0.35, linewidth=0, zorder=2)
-    shades = matrix(colour, "colour", 3)
-    if shades.shape != (3,) or not ((shades >= 0) & (shades <= 1)).all():
-        raise ShapeError(f"colour: expected red, green and blue from 0 to 1, got {colour!r}")
     for name, corners in _FACES.items():
         face = _outline(camera, W[list(corners)])
         if _turns_right(face):
-            shade = shades * _SHADES[name]
-            ax.fill(*face.T, facecolor=shade, edgecolor="white", linewidth=1.2, zorder=3)
+            ax.fill(
+                *face.T,
+                facecolor=_COLOUR * _SHADES[name],
+                edgecolor="white",
+                linewidth=1.2,
+                zorder=3,
+            )
     ax.set(xlim=limits[0], ylim=limits[1])
     return ax
 

@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
-from cvnotes.show.guards import length, one_point, texts, thing
-from cvnotes.show.style import ESTIMATED, FONT, IDEAL, LENS, MUTED, as_picture, panels
+from cvnotes.show.guards import length, thing
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,64 +56,6 @@ def draw_plane_error(
     ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
     ax.set_title(f"{title} (arrows × {magnify:g})".strip())
     return ax
-
-
-def draw_error_bars(
-    estimates: npt.ArrayLike, truth: npt.ArrayLike, std: npt.ArrayLike, *, names: Sequence[str]
-) -> Any:
-    """Draw histograms of repeated estimates with the truth and the bell curve that was promised.
-
-    Parameters
-    ----------
-    estimates : array_like, shape (n_runs, q)
-        One row for each repetition.
-    truth : array_like, shape (q,)
-        True values: the black lines.
-    std : array_like, shape (q,)
-        Standard deviations that were promised: the curves.
-    names : sequence of q str
-        Titles of the panels.
-
-    Returns
-    -------
-    ndarray of Axes
-        Three panels to a row.
-
-    Examples
-    --------
-    >>> rng = np.random.default_rng(0)
-    >>> len(draw_error_bars(rng.normal(size=(50, 2)), [0, 0], [1, 1], names=["a", "b"]))
-    2
-    """
-    names = texts(names, "names")
-    q = len(names)
-    if q == 0:
-        raise CvnotesError("names: expected at least one, for its panel")
-    estimates = points(estimates, "estimates", q)
-    if estimates.ndim != 2 or len(estimates) == 0:
-        raise ShapeError(f"estimates: expected (n_runs, {q}), got {estimates.shape}")
-    truth, std = one_point(truth, "truth", q), one_point(std, "std", q)
-    if not (std > 1e-12 * (np.abs(truth) + 1e-88)).all():
-        raise CvnotesError("std: expected positive numbers, not negligible beside the true values")
-    rows = -(-q // 3)
-    axes = np.ravel(panels(min(q, 3), rows, width=900, height=250 * rows + 30))[:q]
-    for ax, x, t, s, name in zip(axes, estimates.T, truth, std, names, strict=True):
-        span = np.linspace(t - 4.2 * s, t + 4.2 * s, 200)
-        if (np.abs(x - t) <= 4.2 * s).any():  # a density of nothing would be NaN
-            bins = np.linspace(span[0], span[-1], 22)
-            seen = f"{len(estimates)} estimates"
-            ax.hist(x, bins=bins, color=LENS, alpha=0.45, density=True, label=seen)
-        bell = np.exp(-(((span - t) / s) ** 2) / 2) / (s * np.sqrt(2 * np.pi))
-        ax.plot(span, bell, color=ESTIMATED, label="what the error bar promised")
-        ax.axvline(t, color=IDEAL, lw=1.2, label="the truth")
-        unit = " (px)" if name[0] in "aαsuv" else ""
-        ax.set(title=name, yticks=[], xlabel=f"estimate{unit}")
-        ax.spines["left"].set_visible(False)
-        ax.locator_params(axis="x", nbins=4)
-        ax.ticklabel_format(axis="x", useOffset=False)
-    lines, words = axes[-1].get_legend_handles_labels()
-    axes[0].figure.legend(lines, words, loc="outside lower center", ncols=3, fontsize=FONT)
-    return axes
 
 
 def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: float) -> Any:

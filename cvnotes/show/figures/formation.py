@@ -199,22 +199,20 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
 _OWN = (LENS, ESTIMATED, WORLD, CAMERA, IDEAL)
 
 
-def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None, step: int = 80) -> "Axes":
+def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     """Draw a sensor's lines of pixels on the plane z = 1, as A has it: its axes may lean.
 
     Parameters
     ----------
     A : array_like, shape (3, 3)
-        Intrinsic matrix of a sensor of 640 × 480 pixels.
-    step : int
-        Every how many pixels a line is drawn.
+        Intrinsic matrix of a sensor of 640 × 480 pixels; every 80 of them a line is drawn.
 
     Examples
     --------
     >>> draw_sensor([[800, 0, 320], [0, 800, 240], [0, 0, 1]]).get_xlabel()
     'x / z'
     """
-    A, step = intrinsic_matrix(A), count(step, "step")
+    A, step = intrinsic_matrix(A), 80
     ax = panels(height=400) if ax is None else ax
     columns, rows = np.arange(0, 641, step), np.arange(0, 481, step)
     for u in columns:

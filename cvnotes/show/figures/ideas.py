@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, ShapeError, matrix, real
 from cvnotes.projective import apply
-from cvnotes.show.guards import length, texts
+from cvnotes.show.guards import texts
 from cvnotes.show.style import (
     CAMERA,
     COLOURS,
@@ -62,7 +62,6 @@ def draw_rays(
     *,
     ax: "Axes | None" = None,
     names: Sequence[str] = (),
-    normals: bool = True,
 ) -> "Axes":
     """Draw points of P² as rays through the origin, and lines of P² as planes of such rays.
 
@@ -77,8 +76,6 @@ def draw_rays(
         Lines a x + b y + c w = 0.
     names : sequence of str
         Written beside the points, and then beside the normals of the lines.
-    normals : bool
-        Whether the normals are drawn.
 
     Examples
     --------
@@ -101,7 +98,7 @@ def draw_rays(
     for x, name in zip(x_h, named, strict=False):
         _draw_ray(ax, x, name)
     for line, name in zip(lines, named[len(x_h) :], strict=False):
-        _draw_plane(ax, line, name, normals)
+        _draw_plane(ax, line, name)
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=7, zorder=6)
     ax.set(aspect="equal")
     ax.margins(0.08)
@@ -123,19 +120,17 @@ def _draw_ray(ax: "Axes", x: Array, name: str) -> None:
     _write(ax, name, tip, colour, (12, 10))
 
 
-def _draw_plane(ax: "Axes", line: Array, name: str, normals: bool) -> None:
-    a, b, c = line
+def _draw_plane(ax: "Axes", line: Array, name: str) -> None:
     ends = _cut(line)
     if len(ends) == 2:
         ax.fill(*_on_paper([[0, 0, 0], *ends]).T, color=ESTIMATED, alpha=0.22, lw=0, zorder=2.5)
         ax.plot(*_on_paper(ends).T, color=ESTIMATED, linewidth=2.2, zorder=4)
-    if normals:
-        tip = 0.9 * np.array([a, b, c]) / np.linalg.norm(line)
-        style = {"arrowstyle": "-|>", "color": ESTIMATED, "linewidth": 1.8, "shrinkA": 0}
-        arrow: dict[str, Any] = {"arrowprops": style | {"shrinkB": 0}, "zorder": 5}
-        ax.annotate("", tuple(_on_paper(tip)), (0.0, 0.0), **arrow)
-        ax.plot(*_on_paper(tip), " ")  # the axes reach to the tip
-        _write(ax, name, tip, ESTIMATED, (-12, 4) if _on_paper(tip)[0] < 0 else (12, 4))
+    tip = 0.9 * line / np.linalg.norm(line)
+    style = {"arrowstyle": "-|>", "color": ESTIMATED, "linewidth": 1.8, "shrinkA": 0}
+    arrow: dict[str, Any] = {"arrowprops": style | {"shrinkB": 0}, "zorder": 5}
+    ax.annotate("", tuple(_on_paper(tip)), (0.0, 0.0), **arrow)
+    ax.plot(*_on_paper(tip), " ")  # the axes reach to the tip
+    _write(ax, name, tip, ESTIMATED, (-12, 4) if _on_paper(tip)[0] < 0 else (12, 4))
 
 
 def _cut(line: Array) -> Array:
@@ -194,27 +189,16 @@ def draw_mapped(H: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") 
     return ax
 
 
-def draw_pinhole(
-    y: float = 1.5, z: float = 4.0, f: float = 1.5, *, ax: "Axes | None" = None
-) -> "Axes":
+def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
     """Draw a pinhole camera from the side, with the two similar triangles of v = f y / z.
-
-    Parameters
-    ----------
-    y, z : float
-        The point that is seen, in the camera's frame: z forward, y down.
-    f : float
-        Focal length.
 
     Examples
     --------
-    >>> ax = draw_pinhole(y=2, z=4, f=1)
+    >>> ax = draw_pinhole()  # of the point y = 1.5, z = 4, with f = 1.5
     >>> [float(v) for v in ax.lines[0].get_xydata()[1]]  # the ray meets the image plane
-    [1.0, 0.5]
+    [1.5, 0.5625]
     """
-    y, z, f = (length(value, name) for value, name in ((y, "y"), (z, "z"), (f, "f")))
-    if not 0 < f < z:
-        raise CvnotesError(f"expected a point beyond the image plane, 0 < f < z, got f={f}, z={z}")
+    y, z, f = 1.5, 4.0, 1.5
     v = f * y / z
     ax = panels(width=760, height=330) if ax is None else ax
     ax.plot([-f, f, z], [-v, v, y], color=LENS, linewidth=1.6, zorder=3)

@@ -110,7 +110,6 @@ def draw_corners(
     board: Chessboard | CharucoBoard,
     *,
     ax: "Axes | None" = None,
-    title: str = "",
 ) -> "Axes":
     """Draw the corners of a board over its picture, so that their order can be seen.
 
@@ -137,7 +136,7 @@ def draw_corners(
             f"corners: a board of {columns}×{rows} has {columns * rows}, got {m.shape}"
         )
     m = np.where(np.isfinite(m), m, np.nan)
-    ax = draw_image(image, ax=ax, title=title)
+    ax = draw_image(image, ax=ax)
     grid = m.reshape(rows, columns, 2)
     for row in grid:
         ax.plot(*row.T, "-", color=ESTIMATED, linewidth=1, marker=".", markersize=4)

@@ -7,7 +7,7 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError, InputTypeError
 from cvnotes.camera import AnyLens, Lens
-from cvnotes.show.guards import count, length, thing
+from cvnotes.show.guards import length, thing
 from cvnotes.show.style import COLOURS, ESTIMATED, FONT, IDEAL, LENS, MUTED, panels
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def draw_grid(
-    lens: Lens, *, ax: "Axes | None" = None, extent: float = 0.5, lines: int = 11, title: str = ""
+    lens: Lens, *, ax: "Axes | None" = None, extent: float = 0.5, title: str = ""
 ) -> "Axes":
     """Draw a square grid on the plane z = 1, and where the lens shows it.
 
@@ -24,9 +24,7 @@ def draw_grid(
     lens : Lens
         What bends the grid; beyond its ``max_radius`` nothing is drawn.
     extent : float
-        The grid covers [−extent, extent] in x and y.
-    lines : int
-        Lines in each direction.
+        The grid covers [−extent, extent] in x and y, with eleven lines in each direction.
 
     Examples
     --------
@@ -34,9 +32,9 @@ def draw_grid(
     'barrel'
     """
     thing(lens, "lens", Lens)
-    extent, lines = length(extent, "extent"), count(lines, "lines")
+    extent = length(extent, "extent")
     ax = panels(height=520) if ax is None else ax
-    fine, coarse = np.linspace(-extent, extent, 121), np.linspace(-extent, extent, lines)
+    fine, coarse = np.linspace(-extent, extent, 121), np.linspace(-extent, extent, 11)
     for c in coarse:
         for line in (
             np.stack([np.full_like(fine, c), fine], -1),
@@ -50,7 +48,7 @@ def draw_grid(
     return ax
 
 
-def draw_lenses(lenses: Sequence[tuple[str, Lens]], *, extent: float = 0.5) -> Any:
+def draw_lenses(lenses: Sequence[tuple[str, Lens]]) -> Any:
     """Draw the grids of several named lenses side by side; gives their axes.
 
     Examples
@@ -62,7 +60,7 @@ def draw_lenses(lenses: Sequence[tuple[str, Lens]], *, extent: float = 0.5) -> A
         raise CvnotesError("lenses: expected at least two, each with its name")
     axes = panels(len(lenses), width=900, height=round(900 / len(lenses)) + 40)
     for ax, (name, lens) in zip(axes, lenses, strict=True):
-        draw_grid(lens, ax=ax, extent=extent, title=name)
+        draw_grid(lens, ax=ax, title=name)
     for ax in axes[1:]:
         ax.set_ylabel("")
     return axes
@@ -104,26 +102,15 @@ def draw_radius(lens: Lens, *, ax: "Axes | None" = None, up_to: float = 1.5) -> 
     return ax
 
 
-def draw_newton(
-    lens: Lens,
-    r_lens: float,
-    *,
-    ax: "Axes | None" = None,
-    steps: int = 3,
-    start: float | None = None,
-) -> "Axes":
-    """Draw Newton's way back: from r' along tangents of the curve r L(r) to the level r'.
+def draw_newton(lens: Lens, r_lens: float, *, ax: "Axes | None" = None) -> "Axes":
+    """Draw three of Newton's steps: from r' along tangents of the curve r L(r) to the level r'.
 
     Parameters
     ----------
     lens : Lens
         Its radial part is inverted.
     r_lens : float
-        The observed radius r', below the fold's.
-    steps : int
-        How many tangents are drawn.
-    start : float, optional
-        The first guess of r; by default r'.
+        The observed radius r', below the fold's; the first guess of r, too.
 
     Examples
     --------
@@ -131,8 +118,7 @@ def draw_newton(
     >>> [text.get_text() for text in ax.texts][:2]
     ["r' = 0.55", 'r₀']
     """
-    r_lens, steps = length(r_lens, "r_lens"), count(steps, "steps")
-    r = r_lens if start is None else length(start, "start")
+    r = r_lens = length(r_lens, "r_lens")
     reach = min(thing(lens, "lens", Lens).max_radius, 2.5 * r_lens)
     if reach * float(lens.L(reach)) < r_lens:
         raise CvnotesError(f"r' = {r_lens:g} is beyond the fold: no r is shown there")
@@ -143,17 +129,15 @@ def draw_newton(
     ax.axhline(r_lens, color=IDEAL, lw=1)
     ax.annotate(f"r' = {r_lens:g}", (0, r_lens), (6, 6), textcoords="offset points", color=IDEAL)
     tiny = 1e-6
-    for i in range(steps):
+    for i in "₀₁₂":
         value = r * float(lens.L(r))
         slope = ((r + tiny) * float(lens.L(r + tiny)) - value) / tiny
         following = r - (value - r_lens) / slope
         ax.plot([r, r, following], [r_lens, value, r_lens], color=ESTIMATED, lw=1.3)
         ax.plot(r, value, "x", color=ESTIMATED, ms=7)
-        if i < 3:  # later ones are too close to be told apart
-            ax.annotate(
-                f"r{'₀₁₂'[i]}", (r, r_lens), (-4, 6), textcoords="offset points",
-                color=ESTIMATED, ha="right",
-            )  # fmt: skip
+        ax.annotate(
+            f"r{i}", (r, r_lens), (-4, 6), textcoords="offset points", color=ESTIMATED, ha="right"
+        )
         r = following
     ax.set(xlim=(low, reach), ylim=(low * float(lens.L(low)), 1.05 * reach * float(lens.L(reach))))
     ax.set(xlabel="ideal radius r", ylabel="observed radius r'")
@@ -161,17 +145,13 @@ def draw_newton(
     return ax
 
 
-def draw_angles(
-    lenses: Mapping[str, AnyLens], *, ax: "Axes | None" = None, up_to: float = 2.1
-) -> "Axes":
+def draw_angles(lenses: Mapping[str, AnyLens], *, ax: "Axes | None" = None) -> "Axes":
     """Draw how far from the middle each lens shows a ray, over the ray's angle from the axis.
 
     Parameters
     ----------
     lenses : mapping from names to Lens, RationalLens or FisheyeLens
         Up to five. The plane z = 1 ends at 90°, and with it a `Lens`.
-    up_to : float
-        Largest angle in radians, at most π.
 
     Examples
     --------
@@ -182,11 +162,8 @@ def draw_angles(
     colours = (IDEAL, LENS, ESTIMATED, COLOURS["world"], COLOURS["camera"])
     if not isinstance(lenses, Mapping) or not 1 <= len(lenses) <= len(colours):
         raise CvnotesError(f"lenses: expected one to {len(colours)} by name")
-    up_to = length(up_to, "up_to")
-    if up_to > np.pi:
-        raise CvnotesError(f"up_to = {up_to:g} but no ray is further from the axis than π")
     ax = panels() if ax is None else ax
-    theta = np.linspace(0, up_to, 400)[1:]
+    theta = np.linspace(0, 2.1, 400)[1:]
     M = np.stack([np.sin(theta), 0 * theta, np.cos(theta)], axis=-1)
     for (name, lens), colour in zip(lenses.items(), colours, strict=False):
         shown = _lens(lens, name).of_rays(M)[:, 0]
@@ -197,12 +174,12 @@ def draw_angles(
         color=MUTED, ha="right", fontsize=FONT - 1,
     )  # fmt: skip
     ax.set(xlabel="angle θ from the axis (degrees)", ylabel="distance from the middle, in f")
-    ax.set(xlim=(0, np.degrees(up_to)), ylim=(0, 3.2))
+    ax.set(xlim=(0, np.degrees(2.1)), ylim=(0, 3.2))
     ax.legend(loc="upper left", frameon=False)
     return ax
 
 
-def draw_displacement(lens: Lens, *, ax: "Axes | None" = None, extent: float = 0.5) -> "Axes":
+def draw_displacement(lens: Lens, *, ax: "Axes | None" = None) -> "Axes":
     """Draw where the lens moves points of the plane z = 1, as arrows in true length.
 
     Examples
@@ -211,7 +188,7 @@ def draw_displacement(lens: Lens, *, ax: "Axes | None" = None, extent: float = 0
     'x'
     """
     thing(lens, "lens", Lens)
-    extent = length(extent, "extent")
+    extent = 0.5
     ax = panels(height=520) if ax is None else ax
     x = np.linspace(-extent, extent, 13)
     xy: Array = np.stack(np.meshgrid(x, x), -1).reshape(-1, 2)

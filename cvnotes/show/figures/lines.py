@@ -33,8 +33,6 @@ def draw_lines(
     meaning: str = "estimated",
     label: str = "",
     linewidth: float = 1.4,
-    linestyle: str = "-",
-    color: str | None = None,
 ) -> "Axes":
     """Draw whole lines of P², as far as the axes reach.
 
@@ -48,8 +46,8 @@ def draw_lines(
         Whose lines these are; sets the colour.
     label : str
         Name in a legend.
-    linewidth, linestyle, color
-        As matplotlib's; a colour takes the place of the meaning's.
+    linewidth : float
+        As matplotlib's.
 
     Examples
     --------
@@ -57,14 +55,9 @@ def draw_lines(
     2
     """
     lines = points(lines, "lines", 3).reshape(-1, 3)
-    linewidth = length(linewidth, "linewidth")
-    ax, colour = pixel_axes(ax, size), colour_of(meaning)
-    style: dict[str, Any] = {
-        "color": color or colour,
-        "linewidth": linewidth,
-        "linestyle": linestyle,
-    }
-    style["path_effects"] = halo()
+    style: dict[str, Any] = {"color": colour_of(meaning), "path_effects": halo()}
+    style["linewidth"] = length(linewidth, "linewidth")
+    ax = pixel_axes(ax, size)
     middle = np.array([np.mean(ax.get_xlim()), np.mean(ax.get_ylim())])
     for a, b, c in lines[(lines[:, :2] != 0).any(axis=1)]:
         n = np.array([a, b]) / np.hypot(a, b)
@@ -82,8 +75,6 @@ def draw_segments(
     meaning: str = "estimated",
     label: str = "",
     linewidth: float = 1.8,
-    linestyle: str = "-",
-    color: str | None = None,
     path_effects: Sequence[Any] | None = None,
 ) -> "Axes":
     """Draw segments, each between its two end points.
@@ -92,7 +83,7 @@ def draw_segments(
     ----------
     segments : array_like, shape (..., 2, 2)
         End points (u, v).
-    size, meaning, label, linewidth, linestyle, color
+    size, meaning, label, linewidth
         As for `draw_lines`.
     path_effects : sequence
         As matplotlib's; by default a white rim keeps segments visible over a picture.
@@ -102,20 +93,17 @@ def draw_segments(
     >>> len(draw_segments([[[0, 0], [90, 90]], [[0, 90], [90, 0]]]).lines)
     2
     """
-    ends, linewidth = segment_ends(segments), length(linewidth, "linewidth")
-    ax, colour = pixel_axes(ax, size), colour_of(meaning)
-    style: dict[str, Any] = {
-        "color": color or colour,
-        "linewidth": linewidth,
-        "linestyle": linestyle,
-    }
+    ends = segment_ends(segments)
+    style: dict[str, Any] = {"color": colour_of(meaning)}
+    style["linewidth"] = length(linewidth, "linewidth")
     style["path_effects"] = halo() if path_effects is None else list(path_effects)
+    ax = pixel_axes(ax, size)
     for i, pair in enumerate(ends):
         ax.plot(*pair.T, label=label if label and i == 0 else None, **style)
     return ax
 
 
-def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None, reach: float = 5.0) -> "Axes":
+def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     """Draw points of P¹, the projective line: classes [wx w] are lines through the origin.
 
     Where such a line crosses w = 1 is the Euclidean point x. The class of [1 0] never does: it is
@@ -125,8 +113,6 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None, reach: float =
     ----------
     x_h : array_like, shape (n, 2)
         One member (wx, w) of each class; a dot marks it where it is not the one with w = 1.
-    reach : float
-        Of the axes, to both sides.
 
     Examples
     --------
@@ -139,7 +125,7 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None, reach: float =
         raise CvnotesError("x_h: expected at least one class")
     if not (x_h != 0).any(axis=1).all():
         raise CvnotesError("x_h: [0 0] is no point, and has no line of its own")
-    reach = length(reach, "reach")
+    reach = 5.0  # of the axes, to both sides
     ax = panels(height=370) if ax is None else ax
     ax.axhline(1, color=WORLD, linewidth=2.2, zorder=1)
     for x, w in x_h:

@@ -60,7 +60,6 @@ def draw_wall(
     images: Sequence[npt.ArrayLike],
     *,
     columns: int = 5,
-    title: str = "",
     corners: npt.ArrayLike | None = None,
 ) -> "Axes":
     """Draw small copies of grey pictures side by side, as on a contact sheet.
@@ -99,6 +98,5 @@ def draw_wall(
         places = np.stack([(i % columns) * (w + gap), (i // columns) * (h + gap)], axis=-1)
         marks = (m / 4 + places[:, None]).reshape(-1, 2)
         ax.plot(*marks.T, ".", color=ESTIMATED, markersize=4, markeredgewidth=0)
-    ax.set_title(title)
     ax.axis("off")
     return ax

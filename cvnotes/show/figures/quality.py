@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, image_size, number
+from cvnotes.base import Array, DegenerateError, image_size, number
 from cvnotes.calibration.coverage import covered_cells, joined
 from cvnotes.show.guards import calibrated
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED, as_picture, panels, picture_axes
@@ -95,7 +95,6 @@ def draw_board_shape(
     *,
     ax: "Axes | None" = None,
     magnify: float | None = None,
-    highest: float | None = None,
 ) -> "Axes":
     """Draw how the board differs from a flat one: its heights in colours, the rest as arrows.
 
@@ -109,9 +108,6 @@ def draw_board_shape(
     magnify : float, optional
         How much longer than true the arrows are; by default a round number that makes the longer
         ones 6 % of the board.
-    highest : float, optional
-        The height in mm at which the colours end, to compare two figures; by default the
-        largest of this board, up or down.
 
     Examples
     --------
@@ -135,15 +131,8 @@ def draw_board_shape(
     if ax is None:
         ax = panels(height=round(min(max(500 * np.ptp(y) / np.ptp(x), 200), 760)) + 90)
     z = shape.heights
-    if highest is None:
-        highest = max(float(np.abs(z).max()), 1e-9 * extent)
-    highest = number(highest, "highest")
-    if not highest > 0:
-        raise CvnotesError(f"highest: expected a height above 0 in mm, got {highest:g}")
-    beyond = "both" if np.abs(z).max() > highest else "neither"
-    colours = ax.tricontourf(
-        x, y, z, levels=np.linspace(-highest, highest, 21), cmap="PuOr_r", extend=beyond
-    )
+    highest = max(float(np.abs(z).max()), 1e-9 * extent)
+    colours = ax.tricontourf(x, y, z, levels=np.linspace(-highest, highest, 21), cmap="PuOr_r")
     ax.tricontour(x, y, z, levels=[0.0], colors=MUTED, linewidths=0.8)
     bar = ax.figure.colorbar(
         colours, ax=ax, shrink=0.85, pad=0.02, aspect=16, ticks=MaxNLocator(6, symmetric=True)

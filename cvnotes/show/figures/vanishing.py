@@ -1,6 +1,5 @@
 """Figures of vanishing points: where segments lead, and the triangle that gives a camera away."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +9,6 @@ from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
 from cvnotes.show.figures.images import draw_points
 from cvnotes.show.figures.lines import draw_segments, pixel_axes, segment_ends
-from cvnotes.show.guards import texts
-from cvnotes.show.space.shapes import colour_of
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL
 
 if TYPE_CHECKING:
@@ -23,9 +20,6 @@ def draw_vanishing(
     v_h: npt.ArrayLike,
     *,
     ax: "Axes | None" = None,
-    size: tuple[int, int] = (640, 480),
-    meaning: str = "estimated",
-    label: str = "",
 ) -> "Axes":
     """Draw segments and, dashed, the way on to their vanishing point; the axes grow to show it.
 
@@ -35,8 +29,6 @@ def draw_vanishing(
         End points (u, v).
     v_h : array_like, shape (3,)
         The vanishing point, homogeneous. At infinity it is not drawn, and the axes stay.
-    size, meaning, label
-        As for `cvnotes.show.figures.lines.draw_lines`.
 
     Examples
     --------
@@ -49,14 +41,14 @@ def draw_vanishing(
         raise DegenerateError("segments: expected at least one that leads to the vanishing point")
     if v_h.ndim != 1:
         raise ShapeError(f"v_h: expected one point (3,), got {v_h.shape}")
-    ax = draw_segments(ends, ax=ax, size=size, meaning=meaning)
+    ax = draw_segments(ends, ax=ax)
     if v_h[2] == 0:
         return ax
     v = from_homogeneous(v_h)
     near = ends[np.arange(len(ends)), np.linalg.norm(ends - v, axis=-1).argmin(axis=1)]
     for start in near:
-        ax.plot(*np.stack([start, v]).T, "--", color=colour_of(meaning), linewidth=0.9)
-    draw_points(v, ax=ax, meaning=meaning, label=label)
+        ax.plot(*np.stack([start, v]).T, "--", color=ESTIMATED, linewidth=0.9)
+    draw_points(v, ax=ax)
     return _widened(ax, v[None])
 
 
@@ -64,8 +56,6 @@ def draw_altitudes(
     v: npt.ArrayLike,
     *,
     ax: "Axes | None" = None,
-    size: tuple[int, int] = (640, 480),
-    names: Sequence[str] = ("X", "Y", "Z"),
 ) -> "Axes":
     """Draw the triangle of three vanishing points, its altitudes, and their orthocentre.
 
@@ -75,11 +65,7 @@ def draw_altitudes(
     Parameters
     ----------
     v : array_like, shape (3, 2)
-        Vanishing points in pixels.
-    size : (width, height)
-        Size of the picture, where new axes are made.
-    names : sequence of three str
-        Written beside the points.
+        Vanishing points in pixels, of the directions X, Y and Z.
 
     Raises
     ------
@@ -92,11 +78,11 @@ def draw_altitudes(
     >>> [text.get_text() for text in ax.texts]
     ['X', 'Y', 'Z']
     """
-    v, names = matrix(v, "v", 3, 2), texts(names, "names")
-    if v.ndim != 2 or len(names) != 3:
-        raise ShapeError(f"expected three points (3, 2) and three names, got {v.shape}")
+    v = matrix(v, "v", 3, 2)
+    if v.ndim != 2:
+        raise ShapeError(f"v: expected three points (3, 2), got {v.shape}")
     feet = np.array([_foot(v[i], v[i - 1], v[i - 2]) for i in range(3)])
-    ax = pixel_axes(ax, size)
+    ax = pixel_axes(ax, (640, 480))
     ax.plot(*np.concatenate([v, v[:1]]).T, color=ESTIMATED, linewidth=1.2)
     for corner, foot in zip(v, feet, strict=True):
         ax.plot(*np.stack([corner, foot]).T, "--", color=IDEAL, linewidth=0.9)
@@ -105,7 +91,7 @@ def draw_altitudes(
     draw_points(v, ax=ax, meaning="estimated", label="vanishing points")
     ax.legend(loc="lower right", fontsize=FONT - 1)
     _widened(ax, v)
-    for name, corner, away in zip(names, v, v - v.mean(axis=0), strict=True):
+    for name, corner, away in zip("XYZ", v, v - v.mean(axis=0), strict=True):
         shift = 14 * away / np.linalg.norm(away) * (1, -1)  # points on paper count upwards
         ax.annotate(
             name, corner, shift, textcoords="offset points", ha="center", va="center",

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, ShapeError, number, numbers
 from cvnotes.show.figures.images import draw_image
-from cvnotes.show.guards import count, eight_bits, one_point, pictures
+from cvnotes.show.guards import eight_bits, one_point, pictures
 from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD, panels
 
 if TYPE_CHECKING:
@@ -191,16 +191,14 @@ def draw_disparity(point: npt.ArrayLike, b: float, f: float, *, ax: "Axes | None
 
 
 def draw_rows(
-    before: Sequence[npt.ArrayLike], after: Sequence[npt.ArrayLike], *, lines: int = 9
+    before: Sequence[npt.ArrayLike], after: Sequence[npt.ArrayLike]
 ) -> npt.NDArray[np.object_]:
-    """Draw a stereo pair before and after rectification, with rows running through both.
+    """Draw a stereo pair before and after rectification, with nine rows running through both.
 
     Parameters
     ----------
     before, after : two pictures each
         Left and right, all of one size.
-    lines : int
-        Rows drawn.
 
     Returns
     -------
@@ -209,13 +207,12 @@ def draw_rows(
     pairs = pictures(before, "before"), pictures(after, "after")
     if len(pairs[0]) != 2 or len(pairs[1]) != 2:
         raise CvnotesError("before and after: expected two pictures each, left and right")
-    lines = count(lines, "lines")
     axes: npt.NDArray[np.object_] = panels(2, 2, width=900, height=720, sharey=True)
     titles = (("left camera", "right camera"), ("left, rectified", "right, rectified"))
     for row, pair, names in zip(axes, pairs, titles, strict=True):
         for ax, picture, name in zip(row, pair, names, strict=True):
             draw_image(picture, ax=ax, title=name)
-            for v in np.linspace(0, picture.shape[0] - 1, lines + 2)[1:-1]:
+            for v in np.linspace(0, picture.shape[0] - 1, 11)[1:-1]:
                 ax.axhline(v, color=ESTIMATED, lw=0.9)
         row[1].set_ylabel("")
     return axes

@@ -8,7 +8,7 @@ from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
 from cvnotes.show.guards import eight_bits, one_point
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes, colour_of
-from cvnotes.show.style import COLOURS, rgb
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, WORLD, rgb
 
 
 def camera_shapes(
@@ -17,7 +17,6 @@ def camera_shapes(
     *,
     image: npt.NDArray[np.uint8] | None = None,
     name: str = "camera",
-    meaning: str = "camera",
 ) -> Shapes:
     """Return a camera: its centre, and the pyramid to its image plane at z = `depth`.
 
@@ -31,8 +30,6 @@ def camera_shapes(
         A picture to put on the image plane, (height, width) or (height, width, 3).
     name : str
         Written above it.
-    meaning : {"camera", "estimated", ...}
-        Sets the colour.
 
     Examples
     --------
@@ -50,11 +47,10 @@ def camera_shapes(
     left, right = _on_plane(camera, xy_from_px(camera.A, [[0.4 * w, -0.5], [0.6 * w, -0.5]]), depth)
     up = (left + right) / 2 - 0.1 * (corners[3] - corners[0])
     ends = np.concatenate([around, spokes, [[left, up], [up, right]]])
-    colour = colour_of(meaning)
-    shapes: Shapes = (Lines(f"{name} pyramid", ends, colour),)
+    shapes: Shapes = (Lines(f"{name} pyramid", ends, CAMERA),)
     if image is not None:
         shapes += (Photo(f"{name} picture", corners, _picture(image)),)
-    return (*shapes, Label(name, up - 0.12 * (corners[3] - corners[0]), colour))
+    return (*shapes, Label(name, up - 0.12 * (corners[3] - corners[0]), CAMERA))
 
 
 def ray_shapes(
@@ -63,7 +59,6 @@ def ray_shapes(
     length: float | None = None,
     *,
     to: npt.ArrayLike | None = None,
-    name: str = "rays",
     meaning: str = "lens",
 ) -> Shapes:
     """Return the rays that pixels see, from the camera's centre.
@@ -100,13 +95,13 @@ def ray_shapes(
     tips = (camera.centre + reach * d).reshape(-1, 3)
     tips = tips[np.isfinite(tips[:, 0])]
     ends = np.stack([np.broadcast_to(camera.centre, tips.shape), tips], axis=1)
-    return (Lines(name, ends, colour_of(meaning), 1.0),)
+    return (Lines("rays", ends, colour_of(meaning), 1.0),)
 
 
-def sheet_shapes(
-    edge: npt.ArrayLike, edges: npt.ArrayLike, *, name: str = "sheets", meaning: str = "world"
-) -> Shapes:
+def sheet_shapes(edge: npt.ArrayLike, edges: npt.ArrayLike) -> Shapes:
     """Return flat sheets from one edge to others, as the rays of a camera to lines of the world.
+
+    They are pale: what is behind a sheet stays visible.
 
     Parameters
     ----------
@@ -114,10 +109,6 @@ def sheet_shapes(
         The segment that all sheets share.
     edges : array_like, shape (..., 2, 3)
         The segment opposite to it, of each sheet.
-    name : str
-        Of the faces.
-    meaning : {"world", "camera", "ideal", "lens", "estimated"}
-        Sets the colour, which is pale: what is behind a sheet stays visible.
 
     Examples
     --------
@@ -140,10 +131,10 @@ def sheet_shapes(
     steps = ((0, 0), (0, 1), (1, 1), (1, 0))
     corners = np.stack([grid[:, i : i + 8, j : j + 28] for i, j in steps], axis=-2)
     corners = corners.reshape(-1, 4, 3)
-    return (Faces(name, corners, np.tile([*rgb(colour_of(meaning)), 0.22], (len(corners), 1))),)
+    return (Faces("sheets", corners, np.tile([*rgb(WORLD), 0.22], (len(corners), 1))),)
 
 
-def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shapes:
+def plane_shapes(camera: Camera, z: float = 1.0) -> Shapes:
     """Return a plane of constant z in the CRF, and what the picture covers of it.
 
     On the plane z = 1 live the ideal image points; `z` makes a copy of it as large as the rest of
@@ -170,15 +161,13 @@ def plane_shapes(camera: Camera, z: float = 1.0, *, name: str = "z = 1") -> Shap
     pale = np.array([[0.4, 0.4, 0.4, 0.12]])
     ends = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
     return (
-        Faces(f"{name} plane", corners[None], pale),
-        Lines(f"{name} outline", ends, COLOURS["ideal"], 1.0),
-        Label(name, corners[1], COLOURS["ideal"]),
+        Faces("z = 1 plane", corners[None], pale),
+        Lines("z = 1 outline", ends, IDEAL, 1.0),
+        Label("z = 1", corners[1], IDEAL),
     )
 
 
-def dot_shapes(
-    W: npt.ArrayLike, name: str, *, radius: float = 8.0, meaning: str = "estimated"
-) -> Shapes:
+def dot_shapes(W: npt.ArrayLike, name: str, *, radius: float = 8.0) -> Shapes:
     """Return a point of the world (3,): a small octahedron with its name.
 
     Examples
@@ -192,9 +181,8 @@ def dot_shapes(
     corners = at + np.array(
         [[belt[i], belt[(i + 1) % 4], tip] for tip in (z, -z) for i in range(4)]
     )
-    colour = colour_of(meaning)
-    colours = np.tile([*rgb(colour), 1.0], (8, 1))
-    return Faces(f"{name} dot", corners, colours), Label(name, at - 3.0 * y, colour)
+    colours = np.tile([*rgb(ESTIMATED), 1.0], (8, 1))
+    return Faces(f"{name} dot", corners, colours), Label(name, at - 3.0 * y, ESTIMATED)
 
 
 def _on_plane(camera: Camera, xy: Array, z: float) -> Array:

@@ -13,7 +13,7 @@ from cvnotes.base import Array, CvnotesError, InputTypeError, number
 from cvnotes.camera import move
 from cvnotes.pictures import Scene
 from cvnotes.show.guards import one_motion, one_point, thing
-from cvnotes.show.style import COLOURS, MUTED
+from cvnotes.show.style import COLOURS, ESTIMATED, MUTED
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 
@@ -106,9 +106,7 @@ def axes_shapes(
     return Lines(f"{name} axes", move(G, np.array(ends)), colour, 2.2), Label(name, origin, colour)
 
 
-def arrow_shapes(
-    start: npt.ArrayLike, end: npt.ArrayLike, name: str = "", *, meaning: str = "estimated"
-) -> Shapes:
+def arrow_shapes(start: npt.ArrayLike, end: npt.ArrayLike, name: str = "") -> Shapes:
     """Return an arrow from one point of the world to another, with its name beside its middle.
 
     Examples
@@ -125,16 +123,13 @@ def arrow_shapes(
     side = np.cross(way, np.eye(3)[np.argmin(np.abs(way))])
     side = side / np.linalg.norm(side) * np.linalg.norm(way)
     wings = [[end, end - 0.06 * way + s * 0.025 * side] for s in (-1, 1)]
-    colour = colour_of(meaning)
-    arrow = Lines(f"{name} arrow", np.array([[start, end], *wings]), colour, 2.2)
-    return (arrow, Label(name, start + 0.5 * way + 0.08 * side, colour)) if name else (arrow,)
+    arrow = Lines(f"{name} arrow", np.array([[start, end], *wings]), ESTIMATED, 2.2)
+    return (arrow, Label(name, start + 0.5 * way + 0.08 * side, ESTIMATED)) if name else (arrow,)
 
 
 def target_shapes(
     target: Chessboard | TwoPlanes | ThreePlanes,
     world_from_target: npt.ArrayLike | None = None,
-    *,
-    name: str = "",
 ) -> Shapes:
     """Return a target: the squares of its boards, and a square of white paper around them.
 
@@ -144,8 +139,6 @@ def target_shapes(
         What was photographed.
     world_from_target : array_like, shape (4, 4), optional
         Where it stands; by default in the origin.
-    name : str
-        Written beside its first corner.
 
     Examples
     --------
@@ -172,17 +165,11 @@ def target_shapes(
         paper = corners[[0, columns + 1, -1, -columns - 2], [0, 1, 2, 3]]
         borders.append(move(G @ world_from_board, np.stack([paper, np.roll(paper, -1, 0)], 1)))
         inks.append(np.where(dark.ravel()[:, None], (0.15, 0.15, 0.16, 1), (0.99, 0.99, 0.98, 1)))
-    kind = name or "target"
-    faces = Faces(kind, np.concatenate(parts), np.concatenate(inks))
-    border = Lines(f"{kind} border", np.concatenate(borders), MUTED, 0.7)
-    if not name:
-        return faces, border
-    board = target.faces[0][1]
-    at = move(G @ target.faces[0][0], [-2.5 * board.square, -2.5 * board.square, 0])
-    return faces, border, Label(name, at, MUTED)
+    faces = Faces("target", np.concatenate(parts), np.concatenate(inks))
+    return faces, Lines("target border", np.concatenate(borders), MUTED, 0.7)
 
 
-def scene_shapes(scene: Scene, *, name: str = "scene") -> Shapes:
+def scene_shapes(scene: Scene) -> Shapes:
     """Return a scene's triangles; a checker shows as the mean of its two colours.
 
     Examples
@@ -193,7 +180,7 @@ def scene_shapes(scene: Scene, *, name: str = "scene") -> Shapes:
     """
     colours = np.ones((len(thing(scene, "scene", Scene).triangles), 4))
     colours[:, :3] = scene.colours.mean(axis=1).clip(0, 1)
-    return (Faces(name, scene.corners, colours),)
+    return (Faces("scene", scene.corners, colours),)
 
 
 def places(*shapes: Shape) -> Array:

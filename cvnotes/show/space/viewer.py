@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.show.guards import length
 from cvnotes.show.space.directions import towards
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent
 
@@ -76,19 +75,13 @@ class Viewer:
         )
 
 
-def build_scene(
-    *shapes: Shape,
-    thickness: float | None = None,
-    view: tuple[float, float] | None = (20.0, -40.0),
-) -> Any:
+def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)) -> Any:
     """Put shapes into a ``trimesh.Scene``, which `show_scene` turns in a notebook.
 
     Parameters
     ----------
     *shapes : Faces, Lines, Photo or Label
         What the functions of `cvnotes.show.space.shapes` give. Labels are left to the still.
-    thickness : float, optional
-        Of lines, in the unit of the scene; by default 1/500 of its extent.
     view : (elevation, azimuth)
         Where a viewer first sees it from, in degrees, as for `draw_scene`; None leaves that to it.
 
@@ -107,7 +100,7 @@ def build_scene(
     from matplotlib.colors import to_rgba
 
     scene = trimesh.Scene()
-    thickness = extent(*shapes) / 500 if thickness is None else length(thickness, "thickness")
+    thickness = extent(*shapes) / 500  # of lines
     for shape in shapes:
         match shape:
             case Faces(name, corners, colours):
