@@ -1,4 +1,4 @@
-"""Figures of chapter 7: where the eye stands, what of a cube is seen, how the arrow is made."""
+"""Figures of chapter 7: what of a cube is seen, how the arrow is made."""
 
 import numpy as np
 import pytest
@@ -10,23 +10,6 @@ from cvnotes.show import draw_arrow, draw_cube, draw_wall
 CENTRE = np.array([320.0, 240])
 SENSOR = intrinsics(400, 400, *CENTRE)
 DESK = look_at([226, 345, -185], [100, 62, 0], up=(0, 0, -1))
-
-
-def homography(A, G):
-    return A @ G[:3][:, [0, 1, 3]]
-
-
-def crosses(ax):
-    return np.array([line.get_xydata()[0] for line in ax.lines if line.get_marker() == "x"])
-
-
-def eye_of(ax):
-    (eye,) = [line.get_xydata()[0] for line in ax.lines if line.get_marker() == "o"]
-    return eye
-
-
-def angle(a, b):
-    return np.degrees(np.arccos(a @ b / np.linalg.norm(a) / np.linalg.norm(b)))
 
 
 # The arrow.

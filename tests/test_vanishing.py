@@ -55,6 +55,13 @@ def test_segments_that_are_parallel_in_the_picture_too_vanish_at_infinity():
     assert same_up_to_scale(v, [0.6, 0.8, 0], atol=1e-12)
 
 
+def test_the_sides_and_diagonals_of_a_board_vanish_in_the_columns_of_its_homography():
+    H = CAMERA.A @ CAMERA.G[:3][:, [0, 1, 3]]
+    columns = from_homogeneous([H[:, 0], H[:, 1], H[:, 0] + H[:, 1], H[:, 0] - H[:, 1]])
+    d = [[1, 0, 0], [0, 1, 0], [1, 1, 0], [1, -1, 0]]
+    np.testing.assert_allclose(columns, CAMERA.vanishing_point(d), rtol=1e-9)
+
+
 def test_neither_the_order_of_the_ends_nor_the_place_of_the_origin_matters():
     rng = np.random.default_rng(3)
     segments = parallel_segments(CAMERA, (1, 0, 0.2), 8, rng) + rng.normal(size=(8, 2, 2))
