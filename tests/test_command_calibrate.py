@@ -10,6 +10,7 @@ import warnings
 from pathlib import Path
 from types import SimpleNamespace
 
+import cv2
 import numpy as np
 import pytest
 from PIL import Image
@@ -22,6 +23,7 @@ from cvnotes.calibration.doubts import Corner, Doubt, View, Views
 from cvnotes.commands import pictures
 from cvnotes.commands.cli import main
 from cvnotes.commands.report import camera_report
+from cvnotes.files import read_camera_info
 from cvnotes.photographs import CalibratedPhotographs, Detection, Photographs
 from cvnotes.photographs.judging import naming
 from cvnotes.pictures import course
@@ -46,6 +48,39 @@ def calibrate(photos, corners="9x6", square=20, *more):
     out = photos.parent / "out"
     arguments = ["calibrate", photos, "--corners", corners, "--square", square, "--out", out, *more]
     return main([*map(str, arguments)]), out
+
+
+def test_a_clip_becomes_a_file_of_ros_in_one_command(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("cvnotes.commands.pictures.pictures", lambda *_: {})
+    rng, held = np.random.default_rng(0), []
+    video = cv2.VideoWriter(
+        str(tmp_path / "clip.avi"), cv2.VideoWriter.fourcc(*"MJPG"), 10.0, SIZE, isColor=False
+    )
+    video.set(cv2.VIDEOWRITER_PROP_QUALITY, 98)
+    still = [photograph(*board_pose(tilt)).astype(float) for tilt in TILTS]
+    number = 0
+    for here, there in zip(still, [*still[1:], still[0]], strict=True):
+        for part in (0, 0, 0, 0, 0, 0.3, 0.7):  # held, then on its way to the next place
+            shown = (1 - part) * here + part * there + rng.normal(0, 1, here.shape)
+            video.write(shown.clip(0, 255).astype(np.uint8))
+            held += [number] * (part == 0)
+            number += 1
+    video.release()
+    code, out = calibrate(tmp_path / "clip.avi", "auto", 20, "--lens", "none")
+    said = capsys.readouterr().out
+    assert code == 0, said
+    assert re.search(r"clip\.avi +–  a video: of 56 frames \d+ that are", said)
+    taken = [int(n) for n in re.findall(r"^clip frame (\d+) +0\.", said, re.M)]
+    assert set(taken) <= set(held)
+    assert {number // 7 for number in taken} == set(range(8))  # each place, and none twice
+    assert len(taken) == 8
+    info = read_camera_info(out / "ost.yaml")
+    np.testing.assert_allclose(info.camera.A, A, atol=2)
+    assert (info.camera.size, info.camera.lens.is_ideal) == (SIZE, True)
+
+    (tmp_path / "cut.mp4").write_bytes(b"no video")
+    assert calibrate(tmp_path / "cut.mp4")[0] == 1
+    assert "not a video that OpenCV can read" in capsys.readouterr().out
 
 
 def with_coin(tilt, column, row):

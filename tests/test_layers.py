@@ -36,6 +36,7 @@ FLOOR = {wing: i for i, floor in enumerate(WINGS) for wing in floor}
 ONLY_IN = {
     "cv2": {
         "files.decoding",
+        "files.video",
         "pictures.exposure",
         "targets.grey",
         "targets.markers",

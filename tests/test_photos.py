@@ -8,6 +8,7 @@ import textwrap
 import time
 import zlib
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from PIL import Image
 
 from cvnotes.base import FileError
 from cvnotes.base.writing import printable
-from cvnotes.files import Photo, list_photos, open_photos, read_photo, read_photos
+from cvnotes.files import Photo, decoding, list_photos, open_photos, read_photo, read_photos
 from cvnotes.files.photos import open_photo
 
 posix = pytest.mark.skipif(os.name == "nt", reason="pipes and links of POSIX")
@@ -57,6 +58,25 @@ def test_lossless_formats_give_their_pixels(tmp_path, name, pixels, options):
     assert photo.image.dtype == np.uint8
     assert photo.size == (12, 8)
     assert photo.note == ""
+
+
+def test_the_pictures_of_telephones_are_read_where_there_is_who_reads_them(tmp_path, monkeypatch):
+    def register_heif_opener():
+        from PIL import PngImagePlugin
+
+        class Heif(PngImagePlugin.PngImageFile):  # whose pixels are packed in another way
+            format = "HEIF"
+
+        Image.register_open("HEIF", Heif, lambda start: start[:8] == PngImagePlugin._MAGIC)
+
+    save(tmp_path / "phone.heic", RGB, format="PNG")
+    stand_in = SimpleNamespace(register_heif_opener=register_heif_opener)
+    monkeypatch.setitem(sys.modules, "pillow_heif", stand_in)
+    monkeypatch.setattr(decoding, "_FORMATS", ())  # nobody else reads it
+    monkeypatch.setattr(Image, "OPEN", dict(Image.OPEN))
+    decoding._reads_heif.cache_clear()
+    assert np.array_equal(read_photo(tmp_path / "phone.heic").image, RGB)
+    decoding._reads_heif.cache_clear()
 
 
 @pytest.mark.parametrize("options", [{}, {"progressive": True}], ids=["baseline", "progressive"])
@@ -171,8 +191,8 @@ def bad_files(tmp_path):
         "bomb.png": (png_header(60_000, 60_000), "more than 80 million pixels by its header"),
         "large.png": (png_header(9_000, 9_000), "9000×9000: more than 80 million pixels"),
         "huge.png": (png_header(2**31 - 1, 2**31 - 1), "more than 80 million|damaged|not a pic"),
-        "film.mp4": (b"x", "a video; save single frames of it"),
-        "phone.HEIC": (b"x", "HEIF is not read; save it as JPEG or PNG"),
+        "film.mp4": (b"x", "a video; name it by itself"),
+        "phone.HEIC": (b"x", "HEIF is read where pillow-heif is installed"),
         "camera.NEF": (b"x", "a camera's raw format"),
         ".hidden.jpg": (whole, "a hidden file of the system"),
         "._left01.jpg": (b"\0\5\x16\7", "a hidden file of the system"),

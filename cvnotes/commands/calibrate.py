@@ -29,12 +29,17 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="calibrate a camera from photographs of a chessboard",
         description="Calibrate a camera from photographs of a chessboard. Take ten or more, with "
         "the board tilted by 30 to 45 degrees in different directions and reaching into the "
-        "corners of the picture, without touching focus or zoom.",
+        "corners of the picture, without touching focus or zoom. (A camera that is connected "
+        'photographs by itself on the site\'s page "Calibrate your camera".)',
         epilog="example: cvnotes calibrate photos/ --corners 9x6 --square 25 --out result/. "
         f"{EXIT_CODES}",
     )
     parser.add_argument(
-        "photos", nargs="+", metavar="PHOTO", help="photographs, or folders of photographs"
+        "photos",
+        nargs="+",
+        metavar="PHOTO",
+        help="photographs, folders of photographs, or videos, of which frames are taken that are "
+        "sharp, still and different",
     )
     add_options(parser)
     parser.set_defaults(run=run)

@@ -4,6 +4,7 @@ import io
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from stat import S_ISDIR, S_ISREG
 from typing import IO, TYPE_CHECKING, Any
@@ -21,12 +22,14 @@ MAX_BYTES = 6 * MAX_PIXELS + 1_000_000  # as large as so many pixels can be, unc
 
 _FORMATS = ("JPEG", "PNG", "TIFF", "WEBP", "BMP", "PPM", "GIF")
 _CLUTTER = ("thumbs.db", "desktop.ini", "ehthumbs.db")
+VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mts", ".3gp")
+_HEIF = (".heic", ".heif", ".hif")
 _FOREIGN = {
+    "AVIF is not read; save it as JPEG or PNG": ".avif",
     "a camera's raw format; save it as TIFF, PNG or JPEG, without lens corrections": (
         ".arw .cr2 .cr3 .dng .nef .orf .pef .raf .raw .rw2 .srw"
     ),
-    "HEIF is not read; save it as JPEG or PNG": ".heic .heif .hif .avif",
-    "a video; save single frames of it": ".mp4 .mov .avi .mkv .webm .m4v .mts .3gp",
+    "a video; name it by itself, and frames of it are taken": " ".join(VIDEOS),
 }
 _WIDTH, _HEIGHT, _ORIENTATION = 256, 257, 274  # TIFF and EXIF tags
 
@@ -61,8 +64,11 @@ def decode(path: Path, *, grey: bool = False) -> tuple[npt.NDArray[Any], int, li
     return image, orientation, notes
 
 
-def _refuse_unopened(path: Path) -> None:
-    """Refuse what need not or must not be opened: opening a pipe would wait for ever."""
+def refuse_irregular(path: Path) -> int:
+    """Refuse what is no file with something in it; gives its size in bytes.
+
+    Opening a pipe would wait for ever.
+    """
     try:
         info = path.stat()
     except FileNotFoundError as error:
@@ -71,20 +77,42 @@ def _refuse_unopened(path: Path) -> None:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise FileError(f"cannot be opened: {reason}") from error
-    name, suffix = path.name.lower(), path.suffix.lower()
     if S_ISDIR(info.st_mode):
         raise FileError("a folder inside a folder; name it to have its photographs read")
     if not S_ISREG(info.st_mode):
         raise FileError("not a regular file")
+    return info.st_size
+
+
+def _refuse_unopened(path: Path) -> None:
+    """Refuse what need not or must not be opened."""
+    size = refuse_irregular(path)
+    name, suffix = path.name.lower(), path.suffix.lower()
     if name.startswith(".") or name in _CLUTTER:
         raise FileError("a hidden file of the system")
+    if suffix in _HEIF and not _reads_heif():
+        raise FileError(
+            "HEIF is read where pillow-heif is installed (pip install pillow-heif); or save it as "
+            "JPEG or PNG"
+        )
     for reason, suffixes in _FOREIGN.items():
         if suffix in suffixes.split():
             raise FileError(reason)
-    if info.st_size == 0:
+    if size == 0:
         raise FileError("the file is empty")
-    if info.st_size > MAX_BYTES:
-        raise FileError(f"{info.st_size / 1e6:.0f} MB is larger than any photograph that is read")
+    if size > MAX_BYTES:
+        raise FileError(f"{size / 1e6:.0f} MB is larger than any photograph that is read")
+
+
+@cache
+def _reads_heif() -> bool:
+    """Let Pillow read the pictures of telephones, if there is who knows them."""
+    try:
+        from pillow_heif import register_heif_opener
+    except ImportError:
+        return False
+    register_heif_opener()
+    return True
 
 
 @contextmanager
@@ -96,7 +124,8 @@ def _opened(stream: IO[bytes]) -> "Iterator[Image]":
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            with Image.open(stream, formats=_FORMATS) as picture:
+            formats = _FORMATS + ("HEIF",) * _reads_heif()
+            with Image.open(stream, formats=formats) as picture:
                 if np.prod(picture.size, dtype=float) > MAX_PIXELS:
                     width, height = picture.size
                     raise FileError(f"{width}×{height}: {too_large}")

@@ -86,7 +86,19 @@ class Rejected(NamedTuple):
 
 
 # Endings of photographs; what else lies in a folder was not asked for.
-_PICTURES = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp", ".heic", ".pgm", ".ppm"}
+_PICTURES = {
+    ".jpg",
+    ".jpeg",
+    ".png",
+    ".tif",
+    ".tiff",
+    ".bmp",
+    ".webp",
+    ".heic",
+    ".heif",
+    ".pgm",
+    ".ppm",
+}
 
 
 def unread(rejected: Iterable[Rejected], named: Iterable[str]) -> int:

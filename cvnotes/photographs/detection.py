@@ -12,11 +12,12 @@ from cvnotes.base import Array, CornersNotFound, DegenerateError, FileError
 from cvnotes.base.parallel import in_order
 from cvnotes.base.writing import PathLike, printable
 from cvnotes.files import Photo, Reason, Rejected
-from cvnotes.files.decoding import header_size
+from cvnotes.files.decoding import VIDEOS, header_size
 from cvnotes.files.ownership import photographs as listed_photographs
 from cvnotes.files.photos import fingerprint, open_photo, usual_size
-from cvnotes.files.reasons import Copy, OtherSize
-from cvnotes.photographs.reasons import LeftOut, NoBoard
+from cvnotes.files.reasons import Copy, OtherSize, Unreadable
+from cvnotes.files.video import Progress, frames_of, unseen
+from cvnotes.photographs.reasons import FramesTaken, LeftOut, NoBoard
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
 from cvnotes.targets.markers import one_thread_each
@@ -154,9 +155,13 @@ class Photographs:
 
 
 def listed(
-    given: Iterable[Given] | PathLike, leave_out: Iterable[PathLike] = ()
+    given: Iterable[Given] | PathLike,
+    leave_out: Iterable[PathLike] = (),
+    progress: Progress = unseen,
 ) -> tuple[list[Path | Photo], list[Rejected]]:
     """List photographs that were given as files, folders or arrays, without those to leave out.
+
+    Of a video that is named, frames are taken.
 
     Raises
     ------
@@ -165,18 +170,39 @@ def listed(
     """
     given = [given] if isinstance(given, str | os.PathLike) else list(given)
     paths = [item for item in given if isinstance(item, str | os.PathLike)]
-    files, rejected = listed_photographs(map(str, paths), straightened=True)
+    videos = [path for path in map(Path, paths) if path.suffix.lower() in VIDEOS]
+    frames, rejected = _taken_from(videos, progress)
+    files, not_read = listed_photographs(
+        [str(path) for path in paths if Path(path) not in videos], straightened=True
+    )
+    rejected += not_read
     arrays = [
         item if isinstance(item, Photo) else Photo(Path(f"photograph {i}"), np.asarray(item))
         for i, item in enumerate(given)
         if not isinstance(item, str | os.PathLike)
     ]
+    arrays += frames
     if not files and not rejected and not arrays:
         raise FileError(f"no photographs in {', '.join(map(printable, paths))}")
     every: list[Path | Photo] = [*files, *arrays]
     unwanted = {path for name in leave_out for path in _called(name, map(_path, every))}
     rejected += [_no(_path(item), LeftOut()) for item in every if _path(item) in unwanted]
     return [item for item in every if _path(item) not in unwanted], rejected
+
+
+def _taken_from(videos: Sequence[Path], progress: Progress) -> tuple[list[Photo], list[Rejected]]:
+    """Take the frames of videos, and say how many."""
+    frames: list[Photo] = []
+    said = []
+    for path in videos:
+        try:
+            taken, n = frames_of(path, progress)
+        except FileError as error:
+            said.append(_no(path, Unreadable(str(error))))
+        else:
+            frames += taken
+            said.append(_no(path, FramesTaken(len(taken), n)))
+    return frames, said
 
 
 def _called(name: PathLike, paths: Iterable[Path]) -> list[Path]:

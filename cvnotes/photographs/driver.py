@@ -1,12 +1,12 @@
 """All steps from photographs of a board to a camera: find, count, put together, choose, judge."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 from cvnotes.base.writing import PathLike
 from cvnotes.calibration import Calibration, NextView
 from cvnotes.camera import Camera
+from cvnotes.files.video import Progress, unseen
 from cvnotes.photographs.choosing import Model, choose
 from cvnotes.photographs.detection import (
     Board,
@@ -20,13 +20,6 @@ from cvnotes.photographs.detection import (
 from cvnotes.photographs.judging import judge, propose
 from cvnotes.photographs.mirrored import doubted, mirrored
 from cvnotes.targets import Chessboard
-
-Progress = Callable[[Iterator[Any], int], Iterable[Any]]
-
-
-def _unseen(items: Iterator[Any], _: int) -> Iterable[Any]:
-    """Show nobody how far it is."""
-    return items
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,15 +68,15 @@ def calibrate_photographs(
     skew: bool = False,
     leave_out: Iterable[PathLike] = (),
     keep_all: bool = False,
-    progress: Progress = _unseen,
+    progress: Progress = unseen,
 ) -> CalibratedPhotographs:
     """Calibrate a camera from its photographs of a board, as ``cvnotes calibrate`` does.
 
     Parameters
     ----------
     photographs : path, or iterable of paths, arrays or Photo
-        Files, folders of files, pictures (height, width) or (height, width, 3), or what
-        `read_photos` gave.
+        Files, folders of files, pictures (height, width) or (height, width, 3), what `read_photos`
+        gave, or videos, of which frames are taken (`cvnotes.files.video`).
     board : Chessboard, CharucoBoard or float
         What was photographed; or the side of a square in mm, for a chessboard whose corners are
         counted in the photographs.
@@ -143,10 +136,10 @@ def detect_photographs(
     board: Board | float,
     *,
     leave_out: Iterable[PathLike] = (),
-    progress: Progress = _unseen,
+    progress: Progress = unseen,
 ) -> Photographs:
     """Look for the board in photographs: the first steps of `calibrate_photographs`."""
-    files, rejected = listed(photographs, leave_out)
+    files, rejected = listed(photographs, leave_out, progress)
     counted = not isinstance(board, Board)
     if not isinstance(board, Board):
         board = chessboard(count(files), board)

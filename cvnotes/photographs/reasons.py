@@ -17,6 +17,17 @@ class LeftOut(Reason):
 
 
 @dataclass(frozen=True)
+class FramesTaken(Reason):
+    """It is a video; some of its frames stand for photographs."""
+
+    taken: int
+    of: int
+
+    def __str__(self) -> str:
+        return f"a video: of {self.of} frames {self.taken} that are sharp, still and different"
+
+
+@dataclass(frozen=True)
 class NoBoard(Reason):
     """The board was not found in it; `error` knows what was tried, and what is there instead."""
 

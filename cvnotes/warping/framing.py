@@ -39,7 +39,7 @@ def ideal_camera(
     >>> ideal_camera(camera, zoom=0.5, size=(1280, 960)).A[0]
     array([800. ,   0. , 639.5])
     >>> ideal_camera(camera, keep_all=True).A[0].round(1)
-    array([747.2,   0. , 319.5])
+    array([755.3,   0. , 319.5])
     """
     size = camera.size if size is None else size
     middle, A, scale = (np.array(size) - 1) / 2, camera.A, zoom
