@@ -128,10 +128,10 @@ def test_a_study_and_a_class_are_the_same_everywhere(name, request, class_of_fou
     k, f = LENSES["barrel"]
     executor = request.getfixturevalue(name)
     found = cvnotes.study(partial(one, n=4, k=k, f=f), range(4), executor)
-    n, marks = grade_folder(folder, COURSE, executor=executor)
+    handed_in, marks = grade_folder(folder, COURSE, executor=executor)
     table = marks_csv(in_order(marks), COURSE)
     assert found == cvnotes.study(partial(one, n=4, k=k, f=f), range(4))
-    assert n == 4
+    assert len(handed_in) == 4
     assert table == marks_csv(plain, COURSE)
 
 

@@ -16,6 +16,7 @@ from cvnotes.base import CvnotesError
 from cvnotes.learn import EXERCISES, check, hint, progress, solution
 from cvnotes.learn.exercises import CHAPTERS, COURSE
 from cvnotes.tutor.checker import foreseen
+from cvnotes.tutor.checker.beside import beside
 from cvnotes.tutor.checker.equality import up_to_scale
 from cvnotes.tutor.checker.judge import judge
 from cvnotes.tutor.checker.literals import as_code
@@ -247,8 +248,7 @@ def test_the_counterexample_is_the_shortest_and_can_be_copied():
     names = {"np": np}
     exec("\n".join(report.example()), names)
     assert names["W"].shape == (1, 3)
-    assert np.array_equal(names["yours"], names["W"][:, :2] + 0.1)
-    assert np.allclose(names["wanted"], report.wanted, rtol=1e-5, atol=0)
+    assert np.array_equal(report.yours, names["W"][:, :2] + 0.1)
     assert list(report.counterexample) == ["A", "R", "T", "W"]
 
 
@@ -322,8 +322,9 @@ def test_a_right_answer_has_a_last_entry_of_1_where_the_students_has():
 def test_truth_values_and_whole_numbers_are_shown_as_such():
     report = check("knows_its_origin", lambda columns, rows: columns != rows)
     assert "columns = np.array([9, 8, 7, 5])" in report.example()
-    assert "yours = np.array([True, True, False, True])" in report.example()
-    assert "wanted = np.array([True, False, False, True])" in report.example()
+    assert [line.split() for line in report.compared()[:3]] == [
+        ["yours", "wanted"], ["True", "True"], ["*True", "False"],
+    ]  # fmt: skip
 
 
 def test_one_number_for_several_is_told_from_one_of_several():
@@ -335,10 +336,35 @@ def test_one_number_for_several_is_told_from_one_of_several():
 
 def test_rounding_noise_is_not_shown():
     report = check("b_from_views", EXERCISES["b_from_views"].misconceptions[0].gives)
-    shown = {}
-    exec("\n".join(report.example()), {"np": np}, shown)
-    assert (shown["wanted"] == 0).sum() == 3
+    assert [line.split()[-1] for line in report.compared()].count("0") == 3
     assert (np.abs(report.wanted) < 1e-12).sum() == 3
+
+
+def test_the_answer_stands_beside_a_right_one_before_the_input_with_a_star_where_they_differ():
+    right = EXERCISES["project"].reference
+    report = check("project", lambda A, R, T, W: right(A, R, T, W) + [[0, 1e-3]])
+    text = repr(report).splitlines()
+    head = next(i for i, line in enumerate(text) if line.split() == ["yours", "wanted"])
+    assert text.index("  On this input:") > head
+    u, v, u_right, v_right = text[head + 1].split()
+    assert (u, v[0]) == (u_right, "*")
+    assert v[1:] != v_right  # as many digits as it takes
+    assert len(u.replace(".", "")) <= 7
+    assert f"<mark>{v}</mark>" in report._repr_html_()
+    long = beside(np.arange(40.0), np.arange(40.0) + (np.arange(40) == 17))
+    assert long[1:] == [" 17  *17     18", "… 1 of 40 rows differ"]
+    assert beside([1.0], [[1.0]]) == ["yours = np.array([1.0])", "wanted = np.array([[1.0]])"]
+
+
+@EACH
+def test_no_report_says_that_something_was_divided_that_is_no_number(exercise):
+    if exercise.answer != "function":
+        return
+    for nothing in (None, "H", np.nan):
+        outcomes = [outcome_of(nothing)] * len(exercise.inputs(2024))
+        report = judge(exercise, outcomes, 2024)
+        assert not report.passed
+        assert "divided by 0" not in repr(report)
 
 
 def test_of_what_never_came_back_nothing_is_said_to_hold_or_not():

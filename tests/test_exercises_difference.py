@@ -68,6 +68,9 @@ def said(name, change):
         ("normaliser", lambda N: -3 * N * [[1, 1, 1], [1, 1, 5], [1, 1, 1]], "a few numbers",
          "All is right but what stands in [1, 2]."),
         ("horizon", lambda x: 7 * x * [1, -1, 1], "signs of some numbers", "wrong in [1]"),
+        ("cam1_from_cam2", lambda G: G * [1, 1, 1, 1.5], "a few numbers", "R is right, T is not."),
+        ("extrinsics", lambda G: G * [1, 1, 1, -1], "signs of some numbers", "are wrong in T."),
+        ("extrinsics", lambda G: G * [1, 1.5, 1, 1], "a few numbers", "T is right, R is not."),
     ],
 )  # fmt: skip
 def test_what_differs_is_measured_and_named(name, change, called, sentence):

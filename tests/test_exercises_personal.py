@@ -100,8 +100,8 @@ def test_noise_is_normal():
     assert (np.abs(noise) < 1.96).mean() == pytest.approx(0.95, abs=0.012)
 
 
-@pytest.mark.parametrize("student", ["", "  ", None, 7])
-def test_an_id_is_a_text(student):
+@pytest.mark.parametrize("student", ["", "  ", None, 7.0])
+def test_an_id_is_a_text_or_a_number(student):
     with pytest.raises(CvnotesError, match="expected your id"):
         personal_camera(student)
 

@@ -10,9 +10,11 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from cvnotes.learn import EXERCISES, check, exercises, progress
+from cvnotes.base import CvnotesError
+from cvnotes.learn import EXERCISES, check, exercises, personal_camera, progress
 from cvnotes.learn.exercises import COURSE
 from cvnotes.tutor import course
 from cvnotes.tutor.course import Session
@@ -106,14 +108,36 @@ def test_what_a_report_names_is_at_hand_in_the_notebook(monkeypatch):
     assert running.user_ns == {"hint": COURSE.hint, "solution": COURSE.solution, "progress": mine}
 
 
-def test_what_is_too_long_to_show_is_named_so_that_it_can_be_had():
-    import numpy as np
+@pytest.mark.usefixtures("file")
+def test_whoever_puts_the_answer_first_is_told_so_and_an_id_may_be_a_number():
+    with pytest.raises(CvnotesError, match=r'comes first: check\("lift", my_lift\)'):
+        check(abs, "lift")
+    numbers = personal_camera(123456).truth().A[[0, 1, 0, 1], [0, 1, 2, 2]]
+    assert check("own_camera", numbers, student=123456).passed
+    assert check("own_camera", numbers, student="123456").passed
 
+
+@pytest.mark.usefixtures("file")
+def test_the_hint_after_a_refusal_gives_the_step_that_is_missing():
+    def my_error_bars(J, r):
+        s2 = r @ r / len(r)
+        return np.sqrt(s2 * np.diag(np.linalg.inv(J.T @ J)))
+
+    assert "The step" not in repr(COURSE.hint("error_bars"))
+    assert "r @ r / (n - p)" not in repr(check("error_bars", my_error_bars))
+    said, hint = COURSE.hint("error_bars").lines
+    assert said == "The step that is missing first is s2 = r @ r / (n - p)."
+    assert hint == EXERCISES["error_bars"].hints[1]
+    check("error_bars", EXERCISES["error_bars"].reference)
+    assert len(COURSE.hint("error_bars").lines) == 1
+
+
+def test_what_is_too_long_to_show_is_named_so_that_it_can_be_had():
     def my_backward_warp(image, H, size):
         return np.zeros((300, 300))
 
     report = check("backward_warp", my_backward_warp)
-    [line] = [line for line in report.example() if line.startswith("yours")]
+    [line] = [line for line in report.compared() if line.startswith("yours")]
     assert line == 'yours = check("backward_warp", my_backward_warp).yours  # (300, 300)'
     names = {"check": check, "my_backward_warp": my_backward_warp}
     exec(line, names)

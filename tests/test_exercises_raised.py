@@ -12,6 +12,7 @@ from cvnotes.learn import EXERCISES
 from cvnotes.tutor.checker import raised
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.judge import judge
+from cvnotes.tutor.checker.sandbox import run
 
 SEED = 2024
 
@@ -156,3 +157,14 @@ def test_the_students_own_line_is_not_what_was_raised():
     report = tried("lift", lambda x, w: undefined / np.square(x) @ np.broadcast_to(w, 3))
     assert "np.square" in report.message
     assert report.misconception == "an unknown name"
+
+
+def test_a_quoted_line_is_never_cut_without_its_closing_sign():
+    def my_lift(x, w):
+        raise ValueError(
+            "a long story " * 40 + str(x) + str(w)
+        )  # and a long line of code behind it
+
+    [outcome] = run(my_lift, EXERCISES["lift"].inputs(SEED)[:1])
+    assert "…, in the line `raise ValueError(" in outcome.words
+    assert outcome.words.endswith("`")

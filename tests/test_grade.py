@@ -85,9 +85,9 @@ def cells_for(exercises, sources):
 
 
 def graded(folder, **limits):
-    n, marks = grade_folder(folder, COURSE, **limits)
+    handed_in, marks = grade_folder(folder, COURSE, **limits)
     marks = list(marks)
-    assert n == len(marks)
+    assert len(handed_in) == len(marks)
     return {m.name: m for m in sorted(marks, key=lambda m: m.name)}
 
 
@@ -238,7 +238,7 @@ def test_a_misconception_costs_exactly_its_exercise_and_is_judged_as_in_this_pro
     for name, (e, which) in wrong.items():
         # Of a null vector nobody chose, an example shows digits that memory's layout decides.
         there, here = (
-            replace(verdict, code="", note="", example=())
+            replace(verdict, code="", note="", compared=(), example=())
             for verdict in (mark.reports[name], judged_here[e.name, which])
         )
         assert (name, there) == (name, here)
@@ -302,11 +302,17 @@ def test_the_last_answer_counts_and_cells_after_a_broken_one_still_run(tmp_path)
         "check('lift', lambda x, k: x)",
         "raise RuntimeError('broken')",
         "this is no Python",
+        "np.random.default_rng = lambda *_: np.random.Generator(np.random.PCG64(1))",
         *answered("lift", source_of("lift")),
+        *answered("drop", source_of("drop")),
+        "check('drop', ...)",
+        EXERCISES["lift"].stub + "\n" + hand_over("lift"),
+        "def check(*args): return 'right'",
     )
     [mark] = graded(tmp_path).values()
-    assert mark.points == 1
-    assert mark.remark == "2 cells failed, first: RuntimeError: broken"
+    assert mark.points == 2  # and what is no answer takes none back
+    said = "2 cells failed, first: RuntimeError: broken; has a check of its own"
+    assert mark.remark == said
 
 
 def test_what_notebooks_do_besides_is_understood(tmp_path):
@@ -423,7 +429,7 @@ def test_no_notebook_gets_the_seed_or_sees_the_graders_environment(tmp_path, mon
     )
     notebook(tmp_path / "01_x.ipynb", cell)
     [mark] = graded(tmp_path).values()
-    assert mark.remark == ""
+    assert mark.remark == "hands nothing to check"
 
 
 @pytest.mark.usefixtures("in_this_process")
@@ -493,7 +499,7 @@ def test_exercises_that_a_notebook_does_not_have_are_left_blank():
 def test_the_number_in_a_notebooks_name_says_what_belongs_to_it():
     assert "dlt" in expected_exercises("06_anything.ipynb", ["lift"], COURSE)
     assert "lift" not in expected_exercises("06_anything.ipynb", ["lift"], COURSE)
-    assert "drop" in expected_exercises("ada.ipynb", ["lift"], COURSE)
+    assert expected_exercises("ada.ipynb", ["lift"], COURSE) == ("lift",)
     assert expected_exercises("ada.ipynb", [], COURSE) == ()
 
 

@@ -53,9 +53,9 @@ def test_answers_to_another_course_are_judged_with_its_words():
 def test_a_class_of_another_course_is_marked(tmp_path):
     handed_in(tmp_path / "ada", RIGHT)
     handed_in(tmp_path / "bob", MEAN)
-    n, marks = grade_folder(tmp_path, COURSE)
+    handed, marks = grade_folder(tmp_path, COURSE)
     ada, bob = sorted(marks, key=lambda mark: mark.student)
-    assert (n, ada.points, bob.points) == (2, 1, 0)
+    assert (len(handed), ada.points, bob.points) == (2, 1, 0)
     assert (ada.expected, bob.misconceptions) == (("middle",), {"middle": "mean"})
     assert "bob,01.ipynb,0,1,0,0,middle: mean,," in marks_csv([ada, bob], COURSE)
 

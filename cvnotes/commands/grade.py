@@ -20,6 +20,7 @@ from cvnotes.learn.exercises import COURSE
 from cvnotes.tutor.grader.assignment import Assignment, read_assignment
 from cvnotes.tutor.grader.feedback import class_page, class_picture, file_name, student_page
 from cvnotes.tutor.grader.grading import grade_folder
+from cvnotes.tutor.grader.handed_in import Handin
 from cvnotes.tutor.grader.marks import Mark
 from cvnotes.tutor.grader.process import Limits
 from cvnotes.tutor.grader.records import Records, read_records
@@ -136,10 +137,24 @@ class Outputs:
         """What the pages are called."""
         return self.assignment.title if self.assignment else "Exercises"
 
+    def unfinished(self, marks: Sequence[Mark], handed_in: Sequence[Handin]) -> bytes:
+        """Return the table while others are waiting: of an assignment it says so of them."""
+        done = {(mark.student, mark.notebook) for mark in marks}
+        waiting = [
+            Mark(one.student, one.notebook, remark="not run yet")
+            for one in handed_in
+            if self.assignment and (one.student, one.notebook) not in done
+        ]
+        return self._marks([*marks, *waiting])
+
+    def _marks(self, marks: Sequence[Mark]) -> bytes:
+        marks = sorted(marks, key=lambda mark: (mark.student, mark.notebook))
+        return _for_spreadsheets(marks_csv(marks, COURSE, self.assignment))
+
     def contents(self, marks: Sequence[Mark]) -> dict[Path, bytes]:
         """Return all files but the records."""
         marks = sorted(marks, key=lambda mark: (mark.student, mark.notebook))
-        contents = {self.table: _for_spreadsheets(marks_csv(marks, COURSE, self.assignment))}
+        contents = {self.table: self._marks(marks)}
         sums = totals(marks, COURSE, self.assignment)
         if self.platform:
             text = _FORMATS[self.platform](sums, self.title)
@@ -180,7 +195,7 @@ def _grade(args: argparse.Namespace) -> int:
     _check(outputs)
     known = read_records(outputs.records, limits, COURSE) if args.resume else {}
     with ExitStack() as stack:
-        n, marks = grade_folder(
+        handed_in, marks = grade_folder(
             folder,
             COURSE,
             seconds=limits.seconds,
@@ -197,10 +212,10 @@ def _grade(args: argparse.Namespace) -> int:
             for mark in stack.enter_context(closing(marks)):  # type: ignore[type-var]
                 records.add(mark)
                 graded.append(mark)
-                write_whole({outputs.table: outputs.contents(graded)[outputs.table]})
-                say(f"{len(graded)} of {n}  {one_line(mark, assignment)}")
+                write_whole({outputs.table: outputs.unfinished(graded, handed_in)})
+                say(f"{len(graded)} of {len(handed_in)}  {one_line(mark, assignment)}")
         except KeyboardInterrupt:
-            text = f"interrupted; the {len(graded)} finished rows of {n} are kept"
+            text = f"interrupted; the {len(graded)} finished rows of {len(handed_in)} are kept"
             complain("grade", f"{text}, --resume goes on from there")
             raise
     write_whole(outputs.contents(graded))

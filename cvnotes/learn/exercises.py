@@ -75,7 +75,7 @@ def add_exercises(path: str | Path) -> tuple[str, ...]:
     return COURSE.add_exercises(path)
 
 
-def check(name: str, answer: Any, *, student: str | None = None) -> Report:
+def check(name: str, answer: Any, *, student: str | int | None = None) -> Report:
     """Try an answer, and say what holds, what does not, and why.
 
     Parameters
@@ -85,7 +85,7 @@ def check(name: str, answer: Any, *, student: str | None = None) -> Report:
     answer : any
         The function you wrote, without brackets; for some exercises a number, a letter, or
         several functions by name.
-    student : str, optional
+    student : str or int, optional
         Your id, for exercises on `personal_camera`.
 
     Returns

@@ -87,12 +87,12 @@ class PersonalCamera:
         )
 
 
-def personal_camera(student: str) -> PersonalCamera:
+def personal_camera(student: str | int) -> PersonalCamera:
     """Return the camera, board and pictures of one student.
 
     Parameters
     ----------
-    student : str
+    student : str or int
         Any id; capitals and spaces around it do not matter.
 
     Returns
@@ -112,6 +112,8 @@ def personal_camera(student: str) -> PersonalCamera:
     >>> personal_camera(" ada").student == personal_camera("Ada").student
     True
     """
+    if isinstance(student, int):
+        student = str(student)
     if not isinstance(student, str) or not student.strip():
         raise CvnotesError(f"student: expected your id, a text that is not empty, got {student!r}")
     name = unicodedata.normalize("NFKC", student).strip().casefold()

@@ -32,6 +32,7 @@ class Session:
     solved: set[str] = field(default_factory=set)
     hints: Counter[str] = field(default_factory=Counter)
     refused: Counter[str] = field(default_factory=Counter)
+    exact: dict[str, str] = field(default_factory=dict)
 
 
 class Course:
@@ -106,7 +107,7 @@ class Course:
         """Return the files that exercises were added from."""
         return tuple(dict.fromkeys(self.added.values()))
 
-    def check(self, name: str, answer: Any, *, student: str | None = None) -> Report:
+    def check(self, name: str, answer: Any, *, student: str | int | None = None) -> Report:
         """Try an answer, and say what holds, what does not, and why.
 
         Parameters
@@ -115,7 +116,7 @@ class Course:
             Which exercise.
         answer : any
             The function, without brackets; or a number, a letter, or several functions by name.
-        student : str, optional
+        student : str or int, optional
             The id, for exercises that have numbers of the student's own.
 
         Raises
@@ -125,6 +126,7 @@ class Course:
         """
         exercise = self.asked(name, student)
         report = verdict(exercise, {NOTEBOOK_SEED: ask(exercise, answer, NOTEBOOK_SEED)})
+        self.session.exact.pop(name, None)
         if report.passed:
             self.session.solved.add(name)
             remember(self.session.solved)
@@ -143,15 +145,21 @@ class Course:
             report = replace(report, located=found.sentence)
             if not report.exact and found.missing is not None:
                 report = replace(report, exact=found.missing.code)
+        self.session.exact[exercise.name] = report.exact
         return report if again else replace(report, exact="")
 
     def hint(self, name: str) -> Words:
-        """Return a hint; the next one each time, and the last again."""
+        """Return a hint; the next one each time, and the last again.
+
+        After an answer that left the way at a step it begins with that step, exactly.
+        """
         exercise, given = self.find(name), self.session.hints
         number = min(given[name], len(exercise.hints) - 1)
         given[name] += 1
         title = f"{name}, hint {number + 1} of {len(exercise.hints)}"
-        return Words(title, (exercise.hints[number],))
+        step = self.session.exact.get(name)
+        exact = (f"The step that is missing first is {step}.",) if step else ()
+        return Words(title, (*exact, exercise.hints[number]))
 
     def solution(self, name: str) -> Source:
         """Show one right answer: the source of the reference."""
@@ -174,8 +182,11 @@ class Course:
         Raises
         ------
         CvnotesError
-            There is no such exercise; the message names those that sound like it.
+            There is no such exercise; the message names those that sound like it. Or this is
+            no name.
         """
+        if not isinstance(name, str):
+            raise CvnotesError('the name of the exercise comes first: check("lift", my_lift)')
         exercise = self.exercises.get(name)
         if exercise is None:
             near = difflib.get_close_matches(str(name), self.exercises, n=3, cutoff=0.3)
@@ -183,7 +194,7 @@ class Course:
             raise CvnotesError(f"there is no exercise {name!r}{meant}")
         return exercise
 
-    def asked(self, name: str, student: str | None) -> Exercise:
+    def asked(self, name: str, student: str | int | None) -> Exercise:
         """Return an exercise as one student gets it: some have numbers of the student's own.
 
         Raises
@@ -196,7 +207,7 @@ class Course:
             return exercise
         if student is None:
             raise CvnotesError(f'{name} has other numbers for each student: add student="your id"')
-        return exercise.personal(student)
+        return exercise.personal(str(student))  # many ids are numbers
 
     def notebook_of(self, exercise: Exercise) -> str:
         """Return which notebook asks for an exercise, as `short_name` calls it."""

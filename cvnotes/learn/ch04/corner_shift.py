@@ -63,7 +63,7 @@ MISTAKES = mistakes(
      lambda: _shift((-0.25, -0.1), _R), lambda: _shift((0.25, 0.1), _R),
      lambda: _shift((0.1, -0.25), _R)),
     ("half of it, or twice",
-     "That is half of the shift, or twice the shift, which is 800 (L − 1) r pixels.",
+     "That is half of the shift, or twice the shift: how many pixels is r, and how many L r?",
      lambda: corner_shift() / 2, lambda: 2 * corner_shift()),
 )  # fmt: skip
 

@@ -49,7 +49,7 @@ def _steps(xy: Array, k: Array, p: Array) -> Any:
 
 
 MISTAKES = mistakes(
-    ("r for r²", "L is a polynomial in r², and you have r.",
+    ("r for r²", "Which powers of r does L have? You have others.",
      lambda xy, k, p: _through(xy, 1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy ** 2).sum(1,
          keepdims=True), p),
      lambda xy, k, p: _through(xy, 1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy ** 2).sum(1)[:,
@@ -77,7 +77,8 @@ MISTAKES = mistakes(
          p[::-1], lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, :1],
      lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, 1:],
      lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p).sum(1)[:, None]),
-    ("r² of one coordinate", "r² is the sum of both squares, and the same for x and y.",
+    ("r² of one coordinate", "You took the square of one coordinate: a point has one radius, the "
+     "same for x and y.",
      lambda xy, k, p: _with_r2(xy, k, p, xy[:, :1] ** 2),
      lambda xy, k, p: _with_r2(xy, k, p, xy[:, 1:] ** 2),
      lambda xy, k, p: _with_r2(xy, k, p, xy ** 2),

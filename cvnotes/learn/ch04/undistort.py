@@ -130,7 +130,7 @@ MISTAKES = mistakes(
      "In each round you multiplied, or subtracted, where a division belongs.",
      lambda xy_lens, k: _multiplied(xy_lens, k, 2),
      *(lambda xy_lens, k, n=n: _multiplied(xy_lens, k, n) for n in (5, 10, 20, 30, 50, 100))),
-    ("r for r²", "L is a polynomial in r², with r⁴ in its last term; you have other powers.",
+    ("r for r²", "Which powers of r does L have? You have others.",
      lambda xy_lens, k: _with_r(xy_lens, k),
      lambda xy_lens, k: undistort(xy_lens, np.array([k.sum(), 0.0]))),
 )  # fmt: skip

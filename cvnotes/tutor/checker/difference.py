@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.tutor.checker.equality import Same, close, tolerance, up_to_scale
+from cvnotes.tutor.checker.equality import Same, close, same_motion, tolerance, up_to_scale
 from cvnotes.tutor.checker.wrong_answer import Found, Tried, WrongAnswer
 
 Pair = tuple[Array, Array]
@@ -434,6 +434,8 @@ _NO_NUMBERS: tuple[tuple[str, str, Change, Change], ...] = (
 
 def _entries(wrong: _Wrong) -> str:
     """Name the entries that are wrong in every case, if it is a few."""
+    if block := _block(wrong):
+        return f" in {block}"
     shapes = {right.shape for _, right in wrong.pairs}
     if len(shapes) != 1 or shapes == {()}:
         return ""
@@ -442,6 +444,19 @@ def _entries(wrong: _Wrong) -> str:
         return ""
     named = [_index(i) for i in np.argwhere(places)]
     return f" in {', '.join(named)}"
+
+
+def _block(wrong: _Wrong) -> str:
+    """Name what alone is wrong of a pose: R or T; empty if that are both, or this is no pose."""
+    if wrong.same is not same_motion:
+        return ""
+    blocks = {"R": np.s_[:3, :3], "T": np.s_[:3, 3:]}
+    off = [
+        name
+        for name, i in blocks.items()
+        if not all(close(a[i], right[i], wrong.bound) for a, right in wrong.pairs)
+    ]
+    return off[0] if len(off) == 1 else ""
 
 
 def _wrong_entries(answer: Array, right: Array) -> Array:
@@ -460,6 +475,9 @@ def _some(wrong: _Wrong) -> Found | None:
     pairs = wrong.aligned
     if any(a.ndim == 0 for a, _ in pairs):
         return None
+    if block := _block(wrong):
+        other = "T" if block == "R" else "R"
+        return Found("a few numbers", f"{other} is right, {block} is not.")
     places = [_wrong_entries(*pair) for pair in pairs]
     if few := _entries(wrong):
         return Found("a few numbers", f"All is right but what stands{few}.")

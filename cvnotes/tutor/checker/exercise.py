@@ -9,6 +9,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+# By a name of our own: a notebook may put something else in its place.
+from numpy.random import default_rng
+
 from cvnotes.base import Array
 from cvnotes.tutor.checker.equality import Same, close
 from cvnotes.tutor.checker.parsing import parsed
@@ -188,11 +191,11 @@ class Exercise:
 
     def inputs(self, seed: int) -> list[tuple[Any, ...]]:
         """Return the arguments of all cases, without anything that gives the answer away."""
-        return [case.args for case in self.cases(np.random.default_rng(seed))]
+        return [case.args for case in self.cases(default_rng(seed))]
 
     def solved_cases(self, seed: int) -> Iterator[Case]:
         """Return the same cases with one right answer each."""
-        for case in self.cases(np.random.default_rng(seed)):
+        for case in self.cases(default_rng(seed)):
             with np.errstate(all="ignore"), warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 right = np.asarray(self.reference(*case.args), dtype=np.float64)

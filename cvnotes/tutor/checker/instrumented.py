@@ -84,10 +84,12 @@ class Instrumented:
         if number not in self._put:
             return value
         new, old = self._put[number], np.asarray(value)
-        if new.size != old.size:  # one of the rounds of a loop
-            new = new[len(seen) - 1]
+        if new.size != old.size and old.size:  # one of the rounds of a loop
+            new = np.reshape(new, (-1, *old.shape))[len(seen) - 1]
         new = np.reshape(new, old.shape) if new.size == old.size else new
-        return float(new) if new.ndim == 0 else np.array(new)
+        if old.dtype.kind in "iu" and (new == np.rint(new)).all():  # it may be an index
+            new = new.astype(old.dtype)
+        return new.item() if new.ndim == 0 else np.array(new)
 
     def _made(self, function: Callable[..., Any]) -> Callable[..., Any]:
         names = dict(function.__globals__)

@@ -149,7 +149,8 @@ def decode(line: bytes | str) -> Outcome:
         kind = fields["kind"]
         value = _array(fields["value"], fields["shape"]) if kind == "numbers" else None
         changed = tuple(int(i) for i in fields["changed"])
-        dtype, words = clean(fields["dtype"]), clean(fields["words"])
+        # What was raised, and the line in which it happened.
+        dtype, words = clean(fields["dtype"]), clean(fields["words"], 400)
         printed = str(fields["printed"])[:MAX_PRINTED]
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise CvnotesError(f"not an outcome: {clean(error)}") from None

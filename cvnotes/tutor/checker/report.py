@@ -1,11 +1,13 @@
 """The checker's answer as a value, in text and HTML; and the values of hint, solution, progress."""
 
+import re
 from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
 from cvnotes.base.text import clipped
-from cvnotes.tutor.checker.literals import as_code, readable
+from cvnotes.tutor.checker.beside import STAR, beside
+from cvnotes.tutor.checker.literals import as_code
 
 RIGHT, OPEN, WRONG = "right", "not solved yet", "not yet right"
 _ON_THIS, _PRINTED = "On this input:", "Your function printed:"
@@ -77,6 +79,7 @@ class Report:
         mark = {RIGHT: "✓ ", WRONG: "✗ "}.get(self.verdict, "")
         lines = [f"{self.exercise}: {mark}{self.verdict}", f"  {self.message}"]
         lines += [f"  {text}" for text in self._pointers()]
+        lines += [f"    {line}" for line in self.compared()]
         lines += [f"  ✓ holds: {sentence}" for sentence in self.holds]
         lines += [f"  ✗ does not hold: {self.fails}"] * bool(self.fails)
         example = "\n".join(self.example()).splitlines()
@@ -93,6 +96,7 @@ class Report:
             f"<div><strong>{escape(self.exercise)}: {mark}{self.verdict}.</strong> "
             f"{escape(self.message)}"
             + "".join(f"<p {_APART}>{escape(text)}</p>" for text in self._pointers())
+            + marked(_block("", self.compared()))
             + _list(items, style="list-style:none;padding-left:1em;margin:0.6em 0")
             + _block(_ON_THIS, self.example())
             + _list(self.remarks)
@@ -107,15 +111,16 @@ class Report:
 
     def example(self) -> list[str]:
         """Return the counterexample as statements that can be copied."""
-        lines = [
+        return [
             f"{name} = {as_code(value, f'{self.call}.counterexample[{name!r}]')}"
             for name, value in self.counterexample.items()
         ]
-        if self.yours is not None:
-            lines.append(f"yours = {as_code(readable(self.yours), f'{self.call}.yours')}")
-        if self.wanted is not None:
-            lines.append(f"wanted = {as_code(readable(self.wanted), f'{self.call}.wanted')}")
-        return lines
+
+    def compared(self) -> list[str]:
+        """Return the lines of the wrong answer beside a right one, a star where they differ."""
+        if self.yours is None or self.wanted is None:
+            return []
+        return beside(self.yours, self.wanted, self.call)
 
     def printed_lines(self) -> list[str]:
         """Return the first lines that the function printed."""
@@ -152,9 +157,15 @@ class Source:
 
 
 def _block(title: str, lines: list[str]) -> str:
-    """Write lines as they are, below a title; nothing without lines."""
+    """Write lines as they are, below a title if there is one; nothing without lines."""
     text = escape("\n".join(lines))
-    return f"<p {_APART}>{title}</p><pre {_APART}>{text}</pre>" if lines else ""
+    head = f"<p {_APART}>{title}</p>" if title else ""
+    return f"{head}<pre {_APART}>{text}</pre>" if lines else ""
+
+
+def marked(html: str) -> str:
+    """Mark the numbers with a star, which stays for whoever does not see the mark."""
+    return re.sub(rf"{re.escape(STAR)}[\w.+-]+", r"<mark>\g<0></mark>", html)
 
 
 def _list(items: Any, style: str = "") -> str:

@@ -13,8 +13,7 @@ def expected_exercises(notebook: str, handed_in: list[str], course: Course) -> t
 
     The number in its name says which chapter it is; of several numbers (of a group, of a sheet)
     the one whose chapter it answers most of. That of the further exercises has a name instead.
-    Without either, a notebook that answers one chapter is that chapter, and a collection is what
-    it answers.
+    Without either, they are what it answers.
 
     Examples
     --------
@@ -28,13 +27,7 @@ def expected_exercises(notebook: str, handed_in: list[str], course: Course) -> t
     """
     placed, given = _placed(course), {*handed_in}
     chapter = _chapter(notebook, placed, given)
-    met = [names for names in placed.values() if names & given]
-    if chapter:
-        expected = placed[chapter]
-    elif len(met) == 1:
-        [expected] = met
-    else:
-        expected = given
+    expected = placed[chapter] if chapter else given
     return tuple(name for name in course.exercises if name in expected)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from html import escape
 
 from cvnotes.tutor.checker.exercise import Exercise
+from cvnotes.tutor.checker.report import marked
 from cvnotes.tutor.course import Course
 from cvnotes.tutor.grader.assignment import Item
 from cvnotes.tutor.grader.marks import Mark, Verdict
@@ -120,10 +121,10 @@ def _badge(verdict: Verdict | None) -> str:
 
 
 def _found(verdict: Verdict) -> list[str]:
-    """Write what held, what did not, the counterexample and the misconception."""
+    """Write the answer beside a right one, what held, what did not, and on which input."""
     lines = []
-    if verdict.misconception:
-        lines.append(f"<p>A known mistake: <strong>{escape(verdict.misconception)}</strong>.</p>")
+    if verdict.compared:
+        lines.append(marked(f"<pre>{escape(chr(10).join(verdict.compared))}</pre>"))
     held = [f"<li>✓ {escape(sentence)}</li>" for sentence in verdict.holds]
     held += [f"<li>✗ {escape(verdict.fails)}</li>"] * bool(verdict.fails)
     lines += [f"<ul>{''.join(held)}</ul>"] * bool(held)

@@ -11,7 +11,6 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from cvnotes.base import CvnotesError
 from cvnotes.tutor.checker.outcome import clean
@@ -21,7 +20,7 @@ from cvnotes.tutor.grader.handed_in import Handin, listed
 from cvnotes.tutor.grader.handin import code_cells
 from cvnotes.tutor.grader.judging import judged
 from cvnotes.tutor.grader.marks import Mark, Verdict
-from cvnotes.tutor.grader.process import Limits, clear_abandoned, run_notebook, stop
+from cvnotes.tutor.grader.process import Limits, Ran, clear_abandoned, run_notebook, stop
 from cvnotes.tutor.grader.source import fingerprint, own_code
 
 
@@ -35,7 +34,7 @@ def grade_folder(
     executor: Executor | None = None,
     known: Mapping[tuple[str, str, str], Mark] | None = None,
     ours: Collection[Path] = (),
-) -> tuple[int, Iterator[Mark]]:
+) -> tuple[list[Handin], Iterator[Mark]]:
     """Grade all notebooks below a folder.
 
     Parameters
@@ -58,8 +57,8 @@ def grade_folder(
 
     Returns
     -------
-    n, marks
-        How many there are, and an iterator over their marks, as they come: close it to stop.
+    handed_in, marks
+        What there is, and an iterator over its marks, as they come: close it to stop.
 
     Raises
     ------
@@ -72,7 +71,7 @@ def grade_folder(
         raise CvnotesError(f"{course.home} is another course than the one to grade by")
     handed_in = listed(folder, ours)
     clear_abandoned()
-    return len(handed_in), _marks(
+    return handed_in, _marks(
         handed_in, course, Limits(seconds, megabytes), jobs, executor, known or {}, (folder,)
     )
 
@@ -162,7 +161,7 @@ def _graded(
         verdicts,
         expected_exercises(one.notebook, list(verdicts), course),
         ids,
-        ran.ended or _remark(ran.finished),
+        "; ".join(_remarks(ran, cells)),
         one.hash,
         ran.sealed,
     )
@@ -177,14 +176,19 @@ def _looked_at(
         name: replace(
             verdict,
             code=fingerprint(name, written, course.notebooks),
-            note="; ".join(filter(None, (verdict.note, written.borrowed(course.exercises[name])))),
         )
         for name, verdict in verdicts.items()
     }
 
 
-def _remark(finished: Mapping[str, Any]) -> str:
-    if not finished:
-        return "ended before its last cell"
-    failed = finished.get("failed")
-    return f"{failed} cells failed, first: {clean(finished.get('first'), 120)}" if failed else ""
+def _remarks(ran: Ran, cells: list[str]) -> Iterator[str]:
+    """Yield what a teacher is to know of a notebook as a whole."""
+    failed = ran.finished.get("failed")
+    if ran.ended or not ran.finished:
+        yield ran.ended or "ended before its last cell"
+    elif failed:
+        yield f"{failed} cells failed, first: {clean(ran.finished.get('first'), 120)}"
+    if "check" in own_code(cells).definitions:
+        yield "has a check of its own"
+    elif not ran.answers and ran.finished:
+        yield "hands nothing to check"

@@ -21,9 +21,10 @@ from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED
 from cvnotes.tutor.checker.exercise import Case, Exercise
 from cvnotes.tutor.checker.judge import judge
 from cvnotes.tutor.checker.outcome import clean, encode
-from cvnotes.tutor.checker.report import Report
+from cvnotes.tutor.checker.report import OPEN, Report
 from cvnotes.tutor.checker.sandbox import ask
 from cvnotes.tutor.course import Course
+from cvnotes.tutor.grader.borrowed import borrowed
 from cvnotes.tutor.grader.seal import adopt_orphans, end_with_parent, sealed
 
 # Bytes that a notebook may write into one file.
@@ -128,13 +129,15 @@ def _recorder(
     An answer that is right on the notebook's own inputs is tried on others, too.
     """
 
-    def check(name: str, answer: Any, *, student: str | None = None) -> Report:
+    def check(name: str, answer: Any, *, student: str | int | None = None) -> Report:
         exercise = course.asked(name, student)
         outcomes = ask(exercise, answer, NOTEBOOK_SEED)
         report = judge(exercise, outcomes, NOTEBOOK_SEED)
         again = ask(_on(exercise, inputs), answer, NOTEBOOK_SEED) if report.passed else []
         lines = [[encode(outcome).decode() for outcome in tried] for tried in (outcomes, again)]
-        write({"exercise": name, "student": student, "outcomes": lines[0], "again": lines[1]})
+        of = {"exercise": name, "student": student, "open": report.verdict == OPEN}
+        whose = borrowed(answer, exercise) if report.passed else ""
+        write({**of, "outcomes": lines[0], "again": lines[1], "borrowed": whose})
         return report
 
     return check

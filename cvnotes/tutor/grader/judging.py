@@ -53,7 +53,7 @@ def _judged(
     deadline = time.monotonic() + _SECONDS
     for name in (name for name in course.exercises if name in answers):
         given = answers[name].get("student")
-        student = clean(given, 60) if isinstance(given, str) else None
+        student = clean(given, 60) if isinstance(given, str | int) else None
         if time.monotonic() > deadline:
             verdicts[name] = Verdict(WRONG, "Not judged.", note="judging took too long")
             continue
@@ -74,7 +74,13 @@ def _verdict(exercise: Exercise, line: Mapping[str, Any], seed: int) -> Verdict:
         return verdict_of(report)
     outcomes[seed] = _outcomes(exercise, line["again"], seed)
     report = verdict(exercise, outcomes)
-    return verdict_of(report, note=RIGHT_THERE_NOT_HERE * (not report.passed))
+    return verdict_of(report, note=_borrowed(line) if report.passed else RIGHT_THERE_NOT_HERE)
+
+
+def _borrowed(line: Mapping[str, Any]) -> str:
+    name = line.get("borrowed")
+    named = isinstance(name, str) and len(name) <= 60 and name.isidentifier()
+    return f"uses the library's own {name}" if named else ""
 
 
 def _outcomes(exercise: Exercise, lines: Any, seed: int) -> list[Outcome]:

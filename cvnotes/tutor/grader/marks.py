@@ -18,8 +18,8 @@ class Verdict:
     ----------
     verdict, message, misconception, holds, fails, remarks
         As in `cvnotes.tutor.checker.report.Report`.
-    example : tuple of str
-        The counterexample as code, line by line.
+    compared, example : tuple of str
+        The answer beside a right one, and the counterexample as code, line by line.
     code : str
         A fingerprint of the functions that were handed in; empty for a stub or a value.
     note : str
@@ -32,6 +32,7 @@ class Verdict:
     holds: tuple[str, ...] = ()
     fails: str = ""
     remarks: tuple[str, ...] = ()
+    compared: tuple[str, ...] = ()
     example: tuple[str, ...] = ()
     code: str = ""
     note: str = ""
@@ -63,6 +64,7 @@ def verdict_of(report: Report, *, code: str = "", note: str = "") -> Verdict:
         report.holds,
         report.fails,
         report.remarks,
+        tuple(report.compared()),
         lines,
         code,
         note,
@@ -146,5 +148,7 @@ def from_fields(fields: Mapping[str, Any]) -> Mark:
 
 
 def _verdict(given: Mapping[str, Any]) -> Verdict:
-    lists = {name: tuple(map(str, given[name])) for name in ("holds", "remarks", "example")}
+    lists = {
+        name: tuple(map(str, given[name])) for name in ("holds", "remarks", "compared", "example")
+    }
     return Verdict(**{**given, **lists})

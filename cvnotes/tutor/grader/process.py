@@ -48,7 +48,8 @@ class Ran:
     Attributes
     ----------
     answers : dict
-        The last line about each exercise, by its name; nobody has looked at what it says.
+        The last line about each exercise, by its name, an answer before a stub; nobody has
+        looked at what it says.
     finished : dict
         The line it ends with, if it came that far.
     ended : str
@@ -240,7 +241,9 @@ def _keep(line: bytes, ran: Ran, course: Course) -> None:
         return
     name = fields.get("exercise")
     if isinstance(name, str) and name in course.exercises:
-        ran.answers[name] = fields
+        # A stub that is run after an answer takes nothing back.
+        if not fields.get("open") or ran.answers.get(name, fields).get("open"):
+            ran.answers[name] = fields
     elif fields.get("finished") is True:
         ran.finished = fields
     elif "sealed" in fields and not ran.answers:

@@ -1,4 +1,4 @@
-"""What the text of a notebook says about its answers: equal functions, and borrowed ones.
+"""What the text of a notebook says about its answers: whether two students wrote the same.
 
 Running shows whether an answer is right; whose it is, only the text can tell, and only of whoever
 does not hide it. So all that is made of this are remarks.
@@ -6,15 +6,11 @@ does not hide it. So all that is made of this are remarks.
 
 import ast
 import copy
-import inspect
-import textwrap
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
-from cvnotes.tutor.checker.exercise import Exercise
 from cvnotes.tutor.checker.parsing import parsed
 from cvnotes.tutor.grader.handin import code_cells
 
@@ -33,13 +29,10 @@ class Code:
         The last definition of each name at the top level.
     handed : dict
         What was handed in last, by exercise.
-    imported : dict
-        What each imported name is called where it comes from, for names of this package.
     """
 
     definitions: dict[str, Definition] = field(default_factory=dict)
     handed: dict[str, ast.expr] = field(default_factory=dict)
-    imported: dict[str, str] = field(default_factory=dict)
 
     def functions(self, name: str) -> list[Definition]:
         """Return the definitions that an answer is made of, as far as they are the notebook's."""
@@ -52,31 +45,6 @@ class Code:
                 found[used] = self.definitions[used]
                 open_ += _names(found[used])
         return [found[used] for used in sorted(found, key=lambda n: found[n].lineno)]
-
-    def borrowed(self, exercise: Exercise) -> str:
-        """Say whether an answer is the library's own function; empty if nothing shows it.
-
-        Examples
-        --------
-        >>> cells = ["from cvnotes.homography import dlt", "check('dlt', dlt)"]
-        >>> from cvnotes.learn import EXERCISES
-        >>> own_code(cells).borrowed(EXERCISES["dlt"])
-        "uses the library's own dlt"
-        """
-        handed = self.handed.get(exercise.name)
-        if handed is None or exercise.answer == "value":
-            return ""
-        theirs = _shapes(exercise.sources or (exercise.reference,))
-        own = self.functions(exercise.name)
-        for tree in (handed, *own):
-            for node in ast.walk(tree):
-                if isinstance(node, ast.Name) and self.imported.get(node.id) in theirs:
-                    return f"uses the library's own {self.imported[node.id]}"
-                if isinstance(node, ast.Attribute) and _is_theirs(node, theirs, self.imported):
-                    return f"uses the library's own {node.attr}"
-        if {_shape(tree, rename=False) for tree in own} & set(theirs.values()):
-            return "a copy of the library's source"
-        return ""
 
 
 def own_code(cells: list[str]) -> Code:
@@ -100,7 +68,7 @@ def own_code(cells: list[str]) -> Code:
         for node in ast.walk(tree):
             if isinstance(node, ast.Call) and _called(node) == "check" and len(node.args) > 1:
                 exercise = node.args[0]
-                if isinstance(exercise, ast.Constant):
+                if isinstance(exercise, ast.Constant) and ast.unparse(node.args[1]) != "...":
                     found.handed[str(exercise.value)] = node.args[1]
     return found
 
@@ -111,7 +79,7 @@ def fingerprint(name: str, written: Code, notebooks: Path | None) -> str:
     It is empty where the answer is too short to tell two students apart, or stands in the course's
     own notebooks, as its stubs do.
     """
-    shapes = {_shape(tree, rename=True): tree for tree in written.functions(name)}
+    shapes = {_shape(tree): tree for tree in written.functions(name)}
     given = _given(notebooks) if notebooks is not None else set()
     own = {shape: tree for shape, tree in shapes.items() if shape not in given}
     if sum(1 for tree in own.values() for _ in ast.walk(tree)) < _SHORTEST:
@@ -125,7 +93,7 @@ def _given(notebooks: Path) -> set[str]:
     shapes: set[str] = set()
     for path in notebooks.glob("*.ipynb"):
         definitions = own_code(code_cells(path.read_bytes())).definitions
-        shapes |= {_shape(tree, rename=True) for tree in definitions.values()}
+        shapes |= {_shape(tree) for tree in definitions.values()}
     return shapes
 
 
@@ -137,12 +105,6 @@ def _note(node: ast.stmt, found: Code) -> None:
         for target in targets:
             if isinstance(target, ast.Name):
                 found.definitions[target.id] = node
-    elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("cvnotes"):
-        found.imported |= {alias.asname or alias.name: alias.name for alias in node.names}
-    elif isinstance(node, ast.Import):
-        for alias in node.names:
-            if alias.name.startswith("cvnotes"):
-                found.imported[alias.asname or "cvnotes"] = ""
 
 
 def _called(node: ast.Call) -> str:
@@ -154,34 +116,8 @@ def _names(tree: ast.AST) -> list[str]:
     return [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
 
 
-def _is_theirs(node: ast.Attribute, theirs: dict[str, str], imported: dict[str, str]) -> bool:
-    """Return whether an attribute is the library's: ``cvnotes.homography.dlt``, ``.reference``."""
-    bases = list(_names(node.value))
-    if node.attr == "reference":
-        return "EXERCISES" in bases
-    if node.attr == "code":
-        return any(isinstance(n, ast.Call) and _called(n) == "solution" for n in ast.walk(node))
-    return node.attr in theirs and any(base in imported for base in bases)
-
-
-@cache
-def _shapes(sources: tuple[Any, ...]) -> dict[str, str]:
-    """Return the library's functions that answer an exercise: name and shape."""
-    shapes = {}
-    for source in sources:
-        function = getattr(source, "fget", None) or getattr(source, "func", None) or source
-        try:
-            tree = parsed(textwrap.dedent(inspect.getsource(function)))
-        except (OSError, TypeError, SyntaxError):
-            continue
-        for node in tree.body:
-            if isinstance(node, ast.FunctionDef):
-                shapes[node.name] = _shape(node, rename=False)
-    return shapes
-
-
-def _shape(tree: ast.AST, *, rename: bool) -> str:
-    """Write a definition without comments, docstrings, types, and its own names if wanted."""
+def _shape(tree: ast.AST) -> str:
+    """Write a definition without comments, docstrings, types and its own names."""
     tree = copy.deepcopy(tree)
     numbers: dict[str, str] = {}
     own = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
@@ -194,8 +130,7 @@ def _shape(tree: ast.AST, *, rename: bool) -> str:
                 node.body = node.body[1:] or [ast.Pass()]
         elif isinstance(node, ast.arg):
             node.annotation = None
-            if rename:
-                node.arg = numbers.setdefault(node.arg, f"n{len(numbers)}")
-        elif isinstance(node, ast.Name) and rename and node.id in own:
+            node.arg = numbers.setdefault(node.arg, f"n{len(numbers)}")
+        elif isinstance(node, ast.Name) and node.id in own:
             node.id = numbers.setdefault(node.id, f"n{len(numbers)}")
     return ast.dump(tree)

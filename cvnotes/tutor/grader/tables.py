@@ -183,10 +183,11 @@ def _name(total: Total) -> str:
 
 def _comment(total: Total) -> str:
     """Tell a student in a cell what the feedback page tells in full."""
-    said = [
-        f"{name}: {number(total.earned(name))} of {number(item.points)}"
-        for name, item in total.items.items()
-    ]
+    said = []
+    for name, item in total.items.items():
+        verdict = total.verdicts.get(name)
+        mistake = f". {verdict.message}" if verdict and verdict.misconception else ""
+        said.append(f"{name}: {number(total.earned(name))} of {number(item.points)}{mistake}")
     return "; ".join(said)
 
 

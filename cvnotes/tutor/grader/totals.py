@@ -75,7 +75,7 @@ def remarked(marks: Sequence[Mark], assignment: Assignment | None = None) -> lis
             remarks.append(f"other exercises answered: {', '.join(others)}")
         remarks += [f"{name}: {v.note}" for name, v in mark.reports.items() if v.note]
         remarks += [f"id {one} is not the folder's" for one in _foreign(mark, assignment)]
-        remarks += equal.get(mark.name, [])
+        remarks += filter(None, [equal.get(mark.name)])
         if mark.student and not assignment:  # there the sum over all notebooks says so
             theirs[_who(mark)].append(mark)
             remarks += _copies(theirs[_who(mark)], of=mark)
@@ -135,7 +135,7 @@ def _total(
         for name, verdict in mark.reports.items():
             item = items.get(name, Item(1.0))
             before = best.get(name)
-            if before is None or item.earned(verdict) > item.earned(before):
+            if before is None or _beats(verdict, before, item):
                 best[name] = verdict
     remarks = ["not on the list of students"] * (not known)
     remarks += [NOTHING] * (not pairs)
@@ -144,6 +144,11 @@ def _total(
     for mark, said in pairs:
         remarks += [f"{mark.notebook}: {text}" if several else text for text in said]
     return replace(total, verdicts=best, remarks=tuple(remarks))
+
+
+def _beats(one: Verdict, other: Verdict, item: Item) -> bool:
+    """Return whether an answer is better than another; what nobody tried beats nothing."""
+    return (item.earned(one), not one.is_open) > (item.earned(other), not other.is_open)
 
 
 def _copies(marks: Sequence[Mark], of: Mark) -> Iterator[str]:
@@ -164,8 +169,8 @@ def _foreign(mark: Mark, assignment: Assignment | None) -> Iterator[str]:
             yield one
 
 
-def _equal(marks: Sequence[Mark]) -> dict[str, list[str]]:
-    """Give, for each notebook, whose functions are equal to its own."""
+def _equal(marks: Sequence[Mark]) -> dict[str, str]:
+    """Say, for each notebook, whose functions are equal to its own."""
     writers: dict[tuple[str, str], list[Mark]] = defaultdict(list)
     for mark in marks:
         for name, verdict in mark.reports.items():
@@ -177,10 +182,19 @@ def _equal(marks: Sequence[Mark]) -> dict[str, list[str]]:
             others = [other.name for other in alike if _who(other) != _who(mark)]
             for other in others:
                 found[mark.name][other].append(name)
-    return {
-        mark: [f"the same functions as {other}: {', '.join(names)}" for other, names in one.items()]
-        for mark, one in found.items()
-    }
+    return {mark: f"the same functions as {_clause(others)}" for mark, others in found.items()}
+
+
+def _clause(others: Mapping[str, Sequence[str]]) -> str:
+    """Put who wrote which functions, too, into one clause."""
+    by_names: dict[str, list[str]] = defaultdict(list)
+    for other, names in others.items():
+        by_names[", ".join(names)].append(other)
+    said = []
+    for names, group in by_names.items():
+        more = f" and {len(group) - 2} more" if len(group) > 3 else ""
+        said.append(f"{', '.join(group[: 2 if more else 3])}{more}: {names}")
+    return ", as ".join(said)
 
 
 def _who(mark: Mark) -> str:
