@@ -36,8 +36,6 @@ RUN = {
     "slides": ["tools/build_slides.py"],
 }
 UV = shutil.which("uv")  # which installs in a fifth of pip's time
-# Nice to have: large scenes are drawn faster. Not every machine finds it ready to use.
-RAYS = "embreex>=2.17.7"
 UNREACHABLE = re.compile(
     "Name or service not known|name resolution|nodename nor servname|getaddrinfo failed"
     "|Failed to establish a new connection|ConnectTimeout|Connection refused|ProxyError"
@@ -137,10 +135,6 @@ def environment(extra: str) -> Path:
                 raise
             print(f"  {error}\n  The course goes on with the packages that it had.", flush=True)
             return python
-        try:
-            install(python, found, ["--only-binary", "embreex", RAYS])
-        except CannotError:
-            print("  (embreex is not to be had for this machine; the course goes without)")
         (folder / f"installed-{extra}").write_text(wanted, encoding="utf-8")
     except OSError as error:
         raise CannotError(

@@ -645,7 +645,6 @@ FUNCTIONS = [
             "corners": (np.array([[[0.0, 0, 5], [1, 0, 5], [0, 1, 5]]]), several(3)),
             "xy": (np.array([[[0.02, 0.02]]]), Argument((2,), empty=True, picture=True)),
         },
-        engine="own",
     ),
     function(
         quads,

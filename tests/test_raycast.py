@@ -1,11 +1,9 @@
 import numpy as np
 import pytest
 
-from cvnotes.base import CvnotesError, ShapeError
-from cvnotes.pictures.raycast import edge_functions, first_hits, has_embree
+from cvnotes.base import ShapeError
+from cvnotes.pictures.raycast import edge_functions, first_hits
 
-# embree is not to be had for every machine, and nothing is missed without it.
-ENGINES = ["own", "embree"] if has_embree() else ["own"]
 WALL = [[-2.0, -2, 4], [2, -2, 4], [-2, 2, 4]]  # meets the rays with x + y < 0, |x|, |y| < ½
 
 
@@ -22,24 +20,22 @@ def solved(corners, d):
     return np.where((a >= 0) & (b >= 0) & (a + b <= 1) & (s > 0), s, np.inf)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_ray_meets_the_nearer_of_two_walls_whichever_comes_first(engine):
+def test_a_ray_meets_the_nearer_of_two_walls_whichever_comes_first():
     far = 2 * np.array(WALL)
     for walls, nearer in (([WALL, far], 0), ([far, WALL], 1)):
-        hits = first_hits(walls, [[[-0.1, -0.2], [0.3, 0.4]]], engine=engine)
+        hits = first_hits(walls, [[[-0.1, -0.2], [0.3, 0.4]]])
         assert hits.triangle.tolist() == [[nearer, -1]]
         assert hits.depth[0, 0] == pytest.approx(4)
         assert np.isnan(hits.depth[0, 1])
 
 
 @pytest.mark.parametrize("spread", [0.6, 0.02])  # in the narrow groups a triangle hides others
-@pytest.mark.parametrize("engine", ENGINES)
-def test_hits_agree_with_solving_for_each_triangle(engine, spread):
+def test_hits_agree_with_solving_for_each_triangle(spread):
     rng = np.random.default_rng(5)
     corners = cloud(60, rng)
     xy = rng.uniform(spread - 0.6, 0.6 - spread, (40, 1, 2))
     xy = xy + rng.uniform(-spread, spread, (40, 10, 2))
-    hits = first_hits(corners, xy, engine=engine)
+    hits = first_hits(corners, xy)
     assert 0.2 < (hits.triangle >= 0).mean() < 0.95
     for ray, triangle, depth in zip(
         xy.reshape(-1, 2), hits.triangle.ravel(), hits.depth.ravel(), strict=True
@@ -49,32 +45,28 @@ def test_hits_agree_with_solving_for_each_triangle(engine, spread):
         assert np.allclose(depth, z.min(), atol=1e-9) or not np.isfinite(z.min())
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_what_is_behind_the_camera_is_not_seen_and_what_reaches_past_it_is(engine):
+def test_what_is_behind_the_camera_is_not_seen_and_what_reaches_past_it_is():
     behind = [[-2.0, -2, -4], [2, -2, -4], [-2, 2, -4]]
     floor = [[-50.0, 1, -50], [50, 1, -50], [0, 1, 80]]  # passes under the camera
-    hits = first_hits([behind, floor], [[[0.0, -0.1], [0.0, 0.1], [0.0, 2.0]]], engine=engine)
+    hits = first_hits([behind, floor], [[[0.0, -0.1], [0.0, 0.1], [0.0, 2.0]]])
     assert hits.triangle.tolist() == [[-1, 1, 1]]
     assert np.allclose(hits.depth[0, 1:], [10, 0.5], atol=1e-9)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_both_sides_of_a_triangle_are_seen(engine):
+def test_both_sides_of_a_triangle_are_seen():
     for corners in (WALL, WALL[::-1]):
-        assert first_hits([corners], [[[-0.1, -0.1]]], engine=engine).triangle == 0
+        assert first_hits([corners], [[[-0.1, -0.1]]]).triangle == 0
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_rays_beyond_the_lens_meet_nothing(engine):
-    hits = first_hits([WALL], [[[np.nan, np.nan], [-0.1, -0.1]]], engine=engine)
+def test_rays_beyond_the_lens_meet_nothing():
+    hits = first_hits([WALL], [[[np.nan, np.nan], [-0.1, -0.1]]])
     assert hits.triangle.tolist() == [[-1, 0]]
-    nothing = first_hits([WALL], np.full((2, 3, 2), np.nan), engine=engine)
+    nothing = first_hits([WALL], np.full((2, 3, 2), np.nan))
     assert (nothing.triangle == -1).all()
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_an_empty_world_is_empty(engine):
-    hits = first_hits(np.zeros((0, 3, 3)), [[[0.1, 0.1]]], engine=engine)
+def test_an_empty_world_is_empty():
+    hits = first_hits(np.zeros((0, 3, 3)), [[[0.1, 0.1]]])
     assert hits.triangle.tolist() == [[-1]]
     assert np.isnan(hits.depth).all()
 
@@ -87,7 +79,7 @@ def test_no_ray_slips_through_the_seam_of_two_triangles():
         pair = np.array([[a, b, left], [b, a, right]])
         # Rays through points of the common edge, as exactly as numbers allow.
         on = a + rng.uniform(0.01, 0.99, (1, 200, 1)) * (b - a)
-        hits = first_hits(pair, on[..., :2] / on[..., 2:], engine="own")
+        hits = first_hits(pair, on[..., :2] / on[..., 2:])
         assert (hits.triangle >= 0).all()
 
 
@@ -97,17 +89,8 @@ def test_triangles_seen_edge_on_are_not_seen():
     n, det = edge_functions(np.array([line, plane_through_the_camera]))
     assert np.isnan(n).all()
     assert np.isnan(det).all()
-    hits = first_hits([line, plane_through_the_camera], [[[0.0, 0.0]]], engine="own")
+    hits = first_hits([line, plane_through_the_camera], [[[0.0, 0.0]]])
     assert hits.triangle.tolist() == [[-1]]
-
-
-def test_large_meshes_go_to_embree_where_it_is_and_see_the_same():
-    rng = np.random.default_rng(3)
-    corners, xy = cloud(1500, rng), rng.uniform(-0.6, 0.6, (50, 40, 2))
-    own, automatic = first_hits(corners, xy, engine="own"), first_hits(corners, xy)
-    assert (own.triangle == automatic.triangle).mean() > 0.999
-    same = own.triangle == automatic.triangle
-    assert np.array_equal(own.depth[same], automatic.depth[same], equal_nan=True)
 
 
 @pytest.mark.parametrize(
@@ -115,18 +98,8 @@ def test_large_meshes_go_to_embree_where_it_is_and_see_the_same():
     [
         (([[0, 0, 1]], [[[0, 0]]]), ShapeError, r"triangles \(m, 3, 3\), got \(1, 3\)"),
         (([WALL], [[0, 0]]), ShapeError, r"\(groups, k, 2\), got \(1, 2\)"),
-        (([WALL], [[[0, 0]]], "povray"), CvnotesError, "'auto', 'own' or 'embree', got 'povray'"),
     ],
 )
-def test_wrong_shapes_and_engines_are_named(arguments, error, words):
+def test_wrong_shapes_are_named(arguments, error, words):
     with pytest.raises(error, match=words):
-        first_hits(*arguments[:2], **({"engine": arguments[2]} if len(arguments) > 2 else {}))
-
-
-def test_without_embree_all_goes_on_and_asking_for_it_says_how_to_get_it(monkeypatch):
-    monkeypatch.setattr("cvnotes.pictures.raycast.has_embree", lambda: False)
-    rng = np.random.default_rng(3)
-    hits = first_hits(cloud(1200, rng), [[[0.1, 0.1]]])
-    assert hits.triangle.shape == (1, 1)
-    with pytest.raises(CvnotesError, match=r"pip install 'cvnotes\[rays\]'"):
-        first_hits([WALL], [[[0, 0]]], engine="embree")
+        first_hits(*arguments)

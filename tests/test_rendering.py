@@ -14,9 +14,8 @@ from cvnotes.camera import (
     pose,
     rotation_from_vector,
 )
-from cvnotes.pictures import Scene, corridor, depth_map, radiance, render_scene, target_scene
+from cvnotes.pictures import Scene, depth_map, radiance, render_scene, target_scene
 from cvnotes.pictures.meshes import Surroundings, box, join, quads
-from cvnotes.pictures.raycast import has_embree
 from cvnotes.targets import Chessboard
 
 A = intrinsics(800, 800, 319.5, 239.5)
@@ -185,17 +184,6 @@ def test_the_background_is_the_horizon_below_and_the_zenith_above():
     assert (render_scene(nothing, SMALL)[24:] == [255, 0, 0]).all()
 
 
-@pytest.mark.parametrize("engine", ["auto", *(["embree"] if has_embree() else [])])
-def test_the_same_picture_comes_from_every_engine(engine):
-    camera = Camera(intrinsics(200, 200, 79.5, 59.5), size=(160, 120))
-    for scene in (corridor(), target_scene(Chessboard(), pose(np.eye(3), [-100, -62, 500]))):
-        own, other = (
-            render_scene(scene, camera, engine=name).astype(float) for name in ("own", engine)
-        )
-        assert np.abs(own - other).max() <= 16
-        assert np.sqrt(np.mean((own - other) ** 2)) < 0.1
-
-
 def test_a_sphere_of_many_triangles_has_the_outline_of_a_sphere():
     import trimesh
 
@@ -208,11 +196,6 @@ def test_a_sphere_of_many_triangles_has_the_outline_of_a_sphere():
     radius = 200 * 100 / np.sqrt(500**2 - 100**2)
     assert np.isfinite(depth).sum() == pytest.approx(np.pi * radius**2, rel=0.01)
     assert np.nanmin(depth) == pytest.approx(400, abs=0.5)
-
-
-def test_an_unknown_engine_is_refused():
-    with pytest.raises(CvnotesError, match="'auto', 'own' or 'embree'"):
-        render_scene(box((0, 1), (0, 1), (5, 6)), SMALL, engine="gpu")
 
 
 def test_light_is_unrounded_and_lamps_are_brighter_than_white():

@@ -11,18 +11,15 @@ sign of det. Nothing needs clipping at the camera's plane; and neighbours comput
 common edge with opposite signs, so that no ray slips through between them.
 """
 
-import importlib.util
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, chunks, numbers, real
+from cvnotes.base import Array, ShapeError, chunks, numbers, real
 
 Indices = npt.NDArray[np.int32]
 
-# From here on embree's search tree is worth its building, and its single precision.
-_MANY = 1000
 _CHUNK = 32  # triangles at a time
 _GROUPS = 64  # of rays at a time, so that they stay in the cache
 
@@ -55,7 +52,7 @@ def edge_functions(corners: Array) -> tuple[Array, Array]:
     return n * sign[:, None, None], det * sign
 
 
-def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike, *, engine: str = "auto") -> Hits:
+def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike) -> Hits:
     """Find the triangle that each ray meets first.
 
     Parameters
@@ -65,9 +62,6 @@ def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike, *, engine: str = "auto
     xy : array_like, shape (groups, k, 2)
         Rays as ideal image points. Those of a group should lie close together in the image: a
         triangle is tried on the groups that it may touch. NaN rays meet nothing.
-    engine : {"auto", "own", "embree"}
-        Who searches. The two agree except on rays within 1e-6 of an edge; "auto" takes embree
-        for large meshes, where it is installed.
 
     Returns
     -------
@@ -92,31 +86,17 @@ def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike, *, engine: str = "auto
         raise ShapeError(f"corners: expected triangles (m, 3, 3), got {corners.shape}")
     if xy.ndim != 3 or xy.shape[-1] != 2:
         raise ShapeError(f"xy: expected groups of rays (groups, k, 2), got {xy.shape}")
-    triangle = search(corners, xy, engine)
+    triangle = search(corners, xy)
     return Hits(triangle, depth_along(corners, triangle, xy))
 
 
-def search(corners: Array, xy: Array, engine: str) -> Indices:
-    """Return the number of the triangle that each ray meets first, as `first_hits` does."""
-    if engine not in ("auto", "own", "embree"):
-        raise CvnotesError(f"engine: expected 'auto', 'own' or 'embree', got {engine!r}")
-    if engine == "embree" and not has_embree():
-        raise CvnotesError("engine: embree is not installed; pip install 'cvnotes[rays]' adds it")
-    if engine == "auto":
-        engine = "embree" if len(corners) >= _MANY and has_embree() else "own"
-    if engine == "embree":
-        return _embree_search(corners, xy)
-    return _own_search(*edge_functions(corners), xy)
-
-
-def has_embree() -> bool:
-    """Return whether embree is installed (the extra ``rays``)."""
-    return importlib.util.find_spec("embreex") is not None
-
-
 @np.errstate(over="ignore", invalid="ignore")  # of rays along the picture's plane, nearly
-def _own_search(n: Array, det: Array, xy: Array) -> Indices:
-    """Go through the triangles; keep for each ray the nearest so far."""
+def search(corners: Array, xy: Array) -> Indices:
+    """Return the number of the triangle that each ray meets first, as `first_hits` does.
+
+    It goes through the triangles, and keeps for each ray the nearest so far.
+    """
+    n, det = edge_functions(corners)
     x, y = np.moveaxis(xy, -1, 0).copy()
     touched = _may_be_seen(n, det, x, y)
     first = np.full(x.shape, -1, dtype=np.int32)
@@ -172,21 +152,6 @@ def _range_of(forms: Array, size: Array, rectangle: Array) -> tuple[Array, Array
     reach = np.abs(forms) @ half + 1e-12 * size @ (np.abs(middle) + half)
     value = forms @ middle
     return value - reach, value + reach
-
-
-def _embree_search(corners: Array, xy: Array) -> Indices:
-    """Let embree search, in single precision."""
-    from embreex import rtcore_scene
-    from embreex.mesh_construction import TriangleMesh
-
-    scene = rtcore_scene.EmbreeScene()
-    TriangleMesh(scene, corners.astype(np.float32))
-    valid = np.isfinite(xy).all(axis=-1)
-    d = np.ones((np.count_nonzero(valid), 3), dtype=np.float32)
-    d[:, :2] = xy[valid]
-    first = np.full(xy.shape[:-1], -1, dtype=np.int32)
-    first[valid] = scene.run(np.zeros_like(d), d)
-    return first
 
 
 def depth_along(corners: Array, triangle: Indices, xy: Array) -> Array:

@@ -24,9 +24,7 @@ from cvnotes.pictures.surfaces import Surfaces
 _RAYS = 131_072  # at a time, of pixels that are looked at closely
 
 
-def render_scene(
-    scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "auto"
-) -> npt.NDArray[np.uint8]:
+def render_scene(scene: Scene, camera: Camera, *, samples: int = 64) -> npt.NDArray[np.uint8]:
     """Take a picture of a scene.
 
     For noise, blur or JPEG hand `radiance` to `cvnotes.pictures.exposure.expose`.
@@ -40,8 +38,6 @@ def render_scene(
     samples : int
         Rays through each pixel in which something changes. A fisheye's picture, up to 180° and
         beyond, is put together from six such pictures, the sides of a cube.
-    engine : {"auto", "own", "embree"}
-        See `cvnotes.pictures.raycast.first_hits`.
 
     Returns
     -------
@@ -62,11 +58,11 @@ def render_scene(
     >>> render_scene(box((-1, 1), (-1, 1), (-1, 1)), camera).shape
     (48, 64, 3)
     """
-    light = radiance(scene, camera, samples=samples, engine=engine)
+    light = radiance(scene, camera, samples=samples)
     return np.asarray(np.rint(light.clip(0, 255)), dtype=np.uint8)
 
 
-def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "auto") -> Array:
+def radiance(scene: Scene, camera: Camera, *, samples: int = 64) -> Array:
     """Return the mean light on each pixel, on the scale of grey levels, unrounded.
 
     Parameters are those of `render_scene`.
@@ -86,24 +82,22 @@ def radiance(scene: Scene, camera: Camera, *, samples: int = 64, engine: str = "
     """
     samples = _guard(scene, camera, samples)
     if camera.lens.wide:
-        return through_a_cube(
-            camera, lambda side: radiance(scene, side, samples=samples, engine=engine)
-        )
+        return through_a_cube(camera, lambda side: radiance(scene, side, samples=samples))
     # 1. one ray through the middle of each pixel
     surfaces = Surfaces.seen_by(camera, scene)
     middle = pixel_centres(camera.size)
     xy = camera.ideal(middle)
-    colour, square = surfaces.colours_along(in_tiles(xy), engine)
+    colour, square = surfaces.colours_along(in_tiles(xy))
     planes = np.stack([out_of_tiles(x, camera.size) for x in (*(255 * colour), *square)])
     # 2. many, where a colour or a square changes or an edge passes
     busy = changing(np.moveaxis(planes, 0, -1))
     busy |= crossed(camera, move(camera.G, scene.vertices)[scene.edges], xy)
     picture: Array = np.stack([*planes[:3]], axis=-1)
-    picture[busy] = 255 * _supersampled(surfaces, camera, middle[busy], samples, engine)
+    picture[busy] = 255 * _supersampled(surfaces, camera, middle[busy], samples)
     return picture
 
 
-def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:
+def depth_map(scene: Scene, camera: Camera) -> Array:
     """Return the depth z in the CRF of what each pixel's middle shows.
 
     Returns
@@ -126,7 +120,7 @@ def depth_map(scene: Scene, camera: Camera, *, engine: str = "auto") -> Array:
     """
     _guard(scene, camera)
     xy = in_tiles(camera.ideal(pixel_centres(camera.size)))
-    hits = first_hits(move(camera.G, scene.vertices)[scene.triangles], xy, engine=engine)
+    hits = first_hits(move(camera.G, scene.vertices)[scene.triangles], xy)
     return out_of_tiles(hits.depth, camera.size)
 
 
@@ -141,13 +135,13 @@ def _guard(scene: Scene, camera: Camera, samples: int = 1) -> int:
     return whole(samples, "samples")
 
 
-def _supersampled(surfaces: Surfaces, camera: Camera, m: Array, samples: int, engine: str) -> Array:
+def _supersampled(surfaces: Surfaces, camera: Camera, m: Array, samples: int) -> Array:
     """Return the mean colours (n, 3) that `samples` rays in each of the pixels m (n, 2) see."""
     out, order, offsets = np.empty((len(m), 3)), tile_order(m), within_pixel(samples)
     for part in chunks(len(m), max(TILE, _RAYS // samples)):
         some = order[part]
         some = np.resize(some, -(-len(some) // TILE) * TILE)  # whole groups; a few twice
         xy = camera.ideal(m[some, None] + offsets).reshape(-1, TILE * samples, 2)
-        colour, _ = surfaces.colours_along(xy, engine)
+        colour, _ = surfaces.colours_along(xy)
         out[some] = colour.reshape(3, -1, samples).mean(axis=2).T
     return out

@@ -41,9 +41,9 @@ class Surfaces(NamedTuple):
             camera.R[:, 1],
         )
 
-    def colours_along(self, xy: Array, engine: str) -> tuple[Array, Array]:
+    def colours_along(self, xy: Array) -> tuple[Array, Array]:
         """Return the colours (3, groups, k) that rays (groups, k, 2) see, and squares (2, …)."""
-        triangle = search(self.corners, xy, engine)
+        triangle = search(self.corners, xy)
         x, y = np.moveaxis(xy, -1, 0).copy()
         none = triangle < 0
         square = self._squares(triangle, x, y)
