@@ -9,6 +9,7 @@ from cvnotes.base import MOST, InputTypeError, number
 from cvnotes.camera import pose, rotation_from_vector
 from cvnotes.pictures.meshes import Scene, Surroundings, box, join, quads
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
+from cvnotes.targets.chessboard import PrintedBoard
 
 Span = tuple[float, float]  # from, to
 
@@ -227,7 +228,7 @@ def target_scene(
     return join(*boards).moved(np.eye(4) if world_from_target is None else world_from_target)
 
 
-def _board(board: Chessboard, margin: float) -> Scene:
+def _board(board: PrintedBoard, margin: float) -> Scene:
     """Build one board in its own frame: the print, and the plate behind it."""
     columns, rows = board.squares
     low, high = -1 - margin, np.array([columns, rows]) - 1 + margin

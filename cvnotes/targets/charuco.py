@@ -1,19 +1,17 @@
 """The ChArUco board: a chessboard whose light squares carry numbered markers."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, image_size, number
-from cvnotes.targets.chessboard import Print
+from cvnotes.base import CvnotesError, number
+from cvnotes.targets.chessboard import Print, PrintedBoard
 from cvnotes.targets.markers import DICTIONARIES, marker_cells
-from cvnotes.targets.sheet import Sheet, lay_out
 
 
 @dataclass(frozen=True)
-class CharucoBoard:
+class CharucoBoard(PrintedBoard):
     """A chessboard with numbered markers: each corner is known by itself.
 
     A picture needs to show only a part of it, so the board may reach beyond the picture's corners;
@@ -51,17 +49,13 @@ class CharucoBoard:
     (18.75, 54, 35)
     """
 
-    corners: tuple[int, int] = (9, 6)
-    square: float = 25.0
     marker: float | None = None
     dictionary: str = "4x4_50"
 
     def __post_init__(self) -> None:
-        columns, rows = image_size(self.corners, "corners")
-        square = number(self.square, "square")
+        super().__post_init__()
+        (columns, rows), square = self.corners, self.square
         marker = 0.75 * square if self.marker is None else number(self.marker, "marker")
-        if min(columns, rows) < 2:
-            raise CvnotesError(f"corners: a board needs at least 2×2 inner corners, got {self}")
         if not 0 < marker < square:
             raise CvnotesError(
                 f"marker: a marker of {marker:g} does not fit into a square of {square:g} with "
@@ -77,25 +71,12 @@ class CharucoBoard:
                 f"dictionary: {self.dictionary} has {most} markers and a board of {columns}×{rows} "
                 f"inner corners needs {needed}"
             )
-        for name, value in (("corners", (columns, rows)), ("square", square), ("marker", marker)):
-            object.__setattr__(self, name, value)
-
-    @property
-    def points(self) -> Array:
-        """Inner corners (n, 3), row by row: x runs fastest, z = 0."""
-        columns, rows = self.corners
-        x, y = np.meshgrid(np.arange(columns), np.arange(rows))
-        return self.square * np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3).astype(float)
+        object.__setattr__(self, "marker", marker)
 
     @property
     def ids(self) -> npt.NDArray[np.intp]:
         """Numbers (n,) of the inner corners, which are their places in `points`."""
         return np.arange(self.corners[0] * self.corners[1], dtype=np.intp)
-
-    @property
-    def squares(self) -> tuple[int, int]:
-        """Numbers of squares along x and y, one more than inner corners."""
-        return self.corners[0] + 1, self.corners[1] + 1
 
     @property
     def n_markers(self) -> int:
@@ -127,20 +108,3 @@ class CharucoBoard:
     def _light_squares(self) -> list[tuple[int, int]]:
         columns, rows = self.squares
         return [(i, j) for j in range(rows) for i in range(columns) if (i + j) % 2]
-
-    @property
-    def faces(self) -> tuple[tuple[Array, Any], ...]:
-        """The board itself, in the pose (4, 4) that leaves it where it is."""
-        return ((np.eye(4), self),)
-
-    def sheet(self, paper: str = "A4") -> Sheet:
-        """Lay the board out for printing, `square` read as millimetres.
-
-        Parameters and errors are those of `Chessboard.sheet`.
-
-        Examples
-        --------
-        >>> CharucoBoard((9, 6), 25.0).sheet().pdf()[:4]
-        b'%PDF'
-        """
-        return lay_out(self, paper)

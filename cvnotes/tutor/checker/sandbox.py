@@ -211,8 +211,6 @@ def ask(exercise: Exercise, answer: Any, seed: int, **limits: Any) -> list[Outco
     list of Outcome
         One for each case, of each part first; a single one if there was nothing to try.
     """
-    if exercise.answer == "value":
-        return run(lambda: exercise.number_of(answer), [()], **limits)
     if exercise.assemble is not None and isinstance(answer, dict):
         tried = []
         known = [part.name for part in exercise.parts]
@@ -224,8 +222,10 @@ def ask(exercise: Exercise, answer: Any, seed: int, **limits: Any) -> list[Outco
             # A step that is no function gives one outcome; it counts for all of the part's cases.
             tried += outcomes * (len(part.inputs(seed)) if len(outcomes) == 1 else 1)
         return tried + run(exercise.assemble(answer), exercise.inputs(seed), **limits)
-    if exercise.assemble is not None or not callable(answer):
+    if exercise.answer == "function" and callable(answer):
+        return run(answer, exercise.inputs(seed), **limits)
+    if exercise.answer != "value":  # nothing that could be tried
         [given] = run(lambda: answer, [()], **limits)
         nothing = given.kind in ("none", "unfinished")
         return [Outcome("unfinished" if nothing else "result")]
-    return run(answer, exercise.inputs(seed), **limits)
+    return run(lambda: exercise.number_of(answer), [()], **limits)
