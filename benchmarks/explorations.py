@@ -43,9 +43,9 @@ def kernel_times(model: Model, repeats: int = 25) -> Array:
     first, spent = model.settings[0], np.empty((repeats + 3, 2))
     for i in range(len(spent)):
         begin = time.perf_counter()
-        sight = model.sight(**{first.name: first.value + i % 2 * first.step})
+        drawing = model.drawing(**{first.name: first.value + i % 2 * first.step})
         middle = time.perf_counter()
-        pack_png(sight.picture)
+        pack_png(drawing.picture)
         spent[i] = middle - begin, time.perf_counter() - middle
     return 1e3 * spent[3:]
 

@@ -33,7 +33,7 @@ from cvnotes.show.explore.finding import Finding, rms
 from cvnotes.show.explore.fold import angles, circle_of, photographs
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.lettering import LETTERS
-from cvnotes.show.explore.model import Model, Setting, Sight
+from cvnotes.show.explore.model import Drawing, Model, Setting
 from cvnotes.show.explore.page import asked
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.explore.rectification import lines_from
@@ -83,13 +83,13 @@ def random_values(model, rng):
 
 
 def check_sight(name, values):
-    sight = MODELS[name].sight(**values)
-    assert sight.picture.dtype == np.uint8
-    assert sight.picture.ndim == 3
-    assert np.ptp(sight.picture) > 100
-    assert not sight.sentence.startswith("No answer") or name == "homography"
-    assert not re.search(r"\b(nan|inf)\b", sight.sentence)
-    return sight
+    drawing = MODELS[name].drawing(**values)
+    assert drawing.picture.dtype == np.uint8
+    assert drawing.picture.ndim == 3
+    assert np.ptp(drawing.picture) > 100
+    assert not drawing.sentence.startswith("No answer") or name == "homography"
+    assert not re.search(r"\b(nan|inf)\b", drawing.sentence)
+    return drawing
 
 
 # Every exploration.
@@ -188,7 +188,7 @@ def test_no_figure_is_left_open(name):
 def test_a_still_shows_what_the_widget_shows_at_twice_the_resolution(name):
     s = MODELS[name].settings[0]
     picture = MODELS[name].still(**{s.name: s.high})
-    live = MODELS[name].sight(**{s.name: s.high})
+    live = MODELS[name].drawing(**{s.name: s.high})
     assert picture.alt.endswith(live.sentence)
     assert picture.alt.startswith(MODELS[name].about)
     sharp = Image.open(io.BytesIO(picture.data)).convert("RGB")
@@ -216,9 +216,9 @@ def test_where_there_is_no_answer_the_sentence_says_why():
         raise DegenerateError("three points are collinear; move one")
 
     model = Model("x", "Nothing.", (Setting("a", "a", 0, 1, 1, 0, ""),), draw)
-    sight = model.sight()
-    assert sight.sentence == "No answer: three points are collinear; move one."
-    assert count(sight.picture, ESTIMATED) > 50
+    drawing = model.drawing()
+    assert drawing.sentence == "No answer: three points are collinear; move one."
+    assert count(drawing.picture, ESTIMATED) > 50
 
 
 def test_another_camera_and_another_board_may_be_given():
@@ -239,19 +239,19 @@ def test_another_camera_and_another_board_may_be_given():
 
 
 def test_rails_turned_by_45_degrees_vanish_one_focal_length_beside_the_piercing_point():
-    sight = MODELS["projection"].sight(heading=45)
-    assert numbers(sight.sentence)[-2:] == [325 + 800, 238]
-    assert "outside of the picture" in sight.sentence
+    drawing = MODELS["projection"].drawing(heading=45)
+    assert numbers(drawing.sentence)[-2:] == [325 + 800, 238]
+    assert "outside of the picture" in drawing.sentence
 
 
 def test_the_vanishing_point_does_not_depend_on_where_the_rails_lie():
-    low, high = (MODELS["projection"].sight(heading=5, height=h) for h in (0.5, 3))
+    low, high = (MODELS["projection"].drawing(heading=5, height=h) for h in (0.5, 3))
     assert low.sentence == high.sentence
     assert not np.array_equal(low.picture, high.picture)
 
 
 def test_rails_are_drawn_up_to_their_vanishing_point():
-    picture = MODELS["projection"].sight(heading=0).picture
+    picture = MODELS["projection"].drawing(heading=0).picture
     u, v = (np.array([325, 238]) + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
     around = picture[round(v) + 8 : round(v) + 14, round(u) - 12 : round(u) + 12]
     assert count(around, WORLD) > 10
@@ -259,10 +259,10 @@ def test_rails_are_drawn_up_to_their_vanishing_point():
 
 
 def test_rails_parallel_to_the_image_plane_stay_parallel_and_are_still_drawn():
-    sight = MODELS["projection"].sight(heading=90)
-    assert "(c = 0)" in sight.sentence
-    assert "infinity" in sight.sentence
-    left = sight.picture[:, MARGIN : MARGIN + WIDTH]
+    drawing = MODELS["projection"].drawing(heading=90)
+    assert "(c = 0)" in drawing.sentence
+    assert "infinity" in drawing.sentence
+    left = drawing.picture[:, MARGIN : MARGIN + WIDTH]
     green = np.abs(left.astype(int) - colour(WORLD)).max(-1) < 40
     assert 2 < green.any(axis=1).sum() < 12
     assert green.any(axis=0).mean() > 0.98
@@ -270,7 +270,7 @@ def test_rails_parallel_to_the_image_plane_stay_parallel_and_are_still_drawn():
 
 def test_T_is_not_where_the_camera_stands():
     turned = {"angle_x": 0, "angle_y": 0, "angle_z": 90, "T_x": 100, "T_y": 0, "T_z": 500}
-    said = numbers(MODELS["camera"].sight(**turned).sentence)
+    said = numbers(MODELS["camera"].drawing(**turned).sentence)
     # R carries x to y, so Rᵀ carries it to −y: C = −Rᵀ (100, 0, 500) = (0, 100, −500).
     assert said == [100, 0, 500, 0, 100, -500]
 
@@ -292,32 +292,32 @@ def test_the_board_is_drawn_where_the_camera_sees_it():
 
 def test_numbers_below_zero_have_a_minus_sign_and_no_hyphen():
     for name, values in (("camera", {}), ("projection", {"slope": 15}), ("noise", {})):
-        sentence = MODELS[name].sight(**values).sentence
+        sentence = MODELS[name].drawing(**values).sentence
         assert re.search(r"−\d", sentence)
         assert not re.search(r"-\d", sentence)
-    assert "says +0.00 ± 0.00 px" in MODELS["noise"].sight(sigma=0).sentence
+    assert "says +0.00 ± 0.00 px" in MODELS["noise"].drawing(sigma=0).sentence
 
 
 def test_a_board_beside_the_picture_is_missed_in_words():
-    assert "All inner corners are outside" in MODELS["camera"].sight(T_y=236).sentence
-    assert "outside" not in MODELS["camera"].sight(T_x=-236).sentence
+    assert "All inner corners are outside" in MODELS["camera"].drawing(T_y=236).sentence
+    assert "outside" not in MODELS["camera"].drawing(T_x=-236).sentence
 
 
 def test_a_board_behind_the_camera_has_no_image():
-    sight = MODELS["camera"].sight(T_z=0)
-    assert "behind the camera" in sight.sentence
-    assert count(sight.picture[TITLE + 2 :, MARGIN + 2 : WIDTH], "#262629", 10) < 200
+    drawing = MODELS["camera"].drawing(T_z=0)
+    assert "behind the camera" in drawing.sentence
+    assert count(drawing.picture[TITLE + 2 :, MARGIN + 2 : WIDTH], "#262629", 10) < 200
 
 
 def test_a_lens_with_k1_of_minus_four_thirds_folds_at_one_half():
-    sight = MODELS["lens"].sight(k1=-4 / 3, k2=0)
-    assert "max_radius = 0.500" in sight.sentence
-    assert count(sight.picture, ESTIMATED) > 500
+    drawing = MODELS["lens"].drawing(k1=-4 / 3, k2=0)
+    assert "max_radius = 0.500" in drawing.sentence
+    assert count(drawing.picture, ESTIMATED) > 500
     # On the axes the fold lies at r L(r) = 1/3; the grid panel shows 1.5 in 360 px.
     middle, reach = np.array([MARGIN + 215, TITLE + 180]), 360 / 1.5 / 3
     for direction in ([1, 0], [-1, 0], [0, 1], [0, -1]):
         u, v = np.rint(middle + reach * np.array(direction)).astype(int)
-        assert count(sight.picture[v - 2 : v + 3, u - 2 : u + 3], ESTIMATED) > 0
+        assert count(drawing.picture[v - 2 : v + 3, u - 2 : u + 3], ESTIMATED) > 0
 
 
 @pytest.mark.parametrize("name", ["homography", "warp"])
@@ -327,11 +327,11 @@ def test_without_scipy_a_photograph_has_the_same_digits(name, monkeypatch):
 
 
 def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():
-    sight = MODELS["lens"].sight(k1=0, k2=0)
-    assert sight.sentence.startswith("The model never folds. An ideal")
-    assert numbers(sight.sentence)[-1] == 0
-    assert count(sight.picture, ESTIMATED) == 0
-    assert count(sight.picture, LENS) > 1000
+    drawing = MODELS["lens"].drawing(k1=0, k2=0)
+    assert drawing.sentence.startswith("The model never folds. An ideal")
+    assert numbers(drawing.sentence)[-1] == 0
+    assert count(drawing.picture, ESTIMATED) == 0
+    assert count(drawing.picture, LENS) > 1000
 
 
 def test_the_drawn_polynomial_is_the_lens_wherever_that_is_valid():
@@ -342,7 +342,7 @@ def test_the_drawn_polynomial_is_the_lens_wherever_that_is_valid():
 
 
 def test_the_sentence_tells_how_far_an_ideal_lens_would_show_the_corners_elsewhere():
-    said = numbers(MODELS["lens"].sight(k1=-0.25, k2=0).sentence)[-1]
+    said = numbers(MODELS["lens"].drawing(k1=-0.25, k2=0).sentence)[-1]
     # The farthest corner is the lower left one; r − 0.25 r³ = r' has the ideal r as smallest root.
     x, y = (-0.5 - 325) / 800, (479.5 - 238) / 804
     seen = np.hypot(x, y)
@@ -367,15 +367,15 @@ def test_four_exact_corners_make_every_square_upright():
 
 
 def test_a_nudged_corner_moves_the_board_by_as_much_as_the_sentence_says():
-    near = numbers(MODELS["homography"].sight(du1=1).sentence)[1]
-    far = numbers(MODELS["homography"].sight(du1=10).sentence)[1]
+    near = numbers(MODELS["homography"].drawing(du1=1).sentence)[1]
+    far = numbers(MODELS["homography"].drawing(du1=10).sentence)[1]
     assert 0 < near < 2
     assert 7 < far / near < 13
 
 
 def test_error_bars_grow_with_the_noise_and_shrink_with_the_views():
     def bound(**values):
-        return float(re.search(r"±(\d+\.\d+) px", MODELS["noise"].sight(**values).sentence)[1])
+        return float(re.search(r"±(\d+\.\d+) px", MODELS["noise"].drawing(**values).sentence)[1])
 
     assert abs(bound(sigma=0.8, views=8) / bound(sigma=0.2, views=8) - 4) < 0.05
     assert bound(sigma=1, views=30) < 0.65 * bound(sigma=1, views=8)
@@ -385,7 +385,7 @@ def test_error_bars_grow_with_the_noise_and_shrink_with_the_views():
 def test_simulated_calibrations_scatter_as_the_bound_says():
     errors, bounds = [], []
     for draw in range(1, 61):
-        said = numbers(MODELS["noise"].sight(sigma=1, views=12, draw=draw).sentence)
+        said = numbers(MODELS["noise"].drawing(sigma=1, views=12, draw=draw).sentence)
         _, _, bound, error, own = said
         errors.append(error)
         bounds.append(bound)
@@ -397,17 +397,17 @@ def test_simulated_calibrations_scatter_as_the_bound_says():
 
 def test_a_picture_left_alone_has_neither_holes_nor_folds():
     for angle in (0, 180, -180):
-        said = numbers(MODELS["warp"].sight(angle=angle, zoom=1).sentence)
+        said = numbers(MODELS["warp"].drawing(angle=angle, zoom=1).sentence)
         assert said[:3] == [0, 108 * 81, 0]
 
 
 def test_zoomed_by_two_three_quarters_of_the_picture_are_holes():
-    sight = MODELS["warp"].sight(angle=0, zoom=2)
-    holes, covered, folds = numbers(sight.sentence)[:3]
+    drawing = MODELS["warp"].drawing(angle=0, zoom=2)
+    holes, covered, folds = numbers(drawing.sentence)[:3]
     assert covered == 108 * 81
     assert folds == 0
     assert abs(holes / covered - 0.75) < 0.01
-    left, right = sight.picture[:, :438], sight.picture[:, 438:]
+    left, right = drawing.picture[:, :438], drawing.picture[:, 438:]
     assert count(left, ESTIMATED) / (432 * 324) > 0.65
     assert count(right, ESTIMATED) == 0
 
@@ -421,7 +421,7 @@ def test_forward_and_backward_show_the_same_but_for_the_holes():
 
 
 def test_a_smaller_picture_has_no_holes_for_there_is_nothing_to_show_around_it():
-    holes, covered, folds = numbers(MODELS["warp"].sight(angle=0, zoom=0.5).sentence)[:3]
+    holes, covered, folds = numbers(MODELS["warp"].drawing(angle=0, zoom=0.5).sentence)[:3]
     assert holes == 0
     assert abs(covered - 54 * 40.5) < 60
     assert folds > 0.9 * covered
@@ -431,7 +431,7 @@ def test_rectified_partners_share_their_row_however_the_camera_was_turned():
     rng = np.random.default_rng(3)
     for _ in range(20):
         said = numbers(
-            MODELS["rectification"].sight(**random_values(MODELS["rectification"], rng)).sentence
+            MODELS["rectification"].drawing(**random_values(MODELS["rectification"], rng)).sentence
         )
         assert said[1] == 0
     assert said[0] > 1
@@ -439,7 +439,7 @@ def test_rectified_partners_share_their_row_however_the_camera_was_turned():
 
 def test_cameras_side_by_side_are_rectified_already():
     still = {"angle_x": 0, "angle_y": 0, "angle_z": 0, "forward": 0}
-    assert numbers(MODELS["rectification"].sight(**still).sentence)[0] == 0
+    assert numbers(MODELS["rectification"].drawing(**still).sentence)[0] == 0
 
 
 def test_the_partner_of_each_marked_point_lies_on_its_epipolar_line():
@@ -523,7 +523,7 @@ def test_both_cameras_find_the_same_nine_columns_and_each_mends_the_other(believ
 
 
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():
-    said = [numbers(MODELS["tilt"].sight(tilt=tilt).sentence)[1] for tilt in (0, 10, 20, 30, 45)]
+    said = [numbers(MODELS["tilt"].drawing(tilt=tilt).sentence)[1] for tilt in (0, 10, 20, 30, 45)]
     assert said == [0.0, 0.6, 2.2, 3.9, 6.0]
 
 
@@ -540,8 +540,8 @@ def test_every_place_of_the_half_circle_sees_both_right_angles_and_one_those_of_
         fold = np.degrees(np.arcsin(400 / circle.radius))
         assert np.allclose(circle.place(fold), true, rtol=1e-9)
         assert np.allclose(angles(h, true), 90, rtol=1e-9)
-    assert "this is the camera" in MODELS["fold"].sight(fold=59, second=1).sentence
-    assert "not the camera" in MODELS["fold"].sight(fold=50, second=1).sentence
+    assert "this is the camera" in MODELS["fold"].drawing(fold=59, second=1).sentence
+    assert "not the camera" in MODELS["fold"].drawing(fold=50, second=1).sentence
 
 
 # Paper and packing.
@@ -615,7 +615,7 @@ def test_a_slider_that_is_moved_changes_the_picture_and_reset_brings_it_back(nam
     slider.value += slider.step * 9
     assert widget.image.value != start
     values = widget.values
-    assert MODELS[name].sight(**values).sentence in html.unescape(widget.sentence.value)
+    assert MODELS[name].drawing(**values).sentence in html.unescape(widget.sentence.value)
     widget.reset_button.click()
     assert widget.values == {s.name: s.value for s in MODELS[name].settings}
     assert widget.image.value == start
@@ -678,7 +678,7 @@ def test_where_no_kernel_runs_the_still_of_the_same_values_is_seen(name):
     bundle = widget._repr_mimebundle_()
     assert bundle["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
     assert bundle["text/html"].startswith(MODELS[name].still()._repr_html_())
-    assert html.escape(MODELS[name].sight().sentence) in bundle["text/html"].partition(">")[2]
+    assert html.escape(MODELS[name].drawing().sentence) in bundle["text/html"].partition(">")[2]
     assert len(bundle["text/html"]) < 160_000  # three bytes as four letters: 120 kB of picture
     slider = widget.sliders[MODELS[name].settings[0].name]
     slider.value = slider.max
@@ -691,7 +691,7 @@ def test_a_sentence_cannot_smuggle_markup_into_the_page():
     from cvnotes.show.explore.shell import Explorer
 
     def draw(paper, _):
-        return Sight(paper.join((paper.panel((50, 50), (0, 1), (0, 1)),)), "1 < 2 & <b>no</b>")
+        return Drawing(paper.join((paper.panel((50, 50), (0, 1), (0, 1)),)), "1 < 2 & <b>no</b>")
 
     widget = Explorer(Model("x", "x", (Setting("a", "a", 0, 1, 0.5, 0.5, "a value"),), draw))
     assert "1 &lt; 2 &amp; &lt;b&gt;no" in widget.sentence.value
@@ -713,8 +713,8 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
 ON_A_WAY = {("finding", "step"), ("tilt", "tilt"), ("fold", "fold")}  # along a curve, by its x
 
 
-def grip_of(sight, name):
-    return next(grip for grip in sight.grips if grip.name == name)
+def grip_of(drawing, name):
+    return next(grip for grip in drawing.grips if grip.name == name)
 
 
 @pytest.mark.parametrize(("name", "held"), PULLED)
@@ -722,9 +722,9 @@ def grip_of(sight, name):
 def test_what_is_pulled_follows_the_hand(name, held, by):
     model = MODELS[name]
     start = model.values(**FREE_TO_MOVE.get(name, {}))
-    before = grip_of(model.sight(**start), held)
+    before = grip_of(model.drawing(**start), held)
     wanted = np.array(before.at) + np.array(by) * before.unit
-    after = grip_of(model.sight(**model.dragged(held, tuple(wanted), **start)), held)
+    after = grip_of(model.drawing(**model.dragged(held, tuple(wanted), **start)), held)
     off = np.abs(after.at - wanted) / np.abs(before.unit)
     if held == "camera":  # it goes round, on a sphere; see below
         assert after.at != before.at
@@ -763,7 +763,7 @@ def test_a_camera_carried_round_the_board_keeps_its_middle_where_it_is_in_the_pi
         return radius, np.array([np.arctan2(x, -z), np.arcsin(y / radius)]), camera.project(middle)
 
     radius, before, pixel = seen(model.values())
-    grip = grip_of(model.sight(), "camera")
+    grip = grip_of(model.drawing(), "camera")
     for by in ((30, 10), (-60, 0), (0, -40)):
         at = tuple(np.array(grip.at) + np.array(by) * grip.unit)
         distance, after, now = seen(model.dragged("camera", at))
@@ -777,11 +777,11 @@ def test_a_camera_carried_round_the_board_keeps_its_middle_where_it_is_in_the_pi
 @each_model
 def test_on_a_narrow_page_panels_come_below_each_other(name):
     model = MODELS[name]
-    wide = model.sight()
+    wide = model.drawing()
     narrow = model.drawn_on(Paper(narrow=True), model.values())
     assert narrow.picture.shape[1] < 0.6 * wide.picture.shape[1]
     assert narrow.sentence == wide.sentence
-    inked = [np.abs(sight.picture.astype(int) - 255).sum() for sight in (wide, narrow)]
+    inked = [np.abs(drawing.picture.astype(int) - 255).sum() for drawing in (wide, narrow)]
     assert inked[0] == inked[1]
     for grip in narrow.grips:
         assert 0 <= grip.place[0] <= narrow.picture.shape[1]
@@ -790,12 +790,12 @@ def test_on_a_narrow_page_panels_come_below_each_other(name):
 
 def test_grips_are_where_the_picture_shows_their_marks():
     for narrow in (False, True):
-        sight = MODELS["homography"].drawn_on(
+        drawing = MODELS["homography"].drawn_on(
             Paper(2, narrow=narrow), MODELS["homography"].values()
         )
-        for grip in sight.grips:
+        for grip in drawing.grips:
             u, v = np.rint(2 * np.array(grip.place)).astype(int)
-            assert count(sight.picture[v - 3 : v + 4, u - 3 : u + 4], ESTIMATED) > 10, grip.name
+            assert count(drawing.picture[v - 3 : v + 4, u - 3 : u + 4], ESTIMATED) > 10, grip.name
 
 
 # Matrices beside the camera.
@@ -803,10 +803,10 @@ def test_grips_are_where_the_picture_shows_their_marks():
 
 def test_beside_the_camera_stand_its_matrices_on_the_colours_of_their_sliders():
     moved = {"alpha": 900, "u0": 300, "skew": -20, "T_x": -70}
-    sight = MODELS["camera"].sight(**moved)
+    drawing = MODELS["camera"].drawing(**moved)
     tables = [
         [[cell.replace("−", "-") for cell in re.findall(r">([^<]+)</td>", row)] for row in rows]
-        for rows in (re.findall(r"<tr>(.*?)</tr>", t) for t in sight.matrices.split("<table")[1:])
+        for rows in (re.findall(r"<tr>(.*?)</tr>", t) for t in drawing.matrices.split("<table")[1:])
     ]
     A, G, P = (np.array(table, dtype=float) for table in tables)
     assert A.tolist() == [[900, -20, 300], [0, round(900 * 804 / 800), 238], [0, 0, 1]]
@@ -815,7 +815,7 @@ def test_beside_the_camera_stand_its_matrices_on_the_colours_of_their_sliders():
     assert np.allclose(P, A @ G[:3], rtol=0.03, atol=15)
     tints = {s.name: s.tint for s in MODELS["camera"].settings}
     for name, number in (("alpha", "900"), ("u0", "300"), ("skew", "−20"), ("T_x", "−70")):
-        assert f'background:{tints[name]};color:#000">{number}</td>' in sight.matrices
+        assert f'background:{tints[name]};color:#000">{number}</td>' in drawing.matrices
 
 
 # On a page without a kernel.
@@ -831,7 +831,7 @@ def test_a_page_is_told_what_its_sliders_need_and_is_answered_with_the_same_pict
     told = data_of(getattr(explore, f"explore_{name}")())
     model = MODELS[name]
     assert [s["name"] for s in told["settings"]] == [s.name for s in model.settings]
-    assert told["sentence"] == model.sight().sentence
+    assert told["sentence"] == model.drawing().sentence
     drawn = random_values(model, np.random.default_rng(5))
     values = {key: float(value) for key, value in drawn.items()}
     shown = asked(json.dumps({**told, "values": values}))
@@ -847,11 +847,11 @@ def test_a_page_shows_the_camera_and_the_board_that_were_given():
     camera = Camera(intrinsics(500, 505, 250, 190), lens=Lens(k=(-1.7, 0.2)), size=(500, 400))
     told = data_of(explore.explore_lens(camera=camera))
     own = explore.model("lens", camera)
-    assert json.loads(asked(json.dumps(told)).rest)["sentence"] == own.sight().sentence
+    assert json.loads(asked(json.dumps(told)).rest)["sentence"] == own.drawing().sentence
     board = course.Chessboard((6, 5), 40.0)
     told = data_of(explore.explore_camera(camera=camera, board=board))
     own = explore.model("camera", camera, board)
-    assert json.loads(asked(json.dumps(told)).rest)["sentence"] == own.sight().sentence
+    assert json.loads(asked(json.dumps(told)).rest)["sentence"] == own.drawing().sentence
 
 
 def test_a_page_may_pull_a_grip():

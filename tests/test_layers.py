@@ -178,7 +178,7 @@ def test_explorations_and_exercises_need_nothing_but_numpy_and_pillow():
         "sys.meta_path.insert(0, Absent())\n"
         "import cvnotes.learn\n"
         "from cvnotes.show.explore import NAMES, model\n"
-        "print([model(name).sight().picture.shape[2] for name in NAMES])"
+        "print([model(name).drawing().picture.shape[2] for name in NAMES])"
     )
     named = {**os.environ, "CVNOTES_FONT": str(font_file())}
     run = subprocess.run([sys.executable, "-c", script], env=named, capture_output=True, text=True)

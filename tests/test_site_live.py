@@ -207,7 +207,7 @@ def test_a_page_is_read_at_once_and_python_comes_with_the_first_touch(all_explor
     box = explorations(page)["lens"]
     assert box.locator("img").evaluate("img => img.naturalWidth") > 1000
     assert box.locator("canvas[role=img]").is_hidden()
-    assert box.locator(".explore-sentence").inner_text() == MODELS["lens"].sight().sentence
+    assert box.locator(".explore-sentence").inner_text() == MODELS["lens"].drawing().sentence
     assert not page.workers
     box.locator("input").first.focus()
     page.keyboard.press("ArrowRight")
@@ -215,7 +215,7 @@ def test_a_page_is_read_at_once_and_python_comes_with_the_first_touch(all_explor
     becomes_another(page, box, 0)
     assert box.locator("img").is_hidden()
     box.locator("button", has_text="Reset").click()
-    assert comes(page, says, box, MODELS["lens"].sight().sentence)
+    assert comes(page, says, box, MODELS["lens"].drawing().sentence)
 
 
 def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explorations, tmp_path):
@@ -233,12 +233,14 @@ def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explor
         page.wait_for_function("() => !document.querySelector('.explore-state').textContent")
         values = {setting.name: float(slider.input_value())}
         assert values[setting.name] == pytest.approx(setting.value + 3 * way * setting.step)
-        sight = MODELS[name].sight(**values)
-        assert comes(page, says, box, sight.sentence)
-        assert box.locator("canvas[role=img]").get_attribute("aria-label").endswith(sight.sentence)
+        drawing = MODELS[name].drawing(**values)
+        assert comes(page, says, box, drawing.sentence)
+        assert (
+            box.locator("canvas[role=img]").get_attribute("aria-label").endswith(drawing.sentence)
+        )
         median[name] = statistics.median(box.evaluate(LATENCY)[3:])
         box.locator("button", has_text="Reset").click()
-        assert comes(page, says, box, MODELS[name].sight().sentence)
+        assert comes(page, says, box, MODELS[name].drawing().sentence)
     (tmp_path / "median.json").write_text(json.dumps(median))
     print(median)
 

@@ -87,9 +87,9 @@ def exploration(live: bool) -> str:
     """Write the exploration as it is before Python comes: a picture for each width, and data."""
     model = explore.model(EXPLORED)
     wide = json.loads(told(model, None, None, {}))
-    sight = model.drawn_on(Paper(1, narrow=True), model.values())
-    height, width = sight.picture.shape[:2]
-    narrow = {"size": [width, height], "grips": [grip._asdict() for grip in sight.grips]}
+    data = model.drawn_on(Paper(1, narrow=True), model.values()).as_data()
+    narrow = {"size": data["size"], "grips": data["grips"]}
+    width, height = data["size"]
     picture = (
         f'<picture><source media="(max-width: 40rem)" srcset="{FOLDER}/front-narrow.png" '
         f'width="{width}" height="{height}">'

@@ -68,7 +68,7 @@ _LONG = 10_000
 
 
 def _moderate(array: Array, largest: float) -> bool:
-    """Tell at once, in nearly all cases, that no number is too large, and none NaN."""
+    """Return at once, in nearly all cases, whether no number is too large, and none NaN."""
     if array.size < _LONG:
         return bool(np.vdot(array, array) < largest * largest)
     return bool(max(array.max(), -array.min()) <= largest)

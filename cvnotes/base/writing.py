@@ -169,7 +169,7 @@ def _clear_abandoned(folder: Path) -> None:
 
 
 def _is_abandoned(path: Path) -> bool:
-    """Tell that nobody writes a temporary file: its lock went with the process that held it."""
+    """Return whether a temporary file is nobody's: its lock went with the process that held it."""
     info = path.stat()
     age = time.time() - info.st_mtime
     if fcntl is None:

@@ -178,7 +178,7 @@ def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
 
 
 def missed_together(residuals: Array, board: Array) -> float:
-    """Tell by how many pixels the corners of a typical view miss their places together.
+    """Return by how many pixels the corners of a typical view miss their places together.
 
     Parameters
     ----------

@@ -164,5 +164,5 @@ def _drawn(figure: "Figure") -> npt.NDArray[np.uint8]:
 
 
 def _never_small(pixels: bytes) -> bool:
-    """Tell in a hurry that pixels will not be small, not even when they are packed with care."""
+    """Return in a hurry whether pixels will not be small, however carefully they are packed."""
     return len(zlib.compress(pixels, 1)) > 3 * _LARGE

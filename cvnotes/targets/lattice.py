@@ -88,7 +88,7 @@ def measured(
         places = start
         while len(tries) < 2:
             fit = fit_edges.inside(picture, places, window=window, grid=corners)
-            fit = vouched(fit, picture, corners)
+            fit = confirmed(fit, picture, corners)
             good = trusted(fit, corners)[:, None]
             tries.append((fit, good))
             if good.all() or 2 * np.count_nonzero(good) < len(good):
@@ -112,7 +112,7 @@ def _window(m: Array, rows: int) -> int:
     return int(np.clip(np.median(sides) / 8, 8, 16))
 
 
-def vouched(fit: EdgeFit, picture: Image, corners: tuple[int, int]) -> EdgeFit:
+def confirmed(fit: EdgeFit, picture: Image, corners: tuple[int, int]) -> EdgeFit:
     """Return the same fit, with NaN for corners that the pixels do not vouch for.
 
     They lie beyond the picture, where the edges were only prolonged, or are much more blurred than

@@ -16,7 +16,7 @@ from cvnotes.show.explore.finding import finding_model
 from cvnotes.show.explore.fold import fold_model
 from cvnotes.show.explore.homography import homography_model
 from cvnotes.show.explore.lens import lens_model
-from cvnotes.show.explore.model import Model, Setting, Sight
+from cvnotes.show.explore.model import Drawing, Model, Setting
 from cvnotes.show.explore.noise import noise_model
 from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
@@ -64,7 +64,7 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
 
     Examples
     --------
-    >>> model("lens").sight(k1=-4 / 3, k2=0).sentence[:48]
+    >>> model("lens").drawing(k1=-4 / 3, k2=0).sentence[:48]
     'The lens shows nothing beyond max_radius = 0.500'
     """
     if name not in NAMES:
@@ -150,7 +150,7 @@ __all__ = [
     "NAMES",
     "Model",
     "Setting",
-    "Sight",
+    "Drawing",
     "explore_camera",
     "explore_columns",
     "explore_finding",

@@ -6,7 +6,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
 from cvnotes.show.explore.boards import draw_board, draw_in_space, in_space, on_sheet, pinhole
 from cvnotes.show.explore.matrices import FOCAL, PIERCING, SHIFT, SKEW, TURN, matrix_table
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.orbit import round_the_board
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
@@ -40,7 +40,7 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
         "in the frame of the board."
     )
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(_moved(camera, values), board, paper)
 
     def carried(values: Values, at: Array) -> Values:
@@ -73,7 +73,7 @@ def _moved(camera: Camera, values: Values) -> Camera:
     return pinhole(Camera(A, size=camera.size)).moved(pose(rotation_from_angles(*angles), T))
 
 
-def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Sight:
+def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Drawing:
     picture = paper.picture_panel((440, 330), camera.size, "the picture of the board")
     complete = draw_board(picture, camera, board)
     picture.mark(camera.A[:2, 2], "ideal", 9)
@@ -85,7 +85,7 @@ def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Sight:
     picture.grip("board", "the board's origin in the picture", origin, 5)
     space = _space(camera, board, paper)
     sentence = _sentence(camera, board, complete)
-    return Sight(paper.join((picture, space)), sentence, _matrices(camera))
+    return Drawing(paper.join((picture, space)), sentence, _matrices(camera))
 
 
 def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:

@@ -12,7 +12,7 @@ from cvnotes.calibration.refinement import Problem
 from cvnotes.pictures import course
 from cvnotes.show.explore.boards import draw_arrows, draw_measured
 from cvnotes.show.explore.finding import rms
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
@@ -119,7 +119,7 @@ def columns_model() -> Model:
         "corners of the board may move; and how far each column of corners is shifted."
     )
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(left, right, paper, values)
 
     def pulled(_: Values, at: Array) -> Values:
@@ -129,7 +129,7 @@ def columns_model() -> Model:
     return Model("columns", about, settings, draw, drags)
 
 
-def _draw(left: Believed, right: Believed, paper: Paper, values: Values) -> Sight:
+def _draw(left: Believed, right: Believed, paper: Paper, values: Values) -> Drawing:
     amount, free, i = values["amount"], int(values["free"]), int(values["photograph"])
     columns = amount * right.columns
     misses = left.misses(free, columns)
@@ -142,7 +142,7 @@ def _draw(left: Believed, right: Believed, paper: Paper, values: Values) -> Sigh
     bars = _bars(paper, [rms(left.misses(j, columns)) for j in range(len(_FREE))], free)
     chart = _chart(paper, left, right, amount)
     sentence = _sentence(rms(left.misses(0, 0 * columns)), rms(misses), amount, free)
-    return Sight(paper.join((picture, bars, chart)), sentence)
+    return Drawing(paper.join((picture, bars, chart)), sentence)
 
 
 def _sentence(before: float, after: float, amount: float, free: int) -> str:

@@ -18,7 +18,7 @@ from cvnotes.camera import Camera, Lens
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
 from cvnotes.show.explore.boards import draw_arrows, draw_measured
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
@@ -83,14 +83,14 @@ def finding_model() -> Model:
         "from the closed form to the answer; beside it how far all corners are missed."
     )
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(finding, paper, values["step"], int(values["photograph"]))
 
     drags = {"step": lambda _, at: {"step": float(at[0])}}
     return Model("finding", about, settings, draw, drags)
 
 
-def _draw(finding: Finding, paper: Paper, step: float, i: int) -> Sight:
+def _draw(finding: Finding, paper: Paper, step: float, i: int) -> Drawing:
     camera, misses = finding.at(step)
     magnify = _magnified(step)
     picture = paper.picture_panel(_PICTURE, finding.size, f"photograph {i}: misses × {magnify:.0f}")
@@ -103,7 +103,7 @@ def _draw(finding: Finding, paper: Paper, step: float, i: int) -> Sight:
         f"After {step:g} of {_STEPS} steps k1 = {value['k1']:+.3f} and u0 = {value['u0']:.1f} px; "
         f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. {_seen(missed)}"
     )
-    return Sight(paper.join((picture, curve)), sentence)
+    return Drawing(paper.join((picture, curve)), sentence)
 
 
 def _magnified(step: float) -> float:

@@ -8,7 +8,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, WORLD
 
@@ -94,12 +94,12 @@ def fold_model() -> Model:
         "horizon; beside it the angles at which the eye sees the square's sides and diagonals."
     )
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         eye = circles[0].place(values["fold"])
         shown = 1 + int(values["second"])
         space = _space(paper, cameras[:shown], H[:shown], circles[:shown], eye)
         dials = _dials(paper, H[:shown], circles[0], values["fold"])
-        return Sight(paper.join((space, dials)), _sentence(H[:shown], eye))
+        return Drawing(paper.join((space, dials)), _sentence(H[:shown], eye))
 
     def turned(_: Values, at: Array) -> Values:
         folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)

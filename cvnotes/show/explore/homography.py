@@ -11,7 +11,7 @@ from cvnotes.homography import dlt
 from cvnotes.pictures import render
 from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explore.boards import pinhole
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Drawn, Paper, Range
 from cvnotes.show.style import ESTIMATED, WORLD
 from cvnotes.targets import Chessboard
@@ -44,7 +44,7 @@ def homography_model(camera: Camera, board: Chessboard) -> Model:
         size = (sharpness * _PICTURE[0], sharpness * _PICTURE[1])
         return np.asarray(Bitmap.fromarray(photo.astype(np.uint8)).resize(size))
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(photo, shown(paper.sharpness), view, board, paper, values)
 
     exact = view.project(_outer(board))
@@ -59,7 +59,7 @@ def homography_model(camera: Camera, board: Chessboard) -> Model:
 
 def _draw(
     photo: Image, shown: Drawn, camera: Camera, board: Chessboard, paper: Paper, values: Values
-) -> Sight:
+) -> Drawing:
     W = _outer(board)
     nudge = [[values[f"du{i}"], values[f"dv{i}"]] for i in range(1, 5)]
     m = camera.project(W) + nudge
@@ -79,7 +79,7 @@ def _draw(
     upright.image(rectify_plane(photo, H, ((X0, Y0), (X1, Y1)), pixel, fill=255).astype(np.uint8))
     upright.line(W[[0, 1, 2, 3, 0], :2], WORLD, 1.2, dash=5)
     upright.mark(W[:, :2], "world", 5)
-    return Sight(paper.join((picture, upright)), _sentence(H, camera, board, bool(np.any(nudge))))
+    return Drawing(paper.join((picture, upright)), _sentence(H, camera, board, bool(np.any(nudge))))
 
 
 def _sentence(H: Array, camera: Camera, board: Chessboard, nudged: bool) -> str:

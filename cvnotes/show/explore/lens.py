@@ -7,7 +7,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.camera.lens import radial_factor
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
@@ -45,7 +45,7 @@ def _around(name: str, reach: float, step: float, value: float, about: str) -> S
     return Setting(name, name, -reach, reach, step, value, about)
 
 
-def _draw(camera: Camera, paper: Paper, values: Values) -> Sight:
+def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     lens = Lens((values["k1"], values["k2"], values["k3"]), (values["p1"], values["p2"]))
     reach = 1.25 * _EXTENT
     x = reach * _SIZE[0] / _SIZE[1]
@@ -55,7 +55,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Sight:
     _draw_frame(grid, camera, lens)
     curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "radius: observed r L(r) over ideal r")
     _draw_curve(curve, lens)
-    return Sight(paper.join((grid, curve)), _sentence(camera, lens))
+    return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
 
 
 @cache

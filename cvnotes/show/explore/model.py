@@ -4,7 +4,7 @@ import io
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,11 +44,11 @@ class Setting(NamedTuple):
 
     @property
     def is_choice(self) -> bool:
-        """Tell that this is yes or no, 1 or 0: a switch and no slider."""
+        """Whether this is yes or no, 1 or 0: a switch and no slider."""
         return (self.low, self.high, self.step) == (0, 1, 1)
 
 
-class Sight(NamedTuple):
+class Drawing(NamedTuple):
     """What a model shows for one set of values.
 
     Attributes
@@ -68,6 +68,16 @@ class Sight(NamedTuple):
     matrices: str = ""
     grips: tuple[Grip, ...] = ()
 
+    def as_data(self) -> dict[str, Any]:
+        """Return all but the pixels, as a page is told it."""
+        height, width = self.picture.shape[:2]
+        return {
+            "size": [width, height],
+            "sentence": self.sentence,
+            "matrices": self.matrices,
+            "grips": [grip._asdict() for grip in self.grips],
+        }
+
 
 Drag = Callable[[Values, Array], Values]
 
@@ -85,7 +95,7 @@ class Model:
     settings : tuple of Setting
         What can be moved.
     draw : callable
-        (paper, values) → `Sight`.
+        (paper, values) → `Drawing`.
     drags : mapping
         What a hand that takes hold of the picture changes, by the name of the grip: (values, where
         it is pulled to, in its panel's coordinates) → changed values.
@@ -94,9 +104,9 @@ class Model:
     --------
     >>> def draw(paper, values):
     ...     panel = paper.panel((200, 100), (0, 1), (0, 1))
-    ...     return Sight(paper.join((panel,)), f"x is {values['x']:g}.")
+    ...     return Drawing(paper.join((panel,)), f"x is {values['x']:g}.")
     >>> model = Model("empty", "A frame.", (Setting("x", "x", 0, 1, 0.1, 0.5, "a number"),), draw)
-    >>> model.sight(x=0.3).sentence
+    >>> model.drawing(x=0.3).sentence
     'x is 0.3.'
     >>> model.picture().dtype
     dtype('uint8')
@@ -105,7 +115,7 @@ class Model:
     name: str
     about: str
     settings: tuple[Setting, ...]
-    draw: Callable[[Paper, Values], Sight]
+    draw: Callable[[Paper, Values], Drawing]
     drags: Mapping[str, Drag] = field(default_factory=dict)
 
     def values(self, **given: float) -> dict[str, float]:
@@ -123,24 +133,24 @@ class Model:
                 )
         return values
 
-    def sight(self, **values: float) -> Sight:
+    def drawing(self, **values: float) -> Drawing:
         """Return picture and sentence; where there is no answer, the sentence says why."""
         return self.drawn_on(Paper(), self.values(**values))
 
-    def drawn_on(self, paper: Paper, values: Values) -> Sight:
+    def drawn_on(self, paper: Paper, values: Values) -> Drawing:
         """Draw all values on some paper: sharper than usual, or narrow."""
         try:
-            sight = self.draw(paper, values)
-            sentence = re.sub(r"-(?=\d)", "−", sight.sentence)
-            return sight._replace(sentence=sentence, grips=paper.grips)
+            drawing = self.draw(paper, values)
+            sentence = re.sub(r"-(?=\d)", "−", drawing.sentence)
+            return drawing._replace(sentence=sentence, grips=paper.grips)
         except CvnotesError as reason:
             panel = paper.panel((660, 120), (0, 1), (0, 1))
             panel.text([0.5, 0.5], "no answer for these values", ESTIMATED, anchor="mm", size=14)
-            return Sight(paper.join((panel,)), f"No answer: {reason}.")
+            return Drawing(paper.join((panel,)), f"No answer: {reason}.")
 
     def picture(self, **values: float) -> Drawn:
         """Return the picture alone, (height, width, 3) of uint8."""
-        return self.sight(**values).picture
+        return self.drawing(**values).picture
 
     def dragged(self, name: str, at: tuple[float, float], **values: float) -> dict[str, float]:
         """Return the values after a grip was pulled to a place in the coordinates of its panel.
@@ -174,9 +184,9 @@ class Model:
         return self._still(Paper(2, narrow=True), values)
 
     def _still(self, paper: Paper, values: Values) -> Picture:
-        sight = self.drawn_on(paper, self.values(**values))
-        alt = f"{self.about} {sight.sentence}"
-        return Picture(_small_png(sight.picture), alt, sight.picture.shape[1] // 2)
+        drawing = self.drawn_on(paper, self.values(**values))
+        alt = f"{self.about} {drawing.sentence}"
+        return Picture(_small_png(drawing.picture), alt, drawing.picture.shape[1] // 2)
 
 
 def _small_png(picture: Drawn) -> bytes:

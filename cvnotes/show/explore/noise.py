@@ -9,7 +9,7 @@ from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Problem, State, covariance, minimise
 from cvnotes.camera import Camera
 from cvnotes.pictures import good_views
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
 from cvnotes.targets import Chessboard
@@ -78,7 +78,7 @@ def noise_model(camera: Camera, board: Chessboard) -> Model:
     return Model("noise", about, settings, lambda paper, values: _draw(study, paper, values))
 
 
-def _draw(study: _Study, paper: Paper, values: Values) -> Sight:
+def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     n, sigma = int(values["views"]), values["sigma"]
     bound = study.std(n, sigma)
     error, std = study.estimate(n, sigma, int(values["draw"]))
@@ -95,7 +95,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Sight:
         f"σ = {sigma:.2f} px and {n} views: α_u cannot be known better than ±{bound[0]:.2f} px "
         f"(one standard deviation); this try says {off:+.2f} ± {std[0]:.2f} px."
     )
-    return Sight(paper.join((bars, curve)), sentence)
+    return Drawing(paper.join((bars, curve)), sentence)
 
 
 def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array) -> None:

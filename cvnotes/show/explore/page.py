@@ -48,8 +48,6 @@ def told(model: Model, camera: Camera | None, board: Chessboard | None, values: 
     'k1'
     """
     values = model.values(**values)
-    sight = model.sight(**values)
-    height, width = sight.picture.shape[:2]
     return json.dumps(
         {
             "name": model.name,
@@ -58,10 +56,7 @@ def told(model: Model, camera: Camera | None, board: Chessboard | None, values: 
             "board": None if board is None else _board_to_dict(board),
             "settings": [{**s._asdict(), "choice": s.is_choice} for s in model.settings],
             "values": values,
-            "size": [width, height],
-            "sentence": sight.sentence,
-            "matrices": sight.matrices,
-            "grips": [grip._asdict() for grip in sight.grips],
+            **model.drawing(**values).as_data(),
         },
         ensure_ascii=False,
     )
@@ -95,18 +90,11 @@ def asked(question: str) -> Shown:
         values = asked_for.dragged(given["grip"], tuple(given["at"]), **values)
     sharpness = min(max(int(given.get("sharpness", 1)), 1), MAX_SHARPNESS)
     paper = Paper(sharpness, narrow=bool(given.get("narrow")))
-    sight = asked_for.drawn_on(paper, values)
-    height, width = sight.picture.shape[:2]
+    drawing = asked_for.drawn_on(paper, values)
+    height, width = drawing.picture.shape[:2]
     pixels = np.full((height, width, 4), 255, np.uint8)
-    pixels[..., :3] = sight.picture
-    rest = {
-        "values": values,
-        "size": [width, height],
-        "sharpness": sharpness,
-        "sentence": sight.sentence,
-        "matrices": sight.matrices,
-        "grips": [grip._asdict() for grip in sight.grips],
-    }
+    pixels[..., :3] = drawing.picture
+    rest = {"values": values, "sharpness": sharpness, **drawing.as_data()}
     return Shown(pixels.tobytes(), json.dumps(rest, ensure_ascii=False))
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera
 from cvnotes.show.explore.boards import pinhole
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD
 
@@ -29,7 +29,7 @@ def projection_model(camera: Camera) -> Model:
     )
     ideal = pinhole(camera)
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(ideal, paper, values)
 
     def pointed(_: Values, at: Array) -> Values:
@@ -43,7 +43,7 @@ def projection_model(camera: Camera) -> Model:
     return Model("projection", about, settings, draw, {"vanishing point": pointed, "rails": turned})
 
 
-def _draw(camera: Camera, paper: Paper, values: Values) -> Sight:
+def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     heading, slope = np.radians([values["heading"], values["slope"]])
     # The rails' direction, and the level one across; rounded, so that 90° is exact.
     along = np.array([np.sin(heading), -np.tan(slope), np.cos(heading)]) * np.cos(slope)
@@ -56,7 +56,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Sight:
     _draw_picture(picture, camera, middle, along, across)
     above = paper.panel((410, 330), (-8.9, 8.9), (12.6, -1.7), "the same from above (m)")
     _draw_above(above, camera, middle, along, across)
-    return Sight(paper.join((picture, above)), _sentence(camera, along))
+    return Drawing(paper.join((picture, above)), _sentence(camera, along))
 
 
 def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:

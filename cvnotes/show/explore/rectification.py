@@ -5,7 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, chain, pose, rotation_from_angles, rotation_from_vector
 from cvnotes.show.explore.boards import draw_board, pinhole
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED
 from cvnotes.stereo import epipolar_lines, fundamental_matrix, rectify
@@ -34,7 +34,7 @@ def rectification_model(camera: Camera, board: Chessboard) -> Model:
     )
     left = pinhole(camera).moved(_pose(board))
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(left, _beside(left, board, values), board, paper)
 
     return Model("rectification", about, settings, draw)
@@ -48,7 +48,7 @@ def _beside(left: Camera, board: Chessboard, values: Values) -> Camera:
     return left.moved(chain(turned, moved, left.G))
 
 
-def _draw(left: Camera, right: Camera, board: Chessboard, paper: Paper) -> Sight:
+def _draw(left: Camera, right: Camera, board: Chessboard, paper: Paper) -> Drawing:
     pair = rectify(left, right, size=_RECTIFIED, keep="all")
     shown = board.points[_four(board)]
     before = _row(paper, left, right, board, shown, "as taken")
@@ -60,7 +60,7 @@ def _draw(left: Camera, right: Camera, board: Chessboard, paper: Paper) -> Sight
         f"As taken, partners lie up to {apart[0]:.1f} px above or below each other; rectified, "
         f"{apart[1]:.1f} px: the search for a partner runs along one row."
     )
-    return Sight(paper.join(before, after), sentence)
+    return Drawing(paper.join(before, after), sentence)
 
 
 def _row(

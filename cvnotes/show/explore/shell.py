@@ -16,7 +16,7 @@ from ipywidgets.widgets.widget_string import HTML, Text
 
 from cvnotes.base.png import pack_png
 from cvnotes.camera import Camera
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.page import told
 from cvnotes.targets import Chessboard
 
@@ -66,7 +66,7 @@ class Explorer(VBox):
         )
         self.sentence, self.matrices = HTML(), HTML()
         self.image = Image(format="png")
-        self._drawn: tuple[dict[str, float], Sight] | None = None
+        self._drawn: tuple[dict[str, float], Drawing] | None = None
         self._held = False
         self._pulled, self._told = Text(layout=_HIDDEN), HTML(layout=_HIDDEN)
         self._number = 0  # of the pull that the picture answers
@@ -96,10 +96,10 @@ class Explorer(VBox):
         With the still comes, as data, what a page needs to make it follow the hand.
         """
         bundle: dict[str, Any] = super()._repr_mimebundle_(**kwargs)  # type: ignore[no-untyped-call]
-        sight = self.model.sight(**self.values)
+        drawing = self.model.drawing(**self.values)
         data = escape(told(self.model, *self._given, self.values))
         still = self.model.still(**self.values)._repr_html_()
-        words = f"<p>{escape(sight.sentence)} <em>Run this cell to move its sliders.</em></p>"
+        words = f"<p>{escape(drawing.sentence)} <em>Run this cell to move its sliders.</em></p>"
         for_page = f'<span class="cvnotes-explore" hidden data-explore="{data}"></span>'
         return bundle | {"text/html": still + words + for_page}
 
@@ -116,17 +116,17 @@ class Explorer(VBox):
         if self._drawn and self._drawn[0] == values:
             self._tell(self._drawn[1])
             return
-        sight = self.model.sight(**values)
-        self._drawn = values, sight
-        self.image.width = str(sight.picture.shape[1])
-        self.image.value = pack_png(sight.picture)
-        self.matrices.value = sight.matrices
-        self._tell(sight)
+        drawing = self.model.drawing(**values)
+        self._drawn = values, drawing
+        self.image.width = str(drawing.picture.shape[1])
+        self.image.value = pack_png(drawing.picture)
+        self.matrices.value = drawing.matrices
+        self._tell(drawing)
         # An image widget has no alternative text; its description stands here, for the ear only.
         self.sentence.value = (
             f'<span style="{_UNSEEN}">{escape(self.model.about)}</span>'
             f'<div role="status" aria-live="polite" style="{_TWO_LINES}">'
-            f"{escape(sight.sentence)}</div>"
+            f"{escape(drawing.sentence)}</div>"
         )
 
     def reset(self, _: Any = None) -> None:
@@ -164,15 +164,9 @@ class Explorer(VBox):
         self._number = given["number"]
         self.move(self.model.dragged(given["grip"], tuple(given["at"]), **given["values"]))
 
-    def _tell(self, sight: Sight) -> None:
+    def _tell(self, drawing: Drawing) -> None:
         """Tell the script where a hand can take hold of the picture."""
-        height, width = sight.picture.shape[:2]
-        told = {
-            "number": self._number,
-            "size": [width, height],
-            "values": self.values,
-            "grips": [grip._asdict() for grip in sight.grips],
-        }
+        told = {"number": self._number, "values": self.values, **drawing.as_data()}
         self._told.value = escape(json.dumps(told))
 
 

@@ -9,7 +9,7 @@ from cvnotes.calibration import pose_from_view
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.show.explore.boards import draw_arrows
 from cvnotes.show.explore.finding import rms
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
@@ -58,14 +58,14 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
         "beside it how well the two pictures can be told apart, over the tilt."
     )
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(lenses, paper, values["tilt"])
 
     drags = {"tilt": lambda _, at: {"tilt": float(at[0])}}
     return Model("tilt", about, settings, draw, drags)
 
 
-def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Sight:
+def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Drawing:
     one, other, near = lenses.seen(tilt)
     alpha, short = lenses.long.A[0, 0], lenses.short.A[0, 0]
     picture = paper.picture_panel(
@@ -86,7 +86,7 @@ def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Sight:
         sentence += "no picture of this board tells the one lens from the other."
     else:
         sentence += f"with corners good to 0.1 px that is {misfit / 0.1:.0f} times the noise."
-    return Sight(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
+    return Drawing(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
 
 
 def _draw_net(panel: Panel, m: Array, board: Chessboard, colour: str, width: float) -> None:

@@ -7,7 +7,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, pose, rotation_from_vector
 from cvnotes.pictures import render
 from cvnotes.show.explore.boards import pinhole
-from cvnotes.show.explore.model import Model, Setting, Sight, Values
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Drawn, Paper
 from cvnotes.show.style import ESTIMATED
 from cvnotes.targets import Chessboard
@@ -39,13 +39,13 @@ def warp_model(camera: Camera, board: Chessboard) -> Model:
         zoom = np.hypot(x, y) / (_ARM * width)
         return {"angle": float(np.degrees(np.arctan2(y, x))), "zoom": float(zoom)}
 
-    def draw(paper: Paper, values: Values) -> Sight:
+    def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(source, paper, values)
 
     return Model("warp", about, settings, draw, {"right side": pulled})
 
 
-def _draw(source: Drawn, paper: Paper, values: Values) -> Sight:
+def _draw(source: Drawn, paper: Paper, values: Values) -> Drawing:
     height, width = source.shape
     middle = (width - 1) / 2, (height - 1) / 2
     angle, zoom = np.radians(values["angle"]), values["zoom"]
@@ -70,7 +70,7 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Sight:
     arm = zoom * _ARM * width * np.array([np.cos(angle), np.sin(angle)])
     right.mark(middle + arm, "ideal", 6)
     right.grip("right side", "a point of the picture, to turn and zoom it", middle + arm, 4)
-    return Sight(paper.join((left, right)), _sentence(holes, covered, forward.folds))
+    return Drawing(paper.join((left, right)), _sentence(holes, covered, forward.folds))
 
 
 def _sentence(holes: npt.NDArray[np.bool_], covered: npt.NDArray[np.bool_], folds: int) -> str:
