@@ -552,13 +552,6 @@ def test_a_packed_picture_is_unpacked_by_others_as_it_was():
     assert np.array_equal(np.asarray(Image.open(io.BytesIO(pack_png(picture)))), picture)
 
 
-def test_bytes_of_a_palette_are_unpacked_as_their_colours():
-    rng = np.random.default_rng(1)
-    picture, palette = (rng.integers(0, 256, shape, np.uint8) for shape in ((37, 53), (256, 3)))
-    unpacked = Image.open(io.BytesIO(pack_png(picture, palette))).convert("RGB")
-    assert np.array_equal(np.asarray(unpacked), palette[picture])
-
-
 @pytest.mark.parametrize("bad", [np.zeros((4, 4), np.uint8), np.zeros((4, 4, 3))])
 def test_only_pictures_are_packed(bad):
     with pytest.raises(ShapeError, match="expected uint8"):

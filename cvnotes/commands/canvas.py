@@ -1,21 +1,19 @@
 """A sheet to draw on, with Pillow at twice the size: no figure library is loaded."""
 
-from collections.abc import Iterable
+import io
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, FileError
-from cvnotes.base.png import pack_png
+from cvnotes.base import Array, FileError, clipped_segments
 
 # The meanings of the course's figures, and shades of grey.
 ESTIMATED, WORLD, LENS = "#D55E00", "#009E73", "#0072B2"
 MUTED, PALE, FAINT, INK = "#6E6E6E", "#C4C4C4", "#EEEEEE", "#000000"
 _FINE = 2  # times finer than the sheet is drawn what has edges
 _THINNEST = 3  # fine pixels: thinner lines fade at some slopes
-_INKS = (LENS, ESTIMATED, WORLD, INK)
 
 
 class _Word(NamedTuple):
@@ -57,25 +55,14 @@ class Canvas:
         self.segments(m[:-1], m[1:], colour, width)
 
     def segments(self, start: Array, end: Array, colour: str, width: float = 1) -> None:
-        """Draw a line from each point (n, 2) to the other."""
-        thick = max(round(_FINE * width), _THINNEST)
-        for ends in _fine(np.concatenate(self._near(start, end), axis=1)).tolist():
-            self._draw.line(ends, colour, thick)
+        """Draw a line from each point (n, 2) to the other, if both are known (not NaN)."""
+        thick, ends = max(round(_FINE * width), _THINNEST), np.stack([start, end], axis=1)
+        reach = 2.0 * sum(self._size)  # far outside of the sheet Pillow cannot count
+        near = clipped_segments(ends, np.concatenate([ends + reach, reach - ends], axis=-1))
+        for line in _fine(near).reshape(-1, 4).tolist():
+            self._draw.line(line, colour, thick)
         if width > 1:  # so that lines of a corner meet
             self.dots(np.concatenate([start, end]), colour, width / 2)
-
-    def _near(self, start: Array, end: Array) -> tuple[Array, Array]:
-        """Cut lines off far outside of the sheet, where Pillow cannot count."""
-        reach = 2.0 * sum(self._size)
-        length = np.hypot(*(end - start).T)[:, None]
-        along = (end - start) / np.where(length > 0, length, 1)
-        # as far as the point of each that is nearest to the middle of the sheet
-        far = ((np.array(self._size) / 2 - start) * along).sum(1, keepdims=True).clip(0, length)
-        nearest = start + far * along
-        seen = (np.abs(nearest) < reach).all(1)
-        start = nearest - np.minimum(far, reach) * along
-        end = nearest + np.minimum(length - far, reach) * along
-        return start[seen], end[seen]
 
     def dots(self, m: npt.ArrayLike, colour: str, radius: float = 2) -> None:
         """Put a dot on each point (n, 2)."""
@@ -149,36 +136,14 @@ class Canvas:
                     (x, y), word.text, word.colour, font, word.anchor,
                     stroke_width=int(word.halo), stroke_fill="white",
                 )  # fmt: skip
-        return _packed(sheet)
+        packed = io.BytesIO()
+        sheet.quantize(256, dither=Image.Dither.NONE).save(packed, "PNG")
+        return packed.getvalue()
 
 
 def _fine(m: Array) -> Array:
     """Return places on the fine sheet, where Pillow counts from the middle of the first pixel."""
     return _FINE * m - 0.5
-
-
-def _packed(sheet: Any) -> bytes:
-    """Encode a picture in the colours of a palette: greys exactly, inks as Pillow sees them."""
-    from PIL import Image
-
-    colours, rgb = Image.new("P", (1, 1)), np.asarray(sheet)
-    colours.putpalette(_palette().tobytes())
-    inked = np.asarray(sheet.quantize(palette=colours, dither=Image.Dither.NONE))
-    grey = (rgb == rgb[..., :1]).all(-1)
-    return pack_png(np.where(grey, rgb[..., 0] >> 1, inked), _palette())
-
-
-@cache
-def _palette() -> npt.NDArray[np.uint8]:
-    """Return the colours (256, 3): 128 greys, then each ink in 8 thicknesses over 4 greys."""
-    from PIL import ImageColor
-
-    i = np.arange(128)
-    greys = np.repeat((2 * i + (i > 63))[:, None], 3, axis=1)
-    inks = np.array([ImageColor.getrgb(ink) for ink in _INKS], dtype=float)[:, None, None]
-    thick, under = np.arange(1, 9)[:, None, None] / 8, np.arange(4)[:, None] * 85.0
-    mixed = (under + thick * (inks - under)).reshape(-1, 3)
-    return np.asarray(np.rint(np.concatenate([greys, mixed])), dtype=np.uint8)
 
 
 def ticks(low: float, high: float, most: int = 6) -> Array:
@@ -240,17 +205,3 @@ def _with_accents(size: int) -> Any:
         return ImageFont.truetype(font_file(), size)
     except (FileError, OSError):
         return _light(size)
-
-
-def known_runs(m: Array) -> Iterable[Array]:
-    """Return the parts of a line (n, 2) between its gaps (NaN), at least two points each.
-
-    Examples
-    --------
-    >>> line = np.array([[0, 0], [1, 0], [np.nan, np.nan], [3, 0], [4, 0], [5, 0]])
-    >>> [len(run) for run in known_runs(line)]
-    [2, 3]
-    """
-    known = np.isfinite(m).all(-1)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
-    return [m[a:b] for a, b in edges.reshape(-1, 2) if b - a > 1]

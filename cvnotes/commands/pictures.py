@@ -17,7 +17,6 @@ from cvnotes.commands.canvas import (
     PALE,
     WORLD,
     Canvas,
-    known_runs,
     ticks,
     wrapped,
 )
@@ -85,10 +84,8 @@ def _sheet(photographs: "Sequence[Detection]", board: "Board") -> Canvas:
 def _draw_lattice(sheet: Canvas, lattice: Array) -> None:
     """Join each row; the ring is the origin, the thick lines lead along x and y."""
     for row in lattice:
-        for run in known_runs(row):
-            sheet.line(run, ESTIMATED)
-    known = lattice[np.isfinite(lattice).all(-1)]
-    sheet.dots(known, ESTIMATED, 1.5)
+        sheet.line(row, ESTIMATED)
+    sheet.dots(lattice, ESTIMATED, 1.5)
     for axis, name in ((lattice[0, :3], "x"), (lattice[:3, 0], "y")):
         if np.isfinite(axis).all():
             sheet.line(axis, WORLD, 2)
