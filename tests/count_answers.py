@@ -5,7 +5,9 @@ listed misconceptions, right answers changed as a whole, and slips of the second
 wrong answer is
 
 * accepted, or raises out of `check`;
-* wrongly named: by another of the list than its own, or on other inputs by another name;
+* wrongly named: by another of the list than its own, or on other inputs by another name
+  (where an answer is wrong is measured on the inputs at hand, and NaN has many causes: neither is
+  a name);
 * named, by the list or by a rule that says what was done;
 * precise, where what is said is in which entries, rows or columns it is wrong, or how little;
 * located, where besides a step is shown that, put right, makes the rest come out right (asked of
@@ -94,6 +96,10 @@ def with_source(source, name):
     return names[f"my_{name}"]
 
 
+def finite(report):
+    return report.yours is not None and np.isfinite(np.asarray(report.yours, float)).all()
+
+
 def counted(answers):
     """Count what is said of wrong answers: (exercise, function, own name or None)."""
     counts, times = Counter(), []
@@ -122,11 +128,10 @@ def counted(answers):
             counts["precise" if said in VAGUE else "named"] += 1
         if own is not None and said != own:
             counts["wrong name"] += 1
-        elif (
-            own is None and said is not None and np.isfinite(np.asarray(report.yours, float)).all()
-        ):
+        elif own is None and said not in (None, *VAGUE) and finite(report):
             again = [judged(exercise, function, seed) for seed in OTHERS]
-            counts["wrong name"] += not {r.misconception for r in again if not r.passed} <= {said}
+            names = {r.misconception for r in again if not r.passed and finite(r)}
+            counts["wrong name"] += not names <= {said}
     counts["ms"] = round(1e3 * float(np.median(times)), 1) if times else 0
     return counts
 

@@ -132,7 +132,42 @@ def error_by_a_function_of_my_own(H, src, dst):
     return np.linalg.norm(mapped(H, src) - dst, axis=1)
 
 
+def four_pixels_of_two_rows(image, u, v):
+    i, j = int(u), int(v)
+    du, dv = u - i, v - j
+    i2 = min(i + 1, image.shape[1] - 1)
+    j2 = min(j + 1, image.shape[0] - 1)
+    top = image[j, i] * (1 - du) + image[j, i2] * du
+    bottom = image[j2, i] * (1 - du) + image[j, i2] * du
+    return top * (1 - dv) + bottom * dv
+
+
+def warp_pixel_by_pixel(image, H, size):
+    out = np.zeros((size[1], size[0]))
+    for v in range(size[1]):
+        for u in range(size[0]):
+            p = np.linalg.inv(H) @ [u, v, 1]
+            x, y = p[:2] / p[2]
+            i, j = int(x), int(y)
+            if 0 <= i < image.shape[1] and 0 <= j < image.shape[0]:
+                out[v, u] = image[j, i]
+    return out
+
+
+def holes_one_by_one(m, size):
+    hit = np.zeros((size[1], size[0]))
+    for u, v in m:
+        i, j = int(u), int(v)
+        if 0 <= i < size[0] and 0 <= j < size[1]:
+            hit[j, i] = 1
+    return (hit == 0).sum()
+
+
 LOCATED = [
+    ("bilinear", four_pixels_of_two_rows, "image[j2, i] * (1 - du) + image[j, i2] * du",
+     "the grey level in the lower row"),
+    ("backward_warp", warp_pixel_by_pixel, "int(x), int(y)", "the nearest pixels"),
+    ("count_holes", holes_one_by_one, "int(u), int(v)", "the nearest pixels"),
     ("error_bars", error_bars_of_n, "(r**2).sum() / n", "σ², the variance of the residuals"),
     ("error_bars", error_bars_of_reciprocals, "1 / N[i]", "(JᵀJ)⁻¹"),
     ("project", project_from_a_frame_of_its_own, "R.T @ (w - T)", "the points in the camera's"),
@@ -177,6 +212,15 @@ def test_where_nothing_is_proven_nothing_is_claimed():
     assert located(lambda J, r: np.zeros(J.shape[1]), EXERCISES["error_bars"]) is None
     exec("def nowhere(J, r): return r", names := {})
     assert located(names["nowhere"], EXERCISES["error_bars"]) is None
+
+
+def test_where_no_input_changes_with_the_seed_the_largest_stand_for_them():
+    def steps(c, r):
+        n = c + r  # all corners of a row and a column
+        return (n % 2 == 1) * 1.0
+
+    exercise = replace(EXERCISES["knows_its_origin"], steps=steps)
+    assert located(lambda c, r: (c - 2.5 * r) % 2 == 1, exercise) is None
 
 
 def test_a_function_that_ends_everything_is_located_without_harm():

@@ -29,10 +29,11 @@ def vanishing_point(A: Array, R: Array, d: Array) -> Array:
 def _directions(rng: Rng) -> list[Case]:
     A, R = some_intrinsics(rng, skew=True), some_rotation(rng)
     ahead = rounded(R.T @ [*rng.uniform(-0.5, 0.5, 2), 1.0])
+    aside = rounded(R.T @ [*rng.uniform(-1.4, -1.1, 2), 1.0])  # left of the picture and above
     return [
         Case((TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 3.0]))),
         Case((A, R, ahead)),
-        Case((A, R, -0.5 * ahead), about="away"),
+        Case((A, R, -0.5 * aside), about="away"),
         Case((TIDY_A, ABOUT_Y, np.array([0.0, 1.0, 0.0])), about="parallel"),
         # seen, though level in the world; and parallel, though not level in it
         Case((TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 0.0]))),

@@ -21,6 +21,7 @@ from cvnotes.learn.cases.cameras import (
     some_pose,
 )
 from cvnotes.tutor import edited
+from cvnotes.tutor.checker.equality import close_to
 from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
 
 
@@ -153,6 +154,7 @@ FORM = Exercise(
     properties=(Property("Every point is where the four steps, in their order, put it."),),
     misconceptions=MISTAKES,
     reference=form_image,
+    same=close_to(2e-7),  # a ten-thousandth of a pixel
     steps=_steps,
     concepts=("34", "35", "E13", "E16"),
     sources=(Camera.project, Lens.distort, px_from_xy),

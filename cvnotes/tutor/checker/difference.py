@@ -70,11 +70,11 @@ def difference(answer: WrongAnswer) -> Found | None:
         if outcome.value is None or outcome.value.shape != case.right.shape:
             return None
         pairs.append((outcome.value, case.right))
-    if len(tried) > 1 and (found := _same_for_all(tried, exercise.same)):
-        return found
     bound = max(tolerance(outcome.dtype) for _, outcome in answer.failing)
     always = answer.wrong == len(tried)
     wrong = _Wrong(tuple(pairs[: answer.wrong]), exercise.same, bound, always)
+    if len(tried) > 1 and (found := _same_for_all(tried, exercise.same)):
+        return _each_number(wrong) or found
     if all(np.isin(right, (0, 1)).all() and right.ndim for _, right in pairs):
         return _truths(wrong.pairs)
     # What a few of several cases have in common may be chance, where it is a single number.
@@ -94,7 +94,7 @@ def difference(answer: WrongAnswer) -> Found | None:
 
 
 # Answers this near to right ones, relative to their largest numbers, differ in their digits only.
-_NEARLY = 2e-3
+_NEARLY = 5e-3
 
 
 def _off(wrong: _Wrong) -> float | None:
@@ -111,7 +111,7 @@ def _off(wrong: _Wrong) -> float | None:
         long = (right != np.round(right, 6))[there] & (np.abs(right[there]) > 1e-9 * size)
         exact = int((long & (apart <= 1e-13 * size)).sum())
         # Where a factor is free, it is that of one of them, or of a few.
-        if not size or exact > (long.sum() // 2 if wrong.up_to_scale else 0):
+        if not size or exact > (max(1, long.sum() // 2) if wrong.up_to_scale else 0):
             return None
         largest = max(largest, float(apart.max(initial=0.0)) / size)
     return largest if 0 < largest <= _NEARLY else None
@@ -182,7 +182,9 @@ def _moved_on(axis: int, step: int) -> Change:
 
 
 def _sign(wrong: _Wrong) -> Found | None:
-    if wrong.right_after(np.negative):
+    # Sizes where signs belong are right where a right answer has none.
+    sizes = not wrong.always and all((answer >= 0).all() for answer, _ in wrong.pairs)
+    if wrong.right_after(np.negative) and not sizes:
         return Found("sign", "Your answer is right but for its sign: it is the right one times −1.")
     if all(right.size > 1 for _, right in wrong.pairs) and wrong.equal(np.abs):
         return Found(
@@ -381,6 +383,8 @@ _DONE: tuple[tuple[str, str, Change], ...] = (
      "are.", lambda r: np.round(r, 2)),
     ("few decimals", "These are the right numbers, rounded to three decimals: leave them as "
      "they are.", lambda r: np.round(r, 3)),
+    ("few decimals", "These are the right numbers, rounded to four decimals: leave them as "
+     "they are.", lambda r: np.round(r, 4)),
     ("absolute values", "These are absolute values: the signs belong to the answer.", np.abs),
     ("scaled to length 1", "You scaled the right answer to length 1.",
      lambda r: r / np.linalg.norm(r) if r.ndim else r),
@@ -435,7 +439,7 @@ _NO_NUMBERS: tuple[tuple[str, str, Change, Change], ...] = (
 def _entries(wrong: _Wrong) -> str:
     """Name the entries that are wrong in every case, if it is a few."""
     if block := _block(wrong):
-        return f" in {block}"
+        return f" in {block}" * (block in ("R", "T"))
     shapes = {right.shape for _, right in wrong.pairs}
     if len(shapes) != 1 or shapes == {()}:
         return ""
@@ -447,7 +451,7 @@ def _entries(wrong: _Wrong) -> str:
 
 
 def _block(wrong: _Wrong) -> str:
-    """Name what alone is wrong of a pose: R or T; empty if that are both, or this is no pose."""
+    """Name what is wrong of a pose: R, T or both; empty if this is no pose."""
     if wrong.same is not same_motion:
         return ""
     blocks = {"R": np.s_[:3, :3], "T": np.s_[:3, 3:]}
@@ -456,7 +460,7 @@ def _block(wrong: _Wrong) -> str:
         for name, i in blocks.items()
         if not all(close(a[i], right[i], wrong.bound) for a, right in wrong.pairs)
     ]
-    return off[0] if len(off) == 1 else ""
+    return " and ".join(off)
 
 
 def _wrong_entries(answer: Array, right: Array) -> Array:
@@ -476,8 +480,8 @@ def _some(wrong: _Wrong) -> Found | None:
     if any(a.ndim == 0 for a, _ in pairs):
         return None
     if block := _block(wrong):
-        other = "T" if block == "R" else "R"
-        return Found("a few numbers", f"{other} is right, {block} is not.")
+        other = {"R": "T", "T": "R"}.get(block)
+        return Found("a few numbers", f"{other} is right, {block} is not.") if other else None
     places = [_wrong_entries(*pair) for pair in pairs]
     if few := _entries(wrong):
         return Found("a few numbers", f"All is right but what stands{few}.")

@@ -21,7 +21,7 @@ def slack(dtype: str) -> float:
     >>> slack("float64"), slack("float32")
     (1.0, 200.0)
     """
-    return _SINGLE if dtype in ("float32", "float16") else 1.0
+    return _SINGLE if dtype == "float32" else 1.0
 
 
 def tolerance(dtype: str) -> float:

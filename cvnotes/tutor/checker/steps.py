@@ -347,26 +347,41 @@ def _proven(
 
     if not traces or all(right(own(trace.args), trace) for trace in traces):
         return -1, -1  # it is wrong in special cases only
+    innocent = {e for e in seen[0] if _is_innocent(e, exercise, traces, seen)}
     for k, (i, _) in enumerate(traces[0].steps):
-        fits = []
         for e in seen[0]:
             if time.process_time() > clock:
                 return -1, -1
-            if all(
+            if e not in innocent and all(
                 e in values
                 and _is_candidate(values[e], trace.steps[k][1], trace, exercise.same)
                 and right(own(trace.args, {e: trace.steps[k][1]}), trace)
                 for trace, values in zip(traces, seen, strict=True)
             ):
-                fits.append(e)
-        if fits:
-            return i, fits[0]  # where it is worked out, not where it is used
+                return i, e  # where it is worked out, not where it is used
     return -1, -1
 
 
+def _is_innocent(
+    e: int, exercise: Exercise, traces: Sequence[_Trace], seen: Sequence[Seen]
+) -> bool:
+    """Return whether an expression is right as it is: an input, or one of the steps."""
+    pairs = [(values[e], trace) for trace, values in zip(traces, seen, strict=True) if e in values]
+    given = zip(*(trace.args for _, trace in pairs), strict=True)
+    inputs = ([_numbers(x) for x in one] for one in given)
+    steps = zip(*((array for _, array in trace.steps) for _, trace in pairs), strict=True)
+    return any(
+        all(
+            known is not None and _agree(value, known, exercise.same)
+            for (value, _), known in zip(pairs, one, strict=True)
+        )
+        for one in (*inputs, *steps)
+    )
+
+
 def _is_candidate(mine: Array, wanted: Array, trace: _Trace, same: Same) -> bool:
-    """Return whether a value might be a wrong one of a step, and the step is not the answer."""
-    if mine.size != wanted.size or _agree(mine, wanted, same):
+    """Return whether a value might be one of a step, and the step is not the answer."""
+    if mine.size != wanted.size:
         return False
     return wanted.size != trace.right.size or not _agree(wanted, trace.right, same)
 
