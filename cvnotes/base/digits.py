@@ -39,3 +39,15 @@ def with_deviation(value: float, std: float) -> tuple[str, str]:
     """
     digits = min(decimals(std), _MOST)
     return fixed(value, digits), fixed(std, digits)
+
+
+def round_number(x: float) -> float:
+    """Return the largest of 1, 2, 5, 10, 20, … and their tenths that is not above x > 0.
+
+    Examples
+    --------
+    >>> round_number(49.0), round_number(0.5)
+    (20.0, 0.5)
+    """
+    power = 10.0 ** floor(log10(x))
+    return float(power * max(step for step in (1, 2, 5) if step * power <= x * (1 + 1e-12)))

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, chunks
+from cvnotes.base.digits import round_number
+from cvnotes.base.text import shortened
 from cvnotes.base.writing import printable
 from cvnotes.calibration.coverage import covered_cells
 from cvnotes.commands.canvas import (
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 _COLUMNS, _ROWS = 4, 10  # of a sheet
 _TILE = 320  # px wide
 _HEAD = 24  # px for a title
+_LETTERS = 28  # of a name
 _WIDE, _NARROWEST = 900, 480  # px, of a picture of its own
 _BAR = 18  # px that a bar and its name need
 _MOST_LINES = 1000  # that can be told apart
@@ -68,7 +71,7 @@ def _sheet(photographs: "Sequence[Detection]", board: "Board") -> Canvas:
     for k, photo in enumerate(photographs):
         x, y = k % columns * (_TILE + 4) + 2, k // columns * (tile[1] + _HEAD) + _HEAD
         sheet.photograph(photo.thumbnail, (x, y), tile)
-        zoom, name = _TILE / photo.size[0], _shortened(printable(photo.path.name))
+        zoom, name = _TILE / photo.size[0], shortened(printable(photo.path.name), _LETTERS)
         place = np.array([x, y])
         if photo.corners is not None:
             columns_rows = (*board.corners[::-1], 2)
@@ -97,12 +100,13 @@ def _draw_lattice(sheet: Canvas, lattice: Array) -> None:
 
 def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
     """Draw the RMS of each view as a bar, beside that of all."""
+    names = [shortened(name, _LETTERS) for name in names]
     # Where a lens folds there is no residual, and no bar.
     rms, all_rms = np.nan_to_num(result.view_rms), float(np.nan_to_num(result.rms))
     height = 420
     wide = min(max(_WIDE, 150 + _BAR * len(rms)), 4 * _WIDE)
     step = -(-_BAR * len(rms) // (wide - 150))  # every name, as long as they are legible
-    longest = max(len(_shortened(name)) for name in names)
+    longest = max(map(len, names))
     # A digit or a letter of this size is about 6 px wide.
     flat = 6.5 * longest < step * (wide - 150) / len(rms)
     left, right, top = 62, wide - 88, 18
@@ -119,9 +123,9 @@ def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
             (x - 0.35 * across, bottom - value * up), (x + 0.35 * across, bottom), fill=ESTIMATED
         )
         if i % step == 0 and flat:
-            sheet.text((x, bottom + 16), _shortened(names[i]), size=12)
+            sheet.text((x, bottom + 16), names[i], size=12)
         elif i % step == 0:
-            sheet.upright((x, bottom + 5), _shortened(names[i]), size=11)
+            sheet.upright((x, bottom + 5), names[i], size=11)
     y = bottom - all_rms * up
     sheet.line([(left, y), (right, y)], INK)
     sheet.text((right + 5, y), f"all: {result.rms:.3f}", MUTED, anchor="lm")
@@ -203,7 +207,7 @@ def _residuals(result: "Calibration") -> Canvas:
         places, mean = _cell_means(places, r, result.size)
         word = "Mean residuals of places"
     longer = float(np.percentile(np.hypot(*mean.T), 95)) if len(mean) else 0.0
-    magnify = _round_number(0.04 * result.size[0] / longer) if longer > 0 else 1.0
+    magnify = round_number(0.04 * result.size[0] / longer) if longer > 0 else 1.0
     title = f"{word}, {magnify:,g} times as long (RMS {result.rms:.3f} px per point)"
     drawn = _picture(result.size, title, beside=_CLOUD, tall=_CLOUD + _HEAD)
     start = drawn.place(places)
@@ -248,13 +252,3 @@ def _cloud(drawn: _Picture, r: Array, sigma: float) -> None:
     x, y = (float(at) for at in middle)
     sheet.text((x, y + half + 36), "observed - predicted (px)", size=12)
     sheet.text((x, y + half + 53), f"circle: one standard deviation, {sigma:.3f} px", size=12)
-
-
-def _round_number(x: float) -> float:
-    """Return the largest of 1, 2, 5, 10, 20, … below a number."""
-    power = 10.0 ** np.floor(np.log10(x))
-    return float(power * max(f for f in (1, 2, 5) if f * power <= x * (1 + 1e-9)))
-
-
-def _shortened(name: str) -> str:
-    return name if len(name) <= 28 else f"{name[:14]}...{name[-11:]}"

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, image_size, number
+from cvnotes.base.digits import round_number
 from cvnotes.calibration.coverage import covered_cells, joined
 from cvnotes.show.guards import calibrated
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED, as_picture, panels, picture_axes
@@ -41,7 +42,7 @@ def draw_residuals(
     width = calibration.size[0]
     longer = float(np.percentile(np.hypot(*r.T), 95))
     if magnify is None:
-        magnify = _round_number(0.04 * width / longer) if longer > 0 else 1.0
+        magnify = round_number(0.04 * width / longer) if longer > 0 else 1.0
     magnify = number(magnify, "magnify")
     if ax is None:
         ax = picture_axes(calibration.size)
@@ -145,7 +146,7 @@ def draw_board_shape(
     longer = float(np.percentile(np.hypot(*aside.T), 95))
     if longer > 0:
         if magnify is None:
-            magnify = _round_number(0.06 * extent / longer)
+            magnify = round_number(0.06 * extent / longer)
         magnify = number(magnify, "magnify")
         ax.quiver(
             x, y, *(aside * magnify).T, color=IDEAL, angles="xy", scale_units="xy", scale=1,
@@ -165,9 +166,3 @@ def _corners_of(calibration: "Calibration") -> Array:
     if not calibration.image_points:
         raise DegenerateError("this calibration was read from a file that has no corners")
     return np.concatenate(calibration.image_points)
-
-
-def _round_number(x: float) -> float:
-    """Round down to 1, 2 or 5 times a power of ten."""
-    power = 10.0 ** np.floor(np.log10(x))
-    return float(power * max(step for step in (1, 2, 5) if step * power <= x * (1 + 1e-12)))
