@@ -497,6 +497,7 @@ EXEMPT = {
     "homographies": "a guard",
     "joined": "for use inside; `covered_cells` is tried",
     "pairs": "a guard",
+    "paired_points": "a guard; those that it serves are tried",
     "Scene.moved": "guarded by `rigid.rigid_motion`; see test_meshes.py",
     "render": "a target and a camera; see test_synthetic.py",
     "room_with": "guarded by `target_scene`",
