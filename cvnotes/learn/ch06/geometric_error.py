@@ -56,8 +56,6 @@ _MISTAKES = mistakes(
      "dst.",
      lambda H, src, dst: geometric_error(H, src, dst) + _other_plane(H, src, dst),
      lambda H, src, dst: np.hypot(geometric_error(H, src, dst), _other_plane(H, src, dst))),
-    ("src not mapped", "You compared dst with src itself, which lies in another plane.",
-     edited(_steps, "m - dst", "src - dst")),
     ("one coordinate only", "You compared one coordinate only; a distance has both.",
      edited(_steps, _LENGTH, "abs(d[:, 0])"), edited(_steps, _LENGTH, "abs(d[:, 1])")),
     ("sum of absolute differences", "You added both differences, or took the larger one; what is "

@@ -67,8 +67,6 @@ _MISTAKES = mistakes(
      "triangular factor of that; A is upper triangular.",
      lambda b: _last_one(np.linalg.cholesky(np.linalg.inv(_B(b)))) if b[0] > 0 else None,
      lambda b: _last_one(np.linalg.cholesky(np.linalg.inv(_B(b))).T) if b[0] > 0 else None),
-    ("u0 with α for β", "All but u0 is right: an α in place of a β is often printed.",
-     edited(_steps, "g * v0 / av", "g * v0 / au")),
     ("scale taken for 1", "You took b for entries of A⁻ᵀ A⁻¹ itself; its scale is unknown, and has "
      "to be found first.",
      edited(_steps, "s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11", "s = 1",

@@ -34,10 +34,10 @@ def _views(rng: Rng) -> list[Case]:
     ]
 
 
-def _information(Jc: Array, Jp: Array, sign: float = -1.0) -> Array:
+def _information(Jc: Array, Jp: Array) -> Array:
     """Return the Schur complement of each view, (n, c, c)."""
     own = np.linalg.inv(Jp.mT @ Jp)
-    return np.asarray(Jc.mT @ Jc + sign * Jc.mT @ Jp @ own @ Jp.mT @ Jc)
+    return np.asarray(Jc.mT @ Jc - Jc.mT @ Jp @ own @ Jp.mT @ Jc)
 
 
 def _whole(Jc: Array, Jp: Array) -> Array:
@@ -70,11 +70,6 @@ _MISTAKES = mistakes(
     ("poses held fixed", "That is the covariance if every pose were given, which is too small. "
      "Who else takes a share of what is seen?",
      lambda Jc, Jp: np.linalg.inv((Jc.mT @ Jc).sum(0))),
-    ("share added", "A pose that has to be estimated costs information; yours adds some.",
-     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp, 1.0).sum(0))),
-    ("mean over the views", "You took the mean over the views. Information adds up: more views, "
-     "less uncertainty.",
-     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp).mean(0))),
     ("inverted view by view", "You inverted each view's share and added the inverses. "
      "Information adds up, not covariance.",
      lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).sum(0),

@@ -45,8 +45,6 @@ def _steps(H: Array, i: int, j: int) -> Any:
 
 
 _MISTAKES = mistakes(
-    ("rows of H", "You took the rows of H, as the DLT stacks them; what is h_i here?",
-     edited(_steps, "H[:, i - 1], H[:, j - 1]", "H[i - 1], H[j - 1]")),
     ("columns counted from 0", "Python counts columns from 0, this exercise from 1.",
      edited(_steps, "i - 1], H[:, j - 1]", "i], H[:, j]")),
     ("mixed products once", "B12 stands in B twice, so that two products belong to it; you have "

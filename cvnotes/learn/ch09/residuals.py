@@ -44,8 +44,6 @@ def _steps(A: Array, k: Array, G: Array, W: Array, m: Array) -> Any:
 
 
 _MISTAKES = mistakes(
-    ("predicted minus observed", "The sign is the other way round.",
-     lambda A, k, G, W, m: -residuals(A, k, G, W, m)),
     ("lens left out", "You predicted with an ideal lens: what remains is its distortion.",
      lambda A, k, G, W, m: residuals(A, 0 * k, G, W, m),
      lambda A, k, G, W, m: -residuals(A, 0 * k, G, W, m)),
@@ -56,10 +54,6 @@ _MISTAKES = mistakes(
      lambda A, k, G, W, m: np.linalg.norm(residuals(A, k, G, W, m), axis=1)),
     ("the prediction itself", "These are the predicted pixels: how far are they from those seen?",
      edited(_steps, "m - seen", "seen")),
-    ("rotation transposed", "Your rotation is transposed: points are rows here.",
-     edited(_steps, "G[:3, :3].T", "G[:3, :3]")),
-    ("T left out", "The board is turned, and not moved: T is missing.",
-     edited(_steps, " + G[:3, 3]", "")),
     ("G inverted", "You used G the other way round: it takes points of the board to the camera's "
      "frame already.",
      lambda A, k, G, W, m: residuals(A, k, np.linalg.inv(G), W, m)),
