@@ -244,6 +244,17 @@ def my_geometric_error(H, src, dst):
     return out
 
 
+def my_ransac(src, dst, draws, t):
+    k, X = 0, np.column_stack([src, np.ones(len(src))])
+    for rows in draws:
+        D = []
+        for a, (u, v) in zip(X[rows], dst[rows], strict=True):
+            D += [[*a, 0, 0, 0, *(-u * a)], [0, 0, 0, *a, *(-v * a)]]
+        x, y, w = np.linalg.svd(np.array(D))[2][-1].reshape(3, 3) @ X.T
+        k = max(k, sum(np.hypot(x / w - dst[:, 0], y / w - dst[:, 1]) <= t))
+    return [k, np.ceil(np.log(1e-3) / np.log1p(-((k / len(src)) ** 4)))]
+
+
 # Chapter 7
 
 
@@ -316,6 +327,35 @@ def my_camera_covariance(Jc, Jp):
         own[i * m : (i + 1) * m, i * Jp.shape[2] : (i + 1) * Jp.shape[2]] = block
     J = np.hstack([np.vstack(Jc), own])
     return np.linalg.pinv(J.T @ J)[:c, :c]
+
+
+def my_levenberg_marquardt(x, W, m):
+    def misses(x):
+        r = []
+        for pose, seen in zip(x[3:].reshape(-1, 6), m, strict=True):
+            a, b, c = pose[:3]
+            angle, K = (
+                np.sqrt(a * a + b * b + c * c),
+                np.array([[0, -c, b], [c, 0, -a], [-b, a, 0]]),
+            )
+            M = W + np.sin(angle) / angle * W @ K.T + (1 - np.cos(angle)) / angle**2 * W @ K @ K
+            xy = (M + pose[3:])[:, :2] / (M + pose[3:])[:, 2:]
+            r.append(x[0] * xy + x[1:3] - seen)
+        return np.ravel(r)
+
+    r, damping = misses(x), 1.0
+    for _ in range(20):
+        J = np.array([(misses(x + h) - r) / 1e-6 for h in 1e-6 * np.eye(len(x))]).T
+        D = np.sqrt(damping) * np.diag(np.linalg.norm(J, axis=0))
+        step = np.linalg.lstsq(np.vstack([J, D]), np.append(-r, 0 * x), rcond=None)[0]
+        new = misses(x + step)
+        if new @ new < r @ r:
+            x, r, damping = x + step, new, damping / 30
+        else:
+            damping = damping * 9
+        if np.abs(step).max() < 1e-7:
+            break
+    return np.array([[x[0], 0, x[1]], [0, x[0], x[2]], [0, 0, 1]])
 
 
 # Chapter 8

@@ -83,6 +83,8 @@ BEFORE = {
     "dlt": {"to_homogeneous"} | SIMILARITIES,
     "four_points": {"to_homogeneous", "normaliser"} | SIMILARITIES,
     "geometric_error": {"to_homogeneous"},
+    "ransac": {"dlt"},
+    "levenberg_marquardt": {"rotation_from_vector"},
     "depth": {"rectified_baseline"},
     "residuals": {"of_rays", "radial_factor"},
 }

@@ -5,5 +5,6 @@ from cvnotes.learn.ch06.dlt import DLT
 from cvnotes.learn.ch06.four_points import FOUR
 from cvnotes.learn.ch06.geometric_error import GEOMETRIC
 from cvnotes.learn.ch06.normaliser import NORMALISER
+from cvnotes.learn.ch06.ransac import RANSAC
 
-EXERCISES = (DESIGN, NORMALISER, DLT, FOUR, GEOMETRIC)
+EXERCISES = (DESIGN, NORMALISER, DLT, FOUR, GEOMETRIC, RANSAC)

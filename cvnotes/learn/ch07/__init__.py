@@ -6,6 +6,7 @@ from cvnotes.learn.ch07.bad_views import BAD_VIEWS
 from cvnotes.learn.ch07.camera_covariance import CAMERA_COVARIANCE
 from cvnotes.learn.ch07.extrinsics import EXTRINSICS
 from cvnotes.learn.ch07.focal_from_turn import TURN
+from cvnotes.learn.ch07.levenberg_marquardt import LEVENBERG_MARQUARDT
 from cvnotes.learn.ch07.radial_fit import RADIAL
 from cvnotes.learn.ch07.v_ij import V_IJ
 
@@ -18,4 +19,5 @@ EXERCISES = (
     BAD_VIEWS,
     TURN,
     CAMERA_COVARIANCE,
+    LEVENBERG_MARQUARDT,
 )

@@ -1,0 +1,84 @@
+"""Who agrees with the best of some draws, and how many draws are enough."""
+
+# A mistake is often an argument that was left out.
+# ruff: noqa: ARG005
+
+from typing import Any
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.homography import dlt
+from cvnotes.learn.cases.cameras import rounded, some_homography
+from cvnotes.projective import apply
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.steps import edited
+
+
+def ransac(src: Array, dst: Array, draws: Any, t: float) -> tuple[float, float]:
+    """Return how many pairs agree with the best draw, and how many draws that many ask for."""
+    H = np.array([dlt(src[rows], dst[rows]) for rows in draws])  # the maps of the draws
+    s_h = np.column_stack([src, np.ones(len(src))])  # src, lifted
+    m_h = s_h @ H.mT  # where each map takes src, homogeneous
+    off = m_h[..., :2] / m_h[..., 2:] - dst  # how far each map is off
+    counts = (np.sqrt((off**2).sum(axis=2)) < t).sum(axis=1)  # who agrees with each map, counted
+    q = counts.max() / len(src)  # the part of right pairs
+    return counts.max(), np.ceil(np.log(0.001) / np.log(1 - q**4))
+
+
+def _some_wrong(rng: Rng) -> list[Case]:
+    # on an ellipse, so that no three are on a line; every third pair has another's partner
+    cases = []
+    for n in (9, 21, 24):
+        angles = 2 * np.pi * (np.arange(n) + rng.uniform(-0.3, 0.3, n)) / n
+        src = rounded(100 + np.column_stack([90 * np.cos(angles), 60 * np.sin(angles)]), 1)
+        dst = apply(some_homography(rng), src) + rng.standard_normal((n, 2))
+        wrong = np.arange(0, n, 3)
+        dst[wrong] = dst[np.roll(rng.permutation(wrong), 1)] + rng.uniform(9, 30, (n // 3, 2))
+        clean = np.setdiff1d(np.arange(n), wrong)
+        pools = [np.arange(n), clean, np.arange(n), np.arange(n), clean, np.arange(n)]
+        draws = np.array([rng.choice(pool, 4, replace=False) for pool in pools])
+        cases.append(Case((src, rounded(dst, 2), draws, 2.6)))
+    return cases
+
+
+_N = "np.ceil(np.log(0.001) / np.log(1 - q**4))"
+_MISTAKES = mistakes(
+    ("all pairs at once", "You fitted all pairs together: the wrong ones bend that map, too.",
+     lambda src, dst, draws, t: ransac(src, dst, np.arange(len(src))[None], t)),
+    ("one pair for four", "A draw is right only if all four of its pairs are: how likely is that?",
+     edited(ransac, "q**4", "q"), edited(ransac, "q**4", "4 * q")),
+    ("the part of wrong pairs", "You worked with the part of wrong pairs; a draw is of use if "
+     "four right ones meet.",
+     edited(ransac, "q**4", "(1 - q) ** 4"), edited(ransac, "1 - q**4", "1 - (1 - q**4)"),
+     edited(ransac, _N, "np.ceil(np.log(0.001) / np.log(q))")),
+)  # fmt: skip
+
+RANSAC = Exercise(
+    name="ransac",
+    chapter=6,
+    title="RANSAC, and its number of draws",
+    task="Some of the pairs src, dst (n, 2) are wrong. Each row of draws (d, 4) says which four "
+    "pairs one draw has taken. Of the maps through these fours, take the one that takes most src "
+    "to within t px of their dst. Give the count k of these pairs, and the number N of draws, "
+    "rounded up, after which one without a wrong pair has been met with probability 0.999, if k "
+    "of the n pairs are right.",
+    stub='''def my_ransac(src, dst, draws, t):
+    """Give k, N: how many pairs agree with the best draw, and how many draws they ask for."""
+    ...''',
+    hints=(
+        "For each row of draws: H = dlt(src[row], dst[row]). Count the pairs whose distance "
+        "between dst and where H takes src is below t. k is the largest count.",
+        "With q = k/n one draw is right with probability q⁴, and all N are wrong with (1 − q⁴)ᴺ.",
+        "(1 − q⁴)ᴺ = 0.001, so N = log 0.001 / log(1 − q⁴), rounded up by np.ceil.",
+    ),
+    cases=_some_wrong,
+    properties=(
+        Property("k pairs agree with the best of the maps.", lambda x, c: x[0] == c.right[0]),
+        Property("After N draws one of right pairs alone has been met, with 0.999."),
+    ),
+    misconceptions=_MISTAKES,
+    reference=ransac,
+    steps=ransac,
+    concepts=("p", "50"),
+)
