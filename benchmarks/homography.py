@@ -9,7 +9,9 @@ wrong: processor time, and by how much the homographies miss the true places of 
 """
 
 import time
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import cv2
 import numpy as np
@@ -76,7 +78,7 @@ def compare_robust(n: int, part: float, sets: int = 10) -> None:
         dst, wrong = true + rng.normal(0, 0.3, true.shape), int(part * n)
         dst[:wrong] = rng.uniform(0, 640, (wrong, 2))
         ours = partial(ransac_homography, src, dst, threshold=1.0)
-        ways = {
+        ways: dict[str, Callable[[], Any]] = {
             "ours": lambda ours=ours, seed=seed: ours(rng=np.random.default_rng(seed)),
             "OpenCV": partial(
                 cv2.findHomography, src, dst, cv2.RANSAC, 1.0, maxIters=20_000, confidence=0.999
