@@ -163,7 +163,18 @@ def holes_one_by_one(m, size):
     return (hit == 0).sum()
 
 
+def bilinear_with_one_index_for_both(image, u, v):
+    i, j = int(u), int(v)
+    du, dv = u - i, v - i
+    i2 = min(i + 1, image.shape[1] - 1)
+    j2 = min(j + 1, image.shape[0] - 1)
+    top = image[j, i] * (1 - du) + image[j, i2] * du
+    bottom = image[j2, i] * (1 - du) + image[j2, i2] * du
+    return top * (1 - dv) + bottom * dv
+
+
 LOCATED = [
+    ("bilinear", bilinear_with_one_index_for_both, "v - i", "what is left of v"),
     ("bilinear", four_pixels_of_two_rows, "image[j2, i] * (1 - du) + image[j, i2] * du",
      "the grey level in the lower row"),
     ("backward_warp", warp_pixel_by_pixel, "int(x), int(y)", "the nearest pixels"),

@@ -175,7 +175,7 @@ def _traced(exercise: Exercise) -> tuple[list[Line], list[_Trace]]:
             **exercise.steps.__globals__,
             **dict(zip(names, copy.deepcopy(args), strict=True)),
         }
-        found: dict[tuple[int, str], Array] = {}
+        found: dict[tuple[int, str], tuple[Array, bool]] = {}
         with np.errstate(all="ignore"):
             for i, one in enumerate(code):
                 exec(one, space)
@@ -185,13 +185,19 @@ def _traced(exercise: Exercise) -> tuple[list[Line], list[_Trace]]:
                     values = {lines[i].name: list(values.values()), **values}
                 for name, given in values.items():
                     value = _numbers(given)
-                    if value is not None and not _says_nothing(given, args):
-                        found[i, name] = value.copy()
+                    if value is not None:
+                        found[i, name] = value.copy(), not _says_nothing(given, args)
             right = np.asarray(exercise.reference(*copy.deepcopy(args)), dtype=np.float64)
         traces.append((args, found, right))
-    shared = [key for key in traces[0][1] if all(key in found for _, found, _ in traces)]
+    # A number may be one of the input's by chance, on one of them.
+    shared = [
+        key
+        for key in traces[0][1]
+        if all(key in found for _, found, _ in traces)
+        and sum(found[key][1] for _, found, _ in traces) >= max(1, len(traces) - 1)
+    ]
     return lines, [
-        _Trace(args, tuple((key[0], found[key]) for key in shared), right)
+        _Trace(args, tuple((key[0], found[key][0]) for key in shared), right)
         for args, found, right in traces
     ]
 
