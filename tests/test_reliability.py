@@ -251,7 +251,7 @@ def test_more_than_a_few_views_are_summed_up():
     distances = np.full((9, 54), 0.3)
     distances[:, 5] = 7.0
     evidence = good_evidence(poses=poses, view_rms=np.full(9, 0.4), distances=distances)
-    assert judge(evidence)[0][0].endswith("view 2, corner 5 (7.0 px) and in 6 more views")
+    assert judge(evidence)[0][0].endswith("view 2, corner 5 (7.0 px) and 6 more")
     evidence = replace(evidence, view_rms=np.r_[np.full(3, 0.3), np.full(6, 9.0)] * 0.5)
     evidence = replace(evidence, view_rms=np.r_[np.full(12, 0.3), np.full(6, 9.0)])
     assert judge(evidence)[0][0].startswith("views 12, 13, 14, 15, 16 … do not fit")

@@ -10,6 +10,7 @@ the camera is known.
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, chunks, solved
 from cvnotes.calibration.board_shape import BoardShape, with_shape
@@ -111,6 +112,16 @@ class Influence:
         """(n − 1)/n Σ (δ_i − δ̄)(δ_i − δ̄)ᵀ, (q, q)."""
         n, d = len(self.without), self.without - self.without.mean(0)
         return np.asarray((n - 1) / n * d.T @ d)
+
+    @property
+    def sides(self) -> npt.NDArray[np.bool_]:
+        """Return (n_views,) which views pull the camera the one way, and which the other.
+
+        By the direction in which the cameras without one view are scattered most, in units of what
+        all views together know.
+        """
+        d = (self.without - self.without.mean(0)) @ np.linalg.cholesky(self.S.sum(0))
+        return np.asarray(np.linalg.svd(d, full_matrices=False)[0][:, 0] > 0)
 
     def costs_left_out(self, costs: Array) -> Array:
         """Return what is left of each view (n_views,) that is predicted by the others.

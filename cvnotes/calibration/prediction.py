@@ -1,12 +1,13 @@
 """How far predictions may be off: the pixel at which a ray is seen."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, points
+from cvnotes.calibration.coverage import joined
 from cvnotes.calibration.result import Calibration
 from cvnotes.camera import Camera
 
@@ -57,27 +58,56 @@ def prediction_std(
     m = points(m, "m", 2)
     if of not in ("noise", "views"):
         raise CvnotesError(f'of: expected "noise" or "views", got {of!r}')
-    camera, rays, names = calibration.camera, calibration.camera.ray(m), calibration.names
+    rays = calibration.camera.ray(m)
+    reached = np.isfinite(rays).all(-1)
+    rays = np.nan_to_num(rays, nan=1.0)
+
+    def pixels(camera: Camera) -> Array:
+        return camera.project(rays)
+
     if of == "noise":
-        return np.asarray(np.sqrt(_variance(camera, names, calibration.covariance, rays)))
-    C = calibration.covariance_of_views
+        here = calibration.camera, calibration.names, calibration.covariance
+        variance = _variance(*here, pixels)
+    else:
+        variance = _variance_of_views(calibration, pixels)
+    return np.asarray(np.sqrt(np.where(reached, variance, np.nan)))
+
+
+def _variance_of_views(calibration: Calibration, of: Callable[[Camera], Array]) -> Array:
+    """Variance (...) of what is computed from the camera, (..., c), all c coordinates together.
+
+    From the scatter between views, and between models that fit as well: parameters of different
+    lenses are not to be compared, but what they predict is.
+    """
+    C, here = calibration.covariance_of_views, of(calibration.camera)
     if not np.isfinite(C).all():  # known not at all
-        return np.full(m.shape[:-1], np.inf)
+        return np.full(here.shape[:-1], np.inf)
     if calibration.choice is None:
-        return np.asarray(np.sqrt(_variance(camera, names, C, rays)))
-    # Parameters of different lenses are not to be compared, but what they predict is.
-    widest = _variance(camera, names, calibration.choice.chosen.covariance, rays)
-    for other in calibration.choice.close:
-        off = other.camera.project(np.nan_to_num(rays, nan=1.0)) - m
-        variance = _variance(other.camera, other.names, other.covariance, rays)
+        return _variance(calibration.camera, calibration.names, C, of)
+    widest = np.zeros(here.shape[:-1])
+    for model in calibration.choice.close:  # the chosen one among them
+        off = of(model.camera) - here
+        variance = _variance(model.camera, model.names, model.covariance, of)
         widest = np.fmax(widest, variance + np.vecdot(off, off))
-    return np.asarray(np.sqrt(np.where(np.isfinite(rays).all(-1), widest, np.nan)))
+    return widest
 
 
-def _variance(camera: Camera, names: Sequence[str], C: Array, rays: Array) -> Array:
-    """Variance (...) of the pixels that rays (..., 3) have, both coordinates together."""
-    J = pixel_jacobian(camera, names, rays)
+def _variance(
+    camera: Camera, names: Sequence[str], C: Array, of: Callable[[Camera], Array]
+) -> Array:
+    J = _derivative(of, camera, names)
     return np.asarray(np.einsum("...ci,ij,...cj->...", J, C, J))
+
+
+def _derivative(of: Callable[[Camera], Array], camera: Camera, names: Sequence[str]) -> Array:
+    """Differentiate (..., q) what is computed from a camera by its parameters."""
+    value, columns = camera.parameters, []
+    for name in names:
+        at = value.get(name, 0.0)
+        h = _STEP * max(1.0, abs(at))
+        up, down = (of(camera.with_parameters({name: at + s * h})) for s in (1, -1))
+        columns.append((up - down) / (2 * h))
+    return np.stack(columns, axis=-1)
 
 
 def pixel_jacobian(camera: Camera, names: Sequence[str], rays: Array) -> Array:
@@ -85,12 +115,48 @@ def pixel_jacobian(camera: Camera, names: Sequence[str], rays: Array) -> Array:
 
     (..., 2, q); NaN where the lens model does not reach.
     """
-    J = np.full((*rays.shape[:-1], 2, len(names)), np.nan)
-    reached = np.isfinite(rays).all(-1)
-    value = camera.parameters
-    for i, name in enumerate(names):
-        at = value.get(name, 0.0)
-        h = _STEP * max(1.0, abs(at))
-        up, down = (camera.with_parameters({name: at + s * h}) for s in (1, -1))
-        J[reached, :, i] = (up.project(rays[reached]) - down.project(rays[reached])) / (2 * h)
+    J = _derivative(lambda held: held.project(np.nan_to_num(rays, nan=1.0)), camera, names)
+    J[~np.isfinite(rays).all(-1)] = np.nan
     return J
+
+
+def angles_seen(calibration: Calibration) -> tuple[Array, Array]:
+    """Return the angles that the seen part of the picture spans, and how well they are known.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        With its corners.
+
+    Returns
+    -------
+    angles, std : ndarray, shape (2,)
+        In radians, horizontally and vertically: between the outermost corners of all views, through
+        the middle. NaN where the lens model does not reach, infinite deviations where the views do
+        not determine the camera.
+
+    Notes
+    -----
+    Where no corner was seen, a lens is only prolonged, and its field of view is a guess.
+
+    Examples
+    --------
+    >>> from cvnotes.pictures import course
+    >>> from cvnotes.calibration import calibrate
+    >>> found = calibrate(course.board().points, course.measured_corners(), (640, 480))
+    >>> angles, std = np.degrees(angles_seen(found))
+    >>> bool((angles < np.degrees(found.camera.field_of_view)).all()), bool((std < 0.1).all())
+    (True, True)
+    """
+    m = joined(calibration.image_points)
+    low, high = m.min(0), m.max(0)
+    u, v = calibration.A[:2, 2].clip(low, high)
+    ends = np.array([[low[0], v], [high[0], v], [u, low[1]], [u, high[1]]])
+
+    def spanned(camera: Camera) -> Array:
+        x, y, z = camera.ray(ends).T
+        left, right, top, bottom = np.arctan2([x[0], x[1], y[2], y[3]], z)
+        return np.array([[right - left], [bottom - top]])
+
+    angles = spanned(calibration.camera)[:, 0]
+    return angles, np.sqrt(_variance_of_views(calibration, spanned))

@@ -13,6 +13,7 @@ from cvnotes.calibration.doubts import Corner, Doubt, View, Views
 from cvnotes.calibration.refinement import CORRELATED, autocorrelation
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.thresholds import (
+    APART,
     BY_CHANCE,
     FLAT,
     MISFIT,
@@ -21,6 +22,7 @@ from cvnotes.calibration.thresholds import (
     OF_PICTURE,
     OUTLIER,
     PARALLEL,
+    PART_ASTRAY,
     PIXEL_RATIO,
     TIMES_MEDIAN,
     TIMES_TYPICAL,
@@ -64,8 +66,9 @@ class Diagnostics:
     together : float
         Distance in pixels by which corners of a typical view miss their places together; not
         looked at, and 0, where no view misses by so much that it would matter.
-    shape_tried : bool
-        Whether the board was allowed a shape of its own, the same in all views.
+    shape_tried, lens_tried : bool
+        Whether the board was allowed a shape of its own, the same in all views; and whether other
+        lenses were compared.
     """
 
     A: Array
@@ -81,6 +84,7 @@ class Diagnostics:
     by_radius: float = 0.0
     together: float = 0.0
     shape_tried: bool = False
+    lens_tried: bool = False
 
     @staticmethod
     def of(
@@ -95,7 +99,7 @@ class Diagnostics:
         They are of the points `board`, (n, 3) or (n_views, n, 3). `freedom` is that of the
         residuals; without it their autocorrelation is not looked at.
         """
-        may_matter = found.view_rms.max() > MOVED * max(found.size)
+        may_matter, choice = found.view_rms.max() > MOVED * max(found.size), found.choice
         return Diagnostics(
             A=found.A,
             lens=found.lens,
@@ -110,7 +114,8 @@ class Diagnostics:
             by_radius=by_radius(residuals, corners, found.A[:2, 2]),
             together=missed_together(residuals, board) if may_matter else 0.0,
             shape_tried=found.shape is not None
-            or (found.choice is not None and len(found.choice.by_board) > 1),
+            or (choice is not None and len(choice.by_board) > 1),
+            lens_tried=choice is not None and len(choice.by_lens) > 1,
         )
 
     @cached_property
@@ -387,32 +392,55 @@ def _no_noise(e: Diagnostics) -> str:
         if e.shape_tried
         else "this is no noise: is the board bent, or did it change its shape between the pictures"
     )
+    lens = "" if e.lens_tried else ", or does the lens need more coefficients"
     return (
         f"neighbouring corners miss their places in the same direction, so {what}, did zoom, focus "
-        "or orientation change, or does the lens need more coefficients?"
+        f"or orientation change{lens}?"
     )
 
 
 def _systematic(e: Diagnostics) -> Iterator[str]:
-    """Find residuals that are small, but of which the error bars are not a measure."""
-    if e.autocorrelation > CORRELATED and not _is_no_noise(e):
+    """Find residuals that are small, but that another lens or board may explain: not yet tried."""
+    tried = e.shape_tried and e.lens_tried
+    if e.autocorrelation > CORRELATED and not tried and not _is_no_noise(e):
         yield f"{_no_noise(e)} The true error is then larger than noise alone would make it"
 
 
 def _outliers(e: Diagnostics) -> Iterator[str]:
-    """Find single corners far from their place."""
-    d = np.nan_to_num(e.distances)
-    # (sooner counted than the median is found)
-    if 2 * np.count_nonzero(TIMES_MEDIAN * d > d.max()) > d.size:
-        return
-    limit = max(TIMES_MEDIAN * np.median(d[d > 0]), OUTLIER) if d.any() else np.inf
-    worst = d.argmax(1)
-    found = np.flatnonzero(d.max(1) > limit).tolist()
+    found = np.argwhere(astray(e.distances)).tolist()
     if found:
-        first = ", ".join(f"{{}} ({d[i, worst[i]]:.1f} px)" for i in found[:3])
-        more = f" and in {len(found) - 3} more views" if len(found) > 3 else ""
-        places = (Corner(i, int(worst[i])) for i in found[:3])
+        first = ", ".join(f"{{}} ({e.distances[i, k]:.1f} px)" for i, k in found[:3])
+        more = f" and {len(found) - 3} more" if len(found) > 3 else ""
+        places = (Corner(i, k) for i, k in found[:3])
         yield Doubt(f"corners far from their place: {first}{more}", *places)
+
+
+def astray(distances: Array) -> npt.NDArray[np.bool_]:
+    """Return which single corners miss their places by far more than all others of their view.
+
+    Parameters
+    ----------
+    distances : ndarray, shape (n_views, n)
+        By how many pixels each corner misses; 0 where none was seen, NaN where the lens folds.
+
+    Examples
+    --------
+    >>> d = np.full((3, 24), 0.1)
+    >>> d[1, 5], d[2, :6] = 3.9, 3.9
+    >>> np.argwhere(astray(d)).tolist()
+    [[1, 5]]
+    """
+    d = np.nan_to_num(distances)
+    # (sooner counted than the median is found)
+    if d.max() <= OUTLIER or 2 * np.count_nonzero(TIMES_MEDIAN * d > d.max()) > d.size:
+        return np.zeros(d.shape, bool)
+    limit = max(TIMES_MEDIAN * np.median(d[d > 0]), OUTLIER)
+    few = int(PART_ASTRAY * d.shape[1])
+    farthest = -np.sort(-d, axis=1)[:, : few + 1]
+    # The last of a view's corners that is far, and far from the next.
+    last = (farthest[:, :-1] > limit) & (farthest[:, :-1] > APART * farthest[:, 1:])
+    least = np.min(np.where(last, farthest[:, :-1], np.inf), axis=1, initial=np.inf)
+    return np.asarray(d >= least[:, None])
 
 
 def _outside(e: Diagnostics) -> Iterator[str]:

@@ -104,7 +104,9 @@ def run(args: argparse.Namespace) -> int:
     except NoCamera as error:
         say_count(error.photographs)
         say(photo_table(error.photographs))
-        complain("calibrate", str(error))
+        other = error.photographs.instead
+        hint = ": try --corners {}x{}".format(*other) if other else ""
+        complain("calibrate", f"{error}{hint}")
         return 1
     except DegenerateError as error:
         complain("calibrate", str(error))

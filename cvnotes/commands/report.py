@@ -10,7 +10,8 @@ import numpy as np
 from cvnotes.base import text_table
 from cvnotes.base.digits import with_deviation
 from cvnotes.base.writing import harmless
-from cvnotes.calibration.coverage import covered_cells
+from cvnotes.calibration.coverage import covered_cells, joined
+from cvnotes.calibration.prediction import angles_seen
 from cvnotes.calibration.reliability import widest_angle
 from cvnotes.files import Reason
 from cvnotes.files.ownership import TABLE_HEADER
@@ -45,8 +46,14 @@ def _fitting(reason: Reason) -> str:
 def note_of(photo: Detection) -> str:
     """Say what was done to a photograph that is used, and how much of the board is lost."""
     n, lost = len(photo.seen), np.count_nonzero(~photo.seen)
-    hidden = f"{lost} of {n} corners left out: they cannot be seen clearly" if lost else ""
-    return "; ".join(filter(None, [photo.note, hidden]))
+    far, hidden = len(photo.astray), lost - len(photo.astray)
+    by = ", ".join(f"{d:.1f} px" for d in photo.astray)
+    words = [
+        photo.note,
+        f"{hidden} of {n} corners left out: they cannot be seen clearly" * (hidden > 0),
+        f"{far} of {n} corners left out: {by} from its place" * (far > 0),
+    ]
+    return "; ".join(filter(None, words))
 
 
 def photo_csv(photographs: Photographs, result: "Calibration") -> str:
@@ -108,8 +115,14 @@ def _in_mm(shape: "BoardShape") -> str:
 
 
 def field_of_view(result: "Calibration") -> str:
-    """Spell the angles that the picture spans."""
-    across, down = np.degrees(result.camera.field_of_view)
-    if np.isnan(across + down):
-        return "not known: the lens model ends inside the picture"
-    return f"{across:.1f}° × {down:.1f}°"
+    """Spell the angles that the part of the picture spans in which corners were seen."""
+    angles, std = np.degrees(angles_seen(result))
+    if np.isnan(angles).any():
+        return "not known: the lens model ends where corners were seen"
+    known = " × ".join(
+        "{}° ± {}°".format(*with_deviation(a, s)) if np.isfinite(s) else f"{a:.1f}°"
+        for a, s in zip(angles, std, strict=True)
+    )
+    m = joined(result.image_points)
+    part = " × ".join(f"{x:.0%}" for x in np.ptp(m, axis=0) / result.size)
+    return f"{known}, where corners were seen ({part} of the picture)"

@@ -7,11 +7,13 @@ import numpy as np
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError
 from cvnotes.calibration import Calibration, calibrate
-from cvnotes.calibration.reliability import misfits
+from cvnotes.calibration.doubts import Doubt, Views
+from cvnotes.calibration.reliability import astray, misfits
 from cvnotes.calibration.thresholds import FEWEST_KEPT, PART_KEPT, ROUNDS
+from cvnotes.calibration.two_cameras import TwoCameras, two_cameras
 from cvnotes.files import Reason
 from cvnotes.photographs.detection import Photographs
-from cvnotes.photographs.mirrored import mirrored
+from cvnotes.photographs.mirrored import doubted, mirrored, with_doubt
 from cvnotes.photographs.reasons import Exchanged, Misfit
 
 
@@ -48,12 +50,15 @@ def fit(photographs: Photographs, model: Model) -> Calibration:
     Raises
     ------
     DegenerateError
-        They do not determine a camera.
+        They do not determine a camera, or more of them show another board.
     """
+    asked = "a board of {}×{} inner corners".format(*photographs.board.corners)
+    if other := photographs.instead:  # of which a part was found here and there, if anything
+        n, there = photographs.counts[other], "{}×{}".format(*other)
+        raise DegenerateError(f"{asked} was asked for, but {n} photographs show one of {there}")
     if not photographs.used:
         raise DegenerateError(
-            "a board of {}×{} inner corners was found in none (count where four squares meet, "
-            "not squares)".format(*photographs.board.corners)
+            f"{asked} was found in none (count where four squares meet, not squares)"
         )
     W, m = photographs.correspondences()
     with warnings.catch_warnings():
@@ -66,32 +71,56 @@ def fit(photographs: Photographs, model: Model) -> Calibration:
 def choose(
     photographs: Photographs, model: Model, *, keep_all: bool = False
 ) -> tuple[Calibration, Photographs]:
-    """Calibrate, and again without photographs that do not fit the others.
+    """Calibrate, and again without single corners, and photographs, that do not fit the others.
 
-    Only where enough of them are left: which of many are wrong, nobody can tell.
+    Only where enough photographs are left: which of many are wrong, nobody can tell. Photographs
+    of two cameras are all kept, and named.
 
     Raises
     ------
     NoCamera
-        They do not determine a camera.
+        They do not determine a camera, or more of them show another board.
     """
     try:
         result = fit(photographs, model)
     except CvnotesError as error:
         message = f"{len(photographs.used)} usable photographs; {error}"
         raise NoCamera(message, photographs) from error
+    if not mirrored(photographs, result) and (two := two_cameras(result)):
+        return with_doubt(result, _of_two_cameras(two, result)), photographs
     fewest = max(FEWEST_KEPT, PART_KEPT * len(photographs.used))
     for _ in range(0 if keep_all else ROUNDS):
-        bad = _strangers(photographs, result)
-        if not bad or len(photographs.used) - len(bad) < fewest:
+        kept = _without_corners_astray(photographs, result)
+        if kept is photographs:
+            kept = photographs.without(_strangers(photographs, result))
+        if kept is photographs or len(kept.used) < fewest:
             break
-        kept = photographs.without(bad)
         try:
             result = fit(kept, model)
         except CvnotesError:  # these alone do not determine the camera
             break
         photographs = kept
-    return result, photographs
+    return doubted(result, mirrored(photographs, result)), photographs
+
+
+def _of_two_cameras(two: TwoCameras, result: Calibration) -> Doubt:
+    """Return what is to be said of photographs that no single camera took."""
+    apart = np.sqrt((two.view_rms**2).mean())
+    return Doubt(
+        f"{{}} fit one camera, and {{}} another ({apart:.2f} px off with two cameras, "
+        f"{result.rms:.2f} px with one): do they come from two cameras, or was the zoom or focus "
+        "changed between them? Calibrate each by itself",
+        *(Views(tuple(np.flatnonzero(own).tolist())) for own in (~two.second, two.second)),
+    )
+
+
+def _without_corners_astray(photographs: Photographs, result: Calibration) -> Photographs:
+    """Leave out the single corners that miss their places by far more than others."""
+    used = photographs.used
+    distances = np.zeros((len(used), len(used[0].seen)))
+    for d, photo, r in zip(distances, used, result.residuals, strict=True):
+        d[photo.seen] = np.linalg.norm(r, axis=-1)
+    return photographs.without_corners(astray(distances), distances)
 
 
 def _strangers(photographs: Photographs, result: Calibration) -> dict[int, Reason]:

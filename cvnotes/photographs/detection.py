@@ -1,6 +1,7 @@
 """Photographs, and the board that was detected in each of them, or the reason why not."""
 
 import os
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -56,6 +57,8 @@ class Detection:
         What was taken for the board where it is not to be trusted.
     pixels : bytes
         What its pixels are known by.
+    astray : tuple of float
+        Of corners that were left out, by how many pixels each missed its place.
     """
 
     path: Path
@@ -67,6 +70,7 @@ class Detection:
     reason: Reason | None = None
     found: Array | None = None
     pixels: bytes = b""
+    astray: tuple[float, ...] = ()
 
     @property
     def seen(self) -> npt.NDArray[np.bool_]:
@@ -82,6 +86,13 @@ class Detection:
     def without(self, reason: Reason) -> "Detection":
         """Return the same, not to be used; what was found is still known."""
         return replace(self, corners=None, found=self.corners, reason=reason)
+
+    def without_corners(self, astray: npt.NDArray[np.bool_], distances: Array) -> "Detection":
+        """Return the same without some (n,) of its corners, which miss their places so far."""
+        if self.corners is None or not astray.any():
+            return self
+        corners = np.where(astray[:, None], np.nan, self.corners)
+        return replace(self, corners=corners, astray=(*self.astray, *distances[astray].tolist()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +126,30 @@ class Photographs:
         """Their (width, height)."""
         return self.looked_at[0].size
 
+    @property
+    def counts(self) -> Counter[tuple[int, int]]:
+        """Inner corners of the boards that are there, (more, fewer): in how many photographs."""
+        without = [photo.reason for photo in self.looked_at if isinstance(photo.reason, NoBoard)]
+        there = Counter({self._asked: len(self.looked_at) - len(without)})
+        there.update(reason.error.count for reason in without if reason.error.count)
+        return there
+
+    @property
+    def instead(self) -> tuple[int, int] | None:
+        """Inner corners of the board that more photographs show than show the one asked for.
+
+        A smaller one does not count where that was found: it is the same, cut off.
+        """
+        counts, asked = self.counts, self._asked
+        other = max(counts, key=lambda each: counts[each])  # the one asked for, if it is as often
+        within = counts[asked] > 0 and other[0] <= asked[0] and other[1] <= asked[1]
+        return None if within or counts[other] == 0 else other
+
+    @property
+    def _asked(self) -> tuple[int, int]:
+        columns, rows = self.board.corners
+        return max(columns, rows), min(columns, rows)
+
     def correspondences(self) -> tuple[Array | list[Array], list[Array]]:
         """Return the points of the board and their pixels, of those that are used.
 
@@ -128,6 +163,8 @@ class Photographs:
 
     def without(self, reasons: dict[int, Reason]) -> "Photographs":
         """Return them without some of the used ones: reasons by their number among these."""
+        if not reasons:
+            return self
         lost = {self.used[i].path: reason for i, reason in reasons.items()}
         return replace(
             self,
@@ -137,6 +174,14 @@ class Photographs:
             ],
             rejected=[*self.rejected, *(_no(path, reason) for path, reason in lost.items())],
         )
+
+    def without_corners(self, astray: npt.NDArray[np.bool_], distances: Array) -> "Photographs":
+        """Return them without some corners of the used ones; both arrays are (n_used, n)."""
+        if not astray.any():
+            return self
+        far = zip(self.used, astray, distances, strict=True)
+        changed = {photo.path: photo.without_corners(a, d) for photo, a, d in far}
+        return replace(self, looked_at=[changed.get(p.path, p) for p in self.looked_at])
 
     def named(self) -> tuple[list[str], list[Rejected]]:
         """Return the names of the used ones, and the rejected, without their common folder."""

@@ -18,7 +18,6 @@ from cvnotes.photographs.detection import (
     sorted_out,
 )
 from cvnotes.photographs.judging import judge, propose
-from cvnotes.photographs.mirrored import doubted, mirrored
 from cvnotes.targets import Chessboard
 
 
@@ -158,7 +157,6 @@ def calibrate_detected(
         They do not determine a camera.
     """
     result, photographs = choose(photographs, model or Model(), keep_all=keep_all)
-    result = doubted(result, mirrored(photographs, result))
     doubts = judge(result, photographs)
     return CalibratedPhotographs(result, photographs, doubts, propose(result, photographs))
 

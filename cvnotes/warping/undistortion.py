@@ -136,7 +136,8 @@ def undistort_image(
     Warns
     -----
     CalibrationWarning
-        The lens model folds inside of the picture: what lies beyond is not shown.
+        The lens model folds inside of the picture, or this spans 180°, which no ideal camera does:
+        what lies beyond is not shown.
 
     Notes
     -----
@@ -165,12 +166,14 @@ def undistort_image(
             f"{camera.size[0]} × {camera.size[1]} (scaled, cropped, or turned on its side?)"
         )
     if not camera.is_invertible:
-        warnings.warn(
+        why = (
             "the lens model folds inside of the picture: it was fitted to points nearer to the "
-            "middle, and what lies beyond the fold is not shown",
-            CalibrationWarning,
-            stacklevel=2,
+            "middle, and what lies beyond the fold is not shown"
+            if camera.lens.max_angle < np.pi / 2
+            else "this picture reaches 90° from the axis, and a perspective picture cannot hold "
+            "180°: what lies so far from the axis is not shown"
         )
+        warnings.warn(why, CalibrationWarning, stacklevel=2)
     mapping = undistortion_map(camera, new_A)
     size = camera.size if size is None else target_size(size)
     sampler = Sampler(image, method, border, fill)
