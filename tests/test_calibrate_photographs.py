@@ -1,20 +1,25 @@
 """Photographs in, a camera out: one function of the library, with reasons that are objects."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cvnotes.base import DegenerateError, FileError
+from cvnotes.base import CornersNotFound, DegenerateError, FileError
+from cvnotes.camera import pose, rotation_from_vector
+from cvnotes.commands.report import note_of
 from cvnotes.files import Photo
 from cvnotes.files.reasons import Copy, OtherSize
 from cvnotes.photographs import (
+    Detection,
     Exchanged,
     LeftOut,
     Misfit,
     Model,
     NoBoard,
     NoCamera,
+    Photographs,
     calibrate_detected,
     calibrate_photographs,
     detect_photographs,
@@ -99,3 +104,76 @@ def test_what_cannot_be_says_what_was_seen(photos, tmp_path):
         calibrate_photographs(tmp_path, BOARD)
     with pytest.raises(FileError, match=r"leave out b\.png: none"):
         calibrate_photographs(photos[:2], BOARD, leave_out=["b.png"])
+
+
+def detections(camera, poses, *, mirrored=(), astray=None, seed=0):
+    """Photographs in which a known camera shows the board, with noise of 0.05 px."""
+    rng, found = np.random.default_rng(seed), []
+    for i, G in enumerate(poses):
+        m = camera.moved(G).project(BOARD.points) + rng.normal(0, 0.05, (len(BOARD.points), 2))
+        if i in mirrored:  # with its rows numbered from the other end, they stay right-handed
+            m = m.reshape(6, 9, 2)[::-1].reshape(-1, 2) * [-1, 1] + [camera.size[0] - 1, 0]
+        if astray and i == astray[0]:
+            m[astray[1]] += astray[2]
+        blank = np.zeros((48, 64), np.uint8)
+        found.append(Detection(Path(f"{i:02}.png"), camera.size, blank, m))
+    return Photographs(BOARD, found)
+
+
+def fitted(seen):
+    return calibrate_detected(seen, Model("k1 k2", "flat"))
+
+
+@pytest.mark.parametrize("which", [(3,), (1, 2, 5, 8)])
+def test_mirrored_photographs_are_named_and_no_others(which):
+    camera, poses = course.camera().with_parameters({"u0": 350.0}), course.poses()
+    found = fitted(detections(camera, poses, mirrored=which))
+    assert reasons(found) == {f"{i:02}.png": Exchanged() for i in which}
+
+
+def test_a_steep_photograph_is_not_called_mirrored():
+    camera, poses = course.camera(), course.poses()[:8]
+    steep = pose(rotation_from_vector([0.1, 1.25, 0.05]), [-40.0, -62.0, 420.0])
+    for seed in range(2):
+        found = fitted(detections(camera, [*poses, steep], seed=seed))
+        assert reasons(found) == {}
+        assert found.reliable
+
+
+def test_photographs_of_two_cameras_are_told_apart_and_named():
+    camera, poses = course.camera(), course.poses()
+    other = camera.with_parameters({"alpha_u": 880.0, "alpha_v": 884.0, "k1": -0.2})
+    first, second = (detections(c, poses, seed=i) for i, c in enumerate([camera, other]))
+    both = [x for pair in zip(first.looked_at[:5], second.looked_at[5:10], strict=True)
+            for x in pair]  # fmt: skip
+    found = fitted(Photographs(BOARD, both))
+    assert not found.reliable
+    assert found.doubts[0].startswith(
+        "00.png, 01.png, 02.png, 03.png, 04.png fit one camera, and 05.png, 06.png, 07.png, "
+        "08.png, 09.png another (0.0"
+    )
+    assert fitted(first).reliable
+
+
+def test_a_single_wrong_corner_is_left_out_and_said():
+    camera, poses = course.camera(), course.poses()
+    found = fitted(detections(camera, poses, astray=(4, 20, [3.0, 2.5])))
+    (photo,) = [x for x in found.photographs.used if x.astray]
+    assert photo.path.name == "04.png"
+    assert np.flatnonzero(~photo.seen).tolist() == [20]
+    assert photo.astray[0] == pytest.approx(3.9, abs=0.4)
+    assert note_of(photo).startswith("1 of 54 corners left out: 3.")
+    assert found.doubts == []
+
+
+def test_what_most_photographs_show_decides_whether_a_part_of_a_board_was_asked_for():
+    seen = detections(course.camera(), course.poses()[:5])
+    larger = NoBoard(CornersNotFound("not", count=(9, 8)))
+    others = [
+        Detection(Path(f"larger {i}.png"), seen.size, x.thumbnail, None, reason=larger)
+        for i, x in enumerate([*seen.looked_at, seen.looked_at[0]])
+    ]
+    assert fitted(replace(seen, looked_at=[*seen.looked_at, *others[1:]])).reliable
+    with pytest.raises(NoCamera, match="but 6 photographs show one of 9×8") as error:
+        fitted(replace(seen, looked_at=[*seen.looked_at, *others]))
+    assert error.value.photographs.instead == (9, 8)

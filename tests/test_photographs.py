@@ -21,6 +21,8 @@ from test_stereo import (
 
 from cvnotes.commands.cli import main
 from cvnotes.files import read_camera, read_photo
+from cvnotes.photographs import calibrate_photographs
+from cvnotes.photographs.driver import chessboard
 from cvnotes.pictures import course
 from cvnotes.targets import Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
@@ -157,3 +159,10 @@ def test_every_photograph_in_which_one_of_opencvs_finders_finds_the_board(name, 
         )
         n += 1
     assert n == found
+
+
+def test_the_one_steep_photograph_of_a_set_is_honest():
+    found = calibrate_photographs(PHOTOGRAPHS.parent / "sony", chessboard((6, 4), 30.0))
+    assert len(found.photographs.used) == 13
+    assert found.reliable
+    assert abs(found.camera.A[0, 2] - 308.5) < 5

@@ -115,13 +115,13 @@ class Influence:
 
     @property
     def sides(self) -> npt.NDArray[np.bool_]:
-        """Return (n_views,) which views pull the camera the one way, and which the other.
+        """Return which views pull the camera to which side, (k, n_views), in several directions.
 
-        By the direction in which the cameras without one view are scattered most, in units of what
+        Those in which the cameras without one view are scattered, the most first, in units of what
         all views together know.
         """
         d = (self.without - self.without.mean(0)) @ np.linalg.cholesky(self.S.sum(0))
-        return np.asarray(np.linalg.svd(d, full_matrices=False)[0][:, 0] > 0)
+        return np.asarray(np.linalg.svd(d, full_matrices=False)[0].T > 0)
 
     def costs_left_out(self, costs: Array) -> Array:
         """Return what is left of each view (n_views,) that is predicted by the others.

@@ -13,6 +13,8 @@ from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.thresholds import FEWEST_KEPT, PARTED, ROUNDS
 from cvnotes.camera import Camera
 
+_DIRECTIONS = 4  # in which views are parted at first
+
 
 @dataclass(frozen=True, eq=False)
 class TwoCameras:
@@ -31,6 +33,11 @@ class TwoCameras:
     second: npt.NDArray[np.bool_]
     cameras: tuple[Camera, Camera]
     view_rms: Array
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of `view_rms`, px."""
+        return float(np.sqrt((self.view_rms**2).mean()))
 
 
 def two_cameras(one: Calibration) -> TwoCameras | None:
@@ -56,7 +63,16 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
     problem = Problem.at(one.camera, one.names, data)
     x = problem.state(one.camera, data.pose_in_scaled_units(one.poses))
     try:
-        second = Influence.of(problem, x).sides
+        sides = Influence.of(problem, x).sides[:_DIRECTIONS]
+    except CvnotesError:  # the views hardly determine one camera
+        return None
+    parted = (_parted(problem, x, second) for second in sides)
+    return next((two for two in parted if two and two.rms <= PARTED * one.rms), None)
+
+
+def _parted(problem: Problem, x: State, second: npt.NDArray[np.bool_]) -> TwoCameras | None:
+    """Refine two cameras from a first guess which views the second one took."""
+    try:
         for _ in range(ROUNDS):
             if min(second.sum(), (~second).sum()) < FEWEST_KEPT:
                 return None
@@ -70,12 +86,9 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
                 break
     except CvnotesError:  # one of them has no camera
         return None
-    least, n = costs.min(0), problem.n_seen_by_view
-    too_few = min(second.sum(), (~second).sum()) < FEWEST_KEPT
-    free = problem.freedom - len(problem.names)
-    if too_few or least.sum() / free > PARTED**2 * one.rms**2 * n.sum() / problem.freedom:
+    if min(second.sum(), (~second).sum()) < FEWEST_KEPT:
         return None
     cameras = problem.camera_of(shared[0]), problem.camera_of(shared[1])
     if 2 * second.sum() > len(second):
         second, cameras = ~second, cameras[::-1]
-    return TwoCameras(second, cameras, np.sqrt(least / n))
+    return TwoCameras(second, cameras, np.sqrt(costs.min(0) / problem.n_seen_by_view))

@@ -50,8 +50,8 @@ def note_of(photo: Detection) -> str:
     by = ", ".join(f"{d:.1f} px" for d in photo.astray)
     words = [
         photo.note,
-        f"{hidden} of {n} corners left out: they cannot be seen clearly" * (hidden > 0),
-        f"{far} of {n} corners left out: {by} from its place" * (far > 0),
+        f"{hidden} of {n} corners left out: they cannot be seen clearly" if hidden else "",
+        f"{far} of {n} corners left out: {by} from their place" if far else "",
     ]
     return "; ".join(filter(None, words))
 

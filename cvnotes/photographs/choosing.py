@@ -105,9 +105,8 @@ def choose(
 
 def _of_two_cameras(two: TwoCameras, result: Calibration) -> Doubt:
     """Return what is to be said of photographs that no single camera took."""
-    apart = np.sqrt((two.view_rms**2).mean())
     return Doubt(
-        f"{{}} fit one camera, and {{}} another ({apart:.2f} px off with two cameras, "
+        f"{{}} fit one camera, and {{}} another ({two.rms:.2f} px off with two cameras, "
         f"{result.rms:.2f} px with one): do they come from two cameras, or was the zoom or focus "
         "changed between them? Calibrate each by itself",
         *(Views(tuple(np.flatnonzero(own).tolist())) for own in (~two.second, two.second)),

@@ -38,7 +38,7 @@ def mirrored(photographs: Photographs, result: Calibration) -> list[int]:
     if not len(strange):
         return []
     turned = _in_a_mirror(m[strange], board, result, seen_by, result.poses[strange])
-    return strange[turned < limit[strange]].tolist()
+    return [int(i) for i in strange[turned < limit[strange]]]
 
 
 def _in_a_mirror(
@@ -58,7 +58,7 @@ def _in_a_mirror(
         back[axis, axis], back[axis, 3] = -1, (n - 1) * board.square
         there = flip @ poses @ back
         found.append(rms_of_views(camera, result.names, W, way.reshape(m.shape), there))
-    return np.min(found, axis=0)
+    return np.asarray(np.min(found, axis=0))
 
 
 def doubted(result: Calibration, exchanged: list[int]) -> Calibration:
