@@ -67,6 +67,10 @@ def compare(n: int) -> None:
 WRONG = ((54, 0.2), (100, 0.4), (1000, 0.5), (300, 0.7))  # pairs, and which part is wrong
 
 
+def _ours(src: Array, dst: Array, seed: int) -> Any:
+    return ransac_homography(src, dst, threshold=1.0, rng=np.random.default_rng(seed))
+
+
 def compare_robust(n: int, part: float, sets: int = 10) -> None:
     """Print the median over some sets of what both cost, and how far off they are."""
     H = np.array([[1.1, 0.1, 20], [-0.05, 0.9, 30], [2e-4, 1e-4, 1]])
@@ -77,9 +81,8 @@ def compare_robust(n: int, part: float, sets: int = 10) -> None:
         true = apply(H, src)
         dst, wrong = true + rng.normal(0, 0.3, true.shape), int(part * n)
         dst[:wrong] = rng.uniform(0, 640, (wrong, 2))
-        ours = partial(ransac_homography, src, dst, threshold=1.0)
         ways: dict[str, Callable[[], Any]] = {
-            "ours": lambda ours=ours, seed=seed: ours(rng=np.random.default_rng(seed)),
+            "ours": partial(_ours, src, dst, seed),
             "OpenCV": partial(
                 cv2.findHomography, src, dst, cv2.RANSAC, 1.0, maxIters=20_000, confidence=0.999
             ),
