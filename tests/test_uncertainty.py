@@ -32,3 +32,15 @@ def test_beyond_the_reach_of_the_lens_nothing_is_promised(repeated):
     folding = replace(repeated[0], lens=Lens((-0.9, 0.0)))
     assert np.isnan(prediction_std(folding, [5000.0, 240]))
     assert np.isfinite(prediction_std(folding, [320.0, 240]))
+
+
+def test_coefficients_of_a_quotient_that_compensate_each_other_are_said_to():
+    board, m = course.board(), course.measured_corners()
+    quotient, plain = (
+        calibrate(board.points, m, (640, 480), lens=lens) for lens in ("rational", "k1 k2 p1 p2 k3")
+    )
+    assert set(quotient.tied) >= {"k1", "k4"}
+    assert not set(quotient.tied) & {"alpha_u", "alpha_v", "u0", "v0"}
+    assert "k1, k2" in quotient.notes_on_deviations[0]
+    assert "depend on each other so strongly" in quotient.notes_on_deviations[0]
+    assert plain.tied == ()

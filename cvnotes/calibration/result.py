@@ -19,7 +19,7 @@ from cvnotes.calibration.refinement import (
     covariance,
     pose_covariance,
 )
-from cvnotes.calibration.thresholds import TIMES_NOISE
+from cvnotes.calibration.thresholds import TIED, TIMES_NOISE
 from cvnotes.camera import AnyLens, Camera
 from cvnotes.camera.model import SENSOR
 
@@ -179,6 +179,11 @@ class Calibration:
         if self.rms < _ROUNDED_RMS:
             return ()
         notes = []
+        if self.tied:
+            notes.append(
+                f"±: {', '.join(self.tied)} depend on each other so strongly that only together "
+                "do they say something: another calibration may have others for the same lens"
+            )
         if self.choice is not None and (close := self.choice.close_by()):
             other, name, times = close
             board = f" on a {other.board} board" * (other.board != self.choice.board)
@@ -200,6 +205,19 @@ class Calibration:
                 )
             notes.append(note)
         return tuple(notes)
+
+    @property
+    def tied(self) -> tuple[str, ...]:
+        """Names of parameters that hardly anything tells apart: others compensate each of them.
+
+        Those with C_ii (C⁻¹)_ii > 10⁵, the variance inflation factor.
+        """
+        s = np.sqrt(np.diag(self.covariance))
+        if not (s > 0).all():
+            return ()
+        inverse = np.linalg.pinv(self.covariance / np.outer(s, s), rcond=1e-15)
+        factors = zip(self.names, np.diag(inverse), strict=True)
+        return tuple(name for name, factor in factors if factor > TIED)
 
     @cached_property
     def pose_covariance(self) -> Array:

@@ -17,6 +17,7 @@ NEGLIGIBLE = 0.02  # px: what a lens misses below this does not matter
 TOO_SMALL = 0.15  # part of the residuals by radius; 0.02 at most with a lens that fits
 BY_CHANCE = 5.0  # F of the powers of the radius, from which they are no chance
 MOVED = 0.0006  # RMS over the picture's size from which a camera must have changed or be another
+TIED = 1e5  # times its variance if the others were known, a coefficient's is: 300 times as wide a ±
 TIMES_NOISE = 1.5  # scatter between views over noise alone, from which both are told
 
 # --- which lens, which board? The simpler one is kept while it predicts views left out within this

@@ -64,7 +64,7 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
     x = problem.state(one.camera, data.pose_in_scaled_units(one.poses))
     try:
         sides = Influence.of(problem, x).sides[:_DIRECTIONS]
-    except CvnotesError:  # the views hardly determine one camera
+    except (CvnotesError, np.linalg.LinAlgError):  # the views hardly determine one camera
         return None
     parted = (_parted(problem, x, second) for second in sides)
     return next((two for two in parted if two and two.rms <= PARTED * one.rms), None)
