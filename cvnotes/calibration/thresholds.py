@@ -35,5 +35,8 @@ MISSES_MORE = 1.1  # RMS of such a photograph over that of a typical one
 ALIKE = 1.5  # times as large, an RMS is about the same
 MANY_VIEWS = 200  # that are looked at in a mirror: more take long, and say nothing new
 PARTED = 0.65  # RMS with two cameras over that with one, if there are two; of one camera, 0.75
+OTHER_BOARDS = (
+    0.5  # of the photographs with the board asked for: so many with a larger one refuse it
+)
 MANY_WITHOUT_BOARD = 0.5  # of the photographs
 SAME_PLACE = 0.5  # px, between two pictures of a board that did not move

@@ -136,14 +136,15 @@ class Photographs:
 
     @property
     def instead(self) -> tuple[int, int] | None:
-        """Inner corners of the board that more photographs show than show the one asked for.
+        """Inner corners of another board, which half as many photographs show as the one asked for.
 
         A smaller one does not count where that was found: it is the same, cut off.
         """
         counts, asked = self.counts, self._asked
-        other = max(counts, key=lambda each: counts[each])  # the one asked for, if it is as often
-        within = counts[asked] > 0 and other[0] <= asked[0] and other[1] <= asked[1]
-        return None if within or counts[other] == 0 else other
+        found = counts.pop(asked)
+        others = [c for c in counts if not found or c[0] > asked[0] or c[1] > asked[1]]
+        other = max(others, key=lambda each: counts[each], default=asked)
+        return other if counts[other] > OTHER_BOARDS * found else None
 
     @property
     def _asked(self) -> tuple[int, int]:
