@@ -148,6 +148,11 @@ def test_lens_and_board_are_chosen_together():
     assert (choice.lens, choice.board) == ("none", "bent")
 
 
+def test_a_lens_and_a_board_that_speak_for_others_in_turn_are_chosen_too():
+    m = seen(TRUE["none"], 0.5, 5, np.random.default_rng([135, 5]))
+    assert choose_model(BOARD.points, m, (1280, 960)).lens == "none"  # it had no end
+
+
 def test_real_photographs_choose_a_polynomial_and_every_corner_by_itself():
     real = course.real_corners()
     for m in (real.left, real.right):

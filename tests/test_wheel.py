@@ -22,7 +22,7 @@ EXECUTE = """
     from nbclient import NotebookClient
     notebook = nbformat.read(sys.argv[1], as_version=4)
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    notebook.cells = 2 * cells
+    notebook.cells = cells + cells[::-1]
     NotebookClient(notebook, kernel_name="python3", timeout=300).execute()
 """
 
@@ -123,7 +123,7 @@ def test_a_class_is_graded(elsewhere):
     assert row.split(",")[2] == "1"
 
 
-def test_a_notebook_runs_and_each_of_its_cells_again_after_the_last(elsewhere):
+def test_a_notebook_runs_and_then_backwards(elsewhere):
     code = "from cvnotes.base.material import material; print(material('notebooks'))"
     notebooks = Path(elsewhere("-c", code).stdout.strip())
     assert not notebooks.is_relative_to(ROOT)

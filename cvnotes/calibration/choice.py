@@ -224,7 +224,7 @@ def choose_model(
     Notes
     -----
     First the lenses are compared on the simplest board, then boards with the lens chosen, then the
-    lenses again on that board, until both stay.
+    lenses again on that board, until both stay or come back.
 
     A model is kept against one with more coefficients while it predicts views left out within
     10 %, and the other is not better in enough of them (one-sided t of the paired differences,
@@ -241,14 +241,13 @@ def choose_model(
     size, data = image_size(size), Correspondences.of(board_points, image_points)
     boards = [is_board(board) for board in boards if board == "flat" or len(data) >= _ENOUGH]
     tried = _Tried(data, size, skew, lenses)
-    board = boards[0]
-    while True:
+    board, before = boards[0], set[str]()
+    while board not in before:  # two boards may each have a lens that speaks for the other
+        before.add(board)
         of_lenses = tried.choice([(lens, board) for lens in lenses])
         lenses = [c.lens for c in of_lenses.candidates if c.rms <= HOPELESS * of_lenses.least]
-        found = tried.choice([(of_lenses.lens, board) for board in boards])
-        if found.board == board:
-            return tried.choice(tried.known, new=False)
-        board = found.board
+        board = tried.choice([(of_lenses.lens, board) for board in boards]).board
+    return tried.choice(tried.known, new=False)
 
 
 @dataclass(eq=False)
