@@ -54,6 +54,8 @@ _MANY_VIEWS, _VIEWS_FOR_START = 150, 16
 _SUSPICIOUS = 0.002
 # The same, when the residuals of few views are no noise.
 _SYSTEMATIC = 0.0003
+# Starts that ended in one minimum, the lowest so far: the others would only find it again.
+_AGREED, _ONE = 3, 1e-6
 # Where lenses are only compared: minima are alike that differ by this part of the cost, and a
 # lens is beaten by another that leaves this part of its cost.
 _ALIKE, _BEATEN = 1e-3, 0.25
@@ -153,13 +155,17 @@ class Search:
         return len(self.problem.m) > _FEW_VIEWS or not self._is_systematic(minimum)
 
     def _is_decided(self) -> bool:
-        """Return whether two starts ended alike, where a third would end there too.
+        """Return whether another start would end where others did.
 
-        Either in a valley, or, for a lens that is only compared with others, where
-        its rival is far below: what is left is then the lens's fault, and not that of the start.
+        Three ended in the lowest minimum; or two ended alike, either in a valley, or, for a lens
+        that is only compared with others, where its rival is far below: what is left is then the
+        lens's fault, and not that of the start.
         """
         if len(self.minima) < 2:
             return False
+        lowest = (1 + _ONE) * min(minimum.cost for minimum in self.minima)
+        if sum(m.converged and m.cost <= lowest for m in self.minima) >= _AGREED:
+            return True
         lower, higher = sorted(minimum.cost for minimum in self.minima[-2:])
         beaten = self.rival is not None and self.rival < _BEATEN * lower
         return higher < (1 + _ALIKE) * lower and (beaten or bool(self.problem.model.cancelling))

@@ -88,7 +88,7 @@ def draw_two_errors(
     if len(predicted) != len(seen) or len(seen) == 0:
         raise ShapeError(f"m: expected one number for each of {len(predicted)} points")
     x, w = predicted.T
-    if not (w > 0).all():
+    if not (w > np.finfo(float).tiny * (1 + np.abs(x))).all():  # else x/w is no number
         raise DegenerateError("points_h: a point with w ≤ 0 is behind the camera and is not seen")
     ax = panels(width=760, height=400) if ax is None else ax
     ax.axvline(1, color=CAMERA, lw=2)
