@@ -12,6 +12,7 @@ import numpy.typing as npt
 from cvnotes.base import Array, CornersNotFound, DegenerateError, FileError
 from cvnotes.base.parallel import in_order
 from cvnotes.base.writing import PathLike, printable
+from cvnotes.calibration.thresholds import OTHER_BOARDS
 from cvnotes.files import Photo, Reason, Rejected
 from cvnotes.files.decoding import VIDEOS, header_size
 from cvnotes.files.ownership import photographs as listed_photographs
