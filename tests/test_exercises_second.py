@@ -126,6 +126,14 @@ def my_new_intrinsics(A, corner, s):
     return out
 
 
+def my_rq(P):
+    # A Aᵀ is M Mᵀ up to a factor; Cholesky's triangle of its reverse is A in reverse.
+    M = P[:, :3]
+    A = np.linalg.cholesky((M @ M.T)[::-1, ::-1])[::-1, ::-1]
+    R = np.linalg.solve(A, M)
+    return [A / A[2, 2], R if np.linalg.det(R) > 0 else -R]
+
+
 # Chapter 4
 
 
@@ -429,6 +437,20 @@ def my_error_bars(J, r):
     R = np.linalg.qr(J, mode="r")
     sigma = np.sqrt((r**2).sum() / (J.shape[0] - J.shape[1]))
     return sigma * np.linalg.norm(np.linalg.inv(R), axis=1)
+
+
+def my_jackknife(xy, xy_lens):
+    fits = []
+    for left_out in range(len(xy)):
+        D, d = [], []
+        for i in range(len(xy)):
+            if i != left_out:
+                for a, b in zip(xy[i], xy_lens[i], strict=True):
+                    r2 = a @ a
+                    D += [[a[0] * r2, a[0] * r2**2], [a[1] * r2, a[1] * r2**2]]
+                    d += [b[0] - a[0], b[1] - a[1]]
+        fits.append(np.linalg.lstsq(np.array(D), np.array(d), rcond=None)[0])
+    return np.sqrt(len(xy) - 1) * np.std(fits, axis=0)
 
 
 my_which_to_trust = "B"

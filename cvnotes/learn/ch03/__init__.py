@@ -7,5 +7,6 @@ from cvnotes.learn.ch03.intrinsics_from_sensor import INTRINSICS
 from cvnotes.learn.ch03.nearest_rotation import NEAREST
 from cvnotes.learn.ch03.new_intrinsics import NEW
 from cvnotes.learn.ch03.project import PROJECT
+from cvnotes.learn.ch03.rq import RQ
 
-EXERCISES = (INTRINSICS, PROJECT, CENTRE, CHAIN, NEW, NEAREST, FIELD)
+EXERCISES = (INTRINSICS, PROJECT, CENTRE, CHAIN, NEW, NEAREST, FIELD, RQ)
