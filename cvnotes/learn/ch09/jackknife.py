@@ -10,7 +10,7 @@ from cvnotes.tutor.checker.steps import edited
 
 def jackknife(xy: Array, xy_lens: Array) -> Array:
     """Return the standard deviations (2,) of k1 and k2, from v views of n points (v, n, 2)."""
-    v = len(xy)
+    v = len(xy)  # the number of views
     r2 = (xy**2).sum(axis=2, keepdims=True)  # r² of the ideal points
     D = np.stack([xy * r2, xy * r2**2], axis=3).reshape(v, -1, 2)  # the equations of each view
     d = (xy_lens - xy).reshape(v, -1, 1)  # what the lens has moved
@@ -18,7 +18,7 @@ def jackknife(xy: Array, xy_lens: Array) -> Array:
     g = D.mT @ d  # Dᵀd of each view
     k = np.linalg.solve(N.sum(axis=0) - N, g.sum(axis=0) - g)  # k without each view
     s2 = (v - 1) / v * ((k - k.mean(axis=0)) ** 2).sum(axis=0)  # the variances of the jackknife
-    return np.sqrt(s2[:, 0])
+    return np.asarray(np.sqrt(s2[:, 0]))
 
 
 def _seen(rng: Rng) -> list[Case]:
