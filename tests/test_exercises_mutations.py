@@ -142,6 +142,10 @@ def _report(exercise, function, seed):
     return judge(exercise, outcomes, seed)
 
 
+def _is_finite(report):
+    return report.yours is not None and np.isfinite(report.yours).all()
+
+
 def _chosen():
     """Choose some of all mutants, evenly, as (name, number)."""
     found = [(name, i) for name in NAMES for i in range(len(slips(name)[1]))]
@@ -170,9 +174,8 @@ def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
             # how near an answer comes on noisy data differs from one noise to the next
             assert all(r.passed or "noise" in r.fails for r in again), code
         # NaN has many causes, and so has an exception: what is said of them is said of them alone
-        finite = report.yours is not None and np.isfinite(report.yours).all()
-        if report.misconception is not None and finite:
-            names = {r.misconception for r in again if not r.passed}
+        if report.misconception is not None and _is_finite(report):
+            names = {r.misconception for r in again if not r.passed and _is_finite(r)}
             assert names <= {report.misconception}, (report.misconception, names, code)
 
 

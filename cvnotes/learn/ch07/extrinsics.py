@@ -25,6 +25,8 @@ from cvnotes.tutor.checker.steps import edited
 
 def _posed(rng: Rng) -> list[Case]:
     cases = [Case((TIDY_A, plane_image(TIDY_A, ABOUT_Y, TIDY_T)))]
+    # T_z is not the only sign that there is
+    cases.append(Case((TIDY_A, plane_image(TIDY_A, ABOUT_Y.T, TIDY_T * [-1, -1, 1]))))
     A = some_intrinsics(rng, skew=True)
     for sign, about in ((1.0, ""), (-1.0, "negative")):
         factor = sign * abs(some_factors(rng, 1)[0])
