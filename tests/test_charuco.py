@@ -112,6 +112,37 @@ def test_a_board_that_looks_the_same_after_half_a_turn_knows_its_origin():
     assert np.allclose(m, np.array(SIZE) - 1 - known.project(board.points), atol=0.03)
 
 
+@pytest.mark.parametrize("corners", [(9, 5), (8, 5)])
+def test_a_board_in_the_legacy_pattern_is_known_by_where_its_markers_stand(corners):
+    old = CharucoBoard(corners, 25.0, legacy=True)
+    squares = (corners[0] + 1, corners[1] + 1)
+    drawn = theirs(squares)
+    drawn.setLegacyPattern(True)
+    known = camera([60, 40, -330])
+    picture, truth = render(old, known, blur=0.7), known.project(old.points)
+    ids = cv2.aruco.CharucoDetector(drawn).detectBoard(picture)[1]
+    assert len(ids) == len(truth)  # it is the board that OpenCV means
+    m = find_corners(picture, CharucoBoard(corners, 25.0))
+    assert np.abs(m - truth).max() < 0.03
+    new = find_corners(
+        render(CharucoBoard(corners, 25.0), known, blur=0.7), CharucoBoard(corners, 25.0)
+    )
+    assert np.abs(new - truth).max() < 0.03
+
+
+def test_squares_that_were_counted_for_corners_are_named():
+    picture = render(BOARD, camera([60, 40, -330]), blur=0.7)
+    with pytest.raises(CornersNotFound, match="of 10×7 squares; count the inner corners, 9×6"):
+        find_corners(picture, CharucoBoard((10, 7), 25.0))
+
+
+def test_tags_are_markers_too():
+    board = CharucoBoard((4, 3), 25.0, dictionary="apriltag_36h11")
+    known = camera([50, 30, -400], at=(37, 25, 0))
+    m = find_corners(render(board, known, blur=0.7), board)
+    assert np.abs(m - known.project(board.points)).max() < 0.03
+
+
 @pytest.mark.slow
 def test_from_cut_boards_to_the_camera():
     rng = np.random.default_rng(4)
@@ -136,7 +167,7 @@ def test_from_cut_boards_to_the_camera():
     ("there", "board", "said"),
     [
         (SMALL, CharucoBoard((4, 3), 25.0, dictionary="5x5_100"), "there are markers of 4x4"),
-        (BOARD, CharucoBoard((5, 4), 25.0), "markers 0 to 14, and 34 is there"),
+        (BOARD, CharucoBoard((5, 4), 25.0), "stand as on a board of 10×7 squares"),
     ],
 )
 @pytest.mark.slow

@@ -26,6 +26,8 @@ class CornersNotFound(CvnotesError):
         What was taken for the board.
     count : (columns, rows) or None
         Inner corners of the largest other board that is there, the larger number first.
+    markers : str
+        The dictionary of other markers that are there, or "".
     """
 
     def __init__(
@@ -35,9 +37,11 @@ class CornersNotFound(CvnotesError):
         brief: str = "",
         found: Any = None,
         count: tuple[int, int] | None = None,
+        markers: str = "",
     ) -> None:
         super().__init__(message)
         self.brief, self.found, self.count = brief or message, found, count
+        self.markers = markers
 
 
 class ConvergenceError(CvnotesError):

@@ -22,7 +22,7 @@ from cvnotes.files.video import Progress, frames_of, unseen
 from cvnotes.photographs.reasons import FramesTaken, LeftOut, NoBoard
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.markers import one_thread_each
+from cvnotes.targets.markers import find_numbered, one_thread_each
 
 Board = Chessboard | CharucoBoard
 Given = PathLike | Photo | npt.ArrayLike  # one photograph, or a folder of them
@@ -295,6 +295,31 @@ def count(photos: Sequence[Path | Photo]) -> tuple[int, int]:
 def _count(item: Path | Photo) -> tuple[int, int] | None:
     photo = item if isinstance(item, Photo) else open_photo(item)
     return None if isinstance(photo, Rejected) else count_corners(photo.grey)
+
+
+def probed(photos: Sequence[Path | Photo], board: CharucoBoard) -> CharucoBoard:
+    """Return the board with the pattern that the first photograph shows in which it can be told.
+
+    Raises
+    ------
+    DegenerateError
+        The first photographs have markers of another dictionary.
+    """
+    other = 0
+    for item in photos:
+        photo = item if isinstance(item, Photo) else open_photo(item, grey=True)
+        if isinstance(photo, Rejected):
+            continue
+        seen = find_numbered(photo.grey, *board.read_by)
+        if seen.legacy is not None:
+            return replace(board, legacy=seen.legacy)
+        other += bool(seen.other)
+        if other == _SURE:
+            raise DegenerateError(
+                f"the first photographs have markers of {seen.other}, not {board.dictionary}: was "
+                "the board made with these?"
+            )
+    return board
 
 
 def detect_all(photos: Sequence[Path | Photo], board: Board) -> Iterator[Detection | Rejected]:

@@ -15,10 +15,11 @@ from cvnotes.photographs.detection import (
     count,
     detect_all,
     listed,
+    probed,
     sorted_out,
 )
 from cvnotes.photographs.judging import judge, propose
-from cvnotes.targets import Chessboard
+from cvnotes.targets import CharucoBoard, Chessboard
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +146,8 @@ def detect_photographs(
     counted = not isinstance(board, Board)
     if not isinstance(board, Board):
         board = chessboard(count(files), board)
+    if isinstance(board, CharucoBoard) and board.legacy is None:
+        board = probed(files, board)
     seen = progress(detect_all(files, board), len(files))
     return sorted_out(board, seen, rejected, counted=counted)
 

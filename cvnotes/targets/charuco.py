@@ -26,15 +26,19 @@ class CharucoBoard(PrintedBoard):
     marker : float, optional
         Side of a marker, three quarters of a square unless given.
     dictionary : str
-        Which markers, as OpenCV names them: ``"4x4_50"`` has 50 of 4 by 4 bits.
+        Which markers, as OpenCV names them: ``"4x4_50"`` has 50 of 4 by 4 bits; or AprilTags,
+        such as ``"apriltag_36h11"``.
+    legacy : bool, optional
+        Whether it is in the pattern that OpenCV had before 4.6, in which a board with an even
+        number of rows of squares begins with a light one; unless said, a picture tells, and new
+        boards are not.
 
     Notes
     -----
     The WRF and the order of the corners are those of `Chessboard`; the square outside of the
     origin corner is dark. Markers are numbered from 0, row by row through the light squares.
     OpenCV's ``CharucoBoard`` counts squares, one more than inner corners, and has its origin one
-    square before ours; boards in OpenCV's legacy pattern with an even number of rows of squares,
-    whose first square is light, are others.
+    square before ours.
 
     References
     ----------
@@ -51,6 +55,7 @@ class CharucoBoard(PrintedBoard):
 
     marker: float | None = None
     dictionary: str = "4x4_50"
+    legacy: bool | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -64,7 +69,7 @@ class CharucoBoard(PrintedBoard):
         if self.dictionary not in DICTIONARIES:
             known = ", ".join(DICTIONARIES)
             raise CvnotesError(f"dictionary: expected one of {known}, got {self.dictionary!r}")
-        most = int(self.dictionary.split("_")[1])
+        most, _ = DICTIONARIES[self.dictionary]
         needed = (columns + 1) * (rows + 1) // 2
         if needed > most:
             raise CvnotesError(
@@ -89,6 +94,11 @@ class CharucoBoard(PrintedBoard):
         return (1 - float(self.marker or 0) / self.square) / 2
 
     @property
+    def read_by(self) -> tuple[tuple[int, int], float, str, bool | None]:
+        """What `find_numbered` asks for: squares, markers' side in squares, dictionary, pattern."""
+        return self.squares, 1 - 2 * self.clear, self.dictionary, self.legacy
+
+    @property
     def printed(self) -> Print:
         """What is printed: lines along x and y, and which fields between them are dark."""
         cells = marker_cells(self.dictionary, self.n_markers)
@@ -107,4 +117,5 @@ class CharucoBoard(PrintedBoard):
     @property
     def _light_squares(self) -> list[tuple[int, int]]:
         columns, rows = self.squares
-        return [(i, j) for j in range(rows) for i in range(columns) if (i + j) % 2]
+        first = 0 if self.legacy and rows % 2 == 0 else 1
+        return [(i, j) for j in range(rows) for i in range(columns) if (i + j) % 2 == first]

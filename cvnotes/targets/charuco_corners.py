@@ -39,7 +39,9 @@ def measured_numbered(picture: Image, seen: Numbered, board: CharucoBoard) -> Ar
         raise _not_found(picture, board, 0, seen) from None
     sides = np.linalg.norm(np.gradient(lattice.reshape(rows, columns, 2), axis=1), axis=-1).ravel()
     moved = np.linalg.norm(fit.m - lattice, axis=-1)
-    alternate = np.sign(fit.contrast) == -((-1.0) ** (W.sum(1)))  # the origin's square is dark
+    # The origin's square is dark, or of a board in the legacy pattern light.
+    parity = np.sign(fit.contrast) * (-1.0) ** W.sum(1)
+    alternate = parity == (-1 if np.sum(parity[seen.numbers]) < 0 else 1)
     good = [i for i in seen.numbers if moved[i] < _MOVED * sides[i] and alternate[i]]
     if len(good) < _FEWEST:
         raise _not_found(picture, board, len(good), seen)
@@ -58,12 +60,18 @@ def _not_found(
     )
     there, question = _guess(board, corners, seen)
     brief = f"{start}: {there}"
-    return CornersNotFound(f"{brief}; {question}", brief=brief)
+    return CornersNotFound(f"{brief}; {question}", brief=brief, markers=seen.other)
 
 
 def _guess(board: CharucoBoard, corners: int, seen: Numbered) -> tuple[str, str]:
     """Return what is there, and what may have gone wrong."""
     markers = seen.markers
+    if seen.squares:
+        columns, rows = seen.squares
+        question = "are the inner corners counted right, and which number is that of columns?"
+        if seen.squares == board.corners:
+            question = f"count the inner corners, {columns - 1}×{rows - 1}, and not the squares"
+        return f"its markers stand as on a board of {columns}×{rows} squares", question
     if len(markers) and markers.max() >= board.n_markers:
         return (
             f"it has markers 0 to {board.n_markers - 1}, and {int(markers.max())} is there",

@@ -81,8 +81,7 @@ def find_corners(
     picture = grey_picture(image)
     grey = eight_bits(picture)
     if isinstance(board, CharucoBoard):
-        side = 1 - 2 * board.clear  # of a marker, in squares
-        numbered = find_numbered(grey, board.squares, side, board.dictionary)
+        numbered = find_numbered(grey, *board.read_by)
         return measured_numbered(picture, numbered, board)
     tried: list[str] = []
     doubts: list[NotABoard] = []

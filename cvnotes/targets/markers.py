@@ -20,9 +20,22 @@ def has_opencv() -> bool:
     return True
 
 
-# Markers of so many bits a side, and how many there are.
-DICTIONARIES = tuple(f"{n}x{n}_{many}" for n in (4, 5, 6, 7) for many in (50, 100, 250, 1000))
+# How many markers there are, and of how many bits a side.
+DICTIONARIES = {
+    **{f"{n}x{n}_{many}": (many, n) for n in (4, 5, 6, 7) for many in (50, 100, 250, 1000)},
+    "apriltag_16h5": (30, 4),
+    "apriltag_25h9": (35, 5),
+    "apriltag_36h10": (2320, 6),
+    "apriltag_36h11": (587, 6),
+}
+# In these others are looked for: of dictionaries with as many bits, the smaller ones are parts of
+# the larger, which take as many times as long.
+_PROBABLE = ("4x4_250", "5x5_250", "6x6_250", "7x7_250", "apriltag_16h5", "apriltag_25h9",
+             "apriltag_36h11")  # fmt: skip
 _SURE = 4  # markers of a dictionary: one alone may be read into anything
+_MOST_COLUMNS = 60  # of a board whose columns are counted
+_OFF = 0.7  # squares by which a marker may be off, measured by the sides of its neighbour
+_AGREE = 0.75  # part of all markers that must stand to each other as on a board
 
 
 def marker_cells(dictionary: str, count: int) -> npt.NDArray[np.bool_]:
@@ -38,59 +51,169 @@ def marker_cells(dictionary: str, count: int) -> npt.NDArray[np.bool_]:
            [1, 1, 1, 0, 1, 1],
            [1, 1, 1, 1, 1, 1]])
     """
-    markers, n = _dictionary(dictionary), int(dictionary[0]) + 2
+    markers, n = _dictionary(dictionary), DICTIONARIES[dictionary][1] + 2
     return np.array([markers.generateImageMarker(i, n) == 0 for i in range(count)])
+
+
+Numbers = npt.NDArray[np.integer[Any]]
 
 
 class Numbered(NamedTuple):
     """What can be read of a ChArUco board in a picture.
 
-    Its corners m (n, 2) and their numbers (n,); the numbers of all markers that were read; and the
-    dictionary of the markers that are there, if not one is of that asked for, else "".
+    Its corners m (n, 2) and their numbers (n,); the numbers of all markers that were read; the
+    dictionary of the markers that are there, if not one is of that asked for, else ""; whether the
+    pattern is the legacy one, None if the markers do not tell; and the squares (columns, rows) of a
+    board on which the markers stand, if they do not stand as on the one asked for.
     """
 
     m: Array
-    numbers: npt.NDArray[np.intp]
-    markers: npt.NDArray[np.intp]
-    other: str
+    numbers: Numbers
+    markers: Numbers
+    other: str = ""
+    legacy: bool | None = None
+    squares: tuple[int, int] | None = None
 
 
 def find_numbered(
-    grey: Grey8, squares: tuple[int, int], marker: float, dictionary: str
+    grey: Grey8,
+    squares: tuple[int, int],
+    marker: float,
+    dictionary: str,
+    legacy: bool | None = None,
 ) -> Numbered:
     """Look for the corners of a ChArUco board, whose markers have the side `marker` in squares.
 
-    Where not one of its markers can be read, those of the other dictionaries are looked for.
+    A board with an even number of rows may also be in OpenCV's legacy pattern, which begins with a
+    light square: where the markers stand tells, if it is not said. Where not one can be read, those
+    of other dictionaries are looked for.
 
     Examples
     --------
     >>> find_numbered(np.zeros((40, 40), np.uint8), (5, 4), 0.75, "4x4_50").m.shape
     (0, 2)
     """
-    m, numbers, markers = _detected(grey, squares, marker, dictionary)
-    other = ""
+    grey = np.ascontiguousarray(grey)
+    outlines, markers = _read(grey, dictionary)
+    none = np.zeros((0, 2)), np.zeros(0, dtype=np.intp), markers
     if not len(markers):
-        # Of the dictionaries with as many bits, the smaller ones are parts of the largest.
-        largest = [name for name in DICTIONARIES if name.endswith("_1000")]
-        read = {name: len(_detected(grey, squares, marker, name)[2]) for name in largest}
-        best = max(read, key=lambda name: read[name])
-        other = best.split("_")[0] if read[best] >= _SURE else ""
-    return Numbered(m, numbers, markers, other)
+        return Numbered(*none, other=_other(grey, dictionary))
+    (columns, rows), stand = squares, _Standing.of(outlines, markers, marker)
+    told: bool | None = False
+    if rows % 2 == 0:
+        as_is, light = (stand.agreeing(columns, light=x).sum() for x in (False, True))
+        told = bool(light > as_is) if abs(light - as_is) > 1 else None
+    patterns = [x for x in (legacy, told) if x is not None][:1] or [False, True]
+    agreed = max(stand.agreeing(columns, light=x).mean() for x in patterns)
+    if agreed < _AGREE and (counted := stand.counted()) is not None:
+        return Numbered(*none, squares=counted)
+    # (where nothing tells, OpenCV's own doubts may)
+    of_board = grey, squares, marker, dictionary
+    found = [_corners(*of_board, x, outlines, markers) for x in patterns]
+    m, numbers = max(found, key=lambda each: len(each[0]))
+    return Numbered(m, numbers, markers, legacy=told)
 
 
-def _detected(
-    grey: Grey8, squares: tuple[int, int], marker: float, dictionary: str
-) -> tuple[Array, npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+def _corners(
+    grey: Grey8,
+    squares: tuple[int, int],
+    marker: float,
+    dictionary: str,
+    legacy: bool,
+    outlines: Array,
+    markers: Numbers,
+) -> tuple[Array, Numbers]:
+    """Return the corners m (n, 2) between markers that were read, and their numbers (n,)."""
     import cv2
 
     board = cv2.aruco.CharucoBoard(squares, 1.0, marker, _dictionary(dictionary))
-    m, ids, _, markers = cv2.aruco.CharucoDetector(board).detectBoard(np.ascontiguousarray(grey))
-    corners, numbers, read = ([] if x is None else x for x in (m, ids, markers))
-    return (
-        np.asarray(corners, dtype=np.float64).reshape(-1, 2),
-        np.ravel(numbers).astype(np.intp),
-        np.ravel(read).astype(np.intp),
+    board.setLegacyPattern(legacy)
+    m, ids, *_ = cv2.aruco.CharucoDetector(board).detectBoard(
+        grey, markerCorners=list(outlines[:, None].astype(np.float32)), markerIds=markers[:, None]
     )
+    corners, numbers = ([] if x is None else x for x in (m, ids))
+    return np.reshape(np.asarray(corners, dtype=np.float64), (-1, 2)), np.ravel(numbers).astype(
+        np.intp
+    )
+
+
+def _read(grey: Grey8, dictionary: str) -> tuple[Array, Numbers]:
+    """Read all markers of a dictionary: their outlines (n, 4, 2) and numbers (n,)."""
+    import cv2
+
+    detector = cv2.aruco.ArucoDetector(_dictionary(dictionary))
+    outlines, numbers, _ = detector.detectMarkers(grey)
+    read = [] if numbers is None else numbers
+    return np.reshape(outlines, (-1, 4, 2)).astype(float), np.ravel(read).astype(np.int32)
+
+
+def _other(grey: Grey8, dictionary: str) -> str:
+    """Return which other dictionary the markers are of that are there, or ""."""
+    family = dictionary.split("_")[0]
+    names = [n for n in _PROBABLE if n != dictionary and not n.startswith(f"{family}_4")]
+    read = {name: len(_read(grey, name)[1]) for name in names}
+    best = max(read, key=lambda name: read[name])
+    if read[best] < _SURE:
+        return ""
+    return best if best.startswith("apriltag") else best.split("_")[0]
+
+
+class _Standing(NamedTuple):
+    """How markers stand to their nearest neighbours: (n,) numbers, and steps (n, 2) in squares."""
+
+    numbers: Numbers
+    neighbours: Numbers
+    steps: Array
+
+    @staticmethod
+    def of(outlines: Array, numbers: Numbers, side: float) -> "_Standing":
+        """Measure where the nearest marker is, by the sides of each marker itself."""
+        middle = outlines.mean(1)
+        apart = np.linalg.norm(middle[:, None] - middle, axis=-1)
+        np.fill_diagonal(apart, np.inf)
+        nearest = apart.argmin(1)
+        tl, tr, br, bl = outlines.swapaxes(0, 1)
+        x, y = (tr + br - tl - bl) / (2 * side), (bl + br - tl - tr) / (2 * side)
+        frame, offset = np.stack([x, y], axis=-1), middle[nearest] - middle
+        det = frame[:, 0, 0] * frame[:, 1, 1] - frame[:, 0, 1] * frame[:, 1, 0]
+        at = np.stack(
+            [
+                frame[:, 1, 1] * offset[:, 0] - frame[:, 0, 1] * offset[:, 1],
+                frame[:, 0, 0] * offset[:, 1] - frame[:, 1, 0] * offset[:, 0],
+            ],
+            axis=-1,
+        )
+        return _Standing(numbers, numbers[nearest], at / det[:, None])
+
+    def agreeing(self, columns: int, *, light: bool = False) -> npt.NDArray[np.bool_]:
+        """Return which markers' nearest stands as on a board of so many columns of squares."""
+        if len(self.numbers) < 2:
+            return np.ones(1, dtype=bool)
+        a, b = (_square(n, columns, light) for n in (self.numbers, self.neighbours))
+        return np.asarray((np.abs(b - a - self.steps) < _OFF).all(-1))
+
+    def counted(self) -> tuple[int, int] | None:
+        """Return the squares (columns, rows, as many as are seen) that a board must have."""
+        if len(self.numbers) < _SURE:
+            return None
+        every = [(n, light) for n in range(2, _MOST_COLUMNS) for light in (False, True)]
+        columns, light = max(every, key=lambda each: self.agreeing(each[0], light=each[1]).sum())
+        if self.agreeing(columns, light=light).mean() < _AGREE:
+            return None
+        return columns, int(_square(self.numbers, columns, light)[:, 1].max()) + 1
+
+
+def _square(numbers: Numbers, columns: int, light: bool) -> Array:
+    """Return the squares (n, 2) of markers, counted along x and y.
+
+    Row by row they stand in the light squares: two rows have as many as there are columns.
+    """
+    first = 0 if light else 1
+    in_first = (columns - first + 1) // 2
+    pair, k = np.divmod(numbers, columns)
+    below = k >= in_first
+    i = np.where(below, 1 - first + 2 * (k - in_first), first + 2 * k)
+    return np.stack([i, 2 * pair + below], axis=-1).astype(float)
 
 
 def _dictionary(name: str) -> Any:
@@ -98,7 +221,14 @@ def _dictionary(name: str) -> Any:
         raise ImportError("markers are drawn and read by OpenCV, which is not installed here")
     import cv2
 
-    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{name.upper()}"))
+    constant = f"DICT_{name.upper()}" if name[0] != "a" else f"DICT_{_apriltag(name)}"
+    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, constant))
+
+
+def _apriltag(name: str) -> str:
+    """Spell as OpenCV does: APRILTAG_36h11."""
+    family, bits = name.split("_")
+    return f"{family.upper()}_{bits}"
 
 
 @contextmanager
