@@ -88,6 +88,7 @@ MISTAKES = mistakes(
      "You divided by a coordinate, which is 0 at infinity, or on an axis: points with such a"
      " 0 may be the same too.",
      lambda a, b: np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1),
+     lambda a, b: np.isclose((a / a[:, 2:])[:, :2], (b / b[:, 2:])[:, :2]).all(1),
      lambda a, b: np.isclose(a / a[:, :1], b / b[:, :1]).all(1),
      lambda a, b: np.isclose(np.ptp(a / b, axis=1), 0),
      lambda a, b: np.isclose(a[:, 0] / b[:, 0], a[:, 1] / b[:, 1]) & np.isclose(a[:, 1] / b[:, 1],

@@ -75,7 +75,8 @@ MISTAKES = mistakes(
      lambda A, R, T, W: from_homogeneous.inside(W @ R.T @ A.T + T)),
     ("divided by the world's Z",
      "You divided by the Z of the world; depth is the z of the camera's own frame.",
-     lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] / W[:, 2:]),
+     lambda A, R, T, W: ((W @ R.T + T) @ A.T)[:, :2] / W[:, 2:],
+     lambda A, R, T, W: (W @ R.T + T)[:, :2] / W[:, 2:] * np.diag(A)[:2] + A[:2, 2]),
     ("divided by the distance",
      "You divided by the distance to the camera's centre; the picture is a plane, so it is "
      "the depth z that counts.",

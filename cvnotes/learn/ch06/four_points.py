@@ -43,6 +43,12 @@ def _with_h9(src: Array, dst: Array, sign: float = -1.0) -> Array | None:
     return np.append(np.linalg.solve(D[:, :8], sign * D[:, 8]), 1.0).reshape(3, 3)
 
 
+def _nearly_with_h9(src: Array, dst: Array) -> Array:
+    """Solve with h9 = 1 by least squares, which has an answer always."""
+    D = design_matrix(src, dst)
+    return np.append(np.linalg.lstsq(D[:, :8], -D[:, 8])[0], 1.0).reshape(3, 3)
+
+
 def _fits_three(H: Array, case: Case) -> bool:
     """Return whether H takes three of the four points to their partners, and not the last."""
     src, dst = case.args
@@ -73,7 +79,7 @@ _MISTAKES = (
     *mistakes(
         ("h9 = 1", "Right unless the true h9 is 0, which neither h9 = 1 nor the notes' formula for "
          "h9 can express: both solve the same 8×8 system, and it is singular then.",
-         _with_h9),
+         _with_h9, _nearly_with_h9),
         ("sign of the right-hand side", "With h9 = 1 the ninth column goes to the other side: with "
          "which sign?",
          lambda src, dst: _with_h9(src, dst, sign=1.0)),

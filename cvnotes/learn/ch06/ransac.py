@@ -48,6 +48,8 @@ _MISTAKES = mistakes(
      lambda src, dst, draws, t: ransac(src, dst, np.arange(len(src))[None], t)),
     ("one pair for four", "A draw is right only if all four of its pairs are: how likely is that?",
      edited(ransac, "q**4", "q"), edited(ransac, "q**4", "4 * q")),
+    ("0.999 for 0.001", "All N draws may be wrong with probability 0.001; you allowed 0.999.",
+     edited(ransac, "0.001", "0.999")),
     ("the part of wrong pairs", "You worked with the part of wrong pairs; a draw is of use if "
      "four right ones meet.",
      edited(ransac, "q**4", "(1 - q) ** 4"), edited(ransac, "1 - q**4", "1 - (1 - q**4)"),

@@ -73,7 +73,8 @@ _MISTAKES = mistakes(
     ("inverted view by view", "You inverted each view's share and added the inverses. "
      "Information adds up, not covariance.",
      lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).sum(0),
-     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).mean(0)),
+     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).mean(0),
+     lambda Jc, Jp: np.linalg.inv(_information(Jc, Jp)).mean(0) / len(Jc)),
     ("one pose for all", "You stacked all views over one pose. Each view has a pose of its own, "
      "and its derivatives stand in columns of their own.",
      _one_pose),

@@ -62,7 +62,8 @@ _MISTAKES = mistakes(
      edited(_steps, "u_left - u_right", "u_left - u_right - 1")),
     ("proportional to the disparity", "Your depth grows with the disparity, or does not depend on "
      "it: which points have large disparities?",
-     edited(_steps, "/ d", "* d"), edited(_steps, "/ d", "+ 0 * d")),
+     edited(_steps, "/ d", "* d"), edited(_steps, "/ d", "+ 0 * d"),
+     edited(_steps, "alpha * b / d", "d * b / alpha")),
     ("square of the disparity", "Depth falls with the disparity itself, not with its square.",
      edited(_steps, "/ d", "/ d**2")),
     ("half the baseline", "You measured from the middle between the cameras; the full baseline "
