@@ -415,7 +415,7 @@ ELSEWHERE = {
     ),
     133: (
         "notebooks run again, in any order",
-        "wheel::a_notebook_runs_and_each_of_its_cells_again_after_the_last",
+        "wheel::a_notebook_runs_and_then_backwards",
     ),
     134: ("random seeds", "layers::nothing_in_the_package_prints_or_seeds_globally"),
     135: (

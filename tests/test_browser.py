@@ -503,7 +503,7 @@ def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, tmp_pa
         shown[name] = _answer(page, cells, name)
         page.screenshot(path=tmp_path / f"{name}.png")
     assert "dlt: ✓ right." in shown["dlt"]
-    assert "Chapter 6: 1 of 4 solved; next: design_matrix." in shown["dlt"]
+    assert "Chapter 6: 1 of 5 solved; next: design_matrix." in shown["dlt"]
     assert "four_points: ✗ not yet right." in shown["four_points"]
     assert "Did you exchange src and dst?" in shown["four_points"]
     assert re.search(r"yours +wanted", shown["four_points"])

@@ -243,7 +243,9 @@ def test_a_missing_or_empty_folder_is_said_in_one_line(tmp_path, capsys, name):
 def test_a_board_that_was_counted_wrongly_is_not_found(photos, tmp_path, capsys):
     four = sorted(photos.iterdir())[::2]
     assert calibrate(*four, "--out", tmp_path / "out", corners="10x7") == 1
-    assert "a board of 10×7 inner corners was found in none" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "of 10×7 inner corners was asked for, but 4 photographs show one of 9×6" in said
+    assert "try --corners 9x6" in said
     assert not (tmp_path / "out").exists()
 
 

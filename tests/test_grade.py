@@ -459,11 +459,11 @@ def test_the_table_and_the_class_summary(tmp_path, capsys):
     out = tmp_path / "marks" / "marks.csv"
     assert command(tmp_path, "--out", out, "--jobs", "2") == 0
     ada, bob = csv.DictReader(out.read_text("utf-8-sig").splitlines())
-    assert (ada["student"], ada["points"], ada["of"], ada["percent"]) == ("ada", "1", "4", "25")
+    assert (ada["student"], ada["points"], ada["of"], ada["percent"]) == ("ada", "1", "5", "20")
     assert (ada["dlt"], bob["dlt"], bob["normaliser"]) == ("1", "0", "0")
     assert bob["misconceptions"] == "dlt: src and dst exchanged"
     said = capsys.readouterr().out
-    assert "2 notebooks, 1 of 8 points" in said
+    assert "2 notebooks, 1 of 10 points" in said
     assert "1 × dlt: src and dst exchanged" in said
     assert "dlt                           1 of 2" in said
 

@@ -69,7 +69,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
     assert focused["kind"] == "body", reached[-5:]  # and goes on at the browser's own buttons
     kinds = [kind for kind, _ in reached]
     assert kinds.count("range") == moved == 8
-    assert kinds.count("textarea") == 4
+    assert kinds.count("textarea") == 5
     corners = [name for _, name in reached if "move it with the arrow keys" in name]
     assert len(corners) == 4
     for name in ("Check", "Hint", "Solution", "Start again", "Save as a notebook"):

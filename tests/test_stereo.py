@@ -879,8 +879,7 @@ def test_the_published_rig_is_found_in_its_photographs(photographed_rig):
 
 
 def test_a_board_that_is_not_flat_is_one_for_both_cameras(photographed, photographed_rig):
-    with pytest.warns(CalibrationWarning, match="corners far from their place"):
-        free = calibrate_stereo(BOARD.points, *photographed, SIZE, lens=LENS, board="free")
+    free = calibrate_stereo(BOARD.points, *photographed, SIZE, lens=LENS, board="free")
     assert free.rms < 0.6 * photographed_rig.rms
     # 0.2 mm of a flat board are missing in depth; the published T_z is 0.05
     assert abs(free.T[2] - 0.05) < abs(photographed_rig.T[2] - 0.05)

@@ -87,10 +87,15 @@ def _is_it(own: CodeType, theirs: CodeType) -> bool:
 def _instructions(code: CodeType) -> list[tuple[str, Any]]:
     """Return what a function does, without its name, its place and what it says of itself.
 
-    How a name's attribute is called depends on whether the name was imported in the same file.
+    How a name's attribute is called depends on whether the name was imported in the same file, and
+    with it how far a jump leads.
     """
+    jumps = {*dis.hasjrel, *dis.hasjabs}
     return [
-        (one.opname.replace("METHOD", "ATTR"), "" if inspect.iscode(one.argval) else one.argval)
+        (
+            one.opname.replace("METHOD", "ATTR"),
+            "" if inspect.iscode(one.argval) or one.opcode in jumps else one.argval,
+        )
         for one in dis.get_instructions(code)
         if one.opname != "PUSH_NULL"
     ]
