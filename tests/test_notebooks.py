@@ -24,19 +24,9 @@ each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
 each_chapter = pytest.mark.parametrize("path", CHAPTERS, ids=lambda p: p.stem)
 MAX_LINES, MAX_FOLDED, MEDIAN_LINES, IMPORT_LINES, MAX_BYTES = 12, 16, 5, 8, 1_500_000
 KEY = ROOT / "docs/teacher/answers"  # the lecturer's answers to the questions in the prose
-# Whose answers are folded under their questions, and whose plumbing is folded: in the end all.
-LIGHT = {table.stem for table in (ROOT / "tests/undone").glob("*.toml")}
-each_light = pytest.mark.parametrize(
-    "path", [path for path in NOTEBOOKS if short_name(path.name) in LIGHT], ids=lambda p: p.stem
-)
-each_other = pytest.mark.parametrize(
-    "path", [path for path in NOTEBOOKS if short_name(path.name) not in LIGHT], ids=lambda p: p.stem
-)
 ANSWER = re.compile(r"^ *<details><summary>Answer</summary>\n\n.+?\n\n *</details>$", re.M | re.S)
-MAX_NAMES, MAX_IN_A_FIGURE = (
-    25,
-    5,
-)  # of the library: asked of a student; in an open cell with a figure
+# Names of the library: asked of a student; in an open cell with a figure.
+MAX_NAMES, MAX_IN_A_FIGURE = 25, 5
 WINGS = {"cvnotes", *(f"cvnotes.{file.parent.name}" for file in ROOT.glob("cvnotes/*/__init__.py"))}
 # Sections of a chapter that tell rather than show.
 TELLING = (
@@ -95,12 +85,12 @@ def test_code_cells_are_short_and_follow_prose(path):
             assert before.cell_type == "markdown", f"{cell.id} has no prose before it"
 
 
-@each_light
+@each_notebook
 def test_no_code_installs_anything(path):
     assert not re.search(r"pip install", "\n".join(c.source for c in _code(_read(path))))
 
 
-@each_light
+@each_notebook
 def test_what_only_draws_is_folded_and_says_what_it_draws(path):
     """The key folds it in JupyterLab, which shows the first line; the tag does on the site."""
     for cell in _code(_read(path)):
@@ -114,7 +104,7 @@ def test_what_only_draws_is_folded_and_says_what_it_draws(path):
             assert not re.search(r"^show\(", cell.source, re.M), f"{cell.id} is plumbing, and open"
 
 
-@each_light
+@each_notebook
 def test_few_names_of_the_library_are_asked_of_a_student(path):
     """What is called where the code is open; a figure there is made of few of them."""
     ours, asked = set(), set()
@@ -140,7 +130,7 @@ def _reading(notebook):
     return _words(prose) / 100 + (8 * lines + 45 * figures + 30 * prose.count("?")) / 60
 
 
-@each_light
+@each_notebook
 def test_the_time_that_is_claimed_is_that_of_its_parts(path):
     prose = _prose(_read(path))
     if claimed := re.search(r"\*\*Time\*\* reading(?: and running)? (\d+) min", prose):
@@ -248,7 +238,7 @@ def _blocks(source):
     return [part.strip("\n") for part in parts]
 
 
-@each_light
+@each_notebook
 def test_every_question_has_its_answer_folded_under_it(path):
     """But for those of three stars, which are the lecturer's, and those that are guessed first."""
     missing = []
@@ -273,7 +263,7 @@ def test_every_question_has_its_answer_folded_under_it(path):
     assert missing == []
 
 
-@each_light
+@each_notebook
 def test_of_three_stars_the_lecturer_has_the_answer(path):
     prose = "\n\n".join(c.source for c in _read(path).cells if c.cell_type == "markdown")
     key = _plain((KEY / f"{short_name(path.name)}.md").read_text())
@@ -283,24 +273,13 @@ def test_of_three_stars_the_lecturer_has_the_answer(path):
             assert _plain(last) in key, last
 
 
-@each_light
+@each_notebook
 def test_no_traceback_is_announced(path):
     prose = "\n".join(c.source for c in _read(path).cells if c.cell_type == "markdown")
     assert (
         re.findall(r"[^.\n]*\b(?:assert\w* (?:fails|stops)|stops at its assert\w*)[^.\n]*", prose)
         == []
     )
-
-
-@each_other
-def test_every_question_has_its_answer_in_the_key(path):
-    # Math, code and addresses may hold question marks that ask nothing.
-    prose = re.sub(r"\$\$.+?\$\$|`[^`]*`|\]\([^)]*\)", " ", _prose(_read(path)), flags=re.S)
-    asked = [_plain(part) for part in re.findall(r"[^.!?:;\n]*\?", prose)]
-    key = _plain((KEY / f"{short_name(path.name)}.md").read_text())
-    key = re.sub(r"\]\([^)]*\)", " ", key)
-    assert asked
-    assert [question for question in asked if question not in " ".join(key.split())] == []
 
 
 @each_notebook
