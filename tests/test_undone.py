@@ -18,19 +18,17 @@ pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 HERE = Path(__file__).parent
 NOTEBOOKS = sorted((HERE.parent / "notebooks").glob("*.ipynb"))
-TABLES = sorted((HERE / "undone").glob("*.toml"))
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are copied by fork")
-@pytest.mark.parametrize("table", TABLES, ids=lambda path: path.stem)
-def test_every_check_of_a_chapter_notices_that_its_step_is_undone(table):
-    notebook = next(path for path in NOTEBOOKS if short_name(path.name) == table.stem)
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_every_check_of_a_chapter_notices_that_its_step_is_undone(notebook):
     done = subprocess.run(
         [sys.executable, HERE / "undoing.py", notebook], capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
     said = json.loads(done.stdout)
-    rows = tomllib.loads(table.read_text())["row"]
+    rows = tomllib.loads((HERE / f"undone/{short_name(notebook.name)}.toml").read_text())["row"]
     passed = [
         (row["step"], row["undone"], result)
         for row, result in zip(rows, said["results"], strict=True)
