@@ -1,18 +1,17 @@
-// The panels of a wide figure come one below the other where the page is narrow: data-cuts says in
-// which columns of the stored picture they meet (tools/site_figures.py).
+// The panels of a wide figure come one below the other where the page is narrow: data-panels has
+// the rectangle of each in the stored picture (tools/site_figures.py).
 (() => {
   function stack(image) {
     if (image.previousElementSibling?.className === "panels") return;
-    const { naturalWidth: width, naturalHeight: height } = image;
-    const edges = [0, ...image.dataset.cuts.split(" ").map(Number), width];
     const panels = document.createElement("div");
     panels.className = "panels";
     panels.setAttribute("role", "img");
     panels.setAttribute("aria-label", image.alt);
-    for (let i = 0; i + 1 < edges.length; i++) {
+    for (const rectangle of image.dataset.panels.split(";")) {
+      const [left, top, width, height] = rectangle.split(" ").map(Number);
       const panel = document.createElement("canvas");
-      [panel.width, panel.height] = [edges[i + 1] - edges[i], height];
-      panel.getContext("2d").drawImage(image, -edges[i], 0);
+      [panel.width, panel.height] = [width, height];
+      panel.getContext("2d").drawImage(image, -left, -top);
       panels.append(panel);
     }
     image.before(panels);
@@ -20,7 +19,7 @@
 
   // (a figure is fetched when it comes into sight)
   function stackAll() {
-    for (const image of document.querySelectorAll("img[data-cuts]"))
+    for (const image of document.querySelectorAll("img[data-panels]"))
       if (image.complete && image.naturalWidth) stack(image);
       else image.addEventListener("load", () => stack(image), { once: true });
   }

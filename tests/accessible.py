@@ -27,7 +27,9 @@ def violations(page, *, within="html", colours=True):
     found = []
     for scheme in ("light", "dark") if colours else ("light",):
         page.emulate_media(color_scheme=scheme)
-        page.wait_for_selector(f"html[data-theme={scheme}]", state="attached")
+        page.wait_for_selector(
+            f"html:is([data-theme={scheme}], :not([data-theme]))", state="attached"
+        )
         page.wait_for_timeout(300)  # colours change slowly
         found += [f"{scheme}, {words}" for words in page.evaluate(CHECK, [within, options])]
     page.emulate_media(color_scheme="light")

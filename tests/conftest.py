@@ -2,6 +2,7 @@
 
 import gc
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -10,6 +11,7 @@ import threading
 import time
 from contextlib import contextmanager
 from functools import cache, partial
+from html import unescape
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
@@ -281,6 +283,11 @@ def camera_of_the_views():
         for path in sorted((ROOT / "data" / "views").glob("*.png")):
             here.look(str(path))
         return here.calibrate()
+
+
+def text_of(html):
+    """Give the text of a piece of HTML, as browsers do."""
+    return unescape(re.sub("<[^>]*>", "", html))
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

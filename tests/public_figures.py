@@ -156,7 +156,6 @@ FIGURES = [
         },
         "show.least_squares.draw_valley",
     ),
-    figure(least_squares.draw_singular_values, {"s": (np.array([2.0, 1, 1e-15]), SINGLE)}),
     # lenses
     figure(lenses.draw_newton, {"r_lens": (0.4, ONE)}, lens=LENS),
     figure(lenses.draw_angles, {}, lenses={"a": LENS}),

@@ -63,10 +63,10 @@ def test_a_board_that_changed_between_pictures_is_told_from_one_that_is_bent():
 
     always, changing = [3.0] * 12, [3.0, -3.0] * 6
     for bends in (always, changing):
-        assert "bent, or did it change its shape between the pictures" in doubts(bends, "flat")
+        assert "or did it change its shape between the pictures" in doubts(bends, "flat")
     for board in ("bent", "auto"):
         assert "did it bend differently from picture to picture" in doubts(changing, board)
-        assert "is the board bent" not in doubts(changing, board)
+        assert "where they should be" not in doubts(changing, board)
         assert "no noise" not in doubts(always, board)
 
 
@@ -240,6 +240,18 @@ def test_error_bars_hold_for_heights():
         found = calibrate(BOARD.points, m, CAMERA.size, board="bent")
         z.append((found.shape.heights - heights_of(arched(1.0))) / found.shape.std[:, 2])
     assert 0.7 < np.sqrt(np.mean(np.square(z))) < 1.4
+
+
+def test_an_arch_is_not_held_back_because_there_are_no_wiggles():
+    """0.15 mm with noise of 0.3 px: of one size for all degrees the arch would keep a third."""
+    W = arched(0.15)
+    z = heights_of(W)
+    kept = []
+    for seed in range(6):
+        m = seen(W, 12, noise=0.3, seed=seed)
+        found = calibrate(BOARD.points, m, CAMERA.size, board="bent").shape.heights
+        kept.append(found @ z / (z @ z))
+    assert 0.55 < np.mean(kept) < 1
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -505,7 +505,7 @@ def test_exercises_answer_to_what_is_typed_and_an_endless_loop_ends(page, tmp_pa
     assert "dlt: ✓ right." in shown["dlt"]
     assert "Chapter 6: 1 of 5 solved; next: design_matrix." in shown["dlt"]
     assert "four_points: ✗ not yet right." in shown["four_points"]
-    assert "Did you exchange src and dst?" in shown["four_points"]
+    assert "Your answer is the inverse of the right one." in shown["four_points"]
     assert re.search(r"yours +wanted", shown["four_points"])
     assert "stopped after 5 seconds: does a loop never end?" in shown["normaliser"]
     # the notebook lives on

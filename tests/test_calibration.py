@@ -21,6 +21,7 @@ from cvnotes.calibration import (
     extrinsics,
     intrinsics_from_b,
     radial_distortion,
+    reserve,
     solve_b,
     starts,
 )
@@ -192,6 +193,30 @@ def test_many_views_are_started_from_a_few_of_them_and_end_where_all_would_have_
     (step, _), gain = solve_by_schur(problem.linearise(end)[1], 0.0)
     assert np.abs(step / list(result.std.values())).max() < 1e-3
     assert gain < 1e-9 * problem.linearise(end)[0]
+
+
+@pytest.mark.parametrize("wrong", ["a row is shifted", "two corners are exchanged"])
+def test_wrong_corners_of_one_view_are_not_searched_for_a_better_start(
+    wrong, board, views_of, monkeypatch
+):
+    """No pose and no lens explains them: it took up to 400 minimisations to say so."""
+    _, m = views_of(RADIAL, 12, np.random.default_rng(1))
+    m = noise(m, np.random.default_rng(2))
+    if wrong == "a row is shifted":
+        row = m[4].reshape(6, 9, 2)[2]
+        row[:-1], row[-1] = row[1:].copy(), 2 * row[-1] - row[-2]
+    else:
+        m[4, [3, 40]] = m[4, [40, 3]]
+    counts = []
+    for module in (starts, reserve):
+        minimise = module.minimise
+        monkeypatch.setattr(
+            module, "minimise", lambda *a, f=minimise, **k: (counts.append(1), f(*a, **k))[1]
+        )
+    result = quietly(board.points, m, SIZE, lens="auto", board="auto")
+    assert not result.reliable
+    assert any("views 4 do not fit the others" in sentence for sentence in result.warnings)
+    assert len(counts) < 60, len(counts)
 
 
 def test_whatever_the_start_the_same_minimum_is_reached_to_a_fraction_of_the_error_bars(

@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cvnotes.base import CornersNotFound, CvnotesError
+from cvnotes.base import CornersNotFound, CvnotesError, DegenerateError
 from cvnotes.calibration import calibrate
 from cvnotes.camera import Camera, Lens, intrinsics, look_at
 from cvnotes.commands.cli import main
+from cvnotes.commands.report import note_of, notes_of
+from cvnotes.photographs import calibrate_photographs
 from cvnotes.pictures import render
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
+from cvnotes.targets.markers import other_dictionary
 
 BOARD = CharucoBoard((9, 6), 25.0)
 SMALL = CharucoBoard((4, 3), 25.0)  # each square that might be a marker is looked up in thousands
@@ -178,6 +181,43 @@ def test_another_board_is_named(there, board, said):
 
 
 @pytest.mark.slow
+def test_another_dictionary_is_known_from_two_photographs_of_which_none_is_read_whole(monkeypatch):
+    monkeypatch.setattr("cvnotes.photographs.detection.find_numbered", None)
+    pictures = [render(SMALL, camera([60 + i, 40, -330]), blur=0.7) for i in range(2)]
+    asked = CharucoBoard((4, 3), 25.0, dictionary="5x5_100")
+    with pytest.raises(DegenerateError, match="have markers of 4x4, not 5x5_100"):
+        calibrate_photographs([*pictures, np.zeros((480, 640), np.uint8)], asked)
+
+
+@pytest.mark.slow
+def test_a_dictionary_is_known_by_a_board_of_which_the_first_markers_cannot_be_seen():
+    large = CharucoBoard((19, 11), 25.0, dictionary="4x4_250")
+    far = camera([240, 260, -420], at=(240, 220, 0))
+    u, v = far.project(large.points[0])
+    assert v < -100 or u < -100
+    picture = render(large, far, blur=0.7)
+    assert other_dictionary(picture, "5x5_250") == "4x4_250"
+    assert other_dictionary(picture, "4x4_250") == ""
+
+
+def test_corners_outside_the_picture_are_not_called_unclear():
+    found = calibrate_photographs(
+        [render(BOARD, camera(*at), blur=0.7) for at in (
+            ([60, 40, -330], (100, 62, 0)), ([200, 0, -330], (100, 62, 0)),
+            ([100, 160, -330], (100, 62, 0)), ([60, 40, -330], (10, 62, 0)),
+        )], BOARD, lens="k1 k2", board_shape="flat",
+    )  # fmt: skip
+    cut = found.photographs.used[3]
+    m = camera([60, 40, -330], (10, 62, 0)).project(BOARD.points)
+    out = ((m < -0.5) | (m > np.array(SIZE) - 0.5)).any(-1).sum()
+    assert 5 < out < 40
+    *whole, note = notes_of(found.photographs, found.calibration)
+    assert whole == [""] * 3
+    assert f"{out} of 54 corners are outside the picture" in note
+    assert "or are outside the picture" in note_of(cut)
+
+
+@pytest.mark.slow
 def test_without_any_marker_that_is_said():
     with pytest.raises(CornersNotFound, match="not one marker can be read"):
         find_corners(render(Chessboard((4, 3), 25.0), camera([60, 40, -330]), blur=0.7), SMALL)
@@ -247,7 +287,7 @@ def test_the_command_prints_and_calibrates_it(tmp_path, capsys):
     plain = ["calibrate", str(photos), "--corners", "9x6", "--square", "25", "--lens", "k1 k2"]
     out = tmp_path / "out"
     assert main([*plain, "--charuco", "--board-shape", "flat", "--out", str(out)]) == 0
-    assert (out / "corners.png").exists()
+    assert (out / "report.html").exists()
     assert "4 photographs" in capsys.readouterr().out
     assert main([*plain, "--marker", "18", "--out", str(out)]) == 2
     assert "--marker is of ChArUco boards" in capsys.readouterr().err

@@ -102,12 +102,15 @@ class TestTheBarsContainTheChoice:
         inside, outside = (prediction_std(f, corner, of="views") for f in (alone, found))
         assert outside > inside
 
-    def test_a_model_that_stands_alone_changes_nothing(self, found):
+    def test_a_model_that_stands_alone_widens_what_noise_alone_makes_wider(self, found):
         chosen = found.choice.chosen
         alone = replace(found.choice, candidates=(chosen,))
         C = replace(found, choice=None).covariance_of_views
         np.testing.assert_allclose(alone.covariance(C), chosen.covariance, rtol=1e-2)
-        np.testing.assert_allclose(chosen.covariance, C, rtol=1e-2, atol=1e-12)
+        wider = np.diag(chosen.covariance) / np.diag(C)
+        by_noise = np.diag(found.covariance) / np.diag(C)
+        np.testing.assert_allclose(wider, np.maximum(by_noise, 1), rtol=2e-2)
+        assert wider.max() > 1.05 > 1.02 > wider.min()  # of five views both occur
 
     def test_a_close_runner_up_is_named(self, found):
         close = found.choice.close_by()

@@ -26,10 +26,8 @@ from cvnotes.base import FileError
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.commands import lab
 from cvnotes.commands.cli import _COMMANDS, main
-from cvnotes.commands.pictures import corner_sheets
 from cvnotes.files import read_camera, write_camera, write_whole
 from cvnotes.photographs import Detection
-from cvnotes.targets import Chessboard
 
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, pipes and devices of POSIX")
 
@@ -94,12 +92,6 @@ def process(*arguments, **options):
 def one_line(text):
     """Tell whether a text is one line, and no traceback."""
     return text.count("\n") == 1 and text.endswith("\n") and "Traceback" not in text
-
-
-@pytest.fixture
-def plain(monkeypatch):
-    """Calibrate without drawing: what is tested then is not the pictures."""
-    monkeypatch.setattr("cvnotes.commands.pictures.pictures", lambda *_: {})
 
 
 # --- calibrate ------------------------------------------------------------------------------
@@ -178,15 +170,10 @@ def test_the_report_has_error_bars_and_what_the_result_rests_on(calibrated):
 
 
 @pytest.mark.slow
-def test_pictures_are_left_beside_the_numbers_and_nothing_else(calibrated):
-    out = calibrated[1]
-    names = ["calibration.json", "calibration.yml", "corners.png", "coverage.png"]
-    names += ["next_view.png", "ost.yaml", "photographs.csv", "residuals.png", "view_rms.png"]
-    assert sorted(path.name for path in out.iterdir()) == names
-    for path in out.glob("*.png"):
-        with Image.open(path) as picture:
-            picture.load()
-            assert picture.size[0] >= 900
+def test_a_report_is_left_beside_the_numbers_and_nothing_else(calibrated):
+    names = ["calibration.json", "calibration.yml", "ost.yaml", "photographs.csv", "report.html"]
+    assert sorted(path.name for path in calibrated[1].iterdir()) == names
+    assert "view 0.png" in (calibrated[1] / "report.html").read_text(encoding="utf-8")
 
 
 def test_corners_lie_on_the_thumbnail_where_they_lie_on_the_photograph():
@@ -197,15 +184,6 @@ def test_corners_lie_on_the_thumbnail_where_they_lie_on_the_photograph():
     assert np.allclose(view.on_thumbnail(corners), expected, atol=1e-12)
 
 
-def test_many_photographs_go_on_several_sheets():
-    board = Chessboard((9, 6), 20.0)
-    picture = np.zeros((48, 64), np.uint8)
-    view = Detection(Path("a.png"), (64, 48), picture, None)
-    assert list(corner_sheets([view] * 40, board)) == ["corners.png"]
-    assert list(corner_sheets([view] * 41, board)) == ["corners-1.png", "corners-2.png"]
-
-
-@pytest.mark.usefixtures("plain")
 @pytest.mark.slow
 def test_lens_and_skew_are_estimated_as_asked(photos, tmp_path, capsys):
     assert calibrate(photos, "--out", tmp_path, "--lens", "k1,k2", "--skew") == 0
@@ -249,7 +227,6 @@ def test_a_board_that_was_counted_wrongly_is_not_found(photos, tmp_path, capsys)
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.usefixtures("plain")
 @pytest.mark.slow
 def test_views_that_do_not_determine_the_camera_are_written_and_marked(tmp_path, capsys):
     folder, out = tmp_path / "flat", tmp_path / "out"
@@ -267,7 +244,6 @@ def test_views_that_do_not_determine_the_camera_are_written_and_marked(tmp_path,
     assert said.err.startswith("cvnotes calibrate: written, but not reliable: ")
 
 
-@pytest.mark.usefixtures("plain")
 @pytest.mark.slow
 def test_a_half_turn_symmetric_board_is_accepted_and_that_is_said(tmp_path, capsys):
     for i, tilt in enumerate(TILTS[:5]):
@@ -277,7 +253,6 @@ def test_a_half_turn_symmetric_board_is_accepted_and_that_is_said(tmp_path, caps
     assert "this board looks the same after half a turn" in capsys.readouterr().out
 
 
-@pytest.mark.usefixtures("plain")
 @pytest.mark.slow
 def test_an_exif_rotation_is_pointed_out(tmp_path, capsys):
     exif = Image.Exif()
@@ -292,7 +267,6 @@ def test_an_exif_rotation_is_pointed_out(tmp_path, capsys):
     assert read_camera(tmp_path / "out" / "calibration.json").A[0, 2] == pytest.approx(161, abs=2)
 
 
-@pytest.mark.usefixtures("plain")
 def test_photographs_of_two_folders_are_told_apart(photos, tmp_path):
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
@@ -303,7 +277,6 @@ def test_photographs_of_two_folders_are_told_apart(photos, tmp_path):
     assert [view["file"] for view in views][::4] == [str(Path("a/0.png")), str(Path("b/0.png"))]
 
 
-@pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize(
     ("make", "reason"),
     [
@@ -466,8 +439,6 @@ PATCHES = {
     """,
     "while writing": """
     import os
-    import cvnotes.commands.pictures as pictures
-    pictures.pictures = lambda *_: {}
     synced = os.fsync
     def slow(handle):
         synced(handle)

@@ -1,6 +1,8 @@
 """`cvnotes stereo`: pairs of photographs in, two cameras on one rig out."""
 
+import html
 import json
+import re
 import warnings
 from pathlib import Path
 
@@ -87,7 +89,7 @@ def _stereo(folder, out, *more):
 @pytest.mark.slow
 def test_rendered_pairs_become_the_rig_within_its_error_bars(photographs, tmp_path, capsys):
     own = ["calibration.yml", "left.yaml", "rectified-left.png", "rectified-right.png",
-           "rectified.png", "rig.json", "right.yaml"]  # fmt: skip
+           "report.html", "rig.json", "right.yaml"]  # fmt: skip
     for name in own:  # of a run before, which may be replaced
         (tmp_path / name).write_bytes(made_by("stereo").encode())
     assert _stereo(photographs, tmp_path, "--leave-out", "left 7.png") == 0
@@ -119,7 +121,12 @@ def test_rendered_pairs_become_the_rig_within_its_error_bars(photographs, tmp_pa
     np.testing.assert_allclose(X[:3] / X[3], [40, -30, 600], rtol=1e-9)
     metres = theirs["P2"] / [1, 1, 1, 1000]
     np.testing.assert_allclose(info.projection, metres, rtol=1e-12, atol=0)
-    for name in ("rectified.png", "rectified-left.png", "rectified-right.png"):
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    for word in re.split(r"\n|  +", said.partition("Written to")[0]):
+        assert html.escape(word.removeprefix("! ")) in page
+    # a pair before and after, how well each picture is known, and every photograph
+    assert page.count("<image") == 4 + 2 + 7 + 7
+    for name in ("rectified-left.png", "rectified-right.png"):
         with Image.open(tmp_path / name) as picture:
             assert "cvnotes stereo" in picture.text["Comment"]
     assert sorted(path.name for path in tmp_path.iterdir()) == own

@@ -10,7 +10,7 @@ from cvnotes.pictures import clutter, good_views, render
 from cvnotes.targets import Chessboard, find_corners, finding
 from cvnotes.targets import lattice as _lattice
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.grey import reduced
+from cvnotes.targets.grey import _LARGEST, reduced
 from cvnotes.targets.lattice import completed, handedness, measured, ordered, out_of_line
 from cvnotes.targets.subpixel import fit_edges
 
@@ -518,7 +518,7 @@ class TestCopies:
         with pytest.raises(CornersNotFound, match="333×250: not found; 666×500: not found"):
             find_corners(np.zeros((6000, 8000), np.uint8), BOARD)
         assert seen == [(250, 333), (500, 666), (1000, 1333), (2000, 2666)]
-        assert 6000 * 8000 > finding._LARGEST >= 3000 * 4000
+        assert 6000 * 8000 > _LARGEST >= 3000 * 4000
 
     def test_a_pixel_of_a_reduced_copy_is_the_mean_of_those_it_covers(self):
         grey = np.random.default_rng(0).integers(0, 256, (6, 8), dtype=np.uint8)

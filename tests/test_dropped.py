@@ -4,13 +4,14 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
 from cvnotes.base import CvnotesError
 from cvnotes.commands.cli import main
-from cvnotes.commands.dropped import Dropped
-from cvnotes.photographs import calibrate_photographs
+from cvnotes.commands.dropped import Dropped, Unknown, sheet
+from cvnotes.photographs import calibrate_photographs, detect_photographs
 from cvnotes.photographs.driver import chessboard
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -32,8 +33,10 @@ def test_what_comes_out_is_what_the_command_writes(dropped, tmp_path, capsys):
     found = dropped.calibrate("k1 k2")
     options = ["--corners", "9x6", "--square", "25", "--lens", "k1 k2", "--out", str(tmp_path)]
     assert main(["calibrate", *map(str, VIEWS[:6]), *options]) == 0
-    assert found["report"] in capsys.readouterr().out
-    assert found["reliable"]
+    assert found["title"] in capsys.readouterr().out
+    assert found["words"] in (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert found["words"].startswith("<p>The photographs determine this camera.</p>")
+    assert found["rms"] == [f"{rms:.3f} px" for rms in dropped.found.calibration.view_rms]
     assert set(found["files"]) == {path.name for path in tmp_path.iterdir()}
     theirs, ours = (
         json.loads(text)
@@ -104,21 +107,91 @@ def test_each_photograph_that_cannot_be_used_says_why(dropped, tmp_path):
     answer = dropped.calibrate("k1")
     assert answer["used"] == [path.name for path in VIEWS[:4]]
     assert set(answer["unlike"]) == {"large.png"}
-    table = answer["table"]
-    assert "1280×960 pixels where most photographs have 640×480" in table
-    assert "foreign.jpg" in table
+    reasons = " ".join(answer["reasons"])
+    assert "large.png: 1280×960 pixels where most photographs have 640×480" in reasons
+    assert "foreign.jpg: not a picture" in reasons
 
 
 def test_a_photograph_that_is_left_out_is_forgotten(dropped):
     for path in VIEWS[:4]:
         dropped.look(str(path))
     dropped.forget(VIEWS[3].name)
-    assert VIEWS[3].name not in dropped.calibrate("k1")["table"]
+    assert dropped.calibrate("k1")["used"] == [path.name for path in VIEWS[:3]]
     assert dropped.look(str(VIEWS[3]))["used"]  # and may come again
 
 
 def test_without_a_photograph_there_is_no_camera_and_without_corners_no_board(dropped):
-    with pytest.raises(CvnotesError, match="0 usable photographs; a board of 9×6 inner corners"):
-        dropped.calibrate()
+    answer = dropped.calibrate()
+    assert "0 usable photographs; a board of 9×6 inner corners was found in none" in answer["error"]
+    assert (answer["instead"], answer["reasons"]) == (None, [])
+    with pytest.raises(CvnotesError, match="there is no camera yet"):
+        dropped.straighten(str(VIEWS[0]))
     with pytest.raises(CvnotesError):
         Dropped(9, 6, -1.0)
+
+
+def test_another_board_than_asked_for_is_named_once_for_all_and_offered(tmp_path):
+    page = Dropped(8, 5, 25.0)
+    for path in VIEWS[:6]:
+        shown = page.look(str(path))
+        assert shown["words"].endswith("640×480 pixels: 9×6 corners are there")
+    (tmp_path / "foreign.jpg").write_text("no picture")
+    page.look(str(tmp_path / "foreign.jpg"))
+    answer = page.calibrate()
+    assert answer["error"].endswith("but 6 photographs show one of 9×6")
+    assert answer["instead"] == (9, 6)
+    board, foreign = answer["reasons"]
+    assert board.startswith(
+        "view_00.png, view_01.png, view_02.png, view_03.png, view_04.png … (6 in"
+    )
+    assert board.endswith(
+        "a board of 9×6 inner corners is there: were all of its inner corners counted?"
+    )
+    assert foreign == "foreign.jpg: not a picture, or in a format that is not read"
+
+
+def test_corners_are_counted_as_the_library_counts_them(tmp_path):
+    unknown = Unknown()
+    (tmp_path / "foreign.jpg").write_text("no picture")
+    Image.new("L", (640, 480), 90).save(tmp_path / "grey.png")
+    for name, words in (("foreign.jpg", "not a picture"), ("grey.png", "no chessboard found")):
+        answer = unknown.count(str(tmp_path / name))
+        assert answer["corners"] is None
+        assert answer["words"].startswith(words)
+    with pytest.raises(CvnotesError, match="found in any"):
+        unknown.counting.most  # noqa: B018
+    told = [unknown.count(str(path))["corners"] for path in VIEWS[:3]]
+    assert told == [None, None, (9, 6)]
+    assert unknown.counting.most == detect_photographs(VIEWS[:3], 25.0).board.corners
+
+
+def test_the_machines_own_camera_counts_boards_that_it_sees_whole():
+    unknown = Unknown()
+    frame = np.asarray(Image.open(VIEWS[0]).convert("L"))
+    u, _ = np.reshape(Dropped(9, 6, 25.0).look(str(VIEWS[0]))["corners"], (-1, 2)).T * 640 / 480
+    cut_off = np.roll(frame, 645 - int(u.max()), axis=1)  # its last corners are in no picture
+    cut_off[:, : 645 - int(u.max())] = 90
+    for picture in (np.full_like(frame, 90), cut_off):
+        seen = unknown.see(picture.tobytes(), (640, 480))
+        assert (seen["words"], seen["counted"]) == ("the board is not seen whole", None)
+    answers = [unknown.see(frame.tobytes(), (640, 480)) for _ in range(3)]
+    assert [answer["counted"] for answer in answers] == [None, None, (9, 6)]
+    assert len(answers[0]["corners"]) == 108
+    assert not any(answer["take"] for answer in answers)
+
+
+def test_a_straightened_photograph_and_the_sheet_are_those_of_the_commands(dropped, tmp_path):
+    for path in VIEWS[:5]:
+        dropped.look(str(path))
+    (tmp_path / "calibration.json").write_bytes(
+        dropped.calibrate("k1 k2")["files"]["calibration.json"]
+    )
+    options = ["--camera", str(tmp_path / "calibration.json"), "--out", str(tmp_path)]
+    assert main(["undistort", str(VIEWS[7]), *options]) == 0
+    assert dropped.straighten(str(VIEWS[7]))["png"] == (tmp_path / VIEWS[7].name).read_bytes()
+    Image.new("L", (900, 700), 90).save(tmp_path / "large.png")
+    with pytest.raises(CvnotesError, match="the camera's pictures are 640 × 480"):
+        dropped.straighten(str(tmp_path / "large.png"))
+    board = tmp_path / "board.pdf"
+    main(["target", "--corners", "8x5", "--square", "30", "--paper", "A3", "--out", str(board)])
+    assert sheet(8, 5, 30.0, "A3") == board.read_bytes()

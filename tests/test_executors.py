@@ -140,7 +140,7 @@ def test_the_command_grades_on_a_scheduler(scheduler, tmp_path, capsys):
     notebook(tmp_path / "in" / "ada" / "01_a.ipynb", IMPORTS, *answered("lift", source_of("lift")))
     arguments = ["grade", str(tmp_path / "in"), "--out", str(tmp_path / "marks.csv")]
     assert main([*arguments, "--cluster", scheduler]) == 0
-    assert "ada/01_a.ipynb: 1 of 4" in capsys.readouterr().out
+    assert "ada/01_a.ipynb: 1 of 5" in capsys.readouterr().out
 
 
 def test_without_dask_one_sentence_says_what_is_missing(tmp_path, capsys, monkeypatch):

@@ -173,8 +173,9 @@ def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
         if report.passed:
             # how near an answer comes on noisy data differs from one noise to the next
             assert all(r.passed or "noise" in r.fails for r in again), code
-        # NaN has many causes, and so has an exception: what is said of them is said of them alone
-        if report.misconception is not None and _is_finite(report):
+        # NaN has many causes, and so has an exception: what is said of them is said of them alone;
+        # and how near an answer comes differs from one input to the next
+        if report.misconception not in (None, "nearly") and _is_finite(report):
             names = {r.misconception for r in again if not r.passed and _is_finite(r)}
             assert names <= {report.misconception}, (report.misconception, names, code)
 

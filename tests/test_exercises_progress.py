@@ -40,7 +40,7 @@ def test_the_next_kernel_knows_what_was_solved(file, monkeypatch):
     check("lift", LIFT)
     new_kernel(monkeypatch)
     assert progress().title == f"1 of {len(EXERCISES)} exercises solved"
-    assert check("drop", lambda x_h: x_h).progress == "Chapter 1: 1 of 4 solved; next: drop."
+    assert check("drop", lambda x_h: x_h).progress == "Chapter 1: 1 of 5 solved; next: drop."
     assert list(json.loads(file.read_text())["solved"]) == ["lift"]
 
 

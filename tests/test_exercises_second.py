@@ -56,6 +56,14 @@ def my_same_points(a, b):
     ]
 
 
+def my_measure_along(t, m, q):
+    # t = (a x + b) / (c x + 1) through the three points, x in pixels along the line
+    d = (m[1] - m[0]) / np.linalg.norm(m[1] - m[0])
+    x = np.array([np.dot(one - m[0], d) for one in m])
+    a, b, c = np.linalg.solve(np.column_stack([x, np.ones(3), -t * x]), t)
+    return [(a * np.dot(p - m[0], d) + b) / (c * np.dot(p - m[0], d) + 1) for p in q]
+
+
 # Chapter 2
 
 
@@ -75,6 +83,20 @@ def my_horizon(A, R, n):
 def my_focal_from_vanishing_points(v1, v2, centre):
     a, b = v1 - centre, v2 - centre
     return (-(a[0] * b[0] + a[1] * b[1])) ** 0.5
+
+
+def my_person_height(horizon, v, post, h, person):
+    b, t, f, p = (np.append(pixel, 1) for pixel in (*post, *person))
+    e = np.cross(np.cross(b, f), horizon)
+    q = np.cross(np.cross(e, t), np.cross(f, v))
+    # a place on the line through f, homogeneous: (f·x) w, so that v may be at infinity
+    d = (p - f)[:2]
+    x_q, x_p, x_v = ((d @ (x[:2] - x[2] * f[:2]), x[2]) for x in (q, p, v))
+
+    def between(x, y):
+        return x[0] * y[1] - y[0] * x[1]
+
+    return h * x_p[0] * between(x_v, x_q) / (x_q[0] * between(x_v, x_p))
 
 
 my_where_the_rails_meet = (430, 160)
@@ -178,6 +200,15 @@ def my_form_image(A, R, T, k, W):
 my_corner_shift = -22.4
 
 
+def my_inverse_radius(s, k):
+    # a table of r L(r), up to where it goes down for the first time
+    r = np.linspace(0, 4, 100_001)
+    seen = r + k[0] * r**3 + k[1] * r**5
+    down = np.flatnonzero(np.diff(seen) < 0)
+    n = down[0] + 1 if len(down) else len(r)
+    return np.interp(s, seen[:n], r[:n], right=np.nan)
+
+
 # Chapter 5
 
 
@@ -191,10 +222,19 @@ def my_harris_measure(Iu, Iv, k):
     return a * b - k * (a + b) ** 2
 
 
-def my_saddle_point(coefficients):
-    a, b, c, d, e, _ = coefficients
+def my_saddle_point(patch):
+    # counted from the middle, where the six terms are small; Cramer's rule
+    middle = (np.array(patch.shape) - 1) / 2
+    rows, grey = [], []
+    for i, j in np.ndindex(*patch.shape):
+        y, x = np.array([i, j]) - middle
+        rows.append([1, x, y, x * x, x * y, y * y])
+        grey.append(patch[i, j])
+    _, d, e, a, b, c = np.linalg.lstsq(np.array(rows), np.array(grey), rcond=None)[0]
     det = 4 * a * c - b * b
-    return np.array([b * e - 2 * c * d, b * d - 2 * a * e]) / det
+    if det >= 0:
+        return [np.nan, np.nan]
+    return [(b * e - 2 * c * d) / det + middle[1], (b * d - 2 * a * e) / det + middle[0]]
 
 
 def my_knows_its_origin(columns, rows):

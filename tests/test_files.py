@@ -39,8 +39,8 @@ from cvnotes.files import (
     lens_from_opencv,
     read_camera,
     read_camera_info,
+    ros_yaml,
     write_camera,
-    write_camera_info,
     write_whole,
 )
 from cvnotes.files.strict import read_text
@@ -501,7 +501,7 @@ def test_wide_lenses_come_back_bit_for_bit(tmp_path, lens, name):
 
 @pytest.mark.parametrize("lens", WIDE)
 def test_wide_lenses_have_ros_names(tmp_path, lens):
-    write_camera_info(CameraInfo(replace(CAMERA, lens=lens)), tmp_path / "camera.yaml")
+    (tmp_path / "camera.yaml").write_text(ros_yaml(CameraInfo(replace(CAMERA, lens=lens))))
     named = "equidistant" if isinstance(lens, FisheyeLens) else "rational_polynomial"
     assert f"distortion_model: {named}\n" in (tmp_path / "camera.yaml").read_text()
     assert read_camera_info(tmp_path / "camera.yaml").camera.lens == lens
@@ -524,7 +524,7 @@ def test_opencv_reads_a_rational_camera_and_sees_what_it_sees(tmp_path):
 def test_ros_camera_info_comes_back_bit_for_bit(tmp_path):
     R = rotation_from_vector([0.01, 0.02, -0.03])
     P = np.array([[800.0, 0, 320, -8e4], [0, 800, 240, 0], [0, 0, 1, 0]])
-    write_camera_info(CameraInfo(CAMERA, "narrow_stereo/left", R, P), tmp_path / "left.yaml")
+    (tmp_path / "left.yaml").write_text(ros_yaml(CameraInfo(CAMERA, "narrow_stereo/left", R, P)))
     info = read_camera_info(tmp_path / "left.yaml")
     assert same_camera(info.camera, CAMERA)
     assert info.name == "narrow_stereo/left"
@@ -535,7 +535,7 @@ def test_ros_camera_info_comes_back_bit_for_bit(tmp_path):
 
 def test_ros_tools_see_numbers_where_we_wrote_numbers(tmp_path):
     # They read with PyYAML, which takes 1e-05 for text.
-    write_camera_info(CameraInfo(CAMERA), tmp_path / "left.yaml")
+    (tmp_path / "left.yaml").write_text(ros_yaml(CameraInfo(CAMERA)))
     keys = yaml.safe_load((tmp_path / "left.yaml").read_text())
     assert keys["camera_matrix"] == {"rows": 3, "cols": 3, "data": CAMERA.A.ravel().tolist()}
     assert keys["distortion_coefficients"]["data"] == [-0.25, 1e-7, -1e-4, 2e-3, 0.03]
@@ -548,7 +548,7 @@ def test_ros_tools_see_numbers_where_we_wrote_numbers(tmp_path):
 
 def test_a_ros_name_cannot_carry_more_than_a_name(tmp_path):
     with pytest.raises(CvnotesError, match="plain text without quotes"):
-        write_camera_info(CameraInfo(CAMERA, 'x"\nevil: 1'), tmp_path / "left.yaml")
+        (tmp_path / "left.yaml").write_text(ros_yaml(CameraInfo(CAMERA, 'x"\nevil: 1')))
 
 
 ROS = """\

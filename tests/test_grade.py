@@ -461,10 +461,10 @@ def test_the_table_and_the_class_summary(tmp_path, capsys):
     ada, bob = csv.DictReader(out.read_text("utf-8-sig").splitlines())
     assert (ada["student"], ada["points"], ada["of"], ada["percent"]) == ("ada", "1", "5", "20")
     assert (ada["dlt"], bob["dlt"], bob["normaliser"]) == ("1", "0", "0")
-    assert bob["misconceptions"] == "dlt: src and dst exchanged"
+    assert bob["misconceptions"] == "dlt: sign of the last block"
     said = capsys.readouterr().out
     assert "2 notebooks, 1 of 10 points" in said
-    assert "1 × dlt: src and dst exchanged" in said
+    assert "1 × dlt: sign of the last block" in said
     assert "dlt                           1 of 2" in said
 
 

@@ -352,7 +352,7 @@ def test_the_librarys_own_function_is_seen_by_whatever_road_it_came():
     exec(BORROWED, names)
     for road in ("alias", "wrapped", "got", "looped", "sourced"):
         assert (road, borrowed(names[road], EXERCISES["dlt"])) == (road, "dlt")
-    assert borrowed(names["steps"], EXERCISES["lift"]) == "steps"
+    assert borrowed(names["steps"], EXERCISES["lift"]) == "lift"
     assert borrowed({"radial_fit": EXERCISES["radial_fit"].reference}, EXERCISES["pipeline"])
 
 

@@ -38,8 +38,9 @@ ONLY_IN = {
         "files.decoding",
         "files.video",
         "pictures.exposure",
-        "targets.grey",
+        "targets.harris_corners",
         "targets.markers",
+        "targets.saddle_points",
         "warping",
     },
     "matplotlib": {"show"},
@@ -272,7 +273,7 @@ def test_to_read_calibrate_down_to_numpy_one_opens_thirteen_files_and_one_in_res
     ]
     came_by |= _came_by(BOARD.points, _corners(camera, far, rng))
     functions = {name for _, name in came_by}
-    assert {"Start._homography", "resumed", "turned_over", "autocorrelation"} <= functions
+    assert {"Start._homography", "resumed", "flipped_pose", "autocorrelation"} <= functions
     files = {file for file, _ in came_by}
     page = (PACKAGE.parent / "docs/house.md").read_text().split("How to read")[1].split("## ")[0]
     assert files == set(re.findall(r"`((?!tests/)[a-z]+/[a-z_]+\.py)`", page))

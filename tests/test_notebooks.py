@@ -25,8 +25,8 @@ each_chapter = pytest.mark.parametrize("path", CHAPTERS, ids=lambda p: p.stem)
 MAX_LINES, MAX_FOLDED, MEDIAN_LINES, IMPORT_LINES, MAX_BYTES = 12, 16, 5, 8, 1_500_000
 KEY = ROOT / "docs/teacher/answers"  # the lecturer's answers to the questions in the prose
 ANSWER = re.compile(r"^ *<details><summary>Answer</summary>\n\n.+?\n\n *</details>$", re.M | re.S)
-# Names of the library: asked of a student; in an open cell with a figure.
-MAX_NAMES, MAX_IN_A_FIGURE = 25, 5
+# Names of the library that open cells ask for: in all, of a chapter's student, for one figure.
+MAX_IN_ALL, MAX_NAMES, MAX_IN_A_FIGURE = 120, 25, 4
 WINGS = {"cvnotes", *(f"cvnotes.{file.parent.name}" for file in ROOT.glob("cvnotes/*/__init__.py"))}
 # Sections of a chapter that tell rather than show.
 TELLING = (
@@ -104,21 +104,31 @@ def test_what_only_draws_is_folded_and_says_what_it_draws(path):
             assert not re.search(r"^show\(", cell.source, re.M), f"{cell.id} is plumbing, and open"
 
 
-@each_notebook
-def test_few_names_of_the_library_are_asked_of_a_student(path):
-    """What is called where the code is open; a figure there is made of few of them."""
-    ours, asked = set(), set()
+def _asked(path):
+    """Give each open cell with the names of the library that are used in it."""
+    ours = set()
     for cell in _code(_read(path)):
         tree = ast.parse(cell.source)
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module.startswith("cvnotes"):
                 ours |= {alias.asname or alias.name for alias in node.names}
-        used = ours & {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
         if not _folded(cell):
-            asked |= used
-        if "show" in used and not _folded(cell):
-            assert len(used) <= MAX_IN_A_FIGURE, f"{cell.id} calls {sorted(used)}"
+            yield cell, ours & {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+
+
+@each_notebook
+def test_few_names_of_the_library_are_asked_of_a_student(path):
+    asked = set()
+    for cell, used in _asked(path):
+        asked |= used
+        few = "show" not in used or len(used) <= MAX_IN_A_FIGURE
+        assert few, f"for its figure {cell.id} calls {sorted(used)}"
     assert len(asked) <= MAX_NAMES, sorted(asked)
+
+
+def test_few_names_of_the_library_are_asked_in_the_whole_course():
+    asked = set().union(*(used for path in NOTEBOOKS for _, used in _asked(path)))
+    assert 50 < len(asked) <= MAX_IN_ALL, sorted(asked)
 
 
 def _reading(notebook):
@@ -136,6 +146,16 @@ def test_the_time_that_is_claimed_is_that_of_its_parts(path):
     if claimed := re.search(r"\*\*Time\*\* reading(?: and running)? (\d+) min", prose):
         needed = _reading(_read(path))
         assert abs(int(claimed[1]) - needed) <= 0.1 * needed, f"{needed:.0f} minutes are needed"
+
+
+def test_the_hours_of_the_first_page_are_those_of_the_chapters():
+    rows = re.findall(r"\((\d\d_\w+\.ipynb)\)\|[^|]*\|(\d)([¼½¾]?)\|", _prose(_read(NOTEBOOKS[0])))
+    assert [name for name, *_ in rows] == [path.name for path in CHAPTERS]
+    for (_, whole, part), path in zip(rows, CHAPTERS, strict=True):
+        (line,) = re.findall(r"\*\*Time\*\*.*", _prose(_read(path)))
+        minutes = sum(map(int, re.findall(r"(\d+) min", line)))
+        hours = int(whole) + (" ¼½¾".index(part) / 4 if part else 0)
+        assert abs(hours - minutes / 60) <= 1 / 8, f"{path.name}: {minutes} minutes"
 
 
 @each_notebook

@@ -100,8 +100,7 @@ def test_the_origin_stays_on_the_same_corner_of_the_board(photographed):
             assert image[tuple(outside[::-1])] < image[tuple(beside[::-1])] - 50
 
 
-def test_the_command_finds_the_published_camera(tmp_path, monkeypatch):
-    monkeypatch.setattr("cvnotes.commands.pictures.pictures", lambda *_: {})
+def test_the_command_finds_the_published_camera(tmp_path):
     photos = sorted(PHOTOGRAPHS.glob("left*.jpg"))
     options = ["--corners", "9x6", "--square", "30", "--out", str(tmp_path)]
     options += ["--board-shape", "flat"]  # as for whoever published it
@@ -166,3 +165,13 @@ def test_the_one_steep_photograph_of_a_set_is_honest():
     assert len(found.photographs.used) == 13
     assert found.reliable
     assert abs(found.camera.A[0, 2] - 308.5) < 5
+
+
+@pytest.mark.parametrize("which", [(2, 3, 5, 8, 11, 13, 14, 15), (4, 5, 6, 8, 11, 14, 18)], ids=str)
+def test_another_kind_of_lens_is_not_hidden_by_the_board(which):
+    """A flat board spoke for k1 k2, 0.34 px from photographs left out; or for a lens that folds."""
+    folder = PHOTOGRAPHS.parent / "depth"
+    photos = [folder / f"left{i}.png" for i in which]
+    found = calibrate_photographs(photos, chessboard((9, 6), 25.0))
+    assert (found.calibration.choice.lens, found.calibration.choice.board) == ("fisheye", "free")
+    assert found.camera.is_invertible

@@ -12,9 +12,9 @@ from cvnotes.camera import Camera, Lens, intrinsics, look_at, pose, rotation_fro
 from cvnotes.pictures import clutter, course, desk, render, render_scene
 from cvnotes.targets import Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.grey import largest_around, smoothed
+from cvnotes.targets.harris_corners import largest_around
 from cvnotes.targets.markers import has_opencv
-from cvnotes.targets.saddle_points import lattices, saddle_points
+from cvnotes.targets.saddle_points import lattices, saddle_points, smoothed
 
 ROOT = Path(__file__).resolve().parents[1]
 VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))

@@ -5,7 +5,6 @@ from cvnotes.base import CvnotesError, DegenerateError, ShapeError
 from cvnotes.show import (
     ESTIMATED,
     LENS,
-    draw_singular_values,
     draw_stretched_circle,
     draw_two_errors,
     draw_valley,
@@ -62,12 +61,3 @@ def test_ways_are_drawn_where_they_went_and_the_map_in_logarithms():
 def test_what_is_no_map_is_refused(cost, paths, words):
     with pytest.raises(CvnotesError, match=words):
         draw_valley([0, 1], [0, 1], cost, paths)
-
-
-def test_singular_values_that_are_rounding_have_another_colour():
-    ax = draw_singular_values([5.0, 1.0, 1e-12])
-    colours = [bar.get_facecolor() for bar in ax.patches]
-    assert colours[0] == colours[1] != colours[2]
-    assert [bar.get_height() for bar in ax.patches] == pytest.approx([5, 1, 1e-12])
-    with pytest.raises(CvnotesError, match="singular values"):
-        draw_singular_values([1.0, -1.0])

@@ -4,8 +4,15 @@ Pages on which Python is awake are checked where they are: with exercises answer
 test_site_live.py, with photographs dropped in test_site_offline.py.
 """
 
+import io
+import re
+
+import numpy as np
 import pytest
 from accessible import violations
+from PIL import Image
+
+from cvnotes.targets import Chessboard, find_corners
 
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
@@ -39,7 +46,7 @@ def test_a_checker_of_wcag_has_nothing_to_say(page, live_site, name):
     assert violations(page) == []
 
 
-@pytest.mark.parametrize("name", ["notebooks/06_homography_dlt", "your_camera"])
+@pytest.mark.parametrize("name", ["notebooks/06_homography_dlt", "your_camera", "board_on_screen"])
 def test_nor_has_it_on_a_telephone(page, live_site, name):
     page.set_viewport_size({"width": 400, "height": 900})
     page.goto(f"{live_site}/{name}.html")
@@ -79,7 +86,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
 
 def test_photographs_are_chosen_with_the_keyboard_alone(page, live_site):
     page.goto(f"{live_site}/your_camera.html")
-    page.locator("#camera-page [name=lens]").focus()
+    page.locator("#camera-page [name=paper]").focus()
     page.keyboard.press("Tab")
     focused = page.evaluate(FOCUSED)
     assert (focused["kind"], focused["name"]) == ("file", "Choose photographs")
@@ -90,12 +97,42 @@ def test_photographs_are_chosen_with_the_keyboard_alone(page, live_site):
     assert chooser.value.is_multiple()
 
 
+def test_a_board_on_the_screen_is_as_large_as_is_said_by_the_keyboard_alone(page, live_site):
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.goto(f"{live_site}/board_on_screen.html")
+    page.locator("#card-size").focus()
+    for _ in range(30):
+        page.keyboard.press("ArrowRight")
+    card = page.locator(".card").bounding_box()
+    assert card["width"] / card["height"] == pytest.approx(85.60 / 53.98, abs=0.01)
+    for key in ("Tab", "Tab", "Enter"):
+        page.keyboard.press(key)
+    words = page.locator("#screen-page dialog span")
+    words.filter(has_text="mm").wait_for()
+    page.wait_for_timeout(300)  # the full screen has another size
+    mm = re.fullmatch(r"9×6 inner corners, squares of (.+) mm", words.inner_text())[1]
+    seen = np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("L"))
+    m = find_corners(seen, Chessboard((9, 6), 1.0)).reshape(6, 9, 2)
+    side = np.median(np.diff(m[..., 0], axis=1))
+    assert float(mm) == pytest.approx(side * 85.60 / card["width"], abs=0.01)
+    assert np.abs(np.diff(m[..., 0], axis=1) - side).max() < 0.1
+    assert np.abs(np.diff(m[..., 1], axis=0) - side).max() < 0.1
+    white = np.array([m.min((0, 1)) - 1.4 * side, m.max((0, 1)) + 1.4 * side])
+    assert ((white > 0) & (white < seen.shape[::-1])).all()
+    assert violations(page) == []
+    page.keyboard.press("Escape")
+    page.wait_for_selector("#screen-page dialog", state="hidden")
+    assert page.evaluate("document.activeElement.className") == "show"
+    link = page.locator("#screen-page .said a").get_attribute("href")
+    assert link == f"your_camera.html?corners=9x6&square={mm}"
+
+
 @pytest.mark.parametrize("width", [1280, 390])
 def test_the_first_page_shows_its_sentence_its_ways_in_and_a_grip_at_once(page, live_site, width):
     page.set_viewport_size({"width": width, "height": 800})
     page.goto(f"{live_site}/index.html")
     page.wait_for_selector(".explore-grip")
-    for shown in (".front-sentence", ".front-buttons a >> nth=2", ".explore-grip >> nth=3"):
+    for shown in (".front-sentence", ".front-buttons a >> nth=2", ".explore-grip"):
         box = page.locator(shown).bounding_box()
         assert 0 < box["y"] < box["y"] + box["height"] < 800, shown
         assert 0 <= box["x"] < box["x"] + box["width"] <= width, shown

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from conftest import IMPATIENT
+from conftest import IMPATIENT, text_of
 from firefox import PROGRAM, Firefox
 from webkit import DRIVER, SCREEN, WebKit
 
@@ -53,6 +53,15 @@ WRITE = """(name, text) => {
 }"""
 REPORT = """name => document.querySelector(`#answer-${name}`).closest('.exercise')
     .querySelector('.exercise-report').textContent"""
+# How wide the board on the screen, its squares and the card are, and what is said of them.
+BOARD = """() => {
+    const shown = [...document.querySelectorAll('#screen-page dialog svg')].filter(
+        (svg) => svg.style.display === 'block');
+    const {width, height} = shown[0].getBoundingClientRect();
+    const card = document.querySelector('#screen-page .card').style.width;
+    const words = document.querySelector('#screen-page dialog span').textContent;
+    return [shown.length, width, height, parseFloat(card), words];
+}"""
 # Files that were chosen in an input of our own, dropped as if by a hand.
 DROP = """() => {
     const carried = new DataTransfer();
@@ -156,7 +165,7 @@ def test_an_exercise_is_right_wrong_by_a_known_mistake_and_endless(page):
     page.run("() => { window.setTimeout = window.patiently; }")
     assert "normaliser: ✓ right." in checked("normaliser", RIGHT)
     assert "dlt: ✓ right." in checked("dlt", DLT)
-    assert "Did you exchange src and dst?" in checked("four_points", EXCHANGED)
+    assert "Your answer is the inverse of the right one." in checked("four_points", EXCHANGED)
 
 
 def test_dropped_photographs_give_the_camera_of_the_desktop(
@@ -171,17 +180,23 @@ def test_dropped_photographs_give_the_camera_of_the_desktop(
     said = "() => document.querySelector('#camera-page .said').textContent"
     page.wait(f"() => /^The camera is known|No camera|found in none/.test(({said})())", seconds=240)
     assert page.run(said) == "The camera is known from 12 of 13 photographs."
-    assert "not a picture" in page.run(
-        "() => document.querySelector('.shots li.refused').textContent"
-    )
-    report = page.run("() => document.querySelector('.result pre').textContent")
-    assert report.split() == camera_of_the_views["report"].split()
+    assert "not a picture" in page.run("() => document.querySelector('.reasons').textContent")
+    words = page.run("() => document.querySelector('.words').textContent")
+    assert words == text_of(camera_of_the_views["words"])
     found = page.run(
         "() => fetch(document.querySelector('.files a[download=\"calibration.json\"]').href)"
         ".then(answer => answer.json())"
     )
     expected = json.loads(camera_of_the_views["files"]["calibration.json"])
     assert found["rms"] == pytest.approx(expected["rms"], rel=1e-6)
+
+
+def test_a_board_on_the_screen_has_squares_of_whole_pixels_as_large_as_is_said(page, live_site):
+    page.open(f"{live_site}/board_on_screen.html")
+    page.run("() => document.querySelector('#screen-page .show').click()")
+    shown, width, height, card, words = page.run(BOARD)
+    assert (shown, width % 10, width / 10) == (1, 0, height / 7)
+    assert words == f"9×6 inner corners, squares of {width / 10 * 85.60 / card:.2f} mm"
 
 
 def test_a_chapter_runs_in_jupyterlite(page, live_site):

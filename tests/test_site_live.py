@@ -433,7 +433,7 @@ def test_exercises_answer_right_wrong_and_endless_and_can_be_handed_in(exercises
     assert re.search(r"Chapter 6: 2 of \d+ solved", said)
     wrong = checked(page, "four_points", ANSWERS["four_points"])
     assert "four_points: ✗ not yet right." in wrong
-    assert "Did you exchange src and dst?" in wrong
+    assert "Your answer is the inverse of the right one." in wrong
     assert re.search(r"yours +wanted", wrong)
     box = page.locator(".exercise", has=page.locator("#answer-four_points"))
     box.get_by_role("button", name="Hint").click()

@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.convergence import two_poses
 from cvnotes.calibration import calibrate, pose_from_view
-from cvnotes.calibration.reserve import turned_over
+from cvnotes.calibration.reserve import flipped_pose
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.targets import Chessboard
 
@@ -20,14 +20,14 @@ PLACES = [(-190, -130, 1060), (-140, -60, 930), (-140, 0, 1200), (-40, -120, 109
 
 def test_the_other_pose_shows_a_distant_board_alike():
     R, T = rotation_from_vector([0.5, 0.3, 0.1]), np.array([100.0, -50.0, 1e7])
-    other = turned_over(R, T)
+    other = flipped_pose(R, T)
     assert np.allclose(other @ other.T, np.eye(3))
     assert np.linalg.det(other) > 0
     camera = Camera(intrinsics(1e8, 1e8, 320, 240))
     shown = [camera.moved(pose(r, T)).project(BOARD.points) for r in (R, other)]
     assert np.abs(shown[0] - shown[1]).max() < 0.1 < np.ptp(shown[0])
     assert np.abs(other - R).max() > 0.5
-    assert np.allclose(turned_over(other, T), R)
+    assert np.allclose(flipped_pose(other, T), R)
 
 
 def test_four_boards_with_one_in_the_wrong_pose():

@@ -283,11 +283,13 @@ def said_of(exercise, function):
         ("A_from_b", ("what is not there", "0"), None),
         ("distort", ("k[1] * r2**2", "k[1] * r2**3"), "power in the radial factor L"),
         ("error_bars", ("r @ r / (n - p)", "r @ r / n"), "left out in σ², the variance of the"),
-        ("project", ("M @ A.T", "M @ A"), "transposition in the homogeneous pixels"),
+        ("extrinsics", ("U @ Vt", "U @ Vt.T"), "transposition in the nearest rotation"),
         ("new_intrinsics", ("s * (c + 0.5) - 0.5", "s * c + 0.5 - 0.5"), "brackets in the princ"),
         ("geometric_error", ("axis=1", "axis=0"), "axis in what is returned"),
         ("undistortion_map", ("(u - A[0, 2])", "(v - A[0, 2])"), "name in the ideal x"),
         ("residuals", ("k[1] * r2**2", "k[1] * r2"), "left out in the radial factor L"),
+        ("residuals", ("m - seen", "seen"), "stopped in the predicted pixels"),
+        ("saddle_point", ("np.linalg.solve(M, -g)", "g"), "stopped in the derivatives at (0, 0)"),
     ],
 )
 def test_a_slip_is_named_by_its_place(name, change, called):
@@ -298,6 +300,24 @@ def test_a_slip_is_named_by_its_place(name, change, called):
     report = said_of(bare(name), edited(EXERCISES[name].steps, *change))
     assert report.misconception.startswith(called), report.misconception
     assert report.exact
+
+
+def test_a_slip_is_named_though_noise_was_not_cured_either():
+    steps = EXERCISES["extrinsics"].steps
+    not_cured = ("R = U @ Vt", "R = np.column_stack([r1, r2, r3])")
+    report = said_of(bare("extrinsics"), edited(steps, "(r1, r2)", "(r2, r1)", *not_cured))
+    assert report.misconception == "order in r3"
+
+
+@pytest.mark.parametrize(("name", "n", "what"), [
+    ("dlt", 4, "the first 4 of src and dst"), ("radial_fit", 2, "the first 2 of xy and xy_lens"),
+    ("camera_covariance", 1, "the first one of Jc and Jp"),
+])  # fmt: skip
+def test_whoever_used_the_first_rows_only_is_told(name, n, what):
+    right = EXERCISES[name].reference
+    report = said_of(bare(name), lambda *args: right(*(x[:n] for x in args)))
+    assert report.misconception == f"only {what}"
+    assert f"used only {what}" in report.message
 
 
 @each_with_steps
@@ -333,7 +353,8 @@ DISTURBED = {
 # What may be said of numbers that differ in their digits.
 TRUE = {"nearly", "few decimals", "rounded", "decimals cut off", "a few numbers", "one column",
         "each row up to a factor", "each column up to a factor", "up to a factor", "a factor",
-        "a number for NaN", "infinity too often", "signs of some numbers", None}  # fmt: skip
+        "a number for NaN", "infinity too often", "signs of some numbers", "neither True nor False",
+        None}  # fmt: skip
 
 
 @pytest.mark.parametrize("exercise", FUNCTIONS, ids=lambda e: e.name)

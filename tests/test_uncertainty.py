@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cvnotes.base import DegenerateError
 from cvnotes.calibration import calibrate, prediction_std
 from cvnotes.camera import Lens
 from cvnotes.pictures import course
@@ -44,3 +45,26 @@ def test_coefficients_of_a_quotient_that_compensate_each_other_are_said_to():
     assert "k1, k2" in quotient.notes_on_deviations[0]
     assert "depend on each other so strongly" in quotient.notes_on_deviations[0]
     assert plain.tied == ()
+
+
+@pytest.mark.slow
+def test_what_a_turn_of_the_camera_absorbs_can_be_left_out(repeated):
+    rays, corners = CAMERA.ray(PLACES), EXACT.reshape(-1, 2)
+    true = CAMERA.ray(corners)
+    true = true / np.linalg.norm(true, axis=-1, keepdims=True)
+    seen = []
+    for found in repeated:  # the rotation that takes the true rays to those of this camera
+        own = found.camera.ray(corners)
+        U, _, Vt = np.linalg.svd(true.T @ (own / np.linalg.norm(own, axis=-1, keepdims=True)))
+        turn = U @ np.diag([1, 1, np.linalg.det(U @ Vt)]) @ Vt
+        seen.append(found.camera.project(rays @ turn))
+    scatter = np.sqrt(np.var(seen, axis=0, ddof=1).sum(-1))
+    promised = [prediction_std(found, PLACES, turning=True) for found in repeated]
+    np.testing.assert_allclose(np.mean(promised, axis=0), scatter, rtol=0.25)
+    assert (scatter[1:3] < 0.5 * prediction_std(repeated[0], PLACES)[1:3]).any()
+
+
+def test_a_turn_takes_nothing_where_corners_are_not_known(repeated):
+    unseen = replace(repeated[0], _data=None)
+    with pytest.raises(DegenerateError, match="has no corners"):
+        prediction_std(unseen, PLACES, turning=True)

@@ -86,7 +86,7 @@ def test_the_real_bent_board_is_suspected_from_the_scatter_between_pictures():
     with warnings.catch_warnings(action="ignore"):
         found = calibrate(real.board.points, real.left, real.size, lens="k1 k2 p1 p2")
     assert [words for good, words in verdict(found).lines if not good][-1].startswith(
-        "error bars from the scatter between pictures are 2."
+        "the scatter between pictures is 2."
     )
 
 

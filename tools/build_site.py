@@ -30,6 +30,10 @@ from front_page import front_page, put_pictures
 from lectures import numbered
 from site_figures import put_into_files
 
+from cvnotes.targets import Chessboard
+from cvnotes.targets.page import Page
+from cvnotes.targets.sheet import dark_fields
+
 ROOT = Path(__file__).resolve().parents[1]
 # Whatever the README leads to, at the place where it stands in the repository.
 PAGES = (
@@ -45,6 +49,8 @@ FIGURES = "docs/figures"
 # Of MathJax, whose many bundles contain one another: the one in use, what it loads when a formula
 # asks for it, and what its menu loads for those who listen to formulas.
 MATHJAX = ("tex-chtml.js", "input", "output", "a11y", "sre")
+# Inner corners of the boards for a screen: for one of 4:3, a long one, and a small one.
+SHOWN = ((9, 6), (11, 6), (7, 4))
 # The reference: the wings, in the order of the chapters, and of a wing what stands in a module of
 # its own and yet is worth a page. What is not here serves those that are.
 REFERENCE = {
@@ -95,6 +101,18 @@ def toctree(caption: str, pages: list[str]) -> str:
     return "\n".join(lines)
 
 
+def with_boards(text: str) -> str:
+    """Put boards into a page, for screens that lie or stand: a unit of the drawings is a square."""
+    drawn = []
+    for corners in SHOWN:
+        for each in (corners, corners[::-1]):
+            board = Chessboard(each, 1.0)
+            title = "A board of {} by {} inner corners".format(*each)
+            width, height = board.squares
+            drawn.append(Page(title, (width, height), (dark_fields(board, 0, 0),)).svg())
+    return text.replace("{boards}", "".join(drawn))
+
+
 def collect(source: Path, live: bool, lite: bool) -> None:
     """Put the pages together in a folder, with those that need Python if it is there."""
     for path in sorted(path for pattern in PAGES for path in ROOT.glob(pattern)):
@@ -115,7 +133,8 @@ def collect(source: Path, live: bool, lite: bool) -> None:
     if live:
         pages = sorted((ROOT / "docs" / "live").glob("*.md"))
         for path in pages:
-            shutil.copy(path, source / path.name)
+            text = with_boards(path.read_text(encoding="utf-8"))
+            (source / path.name).write_text(text, encoding="utf-8")
         contents += toctree("In this browser", [path.stem for path in pages])
     contents += toctree("To look things up", [*docs, "data/README"])
     (source / "reference").mkdir()

@@ -9,23 +9,22 @@ import io
 import json
 import re
 from html import escape
-from itertools import pairwise
 from pathlib import Path
 
 import nbformat
 import numpy as np
 from PIL import Image
-from site_figures import FOLDER, places_to_cut
+from site_figures import FOLDER, panels_of
 
 from cvnotes.learn import check
 from cvnotes.show import explore
-from cvnotes.show.explore.page import told
+from cvnotes.show.explore.page import page_data
 from cvnotes.show.explore.paper import Paper
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "docs" / "templates" / "front.md"
 PICTURE = ROOT / "docs" / "figures" / "front.png"
-EXPLORED = "homography"
+EXPLORED = "finding"
 CARD = (480, 320)  # px: twice what is shown
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
 _IMAGE = re.compile(r'src="data:image/(?:png|jpeg);base64,([^"]+)"')
@@ -47,7 +46,7 @@ def front_page(live: bool, lite: bool) -> str:
         "SENTENCE": sentence(readme),
         "BUTTONS": buttons(live, lite),
         "EXPLORATION": exploration(live),
-        "INVITATION": "Pull a corner." if live else "A picture, and what one matrix makes of it.",
+        "INVITATION": "Pull the cross up the curve." if live else "How a camera is found.",
         "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
         "WRONG": WRONG,
         "REPLY": escape(check("camera_centre", camera_centre).message),
@@ -74,7 +73,7 @@ def buttons(live: bool, lite: bool) -> str:
     )
     own = "your_camera.html" if live else "notebooks/09_your_own_camera.html"
     ways = (
-        (f"{start}.html", "Read", "chapter 0, ten minutes"),
+        (f"{start}.html", "Read", "chapter 0, half an hour"),
         (run, "Run", "here, nothing installed" if lite else "on your machine"),
         (own, "Your own camera", "photographs in, camera out"),
     )
@@ -86,7 +85,7 @@ def buttons(live: bool, lite: bool) -> str:
 def exploration(live: bool) -> str:
     """Write the exploration as it is before Python comes: a picture for each width, and data."""
     model = explore.model(EXPLORED)
-    wide = json.loads(told(model, None, None, {}))
+    wide = json.loads(page_data(model, None, None, {}))
     data = model.drawn_on(Paper(1, narrow=True), model.values()).as_data()
     narrow = {"size": data["size"], "grips": data["grips"]}
     width, height = data["size"]
@@ -123,15 +122,18 @@ def put_pictures(made: Path) -> None:
 
 
 def richest(path: Path) -> Image.Image:
-    """Return the panel of a notebook's figures that has most colours and least paper."""
+    """Return the panel that has most colours and least paper, of the cell with the tag `card`.
+
+    Where no cell has it, of all figures of the notebook.
+    """
     best, wealth = Image.new("RGB", CARD, "white"), 0.0
-    for cell in nbformat.read(path, as_version=4).cells:
+    cells = nbformat.read(path, as_version=4).cells
+    for cell in [each for each in cells if "card" in each.metadata.get("tags", [])] or cells:
         for output in cell.get("outputs", []):
             for found in _IMAGE.finditer(output.get("data", {}).get("text/html", "")):
                 figure = Image.open(io.BytesIO(base64.b64decode(found[1]))).convert("RGB")
-                cuts = [0, *places_to_cut(np.asarray(figure)), figure.width]
-                for left, right in pairwise(cuts):
-                    panel = figure.crop((left, 0, right, figure.height))
+                for left, top, width, height in panels_of(np.asarray(figure)):
+                    panel = figure.crop((left, top, left + width, top + height))
                     if 0.9 < panel.width / panel.height < 1.8 and (own := _wealth(panel)) > wealth:
                         best, wealth = panel, own
     return fitted(best)

@@ -1,13 +1,14 @@
 """The figures of the site's pages as files: a page is read at once, and a figure when it is seen.
 
-A wide figure of two or three panels gets marks where it may be cut, `data-cuts`; `site.js` puts its
-panels one below the other where the page is narrow.
+A wide figure of two or three panels, or of two rows of them, gets their rectangles, `data-panels`;
+`site.js` puts them one below the other where the page is narrow.
 """
 
 import base64
 import hashlib
 import io
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -40,8 +41,9 @@ def _fetched(found: re.Match[str], folder: Path) -> str:
     (folder / name).write_bytes(content)
     with Image.open(io.BytesIO(content)) as image:
         width, height = image.size
-        cuts = places_to_cut(np.asarray(image.convert("RGB")))
-    marks = f'data-cuts="{" ".join(map(str, cuts))}" ' if cuts else ""
+        panels = panels_of(np.asarray(image.convert("RGB")))
+    words = ";".join(" ".join(map(str, panel)) for panel in panels)
+    marks = f'data-panels="{words}" ' if len(panels) > 1 else ""
     tall = round(int(found[2]) * height / width)
     return (
         f'{found[1]}height: auto; {found[3]}height="{tall}" loading="lazy" {marks}'
@@ -49,34 +51,50 @@ def _fetched(found: re.Match[str], folder: Path) -> str:
     )
 
 
-def places_to_cut(picture: npt.NDArray[np.uint8]) -> list[int]:
-    """Return the columns of a picture (height, width, 3) in which its panels meet.
+def panels_of(picture: npt.NDArray[np.uint8]) -> list[tuple[int, int, int, int]]:
+    """Return the panels of a picture (height, width, 3): left, top, width and height of each.
 
     Examples
     --------
     >>> picture = np.full((100, 300, 3), 255, np.uint8)
     >>> picture[20:80, 10:130] = picture[20:80, 160:290] = 0
-    >>> places_to_cut(picture)
-    [145]
+    >>> panels_of(picture)
+    [(0, 0, 145, 100), (145, 0, 155, 100)]
+    >>> picture[5:12, 20:80] = picture[5:12, 180:220] = 0  # titles, which stay with their panels
+    >>> [panel[:2] for panel in panels_of(np.vstack([picture, picture]))]
+    [(0, 0), (145, 0), (0, 92), (145, 92)]
     """
     height, width = picture.shape[:2]
     if width < _WIDE * height:
-        return []
+        row = _above_titles(np.asarray((picture >= _INK).all(axis=(1, 2))))
+        if row is None or min(width / row, width / (height - row)) < _WIDE:
+            return [(0, 0, width, height)]
+        upper, lower = panels_of(picture[:row]), panels_of(picture[row:])
+        if 1 in (len(upper), len(lower)):
+            return [(0, 0, width, height)]
+        return upper + [(left, row + top, wide, high) for left, top, wide, high in lower]
     empty = np.asarray((picture >= _INK).all(axis=(0, 2)))
-    if width > _THREE * height:
-        thirds = [_gap(empty, 0.25, 0.42), _gap(empty, 0.58, 0.75)]
-        if None not in thirds:
-            return [cut for cut in thirds if cut is not None]
-    middle = _gap(empty, 0.33, 0.67)
-    return [] if middle is None else [middle]
+    cuts = [_gap(empty, 0.25, 0.42), _gap(empty, 0.58, 0.75)] if width > _THREE * height else [None]
+    if None in cuts:
+        cuts = [_gap(empty, 0.33, 0.67)]
+    edges = [0, *(cut for cut in cuts if cut is not None), width]
+    return [(a, 0, b - a, height) for a, b in pairwise(edges) if not empty[a:b].all()]
+
+
+def _runs(empty: npt.NDArray[np.bool_], begin: float, end: float) -> list[list[int]]:
+    """Return where the runs of empty columns, or rows, of a part begin and end."""
+    first, last = round(begin * len(empty)), round(end * len(empty))
+    edges = np.flatnonzero(np.diff(np.r_[0, empty[first:last], 0]))
+    return (first + edges.reshape(-1, 2)).tolist()
 
 
 def _gap(empty: npt.NDArray[np.bool_], begin: float, end: float) -> int | None:
     """Return the middle of the widest run of empty columns in a part; None if narrow."""
-    first, last = round(begin * len(empty)), round(end * len(empty))
-    edges = np.flatnonzero(np.diff(np.r_[0, empty[first:last], 0]))
-    runs = edges.reshape(-1, 2)
-    if not len(runs):
-        return None
-    start, stop = max(runs.tolist(), key=lambda run: run[1] - run[0])
-    return first + round((start + stop) / 2) if stop - start >= _GAP else None
+    start, stop = max(_runs(empty, begin, end), key=lambda run: run[1] - run[0], default=(0, 0))
+    return round((start + stop) / 2) if stop - start >= _GAP else None
+
+
+def _above_titles(empty: npt.NDArray[np.bool_]) -> int | None:
+    """Return the row above the titles of the lower panels, which stand before the last gap."""
+    gaps = [run for run in _runs(empty, 0.33, 0.67) if run[1] - run[0] >= _GAP / 2]
+    return round(sum(gaps[-2]) / 2) if len(gaps) > 1 else None

@@ -12,7 +12,6 @@ from cvnotes.base.errors import (
 )
 from cvnotes.base.guarded import Matrix, Points, guarded
 from cvnotes.base.guards import (
-    LARGEST,
     LARGEST_ENTRY,
     MOST,
     MOST_BLUR,
@@ -58,7 +57,6 @@ __all__ = [
     "FileError",
     "InputTypeError",
     "ShapeError",
-    "LARGEST",
     "LARGEST_ENTRY",
     "MOST",
     "MOST_BLUR",

@@ -6,6 +6,7 @@ view can tell is where the board's frame stands and how large the board is; so a
 differ from the board that was given in ways that neither move it, nor turn it, nor scale it.
 """
 
+import itertools
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -100,7 +101,7 @@ def deformations(kind: str, W: Array) -> Array:
     >>> deformations("bent", W).shape, deformations("free", W).shape
     ((6, 9, 3), (20, 9, 3))
     """
-    bends = _bends(W)
+    bends = np.concatenate(_bends(W))
     if kind == "bent":
         return bends
     e = np.eye(3)
@@ -110,11 +111,13 @@ def deformations(kind: str, W: Array) -> Array:
     return np.concatenate([bends, Q[:, len(known) :].T.reshape(-1, *W.shape)])
 
 
-def _bends(W: Array) -> Array:
-    """Heights x^i y^j up to a degree, without those of a plane."""
+def _bends(W: Array) -> list[Array]:
+    """Heights x^i y^j without those of a plane: (s, n, 3) of each degree."""
     x, y = W[:, 0], W[:, 1]
     kept: list[Array] = []
+    shapes = []
     for degree in range(_DEGREE + 1):
+        before = len(kept)
         for j in range(degree + 1):
             z = x ** (degree - j) * y**j
             size = np.linalg.norm(z)
@@ -123,9 +126,10 @@ def _bends(W: Array) -> Array:
             # (three rows of corners cannot tell y³ from y)
             if np.linalg.norm(z) > _DEPENDENT * size:
                 kept.append(z / np.linalg.norm(z))
-    shape = np.zeros((max(len(kept) - 3, 0), *W.shape))
-    shape[..., 2] = np.reshape(kept[3:], (-1, len(W)))
-    return shape
+        shape = np.zeros((len(kept) - before, *W.shape))
+        shape[..., 2] = np.reshape(kept[before:], (-1, len(W)))
+        shapes.append(shape)
+    return shapes[2:]
 
 
 def with_shape(
@@ -176,7 +180,8 @@ def shaped(
     With noise of variance σ² and a shape whose n coefficients s have the variance τ², the sum of
     squares grows by h² Σ s², h = σ/τ. Of each coefficient the views tell the part 1 − h² C_ss,
     where C is the inverse of the normal matrix; with γ the sum of these parts, τ² = Σ s²/γ and
-    σ² = cost/(freedom + n − γ), until h stays.
+    σ² = cost/(freedom + n − γ), until h stays. The bends of each degree have a τ of their own: one
+    for all would hold back the arch of paper that has no wiggles.
 
     References
     ----------
@@ -189,24 +194,24 @@ def shaped(
     for _ in range(_ROUNDS):
         free = replace(free, hold=hold)
         best = minimise(free, x, tolerance=_CLOSE)
-        x, told = best.x, 1 - hold**2 * np.diag(covariance(best.system))[q:]
-        before, s, free = hold, best.x.shared[q:], replace(free, told=float(told.sum()))
+        x, determined = best.x, 1 - hold**2 * np.diag(covariance(best.system))[q:]
+        before, s, free = hold, best.x.shared[q:], replace(free, determined=float(determined.sum()))
         noise = (best.cost - float(hold**2 @ s**2)) / free.freedom
-        hold = np.concatenate([_held(noise, s[part], told[part]) for part in groups])
+        hold = np.concatenate([_held(noise, s[part], determined[part]) for part in groups])
         if (np.abs(hold - before) < _FOUND * before).all():
             break
     return free, minimise(free, x)
 
 
 def _groups(free: Problem) -> list[slice]:
-    """Return which coefficients of a shape are expected to be alike: the bends, and the others."""
-    n = len(_bends(free.W))
-    return [slice(0, n), slice(n, free.n_shape)]
+    """Return which coefficients of a shape are alike: bends of each degree, and the others."""
+    ends = np.cumsum([0, *map(len, _bends(free.W))]).tolist()
+    return [slice(a, b) for a, b in itertools.pairwise([*ends, free.n_shape])]
 
 
-def _held(noise: float, s: Array, told: Array) -> Array:
-    """Return h = σ/τ for coefficients of which the views tell these parts."""
-    size = float(s @ s) / max(float(told.sum()), 1e-3)
+def _held(noise: float, s: Array, determined: Array) -> Array:
+    """Return h = σ/τ for coefficients that the views determine to these parts."""
+    size = float(s @ s) / max(float(determined.sum()), 1e-3)
     return np.full(len(s), np.sqrt(noise / max(size, _SMALLEST**2)))
 
 

@@ -24,6 +24,7 @@ from cvnotes.calibration.board_shape import BOARDS, is_board, shaped
 from cvnotes.calibration.correspondences import Correspondences, PointSets
 from cvnotes.calibration.jackknife import Influence, undetermined
 from cvnotes.calibration.refinement import NormalEquations, Problem, State
+from cvnotes.calibration.refinement import covariance as covariance_by_noise
 from cvnotes.calibration.starts import Search
 from cvnotes.calibration.thresholds import ALIKE_LEFT_OUT, AS_WELL, HOPELESS, SURE
 from cvnotes.calibration.zhang import extrinsics, radial_distortion
@@ -57,7 +58,7 @@ class Candidate:
         Squared distance, summed over the corners of each view, from where a camera puts them that
         was estimated without this view.
     covariance : ndarray, shape (q, q)
-        Of its parameters, from the scatter between views.
+        Of its parameters, from the scatter between views, and no less than noise alone gives.
     n_points, variance : int, float
         Corners of all views, and what residuals leave for the noise of one coordinate.
     determined : bool
@@ -223,12 +224,14 @@ def choose_model(
 
     Notes
     -----
-    First the lenses are compared on the simplest board, then boards with the lens chosen, then the
-    lenses again on that board, until both stay or come back.
+    First the lenses are compared on the simplest board, then boards with the lens chosen, and with
+    the fullest lens of each other kind, then the lenses again on that board, until both stay or
+    come back.
 
     A model is kept against one with more coefficients while it predicts views left out within
     10 %, and the other is not better in enough of them (one-sided t of the paired differences,
     95 %). Against a lens of another kind 10 % alone decide: nearly all programs know a polynomial.
+    So they do for a lens that reaches every pixel against one that folds within the picture.
 
     Examples
     --------
@@ -246,7 +249,11 @@ def choose_model(
         before.add(board)
         of_lenses = tried.choice([(lens, board) for lens in lenses])
         lenses = [c.lens for c in of_lenses.candidates if c.rms <= HOPELESS * of_lenses.least]
-        board = tried.choice([(of_lenses.lens, board) for board in boards]).board
+        # (a lens of another kind may be hidden by a board that is not as it is taken to be)
+        fullest = {LENSES[lens][0]: (lens, boards[-1]) for lens in lenses}
+        fullest.pop(LENSES[of_lenses.lens][0])
+        of_boards = [(of_lenses.lens, board) for board in boards]
+        board = tried.choice([*of_boards, *fullest.values()]).board
     return tried.choice(tried.known, new=False)
 
 
@@ -324,7 +331,9 @@ def _judged(
             influence = Influence.of(problem, best.x)
             left_out = influence.costs_left_out(fitted)
             if left_out.sum() <= _UNDETERMINED**2 * best.cost:
-                costs, covariance, determined = left_out, influence.covariance[:q, :q], True
+                noise = variance * np.diag(covariance_by_noise(best.system))[:q]
+                costs, determined = left_out, True
+                covariance = _at_least(influence.covariance[:q, :q], noise)
         except DegenerateError:
             pass
     camera = problem.camera_of(best.x.shared)
@@ -332,9 +341,22 @@ def _judged(
     return Candidate(lens, board, camera, problem.names, costs, covariance, n, variance, determined)
 
 
+def _at_least(C: Array, variance: Array) -> Array:
+    """Widen a covariance of views (q, q) to the variances (q,) that noise alone would give.
+
+    A scatter between few views is by chance too small in half of the cases; the noise of so many
+    corners is known, and nothing is known better than it allows (Cramér and Rao).
+    """
+    wider = np.sqrt(np.maximum(variance / np.diag(C), 1))
+    return np.asarray(C * np.outer(wider, wider))
+
+
 def _simplest(found: Sequence[Candidate], lenses: Sequence[str]) -> Candidate:
     """Return the simplest model of the simplest kind that predicts as well as any."""
     least = min(c.rms for c in found)
+    whole = [c for c in found if c.camera.is_invertible]
+    if whole and min(c.rms for c in whole) <= AS_WELL * least:
+        found, least = whole, min(c.rms for c in whole)
     for of_kind in _by_kind(found, lenses):
         best = min(of_kind, key=lambda c: c.rms)
         if best.rms <= max(AS_WELL * least, _ROUNDING):

@@ -20,7 +20,7 @@ from cvnotes.base import (
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.ppm import ppm_dlt
 from cvnotes.calibration.refinement import Problem, refit_poses
-from cvnotes.calibration.reserve import turned_over
+from cvnotes.calibration.reserve import flipped_pose
 from cvnotes.calibration.zhang import extrinsics
 from cvnotes.camera import Camera, nearest_rotation, pose, rotation_from_vector, skew_matrix
 from cvnotes.camera.model import is_camera, project_with_derivative
@@ -158,7 +158,7 @@ def _best(camera: Camera, W: Array, m: Array, xy: Array) -> Pose:
             x = _start_in_plane(W, xy, F)
             minima.append(_refine(camera, x, W, m))
             x = minima[0].x
-            turned = turned_over(x[0], x[1], F[:, 2])
+            turned = flipped_pose(x[0], x[1], F[:, 2])
             with suppress(ConvergenceError, DegenerateError):  # the other pose may lead nowhere
                 minima.append(_refine(camera, (turned, x[1]), W, m))
     except (ConvergenceError, DegenerateError) as error:

@@ -3,15 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import (
-    Array,
-    CvnotesError,
-    DegenerateError,
-    ShapeError,
-    matrix,
-    paired,
-    points,
-)
+from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, matrix, paired, points
 from cvnotes.homography.refinement import refine_projection
 from cvnotes.projective import to_homogeneous
 from cvnotes.projective.points import apply_similarity, inverse_similarity, normaliser

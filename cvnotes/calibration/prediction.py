@@ -6,16 +6,21 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, points
+from cvnotes.base import Array, CvnotesError, DegenerateError, points
 from cvnotes.calibration.coverage import joined
 from cvnotes.calibration.result import Calibration
 from cvnotes.camera import Camera
 
 _STEP = 1e-6  # of a parameter, relative to its standard deviation or to 1
+_CORNERS = 200  # that a camera is turned to meet
 
 
 def prediction_std(
-    calibration: Calibration, m: npt.ArrayLike, *, of: Literal["noise", "views"] = "noise"
+    calibration: Calibration,
+    m: npt.ArrayLike,
+    *,
+    of: Literal["noise", "views"] = "noise",
+    turning: bool = False,
 ) -> Array:
     """How far off, in pixels, the image of a ray may be that the camera shows at pixels m.
 
@@ -28,6 +33,9 @@ def prediction_std(
     of : {"noise", "views"}
         Which covariance: ``covariance``, for residuals that are only noise, or
         ``covariance_of_views``, from the scatter between views.
+    turning : bool
+        Whether the camera may be turned so that the corners it was calibrated with are met best.
+        An error that turns the whole picture is absorbed by poses, or by how a camera is mounted.
 
     Returns
     -------
@@ -37,9 +45,10 @@ def prediction_std(
 
     Notes
     -----
-    Σ is the covariance of the estimated parameters and J the derivative of the pixel by them. A
-    small rotation of the camera, which the poses would absorb, is not subtracted, so this is
-    a cautious value.
+    Σ is the covariance of the estimated parameters and J the derivative of the pixel by them.
+    Unless the camera may turn, this is a cautious value: a principal point that is off by a pixel
+    moves all pixels by one. If it may, J − T T'⁺ J' is in the place of J, T being the derivative by
+    a rotation, and T', J' those at the corners.
 
     References
     ----------
@@ -65,12 +74,41 @@ def prediction_std(
     def pixels(camera: Camera) -> Array:
         return camera.project(rays)
 
+    of_camera = _pixels_turned(calibration, rays) if turning else pixels
+
     if of == "noise":
         here = calibration.camera, calibration.names, calibration.covariance
-        variance = _variance(*here, pixels)
+        variance = _variance(*here, of_camera)
     else:
-        variance = _variance_of_views(calibration, pixels)
+        variance = _variance_of_views(calibration, of_camera)
     return np.asarray(np.sqrt(np.where(reached, variance, np.nan)))
+
+
+def _pixels_turned(calibration: Calibration, rays: Array) -> Callable[[Camera], Array]:
+    """Return what gives the pixels of rays in a camera that is turned to meet the corners."""
+    camera, m = calibration.camera, joined(calibration.image_points)
+    if not len(m):
+        raise DegenerateError("turning: this calibration was read from a file that has no corners")
+    corners = camera.ray(m[:: -(-len(m) // _CORNERS)])
+    corners = corners[np.isfinite(corners).all(-1)]
+    at, moved = camera.project(corners), _turned(camera, rays)
+    inverse = np.linalg.pinv(_turned(camera, corners).reshape(-1, 3))
+
+    def pixels(other: Camera) -> Array:
+        turn = inverse @ (other.project(corners) - at).ravel()
+        return np.asarray(other.project(rays) - moved @ turn)
+
+    return pixels
+
+
+def _turned(camera: Camera, rays: Array) -> Array:
+    """Differentiate the pixels (..., 2, 3) of rays by a rotation of the camera."""
+    unit = rays / np.linalg.norm(rays, axis=-1, keepdims=True)
+    columns = []
+    for axis in np.eye(3):
+        up, down = (camera.project(unit + s * _STEP * np.cross(axis, unit)) for s in (1, -1))
+        columns.append((up - down) / (2 * _STEP))
+    return np.stack(columns, axis=-1)
 
 
 def _variance_of_views(calibration: Calibration, of: Callable[[Camera], Array]) -> Array:

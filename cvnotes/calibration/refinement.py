@@ -72,8 +72,8 @@ class Problem:
         coefficients are estimated with the camera. See `board_shape`.
     hold : ndarray, shape (s,)
         Pixels that each coefficient of the shape adds, per unit.
-    told : float, optional
-        How many of these coefficients the views tell, where `hold` tells the rest; else all.
+    determined : float, optional
+        How many of these coefficients the views determine, and not `hold`; else all.
     """
 
     W: Array
@@ -86,7 +86,7 @@ class Problem:
     ridge: float = 0.0
     shape: Array | None = None
     hold: Array | None = None
-    told: float | None = None
+    determined: float | None = None
     names: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -134,7 +134,7 @@ class Problem:
     @property
     def freedom(self) -> float:
         """How many coordinates were measured beyond those that the parameters need."""
-        of_shape = self.n_shape if self.told is None else self.told
+        of_shape = self.n_shape if self.determined is None else self.determined
         return 2 * self.n_seen - len(self.names) - of_shape - 6 * len(self.m)
 
     def state(self, camera: Camera, poses: Array, W: Array | None = None) -> State:
@@ -506,6 +506,19 @@ def _minimise_in_valley(
         patience=_PATIENCE if patience is None else patience,
     )
     return _descend(problem, held.x, tolerance, patience=patience)
+
+
+# Of few views, a single wrong pose may bend the camera until it fits; among many it stands out.
+FEW_VIEWS = 8
+
+
+def typical_cost(problem: Problem, found: Minimum[State, NormalEquations]) -> float:
+    """Return the mean squared distance (px²) of corners from their places.
+
+    Of many views that of the median one: a few may show something else, in no pose at all.
+    """
+    by_view = found.system.view_costs / problem.n_seen_by_view
+    return float(np.median(by_view) if len(by_view) > FEW_VIEWS else found.cost / problem.n_seen)
 
 
 def take_step(x: State, step: tuple[Array, Array]) -> State:

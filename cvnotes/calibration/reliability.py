@@ -390,7 +390,8 @@ def _no_noise(e: Diagnostics) -> str:
         "this is no noise, and no shape that the board has in all pictures explains it: did it "
         "bend differently from picture to picture"
         if e.shape_tried
-        else "this is no noise: is the board bent, or did it change its shape between the pictures"
+        else "this is no noise: are the board's corners not quite where they should be, or did it "
+        "change its shape between the pictures"
     )
     lens = "" if e.lens_tried else ", or does the lens need more coefficients"
     return (

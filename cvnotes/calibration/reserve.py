@@ -20,7 +20,14 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, ConvergenceError, DegenerateError, Minimum
-from cvnotes.calibration.refinement import NormalEquations, Problem, State, minimise, poses_follow
+from cvnotes.calibration.refinement import (
+    NormalEquations,
+    Problem,
+    State,
+    minimise,
+    poses_follow,
+    typical_cost,
+)
 from cvnotes.calibration.zhang import intrinsics_from_b
 from cvnotes.camera import Camera, intrinsics, xy_from_px
 
@@ -76,12 +83,12 @@ GUESSES = (closed_form, *map(_usual, _USUAL_FOCAL_LENGTHS))
 # --- the other pose of a flat board
 
 _POSE_STEPS = 3  # with the camera held; the other pose is then near enough to be judged
-_IN_QUESTION = 4.0  # RMS of a view in its other pose over the larger of its own and that of all
+_IN_QUESTION = 4.0  # RMS of a view in its other pose over the larger of its own and a typical one
 _STEPS = 25  # by which a turned board has led downhill, or it does not
 _BETTER = 1e-6  # of the cost
 
 
-def turned_over(R: Array, T: Array, normal: tuple[float, ...] | Array = (0.0, 0, 1)) -> Array:
+def flipped_pose(R: Array, T: Array, normal: tuple[float, ...] | Array = (0.0, 0, 1)) -> Array:
     """Return the rotation (..., 3, 3) of the other pose of flat boards, R ← M(T) R M(normal).
 
     A mirror is M(n) = I − 2 n nᵀ. The one across the line of sight T leaves the picture of a
@@ -96,7 +103,7 @@ def turned_over(R: Array, T: Array, normal: tuple[float, ...] | Array = (0.0, 0,
     Examples
     --------
     >>> R = np.array([[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]])
-    >>> turned_over(R, np.array([0.0, 0.0, 500.0])) + 0.0
+    >>> flipped_pose(R, np.array([0.0, 0.0, 500.0])) + 0.0
     array([[ 1. ,  0. ,  0. ],
            [ 0. ,  0.8,  0.6],
            [ 0. , -0.6,  0.8]])
@@ -136,7 +143,7 @@ def _lower_minima(
     sets = [in_question[i : i + 1] for i in range(len(in_question))]
     for views in [*sets, in_question] if len(sets) > 1 else sets:
         R = found.x.R.copy()
-        R[views] = turned_over(R[views], found.x.T[views])
+        R[views] = flipped_pose(R[views], found.x.T[views])
         with suppress(ConvergenceError, DegenerateError):
             other = minimise(problem, State(found.x.shared, R, found.x.T), steps=_STEPS)
             if other.cost < found.cost * (1 - _BETTER):
@@ -148,14 +155,14 @@ def _in_question(problem: Problem, found: Minimum[State, NormalEquations]) -> np
 
     The camera is held meanwhile, so that all boards are turned over in one go.
     """
-    turned_R = turned_over(found.x.R, found.x.T)
+    turned_R = flipped_pose(found.x.R, found.x.T)
     x = State(found.x.shared, turned_R, found.x.T)
     with np.errstate(all="ignore"):
         for _ in range(_POSE_STEPS):
             x = poses_follow(x, problem.linearise(x)[1])
         costs = problem.linearise(x)[1].view_costs / problem.n_seen_by_view
     own = found.system.view_costs / problem.n_seen_by_view
-    ratio = costs / np.maximum(own, found.cost / problem.n_seen)
+    ratio = costs / np.maximum(own, typical_cost(problem, found))
     fell_back = _distance(x.R, found.x.R) < _distance(x.R, turned_R)  # there is no other pose
     ratio = np.where(fell_back, np.inf, ratio)
     order: npt.NDArray[np.intp] = np.argsort(ratio)

@@ -134,8 +134,8 @@ class Calibration:
         It holds for bent boards and lenses that do not quite fit, too, as far as their effect
         differs from view to view: what moves all views alike, such as a board that is arched
         towards the camera, no comparison of views shows. Infinite on its diagonal where a view
-        less would leave the camera undetermined. Where lens or board were chosen, what fits about
-        as well widens it; see `Choice`.
+        less would leave the camera undetermined. Where lens or board were chosen, it is no less
+        than noise alone gives, and what fits about as well widens it; see `Choice`.
         """
         from cvnotes.calibration.jackknife import covariance_over_views
 
@@ -164,12 +164,22 @@ class Calibration:
         return honest if np.isfinite(list(honest.values())).all() else self.std
 
     @property
+    def times_noise(self) -> float:
+        """Typical deviation from the scatter between views over that of noise, of this model alone.
+
+        Where it is well above 1 the residuals are no noise: something differs from view to view
+        that the model does not know.
+        """
+        choice = self.choice  # (whose other models widen the bars, and are no scatter)
+        scatter = self.covariance_of_views if choice is None else choice.chosen.covariance
+        return float(np.median(np.sqrt(np.diag(scatter) / np.diag(self.covariance))))
+
+    @property
     def notes_on_deviations(self) -> tuple[str, ...]:
         """Sentences on what the deviations contain: other models, and more than noise."""
         if self._covariance_of_views is None and self._data is None:
             return ()
-        honest, noise = (np.array([*std.values()]) for std in (self.std_of_views, self.std))
-        if not np.isfinite(honest).all():
+        if not np.isfinite([*self.std_of_views.values()]).all():
             why = (
                 "as without one view the others do not determine the camera"
                 if len(self.poses) > 1
@@ -191,12 +201,12 @@ class Calibration:
                 f"±: contain that {other.lens}{board} fits as well; its {name} differs by "
                 f"{times:.1f} σ"
             )
-        if (times := float(np.median(honest / noise))) > TIMES_NOISE:
+        if (times := self.times_noise) > TIMES_NOISE:
             note = (
                 f"±: from the scatter between views, {times:.1f} times what noise alone would give"
             )
             if self.choice is None:  # else other boards and lenses were tried already
-                board = "a bent board"
+                board = "a board that is not quite as drawn"
                 if self.shape is not None:
                     board = "a board that bends differently from picture to picture"
                 note += (

@@ -31,11 +31,13 @@ from cvnotes.base import (
 from cvnotes.calibration import reserve
 from cvnotes.calibration.refinement import (
     CORRELATED,
+    FEW_VIEWS,
     NormalEquations,
     Problem,
     State,
     autocorrelation,
     minimise,
+    typical_cost,
 )
 from cvnotes.calibration.zhang import (
     constraints,
@@ -57,12 +59,11 @@ _SYSTEMATIC = 0.0003
 # Starts that ended in one minimum, the lowest so far: the others would only find it again. (Three
 # agree on a wrong one in 2 of 1,000 sets of exact corners with boards of two poses, four in 1.)
 _AGREED, _ONE = 6, 1e-6
-# Where lenses are only compared: minima are alike that differ by this part of the cost, and a
-# lens is beaten by another that leaves this part of its cost.
+# Minima are nearly alike that differ by this part of the cost; where lenses are only compared, one
+# is beaten by another that leaves this part of its cost.
 _ALIKE, _BEATEN = 1e-3, 0.25
-# Of few views, a single wrong pose may bend the camera until it fits; among many it stands out.
-_FEW_VIEWS = 8
 _STANDS_OUT = 2.0  # RMS of a view over that of a typical one
+_STRANGE = 10.0  # the same, of a view with wrong corners; in its wrong pose it is less than half
 _NOISELESS = 1e-6  # px; what fits so well needs no other pose
 # A student's H is wrong when it puts half of the corners this far off; the picture's width is 2.
 _WRONG = 0.25
@@ -144,32 +145,42 @@ class Search:
         if found.cost <= _NOISELESS**2 * self.problem.n_seen:
             return False
         by_view = found.system.view_costs / self.problem.n_seen_by_view
-        if len(by_view) <= _FEW_VIEWS:
+        if not self._has_many_views:
             return True
         stands_out = by_view.max() / _STANDS_OUT**2
         return bool(stands_out > by_view.min() and stands_out > np.median(by_view))
 
+    @property
+    def _has_many_views(self) -> bool:
+        return len(self.problem.m) > FEW_VIEWS
+
     def _is_good(self, minimum: Minimum[State, NormalEquations]) -> bool:
-        allowed = (_SUSPICIOUS * max(self.problem.size)) ** 2 * self.problem.n_seen
-        if not minimum.converged or minimum.cost >= allowed:
+        allowed = (_SUSPICIOUS * max(self.problem.size)) ** 2
+        if not minimum.converged or typical_cost(self.problem, minimum) >= allowed:
             return False
-        return len(self.problem.m) > _FEW_VIEWS or not self._is_systematic(minimum)
+        return self._has_many_views or not self._is_systematic(minimum)
 
     def _is_decided(self) -> bool:
         """Return whether another start would end where others did.
 
-        Six ended in the lowest minimum; or two ended alike, either in a valley, or, for a lens
-        that is only compared with others, where its rival is far below: what is left is then the
-        lens's fault, and not that of the start.
+        Six ended in the lowest minimum, or two nearly there where no start is at fault: in a
+        valley; for a lens that is only compared with others, whose rival is far below; and where
+        one of many views shows something else.
         """
         if len(self.minima) < 2:
             return False
-        lowest = (1 + _ONE) * min(minimum.cost for minimum in self.minima)
-        if sum(m.converged and m.cost <= lowest for m in self.minima) >= _AGREED:
+        lowest, second = sorted(minimum.cost for minimum in self.minima)[:2]
+        same = (m.converged and m.cost <= (1 + _ONE) * lowest for m in self.minima)
+        if sum(same) >= _AGREED:
             return True
-        lower, higher = sorted(minimum.cost for minimum in self.minima[-2:])
-        beaten = self.rival is not None and self.rival < _BEATEN * lower
-        return higher < (1 + _ALIKE) * lower and (beaten or bool(self.problem.model.cancelling))
+        beaten = self.rival is not None and self.rival < _BEATEN * lowest
+        no_start_helps = beaten or self._has_stranger() or bool(self.problem.model.cancelling)
+        return no_start_helps and second < (1 + _ALIKE) * lowest
+
+    def _has_stranger(self) -> bool:
+        """Return whether one of many views misses so much more that no pose explains it."""
+        by_view = self.minima[-1].system.view_costs / self.problem.n_seen_by_view
+        return bool(self._has_many_views and by_view.max() > _STRANGE**2 * np.median(by_view))
 
     def _is_systematic(self, minimum: Minimum[State, NormalEquations]) -> bool:
         """Return whether more than noise is left: few views bend a wrong camera until it fits."""

@@ -55,9 +55,10 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
 
     Notes
     -----
-    Views are parted by the side to which they pull the one camera. Then each camera is refined with
-    its views, and each view goes to the camera that fits it better, until all stay. The board is
-    that of the one camera.
+    Views are parted by the side to which they pull the one camera, in each of the four directions
+    in which they pull it apart the most. Then each camera is refined with its views, and each view
+    goes to the camera that fits it better, until all stay; the first direction that leads to two
+    cameras counts. The board is that of the one camera.
     """
     data = Correspondences.of(one.board_points, one.image_points, flat=False)
     problem = Problem.at(one.camera, one.names, data)

@@ -10,16 +10,14 @@ from cvnotes.base.writing import check_folder, printable
 from cvnotes.commands.console import EXIT_CODES, complain, progress, say, shortfall
 from cvnotes.commands.target import corners, length
 from cvnotes.files import write_whole
-from cvnotes.files.ownership import earlier, made_by, marked
+from cvnotes.files.ownership import earlier, made_by
 from cvnotes.files.reasons import unread
 from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.photographs import CalibratedPhotographs, Photographs
 
-_RESULTS = re.compile(
-    r"calibration\.(json|yml)|ost\.yaml|photographs\.csv|(coverage|next_view|residuals|view_rms|corners(-\d+)?)\.png"
-)
+_RESULTS = re.compile(r"calibration\.(json|yml)|ost\.yaml|photographs\.csv|report\.html")
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -52,13 +50,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="inner corners of the board along x and y: where four squares meet; or auto to "
         "have them counted in the photographs")  # fmt: skip
     add("--square", type=length, required=True, metavar="25", help="side of a square, in mm")
-    add(
-        "--charuco",
-        nargs="?",
-        const="4x4_50",
-        metavar="4x4_50",
-        help="the board is a ChArUco board, its markers of this dictionary (default 4x4_50)",
-    )
+    add("--charuco", nargs="?", const="4x4_50", metavar="4x4_50", help="the board is a ChArUco "
+        "board, its markers of this dictionary (default 4x4_50)")  # fmt: skip
     add("--marker", type=length, metavar="18.75",
         help="side of its markers, in mm (default: three quarters of a square)")  # fmt: skip
     add("--out", type=Path, required=True, metavar="FOLDER", help="folder for the results")
@@ -70,17 +63,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "auto (default): views left out decide")  # fmt: skip
     add("--leave-out", nargs="+", default=[], metavar="PHOTO", action="extend",
         help="photographs not to use, by their names")  # fmt: skip
-    add(
-        "--keep-all",
-        action="store_true",
-        help="use photographs that do not fit the others too; they are left out otherwise",
-    )
+    add("--keep-all", action="store_true", help="use photographs that do not fit the others too; "
+        "they are left out otherwise")  # fmt: skip
     add("--skew", action="store_true", help="estimate the skew of the pixels' axes too")
 
 
 def run(args: argparse.Namespace) -> int:
     """Calibrate; gives the exit code: 0 done, 1 cannot, 2 no board, 3 doubtful, not all read."""
-    from cvnotes.commands.report import camera_report, photo_table
+    from cvnotes.commands.report import as_text, camera_report, photo_table
     from cvnotes.photographs import NoCamera, calibrate_photographs
 
     try:
@@ -89,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
         complain("calibrate", str(error))
         return 2
     check_folder(args.out)
-    before = earlier(args.out, _RESULTS.fullmatch, "calibrate")
+    earlier(args.out, _RESULTS.fullmatch, "calibrate")
     try:
         found = calibrate_photographs(
             args.photos,
@@ -113,15 +103,13 @@ def run(args: argparse.Namespace) -> int:
         return 1
     say_count(found.photographs)
     say(photo_table(found.photographs, found.calibration) + "\n")
-    say(camera_report(found.calibration) + "\n")
+    say(as_text(camera_report(found.calibration)) + "\n")
     for sentence in found.doubts:
         say(f"! {sentence}")
     if found.next_view:
         say(f"Next photograph: {found.next_view}")
     contents = contents_of(found)
     write_whole({args.out / name: data for name, data in contents.items()})
-    for stale in (path for path in before if path.name not in contents):
-        stale.unlink(missing_ok=True)  # a sheet that an earlier run had more than this one
     say(f"Written to {printable(args.out)}: {', '.join(contents)}")
     if not found.reliable:
         complain("calibrate", f"written, but not reliable: {found.doubts[0]}")
@@ -157,7 +145,7 @@ def say_count(photographs: "Photographs") -> None:
 def contents_of(found: "CalibratedPhotographs") -> dict[str, bytes]:
     """Return all files to write, by name."""
     from cvnotes.calibration.saving import calibration_json
-    from cvnotes.commands.pictures import pictures
+    from cvnotes.commands.page import report_page
     from cvnotes.commands.report import photo_csv
     from cvnotes.files.exchange import CameraInfo, opencv_yaml, ros_yaml
 
@@ -169,7 +157,7 @@ def contents_of(found: "CalibratedPhotographs") -> dict[str, bytes]:
         "calibration.yml": opencv_yaml(result.camera, note=note).encode(),
         "ost.yaml": ros_yaml(CameraInfo(result.camera), note=note).encode(),
         "photographs.csv": photo_csv(found.photographs, result).encode(),
-        **{name: marked(png, "calibrate") for name, png in pictures(found).items()},
+        "report.html": report_page(found, note=note).encode(),
     }
 
 

@@ -5,27 +5,37 @@ that the command writes, to the same digits.
 """
 
 import io
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from cvnotes.base import Array
+from cvnotes.base import Array, CornersNotFound, CvnotesError
 from cvnotes.base.writing import printable
+from cvnotes.calibration.doubts import Views
 from cvnotes.commands.calibrate import contents_of
-from cvnotes.commands.report import camera_report, note_of, photo_table
+from cvnotes.commands.page import figures, words
+from cvnotes.commands.report import camera_report, note_of
+from cvnotes.commands.undistort import straightened
 from cvnotes.files import Reason, Rejected
+from cvnotes.files.photos import open_photo
 from cvnotes.files.reasons import Copy
 from cvnotes.photographs import (
     CalibratedPhotographs,
     Detection,
     Model,
+    NoCamera,
     calibrate_detected,
     detect,
 )
-from cvnotes.photographs.detection import sorted_out
+from cvnotes.photographs.detection import Counting, count_in, sorted_out
 from cvnotes.photographs.driver import chessboard
+from cvnotes.targets import find_corners
+from cvnotes.targets.finding import count_corners
+from cvnotes.warping.framing import ideal_camera
 
 
 class Dropped:
@@ -71,7 +81,7 @@ class Dropped:
         return {
             "name": name,
             "used": item.corners is not None,
-            "words": str(item.reason or note_of(item)),
+            "words": item.reason.brief if item.reason else note_of(item),
             "size": list(item.size),
             "png": _png(item),
             "corners": item.on_thumbnail(corners).ravel().tolist(),
@@ -87,34 +97,61 @@ class Dropped:
         Returns
         -------
         dict
-            The names that were ``used``, and why others were not after all (``unlike``: words by
-            name); the ``report`` and the ``table`` of photographs as the command prints them, what
-            is doubtful (``doubts``), whether it is ``reliable``, where the ``next`` photograph
-            should be, the ``parameters`` with value and deviation, and the ``files``: contents by
-            name.
+            The names that were ``used``, their ``rms`` in words, and why others were not after all
+            (``unlike``: words by name); of the report the ``title``, what is said (``words``) and
+            the ``figures``, as HTML; the ``parameters`` with value and deviation, and the
+            ``files``: contents by name. Where the photographs determine no camera, why not
+            (``error``), and the inner corners that they show ``instead`` of those asked for, if
+            any. In both cases ``reasons``: a sentence for all photographs that are not used for the
+            same reason.
+        """
+        self.found = None
+        together = sorted_out(self.board, self.seen.values())
+        try:
+            self.found = found = calibrate_detected(together, Model(lens=lens))
+        except NoCamera as error:
+            return {
+                "error": str(error),
+                "instead": error.photographs.instead,
+                "reasons": grouped(error.photographs.rejected),
+            }
+        result, used = found.calibration, [photo.path.name for photo in found.photographs.used]
+        shown = {photo.path.name for photo in self._detections() if photo.corners is not None}
+        lost = {r.file: str(r.reason) for r in found.photographs.rejected}
+        title, *blocks = camera_report(result)
+        return {
+            "used": used,
+            "rms": [f"{rms:.3f} px" for rms in result.view_rms],
+            "unlike": {name: lost[printable(name)] for name in sorted(shown - set(used))},
+            "title": title,
+            "words": words(found, blocks),
+            "parameters": [list(row) for row in result.table()],
+            "figures": "".join(figures(found)),
+            "files": contents_of(found),
+            "reasons": grouped(found.photographs.rejected),
+        }
+
+    def straighten(self, path: str) -> dict[str, Any]:
+        """Take the lens out of a photograph, as ``cvnotes undistort`` does.
+
+        Returns
+        -------
+        dict
+            The ``png`` that the ideal camera with the same A would have taken, and ``words`` on it.
 
         Raises
         ------
         CvnotesError
-            The photographs do not determine a camera.
+            There is no camera yet, or it is no photograph of its size.
         """
-        self.found = None
-        together = sorted_out(self.board, self.seen.values())
-        self.found = found = calibrate_detected(together, Model(lens=lens))
-        used = [photo.path.name for photo in found.photographs.used]
-        shown = {photo.path.name for photo in self._detections() if photo.corners is not None}
-        lost = {r.file: str(r.reason) for r in found.photographs.rejected}
-        return {
-            "used": used,
-            "unlike": {name: lost[printable(name)] for name in sorted(shown - set(used))},
-            "report": camera_report(found.calibration),
-            "table": photo_table(found.photographs, found.calibration),
-            "doubts": found.doubts,
-            "reliable": found.reliable,
-            "next": str(found.next_view) if found.next_view else "",
-            "parameters": [list(row) for row in found.calibration.table()],
-            "files": contents_of(found),
-        }
+        if self.found is None:
+            raise CvnotesError("there is no camera yet")
+        photo = open_photo(Path(path))
+        if isinstance(photo, Rejected):
+            raise CvnotesError(str(photo.reason))
+        camera = self.found.camera
+        png, note = straightened(photo, camera, ideal_camera(camera))
+        return {"png": png, "words": note}
 
     def corners_of(self, size: tuple[int, int]) -> list[Array]:
         """Return the corners (n, 2) in all photographs of a size, NaN for those that are hidden."""
@@ -127,6 +164,81 @@ class Dropped:
     def _refuse(self, name: str, reason: Reason) -> dict[str, Any]:
         self.seen[name] = Rejected(printable(name), reason)
         return {"name": name, "used": False, "words": str(reason)}
+
+
+class Unknown:
+    """A board whose inner corners are still to be counted, as ``--corners auto`` does."""
+
+    def __init__(self) -> None:
+        self.counting = Counting()
+
+    def count(self, path: str) -> dict[str, Any]:
+        """Count the corners in one more photograph.
+
+        Returns
+        -------
+        dict
+            The ``corners`` as soon as enough photographs agree, else None; and in ``words`` why
+            there are none in this one.
+        """
+        photo = open_photo(Path(path), grey=True)
+        if isinstance(photo, Rejected):
+            return {"corners": None, "words": str(photo.reason)}
+        found = count_in(photo)
+        known = self.counting.add(found)
+        return {
+            "corners": found if known else None,
+            "words": "" if found else "no chessboard found",
+        }
+
+    def see(self, grey: bytes, size: tuple[int, int]) -> dict[str, Any]:
+        """Count them in a frame of the machine's camera, if the board is seen whole in it.
+
+        Returns what `cvnotes.commands.watching.Watch.see` does, and what was ``counted`` as soon as
+        enough frames agree.
+        """
+        picture = np.frombuffer(grey, np.uint8).reshape(size[::-1])
+        found, m = count_corners(picture), np.zeros((0, 2))
+        with suppress(CornersNotFound):
+            if found and _inside(
+                seen := find_corners(picture, chessboard(found, 1.0)), found, size
+            ):
+                m = seen
+        known = self.counting.add(found if len(m) else None)
+        return {
+            "corners": m.ravel().tolist(),
+            "take": False,
+            "words": "counting the board's corners" if len(m) else "the board is not seen whole",
+            "counted": found if known else None,
+        }
+
+
+def _inside(m: Array, corners: tuple[int, int], size: tuple[int, int]) -> bool:
+    """Whether the outer squares of a board with these corners lie in the picture, too."""
+    columns, rows = corners
+    lattice = m.reshape(rows, columns, 2)
+    sides = (lattice, lattice[::-1], lattice.swapaxes(0, 1), lattice[:, ::-1].swapaxes(0, 1))
+    outer = np.vstack([2 * side[0] - side[1] for side in sides])
+    return bool(((outer >= 0) & (outer < size)).all())
+
+
+def sheet(columns: int, rows: int, square: float, paper: str) -> bytes:
+    """Return the PDF of a board to print, as ``cvnotes target`` writes it."""
+    return chessboard((columns, rows), square).sheet(paper).pdf()
+
+
+def grouped(rejected: Iterable[Rejected]) -> list[str]:
+    """Say in one sentence of all photographs with the same reason why they are not used."""
+    alike: dict[str, list[Rejected]] = {}
+    for each in rejected:
+        alike.setdefault(each.reason.brief, []).append(each)
+    return [_together(own) for own in alike.values()]
+
+
+def _together(rejected: list[Rejected]) -> str:
+    listed = Views(tuple(range(len(rejected)))).listed(lambda i: rejected[i].file)
+    in_all = f" ({len(rejected)} in all)" if listed.endswith("…") else ""
+    return f"{listed}{in_all}: {rejected[0].reason}"
 
 
 def _png(photo: Detection) -> bytes:

@@ -49,45 +49,22 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "it checks, and write a table of marks. Rows are written as they come; what was "
         "interrupted goes on with --resume.",
     )
-    parser.add_argument("folder", metavar="FOLDER", help="where the notebooks are")
-    parser.add_argument("--out", required=True, metavar="marks.csv", help="table to write")
-    parser.add_argument(
-        "--assignment",
-        metavar="homework.toml",
-        help="which exercises, for how many points, by whom",
-    )
-    parser.add_argument(
-        "--with",
-        dest="added",
-        action="append",
-        default=[],
-        metavar="my_exercises.py",
-        help="a file with exercises of your own",
-    )
-    parser.add_argument(
-        "--feedback", metavar="FOLDER", help="folder to write a page for each student to"
-    )
-    parser.add_argument(
-        "--summary", metavar="class.html", help="page of the class to write, and its picture (.svg)"
-    )
-    parser.add_argument(
-        "--format", choices=FORMATS, help="also write a table for this platform, beside the other"
-    )
-    parser.add_argument(
-        "--resume", action="store_true", help="keep the rows of notebooks that did not change"
-    )
-    parser.add_argument(
-        "--seconds", type=_positive, default=120.0, metavar="120", help="time for each notebook"
-    )
-    parser.add_argument(
-        "--megabytes", type=_positive, default=4096.0, metavar="4096", help="memory for each"
-    )
-    parser.add_argument(
-        "--jobs", type=_positive, default=None, metavar="2", help="how many run at a time"
-    )
-    parser.add_argument(
-        "--cluster", metavar="ADDRESS", help="run them on the workers of a Dask scheduler"
-    )
+    add = parser.add_argument
+    add("folder", metavar="FOLDER", help="where the notebooks are")
+    add("--out", required=True, metavar="marks.csv", help="table to write")
+    add("--assignment", metavar="homework.toml",
+        help="which exercises, for how many points, by whom")  # fmt: skip
+    add("--with", dest="added", action="append", default=[], metavar="my_exercises.py",
+        help="a file with exercises of your own")  # fmt: skip
+    add("--feedback", metavar="FOLDER", help="folder to write a page for each student to")
+    add("--summary", metavar="class.html",
+        help="page of the class to write, and its picture (.svg)")  # fmt: skip
+    add("--format", choices=FORMATS, help="also write a table for this platform, beside the other")
+    add("--resume", action="store_true", help="keep the rows of notebooks that did not change")
+    add("--seconds", type=_positive, default=120.0, metavar="120", help="time for each notebook")
+    add("--megabytes", type=_positive, default=4096.0, metavar="4096", help="memory for each")
+    add("--jobs", type=_positive, default=None, metavar="2", help="how many run at a time")
+    add("--cluster", metavar="ADDRESS", help="run them on the workers of a Dask scheduler")
     parser.set_defaults(run=run)
 
 

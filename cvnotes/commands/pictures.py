@@ -1,222 +1,172 @@
-"""The pictures that `cvnotes calibrate` leaves beside its numbers."""
+"""The pictures of a calibration, for its report."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
 
-from cvnotes.base import Array, chunks
+from cvnotes.base import Array
 from cvnotes.base.digits import round_number
-from cvnotes.base.text import shortened
 from cvnotes.base.writing import printable
-from cvnotes.calibration.coverage import covered_cells
-from cvnotes.commands.canvas import (
-    ESTIMATED,
-    FAINT,
-    INK,
-    LENS,
-    MUTED,
-    PALE,
-    WORLD,
-    Canvas,
-    ticks,
-    wrapped,
-)
-from cvnotes.commands.console import progress
+from cvnotes.calibration import prediction_std
+from cvnotes.camera import Camera, intrinsics, look_at, move
+from cvnotes.commands.drawing import ESTIMATED, INK, LENS, WORLD, Drawing
 
 if TYPE_CHECKING:
     from cvnotes.calibration import Calibration, NextView
-    from cvnotes.photographs import CalibratedPhotographs, Detection
+    from cvnotes.photographs import Detection
     from cvnotes.photographs.detection import Board
 
-_COLUMNS, _ROWS = 4, 10  # of a sheet
-_TILE = 320  # px wide
-_HEAD = 24  # px for a title
-_LETTERS = 28  # of a name
-_WIDE, _NARROWEST = 900, 480  # px, of a picture of its own
-_BAR = 18  # px that a bar and its name need
+_WIDE = 720  # of a drawing, in its own unit
+_ACROSS = 33  # places at which the deviation is computed
+_BANDS = ["#fff7e0", "#fee6ad", "#fdc876", "#fb9d4f", "#ee6a3c", "#cc3727", "#8e1420"]
+_UNKNOWN = "#9a9a9a"
+_LEAST = 1e-6  # px: what is known better is rounding
 _MOST_LINES = 1000  # that can be told apart
+_BELOW = 48  # for a scale bar, and its length
+_ROOM = 16  # around what is drawn
+_FROM = (0.75, -0.5, -0.45)  # where the boards in space are looked at from, in the CRF
 
 
-def pictures(found: "CalibratedPhotographs") -> dict[str, bytes]:
-    """Draw all pictures of what came out; gives PNG by file name."""
-    result, photographs = found.calibration, found.photographs
-    drawn = {
-        "view_rms.png": _view_rms(result, photographs.named()[0]),
-        "coverage.png": _coverage(result),
-        "residuals.png": _residuals(result),
-        **corner_sheets(photographs.looked_at, photographs.board),
-    }
-    if found.next_view is not None:
-        drawn["next_view.png"] = _next_view(result, found.next_view, photographs.board)
-    sheets = progress(drawn.items(), total=len(drawn), unit="pictures")
-    return {name: sheet.png() for name, sheet in sheets}
+def uncertainty(
+    result: "Calibration", proposal: "NextView | None" = None
+) -> tuple[Drawing, dict[str, str]]:
+    """Draw how far off a pixel may be, 1 σ, the corners that were seen, and the next view.
+
+    Also gives what its colours mean.
+    """
+    from PIL import Image
+
+    sheet, zoom = _picture(result, "How far off a pixel may be, in each part of the picture")
+    size, middle = (round(zoom * result.size[0]), round(zoom * result.size[1])), []
+    for side in result.size:
+        n = max(round(_ACROSS * side / max(result.size)), 2)
+        middle.append((np.arange(n) + 0.5) * side / n - 0.5)
+    m = np.stack(np.meshgrid(*middle), axis=-1)
+    std = prediction_std(result, m, of="views", turning=True)
+    if not np.isfinite(std).any():  # as the ± of the table, which then are from noise alone
+        std = prediction_std(result, m, turning=True)
+    known = np.isfinite(std)
+    level = np.log10(np.where(known, std, np.nan).clip(_LEAST))
+    # beyond the border of what is known, as just before it: what is drawn ends halfway
+    beside = np.pad(level, 1, constant_values=np.nan)
+    beside = np.fmax.reduce(sliding_window_view(beside, (3, 3)), axis=(2, 3))
+    level = np.nan_to_num(np.where(known, level, beside))
+    least = np.quantile(level[known], 0.1) if known.any() else 0.0
+    edges = np.outer(10 ** (np.floor(least) + np.arange(3)), [1, 2, 5]).ravel()
+    edges = edges[np.log10(edges) > least][: len(_BANDS) - 1]  # (in the middle nothing turns)
+    fine, shown = (
+        np.asarray(Image.fromarray(x.astype(np.float32)).resize(size, Image.Resampling.BILINEAR))
+        for x in (level, known)
+    )
+    band = np.searchsorted(np.log10(edges), fine).astype(np.uint8)
+    band[shown < 0.5] = len(_BANDS)
+    colours = [*_BANDS, _UNKNOWN]
+    sheet.areas(band, colours, size)
+    sheet.dots((np.concatenate(result.image_points) + 0.5) * zoom, "#0009", 2.5)
+    if proposal is not None:
+        outline = (np.concatenate([proposal.outline, proposal.outline[:1]]) + 0.5) * zoom
+        sheet.lines(outline[None], "#fff", 6)
+        sheet.lines(outline[None], LENS, 3)
+    names = [f"{a:g} to {b:g} px" for a, b in pairwise(edges)]
+    names = [f"up to {edges[0]:g} px", *names, f"more than {edges[-1]:g} px", "not known"]
+    return sheet, {names[i]: colours[i] for i in np.unique(band)}
 
 
-def corner_sheets(looked_at: "Sequence[Detection]", board: "Board") -> dict[str, Canvas]:
-    """Draw all photographs small with the corners found in them, on as many sheets as it takes."""
-    sheets = [looked_at[part] for part in chunks(len(looked_at), _COLUMNS * _ROWS)]
-    if len(sheets) == 1:
-        return {"corners.png": _sheet(sheets[0], board)}
-    return {f"corners-{i}.png": _sheet(sheet, board) for i, sheet in enumerate(sheets, start=1)}
-
-
-def _sheet(photographs: "Sequence[Detection]", board: "Board") -> Canvas:
-    width, height = photographs[0].size
-    tile = (_TILE, max(round(_TILE * height / width), 1))
-    # Three tiles at least, so that a title has its place.
-    columns = min(_COLUMNS, max(len(photographs), 3))
-    rows = -(-len(photographs) // columns)
-    sheet = Canvas(columns * (_TILE + 4), rows * (tile[1] + _HEAD))
-    for k, photo in enumerate(photographs):
-        x, y = k % columns * (_TILE + 4) + 2, k // columns * (tile[1] + _HEAD) + _HEAD
-        sheet.photograph(photo.thumbnail, (x, y), tile)
-        zoom, name = _TILE / photo.size[0], shortened(printable(photo.path.name), _LETTERS)
-        place = np.array([x, y])
-        if photo.corners is not None:
-            columns_rows = (*board.corners[::-1], 2)
-            _draw_lattice(sheet, ((photo.corners + 0.5) * zoom + place).reshape(columns_rows))
-        elif photo.found is not None:
-            sheet.dots((photo.found + 0.5) * zoom + place, LENS, 2.5)
-        title = name if photo.corners is not None else f"{name}: not used"
-        colour = MUTED if photo.corners is not None else ESTIMATED
-        sheet.text((x + _TILE / 2, y - 7), title, colour, size=12)
-    return sheet
-
-
-def _draw_lattice(sheet: Canvas, lattice: Array) -> None:
-    """Join each row; the ring is the origin, the thick lines lead along x and y."""
-    for row in lattice:
-        sheet.line(row, ESTIMATED)
-    sheet.dots(lattice, ESTIMATED, 1.5)
-    for axis, name in ((lattice[0, :3], "x"), (lattice[:3, 0], "y")):
-        if np.isfinite(axis).all():
-            sheet.line(axis, WORLD, 2)
-            end = axis[-1] + 0.4 * (axis[-1] - axis[-2])
-            sheet.text((float(end[0]), float(end[1])), name, WORLD, anchor="mm", halo=True)
-    if np.isfinite(lattice[0, 0]).all():
-        sheet.ring(lattice[0, 0], 5, WORLD)
-
-
-def _view_rms(result: "Calibration", names: Sequence[str]) -> Canvas:
-    """Draw the RMS of each view as a bar, beside that of all."""
-    names = [shortened(name, _LETTERS) for name in names]
-    # Where a lens folds there is no residual, and no bar.
-    rms, all_rms = np.nan_to_num(result.view_rms), float(np.nan_to_num(result.rms))
-    height = 420
-    wide = min(max(_WIDE, 150 + _BAR * len(rms)), 4 * _WIDE)
-    step = -(-_BAR * len(rms) // (wide - 150))  # every name, as long as they are legible
-    longest = max(map(len, names))
-    # A digit or a letter of this size is about 6 px wide.
-    flat = 6.5 * longest < step * (wide - 150) / len(rms)
-    left, right, top = 62, wide - 88, 18
-    bottom = height - (40 if flat else min(24 + 7 * longest, 200))
-    high = 1.05 * max(float(rms.max()), all_rms, 1e-12)
-    sheet, across, up = Canvas(wide, height), (right - left) / len(rms), (bottom - top) / high
-    for tick in ticks(0, high):
-        y = bottom - tick * up
-        sheet.line([(left, y), (right, y)], FAINT)
-        sheet.text((left - 6, y), f"{tick:.4g}", MUTED, anchor="rm", size=12)
-    for i, value in enumerate(rms.tolist()):
-        x = left + (i + 0.5) * across
-        sheet.rectangle(
-            (x - 0.35 * across, bottom - value * up), (x + 0.35 * across, bottom), fill=ESTIMATED
-        )
-        if i % step == 0 and flat:
-            sheet.text((x, bottom + 16), names[i], size=12)
-        elif i % step == 0:
-            sheet.upright((x, bottom + 5), names[i], size=11)
-    y = bottom - all_rms * up
-    sheet.line([(left, y), (right, y)], INK)
-    sheet.text((right + 5, y), f"all: {result.rms:.3f}", MUTED, anchor="lm")
-    sheet.text((left - 52, top - 5), "RMS (px per point)", anchor="ls", size=12)
-    return sheet
-
-
-def _coverage(result: "Calibration") -> Canvas:
-    """Draw where corners were seen: the lens is known there, and guessed in grey cells."""
-    cells = covered_cells(result.image_points, result.size)
-    drawn = _picture(result.size, f"Corners in {cells.sum()} of {cells.size} cells of the picture")
-    side = drawn.zoom * np.array(result.size) / cells.shape
-    for cell in np.argwhere(~cells):
-        low = cell * side + drawn.corner
-        drawn.sheet.rectangle(low, low + side, fill=FAINT, line=PALE)
-    drawn.sheet.dots(drawn.place(np.concatenate(result.image_points)), ESTIMATED, 1.7)
-    drawn.frame()
-    return drawn.sheet
-
-
-def _next_view(result: "Calibration", proposal: "NextView", board: "Board") -> Canvas:
-    """Draw the board as it should be seen next, over all corners that were seen so far."""
-    drawn = _picture(result.size, f"Next: {proposal.words}")
-    sheet, place = drawn.sheet, drawn.place
-    sheet.dots(place(np.concatenate(result.image_points)), MUTED, 1.2)
-    sheet.line(place(np.concatenate([proposal.outline, proposal.outline[:1]])), LENS, 3)
-    m = result.camera.moved(proposal.G).project(board.points)
-    _draw_lattice(sheet, place(m).reshape(*board.corners[::-1], 2))
-    drawn.frame()
-    return sheet
-
-
-_EDGE = 6  # px around a picture
-_TITLE = 14  # size of a title's letters, px
-_LINE = 20  # px from one line of a title to the next
-
-
-class _Picture(NamedTuple):
-    """A sheet with a frame for what is drawn on a picture."""
-
-    sheet: Canvas
-    zoom: float  # px per pixel of the picture
-    corner: Array  # where the picture's upper left corner is
-    size: Array  # of the frame
-
-    def place(self, m: Array) -> Array:
-        """Return where pixels (n, 2) of the picture are on the sheet."""
-        return np.asarray((m + 0.5) * self.zoom + self.corner)
-
-    def frame(self) -> None:
-        self.sheet.rectangle(self.corner, self.corner + self.size, line=MUTED)
-
-
-def _picture(size: tuple[int, int], title: str, *, beside: int = 0, tall: int = 0) -> _Picture:
-    """Return a sheet for something drawn on a picture, with so much room beside it, so tall."""
-    zoom = min((_WIDE - 2 * _EDGE) / size[0], 900 / size[1])
-    frame = zoom * np.array(size)
-    width = max(round(frame[0]) + 2 * _EDGE, _NARROWEST)
-    lines = wrapped(title, width - 2 * _EDGE, _TITLE)
-    corner = np.array([(width - frame[0]) / 2, _HEAD + _LINE * (len(lines) - 1) + _EDGE])
-    height = max(round(corner[1] + frame[1]) + _EDGE, tall)
-    sheet = Canvas(width + beside, height)
-    for i, line in enumerate(lines):
-        sheet.text((width / 2, _HEAD - 6 + _LINE * i), line, size=_TITLE)
-    return _Picture(sheet, zoom, corner, frame)
-
-
-def _residuals(result: "Calibration") -> Canvas:
-    """Draw each residual where it is, magnified, and all of them around 0.
+def residuals(result: "Calibration") -> tuple[Drawing, str]:
+    """Draw each residual where it is, magnified, beside a bar; gives the words for it, too.
 
     Lines that point all over the place are noise; lines that agree with their neighbours are
-    something that the model does not describe. Noise gives a round cloud.
+    something that the model does not describe.
     """
     m, r = np.concatenate(result.image_points), np.concatenate(result.residuals)
     known = np.isfinite(r).all(-1)
-    m, r = m[known], r[known]
-    places, mean, word = m - r, r, "Residuals"
+    places, r, word = m[known] - r[known], r[known], "Residuals"
     if len(r) > _MOST_LINES:  # of so many, what they have in common in a place is to be seen
-        places, mean = _cell_means(places, r, result.size)
+        places, r = _cell_means(m[known], r, result.size)
         word = "Mean residuals of places"
-    longer = float(np.percentile(np.hypot(*mean.T), 95)) if len(mean) else 0.0
+    longer = float(np.percentile(np.hypot(*r.T), 95)) if len(r) else 0.0
     magnify = round_number(0.04 * result.size[0] / longer) if longer > 0 else 1.0
-    title = f"{word}, {magnify:,g} times as long (RMS {result.rms:.3f} px per point)"
-    drawn = _picture(result.size, title, beside=_CLOUD, tall=_CLOUD + _HEAD)
-    start = drawn.place(places)
-    end = start + drawn.zoom * magnify * mean
-    drawn.sheet.segments(start, end, ESTIMATED)
-    drawn.sheet.dots(end, ESTIMATED, 1.5)
-    drawn.frame()
-    _cloud(drawn, r, result.rms / np.sqrt(2))
-    return drawn.sheet
+    sheet, zoom = _picture(result, "Residuals", below=_BELOW)
+    width, height = zoom * np.array(result.size)
+    start, bar = (places + 0.5) * zoom, round_number(0.12 * width / (zoom * magnify))
+    end = start + zoom * magnify * r
+    frame = [(0, 0), (width, 0), (width, height), (0, height), (0, 0)]
+    sheet.lines([frame], INK, 0.6)
+    sheet.lines(np.stack([start, end], axis=1), ESTIMATED)
+    sheet.dots(end, ESTIMATED)
+    middle, half, y = width / 2, zoom * magnify * bar / 2, height + 12
+    sheet.lines([[(middle - half, y), (middle + half, y)]], INK, 3)
+    sheet.text((middle, y + 22), f"{bar:g} px")
+    return sheet, f"{word}, {magnify:,g} times as long as they are."
+
+
+def boards(result: "Calibration", board: "Board") -> tuple[Drawing, str]:
+    """Draw the boards around the camera, with the numbers of their photographs; and say it."""
+    (columns, rows), side = board.corners, board.square
+    x, y = np.array([[-1, columns, columns, -1], [-1, -1, rows, rows]]) * side
+    corners = move(result.poses, np.stack([x, y, 0 * x], axis=-1))  # (views, 4, 3)
+    middle = corners.mean(1)
+    far = np.linalg.norm(middle, axis=-1)
+    width, height = result.size
+    border = np.array([[0, 0, 0], [0, 0, 1], [width, 0, 1], [width, height, 1], [0, height, 1]])
+    picture = np.linalg.solve(result.A, border.T).T  # as if there were no lens: for any
+    picture *= 0.3 * np.median(far) / np.linalg.norm(picture, axis=1).max()
+    target = np.append(middle, np.zeros((1, 3)), axis=0).mean(0)
+    eye = target + 3 * far.max() * np.array(_FROM)
+    onlooker = Camera(intrinsics(1, 1, 0, 0), look_at(eye, target))
+    m = onlooker.project(np.concatenate([corners.reshape(-1, 3), picture]))
+    low, spread = m.min(0), np.ptp(m, axis=0)
+    zoom = min((_WIDE - 2 * _ROOM) / spread[0], (0.7 * _WIDE - 2 * _ROOM) / spread[1])
+    m = (m - low - spread / 2) * zoom + np.array([_WIDE, zoom * spread[1] + 2 * _ROOM]) / 2
+    sheet = Drawing((_WIDE, zoom * spread[1] + 2 * _ROOM), "The boards in space around the camera")
+    seen, camera = m[:-5].reshape(-1, 4, 2), m[-5:]
+    for i in np.argsort(-np.linalg.norm(middle - eye, axis=1)):  # the farthest first
+        sheet.lines(seen[i, None], ESTIMATED, fill=ESTIMATED)
+    sheet.lines(camera[[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]], WORLD, 2, fill=WORLD)
+    for i, at in enumerate(seen[:, 0] + 0.12 * (seen[:, 2] - seen[:, 0]), start=1):
+        sheet.text(at, str(i))
+    return sheet, f"The boards, {far.min() / 10:.0f} to {far.max() / 10:.0f} cm from the camera."
+
+
+def photograph(photo: "Detection", board: "Board") -> Drawing:
+    """Draw a photograph small, with the corners found in it: rows joined, a ring at the origin."""
+    height, width = photo.thumbnail.shape
+    sheet = Drawing((width, height), f"Corners in {printable(photo.path.name)}")
+    sheet.photograph(photo.thumbnail, (width, height))
+    if photo.corners is not None:
+        m = photo.on_thumbnail(photo.corners).reshape(*board.corners[::-1], 2) + 0.5
+        sheet.lines(m, ESTIMATED)
+        sheet.dots(m.reshape(-1, 2), ESTIMATED)
+        sheet.lines([m[0, :3], m[:3, 0]], WORLD, 2.5)
+        sheet.dots(m[0, :1], WORLD, 8)
+    elif photo.found is not None:
+        sheet.dots(photo.on_thumbnail(photo.found) + 0.5, LENS, 5)
+    return sheet
+
+
+def partners(pictures: Sequence[npt.NDArray[Any]], label: str, axis: int = 0) -> Drawing:
+    """Draw two pictures beside each other, or one above the other, with rows through both."""
+    wide = _WIDE / 2 if axis == 0 else _WIDE
+    sizes = [(wide, wide * picture.shape[0] / picture.shape[1]) for picture in pictures]
+    across, along = (sum if i == axis else max for i in (0, 1))
+    whole = across(w for w, _ in sizes), along(h for _, h in sizes)
+    sheet = Drawing(whole, label)
+    for picture, size, at in zip(pictures, sizes, (0.0, sizes[0][axis]), strict=True):
+        sheet.photograph(picture, size, (at, 0) if axis == 0 else (0, at))
+    places = np.linspace(0, sizes[0][1 - axis], 11)[1:-1]
+    ends = np.stack(np.broadcast_arrays([0, whole[axis]], places[:, None]), axis=-1)
+    sheet.lines(ends if axis == 0 else ends[..., ::-1], ESTIMATED)
+    return sheet
+
+
+def _picture(result: "Calibration", label: str, *, below: int = 0) -> tuple[Drawing, float]:
+    """Return a drawing as large as the camera's picture times a zoom, and room below it."""
+    zoom = _WIDE / max(result.size)
+    return Drawing((zoom * result.size[0], zoom * result.size[1] + below), label), zoom
 
 
 def _cell_means(m: Array, r: Array, size: tuple[int, int]) -> tuple[Array, Array]:
@@ -229,26 +179,3 @@ def _cell_means(m: Array, r: Array, size: tuple[int, int]) -> tuple[Array, Array
     np.add.at(sums[1], index.ravel(), r)
     places, mean = sums / count[:, None]
     return places, mean
-
-
-_CLOUD = 420  # px wide
-
-
-def _cloud(drawn: _Picture, r: Array, sigma: float) -> None:
-    """Draw residuals around 0 beside a picture, with a circle of one standard deviation."""
-    reach = 1.08 * max(float(np.abs(r).max(initial=0.0)), 1e-9)
-    sheet, half = drawn.sheet, 170
-    middle = drawn.corner + [drawn.size[0] + _CLOUD / 2 + 15, half]
-    sheet.rectangle(middle - half, middle + half, line=MUTED)
-    for tick in ticks(-reach, reach, 5):
-        x, y = middle + tick / reach * half
-        sheet.line([(x, middle[1] - half), (x, middle[1] + half)], FAINT)
-        sheet.line([(middle[0] - half, y), (middle[0] + half, y)], FAINT)
-        sheet.text((x, middle[1] + half + 15), f"{tick:.3g}", MUTED, size=11)
-        sheet.text((middle[0] - half - 4, y), f"{tick:.3g}", MUTED, size=11, anchor="rm")
-    sheet.dots(middle + r / reach * half, ESTIMATED, 1.5)
-    if np.isfinite(sigma):
-        sheet.ring(middle, sigma / reach * half, INK)
-    x, y = (float(at) for at in middle)
-    sheet.text((x, y + half + 36), "observed - predicted (px)", size=12)
-    sheet.text((x, y + half + 53), f"circle: one standard deviation, {sigma:.3f} px", size=12)

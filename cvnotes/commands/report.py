@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,9 +18,33 @@ from cvnotes.files.ownership import TABLE_HEADER
 from cvnotes.photographs import Detection, Photographs
 
 if TYPE_CHECKING:
+    from cvnotes.base import Array
     from cvnotes.calibration import BoardShape, Calibration
 
 _WIDE = 80  # letters that a reason may have in the table
+
+
+# A sentence, facts by their names, or a table with its header.
+Block = str | dict[str, str] | list[list[str]]
+
+
+def as_text(blocks: Sequence[Block]) -> str:
+    """Lay out blocks for a terminal.
+
+    Examples
+    --------
+    >>> print(as_text(["A camera", {"RMS": "0.1 px"}]))
+    A camera
+    RMS   0.1 px
+    """
+    lines = []
+    for block in blocks:
+        if isinstance(block, dict):
+            width = max(map(len, block)) + 3
+            lines += [f"{name:<{width}}{text}" for name, text in block.items()]
+        else:
+            lines.append(block if isinstance(block, str) else text_table(block))
+    return "\n".join(lines)
 
 
 def photo_table(photographs: Photographs, result: "Calibration | None" = None) -> str:
@@ -30,7 +54,7 @@ def photo_table(photographs: Photographs, result: "Calibration | None" = None) -
     """
     names, rejected = photographs.named()
     rms = [""] * len(names) if result is None else [f"{x:.3f}" for x in result.view_rms]
-    rows = [list(row) for row in zip(names, rms, map(note_of, photographs.used), strict=True)]
+    rows = [list(row) for row in zip(names, rms, notes_of(photographs, result), strict=True)]
     rows += [[r.file, "–", _fitting(r.reason)] for r in rejected]
     long = dict.fromkeys(str(r.reason) for r in rejected if _fitting(r.reason) != str(r.reason))
     return "\n".join(
@@ -43,14 +67,32 @@ def _fitting(reason: Reason) -> str:
     return words if len(words) <= _WIDE else reason.brief
 
 
-def note_of(photo: Detection) -> str:
-    """Say what was done to a photograph that is used, and how much of the board is lost."""
-    n, lost = len(photo.seen), np.count_nonzero(~photo.seen)
-    far, hidden = len(photo.astray), lost - len(photo.astray)
+def notes_of(photographs: Photographs, result: "Calibration | None" = None) -> list[str]:
+    """Say what was done to each photograph that is used; see `note_of`."""
+    if result is None:
+        return [note_of(photo) for photo in photographs.used]
+    seen = (camera.project(photographs.board.points) for camera in result.cameras)
+    return [note_of(photo, m) for photo, m in zip(photographs.used, seen, strict=True)]
+
+
+def note_of(photo: Detection, m: "Array | None" = None) -> str:
+    """Say what was done to a photograph that is used, and how much of the board is lost.
+
+    As soon as the camera is known, which sees the board's corners at m (n, 2), also why.
+    """
+    n, far, clear = len(photo.seen), len(photo.astray), "they cannot be seen clearly"
+    outside = 0
+    if m is None:
+        clear += ", or are outside the picture"
+    else:
+        inside = ((m > -0.5) & (m < np.array(photo.size) - 0.5)).all(-1)
+        outside = np.count_nonzero(~inside & ~photo.seen)
+    hidden = np.count_nonzero(~photo.seen) - far - outside
     by = ", ".join(f"{d:.1f} px" for d in photo.astray)
     words = [
         photo.note,
-        f"{hidden} of {n} corners left out: they cannot be seen clearly" if hidden else "",
+        f"{outside} of {n} corners are outside the picture" if outside else "",
+        f"{hidden} of {n} corners left out: {clear}" if hidden > 0 else "",
         f"{far} of {n} corners left out: {by} from their place" if far else "",
     ]
     return "; ".join(filter(None, words))
@@ -62,13 +104,13 @@ def photo_csv(photographs: Photographs, result: "Calibration") -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(TABLE_HEADER)
-    for file, rms, photo in zip(names, result.view_rms, photographs.used, strict=True):
-        writer.writerow([harmless(file), f"{rms:.4f}", harmless(note_of(photo))])
+    for file, rms, note in zip(names, result.view_rms, notes_of(photographs, result), strict=True):
+        writer.writerow([harmless(file), f"{rms:.4f}", harmless(note)])
     writer.writerows([harmless(r.file), "", harmless(str(r.reason))] for r in rejected)
     return text.getvalue()
 
 
-def camera_report(result: "Calibration") -> str:
+def camera_report(result: "Calibration") -> list[Block]:
     """Return the camera with its error bars, and what the result rests on."""
     width, height = result.size
     rows = [
@@ -76,31 +118,35 @@ def camera_report(result: "Calibration") -> str:
     ]
     corners = sum(map(len, result.image_points))
     cells = covered_cells(result.image_points, result.size)
-    lines = [
-        f"Camera of {width}×{height} pixels",
-        text_table([["", "value", "± 1 σ", ""], *rows]),
-        *result.notes_on_deviations,
-        f"Field of view   {field_of_view(result)}",
-        f"RMS             {result.rms:.3f} px per point, of {corners} corners in "
+    facts = {
+        "Field of view": field_of_view(result),
+        "RMS": f"{result.rms:.3f} px per point, of {corners} corners in "
         f"{len(result.poses)} photographs",
-        f"Tilt            boards differ by up to {widest_angle(result.poses):.0f}°",
-        f"Coverage        corners in {cells.sum()} of {cells.size} cells of the picture",
-    ]
+        "Tilt": f"boards differ by up to {widest_angle(result.poses):.0f}°",
+        "Coverage": f"corners in {cells.sum()} of {cells.size} cells of the picture",
+    }
     if result.shape is not None:
-        lines.append(f"Board           {_in_mm(result.shape)}")
+        facts["Board"] = _in_mm(result.shape)
+    table = [["", "value", "± 1 σ", ""], *rows]
+    blocks: list[Block] = [
+        f"Camera of {width}×{height} pixels",
+        table,
+        *result.notes_on_deviations,
+        facts,
+    ]
     if (choice := result.choice) is not None:
         for what, rms_of, chosen in (
             ("Lens", choice.by_lens, choice.lens),
             ("Board", choice.by_board, choice.board),
         ):
-            lines += ["", _choice(what, rms_of, chosen)] * (len(rms_of) > 1)
-    return "\n".join(lines)
+            blocks += ["", _choice(what, rms_of, chosen)] * (len(rms_of) > 1)
+    return blocks
 
 
-def _choice(what: str, rms_of: Mapping[str, float], chosen: str) -> str:
+def _choice(what: str, rms_of: Mapping[str, float], chosen: str) -> list[list[str]]:
     """Return how well each lens, or board, predicts photographs that it has not seen."""
     rows = [[name, f"{rms:.3f}", "chosen" * (name == chosen)] for name, rms in rms_of.items()]
-    return text_table([[what, "px off in photographs left out", ""], *rows])
+    return [[what, "px off in photographs left out", ""], *rows]
 
 
 def _in_mm(shape: "BoardShape") -> str:

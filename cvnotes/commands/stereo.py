@@ -17,7 +17,6 @@ from cvnotes.base import (
     CvnotesError,
     DegenerateError,
     FileError,
-    text_table,
 )
 from cvnotes.base.writing import check_folder, printable
 from cvnotes.calibration.thresholds import TIMES_NOISE
@@ -29,12 +28,13 @@ from cvnotes.files.reasons import unread
 from cvnotes.stereo.calibration import SIDES
 
 if TYPE_CHECKING:
+    from cvnotes.commands.report import Block
     from cvnotes.photographs import Photographs
     from cvnotes.photographs.pairs import CalibratedPairs, Pair
     from cvnotes.stereo import RectifiedPair, StereoCalibration
 
 _RESULTS = re.compile(
-    r"rig\.json|calibration\.yml|(left|right)\.yaml|rectified(-left|-right)?\.png"
+    r"rig\.json|calibration\.yml|(left|right)\.yaml|report\.html|rectified-(left|right)\.png"
 )
 
 
@@ -139,15 +139,20 @@ def differences(
 
 def _reported(rig: "CalibratedPairs") -> dict[str, bytes]:
     """Describe what came out; gives the files to write, by name."""
+    from cvnotes.commands.page import block_of, figures, page, photographs, verdict
+    from cvnotes.commands.report import as_text
     from cvnotes.files.exchange import ros_yaml
     from cvnotes.stereo import rectify
     from cvnotes.stereo.saving import camera_infos, opencv_rig_yaml, rig_json
 
     result, found = rig.result, rig.found
     how = "by the number in" if found.by_number else "in the order of"
-    say(f"{len(found.pairs)} pairs, {how} their names")
-    say(_table(rig) + "\n")
+    table = _table(rig)
+    lost = [f"! {printable(r.file)}: {r.reason}" for r in found.rejected]
+    paired = f"{len(found.pairs)} pairs, {how} their names"
+    say(as_text([paired, table, *lost]) + "\n")
     drawn: dict[str, bytes] = {}
+    shown: list[str] = []
     rows: float | None = None
     pair: RectifiedPair | None = None
     doubts = rig.doubts
@@ -157,13 +162,19 @@ def _reported(rig: "CalibratedPairs") -> dict[str, bytes]:
             pair = rectify(result.left, result.right)
             off = [differences(result, pair, a, b) for a, b in zip(*rig.corners, strict=True)]
             rows = float(np.sqrt(np.nanmean(np.concatenate(off) ** 2)))
-            drawn = _pictures(pair, found.pairs[int(np.argmin([np.abs(x).max() for x in off]))])
+            best = int(np.argmin([np.abs(x).max() for x in off]))
+            drawn, shown = _pictures(pair, found.pairs[best])
         except DegenerateError as error:
             doubts.append(f"not rectified: {error}")
     doubts += [str(w.message) for w in caught if issubclass(w.category, CalibrationWarning)]
-    say(_report(rig, rows) + "\n")
+    blocks = _report(rig, rows)
+    say(as_text(blocks) + "\n")
     for sentence in doubts:
         say(f"! {sentence}")
+    parts = [verdict("rig", rig.reliable, doubts), *map(block_of, blocks), *shown]
+    parts += ["<h2>The pairs</h2>", block_of(paired), block_of(table), *map(block_of, lost)]
+    for side, alone in zip(SIDES, rig.alone, strict=True):
+        parts += [f"<h1>The {side} camera by itself</h1>", *figures(alone), *photographs(alone)]
     note, infos = made_by("stereo"), camera_infos(result, pair)
     text = rig_json(
         replace(result, warnings=tuple(rig.doubts), reliable=rig.reliable),
@@ -176,21 +187,21 @@ def _reported(rig: "CalibratedPairs") -> dict[str, bytes]:
         "rig.json": text.encode(),
         "calibration.yml": opencv_rig_yaml(result, pair, note=note).encode(),
         **{f"{info.name}.yaml": ros_yaml(info, note=note).encode() for info in infos},
+        "report.html": page("Two cameras on one rig", parts, note).encode(),
         **drawn,
     }
 
 
-def _table(rig: "CalibratedPairs") -> str:
-    """Return the table of pairs with their RMS, then what was not used with reasons."""
+def _table(rig: "CalibratedPairs") -> list[list[str]]:
+    """Return the table of pairs with their RMS."""
     rows = [
         [printable(a.path.name), printable(b.path.name), *(f"{x:.3f}" for x in rms)]
         for (a, b), rms in zip(rig.found.pairs, rig.result.view_rms, strict=True)
     ]
-    table = text_table([["left", "right", "RMS left (px)", "RMS right (px)"], *rows])
-    return "\n".join([table, *(f"! {printable(r.file)}: {r.reason}" for r in rig.found.rejected)])
+    return [["left", "right", "RMS left (px)", "RMS right (px)"], *rows]
 
 
-def _report(rig: "CalibratedPairs", rows: float | None) -> str:
+def _report(rig: "CalibratedPairs", rows: float | None) -> "list[Block]":
     """Return both cameras and the relative pose, with the error bars that pairs agree on."""
     from cvnotes.base.digits import with_deviation
     from cvnotes.camera import vector_from_rotation
@@ -212,37 +223,40 @@ def _report(rig: "CalibratedPairs", rows: float | None) -> str:
     noise = max(std[f"T_{axis}"] / max(result.std[f"T_{axis}"], 1e-300) for axis in "xyz")
     turn = three(np.degrees(vector_from_rotation(result.R)), "omega", np.degrees)
     alone = (camera.calibration.rms for camera in rig.alone)
-    lines = [
-        text_table(table),
-        f"Rotation right ← left   {turn} degrees",
-        f"T right ← left          {three(result.T, 'T')} mm",
-        f"Base line               {base} mm",
-        f"RMS                     {result.rms:.3f} px per point; each camera by itself "
+    facts = {
+        "Rotation right ← left": f"{turn} degrees",
+        "T right ← left": f"{three(result.T, 'T')} mm",
+        "Base line": f"{base} mm",
+        "RMS": f"{result.rms:.3f} px per point; each camera by itself "
         + ", ".join(f"{rms:.3f}" for rms in alone),
-    ]
+    }
     if rows is not None:
-        lines.append(f"Rows                    {rows:.3f} px RMS between partners, rectified")
-    if noise > TIMES_NOISE:
-        lines.append(
-            f"±: from leaving out pairs, of T {noise:.1f} times what noise alone would give"
-        )
-    return "\n".join(lines)
+        facts["Rows"] = f"{rows:.3f} px RMS between partners, rectified"
+    more = f"±: from leaving out pairs, of T {noise:.1f} times what noise alone would give"
+    return [table, facts, *[more] * (noise > TIMES_NOISE)]
 
 
-def _pictures(pair: "RectifiedPair", photos: "Pair") -> dict[str, bytes]:
+def _pictures(pair: "RectifiedPair", photos: "Pair") -> tuple[dict[str, bytes], list[str]]:
     """Rectify a pair of photographs, and draw it before and after."""
     from PIL import Image
 
-    from cvnotes.show import draw_rows
-    from cvnotes.show.picture import encode, figure_of
+    from cvnotes.commands.page import figure
+    from cvnotes.commands.pictures import partners
     from cvnotes.warping import backward_warp
 
     before = [read_photo(photo.path).grey for photo in photos]
     maps = (pair.left_map, pair.right_map)
     after = [backward_warp(image, m) for image, m in zip(before, maps, strict=True)]
-    drawn = {"rectified.png": encode(figure_of(draw_rows(before, after)), jpeg=False)[0]}
+    drawn = {}
     for side, image in zip(("left", "right"), after, strict=True):
         encoded = io.BytesIO()
         Image.fromarray(image).save(encoded, "PNG")
-        drawn[f"rectified-{side}.png"] = encoded.getvalue()
-    return {name: marked(png, "stereo") for name, png in drawn.items()}
+        drawn[f"rectified-{side}.png"] = marked(encoded.getvalue(), "stereo")
+    shown = [
+        figure(partners(each, words, pair.axis), words)
+        for each, words in (
+            (before, "As they were taken: left and right."),
+            (after, "Rectified: partners lie on the same line."),
+        )
+    ]
+    return drawn, ["<h2>A pair, before and after</h2>", *shown]

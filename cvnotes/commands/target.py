@@ -19,40 +19,19 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         description="Write a chessboard to print, as PDF or SVG in true millimetres, with two "
         "rulers that show whether the printer kept the scale.",
     )
-    parser.add_argument(
-        "--corners", type=corners, default=(9, 6), metavar="9x6", help="inner corners (default 9x6)"
-    )
-    parser.add_argument(
-        "--square",
-        type=length,
-        default=25.0,
-        metavar="25",
-        help="side of a square in mm (default 25)",
-    )
-    parser.add_argument(
-        "--paper", type=_paper, choices=list(PAPERS), default="A4", help="paper (default A4)"
-    )
-    parser.add_argument(
-        "--out", required=True, metavar="board.pdf", help="file to write, .pdf or .svg"
-    )
-    parser.add_argument(
-        "--half-turn-symmetric",
-        action="store_true",
-        help="allow a board whose origin no picture can tell",
-    )
-    parser.add_argument(
-        "--charuco",
-        nargs="?",
-        const="4x4_50",
-        metavar="4x4_50",
-        help="with numbered markers of this dictionary (default 4x4_50) in the light squares",
-    )
-    parser.add_argument(
-        "--marker",
-        type=length,
-        metavar="18.75",
-        help="side of its markers in mm (default: three quarters of a square)",
-    )
+    add = parser.add_argument
+    add("--corners", type=corners, default=(9, 6), metavar="9x6",
+        help="inner corners (default 9x6)")  # fmt: skip
+    add("--square", type=length, default=25.0, metavar="25",
+        help="side of a square in mm (default 25)")  # fmt: skip
+    add("--paper", type=_paper, choices=list(PAPERS), default="A4", help="paper (default A4)")
+    add("--out", required=True, metavar="board.pdf", help="file to write, .pdf or .svg")
+    add("--half-turn-symmetric", action="store_true",
+        help="allow a board whose origin no picture can tell")  # fmt: skip
+    add("--charuco", nargs="?", const="4x4_50", metavar="4x4_50", help="with numbered markers "
+        "of this dictionary (default 4x4_50) in the light squares")  # fmt: skip
+    add("--marker", type=length, metavar="18.75",
+        help="side of its markers in mm (default: three quarters of a square)")  # fmt: skip
     parser.set_defaults(run=run)
 
 

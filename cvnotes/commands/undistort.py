@@ -12,14 +12,7 @@ from cvnotes.base.writing import check_folder, printable
 from cvnotes.camera import Camera
 from cvnotes.commands.console import complain, progress, say, shortfall
 from cvnotes.commands.target import length
-from cvnotes.files import (
-    Photo,
-    Rejected,
-    open_photos,
-    read_camera,
-    write_camera,
-    write_whole,
-)
+from cvnotes.files import Photo, Rejected, open_photos, read_camera, write_camera, write_whole
 from cvnotes.files.ownership import free_name, made_by, marked, numbered, photographs
 from cvnotes.files.reasons import OtherSize, Unreadable, unread
 from cvnotes.warping.framing import ideal_camera

@@ -1,14 +1,8 @@
 """Photographs read; cameras written and read, in our format and in those of others."""
 
 from cvnotes.base.writing import write_whole
-from cvnotes.files.cameras import (
-    read_camera,
-    read_camera_info,
-    read_rig,
-    write_camera,
-    write_camera_info,
-)
-from cvnotes.files.exchange import CameraInfo, lens_from_opencv
+from cvnotes.files.cameras import read_camera, read_camera_info, read_rig, write_camera
+from cvnotes.files.exchange import CameraInfo, lens_from_opencv, ros_yaml
 from cvnotes.files.photos import Photo, list_photos, open_photos, read_photo, read_photos
 from cvnotes.files.reasons import Reason, Rejected
 
@@ -23,7 +17,7 @@ __all__ = [
     "read_camera",
     "write_camera",
     "read_camera_info",
-    "write_camera_info",
+    "ros_yaml",
     "read_rig",
     "CameraInfo",
     "lens_from_opencv",

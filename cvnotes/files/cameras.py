@@ -12,7 +12,7 @@ from cvnotes.base.writing import PathLike, printable, write_whole
 from cvnotes.camera import AnyLens, Camera, Lens, pose
 from cvnotes.camera.any_lens import MODELS
 from cvnotes.files.entry import Entry
-from cvnotes.files.exchange import CameraInfo, camera_info, opencv_yaml, ros_yaml
+from cvnotes.files.exchange import CameraInfo, camera_info, opencv_yaml
 from cvnotes.files.strict import MAX_YAML_BYTES, parse_json, parse_yaml, read_text
 
 FORMAT, RIG = "cvnotes camera", "cvnotes rig"
@@ -55,11 +55,6 @@ def read_camera(path: PathLike) -> Camera:
     if _is_yaml(path):
         return read_camera_info(path).camera
     return camera_from_entry(parse_json(read_text(path), printable(path)))
-
-
-def write_camera_info(info: CameraInfo, path: PathLike) -> None:
-    """Write a camera as the ``camera_info`` YAML of ROS, whole or not at all."""
-    write_whole({Path(path): ros_yaml(info).encode()})
 
 
 def read_camera_info(path: PathLike) -> CameraInfo:

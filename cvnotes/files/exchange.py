@@ -87,6 +87,8 @@ def opencv_yaml(camera: Camera, *, note: str = "") -> str:
 def ros_yaml(info: CameraInfo, *, note: str = "") -> str:
     """Spell a camera as ROS's camera_info_manager and calibrators read it.
 
+    A note for whoever opens the file goes to its beginning.
+
     Examples
     --------
     >>> from cvnotes.camera import intrinsics

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import shorten
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 _FEW = 80  # letters of a reason in brief
 
@@ -19,10 +19,16 @@ class Reason:
     '480×640 pixels where most photographs have 640×480; was it turned by an editor?'
     """
 
+    words: ClassVar[str]  # its fields stand in it by their names
+    more: ClassVar[str] = ""  # for which a line has no room
+
+    def __str__(self) -> str:
+        return self.words.format(**vars(self)) + self.more
+
     @property
     def brief(self) -> str:
         """The words without what is more than a line."""
-        return shorten(str(self), _FEW, placeholder=" …")
+        return shorten(str(self).removesuffix(self.more), _FEW, placeholder=" …")
 
 
 @dataclass(frozen=True)
@@ -30,9 +36,7 @@ class Unreadable(Reason):
     """It is no photograph, or damaged; `why` comes from who tried to read it."""
 
     why: str
-
-    def __str__(self) -> str:
-        return self.why
+    words = "{why}"
 
 
 @dataclass(frozen=True)
@@ -59,9 +63,7 @@ class Copy(Reason):
     """It has the same pixels as another, which came first."""
 
     of: str
-
-    def __str__(self) -> str:
-        return f"the same picture as {self.of}"
+    words = "the same picture as {of}"
 
 
 @dataclass(frozen=True)
@@ -86,19 +88,8 @@ class Rejected(NamedTuple):
 
 
 # Endings of photographs; what else lies in a folder was not asked for.
-_PICTURES = {
-    ".jpg",
-    ".jpeg",
-    ".png",
-    ".tif",
-    ".tiff",
-    ".bmp",
-    ".webp",
-    ".heic",
-    ".heif",
-    ".pgm",
-    ".ppm",
-}
+_PICTURES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp", ".heic", ".heif",
+             ".pgm", ".ppm")  # fmt: skip
 
 
 def unread(rejected: Iterable[Rejected], named: Iterable[str]) -> int:

@@ -83,12 +83,12 @@ def dlt(src: Array, dst: Array) -> Array:
     """
     N1, N2 = normaliser.inside(src), normaliser.inside(dst)
     src, dst = apply_similarity(N1, src), apply_similarity(N2, dst)
-    D = design_matrix.inside(src, dst)
-    # DᵀD has D's right singular vectors, for half of the price; where it has too few digits, D
-    # itself is asked. (D = Q R, and as QᵀQ = I, the 9 × 9 of R has the same vectors as D.)
-    squares, V = np.linalg.eigh(D.mT @ D)
+    # DᵀD has D's right singular vectors, for less; where it has too few digits, D itself is
+    # asked. (D = Q R, and as QᵀQ = I, the 9 × 9 of R has the same vectors as D.)
+    squares, V = np.linalg.eigh(normal_matrix(src, dst))
     h, bad = V[..., 0], np.asarray(squares[..., 1] < _DOUBTFUL * squares[..., 8])
     if bad.any():
+        D = design_matrix.inside(src, dst)
         _, s, Vt = np.linalg.svd(np.linalg.qr(D[bad], mode="r"))
         h[bad], bad[bad] = Vt[:, 8], s[:, 7] <= RANK * s[:, 0]
         refuse_sets(bad, src, dst)
@@ -98,6 +98,19 @@ def dlt(src: Array, dst: Array) -> Array:
     sign = np.where(H[..., 2, 2] < 0, -1.0, 1.0)[..., None, None]
     H = inverse_similarity(N2) @ H @ N1
     return np.asarray(H * (sign / np.sqrt((H * H).sum((-2, -1), keepdims=True))))
+
+
+def normal_matrix(src: Array, dst: Array) -> Array:
+    """Return DᵀD (..., 9, 9) of `design_matrix`, without making D.
+
+    It is the sum of [1, 0, −u; 0, 1, −v; −u, −v, u² + v²] ⊗ W̃'W̃'ᵀ over the pairs.
+    """
+    W, u, v = to_homogeneous.inside(src), dst[..., 0], dst[..., 1]
+    WW = (W[..., :, None] * W[..., None, :]).reshape(*W.shape[:-1], 9)
+    one, none = np.ones_like(u), np.zeros_like(u)
+    rows = np.stack([one, none, -u, none, one, -v, -u, -v, u * u + v * v], axis=-2)
+    N = rows @ WW
+    return np.asarray(N.reshape(*N.shape[:-2], 3, 3, 3, 3).swapaxes(-3, -2).reshape(N.shape))
 
 
 def refuse_singular(H: Array, src: Array, dst: Array) -> None:

@@ -9,12 +9,7 @@ from cvnotes.photographs.driver import (
     detect_photographs,
 )
 from cvnotes.photographs.pairs import CalibratedPairs, calibrate_pairs
-from cvnotes.photographs.reasons import (
-    Exchanged,
-    LeftOut,
-    Misfit,
-    NoBoard,
-)
+from cvnotes.photographs.reasons import Exchanged, LeftOut, Misfit, NoBoard
 
 __all__ = [
     "calibrate_photographs",

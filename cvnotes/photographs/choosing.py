@@ -13,7 +13,7 @@ from cvnotes.calibration.thresholds import FEWEST_KEPT, PART_KEPT, ROUNDS
 from cvnotes.calibration.two_cameras import TwoCameras, two_cameras
 from cvnotes.files import Reason
 from cvnotes.photographs.detection import Photographs
-from cvnotes.photographs.mirrored import doubted, mirrored, with_doubt
+from cvnotes.photographs.mirrored import mirrored, with_doubt, with_doubt_of_mirrored
 from cvnotes.photographs.reasons import Exchanged, Misfit
 
 
@@ -86,21 +86,23 @@ def choose(
     except CvnotesError as error:
         message = f"{len(photographs.used)} usable photographs; {error}"
         raise NoCamera(message, photographs) from error
-    if not mirrored(photographs, result) and (two := two_cameras(result)):
+    two = two_cameras(result)
+    exchanged = mirrored(photographs, result, two)
+    if two and not exchanged:
         return with_doubt(result, _of_two_cameras(two, result)), photographs
     fewest = max(FEWEST_KEPT, PART_KEPT * len(photographs.used))
     for _ in range(0 if keep_all else ROUNDS):
         kept = _without_corners_astray(photographs, result)
         if kept is photographs:
-            kept = photographs.without(_strangers(photographs, result))
+            kept = photographs.without(_strangers(result, exchanged))
         if kept is photographs or len(kept.used) < fewest:
             break
         try:
             result = fit(kept, model)
         except CvnotesError:  # these alone do not determine the camera
             break
-        photographs = kept
-    return doubted(result, mirrored(photographs, result)), photographs
+        photographs, exchanged = kept, mirrored(kept, result, two_cameras(result))
+    return with_doubt_of_mirrored(result, exchanged), photographs
 
 
 def _of_two_cameras(two: TwoCameras, result: Calibration) -> Doubt:
@@ -122,11 +124,11 @@ def _without_corners_astray(photographs: Photographs, result: Calibration) -> Ph
     return photographs.without_corners(astray(distances), distances)
 
 
-def _strangers(photographs: Photographs, result: Calibration) -> dict[int, Reason]:
+def _strangers(result: Calibration, exchanged: list[int]) -> dict[int, Reason]:
     """List the used photographs that do not fit the others, with the reasons, by their numbers."""
     typical = float(np.median(result.view_rms))
     bad: dict[int, Reason] = {
         i: Misfit(float(result.view_rms[i]), typical) for i in misfits(result.view_rms).tolist()
     }
-    bad |= {i: Exchanged() for i in mirrored(photographs, result)}
+    bad |= {i: Exchanged() for i in exchanged}
     return dict(sorted(bad.items()))

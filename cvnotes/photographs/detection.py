@@ -22,7 +22,13 @@ from cvnotes.files.video import Progress, frames_of, unseen
 from cvnotes.photographs.reasons import FramesTaken, LeftOut, NoBoard
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.markers import find_numbered, one_thread_each
+from cvnotes.targets.markers import (
+    PROBABLE,
+    family,
+    find_numbered,
+    one_thread_each,
+    other_dictionary,
+)
 
 Board = Chessboard | CharucoBoard
 Given = PathLike | Photo | npt.ArrayLike  # one photograph, or a folder of them
@@ -281,19 +287,50 @@ def count(photos: Sequence[Path | Photo]) -> tuple[int, int]:
     DegenerateError
         There is no board in any of them.
     """
-    counts: dict[tuple[int, int], int] = {}
-    for found in in_order(_count, photos, workers=_workers(photos)):
-        if found:
-            counts[found] = counts.get(found, 0) + 1
-            if counts[found] == _SURE:
-                break
-    if not counts:
-        raise DegenerateError("no chessboard with 3×3 inner corners or more was found in any")
-    return max(counts, key=lambda found: counts[found])
+    counting = Counting()
+    for found in in_order(count_in, photos, workers=_workers(photos)):
+        if counting.add(found):
+            break
+    return counting.most
 
 
-def _count(item: Path | Photo) -> tuple[int, int] | None:
-    photo = item if isinstance(item, Photo) else open_photo(item)
+class Counting:
+    """Counts the inner corners of a board, in one photograph after the other.
+
+    Examples
+    --------
+    >>> counting = Counting()
+    >>> [counting.add(found) for found in ((9, 6), None, (8, 6), (9, 6), (9, 6))]
+    [False, False, False, False, True]
+    >>> counting.most
+    (9, 6)
+    """
+
+    def __init__(self) -> None:
+        self._seen: Counter[tuple[int, int]] = Counter()
+
+    def add(self, found: tuple[int, int] | None) -> bool:
+        """Add what one of them shows, if anything; tell whether enough of them agree."""
+        self._seen.update([found] if found else [])
+        return found is not None and self._seen[found] == _SURE
+
+    @property
+    def most(self) -> tuple[int, int]:
+        """Inner corners (columns, rows), as most of them show.
+
+        Raises
+        ------
+        DegenerateError
+            There is no board in any of them.
+        """
+        if not self._seen:
+            raise DegenerateError("no chessboard with 3×3 inner corners or more was found in any")
+        return self._seen.most_common(1)[0][0]
+
+
+def count_in(item: Path | Photo) -> tuple[int, int] | None:
+    """Count the inner corners of the board in one photograph, if there is one."""
+    photo = item if isinstance(item, Photo) else open_photo(item, grey=True)
     return None if isinstance(photo, Rejected) else count_corners(photo.grey)
 
 
@@ -303,22 +340,22 @@ def probed(photos: Sequence[Path | Photo], board: CharucoBoard) -> CharucoBoard:
     Raises
     ------
     DegenerateError
-        The first photographs have markers of another dictionary.
+        The first two photographs that have markers have those of another dictionary.
     """
-    other = 0
+    other: list[str] = []
     for item in photos:
         photo = item if isinstance(item, Photo) else open_photo(item, grey=True)
         if isinstance(photo, Rejected):
             continue
-        seen = find_numbered(photo.grey, *board.read_by)
-        if seen.legacy is not None:
+        if there := other_dictionary(photo.grey, board.dictionary, other or PROBABLE):
+            if other:
+                raise DegenerateError(
+                    f"the first photographs have markers of {family(there)}, not "
+                    f"{board.dictionary}: was the board made with these?"
+                )
+            other = [there]
+        elif (seen := find_numbered(photo.grey, *board.read_by)).legacy is not None:
             return replace(board, legacy=seen.legacy)
-        other += bool(seen.other)
-        if other == _SURE:
-            raise DegenerateError(
-                f"the first photographs have markers of {seen.other}, not {board.dictionary}: was "
-                "the board made with these?"
-            )
     return board
 
 

@@ -29,7 +29,7 @@ def judge(result: Calibration, photographs: Photographs) -> list[str]:
     exchanged = [r.file for r in rejected if isinstance(r.reason, Exchanged)]
     if exchanged:
         sentences.append(
-            f"{', '.join(exchanged)}: {Exchanged().brief}, so the camera was calibrated without; "
+            f"{', '.join(exchanged)}: {Exchanged.words}, so the camera was calibrated without; "
             "was it a front camera, or an editing program?"
         )
     if any(photo.turned for photo in photographs.used):

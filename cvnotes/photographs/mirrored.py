@@ -9,15 +9,17 @@ from cvnotes.calibration import Calibration
 from cvnotes.calibration.doubts import Doubt, View, Views
 from cvnotes.calibration.pose import rms_of_views
 from cvnotes.calibration.thresholds import ALIKE, EXCHANGED, MANY_VIEWS, MISSES_MORE
-from cvnotes.calibration.two_cameras import two_cameras
+from cvnotes.calibration.two_cameras import TwoCameras
 from cvnotes.camera import Camera
 from cvnotes.photographs.detection import Photographs
 from cvnotes.photographs.reasons import Exchanged
 from cvnotes.targets import CharucoBoard, Chessboard
 
 
-def mirrored(photographs: Photographs, result: Calibration) -> list[int]:
+def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | None) -> list[int]:
     """List the photographs that miss more than others, and that a mirror explains.
+
+    `two` are the cameras that explain the photographs better than one, if there are such.
 
     An honest view of a steep board may fit better in a mirror, too, where the lens is not quite
     that of the camera; but it does not miss more than others as it is. Of a ChArUco board the
@@ -27,7 +29,7 @@ def mirrored(photographs: Photographs, result: Calibration) -> list[int]:
     if isinstance(board, CharucoBoard):
         return []
     m, as_is = np.array([photo.corners for photo in photographs.used]), result.view_rms
-    if two := two_cameras(result):
+    if two:
         # as many as those that are not mirrored, or nearly: none of them misses more
         strange, seen_by = np.flatnonzero(two.second), two.cameras[0]
         limit = np.full(len(m), ALIKE * np.median(two.view_rms[strange]))
@@ -61,13 +63,13 @@ def _in_a_mirror(
     return np.asarray(np.min(found, axis=0))
 
 
-def doubted(result: Calibration, exchanged: list[int]) -> Calibration:
+def with_doubt_of_mirrored(result: Calibration, exchanged: list[int]) -> Calibration:
     """Return a result that rests on mirrored photographs too: no camera shows both kinds."""
     if not exchanged:
         return result
     several = len(exchanged) > 1
     doubt = Doubt(
-        f"{{}}: {Exchanged().brief}, for the camera fits {'them' if several else 'it'} better so; "
+        f"{{}}: {Exchanged.words}, for the camera fits {'them' if several else 'it'} better so; "
         "was it a front camera, or an editing program? Leave out what is mirrored, or turn it back",
         Views(tuple(exchanged)) if several else View(exchanged[0]),
     )

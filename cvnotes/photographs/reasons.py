@@ -12,8 +12,7 @@ _ALL_THE_SAME = "left out; --keep-all uses it all the same"
 class LeftOut(Reason):
     """Whoever asked does not want it."""
 
-    def __str__(self) -> str:
-        return "left out, as asked"
+    words = "left out, as asked"
 
 
 @dataclass(frozen=True)
@@ -22,9 +21,7 @@ class FramesTaken(Reason):
 
     taken: int
     of: int
-
-    def __str__(self) -> str:
-        return f"a video: of {self.of} frames {self.taken} that are sharp, still and different"
+    words = "a video: of {of} frames {taken} that are sharp, still and different"
 
 
 @dataclass(frozen=True)
@@ -48,30 +45,16 @@ class Misfit(Reason):
 
     rms: float
     typical: float
-
-    def __str__(self) -> str:
-        return f"{self.brief} (moved, zoomed, rotated or badly found; {_ALL_THE_SAME})"
-
-    @property
-    def brief(self) -> str:
-        """The two numbers."""
-        return (
-            f"does not fit the others: {self.rms:.2f} px, a typical photograph {self.typical:.2f} "
-            "px"
-        )
+    words = "does not fit the others: {rms:.2f} px, a typical photograph {typical:.2f} px"
+    more = f" (moved, zoomed, rotated or badly found; {_ALL_THE_SAME})"
 
 
 @dataclass(frozen=True)
 class Exchanged(Reason):
     """The camera explains it better with left and right exchanged."""
 
-    def __str__(self) -> str:
-        return f"{self.brief} ({_ALL_THE_SAME})"
-
-    @property
-    def brief(self) -> str:
-        """What it seems."""
-        return "left and right seem exchanged"
+    words = "left and right seem exchanged"
+    more = f" ({_ALL_THE_SAME})"
 
 
 @dataclass(frozen=True)
@@ -79,9 +62,7 @@ class NoPartner(Reason):
     """There is no photograph of the other camera that belongs to it."""
 
     side: str
-
-    def __str__(self) -> str:
-        return f"no {self.side} photograph belongs to it"
+    words = "no {side} photograph belongs to it"
 
 
 @dataclass(frozen=True)
@@ -89,9 +70,7 @@ class PartnerNotUsed(Reason):
     """The photograph that belongs to it is not used; it has its own reason."""
 
     partner: str
-
-    def __str__(self) -> str:
-        return f"its partner {self.partner} is not used"
+    words = "its partner {partner} is not used"
 
 
 @dataclass(frozen=True)
@@ -100,6 +79,4 @@ class FewInCommon(Reason):
 
     partner: str
     corners: int
-
-    def __str__(self) -> str:
-        return f"only {self.corners} corners are also seen in its partner {self.partner}"
+    words = "only {corners} corners are also seen in its partner {partner}"

@@ -27,12 +27,7 @@ from cvnotes.show.figures.formation import (
 )
 from cvnotes.show.figures.ideas import draw_mapped, draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
-from cvnotes.show.figures.least_squares import (
-    draw_singular_values,
-    draw_stretched_circle,
-    draw_two_errors,
-    draw_valley,
-)
+from cvnotes.show.figures.least_squares import draw_stretched_circle, draw_two_errors, draw_valley
 from cvnotes.show.figures.lenses import (
     draw_angles,
     draw_displacement,
@@ -43,11 +38,7 @@ from cvnotes.show.figures.lenses import (
 )
 from cvnotes.show.figures.lines import draw_classes, draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
-from cvnotes.show.figures.quality import (
-    draw_board_shape,
-    draw_coverage,
-    draw_residuals,
-)
+from cvnotes.show.figures.quality import draw_board_shape, draw_coverage, draw_residuals
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
 from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits, draw_rows
 from cvnotes.show.picture import Picture, show
@@ -112,7 +103,6 @@ __all__ = [
     "draw_response",
     "draw_clouds",
     # chapters 5 and 6: least squares
-    "draw_singular_values",
     "draw_stretched_circle",
     "draw_two_errors",
     "draw_valley",

@@ -138,3 +138,16 @@ def as_picture(ax: "Axes", size: tuple[int, int], *, ticks: bool = True) -> "Axe
         ax.set(xticks=[], yticks=[])
     ax.spines[["top", "right"]].set(visible=True, color=MUTED)
     return ax
+
+
+def beside(ax: "Axes", text: str, at: Any, by: Any, colour: str | None = None, **more: Any) -> None:
+    """Write words beside a place: `by` so many points of paper, to the right and upwards."""
+    ax.annotate(text, at, by, textcoords="offset points", color=colour, **more)
+
+
+def arrow(
+    ax: "Axes", start: Any, end: Any, colour: str, width: float, gap: float = 0, **more: Any
+) -> None:
+    """Draw an arrow from one place to another, or to so many points of paper before it."""
+    style = {"arrowstyle": "-|>", "color": colour, "lw": width, "shrinkA": gap, "shrinkB": gap}
+    ax.annotate("", tuple(end), tuple(start), arrowprops=style, **more)

@@ -22,14 +22,7 @@ from cvnotes.calibration.doubts import Doubt, Views
 from cvnotes.calibration.refinement import Problem, covariance, refuse_too_few
 from cvnotes.calibration.reliability import Diagnostics, judge
 from cvnotes.calibration.thresholds import MOVED, OF_PICTURE
-from cvnotes.camera import (
-    Camera,
-    chain,
-    inverse,
-    nearest_rotation,
-    pose,
-    vector_from_rotation,
-)
+from cvnotes.camera import Camera, chain, inverse, nearest_rotation, pose, vector_from_rotation
 from cvnotes.camera.model import is_camera
 from cvnotes.homography import dlt
 from cvnotes.stereo.jackknife import covariance_over_pairs
@@ -258,8 +251,8 @@ def refined(
     held = problem.left.held[len(problem.left.names) :]
     s = best.x.left.shared[len(problem.left.names) :]
     cost = best.cost - float(held @ s**2)
-    told = len(s) - float(held @ np.diag(unit)[q:])
-    variance = cost / (measured - unknowns - told)
+    determined = len(s) - float(held @ np.diag(unit)[q:])
+    variance = cost / (measured - unknowns - determined)
     scale = np.ones(q)
     scale[-3:] = pairs[0].scale  # T, back in the unit of the board
     scale = np.outer(scale, scale)

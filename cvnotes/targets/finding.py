@@ -1,24 +1,19 @@
 """From a picture to the ordered corners of a board."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CornersNotFound, InputTypeError
+from cvnotes.base import Array, InputTypeError
 from cvnotes.targets.charuco import CharucoBoard
 from cvnotes.targets.charuco_corners import measured_numbered
 from cvnotes.targets.chessboard import Chessboard
-from cvnotes.targets.grey import Grey8, eight_bits, grey_picture, reduced
-from cvnotes.targets.lattice import NotABoard, measured
+from cvnotes.targets.doubts import NotABoard, check_whole, not_found
+from cvnotes.targets.grey import Grey8, copies, eight_bits, grey_picture
+from cvnotes.targets.lattice import as_asked, measured
 from cvnotes.targets.markers import find_numbered
-from cvnotes.targets.saddle_points import lattices, seen
+from cvnotes.targets.saddle_points import lattices
 
-# Pixels of the smallest copy of a picture in which a board is looked for, and of the largest. In
-# the smallest, its squares are 10 px wide if it fills a quarter of the picture.
-_SMALLEST, _LARGEST = 80_000, 12_000_000
 _COUNTED = 1_300_000  # pixels of the largest copy in which corners are counted
-_SAME = 0.3  # of a square: nearer to each other, two corners are the same
 
 
 def find_corners(
@@ -92,9 +87,9 @@ def find_corners(
         tried += [] if there else [f"{at}: not found"]
         for lattice in there:
             try:
-                found = _as_asked(lattice, board.corners, k)
+                found = as_asked(lattice, board.corners, k)
                 m = measured(picture, found, copy=copy, k=k, partial=partial)
-                _check_whole(m, board.corners, doubts)
+                check_whole(m, board.corners, doubts)
             except NotABoard as doubt:
                 tried.append(f"{at}: {doubt}")
                 doubts.append(doubt)
@@ -103,7 +98,7 @@ def find_corners(
             if np.isfinite(best).all():
                 return best
     if not len(best):
-        raise _not_found(picture.shape, board, tried, doubts)
+        raise not_found(picture.shape, board, tried, doubts)
     return best
 
 
@@ -151,95 +146,7 @@ def rough_corners(grey: Grey8, corners: tuple[int, int]) -> Array | None:
     for k, copy in copies(grey):
         for lattice in lattices(copy):
             try:
-                return ((_as_asked(lattice, corners, k) + 0.5) * k - 0.5).reshape(-1, 2)
+                return ((as_asked(lattice, corners, k) + 0.5) * k - 0.5).reshape(-1, 2)
             except NotABoard:
                 continue
     return None
-
-
-def copies(grey: Grey8, largest: int = _LARGEST) -> Iterator[tuple[int, Grey8]]:
-    """Yield reduced copies of a picture, and by how much they are, the smallest first."""
-    k = max(round(np.sqrt(grey.size / _SMALLEST)), 1)
-    while k:
-        if grey.size <= largest * k * k:
-            yield k, reduced(grey, k)
-        k //= 2
-
-
-def _as_asked(lattice: Array, corners: tuple[int, int], k: int) -> Array:
-    """Turn a lattice so that it has as many columns and rows as were asked for."""
-    columns, rows = corners
-    if lattice.shape[:2] == (columns, rows):
-        lattice = lattice.transpose(1, 0, 2)
-    if lattice.shape[:2] != (rows, columns):
-        count = max(lattice.shape[:2]), min(lattice.shape[:2])
-        found = (lattice[seen(lattice)] + 0.5) * k - 0.5
-        there = f"{count[0]}×{count[1]} corners"
-        raise NotABoard(f"found {there}", count, found, instead=f"{there} are there")
-    return lattice
-
-
-def _check_whole(m: Array, corners: tuple[int, int], doubts: list[NotABoard]) -> None:
-    """Refuse corners that are a part of a larger board that was seen before.
-
-    Raises
-    ------
-    NotABoard
-        With the larger board's count.
-    """
-    side = float(np.nanmedian(np.linalg.norm(np.diff(m, axis=0), axis=-1)))
-    for doubt in doubts:
-        if doubt.count is None or doubt.found is None or np.prod(doubt.count) <= np.prod(corners):
-            continue
-        away = np.linalg.norm(m[:, None] - doubt.found, axis=-1).min(1)
-        if 2 * np.count_nonzero(away < _SAME * side) > len(m):
-            columns, rows = doubt.count
-            part = f"a part of {columns}×{rows} corners"
-            raise NotABoard(part, doubt.count, doubt.found, instead=doubt.instead)
-
-
-def _largest(doubts: list[NotABoard]) -> tuple[int, int] | None:
-    """Return the count of the largest board among those found instead."""
-    counts = [doubt.count for doubt in doubts if doubt.count]
-    return max(counts, key=lambda count: count[0] * count[1], default=None)
-
-
-def _not_found(
-    shape: tuple[int, ...], board: Chessboard, tried: list[str], doubts: list[NotABoard]
-) -> CornersNotFound:
-    """Describe what was looked for, what was tried, and what probably went wrong."""
-    (columns, rows), (height, width) = board.corners, shape
-    start = (
-        f"no board of {columns}×{rows} inner corners found in a picture of {width}×{height} pixels"
-    )
-    if not tried:
-        few = f"{start}: boards need at least 3 inner corners along each side to be found"
-        return CornersNotFound(few)
-    lesson = f"{start} ({'; '.join(dict.fromkeys(tried))}); {_guess(board, doubts)}"
-    if not doubts:
-        return CornersNotFound(lesson, brief=start)
-    most = max(doubts, key=lambda doubt: 0 if doubt.found is None else len(doubt.found))
-    brief = f"{start}: {most.instead}"
-    return CornersNotFound(lesson, brief=brief, found=most.found, count=_largest(doubts))
-
-
-def _guess(board: Chessboard, doubts: list[NotABoard]) -> str:
-    """Guess what went wrong, from what was found instead."""
-    long, short = max(board.corners), min(board.corners)
-    count = _largest(doubts)
-    # Where the board that was asked for was found, a smaller one is a part of it.
-    if count and (count[0] * count[1] > long * short or all(doubt.count for doubt in doubts)):
-        columns, rows = count
-        there = f"but a board of {columns}×{rows} inner corners is there"
-        if (columns, rows) == (long - 1, short - 1):
-            return f"{there}: were its squares counted instead of its inner corners?"
-        if columns > long or rows > short:
-            return f"{there}: were all of its inner corners counted?"
-        return (
-            f"only {columns}×{rows} of them can be seen: is the whole board in the picture, with "
-            "paper around it and unhidden, and are its inner corners counted right?"
-        )
-    return (
-        "is the whole board in the picture, with paper around it, unhidden and sharp, and are "
-        "its inner corners (where four squares meet) counted, not its squares?"
-    )

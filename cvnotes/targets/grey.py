@@ -1,18 +1,18 @@
-"""The grey levels of a picture: as they are, in eight bits, reduced, smoothed, the largest around.
+"""The grey levels of a picture: as they are, in eight bits, and in reduced copies."""
 
-Of whole pictures OpenCV is asked first: SciPy takes longer to load than most pictures to be looked
-at. Both give the same.
-"""
-
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, Image, ShapeError, checked_image, luma, stretched
+from cvnotes.base import CvnotesError, Image, ShapeError, checked_image, luma, stretched
 
 Grey8 = npt.NDArray[np.uint8]
 
+# Pixels of the smallest copy of a picture in which a board is looked for, and of the largest. In
+# the smallest, its squares are 10 px wide if it fills a quarter of the picture.
+_SMALLEST, _LARGEST = 80_000, 12_000_000
 _BRIGHTEST = 1e9  # fourth powers of grey levels fit into single precision
 
 
@@ -76,39 +76,10 @@ def reduced(grey: Grey8, k: int) -> Grey8:
     return ((total + k * k // 2) // (k * k)).astype(np.uint8)
 
 
-def smoothed(grey: npt.NDArray[np.float32], sigma: float) -> npt.NDArray[np.float32]:
-    """Smooth with a Gaussian of `sigma` pixels; beyond its border the picture is mirrored.
-
-    Examples
-    --------
-    >>> smoothed(np.array([[0, 0, 1, 0, 0]], dtype=np.float32), 0.5).round(2)
-    array([[0.  , 0.11, 0.79, 0.11, 0.  ]], dtype=float32)
-    """
-    try:
-        from cv2 import BORDER_REFLECT, GaussianBlur
-    except ImportError:
-        from scipy.ndimage import gaussian_filter
-
-        return np.asarray(gaussian_filter(grey, sigma), dtype=np.float32)
-    blurred = GaussianBlur(grey, (0, 0), sigma, borderType=BORDER_REFLECT)
-    return np.asarray(blurred, dtype=np.float32)
-
-
-def largest_around(x: Array, size: int) -> Array:
-    """Return the largest number in a square of size × size pixels around each.
-
-    Examples
-    --------
-    >>> largest_around(np.array([[0.0, 3, 0, 0, 1]]), 3)
-    array([[3., 3., 3., 1., 1.]])
-    """
-    if not x.size:
-        return x
-    try:
-        from cv2 import dilate
-    except ImportError:
-        from scipy.ndimage import maximum_filter
-
-        return np.asarray(maximum_filter(x, size), dtype=np.float64)
-    largest = dilate(x, np.ones((size, size), np.uint8))
-    return np.asarray(largest, dtype=np.float64).reshape(x.shape)
+def copies(grey: Grey8, largest: int = _LARGEST) -> Iterator[tuple[int, Grey8]]:
+    """Yield reduced copies of a picture, and by how much they are, the smallest first."""
+    k = max(round(np.sqrt(grey.size / _SMALLEST)), 1)
+    while k:
+        if grey.size <= largest * k * k:
+            yield k, reduced(grey, k)
+        k //= 2

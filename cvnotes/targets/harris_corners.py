@@ -13,7 +13,7 @@ from cvnotes.base import (
     numbers,
     whole,
 )
-from cvnotes.targets.grey import grey_picture, largest_around
+from cvnotes.targets.grey import grey_picture
 
 
 def harris(image: npt.ArrayLike, *, sigma: float = 1.5, k: float = 0.04) -> Array:
@@ -103,6 +103,26 @@ def local_maxima(
     strongest = rank[v[order], u[order]] == largest_around(rank, size)[v[order], u[order]]
     m: Array = np.stack([u[order], v[order]], axis=-1)[strongest].astype(np.float64)
     return m if count is None else m[: whole(count, "count", at_most=MOST_PIXELS)]
+
+
+def largest_around(x: Array, size: int) -> Array:
+    """Return the largest number in a square of size × size pixels around each.
+
+    Examples
+    --------
+    >>> largest_around(np.array([[0.0, 3, 0, 0, 1]]), 3)
+    array([[3., 3., 3., 1., 1.]])
+    """
+    if not x.size:
+        return x
+    try:
+        from cv2 import dilate
+    except ImportError:
+        from scipy.ndimage import maximum_filter
+
+        return np.asarray(maximum_filter(x, size), dtype=np.float64)
+    largest = dilate(x, np.ones((size, size), np.uint8))
+    return np.asarray(largest, dtype=np.float64).reshape(x.shape)
 
 
 def _differences(grey: Array, axis: int) -> Array:

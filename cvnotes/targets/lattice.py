@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from cvnotes.base import Array, DegenerateError, Image
+from cvnotes.targets.doubts import NotABoard
 from cvnotes.targets.grey import Grey8
 from cvnotes.targets.subpixel import EdgeFit, Mask, fit_edges
 
@@ -24,21 +25,17 @@ _PAST = 1.2  # squares beyond the outermost corners: past the outer squares
 _GOES_ON = 0.6  # of 1, were the pattern to go on there
 
 
-class NotABoard(Exception):
-    """Why corners that were found are not to be trusted, and the count that is there if known.
-
-    `instead` says what was found instead of the board, if anything was.
-    """
-
-    def __init__(
-        self,
-        reason: str,
-        count: tuple[int, int] | None = None,
-        found: Array | None = None,
-        instead: str = "",
-    ) -> None:
-        super().__init__(reason)
-        self.count, self.found, self.instead = count, found, instead
+def as_asked(lattice: Array, corners: tuple[int, int], k: int) -> Array:
+    """Turn a lattice so that it has as many columns and rows as were asked for."""
+    columns, rows = corners
+    if lattice.shape[:2] == (columns, rows):
+        lattice = lattice.transpose(1, 0, 2)
+    if lattice.shape[:2] != (rows, columns):
+        count = max(lattice.shape[:2]), min(lattice.shape[:2])
+        found = (lattice[seen(lattice)] + 0.5) * k - 0.5
+        there = f"{count[0]}×{count[1]} corners"
+        raise NotABoard(f"found {there}", count, found, instead=f"{there} are there")
+    return lattice
 
 
 def measured(
@@ -406,3 +403,8 @@ def _typical(lattice: Array) -> float:
     """Average the unevenness of all lines."""
     every = np.concatenate([u.ravel() for u in unevenness(lattice)])
     return float(np.mean(every[np.isfinite(every)])) if np.isfinite(every).any() else 0.0
+
+
+def seen(lattice: Array) -> Mask:
+    """Return which corners (rows, columns) of a lattice are there."""
+    return np.asarray(np.isfinite(lattice).all(-1))

@@ -19,10 +19,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, Image
-from cvnotes.targets.grey import smoothed
 from cvnotes.targets.harris_corners import local_maxima
 from cvnotes.targets.lattice import trimmed
-from cvnotes.targets.subpixel import Mask
 
 SIGMA = 1.0  # px: what is blurred or noisy shows in a reduced copy of the picture
 _RING = 3.0  # of sigma; the squares are larger than this
@@ -99,6 +97,24 @@ def saddle_points(grey: Image, sigma: float = SIGMA) -> Saddles:
     crossing, edges = _rings(L, m, _RING * sigma)
     crossing = crossing[:_MOST]
     return Saddles(m[crossing], H[crossing], edges[:_MOST], L)
+
+
+def smoothed(grey: npt.NDArray[np.float32], sigma: float) -> npt.NDArray[np.float32]:
+    """Smooth with a Gaussian of `sigma` pixels; beyond its border the picture is mirrored.
+
+    Examples
+    --------
+    >>> smoothed(np.array([[0, 0, 1, 0, 0]], dtype=np.float32), 0.5).round(2)
+    array([[0.  , 0.11, 0.79, 0.11, 0.  ]], dtype=float32)
+    """
+    try:
+        from cv2 import BORDER_REFLECT, GaussianBlur
+    except ImportError:
+        from scipy.ndimage import gaussian_filter
+
+        return np.asarray(gaussian_filter(grey, sigma), dtype=np.float32)
+    blurred = GaussianBlur(grey, (0, 0), sigma, borderType=BORDER_REFLECT)
+    return np.asarray(blurred, dtype=np.float32)
 
 
 def _rings(
@@ -229,8 +245,3 @@ def _is_crossing(
         levels.append(light * L[min(max(v, 0), height - 1), min(max(u, 0), width - 1)].item())
     clear = min(levels[:2]) - max(levels[2:])
     return bool(clear > _ALIKE * (max(levels) - min(levels)))
-
-
-def seen(lattice: Array) -> Mask:
-    """Return which corners (rows, columns) of a lattice are there."""
-    return np.asarray(np.isfinite(lattice).all(-1))

@@ -23,7 +23,7 @@ handed in; its processes import the course by the name that it was given, here `
 
 from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, mistakes
 from cvnotes.tutor.checker.report import Report
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.steps import edited, mistakes_in
 from cvnotes.tutor.course import Course
 
 __all__ = [
@@ -33,6 +33,7 @@ __all__ = [
     "Property",
     "Misconception",
     "mistakes",
+    "mistakes_in",
     "edited",
     "Report",
 ]

@@ -19,7 +19,7 @@ from cvnotes.base import (
 )
 
 # Pixels mapped at a time: a dozen arrays of them stay in the cache.
-TILE = 28_000
+_TILE = 14_000
 
 
 @dataclass(frozen=True)
@@ -104,15 +104,13 @@ def map_array(mapping: Mapping, size: tuple[int, int]) -> Array:
     return np.moveaxis(table.reshape(2, height, width), 0, -1)
 
 
-def tiles(
-    mapping: Mapping, size: tuple[int, int], pixels: int = TILE
-) -> Iterator[tuple[slice, Array]]:
+def tiles(mapping: Mapping, size: tuple[int, int]) -> Iterator[tuple[slice, Array]]:
     """Map a picture's pixels, some rows at a time: slices of the flat picture, pixels (2, n).
 
     The pixels belong to whoever asked for them and may be written over.
     """
     width, height = size
-    rows = max(1, pixels // width)
+    rows = max(1, _TILE // width)
     table = None if callable(mapping) else _checked_array(mapping, size)
     columns = columns_of(mapping) if table is None else None
     m_h = homogeneous_columns(np.tile(np.arange(width), rows), np.repeat(np.arange(rows), width))

@@ -21,7 +21,6 @@ from cvnotes.warping.interpolation import Border, Method, Places, Sampler
 from cvnotes.warping.maps import plane_map
 from cvnotes.warping.pixel_map import Mapping, tiles
 
-_LOOKED_UP = 56_000  # pixels at a time: threads that look up less get into each other's way
 _WORKERS = max(2, min(os.cpu_count() or 1, 4))
 
 
@@ -166,12 +165,8 @@ Plan = list[tuple[slice, Places]]
 
 def planned(sampler: Sampler, mapping: Mapping, size: tuple[int, int]) -> Plan:
     """Find where a backward warp looks pictures up that are like the sampler's."""
-    return [
-        (part, places._replace(pixel=places.pixel.astype(np.int32)))
-        for part, places in (
-            (part, sampler.places(m)) for part, m in tiles(mapping, size, _LOOKED_UP)
-        )
-    ]
+    placed = ((part, sampler.places(m)) for part, m in tiles(mapping, size))
+    return [(part, at._replace(pixel=at.pixel.astype(np.int32))) for part, at in placed]
 
 
 def warped(sampler: Sampler, plan: Plan, size: tuple[int, int]) -> Image:

@@ -1,22 +1,11 @@
-"""Slips that several exercises share: of a formula, and in reading a pixel off a picture."""
+"""Slips that several exercises share, in reading a pixel off a picture."""
 
 from collections.abc import Callable
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.tutor.checker.exercise import Misconception
-
-
-def centre_divided_too(A: Array, M: Array) -> Array:
-    """Add (u0, v0) before the division by z, to points M (..., 3) of the camera's frame.
-
-    Examples
-    --------
-    >>> centre_divided_too(np.array([[2.0, 0, 10], [0, 2, 20], [0, 0, 1]]), np.array([1.0, 1, 2]))
-    array([ 6., 11.])
-    """
-    return (M[..., :2] @ A[:2, :2].T + A[:2, 2]) / M[..., 2:]
+from cvnotes.tutor.checker.exercise import Misconception, mistakes
 
 
 def misreadings(
@@ -30,58 +19,37 @@ def misreadings(
     Examples
     --------
     >>> slips = misreadings(lambda: np.array([600.0, 20.0]), (640, 480), 5.0)
-    >>> {slip.name: slip.gives().tolist() for slip in slips}["v counted from below"]
+    >>> {slip.name: slip.gives().tolist() for slip in slips}["counted from elsewhere"]
     [600.0, 459.0]
     """
     last = np.array(size) - 1.0
     return (
-        Misconception(
-            "v before u",
-            "You gave row before column: pixels are (u, v).",
-            lambda: pixel()[::-1],
+        *mistakes(
+            ("v before u", "You gave row before column: pixels are (u, v).", lambda: pixel()[::-1]),
+            ("counted from elsewhere", "u counts from the left and v from the top downwards: pixel "
+             "(0, 0) is at the top left of the picture.",
+             lambda: np.array([pixel()[0], last[1] - pixel()[1]]),
+             lambda: np.array([last[0] - pixel()[0], pixel()[1]]), lambda: pixel() - last / 2),
         ),
         Misconception(
-            "v counted from below",
-            "v counts from the top of the picture downwards.",
-            lambda: np.array([pixel()[0], last[1] - pixel()[1]]),
-        ),
+            "read on another scale", "Both numbers are too large, or too small, by one factor: you "
+            "measured in the pixels of your screen. Count in those of the picture, as the axes of "
+            "imshow do.",
+            lambda: 1.5 * pixel(), (lambda: 2 * pixel(), lambda: pixel() / 2),
+            seen=lambda answer, _: _on_another_scale(answer, pixel(), near)),
         Misconception(
-            "u counted from the right",
-            "u counts from the left.",
-            lambda: np.array([last[0] - pixel()[0], pixel()[1]]),
-        ),
-        Misconception(
-            "measured from the middle",
-            "You measured from the middle of the picture; pixel (0, 0) is at its top left.",
-            lambda: pixel() - last / 2,
-        ),
-        Misconception(
-            "read on another scale",
-            "Both numbers are too large, or too small, by one factor: you measured in the pixels "
-            "of your screen. Count in those of the picture, as the axes of imshow do.",
-            lambda: 1.5 * pixel(),
-            variants=(lambda: 2 * pixel(), lambda: pixel() / 2),
-            seen=lambda answer, _: _on_another_scale(answer, pixel(), near),
-        ),
-        Misconception(
-            "the column alone",
-            "The column u is right; look at the row v again.",
+            "the column alone", "The column u is right; look at the row v again.",
             lambda: pixel() - [0.0, 7 * near],
-            seen=lambda answer, _: bool(abs(answer[0] - pixel()[0]) < near),
-        ),
+            seen=lambda answer, _: bool(abs(answer[0] - pixel()[0]) < near)),
         Misconception(
-            "the row alone",
-            "The row v is right; look at the column u again.",
+            "the row alone", "The row v is right; look at the column u again.",
             lambda: pixel() - [7 * near, 0.0],
-            seen=lambda answer, _: bool(abs(answer[1] - pixel()[1]) < near),
-        ),
+            seen=lambda answer, _: bool(abs(answer[1] - pixel()[1]) < near)),
         Misconception(
-            "near, not near enough",
-            "That is near, and not yet near enough: enlarge the picture.",
+            "near, not near enough", "That is near, and not yet near enough: enlarge the picture.",
             lambda: pixel() + 1.5 * near,
-            seen=lambda answer, _: bool(np.linalg.norm(answer - pixel()) < 4 * near),
-        ),
-    )
+            seen=lambda answer, _: bool(np.linalg.norm(answer - pixel()) < 4 * near)),
+    )  # fmt: skip
 
 
 def _on_another_scale(answer: Array, pixel: Array, near: float) -> bool:

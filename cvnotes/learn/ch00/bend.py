@@ -6,25 +6,8 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-
-
-def bend(row: Array) -> float:
-    """Return how far points (n, 2) lie at most from the line through first and last."""
-    d = row[-1] - row[0]
-    normal = np.array([-d[1], d[0]]) / np.linalg.norm(d)
-    return float(np.abs((row - row[0]) @ normal).max())
-
-
-def _along(row: Array) -> Array:
-    way = row[-1] - row[0]
-    return np.asarray(way / np.linalg.norm(way))
-
-
-def _across(row: Array) -> Array:
-    """Return how far points are from the line, with a sign."""
-    u, v = _along(row)
-    return np.asarray((row - row[0]) @ [-v, u])
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _rows(rng: Rng) -> list[Case]:
@@ -43,7 +26,8 @@ def _rows(rng: Rng) -> list[Case]:
     ]
 
 
-def _steps(row: Array) -> Any:
+def bend(row: Array) -> Any:
+    """Return how far points (n, 2) lie at most from the line through first and last."""
     d = row[-1] - row[0]  # the way from the first point to the last
     n = np.array([-d[1], d[0]])  # a normal of the line
     u = n / np.linalg.norm(d)  # the normal, of length 1
@@ -51,30 +35,27 @@ def _steps(row: Array) -> Any:
     return np.abs(across).max()
 
 
-MISTAKES = mistakes(
-    ("measured straight down",
-     "You measured along v, or along u. The distance from a line is measured at right angles"
-     " to it.",
-     lambda row: np.abs(_across(row)).max() / np.abs(_along(row)[0]),
-     lambda row: np.abs(_across(row)).max() / np.abs(_along(row)[1])),
-    ("sign kept",
-     "You took the largest without abs(): points on the other side count as negative.",
-     lambda row: _across(row).max(), lambda row: (-_across(row)).max()),
+MISTAKES = mistakes_in(bend,
+    ("measured straight down", "You measured along v, or along u. The distance from a line is "
+     "measured at right angles to it.",
+     "np.abs(across).max() * np.linalg.norm(d) / abs(d[0])",
+     "np.abs(across).max() * np.linalg.norm(d) / abs(d[1])"),
+    ("sign kept", "You took the largest without abs(): points on the other side count as negative.",
+     "across.max()", "(-across).max()"),
     ("along for across",
      "That is how far the points reach along the line. Turn its direction by 90° first.",
-     lambda row: np.abs((row - row[0]) @ _along(row)).max(),
-     lambda row: np.linalg.norm(row - row[0], axis=1).max()),
+     ("@ u", "@ d / np.linalg.norm(d)"), "np.linalg.norm(row - row[0], axis=1).max()"),
     ("mean for the largest", "You took a mean of the distances; asked is the largest.",
-     lambda row: np.abs(_across(row)).mean(), lambda row: np.sqrt((_across(row) ** 2).mean())),
+     "np.abs(across).mean()", "np.sqrt((across**2).mean())"),
     ("a level line",
      "You measured from a level line through the first point. The row may be tilted.",
-     lambda row: np.abs(row[:, 1] - row[0, 1]).max(), lambda row: np.ptp(row[:, 1])),
+     "np.abs(row[:, 1] - row[0, 1]).max()", "np.ptp(row[:, 1])"),
     ("the point in the middle",
      "You measured the point in the middle; it need not be the farthest from the line.",
-     lambda row: np.abs(_across(row))[len(row) // 2]),
+     "np.abs(across)[len(row) // 2]"),
     ("both sides added",
      "You added the largest distances of the two sides; asked is the larger one.",
-     lambda row: np.ptp(_across(row))),
+     "np.ptp(across)"),
 )  # fmt: skip
 
 
@@ -84,9 +65,6 @@ BEND = Exercise(
     title="How much does a row bend?",
     task="Give the largest distance, in pixels, of points row, shape (n, 2), from the straight "
     "line through the first and the last of them.",
-    stub='''def my_bend(row):
-    """Return how far points (n, 2) lie at most from the line through first and last."""
-    ...''',
     hints=(
         "row[-1] - row[0] leads along the line. Divide it by its length: np.linalg.norm.",
         "Turned by 90°, (a, b) becomes (−b, a). The dot product of row - row[0] with it, for all "
@@ -99,7 +77,6 @@ BEND = Exercise(
         Property("It is right for a row that stands upright.", about="upright"),
     ),
     misconceptions=MISTAKES,
-    reference=bend,
-    steps=_steps,
+    steps=bend,
     concepts=("28",),
 )

@@ -7,7 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded, some_factors
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _homogeneous_points(rng: Rng) -> list[Case]:
@@ -21,48 +22,36 @@ def _homogeneous_points(rng: Rng) -> list[Case]:
     ]
 
 
-def _divided(x_h: Array, by: Array) -> Array:
-    return x_h[:, :-1] / by[:, None]
-
-
-def _where_finite(x_h: Array, elsewhere: float | Array) -> Array:
-    return np.where(x_h[:, -1:] != 0, _divided(x_h, x_h[:, -1]), elsewhere)
-
-
 def _steps(x_h: Array) -> Any:
+    """Return points (n, d) from homogeneous coordinates x_h (n, d + 1); NaN at infinity."""
     w = x_h[:, -1:]  # the last coordinate of each point
     x = x_h[:, :-1] / w  # the others, divided by it
     return np.where(w == 0, np.nan, x)
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(_steps,
     ("no division",
      "You left out the last coordinate without dividing by it. That is right only where it "
      "is 1.",
-     lambda x_h: x_h[:, :-1]),
+     "x_h[:, :-1]"),
     ("sign of the factor lost",
      "The factor of a point may be negative: (3, 9, −3) is the point (−1, −3).",
-     lambda x_h: np.sign(x_h[:, -1:]) * _where_finite(x_h, np.nan),
-     lambda x_h: np.where(x_h[:, -1:] > 0, _divided(x_h, x_h[:, -1]), np.nan)),
+     "np.where(w == 0, np.nan, x * np.sign(w))", "np.where(w > 0, x, np.nan)"),
     ("divided by another number",
      "You divided by another number than each point's own factor, which is its last "
      "coordinate.",
-     lambda x_h: x_h[:, 1:] / x_h[:, :1], lambda x_h: _divided(x_h, np.linalg.norm(x_h, axis=1)),
-     lambda x_h: x_h[:, :-1] / x_h.max(axis=1, keepdims=True),
-     lambda x_h: x_h[:, :-1] / np.abs(x_h).max(axis=1, keepdims=True),
-     lambda x_h: x_h[:, :-1] / x_h[0, -1]),
+     "x_h[:, 1:] / x_h[:, :1]", "x_h[:, :-1] / np.linalg.norm(x_h, axis=1, keepdims=True)",
+     "x_h[:, :-1] / x_h.max(axis=1, keepdims=True)",
+     "x_h[:, :-1] / np.abs(x_h).max(axis=1, keepdims=True)", "x_h[:, :-1] / x_h[0, -1]"),
     ("multiplied by the last coordinate",
      "You multiplied by the last coordinate, or subtracted it: undo the factor.",
-     lambda x_h: x_h[:, :-1] * x_h[:, -1:], lambda x_h: x_h[:, :-1] - x_h[:, -1:]),
-    ("last row for last column",
-     "You took the last point; asked is the last coordinate of every point.",
-     lambda x_h: x_h[:-1] / x_h[-1]),
+     "x_h[:, :-1] * w", "x_h[:, :-1] - w"),
     ("infinity left out",
      "Right, but points at infinity are missing: each row has its answer, and theirs is NaN.",
-     lambda x_h: _divided(x_h, x_h[:, -1])[x_h[:, -1] != 0]),
+     "x[w[:, 0] != 0]"),
     ("one point at infinity spoils all",
      "One point at infinity made all of them NaN: decide row by row, as np.where does.",
-     lambda x_h: _where_finite(x_h, np.nan) + (0 if x_h[:, -1].all() else np.nan)),
+     "x if w.all() else np.nan * x"),
 )  # fmt: skip
 
 
@@ -72,9 +61,6 @@ DROP = Exercise(
     title="Drop back to Euclidean space",
     task="Give Euclidean coordinates, shape (n, d), of homogeneous ones, shape (n, d + 1). "
     "A point at infinity has none: its row is NaN.",
-    stub='''def my_drop(x_h):
-    """Return points (n, d) from homogeneous coordinates x_h (n, d + 1); NaN at infinity."""
-    ...''',
     hints=(
         "Undo the factor: which coordinate tells how large it is?",
         "x_h[:, -1:] has shape (n, 1), so that a whole row can be divided by it.",

@@ -7,12 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.projective import to_homogeneous
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-
-
-def lift(x: Array, w: float) -> Array:
-    """Lift points (n, d) to homogeneous coordinates (n, d + 1) with the factor w."""
-    return w * to_homogeneous(x)
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _points_and_factor(rng: Rng) -> list[Case]:
@@ -24,38 +20,38 @@ def _points_and_factor(rng: Rng) -> list[Case]:
     ]
 
 
-def _steps(x: Array, w: float) -> Any:
+def lift(x: Array, w: float) -> Any:
+    """Return homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate w."""
     one = np.ones((len(x), 1))  # a column of ones
     x_h = np.hstack([x, one])  # the points with last coordinate 1
     return w * x_h
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(lift,
     ("w appended only",
      "You appended w and did not multiply the other coordinates by it. The factor multiplies"
      " all of them (the notes' first formula slips here).",
-     lambda x, w: np.hstack([x, np.full((len(x), 1), w)]),
-     lambda x, w: np.hstack([x / w, np.full((len(x), 1), w)])),
+     "np.hstack([x, np.full((len(x), 1), w)])", "np.hstack([x / w, np.full((len(x), 1), w)])"),
     ("factor on the coordinates only", "The last coordinate takes the factor too: yours is 1.",
-     lambda x, w: np.hstack([w * x, np.ones((len(x), 1))]), lambda x, w: to_homogeneous(x / w)),
+     "np.hstack([w * x, np.ones((len(x), 1))])", lambda x, w: to_homogeneous(x / w)),
     ("factor forgotten",
      "These are the right points, with the factor 1; asked is the member of the class whose "
      "last coordinate is w.",
-     lambda x, _: np.hstack([x, np.ones((len(x), 1))])),
+     "np.hstack([x, np.ones((len(x), 1))])"),
     ("zero appended",
      "You appended 0: that makes a point at infinity, a direction. A point in a place has a "
      "last coordinate that is not 0.",
-     lambda x, w: np.hstack([w * x, np.zeros((len(x), 1))])),
+     "np.hstack([w * x, np.zeros((len(x), 1))])"),
     ("a row instead of a column",
      "You added a row: another point. Points are rows here, so a coordinate is a column: "
      "axis=1.",
-     lambda x, w: np.vstack([w * x, np.full((1, x.shape[1]), w)])),
+     "np.vstack([w * x, np.full((1, x.shape[1]), w)])"),
     ("factor added", "You added w to the coordinates; a factor multiplies them.",
      lambda x, w: to_homogeneous(x) + w),
     ("factor twice",
      "You appended w first and then multiplied everything by w: the last coordinate has the "
      "factor twice now.",
-     lambda x, w: w * np.hstack([x, np.full((len(x), 1), w)])),
+     "w * np.hstack([x, np.full((len(x), 1), w)])"),
 )  # fmt: skip
 
 
@@ -65,9 +61,6 @@ LIFT = Exercise(
     title="Lift points to projective space",
     task="Give homogeneous coordinates, shape (n, d + 1), of points x, shape (n, d): those of the "
     "whole class whose last coordinate is the number w.",
-    stub='''def my_lift(x, w):
-    """Return homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate w."""
-    ...''',
     hints=(
         "For w = 1 the point (x, y) becomes (x, y, 1).",
         "A class of coordinates differs by a factor that multiplies every one of them.",
@@ -85,8 +78,6 @@ LIFT = Exercise(
         ),
     ),
     misconceptions=MISTAKES,
-    reference=lift,
-    steps=_steps,
+    steps=lift,
     concepts=("2", "3", "4", "E1"),
-    sources=(lift, to_homogeneous),
 )

@@ -6,14 +6,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.projective import join, to_homogeneous
+from cvnotes.projective import to_homogeneous
 from cvnotes.tutor.checker.equality import up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-
-
-def line_through(p: Array, q: Array) -> Array:
-    """Return the line (3,) through two points (2,): l with l·x̃ = 0 for all its points."""
-    return join(to_homogeneous(p), to_homogeneous(q))
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _two_points(rng: Rng) -> list[Case]:
@@ -25,37 +21,14 @@ def _two_points(rng: Rng) -> list[Case]:
     ]
 
 
-def _slope_form(p: Array, q: Array, sign: float = -1.0) -> Array | None:
-    if p[0] == q[0]:
-        return None
-    m = (q[1] - p[1]) / (q[0] - p[0])
-    return np.array([m, -1.0, -sign * (p[1] - m * p[0])])
-
-
-def _slope_and_intercept(p: Array, q: Array) -> Array | None:
-    if p[0] == q[0]:
-        return None
-    m = (q[1] - p[1]) / (q[0] - p[0])
-    return np.array([m, p[1] - m * p[0]])
-
-
-def _swapped(x: Array | None) -> Array | None:
-    return None if x is None else x[::-1]
-
-
-def _with_constant(p: Array, q: Array, part: list[int]) -> Array:
-    line = line_through(p, q)
-    line[2] = -line[:2] @ (p * part)
-    return line
-
-
 def _through(p: Array, q: Array, line: Array) -> bool:
     """Return whether a line that is none of the zero vector contains both points."""
     far = np.abs(to_homogeneous([p, q])) @ np.abs(line)
     return bool((np.abs(to_homogeneous([p, q]) @ line) <= 1e-6 * far).all() and line.any())
 
 
-def _steps(p: Array, q: Array) -> Any:
+def line_through(p: Array, q: Array) -> Any:
+    """Return the line (3,) through the points p and q, (2,) each."""
     x, y, w = np.array([p[0], p[1], 1.0])
     s, t, z = np.array([q[0], q[1], 1.0])
     a = y * z - w * t  # a of the line
@@ -64,35 +37,31 @@ def _steps(p: Array, q: Array) -> Any:
     return np.array([a, b, c])
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(line_through,
     ("lifted with 0",
      "You lifted the points with 0, as directions: their line is the line at infinity. "
      "Points get a 1.",
-     lambda p, q: np.cross([*p, 0], [*q, 0])),
+     "np.cross([*p, 0], [*q, 0])"),
     ("upright lines left out", "Right where the line has a slope. An upright line has none.",
-     _slope_form),
+     "None if x == s else np.array([(t - y) / (s - x), -1, y - (t - y) / (s - x) * x])"),
     ("sign of the constant",
      "The direction is right but the constant has the wrong sign: bring all terms to one "
      "side.",
-     lambda p, q: _slope_form(p, q, sign=1.0)),
+     "None if x == s else np.array([(t - y) / (s - x), -1, (t - y) / (s - x) * x - y])"),
     ("direction taken for the normal", "(a, b) is perpendicular to the line, not along it.",
-     lambda p, q: np.array([*q - p, -(q - p) @ p]),
-     lambda p, q: np.array([*q - p, line_through(p, q)[2]])),
+     "np.array([*q - p, -(q - p) @ p])", "np.array([*q - p, c])"),
     ("difference of the points",
      "The difference of the lifted points is the direction of the line, their sum a point "
      "between: neither is the line.",
-     lambda p, q: np.array([*q - p, 0.0]), lambda p, q: np.array([*p + q, 2.0])),
+     "np.array([*q - p, 0.0])", "np.array([*p + q, 2.0])"),
     ("entry by entry",
      "You multiplied entry by entry; another product is perpendicular to both.",
-     lambda p, q: np.array([*p * q, 1.0])),
-    ("constant left out",
-     "Your line has the right direction, but c is missing, or one of its two parts.",
-     lambda p, q: line_through(p, q) * [1, 1, 0], lambda p, q: _with_constant(p, q, [1, 0]),
-     lambda p, q: _with_constant(p, q, [0, 1])),
+     "np.array([*p * q, 1.0])"),
     ("slope and intercept",
      "That is slope and intercept, which no upright line has. Asked are the three numbers of"
      " the line.",
-     _slope_and_intercept, lambda p, q: _swapped(_slope_and_intercept(p, q))),
+     "None if x == s else np.array([(t - y) / (s - x), y - (t - y) / (s - x) * x])",
+     "None if x == s else np.array([y - (t - y) / (s - x) * x, (t - y) / (s - x)])"),
 )  # fmt: skip
 
 
@@ -102,9 +71,6 @@ LINE = Exercise(
     title="The line through two points",
     task="Give the line l = (a, b, c), of any scale, through two pixels p and q, shape (2,) each: "
     "a x + b y + c = 0 for both, l·x̃ = 0 in short.",
-    stub='''def my_line_through(p, q):
-    """Return the line (3,) through the points p and q, (2,) each."""
-    ...''',
     hints=(
         "l is perpendicular to both homogeneous points, as vectors of three numbers.",
         "Which product of two vectors is perpendicular to both of them?",
@@ -122,9 +88,7 @@ LINE = Exercise(
         ),
     ),
     misconceptions=MISTAKES,
-    reference=line_through,
-    steps=_steps,
+    steps=line_through,
     same=up_to_scale,
     concepts=("2", "12"),
-    sources=(line_through, join),
 )

@@ -6,48 +6,19 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-
-
-def same_points(a: Array, b: Array) -> Array:
-    """Return row by row whether homogeneous points (n, 3) are the same: (n,) of 1 and 0."""
-    lengths = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
-    return np.asarray(np.linalg.norm(np.cross(a, b), axis=1) <= 1e-9 * lengths, dtype=float)
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _pairs(rng: Rng) -> list[Case]:
-    a = np.array(
-        [
-            [1.0, 2, 1],
-            [1, 2, 1],
-            [2, 4, 2],
-            [1, 2, 0],
-            [1, 2, 0],
-            [0, 3, 1],
-            [4, 2, 2],
-            [1, 2, 1],
-            [0, 3, 1],
-            [1, 2, 1],
-            [1, 2, 1],
-            [1, 2, 1],
-        ]
-    )
-    b = np.array(
-        [
-            [1.0, 2, 1],
-            [2, 4, 2],
-            [-1, -2, -1],
-            [-3, -6, 0],
-            [2, 1, 0],
-            [0, 6, 1],
-            [4, 2, 1],
-            [1, -2, 1],
-            [0, 6, 2],
-            [2, 3, 2],
-            [3, 1, 2],
-            [1, -1, 1],
-        ]
-    )
+    a = np.array([
+        [1.0, 2, 1], [1, 2, 1], [2, 4, 2], [1, 2, 0], [1, 2, 0], [0, 3, 1],
+        [4, 2, 2], [1, 2, 1], [0, 3, 1], [1, 2, 1], [1, 2, 1], [1, 2, 1],
+    ])  # fmt: skip
+    b = np.array([
+        [1.0, 2, 1], [2, 4, 2], [-1, -2, -1], [-3, -6, 0], [2, 1, 0], [0, 6, 1],
+        [4, 2, 1], [1, -2, 1], [0, 6, 2], [2, 3, 2], [3, 1, 2], [1, -1, 1],
+    ])  # fmt: skip
     more = rounded(rng.uniform(-4, 4, (6, 3)), 1)
     factors = np.array([1.0, 2.0, -1.5, -4.0, 1.0, 0.5])[:, None]
     other = more * factors
@@ -62,66 +33,54 @@ def _unit(x: Array) -> Array:
     return np.asarray(x / np.linalg.norm(x, axis=1, keepdims=True))
 
 
-def _all_infinite_same(a: Array, b: Array) -> Array:
-    far = (a[:, 2] == 0) & (b[:, 2] == 0)
-    return np.asarray(far | np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1), dtype=float)
-
-
-def _steps(a: Array, b: Array) -> Any:
+def same_points(a: Array, b: Array) -> Any:
+    """Return row by row whether homogeneous points (n, 3) are the same."""
     c = np.cross(a, b)  # the cross products, row by row
     n = np.linalg.norm(c, axis=1)  # the lengths of the cross products
     s = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)  # what the lengths are measured by
-    return n <= 1e-9 * s
+    return n <= 1e-6 * s
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(same_points,
     ("equality of the numbers",
      "You compared the numbers as they are; homogeneous coordinates are the same point if "
      "they differ by a factor.",
-     lambda a, b: (a == b).all(1),
-     lambda a, b: np.isclose(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)),
-     lambda a, b: np.isclose(a[:, 2], b[:, 2])),
+     "(a == b).all(1)", "np.isclose(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1))",
+     "np.isclose(a[:, 2], b[:, 2])"),
     ("negative factors left out",
      "You allow for a positive factor only: (1, 2, 1) and (−1, −2, −1) are the same point.",
-     lambda a, b: np.isclose(_unit(a), _unit(b)).all(1)),
+     "np.isclose(_unit(a), _unit(b)).all(1)"),
     ("points at infinity left out",
      "You divided by a coordinate, which is 0 at infinity, or on an axis: points with such a"
      " 0 may be the same too.",
-     lambda a, b: np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1),
-     lambda a, b: np.isclose((a / a[:, 2:])[:, :2], (b / b[:, 2:])[:, :2]).all(1),
-     lambda a, b: np.isclose(a / a[:, :1], b / b[:, :1]).all(1),
-     lambda a, b: np.isclose(np.ptp(a / b, axis=1), 0),
-     lambda a, b: np.isclose(a[:, 0] / b[:, 0], a[:, 1] / b[:, 1]) & np.isclose(a[:, 1] / b[:, 1],
-         a[:, 2] / b[:, 2]), lambda a, b: np.isclose(a / b, (a / b)[:, 2:]).all(1)),
+     "np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1)",
+     "np.isclose((a / a[:, 2:])[:, :2], (b / b[:, 2:])[:, :2]).all(1)",
+     "np.isclose(a / a[:, :1], b / b[:, :1]).all(1)", "np.isclose(np.ptp(a / b, axis=1), 0)",
+     "np.isclose(a[:, 0] / b[:, 0], a[:, 1] / b[:, 1]) & np.isclose(a[:, 1] / b[:, 1], a[:, 2] / "
+     "b[:, 2])", "np.isclose(a / b, (a / b)[:, 2:]).all(1)"),
     ("direction in the plane only",
      "You compared x : y only. Points on one line through the origin have that in common; "
      "the last coordinate tells them apart.",
-     lambda a, b: np.isclose(a[:, 0] * b[:, 1], a[:, 1] * b[:, 0])),
+     "np.isclose(a[:, 0] * b[:, 1], a[:, 1] * b[:, 0])"),
     ("signs ignored",
      "You ignored signs, or the order: (1, 2, 1) and (1, −2, 1) are two points.",
-     lambda a, b: np.isclose(np.abs(_unit(a)), np.abs(_unit(b))).all(1),
-     lambda a, b: np.isclose(np.sort(_unit(a), 1), np.sort(_unit(b), 1)).all(1)),
+     "np.isclose(np.abs(_unit(a)), np.abs(_unit(b))).all(1)",
+     "np.isclose(np.sort(_unit(a), 1), np.sort(_unit(b), 1)).all(1)"),
     ("one entry of the cross product",
      "All three entries of the cross product must be 0; one of them, or their sum, may be 0 "
      "by chance.",
-     lambda a, b: np.isclose(np.cross(a, b), 0).any(1),
-     lambda a, b: np.isclose(np.cross(a, b).sum(1), 0)),
+     "np.isclose(np.cross(a, b), 0).any(1)", "np.isclose(np.cross(a, b).sum(1), 0)"),
     ("perpendicular",
      "The dot product is 0 if two vectors are perpendicular. Those of one point are "
      "parallel.",
-     lambda a, b: np.isclose((a * b).sum(1), 0)),
+     "np.isclose((a * b).sum(1), 0)"),
     ("all points at infinity the same",
      "You take all points at infinity for one: (1, 2, 0) and (2, 1, 0) are two directions.",
-     _all_infinite_same),
+     "(a[:, 2] == 0) & (b[:, 2] == 0) | np.isclose(a / a[:, 2:], b / b[:, 2:]).all(1)"),
     ("exactly 0",
      "Right, but for rounding: products of rounded numbers are not exactly 0. Ask whether "
      "they are nearly.",
-     lambda a, b: (np.cross(a, b) == 0).all(axis=1),
-     lambda a, b: np.linalg.norm(np.cross(a, b), axis=1) < 1e-17),
-    ("one answer for all pairs",
-     "You gave one answer for all pairs together; asked is one for each row.",
-     lambda a, b: bool(same_points(a, b).all()), lambda a, b: bool(same_points(a, b).any()),
-     lambda a, b: np.allclose(a, b), lambda a, b: np.allclose(np.cross(a, b), 0)),
+     "(np.cross(a, b) == 0).all(axis=1)", "np.linalg.norm(np.cross(a, b), axis=1) < 1e-17"),
 )  # fmt: skip
 
 
@@ -131,9 +90,6 @@ SAME = Exercise(
     title="When are two points the same?",
     task="Tell row by row whether homogeneous points a and b, shape (n, 3), are the same point of "
     "the projective plane: True or False, shape (n,). Some of them are at infinity.",
-    stub='''def my_same_points(a, b):
-    """Return row by row whether homogeneous points (n, 3) are the same."""
-    ...''',
     hints=(
         "Equal up to a factor, which may be negative, and which you do not know.",
         "Dividing by the last coordinate is not allowed at infinity.",
@@ -143,7 +99,6 @@ SAME = Exercise(
     cases=_pairs,
     properties=(Property("Points are the same exactly if a factor apart, at infinity too."),),
     misconceptions=MISTAKES,
-    reference=same_points,
-    steps=_steps,
+    steps=same_points,
     concepts=("4", "12", "E3"),
 )

@@ -1,8 +1,5 @@
 """The focal length in a picture of a box."""
 
-# A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
-
 from typing import Any
 
 import numpy as np
@@ -10,7 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import focal_length
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _perpendicular(rng: Rng) -> list[Case]:
@@ -24,43 +22,40 @@ def _perpendicular(rng: Rng) -> list[Case]:
 
 
 def _steps(v1: Array, v2: Array, centre: Array) -> Any:
+    """Return f in pixels."""
     a = v1 - centre  # v1 measured from the principal point
     b = v2 - centre  # v2 measured from the principal point
     f2 = -(a @ b)  # f², minus the dot product
     return np.sqrt(f2)
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(_steps,
     ("sign under the root",
      "The root of a negative number is NaN. Measured from the principal point the dot "
      "product of the two is negative.",
-     lambda v1, v2, centre: np.sqrt((v1 - centre) @ (v2 - centre))),
+     "np.sqrt(a @ b)"),
     ("sign and root",
      "Sign and root are missing: the number is the square of what is asked, with a minus.",
-     lambda v1, v2, centre: (v1 - centre) @ (v2 - centre)),
+     "a @ b"),
     ("lengths for the dot product",
      "You took lengths, of one or both; the dot product of the two vectors is another "
      "number, unless they point along one line.",
-     lambda v1, v2, centre: np.sqrt(np.linalg.norm(v1 - centre) * np.linalg.norm(v2 - centre)),
-     lambda v1, v2, centre: np.linalg.norm(v1 - centre),
-     lambda v1, v2, centre: np.linalg.norm(v2 - centre),
-     lambda v1, v2, centre: (np.linalg.norm(v1 - centre) + np.linalg.norm(v2 - centre)) / 2),
+     "np.sqrt(np.linalg.norm(a) * np.linalg.norm(b))", "np.linalg.norm(a)", "np.linalg.norm(b)",
+     "(np.linalg.norm(a) + np.linalg.norm(b)) / 2"),
     ("half the distance",
      "That is a distance between points of the picture. It depends on how the box stands, f "
      "does not.",
-     lambda v1, v2, centre: np.linalg.norm(v1 - v2) / 2,
-     lambda v1, v2, centre: np.linalg.norm(v1 - v2),
-     lambda v1, v2, centre: np.linalg.norm((v1 + v2) / 2 - centre)),
+     "np.linalg.norm(v1 - v2) / 2", "np.linalg.norm(v1 - v2)",
+     "np.linalg.norm((v1 + v2) / 2 - centre)"),
     ("columns only", "The dot product adds what the columns give and what the rows give.",
-     lambda v1, v2, centre: np.sqrt(-(v1 - centre)[0] * (v2 - centre)[0]),
-     lambda v1, v2, centre: np.sqrt(np.abs((v1 - centre)[1] * (v2 - centre)[1])),
-     lambda v1, v2, centre: np.sqrt(np.abs(np.subtract(*(v1 - centre) * (v2 - centre))))),
+     "np.sqrt(-a[0] * b[0])", "np.sqrt(np.abs(a[1] * b[1]))",
+     "np.sqrt(np.abs(np.subtract(*a * b)))"),
     ("centre added", "You added the principal point; measure from it.",
-     lambda v1, v2, centre: np.sqrt(np.abs((v1 + centre) @ (v2 + centre)))),
+     "np.sqrt(np.abs((v1 + centre) @ (v2 + centre)))"),
     ("cross product",
      "You took the cross product, which is 0 for parallel vectors; these are perpendicular.",
-     lambda v1, v2, centre: np.sqrt(np.abs(np.linalg.det([v1 - centre, v2 - centre]))),
-     lambda v1, v2, centre: np.linalg.det([v1 - centre, v2 - centre])),
+     "np.sqrt(np.abs(np.linalg.det([v1 - centre, v2 - centre])))",
+     "np.linalg.det([v1 - centre, v2 - centre])"),
 )  # fmt: skip
 
 
@@ -71,9 +66,6 @@ FOCAL = Exercise(
     task="Give the focal length in pixels of a camera with square pixels and known principal point "
     "`centre`, from the vanishing points v1 and v2 of two perpendicular directions, shape (2,) "
     "each.",
-    stub='''def my_focal_from_vanishing_points(v1, v2, centre):
-    """Return f in pixels."""
-    ...''',
     hints=(
         "Measured from the principal point, v = f (a/c, b/c): the ray of v is (v − centre, f).",
         "The rays of v1 and v2 are perpendicular: their dot product is 0.",

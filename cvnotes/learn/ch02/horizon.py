@@ -1,15 +1,11 @@
 """The horizon of a plane."""
 
-# A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
-
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, pose
 from cvnotes.camera import horizon as library_horizon
 from cvnotes.learn.cases.cameras import (
     ABOUT_X,
@@ -20,12 +16,8 @@ from cvnotes.learn.cases.cameras import (
     some_rotation,
 )
 from cvnotes.tutor.checker.equality import up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
-
-
-def horizon(A: Array, R: Array, n: Array) -> Array:
-    """Return the line (3,) in which planes with world normal n (3,) seem to end."""
-    return library_horizon(Camera(A, pose(R, np.zeros(3))), n)
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _ends_there(line: Array, case: Case) -> bool:
@@ -43,37 +35,34 @@ def _joined(A: Array, R: Array, d1: npt.ArrayLike, d2: npt.ArrayLike) -> Array:
     return np.cross(A @ R @ np.asarray(d1), A @ R @ np.asarray(d2))
 
 
-def _steps(A: Array, R: Array, n: Array) -> Any:
+def horizon(A: Array, R: Array, n: Array) -> Any:
+    """Return the horizon (3,) of planes with world normal n (3,)."""
     N = R @ n  # the normal in the camera's frame
     B = np.linalg.inv(A)  # what takes pixels to rays
     return B.T @ N
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(horizon,
     ("vanishing point of the normal",
      "You carried the normal as a point. Lines need another matrix than points.",
-     lambda A, R, n: A @ R @ n, lambda A, R, n: A @ R.T @ n, lambda A, R, n: A @ n),
+     "A @ R @ n", "A @ R.T @ n", "A @ n"),
     ("inverse without transpose",
      "You inverted A, which still carries points. The rule for lines has one thing more.",
-     lambda A, R, n: np.linalg.inv(A) @ R @ n),
-    ("R and A in the wrong order",
-     "The normal has to be taken to the camera's frame first, and from there, as a line, to "
-     "the picture.",
-     lambda A, R, n: R @ np.linalg.inv(A).T @ n, lambda A, R, n: np.linalg.inv(A @ R) @ n,
-     lambda A, R, n: np.linalg.inv(A) @ R.T @ n, lambda A, R, n: (A @ R).T @ n,
-     lambda A, R, n: A.T @ R.T @ n),
+     "np.linalg.inv(A) @ R @ n"),
+    ("R and A in the wrong order", "The normal has to be taken to the camera's frame first, and "
+     "from there, as a line, to the picture.",
+     "R @ np.linalg.inv(A).T @ n", "np.linalg.inv(A @ R) @ n", "(A @ R).T @ n", "A.T @ R.T @ n"),
     ("directions that vanish",
      "Right, unless n is an axis: then the cross product with that axis is 0, which is no "
      "direction.",
-     lambda A, R, n: _joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 1, 0])),
-     lambda A, R, n: _joined(A, R, np.cross(n, [0, 1, 0]), np.cross(n, [0, 0, 1])),
-     lambda A, R, n: _joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 0, 1]))),
+     "_joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 1, 0]))",
+     "_joined(A, R, np.cross(n, [0, 1, 0]), np.cross(n, [0, 0, 1]))",
+     "_joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 0, 1]))"),
     ("the horizon of an axis",
      "You joined the vanishing points of two axes; the directions must lie in the plane with"
      " normal n.",
-     lambda A, R, n: _joined(A, R, [1, 0, 0], [0, 1, 0]),
-     lambda A, R, n: _joined(A, R, [0, 1, 0], [0, 0, 1]),
-     lambda A, R, n: _joined(A, R, [1, 0, 0], [0, 0, 1])),
+     "_joined(A, R, [1, 0, 0], [0, 1, 0])", "_joined(A, R, [0, 1, 0], [0, 0, 1])",
+     "_joined(A, R, [1, 0, 0], [0, 0, 1])"),
 )  # fmt: skip
 
 
@@ -83,9 +72,6 @@ HORIZON = Exercise(
     title="The horizon of a plane",
     task="Give the line (a, b, c), of any scale, in which all planes with world normal n (3,) "
     "seem to end: it contains the vanishing points of all directions in the plane.",
-    stub='''def my_horizon(A, R, n):
-    """Return the horizon (3,) of planes with world normal n (3,)."""
-    ...''',
     hints=(
         "Two directions in the plane have two vanishing points; the horizon joins them.",
         "Or at once: a pixel m̃ is on the horizon if its ray Rᵀ A⁻¹ m̃ is perpendicular to n.",
@@ -115,8 +101,7 @@ HORIZON = Exercise(
         ),
     ),
     misconceptions=MISTAKES,
-    reference=horizon,
-    steps=_steps,
+    steps=horizon,
     same=up_to_scale,
     concepts=("7", "13"),
     sources=(library_horizon,),

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, pose
+from cvnotes.camera import Camera
 from cvnotes.learn.cases.cameras import (
     ABOUT_Y,
     TIDY_A,
@@ -13,17 +13,12 @@ from cvnotes.learn.cases.cameras import (
     some_intrinsics,
     some_rotation,
 )
-from cvnotes.learn.cases.slips import centre_divided_too
 from cvnotes.projective import from_homogeneous
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 # A camera that looks along the world's y.
 _ALONG_Y = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-
-
-def vanishing_point(A: Array, R: Array, d: Array) -> Array:
-    """Return the pixel (2,) where lines of world direction d (3,) end."""
-    return Camera(A, pose(R, np.zeros(3))).vanishing_point(d)
 
 
 def _directions(rng: Rng) -> list[Case]:
@@ -45,58 +40,42 @@ def _seen(x_h: Array) -> Array:
     return from_homogeneous.inside(np.asarray(x_h, dtype=float))
 
 
-def _only(condition: bool, value: Array) -> Array | None:
-    return value if condition else None
-
-
-def _steps(A: Array, R: Array, d: Array) -> Any:
+def vanishing_point(A: Array, R: Array, d: Array) -> Any:
+    """Return the vanishing point (2,) of the world direction d (3,); NaN if at infinity."""
     D = R @ d  # the direction in the camera's frame
     m_h = A @ D  # its homogeneous pixel
     m = m_h[:2] / m_h[2]  # the pixel, where there is one
     return np.where(D[2] == 0, np.nan, m)
 
 
-MISTAKES = mistakes(
-    ("rotation transposed",
-     "That rotation leads from the camera to the world; d comes from the world.",
-     lambda A, R, d: _seen(A @ R.T @ d)),
+MISTAKES = mistakes_in(vanishing_point,
     ("no division",
      "The first two coordinates are not the pixel yet: the division by the third is missing.",
-     lambda A, R, d: (A @ R @ d)[:2], lambda A, R, d: (R @ d)[:2] * A[[0, 1], [0, 1]] + A[:2, 2],
-     lambda A, R, d: A[:2, :2] @ (R @ d)[:2] + A[:2, 2]),
+     "m_h[:2]", "D[:2] * A[[0, 1], [0, 1]] + A[:2, 2]", "A[:2, :2] @ D[:2] + A[:2, 2]"),
     ("divided by the world's Z",
      "It is the third coordinate in the camera's frame that counts, as divisor and for lines"
      " without an end; you took the world's.",
-     lambda A, R, d: (A @ R @ d)[:2] / d[2],
+     "(A @ R @ d)[:2] / d[2]",
      lambda A, R, d: vanishing_point(A, R, d) if d[2] else np.full(2, np.nan),
-     lambda A, R, d: (A @ R @ d)[:2] / (A @ R @ d)[2] if d[2] else np.full(2, np.nan)),
+     "(A @ R @ d)[:2] / (A @ R @ d)[2] if d[2] else np.full(2, np.nan)"),
     ("no NaN at infinity",
      "Right, except for lines parallel to the image plane: there is no pixel in which they "
      "end. The task asks for NaN.",
-     lambda A, R, d: _only(bool((R @ d)[2]), _seen(A @ R @ d)),
-     lambda A, R, d: _seen(A @ R @ d) if (R @ d)[2] else np.zeros(2),
-     lambda A, R, d: _seen(A @ R @ d) if (R @ d)[2] else (A @ R @ d)[:2],
-     lambda A, R, d: _seen(A @ R @ d) if (R @ d)[2] else A[:2, 2]),
+     *(f"m if D[2] else {other}" for other in ("None", "np.zeros(2)", "m_h[:2]", "A[:2, 2]"))),
     ("directions that point away",
      "d and −d are the same lines and share one vanishing point: a factor may be negative.",
-     lambda A, R, d: _only(bool((R @ d)[2] >= 0), _seen(A @ R @ d)),
-     lambda A, R, d: (A @ R @ d)[:2] / np.abs((A @ R @ d)[2])),
+     "None if D[2] < 0 else _seen(m_h)", "m_h[:2] / np.abs(m_h[2])"),
     ("A and R in the wrong order",
      "A and R are not where they belong: to the left of the direction, R next to it.",
-     lambda A, R, d: _seen(R @ A @ d), lambda A, R, d: _seen(A.T @ R @ d),
-     lambda A, R, d: _seen(A.T @ R.T @ d), lambda A, R, d: _seen(R.T @ A.T @ d)),
-    ("A inverted", "You used the inverse of A, which leads from pixels to rays.",
-     lambda A, R, d: _seen(np.linalg.inv(A) @ R @ d),
-     lambda A, R, d: _seen(R.T @ np.linalg.inv(A) @ d)),
-    ("principal point added before the division",
-     "You added u0 and v0 before dividing by z: they belong to the pixel, so they are added "
-     "at the end.",
-     lambda A, R, d: centre_divided_too(A, R @ d)),
+     "_seen(R @ A @ d)", "_seen(A.T @ R @ d)", "_seen(A.T @ R.T @ d)", "_seen(R.T @ A.T @ d)",
+     "_seen(R.T @ np.linalg.inv(A) @ d)"),
+    ("principal point added before the division", "You added u0 and v0 before dividing by z: they "
+     "belong to the pixel, so they are added at the end.",
+     ("m_h[:2] / m_h[2]", "(A[:2, :2] @ D[:2] + A[:2, 2]) / D[2]")),
     ("mirrored",
      "Your picture is mirrored: x runs to the right and y downwards, in the camera's frame "
      "as in the picture.",
-     lambda A, R, d: _seen(A @ np.diag([1, -1, 1]) @ R @ d),
-     lambda A, R, d: 2 * A[:2, 2] - _seen(A @ R @ d)),
+     "_seen(A @ np.diag([1, -1, 1]) @ R @ d)", "2 * A[:2, 2] - _seen(A @ R @ d)"),
 )  # fmt: skip
 
 
@@ -106,9 +85,6 @@ VANISHING = Exercise(
     title="Where a direction is seen",
     task="Give the pixel (2,) in which all lines of world direction d (3,) seem to end, for a "
     "camera with A and R. If there is no such pixel, give NaN twice.",
-    stub='''def my_vanishing_point(A, R, d):
-    """Return the vanishing point (2,) of the world direction d (3,); NaN if at infinity."""
-    ...''',
     hints=(
         "A direction is the point at infinity [d; 0]: T drops out.",
         "m̃ ≈ A R d, then divide by the third coordinate.",
@@ -122,8 +98,7 @@ VANISHING = Exercise(
         Property("Lines parallel to the image plane have none: NaN.", about="parallel"),
     ),
     misconceptions=MISTAKES,
-    reference=vanishing_point,
-    steps=_steps,
+    steps=vanishing_point,
     concepts=("5", "13", "14", "E5", "E6"),
     sources=(Camera.vanishing_point, from_homogeneous),
 )

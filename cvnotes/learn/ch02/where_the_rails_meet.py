@@ -6,7 +6,7 @@ from cvnotes.base import Array
 from cvnotes.learn.cases.pictures import rails_camera
 from cvnotes.learn.cases.slips import misreadings
 from cvnotes.tutor.checker.equality import within
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, mistakes
 
 
 def where_the_rails_meet() -> Array:
@@ -19,6 +19,28 @@ def _rail(side: int) -> Array:
     end, near = where_the_rails_meet(), rails_camera().project([750.0 * side, 1600.0, 9000.0])
     return np.asarray(end + (near - end) * (479 - end[1]) / (near[1] - end[1]))
 
+
+_MISTAKES = (
+    Misconception(
+        "the picture of chapter 1", "That is where the rails meet in the picture of chapter 1, by "
+        "the course's camera, which looks along them. Look at rails_picture().",
+        lambda: np.array([325.0, 238.0]), same=within(2.0)),
+    *mistakes(
+        ("the middle of the picture", "That is the middle of the picture. Rails end there only if "
+         "the camera looks exactly along them.",
+         lambda: np.array([319.5, 239.5])),
+        ("on the middle row", "The column is right; but the camera is lowered, so that the horizon "
+         "is not the middle row.",
+         lambda: np.array([where_the_rails_meet()[0], 239.5])),
+        ("where the rails begin", "That is where a rail leaves the picture below, or the middle "
+         "between both: the rails meet at their other end.",
+         lambda: _rail(-1), lambda: _rail(1), lambda: (_rail(-1) + _rail(1)) / 2),
+        ("on the middle column", "The height of the horizon is right; but the camera is turned "
+         "sideways, so that the rails do not end in the middle column.",
+         lambda: np.array([319.5, where_the_rails_meet()[1]])),
+    ),
+    *misreadings(where_the_rails_meet, (640, 480), 12.0),
+)  # fmt: skip
 
 RAILS = Exercise(
     name="where_the_rails_meet",
@@ -35,42 +57,7 @@ RAILS = Exercise(
     ),
     cases=lambda _: [Case(())],
     properties=(Property("It is the pixel in which the rails meet, to within 12 pixels."),),
-    misconceptions=(
-        Misconception(
-            "the picture of chapter 1",
-            "That is where the rails meet in the picture of chapter 1, by the course's camera, "
-            "which "
-            "looks along them. Look at rails_picture().",
-            lambda: np.array([325.0, 238.0]),
-            same=within(2.0),
-        ),
-        Misconception(
-            "the middle of the picture",
-            "That is the middle of the picture. Rails end there only if the camera looks exactly "
-            "along them.",
-            lambda: np.array([319.5, 239.5]),
-        ),
-        Misconception(
-            "on the middle row",
-            "The column is right; but the camera is lowered, so that the horizon is not the "
-            "middle row.",
-            lambda: np.array([where_the_rails_meet()[0], 239.5]),
-        ),
-        Misconception(
-            "where the rails begin",
-            "That is where a rail leaves the picture below, or the middle between both: the "
-            "rails meet at their other end.",
-            lambda: _rail(-1),
-            variants=(lambda: _rail(1), lambda: (_rail(-1) + _rail(1)) / 2),
-        ),
-        Misconception(
-            "on the middle column",
-            "The height of the horizon is right; but the camera is turned sideways, so that the "
-            "rails do not end in the middle column.",
-            lambda: np.array([319.5, where_the_rails_meet()[1]]),
-        ),
-        *misreadings(where_the_rails_meet, (640, 480), 12.0),
-    ),
+    misconceptions=_MISTAKES,
     reference=where_the_rails_meet,
     same=within(12.0),
     concepts=("1", "13", "14"),

@@ -5,15 +5,11 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import chain, inverse, pose
+from cvnotes.camera import pose
 from cvnotes.learn.cases.cameras import ABOUT_Y, some_pose_matrix
 from cvnotes.tutor.checker.equality import same_motion
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
-
-
-def cam1_from_cam2(G1: Array, G2: Array) -> Array:
-    """Chain camera 1's pose with the inverse of camera 2's, both CRF ← world."""
-    return chain(G1, inverse(G2))
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _both_see_the_board(G: Array, case: Case) -> bool:
@@ -22,45 +18,38 @@ def _both_see_the_board(G: Array, case: Case) -> bool:
     return np.allclose(W @ G2.T @ G.T, W @ G1.T, atol=1e-3)
 
 
-def _steps(G1: Array, G2: Array) -> Any:
+def cam1_from_cam2(G1: Array, G2: Array) -> Any:
+    """Return the motion (4, 4) from camera 2's frame to camera 1's."""
     R = G2[:3, :3].T  # the rotation from camera 2 to the board
     T = -R @ G2[:3, 3]  # the translation from camera 2 to the board
     B = np.vstack([np.column_stack([R, T]), [0, 0, 0, 1]])  # the motion from camera 2 to the board
     return G1 @ B
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(cam1_from_cam2,
     ("the board moved",
      "The names do not touch: start in camera 2's frame, go to the board, and from there to "
      "camera 1.",
-     lambda G1, G2: np.linalg.inv(G1) @ G2, lambda G1, G2: np.linalg.inv(G2) @ G1,
-     lambda G1, G2: G2 @ G1, lambda G1, G2: np.linalg.inv(G1) @ np.linalg.inv(G2),
-     lambda G1, G2: np.linalg.inv(G2) @ np.linalg.inv(G1)),
+     "np.linalg.inv(G1) @ G2", "np.linalg.inv(G2) @ G1", "G2 @ G1",
+     "np.linalg.inv(G1) @ np.linalg.inv(G2)", "np.linalg.inv(G2) @ np.linalg.inv(G1)"),
     ("translations subtracted",
      "The rotation is right. The translation of camera 2 has to be turned into camera 1's "
      "frame before it is subtracted from the other.",
-     lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G1[:3, 3] - G2[:3, 3]),
-     lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G2[:3, 3] - G1[:3, 3]),
-     lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G1[:3, 3] + G2[:3, 3]),
-     lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G1[:3, 3] - G2[:3, :3].T @ G2[:3, 3]),
-     lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, np.zeros(3)),
-     lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G1[:3, 3] + G1[:3, :3] @ G2[:3, :3].T @ G2[:3,
-         3]),
-     lambda G1, G2: pose(G1[:3, :3] @ G2[:3, :3].T, G1[:3, :3] @ G2[:3, :3].T @ G2[:3, 3] - G1[:3,
-         3])),
+     *(f"pose(G1[:3, :3] @ R, {other})" for other in (
+         "G1[:3, 3] - G2[:3, 3]", "G2[:3, 3] - G1[:3, 3]", "G1[:3, 3] + G2[:3, 3]", "G1[:3, 3] + T",
+         "np.zeros(3)", "G1[:3, 3] - G1[:3, :3] @ T", "-G1[:3, :3] @ T - G1[:3, 3]"))),
     ("poses subtracted",
      "Motions are neither subtracted nor divided, nor multiplied entry by entry; they are "
      "chained.",
-     lambda G1, G2: G1 - G2, lambda G1, G2: G1 / G2, lambda G1, G2: G1 * np.linalg.inv(G2),
-     lambda G1, G2: np.linalg.inv(G2) * G1.T, lambda G1, G2: G1 * G2),
+     "G1 - G2", "G1 / G2", "G1 * np.linalg.inv(G2)", "np.linalg.inv(G2) * G1.T", "G1 * G2"),
     ("transposed for inverse",
      "The transpose of a rotation is its inverse, that of a motion (4, 4) is not: its "
      "translation has to be turned.",
-     lambda G1, G2: G1 @ G2.T),
+     "G1 @ G2.T"),
     ("rotations in the other order",
      "The rotations are in the wrong order: camera 2 is left first.",
-     lambda G1, G2: pose(G2[:3, :3].T @ G1[:3, :3], G1[:3, 3] - G2[:3, :3].T @ G1[:3, :3] @ G2[:3,
-         3]), lambda G1, G2: pose(G2[:3, :3].T @ G1[:3, :3], G1[:3, 3] - G2[:3, 3])),
+     "pose(R @ G1[:3, :3], G1[:3, 3] - R @ G1[:3, :3] @ G2[:3, 3])",
+     "pose(R @ G1[:3, :3], G1[:3, 3] - G2[:3, 3])"),
 )  # fmt: skip
 
 
@@ -70,9 +59,6 @@ CHAIN = Exercise(
     title="From one view to the other",
     task="G1 and G2 (4, 4) carry points of one board into the frames of camera 1 and camera 2. "
     "Give the motion (4, 4) that carries points from camera 2's frame into camera 1's.",
-    stub='''def my_cam1_from_cam2(G1, G2):
-    """Return the motion (4, 4) from camera 2's frame to camera 1's."""
-    ...''',
     hints=(
         "Go from camera 2 to the board, and from there to camera 1.",
         "Written by names: cam1_from_cam2 = cam1_from_board @ board_from_cam2.",
@@ -86,9 +72,7 @@ CHAIN = Exercise(
         Property("What camera 2 sees of the board, camera 1 sees too.", _both_see_the_board),
     ),
     misconceptions=MISTAKES,
-    reference=cam1_from_cam2,
-    steps=_steps,
+    steps=cam1_from_cam2,
     same=same_motion,
     concepts=("24", "42", "E20"),
-    sources=(cam1_from_cam2, chain, inverse),
 )

@@ -1,21 +1,12 @@
 """The sensor's matrix."""
 
-# A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
-
 from typing import Any
 
 import numpy as np
 
-from cvnotes.base import Array
-from cvnotes.camera import intrinsics
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-
-
-def intrinsics_from_sensor(f: float, du: float, dv: float, u0: float, v0: float) -> Array:
-    """Return A (3, 3) from focal length and pixel sizes in mm, principal point in pixels."""
-    return intrinsics(f / du, f / dv, u0, v0)
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _sensors(rng: Rng) -> list[Case]:
@@ -24,42 +15,30 @@ def _sensors(rng: Rng) -> list[Case]:
     return [Case((8.0, 0.01, 0.02, 320.0, 240.0)), Case((f, du, dv, u0, v0))]
 
 
-def _matrix(a: float, b: float, u0: float, v0: float) -> Array:
-    return np.array([[a, 0, u0], [0, b, v0], [0, 0, 1]])
-
-
-def _steps(f: float, du: float, dv: float, u0: float, v0: float) -> Any:
+def intrinsics_from_sensor(f: float, du: float, dv: float, u0: float, v0: float) -> Any:
+    """Return A (3, 3); f, du and dv in mm, u0 and v0 in pixels."""
     a = f / du  # α_u, the focal length in pixel widths
     b = f / dv  # α_v, the focal length in pixel heights
     return np.array([[a, 0, u0], [0, b, v0], [0, 0, 1]])
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(intrinsics_from_sensor,
     ("principal point divided by the pixel size",
      "u0 and v0 are in pixels already; only lengths on the sensor are divided.",
-     lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0 / du, v0 / dv),
-     lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0 * du, v0 * dv),
-     lambda f, du, dv, u0, v0: _matrix(f, f, u0 * du, v0 * dv)),
+     ("u0]", "u0 / du]", "v0]", "v0 / dv]"), ("u0]", "u0 * du]", "v0]", "v0 * dv]"),
+     ("f / du", "f", "f / dv", "f", "u0]", "u0 * du]", "v0]", "v0 * dv]")),
     ("principal point left out",
      "u0 and v0 are missing, or have the wrong sign: where is the axis seen?",
-     lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, 0, 0),
-     lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, -u0, -v0)),
-    ("last 1 left out", "The last entry of A is 1.",
-     lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0) * [[1], [1], [0]],
-     lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0) + np.diag([0, 0, f - 1])),
+     ("u0]", "0]", "v0]", "0]"), ("u0]", "-u0]", "v0]", "-v0]")),
     ("one pixel size for both",
      "You took one focal length for both directions; pixels need not be square.",
-     lambda f, du, dv, u0, v0: _matrix(2 * f / (du + dv), 2 * f / (du + dv), u0, v0),
-     lambda f, du, dv, u0, v0: _matrix((f / du + f / dv) / 2, (f / du + f / dv) / 2, u0, v0)),
+     ("f / du", "2 * f / (du + dv)", "f / dv", "2 * f / (du + dv)"),
+     ("[a, 0", "[(a + b) / 2, 0", "[0, b", "[0, (a + b) / 2")),
     ("pixel sizes for focal lengths",
      "You have du and dv themselves in the place of the focal lengths.",
-     lambda f, du, dv, u0, v0: _matrix(du, dv, u0, v0)),
+     ("f / du", "du", "f / dv", "dv")),
     ("in metres", "f and du are both in millimetres: their quotient needs no 1000.",
-     lambda f, du, dv, u0, v0: _matrix(f / du / 1000, f / dv / 1000, u0, v0),
-     lambda f, du, dv, u0, v0: _matrix(1000 * f / du, 1000 * f / dv, u0, v0)),
-    ("a skew where none is", "The task says that there is no skew.",
-     lambda f, du, dv, u0, v0: _matrix(f / du, f / dv, u0, v0) + [[0, 1, 0], [0, 0, 0], [0, 0,
-         0]]),
+     ("f / d", "f / 1000 / d"), ("f / d", "1000 * f / d")),
 )  # fmt: skip
 
 
@@ -69,9 +48,6 @@ INTRINSICS = Exercise(
     title="The sensor's matrix",
     task="Give A (3, 3) of a camera with focal length f and pixels du wide and dv high, all in "
     "millimetres; its principal point (u0, v0) is in pixels. No skew.",
-    stub='''def my_intrinsics_from_sensor(f, du, dv, u0, v0):
-    """Return A (3, 3); f, du and dv in mm, u0 and v0 in pixels."""
-    ...''',
     hints=(
         "α_u is the focal length measured in pixel widths: how many of them fit into it?",
         "u0 and v0 are pixels already.",
@@ -86,8 +62,6 @@ INTRINSICS = Exercise(
         Property("A point at 45° to the right is f/du pixels right of that, and so for v."),
     ),
     misconceptions=MISTAKES,
-    reference=intrinsics_from_sensor,
-    steps=_steps,
+    steps=intrinsics_from_sensor,
     concepts=("17", "18", "19", "20", "E8"),
-    sources=(intrinsics_from_sensor, intrinsics),
 )

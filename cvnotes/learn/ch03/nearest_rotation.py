@@ -1,8 +1,5 @@
 """The nearest rotation."""
 
-# A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
-
 from typing import Any
 
 import numpy as np
@@ -10,7 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import nearest_rotation
 from cvnotes.learn.cases.cameras import ABOUT_Y, rounded, some_rotation
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _nearly_rotations(rng: Rng) -> list[Case]:
@@ -27,99 +25,59 @@ def _nearly_rotations(rng: Rng) -> list[Case]:
     ]
 
 
-def _left(M: Array) -> tuple[Array, Array]:
-    U, _, Vt = np.linalg.svd(M)
-    return U, Vt
-
-
-def _flipped(M: Array) -> Array:
-    U, Vt = _left(M)
-    return np.asarray(U @ Vt * np.sign(np.linalg.det(U @ Vt)))
-
-
 def _gram_schmidt(M: Array) -> Array:
     Q, U = np.linalg.qr(M)
     return Q * np.sign(np.diag(U))
 
 
-def _turned_around(M: Array, i: int) -> Array:
-    """Return U Vᵀ, with column i of U turned around if that is needed for a rotation."""
-    U, Vt = _left(M)
-    U[:, i] *= np.linalg.det(U @ Vt)
-    return U @ Vt
-
-
-def _rq(M: Array, proper: bool = False) -> Array:
-    """Return the rotation of M = upper triangle @ rotation, diagonal positive."""
+def _rq(M: Array) -> Array:
     from scipy.linalg import rq
 
-    U, Q = rq(M)
-    Q = np.sign(np.diag(U))[:, None] * Q if proper else Q
-    return np.asarray(Q)
-
-
-def _proper(Q: Array) -> Array:
-    return np.asarray(Q if np.linalg.det(Q) > 0 else Q * [1, 1, -1])
+    return np.asarray(rq(M)[1])
 
 
 def _crossed(M: Array) -> Array:
     return np.column_stack([M[:, 0], M[:, 1], np.cross(M[:, 0], M[:, 1])])
 
 
-def _last_column_turned(M: Array) -> Array:
-    U, Vt = _left(M)
-    R = U @ Vt
-    return np.asarray(R * [1, 1, np.linalg.det(R)])
-
-
 def _steps(M: Array) -> Any:
+    """Return the rotation (3, 3) nearest to M (3, 3)."""
     U, _, Vt = np.linalg.svd(M)
     d = np.linalg.det(U @ Vt)  # whether it is a rotation, 1, or a reflection, −1
     F = np.diag([1, 1, d])  # what turns the direction around that counts least
     return U @ F @ Vt
 
 
-MISTAKES = mistakes(
-    ("V for Vᵀ",
-     "The factors of the SVD do not belong together like that: np.linalg.svd gives U, s and "
-     "Vᵀ, in the order in which they are multiplied.",
-     lambda M: _left(M)[0] @ _left(M)[1].T, lambda M: _left(M)[1] @ _left(M)[0],
-     lambda M: _left(M)[1].T @ _left(M)[0], lambda M: _left(M)[1], lambda M: _left(M)[0],
-     lambda M: _left(M)[1].T),
-    ("transposed", "That is the rotation back: the transpose of what is asked.",
-     lambda M: (_left(M)[0] @ _left(M)[1]).T),
+MISTAKES = mistakes_in(_steps,
+    ("V for Vᵀ", "The factors of the SVD do not belong together like that: np.linalg.svd gives U, "
+     "s and Vᵀ, in the order in which they are multiplied.",
+     "U @ Vt.T", "Vt @ U", "Vt.T @ U", "Vt", "U", "Vt.T"),
     ("a reflection", "Right where the determinant is 1. Where it is −1, that is a reflection.",
-     lambda M: _left(M)[0] @ _left(M)[1]),
-    ("the wrong direction turned around",
-     "A reflection is cured by turning around the one direction that counts least, and only "
-     "where there is one; you turned something else around.",
-     _flipped, lambda M: _turned_around(M, 0), lambda M: _turned_around(M, 1),
-     lambda M: _left(M)[0] @ np.diag([1, 1, -1]) @ _left(M)[1], lambda M: _last_column_turned(M),
-     lambda M: _last_column_turned(M.T).T),
-    ("Gram and Schmidt",
-     "That is a rotation, or one up to signs. But it favours the first or the last of the "
-     "columns or rows: it is not the nearest.",
-     _gram_schmidt, lambda M: np.linalg.qr(M)[0], lambda M: _gram_schmidt(M.T).T, lambda M: _rq(M),
-     lambda M: _rq(M, True), lambda M: _proper(_gram_schmidt(M))),
+     "U @ Vt"),
+    ("the wrong direction turned around", "A reflection is cured by turning around the one "
+     "direction that counts least, and only where there is one; you turned something else around.",
+     "U @ Vt * np.sign(d)", "U @ Vt @ F", "F @ U @ Vt",
+     *(("[1, 1, d]", other) for other in ("[d, 1, 1]", "[1, d, 1]", "[1, 1, -1]"))),
+    ("Gram and Schmidt", "That is a rotation, or one up to signs. But it favours the first or the "
+     "last of the columns or rows: it is not the nearest.",
+     _gram_schmidt, "np.linalg.qr(M)[0]", "_gram_schmidt(M.T).T", _rq,
+     "_gram_schmidt(M[::-1].T).T[::-1]",
+     "_gram_schmidt(M) * [1, 1, np.linalg.det(_gram_schmidt(M))]"),
     ("lengths only",
      "That sets lengths, or the determinant, and makes no rotation: the columns have to be "
      "perpendicular too.",
-     lambda M: M / np.linalg.norm(M, axis=0),
-     lambda M: M / np.linalg.norm(M, axis=1, keepdims=True),
-     lambda M: M / np.cbrt(np.linalg.det(M)), lambda M: M / np.linalg.norm(M),
-     lambda M: M / np.linalg.norm(M, 2), lambda M: M / np.sqrt((M ** 2).sum() / 3),
-     lambda M: M / np.linalg.det(M)),
+     "M / np.linalg.norm(M, axis=0)", "M / np.linalg.norm(M, axis=1, keepdims=True)",
+     "M / np.cbrt(np.linalg.det(M))", "M / np.linalg.norm(M)", "M / np.linalg.norm(M, 2)",
+     "M / np.sqrt((M**2).sum() / 3)", "M / np.linalg.det(M)"),
     ("stretching kept", "You left singular values in: a rotation stretches nothing.",
-     lambda M: M, lambda M: _left(M)[0] @ np.diag([1, 1, 0]) @ _left(M)[1]),
-    ("cross product of the first two columns",
-     "You made the third column of the first two as they are: they are neither of length 1 "
-     "nor perpendicular.",
-     lambda M: np.column_stack([M[:, 0], M[:, 1], np.cross(M[:, 0], M[:, 1])]),
-     lambda M: _crossed(M / np.linalg.norm(M, axis=0))),
+     "M", "U @ np.diag([1, 1, 0]) @ Vt"),
+    ("cross product of the first two columns", "You made the third column of the first two as "
+     "they are: they are neither of length 1 nor perpendicular.",
+     _crossed, "_crossed(M / np.linalg.norm(M, axis=0))"),
     ("the average of M and its inverse",
      "One step of averaging with the inverse transpose comes nearer to a rotation, but has "
      "to be repeated until nothing changes.",
-     lambda M: (M + np.linalg.inv(M).T) / 2),
+     "(M + np.linalg.inv(M).T) / 2"),
 )  # fmt: skip
 
 
@@ -129,9 +87,6 @@ NEAREST = Exercise(
     title="The nearest rotation",
     task="Give the rotation (3, 3) that is nearest to a matrix M (3, 3), in the sense of the sum "
     "of squared differences.",
-    stub='''def my_nearest_rotation(M):
-    """Return the rotation (3, 3) nearest to M (3, 3)."""
-    ...''',
     hints=(
         "U, s, Vt = np.linalg.svd(M) takes M apart: rotate, stretch by s, rotate.",
         "Leave the stretching out.",
@@ -142,7 +97,7 @@ NEAREST = Exercise(
     properties=(
         Property(
             "The columns are orthonormal.",
-            lambda R, c: np.allclose(R.T @ R, np.eye(3), atol=1e-5),
+            lambda R, _: np.allclose(R.T @ R, np.eye(3), atol=1e-5),
         ),
         Property("No other rotation is nearer."),
         Property(

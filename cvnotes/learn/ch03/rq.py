@@ -1,8 +1,5 @@
 """P taken apart by hand."""
 
-# A mistake is often an argument that was left out.
-# ruff: noqa: ARG005
-
 import numpy as np
 
 from cvnotes.base import Array
@@ -16,11 +13,12 @@ from cvnotes.learn.cases.cameras import (
     some_pose,
 )
 from cvnotes.tutor.checker.equality import close, up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def rq(P: Array) -> tuple[Array, Array]:
-    """Return A, with A[2, 2] = 1, and the rotation R, from P (3, 4) of any factor."""
+    """Give A, R: P[:, :3] is A @ R up to a factor."""
     M = P[:, :3] * np.sign(np.linalg.det(P[:, :3]))  # the left block, its determinant positive
     r3 = M[2] / np.linalg.norm(M[2])  # the third row of R
     across = M[1] - M[1] @ r3 * r3  # the second row of the block without its part along r3
@@ -50,12 +48,6 @@ def _by_qr(P: Array, fixed: bool) -> tuple[Array, Array]:
     return s[:, None] * U / (s[2] * U[2, 2]), Q * s
 
 
-def _turned(P: Array, signs: tuple[int, int, int]) -> tuple[Array, Array]:
-    A, R = rq(P)
-    A, R = A * signs, R * np.array(signs)[:, None]
-    return A / A[2, 2], R
-
-
 def _from_above(P: Array) -> tuple[Array, Array]:
     _, R = rq(P[::-1])
     M, R = P[:, :3] * np.sign(np.linalg.det(P[:, :3])), R[::-1] * np.linalg.det(R[::-1])
@@ -68,15 +60,13 @@ def _nearest(P: Array) -> tuple[Array, Array]:
     return A / A[2, 2], nearest_rotation(M)
 
 
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(rq,
     ("QR for RQ", "A = QR has the rotation on the left; in P it stands on the right of A.",
-     lambda P: _by_qr(P, False), lambda P: _by_qr(P, True)),
+     "_by_qr(P, False)", "_by_qr(P, True)"),
     ("signs left as they came", "A column of A and a row of R have a sign in common that may be "
      "changed: which one makes the focal lengths positive, and R no mirror?",
-     lambda P: _turned(P, (-1, 1, 1)), lambda P: _turned(P, (1, -1, 1)),
-     lambda P: _turned(P, (1, 1, -1)), lambda P: _turned(P, (-1, -1, 1)),
-     lambda P: _turned(P, (-1, 1, -1)), lambda P: _turned(P, (1, -1, -1)),
-     lambda P: _turned(P, (-1, -1, -1))),
+     *(f"A * {s} / A[2, 2] / {s[2]}, R * np.array({s})[:, None]" for s in (
+         (-1, 1, 1), (1, -1, 1), (1, 1, -1), (-1, -1, 1), (-1, 1, -1), (1, -1, -1), (-1, -1, -1)))),
     ("begun with the first row", "You began with the first row, and A is a triangle of the wrong "
      "kind: which row of A has one number only?",
      _from_above),
@@ -91,9 +81,6 @@ RQ = Exercise(
     title="P taken apart",
     task="Give A (3, 3), an upper triangle with a positive diagonal and A[2, 2] = 1, and the "
     "rotation R (3, 3), from P (3, 4), which is A [R | T] times a number of either sign.",
-    stub='''def my_rq(P):
-    """Give A, R: P[:, :3] is A @ R up to a factor."""
-    ...''',
     hints=(
         "The third row of A is (0, 0, 1), so that of A R is r3. Make it 1 long. What must P be "
         "multiplied by first, so that det(A R) > 0?",
@@ -104,7 +91,7 @@ RQ = Exercise(
     ),
     cases=_matrices,
     properties=(
-        Property("R is a rotation.", lambda x, c: np.allclose(x[1] @ x[1].T, np.eye(3), atol=1e-5)),
+        Property("R is a rotation.", lambda x, _: np.allclose(x[1] @ x[1].T, np.eye(3), atol=1e-5)),
         Property(
             "A R is the left block of P, up to a factor.",
             lambda x, c: up_to_scale(x[0] @ x[1], c.args[0][:, :3], 1e-6 * c.slack),
@@ -113,7 +100,6 @@ RQ = Exercise(
         Property("A negative factor of P changes nothing.", about="-"),
     ),
     misconceptions=_MISTAKES,
-    reference=rq,
     steps=rq,
     same=_each_close,
     concepts=("o", "27"),

@@ -7,13 +7,9 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Lens
 from cvnotes.camera.lens import horner, radial_factor
-from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-
-
-def distort(xy: Array, k: Array, p: Array) -> Array:
-    """Return where a lens with k (2,) and p (2,) shows ideal points (n, 2)."""
-    return Lens(tuple(k), tuple(p)).distort(xy)
+from cvnotes.learn.cases.cameras import rounded, some_lens
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _ideal_points(rng: Rng) -> list[Case]:
@@ -25,21 +21,8 @@ def _ideal_points(rng: Rng) -> list[Case]:
     ]
 
 
-def _through(xy: Array, L: Array, p: Array, factor: float = 2.0, crossed: float = 2.0) -> Array:
-    """Apply L and the tangential terms, with a factor that may be wrong in either."""
-    x, y = xy.T
-    r2 = x * x + y * y
-    dx = crossed * p[0] * x * y + p[1] * (r2 + factor * x * x)
-    dy = p[0] * (r2 + factor * y * y) + crossed * p[1] * x * y
-    return np.asarray(L * xy + np.stack([dx, dy], axis=1))
-
-
-def _with_r2(xy: Array, k: Array, p: Array, r2: Array) -> Array:
-    """Apply L of another r², and the right tangential terms."""
-    return np.asarray(xy * (1 + k[0] * r2 + k[1] * r2**2) + _through(xy, 0 * xy, p))
-
-
-def _steps(xy: Array, k: Array, p: Array) -> Any:
+def distort(xy: Array, k: Array, p: Array) -> Any:
+    """Return the points (n, 2) that a lens makes of ideal points xy (n, 2)."""
     x, y = xy.T
     r2 = x**2 + y**2  # r²
     L = 1 + k[0] * r2 + k[1] * r2**2  # the radial factor L
@@ -48,45 +31,43 @@ def _steps(xy: Array, k: Array, p: Array) -> Any:
     return np.stack([L * x + dx, L * y + dy], axis=1)
 
 
-MISTAKES = mistakes(
+MISTAKES = mistakes_in(distort,
     ("r for r²", "Which powers of r does L have? You have others.",
-     lambda xy, k, p: _through(xy, 1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy ** 2).sum(1,
-         keepdims=True), p),
-     lambda xy, k, p: _through(xy, 1 + k[0] * np.hypot(*xy.T)[:, None] + k[1] * (xy ** 2).sum(1)[:,
-         None] ** 2, p)),
-    ("the way back",
-     "That is the way back, from where points are seen to where they should be; the lens "
-     "multiplies by L.",
-     lambda xy, k, p: _through(xy, 1 / lens_factor(xy, k), p),
+     ("k[0] * r2 + k[1] * r2**2", "k[0] * np.sqrt(r2) + k[1] * r2"),
+     ("k[0] * r2 + k[1] * r2**2", "k[0] * np.sqrt(r2) + k[1] * r2**2")),
+    ("the way back", "That is the way back, from where points are seen to where they should be; "
+     "the lens multiplies by L.",
+     ("L * x + dx, L * y + dy", "x / L + dx, y / L + dy"),
      lambda xy, k, p: Lens(tuple(k), tuple(p)).undistort(xy)),
     ("L added", "You added L to the coordinates: it multiplies them.",
-     lambda xy, k, p: xy + lens_factor(xy, k) + _through(xy, 0 * xy, p),
-     lambda xy, k, p: xy + lens_factor(xy, k) - 1 + _through(xy, 0 * xy, p)),
+     ("L * x + dx, L * y + dy", "x + L + dx, y + L + dy"),
+     ("L * x + dx, L * y + dy", "x + L - 1 + dx, y + L - 1 + dy")),
     ("factor 2 lost everywhere",
-     "The tangential terms have factors 2, before x y and before the squares; both are "
-     "missing.",
-     lambda xy, k, p: _through(xy, lens_factor(xy, k), p, factor=1.0, crossed=1.0)),
+     "The tangential terms have factors 2, before x y and before the squares; both are missing.",
+     ("2 * p", "p", "2 * x", "x", "2 * y", "y")),
     ("tangential terms of the moved point",
      "The tangential terms are those of the ideal point, and L does not multiply them.",
-     lambda xy, k, p: lens_factor(xy, k) * _through(xy, np.ones((len(xy), 1)), p),
-     lambda xy, k, p: _through(xy * lens_factor(xy, k), np.ones((len(xy), 1)), p)),
+     ("L * x + dx, L * y + dy", "L * (x + dx), L * (y + dy)"),
+     ("    dx =", "    x, y = L * x, L * y; r2 = x**2 + y**2; dx =", "L * x + dx, L * y + dy",
+      "x + dx, y + dy")),
     ("tangential terms exchanged",
      "In the tangential terms something of x stands in y, or of y in x.",
-     lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, ::-1],
-     lambda xy, k, p: _through(xy, lens_factor(xy, k), p) + 2 * (xy[:, ::-1] ** 2 - xy ** 2) *
-         p[::-1], lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, :1],
-     lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p)[:, 1:],
-     lambda xy, k, p: xy * lens_factor(xy, k) + _through(xy, 0 * xy, p).sum(1)[:, None]),
-    ("r² of one coordinate", "You took the square of one coordinate: a point has one radius, the "
-     "same for x and y.",
-     lambda xy, k, p: _with_r2(xy, k, p, xy[:, :1] ** 2),
-     lambda xy, k, p: _with_r2(xy, k, p, xy[:, 1:] ** 2),
-     lambda xy, k, p: _with_r2(xy, k, p, xy ** 2),
-     lambda xy, k, p: xy * (1 + k[0] * xy ** 2 + k[1] * xy ** 4) + _through(xy, 0 * xy, p)),
+     ("L * x + dx, L * y + dy", "L * x + dy, L * y + dx"),
+     ("p[1] * (r2 + 2 * x**2)", "p[1] * (r2 + 2 * y**2)", "p[0] * (r2 + 2 * y**2)",
+      "p[0] * (r2 + 2 * x**2)"), ("L * x + dx, L * y + dy", "L * x + dx, L * y + dx"),
+     ("L * x + dx, L * y + dy", "L * x + dy, L * y + dy"),
+     ("L * x + dx, L * y + dy", "L * x + dx + dy, L * y + dx + dy")),
+    ("r² of one coordinate",
+     "You took the square of one coordinate: a point has one radius, the same for x and y.",
+     ("k[0] * r2 + k[1] * r2**2", "k[0] * x**2 + k[1] * x**4"),
+     ("k[0] * r2 + k[1] * r2**2", "k[0] * y**2 + k[1] * y**4"),
+     ("L * x", "(1 + k[0] * x**2 + k[1] * x**4) * x", "L * y",
+      "(1 + k[0] * y**2 + k[1] * y**4) * y")),
     ("one r² for all points",
      "You summed over all points: each has an r² of its own, along its row.",
-     lambda xy, k, p: xy * lens_factor(xy.reshape(1, -1), k) + _through(xy, 0 * xy, p),
-     lambda xy, k, p: _with_r2(xy, k, p, (xy ** 2).sum(0))),
+     ("k[0] * r2 + k[1] * r2**2", "k[0] * r2.sum() + k[1] * r2.sum() ** 2"),
+     ("L * x", "(1 + k[0] * x @ x + k[1] * (x @ x) ** 2) * x", "L * y",
+      "(1 + k[0] * y @ y + k[1] * (y @ y) ** 2) * y")),
 )  # fmt: skip
 
 
@@ -96,9 +77,6 @@ DISTORT = Exercise(
     title="Through the lens",
     task="Give where a lens with radial coefficients k = (k1, k2) and tangential ones "
     "p = (p1, p2) shows ideal points xy (n, 2) of the plane z = 1.",
-    stub='''def my_distort(xy, k, p):
-    """Return the points (n, 2) that a lens makes of ideal points xy (n, 2)."""
-    ...''',
     hints=(
         "r² = x² + y², and L = 1 + k1 r² + k2 r⁴ multiplies both coordinates.",
         "The tangential terms are added: 2 p1 x y + p2 (r² + 2x²) to x, "
@@ -113,8 +91,7 @@ DISTORT = Exercise(
         Property("With them it is what the notes' formula says."),
     ),
     misconceptions=MISTAKES,
-    reference=distort,
-    steps=_steps,
+    steps=distort,
     concepts=("28", "29", "31", "32", "E14", "E15"),
     sources=(Lens.distort, radial_factor, horner),
 )

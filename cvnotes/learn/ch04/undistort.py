@@ -1,5 +1,6 @@
 """Back through the lens."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,21 +9,7 @@ from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
 from cvnotes.tutor.checker.equality import close_to
 from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
-
-
-def undistort(xy_lens: Array, k: Array) -> Array:
-    """Return the ideal points (n, 2) that a lens with k (2,) shows at xy_lens.
-
-    Newton's method on the radius: r L(r) = r_lens. `Lens.undistort` starts it from a table, and
-    watches over it near the fold.
-    """
-    k1, k2 = k
-    r_lens = np.linalg.norm(xy_lens, axis=1, keepdims=True)
-    r = r_lens
-    for _ in range(20):
-        off = r + k1 * r**3 + k2 * r**5 - r_lens
-        r = r - off / (1 + 3 * k1 * r**2 + 5 * k2 * r**4)
-    return np.asarray(xy_lens / (1 + k1 * r**2 + k2 * r**4))
+from cvnotes.tutor.checker.steps import edited
 
 
 def _observed_points(rng: Rng) -> list[Case]:
@@ -40,48 +27,19 @@ def _observed_points(rng: Rng) -> list[Case]:
     ]
 
 
-def _divided(xy_lens: Array, k: Array, times: int) -> Array:
-    xy = xy_lens
-    for _ in range(times):
-        xy = xy_lens / lens_factor(xy, k)
-    return xy
+Step = Callable[[Array, Array, Array], Array]
 
 
-def _divided_again(xy: Array, k: Array, times: int) -> Array:
-    for _ in range(times):
-        xy = xy / lens_factor(xy, k)
-    return xy
+def _rounds(n: int, step: Step) -> Callable[[Array, Array], Array]:
+    """Return what n rounds make of the points seen: (points so far, seen, k) → points."""
 
+    def gives(xy_lens: Array, k: Array) -> Array:
+        xy = xy_lens
+        for _ in range(n):
+            xy = step(xy, xy_lens, k)
+        return xy
 
-def _multiplied(xy_lens: Array, k: Array, times: int) -> Array:
-    xy = xy_lens
-    for _ in range(times):
-        xy = xy_lens * lens_factor(xy, k)
-    return xy
-
-
-def _with_r(xy_lens: Array, k: Array) -> Array:
-    xy = xy_lens
-    for _ in range(100):
-        r = np.hypot(*xy.T)[:, None]
-        xy = xy_lens / (1 + k[0] * r + k[1] * r**2)
-    return xy
-
-
-def _newton(xy_lens: Array, k: Array, times: int) -> Array:
-    r_lens = np.linalg.norm(xy_lens, axis=1, keepdims=True)
-    r = r_lens
-    for _ in range(times):
-        slope = 1 + 3 * k[0] * r**2 + 5 * k[1] * r**4
-        r = r - (r + k[0] * r**3 + k[1] * r**5 - r_lens) / slope
-    return xy_lens * np.where(r_lens > 0, r / np.where(r_lens > 0, r_lens, 1), 1)
-
-
-def _subtracted(xy_lens: Array, k: Array, times: int) -> Array:
-    xy = xy_lens
-    for _ in range(times):
-        xy = xy_lens - xy * (lens_factor(xy, k) - 1)
-    return xy
+    return gives
 
 
 def _nearly_there(xy: Array, case: Case) -> bool:
@@ -96,7 +54,8 @@ def _nearly_there(xy: Array, case: Case) -> bool:
     )
 
 
-def _steps(xy_lens: Array, k: Array) -> Any:
+def undistort(xy_lens: Array, k: Array) -> Any:
+    """Return the ideal points (n, 2) seen at xy_lens (n, 2), to 1e-8."""
     k1, k2 = k
     s = np.linalg.norm(xy_lens, axis=1, keepdims=True)  # the radius at which each point is seen
     r = s  # the first guess of the ideal radius
@@ -106,33 +65,47 @@ def _steps(xy_lens: Array, k: Array) -> Any:
     return xy_lens / L
 
 
-MISTAKES = mistakes(
-    ("nothing on the axis",
-     "Right, except for the point on the axis, where you divided 0 by 0: divide by L there "
-     "too, and not by r.",
-     lambda xy_lens, k: np.where(xy_lens.any(1)[:, None], undistort(xy_lens, k), np.nan)),
-    ("divided once",
-     "You divided by L at the radius that was seen. L is a function of the ideal radius, "
-     "which you now know better.",
-     lambda xy_lens, k: _divided(xy_lens, k, 1)),
-    ("distorted once more", "You distorted the points a second time: that leads on, not back.",
-     lambda xy_lens, k: xy_lens * lens_factor(xy_lens, k)),
-    ("signs of k changed",
-     "A lens with −k1 and −k2 undoes the distortion only roughly: the inverse of a "
-     "polynomial is no such polynomial.",
-     lambda xy_lens, k: xy_lens * lens_factor(xy_lens, -k)),
-    ("divided what was divided already",
-     "Each round divides xy_lens, what was seen, by L at the better radius. You divided the "
-     "last result again, which goes on for ever.",
-     lambda xy_lens, k: _divided_again(xy_lens, k, 2),
-     *(lambda xy_lens, k, n=n: _divided_again(xy_lens, k, n) for n in (5, 10, 20, 30, 50, 100))),
-    ("multiplied in each round",
-     "In each round you multiplied, or subtracted, where a division belongs.",
-     lambda xy_lens, k: _multiplied(xy_lens, k, 2),
-     *(lambda xy_lens, k, n=n: _multiplied(xy_lens, k, n) for n in (5, 10, 20, 30, 50, 100))),
-    ("r for r²", "Which powers of r does L have? You have others.",
-     lambda xy_lens, k: _with_r(xy_lens, k),
-     lambda xy_lens, k: undistort(xy_lens, np.array([k.sum(), 0.0]))),
+_BY_R = "xy_lens * np.divide(r, s, out=np.ones_like(s), where=s > 0)"
+_MISTAKES = (
+    *mistakes(
+        ("nothing on the axis",
+         "Right, except for the point on the axis, where you divided 0 by 0: divide by L there "
+         "too, and not by r.",
+         lambda xy_lens, k: np.where(xy_lens.any(1)[:, None], undistort(xy_lens, k), np.nan)),
+        ("divided once",
+         "You divided by L at the radius that was seen. L is a function of the ideal radius, "
+         "which you now know better.",
+         _rounds(1, lambda xy, _, k: xy / lens_factor(xy, k))),
+        ("distorted once more", "You distorted the points a second time: that leads on, not back.",
+         lambda xy_lens, k: xy_lens * lens_factor(xy_lens, k)),
+        ("signs of k changed",
+         "A lens with −k1 and −k2 undoes the distortion only roughly: the inverse of a "
+         "polynomial is no such polynomial.",
+         lambda xy_lens, k: xy_lens * lens_factor(xy_lens, -k)),
+        ("divided what was divided already",
+         "Each round divides xy_lens, what was seen, by L at the better radius. You divided the "
+         "last result again, which goes on for ever.",
+         *(_rounds(n, lambda xy, _, k: xy / lens_factor(xy, k))
+           for n in (2, 5, 10, 20, 30, 50, 100))),
+        ("multiplied in each round",
+         "In each round you multiplied, or subtracted, where a division belongs.",
+         *(_rounds(n, lambda xy, seen, k: seen * lens_factor(xy, k))
+           for n in (2, 5, 10, 20, 30, 50, 100))),
+        ("r for r²", "Which powers of r does L have? You have others.",
+         _rounds(100, lambda xy, seen, k: seen / (1 + k[0] * np.hypot(*xy.T)[:, None]
+                                                  + k[1] * (xy**2).sum(1, keepdims=True))),
+         lambda xy_lens, k: undistort(xy_lens, np.array([k.sum(), 0.0]))),
+    ),
+    Misconception(
+        "a few rounds", "Your way is right but stops too early: some rounds leave an error that is "
+        "larger than 1e-8. Go on until nothing changes.",
+        _rounds(2, lambda xy, seen, k: seen / lens_factor(xy, k)),
+        (*(_rounds(n, lambda xy, seen, k: seen / lens_factor(xy, k)) for n in (3, 4, 5, 7, 20)),
+         *(_rounds(n, lambda xy, seen, k: seen - xy * (lens_factor(xy, k) - 1))
+           for n in (2, 3, 5, 10)),
+         *(edited(undistort, "range(50)", f"range({n})", "xy_lens / L", _BY_R)
+           for n in (1, 2, 3, 4))),
+        seen=_nearly_there),
 )  # fmt: skip
 
 
@@ -142,9 +115,6 @@ UNDISTORT = Exercise(
     title="Back through the lens",
     task="Give the ideal points (n, 2) that a lens with k = (k1, k2), and no tangential terms, "
     "shows at xy_lens (n, 2). There is no closed form: iterate until nothing changes any more.",
-    stub='''def my_undistort(xy_lens, k):
-    """Return the ideal points (n, 2) seen at xy_lens (n, 2), to 1e-8."""
-    ...''',
     hints=(
         "You want xy with L(r) xy = xy_lens, where r is the radius of the xy you want.",
         "If you knew r you could divide. Guess xy = xy_lens, divide, and use the better guess.",
@@ -163,31 +133,8 @@ UNDISTORT = Exercise(
         Property("Of all points with this property they are the nearest to the axis."),
         Property("The point on the axis stays where it is.", about="on the axis"),
     ),
-    misconceptions=(
-        *MISTAKES,
-        Misconception(
-            "a few rounds",
-            "Your way is right but stops too early: some rounds leave an error that is larger "
-            "than 1e-8. Go on until nothing changes.",
-            lambda xy_lens, k: _divided(xy_lens, k, 2),
-            variants=(
-                lambda xy_lens, k: _divided(xy_lens, k, 3),
-                lambda xy_lens, k: _divided(xy_lens, k, 5),
-                lambda xy_lens, k: _divided(xy_lens, k, 4),
-                lambda xy_lens, k: _divided(xy_lens, k, 6),
-                lambda xy_lens, k: _divided(xy_lens, k, 7),
-                lambda xy_lens, k: _divided(xy_lens, k, 8),
-                lambda xy_lens, k: _divided(xy_lens, k, 10),
-                lambda xy_lens, k: _divided(xy_lens, k, 20),
-                lambda xy_lens, k: _divided(xy_lens, k, 50),
-                *(lambda xy_lens, k, n=n: _newton(xy_lens, k, n) for n in (1, 2, 3, 4)),
-                *(lambda xy_lens, k, n=n: _subtracted(xy_lens, k, n) for n in (2, 3, 5, 10)),
-            ),
-            seen=_nearly_there,
-        ),
-    ),
-    reference=undistort,
-    steps=_steps,
+    misconceptions=_MISTAKES,
+    steps=undistort,
     same=close_to(1e-8),
     concepts=("29", "34", "69", "E13"),
 )

@@ -1,104 +1,81 @@
 """The corner between the pixels."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
-def saddle_point(c: Array) -> Array:
-    """Return where the gradient of a quadratic surface with coefficients c (6,) vanishes, (2,)."""
-    return np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [-c[3], -c[4]])
+def saddle_point(patch: Array) -> Array:
+    """Return (u, v) of the saddle, shape (2,); NaN if there is none."""
+    v, u = np.mgrid[: patch.shape[0], : patch.shape[1]].reshape(2, -1)  # the pixels' places
+    D = np.stack([u**2, u * v, v**2, u, v, 1 + 0 * u], axis=1)  # the six terms at each pixel
+    a, b, c, d, e, _ = np.linalg.solve(D.T @ D, D.T @ patch.ravel())  # the coefficients
+    S = np.array([[2 * a, b], [b, 2 * c]])  # the second derivatives
+    m = np.linalg.solve(S, [-d, -e])  # where both derivatives are 0
+    return np.where(np.linalg.det(S) < 0, m, np.nan)
 
 
-def _surfaces(rng: Rng) -> list[Case]:
-    a, b, e, f = rng.uniform([2, 1, -3, -3], [6, 3, 3, 3])
-    # a saddle at (u, v): the determinant of the quadratic part is negative
-    return [
-        Case((np.array([1.0, 2.0, -1.0, -4.0, 8.0, 5.0]),)),
-        Case((rounded([a, b, -a / 2, e, f, 100.0], 2),)),
-    ]
+def _patches(rng: Rng) -> list[Case]:
+    v, u = np.mgrid[:3, :4]
+    cases = [Case((100.0 + u**2 + u * v - v**2 - 3 * u,))]
+    for width, height, sign in ((7, 5, -1), (4, 6, -1), (5, 5, 1)):
+        v, u = np.mgrid[:height, :width] - rng.uniform(1.2, 2.8, (2, 1, 1))
+        p, q, mixed = rng.uniform([3, 2, 1], [6, 4, 3])
+        grey = 120 + p * u**2 + mixed * u * v + sign * q * v**2 + rng.normal(0, 0.5, u.shape)
+        cases.append(Case((rounded(grey, 1),), about="a hollow" * (sign > 0)))
+    return cases
 
 
-def _solve(c: Array, diagonal: float = 2.0, mixed: float = 1.0, sign: float = -1.0) -> Array:
-    M = [[diagonal * c[0], mixed * c[1]], [mixed * c[1], diagonal * c[2]]]
-    return np.linalg.solve(M, [sign * c[3], sign * c[4]])
+def _of_three(patch: Array) -> Array:
+    """Return the level point by differences at the pixel in the middle, instead of by a fit."""
+    i, j = np.array(patch.shape) // 2
+    g = patch[i - 1 : i + 2, j - 1 : j + 2]
+    a, c = (g[1, 0] + g[1, 2]) / 2 - g[1, 1], (g[0, 1] + g[2, 1]) / 2 - g[1, 1]
+    b = (g[2, 2] + g[0, 0] - g[2, 0] - g[0, 2]) / 4
+    S, slopes = [[2 * a, b], [b, 2 * c]], [g[1, 2] - g[1, 0], g[2, 1] - g[0, 1]]
+    m = np.array([j, i]) - np.linalg.solve(S, slopes) / 2
+    return np.where(np.linalg.det(S) < 0, m, np.nan)
 
 
-def _steps(c: Array) -> Any:
-    M = np.array([[2 * c[0], c[1]], [c[1], 2 * c[2]]])  # the second derivatives
-    g = np.array([c[3], c[4]])  # the derivatives at (0, 0)
-    return np.linalg.solve(M, -g)
-
-
-MISTAKES = mistakes(
-    ("factor 2 on the mixed term", "The derivative of b u v by u has no factor 2.",
-     lambda c: _solve(c, mixed=2.0)),
-    ("factor 2 lost, and the sign",
-     "A square has a factor 2 in its derivative; and what goes to the other side changes its"
-     " sign.",
-     lambda c: _solve(c, diagonal=1.0, sign=1.0)),
-    ("one sign",
-     "A sign is wrong: of the mixed term, or of one of those that go to the other side.",
-     lambda c: _solve(c, mixed=-1.0),
-     lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [-c[3], c[4]]),
-     lambda c: np.linalg.solve([[2 * c[0], c[1]], [c[1], 2 * c[2]]], [c[3], -c[4]])),
-    ("axes one by one",
-     "You looked for the level point along u and along v separately; the mixed term couples "
-     "them.",
-     lambda c: _solve(c, diagonal=1.0, mixed=0.0), lambda c: _solve(c, mixed=0.0, sign=1.0)),
-    ("not divided by the determinant",
-     "The determinant of the two equations is left out, or is another: look at its signs.",
-     lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2),
-     lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (4 * c[0] * c[2] + c[1] ** 2),
-     lambda c: _solve(c) * (4 * c[0] * c[2] - c[1] ** 2) / (c[0] * c[2] - c[1] ** 2)),
-    ("multiplied, not solved",
-     "You multiplied by the matrix of the second derivatives: solve with it.",
-     lambda c: np.array([[2 * c[0], c[1]], [c[1], 2 * c[2]]]) @ [-c[3], -c[4]]),
-    ("coefficients in another order",
-     "You took the coefficients in another order than the task has them.",
-     lambda c: _solve(c[[0, 2, 1, 3, 4, 5]]), lambda c: _solve(c[[2, 1, 0, 3, 4, 5]]),
-     lambda c: _solve(c[[0, 1, 2, 4, 3, 5]]), lambda c: _solve(c[[0, 1, 2, 4, 5, 3]]),
-     lambda c: _solve(c[[0, 1, 2, 3, 5, 4]])),
-    ("slope at the origin", "That is the slope at (0, 0); asked is where it vanishes.",
-     lambda c: c[3:5], lambda c: -c[3:5]),
+_MISTAKES = mistakes_in(saddle_point,
+    ("a hill is no saddle", "Hills and hollows have a level point, too. A saddle rises one way and "
+     "falls another: which sign has the determinant of the second derivatives?",
+     ("np.linalg.det(S) < 0", "True")),
+    ("axes one by one", "You looked for the level point along u and along v separately; the mixed "
+     "term couples them.",
+     ("np.linalg.solve(S, [-d, -e])", "-np.array([d, e]) / np.diag(S)")),
+    ("counted from the middle", "You counted from the middle of the patch; its first pixel is "
+     "(0, 0).",
+     lambda patch: saddle_point(patch) - (np.array(patch.shape[::-1]) - 1) / 2,
+     lambda patch: saddle_point(patch) - np.array(patch.shape[::-1]) // 2),
+    ("the middle pixel's derivatives", "Differences at one pixel are as noisy as its few "
+     "neighbours: fit the surface to all grey levels, by least squares.",
+     _of_three),
 )  # fmt: skip
-
 
 SADDLE = Exercise(
     name="saddle_point",
     chapter=5,
     title="The corner between the pixels",
-    task="Around a chessboard corner the grey levels form a saddle, "
-    "a u² + b u v + c v² + d u + e v + f. Give the point (u, v), shape (2,), in which the surface "
-    "is level, from its coefficients (a, b, c, d, e, f).",
-    stub='''def my_saddle_point(coefficients):
-    """Return (u, v) of the saddle, shape (2,)."""
-    ...''',
+    task="Around a chessboard corner the grey levels form a saddle. Fit "
+    "a u² + b u v + c v² + d u + e v + f by least squares to all grey levels of a patch, shape "
+    "(height, width), of which pixel (0, 0) is the first. Give the place (u, v), shape (2,), in "
+    "which that surface is level, if it is a saddle there; else NaN twice.",
     hints=(
-        "Level means that both derivatives are 0.",
-        "By u: 2 a u + b v + d = 0. By v: b u + 2 c v + e = 0.",
-        "np.linalg.solve([[2a, b], [b, 2c]], [−d, −e]).",
+        "Each pixel gives one equation for (a, b, c, d, e, f): a row (u², u v, v², u, v, 1), and "
+        "its grey level on the other side. np.linalg.lstsq.",
+        "Level means that both derivatives are 0: 2 a u + b v + d = 0 and b u + 2 c v + e = 0.",
+        "np.linalg.solve([[2a, b], [b, 2c]], [−d, −e]); it is a saddle if 4 a c − b² < 0.",
     ),
-    cases=_surfaces,
+    cases=_patches,
     properties=(
-        Property(
-            "Both derivatives are 0 there.",
-            lambda x, c: np.allclose(
-                [
-                    2 * c.args[0][0] * x[0] + c.args[0][1] * x[1] + c.args[0][3],
-                    2 * c.args[0][2] * x[1] + c.args[0][1] * x[0] + c.args[0][4],
-                ],
-                0,
-                atol=1e-4,
-            ),
-        ),
+        Property("The fitted surface is level there."),
+        Property("A hollow, or a hill, is no saddle.", about="a hollow"),
     ),
-    misconceptions=MISTAKES,
-    reference=saddle_point,
-    steps=_steps,
+    misconceptions=_MISTAKES,
+    steps=saddle_point,
     concepts=("40", "E19"),
 )

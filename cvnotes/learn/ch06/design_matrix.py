@@ -7,8 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.homography import design_matrix
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _pairs(rng: Rng) -> list[Case]:
@@ -32,6 +32,7 @@ def same_row_space(a: Array, b: Array, tolerance: float) -> bool:
 
 
 def _steps(src: Array, dst: Array) -> Any:
+    """Return D (2n, 9) of D h = 0 for dst ≈ H src."""
     u, v = dst[:, :1], dst[:, 1:]
     W = np.column_stack([src, np.ones(len(src))])  # the points of src, homogeneous
     Z = np.zeros_like(W)  # as many zeros
@@ -40,34 +41,25 @@ def _steps(src: Array, dst: Array) -> Any:
     return np.vstack([first, second])
 
 
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(_steps,
     ("columns of H stacked", "Your h has the columns of H stacked; the notes stack its rows.",
      lambda src, dst: design_matrix(src, dst)[:, [0, 3, 6, 1, 4, 7, 2, 5, 8]]),
     ("sign of the last block", "The last block has the wrong sign: which side of the equation did "
      "it come from?",
-     edited(_steps, "-u", "u", "-v", "v")),
+     ("-u", "u", "-v", "v")),
     ("sign of one block", "In one of the two rows of each pair the last block has the wrong sign.",
-     edited(_steps, "-u", "u"), edited(_steps, "-v", "v")),
+     ("-u", "u"), ("-v", "v")),
     ("points lifted with 0", "You lifted points with 0, as a direction is; what has a point of the "
      "plane?",
-     edited(_steps, "np.ones(len(src))", "np.zeros(len(src))")),
-    ("denominator left out", "Your equations are those of an affine map: a pixel is a quotient, "
-     "and its denominator is missing.",
-     edited(_steps, "-u * W", "-u * W * [0, 0, 1]", "-v * W", "-v * W * [0, 0, 1]")),
-    ("last block not multiplied by x and y", "u and v multiply all of the last block, not one "
-     "column alone.",
-     edited(_steps, "-u * W", "-W * np.hstack([u**0, u**0, u])",
-            "-v * W", "-W * np.hstack([v**0, v**0, v])")),
-    ("last block without u and v", "u and v are missing in the last block.",
-     edited(_steps, "-u * W", "-W", "-v * W", "-W")),
-    ("dst not multiplied by x and y", "The last block is u or v three times: by what are they "
-     "multiplied?",
-     edited(_steps, "-u * W", "-u * W**0", "-v * W", "-v * W**0")),
+     ("np.ones(len(src))", "np.zeros(len(src))")),
+    ("the last block", "The last block is wrong: a pixel is a quotient, and what is its "
+     "denominator multiplied by?",
+     ("-u * W", "-W", "-v * W", "-W"),
+     ("-u * W", "-u * W * [0, 0, 1]", "-v * W", "-v * W * [0, 0, 1]"),
+     ("-u * W", "-W * np.hstack([u**0, u**0, u])", "-v * W", "-W * np.hstack([v**0, v**0, v])"),
+     ("-u * W", "-u * W**0", "-v * W", "-v * W**0")),
     ("h9 = 1", "You have eight columns, as if h9 were 1 and on the other side; asked are nine.",
      lambda src, dst: design_matrix(src, dst)[:, :8]),
-    ("all three rows", "All three rows of the cross product are true, but the third follows from "
-     "the others; asked are two for each pair.",
-     edited(_steps, "first, second]", "first, second, np.hstack([-v * W, u * W, Z])]")),
 )  # fmt: skip
 
 DESIGN = Exercise(
@@ -77,9 +69,6 @@ DESIGN = Exercise(
     task="Give the matrix D, shape (2n, 9), of the equations D h = 0 that n point pairs src and "
     "dst, shape (n, 2) each, put on h, the rows of H stacked: two rows for each pair, in any "
     "order and of any scale.",
-    stub='''def my_design_matrix(src, dst):
-    """Return D (2n, 9) of D h = 0 for dst ≈ H src."""
-    ...''',
     hints=(
         "m̃ × H W̃' = 0 has three rows for each pair; two of them suffice.",
         "With W̃' = (x, y, 1) and m = (u, v): [0 0 0, −W̃', v W̃'] and [W̃', 0 0 0, −u W̃'].",

@@ -7,6 +7,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.homography import design_matrix, dlt
+from cvnotes.homography.linear import normal_matrix
 from cvnotes.learn.cases.cameras import (
     SQUARE,
     SQUARE_SEEN,
@@ -16,11 +17,10 @@ from cvnotes.learn.cases.cameras import (
     some_homography,
 )
 from cvnotes.learn.ch06.dlt import OF_THE_ROWS
-from cvnotes.learn.ch06.slips import AFFINE, EXCHANGED, TRANSPOSED
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
 from cvnotes.tutor.checker.equality import up_to_scale, up_to_signs
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def _four(rng: Rng) -> list[Case]:
@@ -35,20 +35,6 @@ def _four(rng: Rng) -> list[Case]:
     ]
 
 
-def _with_h9(src: Array, dst: Array, sign: float = -1.0) -> Array | None:
-    """Solve with h9 = 1; None where the eight equations have no solution."""
-    D = design_matrix(src, dst)
-    if np.linalg.cond(D[:, :8] / np.abs(D).max(0)[:8]) > 1e10:
-        return None
-    return np.append(np.linalg.solve(D[:, :8], sign * D[:, 8]), 1.0).reshape(3, 3)
-
-
-def _nearly_with_h9(src: Array, dst: Array) -> Array:
-    """Solve with h9 = 1 by least squares, which has an answer always."""
-    D = design_matrix(src, dst)
-    return np.append(np.linalg.lstsq(D[:, :8], -D[:, 8])[0], 1.0).reshape(3, 3)
-
-
 def _fits_three(H: Array, case: Case) -> bool:
     """Return whether H takes three of the four points to their partners, and not the last."""
     src, dst = case.args
@@ -61,6 +47,7 @@ def _exactly(H: Array, case: Case) -> bool:
 
 
 def _steps(src: Array, dst: Array) -> Any:
+    """Return H (3, 3) with dst ≈ H src for four pairs (4, 2)."""
     u, v = dst[:, :1], dst[:, 1:]
     W = np.column_stack([src, np.ones(4)])  # the points of src, homogeneous
     first = np.hstack([W, 0 * W, -u * W])  # the rows of u
@@ -71,24 +58,30 @@ def _steps(src: Array, dst: Array) -> Any:
     return h.reshape(3, 3)
 
 
+# With h9 = 1 on the other side; nothing where the eight equations have no solution.
+_WITH_H9 = (
+    "np.append(np.linalg.solve(D[:, :8], {}D[:, 8]), 1).reshape(3, 3) "
+    "if np.linalg.cond(D[:, :8] / abs(D).max(0)[:8]) < 1e10 else None"
+)
 _MISTAKES = (
-    TRANSPOSED,
-    EXCHANGED,
     *OF_THE_ROWS,
-    AFFINE,
-    *mistakes(
+    *mistakes_in(_steps,
+        ("an affine map", "The last row of your H is (0, 0, 1): an affine map keeps parallels "
+         "parallel, which a camera does not.",
+         affine_fit),
         ("h9 = 1", "Right unless the true h9 is 0, which neither h9 = 1 nor the notes' formula for "
          "h9 can express: both solve the same 8×8 system, and it is singular then.",
-         _with_h9, _nearly_with_h9),
+         _WITH_H9.format("-"),
+         "np.append(np.linalg.lstsq(D[:, :8], -D[:, 8])[0], 1).reshape(3, 3)"),
         ("sign of the right-hand side", "With h9 = 1 the ninth column goes to the other side: with "
          "which sign?",
-         lambda src, dst: _with_h9(src, dst, sign=1.0)),
+         _WITH_H9.format("")),
         ("three points only", "That is the affine map of the first three points; the fourth says "
          "how far it is from one.",
          lambda src, dst: affine_fit(src[:3], dst[:3])),
         ("full_matrices=False", "Eight equations have a null vector that full_matrices=False "
          "leaves out.",
-         edited(_steps, "svd(D)", "svd(D, full_matrices=False)")),
+         ("svd(D)", "svd(D, full_matrices=False)")),
     ),
     Misconception(
         "a column of Vt",
@@ -111,9 +104,6 @@ FOUR = Exercise(
     task="Give H (3, 3), of any scale, with dst ≈ H src from exactly four point pairs, shape "
     "(4, 2) each, no three of them on a line. It must work too when the origin of src is seen at "
     "infinity.",
-    stub='''def my_four_points(src, dst):
-    """Return H (3, 3) with dst ≈ H src for four pairs (4, 2)."""
-    ...''',
     hints=(
         "Four pairs give D (8, 9): nine unknowns, and one of them is only a scale.",
         "The notes fix the scale by h9 = 1, or by ‖h‖ = 1 with a formula for h9. "
@@ -133,7 +123,7 @@ FOUR = Exercise(
     misconceptions=_MISTAKES,
     reference=dlt,
     steps=_steps,
-    sources=(design_matrix, dlt),
+    sources=(design_matrix, normal_matrix, dlt),
     same=up_to_scale,
     concepts=("51", "52", "53", "E27"),
 )

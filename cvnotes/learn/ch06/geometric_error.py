@@ -1,7 +1,5 @@
 """How far off is H."""
 
-# A mistake is often an argument that was left out.
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,8 @@ from cvnotes.base import Array
 from cvnotes.homography import geometric_error
 from cvnotes.learn.cases.cameras import board_grid, rounded, some_factors, some_homography
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _with_errors(rng: Rng) -> list[Case]:
@@ -30,6 +28,7 @@ def _other_plane(H: Array, src: Array, dst: Array) -> Array:
 
 
 def _steps(H: Array, src: Array, dst: Array) -> Any:
+    """Return the distances (n,) between dst and the image of src under H."""
     s_h = np.column_stack([src, np.ones(len(src))])  # src, lifted
     m_h = s_h @ H.T  # where H takes src, homogeneous
     m = m_h[:, :2] / m_h[:, 2:]  # where H takes src
@@ -37,19 +36,18 @@ def _steps(H: Array, src: Array, dst: Array) -> Any:
     return np.sqrt((d**2).sum(axis=1))
 
 
-_LENGTH = "np.sqrt((d**2).sum(axis=1))"
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(_steps,
     ("no division", "You subtracted before dividing by the third coordinate, so the scale of H "
      "enters.",
-     edited(_steps, " / m_h[:, 2:]", "")),
+     (" / m_h[:, 2:]", "")),
     ("difference of homogeneous vectors", "You subtracted vectors with three coordinates, as the "
      "notes print it. Their scales are arbitrary.",
      lambda H, src, dst: np.linalg.norm(to_homogeneous(dst) - to_homogeneous(src) @ H.T, axis=1)),
     ("algebraic error", "That is the algebraic error, as D h = 0 has it: it depends on the scale "
      "of H and is no distance.",
-     edited(_steps, _LENGTH, "np.linalg.norm(m_h[:, :2] - m_h[:, 2:] * dst, axis=1)")),
+     "np.linalg.norm(m_h[:, :2] - m_h[:, 2:] * dst, axis=1)"),
     ("divided by h33", "You divided H by h33; every point has a third coordinate of its own.",
-     edited(_steps, "m_h[:, 2:]", "H[2, 2]")),
+     ("m_h[:, 2:]", "H[2, 2]")),
     ("error in the other plane", "That is the distance in the plane of src; asked is that of dst.",
      _other_plane),
     ("both directions", "You added the error in the other plane; asked is that in the plane of "
@@ -57,14 +55,11 @@ _MISTAKES = mistakes(
      lambda H, src, dst: geometric_error(H, src, dst) + _other_plane(H, src, dst),
      lambda H, src, dst: np.hypot(geometric_error(H, src, dst), _other_plane(H, src, dst))),
     ("one coordinate only", "You compared one coordinate only; a distance has both.",
-     edited(_steps, _LENGTH, "abs(d[:, 0])"), edited(_steps, _LENGTH, "abs(d[:, 1])")),
-    ("sum of absolute differences", "You added both differences, or took the larger one; what is "
-     "their distance?",
-     edited(_steps, _LENGTH, "abs(d).sum(axis=1)"), edited(_steps, _LENGTH, "abs(d).max(axis=1)"),
-     edited(_steps, _LENGTH, "d.sum(axis=1)"), edited(_steps, _LENGTH, "-d.sum(axis=1)")),
-    ("mean of each row", "You took the mean of both differences; what is their distance?",
-     edited(_steps, _LENGTH, "abs(d).mean(axis=1)"), edited(_steps, _LENGTH, "d.mean(axis=1)"),
-     edited(_steps, _LENGTH, "-d.mean(axis=1)")),
+     "abs(d[:, 0])", "abs(d[:, 1])"),
+    ("no distance",
+     "You added both differences, took their mean, or the larger one; what is their distance?",
+     "abs(d).sum(axis=1)", "abs(d).max(axis=1)", "d.sum(axis=1)", "-d.sum(axis=1)",
+     "abs(d).mean(axis=1)", "d.mean(axis=1)", "-d.mean(axis=1)"),
 )  # fmt: skip
 
 
@@ -74,9 +69,6 @@ GEOMETRIC = Exercise(
     title="How far off is H?",
     task="Give for each pair the distance in pixels between dst (n, 2) and where H (3, 3), of any "
     "scale, takes src (n, 2): shape (n,).",
-    stub='''def my_geometric_error(H, src, dst):
-    """Return the distances (n,) between dst and the image of src under H."""
-    ...''',
     hints=(
         "Lift src, multiply by H, divide by the third coordinate.",
         "Only then subtract: homogeneous coordinates have no scale of their own.",

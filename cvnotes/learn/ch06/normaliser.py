@@ -9,14 +9,8 @@ from cvnotes.homography import normaliser
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.projective import apply
 from cvnotes.tutor.checker.equality import up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
-from cvnotes.tutor.checker.steps import edited
-
-
-def _similarity(s: float | Array, move: Array) -> Array:
-    N = np.diag([*np.broadcast_to(s, 2), 1.0])
-    N[:2, 2] = move
-    return N
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _mean_distance(N: Array, case: Case) -> float:
@@ -24,6 +18,7 @@ def _mean_distance(N: Array, case: Case) -> float:
 
 
 def _steps(x: Array) -> Any:
+    """Return N (3, 3): N x has centroid 0 and mean distance √2 from it."""
     c = x.mean(axis=0)  # the centroid
     r = np.sqrt(((x - c) ** 2).sum(axis=1))  # the distances from the centroid
     d = r.mean()  # the mean distance
@@ -31,51 +26,40 @@ def _steps(x: Array) -> Any:
     return np.array([[s, 0, -s * c[0]], [0, s, -s * c[1]], [0, 0, 1]])
 
 
-_MISTAKES = mistakes(
+# One scale for each direction.
+_BY_DIRECTION = ("[s, 0, -s * c[0]], [0, s, -s", "[s[0], 0, -s[0] * c[0]], [0, s[1], -s[1]")
+_MISTAKES = mistakes_in(_steps,
     ("mean distance 1", "The mean distance became 1: which one is asked, so that a typical point "
      "is (1, 1)?",
-     edited(_steps, "np.sqrt(2)", "1")),
+     ("np.sqrt(2)", "1")),
     ("each direction by itself", "You scaled each direction by its own spread; one scale for both "
      "is asked, so that circles stay circles.",
-     lambda x: _similarity(1 / x.std(0), -x.mean(0) / x.std(0)),
-     lambda x: _similarity(1 / x.std(0, ddof=1), -x.mean(0) / x.std(0, ddof=1)),
-     lambda x: _similarity(np.sqrt(2) / x.std(0), -np.sqrt(2) * x.mean(0) / x.std(0)),
-     lambda x: _similarity(1 / _mean_off(x), -x.mean(0) / _mean_off(x)),
-     lambda x: _similarity(np.sqrt(2) / _mean_off(x), -np.sqrt(2) * x.mean(0) / _mean_off(x))),
-    ("root mean square distance", "You took the root of the mean squared distance; asked is the "
-     "mean distance.",
-     edited(_steps, "r.mean()", "np.sqrt((r**2).mean())"),
-     edited(_steps, "r.mean()", "np.sqrt((r**2).sum() / (len(x) - 1))")),
-    ("distance from the origin", "Your distances are from (0, 0): from where are they asked?",
-     edited(_steps, "((x - c) ** 2)", "(x**2)")),
+     *(("np.sqrt(2) / d", scale, *_BY_DIRECTION) for scale in (
+         "1 / x.std(0)", "1 / x.std(0, ddof=1)", "np.sqrt(2) / x.std(0)",
+         "1 / np.abs(x - c).mean(0)", "np.sqrt(2) / np.abs(x - c).mean(0)"))),
+    ("another spread", "You took a root mean square, or a standard deviation; asked is the mean "
+     "distance from the centroid.",
+     ("r.mean()", "np.sqrt((r**2).mean())"), ("r.mean()", "np.sqrt((r**2).sum() / (len(x) - 1))"),
+     ("r.mean()", "x.std()"), ("np.sqrt(2) / d", "1 / x.std()"), ("r.mean()", "r.std()"),
+     ("r.mean()", "r.std(ddof=1)")),
     ("shift not scaled", "N first scales and then shifts by what stands in its last column: so in "
      "which units is the centroid there?",
-     edited(_steps, "-s * c", "-c")),
+     ("-s * c", "-c")),
     ("not centred", "The scale is right, but the points are not shifted to their centroid.",
-     edited(_steps, "-s * c", "0 * c")),
-    ("standard deviation of all coordinates", "You divided by the standard deviation of all "
-     "coordinates together; asked is the mean distance from the centroid.",
-     edited(_steps, "r.mean()", "x.std()"), edited(_steps, "np.sqrt(2) / d", "1 / x.std()")),
-    ("standard deviation of the distances", "You divided by the standard deviation of the "
-     "distances; asked is their mean.",
-     edited(_steps, "r.mean()", "r.std()"), edited(_steps, "r.mean()", "r.std(ddof=1)")),
+     ("-s * c", "0 * c")),
     ("one mean for both coordinates", "You took the mean of all numbers; the centroid has two "
      "coordinates.",
-     edited(_steps, "x.mean(axis=0)", "np.full(2, x.mean())")),
+     ("x.mean(axis=0)", "np.full(2, x.mean())")),
     ("scaled to [−1, 1]", "You scaled by the largest number, or so that all points lie between −1 "
      "and 1; asked is a mean distance from the centroid.",
-     lambda x: _similarity(2 / np.ptp(x, axis=0), -(x.max(0) + x.min(0)) / np.ptp(x, axis=0)),
-     edited(_steps, "np.sqrt(2) / d", "1 / abs(x - c).max()"),
-     edited(_steps, "np.sqrt(2) / d", "1 / x.max()"),
-     lambda x: _similarity(1 / x.max(0), -x.mean(0) / x.max(0))),
+     ("x.mean(axis=0)", "(x.max(0) + x.min(0)) / 2", "np.sqrt(2) / d", "2 / np.ptp(x, axis=0)",
+      *_BY_DIRECTION),
+     ("np.sqrt(2) / d", "1 / abs(x - c).max()"), ("np.sqrt(2) / d", "1 / x.max()"),
+     ("np.sqrt(2) / d", "1 / x.max(0)", *_BY_DIRECTION)),
     ("the points, not the matrix", "These are the normalised points; asked is the matrix that "
      "makes them.",
      lambda x: apply(normaliser(x), x)),
 )  # fmt: skip
-
-
-def _mean_off(x: Array) -> Array:
-    return np.asarray(np.abs(x - x.mean(0)).mean(0))
 
 
 NORMALISER = Exercise(
@@ -84,9 +68,6 @@ NORMALISER = Exercise(
     title="Hartley's normalisation",
     task="Give the matrix N (3, 3), a shift and a scale that is the same in both directions, that "
     "moves points x (n, 2) so that their centroid is 0 and their mean distance from it √2.",
-    stub='''def my_normaliser(x):
-    """Return N (3, 3): N x has centroid 0 and mean distance √2 from it."""
-    ...''',
     hints=(
         "First the centroid c = x.mean(axis=0), then the distances ‖x − c‖ and their mean d.",
         "x ↦ s (x − c) with s = √2 / d.",

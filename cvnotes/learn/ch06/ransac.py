@@ -11,12 +11,12 @@ from cvnotes.base import Array
 from cvnotes.homography import dlt
 from cvnotes.learn.cases.cameras import rounded, some_homography
 from cvnotes.projective import apply
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def ransac(src: Array, dst: Array, draws: Any, t: float) -> tuple[float, float]:
-    """Return how many pairs agree with the best draw, and how many draws that many ask for."""
+    """Give k, N: how many pairs agree with the best draw, and how many draws they ask for."""
     H = np.array([dlt(src[rows], dst[rows]) for rows in draws])  # the maps of the draws
     s_h = np.column_stack([src, np.ones(len(src))])  # src, lifted
     m_h = s_h @ H.mT  # where each map takes src, homogeneous
@@ -43,17 +43,17 @@ def _some_wrong(rng: Rng) -> list[Case]:
 
 
 _N = "np.ceil(np.log(0.001) / np.log(1 - q**4))"
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(ransac,
     ("all pairs at once", "You fitted all pairs together: the wrong ones bend that map, too.",
      lambda src, dst, draws, t: ransac(src, dst, np.arange(len(src))[None], t)),
     ("one pair for four", "A draw is right only if all four of its pairs are: how likely is that?",
-     edited(ransac, "q**4", "q"), edited(ransac, "q**4", "4 * q")),
+     ("q**4", "q"), ("q**4", "4 * q")),
     ("0.999 for 0.001", "All N draws may be wrong with probability 0.001; you allowed 0.999.",
-     edited(ransac, "0.001", "0.999")),
+     ("0.001", "0.999")),
     ("the part of wrong pairs", "You worked with the part of wrong pairs; a draw is of use if "
      "four right ones meet.",
-     edited(ransac, "q**4", "(1 - q) ** 4"), edited(ransac, "1 - q**4", "1 - (1 - q**4)"),
-     edited(ransac, _N, "np.ceil(np.log(0.001) / np.log(q))")),
+     ("q**4", "(1 - q) ** 4"), ("1 - q**4", "1 - (1 - q**4)"),
+     (_N, "np.ceil(np.log(0.001) / np.log(q))")),
 )  # fmt: skip
 
 RANSAC = Exercise(
@@ -65,9 +65,6 @@ RANSAC = Exercise(
     "to within t px of their dst. Give the count k of these pairs, and the number N of draws, "
     "rounded up, after which one without a wrong pair has been met with probability 0.999, if k "
     "of the n pairs are right.",
-    stub='''def my_ransac(src, dst, draws, t):
-    """Give k, N: how many pairs agree with the best draw, and how many draws they ask for."""
-    ...''',
     hints=(
         "For each row of draws: H = dlt(src[row], dst[row]). Count the pairs whose distance "
         "between dst and where H takes src is below t. k is the largest count.",
@@ -80,7 +77,6 @@ RANSAC = Exercise(
         Property("After N draws one of right pairs alone has been met, with 0.999."),
     ),
     misconceptions=_MISTAKES,
-    reference=ransac,
     steps=ransac,
     concepts=("p", "50"),
 )

@@ -8,13 +8,8 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.calibration import intrinsics_from_b
 from cvnotes.learn.cases.cameras import some_intrinsics
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
-
-
-def A_from_b(b: Array) -> Array:
-    """Return A (3, 3) from b (6,) of any scale and sign."""
-    return intrinsics_from_b(b * np.sign(b[0]))
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _b_of(A: Array, factor: float) -> Array:
@@ -43,7 +38,8 @@ def _last_one(M: npt.ArrayLike) -> Array:
     return np.asarray(M / M[2, 2])
 
 
-def _steps(b: Array) -> Any:
+def A_from_b(b: Array) -> Any:
+    """Return A (3, 3) from b (6,), of any scale and sign."""
     B11, B12, B22, B13, B23, B33 = b * np.sign(b[0])  # the entries of B, with B11 positive
     D = B11 * B22 - B12**2  # the minor B11 B22 − B12²
     v0 = (B12 * B13 - B11 * B23) / D  # v0
@@ -55,31 +51,31 @@ def _steps(b: Array) -> Any:
     return np.array([[au, g, u0], [0, av, v0], [0, 0, 1]])
 
 
-_MISTAKES = mistakes(
-    ("last entry not 1", "Your A is right up to scale; which of its entries is known?",
-     lambda b: np.linalg.inv(np.linalg.cholesky(_B(b))).T if b[0] > 0 else None,
-     lambda b: np.linalg.inv(np.linalg.cholesky(_B(b * np.sign(b[0])))).T),
-    ("transposed", "Your A is lower triangular: which factor of B did you take?",
-     lambda b: A_from_b(b).T, lambda b: np.linalg.inv(np.linalg.cholesky(_B(b * np.sign(b[0]))))),
+_MISTAKES = mistakes_in(A_from_b,
+    ("last entry not 1", "Your A is right up to its scale, or lower triangular: which factor of B "
+     "is it, and which of its entries is known?",
+     "np.linalg.inv(np.linalg.cholesky(_B(b))).T if b[0] > 0 else None",
+     "np.linalg.inv(np.linalg.cholesky(_B(b * np.sign(b[0])))).T",
+     "np.linalg.inv(np.linalg.cholesky(_B(b * np.sign(b[0]))))"),
     ("inverse forgotten", "You gave the factor of B itself; what is B made of?",
-     lambda b: _last_one(np.linalg.cholesky(_B(b)).T) if b[0] > 0 else None),
+     "_last_one(np.linalg.cholesky(_B(b)).T) if b[0] > 0 else None"),
     ("inverse before the factorisation", "You inverted B first, and Cholesky gives a lower "
      "triangular factor of that; A is upper triangular.",
-     lambda b: _last_one(np.linalg.cholesky(np.linalg.inv(_B(b)))) if b[0] > 0 else None,
-     lambda b: _last_one(np.linalg.cholesky(np.linalg.inv(_B(b))).T) if b[0] > 0 else None),
+     "_last_one(np.linalg.cholesky(np.linalg.inv(_B(b)))) if b[0] > 0 else None",
+     "_last_one(np.linalg.cholesky(np.linalg.inv(_B(b))).T) if b[0] > 0 else None"),
     ("scale taken for 1", "You took b for entries of A⁻ᵀ A⁻¹ itself; its scale is unknown, and has "
      "to be found first.",
-     edited(_steps, "s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11", "s = 1",
-            "b * np.sign(b[0])", "b"),
-     edited(_steps, "s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11", "s = 1")),
+     ("s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11", "s = 1", "b * np.sign(b[0])", "b"),
+     ("s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11", "s = 1")),
     ("sign taken for positive", "Right for a b with B11 > 0. A null vector comes with either sign.",
      lambda b: A_from_b(b) if b[0] > 0 else None),
     ("skew left out", "All but the skew is as it should be, and u0 suffers from it.",
-     edited(_steps, "g = -B12 * au**2 * av / s", "g = 0")),
+     ("g = -B12 * au**2 * av / s", "g = 0")),
     ("A Aᵀ", "That is A Aᵀ, up to scale: it has to be factorised.",
-     lambda b: _last_one(np.linalg.inv(_B(b))), lambda b: np.linalg.inv(_B(b)),
-     lambda b: np.linalg.inv(_B(b * np.sign(b[0])))),
-    ("B itself", "That is B; A is in its factors.", lambda b: _last_one(_B(b)), _B),
+     "_last_one(np.linalg.inv(_B(b)))", "np.linalg.inv(_B(b))",
+     "np.linalg.inv(_B(b * np.sign(b[0])))"),
+    ("B itself", "That is B; A is in its factors.",
+     "_last_one(_B(b))", _B),
 )  # fmt: skip
 
 A_FROM_B = Exercise(
@@ -88,9 +84,6 @@ A_FROM_B = Exercise(
     title="The camera in B",
     task="Give A (3, 3), with skew, from b = (B11, B12, B22, B13, B23, B33) of any scale and sign, "
     "where B ∝ A⁻ᵀ A⁻¹. The last entry of A is 1.",
-    stub='''def my_A_from_b(b):
-    """Return A (3, 3) from b (6,), of any scale and sign."""
-    ...''',
     hints=(
         "Write B as a matrix first, and give it the sign that makes B11 positive.",
         "np.linalg.cholesky gives L, lower triangular, with B = L Lᵀ. Compare with A⁻ᵀ A⁻¹.",
@@ -107,8 +100,7 @@ A_FROM_B = Exercise(
         Property("The sign of b does not matter.", about="negative"),
     ),
     misconceptions=_MISTAKES,
-    reference=A_from_b,
-    steps=_steps,
+    steps=A_from_b,
     concepts=("56", "59", "E28", "E31"),
     sources=(intrinsics_from_b,),
 )

@@ -7,7 +7,7 @@ import numpy as np
 from cvnotes.calibration import constraints
 from cvnotes.camera import rotation_from_vector
 from cvnotes.learn.cases.cameras import plane_image
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
 
 
 @cache
@@ -59,29 +59,20 @@ D: four pictures, tilted by 45° up, down, left and right, all in the middle of 
     ),
     cases=lambda _: [Case(())],
     properties=(Property("Its equations are those of one single view, again and again."),),
-    misconceptions=(
-        Misconception(
-            "two views thought too few",
-            "A is fine: two views give four equations, and without skew A has four unknowns. "
-            "The notes' “at least 3” is for a camera with skew.",
-            lambda: 0.0,
-        ),
-        Misconception(
-            "small tilt thought worthless",
-            "C is fine: 20° give large error bars but an answer. What counts is that the boards "
-            "are tilted against each other.",
-            lambda: 2.0,
-        ),
-        Misconception(
-            "the middle thought worthless",
-            "D determines A well: tilts differ by up to 90°. Pictures in the middle only are a "
-            "pity for the lens coefficients, which show in the corners.",
-            lambda: 3.0,
-        ),
+    misconceptions=mistakes(
+        ("two views thought too few", "A is fine: two views give four equations, and without skew "
+         "A has four unknowns. The notes' “at least 3” is for a camera with skew.",
+         lambda: 0.0),
+        ("small tilt thought worthless", "C is fine: 20° give large error bars but an answer. What "
+         "counts is that the boards are tilted against each other.",
+         lambda: 2.0),
+        ("the middle thought worthless", "D determines A well: tilts differ by up to 90°. Pictures "
+         "in the middle only are a pity for the lens coefficients, which show in the corners.",
+         lambda: 3.0),
     ),
     reference=bad_views,
     concepts=("55", "58", "f", "E29"),
     answer="value",
     choices=("A", "B", "C", "D"),
     sources=(determinacy,),
-)
+)  # fmt: skip

@@ -1,7 +1,5 @@
 """Where the board was."""
 
-# A mistake is often an argument that was left out.
-
 from typing import Any
 
 import numpy as np
@@ -19,8 +17,8 @@ from cvnotes.learn.cases.cameras import (
     some_pose,
 )
 from cvnotes.tutor.checker.equality import same_motion, up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def _posed(rng: Rng) -> list[Case]:
@@ -35,13 +33,6 @@ def _posed(rng: Rng) -> list[Case]:
     H = plane_image(A, R, T) * (1 + 2e-3 * rng.standard_normal((3, 3)))
     cases.append(Case((A, H), truth=(R, T), about="noisy"))
     return cases
-
-
-def _parts(A: Array, H: Array) -> tuple[Array, Array, Array, float]:
-    """Return λ r1, λ r2, λ T and λ, with the sign that puts the board in front."""
-    rays = np.linalg.inv(A) @ H
-    scale = float(np.linalg.norm(rays[:, 0])) * (1.0 if rays[2, 2] > 0 else -1.0)
-    return rays[:, 0], rays[:, 1], rays[:, 2], scale
 
 
 def _is_view(G: Array, case: Case) -> bool:
@@ -62,14 +53,8 @@ def _is_near(G: Array, case: Case) -> bool:
     )
 
 
-def _sign_in_T_only(A: Array, H: Array) -> Array:
-    G = extrinsics(A, H)
-    if _parts(A, H)[3] < 0:
-        G[:3, :2] *= -1  # r3 = r1 × r2 comes out the same
-    return G
-
-
 def _steps(A: Array, H: Array) -> Any:
+    """Return G (4, 4), CRF ← board."""
     X = np.linalg.inv(A) @ H  # the columns λ r1, λ r2 and λ T
     size = np.linalg.norm(X[:, 0])  # the size of λ
     scale = np.sign(X[2, 2]) * size  # λ, with the sign that puts the board in front
@@ -84,48 +69,42 @@ def _steps(A: Array, H: Array) -> Any:
 
 # The steps without the line that cures what noise did.
 _RAW = ("R = U @ Vt", "R = np.column_stack([r1, r2, r3])")
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(_steps,
     ("sign of λ", "Right for a positive scale. With a negative one your board stands behind the "
      "camera: which sign has T_z?",
-     edited(_steps, "np.sign(X[2, 2]) * size", "size", *_RAW),
-     edited(_steps, "np.sign(X[2, 2]) * size", "size")),
+     ("np.sign(X[2, 2]) * size", "size", *_RAW), ("np.sign(X[2, 2]) * size", "size")),
     ("sign in T only", "Right for a positive scale. With a negative one you changed the sign of T "
      "alone: λ has one sign, for all three columns.",
-     _sign_in_T_only),
+     "extrinsics(A, H) * np.where(X[2, 2] > 0, 1, [-1, -1, 1, 1])"),
     ("T not divided", "R is right, but T is still multiplied by λ, as the other columns were.",
-     edited(_steps, "X[:, 2] / scale", "X[:, 2]", *_RAW),
-     edited(_steps, "X[:, 2] / scale", "X[:, 2]"),
-     edited(_steps, "X[:, 2] / scale", "X[:, 2] * np.sign(X[2, 2])")),
-    ("r3 the wrong way round", "Your R is a reflection: in which order are r1 and r2 multiplied?",
-     edited(_steps, "(r1, r2)", "(r2, r1)", *_RAW), edited(_steps, "(r1, r2)", "(r2, r1)")),
+     ("X[:, 2] / scale", "X[:, 2]", *_RAW), ("X[:, 2] / scale", "X[:, 2]"),
+     ("X[:, 2] / scale", "X[:, 2] * np.sign(X[2, 2])")),
     ("R transposed", "You have r1, r2 and r3 as rows of R; what are they?",
-     edited(_steps, "[R, T]", "[R.T, T]")),
+     ("[R, T]", "[R.T, T]")),
     ("A⁻¹ forgotten", "You took r1 and r2 from H itself, which is in pixels.",
-     edited(_steps, "np.linalg.inv(A) @ H", "H", *_RAW),
-     edited(_steps, "np.linalg.inv(A) @ H", "H")),
+     ("np.linalg.inv(A) @ H", "H", *_RAW), ("np.linalg.inv(A) @ H", "H")),
     ("A for A⁻¹", "You multiplied by A, which H has in it already.",
-     edited(_steps, "np.linalg.inv(A)", "A", *_RAW), edited(_steps, "np.linalg.inv(A)", "A")),
+     ("np.linalg.inv(A)", "A", *_RAW), ("np.linalg.inv(A)", "A")),
     ("r3 the third column", "The third column of A⁻¹ H is λ T, not r3: the board's own z axis is "
      "not seen.",
-     edited(_steps, "np.cross(r1, r2)", "T", *_RAW), edited(_steps, "np.cross(r1, r2)", "T"),
-     edited(_steps, "np.cross(r1, r2)", "T / np.linalg.norm(T)")),
+     ("np.cross(r1, r2)", "T", *_RAW), ("np.cross(r1, r2)", "T"),
+     ("np.cross(r1, r2)", "T / np.linalg.norm(T)")),
     ("no rotation with noise", "Right on exact data. With noise r1 and r2 are neither of one "
      "length nor perpendicular: which rotation is nearest?",
-     edited(_steps, *_RAW), edited(_steps, "[:, 0])", "[:, 1])", *_RAW),
-     edited(_steps, "np.linalg.norm(X[:, 0])", "np.linalg.norm(X[:, :2], axis=0).mean()", *_RAW),
-     edited(_steps, "np.linalg.norm(X[:, 0])",
-            "np.sqrt(np.prod(np.linalg.norm(X[:, :2], axis=0)))", *_RAW)),
+     (*_RAW,), ("[:, 0])", "[:, 1])", *_RAW),
+     ("np.linalg.norm(X[:, 0])", "np.linalg.norm(X[:, :2], axis=0).mean()", *_RAW),
+     ("np.linalg.norm(X[:, 0])", "np.sqrt(np.prod(np.linalg.norm(X[:, :2], axis=0)))", *_RAW)),
     ("r1 and r2 scaled each by itself", "Right on exact data. You scaled r1 and r2 to length 1 one "
      "by one: with noise they are still not perpendicular.",
      *(edited(_steps, "    r3 =", "    n = np.linalg.norm(r2); r2 = r2 / n; "
               f"T = T / (1 + {w} * (n - 1)); r3 =", *_RAW) for w in (0, 0.5, 1))),
     ("camera's position for T", "You gave where the camera stands beside R: G has T itself.",
-     edited(_steps, "[R, T]", "[R, -R.T @ T]")),
+     ("[R, T]", "[R, -R.T @ T]")),
     ("r1 and r2 exchanged", "r1 and r2 are exchanged: to which column of H belongs which?",
-     lambda A, H: extrinsics(A, H[:, [1, 0, 2]])),
+     ("np.linalg.inv(A) @ H", "np.linalg.inv(A) @ H[:, [1, 0, 2]]")),
     ("λ left out", "r1, r2 and T are still multiplied by λ: how long is r1?",
-     edited(_steps, "np.sign(X[2, 2]) * size", "1", *_RAW),
-     edited(_steps, "np.sign(X[2, 2]) * size", "np.sign(X[2, 2])", *_RAW)),
+     ("np.sign(X[2, 2]) * size", "1", *_RAW),
+     ("np.sign(X[2, 2]) * size", "np.sign(X[2, 2])", *_RAW)),
 )  # fmt: skip
 
 EXTRINSICS = Exercise(
@@ -135,9 +114,6 @@ EXTRINSICS = Exercise(
     task="Give the pose G (4, 4) of the board in the camera's frame from A and the view's "
     "homography H, of any scale and sign. The board was in front of the camera, and H has a "
     "little noise: make R a rotation all the same.",
-    stub='''def my_extrinsics(A, H):
-    """Return G (4, 4), CRF ← board."""
-    ...''',
     hints=(
         "A⁻¹ H = λ [r1 r2 T], and r1 and r2 are unit vectors: |λ| is the length of the first "
         "column, "

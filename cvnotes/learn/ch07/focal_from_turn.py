@@ -6,17 +6,8 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, rounded, some_factors, some_rotation
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-
-
-def focal_from_turn(H: Array) -> float:
-    """Return f from H ≈ A R A⁻¹ with A = diag(f, f, 1), of any scale and sign.
-
-    The last column of a rotation is as long as its last row, and both share r33. In H the first
-    two entries of the column carry f, those of the row 1 / f.
-    """
-    return float(np.sqrt(np.linalg.norm(H[:2, 2]) / np.linalg.norm(H[2, :2])))
-
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 # About x and y at once, f = 300: the axis is at 45° to both.
 _ABOUT_BOTH = np.array([[2.0, 1, 600], [1, 2, -600], [-1 / 150, 1 / 150, 1]])
@@ -39,64 +30,40 @@ def _turns(rng: Rng) -> list[Case]:
     ]
 
 
-def _to_det_1(H: Array) -> Array:
-    return np.asarray(H / np.cbrt(np.linalg.det(H)))
-
-
-def _by_column(H: Array) -> float:
-    """Return the root of f² = (h13² + h23²) / (1 − h33²), which holds where det H = 1."""
-    with np.errstate(all="ignore"):
-        return float(np.sqrt(H[:2, 2] @ H[:2, 2] / (1 - H[2, 2] ** 2)))
-
-
-def _by_entries(H: Array) -> float:
-    with np.errstate(all="ignore"):
-        return float(np.sqrt(abs(H[0, 2] / H[2, 0])))
-
-
-def _by_columns(H: Array) -> float:
-    """Return f from the equal lengths of the first two columns alone."""
-    with np.errstate(all="ignore"):
-        f2 = (H[2, 1] ** 2 - H[2, 0] ** 2) / (H[:2, 0] @ H[:2, 0] - H[:2, 1] @ H[:2, 1])
-        return float(np.sqrt(f2))
-
-
-def _by_rows(H: Array) -> float:
-    """Return f from the right angle of the first two rows alone."""
-    with np.errstate(all="ignore"):
-        return float(np.sqrt(-H[0, 2] * H[1, 2] / (H[0, 0] * H[1, 0] + H[0, 1] * H[1, 1])))
-
-
-def _steps(H: Array) -> Any:
+def focal_from_turn(H: Array) -> Any:
+    """Return f in pixels from H (3, 3), of any scale and sign."""
     column = np.hypot(H[0, 2], H[1, 2])  # the length of the last column without its last entry
     row = np.hypot(H[2, 0], H[2, 1])  # the length of the last row without its last entry
     return np.sqrt(column / row)
 
 
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(focal_from_turn,
     ("scale believed", "You took the scale of H for that of a rotation, and H comes in any scale.",
-     _by_column, lambda H: _by_column(H / np.linalg.norm(H))),
+     "np.sqrt(H[:2, 2] @ H[:2, 2] / (1 - H[2, 2]**2))",
+     ("    column =", "    H = H / np.linalg.norm(H); column =",
+      "np.sqrt(H[:2, 2] @ H[:2, 2] / (1 - H[2, 2]**2))")),
     ("h33 made 1", "You divided by h33, but H with h33 = 1 is no turn: in which ratio does the "
      "scale cancel?",
-     lambda H: float(np.linalg.norm(H[:2, 2] / H[2, 2]))),
+     "float(np.linalg.norm(H[:2, 2] / H[2, 2]))"),
     ("entries for lengths", "You compared single entries; they are of one size only if the "
      "camera turns about the vertical.",
-     _by_entries, lambda H: float(np.sqrt(abs(H[1, 2] / H[2, 1]))),
-     lambda H: float(np.sqrt(np.abs(H[:2, 2] / H[2, :2]).mean()))),
+     "np.sqrt(abs(H[0, 2] / H[2, 0]))", "np.sqrt(abs(H[1, 2] / H[2, 1]))",
+     "np.sqrt(np.abs(H[:2, 2] / H[2, :2]).mean())"),
     ("one right angle", "You used that the first two rows are perpendicular. It holds, but about "
      "the vertical it reads 0 = 0 and says nothing.",
-     _by_rows),
+     "np.sqrt(-H[0, 2] * H[1, 2] / (H[0, 0] * H[1, 0] + H[0, 1] * H[1, 1]))"),
     ("only the column", "That is f times the sine of the angle between the two optical axes.",
-     lambda H: float(np.linalg.norm(_to_det_1(H)[:2, 2])),
-     lambda H: float(np.linalg.norm(H[:2, 2]))),
+     "column / abs(np.cbrt(np.linalg.det(H)))", "column"),
     ("whole columns", "You took whole columns and rows. Does f stand in all of their entries?",
-     lambda H: float(np.sqrt(np.linalg.norm(H[:, 2]) / np.linalg.norm(H[2])))),
+     "float(np.sqrt(np.linalg.norm(H[:, 2]) / np.linalg.norm(H[2])))"),
     ("sums for lengths", "You added entries for a length, and they may have either sign.",
-     lambda H: float(np.sqrt(np.abs(H[:2, 2]).sum() / np.abs(H[2, :2]).sum())),
-     lambda H: float(np.sqrt(abs(H[:2, 2].sum() / H[2, :2].sum())))),
+     "float(np.sqrt(np.abs(H[:2, 2]).sum() / np.abs(H[2, :2]).sum()))",
+     "float(np.sqrt(abs(H[:2, 2].sum() / H[2, :2].sum())))"),
     ("two columns", "You compared the first two columns, or rows. About an axis at 45° that reads "
      "0 = 0 and says nothing: which column and which row share an entry?",
-     _by_columns, lambda H: np.reciprocal(_by_columns(np.linalg.inv(H).T))),
+     "np.sqrt((H[2, 1]**2 - H[2, 0]**2) / (H[:2, 0] @ H[:2, 0] - H[:2, 1] @ H[:2, 1]))",
+     ("    column =", "    H = np.linalg.inv(H).T; column =",
+      "np.sqrt((H[:2, 0] @ H[:2, 0] - H[:2, 1] @ H[:2, 1]) / (H[2, 1]**2 - H[2, 0]**2))")),
 )  # fmt: skip
 
 TURN = Exercise(
@@ -107,9 +74,6 @@ TURN = Exercise(
     "counted from the principal point, and H (3, 3), of any scale and sign, takes the pixels of "
     "the first picture to those of the second. Give the focal length in pixels. The axis of the "
     "turn is any but the optical one; it may be the vertical.",
-    stub='''def my_focal_from_turn(H):
-    """Return f in pixels from H (3, 3), of any scale and sign."""
-    ...''',
     hints=(
         "T plays no part: H ≈ A R A⁻¹ with A = diag(f, f, 1). Multiply that out.",
         "h13 = f r13 and h23 = f r23, but h31 = r31 / f and h32 = r32 / f, all times one factor.",
@@ -126,7 +90,6 @@ TURN = Exercise(
         Property("So is one about an axis at 45° to the rows.", about="an axis at 45°"),
     ),
     misconceptions=_MISTAKES,
-    reference=focal_from_turn,
-    steps=_steps,
+    steps=focal_from_turn,
     concepts=("56", "q"),
 )

@@ -6,15 +6,8 @@ from cvnotes.base import Array
 from cvnotes.camera import rotation_from_vector
 from cvnotes.learn.cases.cameras import board_grid, rounded
 from cvnotes.tutor.checker.equality import close_to
-from cvnotes.tutor.checker.exercise import (
-    Case,
-    Exercise,
-    Misconception,
-    Property,
-    Rng,
-    mistakes,
-)
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng
+from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def misses(x: Array, W: Array, m: Array) -> Array:
@@ -32,7 +25,7 @@ def derivatives(x: Array, W: Array, m: Array) -> Array:
 
 
 def levenberg_marquardt(x: Array, W: Array, m: Array) -> Array:
-    """Return A where the sum of the squared misses is least."""
+    """Give A (3, 3) at the minimum; x (3 + 6v,) is where to start."""
     mu = 1e-3  # the damping at the start
     for _ in range(14):
         r, J = misses(x, W, m), derivatives(x, W, m)
@@ -65,16 +58,15 @@ def _leapt(A: Array, case: Case) -> bool:
 
 _STEP = "np.linalg.solve(N + mu * np.diag(np.diag(N)), J.T @ r)"
 _MISTAKES = (
-    *mistakes(
+    *mistakes_in(levenberg_marquardt,
         ("the start", "You came back to the start: no step of yours leads downhill. Which sign "
          "has J, and which the step?",
-         edited(levenberg_marquardt, "range(14)", "range(0)")),
+         ("range(14)", "range(0)")),
         ("stopped too early", "Those are the first steps. Go on until nothing changes any more.",
          *(edited(levenberg_marquardt, "range(14)", f"range({n})") for n in (5, 6, 7))),
         ("the camera alone", "You moved the camera's numbers and held the poses; all of them "
          "come from the same corners.",
-         edited(levenberg_marquardt, _STEP,
-                "np.append(np.linalg.solve(N[:3, :3], (J.T @ r)[:3]), 0 * x[3:])")),
+         (_STEP, "np.append(np.linalg.solve(N[:3, :3], (J.T @ r)[:3]), 0 * x[3:])")),
     ),
     Misconception(
         "every step taken", "You leapt far away: take a step only if the sum of squares becomes "
@@ -92,9 +84,6 @@ LEVENBERG_MARQUARDT = Exercise(
     "Give A (3, 3) where the sum of the squared misses is least, over all x: f, u0, v0, then "
     "ω and T of each view, with R = rotation_from_vector(ω). You get a start x (3 + 6v,); undamped "
     "steps lead away from there.",
-    stub='''def my_levenberg_marquardt(x, W, m):
-    """Give A (3, 3) at the minimum; x (3 + 6v,) is where to start."""
-    ...''',
     hints=(
         "A function of x for the misses r, all in one vector. For J change one number of x after "
         "the other by ±h, and divide the differences by 2h.",
@@ -110,7 +99,6 @@ LEVENBERG_MARQUARDT = Exercise(
         Property("With noise the sum of the squared misses is least.", about="noisy"),
     ),
     misconceptions=_MISTAKES,
-    reference=levenberg_marquardt,
     steps=levenberg_marquardt,
     same=close_to(2e-5),
     sources=(levenberg_marquardt, misses, derivatives),

@@ -1,7 +1,5 @@
 """One equation for B."""
 
-# A mistake is often an argument that was left out.
-
 from typing import Any
 
 import numpy as np
@@ -9,13 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.calibration import v_ij as library_v_ij
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
-
-
-def v_ij(H: Array, i: int, j: int) -> Array:
-    """Return v_ij (6,) of a homography (3, 3), columns numbered from 1."""
-    return library_v_ij(H, int(i), int(j))
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def _columns(rng: Rng) -> list[Case]:
@@ -36,7 +29,8 @@ def _form(v: Array, case: Case) -> bool:
     )
 
 
-def _steps(H: Array, i: int, j: int) -> Any:
+def v_ij(H: Array, i: int, j: int) -> Any:
+    """Return v_ij (6,) with h_iᵀ B h_j = v_ij·b; i and j count columns from 1."""
     a, b = H[:, i - 1], H[:, j - 1]
     b12 = a[0] * b[1] + a[1] * b[0]  # what belongs to B12
     b13 = a[0] * b[2] + a[2] * b[0]  # what belongs to B13
@@ -44,36 +38,26 @@ def _steps(H: Array, i: int, j: int) -> Any:
     return np.array([a[0] * b[0], b12, a[1] * b[1], b13, b23, a[2] * b[2]])
 
 
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(v_ij,
     ("columns counted from 0", "Python counts columns from 0, this exercise from 1.",
-     edited(_steps, "i - 1], H[:, j - 1]", "i], H[:, j]")),
+     ("i - 1], H[:, j - 1]", "i], H[:, j]")),
     ("mixed products once", "B12 stands in B twice, so that two products belong to it; you have "
      "one of them.",
-     edited(_steps, " + a[1] * b[0]", "", " + a[2] * b[0]", "", " + a[2] * b[1]", ""),
-     edited(_steps, "a[0] * b[1] + ", "", "a[0] * b[2] + ", "", "a[1] * b[2] + ", "")),
+     (" + a[1] * b[0]", "", " + a[2] * b[0]", "", " + a[2] * b[1]", ""),
+     ("a[0] * b[1] + ", "", "a[0] * b[2] + ", "", "a[1] * b[2] + ", "")),
     ("mixed products doubled", "You doubled one product; the two that belong to B12 differ if i "
      "and j do.",
-     edited(_steps, "+ a[1] * b[0]", "+ a[0] * b[1]", "+ a[2] * b[0]", "+ a[0] * b[2]",
-            "+ a[2] * b[1]", "+ a[1] * b[2]")),
+     ("+ a[1] * b[0]", "+ a[0] * b[1]", "+ a[2] * b[0]", "+ a[0] * b[2]", "+ a[2] * b[1]",
+      "+ a[1] * b[2]")),
     ("mixed products halved", "B12 and B21 are one unknown, and b has it once: why a half?",
-     edited(_steps, "b12, ", "b12 / 2, ", "b13, b23,", "b13 / 2, b23 / 2,")),
+     ("b12, ", "b12 / 2, ", "b13, b23,", "b13 / 2, b23 / 2,")),
     ("difference of the mixed products", "You subtracted the two products that belong to B12.",
-     edited(_steps, "] + a", "] - a"),
-     lambda H, i, j: edited(_steps, "] + a", "] - a")(H, j, i)),
+     ("] + a", "] - a"), lambda H, i, j: edited(v_ij, "] + a", "] - a")(H, j, i)),
     ("products of equal entries only", "The mixed entries of B are missing.",
-     edited(_steps, "b12, ", "0, ", "b13, b23,", "0, 0,")),
-    ("another order of b", "Your v goes with b in another order than the notes'.",
-     lambda H, i, j: v_ij(H, i, j)[[0, 1, 3, 2, 4, 5]],
-     lambda H, i, j: v_ij(H, i, j)[[0, 1, 2, 4, 3, 5]],
-     lambda H, i, j: v_ij(H, i, j)[[0, 2, 5, 1, 3, 4]],
-     lambda H, i, j: v_ij(H, i, j)[[0, 2, 5, 1, 4, 3]]),
+     ("b12, ", "0, ", "b13, b23,", "0, 0,")),
     ("everything doubled", "Mixed entries of B have two products; how many has B11?",
-     edited(_steps, "a[0] * b[0]", "2 * a[0] * b[0]", "a[1] * b[1]", "2 * a[1] * b[1]",
-            "a[2] * b[2]", "2 * a[2] * b[2]"),
-     edited(_steps, "b12, ", "2 * b12, ", "b13, b23,", "2 * b13, 2 * b23,")),
-    ("nine products", "You have all nine products; B is symmetric, and b has six entries.",
-     lambda H, i, j: np.outer(H[:, i - 1], H[:, j - 1]).ravel(),
-     lambda H, i, j: np.outer(H[:, i - 1], H[:, j - 1])),
+     ("a[0] * b[0]", "2 * a[0] * b[0]", "a[1] * b[1]", "2 * a[1] * b[1]", "a[2] * b[2]",
+      "2 * a[2] * b[2]"), ("b12, ", "2 * b12, ", "b13, b23,", "2 * b13, 2 * b23,")),
 )  # fmt: skip
 
 V_IJ = Exercise(
@@ -82,9 +66,6 @@ V_IJ = Exercise(
     title="One equation for B",
     task="Give v_ij (6,) with h_iᵀ B h_j = v_ij·b for every symmetric B, where h_i is column i of "
     "H (3, 3), counted from 1, and b = (B11, B12, B22, B13, B23, B33).",
-    stub='''def my_v_ij(H, i, j):
-    """Return v_ij (6,) with h_iᵀ B h_j = v_ij·b; i and j count columns from 1."""
-    ...''',
     hints=(
         "h_i = H[:, i - 1]: a column, and Python counts from 0.",
         "Multiply h_iᵀ B h_j out; B12 and B21 are one unknown, so its two products add up.",
@@ -96,8 +77,7 @@ V_IJ = Exercise(
         Property("That is so for every symmetric B."),
     ),
     misconceptions=_MISTAKES,
-    reference=v_ij,
-    steps=_steps,
+    steps=v_ij,
     concepts=("55", "57", "E23"),
     sources=(library_v_ij,),
 )

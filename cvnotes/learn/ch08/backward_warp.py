@@ -1,7 +1,5 @@
 """A warp without holes."""
 
-# A mistake is often an argument that was left out.
-
 from typing import Any
 
 import numpy as np
@@ -10,26 +8,10 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import image_of_noise, pixel_centres, rounded
 from cvnotes.projective import apply
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 from cvnotes.warping import backward_warp as library_warp
 from cvnotes.warping import homography_map
-
-
-def backward_warp(image: Array, H: Array, size: tuple[int, int]) -> Array:
-    """Warp an image by H, target ≈ H source, to a picture of size (width, height).
-
-    `cvnotes.warping.backward_warp` does so tile by tile, with any map and method.
-    """
-    (height, width), (columns, rows) = image.shape, size
-    u, v = np.meshgrid(np.arange(columns), np.arange(rows))
-    m_h = np.stack([u, v, np.ones_like(u)], axis=-1) @ np.linalg.inv(H).T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        u, v = np.rint(m_h[..., 0] / m_h[..., 2]), np.rint(m_h[..., 1] / m_h[..., 2])
-    inside = (u >= 0) & (u < width) & (v >= 0) & (v < height)
-    warped = np.zeros((rows, columns))
-    warped[inside] = image[v[inside].astype(int), u[inside].astype(int)]
-    return warped
 
 
 def _sources(M: npt.ArrayLike, size: tuple[int, int]) -> Array:
@@ -67,7 +49,8 @@ def _interpolated(image: Array, H: Array, size: tuple[int, int]) -> Array:
     return np.asarray(library_warp(image, to_source, size=size, method="bilinear"), dtype=float)
 
 
-def _steps(image: Array, H: Array, size: tuple[int, int]) -> Any:
+def backward_warp(image: Array, H: Array, size: tuple[int, int]) -> Any:
+    """Return the warped picture, shape (size[1], size[0])."""
     height, width = image.shape
     columns, rows = size
     u, v = np.meshgrid(np.arange(columns), np.arange(rows))  # the pixels of the target
@@ -81,43 +64,35 @@ def _steps(image: Array, H: Array, size: tuple[int, int]) -> Any:
     return np.where(inside, image[j, i], 0)
 
 
-_MISTAKES = mistakes(
-    ("H for its inverse", "You looked up with H itself, which leads from source to target: "
-     "backwards takes the way back.",
-     edited(_steps, "np.linalg.inv(H).T", "H.T")),
+_MISTAKES = mistakes_in(backward_warp,
     ("forward", "You sent source pixels to the target: some target pixels get none (holes), others "
      "several (folds). Go backwards: one look-up for each target pixel.",
-     _forward, lambda image, H, size: _forward(image, np.linalg.inv(H), size)),
-    ("u and v exchanged", "You applied H to (v, u): u counts columns and comes first.",
-     lambda image, H, size: backward_warp(image.T, H, size[::-1]).T),
+     _forward, "_forward(image, np.linalg.inv(H), size)"),
+    ("u and v exchanged", "You applied H to (v, u), or looked up (v, u): u counts columns and "
+     "comes first in a pixel; in an image rows come first.",
+     "backward_warp(image.T, H, size[::-1]).T", "backward_warp(image.T, H, size)",
+     ("k = np.rint(m)", "k = np.rint(m)[..., ::-1]")),
     ("border repeated", "Outside of the source you repeated its border; the task asks for 0 there.",
-     edited(_steps, "np.rint(m)", "np.clip(np.rint(m), 0, [width - 1, height - 1])")),
+     ("np.rint(m)", "np.clip(np.rint(m), 0, [width - 1, height - 1])")),
     ("wrapped around", "Outside of the source you went on at its other side, as % does; the task "
      "asks for 0 there.",
-     edited(_steps, "np.rint(m)", "np.rint(m) % [width, height]")),
+     ("np.rint(m)", "np.rint(m) % [width, height]")),
     ("negative indices that wrap", "A negative index does not fail in Python: it counts from the "
      "end, so that the other side of the picture shows up. Is each position inside at the left "
      "and above as well?",
-     edited(_steps, "(k >= 0) & ", "")),
+     ("(k >= 0) & ", "")),
     ("truncated, not rounded", "int() cuts the decimals off, towards 0; which pixel is nearest?",
-     edited(_steps, "np.rint(m)", "np.trunc(m + 1e-9)")),
+     ("np.rint(m)", "np.trunc(m + 1e-9)")),
     ("half-pixel centres", "You took pixel centres at halves. Here whole numbers are the centres.",
-     edited(_steps, "target @", "(target + [0.5, 0.5, 0]) @", "np.rint(m)", "np.floor(m + 1e-9)"),
-     edited(_steps, "target @", "(target + [0.5, 0.5, 0]) @"),
-     edited(_steps, "target @", "(target + [0.5, 0.5, 0]) @", "np.rint(m)", "np.rint(m - 0.5)")),
-    ("first row and column left out", "Row 0 and column 0 of the source count too.",
-     edited(_steps, "k >= 0", "k > 0")),
-    ("last row and column left out", "The last row and column of the source count too.",
-     edited(_steps, "[width, height]", "[width - 1, height - 1]")),
+     ("target @", "(target + [0.5, 0.5, 0]) @", "np.rint(m)", "np.floor(m + 1e-9)"),
+     ("target @", "(target + [0.5, 0.5, 0]) @"),
+     ("target @", "(target + [0.5, 0.5, 0]) @", "np.rint(m)", "np.rint(m - 0.5)")),
+    ("the border left out", "Row 0 and column 0 of the source count too, and so do its last ones.",
+     ("k >= 0", "k > 0"), ("[width, height]", "[width - 1, height - 1]")),
     ("bilinear", "You interpolated between four pixels; asked is the nearest one.", _interpolated),
-    ("rows and columns exchanged at the look-up", "In an image rows come first: which index "
-     "counts rows?",
-     lambda image, H, size: _steps(image.T, H, size),
-     edited(_steps, "k = np.rint(m)", "k = np.rint(m)[..., ::-1]")),
     ("value outside", "Outside of the source the task asks for 0; you have another value there.",
-     edited(_steps, "image[j, i], 0)", "image[j, i], 255.0)"),
-     edited(_steps, "image[j, i], 0)", "image[j, i], -1.0)"),
-     edited(_steps, "image[j, i], 0)", "image[j, i], image.mean())")),
+     ("image[j, i], 0)", "image[j, i], 255.0)"), ("image[j, i], 0)", "image[j, i], -1.0)"),
+     ("image[j, i], 0)", "image[j, i], image.mean())")),
 )  # fmt: skip
 
 BACKWARD = Exercise(
@@ -127,9 +102,6 @@ BACKWARD = Exercise(
     task="Warp an image, shape (height, width), by a homography H with target ≈ H source: give "
     "the target of `size` = (width, height), shape (height, width). Each target pixel shows the "
     "nearest pixel of the source it comes from, or 0 if that is outside.",
-    stub='''def my_backward_warp(image, H, size):
-    """Return the warped picture, shape (size[1], size[0])."""
-    ...''',
     hints=(
         "Go through the pixels of the target, not of the source: then none is left out.",
         "Where does target pixel (u', v') come from? (u, v, 1) ≈ H⁻¹ (u', v', 1).",
@@ -139,7 +111,6 @@ BACKWARD = Exercise(
     cases=_warps,
     properties=(Property("Each target pixel shows the source pixel that H takes nearest to it."),),
     misconceptions=_MISTAKES,
-    reference=backward_warp,
-    steps=_steps,
+    steps=backward_warp,
     concepts=("66", "73", "74", "E39"),
 )

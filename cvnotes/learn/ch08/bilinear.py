@@ -6,15 +6,9 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import image_of_noise, rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 from cvnotes.warping import bilinear as library_bilinear
-from cvnotes.warping import interpolate
-
-
-def bilinear(image: Array, u: float, v: float) -> float:
-    """Return the grey level of an image (height, width) at (u, v), between its pixels."""
-    return float(interpolate(image, [u, v]))
 
 
 def _positions(rng: Rng) -> list[Case]:
@@ -28,7 +22,8 @@ def _positions(rng: Rng) -> list[Case]:
     return cases + [Case((by_hand, u, v), about="border") for u, v in border]
 
 
-def _steps(image: Array, u: float, v: float) -> Any:
+def bilinear(image: Array, u: float, v: float) -> Any:
+    """Return the grey level at (u, v), bilinearly interpolated."""
     height, width = image.shape
     i, j = int(np.floor(u)), int(np.floor(v))
     du = u - i  # what is left of u
@@ -42,50 +37,44 @@ def _steps(image: Array, u: float, v: float) -> Any:
     return (1 - dv) * upper + dv * lower
 
 
-_SUM = "(1 - dv) * upper + dv * lower"
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(bilinear,
     ("sign of I1 in the expanded form", "You followed the notes' last but one line, which has a "
      "wrong sign in the factor of Δu Δv.",
-     edited(_steps, _SUM, "I1 + (I2 - I1) * du + (I3 - I1) * dv + (I4 - I3 - I2 - I1) * du * dv")),
+     "I1 + (I2 - I1) * du + (I3 - I1) * dv + (I4 - I3 - I2 - I1) * du * dv"),
     ("mixed term left out", "You added what changes along u and along v; the term with Δu Δv is "
      "missing.",
-     edited(_steps, _SUM, "I1 + (I2 - I1) * du + (I3 - I1) * dv")),
+     "I1 + (I2 - I1) * du + (I3 - I1) * dv"),
     ("rows and columns exchanged", "You read image[u, v]: in an image rows come first.",
-     lambda image, u, v: _steps(image.T, u, v)),
+     lambda image, u, v: bilinear(image.T, u, v)),
     ("Δu and Δv exchanged", "Δu and Δv are exchanged: which of them leads to the right?",
-     edited(_steps, "du = u - i", "du = v - j", "dv = v - j", "dv = u - i")),
-    ("weights the wrong way round", "The weights are the wrong way round: near I1, where Δu and Δv "
-     "are small, it must count most.",
-     edited(_steps, "du = u - i", "du = 1 - u + i", "dv = v - j", "dv = 1 - v + j")),
-    ("Δ for 1 − Δ in u", "Δu and 1 − Δu are exchanged: which pixel counts more where Δu is small?",
-     edited(_steps, "du = u - i", "du = 1 - u + i")),
-    ("Δ for 1 − Δ in v", "Δv and 1 − Δv are exchanged: which pixel counts more where Δv is small?",
-     edited(_steps, "dv = v - j", "dv = 1 - v + j")),
+     ("du = u - i", "du = v - j", "dv = v - j", "dv = u - i")),
+    ("weights the wrong way round", "Δ and 1 − Δ are exchanged, along u, along v or both: near "
+     "I1, where Δu and Δv are small, it must count most.",
+     ("du = u - i", "du = 1 - u + i", "dv = v - j", "dv = 1 - v + j"),
+     ("du = u - i", "du = 1 - u + i"), ("dv = v - j", "dv = 1 - v + j")),
     ("nearest pixel", "That is the nearest pixel; the other three count too.",
-     lambda image, u, v: image[round(v), round(u)],
-     lambda image, u, v: image[int(np.floor(v + 0.5)), int(np.floor(u + 0.5))],
-     lambda image, u, v: image[int(np.ceil(v - 0.5)), int(np.ceil(u - 0.5))]),
+     "image[round(v), round(u)]", "image[int(np.floor(v + 0.5)), int(np.floor(u + 0.5))]",
+     "image[int(np.ceil(v - 0.5)), int(np.ceil(u - 0.5))]"),
     ("mean of the four", "That is the mean of the four pixels, wherever the position is between "
      "them.",
-     edited(_steps, _SUM, "(I1 + I2 + I3 + I4) / 4")),
+     "(I1 + I2 + I3 + I4) / 4"),
     ("neighbour beyond the border", "Right inside. In the last column or row there is no pixel "
      "beyond; but what would its weight be?",
-     edited(_steps, "min(i + 1, width - 1)", "i + 1", "min(j + 1, height - 1)", "j + 1")),
+     ("min(i + 1, width - 1)", "i + 1", "min(j + 1, height - 1)", "j + 1")),
     ("border left out", "Right inside. In the last column or row you gave 0; there are still two "
      "pixels to interpolate, or one.",
-     edited(_steps, _SUM, f"({_SUM}) * (i < width - 1) * (j < height - 1)")),
+     "((1 - dv) * upper + dv * lower) * (i < width - 1) * (j < height - 1)"),
     ("border moved inwards", "In the last column or row you took the pixel before it: at whole "
      "numbers the pixel itself counts.",
-     edited(_steps, "right = min(i + 1, width - 1)", "i = min(i, width - 2); right = i + 1",
-            "below = min(j + 1, height - 1)", "j = min(j, height - 2); below = j + 1")),
+     ("right = min(i + 1, width - 1)", "i = min(i, width - 2); right = i + 1",
+      "below = min(j + 1, height - 1)", "j = min(j, height - 2); below = j + 1")),
     ("half-pixel centres", "You took pixel centres at halves. Here whole numbers are the centres.",
      lambda image, u, v: bilinear(image, max(u - 0.5, 0.0), max(v - 0.5, 0.0))),
     ("bytes that wrap around", "You calculated with bytes: 50 − 90 is 216 there. Convert the image "
      "to float first.",
-     edited(_steps, "    I1, I2 =", "    image = image.astype(np.uint8); I1, I2 =",
-            "(1 - du) * I1 + du * I2", "I1 + (I2 - I1) * du",
-            "(1 - du) * I3 + du * I4", "I3 + (I4 - I3) * du",
-            _SUM, "upper + (lower - upper) * dv")),
+     ("    I1, I2 =", "    image = image.astype(np.uint8); I1, I2 =",
+      "(1 - du) * I1 + du * I2", "I1 + (I2 - I1) * du",
+      "(1 - du) * I3 + du * I4", "I3 + (I4 - I3) * du", "upper + (lower - upper) * dv")),
 )  # fmt: skip
 
 BILINEAR = Exercise(
@@ -95,9 +84,6 @@ BILINEAR = Exercise(
     task="Give the grey level of an image, shape (height, width), at the position (u, v) inside of "
     "it, its last row and column included, interpolated between the four pixels around it. Whole "
     "numbers are pixel centres.",
-    stub='''def my_bilinear(image, u, v):
-    """Return the grey level at (u, v), bilinearly interpolated."""
-    ...''',
     hints=(
         "u_k = floor(u) and v_k = floor(v); Δu and Δv are what is left, from 0 to 1.",
         "Rows come first: I1 = image[v_k, u_k], I2 = image[v_k, u_k + 1] to its right.",
@@ -111,8 +97,7 @@ BILINEAR = Exercise(
         Property("In the last column and row there is an answer too.", about="border"),
     ),
     misconceptions=_MISTAKES,
-    reference=bilinear,
-    steps=_steps,
+    steps=bilinear,
     concepts=("75", "E40", "E42", "E43"),
     sources=(library_bilinear,),
 )

@@ -55,22 +55,17 @@ def _nearly(answer: Array, case: Case) -> bool:
 _AB = _ALPHA * _BASELINE
 _MISTAKES = (
     *mistakes(
-        ("in metres", "Right, in metres; asked are millimetres.", lambda: how_far() / 1000),
-        ("in centimetres", "Right, in centimetres; asked are millimetres.", lambda: how_far() / 10),
-        ("baseline left out", "That is the depth in baselines; how long is one?",
-         lambda: _ALPHA / _disparity()),
-        ("focal length left out", "That has the unit mm per pixel: what else is in pixels?",
-         lambda: _BASELINE / _disparity()),
-        ("the disparity itself", "That is the disparity in pixels. Which depth goes with it?",
-         lambda: _disparity()),
-        ("one picture only", "You measured from the middle of one picture. One picture knows no "
-         "depths: what differs between the two?",
-         lambda: _AB / (_seen(nearest_edge())[0] - _U0)),
-        ("the column for the disparity", "You divided by the column of one picture: what differs "
-         "between the two?",
-         lambda: _AB / _seen(nearest_edge())[0], lambda: _AB / _seen(nearest_edge())[1]),
-        ("sum of the columns", "You added the two columns: what differs between them?",
-         lambda: _AB / sum(_seen(nearest_edge()))),
+        ("in another unit", "Right, in metres or in centimetres; asked are millimetres.",
+         lambda: how_far() / 1000, lambda: how_far() / 10),
+        ("α or b left out", "Which unit has that? It is to be mm: how long is the baseline, and "
+         "what else is in pixels?",
+         lambda: _ALPHA / _disparity(), lambda: _BASELINE / _disparity()),
+        ("half-way", "That is the disparity, or α b. Which depth goes with both?",
+         lambda: _disparity(), lambda: _AB),
+        ("one picture only", "You took the column of one picture, or added both. One picture "
+         "knows no depths: what differs between the two?",
+         lambda: _AB / (_seen(nearest_edge())[0] - _U0), lambda: _AB / _seen(nearest_edge())[0],
+         lambda: _AB / _seen(nearest_edge())[1], lambda: _AB / sum(_seen(nearest_edge()))),
         ("sign of the disparity", "Your depth is negative: in which picture is the edge further to "
          "the right?",
          lambda: -how_far()),
@@ -81,7 +76,6 @@ _MISTAKES = (
          lambda: _disparity() * _BASELINE / _ALPHA, lambda: _disparity() * _ALPHA / _BASELINE,
          lambda: _disparity() / _AB, lambda: _AB * _disparity(),
          lambda: _BASELINE / (_ALPHA * _disparity()), lambda: _ALPHA / (_BASELINE * _disparity())),
-        ("α b", "Nothing that you read off is in that.", lambda: _AB),
     ),
     Misconception(
         "another edge of the tall block",

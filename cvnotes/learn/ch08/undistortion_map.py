@@ -7,18 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens
 from cvnotes.learn.cases.cameras import pixel_centres, some_lens
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
-
-
-def undistortion_map(A: Array, k: Array, size: tuple[int, int]) -> Array:
-    """Return where in the photograph to look up each pixel, (height, width, 2)."""
-    columns, rows = size
-    u, v = np.meshgrid(np.arange(columns), np.arange(rows))
-    x, y = (u - A[0, 2]) / A[0, 0], (v - A[1, 2]) / A[1, 1]  # ideal: that is what is wanted
-    r2 = x * x + y * y
-    L = 1 + k[0] * r2 + k[1] * r2**2
-    return np.stack([A[0, 0] * L * x + A[0, 2], A[1, 1] * L * y + A[1, 2]], axis=-1)
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _small_cameras(rng: Rng) -> list[Case]:
@@ -39,13 +29,8 @@ def _at_piercing_point(m: Array, case: Case) -> float:
     return float(np.linalg.norm(m[v, u] - case.right[v, u]))
 
 
-def _centred(A: Array, size: tuple[int, int], less: int) -> Array:
-    B = np.array(A)
-    B[:2, 2] = (np.array(size) - less) / 2
-    return B
-
-
-def _steps(A: Array, k: Array, size: tuple[int, int]) -> Any:
+def undistortion_map(A: Array, k: Array, size: tuple[int, int]) -> Any:
+    """Return the position in the photograph for each pixel, (height, width, 2)."""
     u, v = np.meshgrid(np.arange(size[0]), np.arange(size[1]))
     x = (u - A[0, 2]) / A[0, 0]  # the ideal x
     y = (v - A[1, 2]) / A[1, 1]  # the ideal y
@@ -54,41 +39,40 @@ def _steps(A: Array, k: Array, size: tuple[int, int]) -> Any:
     return np.stack([A[0, 0] * L * x + A[0, 2], A[1, 1] * L * y + A[1, 2]], axis=-1)
 
 
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(undistortion_map,
     ("the wrong direction", "You undistorted: that is where a photographed pixel belongs. The map "
      "goes the other way, from the straight picture to the photograph.",
      _undone),
     ("radius in pixels", "You took the radius in pixels; where is L defined?",
-     edited(_steps, "/ A[0, 0]", "/ 1", "/ A[1, 1]", "/ 1",
-            "A[0, 0] * L", "L", "A[1, 1] * L", "L")),
+     ("/ A[0, 0]", "/ 1", "/ A[1, 1]", "/ 1", "A[0, 0] * L", "L", "A[1, 1] * L", "L")),
     ("not back to pixels", "You stopped in the plane z = 1: asked are pixels of the photograph.",
-     edited(_steps, "A[0, 0] * L * x + A[0, 2]", "L * x", "A[1, 1] * L * y + A[1, 2]", "L * y")),
+     ("A[0, 0] * L * x + A[0, 2]", "L * x", "A[1, 1] * L * y + A[1, 2]", "L * y")),
     ("displacement only", "That is by how much each pixel moves; asked is where it is looked up.",
      lambda A, k, size: undistortion_map(A, k, size) - undistortion_map(A, 0 * k, size)),
     ("principal point not added back", "You gave offsets from the principal point; pixels are "
      "counted from the first one.",
      lambda A, k, size: undistortion_map(A, k, size) - A[:2, 2]),
     ("r for r²", "Which powers of r does L have? You have others.",
-     edited(_steps, "r2 = x**2 + y**2", "r2 = np.hypot(x, y)")),
+     ("r2 = x**2 + y**2", "r2 = np.hypot(x, y)")),
     ("nothing moved", "You gave each pixel its own position: the lens has no part in it.",
      lambda A, k, size: undistortion_map(A, 0 * k, size)),
     ("half-pixel centres", "You took pixel centres at halves. Here whole numbers are the centres.",
-     edited(_steps, "np.arange(size[0])", "np.arange(size[0]) + 0.5",
-            "np.arange(size[1])", "np.arange(size[1]) + 0.5"),
-     lambda A, k, size: undistortion_map(A, k, size) + 0.5),
+     ("np.arange(size[0])", "np.arange(size[0]) + 0.5", "np.arange(size[1])",
+      "np.arange(size[1]) + 0.5"), lambda A, k, size: undistortion_map(A, k, size) + 0.5),
     ("u multiplied, not u − u0", "You multiplied u and v themselves: the lens moves a pixel away "
      "from the principal point, or towards it.",
-     edited(_steps, "A[0, 0] * L * x + A[0, 2]", "L * u", "A[1, 1] * L * y + A[1, 2]", "L * v")),
+     ("A[0, 0] * L * x + A[0, 2]", "L * u", "A[1, 1] * L * y + A[1, 2]", "L * v")),
     ("principal point in the middle", "You took the middle of the picture for the principal point; "
      "A knows where it is.",
-     lambda A, k, size: undistortion_map(_centred(A, size, 0), k, size),
-     lambda A, k, size: undistortion_map(_centred(A, size, 1), k, size)),
+     ("A[0, 2]", "size[0] / 2", "A[1, 2]", "size[1] / 2"),
+     ("A[0, 2]", "(size[0] - 1) / 2", "A[1, 2]", "(size[1] - 1) / 2")),
     ("rows and columns exchanged", "You counted rows as u and columns as v: u counts columns.",
-     edited(_steps, "u, v = np.meshgrid", "v, u = np.meshgrid"),
+     ("u, v = np.meshgrid", "v, u = np.meshgrid"),
      lambda A, k, size: undistortion_map(A, k, size[::-1]).transpose(1, 0, 2)[..., ::-1]),
     ("the lens twice", "You distorted twice.",
-     edited(_steps, "    r2 = x**2 + y**2", "    r2 = x**2 + y**2; "
-            "M = 1 + k[0] * r2 + k[1] * r2**2; x, y = M * x, M * y; r2 = M**2 * r2")),
+     ("    r2 = x**2 + y**2",
+      "    r2 = x**2 + y**2; "
+      "M = 1 + k[0] * r2 + k[1] * r2**2; x, y = M * x, M * y; r2 = M**2 * r2")),
 )  # fmt: skip
 
 UNDISTORTION = Exercise(
@@ -98,9 +82,6 @@ UNDISTORTION = Exercise(
     task="For each pixel of the straightened picture, of size (width, height), give the position "
     "(u, v) in the photograph at which it is to be looked up: shape (height, width, 2). The lens "
     "has k = (k1, k2), and both pictures share A, which has no skew.",
-    stub='''def my_undistortion_map(A, k, size):
-    """Return the position in the photograph for each pixel, (height, width, 2)."""
-    ...''',
     hints=(
         "Backwards: the target is the ideal picture, the source is the distorted one. So the way "
         "leads from ideal to distorted, and nothing has to be inverted.",
@@ -116,7 +97,6 @@ UNDISTORTION = Exercise(
         Property("Each pixel is looked up where the lens shows it."),
     ),
     misconceptions=_MISTAKES,
-    reference=undistortion_map,
-    steps=_steps,
+    steps=undistortion_map,
     concepts=("69", "77", "E44"),
 )

@@ -4,12 +4,12 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def jackknife(xy: Array, xy_lens: Array) -> Array:
-    """Return the standard deviations (2,) of k1 and k2, from v views of n points (v, n, 2)."""
+    """Give the jackknife's standard deviations (2,) of k1 and k2."""
     v = len(xy)  # the number of views
     r2 = (xy**2).sum(axis=2, keepdims=True)  # r² of the ideal points
     D = np.stack([xy * r2, xy * r2**2], axis=3).reshape(v, -1, 2)  # the equations of each view
@@ -33,19 +33,18 @@ def _seen(rng: Rng) -> list[Case]:
 
 
 _FACTOR, _LEFT_OUT = "(v - 1) / v * ", "N.sum(axis=0) - N, g.sum(axis=0) - g"
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(jackknife,
     ("an ordinary variance", "Estimates without one view are nearly the same, for they share all "
      "others: their ordinary variance is far too small. Which factor makes up for it?",
-     edited(jackknife, _FACTOR, "1 / (v - 1) * "), edited(jackknife, _FACTOR, "1 / v * "),
-     edited(jackknife, _FACTOR, "1 / (v * (v - 1)) * "), edited(jackknife, _FACTOR, "1 / v**2 * ")),
+     (_FACTOR, "1 / (v - 1) * "), (_FACTOR, "1 / v * "), (_FACTOR, "1 / (v * (v - 1)) * "),
+     (_FACTOR, "1 / v**2 * ")),
     ("points left out", "You left out one point after the other. What is wrong with a view is "
      "wrong with all of its points: leave out whole views.",
      lambda xy, xy_lens: jackknife(xy.reshape(-1, 1, 2), xy_lens.reshape(-1, 1, 2))),
     ("each view alone", "You fitted each view alone; leave it out, and fit all others.",
-     edited(jackknife, _LEFT_OUT, "N, g", _FACTOR, "1 / (v - 1) * "),
-     edited(jackknife, _LEFT_OUT, "N, g", _FACTOR, "1 / (v * (v - 1)) * "),
-     edited(jackknife, _LEFT_OUT, "N, g", _FACTOR, "1 / v * "),
-     edited(jackknife, _LEFT_OUT, "N, g")),
+     (_LEFT_OUT, "N, g", _FACTOR, "1 / (v - 1) * "),
+     (_LEFT_OUT, "N, g", _FACTOR, "1 / (v * (v - 1)) * "),
+     (_LEFT_OUT, "N, g", _FACTOR, "1 / v * "), (_LEFT_OUT, "N, g")),
 )  # fmt: skip
 
 JACKKNIFE = Exercise(
@@ -56,9 +55,6 @@ JACKKNIFE = Exercise(
     "shape (v, n, 2) each. Fit k = (k1, k2) by least squares to all views but one, for each view "
     "left out in turn. Give the standard deviations (2,) that the scatter of these k about their "
     "mean says the k of all views has.",
-    stub='''def my_jackknife(xy, xy_lens):
-    """Give the jackknife's standard deviations (2,) of k1 and k2."""
-    ...''',
     hints=(
         "One fit: xy_lens − xy = (k1 r² + k2 r⁴) xy, two rows for each point of the views that "
         "stay; np.linalg.lstsq. np.delete(xy, i, axis=0) leaves view i out.",
@@ -70,7 +66,6 @@ JACKKNIFE = Exercise(
     cases=_seen,
     properties=(Property("They are the scatter of k between views, as large as it is."),),
     misconceptions=_MISTAKES,
-    reference=jackknife,
     steps=jackknife,
     concepts=("m", "62"),
 )

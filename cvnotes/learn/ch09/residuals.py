@@ -1,13 +1,11 @@
 """What refinement makes small."""
 
-# A mistake is often an argument that was left out.
-
 from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, Lens, px_from_xy
+from cvnotes.camera import Camera, Lens
 from cvnotes.learn.cases.cameras import (
     board_grid,
     rounded,
@@ -15,13 +13,8 @@ from cvnotes.learn.cases.cameras import (
     some_lens,
     some_pose_matrix,
 )
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
-
-
-def residuals(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
-    """Return observed minus predicted pixels (n, 2) of one view."""
-    return np.asarray(m - Camera(A, G, Lens(tuple(k))).project(W))
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _views(rng: Rng) -> list[Case]:
@@ -34,7 +27,8 @@ def _views(rng: Rng) -> list[Case]:
     return cases
 
 
-def _steps(A: Array, k: Array, G: Array, W: Array, m: Array) -> Any:
+def residuals(A: Array, k: Array, G: Array, W: Array, m: Array) -> Any:
+    """Return m minus the predicted pixels, (n, 2)."""
     M = W @ G[:3, :3].T + G[:3, 3]  # the points in the camera's frame
     xy = M[:, :2] / M[:, 2:]  # the ideal points
     r2 = (xy**2).sum(axis=1, keepdims=True)  # r²
@@ -43,42 +37,34 @@ def _steps(A: Array, k: Array, G: Array, W: Array, m: Array) -> Any:
     return m - seen
 
 
-_MISTAKES = mistakes(
+_MISTAKES = mistakes_in(residuals,
     ("lens left out", "You predicted with an ideal lens: what remains is its distortion.",
-     lambda A, k, G, W, m: residuals(A, 0 * k, G, W, m),
-     lambda A, k, G, W, m: -residuals(A, 0 * k, G, W, m)),
+     ("L * xy", "xy"), ("L * xy", "xy", "seen - m")),
     ("lens on pixels", "You applied L to offsets in pixels; on which plane does the lens act?",
-     edited(_steps, "r2 = (xy**2)", "r2 = ((xy @ A[:2, :2].T)**2)")),
+     ("r2 = (xy**2)", "r2 = ((xy @ A[:2, :2].T)**2)")),
     ("distances", "These are distances, one for each corner. Least squares wants both coordinates: "
      "a distance has no sign and a kink at 0.",
      lambda A, k, G, W, m: np.linalg.norm(residuals(A, k, G, W, m), axis=1)),
-    ("the prediction itself", "These are the predicted pixels: how far are they from those seen?",
-     edited(_steps, "m - seen", "seen")),
-    ("G inverted", "You used G the other way round: it takes points of the board to the camera's "
-     "frame already.",
-     lambda A, k, G, W, m: residuals(A, k, np.linalg.inv(G), W, m)),
-    ("divided by L", "You divided by L, which undistorts, nearly; prediction distorts.",
-     edited(_steps, "L * xy", "xy / L")),
-    ("undistorted", "You undid the lens in the prediction: image formation distorts.",
-     edited(_steps, "L * xy", "_undone(k, xy)")),
+    ("undistorted",
+     "You undid the lens in the prediction, or divided by L: image formation distorts.",
+     ("L * xy", "xy / L"), ("L * xy", "_undone(k, xy)")),
     ("lens of the wrong points", "You undistorted what was seen; prediction distorts the ideal "
      "points.",
-     edited(_steps, "    seen = L * xy", "    at = (m - A[:2, 2]) @ np.linalg.inv(A[:2, :2]).T; "
-            "m = _undone(k, at) @ A[:2, :2].T + A[:2, 2]; seen = xy")),
+     ("    seen = L * xy",
+      "    at = (m - A[:2, 2]) @ np.linalg.inv(A[:2, :2]).T; "
+      "m = _undone(k, at) @ A[:2, :2].T + A[:2, 2]; seen = xy")),
     ("lens before the division", "You worked out L before dividing by z: of which plane is its "
      "radius?",
-     edited(_steps, "(xy**2)", "(M[:, :2]**2)")),
+     ("(xy**2)", "(M[:, :2]**2)")),
     ("no division", "You did not divide by z before the lens.",
-     edited(_steps, " / M[:, 2:]", ""), edited(_steps, " / M[:, 2:]", "", "L * xy", "xy")),
+     (" / M[:, 2:]", ""), (" / M[:, 2:]", "", "L * xy", "xy")),
     ("r for r²", "Which powers of r does L have? You have others.",
-     edited(_steps, "(xy**2).sum(axis=1, keepdims=True)",
-            "np.linalg.norm(xy, axis=1, keepdims=True)")),
+     ("(xy**2).sum(axis=1, keepdims=True)", "np.linalg.norm(xy, axis=1, keepdims=True)")),
     ("u and v exchanged", "Your prediction has the row before the column.",
-     edited(_steps, "m - seen", "m - seen[:, ::-1]")),
+     "m - seen[:, ::-1]"),
     ("on the plane z = 1", "You compared on the plane z = 1; corners are measured in pixels, and "
      "so are residuals.",
-     edited(_steps, "m - seen", "(m - A[:2, 2]) @ np.linalg.inv(A[:2, :2]).T - L * xy"),
-     edited(_steps, "m - seen", "m - L * xy")),
+     "(m - A[:2, 2]) @ np.linalg.inv(A[:2, :2]).T - L * xy", "m - L * xy"),
 )  # fmt: skip
 
 
@@ -92,9 +78,6 @@ RESIDUALS = Exercise(
     title="What refinement makes small",
     task="Give observed minus predicted pixels (n, 2) of one view: corners W (n, 3) of the board, "
     "pose G (4, 4), lens k = (k1, k2), sensor A, and where the corners were seen, m (n, 2).",
-    stub='''def my_residuals(A, k, G, W, m):
-    """Return m minus the predicted pixels, (n, 2)."""
-    ...''',
     hints=(
         "Predict with the four steps of image formation, lens included.",
         "R = G[:3, :3] and T = G[:3, 3].",
@@ -103,8 +86,6 @@ RESIDUALS = Exercise(
     cases=_views,
     properties=(Property("Each row is where the corner was seen minus where it should be."),),
     misconceptions=_MISTAKES,
-    reference=residuals,
-    steps=_steps,
+    steps=residuals,
     concepts=("50", "64", "E36"),
-    sources=(residuals, Camera.project, Lens.distort, px_from_xy),
 )

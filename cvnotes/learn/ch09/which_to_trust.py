@@ -1,7 +1,7 @@
 """Which calibration would you trust."""
 
 from cvnotes.calibration import calibrate
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
+from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
 
 TRUST = Exercise(
     name="which_to_trust",
@@ -20,29 +20,20 @@ D: RMS 2.8 px, 15 pictures, tilted by up to 40°; two of them have an RMS of 7 p
     ),
     cases=lambda _: [Case(())],
     properties=(Property("Its pictures determine the camera, and its error bars say so."),),
-    misconceptions=(
-        Misconception(
-            "small RMS of parallel boards",
-            "Boards that all face the camera leave the focal length open: any α with the right "
-            "distance fits as well, and the small RMS says nothing about it.",
-            lambda: 0.0,
-        ),
-        Misconception(
-            "smallest RMS",
-            "Few pictures and many parameters always fit well. ± 31 pixels are 4 % of the focal "
-            "length.",
-            lambda: 2.0,
-        ),
-        Misconception(
-            "bad views not looked at",
-            "Two views spoil this one: corners badly found, or the board bent. Leave them out and "
-            "calibrate again before trusting it.",
-            lambda: 3.0,
-        ),
+    misconceptions=mistakes(
+        ("small RMS of parallel boards", "Boards that all face the camera leave the focal length "
+         "open: any α with the right distance fits as well, and the small RMS tells nothing of it.",
+         lambda: 0.0),
+        ("smallest RMS", "Few pictures and many parameters always fit well. ± 31 pixels are 4 % of "
+         "the focal length.",
+         lambda: 2.0),
+        ("bad views not looked at", "Two views spoil this one: corners badly found, or the board "
+         "bent. Leave them out and calibrate again before trusting it.",
+         lambda: 3.0),
     ),
     reference=lambda: 1.0,
     concepts=("m", "f", "E37"),
     answer="value",
     choices=("A", "B", "C", "D"),
     sources=(calibrate,),
-)
+)  # fmt: skip

@@ -123,16 +123,16 @@ def _of_fit(found: Calibration) -> Iterator[tuple[bool, str]]:
 
 
 def _of_error_bars(found: Calibration) -> Iterator[tuple[bool, str]]:
-    honest, noise = (np.array([*std.values()]) for std in (found.std_of_views, found.std))
-    if not np.isfinite(honest).all():
+    if not np.isfinite([*found.std_of_views.values()]).all():
         yield False, "without one of the pictures the others do not determine the camera"
         return
-    times, part = float(np.median(honest / noise)), honest[0] / found.A[0, 0]
+    times, part = found.times_noise, found.std_of_views["alpha_u"] / found.A[0, 0]
+    untried = ', and try lens="auto"' if found.choice is None else ""
     yield (
         times < _OPTIMISTIC,
         (
-            f"error bars from the scatter between pictures are {times:.1f} times those of noise"
-            + ("" if times < _OPTIMISTIC else ": is the board bent? Believe the larger ones")
+            f"the scatter between pictures is {times:.1f} times what noise would give"
+            + ("" if times < _OPTIMISTIC else f": believe the larger ones{untried}")
         ),
     )
     yield (

@@ -16,7 +16,7 @@ from cvnotes.show.explore.finding import finding_model
 from cvnotes.show.explore.fold import fold_model
 from cvnotes.show.explore.homography import homography_model
 from cvnotes.show.explore.lens import lens_model
-from cvnotes.show.explore.model import Drawing, Model, Setting
+from cvnotes.show.explore.model import Model
 from cvnotes.show.explore.noise import noise_model
 from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
@@ -144,23 +144,3 @@ def _explorer(name: str, camera: Camera | None, board: Chessboard | None = None)
     from cvnotes.show.explore.shell import Explorer
 
     return Explorer(model(name, camera, board), camera, board)
-
-
-__all__ = [
-    "NAMES",
-    "Model",
-    "Setting",
-    "Drawing",
-    "explore_camera",
-    "explore_columns",
-    "explore_finding",
-    "explore_fold",
-    "explore_homography",
-    "explore_lens",
-    "explore_noise",
-    "explore_projection",
-    "explore_rectification",
-    "explore_tilt",
-    "explore_warp",
-    "model",
-]

@@ -24,7 +24,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 MAGNIFIED = (5, 50, 700, 3000)  # how much longer than true arrows are after each step
 _STEPS = len(MAGNIFIED) - 1
-_PICTURE, _CURVE = (440, 330), (410, 330)
+_FRAMES, _CURVE = (456, 304), (394, 304)
 
 
 class Finding:
@@ -75,12 +75,15 @@ def finding_model() -> Model:
     finding = Finding()
     n = len(finding.m) - 1
     settings = (
-        Setting("step", "step", 0, _STEPS, 0.05, 0, "steps of the refinement, parts of them too"),
+        Setting(
+            "step", "step", 0, _STEPS, 0.05, _STEPS, "steps of the refinement, parts of them too"
+        ),
         Setting("photograph", "photograph", 0, n, 1, 2, "which of the twelve photographs"),
     )
     about = (
-        "The corners of one photograph, with arrows to where the camera predicts them, on the way "
-        "from the closed form to the answer; beside it how far all corners are missed."
+        "The corners of one photograph, four times on the way from the closed form to the answer, "
+        "with arrows to where the camera predicts them. Beside them how far all corners are "
+        "missed: 3.73 px at the start, 0.374, 0.028 and 0.008 px after the steps."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -92,10 +95,7 @@ def finding_model() -> Model:
 
 def _draw(finding: Finding, paper: Paper, step: float, i: int) -> Drawing:
     camera, misses = finding.at(step)
-    magnify = _magnified(step)
-    picture = paper.picture_panel(_PICTURE, finding.size, f"photograph {i}: misses × {magnify:.0f}")
-    draw_measured(picture, finding.m[i], course.board())
-    draw_arrows(picture, finding.m[i], -magnify * misses[i])
+    frames = _frames(paper, finding, step, i)
     curve = _curve(paper, finding, step, camera)
     value = camera.parameters
     missed = rms(misses)
@@ -103,7 +103,31 @@ def _draw(finding: Finding, paper: Paper, step: float, i: int) -> Drawing:
         f"After {step:g} of {_STEPS} steps k1 = {value['k1']:+.3f} and u0 = {value['u0']:.1f} px; "
         f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. {_seen(missed)}"
     )
-    return Drawing(paper.join((picture, curve)), sentence)
+    return Drawing(paper.join((frames, curve)), sentence)
+
+
+def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
+    """Draw a photograph's corners four times: what is missed at the start and after each step.
+
+    A frame whose step has begun shows how far it has come; later ones have no arrows yet.
+    """
+    panel = paper.panel(_FRAMES, (0, 4), (0, 4), f"photograph {i} four times: its misses enlarged")
+    panel.segments([[[2, 0], [2, 4]], [[0, 2], [4, 2]]], MUTED, 1)
+    low, high = finding.m[i].min(axis=0), finding.m[i].max(axis=0)
+    unit = 1.4 * ((high - low) / _FRAMES).max() * np.array(_FRAMES) / 2  # half a frame
+    for frame in range(_STEPS + 1):
+        middle = np.array([1 + 2 * (frame % 2), 1.06 + 2 * (frame // 2)])
+        m = middle + (finding.m[i] - (low + high) / 2) / unit
+        draw_measured(panel, m, course.board())
+        if step > frame - 1:
+            at = min(step, frame)
+            camera, misses = finding.at(at)
+            draw_arrows(panel, m, -_magnified(at) * misses[i] / unit)
+            k1 = f"k1 = {camera.parameters['k1']:+.3f}".replace("-", "−")
+            panel.text(middle + [-0.96, -0.9], f"{_digits(rms(misses))} px", ESTIMATED, size=16)
+            panel.text(middle + [0.96, -0.9], k1, anchor="rm", size=14)
+            panel.text(middle + [-0.96, 0.82], f"× {_magnified(at):.0f}", size=12)
+    return panel
 
 
 def _magnified(step: float) -> float:
@@ -124,7 +148,7 @@ def _seen(missed: float) -> str:
 def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel:
     """Draw the RMS over the steps, with a logarithmic scale, and the camera of this step."""
     panel = paper.panel(
-        _CURVE, (-0.35, _STEPS + 0.5), (1.6, -2.6), "RMS of all corners (px) over steps"
+        _CURVE, (-0.35, _STEPS + 0.5), (1.3, -2.9), "RMS of all corners (px) over steps"
     )
     for power in range(-2, 2):
         panel.segments([[[panel.x[0], power], [panel.x[1], power]]], "#DDDDDD", 0.5)
@@ -143,5 +167,5 @@ def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel
     for row, (label, name, how) in enumerate(names):
         number = f"{camera.parameters[name]:{how}}".replace("-", "−")
         colour = ESTIMATED if name == "k1" else MUTED
-        panel.text([1.7, 1.35 - 0.32 * row], f"{label} = {number}", colour, size=15)
+        panel.text([1.7, 1.0 - 0.34 * row], f"{label} = {number}", colour, size=15)
     return panel

@@ -187,6 +187,6 @@ def _dials(paper: Paper, H: list[Array], circle: Circle, fold: float) -> Panel:
         panel.mark([[fold, both[0]]], "estimated", 6)
         panel.mark([[fold, both[1]]], "lens", 6)
     panel.grip("fold", "the fold", [fold, 90], 4)
-    panel.text([_LOWEST - 6, 76.6], "orange: sides", ESTIMATED)
-    panel.text([_LOWEST - 6, 75.6], "blue: diagonals", LENS)
+    panel.text([_LOWEST - 6, 78.9], "orange: sides", ESTIMATED)
+    panel.text([_LOWEST - 6, 77.9], "blue: diagonals", LENS)
     return panel

@@ -1,7 +1,7 @@
 """Explorations on a page without a kernel: what the page is told, and what it asks.
 
 The page has the still of an exploration, and beside it, as data, all that its sliders need
-(`told`). Python in a worker of the browser (``docs/static/live/worker.js``) then answers every
+(`page_data`). Python in a worker of the browser (``docs/static/live/worker.js``) then answers every
 movement with `asked`: the same model, so that page, notebook and still cannot disagree.
 """
 
@@ -30,7 +30,7 @@ class Shown(NamedTuple):
     rest: str
 
 
-def told(model: Model, camera: Camera | None, board: Chessboard | None, values: Values) -> str:
+def page_data(model: Model, camera: Camera | None, board: Chessboard | None, values: Values) -> str:
     """Write, as JSON, what a page has to know about an exploration before Python is there.
 
     Parameters
@@ -44,7 +44,7 @@ def told(model: Model, camera: Camera | None, board: Chessboard | None, values: 
 
     Examples
     --------
-    >>> json.loads(told(explore.model("lens"), None, None, {}))["settings"][0]["name"]
+    >>> json.loads(page_data(explore.model("lens"), None, None, {}))["settings"][0]["name"]
     'k1'
     """
     values = model.values(**values)
@@ -68,8 +68,9 @@ def asked(question: str) -> Shown:
     Parameters
     ----------
     question : str
-        JSON with ``name``, ``values`` and, where wanted, ``camera`` and ``board`` as they were
-        `told`, ``grip`` and ``at`` (what a hand pulls, and where to), ``sharpness`` and ``narrow``.
+        JSON with ``name``, ``values`` and, where wanted, ``camera`` and ``board`` as `page_data`
+        has them, ``grip`` and ``at`` (what a hand pulls, and where to), ``sharpness`` and
+        ``narrow``.
 
     Returns
     -------

@@ -17,7 +17,7 @@ from ipywidgets.widgets.widget_string import HTML, Text
 from cvnotes.base.png import pack_png
 from cvnotes.camera import Camera
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.page import told
+from cvnotes.show.explore.page import page_data
 from cvnotes.targets import Chessboard
 
 _UNSEEN = "position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%)"
@@ -97,7 +97,7 @@ class Explorer(VBox):
         """
         bundle: dict[str, Any] = super()._repr_mimebundle_(**kwargs)  # type: ignore[no-untyped-call]
         drawing = self.model.drawing(**self.values)
-        data = escape(told(self.model, *self._given, self.values))
+        data = escape(page_data(self.model, *self._given, self.values))
         still = self.model.still(**self.values)._repr_html_()
         words = f"<p>{escape(drawing.sentence)} <em>Run this cell to move its sliders.</em></p>"
         for_page = f'<span class="cvnotes-explore" hidden data-explore="{data}"></span>'

@@ -10,7 +10,7 @@ from cvnotes.camera import Camera
 from cvnotes.camera.model import is_camera
 from cvnotes.show.figures.lines import pixel_axes
 from cvnotes.show.guards import count, length, one_point
-from cvnotes.show.style import ESTIMATED, FONT, MUTED, panels
+from cvnotes.show.style import ESTIMATED, FONT, MUTED, beside, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,10 +68,8 @@ def draw_arrow(J: npt.ArrayLike, shared: int) -> Any:
         ax.set(xticks=ticks, xticklabels=[], xlabel="unknowns")
         ax.tick_params(length=2)
         for middle, name in (((shared - 1) / 2, "camera"), ((shared + columns - 1) / 2, "poses")):
-            ax.annotate(
-                name, (middle, 1), (0, 3), xycoords=("data", "axes fraction"), ha="center",
-                textcoords="offset points", color=MUTED, fontsize=FONT - 1,
-            )  # fmt: skip
+            at = {"xycoords": ("data", "axes fraction"), "ha": "center", "fontsize": FONT - 1}
+            beside(ax, name, (middle, 1), (0, 3), MUTED, **at)
         ax.axvline(shared - 0.5, color=ESTIMATED, linewidth=0.8)
     right.axhline(shared - 0.5, color=ESTIMATED, linewidth=0.8)
     right.set(yticks=ticks, yticklabels=[])

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, panels
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, beside, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,10 +50,11 @@ def draw_plane_error(
     ax.quiver(
         *m.T, *d.T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1, width=0.004
     )  # fmt: skip
-    low, high = m.min(0), m.max(0)  # of the points alone, so that two figures can be compared
-    room = max(0.15 * float((high - low).max()) + 1, 1e-9 * float(np.abs(m).max()))
-    as_picture(ax, (2, 2))
-    ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
+    if not ax.images:  # (else the photograph says what is shown)
+        low, high = m.min(0), m.max(0)  # of the points alone, so that two figures can be compared
+        room = max(0.15 * float((high - low).max()) + 1, 1e-9 * float(np.abs(m).max()))
+        as_picture(ax, (2, 2))
+        ax.set(xlim=(low[0] - room, high[0] + room), ylim=(high[1] + room, low[1] - room))
     ax.set_title(f"{title} (arrows × {magnify:g})".strip())
     return ax
 
@@ -98,7 +99,7 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
         right.plot([promised] * 2, [y - 0.36, y + 0.36], color=IDEAL, linewidth=1.6)
         words = f"{float(f'{expected:.2g}'):g} %" + ("" if kept else "  more than promised")
         end = max(expected, float(error.max()), promised)
-        right.annotate(words, (end, y), (7, 0), textcoords="offset points", va="center", size=9)
+        beside(right, words, (end, y), (7, 0), va="center", size=9)
     right.set_xscale("log")
     right.set_xlim(1e-3, 1e5)
     left.set_xlim(0, 1.08 * max(run.rms for runs in results.values() for run in runs) or None)

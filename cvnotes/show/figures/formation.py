@@ -20,6 +20,8 @@ from cvnotes.show.style import (
     LENS,
     MUTED,
     WORLD,
+    arrow,
+    beside,
     panels,
 )
 
@@ -96,7 +98,8 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
         words = ", ".join(f"{number:.{digits}f}" for number in place)
         ax.text(0.98, 0.03, f"({words})", transform=ax.transAxes, ha="right", color=ESTIMATED)
     for i, (step, ax) in enumerate(zip(steps, axes[1:], strict=True), start=1):
-        ax.set_title(f"{i}. {step} →", loc="left", pad=20, color=ESTIMATED, fontweight="bold")
+        above = {"xycoords": "axes fraction", "textcoords": "offset points"}
+        ax.annotate(f"{i}. {step} →", (0, 1), (0, 22), **above, color=ESTIMATED, weight="bold")
     return axes
 
 
@@ -130,8 +133,7 @@ def _from_above(
 
 def _frame(ax: "Axes", frame: Array, colour: str, letters: str) -> None:
     for tip, letter in zip(frame[1:], letters, strict=True):
-        arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.5}
-        ax.annotate("", (tip[0], tip[2]), (frame[0, 0], frame[0, 2]), arrowprops=arrow)
+        arrow(ax, frame[0, [0, 2]], tip[[0, 2]], colour, 1.5, gap=2)
         out = 1.22 * tip - 0.22 * frame[0]
         ax.plot(*np.stack([frame[0], out])[:, [0, 2]].T, alpha=0)  # makes room
         ax.text(out[0], out[2], letter, color=colour, ha="center", va="center", fontsize=FONT - 1)
@@ -184,10 +186,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
         ax.plot([alpha, alpha], [left, right], color=colour, lw=4)
         ax.add_patch(Polygon([[0, 0], [alpha, left], [alpha, right]], fc=colour, alpha=0.12))
         angle = np.degrees(np.arctan2(right, alpha) - np.arctan2(left, alpha))
-        ax.annotate(
-            f"{name}: {angle:.1f}°", (alpha, right), (8, -14), textcoords="offset points",
-            color=colour, fontsize=FONT,
-        )  # fmt: skip
+        beside(ax, f"{name}: {angle:.1f}°", (alpha, right), (8, -14), colour, fontsize=FONT)
     ax.axhline(0, color=MUTED, ls="-.", lw=0.8)
     ax.plot(0, 0, ">", color=CAMERA, ms=9)
     ax.set(xlabel="along the axis (px)", ylabel="to the right (px)", aspect="equal")
@@ -221,13 +220,12 @@ def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
         ax.plot(*xy_from_px(A, [[0, v], [640, v]]).T, color=MUTED, lw=0.8)
     start, *tips = xy_from_px(A, [[0, 0], [2 * step, 0], [0, 2 * step]])
     for tip, name in zip(tips, "uv", strict=True):
-        arrow = {"arrowstyle": "-|>", "color": LENS, "lw": 2.2}
-        ax.annotate("", tip, start, arrowprops=arrow)
+        arrow(ax, start, tip, LENS, 2.2, gap=2)
         out = 1.12 * tip - 0.12 * start
         ax.text(out[0], out[1], name, color=LENS, ha="center", va="center")
-    ax.annotate("θ", start, (14, -20), textcoords="offset points", color=ESTIMATED)
+    beside(ax, "θ", start, (14, -20), ESTIMATED)
     ax.plot(0, 0, "^", color=CAMERA, ms=8)
-    ax.annotate("(u0, v0)", (0, 0), (6, 6), textcoords="offset points", color=CAMERA)
+    beside(ax, "(u0, v0)", (0, 0), (6, 6), CAMERA)
     ax.set(xlabel="x / z", ylabel="y / z", aspect="equal")
     ax.invert_yaxis()
     return ax
@@ -293,9 +291,7 @@ def draw_half_pixels(factor: int = 2, *, ax: "Axes | None" = None) -> "Axes":
             middle = ((u + 0.5) * wide, top + 0.4)
             ax.add_patch(Rectangle((u * wide, top), wide, 1, fc="white", ec=colour, lw=1.5))
             ax.plot(*middle, ".", color=colour, ms=8)
-            ax.annotate(
-                str(u), middle, (0, -16), textcoords="offset points", color=colour, ha="center"
-            )
+            beside(ax, str(u), middle, (0, -16), colour, ha="center")
         for at, text in ((0, "−½"), (n * wide, f"{n - 1}½")):
             ax.text(at, words, text, ha="center", color=colour, fontsize=FONT + 1)
     for u in (0, few * factor):

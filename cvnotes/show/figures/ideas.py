@@ -19,6 +19,8 @@ from cvnotes.show.style import (
     MARKERS,
     MUTED,
     WORLD,
+    arrow,
+    beside,
     halo,
     panels,
 )
@@ -126,9 +128,7 @@ def _draw_plane(ax: "Axes", line: Array, name: str) -> None:
         ax.fill(*_on_paper([[0, 0, 0], *ends]).T, color=ESTIMATED, alpha=0.22, lw=0, zorder=2.5)
         ax.plot(*_on_paper(ends).T, color=ESTIMATED, linewidth=2.2, zorder=4)
     tip = 0.9 * line / np.linalg.norm(line)
-    style = {"arrowstyle": "-|>", "color": ESTIMATED, "linewidth": 1.8, "shrinkA": 0}
-    arrow: dict[str, Any] = {"arrowprops": style | {"shrinkB": 0}, "zorder": 5}
-    ax.annotate("", tuple(_on_paper(tip)), (0.0, 0.0), **arrow)
+    arrow(ax, (0.0, 0.0), _on_paper(tip), ESTIMATED, 1.8, zorder=5)
     ax.plot(*_on_paper(tip), " ")  # the axes reach to the tip
     _write(ax, name, tip, ESTIMATED, (-12, 4) if _on_paper(tip)[0] < 0 else (12, 4))
 
@@ -149,11 +149,8 @@ def _on_paper(x: npt.ArrayLike) -> Array:
 def _write(
     ax: "Axes", text: str, at: npt.ArrayLike, colour: str, shift: tuple[float, float]
 ) -> None:
-    ax.annotate(
-        text, tuple(_on_paper(at)), shift, textcoords="offset points", color=colour,
-        fontsize=FONT + 1, ha="center", va="center", path_effects=halo(), zorder=7,
-        annotation_clip=False,
-    )  # fmt: skip
+    beside(ax, text, tuple(_on_paper(at)), shift, colour, fontsize=FONT + 1, ha="center",
+           va="center", path_effects=halo(), zorder=7, annotation_clip=False)  # fmt: skip
 
 
 def draw_mapped(H: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
@@ -208,9 +205,8 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
     half = 0.85 * y
     ax.plot([f, f], [-half, half], color=CAMERA, linewidth=2.5)
     ax.plot([-f, -f], [-half, half], color=CAMERA, linewidth=2.5, linestyle=":")
-    arrow: dict[str, Any] = {"arrowstyle": "-|>", "linewidth": 3, "shrinkA": 0, "shrinkB": 0}
     for at, tip, colour in ((z, y, WORLD), (f, v, ESTIMATED), (-f, -v, ESTIMATED)):
-        ax.annotate("", (at, tip), (at, 0), arrowprops=arrow | {"color": colour}, zorder=4)
+        arrow(ax, (at, 0), (at, tip), colour, 3, zorder=4)
     ax.plot(0, 0, "o", color=CAMERA, markersize=9, zorder=5)
     up, down = -1.05 * half, 1.15 * half
     span: dict[str, Any] = {"arrowstyle": "<->", "color": MUTED, "shrinkA": 0, "shrinkB": 0}

@@ -18,6 +18,7 @@ from cvnotes.show.style import (
     FONT,
     MARKERS,
     WORLD,
+    arrow,
     as_picture,
     halo,
     picture_axes,
@@ -144,8 +145,7 @@ def draw_corners(
     for name, end in ends:
         if np.isnan([end, m[0]]).any():
             continue
-        arrow = {"arrowstyle": "-|>", "color": WORLD, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
-        ax.annotate("", end, m[0], arrowprops=arrow)
+        arrow(ax, m[0], end, WORLD, 1.6)
         _write(ax, name, m[0] + 1.25 * (end - m[0]), WORLD)
     ax.plot(*m[0], "o", color=WORLD, markersize=9, fillstyle="none", markeredgewidth=1.6)
     for i in (0, columns - 1, columns * (rows - 1), columns * rows - 1):

@@ -8,7 +8,18 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, matrix, numbers, points
 from cvnotes.show.guards import thing
-from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD, panels
+from cvnotes.show.style import (
+    CAMERA,
+    ESTIMATED,
+    FONT,
+    IDEAL,
+    LENS,
+    MUTED,
+    WORLD,
+    arrow,
+    beside,
+    panels,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +60,7 @@ def draw_stretched_circle(D: npt.ArrayLike) -> Any:
         ax.plot(*around.T, color=MUTED, lw=1)
         ax.plot(*dots.T, ".", color=MUTED, ms=6)
         for end, colour in zip(ends, (LENS, ESTIMATED), strict=True):
-            _arrow(ax, np.zeros(2), end, colour)
+            arrow(ax, np.zeros(2), end, colour, 2)
         ax.plot(0, 0, "o", color=IDEAL, ms=4)
         ax.set_aspect("equal")
         reach = 1.25 * float(np.abs(around).max()) or 1.0
@@ -96,20 +107,18 @@ def draw_two_errors(
         ax.plot([0, wi], [0, xi], color=MUTED, lw=1)
         ax.plot([0, wi], [0, mi * wi], color=MUTED, lw=1, ls="--")
         outwards = 16 if xi < 0 else -16  # there no ray passes
-        beside = ((1.0, ESTIMATED, (-7, outwards), "right"), (wi, LENS, (7, 0), "left"))
-        for depth, colour, offset, side in beside:
+        errors = ((1.0, ESTIMATED, (-7, outwards), "right"), (wi, LENS, (7, 0), "left"))
+        for depth, colour, offset, side in errors:
             gap = np.array([xi / wi, mi]) * depth
             ax.plot([depth, depth], gap, color=colour, lw=4, solid_capstyle="butt")
-            ax.annotate(
-                f"{abs(gap[1] - gap[0]):.2f}", (depth, gap.mean()), offset, ha=side, va="center",
-                textcoords="offset points", color=colour, fontsize=FONT,
-            )  # fmt: skip
+            beside(ax, f"{abs(gap[1] - gap[0]):.2f}", (depth, gap.mean()), offset, colour,
+                   ha=side, va="center", fontsize=FONT)  # fmt: skip
         ax.plot(wi, xi, "s", color=WORLD, ms=6)
         ax.plot(1, mi, "x", color=ESTIMATED, ms=7, mew=2)
     ax.plot(0, 0, "^", color=CAMERA, ms=10)
     top = 1.15 * float(max(np.abs(x).max(), np.abs(seen * w).max(), 0.1))
     ax.set(xlim=(-0.06 * w.max(), 1.12 * w.max()), ylim=(top, -top))
-    ax.annotate("w = 1", (1, -top), (4, -12), textcoords="offset points", color=CAMERA)
+    beside(ax, "w = 1", (1, -top), (4, -12), CAMERA)
     ax.plot([], [], color=ESTIMATED, lw=4, label="geometric error, on w = 1")
     ax.plot([], [], color=LENS, lw=4, label="algebraic error, at the point's own w")
     ax.legend(loc="lower right", fontsize=FONT, frameon=False)
@@ -165,44 +174,3 @@ def draw_valley(
     ax.set(xlim=(x.min(), x.max()), ylim=(y.min(), y.max()))
     ax.legend(loc="upper left", fontsize=FONT)
     return ax
-
-
-def draw_singular_values(s: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
-    """Draw singular values as bars on a logarithmic axis; those that are mere rounding, orange.
-
-    Of more than a dozen, whose numbers would run into each other, only the first, the last and
-    those of rounding are written above their bars.
-
-    Parameters
-    ----------
-    s : array_like, shape (n,)
-        From the largest to the smallest.
-
-    Examples
-    --------
-    >>> draw_singular_values([2.0, 1.0, 1e-15]).get_ylabel()
-    'singular value'
-    """
-    values = numbers(s, "s").ravel()
-    if len(values) == 0 or not (values >= 0).all() or not values.max() > 0:
-        raise CvnotesError("s: expected singular values, 0 or larger, the first above 0")
-    ax = panels(height=360) if ax is None else ax
-    drawn = np.maximum(values, 1e-17 * values.max())
-    zero = values < 1e-8 * values.max()
-    number = np.arange(1, len(values) + 1)
-    ax.bar(number, drawn, color=np.where(zero, ESTIMATED, LENS), width=0.65)
-    ax.set_yscale("log")
-    for i, value in zip(number, values, strict=True):
-        if len(values) > 12 and 1 < i < len(values) and not zero[i - 1]:
-            continue
-        words = f"{value:.2g}" if value >= 1e-3 * values.max() else f"{value:.0e}"
-        last = len(values) > 12 and i == len(values)  # beside its neighbour, which may be higher
-        ax.annotate(words, (i, drawn[i - 1]), (-5 if last else 0, 3), textcoords="offset points",
-                    ha="left" if last else "center", fontsize=FONT - 1)  # fmt: skip
-    ax.set(xticks=number, xlabel="number", ylabel="singular value", title=title)
-    return ax
-
-
-def _arrow(ax: "Axes", start: Array, end: Array, colour: str) -> None:
-    style = {"arrowstyle": "-|>", "color": colour, "lw": 2, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", tuple(end), tuple(start), arrowprops=style)

@@ -8,7 +8,7 @@ import numpy as np
 from cvnotes.base import Array, CvnotesError, InputTypeError
 from cvnotes.camera import AnyLens, Lens
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import COLOURS, ESTIMATED, FONT, IDEAL, LENS, MUTED, panels
+from cvnotes.show.style import COLOURS, ESTIMATED, FONT, IDEAL, LENS, MUTED, beside, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,10 +92,8 @@ def draw_radius(lens: Lens, *, ax: "Axes | None" = None, up_to: float = 1.5) -> 
     if not good.all():
         ax.plot(r[~good], observed[~good], "--", color=ESTIMATED, label="beyond the fold: no lens")
         ax.axvline(lens.max_radius, color=ESTIMATED, lw=1)
-        ax.annotate(
-            f"max_radius = {lens.max_radius:.2f}", (lens.max_radius, 0), (5, 6),
-            textcoords="offset points", color=ESTIMATED,
-        )  # fmt: skip
+        end = lens.max_radius
+        beside(ax, f"max_radius = {end:.2f}", (end, 0), (5, 6), ESTIMATED)
     ax.set(xlabel="ideal radius r", ylabel="observed radius r'", xlim=(0, up_to))
     ax.set_ylim(0, 1.1 * max(float(np.max(observed[good])), 0.5 * up_to))
     ax.legend(loc="upper left", frameon=False)
@@ -127,7 +125,7 @@ def draw_newton(lens: Lens, r_lens: float, *, ax: "Axes | None" = None) -> "Axes
     fine = np.linspace(low, reach, 300)
     ax.plot(fine, fine * lens.L(fine), color=LENS, lw=2, label="r L(r)")
     ax.axhline(r_lens, color=IDEAL, lw=1)
-    ax.annotate(f"r' = {r_lens:g}", (0, r_lens), (6, 6), textcoords="offset points", color=IDEAL)
+    beside(ax, f"r' = {r_lens:g}", (0, r_lens), (6, 6), IDEAL)
     tiny = 1e-6
     for i in "₀₁₂":
         value = r * float(lens.L(r))
@@ -135,9 +133,7 @@ def draw_newton(lens: Lens, r_lens: float, *, ax: "Axes | None" = None) -> "Axes
         following = r - (value - r_lens) / slope
         ax.plot([r, r, following], [r_lens, value, r_lens], color=ESTIMATED, lw=1.3)
         ax.plot(r, value, "x", color=ESTIMATED, ms=7)
-        ax.annotate(
-            f"r{i}", (r, r_lens), (-4, 6), textcoords="offset points", color=ESTIMATED, ha="right"
-        )
+        beside(ax, f"r{i}", (r, r_lens), (-4, 6), ESTIMATED, ha="right")
         r = following
     ax.set(xlim=(low, reach), ylim=(low * float(lens.L(low)), 1.05 * reach * float(lens.L(reach))))
     ax.set(xlabel="ideal radius r", ylabel="observed radius r'")
@@ -169,10 +165,8 @@ def draw_angles(lenses: Mapping[str, AnyLens], *, ax: "Axes | None" = None) -> "
         shown = _lens(lens, name).of_rays(M)[:, 0]
         ax.plot(np.degrees(theta), shown, color=colour, lw=2, label=name)
     ax.axvline(90, color=MUTED, ls=":")
-    ax.annotate(
-        "here the plane z = 1 ends", (90, 0), (-5, 8), textcoords="offset points",
-        color=MUTED, ha="right", fontsize=FONT - 1,
-    )  # fmt: skip
+    words = "here the plane z = 1 ends"
+    beside(ax, words, (90, 0), (-5, 8), MUTED, ha="right", fontsize=FONT - 1)
     ax.set(xlabel="angle θ from the axis (degrees)", ylabel="distance from the middle, in f")
     ax.set(xlim=(0, np.degrees(2.1)), ylim=(0, 3.2))
     ax.legend(loc="upper left", frameon=False)

@@ -16,6 +16,7 @@ from cvnotes.show.style import (
     MUTED,
     WORLD,
     as_picture,
+    beside,
     halo,
     panels,
     picture_axes,
@@ -136,10 +137,9 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
         if w != 1:
             ax.plot(x, w, "o", color=ESTIMATED if ideal else IDEAL, markersize=5, zorder=3)
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=8, zorder=4)
-    text: dict[str, Any] = {"textcoords": "offset points", "fontsize": FONT, "zorder": 5}
-    text["path_effects"] = halo()
-    ax.annotate("R, at\nw = 1", (reach, 1), (6, 0), va="center", color=WORLD, **text)
-    ax.annotate("[0 0]", (0, 0), (0, -20), ha="center", color=MUTED, **text)
+    text: dict[str, Any] = {"fontsize": FONT, "zorder": 5, "path_effects": halo()}
+    beside(ax, "R, at\nw = 1", (reach, 1), (6, 0), WORLD, va="center", **text)
+    beside(ax, "[0 0]", (0, 0), (0, -20), MUTED, ha="center", **text)
     ax.set(xlim=(-reach, reach), ylim=(-0.35 * reach, 0.65 * reach), aspect="equal")
     ax.set(xlabel="first coordinate, wx", ylabel="last coordinate, w")
     return ax

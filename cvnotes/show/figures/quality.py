@@ -117,7 +117,7 @@ def draw_board_shape(
     >>> real = course.real_corners()
     >>> found = calibrate(real.board.points, real.left, real.size, board="free")
     >>> draw_board_shape(found).get_title()
-    'Heights from −0.21 to 0.29 mm (± 0.03), arrows × 100'
+    'Heights from −0.20 to 0.28 mm (± 0.03), arrows × 100'
     """
     from matplotlib.ticker import MaxNLocator
 

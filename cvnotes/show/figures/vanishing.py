@@ -9,7 +9,7 @@ from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
 from cvnotes.show.figures.images import draw_points
 from cvnotes.show.figures.lines import draw_segments, pixel_axes, segment_ends
-from cvnotes.show.style import ESTIMATED, FONT, IDEAL
+from cvnotes.show.style import ESTIMATED, FONT, IDEAL, beside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,10 +93,8 @@ def draw_altitudes(
     _widened(ax, v)
     for name, corner, away in zip("XYZ", v, v - v.mean(axis=0), strict=True):
         shift = 14 * away / np.linalg.norm(away) * (1, -1)  # points on paper count upwards
-        ax.annotate(
-            name, corner, shift, textcoords="offset points", ha="center", va="center",
-            color=ESTIMATED, fontsize=FONT, fontweight="bold", annotation_clip=False,
-        )  # fmt: skip
+        beside(ax, name, corner, shift, ESTIMATED, ha="center", va="center", fontsize=FONT,
+               fontweight="bold", annotation_clip=False)  # fmt: skip
     return ax
 
 

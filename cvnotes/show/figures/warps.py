@@ -9,7 +9,7 @@ import numpy.typing as npt
 from cvnotes.base import CvnotesError, ShapeError, number, numbers
 from cvnotes.show.figures.images import draw_image
 from cvnotes.show.guards import eight_bits, one_point, pictures
-from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD, panels
+from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD, beside, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -109,19 +109,18 @@ def draw_cell(
     ax.plot([0, 1, 1, 0, 0], [0, 0, 1, 1, 0], color=MUTED, lw=1)
     for (u, v), value, n in zip(((0, 0), (1, 0), (0, 1), (1, 1)), grey, "1234", strict=True):
         ax.plot(u, v, "o", color=LENS, ms=9)
-        ax.annotate(f"$I_{n}$ = {value:g}", (u, v), (0, 12 if v == 0 else -22), ha="center",
-                    textcoords="offset points", color=LENS)  # fmt: skip
+        by = (0, 12 if v == 0 else -22)
+        beside(ax, f"$I_{n}$ = {value:g}", (u, v), by, LENS, ha="center")
     if areas:
         _weights(ax, du, dv)
     ax.plot([du, du], [0, 1], ":", color=ESTIMATED)
     ax.plot(du, dv, "x", color=ESTIMATED, ms=10, mew=2)
     for v, name, value in ((0, "a", upper), (1, "b", lower)) if solved else ():
         ax.plot(du, v, "s", color=ESTIMATED, ms=6)
-        ax.annotate(f"$I_{name}$ = {value:g}", (du, v), (0, 12 if v == 0 else -22), ha="center",
-                    textcoords="offset points", color=ESTIMATED)  # fmt: skip
+        by = (0, 12 if v == 0 else -22)
+        beside(ax, f"$I_{name}$ = {value:g}", (du, v), by, ESTIMATED, ha="center")
     if solved:
-        ax.annotate(f"I = {upper + (lower - upper) * dv:g}", (du, dv), (10, -4),
-                    textcoords="offset points", color=ESTIMATED)  # fmt: skip
+        beside(ax, f"I = {upper + (lower - upper) * dv:g}", (du, dv), (10, -4), ESTIMATED)
     ax.set(xlim=(-0.25, 1.25), ylim=(1.25, -0.25), aspect="equal", xlabel="du", ylabel="dv")
     ax.set(xticks=[0, du, 1], yticks=[0, dv, 1])
     return ax
@@ -172,18 +171,16 @@ def draw_disparity(point: npt.ArrayLike, b: float, f: float, *, ax: "Axes | None
         ax.plot([x, x], [0, f], ":", color=MUTED, lw=1)
         ax.plot(x, 0, "^", color=CAMERA, ms=11)
         ax.plot(x + u, f, "o", color=LENS, ms=6)
-        ax.annotate(f"{name} camera", (x, 0), (0, -20), ha="center", textcoords="offset points")
-        ax.annotate(rf"$u_{{{name}}}$", (x + u, f), (6, -14), color=LENS,
-                    textcoords="offset points")  # fmt: skip
+        beside(ax, f"{name} camera", (x, 0), (0, -20), ha="center")
+        beside(ax, rf"$u_{{{name}}}$", (x + u, f), (6, -14), LENS)
     ax.plot([0, right], [0, f], "--", color=ESTIMATED, lw=1)
     ax.plot(X, Z, "s", color=WORLD, ms=9)
     measures = (((right + left) / 2, f, "d", ESTIMATED, (0, 6)), (b / 2, 0, "b", WORLD, (0, -16)))
     for x, z, text, colour, offset in measures:
-        ax.annotate(text, (x, z), offset, ha="center", textcoords="offset points", color=colour,
-                    fontsize=FONT + 3)  # fmt: skip
+        beside(ax, text, (x, z), offset, colour, ha="center", fontsize=FONT + 3)
     for x, high, text in ((-0.5 * b, f, "α"), (1.75 * b, Z, "Z")):
         ax.annotate("", (x, 0), (x, high), arrowprops={"arrowstyle": "<->", "color": MUTED})
-        ax.annotate(text, (x, high / 2), (-14, -4), textcoords="offset points", fontsize=FONT + 3)
+        beside(ax, text, (x, high / 2), (-14, -4), fontsize=FONT + 3)
     ax.set(xlim=(-0.8 * b, 2.1 * b), ylim=(-0.14 * Z, 1.08 * Z), xlabel="X", ylabel="Z")
     ax.set_title("The orange triangle is the green one, smaller: d / α = b / Z")
     ax.set(xticks=[], yticks=[])

@@ -18,7 +18,7 @@ def diagnosis(answer: WrongAnswer) -> Found | None:
 
     The sentence stands by itself: of an answer that cannot be compared it says that, too.
     """
-    if (found := foreseen(answer)) is not None:
+    if (found := answer.found_by(foreseen)) is not None:
         return found
     case, outcome = answer.shown
     if outcome.value is None:
@@ -27,13 +27,13 @@ def diagnosis(answer: WrongAnswer) -> Found | None:
         return Found("an argument changed", answer.why)
     found = laid_out_otherwise(answer) or difference(answer)
     if found is None or found.name in VAGUE:
-        found = _slipped(answer) or slipped_step(answer) or found
+        found = _slipped(answer) or answer.found_by(slipped_step) or found
     return found or misshapen(answer)
 
 
 def _slipped(answer: WrongAnswer) -> Found | None:
     """Name the input that slipped, behind what is said of an answer that cannot be compared."""
-    found = slipped_input(answer)
+    found = answer.found_by(slipped_input)
     if found is None or not answer.why:
         return found
     return Found(found.name, f"{answer.why} {found.sentence}")

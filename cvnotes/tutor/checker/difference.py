@@ -74,14 +74,15 @@ def difference(answer: WrongAnswer) -> Found | None:
     always = answer.wrong == len(tried)
     wrong = _Wrong(tuple(pairs[: answer.wrong]), exercise.same, bound, always)
     if len(tried) > 1 and (found := _same_for_all(tried, exercise.same)):
-        return _each_number(wrong) or found
+        return _each_number(wrong) or _few_decimals(wrong) or found
     if all(np.isin(right, (0, 1)).all() and right.ndim for _, right in pairs):
         return _truths(wrong.pairs)
     # What a few of several cases have in common may be chance, where it is a single number.
     lonely = answer.wrong == 1 and wrong.pairs[0][1].size == 1
     alike = all(_alike_finite(*pair) for pair in wrong.pairs)
     if alike and (off := _off(wrong)) is not None:
-        return _each_number(wrong) or _factor(wrong) or _constant(wrong) or _nearly(off)
+        digits = _each_number(wrong) or _few_decimals(wrong)
+        return digits or _factor(wrong) or _constant(wrong) or _nearly(off)
     tellers = (_not_finite, *_TELLERS) if alike else (_not_finite,)
     # Pictures of several sizes have no entries and columns in common.
     tellers += (_some,) * (len({right.shape[-1:] for _, right in pairs}) == 1)
@@ -154,7 +155,8 @@ def _truths(pairs: Sequence[Pair]) -> Found | None:
     answers = np.concatenate([answer.ravel() for answer, _ in pairs])
     rights = np.concatenate([right.ravel() for _, right in pairs])
     if not np.isin(answers, (0, 1)).all():
-        return None
+        said = "True or False is asked, or 1 and 0 for them; yours are other numbers."
+        return Found("neither True nor False", said) if np.isfinite(answers).all() else None
     if (answers == 1 - rights).all():
         return Found("the other way round", "You say True where it is False, and False for True.")
     if answers.all():
@@ -366,6 +368,22 @@ def _each_number(wrong: _Wrong) -> Found | None:
     return None
 
 
+def _few_decimals(wrong: _Wrong) -> Found | None:
+    """Return whether answers of any scale were rounded, each at the scale it has."""
+    if not wrong.up_to_scale:
+        return None
+    for n in range(1, 6):
+        for a, r in wrong.pairs:
+            f = np.vdot(a, r) / np.vdot(r, r)
+            near = np.abs(a - f * r).max() <= 0.6 / 10**n
+            if not (near and a.any() and (a == np.round(a, n)).all()):
+                break
+        else:
+            return Found("few decimals", f"These are the right numbers, rounded to {n} decimals: "
+                         "leave them as they are.")  # fmt: skip
+    return None
+
+
 _DONE: tuple[tuple[str, str, Change], ...] = (
     ("squared", "These are the squares of the right numbers: take the roots.", np.square),
     ("roots", "These are the roots of the right numbers: leave the root out.", np.sqrt),
@@ -377,14 +395,9 @@ _DONE: tuple[tuple[str, str, Change], ...] = (
     ("decimals cut off", "These are the right numbers, rounded down: leave them as they are.",
      np.floor),
     ("rounded up", "These are the right numbers, rounded up: leave them as they are.", np.ceil),
-    ("few decimals", "These are the right numbers, rounded to one decimal: leave them as they "
-     "are.", lambda r: np.round(r, 1)),
-    ("few decimals", "These are the right numbers, rounded to two decimals: leave them as they "
-     "are.", lambda r: np.round(r, 2)),
-    ("few decimals", "These are the right numbers, rounded to three decimals: leave them as "
-     "they are.", lambda r: np.round(r, 3)),
-    ("few decimals", "These are the right numbers, rounded to four decimals: leave them as "
-     "they are.", lambda r: np.round(r, 4)),
+    *(("few decimals", f"These are the right numbers, rounded to {n} decimal{'s' * (i > 1)}: leave "
+       "them as they are.", lambda r, i=i: np.round(r, i))
+      for i, n in enumerate(("one", "two", "three", "four"), 1)),
     ("absolute values", "These are absolute values: the signs belong to the answer.", np.abs),
     ("scaled to length 1", "You scaled the right answer to length 1.",
      lambda r: r / np.linalg.norm(r) if r.ndim else r),
@@ -513,6 +526,7 @@ def _one_row(a: Array) -> bool:
 
 
 _TELLERS: tuple[Callable[..., Found | None], ...] = (
+    _few_decimals,
     _sign,
     _order,
     _each_number,

@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from inspect import signature
 from typing import Any, Literal
 
 import numpy as np
@@ -104,14 +105,18 @@ def mistakes(*rows: tuple[Any, ...]) -> tuple[Misconception, ...]:
     )
 
 
+def _as_the_steps_say(*_: Any) -> Any:
+    """Stand for the steps of an exercise that has no other reference."""
+
+
 @dataclass(frozen=True, eq=False)
 class Exercise:
     """An exercise: what is asked, how an answer is tried, and what goes wrong typically.
 
     Attributes
     ----------
-    name, chapter, title, task, stub
-        What the student sees; the stub is the source of a function that does nothing yet.
+    name, chapter, title, task
+        What the student sees.
     hints : tuple of str
         One more each time.
     cases : callable
@@ -119,7 +124,7 @@ class Exercise:
     properties, misconceptions : tuple
         What must be true, and what is typically wrong.
     reference : callable
-        The library's own function, or one made of its functions.
+        A right answer: the steps, if it is no other.
     same : callable
         (answer, right, tolerance) → whether they are equal as mathematics has it.
     concepts : tuple of str
@@ -141,18 +146,20 @@ class Exercise:
     steps : callable or None
         The way to the answer in about six lines, as a student might write it, with a comment on
         each that says in words what it is; see `cvnotes.tutor.checker.steps`.
+    stub : str
+        The source of a function that does nothing yet; by default with the arguments of the steps
+        and the first line of their docstring.
     """
 
     name: str
     chapter: int
     title: str
     task: str
-    stub: str
     hints: tuple[str, ...]
     cases: Callable[[Rng], list[Case]]
     properties: tuple[Property, ...]
-    misconceptions: tuple[Misconception, ...]
-    reference: Callable[..., Any]
+    misconceptions: tuple[Misconception, ...] = ()
+    reference: Callable[..., Any] = _as_the_steps_say
     same: Same = close
     concepts: tuple[str, ...] = ()
     sources: tuple[Any, ...] = ()
@@ -163,6 +170,16 @@ class Exercise:
     personal: "Callable[[str], Exercise] | None" = None
     refusal: str = ""
     steps: Callable[..., Any] | None = None
+    stub: str = ""
+
+    def __post_init__(self) -> None:
+        way = self.steps or self.reference
+        if self.reference is _as_the_steps_say:
+            object.__setattr__(self, "reference", way)
+        if not self.stub:
+            said, _, _ = (way.__doc__ or "").partition("\n")
+            first = f"def my_{self.name}({', '.join(signature(way).parameters)}):"
+            object.__setattr__(self, "stub", f'{first}\n    """{said}"""\n    ...')
 
     @cached_property
     def variable(self) -> str:

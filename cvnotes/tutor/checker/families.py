@@ -25,6 +25,7 @@ from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
 # What slips, and what is said of it; the likely ones first. {0} is where.
 KINDS = {
+    "stopped": "you stopped on the way: that is {0}.",
     "sign": "a sign is wrong in {0}.",
     "order": "two things are in the wrong order in {0}.",
     "transposition": "something is transposed that should not be, or not where it should, in {0}.",
@@ -99,7 +100,8 @@ class Family:
     @cached_property
     def pairs(self) -> tuple[Slip, ...]:
         """Two slips of the likeliest kinds, at two places."""
-        singles = [s for s in self.slips if len(s.setting) == 1][:_PAIRED]
+        likely = [s for s in self.slips if len(s.setting) == 1 and s.kind != "stopped"]
+        singles = likely[:_PAIRED]
         return tuple(
             Slip(a.kind, (*a.lines, *b.lines), (*a.setting, *b.setting))
             for a, b in combinations(singles, 2)
@@ -192,6 +194,7 @@ class _Maker:
         self.slips: list[Slip] = []
         self._applied: dict[int, list[Applied]] = {}
         self._line = 0
+        self._set: dict[str, int] = {}
         self._alike: dict[tuple[str, str, str], list[tuple[int, int, int]]] = {}
         self.names = _names(function)
         body = [self._statement(i, statement) for i, statement in enumerate(function.body)]
@@ -221,7 +224,20 @@ class _Maker:
             new.value = self._switched(new.value)
         if isinstance(new, ast.Assign) and isinstance(new.targets[0], ast.Tuple):
             return self._exchanged(new, new.targets[0])
+        if isinstance(new, ast.Assign) and isinstance(new.targets[0], ast.Name):
+            self._set[new.targets[0].id] = i
+        if isinstance(new, ast.Return) and new.value is not None:
+            new.value = self._stopped(new.value)
         return _placed(new)
+
+    def _stopped(self, returned: ast.expr) -> ast.expr:
+        """Let what one of the lines gives come back in place of the answer."""
+        place = self._place()
+        for form, (name, line) in enumerate(self._set.items(), 1):
+            self.slips.append(Slip("stopped", (line,), ((place, form),)))
+            step = ast.Name(name, ast.Load())
+            returned = _placed(ast.IfExp(self._asked(place, form), step, returned))
+        return returned
 
     def _exchanged(self, statement: ast.Assign, names: ast.Tuple) -> ast.stmt:
         """Let two names on the left be in the other order."""

@@ -18,19 +18,8 @@ _AS_NEAR = 0.01
 def foreseen(answer: WrongAnswer) -> Found | None:
     """Find the misconception that gives what the student's function gave.
 
-    That is the first that agrees with every outcome, and is wrong where the student is. Without
-    one, it is the first that agrees with all usual inputs, two of them wrong at least: whoever
-    made another slip with what is special, a point at infinity or the last row, has made this one
-    too.
+    That is the first that agrees with every outcome, and is wrong where the student is.
     """
-    usual = answer.on_usual_inputs
-    found = _first_behind(answer)
-    if found is None and usual.wrong > 1 and len(usual.tried) < len(answer.tried):
-        found = _first_behind(usual)
-    return found
-
-
-def _first_behind(answer: WrongAnswer) -> Found | None:
     for mistake in answer.exercise.misconceptions:
         same = mistake.same or answer.exercise.same
         ways = (mistake.gives, *mistake.variants)

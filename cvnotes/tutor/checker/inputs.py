@@ -76,6 +76,10 @@ def _slips(
             yield f"{a} and {b} exchanged", _said(f"exchanged {a} and {b}"), exchanged
             yield f"{a} for {b}", _said(f"used {a} in place of {b}"), a_for_b
             yield f"{b} for {a}", _said(f"used {b} in place of {a}"), b_for_a
+    rows = [name for name, x in zip(names, args, strict=True) if np.ndim(x) > 1]
+    for n in range(1, 5) if _in_rows(args) else ():
+        what = f"the first {n if n > 1 else 'one'} of {' and '.join(rows)}"
+        yield f"only {what}", _said(f"used only {what}"), partial(_first_ones, n)
     for i, (name, arg) in enumerate(zip(names, args, strict=True)):
         for slip in _changes(name, arg):
             changed = partial(_changed, i, slip.change)
@@ -84,6 +88,16 @@ def _slips(
 
 def _said(done: str) -> str:
     return f"It looks as if you {done}; the rest is right."
+
+
+def _in_rows(args: Sequence[Any]) -> bool:
+    """Return whether all arrays have as many rows, one for each point, pair or view."""
+    shapes = [np.shape(x) for x in args if np.ndim(x) > 1]
+    return len({s[0] for s in shapes}) == 1 and (3, 3) not in shapes
+
+
+def _first_ones(n: int, *args: Any) -> tuple[Any, ...]:
+    return tuple(x[:n] if np.ndim(x) > 1 else x for x in args)
 
 
 def _exchanged(i: int, j: int, *args: Any) -> tuple[Any, ...]:
@@ -133,12 +147,9 @@ def _used(name: str, instead: str, change: Callable[[Any], Any]) -> Slip:
 _SIZE = (
     _used("{0} the wrong way round", "{0}[::-1]", lambda x: x[::-1]),
     Slip("{0} too large by 1", "added 1 to both numbers of {0}", lambda x: tuple(n + 1 for n in x)),
-    Slip(
-        "{0} too small by 1",
-        "subtracted 1 from both numbers of {0}",
-        lambda x: tuple(n - 1 for n in x),
-    ),
-)
+    Slip("{0} too small by 1", "subtracted 1 from both numbers of {0}",
+         lambda x: tuple(n - 1 for n in x)),
+)  # fmt: skip
 _COUNT = (
     _used("{0} too large by 1", "{0} + 1", lambda x: x + 1),
     _used("{0} too small by 1", "{0} − 1", lambda x: x - 1),
@@ -156,7 +167,7 @@ _NUMBER = (
     _used("{0} under a root", "the root of {0}", np.sqrt),
     Slip("{0} rounded", "rounded {0}", lambda x: float(np.floor(x + 0.5))),
     _used("{0} without decimals", "int({0})", lambda x: float(int(x))),
-)
+)  # fmt: skip
 _VECTOR = (
     _used("sign of {0}", "−{0}", np.negative),
     Slip("{0} left out", "left out {0}, or took 0 for it", lambda x: 0 * x),
@@ -172,77 +183,49 @@ _VECTOR = (
 _SQUARE = (
     _used("{0} transposed", "the transpose of {0}", np.transpose),
     _used("{0} inverted", "the inverse of {0}", np.linalg.inv),
-    _used(
-        "{0} inverted and transposed",
-        "the inverse transpose of {0}",
-        lambda x: np.linalg.inv(x).T,
-    ),
+    _used("{0} inverted and transposed", "the inverse transpose of {0}",
+          lambda x: np.linalg.inv(x).T),
     Slip("{0} left out", "left out {0}, or took the identity for it", lambda x: np.eye(len(x))),
     _used("{0} made symmetric", "({0} + {0}.T) / 2", lambda x: (x + x.T) / 2),
-    Slip(
-        "{0} scaled by its last number",
-        "divided {0} by its last number {0}[-1, -1]",
-        lambda x: x / x[-1, -1],
-    ),
+    Slip("{0} scaled by its last number", "divided {0} by its last number {0}[-1, -1]",
+         lambda x: x / x[-1, -1]),
     _used("upper triangle of {0}", "the upper triangle of {0}", np.triu),
     _used("lower triangle of {0}", "the lower triangle of {0}", np.tril),
     _used("diagonal of {0}", "the diagonal of {0} alone", lambda x: np.diag(np.diag(x))),
-)
+)  # fmt: skip
 _ROWS = (
     _used("columns exchanged in {0}", "{0}[:, ::-1]", lambda x: x[:, ::-1]),
     _used("{0} in the opposite order", "{0}[::-1]", lambda x: x[::-1]),
     _used("sign of {0}", "−{0}", np.negative),
-    Slip(
-        "{0} reshaped, not transposed",
-        "reshaped {0} where it should be transposed",
-        lambda x: x.reshape(x.shape[::-1]).T,
-    ),
-    _used(
-        "{0} transposed by a reshape", "{0}.T.reshape({0}.shape)", lambda x: x.T.reshape(x.shape)
-    ),
+    Slip("{0} reshaped, not transposed", "reshaped {0} where it should be transposed",
+         lambda x: x.reshape(x.shape[::-1]).T),
+    _used("{0} transposed by a reshape", "{0}.T.reshape({0}.shape)",
+          lambda x: x.T.reshape(x.shape)),
     _used("the first row only of {0}", "the first row of {0} alone", lambda x: x[:1]),
     _used("the last row only of {0}", "the last row of {0} alone", lambda x: x[-1:]),
     _used("the first row left out of {0}", "{0}[1:]", lambda x: x[1:]),
     _used("the last row left out of {0}", "{0}[:-1]", lambda x: x[:-1]),
     _used("every other row of {0}", "{0}[::2]", lambda x: x[::2]),
-    Slip(
-        "the first row for all of {0}",
-        "used the first row of {0} for all of its rows",
-        lambda x: 0 * x + x[:1],
-    ),
-    Slip(
-        "the last row for all of {0}",
-        "used the last row of {0} for all of its rows",
-        lambda x: 0 * x + x[-1:],
-    ),
-    Slip(
-        "sign of the second column of {0}",
-        "changed the sign of the second column of {0}",
-        lambda x: _flip(x),
-    ),
+    Slip("the first row for all of {0}", "used the first row of {0} for all of its rows",
+         lambda x: 0 * x + x[:1]),
+    Slip("the last row for all of {0}", "used the last row of {0} for all of its rows",
+         lambda x: 0 * x + x[-1:]),
+    Slip("sign of the second column of {0}", "changed the sign of the second column of {0}",
+         lambda x: _flip(x)),
     _used("{0} about its mean", "{0} − {0}.mean(axis=0)", lambda x: x - x.mean(0)),
     _used("{0} less the mean of all its numbers", "{0} − {0}.mean()", lambda x: x - x.mean()),
     Slip("{0} without decimals", "cut off the decimals of {0}", np.trunc),
-    Slip(
-        "{0} as bytes",
-        "turned {0} into bytes, np.uint8",
-        lambda x: x.astype(np.uint8).astype(float),
-    ),
+    Slip("{0} as bytes", "turned {0} into bytes, np.uint8",
+         lambda x: x.astype(np.uint8).astype(float)),
     _used("{0} moved by half a pixel", "{0} + ½", lambda x: x + 0.5),
     _used("{0} moved back by half a pixel", "{0} − ½", lambda x: x - 0.5),
     _used("{0} moved by 1", "{0} + 1", lambda x: x + 1),
     _used("{0} moved back by 1", "{0} − 1", lambda x: x - 1),
-    Slip(
-        "rows scaled to length 1 in {0}",
-        "scaled each row of {0} to length 1",
-        lambda x: _rows_unit(x),
-    ),
-    Slip(
-        "{0} divided by its last column",
-        "divided {0} by its last column, {0}[:, -1:]",
-        lambda x: x / x[:, -1:],
-    ),
-)
+    Slip("rows scaled to length 1 in {0}", "scaled each row of {0} to length 1",
+         lambda x: _rows_unit(x)),
+    Slip("{0} divided by its last column", "divided {0} by its last column, {0}[:, -1:]",
+         lambda x: x / x[:, -1:]),
+)  # fmt: skip
 
 
 def _flip(x: Array) -> Array:
@@ -291,49 +274,26 @@ _INTRINSICS = (
     Slip("{0} without its skew", "left out the skew {0}[0, 1]", _put(skew=lambda _: 0.0)),
     Slip("{0} with α_u for both", "used α_u in place of α_v", _put(av=lambda A: A[0, 0])),
     Slip("{0} with α_v for both", "used α_v in place of α_u", _put(au=lambda A: A[1, 1])),
-    Slip(
-        "{0} with the mean focal length",
-        "used the mean of α_u and α_v for both",
-        _put(au=lambda A: (A[0, 0] + A[1, 1]) / 2, av=lambda A: (A[0, 0] + A[1, 1]) / 2),
-    ),
-    Slip(
-        "{0} with one focal length and no skew",
-        "used α_u for both focal lengths, and left out the skew",
-        _put(av=lambda A: A[0, 0], skew=lambda _: 0.0),
-    ),
-    Slip(
-        "{0} with α_u and α_v exchanged",
-        "exchanged α_u and α_v",
-        _put(au=lambda A: A[1, 1], av=lambda A: A[0, 0]),
-    ),
-    Slip(
-        "{0} with u0 and v0 exchanged",
-        "exchanged u0 and v0",
-        _put(u0=lambda A: A[1, 2], v0=lambda A: A[0, 2]),
-    ),
-    Slip(
-        "{0} without its principal point",
-        "left out u0 and v0",
-        _put(u0=lambda _: 0.0, v0=lambda _: 0.0),
-    ),
-    Slip(
-        "{0} with the principal point subtracted",
-        "used −u0 and −v0 in place of u0 and v0",
-        _put(u0=lambda A: -A[0, 2], v0=lambda A: -A[1, 2]),
-    ),
+    Slip("{0} with the mean focal length", "used the mean of α_u and α_v for both",
+         _put(au=lambda A: (A[0, 0] + A[1, 1]) / 2, av=lambda A: (A[0, 0] + A[1, 1]) / 2)),
+    Slip("{0} with one focal length and no skew",
+         "used α_u for both focal lengths, and left out the skew",
+         _put(av=lambda A: A[0, 0], skew=lambda _: 0.0)),
+    Slip("{0} with α_u and α_v exchanged", "exchanged α_u and α_v",
+         _put(au=lambda A: A[1, 1], av=lambda A: A[0, 0])),
+    Slip("{0} with u0 and v0 exchanged", "exchanged u0 and v0",
+         _put(u0=lambda A: A[1, 2], v0=lambda A: A[0, 2])),
+    Slip("{0} without its principal point", "left out u0 and v0",
+         _put(u0=lambda _: 0.0, v0=lambda _: 0.0)),
+    Slip("{0} with the principal point subtracted", "used −u0 and −v0 in place of u0 and v0",
+         _put(u0=lambda A: -A[0, 2], v0=lambda A: -A[1, 2])),
     Slip("{0} with v upwards", "used −α_v in place of α_v", _put(av=lambda A: -A[1, 1])),
     Slip("{0} with u0 for both", "used u0 in place of v0", _put(v0=lambda A: A[0, 2])),
-    Slip(
-        "{0} without focal lengths",
-        "left out α_u and α_v, or took 1 for both",
-        _put(au=lambda _: 1.0, av=lambda _: 1.0),
-    ),
-    Slip(
-        "{0} with the sign of the skew",
-        "used −γ in place of the skew γ",
-        _put(skew=lambda A: -A[0, 1]),
-    ),
-)
+    Slip("{0} without focal lengths", "left out α_u and α_v, or took 1 for both",
+         _put(au=lambda _: 1.0, av=lambda _: 1.0)),
+    Slip("{0} with the sign of the skew", "used −γ in place of the skew γ",
+         _put(skew=lambda A: -A[0, 1])),
+)  # fmt: skip
 
 
 def _moved(turn: Callable[[Array], Array], shift: Callable[[Array], Array]) -> Any:
@@ -346,30 +306,15 @@ def _moved(turn: Callable[[Array], Array], shift: Callable[[Array], Array]) -> A
 
 
 _MOTION = (
-    Slip(
-        "{0} with Rᵀ for R",
-        "used Rᵀ in place of the R of {0}",
-        _moved(np.transpose, lambda G: G[:3, 3]),
-    ),
-    Slip(
-        "{0} with −T for T",
-        "used −T in place of the T of {0}",
-        _moved(np.array, lambda G: -G[:3, 3]),
-    ),
+    Slip("{0} with Rᵀ for R", "used Rᵀ in place of the R of {0}",
+         _moved(np.transpose, lambda G: G[:3, 3])),
+    Slip("{0} with −T for T", "used −T in place of the T of {0}",
+         _moved(np.array, lambda G: -G[:3, 3])),
     Slip("{0} without T", "left out the T of {0}", _moved(np.array, lambda G: 0 * G[:3, 3])),
-    Slip(
-        "{0} without R",
-        "left out the R of {0}",
-        _moved(lambda R: np.eye(len(R)), lambda G: G[:3, 3]),
-    ),
-    Slip(
-        "{0} with T for the camera's position",
-        "took the T of {0} for the place where the camera stands, as in R (W − T)",
-        _moved(np.array, lambda G: -G[:3, :3] @ G[:3, 3]),
-    ),
-    Slip(
-        "{0} with T turned before",
-        "turned the T of {0}, too, as in R (W + T)",
-        _moved(np.array, lambda G: G[:3, :3] @ G[:3, 3]),
-    ),
-)
+    Slip("{0} without R", "left out the R of {0}",
+         _moved(lambda R: np.eye(len(R)), lambda G: G[:3, 3])),
+    Slip("{0} with T for the camera's position", "took the T of {0} for the place where the camera "
+         "stands, as in R (W − T)", _moved(np.array, lambda G: -G[:3, :3] @ G[:3, 3])),
+    Slip("{0} with T turned before", "turned the T of {0}, too, as in R (W + T)",
+         _moved(np.array, lambda G: G[:3, :3] @ G[:3, 3])),
+)  # fmt: skip

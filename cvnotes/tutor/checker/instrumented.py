@@ -17,7 +17,6 @@ _LIBRARIES = ("np", "numpy", "math", "scipy", "linalg", "cv2")
 _MOST = 4000  # numbers in a value
 _ROUNDS = 200  # evaluations of one expression
 _LONGEST = 60  # characters of an expression that is quoted
-_FAILED = object()
 
 
 class Instrumented:

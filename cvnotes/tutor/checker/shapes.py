@@ -218,166 +218,78 @@ def _along(summary: Callable[..., Any], right: Array) -> Iterator[Any]:
 
 _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
     ("transposed", "the numbers are right; an array has its rows first, so transpose it.", _turned),
-    (
-        "a column, not a row",
-        "the numbers are right, each in a bracket of its own: .ravel() or [:, 0] takes them out.",
-        _column,
-    ),
-    (
-        "brackets too many",
-        "the numbers are right, in too many brackets: take what is inside, or .reshape.",
-        _in_brackets,
-    ),
-    (
-        "all in one row",
-        "the numbers are right, one after the other; see np.reshape, or leave out a ravel, or "
-        "give np.append and np.concatenate an axis.",
-        _flat,
-    ),
+    ("a column, not a row", "the numbers are right, each in a bracket of its own: .ravel() or [:, "
+     "0] takes them out.", _column),
+    ("brackets too many", "the numbers are right, in too many brackets: take what is inside, or "
+     ".reshape.", _in_brackets),
+    ("all in one row", "the numbers are right, one after the other; see np.reshape, or leave out a "
+     "ravel, or give np.append and np.concatenate an axis.", _flat),
     ("arranged otherwise", "the numbers are right, the arrangement is not.", _rearranged),
     ("last coordinate kept", "the numbers are right, with a 1 too many: leave it out.", _lifted),
-    (
-        "still homogeneous",
-        "still homogeneous? Divide by the last coordinate, then leave it out.",
-        _homogeneous,
-    ),
+    ("still homogeneous", "still homogeneous? Divide by the last coordinate, then leave it out.",
+     _homogeneous),
     ("columns too many", "the right numbers are among them; leave out the others.", _too_wide),
     ("columns left out", "what is there is right, but numbers are missing.", _too_narrow),
     ("the first only", "only the first came back; is the return inside of a loop?", _first),
-    (
-        "the last only",
-        "only the last came back; does each round of a loop overwrite the one before?",
-        _last,
-    ),
-    (
-        "rows left out",
-        "the rows are right, but some are missing: each of them is asked.",
-        _rows_left_out,
-    ),
+    ("the last only", "only the last came back; does each round of a loop overwrite the one "
+     "before?", _last),
+    ("rows left out", "the rows are right, but some are missing: each of them is asked.",
+     _rows_left_out),
     ("rows too many", "the right rows are among them, but there are more.", _rows_too_many),
     ("the diagonal only", "that is the diagonal only.", _diagonal),
     ("a matrix for its diagonal", "asked is the diagonal alone: see np.diag.", _on_diagonal),
-    ("the mean", "that is the mean of the right numbers; all of them are asked.", _whole(np.mean)),
-    ("the sum", "that is the sum of the right numbers; all of them are asked.", _whole(np.sum)),
-    (
-        "the length",
-        "that is the length of the right numbers; all of them are asked.",
-        _whole(np.linalg.norm),
-    ),
-    (
-        "the largest",
-        "that is the largest of the right numbers; all of them are asked.",
-        _whole(np.max),
-    ),
-    (
-        "the smallest",
-        "that is the smallest of the right numbers; all of them are asked.",
-        _whole(np.min),
-    ),
-)
+    *((f"the {what}", f"that is the {what} of the right numbers; all of them are asked.",
+       _whole(summary)) for what, summary in (("mean", np.mean), ("sum", np.sum),
+       ("length", np.linalg.norm), ("largest", np.max), ("smallest", np.min))),
+)  # fmt: skip
 _ONE_NAN = ("one NaN for all", "one NaN for all of it; np.full({wanted}, np.nan) has the shape.")
 # What shapes alone tell, (given, wanted), whatever the numbers are.
 _SHAPES: tuple[tuple[str, str, Callable[[Shape, Shape], bool]], ...] = (
     ("several numbers for one", "a single number is wanted.", lambda _, wanted: wanted == ()),
-    (
-        "rows and columns exchanged",
-        "an array has its rows first, so transpose it.",
-        lambda given, wanted: given == wanted[::-1],
-    ),
+    ("rows and columns exchanged", "an array has its rows first, so transpose it.",
+     lambda given, wanted: given == wanted[::-1]),
     ("one number for all", "one number alone.", lambda given, _: given == ()),
-    (
-        "one row of a matrix",
-        "one row of it, or one number for each row; the whole matrix is wanted.",
-        lambda given, wanted: len(wanted) == 2 and given == wanted[1:] == wanted[:1],
-    ),
-    (
-        "one of several",
-        "only one row came back; is the return inside of a loop?",
-        lambda given, wanted: given == wanted[1:],
-    ),
-    (
-        "one number for each row",
-        "one number came back for each row; the whole row is wanted.",
-        lambda given, wanted: len(wanted) > 1 and given == wanted[:1],
-    ),
-    (
-        "all in one row",
-        "the values may be right, the arrangement is not; see np.reshape.",
-        lambda given, wanted: len(given) == 1 < len(wanted) and np.prod(given) == np.prod(wanted),
-    ),
-    (
-        "all in one row",
-        "one row alone; np.append and np.concatenate take an axis.",
-        lambda given, wanted: len(given) == 1 < len(wanted),
-    ),
-    (
-        "arranged otherwise",
-        "the values may be right, the arrangement is not; see np.reshape.",
-        lambda given, wanted: bool(np.prod(given) == np.prod(wanted)),
-    ),
-    (
-        "an axis too many",
-        "an axis too many; is a sum, a norm or an all along axis=-1 missing?",
-        lambda given, wanted: len(given) > len(wanted) and given[: len(wanted)] == wanted,
-    ),
-    (
-        "numbers too few",
-        "numbers are missing.",
-        lambda given, wanted: len(given) == len(wanted) == 1 and given < wanted,
-    ),
-    (
-        "numbers too many",
-        "there are numbers too many.",
-        lambda given, wanted: len(given) == len(wanted) == 1 and given > wanted,
-    ),
-    (
-        "rows too few",
-        "rows are missing.",
-        lambda given, wanted: _alike_but(given, wanted, 0) and given[0] < wanted[0],
-    ),
-    (
-        "rows too many",
-        "there are rows too many.",
-        lambda given, wanted: _alike_but(given, wanted, 0) and given[0] > wanted[0],
-    ),
-    (
-        "columns too few",
-        "numbers are missing in each row.",
-        lambda given, wanted: _alike_but(given, wanted, -1) and given[-1] < wanted[-1],
-    ),
-    (
-        "columns too many",
-        "there are numbers too many in each row.",
-        lambda given, wanted: _alike_but(given, wanted, -1) and given[-1] > wanted[-1],
-    ),
-)
+    ("one row of a matrix", "one row of it, or one number for each row; the whole matrix is "
+     "wanted.", lambda given, wanted: len(wanted) == 2 and given == wanted[1:] == wanted[:1]),
+    ("one of several", "only one row came back; is the return inside of a loop?",
+     lambda given, wanted: given == wanted[1:]),
+    ("one number for each row", "one number came back for each row; the whole row is wanted.",
+     lambda given, wanted: len(wanted) > 1 and given == wanted[:1]),
+    ("all in one row", "the values may be right, the arrangement is not; see np.reshape.",
+     lambda given, wanted: len(given) == 1 < len(wanted) and np.prod(given) == np.prod(wanted)),
+    ("all in one row", "one row alone; np.append and np.concatenate take an axis.",
+     lambda given, wanted: len(given) == 1 < len(wanted)),
+    ("arranged otherwise", "the values may be right, the arrangement is not; see np.reshape.",
+     lambda given, wanted: bool(np.prod(given) == np.prod(wanted))),
+    ("an axis too many", "an axis too many; is a sum, a norm or an all along axis=-1 missing?",
+     lambda given, wanted: len(given) > len(wanted) and given[: len(wanted)] == wanted),
+    ("numbers too few", "numbers are missing.",
+     lambda given, wanted: len(given) == len(wanted) == 1 and given < wanted),
+    ("numbers too many", "there are numbers too many.",
+     lambda given, wanted: len(given) == len(wanted) == 1 and given > wanted),
+    ("rows too few", "rows are missing.",
+     lambda given, wanted: _alike_but(given, wanted, 0) and given[0] < wanted[0]),
+    ("rows too many", "there are rows too many.",
+     lambda given, wanted: _alike_but(given, wanted, 0) and given[0] > wanted[0]),
+    ("columns too few", "numbers are missing in each row.",
+     lambda given, wanted: _alike_but(given, wanted, -1) and given[-1] < wanted[-1]),
+    ("columns too many", "there are numbers too many in each row.",
+     lambda given, wanted: _alike_but(given, wanted, -1) and given[-1] > wanted[-1]),
+)  # fmt: skip
 # The same, where an answer has a row for each of n points.
 _ABOUT_POINTS = {
-    "transposed": (
-        "points as columns",
-        "the numbers are right; points are rows here, so transpose it.",
-    ),
-    "columns left out": (
-        "columns left out",
-        "what is there is right, but each row lacks a number.",
-    ),
-    "rows and columns exchanged": (
-        "points as columns",
-        "points are rows here, so transpose it.",
-    ),
-    "one number for all": (
-        "one number for all",
-        "one number for all of them; is an axis=1 missing?",
-    ),
-    "one of several": (
-        "one of several",
-        "only one of several points came back; is the return inside of the loop?",
-    ),
-    "an axis too many": (
-        "an axis too many",
-        "an axis too many; is a sum, a norm or an all along axis=1 missing?",
-    ),
-}
+    "transposed": ("points as columns", "the numbers are right; points are rows here, so transpose "
+        "it."),
+    "columns left out": ("columns left out",
+        "what is there is right, but each row lacks a number."),
+    "rows and columns exchanged": ("points as columns", "points are rows here, so transpose it."),
+    "one number for all": ("one number for all",
+        "one number for all of them; is an axis=1 missing?"),
+    "one of several": ("one of several", "only one of several points came back; is the return "
+        "inside of the loop?"),
+    "an axis too many": ("an axis too many", "an axis too many; is a sum, a norm or an all along "
+        "axis=1 missing?"),
+}  # fmt: skip
 
 
 def _alike_but(given: Shape, wanted: Shape, axis: int) -> bool:

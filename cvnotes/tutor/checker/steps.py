@@ -31,7 +31,7 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.tutor.checker.equality import TOLERANCE, Same, up_to_scale
-from cvnotes.tutor.checker.exercise import Exercise
+from cvnotes.tutor.checker.exercise import Exercise, Misconception, mistakes
 from cvnotes.tutor.checker.instrumented import Instrumented
 from cvnotes.tutor.checker.parsing import parsed
 from cvnotes.tutor.checker.sandbox import run
@@ -115,7 +115,8 @@ def edited(steps: Callable[..., Any], *changes: str) -> Callable[..., Any]:
     steps : callable
         A function of steps.
     *changes : str
-        What stands there and what is to stand there instead, in turn; each wherever it occurs.
+        What stands there and what is to stand there instead, in turn; each wherever it occurs. If
+        one is left over, the last, it is what is returned instead.
 
     Raises
     ------
@@ -126,23 +127,49 @@ def edited(steps: Callable[..., Any], *changes: str) -> Callable[..., Any]:
     --------
     >>> edited(_example, "x + 1", "x - 1")(3.0)
     4.0
+    >>> edited(_example, "x + 1", "x - 1", "y**2")(3.0)
+    4.0
     """
+    pairs, returned = changes[: len(changes) // 2 * 2], changes[len(changes) // 2 * 2 :]
 
     @cache
     def made() -> Callable[..., Any]:
         source = textwrap.dedent(inspect.getsource(steps))
-        for old, new in zip(changes[::2], changes[1::2], strict=True):
+        for old, new in zip(pairs[::2], pairs[1::2], strict=True):
             if old not in source:
                 raise CvnotesError(f"{steps.__qualname__}: {old!r} does not stand in these steps")
             source = source.replace(old, new)
-        space = dict(steps.__globals__)
-        exec(compile(parsed(source), "<edited>", "exec"), space)
+        for new in returned:
+            source = f"{source[: source.rindex('return ')]}return {new}"
+        space: dict[str, Any] = {}  # of its own: by their name the steps are what they were
+        exec(compile(parsed(source), "<edited>", "exec"), dict(steps.__globals__), space)
         return space[steps.__name__]  # type: ignore[no-any-return]
 
     def gives(*args: Any) -> Any:
         return made()(*args)
 
     return gives
+
+
+def mistakes_in(steps: Callable[..., Any], *rows: tuple[Any, ...]) -> tuple[Misconception, ...]:
+    """Make misconceptions of rows: name, sentence, and one or more ways to make the mistake.
+
+    A way is what the steps return instead, as code; or several changes of them, in a tuple, as
+    `edited` takes them; or a function.
+
+    Examples
+    --------
+    >>> rows = mistakes_in(_example, ("signs", "Look at the signs.", "-2 * y", ("x + 1", "x - 1")))
+    >>> [gives(3.0) for gives in (rows[0].gives, *rows[0].variants)]
+    [-8.0, 4.0]
+    """
+
+    def made(way: Any) -> Callable[..., Any]:
+        if callable(way):
+            return way  # type: ignore[no-any-return]
+        return edited(steps, way) if isinstance(way, str) else edited(steps, *way)
+
+    return mistakes(*((name, sentence, *map(made, ways)) for name, sentence, *ways in rows))
 
 
 def _example(x: float) -> float:

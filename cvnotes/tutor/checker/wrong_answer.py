@@ -1,5 +1,6 @@
 """A wrong answer, as those look at it who say what went wrong: what was tried, what came of it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -47,6 +48,17 @@ class WrongAnswer:
         usual = [not case.about and outcome.value is not None for case, outcome in self.tried]
         tried = tuple(one for one, is_usual in zip(self.tried, usual, strict=True) if is_usual)
         return WrongAnswer(self.exercise, tried, sum(usual[: self.wrong]), self.why)
+
+    def found_by(self, seek: "Callable[[WrongAnswer], Found | None]") -> "Found | None":
+        """Return what is found in all cases, or else in all usual ones, two of them wrong at least.
+
+        Whoever made another slip with what is special, a point at infinity or the last row, has
+        made this one too.
+        """
+        found, usual = seek(self), self.on_usual_inputs
+        if found is None and usual.wrong > 1 and len(usual.tried) < len(self.tried):
+            found = seek(usual)
+        return found
 
 
 class Found(NamedTuple):

@@ -10,7 +10,8 @@
   const board = $("form.board");
   const said = $(".said");
   const bar = $("progress");
-  const shots = new Map(); // name -> {file, item, state}
+  const shots = new Map(); // name -> {file, item, state: new, looked at or lost}
+  let counted = null; // the board's inner corners, once the photographs have told
   let worker = null;
   let waiting = null; // for the worker's answer
   let number = 0;
@@ -35,12 +36,13 @@
     worker.onerror = (event) => end(event.message || "it could not be started");
   }
 
-  function end(why) {
+  function end(why, stale = false) {
     worker?.terminate();
     worker = null;
+    for (const shot of shots.values()) shot.counted = false;
     const lost = waiting;
     waiting = null;
-    lost?.resolve({ error: why, dead: true });
+    lost?.resolve({ error: why, dead: true, stale });
   }
 
   // One question after the other, whoever asks.
@@ -53,11 +55,12 @@
     if (!worker) {
       wake();
       if (task !== "board") {
-        const answer = await asked("board", size());
+        const answer = await asked("board");
         if (answer.error) return answer;
         for (const [name, shot] of shots) if (shot.state === "looked at" && name !== more.name) shot.state = "new";
       }
     }
+    if (task === "board") more = boardAsked(); // of now, not of when it came into the queue
     const id = ++number;
     const answer = await new Promise((resolve) => {
       waiting = { id, resolve };
@@ -67,11 +70,50 @@
     return answer;
   }
 
-  const size = () => ({
-    columns: +board.columns.value,
-    rows: +board.rows.value,
-    square: +board.square.value,
-  });
+  // --- The board ---------------------------------------------------------------------------------
+
+  const corners = () => (board.counted.checked ? counted : [+board.columns.value, +board.rows.value]);
+  const boardAsked = () => ({ corners: corners(), square: +board.square.value });
+
+  // Count the corners (no numbers), or ask for so many; `known` are those that were counted.
+  function askFor(asked, known = null) {
+    counted = known;
+    board.counted.checked = !asked;
+    for (const [i, field] of [board.columns, board.rows].entries()) {
+      field.disabled = !asked;
+      field.value = (asked ?? known)?.[i] ?? "";
+    }
+  }
+
+  // With another board all photographs are looked at again; what is under way is not waited for.
+  function another() {
+    if (waiting) end("another board", true);
+    else if (worker) ask("board");
+    for (const shot of shots.values()) shot.state = "new";
+    if (shots.size) work();
+  }
+
+  function know(found) {
+    askFor(null, found);
+    return ask("board");
+  }
+
+  // Count the corners, one photograph after the other until enough of them agree.
+  async function count() {
+    for (const [name, shot] of shots) {
+      if (shot.counted || shot.state === "lost") continue;
+      if (worker) say(`Counting the corners of the board: ${name}`);
+      const answer = await askAbout("count", name, shot);
+      if (answer.dead) return corners() ? null : count(); // what the others showed is lost with it
+      shot.counted = true;
+      shot.words = answer.error || answer.words;
+      if (answer.corners) return know(answer.corners);
+    }
+    const most = await ask("most");
+    if (most.corners) return know(most.corners);
+    for (const shot of shots.values()) tell(shot);
+    say(`No camera yet: ${most.error}.`);
+  }
 
   // --- What is dropped ---------------------------------------------------------------------------
 
@@ -82,15 +124,17 @@
       if (same && same.size === file.size && same.lastModified === file.lastModified) continue;
       for (let n = 2; shots.has(name); n++) name = `${n} ${file.name}`;
       const item = document.createElement("li");
-      item.innerHTML = "<canvas></canvas><strong></strong><span></span>";
+      item.innerHTML = "<canvas></canvas><strong></strong><span></span><p></p>";
       item.querySelector("strong").textContent = name;
       item.querySelector("span").textContent = "waits";
-      const remove = document.createElement("button");
-      remove.type = "button";
-      remove.textContent = "Leave out";
-      remove.setAttribute("aria-label", `Leave ${name} out`);
-      remove.onclick = () => leaveOut(name);
-      item.append(remove);
+      const button = (text, told, onclick) => {
+        const made = Object.assign(document.createElement("button"), { type: "button", textContent: text, onclick });
+        made.setAttribute("aria-label", told);
+        item.lastElementChild.append(made);
+        return made;
+      };
+      button("Straighten", `Straighten ${name}, and keep it`, () => straighten(name)).className = "straighten";
+      button("Leave out", `Leave ${name} out`, () => leaveOut(name));
       $(".shots").append(item);
       shots.set(name, { file, item, state: "new" });
     }
@@ -98,10 +142,24 @@
     work();
   }
 
+  // Take the lens out of a photograph, and hand it over.
+  async function straighten(name) {
+    say(`Straightening ${name} …`);
+    const { error, png, words } = await askAbout("straighten", name, shots.get(name));
+    if (error) return say(`${name} was not straightened: ${error}.`);
+    const kept = `${name.replace(/\.[^.]*$/, "")}-straight.png`;
+    handOver(kept, png);
+    say(`${kept}: what a lens without distortion would have shown${words && `; ${words}`}.`);
+  }
+
   async function leaveOut(name) {
     const shot = shots.get(name);
     shots.delete(name);
     shot.item.remove();
+    if (!shots.size && counted) {
+      askFor(null);
+      if (worker) ask("board");
+    }
     $(".files input, .drop input")?.focus();
     forgotten.push(name);
     work();
@@ -129,6 +187,11 @@
   async function workOnce() {
     if (!board.reportValidity()) return;
     while (forgotten.length) if (worker) await ask("forget", { name: forgotten.pop() }); else forgotten.pop();
+    if (!corners() && shots.size) await count();
+    if (!corners()) {
+      showCamera(false);
+      return explain();
+    }
     for (let found = next(); found; found = next()) {
       const [name, shot] = found;
       const all = [...shots.values()];
@@ -136,28 +199,34 @@
       bar.hidden = false;
       bar.value = done / all.length;
       if (worker) say(`Photograph ${done + 1} of ${all.length}: ${name}`);
-      shot.state = "looked at";
       await look(name, shot);
     }
     bar.hidden = true;
-    const used = [...shots.values()].filter((shot) => shot.used).length;
-    if (used) await calibrate(used);
-    else {
-      $(".result").hidden = true;
-      if (shots.size) say("The board was found in none of the photographs; each says why.");
-    }
+    if ([...shots.values()].some((shot) => shot.state === "looked at")) return calibrate();
+    showCamera(false);
+    explain();
+    if (shots.size) say("None of the photographs could be looked at; each says why.");
   }
 
-  async function look(name, shot) {
+  // Ask about a photograph, which Python gets with the question.
+  async function askAbout(task, name, shot) {
     let content;
     try {
       content = await shot.file.arrayBuffer();
     } catch {
-      return show(shot, { words: "the browser cannot read this file (was it moved or changed?)" });
+      return { error: "the browser cannot read this file (was it moved or changed?)" };
     }
-    const answer = await ask("look", { name, content }, [content]);
-    if (answer.dead)
-      return show(shot, { words: `Python stopped at this photograph (${answer.error}); it is left out` });
+    const answer = await ask(task, { name, content }, [content]);
+    if (answer.dead && !answer.stale) {
+      shot.state = "lost";
+      answer.error = `Python stopped at this photograph (${answer.error}); it is left out`;
+    }
+    return answer;
+  }
+
+  async function look(name, shot) {
+    shot.state = "looked at";
+    const answer = await askAbout("look", name, shot);
     show(shot, answer.error ? { words: answer.error } : answer);
   }
 
@@ -167,11 +236,12 @@
     if (png) draw(shot.item.querySelector("canvas"), png, corners);
   }
 
-  // Say below a photograph whether it is used, or why it is not.
-  function tell(shot, against = "") {
+  // Say below a photograph whether it is used, and how well it fits, or why it is not.
+  function tell(shot, against = "", rms = "") {
     const used = shot.used && !against;
     shot.item.className = used ? "used" : "refused";
-    const text = [used ? "✓ board found" : "✗ not used", against || shot.words].filter(Boolean).join(": ");
+    const told = [used ? "✓ board found" : "✗ not used", against || shot.words, used && rms];
+    const text = told.filter(Boolean).join(": ");
     shot.item.querySelector("span").textContent = text;
   }
 
@@ -191,12 +261,21 @@
 
   // --- The camera --------------------------------------------------------------------------------
 
-  async function calibrate(used) {
+  // What needs a camera is shown when there is one.
+  function showCamera(known) {
+    $(".result").hidden = !known;
+    $(".shots").classList.toggle("of-a-camera", known);
+  }
+
+  async function calibrate() {
+    const used = [...shots.values()].filter((shot) => shot.used).length;
     say(`Calibrating with ${used} photographs …`);
     const answer = await ask("calibrate", { lens: board.lens.value });
-    if (next()) return; // dropped meanwhile: it is done again with these
+    again ||= Boolean(next()); // dropped meanwhile, or to be looked at again: it is done with these
+    if (again) return;
+    explain(answer);
     if (answer.error) {
-      $(".result").hidden = true;
+      showCamera(false);
       if (answer.dead) {
         for (const shot of shots.values()) shot.state = "new";
         say(`Python stopped while it calibrated (${answer.error}). Change something to try again.`);
@@ -204,36 +283,49 @@
       return;
     }
     say(`The camera is known from ${answer.used.length} of ${shots.size} photographs.`);
-    for (const [name, shot] of shots) if (shot.used) tell(shot, answer.unlike[name]);
-    $(".result").hidden = false;
-    const verdict = $(".verdict");
-    verdict.textContent = answer.reliable
-      ? "✓ The photographs determine this camera."
-      : "✗ Not reliable: the photographs do not determine this camera. The sentences say what to do.";
-    verdict.className = `verdict ${answer.reliable ? "good" : "bad"}`;
-    $(".doubts").replaceChildren(
-      ...answer.doubts.map((sentence) => Object.assign(document.createElement("li"), { textContent: sentence })),
-    );
-    $(".next").textContent = answer.next ? `Next photograph: ${answer.next}` : "";
-    $(".result pre").textContent = answer.report;
-    $(".table").textContent = answer.table;
+    for (const [name, shot] of shots)
+      if (shot.used) tell(shot, answer.unlike[name], answer.rms[answer.used.indexOf(name)]);
+    showCamera(true);
+    $(".result h2").textContent = answer.title;
+    $(".words").innerHTML = answer.words;
+    $(".figures").innerHTML = answer.figures;
     keep(answer.files);
   }
 
-  let addresses = [];
+  // Say once for all photographs with the same reason why they are not used, and offer the board
+  // that they show instead.
+  function explain({ reasons = [], instead } = {}) {
+    const lines = reasons.map((sentence) => Object.assign(document.createElement("li"), { textContent: sentence }));
+    $(".reasons").replaceChildren(...lines);
+    const take = $(".take-count");
+    take.hidden = !instead;
+    if (!instead) return;
+    take.textContent = `Take ${instead.join("×")}`;
+    take.onclick = () => {
+      take.hidden = true;
+      said.focus();
+      askFor(instead);
+      another();
+    };
+  }
+
+  const TYPES = { png: "image/png", pdf: "application/pdf", html: "text/html" };
+  function linkTo(name, content) {
+    const type = TYPES[name.split(".").at(-1)] ?? "text/plain";
+    const href = URL.createObjectURL(new Blob([content], { type }));
+    return Object.assign(document.createElement("a"), { href, download: name, textContent: name });
+  }
+
+  function handOver(name, content) {
+    const link = linkTo(name, content);
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  }
+
+  let links = [];
   function keep(files) {
-    addresses.forEach((address) => URL.revokeObjectURL(address));
-    addresses = [];
-    const links = Object.entries(files).map(([name, content]) => {
-      const link = document.createElement("a");
-      const type = name.endsWith(".png") ? "image/png" : "text/plain";
-      link.href = URL.createObjectURL(new Blob([content], { type }));
-      addresses.push(link.href);
-      link.download = link.textContent = name;
-      if (name === "coverage.png") $(".coverage").src = link.href;
-      if (name === "residuals.png") $(".residuals").src = link.href;
-      return link;
-    });
+    links.forEach((link) => URL.revokeObjectURL(link.href));
+    links = Object.entries(files).map(([name, content]) => linkTo(name, content));
     $(".files").replaceChildren("Keep: ", ...links.flatMap((link) => [link, " "]));
   }
 
@@ -307,6 +399,7 @@
       if (answer.dead) return say(`Python stopped at the camera's picture (${answer.error}); take pictures by the button.`);
       if (answer.error || stream !== own) continue;
       seen = { ...answer, size: frame.size };
+      if (answer.counted) await know(answer.counted);
       if (answer.take && !working) await take(canvas);
     }
   }
@@ -345,6 +438,20 @@
     setTimeout(cover, 200);
   }
 
+  // --- A board to print --------------------------------------------------------------------------
+
+  $(".print").onclick = async () => {
+    if (!board.reportValidity()) return;
+    const [columns, rows] = corners() ?? [9, 6];
+    say("Drawing the board …");
+    const asked = { ...boardAsked(), corners: [columns, rows], paper: $("[name=paper]").value };
+    const { error, content } = await ask("sheet", asked);
+    if (error) return say(`No sheet: ${error}.`);
+    const name = `board-${columns}x${rows}.pdf`;
+    handOver(name, content);
+    say(`${name}: print it at 100 %, check that both rulers are 100 mm, and glue it to something flat.`);
+  };
+
   // --- Hands -------------------------------------------------------------------------------------
 
   $(".drop input").onchange = (event) => {
@@ -365,13 +472,15 @@
   });
   board.addEventListener("submit", (event) => event.preventDefault());
   board.addEventListener("change", async (event) => {
-    if (event.target.name !== "lens") {
-      // another board: all photographs are looked at again, by a worker that knows it
-      end("another board");
-      for (const shot of shots.values()) shot.state = "new";
-    }
-    if (shots.size) work();
+    if (event.target === board.counted) askFor(board.counted.checked ? null : counted ?? [9, 6]);
+    if (event.target.name !== "lens") another();
+    else if (shots.size) work();
   });
+  // A page that shows a board on a screen leads here with its corners and squares.
+  const given = new URLSearchParams(location.search);
+  const [, ...named] = /^(\d+)x(\d+)$/.exec(given.get("corners")) ?? [];
+  askFor(named.length ? named : null);
+  board.square.value = given.get("square") ?? board.square.value;
   if (typeof WebAssembly !== "object" || typeof Worker !== "function" || !location.protocol.startsWith("http")) {
     say(
       location.protocol.startsWith("http")
