@@ -10,13 +10,13 @@ from PIL import Image
 
 from cvnotes.base import CornersNotFound, CvnotesError, DegenerateError
 from cvnotes.calibration import calibrate
-from cvnotes.camera import Camera, Lens, intrinsics, look_at
+from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, look_at
 from cvnotes.commands.cli import main
 from cvnotes.commands.report import note_of, notes_of
 from cvnotes.photographs import calibrate_photographs
 from cvnotes.pictures import render
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
-from cvnotes.targets.markers import other_dictionary
+from cvnotes.targets.markers import _dictionary, _outlines, _read, find_numbered
 
 BOARD = CharucoBoard((9, 6), 25.0)
 SMALL = CharucoBoard((4, 3), 25.0)  # each square that might be a marker is looked up in thousands
@@ -181,8 +181,8 @@ def test_another_board_is_named(there, board, said):
 
 
 @pytest.mark.slow
-def test_another_dictionary_is_known_from_two_photographs_of_which_none_is_read_whole(monkeypatch):
-    monkeypatch.setattr("cvnotes.photographs.detection.find_numbered", None)
+def test_another_dictionary_is_known_from_two_photographs_of_which_none_is_measured(monkeypatch):
+    monkeypatch.setattr("cvnotes.photographs.detection.detect", None)
     pictures = [render(SMALL, camera([60 + i, 40, -330]), blur=0.7) for i in range(2)]
     asked = CharucoBoard((4, 3), 25.0, dictionary="5x5_100")
     with pytest.raises(DegenerateError, match="have markers of 4x4, not 5x5_100"):
@@ -196,8 +196,39 @@ def test_a_dictionary_is_known_by_a_board_of_which_the_first_markers_cannot_be_s
     u, v = far.project(large.points[0])
     assert v < -100 or u < -100
     picture = render(large, far, blur=0.7)
-    assert other_dictionary(picture, "5x5_250") == "4x4_250"
-    assert other_dictionary(picture, "4x4_250") == ""
+    asked = large.squares, 0.75, "5x5_250"
+    assert find_numbered(picture, *asked).other == "4x4"
+    assert find_numbered(picture, *asked[:2], "4x4_50").other == "4x4_250"
+    seen = find_numbered(picture, *large.read_by)
+    assert not seen.other
+    assert len(seen.m) > 20
+
+
+@pytest.mark.parametrize("dictionary", ["4x4_250", "5x5_250", "7x7_250", "apriltag_36h11"])
+def test_markers_are_read_as_opencv_reads_them(dictionary):
+    board = CharucoBoard((13, 8), 25.0, dictionary=dictionary)
+    known = camera([60, 200, -400], at=(150, 100, 0))
+    picture = render(board, known, blur=0.7, noise=4, rng=np.random.default_rng(1))
+    grey = np.ascontiguousarray(picture[::-1, ::-1])
+    whole = _dictionary(dictionary)
+    outlines, numbers, _ = cv2.aruco.ArucoDetector(whole).detectMarkers(grey)
+    theirs = dict(zip(np.ravel(numbers).tolist(), np.reshape(outlines, (-1, 4, 2)), strict=True))
+    read, at = _read(grey, _outlines(grey), dictionary)[::-1]
+    ours = dict(zip(read.tolist(), at, strict=True))
+    assert len(theirs) > 40
+    assert set(ours) >= set(theirs)
+    # (of two outlines that one marker may have, it may be the other)
+    assert max(np.abs(ours[i] - theirs[i]).max() for i in theirs) < 3
+
+
+def test_a_wide_lens_leads_no_corner_beyond_the_horizon_of_the_others():
+    board = CharucoBoard((19, 9), 25.0, dictionary="4x4_100")
+    G = look_at([100, 160, -60], [240, 40, 0])
+    wide = Camera(intrinsics(330, 330, 639.5, 399.5), G, FisheyeLens((-0.02, 0.01)), (1280, 800))
+    m = find_corners(render(board, wide, blur=0.7), board)
+    seen = np.isfinite(m[:, 0])
+    assert seen.sum() > 70  # a homography of them would lead to 57, one of them a pixel off
+    assert np.abs(m - wide.project(board.points))[seen].max() < 0.2
 
 
 def test_corners_outside_the_picture_are_not_called_unclear():

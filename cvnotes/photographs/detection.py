@@ -22,13 +22,7 @@ from cvnotes.files.video import Progress, frames_of, unseen
 from cvnotes.photographs.reasons import FramesTaken, LeftOut, NoBoard
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
-from cvnotes.targets.markers import (
-    PROBABLE,
-    family,
-    find_numbered,
-    one_thread_each,
-    other_dictionary,
-)
+from cvnotes.targets.markers import find_numbered, one_thread_each
 
 Board = Chessboard | CharucoBoard
 Given = PathLike | Photo | npt.ArrayLike  # one photograph, or a folder of them
@@ -342,19 +336,19 @@ def probed(photos: Sequence[Path | Photo], board: CharucoBoard) -> CharucoBoard:
     DegenerateError
         The first two photographs that have markers have those of another dictionary.
     """
-    other: list[str] = []
+    other = ""
     for item in photos:
         photo = item if isinstance(item, Photo) else open_photo(item, grey=True)
         if isinstance(photo, Rejected):
             continue
-        if there := other_dictionary(photo.grey, board.dictionary, other or PROBABLE):
-            if other:
-                raise DegenerateError(
-                    f"the first photographs have markers of {family(there)}, not "
-                    f"{board.dictionary}: was the board made with these?"
-                )
-            other = [there]
-        elif (seen := find_numbered(photo.grey, *board.read_by)).legacy is not None:
+        seen = find_numbered(photo.grey, *board.read_by)
+        if other and seen.other == other:
+            raise DegenerateError(
+                f"the first photographs have markers of {other}, not {board.dictionary}: "
+                "was the board made with these?"
+            )
+        other = seen.other
+        if seen.legacy is not None:
             return replace(board, legacy=seen.legacy)
     return board
 

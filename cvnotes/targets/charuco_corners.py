@@ -3,9 +3,8 @@
 import numpy as np
 
 from cvnotes.base import Array, CornersNotFound, DegenerateError, Image
-from cvnotes.homography import dlt
-from cvnotes.projective import apply
 from cvnotes.targets.charuco import CharucoBoard
+from cvnotes.targets.lattice import completed
 from cvnotes.targets.markers import Numbered
 from cvnotes.targets.subpixel import fit_edges
 
@@ -28,25 +27,34 @@ def measured_numbered(picture: Image, seen: Numbered, board: CharucoBoard) -> Ar
         raise _not_found(picture, board, len(seen.m), seen)
     columns, rows = board.corners
     # (whole numbers: whether their sum is even tells dark squares from light ones)
-    W = np.rint(board.points[:, :2] / board.square)
+    W, at = np.rint(board.points / board.square), seen.numbers
     m = np.full((len(W), 2), np.nan)
     try:
-        # Where it is not seen the board is continued, so that each corner has neighbours.
-        lattice = apply(dlt(W[seen.numbers], seen.m), W)
-        lattice[seen.numbers] = seen.m
-        fit = fit_edges.inside(picture, lattice, grid=board.corners, clear=board.clear)
+        lattice = _continued(W, seen, (rows, columns))
+        fit = fit_edges.inside(picture, lattice, grid=board.corners, clear=board.clear, only=at)
     except DegenerateError:
         raise _not_found(picture, board, 0, seen) from None
     sides = np.linalg.norm(np.gradient(lattice.reshape(rows, columns, 2), axis=1), axis=-1).ravel()
-    moved = np.linalg.norm(fit.m - lattice, axis=-1)
+    near = np.linalg.norm(fit.m - seen.m, axis=-1) < _MOVED * sides[at]
     # The origin's square is dark, or of a board in the legacy pattern light.
-    parity = np.sign(fit.contrast) * (-1.0) ** W.sum(1)
-    alternate = parity == (-1 if np.sum(parity[seen.numbers]) < 0 else 1)
-    good = [i for i in seen.numbers if moved[i] < _MOVED * sides[i] and alternate[i]]
-    if len(good) < _FEWEST:
-        raise _not_found(picture, board, len(good), seen)
-    m[good] = fit.m[good]
+    parity = np.sign(fit.contrast) * (-1.0) ** W[at].sum(1)
+    good = near & (parity == (-1 if parity.sum() < 0 else 1))
+    if good.sum() < _FEWEST:
+        raise _not_found(picture, board, int(good.sum()), seen)
+    m[at[good]] = fit.m[good]
     return m
+
+
+def _continued(W: Array, seen: Numbered, shape: tuple[int, int]) -> Array:
+    """Continue a board (n, 2) where it is not seen, so that each corner has neighbours.
+
+    A homography would do where the lens is straight, and leads beyond the horizon where it is not.
+    """
+    plane = W + [0, 0, 1]  # x, y, 1
+    affine = plane @ np.linalg.lstsq(plane[seen.numbers], seen.m, rcond=None)[0]
+    beside = np.full(affine.shape, np.nan)
+    beside[seen.numbers] = seen.m - affine[seen.numbers]
+    return affine + completed(beside.reshape(*shape, 2)).reshape(-1, 2)
 
 
 def _not_found(

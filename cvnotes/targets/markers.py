@@ -1,7 +1,8 @@
 """The markers of ChArUco boards, drawn and read by OpenCV, which is not there in a browser."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,12 +29,12 @@ DICTIONARIES = {
     "apriltag_36h10": (2320, 6),
     "apriltag_36h11": (587, 6),
 }
-# In these others are looked for, in this order: of dictionaries with as many bits, the smaller ones
-# are parts of the larger, which take as many times as long.
+# In these others are looked for: of dictionaries with as many bits, the smaller ones are parts of
+# the larger.
 PROBABLE = ("4x4_250", "5x5_250", "6x6_250", "7x7_250", "apriltag_16h5", "apriltag_25h9",
              "apriltag_36h11")  # fmt: skip
-_SMALL = 1280  # px across: so many suffice to tell a dictionary from others,
-_FIRST, _EACH = 16, 8  # and of its markers the first ones, then each eighth
+_CELL = 4  # px to which a cell of a marker is straightened, as in OpenCV; and of its cells
+_BORDER, _WRONG = 0.35, 0.6  # so many may be wrong: of n² in its border, of what can be corrected
 _SURE = 4  # markers of a dictionary: one alone may be read into anything
 _MOST_COLUMNS = 60  # of a board whose columns are counted
 _OFF = 0.7  # squares by which a marker may be off, measured by the sides of its neighbour
@@ -96,10 +97,13 @@ def find_numbered(
     (0, 2)
     """
     grey = np.ascontiguousarray(grey)
-    outlines, markers = _read(grey, dictionary)
+    every = _outlines(grey)
+    outlines, markers = _read(grey, every, dictionary)
     none = np.zeros((0, 2)), np.zeros(0, dtype=np.intp), markers
+    if len(markers) < _SURE and (other := _other(grey, every, dictionary, len(markers))):
+        return Numbered(*none[:2], markers[:0], other=other)
     if not len(markers):
-        return Numbered(*none, other=family(other_dictionary(grey, dictionary)))
+        return Numbered(*none)
     (columns, rows), stand = squares, _Standing.of(outlines, markers, marker)
     shown: bool | None = False
     if rows % 2 == 0:
@@ -139,46 +143,77 @@ def _corners(
     )
 
 
-def _read(grey: Grey8, dictionary: str) -> tuple[Array, Numbers]:
-    """Read all markers of a dictionary: their outlines (n, 4, 2) and numbers (n,)."""
-    return _detected(grey, _dictionary(dictionary))
-
-
-def _detected(grey: Grey8, dictionary: Any) -> tuple[Array, Numbers]:
+def _outlines(grey: Grey8) -> Array:
+    """Return the outlines (n, 4, 2) of all that may be a marker."""
     import cv2
 
-    outlines, numbers, _ = cv2.aruco.ArucoDetector(dictionary).detectMarkers(grey)
-    read = [] if numbers is None else numbers
-    return np.reshape(outlines, (-1, 4, 2)).astype(float), np.ravel(read).astype(np.int32)
+    # OpenCV compares each of them with one marker of the dictionary after the other, in which most
+    # of its time goes: so it is given only one, and `_read` compares. It is to keep outlines that
+    # are close to others, as that of the square around a marker is.
+    whole, settings = _dictionary("4x4_50"), cv2.aruco.DetectorParameters()
+    single = cv2.aruco.Dictionary(whole.bytesList[:1], whole.markerSize, 0)
+    settings.minMarkerDistanceRate = 0.0
+    read, _, others = cv2.aruco.ArucoDetector(single, settings).detectMarkers(grey)
+    return np.reshape([*read, *others], (-1, 4, 2)).astype(float)
 
 
-def other_dictionary(grey: Grey8, dictionary: str, probable: Sequence[str] = PROBABLE) -> str:
-    """Return which probable dictionary the markers are of that are there, or "".
+def _read(grey: Grey8, outlines: Array, dictionary: str) -> tuple[Array, Numbers]:
+    """Read the markers of a dictionary: their outlines (n, 4, 2), from their own first corner on.
 
-    A small copy of the picture is asked for some markers of each, without a single wrong bit, which
-    takes a fraction of the time; none may be of the dictionary that is asked for.
+    Of outlines in which the same can be read, the longest counts: that of the marker's border.
 
-    Examples
-    --------
-    >>> other_dictionary(np.zeros((40, 40), np.uint8), "4x4_50")
-    ''
+    References
+    ----------
+    .. [1] S. Garrido-Jurado et al., Automatic generation and detection of highly reliable fiducial
+       markers under occlusion, Pattern Recognition 47 (2014) 2280-2292, section 4.
     """
+    markers, may_be_wrong = _signs(dictionary)
+    n = markers.shape[-1]
+    light = _light_cells(grey, outlines, n + 2)
+    inner = light[:, 1:-1, 1:-1]
+    framed = light.sum((1, 2)) - inner.sum((1, 2)) <= int(_BORDER * n * n)
+    outlines, signs = outlines[framed], 2 * inner[framed].astype(np.float32) - 1
+    turned = np.stack([np.rot90(signs, k, (1, 2)).reshape(-1, n * n) for k in range(4)], axis=1)
+    wrong = (n * n - turned @ markers.reshape(-1, n * n).T) / 2  # (n_outlines, 4, n_markers)
+    turns, numbers = np.divmod(wrong.reshape(-1, 4 * len(markers)).argmin(1), len(markers))
+    length = np.linalg.norm(outlines - np.roll(outlines, 1, axis=1), axis=-1).sum(1)
+    there = np.flatnonzero(wrong.min((1, 2), initial=n * n) <= may_be_wrong)
+    there = there[np.argsort(-length[there], kind="stable")]
+    read, each = np.unique(numbers[there], return_index=True)
+    first = turns[there[each], None] + np.arange(4)
+    outlines = np.take_along_axis(outlines[there[each]], first[..., None] % 4, axis=1)
+    return outlines, read.astype(np.int32)
+
+
+def _light_cells(grey: Grey8, outlines: Array, n: int) -> npt.NDArray[np.bool_]:
+    """Return which of n by n cells within each outline are light, by a threshold of its own."""
     import cv2
 
-    step = max(grey.shape[1] // _SMALL, 1)
-    size = grey.shape[1] // step, grey.shape[0] // step
-    small: Any = cv2.resize(np.ascontiguousarray(grey), size, interpolation=cv2.INTER_AREA)
+    side, flags = n * _CELL, cv2.THRESH_BINARY | cv2.THRESH_OTSU
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32) * (side - 1)
+    light = np.empty((len(outlines), side, side), np.uint8)
+    for outline, straight in zip(outlines.astype(np.float32), light, strict=True):
+        H = cv2.getPerspectiveTransform(outline, square)
+        cv2.warpPerspective(grey, H, (side, side), straight, cv2.INTER_NEAREST)
+        cv2.threshold(straight, 0, 1, flags, straight)
+    return np.asarray(light.reshape(-1, n, _CELL, n, _CELL).mean((2, 4)) > 0.5)
 
-    def there(name: str) -> int:
-        whole = _dictionary(name)
-        # the first are on every board, and those of a large one that is cut off are spread
-        some = np.concatenate([whole.bytesList[:_FIRST], whole.bytesList[_FIRST::_EACH]])
-        return len(_detected(small, cv2.aruco.Dictionary(some, whole.markerSize, 0))[1])
 
-    if there(dictionary):
+@cache
+def _signs(dictionary: str) -> tuple[npt.NDArray[np.float32], int]:
+    """Return a dictionary's markers, 1 where light, else −1, and how many bits may be wrong."""
+    cells = marker_cells(dictionary, DICTIONARIES[dictionary][0])[:, 1:-1, 1:-1]
+    wrong = int(_WRONG * _dictionary(dictionary).maxCorrectionBits)
+    return np.where(cells, -1, 1).astype(np.float32), wrong
+
+
+def _other(grey: Grey8, outlines: Array, dictionary: str, own: int) -> str:
+    """Return which probable dictionary most markers are of, more than `own`, or ""."""
+    n = {name: len(_read(grey, outlines, name)[1]) for name in PROBABLE if name != dictionary}
+    most = max(n, key=n.__getitem__)
+    if n[most] < _SURE or n[most] <= own:
         return ""
-    others = (name for name in probable if name != dictionary)
-    return next((name for name in others if there(name) >= _SURE), "")
+    return most if family(most) == family(dictionary) else family(most)
 
 
 def family(dictionary: str) -> str:

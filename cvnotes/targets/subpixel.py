@@ -16,6 +16,7 @@ slight slope of the lighting. The model is fitted to many windows at once; the f
 
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -222,6 +223,7 @@ def fit_edges(
     window: int = 8,
     grid: tuple[int, int] | None = None,
     clear: float | None = None,
+    only: npt.NDArray[np.integer[Any]] | None = None,
 ) -> EdgeFit:
     """Fit the model of two crossing blurred edges around each corner.
 
@@ -240,12 +242,15 @@ def fit_edges(
     clear : float, optional
         How far from the edges something else is printed, such as a marker, in squares; needs
         `grid`. Only pixels nearer to an edge than that, less the blur, then count.
+    only : ndarray of int, optional
+        Numbers of the corners that are fitted, if not all; of the others of a `grid` it matters
+        only where they are.
 
     Returns
     -------
     EdgeFit
-        Its ``m`` is NaN for corners that did not converge, left the middle of their window, or
-        have no two edges there.
+        Of the corners that are fitted. Its ``m`` is NaN for those that did not converge, left the
+        middle of their window, or have no two edges there.
 
     Notes
     -----
@@ -269,8 +274,11 @@ def fit_edges(
     """
     if m.ndim != 2:
         raise ShapeError(f"m: expected corners (n, 2), got {m.shape}")
-    near = (window + 1) // 2
-    axes, reach = board_axes(m, grid) if grid else (gradient_axes(image, m, near), None)
+    near, every, which = (window + 1) // 2, m.copy(), slice(None) if only is None else only
+    m = m[which]
+    axes, reach = (
+        board_axes(every, grid, which=which) if grid else (gradient_axes(image, m, near), None)
+    )
     middle, small = cut_out(image, m, near, axes, reach, _strip(axes, clear, 0.0))
     start = sharp_crossing(m - middle, axes, small)
     # So few pixels do not tell the lighting's slope from the rest: it stays 0 for now.
@@ -280,7 +288,8 @@ def fit_edges(
     # The large window goes where the small one led, so that the start does not matter.
     found, blur = middle + crossing(p), _typical(_blur(p))
     if grid:
-        axes, reach = board_axes(found, grid, blur)
+        every[which] = found
+        axes, reach = board_axes(every, grid, blur, which)
     again, large = cut_out(image, found, window, axes, reach, _strip(axes, clear, blur))
     # A slope of the lighting looks like an edge as blurred as this: then there shall be none.
     free = SLOPES if blur > _VERY_BLURRED * window else PARAMETERS
@@ -360,16 +369,23 @@ def _typical(blur: Array) -> float:
 # --- where to look, and where to start
 
 
-def board_axes(m: Array, grid: tuple[int, int], blur: float = 0.0) -> tuple[Array, Array]:
+def board_axes(
+    m: Array,
+    grid: tuple[int, int],
+    blur: float = 0.0,
+    which: slice | npt.NDArray[np.integer[Any]] = slice(None),
+) -> tuple[Array, Array]:
     """Return each corner's two steps to the next ones (n, 2, 2), and its reach (n, 2, 2) in them.
 
-    Of the reach, the last index is that of backward and forward.
+    Of the reach, the last index is that of backward and forward. Only those are given, and looked
+    at, that are asked for.
     """
     columns, rows = image_size(grid, "grid")
     if len(m) != columns * rows or min(columns, rows) < 2:
         raise ShapeError(f"grid: {columns}×{rows} corners cannot be {len(m)} points")
     lattice = m.reshape(rows, columns, 2)
-    axes = np.stack([np.gradient(lattice, axis=1), np.gradient(lattice, axis=0)], axis=-2)
+    steps = np.stack([np.gradient(lattice, axis=1), np.gradient(lattice, axis=0)], axis=-2)
+    axes = steps.reshape(-1, 2, 2)[which]
     area, sides = np.abs(_cross(axes[..., 0, :], axes[..., 1, :])), np.linalg.norm(axes, axis=-1)
     if not (area > 0.01 * sides.prod(-1)).all():
         raise DegenerateError(
@@ -378,10 +394,10 @@ def board_axes(m: Array, grid: tuple[int, int], blur: float = 0.0) -> tuple[Arra
     height = area[..., None] / sides[..., ::-1]
     outside = max(_BEYOND_PX, _BEYOND_BLUR * blur) / height
     beyond = outside.clip(_BEYOND_BOARD, _TOWARDS_NEIGHBOUR)
-    reach = np.full((rows, columns, 2, 2), _TOWARDS_NEIGHBOUR)
-    reach[:, 0, 0, 0], reach[:, -1, 0, 1] = beyond[:, 0, 0], beyond[:, -1, 0]
-    reach[0, :, 1, 0], reach[-1, :, 1, 1] = beyond[0, :, 1], beyond[-1, :, 1]
-    return axes.reshape(-1, 2, 2), reach.reshape(-1, 2, 2)
+    row, column = (i.ravel()[which] for i in np.indices((rows, columns)))
+    ends = np.stack([[column == 0, column == columns - 1], [row == 0, row == rows - 1]])
+    reach = np.where(ends.transpose(2, 0, 1), beyond[..., None], _TOWARDS_NEIGHBOUR)
+    return axes, reach
 
 
 def gradient_axes(grey: Image, m: Array, half: int) -> Array:
