@@ -11,6 +11,7 @@ from cvnotes.base import (
     CvnotesError,
     DegenerateError,
     ShapeError,
+    chunks,
     numbers,
     paired,
     points,
@@ -199,65 +200,89 @@ def ransac_homography(
     max_trials = whole(max_trials, "max_trials", at_most=_MOST_TRIALS)
     N1, N2 = normaliser(src), normaliser(dst)
     src_n, dst_n, t = apply(N1, src), apply(N2, dst), threshold * N2[0, 0]
-    inliers = _search(src_n, dst_n, t, rng, confidence, max_trials)
+    inliers = _search(_Pairs(src_n, dst_n, t), rng, confidence, max_trials)
     H, inliers = _polish(src, dst, threshold, inliers)
     refuse_chance(int(inliers.sum()), dst, threshold)
     return H, inliers
 
 
-def _search(
-    src: Array, dst: Array, t: float, rng: "np.random.Generator", confidence: float, most: int
-) -> Mask:
+def _search(pairs: "_Pairs", rng: "np.random.Generator", confidence: float, most: int) -> Mask:
     """Draw samples until enough were drawn for the best map so far; gives who agrees with it."""
+    src, dst = pairs.src, pairs.dst
     best: Mask = np.zeros(len(src), dtype=bool)
     drawn, trials, needed = 0, 0, inf
     while drawn < most and trials < needed:
         rows = samples(rng, len(src))
         H, counted = of_four(src[rows], dst[rows])
-        agree = (_missed(H, src, dst) <= t * t).sum(-1)
+        agree = pairs.that_agree(H)
         if len(H) and agree.max() > best.sum():
-            best = _optimised(H[agree.argmax()], src, dst, t)
+            best = _optimised(pairs, pairs.missed(H[agree.argmax()]))
             needed = trials_needed(float(best.mean()), confidence)
         drawn += BATCH
         trials += counted
-    return _grown(best, src, dst, t)
+    return _grown(pairs, best)
+
+
+# Pairs at a time whose distances from many maps are asked for: they then stay in the cache.
+_AT_ONCE = 6000
+
+
+class _Pairs:
+    """Normalised pairs, and by how much maps miss them."""
+
+    def __init__(self, src: Array, dst: Array, t: float) -> None:
+        self.src, self.dst, self.t = src, dst, t
+        self._fits: dict[bytes, Array] = {}
+
+    def missed(self, H: Array) -> Array:
+        return _missed(H, self.src, self.dst)
+
+    def that_agree(self, H: Array) -> npt.NDArray[np.intp]:
+        """Count the pairs that agree with each H (k, 3, 3)."""
+        count = np.zeros(len(H), dtype=np.intp)
+        for part in chunks(len(H), max(1, _AT_ONCE // len(self.src))):
+            count[part] = (self.missed(H[part]) <= self.t**2).sum(-1)
+        return count
+
+    def missed_by_fit(self, to: Mask) -> Array:
+        """Return by how much a fit to some of the pairs misses all; the same are fitted once."""
+        if (key := to.tobytes()) not in self._fits:
+            self._fits[key] = self.missed(dlt(self.src[to], self.dst[to]))
+        return self._fits[key]
 
 
 # Multiples of the threshold at which a new best map is fitted again, one after the other.
 _SHRINKING = (8.0, 4.0, 2.5, 1.6, 1.0)
 
 
-def _grown(best: Mask, src: Array, dst: Array, t: float) -> Mask:
+def _grown(pairs: _Pairs, best: Mask) -> Mask:
     """Let the fit of all who agree find those whom it lost so far, until nobody joins.
 
     Most pairs may lie close together, and one far away is then missed by several thresholds.
     """
-    while best.sum() >= 4:
+    while True:
         try:
-            agree = _optimised(dlt.inside(src[best], dst[best]), src, dst, t)
-        except DegenerateError:  # a line of neighbours
-            break
+            agree = _optimised(pairs, pairs.missed_by_fit(best))
+        except DegenerateError:  # too few, or a line of neighbours
+            return best
         if agree.sum() <= best.sum():
-            break
+            return best
         best = agree
-    return best
 
 
-def _optimised(H: Array, src: Array, dst: Array, t: float) -> Mask:
+def _optimised(pairs: _Pairs, missed: Array) -> Mask:
     """Fit a new best map to those who agree with it, ever more strictly; gives who does at last.
 
     Four pairs extrapolate their own noise: a map through them loses right pairs far away, which
     a wider threshold still holds and a fit to many brings back.
     """
-    missed = _missed(H, src, dst)
-    best = missed <= t * t
+    best = missed <= pairs.t**2
     for multiple in _SHRINKING:
-        near = missed <= (multiple * t) ** 2
         try:
-            missed = _missed(dlt(src[near], dst[near]), src, dst)
+            missed = pairs.missed_by_fit(missed <= (multiple * pairs.t) ** 2)
         except DegenerateError:  # too few, or a line of neighbours
             break
-        agree = missed <= t * t
+        agree = missed <= pairs.t**2
         if agree.sum() > best.sum():
             best = agree
     return best
