@@ -31,7 +31,7 @@ from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.columns import Believed
 from cvnotes.show.explore.finding import Finding, rms
-from cvnotes.show.explore.fold import angles, circle_of, photographs
+from cvnotes.show.explore.fold import _SHOWN, _on_sheet, angles, circle_of, photographs
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.lettering import LETTERS
 from cvnotes.show.explore.model import Drawing, Model, Setting
@@ -558,6 +558,13 @@ def test_every_place_of_the_half_circle_sees_both_right_angles_and_one_those_of_
         fold = np.degrees(np.arcsin(400 / circle.radius))
         assert np.allclose(circle.place(fold), true, rtol=1e-9)
         assert np.allclose(angles(h, true), 90, rtol=1e-9)
+        assert np.allclose(_on_paper(circle, range(181)), 0.5, atol=0.49)  # not cut off
+
+
+def _on_paper(circle, folds):
+    """Give where on its panel a circle is drawn, from 0 to 1."""
+    low, high = np.transpose(_SHOWN)
+    return (_on_sheet(np.array([circle.place(fold) for fold in folds])) - low) / (high - low)
 
 
 def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_say_which_is_it():
@@ -857,6 +864,8 @@ def test_a_page_is_told_what_its_sliders_need_and_is_answered_with_the_same_pict
     model = MODELS[name]
     assert [s["name"] for s in told["settings"]] == [s.name for s in model.settings]
     assert told["sentence"] == model.drawing().sentence
+    held = [n for grip in told["grips"] for key in ("place", "at", "unit") for n in grip[key]]
+    assert all(float(f"{number:.6g}") == number for number in held)  # no hand holds more digits
     drawn = random_values(model, np.random.default_rng(5))
     values = {key: float(value) for key, value in drawn.items()}
     shown = asked(json.dumps({**told, "values": values}))

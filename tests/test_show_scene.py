@@ -6,7 +6,15 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from cvnotes.base import CvnotesError, ShapeError
-from cvnotes.camera import Camera, Lens, intrinsics, look_at, move, pose
+from cvnotes.camera import (
+    Camera,
+    Lens,
+    intrinsics,
+    look_at,
+    move,
+    pose,
+    rotation_from_vector,
+)
 from cvnotes.pictures.meshes import box
 from cvnotes.show import (
     CAMERA,
@@ -174,6 +182,19 @@ def test_a_scene_holds_every_shape_with_y_up():
     assert np.allclose(high, [board[:, 0].max(), -board[:, 1].min(), 0], atol=1e-9)
 
 
+@pytest.mark.parametrize("view", [(20, -40), (0, 0), (90, 0)])
+def test_letters_of_a_turned_frame_are_upright_and_face_the_view_in_a_file_too(view):
+    turned = pose(rotation_from_vector([2.0, -1, 0.5]), [0, 0, 0])
+    scene = build_scene(*axes_shapes(turned, meaning="camera"), view=view)
+    right, up, way = scene.camera_transform[:3, :3].T
+    ends = 120 * (GL_FROM_CV[:3, :3] @ turned[:3, :3]).T
+    for letter, end in zip("xz", ends[[0, 2]], strict=True):
+        ink = scene.geometry[letter].vertices - end
+        assert np.ptp(ink @ way) < 0.3 * np.ptp(ink @ right)  # its strokes have a body
+        assert np.abs(ink).max() < 5
+    assert np.corrcoef(ink @ right, ink @ up)[0, 1] > 0.2  # the long stroke of a z
+
+
 def test_two_cameras_of_one_name_are_both_kept():
     scene = build_scene(*camera_shapes(STRAIGHT), *camera_shapes(Camera(A)))
     assert len(scene.geometry) == 2
@@ -232,7 +253,7 @@ def test_a_still_has_equal_scales_and_y_downwards():
 def test_a_still_names_what_it_shows():
     shapes = (*all_shapes(), *camera_shapes(STRAIGHT, name="camera 2"))
     texts = [text.get_text() for text in draw_scene(*shapes, unit="m").texts]
-    assert texts == ["WRF", "camera", "z = 1", "camera 2"]
+    assert texts == ["WRF", *"XYZ", "camera", "z = 1", "camera 2"]
 
 
 VIEWS = [(20, -40), (5, -90), (60, 10), (-20, 120), (25, -62), (89, -90), (18, 0)]

@@ -74,8 +74,9 @@ def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:
         elif isinstance(shape, Lines):
             panel.segments(on_sheet(shape.ends), shape.colour, shape.width)
         elif isinstance(shape, Label):
-            at = on_sheet(shape.at) - [_ASIDE * panel.pixel, 0]
-            panel.text(at, shape.name, shape.colour, anchor="ra", size=12)
+            aside, anchor = (0, "mm") if len(shape.name) == 1 else (_ASIDE, "ra")  # of an axis?
+            at = on_sheet(shape.at) - [aside * panel.pixel, 0]
+            panel.text(at, shape.name, shape.colour, anchor=anchor, size=12)
 
 
 def on_sheet(W: Array) -> Array:

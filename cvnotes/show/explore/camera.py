@@ -11,8 +11,10 @@ from cvnotes.show.explore.orbit import round_the_board
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
 from cvnotes.show.space.shapes import axes_shapes, target_shapes
-from cvnotes.show.style import WORLD
+from cvnotes.show.style import CAMERA, WORLD
 from cvnotes.targets import Chessboard
+
+_ASIDE = 12  # px from the way T to the words beside it
 
 
 def camera_model(camera: Camera, board: Chessboard) -> Model:
@@ -94,15 +96,13 @@ def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
     shapes = (
         *target_shapes(board),
         *axes_shapes(length=length, name="WRF"),
-        *camera_shapes(camera, 2.5 * length, name="camera"),
+        *camera_shapes(camera, 2.5 * length, name=""),
     )
     low, high = in_space(shapes, size)
     panel = paper.panel(
         size, (low[0], high[0]), (low[1], high[1]), "space, in the frame of the board"
     )
     draw_in_space(panel, shapes)
-    for axis, letter in zip(np.eye(3), "XYZ", strict=True):  # its strokes are too small to read
-        panel.text(on_sheet(1.25 * length * axis), letter, WORLD, anchor="mm", size=12)
     _draw_T(panel, camera)
     return panel
 
@@ -113,7 +113,12 @@ def _draw_T(panel: Panel, camera: Camera) -> None:
     panel.line(ends, WORLD, 1, dash=4)
     panel.mark(ends[0], "camera", 5)
     panel.grip("camera", "the camera, to carry it round the board", ends[0], 6)
-    panel.text(ends.mean(axis=0), "T", WORLD, size=12)
+    # Names stand beside the way, and that of the camera on the side that it comes from.
+    way, aside = ends[1] - ends[0], _ASIDE * panel.pixel
+    across = np.array([-way[1], way[0]]) / max(float(np.linalg.norm(way)), panel.pixel)
+    panel.text(ends.mean(axis=0) + aside * across, "T", WORLD, anchor="mm", size=12)
+    away = np.array([0, 1.5 * aside if way[1] <= 0 else -1.5 * aside])
+    panel.text(ends[0] + away, "camera", CAMERA, anchor="mm", size=12)
 
 
 def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:

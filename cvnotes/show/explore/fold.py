@@ -19,7 +19,7 @@ _EYES = (([226, 345, -185], (0, 0, -1)), ([-60, 330, -210], (0.35, 0, -1)))
 _SPACE, _DIALS = (500, 400), (350, 400)
 _VIEW = look_at([1700, 1500, 1000], [250, 150, 0], up=(0, 0, 1))[:2, :3]
 _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
-_SHOWN = ((-560, 708), (-560, 454))  # x and y of the sheet on which space is drawn
+_SHOWN = ((-640, 640), (-570, 454))  # x and y of the sheet on which space is drawn
 _FROM, _TO = 75, 105  # degrees, of the angles
 
 
@@ -148,6 +148,7 @@ def _space(
         panel.line(_flat(ends), ink, 0.8, dash=5)
         arc = np.array([circle.place(float(fold)) for fold in range(0, 181, 3)])
         panel.line(_on_sheet(arc), ink, 2)
+        panel.line(_on_sheet(arc[[0, -1]]), ink, 0.8)
     points = np.column_stack([vanishing_points(H[0]), np.zeros(4)])
     for point, colour in zip(points, (ESTIMATED, ESTIMATED, LENS, LENS), strict=True):
         panel.line(_on_sheet(np.array([eye, point])), colour, 1.4)

@@ -251,5 +251,6 @@ class Panel:
 
 
 def _pair(xy: Array) -> tuple[float, float]:
-    x, y = xy.tolist()
+    """Return two numbers as a page is told them: more than six digits no hand can hold."""
+    x, y = (float(f"{number:.6g}") for number in xy.tolist())
     return x, y

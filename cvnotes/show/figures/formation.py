@@ -22,6 +22,7 @@ from cvnotes.show.style import (
     WORLD,
     arrow,
     beside,
+    halo,
     panels,
 )
 
@@ -96,7 +97,8 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
         ax.set_aspect("equal", adjustable="datalim")
         digits = 0 if len(place) == 3 else 4 if np.abs(place).max() < 10 else 1
         words = ", ".join(f"{number:.{digits}f}" for number in place)
-        ax.text(0.98, 0.03, f"({words})", transform=ax.transAxes, ha="right", color=ESTIMATED)
+        y, va = (0.97, "top") if len(place) == 3 else (0.03, "bottom")  # a camera stands below
+        ax.text(0.98, y, f"({words})", transform=ax.transAxes, ha="right", va=va, color=ESTIMATED)
     for i, (step, ax) in enumerate(zip(steps, axes[1:], strict=True), start=1):
         above = {"xycoords": "axes fraction", "textcoords": "offset points"}
         ax.annotate(f"{i}. {step} →", (0, 1), (0, 22), **above, color=ESTIMATED, weight="bold")
@@ -136,7 +138,8 @@ def _frame(ax: "Axes", frame: Array, colour: str, letters: str) -> None:
         arrow(ax, frame[0, [0, 2]], tip[[0, 2]], colour, 1.5, gap=2)
         out = 1.22 * tip - 0.22 * frame[0]
         ax.plot(*np.stack([frame[0], out])[:, [0, 2]].T, alpha=0)  # makes room
-        ax.text(out[0], out[2], letter, color=colour, ha="center", va="center", fontsize=FONT - 1)
+        text = ax.text(out[0], out[2], letter, color=colour, ha="center", va="center")
+        text.set(fontsize=FONT - 1, path_effects=halo())
 
 
 def _plane(ax: "Axes", camera: Camera, xy: Array, shape: tuple[int, ...], colour: str) -> None:
@@ -266,7 +269,8 @@ def draw_pixels(
     for u in range(u0, u0 + columns):
         for v in range(v0, v0 + rows):
             ax.add_patch(Rectangle((u - 0.5, v - 0.5), 1, 1, fc="none", ec=MUTED, lw=0.8))
-    ax.plot(*np.mgrid[u0 : u0 + columns, v0 : v0 + rows].reshape(2, -1), ".", color=LENS, ms=4)
+    centres = np.mgrid[u0 : u0 + columns, v0 : v0 + rows].reshape(2, -1)
+    ax.plot(*centres, "o", color=MUTED, ms=4, mec="white", mew=0.8)
     ax.set(xlim=(u0 - 0.5, u0 + columns - 0.5), ylim=(v0 + rows - 0.5, v0 - 0.5))
     ax.set(xticks=range(u0, u0 + columns), yticks=range(v0, v0 + rows))
     return ax

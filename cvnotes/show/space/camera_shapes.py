@@ -8,7 +8,7 @@ from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
 from cvnotes.show.guards import eight_bits, one_point
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes, colour_of
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, WORLD, rgb
+from cvnotes.show.style import CAMERA, IDEAL, WORLD, rgb
 
 
 def camera_shapes(
@@ -181,8 +181,8 @@ def dot_shapes(W: npt.ArrayLike, name: str, *, radius: float = 8.0) -> Shapes:
     corners = at + np.array(
         [[belt[i], belt[(i + 1) % 4], tip] for tip in (z, -z) for i in range(4)]
     )
-    colours = np.tile([*rgb(ESTIMATED), 1.0], (8, 1))
-    return Faces(f"{name} dot", corners, colours), Label(name, at - 3.0 * y, ESTIMATED)
+    colours = np.tile([*rgb(WORLD), 1.0], (8, 1))
+    return Faces(f"{name} dot", corners, colours), Label(name, at - 3.0 * y, WORLD)
 
 
 def _on_plane(camera: Camera, xy: Array, z: float) -> Array:

@@ -43,7 +43,7 @@ class Photo(NamedTuple):
 
 
 class Label(NamedTuple):
-    """Words at a point (3,)."""
+    """Words at a point (3,): a name, or the letter of an axis."""
 
     name: str
     at: Array
@@ -52,16 +52,6 @@ class Label(NamedTuple):
 
 Shape = Faces | Lines | Photo | Label
 Shapes = tuple[Shape, ...]
-
-# Letters as strokes on a unit square, x to the right and y down, so that 3-D files show them too.
-_STROKES = {
-    "X": (((0, 0), (1, 1)), ((1, 0), (0, 1))),
-    "Y": (((0, 0), (0.5, 0.5)), ((1, 0), (0.5, 0.5)), ((0.5, 0.5), (0.5, 1))),
-    "Z": (((0, 0), (1, 0)), ((1, 0), (0, 1)), ((0, 1), (1, 1))),
-    "x": (((0, 0.3), (0.7, 1)), ((0.7, 0.3), (0, 1))),
-    "y": (((0, 0.3), (0.35, 0.95)), ((0.7, 0.3), (0.1, 1.4))),
-    "z": (((0, 0.3), (0.7, 0.3)), ((0.7, 0.3), (0, 1)), ((0, 1), (0.7, 1))),
-}
 
 
 def axes_shapes(
@@ -87,23 +77,22 @@ def axes_shapes(
     Examples
     --------
     >>> [shape.name for shape in axes_shapes(length=50.0)]
-    ['WRF axes', 'WRF']
+    ['WRF axes', 'WRF', 'X', 'Y', 'Z']
     """
     G = np.eye(4) if world_from_frame is None else one_motion(world_from_frame, "world_from_frame")
     length = number(length, "length")
-    tip, wing, letter = 0.1 * length, 0.04 * length, 0.11 * length
+    colour, letters = colour_of(meaning), "xyz" if meaning == "camera" else "XYZ"
+    tip, wing = 0.1 * length, 0.04 * length
     ends = []
-    for i, axis in enumerate(np.eye(3)):
-        head, side = axis * length, np.roll(np.eye(3), 1, axis=0)[i]
+    for axis, side in zip(np.eye(3), np.roll(np.eye(3), 1, axis=0), strict=True):
+        head = axis * length
         ends.append([0 * axis, head])
         ends += [[head, head - tip * axis + s * wing * side] for s in (-1, 1)]
-        at = head + 1.2 * letter * axis
-        right, down = np.eye(3)[[2 if i == 2 else 0, 1]] * letter
-        for stroke in _STROKES[("xyz" if meaning == "camera" else "XYZ")[i]]:
-            ends.append([at + (a - 0.5) * right + (b - 0.5) * down for a, b in stroke])
-    colour = colour_of(meaning)
-    origin = move(G, -0.12 * length * np.ones(3))
-    return Lines(f"{name} axes", move(G, np.array(ends)), colour, 2.2), Label(name, origin, colour)
+    names = zip((name, *letters), length * np.vstack([[-0.12] * 3, 1.2 * np.eye(3)]), strict=True)
+    return (
+        Lines(f"{name} axes", move(G, np.array(ends)), colour, 2.2),
+        *(Label(words, move(G, at), colour) for words, at in names),
+    )
 
 
 def arrow_shapes(start: npt.ArrayLike, end: npt.ArrayLike, name: str = "") -> Shapes:

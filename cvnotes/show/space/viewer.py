@@ -24,6 +24,16 @@ _ANGLE = 45.0  # degrees that a viewer sees from top to bottom
 _FRAME = 1.2  # its width by its height, at least
 _ROOM = 1.03  # around the scene
 _HEIGHT = 500  # px on the page, at most
+# The letters of axes as strokes on a unit square, x to the right and y down; files hold no type.
+_STROKES = {
+    "X": (((0, 0), (1, 1)), ((1, 0), (0, 1))),
+    "Y": (((0, 0), (0.5, 0.5)), ((1, 0), (0.5, 0.5)), ((0.5, 0.5), (0.5, 1))),
+    "Z": (((0, 0), (1, 0)), ((1, 0), (0, 1)), ((0, 1), (1, 1))),
+    "x": (((0, 0.3), (0.7, 1)), ((0.7, 0.3), (0, 1))),
+    "y": (((0, 0.3), (0.35, 0.95)), ((0.7, 0.3), (0.1, 1.4))),
+    "z": (((0, 0.3), (0.7, 0.3)), ((0.7, 0.3), (0, 1)), ((0, 1), (0.7, 1))),
+}
+_LETTER = 1 / 40  # of the scene
 # In the frame of trimesh's viewer. The paper is that of the page around the frame, and changes when
 # JupyterLab changes its theme; black lines turn light on a dark one, where nobody would see them.
 _PAPER = """<script>(() => {
@@ -81,7 +91,8 @@ def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)
     Parameters
     ----------
     *shapes : Faces, Lines, Photo or Label
-        What the functions of `cvnotes.show.space.shapes` give. Labels are left to the still.
+        What the functions of `cvnotes.show.space.shapes` give. Of labels only the letters of axes
+        are shown, facing the view; the others are left to the still.
     view : (elevation, azimuth)
         Where a viewer first sees it from, in degrees, as for `draw_scene`; None leaves that to it.
 
@@ -94,13 +105,13 @@ def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)
     --------
     >>> from cvnotes.show import axes_shapes
     >>> list(build_scene(*axes_shapes()).geometry)
-    ['WRF axes']
+    ['WRF axes', 'X', 'Y', 'Z']
     """
     import trimesh
     from matplotlib.colors import to_rgba
 
-    scene = trimesh.Scene()
-    thickness = extent(*shapes) / 500  # of lines
+    scene, reach = trimesh.Scene(), extent(*shapes)
+    thickness = reach / 500  # of lines
     for shape in shapes:
         match shape:
             case Faces(name, corners, colours):
@@ -109,6 +120,9 @@ def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)
                 meshes = [_mesh(_bars(ends, thickness * width), np.array(to_rgba(colour)))]
             case Photo(name, corners, image):
                 meshes = [_textured(corners, image)]
+            case Label(name, at, colour) if name in _STROKES:
+                strokes = at + _LETTER * reach * _facing(_STROKES[name], towards(view or (0, -90)))
+                meshes = [_mesh(_bars(strokes, 2 * thickness), np.array(to_rgba(colour)))]
             case Label():
                 continue
         for mesh in meshes:
@@ -120,6 +134,13 @@ def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)
         scene.camera = trimesh.scene.Camera("camera", fov=(_FRAME * _ANGLE, _ANGLE))
         scene.camera_transform = _seen_from(GL_FROM_CV[:3, :3] @ towards(view), scene)
     return scene
+
+
+def _facing(strokes: Any, way: Array) -> Array:
+    """Turn strokes on the unit square (k, 2, 2) about its middle to be read from `way` (3,)."""
+    right = np.cross(way, [0.0, 1.0, 0.0])  # y points down
+    right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
+    return np.asarray((np.array(strokes) - 0.5) @ [right, np.cross(right, way)])
 
 
 def _seen_from(way: Array, scene: Any) -> Array:
