@@ -322,6 +322,7 @@ def test_whoever_used_the_first_rows_only_is_told(name, n, what):
 
 @each_with_steps
 @pytest.mark.slow
+@pytest.mark.once
 def test_every_slip_is_an_answer_that_is_refused_or_right(exercise):
     family = family_of(exercise.steps)
     assert len(family.slips) >= 10
