@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cvnotes.base import CornersNotFound, DegenerateError, FileError
+from cvnotes.base import CornersNotFound, CvnotesError, DegenerateError, FileError
 from cvnotes.camera import pose, rotation_from_vector
 from cvnotes.commands.report import note_of
 from cvnotes.files import Photo
@@ -94,7 +94,7 @@ def test_arrays_photographs_and_a_side_alone_do_as_well(photos):
 
 def test_what_cannot_be_says_what_was_seen(photos, tmp_path):
     wall = np.full_like(photos[0], 128)
-    with pytest.raises(NoCamera, match="1 usable photographs; need at least 2 views") as error:
+    with pytest.raises(NoCamera, match="1 usable photograph; need at least 2 views") as error:
         calibrate_photographs([photos[0], wall], BOARD)
     assert len(error.value.photographs.used) == 1
     assert isinstance(error.value.photographs.rejected[0].reason, NoBoard)
@@ -102,6 +102,12 @@ def test_what_cannot_be_says_what_was_seen(photos, tmp_path):
         calibrate_photographs([wall], 25.0)
     with pytest.raises(FileError, match="no photographs in"):
         calibrate_photographs(tmp_path, BOARD)
+    (tmp_path / "cut.jpg").write_bytes(b"\xff\xd8\xff\xe0")
+    for board, said in (BOARD, "^0 usable .*; none of them could be read"), (25.0, r"cut\.jpg: "):
+        with pytest.raises(CvnotesError, match=said):
+            calibrate_photographs(tmp_path / "cut.jpg", board)
+    with pytest.raises(DegenerateError, match=r"none\.jpg: there is no such file"):
+        calibrate_photographs(tmp_path / "none.jpg", 25.0)
     with pytest.raises(FileError, match=r"leave out b\.png: none"):
         calibrate_photographs(photos[:2], BOARD, leave_out=["b.png"])
 

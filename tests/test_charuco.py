@@ -139,6 +139,26 @@ def test_squares_that_were_counted_for_corners_are_named():
         find_corners(picture, CharucoBoard((10, 7), 25.0))
 
 
+def test_a_numbered_board_that_is_taken_for_a_plain_one_is_named(tmp_path, capsys):
+    picture = render(BOARD, camera([60, 40, -330]), blur=0.7)
+    for i in range(2):
+        Image.fromarray(picture[:, 7 * i :]).save(tmp_path / f"{i}.png")
+    with pytest.raises(CornersNotFound, match=r"are markers of 4x4; is it a ChArUco board") as no:
+        find_corners(picture, Chessboard((9, 6), 25.0))
+    assert no.value.markers == "4x4"
+    asked = ["calibrate", str(tmp_path), "--corners", "9x6", "--square", "25"]
+    assert main([*asked, "--out", str(tmp_path / "out")]) == 1
+    said = capsys.readouterr().err
+    assert said.endswith("9×6 inner corners was found in none: there are markers of 4x4\n")
+
+
+def test_a_dictionary_that_is_too_small_is_said_and_not_another_count():
+    large = CharucoBoard((13, 8), 25.0, dictionary="4x4_100")
+    picture = render(large, camera([150, 100, -500], at=(150, 100, 0)), blur=0.7)
+    with pytest.raises(CornersNotFound, match="there are markers of 4x4_250"):
+        find_corners(picture, CharucoBoard((8, 5), 25.0))
+
+
 def test_tags_are_markers_too():
     board = CharucoBoard((4, 3), 25.0, dictionary="apriltag_36h11")
     known = camera([50, 30, -400], at=(37, 25, 0))

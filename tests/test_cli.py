@@ -203,7 +203,7 @@ def test_too_few_photographs_are_refused_with_the_reasons_and_nothing_is_written
     assert "there is no such file" in said.out
     assert re.search(r"wall\.png +–  \w+", said.out)
     assert one_line(said.err)
-    assert said.err.startswith("cvnotes calibrate: 1 usable photographs; need at least 2 views")
+    assert said.err.startswith("cvnotes calibrate: 1 usable photograph; need at least 2 views")
     assert not out.exists()
 
 

@@ -86,6 +86,36 @@ def _stereo(folder, out, *more):
     )  # fmt: skip
 
 
+def test_of_two_clips_frames_are_taken_that_belong_together(photographs, tmp_path, capsys):
+    rng = np.random.default_rng(1)
+    for side in ("left", "right"):
+        video = cv2.VideoWriter(
+            str(tmp_path / f"{side}.avi"), cv2.VideoWriter.fourcc(*"MJPG"), 10.0, SIZE, False
+        )
+        video.set(cv2.VIDEOWRITER_PROP_QUALITY, 98)
+        still = [np.asarray(Image.open(photographs / side / f"{side} {i}.png")).astype(float)
+                 for i in range(1, 8)]  # fmt: skip
+        for here, there in zip(still, [*still[1:], still[0]], strict=True):
+            for part in (0, 0, 0, 0, 0, 0.3, 0.7):  # held, then on its way to the next place
+                shown = (1 - part) * here + part * there + rng.normal(0, 1, here.shape)
+                video.write(shown.clip(0, 255).astype(np.uint8))
+        video.release()
+    clips = [str(tmp_path / f"{side}.avi") for side in ("left", "right")]
+    options = ["--corners", "9x6", "--square", "20", "--lens", "k1 k2", "--board-shape", "flat"]
+    out = tmp_path / "rig"
+    assert main(["stereo", *clips, *options, "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "7 that are sharp, still and different; and the same of right.avi" in said
+    assert "do both begin at the same moment" not in said
+    assert "7 pairs, by the number in their names" in said
+    assert np.linalg.norm(read_rig(out / "rig.json")[1].T - RIGHT.T) < 1
+    assert np.asarray(Image.open(out / "rectified-left.png")).std() > 20
+    taken = re.findall(r"^left frame \d+", said, re.M)
+    leave = ["--leave-out", taken[2]]
+    assert main(["stereo", *clips, *options, *leave, "--out", str(tmp_path / "fewer")]) == 0
+    assert f"{taken[2]}: left out, as asked" in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_rendered_pairs_become_the_rig_within_its_error_bars(photographs, tmp_path, capsys):
     own = ["calibration.yml", "left.yaml", "rectified-left.png", "rectified-right.png",

@@ -254,7 +254,7 @@ def test_more_than_a_few_views_are_summed_up():
     assert judge(evidence)[0][0].endswith("view 2, corner 5 (7.0 px) and 6 more")
     evidence = replace(evidence, view_rms=np.r_[np.full(3, 0.3), np.full(6, 9.0)] * 0.5)
     evidence = replace(evidence, view_rms=np.r_[np.full(12, 0.3), np.full(6, 9.0)])
-    assert judge(evidence)[0][0].startswith("views 12, 13, 14, 15, 16 … do not fit")
+    assert judge(evidence)[0][0].startswith("views 12, 13, 14, 15, 16, 17 do not fit")
 
 
 def test_the_focal_length_is_open_between_parallel_boards_and_fixed_by_tilted_ones():

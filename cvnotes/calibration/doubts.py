@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-_LISTED = 5  # views that a sentence lists
+_LISTED = 20  # views that a sentence lists: who is to leave them out needs all of their names
 
 
 class Views(NamedTuple):
@@ -11,10 +11,9 @@ class Views(NamedTuple):
 
     indices: tuple[int, ...]
 
-    def listed(self, name: Callable[[int], str] = str) -> str:
+    def listed(self, name: Callable[[int], str] = str, most: int = _LISTED) -> str:
         """Return their names, or those of the first of many."""
-        more = " …" if len(self.indices) > _LISTED else ""
-        return ", ".join(map(name, self.indices[:_LISTED])) + more
+        return ", ".join(map(name, self.indices[:most])) + " …" * (len(self.indices) > most)
 
     def __str__(self) -> str:
         return f"views {self.listed()}"

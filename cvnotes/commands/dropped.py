@@ -236,7 +236,7 @@ def grouped(rejected: Iterable[Rejected]) -> list[str]:
 
 
 def _together(rejected: list[Rejected]) -> str:
-    listed = Views(tuple(range(len(rejected)))).listed(lambda i: rejected[i].file)
+    listed = Views(tuple(range(len(rejected)))).listed(lambda i: rejected[i].file, most=5)
     in_all = f" ({len(rejected)} in all)" if listed.endswith("…") else ""
     return f"{listed}{in_all}: {rejected[0].reason}"
 

@@ -7,9 +7,10 @@ import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import (
     Array,
@@ -22,9 +23,11 @@ from cvnotes.base.writing import check_folder, printable
 from cvnotes.calibration.thresholds import TIMES_NOISE
 from cvnotes.commands.calibrate import add_options, asked_board, say_count
 from cvnotes.commands.console import EXIT_CODES, complain, progress, say, shortfall
-from cvnotes.files import list_photos, read_photo, write_whole
+from cvnotes.files import Photo, list_photos, read_photo, write_whole
+from cvnotes.files.decoding import VIDEOS
 from cvnotes.files.ownership import earlier, made_by, marked
 from cvnotes.files.reasons import unread
+from cvnotes.files.video import frame_again, frames_in, frames_of_both
 from cvnotes.stereo.calibration import SIDES
 
 if TYPE_CHECKING:
@@ -50,8 +53,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         f"{EXIT_CODES}",
     )
     add = parser.add_argument
-    add("left", metavar="LEFT", help='folder of the left photographs, or a pattern: "a/left*.jpg"')
-    add("right", metavar="RIGHT", help="the same for the right ones")
+    add("left", metavar="LEFT", help='folder of the left photographs, or a pattern: '
+        '"a/left*.jpg"; or a video, of which frames are taken')  # fmt: skip
+    add("right", metavar="RIGHT", help="the same for the right ones; of a video the same frames")
     add_options(parser)
     parser.set_defaults(run=run)
 
@@ -69,7 +73,8 @@ def run(args: argparse.Namespace) -> int:
     check_folder(args.out)
     before = earlier(args.out, _RESULTS.fullmatch, "stereo")
     sides: list[Photographs] = []
-    for files, unwanted in _sides(args):
+    videos = _videos(args)
+    for files, unwanted in _sides(args, videos):
         seen = detect_photographs(files, board, leave_out=unwanted, progress=progress)
         sides.append(seen)
         board = seen.board
@@ -82,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
             say(photo_table(seen))
         complain("stereo", str(error))
         return 1
-    contents = _reported(rig)
+    contents = _reported(rig, videos)
     write_whole({args.out / name: data for name, data in contents.items()})
     for stale in (path for path in before if path.name not in contents):
         stale.unlink(missing_ok=True)  # pictures of an earlier rig
@@ -94,10 +99,29 @@ def run(args: argparse.Namespace) -> int:
     return shortfall("stereo", missing, missing + 2 * len(rig.found.pairs), "could not be read")
 
 
-def _sides(args: argparse.Namespace) -> list[tuple[list[str], list[str]]]:
-    """Return the files of either side, and which of these not to use."""
-    sides = [_paths(side) for side in (args.left, args.right)]
-    there = [list_photos(paths)[0] for paths in sides]
+def _videos(args: argparse.Namespace) -> list[Path]:
+    """Return the video of either side, if both are videos."""
+    paths = [Path(args.left), Path(args.right)]
+    return paths if all(path.suffix.lower() in VIDEOS for path in paths) else []
+
+
+def _sides(
+    args: argparse.Namespace, videos: list[Path]
+) -> list[tuple[list[str] | list[Photo], list[str]]]:
+    """Return the files of either side, or the frames, and which of these not to use."""
+    sides: list[list[str] | list[Photo]]
+    if videos:
+        both = frames_of_both(videos[0], videos[1], progress)
+        sides, there = [*both], [[photo.path for photo in photos] for photos in both]
+        n, m = map(frames_in, videos)
+        left, right = (printable(path.name) for path in videos)
+        say(f"Of {n} frames of {left} {len(both[0])} that are sharp, still and different; "
+            f"and the same of {right}\n")  # fmt: skip
+        if abs(n - m) > 1:
+            say(f"! {right} has {m} frames: do both begin at the same moment?\n")
+    else:
+        files = [_paths(side) for side in (args.left, args.right)]
+        sides, there = [*files], [list_photos(paths)[0] for paths in files]
     unwanted = [
         [name for name in args.leave_out if any(_is_called(path, name) for path in files)]
         for files in there
@@ -137,7 +161,7 @@ def differences(
     return np.asarray((m[0] - m[1])[:, 1 - pair.axis])
 
 
-def _reported(rig: "CalibratedPairs") -> dict[str, bytes]:
+def _reported(rig: "CalibratedPairs", videos: list[Path]) -> dict[str, bytes]:
     """Describe what came out; gives the files to write, by name."""
     from cvnotes.commands.page import block_of, figures, page, photographs, verdict
     from cvnotes.commands.report import as_text
@@ -163,7 +187,7 @@ def _reported(rig: "CalibratedPairs") -> dict[str, bytes]:
             off = [differences(result, pair, a, b) for a, b in zip(*rig.corners, strict=True)]
             rows = float(np.sqrt(np.nanmean(np.concatenate(off) ** 2)))
             best = int(np.argmin([np.abs(x).max() for x in off]))
-            drawn, shown = _pictures(pair, found.pairs[best])
+            drawn, shown = _pictures(pair, _greys(found.pairs[best], videos))
         except DegenerateError as error:
             doubts.append(f"not rectified: {error}")
     doubts += [str(w.message) for w in caught if issubclass(w.category, CalibrationWarning)]
@@ -236,7 +260,14 @@ def _report(rig: "CalibratedPairs", rows: float | None) -> "list[Block]":
     return [table, facts, *[more] * (noise > TIMES_NOISE)]
 
 
-def _pictures(pair: "RectifiedPair", photos: "Pair") -> tuple[dict[str, bytes], list[str]]:
+def _greys(photos: "Pair", videos: list[Path]) -> list[npt.NDArray[Any]]:
+    """Read a pair again."""
+    if videos:
+        return [frame_again(video, photo.path) for video, photo in zip(videos, photos, strict=True)]
+    return [read_photo(photo.path).grey for photo in photos]
+
+
+def _pictures(pair: "RectifiedPair", before: list[Array]) -> tuple[dict[str, bytes], list[str]]:
     """Rectify a pair of photographs, and draw it before and after."""
     from PIL import Image
 
@@ -244,7 +275,6 @@ def _pictures(pair: "RectifiedPair", photos: "Pair") -> tuple[dict[str, bytes], 
     from cvnotes.commands.pictures import partners
     from cvnotes.warping import backward_warp
 
-    before = [read_photo(photo.path).grey for photo in photos]
     maps = (pair.left_map, pair.right_map)
     after = [backward_warp(image, m) for image, m in zip(before, maps, strict=True)]
     drawn = {}

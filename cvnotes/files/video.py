@@ -82,11 +82,34 @@ def frames_of(path: Path, progress: Progress = unseen) -> tuple[list[Photo], int
     taken = {c.number for c in _different(_still(candidates))}
     if not taken:
         raise FileError("no frame of this video can be read")
-    photos = [
+    return _numbered(path, taken), number + 1
+
+
+def frames_of_both(left: Path, right: Path, progress: Progress = unseen) -> list[list[Photo]]:
+    """Take the frames of the left video as `frames_of` does, and the same ones of the right."""
+    photos, _ = frames_of(left, progress)
+    return [photos, _numbered(right, {_number(photo.path) for photo in photos})]
+
+
+def frame_again(video: Path, frame: Path) -> npt.NDArray[np.uint8]:
+    """Read a frame again that was taken, by what it is called."""
+    return next(grey for _, grey in _read(video, {_number(frame)}))
+
+
+def frames_in(path: Path) -> int:
+    """Return how many frames a video says that it has; 0 if it does not."""
+    return _rate_and_length(path)[1]
+
+
+def _numbered(path: Path, numbers: set[int]) -> list[Photo]:
+    return [
         Photo(path.with_name(f"{path.stem} frame {number}"), grey)
-        for number, grey in _read(path, taken)
+        for number, grey in _read(path, numbers)
     ]
-    return photos, number + 1
+
+
+def _number(frame: Path) -> int:
+    return int(frame.name.rsplit(" ", 1)[1])
 
 
 def _open(path: Path) -> Any:

@@ -56,10 +56,15 @@ def fit(photographs: Photographs, model: Model) -> Calibration:
     if other := photographs.instead:  # of which a part was found here and there, if anything
         n, there = photographs.counts[other], "{}×{}".format(*other)
         raise DegenerateError(f"{asked} was asked for, but {n} photographs show one of {there}")
+    if photographs.rejected and not photographs.looked_at:
+        raise DegenerateError("none of them could be read")
     if not photographs.used:
-        raise DegenerateError(
-            f"{asked} was found in none (count where four squares meet, not squares)"
+        hint = (
+            f": there are markers of {there}"
+            if (there := photographs.markers)
+            else (" (count where four squares meet, not squares)")
         )
+        raise DegenerateError(f"{asked} was found in none{hint}")
     W, m = photographs.correspondences()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CalibrationWarning)  # the result has them
@@ -84,7 +89,8 @@ def choose(
     try:
         result = fit(photographs, model)
     except CvnotesError as error:
-        message = f"{len(photographs.used)} usable photographs; {error}"
+        n = len(photographs.used)
+        message = f"{n} usable photograph{'s' * (n != 1)}; {error}"
         raise NoCamera(message, photographs) from error
     two = two_cameras(result)
     exchanged = mirrored(photographs, result, two)

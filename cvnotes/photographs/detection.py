@@ -148,6 +148,12 @@ class Photographs:
         return other if counts[other] > OTHER_BOARDS * found else None
 
     @property
+    def markers(self) -> str:
+        """Which markers stand on another board that is there, or ""."""
+        reasons = [photo.reason for photo in self.looked_at]
+        return max((r.error.markers for r in reasons if isinstance(r, NoBoard)), default="")
+
+    @property
     def _asked(self) -> tuple[int, int]:
         columns, rows = self.board.corners
         return max(columns, rows), min(columns, rows)
@@ -273,19 +279,26 @@ def _no(path: Path, reason: Reason) -> Rejected:
 # --- the board in each of them -------------------------------------------------------------------
 
 
-def count(photos: Sequence[Path | Photo]) -> tuple[int, int]:
+def count(photos: Sequence[Path | Photo], rejected: Sequence[Rejected] = ()) -> tuple[int, int]:
     """Count the inner corners (columns, rows) of the board in photographs: as most of them show.
 
     Raises
     ------
     DegenerateError
-        There is no board in any of them.
+        There is no board in any of them; or none can be read, as all that are `rejected` could not.
     """
     counting = Counting()
     for found in in_order(count_in, photos, workers=_workers(photos)):
         if counting.add(found):
-            break
-    return counting.most
+            return counting.most
+    try:
+        return counting.most
+    except DegenerateError:
+        opened = [item if isinstance(item, Photo) else open_photo(item) for item in photos]
+        unread = [*rejected, *(photo for photo in opened if isinstance(photo, Rejected))]
+        if len(unread) < len(rejected) + len(photos):
+            raise
+        raise DegenerateError(f"{unread[0].file}: {unread[0].reason}") from None
 
 
 class Counting:

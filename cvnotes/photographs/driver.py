@@ -145,7 +145,7 @@ def detect_photographs(
     files, rejected = listed(photographs, leave_out, progress)
     counted = not isinstance(board, Board)
     if not isinstance(board, Board):
-        board = chessboard(count(files), board)
+        board = chessboard(count(files, rejected), board)
     if isinstance(board, CharucoBoard) and board.legacy is None:
         board = probed(files, board)
     seen = progress(detect_all(files, board), len(files))

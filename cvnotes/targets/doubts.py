@@ -51,7 +51,11 @@ def _largest(doubts: list[NotABoard]) -> tuple[int, int] | None:
 
 
 def not_found(
-    shape: tuple[int, ...], board: Chessboard, tried: list[str], doubts: list[NotABoard]
+    shape: tuple[int, ...],
+    board: Chessboard,
+    tried: list[str],
+    doubts: list[NotABoard],
+    markers: str = "",
 ) -> CornersNotFound:
     """Describe what was looked for, what was tried, and what probably went wrong."""
     (columns, rows), (height, width) = board.corners, shape
@@ -61,6 +65,10 @@ def not_found(
     if not tried:
         few = f"{start}: boards need at least 3 inner corners along each side to be found"
         return CornersNotFound(few)
+    if markers:
+        there = f"{start}: there are markers of {markers}"
+        lesson = f"{there}; is it a ChArUco board (--charuco, with the name of its markers)?"
+        return CornersNotFound(lesson, brief=there, markers=markers)
     lesson = f"{start} ({'; '.join(dict.fromkeys(tried))}); {_guess(board, doubts)}"
     if not doubts:
         return CornersNotFound(lesson, brief=start)

@@ -10,7 +10,7 @@ from cvnotes.targets.chessboard import Chessboard
 from cvnotes.targets.doubts import NotABoard, check_whole, not_found
 from cvnotes.targets.grey import Grey8, copies, eight_bits, grey_picture
 from cvnotes.targets.lattice import as_asked, measured
-from cvnotes.targets.markers import find_numbered
+from cvnotes.targets.markers import find_numbered, markers_in
 from cvnotes.targets.saddle_points import lattices
 
 _COUNTED = 1_300_000  # pixels of the largest copy in which corners are counted
@@ -98,7 +98,7 @@ def find_corners(
             if np.isfinite(best).all():
                 return best
     if not len(best):
-        raise not_found(picture.shape, board, tried, doubts)
+        raise not_found(picture.shape, board, tried, doubts, markers_in(grey))
     return best
 
 

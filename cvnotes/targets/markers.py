@@ -35,7 +35,7 @@ PROBABLE = ("4x4_250", "5x5_250", "6x6_250", "7x7_250", "apriltag_16h5", "aprilt
              "apriltag_36h11")  # fmt: skip
 _CELL = 4  # px to which a cell of a marker is straightened, as in OpenCV; and of its cells
 _BORDER, _WRONG = 0.35, 0.6  # so many may be wrong: of n² in its border, of what can be corrected
-_SURE = 4  # markers of a dictionary: one alone may be read into anything
+_SURE = 4  # markers of a dictionary, more than of another: a few may be read into anything
 _MOST_COLUMNS = 60  # of a board whose columns are counted
 _OFF = 0.7  # squares by which a marker may be off, measured by the sides of its neighbour
 _AGREE = 0.75  # part of all markers that must stand to each other as on a board
@@ -111,6 +111,8 @@ def find_numbered(
         shown = bool(light > as_is) if abs(light - as_is) > 1 else None
     patterns = [x for x in (legacy, shown) if x is not None][:1] or [False, True]
     agreed = max(stand.agreeing(columns, light=x).mean() for x in patterns)
+    if agreed < _AGREE and (other := _other(grey, every, dictionary, len(markers))):
+        return Numbered(*none[:2], markers[:0], other=other)
     if agreed < _AGREE and (counted := stand.counted()) is not None:
         return Numbered(*none, squares=counted)
     # (where nothing tells, OpenCV's own doubts may)
@@ -141,6 +143,20 @@ def _corners(
     return np.reshape(np.asarray(corners, dtype=np.float64), (-1, 2)), np.ravel(numbers).astype(
         np.intp
     )
+
+
+def markers_in(grey: Grey8) -> str:
+    """Return which markers are in a picture, if several of a dictionary are, else "".
+
+    Examples
+    --------
+    >>> markers_in(np.zeros((40, 40), np.uint8))
+    ''
+    """
+    if not has_opencv():
+        return ""
+    grey = np.ascontiguousarray(grey)
+    return _other(grey, _outlines(grey), "", 0)
 
 
 def _outlines(grey: Grey8) -> Array:
@@ -211,7 +227,7 @@ def _other(grey: Grey8, outlines: Array, dictionary: str, own: int) -> str:
     """Return which probable dictionary most markers are of, more than `own`, or ""."""
     n = {name: len(_read(grey, outlines, name)[1]) for name in PROBABLE if name != dictionary}
     most = max(n, key=n.__getitem__)
-    if n[most] < _SURE or n[most] <= own:
+    if n[most] < own + _SURE:
         return ""
     return most if family(most) == family(dictionary) else family(most)
 
