@@ -7,11 +7,13 @@
     panels.className = "panels";
     panels.setAttribute("role", "img");
     panels.setAttribute("aria-label", image.alt);
-    for (const rectangle of image.dataset.panels.split(";")) {
-      const [left, top, width, height] = rectangle.split(" ").map(Number);
+    const rectangles = image.dataset.panels.split(";").map((one) => one.split(" ").map(Number));
+    const widest = Math.max(...rectangles.map(([, , width]) => width));
+    for (const [left, top, width, height] of rectangles) {
       const panel = document.createElement("canvas");
       [panel.width, panel.height] = [width, height];
       panel.getContext("2d").drawImage(image, -left, -top);
+      panel.style.width = `${(100 * width) / widest}%`; // all to one scale
       panels.append(panel);
     }
     image.before(panels);

@@ -119,7 +119,7 @@ def test_keys_move_the_slides_and_formulas_are_set(made, chromium):
     page.on("console", lambda m: wrong.append(m.text) if m.type == "error" else None)
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.goto((made / "07_zhang_calibration.html").as_uri())
-    page.wait_for_selector("mjx-math")
+    page.wait_for_selector("mjx-math", state="attached")
     shown = page.locator(".slide.now")
     first = shown.inner_text()
     page.keyboard.press("ArrowRight")

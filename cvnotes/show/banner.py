@@ -19,7 +19,9 @@ _BACKWARDS = (6, 7)
 _WIDE, _TALL, _GAP, _TOP = 138, 112, 52, 26  # px: a panel, the way to the next, what is above it
 _STYLE = (
     "text{font:13px system-ui,sans-serif;text-anchor:middle;fill:#333}.s{font-weight:600}"
-    "@media(max-width:520px){text{font-size:24px}.s{font-size:19px}.n{display:none}}"
+    # On a telephone larger letters take the room of the numbers, which are left out.
+    "@media(max-width:520px){text{font-size:24px}.s{font-size:21px}.n{display:none}"
+    "svg>g{transform:translateY(16px)}.t{transform:translateY(-6px)}}"
 )
 
 
@@ -66,13 +68,13 @@ def one_corner(chapter: int) -> Picture:
     ]
     parts += [_step(k, name, name in lit, chapter in _BACKWARDS) for k, name in enumerate(STEPS)]
     if chapter == 5:
-        x = 4 * (_WIDE + _GAP) - 4
-        parts.append(f'<path d="M{x} {_TOP - 4}h{_WIDE + 8}v{_TALL + 8}h{-_WIDE - 8}z" '
+        x = 4 * (_WIDE + _GAP) - 3
+        parts.append(f'<path d="M{x} {_TOP - 4}h{_WIDE + 6}v{_TALL + 8}h{-_WIDE - 6}z" '
                      f'fill="none" stroke="{ESTIMATED}" stroke-width="2"/>')  # fmt: skip
     width, height = 5 * _WIDE + 4 * _GAP + 8, _TOP + _TALL + 24
     svg = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 0 {width} {height}" width="{width}" '
-        f'height="{height}"><style>{_STYLE}</style>{"".join(parts)}</svg>'
+        f'height="{height}"><style>{_STYLE}</style><g>{"".join(parts)}</g></svg>'
     )
     said = [form.format(*numbers) for *_, form, numbers in states]
     alt = (
@@ -113,7 +115,7 @@ def _panel(
     return (
         f"{drawn}"
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{ESTIMATED}" stroke="white"/>'
-        f'<text x="{middle}" y="16">{name}</text>'
+        f'<text class="t" x="{middle}" y="16">{name}</text>'
         f'<text class="n" x="{middle}" y="{_TOP + _TALL + 18}">{numbers}</text>'
     )
 

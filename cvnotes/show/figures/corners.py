@@ -70,7 +70,7 @@ def draw_clouds(errors: Mapping[str, npt.ArrayLike], *, reach: float | None = No
     if reach is None:
         reach = float(np.percentile(np.abs(np.concatenate(list(clouds.values()))), 98)) * 1.2 or 1.0
     reach = length(reach, "reach")
-    axes = panels(len(clouds), width=900, height=round(900 / len(clouds)) + 40, sharey=True)
+    axes = panels(len(clouds), width=900, height=round(900 / len(clouds)) + 40)
     for ax, (name, cloud), i in zip(axes, clouds.items(), range(len(clouds)), strict=True):
         ax.axhline(0, color=MUTED, lw=0.6)
         ax.axvline(0, color=MUTED, lw=0.6)
