@@ -52,6 +52,13 @@ def test_exact_corners_give_the_exact_camera(n_views):
     assert missed == 0
 
 
+@pytest.mark.parametrize(("n_views", "seed"), [(9, 50), (15, 245)])
+def test_many_boards_in_wrong_poses_are_told_by_a_lens_that_folds(n_views, seed):
+    """One start in 750 ended so, with residuals that are no noise."""
+    f, seen = two_poses(n_views, np.random.default_rng([n_views, seed]))
+    assert abs(calibrate(BOARD.points, seen, SIZE, lens="k1").A[0, 0] - f) < 1e-5 * f
+
+
 @pytest.mark.parametrize("bow", [0.1, 1.0, 5.0])
 def test_pose_of_a_bowed_board_is_not_mirrored(bow):
     """A bow of 0.1 mm over 200 mm: its PPM sees noise only, and puts half of the boards behind."""

@@ -158,7 +158,10 @@ class Search:
         allowed = (_SUSPICIOUS * max(self.problem.size)) ** 2
         if not minimum.converged or typical_cost(self.problem, minimum) >= allowed:
             return False
-        return self._has_many_views or not self._is_systematic(minimum)
+        if not self._is_systematic(minimum):
+            return True
+        # Many views bend a wrong camera only so far that its lens folds within the picture.
+        return self._has_many_views and self.problem.camera_of(minimum.x.shared).is_invertible
 
     def _is_decided(self) -> bool:
         """Return whether another start would end where others did.
