@@ -195,12 +195,13 @@ def test_many_views_are_started_from_a_few_of_them_and_end_where_all_would_have_
     assert gain < 1e-9 * problem.linearise(end)[0]
 
 
+@pytest.mark.parametrize(("n_views", "at_most"), [(8, 110), (12, 60)])
 @pytest.mark.parametrize("wrong", ["a row is shifted", "two corners are exchanged"])
 def test_wrong_corners_of_one_view_are_not_searched_for_a_better_start(
-    wrong, board, views_of, monkeypatch
+    wrong, n_views, at_most, board, views_of, monkeypatch
 ):
     """No pose and no lens explains them: it took up to 400 minimisations to say so."""
-    _, m = views_of(RADIAL, 12, np.random.default_rng(1))
+    _, m = views_of(RADIAL, n_views, np.random.default_rng(1))
     m = noise(m, np.random.default_rng(2))
     if wrong == "a row is shifted":
         row = m[4].reshape(6, 9, 2)[2]
@@ -216,7 +217,7 @@ def test_wrong_corners_of_one_view_are_not_searched_for_a_better_start(
     result = quietly(board.points, m, SIZE, lens="auto", board="auto")
     assert not result.reliable
     assert any("views 4 do not fit the others" in sentence for sentence in result.warnings)
-    assert len(counts) < 60, len(counts)
+    assert len(counts) < at_most, len(counts)
 
 
 def test_whatever_the_start_the_same_minimum_is_reached_to_a_fraction_of_the_error_bars(
