@@ -199,8 +199,8 @@ def test_exercises_that_were_added_are_known_to_other_processes(processes, tmp_p
     monkeypatch.setattr(COURSE, "added", {})
     source = (
         "from dataclasses import replace\n"
-        "from cvnotes.learn.ch01 import EXERCISES as OF_CHAPTER\n"
-        "EXERCISES = (replace(OF_CHAPTER[0], name='raise_points'),)\n"
+        "from cvnotes.learn.ch01.lift import EXERCISE\n"
+        "EXERCISES = (replace(EXERCISE, name='raise_points'),)\n"
     )
     (tmp_path / "own.py").write_text(source)
     lift = source_of("lift").replace("my_lift", "mine")

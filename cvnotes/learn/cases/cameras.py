@@ -3,6 +3,8 @@
 Numbers are rounded where that is possible, so that a counterexample can be read and copied.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 import numpy.typing as npt
 
@@ -13,13 +15,14 @@ from cvnotes.camera import intrinsics, pose, rotation_from_vector
 ABOUT_Y = np.array([[0.8, 0.0, -0.6], [0.0, 1.0, 0.0], [0.6, 0.0, 0.8]])
 ABOUT_X = np.array([[1.0, 0.0, 0.0], [0.0, 0.6, -0.8], [0.0, 0.8, 0.6]])
 
-# A camera with tidy numbers, turned by ABOUT_Y, and what may be ten units in front of it.
+# A, R and T of a camera with tidy numbers.
 TIDY_A = np.array([[500.0, 0.0, 300.0], [0.0, 600.0, 200.0], [0.0, 0.0, 1.0]])
-TIDY_T = np.array([1.0, 2.0, 10.0])
-TIDY_POINT = np.array([[5.0, 1.0, 0.0]])
-# A square of 10 mm and where it is seen.
-SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
-SQUARE_SEEN = np.array([[100.0, 120.0], [300.0, 100.0], [280.0, 260.0], [120.0, 240.0]])
+TIDY = TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 10.0])
+# A square of 10 mm, and where it is seen.
+SQUARE = (
+    np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]),
+    np.array([[100.0, 120.0], [300.0, 100.0], [280.0, 260.0], [120.0, 240.0]]),
+)
 
 
 def some_intrinsics(rng: np.random.Generator, *, skew: bool = False) -> Array:
@@ -54,11 +57,20 @@ def some_pose(rng: np.random.Generator) -> tuple[Array, Array]:
     return some_rotation(rng), np.round(rng.uniform([-80, -60, 400], [80, 60, 700]), 1)
 
 
-def points_in_front(rng: np.random.Generator, R: Array, T: Array, n: int) -> Array:
-    """Return world points (n, 3) that the camera has in front of it and in its picture."""
-    z = rng.uniform(300, 900, (n, 1))
-    M = np.concatenate([z * rng.uniform(-0.35, 0.35, (n, 2)), z], axis=1)
-    return np.asarray(np.round((M - T) @ R, 1))
+def some_camera(rng: np.random.Generator) -> tuple[Array, Array, Array]:
+    """Return A, with skew, R and T."""
+    R, T = some_pose(rng)
+    return some_intrinsics(rng, skew=True), R, T
+
+
+def photographed(rng: np.random.Generator) -> Iterator[tuple[Array, Array, Array, Array]]:
+    """Yield A, R, T and world points (n, 3) that the camera has in front of it, in its picture."""
+    yield *TIDY, np.array([[5.0, 1.0, 0.0]])
+    for n in (4, 6):
+        A, R, T = some_camera(rng)
+        z = rng.uniform(300, 900, (n, 1))
+        M = np.concatenate([z * rng.uniform(-0.35, 0.35, (n, 2)), z], axis=1)
+        yield A, R, T, np.round((M - T) @ R, 1)
 
 
 def board_grid(columns: int = 4, rows: int = 3, square: float = 30.0) -> Array:
@@ -75,6 +87,12 @@ def plane_image(A: Array, R: Array, T: Array) -> Array:
 def some_homography(rng: np.random.Generator) -> Array:
     """Return the homography (3, 3) of a board in front of a camera."""
     return plane_image(some_intrinsics(rng), *some_pose(rng))
+
+
+def incident(x_h: Array, y_h: Array, slack: float) -> bool:
+    """Return whether points (n, 3) are on a line (3,), or lines through a point; 0 is neither."""
+    bound = 1e-6 * slack * (np.abs(x_h) @ np.abs(y_h))
+    return bool((np.abs(x_h @ y_h) <= bound).all() and y_h.any())
 
 
 def affine_fit(src: Array, dst: Array) -> Array:

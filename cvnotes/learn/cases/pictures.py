@@ -1,5 +1,7 @@
 """Pictures to read a number off: rendered by known cameras, so that the checker knows it too."""
 
+from functools import cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -68,6 +70,7 @@ def stereo_cameras() -> tuple[Camera, Camera]:
     return left, right
 
 
+@cache
 def nearest_edge() -> Array:
     """Return the top (3,) of the nearest upright edge of the tall block in `stereo_pictures`.
 

@@ -23,32 +23,25 @@ def misreadings(
     [600.0, 459.0]
     """
     last = np.array(size) - 1.0
-    return (
-        *mistakes(
-            ("v before u", "You gave row before column: pixels are (u, v).", lambda: pixel()[::-1]),
-            ("counted from elsewhere", "u counts from the left and v from the top downwards: pixel "
-             "(0, 0) is at the top left of the picture.",
-             lambda: np.array([pixel()[0], last[1] - pixel()[1]]),
-             lambda: np.array([last[0] - pixel()[0], pixel()[1]]), lambda: pixel() - last / 2),
-        ),
-        Misconception(
-            "read on another scale", "Both numbers are too large, or too small, by one factor: you "
-            "measured in the pixels of your screen. Count in those of the picture, as the axes of "
-            "imshow do.",
-            lambda: 1.5 * pixel(), (lambda: 2 * pixel(), lambda: pixel() / 2),
-            seen=lambda answer, _: _on_another_scale(answer, pixel(), near)),
-        Misconception(
-            "the column alone", "The column u is right; look at the row v again.",
-            lambda: pixel() - [0.0, 7 * near],
-            seen=lambda answer, _: bool(abs(answer[0] - pixel()[0]) < near)),
-        Misconception(
-            "the row alone", "The row v is right; look at the column u again.",
-            lambda: pixel() - [7 * near, 0.0],
-            seen=lambda answer, _: bool(abs(answer[1] - pixel()[1]) < near)),
-        Misconception(
-            "near, not near enough", "That is near, and not yet near enough: enlarge the picture.",
-            lambda: pixel() + 1.5 * near,
-            seen=lambda answer, _: bool(np.linalg.norm(answer - pixel()) < 4 * near)),
+    return mistakes(
+        ("v before u", "You gave row before column: pixels are (u, v).", lambda: pixel()[::-1]),
+        ("counted from elsewhere", "u counts from the left and v from the top downwards: pixel "
+         "(0, 0) is at the top left of the picture.",
+         lambda: np.array([pixel()[0], last[1] - pixel()[1]]),
+         lambda: np.array([last[0] - pixel()[0], pixel()[1]]), lambda: pixel() - last / 2),
+        ("read on another scale", "Both numbers are too large, or too small, by one factor: count "
+         "pixels of the picture, as the axes of imshow do, not those of your screen.",
+         lambda: 1.5 * pixel(), lambda: 2 * pixel(), lambda: pixel() / 2,
+         {"seen": lambda answer, _: _on_another_scale(answer, pixel(), near)}),
+        ("the column alone", "The column u is right; look at the row v again.",
+         lambda: pixel() - [0.0, 7 * near],
+         {"seen": lambda answer, _: bool(abs(answer[0] - pixel()[0]) < near)}),
+        ("the row alone", "The row v is right; look at the column u again.",
+         lambda: pixel() - [7 * near, 0.0],
+         {"seen": lambda answer, _: bool(abs(answer[1] - pixel()[1]) < near)}),
+        ("near, not near enough", "That is near, and not yet near enough: enlarge the picture.",
+         lambda: pixel() + 1.5 * near,
+         {"seen": lambda answer, _: bool(np.linalg.norm(answer - pixel()) < 4 * near)}),
     )  # fmt: skip
 
 

@@ -1,13 +1,10 @@
 """How much a row bends."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _rows(rng: Rng) -> list[Case]:
@@ -26,7 +23,7 @@ def _rows(rng: Rng) -> list[Case]:
     ]
 
 
-def bend(row: Array) -> Any:
+def bend(row: Array) -> float:
     """Return how far points (n, 2) lie at most from the line through first and last."""
     d = row[-1] - row[0]  # the way from the first point to the last
     n = np.array([-d[1], d[0]])  # a normal of the line
@@ -36,8 +33,7 @@ def bend(row: Array) -> Any:
 
 
 MISTAKES = mistakes_in(bend,
-    ("measured straight down", "You measured along v, or along u. The distance from a line is "
-     "measured at right angles to it.",
+    ("measured straight down", "You measured along v, or u, not at right angles to the line.",
      "np.abs(across).max() * np.linalg.norm(d) / abs(d[0])",
      "np.abs(across).max() * np.linalg.norm(d) / abs(d[1])"),
     ("sign kept", "You took the largest without abs(): points on the other side count as negative.",
@@ -59,7 +55,7 @@ MISTAKES = mistakes_in(bend,
 )  # fmt: skip
 
 
-BEND = Exercise(
+EXERCISE = Exercise(
     name="bend",
     chapter=0,
     title="How much does a row bend?",

@@ -1,14 +1,11 @@
 """Drop back to Euclidean space."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded, some_factors
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _homogeneous_points(rng: Rng) -> list[Case]:
@@ -22,7 +19,7 @@ def _homogeneous_points(rng: Rng) -> list[Case]:
     ]
 
 
-def _steps(x_h: Array) -> Any:
+def _steps(x_h: Array) -> Array:
     """Return points (n, d) from homogeneous coordinates x_h (n, d + 1); NaN at infinity."""
     w = x_h[:, -1:]  # the last coordinate of each point
     x = x_h[:, :-1] / w  # the others, divided by it
@@ -30,16 +27,13 @@ def _steps(x_h: Array) -> Any:
 
 
 MISTAKES = mistakes_in(_steps,
-    ("no division",
-     "You left out the last coordinate without dividing by it. That is right only where it "
-     "is 1.",
+    ("no division", "You left the last coordinate out without dividing by it.",
      "x_h[:, :-1]"),
     ("sign of the factor lost",
      "The factor of a point may be negative: (3, 9, −3) is the point (−1, −3).",
      "np.where(w == 0, np.nan, x * np.sign(w))", "np.where(w > 0, x, np.nan)"),
-    ("divided by another number",
-     "You divided by another number than each point's own factor, which is its last "
-     "coordinate.",
+    ("divided by another number", "You divided by another number than each point's own factor, "
+     "which is its last coordinate.",
      "x_h[:, 1:] / x_h[:, :1]", "x_h[:, :-1] / np.linalg.norm(x_h, axis=1, keepdims=True)",
      "x_h[:, :-1] / x_h.max(axis=1, keepdims=True)",
      "x_h[:, :-1] / np.abs(x_h).max(axis=1, keepdims=True)", "x_h[:, :-1] / x_h[0, -1]"),
@@ -55,7 +49,7 @@ MISTAKES = mistakes_in(_steps,
 )  # fmt: skip
 
 
-DROP = Exercise(
+EXERCISE = Exercise(
     name="drop",
     chapter=1,
     title="Drop back to Euclidean space",

@@ -1,14 +1,11 @@
 """Lift points to projective space."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.projective import to_homogeneous
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _points_and_factor(rng: Rng) -> list[Case]:
@@ -20,7 +17,7 @@ def _points_and_factor(rng: Rng) -> list[Case]:
     ]
 
 
-def lift(x: Array, w: float) -> Any:
+def lift(x: Array, w: float) -> Array:
     """Return homogeneous coordinates (n, d + 1) of points x (n, d), last coordinate w."""
     one = np.ones((len(x), 1))  # a column of ones
     x_h = np.hstack([x, one])  # the points with last coordinate 1
@@ -28,34 +25,29 @@ def lift(x: Array, w: float) -> Any:
 
 
 MISTAKES = mistakes_in(lift,
-    ("w appended only",
-     "You appended w and did not multiply the other coordinates by it. The factor multiplies"
-     " all of them (the notes' first formula slips here).",
+    ("w appended only", "You appended w and did not multiply the other coordinates by it. The "
+     "factor multiplies all of them (the notes' first formula slips here).",
      "np.hstack([x, np.full((len(x), 1), w)])", "np.hstack([x / w, np.full((len(x), 1), w)])"),
     ("factor on the coordinates only", "The last coordinate takes the factor too: yours is 1.",
      "np.hstack([w * x, np.ones((len(x), 1))])", lambda x, w: to_homogeneous(x / w)),
-    ("factor forgotten",
-     "These are the right points, with the factor 1; asked is the member of the class whose "
-     "last coordinate is w.",
+    ("factor forgotten", "These are the right points, with the factor 1; asked is the member of "
+     "the class whose last coordinate is w.",
      "np.hstack([x, np.ones((len(x), 1))])"),
-    ("zero appended",
-     "You appended 0: that makes a point at infinity, a direction. A point in a place has a "
-     "last coordinate that is not 0.",
+    ("zero appended", "You appended 0: that makes a point at infinity, a direction. A point in a "
+     "place has a last coordinate that is not 0.",
      "np.hstack([w * x, np.zeros((len(x), 1))])"),
-    ("a row instead of a column",
-     "You added a row: another point. Points are rows here, so a coordinate is a column: "
-     "axis=1.",
+    ("a row instead of a column", "You added a row: another point. Points are rows here, so a "
+     "coordinate is a column: axis=1.",
      "np.vstack([w * x, np.full((1, x.shape[1]), w)])"),
     ("factor added", "You added w to the coordinates; a factor multiplies them.",
      lambda x, w: to_homogeneous(x) + w),
-    ("factor twice",
-     "You appended w first and then multiplied everything by w: the last coordinate has the "
-     "factor twice now.",
+    ("factor twice", "You appended w first and then multiplied everything by w: the last "
+     "coordinate has the factor twice now.",
      "w * np.hstack([x, np.full((len(x), 1), w)])"),
 )  # fmt: skip
 
 
-LIFT = Exercise(
+EXERCISE = Exercise(
     name="lift",
     chapter=1,
     title="Lift points to projective space",

@@ -1,15 +1,12 @@
 """The line through two points."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.cases.cameras import incident, rounded
 from cvnotes.projective import to_homogeneous
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _two_points(rng: Rng) -> list[Case]:
@@ -21,13 +18,11 @@ def _two_points(rng: Rng) -> list[Case]:
     ]
 
 
-def _through(p: Array, q: Array, line: Array) -> bool:
-    """Return whether a line that is none of the zero vector contains both points."""
-    far = np.abs(to_homogeneous([p, q])) @ np.abs(line)
-    return bool((np.abs(to_homogeneous([p, q]) @ line) <= 1e-6 * far).all() and line.any())
+def _through_both(line: Array, case: Case) -> bool:
+    return incident(to_homogeneous(case.args), line, case.slack)
 
 
-def line_through(p: Array, q: Array) -> Any:
+def line_through(p: Array, q: Array) -> Array:
     """Return the line (3,) through the points p and q, (2,) each."""
     x, y, w = np.array([p[0], p[1], 1.0])
     s, t, z = np.array([q[0], q[1], 1.0])
@@ -38,34 +33,26 @@ def line_through(p: Array, q: Array) -> Any:
 
 
 MISTAKES = mistakes_in(line_through,
-    ("lifted with 0",
-     "You lifted the points with 0, as directions: their line is the line at infinity. "
-     "Points get a 1.",
+    ("lifted with 0", "Lifted with 0 they are directions, on the line at infinity. Points get a 1.",
      "np.cross([*p, 0], [*q, 0])"),
     ("upright lines left out", "Right where the line has a slope. An upright line has none.",
      "None if x == s else np.array([(t - y) / (s - x), -1, y - (t - y) / (s - x) * x])"),
-    ("sign of the constant",
-     "The direction is right but the constant has the wrong sign: bring all terms to one "
-     "side.",
+    ("sign of the constant", "The constant has the wrong sign: bring all terms to one side.",
      "None if x == s else np.array([(t - y) / (s - x), -1, (t - y) / (s - x) * x - y])"),
     ("direction taken for the normal", "(a, b) is perpendicular to the line, not along it.",
      "np.array([*q - p, -(q - p) @ p])", "np.array([*q - p, c])"),
-    ("difference of the points",
-     "The difference of the lifted points is the direction of the line, their sum a point "
-     "between: neither is the line.",
+    ("difference of the points", "The difference of the lifted points is the direction of the "
+     "line, their sum a point between: neither is the line.",
      "np.array([*q - p, 0.0])", "np.array([*p + q, 2.0])"),
-    ("entry by entry",
-     "You multiplied entry by entry; another product is perpendicular to both.",
+    ("entry by entry", "You multiplied entry by entry; another product is perpendicular to both.",
      "np.array([*p * q, 1.0])"),
-    ("slope and intercept",
-     "That is slope and intercept, which no upright line has. Asked are the three numbers of"
-     " the line.",
+    ("slope and intercept", "No upright line has a slope. Asked are the three numbers a, b, c.",
      "None if x == s else np.array([(t - y) / (s - x), y - (t - y) / (s - x) * x])",
      "None if x == s else np.array([y - (t - y) / (s - x) * x, (t - y) / (s - x)])"),
 )  # fmt: skip
 
 
-LINE = Exercise(
+EXERCISE = Exercise(
     name="line_through",
     chapter=1,
     title="The line through two points",
@@ -78,14 +65,8 @@ LINE = Exercise(
     ),
     cases=_two_points,
     properties=(
-        Property(
-            "Both points lie on the line.", lambda line, c: _through(c.args[0], c.args[1], line)
-        ),
-        Property(
-            "That is so for upright lines too.",
-            lambda line, c: _through(c.args[0], c.args[1], line),
-            about="vertical",
-        ),
+        Property("Both points lie on the line.", _through_both),
+        Property("That is so for upright lines too.", _through_both, about="vertical"),
     ),
     misconceptions=MISTAKES,
     steps=line_through,

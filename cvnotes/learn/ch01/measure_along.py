@@ -4,8 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def measure_along(t: Array, m: Array, q: Array) -> Array:
@@ -34,9 +33,8 @@ def _roads(rng: Rng) -> list[Case]:
 
 _S, _X = "(m - m[0]) @ d", "(q - m[0]) @ d"
 _MISTAKES = mistakes_in(measure_along,
-    ("a ruler on the picture", "Equal lengths of the line become shorter and shorter in the "
-     "picture, and neither a straight line nor a parabola says how. What does a picture leave as "
-     "it is?",
+    ("a ruler on the picture", "Equal lengths become shorter and shorter in the picture, and "
+     "neither a straight line nor a parabola says how. What does a picture leave as it is?",
      "np.polyval(np.polyfit(m @ (m[2] - m[0]), t, 1), q @ (m[2] - m[0]))",
      "np.polyval(np.polyfit(m @ (m[2] - m[0]), t, 2), q @ (m[2] - m[0]))",
      "t[0] + (t[2] - t[0]) * ((q - m[0]) @ (m[2] - m[0])) / sum((m[2] - m[0])**2)",
@@ -44,12 +42,11 @@ _MISTAKES = mistakes_in(measure_along,
     ("lengths without a sign", "A length does not say on which side of a point another one lies: "
      "measure along one direction, with a sign.",
      (_S, "np.linalg.norm(m - m[0], axis=1)", _X, "np.linalg.norm(q - m[0], axis=1)")),
-    ("one coordinate", "Right, unless the line is upright: then u is the same everywhere. Measure "
-     "along the line.",
+    ("one coordinate", "Right, unless the line is upright: then u is the same. Measure along it.",
      (_S, "m[:, 0]", _X, "q[:, 0]")),
 )  # fmt: skip
 
-MEASURE = Exercise(
+EXERCISE = Exercise(
     name="measure_along",
     chapter=1,
     title="A ruler that runs away from us",

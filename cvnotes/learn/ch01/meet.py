@@ -1,15 +1,12 @@
 """Where two lines meet."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.learn.cases.cameras import rounded
+from cvnotes.learn.cases.cameras import incident, rounded
 from cvnotes.projective import meet
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import close, up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def _two_lines(rng: Rng) -> list[Case]:
@@ -21,15 +18,11 @@ def _two_lines(rng: Rng) -> list[Case]:
     ]
 
 
-def _on_both(x_h: Array, case: Case) -> bool:
-    lines = np.array(case.args)
-    return bool(
-        (np.abs(lines @ x_h) <= 1e-6 * case.slack * (np.abs(lines) @ np.abs(x_h))).all()
-        and x_h.any()
-    )
+def _both(x_h: Array, case: Case) -> bool:
+    return incident(np.array(case.args), x_h, case.slack)
 
 
-def _steps(l1: Array, l2: Array) -> Any:
+def _steps(l1: Array, l2: Array) -> Array:
     """Return the homogeneous point (3,) on both lines l1 and l2, (3,) each."""
     a, b, c = l1
     d, e, f = l2
@@ -40,13 +33,11 @@ def _steps(l1: Array, l2: Array) -> Any:
 
 
 MISTAKES = mistakes_in(_steps,
-    ("parallel lines left out",
-     "Right, except that parallel lines have no answer in the plane. In the projective plane"
-     " they have.",
+    ("parallel lines left out", "Right, except that parallel lines have no answer in the plane. In "
+     "the projective plane they have.",
      "np.array([*np.linalg.solve([[a, b], [d, e]], [-c, -f]), 1.0])"),
-    ("no point for parallel lines",
-     "Right, except for parallel lines: they meet in the point at infinity of their own "
-     "direction.",
+    ("no point for parallel lines", "Right, except for parallel lines: they meet in the point at "
+     "infinity of their own direction.",
      *(f"np.array([x, y, w] if w else {other})"
        for other in ("[0, 0, 0]", "[0, 0, 1]", "[a, b, 0]", "[1, 1, 0]"))),
     ("sign of the constant",
@@ -54,22 +45,18 @@ MISTAKES = mistakes_in(_steps,
      "np.array([*np.linalg.solve([[a, b], [d, e]], [c, f]), 1.0])"),
     ("sum of the lines", "That is another line through the same point, not the point.",
      "l1 + l2", "l1 - l2"),
-    ("entry by entry",
-     "You multiplied entry by entry; another product is perpendicular to both.",
+    ("entry by entry", "You multiplied entry by entry; another product is perpendicular to both.",
      "l1 * l2"),
     ("direction of one line",
      "That is a point at infinity. The direction of a line is not where it meets another.",
      "np.array([b, -a, 0])", "np.array([e, -d, 0])", "np.array([x, y, 0])"),
+    ("Euclidean coordinates", "You divided already. Asked is the homogeneous point (3,), and "
+     "parallel lines have one, too.",
+     "np.array([x / w, y / w]) if w else None", {"same": close}),
 )  # fmt: skip
 
 
-_EUCLIDEAN = Misconception(
-    "Euclidean coordinates",
-    "You divided already. Asked is the homogeneous point (3,), and parallel lines have one, too.",
-    edited(_steps, "np.array([x / w, y / w]) if w else None"),
-    same=close,
-)
-MEET = Exercise(
+EXERCISE = Exercise(
     name="meet",
     chapter=1,
     title="Where two lines meet",
@@ -82,12 +69,10 @@ MEET = Exercise(
     ),
     cases=_two_lines,
     properties=(
-        Property("The point lies on both lines.", _on_both),
-        Property(
-            "Parallel lines meet at infinity, in their direction.", _on_both, about="parallel"
-        ),
+        Property("The point lies on both lines.", _both),
+        Property("Parallel lines meet at infinity, in their direction.", _both, about="parallel"),
     ),
-    misconceptions=(*MISTAKES, _EUCLIDEAN),
+    misconceptions=MISTAKES,
     reference=meet,
     steps=_steps,
     same=up_to_scale,

@@ -1,14 +1,11 @@
 """The focal length in a picture of a box."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import focal_length
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _perpendicular(rng: Rng) -> list[Case]:
@@ -21,7 +18,7 @@ def _perpendicular(rng: Rng) -> list[Case]:
     return [Case(by_hand), Case((v1, v2, centre))]
 
 
-def _steps(v1: Array, v2: Array, centre: Array) -> Any:
+def _steps(v1: Array, v2: Array, centre: Array) -> Array:
     """Return f in pixels."""
     a = v1 - centre  # v1 measured from the principal point
     b = v2 - centre  # v2 measured from the principal point
@@ -30,21 +27,17 @@ def _steps(v1: Array, v2: Array, centre: Array) -> Any:
 
 
 MISTAKES = mistakes_in(_steps,
-    ("sign under the root",
-     "The root of a negative number is NaN. Measured from the principal point the dot "
-     "product of the two is negative.",
+    ("sign under the root", "The root of a negative number is NaN. Measured from the principal "
+     "point the dot product of the two is negative.",
      "np.sqrt(a @ b)"),
     ("sign and root",
      "Sign and root are missing: the number is the square of what is asked, with a minus.",
      "a @ b"),
-    ("lengths for the dot product",
-     "You took lengths, of one or both; the dot product of the two vectors is another "
-     "number, unless they point along one line.",
+    ("lengths for the dot product", "You took lengths, of one or both; the dot product of the two "
+     "vectors is another number, unless they point along one line.",
      "np.sqrt(np.linalg.norm(a) * np.linalg.norm(b))", "np.linalg.norm(a)", "np.linalg.norm(b)",
      "(np.linalg.norm(a) + np.linalg.norm(b)) / 2"),
-    ("half the distance",
-     "That is a distance between points of the picture. It depends on how the box stands, f "
-     "does not.",
+    ("half the distance", "A distance in the picture depends on how the box stands. f does not.",
      "np.linalg.norm(v1 - v2) / 2", "np.linalg.norm(v1 - v2)",
      "np.linalg.norm((v1 + v2) / 2 - centre)"),
     ("columns only", "The dot product adds what the columns give and what the rows give.",
@@ -59,7 +52,7 @@ MISTAKES = mistakes_in(_steps,
 )  # fmt: skip
 
 
-FOCAL = Exercise(
+EXERCISE = Exercise(
     name="focal_from_vanishing_points",
     chapter=2,
     title="The focal length in a picture of a box",

@@ -1,33 +1,32 @@
 """The horizon of a plane."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import horizon as library_horizon
-from cvnotes.learn.cases.cameras import (
-    ABOUT_X,
-    ABOUT_Y,
-    TIDY_A,
-    rounded,
-    some_intrinsics,
-    some_rotation,
-)
+from cvnotes.learn.cases.cameras import ABOUT_X, TIDY, incident, some_intrinsics, some_rotation
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property
-from cvnotes.tutor.checker.steps import mistakes_in
+
+
+def _planes(rng: Rng) -> list[Case]:
+    A, R = some_intrinsics(rng, skew=True), some_rotation(rng)
+    n = np.round(rng.uniform(0.3, 1, 3) * rng.choice([-1, 1], 3), 2)
+    tidy_A, about_y, _ = TIDY
+    # the ground, and walls: whoever needs a direction in the plane must find one for these too
+    axes = np.array([[0.0, 1, 0], [1, 0, 0], [0, 0, -1]])
+    return [
+        Case((tidy_A, about_y, np.array([1.0, 2.0, 3.0]))),
+        Case((A, R, n)),
+        *(Case((tidy_A, ABOUT_X @ about_y, axis), about="along an axis") for axis in axes),
+    ]
 
 
 def _ends_there(line: Array, case: Case) -> bool:
     A, R, n = case.args
     inside = np.linalg.svd(n[None])[2][1:]
-    m_h = inside @ R.T @ A.T
-    return bool(
-        (np.abs(m_h @ line) <= 1e-6 * case.slack * (np.abs(m_h) @ np.abs(line))).all()
-        and line.any()
-    )
+    return incident(inside @ R.T @ A.T, line, case.slack)
 
 
 def _joined(A: Array, R: Array, d1: npt.ArrayLike, d2: npt.ArrayLike) -> Array:
@@ -35,7 +34,7 @@ def _joined(A: Array, R: Array, d1: npt.ArrayLike, d2: npt.ArrayLike) -> Array:
     return np.cross(A @ R @ np.asarray(d1), A @ R @ np.asarray(d2))
 
 
-def horizon(A: Array, R: Array, n: Array) -> Any:
+def horizon(A: Array, R: Array, n: Array) -> Array:
     """Return the horizon (3,) of planes with world normal n (3,)."""
     N = R @ n  # the normal in the camera's frame
     B = np.linalg.inv(A)  # what takes pixels to rays
@@ -52,21 +51,19 @@ MISTAKES = mistakes_in(horizon,
     ("R and A in the wrong order", "The normal has to be taken to the camera's frame first, and "
      "from there, as a line, to the picture.",
      "R @ np.linalg.inv(A).T @ n", "np.linalg.inv(A @ R) @ n", "(A @ R).T @ n", "A.T @ R.T @ n"),
-    ("directions that vanish",
-     "Right, unless n is an axis: then the cross product with that axis is 0, which is no "
-     "direction.",
+    ("directions that vanish", "Right, unless n is an axis: then the cross product with that axis "
+     "is 0, which is no direction.",
      "_joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 1, 0]))",
      "_joined(A, R, np.cross(n, [0, 1, 0]), np.cross(n, [0, 0, 1]))",
      "_joined(A, R, np.cross(n, [1, 0, 0]), np.cross(n, [0, 0, 1]))"),
-    ("the horizon of an axis",
-     "You joined the vanishing points of two axes; the directions must lie in the plane with"
-     " normal n.",
+    ("the horizon of an axis", "You joined the vanishing points of two axes; the directions must "
+     "lie in the plane with normal n.",
      "_joined(A, R, [1, 0, 0], [0, 1, 0])", "_joined(A, R, [0, 1, 0], [0, 0, 1])",
      "_joined(A, R, [1, 0, 0], [0, 0, 1])"),
 )  # fmt: skip
 
 
-HORIZON = Exercise(
+EXERCISE = Exercise(
     name="horizon",
     chapter=2,
     title="The horizon of a plane",
@@ -77,21 +74,7 @@ HORIZON = Exercise(
         "Or at once: a pixel m̃ is on the horizon if its ray Rᵀ A⁻¹ m̃ is perpendicular to n.",
         "n·(Rᵀ A⁻¹ m̃) = 0 is l·m̃ = 0 with which l?",
     ),
-    cases=lambda rng: [
-        Case((TIDY_A, ABOUT_Y, np.array([1.0, 2.0, 3.0]))),
-        Case(
-            (
-                some_intrinsics(rng, skew=True),
-                some_rotation(rng),
-                rounded(rng.uniform(0.3, 1, 3) * rng.choice([-1, 1], 3)),
-            )
-        ),
-        # the ground, and walls: whoever needs a direction in the plane must find one for these too
-        *(
-            Case((TIDY_A, ABOUT_X @ ABOUT_Y, np.array(n)), about="along an axis")
-            for n in ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0])
-        ),
-    ],
+    cases=_planes,
     properties=(
         Property("The vanishing points of directions in the plane lie on it.", _ends_there),
         Property(

@@ -5,8 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import rotation_from_angles
 from cvnotes.learn.cases.cameras import rounded, some_factors, some_intrinsics
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def person_height(horizon: Array, v: Array, post: Array, h: float, person: Array) -> float:
@@ -68,7 +67,7 @@ _MISTAKES = mistakes_in(person_height,
 )  # fmt: skip
 
 
-PERSON = Exercise(
+EXERCISE = Exercise(
     name="person_height",
     chapter=2,
     title="A height in a single picture",

@@ -1,21 +1,12 @@
 """Where a direction is seen."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera
-from cvnotes.learn.cases.cameras import (
-    ABOUT_Y,
-    TIDY_A,
-    rounded,
-    some_intrinsics,
-    some_rotation,
-)
+from cvnotes.learn.cases.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
 from cvnotes.projective import from_homogeneous
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 # A camera that looks along the world's y.
 _ALONG_Y = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -40,7 +31,7 @@ def _seen(x_h: Array) -> Array:
     return from_homogeneous.inside(np.asarray(x_h, dtype=float))
 
 
-def vanishing_point(A: Array, R: Array, d: Array) -> Any:
+def vanishing_point(A: Array, R: Array, d: Array) -> Array:
     """Return the vanishing point (2,) of the world direction d (3,); NaN if at infinity."""
     D = R @ d  # the direction in the camera's frame
     m_h = A @ D  # its homogeneous pixel
@@ -52,15 +43,13 @@ MISTAKES = mistakes_in(vanishing_point,
     ("no division",
      "The first two coordinates are not the pixel yet: the division by the third is missing.",
      "m_h[:2]", "D[:2] * A[[0, 1], [0, 1]] + A[:2, 2]", "A[:2, :2] @ D[:2] + A[:2, 2]"),
-    ("divided by the world's Z",
-     "It is the third coordinate in the camera's frame that counts, as divisor and for lines"
-     " without an end; you took the world's.",
+    ("divided by the world's Z", "It is the third coordinate in the camera's frame that counts, as "
+     "divisor and for lines without an end; you took the world's.",
      "(A @ R @ d)[:2] / d[2]",
      lambda A, R, d: vanishing_point(A, R, d) if d[2] else np.full(2, np.nan),
      "(A @ R @ d)[:2] / (A @ R @ d)[2] if d[2] else np.full(2, np.nan)"),
-    ("no NaN at infinity",
-     "Right, except for lines parallel to the image plane: there is no pixel in which they "
-     "end. The task asks for NaN.",
+    ("no NaN at infinity", "Right, except for lines parallel to the image plane: there is no pixel "
+     "in which they end. The task asks for NaN.",
      *(f"m if D[2] else {other}" for other in ("None", "np.zeros(2)", "m_h[:2]", "A[:2, 2]"))),
     ("directions that point away",
      "d and −d are the same lines and share one vanishing point: a factor may be negative.",
@@ -72,14 +61,12 @@ MISTAKES = mistakes_in(vanishing_point,
     ("principal point added before the division", "You added u0 and v0 before dividing by z: they "
      "belong to the pixel, so they are added at the end.",
      ("m_h[:2] / m_h[2]", "(A[:2, :2] @ D[:2] + A[:2, 2]) / D[2]")),
-    ("mirrored",
-     "Your picture is mirrored: x runs to the right and y downwards, in the camera's frame "
-     "as in the picture.",
+    ("mirrored", "Your picture is mirrored: x runs to the right, y downwards, in both frames.",
      "_seen(A @ np.diag([1, -1, 1]) @ R @ d)", "2 * A[:2, 2] - _seen(A @ R @ d)"),
 )  # fmt: skip
 
 
-VANISHING = Exercise(
+EXERCISE = Exercise(
     name="vanishing_point",
     chapter=2,
     title="Where a direction is seen",

@@ -5,13 +5,14 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.pictures import rails_camera
 from cvnotes.learn.cases.slips import misreadings
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import within
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, mistakes
 
 
 def where_the_rails_meet() -> Array:
     """Return the pixel (2,) in which the rails meet: the vanishing point of z."""
-    return rails_camera().vanishing_point([0, 0, 1])
+    u, v = rails_camera().vanishing_point([0, 0, 1])
+    return np.array([u, v])
 
 
 def _rail(side: int) -> Array:
@@ -21,28 +22,26 @@ def _rail(side: int) -> Array:
 
 
 _MISTAKES = (
-    Misconception(
-        "the picture of chapter 1", "That is where the rails meet in the picture of chapter 1, by "
-        "the course's camera, which looks along them. Look at rails_picture().",
-        lambda: np.array([325.0, 238.0]), same=within(2.0)),
-    *mistakes(
+    *mistakes_in(where_the_rails_meet,
+        ("the picture of chapter 1", "That is where the rails meet in the picture of chapter 1, by "
+         "the course's camera, which looks along them. Look at rails_picture().",
+         "np.array([325.0, 238.0])", {"same": within(2.0)}),
         ("the middle of the picture", "That is the middle of the picture. Rails end there only if "
          "the camera looks exactly along them.",
-         lambda: np.array([319.5, 239.5])),
-        ("on the middle row", "The column is right; but the camera is lowered, so that the horizon "
-         "is not the middle row.",
-         lambda: np.array([where_the_rails_meet()[0], 239.5])),
+         "np.array([319.5, 239.5])"),
+        ("on the middle row", "The column is right. The camera is lowered: where is the horizon?",
+         "np.array([u, 239.5])"),
         ("where the rails begin", "That is where a rail leaves the picture below, or the middle "
          "between both: the rails meet at their other end.",
-         lambda: _rail(-1), lambda: _rail(1), lambda: (_rail(-1) + _rail(1)) / 2),
+         "_rail(-1)", "_rail(1)", "(_rail(-1) + _rail(1)) / 2"),
         ("on the middle column", "The height of the horizon is right; but the camera is turned "
          "sideways, so that the rails do not end in the middle column.",
-         lambda: np.array([319.5, where_the_rails_meet()[1]])),
+         "np.array([319.5, v])"),
     ),
     *misreadings(where_the_rails_meet, (640, 480), 12.0),
 )  # fmt: skip
 
-RAILS = Exercise(
+EXERCISE = Exercise(
     name="where_the_rails_meet",
     chapter=2,
     title="Read it off: where do the rails meet?",

@@ -1,15 +1,12 @@
 """From one view to the other."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import pose
 from cvnotes.learn.cases.cameras import ABOUT_Y, some_pose_matrix
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import same_motion
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property
-from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _both_see_the_board(G: Array, case: Case) -> bool:
@@ -18,7 +15,7 @@ def _both_see_the_board(G: Array, case: Case) -> bool:
     return np.allclose(W @ G2.T @ G.T, W @ G1.T, atol=1e-3)
 
 
-def cam1_from_cam2(G1: Array, G2: Array) -> Any:
+def cam1_from_cam2(G1: Array, G2: Array) -> Array:
     """Return the motion (4, 4) from camera 2's frame to camera 1's."""
     R = G2[:3, :3].T  # the rotation from camera 2 to the board
     T = -R @ G2[:3, 3]  # the translation from camera 2 to the board
@@ -27,24 +24,18 @@ def cam1_from_cam2(G1: Array, G2: Array) -> Any:
 
 
 MISTAKES = mistakes_in(cam1_from_cam2,
-    ("the board moved",
-     "The names do not touch: start in camera 2's frame, go to the board, and from there to "
-     "camera 1.",
+    ("the board moved", "The names do not touch: go from camera 2 to the board, then to camera 1.",
      "np.linalg.inv(G1) @ G2", "np.linalg.inv(G2) @ G1", "G2 @ G1",
      "np.linalg.inv(G1) @ np.linalg.inv(G2)", "np.linalg.inv(G2) @ np.linalg.inv(G1)"),
-    ("translations subtracted",
-     "The rotation is right. The translation of camera 2 has to be turned into camera 1's "
-     "frame before it is subtracted from the other.",
+    ("translations subtracted", "The rotation is right. The translation of camera 2 has to be "
+     "turned into camera 1's frame before it is subtracted from the other.",
      *(f"pose(G1[:3, :3] @ R, {other})" for other in (
          "G1[:3, 3] - G2[:3, 3]", "G2[:3, 3] - G1[:3, 3]", "G1[:3, 3] + G2[:3, 3]", "G1[:3, 3] + T",
          "np.zeros(3)", "G1[:3, 3] - G1[:3, :3] @ T", "-G1[:3, :3] @ T - G1[:3, 3]"))),
-    ("poses subtracted",
-     "Motions are neither subtracted nor divided, nor multiplied entry by entry; they are "
-     "chained.",
+    ("poses subtracted", "Motions are chained, not subtracted, divided or multiplied by entries.",
      "G1 - G2", "G1 / G2", "G1 * np.linalg.inv(G2)", "np.linalg.inv(G2) * G1.T", "G1 * G2"),
-    ("transposed for inverse",
-     "The transpose of a rotation is its inverse, that of a motion (4, 4) is not: its "
-     "translation has to be turned.",
+    ("transposed for inverse", "The transpose of a rotation is its inverse, that of a motion (4, "
+     "4) is not: its translation has to be turned.",
      "G1 @ G2.T"),
     ("rotations in the other order",
      "The rotations are in the wrong order: camera 2 is left first.",
@@ -53,7 +44,7 @@ MISTAKES = mistakes_in(cam1_from_cam2,
 )  # fmt: skip
 
 
-CHAIN = Exercise(
+EXERCISE = Exercise(
     name="cam1_from_cam2",
     chapter=3,
     title="From one view to the other",

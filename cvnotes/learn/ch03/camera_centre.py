@@ -1,33 +1,28 @@
 """Where the camera stands."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera
 from cvnotes.learn.cases.cameras import ABOUT_Y, some_pose
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def camera_centre(R: Array, T: Array) -> Any:
+def camera_centre(R: Array, T: Array) -> Array:
     """Return the camera's centre (3,) in the WRF."""
     B = R.T  # the rotation back into the world
     return -B @ T
 
 
 MISTAKES = mistakes_in(camera_centre,
-    ("T itself",
-     "T is where the world's origin is seen from the camera, not where the camera stands. It"
-     " is the most frequent confusion of all.",
+    ("T itself", "T is where the world's origin is seen from the camera, not where the camera "
+     "stands. It is the most frequent confusion of all.",
      "T"),
     ("rotated the wrong way",
      "R leads from the world to the camera; the way back needs its inverse, and a sign.",
      "-R @ T", "R @ T"),
-    ("an axis for the centre",
-     "That is an axis, of the camera or of the world, seen from the other; the centre "
-     "follows from T.",
+    ("an axis for the centre", "That is an axis, of the camera or of the world, seen from the "
+     "other; the centre follows from T.",
      "R[2]", "R[:, 2]"),
     ("T added to the centre",
      "You added T to the centre, or subtracted it; it has been used already.",
@@ -35,7 +30,7 @@ MISTAKES = mistakes_in(camera_centre,
 )  # fmt: skip
 
 
-CENTRE = Exercise(
+EXERCISE = Exercise(
     name="camera_centre",
     chapter=3,
     title="Where the camera stands",

@@ -1,13 +1,10 @@
 """How much the camera sees."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import some_intrinsics
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _off_centre(rng: Rng) -> list[Case]:
@@ -15,7 +12,7 @@ def _off_centre(rng: Rng) -> list[Case]:
     return [Case((by_hand, 1000)), Case((some_intrinsics(rng), 640))]
 
 
-def field_of_view(A: Array, width: int) -> Any:
+def field_of_view(A: Array, width: int) -> float:
     """Return the horizontal field of view in radians."""
     left = A[0, 2] + 0.5  # the pixels from the left border to the principal point
     right = width - 0.5 - A[0, 2]  # the pixels from there to the right border
@@ -25,24 +22,21 @@ def field_of_view(A: Array, width: int) -> Any:
 
 
 MISTAKES = mistakes_in(field_of_view,
-    ("principal point in the middle",
-     "That holds if the principal point is in the middle; in general it is not. Take the two"
-     " sides one by one.",
+    ("principal point in the middle", "That holds if the principal point is in the middle; in "
+     "general it is not. Take the two sides one by one.",
      "2 * np.arctan(width / 2 / A[0, 0])", "2 * np.arctan((width - 1) / 2 / A[0, 0])"),
     ("one angle for two", "That is one angle: half of the field of view, or that of a side as "
      "wide as the picture. There is a left and a right one, each from the axis to its border.",
      "np.arctan(width / 2 / A[0, 0])", "np.arctan(width / A[0, 0])",
      "2 * np.arctan(width / A[0, 0])"),
-    ("borders at whole pixels",
-     "Nearly: a border is off. Whole numbers are pixel centres, and the picture ends half a "
-     "pixel outside of the first and the last.",
+    ("borders at whole pixels", "Nearly: a border is off. Whole numbers are pixel centres, and the "
+     "picture ends half a pixel outside of the first and the last.",
      *(("+ 0.5", left, "width - 0.5", right) for left, right in (
          ("", "width - 1"), ("", "width"), ("- 0.5", "width - 1.5"), ("- 0.5", "width + 0.5"),
          ("", "width - 0.5"), ("+ 0.5", "width"), ("+ 0.5", "width - 1"),
          ("+ 0.5", "width + 0.5")))),
-    ("tangents for angles",
-     "Side and focal length give the tangent of the angle: that, or another function, is not"
-     " the angle yet.",
+    ("tangents for angles", "Side and focal length give the tangent of the angle: that, or another "
+     "function, is not the angle yet.",
      "width / A[0, 0]", ("np.arctan", "np.arcsin"), ("np.arctan", "np.tan")),
     ("in degrees",
      "That is in degrees, and not exact: asked are radians, of the two sides one by one.",
@@ -57,7 +51,7 @@ MISTAKES = mistakes_in(field_of_view,
 )  # fmt: skip
 
 
-FIELD = Exercise(
+EXERCISE = Exercise(
     name="field_of_view",
     chapter=3,
     title="How much the camera sees",

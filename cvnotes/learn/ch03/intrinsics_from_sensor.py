@@ -1,12 +1,10 @@
 """The sensor's matrix."""
 
-from typing import Any
-
 import numpy as np
 
+from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _sensors(rng: Rng) -> list[Case]:
@@ -15,7 +13,7 @@ def _sensors(rng: Rng) -> list[Case]:
     return [Case((8.0, 0.01, 0.02, 320.0, 240.0)), Case((f, du, dv, u0, v0))]
 
 
-def intrinsics_from_sensor(f: float, du: float, dv: float, u0: float, v0: float) -> Any:
+def intrinsics_from_sensor(f: float, du: float, dv: float, u0: float, v0: float) -> Array:
     """Return A (3, 3); f, du and dv in mm, u0 and v0 in pixels."""
     a = f / du  # α_u, the focal length in pixel widths
     b = f / dv  # α_v, the focal length in pixel heights
@@ -42,7 +40,7 @@ MISTAKES = mistakes_in(intrinsics_from_sensor,
 )  # fmt: skip
 
 
-INTRINSICS = Exercise(
+EXERCISE = Exercise(
     name="intrinsics_from_sensor",
     chapter=3,
     title="The sensor's matrix",

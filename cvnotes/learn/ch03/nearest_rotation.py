@@ -1,14 +1,11 @@
 """The nearest rotation."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import nearest_rotation
 from cvnotes.learn.cases.cameras import ABOUT_Y, rounded, some_rotation
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _nearly_rotations(rng: Rng) -> list[Case]:
@@ -40,7 +37,7 @@ def _crossed(M: Array) -> Array:
     return np.column_stack([M[:, 0], M[:, 1], np.cross(M[:, 0], M[:, 1])])
 
 
-def _steps(M: Array) -> Any:
+def _steps(M: Array) -> Array:
     """Return the rotation (3, 3) nearest to M (3, 3)."""
     U, _, Vt = np.linalg.svd(M)
     d = np.linalg.det(U @ Vt)  # whether it is a rotation, 1, or a reflection, −1
@@ -63,9 +60,8 @@ MISTAKES = mistakes_in(_steps,
      _gram_schmidt, "np.linalg.qr(M)[0]", "_gram_schmidt(M.T).T", _rq,
      "_gram_schmidt(M[::-1].T).T[::-1]",
      "_gram_schmidt(M) * [1, 1, np.linalg.det(_gram_schmidt(M))]"),
-    ("lengths only",
-     "That sets lengths, or the determinant, and makes no rotation: the columns have to be "
-     "perpendicular too.",
+    ("lengths only", "That sets lengths, or the determinant, and makes no rotation: the columns "
+     "have to be perpendicular too.",
      "M / np.linalg.norm(M, axis=0)", "M / np.linalg.norm(M, axis=1, keepdims=True)",
      "M / np.cbrt(np.linalg.det(M))", "M / np.linalg.norm(M)", "M / np.linalg.norm(M, 2)",
      "M / np.sqrt((M**2).sum() / 3)", "M / np.linalg.det(M)"),
@@ -74,14 +70,13 @@ MISTAKES = mistakes_in(_steps,
     ("cross product of the first two columns", "You made the third column of the first two as "
      "they are: they are neither of length 1 nor perpendicular.",
      _crossed, "_crossed(M / np.linalg.norm(M, axis=0))"),
-    ("the average of M and its inverse",
-     "One step of averaging with the inverse transpose comes nearer to a rotation, but has "
-     "to be repeated until nothing changes.",
+    ("the average of M and its inverse", "One step of averaging with the inverse transpose comes "
+     "nearer to a rotation, but has to be repeated until nothing changes.",
      "(M + np.linalg.inv(M).T) / 2"),
 )  # fmt: skip
 
 
-NEAREST = Exercise(
+EXERCISE = Exercise(
     name="nearest_rotation",
     chapter=3,
     title="The nearest rotation",

@@ -1,13 +1,10 @@
 """A cropped and a smaller picture."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import some_intrinsics
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _crops(rng: Rng) -> list[Case]:
@@ -28,7 +25,7 @@ def _borders_stay(answer: Array, case: Case) -> bool:
     return bool(np.allclose(m[:2] / m[2], -0.5, rtol=0, atol=1e-5 * case.slack))
 
 
-def new_intrinsics(A: Array, corner: Array, s: float) -> Any:
+def new_intrinsics(A: Array, corner: Array, s: float) -> Array:
     """Return A (3, 3) after cropping at corner (2,), then scaling by s."""
     c = A[:2, 2] - corner  # the principal point of the cropped picture
     u0, v0 = s * (c + 0.5) - 0.5  # the principal point, scaled about the picture's border
@@ -37,33 +34,28 @@ def new_intrinsics(A: Array, corner: Array, s: float) -> Any:
 
 
 MISTAKES = mistakes_in(new_intrinsics,
-    ("half a pixel forgotten",
-     "Half a pixel is missing, or has the wrong sign: pixel centres are integers before and "
-     "after, and it is the border that stays where it is.",
+    ("half a pixel forgotten", "Half a pixel is missing, or has the wrong sign: pixel centres are "
+     "integers before and after, and it is the border that stays where it is.",
      *(("(c + 0.5) - 0.5", other)
        for other in ("c", "(c - 0.5) + 0.5", "(c + 0.5)", "c - 0.5", "c + 0.5"))),
     ("skew not scaled", "The skew is in pixels of u, as α_u is: it is scaled as α_u is.",
      ("f[0, 1]", "A[0, 1]"), ("f[0, 1]", "s * f[0, 1]")),
-    ("crop after scaling",
-     "You scaled first. The corner is a pixel of the old picture, so it is subtracted "
-     "before, and scaled along.",
+    ("crop after scaling", "You scaled first. The corner is a pixel of the old picture, so it is "
+     "subtracted before, and scaled along.",
      ("A[:2, 2] - corner", "A[:2, 2]", "(c + 0.5) - 0.5", "(c + 0.5) - 0.5 - corner"),
      ("A[:2, 2] - corner", "A[:2, 2]", "(c + 0.5) - 0.5", "(c + 0.5) - 0.5 + corner"),
      ("A[:2, 2] - corner", "A[:2, 2]", "(c + 0.5) - 0.5", "c - corner")),
-    ("principal point not scaled",
-     "The focal lengths are right. The principal point moves too: by the crop, then as a "
-     "whole by the scaling.",
+    ("principal point not scaled", "The focal lengths are right. The principal point moves too: by "
+     "the crop, then as a whole by the scaling.",
      *(("s * (c + 0.5) - 0.5", other) for other in ("A[:2, 2]", "c", "A[:2, 2] - s * corner"))),
-    ("divided by s",
-     "You divided by s in one place: focal lengths and principal point grow and shrink "
-     "together.",
+    ("divided by s", "You divided by s in one place: all lengths in pixels are multiplied by it.",
      ("s * A[:2, :2]", "A[:2, :2] / s"), ("s * (c + 0.5)", "(c + 0.5) / s")),
     ("nothing changed", "You gave A as it was: the crop and the scaling both change it.",
      "A"),
 )  # fmt: skip
 
 
-NEW = Exercise(
+EXERCISE = Exercise(
     name="new_intrinsics",
     chapter=3,
     title="A of a cropped and scaled picture",

@@ -1,31 +1,11 @@
 """Project points."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, px_from_xy
-from cvnotes.learn.cases.cameras import (
-    ABOUT_Y,
-    TIDY_A,
-    TIDY_POINT,
-    TIDY_T,
-    points_in_front,
-    some_intrinsics,
-    some_pose,
-)
-from cvnotes.tutor import edited
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
-
-
-def _cameras(rng: Rng) -> list[Case]:
-    cases = [Case((TIDY_A, ABOUT_Y, TIDY_T, TIDY_POINT))]
-    for n in (4, 6):
-        R, T = some_pose(rng)
-        cases.append(Case((some_intrinsics(rng, skew=True), R, T, points_in_front(rng, R, T, n))))
-    return cases
+from cvnotes.learn.cases.cameras import photographed
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def _on_ray(m: Array, case: Case) -> bool:
@@ -36,7 +16,7 @@ def _on_ray(m: Array, case: Case) -> bool:
     return np.allclose(rays * M[:, 2:], M, rtol=0, atol=1e-5 * np.abs(M).max())
 
 
-def project(A: Array, R: Array, T: Array, W: Array) -> Any:
+def project(A: Array, R: Array, T: Array, W: Array) -> Array:
     """Return pixels (n, 2) of world points W (n, 3)."""
     M = W @ R.T + T  # the points in the camera's frame
     m_h = M @ A.T  # the homogeneous pixels
@@ -49,8 +29,7 @@ MISTAKES = mistakes_in(project,
      "smaller when it is farther away.",
      (" / w", "")),
     ("T taken for the camera's position", "You used R and T as if they said where the camera "
-     "stands. They lead from the world to the camera: T is where the world's origin is seen from "
-     "it.",
+     "stands. They lead from the world to it: T is where it sees the world's origin.",
      ("W @ R.T + T", "(W - T) @ R.T"), ("W @ R.T + T", "(W - T) @ R")),
     ("T with the wrong sign or in the wrong place", "Which way does T lead? It is added in the "
      "camera's frame: after the rotation, before there are pixels.",
@@ -60,7 +39,7 @@ MISTAKES = mistakes_in(project,
      ("/ w", "/ W[:, 2:]"), "M[:, :2] / W[:, 2:] * np.diag(A)[:2] + A[:2, 2]"),
     ("divided by another number", "You divided by something else than each point's own depth, the "
      "z of the camera's frame, once: not by the distance, for the picture is a plane.",
-     *(edited(project, "/ w", f"/ {other}") for other in (
+     *(("/ w", f"/ {other}") for other in (
          "T[2]", "M[:, :1]", "M[0, 2]", "M[:, 2].mean()", "w / M[:, 2:]",
          "np.linalg.norm(M, axis=1, keepdims=True)")),
      "m_h[:, 1:] / m_h[:, :1]"),
@@ -70,19 +49,16 @@ MISTAKES = mistakes_in(project,
     ("principal point added before the division", "You added u0 and v0 before dividing by z: they "
      "belong to the pixel, so they are added at the end.",
      ("m_h[:, :2]", "(M[:, :2] @ A[:2, :2].T + A[:2, 2])")),
-    ("focal lengths exchanged",
-     "The two focal lengths are exchanged: the first row of A is that of u.",
+    ("focal lengths exchanged", "The focal lengths are exchanged: the first row of A is u's.",
      ("A.T", "A[[1, 0, 2]][:, [1, 0, 2]].T", "/ w", "/ w - A[[1, 0], 2] + A[:2, 2]"),
      ("M @ A.T",
-      "M * [A[1, 1] / A[0, 0], A[0, 0] / A[1, 1], 1] @ "
-      "(A * [[1, 0, 1], [1, 1, 1], [1, 1, 1]]).T")),
-    ("mirrored", "Your picture is mirrored: x runs to the right and y downwards, in the camera's "
-     "frame as in the picture.",
+      "M * [A[1, 1] / A[0, 0], A[0, 0] / A[1, 1], 1] @ (A * [[1, 0, 1], [1, 1, 1], [1, 1, 1]]).T")),
+    ("mirrored", "Your picture is mirrored: x runs to the right, y downwards, in both frames.",
      ("M @ A.T", "M * [1, -1, 1] @ A.T"), ("M @ A.T", "M * [-1, -1, 1] @ A.T")),
 )  # fmt: skip
 
 
-PROJECT = Exercise(
+EXERCISE = Exercise(
     name="project",
     chapter=3,
     title="Project points",
@@ -93,7 +69,7 @@ PROJECT = Exercise(
         "Then m̃ ≈ A M: three numbers a point.",
         "Divide the first two of them by the third.",
     ),
-    cases=_cameras,
+    cases=lambda rng: [Case(given) for given in photographed(rng)],
     properties=(
         Property("The ray through each pixel contains its point.", _on_ray),
         Property("Pixels are (u, v), rows as the points are."),

@@ -4,17 +4,9 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import nearest_rotation
-from cvnotes.learn.cases.cameras import (
-    ABOUT_Y,
-    TIDY_A,
-    TIDY_T,
-    some_factors,
-    some_intrinsics,
-    some_pose,
-)
+from cvnotes.learn.cases.cameras import TIDY, some_camera, some_factors
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import close, up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def rq(P: Array) -> tuple[Array, Array]:
@@ -29,10 +21,11 @@ def rq(P: Array) -> tuple[Array, Array]:
 
 
 def _matrices(rng: Rng) -> list[Case]:
-    cases = [Case((TIDY_A @ np.column_stack([ABOUT_Y, TIDY_T]),))]
+    A, R, T = TIDY
+    cases = [Case((A @ np.column_stack([R, T]),))]
     for sign in (1, -1):
-        R, T = some_pose(rng)
-        P = some_intrinsics(rng, skew=True) @ np.column_stack([R, T])
+        A, R, T = some_camera(rng)
+        P = A @ np.column_stack([R, T])
         cases.append(Case((sign * abs(some_factors(rng, 1)) * P,), about="-" * (sign < 0)))
     return cases
 
@@ -70,12 +63,11 @@ _MISTAKES = mistakes_in(rq,
     ("begun with the first row", "You began with the first row, and A is a triangle of the wrong "
      "kind: which row of A has one number only?",
      _from_above),
-    ("the nearest rotation", "You took the nearest rotation; what is left is symmetric and no "
-     "triangle.",
+    ("the nearest rotation", "You took the nearest rotation: what it leaves of P is no triangle.",
      _nearest),
 )  # fmt: skip
 
-RQ = Exercise(
+EXERCISE = Exercise(
     name="rq",
     chapter=3,
     title="P taken apart",

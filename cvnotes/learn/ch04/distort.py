@@ -1,15 +1,12 @@
 """Through the lens."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Lens
 from cvnotes.camera.lens import horner, radial_factor
 from cvnotes.learn.cases.cameras import rounded, some_lens
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _ideal_points(rng: Rng) -> list[Case]:
@@ -21,7 +18,7 @@ def _ideal_points(rng: Rng) -> list[Case]:
     ]
 
 
-def distort(xy: Array, k: Array, p: Array) -> Any:
+def distort(xy: Array, k: Array, p: Array) -> Array:
     """Return the points (n, 2) that a lens makes of ideal points xy (n, 2)."""
     x, y = xy.T
     r2 = x**2 + y**2  # r²
@@ -35,8 +32,7 @@ MISTAKES = mistakes_in(distort,
     ("r for r²", "Which powers of r does L have? You have others.",
      ("k[0] * r2 + k[1] * r2**2", "k[0] * np.sqrt(r2) + k[1] * r2"),
      ("k[0] * r2 + k[1] * r2**2", "k[0] * np.sqrt(r2) + k[1] * r2**2")),
-    ("the way back", "That is the way back, from where points are seen to where they should be; "
-     "the lens multiplies by L.",
+    ("the way back", "That leads from where points are seen to where they should be.",
      ("L * x + dx, L * y + dy", "x / L + dx, y / L + dy"),
      lambda xy, k, p: Lens(tuple(k), tuple(p)).undistort(xy)),
     ("L added", "You added L to the coordinates: it multiplies them.",
@@ -71,7 +67,7 @@ MISTAKES = mistakes_in(distort,
 )  # fmt: skip
 
 
-DISTORT = Exercise(
+EXERCISE = Exercise(
     name="distort",
     chapter=4,
     title="Through the lens",

@@ -1,13 +1,10 @@
 """Where the model ends."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _lenses(rng: Rng) -> list[Case]:
@@ -22,7 +19,7 @@ def _lenses(rng: Rng) -> list[Case]:
     ]
 
 
-def fold_radius(k: Array) -> Any:
+def fold_radius(k: Array) -> float:
     """Return the largest radius r up to which r L(r) grows; np.inf if it always does."""
     a, b = 5 * k[1], 3 * k[0]
     z = np.roots([a, b, 1.0])  # r² where the slope of r L(r) is 0
@@ -32,13 +29,10 @@ def fold_radius(k: Array) -> Any:
 
 
 MISTAKES = mistakes_in(fold_radius,
-    ("k2 = 0 left out",
-     "Right where k2 is not 0. Without k2 the equation is no quadratic one, and its formula "
-     "divides by 0.",
+    ("k2 = 0 left out", "Right unless k2 is 0: the formula of quadratic equations divides by it.",
      "np.sqrt(r2) if k[1] else None", "np.sqrt(r2) if k[1] else np.inf"),
-    ("root of L",
-     "There L(r) is 0: all points fall into the centre. The picture folds before that, where"
-     " r L(r) stops growing.",
+    ("root of L", "There L(r) is 0: all points fall into the centre. The picture folds before "
+     "that, where r L(r) stops growing.",
      ("5 * k[1], 3 * k[0]", "k[1], k[0]")),
     ("another slope",
      "That is not where the slope of r L(r) is 0: look at the terms of your slope again.",
@@ -48,17 +42,14 @@ MISTAKES = mistakes_in(fold_radius,
     ("radius in the picture",
      "That is how far from the centre the fold is seen. Asked is the ideal radius.",
      "np.sqrt(r2) * (1 + k[0] * r2 + k[1] * r2**2) if np.isfinite(r2) else np.inf"),
-    ("the outer root",
-     "There are two radii at which the slope is 0. The picture has folded at the first of "
-     "them.",
+    ("the outer root", "The slope is 0 at two radii. The picture has folded at the first of them.",
      ("min(x", "max(x")),
     ("one root of the formula only",
      "The formula has two roots: take the smallest that is positive, of both.",
      *(f"np.sqrt(q) if a and b * b >= 4 * a and (q := (-b {sign} np.sqrt(b * b - 4 * a)) / a / 2) "
        "> 0 else None" for sign in "+-")),
-    ("a sign thought to tell",
-     "Right for other lenses. The sign of one coefficient alone does not tell whether the "
-     "picture folds: both count.",
+    ("a sign thought to tell", "Right for other lenses. The sign of one coefficient alone does not "
+     "tell whether the picture folds: both count.",
      "np.inf if k[0] >= 0 else np.sqrt(r2)", "np.inf if k[1] > 0 else np.sqrt(r2)"),
     ("signs of the roots lost",
      "You took the root of |r²|: where r² is negative there is no radius.",
@@ -66,7 +57,7 @@ MISTAKES = mistakes_in(fold_radius,
 )  # fmt: skip
 
 
-FOLD = Exercise(
+EXERCISE = Exercise(
     name="fold_radius",
     chapter=4,
     title="Where the model ends",
@@ -77,8 +68,7 @@ FOLD = Exercise(
         "r L(r) = r + k1 r³ + k2 r⁵. Where does its slope become 0?",
         "1 + 3 k1 r² + 5 k2 r⁴ = 0 is a quadratic equation for r².",
         "Of its positive roots the smallest counts; without one, as for k = (0.2, 0), it is "
-        "np.inf. "
-        "For k = (−4/3, 0) the answer is 0.5.",
+        "np.inf. For k = (−4/3, 0) the answer is 0.5.",
     ),
     cases=_lenses,
     properties=(

@@ -1,36 +1,20 @@
 """The four steps of image formation."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, px_from_xy
-from cvnotes.learn.cases.cameras import (
-    ABOUT_Y,
-    TIDY_A,
-    TIDY_POINT,
-    TIDY_T,
-    points_in_front,
-    some_intrinsics,
-    some_lens,
-    some_pose,
-)
+from cvnotes.learn.cases.cameras import photographed, some_lens
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import close_to
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _photographs(rng: Rng) -> list[Case]:
-    cases = [Case((TIDY_A, ABOUT_Y, TIDY_T, np.array([-0.2, 0.1]), TIDY_POINT))]
-    for n in (4, 6):
-        R, T = some_pose(rng)
-        W = points_in_front(rng, R, T, n)
-        cases.append(Case((some_intrinsics(rng, skew=True), R, T, some_lens(rng)[0], W)))
-    return cases
+    tidy, *others = ((A, R, T, some_lens(rng)[0], W) for A, R, T, W in photographed(rng))
+    return [Case((*tidy[:3], np.array([-0.2, 0.1]), tidy[4])), *map(Case, others)]
 
 
-def form_image(A: Array, R: Array, T: Array, k: Array, W: Array) -> Any:
+def form_image(A: Array, R: Array, T: Array, k: Array, W: Array) -> Array:
     """Return the pixels (n, 2) of world points W (n, 3)."""
     M = W @ R.T + T  # the points in the camera's frame
     xy = M[:, :2] / M[:, 2:]  # the ideal points, in the plane z = 1
@@ -78,7 +62,7 @@ MISTAKES = mistakes_in(form_image,
 )  # fmt: skip
 
 
-FORM = Exercise(
+EXERCISE = Exercise(
     name="form_image",
     chapter=4,
     title="The four steps of image formation",

@@ -5,8 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded
 from cvnotes.learn.ch04.fold_radius import fold_radius
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def inverse_radius(s: Array, k: Array) -> Array:
@@ -38,14 +37,11 @@ def _lenses(rng: Rng) -> list[Case]:
     return [*cases, *(Case((s, k), about="endless") for k in endless)]
 
 
-def _rounds(s: Array, k: Array, times: int, newton: bool) -> Array:
-    """Return what so many rounds give, which begin with r = s; right beyond the fold."""
-    r = s
-    for _ in range(times):
-        slope = 1 + 3 * k[0] * r**2 + 5 * k[1] * r**4
-        L = 1 + k[0] * r**2 + k[1] * r**4
-        r = r - (r * L - s) / slope if newton else s / L
-    return np.where(np.isnan(inverse_radius(s, k)), np.nan, r)
+def _rounds(n: int, step: str) -> tuple[str, ...]:
+    """Return the changes that make n rounds from r = s, r ← step; right beyond the fold."""
+    halving = "np.where(more, r, low), np.where(more, high, r)"
+    loop = ("range(60)", f"range({n})", "(low + high) / 2", "low", halving, f"{step}, 0")
+    return "0 * s, fold", "s, 0", *loop
 
 
 def _root(s: Array, k: Array, first: bool) -> Array:
@@ -68,13 +64,14 @@ _MISTAKES = mistakes_in(inverse_radius,
     ("another branch", "That is on a branch behind the fold. Newton's method goes there where "
      "r = s is behind it already. Hold r between 0 and the fold: how can one halve the way?",
      "_root(s, k, False)",
-     *(lambda s, k, n=n: _rounds(s, k, n, True) for n in (10, 20, 30, 50, 100))),
+     *(_rounds(n, "r - (r + k1 * r**3 + k2 * r**5 - s) / (1 + 3 * k1 * r**2 + 5 * k2 * r**4)")
+       for n in (10, 20, 30, 50, 100))),
     ("rounds that do not settle", "Dividing by L settles slowly near a fold, and not at all where "
      "L is large. Halving the way from 0 to the fold always does.",
-     *(lambda s, k, n=n: _rounds(s, k, n, False) for n in (5, 10, 20, 50, 100, 200, 1000))),
+     *(_rounds(n, "s / (1 + k1 * r**2 + k2 * r**4)") for n in (5, 10, 20, 50, 100, 200, 1000))),
 )  # fmt: skip
 
-INVERSE = Exercise(
+EXERCISE = Exercise(
     name="inverse_radius",
     chapter=4,
     title="Back through a lens that folds",

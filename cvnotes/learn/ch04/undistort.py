@@ -1,15 +1,11 @@
 """Back through the lens."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import close_to
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
 
 
 def _observed_points(rng: Rng) -> list[Case]:
@@ -27,21 +23,6 @@ def _observed_points(rng: Rng) -> list[Case]:
     ]
 
 
-Step = Callable[[Array, Array, Array], Array]
-
-
-def _rounds(n: int, step: Step) -> Callable[[Array, Array], Array]:
-    """Return what n rounds make of the points seen: (points so far, seen, k) → points."""
-
-    def gives(xy_lens: Array, k: Array) -> Array:
-        xy = xy_lens
-        for _ in range(n):
-            xy = step(xy, xy_lens, k)
-        return xy
-
-    return gives
-
-
 def _nearly_there(xy: Array, case: Case) -> bool:
     """Return whether points are on the right rays, and near to where they belong."""
     right = case.right
@@ -54,7 +35,7 @@ def _nearly_there(xy: Array, case: Case) -> bool:
     )
 
 
-def undistort(xy_lens: Array, k: Array) -> Any:
+def undistort(xy_lens: Array, k: Array) -> Array:
     """Return the ideal points (n, 2) seen at xy_lens (n, 2), to 1e-8."""
     k1, k2 = k
     s = np.linalg.norm(xy_lens, axis=1, keepdims=True)  # the radius at which each point is seen
@@ -65,51 +46,46 @@ def undistort(xy_lens: Array, k: Array) -> Any:
     return xy_lens / L
 
 
-_BY_R = "xy_lens * np.divide(r, s, out=np.ones_like(s), where=s > 0)"
-_MISTAKES = (
-    *mistakes(
-        ("nothing on the axis",
-         "Right, except for the point on the axis, where you divided 0 by 0: divide by L there "
-         "too, and not by r.",
-         lambda xy_lens, k: np.where(xy_lens.any(1)[:, None], undistort(xy_lens, k), np.nan)),
-        ("divided once",
-         "You divided by L at the radius that was seen. L is a function of the ideal radius, "
-         "which you now know better.",
-         _rounds(1, lambda xy, _, k: xy / lens_factor(xy, k))),
-        ("distorted once more", "You distorted the points a second time: that leads on, not back.",
-         lambda xy_lens, k: xy_lens * lens_factor(xy_lens, k)),
-        ("signs of k changed",
-         "A lens with −k1 and −k2 undoes the distortion only roughly: the inverse of a "
-         "polynomial is no such polynomial.",
-         lambda xy_lens, k: xy_lens * lens_factor(xy_lens, -k)),
-        ("divided what was divided already",
-         "Each round divides xy_lens, what was seen, by L at the better radius. You divided the "
-         "last result again, which goes on for ever.",
-         *(_rounds(n, lambda xy, _, k: xy / lens_factor(xy, k))
-           for n in (2, 5, 10, 20, 30, 50, 100))),
-        ("multiplied in each round",
-         "In each round you multiplied, or subtracted, where a division belongs.",
-         *(_rounds(n, lambda xy, seen, k: seen * lens_factor(xy, k))
-           for n in (2, 5, 10, 20, 30, 50, 100))),
-        ("r for r²", "Which powers of r does L have? You have others.",
-         _rounds(100, lambda xy, seen, k: seen / (1 + k[0] * np.hypot(*xy.T)[:, None]
-                                                  + k[1] * (xy**2).sum(1, keepdims=True))),
-         lambda xy_lens, k: undistort(xy_lens, np.array([k.sum(), 0.0]))),
-    ),
-    Misconception(
-        "a few rounds", "Your way is right but stops too early: some rounds leave an error that is "
-        "larger than 1e-8. Go on until nothing changes.",
-        _rounds(2, lambda xy, seen, k: seen / lens_factor(xy, k)),
-        (*(_rounds(n, lambda xy, seen, k: seen / lens_factor(xy, k)) for n in (3, 4, 5, 7, 20)),
-         *(_rounds(n, lambda xy, seen, k: seen - xy * (lens_factor(xy, k) - 1))
-           for n in (2, 3, 5, 10)),
-         *(edited(undistort, "range(50)", f"range({n})", "xy_lens / L", _BY_R)
-           for n in (1, 2, 3, 4))),
-        seen=_nearly_there),
+_L = "(1 + k1 * r**2 + k2 * r**4)"
+_NEWTON = "r - (r + k1 * r**3 + k2 * r**5 - s) / (1 + 3 * k1 * r**2 + 5 * k2 * r**4)"
+
+
+def _rounds(n: int, step: str) -> tuple[str, ...]:
+    """Return the changes that make n rounds, r ← step, and return the points with that r."""
+    by_r = "xy_lens * np.divide(r, s, out=np.ones_like(s), where=s > 0)"
+    return _NEWTON, step, "range(50)", f"range({n})", by_r
+
+
+_MISTAKES = mistakes_in(undistort,
+    ("nothing on the axis", "Right, except for the point on the axis, where you divided 0 by 0: "
+     "divide by L there too, and not by r.",
+     "np.where(s > 0, xy_lens / L, np.nan)"),
+    ("divided once", "You divided by L at the radius that was seen. L is a function of the ideal "
+     "radius, which you now know better.",
+     _rounds(1, f"s / {_L}")),
+    ("distorted once more", "You distorted the points a second time: that leads on, not back.",
+     _rounds(1, f"s * {_L}")),
+    ("signs of k changed", "A lens with −k1 and −k2 undoes the distortion only roughly: the "
+     "inverse of a polynomial is no such polynomial.",
+     ("= k\n", "= -k\n", *_rounds(1, f"s * {_L}"))),
+    ("divided what was divided already", "Each round divides xy_lens, what was seen, by L at the "
+     "better radius. You divided the last result again, which goes on for ever.",
+     *(("    L =", f"    for _ in range({n}): xy_lens = xy_lens / lens_factor(xy_lens, k)\n    L =",
+        "xy_lens") for n in (2, 5, 10, 20, 30, 50, 100))),
+    ("multiplied in each round",
+     "In each round you multiplied, or subtracted, where a division belongs.",
+     *(_rounds(n, f"s * {_L}") for n in (2, 5, 10, 20, 30, 50, 100))),
+    ("r for r²", "Which powers of r does L have? You have others.",
+     _rounds(100, "s / (1 + k1 * r + k2 * r**2)"), ("= k\n", "= k.sum(), 0\n")),
+    ("a few rounds", "Your way is right but stops too early: some rounds leave an error that is "
+     "larger than 1e-8. Go on until nothing changes.",
+     *(_rounds(n, f"s / {_L}") for n in (2, 3, 4, 5, 7, 20)),
+     *(_rounds(n, f"s - r * ({_L} - 1)") for n in (2, 3, 5, 10)),
+     *(_rounds(n, _NEWTON) for n in (1, 2, 3, 4)), {"seen": _nearly_there}),
 )  # fmt: skip
 
 
-UNDISTORT = Exercise(
+EXERCISE = Exercise(
     name="undistort",
     chapter=4,
     title="Back through the lens",

@@ -6,8 +6,7 @@ import numpy as np
 
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.targets import Chessboard
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def board_points(columns: int, rows: int, square: float) -> Any:
@@ -19,12 +18,10 @@ def board_points(columns: int, rows: int, square: float) -> Any:
 
 
 MISTAKES = mistakes_in(board_points,
-    ("column by column",
-     "The corners are all there, but y runs fastest. The finder lists them row by row, and "
-     "each needs its partner in the same place of the list.",
+    ("column by column", "The corners are all there, but y runs fastest. The finder lists them row "
+     "by row, and each needs its partner in the same place of the list.",
      "square * W.reshape(rows, columns, 3).transpose(1, 0, 2).reshape(-1, 3)"),
-    ("another origin",
-     "The corners are not measured from the first of them, which is the origin.",
+    ("another origin", "The corners are not measured from the first of them, which is the origin.",
      "square * (W + [1, 1, 0])", "square * (W + [0.5, 0.5, 0])", "square * (W - W.mean(axis=0))"),
     ("squares counted, not corners",
      "You have too many corners: `columns` and `rows` count inner corners.",
@@ -36,7 +33,7 @@ MISTAKES = mistakes_in(board_points,
 )  # fmt: skip
 
 
-BOARD = Exercise(
+EXERCISE = Exercise(
     name="board_points",
     chapter=5,
     title="The corners in the board's own frame",

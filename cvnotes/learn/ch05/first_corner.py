@@ -3,8 +3,8 @@
 from cvnotes.base import Array
 from cvnotes.learn.cases.pictures import turned_board
 from cvnotes.learn.cases.slips import misreadings
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import within
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
 
 
 def _corner(column: float, row: float) -> Array:
@@ -16,33 +16,26 @@ def first_corner() -> Array:
     return _corner(0, 0)
 
 
-MISTAKES = mistakes(
-    ("mirrored",
-     "That is the other corner beside a dark outer square, the end of the first row. With "
-     "the origin there, x and y would be a mirror image: y is clockwise from x.",
-     lambda: _corner(3, 0)),
-    ("half a turn",
-     "That is a corner of the last row. Its outer square is light; the one at the first "
-     "corner is dark.",
-     lambda: _corner(3, 2), lambda: _corner(0, 2)),
-    ("outer corner",
-     "Inner corners are those in which four squares meet; you are outside of them, at the "
-     "edge or in a square.",
-     lambda: _corner(-1, -1), lambda: _corner(-0.5, -0.5), lambda: _corner(4, -1),
-     lambda: _corner(-1, 3), lambda: _corner(4, 3), lambda: _corner(-1, 0),
-     lambda: _corner(0, -1)),
-    ("a neighbour",
-     "That is an inner corner, but not one of the four outermost: the first is at the end of"
-     " a row.",
-     lambda: _corner(1, 0), lambda: _corner(0, 1), lambda: _corner(1, 1), lambda: _corner(2, 0),
-     lambda: _corner(2, 1), lambda: _corner(3, 1), lambda: _corner(1, 2), lambda: _corner(2, 2)),
+MISTAKES = mistakes_in(first_corner,
+    ("mirrored", "That is the other corner beside a dark outer square, the end of the first row. "
+     "With the origin there, x and y would be a mirror image: y is clockwise from x.",
+     "_corner(3, 0)"),
+    ("half a turn", "That corner is in the last row: the square outside of it is light, not dark.",
+     "_corner(3, 2)", "_corner(0, 2)"),
+    ("outer corner", "Inner corners are those in which four squares meet; you are outside of them, "
+     "at the edge or in a square.",
+     "_corner(-1, -1)", "_corner(-0.5, -0.5)", "_corner(4, -1)",
+     "_corner(-1, 3)", "_corner(4, 3)", "_corner(-1, 0)", "_corner(0, -1)"),
+    ("a neighbour", "That is an inner corner, but none of the four outermost ones.",
+     "_corner(1, 0)", "_corner(0, 1)", "_corner(1, 1)", "_corner(2, 0)",
+     "_corner(2, 1)", "_corner(3, 1)", "_corner(1, 2)", "_corner(2, 2)"),
     ("middle of the board",
      "That is the middle of the board; its frame begins in the first corner.",
-     lambda: _corner(1.5, 1)),
+     "_corner(1.5, 1)"),
 )  # fmt: skip
 
 
-FIRST = Exercise(
+EXERCISE = Exercise(
     name="first_corner",
     chapter=5,
     title="Which corner is the first?",

@@ -1,13 +1,10 @@
 """Is there a corner."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _windows(rng: Rng) -> list[Case]:
@@ -20,7 +17,7 @@ def _windows(rng: Rng) -> list[Case]:
     ]
 
 
-def harris_measure(Iu: Array, Iv: Array, k: float) -> Any:
+def harris_measure(Iu: Array, Iv: Array, k: float) -> float:
     """Return Harris' measure of the window, a number."""
     uu = (Iu * Iu).sum()  # the sum of the squares of Iu
     vv = (Iv * Iv).sum()  # the sum of the squares of Iv
@@ -55,9 +52,7 @@ MISTAKES = mistakes_in(harris_measure,
      "That is another measure of M: an eigenvalue, the trace, or the determinant over the trace.",
      "trace / 2 - np.sqrt(trace**2 / 4 - det)", "trace / 2 + np.sqrt(trace**2 / 4 - det)",
      "det / trace", "trace"),
-    ("absolute gradients",
-     "You took absolute values: a gradient's sign tells its direction, and the mixed sum "
-     "needs it.",
+    ("absolute gradients", "You took absolute values: the mixed sum needs the gradients' signs.",
      lambda Iu, Iv, k: harris_measure(np.abs(Iu), np.abs(Iv), k)),
     ("mean for sum",
      "M is made of sums over the window; a mean in its place is smaller by the number of pixels.",
@@ -67,7 +62,7 @@ MISTAKES = mistakes_in(harris_measure,
 )  # fmt: skip
 
 
-HARRIS = Exercise(
+EXERCISE = Exercise(
     name="harris_measure",
     chapter=5,
     title="Is there a corner?",

@@ -6,7 +6,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes
 
 
 def knows_its_origin(columns: Array, rows: Array) -> Array:
@@ -21,23 +21,19 @@ def _boards(_: Rng) -> list[Case]:
 
 
 MISTAKES = mistakes(
-    ("different counts",
-     "That is what the notes ask for, and it is not enough: 8 × 6 differ, and the board "
-     "looks the same after half a turn. What must differ is the parity.",
+    ("different counts", "That is what the notes ask for, and it is not enough: 8 × 6 differ, and "
+     "the board looks the same after half a turn. What must differ is the parity.",
      lambda c, r: c != r),
     ("even or odd alone",
      "With two even counts, or two odd ones, the board looks the same after half a turn.",
      lambda c, r: c * r % 2 == 0, lambda c, r: (c % 2 == 1) | (r % 2 == 1),
      lambda c, r: c * r % 2 == 1, lambda c, r: (c % 2 == 0) & (r % 2 == 0)),
-    ("no common divisor",
-     "What the counts share does not matter: 9 × 6 is fine, although both are divisible by "
-     "3. One count must be even and the other odd.",
+    ("no common divisor", "What the counts share does not matter: 9 × 6 is fine, although both are "
+     "divisible by 3. One count must be even and the other odd.",
      lambda c, r: np.gcd(c, r) == 1),
     ("counts that differ by one", "Counts that differ by 1 do, but others do so too.",
      lambda c, r: np.abs(c - r) == 1),
-    ("columns only",
-     "One of the two counts alone does not tell: 7 × 7 and 8 × 6 look the same after half a "
-     "turn.",
+    ("columns only", "One count alone does not tell: 7 × 7, 8 × 6 look the same after half a turn.",
      lambda c, r: c % 2 == 1, lambda c, r: r % 2 == 0, lambda c, r: c % 2 == 0,
      lambda c, r: r % 2 == 1),
     ("more columns than rows", "Which count is larger, or which comes first, does not matter.",
@@ -49,7 +45,7 @@ MISTAKES = mistakes(
 )  # fmt: skip
 
 
-ORIGIN = Exercise(
+EXERCISE = Exercise(
     name="knows_its_origin",
     chapter=5,
     title="Which boards know their origin?",

@@ -4,8 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def saddle_point(patch: Array) -> Array:
@@ -44,11 +43,9 @@ _MISTAKES = mistakes_in(saddle_point,
     ("a hill is no saddle", "Hills and hollows have a level point, too. A saddle rises one way and "
      "falls another: which sign has the determinant of the second derivatives?",
      ("np.linalg.det(S) < 0", "True")),
-    ("axes one by one", "You looked for the level point along u and along v separately; the mixed "
-     "term couples them.",
+    ("axes one by one", "You went along u and v one by one; the mixed term couples them.",
      ("np.linalg.solve(S, [-d, -e])", "-np.array([d, e]) / np.diag(S)")),
-    ("counted from the middle", "You counted from the middle of the patch; its first pixel is "
-     "(0, 0).",
+    ("counted from the middle", "You counted from the middle; the first pixel is (0, 0).",
      lambda patch: saddle_point(patch) - (np.array(patch.shape[::-1]) - 1) / 2,
      lambda patch: saddle_point(patch) - np.array(patch.shape[::-1]) // 2),
     ("the middle pixel's derivatives", "Differences at one pixel are as noisy as its few "
@@ -56,7 +53,7 @@ _MISTAKES = mistakes_in(saddle_point,
      _of_three),
 )  # fmt: skip
 
-SADDLE = Exercise(
+EXERCISE = Exercise(
     name="saddle_point",
     chapter=5,
     title="The corner between the pixels",

@@ -1,14 +1,11 @@
 """The rows of the DLT."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.homography import design_matrix
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _pairs(rng: Rng) -> list[Case]:
@@ -31,7 +28,7 @@ def same_row_space(a: Array, b: Array, tolerance: float) -> bool:
     return bool(np.abs(spaces[0] - spaces[1]).max() <= 10 * tolerance)
 
 
-def _steps(src: Array, dst: Array) -> Any:
+def _steps(src: Array, dst: Array) -> Array:
     """Return D (2n, 9) of D h = 0 for dst ≈ H src."""
     u, v = dst[:, :1], dst[:, 1:]
     W = np.column_stack([src, np.ones(len(src))])  # the points of src, homogeneous
@@ -44,16 +41,13 @@ def _steps(src: Array, dst: Array) -> Any:
 _MISTAKES = mistakes_in(_steps,
     ("columns of H stacked", "Your h has the columns of H stacked; the notes stack its rows.",
      lambda src, dst: design_matrix(src, dst)[:, [0, 3, 6, 1, 4, 7, 2, 5, 8]]),
-    ("sign of the last block", "The last block has the wrong sign: which side of the equation did "
-     "it come from?",
+    ("sign of the last block", "The last block has the wrong sign: from which side did it come?",
      ("-u", "u", "-v", "v")),
     ("sign of one block", "In one of the two rows of each pair the last block has the wrong sign.",
      ("-u", "u"), ("-v", "v")),
-    ("points lifted with 0", "You lifted points with 0, as a direction is; what has a point of the "
-     "plane?",
+    ("points lifted with 0", "You lifted points with 0, as directions; what do points get?",
      ("np.ones(len(src))", "np.zeros(len(src))")),
-    ("the last block", "The last block is wrong: a pixel is a quotient, and what is its "
-     "denominator multiplied by?",
+    ("the last block", "The last block is wrong: what is multiplied by a pixel's denominator?",
      ("-u * W", "-W", "-v * W", "-W"),
      ("-u * W", "-u * W * [0, 0, 1]", "-v * W", "-v * W * [0, 0, 1]"),
      ("-u * W", "-W * np.hstack([u**0, u**0, u])", "-v * W", "-W * np.hstack([v**0, v**0, v])"),
@@ -62,7 +56,7 @@ _MISTAKES = mistakes_in(_steps,
      lambda src, dst: design_matrix(src, dst)[:, :8]),
 )  # fmt: skip
 
-DESIGN = Exercise(
+EXERCISE = Exercise(
     name="design_matrix",
     chapter=6,
     title="The rows of the DLT",

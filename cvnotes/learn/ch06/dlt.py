@@ -1,8 +1,5 @@
 """The direct linear transform."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
@@ -10,7 +7,6 @@ from cvnotes.homography import design_matrix, dlt, geometric_error, normaliser
 from cvnotes.homography.linear import normal_matrix
 from cvnotes.learn.cases.cameras import (
     SQUARE,
-    SQUARE_SEEN,
     affine_fit,
     board_grid,
     plane_image,
@@ -20,9 +16,8 @@ from cvnotes.learn.cases.cameras import (
 )
 from cvnotes.learn.ch06.design_matrix import _steps as _steps_of_rows
 from cvnotes.projective import apply
+from cvnotes.tutor import Case, Exercise, Property, Rng, edited, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale, up_to_signs
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def _views(rng: Rng) -> list[Case]:
@@ -31,7 +26,7 @@ def _views(rng: Rng) -> list[Case]:
     H = some_homography(rng)
     noisy = apply(some_homography(rng), board) + 0.3 * rng.standard_normal((12, 2))
     return [
-        Case((SQUARE, SQUARE_SEEN)),
+        Case(SQUARE),
         Case((board, np.round(apply(H, board), 9))),
         Case((board, np.round(noisy, 2)), about="noisy"),
         Case(_far_away(rng, board), about="noisy"),
@@ -65,7 +60,7 @@ def _fits_noise(H: Array, case: Case) -> bool:
     return _rms(H, *case.args) <= 1.2 * _rms(case.right, *case.args)
 
 
-def _steps(src: Array, dst: Array) -> Any:
+def _steps(src: Array, dst: Array) -> Array:
     """Return H (3, 3) with dst ≈ H src."""
     N1 = normaliser(src)  # what normalises src
     N2 = normaliser(dst)  # what normalises dst
@@ -85,13 +80,13 @@ _two_signs = edited(_steps_of_rows, "-u", "u", "-v", "v")
 _one_sign = edited(_steps_of_rows, "-u", "u")
 
 
-def _both(*changes: str) -> tuple[Callable[..., Any], ...]:
+def _both(*changes: str) -> tuple[tuple[str, ...], ...]:
     """Return a mistake without normalising, and with."""
-    return edited(_steps, *_RAW, *changes), edited(_steps, *changes)
+    return (*_RAW, *changes), changes
 
 
 # What a slip in the rows of D does to H, where it leaves one null vector.
-OF_THE_ROWS = mistakes(
+OF_THE_ROWS = mistakes_in(_steps,
     ("sign of the last block",
      "The last block of D has the wrong sign: W̃' and −u W̃'. So the last row of H has, too.",
      *_both("design_matrix(", "_two_signs(")),
@@ -99,37 +94,30 @@ OF_THE_ROWS = mistakes(
      "In one of the two rows of each pair D has the wrong sign: −u W̃' and −v W̃'.",
      *_both("design_matrix(", "_one_sign(")),
 )  # fmt: skip
-_MISTAKES = (
-    *OF_THE_ROWS,
-    Misconception(
-        "a column of Vt",
-        "You took the last column of Vt. np.linalg.svd gives Vᵀ: where are the singular vectors?",
-        edited(_steps, *_RAW, "Vt[-1]", "Vt[:, -1]"), same=up_to_signs),
-    *mistakes_in(_steps,
-        ("an affine map", "The last row of your H is (0, 0, 1): an affine map keeps parallels "
-         "parallel, which a camera does not.",
-         affine_fit),
-        ("the largest singular value", "You took the first singular vector, for which ‖D h‖ is "
-         "largest; for which one is it smallest?",
-         *_both("Vt[-1]", "Vt[0]")),
-        ("normalisation not undone", "That is the homography between normalised points: how does "
-         "a point get there, and back?",
-         "G", "G @ N1", "np.linalg.inv(N2) @ G"),
-        ("normalisers in the wrong places", "You undid the normalisation with the normalisers "
-         "exchanged, or inverted: a point of src enters at the right, and leaves at the left as "
-         "one of dst.",
-         "np.linalg.inv(N1) @ G @ N2", "N1 @ G @ np.linalg.inv(N2)", "N2 @ G @ np.linalg.inv(N1)"),
-        ("full_matrices=False", "Four pairs give eight equations, and full_matrices=False leaves "
-         "their null vector out.",
-         *_both("svd(D)", "svd(D, full_matrices=False)")),
-        ("not normalised", "Right on exact data. With noise the entries of D must be of one size: "
-         "what is to be done with the points first?",
-         _raw, (*_RAW, "Vt[-1]", "np.linalg.eigh(D.T @ D)[1][:, 0]"),
-         (*_RAW, "Vt[-1]", "np.append(np.linalg.lstsq(D[:, :8], -D[:, 8], rcond=None)[0], 1.0)")),
-    ),
+_MISTAKES = mistakes_in(_steps,
+    ("a column of Vt", "You took a column of Vᵀ: where in it are the singular vectors?",
+     (*_RAW, "Vt[-1]", "Vt[:, -1]"), {"same": up_to_signs}),
+    ("an affine map", "The last row of your H is (0, 0, 1): an affine map keeps parallels "
+     "parallel, which a camera does not.",
+     affine_fit),
+    ("the largest singular value", "You took the first singular vector, for which ‖D h‖ is "
+     "largest; for which one is it smallest?",
+     *_both("Vt[-1]", "Vt[0]")),
+    ("normalisation not undone", "That is the homography between normalised points: how does "
+     "a point get there, and back?",
+     "G", "G @ N1", "np.linalg.inv(N2) @ G"),
+    ("normalisers in the wrong places", "The normalisers are exchanged, or inverted: a point of "
+     "src enters at the right, and leaves at the left as one of dst.",
+     "np.linalg.inv(N1) @ G @ N2", "N1 @ G @ np.linalg.inv(N2)", "N2 @ G @ np.linalg.inv(N1)"),
+    ("full_matrices=False", "full_matrices=False leaves out the null vector that eight rows have.",
+     *_both("svd(D)", "svd(D, full_matrices=False)")),
+    ("not normalised", "Right on exact data. With noise the entries of D must be of one size: "
+     "what is to be done with the points first?",
+     _raw, (*_RAW, "Vt[-1]", "np.linalg.eigh(D.T @ D)[1][:, 0]"),
+     (*_RAW, "Vt[-1]", "np.append(np.linalg.lstsq(D[:, :8], -D[:, 8], rcond=None)[0], 1.0)")),
 )  # fmt: skip
 
-DLT = Exercise(
+EXERCISE = Exercise(
     name="dlt",
     chapter=6,
     title="The direct linear transform",
@@ -148,7 +136,7 @@ DLT = Exercise(
         Property("On exact data H is the map that made the data, up to scale and sign."),
         Property("With noise the errors stay as small as the noise.", _fits_noise, about="noisy"),
     ),
-    misconceptions=_MISTAKES,
+    misconceptions=OF_THE_ROWS + _MISTAKES,
     reference=dlt,
     steps=_steps,
     same=up_to_scale,

@@ -1,26 +1,17 @@
 """Four points fix a homography."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.homography import design_matrix, dlt
 from cvnotes.homography.linear import normal_matrix
-from cvnotes.learn.cases.cameras import (
-    SQUARE,
-    SQUARE_SEEN,
-    affine_fit,
-    board_grid,
-    rounded,
-    some_homography,
-)
+from cvnotes.learn.cases.cameras import SQUARE, affine_fit, board_grid, rounded, some_homography
 from cvnotes.learn.ch06.dlt import OF_THE_ROWS
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale, up_to_signs
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def _four(rng: Rng) -> list[Case]:
@@ -29,7 +20,7 @@ def _four(rng: Rng) -> list[Case]:
     at_infinity = np.array([[100.0, 0, 300], [0, 100, 200], [1, 1, 0]])
     corners = np.array([[1.0, 1], [3, 1], [4, 4], [1, 4]])
     return [
-        Case((SQUARE, SQUARE_SEEN)),
+        Case(SQUARE),
         Case((src, dst)),
         Case((corners, rounded(apply(at_infinity, corners), 12)), about="h9 = 0"),
     ]
@@ -46,7 +37,7 @@ def _exactly(H: Array, case: Case) -> bool:
     return np.allclose(mapped, case.args[1], rtol=0, atol=1e-3 * max(1.0, case.slack / 20))
 
 
-def _steps(src: Array, dst: Array) -> Any:
+def _steps(src: Array, dst: Array) -> Array:
     """Return H (3, 3) with dst ≈ H src for four pairs (4, 2)."""
     u, v = dst[:, :1], dst[:, 1:]
     W = np.column_stack([src, np.ones(4)])  # the points of src, homogeneous
@@ -63,41 +54,27 @@ _WITH_H9 = (
     "np.append(np.linalg.solve(D[:, :8], {}D[:, 8]), 1).reshape(3, 3) "
     "if np.linalg.cond(D[:, :8] / abs(D).max(0)[:8]) < 1e10 else None"
 )
-_MISTAKES = (
-    *OF_THE_ROWS,
-    *mistakes_in(_steps,
-        ("an affine map", "The last row of your H is (0, 0, 1): an affine map keeps parallels "
-         "parallel, which a camera does not.",
-         affine_fit),
-        ("h9 = 1", "Right unless the true h9 is 0, which neither h9 = 1 nor the notes' formula for "
-         "h9 can express: both solve the same 8×8 system, and it is singular then.",
-         _WITH_H9.format("-"),
-         "np.append(np.linalg.lstsq(D[:, :8], -D[:, 8])[0], 1).reshape(3, 3)"),
-        ("sign of the right-hand side", "With h9 = 1 the ninth column goes to the other side: with "
-         "which sign?",
-         _WITH_H9.format("")),
-        ("three points only", "That is the affine map of the first three points; the fourth says "
-         "how far it is from one.",
-         lambda src, dst: affine_fit(src[:3], dst[:3])),
-        ("full_matrices=False", "Eight equations have a null vector that full_matrices=False "
-         "leaves out.",
-         ("svd(D)", "svd(D, full_matrices=False)")),
-    ),
-    Misconception(
-        "a column of Vt",
-        "You took the last column of Vt. np.linalg.svd gives Vᵀ: where are the singular vectors?",
-        edited(_steps, "Vt[-1]", "Vt[:, -1]"),
-        same=up_to_signs,
-    ),
-    Misconception(
-        "the last pair left out",
-        "You used three of the four pairs: how many equations are needed?",
-        lambda src, dst: np.linalg.svd(design_matrix(src[:3], dst[:3]))[2][-1].reshape(3, 3),
-        seen=_fits_three,
-    ),
+_MISTAKES = mistakes_in(_steps,
+    ("an affine map", "The last row of your H is (0, 0, 1): an affine map keeps parallels "
+     "parallel, which a camera does not.",
+     affine_fit),
+    ("h9 = 1", "Right unless the true h9 is 0, which neither h9 = 1 nor the notes' formula for h9 "
+     "can express: both solve the same 8×8 system, and it is singular then.",
+     _WITH_H9.format("-"), "np.append(np.linalg.lstsq(D[:, :8], -D[:, 8])[0], 1).reshape(3, 3)"),
+    ("sign of the right-hand side", "With which sign does the ninth column go to the other side?",
+     _WITH_H9.format("")),
+    ("three points only", "That is the affine map of three points. How far off is the fourth?",
+     lambda src, dst: affine_fit(src[:3], dst[:3])),
+    ("full_matrices=False", "full_matrices=False leaves out the null vector that eight rows have.",
+     ("svd(D)", "svd(D, full_matrices=False)")),
+    ("a column of Vt", "You took a column of Vᵀ: where in it are the singular vectors?",
+     ("Vt[-1]", "Vt[:, -1]"), {"same": up_to_signs}),
+    ("the last pair left out", "You used three of the four pairs: how many equations are needed?",
+     lambda src, dst: np.linalg.svd(design_matrix(src[:3], dst[:3]))[2][-1].reshape(3, 3),
+     {"seen": _fits_three}),
 )  # fmt: skip
 
-FOUR = Exercise(
+EXERCISE = Exercise(
     name="four_points",
     chapter=6,
     title="Four points fix a homography",
@@ -120,7 +97,7 @@ FOUR = Exercise(
             about="h9 = 0",
         ),
     ),
-    misconceptions=_MISTAKES,
+    misconceptions=OF_THE_ROWS + _MISTAKES,
     reference=dlt,
     steps=_steps,
     sources=(design_matrix, normal_matrix, dlt),

@@ -1,15 +1,12 @@
 """How far off is H."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.homography import geometric_error
 from cvnotes.learn.cases.cameras import board_grid, rounded, some_factors, some_homography
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _with_errors(rng: Rng) -> list[Case]:
@@ -27,7 +24,7 @@ def _other_plane(H: Array, src: Array, dst: Array) -> Array:
     return geometric_error(np.linalg.inv(H), dst, src)
 
 
-def _steps(H: Array, src: Array, dst: Array) -> Any:
+def _steps(H: Array, src: Array, dst: Array) -> Array:
     """Return the distances (n,) between dst and the image of src under H."""
     s_h = np.column_stack([src, np.ones(len(src))])  # src, lifted
     m_h = s_h @ H.T  # where H takes src, homogeneous
@@ -37,21 +34,18 @@ def _steps(H: Array, src: Array, dst: Array) -> Any:
 
 
 _MISTAKES = mistakes_in(_steps,
-    ("no division", "You subtracted before dividing by the third coordinate, so the scale of H "
-     "enters.",
+    ("no division", "Divide by the third coordinate before you subtract: H has any scale.",
      (" / m_h[:, 2:]", "")),
     ("difference of homogeneous vectors", "You subtracted vectors with three coordinates, as the "
      "notes print it. Their scales are arbitrary.",
      lambda H, src, dst: np.linalg.norm(to_homogeneous(dst) - to_homogeneous(src) @ H.T, axis=1)),
-    ("algebraic error", "That is the algebraic error, as D h = 0 has it: it depends on the scale "
-     "of H and is no distance.",
+    ("algebraic error", "That is the error of D h = 0: it depends on the scale of H.",
      "np.linalg.norm(m_h[:, :2] - m_h[:, 2:] * dst, axis=1)"),
     ("divided by h33", "You divided H by h33; every point has a third coordinate of its own.",
      ("m_h[:, 2:]", "H[2, 2]")),
     ("error in the other plane", "That is the distance in the plane of src; asked is that of dst.",
      _other_plane),
-    ("both directions", "You added the error in the other plane; asked is that in the plane of "
-     "dst.",
+    ("both directions", "You added the error in the other plane; asked is that of dst.",
      lambda H, src, dst: geometric_error(H, src, dst) + _other_plane(H, src, dst),
      lambda H, src, dst: np.hypot(geometric_error(H, src, dst), _other_plane(H, src, dst))),
     ("one coordinate only", "You compared one coordinate only; a distance has both.",
@@ -63,7 +57,7 @@ _MISTAKES = mistakes_in(_steps,
 )  # fmt: skip
 
 
-GEOMETRIC = Exercise(
+EXERCISE = Exercise(
     name="geometric_error",
     chapter=6,
     title="How far off is H?",

@@ -1,23 +1,20 @@
 """Hartley's normalisation."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.homography import normaliser
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.projective import apply
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property
-from cvnotes.tutor.checker.steps import mistakes_in
 
 
 def _mean_distance(N: Array, case: Case) -> float:
     return float(np.linalg.norm(apply(N, case.args[0]), axis=1).mean())
 
 
-def _steps(x: Array) -> Any:
+def _steps(x: Array) -> Array:
     """Return N (3, 3): N x has centroid 0 and mean distance √2 from it."""
     c = x.mean(axis=0)  # the centroid
     r = np.sqrt(((x - c) ** 2).sum(axis=1))  # the distances from the centroid
@@ -29,8 +26,7 @@ def _steps(x: Array) -> Any:
 # One scale for each direction.
 _BY_DIRECTION = ("[s, 0, -s * c[0]], [0, s, -s", "[s[0], 0, -s[0] * c[0]], [0, s[1], -s[1]")
 _MISTAKES = mistakes_in(_steps,
-    ("mean distance 1", "The mean distance became 1: which one is asked, so that a typical point "
-     "is (1, 1)?",
+    ("mean distance 1", "The mean distance became 1; for which one is a typical point (1, 1)?",
      ("np.sqrt(2)", "1")),
     ("each direction by itself", "You scaled each direction by its own spread; one scale for both "
      "is asked, so that circles stay circles.",
@@ -47,8 +43,7 @@ _MISTAKES = mistakes_in(_steps,
      ("-s * c", "-c")),
     ("not centred", "The scale is right, but the points are not shifted to their centroid.",
      ("-s * c", "0 * c")),
-    ("one mean for both coordinates", "You took the mean of all numbers; the centroid has two "
-     "coordinates.",
+    ("one mean for both coordinates", "You averaged all numbers; a centroid has two coordinates.",
      ("x.mean(axis=0)", "np.full(2, x.mean())")),
     ("scaled to [−1, 1]", "You scaled by the largest number, or so that all points lie between −1 "
      "and 1; asked is a mean distance from the centroid.",
@@ -56,13 +51,12 @@ _MISTAKES = mistakes_in(_steps,
       *_BY_DIRECTION),
      ("np.sqrt(2) / d", "1 / abs(x - c).max()"), ("np.sqrt(2) / d", "1 / x.max()"),
      ("np.sqrt(2) / d", "1 / x.max(0)", *_BY_DIRECTION)),
-    ("the points, not the matrix", "These are the normalised points; asked is the matrix that "
-     "makes them.",
+    ("the points, not the matrix", "These are normalised points; asked is the matrix for it.",
      lambda x: apply(normaliser(x), x)),
 )  # fmt: skip
 
 
-NORMALISER = Exercise(
+EXERCISE = Exercise(
     name="normaliser",
     chapter=6,
     title="Hartley's normalisation",

@@ -11,8 +11,7 @@ from cvnotes.base import Array
 from cvnotes.homography import dlt
 from cvnotes.learn.cases.cameras import rounded, some_homography
 from cvnotes.projective import apply
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def ransac(src: Array, dst: Array, draws: Any, t: float) -> tuple[float, float]:
@@ -50,13 +49,12 @@ _MISTAKES = mistakes_in(ransac,
      ("q**4", "q"), ("q**4", "4 * q")),
     ("0.999 for 0.001", "All N draws may be wrong with probability 0.001; you allowed 0.999.",
      ("0.001", "0.999")),
-    ("the part of wrong pairs", "You worked with the part of wrong pairs; a draw is of use if "
-     "four right ones meet.",
+    ("the part of wrong pairs", "You took the wrong pairs' part: four right ones have to meet.",
      ("q**4", "(1 - q) ** 4"), ("1 - q**4", "1 - (1 - q**4)"),
      (_N, "np.ceil(np.log(0.001) / np.log(q))")),
 )  # fmt: skip
 
-RANSAC = Exercise(
+EXERCISE = Exercise(
     name="ransac",
     chapter=6,
     title="RANSAC, and its number of draws",

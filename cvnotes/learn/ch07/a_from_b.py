@@ -1,15 +1,12 @@
 """The camera in B."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.calibration import intrinsics_from_b
 from cvnotes.learn.cases.cameras import some_intrinsics
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _b_of(A: Array, factor: float) -> Array:
@@ -38,7 +35,7 @@ def _last_one(M: npt.ArrayLike) -> Array:
     return np.asarray(M / M[2, 2])
 
 
-def A_from_b(b: Array) -> Any:
+def A_from_b(b: Array) -> Array:
     """Return A (3, 3) from b (6,), of any scale and sign."""
     B11, B12, B22, B13, B23, B33 = b * np.sign(b[0])  # the entries of B, with B11 positive
     D = B11 * B22 - B12**2  # the minor B11 B22 − B12²
@@ -63,8 +60,7 @@ _MISTAKES = mistakes_in(A_from_b,
      "triangular factor of that; A is upper triangular.",
      "_last_one(np.linalg.cholesky(np.linalg.inv(_B(b)))) if b[0] > 0 else None",
      "_last_one(np.linalg.cholesky(np.linalg.inv(_B(b))).T) if b[0] > 0 else None"),
-    ("scale taken for 1", "You took b for entries of A⁻ᵀ A⁻¹ itself; its scale is unknown, and has "
-     "to be found first.",
+    ("scale taken for 1", "You took 1 for the scale of b; it has to be found first.",
      ("s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11", "s = 1", "b * np.sign(b[0])", "b"),
      ("s = B33 - (B13**2 + v0 * (B12 * B13 - B11 * B23)) / B11", "s = 1")),
     ("sign taken for positive", "Right for a b with B11 > 0. A null vector comes with either sign.",
@@ -78,7 +74,7 @@ _MISTAKES = mistakes_in(A_from_b,
      "_last_one(_B(b))", _B),
 )  # fmt: skip
 
-A_FROM_B = Exercise(
+EXERCISE = Exercise(
     name="A_from_b",
     chapter=7,
     title="The camera in B",

@@ -1,16 +1,14 @@
 """What all views say about B."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import constraints, solve_b, v_ij
 from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, plane_image, some_intrinsics, some_views
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale, up_to_signs
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
-from cvnotes.tutor.checker.steps import edited
 
 # The picture scaled to about [−1, 1], in which the entries of b are of one size.
 _UNIT = np.array([[1 / 320, 0, -0.85], [0, 1 / 320, -0.6], [0, 0, 1]])
@@ -40,39 +38,22 @@ def _noisy_views(rng: Rng, A: Array) -> Array:
 _TILTS = (ABOUT_X, ABOUT_Y, ABOUT_X @ ABOUT_Y)
 
 
-def _null(V: Array) -> Array:
-    return np.asarray(np.linalg.svd(V)[2][-1])
-
-
 def _rows(H: Array) -> Array:
-    """Stack v_12 and v_11 − v_22 of all views, view by view."""
+    """Stack v_12 and v_11 − v_22 of all views, view by view, each H of size 1."""
+    H = H / np.linalg.norm(H, axis=(1, 2), keepdims=True)
     v = v_ij.inside
     return np.stack([v(H, 1, 2), v(H, 1, 1) - v(H, 2, 2)], axis=1).reshape(-1, 6)
 
 
-def _of_size_one(H: Array) -> Array:
-    return np.asarray(H / np.linalg.norm(H, axis=(1, 2), keepdims=True))
-
-
-def _of_some(name: str, sentence: str, some: slice) -> Misconception:
-    """Name what solves some of the equations exactly, and not all of them."""
+def _solves(some: slice) -> dict[str, Callable[[Array, Case], bool]]:
+    """Recognise what solves some of the equations exactly, and not all of them."""
 
     def seen(b: Array, case: Case) -> bool:
-        V = _rows(_of_size_one(*case.args))[some]
+        V = _rows(*case.args)[some]
         size = np.linalg.norm(V, axis=1) * np.linalg.norm(b)
         return bool((np.abs(V @ b) <= 1e-9 * size).all() and b.any())
 
-    return Misconception(name, sentence, lambda H: _null(_rows(H)[some]), seen=seen)
-
-
-def _at_any_scale(gives: Callable[[Array], Array]) -> tuple[Callable[[Array], Array], ...]:
-    """Return a mistake whose result depends on how the student scaled the H."""
-    return (
-        gives,
-        lambda H: gives(_of_size_one(H)),
-        lambda H: gives(H / H[:, 2:, 2:]),
-        lambda H: gives(H / np.cbrt(np.linalg.det(H))[:, None, None]),
-    )
+    return {"seen": seen}
 
 
 def _both_constraints(b: Array, case: Case) -> bool:
@@ -81,21 +62,16 @@ def _both_constraints(b: Array, case: Case) -> bool:
     return bool((np.abs(V @ b) <= 1e-6 * case.slack * size).all())
 
 
-def _without_skew(H: Array) -> Array:
-    return np.insert(_null(_rows(H)[:, [0, 2, 3, 4, 5]]), 1, 0.0)
-
-
 def _misfit(b: Array, H: Array) -> float:
     """Return how much the constraints are violated, for views of size one and b of length one."""
-    V = _rows(_of_size_one(H))
-    return float(np.linalg.norm(V @ b) / np.linalg.norm(b))
+    return float(np.linalg.norm(_rows(H) @ b) / np.linalg.norm(b))
 
 
 def _fits_noise(b: Array, case: Case) -> bool:
     return _misfit(b, *case.args) <= 1.5 * _misfit(case.right, *case.args)
 
 
-def b_from_views(H: Array) -> Any:
+def b_from_views(H: Array) -> Array:
     """Return b (6,) from the homographies H (n, 3, 3)."""
     H = H / np.linalg.norm(H, axis=(1, 2), keepdims=True)  # the homographies, each of size 1
     g, h = H[:, :, 0], H[:, :, 1]
@@ -109,49 +85,53 @@ def b_from_views(H: Array) -> Any:
     return Vt[-1]
 
 
-_AS_IT_IS = ("H / np.linalg.norm(H, axis=(1, 2), keepdims=True)", "H")
-_columns = _at_any_scale(lambda H: np.linalg.svd(_rows(H))[2][:, -1])
-_MISTAKES = (
-    *mistakes(
-        ("sum for difference", "You added the equations of both lengths; what is said of them?",
-         *_at_any_scale(edited(b_from_views, "v11 - v22", "v11 + v22", *_AS_IT_IS))),
-        ("rows of H", "You took the rows of H; what are h1 and h2?",
-         *_at_any_scale(edited(
-             b_from_views, "H[:, :, 0], H[:, :, 1]", "H[:, 0], H[:, 1]", *_AS_IT_IS))),
-        ("the largest singular value", "You took the first singular vector, for which ‖V b‖ is "
-         "largest; for which one is it smallest?",
-         *_at_any_scale(edited(b_from_views, "Vt[-1]", "Vt[0]", *_AS_IT_IS))),
-        ("mixed products doubled", "You doubled one of the mixed products, where both belong: "
-         "check v_ij by itself.",
-         *_at_any_scale(edited(
-             b_from_views, "(g[:, i] * h[:, j] + g[:, j] * h[:, i])", "2 * g[:, i] * h[:, j]",
-             *_AS_IT_IS))),
-        ("the first three views only", "Right on exact data. With noise every view counts.",
-         lambda H: solve_b(constraints(H[:3]), skew=True), lambda H: b_from_views(H[:3])),
-        ("B12 for 0", "You set B12 to 0, as for a camera without skew. Here A may have one.",
-         _without_skew, lambda H: _without_skew(_of_size_one(H)),
-         lambda H: solve_b(constraints(H), skew=True) * [1, 0, 1, 1, 1, 1]),
-    ),
-    Misconception(
-        "a column of Vt", "You took the last column of Vt. Where are the singular vectors?",
-        _columns[0], _columns[1:], up_to_signs),
-    _of_some("first view only", "One view gives two equations for five unknowns: what do the "
-             "others say?", np.s_[:2]),
-    _of_some("the last view only", "Your b fits the last view alone: does each round of the loop "
-             "overwrite the rows of the one before?", np.s_[-2:]),
-    _of_some("right angles only", "You asked that h1 and h2 are at right angles. Each view gives a "
-             "second equation: what of their lengths?", np.s_[::2]),
-    _of_some("equal lengths only", "You asked that h1 and h2 are of one length. Each view gives a "
-             "second equation: what of their angle?", np.s_[1::2]),
+_SIZES = (
+    "H / np.linalg.norm(H, axis=(1, 2), keepdims=True)", "H", "H / H[:, 2:, 2:]",
+    "H / np.cbrt(np.linalg.det(H))[:, None, None]",
 )  # fmt: skip
 
-B_FROM_VIEWS = Exercise(
+
+def _at_any_size(*changes: str) -> tuple[tuple[str, ...], ...]:
+    """Return a mistake whose result depends on how the student scaled the H."""
+    return tuple((_SIZES[0], size, *changes) for size in _SIZES)
+
+
+_MISTAKES = mistakes_in(b_from_views,
+    ("sum for difference", "You added the equations of both lengths; what is said of them?",
+     *_at_any_size("v11 - v22", "v11 + v22")),
+    ("rows of H", "You took the rows of H; what are h1 and h2?",
+     *_at_any_size("H[:, :, 0], H[:, :, 1]", "H[:, 0], H[:, 1]")),
+    ("the largest singular value", "You took the first singular vector, for which ‖V b‖ is "
+     "largest; for which one is it smallest?",
+     *_at_any_size("Vt[-1]", "Vt[0]")),
+    ("mixed products doubled", "You doubled a mixed product, where both belong: check v_ij first.",
+     *_at_any_size("(g[:, i] * h[:, j] + g[:, j] * h[:, i])", "2 * g[:, i] * h[:, j]")),
+    ("the first three views only", "Right on exact data. With noise every view counts.",
+     lambda H: solve_b(constraints(H[:3]), skew=True), lambda H: b_from_views(H[:3])),
+    ("B12 for 0", "You set B12 to 0, as for a camera without skew. Here A may have one.",
+     *_at_any_size("svd(V)", "svd(np.delete(V, 1, axis=1))", "np.insert(Vt[-1], 1, 0)"),
+     lambda H: solve_b(constraints(H), skew=True) * [1, 0, 1, 1, 1, 1]),
+    ("a column of Vt", "You took a column of Vᵀ: where in it are the singular vectors?",
+     *_at_any_size("Vt[-1]", "Vt[:, -1]"), {"same": up_to_signs}),
+    ("first view only", "One view gives two equations for five unknowns: what do the others say?",
+     "np.linalg.svd(V[:: len(H)])[2][-1]", _solves(np.s_[:2])),
+    ("the last view only", "Your b fits the last view alone: does each round of the loop overwrite "
+     "the rows of the one before?",
+     "np.linalg.svd(V[len(H) - 1 :: len(H)])[2][-1]", _solves(np.s_[-2:])),
+    ("right angles only", "You asked that h1 and h2 are at right angles. Each view gives a second "
+     "equation: what of their lengths?",
+     "np.linalg.svd(v12)[2][-1]", _solves(np.s_[::2])),
+    ("equal lengths only", "You asked that h1 and h2 are of one length. Each view gives a second "
+     "equation: what of their angle?",
+     "np.linalg.svd(v11 - v22)[2][-1]", _solves(np.s_[1::2])),
+)  # fmt: skip
+
+EXERCISE = Exercise(
     name="b_from_views",
     chapter=7,
     title="What all views say about B",
-    task="Give b = (B11, B12, B22, B13, B23, B33), of any scale and sign, from homographies H "
-    "(n, 3, 3) of n ≥ 3 views, each of a scale of its own, into a picture scaled to about "
-    "[−1, 1].",
+    task="Give b = (B11, B12, B22, B13, B23, B33), of any scale and sign, from homographies H (n, "
+    "3, 3) of n ≥ 3 views, each of a scale of its own, into a picture scaled to about [−1, 1].",
     hints=(
         "Each view gives two rows of V: v_12 and v_11 − v_22, with your v_ij. The H are scaled to "
         "[−1, 1] already: nothing has to be undone.",

@@ -7,7 +7,7 @@ import numpy as np
 from cvnotes.calibration import constraints
 from cvnotes.camera import rotation_from_vector
 from cvnotes.learn.cases.cameras import plane_image
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
+from cvnotes.tutor import Case, Exercise, Property, mistakes
 
 
 @cache
@@ -39,7 +39,7 @@ def bad_views() -> float:
     return float(np.argmin(determinacy()))
 
 
-BAD_VIEWS = Exercise(
+EXERCISE = Exercise(
     name="bad_views",
     chapter=7,
     title="Which set of views is worthless?",

@@ -1,13 +1,10 @@
 """What the views know of the camera, once their poses have taken their share."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _views(rng: Rng) -> list[Case]:
@@ -20,7 +17,7 @@ def _views(rng: Rng) -> list[Case]:
     ]
 
 
-def camera_covariance(Jc: Array, Jp: Array) -> Any:
+def camera_covariance(Jc: Array, Jp: Array) -> Array:
     """Return (c, c) from Jc (n, m, c) and Jp (n, m, p)."""
     CC = Jc.mT @ Jc  # what each view knows of the camera
     CP = Jc.mT @ Jp  # the mixed block of each view
@@ -43,7 +40,7 @@ _MISTAKES = mistakes_in(camera_covariance,
      "np.linalg.inv((J := np.hstack([np.vstack(Jc), np.vstack(Jp)])).T @ J)[: len(S), : len(S)]"),
 )  # fmt: skip
 
-CAMERA_COVARIANCE = Exercise(
+EXERCISE = Exercise(
     name="camera_covariance",
     chapter=7,
     title="What is known of the camera when every pose is unknown too",

@@ -1,30 +1,19 @@
 """Where the board was."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import extrinsics
 from cvnotes.camera import nearest_rotation
-from cvnotes.learn.cases.cameras import (
-    ABOUT_Y,
-    TIDY_A,
-    TIDY_T,
-    plane_image,
-    some_factors,
-    some_intrinsics,
-    some_pose,
-)
+from cvnotes.learn.cases.cameras import TIDY, plane_image, some_factors, some_intrinsics, some_pose
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import same_motion, up_to_scale
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def _posed(rng: Rng) -> list[Case]:
-    cases = [Case((TIDY_A, plane_image(TIDY_A, ABOUT_Y, TIDY_T)))]
+    A, R, T = TIDY
     # T_z is not the only sign that there is
-    cases.append(Case((TIDY_A, plane_image(TIDY_A, ABOUT_Y.T, TIDY_T * [-1, -1, 1]))))
+    cases = [Case((A, plane_image(A, r, t))) for r, t in ((R, T), (R.T, T * [-1, -1, 1]))]
     A = some_intrinsics(rng, skew=True)
     for sign, about in ((1.0, ""), (-1.0, "negative")):
         factor = sign * abs(some_factors(rng, 1)[0])
@@ -53,7 +42,7 @@ def _is_near(G: Array, case: Case) -> bool:
     )
 
 
-def _steps(A: Array, H: Array) -> Any:
+def _steps(A: Array, H: Array) -> Array:
     """Return G (4, 4), CRF ← board."""
     X = np.linalg.inv(A) @ H  # the columns λ r1, λ r2 and λ T
     size = np.linalg.norm(X[:, 0])  # the size of λ
@@ -85,8 +74,7 @@ _MISTAKES = mistakes_in(_steps,
      ("np.linalg.inv(A) @ H", "H", *_RAW), ("np.linalg.inv(A) @ H", "H")),
     ("A for A⁻¹", "You multiplied by A, which H has in it already.",
      ("np.linalg.inv(A)", "A", *_RAW), ("np.linalg.inv(A)", "A")),
-    ("r3 the third column", "The third column of A⁻¹ H is λ T, not r3: the board's own z axis is "
-     "not seen.",
+    ("r3 the third column", "You took the third column of A⁻¹ H for r3: it is λ T.",
      ("np.cross(r1, r2)", "T", *_RAW), ("np.cross(r1, r2)", "T"),
      ("np.cross(r1, r2)", "T / np.linalg.norm(T)")),
     ("no rotation with noise", "Right on exact data. With noise r1 and r2 are neither of one "
@@ -96,8 +84,8 @@ _MISTAKES = mistakes_in(_steps,
      ("np.linalg.norm(X[:, 0])", "np.sqrt(np.prod(np.linalg.norm(X[:, :2], axis=0)))", *_RAW)),
     ("r1 and r2 scaled each by itself", "Right on exact data. You scaled r1 and r2 to length 1 one "
      "by one: with noise they are still not perpendicular.",
-     *(edited(_steps, "    r3 =", "    n = np.linalg.norm(r2); r2 = r2 / n; "
-              f"T = T / (1 + {w} * (n - 1)); r3 =", *_RAW) for w in (0, 0.5, 1))),
+     *(("    r3 =", "    n = np.linalg.norm(r2); r2 = r2 / n; "
+        f"T = T / (1 + {w} * (n - 1)); r3 =", *_RAW) for w in (0, 0.5, 1))),
     ("camera's position for T", "You gave where the camera stands beside R: G has T itself.",
      ("[R, T]", "[R, -R.T @ T]")),
     ("r1 and r2 exchanged", "r1 and r2 are exchanged: to which column of H belongs which?",
@@ -107,7 +95,7 @@ _MISTAKES = mistakes_in(_steps,
      ("np.sign(X[2, 2]) * size", "np.sign(X[2, 2])", *_RAW)),
 )  # fmt: skip
 
-EXTRINSICS = Exercise(
+EXERCISE = Exercise(
     name="extrinsics",
     chapter=7,
     title="Where the board was",
@@ -116,12 +104,10 @@ EXTRINSICS = Exercise(
     "little noise: make R a rotation all the same.",
     hints=(
         "A⁻¹ H = λ [r1 r2 T], and r1 and r2 are unit vectors: |λ| is the length of the first "
-        "column, "
-        "of the second, or the mean of both, which noise makes differ a little.",
+        "column, of the second, or the mean of both, which noise makes differ a little.",
         "Its sign is the one that makes T_z positive.",
         "r3 = r1 × r2; the nearest rotation to [r1 r2 r3], or one by Gram and Schmidt, cures what "
-        "noise did to it. G has R and "
-        "T in its first three rows and (0, 0, 0, 1) below.",
+        "noise did to it. G has R and T in its first three rows and (0, 0, 0, 1) below.",
     ),
     cases=_posed,
     properties=(

@@ -1,13 +1,10 @@
 """The focal length from a camera that turns on the spot: no board, no distances."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, rounded, some_factors, some_rotation
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 # About x and y at once, f = 300: the axis is at 45° to both.
 _ABOUT_BOTH = np.array([[2.0, 1, 600], [1, 2, -600], [-1 / 150, 1 / 150, 1]])
@@ -30,7 +27,7 @@ def _turns(rng: Rng) -> list[Case]:
     ]
 
 
-def focal_from_turn(H: Array) -> Any:
+def focal_from_turn(H: Array) -> float:
     """Return f in pixels from H (3, 3), of any scale and sign."""
     column = np.hypot(H[0, 2], H[1, 2])  # the length of the last column without its last entry
     row = np.hypot(H[2, 0], H[2, 1])  # the length of the last row without its last entry
@@ -42,8 +39,7 @@ _MISTAKES = mistakes_in(focal_from_turn,
      "np.sqrt(H[:2, 2] @ H[:2, 2] / (1 - H[2, 2]**2))",
      ("    column =", "    H = H / np.linalg.norm(H); column =",
       "np.sqrt(H[:2, 2] @ H[:2, 2] / (1 - H[2, 2]**2))")),
-    ("h33 made 1", "You divided by h33, but H with h33 = 1 is no turn: in which ratio does the "
-     "scale cancel?",
+    ("h33 made 1", "H with h33 = 1 is no turn: in which ratio does the scale cancel?",
      "float(np.linalg.norm(H[:2, 2] / H[2, 2]))"),
     ("entries for lengths", "You compared single entries; they are of one size only if the "
      "camera turns about the vertical.",
@@ -66,7 +62,7 @@ _MISTAKES = mistakes_in(focal_from_turn,
       "np.sqrt((H[:2, 0] @ H[:2, 0] - H[:2, 1] @ H[:2, 1]) / (H[2, 1]**2 - H[2, 0]**2))")),
 )  # fmt: skip
 
-TURN = Exercise(
+EXERCISE = Exercise(
     name="focal_from_turn",
     chapter=7,
     title="The focal length without a board",

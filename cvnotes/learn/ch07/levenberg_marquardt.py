@@ -5,9 +5,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import rotation_from_vector
 from cvnotes.learn.cases.cameras import board_grid, rounded
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.tutor.checker.equality import close_to
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng
-from cvnotes.tutor.checker.steps import edited, mistakes_in
 
 
 def misses(x: Array, W: Array, m: Array) -> Array:
@@ -57,26 +56,19 @@ def _leapt(A: Array, case: Case) -> bool:
 
 
 _STEP = "np.linalg.solve(N + mu * np.diag(np.diag(N)), J.T @ r)"
-_MISTAKES = (
-    *mistakes_in(levenberg_marquardt,
-        ("the start", "You came back to the start: no step of yours leads downhill. Which sign "
-         "has J, and which the step?",
-         ("range(14)", "range(0)")),
-        ("stopped too early", "Those are the first steps. Go on until nothing changes any more.",
-         *(edited(levenberg_marquardt, "range(14)", f"range({n})") for n in (5, 6, 7))),
-        ("the camera alone", "You moved the camera's numbers and held the poses; all of them "
-         "come from the same corners.",
-         (_STEP, "np.append(np.linalg.solve(N[:3, :3], (J.T @ r)[:3]), 0 * x[3:])")),
-    ),
-    Misconception(
-        "every step taken", "You leapt far away: take a step only if the sum of squares becomes "
-        "smaller, and try a shorter one if not.",
-        edited(levenberg_marquardt, _STEP, "np.linalg.lstsq(J, r)[0]", "if downhill", "if True"),
-        seen=_leapt,
-    ),
+_MISTAKES = mistakes_in(levenberg_marquardt,
+    ("the start", "No step of yours leads downhill. Which sign has J, and which the step?",
+     ("range(14)", "range(0)")),
+    ("stopped too early", "Those are the first steps. Go on until nothing changes any more.",
+     *(("range(14)", f"range({n})") for n in (5, 6, 7))),
+    ("the camera alone", "You held the poses; all numbers come from the same corners.",
+     (_STEP, "np.append(np.linalg.solve(N[:3, :3], (J.T @ r)[:3]), 0 * x[3:])")),
+    ("every step taken", "You leapt far away: take a step only if the sum of squares becomes "
+     "smaller, and try a shorter one if not.",
+     (_STEP, "np.linalg.lstsq(J, r)[0]", "if downhill", "if True"), {"seen": _leapt}),
 )  # fmt: skip
 
-LEVENBERG_MARQUARDT = Exercise(
+EXERCISE = Exercise(
     name="levenberg_marquardt",
     chapter=7,
     title="Your own Levenberg–Marquardt",

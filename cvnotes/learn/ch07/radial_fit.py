@@ -1,15 +1,12 @@
 """The lens by least squares."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import radial_distortion
 from cvnotes.camera import xy_from_px
 from cvnotes.learn.cases.cameras import rounded, some_lens
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _ideal_and_seen(rng: Rng) -> list[Case]:
@@ -36,7 +33,7 @@ def _misfit(k: Array, case: Case) -> float:
     return float(((xy_lens - xy - _bent(xy, xy) @ k) ** 2).sum())
 
 
-def radial_fit(xy: Array, xy_lens: Array) -> Any:
+def radial_fit(xy: Array, xy_lens: Array) -> Array:
     """Return k (2,) with xy_lens = (1 + k1 r² + k2 r⁴) xy, by least squares."""
     r2 = (xy**2).sum(axis=1, keepdims=True)  # r² of the ideal points
     first = xy * r2  # what k1 is multiplied by
@@ -50,16 +47,14 @@ _MISTAKES = mistakes_in(radial_fit,
     ("r of the observed points", "You computed r from the observed points, as the notes print it: "
      "even exact data give wrong coefficients then. Of which points is L(r)?",
      ("(xy**2)", "(xy_lens**2)"), ("(xy**2)", "(xy_lens**2)", "xy * r2", "xy_lens * r2")),
-    ("k1 alone first", "You fitted k1 without k2, and then k2 to what was left. Both share the "
-     "same points.",
+    ("k1 alone first", "You fitted k2 to what k1 had left. Both share the same points.",
      "[k1 := D[:, 0] @ d / (D[:, 0] @ D[:, 0]), "
      "D[:, 1] @ (d - k1 * D[:, 0]) / (D[:, 1] @ D[:, 1])]"),
     ("k1 only", "You fitted k1 alone, and gave 0 for k2: the fit has two unknowns.",
      "[D[:, 0] @ d / (D[:, 0] @ D[:, 0]), 0]"),
     ("r for r²", "Which powers of r does L have? You have others.",
      ("r2**2", "r2", "first = xy * r2", "first = xy * np.sqrt(r2)"), ("r2**2", "r2**1.5")),
-    ("one coordinate only", "You used the equations of one coordinate; with noise those of the "
-     "other count too.",
+    ("one coordinate only", "You used one coordinate; with noise the other counts, too.",
      "np.linalg.lstsq(D[::2], d[::2])[0]", "np.linalg.lstsq(D[1::2], d[1::2])[0]"),
     ("each coordinate by itself", "You fitted x and y separately; both share k1 and k2.",
      "sum(np.linalg.lstsq(D[i::2], d[i::2])[0] for i in (0, 1)) / 2"),
@@ -67,21 +62,19 @@ _MISTAKES = mistakes_in(radial_fit,
      "right on exact data. With noise, dividing by a small coordinate makes it large.",
      ("    return", "    D, d = D / xy.reshape(-1, 1), d / xy.ravel(); return"),
      ("xy * r2", "r2", "(xy_lens - xy)", "(np.sqrt((xy_lens**2).sum(axis=1) / r2[:, 0]) - 1)")),
-    ("not multiplied by x and y", "You fitted k1 r² + k2 r⁴ itself to what the lens has moved: "
-     "which factor is left out?",
+    ("not multiplied by x and y", "You fitted k1 r² + k2 r⁴ itself: which factor is left out?",
      ("    return", "    D = D / xy.reshape(-1, 1); return")),
     ("a constant fitted too", "You fitted L with a constant of its own, which is known. On exact "
      "data that is the same, with noise it is not.",
-     ("xy * r2", "r2", "first.ravel()", "np.ones(len(xy)), first.ravel()",
-      "(xy_lens - xy)", "np.sqrt((xy_lens**2).sum(axis=1) / r2[:, 0])",
-      "np.linalg.lstsq(D, d)[0][1:]"),
+     ("xy * r2", "r2", "first.ravel()", "np.ones(len(xy)), first.ravel()", "(xy_lens - xy)",
+      "np.sqrt((xy_lens**2).sum(axis=1) / r2[:, 0])", "np.linalg.lstsq(D, d)[0][1:]"),
      ("first.ravel()", "xy.ravel(), first.ravel()", "(xy_lens - xy)", "xy_lens",
       "np.linalg.lstsq(D, d)[0][1:]")),
     ("the first points only", "Right on exact data. With noise every point counts.",
      "np.linalg.lstsq(D[:2], d[:2])[0]"),
 )  # fmt: skip
 
-RADIAL = Exercise(
+EXERCISE = Exercise(
     name="radial_fit",
     chapter=7,
     title="The lens by least squares",

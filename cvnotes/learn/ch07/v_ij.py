@@ -1,14 +1,11 @@
 """One equation for B."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import v_ij as library_v_ij
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import edited, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, edited, mistakes_in
 
 
 def _columns(rng: Rng) -> list[Case]:
@@ -29,7 +26,7 @@ def _form(v: Array, case: Case) -> bool:
     )
 
 
-def v_ij(H: Array, i: int, j: int) -> Any:
+def v_ij(H: Array, i: int, j: int) -> Array:
     """Return v_ij (6,) with h_iᵀ B h_j = v_ij·b; i and j count columns from 1."""
     a, b = H[:, i - 1], H[:, j - 1]
     b12 = a[0] * b[1] + a[1] * b[0]  # what belongs to B12
@@ -41,12 +38,10 @@ def v_ij(H: Array, i: int, j: int) -> Any:
 _MISTAKES = mistakes_in(v_ij,
     ("columns counted from 0", "Python counts columns from 0, this exercise from 1.",
      ("i - 1], H[:, j - 1]", "i], H[:, j]")),
-    ("mixed products once", "B12 stands in B twice, so that two products belong to it; you have "
-     "one of them.",
+    ("mixed products once", "B12 stands in B twice: two products belong to it, you have one.",
      (" + a[1] * b[0]", "", " + a[2] * b[0]", "", " + a[2] * b[1]", ""),
      ("a[0] * b[1] + ", "", "a[0] * b[2] + ", "", "a[1] * b[2] + ", "")),
-    ("mixed products doubled", "You doubled one product; the two that belong to B12 differ if i "
-     "and j do.",
+    ("mixed products doubled", "You doubled one product; the two of B12 differ if i and j do.",
      ("+ a[1] * b[0]", "+ a[0] * b[1]", "+ a[2] * b[0]", "+ a[0] * b[2]", "+ a[2] * b[1]",
       "+ a[1] * b[2]")),
     ("mixed products halved", "B12 and B21 are one unknown, and b has it once: why a half?",
@@ -60,7 +55,7 @@ _MISTAKES = mistakes_in(v_ij,
       "2 * a[2] * b[2]"), ("b12, ", "2 * b12, ", "b13, b23,", "2 * b13, 2 * b23,")),
 )  # fmt: skip
 
-V_IJ = Exercise(
+EXERCISE = Exercise(
     name="v_ij",
     chapter=7,
     title="One equation for B",

@@ -1,15 +1,12 @@
 """A warp without holes."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import image_of_noise, pixel_centres, rounded
 from cvnotes.projective import apply
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.warping import backward_warp as library_warp
 from cvnotes.warping import homography_map
 
@@ -49,7 +46,7 @@ def _interpolated(image: Array, H: Array, size: tuple[int, int]) -> Array:
     return np.asarray(library_warp(image, to_source, size=size, method="bilinear"), dtype=float)
 
 
-def backward_warp(image: Array, H: Array, size: tuple[int, int]) -> Any:
+def backward_warp(image: Array, H: Array, size: tuple[int, int]) -> Array:
     """Return the warped picture, shape (size[1], size[0])."""
     height, width = image.shape
     columns, rows = size
@@ -74,12 +71,10 @@ _MISTAKES = mistakes_in(backward_warp,
      ("k = np.rint(m)", "k = np.rint(m)[..., ::-1]")),
     ("border repeated", "Outside of the source you repeated its border; the task asks for 0 there.",
      ("np.rint(m)", "np.clip(np.rint(m), 0, [width - 1, height - 1])")),
-    ("wrapped around", "Outside of the source you went on at its other side, as % does; the task "
-     "asks for 0 there.",
+    ("wrapped around", "Outside you went on at the source's other side; 0 is asked there.",
      ("np.rint(m)", "np.rint(m) % [width, height]")),
-    ("negative indices that wrap", "A negative index does not fail in Python: it counts from the "
-     "end, so that the other side of the picture shows up. Is each position inside at the left "
-     "and above as well?",
+    ("negative indices that wrap", "A negative index counts from the end, so that the other side "
+     "of the picture shows up. Is each position inside at the left and above as well?",
      ("(k >= 0) & ", "")),
     ("truncated, not rounded", "int() cuts the decimals off, towards 0; which pixel is nearest?",
      ("np.rint(m)", "np.trunc(m + 1e-9)")),
@@ -95,7 +90,7 @@ _MISTAKES = mistakes_in(backward_warp,
      ("image[j, i], 0)", "image[j, i], image.mean())")),
 )  # fmt: skip
 
-BACKWARD = Exercise(
+EXERCISE = Exercise(
     name="backward_warp",
     chapter=8,
     title="A warp without holes",

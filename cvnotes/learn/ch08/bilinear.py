@@ -1,13 +1,10 @@
 """Between the pixels."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import image_of_noise, rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 from cvnotes.warping import bilinear as library_bilinear
 
 
@@ -22,7 +19,7 @@ def _positions(rng: Rng) -> list[Case]:
     return cases + [Case((by_hand, u, v), about="border") for u, v in border]
 
 
-def bilinear(image: Array, u: float, v: float) -> Any:
+def bilinear(image: Array, u: float, v: float) -> float:
     """Return the grey level at (u, v), bilinearly interpolated."""
     height, width = image.shape
     i, j = int(np.floor(u)), int(np.floor(v))
@@ -41,8 +38,7 @@ _MISTAKES = mistakes_in(bilinear,
     ("sign of I1 in the expanded form", "You followed the notes' last but one line, which has a "
      "wrong sign in the factor of Δu Δv.",
      "I1 + (I2 - I1) * du + (I3 - I1) * dv + (I4 - I3 - I2 - I1) * du * dv"),
-    ("mixed term left out", "You added what changes along u and along v; the term with Δu Δv is "
-     "missing.",
+    ("mixed term left out", "You added the changes along u and v; the term with Δu Δv is missing.",
      "I1 + (I2 - I1) * du + (I3 - I1) * dv"),
     ("rows and columns exchanged", "You read image[u, v]: in an image rows come first.",
      lambda image, u, v: bilinear(image.T, u, v)),
@@ -55,8 +51,7 @@ _MISTAKES = mistakes_in(bilinear,
     ("nearest pixel", "That is the nearest pixel; the other three count too.",
      "image[round(v), round(u)]", "image[int(np.floor(v + 0.5)), int(np.floor(u + 0.5))]",
      "image[int(np.ceil(v - 0.5)), int(np.ceil(u - 0.5))]"),
-    ("mean of the four", "That is the mean of the four pixels, wherever the position is between "
-     "them.",
+    ("mean of the four", "That is the mean of four pixels: the nearer ones count more.",
      "(I1 + I2 + I3 + I4) / 4"),
     ("neighbour beyond the border", "Right inside. In the last column or row there is no pixel "
      "beyond; but what would its weight be?",
@@ -70,14 +65,13 @@ _MISTAKES = mistakes_in(bilinear,
       "below = min(j + 1, height - 1)", "j = min(j, height - 2); below = j + 1")),
     ("half-pixel centres", "You took pixel centres at halves. Here whole numbers are the centres.",
      lambda image, u, v: bilinear(image, max(u - 0.5, 0.0), max(v - 0.5, 0.0))),
-    ("bytes that wrap around", "You calculated with bytes: 50 − 90 is 216 there. Convert the image "
-     "to float first.",
+    ("bytes that wrap around", "In bytes 50 − 90 is 216: convert the image to float first.",
      ("    I1, I2 =", "    image = image.astype(np.uint8); I1, I2 =",
       "(1 - du) * I1 + du * I2", "I1 + (I2 - I1) * du",
       "(1 - du) * I3 + du * I4", "I3 + (I4 - I3) * du", "upper + (lower - upper) * dv")),
 )  # fmt: skip
 
-BILINEAR = Exercise(
+EXERCISE = Exercise(
     name="bilinear",
     chapter=8,
     title="Between the pixels",

@@ -7,8 +7,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import pixel_centres, rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _landings(rng: Rng) -> list[Case]:
@@ -32,7 +31,7 @@ def _wrong_counts() -> Iterator[Callable[[Array, tuple[int, int]], Any]]:
         yield from (mistake.gives, *mistake.variants)
 
 
-def count_holes(m: Array, size: tuple[int, int]) -> Any:
+def count_holes(m: Array, size: tuple[int, int]) -> float:
     """Count the target pixels that receive no source pixel."""
     width, height = size
     pixels = np.rint(m)  # the nearest pixels
@@ -48,16 +47,13 @@ _MISTAKES = mistakes_in(count_holes,
     ("folds not considered", "You subtracted the number of source pixels that land inside. Several "
      "of them may land on one pixel (a fold), which is then coloured once.",
      "width * height - inside.sum()"),
-    ("folds counted", "That is how many source pixels land where another one has landed already: "
-     "folds, not holes.",
+    ("folds counted", "So many land where another one has landed: folds, not holes.",
      "inside.sum() - len(hit)"),
     ("another rounding", "You cut the decimals off, or rounded upwards: is that the nearest pixel?",
      ("np.rint(m)", "np.floor(m)"), ("np.rint(m)", "np.ceil(m)")),
-    ("positions outside counted", "You counted positions outside of the target as if they coloured "
-     "a pixel of it.",
+    ("positions outside counted", "You counted positions outside: they colour no pixel.",
      ("pixels[inside]", "pixels")),
-    ("n subtracted", "Pixels of the target minus pixels of the source: but some land outside, and "
-     "some on the same pixel.",
+    ("n subtracted", "Some source pixels land outside, and some on the same pixel.",
      "width * height - len(m)"),
     ("size exchanged", "size is (width, height): with which of both does u go?",
      ("< size", "< (height, width)")),
@@ -77,7 +73,7 @@ _MISTAKES = mistakes_in(count_holes,
      (">= 0", "> 0")),
 )  # fmt: skip
 
-HOLES = Exercise(
+EXERCISE = Exercise(
     name="count_holes",
     chapter=8,
     title="Holes in a forward warp",

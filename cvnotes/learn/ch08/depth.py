@@ -1,14 +1,11 @@
 """Depth from two pictures."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.stereo import disparity_to_depth
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _columns(rng: Rng) -> list[Case]:
@@ -23,18 +20,16 @@ def _columns(rng: Rng) -> list[Case]:
     ]
 
 
-def depth(alpha: float, b: float, u_left: Array, u_right: Array) -> Any:
+def depth(alpha: float, b: float, u_left: Array, u_right: Array) -> Array:
     """Return the depths (n,) in millimetres."""
     d = u_left - u_right  # the disparity
     return alpha * b / d
 
 
 _MISTAKES = mistakes_in(depth,
-    ("no answer at infinity", "Right, except where the disparity is 0 and you have no answer: how "
-     "far is such a point?",
+    ("no answer at infinity", "Right, but without disparity you have no answer: how far is that?",
      "alpha * b / d if d.all() else None"),
-    ("infinity too early", "Right, except for points far away: a small disparity is no zero, it "
-     "means a large depth.",
+    ("infinity too early", "Right, but not far away: a small disparity is not 0.",
      "np.where(d < 2, np.inf, alpha * b / d)", "np.where(d <= 1, np.inf, alpha * b / d)"),
     ("one picture only", "You divided by the column of one picture: what differs between the two?",
      ("u_left - u_right", "u_left"), ("u_left - u_right", "u_right")),
@@ -52,7 +47,7 @@ _MISTAKES = mistakes_in(depth,
      ("b / d", "b / d / 1000")),
 )  # fmt: skip
 
-DEPTH = Exercise(
+EXERCISE = Exercise(
     name="depth",
     chapter=8,
     title="Depth from two pictures",

@@ -2,14 +2,11 @@
 
 # A mistake is often an argument that was left out.
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded, some_rotation
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _unit(x: Array) -> Array:
@@ -23,7 +20,7 @@ def _stereo_pairs(rng: Rng) -> list[Case]:
     return [Case((np.eye(3), np.zeros(3), np.array([3.0, 0.0, 4.0]))), Case((R, left, right))]
 
 
-def rectifying_rotation(R: Array, left: Array, right: Array) -> Any:
+def rectifying_rotation(R: Array, left: Array, right: Array) -> Array:
     """Return the common rotation (3, 3), CRF ← WRF; left and right are centres (3,)."""
     b = right - left  # the baseline
     x = b / np.linalg.norm(b)  # the x axis
@@ -34,11 +31,9 @@ def rectifying_rotation(R: Array, left: Array, right: Array) -> Any:
 
 
 _MISTAKES = mistakes_in(rectifying_rotation,
-    ("z axis kept", "You kept the old z axis, which need not be perpendicular to the baseline: "
-     "that is no rotation.",
+    ("z axis kept", "The old z axis need not be perpendicular to the baseline.",
      ("np.cross(x, y)", "R[2]")),
-    ("old z axis in front", "You kept z and made x perpendicular to it: x has to lie along the "
-     "baseline.",
+    ("old z axis in front", "You kept z, and moved x for it: x has to lie along the baseline.",
      "np.array([np.cross(y, R[2]), y, R[2]])"),
     ("old y axis", "You kept y as it was, or as near as it can be to the old one: it must be "
      "perpendicular to the baseline, and asked is the nearest z.",
@@ -47,8 +42,7 @@ _MISTAKES = mistakes_in(rectifying_rotation,
      ("np.cross(R[2], x)", "R[1]", "np.cross(x, y)", "R[2]")),
     ("y the wrong way round", "Your y axis points up; that of a camera points down.",
      ("np.cross(R[2], x)", "np.cross(x, R[2])")),
-    ("nothing turned", "That is the left camera's own rotation; its x axis need not lie along the "
-     "baseline.",
+    ("nothing turned", "That is the left camera's R: its x need not lie along the baseline.",
      "R"),
     ("baseline turned too", "You turned the baseline into the camera's frame; the rows of the "
      "rotation are axes seen in the world.",
@@ -60,7 +54,7 @@ _MISTAKES = mistakes_in(rectifying_rotation,
 )  # fmt: skip
 
 
-RECTIFY = Exercise(
+EXERCISE = Exercise(
     name="rectifying_rotation",
     chapter=8,
     title="Two cameras side by side",
@@ -71,8 +65,7 @@ RECTIFY = Exercise(
         "The rows of a rotation CRF ← WRF are the camera's axes, seen in the world.",
         "First row: the unit vector from left to right. The old z axis is R[2].",
         "y = z_old × x, scaled to length 1: it points down, as y does in every camera's frame. "
-        "Then "
-        "z = x × y.",
+        "Then z = x × y.",
     ),
     cases=_stereo_pairs,
     properties=(

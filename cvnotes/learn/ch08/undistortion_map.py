@@ -1,14 +1,11 @@
 """The map that straightens a photograph."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens
 from cvnotes.learn.cases.cameras import pixel_centres, some_lens
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _small_cameras(rng: Rng) -> list[Case]:
@@ -29,7 +26,7 @@ def _at_piercing_point(m: Array, case: Case) -> float:
     return float(np.linalg.norm(m[v, u] - case.right[v, u]))
 
 
-def undistortion_map(A: Array, k: Array, size: tuple[int, int]) -> Any:
+def undistortion_map(A: Array, k: Array, size: tuple[int, int]) -> Array:
     """Return the position in the photograph for each pixel, (height, width, 2)."""
     u, v = np.meshgrid(np.arange(size[0]), np.arange(size[1]))
     x = (u - A[0, 2]) / A[0, 0]  # the ideal x
@@ -62,8 +59,7 @@ _MISTAKES = mistakes_in(undistortion_map,
     ("u multiplied, not u − u0", "You multiplied u and v themselves: the lens moves a pixel away "
      "from the principal point, or towards it.",
      ("A[0, 0] * L * x + A[0, 2]", "L * u", "A[1, 1] * L * y + A[1, 2]", "L * v")),
-    ("principal point in the middle", "You took the middle of the picture for the principal point; "
-     "A knows where it is.",
+    ("principal point in the middle", "You took the middle of the picture; A knows better.",
      ("A[0, 2]", "size[0] / 2", "A[1, 2]", "size[1] / 2"),
      ("A[0, 2]", "(size[0] - 1) / 2", "A[1, 2]", "(size[1] - 1) / 2")),
     ("rows and columns exchanged", "You counted rows as u and columns as v: u counts columns.",
@@ -75,7 +71,7 @@ _MISTAKES = mistakes_in(undistortion_map,
       "M = 1 + k[0] * r2 + k[1] * r2**2; x, y = M * x, M * y; r2 = M**2 * r2")),
 )  # fmt: skip
 
-UNDISTORTION = Exercise(
+EXERCISE = Exercise(
     name="undistortion_map",
     chapter=8,
     title="The map that straightens a photograph",

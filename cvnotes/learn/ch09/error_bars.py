@@ -1,14 +1,11 @@
 """How sure is each parameter."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration.refinement import covariance
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _fits(rng: Rng) -> list[Case]:
@@ -20,7 +17,7 @@ def _fits(rng: Rng) -> list[Case]:
     ]
 
 
-def error_bars(J: Array, r: Array) -> Any:
+def error_bars(J: Array, r: Array) -> Array:
     """Return the standard deviations (p,)."""
     n, p = J.shape
     s2 = r @ r / (n - p)  # σ², the variance of the residuals
@@ -44,8 +41,7 @@ _MISTAKES = mistakes_in(error_bars,
     ("σ for σ²", "You multiplied by σ under the root, or by σ² outside of it: what has the unit "
      "of a variance, what that of a standard deviation?",
      ("s2 * ", "np.sqrt(s2) * "), "s2 * np.sqrt(np.diag(C))"),
-    ("root of the diagonal first", "You took the roots of the diagonal before inverting: that is "
-     "not the same.",
+    ("root of the diagonal first", "You took roots before inverting: that is not the same.",
      "np.sqrt(s2) / np.diag(N)", "1 / np.sqrt(np.diag(N))"),
     ("covariance matrix", "That is the whole covariance; the variances stand on its diagonal.",
      "s2 * C"),
@@ -53,7 +49,7 @@ _MISTAKES = mistakes_in(error_bars,
      "np.full(p, np.sqrt(s2))"),
 )  # fmt: skip
 
-ERRORS = Exercise(
+EXERCISE = Exercise(
     name="error_bars",
     chapter=9,
     title="How sure is each parameter?",

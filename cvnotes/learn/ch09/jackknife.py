@@ -4,8 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def jackknife(xy: Array, xy_lens: Array) -> Array:
@@ -47,7 +46,7 @@ _MISTAKES = mistakes_in(jackknife,
      (_LEFT_OUT, "N, g", _FACTOR, "1 / v * "), (_LEFT_OUT, "N, g")),
 )  # fmt: skip
 
-JACKKNIFE = Exercise(
+EXERCISE = Exercise(
     name="jackknife",
     chapter=9,
     title="Your own jackknife",

@@ -8,15 +8,12 @@ import numpy as np
 from cvnotes.base import Array, FileError
 from cvnotes.calibration import calibrate
 from cvnotes.camera import move
-from cvnotes.learn.ch06.dlt import DLT
-from cvnotes.learn.ch07.a_from_b import A_FROM_B
-from cvnotes.learn.ch07.b_from_views import B_FROM_VIEWS
-from cvnotes.learn.ch07.extrinsics import EXTRINSICS
-from cvnotes.learn.ch07.radial_fit import RADIAL
+from cvnotes.learn.ch06 import dlt
+from cvnotes.learn.ch07 import a_from_b, b_from_views, extrinsics, radial_fit
 from cvnotes.learn.personal import personal_camera
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
+from cvnotes.tutor import Case, Exercise, Property, Rng
 
-_PARTS = (DLT, B_FROM_VIEWS, A_FROM_B, EXTRINSICS, RADIAL)
+_PARTS = tuple(m.EXERCISE for m in (dlt, b_from_views, a_from_b, extrinsics, radial_fit))
 Step = Callable[..., Any]
 
 
@@ -97,7 +94,7 @@ def _real_board(_: Rng) -> list[Case]:
     return [Case((real.board.points, real.left, real.size))]
 
 
-PIPELINE = Exercise(
+EXERCISE = Exercise(
     name="pipeline",
     chapter=9,
     title="Your own functions, real photographs",

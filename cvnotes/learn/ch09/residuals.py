@@ -1,20 +1,11 @@
 """What refinement makes small."""
 
-from typing import Any
-
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens
-from cvnotes.learn.cases.cameras import (
-    board_grid,
-    rounded,
-    some_intrinsics,
-    some_lens,
-    some_pose_matrix,
-)
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, Rng
-from cvnotes.tutor.checker.steps import mistakes_in
+from cvnotes.learn.cases.cameras import board_grid, some_intrinsics, some_lens, some_pose_matrix
+from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
 
 
 def _views(rng: Rng) -> list[Case]:
@@ -23,11 +14,11 @@ def _views(rng: Rng) -> list[Case]:
         A, (k, _), G = some_intrinsics(rng, skew=True), some_lens(rng), some_pose_matrix(rng)
         W = np.column_stack([board_grid()[-n:], np.zeros(n)])
         seen = Camera(A, G, Lens(tuple(k))).project(W)
-        cases.append(Case((A, k, G, W, rounded(seen + rng.uniform(-2, 2, seen.shape)))))
+        cases.append(Case((A, k, G, W, np.round(seen + rng.uniform(-2, 2, seen.shape), 2))))
     return cases
 
 
-def residuals(A: Array, k: Array, G: Array, W: Array, m: Array) -> Any:
+def residuals(A: Array, k: Array, G: Array, W: Array, m: Array) -> Array:
     """Return m minus the predicted pixels, (n, 2)."""
     M = W @ G[:3, :3].T + G[:3, 3]  # the points in the camera's frame
     xy = M[:, :2] / M[:, 2:]  # the ideal points
@@ -48,13 +39,11 @@ _MISTAKES = mistakes_in(residuals,
     ("undistorted",
      "You undid the lens in the prediction, or divided by L: image formation distorts.",
      ("L * xy", "xy / L"), ("L * xy", "_undone(k, xy)")),
-    ("lens of the wrong points", "You undistorted what was seen; prediction distorts the ideal "
-     "points.",
+    ("lens of the wrong points", "You undistorted what was seen; prediction distorts.",
      ("    seen = L * xy",
       "    at = (m - A[:2, 2]) @ np.linalg.inv(A[:2, :2]).T; "
       "m = _undone(k, at) @ A[:2, :2].T + A[:2, 2]; seen = xy")),
-    ("lens before the division", "You worked out L before dividing by z: of which plane is its "
-     "radius?",
+    ("lens before the division", "You took r before dividing by z: of which plane is it?",
      ("(xy**2)", "(M[:, :2]**2)")),
     ("no division", "You did not divide by z before the lens.",
      (" / M[:, 2:]", ""), (" / M[:, 2:]", "", "L * xy", "xy")),
@@ -62,8 +51,7 @@ _MISTAKES = mistakes_in(residuals,
      ("(xy**2).sum(axis=1, keepdims=True)", "np.linalg.norm(xy, axis=1, keepdims=True)")),
     ("u and v exchanged", "Your prediction has the row before the column.",
      "m - seen[:, ::-1]"),
-    ("on the plane z = 1", "You compared on the plane z = 1; corners are measured in pixels, and "
-     "so are residuals.",
+    ("on the plane z = 1", "You compared on the plane z = 1; residuals are pixels, as corners are.",
      "(m - A[:2, 2]) @ np.linalg.inv(A[:2, :2]).T - L * xy", "m - L * xy"),
 )  # fmt: skip
 
@@ -72,7 +60,7 @@ def _undone(k: Array, xy: Array) -> Array:
     return Lens(tuple(k)).undistort(xy)
 
 
-RESIDUALS = Exercise(
+EXERCISE = Exercise(
     name="residuals",
     chapter=9,
     title="What refinement makes small",

@@ -1,9 +1,9 @@
 """Which calibration would you trust."""
 
 from cvnotes.calibration import calibrate
-from cvnotes.tutor.checker.exercise import Case, Exercise, Property, mistakes
+from cvnotes.tutor import Case, Exercise, Property, mistakes
 
-TRUST = Exercise(
+EXERCISE = Exercise(
     name="which_to_trust",
     chapter=9,
     title="Which calibration would you trust?",
@@ -24,8 +24,7 @@ D: RMS 2.8 px, 15 pictures, tilted by up to 40°; two of them have an RMS of 7 p
         ("small RMS of parallel boards", "Boards that all face the camera leave the focal length "
          "open: any α with the right distance fits as well, and the small RMS tells nothing of it.",
          lambda: 0.0),
-        ("smallest RMS", "Few pictures and many parameters always fit well. ± 31 pixels are 4 % of "
-         "the focal length.",
+        ("smallest RMS", "Many parameters always fit few pictures. ± 31 px are 4 % of α_u.",
          lambda: 2.0),
         ("bad views not looked at", "Two views spoil this one: corners badly found, or the board "
          "bent. Leave them out and calibrate again before trusting it.",

@@ -81,44 +81,34 @@ def verdict(calibration: Calibration) -> Verdict:
     return Verdict((*_of_pictures(calibration), *_of_fit(calibration)))
 
 
+def _line(good: bool, words: str, advice: str) -> tuple[bool, str]:
+    """Return a line, with advice where it is no good news."""
+    return good, words if good else words + advice
+
+
 def _of_pictures(found: Calibration) -> Iterator[tuple[bool, str]]:
     n, angle = len(found.poses), widest_angle(found.poses)
-    few = "" if n >= _FEW else f" only: take {_FEW} or more"
-    yield n >= _FEW, f"{n} pictures{few}"
-    flat = "" if angle >= _FLAT else " only: tilt the board by 30° to 45°, towards every side"
-    yield angle >= _FLAT, f"boards differ by up to {angle:.0f}° in tilt{flat}"
+    yield _line(n >= _FEW, f"{n} pictures", f" only: take {_FEW} or more")
+    advice = " only: tilt the board by 30° to 45°, towards every side"
+    yield _line(angle >= _FLAT, f"boards differ by up to {angle:.0f}° in tilt", advice)
     seen = covered_cells(list(found.image_points), found.size)
-    missed = 4 - int(seen[[0, 0, -1, -1], [0, -1, 0, -1]].sum())
-    yield (
-        missed == 0,
-        (
-            f"no board in {missed} of the picture's four corners: hold a small one there"
-            if missed
-            else "boards reach into all four corners of the picture"
-        ),
-    )
+    if missed := 4 - int(seen[[0, 0, -1, -1], [0, -1, 0, -1]].sum()):
+        yield False, f"no board in {missed} of the picture's four corners: hold a small one there"
+    else:
+        yield True, "boards reach into all four corners of the picture"
 
 
 def _of_fit(found: Calibration) -> Iterator[tuple[bool, str]]:
-    yield (
-        found.reliable,
-        ("the pictures determine the camera" if found.reliable else found.warnings[0]),
-    )
+    sure = found.reliable
+    yield sure, "the pictures determine the camera" if sure else found.warnings[0]
     part = found.rms / max(found.size)
-    yield (
-        part < _LARGE,
-        (
-            f"RMS {found.rms:.3f} px, {100 * part:.2g} % of the picture's longer side"
-            + (
-                ": normal or better"
-                if part < _LARGE
-                else ": look at the residuals, something moved"
-            )
-        ),
-    )
+    words = f"RMS {found.rms:.3f} px, {100 * part:.2g} % of the picture's longer side"
+    if part < _LARGE:
+        words += ": normal or better"
+    yield _line(part < _LARGE, words, ": look at the residuals, something moved")
     times = float(found.view_rms.max() / max(np.median(found.view_rms), 1e-12))
     words = f"the worst picture, {found.view_rms.argmax()}, has {times:.1f} times the usual RMS"
-    yield times < _OUT, words + ("" if times < _OUT else ": look at it, or leave it out")
+    yield _line(times < _OUT, words, ": look at it, or leave it out")
     yield from _of_error_bars(found)
 
 
@@ -127,16 +117,8 @@ def _of_error_bars(found: Calibration) -> Iterator[tuple[bool, str]]:
         yield False, "without one of the pictures the others do not determine the camera"
         return
     times, part = found.times_noise, found.std_of_views["alpha_u"] / found.A[0, 0]
+    words = f"the scatter between pictures is {times:.1f} times what noise would give"
     untried = ', and try lens="auto"' if found.choice is None else ""
-    yield (
-        times < _OPTIMISTIC,
-        (
-            f"the scatter between pictures is {times:.1f} times what noise would give"
-            + ("" if times < _OPTIMISTIC else f": believe the larger ones{untried}")
-        ),
-    )
-    yield (
-        part < _VAGUE,
-        f"the focal length is known to {100 * part:.2g} %"
-        + ("" if part < _VAGUE else " only: more pictures, more tilt"),
-    )
+    yield _line(times < _OPTIMISTIC, words, f": believe the larger ones{untried}")
+    words = f"the focal length is known to {100 * part:.2g} %"
+    yield _line(part < _VAGUE, words, " only: more pictures, more tilt")

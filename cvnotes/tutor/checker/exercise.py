@@ -93,16 +93,24 @@ class Misconception:
 def mistakes(*rows: tuple[Any, ...]) -> tuple[Misconception, ...]:
     """Make misconceptions of rows: name, sentence, and one or more functions that make the mistake.
 
+    A dictionary at the end of a row says how it is recognised, if not by being equal: ``same``, or
+    ``seen``, as `Misconception` has them.
+
     Examples
     --------
     >>> [squared] = mistakes(("squared", "That is x².", lambda x: x * x, lambda x: x**2))
     >>> squared.name, len(squared.variants)
     ('squared', 1)
+    >>> mistakes(("far", "Far off.", lambda x: 9 * x, {"seen": lambda y, _: y > 5}))[0].variants
+    ()
     """
-    return tuple(
-        Misconception(name, sentence, gives, tuple(variants))
-        for name, sentence, gives, *variants in rows
-    )
+    return tuple(_of_a_row(*row) for row in rows)
+
+
+def _of_a_row(name: str, sentence: str, *ways: Any) -> Misconception:
+    recognised = ways[-1] if isinstance(ways[-1], dict) else {}
+    gives, *variants = (way for way in ways if way is not recognised)
+    return Misconception(name, sentence, gives, tuple(variants), **recognised)
 
 
 def _as_the_steps_say(*_: Any) -> Any:

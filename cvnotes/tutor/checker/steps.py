@@ -155,7 +155,7 @@ def mistakes_in(steps: Callable[..., Any], *rows: tuple[Any, ...]) -> tuple[Misc
     """Make misconceptions of rows: name, sentence, and one or more ways to make the mistake.
 
     A way is what the steps return instead, as code; or several changes of them, in a tuple, as
-    `edited` takes them; or a function.
+    `edited` takes them; or a function. A dictionary at the end is that of `mistakes`.
 
     Examples
     --------
@@ -164,9 +164,9 @@ def mistakes_in(steps: Callable[..., Any], *rows: tuple[Any, ...]) -> tuple[Misc
     [-8.0, 4.0]
     """
 
-    def made(way: Any) -> Callable[..., Any]:
-        if callable(way):
-            return way  # type: ignore[no-any-return]
+    def made(way: Any) -> Any:
+        if callable(way) or isinstance(way, dict):
+            return way
         return edited(steps, way) if isinstance(way, str) else edited(steps, *way)
 
     return mistakes(*((name, sentence, *map(made, ways)) for name, sentence, *ways in rows))
