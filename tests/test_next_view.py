@@ -43,7 +43,7 @@ def over_picture(found, std):
     """How far off a pixel may be, from the deviations of its camera's parameters."""
     scaled = found.covariance * np.outer(*[np.divide([*std.values()], [*found.std.values()])] * 2)
     made = Calibration(**found.as_mapping() | {"covariance": scaled})
-    return np.sqrt(np.mean(prediction_std(made, PIXELS) ** 2))
+    return np.sqrt(np.mean(prediction_std(made, PIXELS, turning=True) ** 2))
 
 
 def few_views(seed=0, n=4):
@@ -56,10 +56,14 @@ def test_the_promise_is_kept():
     """A calibration with the view has the uncertainty that was promised, and the noise alone."""
     found, m, rng = few_views()
     view = next_view(found)
-    assert view.before == pytest.approx(np.sqrt(np.mean(prediction_std(found, PIXELS) ** 2)), 1e-6)
+    assert view.before == pytest.approx(
+        np.sqrt(np.mean(prediction_std(found, PIXELS, turning=True) ** 2)), 1e-6
+    )
     more = np.concatenate([m, seen([view.G], rng)])
     again = calibrate(BOARD.points, more, SIZE)
-    after = np.sqrt(np.mean(prediction_std(again, PIXELS) ** 2)) * found.rms / again.rms
+    after = (
+        np.sqrt(np.mean(prediction_std(again, PIXELS, turning=True) ** 2)) * found.rms / again.rms
+    )
     assert view.after == pytest.approx(after, rel=0.1)
     assert view.after < 0.8 * view.before
 
@@ -74,10 +78,10 @@ def test_no_other_view_is_better():
     others = others[distances(others) > 0.8 * nearest]
     assert len(others) > 50
     made = Calibration(**found.as_mapping() | {"covariance": covariance_with(found, view.G)})
-    after = np.sqrt(np.mean(prediction_std(made, PIXELS) ** 2))
+    after = np.sqrt(np.mean(prediction_std(made, PIXELS, turning=True) ** 2))
     assert view.after == pytest.approx(after, rel=1e-6)
     rays = found.camera.ray(PIXELS)
-    J = pixel_jacobian(found.camera, found.names, rays)  # the same for all of them
+    J = pixel_jacobian(found, rays)  # the same for all of them
     N = np.einsum("mci,mcj->ij", J, J) / len(PIXELS)
     assert after == pytest.approx(np.sqrt(np.trace(N @ covariance_with(found, view.G))))
     assert after < min(np.sqrt(np.trace(N @ covariance_with(found, G))) for G in others)
@@ -188,7 +192,7 @@ def test_real_photographs_have_a_proposal_with_and_without_a_flat_board():
     for board in ("flat", "free"):
         found = calibrate(real.board.points, real.left, real.size, lens="k1 k2 p1 p2", board=board)
         view = next_view(found)
-        assert 0.5 * view.before < view.after < 0.95 * view.before
+        assert 0.2 * view.before < view.after < 0.95 * view.before
         assert "cm away" in repr(view)
     part = [np.sort(np.random.default_rng(i).permutation(54)[:40]) for i in range(13)]
     found = calibrate(

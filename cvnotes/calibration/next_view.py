@@ -44,8 +44,8 @@ class NextView:
     outline : ndarray, shape (k, 2)
         Where the board's own corners would be seen, px.
     before, after : float
-        How far off a pixel of the picture may be (see `prediction_std`), root mean square over the
-        whole picture, px: now, and with such a view.
+        How far off a pixel of the picture may be, the camera being free to turn (see
+        `prediction_std`), root mean square over the whole picture, px: now, and with such a view.
     words : str
         Where to hold the board, lengths being millimetres.
     """
@@ -88,7 +88,8 @@ def next_view(calibration: Calibration, *, outline: npt.ArrayLike | None = None)
     -----
     The view adds S to the normal matrix N of the parameters, its pose eliminated. What is known of
     them then is D (N + S)⁻¹ D, where D takes deviations of noise to those of the scatter between
-    views, as in `Calibration.std_of_views`; and of a pixel, trace(J D (N + S)⁻¹ D Jᵀ). Five
+    views, as in `Calibration.std_of_views`; and of a pixel, trace(J D (N + S)⁻¹ D Jᵀ), J being
+    without what a turn of the camera absorbs. Five
     hundred poses are tried all over, then as many and more around the best. The board's shape,
     if it was estimated, is taken for known.
 
@@ -277,9 +278,7 @@ class _Search:
         u, v = (np.linspace(0, n - 1, k) for n, k in zip(calibration.size, _GRID, strict=True))
         m = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
         rays = calibration.camera.ray(m)
-        J = pixel_jacobian(calibration.camera, calibration.names, rays) * np.array(
-            [*calibration.honest_std.values()]
-        )
+        J = pixel_jacobian(calibration, rays) * np.array([*calibration.honest_std.values()])
         J = J[np.isfinite(J).all((1, 2))]
         correlation = calibration.covariance / np.outer(noise, noise)
         so_far = data.pose_in_scaled_units(calibration.poses)[:, :3, 3]

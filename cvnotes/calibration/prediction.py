@@ -148,12 +148,13 @@ def _derivative(of: Callable[[Camera], Array], camera: Camera, names: Sequence[s
     return np.stack(columns, axis=-1)
 
 
-def pixel_jacobian(camera: Camera, names: Sequence[str], rays: Array) -> Array:
-    """Differentiate the images of rays (..., 3) of the CRF by the parameters.
+def pixel_jacobian(calibration: Calibration, rays: Array) -> Array:
+    """Differentiate the images of rays (..., 3) of a camera that may turn by the parameters.
 
     (..., 2, q); NaN where the lens model does not reach.
     """
-    J = _derivative(lambda held: held.project(np.nan_to_num(rays, nan=1.0)), camera, names)
+    of_camera = _pixels_turned(calibration, np.nan_to_num(rays, nan=1.0))
+    J = _derivative(of_camera, calibration.camera, calibration.names)
     J[~np.isfinite(rays).all(-1)] = np.nan
     return J
 

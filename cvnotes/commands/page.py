@@ -42,6 +42,9 @@ svg { display: block; width: 100%; height: auto; max-height: 90vh; margin-bottom
         gap: 1rem; }
 .wall figure { margin: 0; }
 .bar { height: .3rem; background: var(--bar); }
+.bar, .key i { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
+h1, h2 { break-after: avoid; }
+section, figure, tr { break-inside: avoid; }
 @media (max-width: 32rem) {
   svg { font-size: 25px; }
   table { font-size: .85rem; }

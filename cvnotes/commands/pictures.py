@@ -28,6 +28,7 @@ _LEAST = 1e-6  # px: what is known better is rounding
 _MOST_LINES = 1000  # that can be told apart
 _BELOW = 48  # for a scale bar, and its length
 _ROOM = 16  # around what is drawn
+_NUMBER = 28  # between numbers, which a telephone shows larger
 _FROM = (0.75, -0.5, -0.45)  # where the boards in space are looked at from, in the CRF
 
 
@@ -127,9 +128,29 @@ def boards(result: "Calibration", board: "Board") -> tuple[Drawing, str]:
     for i in np.argsort(-np.linalg.norm(middle - eye, axis=1)):  # the farthest first
         sheet.lines(seen[i, None], ESTIMATED, fill=ESTIMATED)
     sheet.lines(camera[[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]], WORLD, 2, fill=WORLD)
-    for i, at in enumerate(seen[:, 0] + 0.12 * (seen[:, 2] - seen[:, 0]), start=1):
-        sheet.text(at, str(i))
-    return sheet, f"The boards, {far.min() / 10:.0f} to {far.max() / 10:.0f} cm from the camera."
+    numbered = _spread(seen)
+    for i, at in numbered.items():
+        sheet.text(at, str(i + 1))
+    words = f"The boards, {far.min() / 10:.0f} to {far.max() / 10:.0f} cm from the camera"
+    return sheet, words + ("." if len(numbered) == len(seen) else ", as many numbered as fit.")
+
+
+def _spread(seen: Array) -> dict[int, Array]:
+    """Return where on each board (n, 4, 2) its number may stand, of those that find room.
+
+    Those with the least room choose first.
+    """
+    part = np.array([0.12, 0.5, 0.88])
+    top, bottom = (a[:, None] + (b - a)[:, None] * part[:, None]
+                   for a, b in ((seen[:, 0], seen[:, 1]), (seen[:, 3], seen[:, 2])))  # fmt: skip
+    places = (top[:, :, None] + (bottom - top)[:, :, None] * part[:, None]).reshape(len(seen), 9, 2)
+    chosen: dict[int, Array] = {}
+    for i in np.argsort(np.ptp(seen, axis=1).min(1)).tolist():
+        taken = np.array([*chosen.values(), (np.inf, np.inf)])
+        room = np.linalg.norm(places[i][:, None] - taken, axis=-1).min(1)
+        if (free := np.flatnonzero(room > _NUMBER)).size:
+            chosen[i] = places[i][free[0]]
+    return chosen
 
 
 def photograph(photo: "Detection", board: "Board") -> Drawing:
