@@ -12,6 +12,7 @@ from cvnotes.calibration import calibrate, choose_model, prediction_std
 from cvnotes.calibration.choice import Candidate
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.jackknife import Influence
+from cvnotes.calibration.pose import pose_from_view, rms_of_views
 from cvnotes.calibration.refinement import Problem, State, minimise, refit_poses
 from cvnotes.calibration.result import Calibration
 from cvnotes.camera import Lens
@@ -163,6 +164,25 @@ def test_real_photographs_choose_a_polynomial_and_every_corner_by_itself():
         assert choice.board == "free"
         assert choice.lens.startswith("k1 k2")
         assert choice.rms < 0.1
+
+
+@pytest.mark.parametrize(
+    "views", [[1, 2, 6, 7, 11, 12], [1, 3, 5, 7, 9], [1, 2, 4, 8, 11]], ids=str
+)
+def test_of_few_views_the_board_is_chosen_that_predicts_all_others_best(views):
+    """Without one of so few, a free board is known too badly to be better than a flat one."""
+    real = course.real_corners()
+    others = np.delete(np.arange(len(real.left)), views)
+
+    def predicted(board):
+        found = calibrate(real.board.points, real.left[views], real.size, board=board)
+        W = real.board.points if found.shape is None else found.shape.points
+        poses = np.array([pose_from_view(found.camera, W, m) for m in real.left[others]])
+        off = rms_of_views(found.camera, found.names, W, real.left[others], poses)
+        return np.sqrt(np.mean(off**2))
+
+    flat, bent, free, chosen = map(predicted, ("flat", "bent", "free", "auto"))
+    assert chosen <= 1.05 * min(bent, free) < 0.8 * flat
 
 
 def test_it_is_not_kept_in_files(tmp_path):
