@@ -14,7 +14,7 @@ def _two_lines(rng: Rng) -> list[Case]:
     return [
         Case((np.array([1.0, 0.0, -2.0]), np.array([1.0, 1.0, -5.0]))),
         Case((l1, l2)),
-        Case((np.array([1.0, 2.0, -3.0]), np.array([-2.0, -4.0, 9.0])), about="parallel"),
+        Case((np.array([2.0, 1.0, -3.0]), np.array([-4.0, -2.0, 9.0])), about="parallel"),
     ]
 
 

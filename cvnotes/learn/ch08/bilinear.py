@@ -13,7 +13,7 @@ def _positions(rng: Rng) -> list[Case]:
     cases = [Case((by_hand, 0.5, 0.25)), Case((by_hand, 1.0, 0.0), about="centre")]
     cases.append(Case((by_hand, 1.7, 0.6)))  # between the last two columns
     for _ in range(3):
-        u, v = rounded(rng.uniform([0.2, 0.2], [5.8, 3.8])).tolist()
+        u, v = rounded(rng.uniform([3.2, 1.2], [5.8, 2.8])).tolist()
         cases.append(Case((image_of_noise(rng, 7, 5), u + 0.003, v + 0.004)))
     border = [(2.0, 0.25), (0.5, 1.0), (2.0, 1.0)]
     return cases + [Case((by_hand, u, v), about="border") for u, v in border]

@@ -8,7 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.tutor.checker.equality import Same, close, same_motion, tolerance, up_to_scale
+from cvnotes.tutor.checker.equality import (
+    AS_NEAR,
+    Same,
+    close,
+    same_motion,
+    tolerance,
+    up_to_scale,
+)
 from cvnotes.tutor.checker.wrong_answer import Found, Tried, WrongAnswer
 
 Pair = tuple[Array, Array]
@@ -81,8 +88,12 @@ def difference(answer: WrongAnswer) -> Found | None:
     lonely = answer.wrong == 1 and wrong.pairs[0][1].size == 1
     alike = all(_alike_finite(*pair) for pair in wrong.pairs)
     if alike and (off := _off(wrong)) is not None:
-        digits = _each_number(wrong) or _few_decimals(wrong)
-        return digits or _factor(wrong) or _constant(wrong) or _nearly(off)
+        found = _each_number(wrong) or _few_decimals(wrong)
+        if sum(right.size for _, right in wrong.pairs) > 3:  # fewer may be rounded by the same
+            found = found or _factor(wrong) or _constant(wrong)
+        return found or _nearly(wrong, off)
+    if all(wrong.same(answer, right, bound) for answer, right in wrong.pairs):
+        return None  # after a change of sign, too
     tellers = (_not_finite, *_TELLERS) if alike else (_not_finite,)
     # Pictures of several sizes have no entries and columns in common.
     tellers += (_some,) * (len({right.shape[-1:] for _, right in pairs}) == 1)
@@ -101,30 +112,57 @@ _NEARLY = 5e-3
 def _off(wrong: _Wrong) -> float | None:
     """Return how far nearly right numbers are from right ones; None if they differ otherwise.
 
-    Rounding and noise leave no long number as it is: where some are right to the last digit,
-    something else happened to the others.
+    What has a size of its own, R and T of a pose, is near by that.
     """
-    largest = 0.0
+    off = 0.0
     for answer, right in wrong.aligned:
-        there = np.isfinite(right)
-        size = float(np.abs(right[there]).max(initial=0.0))
-        apart = np.abs(answer - right)[there]
-        long = (right != np.round(right, 6))[there] & (np.abs(right[there]) > 1e-9 * size)
-        exact = int((long & (apart <= 1e-13 * size)).sum())
-        # Where a factor is free, it is that of one of them, or of a few.
-        if not size or exact > (max(1, long.sum() // 2) if wrong.up_to_scale else 0):
-            return None
-        largest = max(largest, float(apart.max(initial=0.0)) / size)
-    return largest if 0 < largest <= _NEARLY else None
+        for i in _parts(wrong, right):
+            there = np.isfinite(right[i])
+            r, apart = right[i][there], np.abs(answer - right)[i][there]
+            size = float(np.abs(r).max(initial=0.0))
+            if not size or not _in_digits(answer[i][there], r, apart, wrong.up_to_scale):
+                return None
+            off = max(off, float(apart.max()) / size)
+    return off if 0 < off <= _NEARLY else None
 
 
-def _nearly(off: float) -> Found:
-    """Say that only digits differ."""
+def _parts(wrong: _Wrong, right: Array) -> Sequence[Any]:
+    if wrong.same is same_motion:
+        return list(_POSE.values())
+    return range(len(right)) if right.ndim > 2 else [...]
+
+
+def _in_digits(a: Array, r: Array, apart: Array, any_scale: bool) -> bool:
+    """Return whether numbers, some of them right, may differ from right ones in their digits only.
+
+    Noise leaves no number as it is, and rounding none but short ones. Where it does, all others
+    are near by their own size, or have as few decimals.
+    """
+    size = np.abs(r).max()
+    exact = (apart <= 1e-11 * size) & (np.abs(r) > 1e-9 * size)
+    # 18.7 is a short number, whatever the arithmetic has left at its end.
+    long = np.abs(r - np.round(r, 6)) > 1e-9 * size
+    if any_scale:  # the factor is that of one of them, or of a few
+        return bool((exact & long).sum() <= max(1, long.sum() // 2))
+    if not exact.any():
+        return True
+    if (exact & long).any():
+        return False
+    near = (apart <= np.maximum(_NEARLY * np.abs(r), 1e-11 * size)).all()
+    return bool(near) or any(
+        (apart <= 10.0**-n).all() and (a == np.round(a, n)).all() for n in range(10)
+    )
+
+
+def _nearly(wrong: _Wrong, off: float) -> Found:
+    """Say that only digits differ, and by how much: without a factor that is free, in numbers."""
+    if not wrong.up_to_scale:
+        off = max(float(np.nanmax(np.abs(a - r)[np.isfinite(r)])) for a, r in wrong.pairs)
     power = 10.0 ** np.ceil(np.log10(off))
     return Found(
         "nearly",
-        f"Nearly: within {power:.0e} of the right answer. Rounded, cut off, in single precision, "
-        "or stopped too early?".replace("e-0", "e-"),
+        f"Nearly: no number is off by more than {power:g}{' of the largest' * wrong.up_to_scale}. "
+        "Rounded, cut off, in single precision, or stopped too early?",
     )
 
 
@@ -358,10 +396,11 @@ def _each_number(wrong: _Wrong) -> Found | None:
     """Describe what was done to every number of a right answer."""
     if wrong.up_to_scale:
         return None
+    bound = AS_NEAR * wrong.bound
     for name, sentence, done in _DONE:
         made = [(a, r, done(r)) for a, r in wrong.pairs]
         if all(
-            _alike_finite(m, r) and not close(m, r, wrong.bound) and close(a, m, wrong.bound)
+            _alike_finite(m, r) and not close(m, r, wrong.bound) and close(a, m, bound)
             for a, r, m in made
         ):
             return Found(name, sentence)
@@ -449,6 +488,10 @@ _NO_NUMBERS: tuple[tuple[str, str, Change, Change], ...] = (
 )  # fmt: skip
 
 
+# The blocks of a pose.
+_POSE = {"R": np.s_[:3, :3], "T": np.s_[:3, 3:]}
+
+
 def _entries(wrong: _Wrong) -> str:
     """Name the entries that are wrong in every case, if it is a few."""
     if block := _block(wrong):
@@ -467,10 +510,9 @@ def _block(wrong: _Wrong) -> str:
     """Name what is wrong of a pose: R, T or both; empty if this is no pose."""
     if wrong.same is not same_motion:
         return ""
-    blocks = {"R": np.s_[:3, :3], "T": np.s_[:3, 3:]}
     off = [
         name
-        for name, i in blocks.items()
+        for name, i in _POSE.items()
         if not all(close(a[i], right[i], wrong.bound) for a, right in wrong.pairs)
     ]
     return " and ".join(off)

@@ -9,6 +9,8 @@ from cvnotes.base import Array
 Same = Callable[[Array, Array, float], bool]
 
 TOLERANCE = 1e-6
+# A slip repeats a mistake to the last digits; what merely comes near is another one.
+AS_NEAR = 0.01
 # Single precision is a fair choice; its rounding must not count as a mistake.
 _SINGLE = 200.0
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.tutor.checker.equality import TOLERANCE
+from cvnotes.tutor.checker.equality import AS_NEAR, TOLERANCE
 from cvnotes.tutor.checker.foreseen import explains
 from cvnotes.tutor.checker.steps import Line, lines_of
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
@@ -132,7 +132,7 @@ def slipped_step(answer: WrongAnswer) -> Found | None:
             if (
                 given is not None
                 and given.shape == outcome.value.shape
-                and exercise.same(outcome.value, given, 1e-2 * TOLERANCE)
+                and exercise.same(outcome.value, given, AS_NEAR * TOLERANCE)
                 and explains(family.gives(slip), answer, exercise.same)
             ):
                 return family.found(slip)
@@ -493,7 +493,7 @@ def _of_call(node: ast.Call) -> Iterator[Form]:
 
 def _of_index(node: ast.Subscript) -> Iterator[Form]:
     index = node.slice
-    if isinstance(index, ast.Tuple) and len(index.elts) == 2:
+    if isinstance(index, ast.Tuple) and len({*map(ast.dump, index.elts)}) == 2 == len(index.elts):
         turned = ast.Tuple(index.elts[::-1], ast.Load())
         yield "index", ast.Subscript(node.value, turned, ast.Load())
     parts = list(index.elts) if isinstance(index, ast.Tuple) else [index]

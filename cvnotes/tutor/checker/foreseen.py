@@ -7,12 +7,16 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.tutor.checker.equality import TOLERANCE, Same, close, tolerance, up_to_scale
+from cvnotes.tutor.checker.equality import (
+    AS_NEAR,
+    TOLERANCE,
+    Same,
+    close,
+    tolerance,
+    up_to_scale,
+)
 from cvnotes.tutor.checker.exercise import Case
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
-
-# A slip repeats a mistake to the last digits; what merely comes near is another one.
-_AS_NEAR = 0.01
 
 
 def foreseen(answer: WrongAnswer) -> Found | None:
@@ -60,7 +64,7 @@ def explains(gives: Callable[..., Any], answer: WrongAnswer, same: Same) -> bool
                 return False
             continue
         if outcome.value is None or not equal(
-            outcome.value, given, _AS_NEAR * tolerance(outcome.dtype)
+            outcome.value, given, AS_NEAR * tolerance(outcome.dtype)
         ):
             return False
         if i < answer.wrong and answer.exercise.same(given, case.right, TOLERANCE):

@@ -46,7 +46,7 @@ class Outcome:
     value : ndarray or None
         The numbers, as float64.
     dtype : str
-        What they were made of before, for example "int64".
+        What they were made of before, for example "int64"; "float32" too where their digits say so.
     words : str
         What was raised, returned or happened instead, in a few words.
     changed : tuple of int
@@ -107,7 +107,25 @@ def outcome_of(answer: Any) -> Outcome:
         return Outcome("other", words=_what(answer, array, kind))
     if array.size > MAX_VALUES:
         return Outcome("other", words=f"an array of shape {array.shape}, far too large")
-    return Outcome("numbers", np.array(array, dtype=np.float64), dtype=str(array.dtype))
+    return Outcome("numbers", np.array(array, dtype=np.float64), dtype=_precision(array))
+
+
+@np.errstate(all="ignore")
+def _precision(array: npt.NDArray[Any]) -> str:
+    """Return of which type numbers are, or were: a list of mixed ones hides single precision.
+
+    All of them are in single precision then, and one at least so long that nobody rounded to it.
+    """
+    numbers = array[np.isfinite(array)]
+    if array.dtype != np.float64 or (numbers != numbers.astype(np.float32)).any():
+        return str(array.dtype)
+    return "float32" if (numbers != _first_bits(numbers)).any() else "float64"
+
+
+def _first_bits(array: npt.NDArray[Any], bits: int = 20) -> npt.NDArray[Any]:
+    """Round numbers to their first bits: here to less than is forgiven in double precision."""
+    mantissa, exponent = np.frexp(array)
+    return np.asarray(np.ldexp(np.rint(np.ldexp(mantissa, bits)), exponent - bits))
 
 
 def _real(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
