@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cvnotes.base import CornersNotFound, CvnotesError, DegenerateError, FileError
+from cvnotes.base import CornersNotFound, CvnotesError, DegenerateError, FileError, InputTypeError
 from cvnotes.camera import pose, rotation_from_vector
 from cvnotes.commands.report import note_of
 from cvnotes.files import Photo
@@ -90,6 +90,14 @@ def test_arrays_photographs_and_a_side_alone_do_as_well(photos):
     assert found.photographs.board.corners == (9, 6)
     assert found.photographs.named()[0] == ["0.png", "1.png", "2.png", "photograph 3"]
     assert "not used" not in repr(found)
+
+
+@pytest.mark.parametrize(
+    "bad", [[], 5, None, [1.0, 2.0], np.zeros((0, 0)), np.full((40, 40), np.nan)]
+)
+def test_what_is_no_picture_is_refused_by_its_number(photos, bad):
+    with pytest.raises((CvnotesError, InputTypeError), match="photograph 1"):
+        calibrate_photographs([photos[0], bad], BOARD)
 
 
 def test_what_cannot_be_says_what_was_seen(photos, tmp_path):

@@ -22,6 +22,7 @@ from cvnotes.files.video import Progress, frames_of, unseen
 from cvnotes.photographs.reasons import FramesTaken, LeftOut, NoBoard
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
+from cvnotes.targets.grey import grey_picture
 from cvnotes.targets.markers import find_numbered, one_thread_each
 
 Board = Chessboard | CharucoBoard
@@ -230,8 +231,8 @@ def listed(
     )
     rejected += not_read
     arrays = [
-        item if isinstance(item, Photo) else Photo(Path(f"photograph {i}"), np.asarray(item))
-        for i, item in enumerate(given)
+        item if isinstance(item, Photo) else Photo(Path(name), grey_picture(item, name))
+        for name, item in ((f"photograph {i}", item) for i, item in enumerate(given))
         if not isinstance(item, str | os.PathLike)
     ]
     arrays += frames
