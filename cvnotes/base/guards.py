@@ -93,8 +93,8 @@ def number(x: Any, name: str, *, at_least: float = -np.inf, at_most: float = np.
 
 
 # What is asked for by number, and how far light may be smeared, in pixels: more is a slip, and
-# would take gigabytes or minutes.
-MOST, MOST_BLUR = 10_000, 1000
+# would take gigabytes or minutes (edges blurred by 100 px take 3 s, by 224 px they took 18).
+MOST, MOST_BLUR = 10_000, 100
 
 
 def blur_width(x: Any, name: str) -> float:
