@@ -169,8 +169,8 @@ def test_a_size_of_a_hundred_thousand_is_answered_or_refused_at_once(name):
 
 def test_the_largest_sizes_that_are_allowed_are_answered():
     assert targets.Chessboard((1000, 999)).points.shape == (999_000, 3)
-    assert pictures.gaussian_blur(NOISE, 100.0).std() < 1
-    assert pictures.render(BOARD, CAMERA.resized((64, 48)), blur=100.0).std() < 2
+    assert pictures.gaussian_blur(NOISE, 100.0).std() < 2
+    assert pictures.render(BOARD, CAMERA.resized((64, 48)), blur=100.0).std() < 1
     assert targets.local_maxima(NOISE, radius=1000).shape == (1, 2)
     assert targets.refine_edges(GREY, [[300.0, 200.0]], window=100).shape == (1, 2)
     assert camera.Camera(np.diag([1e5, 1e5, 1]), size=(HUGE, HUGE)).size == (HUGE, HUGE)
