@@ -6,6 +6,9 @@ The table of what is undone is `tests/undone/04.toml`. A row says what is replac
 stands in exactly one cell of code), by what (`undone`), and which cell is to fail (`noticed`, words
 of its code; left out: the cell of the step itself). All between the two runs in a copy of the
 process, so that nothing comes back. A check notices if its `assert` or its `verify` fails.
+
+A row with `expected = "nothing"` is what a page asks a reader to change and run again: the cell
+must run through, for an answer that ends in a red traceback is none.
 """
 
 import ast
@@ -83,7 +86,8 @@ def main():
             if places[k] == i:
                 results[k] = noticed(sources, i, lasts[k], row, names)
         run(sources[i], names)
-    unasked = [source for i, source in enumerate(sources) if checks(source) and i not in set(lasts)]
+    asked = {last for row, last in zip(rows, lasts, strict=True) if "expected" not in row}
+    unasked = [source for i, source in enumerate(sources) if checks(source) and i not in asked]
     json.dump({"results": results, "unasked": unasked}, out)
 
 
