@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError, DegenerateError
-from cvnotes.calibration import LENSES, Calibration, calibrate, choose_model
+from cvnotes.calibration import LENSES, Calibration, board_shape, calibrate, choose_model
 from cvnotes.calibration.board_shape import deformations, with_shape
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.jacobian import jacobian
-from cvnotes.calibration.refinement import Problem, State, minimise
+from cvnotes.calibration.refinement import Problem, State, covariance, minimise
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.pictures import course, good_views
 from cvnotes.targets import Chessboard, find_corners
@@ -373,3 +373,22 @@ def test_a_shape_is_kept_in_files(tmp_path):
     (tmp_path / "bent.json").write_text(text.replace('"free"', '"round"'))
     with pytest.raises(CvnotesError, match=r"kind.*expected one of bent, free, got 'round'"):
         Calibration.load(tmp_path / "bent.json")
+
+
+def test_what_holds_the_chosen_board_back_is_not_sought_again(monkeypatch):
+    real, asked = course.real_corners(), []
+    whole = board_shape.shaped
+
+    def counted(*given):
+        asked.append([])
+        monkeypatch.setattr(
+            board_shape, "covariance", lambda each: asked[-1].append(1) or covariance(each)
+        )
+        return whole(*given)
+
+    monkeypatch.setattr("cvnotes.calibration.choice.shaped", counted)
+    monkeypatch.setattr("cvnotes.calibration.driver.shaped", counted)
+    calibrate(real.board.points, real.left, real.size, lens="auto", board="free")
+    *lenses, chosen = map(len, asked)
+    assert len(lenses) >= 3
+    assert chosen < min(lenses)

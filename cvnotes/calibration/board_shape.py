@@ -171,9 +171,15 @@ def with_shape(
 
 
 def shaped(
-    problem: Problem, data: Correspondences, kind: str, flat: Minimum[State, NormalEquations]
+    problem: Problem,
+    data: Correspondences,
+    kind: str,
+    flat: Minimum[State, NormalEquations],
+    hold: Array | None = None,
 ) -> tuple[Problem, Minimum[State, NormalEquations]]:
     """Go on from the minimum of a flat board to that of its shape.
+
+    `hold` is where the search for what holds it back begins.
 
     Notes
     -----
@@ -189,7 +195,8 @@ def shaped(
     """
     free = with_shape(problem, data, kind)
     q, groups = len(problem.names), _groups(free)
-    hold = np.full(free.n_shape, np.sqrt(flat.cost / max(problem.freedom, 1)) / _EXPECTED)
+    if hold is None:
+        hold = np.full(free.n_shape, np.sqrt(flat.cost / max(problem.freedom, 1)) / _EXPECTED)
     x = State(np.concatenate([flat.x.shared, 0 * hold]), flat.x.R, flat.x.T)
     for _ in range(_ROUNDS):
         free = replace(free, hold=hold)

@@ -64,6 +64,8 @@ class Candidate:
     determined : bool
         Whether the camera is still known where any one view is left out; else `costs` are those of
         all views, enlarged by what the parameters took from them.
+    hold : ndarray or None
+        What held each coefficient of the board's shape back; see `BoardShape`.
     """
 
     lens: str
@@ -75,6 +77,7 @@ class Candidate:
     n_points: int
     variance: float
     determined: bool = True
+    hold: Array | None = field(default=None, repr=False)
 
     @property
     def rms(self) -> float:
@@ -147,8 +150,9 @@ class Choice:
             c for c in self.candidates if c is self.chosen or c.rms <= ALIKE_LEFT_OUT * self.least
         )
 
-    def covariance(self, of_chosen: Array) -> Array:
-        """Return the covariance of the chosen camera's parameters, the choice being uncertain.
+    @property
+    def covariance(self) -> Array:
+        """Covariance of the chosen camera's parameters, the choice being uncertain.
 
         Notes
         -----
@@ -162,7 +166,8 @@ class Choice:
         .. [1] S. T. Buckland, K. P. Burnham and N. H. Augustin, Model selection: an integral part
            of inference, Biometrics 53 (1997) 603-618, whose mean over models is here their largest.
         """
-        chosen, variance = self.chosen, np.diag(of_chosen).copy()
+        chosen, of_chosen = self.chosen, self.chosen.covariance
+        variance = np.diag(of_chosen).copy()
         if not np.isfinite(variance).all():
             return of_chosen
         here = chosen.camera.parameters
@@ -339,8 +344,18 @@ def _judged(
         except DegenerateError:
             pass
     camera = problem.camera_of(best.x.shared)
-    n = problem.n_seen
-    return Candidate(lens, board, camera, problem.names, costs, covariance, n, variance, determined)
+    return Candidate(
+        lens,
+        board,
+        camera,
+        problem.names,
+        costs,
+        covariance,
+        problem.n_seen,
+        variance,
+        determined,
+        problem.hold,
+    )
 
 
 def _at_least(C: Array, variance: Array) -> Array:

@@ -140,7 +140,8 @@ def calibrate(
     #    and of the board's shape with them, unless it is flat
     shape = None
     if board != "flat":
-        problem, best = shaped(problem, data, board, best)
+        known = None if choice is None else choice.chosen.hold
+        problem, best = shaped(problem, data, board, best, known)
         shape, data = shape_found(problem, data, board, best)
 
     # Is the answer to be believed? Reprojection errors alone do not tell.

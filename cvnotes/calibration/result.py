@@ -146,8 +146,9 @@ class Calibration:
                 "the scatter between views is not known: this result has neither its corners nor "
                 "a covariance of views"
             )
-        C = covariance_over_views(self.camera, self.names, self._data, self.poses, self.shape)
-        return C if self.choice is None else self.choice.covariance(C)
+        if self.choice is not None:
+            return self.choice.covariance
+        return covariance_over_views(self.camera, self.names, self._data, self.poses, self.shape)
 
     @property
     def std_of_views(self) -> dict[str, float]:
