@@ -291,6 +291,12 @@ def said_of(exercise, function):
         ("geometric_error", ("axis=1", "axis=0"), "axis in what is returned"),
         ("undistortion_map", ("(u - A[0, 2])", "(v - A[0, 2])"), "name in the ideal x"),
         ("residuals", ("k[1] * r2**2", "k[1] * r2"), "left out in the radial factor L"),
+        ("undistort", ("k1 * r**3", "k1 * r**2"), "power in the radius"),
+        (
+            "inverse_radius",
+            ("r + k1 * r**3 + k2", "r - k1 * r**3 + k2"),
+            "sign in the radii, halved",
+        ),
         ("residuals", ("m - seen", "seen"), "stopped in the predicted pixels"),
         ("saddle_point", ("np.linalg.solve(M, -g)", "g"), "stopped in the derivatives at (0, 0)"),
     ],
@@ -334,7 +340,7 @@ EQUIVALENT = {
     "person_height": (7, "the same factor or sign in both heights, of which the quotient is taken"),
     "nearest_rotation": (6, "det U Vᵀ in other words; F is a diagonal"),
     "rq": (3, "A is divided by its last number; a dot product the other way round"),
-    "undistort": (1, "any start of the iteration"),
+    "undistort": (15, "any start of the iteration, and any slope that settles in the same place"),
     "inverse_radius": (10, "any lower bound below 0 of the bisection"),
     "harris_measure": (1, "uv is squared"),
     "saddle_point": (6, "the column of ones times any number"),
@@ -349,6 +355,7 @@ EQUIVALENT = {
     "A_from_b": (11, "B of either sign; a product divided in another order"),
     "extrinsics": (6, "‖h1‖ = ‖h2‖; the last row of A⁻¹; the nearest rotation evens lengths out"),
     "focal_from_turn": (2, "lengths of two entries in any order"),
+    "levenberg_marquardt": (19, "any damping that grows and shrinks leads to the minimum"),
     "camera_covariance": (1, "a symmetric matrix transposed"),
     "bilinear": (4, "min in any order; int cuts off what is positive as floor does"),
     "backward_warp": (1, "ones of the same shape"),
@@ -358,6 +365,8 @@ EQUIVALENT = {
     "error_bars": (1, "r @ r in any order"),
     "jackknife": (7, "a standard deviation has no sign, nor what is squared"),
 }
+# Right on some seeds: steps by μ D − N lead downhill, too, and now and then as far as the minimum.
+LUCKY = {"levenberg_marquardt": 1}
 
 
 @each_with_steps
@@ -366,14 +375,15 @@ EQUIVALENT = {
 def test_every_slip_is_an_answer_that_is_refused_on_all_seeds_or_right_on_all(exercise):
     family, seeds = family_of(exercise.steps), range(20)
     cases = [sorted(exercise.solved_cases(seed), key=lambda case: case.size) for seed in seeds]
-    right = 0
+    right = lucky = 0
     assert len(family.slips) >= 10
     for slip in family.slips:
         gives = family.gives(slip)
         accepted = {all(holds_on(exercise, case, gives) for case in each) for each in cases}
         line = family.lines[slip.lines[0]].code
-        assert len(accepted) == 1, ("right on some seeds", slip, line)
-        right += accepted.pop()
+        lucky += len(accepted) > 1
+        assert lucky <= LUCKY.get(exercise.name, 0), ("right on some seeds", slip, line)
+        right += accepted == {True}
     assert right == EQUIVALENT.get(exercise.name, (0,))[0]
 
 
@@ -448,6 +458,19 @@ def test_single_precision_in_a_list_of_mixed_numbers_is_single_precision():
     assert said_of(EXERCISES["new_intrinsics"], of_singles).passed
     assert outcome_of([0.1, np.float32(0.1)]).dtype == "float64"
     assert outcome_of([0.25, 383163.0, np.inf]).dtype == "float64"  # short, and rounded
+
+
+def test_whole_numbers_at_any_scale_are_told_as_such_on_every_seed():
+    exercise = EXERCISES["b_from_views"]
+    for seed in (SEED, 11):
+        report = judged(exercise, lambda H: np.round(exercise.reference(H)), seed)
+        assert report.misconception == "few decimals"
+        assert "rounded to no decimals" in report.message
+
+
+def test_what_is_nearly_0_is_not_taken_for_0():
+    report = said_of(EXERCISES["person_height"], lambda *args: 1e-12 * args[-1][0, 0])
+    assert report.misconception is None, report
 
 
 def test_rounded_numbers_are_nearly_right():

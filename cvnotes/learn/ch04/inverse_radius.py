@@ -14,7 +14,7 @@ def inverse_radius(s: Array, k: Array) -> Array:
     z = np.roots([5 * k2, 3 * k1, 1.0])  # r² where the slope of r L(r) is 0
     fold = np.sqrt(min(z[(z.imag == 0) & (z.real > 0)].real, default=100.0))  # the fold's radius
     low, high = 0 * s, fold + 0 * s  # between which bounds each radius is
-    for _ in range(60):
+    for _ in range(40):
         r = (low + high) / 2
         more = r + k1 * r**3 + k2 * r**5 < s
         low, high = np.where(more, r, low), np.where(more, high, r)  # the radii, halved together
@@ -40,7 +40,7 @@ def _lenses(rng: Rng) -> list[Case]:
 def _rounds(n: int, step: str) -> tuple[str, ...]:
     """Return the changes that make n rounds from r = s, r ← step; right beyond the fold."""
     halving = "np.where(more, r, low), np.where(more, high, r)"
-    loop = ("range(60)", f"range({n})", "(low + high) / 2", "low", halving, f"{step}, 0")
+    loop = ("range(40)", f"range({n})", "(low + high) / 2", "low", halving, f"{step}, 0")
     return "0 * s, fold", "s, 0", *loop
 
 

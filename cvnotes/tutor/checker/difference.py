@@ -302,7 +302,7 @@ def _factor(wrong: _Wrong) -> Found | None:
         return None
     f = float(factors[0])  # type: ignore[arg-type]
     several = len(factors) > 1
-    if several and np.allclose(np.array(factors, dtype=float), f, rtol=1e-5):
+    if several and np.allclose(np.array(factors, dtype=float), f, rtol=1e-5, atol=0):
         name = _said(f).partition(": ")[2] or "a factor"
         where = "in every case" if wrong.always else "wherever it is wrong"
         return Found(name, f"Your answer is the right one times {_said(f)}, {where}.")
@@ -411,15 +411,15 @@ def _few_decimals(wrong: _Wrong) -> Found | None:
     """Return whether answers of any scale were rounded, each at the scale it has."""
     if not wrong.up_to_scale:
         return None
-    for n in range(1, 6):
+    for n in range(6):
         for a, r in wrong.pairs:
             f = np.vdot(a, r) / np.vdot(r, r)
             near = np.abs(a - f * r).max() <= 0.6 / 10**n
             if not (near and a.any() and (a == np.round(a, n)).all()):
                 break
         else:
-            return Found("few decimals", f"These are the right numbers, rounded to {n} decimals: "
-                         "leave them as they are.")  # fmt: skip
+            return Found("few decimals", f"These are the right numbers, rounded to {n or 'no'} "
+                         "decimals: leave them as they are.")  # fmt: skip
     return None
 
 

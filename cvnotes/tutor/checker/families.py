@@ -220,6 +220,8 @@ class _Maker:
     def _statement(self, i: int, statement: ast.stmt) -> ast.stmt:
         self._line = i
         new = copy.copy(statement)
+        if isinstance(new, ast.For):
+            new.body = [self._statement(i, inner) for inner in new.body]
         if isinstance(new, ast.Assign | ast.AugAssign | ast.Return) and new.value is not None:
             new.value = self._switched(new.value)
         if isinstance(new, ast.Assign) and isinstance(new.targets[0], ast.Tuple):

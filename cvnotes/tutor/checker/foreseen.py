@@ -18,6 +18,9 @@ from cvnotes.tutor.checker.equality import (
 from cvnotes.tutor.checker.exercise import Case
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
+# What is 0 in a slip is 0, but for rounding, relative to the right answer's largest number.
+_ZERO = 1e-13
+
 
 def foreseen(answer: WrongAnswer) -> Found | None:
     """Find the misconception that gives what the student's function gave.
@@ -63,9 +66,11 @@ def explains(gives: Callable[..., Any], answer: WrongAnswer, same: Same) -> bool
             if outcome.value is not None and np.isfinite(outcome.value).all():
                 return False
             continue
-        if outcome.value is None or not equal(
-            outcome.value, given, AS_NEAR * tolerance(outcome.dtype)
-        ):
+        bound = AS_NEAR * tolerance(outcome.dtype)
+        if outcome.value is None or not equal(outcome.value, given, bound):
+            return False
+        size = float(np.abs(case.right).max(initial=0)) or 1e-3
+        if not given.any() and np.abs(outcome.value).max(initial=0) > _ZERO * size:
             return False
         if i < answer.wrong and answer.exercise.same(given, case.right, TOLERANCE):
             return False
