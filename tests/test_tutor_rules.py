@@ -5,7 +5,11 @@
 
 import ast
 import inspect
+import sys
+import time
 from dataclasses import replace
+from importlib.util import find_spec, module_from_spec
+from itertools import count
 
 import numpy as np
 import pytest
@@ -16,6 +20,7 @@ from cvnotes.learn import EXERCISES, check
 from cvnotes.learn.exercises import COURSE
 from cvnotes.tutor import edited, mistakes
 from cvnotes.tutor.checker import judge as judging
+from cvnotes.tutor.checker import steps
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.difference import VAGUE
 from cvnotes.tutor.checker.equality import slack
@@ -258,6 +263,21 @@ def test_a_slow_function_is_not_run_again_and_again():
     found = located(slow, EXERCISES["error_bars"])
     assert found is None
     assert runs == []  # it ran in a process of its own
+
+
+def test_the_search_ends_when_the_time_is_over(monkeypatch):
+    assert located(error_bars_of_n, EXERCISES["error_bars"]) is not None
+    ticks = count()
+    monkeypatch.setattr(steps, "clock", lambda: float(next(ticks)))
+    assert located(error_bars_of_n, EXERCISES["error_bars"]) is None
+
+
+def test_in_a_browser_the_clock_is_one_that_moves(monkeypatch):
+    monkeypatch.setattr(sys, "platform", "emscripten")
+    spec = find_spec("cvnotes.tutor.checker.in_process")
+    there = module_from_spec(spec)
+    spec.loader.exec_module(there)
+    assert there.clock is time.perf_counter
 
 
 def test_the_formula_comes_with_the_second_refusal():

@@ -4,6 +4,7 @@ import ast
 import copy
 import inspect
 import textwrap
+from collections import Counter
 from collections.abc import Callable
 from types import FunctionType
 from typing import Any
@@ -49,24 +50,26 @@ class Instrumented:
     def __init__(self, function: Callable[..., Any]) -> None:
         self.text: list[str] = []
         self._seen: dict[int, list[Array | None]] = {}
-        self._put: dict[int, Array] = {}
+        # What is put in the place of expressions, and how often it was; None while all is noted.
+        self._put: dict[int, Array] | None = None
+        self._times: Counter[int] = Counter()
         self._function = self._made(function)
 
     def values(self, args: tuple[Any, ...]) -> dict[int, Array]:
         """Run it; give what its expressions gave: of a loop, one below the other."""
-        self._seen, self._put = {}, {}
+        self._seen, self._put = {}, None
         self._run(args)
         return {
             i: array for i, values in self._seen.items() if (array := _stacked(values)) is not None
         }
 
     def is_repeated(self, number: int) -> bool:
-        """Return whether an expression was worked out more than once in the last run."""
+        """Return whether an expression was worked out more than once when values were asked for."""
         return len(self._seen.get(number, ())) > 1
 
     def __call__(self, args: tuple[Any, ...], put: dict[int, Array] | None = None) -> Any:
         """Run it, with values in the place of some expressions; None if that raises."""
-        self._seen, self._put = {}, put or {}
+        self._put, self._times = put or {}, Counter()
         return self._run(args)
 
     def _run(self, args: tuple[Any, ...]) -> Any:
@@ -77,14 +80,17 @@ class Instrumented:
 
     def _look(self, number: int, value: Any) -> Any:
         """Note what an expression gave, or give something else in its place."""
-        seen = self._seen.setdefault(number, [])
-        if len(seen) < _ROUNDS:
-            seen.append(_noted(value))
+        if self._put is None:
+            seen = self._seen.setdefault(number, [])
+            if len(seen) < _ROUNDS:
+                seen.append(_noted(value))
+            return value
         if number not in self._put:
             return value
         new, old = self._put[number], np.asarray(value)
         if new.size != old.size and old.size:  # one of the rounds of a loop
-            new = np.reshape(new, (-1, *old.shape))[len(seen) - 1]
+            new = np.reshape(new, (-1, *old.shape))[self._times[number]]
+            self._times[number] += 1
         new = np.reshape(new, old.shape) if new.size == old.size else new
         if old.dtype.kind in "iu" and (new == np.rint(new)).all():  # it may be an index
             new = new.astype(old.dtype)

@@ -20,7 +20,6 @@ import copy
 import inspect
 import re
 import textwrap
-import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -32,6 +31,7 @@ import numpy as np
 from cvnotes.base import Array, CvnotesError
 from cvnotes.tutor.checker.equality import TOLERANCE, Same, up_to_scale
 from cvnotes.tutor.checker.exercise import Exercise, Misconception, mistakes
+from cvnotes.tutor.checker.in_process import clock
 from cvnotes.tutor.checker.instrumented import Instrumented
 from cvnotes.tutor.checker.parsing import parsed
 from cvnotes.tutor.checker.sandbox import run
@@ -329,14 +329,14 @@ def _found(own: Instrumented, exercise: Exercise, traces: Sequence[_Trace]) -> A
 
     Both are −1 if that is not proven; behind them, a step and an expression for each that agrees.
     """
-    started = time.process_time()
-    clock = started + _SECONDS
+    started = clock()
+    end = started + _SECONDS
     with np.errstate(all="ignore"):
         seen = [own.values(trace.args) for trace in traces[:1]]
-        if time.process_time() - started > _SLOW:
+        if clock() - started > _SLOW:
             return np.array([-1.0, -1.0])
         seen += [own.values(trace.args) for trace in traces[1:]]
-        step, place = _proven(own, exercise, traces, seen, clock)
+        step, place = _proven(own, exercise, traces, seen, end)
         agreed = [
             pair for pair in _agreed(own, exercise, traces, seen) if step < 0 or pair[0] < step
         ]
@@ -370,7 +370,7 @@ def _proven(
     exercise: Exercise,
     traces: Sequence[_Trace],
     seen: Sequence[Seen],
-    clock: float,
+    end: float,
 ) -> tuple[int, int]:
     """Return the earliest step that makes the rest come out right, and the expression it is for."""
 
@@ -383,7 +383,7 @@ def _proven(
     innocent = {e for e in seen[0] if _is_innocent(e, exercise, traces, seen)}
     for k, (i, _) in enumerate(traces[0].steps):
         for e in seen[0]:
-            if time.process_time() > clock:
+            if clock() > end:
                 return -1, -1
             if e not in innocent and all(
                 e in values
