@@ -329,3 +329,19 @@ def test_a_telephone_shows_it_in_both_lights(found, chromium, tmp_path):
         assert min(letters) >= 12
         assert violations(window) == []
         window.close()
+
+
+def test_on_paper_a_heading_stays_with_its_figure_and_colours_stay(found, chromium, tmp_path):
+    (tmp_path / "report.html").write_text(report_page(found), encoding="utf-8")
+    window = chromium.new_page()
+    window.goto((tmp_path / "report.html").as_uri())
+    window.emulate_media(media="print")
+
+    def every(of, what):
+        of_all = f"[...document.querySelectorAll('{of}')].map(e => getComputedStyle(e).{what})"
+        return set(window.evaluate(of_all))
+
+    assert every("h1, h2", "breakAfter") == {"avoid"}
+    assert every("section, figure", "breakInside") == {"avoid"}
+    assert every(".key i, .bar", "printColorAdjust") == {"exact"}
+    window.close()

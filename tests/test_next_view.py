@@ -154,6 +154,13 @@ def test_after_views_in_the_middle_the_border_is_asked_for():
     assert view.after < 0.5 * view.before
 
 
+def test_of_two_views_it_is_said_that_noise_alone_is_known():
+    m = seen(good_views(BOARD, CAMERA, 5, rng=np.random.default_rng(1)), np.random.default_rng(2))
+    for n, alone in ((2, True), (5, False)):
+        said = repr(next_view(calibrate(BOARD.points, m[:n], SIZE)))
+        assert said.endswith("), were there noise alone") is alone
+
+
 W = np.array([[x, y, 0.0] for y in (0, 100) for x in (0, 200)])
 PINHOLE = Camera(intrinsics(800, 800, 320, 240))
 

@@ -48,6 +48,8 @@ class NextView:
         `prediction_std`), root mean square over the whole picture, px: now, and with such a view.
     words : str
         Where to hold the board, lengths being millimetres.
+    noise_alone : bool
+        Whether `before` and `after` know of noise alone, as views are too few to differ.
     """
 
     G: Array
@@ -56,9 +58,11 @@ class NextView:
     before: float
     after: float
     words: str
+    noise_alone: bool = False
 
     def __repr__(self) -> str:
-        return f"{self.words}: a pixel is then known to {self.after:.2g} px (now {self.before:.2g})"
+        known = f"a pixel is then known to {self.after:.2g} px (now {self.before:.2g})"
+        return f"{self.words}: {known}{', were there noise alone' * self.noise_alone}"
 
 
 def next_view(calibration: Calibration, *, outline: npt.ArrayLike | None = None) -> NextView:
@@ -130,6 +134,7 @@ def next_view(calibration: Calibration, *, outline: npt.ArrayLike | None = None)
         search.now,
         float(score[0]),
         where_to_hold(calibration.camera, G, W),
+        calibration.honest_std == calibration.std,
     )
 
 

@@ -69,7 +69,10 @@ def not_found(
         there = f"{start}: there are markers of {markers}"
         lesson = f"{there}; is it a ChArUco board (--charuco, with the name of its markers)?"
         return CornersNotFound(lesson, brief=there, markers=markers)
-    lesson = f"{start} ({'; '.join(dict.fromkeys(tried))}); {_guess(board, doubts)}"
+    of_copy: dict[str, str] = {}
+    for each in tried:  # of a copy the largest that was found says most
+        of_copy.setdefault(each.partition(":")[0], each)
+    lesson = f"{start} ({'; '.join(of_copy.values())}); {_guess(board, doubts)}"
     if not doubts:
         return CornersNotFound(lesson, brief=start)
     most = max(doubts, key=lambda doubt: 0 if doubt.found is None else len(doubt.found))
