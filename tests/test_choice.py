@@ -185,6 +185,13 @@ def test_of_few_views_the_board_is_chosen_that_predicts_all_others_best(views):
     assert chosen <= 1.05 * min(bent, free) < 0.8 * flat
 
 
+def test_a_lens_that_folds_shows_what_the_board_is():
+    """A flat board speaks for k3, which folds with free corners; on these it is not needed."""
+    real = course.real_corners()
+    choice = choose_model(real.board.points, real.left[1:12:2], real.size)
+    assert (choice.lens, choice.board) == ("k1 k2 p1 p2", "free")
+
+
 def test_it_is_not_kept_in_files(tmp_path):
     m = course.measured_corners()
     with warnings.catch_warnings(action="ignore"):

@@ -289,7 +289,10 @@ class _Tried:
                 "of the board, or the views do not determine the camera"
             )
         found = [c for c in found if c.determined] or found
-        return Choice(_simplest(found, self.lenses), tuple(found))
+        chosen = _simplest(found, self.lenses)
+        # (a lens that folds may show what the board is, on which a simpler one then does not)
+        fit = [c for c in found if new or c.camera.is_invertible >= chosen.camera.is_invertible]
+        return Choice(_shaped(chosen, fit), tuple(found))
 
     def _candidate(self, lens: str, board: str) -> Candidate | None:
         try:
@@ -377,9 +380,7 @@ def _simplest(found: Sequence[Candidate], lenses: Sequence[str]) -> Candidate:
     for of_kind in _by_kind(found, lenses):
         best = min(of_kind, key=lambda c: c.rms)
         if best.rms <= max(AS_WELL * least, _ROUNDING):
-            return _shaped(
-                next(c for c in of_kind if c is best or c.predicts_as_well_as(best)), found
-            )
+            return next(c for c in of_kind if c is best or c.predicts_as_well_as(best))
     raise AssertionError("one of the kinds has the least error")
 
 

@@ -1,7 +1,8 @@
 """The camera of photographs: its lens, the shape of the board, and which do not fit the others."""
 
 import warnings
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -93,7 +94,7 @@ def choose(
         message = f"{n} usable photograph{'s' * (n != 1)}; {error}"
         raise NoCamera(message, photographs) from error
     two = two_cameras(result)
-    exchanged = mirrored(photographs, result, two)
+    exchanged = _exchanged(photographs, result, two, model)
     if two and not exchanged:
         return with_doubt(result, _of_two_cameras(two, result)), photographs
     fewest = max(FEWEST_KEPT, PART_KEPT * len(photographs.used))
@@ -107,8 +108,27 @@ def choose(
             result = fit(kept, model)
         except CvnotesError:  # these alone do not determine the camera
             break
-        photographs, exchanged = kept, mirrored(kept, result, two_cameras(result))
+        photographs = kept
+        exchanged = _exchanged(photographs, result, two_cameras(result), model)
     return with_doubt_of_mirrored(result, exchanged), photographs
+
+
+def _exchanged(
+    photographs: Photographs, result: Calibration, two: TwoCameras | None, model: Model
+) -> list[int]:
+    """List the photographs that are mirrored, whatever the model.
+
+    What a lens misses that is too simple, or a flat board, a mirror may explain, too: nothing is
+    said before each photograph was heard with the best lens and a board that may bend. (Corners
+    that are free would explain the mirror.)
+    """
+    exchanged = mirrored(photographs, result, two)
+    if exchanged and (model.lens != "auto" or result.shape is None):
+        with suppress(CvnotesError):  # few views do not determine so much
+            bent = fit(photographs, replace(model, lens="auto", board_shape="bent"))
+            again = mirrored(photographs, bent, two_cameras(bent))
+            exchanged = [i for i in exchanged if i in again]
+    return exchanged
 
 
 def _of_two_cameras(two: TwoCameras, result: Calibration) -> Doubt:
