@@ -123,9 +123,9 @@ class TestTheBarsContainTheChoice:
 @pytest.mark.parametrize(
     ("case", "widened"),
     [
-        (Case("k1 k2 p1 p2", 0.0, 15), 0.87),
-        (Case("k1 k2", 0.5, 5), 0.87),
-        (Case("none", 0.0, 5), 0.87),
+        (Case("k1 k2 p1 p2", 0.0, 15), 0.91),
+        (Case("k1 k2", 0.5, 5), 0.91),
+        (Case("none", 0.0, 5), 0.91),
         (Case("fisheye", 0.15, 15), 0.87),
     ],
     ids=str,
