@@ -241,6 +241,18 @@ def test_markers_are_read_as_opencv_reads_them(dictionary):
     assert max(np.abs(ours[i] - theirs[i]).max() for i in theirs) < 3
 
 
+def test_one_misread_marker_does_not_lose_the_board():
+    known = camera([60, 40, -600])
+    picture = render(BOARD, known, blur=0.7)
+    stray = cv2.aruco.generateImageMarker(_dictionary("4x4_50"), 20, 60)
+    picture[10:90, 10:90] = 220
+    picture[20:80, 20:80] = np.where(stray > 0, 220, 30)
+    m = find_corners(picture, BOARD)
+    seen = np.isfinite(m[:, 0])
+    assert seen.sum() > 40
+    assert np.abs(m - known.project(BOARD.points))[seen].max() < 0.05
+
+
 def test_a_wide_lens_leads_no_corner_beyond_the_horizon_of_the_others():
     board = CharucoBoard((19, 9), 25.0, dictionary="4x4_100")
     G = look_at([100, 160, -60], [240, 40, 0])

@@ -116,8 +116,10 @@ def find_numbered(
     if agreed < _AGREE and (counted := stand.counted()) is not None:
         return Numbered(*none, squares=counted)
     # (where nothing tells, OpenCV's own doubts may)
-    of_board = grey, squares, marker, dictionary
-    found = [_corners(*of_board, x, outlines, markers) for x in patterns]
+    of_board, found = (grey, squares, marker, dictionary), []
+    for x in patterns:
+        stands = stand.agreeing(columns, light=x)  # OpenCV gives up for one that was misread
+        found.append(_corners(*of_board, x, outlines[stands], markers[stands]))
     m, numbers = max(found, key=lambda each: len(each[0]))
     return Numbered(m, numbers, markers, legacy=shown)
 
