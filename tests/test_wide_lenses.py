@@ -322,6 +322,21 @@ def test_a_lens_that_another_beats_is_not_started_over_and_over():
     assert beaten.best().cost == pytest.approx(every.best().cost, rel=1e-3)
 
 
+def test_wide_lenses_are_tried_first_so_that_few_starts_do_for_what_they_beat(monkeypatch):
+    W, m = seen_by(Camera(intrinsics(200, 200, 320, 240), lens=FisheyeLens((0.01,))), 10)
+    kept, keep = [], Search.keep
+
+    def counted(search, found):
+        kept.append(search.problem.model)
+        keep(search, found)
+
+    monkeypatch.setattr(Search, "keep", counted)
+    choice = choose_model(W, m, (640, 480), lenses=("k1 k2", "fisheye"), boards=["flat"])
+    assert list(choice.by_lens) == ["k1 k2", "fisheye"]
+    assert kept[0] is FisheyeLens
+    assert kept.count(Lens) < 4
+
+
 def test_a_lens_that_is_too_small_is_never_reliable():
     camera = Camera(intrinsics(300, 300, 325, 238), lens=FisheyeLens())
     W, m = seen_by(camera, 15)

@@ -278,10 +278,15 @@ class _Tried:
     known: dict[tuple[str, str], Candidate | None] = field(default_factory=dict)
 
     def choice(self, models: Iterable[tuple[str, str]], *, new: bool = True) -> Choice:
-        """Choose among models; those that are not known yet are tried, if new ones may be."""
-        for model in models if new else ():
-            if model not in self.known:
-                self.known[model] = self._candidate(*model)
+        """Choose among models; those that are not known yet are tried, if new ones may be.
+
+        Wide lenses are first: few starts do for them, and then for whatever they beat by far.
+        """
+        models = list(models)
+        unknown = [model for model in models if model not in self.known] if new else []
+        self.known |= dict.fromkeys(unknown)  # in the order in which they are told
+        for model in sorted(unknown, key=lambda model: not LENSES[model[0]][0].wide):
+            self.known[model] = self._candidate(*model)
         found = [c for model in models if (c := self.known.get(model))]
         if not found:
             raise ConvergenceError(
