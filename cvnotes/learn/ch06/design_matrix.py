@@ -23,7 +23,7 @@ def same_row_space(a: Array, b: Array, tolerance: float) -> bool:
         if not np.isfinite(x).all():  # in what was given, or where it is too large
             return False
         _, s, Vt = np.linalg.svd(x, full_matrices=False)
-        Vt = Vt[s > 1e-9 * s[0]]
+        Vt = Vt[s > 1e-3 * tolerance * s[0]]
         spaces.append(Vt.T @ Vt)
     return bool(np.abs(spaces[0] - spaces[1]).max() <= 10 * tolerance)
 

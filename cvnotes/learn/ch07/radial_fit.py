@@ -13,13 +13,19 @@ def _ideal_and_seen(rng: Rng) -> list[Case]:
     cases = []
     for n in (3, 12):
         k, _ = some_lens(rng)
-        xy = rounded(rng.uniform(-0.5, 0.5, (n, 2)), 2)
+        xy = _some_points(rng, n)
         cases.append(Case((xy, rounded(xy + _bent(xy, xy) @ k, 13)), truth=k))
     k, _ = some_lens(rng)
-    xy = rounded(rng.uniform(-0.5, 0.5, (9, 2)), 2)
+    xy = _some_points(rng, 9)
     noisy = xy + _bent(xy, xy) @ k + 2e-3 * rng.standard_normal((9, 2))
     cases.append(Case((xy, rounded(noisy, 4)), about="noisy"))
     return cases
+
+
+def _some_points(rng: Rng, n: int) -> Array:
+    """Return ideal points, one far from the axis and one nearer: k1 and k2 need both."""
+    others = rounded(rng.uniform(-0.5, 0.5, (n - 2, 2)), 2)
+    return np.vstack([[0.5, -0.4], [-0.2, 0.3], others])
 
 
 def _bent(xy: Array, radius_of: Array) -> Array:
