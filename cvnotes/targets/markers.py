@@ -118,8 +118,11 @@ def find_numbered(
     # (where nothing tells, OpenCV's own doubts may)
     of_board, found = (grey, squares, marker, dictionary), []
     for x in patterns:
-        stands = stand.agreeing(columns, light=x)  # OpenCV gives up for one that was misread
-        found.append(_corners(*of_board, x, outlines[stands], markers[stands]))
+        each = _corners(*of_board, x, outlines, markers)
+        if not len(each[0]):  # OpenCV gives up for one that was misread
+            stands = stand.agreeing(columns, light=x)
+            each = _corners(*of_board, x, outlines[stands], markers[stands])
+        found.append(each)
     m, numbers = max(found, key=lambda each: len(each[0]))
     return Numbered(m, numbers, markers, legacy=shown)
 
