@@ -21,7 +21,7 @@ handed in; its processes import the course by the name that it was given, here `
 'squared'
 """
 
-from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, Rng, mistakes
+from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property, mistakes
 from cvnotes.tutor.checker.report import Report
 from cvnotes.tutor.checker.steps import edited, mistakes_in
 from cvnotes.tutor.course import Course
@@ -31,7 +31,6 @@ __all__ = [
     "Exercise",
     "Case",
     "Property",
-    "Rng",
     "Misconception",
     "mistakes",
     "mistakes_in",

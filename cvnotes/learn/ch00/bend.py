@@ -4,10 +4,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _rows(rng: Rng) -> list[Case]:
+def _rows(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([[0.0, 0.0], [2.0, 4.0], [6.0, 8.0]])
     along = np.linspace(0, 300, 7)[:, None] * np.array([[0.6, 0.8]])
     bow = np.array([0.0, 1.0, 1.8, 2.5, 1.6, 0.9, 0.0])[:, None] * np.array([[-0.8, 0.6]])

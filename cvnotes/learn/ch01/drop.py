@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded, some_factors
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _homogeneous_points(rng: Rng) -> list[Case]:
+def _homogeneous_points(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([[4.0, 6.0, 2.0], [3.0, 9.0, -3.0], [5.0, 7.0, 1.0]])
     many = to_homogeneous(rounded(rng.uniform(-5, 5, (5, 3))))
     infinite = np.array([[8.0, -6.0, 2.0], [3.0, 1.0, 0.0], [0.0, -2.0, 0.0]])

@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.projective import to_homogeneous
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _points_and_factor(rng: Rng) -> list[Case]:
+def _points_and_factor(rng: np.random.Generator) -> list[Case]:
     by_hand = Case((np.array([[2.0, 3.0], [4.0, 5.0], [6.0, 8.0]]), 10.0))
     return [
         by_hand,

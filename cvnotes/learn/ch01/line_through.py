@@ -5,11 +5,11 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import incident, rounded
 from cvnotes.projective import to_homogeneous
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale
 
 
-def _two_points(rng: Rng) -> list[Case]:
+def _two_points(rng: np.random.Generator) -> list[Case]:
     p, q = rounded(rng.uniform(0, 640, (2, 2)), 1)
     return [
         Case((np.array([1.0, 2.0]), np.array([3.0, 5.0]))),

@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def measure_along(t: Array, m: Array, q: Array) -> Array:
@@ -17,7 +17,7 @@ def measure_along(t: Array, m: Array, q: Array) -> Array:
     return np.asarray((t[1] - p * t[0]) / (1 - p))
 
 
-def _roads(rng: Rng) -> list[Case]:
+def _roads(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([[100.0, 300], [148, 264], [164, 252]])
     cases = [Case((np.array([0.0, 10, 20]), by_hand, np.array([[180.0, 240]])))]
     for about in ("", "upright"):

@@ -5,11 +5,11 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import incident, rounded
 from cvnotes.projective import meet
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import close, up_to_scale
 
 
-def _two_lines(rng: Rng) -> list[Case]:
+def _two_lines(rng: np.random.Generator) -> list[Case]:
     l1, l2 = rounded(rng.uniform(-3, 3, (2, 3)))
     return [
         Case((np.array([1.0, 0.0, -2.0]), np.array([1.0, 1.0, -5.0]))),

@@ -4,10 +4,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _pairs(rng: Rng) -> list[Case]:
+def _pairs(rng: np.random.Generator) -> list[Case]:
     a = np.array([
         [1.0, 2, 1], [1, 2, 1], [2, 4, 2], [1, 2, 0], [1, 2, 0], [0, 3, 1],
         [4, 2, 2], [1, 2, 1], [0, 3, 1], [1, 2, 1], [1, 2, 1], [1, 2, 1],

@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import focal_length
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _perpendicular(rng: Rng) -> list[Case]:
+def _perpendicular(rng: np.random.Generator) -> list[Case]:
     by_hand = (np.array([400.0, 100]), np.array([-300.0, 200]), np.array([100.0, 0]))
     f, centre = rng.uniform(500, 900), np.round(rng.uniform([300, 220], [340, 260]), 1)
     x, y = rng.uniform(0.3, 1.2), rng.uniform(-0.6, 0.6)

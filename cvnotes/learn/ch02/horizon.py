@@ -6,11 +6,11 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.camera import horizon as library_horizon
 from cvnotes.learn.cases.cameras import ABOUT_X, TIDY, incident, some_intrinsics, some_rotation
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale
 
 
-def _planes(rng: Rng) -> list[Case]:
+def _planes(rng: np.random.Generator) -> list[Case]:
     A, R = some_intrinsics(rng, skew=True), some_rotation(rng)
     n = np.round(rng.uniform(0.3, 1, 3) * rng.choice([-1, 1], 3), 2)
     tidy_A, about_y, _ = TIDY

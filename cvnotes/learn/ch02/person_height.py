@@ -5,7 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import rotation_from_angles
 from cvnotes.learn.cases.cameras import rounded, some_factors, some_intrinsics
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def person_height(horizon: Array, v: Array, post: Array, h: float, person: Array) -> float:
@@ -18,7 +18,7 @@ def person_height(horizon: Array, v: Array, post: Array, h: float, person: Array
     return float(h * z[1] / z[0])
 
 
-def _streets(rng: Rng) -> list[Case]:
+def _streets(rng: np.random.Generator) -> list[Case]:
     up = np.array([0.0, 1, 0])  # in camera coordinates, and of any sign
     # to a level camera uprights are parallel; the second person is as far away as the post
     sky, post = np.array([0.0, 1, -200]), np.array([[100.0, 400], [100, 100]])

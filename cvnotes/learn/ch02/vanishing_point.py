@@ -6,13 +6,13 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera
 from cvnotes.learn.cases.cameras import ABOUT_Y, TIDY_A, rounded, some_intrinsics, some_rotation
 from cvnotes.projective import from_homogeneous
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 # A camera that looks along the world's y.
 _ALONG_Y = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
-def _directions(rng: Rng) -> list[Case]:
+def _directions(rng: np.random.Generator) -> list[Case]:
     A, R = some_intrinsics(rng, skew=True), some_rotation(rng)
     ahead = rounded(R.T @ [*rng.uniform(-0.5, 0.5, 2), 1.0])
     aside = rounded(R.T @ [*rng.uniform(-1.4, -1.1, 2), 1.0])  # left of the picture and above

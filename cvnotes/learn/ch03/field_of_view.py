@@ -4,10 +4,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import some_intrinsics
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _off_centre(rng: Rng) -> list[Case]:
+def _off_centre(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([[500.0, 0, 399.5], [0, 600, 240], [0, 0, 1]])
     return [Case((by_hand, 1000)), Case((some_intrinsics(rng), 640))]
 

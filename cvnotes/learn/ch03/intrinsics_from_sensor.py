@@ -4,10 +4,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _sensors(rng: Rng) -> list[Case]:
+def _sensors(rng: np.random.Generator) -> list[Case]:
     f, du, dv = np.round(rng.uniform([4, 0.003, 0.006], [12, 0.005, 0.009]), 4).tolist()
     u0, v0 = rounded(rng.uniform([300, 200], [340, 260]), 1).tolist()
     return [Case((8.0, 0.01, 0.02, 320.0, 240.0)), Case((f, du, dv, u0, v0))]

@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import nearest_rotation
 from cvnotes.learn.cases.cameras import ABOUT_Y, rounded, some_rotation
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _nearly_rotations(rng: Rng) -> list[Case]:
+def _nearly_rotations(rng: np.random.Generator) -> list[Case]:
     by_hand = rounded(ABOUT_Y + [[0.1, 0.0, 0.2], [0.2, 0.1, 0.0], [0.0, 0.1, 0.1]], 2)
     noisy = rounded(some_rotation(rng) + 0.1 * rng.standard_normal((3, 3)), 3)
     mirrored = rounded(some_rotation(rng) @ np.diag([1, 1, -0.2]) + 0.03 * noisy, 3)

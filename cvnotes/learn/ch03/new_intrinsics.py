@@ -4,10 +4,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import some_intrinsics
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _crops(rng: Rng) -> list[Case]:
+def _crops(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([[800.0, 2, 329.5], [0, 840, 239.5], [0, 0, 1]])
     corner = rng.integers(20, 200, 2).astype(float)
     return [

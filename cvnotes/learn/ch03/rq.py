@@ -5,7 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import nearest_rotation
 from cvnotes.learn.cases.cameras import TIDY, some_camera, some_factors
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import close, up_to_scale
 
 
@@ -20,7 +20,7 @@ def rq(P: Array) -> tuple[Array, Array]:
     return A / A[2, 2], R
 
 
-def _matrices(rng: Rng) -> list[Case]:
+def _matrices(rng: np.random.Generator) -> list[Case]:
     A, R, T = TIDY
     cases = [Case((A @ np.column_stack([R, T]),))]
     for sign in (1, -1):

@@ -6,10 +6,10 @@ from cvnotes.base import Array
 from cvnotes.camera import Lens
 from cvnotes.camera.lens import horner, radial_factor
 from cvnotes.learn.cases.cameras import rounded, some_lens
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _ideal_points(rng: Rng) -> list[Case]:
+def _ideal_points(rng: np.random.Generator) -> list[Case]:
     k, p = some_lens(rng)
     return [
         Case((np.array([[0.5, 0.0], [0.2, 0.4]]), np.array([-0.2, 0.1]), np.array([0.01, 0.02]))),

@@ -4,10 +4,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _lenses(rng: Rng) -> list[Case]:
+def _lenses(rng: np.random.Generator) -> list[Case]:
     k1, k2 = rounded(rng.uniform([-0.5, 0.005], [-0.3, 0.02]), 3)
     return [
         Case((np.array([-4 / 3, 0.0]),)),

@@ -5,11 +5,11 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, px_from_xy
 from cvnotes.learn.cases.cameras import photographed, some_lens
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import close_to
 
 
-def _photographs(rng: Rng) -> list[Case]:
+def _photographs(rng: np.random.Generator) -> list[Case]:
     tidy, *others = ((A, R, T, some_lens(rng)[0], W) for A, R, T, W in photographed(rng))
     return [Case((*tidy[:3], np.array([-0.2, 0.1]), tidy[4])), *map(Case, others)]
 

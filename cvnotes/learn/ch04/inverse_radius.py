@@ -5,7 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded
 from cvnotes.learn.ch04.fold_radius import fold_radius
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def inverse_radius(s: Array, k: Array) -> Array:
@@ -22,7 +22,7 @@ def inverse_radius(s: Array, k: Array) -> Array:
     return np.where(s <= end, low, np.nan)
 
 
-def _lenses(rng: Rng) -> list[Case]:
+def _lenses(rng: np.random.Generator) -> list[Case]:
     # one that only folds, one that rises again behind its fold, and one that magnifies so much that
     # r = s is behind the fold: from there Newton goes astray, and dividing by L leaps to and fro
     low = [[-0.5, -0.04], [-0.7, 0.1], [0.38, -0.085]]

@@ -4,11 +4,11 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import close_to
 
 
-def _observed_points(rng: Rng) -> list[Case]:
+def _observed_points(rng: np.random.Generator) -> list[Case]:
     k, _ = some_lens(rng)
     k_hand = np.array([-0.2, 0.05])
     cases = [(np.array([[0.5, 0.0], [0.3, 0.4]]), k_hand), (rng.uniform(-0.5, 0.5, (6, 2)), k)]

@@ -4,10 +4,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _windows(rng: Rng) -> list[Case]:
+def _windows(rng: np.random.Generator) -> list[Case]:
     Iu, Iv = rounded(rng.uniform(-9, 9, (2, 5, 5)), 1)
     edge = np.array([[1.0, 2.0], [3.0, 1.0]])
     return [

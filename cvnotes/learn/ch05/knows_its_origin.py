@@ -6,7 +6,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes
+from cvnotes.tutor import Case, Exercise, Property, mistakes
 
 
 def knows_its_origin(columns: Array, rows: Array) -> Array:
@@ -14,7 +14,7 @@ def knows_its_origin(columns: Array, rows: Array) -> Array:
     return np.asarray((columns + rows) % 2 == 1, dtype=float)
 
 
-def _boards(_: Rng) -> list[Case]:
+def _boards(_: np.random.Generator) -> list[Case]:
     counts = [(9, 6), (8, 6), (7, 7), (5, 4), (7, 5), (3, 2), (8, 8), (12, 9), (4, 9), (11, 3)]
     columns, rows = np.array(counts).T
     return [Case((columns[:4], rows[:4])), Case((columns, rows))]

@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def saddle_point(patch: Array) -> Array:
@@ -17,7 +17,7 @@ def saddle_point(patch: Array) -> Array:
     return np.where(np.linalg.det(S) < 0, m, np.nan)
 
 
-def _patches(rng: Rng) -> list[Case]:
+def _patches(rng: np.random.Generator) -> list[Case]:
     v, u = np.mgrid[:3, :4]
     cases = [Case((100.0 + u**2 + u * v - v**2 - 3 * u,))]
     for width, height, sign in ((7, 5, -1), (4, 6, -1), (5, 5, 1)):

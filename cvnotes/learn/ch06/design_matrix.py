@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.homography import design_matrix
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _pairs(rng: Rng) -> list[Case]:
+def _pairs(rng: np.random.Generator) -> list[Case]:
     src, dst = rounded(rng.uniform(0, 9, (3, 2)), 1), rounded(rng.uniform(2, 30, (3, 2)), 1)
     return [Case((np.array([[1.0, 2.0]]), np.array([[3.0, 4.0]]))), Case((src, dst))]
 

@@ -16,11 +16,11 @@ from cvnotes.learn.cases.cameras import (
 )
 from cvnotes.learn.ch06.design_matrix import _steps as _steps_of_rows
 from cvnotes.projective import apply
-from cvnotes.tutor import Case, Exercise, Property, Rng, edited, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, edited, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale, up_to_signs
 
 
-def _views(rng: Rng) -> list[Case]:
+def _views(rng: np.random.Generator) -> list[Case]:
     # the first four are corners of the board: no three of them on a line
     board = board_grid()[[0, 3, 11, 8, 1, 2, 4, 5, 6, 7, 9, 10]]
     H = some_homography(rng)
@@ -33,7 +33,7 @@ def _views(rng: Rng) -> list[Case]:
     ]
 
 
-def _far_away(rng: Rng, board: Array) -> tuple[Array, Array]:
+def _far_away(rng: np.random.Generator, board: Array) -> tuple[Array, Array]:
     """Return pairs with a small picture and a far origin, where normalising is seen to matter."""
     while True:
         R, T = some_pose(rng)

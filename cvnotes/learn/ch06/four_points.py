@@ -10,11 +10,11 @@ from cvnotes.homography.linear import normal_matrix
 from cvnotes.learn.cases.cameras import SQUARE, affine_fit, board_grid, rounded, some_homography
 from cvnotes.learn.ch06.dlt import OF_THE_ROWS
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale, up_to_signs
 
 
-def _four(rng: Rng) -> list[Case]:
+def _four(rng: np.random.Generator) -> list[Case]:
     src = board_grid()[[0, 3, 11, 8]] + rounded(rng.uniform(-8, 8, (4, 2)), 1)
     dst = rounded(apply(some_homography(rng), src), 3)
     at_infinity = np.array([[100.0, 0, 300], [0, 100, 200], [1, 1, 0]])

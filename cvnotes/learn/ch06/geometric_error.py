@@ -6,10 +6,10 @@ from cvnotes.base import Array
 from cvnotes.homography import geometric_error
 from cvnotes.learn.cases.cameras import board_grid, rounded, some_factors, some_homography
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _with_errors(rng: Rng) -> list[Case]:
+def _with_errors(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([[2.0, 0, 4], [0, 2, 6], [0, 0.5, 2]])
     src = board_grid()[:7]
     H = some_homography(rng)

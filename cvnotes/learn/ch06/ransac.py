@@ -11,7 +11,7 @@ from cvnotes.base import Array
 from cvnotes.homography import dlt
 from cvnotes.learn.cases.cameras import rounded, some_homography
 from cvnotes.projective import apply
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def ransac(src: Array, dst: Array, draws: Any, t: float) -> tuple[float, float]:
@@ -25,7 +25,7 @@ def ransac(src: Array, dst: Array, draws: Any, t: float) -> tuple[float, float]:
     return counts.max(), np.ceil(np.log(0.001) / np.log(1 - q**4))
 
 
-def _some_wrong(rng: Rng) -> list[Case]:
+def _some_wrong(rng: np.random.Generator) -> list[Case]:
     # on an ellipse, so that no three are on a line; every third pair has another's partner
     cases = []
     for n in (9, 24, 36):

@@ -6,7 +6,7 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.calibration import intrinsics_from_b
 from cvnotes.learn.cases.cameras import some_intrinsics
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def _b_of(A: Array, factor: float) -> Array:
@@ -14,7 +14,7 @@ def _b_of(A: Array, factor: float) -> Array:
     return np.asarray(B[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]])
 
 
-def _bs(rng: Rng) -> list[Case]:
+def _bs(rng: np.random.Generator) -> list[Case]:
     A = some_intrinsics(rng, skew=True)
     factor = float(rng.uniform(2, 9))
     by_hand = np.array([[2.0, 0.5, 1], [0, 4, 3], [0, 0, 1]])

@@ -7,14 +7,14 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.calibration import constraints, solve_b, v_ij
 from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, plane_image, some_intrinsics, some_views
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import up_to_scale, up_to_signs
 
 # The picture scaled to about [−1, 1], in which the entries of b are of one size.
 _UNIT = np.array([[1 / 320, 0, -0.85], [0, 1 / 320, -0.6], [0, 0, 1]])
 
 
-def _tilted_views(rng: Rng) -> list[Case]:
+def _tilted_views(rng: np.random.Generator) -> list[Case]:
     A = _UNIT @ some_intrinsics(rng, skew=True)
     three = [plane_image(np.diag([2.0, 2.5, 1]), R, np.array([0.5, 0, 4])) for R in _TILTS]
     return [
@@ -24,7 +24,7 @@ def _tilted_views(rng: Rng) -> list[Case]:
     ]
 
 
-def _noisy_views(rng: Rng, A: Array) -> Array:
+def _noisy_views(rng: np.random.Generator, A: Array) -> Array:
     """Return twelve views, of which neither the first nor the last three are enough."""
     while True:
         views = some_views(rng, A, 12)

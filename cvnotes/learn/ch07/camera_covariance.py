@@ -4,10 +4,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _views(rng: Rng) -> list[Case]:
+def _views(rng: np.random.Generator) -> list[Case]:
     by_camera = np.array([[[1.0], [1], [0]], [[0.0], [1], [2]]])
     by_pose = np.array([[[1.0], [0], [0]], [[1.0], [1], [1]]])
     n, m, c, p = 4, 9, 3, 2

@@ -6,11 +6,11 @@ from cvnotes.base import Array
 from cvnotes.calibration import extrinsics
 from cvnotes.camera import nearest_rotation
 from cvnotes.learn.cases.cameras import TIDY, plane_image, some_factors, some_intrinsics, some_pose
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import same_motion, up_to_scale
 
 
-def _posed(rng: Rng) -> list[Case]:
+def _posed(rng: np.random.Generator) -> list[Case]:
     A, R, T = TIDY
     # T_z is not the only sign that there is
     cases = [Case((A, plane_image(A, r, t))) for r, t in ((R, T), (R.T, T * [-1, -1, 1]))]

@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import ABOUT_X, ABOUT_Y, rounded, some_factors, some_rotation
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 # About x and y at once, f = 300: the axis is at 45° to both.
 _ABOUT_BOTH = np.array([[2.0, 1, 600], [1, 2, -600], [-1 / 150, 1 / 150, 1]])
@@ -15,7 +15,7 @@ def _turn(f: float, R: Array, factor: float = 1.0) -> Array:
     return np.asarray(factor * A @ R @ np.linalg.inv(A))
 
 
-def _turns(rng: Rng) -> list[Case]:
+def _turns(rng: np.random.Generator) -> list[Case]:
     f, g = rounded(rng.uniform(500, 900, 2), 1)
     first, second = some_factors(rng, 2)
     return [

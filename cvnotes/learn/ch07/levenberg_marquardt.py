@@ -5,7 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import rotation_from_vector
 from cvnotes.learn.cases.cameras import board_grid, rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.tutor.checker.equality import close_to
 
 
@@ -35,7 +35,7 @@ def levenberg_marquardt(x: Array, W: Array, m: Array) -> Array:
     return np.array([[x[0], 0, x[1]], [0, x[0], x[2]], [0, 0, 1]])
 
 
-def _boards(rng: Rng) -> list[Case]:
+def _boards(rng: np.random.Generator) -> list[Case]:
     W = np.column_stack([board_grid(3, 3, 60) - 60, np.zeros(9)])
     cases = []
     for noise in (0.0, 0.4):

@@ -6,10 +6,10 @@ from cvnotes.base import Array
 from cvnotes.calibration import radial_distortion
 from cvnotes.camera import xy_from_px
 from cvnotes.learn.cases.cameras import rounded, some_lens
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _ideal_and_seen(rng: Rng) -> list[Case]:
+def _ideal_and_seen(rng: np.random.Generator) -> list[Case]:
     cases = []
     for n in (3, 12):
         k, _ = some_lens(rng)
@@ -22,7 +22,7 @@ def _ideal_and_seen(rng: Rng) -> list[Case]:
     return cases
 
 
-def _some_points(rng: Rng, n: int) -> Array:
+def _some_points(rng: np.random.Generator, n: int) -> Array:
     """Return ideal points, one far from the axis and one nearer: k1 and k2 need both."""
     others = rounded(rng.uniform(-0.5, 0.5, (n - 2, 2)), 2)
     return np.vstack([[0.5, -0.4], [-0.2, 0.3], others])

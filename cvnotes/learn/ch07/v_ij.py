@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.calibration import v_ij as library_v_ij
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, edited, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, edited, mistakes_in
 
 
-def _columns(rng: Rng) -> list[Case]:
+def _columns(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([[1.0, 2, 3], [4, 5, 6], [7, 8, 10]])
     other = rounded(rng.uniform(-4, 4, (3, 3)), 1)
     B = rng.uniform(-1, 1, (3, 3))

@@ -6,7 +6,7 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import image_of_noise, pixel_centres, rounded
 from cvnotes.projective import apply
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.warping import backward_warp as library_warp
 from cvnotes.warping import homography_map
 
@@ -15,7 +15,7 @@ def _sources(M: npt.ArrayLike, size: tuple[int, int]) -> Array:
     return np.asarray(np.nan_to_num(apply(M, pixel_centres(size)), nan=-1e6))
 
 
-def _warps(rng: Rng) -> list[Case]:
+def _warps(rng: np.random.Generator) -> list[Case]:
     shift = np.array([[1.0, 0, 1], [0, 1, 1], [0, 0, 1]])
     cases = [Case((np.array([[1.0, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12]]), shift, (4, 3)))]
     # smaller than the source, and from its far corner

@@ -4,11 +4,11 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import image_of_noise, rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 from cvnotes.warping import bilinear as library_bilinear
 
 
-def _positions(rng: Rng) -> list[Case]:
+def _positions(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([[10.0, 20, 40], [50, 90, 60]])
     cases = [Case((by_hand, 0.5, 0.25)), Case((by_hand, 1.0, 0.0), about="centre")]
     cases.append(Case((by_hand, 1.7, 0.6)))  # between the last two columns

@@ -7,10 +7,10 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import pixel_centres, rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _landings(rng: Rng) -> list[Case]:
+def _landings(rng: np.random.Generator) -> list[Case]:
     by_hand = np.array([
         [0.2, 0.1], [0.9, 0.0], [1.1, 0.2], [2.6, 0.3], [3.7, 1.2], [0.8, 1.1], [4.2, 0.8],
         [-0.7, 1.4], [1.2, -0.8], [1.4, 0.4], [0.6, 0.7], [4.8, 0.9], [2.1, -1.6],

@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded
 from cvnotes.stereo import disparity_to_depth
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _columns(rng: Rng) -> list[Case]:
+def _columns(rng: np.random.Generator) -> list[Case]:
     Z = rng.uniform(400, 3000, 5)
     u = rounded(rng.uniform(200, 600, 5), 1)
     return [

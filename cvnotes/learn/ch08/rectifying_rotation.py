@@ -6,14 +6,14 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import rounded, some_rotation
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def _unit(x: Array) -> Array:
     return np.asarray(x / np.linalg.norm(x))
 
 
-def _stereo_pairs(rng: Rng) -> list[Case]:
+def _stereo_pairs(rng: np.random.Generator) -> list[Case]:
     R = some_rotation(rng)
     left = rounded(rng.uniform(-50, 50, 3), 1)
     right = rounded(left + R.T @ [100.0, *rng.uniform(-8, 8, 2)], 1)

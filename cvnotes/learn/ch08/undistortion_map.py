@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens
 from cvnotes.learn.cases.cameras import pixel_centres, some_lens
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _small_cameras(rng: Rng) -> list[Case]:
+def _small_cameras(rng: np.random.Generator) -> list[Case]:
     A = np.array([[4.0, 0, 1.5], [0, 5, 1], [0, 0, 1]])
     k, _ = some_lens(rng)
     other = np.array([[12.0, 0, 4.2], [0, 13.0, 2.7], [0, 0, 1]])

@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.calibration.refinement import covariance
 from cvnotes.learn.cases.cameras import rounded
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _fits(rng: Rng) -> list[Case]:
+def _fits(rng: np.random.Generator) -> list[Case]:
     line = np.array([[1.0, 0], [1, 1], [1, 2], [1, 3], [1, 4]])
     J = rounded(rng.normal(size=(9, 3)) @ np.array([[2, 1, 0], [0, 1, 1], [0, 0, 3.0]]), 1)
     return [

@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.learn.cases.cameras import lens_factor, rounded, some_lens
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def jackknife(xy: Array, xy_lens: Array) -> Array:
@@ -20,7 +20,7 @@ def jackknife(xy: Array, xy_lens: Array) -> Array:
     return np.asarray(np.sqrt(s2[:, 0]))
 
 
-def _seen(rng: Rng) -> list[Case]:
+def _seen(rng: np.random.Generator) -> list[Case]:
     cases = []
     for v, n in ((3, 2), (7, 5)):
         xy = rounded(rng.uniform(-0.5, 0.5, (v, n, 2)), 2)

@@ -11,7 +11,7 @@ from cvnotes.camera import move
 from cvnotes.learn.ch06 import dlt
 from cvnotes.learn.ch07 import a_from_b, b_from_views, extrinsics, radial_fit
 from cvnotes.learn.personal import personal_camera
-from cvnotes.tutor import Case, Exercise, Property, Rng
+from cvnotes.tutor import Case, Exercise, Property
 
 _PARTS = tuple(m.EXERCISE for m in (dlt, b_from_views, a_from_b, extrinsics, radial_fit))
 Step = Callable[..., Any]
@@ -82,7 +82,7 @@ def by_the_library(board_points: Array, image_points: Array, size: tuple[int, in
     return _numbers(calibrate(board_points, image_points, size))
 
 
-def _real_board(_: Rng) -> list[Case]:
+def _real_board(_: np.random.Generator) -> list[Case]:
     """Take the corners of real photographs; where the data are not at hand, those of a student."""
     from cvnotes.pictures.course import real_corners
 

@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens
 from cvnotes.learn.cases.cameras import board_grid, some_intrinsics, some_lens, some_pose_matrix
-from cvnotes.tutor import Case, Exercise, Property, Rng, mistakes_in
+from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
-def _views(rng: Rng) -> list[Case]:
+def _views(rng: np.random.Generator) -> list[Case]:
     cases = []
     for n in (2, 9):
         A, (k, _), G = some_intrinsics(rng, skew=True), some_lens(rng), some_pose_matrix(rng)
