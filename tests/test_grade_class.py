@@ -221,7 +221,7 @@ def test_each_student_has_a_page_without_what_is_the_teachers(graded_class):
         assert 'name="viewport"' in page
         assert "<script" not in page
     bob, rob, cid = pages["bob"], pages["rob"], pages["cid"]
-    assert "Next: You left out the last coordinate" in bob
+    assert "Next: You left the last coordinate out" in bob
     assert "x_h = np.array(" in bob
     assert "✗ Each point comes back" in bob
     assert "✓ Each point comes back" in rob
@@ -248,7 +248,7 @@ def test_moodle_gets_its_participant_and_the_points(graded_class):
     assert (zoe["ID number"], zoe["Email address"]) == ("s77", "zoe@example.org")
     assert (zoe["Grade"], zoe["Maximum Grade"]) == ("1", "10")
     bob = next(r for r in rows(graded_class / "marks.moodle.csv") if r["Full name"] == "bob")
-    assert "drop: 0 of 3. You left out the last coordinate" in bob["Feedback comments: Homework 1"]
+    assert "drop: 0 of 3. You left the last coordinate out" in bob["Feedback comments: Homework 1"]
 
 
 def test_a_resumed_class_is_the_same_in_every_file(graded_class, tmp_path, capsys):
