@@ -114,3 +114,5 @@ def test_an_arrow_leads_from_its_start_to_its_end():
     assert label.name == "T"
     with pytest.raises(CvnotesError, match="coincide"):
         arrow_shapes([1, 2, 3], [1, 2, 3])
+    with pytest.raises(CvnotesError, match="coincide"):
+        arrow_shapes([1e-300, 2e-300, 3e-300], [4e-300, 2e-300, 9e-300])

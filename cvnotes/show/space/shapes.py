@@ -107,7 +107,7 @@ def arrow_shapes(start: npt.ArrayLike, end: npt.ArrayLike, name: str = "") -> Sh
     """
     start, end = one_point(start, "start", 3), one_point(end, "end", 3)
     way = end - start
-    if not way.any():
+    if not np.linalg.norm(way):  # which is 0 too for what is too small to be squared
         raise CvnotesError("start and end coincide: an arrow needs a length")
     side = np.cross(way, np.eye(3)[np.argmin(np.abs(way))])
     side = side / np.linalg.norm(side) * np.linalg.norm(way)
