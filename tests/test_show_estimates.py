@@ -31,7 +31,7 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     assert np.allclose([p.get_width() for p in right.patches], [25.0, 50.0], atol=0.01)  # medians
     assert colours(right) == [ESTIMATED, ESTIMATED]  # such errors were never promised
     assert [t.get_text() for t in right.texts] == [
-        "25 %  more than promised", "50 %  more than promised"
+        "25 %, beyond its promise", "50 %, beyond its promise"
     ]  # fmt: skip
     std = RESULT.std["alpha_u"]
     near = draw_view_families({"kept": [RESULT]}, truth=RESULT.A[0, 0] - 1.9 * std)[1]

@@ -97,7 +97,7 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
         right.barh(y, expected, color=colour, alpha=0.3, height=0.62)
         right.plot(error, spread, ".", color=colour, markersize=4)
         right.plot([promised] * 2, [y - 0.36, y + 0.36], color=IDEAL, linewidth=1.6)
-        words = f"{float(f'{expected:.2g}'):g} %" + ("" if kept else "  more than promised")
+        words = f"{float(f'{expected:.2g}'):g} %" + ("" if kept else ", beyond its promise")
         end = max(expected, float(error.max()), promised)
         beside(right, words, (end, y), (7, 0), va="center", size=9)
     right.set_xscale("log")
