@@ -31,7 +31,7 @@ DICTIONARIES = {
 }
 # In these others are looked for: of dictionaries with as many bits, the smaller ones are parts of
 # the larger.
-PROBABLE = ("4x4_250", "5x5_250", "6x6_250", "7x7_250", "apriltag_16h5", "apriltag_25h9",
+_PROBABLE = ("4x4_250", "5x5_250", "6x6_250", "7x7_250", "apriltag_16h5", "apriltag_25h9",
              "apriltag_36h11")  # fmt: skip
 _CELL = 4  # px to which a cell of a marker is straightened, as in OpenCV; and of its cells
 _BORDER, _WRONG = 0.35, 0.6  # so many may be wrong: of n² in its border, of what can be corrected
@@ -230,19 +230,19 @@ def _signs(dictionary: str) -> tuple[npt.NDArray[np.float32], int]:
 
 def _other(grey: Grey8, outlines: Array, dictionary: str, own: int) -> str:
     """Return which probable dictionary most markers are of, more than `own`, or ""."""
-    n = {name: len(_read(grey, outlines, name)[1]) for name in PROBABLE if name != dictionary}
+    n = {name: len(_read(grey, outlines, name)[1]) for name in _PROBABLE if name != dictionary}
     most = max(n, key=n.__getitem__)
     if n[most] < own + _SURE:
         return ""
-    return most if family(most) == family(dictionary) else family(most)
+    return most if _family(most) == _family(dictionary) else _family(most)
 
 
-def family(dictionary: str) -> str:
+def _family(dictionary: str) -> str:
     """Return what dictionaries that are parts of each other have in common.
 
     Examples
     --------
-    >>> family("4x4_250"), family("apriltag_36h11")
+    >>> _family("4x4_250"), _family("apriltag_36h11")
     ('4x4', 'apriltag_36h11')
     """
     return dictionary if dictionary.startswith("apriltag") else dictionary.split("_")[0]
