@@ -12,6 +12,7 @@ import sys
 import textwrap
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -19,7 +20,7 @@ import numpy as np
 import pytest
 import yaml
 
-from cvnotes.base import CvnotesError, FileError, writing
+from cvnotes.base import CvnotesError, FileError, InputTypeError, writing
 from cvnotes.calibration import Calibration, calibrate_one_view, saving
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.saving import read_calibration, write_calibration
@@ -39,6 +40,8 @@ from cvnotes.files import (
     lens_from_opencv,
     read_camera,
     read_camera_info,
+    read_photo,
+    read_photos,
     ros_yaml,
     write_camera,
     write_whole,
@@ -785,3 +788,18 @@ def test_where_nothing_locks_what_was_left_is_cleared_away_after_an_hour(
         os.utime(path, (time.time() - 60 * minutes,) * 2)
     write_whole({tmp_path / "next": b"y"})
     assert sorted(path.name for path in tmp_path.iterdir()) == [".cvnotes-busy.tmp", "next"]
+
+
+@pytest.mark.parametrize("path", [None, 5, b"camera.json", ["camera.json"]])
+@pytest.mark.parametrize(
+    "door", [read_camera, read_photo, read_calibration, partial(write_camera, Camera(np.eye(3)))]
+)
+def test_what_is_no_path_is_refused_in_words(door, path):
+    with pytest.raises(InputTypeError, match="expected a file's path, as a text or pathlib"):
+        door(path)
+
+
+def test_one_path_is_not_taken_for_the_letters_of_its_name(tmp_path):
+    photos, rejected = read_photos(str(tmp_path / "nothing.png"))
+    assert not photos
+    assert [item.file for item in rejected] == [str(tmp_path / "nothing.png")]

@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from cvnotes.base import FileError
+from cvnotes.base import FileError, InputTypeError
 
 PathLike = str | os.PathLike[str]
 
@@ -27,6 +27,27 @@ def _locks() -> Any:
 
 
 fcntl = _locks()
+
+
+def path_of(path: PathLike) -> Path:
+    """Take what is given for a file as a path.
+
+    Raises
+    ------
+    InputTypeError
+        It is neither a text nor a path.
+
+    Examples
+    --------
+    >>> path_of("board.pdf").suffix
+    '.pdf'
+    """
+    try:
+        return Path(path)
+    except TypeError:
+        raise InputTypeError(
+            f"expected a file's path, as a text or pathlib.Path, got {type(path).__name__}"
+        ) from None
 
 
 def printable(path: PathLike) -> str:

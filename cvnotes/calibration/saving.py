@@ -1,13 +1,12 @@
 """Calibrations as files: the camera, how far it can be trusted, and what it was made of."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.base.writing import PathLike, printable
+from cvnotes.base.writing import PathLike, path_of, printable
 from cvnotes.calibration.board_shape import BOARDS, BoardShape
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.camera import Camera
@@ -50,7 +49,7 @@ def write_calibration(
         The photographs that were not used, with their reasons.
     """
     text = calibration_json(result, files=files, rejected=rejected)
-    write_whole({Path(path): text.encode()})
+    write_whole({path_of(path): text.encode()})
 
 
 def calibration_json(

@@ -2,13 +2,12 @@
 
 import json
 from dataclasses import Field, fields
-from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 
 from cvnotes.base import CvnotesError, FileError, intrinsic_matrix
-from cvnotes.base.writing import PathLike, printable, write_whole
+from cvnotes.base.writing import PathLike, path_of, printable, write_whole
 from cvnotes.camera import AnyLens, Camera, Lens, pose
 from cvnotes.camera.any_lens import MODELS
 from cvnotes.files.entry import Entry
@@ -39,7 +38,7 @@ def write_camera(camera: Camera, path: PathLike, *, note: str = "") -> None:
     else:
         remark = {"note": note} if note else {}
         text = dump({"format": FORMAT, "version": VERSION, **remark, **camera_to_dict(camera)})
-    write_whole({Path(path): text.encode()})
+    write_whole({path_of(path): text.encode()})
 
 
 def read_camera(path: PathLike) -> Camera:
@@ -200,7 +199,7 @@ def _lay_out(value: Any, indent: str) -> str:
 
 
 def _is_yaml(path: PathLike) -> bool:
-    suffix = Path(path).suffix.lower()
+    suffix = path_of(path).suffix.lower()
     if suffix not in (".json", ".yml", ".yaml"):
         raise FileError(f"{printable(path)}: a camera's file ends in .json, .yml or .yaml")
     return suffix != ".json"

@@ -5,6 +5,7 @@ so that pictures of one camera share one K however it was held. (``cv2.imread`` 
 unless asked for ``IMREAD_IGNORE_ORIENTATION``.)
 """
 
+import os
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -18,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import FileError, luma, stretched
-from cvnotes.base.writing import PathLike, printable
+from cvnotes.base.writing import PathLike, path_of, printable
 from cvnotes.files.decoding import decode, header_size
 from cvnotes.files.reasons import Copy, OtherSize, Rejected, Unreadable
 
@@ -74,17 +75,17 @@ def read_photo(path: PathLike) -> Photo:
         which. Sizes are checked before anything is decoded.
     """
     try:
-        return _read(Path(path))
+        return _read(path_of(path))
     except FileError as error:
         raise FileError(f"{printable(path)}: {error}") from error
 
 
-def read_photos(paths: Iterable[PathLike]) -> tuple[list[Photo], list[Rejected]]:
+def read_photos(paths: Iterable[PathLike] | PathLike) -> tuple[list[Photo], list[Rejected]]:
     """Read photographs that can be calibrated together, all of them into memory.
 
     Parameters
     ----------
-    paths : iterable of paths
+    paths : path, or iterable of paths
         Files, and folders, of which all files are taken in natural order (not those of their
         sub-folders).
 
@@ -102,7 +103,7 @@ def read_photos(paths: Iterable[PathLike]) -> tuple[list[Photo], list[Rejected]]
 
 
 def list_photos(
-    paths: Iterable[PathLike], *, size: tuple[int, int] | None = None
+    paths: Iterable[PathLike] | PathLike, *, size: tuple[int, int] | None = None
 ) -> tuple[list[Path], list[Rejected]]:
     """Find the photographs among files and in folders, by their headers alone.
 
@@ -154,8 +155,9 @@ def fingerprint(photo: Photo) -> bytes:
     return blake2b(np.ascontiguousarray(photo.image).data, digest_size=16).digest()
 
 
-def _expanded(paths: Iterable[PathLike]) -> Iterator[Path]:
-    for path in map(Path, paths):
+def _expanded(paths: Iterable[PathLike] | PathLike) -> Iterator[Path]:
+    paths = [paths] if isinstance(paths, str | os.PathLike) else paths
+    for path in map(path_of, paths):
         try:
             inside = sorted(path.iterdir(), key=_natural) if path.is_dir() else [path]
         except OSError:

@@ -10,11 +10,10 @@ import re
 from collections.abc import Iterator
 from itertools import chain
 from math import isfinite
-from pathlib import Path
 from typing import Any
 
 from cvnotes.base import FileError
-from cvnotes.base.writing import PathLike, printable
+from cvnotes.base.writing import PathLike, path_of, printable
 from cvnotes.files.entry import Entry
 
 MAX_BYTES = 16_000_000  # a calibration of 6,000 photographs with all corners, in JSON
@@ -35,11 +34,12 @@ def read_text(path: PathLike, largest: int = MAX_BYTES) -> str:
     FileError
         It is not there, no regular file, too large, empty or not UTF-8.
     """
+    path = path_of(path)
     name = printable(path)
     try:
-        if not Path(path).is_file():
+        if not path.is_file():
             raise FileError(f"{name}: there is no such file, or it is not a regular one")
-        with Path(path).open("rb") as stream:
+        with path.open("rb") as stream:
             data = stream.read(largest + 1)
     except OSError as error:
         raise FileError(f"{name}: cannot be read: {error.strerror or error}") from error

@@ -159,7 +159,7 @@ def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel
         panel.line([a, b], LENS, 2.2)
     for at in way[::10]:
         panel.mark(at, "lens", 5)
-        panel.text(at + [0.08, 0.1], _digits(10 ** float(at[1])), IDEAL, anchor="ls")
+        panel.text(at + [0.1, 0.22], _digits(10 ** float(at[1])), IDEAL, anchor="ls")
     here = [step, np.interp(step, *way.T)]
     panel.mark(here, "estimated", 7)
     panel.grip("step", "the step, to be moved along the curve", here, 4)
