@@ -24,6 +24,7 @@ from public_figures import FIGURES
 from cvnotes.base import CalibrationWarning, CvnotesError, InputTypeError, matrix
 from cvnotes.camera import AnyLens, Camera
 from cvnotes.files import lens_from_opencv
+from cvnotes.show import panels
 
 TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent / "cvnotes"
@@ -531,3 +532,12 @@ def test_every_public_function_that_takes_arrays_is_tried():
     for name in public_functions():
         known = any(other == name or other.endswith("." + name) for other in tried)
         assert known or name in EXEMPT, f"{name}: add it to tests/public_face.py"
+
+
+TAKES_AXES = [f for f in FIGURES if "ax" in inspect.signature(f.call).parameters]
+
+
+@pytest.mark.parametrize("function", TAKES_AXES, ids=str)
+def test_several_panels_are_not_one(function):
+    with pytest.raises(InputTypeError, match=r"ax: expected the axes of one panel.*left, right ="):
+        function.call(**function.good, ax=panels(2))

@@ -8,7 +8,7 @@ import logging
 import sys
 from typing import TYPE_CHECKING, Any
 
-from cvnotes.base import whole
+from cvnotes.base import InputTypeError, image_size, whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -126,6 +126,40 @@ def picture_axes(size: tuple[int, int]) -> Any:
     """Make axes that fit a picture of (width, height): 640 px wide, not absurdly high."""
     width, height = size
     return panels(height=round(min(max(560 * height / width, 160), 760) + 60))
+
+
+def drawn_on(ax: "Axes | None", size: tuple[int, int] | None = None, **shape: int) -> "Axes":
+    """Return the axes to draw on: those given, or new ones, for a picture of (width, height).
+
+    Examples
+    --------
+    >>> drawn_on(None, (64, 48)).get_xlim()
+    (np.float64(0.0), np.float64(1.0))
+    """
+    from matplotlib.axes import Axes
+
+    if ax is None:
+        new: Axes = panels(**shape) if size is None else picture_axes(size)
+        return new
+    if not isinstance(ax, Axes):
+        raise InputTypeError(
+            f"ax: expected the axes of one panel, got {type(ax).__name__}; of several panels "
+            "take one: left, right = panels(2)"
+        )
+    return ax
+
+
+def pixel_axes(ax: "Axes | None", size: tuple[int, int]) -> "Axes":
+    """Return axes for pixels: those that there are, or new ones for a picture of a size.
+
+    Examples
+    --------
+    >>> pixel_axes(None, (64, 48)).get_xlabel()
+    'u (px)'
+    """
+    new = ax is None
+    ax = drawn_on(ax, image_size(size))
+    return as_picture(ax, size) if new else ax
 
 
 def as_picture(ax: "Axes", size: tuple[int, int], *, ticks: bool = True) -> "Axes":

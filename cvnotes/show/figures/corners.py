@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, DegenerateError, ShapeError, numbers, points
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, MUTED, as_picture, panels
+from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, MUTED, as_picture, drawn_on, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,7 +34,7 @@ def draw_response(response: npt.ArrayLike, *, ax: "Axes | None" = None, title: s
     R = numbers(response, "response")
     if R.ndim != 2 or R.size == 0:
         raise ShapeError(f"response: expected (height, width), got {R.shape}")
-    ax = panels(height=480) if ax is None else ax
+    ax = drawn_on(ax, height=480)
     rooted = np.sign(R) * np.abs(R) ** 0.25
     reach = float(np.abs(rooted).max()) or 1.0
     ax.imshow(rooted, cmap="PuOr", vmin=-reach, vmax=reach)

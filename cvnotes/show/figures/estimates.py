@@ -9,7 +9,7 @@ import numpy.typing as npt
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, beside, panels
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, beside, drawn_on, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +44,7 @@ def draw_plane_error(
     if m.ndim != 2 or m.shape != predicted.shape:
         raise ShapeError(f"m and predicted: expected (n, 2), got {m.shape} and {predicted.shape}")
     magnify = number(magnify, "magnify")
-    ax = panels() if ax is None else ax
+    ax = drawn_on(ax)
     d = magnify * (predicted - m)
     ax.plot(*m.T, "o", color=LENS, ms=3)
     ax.quiver(

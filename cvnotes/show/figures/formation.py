@@ -22,6 +22,7 @@ from cvnotes.show.style import (
     WORLD,
     arrow,
     beside,
+    drawn_on,
     halo,
     panels,
 )
@@ -182,7 +183,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
 
     if not isinstance(cameras, Mapping) or not 1 <= len(cameras) <= len(_OWN):
         raise CvnotesError(f"cameras: expected one to {len(_OWN)} by name")
-    ax = panels(height=400) if ax is None else ax
+    ax = drawn_on(ax, height=400)
     for (name, camera), colour in zip(cameras.items(), _OWN, strict=False):
         alpha, u0 = is_camera(camera, "camera").A[[0, 0], [0, 2]]
         left, right = -0.5 - u0, camera.size[0] - 0.5 - u0
@@ -215,7 +216,7 @@ def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     'x / z'
     """
     A, step = intrinsic_matrix(A), 80
-    ax = panels(height=400) if ax is None else ax
+    ax = drawn_on(ax, height=400)
     columns, rows = np.arange(0, 641, step), np.arange(0, 481, step)
     for u in columns:
         ax.plot(*xy_from_px(A, [[u, 0], [u, 480]]).T, color=MUTED, lw=0.8)
@@ -264,7 +265,7 @@ def draw_pixels(
     if (first < 0).any() or (first + size > picture.shape[1::-1]).any():
         raise CvnotesError("these pixels are not inside of the picture")
     u0, v0 = np.rint(first).astype(int)
-    ax = panels(width=560) if ax is None else ax
+    ax = drawn_on(ax, width=560)
     draw_image(picture, ax=ax, ticks=True)
     for u in range(u0, u0 + columns):
         for v in range(v0, v0 + rows):
@@ -287,7 +288,7 @@ def draw_half_pixels(factor: int = 2, *, ax: "Axes | None" = None) -> "Axes":
     from matplotlib.patches import Rectangle
 
     factor = count(factor, "factor")
-    ax = panels(height=230) if ax is None else ax
+    ax = drawn_on(ax, height=230)
     few = max(2, 8 // factor)
     rows = ((few * factor, 1, 0.0, -0.2, LENS), (few, factor, 1.4, 2.85, ESTIMATED))
     for n, wide, top, words, colour in rows:

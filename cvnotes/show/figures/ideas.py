@@ -21,8 +21,8 @@ from cvnotes.show.style import (
     WORLD,
     arrow,
     beside,
+    drawn_on,
     halo,
-    panels,
 )
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     >>> [text.get_text().split(":")[0] for text in draw_meanings().texts][2:4]
     ['the truth, or what an exact formula says', 'a point in a picture, as the lens shows it']
     """
-    ax = panels(height=170) if ax is None else ax
+    ax = drawn_on(ax, height=170)
     for row, (meaning, words) in enumerate(_MEANINGS.items()):
         ax.plot([0.02, 0.12], [row, row], "-", color=COLOURS[meaning], linewidth=2)
         ax.plot(0.07, row, MARKERS[meaning], color=COLOURS[meaning], markersize=9)
@@ -92,7 +92,7 @@ def draw_rays(
     lines = matrix(lines, "lines", 3).reshape(-1, 3) if lines.size else np.zeros((0, 3))
     if not (np.concatenate([x_h, lines]) != 0).any(axis=1).all():
         raise CvnotesError("the zero vector is neither a point nor a line")
-    ax = panels(height=400) if ax is None else ax
+    ax = drawn_on(ax, height=400)
     patch = np.array([[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]) * [_WIDE, _DEEP, 1]
     ax.fill(*_on_paper(patch).T, color=WORLD, alpha=0.16, linewidth=0, zorder=2)
     _write(ax, "w = 1", patch[1], WORLD, (12, -10))
@@ -171,7 +171,7 @@ def draw_mapped(H: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") 
     H = matrix(H, "H", 3, 3)
     if H.ndim != 2:
         raise ShapeError(f"H: expected one map (3, 3), got {H.shape}")
-    ax = panels(width=300, height=300) if ax is None else ax
+    ax = drawn_on(ax, width=300, height=300)
     square = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
     angle = np.linspace(0, 2 * np.pi, 73)
     ax.plot(*square.T, "--", color=IDEAL, linewidth=1)
@@ -197,7 +197,7 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
     """
     y, z, f = 1.5, 4.0, 1.5
     v = f * y / z
-    ax = panels(width=760, height=330) if ax is None else ax
+    ax = drawn_on(ax, width=760, height=330)
     ax.plot([-f, f, z], [-v, v, y], color=LENS, linewidth=1.6, zorder=3)
     ax.fill([0, z, z], [0, 0, y], color=WORLD, alpha=0.2, linewidth=0)
     ax.fill([0, f, f], [0, 0, v], fill=False, hatch="///", edgecolor=ESTIMATED, linewidth=0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, image_size, points, positions
+from cvnotes.base import Array, CvnotesError, ShapeError, points, positions
 from cvnotes.show.guards import picture as checked
 from cvnotes.show.guards import thing
 from cvnotes.show.style import (
@@ -20,8 +20,9 @@ from cvnotes.show.style import (
     WORLD,
     arrow,
     as_picture,
+    drawn_on,
     halo,
-    picture_axes,
+    pixel_axes,
 )
 from cvnotes.targets import CharucoBoard, Chessboard
 
@@ -51,7 +52,7 @@ def draw_image(
     if picture.dtype == np.uint16:  # deep pictures seldom use their whole range
         picture = picture / max(int(picture.max()), 1)
     white = 255 if picture.dtype.kind in "ui" else 1
-    ax = picture_axes(size) if ax is None else ax
+    ax = drawn_on(ax, size)
     ax.imshow(picture, cmap="gray", vmin=0, vmax=white)
     ax.set_title(title)
     return as_picture(ax, size, ticks=ticks)
@@ -86,8 +87,7 @@ def draw_points(
     m = positions(m, "m")
     if meaning not in COLOURS:
         raise CvnotesError(f"meaning: expected one of {', '.join(COLOURS)}, got {meaning!r}")
-    if ax is None:
-        ax = as_picture(picture_axes(image_size(size)), size)
+    ax = pixel_axes(ax, size)
     u, v = m.reshape(-1, 2).T
     ax.scatter(
         u,

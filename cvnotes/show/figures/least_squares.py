@@ -18,6 +18,7 @@ from cvnotes.show.style import (
     WORLD,
     arrow,
     beside,
+    drawn_on,
     panels,
 )
 
@@ -101,7 +102,7 @@ def draw_two_errors(
     x, w = predicted.T
     if not (w > np.finfo(float).tiny * (1 + np.abs(x))).all():  # else x/w is no number
         raise DegenerateError("points_h: a point with w ≤ 0 is behind the camera and is not seen")
-    ax = panels(width=760, height=400) if ax is None else ax
+    ax = drawn_on(ax, width=760, height=400)
     ax.axvline(1, color=CAMERA, lw=2)
     for xi, wi, mi in zip(x, w, seen, strict=True):
         ax.plot([0, wi], [0, xi], color=MUTED, lw=1)
@@ -161,7 +162,7 @@ def draw_valley(
         raise CvnotesError("cost: expected positive numbers, whose logarithm can be drawn")
     if not 1 <= len(thing(paths, "paths", Mapping)) <= 3:  # type: ignore[type-abstract]
         raise CvnotesError("paths: expected one to three ways")
-    ax = panels(width=760, height=520) if ax is None else ax
+    ax = drawn_on(ax, width=760, height=520)
     shade = ax.contourf(x, y, np.log10(height), levels=24, cmap="Greys", alpha=0.75)
     bar = ax.figure.colorbar(shade, ax=ax, shrink=0.8, label="log₁₀ of the cost")
     bar.ax.tick_params(labelsize=FONT - 1)

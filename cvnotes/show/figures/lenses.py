@@ -8,7 +8,17 @@ import numpy as np
 from cvnotes.base import Array, CvnotesError, InputTypeError
 from cvnotes.camera import AnyLens, Lens
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import COLOURS, ESTIMATED, FONT, IDEAL, LENS, MUTED, beside, panels
+from cvnotes.show.style import (
+    COLOURS,
+    ESTIMATED,
+    FONT,
+    IDEAL,
+    LENS,
+    MUTED,
+    beside,
+    drawn_on,
+    panels,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +43,7 @@ def draw_grid(
     """
     thing(lens, "lens", Lens)
     extent = length(extent, "extent")
-    ax = panels(height=520) if ax is None else ax
+    ax = drawn_on(ax, height=520)
     fine, coarse = np.linspace(-extent, extent, 121), np.linspace(-extent, extent, 11)
     for c in coarse:
         for line in (
@@ -83,7 +93,7 @@ def draw_radius(lens: Lens, *, ax: "Axes | None" = None, up_to: float = 1.5) -> 
     """
     thing(lens, "lens", Lens)
     up_to = length(up_to, "up_to")
-    ax = panels() if ax is None else ax
+    ax = drawn_on(ax)
     r = np.linspace(0, up_to, 400)
     observed = r * lens.L(r)
     good = r <= lens.max_radius
@@ -120,7 +130,7 @@ def draw_newton(lens: Lens, r_lens: float, *, ax: "Axes | None" = None) -> "Axes
     reach = min(thing(lens, "lens", Lens).max_radius, 2.5 * r_lens)
     if reach * float(lens.L(reach)) < r_lens:
         raise CvnotesError(f"r' = {r_lens:g} is beyond the fold: no r is shown there")
-    ax = panels() if ax is None else ax
+    ax = drawn_on(ax)
     low = max(0.0, r - 0.4 * (reach - r))
     fine = np.linspace(low, reach, 300)
     ax.plot(fine, fine * lens.L(fine), color=LENS, lw=2, label="r L(r)")
@@ -158,7 +168,7 @@ def draw_angles(lenses: Mapping[str, AnyLens], *, ax: "Axes | None" = None) -> "
     colours = (IDEAL, LENS, ESTIMATED, COLOURS["world"], COLOURS["camera"])
     if not isinstance(lenses, Mapping) or not 1 <= len(lenses) <= len(colours):
         raise CvnotesError(f"lenses: expected one to {len(colours)} by name")
-    ax = panels() if ax is None else ax
+    ax = drawn_on(ax)
     theta = np.linspace(0, 2.1, 400)[1:]
     M = np.stack([np.sin(theta), 0 * theta, np.cos(theta)], axis=-1)
     for (name, lens), colour in zip(lenses.items(), colours, strict=False):
@@ -183,7 +193,7 @@ def draw_displacement(lens: Lens, *, ax: "Axes | None" = None) -> "Axes":
     """
     thing(lens, "lens", Lens)
     extent = 0.5
-    ax = panels(height=520) if ax is None else ax
+    ax = drawn_on(ax, height=520)
     x = np.linspace(-extent, extent, 13)
     xy: Array = np.stack(np.meshgrid(x, x), -1).reshape(-1, 2)
     moved = lens.distort(xy) - xy

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, image_size, matrix, points
+from cvnotes.base import Array, CvnotesError, ShapeError, matrix, points
 from cvnotes.show.guards import length
 from cvnotes.show.space.shapes import colour_of
 from cvnotes.show.style import (
@@ -15,11 +15,10 @@ from cvnotes.show.style import (
     IDEAL,
     MUTED,
     WORLD,
-    as_picture,
     beside,
+    drawn_on,
     halo,
-    panels,
-    picture_axes,
+    pixel_axes,
 )
 
 if TYPE_CHECKING:
@@ -127,7 +126,7 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     if not (x_h != 0).any(axis=1).all():
         raise CvnotesError("x_h: [0 0] is no point, and has no line of its own")
     reach = 5.0  # of the axes, to both sides
-    ax = panels(height=370) if ax is None else ax
+    ax = drawn_on(ax, height=370)
     ax.axhline(1, color=WORLD, linewidth=2.2, zorder=1)
     for x, w in x_h:
         ideal = abs(w) < 1e-100 * abs(x)
@@ -157,14 +156,3 @@ def segment_ends(segments: npt.ArrayLike) -> Array:
     if ends.ndim < 2 or ends.shape[-2] != 2:
         raise ShapeError(f"segments: expected two ends each, (..., 2, 2), got {ends.shape}")
     return ends.reshape(-1, 2, 2)
-
-
-def pixel_axes(ax: "Axes | None", size: tuple[int, int]) -> "Axes":
-    """Return axes for pixels: those that there are, or new ones for a picture of a size.
-
-    Examples
-    --------
-    >>> pixel_axes(None, (64, 48)).get_xlabel()
-    'u (px)'
-    """
-    return as_picture(picture_axes(image_size(size)), size) if ax is None else ax

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from cvnotes.base import CvnotesError, ShapeError, number, points
 from cvnotes.calibration import Calibration, prediction_std
 from cvnotes.show.guards import calibrated, count, eight_bits, pictures
-from cvnotes.show.style import ESTIMATED, FONT, as_picture, picture_axes
+from cvnotes.show.style import ESTIMATED, FONT, as_picture, drawn_on, picture_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,8 +33,7 @@ def draw_prediction_error(
     """
     calibrated(calibration)
     w, h = calibration.size
-    if ax is None:
-        ax = picture_axes(calibration.size)
+    ax = drawn_on(ax, calibration.size)
     u, v = np.meshgrid(np.linspace(0, w - 1, 65), np.linspace(0, h - 1, 49))
     std = prediction_std(calibration, np.stack([u, v], axis=-1))
     least, most = float(np.nanmin(std)), float(np.nanmax(std))

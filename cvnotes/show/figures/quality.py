@@ -14,7 +14,14 @@ from cvnotes.base import Array, DegenerateError, image_size, number
 from cvnotes.base.digits import round_number
 from cvnotes.calibration.coverage import covered_cells, joined
 from cvnotes.show.guards import calibrated
-from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED, as_picture, panels, picture_axes
+from cvnotes.show.style import (
+    ESTIMATED,
+    FONT,
+    IDEAL,
+    MUTED,
+    as_picture,
+    drawn_on,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,9 +51,7 @@ def draw_residuals(
     if magnify is None:
         magnify = round_number(0.04 * width / longer) if longer > 0 else 1.0
     magnify = number(magnify, "magnify")
-    if ax is None:
-        ax = picture_axes(calibration.size)
-    as_picture(ax, calibration.size)
+    ax = as_picture(drawn_on(ax, calibration.size), calibration.size)
     ax.quiver(
         *(m - r).T, *(r * magnify).T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1,
         units="width", width=0.0018, headwidth=4, headlength=4.5, headaxislength=4,
@@ -82,7 +87,7 @@ def draw_coverage(
     size = image_size(size)
     m, seen = joined(image_points), covered_cells(image_points, size)
     side = np.array(size) / seen.shape
-    ax = as_picture(picture_axes(size) if ax is None else ax, size)
+    ax = as_picture(drawn_on(ax, size), size)
     for cell in np.argwhere(~seen):
         corner = (cell * side - 0.5).tolist()
         ax.add_patch(Rectangle(corner, *side, facecolor="#EEEEEE", edgecolor="#C4C4C4", hatch="//"))
@@ -129,8 +134,7 @@ def draw_board_shape(
         )
     x, y, _ = shape.given.T
     extent = float(np.hypot(np.ptp(x), np.ptp(y)))
-    if ax is None:
-        ax = panels(height=round(min(max(500 * np.ptp(y) / np.ptp(x), 200), 760)) + 90)
+    ax = drawn_on(ax, height=round(min(max(500 * np.ptp(y) / np.ptp(x), 200), 760)) + 90)
     z = shape.heights
     highest = max(float(np.abs(z).max()), 1e-9 * extent)
     colours = ax.tricontourf(x, y, z, levels=np.linspace(-highest, highest, 21), cmap="PuOr_r")

@@ -8,8 +8,8 @@ import numpy.typing as npt
 from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
 from cvnotes.show.figures.images import draw_points
-from cvnotes.show.figures.lines import draw_segments, pixel_axes, segment_ends
-from cvnotes.show.style import ESTIMATED, FONT, IDEAL, beside
+from cvnotes.show.figures.lines import draw_segments, segment_ends
+from cvnotes.show.style import ESTIMATED, FONT, IDEAL, beside, pixel_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

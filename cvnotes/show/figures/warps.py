@@ -9,7 +9,18 @@ import numpy.typing as npt
 from cvnotes.base import CvnotesError, ShapeError, number, numbers
 from cvnotes.show.figures.images import draw_image
 from cvnotes.show.guards import eight_bits, one_point, pictures
-from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD, beside, panels
+from cvnotes.show.style import (
+    CAMERA,
+    ESTIMATED,
+    FONT,
+    IDEAL,
+    LENS,
+    MUTED,
+    WORLD,
+    beside,
+    drawn_on,
+    panels,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,7 +45,7 @@ def draw_hits(hits: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     counts = numbers(hits, "hits")
     if counts.ndim != 2 or counts.size == 0:
         raise ShapeError(f"hits: expected (height, width), got {counts.shape}")
-    ax = panels(height=460) if ax is None else ax
+    ax = drawn_on(ax, height=460)
     colours = [ESTIMATED, "white", LENS]
     ax.imshow(np.minimum(counts, 2), cmap=ListedColormap(colours), vmin=0, vmax=2)
     names = ("never hit: a hole", "hit once", "hit more often: a fold")
@@ -104,7 +115,7 @@ def draw_cell(
     du, dv = number(du, "du"), number(dv, "dv")
     if not (0 <= du <= 1 and 0 <= dv <= 1):
         raise CvnotesError(f"du and dv are fractions, from 0 to 1; got {du:g} and {dv:g}")
-    ax = panels(height=400) if ax is None else ax
+    ax = drawn_on(ax, height=400)
     upper, lower = I1 + (I2 - I1) * du, I3 + (I4 - I3) * du
     ax.plot([0, 1, 1, 0, 0], [0, 0, 1, 1, 0], color=MUTED, lw=1)
     for (u, v), value, n in zip(((0, 0), (1, 0), (0, 1), (1, 1)), grey, "1234", strict=True):
@@ -161,7 +172,7 @@ def draw_disparity(point: npt.ArrayLike, b: float, f: float, *, ax: "Axes | None
     b, f = number(b, "b", at_least=1e-9), number(f, "f", at_least=1e-9)
     if not f < Z:
         raise CvnotesError(f"the point must lie beyond the pictures, Z > f; got {Z:g} and {f:g}")
-    ax = panels(height=480) if ax is None else ax
+    ax = drawn_on(ax, height=480)
     left, right = X * f / Z, (X - b) * f / Z  # in the frame of each camera
     ax.fill([0, b, X], [0, 0, Z], color=WORLD, alpha=0.18, lw=0)
     ax.fill([0, right, left], [0, f, f], color=ESTIMATED, alpha=0.45, lw=0)
