@@ -204,7 +204,7 @@ def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Pa
         sides, diagonals = angles(H[k], eye)
         seen = f"photograph {k + 1}: sides {sides:.1f}°, diagonals {diagonals:.1f}°"
         panel.text([-540, 690 - 65 * k], seen, _INKS[k], size=13)
-    panel.line([[eye[1], 0], eye[1:]], IDEAL, 1.4, dash=3)
+    panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
     panel.mark(eye[1:], "camera", 9)
     panel.grip("fold", "the fold", eye[1:], 4)
     return panel
