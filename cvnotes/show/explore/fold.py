@@ -195,7 +195,7 @@ def _draw_board(panel: Panel, camera: Camera, ink: str, dark: str) -> None:
 def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Panel:
     """Draw the half circles from the side, and say at which angles the eye sees each square."""
     panel = paper.panel(
-        _SIDE, (-580, 960), (740, -160), "from the side: height α of the eye over v0 (px)"
+        _SIDE, (-580, 960), (740, -160), "from the side: the height of the eye (px)"
     )
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
     for k in reversed(range(len(H))):
