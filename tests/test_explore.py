@@ -31,7 +31,14 @@ from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.columns import Believed
 from cvnotes.show.explore.finding import Finding, rms
-from cvnotes.show.explore.fold import _SHOWN, _on_sheet, angles, circle_of, photographs
+from cvnotes.show.explore.fold import (
+    _SHOWN,
+    _on_sheet,
+    angles,
+    circle_of,
+    photographs,
+    vanishing_points,
+)
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.lettering import LETTERS
 from cvnotes.show.explore.model import Drawing, Model, Setting
@@ -561,6 +568,26 @@ def test_every_place_of_the_half_circle_sees_both_right_angles_and_one_those_of_
         assert np.allclose(_on_paper(circle, range(181)), 0.5, atol=0.49)  # not cut off
 
 
+def test_the_photograph_of_the_fold_is_no_mirror_image_and_all_its_points_are_on_the_sheet():
+    corner, right, below = _on_sheet(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]))
+    assert np.linalg.det([right - corner, below - corner]) > 0  # y of the sheet runs downwards
+    W, low_high = course.board().points, np.transpose(_SHOWN)
+    points = vanishing_points(dlt(W[:, :2], photographs()[0].project(W)))
+    seen = (_on_sheet(np.column_stack([points, np.zeros(4)])) - low_high[0]) / np.ptp(
+        low_high, axis=0
+    )
+    assert np.allclose(seen, 0.5, atol=0.45)
+
+
+def test_from_the_side_the_two_half_circles_cross_in_one_place():
+    W = course.board().points
+    one, two = (circle_of(dlt(W[:, :2], camera.project(W))) for camera in photographs())
+    way = np.array([two.place(fold)[1:] for fold in np.arange(0.1, 180, 0.1)])
+    inside = np.hypot(way[:, 0] - one.foot[1], way[:, 1]) < one.radius
+    (crossing,) = np.flatnonzero(np.diff(inside))
+    assert np.allclose(way[crossing], [239.5, 400], atol=1)
+
+
 def _on_paper(circle, folds):
     """Give where on its panel a circle is drawn, from 0 to 1."""
     low, high = np.transpose(_SHOWN)
@@ -569,7 +596,7 @@ def _on_paper(circle, folds):
 
 def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_say_which_is_it():
     for fold in range(30, 121, 15):
-        drawing = MODELS["fold"].drawing(fold=fold)
+        drawing = MODELS["fold"].drawing(fold=fold, second=0)
         assert numbers(drawing.sentence)[-2:] == [90, 90]
         grip = grip_of(drawing, "eye")
         for by in ((0, 0), (3, -3)):  # px: a hand is not exact

@@ -158,7 +158,7 @@ def _sentence(before: float, after: float, amount: float, free: int) -> str:
 
 def _bars(paper: Paper, heights: list[float], free: int) -> Panel:
     """Draw the RMS for everything that may be free; the chosen one is orange."""
-    panel = paper.panel(_BARS, (0, len(_FREE)), (_HIGHEST, -0.025), "RMS (px), free:")
+    panel = paper.panel(_BARS, (0, len(_FREE)), (_HIGHEST, -0.025), "RMS (px) if these may move")
     for k, height in enumerate(heights):
         foot = [[k + 0.15, 0], [k + 0.85, 0], [k + 0.85, height], [k + 0.15, height]]
         panel.polygons([foot], ESTIMATED if k == free else "#BBBBBB")
@@ -172,7 +172,7 @@ def _chart(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     """Draw the shift of each column: the left camera's, and so much of the right camera's."""
     n = len(left.columns)
     panel = paper.panel(_CHART, (-1.4, n - 0.4), (_SHIFT, -_SHIFT - 0.04), "shift of columns (mm)")
-    panel.ticks(y=(-0.1, 0.1))
+    panel.ticks(y=(-0.1, 0.1), size=12)
     panel.line([[-1.4, 0.0], [float(n), 0.0]], MUTED, 0.8)
     at = np.arange(n)
     own = np.stack([at, left.columns], axis=-1)

@@ -152,8 +152,8 @@ def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel
     )
     for power in range(-2, 2):
         panel.segments([[[panel.x[0], power], [panel.x[1], power]]], "#DDDDDD", 0.5)
-        panel.text([panel.x[0] + 0.04, power], f"{10.0**power:g}", size=9)
-    panel.ticks(x=range(_STEPS + 1))
+        panel.text([panel.x[0] + 0.04, power], f"{10.0**power:g}", size=12)
+    panel.ticks(x=range(_STEPS + 1), size=12)
     way = np.column_stack([finding.way[:, 0], np.log10(finding.way[:, 1])])
     for a, b in pairwise(way):
         panel.line([a, b], LENS, 2.2)

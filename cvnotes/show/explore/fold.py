@@ -10,17 +10,19 @@ from cvnotes.homography import dlt
 from cvnotes.pictures import course
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, WORLD
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 SIZE = (640, 480)
 ALPHA, MIDDLE = 400, ((SIZE[0] - 1) / 2, (SIZE[1] - 1) / 2)
 # Where two photographs of a board on a desk were taken, and what was up in them.
-_EYES = (([226, 345, -185], (0, 0, -1)), ([-60, 330, -210], (0.35, 0, -1)))
-_SPACE, _DIALS = (500, 400), (350, 400)
-_VIEW = look_at([1700, 1500, 1000], [250, 150, 0], up=(0, 0, 1))[:2, :3]
+_EYES = (([163, 203.5, -92.5], (0, 0, -1)), ([-15, 187, -120], (0.5, 0, 0.87)))
+_SPACE, _SIDE = (500, 420), (350, 420)
+_VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:2, :3]  # from the left, above
 _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
-_SHOWN = ((-640, 640), (-570, 454))  # x and y of the sheet on which space is drawn
-_FROM, _TO = 75, 105  # degrees, of the angles
+_SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
+_INKS = (IDEAL, MUTED)  # of the first photograph and of the second
+_SQUARES = ("#B0B0B0", "#E2E2E2")
+_PAIRS = (("sides", "estimated", ESTIMATED), ("diagonals", "lens", LENS))
 
 
 class Circle(NamedTuple):
@@ -87,31 +89,36 @@ def fold_model() -> Model:
     settings = (
         Setting("fold", "fold (°)", _LOWEST, _HIGHEST, 0.5, 50,
                 "the angle of the eye over the photograph, about its horizon"),
-        Setting("second", "a second photograph", 0, 1, 1, 0, "of the same board, same camera"),
+        Setting("second", "a second photograph", 0, 1, 1, 1, "of the same board, same camera"),
     )  # fmt: skip
     about = (
-        "A photograph of a board lies flat, and an eye hangs over it on a half circle about the "
-        "horizon; beside it the angles at which the eye sees the square's sides and diagonals."
+        "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
+        "horizon, with lines to the vanishing points of the square's sides and of its diagonals. "
+        "Beside it the focal length over v0, along the half circle of each photograph."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
         eye = circles[0].place(values["fold"])
         shown = 1 + int(values["second"])
-        space = _space(paper, cameras[:shown], H[:shown], circles[:shown], eye)
-        dials = _dials(paper, H[:shown], circles[0], values["fold"])
-        return Drawing(paper.join((space, dials)), _sentence(H[:shown], eye))
+        space = _space(paper, cameras[:shown], H[0], circles[:shown], eye)
+        side = _side(paper, H[:shown], circles[:shown], eye)
+        return Drawing(paper.join((space, side)), _sentence(H[:shown], eye))
 
-    def turned(_: Values, at: Array) -> Values:
-        folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
-        way = np.array([_on_sheet(circles[0].place(float(fold))) for fold in folds])
-        return {"fold": float(folds[np.linalg.norm(way - at, axis=1).argmin()])}
+    folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
+    way = np.array([circles[0].place(float(fold)) for fold in folds])
 
-    drags = {"eye": turned, "fold": lambda _, at: {"fold": float(at[0])}}
+    def nearest(places: Array, at: Array) -> Values:
+        return {"fold": float(folds[np.linalg.norm(places - at, axis=1).argmin()])}
+
+    drags = {
+        "eye": lambda _, at: nearest(_on_sheet(way), at),
+        "fold": lambda _, at: nearest(way[:, 1:2], at[:1]),  # along the curve, by its x
+    }
     return Model("fold", about, settings, draw, drags)
 
 
 def _sentence(H: list[Array], eye: Array) -> str:
-    said = f"An eye at α = {eye[2]:.0f} px over (u0, v0) = ({eye[0]:.1f}, {eye[1]:.1f}) sees both "
+    said = f"An eye {eye[2]:.0f} px over pixel ({eye[0]:.1f}, {eye[1]:.1f}) sees both "
     first = angles(H[0], eye)
     said += f"right angles of the photograph: {first[0]:.2f}° and {first[1]:.2f}°."
     if len(H) == 1:
@@ -124,7 +131,7 @@ def _sentence(H: list[Array], eye: Array) -> str:
 
 def _on_sheet(place: Array) -> Array:
     """Project places (u, v, w), (..., 3), in parallel onto the sheet (..., 2)."""
-    return np.asarray(place @ _VIEW.T)
+    return np.asarray((place * [1, 1, -1]) @ _VIEW.T)
 
 
 def _flat(xy: Array) -> Array:
@@ -133,61 +140,71 @@ def _flat(xy: Array) -> Array:
 
 
 def _space(
-    paper: Paper, cameras: list[Camera], H: list[Array], circles: list[Circle], eye: Array
+    paper: Paper, cameras: list[Camera], H: Array, circles: list[Circle], eye: Array
 ) -> Panel:
-    panel = paper.panel(_SPACE, *_SHOWN, "the photograph, and the eye over it")
+    panel = paper.panel(_SPACE, *_SHOWN, "a photograph, the eye over it, and four vanishing points")
     w, h = SIZE
     frame = np.array([[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]])
     panel.polygons(_flat(frame)[None], "#F4F4F0")
     panel.line(_flat(frame[[0, 1, 2, 3, 0]]), MUTED, 1)
-    colours = (IDEAL, WORLD)
-    for camera, circle, ink in zip(cameras, circles, colours, strict=False):
-        _draw_board(panel, camera, ink)
+    for camera, circle, ink, dark in reversed(
+        [*zip(cameras, circles, _INKS, _SQUARES, strict=False)]
+    ):
+        _draw_board(panel, camera, ink, dark)
         along = np.array([circle.up[1], -circle.up[0]])
-        ends = circle.foot + np.array([[-3000.0], [3000.0]]) * along
-        panel.line(_flat(ends), ink, 0.8, dash=5)
+        panel.line(_flat(circle.foot + np.array([[-3000.0], [3000.0]]) * along), ink, 0.8, dash=5)
         arc = np.array([circle.place(float(fold)) for fold in range(0, 181, 3)])
         panel.line(_on_sheet(arc), ink, 2)
         panel.line(_on_sheet(arc[[0, -1]]), ink, 0.8)
-    points = np.column_stack([vanishing_points(H[0]), np.zeros(4)])
-    for point, colour in zip(points, (ESTIMATED, ESTIMATED, LENS, LENS), strict=True):
-        panel.line(_on_sheet(np.array([eye, point])), colour, 1.4)
-        panel.mark(_on_sheet(point), "estimated" if colour == ESTIMATED else "lens", 5)
-    for corner in frame:
-        panel.line(_on_sheet(np.array([eye, [*corner, 0]])), CAMERA, 0.8)
-    below = np.array([eye, [*eye[:2], 0]])
-    panel.line(_on_sheet(below), MUTED, 1, dash=3)
-    panel.mark(_on_sheet(below[1]), "ideal", 6)
+    below = np.array([*eye[:2], 0])
+    panel.line(_on_sheet(np.array([eye, below])), IDEAL, 1.4, dash=3)
+    points = vanishing_points(H)
+    for k, point in enumerate(points):
+        name, meaning, colour = _PAIRS[k // 2]
+        panel.line(np.array([_on_sheet(eye), _flat(point)]), colour, 1.4)
+        panel.mark(_flat(point), meaning, 5)
+        _name(panel, _flat(point), (8, 6), name, colour, "la")
+    _name(panel, _flat(points[3] + 0.12 * (points[3] - points[0])), (-8, 0), "horizon", IDEAL, "rm")
+    panel.mark(_on_sheet(below), "ideal", 7)
     panel.mark(_on_sheet(eye), "camera", 9)
     panel.grip("eye", "the eye, to be turned about the horizon", _on_sheet(eye), 4)
+    _name(panel, _on_sheet(eye), (0, -17), "eye", CAMERA, "md")
+    _name(panel, _on_sheet(below), (0, 24), "principal point", IDEAL, "ma")
+    _name(panel, _on_sheet((eye + below) / 2), (7, 0), f"α = {eye[2]:.0f} px", IDEAL, "lm")
     return panel
 
 
-def _draw_board(panel: Panel, camera: Camera, ink: str) -> None:
+def _name(
+    panel: Panel, at: Array, by: tuple[float, float], words: str, colour: str, anchor: str
+) -> None:
+    """Write a name so many px beside a place: a grip's ring covers 14 px about it."""
+    panel.text(at + panel.pixel * np.array(by), words, colour, anchor=anchor, size=13)
+
+
+def _draw_board(panel: Panel, camera: Camera, ink: str, dark: str) -> None:
     """Draw the squares between the corners of the board, where the photograph shows them."""
     columns, rows = course.board().corners
-    grid = camera.project(course.board().points).reshape(rows, columns, 2)
+    grid = _flat(camera.project(course.board().points)).reshape(rows, columns, 2)
+    squares = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
+    row, column = np.indices(squares.shape[:2])
+    panel.polygons(squares[(row + column) % 2 == 0], dark)
     for line in (*grid, *grid.transpose(1, 0, 2)):
-        panel.line(_flat(line), ink, 0.8)
+        panel.line(line, ink, 0.8)
 
 
-def _dials(paper: Paper, H: list[Array], circle: Circle, fold: float) -> Panel:
-    """Draw the angles at which the eye sees sides and diagonals, over the fold."""
+def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Panel:
+    """Draw the half circles from the side, and say at which angles the eye sees each square."""
     panel = paper.panel(
-        _DIALS, (_LOWEST - 8, _HIGHEST + 4), (_TO, _FROM), "the two right angles (°) over the fold"
+        _SIDE, (-580, 960), (740, -160), "from the side: the height of the eye (px)"
     )
-    panel.ticks(x=(30, 60, 90, 120), y=(80, 85, 90, 95, 100))
-    folds = np.arange(_LOWEST, _HIGHEST + 1, 2.0)
-    for h, width in zip(H, (1.2, 2.2), strict=False):
-        seen = np.array([angles(h, circle.place(float(f))) for f in folds])
-        for way, colour, dash in zip(seen.T, (ESTIMATED, LENS), (0, 6), strict=True):
-            panel.line(np.column_stack([folds, way]), colour, width, dash=dash)
-    panel.line([[fold, _FROM], [fold, _TO]], MUTED, 1)
-    for h in H:
-        both = angles(h, circle.place(fold))
-        panel.mark([[fold, both[0]]], "estimated", 6)
-        panel.mark([[fold, both[1]]], "lens", 6)
-    panel.grip("fold", "the fold", [fold, 90], 4)
-    panel.text([_LOWEST - 6, 78.9], "orange: sides", ESTIMATED)
-    panel.text([_LOWEST - 6, 77.9], "blue: diagonals", LENS)
+    panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
+    for k in reversed(range(len(H))):
+        arc = np.array([circles[k].place(float(fold)) for fold in range(0, 181, 2)])
+        panel.line(arc[:, 1:], _INKS[k], 2)
+        sides, diagonals = angles(H[k], eye)
+        seen = f"photograph {k + 1}: sides {sides:.1f}°, diagonals {diagonals:.1f}°"
+        panel.text([-540, 690 - 65 * k], seen, _INKS[k], size=13)
+    panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
+    panel.mark(eye[1:], "camera", 9)
+    panel.grip("fold", "the fold", eye[1:], 4)
     return panel

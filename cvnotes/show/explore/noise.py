@@ -100,7 +100,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
 
 def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array) -> None:
     left, reach = panel.x
-    panel.ticks(x=np.array([-0.8, -0.4, 0.4, 0.8]) * reach)
+    panel.ticks(x=np.array([-0.8, -0.4, 0.4, 0.8]) * reach, size=12)
     panel.line([[0, -0.3], [0, 4.3]], IDEAL, 1, dash=4)
     panel.text([0.02 * reach, 3.85], "truth", IDEAL)
     panel.text([0.95 * left, -0.55], "blue: the bound, ±1σ and ±2σ", CAMERA)
@@ -119,10 +119,10 @@ def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
     for value in (3, 5, 10, 20, 30):
         x = float(np.log10(value))
         panel.line([[x, -1.8], [x, 1.4]], "#DDDDDD", 0.5)
-        panel.text([x, -1.72], f"{value}", anchor="md", size=9)
+        panel.text([x, -1.72], f"{value}", anchor="md", size=12)
     for value in (0.1, 1, 10):
         panel.line([[0, np.log10(value)], [2, np.log10(value)]], "#DDDDDD", 0.5)
-        panel.text([np.log10(2.7), np.log10(value)], f"{value:g}", size=9)
+        panel.text([np.log10(2.7), np.log10(value)], f"{value:g}", size=12)
     if sigma == 0:
         panel.text([1.0, -0.2], "no noise, no error", MUTED, anchor="mm", size=12)
         return

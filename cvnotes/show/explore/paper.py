@@ -193,7 +193,7 @@ class Panel:
             self._image.paste("white", corner, rim)
             self._image.paste(INK.get(colour, colour), corner, ink)
 
-    def ticks(self, x: npt.ArrayLike = (), y: npt.ArrayLike = ()) -> None:
+    def ticks(self, x: npt.ArrayLike = (), y: npt.ArrayLike = (), size: int = 9) -> None:
         """Draw light lines with their numbers at some x and y."""
         (x0, x1), (y0, y1) = self.x, self.y
         at_x, at_y = np.ravel(x).tolist(), np.ravel(y).tolist()
@@ -201,10 +201,10 @@ class Panel:
         self.segments(grid, _GRID, 0.5)
         for value in at_x:
             number = f"{value:g}".replace("-", "−")
-            self.text([value, y1 - 0.03 * (y1 - y0)], number, anchor="md", size=9)
+            self.text([value, y1 - 0.03 * (y1 - y0)], number, anchor="md", size=size)
         for value in at_y:
             number = f"{value:g}".replace("-", "−")
-            self.text([x0 + 0.01 * (x1 - x0), value], number, size=9)
+            self.text([x0 + 0.01 * (x1 - x0), value], number, size=size)
 
     def finish(self, page: Drawn | None = None) -> Drawn:
         """Put the panel, with frame and title, on the top left of a white page, or of its own."""

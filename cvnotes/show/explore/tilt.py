@@ -21,7 +21,10 @@ _MAGNIFIED = 10
 
 
 class _Lenses:
-    """A lens and one half as long; the second stands where its picture is most like the first."""
+    """A lens and one half as long; before it the board is turned and placed anew.
+
+    Its pose is the one whose picture is most like that of the long lens.
+    """
 
     def __init__(self, camera: Camera, board: Chessboard) -> None:
         w, h = camera.size
@@ -32,18 +35,19 @@ class _Lenses:
         self.away = _FAR * float(np.linalg.norm(board.points[-1]))
         self.seen = lru_cache(maxsize=None)(self._seen)
 
-    def _seen(self, tilt: float) -> tuple[Array, Array, float]:
-        """Return the corners (n, 2) by either lens, and how far the short one is away."""
+    def _seen(self, tilt: float) -> tuple[Array, Array, float, float]:
+        """Return the corners (n, 2) by either lens; how far from the short one, and how tilted."""
         R = rotation_from_vector([np.radians(tilt), 0, 0])
         W, middle = self.board.points, self.board.points.mean(axis=0)
         m = self.long.moved(pose(R, [0, 0, self.away] - R @ middle)).project(W)
         G = pose_from_view(self.short, W, m)
         near = float(G[2, :3] @ middle + G[2, 3])
-        return m, self.short.moved(G).project(W), near
+        turned = float(np.degrees(np.arctan2(G[2, 1], G[2, 2])))
+        return m, self.short.moved(G).project(W), near, turned
 
     def misfit(self, tilt: float) -> float:
         """Return the RMS of the distances between the corners of both pictures, in pixels."""
-        one, other, _ = self.seen(tilt)
+        one, other, *_ = self.seen(tilt)
         return rms(one - other)
 
 
@@ -54,8 +58,8 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
         Setting("tilt", "tilt (°)", 0, _STEEPEST, 1, 30, "turns the board about its x axis"),
     )
     about = (
-        "One tilted board through two lenses, the second half as long and in its best place; "
-        "beside it how well the two pictures can be told apart, over the tilt."
+        "One tilted board through two lenses. Before the second, half as long, it is turned and "
+        "placed so that the pictures are most alike; beside it how far they differ, over the tilt."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -66,7 +70,7 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
 
 
 def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Drawing:
-    one, other, near = lenses.seen(tilt)
+    one, other, near, turned = lenses.seen(tilt)
     alpha, short = lenses.long.A[0, 0], lenses.short.A[0, 0]
     picture = paper.picture_panel(
         _PICTURE, lenses.long.size, f"one board, two lenses (arrows × {_MAGNIFIED})"
@@ -75,11 +79,16 @@ def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Drawing:
         _draw_net(picture, m, lenses.board, colour, width)
     draw_arrows(picture, one, _MAGNIFIED * (other - one))
     w, h = lenses.long.size
-    picture.text([0.03 * w, 0.94 * h], f"blue: α = {alpha:.0f} px from {lenses.away:.0f} mm", LENS)
     picture.text(
-        [0.97 * w, 0.94 * h], f"orange: α = {short:.0f} px from {near:.0f} mm", ESTIMATED,
-        anchor="rm",
-    )  # fmt: skip
+        [0.03 * w, 0.88 * h],
+        f"blue: α = {alpha:.0f} px, from {lenses.away:.0f} mm, tilted {tilt:.0f}°",
+        LENS,
+    )
+    picture.text(
+        [0.03 * w, 0.94 * h],
+        f"orange: α = {short:.0f} px, from {near:.0f} mm, tilted {turned:.0f}°",
+        ESTIMATED,
+    )
     misfit = lenses.misfit(tilt)
     sentence = f"Tilted by {tilt:.0f}° the two pictures differ by {misfit:.1f} px (RMS): "
     if misfit < 0.05:
@@ -106,7 +115,7 @@ def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
         (highest, -0.12 * highest),
         "how far they differ (px) over tilt (°)",
     )
-    panel.ticks(x=(0, 15, 30, 45, 60), y=np.arange(1, np.floor(highest) + 1))
+    panel.ticks(x=(0, 15, 30, 45, 60), y=np.arange(1, np.floor(highest) + 1), size=12)
     at = np.arange(0, tilt + 1)
     way = np.array([[t, lenses.misfit(float(t))] for t in at])
     if len(way) > 1:

@@ -63,10 +63,10 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Drawing:
     size = (_LARGER * width, _LARGER * height)
     left = paper.picture_panel(size, (width, height), "forward: each pixel is sent")
     left.image(_with_holes(forward.image.astype(np.uint8), holes), smooth=False)
-    right = paper.picture_panel(size, (width, height), "backward: each pixel is fetched")
+    right = paper.picture_panel(
+        size, (width, height), "backward: each pixel is fetched (+ to turn and zoom)"
+    )
     right.image(backward.astype(np.uint8), smooth=False)
-    for panel in (left, right):
-        panel.mark(middle, "ideal", 6)
     arm = zoom * _ARM * width * np.array([np.cos(angle), np.sin(angle)])
     right.mark(middle + arm, "ideal", 6)
     right.grip("right side", "a point of the picture, to turn and zoom it", middle + arm, 4)

@@ -129,7 +129,7 @@ def draw_cube(
     floor = W[[2, 0, 0, 1, 3, 3], :2]  # in turn round the outline of the cube and its shadow
     floor[2:5] += side * _SHADOW
     shadow = _outline(camera, np.column_stack([floor, np.zeros(6)]))
-    ax.fill(*shadow.T, color="black", alpha=0.35, linewidth=0, zorder=2)
+    ax.fill(*shadow.T, color="#404040", alpha=0.6, linewidth=0, zorder=2)  # seen on black, too
     for name, corners in _FACES.items():
         face = _outline(camera, W[list(corners)])
         if _turns_right(face):

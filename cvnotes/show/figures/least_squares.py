@@ -115,7 +115,7 @@ def draw_two_errors(
             beside(ax, f"{abs(gap[1] - gap[0]):.2f}", (depth, gap.mean()), offset, colour,
                    ha=side, va="center", fontsize=FONT)  # fmt: skip
         ax.plot(wi, xi, "s", color=WORLD, ms=6)
-        ax.plot(1, mi, "x", color=ESTIMATED, ms=7, mew=2)
+        ax.plot([1, 1], [xi / wi, mi], "o", color=IDEAL, ms=3)
     ax.plot(0, 0, "^", color=CAMERA, ms=10)
     top = 1.15 * float(max(np.abs(x).max(), np.abs(seen * w).max(), 0.1))
     ax.set(xlim=(-0.06 * w.max(), 1.12 * w.max()), ylim=(top, -top))
@@ -166,12 +166,14 @@ def draw_valley(
     shade = ax.contourf(x, y, np.log10(height), levels=24, cmap="Greys", alpha=0.75)
     bar = ax.figure.colorbar(shade, ax=ax, shrink=0.8, label="log₁₀ of the cost")
     bar.ax.tick_params(labelsize=FONT - 1)
+    first = "start"
     for (name, path), colour in zip(paths.items(), (ESTIMATED, LENS, WORLD), strict=False):
         way: Array = points(path, name, 2).reshape(-1, 2)
         if not len(way):
             raise DegenerateError(f"{name}: expected at least the start of the way")
         ax.plot(*way.T, "-o", color=colour, lw=1.8, ms=5, label=name)
-        ax.plot(*way[0], "s", color=IDEAL, ms=8, zorder=4)
+        ax.plot(*way[0], "s", color=IDEAL, ms=8, zorder=4, label=first)
+        first = ""
     ax.set(xlim=(x.min(), x.max()), ylim=(y.min(), y.max()))
     ax.legend(loc="upper left", fontsize=FONT)
     return ax

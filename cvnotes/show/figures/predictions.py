@@ -31,6 +31,8 @@ def draw_prediction_error(
         Deviations in px at the ends of the colours, so that two maps can be compared; by default
         those of this map.
     """
+    from matplotlib.colors import BoundaryNorm
+
     calibrated(calibration)
     w, h = calibration.size
     ax = drawn_on(ax, calibration.size)
@@ -41,11 +43,13 @@ def draw_prediction_error(
         least, most = (number(x, "between", at_least=0) for x in between)
         if not least < most:
             raise CvnotesError(f"between: expected (least, most), got ({least:g}, {most:g})")
-    levels = np.linspace(least, most, 13)
-    colours = ax.contourf(u, v, std, levels=levels, cmap="cividis", extend="both")
+    levels = least + (most - least) * np.linspace(0, 1, 13) ** 2  # most of the map is low
+    norm = BoundaryNorm(levels, 256, extend="both")
+    colours = ax.contourf(u, v, std, levels=levels, cmap="cividis", norm=norm, extend="both")
     lines = ax.contour(u, v, std, levels=levels[1::2], colors="white", linewidths=0.8)
     bar = ax.figure.colorbar(colours, ax=ax, shrink=0.7, pad=0.02, aspect=16, format="%.2g")
     bar.add_lines(lines)
+    ax.clabel(lines, lines.levels[:3], fmt="%.2g", fontsize=FONT - 2)
     bar.set_ticks(list(levels[1::2]))
     bar.set_label("σ (px)", fontsize=FONT - 1)
     bar.ax.tick_params(labelsize=FONT - 1)
