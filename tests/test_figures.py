@@ -271,7 +271,7 @@ def test_a_bent_board_has_no_arrows_and_a_flat_one_no_figure():
 
 
 def hatched(ax):
-    return {p.get_xy() for p in ax.patches if isinstance(p, Rectangle)}
+    return {p.get_xy() for p in ax.patches if isinstance(p, Rectangle) and p.get_hatch()}
 
 
 def test_the_cells_without_corners_are_hatched_and_counted():
@@ -283,6 +283,9 @@ def test_the_cells_without_corners_are_hatched_and_counted():
     assert len(empty) == 29
     assert (19.5, -0.5) in empty
     assert not empty & {(-0.5, -0.5), (9.5, -0.5), (69.5, 29.5)}
+    assert len(ax.patches) == 32
+    counts = {text.get_position(): text.get_text() for text in ax.texts}
+    assert counts == {(4.5, 4.5): "2", (14.5, 4.5): "1", (74.5, 34.5): "1"}
 
 
 def test_coverage_takes_all_views_in_any_form():
