@@ -5,7 +5,7 @@ and return them.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -91,11 +91,11 @@ def draw_coverage(
     ax = as_picture(drawn_on(ax, size), size)
     ax.plot(*m.T, ".", color=ESTIMATED, markersize=4, alpha=0.35, markeredgewidth=0, zorder=2)
     for cell, corners in np.ndenumerate(count):
-        corner = cell * side - 0.5
-        look = {"fill": False} if corners else {"facecolor": "#EEEEEE", "hatch": "//"}
-        ax.add_patch(Rectangle(corner.tolist(), *side, edgecolor="#C4C4C4", zorder=1.5, **look))
+        u, v = (np.array(cell) * side - 0.5).tolist()
+        look: dict[str, Any] = {"fill": False} if corners else {"fc": "#EEEEEE", "hatch": "//"}
+        ax.add_patch(Rectangle((u, v), *side, edgecolor="#C4C4C4", zorder=1.5, **look))
         if corners:
-            ax.text(*(corner + side / 2), f"{corners}", color=IDEAL, fontsize=FONT - 1,
+            ax.text(u + side[0] / 2, v + side[1] / 2, f"{corners}", color=IDEAL, fontsize=FONT - 1,
                     ha="center", va="center", path_effects=halo())  # fmt: skip
     ax.set_title(f"Corners in {(count > 0).sum()} of {count.size} cells of the picture")
     return ax
