@@ -67,7 +67,7 @@ if LIVE:
         "**": ["navbar-logo.html", "search-button-field.html", "run.html", "sbt-sidebar-nav.html"]
     }
 RUN = (
-    '<p class="run"><a href="{address}">Run this chapter in this browser</a> '
+    '<p class="run"><a href="{address}">Run this chapter in this browser</a>. '
     "Nothing is installed: Python comes with the page, 66 MB once.</p>"
 )
 

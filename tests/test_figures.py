@@ -440,6 +440,32 @@ def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_ch
         one_corner(11)
 
 
+def test_on_a_telephone_the_head_of_a_chapter_has_two_rows_in_which_no_words_meet():
+    from xml.etree import ElementTree
+
+    picture = one_corner(7)
+    drawn = ElementTree.fromstring(picture.narrow)
+    assert int(drawn.get("width")) <= 390
+    letter = {"t": 7.5, "n": 6.7, "s": 7.5}  # px, the widest mean of a word's letters at its size
+    boxes = []
+    for text in drawn.findall(".//{*}text"):
+        half = letter[text.get("class")] * len(text.text) / 2
+        x, y = float(text.get("x")), float(text.get("y"))
+        boxes.append((x - half, x + half, y - 11, y + 2))
+    rows = {y for *_, y in boxes}
+    assert len(boxes) == 14
+    assert max(rows) - min(rows) > 150
+    for i, (left, right, top, bottom) in enumerate(boxes):
+        assert left > -4 - 12
+        for other in boxes[:i]:
+            apart = right <= other[0] or other[1] <= left or bottom <= other[2] or other[3] <= top
+            assert apart
+    html = picture._repr_html_()
+    narrow = re.search(r'<source media="([^"]+)" srcset="data:image/svg\+xml;base64,([^"]+)"', html)
+    assert base64.b64decode(narrow[2]) == picture.narrow
+    assert narrow[1] == "(max-width: 600px)"
+
+
 def _contrast_with_white(colour):
     r, g, b = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
     linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in (r, g, b)]

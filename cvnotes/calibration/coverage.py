@@ -34,7 +34,7 @@ def covered_cells(
 
 def count_cells(
     image_points: npt.ArrayLike | Sequence[npt.ArrayLike], size: tuple[int, int]
-) -> npt.NDArray[np.int64]:
+) -> npt.NDArray[np.intp]:
     """Count the corners in each of the cells of `covered_cells`, (columns, rows).
 
     Examples
@@ -45,7 +45,7 @@ def count_cells(
     m, size = joined(image_points), image_size(size)
     cells = np.array([max(round(8 * n / max(size)), 1) for n in size])
     inside = m[((m >= -0.5) & (m < np.array(size) - 0.5)).all(axis=1)]
-    count = np.zeros(cells, dtype=np.int64)
+    count = np.zeros(cells, dtype=np.intp)
     np.add.at(count, tuple(((inside + 0.5) // (size / cells)).astype(int).T), 1)
     return count
 
