@@ -32,7 +32,7 @@ from public_face import (
     several,
 )
 
-from cvnotes.calibration import calibrate
+from cvnotes.calibration import calibrate, coverage
 from cvnotes.show.figures import (
     calibration,
     corners,
@@ -181,8 +181,9 @@ FIGURES = [
     figure(
         quality.draw_coverage, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480)
     ),
-    figure(
-        quality.covered_cells, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480)
+    *(
+        figure(count, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480))
+        for count in (coverage.covered_cells, coverage.count_cells)
     ),
     # vanishing
     figure(

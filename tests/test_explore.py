@@ -45,11 +45,18 @@ from cvnotes.show.explore.model import Drawing, Model, Setting
 from cvnotes.show.explore.page import asked
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.explore.rectification import lines_from
+from cvnotes.show.explore.triangle import camera_of
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
 MODELS = {name: explore.model(name) for name in explore.NAMES}
-STORIES = ("fold", "finding", "columns")  # of the course's own photographs
+STORIES = (
+    "straighten",
+    "triangle",
+    "fold",
+    "finding",
+    "columns",
+)  # of the course's own photographs
 each_model = pytest.mark.parametrize("name", explore.NAMES)
 
 
@@ -610,6 +617,60 @@ def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_sa
     explorer.close_all()
 
 
+def test_three_vanishing_points_of_a_box_are_those_of_the_camera_that_took_it():
+    assert [*camera_of(np.array([[0.0, 0], [4, 0], [1, 3]]))[0]] == pytest.approx([1, 1])
+    said = numbers(MODELS["triangle"].drawing().sentence)
+    assert said[1:] == [325, 238, 800]
+    # Another camera, turned at random: its axes vanish in a triangle that is always acute.
+    rng = np.random.default_rng(4)
+    for R in rotation_from_vector(rng.uniform(-3, 3, (20, 3))):
+        v = 600 * R[:2].T / R[2, :, None] + [300, 200]
+        c, square = camera_of(v)
+        assert np.allclose([*c, square], [300, 200, 600**2], rtol=1e-6)
+
+
+def test_the_focal_length_vanishes_where_the_triangle_of_vanishing_points_becomes_obtuse():
+    flat = {"X_u": -400, "X_v": 0, "Z_u": 600, "Z_v": 0, "Y_u": 0}
+    foot = 400 * 600  # the square of the height at which the angle at Y is right, by Thales
+    for height in (489, 490):
+        drawing = MODELS["triangle"].drawing(Y_v=height, **flat)
+        obtuse = height**2 < foot
+        assert ("No camera sees a box so" in drawing.sentence) == obtuse
+    assert "f = 10 px" in MODELS["triangle"].drawing(Y_v=490, **flat).sentence
+    right = {"X_u": -300, "X_v": 0, "Z_u": 300, "Z_v": 0, "Y_u": 0, "Y_v": 300}
+    assert MODELS["triangle"].drawing(**right).sentence.endswith("f = 0.")
+    on_a_line = MODELS["triangle"].drawing(**{**right, "Y_v": 0})
+    assert "no triangle" in on_a_line.sentence
+    assert {grip.name for grip in on_a_line.grips} == set("XYZ")  # and can be pulled apart again
+
+
+def test_a_bent_row_is_straight_with_the_k1_that_bent_it_and_with_no_other():
+    model = MODELS["straighten"]
+    assert "straight, and so are" in model.drawing(k1=-0.25).sentence
+    assert "bends up" in model.drawing(k1=-0.24).sentence
+    assert "bends down" in model.drawing(k1=-0.26).sentence
+    middle = grip_of(model.drawing(), "row")
+    assert model.dragged("row", (middle.at[0], 0))["k1"] == -0.25
+
+
+def test_what_is_taken_off_a_photograph_puts_its_squares_under_the_row_of_corners():
+    model = MODELS["straighten"]
+    for k1 in (-0.25, 0):
+        left = model.picture(k1=k1)[TITLE:, MARGIN : MARGIN + WIDTH].astype(int)
+        blue = np.abs(left - colour(LENS)).max(-1) < 40
+        across = np.flatnonzero(blue.any(axis=0))
+        middles = [
+            part.mean() for part in np.split(across, np.flatnonzero(np.diff(across) > 8) + 1)
+        ]
+        assert len(middles) == 9
+        for u in middles:
+            x, y = round(u), round(np.flatnonzero(blue[:, round(u)]).mean())
+            # Four squares meet there: diagonal neighbours have one colour, the others another.
+            one, two, three, four = (left[y + j, x + i].mean() for i in (-9, 9) for j in (-9, 9))
+            assert abs(one - four) < 60 > abs(two - three)
+            assert abs(one - two) > 120
+
+
 # Paper and packing.
 
 
@@ -767,6 +828,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "projection": {"heading": 5},
     "finding": {"step": 1.5},
     "tilt": {"tilt": 30},
+    "straighten": {"k1": -0.1},
     "columns": {"amount": 0.7, "free": 1},
 }
 ON_A_WAY = {("finding", "step"), ("tilt", "tilt"), ("fold", "fold")}  # along a curve, by its x
@@ -791,7 +853,7 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
         assert off[0] < 9
     elif (name, held) == ("columns", "free"):  # from bar to bar
         assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
-    elif held in ("nine", "eye"):  # up and down; to the nearest place of the half circle
+    elif held in ("nine", "row", "eye"):  # up and down; to the nearest place of the half circle
         assert off[1] < 9 or held == "eye"
     elif held == "rails":  # its length stays, its direction follows
         turned = np.arctan2(*wanted) - np.arctan2(*after.at)

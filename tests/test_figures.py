@@ -271,7 +271,7 @@ def test_a_bent_board_has_no_arrows_and_a_flat_one_no_figure():
 
 
 def hatched(ax):
-    return {p.get_xy() for p in ax.patches if isinstance(p, Rectangle)}
+    return {p.get_xy() for p in ax.patches if isinstance(p, Rectangle) and p.get_hatch()}
 
 
 def test_the_cells_without_corners_are_hatched_and_counted():
@@ -283,6 +283,9 @@ def test_the_cells_without_corners_are_hatched_and_counted():
     assert len(empty) == 29
     assert (19.5, -0.5) in empty
     assert not empty & {(-0.5, -0.5), (9.5, -0.5), (69.5, 29.5)}
+    assert len(ax.patches) == 32
+    counts = {text.get_position(): text.get_text() for text in ax.texts}
+    assert counts == {(4.5, 4.5): "2", (14.5, 4.5): "1", (74.5, 34.5): "1"}
 
 
 def test_coverage_takes_all_views_in_any_form():
@@ -435,6 +438,32 @@ def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_ch
         assert "(595.1, 411.0)" in picture.alt  # chapter 4 works it out, step by step
     with pytest.raises(CvnotesError, match="0 to 10"):
         one_corner(11)
+
+
+def test_on_a_telephone_the_head_of_a_chapter_has_two_rows_in_which_no_words_meet():
+    from xml.etree import ElementTree
+
+    picture = one_corner(7)
+    drawn = ElementTree.fromstring(picture.narrow)
+    assert int(drawn.get("width")) <= 390
+    letter = {"t": 7.5, "n": 6.7, "s": 7.5}  # px, the widest mean of a word's letters at its size
+    boxes = []
+    for text in drawn.findall(".//{*}text"):
+        half = letter[text.get("class")] * len(text.text) / 2
+        x, y = float(text.get("x")), float(text.get("y"))
+        boxes.append((x - half, x + half, y - 11, y + 2))
+    rows = {y for *_, y in boxes}
+    assert len(boxes) == 14
+    assert max(rows) - min(rows) > 150
+    for i, (left, right, top, bottom) in enumerate(boxes):
+        assert left > -4 - 12
+        for other in boxes[:i]:
+            apart = right <= other[0] or other[1] <= left or bottom <= other[2] or other[3] <= top
+            assert apart
+    html = picture._repr_html_()
+    narrow = re.search(r'<source media="([^"]+)" srcset="data:image/svg\+xml;base64,([^"]+)"', html)
+    assert base64.b64decode(narrow[2]) == picture.narrow
+    assert narrow[1] == "(max-width: 600px)"
 
 
 def _contrast_with_white(colour):

@@ -60,7 +60,7 @@ def test_the_feet_of_a_triangle_worked_out_by_hand():
 
 def test_the_corners_carry_their_names():
     texts = draw_altitudes([[0, 0], [900, 0], [400, 700]]).texts
-    assert [text.get_text() for text in texts] == ["X", "Y", "Z"]
+    assert [text.get_text() for text in texts] == ["c", "X", "Y", "Z"]
 
 
 def test_points_on_a_line_are_no_triangle():

@@ -11,7 +11,9 @@ from cvnotes.show.explore import (
     explore_noise,
     explore_projection,
     explore_rectification,
+    explore_straighten,
     explore_tilt,
+    explore_triangle,
     explore_warp,
 )
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
@@ -150,7 +152,9 @@ __all__ = [
     "LENS",
     "ESTIMATED",
     # explorations
+    "explore_straighten",
     "explore_projection",
+    "explore_triangle",
     "explore_camera",
     "explore_lens",
     "explore_homography",

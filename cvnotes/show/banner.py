@@ -1,5 +1,7 @@
 """The head of every chapter: one corner of a board, and the four steps by which it gets a pixel."""
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
@@ -16,13 +18,36 @@ _LIT: dict[int, tuple[str, ...]] = {
     6: ("R, T", "÷ z", "A"), 8: ("lens", "A"),
 }  # fmt: skip
 _BACKWARDS = (6, 7)
-_WIDE, _TALL, _GAP, _TOP = 138, 112, 52, 26  # px: a panel, the way to the next, what is above it
 _STYLE = (
     "text{font:13px system-ui,sans-serif;text-anchor:middle;fill:#333}.s{font-weight:600}"
-    # On a telephone larger letters take the room of the numbers, which are left out.
-    "@media(max-width:520px){text{font-size:24px}.s{font-size:21px}.n{display:none}"
-    "svg>g{transform:translateY(16px)}.t{transform:translateY(-6px)}}"
+    ".narrow text{font-size:12px}.narrow .n{font-size:11px}"
 )
+
+
+class _Layout(NamedTuple):
+    """How large a panel is, the way to the next one, and how many stand in a row; px."""
+
+    wide: int
+    tall: int
+    gap: int
+    columns: int
+    above: int = 26  # for the name
+    below: int = 24  # for the numbers
+
+    def place(self, number: int) -> Array:
+        """Return the top left corner of a panel; a second row begins with the arrow to it."""
+        row, column = divmod(number, self.columns)
+        left = column * (self.wide + self.gap) + row * self.gap
+        return np.array([left, row * (self.above + self.tall + self.below) + self.above])
+
+    @property
+    def size(self) -> tuple[int, int]:
+        rows = -(-5 // self.columns)
+        width = self.columns * (self.wide + self.gap) - self.gap
+        return width, rows * (self.above + self.tall + self.below)
+
+
+_STRIP, _TELEPHONE = _Layout(138, 112, 52, 5), _Layout(94, 82, 42, 3)
 
 
 def one_corner(chapter: int) -> Picture:
@@ -55,34 +80,42 @@ def one_corner(chapter: int) -> Picture:
     cone = beside.project(120 * np.column_stack([border, np.ones(5)]))
     cone = np.concatenate([[leg for tip in cone[:4] for leg in (tip, eye)], cone])
     states = (
-        ("world", W[:, :2], None, WORLD, "({:.0f}, {:.0f}, {:.0f})", W[-1]),
-        ("camera", beside.project(M), cone, WORLD, "({:.1f}, {:.1f}, {:.1f})", M[-1]),
+        ("world", W[:, :2], None, WORLD, "({:.0f}, {:.0f}, {:.0f}) mm", W[-1]),
+        ("camera", beside.project(M), cone, WORLD, "({:.1f}, {:.1f}, {:.1f}) mm", M[-1]),
         ("z = 1", xy, border, IDEAL, "({:.4f}, {:.4f})", xy[-1]),
         ("behind the lens", seen, border, LENS, "({:.4f}, {:.4f})", seen[-1]),
         ("pixel", m, frame, LENS, "({:.1f}, {:.1f})", m[-1]),
     )
     lit = _LIT.get(chapter, STEPS)
-    parts = [
-        _panel(k * (_WIDE + _GAP), name, points, outline, colour, form.format(*numbers))
-        for k, (name, points, outline, colour, form, numbers) in enumerate(states)
-    ]
-    parts += [_step(k, name, name in lit, chapter in _BACKWARDS) for k, name in enumerate(STEPS)]
-    if chapter == 5:
-        x = 4 * (_WIDE + _GAP) - 3
-        parts.append(f'<path d="M{x} {_TOP - 4}h{_WIDE + 6}v{_TALL + 8}h{-_WIDE - 6}z" '
-                     f'fill="none" stroke="{ESTIMATED}" stroke-width="2"/>')  # fmt: skip
-    width, height = 5 * _WIDE + 4 * _GAP + 8, _TOP + _TALL + 24
-    svg = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 0 {width} {height}" width="{width}" '
-        f'height="{height}"><style>{_STYLE}</style><g>{"".join(parts)}</g></svg>'
-    )
+
+    def drawn(layout: _Layout, kind: str) -> bytes:
+        parts = [
+            _panel(layout, k, name, points, outline, colour, form.format(*numbers))
+            for k, (name, points, outline, colour, form, numbers) in enumerate(states)
+        ]
+        backwards = chapter in _BACKWARDS
+        parts += [_step(layout, k, name, name in lit, backwards) for k, name in enumerate(STEPS)]
+        if chapter == 5:
+            x, y = layout.place(4) - [3, 4]
+            parts.append(f'<path d="M{x} {y}h{layout.wide + 6}v{layout.tall + 8}'
+                         f'h{-layout.wide - 6}z" fill="none" stroke="{ESTIMATED}" '
+                         'stroke-width="2"/>')  # fmt: skip
+        width, height = layout.size
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 0 {width + 8} {height}" '
+            f'width="{width + 8}" height="{height}"><style>{_STYLE}</style>'
+            f'<g class="{kind}">{"".join(parts)}</g></svg>'
+        ).encode()
+
     said = [form.format(*numbers) for *_, form, numbers in states]
     alt = (
-        f"One corner: world {said[0]} mm, camera {said[1]} mm, plane z = 1 {said[2]}, "
+        f"One corner: world {said[0]}, camera {said[1]}, plane z = 1 {said[2]}, "
         f"behind the lens {said[3]}, pixel {said[4]}. Lit: {', '.join(lit) or 'the pixel'}"
         + (", backwards" if chapter in _BACKWARDS else "")
     )
-    return Picture(svg.encode(), alt, width, "image/svg+xml")
+    width = _STRIP.size[0] + 8
+    strip, narrow = drawn(_STRIP, "wide"), drawn(_TELEPHONE, "narrow")
+    return Picture(strip, alt, width, "image/svg+xml", narrow)
 
 
 def _dark_squares(side: float) -> Array:
@@ -93,16 +126,24 @@ def _dark_squares(side: float) -> Array:
 
 
 def _panel(
-    left: int, name: str, points: Array, outline: Array | None, colour: str, numbers: str
+    layout: _Layout,
+    number: int,
+    name: str,
+    points: Array,
+    outline: Array | None,
+    colour: str,
+    numbers: str,
 ) -> str:
     """Draw the board in one of its five states, and the corner that is followed."""
     everything = points if outline is None else np.concatenate([points, outline])
     low, high = everything.min(axis=0), everything.max(axis=0)
-    scale = np.min([_WIDE, _TALL] / (high - low))
-    shift = [left + _WIDE / 2, _TOP + _TALL / 2] - scale * (low + high) / 2
+    room = np.array([layout.wide, layout.tall])
+    left, top = layout.place(number)
+    scale = np.min(room / (high - low))
+    shift = [left, top] + room / 2 - scale * (low + high) / 2
     (*board, (x, y)) = scale * points + shift
     squares = "".join(f"{_line(square)}z" for square in np.reshape(board, (-1, 4, 2)))
-    middle = left + _WIDE // 2
+    middle = left + layout.wide // 2
     drawn = f'<path d="{squares}" fill="{colour}"/>'
     if outline is not None:
         border = _line(scale * outline + shift)
@@ -115,8 +156,8 @@ def _panel(
     return (
         f"{drawn}"
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{ESTIMATED}" stroke="white"/>'
-        f'<text class="t" x="{middle}" y="16">{name}</text>'
-        f'<text class="n" x="{middle}" y="{_TOP + _TALL + 18}">{numbers}</text>'
+        f'<text class="t" x="{middle}" y="{top - 10}">{name}</text>'
+        f'<text class="n" x="{middle}" y="{top + layout.tall + 18}">{numbers}</text>'
     )
 
 
@@ -124,10 +165,10 @@ def _line(points: npt.ArrayLike) -> str:
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in np.asarray(points))
 
 
-def _step(number: int, name: str, lit: bool, backwards: bool) -> str:
-    """Draw an arrow between two panels."""
-    left = number * (_WIDE + _GAP) + _WIDE + 7
-    tip, end, y = left + _GAP - 14, left, _TOP + _TALL // 2
+def _step(layout: _Layout, number: int, name: str, lit: bool, backwards: bool) -> str:
+    """Draw the arrow to a panel from the one before it."""
+    left, top = layout.place(number + 1)
+    tip, end, y = left - 7, left - layout.gap + 7, top + layout.tall // 2
     if backwards:
         tip, end = end, tip
     back = 8 if tip < end else -8

@@ -22,28 +22,39 @@ if TYPE_CHECKING:
 _MANY_COLOURS = 4096
 # A drawing is smaller than this, in bytes.
 _LARGE = 150_000
+# px: how wide what is made for a telephone is drawn.
+NARROW = 380
 # Of zlib: the last levels take six times as long, and save a fourteenth.
 _PACKING = 7
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A finished figure: an image for the notebook, and its description everywhere else."""
+    """A finished figure: an image for the notebook, and its description everywhere else.
+
+    A page as narrow as a telephone shows `narrow` instead, an SVG, if there is one.
+    """
 
     data: bytes
     alt: str
     width: int
     mime: str = "image/png"
+    narrow: bytes = b""
 
     def __repr__(self) -> str:
         return self.alt
 
     def _repr_html_(self) -> str:
         code = base64.b64encode(self.data).decode()
-        return (
+        image = (
             f'<img alt="{escape(self.alt)}" width="{self.width}" '
             f'style="max-width: 100%; background: white" src="data:{self.mime};base64,{code}">'
         )
+        if not self.narrow:
+            return image
+        code = base64.b64encode(self.narrow).decode()
+        source = f'media="(max-width: 600px)" srcset="data:image/svg+xml;base64,{code}"'
+        return f'<picture><source {source} width="{NARROW}">{image}</picture>'
 
 
 def show(figure: Any, *, alt: str, width: int | None = None) -> Picture:

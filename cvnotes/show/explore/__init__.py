@@ -20,7 +20,9 @@ from cvnotes.show.explore.model import Model
 from cvnotes.show.explore.noise import noise_model
 from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
+from cvnotes.show.explore.straighten import straighten_model
 from cvnotes.show.explore.tilt import tilt_model
+from cvnotes.show.explore.triangle import triangle_model
 from cvnotes.show.explore.warp import warp_model
 from cvnotes.targets import Chessboard
 
@@ -39,6 +41,8 @@ _MODELS: dict[str, Callable[[Camera, Chessboard], Model]] = {
 }
 # What the course itself has photographed: no other camera or board can be given.
 _STORIES: dict[str, Callable[[], Model]] = {
+    "straighten": straighten_model,
+    "triangle": triangle_model,
     "fold": fold_model,
     "finding": finding_model,
     "columns": columns_model,
@@ -54,8 +58,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     name : str
         One of `NAMES`.
     camera, board : optional
-        By default the course's. "fold", "finding" and "columns" show photographs of the course,
-        and take none.
+        By default the course's. "straighten", "triangle", "fold", "finding" and "columns" show
+        photographs of the course, and take none.
 
     Raises
     ------
@@ -123,6 +127,16 @@ def explore_rectification(
 def explore_tilt(*, camera: Camera | None = None, board: Chessboard | None = None) -> "Explorer":
     """Tilt a board before two lenses, and watch when their pictures can be told apart."""
     return _explorer("tilt", camera, board)
+
+
+def explore_straighten() -> "Explorer":
+    """Move the k1 that is taken off a photograph, until a row of its corners is straight."""
+    return _explorer("straighten", None)
+
+
+def explore_triangle() -> "Explorer":
+    """Pull the vanishing points of a box, and watch principal point and focal length follow."""
+    return _explorer("triangle", None)
 
 
 def explore_fold() -> "Explorer":

@@ -13,6 +13,7 @@ def clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:
 
 def dashed(pairs: Array, length: float) -> Array:
     """Cut segments (n, 2, 2) into dashes and keep every other one, along the whole curve."""
+    pairs = pairs[(pairs[:, 0] != pairs[:, 1]).any(axis=-1)]  # a point has no dashes
     way = pairs[:, 1] - pairs[:, 0]
     reach = np.linalg.norm(way, axis=-1)
     done = np.cumsum(reach) - reach  # where along the curve each segment begins

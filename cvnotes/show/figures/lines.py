@@ -126,7 +126,7 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     if not (x_h != 0).any(axis=1).all():
         raise CvnotesError("x_h: [0 0] is no point, and has no line of its own")
     reach = 5.0  # of the axes, to both sides
-    ax = drawn_on(ax, height=370)
+    ax = drawn_on(ax, height=330)
     ax.axhline(1, color=WORLD, linewidth=2.2, zorder=1)
     for x, w in x_h:
         ideal = abs(w) < 1e-100 * abs(x)
@@ -137,7 +137,7 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
             ax.plot(x, w, "o", color=ESTIMATED if ideal else IDEAL, markersize=5, zorder=3)
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=8, zorder=4)
     text: dict[str, Any] = {"fontsize": FONT, "zorder": 5, "path_effects": halo()}
-    beside(ax, "R, at\nw = 1", (reach, 1), (6, 0), WORLD, va="center", **text)
+    beside(ax, "ℝ, at\nw = 1", (reach, 1), (6, 0), WORLD, va="center", **text)
     beside(ax, "[0 0]", (0, 0), (0, -20), MUTED, ha="center", **text)
     ax.set(xlim=(-reach, reach), ylim=(-0.35 * reach, 0.65 * reach), aspect="equal")
     ax.set(xlabel="first coordinate, wx", ylabel="last coordinate, w")

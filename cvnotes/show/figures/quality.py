@@ -5,14 +5,14 @@ and return them.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, image_size, number
 from cvnotes.base.digits import round_number
-from cvnotes.calibration.coverage import covered_cells, joined
+from cvnotes.calibration.coverage import count_cells, joined
 from cvnotes.show.guards import calibrated
 from cvnotes.show.style import (
     ESTIMATED,
@@ -21,6 +21,7 @@ from cvnotes.show.style import (
     MUTED,
     as_picture,
     drawn_on,
+    halo,
 )
 
 if TYPE_CHECKING:
@@ -66,9 +67,9 @@ def draw_coverage(
     *,
     ax: "Axes | None" = None,
 ) -> "Axes":
-    """Draw where in the picture corners were seen, and which parts saw none.
+    """Draw the corners, and how many there are in each cell of the picture.
 
-    The lens is known where corners were; in the empty parts, which are hatched, it is guessed.
+    The lens is known where corners were; in the empty cells, which are hatched, it is guessed.
 
     Parameters
     ----------
@@ -85,14 +86,18 @@ def draw_coverage(
     from matplotlib.patches import Rectangle
 
     size = image_size(size)
-    m, seen = joined(image_points), covered_cells(image_points, size)
-    side = np.array(size) / seen.shape
+    m, count = joined(image_points), count_cells(image_points, size)
+    side = np.array(size) / count.shape
     ax = as_picture(drawn_on(ax, size), size)
-    for cell in np.argwhere(~seen):
-        corner = (cell * side - 0.5).tolist()
-        ax.add_patch(Rectangle(corner, *side, facecolor="#EEEEEE", edgecolor="#C4C4C4", hatch="//"))
-    ax.plot(*m.T, ".", color=ESTIMATED, markersize=4, alpha=0.6, markeredgewidth=0)
-    ax.set_title(f"Corners in {seen.sum()} of {seen.size} cells of the picture")
+    ax.plot(*m.T, ".", color=ESTIMATED, markersize=4, alpha=0.35, markeredgewidth=0, zorder=2)
+    for cell, corners in np.ndenumerate(count):
+        u, v = (np.array(cell) * side - 0.5).tolist()
+        look: dict[str, Any] = {"fill": False} if corners else {"fc": "#EEEEEE", "hatch": "//"}
+        ax.add_patch(Rectangle((u, v), *side, edgecolor="#C4C4C4", zorder=1.5, **look))
+        if corners:
+            ax.text(u + side[0] / 2, v + side[1] / 2, f"{corners}", color=IDEAL, fontsize=FONT - 1,
+                    ha="center", va="center", path_effects=halo())  # fmt: skip
+    ax.set_title(f"Corners in {(count > 0).sum()} of {count.size} cells of the picture")
     return ax
 
 

@@ -9,7 +9,7 @@ from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
 from cvnotes.show.figures.images import draw_points
 from cvnotes.show.figures.lines import draw_segments, segment_ends
-from cvnotes.show.style import ESTIMATED, FONT, IDEAL, beside, pixel_axes
+from cvnotes.show.style import ESTIMATED, FONT, beside, halo, pixel_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +59,7 @@ def draw_altitudes(
 ) -> "Axes":
     """Draw the triangle of three vanishing points, its altitudes, and their orthocentre.
 
-    For three orthogonal directions and square pixels that point is the principal point, which
+    For three orthogonal directions and square pixels that point, c, is the principal point, which
     the notes call the piercing point.
 
     Parameters
@@ -76,7 +76,7 @@ def draw_altitudes(
     --------
     >>> ax = draw_altitudes([[0, 0], [900, 0], [400, 700]])
     >>> [text.get_text() for text in ax.texts]
-    ['X', 'Y', 'Z']
+    ['c', 'X', 'Y', 'Z']
     """
     v = matrix(v, "v", 3, 2)
     if v.ndim != 2:
@@ -85,12 +85,14 @@ def draw_altitudes(
     ax = pixel_axes(ax, (640, 480))
     ax.plot(*np.concatenate([v, v[:1]]).T, color=ESTIMATED, linewidth=1.2)
     for corner, foot in zip(v, feet, strict=True):
-        ax.plot(*np.stack([corner, foot]).T, "--", color=IDEAL, linewidth=0.9)
+        ax.plot(*np.stack([corner, foot]).T, "--", color=ESTIMATED, linewidth=0.9)
     altitudes = [join(*to_homogeneous([v[i], feet[i]])) for i in range(2)]
-    draw_points(from_homogeneous(meet(*altitudes)), ax=ax, meaning="ideal", label="orthocentre")
-    draw_points(v, ax=ax, meaning="estimated", label="vanishing points")
-    ax.legend(loc="lower right", fontsize=FONT - 1)
+    c = from_homogeneous(meet(*altitudes))
+    draw_points(c, ax=ax)
+    draw_points(v, ax=ax)
     _widened(ax, v)
+    beside(ax, "c", c, (12, 12), ESTIMATED, ha="center", va="center", fontsize=FONT,
+           fontweight="bold", path_effects=halo())  # fmt: skip
     for name, corner, away in zip("XYZ", v, v - v.mean(axis=0), strict=True):
         shift = 14 * away / np.linalg.norm(away) * (1, -1)  # points on paper count upwards
         beside(ax, name, corner, shift, ESTIMATED, ha="center", va="center", fontsize=FONT,

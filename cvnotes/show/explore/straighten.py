@@ -1,0 +1,94 @@
+"""Explore what a lens does: a photograph from which more or less of its bending is taken."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
+from cvnotes.pictures import course, hold_at, radiance, room_with
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
+from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.style import ESTIMATED, LENS, MUTED
+
+_PICTURE, _ROW = (440, 330), (410, 330)
+_ALPHA, _SIZE, _MIDDLE = 540, (640, 480), np.array([319.5, 239.5])
+_K1 = -0.25  # of the lens that took the photograph
+_LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
+_BOW = 20.0  # px, shown on either side of the straight line
+
+
+def straighten_model() -> Model:
+    """Make the model of a board in a room, photographed through a lens that bends much."""
+    A = intrinsics(_ALPHA, _ALPHA, *_MIDDLE)
+    camera = Camera(A, lens=Lens(k=(_K1,)), size=_SIZE)
+    board = course.board()
+    G = hold_at(board, camera, rotation_from_vector([0.2, 0.15, 0.0]), aim=[320, 235], farther=1.12)
+    row = (camera.moved(G).project(board.points[: board.corners[0]]) - _MIDDLE) / _ALPHA
+    settings = (Setting("k1", "k1", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is taken off"),)
+    about = (
+        "The photograph of a chessboard in a room, with as much bending taken off as k1 says; "
+        "beside it the uppermost row of corners, and how far it is from a straight line."
+    )
+
+    @lru_cache(maxsize=1)
+    def photograph() -> Drawn:
+        taken = radiance(room_with(board, G), camera, samples=4)
+        return np.asarray(taken.clip(0, 255).astype(np.uint8))
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        lens = Lens(k=(values["k1"],))
+        bow = _bow(lens, row)
+        panel = paper.picture_panel(_PICTURE, _SIZE, "the photograph, with k1 taken off")
+        panel.image(_without(lens, photograph(), paper.sharpness))
+        m = _ALPHA * lens.undistort(row) + _MIDDLE
+        panel.line(m[[0, -1]], ESTIMATED, 1.2)
+        panel.mark(m, "lens", 4)
+        return Drawing(paper.join((panel, _row_panel(paper, m, bow))), _sentence(lens, bow))
+
+    def pulled(_: Values, at: Array) -> Values:
+        tried = np.arange(_LOWEST, _HIGHEST + _STEP, _STEP)
+        middle = [_bow(Lens(k=(k1,)), row)[len(row) // 2] for k1 in tried]
+        return {"k1": float(tried[np.abs(np.array(middle) - at[1]).argmin()])}
+
+    return Model("straighten", about, settings, draw, {"row": pulled})
+
+
+def _bow(lens: Lens, row: Array) -> Array:
+    """Return how far points of the plane z = 1 lie above the line through first and last, in px."""
+    m = _ALPHA * lens.undistort(row)
+    along = (m[-1] - m[0]) / np.linalg.norm(m[-1] - m[0])
+    return np.asarray((m - m[0]) @ [along[1], -along[0]])
+
+
+def _without(lens: Lens, photo: Drawn, sharpness: int) -> Drawn:
+    """Take a lens off a photograph: each pixel is looked up where that lens would show it."""
+    w, h = sharpness * _PICTURE[0], sharpness * _PICTURE[1]
+    u, v = (np.linspace(-0.5, n - 0.5, 2 * k + 1)[1::2] for n, k in zip(_SIZE, (w, h), strict=True))
+    xy = (np.stack(np.meshgrid(u, v), -1) - _MIDDLE) / _ALPHA
+    at = np.rint(_ALPHA * lens.distort(xy) + _MIDDLE)
+    seen = ((at >= 0) & (at < _SIZE)).all(axis=-1)[..., None]  # NaN is not
+    column, line = np.where(seen, at, 0).astype(int).transpose(2, 0, 1)
+    return np.where(seen, photo[line, column], np.uint8(255))
+
+
+def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
+    panel = paper.panel(
+        _ROW, (-0.5, _SIZE[0] - 0.5), (_BOW, -_BOW), "the uppermost row: px above its line, over u"
+    )
+    panel.ticks(x=(200, 400, 600), y=(-10, 0, 10))
+    panel.line([[0, 0], [_SIZE[0], 0]], MUTED, 1)
+    at = np.column_stack([m[:, 0], bow])
+    panel.line(at[[0, -1]], ESTIMATED, 1.5)
+    panel.line(at, LENS, 1.2)
+    panel.mark(at, "lens", 6)
+    panel.grip("row", "the middle of the row, to be pulled straight", at[len(at) // 2], 4)
+    return panel
+
+
+def _sentence(lens: Lens, bow: Array) -> str:
+    most = float(bow[np.abs(bow).argmax()])
+    said = f"With k1 = {lens.k[0]:.3f} taken off, the uppermost row of corners "
+    if abs(most) < 0.05:
+        return f"{said}is straight, and so are the sides of the paper."
+    return f"{said}bends {'up' if most > 0 else 'down'} by {abs(most):.1f} px."
