@@ -446,6 +446,27 @@ def test_a_cell_can_be_run_again_after_later_ones(path):
 
 
 @each_notebook
+def test_what_an_open_cell_takes_from_a_folded_one_is_named_before(path):
+    """In backticks in the prose, or in a comment: on a page nobody sees the folded cell."""
+    functions, said, folded, named = {}, "", set(), set()
+    for cell in _read(path).cells:
+        if cell.cell_type == "markdown":
+            said += cell.source
+            continue
+        names = _Names(functions)
+        names.visit(ast.parse(cell.source))
+        if _folded(cell):
+            folded |= names.bound - named
+            continue
+        comments = " ".join(re.findall("#.*", cell.source))
+        for name in sorted(names.read & folded):
+            spoken_of = f"`{name}`" in said or re.search(rf"\b{name}\b", comments)
+            assert spoken_of, f"{cell.id}: what is {name}?"
+        named |= names.bound | names.read
+        folded -= named
+
+
+@each_notebook
 def test_links_to_other_files_lead_somewhere(path):
     for cell in _read(path).cells:
         for target in re.findall(r"\]\(([^)#\s]+)", cell.source):
