@@ -12,6 +12,7 @@ from cvnotes.show.explore import (
     explore_projection,
     explore_rectification,
     explore_tilt,
+    explore_votes,
     explore_warp,
 )
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
@@ -153,6 +154,7 @@ __all__ = [
     "explore_projection",
     "explore_camera",
     "explore_lens",
+    "explore_votes",
     "explore_homography",
     "explore_fold",
     "explore_finding",

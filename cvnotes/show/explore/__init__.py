@@ -21,6 +21,7 @@ from cvnotes.show.explore.noise import noise_model
 from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
 from cvnotes.show.explore.tilt import tilt_model
+from cvnotes.show.explore.votes import votes_model
 from cvnotes.show.explore.warp import warp_model
 from cvnotes.targets import Chessboard
 
@@ -39,6 +40,7 @@ _MODELS: dict[str, Callable[[Camera, Chessboard], Model]] = {
 }
 # What the course itself has photographed: no other camera or board can be given.
 _STORIES: dict[str, Callable[[], Model]] = {
+    "votes": votes_model,
     "fold": fold_model,
     "finding": finding_model,
     "columns": columns_model,
@@ -54,8 +56,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     name : str
         One of `NAMES`.
     camera, board : optional
-        By default the course's. "fold", "finding" and "columns" show photographs of the course,
-        and take none.
+        By default the course's. "votes", "fold", "finding" and "columns" show photographs of the
+        course, and take none.
 
     Raises
     ------
@@ -123,6 +125,11 @@ def explore_rectification(
 def explore_tilt(*, camera: Camera | None = None, board: Chessboard | None = None) -> "Explorer":
     """Tilt a board before two lenses, and watch when their pictures can be told apart."""
     return _explorer("tilt", camera, board)
+
+
+def explore_votes() -> "Explorer":
+    """Move a small window over a photograph, and watch its votes and their structure tensor."""
+    return _explorer("votes", None)
 
 
 def explore_fold() -> "Explorer":
