@@ -46,17 +46,12 @@ from cvnotes.show.explore.page import asked
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.explore.rectification import lines_from
 from cvnotes.show.explore.triangle import camera_of
+from cvnotes.show.explore.votes import window_at
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
 MODELS = {name: explore.model(name) for name in explore.NAMES}
-STORIES = (
-    "straighten",
-    "triangle",
-    "fold",
-    "finding",
-    "columns",
-)  # of the course's own photographs
+STORIES = ("straighten", "triangle", "votes", "fold", "finding", "columns")  # of our photographs
 each_model = pytest.mark.parametrize("name", explore.NAMES)
 
 
@@ -552,6 +547,30 @@ def test_both_cameras_find_the_same_nine_columns_and_each_mends_the_other(believ
     assert rms(right.misses(0, left.columns)) < 0.75 * rms(right.misses(0, 0 * left.columns))
     mirrored = rms(left.misses(0, right.columns[::-1]))
     assert mirrored > rms(left.misses(0, 0 * right.columns))
+
+
+def test_a_window_on_a_ramp_votes_along_it_and_one_on_a_corner_for_the_corner():
+    gradients = np.zeros((40, 40, 2)) + [3.0, 4.0]  # everywhere: 5 grey levels a pixel
+    ramp = window_at(gradients, (20, 20))
+    assert np.allclose(ramp.eigenvalues, [0, 49 * 25])
+    assert np.isclose(ramp.R, -0.05 * (49 * 25) ** 2)
+    assert np.isnan(ramp.crossing).all()
+    gradients = np.zeros((40, 40, 2))
+    gradients[:, 18, 0], gradients[22, :, 1] = 60, 80  # an upright edge, and a level one
+    gradients[22, 18] = 0
+    corner = window_at(gradients, (20, 20))
+    assert np.allclose(corner.eigenvalues, [6 * 60**2, 6 * 80**2])
+    assert np.allclose(corner.crossing, [18, 22])
+
+
+def test_the_votes_of_the_photograph_cross_at_the_true_corner_and_nowhere_else():
+    for (u, v), said in (((337, 205), "flat paper"), ((352, 201), "an edge")):
+        drawing = MODELS["votes"].drawing(u=u, v=v)
+        assert drawing.sentence.endswith(f"this is {said}.")
+    truth = course.exact_corners()[6, 22]
+    for u, v in itertools.product((351, 352, 353), (212, 213)):
+        *_, crossing_u, crossing_v = numbers(MODELS["votes"].drawing(u=u, v=v).sentence)
+        assert np.allclose([crossing_u, crossing_v], truth, atol=0.15)
 
 
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():

@@ -28,7 +28,7 @@ from cvnotes.show import (
     panels,
     show,
 )
-from cvnotes.show.picture import _drawn, encode, with_palette
+from cvnotes.show.picture import encode, pixels_of, with_palette
 from cvnotes.show.style import COLOURS, ESTIMATED, INK, MARKERS
 from cvnotes.targets import Chessboard
 
@@ -374,7 +374,7 @@ def test_the_colours_of_a_drawing_go_to_its_edges_and_not_to_its_paper():
     for k in range(20):
         line = np.array([[0.05 * k, 0], [1 - 0.05 * k, 1]])
         ax.plot(*line.T, color=(list(COLOURS.values()) * 4)[k], linewidth=1 + 0.3 * k)
-    drawn = Image.fromarray(_drawn(ax.figure)).convert("RGB")
+    drawn = Image.fromarray(pixels_of(ax.figure)).convert("RGB")
     plain = drawn.quantize(256, dither=Image.Dither.NONE)
     assert len(drawn.getcolors(4096)) > 1000
     ours, pillows = (

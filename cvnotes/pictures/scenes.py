@@ -133,7 +133,11 @@ def room() -> Scene:
         box((-600, 600), (-700, 200), (9940, 9950), (0.23, 0.42, 0.40)),
         box((-3000, -2980), (-900, 300), (6300, 8900), (1.0, 1.0, 1.0)),
     ]
-    return join(shell, *furniture, *hung)
+    behind = [  # which only a fisheye sees: a door and a window
+        box((-2900, -1900), (-500, GROUND), (-2000, -1950), (0.55, 0.36, 0.27)),
+        box((1700, 2900), (-1300, -300), (-2000, -1950), (0.62, 0.78, 0.90)),
+    ]
+    return join(shell, *furniture, *hung, *behind)
 
 
 def room_with(target: Chessboard | TwoPlanes | ThreePlanes, G: npt.ArrayLike) -> Scene:

@@ -14,6 +14,7 @@ from cvnotes.show.explore import (
     explore_straighten,
     explore_tilt,
     explore_triangle,
+    explore_votes,
     explore_warp,
 )
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
@@ -157,6 +158,7 @@ __all__ = [
     "explore_triangle",
     "explore_camera",
     "explore_lens",
+    "explore_votes",
     "explore_homography",
     "explore_fold",
     "explore_finding",

@@ -108,7 +108,7 @@ def encode(figure: "Figure", *, jpeg: bool = True) -> tuple[bytes, str]:
     """
     from PIL import Image
 
-    picture, encoded = Image.fromarray(_drawn(figure)).convert("RGB"), io.BytesIO()
+    picture, encoded = Image.fromarray(pixels_of(figure)).convert("RGB"), io.BytesIO()
     if few := with_palette(picture):
         if not (jpeg and _never_small(few.tobytes())):
             few.save(encoded, "PNG", compress_level=_PACKING)
@@ -156,7 +156,7 @@ def _in_one_number(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32]:
     return np.asarray(red << 16 | green << 8 | blue)
 
 
-def _drawn(figure: "Figure") -> npt.NDArray[np.uint8]:
+def pixels_of(figure: "Figure") -> npt.NDArray[np.uint8]:
     """Draw a figure once, as (height, width, 4); savefig draws it twice, and packs it."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 

@@ -23,6 +23,7 @@ from cvnotes.show.explore.rectification import rectification_model
 from cvnotes.show.explore.straighten import straighten_model
 from cvnotes.show.explore.tilt import tilt_model
 from cvnotes.show.explore.triangle import triangle_model
+from cvnotes.show.explore.votes import votes_model
 from cvnotes.show.explore.warp import warp_model
 from cvnotes.targets import Chessboard
 
@@ -43,6 +44,7 @@ _MODELS: dict[str, Callable[[Camera, Chessboard], Model]] = {
 _STORIES: dict[str, Callable[[], Model]] = {
     "straighten": straighten_model,
     "triangle": triangle_model,
+    "votes": votes_model,
     "fold": fold_model,
     "finding": finding_model,
     "columns": columns_model,
@@ -58,8 +60,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     name : str
         One of `NAMES`.
     camera, board : optional
-        By default the course's. "straighten", "triangle", "fold", "finding" and "columns" show
-        photographs of the course, and take none.
+        By default the course's. "straighten", "triangle", "votes", "fold", "finding" and "columns"
+        show photographs of the course, and take none.
 
     Raises
     ------
@@ -137,6 +139,11 @@ def explore_straighten() -> "Explorer":
 def explore_triangle() -> "Explorer":
     """Pull the vanishing points of a box, and watch principal point and focal length follow."""
     return _explorer("triangle", None)
+
+
+def explore_votes() -> "Explorer":
+    """Move a small window over a photograph, and watch its votes and their structure tensor."""
+    return _explorer("votes", None)
 
 
 def explore_fold() -> "Explorer":

@@ -4,14 +4,21 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
-from cvnotes.show.explore.boards import draw_board, draw_in_space, in_space, on_sheet, pinhole
+from cvnotes.show.explore.boards import (
+    draw_arrows,
+    draw_board,
+    draw_in_space,
+    in_space,
+    on_sheet,
+    pinhole,
+)
 from cvnotes.show.explore.matrices import FOCAL, PIERCING, SHIFT, SKEW, TURN, matrix_table
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.orbit import round_the_board
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
 from cvnotes.show.space.shapes import axes_shapes, target_shapes
-from cvnotes.show.style import CAMERA, WORLD
+from cvnotes.show.style import CAMERA, ESTIMATED
 from cvnotes.targets import Chessboard
 
 _ASIDE = 12  # px from the way T to the words beside it
@@ -110,13 +117,13 @@ def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
 def _draw_T(panel: Panel, camera: Camera) -> None:
     """Draw the way from the camera to the board's origin, which is T in the camera's frame."""
     ends = on_sheet(np.stack([camera.centre, np.zeros(3)]))
-    panel.line(ends, WORLD, 1, dash=4)
+    draw_arrows(panel, ends[:1], ends[1:] - ends[:1])
     panel.mark(ends[0], "camera", 5)
     panel.grip("camera", "the camera, to carry it round the board", ends[0], 6)
     # Names stand beside the way, and that of the camera on the side that it comes from.
     way, aside = ends[1] - ends[0], _ASIDE * panel.pixel
     across = np.array([-way[1], way[0]]) / max(float(np.linalg.norm(way)), panel.pixel)
-    panel.text(ends.mean(axis=0) + aside * across, "T", WORLD, anchor="mm", size=12)
+    panel.text(ends.mean(axis=0) + aside * across, "T", ESTIMATED, anchor="mm", size=12)
     away = np.array([0, 1.5 * aside if way[1] <= 0 else -1.5 * aside])
     panel.text(ends[0] + away, "camera", CAMERA, anchor="mm", size=12)
 

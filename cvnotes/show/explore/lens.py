@@ -3,6 +3,7 @@
 from functools import cache
 
 import numpy as np
+from PIL import Image
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
@@ -14,7 +15,8 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
 _RADIUS = 1.0  # of the curve r L(r)
 _SIZE = (430, 360)
-_DETAIL = 200  # px of the photograph of the room for a length of 1 on the plane z = 1
+_DETAIL = 400  # px of the photograph of the room for a length of 1 on the plane z = 1
+_COARSE = 4  # px between which the way back through the lens, which takes long, is linear
 
 
 def lens_model(camera: Camera) -> Model:
@@ -73,12 +75,21 @@ def _bent_room(lens: Lens, x: float, y: float) -> Drawn:
     """Show the room through a lens, from −x to x and −y to y; white where it shows nothing."""
     room = _room()
     h, w = room.shape[:2]
-    columns, rows = np.linspace(-x, x, _SIZE[0] // 2), np.linspace(-y, y, _SIZE[1] // 2)
-    ideal = lens.undistort(np.stack(np.meshgrid(columns, rows), -1))
-    at = np.rint(_DETAIL * ideal + [(w - 1) / 2, (h - 1) / 2])
-    seen = ((at >= 0) & (at < [w, h])).all(axis=-1)  # NaN is not
-    u, v = np.where(seen[..., None], at, 0).astype(int).transpose(2, 0, 1)
-    return np.where(seen[..., None], room[v, u], np.uint8(255))
+    columns, rows = (
+        reach * ((2 * np.arange(n) + 1) / n - 1)
+        for reach, n in zip((x, y), np.array(_SIZE) // _COARSE, strict=True)
+    )
+    ideal = lens.undistort(np.stack(np.meshgrid(columns, rows), axis=-1))
+    middle = np.array([w - 1, h - 1]) / 2
+    u, v = (
+        np.asarray(Image.fromarray(side).resize(_SIZE, Image.Resampling.BILINEAR))
+        for side in np.moveaxis(_DETAIL * ideal + middle, -1, 0).astype(np.float32)
+    )
+    seen = (u >= 0) & (u < w - 1) & (v >= 0) & (v < h - 1)  # NaN is not
+    at = np.where(seen, np.rint(v) * w + np.rint(u), 0).astype(int)
+    picture: Drawn = room.reshape(-1, 3).take(at, axis=0)
+    picture[~seen] = 255
+    return picture
 
 
 def _draw_grid(panel: Panel, lens: Lens) -> None:

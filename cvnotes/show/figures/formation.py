@@ -47,6 +47,12 @@ def box_lines(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> Array:
     return np.asarray(ends[:, :1] + along * (ends[:, 1:] - ends[:, :1]))
 
 
+_STEPS = """1. G: M = R W + T
+2. ÷ z: x / z and y / z
+3. lens: times L(r), and a little aside
+4. A: to pixels"""
+
+
 def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -> Any:
     """Draw the chain from the world to the picture, its steps between panels; gives their axes.
 
@@ -65,7 +71,7 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     >>> camera = Camera(intrinsics(800, 800, 320, 240))
     >>> axes = draw_formation(camera, [[[0, 0, 5], [1, 0, 5]]], [1, 0, 5])
     >>> [ax.get_title() for ax in axes][-1]
-    'the picture'
+    '3. A → the picture'
     """
     lines, point = points(lines, "lines", 3), one_point(point, "point", 3)
     if lines.ndim != 3 or lines.size == 0:
@@ -74,8 +80,9 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     columns = 3 if bent else 2
     grid = panels(columns, 2, width=960, height=660 if bent else 840)
     axes = grid.ravel()[: 5 if bent else 4]
-    for ax in grid.ravel()[5:]:
+    for ax in grid.ravel()[5:]:  # a place that is free says what the steps are
         ax.axis("off")
+        ax.text(0.05, 0.5, _STEPS, transform=ax.transAxes, va="center", linespacing=2)
     W = np.concatenate([lines.reshape(-1, 3), point[None]])
     M = move(camera.G, W)
     _from_above(axes[0], camera, W, lines.shape, camera.G)
@@ -91,18 +98,16 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     states["the picture"] = camera.project(W)
     _trace(axes[-1], states["the picture"], lines.shape, LENS)
     _border(axes[-1], _corners(camera), "u → , v ↓ (px)")
-    for ax, (name, (*_, place)) in zip(axes, states.items(), strict=True):
-        ax.set_title(name, fontsize=FONT + 1)
+    leading = ["", *(f"{i}. {step} → " for i, step in enumerate(steps, start=1))]
+    for ax, step, (name, (*_, place)) in zip(axes, leading, states.items(), strict=True):
+        ax.set_title(step + name, fontsize=FONT + 1)
         ax.locator_params(nbins=4)
         ax.set_box_aspect(0.85)
         ax.set_aspect("equal", adjustable="datalim")
         digits = 0 if len(place) == 3 else 4 if np.abs(place).max() < 10 else 1
-        words = ", ".join(f"{number:.{digits}f}" for number in place)
+        words = ", ".join(f"{number:.{digits}f}" for number in place).replace("-", "−")
         y, va = (0.97, "top") if len(place) == 3 else (0.03, "bottom")  # a camera stands below
         ax.text(0.98, y, f"({words})", transform=ax.transAxes, ha="right", va=va, color=ESTIMATED)
-    for i, (step, ax) in enumerate(zip(steps, axes[1:], strict=True), start=1):
-        above = {"xycoords": "axes fraction", "textcoords": "offset points"}
-        ax.annotate(f"{i}. {step} →", (0, 1), (0, 22), **above, color=ESTIMATED, weight="bold")
     return axes
 
 
@@ -183,14 +188,14 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
 
     if not isinstance(cameras, Mapping) or not 1 <= len(cameras) <= len(_OWN):
         raise CvnotesError(f"cameras: expected one to {len(_OWN)} by name")
-    ax = drawn_on(ax, height=400)
+    ax = drawn_on(ax, height=340)
     for (name, camera), colour in zip(cameras.items(), _OWN, strict=False):
         alpha, u0 = is_camera(camera, "camera").A[[0, 0], [0, 2]]
         left, right = -0.5 - u0, camera.size[0] - 0.5 - u0
         ax.plot([alpha, alpha], [left, right], color=colour, lw=4)
         ax.add_patch(Polygon([[0, 0], [alpha, left], [alpha, right]], fc=colour, alpha=0.12))
         angle = np.degrees(np.arctan2(right, alpha) - np.arctan2(left, alpha))
-        beside(ax, f"{name}: {angle:.1f}°", (alpha, right), (8, -14), colour, fontsize=FONT)
+        beside(ax, f"{name}: {angle:.1f}°", (alpha, right), (0, -16), colour, ha="center")
     ax.axhline(0, color=MUTED, ls="-.", lw=0.8)
     ax.plot(0, 0, ">", color=CAMERA, ms=9)
     ax.set(xlabel="along the axis (px)", ylabel="to the right (px)", aspect="equal")
@@ -225,11 +230,16 @@ def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     start, *tips = xy_from_px(A, [[0, 0], [2 * step, 0], [0, 2 * step]])
     for tip, name in zip(tips, "uv", strict=True):
         arrow(ax, start, tip, LENS, 2.2, gap=2)
-        out = 1.12 * tip - 0.12 * start
-        ax.text(out[0], out[1], name, color=LENS, ha="center", va="center")
-    beside(ax, "θ", start, (14, -20), ESTIMATED)
+        out = 1.2 * tip - 0.2 * start
+        ax.text(out[0], out[1], name, color=LENS, ha="center", va="center", path_effects=halo())
+    first, last = (np.arctan2(*(tip - start)[::-1]) for tip in tips)
+    arc = np.linspace(first, last, 25)[:, None]
+    reach = 0.4 * float(np.linalg.norm(tips[0] - start))
+    ax.plot(*(start + reach * np.hstack([np.cos(arc), np.sin(arc)])).T, color=ESTIMATED, lw=1.8)
+    middle = start + 1.5 * reach * np.hstack([np.cos(arc), np.sin(arc)])[12]
+    ax.text(*middle, "θ", color=ESTIMATED, ha="center", va="center", path_effects=halo())
     ax.plot(0, 0, "^", color=CAMERA, ms=8)
-    beside(ax, "(u0, v0)", (0, 0), (6, 6), CAMERA)
+    beside(ax, "(u0, v0)", (0, 0), (8, 8), CAMERA, path_effects=halo())
     ax.set(xlabel="x / z", ylabel="y / z", aspect="equal")
     ax.invert_yaxis()
     return ax

@@ -184,7 +184,7 @@ def draw_angles(lenses: Mapping[str, AnyLens], *, ax: "Axes | None" = None) -> "
 
 
 def draw_displacement(lens: Lens, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw where the lens moves points of the plane z = 1, as arrows in true length.
+    """Draw where the lens moves points of the plane z = 1, as arrows three times as long.
 
     Examples
     --------
@@ -194,11 +194,11 @@ def draw_displacement(lens: Lens, *, ax: "Axes | None" = None) -> "Axes":
     thing(lens, "lens", Lens)
     extent = 0.5
     ax = drawn_on(ax, height=520)
-    x = np.linspace(-extent, extent, 13)
+    x = np.linspace(-extent, extent, 9)
     xy: Array = np.stack(np.meshgrid(x, x), -1).reshape(-1, 2)
-    moved = lens.distort(xy) - xy
+    moved = 3 * (lens.distort(xy) - xy)
     ax.quiver(*xy.T, *moved.T, color=LENS, angles="xy", scale_units="xy", scale=1, width=0.005)
-    _square(ax, 1.25 * extent)
+    _square(ax, 1.4 * extent)
     return ax
 
 

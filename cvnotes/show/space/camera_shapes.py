@@ -123,14 +123,8 @@ def sheet_shapes(edge: npt.ArrayLike, edges: npt.ArrayLike) -> Shapes:
             "a sheet lies between two segments: expected edge (2, 3) and edges (..., 2, 3), "
             f"got {shared.shape} and {others.shape}"
         )
-    # In pieces, so that a still can sort what is in front of each and what is behind it.
-    along, across = np.linspace(0, 1, 29)[:, None], np.linspace(0, 1, 9)[:, None, None]
-    near = shared[0] + along * (shared[1] - shared[0])
-    start, end = (others.reshape(-1, 2, 3)[:, i, None, None] for i in (0, 1))
-    grid = near + across * (start + along * (end - start) - near)
-    steps = ((0, 0), (0, 1), (1, 1), (1, 0))
-    corners = np.stack([grid[:, i : i + 8, j : j + 28] for i, j in steps], axis=-2)
-    corners = corners.reshape(-1, 4, 3)
+    near = np.broadcast_to(shared, others.reshape(-1, 2, 3).shape)
+    corners = np.concatenate([near, others.reshape(-1, 2, 3)[:, ::-1]], axis=1)
     return (Faces("sheets", corners, np.tile([*rgb(WORLD), 0.22], (len(corners), 1))),)
 
 

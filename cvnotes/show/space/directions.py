@@ -1,4 +1,4 @@
-"""Where a scene is seen from."""
+"""Where a scene is seen from, and the sheet that it is seen on."""
 
 import numpy as np
 
@@ -16,3 +16,17 @@ def towards(view: tuple[float, float]) -> Array:
     elevation, azimuth = np.deg2rad(view)
     level = np.cos(elevation)
     return np.array([level * np.cos(azimuth), -np.sin(elevation), level * np.sin(azimuth)])
+
+
+def sheet(view: tuple[float, float]) -> Array:
+    """Return what points to the right and what points down (2, 3), seen from there.
+
+    Examples
+    --------
+    >>> sheet((0, -90)).round() + 0.0
+    array([[1., 0., 0.],
+           [0., 1., 0.]])
+    """
+    azimuth = np.deg2rad(view[1])
+    right = np.array([-np.sin(azimuth), 0.0, np.cos(azimuth)])
+    return np.stack([right, np.cross(right, towards(view))])

@@ -84,7 +84,7 @@ def axes_shapes(
     colour, letters = colour_of(meaning), "xyz" if meaning == "camera" else "XYZ"
     tip, wing = 0.1 * length, 0.04 * length
     ends = []
-    for axis, side in zip(np.eye(3), np.roll(np.eye(3), 1, axis=0), strict=True):
+    for axis, side in zip(np.eye(3), np.eye(3)[[1, 0, 0]], strict=True):
         head = axis * length
         ends.append([0 * axis, head])
         ends += [[head, head - tip * axis + s * wing * side] for s in (-1, 1)]

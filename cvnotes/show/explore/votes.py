@@ -1,0 +1,128 @@
+"""Explore the votes: a small window over a photograph, and what its pixels say of a corner."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.pictures import course
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
+from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.style import ESTIMATED, rgb
+
+_HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
+_LEFT, _TOP, _SIDE = 324, 185, 57  # px, the part of the photograph that is shown
+_SIZE = (285, 285)
+_WEAK, _STRONG = 8.0, 60.0  # grey levels a pixel: of votes not drawn, and in full colour
+_FAR = 90.0  # grey levels a pixel, where the panel of gradients ends
+_K = 0.05  # of the Harris measure
+_NOTHING = 2000.0  # an eigenvalue that the noise of flat paper does not reach
+
+
+class Window(NamedTuple):
+    """Pixels (n, 2), their gradients (n, 2), and what the structure tensor says of them."""
+
+    p: Array
+    g: Array
+    eigenvalues: Array  # the smaller one first
+    axes: Array  # their directions, in columns
+    R: float
+    crossing: Array  # NaN, where the votes do not cross
+
+
+def window_at(gradients: Array, at: tuple[int, int]) -> Window:
+    """Return what the pixels around a place say, from the gradients (height, width, 2) of all."""
+    i, j = np.indices((2 * _HALF + 1, 2 * _HALF + 1)).reshape(2, -1) - _HALF
+    u, v = at[0] + j, at[1] + i
+    p, g = np.stack([u, v], axis=1).astype(float), gradients[v, u]
+    S = g.T @ g
+    eigenvalues, axes = np.linalg.eigh(S)
+    R = float(np.linalg.det(S) - _K * np.trace(S) ** 2)
+    crosses = R > 0 and eigenvalues[1] > _NOTHING
+    crossing = np.linalg.solve(S, g.T @ (g * p).sum(axis=1)) if crosses else np.full(2, np.nan)
+    return Window(p, g, eigenvalues, axes, R, crossing)
+
+
+def votes_model() -> Model:
+    """Make the model of a window over one of the course's photographs."""
+    photo, corners = course.photos()[6], course.exact_corners()[6]
+    gradients = np.stack(np.gradient(photo.astype(float))[::-1], axis=-1)
+    (u, v), far = (_LEFT + _HALF, _TOP + _HALF), _SIDE - 2 * _HALF - 1
+    settings = (
+        Setting("u", "u (px)", u, u + far, 1, 352, "column of the window's middle"),
+        Setting("v", "v (px)", v, v + far, 1, 213, "row of the window's middle"),
+    )
+    about = (
+        "A part of a photograph of the board with a window of 7 × 7 pixels; the lines along which "
+        "its pixels see an edge; and their gradients, with an ellipse as wide as they spread."
+    )
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        at = round(values["u"]), round(values["v"])
+        window = window_at(gradients, at)
+        votes = _votes(paper, photo, at, window, corners)
+        picture = paper.join((_photo(paper, photo, at), votes, _spread(paper, window)))
+        return Drawing(picture, _sentence(at, window))
+
+    drags = {"window": lambda _, at: {"u": float(at[0]), "v": float(at[1])}}
+    return Model("votes", about, settings, draw, drags)
+
+
+def _photo(paper: Paper, photo: Drawn, at: tuple[int, int]) -> Panel:
+    x, y = (_LEFT - 0.5, _LEFT + _SIDE - 0.5), (_TOP - 0.5, _TOP + _SIDE - 0.5)
+    panel = paper.panel(_SIZE, x, y, "part of a photograph, and the window")
+    panel.image(photo[_TOP : _TOP + _SIDE, _LEFT : _LEFT + _SIDE])
+    corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]
+    for colour, width in (("#FFFFFF", 5), (ESTIMATED, 2.4)):
+        panel.line(np.add(at, np.multiply(corners, _HALF + 0.5)), colour, width)
+    panel.grip("window", "the window, to be moved over the photograph", at, 5)
+    return panel
+
+
+def _votes(
+    paper: Paper, photo: Drawn, at: tuple[int, int], window: Window, corners: Array
+) -> Panel:
+    """Draw each pixel's line, the darker the longer its gradient, over the pale pixels."""
+    (u, v), half = at, _HALF + 0.5
+    panel = paper.panel(_SIZE, (u - half, u + half), (v - half, v + half), "the votes in it")
+    part = photo[v - _HALF : v + _HALF + 1, u - _HALF : u + _HALF + 1]
+    panel.image((255 - 0.4 * (255.0 - part)).astype(np.uint8), smooth=False)
+    length = np.linalg.norm(window.g, axis=1)
+    for i in np.argsort(length)[(length < _WEAK).sum() :]:
+        across = window.g[i, ::-1] * [-1, 1] / length[i]
+        ends = window.p[i] + 3 * _HALF * np.outer([-1, 1], across)
+        panel.line(ends, _on_paper(min(length[i] / _STRONG, 1)), 1.2)
+    panel.mark(corners, "ideal", 8)
+    panel.mark(window.crossing, "estimated", 8)
+    return panel
+
+
+def _on_paper(strength: float) -> str:
+    """Mix the colour of estimates with white."""
+    mixed = (255 * (1 - strength * (1 - np.array(rgb(ESTIMATED))))).astype(int)
+    return "#{:02X}{:02X}{:02X}".format(*mixed)
+
+
+def _spread(paper: Paper, window: Window) -> Panel:
+    """Draw the gradients as dots, and the ellipse whose half axes are √(λ/n)."""
+    panel = paper.panel(_SIZE, (-_FAR, _FAR), (-_FAR, _FAR), "gradients (grey levels a pixel)")
+    panel.ticks(x=(-60, -30, 0, 30, 60), y=(-60, -30, 0, 30, 60))
+    panel.mark(window.g, "lens", 3.5)
+    phi = np.linspace(0, 2 * np.pi, 61)
+    half = window.axes * np.sqrt(window.eigenvalues / len(window.g))
+    panel.line(np.stack([np.cos(phi), np.sin(phi)], axis=1) @ half.T, ESTIMATED, 2.2)
+    return panel
+
+
+def _sentence(at: tuple[int, int], window: Window) -> str:
+    small, large = window.eigenvalues
+    said = (
+        f"At ({at[0]}, {at[1]}) the eigenvalues are {small:.0f} and {large:.0f}, "
+        f"R = {window.R / 1e6 + 0.0:.0f} million: "
+    )
+    if large < _NOTHING:
+        return f"{said}both are small, this is flat paper."
+    if window.R < 0:
+        return f"{said}one is large, this is an edge."
+    u, v = window.crossing
+    return f"{said}both are large, this is a corner. The votes cross at ({u:.2f}, {v:.2f})."
