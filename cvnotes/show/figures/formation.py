@@ -237,7 +237,9 @@ def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     reach = 0.4 * float(np.linalg.norm(tips[0] - start))
     ax.plot(*(start + reach * np.hstack([np.cos(arc), np.sin(arc)])).T, color=ESTIMATED, lw=1.8)
     middle = start + 1.5 * reach * np.hstack([np.cos(arc), np.sin(arc)])[12]
-    ax.text(*middle, "θ", color=ESTIMATED, ha="center", va="center", path_effects=halo())
+    ax.text(
+        middle[0], middle[1], "θ", color=ESTIMATED, ha="center", va="center", path_effects=halo()
+    )
     ax.plot(0, 0, "^", color=CAMERA, ms=8)
     beside(ax, "(u0, v0)", (0, 0), (8, 8), CAMERA, path_effects=halo())
     ax.set(xlabel="x / z", ylabel="y / z", aspect="equal")
