@@ -390,14 +390,13 @@ def _simplest(found: Sequence[Candidate], lenses: Sequence[str]) -> Candidate:
 
 
 def _shaped(chosen: Candidate, found: Sequence[Candidate]) -> Candidate:
-    """Return the same lens with the board of least noise that predicts about as well.
+    """Return the same lens with the board of least noise.
 
     Of few views, those without one know a board far worse than all do, and left-out error does
     not tell. Corners that are free are held by what the views say of their size: what noise alone
     would move stays in its place, and leaves no less noise.
     """
-    same = [c for c in found if c.lens == chosen.lens and c.rms <= AS_WELL * chosen.rms]
-    best = min(same, key=lambda c: c.variance)
+    best = min((c for c in found if c.lens == chosen.lens), key=lambda c: c.variance)
     return best if AS_WELL**2 * best.variance < chosen.variance else chosen
 
 
