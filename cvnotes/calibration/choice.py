@@ -92,9 +92,12 @@ class Candidate:
     def predicts_as_well_as(self, other: "Candidate") -> bool:
         """Return whether the other is not surely better at views left out.
 
-        Pairs of errors of the same view tell more than their sums.
+        Pairs of errors of the same view tell more than their sums. What leaves no less noise than
+        its further parameters take by chance (Akaike) is no better: without one view of a few, the
+        others may not know a camera that all of them know.
         """
-        if self.rms <= _ROUNDING:
+        by_chance = (len(other.names) - len(self.names)) / (2 * self.n_points)
+        if self.rms <= _ROUNDING or self.variance < np.exp(by_chance) * other.variance:
             return True
         if self.rms > AS_WELL * other.rms:
             return False
@@ -240,8 +243,9 @@ def choose_model(
 
     A lens is kept against one with more coefficients while it predicts views left out within
     10 %, and the other is not better in enough of them (one-sided t of the paired differences,
-    95 %). Against a lens of another kind 10 % alone decide: nearly all programs know a polynomial.
-    So they do for a lens that reaches every pixel against one that folds within the picture.
+    95 %); or while the other leaves no less noise. Against a lens of another kind 10 % alone
+    decide: nearly all programs know a polynomial. So they do for a lens that reaches every pixel
+    against one that folds within the picture.
 
     Examples
     --------
