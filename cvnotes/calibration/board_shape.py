@@ -18,9 +18,10 @@ from cvnotes.calibration.refinement import (
     NormalEquations,
     Problem,
     State,
-    covariance,
     minimise,
+    motions,
     refuse_too_few,
+    shape_variances,
 )
 
 BOARDS = ("flat", "bent", "free")
@@ -31,6 +32,7 @@ _CLOSE = 1e-4  # tolerance while the size of a shape is sought
 # The board is about 1 large: 1/1000 is some 0.5 % of a square. Where its size is sought from, what
 # it is at least, and when it is found.
 _EXPECTED, _SMALLEST, _FOUND = 1e-3, 2e-6, 0.05
+_LEAST = 1e-3  # px per unit; holds what exact corners do not show, as of a corner in one view only
 _ROUNDS = 8
 
 
@@ -104,10 +106,8 @@ def deformations(kind: str, W: Array) -> Array:
     bends = np.concatenate(_bends(W))
     if kind == "bent":
         return bends
-    e = np.eye(3)
-    known = [np.broadcast_to(axis, W.shape) for axis in e]
-    known += [np.cross(axis, W) for axis in e] + [W, *bends]
-    Q: Array = np.linalg.qr(np.reshape(known, (len(known), -1)).T, mode="complete").Q
+    known = np.concatenate([motions(W), bends])
+    Q: Array = np.linalg.qr(known.reshape(len(known), -1).T, mode="complete").Q
     return np.concatenate([bends, Q[:, len(known) :].T.reshape(-1, *W.shape)])
 
 
@@ -140,7 +140,7 @@ def with_shape(
     Raises
     ------
     DegenerateError
-        There are too few views, or a corner was seen in one of them only.
+        There are too few views, or corners in them.
     """
     n_views = len(data)
     if n_views < _AT_LEAST:
@@ -149,13 +149,6 @@ def with_shape(
             'take the board for flat (board="flat")'
         )
     W, m, seen = data.on_one_board()
-    once = seen.sum(0) < 2
-    if kind == "free" and once.any():
-        x, y, _ = (W[once][0] * data.scale + data.centre).round(6) + 0.0
-        raise DegenerateError(
-            f"the corner at ({x:g}, {y:g}) of the board was seen in one view only, so its own "
-            'place is not known: leave it out, or let the board bend smoothly (board="bent")'
-        )
     shape = deformations(kind, W)
     free = replace(
         problem,
@@ -163,6 +156,7 @@ def with_shape(
         m=m,
         seen=None if seen.all() else seen,
         shape=shape,
+        bends=len(np.concatenate(_bends(W))),
         hold=hold,
     )
     unknowns = len(free.names) + len(shape) + 6 * n_views
@@ -179,7 +173,7 @@ def shaped(
 ) -> tuple[Problem, Minimum[State, NormalEquations]]:
     """Go on from the minimum of a flat board to that of its shape.
 
-    `hold` is where the search for what holds it back begins.
+    `hold` is what holds it back, if that is known already.
 
     Notes
     -----
@@ -193,7 +187,7 @@ def shaped(
     ----------
     .. [1] D. J. C. MacKay, Bayesian interpolation, Neural Computation 4 (1992) 415-447.
     """
-    free = with_shape(problem, data, kind)
+    free, known = with_shape(problem, data, kind), hold
     q, groups = len(problem.names), _groups(free)
     if hold is None:
         hold = np.full(free.n_shape, np.sqrt(flat.cost / max(problem.freedom, 1)) / _EXPECTED)
@@ -201,8 +195,10 @@ def shaped(
     for _ in range(_ROUNDS):
         free = replace(free, hold=hold)
         best = minimise(free, x, tolerance=_CLOSE)
-        x, determined = best.x, 1 - hold**2 * np.diag(covariance(best.system))[q:]
+        x, determined = best.x, 1 - hold**2 * shape_variances(free, best.system)[0]
         before, s, free = hold, best.x.shared[q:], replace(free, determined=float(determined.sum()))
+        if known is not None:
+            break
         noise = (best.cost - float(hold**2 @ s**2)) / free.freedom
         hold = np.concatenate([_held(noise, s[part], determined[part]) for part in groups])
         if (np.abs(hold - before) < _FOUND * before).all():
@@ -219,17 +215,16 @@ def _groups(free: Problem) -> list[slice]:
 def _held(noise: float, s: Array, determined: Array) -> Array:
     """Return h = σ/τ for coefficients that the views determine to these parts."""
     size = float(s @ s) / max(float(determined.sum()), 1e-3)
-    return np.full(len(s), np.sqrt(noise / max(size, _SMALLEST**2)))
+    return np.full(len(s), max(np.sqrt(noise / max(size, _SMALLEST**2)), _LEAST))
 
 
 def shape_found(
     free: Problem, data: Correspondences, kind: str, best: Minimum[State, NormalEquations]
 ) -> tuple[BoardShape, Correspondences]:
     """Return the shape in the units of the board as it was given, and the data on such a board."""
-    W, q = free.board(best.x.shared), len(free.names)
-    C = best.cost / free.freedom * covariance(best.system)[q:, q:]
-    ways = np.zeros((len(C), 0)) if free.shape is None else free.shape.reshape(len(C), -1)
-    std = np.sqrt(np.vecdot(ways.T, ways.T @ C)).reshape(W.shape)
+    W = free.board(best.x.shared)
+    variances = shape_variances(free, best.system)[1]
+    std = np.sqrt(best.cost / free.freedom * variances)
     given, points = (w * data.scale + data.centre for w in (free.W, W))
     shape = BoardShape(kind, given, points, std * data.scale, free.hold)
     return shape, data.on_board(W)

@@ -1,12 +1,17 @@
-"""Which lens do the views speak for, and is the board flat? Views that were left out decide.
+"""Which lens do the views speak for? Views that were left out decide.
 
-More coefficients always fit the corners better from which they were estimated, and corners that
-may go anywhere fit better than those of a flat board. What counts is how well camera and board
-predict views that they have not seen (cross-validation). Views are few, so the choice is uncertain
-too: the error bars contain every model that predicts as well.
+More coefficients always fit the corners better from which they were estimated. What counts is how
+well a camera predicts views that it has not seen (cross-validation). Views are few, so the choice
+is uncertain too: the error bars contain every lens that predicts as well.
+
+Between boards nothing is chosen: one that is free contains a flat and a bent one, and is held near
+them as far as the views say. Of few views left-out error does not tell boards apart, as those
+without one know a board far worse than all do; and whatever of a shape is not in the model, is in
+the camera.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,7 +25,7 @@ from cvnotes.base import (
     image_size,
     student,
 )
-from cvnotes.calibration.board_shape import BOARDS, is_board, shaped
+from cvnotes.calibration.board_shape import is_board, shaped
 from cvnotes.calibration.correspondences import Correspondences, PointSets
 from cvnotes.calibration.jackknife import Influence, undetermined
 from cvnotes.calibration.refinement import NormalEquations, Problem, State
@@ -87,9 +92,12 @@ class Candidate:
     def predicts_as_well_as(self, other: "Candidate") -> bool:
         """Return whether the other is not surely better at views left out.
 
-        Pairs of errors of the same view tell more than their sums.
+        Pairs of errors of the same view tell more than their sums. What leaves no less noise than
+        its further parameters take by chance (Akaike) is no better: without one view of a few, the
+        others may not know a camera that all of them know.
         """
-        if self.rms <= _ROUNDING:
+        by_chance = (len(other.names) - len(self.names)) / (2 * self.n_points)
+        if self.rms <= _ROUNDING or self.variance < np.exp(by_chance) * other.variance:
             return True
         if self.rms > AS_WELL * other.rms:
             return False
@@ -99,7 +107,7 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """The lens and the board that views left out speak for, and what else they allow.
+    """The lens that views left out speak for, with its board, and what else they allow.
 
     Attributes
     ----------
@@ -129,8 +137,8 @@ class Choice:
 
     @property
     def least(self) -> float:
-        """Least RMS over views left out, in pixels."""
-        return min(c.rms for c in self.candidates)
+        """Least RMS over views left out of any lens with the same board, in pixels."""
+        return min(c.rms for c in self.candidates if c.board == self.board)
 
     @property
     def by_lens(self) -> Mapping[str, float]:
@@ -145,10 +153,9 @@ class Choice:
 
     @property
     def close(self) -> tuple[Candidate, ...]:
-        """The models not to be told apart: the chosen one, and those as good as the best."""
-        return tuple(
-            c for c in self.candidates if c is self.chosen or c.rms <= ALIKE_LEFT_OUT * self.least
-        )
+        """The models not to be told apart: the chosen one, and lenses as good as the best."""
+        same = [c for c in self.candidates if c.board == self.board]
+        return tuple(c for c in same if c is self.chosen or c.rms <= ALIKE_LEFT_OUT * self.least)
 
     @property
     def covariance(self) -> Array:
@@ -204,7 +211,7 @@ def choose_model(
     size: tuple[int, int],
     *,
     lenses: Sequence[str] = CANDIDATES,
-    boards: Sequence[str] = BOARDS,
+    boards: Sequence[str] = ("flat", "free"),
     skew: bool = False,
 ) -> Choice:
     """Choose a lens and a board by how well they predict views that were left out.
@@ -229,16 +236,16 @@ def choose_model(
 
     Notes
     -----
-    First the lenses are compared on the simplest board, then boards with the lens chosen, and with
-    the fullest lens of each other kind, then the lenses again on that board, until both stay or
-    come back.
+    All lenses are tried on the first board; those that do not predict views left out twice as badly
+    as the best are compared on the last one. It contains the boards before it, and is held near
+    them as far as the views say (see `shaped`), so between boards there is nothing to choose: of
+    the first ones it is only told how they predict, where no other is determined they count.
 
-    A model is kept against one with more coefficients while it predicts views left out within
+    A lens is kept against one with more coefficients while it predicts views left out within
     10 %, and the other is not better in enough of them (one-sided t of the paired differences,
-    95 %). Against a lens of another kind 10 % alone decide: nearly all programs know a polynomial.
-    So they do for a lens that reaches every pixel against one that folds within the picture. A
-    board that predicts within 10 % is taken where its residuals leave 10 % less noise: with few
-    views left-out error does not tell boards apart, and what there is of a shape is then lost.
+    95 %); or while the other leaves no less noise. Against a lens of another kind 10 % alone
+    decide: nearly all programs know a polynomial. So they do for a lens that reaches every pixel
+    against one that folds within the picture.
 
     Examples
     --------
@@ -251,17 +258,14 @@ def choose_model(
     size, data = image_size(size), Correspondences.of(board_points, image_points)
     boards = [is_board(board) for board in boards if board == "flat" or len(data) >= _ENOUGH]
     tried = _Tried(data, size, skew, lenses)
-    board, before = boards[0], set[str]()
-    while board not in before:  # two boards may each have a lens that speaks for the other
-        before.add(board)
-        of_lenses = tried.choice([(lens, board) for lens in lenses])
-        lenses = [c.lens for c in of_lenses.candidates if c.rms <= HOPELESS * of_lenses.least]
-        # (a lens of another kind may be hidden by a board that is not as it is taken to be)
-        fullest = {LENSES[lens][0]: (lens, boards[-1]) for lens in lenses}
-        fullest.pop(LENSES[of_lenses.lens][0])
-        of_boards = [(of_lenses.lens, board) for board in boards]
-        board = tried.choice([*of_boards, *fullest.values()]).board
-    return tried.choice(tried.known, new=False)
+    first = tried.choice(lenses, boards[0])
+    if first.rms <= _ROUNDING:  # exact corners of a board that is as it was given
+        return first
+    lenses = [c.lens for c in first.candidates if c.rms <= HOPELESS * first.least]
+    for board in boards[:0:-1]:
+        with suppress(ConvergenceError):  # these views do not determine so much
+            return tried.choice(lenses, board)
+    return first
 
 
 @dataclass(eq=False)
@@ -275,29 +279,24 @@ class _Tried:
     flat: dict[str, tuple[Problem, Minimum[State, NormalEquations]] | None] = field(
         default_factory=dict
     )
-    known: dict[tuple[str, str], Candidate | None] = field(default_factory=dict)
+    known: list[Candidate] = field(default_factory=list)
 
-    def choice(self, models: Iterable[tuple[str, str]], *, new: bool = True) -> Choice:
-        """Choose among models; those that are not known yet are tried, if new ones may be.
+    def choice(self, lenses: Sequence[str], board: str) -> Choice:
+        """Choose among lenses with a board.
 
         Wide lenses are first: few starts do for them, and then for whatever they beat by far.
         """
-        models = list(models)
-        unknown = [model for model in models if model not in self.known] if new else []
-        self.known |= dict.fromkeys(unknown)  # in the order in which they are told
-        for model in sorted(unknown, key=lambda model: not LENSES[model[0]][0].wide):
-            self.known[model] = self._candidate(*model)
-        found = [c for model in models if (c := self.known.get(model))]
-        if not found:
+        wide_first = sorted(lenses, key=lambda lens: not LENSES[lens][0].wide)
+        tried = {lens: self._candidate(lens, board) for lens in wide_first}
+        found = [c for lens in lenses if (c := tried[lens])]
+        if not any(c.determined for c in found) and (self.known or not found):
             raise ConvergenceError(
                 "no lens leads to a camera: the corners are probably paired with the wrong points "
                 "of the board, or the views do not determine the camera"
             )
         found = [c for c in found if c.determined] or found
-        chosen = _simplest(found, self.lenses)
-        # (a lens that folds may show what the board is, on which a simpler one then does not)
-        fit = [c for c in found if new or c.camera.is_invertible >= chosen.camera.is_invertible]
-        return Choice(_shaped(chosen, fit), tuple(found))
+        self.known += found
+        return Choice(_simplest(found, self.lenses), tuple(self.known))
 
     def _candidate(self, lens: str, board: str) -> Candidate | None:
         try:
@@ -344,7 +343,7 @@ def _judged(
     if len(problem.m) >= _ENOUGH:  # else Akaike's final prediction error stays
         try:
             influence = Influence.of(problem, best.x)
-            left_out = influence.costs_left_out(fitted)
+            left_out = fitted + influence.more
             if left_out.sum() <= _UNDETERMINED**2 * best.cost:
                 noise = variance * np.diag(covariance_by_noise(best.system))[:q]
                 costs, determined = left_out, True
@@ -389,21 +388,9 @@ def _simplest(found: Sequence[Candidate], lenses: Sequence[str]) -> Candidate:
     raise AssertionError("one of the kinds has the least error")
 
 
-def _shaped(chosen: Candidate, found: Sequence[Candidate]) -> Candidate:
-    """Return the same lens with the board of least noise that predicts about as well.
-
-    Of few views, those without one know a board far worse than all do, and left-out error does
-    not tell. Corners that are free are held by what the views say of their size: what noise alone
-    would move stays in its place, and leaves no less noise.
-    """
-    same = [c for c in found if c.lens == chosen.lens and c.rms <= AS_WELL * chosen.rms]
-    best = min(same, key=lambda c: c.variance)
-    return best if AS_WELL**2 * best.variance < chosen.variance else chosen
-
-
 def _by_kind(found: Sequence[Candidate], lenses: Sequence[str]) -> list[list[Candidate]]:
-    """Sort candidates by lens and board, the simplest first, and put those of a kind together."""
-    ranked = sorted(found, key=lambda c: (lenses.index(c.lens), BOARDS.index(c.board)))
+    """Sort candidates, the simplest lens first, and put those of a kind together."""
+    ranked = sorted(found, key=lambda c: lenses.index(c.lens))
     kinds: dict[type, list[Candidate]] = {}
     for c in ranked:
         kinds.setdefault(LENSES[c.lens][0], []).append(c)

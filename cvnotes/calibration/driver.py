@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from cvnotes.base import DegenerateError, image_size
-from cvnotes.calibration.board_shape import BOARDS, is_board, shape_found, shaped
+from cvnotes.calibration.board_shape import is_board, shape_found, shaped
 from cvnotes.calibration.choice import CANDIDATES, choose_model
 from cvnotes.calibration.correspondences import Correspondences, PointSets
 from cvnotes.calibration.refinement import Problem, refuse_too_few
@@ -44,9 +44,9 @@ def calibrate(
         decide (see `choose_model`).
     board : {"flat", "bent", "free", "auto"}
         Whether the board is as it was given, or bends smoothly (heights of degree 4), or has every
-        corner where the views say. With "auto" views that are left out decide (see
-        `choose_model`). A board that is not flat takes 4 views; its points are in ``shape`` of
-        the result.
+        corner where the views say, as far from a smooth bend as they say. "auto" is "free" where
+        they determine that, else "flat". A board that is not flat takes 4 views; its points are in
+        ``shape`` of the result.
     skew : bool
         Estimate the skew too; three views are then needed, else two.
     homography : callable
@@ -110,7 +110,7 @@ def calibrate(
     choice = None
     if "auto" in (lens, is_board(board, "auto")):
         lenses = CANDIDATES if lens == "auto" else [lens]
-        boards = BOARDS if board == "auto" else [board]
+        boards = ("flat", "free") if board == "auto" else [board]
         choice = choose_model(
             board_points, image_points, size, lenses=lenses, boards=boards, skew=skew
         )

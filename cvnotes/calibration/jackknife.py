@@ -16,7 +16,7 @@ from cvnotes.base import Array, DegenerateError, chunks, solved
 from cvnotes.calibration.board_shape import BoardShape, with_shape
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.jacobian import jacobian
-from cvnotes.calibration.refinement import RIDGE, Problem, State
+from cvnotes.calibration.refinement import RIDGE, Problem, State, covariance, solve_by_schur
 from cvnotes.camera import Camera
 
 _NUMBERS = 100_000  # in an array at a time: they then stay in the cache
@@ -81,31 +81,41 @@ class Influence:
 
     Attributes
     ----------
-    S, g : ndarray, shape (n_views, q, q), (n_views, q)
-        Normal matrix and gradient of each view, its pose eliminated.
+    known : ndarray, shape (q, q)
+        Normal matrix of all views together, their poses eliminated.
     without : ndarray, shape (n_views, q)
         By how much the parameters change where a view is left out.
+    more : ndarray, shape (n_views,)
+        By how much the cost of this view then grows, its pose being fitted again.
     """
 
-    S: Array
-    g: Array
+    known: Array
     without: Array
+    more: Array
 
     @staticmethod
     def of(problem: Problem, x: State) -> "Influence":
-        """Work out the influence of each view at a minimum."""
-        S, g = eliminated_by_view(problem, x)
+        """Work out the influence of each view at a minimum.
+
+        Where the corners of a free board are eliminated first, on the camera alone.
+        """
         if problem.model.cancelling:  # whose valley would be walked along without an end
             problem = replace(problem, ridge=RIDGE)
-        return Influence.between(S, g, problem.held)
+        if problem.corners_first:
+            return _one_by_one(problem, x)
+        return Influence.between(*eliminated_by_view(problem, x), problem.held)
 
     @staticmethod
     def between(S: Array, g: Array, held: Array) -> "Influence":
         """Work out the influence of views with these normal matrices and gradients.
 
-        `held` (q,), on the diagonal of all together, belongs to no view.
+        S (n_views, q, q) and g (n_views, q) of each view, its pose eliminated: the others have
+        their minimum at δ_i, where it costs 2 g_iᵀ δ_i + δ_iᵀ S_i δ_i more. `held` (q,), on the
+        diagonal of all together, belongs to no view.
         """
-        return Influence(S, g, _without_each(S, g, held))
+        d = _without_each(S, g, held)
+        S_d = (S @ d[..., None])[..., 0]  # np.matvec is younger than the NumPy of a browser
+        return Influence(S.sum(0), d, 2 * np.vecdot(g, d) + np.vecdot(d, S_d))
 
     @property
     def covariance(self) -> Array:
@@ -120,18 +130,26 @@ class Influence:
         Those in which the cameras without one view are scattered, the most first, in units of what
         all views together know.
         """
-        d = (self.without - self.without.mean(0)) @ np.linalg.cholesky(self.S.sum(0))
+        d = (self.without - self.without.mean(0)) @ np.linalg.cholesky(self.known)
         return np.asarray(np.linalg.svd(d, full_matrices=False)[0].T > 0)
 
-    def costs_left_out(self, costs: Array) -> Array:
-        """Return what is left of each view (n_views,) that is predicted by the others.
 
-        A view costs c_i at the minimum of all, and c_i + 2 g_iᵀ δ_i + δ_iᵀ S_i δ_i where the
-        others alone have their minimum, its pose being fitted again.
-        """
-        d = self.without
-        S_d = (self.S @ d[..., None])[..., 0]  # np.matvec is younger than the NumPy of a browser
-        return np.asarray(costs + 2 * np.vecdot(self.g, d) + np.vecdot(d, S_d))
+def _one_by_one(problem: Problem, x: State) -> Influence:
+    """Take a step without each view in turn, and see what that view costs where it leads."""
+    q, n_views = len(problem.names), len(problem.m)
+    without, more = np.empty((n_views, q)), np.empty(n_views)
+    for i in range(n_views):
+        others = np.delete(np.arange(n_views), i)
+        _, system = problem.some(others).linearise(x.some(others), corners_first=True)
+        (step, _), _ = solve_by_schur(system, 0.0)
+        own = slice(i, i + 1)
+        J, r = jacobian(problem.some(own), x.some(own))
+        J, r = J.reshape(r.size, -1), r.ravel()
+        moved = r + J[:, : len(step)] @ step
+        of_pose = np.linalg.qr(J[:, len(step) :]).Q.T @ moved
+        without[i], more[i] = step[:q], moved @ moved - of_pose @ of_pose - r @ r
+    _, system = problem.linearise(x, corners_first=True)
+    return Influence(solved(np.linalg.inv, covariance(system), why=_WHY), without, more)
 
 
 def undetermined(q: int) -> Array:

@@ -4,8 +4,8 @@ In this order: the parameters; the Jacobian; the normal equations, whose matrix 
 arrow, as each view meets the others only in the camera that they share; Levenberg–Marquardt.
 """
 
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,8 +70,10 @@ class Problem:
     shape : ndarray, shape (s, n, 3), or None
         Ways in which the board may differ from W, which then is one (n, 3) for all views: their
         coefficients are estimated with the camera. See `board_shape`.
+    bends : int
+        How many of these ways, the first ones, are bends; the others are each corner by itself.
     hold : ndarray, shape (s,)
-        Pixels that each coefficient of the shape adds, per unit.
+        Pixels that each coefficient of the shape adds, per unit; of all that are no bends alike.
     determined : float, optional
         How many of these coefficients the views determine, and not `hold`; else all.
     """
@@ -85,6 +87,7 @@ class Problem:
     model: type[AnyLens] = Lens
     ridge: float = 0.0
     shape: Array | None = None
+    bends: int = 0
     hold: Array | None = None
     determined: float | None = None
     names: tuple[str, ...] = field(init=False)
@@ -165,8 +168,19 @@ class Problem:
             return self.W
         return self.W + np.tensordot(shared[len(self.names) :], self.shape, 1)
 
-    def linearise(self, x: State) -> "tuple[float, NormalEquations]":
-        """Return the cost and the normal equations at x."""
+    @property
+    def corners_first(self) -> bool:
+        """Whether to eliminate the corners of a free board is less work than to eliminate poses."""
+        return self.n_shape > 3 * (self.bends + 6 * len(self.m))
+
+    def linearise(
+        self, x: State, *, corners_first: bool = False
+    ) -> "tuple[float, NormalEquations]":
+        """Return the cost and the normal equations at x.
+
+        With the shape's coefficients beside the parameters of the camera; or with the corners kept
+        by themselves, where these are free.
+        """
         q, n_views = len(self.names), len(self.m)
         normal, costs = np.empty((n_views, q + 7, q + 6)), np.empty(n_views)
         corners = None if self.shape is None else CornerSums(self.shape, q)
@@ -188,15 +202,19 @@ class Problem:
             normal[:, -1, q:],
             costs,
         )
-        cost = float(costs.sum())
-        if corners:
+        cost, held = float(costs.sum()), self.held
+        if corners and not corners_first:
             equations = corners.joined(equations)
         if self.ridge or self.shape is not None:
-            held = self.held
-            equations.g_shared[:] += held * x.shared
+            known = len(equations.g_shared)
+            equations.g_shared[:] += (held * x.shared)[:known]
             diagonal = np.einsum("ii->i", equations.shared)
-            diagonal += held
+            diagonal += held[:known]
             cost += float(held @ x.shared**2)
+        if corners and corners_first:
+            equations = corners.first(
+                equations, motions(self.W), x.shared[q:], held[q:], self.bends
+            )
         return cost, equations
 
     def residuals(self, camera: Camera, x: State) -> Array:
@@ -338,6 +356,60 @@ class CornerSums:
             g_shared=np.concatenate([equations.g_shared, np.ravel(self.gradient) @ ways]),
         )
 
+    def first(
+        self, equations: "NormalEquations", fixed: Array, s: Array, held: Array, bends: int
+    ) -> "CornersFirst":
+        """Make an arrow whose blocks are the corners; camera, bends and poses are what they share.
+
+        The offset of a corner beside the bends may have no part of the bends, nor of what is
+        `fixed` (7, n, 3): each such condition has a multiplier, after the bends. `s` are the
+        coefficients of the shape, held back by `held`.
+        """
+        by_pose = np.concatenate(self.with_poses)
+        n, own = len(self.shape[0]), np.asarray(self.own)
+        bent, free = self.shape[:bends], self.shape[bends:]
+        moved = np.einsum("nij,snj->sni", own, bent)
+        conditions = np.concatenate([bent, fixed])
+        border = np.concatenate(
+            [self.with_camera, moved, conditions, by_pose.reshape(-1, n, 3)]
+        ).transpose(1, 2, 0)
+        # camera, bends, multipliers, poses: the first and the last are known already
+        a, b = self.q + bends, self.q + bends + len(conditions)
+        shared = np.zeros((border.shape[-1],) * 2)
+        shared[: self.q, : self.q] = equations.shared
+        shared[self.q : a] = np.tensordot(bent, border, 2)
+        shared[self.q : a, self.q : a] += np.diag(held[:bends])
+        shared[self.q : a, a:b] = 0
+        for i, (block, with_camera) in enumerate(
+            zip(equations.poses, equations.border, strict=True)
+        ):
+            at = slice(b + 6 * i, b + 6 * i + 6)
+            shared[at, at], shared[at, : self.q] = block, with_camera
+            shared[: self.q, at] = with_camera.T
+        shared[:, self.q : a] = shared[self.q : a].T
+        g_bends = np.tensordot(bent, self.gradient, 2) + held[:bends] * s[:bends]
+        g = [equations.g_shared, g_bends, np.zeros(len(conditions)), equations.g_poses.ravel()]
+        arrow = NormalEquations(
+            shared,
+            border,
+            own + held[-1] * np.eye(3),
+            np.concatenate(g),
+            self.gradient + held[-1] * np.tensordot(s[bends:], free, 1),
+            equations.view_costs,
+        )
+        blocks = {each.name: getattr(equations, each.name) for each in fields(equations)}
+        return CornersFirst(**blocks, arrow=arrow, shape=self.shape, bends=bends)
+
+
+def motions(W: Array) -> Array:
+    """Return the small motions of a board W (n, 3), and its growth, which no view shows: (7, n, 3).
+
+    Shifts, turns, and the scale.
+    """
+    e = np.eye(3)
+    shifts = np.broadcast_to(e[:, None], (3, *W.shape))
+    return np.concatenate([shifts, np.cross(e[:, None], W), W[None]])
+
 
 _UNDETERMINED = (
     "the normal equations are singular: these views do not determine every parameter; "
@@ -376,11 +448,56 @@ class NormalEquations:
         return inner, np.asarray(total)
 
 
+@dataclass(frozen=True, eq=False)
+class CornersFirst(NormalEquations):
+    """The same of a board whose corners are free, each of which is a block of an arrow.
+
+    A board of 450 corners has 1,343 coefficients, but camera and poses of 13 views are 90 numbers.
+    """
+
+    arrow: NormalEquations
+    shape: Array  # (s, n, 3)
+    bends: int
+
+    @property
+    def _of_bends(self) -> slice:
+        return slice(len(self.shared), len(self.shared) + self.bends)
+
+    def step(self, step: tuple[Array, Array], gain: float) -> tuple[tuple[Array, Array], float]:
+        """Return the step (shared, poses) that a step of the arrow stands for, and its gain."""
+        shared, corners = step
+        free = np.tensordot(self.shape[self.bends :], corners, 2)
+        of_poses = shared[-self.poses[..., 0].size :].reshape(-1, 6)
+        return (np.concatenate([shared[: self._of_bends.stop], free]), of_poses), gain
+
+    @cached_property
+    def inverse(self) -> Array:
+        """The part of the inverse that belongs to camera, bends, multipliers and poses."""
+        S = self.arrow.shared - self.arrow.eliminated[1][:, :-1]
+        scale = np.sqrt(np.abs(np.diagonal(S)))  # (of multipliers it is negative)
+        inverse = solved(np.linalg.inv, S / np.outer(scale, scale), why=_UNDETERMINED)
+        return np.asarray((inverse + inverse.T) / 2 / np.outer(scale, scale))
+
+    @cached_property
+    def of_shape(self) -> tuple[Array, Array]:
+        """What `shape_variances` returns."""
+        T, at = -self.arrow.eliminated[0][..., :-1], self._of_bends
+        alone = np.diagonal(np.linalg.inv(self.arrow.poses), axis1=1, axis2=2)
+        free = alone + np.vecdot(T @ self.inverse, T)
+        T[..., at] += self.shape[: self.bends].transpose(1, 2, 0)
+        corners = alone + np.vecdot(T @ self.inverse, T)
+        n_free = len(self.shape) - self.bends
+        mean = np.full(n_free, free.sum() / n_free)
+        return np.concatenate([np.diagonal(self.inverse)[at], mean]), corners
+
+
 def solve_by_schur(system: NormalEquations, damping: float) -> tuple[tuple[Array, Array], float]:
     """Solve the damped normal equations, the poses eliminated by the Schur complement S.
 
     Gives the step (shared, poses) and the predicted gain.
     """
+    if isinstance(system, CornersFirst):
+        return system.step(*solve_by_schur(system.arrow, damping))
     system = system.damped(damping)
     inner, from_poses = system.eliminated
     S, g = system.shared - from_poses[:, :-1], from_poses[:, -1] - system.g_shared
@@ -391,7 +508,12 @@ def solve_by_schur(system: NormalEquations, damping: float) -> tuple[tuple[Array
 
 
 def covariance(system: NormalEquations) -> Array:
-    """Invert the normal matrix for the shared parameters, (q, q), for noise of 1 px."""
+    """Invert the normal matrix for the shared parameters, (q, q), for noise of 1 px.
+
+    Of a board whose corners are kept by themselves, for those of the camera alone.
+    """
+    if isinstance(system, CornersFirst):
+        return system.inverse[: len(system.shared), : len(system.shared)]
     S = system.shared - system.eliminated[1][:, :-1]
     diagonal = np.diagonal(S)
     if not (diagonal > 0).all():
@@ -410,9 +532,27 @@ def pose_covariance(system: NormalEquations, shared: Array) -> Array:
 
     The uncertainty of the shared parameters, from `covariance`, is included.
     """
+    if isinstance(system, CornersFirst):
+        n = 6 * len(system.poses)
+        blocks = system.inverse[-n:, -n:].reshape(-1, 6, n // 6, 6)
+        return np.moveaxis(np.diagonal(blocks, axis1=0, axis2=2), -1, 0)
     inner = system.eliminated[0][..., :-1]
     alone = solved(np.linalg.inv, system.poses, why=_UNDETERMINED)
     return np.asarray(alone + inner @ shared @ inner.mT)
+
+
+def shape_variances(problem: Problem, system: NormalEquations) -> tuple[Array, Array]:
+    """Variances of the coefficients (s,) of a board's shape, and of its corners (n, 3).
+
+    For noise of 1 px; of free corners each coefficient has the mean of all.
+    """
+    if isinstance(system, CornersFirst):
+        return system.of_shape
+    if problem.shape is None:
+        return np.zeros(0), np.zeros_like(problem.W)
+    first, ways = len(problem.names), problem.shape.reshape(problem.n_shape, -1)
+    C = covariance(system)[first:, first:]
+    return np.diagonal(C), np.vecdot(ways.T, ways.T @ C).reshape(problem.W.shape)
 
 
 def _damp(N: Array, damping: float) -> Array:
@@ -478,7 +618,7 @@ def _descend(
 ) -> Minimum[State, NormalEquations]:
     return levenberg_marquardt(
         start,
-        problem.linearise,
+        partial(problem.linearise, corners_first=problem.corners_first),
         solve_by_schur,
         take_step,
         follow=poses_follow,

@@ -60,7 +60,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         '"k1 k2 p1 p2", "k1 k2 p1 p2 k3", rational, fisheye')  # fmt: skip
     add("--board-shape", choices=("flat", "bent", "free", "auto"), default="auto",
         help="the board as it was drawn, bent smoothly, or every corner where the photographs say; "
-        "auto (default): views left out decide")  # fmt: skip
+        "auto (default): the last, of four or more")  # fmt: skip
     add("--leave-out", nargs="+", default=[], metavar="PHOTO", action="extend",
         help="photographs not to use, by their names")  # fmt: skip
     add("--keep-all", action="store_true", help="use photographs that do not fit the others too; "

@@ -82,7 +82,8 @@ def calibrate_photographs(
         counted in the photographs.
     lens, board_shape : str
         As for `calibrate`, where the latter is `board`. With "auto", which is the default,
-        cross-validation decides; of fewer than four views "k1 k2 p1 p2" and "flat" are estimated.
+        cross-validation decides on the lens; of fewer than four views "k1 k2 p1 p2" and "flat" are
+        estimated.
     skew : bool
         Estimate the skew too.
     leave_out : iterable of paths
@@ -113,12 +114,12 @@ def calibrate_photographs(
     2. The corners are counted, if need be: as most photographs show.
     3. The board is detected in each photograph; corners that cannot be seen are NaN.
     4. Copies of a picture are out.
-    5. Lens and shape of the board are chosen by cross-validation. Single corners are out that miss
-       their places by half a pixel, five times the median and twice the next of their view; then
-       views with an RMS of more than 0.5 px and four times the median, and those that miss more
-       than others and that a mirror explains better. Each time all begins anew, three times at
-       most, as long as two thirds of the photographs are left. Photographs of two cameras are
-       kept, and named.
+    5. The lens is chosen by cross-validation, the board's shape estimated with it. Single corners
+       are out that miss their places by half a pixel, five times the median and twice the next of
+       their view; then views with an RMS of more than 0.5 px and four times the median, and those
+       that miss more than others and that a mirror explains better. Each time all begins anew,
+       three times at most, as long as two thirds of the photographs are left. Photographs of two
+       cameras are kept, and named.
     6. The result is judged: do the views determine the camera, do the corners fit it?
 
     Examples
