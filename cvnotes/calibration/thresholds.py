@@ -32,9 +32,12 @@ ROUNDS = 3  # in which photographs that do not fit are left out
 FEWEST_KEPT, PART_KEPT = 4, 2 / 3  # how many must stay, and which part of all
 EXCHANGED = 0.7  # RMS of a mirrored photograph over that of the photograph as it is
 MISSES_MORE = 1.1  # RMS of such a photograph over that of a typical one
-ALIKE = 1.5  # times as large, an RMS is about the same
-MANY_VIEWS = 200  # that are looked at in a mirror: more take long, and say nothing new
-PARTED = 0.65  # RMS with two cameras over that with one, if there are two; of one camera, 0.75
+CORNERS_THAT_TELL = 50  # of a view: others miss their places together with these
+# F of a second camera: 40 at most of one camera (24 sets' halves and subsets), 60 and more of two.
+PARTED = 50
+# What is gained where some views are read in a mirror, all together and each of them, in variances
+# of a coordinate: 350 and 70 at most if none is mirrored, 560 and 350 at least of those that tell.
+MIRRORED, MIRRORED_EACH = 500, 150
 OTHER_BOARDS = (
     0.5  # of the photographs with the board asked for: so many with a larger one refuse it
 )

@@ -115,10 +115,10 @@ def calibrate_photographs(
     4. Copies of a picture are out.
     5. Lens and shape of the board are chosen by cross-validation. Single corners are out that miss
        their places by half a pixel, five times the median and twice the next of their view; then
-       views with an RMS of more than 0.5 px and four times the median, and those that miss more
-       than others and that a mirror explains better. Each time all begins anew, three times at
-       most, as long as two thirds of the photographs are left. Photographs of two cameras are
-       kept, and named.
+       views with an RMS of more than 0.5 px and four times the median, and those that a mirror
+       explains far better. Each time all begins anew, three times at most, as long as two thirds
+       of the photographs are left. Photographs of two cameras are kept, and named, and so are
+       mirrored ones where nobody can tell them from the others: the camera then is not reliable.
     6. The result is judged: do the views determine the camera, do the corners fit it?
 
     Examples
