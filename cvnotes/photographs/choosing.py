@@ -8,14 +8,14 @@ import numpy as np
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError
 from cvnotes.calibration import Calibration, calibrate
-from cvnotes.calibration.doubts import Doubt, Views
+from cvnotes.calibration.doubts import Views
 from cvnotes.calibration.reliability import astray, misfits
 from cvnotes.calibration.thresholds import FEWEST_KEPT, PART_KEPT, ROUNDS
 from cvnotes.calibration.two_cameras import TwoCameras, two_cameras
 from cvnotes.files import Reason
 from cvnotes.photographs.detection import Photographs
 from cvnotes.photographs.mirrored import mirrored, with_doubt, with_doubt_of_mirrored
-from cvnotes.photographs.reasons import Exchanged, Misfit
+from cvnotes.photographs.reasons import Exchanged, Misfit, Mixed
 
 
 @dataclass(frozen=True)
@@ -134,9 +134,9 @@ def _accused(
     return exchanged, two
 
 
-def _of_two_cameras(two: TwoCameras) -> Doubt:
+def _of_two_cameras(two: TwoCameras) -> Mixed:
     """Return what is to be said of photographs that no single camera took."""
-    return Doubt(
+    return Mixed(
         f"{{}} fit one camera, and {{}} another ({two.rms:.2f} px off with two cameras, "
         f"{two.of_one:.2f} px with one): do they come from two cameras, or was the zoom or focus "
         "changed between them? Calibrate each by itself",

@@ -35,7 +35,8 @@ class CalibratedPhotographs:
     doubts : list of str
         What whoever uses the camera should know, in sentences that name the photographs.
     next_view : NextView or None
-        The photograph that would say most; None if the board cannot be seen whole.
+        The photograph that would say most; None if the board cannot be seen whole, or no single
+        camera took the photographs.
     """
 
     calibration: Calibration

@@ -10,7 +10,7 @@ from cvnotes.base import Array, CvnotesError
 from cvnotes.calibration import Calibration
 from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.doubts import Doubt, View, Views
+from cvnotes.calibration.doubts import View, Views
 from cvnotes.calibration.jackknife import Influence
 from cvnotes.calibration.refinement import Problem, State, minimise, refit_poses
 from cvnotes.calibration.thresholds import (
@@ -24,7 +24,7 @@ from cvnotes.calibration.thresholds import (
 )
 from cvnotes.calibration.two_cameras import DIRECTIONS, TwoCameras
 from cvnotes.photographs.detection import Photographs
-from cvnotes.photographs.reasons import Exchanged
+from cvnotes.photographs.reasons import Exchanged, Mixed
 from cvnotes.targets import CharucoBoard, Chessboard
 
 _CLOSE, _ROUNDS = 1e-6, 6  # tolerance while views are sorted, and how often
@@ -159,7 +159,7 @@ def with_doubt_of_mirrored(result: Calibration, exchanged: list[int]) -> Calibra
     why = f", for the camera fits {'them' if several else 'it'} better so"
     if len(exchanged) > (1 - PART_KEPT) * len(result.poses):
         why = " there, or in all the others"
-    doubt = Doubt(
+    doubt = Mixed(
         f"{{}}: {Exchanged.words}{why}; "
         "was it a front camera, or an editing program? Leave out what is mirrored, or turn it back",
         Views(tuple(exchanged)) if several else View(exchanged[0]),
@@ -167,6 +167,6 @@ def with_doubt_of_mirrored(result: Calibration, exchanged: list[int]) -> Calibra
     return with_doubt(result, doubt)
 
 
-def with_doubt(result: Calibration, doubt: Doubt) -> Calibration:
+def with_doubt(result: Calibration, doubt: Mixed) -> Calibration:
     """Return a result that is not to be believed, and why before all else."""
     return replace(result, warnings=(doubt, *result.warnings), reliable=False)
