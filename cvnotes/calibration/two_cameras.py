@@ -53,7 +53,7 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
     goes to the camera that fits it better, until all stay. The board is that of the one camera.
 
     What counts is the F of the second camera, (c₁ − c₂)/q · freedom/c₂, with sums of squares c and
-    q parameters. Corners of a view miss their places together: of more than 50 in a view the rest
+    q parameters. Corners of a view miss their places together: of more than 40 in a view the rest
     says little new, and adds no freedom.
     """
     if one.rms < NEGLIGIBLE:  # of exact corners rounding is left, in which there may be anything

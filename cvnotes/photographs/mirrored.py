@@ -18,9 +18,9 @@ from cvnotes.calibration.thresholds import (
     CORNERS_THAT_TELL,
     EXCHANGED,
     MIRRORED,
-    MIRRORED_EACH,
     MISSES_MORE,
     PART_KEPT,
+    TELLS_ITS_MIRROR,
 )
 from cvnotes.calibration.two_cameras import DIRECTIONS, TwoCameras
 from cvnotes.photographs.detection import Photographs
@@ -40,8 +40,8 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
     Each photograph is read as it is, and with left and right exchanged. The camera is refined with
     those exchanged that a mirror explains better, or that pull it to one side; then each is read
     as it fits better, until all stay; the board is refined, too. That takes no parameter more:
-    whatever is gained is evidence. All together must gain far more than chance does, and each that
-    is named its part.
+    whatever is gained is evidence. Half of the views must lose or gain far more than by chance,
+    which tells the camera from its mirror, and each that is named its part.
 
     Where they do not, one may still be strange that misses more than others as it is, and far less
     in the mirror. (An honest view of a steep board may fit better in a mirror, too, where the lens
@@ -54,7 +54,7 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
         return []
     problem, x = _read_in_all_ways(photographs, board, result)
     costs = refit_poses(problem, x)[1].reshape(-1, n)
-    as_is, turned = costs[0], costs[1:].min(0)
+    turned = costs[1:].min(0)
     best = _best_of(problem, x, costs)
     # (two cameras are no camera and its mirror if they explain more)
     most = (AS_WELL * two.rms) ** 2 * problem.n_seen_by_view[:n].sum() if two else np.inf
@@ -65,8 +65,8 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
         # All read the other way is the same: the fewer count; of halves, that without the first.
         if 2 * np.count_nonzero(gain > 0) + (gain[0] > 0) > n:
             gain = -gain
-        found = np.flatnonzero(gain > MIRRORED_EACH)
-        if found.size and as_is.sum() / left - 1 > MIRRORED / (2 * told.sum()):
+        found = np.flatnonzero(gain > MIRRORED)
+        if found.size and np.median(np.abs(gain)) > TELLS_ITS_MIRROR:
             return [int(i) for i in found]
     if two:
         return []
