@@ -1,5 +1,6 @@
 """Photographs in, a camera out: one function of the library, with reasons that are objects."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -143,6 +144,37 @@ def test_mirrored_photographs_are_named_and_no_others(which):
     camera, poses = course.camera().with_parameters({"u0": 350.0}), course.poses()
     found = fitted(detections(camera, poses, mirrored=which))
     assert reasons(found) == {f"{i:02}.png": Exchanged() for i in which}
+
+
+@pytest.mark.parametrize("which", [(1, 2, 5, 8, 9), (0, 3, 4, 6, 7)])
+def test_where_half_is_mirrored_both_parts_are_told_and_no_camera_is_good(which):
+    camera, poses = course.camera().with_parameters({"u0": 350.0}), course.poses()[:10]
+    found = fitted(detections(camera, poses, mirrored=which))
+    assert reasons(found) == {}
+    assert not found.reliable
+    named = re.match(r"([\d.png, ]+): left and right seem exchanged there, or in all the others; ",
+                     found.doubts[0])  # fmt: skip
+    others = set(range(10)) - set(which)
+    assert {int(n[:2]) for n in named[1].split(", ")} in (set(which), others)
+    assert found.next_view is None
+
+
+def test_the_second_of_two_cameras_may_be_nearly_the_first_and_have_three_photographs():
+    real, blank = course.real_corners(), np.zeros((48, 64), np.uint8)
+    seen = [Detection(Path(f"{i:02}.png"), real.size, blank, m) for i, m in enumerate(real.left)]
+    assert calibrate_detected(Photographs(real.board, seen)).reliable
+    middle = (np.array(real.size) - 1) / 2
+    zoomed = [replace(x, corners=middle + (x.corners - middle) / 1.1) for x in seen[3:6]]
+    found = calibrate_detected(Photographs(real.board, [*seen[:3], *zoomed, *seen[6:]]))
+    assert not found.reliable
+    assert "and 03.png, 04.png, 05.png another (" in found.doubts[0]
+
+
+@pytest.mark.parametrize("lens", ["k1", "none"])
+def test_a_lens_that_is_too_simple_makes_no_second_camera(lens):
+    bent = course.camera().with_parameters({"k1": -0.4, "k2": 0.5})
+    found = calibrate_detected(detections(bent, course.poses()), Model(lens, "flat"))
+    assert not any("two cameras" in doubt for doubt in found.doubts)
 
 
 def test_a_steep_photograph_is_not_called_mirrored():

@@ -32,9 +32,13 @@ ROUNDS = 3  # in which photographs that do not fit are left out
 FEWEST_KEPT, PART_KEPT = 4, 2 / 3  # how many must stay, and which part of all
 EXCHANGED = 0.7  # RMS of a mirrored photograph over that of the photograph as it is
 MISSES_MORE = 1.1  # RMS of such a photograph over that of a typical one
-ALIKE = 1.5  # times as large, an RMS is about the same
-MANY_VIEWS = 200  # that are looked at in a mirror: more take long, and say nothing new
-PARTED = 0.65  # RMS with two cameras over that with one, if there are two; of one camera, 0.75
+CORNERS_THAT_TELL = 40  # of a view: others miss their places together with these
+# F of a second camera. Of one camera, parts of 8 sets of photographs: 41 at most, of ChArUco
+# boards; of a zoom by 1.03 some 60, of two that are nearly equal 49 (4 and 4 views) to 140.
+PARTED = 55
+# Variances of a coordinate that a view loses, or gains, read in a mirror: half of them, in cameras
+# that are not nearly their own mirror, 490 at least, in others 160 at most; and each that is named.
+TELLS_ITS_MIRROR, MIRRORED = 300, 150
 OTHER_BOARDS = (
     0.5  # of the photographs with the board asked for: so many with a larger one refuse it
 )

@@ -82,7 +82,7 @@ def verdict(what: str, reliable: bool, doubts: Sequence[str]) -> str:
     """Say whether it is to be believed, and what whoever uses it should know."""
     judged = f"<p>The photographs determine this {what}.</p>"
     if not reliable:
-        judged = f'<p class="bad">Not reliable: the photographs do not determine this {what}.</p>'
+        judged = f'<p class="bad">This {what} is not reliable.</p>'
     items = "".join(f"<li>{escape(sentence)}</li>" for sentence in doubts)
     return judged + (f"<ul>{items}</ul>" if items else "")
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError
 from cvnotes.calibration import Calibration, calibrate
-from cvnotes.calibration.doubts import Doubt, Views
+from cvnotes.calibration.doubts import Views
 from cvnotes.calibration.reliability import astray, misfits
 from cvnotes.calibration.thresholds import FEWEST_KEPT, PART_KEPT, ROUNDS
 from cvnotes.calibration.two_cameras import TwoCameras, two_cameras
 from cvnotes.files import Reason
 from cvnotes.photographs.detection import Photographs
 from cvnotes.photographs.mirrored import mirrored, with_doubt, with_doubt_of_mirrored
-from cvnotes.photographs.reasons import Exchanged, Misfit
+from cvnotes.photographs.reasons import Exchanged, Misfit, Mixed
 
 
 @dataclass(frozen=True)
@@ -93,12 +93,11 @@ def choose(
         n = len(photographs.used)
         message = f"{n} usable photograph{'s' * (n != 1)}; {error}"
         raise NoCamera(message, photographs) from error
-    two = two_cameras(result)
-    exchanged = _exchanged(photographs, result, two, model)
-    if two and not exchanged:
-        return with_doubt(result, _of_two_cameras(two, result)), photographs
+    exchanged, two = _accused(photographs, result, model)
     fewest = max(FEWEST_KEPT, PART_KEPT * len(photographs.used))
     for _ in range(0 if keep_all else ROUNDS):
+        if two and not exchanged:
+            break
         kept = _without_corners_astray(photographs, result)
         if kept is photographs:
             kept = photographs.without(_strangers(result, exchanged))
@@ -109,33 +108,37 @@ def choose(
         except CvnotesError:  # these alone do not determine the camera
             break
         photographs = kept
-        exchanged = _exchanged(photographs, result, two_cameras(result), model)
+        exchanged, two = _accused(photographs, result, model)
+    if two and not exchanged:
+        result = with_doubt(result, _of_two_cameras(two))
     return with_doubt_of_mirrored(result, exchanged), photographs
 
 
-def _exchanged(
-    photographs: Photographs, result: Calibration, two: TwoCameras | None, model: Model
-) -> list[int]:
-    """List the photographs that are mirrored, whatever the model.
+def _accused(
+    photographs: Photographs, result: Calibration, model: Model
+) -> tuple[list[int], TwoCameras | None]:
+    """List the photographs that are mirrored, and tell those of two cameras, whatever the model.
 
-    What a lens misses that is too simple, or a flat board, a mirror may explain, too: nothing is
-    said before each photograph was heard with the best lens and a board that may bend. (Corners
-    that are free would explain the mirror.)
+    What a lens misses that is too simple, or a flat board, a mirror or a second camera may explain,
+    too: nothing is said before each photograph was heard with the best lens and a board that may
+    bend. (Corners that are free would explain the mirror.)
     """
+    two = two_cameras(result)
     exchanged = mirrored(photographs, result, two)
-    if exchanged and (model.lens != "auto" or result.shape is None):
+    if (two or exchanged) and (model.lens != "auto" or result.shape is None):
         with suppress(CvnotesError):  # few views do not determine so much
             bent = fit(photographs, replace(model, lens="auto", board_shape="bent"))
-            again = mirrored(photographs, bent, two_cameras(bent))
+            two = two and two_cameras(bent)
+            again = mirrored(photographs, bent, two)
             exchanged = [i for i in exchanged if i in again]
-    return exchanged
+    return exchanged, two
 
 
-def _of_two_cameras(two: TwoCameras, result: Calibration) -> Doubt:
+def _of_two_cameras(two: TwoCameras) -> Mixed:
     """Return what is to be said of photographs that no single camera took."""
-    return Doubt(
+    return Mixed(
         f"{{}} fit one camera, and {{}} another ({two.rms:.2f} px off with two cameras, "
-        f"{result.rms:.2f} px with one): do they come from two cameras, or was the zoom or focus "
+        f"{two.of_one:.2f} px with one): do they come from two cameras, or was the zoom or focus "
         "changed between them? Calibrate each by itself",
         *(Views(tuple(np.flatnonzero(own).tolist())) for own in (~two.second, two.second)),
     )

@@ -35,7 +35,8 @@ class CalibratedPhotographs:
     doubts : list of str
         What whoever uses the camera should know, in sentences that name the photographs.
     next_view : NextView or None
-        The photograph that would say most; None if the board cannot be seen whole.
+        The photograph that would say most; None if the board cannot be seen whole, or no single
+        camera took the photographs.
     """
 
     calibration: Calibration
@@ -117,9 +118,10 @@ def calibrate_photographs(
     5. The lens is chosen by cross-validation, the board's shape estimated with it. Single corners
        are out that miss their places by half a pixel, five times the median and twice the next of
        their view; then views with an RMS of more than 0.5 px and four times the median, and those
-       that miss more than others and that a mirror explains better. Each time all begins anew,
-       three times at most, as long as two thirds of the photographs are left. Photographs of two
-       cameras are kept, and named.
+       that a mirror explains far better. Each time all begins anew, three times at most, as long
+       as two thirds of the photographs are left. Photographs of two cameras are kept, and named,
+       and so are mirrored ones where nobody can tell them from the others: the camera then is not
+       reliable.
     6. The result is judged: do the views determine the camera, do the corners fit it?
 
     Examples

@@ -11,7 +11,7 @@ from cvnotes.calibration.doubts import Corner, Doubt, Place, View
 from cvnotes.calibration.thresholds import MANY_WITHOUT_BOARD, SAME_PLACE
 from cvnotes.files.reasons import Copy
 from cvnotes.photographs.detection import Photographs
-from cvnotes.photographs.reasons import Exchanged
+from cvnotes.photographs.reasons import Exchanged, Mixed
 from cvnotes.targets import Chessboard
 
 
@@ -102,7 +102,12 @@ def _repeated(photographs: Photographs, names: list[str]) -> Iterator[str]:
 
 
 def propose(result: Calibration, photographs: Photographs) -> NextView | None:
-    """Propose where the next photograph should be, unless the board cannot be seen whole."""
+    """Propose where the next photograph should be, unless the board cannot be seen whole.
+
+    Photographs that no single camera took are not to be added to.
+    """
+    if any(isinstance(sentence, Mixed) for sentence in result.warnings):
+        return None
     board = photographs.board
     columns, rows = board.squares
     x, y = (board.square * (np.linspace(0, n, 5) - 1) for n in (columns, rows))

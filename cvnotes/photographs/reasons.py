@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from cvnotes.base import CornersNotFound
+from cvnotes.calibration.doubts import Doubt
 from cvnotes.files import Reason
 
 _ALL_THE_SAME = "left out; --keep-all uses it all the same"
@@ -55,6 +56,10 @@ class Exchanged(Reason):
 
     words = "left and right seem exchanged"
     more = f" ({_ALL_THE_SAME})"
+
+
+class Mixed(Doubt):
+    """No single camera took the photographs: another one of them helps nothing."""
 
 
 @dataclass(frozen=True)
