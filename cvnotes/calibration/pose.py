@@ -17,9 +17,7 @@ from cvnotes.base import (
     points,
     solve_dense,
 )
-from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.ppm import ppm_dlt
-from cvnotes.calibration.refinement import Problem, refit_poses
 from cvnotes.calibration.reserve import flipped_pose
 from cvnotes.calibration.zhang import extrinsics
 from cvnotes.camera import Camera, nearest_rotation, pose, rotation_from_vector, skew_matrix
@@ -105,35 +103,6 @@ def pose_from_view(
     W = (W - centre) / scale
     R, T = _best(camera, W, m, xy)
     return pose(nearest_rotation(R), scale * T - R @ centre)
-
-
-def rms_of_views(camera: Camera, names: tuple[str, ...], W: Array, m: Array, poses: Array) -> Array:
-    """Return how far views of a board miss a held camera, at the best poses near given ones.
-
-    Parameters
-    ----------
-    camera : Camera
-        The camera, of whose parameters all but those of `names` are zero.
-    names : tuple of str
-        As in a `Calibration`.
-    W : ndarray, shape (n, 3)
-        The board's points.
-    m : ndarray, shape (n_views, n, 2)
-        Where they were seen, in pixels; NaN where they were not.
-    poses : ndarray, shape (n_views, 4, 4)
-        About where the boards are, CRF ← board.
-
-    Returns
-    -------
-    ndarray, shape (n_views,)
-        Root mean square, px per point.
-    """
-    seen = np.asarray(np.isfinite(m).all(-1))
-    data = Correspondences.in_unit_frame(W, np.where(seen[..., None], m, 0.0), seen)
-    problem = Problem.at(camera, names, data)
-    state = problem.state(camera, data.pose_in_scaled_units(poses))
-    _, squares = refit_poses(problem, state)
-    return np.asarray(np.sqrt(squares / seen.sum(1)))
 
 
 def _ideal(camera: Camera, m: Array) -> Array:

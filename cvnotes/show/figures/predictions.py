@@ -49,7 +49,7 @@ def draw_prediction_error(
     lines = ax.contour(u, v, std, levels=levels[1::2], colors="white", linewidths=0.8)
     bar = ax.figure.colorbar(colours, ax=ax, shrink=0.7, pad=0.02, aspect=16, format="%.2g")
     bar.add_lines(lines)
-    ax.clabel(lines, lines.levels[:3], fmt="%.2g", fontsize=FONT - 2)
+    ax.clabel(lines, levels[1:7:2], fmt="%.2g", fontsize=FONT - 2)
     bar.set_ticks(list(levels[1::2]))
     bar.set_label("σ (px)", fontsize=FONT - 1)
     bar.ax.tick_params(labelsize=FONT - 1)
