@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cvnotes.base import Array
+from cvnotes.tutor.checker.equality import disturbed
 from cvnotes.tutor.checker.foreseen import explains
 from cvnotes.tutor.checker.wrong_answer import Found, Tried, WrongAnswer
 
@@ -36,8 +37,21 @@ def slipped_input(answer: WrongAnswer) -> Found | None:
     for name, sentence, slip in _slips(exercise.arguments, tried[0][0].args):
         gives = _with_inputs(slip, exercise.reference)
         if explains(gives, answer, exercise.same) and _has_answers(gives, tried):
-            return Found(name, sentence)
+            anything = _with_inputs(partial(_anything_else, slip), exercise.reference)
+            if not explains(anything, answer, exercise.same):
+                return Found(name, sentence)
     return None
+
+
+def _anything_else(slip: Callable[..., Any], *args: Any) -> tuple[Any, ...]:
+    """Return inputs with other numbers in what a slip has changed: if they do, it proves nothing.
+
+    Counts alone may come out the same from any nonsense.
+    """
+    return tuple(
+        disturbed(new) if np.asarray(new).dtype.kind == "f" and new is not old else new
+        for new, old in zip(slip(*args), args, strict=True)
+    )
 
 
 def _with_inputs(slip: Callable[..., Any], reference: Callable[..., Any]) -> Callable[..., Any]:
@@ -58,7 +72,8 @@ def _with_inputs(slip: Callable[..., Any], reference: Callable[..., Any]) -> Cal
 def _has_answers(gives: Callable[..., Any], tried: Sequence[Tried]) -> bool:
     """Return whether a slip gives numbers in all cases: without, it explains too much."""
     with np.errstate(all="ignore"):
-        return all(gives(*case.args) is not None for case, _ in tried)
+        given = (gives(*case.args) for case, _ in tried)
+        return all(x is not None and np.isfinite(np.asarray(x, float)).any() for x in given)
 
 
 def _slips(

@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.tutor.checker.equality import TOLERANCE, Same, up_to_scale
+from cvnotes.tutor.checker.equality import TOLERANCE, Same, disturbed, up_to_scale
 from cvnotes.tutor.checker.exercise import Exercise, Misconception, mistakes
 from cvnotes.tutor.checker.in_process import clock
 from cvnotes.tutor.checker.instrumented import Instrumented
@@ -405,6 +405,8 @@ def _proven(
                 and right(own(trace.args, {e: trace.steps[k][2]}), trace)
                 for trace, values in zip(traces, seen, strict=True)
             ):
+                if all(right(own(t.args, {e: disturbed(t.steps[k][2])}), t) for t in traces):
+                    continue  # any value does
                 return k, e  # where it is worked out, not where it is used
     return -1, -1
 

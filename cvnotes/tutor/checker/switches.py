@@ -18,6 +18,7 @@ import numpy as np
 # What slips, the likely ones first: what is said of a slip, {0} is where; and what puts code right.
 KINDS = {
     "stopped": ("you stopped on the way: that is {0}.", "an earlier result"),
+    "comparison": ("a comparison is wrong in {0}.", "another comparison"),
     "sign": ("a sign is wrong in {0}.", "another sign"),
     "order": ("two things are in the wrong order in {0}.", "another order"),
     "transposition": (
@@ -33,7 +34,6 @@ KINDS = {
     ),
     "index": ("an index is wrong in {0}.", "another index"),
     "axis": ("an axis is wrong in {0}.", "another axis"),
-    "comparison": ("a comparison is wrong in {0}.", "another comparison"),
     "brackets": ("brackets are wrong in {0}.", "other brackets"),
     "* for @": (
         "a product of numbers stands for one of matrices, or the other way round, in {0}.",
@@ -412,8 +412,18 @@ def _more_forms(node: ast.expr) -> Iterator[Form]:
         case ast.IfExp():
             yield "order", ast.IfExp(node.test, node.orelse, node.body)
         case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
-            for number in {0, 1, value + 1, value - 1, 2 * value, value / 2, -value} - {value}:
-                yield "factor", ast.Constant(number)
+            for number in dict.fromkeys(
+                (0, 1, value + 1, value - 1, -value, 2 * value, value / 2, value**2, value**0.5)
+            ):
+                if number != value:
+                    yield "factor", ast.Constant(number)
+        case ast.Subscript(slice=ast.Tuple(elts=[ast.Slice(None, None, None), index])):
+            yield "index", ast.Subscript(node.value, index, ast.Load())
+        case ast.Subscript(slice=ast.Constant() | ast.UnaryOp() | ast.Name() as index):
+            last = ast.UnaryOp(ast.USub(), ast.Constant(1))
+            column = ast.Tuple([ast.Slice(), index], ast.Load())
+            for other in (last, column):
+                yield "index", ast.Subscript(node.value, other, ast.Load())
 
 
 def _put(node: Any, others: dict[Any, Any]) -> Any:
