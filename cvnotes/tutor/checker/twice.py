@@ -97,14 +97,14 @@ def _pairs(
         for slip in slips_of(exercise.arguments, args, _OF_EACH)
         if not any(isinstance(x, int) for x in args)
     ]
+    alone = [slip._replace(gives=with_inputs(slip.gives, exercise.reference)) for slip in slips]
+    for other, change in product((*listed, *alone), _BESIDES):
+        yield other, change, _changed(change.gives, other.gives)
+    for other, slip in product(listed, slips):
+        yield slip, other, with_inputs(slip.gives, other.gives)
     for first, second in combinations(slips, 2):
         both = with_inputs(second.gives, with_inputs(first.gives, exercise.reference))
         yield first, second, both
-    for other, slip in product(listed, slips):
-        yield slip, other, with_inputs(slip.gives, other.gives)
-    alone = [slip._replace(gives=with_inputs(slip.gives, exercise.reference)) for slip in slips]
-    for other, change in product((*alone, *listed), _BESIDES):
-        yield other, change, _changed(change.gives, other.gives)
 
 
 def _changed(change: Callable[..., Any], gives: Callable[..., Any]) -> Callable[..., Any]:
