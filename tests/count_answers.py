@@ -33,6 +33,8 @@ from cvnotes.tutor.checker.judge import judge
 from cvnotes.tutor.checker.repairs import pointed
 
 SEED, OTHERS = 2024, (11, 12)
+# How the files of answers are called that have a source of their own.
+OWN = "<answer"
 COLUMNS = ("right", "refused", "wrong", "accepted", "raised", "wrong name", "named", "precise",
            "generic", "of these", "located", "ms")  # fmt: skip
 # What is done to a right answer as a whole.
@@ -86,7 +88,7 @@ def mutated(names, wanted):
 
 def with_source(source, name):
     """Give a function whose source is to be had, as that of a notebook's cell is."""
-    file = f"<answer {len(linecache.cache)}>"
+    file = f"{OWN} {len(linecache.cache)}>"
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
     names = {"np": np}
     try:
@@ -119,7 +121,12 @@ def counted(answers):
             counts["accepted"] += 1
             continue
         said = report.misconception
-        shown = own is None and bool(pointed(function, exercise, said)[1])
+        code = getattr(function, "__code__", None)
+        shown = (
+            code is not None
+            and code.co_filename.startswith(OWN)
+            and bool(pointed(function, exercise, said)[1])
+        )
         counts["located"] += shown
         if said is None:
             counts["generic"] += 1

@@ -49,7 +49,7 @@ def _anything_else(slip: Callable[..., Any], *args: Any) -> tuple[Any, ...]:
     Counts alone may come out the same from any nonsense.
     """
     return tuple(
-        disturbed(new) if np.asarray(new).dtype.kind == "f" and new is not old else new
+        disturbed(new) if new is not old else new
         for new, old in zip(slip(*args), args, strict=True)
     )
 
@@ -73,7 +73,7 @@ def _has_answers(gives: Callable[..., Any], tried: Sequence[Tried]) -> bool:
     """Return whether a slip gives numbers in all cases: without, it explains too much."""
     with np.errstate(all="ignore"):
         given = (gives(*case.args) for case, _ in tried)
-        return all(x is not None and np.isfinite(np.asarray(x, float)).any() for x in given)
+        return all(x is not None and not np.isnan(np.asarray(x, float)).all() for x in given)
 
 
 def slips_of(
