@@ -36,8 +36,8 @@ WITH_STEPS = [e for e in FUNCTIONS if e.steps is not None]
 each_with_steps = pytest.mark.parametrize("exercise", WITH_STEPS, ids=lambda e: e.name)
 
 
-@pytest.fixture(autouse=True)
-def a_machine_with_time(monkeypatch):
+@pytest.fixture
+def time_enough(monkeypatch):
     for searching in (repairs, twice):
         monkeypatch.setattr(searching, "_SECONDS", 9.0)
     monkeypatch.setattr(repairs, "_PATIENCE", 9.0)
@@ -344,6 +344,7 @@ REPAIRED = [
 ]  # fmt: skip
 
 
+@pytest.mark.usefixtures("time_enough")
 @pytest.mark.parametrize(("name", "function", "what", "exact"), REPAIRED)
 def test_what_puts_the_students_own_code_right_is_said_whatever_its_road(
     name, function, what, exact
@@ -354,6 +355,7 @@ def test_what_puts_the_students_own_code_right_is_said_whatever_its_road(
     assert exact not in found.sentence  # the formula is for the second refusal
 
 
+@pytest.mark.usefixtures("time_enough")
 def test_where_nothing_was_named_the_repair_is_said_behind_what_agrees():
     bilinear = EXERCISES["bilinear"]
     said, exact = pointed(weights_of_one_pixel, bilinear)
@@ -381,6 +383,7 @@ def test_a_step_is_not_named_where_any_number_does():
     assert found.missing is None  # 4 a c decides about yes or no, as many numbers do
 
 
+@pytest.mark.usefixtures("time_enough")
 def test_a_part_of_a_step_is_named_to_whoever_has_parts():
     def by_coordinates(A, R, T, k, W):
         M = R @ W.T + T[:, None]
@@ -416,6 +419,7 @@ def axes_in_columns(R, left, right):
     return np.array([x, y / np.linalg.norm(y), R[2]]).T
 
 
+@pytest.mark.usefixtures("time_enough")
 @pytest.mark.parametrize(("name", "function", "called"), TWICE)
 def test_two_mistakes_at_once_have_both_names(name, function, called):
     report = said_of(EXERCISES[name], function)

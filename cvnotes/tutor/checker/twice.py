@@ -15,7 +15,7 @@ from cvnotes.tutor.checker.inputs import slips_of, with_inputs
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
 # What a search may take, in seconds of the processor.
-_SECONDS = 0.25
+_SECONDS = 0.15
 # How many slips of each argument are likely enough to come with another mistake.
 _OF_EACH = 4
 # An answer says enough if it has that many numbers at least that are no counts.
