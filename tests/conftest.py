@@ -130,7 +130,7 @@ def worked_out_once():
     every = [*EXERCISES.values(), *(part for e in EXERCISES.values() for part in e.parts)]
     ways = {way for e in every for m in e.misconceptions for way in (m.gives, *m.variants)}
     solve, give = Exercise.solved_cases, foreseen.what_it_gives
-    slip, slipped = inputs._slips, inputs._with_inputs
+    slip, slipped = inputs.slips_of, inputs.with_inputs
     cases, known, given, slips = {}, {}, {}, {}
 
     def solved_cases(exercise, seed):
@@ -167,8 +167,8 @@ def worked_out_once():
         return gives
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(inputs, "_slips", slips_of)
-        patch.setattr(inputs, "_with_inputs", with_inputs)
+        patch.setattr(inputs, "slips_of", slips_of)
+        patch.setattr(inputs, "with_inputs", with_inputs)
         patch.setattr(Exercise, "solved_cases", solved_cases)
         patch.setattr(Exercise, "inputs", arguments)
         patch.setattr(foreseen, "what_it_gives", what_it_gives)

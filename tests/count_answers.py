@@ -10,9 +10,9 @@ wrong answer is
   a name);
 * named, by the list or by a rule that says what was done;
 * precise, where what is said is in which entries, rows or columns it is wrong, or how little;
-* located, where besides a step is shown that, put right, makes the rest come out right (asked of
-  slips alone: the others have no source of their own);
-* generic, where nothing but "look at what does not hold" is said.
+* located, where besides a place is shown that, put right, makes the rest come out right (the others
+  but slips have no source of their own);
+* generic, where it has no name, and of these so many are located.
 """
 
 import ast
@@ -30,11 +30,13 @@ from cvnotes.tutor.checker import in_process
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.difference import VAGUE
 from cvnotes.tutor.checker.judge import judge
-from cvnotes.tutor.checker.steps import located
+from cvnotes.tutor.checker.repairs import pointed
 
 SEED, OTHERS = 2024, (11, 12)
+# How the files of answers are called that have a source of their own.
+OWN = "<answer"
 COLUMNS = ("right", "refused", "wrong", "accepted", "raised", "wrong name", "named", "precise",
-           "located", "generic", "ms")  # fmt: skip
+           "generic", "of these", "located", "ms")  # fmt: skip
 # What is done to a right answer as a whole.
 CHANGES = {
     "sign": np.negative, "twice": lambda x: 2 * x, "0.1 % more": lambda x: 1.001 * x,
@@ -86,7 +88,7 @@ def mutated(names, wanted):
 
 def with_source(source, name):
     """Give a function whose source is to be had, as that of a notebook's cell is."""
-    file = f"<answer {len(linecache.cache)}>"
+    file = f"{OWN} {len(linecache.cache)}>"
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
     names = {"np": np}
     try:
@@ -119,11 +121,16 @@ def counted(answers):
             counts["accepted"] += 1
             continue
         said = report.misconception
-        found = located(function, exercise) if own is None else None
-        pointed = found is not None and found.missing is not None
-        counts["located"] += pointed
+        code = getattr(function, "__code__", None)
+        shown = (
+            code is not None
+            and code.co_filename.startswith(OWN)
+            and bool(pointed(function, exercise, said)[1])
+        )
+        counts["located"] += shown
         if said is None:
-            counts["generic"] += not pointed
+            counts["generic"] += 1
+            counts["of these"] += shown
         else:
             counts["precise" if said in VAGUE else "named"] += 1
         if own is not None and said != own:

@@ -16,9 +16,9 @@ from typing import Any
 from cvnotes.base import CvnotesError, FileError
 from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED, verdict
 from cvnotes.tutor.checker.exercise import Exercise
+from cvnotes.tutor.checker.repairs import pointed
 from cvnotes.tutor.checker.report import WRONG, Report, Source, Words
 from cvnotes.tutor.checker.sandbox import ask
-from cvnotes.tutor.checker.steps import located
 from cvnotes.tutor.remembered import remember, shell, solved_before
 
 # The notebooks that are no chapter: one may be in a course, and teachers write the other.
@@ -140,11 +140,8 @@ class Course:
         """Say where the answer leaves the way; the formula from the second refusal on."""
         again = self.session.refused[exercise.name] > 0
         self.session.refused[exercise.name] += 1
-        found = located(answer, exercise)
-        if found is not None:
-            report = replace(report, located=found.sentence)
-            if not report.exact and found.missing is not None:
-                report = replace(report, exact=found.missing.code)
+        where, exact = pointed(answer, exercise, report.misconception)
+        report = replace(report, located=where, exact=report.exact or exact)
         self.session.exact[exercise.name] = report.exact
         return report if again else replace(report, exact="")
 

@@ -35,7 +35,8 @@ def _some_wrong(rng: np.random.Generator) -> list[Case]:
         wrong = np.arange(0, n, 3)
         dst[wrong] = dst[np.roll(rng.permutation(wrong), 1)] + rng.uniform(9, 30, (n // 3, 2))
         clean = np.setdiff1d(np.arange(n), wrong)
-        pools = [np.arange(n), clean, np.arange(n), np.arange(n), clean, np.arange(n)]
+        # the first and the last draw are of neighbours: right pairs, and a map that few agree with
+        pools = [clean[:5], clean, np.arange(n), np.arange(n), clean, clean[-5:]]
         draws = np.array([rng.choice(pool, 4, replace=False) for pool in pools])
         cases.append(Case((src, rounded(dst, 2), draws, 2.6)))
     return cases
@@ -45,6 +46,8 @@ _N = "np.ceil(np.log(0.001) / np.log(1 - q**4))"
 _MISTAKES = mistakes_in(ransac,
     ("all pairs at once", "You fitted all pairs together: the wrong ones bend that map, too.",
      lambda src, dst, draws, t: ransac(src, dst, np.arange(len(src))[None], t)),
+    ("one draw", "You asked one draw only; the best of them counts, with whom most agree.",
+     ("counts.max()", "counts[0]"), ("counts.max()", "counts[-1]")),
     ("one pair for four", "A draw is right only if all four of its pairs are: how likely is that?",
      ("q**4", "q"), ("q**4", "4 * q")),
     ("0.999 for 0.001", "All N draws may be wrong with probability 0.001; you allowed 0.999.",

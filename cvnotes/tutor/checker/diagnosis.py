@@ -10,6 +10,7 @@ from cvnotes.tutor.checker.foreseen import foreseen
 from cvnotes.tutor.checker.inputs import slipped_input
 from cvnotes.tutor.checker.raised import without_numbers
 from cvnotes.tutor.checker.shapes import laid_out_otherwise, misshapen
+from cvnotes.tutor.checker.twice import two_mistakes
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
 
@@ -28,6 +29,8 @@ def diagnosis(answer: WrongAnswer) -> Found | None:
     found = laid_out_otherwise(answer) or difference(answer)
     if found is None or found.name in VAGUE:
         found = _slipped(answer) or answer.found_by(slipped_step) or found
+    if found is None or found.name == "a few numbers":
+        found = answer.found_by(two_mistakes) or found
     return found or misshapen(answer)
 
 

@@ -49,6 +49,20 @@ def of_size_one(x: Array) -> Array:
     return x / largest if 0 < largest < np.inf else x
 
 
+def disturbed(x: Array | float) -> Array:
+    """Return other numbers, which are others up to a factor and a sign, too; of counts larger ones.
+
+    Examples
+    --------
+    >>> disturbed(np.array([1.0, -2.0])), disturbed(5)
+    (array([ 1.6, -4.9]), array(12))
+    """
+    x = np.asarray(x)
+    if x.dtype.kind in "iu":
+        return np.asarray(x + 7)
+    return np.asarray(x * np.linspace(1.5, 2.5, x.size).reshape(x.shape) + 0.1)
+
+
 def close(answer: Array, right: Array, tolerance: float) -> bool:
     """Return whether two answers are equal, relative to their largest entry; NaN equals NaN.
 

@@ -5,14 +5,15 @@ tried on inputs that have slipped; where its results are the student's, in every
 has a name in every exercise, without being foreseen for any.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
-from itertools import combinations, permutations
+from itertools import combinations, islice, permutations
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cvnotes.base import Array
+from cvnotes.tutor.checker.equality import disturbed
 from cvnotes.tutor.checker.foreseen import explains
 from cvnotes.tutor.checker.wrong_answer import Found, Tried, WrongAnswer
 
@@ -33,22 +34,35 @@ def slipped_input(answer: WrongAnswer) -> Found | None:
     exercise, tried = answer.exercise, answer.tried
     if exercise.answer != "function" or any(outcome.value is None for _, outcome in tried):
         return None
-    for name, sentence, slip in _slips(exercise.arguments, tried[0][0].args):
-        gives = _with_inputs(slip, exercise.reference)
+    for name, done, slip in slips_of(exercise.arguments, tried[0][0].args):
+        gives = with_inputs(slip, exercise.reference)
         if explains(gives, answer, exercise.same) and _has_answers(gives, tried):
-            return Found(name, sentence)
+            anything = with_inputs(partial(_anything_else, slip), exercise.reference)
+            if not explains(anything, answer, exercise.same):
+                return Found(name, f"It looks as if you {done}; the rest is right.")
     return None
 
 
-def _with_inputs(slip: Callable[..., Any], reference: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the right function of inputs that have slipped; None where that has no answer."""
+def _anything_else(slip: Callable[..., Any], *args: Any) -> tuple[Any, ...]:
+    """Return inputs with other numbers in what a slip has changed: if they do, it proves nothing.
+
+    Counts alone may come out the same from any nonsense.
+    """
+    return tuple(
+        disturbed(new) if new is not old else new
+        for new, old in zip(slip(*args), args, strict=True)
+    )
+
+
+def with_inputs(slip: Callable[..., Any], function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function of inputs that have slipped; None where that has no answer."""
 
     def gives(*args: Any) -> Any:
         try:
             slipped = slip(*args)
             if not all(np.isfinite(x).all() for x in slipped):
                 return None
-            return reference(*slipped)
+            return function(*slipped)
         except (ValueError, IndexError, TypeError, ZeroDivisionError, FloatingPointError):
             return None
 
@@ -58,13 +72,17 @@ def _with_inputs(slip: Callable[..., Any], reference: Callable[..., Any]) -> Cal
 def _has_answers(gives: Callable[..., Any], tried: Sequence[Tried]) -> bool:
     """Return whether a slip gives numbers in all cases: without, it explains too much."""
     with np.errstate(all="ignore"):
-        return all(gives(*case.args) is not None for case, _ in tried)
+        given = (gives(*case.args) for case, _ in tried)
+        return all(x is not None and not np.isnan(np.asarray(x, float)).all() for x in given)
 
 
-def _slips(
-    names: Sequence[str], args: Sequence[Any]
+def slips_of(
+    names: Sequence[str], args: Sequence[Any], at_most: int = 99
 ) -> Iterator[tuple[str, str, Callable[..., tuple[Any, ...]]]]:
-    """Return all slips of one argument, and of two that are of one kind."""
+    """Yield slips of two arguments that are of one kind, and of each: its name, what was done, how.
+
+    At most so many of each kind of argument, the likeliest.
+    """
     for i, j in combinations(range(len(args)), 2):
         if np.shape(args[i]) == np.shape(args[j]) and not isinstance(args[i], tuple):
             a, b = names[i], names[j]
@@ -73,21 +91,18 @@ def _slips(
                 partial(_copied, i, j),
                 partial(_copied, j, i),
             )
-            yield f"{a} and {b} exchanged", _said(f"exchanged {a} and {b}"), exchanged
-            yield f"{a} for {b}", _said(f"used {a} in place of {b}"), a_for_b
-            yield f"{b} for {a}", _said(f"used {b} in place of {a}"), b_for_a
+            yield f"{a} and {b} exchanged", f"exchanged {a} and {b}", exchanged
+            yield f"{a} for {b}", f"used {a} in place of {b}", a_for_b
+            yield f"{b} for {a}", f"used {b} in place of {a}", b_for_a
     rows = [name for name, x in zip(names, args, strict=True) if np.ndim(x) > 1]
     for n in range(1, 5) if _in_rows(args) else ():
         what = f"the first {n if n > 1 else 'one'} of {' and '.join(rows)}"
-        yield f"only {what}", _said(f"used only {what}"), partial(_first_ones, n)
+        yield f"only {what}", f"used only {what}", partial(_first_ones, n)
     for i, (name, arg) in enumerate(zip(names, args, strict=True)):
-        for slip in _changes(name, arg):
-            changed = partial(_changed, i, slip.change)
-            yield slip.name.format(name), _said(slip.done.format(name)), changed
-
-
-def _said(done: str) -> str:
-    return f"It looks as if you {done}; the rest is right."
+        for slips in _changes(name, arg):
+            for slip in islice(slips, at_most):
+                changed = partial(_changed, i, slip.change)
+                yield slip.name.format(name), slip.done.format(name), changed
 
 
 def _in_rows(args: Sequence[Any]) -> bool:
@@ -116,28 +131,28 @@ def _changed(i: int, change: Callable[[Any], Any], *args: Any) -> tuple[Any, ...
     return (*args[:i], change(args[i]), *args[i + 1 :])
 
 
-def _changes(name: str, arg: Any) -> Iterator[Slip]:
-    """Return what may have happened to one argument."""
+def _changes(name: str, arg: Any) -> Iterator[Iterable[Slip]]:
+    """Yield kinds of what may have happened to one argument."""
     if isinstance(arg, tuple):
-        yield from _SIZE
+        yield _SIZE
     elif isinstance(arg, int):
-        yield from _COUNT
+        yield _COUNT
     elif isinstance(arg, float):
-        yield from _NUMBER
+        yield _NUMBER
     elif isinstance(arg, np.ndarray) and arg.ndim == 1:
-        yield from _VECTOR
+        yield _VECTOR
         if arg.size <= 6:
-            yield from (_one_left_out(j) for j in range(arg.size))
+            yield (_one_left_out(j) for j in range(arg.size))
         if arg.size <= 3:
-            yield from (_one_for_another(i, j) for i, j in permutations(range(arg.size), 2))
+            yield (_one_for_another(i, j) for i, j in permutations(range(arg.size), 2))
     elif isinstance(arg, np.ndarray) and arg.ndim == 2:
         if name == "A":
-            yield from _INTRINSICS
+            yield _INTRINSICS
         if arg.shape == (4, 4):
-            yield from _MOTION
+            yield _MOTION
         if arg.shape[0] == arg.shape[1]:
-            yield from _SQUARE
-        yield from _ROWS
+            yield _SQUARE
+        yield _ROWS
 
 
 def _used(name: str, instead: str, change: Callable[[Any], Any]) -> Slip:

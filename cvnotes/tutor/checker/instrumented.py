@@ -32,6 +32,8 @@ class Instrumented:
     ----------
     text : list of str
         What the student wrote, by the number of the expression.
+    function : callable
+        What is looked at, and calls this instance meanwhile.
 
     Raises
     ------
@@ -53,7 +55,7 @@ class Instrumented:
         # What is put in the place of expressions, and how often it was; None while all is noted.
         self._put: dict[int, Array] | None = None
         self._times: Counter[int] = Counter()
-        self._function = self._made(function)
+        self.function = self._made(function)
 
     def values(self, args: tuple[Any, ...]) -> dict[int, Array]:
         """Run it; give what its expressions gave: of a loop, one below the other."""
@@ -74,7 +76,7 @@ class Instrumented:
 
     def _run(self, args: tuple[Any, ...]) -> Any:
         try:
-            return self._function(*copy.deepcopy(args))
+            return self.function(*copy.deepcopy(args))
         except Exception:
             return None
 
@@ -103,7 +105,7 @@ class Instrumented:
         for name, other in names.items():  # functions of the student's own that it calls
             if isinstance(other, FunctionType) and other.__module__ == function.__module__:
                 own[name] = other
-        names["_look_"] = self._look
+        names |= self._known
         called = _called(function)
         made = None
         for name, one in own.items():
@@ -128,12 +130,21 @@ class Instrumented:
         found.decorator_list, found.returns = [], None
         found.args.defaults = []
         found.args.kw_defaults = [None] * len(found.args.kwonlyargs)
-        marking = _Marking(source, self.text)
-        found.body = [marking.visit(statement) for statement in found.body]
         for argument in ast.walk(found.args):
             if isinstance(argument, ast.arg):
                 argument.annotation = None
-        return ast.fix_missing_locations(found)
+        return ast.fix_missing_locations(self._marked(found, source))
+
+    @property
+    def _known(self) -> dict[str, Any]:
+        """What the code that is made has to know."""
+        return {"_look_": self._look}
+
+    def _marked(self, function: ast.FunctionDef, source: str) -> ast.FunctionDef:
+        """Mark the expressions of a function by numbers."""
+        marking = _Marking(source, self.text)
+        function.body = [marking.visit(statement) for statement in function.body]
+        return function
 
 
 class _Marking(ast.NodeTransformer):

@@ -101,6 +101,15 @@ def hint_at(exercise: Exercise) -> str:
     return f'hint("{exercise.name}") helps.'
 
 
+def holds(exercise: Exercise, case: Case, outcome: Outcome) -> bool:
+    """Return whether all that is asked of one case is true of what came of it."""
+    case = replace(case, slack=slack(outcome.dtype))
+    if _unusable(exercise, case, outcome):
+        return False
+    asked = [p for p in exercise.properties if p.about == case.about]
+    return all(_holds(exercise, p, case, outcome) for p in asked)
+
+
 Failing = list[tuple[str, str, Case, Outcome]]
 
 

@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.tutor.checker.equality import TOLERANCE, Same, up_to_scale
+from cvnotes.tutor.checker.equality import TOLERANCE, Same, disturbed, up_to_scale
 from cvnotes.tutor.checker.exercise import Exercise, Misconception, mistakes
 from cvnotes.tutor.checker.in_process import clock
 from cvnotes.tutor.checker.instrumented import Instrumented
@@ -181,7 +181,7 @@ class _Trace(NamedTuple):
     """One input, what each step gives for it, and a right answer."""
 
     args: tuple[Any, ...]
-    steps: tuple[tuple[int, Array], ...]
+    steps: tuple[tuple[int, bool, Array], ...]  # the line, whether it is whole, what it gives
     right: Array
 
 
@@ -202,7 +202,7 @@ def _traced(exercise: Exercise) -> tuple[list[Line], list[_Trace]]:
             **exercise.steps.__globals__,
             **dict(zip(names, copy.deepcopy(args), strict=True)),
         }
-        found: dict[tuple[int, str], tuple[Array, bool]] = {}
+        found: dict[tuple[int, str, int], tuple[Array, bool]] = {}
         with np.errstate(all="ignore"):
             for i, one in enumerate(code):
                 exec(one, space)
@@ -212,8 +212,12 @@ def _traced(exercise: Exercise) -> tuple[list[Line], list[_Trace]]:
                     values = {lines[i].name: list(values.values()), **values}
                 for name, given in values.items():
                     value = _numbers(given)
-                    if value is not None:
-                        found[i, name] = value.copy(), not _says_nothing(given, args)
+                    if value is None:
+                        continue
+                    parts = _parts(value) if "," not in name else []
+                    for part, one in enumerate([value, *parts]):
+                        says = one if part else given
+                        found[i, name, part] = one.copy(), not _says_nothing(says, args)
             right = np.asarray(exercise.reference(*copy.deepcopy(args)), dtype=np.float64)
         traces.append((args, found, right))
     # A number may be one of the input's by chance, on one of them.
@@ -224,9 +228,16 @@ def _traced(exercise: Exercise) -> tuple[list[Line], list[_Trace]]:
         and sum(found[key][1] for _, found, _ in traces) >= max(1, len(traces) - 1)
     ]
     return lines, [
-        _Trace(args, tuple((key[0], found[key][0]) for key in shared), right)
+        _Trace(args, tuple((key[0], not key[2], found[key][0]) for key in shared), right)
         for args, found, right in traces
     ]
+
+
+def _parts(value: Array) -> list[Array]:
+    """Return the columns, rows or numbers of a few: who works them out one by one has these."""
+    few = range(2, 4)
+    columns = list(value.T) if value.ndim == 2 and value.shape[1] in few else []
+    return columns + (list(value) if value.ndim and len(value) in few else [])
 
 
 def _untidy(exercise: Exercise) -> list[tuple[Any, ...]]:
@@ -321,7 +332,7 @@ def located(function: Callable[..., Any], exercise: Exercise) -> Located | None:
         return None
     lines, traces = _traced(exercise)  # here, so that the child has it already
     [found] = run(lambda: _found(own, exercise, traces), [()], seconds=_PATIENCE)
-    return None if found.value is None else _worded(found.value, own, lines)
+    return None if found.value is None else _worded(found.value, own, lines, traces)
 
 
 def _found(own: Instrumented, exercise: Exercise, traces: Sequence[_Trace]) -> Array:
@@ -337,9 +348,8 @@ def _found(own: Instrumented, exercise: Exercise, traces: Sequence[_Trace]) -> A
             return np.array([-1.0, -1.0])
         seen += [own.values(trace.args) for trace in traces[1:]]
         step, place = _proven(own, exercise, traces, seen, end)
-        agreed = [
-            pair for pair in _agreed(own, exercise, traces, seen) if step < 0 or pair[0] < step
-        ]
+        line = traces[0].steps[step][0] if step >= 0 else len(traces[0].steps)
+        agreed = [pair for pair in _agreed(own, exercise, traces, seen) if pair[0] < line]
     return np.array([step, place, *(x for pair in agreed for x in pair)], dtype=float)
 
 
@@ -351,16 +361,18 @@ def _agreed(
 ) -> Iterator[tuple[int, int]]:
     """Yield the steps that expressions give on all inputs, each with the shortest of them."""
     taken: set[int] = set()
-    for k, (i, _) in enumerate(traces[0].steps):
+    for k, (i, whole, _) in enumerate(traces[0].steps):
+        if i in taken or not whole:
+            continue
         fits = [
             e
             for e in seen[0]
             if all(
-                e in values and _agree(values[e], trace.steps[k][1], exercise.same)
+                e in values and _agree(values[e], trace.steps[k][2], exercise.same)
                 for trace, values in zip(traces, seen, strict=True)
             )
         ]
-        if fits and i not in taken:
+        if fits:
             taken.add(i)
             yield i, min(fits, key=lambda e: (own.is_repeated(e), len(own.text[e])))
 
@@ -372,7 +384,7 @@ def _proven(
     seen: Sequence[Seen],
     end: float,
 ) -> tuple[int, int]:
-    """Return the earliest step that makes the rest come out right, and the expression it is for."""
+    """Return the number of the earliest step that makes the rest right, and the expression."""
 
     def right(answer: Any, trace: _Trace) -> bool:
         value = _numbers(answer)
@@ -380,18 +392,22 @@ def _proven(
 
     if not traces or all(right(own(trace.args), trace) for trace in traces):
         return -1, -1  # it is wrong in special cases only
+    steps = traces[0].steps
+    answers = {line for line, _, array in steps if _agree(array, traces[0].right, exercise.same)}
     innocent = {e for e in seen[0] if _is_innocent(e, exercise, traces, seen)}
-    for k, (i, _) in enumerate(traces[0].steps):
-        for e in seen[0]:
+    for k, (line, *_) in enumerate(steps):
+        for e in seen[0] if line not in answers else ():
             if clock() > end:
                 return -1, -1
             if e not in innocent and all(
                 e in values
-                and _is_candidate(values[e], trace.steps[k][1], trace, exercise.same)
-                and right(own(trace.args, {e: trace.steps[k][1]}), trace)
+                and values[e].size == trace.steps[k][2].size
+                and right(own(trace.args, {e: trace.steps[k][2]}), trace)
                 for trace, values in zip(traces, seen, strict=True)
             ):
-                return i, e  # where it is worked out, not where it is used
+                if all(right(own(t.args, {e: disturbed(t.steps[k][2])}), t) for t in traces):
+                    continue  # any value does
+                return k, e  # where it is worked out, not where it is used
     return -1, -1
 
 
@@ -402,7 +418,7 @@ def _is_innocent(
     pairs = [(values[e], trace) for trace, values in zip(traces, seen, strict=True) if e in values]
     given = zip(*(trace.args for _, trace in pairs), strict=True)
     inputs = ([_numbers(x) for x in one] for one in given)
-    steps = zip(*((array for _, array in trace.steps) for _, trace in pairs), strict=True)
+    steps = zip(*((array for _, _, array in trace.steps) for _, trace in pairs), strict=True)
     return any(
         all(
             known is not None and _agree(value, known, exercise.same)
@@ -412,14 +428,9 @@ def _is_innocent(
     )
 
 
-def _is_candidate(mine: Array, wanted: Array, trace: _Trace, same: Same) -> bool:
-    """Return whether a value might be one of a step, and the step is not the answer."""
-    if mine.size != wanted.size:
-        return False
-    return wanted.size != trace.right.size or not _agree(wanted, trace.right, same)
-
-
-def _worded(found: Array, own: Instrumented, lines: Sequence[Line]) -> Located | None:
+def _worded(
+    found: Array, own: Instrumented, lines: Sequence[Line], traces: Sequence[_Trace]
+) -> Located | None:
     """Put numbers into words; None if nothing was found."""
     text = own.text
     step, place, *pairs = found.astype(int).tolist()
@@ -429,5 +440,9 @@ def _worded(found: Array, own: Instrumented, lines: Sequence[Line]) -> Located |
         if lines[i].words != f"`{text[e]}`"
     )
     if step >= 0:
-        return Located(agreed[-3:], lines[step], text[place])
+        line, whole, _ = traces[0].steps[step]
+        missing = lines[line]
+        if not whole:
+            missing = missing._replace(words=f"its part of {missing.words}")
+        return Located(agreed[-3:], missing, text[place])
     return Located(agreed[-3:]) if agreed else None

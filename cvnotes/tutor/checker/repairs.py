@@ -1,0 +1,139 @@
+"""What puts a student's own code right: another sign, index or number in one of its places.
+
+Whoever takes another road than the reference's steps makes the same slips on it. So what may slip
+in the steps is tried on the student's own code, and more; what makes it right on all usual inputs
+is proven, whatever the road.
+"""
+
+import ast
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from types import FunctionType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.base.text import clipped
+from cvnotes.tutor.checker.difference import VAGUE
+from cvnotes.tutor.checker.exercise import Case, Exercise
+from cvnotes.tutor.checker.in_process import clock
+from cvnotes.tutor.checker.instrumented import Instrumented
+from cvnotes.tutor.checker.judge import holds
+from cvnotes.tutor.checker.outcome import Outcome
+from cvnotes.tutor.checker.sandbox import run
+from cvnotes.tutor.checker.steps import located
+from cvnotes.tutor.checker.switches import KINDS, Slip, Switches
+
+_SEEDS = (9001, 9002, 9003)
+# What a search may take, in seconds of the processor; and all of it, where it can be ended.
+_SECONDS, _PATIENCE = 0.15, 0.5
+# A function that takes longer than that for one case is not tried.
+_SLOW = 0.01
+_LONGEST = 60  # characters of code that is quoted
+
+
+class Repair(NamedTuple):
+    """What puts code right: said without the formula, and the code that belongs there."""
+
+    sentence: str
+    exact: str
+
+
+class _Switched(Instrumented):
+    """A student's function with a switch at each place of its expressions."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.switches = Switches(own=True)
+        super().__init__(function)
+
+    @property
+    def _known(self) -> dict[str, Any]:
+        return self.switches.names
+
+    def _marked(self, function: ast.FunctionDef, _: str) -> ast.FunctionDef:
+        if any(isinstance(node, ast.While) for node in ast.walk(function)):
+            raise ValueError("with another sign it may never end")
+        return self.switches.switched(function)
+
+
+def pointed(answer: Any, exercise: Exercise, misconception: str | None = None) -> tuple[str, str]:
+    """Say where an answer leaves the way, and what belongs there exactly; empty if that is unknown.
+
+    Parameters
+    ----------
+    answer : any
+        What was handed over.
+    exercise : Exercise
+        What was asked.
+    misconception : str or None
+        What it was called. If that says what was done, no other way to put it right is sought.
+    """
+    found = located(answer, exercise)
+    if found is not None and found.missing is not None:
+        return found.sentence, found.missing.code
+    so_far = found.sentence if found is not None else ""
+    repair = repaired(answer, exercise) if misconception in (None, *VAGUE) else None
+    if repair is None:
+        return so_far, ""
+    return f"{so_far} {repair.sentence}".strip(), repair.exact
+
+
+def repaired(function: Any, exercise: Exercise) -> Repair | None:
+    """Find the one place of a student's function that, put right, makes all usual inputs right.
+
+    The function runs where it can do no harm.
+
+    Examples
+    --------
+    >>> from cvnotes.learn import EXERCISES
+    >>> print(repaired(lambda x, k: np.hstack([k * x, np.ones((len(x), 1))]), EXERCISES["lift"]))
+    None
+    """
+    if not isinstance(function, FunctionType):
+        return None
+    try:
+        own = _Switched(function)
+    except (OSError, TypeError, ValueError, SyntaxError, RecursionError):
+        return None
+    slips, cases = own.switches.slips, _cases(exercise)
+    [found] = run(lambda: _found(own, slips, exercise, cases), [()], seconds=_PATIENCE)
+    if found.value is None or found.value < 0:
+        return None
+    slip = slips[int(found.value)]
+    before, after = (clipped(text, _LONGEST) for text in own.switches.text(slip))
+    where = f"in `{before}`{', everywhere' * slip.everywhere}"
+    return Repair(f"It comes out right with {KINDS[slip.kind][1]} {where}.", after)
+
+
+@lru_cache(maxsize=64)
+def _cases(exercise: Exercise) -> tuple[Case, ...]:
+    """Return cases with a right answer each: the usual ones first, and short ones before long."""
+    found = [case for seed in _SEEDS for case in exercise.solved_cases(seed)]
+    return tuple(sorted(found, key=lambda case: (case.about, case.size)))
+
+
+def _found(
+    own: _Switched, slips: Sequence[Slip], exercise: Exercise, cases: Sequence[Case]
+) -> Array:
+    """Return the number of the slip that puts all usual cases right, or −1."""
+    started = clock()
+
+    def right(case: Case) -> bool:
+        try:
+            value = np.asarray(own(case.args), dtype=np.float64)
+        except (ValueError, TypeError):
+            return False
+        return holds(exercise, case, Outcome("numbers", value, dtype="float64"))
+
+    wrong = next((case for case in cases if not right(case)), None)
+    if wrong is None or clock() - started > _SLOW * len(cases):
+        return np.array(-1.0)
+    usual = [case for case in cases if case is not wrong and (not case.about or wrong.about)]
+    for number, slip in enumerate(slips):
+        if clock() - started > _SECONDS:
+            break
+        with own.switches.set_to(slip):
+            if right(wrong) and all(map(right, usual)):
+                return np.array(float(number))
+    return np.array(-1.0)
