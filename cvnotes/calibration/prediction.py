@@ -120,7 +120,9 @@ def _variance_of_views(calibration: Calibration, of: Callable[[Camera], Array]) 
     C, here = calibration.covariance_of_views, of(calibration.camera)
     if not np.isfinite(C).all():  # known not at all
         return np.full(here.shape[:-1], np.inf)
-    if calibration.choice is None:
+    if calibration.tied:  # a valley is curved: left-out steps along it are no derivative's steps
+        C = max(calibration.times_noise, 1.0) ** 2 * calibration.covariance
+    if calibration.tied or calibration.choice is None:
         return _variance(calibration.camera, calibration.names, C, of)
     widest = np.zeros(here.shape[:-1])
     for model in calibration.choice.close:  # the chosen one among them
