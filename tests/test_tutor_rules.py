@@ -427,6 +427,13 @@ def test_two_mistakes_at_once_have_both_names(name, function, called):
     assert report.message.startswith("Two things: ")
 
 
+def test_what_explains_alone_is_not_called_two_things():
+    right = EXERCISES["dlt"].reference
+    for seed in (SEED, 11, 12):
+        report = judged(EXERCISES["dlt"], lambda *args: np.square(right(*args)), seed)
+        assert report.misconception == "squared"
+
+
 def test_counts_are_not_explained_by_nonsense_that_gives_the_same():
     def all_four_agree(src, dst, draws, t):
         return 4, np.ceil(np.log(0.001) / np.log(1 - (4 / len(src)) ** 4))

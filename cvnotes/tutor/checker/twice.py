@@ -59,6 +59,8 @@ def two_mistakes(answer: WrongAnswer) -> Found | None:
             and exercise.same(outcome.value, given, bound)
             and explains(gives, answer, exercise.same)
         ):
+            if first is None:
+                return Found(second.name, _sentence(second.said))
             said = f"Two things: {_sentence(first.said)} {_sentence(second.said)}"
             return Found(f"{first.name}, and {second.name}", said)
     return None
@@ -84,8 +86,10 @@ def _given(gives: Callable[..., Any], args: tuple[Any, ...]) -> Array | None:
 
 def _pairs(
     exercise: Exercise, args: tuple[Any, ...]
-) -> Iterator[tuple[_Way, _Way, Callable[..., Any]]]:
-    """Yield pairs of mistakes, with what both together give."""
+) -> Iterator[tuple[_Way | None, _Way, Callable[..., Any]]]:
+    """Yield pairs of mistakes, with what both together give; before them what explains alone."""
+    for change in _BESIDES:
+        yield None, change, _changed(change.gives, exercise.reference)
     listed = [
         _Way(mistake.name, mistake.sentence, gives)
         for mistake in exercise.misconceptions
