@@ -24,7 +24,7 @@ from cvnotes.show.explore.paper import Paper
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "docs" / "templates" / "front.md"
 PICTURE = ROOT / "docs" / "figures" / "front.png"
-EXPLORED = "fold"
+EXPLORED = "straighten"
 CARD = (480, 320)  # px: twice what is shown
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
 _IMAGE = re.compile(r'src="data:image/(?:png|jpeg);base64,([^"]+)"')
@@ -46,7 +46,7 @@ def front_page(live: bool, lite: bool) -> str:
         "SENTENCE": sentence(readme),
         "BUTTONS": buttons(live, lite),
         "EXPLORATION": exploration(live),
-        "INVITATION": "Pull the eye along its half circle." if live else "How a camera is found.",
+        "INVITATION": "Pull the row straight." if live else "What a lens does.",
         "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
         "WRONG": WRONG,
         "REPLY": escape(check("camera_centre", camera_centre).message),

@@ -194,16 +194,18 @@ def _draw_board(panel: Panel, camera: Camera, ink: str, dark: str) -> None:
 
 def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Panel:
     """Draw the half circles from the side, and say at which angles the eye sees each square."""
+    high, low = 1330, -518  # one scale for both axes, so that a half circle is one
     panel = paper.panel(
-        _SIDE, (-580, 960), (740, -160), "from the side: the height of the eye (px)"
+        _SIDE, (-580, 960), (high, low), "from the side: height of the eye over v0 (px)"
     )
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
     for k in reversed(range(len(H))):
         arc = np.array([circles[k].place(float(fold)) for fold in range(0, 181, 2)])
         panel.line(arc[:, 1:], _INKS[k], 2)
         sides, diagonals = angles(H[k], eye)
-        seen = f"photograph {k + 1}: sides {sides:.1f}°, diagonals {diagonals:.1f}°"
-        panel.text([-540, 690 - 65 * k], seen, _INKS[k], size=13)
+        seen = f"photograph {k + 1}", f"sides {sides:.1f}°", f"diagonals {diagonals:.1f}°"
+        for row, words in enumerate(seen):
+            panel.text([-520 + 720 * k, high - 130 - 100 * row], words, _INKS[k], size=13)
     panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
     panel.mark(eye[1:], "camera", 9)
     panel.grip("fold", "the fold", eye[1:], 4)

@@ -43,7 +43,7 @@ class _Study:
     def estimate(self, n: int, sigma: float, draw: int) -> tuple[Array, Array]:
         """Calibrate from n noisy views: the estimate minus the truth, and its own error bars."""
         problem, start = self._first(n)
-        noise = np.random.default_rng(draw).normal(0, 1, self.problem.m.shape)[:n]
+        noise = np.random.default_rng([1, draw]).normal(0, 1, self.problem.m.shape)[:n]
         noisy = replace(problem, m=problem.m + sigma * noise)
         found = minimise(noisy, start)
         std = np.sqrt(found.cost / problem.freedom * np.diag(covariance(found.system)))

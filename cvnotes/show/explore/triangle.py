@@ -41,7 +41,8 @@ def triangle_model() -> Model:
     @lru_cache(maxsize=2)
     def sheet(sharpness: int) -> Drawn:
         """Put the photograph on white paper, once for all values."""
-        photo = Bitmap.fromarray(render_scene(blocks(), camera, samples=4).astype(np.uint8))
+        pale = 0.4 * render_scene(blocks(), camera, samples=4) + 153  # for the lines drawn over it
+        photo = Bitmap.fromarray(pale.astype(np.uint8))
         paper = Bitmap.new("RGB", (sharpness * _SIZE[0], sharpness * _SIZE[1]), "white")
         scale = paper.width / np.ptp(_SHOWN[0])
         corner = (round(-scale * _SHOWN[0][0]), round(-scale * _SHOWN[1][0]))
