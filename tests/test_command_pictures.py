@@ -308,7 +308,7 @@ def test_names_of_files_are_words_and_what_is_not_used_is_there_with_its_reason(
 def test_what_is_not_reliable_is_said_first(found):
     doubtful = replace(found.calibration, reliable=False)
     said = Read(report_page(replace(found, calibration=doubtful, next_view=None))).words
-    assert "Not reliable" in said[: said.index("alpha_u")]
+    assert "This camera is not reliable." in said[: said.index("alpha_u")]
     assert "next photograph" not in said
 
 

@@ -119,7 +119,7 @@ def test_a_sheet_between_two_segments_is_flat_and_covers_all_that_lies_between_t
         assert np.allclose(40 * one[..., 0], side * 30 * one[..., 1], atol=1e-12)
         assert np.allclose([one[..., 1:].min((0, 1)), one[..., 1:].max((0, 1))],
                            [[0, 0], [40, 70]], atol=1e-12)  # fmt: skip
-        normals = np.cross(sheet[:, 2] - sheet[:, 0], sheet[:, 3] - sheet[:, 1]) / 2
+        normals = np.cross(one[:, 2] - one[:, 0], one[:, 3] - one[:, 1]) / 2
         assert np.allclose(normals, normals[0], atol=1e-12)  # equal pieces: none on another
         assert np.linalg.norm(normals, axis=1).sum() == pytest.approx(50 * 70)
     assert 0 < faces.colours[:, 3].max() < 0.5

@@ -73,7 +73,9 @@ def test_the_lens_ends_at_its_fold_and_arrows_are_its_displacement():
     ax = draw_radius(Lens(k=(-4 / 3,)))
     assert ax.texts[0].get_text() == "max_radius = 0.50"  # 1 + 3 k1 r² = 0
     arrows = draw_displacement(Lens(k=(0.4,))).collections[0]
-    assert (arrows.U[0], arrows.V[0]) == pytest.approx((-0.1, -0.1), abs=1e-12)  # k1 r² = 0.2
+    assert (arrows.U[0], arrows.V[0]) == pytest.approx(
+        (-0.3, -0.3), abs=1e-12
+    )  # 3 k1 r² x, r² = 0.5
 
 
 def test_maps_of_the_uncertainty_share_their_colours_where_they_are_to_be_compared():

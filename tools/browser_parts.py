@@ -344,18 +344,22 @@ def _installed(name: str) -> Iterator[tuple[str, Path]]:
 
 
 def _code() -> Iterator[tuple[str, Path]]:
-    """Yield the package, and of its data the cameras and measured corners: few bytes."""
+    """Yield the package, and of its data what explorations show: cameras, corners, a photograph."""
     for path in (ROOT / "cvnotes").rglob("*"):
         if path.is_file() and "__pycache__" not in path.parts:
             yield path.relative_to(ROOT).as_posix(), path
-    for path in (ROOT / "data").glob("*.json"):
-        yield f"cvnotes/course/data/{path.name}", path
+    for path in _shown():
+        yield f"cvnotes/course/{path.relative_to(ROOT).as_posix()}", path
+
+
+def _shown() -> list[Path]:
+    return [*(ROOT / "data").glob("*.json"), ROOT / "data/views/view_06.png"]
 
 
 def _data() -> Iterator[tuple[str, Path]]:
     """Return the rest of the course's data where an installed package has them."""
     for path in (ROOT / "data").rglob("*"):
-        if path.is_file() and (path.suffix, path.parent.name) != (".json", "data"):
+        if path.is_file() and path not in _shown():
             yield f"cvnotes/course/{path.relative_to(ROOT).as_posix()}", path
 
 

@@ -474,7 +474,8 @@ class CornersFirst(NormalEquations):
     def inverse(self) -> Array:
         """The part of the inverse that belongs to camera, bends, multipliers and poses."""
         S = self.arrow.shared - self.arrow.eliminated[1][:, :-1]
-        scale = np.sqrt(np.abs(np.diagonal(S)))  # (of multipliers it is negative)
+        size = np.abs(np.diagonal(S))  # (of multipliers it is negative, or 0)
+        scale = np.sqrt(np.where(size > 0, size, 1.0))
         inverse = solved(np.linalg.inv, S / np.outer(scale, scale), why=_UNDETERMINED)
         return np.asarray((inverse + inverse.T) / 2 / np.outer(scale, scale))
 

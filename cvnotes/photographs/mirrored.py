@@ -116,7 +116,10 @@ def _best_of(problem: Problem, x: State, costs: Array) -> Array | None:
     views = np.arange(costs.shape[1])
     held = replace(problem, W=problem.board(x.shared), shape=None, hold=None)
     at = State(x.shared[: len(problem.names)], x.R, x.T)
-    sides = Influence.of(held.some(views), at.some(views)).sides[:DIRECTIONS]
+    try:
+        sides = Influence.of(held.some(views), at.some(views)).sides[:DIRECTIONS]
+    except (CvnotesError, np.linalg.LinAlgError):  # the views hardly determine one camera
+        return None
     guesses = [costs[1:].min(0) < costs[0], *sides]
     best = None
     for stage, start in ((held, at), (problem, x)):

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, FileError
+from cvnotes.base import Array, FileError, whole
 from cvnotes.base.material import material
 from cvnotes.camera import Camera
 from cvnotes.files import read_camera, read_photo
@@ -73,7 +73,19 @@ def photos() -> list[npt.NDArray[np.uint8]]:
     >>> len(photos())
     12
     """
-    return [np.asarray(read_photo(_file(f"views/view_{i:02d}.png")).image) for i in range(12)]
+    return [photo(i) for i in range(12)]
+
+
+def photo(i: int) -> npt.NDArray[np.uint8]:
+    """Return one of the twelve pictures, grey (480, 640).
+
+    Examples
+    --------
+    >>> photo(6).shape
+    (480, 640)
+    """
+    i = whole(i, "i", at_least=0, at_most=11)
+    return np.asarray(read_photo(_file(f"views/view_{i:02d}.png")).image)
 
 
 def exact_corners() -> Array:

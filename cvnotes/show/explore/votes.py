@@ -45,7 +45,7 @@ def window_at(gradients: Array, at: tuple[int, int]) -> Window:
 
 def votes_model() -> Model:
     """Make the model of a window over one of the course's photographs."""
-    photo, corners = course.photos()[6], course.exact_corners()[6]
+    photo, corners = course.photo(6), course.exact_corners()[6]
     gradients = np.stack(np.gradient(photo.astype(float))[::-1], axis=-1)
     (u, v), far = (_LEFT + _HALF, _TOP + _HALF), _SIDE - 2 * _HALF - 1
     settings = (
