@@ -318,7 +318,7 @@ def _shape(node: ast.AST) -> str:
     if len(nodes) > _SHORT:
         return ""
     text = ast.unparse(node)
-    for name in {n.id for n in nodes if isinstance(n, ast.Name)} - {"np"}:
+    for name in dict.fromkeys(n.id for n in nodes if isinstance(n, ast.Name) and n.id != "np"):
         text = text.replace(name, "_")
     return re.sub(r"\d(?=[],])", "_", text)  # and whatever the index
 
