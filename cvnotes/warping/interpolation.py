@@ -1,6 +1,6 @@
 """A picture made ready to be looked up at many positions at once."""
 
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -97,14 +97,6 @@ def interpolate(
     return values.reshape(xy.shape[:-1] + sampler.channels)
 
 
-class Places(NamedTuple):
-    """Where positions lie in a framed picture: the same in all pictures of a size and type."""
-
-    pixel: npt.NDArray[np.integer[Any]]  # (n,) the one at the upper left, or the nearest
-    fractions: Real | None  # (2, n) Δu and Δv, to be interpolated
-    nowhere: npt.NDArray[np.intp] | None  # which positions show nothing
-
-
 class Sampler:
     """A picture made ready to be looked up at many positions; see `interpolate`."""
 
@@ -125,9 +117,6 @@ class Sampler:
         self.stride = self.width + 3
         self.strides = np.array([1.0, self.stride])
         self.limits = np.array([[self.width], [self.height]], dtype=np.float64)
-        # Two neighbours in a row are looked up as one number of twice their size.
-        self.bits = 8 * picture.dtype.itemsize
-        self.in_pairs = picture.dtype.kind == "u" and method == "bilinear"
         self.planes = [self._framed(picture, k) for k in range(self.fill.size)]
         self.all_finite = picture.dtype.kind != "f" or all(
             np.isfinite(plane).all() for plane in self.planes
@@ -137,57 +126,44 @@ class Sampler:
         """Frame channel k with `fill`, so that no position needs a test of its own."""
         framed = np.full((self.height + 3, self.stride), self.fill[k], picture.dtype)
         framed[1:-2, 1:-2] = picture.reshape(self.height, self.width, -1)[..., k]
-        plane = framed.reshape(-1)
-        if not self.in_pairs:
-            return plane
-        pairs = np.zeros(plane.size, f"u{2 * picture.dtype.itemsize}")
-        np.left_shift(plane[1:], self.bits, out=pairs[:-1], dtype=pairs.dtype)
-        pairs |= plane
-        return pairs
+        return framed.reshape(-1)
 
     def __call__(self, m: Array) -> Image:
         """Return the picture at m (2, n), rows u and v, as (n, channels); m is written over."""
         values = np.empty((m.shape[1], self.fill.size), self.dtype)
-        self.look_up(self.places(m), values)
+        self.look_up(m, values)
         return values
 
-    def places(self, m: Array) -> Places:
-        """Find m (2, n) in the framed picture; m is written over."""
+    @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
+    def look_up(self, m: Array, values: Image) -> None:
+        """Write the picture at m (2, n) into values (n, channels); m is written over."""
         nowhere = None
         if self.border != "constant":
-            unknown = ~np.isfinite(m).all(axis=0)
-            nowhere = np.flatnonzero(unknown) if unknown.any() else None
+            nowhere = ~np.isfinite(m).all(axis=0)
             m = np.where(np.isfinite(m), m, 0)
             m = np.stack(
                 [_fold(m[0], self.width, self.border), _fold(m[1], self.height, self.border)]
             )
-        if self.method == "nearest":
-            return Places(self._index(self._inside(np.floor(m + 0.5))), None, nowhere)
-        m = self._inside(m)
+        nearest = self.method == "nearest"
+        m = self._inside(np.floor(m + 0.5) if nearest else m)
         m_k = np.floor(m)
+        pixel = self._index(m_k)
         m -= m_k
-        working = np.float32 if self.dtype == np.uint8 else np.float64
-        return Places(self._index(m_k), m.astype(working, copy=False), nowhere)
-
-    @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
-    def look_up(self, places: Places, values: Image) -> None:
-        """Write the picture at places into values (n, channels)."""
-        pixel, fractions = places.pixel.astype(np.intp, copy=False), places.fractions
+        fractions = m.astype(np.float32 if self.dtype == np.uint8 else np.float64, copy=False)
         for k, plane in enumerate(self.planes):
-            if fractions is None:
-                values[:, k] = plane.take(pixel)
-            else:
-                values[:, k] = self._bilinear(plane, pixel, *fractions)
-        if places.nowhere is not None:
-            values[places.nowhere] = self.fill
+            values[:, k] = (
+                plane.take(pixel) if nearest else self._bilinear(plane, pixel, *fractions)
+            )
+        if nowhere is not None:
+            values[nowhere] = self.fill
 
     def _bilinear(
         self, plane: npt.NDArray[Any], index: npt.NDArray[np.intp], du: Real, dv: Real
     ) -> npt.NDArray[Any]:
         I1, I2, I3, I4 = (
-            found.astype(du.dtype, copy=False)
-            for row in (plane, plane[self.stride :])
-            for found in self._neighbours(row, index)
+            plane[below + right :].take(index).astype(du.dtype, copy=False)
+            for below in (0, self.stride)
+            for right in (0, 1)
         )
         if not self.all_finite:  # 0 · NaN is not 0
             I2, I4 = np.where(du == 0, I1, I2), np.where(du == 0, I3, I4)
@@ -197,15 +173,6 @@ class Sampler:
         if self.dtype.kind == "u":
             value += 0.5
         return value.astype(self.dtype, copy=False)
-
-    def _neighbours(
-        self, row: npt.NDArray[Any], index: npt.NDArray[np.intp]
-    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
-        """Return pixels, and those to the right of them."""
-        if not self.in_pairs:
-            return row.take(index), row[1:].take(index)
-        pair = row.take(index)
-        return pair & (2**self.bits - 1), pair >> self.bits
 
     def _inside(self, m: Array) -> Array:
         """Keep positions between −1 and width or height, where the frame begins; NaN at −1."""

@@ -125,6 +125,50 @@ def tiles(mapping: Mapping, size: tuple[int, int]) -> Iterator[tuple[slice, Arra
         m_h[1] += rows
 
 
+def factored(mapping: PixelMap, size: tuple[int, int]) -> tuple[Array, Array] | None:
+    """Write a smooth map of a picture as a product, some twenty times cheaper than the map itself.
+
+    Between the nodes u_j = cos(π j / n) a function as smooth as a lens is a polynomial of low
+    degree, up to rounding: m(u, v) = Σ T_i(v) c_ik T_k(u) with T_k(u) = cos(k arccos u), where the
+    picture reaches from −1 to 1. n is doubled until the last coefficients are below a millionth of
+    a pixel.
+
+    Returns
+    -------
+    tuple or None
+        T(v) (height, n + 1) and c Tᵀ(u) (2, n + 1, width), whose product is m for all pixels; None
+        where that needs more than 33 nodes, or a pixel has no image.
+
+    References
+    ----------
+    .. [1] L. N. Trefethen, *Approximation Theory and Approximation Practice*, SIAM 2013, ch. 3
+       and 7.
+
+    Examples
+    --------
+    >>> from cvnotes.warping import zoom_map
+    >>> rows, columns = factored(zoom_map(0.5), (640, 480))
+    >>> (rows @ columns)[:, 0, 1].round(9)
+    array([ 0.25, -0.25])
+    """
+    for n in (8, 16, 32):
+        angles = np.arange(n + 1) * np.pi / n
+        to_c = np.linalg.inv(_chebyshev(angles, n))
+        u, v = ((np.cos(angles) + 1) * (side - 1) / 2 for side in size)
+        c = to_c @ np.moveaxis(mapping(np.stack(np.meshgrid(u, v), axis=-1)), -1, 0) @ to_c.T
+        if not np.isfinite(c).all():
+            return None
+        if max(abs(c[:, -2:]).max(), abs(c[..., -2:]).max()) < 1e-6:
+            T_u, T_v = (_chebyshev(np.arccos(np.linspace(-1, 1, side)), n) for side in size)
+            return T_v, c @ T_u.T
+    return None
+
+
+def _chebyshev(angles: Array, n: int) -> Array:
+    """Return T_0 to T_n at the cosines of angles."""
+    return np.cos(np.multiply.outer(angles, np.arange(n + 1)))
+
+
 def columns_of(mapping: Mapping) -> Callable[[Array], Array]:
     """Return a map as a function from homogeneous columns (3, n) to columns (2, n)."""
     if isinstance(mapping, PixelMap):

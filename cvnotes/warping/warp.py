@@ -1,6 +1,5 @@
 """The two ways to move a picture by a map: forward, and backward (notes 2b.5)."""
 
-import os
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,12 +15,9 @@ from cvnotes.base import (
     points,
     target_size,
 )
-from cvnotes.base.parallel import in_order
-from cvnotes.warping.interpolation import Border, Method, Places, Sampler
+from cvnotes.warping.interpolation import Border, Method, Sampler
 from cvnotes.warping.maps import plane_map
 from cvnotes.warping.pixel_map import Mapping, tiles
-
-_WORKERS = max(2, min(os.cpu_count() or 1, 4))
 
 
 class ForwardWarp(NamedTuple):
@@ -155,31 +151,7 @@ def backward_warp(
     width, height = target_size((sampler.width, sampler.height) if size is None else size)
     target = np.empty((height * width, sampler.fill.size), sampler.dtype)
     for part, m in tiles(mapping, (width, height)):
-        sampler.look_up(sampler.places(m), target[part])
-    return target.reshape(height, width, *sampler.channels)
-
-
-# Where the pixels of a picture come from, tile by tile.
-Plan = list[tuple[slice, Places]]
-
-
-def planned(sampler: Sampler, mapping: Mapping, size: tuple[int, int]) -> Plan:
-    """Find where a backward warp looks pictures up that are like the sampler's."""
-    placed = ((part, sampler.places(m)) for part, m in tiles(mapping, size))
-    return [(part, at._replace(pixel=at.pixel.astype(np.int32))) for part, at in placed]
-
-
-def warped(sampler: Sampler, plan: Plan, size: tuple[int, int]) -> Image:
-    """Do what `backward_warp` does, where it is known from where pixels come."""
-    width, height = size
-    target = np.empty((height * width, sampler.fill.size), sampler.dtype)
-
-    def look_up(some: Plan) -> None:
-        for part, places in some:
-            sampler.look_up(places, target[part])
-
-    for _ in in_order(look_up, [plan[i::_WORKERS] for i in range(_WORKERS)], _WORKERS):
-        pass
+        sampler.look_up(m, target[part])
     return target.reshape(height, width, *sampler.channels)
 
 
