@@ -147,7 +147,7 @@ def test_every_photograph_is_listed_and_those_not_used_have_their_reasons(calibr
     for name, reason in reasons.items():
         assert reason in rejected[name]
         assert re.search(rf"^{re.escape(name)} +–  {re.escape(reason)}", done.stdout, re.M)
-    assert f"\n! {rejected['wall.png']}\n" in done.stdout  # too long for the table
+    assert f"\n! wall.png: {rejected['wall.png']}\n" in done.stdout  # too long for the table
     for i in range(8):
         assert re.search(rf"^view {i}\.png +0\.\d\d\d", done.stdout, re.M)
 

@@ -11,8 +11,10 @@ from PIL import Image
 from cvnotes.base import CvnotesError
 from cvnotes.commands.cli import main
 from cvnotes.commands.dropped import Dropped, Unknown, sheet
+from cvnotes.files.reasons import Copy, OtherSize, Rejected, together
 from cvnotes.photographs import calibrate_photographs, detect_photographs
 from cvnotes.photographs.driver import chessboard
+from cvnotes.photographs.reasons import Misfit
 
 ROOT = Path(__file__).resolve().parents[1]
 VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
@@ -195,3 +197,14 @@ def test_a_straightened_photograph_and_the_sheet_are_those_of_the_commands(dropp
     board = tmp_path / "board.pdf"
     main(["target", "--corners", "8x5", "--square", "30", "--paper", "A3", "--out", str(board)])
     assert sheet(8, 5, 30.0, "A3") == board.read_bytes()
+
+
+def test_what_photographs_miss_alike_is_said_once_though_their_numbers_differ():
+    rejected = [Rejected(f"{i}.png", Misfit(rms, 0.1)) for i, rms in enumerate((3.1, 2.2))]
+    rejected += [Rejected("a.png", OtherSize((3, 4), (4, 3))), Rejected("b.png", Copy("0.png"))]
+    moved, turned, copy = together(rejected)
+    assert moved.startswith("0.png, 1.png: was it moved, ")
+    assert (
+        turned == "a.png: 3×4 pixels where most photographs have 4×3; was it turned by an editor?"
+    )
+    assert copy == "b.png: the same picture as 0.png"

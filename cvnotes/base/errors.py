@@ -22,6 +22,8 @@ class CornersNotFound(CvnotesError):
     ----------
     brief : str
         What is wrong, without what was tried.
+    question : str
+        What probably went wrong, to ask whoever took the picture.
     found : ndarray, shape (n, 2), or None
         What was taken for the board.
     count : (columns, rows) or None
@@ -35,13 +37,14 @@ class CornersNotFound(CvnotesError):
         message: str,
         *,
         brief: str = "",
+        question: str = "",
         found: Any = None,
         count: tuple[int, int] | None = None,
         markers: str = "",
     ) -> None:
         super().__init__(message)
-        self.brief, self.found, self.count = brief or message, found, count
-        self.markers = markers
+        self.brief, self.question = brief or message, question
+        self.found, self.count, self.markers = found, count, markers
 
 
 class ConvergenceError(CvnotesError):

@@ -5,7 +5,6 @@ that the command writes, to the same digits.
 """
 
 import io
-from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -15,14 +14,13 @@ import numpy as np
 
 from cvnotes.base import Array, CornersNotFound, CvnotesError
 from cvnotes.base.writing import printable
-from cvnotes.calibration.doubts import Views
 from cvnotes.commands.calibrate import contents_of
 from cvnotes.commands.page import figures, words
 from cvnotes.commands.report import camera_report, note_of
 from cvnotes.commands.undistort import straightened
 from cvnotes.files import Reason, Rejected
 from cvnotes.files.photos import open_photo
-from cvnotes.files.reasons import Copy
+from cvnotes.files.reasons import Copy, together
 from cvnotes.photographs import (
     CalibratedPhotographs,
     Detection,
@@ -106,14 +104,14 @@ class Dropped:
             same reason.
         """
         self.found = None
-        together = sorted_out(self.board, self.seen.values())
+        photographs = sorted_out(self.board, self.seen.values())
         try:
-            self.found = found = calibrate_detected(together, Model(lens=lens))
+            self.found = found = calibrate_detected(photographs, Model(lens=lens))
         except NoCamera as error:
             return {
                 "error": str(error),
                 "instead": error.photographs.instead,
-                "reasons": grouped(error.photographs.rejected),
+                "reasons": together(error.photographs.rejected),
             }
         result, used = found.calibration, [photo.path.name for photo in found.photographs.used]
         shown = {photo.path.name for photo in self._detections() if photo.corners is not None}
@@ -128,7 +126,7 @@ class Dropped:
             "parameters": [list(row) for row in result.table()],
             "figures": "".join(figures(found)),
             "files": contents_of(found),
-            "reasons": grouped(found.photographs.rejected),
+            "reasons": together(found.photographs.rejected),
         }
 
     def straighten(self, path: str) -> dict[str, Any]:
@@ -225,20 +223,6 @@ def _inside(m: Array, corners: tuple[int, int], size: tuple[int, int]) -> bool:
 def sheet(columns: int, rows: int, square: float, paper: str) -> bytes:
     """Return the PDF of a board to print, as ``cvnotes target`` writes it."""
     return chessboard((columns, rows), square).sheet(paper).pdf()
-
-
-def grouped(rejected: Iterable[Rejected]) -> list[str]:
-    """Say in one sentence of all photographs with the same reason why they are not used."""
-    alike: dict[str, list[Rejected]] = {}
-    for each in rejected:
-        alike.setdefault(each.reason.brief, []).append(each)
-    return [_together(own) for own in alike.values()]
-
-
-def _together(rejected: list[Rejected]) -> str:
-    listed = Views(tuple(range(len(rejected)))).listed(lambda i: rejected[i].file, most=5)
-    in_all = f" ({len(rejected)} in all)" if listed.endswith("…") else ""
-    return f"{listed}{in_all}: {rejected[0].reason}"
 
 
 def _png(photo: Detection) -> bytes:

@@ -15,6 +15,7 @@ from cvnotes.calibration.prediction import angles_seen
 from cvnotes.calibration.reliability import widest_angle
 from cvnotes.files import Reason
 from cvnotes.files.ownership import TABLE_HEADER
+from cvnotes.files.reasons import together
 from cvnotes.photographs import Detection, Photographs
 
 if TYPE_CHECKING:
@@ -50,16 +51,15 @@ def as_text(blocks: Sequence[Block]) -> str:
 def photo_table(photographs: Photographs, result: "Calibration | None" = None) -> str:
     """Return the table of photographs: those used, with their RMS, then the rest with reasons.
 
-    A long reason is cut in the table, and stands once in full below it.
+    A long reason is cut in the table, and stands below it, once for all that have it.
     """
     names, rejected = photographs.named()
     rms = [""] * len(names) if result is None else [f"{x:.3f}" for x in result.view_rms]
     rows = [list(row) for row in zip(names, rms, notes_of(photographs, result), strict=True)]
     rows += [[r.file, "–", _fitting(r.reason)] for r in rejected]
-    long = dict.fromkeys(str(r.reason) for r in rejected if _fitting(r.reason) != str(r.reason))
-    return "\n".join(
-        [text_table([["photograph", "RMS (px)", "note"], *rows]), *(f"! {r}" for r in long)]
-    )
+    long = together(r for r in rejected if _fitting(r.reason) != str(r.reason))
+    table = text_table([["photograph", "RMS (px)", "note"], *rows])
+    return "\n".join([table, *(f"! {sentence}" for sentence in long)])
 
 
 def _fitting(reason: Reason) -> str:

@@ -6,7 +6,8 @@ from pathlib import Path
 from textwrap import shorten
 from typing import ClassVar, NamedTuple
 
-_FEW = 80  # letters of a reason in brief
+_FEW = 100  # letters of a reason in brief
+_LISTED = 5  # photographs that are named one by one
 
 
 @dataclass(frozen=True)
@@ -20,15 +21,24 @@ class Reason:
     """
 
     words: ClassVar[str]  # its fields stand in it by their names
-    more: ClassVar[str] = ""  # for which a line has no room
 
     def __str__(self) -> str:
-        return self.words.format(**vars(self)) + self.more
+        return "; ".join(filter(None, [self.said, self.question]))
+
+    @property
+    def said(self) -> str:
+        """What is wrong."""
+        return self.words.format(**vars(self))
+
+    @property
+    def question(self) -> str:
+        """What may have gone wrong or can be done, if that is known."""
+        return ""
 
     @property
     def brief(self) -> str:
-        """The words without what is more than a line."""
-        return shorten(str(self).removesuffix(self.more), _FEW, placeholder=" …")
+        """What is wrong, in a line."""
+        return shorten(self.said, _FEW, placeholder=" …")
 
 
 @dataclass(frozen=True)
@@ -47,15 +57,16 @@ class OtherSize(Reason):
     expected: tuple[int, int]
     of_camera: bool = False
 
-    def __str__(self) -> str:
-        turned = "; was it turned by an editor?" if self.size == self.expected[::-1] else ""
-        return f"{self.brief}{turned}"
-
     @property
-    def brief(self) -> str:
+    def said(self) -> str:
         """The two sizes."""
         whose = "the camera has" if self.of_camera else "most photographs have"
         return "{}×{} pixels where {whose} {}×{}".format(*self.size, *self.expected, whose=whose)
+
+    @property
+    def question(self) -> str:
+        """What editors do."""
+        return "was it turned by an editor?" if self.size == self.expected[::-1] else ""
 
 
 @dataclass(frozen=True)
@@ -72,7 +83,9 @@ class MadeByUs(Reason):
 
     command: str
 
-    def __str__(self) -> str:
+    @property
+    def said(self) -> str:
+        """What it is."""
         return {
             "calibrate": "a picture of results that cvnotes calibrate made, no photograph",
             "stereo": "made by cvnotes stereo: a rectified picture, no photograph",
@@ -85,6 +98,27 @@ class Rejected(NamedTuple):
 
     file: str
     reason: Reason
+
+
+def together(rejected: Iterable[Rejected]) -> list[str]:
+    """Say once for all photographs with like reasons why they are not used.
+
+    Examples
+    --------
+    >>> sizes = (OtherSize((4, 3), (3, 4)), OtherSize((8, 6), (6, 8)), Copy("a.png"))
+    >>> together(Rejected(*each) for each in zip("bcd", sizes))
+    ['b, c: was it turned by an editor?', 'd: the same picture as a.png']
+    """
+    alike: dict[str, list[Rejected]] = {}
+    for each in rejected:
+        alike.setdefault(each.reason.question or each.reason.said, []).append(each)
+    sentences = []
+    for words, own in alike.items():
+        names = ", ".join(each.file for each in own[:_LISTED])
+        names += f" … ({len(own)} in all)" * (len(own) > _LISTED)
+        same = len({each.reason.said for each in own}) == 1
+        sentences.append(f"{names}: {own[0].reason if same else words}")
+    return sentences
 
 
 # Endings of photographs; what else lies in a folder was not asked for.

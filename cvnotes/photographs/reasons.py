@@ -6,7 +6,7 @@ from cvnotes.base import CornersNotFound
 from cvnotes.calibration.doubts import Doubt
 from cvnotes.files import Reason
 
-_ALL_THE_SAME = "left out; --keep-all uses it all the same"
+_ALL_THE_SAME = "--keep-all uses it all the same"
 
 
 @dataclass(frozen=True)
@@ -31,13 +31,15 @@ class NoBoard(Reason):
 
     error: CornersNotFound
 
-    def __str__(self) -> str:
-        return str(self.error)
-
     @property
-    def brief(self) -> str:
+    def said(self) -> str:
         """What is there instead."""
         return self.error.brief
+
+    @property
+    def question(self) -> str:
+        """What probably went wrong."""
+        return self.error.question
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Misfit(Reason):
     rms: float
     typical: float
     words = "does not fit the others: {rms:.2f} px, a typical photograph {typical:.2f} px"
-    more = f" (moved, zoomed, rotated or badly found; {_ALL_THE_SAME})"
+    question = f"was it moved, zoomed, rotated or badly found? {_ALL_THE_SAME}"
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Exchanged(Reason):
     """The camera explains it better with left and right exchanged."""
 
     words = "left and right seem exchanged"
-    more = f" ({_ALL_THE_SAME})"
+    question = _ALL_THE_SAME
 
 
 class Mixed(Doubt):

@@ -68,7 +68,9 @@ def _not_found(
     )
     there, question = _guess(board, corners, seen)
     brief = f"{start}: {there}"
-    return CornersNotFound(f"{brief}; {question}", brief=brief, markers=seen.other)
+    return CornersNotFound(
+        f"{brief}; {question}", brief=brief, question=question, markers=seen.other
+    )
 
 
 def _guess(board: CharucoBoard, corners: int, seen: Numbered) -> tuple[str, str]:

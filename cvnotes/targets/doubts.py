@@ -67,17 +67,19 @@ def not_found(
         return CornersNotFound(few)
     if markers:
         there = f"{start}: there are markers of {markers}"
-        lesson = f"{there}; is it a ChArUco board (--charuco, with the name of its markers)?"
-        return CornersNotFound(lesson, brief=there, markers=markers)
+        question = "is it a ChArUco board (--charuco, with the name of its markers)?"
+        lesson = f"{there}; {question}"
+        return CornersNotFound(lesson, brief=there, question=question, markers=markers)
     of_copy: dict[str, str] = {}
     for each in tried:  # of a copy the largest that was found says most
         of_copy.setdefault(each.partition(":")[0], each)
-    lesson = f"{start} ({'; '.join(of_copy.values())}); {_guess(board, doubts)}"
+    question = _guess(board, doubts)
+    lesson = f"{start} ({'; '.join(of_copy.values())}); {question}"
     if not doubts:
-        return CornersNotFound(lesson, brief=start)
+        return CornersNotFound(lesson, brief=start, question=question)
     most = max(doubts, key=lambda doubt: 0 if doubt.found is None else len(doubt.found))
-    brief = f"{start}: {most.instead}"
-    return CornersNotFound(lesson, brief=brief, found=most.found, count=_largest(doubts))
+    brief, count = f"{start}: {most.instead}", _largest(doubts)
+    return CornersNotFound(lesson, brief=brief, question=question, found=most.found, count=count)
 
 
 def _guess(board: Chessboard, doubts: list[NotABoard]) -> str:
@@ -87,7 +89,7 @@ def _guess(board: Chessboard, doubts: list[NotABoard]) -> str:
     # Where the board that was asked for was found, a smaller one is a part of it.
     if count and (count[0] * count[1] > long * short or all(doubt.count for doubt in doubts)):
         columns, rows = count
-        there = f"but a board of {columns}×{rows} inner corners is there"
+        there = f"a board of {columns}×{rows} inner corners is there"
         if (columns, rows) == (long - 1, short - 1):
             return f"{there}: were its squares counted instead of its inner corners?"
         if columns > long or rows > short:
