@@ -12,7 +12,7 @@ from cvnotes.show.style import ESTIMATED, MUTED
 from cvnotes.targets import Chessboard
 
 _INK = "#262629"
-_PALE = "#E2E2E2"  # squares that arrows lie on
+_PALE = "#E2E2E2"  # squares that arrows or letters lie on
 _HEAD = 8  # px, of an arrow
 _ASIDE = 13  # px from what a name belongs to
 # Seen a little from above and from the right: x to the right, y down, z to the left and away.
@@ -70,7 +70,7 @@ def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:
     """Draw shapes of the world as seen from far away, in the order in which they are given."""
     for shape in shapes:
         if isinstance(shape, Faces):
-            panel.polygons(on_sheet(shape.corners[_dark(shape)]), _INK)
+            panel.polygons(on_sheet(shape.corners[_dark(shape)]), _PALE)
         elif isinstance(shape, Lines):
             panel.segments(on_sheet(shape.ends), shape.colour, shape.width)
         elif isinstance(shape, Label):

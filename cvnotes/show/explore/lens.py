@@ -109,7 +109,8 @@ def _draw_grid(panel: Panel, lens: Lens) -> None:
 def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
     """Draw the border of the camera's picture, and the fold's."""
     corners = camera_corners(camera)
-    panel.line(corners[[0, 1, 2, 3, 0]], CAMERA, 2.2)
+    for colour, width in (("#FFFFFF", 5), (CAMERA, 2.6)):
+        panel.line(corners[[0, 1, 2, 3, 0]], colour, width)
     if lens.max_radius < 2 * _EXTENT:
         phi = np.linspace(0, 2 * np.pi, 121)
         circle = lens.max_radius * np.stack([np.cos(phi), np.sin(phi)], -1)

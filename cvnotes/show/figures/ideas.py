@@ -48,7 +48,7 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     >>> [text.get_text().split(":")[0] for text in draw_meanings().texts][2:4]
     ['the truth, or what an exact formula says', 'a point in a picture, as the lens shows it']
     """
-    ax = drawn_on(ax, height=170)
+    ax = drawn_on(ax, width=450, height=150)
     for row, (meaning, words) in enumerate(_MEANINGS.items()):
         ax.plot([0.02, 0.12], [row, row], "-", color=COLOURS[meaning], linewidth=2)
         ax.plot(0.07, row, MARKERS[meaning], color=COLOURS[meaning], markersize=9)

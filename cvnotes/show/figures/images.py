@@ -161,6 +161,6 @@ def _write(ax: "Axes", text: str, where: Array, colour: str) -> None:
     margin = 0.04 * max(right, bottom)
     u, v = np.clip(where, margin, [right - margin, bottom - margin])
     ax.text(
-        u, v, text, color=colour, fontsize=FONT, fontweight="bold",
+        u, v, text, color=colour, fontsize=FONT + 3, fontweight="bold",
         ha="center", va="center", path_effects=halo(),
     )  # fmt: skip

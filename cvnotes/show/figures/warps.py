@@ -102,7 +102,7 @@ def draw_cell(
     du, dv : float
         Fractions of the point, in [0, 1].
     areas : bool
-        Colour the four rectangles, and write into each the pixel of which it is the weight.
+        Shade the four rectangles, the larger the darker, and write into each the pixel of which it is the weight.
     solved : bool
         Write the values between the pixels, too.
 
@@ -138,15 +138,14 @@ def draw_cell(
 
 
 def _weights(ax: "Axes", du: float, dv: float) -> None:
-    """Colour the rectangles around a point; each is the weight of the pixel opposite to it."""
+    """Shade the rectangles around a point; each is the weight of the pixel opposite to it."""
     from matplotlib.patches import Rectangle
 
     sides = ((0, du), (du, 1 - du)), ((0, dv), (dv, 1 - dv))
-    tints = ("#F0E442", "#CC79A7", "#56B4E9", "#009E73")  # I1 to I4
-    for n, tint in enumerate(tints):
+    for n in range(4):
         # The rectangle opposite to I1, top left, is the one at the bottom right.
         (u, wide), (v, high) = sides[0][1 - n % 2], sides[1][1 - n // 2]
-        ax.add_patch(Rectangle((u, v), wide, high, fc=tint, alpha=0.35, lw=0))
+        ax.add_patch(Rectangle((u, v), wide, high, fc=MUTED, alpha=wide * high, lw=0))
         words = f"$I_{n + 1}$ × {wide * high:.2f}"
         ax.text(u + wide / 2, v + high / 2 + 0.07, words, ha="center", fontsize=FONT)
 
