@@ -1,5 +1,6 @@
 """Figures on axes, scenes in space and explorations with sliders, for all chapters."""
 
+from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
 from cvnotes.show.explore import (
     explore_camera,
@@ -65,7 +66,7 @@ from cvnotes.show.space.shapes import (
 )
 from cvnotes.show.space.stills import draw_scene
 from cvnotes.show.space.viewer import Viewer, build_scene, export_glb, show_scene
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, panels
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD
 
 __all__ = [
     # a picture on the page

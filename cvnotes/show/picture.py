@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, whole
-from cvnotes.show.style import DPI, darken_words
+from cvnotes.show.axes import darken_words
+from cvnotes.show.style import DPI
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

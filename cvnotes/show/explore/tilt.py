@@ -7,7 +7,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
-from cvnotes.show.explore.boards import draw_arrows
+from cvnotes.show.explore.boards import draw_arrows, draw_net
 from cvnotes.show.explore.finding import rms
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
@@ -76,7 +76,7 @@ def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Drawing:
         _PICTURE, lenses.long.size, f"one board, two lenses (arrows × {_MAGNIFIED})"
     )
     for m, colour, width in ((one, LENS, 2.4), (other, ESTIMATED, 1.2)):
-        _draw_net(picture, m, lenses.board, colour, width)
+        draw_net(picture, m, lenses.board, colour, width)
     draw_arrows(picture, one, _MAGNIFIED * (other - one))
     w, h = lenses.long.size
     picture.text(
@@ -96,14 +96,6 @@ def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Drawing:
     else:
         sentence += f"with corners good to 0.1 px that is {misfit / 0.1:.0f} times the noise."
     return Drawing(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
-
-
-def _draw_net(panel: Panel, m: Array, board: Chessboard, colour: str, width: float) -> None:
-    """Draw rows and columns of corners as lines."""
-    columns, rows = board.corners
-    grid = m.reshape(rows, columns, 2)
-    for line in (*grid, *grid.transpose(1, 0, 2)):
-        panel.line(line, colour, width)
 
 
 def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:

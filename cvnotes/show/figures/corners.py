@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, DegenerateError, ShapeError, numbers, points
+from cvnotes.show.axes import as_picture, drawn_on, panels
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, MUTED, as_picture, drawn_on, panels
+from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

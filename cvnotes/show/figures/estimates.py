@@ -8,8 +8,9 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
+from cvnotes.show.axes import as_picture, beside, drawn_on, panels
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, beside, drawn_on, panels
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,9 +74,9 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
     -------
     ndarray of two Axes
         The RMS on the left; on the right the relative errors of α_u on a logarithmic axis: a dot
-        for each repetition, a thick line for their median, and a thin one for what the standard deviations
-        promised for it: 0.674 times their own median, for half of all Gaussian errors are smaller.
-        Orange are those whose errors are more than twice what was promised.
+        for each repetition, a thick line for their median, and a thin one for what the standard
+        deviations promised for it: 0.674 times their own median, for half of all Gaussian errors
+        are smaller. Orange are those whose errors are more than twice what was promised.
     """
     if not thing(results, "results", Mapping):  # type: ignore[type-abstract]
         raise CvnotesError("results: expected at least one set of views")

@@ -8,22 +8,9 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, ShapeError, matrix, real
 from cvnotes.projective import apply
+from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter
 from cvnotes.show.guards import texts
-from cvnotes.show.style import (
-    CAMERA,
-    COLOURS,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MARKERS,
-    MUTED,
-    WORLD,
-    arrow,
-    beside,
-    drawn_on,
-    halo,
-)
+from cvnotes.show.style import CAMERA, COLOURS, ESTIMATED, FONT, IDEAL, LENS, MARKERS, MUTED, WORLD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -225,7 +212,4 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
 
 
 def _label(ax: "Axes", text: str, at: tuple[float, float], colour: str) -> None:
-    ax.text(
-        *at, text, color=colour, fontsize=FONT + 1, ha="center", va="center",
-        path_effects=halo(), zorder=6,
-    )  # fmt: skip
+    letter(ax, text, at, colour, fontsize=FONT + 1, zorder=6)

@@ -7,20 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, matrix, numbers, points
+from cvnotes.show.axes import arrow, beside, drawn_on, panels
 from cvnotes.show.guards import thing
-from cvnotes.show.style import (
-    CAMERA,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MUTED,
-    WORLD,
-    arrow,
-    beside,
-    drawn_on,
-    panels,
-)
+from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -169,8 +158,8 @@ def draw_valley(
     levels = np.unique(np.quantile(z, np.linspace(0, 1, 25) ** 2))  # most of them where it is low
     if len(levels) == 1:
         levels = levels + [0.0, 1.0]
-    look: Any = {"levels": levels, "norm": BoundaryNorm(levels, 256), "cmap": "Greys", "alpha": 0.75}
-    shade = ax.contourf(x, y, z, **look)
+    norm = BoundaryNorm(levels, 256)
+    shade = ax.contourf(x, y, z, levels=levels, norm=norm, cmap="Greys", alpha=0.75)
     whole = np.arange(np.ceil(levels[0]), levels[-1] + 1e-9)
     bar = ax.figure.colorbar(shade, ax=ax, shrink=0.8, label="log₁₀ of the cost", ticks=whole)
     bar.ax.tick_params(labelsize=FONT - 1)

@@ -7,18 +7,9 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError, InputTypeError
 from cvnotes.camera import AnyLens, Lens
+from cvnotes.show.axes import beside, drawn_on, panels
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import (
-    COLOURS,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MUTED,
-    beside,
-    drawn_on,
-    panels,
-)
+from cvnotes.show.style import COLOURS, ESTIMATED, FONT, IDEAL, LENS, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

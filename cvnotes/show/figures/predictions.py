@@ -8,8 +8,9 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, ShapeError, number, points
 from cvnotes.calibration import Calibration, prediction_std
+from cvnotes.show.axes import as_picture, drawn_on, picture_axes
 from cvnotes.show.guards import calibrated, count, eight_bits, pictures
-from cvnotes.show.style import ESTIMATED, FONT, as_picture, drawn_on, picture_axes
+from cvnotes.show.style import ESTIMATED, FONT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,20 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, ShapeError, number, numbers
+from cvnotes.show.axes import beside, drawn_on, panels
 from cvnotes.show.figures.images import draw_image
 from cvnotes.show.guards import eight_bits, one_point, pictures
-from cvnotes.show.style import (
-    CAMERA,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MUTED,
-    WORLD,
-    beside,
-    drawn_on,
-    panels,
-)
+from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,7 +92,8 @@ def draw_cell(
     du, dv : float
         Fractions of the point, in [0, 1].
     areas : bool
-        Shade the four rectangles, the larger the darker, and write into each the pixel of which it is the weight.
+        Shade the four rectangles, the larger the darker, and write into each the pixel of which
+        it is the weight.
     solved : bool
         Write the values between the pixels, too.
 

@@ -7,8 +7,8 @@ from cvnotes.base import Array, CvnotesError, ShapeError, number, points
 from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
 from cvnotes.show.guards import eight_bits, one_point
-from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes, colour_of
-from cvnotes.show.style import CAMERA, WORLD, rgb
+from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes
+from cvnotes.show.style import CAMERA, WORLD, colour_of, rgb
 
 
 def camera_shapes(
