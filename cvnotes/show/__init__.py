@@ -36,7 +36,6 @@ from cvnotes.show.figures.lenses import (
     draw_angles,
     draw_displacement,
     draw_grid,
-    draw_lenses,
     draw_newton,
     draw_radius,
 )
@@ -44,7 +43,7 @@ from cvnotes.show.figures.lines import draw_classes, draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_board_shape, draw_coverage, draw_residuals
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
-from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits, draw_rows
+from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
@@ -98,7 +97,6 @@ __all__ = [
     "draw_half_pixels",
     # chapter 4: lenses
     "draw_grid",
-    "draw_lenses",
     "draw_radius",
     "draw_displacement",
     "draw_newton",
@@ -125,7 +123,6 @@ __all__ = [
     "draw_forward",
     "draw_hits",
     "draw_cell",
-    "draw_rows",
     "draw_disparity",
     # in space
     "draw_scene",

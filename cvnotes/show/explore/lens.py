@@ -1,6 +1,6 @@
 """Explore the lens: what k1, k2, k3, p1 and p2 do to a room and a grid, and where it folds."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from PIL import Image
@@ -38,7 +38,7 @@ def lens_model(camera: Camera) -> Model:
         "A room and a square grid, both seen through a lens; beside it the observed radius "
         "r L(r) over the ideal radius r, with the fold where the model ends."
     )
-    return Model("lens", about, settings, lambda paper, values: _draw(camera, paper, values))
+    return Model("lens", about, settings, partial(_draw, camera))
 
 
 def _around(name: str, reach: float, step: float, value: float, about: str) -> Setting:

@@ -1,6 +1,6 @@
 """Explore the tilt: one board's picture by a long lens, and the best a lens half as long can do."""
 
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -62,14 +62,12 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
         "placed so that the pictures are most alike; beside it how far they differ, over the tilt."
     )
 
-    def draw(paper: Paper, values: Values) -> Drawing:
-        return _draw(lenses, paper, values["tilt"])
-
     drags = {"tilt": lambda _, at: {"tilt": float(at[0])}}
-    return Model("tilt", about, settings, draw, drags)
+    return Model("tilt", about, settings, partial(_draw, lenses), drags)
 
 
-def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Drawing:
+def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
+    tilt = values["tilt"]
     one, other, near, turned = lenses.seen(tilt)
     alpha, short = lenses.long.A[0, 0], lenses.short.A[0, 0]
     picture = paper.picture_panel(

@@ -1,15 +1,14 @@
 """Figures of warps: pixels hit or missed, the cell between four pixels, rows and disparity."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, ShapeError, number, numbers
-from cvnotes.show.axes import beside, drawn_on, panels
+from cvnotes.show.axes import beside, drawn_on
 from cvnotes.show.figures.images import draw_image
-from cvnotes.show.guards import eight_bits, one_point, pictures
+from cvnotes.show.guards import eight_bits, one_point
 from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
 
 if TYPE_CHECKING:
@@ -186,31 +185,3 @@ def draw_disparity(point: npt.ArrayLike, b: float, f: float, *, ax: "Axes | None
     ax.set_title("The orange triangle is the green one, smaller: d / α = b / Z")
     ax.set(xticks=[], yticks=[])
     return ax
-
-
-def draw_rows(
-    before: Sequence[npt.ArrayLike], after: Sequence[npt.ArrayLike]
-) -> npt.NDArray[np.object_]:
-    """Draw a stereo pair before and after rectification, with nine rows running through both.
-
-    Parameters
-    ----------
-    before, after : two pictures each
-        Left and right, all of one size.
-
-    Returns
-    -------
-    ndarray of Axes, shape (2, 2)
-    """
-    pairs = pictures(before, "before"), pictures(after, "after")
-    if len(pairs[0]) != 2 or len(pairs[1]) != 2:
-        raise CvnotesError("before and after: expected two pictures each, left and right")
-    axes: npt.NDArray[np.object_] = panels(2, 2, width=900, height=720, sharey=True)
-    titles = (("left camera", "right camera"), ("left, rectified", "right, rectified"))
-    for row, pair, names in zip(axes, pairs, titles, strict=True):
-        for ax, picture, name in zip(row, pair, names, strict=True):
-            draw_image(picture, ax=ax, title=name)
-            for v in np.linspace(0, picture.shape[0] - 1, 11)[1:-1]:
-                ax.axhline(v, color=ESTIMATED, lw=0.9)
-        row[1].set_ylabel("")
-    return axes
