@@ -59,13 +59,12 @@ from cvnotes.show.space.shapes import (
     Photo,
     arrow_shapes,
     axes_shapes,
-    colour_of,
     scene_shapes,
     target_shapes,
 )
 from cvnotes.show.space.stills import draw_scene
 from cvnotes.show.space.viewer import Viewer, build_scene, export_glb, show_scene
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, colour_of
 
 __all__ = [
     # a picture on the page

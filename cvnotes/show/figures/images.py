@@ -77,8 +77,9 @@ def draw_points(
     m = positions(m, "m")
     colour = colour_of(meaning)
     ax = pixel_axes(ax, size)
+    u, v = m.reshape(-1, 2).T
     ax.scatter(
-        *m.reshape(-1, 2).T, s=36, marker=MARKERS[meaning], color=colour, linewidths=1.4,
+        u, v, s=36, marker=MARKERS[meaning], color=colour, linewidths=1.4,
         path_effects=halo(), label=label or None, zorder=3,
     )  # fmt: skip
     if label:
