@@ -245,41 +245,6 @@ def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explor
     print(median)
 
 
-# What of an exploration's controls its picture covers, or the border of the page.
-COVERED = """box => {
-    const picture = box.querySelector('.explore-stage').getBoundingClientRect();
-    const parts = [...box.querySelectorAll('.explore-control > *, .explore-controls button')];
-    return parts.filter(part => {
-        const { left, right, top, bottom } = part.getBoundingClientRect();
-        const beside = right <= picture.left || left >= picture.right;
-        return right > innerWidth || !(beside || bottom <= picture.top || top >= picture.bottom);
-    }).map(part => part.textContent);
-}"""
-MOVE = """(input, value) => {
-    if (input.type === "checkbox") input.checked = !!value;
-    else input.value = value;
-    input.dispatchEvent(new Event("input", { bubbles: true }));
-}"""
-
-
-@pytest.mark.slow
-def test_every_slider_reaches_both_its_ends_on_a_telephone_and_nothing_covers_it(all_explorations):
-    page = all_explorations
-    page.set_viewport_size({"width": 390, "height": 900})
-    for name, box in explorations(page).items():
-        for i, setting in enumerate(MODELS[name].settings):
-            slider = box.locator(".explore-controls input").nth(i)
-            for value in (setting.low, setting.high, setting.value):
-                at = slider.evaluate("i => i.type === 'checkbox' ? +i.checked : +i.value")
-                if value != at:
-                    shown = box.evaluate(SHOWN)
-                    slider.evaluate(MOVE, value)
-                    becomes_another(page, box, shown)
-            assert box.evaluate(COVERED) == [], (name, setting.name)
-        assert says(box, MODELS[name].drawing().sentence)
-    page.set_viewport_size({"width": 1400, "height": 900})
-
-
 def test_the_browsers_picture_is_the_notebooks(all_explorations):
     page = all_explorations
     box = explorations(page)["camera"]
