@@ -34,6 +34,8 @@
 // What the theme and docutils say of themselves, so that every reader program understands it.
 addEventListener("load", () => {
   for (const button of document.querySelectorAll(".search-button-field")) button.removeAttribute("aria-label");
+  for (const fold of document.querySelectorAll(".bd-links summary"))
+    fold.ariaLabel = `Pages of ${fold.closest("li").querySelector("a").textContent.trim()}`;
   for (const entry of document.querySelectorAll('[role="list"] > [role="doc-biblioentry"]'))
     entry.setAttribute("role", "listitem");
   // A formula that is wider than the page is scrolled by the keyboard too.

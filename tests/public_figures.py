@@ -160,7 +160,6 @@ FIGURES = [
     figure(lenses.draw_newton, {"r_lens": (0.4, ONE)}, lens=LENS),
     figure(lenses.draw_angles, {}, lenses={"a": LENS}),
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
-    figure(lenses.draw_lenses, {}, lenses=[("a", LENS), ("b", LENS)]),
     figure(lenses.draw_radius, {"up_to": (1.5, ONE)}, lens=LENS),
     figure(lenses.draw_displacement, {}, lens=LENS),
     # lines
@@ -205,7 +204,6 @@ FIGURES = [
         warps.draw_cell,
         {"values": (np.array([0.0, 10, 20, 30]), several(4)), "du": (0.5, ONE), "dv": (0.25, ONE)},
     ),
-    figure(warps.draw_rows, {"before": (PAIR, PICTURE), "after": (PAIR, PICTURE)}),
     # what 3-D figures are made of
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
     figure(

@@ -5,7 +5,7 @@ import pytest
 
 from cvnotes.base import DegenerateError, ShapeError
 from cvnotes.camera import Camera, Lens, intrinsics, look_at
-from cvnotes.show import draw_arrow, draw_cube, draw_wall
+from cvnotes.show import draw_arrow, draw_cube
 
 CENTRE = np.array([320.0, 240])
 SENSOR = intrinsics(400, 400, *CENTRE)
@@ -80,15 +80,3 @@ def test_the_lens_bends_the_edges():
 def test_a_cube_behind_the_camera_is_refused():
     with pytest.raises(DegenerateError, match="no image"):
         draw_cube(Camera(SENSOR), SIDE)
-
-
-# Corners on the wall.
-
-
-def test_corners_are_marked_in_the_small_copy_that_they_belong_to():
-    images = [np.zeros((48, 64), np.uint8)] * 3
-    corners = [[[0, 0]], [[40, 20]], [[8, 4]]]
-    (marks,) = draw_wall(images, columns=2, corners=corners).lines
-    assert marks.get_xydata().tolist() == [[0, 0], [20 + 10, 5], [2, 16 + 1]]
-    with pytest.raises(ShapeError, match=r"expected \(3, n, 2\), got \(2, 1, 2\)"):
-        draw_wall(images, corners=corners[:2])

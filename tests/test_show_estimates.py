@@ -12,9 +12,13 @@ from cvnotes.show import ESTIMATED, LENS, draw_plane_error, draw_view_families
 ALPHA = float(RESULT.A[0, 0])
 
 
+def medians(ax):
+    """Return the thick lines: of each family its dots, their median and the promise are drawn."""
+    return ax.lines[1::3]
+
+
 def colours(ax):
-    return ["#{:02X}{:02X}{:02X}".format(*(round(255 * c) for c in p.get_facecolor()[:3]))
-            for p in ax.patches]  # fmt: skip
+    return [line.get_color() for line in medians(ax)]
 
 
 def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to_be_expected():
@@ -28,7 +32,8 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     assert left.yaxis_inverted()  # the first family on top
     rms = [line.get_xdata() for line in left.lines]
     assert np.allclose(np.concatenate(rms), RESULT.rms * np.array([1, 1, 2, 2, 1]))
-    assert np.allclose([p.get_width() for p in right.patches], [25.0, 50.0], atol=0.01)  # medians
+    shown = [line.get_xdata() for line in medians(right)]
+    assert np.allclose(shown, [[25.0, 25.0], [50.0, 50.0]], atol=0.01)
     assert colours(right) == [ESTIMATED, ESTIMATED]  # such errors were never promised
     assert [t.get_text() for t in right.texts] == [
         "25 %, beyond its promise", "50 %, beyond its promise"
@@ -37,7 +42,7 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     near = draw_view_families({"kept": [RESULT]}, truth=RESULT.A[0, 0] - 1.9 * std)[1]
     far = draw_view_families({"broken": [RESULT]}, truth=RESULT.A[0, 0] - 2.1 * std)[1]
     assert (colours(near), colours(far)) == ([LENS], [ESTIMATED])
-    dots, promise = right.lines[:2]
+    dots, _, promise = right.lines[:3]
     assert np.allclose(dots.get_xdata(), 25)
     assert np.allclose(promise.get_xdata(), 0.674 * 125 * RESULT.std["alpha_u"] / ALPHA)
     assert right.get_xscale() == "log"

@@ -15,7 +15,6 @@ from cvnotes.show import (
     draw_hits,
     draw_prediction_error,
     draw_radius,
-    draw_rows,
     draw_wall,
 )
 
@@ -25,12 +24,6 @@ def test_a_wall_fills_rows_from_the_left_with_every_fourth_pixel():
     wall = draw_wall(shades, columns=2).images[0].get_array()
     assert wall.shape == (8, 12)  # two rows of 2 px, two columns of 4 px, and a gap of 4 px
     assert [wall[0, 0], wall[0, 8], wall[6, 0], wall[6, 8]] == [10, 20, 30, 255]
-
-
-def test_rows_run_through_both_pictures_of_both_pairs():
-    axes = draw_rows([np.zeros((21, 9))] * 2, [np.ones((21, 9))] * 2)
-    for ax in axes.flat:
-        assert [line.get_ydata()[0] for line in ax.lines] == [2, 4, 6, 8, 10, 12, 14, 16, 18]
 
 
 def test_a_cell_interpolates_along_u_first():

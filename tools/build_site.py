@@ -95,9 +95,10 @@ def reference_page(name: str) -> str:
     return "\n".join([*lines, "```", ""])
 
 
-def toctree(caption: str, pages: list[str]) -> str:
-    """Write a part of the table of contents."""
-    lines = ["", "```{toctree}", ":hidden:", f":caption: {caption}", "", *pages, "```", ""]
+def toctree(pages: list[str] | tuple[str, ...], caption: str = "") -> str:
+    """Write a part of the table of contents; without a caption it is seen on its page, too."""
+    options = [":hidden:", f":caption: {caption}"] if caption else [":maxdepth: 1"]
+    lines = ["", "```{toctree}", *options, "", *pages, "```", ""]
     return "\n".join(lines)
 
 
@@ -127,7 +128,7 @@ def collect(source: Path, live: bool, lite: bool) -> None:
     teaching.write_text(numbered(teaching.read_text(encoding="utf-8"), made), encoding="utf-8")
     shutil.copytree(ROOT / FIGURES, source / FIGURES)
     notebooks = sorted(path.stem for path in ROOT.glob("notebooks/*.ipynb"))
-    contents = toctree("The course", [f"notebooks/{name}" for name in notebooks])
+    contents = toctree([f"notebooks/{name}" for name in notebooks], "The course")
     paths = [*sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("docs/sheets/*.md"))]
     docs = [str(path.relative_to(ROOT).with_suffix("")) for path in paths]
     if live:
@@ -135,14 +136,17 @@ def collect(source: Path, live: bool, lite: bool) -> None:
         for path in pages:
             text = with_boards(path.read_text(encoding="utf-8"))
             (source / path.name).write_text(text, encoding="utf-8")
-        contents += toctree("In this browser", [path.stem for path in pages])
-    contents += toctree("To look things up", [*docs, "data/README"])
+        contents += toctree([path.stem for path in pages], "In this browser")
+    contents += toctree([*docs, "data/README"], "To look things up")
     (source / "reference").mkdir()
+    reference = "# Reference\n\nWhat is public in each part of the package.\n"
     for caption, names in REFERENCE.items():
         for name in names:
             (source / "reference" / f"{name}.md").write_text(reference_page(name))
-        contents += toctree(caption, [f"reference/{name}" for name in names])
-    contents += toctree("The project", ["About <README>", "CONTRIBUTING", "CHANGELOG"])
+        reference += f"\n## {caption}\n" + toctree(names)
+    (source / "reference" / "index.md").write_text(reference)
+    contents += toctree(["reference/index"], "The package")
+    contents += toctree(["About <README>", "CONTRIBUTING", "CHANGELOG"], "The project")
     (source / "index.md").write_text(front_page(live, lite) + contents)
 
 

@@ -1,5 +1,6 @@
 """Figures on axes, scenes in space and explorations with sliders, for all chapters."""
 
+from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
 from cvnotes.show.explore import (
     explore_camera,
@@ -35,7 +36,6 @@ from cvnotes.show.figures.lenses import (
     draw_angles,
     draw_displacement,
     draw_grid,
-    draw_lenses,
     draw_newton,
     draw_radius,
 )
@@ -43,7 +43,7 @@ from cvnotes.show.figures.lines import draw_classes, draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_board_shape, draw_coverage, draw_residuals
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
-from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits, draw_rows
+from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
@@ -59,13 +59,12 @@ from cvnotes.show.space.shapes import (
     Photo,
     arrow_shapes,
     axes_shapes,
-    colour_of,
     scene_shapes,
     target_shapes,
 )
 from cvnotes.show.space.stills import draw_scene
 from cvnotes.show.space.viewer import Viewer, build_scene, export_glb, show_scene
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, panels
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, colour_of
 
 __all__ = [
     # a picture on the page
@@ -97,7 +96,6 @@ __all__ = [
     "draw_half_pixels",
     # chapter 4: lenses
     "draw_grid",
-    "draw_lenses",
     "draw_radius",
     "draw_displacement",
     "draw_newton",
@@ -124,7 +122,6 @@ __all__ = [
     "draw_forward",
     "draw_hits",
     "draw_cell",
-    "draw_rows",
     "draw_disparity",
     # in space
     "draw_scene",

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, whole
-from cvnotes.show.style import DPI, darken_words
+from cvnotes.show.axes import darken_words
+from cvnotes.show.style import DPI
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -100,26 +101,23 @@ def figure_of(drawn: Any) -> "Figure":
     return drawn
 
 
-def encode(figure: "Figure", *, jpeg: bool = True) -> tuple[bytes, str]:
+def encode(figure: "Figure") -> tuple[bytes, str]:
     """Encode a figure at 200 dpi, small; gives the bytes and their type.
 
     Line drawings become PNG with a palette of 256 colours, which suffices for their blended
-    edges. A figure with a photograph in it becomes JPEG, or full PNG where `jpeg` is False.
+    edges. A figure with a photograph in it becomes JPEG.
     """
     from PIL import Image
 
     picture, encoded = Image.fromarray(pixels_of(figure)).convert("RGB"), io.BytesIO()
-    if few := with_palette(picture):
-        if not (jpeg and _never_small(few.tobytes())):
-            few.save(encoded, "PNG", compress_level=_PACKING)
-            if encoded.tell() < _LARGE or not jpeg:
-                return encoded.getvalue(), "image/png"
+    few = with_palette(picture)
+    if few and not _never_small(few.tobytes()):
+        few.save(encoded, "PNG", compress_level=_PACKING)
+        if encoded.tell() < _LARGE:
+            return encoded.getvalue(), "image/png"
         encoded = io.BytesIO()  # a grey photograph: few colours, but noise that no PNG packs
-    if jpeg:
-        picture.save(encoded, "JPEG", quality=85, subsampling=0, optimize=True)
-        return encoded.getvalue(), "image/jpeg"
-    picture.save(encoded, "PNG")
-    return encoded.getvalue(), "image/png"
+    picture.save(encoded, "JPEG", quality=85, subsampling=0, optimize=True)
+    return encoded.getvalue(), "image/jpeg"
 
 
 def with_palette(picture: "PillowImage") -> "PillowImage | None":

@@ -1,21 +1,10 @@
-"""How the course's figures look: five colours with one meaning each, axes, sizes.
+"""How the course's figures look: five colours with one meaning each, markers, sizes.
 
 The colours are those of Okabe and Ito, chosen so that any two that meet in a figure stay apart
 for readers with red or green blindness too; each meaning also has its own marker.
 """
 
-import logging
-import sys
-from typing import TYPE_CHECKING, Any
-
-from cvnotes.base import InputTypeError, image_size, whole
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-if sys.platform == "emscripten":  # matplotlib warns there, in red, each time it lists its fonts
-    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
+from cvnotes.base import CvnotesError
 
 WORLD = "#009E73"
 CAMERA = "#56B4E9"
@@ -39,75 +28,17 @@ DPI = 100  # a figure's inch is 100 px of the page
 FONT = 10
 
 
-def panels(
-    columns: int = 1, rows: int = 1, *, width: int = 640, height: int | None = None, **kwargs: Any
-) -> Any:
-    """Make empty axes for figures that stand side by side.
-
-    Parameters
-    ----------
-    columns, rows : int
-        How many.
-    width, height : int
-        Size of the whole on the page, in px; by default each panel is three quarters as high
-        as it is wide.
-    **kwargs
-        Passed to ``Figure.subplots``.
-
-    Returns
-    -------
-    Axes, or ndarray of Axes
-        One, a row of them, or rows of them. They belong to a figure of their own that no global
-        state knows, so that nothing has to be closed.
+def colour_of(meaning: str) -> str:
+    """Return the course's colour of a meaning.
 
     Examples
     --------
-    >>> left, right = panels(2)
-    >>> left.figure is right.figure
-    True
+    >>> colour_of("ideal")
+    '#000000'
     """
-    columns, rows = whole(columns, "columns", at_most=99), whole(rows, "rows", at_most=99)
-    width = whole(width, "width")
-    if height is None:
-        height = round(0.75 * width / columns * rows)
-    height = whole(height, "height")
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, layout="constrained")
-    axes = figure.subplots(rows, columns, squeeze=False, **kwargs)
-    for ax in axes.flat:
-        dress(ax)
-    if rows > 1:
-        return axes
-    return axes[0] if columns > 1 else axes[0, 0]
-
-
-def dress(ax: "Axes") -> "Axes":
-    """Return axes the course's look: a light frame, small type."""
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.spines[["left", "bottom"]].set_color(MUTED)
-    ax.tick_params(labelsize=FONT - 1, color=MUTED, labelcolor="#333333")
-    ax.title.set_fontsize(FONT + 1)
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.label.set_fontsize(FONT)
-    return ax
-
-
-def darken_words(figure: "Figure") -> None:
-    """Draw words that have one of the colours above in its darker ink."""
-    from matplotlib.colors import to_hex
-    from matplotlib.text import Text
-
-    for words in figure.findobj(Text):
-        colour = to_hex(words.get_color()).upper()
-        words.set_color(INK.get(colour, colour))
-
-
-def halo() -> list[Any]:
-    """Return the white rim that keeps words and lines readable over a picture."""
-    from matplotlib.patheffects import withStroke
-
-    return [withStroke(linewidth=3, foreground="white")]
+    if meaning not in COLOURS:
+        raise CvnotesError(f"meaning: expected one of {', '.join(COLOURS)}, got {meaning!r}")
+    return COLOURS[meaning]
 
 
 def rgb(colour: str) -> tuple[float, float, float]:
@@ -120,68 +51,3 @@ def rgb(colour: str) -> tuple[float, float, float]:
     """
     red, green, blue = bytes.fromhex(colour[1:])
     return red / 255, green / 255, blue / 255
-
-
-def picture_axes(size: tuple[int, int]) -> Any:
-    """Make axes that fit a picture of (width, height): 640 px wide, not absurdly high."""
-    width, height = size
-    return panels(height=round(min(max(560 * height / width, 160), 760) + 60))
-
-
-def drawn_on(ax: "Axes | None", size: tuple[int, int] | None = None, **shape: int) -> "Axes":
-    """Return the axes to draw on: those given, or new ones, for a picture of (width, height).
-
-    Examples
-    --------
-    >>> drawn_on(None, (64, 48)).get_xlim()
-    (np.float64(0.0), np.float64(1.0))
-    """
-    from matplotlib.axes import Axes
-
-    if ax is None:
-        new: Axes = panels(**shape) if size is None else picture_axes(size)
-        return new
-    if not isinstance(ax, Axes):
-        raise InputTypeError(
-            f"ax: expected the axes of one panel, got {type(ax).__name__}; of several panels "
-            "take one: left, right = panels(2)"
-        )
-    return ax
-
-
-def pixel_axes(ax: "Axes | None", size: tuple[int, int]) -> "Axes":
-    """Return axes for pixels: those that there are, or new ones for a picture of a size.
-
-    Examples
-    --------
-    >>> pixel_axes(None, (64, 48)).get_xlabel()
-    'u (px)'
-    """
-    new = ax is None
-    ax = drawn_on(ax, image_size(size))
-    return as_picture(ax, size) if new else ax
-
-
-def as_picture(ax: "Axes", size: tuple[int, int], *, ticks: bool = True) -> "Axes":
-    """Let axes show pixels: v downwards, equal scales, a picture's limits, units in the labels."""
-    width, height = size
-    ax.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), aspect="equal")
-    if ticks:
-        ax.set(xlabel="u (px)", ylabel="v (px)")
-    else:
-        ax.set(xticks=[], yticks=[])
-    ax.spines[["top", "right"]].set(visible=True, color=MUTED)
-    return ax
-
-
-def beside(ax: "Axes", text: str, at: Any, by: Any, colour: str | None = None, **more: Any) -> None:
-    """Write words beside a place: `by` so many points of paper, to the right and upwards."""
-    ax.annotate(text, at, by, textcoords="offset points", color=colour, **more)
-
-
-def arrow(
-    ax: "Axes", start: Any, end: Any, colour: str, width: float, gap: float = 0, **more: Any
-) -> None:
-    """Draw an arrow from one place to another, or to so many points of paper before it."""
-    style = {"arrowstyle": "-|>", "color": colour, "lw": width, "shrinkA": gap, "shrinkB": gap}
-    ax.annotate("", tuple(end), tuple(start), arrowprops=style, **more)

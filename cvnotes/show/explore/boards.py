@@ -12,7 +12,7 @@ from cvnotes.show.style import ESTIMATED, MUTED
 from cvnotes.targets import Chessboard
 
 _INK = "#262629"
-_PALE = "#E2E2E2"  # squares that arrows lie on
+_PALE = "#E2E2E2"  # squares that arrows or letters lie on
 _HEAD = 8  # px, of an arrow
 _ASIDE = 13  # px from what a name belongs to
 # Seen a little from above and from the right: x to the right, y down, z to the left and away.
@@ -36,12 +36,23 @@ def draw_board(panel: Panel, camera: Camera, board: Chessboard) -> bool:
 
 def draw_measured(panel: Panel, m: Array, board: Chessboard) -> None:
     """Draw corners (n, 2) as they were measured, and pale the dark squares between them."""
-    columns, rows = board.corners
-    grid = m.reshape(rows, columns, 2)
+    draw_squares(panel, m, board, _PALE)
+    panel.mark(m, "lens", 2.5)
+
+
+def draw_squares(panel: Panel, m: Array, board: Chessboard, colour: str) -> None:
+    """Draw the dark squares between corners (n, 2)."""
+    grid = m.reshape(*board.corners[::-1], 2)
     squares = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
     row, column = np.indices(squares.shape[:2])
-    panel.polygons(squares[(row + column) % 2 == 0], _PALE)
-    panel.mark(m, "lens", 2.5)
+    panel.polygons(squares[(row + column) % 2 == 0], colour)
+
+
+def draw_net(panel: Panel, m: Array, board: Chessboard, colour: str, width: float) -> None:
+    """Draw the rows and columns of corners (n, 2) as lines."""
+    grid = m.reshape(*board.corners[::-1], 2)
+    for line in (*grid, *grid.transpose(1, 0, 2)):
+        panel.line(line, colour, width)
 
 
 def draw_arrows(panel: Panel, m: Array, d: Array) -> None:
@@ -70,7 +81,7 @@ def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:
     """Draw shapes of the world as seen from far away, in the order in which they are given."""
     for shape in shapes:
         if isinstance(shape, Faces):
-            panel.polygons(on_sheet(shape.corners[_dark(shape)]), _INK)
+            panel.polygons(on_sheet(shape.corners[_dark(shape)]), _PALE)
         elif isinstance(shape, Lines):
             panel.segments(on_sheet(shape.ends), shape.colour, shape.width)
         elif isinstance(shape, Label):

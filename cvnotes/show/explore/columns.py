@@ -1,7 +1,7 @@
 """Explore the board we believed: a real sheet whose corners are not quite where they were drawn."""
 
 import warnings
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -119,14 +119,11 @@ def columns_model() -> Model:
         "corners of the board may move; and how far each column of corners is shifted."
     )
 
-    def draw(paper: Paper, values: Values) -> Drawing:
-        return _draw(left, right, paper, values)
-
     def pulled(_: Values, at: Array) -> Values:
         return {"amount": float(at[1] / right.columns[_HELD])}
 
     drags = {"nine": pulled, "free": lambda _, at: {"free": float(np.floor(at[0]))}}
-    return Model("columns", about, settings, draw, drags)
+    return Model("columns", about, settings, partial(_draw, left, right), drags)
 
 
 def _draw(left: Believed, right: Believed, paper: Paper, values: Values) -> Drawing:

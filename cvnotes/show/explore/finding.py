@@ -1,7 +1,6 @@
 """Explore the finding of a camera: one photograph's misses on the way from the closed form."""
 
-from functools import cached_property
-from itertools import pairwise
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -86,14 +85,12 @@ def finding_model() -> Model:
         "missed: 3.73 px at the start, 0.374, 0.028 and 0.008 px after the steps."
     )
 
-    def draw(paper: Paper, values: Values) -> Drawing:
-        return _draw(finding, paper, values["step"], int(values["photograph"]))
-
     drags = {"step": lambda _, at: {"step": float(at[0])}}
-    return Model("finding", about, settings, draw, drags)
+    return Model("finding", about, settings, partial(_draw, finding), drags)
 
 
-def _draw(finding: Finding, paper: Paper, step: float, i: int) -> Drawing:
+def _draw(finding: Finding, paper: Paper, values: Values) -> Drawing:
+    step, i = values["step"], int(values["photograph"])
     camera, misses = finding.at(step)
     frames = _frames(paper, finding, step, i)
     curve = _curve(paper, finding, step, camera)
@@ -155,8 +152,7 @@ def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel
         panel.text([panel.x[0] + 0.04, power], f"{10.0**power:g}", size=12)
     panel.ticks(x=range(_STEPS + 1), size=12)
     way = np.column_stack([finding.way[:, 0], np.log10(finding.way[:, 1])])
-    for a, b in pairwise(way):
-        panel.line([a, b], LENS, 2.2)
+    panel.segments(np.stack([way[:-1], way[1:]], axis=1), LENS, 2.2)
     for at in way[::10]:
         panel.mark(at, "lens", 5)
         panel.text(at + [0.1, 0.22], _digits(10 ** float(at[1])), IDEAL, anchor="ls")

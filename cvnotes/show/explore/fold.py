@@ -8,6 +8,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
+from cvnotes.show.explore.boards import draw_net, draw_squares
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
@@ -143,14 +144,16 @@ def _space(
     paper: Paper, cameras: list[Camera], H: Array, circles: list[Circle], eye: Array
 ) -> Panel:
     panel = paper.panel(_SPACE, *_SHOWN, "a photograph, the eye over it, and four vanishing points")
-    w, h = SIZE
+    (w, h), board = SIZE, course.board()
     frame = np.array([[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]])
     panel.polygons(_flat(frame)[None], "#F4F4F0")
     panel.line(_flat(frame[[0, 1, 2, 3, 0]]), MUTED, 1)
     for camera, circle, ink, dark in reversed(
         [*zip(cameras, circles, _INKS, _SQUARES, strict=False)]
     ):
-        _draw_board(panel, camera, ink, dark)
+        m = _flat(camera.project(board.points))
+        draw_squares(panel, m, board, dark)
+        draw_net(panel, m, board, ink, 0.8)
         along = np.array([circle.up[1], -circle.up[0]])
         panel.line(_flat(circle.foot + np.array([[-3000.0], [3000.0]]) * along), ink, 0.8, dash=5)
         arc = np.array([circle.place(float(fold)) for fold in range(0, 181, 3)])
@@ -179,17 +182,6 @@ def _name(
 ) -> None:
     """Write a name so many px beside a place: a grip's ring covers 14 px about it."""
     panel.text(at + panel.pixel * np.array(by), words, colour, anchor=anchor, size=13)
-
-
-def _draw_board(panel: Panel, camera: Camera, ink: str, dark: str) -> None:
-    """Draw the squares between the corners of the board, where the photograph shows them."""
-    columns, rows = course.board().corners
-    grid = _flat(camera.project(course.board().points)).reshape(rows, columns, 2)
-    squares = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
-    row, column = np.indices(squares.shape[:2])
-    panel.polygons(squares[(row + column) % 2 == 0], dark)
-    for line in (*grid, *grid.transpose(1, 0, 2)):
-        panel.line(line, ink, 0.8)
 
 
 def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Panel:

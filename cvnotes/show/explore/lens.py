@@ -1,6 +1,6 @@
 """Explore the lens: what k1, k2, k3, p1 and p2 do to a room and a grid, and where it folds."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from PIL import Image
@@ -38,7 +38,7 @@ def lens_model(camera: Camera) -> Model:
         "A room and a square grid, both seen through a lens; beside it the observed radius "
         "r L(r) over the ideal radius r, with the fold where the model ends."
     )
-    return Model("lens", about, settings, lambda paper, values: _draw(camera, paper, values))
+    return Model("lens", about, settings, partial(_draw, camera))
 
 
 def _around(name: str, reach: float, step: float, value: float, about: str) -> Setting:
@@ -109,7 +109,8 @@ def _draw_grid(panel: Panel, lens: Lens) -> None:
 def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
     """Draw the border of the camera's picture, and the fold's."""
     corners = camera_corners(camera)
-    panel.line(corners[[0, 1, 2, 3, 0]], CAMERA, 2.2)
+    for colour, width in (("#FFFFFF", 5), (CAMERA, 2.6)):
+        panel.line(corners[[0, 1, 2, 3, 0]], colour, width)
     if lens.max_radius < 2 * _EXTENT:
         phi = np.linspace(0, 2 * np.pi, 121)
         circle = lens.max_radius * np.stack([np.cos(phi), np.sin(phi)], -1)

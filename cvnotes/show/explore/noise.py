@@ -1,6 +1,7 @@
 """Explore the noise: how exact a calibration can be, by the bound and by trying it."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -75,7 +76,7 @@ def noise_model(camera: Camera, board: Chessboard) -> Model:
         "standard deviations; and these over the number of views."
     )
     study = _Study(camera, board)
-    return Model("noise", about, settings, lambda paper, values: _draw(study, paper, values))
+    return Model("noise", about, settings, partial(_draw, study))
 
 
 def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:

@@ -1,5 +1,7 @@
 """Explore the projection: a direction of lines, and the point in which they all seem to end."""
 
+from functools import partial
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -29,9 +31,6 @@ def projection_model(camera: Camera) -> Model:
     )
     ideal = pinhole(camera)
 
-    def draw(paper: Paper, values: Values) -> Drawing:
-        return _draw(ideal, paper, values)
-
     def pointed(_: Values, at: Array) -> Values:
         x, y, z = np.linalg.solve(ideal.A, [*at, 1])
         slope = np.arctan2(-y, np.hypot(x, z))
@@ -40,7 +39,8 @@ def projection_model(camera: Camera) -> Model:
     def turned(_: Values, at: Array) -> Values:
         return {"heading": float(np.degrees(np.arctan2(*at)))}
 
-    return Model("projection", about, settings, draw, {"vanishing point": pointed, "rails": turned})
+    drags = {"vanishing point": pointed, "rails": turned}
+    return Model("projection", about, settings, partial(_draw, ideal), drags)
 
 
 def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:

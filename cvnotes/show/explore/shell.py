@@ -171,37 +171,25 @@ class Explorer(VBox):
 
 
 def _control(setting: Setting) -> Any:
-    """Make what a setting is moved by: a switch for a choice, else a slider."""
-    if not setting.is_choice:
-        return _slider(setting)
-    return Checkbox(
-        value=bool(setting.value),
-        description=_label(setting),
-        description_allow_html=bool(setting.tint),
-        tooltip=setting.help,
-        layout={"width": "auto"},
-        style={"description_width": "85px"},
-    )
+    """Make what a setting is moved by: a switch for a choice, else a slider.
 
-
-def _slider(setting: Setting) -> Any:
-    """Make the slider of a setting; whole numbers where step and start are whole."""
+    Its numbers are whole where step and start are.
+    """
+    look = {
+        "description": _label(setting),
+        "description_allow_html": bool(setting.tint),
+        "tooltip": setting.help,
+        "layout": {"width": "auto"},
+        "style": {"description_width": "85px"},
+    }
+    if setting.is_choice:
+        return Checkbox(value=bool(setting.value), **look)
     whole = all(float(x).is_integer() for x in (setting.low, setting.step, setting.value))
-    kind = IntSlider if whole else FloatSlider
-    number = int if whole else float
+    kind, number = (IntSlider, int) if whole else (FloatSlider, float)
+    value, low, high, step = map(number, (setting.value, setting.low, setting.high, setting.step))
     digits = len(f"{setting.step:g}".partition(".")[2])
-    return kind(
-        value=number(setting.value),
-        min=number(setting.low),
-        max=number(setting.high),
-        step=number(setting.step),
-        description=_label(setting),
-        description_allow_html=bool(setting.tint),
-        tooltip=setting.help,
-        readout_format="d" if whole else f".{digits}f",
-        layout={"width": "auto"},
-        style={"description_width": "85px"},
-    )
+    shown = "d" if whole else f".{digits}f"
+    return kind(value=value, min=low, max=high, step=step, readout_format=shown, **look)
 
 
 def _label(setting: Setting) -> str:

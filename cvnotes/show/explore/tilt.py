@@ -1,13 +1,13 @@
 """Explore the tilt: one board's picture by a long lens, and the best a lens half as long can do."""
 
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
-from cvnotes.show.explore.boards import draw_arrows
+from cvnotes.show.explore.boards import draw_arrows, draw_net
 from cvnotes.show.explore.finding import rms
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
@@ -62,21 +62,19 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
         "placed so that the pictures are most alike; beside it how far they differ, over the tilt."
     )
 
-    def draw(paper: Paper, values: Values) -> Drawing:
-        return _draw(lenses, paper, values["tilt"])
-
     drags = {"tilt": lambda _, at: {"tilt": float(at[0])}}
-    return Model("tilt", about, settings, draw, drags)
+    return Model("tilt", about, settings, partial(_draw, lenses), drags)
 
 
-def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Drawing:
+def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
+    tilt = values["tilt"]
     one, other, near, turned = lenses.seen(tilt)
     alpha, short = lenses.long.A[0, 0], lenses.short.A[0, 0]
     picture = paper.picture_panel(
         _PICTURE, lenses.long.size, f"one board, two lenses (arrows × {_MAGNIFIED})"
     )
     for m, colour, width in ((one, LENS, 2.4), (other, ESTIMATED, 1.2)):
-        _draw_net(picture, m, lenses.board, colour, width)
+        draw_net(picture, m, lenses.board, colour, width)
     draw_arrows(picture, one, _MAGNIFIED * (other - one))
     w, h = lenses.long.size
     picture.text(
@@ -96,14 +94,6 @@ def _draw(lenses: _Lenses, paper: Paper, tilt: float) -> Drawing:
     else:
         sentence += f"with corners good to 0.1 px that is {misfit / 0.1:.0f} times the noise."
     return Drawing(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
-
-
-def _draw_net(panel: Panel, m: Array, board: Chessboard, colour: str, width: float) -> None:
-    """Draw rows and columns of corners as lines."""
-    columns, rows = board.corners
-    grid = m.reshape(rows, columns, 2)
-    for line in (*grid, *grid.transpose(1, 0, 2)):
-        panel.line(line, colour, width)
 
 
 def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:

@@ -1,5 +1,7 @@
 """Explore the warp: the same map forward, with its holes, and backward, without."""
 
+from functools import partial
+
 import numpy as np
 import numpy.typing as npt
 
@@ -9,7 +11,7 @@ from cvnotes.pictures import render
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Drawn, Paper
-from cvnotes.show.style import ESTIMATED
+from cvnotes.show.style import ESTIMATED, rgb
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp, compose, forward_warp, rotation_map, zoom_map
 
@@ -39,10 +41,7 @@ def warp_model(camera: Camera, board: Chessboard) -> Model:
         zoom = np.hypot(x, y) / (_ARM * width)
         return {"angle": float(np.degrees(np.arctan2(y, x))), "zoom": float(zoom)}
 
-    def draw(paper: Paper, values: Values) -> Drawing:
-        return _draw(source, paper, values)
-
-    return Model("warp", about, settings, draw, {"right side": pulled})
+    return Model("warp", about, settings, partial(_draw, source), {"right side": pulled})
 
 
 def _draw(source: Drawn, paper: Paper, values: Values) -> Drawing:
@@ -82,7 +81,7 @@ def _sentence(holes: npt.NDArray[np.bool_], covered: npt.NDArray[np.bool_], fold
 
 def _with_holes(image: Drawn, holes: npt.NDArray[np.bool_]) -> Drawn:
     coloured = np.repeat(image[..., None], 3, axis=2)
-    coloured[holes] = [int(ESTIMATED[i : i + 2], 16) for i in (1, 3, 5)]
+    coloured[holes] = np.rint(255 * np.array(rgb(ESTIMATED)))
     return coloured
 
 

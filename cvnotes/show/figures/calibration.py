@@ -8,8 +8,9 @@ import numpy.typing as npt
 from cvnotes.base import Array, DegenerateError, ShapeError, numbers
 from cvnotes.camera import Camera
 from cvnotes.camera.model import is_camera
+from cvnotes.show.axes import beside, panels, pixel_axes
 from cvnotes.show.guards import count, length, one_point
-from cvnotes.show.style import ESTIMATED, FONT, MUTED, beside, panels, pixel_axes
+from cvnotes.show.style import ESTIMATED, FONT, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, DegenerateError, ShapeError, numbers, points
+from cvnotes.show.axes import as_picture, drawn_on, panels
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, MUTED, as_picture, drawn_on, panels
+from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,7 +19,7 @@ _CLOUDS = (COLOURS["lens"], ESTIMATED, COLOURS["world"])
 
 
 def draw_response(response: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
-    """Draw a corner response: blue where it is positive, orange where negative.
+    """Draw a corner response: violet where it is positive, grey where negative.
 
     Parameters
     ----------
@@ -31,13 +32,16 @@ def draw_response(response: npt.ArrayLike, *, ax: "Axes | None" = None, title: s
     >>> draw_response([[1.0, -1.0], [0.0, 2.0]]).get_ylabel()
     'v (px)'
     """
+    from matplotlib.colors import LinearSegmentedColormap
+
     R = numbers(response, "response")
     if R.ndim != 2 or R.size == 0:
         raise ShapeError(f"response: expected (height, width), got {R.shape}")
     ax = drawn_on(ax, height=480)
     rooted = np.sign(R) * np.abs(R) ** 0.25
     reach = float(np.abs(rooted).max()) or 1.0
-    ax.imshow(rooted, cmap="PuOr", vmin=-reach, vmax=reach)
+    colours = LinearSegmentedColormap.from_list("response", ["#6E6E6E", "white", "#54278F"])
+    ax.imshow(rooted, cmap=colours, vmin=-reach, vmax=reach)
     ax.set_title(title)
     return as_picture(ax, (R.shape[1], R.shape[0]))
 

@@ -8,8 +8,9 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
+from cvnotes.show.axes import as_picture, beside, drawn_on, panels
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, as_picture, beside, drawn_on, panels
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,9 +74,9 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
     -------
     ndarray of two Axes
         The RMS on the left; on the right the relative errors of α_u on a logarithmic axis: a dot
-        for each repetition, a bar for their median, and a line for what the standard deviations
-        promised for it: 0.674 times their own median, for half of all Gaussian errors are smaller.
-        Orange are those whose errors are more than twice what was promised.
+        for each repetition, a thick line for their median, and a thin one for what the standard
+        deviations promised for it: 0.674 times their own median, for half of all Gaussian errors
+        are smaller. Orange are those whose errors are more than twice what was promised.
     """
     if not thing(results, "results", Mapping):  # type: ignore[type-abstract]
         raise CvnotesError("results: expected at least one set of views")
@@ -94,9 +95,9 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
         promised, expected = _HALF * float(np.median(std)), float(np.median(error))
         spread = y + np.linspace(-0.24, 0.24, len(runs))
         left.plot([run.rms for run in runs], spread, ".", color=MUTED, markersize=4)
-        right.barh(y, expected, color=colour, alpha=0.3, height=0.62)
         right.plot(error, spread, ".", color=colour, markersize=4)
-        right.plot([promised] * 2, [y - 0.36, y + 0.36], color=IDEAL, linewidth=1.6)
+        for tick, ink, wide in ((expected, colour, 4), (promised, IDEAL, 1.6)):
+            right.plot([tick] * 2, [y - 0.36, y + 0.36], color=ink, linewidth=wide)
         words = f"{float(f'{expected:.2g}'):g} %" + ("" if kept else ", beyond its promise")
         end = max(expected, float(error.max()), promised)
         beside(right, words, (end, y), (7, 0), va="center", size=9)

@@ -9,23 +9,11 @@ import numpy.typing as npt
 from cvnotes.base import Array, CvnotesError, ShapeError, image_size, intrinsic_matrix, points
 from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
+from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter, panels
 from cvnotes.show.figures.images import draw_image
 from cvnotes.show.guards import count, one_point
 from cvnotes.show.guards import picture as checked
-from cvnotes.show.style import (
-    CAMERA,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MUTED,
-    WORLD,
-    arrow,
-    beside,
-    drawn_on,
-    halo,
-    panels,
-)
+from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -140,12 +128,11 @@ def _from_above(
 
 
 def _frame(ax: "Axes", frame: Array, colour: str, letters: str) -> None:
-    for tip, letter in zip(frame[1:], letters, strict=True):
+    for tip, name in zip(frame[1:], letters, strict=True):
         arrow(ax, frame[0, [0, 2]], tip[[0, 2]], colour, 1.5, gap=2)
         out = 1.22 * tip - 0.22 * frame[0]
         ax.plot(*np.stack([frame[0], out])[:, [0, 2]].T, alpha=0)  # makes room
-        text = ax.text(out[0], out[2], letter, color=colour, ha="center", va="center")
-        text.set(fontsize=FONT - 1, path_effects=halo())
+        letter(ax, name, out[[0, 2]], colour, fontsize=FONT - 1)
 
 
 def _plane(ax: "Axes", camera: Camera, xy: Array, shape: tuple[int, ...], colour: str) -> None:
@@ -230,16 +217,13 @@ def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     start, *tips = xy_from_px(A, [[0, 0], [2 * step, 0], [0, 2 * step]])
     for tip, name in zip(tips, "uv", strict=True):
         arrow(ax, start, tip, LENS, 2.2, gap=2)
-        out = 1.2 * tip - 0.2 * start
-        ax.text(out[0], out[1], name, color=LENS, ha="center", va="center", path_effects=halo())
+        letter(ax, name, 1.2 * tip - 0.2 * start, LENS)
     first, last = (np.arctan2(*(tip - start)[::-1]) for tip in tips)
     arc = np.linspace(first, last, 25)[:, None]
     reach = 0.4 * float(np.linalg.norm(tips[0] - start))
     ax.plot(*(start + reach * np.hstack([np.cos(arc), np.sin(arc)])).T, color=ESTIMATED, lw=1.8)
     middle = start + 1.5 * reach * np.hstack([np.cos(arc), np.sin(arc)])[12]
-    ax.text(
-        middle[0], middle[1], "θ", color=ESTIMATED, ha="center", va="center", path_effects=halo()
-    )
+    letter(ax, "θ", middle, ESTIMATED)
     ax.plot(0, 0, "^", color=CAMERA, ms=8)
     beside(ax, "(u0, v0)", (0, 0), (8, 8), CAMERA, path_effects=halo())
     ax.set(xlabel="x / z", ylabel="y / z", aspect="equal")

@@ -8,22 +8,9 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, ShapeError, matrix, real
 from cvnotes.projective import apply
+from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter
 from cvnotes.show.guards import texts
-from cvnotes.show.style import (
-    CAMERA,
-    COLOURS,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MARKERS,
-    MUTED,
-    WORLD,
-    arrow,
-    beside,
-    drawn_on,
-    halo,
-)
+from cvnotes.show.style import CAMERA, COLOURS, ESTIMATED, FONT, IDEAL, LENS, MARKERS, MUTED, WORLD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,7 +35,7 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     >>> [text.get_text().split(":")[0] for text in draw_meanings().texts][2:4]
     ['the truth, or what an exact formula says', 'a point in a picture, as the lens shows it']
     """
-    ax = drawn_on(ax, height=170)
+    ax = drawn_on(ax, width=450, height=150)
     for row, (meaning, words) in enumerate(_MEANINGS.items()):
         ax.plot([0.02, 0.12], [row, row], "-", color=COLOURS[meaning], linewidth=2)
         ax.plot(0.07, row, MARKERS[meaning], color=COLOURS[meaning], markersize=9)
@@ -225,7 +212,4 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
 
 
 def _label(ax: "Axes", text: str, at: tuple[float, float], colour: str) -> None:
-    ax.text(
-        *at, text, color=colour, fontsize=FONT + 1, ha="center", va="center",
-        path_effects=halo(), zorder=6,
-    )  # fmt: skip
+    letter(ax, text, at, colour, fontsize=FONT + 1, zorder=6)

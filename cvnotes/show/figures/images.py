@@ -9,21 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, points, positions
+from cvnotes.base import Array, ShapeError, points, positions
+from cvnotes.show.axes import arrow, as_picture, drawn_on, halo, letter, pixel_axes
 from cvnotes.show.guards import picture as checked
 from cvnotes.show.guards import thing
-from cvnotes.show.style import (
-    COLOURS,
-    ESTIMATED,
-    FONT,
-    MARKERS,
-    WORLD,
-    arrow,
-    as_picture,
-    drawn_on,
-    halo,
-    pixel_axes,
-)
+from cvnotes.show.style import ESTIMATED, FONT, MARKERS, WORLD, colour_of
 from cvnotes.targets import CharucoBoard, Chessboard
 
 if TYPE_CHECKING:
@@ -85,21 +75,13 @@ def draw_points(
     1
     """
     m = positions(m, "m")
-    if meaning not in COLOURS:
-        raise CvnotesError(f"meaning: expected one of {', '.join(COLOURS)}, got {meaning!r}")
+    colour = colour_of(meaning)
     ax = pixel_axes(ax, size)
     u, v = m.reshape(-1, 2).T
     ax.scatter(
-        u,
-        v,
-        s=36,
-        marker=MARKERS[meaning],
-        color=COLOURS[meaning],
-        linewidths=1.4,
-        path_effects=halo(),
-        label=label or None,
-        zorder=3,
-    )
+        u, v, s=36, marker=MARKERS[meaning], color=colour, linewidths=1.4,
+        path_effects=halo(), label=label or None, zorder=3,
+    )  # fmt: skip
     if label:
         ax.legend(loc="upper right", fontsize=FONT - 1)
     return ax
@@ -160,7 +142,4 @@ def _write(ax: "Axes", text: str, where: Array, colour: str) -> None:
     right, bottom = ax.get_xlim()[1], ax.get_ylim()[0]
     margin = 0.04 * max(right, bottom)
     u, v = np.clip(where, margin, [right - margin, bottom - margin])
-    ax.text(
-        u, v, text, color=colour, fontsize=FONT, fontweight="bold",
-        ha="center", va="center", path_effects=halo(),
-    )  # fmt: skip
+    letter(ax, text, (u, v), colour, fontsize=FONT + 3, fontweight="bold")

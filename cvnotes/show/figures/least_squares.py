@@ -7,20 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, matrix, numbers, points
+from cvnotes.show.axes import arrow, beside, drawn_on, panels
 from cvnotes.show.guards import thing
-from cvnotes.show.style import (
-    CAMERA,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MUTED,
-    WORLD,
-    arrow,
-    beside,
-    drawn_on,
-    panels,
-)
+from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -142,7 +131,7 @@ def draw_valley(
     x, y : array_like, shapes (n,) and (m,)
         Values of the two unknowns.
     cost : array_like, shape (m, n)
-        Positive; its logarithm is drawn.
+        Positive; its logarithm is drawn, the low part in finer steps.
     paths : mapping from name to array_like of shape (k, 2)
         At most three ways, from their start on.
 
@@ -152,6 +141,8 @@ def draw_valley(
     >>> ax.get_legend().get_texts()[0].get_text()
     'down'
     """
+    from matplotlib.colors import BoundaryNorm
+
     x, y = numbers(x, "x").ravel(), numbers(y, "y").ravel()
     height = numbers(cost, "cost")
     if height.shape != (len(y), len(x)) or min(height.shape) < 2:
@@ -163,8 +154,14 @@ def draw_valley(
     if not 1 <= len(thing(paths, "paths", Mapping)) <= 3:  # type: ignore[type-abstract]
         raise CvnotesError("paths: expected one to three ways")
     ax = drawn_on(ax, width=760, height=520)
-    shade = ax.contourf(x, y, np.log10(height), levels=24, cmap="Greys", alpha=0.75)
-    bar = ax.figure.colorbar(shade, ax=ax, shrink=0.8, label="log₁₀ of the cost")
+    z = np.log10(height)
+    levels = np.unique(np.quantile(z, np.linspace(0, 1, 25) ** 2))  # most of them where it is low
+    if len(levels) == 1:
+        levels = levels + [0.0, 1.0]
+    norm = BoundaryNorm(levels, 256)
+    shade = ax.contourf(x, y, z, levels=levels, norm=norm, cmap="Greys", alpha=0.75)
+    whole = np.arange(np.ceil(levels[0]), levels[-1] + 1e-9)
+    bar = ax.figure.colorbar(shade, ax=ax, shrink=0.8, label="log₁₀ of the cost", ticks=whole)
     bar.ax.tick_params(labelsize=FONT - 1)
     first = "start"
     for (name, path), colour in zip(paths.items(), (ESTIMATED, LENS, WORLD), strict=False):

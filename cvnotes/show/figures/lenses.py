@@ -1,24 +1,15 @@
 """Figures of lenses: what they do to a grid, and how far they can be believed."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError, InputTypeError
 from cvnotes.camera import AnyLens, Lens
+from cvnotes.show.axes import beside, drawn_on
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import (
-    COLOURS,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MUTED,
-    beside,
-    drawn_on,
-    panels,
-)
+from cvnotes.show.style import COLOURS, ESTIMATED, FONT, IDEAL, LENS, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,24 +47,6 @@ def draw_grid(
     _square(ax, 1.25 * extent)
     ax.set_title(title)
     return ax
-
-
-def draw_lenses(lenses: Sequence[tuple[str, Lens]]) -> Any:
-    """Draw the grids of several named lenses side by side; gives their axes.
-
-    Examples
-    --------
-    >>> len(draw_lenses([("barrel", Lens(k=(-0.3,))), ("pincushion", Lens(k=(0.3,)))]))
-    2
-    """
-    if not isinstance(lenses, list | tuple) or len(lenses) < 2:
-        raise CvnotesError("lenses: expected at least two, each with its name")
-    axes = panels(len(lenses), width=900, height=round(900 / len(lenses)) + 40)
-    for ax, (name, lens) in zip(axes, lenses, strict=True):
-        draw_grid(lens, ax=ax, title=name)
-    for ax in axes[1:]:
-        ax.set_ylabel("")
-    return axes
 
 
 def draw_radius(lens: Lens, *, ax: "Axes | None" = None, up_to: float = 1.5) -> "Axes":

@@ -7,19 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, ShapeError, matrix, points
+from cvnotes.show.axes import beside, drawn_on, halo, pixel_axes
 from cvnotes.show.guards import length
-from cvnotes.show.space.shapes import colour_of
-from cvnotes.show.style import (
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    MUTED,
-    WORLD,
-    beside,
-    drawn_on,
-    halo,
-    pixel_axes,
-)
+from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED, WORLD, colour_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

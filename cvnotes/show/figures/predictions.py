@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import CvnotesError, ShapeError, number, points
+from cvnotes.base import CvnotesError, ShapeError, number
 from cvnotes.calibration import Calibration, prediction_std
+from cvnotes.show.axes import as_picture, drawn_on, picture_axes
 from cvnotes.show.guards import calibrated, count, eight_bits, pictures
-from cvnotes.show.style import ESTIMATED, FONT, as_picture, drawn_on, picture_axes
+from cvnotes.show.style import ESTIMATED, FONT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,12 +60,7 @@ def draw_prediction_error(
     return as_picture(ax, calibration.size)
 
 
-def draw_wall(
-    images: Sequence[npt.ArrayLike],
-    *,
-    columns: int = 5,
-    corners: npt.ArrayLike | None = None,
-) -> "Axes":
+def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5) -> "Axes":
     """Draw small copies of grey pictures side by side, as on a contact sheet.
 
     Parameters
@@ -73,8 +69,6 @@ def draw_wall(
         All of one size.
     columns : int
         Pictures in a row.
-    corners : array_like, shape (n_images, n, 2), optional
-        Pixels of each picture, to be marked in its copy.
 
     Examples
     --------
@@ -93,13 +87,5 @@ def draw_wall(
         wall[top : top + h, left : left + w] = image
     ax: Axes = picture_axes((wall.shape[1], wall.shape[0]))
     ax.imshow(wall, cmap="gray", vmin=0, vmax=255)
-    if corners is not None:
-        m = points(corners, "corners", 2)
-        if m.ndim != 3 or len(m) != len(small):
-            raise ShapeError(f"corners: expected ({len(small)}, n, 2), got {m.shape}")
-        i = np.arange(len(m))
-        places = np.stack([(i % columns) * (w + gap), (i // columns) * (h + gap)], axis=-1)
-        marks = (m / 4 + places[:, None]).reshape(-1, 2)
-        ax.plot(*marks.T, ".", color=ESTIMATED, markersize=4, markeredgewidth=0)
     ax.axis("off")
     return ax

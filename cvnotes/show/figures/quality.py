@@ -13,16 +13,9 @@ import numpy.typing as npt
 from cvnotes.base import Array, DegenerateError, image_size, number
 from cvnotes.base.digits import round_number
 from cvnotes.calibration.coverage import count_cells, joined
+from cvnotes.show.axes import as_picture, drawn_on, letter
 from cvnotes.show.guards import calibrated
-from cvnotes.show.style import (
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    MUTED,
-    as_picture,
-    drawn_on,
-    halo,
-)
+from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,8 +88,8 @@ def draw_coverage(
         look: dict[str, Any] = {"fill": False} if corners else {"fc": "#EEEEEE", "hatch": "//"}
         ax.add_patch(Rectangle((u, v), *side, edgecolor="#C4C4C4", zorder=1.5, **look))
         if corners:
-            ax.text(u + side[0] / 2, v + side[1] / 2, f"{corners}", color=IDEAL, fontsize=FONT - 1,
-                    ha="center", va="center", path_effects=halo())  # fmt: skip
+            middle = u + side[0] / 2, v + side[1] / 2
+            letter(ax, f"{corners}", middle, IDEAL, fontsize=FONT - 1)
     ax.set_title(f"Corners in {(count > 0).sum()} of {count.size} cells of the picture")
     return ax
 

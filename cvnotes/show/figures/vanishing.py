@@ -7,9 +7,10 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
+from cvnotes.show.axes import beside, halo, pixel_axes
 from cvnotes.show.figures.images import draw_points
 from cvnotes.show.figures.lines import draw_segments, segment_ends
-from cvnotes.show.style import ESTIMATED, FONT, beside, halo, pixel_axes
+from cvnotes.show.style import ESTIMATED, FONT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,26 +1,15 @@
 """Figures of warps: pixels hit or missed, the cell between four pixels, rows and disparity."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, ShapeError, number, numbers
+from cvnotes.show.axes import beside, drawn_on
 from cvnotes.show.figures.images import draw_image
-from cvnotes.show.guards import eight_bits, one_point, pictures
-from cvnotes.show.style import (
-    CAMERA,
-    ESTIMATED,
-    FONT,
-    IDEAL,
-    LENS,
-    MUTED,
-    WORLD,
-    beside,
-    drawn_on,
-    panels,
-)
+from cvnotes.show.guards import eight_bits, one_point
+from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,7 +91,8 @@ def draw_cell(
     du, dv : float
         Fractions of the point, in [0, 1].
     areas : bool
-        Colour the four rectangles, and write into each the pixel of which it is the weight.
+        Shade the four rectangles, the larger the darker, and write into each the pixel of which
+        it is the weight.
     solved : bool
         Write the values between the pixels, too.
 
@@ -138,15 +128,14 @@ def draw_cell(
 
 
 def _weights(ax: "Axes", du: float, dv: float) -> None:
-    """Colour the rectangles around a point; each is the weight of the pixel opposite to it."""
+    """Shade the rectangles around a point; each is the weight of the pixel opposite to it."""
     from matplotlib.patches import Rectangle
 
     sides = ((0, du), (du, 1 - du)), ((0, dv), (dv, 1 - dv))
-    tints = ("#F0E442", "#CC79A7", "#56B4E9", "#009E73")  # I1 to I4
-    for n, tint in enumerate(tints):
+    for n in range(4):
         # The rectangle opposite to I1, top left, is the one at the bottom right.
         (u, wide), (v, high) = sides[0][1 - n % 2], sides[1][1 - n // 2]
-        ax.add_patch(Rectangle((u, v), wide, high, fc=tint, alpha=0.35, lw=0))
+        ax.add_patch(Rectangle((u, v), wide, high, fc=MUTED, alpha=wide * high, lw=0))
         words = f"$I_{n + 1}$ × {wide * high:.2f}"
         ax.text(u + wide / 2, v + high / 2 + 0.07, words, ha="center", fontsize=FONT)
 
@@ -196,31 +185,3 @@ def draw_disparity(point: npt.ArrayLike, b: float, f: float, *, ax: "Axes | None
     ax.set_title("The orange triangle is the green one, smaller: d / α = b / Z")
     ax.set(xticks=[], yticks=[])
     return ax
-
-
-def draw_rows(
-    before: Sequence[npt.ArrayLike], after: Sequence[npt.ArrayLike]
-) -> npt.NDArray[np.object_]:
-    """Draw a stereo pair before and after rectification, with nine rows running through both.
-
-    Parameters
-    ----------
-    before, after : two pictures each
-        Left and right, all of one size.
-
-    Returns
-    -------
-    ndarray of Axes, shape (2, 2)
-    """
-    pairs = pictures(before, "before"), pictures(after, "after")
-    if len(pairs[0]) != 2 or len(pairs[1]) != 2:
-        raise CvnotesError("before and after: expected two pictures each, left and right")
-    axes: npt.NDArray[np.object_] = panels(2, 2, width=900, height=720, sharey=True)
-    titles = (("left camera", "right camera"), ("left, rectified", "right, rectified"))
-    for row, pair, names in zip(axes, pairs, titles, strict=True):
-        for ax, picture, name in zip(row, pair, names, strict=True):
-            draw_image(picture, ax=ax, title=name)
-            for v in np.linspace(0, picture.shape[0] - 1, 11)[1:-1]:
-                ax.axhline(v, color=ESTIMATED, lw=0.9)
-        row[1].set_ylabel("")
-    return axes

@@ -7,8 +7,8 @@ from cvnotes.base import Array, CvnotesError, ShapeError, number, points
 from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
 from cvnotes.show.guards import eight_bits, one_point
-from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes, colour_of
-from cvnotes.show.style import CAMERA, IDEAL, WORLD, rgb
+from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes
+from cvnotes.show.style import CAMERA, WORLD, colour_of, rgb
 
 
 def camera_shapes(
@@ -156,8 +156,8 @@ def plane_shapes(camera: Camera, z: float = 1.0) -> Shapes:
     ends = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
     return (
         Faces("z = 1 plane", corners[None], pale),
-        Lines("z = 1 outline", ends, IDEAL, 1.0),
-        Label("z = 1", corners[1], IDEAL),
+        Lines("z = 1 outline", ends, CAMERA, 1.5),
+        Label("z = 1", corners[1], CAMERA),
     )
 
 

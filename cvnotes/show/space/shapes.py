@@ -13,7 +13,7 @@ from cvnotes.base import Array, CvnotesError, InputTypeError, number
 from cvnotes.camera import move
 from cvnotes.pictures import Scene
 from cvnotes.show.guards import one_motion, one_point, thing
-from cvnotes.show.style import COLOURS, ESTIMATED, MUTED
+from cvnotes.show.style import ESTIMATED, MUTED, colour_of
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 
@@ -195,16 +195,3 @@ def extent(*shapes: Shape) -> float:
     20.0
     """
     return float(np.ptp(places(*shapes), axis=0).max())
-
-
-def colour_of(meaning: str) -> str:
-    """Return the course's colour of a meaning.
-
-    Examples
-    --------
-    >>> colour_of("ideal")
-    '#000000'
-    """
-    if meaning not in COLOURS:
-        raise CvnotesError(f"meaning: expected one of {', '.join(COLOURS)}, got {meaning!r}")
-    return COLOURS[meaning]

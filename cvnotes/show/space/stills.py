@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cvnotes.base import Array
+from cvnotes.show.axes import beside, drawn_on, halo
 from cvnotes.show.picture import figure_of, pixels_of
 from cvnotes.show.space.directions import sheet, towards
 from cvnotes.show.space.order import Part, from_far_to_near
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent, places
-from cvnotes.show.style import FONT, MUTED, beside, drawn_on, halo
+from cvnotes.show.style import FONT, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

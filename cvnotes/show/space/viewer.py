@@ -7,6 +7,7 @@ a turn about x, lies between the two and is its own inverse.
 import os
 from dataclasses import dataclass
 from html import escape
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.show.space.directions import towards
+from cvnotes.show.space.directions import sheet, towards
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent
 
 GL_FROM_CV = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -34,37 +35,6 @@ _STROKES = {
     "z": (((0, 0.3), (0.7, 0.3)), ((0.7, 0.3), (0, 1)), ((0, 1), (0.7, 1))),
 }
 _LETTER = 1 / 40  # of the scene
-# In the frame of trimesh's viewer. The paper is that of the page around the frame, and changes when
-# JupyterLab changes its theme; black lines turn light on a dark one, where nobody would see them.
-_PAPER = """<script>(() => {
-  const lit = c => Math.max(c.r, c.g, c.b);
-  let before = "";
-  const follow = () => {
-    if (typeof scene === "undefined" || typeof camera === "undefined" || !camera) return;
-    let paper = "rgb(255, 255, 255)";
-    try {
-      for (let e = window.frameElement; e; e = e.parentElement) {
-        const its = e.ownerDocument.defaultView.getComputedStyle(e).backgroundColor;
-        if (/^rgb\\(/.test(its)) { paper = its; break; }
-      }
-    } catch (foreign) { /* a page that keeps to itself: white, as paper is */ }
-    if (paper === before) return;
-    before = paper;
-    scene.background.set(paper);
-    const dark = paper.match(/\\d+/g).reduce((sum, n) => sum + +n, 0) < 384;
-    scene.traverse(({material}) => {
-      if (!material || !material.emissive || material.map) return;
-      const own = material.userData;
-      own.first ??= [material.color.clone(), material.emissive.clone()];
-      const [colour, glow] = own.first;
-      const black = dark && lit(colour) + lit(glow) < 0.1;
-      material.color.copy(colour).addScalar(black ? 0.25 : 0);
-      material.emissive.copy(glow).addScalar(black ? 0.55 : 0);
-    });
-    render();
-  };
-  setInterval(follow, 200);
-})();</script>"""
 
 
 @dataclass(frozen=True)
@@ -121,7 +91,7 @@ def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)
             case Photo(name, corners, image):
                 meshes = [_textured(corners, image)]
             case Label(name, at, colour) if name in _STROKES:
-                strokes = at + _LETTER * reach * _facing(_STROKES[name], towards(view or (0, -90)))
+                strokes = at + _LETTER * reach * _facing(_STROKES[name], view or (0, -90))
                 meshes = [_mesh(_bars(strokes, 2 * thickness), np.array(to_rgba(colour)))]
             case Label():
                 continue
@@ -132,22 +102,20 @@ def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)
             scene.add_geometry(mesh, node_name=unique, geom_name=unique)
     if scene.geometry and view is not None:
         scene.camera = trimesh.scene.Camera("camera", fov=(_FRAME * _ANGLE, _ANGLE))
-        scene.camera_transform = _seen_from(GL_FROM_CV[:3, :3] @ towards(view), scene)
+        scene.camera_transform = _seen_from(view, scene)
     return scene
 
 
-def _facing(strokes: Any, way: Array) -> Array:
-    """Turn strokes on the unit square (k, 2, 2) about its middle to be read from `way` (3,)."""
-    right = np.cross(way, [0.0, 1.0, 0.0])  # y points down
-    right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
-    return np.asarray((np.array(strokes) - 0.5) @ [right, np.cross(right, way)])
+def _facing(strokes: Any, view: tuple[float, float]) -> Array:
+    """Turn strokes on the unit square (k, 2, 2) about its middle to be read from a view."""
+    return np.asarray((np.array(strokes) - 0.5) @ sheet(view))
 
 
-def _seen_from(way: Array, scene: Any) -> Array:
-    """Place OpenGL's camera on a way from the scene's middle, just where all of it is seen."""
-    right = np.cross([0.0, 1.0, 0.0], way)
-    right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
-    R = np.stack([right, np.cross(way, right), way], axis=1)
+def _seen_from(view: tuple[float, float], scene: Any) -> Array:
+    """Place OpenGL's camera in a view of the scene's middle, just where all of it is seen."""
+    right, down = sheet(view)
+    way = GL_FROM_CV[:3, :3] @ towards(view)
+    R = np.stack([GL_FROM_CV[:3, :3] @ right, -GL_FROM_CV[:3, :3] @ down, way], axis=1)
     middle = scene.bounds.mean(axis=0)
     corners = np.concatenate([mesh.vertices for mesh in scene.dump()]) - middle
     x, y, z = (corners @ R).T
@@ -186,7 +154,9 @@ def show_scene(scene: Any, *, alt: str) -> Viewer:
 
     if not alt.strip():
         raise CvnotesError("alt: say in a sentence what the scene shows")
-    return Viewer(scene_to_html(scene).replace("</body>", f"{_PAPER}</body>"), alt)
+    paper = files("cvnotes.show.space").joinpath("viewer.js").read_text("utf-8")
+    page = scene_to_html(scene).replace("</body>", f"<script>{paper}</script></body>")
+    return Viewer(page, alt)
 
 
 def export_glb(scene: Any, path: str | os.PathLike[str]) -> None:
