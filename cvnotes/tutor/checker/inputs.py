@@ -272,14 +272,16 @@ def _one_for_another(i: int, j: int) -> Slip:
     return Slip(f"{{0}}[{i}] for {{0}}[{j}]", f"used {what}", change)
 
 
+ENTRIES_OF_A = {"α_u": (0, 0), "α_v": (1, 1), "u0": (0, 2), "v0": (1, 2), "skew": (0, 1)}
+
+
 def _put(**places: Callable[[Array], float]) -> Callable[[Array], Array]:
     """Make a change of A that puts something in the place of its entries, by their names."""
-    where = {"au": (0, 0), "av": (1, 1), "u0": (0, 2), "v0": (1, 2), "skew": (0, 1)}
 
     def change(A: Array) -> Array:
         B = np.array(A)
         for place, value in places.items():
-            B[where[place]] = value(A)
+            B[ENTRIES_OF_A[place]] = value(A)
         return B
 
     return change
@@ -287,25 +289,25 @@ def _put(**places: Callable[[Array], float]) -> Callable[[Array], Array]:
 
 _INTRINSICS = (
     Slip("{0} without its skew", "left out the skew {0}[0, 1]", _put(skew=lambda _: 0.0)),
-    Slip("{0} with α_u for both", "used α_u in place of α_v", _put(av=lambda A: A[0, 0])),
-    Slip("{0} with α_v for both", "used α_v in place of α_u", _put(au=lambda A: A[1, 1])),
+    Slip("{0} with α_u for both", "used α_u in place of α_v", _put(α_v=lambda A: A[0, 0])),
+    Slip("{0} with α_v for both", "used α_v in place of α_u", _put(α_u=lambda A: A[1, 1])),
     Slip("{0} with the mean focal length", "used the mean of α_u and α_v for both",
-         _put(au=lambda A: (A[0, 0] + A[1, 1]) / 2, av=lambda A: (A[0, 0] + A[1, 1]) / 2)),
+         _put(α_u=lambda A: (A[0, 0] + A[1, 1]) / 2, α_v=lambda A: (A[0, 0] + A[1, 1]) / 2)),
     Slip("{0} with one focal length and no skew",
          "used α_u for both focal lengths, and left out the skew",
-         _put(av=lambda A: A[0, 0], skew=lambda _: 0.0)),
+         _put(α_v=lambda A: A[0, 0], skew=lambda _: 0.0)),
     Slip("{0} with α_u and α_v exchanged", "exchanged α_u and α_v",
-         _put(au=lambda A: A[1, 1], av=lambda A: A[0, 0])),
+         _put(α_u=lambda A: A[1, 1], α_v=lambda A: A[0, 0])),
     Slip("{0} with u0 and v0 exchanged", "exchanged u0 and v0",
          _put(u0=lambda A: A[1, 2], v0=lambda A: A[0, 2])),
     Slip("{0} without its principal point", "left out u0 and v0",
          _put(u0=lambda _: 0.0, v0=lambda _: 0.0)),
     Slip("{0} with the principal point subtracted", "used −u0 and −v0 in place of u0 and v0",
          _put(u0=lambda A: -A[0, 2], v0=lambda A: -A[1, 2])),
-    Slip("{0} with v upwards", "used −α_v in place of α_v", _put(av=lambda A: -A[1, 1])),
+    Slip("{0} with v upwards", "used −α_v in place of α_v", _put(α_v=lambda A: -A[1, 1])),
     Slip("{0} with u0 for both", "used u0 in place of v0", _put(v0=lambda A: A[0, 2])),
     Slip("{0} without focal lengths", "left out α_u and α_v, or took 1 for both",
-         _put(au=lambda _: 1.0, av=lambda _: 1.0)),
+         _put(α_u=lambda _: 1.0, α_v=lambda _: 1.0)),
     Slip("{0} with the sign of the skew", "used −γ in place of the skew γ",
          _put(skew=lambda A: -A[0, 1])),
 )  # fmt: skip

@@ -47,11 +47,12 @@ _SLOW, _PATIENCE = 0.03, 1.0
 
 
 class Line(NamedTuple):
-    """One line of the steps: what it gives, in words and as code; and where it stands."""
+    """One line of the steps: what it gives, in words and as code; and which names it reads."""
 
     name: str
     words: str
     code: str
+    reads: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -66,11 +67,14 @@ class Located:
         The first step that, put right, makes the rest come out right; None if that is not proven.
     place : str
         The student's expression in whose place it belongs.
+    first : bool
+        Whether nothing is wrong before: what the expression reads is known to be right.
     """
 
     agreed: tuple[tuple[str, str], ...]
     missing: Line | None = None
     place: str = ""
+    first: bool = True
 
     @property
     def sentence(self) -> str:
@@ -79,7 +83,8 @@ class Located:
         if self.missing is None:
             return f"Up to here it agrees: {so_far}."
         right = f"Right so far: {so_far}. " if so_far else ""
-        return f"{right}First wrong: `{self.place}`; there belongs {self.missing.words}."
+        wrong = "First wrong" if self.first else "Wrong by then"
+        return f"{right}{wrong}: `{self.place}`; there belongs {self.missing.words}."
 
 
 def lines_of(steps: Callable[..., Any]) -> tuple[ast.FunctionDef, list[Line]]:
@@ -100,7 +105,8 @@ def _line(statement: ast.stmt, rows: Sequence[str]) -> Line:
     else:
         names = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and _is_set(n)]
         name, words = ", ".join(dict.fromkeys(names)), ""
-    return Line(name, said[1].strip() if said else words or f"`{name}`", code)
+    reads = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and not _is_set(n)}
+    return Line(name, said[1].strip() if said else words or f"`{name}`", code, frozenset(reads))
 
 
 def _is_set(node: ast.Name) -> bool:
@@ -331,26 +337,36 @@ def located(function: Callable[..., Any], exercise: Exercise) -> Located | None:
     except (OSError, TypeError, ValueError, SyntaxError, RecursionError):
         return None
     lines, traces = _traced(exercise)  # here, so that the child has it already
-    [found] = run(lambda: _found(own, exercise, traces), [()], seconds=_PATIENCE)
+    [found] = run(lambda: _found(own, exercise, lines, traces), [()], seconds=_PATIENCE)
     return None if found.value is None else _worded(found.value, own, lines, traces)
 
 
-def _found(own: Instrumented, exercise: Exercise, traces: Sequence[_Trace]) -> Array:
+def _found(
+    own: Instrumented, exercise: Exercise, lines: Sequence[Line], traces: Sequence[_Trace]
+) -> Array:
     """Return numbers only: the step that is missing and the expression in whose place it belongs.
 
-    Both are −1 if that is not proven; behind them, a step and an expression for each that agrees.
+    Both are −1 if that is not proven. Behind them whether nothing is wrong before, and a step and
+    an expression for each that agrees.
     """
     started = clock()
     end = started + _SECONDS
     with np.errstate(all="ignore"):
         seen = [own.values(trace.args) for trace in traces[:1]]
         if clock() - started > _SLOW:
-            return np.array([-1.0, -1.0])
+            return np.array([-1.0, -1.0, 0.0])
         seen += [own.values(trace.args) for trace in traces[1:]]
-        step, place = _proven(own, exercise, traces, seen, end)
-        line = traces[0].steps[step][0] if step >= 0 else len(traces[0].steps)
+        innocent = {e for e in seen[0] if _is_innocent(e, exercise, traces, seen)}
+        step, place = _proven(own, exercise, traces, seen, innocent, end)
+        line = traces[0].steps[step][0] if step >= 0 else len(lines)
         agreed = [pair for pair in _agreed(own, exercise, traces, seen) if pair[0] < line]
-    return np.array([step, place, *(x for pair in agreed for x in pair)], dtype=float)
+    known = {name for i, _ in agreed for name in lines[i].name.split(", ")}
+    before = {name for one in lines[:line] for name in one.name.split(", ")}
+    first = step >= 0 and (
+        all(e in innocent or _is_read_off(seen[0].get(e), traces[0].args) for e in own.reads[place])
+        or lines[line].reads & before <= known
+    )
+    return np.array([step, place, first, *(x for pair in agreed for x in pair)], dtype=float)
 
 
 Seen = dict[int, Array]
@@ -382,6 +398,7 @@ def _proven(
     exercise: Exercise,
     traces: Sequence[_Trace],
     seen: Sequence[Seen],
+    innocent: set[int],
     end: float,
 ) -> tuple[int, int]:
     """Return the number of the earliest step that makes the rest right, and the expression."""
@@ -394,7 +411,6 @@ def _proven(
         return -1, -1  # it is wrong in special cases only
     steps = traces[0].steps
     answers = {line for line, _, array in steps if _agree(array, traces[0].right, exercise.same)}
-    innocent = {e for e in seen[0] if _is_innocent(e, exercise, traces, seen)}
     for k, (line, *_) in enumerate(steps):
         for e in seen[0] if line not in answers else ():
             if clock() > end:
@@ -428,12 +444,20 @@ def _is_innocent(
     )
 
 
+def _is_read_off(value: Array | None, args: Sequence[Any]) -> bool:
+    """Return whether a value is a count, or a column of an input."""
+    if value is None or value.ndim == 0:
+        return value is not None and bool(value == np.rint(value))
+    given = (x for x in args if np.ndim(x) == 2)
+    return any(np.array_equal(value, column) for x in given for column in np.transpose(x))
+
+
 def _worded(
     found: Array, own: Instrumented, lines: Sequence[Line], traces: Sequence[_Trace]
 ) -> Located | None:
     """Put numbers into words; None if nothing was found."""
     text = own.text
-    step, place, *pairs = found.astype(int).tolist()
+    step, place, first, *pairs = found.astype(int).tolist()
     agreed = tuple(
         (lines[i].words, text[e])
         for i, e in zip(pairs[::2], pairs[1::2], strict=True)
@@ -444,5 +468,5 @@ def _worded(
         missing = lines[line]
         if not whole:
             missing = missing._replace(words=f"its part of {missing.words}")
-        return Located(agreed[-3:], missing, text[place])
+        return Located(agreed[-3:], missing, text[place], bool(first))
     return Located(agreed[-3:]) if agreed else None
