@@ -198,17 +198,16 @@ class _Marking(ast.NodeTransformer):
         return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
     def _look(self, node: Any, text: str) -> ast.Call:
+        own = len(self.text)
         self.text.append(text)
-        own = len(self.text) - 1
-        names = [own] if isinstance(node, ast.Name) else []
-        inside = (n.args for n in ast.walk(node) if isinstance(n, ast.Call) and _is_look(n))
-        self.reads.append(names + [i.value for i, one in inside if isinstance(one, ast.Name)])
+        read = [own] if isinstance(node, ast.Name) else []
+        for call in ast.walk(node):
+            match call:
+                case ast.Call(ast.Name("_look_"), [ast.Constant(int() as inner), ast.Name()]):
+                    read.append(inner)
+        self.reads.append(read)
         number = ast.Constant(own)
         return ast.copy_location(ast.Call(ast.Name("_look_", ast.Load()), [number, node], []), node)
-
-
-def _is_look(call: ast.Call) -> bool:
-    return isinstance(call.func, ast.Name) and call.func.id == "_look_"
 
 
 def _root(node: ast.expr) -> str:

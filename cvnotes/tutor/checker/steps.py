@@ -23,6 +23,7 @@ import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from itertools import islice
 from types import FunctionType
 from typing import Any, NamedTuple
 
@@ -41,7 +42,8 @@ _NEAR = 1e-7
 _INPUTS = 3
 _SEEDS = range(9001, 9007)
 # What a search may take, in seconds of the processor; and how many numbers a value has at most.
-_SECONDS, _LARGEST = 0.12, 4000
+_SECONDS, _LARGEST = 0.25, 4000
+_TRIES = 1200
 # One run that takes longer is not repeated; and what all may take where it can be ended.
 _SLOW, _PATIENCE = 0.03, 1.0
 
@@ -411,19 +413,24 @@ def _proven(
         return -1, -1  # it is wrong in special cases only
     steps = traces[0].steps
     answers = {line for line, _, array in steps if _agree(array, traces[0].right, exercise.same)}
-    for k, (line, *_) in enumerate(steps):
-        for e in seen[0] if line not in answers else ():
-            if clock() > end:
-                return -1, -1
-            if e not in innocent and all(
-                e in values
-                and values[e].size == trace.steps[k][2].size
-                and right(own(trace.args, {e: trace.steps[k][2]}), trace)
-                for trace, values in zip(traces, seen, strict=True)
-            ):
-                if all(right(own(t.args, {e: disturbed(t.steps[k][2])}), t) for t in traces):
-                    continue  # any value does
-                return k, e  # where it is worked out, not where it is used
+    places = (
+        (k, e)
+        for k, (line, *_) in enumerate(steps)
+        for e in (seen[0] if line not in answers else ())
+        if e not in innocent
+    )
+    for k, e in islice(places, _TRIES):
+        if clock() > end:
+            break
+        if all(
+            e in values
+            and values[e].size == trace.steps[k][2].size
+            and right(own(trace.args, {e: trace.steps[k][2]}), trace)
+            for trace, values in zip(traces, seen, strict=True)
+        ):
+            if all(right(own(t.args, {e: disturbed(t.steps[k][2])}), t) for t in traces):
+                continue  # any value does
+            return k, e  # where it is worked out, not where it is used
     return -1, -1
 
 
