@@ -19,7 +19,7 @@ from cvnotes.base import CvnotesError
 from cvnotes.learn import EXERCISES, check
 from cvnotes.learn.exercises import COURSE
 from cvnotes.tutor import edited, mistakes
-from cvnotes.tutor.checker import repairs, steps, twice
+from cvnotes.tutor.checker import repairs, steps
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.difference import VAGUE
 from cvnotes.tutor.checker.families import family_of
@@ -38,8 +38,6 @@ each_with_steps = pytest.mark.parametrize("exercise", WITH_STEPS, ids=lambda e: 
 
 @pytest.fixture
 def time_enough(monkeypatch):
-    for searching in (repairs, twice):
-        monkeypatch.setattr(searching, "_SECONDS", 9.0)
     monkeypatch.setattr(repairs, "_PATIENCE", 9.0)
 
 
@@ -358,10 +356,12 @@ def test_what_puts_the_students_own_code_right_is_said_whatever_its_road(
 @pytest.mark.usefixtures("time_enough")
 def test_where_nothing_was_named_the_repair_is_said_behind_what_agrees():
     bilinear = EXERCISES["bilinear"]
-    said, exact = pointed(weights_of_one_pixel, bilinear)
-    assert said == "It comes out right with 1 less what is there, in `abs(u - column)`."
-    assert exact == "1 - abs(u - column)"
-    assert pointed(weights_of_one_pixel, bilinear, "its own name") == ("", "")
+    found = pointed(weights_of_one_pixel, bilinear)
+    assert found.name == "from 1 in `abs(u - column)`"
+    assert found.sentence == "It comes out right with 1 less what is there, in `abs(u - column)`."
+    assert found.exact == "1 - abs(u - column)"
+    named = pointed(weights_of_one_pixel, bilinear, "its own name")
+    assert (named.name, named.sentence) == ("", "")
 
 
 @each_with_steps

@@ -26,8 +26,8 @@ from cvnotes.tutor.checker.steps import located
 from cvnotes.tutor.checker.switches import KINDS, Slip, Switches
 from cvnotes.tutor.checker.wrong_answer import Found
 
-# What a search may take, in seconds of the processor; and all of it, where it can be ended.
-_SECONDS, _PATIENCE = 0.15, 0.5
+# How many slips are tried; and what all of it may take, in seconds of the processor.
+_TRIES, _PATIENCE = 2000, 0.4
 # A function that takes longer than that for one case is not tried.
 _SLOW = 0.01
 _LONGEST = 60  # characters of code that is quoted
@@ -122,9 +122,7 @@ def _found(
     if wrong is None or clock() - started > _SLOW * len(cases):
         return np.array(-1.0)
     usual = [case for case in cases if case is not wrong and (not case.about or wrong.about)]
-    for number, slip in enumerate(slips):
-        if clock() - started > _SECONDS:
-            break
+    for number, slip in enumerate(slips[:_TRIES]):
         with own.switches.set_to(slip):
             if right(wrong) and all(map(right, usual)):
                 return np.array(float(number))

@@ -1,7 +1,7 @@
 """Two mistakes at once, neither of which explains an answer alone."""
 
 from collections.abc import Callable, Iterator
-from itertools import combinations, islice, product
+from itertools import chain, combinations, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,16 +9,11 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.tutor.checker.equality import AS_NEAR, TOLERANCE
 from cvnotes.tutor.checker.exercise import Exercise
-from cvnotes.tutor.checker.families import family_of
+from cvnotes.tutor.checker.families import Arguments, Family, family_of, results
 from cvnotes.tutor.checker.foreseen import explains, what_it_gives
-from cvnotes.tutor.checker.in_process import clock
 from cvnotes.tutor.checker.inputs import slips_of, with_inputs
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
-# What a search may take, in seconds of the processor.
-_SECONDS = 0.25
-# How many pairs are tried.
-_TRIES = 5000
 # How many slips of each argument are likely enough to come with another mistake.
 _OF_EACH = 4
 # An answer says enough if it has that many numbers at least that are no counts.
@@ -53,10 +48,8 @@ def two_mistakes(answer: WrongAnswer) -> Found | None:
     exercise, (case, outcome) = answer.exercise, answer.shown
     if exercise.answer != "function" or outcome.value is None or not _says_enough(answer):
         return None
-    bound, end = AS_NEAR * TOLERANCE, clock() + _SECONDS
-    for first, second, gives, given in islice(_pairs(exercise, case.args), _TRIES):
-        if clock() > end:
-            break
+    bound = AS_NEAR * TOLERANCE
+    for first, second, gives, given in _pairs(exercise, case.args):
         if (
             given is not None
             and given.shape == outcome.value.shape
@@ -107,11 +100,14 @@ def _pairs(
         if not any(isinstance(x, int) for x in args)
     ]
     alone = [slip._replace(gives=with_inputs(slip.gives, exercise.reference)) for slip in slips]
-    for first in (None, *listed, *alone, *_slips_of_steps(exercise)):
-        does = exercise.reference if first is None else first.gives
-        if (given := _given(does, args)) is not None:
-            for change in _BESIDES:
-                yield first, change, _changed(change.gives, does), _given(change.gives, (given,))
+    family = family_of(exercise.steps) if exercise.steps is not None else None
+    alone_or_not = [(None, exercise.reference, _given(exercise.reference, args))]
+    known = ((way, way.gives, _given(way.gives, args)) for way in (*listed, *alone))
+    for first, does, given in chain(alone_or_not, known, _of_steps(family, args)):
+        for change in _BESIDES if given is not None else ():
+            yield first, change, _changed(change.gives, does), _given(change.gives, (given,))
+    if family is not None and family.loops:  # they take too long
+        return
     for other, slip in product(listed, slips):
         gives = with_inputs(slip.gives, other.gives)
         yield slip, other, gives, _given(gives, args)
@@ -120,12 +116,15 @@ def _pairs(
         yield one, second, gives, _given(gives, args)
 
 
-def _slips_of_steps(exercise: Exercise) -> Iterator[_Way]:
-    if exercise.steps is not None:
-        family = family_of(exercise.steps)
-        for slip in family.slips:
-            found = family.found(slip)
-            yield _Way(found.name, found.sentence, family.gives(slip))
+def _of_steps(
+    family: Family | None, args: tuple[Any, ...]
+) -> Iterator[tuple[_Way, Callable[..., Any], Array | None]]:
+    """Yield the slips of the steps, with what gives them and what they give."""
+    if family is not None:
+        given = results(family, Arguments(args))
+        for slip, result in zip(family.slips, given, strict=True):
+            name, sentence, *_ = family.found(slip)
+            yield _Way(name, sentence, family.gives(slip)), family.gives(slip), result
 
 
 def _changed(change: Callable[..., Any], gives: Callable[..., Any]) -> Callable[..., Any]:
