@@ -91,7 +91,7 @@ def slipped_step(answer: WrongAnswer) -> Found | None:
         return None
     family = family_of(exercise.steps)
     for slips in (family.slips, family.pairs):
-        gives = results(family, Arguments(case.args), pairs=slips is family.pairs)
+        gives = _results(family, _Arguments(case.args), pairs=slips is family.pairs)
         for slip, given in zip(slips, gives, strict=True):
             if (
                 given is not None
@@ -104,7 +104,7 @@ def slipped_step(answer: WrongAnswer) -> Found | None:
     return None
 
 
-class Arguments:
+class _Arguments:
     """Arguments by their values, to find again what they gave."""
 
     def __init__(self, args: tuple[Any, ...]) -> None:
@@ -115,12 +115,11 @@ class Arguments:
         return hash(self.key)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Arguments) and self.key == other.key
+        return isinstance(other, _Arguments) and self.key == other.key
 
 
 @lru_cache(maxsize=256)
-def results(family: Family, given: Arguments, *, pairs: bool = False) -> tuple[Array | None, ...]:
-    """Return what all slips of a family give, or all pairs of them, and keep it."""
+def _results(family: Family, given: _Arguments, *, pairs: bool = False) -> tuple[Array | None, ...]:
     slips = family.pairs if pairs else family.slips
     with np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore")

@@ -21,6 +21,7 @@ _SEEDS = (9001, 9002, 9003)
 # So many inputs are asked about, the shortest; so many different numbers exclude chance.
 _INPUTS, _ENOUGH = 4, 3
 _FEW = 6  # numbers that are asked about one by one
+_NAMED = 3  # parts that are said
 # What all of it may take, in seconds of the processor, where it can be ended.
 _PATIENCE = 0.5
 # What is unchanged is so to the last digits.
@@ -74,7 +75,7 @@ def probed(function: Any, exercise: Exercise) -> Found | None:
     if found.value is None or not found.value.size:
         return None
     said, *numbers = found.value.astype(int).tolist()
-    what = " and ".join((parts if said == 1 else slips)[i][0] for i in numbers)
+    what = " and ".join((parts if said == 1 else slips)[i][0] for i in numbers[:_NAMED])
     name, sentence = (text.format(what) for text in _SAID[said])
     return Found(name, sentence)
 
@@ -169,7 +170,7 @@ def _parts(names: Sequence[str], args: Sequence[Any]) -> Iterator[tuple[str, int
             yield from ((f"{name}[{j}]", i, j) for j in range(len(arg)))
         elif np.ndim(arg) > 1 and np.shape(arg) != (3, 3):
             yield f"all of {name} but the first", i, np.s_[1:]
-            yield f"the last of {name}", i, -1
+            yield from ((f"the last of {name}", i, -1),) * (len(arg) > 2)
 
 
 def _with_others(i: int, place: Any, *args: Any) -> tuple[Any, ...]:

@@ -363,7 +363,8 @@ def _found(
         line = traces[0].steps[step][0] if step >= 0 else len(lines)
         agreed = [pair for pair in _agreed(own, exercise, traces, seen) if pair[0] < line]
     known = {name for i, _ in agreed for name in lines[i].name.split(", ")}
-    before = {name for one in lines[:line] for name in one.name.split(", ")}
+    steps = {i for i, *_ in traces[0].steps if i < line} if traces else set()
+    before = {name for i in steps for name in lines[i].name.split(", ")}
     first = step >= 0 and (
         all(e in innocent or _is_read_off(seen[0].get(e), traces[0].args) for e in own.reads[place])
         or lines[line].reads & before <= known
@@ -452,11 +453,13 @@ def _is_innocent(
 
 
 def _is_read_off(value: Array | None, args: Sequence[Any]) -> bool:
-    """Return whether a value is a count, or a column of an input."""
-    if value is None or value.ndim == 0:
-        return value is not None and bool(value == np.rint(value))
-    given = (x for x in args if np.ndim(x) == 2)
-    return any(np.array_equal(value, column) for x in given for column in np.transpose(x))
+    """Return whether a value is a count, or a number or a column of an input, whatever its sign."""
+    if value is None:
+        return False
+    arrays = [np.asarray(x) for x in args if np.ndim(x)]
+    if value.ndim == 0:
+        return bool(value == np.rint(value)) or any(abs(value) in abs(x) for x in arrays)
+    return any(np.array_equal(value, one) for x in arrays if x.ndim == 2 for one in x.T)
 
 
 def _worded(

@@ -1,7 +1,7 @@
 """Two mistakes at once, neither of which explains an answer alone."""
 
 from collections.abc import Callable, Iterator
-from itertools import chain, combinations, product
+from itertools import combinations, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.tutor.checker.equality import AS_NEAR, TOLERANCE
 from cvnotes.tutor.checker.exercise import Exercise
-from cvnotes.tutor.checker.families import Arguments, Family, family_of, results
+from cvnotes.tutor.checker.families import family_of
 from cvnotes.tutor.checker.foreseen import explains, what_it_gives
 from cvnotes.tutor.checker.inputs import slips_of, with_inputs
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
@@ -38,7 +38,8 @@ _BESIDES = (
     _Way("sizes only", "took absolute values", np.abs),
     _Way("twice", "doubled what you return", lambda x: 2 * x),
     _Way("degrees", "give degrees in place of radians", np.rad2deg),
-    _Way("radians", "give radians in place of degrees", np.deg2rad),
+    _Way("moved on", "return it moved on by one place", lambda x: np.roll(x, 1, -1)),
+    _Way("rows in the opposite order", "return it the other way round", lambda x: np.flip(x, 0)),
     _Way("half", "halved what you return", lambda x: x / 2),
 )
 
@@ -100,13 +101,12 @@ def _pairs(
         if not any(isinstance(x, int) for x in args)
     ]
     alone = [slip._replace(gives=with_inputs(slip.gives, exercise.reference)) for slip in slips]
-    family = family_of(exercise.steps) if exercise.steps is not None else None
-    alone_or_not = [(None, exercise.reference, _given(exercise.reference, args))]
-    known = ((way, way.gives, _given(way.gives, args)) for way in (*listed, *alone))
-    for first, does, given in chain(alone_or_not, known, _of_steps(family, args)):
+    for first in (None, *listed, *alone):
+        does = exercise.reference if first is None else first.gives
+        given = _given(does, args)
         for change in _BESIDES if given is not None else ():
             yield first, change, _changed(change.gives, does), _given(change.gives, (given,))
-    if family is not None and family.loops:  # they take too long
+    if exercise.steps is not None and family_of(exercise.steps).loops:  # they take too long
         return
     for other, slip in product(listed, slips):
         gives = with_inputs(slip.gives, other.gives)
@@ -114,17 +114,6 @@ def _pairs(
     for one, second in combinations(slips, 2):
         gives = with_inputs(second.gives, with_inputs(one.gives, exercise.reference))
         yield one, second, gives, _given(gives, args)
-
-
-def _of_steps(
-    family: Family | None, args: tuple[Any, ...]
-) -> Iterator[tuple[_Way, Callable[..., Any], Array | None]]:
-    """Yield the slips of the steps, with what gives them and what they give."""
-    if family is not None:
-        given = results(family, Arguments(args))
-        for slip, result in zip(family.slips, given, strict=True):
-            name, sentence, *_ = family.found(slip)
-            yield _Way(name, sentence, family.gives(slip)), family.gives(slip), result
 
 
 def _changed(change: Callable[..., Any], gives: Callable[..., Any]) -> Callable[..., Any]:
