@@ -34,6 +34,7 @@ from cvnotes.tutor.checker import in_process
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.difference import VAGUE
 from cvnotes.tutor.checker.judge import judge
+from cvnotes.tutor.checker.probes import probed
 from cvnotes.tutor.checker.repairs import pointed
 
 SEED, OTHERS = 2024, (11, 12)
@@ -130,13 +131,15 @@ def counted(answers):
             counts["accepted"] += 1
             continue
         said = report.misconception
-        found = pointed(function, exercise, said) if said is None or has_source(function) else None
+        own_code = has_source(function)
+        found = pointed(function, exercise, said) if own_code else None
         placed = found is not None and bool(found.exact)
         counts["located"] += placed
         if said is not None:
             counts["precise" if said in VAGUE else "named"] += 1
         else:
-            counts["placed" if placed else "probed" if found.name else "generic"] += 1
+            found = found.name if own_code else probed(function, exercise)
+            counts["placed" if placed else "probed" if found else "generic"] += 1
         if own is not None and said != own:
             counts["wrong name"] += 1
         elif own is None and said not in (None, *VAGUE) and finite(report):

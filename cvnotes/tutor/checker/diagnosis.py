@@ -40,8 +40,8 @@ def _usually(answer: WrongAnswer) -> Found | None:
     if usual.wrong < 2 or len(usual.tried) == len(answer.tried):
         return None
     found = difference(usual)
-    if found is None or found == NOT_A_NUMBER or found.name in VAGUE:
-        return None
+    if found is None or found == NOT_A_NUMBER or found.name in {*VAGUE, "one answer for all"}:
+        return None  # neither where nor why, nor what rounding decides
     return Found(found.name, f"Special inputs aside: {found.sentence}")
 
 
