@@ -10,9 +10,13 @@ wrong answer is
   a name);
 * named, by the list or by a rule that says what was done;
 * precise, where what is said is in which entries, rows or columns it is wrong, or how little;
-* located, where besides a place is shown that, put right, makes the rest come out right (the others
-  but slips have no source of their own);
-* generic, where it has no name, and of these so many are located.
+* placed, where it has none of these, but a place of its code is shown that, put right, makes the
+  rest come out right (the others but slips have no source of their own);
+* probed, where it is none of these, but is right on simpler inputs, does not depend on something,
+  or changes where it should not;
+* generic, where nothing of all that is said.
+
+Located are all whose place is shown, whatever their name.
 """
 
 import ast
@@ -30,13 +34,14 @@ from cvnotes.tutor.checker import in_process
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.difference import VAGUE
 from cvnotes.tutor.checker.judge import judge
+from cvnotes.tutor.checker.probes import probed
 from cvnotes.tutor.checker.repairs import pointed
 
 SEED, OTHERS = 2024, (11, 12)
 # How the files of answers are called that have a source of their own.
 OWN = "<answer"
 COLUMNS = ("right", "refused", "wrong", "accepted", "raised", "wrong name", "named", "precise",
-           "generic", "of these", "located", "ms")  # fmt: skip
+           "placed", "probed", "generic", "located", "ms")  # fmt: skip
 # What is done to a right answer as a whole.
 CHANGES = {
     "sign": np.negative, "twice": lambda x: 2 * x, "0.1 % more": lambda x: 1.001 * x,
@@ -98,6 +103,11 @@ def with_source(source, name):
     return names[f"my_{name}"]
 
 
+def has_source(function):
+    code = getattr(function, "__code__", None)
+    return code is not None and code.co_filename.startswith(OWN)
+
+
 def finite(report):
     return report.yours is not None and np.isfinite(np.asarray(report.yours, float)).all()
 
@@ -121,18 +131,15 @@ def counted(answers):
             counts["accepted"] += 1
             continue
         said = report.misconception
-        code = getattr(function, "__code__", None)
-        shown = (
-            code is not None
-            and code.co_filename.startswith(OWN)
-            and bool(pointed(function, exercise, said)[1])
-        )
-        counts["located"] += shown
-        if said is None:
-            counts["generic"] += 1
-            counts["of these"] += shown
-        else:
+        own_code = has_source(function)
+        found = pointed(function, exercise, said) if own_code else None
+        placed = found is not None and bool(found.exact)
+        counts["located"] += placed
+        if said is not None:
             counts["precise" if said in VAGUE else "named"] += 1
+        else:
+            found = found.name if own_code else probed(function, exercise)
+            counts["placed" if placed else "probed" if found else "generic"] += 1
         if own is not None and said != own:
             counts["wrong name"] += 1
         elif own is None and said not in (None, *VAGUE) and finite(report):

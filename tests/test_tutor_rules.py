@@ -19,12 +19,13 @@ from cvnotes.base import CvnotesError
 from cvnotes.learn import EXERCISES, check
 from cvnotes.learn.exercises import COURSE
 from cvnotes.tutor import edited, mistakes
-from cvnotes.tutor.checker import repairs, steps, twice
+from cvnotes.tutor.checker import repairs, steps
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.difference import VAGUE
 from cvnotes.tutor.checker.families import family_of
 from cvnotes.tutor.checker.judge import holds, judge
 from cvnotes.tutor.checker.outcome import outcome_of
+from cvnotes.tutor.checker.probes import probed
 from cvnotes.tutor.checker.repairs import pointed, repaired
 from cvnotes.tutor.checker.soundness import judged
 from cvnotes.tutor.checker.steps import lines_of, located
@@ -38,8 +39,6 @@ each_with_steps = pytest.mark.parametrize("exercise", WITH_STEPS, ids=lambda e: 
 
 @pytest.fixture
 def time_enough(monkeypatch):
-    for searching in (repairs, twice):
-        monkeypatch.setattr(searching, "_SECONDS", 9.0)
     monkeypatch.setattr(repairs, "_PATIENCE", 9.0)
 
 
@@ -296,6 +295,89 @@ def test_the_formula_comes_with_the_second_refusal():
     assert "It is s2 = r @ r / (n - p)." in again._repr_html_()
 
 
+def test_what_reads_wrong_numbers_is_not_called_the_first_that_is_wrong():
+    def by_least_squares(row):
+        u, v = row.T
+        m, t = np.polyfit(u, v, 1)
+        return np.max(np.abs(m * u - v + t) / np.sqrt(m**2 + 1))
+
+    found = located(by_least_squares, EXERCISES["bend"])
+    assert not found.first  # m and t are wrong already
+    assert found.sentence.startswith("Wrong by then: `np.abs(m * u - v + t)")
+    for name, function, *_ in LOCATED:
+        assert "First wrong: " in located(function, EXERCISES[name]).sentence
+
+
+# What it hangs on that an answer is wrong.
+
+
+def shifted_after_the_division(A, R, T, W):
+    M = W @ R.T
+    return ((M / M[:, 2:] + T) @ A.T)[:, :2] / (M[:, 2:] / M[:, 2:] + T[2])
+
+
+def ratio(A, width):
+    return np.arctan(width / A[0, 0])
+
+
+def axes_of_any_length(R, left, right):
+    x = R @ (right - left)
+    y = np.cross([0, 0, 1], x)
+    return np.stack([x, y, np.cross(x, y)]) / np.linalg.norm(x)
+
+
+def factor_without_the_second_power(A, k, G, W, m):
+    M = W @ G[:3, :3].T + G[:3, 3]
+    x, y = (M[:, :2] / M[:, 2:]).T
+    L = 1 + k[0] * (x**2 + y**2)
+    return (m - np.stack([A[0, 0] * L * x + A[0, 2], A[1, 1] * L * y + A[1, 2]], axis=1)) ** 2
+
+
+def rows_alone(horizon, v, post, h, person):
+    tall, high = (x[0, 1] - x[1, 1] for x in (person, post))
+    return h / high * post[0, 1] / person[0, 1] * tall
+
+
+PROBED = [
+    ("project", shifted_after_the_division, "right with T left out",
+     "Were the input simpler, with T left out, your answer would be right: that is where to look."),
+    ("field_of_view", ratio, "independent of u0 of A",
+     "Your answer does not depend on u0 of A; the right one does."),
+    ("residuals", factor_without_the_second_power, "independent of γ of A and k[1]",
+     "Your answer does not depend on γ of A and k[1]; the right one does."),
+    ("person_height", rows_alone, "independent of horizon and v",
+     "Your answer does not depend on horizon and v; the right one does."),
+    ("rectifying_rotation", axes_of_any_length, "another with R scaled by its last number",
+     "The right answer stays the same with R scaled by its last number; yours does not."),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "function", "called", "sentence"), PROBED)
+def test_what_nothing_explains_is_asked_what_it_hangs_on(name, function, called, sentence):
+    found = probed(function, EXERCISES[name])
+    assert (found.name, found.sentence) == (called, sentence)
+
+
+@each_with_steps
+def test_of_what_is_right_nothing_is_said_to_hang_on_an_input(exercise):
+    assert probed(getattr(test_exercises_second, f"my_{exercise.name}"), exercise) is None
+
+
+@pytest.mark.parametrize(("name", "function"), [
+    ("knows_its_origin", lambda columns, rows: columns % 2 == 1),
+    ("same_points", lambda a, b: a[:, 0] == b[:, 0]), ("count_holes", lambda m, size: size[0]),
+    ("ransac", lambda src, dst, draws, t: (4, 9)),
+])  # fmt: skip
+def test_counts_and_yes_or_no_may_be_the_same_by_chance(name, function):
+    assert probed(function, EXERCISES[name]) is None
+
+
+def test_what_an_answer_hangs_on_is_its_name_if_it_has_no_other():
+    report = check("field_of_view", lambda A, width: np.rad2deg(ratio(A, width)))
+    assert report.misconception == "independent of u0 of A"
+    assert report.located == "Your answer does not depend on u0 of A; the right one does."
+
+
 # What puts a student's own code right, whatever its road.
 
 
@@ -358,15 +440,27 @@ def test_what_puts_the_students_own_code_right_is_said_whatever_its_road(
 @pytest.mark.usefixtures("time_enough")
 def test_where_nothing_was_named_the_repair_is_said_behind_what_agrees():
     bilinear = EXERCISES["bilinear"]
-    said, exact = pointed(weights_of_one_pixel, bilinear)
-    assert said == "It comes out right with 1 less what is there, in `abs(u - column)`."
-    assert exact == "1 - abs(u - column)"
-    assert pointed(weights_of_one_pixel, bilinear, "its own name") == ("", "")
+    found = pointed(weights_of_one_pixel, bilinear)
+    assert found.name == "from 1 in `abs(u - column)`"
+    assert found.sentence == "It comes out right with 1 less what is there, in `abs(u - column)`."
+    assert found.exact == "1 - abs(u - column)"
+    named = pointed(weights_of_one_pixel, bilinear, "its own name")
+    assert (named.name, named.sentence) == ("", "")
 
 
 @each_with_steps
 def test_what_is_right_is_not_put_right(exercise):
     assert repaired(getattr(test_exercises_second, f"my_{exercise.name}"), exercise) is None
+
+
+def test_searches_end_after_so_many_tries(monkeypatch):
+    bilinear = EXERCISES["bilinear"]
+    assert repaired(weights_of_one_pixel, bilinear) is not None
+    assert located(four_pixels_of_two_rows, bilinear).missing is not None
+    monkeypatch.setattr(repairs, "_TRIES", 1)
+    monkeypatch.setattr(steps, "_TRIES", 1)
+    assert repaired(weights_of_one_pixel, bilinear) is None
+    assert located(four_pixels_of_two_rows, bilinear).missing is None
 
 
 def test_a_loop_that_may_never_end_is_left_alone():
@@ -408,6 +502,8 @@ def rows_by_H_and_a_sum(H, src, dst):
 TWICE = [
     ("project", without_skew_and_turned_back, "A without its skew, and R transposed"),
     ("geometric_error", rows_by_H_and_a_sum, "H transposed, and no distance"),
+    ("lift", lambda x, w: np.insert(np.asarray(x, float), 0, w, axis=1),
+     "w appended only, and moved on"),
     ("rectifying_rotation", lambda R, left, right: axes_in_columns(R, left, right),
      "z axis kept, and transposed"),
 ]  # fmt: skip
@@ -501,6 +597,40 @@ def test_whoever_used_the_first_rows_only_is_told(name, n, what):
     assert f"used only {what}" in report.message
 
 
+def with_a_sorted_scale(t, m, q):
+    return EXERCISES["measure_along"].reference(np.sort(t), m, q)
+
+
+def by_the_rows(A, width):
+    return np.arctan((A[1, 2] + 0.5) / A[1, 1]) + np.arctan((width - 0.5 - A[1, 2]) / A[1, 1])
+
+
+@pytest.mark.parametrize(("name", "function", "called"), [
+    ("measure_along", with_a_sorted_scale, "t sorted"),
+    ("field_of_view", by_the_rows, "A with α_v and v0 for α_u and u0"),
+    ("v_ij", lambda H, i, j: EXERCISES["v_ij"].reference(np.roll(H, -1, axis=1), i, j),
+     "columns moved back in H"),
+    ("A_from_b", lambda b: EXERCISES["A_from_b"].reference(b[[0, 1, 3, 2, 4, 5]]),
+     "b[2] and b[3] exchanged"),
+])  # fmt: skip
+def test_an_input_that_slipped_is_named(name, function, called):
+    assert said_of(EXERCISES[name], function).misconception == called
+
+
+def test_what_was_done_to_usual_answers_is_said_where_special_inputs_hide_it():
+    def counted_from_1_and_never_nothing(patch):
+        v, u = np.indices(patch.shape).reshape(2, -1) + 1
+        D = np.stack([u * u, u * v, v * v, u, v, 0 * u + 1], axis=1)
+        a, b, c, d, e, _ = np.linalg.pinv(D) @ patch.ravel()
+        return np.linalg.solve([[2 * a, b], [b, 2 * c]], [-d, -e])
+
+    report = said_of(EXERCISES["saddle_point"], counted_from_1_and_never_nothing)
+    assert report.misconception == "a constant added"
+    assert report.message.startswith("Special inputs aside: Your answer is the right one plus 1 ")
+    # NaN that was meant is no accident
+    assert said_of(EXERCISES["saddle_point"], a_hill_for_a_saddle).misconception is None
+
+
 # How many slips of the steps are right answers, and why; no other is accepted.
 EQUIVALENT = {
     "bend": (4, "a chord has two directions, and a distance no sign"),
@@ -527,7 +657,7 @@ EQUIVALENT = {
     "A_from_b": (11, "B of either sign; a product divided in another order"),
     "extrinsics": (6, "‖h1‖ = ‖h2‖; the last row of A⁻¹; the nearest rotation evens lengths out"),
     "focal_from_turn": (2, "lengths of two entries in any order"),
-    "levenberg_marquardt": (19, "any damping that grows and shrinks leads to the minimum"),
+    "levenberg_marquardt": (14, "any damping that grows and shrinks leads to the minimum"),
     "camera_covariance": (1, "a symmetric matrix transposed"),
     "bilinear": (4, "min in any order; int cuts off what is positive as floor does"),
     "backward_warp": (1, "ones of the same shape"),
@@ -565,9 +695,8 @@ def test_every_slip_is_an_answer_that_is_refused_on_all_seeds_or_right_on_all(ex
 @pytest.mark.slow
 @pytest.mark.once
 def test_every_pair_of_slips_is_refused_on_all_seeds_or_right_on_all(exercise):
-    if exercise.name in LUCKY:
-        pytest.skip("single slips of it are right on some seeds")
     family = family_of(exercise.steps)
+    assert family.pairs or family.loops
     cases = [sorted(exercise.solved_cases(seed), key=lambda case: case.size) for seed in range(20)]
     for pair in family.pairs:
         gives = family.gives(pair)

@@ -140,8 +140,13 @@ class Course:
         """Say where the answer leaves the way; the formula from the second refusal on."""
         again = self.session.refused[exercise.name] > 0
         self.session.refused[exercise.name] += 1
-        where, exact = pointed(answer, exercise, report.misconception)
-        report = replace(report, located=where, exact=report.exact or exact)
+        found = pointed(answer, exercise, report.misconception)
+        report = replace(
+            report,
+            misconception=report.misconception or found.name or None,
+            located=found.sentence,
+            exact=report.exact or found.exact,
+        )
         self.session.exact[exercise.name] = report.exact
         return report if again else replace(report, exact="")
 

@@ -39,13 +39,6 @@ def some_intrinsics(rng: np.random.Generator, *, skew: bool = False) -> Array:
     return intrinsics(alpha_u, alpha_v, u0, v0, round(rng.uniform(3, 9), 1) if skew else 0.0)
 
 
-def without_skew(A: Array) -> Array:
-    """Return an intrinsic matrix with a skew of 0 and all else as it is."""
-    A = np.array(A)
-    A[0, 1] = 0.0
-    return A
-
-
 def some_rotation(rng: np.random.Generator, largest: float = 0.7) -> Array:
     """Return a rotation by 0.3 to `largest` radians about a random axis."""
     axis = rng.standard_normal(3)

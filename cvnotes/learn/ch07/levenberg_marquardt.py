@@ -20,18 +20,21 @@ def misses(x: Array, W: Array, m: Array) -> Array:
 def derivatives(x: Array, W: Array, m: Array) -> Array:
     """Return J: the derivatives of the misses by each number of x, a column for each."""
     h = 1e-6 * (1 + abs(x))
-    return (misses(x + np.diag(h), W, m) - misses(x - np.diag(h), W, m)).T / (2 * h)
+    ahead, behind = misses(np.stack([x + np.diag(h), x - np.diag(h)]), W, m)
+    return np.asarray((ahead - behind).T / (2 * h))
 
 
 def levenberg_marquardt(x: Array, W: Array, m: Array) -> Array:
     """Give A (3, 3) at the minimum; x (3 + 6v,) is where to start."""
-    mu = 1e-3  # the damping at the start
+    mu, r = 1e-3, misses(x, W, m)  # the damping at the start, and the misses there
     for _ in range(14):
-        r, J = misses(x, W, m), derivatives(x, W, m)
+        J = derivatives(x, W, m)
         N = J.T @ J
         step = np.linalg.solve(N + mu * np.diag(np.diag(N)), J.T @ r)
-        downhill = (misses(x - step, W, m) ** 2).sum() < (r**2).sum()
-        x, mu = (x - step, mu / 10) if downhill else (x, mu * 10)  # all unknowns at the minimum
+        new = misses(x - step, W, m)
+        downhill = new @ new < r @ r
+        mu = mu / 10 if downhill else mu * 10
+        x, r = (x - step, new) if downhill else (x, r)  # all unknowns at the minimum
     return np.array([[x[0], 0, x[1]], [0, x[0], x[2]], [0, 0, 1]])
 
 
@@ -65,7 +68,7 @@ _MISTAKES = mistakes_in(levenberg_marquardt,
      (_STEP, "np.append(np.linalg.solve(N[:3, :3], (J.T @ r)[:3]), 0 * x[3:])")),
     ("every step taken", "You leapt far away: take a step only if the sum of squares becomes "
      "smaller, and try a shorter one if not.",
-     (_STEP, "np.linalg.lstsq(J, r)[0]", "if downhill", "if True"), {"seen": _leapt}),
+     (_STEP, "np.linalg.lstsq(J, r)[0]", "= new @ new < r @ r", "= True"), {"seen": _leapt}),
 )  # fmt: skip
 
 EXERCISE = Exercise(

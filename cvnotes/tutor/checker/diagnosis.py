@@ -4,7 +4,7 @@ The exercise's own misconceptions come first. All others are known in every exer
 they are what stands between the answers and right ones, in all cases alike.
 """
 
-from cvnotes.tutor.checker.difference import VAGUE, difference
+from cvnotes.tutor.checker.difference import NOT_A_NUMBER, VAGUE, difference
 from cvnotes.tutor.checker.families import slipped_step
 from cvnotes.tutor.checker.foreseen import foreseen
 from cvnotes.tutor.checker.inputs import slipped_input
@@ -28,10 +28,21 @@ def diagnosis(answer: WrongAnswer) -> Found | None:
         return Found("an argument changed", answer.why)
     found = laid_out_otherwise(answer) or difference(answer)
     if found is None or found.name in VAGUE:
-        found = _slipped(answer) or answer.found_by(slipped_step) or found
+        found = _slipped(answer) or answer.found_by(slipped_step) or found or _usually(answer)
     if found is None or found.name == "a few numbers":
         found = answer.found_by(two_mistakes) or found
     return found or misshapen(answer)
+
+
+def _usually(answer: WrongAnswer) -> Found | None:
+    """Name what was done to right answers, where special inputs alone hide it."""
+    usual = answer.on_usual_inputs
+    if usual.wrong < 2 or len(usual.tried) == len(answer.tried):
+        return None
+    found = difference(usual)
+    if found is None or found == NOT_A_NUMBER or found.name in {*VAGUE, "one answer for all"}:
+        return None  # neither where nor why, nor what rounding decides
+    return Found(found.name, f"Special inputs aside: {found.sentence}")
 
 
 def _slipped(answer: WrongAnswer) -> Found | None:

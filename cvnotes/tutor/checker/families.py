@@ -38,12 +38,15 @@ class Family:
         What the function asks, which of the slips it is to make.
     function : callable
         The steps, as the switches say.
+    loops : bool
+        Whether there is a loop in them.
     """
 
     lines: tuple[Line, ...]
     slips: tuple[Slip, ...]
     switches: Switches
     function: Callable[..., Any]
+    loops: bool
 
     def gives(self, slip: Slip) -> Callable[..., Any]:
         """Return the steps with a slip in them."""
@@ -58,7 +61,9 @@ class Family:
 
     @cached_property
     def pairs(self) -> tuple[Slip, ...]:
-        """Two slips of the likeliest kinds, at two places."""
+        """Two slips of the likeliest kinds, at two places; none where loops take long."""
+        if self.loops:
+            return ()
         likely = [s for s in self.slips if len(s.setting) == 1 and s.kind != "stopped"]
         singles = likely[:_PAIRED]
         return tuple(
@@ -86,8 +91,8 @@ def slipped_step(answer: WrongAnswer) -> Found | None:
         return None
     family = family_of(exercise.steps)
     for slips in (family.slips, family.pairs):
-        results = _results(family, slips is family.pairs, _Arguments(case.args))
-        for slip, given in zip(slips, results, strict=True):
+        gives = _results(family, _Arguments(case.args), pairs=slips is family.pairs)
+        for slip, given in zip(slips, gives, strict=True):
             if (
                 given is not None
                 and given.shape == outcome.value.shape
@@ -114,7 +119,7 @@ class _Arguments:
 
 
 @lru_cache(maxsize=256)
-def _results(family: Family, pairs: bool, given: _Arguments) -> tuple[Array | None, ...]:
+def _results(family: Family, given: _Arguments, *, pairs: bool = False) -> tuple[Array | None, ...]:
     slips = family.pairs if pairs else family.slips
     with np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -136,7 +141,9 @@ def family_of(steps: Callable[..., Any]) -> Family:
     made = switches.switched(function)
     space = {**steps.__globals__, **switches.names}
     exec(compile(ast.Module([made], []), "<family>", "exec"), space)
-    return Family(tuple(lines), tuple(switches.slips[:_MOST]), switches, space[function.name])
+    loops = any(isinstance(node, ast.For) for node in ast.walk(function))
+    slips = tuple(switches.slips[:_MOST])
+    return Family(tuple(lines), slips, switches, space[function.name], loops)
 
 
 def _example(x: float) -> float:

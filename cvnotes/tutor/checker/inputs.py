@@ -143,6 +143,7 @@ def _changes(name: str, arg: Any) -> Iterator[Iterable[Slip]]:
         yield _VECTOR
         if arg.size <= 6:
             yield (_one_left_out(j) for j in range(arg.size))
+            yield (_two_exchanged(i, j) for i, j in combinations(range(arg.size), 2))
         if arg.size <= 3:
             yield (_one_for_another(i, j) for i, j in permutations(range(arg.size), 2))
     elif isinstance(arg, np.ndarray) and arg.ndim == 2:
@@ -191,6 +192,7 @@ _VECTOR = (
     _used("{0} moved back", "np.roll({0}, -1)", lambda x: np.roll(x, -1)),
     _used("absolute values of {0}", "the absolute values of {0}", np.abs),
     _used("{0} squared", "the squares of {0}", np.square),
+    Slip("{0} sorted", "sorted {0}", np.sort),
     Slip("{0} scaled to length 1", "scaled {0} to length 1", lambda x: x / np.linalg.norm(x)),
     _used("{0} less its mean", "{0} − {0}.mean()", lambda x: x - x.mean()),
     Slip("{0} without decimals", "cut off the decimals of {0}", np.trunc),
@@ -211,6 +213,8 @@ _SQUARE = (
 _ROWS = (
     _used("columns exchanged in {0}", "{0}[:, ::-1]", lambda x: x[:, ::-1]),
     _used("{0} in the opposite order", "{0}[::-1]", lambda x: x[::-1]),
+    _used("columns moved on in {0}", "np.roll({0}, 1, axis=1)", lambda x: np.roll(x, 1, 1)),
+    _used("columns moved back in {0}", "np.roll({0}, -1, axis=1)", lambda x: np.roll(x, -1, 1)),
     _used("sign of {0}", "−{0}", np.negative),
     Slip("{0} reshaped, not transposed", "reshaped {0} where it should be transposed",
          lambda x: x.reshape(x.shape[::-1]).T),
@@ -262,6 +266,16 @@ def _one_left_out(j: int) -> Slip:
     return Slip(f"{{0}}[{j}] left out", f"left out {{0}}[{j}], or took 0 for it", change)
 
 
+def _two_exchanged(i: int, j: int) -> Slip:
+    def change(x: Array) -> Array:
+        x = np.array(x)
+        x[[i, j]] = x[[j, i]]
+        return x
+
+    what = f"{{0}}[{i}] and {{0}}[{j}]"
+    return Slip(f"{what} exchanged", f"exchanged {what}", change)
+
+
 def _one_for_another(i: int, j: int) -> Slip:
     def change(x: Array) -> Array:
         x = np.array(x)
@@ -272,42 +286,46 @@ def _one_for_another(i: int, j: int) -> Slip:
     return Slip(f"{{0}}[{i}] for {{0}}[{j}]", f"used {what}", change)
 
 
+ENTRIES_OF_A = {"α_u": (0, 0), "α_v": (1, 1), "u0": (0, 2), "v0": (1, 2), "γ": (0, 1)}
+
+
 def _put(**places: Callable[[Array], float]) -> Callable[[Array], Array]:
     """Make a change of A that puts something in the place of its entries, by their names."""
-    where = {"au": (0, 0), "av": (1, 1), "u0": (0, 2), "v0": (1, 2), "skew": (0, 1)}
 
     def change(A: Array) -> Array:
         B = np.array(A)
         for place, value in places.items():
-            B[where[place]] = value(A)
+            B[ENTRIES_OF_A[place]] = value(A)
         return B
 
     return change
 
 
 _INTRINSICS = (
-    Slip("{0} without its skew", "left out the skew {0}[0, 1]", _put(skew=lambda _: 0.0)),
-    Slip("{0} with α_u for both", "used α_u in place of α_v", _put(av=lambda A: A[0, 0])),
-    Slip("{0} with α_v for both", "used α_v in place of α_u", _put(au=lambda A: A[1, 1])),
+    Slip("{0} without its skew", "left out the skew {0}[0, 1]", _put(γ=lambda _: 0.0)),
+    Slip("{0} with α_u for both", "used α_u in place of α_v", _put(α_v=lambda A: A[0, 0])),
+    Slip("{0} with α_v for both", "used α_v in place of α_u", _put(α_u=lambda A: A[1, 1])),
     Slip("{0} with the mean focal length", "used the mean of α_u and α_v for both",
-         _put(au=lambda A: (A[0, 0] + A[1, 1]) / 2, av=lambda A: (A[0, 0] + A[1, 1]) / 2)),
+         _put(α_u=lambda A: (A[0, 0] + A[1, 1]) / 2, α_v=lambda A: (A[0, 0] + A[1, 1]) / 2)),
     Slip("{0} with one focal length and no skew",
          "used α_u for both focal lengths, and left out the skew",
-         _put(av=lambda A: A[0, 0], skew=lambda _: 0.0)),
+         _put(α_v=lambda A: A[0, 0], γ=lambda _: 0.0)),
     Slip("{0} with α_u and α_v exchanged", "exchanged α_u and α_v",
-         _put(au=lambda A: A[1, 1], av=lambda A: A[0, 0])),
+         _put(α_u=lambda A: A[1, 1], α_v=lambda A: A[0, 0])),
     Slip("{0} with u0 and v0 exchanged", "exchanged u0 and v0",
          _put(u0=lambda A: A[1, 2], v0=lambda A: A[0, 2])),
     Slip("{0} without its principal point", "left out u0 and v0",
          _put(u0=lambda _: 0.0, v0=lambda _: 0.0)),
     Slip("{0} with the principal point subtracted", "used −u0 and −v0 in place of u0 and v0",
          _put(u0=lambda A: -A[0, 2], v0=lambda A: -A[1, 2])),
-    Slip("{0} with v upwards", "used −α_v in place of α_v", _put(av=lambda A: -A[1, 1])),
+    Slip("{0} with v upwards", "used −α_v in place of α_v", _put(α_v=lambda A: -A[1, 1])),
     Slip("{0} with u0 for both", "used u0 in place of v0", _put(v0=lambda A: A[0, 2])),
+    Slip("{0} with α_v and v0 for α_u and u0", "used α_v and v0 in place of α_u and u0",
+         _put(α_u=lambda A: A[1, 1], u0=lambda A: A[1, 2])),
     Slip("{0} without focal lengths", "left out α_u and α_v, or took 1 for both",
-         _put(au=lambda _: 1.0, av=lambda _: 1.0)),
+         _put(α_u=lambda _: 1.0, α_v=lambda _: 1.0)),
     Slip("{0} with the sign of the skew", "used −γ in place of the skew γ",
-         _put(skew=lambda A: -A[0, 1])),
+         _put(γ=lambda A: -A[0, 1])),
 )  # fmt: skip
 
 

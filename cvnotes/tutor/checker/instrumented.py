@@ -32,6 +32,8 @@ class Instrumented:
     ----------
     text : list of str
         What the student wrote, by the number of the expression.
+    reads : list of list of int
+        The names in an expression, by their numbers.
     function : callable
         What is looked at, and calls this instance meanwhile.
 
@@ -51,6 +53,7 @@ class Instrumented:
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self.text: list[str] = []
+        self.reads: list[list[int]] = []
         self._seen: dict[int, list[Array | None]] = {}
         # What is put in the place of expressions, and how often it was; None while all is noted.
         self._put: dict[int, Array] | None = None
@@ -142,7 +145,7 @@ class Instrumented:
 
     def _marked(self, function: ast.FunctionDef, source: str) -> ast.FunctionDef:
         """Mark the expressions of a function by numbers."""
-        marking = _Marking(source, self.text)
+        marking = _Marking(source, self.text, self.reads)
         function.body = [marking.visit(statement) for statement in function.body]
         return function
 
@@ -150,8 +153,8 @@ class Instrumented:
 class _Marking(ast.NodeTransformer):
     """Wrap every expression that is worked out: ``_look_(number, expression)``."""
 
-    def __init__(self, source: str, text: list[str]) -> None:
-        self.source, self.text = source, text
+    def __init__(self, source: str, text: list[str], reads: list[list[int]]) -> None:
+        self.source, self.text, self.reads = source, text, reads
 
     def generic_visit(self, node: ast.AST) -> ast.AST:
         """Wrap what has a value, from the inside out."""
@@ -195,8 +198,15 @@ class _Marking(ast.NodeTransformer):
         return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
     def _look(self, node: Any, text: str) -> ast.Call:
+        own = len(self.text)
         self.text.append(text)
-        number = ast.Constant(len(self.text) - 1)
+        read = [own] if isinstance(node, ast.Name) else []
+        for call in ast.walk(node):
+            match call:
+                case ast.Call(ast.Name("_look_"), [ast.Constant(int() as inner), ast.Name()]):
+                    read.append(inner)
+        self.reads.append(read)
+        number = ast.Constant(own)
         return ast.copy_location(ast.Call(ast.Name("_look_", ast.Load()), [number, node], []), node)
 
 

@@ -7,9 +7,8 @@ is proven, whatever the road.
 
 import ast
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from types import FunctionType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,23 +20,17 @@ from cvnotes.tutor.checker.in_process import clock
 from cvnotes.tutor.checker.instrumented import Instrumented
 from cvnotes.tutor.checker.judge import holds
 from cvnotes.tutor.checker.outcome import Outcome
+from cvnotes.tutor.checker.probes import probed, usual_first
 from cvnotes.tutor.checker.sandbox import run
 from cvnotes.tutor.checker.steps import located
 from cvnotes.tutor.checker.switches import KINDS, Slip, Switches
+from cvnotes.tutor.checker.wrong_answer import Found
 
-_SEEDS = (9001, 9002, 9003)
-# What a search may take, in seconds of the processor; and all of it, where it can be ended.
-_SECONDS, _PATIENCE = 0.15, 0.5
+# How many slips are tried; and what all of it may take, in seconds of the processor.
+_TRIES, _PATIENCE = 2000, 0.4
 # A function that takes longer than that for one case is not tried.
 _SLOW = 0.01
 _LONGEST = 60  # characters of code that is quoted
-
-
-class Repair(NamedTuple):
-    """What puts code right: said without the formula, and the code that belongs there."""
-
-    sentence: str
-    exact: str
 
 
 class _Switched(Instrumented):
@@ -57,7 +50,7 @@ class _Switched(Instrumented):
         return self.switches.switched(function)
 
 
-def pointed(answer: Any, exercise: Exercise, misconception: str | None = None) -> tuple[str, str]:
+def pointed(answer: Any, exercise: Exercise, misconception: str | None = None) -> Found:
     """Say where an answer leaves the way, and what belongs there exactly; empty if that is unknown.
 
     Parameters
@@ -67,19 +60,24 @@ def pointed(answer: Any, exercise: Exercise, misconception: str | None = None) -
     exercise : Exercise
         What was asked.
     misconception : str or None
-        What it was called. If that says what was done, no other way to put it right is sought.
+        What it was called. If that says what was done, no other way to put it right is sought; and
+        what other inputs tell, only if it has no name.
     """
-    found = located(answer, exercise)
-    if found is not None and found.missing is not None:
-        return found.sentence, found.missing.code
-    so_far = found.sentence if found is not None else ""
-    repair = repaired(answer, exercise) if misconception in (None, *VAGUE) else None
-    if repair is None:
-        return so_far, ""
-    return f"{so_far} {repair.sentence}".strip(), repair.exact
+    place = located(answer, exercise)
+    said = place.sentence if place is not None else ""
+    if place is not None and place.missing is not None:
+        return Found(f"wrong in {place.missing.words}", said, exact=place.missing.code)
+    found = repaired(answer, exercise) if misconception in (None, *VAGUE) else None
+    if found is None and misconception is None:
+        found = probed(answer, exercise)
+    return (
+        Found("", said)
+        if found is None
+        else found._replace(sentence=f"{said} {found.sentence}".strip())
+    )
 
 
-def repaired(function: Any, exercise: Exercise) -> Repair | None:
+def repaired(function: Any, exercise: Exercise) -> Found | None:
     """Find the one place of a student's function that, put right, makes all usual inputs right.
 
     The function runs where it can do no harm.
@@ -96,21 +94,15 @@ def repaired(function: Any, exercise: Exercise) -> Repair | None:
         own = _Switched(function)
     except (OSError, TypeError, ValueError, SyntaxError, RecursionError):
         return None
-    slips, cases = own.switches.slips, _cases(exercise)
+    slips, cases = own.switches.slips, usual_first(exercise)
     [found] = run(lambda: _found(own, slips, exercise, cases), [()], seconds=_PATIENCE)
     if found.value is None or found.value < 0:
         return None
     slip = slips[int(found.value)]
     before, after = (clipped(text, _LONGEST) for text in own.switches.text(slip))
     where = f"in `{before}`{', everywhere' * slip.everywhere}"
-    return Repair(f"It comes out right with {KINDS[slip.kind][1]} {where}.", after)
-
-
-@lru_cache(maxsize=64)
-def _cases(exercise: Exercise) -> tuple[Case, ...]:
-    """Return cases with a right answer each: the usual ones first, and short ones before long."""
-    found = [case for seed in _SEEDS for case in exercise.solved_cases(seed)]
-    return tuple(sorted(found, key=lambda case: (case.about, case.size)))
+    sentence = f"It comes out right with {KINDS[slip.kind][1]} {where}."
+    return Found(f"{slip.kind} {where}", sentence, exact=after)
 
 
 def _found(
@@ -130,9 +122,7 @@ def _found(
     if wrong is None or clock() - started > _SLOW * len(cases):
         return np.array(-1.0)
     usual = [case for case in cases if case is not wrong and (not case.about or wrong.about)]
-    for number, slip in enumerate(slips):
-        if clock() - started > _SECONDS:
-            break
+    for number, slip in enumerate(slips[:_TRIES]):
         with own.switches.set_to(slip):
             if right(wrong) and all(map(right, usual)):
                 return np.array(float(number))

@@ -28,7 +28,8 @@ class Report:
     message : str
         What to know or to do, in a sentence or two.
     misconception : str or None
-        Name of the mistake that gives the same results, if one does.
+        Name of the mistake that gives the same results, if one does; or else of the place in the
+        code, or of the input, that it hangs on.
     holds : tuple of str
         What is true of the answer.
     fails : str
@@ -42,7 +43,8 @@ class Report:
     printed : str
         The beginning of what the function printed.
     located : str
-        What is right so far in the student's own expressions, and the first step that is not.
+        What is right so far in the student's own expressions, and the first step that is not, or
+        what the mistake hangs on.
     exact : str
         The formula, for whoever was refused before.
     progress : str

@@ -23,6 +23,7 @@ import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from itertools import islice
 from types import FunctionType
 from typing import Any, NamedTuple
 
@@ -41,17 +42,19 @@ _NEAR = 1e-7
 _INPUTS = 3
 _SEEDS = range(9001, 9007)
 # What a search may take, in seconds of the processor; and how many numbers a value has at most.
-_SECONDS, _LARGEST = 0.12, 4000
+_SECONDS, _LARGEST = 0.25, 4000
+_TRIES = 1200
 # One run that takes longer is not repeated; and what all may take where it can be ended.
 _SLOW, _PATIENCE = 0.03, 1.0
 
 
 class Line(NamedTuple):
-    """One line of the steps: what it gives, in words and as code; and where it stands."""
+    """One line of the steps: what it gives, in words and as code; and which names it reads."""
 
     name: str
     words: str
     code: str
+    reads: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -66,11 +69,14 @@ class Located:
         The first step that, put right, makes the rest come out right; None if that is not proven.
     place : str
         The student's expression in whose place it belongs.
+    first : bool
+        Whether nothing is wrong before: what the expression reads is known to be right.
     """
 
     agreed: tuple[tuple[str, str], ...]
     missing: Line | None = None
     place: str = ""
+    first: bool = True
 
     @property
     def sentence(self) -> str:
@@ -79,7 +85,8 @@ class Located:
         if self.missing is None:
             return f"Up to here it agrees: {so_far}."
         right = f"Right so far: {so_far}. " if so_far else ""
-        return f"{right}First wrong: `{self.place}`; there belongs {self.missing.words}."
+        wrong = "First wrong" if self.first else "Wrong by then"
+        return f"{right}{wrong}: `{self.place}`; there belongs {self.missing.words}."
 
 
 def lines_of(steps: Callable[..., Any]) -> tuple[ast.FunctionDef, list[Line]]:
@@ -100,7 +107,8 @@ def _line(statement: ast.stmt, rows: Sequence[str]) -> Line:
     else:
         names = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and _is_set(n)]
         name, words = ", ".join(dict.fromkeys(names)), ""
-    return Line(name, said[1].strip() if said else words or f"`{name}`", code)
+    reads = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and not _is_set(n)}
+    return Line(name, said[1].strip() if said else words or f"`{name}`", code, frozenset(reads))
 
 
 def _is_set(node: ast.Name) -> bool:
@@ -331,26 +339,37 @@ def located(function: Callable[..., Any], exercise: Exercise) -> Located | None:
     except (OSError, TypeError, ValueError, SyntaxError, RecursionError):
         return None
     lines, traces = _traced(exercise)  # here, so that the child has it already
-    [found] = run(lambda: _found(own, exercise, traces), [()], seconds=_PATIENCE)
+    [found] = run(lambda: _found(own, exercise, lines, traces), [()], seconds=_PATIENCE)
     return None if found.value is None else _worded(found.value, own, lines, traces)
 
 
-def _found(own: Instrumented, exercise: Exercise, traces: Sequence[_Trace]) -> Array:
+def _found(
+    own: Instrumented, exercise: Exercise, lines: Sequence[Line], traces: Sequence[_Trace]
+) -> Array:
     """Return numbers only: the step that is missing and the expression in whose place it belongs.
 
-    Both are −1 if that is not proven; behind them, a step and an expression for each that agrees.
+    Both are −1 if that is not proven. Behind them whether nothing is wrong before, and a step and
+    an expression for each that agrees.
     """
     started = clock()
     end = started + _SECONDS
     with np.errstate(all="ignore"):
         seen = [own.values(trace.args) for trace in traces[:1]]
         if clock() - started > _SLOW:
-            return np.array([-1.0, -1.0])
+            return np.array([-1.0, -1.0, 0.0])
         seen += [own.values(trace.args) for trace in traces[1:]]
-        step, place = _proven(own, exercise, traces, seen, end)
-        line = traces[0].steps[step][0] if step >= 0 else len(traces[0].steps)
+        innocent = {e for e in seen[0] if _is_innocent(e, exercise, traces, seen)}
+        step, place = _proven(own, exercise, traces, seen, innocent, end)
+        line = traces[0].steps[step][0] if step >= 0 else len(lines)
         agreed = [pair for pair in _agreed(own, exercise, traces, seen) if pair[0] < line]
-    return np.array([step, place, *(x for pair in agreed for x in pair)], dtype=float)
+    known = {name for i, _ in agreed for name in lines[i].name.split(", ")}
+    steps = {i for i, *_ in traces[0].steps if i < line} if traces else set()
+    before = {name for i in steps for name in lines[i].name.split(", ")}
+    first = step >= 0 and (
+        all(e in innocent or _is_read_off(seen[0].get(e), traces[0].args) for e in own.reads[place])
+        or lines[line].reads & before <= known
+    )
+    return np.array([step, place, first, *(x for pair in agreed for x in pair)], dtype=float)
 
 
 Seen = dict[int, Array]
@@ -382,6 +401,7 @@ def _proven(
     exercise: Exercise,
     traces: Sequence[_Trace],
     seen: Sequence[Seen],
+    innocent: set[int],
     end: float,
 ) -> tuple[int, int]:
     """Return the number of the earliest step that makes the rest right, and the expression."""
@@ -394,20 +414,24 @@ def _proven(
         return -1, -1  # it is wrong in special cases only
     steps = traces[0].steps
     answers = {line for line, _, array in steps if _agree(array, traces[0].right, exercise.same)}
-    innocent = {e for e in seen[0] if _is_innocent(e, exercise, traces, seen)}
-    for k, (line, *_) in enumerate(steps):
-        for e in seen[0] if line not in answers else ():
-            if clock() > end:
-                return -1, -1
-            if e not in innocent and all(
-                e in values
-                and values[e].size == trace.steps[k][2].size
-                and right(own(trace.args, {e: trace.steps[k][2]}), trace)
-                for trace, values in zip(traces, seen, strict=True)
-            ):
-                if all(right(own(t.args, {e: disturbed(t.steps[k][2])}), t) for t in traces):
-                    continue  # any value does
-                return k, e  # where it is worked out, not where it is used
+    places = (
+        (k, e)
+        for k, (line, *_) in enumerate(steps)
+        for e in (seen[0] if line not in answers else ())
+        if e not in innocent
+    )
+    for k, e in islice(places, _TRIES):
+        if clock() > end:
+            break
+        if all(
+            e in values
+            and values[e].size == trace.steps[k][2].size
+            and right(own(trace.args, {e: trace.steps[k][2]}), trace)
+            for trace, values in zip(traces, seen, strict=True)
+        ):
+            if all(right(own(t.args, {e: disturbed(t.steps[k][2])}), t) for t in traces):
+                continue  # any value does
+            return k, e  # where it is worked out, not where it is used
     return -1, -1
 
 
@@ -428,12 +452,22 @@ def _is_innocent(
     )
 
 
+def _is_read_off(value: Array | None, args: Sequence[Any]) -> bool:
+    """Return whether a value is a count, or a number or a column of an input, whatever its sign."""
+    if value is None:
+        return False
+    arrays = [np.asarray(x) for x in args if np.ndim(x)]
+    if value.ndim == 0:
+        return bool(value == np.rint(value)) or any(abs(value) in abs(x) for x in arrays)
+    return any(np.array_equal(value, one) for x in arrays if x.ndim == 2 for one in x.T)
+
+
 def _worded(
     found: Array, own: Instrumented, lines: Sequence[Line], traces: Sequence[_Trace]
 ) -> Located | None:
     """Put numbers into words; None if nothing was found."""
     text = own.text
-    step, place, *pairs = found.astype(int).tolist()
+    step, place, first, *pairs = found.astype(int).tolist()
     agreed = tuple(
         (lines[i].words, text[e])
         for i, e in zip(pairs[::2], pairs[1::2], strict=True)
@@ -444,5 +478,5 @@ def _worded(
         missing = lines[line]
         if not whole:
             missing = missing._replace(words=f"its part of {missing.words}")
-        return Located(agreed[-3:], missing, text[place])
+        return Located(agreed[-3:], missing, text[place], bool(first))
     return Located(agreed[-3:]) if agreed else None

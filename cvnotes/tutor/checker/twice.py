@@ -9,13 +9,11 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.tutor.checker.equality import AS_NEAR, TOLERANCE
 from cvnotes.tutor.checker.exercise import Exercise
+from cvnotes.tutor.checker.families import family_of
 from cvnotes.tutor.checker.foreseen import explains, what_it_gives
-from cvnotes.tutor.checker.in_process import clock
 from cvnotes.tutor.checker.inputs import slips_of, with_inputs
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
-# What a search may take, in seconds of the processor.
-_SECONDS = 0.15
 # How many slips of each argument are likely enough to come with another mistake.
 _OF_EACH = 4
 # An answer says enough if it has that many numbers at least that are no counts.
@@ -39,6 +37,9 @@ _BESIDES = (
     _Way("a root", "took the root of what you return", np.sqrt),
     _Way("sizes only", "took absolute values", np.abs),
     _Way("twice", "doubled what you return", lambda x: 2 * x),
+    _Way("degrees", "give degrees in place of radians", np.rad2deg),
+    _Way("moved on", "return it moved on by one place", lambda x: np.roll(x, 1, -1)),
+    _Way("rows in the opposite order", "return it the other way round", lambda x: np.flip(x, 0)),
     _Way("half", "halved what you return", lambda x: x / 2),
 )
 
@@ -48,11 +49,8 @@ def two_mistakes(answer: WrongAnswer) -> Found | None:
     exercise, (case, outcome) = answer.exercise, answer.shown
     if exercise.answer != "function" or outcome.value is None or not _says_enough(answer):
         return None
-    bound, end = AS_NEAR * TOLERANCE, clock() + _SECONDS
-    for first, second, gives in _pairs(exercise, case.args):
-        if clock() > end:
-            break
-        given = _given(gives, case.args)
+    bound = AS_NEAR * TOLERANCE
+    for first, second, gives, given in _pairs(exercise, case.args):
         if (
             given is not None
             and given.shape == outcome.value.shape
@@ -86,10 +84,11 @@ def _given(gives: Callable[..., Any], args: tuple[Any, ...]) -> Array | None:
 
 def _pairs(
     exercise: Exercise, args: tuple[Any, ...]
-) -> Iterator[tuple[_Way | None, _Way, Callable[..., Any]]]:
-    """Yield pairs of mistakes, with what both together give; before them what explains alone."""
-    for change in _BESIDES:
-        yield None, change, _changed(change.gives, exercise.reference)
+) -> Iterator[tuple[_Way | None, _Way, Callable[..., Any], Array | None]]:
+    """Yield pairs of mistakes, with what does both and what that gives; first what explains alone.
+
+    Of one mistake and what may have been done besides it is enough to work out the one once.
+    """
     listed = [
         _Way(mistake.name, mistake.sentence, gives)
         for mistake in exercise.misconceptions
@@ -102,13 +101,19 @@ def _pairs(
         if not any(isinstance(x, int) for x in args)
     ]
     alone = [slip._replace(gives=with_inputs(slip.gives, exercise.reference)) for slip in slips]
-    for other, change in product((*listed, *alone), _BESIDES):
-        yield other, change, _changed(change.gives, other.gives)
+    for first in (None, *listed, *alone):
+        does = exercise.reference if first is None else first.gives
+        given = _given(does, args)
+        for change in _BESIDES if given is not None else ():
+            yield first, change, _changed(change.gives, does), _given(change.gives, (given,))
+    if exercise.steps is not None and family_of(exercise.steps).loops:  # they take too long
+        return
     for other, slip in product(listed, slips):
-        yield slip, other, with_inputs(slip.gives, other.gives)
-    for first, second in combinations(slips, 2):
-        both = with_inputs(second.gives, with_inputs(first.gives, exercise.reference))
-        yield first, second, both
+        gives = with_inputs(slip.gives, other.gives)
+        yield slip, other, gives, _given(gives, args)
+    for one, second in combinations(slips, 2):
+        gives = with_inputs(second.gives, with_inputs(one.gives, exercise.reference))
+        yield one, second, gives, _given(gives, args)
 
 
 def _changed(change: Callable[..., Any], gives: Callable[..., Any]) -> Callable[..., Any]:
