@@ -25,7 +25,7 @@ def lift(x: Array, w: float) -> Array:
 
 
 MISTAKES = mistakes_in(lift,
-    ("w appended only", "You appended w and did not multiply the other coordinates by it. The "
+    ("w appended only", "You appended w, and the other coordinates are not multiplied by it. The "
      "factor multiplies all of them (the notes' first formula slips here).",
      "np.hstack([x, np.full((len(x), 1), w)])", "np.hstack([x / w, np.full((len(x), 1), w)])"),
     ("factor on the coordinates only", "The last coordinate takes the factor too: yours is 1.",

@@ -229,10 +229,10 @@ _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
     ("still homogeneous", "still homogeneous? Divide by the last coordinate, then leave it out.",
      _homogeneous),
     ("columns too many", "the right numbers are among them; leave out the others.", _too_wide),
-    ("columns left out", "what is there is right, but numbers are missing.", _too_narrow),
     ("the first only", "only the first came back; is the return inside of a loop?", _first),
     ("the last only", "only the last came back; does each round of a loop overwrite the one "
      "before?", _last),
+    ("columns left out", "what is there is right, but numbers are missing.", _too_narrow),
     ("rows left out", "the rows are right, but some are missing: each of them is asked.",
      _rows_left_out),
     ("rows too many", "the right rows are among them, but there are more.", _rows_too_many),
