@@ -409,5 +409,6 @@ def test_numbers_are_laid_out_otherwise_only_if_all_others_are_right():
     def my_copy(x):
         return x[:1] if len(x) > 1 else 3 * x
 
-    assert named(lambda x: x[:1], np.copy, [one, three]) == "columns left out"
+    assert named(lambda x: x[:1], np.copy, [one, three]) == "the first only"
+    assert named(lambda x: x[:2], np.copy, [one, three]) == "columns left out"
     assert named(my_copy, np.copy, [one, three]) == "numbers too few"

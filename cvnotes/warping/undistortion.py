@@ -195,10 +195,10 @@ def undistort_image(
     for part in chunks(size[1], max(1, _ONE_THREAD // columns[0].size)):
         m: Any = rows[part] @ columns
         if by_opencv:
-            import cv2
+            from cv2 import BORDER_CONSTANT, INTER_LINEAR, remap
 
-            how = (cv2.INTER_LINEAR, target[part], cv2.BORDER_CONSTANT, sampler.fill.tolist())
-            cv2.remap(image, m[0], m[1], *how)
+            outside = sampler.fill.tolist()
+            remap(image, m[0], m[1], INTER_LINEAR, target[part], BORDER_CONSTANT, outside)
         else:
             sampler.look_up(m.reshape(2, -1), target[part].reshape(-1, sampler.fill.size))
     return target
@@ -212,12 +212,12 @@ _ONE_THREAD = 250_000
 def _opencv_is_exact() -> bool:
     """Return whether OpenCV looks up where it is asked to; before 5 it rounds to 1/32 pixel."""
     try:
-        import cv2
-    except ImportError:  # in a browser
+        from cv2 import INTER_LINEAR, remap
+    except ImportError:  # a browser has only a place where it would be
         return False
     u = np.linspace(0, 1, 129, dtype=np.float32)[None]
     ramp = np.tile(np.array([0, 128], np.uint8), (2, 1))
-    return bool((cv2.remap(ramp, u, 0 * u, cv2.INTER_LINEAR) == np.floor(128 * u + 0.5)).all())
+    return bool((remap(ramp, u, 0 * u, INTER_LINEAR) == np.floor(128 * u + 0.5)).all())
 
 
 def _one_rotation(R: npt.ArrayLike) -> Array:

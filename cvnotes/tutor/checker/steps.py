@@ -45,7 +45,7 @@ _SEEDS = range(9001, 9007)
 _SECONDS, _LARGEST = 0.25, 4000
 _TRIES = 1200
 # One run that takes longer is not repeated; and what all may take where it can be ended.
-_SLOW, _PATIENCE = 0.03, 1.0
+_SLOW, _PATIENCE = 0.08, 1.0
 
 
 class Line(NamedTuple):
