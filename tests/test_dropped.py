@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cvnotes.base import CvnotesError
+from cvnotes.base import CornersNotFound, CvnotesError
 from cvnotes.commands.cli import main
 from cvnotes.commands.dropped import Dropped, Unknown, sheet
-from cvnotes.files.reasons import Copy, OtherSize, Rejected, together
+from cvnotes.files.reasons import Copy, OtherSize, Rejected, Unreadable, together
 from cvnotes.photographs import calibrate_photographs, detect_photographs
 from cvnotes.photographs.driver import chessboard
-from cvnotes.photographs.reasons import Misfit
+from cvnotes.photographs.reasons import Misfit, NoBoard
 
 ROOT = Path(__file__).resolve().parents[1]
 VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
@@ -208,3 +208,12 @@ def test_what_photographs_miss_alike_is_said_once_though_their_numbers_differ():
         turned == "a.png: 3×4 pixels where most photographs have 4×3; was it turned by an editor?"
     )
     assert copy == "b.png: the same picture as 0.png"
+
+
+def test_what_is_there_instead_of_the_board_is_never_cut_off():
+    start = "no ChArUco board of 30×15 inner corners with markers 4x4_250 found in a picture of 9×9"
+    error = CornersNotFound(
+        "all that was tried", brief=f"{start} pixels: not one marker can be read"
+    )
+    assert NoBoard(error).brief.endswith("not one marker can be read")
+    assert len(Unreadable("the file is damaged " * 9).brief) <= 80

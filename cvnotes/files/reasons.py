@@ -6,7 +6,7 @@ from pathlib import Path
 from textwrap import shorten
 from typing import ClassVar, NamedTuple
 
-_FEW = 100  # letters of a reason in brief
+_FEW = 80  # letters of a reason in brief
 _LISTED = 5  # photographs that are named one by one
 
 

@@ -41,6 +41,11 @@ class NoBoard(Reason):
         """What probably went wrong."""
         return self.error.question
 
+    @property
+    def brief(self) -> str:
+        """The same: what is there instead stands at its end."""
+        return self.said
+
 
 @dataclass(frozen=True)
 class Misfit(Reason):

@@ -1,5 +1,6 @@
 """A picture made ready to be looked up at many positions at once."""
 
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -117,16 +118,21 @@ class Sampler:
         self.stride = self.width + 3
         self.strides = np.array([1.0, self.stride])
         self.limits = np.array([[self.width], [self.height]], dtype=np.float64)
-        self.planes = [self._framed(picture, k) for k in range(self.fill.size)]
-        self.all_finite = picture.dtype.kind != "f" or all(
-            np.isfinite(plane).all() for plane in self.planes
-        )
+        self.picture = picture
 
-    def _framed(self, picture: Image, k: int) -> npt.NDArray[Any]:
-        """Frame channel k with `fill`, so that no position needs a test of its own."""
-        framed = np.full((self.height + 3, self.stride), self.fill[k], picture.dtype)
-        framed[1:-2, 1:-2] = picture.reshape(self.height, self.width, -1)[..., k]
-        return framed.reshape(-1)
+    @cached_property
+    def planes(self) -> list[npt.NDArray[Any]]:
+        """Each channel framed with `fill`, so that no position needs a test of its own."""
+        framed = np.empty((self.fill.size, self.height + 3, self.stride), self.dtype)
+        framed[:] = self.fill[:, None, None]
+        pixels = self.picture.reshape(self.height, self.width, -1)
+        framed[:, 1:-2, 1:-2] = np.moveaxis(pixels, -1, 0)
+        return [plane.reshape(-1) for plane in framed]
+
+    @cached_property
+    def all_finite(self) -> bool:
+        """Whether every pixel, and what fills, is a number."""
+        return self.dtype.kind != "f" or all(np.isfinite(plane).all() for plane in self.planes)
 
     def __call__(self, m: Array) -> Image:
         """Return the picture at m (2, n), rows u and v, as (n, channels); m is written over."""

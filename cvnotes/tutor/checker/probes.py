@@ -76,6 +76,7 @@ def probed(function: Any, exercise: Exercise) -> Found | None:
         return None
     said, *numbers = found.value.astype(int).tolist()
     what = " and ".join((parts if said == 1 else slips)[i][0] for i in numbers[:_NAMED])
+    what = what.replace("sign of", "the other sign of")
     name, sentence = (text.format(what) for text in _SAID[said])
     return Found(name, sentence)
 
