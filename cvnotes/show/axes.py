@@ -70,7 +70,7 @@ def dress(ax: "Axes") -> "Axes":
 
 
 def darken_words(figure: "Figure") -> None:
-    """Draw words that have one of the colours above in its darker ink."""
+    """Draw words in one of the colours of the style in its darker ink."""
     from matplotlib.colors import to_hex
     from matplotlib.text import Text
 
