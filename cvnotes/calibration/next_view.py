@@ -282,8 +282,7 @@ class _Search:
         data = Correspondences.in_unit_frame(W, np.zeros((1, len(W), 2)))
         u, v = (np.linspace(0, n - 1, k) for n, k in zip(calibration.size, _GRID, strict=True))
         m = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
-        rays = calibration.camera.ray(m)
-        J = pixel_jacobian(calibration, rays) * np.array([*calibration.honest_std.values()])
+        J = pixel_jacobian(calibration, m) * np.array([*calibration.honest_std.values()])
         J = J[np.isfinite(J).all((1, 2))]
         correlation = calibration.covariance / np.outer(noise, noise)
         so_far = data.pose_in_scaled_units(calibration.poses)[:, :3, 3]

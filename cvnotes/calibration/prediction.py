@@ -1,17 +1,20 @@
 """How far predictions may be off: the pixel at which a ray is seen."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, points
+from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.coverage import joined
+from cvnotes.calibration.jacobian import jacobian
+from cvnotes.calibration.refinement import Problem
 from cvnotes.calibration.result import Calibration
 from cvnotes.camera import Camera
 
-_STEP = 1e-6  # of a parameter, relative to its standard deviation or to 1
 _CORNERS = 200  # that a camera is turned to meet
 
 
@@ -67,98 +70,107 @@ def prediction_std(
     m = points(m, "m", 2)
     if of not in ("noise", "views"):
         raise CvnotesError(f'of: expected "noise" or "views", got {of!r}')
-    rays = calibration.camera.ray(m)
-    reached = np.isfinite(rays).all(-1)
-    rays = np.nan_to_num(rays, nan=1.0)
-
-    def pixels(camera: Camera) -> Array:
-        return camera.project(rays)
-
-    of_camera = _pixels_turned(calibration, rays) if turning else pixels
-
+    seen = _Seen.of(calibration, m, turning=turning)
     if of == "noise":
         here = calibration.camera, calibration.names, calibration.covariance
-        variance = _variance(*here, of_camera)
-    else:
-        variance = _variance_of_views(calibration, of_camera)
-    return np.asarray(np.sqrt(np.where(reached, variance, np.nan)))
+        return np.asarray(np.sqrt(_propagated(seen.jacobian(*here[:2]), here[2])))
+    return np.asarray(np.sqrt(_variance_of_views(calibration, seen.jacobian, seen.off)))
 
 
-def _pixels_turned(calibration: Calibration, rays: Array) -> Callable[[Camera], Array]:
-    """Return what gives the pixels of rays in a camera that is turned to meet the corners."""
-    camera, m = calibration.camera, joined(calibration.image_points)
-    if not len(m):
-        raise DegenerateError("turning: this calibration was read from a file that has no corners")
-    corners = camera.ray(m[:: -(-len(m) // _CORNERS)])
-    corners = corners[np.isfinite(corners).all(-1)]
-    at, moved = camera.project(corners), _turned(camera, rays)
-    inverse = np.linalg.pinv(_turned(camera, corners).reshape(-1, 3))
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """Where rays are seen, (...), by a camera that may turn to meet the corners."""
 
-    def pixels(other: Camera) -> Array:
-        turn = inverse @ (other.project(corners) - at).ravel()
-        return np.asarray(other.project(rays) - moved @ turn)
+    camera: Camera
+    rays: Array  # (n + corners, 3): those asked for, then those that the camera is turned by
+    turned: Array | None  # (n + corners, 2, 3), derivative of their pixels by a rotation
+    known: npt.NDArray[np.bool_]  # (...), False where the lens model does not reach
 
-    return pixels
+    @staticmethod
+    def of(calibration: Calibration, m: Array, *, turning: bool) -> "_Seen":
+        """Take the rays that a camera shows at pixels m (..., 2)."""
+        camera, corners = calibration.camera, np.empty((0, 3))
+        rays = camera.ray(m)
+        known = np.isfinite(rays).all(-1)
+        if turning:
+            at = joined(calibration.image_points)
+            if not len(at):
+                raise DegenerateError(
+                    "turning: this calibration was read from a file that has no corners"
+                )
+            corners = camera.ray(at[:: -(-len(at) // _CORNERS)])
+            corners = corners[np.isfinite(corners).all(-1)]
+        rays = np.concatenate([np.nan_to_num(rays, nan=1.0).reshape(-1, 3), corners])
+        by_turn = _by_parameters_and_turn(camera, calibration.names, rays)[1]
+        return _Seen(camera, rays, by_turn if turning else None, known)
+
+    def jacobian(self, camera: Camera, names: tuple[str, ...]) -> Array:
+        """Differentiate the pixels (..., 2, q) by the camera's parameters."""
+        return self._still(_by_parameters_and_turn(camera, names, self.rays)[0])
+
+    def off(self, other: Camera) -> Array:
+        """How far from here another camera sees them, (..., 2)."""
+        apart = other.project(self.rays) - self.camera.project(self.rays)
+        return self._still(apart[..., None])[..., 0]
+
+    def _still(self, d: Array) -> Array:
+        """Take from differences (n + corners, 2, k) what a turn of the camera absorbs."""
+        n = self.known.size
+        if self.turned is not None:
+            inverse = np.linalg.pinv(self.turned[n:].reshape(-1, 3))
+            d = d - self.turned @ (inverse @ d[n:].reshape(-1, d.shape[-1]))
+        d = d[:n].reshape(*self.known.shape, *d.shape[1:])
+        return np.where(self.known[..., None, None], d, np.nan)
 
 
-def _turned(camera: Camera, rays: Array) -> Array:
-    """Differentiate the pixels (..., 2, 3) of rays by a rotation of the camera."""
-    unit = rays / np.linalg.norm(rays, axis=-1, keepdims=True)
-    columns = []
-    for axis in np.eye(3):
-        up, down = (camera.project(unit + s * _STEP * np.cross(axis, unit)) for s in (1, -1))
-        columns.append((up - down) / (2 * _STEP))
-    return np.stack(columns, axis=-1)
+def _by_parameters_and_turn(
+    camera: Camera, names: tuple[str, ...], rays: Array
+) -> tuple[Array, Array]:
+    """Differentiate the pixels of rays (n, 3) by parameters (n, 2, q), and by a turn (n, 2, 3)."""
+    data = Correspondences(rays, np.zeros((1, len(rays), 2)), None, np.zeros(3), 1.0)
+    problem = Problem.at(camera, names, data)
+    J = jacobian(problem, problem.state(camera, np.eye(4)[None]))[0][0]
+    return J[..., :-6], J[..., -6:-3]
 
 
-def _variance_of_views(calibration: Calibration, of: Callable[[Camera], Array]) -> Array:
-    """Variance (...) of what is computed from the camera, (..., c), all c coordinates together.
+def _variance_of_views(
+    calibration: Calibration,
+    jacobian: Callable[[Camera, tuple[str, ...]], Array],
+    off: Callable[[Camera], Array],
+) -> Array:
+    """Variance (...) of what is computed from the camera, all c coordinates together.
 
     From the scatter between views, and between models that fit as well: parameters of different
-    lenses are not to be compared, but what they predict is.
+    lenses are not to be compared, but what they predict is. Of a camera `jacobian` is the
+    derivative (..., c, q) by parameters, and `off` (..., c) how far it is from the chosen one.
     """
-    C, here = calibration.covariance_of_views, of(calibration.camera)
+    C, J = calibration.covariance_of_views, jacobian(calibration.camera, calibration.names)
     if not np.isfinite(C).all():  # known not at all
-        return np.full(here.shape[:-1], np.inf)
+        return np.where(np.isnan(J).any((-2, -1)), np.nan, np.inf)
     if calibration.tied:  # a valley is curved: left-out steps along it are no derivative's steps
         C = max(calibration.times_noise, 1.0) ** 2 * calibration.covariance
     if calibration.tied or calibration.choice is None:
-        return _variance(calibration.camera, calibration.names, C, of)
-    widest = np.zeros(here.shape[:-1])
+        return _propagated(J, C)
+    widest = _propagated(J, np.zeros_like(C))  # 0, or NaN where there is nothing to be known
     for model in calibration.choice.close:  # the chosen one among them
-        off = of(model.camera) - here
-        variance = _variance(model.camera, model.names, model.covariance, of)
-        widest = np.fmax(widest, variance + np.vecdot(off, off))
+        variance = _propagated(jacobian(model.camera, model.names), model.covariance)
+        d = off(model.camera)
+        widest = np.maximum(widest, np.nan_to_num(variance + np.vecdot(d, d)))
     return widest
 
 
-def _variance(
-    camera: Camera, names: Sequence[str], C: Array, of: Callable[[Camera], Array]
-) -> Array:
-    J = _derivative(of, camera, names)
-    return np.asarray(np.einsum("...ci,ij,...cj->...", J, C, J))
+def _propagated(J: Array, C: Array) -> Array:
+    """Return trace(J C Jᵀ) (...)."""
+    return np.asarray(np.einsum("...ci,ij,...cj->...", J, C, J, optimize=True))
 
 
-def _derivative(of: Callable[[Camera], Array], camera: Camera, names: Sequence[str]) -> Array:
-    """Differentiate (..., q) what is computed from a camera by its parameters."""
-    value, columns = camera.parameters, []
-    for name in names:
-        at = value.get(name, 0.0)
-        h = _STEP * max(1.0, abs(at))
-        up, down = (of(camera.with_parameters({name: at + s * h})) for s in (1, -1))
-        columns.append((up - down) / (2 * h))
-    return np.stack(columns, axis=-1)
+def pixel_jacobian(calibration: Calibration, m: Array) -> Array:
+    """Differentiate where the rays of pixels m (..., 2) are seen, the camera being free to turn.
 
-
-def pixel_jacobian(calibration: Calibration, rays: Array) -> Array:
-    """Differentiate the images of rays (..., 3) of a camera that may turn by the parameters.
-
-    (..., 2, q); NaN where the lens model does not reach.
+    By the parameters, (..., 2, q); NaN where the lens model does not reach.
     """
-    of_camera = _pixels_turned(calibration, np.nan_to_num(rays, nan=1.0))
-    J = _derivative(of_camera, calibration.camera, calibration.names)
-    J[~np.isfinite(rays).all(-1)] = np.nan
-    return J
+    seen = _Seen.of(calibration, m, turning=True)
+    return seen.jacobian(calibration.camera, calibration.names)
 
 
 def angles_seen(calibration: Calibration) -> tuple[Array, Array]:
@@ -197,7 +209,22 @@ def angles_seen(calibration: Calibration) -> tuple[Array, Array]:
     def spanned(camera: Camera) -> Array:
         x, y, z = camera.ray(ends).T
         left, right, top, bottom = np.arctan2([x[0], x[1], y[2], y[3]], z)
-        return np.array([[right - left], [bottom - top]])
+        return np.array([right - left, bottom - top])
 
-    angles = spanned(calibration.camera)[:, 0]
-    return angles, np.sqrt(_variance_of_views(calibration, spanned))
+    def jacobian(camera: Camera, names: tuple[str, ...]) -> Array:
+        # a pixel stays where it is while its ray turns by ω: 0 = J dp + T ω
+        rays = camera.ray(ends)
+        J, T = _by_parameters_and_turn(camera, names, rays)
+        omega = -np.linalg.pinv(T) @ J
+        by = np.cross(omega, rays[..., None], axis=1)  # (4, 3, q)
+        across = [0, 0, 1, 1]
+        a, b = rays[range(4), across], rays[:, 2]
+        angle = (b[:, None] * by[range(4), across] - a[:, None] * by[:, 2]) / (a**2 + b**2)[:, None]
+        return (angle[1::2] - angle[::2])[:, None]
+
+    angles = spanned(calibration.camera)
+
+    def off(camera: Camera) -> Array:
+        return (spanned(camera) - angles)[:, None]
+
+    return angles, np.sqrt(_variance_of_views(calibration, jacobian, off))
