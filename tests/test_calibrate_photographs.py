@@ -159,6 +159,26 @@ def test_where_half_is_mirrored_both_parts_are_told_and_no_camera_is_good(which)
     assert found.next_view is None
 
 
+@pytest.mark.parametrize("which", [(1, 2, 5, 8), (1, 2, 5, 8, 9)])
+def test_mirrored_photographs_of_a_camera_nearly_its_own_mirror_are_noticed_and_not_named(which):
+    camera, poses = course.camera().with_parameters({"u0": 326.0}), course.poses()[:10]
+    assert fitted(detections(camera, poses)).doubts == []
+    found = fitted(detections(camera, poses, mirrored=which))
+    assert reasons(found) == {}
+    assert not found.reliable
+    assert found.doubts[0].startswith("in some photographs left and right seem exchanged, but")
+
+
+@pytest.mark.parametrize(("n_left", "n_right"), [(3, 10), (4, 9), (10, 3), (4, 4)])
+def test_the_few_photographs_of_a_second_camera_are_noticed(n_left, n_right):
+    real, blank = course.real_corners(), np.zeros((48, 64), np.uint8)
+    m = [*real.left[:n_left], *real.right[len(real.right) - n_right :]]
+    seen = [Detection(Path(f"{i:02}.png"), real.size, blank, m) for i, m in enumerate(m)]
+    found = calibrate_detected(Photographs(real.board, seen))
+    assert not found.reliable
+    assert "do they come from two cameras" in found.doubts[0]
+
+
 def test_the_second_of_two_cameras_may_be_nearly_the_first_and_have_three_photographs():
     real, blank = course.real_corners(), np.zeros((48, 64), np.uint8)
     seen = [Detection(Path(f"{i:02}.png"), real.size, blank, m) for i, m in enumerate(real.left)]

@@ -10,7 +10,6 @@ the camera is known.
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, chunks, solved
 from cvnotes.calibration.board_shape import BoardShape, with_shape
@@ -122,16 +121,6 @@ class Influence:
         """(n − 1)/n Σ (δ_i − δ̄)(δ_i − δ̄)ᵀ, (q, q)."""
         n, d = len(self.without), self.without - self.without.mean(0)
         return np.asarray((n - 1) / n * d.T @ d)
-
-    @property
-    def sides(self) -> npt.NDArray[np.bool_]:
-        """Return which views pull the camera to which side, (k, n_views), in several directions.
-
-        Those in which the cameras without one view are scattered, the most first, in units of what
-        all views together know.
-        """
-        d = (self.without - self.without.mean(0)) @ np.linalg.cholesky(self.known)
-        return np.asarray(np.linalg.svd(d, full_matrices=False)[0].T > 0)
 
 
 def _one_by_one(problem: Problem, x: State) -> Influence:

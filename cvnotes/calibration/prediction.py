@@ -91,7 +91,7 @@ class _Seen:
         """Take the rays that a camera shows at pixels m (..., 2)."""
         camera, corners = calibration.camera, np.empty((0, 3))
         rays = camera.ray(m)
-        known = np.isfinite(rays).all(-1)
+        known = np.asarray(np.isfinite(rays).all(-1))
         if turning:
             at = joined(calibration.image_points)
             if not len(at):

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import CvnotesError
+from cvnotes.base import Array, CvnotesError
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.jackknife import Influence
+from cvnotes.calibration.parting import NearBy, freedom, guesses, settled
 from cvnotes.calibration.refinement import Problem, State, minimise, refit_poses
 from cvnotes.calibration.result import Calibration
-from cvnotes.calibration.thresholds import CORNERS_THAT_TELL, NEGLIGIBLE, PARTED, ROUNDS
+from cvnotes.calibration.thresholds import NEGLIGIBLE, PARTED, ROUNDS
 
-DIRECTIONS = 4  # in which views are parted at first
 _FEWEST = 3  # views of a camera: one more than determine it
+_NEARLY = 0.5  # of the F that counts, from which on two cameras are refined
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class TwoCameras:
     Attributes
     ----------
     second : ndarray of bool, shape (n_views,)
-        The views of the second camera: the fewer, if it took not as many as the first.
+        The views of the second camera: the fewer; of halves, that without the first view.
     rms, of_one : float
         Root mean square reprojection distance with the two, and with one camera, px.
     """
@@ -48,52 +48,61 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
 
     Notes
     -----
-    Views are parted by the side to which they pull the one camera, in each of the four directions
-    in which they pull it apart the most. Then each camera is refined with its views, and each view
-    goes to the camera that fits it better, until all stay. The board is that of the one camera.
+    What each view costs with a camera that differs a little is known at once (`NearBy`). Of many
+    guesses which views the second camera took, each is mended until every view is with the camera
+    that fits it better; then the best two cameras are refined. The board is that of the one camera.
 
     What counts is the F of the second camera, (c₁ − c₂)/q · freedom/c₂, with sums of squares c and
-    q parameters. Corners of a view miss their places together: of more than 40 in a view the rest
-    says little new, and adds no freedom.
+    q parameters.
     """
     if one.rms < NEGLIGIBLE:  # of exact corners rounding is left, in which there may be anything
         return None
     data = Correspondences.of(one.board_points, one.image_points, flat=False)
     problem = Problem.at(one.camera, one.names, data)
     x = problem.state(one.camera, data.pose_in_scaled_units(one.poses))
-    try:
-        sides = Influence.of(problem, x).sides[:DIRECTIONS]
-    except (CvnotesError, np.linalg.LinAlgError):  # the views hardly determine one camera
-        return None
-    parted = [two for second in sides if (two := _parted(problem, x, second, one.rms))]
-    best = min(parted, key=lambda two: two.rms, default=None)
     n_views, q = len(one.poses), len(one.names)
-    freedom = n_views * (2 * min(problem.n_seen / n_views, CORNERS_THAT_TELL) - 6) - 2 * q
-    if best is None or ((one.rms / best.rms) ** 2 - 1) * freedom < PARTED * q:
+    if n_views < 2 * _FEWEST:
         return None
-    return best
+
+    def costs_of(parts: npt.NDArray[np.intp]) -> Array:
+        return near.at(near.camera_of(np.stack([parts == 0, parts == 1], axis=1).astype(float)))
+
+    def f_of(two: float) -> float:
+        return float(near.c.sum() / two - 1) * (freedom(problem) - 2 * q) / q
+
+    try:
+        near = NearBy.of(problem, x)
+        parts, costs = settled(guesses(n_views, _FEWEST), costs_of)
+        second = parts.astype(bool)
+        costs[np.minimum(second.sum(1), (~second).sum(1)) < _FEWEST] = np.inf
+        best = costs.argmin()
+        if f_of(costs[best]) < _NEARLY * PARTED:
+            return None
+        found = _parted(problem, x, second[best], one.rms)
+    except (CvnotesError, np.linalg.LinAlgError):  # they, or one part, do not determine a camera
+        return None
+    if found is None or f_of(found.rms**2 * problem.n_seen) < PARTED:
+        return None
+    return found
 
 
 def _parted(
     problem: Problem, x: State, second: npt.NDArray[np.bool_], of_one: float
 ) -> TwoCameras | None:
     """Refine two cameras from a first guess which views the second one took."""
-    try:
-        for _ in range(ROUNDS):
-            if min(second.sum(), (~second).sum()) < _FEWEST:
-                return None
-            shared = [
-                minimise(problem.some(part), x.some(part)).x.shared
-                for part in (np.flatnonzero(~second), np.flatnonzero(second))
-            ]
-            costs = np.array([refit_poses(problem, State(s, x.R, x.T))[1] for s in shared])
-            before, second = second, costs[1] < costs[0]
-            if (second == before).all():
-                break
-    except CvnotesError:  # one of them has no camera
-        return None
+    for _ in range(ROUNDS):
+        if min(second.sum(), (~second).sum()) < _FEWEST:
+            return None
+        shared = [
+            minimise(problem.some(part), x.some(part)).x.shared
+            for part in (np.flatnonzero(~second), np.flatnonzero(second))
+        ]
+        costs = np.array([refit_poses(problem, State(s, x.R, x.T))[1] for s in shared])
+        before, second = second, costs[1] < costs[0]
+        if (second == before).all():
+            break
     if min(second.sum(), (~second).sum()) < _FEWEST:
         return None
-    if 2 * second.sum() > len(second):
+    if 2 * second.sum() + second[0] > len(second):
         second = ~second
     return TwoCameras(second, float(np.sqrt(costs.min(0).sum() / problem.n_seen)), of_one)

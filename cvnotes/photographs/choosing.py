@@ -14,7 +14,12 @@ from cvnotes.calibration.thresholds import FEWEST_KEPT, PART_KEPT, ROUNDS
 from cvnotes.calibration.two_cameras import TwoCameras, two_cameras
 from cvnotes.files import Reason
 from cvnotes.photographs.detection import Photographs
-from cvnotes.photographs.mirrored import mirrored, with_doubt, with_doubt_of_mirrored
+from cvnotes.photographs.mirrored import (
+    Mirrored,
+    mirrored,
+    with_doubt,
+    with_doubt_of_mirrored,
+)
 from cvnotes.photographs.reasons import Exchanged, Misfit, Mixed
 
 
@@ -96,11 +101,11 @@ def choose(
     exchanged, two = _accused(photographs, result, model)
     fewest = max(FEWEST_KEPT, PART_KEPT * len(photographs.used))
     for _ in range(0 if keep_all else ROUNDS):
-        if two and not exchanged:
+        if two and not exchanged.views:
             break
         kept = _without_corners_astray(photographs, result)
         if kept is photographs:
-            kept = photographs.without(_strangers(result, exchanged))
+            kept = photographs.without(_strangers(result, exchanged.views))
         if kept is photographs or len(kept.used) < fewest:
             break
         try:
@@ -109,14 +114,14 @@ def choose(
             break
         photographs = kept
         exchanged, two = _accused(photographs, result, model)
-    if two and not exchanged:
-        result = with_doubt(result, _of_two_cameras(two))
+    if two and not exchanged.views:
+        return with_doubt(result, _of_two_cameras(two, exchanged)), photographs
     return with_doubt_of_mirrored(result, exchanged), photographs
 
 
 def _accused(
     photographs: Photographs, result: Calibration, model: Model
-) -> tuple[list[int], TwoCameras | None]:
+) -> tuple[Mirrored, TwoCameras | None]:
     """List the photographs that are mirrored, and tell those of two cameras, whatever the model.
 
     What a lens misses that is too simple, or a flat board, a mirror or a second camera may explain,
@@ -125,21 +130,23 @@ def _accused(
     """
     two = two_cameras(result)
     exchanged = mirrored(photographs, result, two)
-    if (two or exchanged) and (model.lens != "auto" or result.shape is None):
+    if (two or exchanged != Mirrored()) and (model.lens != "auto" or result.shape is None):
         with suppress(CvnotesError):  # few views do not determine so much
             bent = fit(photographs, replace(model, lens="auto", board_shape="bent"))
             two = two and two_cameras(bent)
             again = mirrored(photographs, bent, two)
-            exchanged = [i for i in exchanged if i in again]
+            named = [i for i in exchanged.views if i in again.views]
+            exchanged = Mirrored(named, exchanged.some and again.some)
     return exchanged, two
 
 
-def _of_two_cameras(two: TwoCameras) -> Mixed:
+def _of_two_cameras(two: TwoCameras, exchanged: Mirrored) -> Mixed:
     """Return what is to be said of photographs that no single camera took."""
+    or_else = ", or are some mirrored" * exchanged.some
     return Mixed(
         f"{{}} fit one camera, and {{}} another ({two.rms:.2f} px off with two cameras, "
         f"{two.of_one:.2f} px with one): do they come from two cameras, or was the zoom or focus "
-        "changed between them? Calibrate each by itself",
+        f"changed between them{or_else}? Calibrate each by itself",
         *(Views(tuple(np.flatnonzero(own).tolist())) for own in (~two.second, two.second)),
     )
 

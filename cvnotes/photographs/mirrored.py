@@ -1,17 +1,16 @@
 """Photographs in which left and right are exchanged, beside others in which they are not."""
 
-from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError
+from cvnotes.base import Array, DegenerateError
 from cvnotes.calibration import Calibration
 from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.doubts import View, Views
-from cvnotes.calibration.jackknife import Influence
+from cvnotes.calibration.parting import NearBy, freedom, guesses, settled
 from cvnotes.calibration.refinement import Problem, State, minimise, refit_poses
 from cvnotes.calibration.thresholds import (
     AS_WELL,
@@ -19,10 +18,11 @@ from cvnotes.calibration.thresholds import (
     EXCHANGED,
     MIRRORED,
     MISSES_MORE,
+    MIXED,
     PART_KEPT,
     TELLS_ITS_MIRROR,
 )
-from cvnotes.calibration.two_cameras import DIRECTIONS, TwoCameras
+from cvnotes.calibration.two_cameras import TwoCameras
 from cvnotes.photographs.detection import Photographs
 from cvnotes.photographs.reasons import Exchanged, Mixed
 from cvnotes.targets import CharucoBoard, Chessboard
@@ -30,18 +30,34 @@ from cvnotes.targets import CharucoBoard, Chessboard
 _CLOSE, _ROUNDS = 1e-6, 6  # tolerance while views are sorted, and how often
 
 
-def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | None) -> list[int]:
-    """List the photographs that a mirror explains: the smaller part, where there are many.
+@dataclass(frozen=True)
+class Mirrored:
+    """What a mirror explains.
+
+    Attributes
+    ----------
+    views : list of int
+        The photographs that are mirrored: the fewer, where there are many.
+    some : bool
+        Whether some are of which it cannot be told which.
+    """
+
+    views: list[int] = field(default_factory=list)
+    some: bool = False
+
+
+def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | None) -> Mirrored:
+    """Tell which photographs a mirror explains.
 
     `two` are the cameras that explain the photographs better than one, if there are such.
 
     Notes
     -----
-    Each photograph is read as it is, and with left and right exchanged. The camera is refined with
-    those exchanged that a mirror explains better, or that pull it to one side; then each is read
-    as it fits better, until all stay; the board is refined, too. That takes no parameter more:
-    whatever is gained is evidence. Half of the views must lose or gain far more than by chance,
-    which tells the camera from its mirror, and each that is named its part.
+    Each photograph is read as it is, and with left and right exchanged. Of many guesses which are
+    mirrored, each is mended until all photographs are read as they fit best with the others
+    (`NearBy`). That takes no parameter more: whatever is gained is evidence. If it is more than
+    chance, the camera and the board are refined with the best, and a photograph is named that loses
+    or gains far more than by chance; half of them must, which tells the camera from its mirror.
 
     Where they do not, one may still be strange that misses more than others as it is, and far less
     in the mirror. (An honest view of a steep board may fit better in a mirror, too, where the lens
@@ -51,29 +67,34 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
     """
     board, n = photographs.board, len(photographs.used)
     if isinstance(board, CharucoBoard):
-        return []
+        return Mirrored()
     problem, x = _read_in_all_ways(photographs, board, result)
-    costs = refit_poses(problem, x)[1].reshape(-1, n)
-    turned = costs[1:].min(0)
-    best = _best_of(problem, x, costs)
-    # (two cameras are no camera and its mirror if they explain more)
-    most = (AS_WELL * two.rms) ** 2 * problem.n_seen_by_view[:n].sum() if two else np.inf
-    if best is not None and best.min(0).sum() < most:
+    # A board that is held, which is quick, tells nearly always; one that is free explains a mirror.
+    held = replace(problem, W=problem.board(x.shared), shape=None, hold=None)
+    at, costs = refit_poses(held, State(x.shared[: len(problem.names)], x.R, x.T))
+    costs = costs.reshape(-1, n)
+    way, left = _read_best(held, at, costs)
+    some = (costs[0].sum() / left - 1) * freedom(problem.some(slice(n))) > MIXED
+    if some:
+        best = _refined(problem, State(x.shared, at.R, at.T), way)
+        if two:  # they are no camera and its mirror if they explain more
+            times = np.sqrt(best.min(0).sum() / problem.n_seen_by_view[:n].sum()) / two.rms
+            if times > AS_WELL:
+                return Mirrored(some=bool(times < AS_WELL**2))
         told = np.minimum(problem.n_seen_by_view[:n], CORNERS_THAT_TELL)
-        left = best.min(0).sum()
-        gain = (best[0] - best[1:].min(0)) * 2 * told.sum() / left
+        gain = (best[0] - best[1:].min(0)) * 2 * told.sum() / best.min(0).sum()
         # All read the other way is the same: the fewer count; of halves, that without the first.
         if 2 * np.count_nonzero(gain > 0) + (gain[0] > 0) > n:
             gain = -gain
         found = np.flatnonzero(gain > MIRRORED)
         if found.size and np.median(np.abs(gain)) > TELLS_ITS_MIRROR:
-            return [int(i) for i in found]
-    if two:
-        return []
+            return Mirrored(found.tolist())
+    elif two:
+        return Mirrored()
     rms = result.view_rms
-    turned = np.sqrt(turned / problem.n_seen_by_view[:n])
+    turned = np.sqrt(costs[1:].min(0) / problem.n_seen_by_view[:n])
     strange = (rms > MISSES_MORE * np.median(rms)) & (turned < EXCHANGED * rms)
-    return [int(i) for i in np.flatnonzero(strange)]
+    return Mirrored(np.flatnonzero(strange).tolist(), some)
 
 
 def _read_in_all_ways(
@@ -107,40 +128,33 @@ def _read_in_all_ways(
     return problem, problem.state(result.camera, poses_of_unit, W)
 
 
-def _best_of(problem: Problem, x: State, costs: Array) -> Array | None:
-    """Return what each view costs (ways, n) where all are read as they fit best together.
+def _read_best(held: Problem, at: State, costs: Array) -> tuple[npt.NDArray[np.intp], float]:
+    """Return in which ways (n,) views fit best together, and what they cost then.
 
-    `costs` are those with the camera of all as they are. None if nothing is better in a mirror; a
-    board that is held, which is quick, says so of nearly all sets.
+    `costs` (ways, n) are those with the camera of all as they are.
     """
-    views = np.arange(costs.shape[1])
-    held = replace(problem, W=problem.board(x.shared), shape=None, hold=None)
-    at = State(x.shared[: len(problem.names)], x.R, x.T)
+    ways, n = costs.shape
+
+    def costs_of(way: npt.NDArray[np.intp]) -> Array:
+        read = (way[:, None] == np.arange(ways)[:, None]).astype(float)  # (k, ways, n)
+        d = near.camera_of(read.reshape(len(way), -1))
+        return near.at(d).reshape(read.shape)
+
     try:
-        sides = Influence.of(held.some(views), at.some(views)).sides[:DIRECTIONS]
-    except (CvnotesError, np.linalg.LinAlgError):  # the views hardly determine one camera
-        return None
-    guesses = [costs[1:].min(0) < costs[0], *sides]
-    best = None
-    for stage, start in ((held, at), (problem, x)):
-        found = []
-        for guess in guesses:
-            with suppress(CvnotesError):  # read like this, they may have no camera
-                way = np.where(guess, 1 + costs[1:].argmin(0), 0)
-                found.append(_sorted(stage, start, way))
-        best = min(found, key=lambda each: float(each.min(0).sum()), default=None)
-        if best is None or len(set(best.argmin(0) > 0)) == 1:
-            return None
-    return best
+        near = NearBy.of(held, at, slice(n))
+        exchanged = np.concatenate([[costs.argmin(0) > 0], guesses(n, 1)])
+        way, left = settled(np.where(exchanged, 1 + costs[1:].argmin(0), 0), costs_of)
+    except (DegenerateError, np.linalg.LinAlgError):  # the views hardly determine one camera
+        return np.zeros(n, dtype=np.intp), float(costs[0].sum())
+    return way[left.argmin()], float(left.min())
 
 
-def _sorted(problem: Problem, x: State, way: npt.NDArray[np.intp]) -> Array:
+def _refined(problem: Problem, x: State, way: npt.NDArray[np.intp]) -> Array:
     """Refine the camera, and the board, with views that are read in such ways (n,), until all stay.
 
     Gives what each view then costs in each way, (ways, n).
     """
     n = len(way)
-    costs = np.zeros((3, n))
     for _ in range(_ROUNDS):
         now = way * n + np.arange(n)
         shared = minimise(problem.some(now), x.some(now), tolerance=_CLOSE).x.shared
@@ -151,20 +165,25 @@ def _sorted(problem: Problem, x: State, way: npt.NDArray[np.intp]) -> Array:
     return costs
 
 
-def with_doubt_of_mirrored(result: Calibration, exchanged: list[int]) -> Calibration:
+def with_doubt_of_mirrored(result: Calibration, found: Mirrored) -> Calibration:
     """Return a result that rests on mirrored photographs too: no camera shows both kinds.
 
     Of so many nobody can tell whether they are mirrored or the others.
     """
-    if not exchanged:
+    exchanged, asked = found.views, "was it a front camera, or an editing program?"
+    if not exchanged and not found.some:
         return result
+    if not exchanged:
+        return with_doubt(
+            result,
+            Mixed(f"in some photographs {Exchanged.words}, but they do not tell in which: {asked}"),
+        )
     several = len(exchanged) > 1
     why = f", for the camera fits {'them' if several else 'it'} better so"
     if len(exchanged) > (1 - PART_KEPT) * len(result.poses):
         why = " there, or in all the others"
     doubt = Mixed(
-        f"{{}}: {Exchanged.words}{why}; "
-        "was it a front camera, or an editing program? Leave out what is mirrored, or turn it back",
+        f"{{}}: {Exchanged.words}{why}; {asked} Leave out what is mirrored, or turn it back",
         Views(tuple(exchanged)) if several else View(exchanged[0]),
     )
     return with_doubt(result, doubt)
