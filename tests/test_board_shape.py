@@ -433,18 +433,18 @@ def test_what_holds_the_chosen_board_back_is_not_sought_again(monkeypatch):
     real, asked = course.real_corners(), []
     whole = board_shape.shaped
 
-    def counted(*given):
+    def counted(*given, **how):
         asked.append([])
         monkeypatch.setattr(
             board_shape,
             "shape_variances",
             lambda *each: asked[-1].append(1) or shape_variances(*each),
         )
-        return whole(*given)
+        return whole(*given, **how)
 
     monkeypatch.setattr("cvnotes.calibration.choice.shaped", counted)
     monkeypatch.setattr("cvnotes.calibration.driver.shaped", counted)
     calibrate(real.board.points, real.left, real.size, lens="auto", board="free")
     *lenses, chosen = map(len, asked)
     assert len(lenses) >= 3
-    assert chosen == 2 < min(lenses)  # the second time for the deviations of its corners
+    assert chosen - 1 == 1 < min(lenses)  # and once more for the deviations of its corners

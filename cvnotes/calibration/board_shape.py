@@ -170,10 +170,12 @@ def shaped(
     kind: str,
     flat: Minimum[State, NormalEquations],
     hold: Array | None = None,
+    *,
+    tolerance: float = 1e-12,
 ) -> tuple[Problem, Minimum[State, NormalEquations]]:
     """Go on from the minimum of a flat board to that of its shape.
 
-    `hold` is what holds it back, if that is known already.
+    `hold` is what holds it back, if that is known already; for `tolerance` see `minimise`.
 
     Notes
     -----
@@ -200,21 +202,29 @@ def shaped(
         if known is not None:
             break
         noise = (best.cost - float(hold**2 @ s**2)) / free.freedom
-        hold = np.concatenate([_held(noise, s[part], determined[part]) for part in groups])
+        hold = np.concatenate(
+            [_held(noise, s[part], determined[part], before[part]) for part in groups]
+        )
         if (np.abs(hold - before) < _FOUND * before).all():
             break
-    return free, minimise(free, x)
+    return free, minimise(free, x, tolerance=tolerance)
 
 
 def _groups(free: Problem) -> list[slice]:
     """Return which coefficients of a shape are alike: bends of each degree, and the others."""
     ends = np.cumsum([0, *map(len, _bends(free.W))]).tolist()
-    return [slice(a, b) for a, b in itertools.pairwise([*ends, free.n_shape])]
+    return [slice(a, b) for a, b in itertools.pairwise([*ends, free.n_shape]) if a < b]
 
 
-def _held(noise: float, s: Array, determined: Array) -> Array:
-    """Return h = σ/τ for coefficients that the views determine to these parts."""
-    size = float(s @ s) / max(float(determined.sum()), 1e-3)
+def _held(noise: float, s: Array, determined: Array, before: Array) -> Array:
+    """Return h = σ/τ for coefficients that the views determine to these parts.
+
+    MacKay's rule, τ² ← Σ s²/γ, goes the part γ/n of the way if all are determined alike: n/γ times
+    its step are taken. (Where nothing is to be seen but noise it would halve τ² for ever.)
+    """
+    sure = max(float(determined.sum()), 1e-3)
+    held, found = noise / before[0] ** 2, float(s @ s) / sure
+    size = held + len(s) / sure * (found - held)
     return np.full(len(s), max(np.sqrt(noise / max(size, _SMALLEST**2)), _LEAST))
 
 

@@ -236,10 +236,10 @@ def choose_model(
 
     Notes
     -----
-    All lenses are tried on the first board; those that do not predict views left out twice as badly
-    as the best are compared on the last one. It contains the boards before it, and is held near
-    them as far as the views say (see `shaped`), so between boards there is nothing to choose: of
-    the first ones it is only told how they predict, where no other is determined they count.
+    All lenses are tried on the first board; those that predict views left out within half as much
+    again as the best are compared on the last one. It contains the boards before it, and is held
+    near them as far as the views say (see `shaped`), so between boards there is nothing to choose:
+    of the first ones it is only told how they predict, where no other is determined they count.
 
     A lens is kept against one with more coefficients while it predicts views left out within
     10 %, and the other is not better in enough of them (one-sided t of the paired differences,
@@ -284,10 +284,11 @@ class _Tried:
     def choice(self, lenses: Sequence[str], board: str) -> Choice:
         """Choose among lenses with a board.
 
-        Wide lenses are first: few starts do for them, and then for whatever they beat by far.
+        Wide lenses are first: few starts do for them, and then for whatever they beat by far. A
+        lens without coefficients is last, as it may start where others ended.
         """
-        wide_first = sorted(lenses, key=lambda lens: not LENSES[lens][0].wide)
-        tried = {lens: self._candidate(lens, board) for lens in wide_first}
+        order = sorted(lenses, key=lambda lens: (not LENSES[lens][0].wide, not LENSES[lens][1]))
+        tried = {lens: self._candidate(lens, board) for lens in order}
         found = [c for lens in lenses if (c := tried[lens])]
         if not any(c.determined for c in found) and (self.known or not found):
             raise ConvergenceError(
@@ -309,7 +310,7 @@ class _Tried:
                 return None
             problem, best = of_flat
             if board != "flat":
-                problem, best = shaped(problem, self.data, board, best)
+                problem, best = shaped(problem, self.data, board, best, tolerance=_CLOSE)
             return _judged(lens, board, problem, best)
         except CvnotesError:  # this model has no camera here
             return None
@@ -323,6 +324,9 @@ class _Tried:
             patience=_PATIENCE,
             rival=min(fitted, default=np.inf),
         )
+        for near, end in filter(None, self.flat.values()):
+            if near.model is problem.model and not search.resumes:
+                search.resume(near.camera_of(end.x.shared), end.x)
         for start in search.starts():
             with start.attempt():
                 H = start.homographies(dlt)

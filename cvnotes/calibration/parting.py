@@ -48,7 +48,7 @@ class NearBy:
     def camera_of(self, weights: Array) -> Array:
         """Return the change (..., q) that makes the sum of weighted views (..., n) least."""
         S = np.tensordot(weights, self.S, 1) + _HELD * np.eye(self.g.shape[1])
-        return -np.linalg.solve(S, (weights @ self.g)[..., None])[..., 0]
+        return np.asarray(-np.linalg.solve(S, (weights @ self.g)[..., None])[..., 0])
 
     def at(self, d: Array) -> Array:
         """Return what each view costs, (..., n), after changes (..., q) of the camera."""

@@ -90,15 +90,34 @@ class Search:
     rival: float | None = None
     minima: list[Minimum[State, NormalEquations]] = field(default_factory=list)
     own: list[str] = field(default_factory=list)  # the steps that are the student's
+    resumes: bool = False  # where another lens ended
     # before boards were turned
     ends: list[Minimum[State, NormalEquations]] = field(default_factory=list)
 
     def starts(self) -> "Iterator[Start]":
         """Return the starts, the most robust first, until one has led to a good minimum."""
+        if self._is_done():
+            return
         for start in self._all_starts():
             yield start
-            if self.minima and (self._is_good(self.minima[-1]) or self._is_decided()):
+            if self._is_done():
                 break
+
+    def resume(self, camera: Camera, x: State) -> None:
+        """Start where a lens with more or fewer coefficients of the same kind ended."""
+        shared = self.problem.state(camera, np.empty((0, 4, 4))).shared
+        with suppress(ConvergenceError, DegenerateError):
+            found = minimise(
+                self.problem,
+                x._replace(shared=shared),
+                tolerance=self.tolerance,
+                patience=self.patience,
+            )
+            self.resumes = True
+            self.keep(found)
+
+    def _is_done(self) -> bool:
+        return bool(self.minima) and (self._is_good(self.minima[-1]) or self._is_decided())
 
     def _all_starts(self) -> "Iterator[Start]":
         if len(self.problem.m) > _MANY_VIEWS:
@@ -144,6 +163,8 @@ class Search:
         """Return whether a board may be in its other pose: from what is known already."""
         if found.cost <= _NOISELESS**2 * self.problem.n_seen:
             return False
+        if self.resumes and self._is_beaten(found.cost):
+            return False
         by_view = found.system.view_costs / self.problem.n_seen_by_view
         if not self._has_many_views:
             return True
@@ -168,17 +189,22 @@ class Search:
 
         Six ended in the lowest minimum, or two nearly there where no start is at fault: in a
         valley; for a lens that is only compared with others, whose rival is far below; and where
-        one of many views shows something else.
+        one of many views shows something else. Of such a lens one does where another lens ended.
         """
+        if self.resumes and self._is_beaten(self.minima[0].cost):
+            return True
         if len(self.minima) < 2:
             return False
         lowest, second = sorted(minimum.cost for minimum in self.minima)[:2]
         same = (m.converged and m.cost <= (1 + _ONE) * lowest for m in self.minima)
         if sum(same) >= _AGREED:
             return True
-        beaten = self.rival is not None and self.rival < _BEATEN * lowest
-        no_start_helps = beaten or self._has_stranger() or bool(self.problem.model.cancelling)
+        no_start_helps = self._is_beaten(lowest) or self._has_stranger()
+        no_start_helps |= bool(self.problem.model.cancelling)
         return no_start_helps and second < (1 + _ALIKE) * lowest
+
+    def _is_beaten(self, cost: float) -> bool:
+        return self.rival is not None and self.rival < _BEATEN * cost
 
     def _has_stranger(self) -> bool:
         """Return whether one of many views misses so much more that no pose explains it."""

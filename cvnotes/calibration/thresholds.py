@@ -24,7 +24,7 @@ TIMES_NOISE = 1.5  # scatter between views over noise alone, from which both are
 # of the other, and the other is not better in enough of them: the 95 % quantile of a normal
 # variable, from which that of Student's t is taken.
 AS_WELL, SURE = 1.10, 1.645
-HOPELESS = 2.0  # a lens so many times worse than the best is not tried with another board
+HOPELESS = 1.5  # a lens so many times worse than the best is not tried with another board
 ALIKE_LEFT_OUT = 1.02  # times the best: models whose predictions nothing tells apart
 
 # --- which photographs?
