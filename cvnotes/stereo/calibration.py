@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
+from functools import cache
 from warnings import catch_warnings, simplefilter, warn
 
 import numpy as np
@@ -274,7 +275,7 @@ def refined(
         names=problem.names,
         covariance=variance * unit[:q, :q] * scale,
         converged=best.converged,
-        _covariance_of_pairs=lambda: covariance_over_pairs(problem, best.x)[:q, :q] * scale,
+        _covariance_of_pairs=cache(lambda: covariance_over_pairs(problem, best.x)[:q, :q] * scale),
     )
     sentences = [*_doubts(result, residuals, strangers)]
     reliable = not sentences
