@@ -28,7 +28,7 @@ BOARDS = ("flat", "bent", "free")
 _DEGREE = 4  # of the heights over the board
 _DEPENDENT = 1e-6  # smallest part of a power of x and y that the powers before do not contain
 _AT_LEAST = 4  # views; from fewer a plane alone is known only up to its camera
-_CLOSE = 1e-4  # tolerance while the size of a shape is sought
+_CLOSE, _PATIENCE = 1e-4, 3  # tolerance and patience while the size of a shape is sought
 # The board is about 1 large: 1/1000 is some 0.5 % of a square. Where its size is sought from, what
 # it is at least, and when it is found.
 _EXPECTED, _SMALLEST, _FOUND = 1e-3, 2e-6, 0.05
@@ -196,7 +196,7 @@ def shaped(
     x = State(np.concatenate([flat.x.shared, 0 * hold]), flat.x.R, flat.x.T)
     for _ in range(_ROUNDS):
         free = replace(free, hold=hold)
-        best = minimise(free, x, tolerance=_CLOSE)
+        best = minimise(free, x, tolerance=_CLOSE, patience=_PATIENCE)
         x, determined = best.x, 1 - hold**2 * shape_variances(free, best.system)[0]
         before, s, free = hold, best.x.shared[q:], replace(free, determined=float(determined.sum()))
         if known is not None:
@@ -207,7 +207,9 @@ def shaped(
         )
         if (np.abs(hold - before) < _FOUND * before).all():
             break
-    return free, minimise(free, x, tolerance=tolerance)
+    best = minimise(free, x, tolerance=tolerance, patience=_PATIENCE)
+    # A valley has no bottom that noise would let one find.
+    return free, replace(best, converged=best.converged or bool(free.model.cancelling))
 
 
 def _groups(free: Problem) -> list[slice]:

@@ -311,6 +311,9 @@ class _Tried:
             problem, best = of_flat
             if board != "flat":
                 problem, best = shaped(problem, self.data, board, best, tolerance=_CLOSE)
+                camera = problem.camera_of(best.x.shared)
+                if np.isnan(problem.residuals(camera, best.x)).any():  # the lens folds there
+                    return None
             return _judged(lens, board, problem, best)
         except CvnotesError:  # this model has no camera here
             return None
