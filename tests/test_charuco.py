@@ -191,6 +191,8 @@ def test_from_cut_boards_to_the_camera():
     [
         (SMALL, CharucoBoard((4, 3), 25.0, dictionary="5x5_100"), "there are markers of 4x4"),
         (BOARD, CharucoBoard((5, 4), 25.0), "stand as on a board of 10×7 squares"),
+        (BOARD, CharucoBoard((9, 4), 25.0), "stand as on a board of 10×7 squares"),
+        (BOARD, CharucoBoard((9, 5), 25.0), "stand as on a board of 10×7 squares"),
     ],
 )
 @pytest.mark.slow

@@ -27,7 +27,8 @@ class CornersNotFound(CvnotesError):
     found : ndarray, shape (n, 2), or None
         What was taken for the board.
     count : (columns, rows) or None
-        Inner corners of the largest other board that is there, the larger number first.
+        Inner corners of the largest other board that is there, the larger number first unless it
+        has markers.
     markers : str
         The dictionary of other markers that are there, or "".
     """

@@ -157,6 +157,8 @@ class Photographs:
     @property
     def _asked(self) -> tuple[int, int]:
         columns, rows = self.board.corners
+        if isinstance(self.board, CharucoBoard):  # which stands one way only
+            return columns, rows
         return max(columns, rows), min(columns, rows)
 
     def correspondences(self) -> tuple[Array | list[Array], list[Array]]:

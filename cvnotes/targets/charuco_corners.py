@@ -68,8 +68,9 @@ def _not_found(
     )
     there, question = _guess(board, corners, seen)
     brief = f"{start}: {there}"
+    count = (seen.squares[0] - 1, seen.squares[1] - 1) if seen.squares else None
     return CornersNotFound(
-        f"{brief}; {question}", brief=brief, question=question, markers=seen.other
+        f"{brief}; {question}", brief=brief, question=question, count=count, markers=seen.other
     )
 
 

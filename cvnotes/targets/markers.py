@@ -113,7 +113,8 @@ def find_numbered(
     agreed = max(stand.agreeing(columns, light=x).mean() for x in patterns)
     if agreed < _AGREE and (other := _other(grey, every, dictionary, len(markers))):
         return Numbered(*none[:2], markers[:0], other=other)
-    if agreed < _AGREE and (counted := stand.counted()) is not None:
+    beyond = max(stand.beyond(columns, rows, light=x) for x in patterns)
+    if (agreed < _AGREE or beyond >= _SURE) and (counted := stand.counted()) is not None:
         return Numbered(*none, squares=counted)
     # (where nothing tells, OpenCV's own doubts may)
     of_board, found = (grey, squares, marker, dictionary), []
@@ -281,6 +282,11 @@ class _Standing(NamedTuple):
             return np.ones(1, dtype=bool)
         a, b = (_square(n, columns, light) for n in (self.numbers, self.neighbours))
         return np.asarray((np.abs(b - a - self.steps) < _OFF).all(-1))
+
+    def beyond(self, columns: int, rows: int, *, light: bool = False) -> int:
+        """Count the markers that stand below a board of so many squares, as on a larger one."""
+        below = _square(self.numbers, columns, light)[:, 1] >= rows
+        return int((self.agreeing(columns, light=light) & below).sum())
 
     def counted(self) -> tuple[int, int] | None:
         """Return the squares (columns, rows, as many as are seen) that a board must have."""
