@@ -145,7 +145,7 @@ def _seen(missed: float) -> str:
 def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel:
     """Draw the RMS over the steps, with a logarithmic scale, and the camera of this step."""
     panel = paper.panel(
-        _CURVE, (-0.35, _STEPS + 0.5), (1.3, -2.9), "RMS of all corners (px) over steps"
+        _CURVE, (-0.35, _STEPS + 0.5), (1.3, -2.9), "RMS of all corners (px) against steps"
     )
     for power in range(-2, 2):
         panel.segments([[[panel.x[0], power], [panel.x[1], power]]], "#DDDDDD", 0.5)

@@ -22,7 +22,7 @@ _VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:2, :3]  # from the
 _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
 _INKS = (IDEAL, MUTED)  # of the first photograph and of the second
-_SQUARES = ("#B0B0B0", "#E2E2E2")
+_SQUARE = "#B0B0B0"
 _PAIRS = (("sides", "estimated", ESTIMATED), ("diagonals", "lens", LENS))
 
 
@@ -95,7 +95,7 @@ def fold_model() -> Model:
     about = (
         "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
         "horizon, with lines to the vanishing points of the square's sides and of its diagonals. "
-        "Beside it the focal length over v0, along the half circle of each photograph."
+        "Beside it the focal length against v0, along the half circle of each photograph."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -148,14 +148,13 @@ def _space(
     frame = np.array([[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]])
     panel.polygons(_flat(frame)[None], "#F4F4F0")
     panel.line(_flat(frame[[0, 1, 2, 3, 0]]), MUTED, 1)
-    for camera, circle, ink, dark in reversed(
-        [*zip(cameras, circles, _INKS, _SQUARES, strict=False)]
-    ):
-        m = _flat(camera.project(board.points))
-        draw_squares(panel, m, board, dark)
-        draw_net(panel, m, board, ink, 0.8)
-        along = np.array([circle.up[1], -circle.up[0]])
-        panel.line(_flat(circle.foot + np.array([[-3000.0], [3000.0]]) * along), ink, 0.8, dash=5)
+    m = _flat(cameras[0].project(board.points))
+    draw_squares(panel, m, board, _SQUARE)
+    draw_net(panel, m, board, IDEAL, 0.8)
+    up = circles[0].up
+    along = np.array([[-3000.0], [3000.0]]) * [up[1], -up[0]]
+    panel.line(_flat(circles[0].foot + along), IDEAL, 0.8, dash=5)
+    for circle, ink in reversed([*zip(circles, _INKS, strict=False)]):
         arc = np.array([circle.place(float(fold)) for fold in range(0, 181, 3)])
         panel.line(_on_sheet(arc), ink, 2)
         panel.line(_on_sheet(arc[[0, -1]]), ink, 0.8)
@@ -188,7 +187,7 @@ def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Pa
     """Draw the half circles from the side, and say at which angles the eye sees each square."""
     high, low = 1330, -518  # one scale for both axes, so that a half circle is one
     panel = paper.panel(
-        _SIDE, (-580, 960), (high, low), "from the side: height of the eye over v0 (px)"
+        _SIDE, (-580, 960), (high, low), "from the side: height of the eye against v0 (px)"
     )
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
     for k in reversed(range(len(H))):

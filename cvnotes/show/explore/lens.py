@@ -36,7 +36,7 @@ def lens_model(camera: Camera) -> Model:
     )
     about = (
         "A room and a square grid, both seen through a lens; beside it the observed radius "
-        "r L(r) over the ideal radius r, with the fold where the model ends."
+        "r L(r) against the ideal radius r, with the fold where the model ends."
     )
     return Model("lens", about, settings, partial(_draw, camera))
 
@@ -55,7 +55,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     grid.image(_bent_room(lens, x, reach))
     _draw_grid(grid, lens)
     _draw_frame(grid, camera, lens)
-    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "radius: observed r L(r) over ideal r")
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "radius: observed r L(r) against ideal r")
     _draw_curve(curve, lens)
     return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
 

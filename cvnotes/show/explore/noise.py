@@ -73,7 +73,7 @@ def noise_model(camera: Camera, board: Chessboard) -> Model:
     )
     about = (
         "Errors of a simulated calibration with its own error bars, beside the least possible "
-        "standard deviations; and these over the number of views."
+        "standard deviations; and these against the number of views."
     )
     study = _Study(camera, board)
     return Model("noise", about, settings, partial(_draw, study))
@@ -88,7 +88,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(
         (400, 300), (np.log10(2.6), np.log10(36)), (1.4, -1.8),
-        "least standard deviation of α_u (px) over views",
+        "least standard deviation of α_u (px) against views",
     )  # fmt: skip
     _draw_curve(curve, study, n, sigma)
     off = round(float(error[0]), 2) + 0.0  # no "−0.00"

@@ -74,7 +74,10 @@ def _without(lens: Lens, photo: Drawn, sharpness: int) -> Drawn:
 
 def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
     panel = paper.panel(
-        _ROW, (-0.5, _SIZE[0] - 0.5), (_BOW, -_BOW), "the uppermost row: px above its line, over u"
+        _ROW,
+        (-0.5, _SIZE[0] - 0.5),
+        (_BOW, -_BOW),
+        "the uppermost row: px above its line, against u",
     )
     panel.ticks(x=(200, 400, 600), y=(-10, 0, 10))
     panel.line([[0, 0], [_SIZE[0], 0]], MUTED, 1)

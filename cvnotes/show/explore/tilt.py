@@ -59,7 +59,7 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
     )
     about = (
         "One tilted board through two lenses. Before the second, half as long, it is turned and "
-        "placed so that the pictures are most alike; beside it how far they differ, over the tilt."
+        "placed so that the pictures are most alike; beside it how far they differ, against tilt."
     )
 
     drags = {"tilt": lambda _, at: {"tilt": float(at[0])}}
@@ -103,7 +103,7 @@ def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
         _CURVE,
         (-6, _STEEPEST + 4),
         (highest, -0.12 * highest),
-        "how far they differ (px) over tilt (°)",
+        "how far they differ (px) against tilt (°)",
     )
     panel.ticks(x=(0, 15, 30, 45, 60), y=np.arange(1, np.floor(highest) + 1), size=12)
     at = np.arange(0, tilt + 1)

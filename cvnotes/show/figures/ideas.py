@@ -117,7 +117,8 @@ def _draw_plane(ax: "Axes", line: Array, name: str) -> None:
     tip = 0.9 * line / np.linalg.norm(line)
     arrow(ax, (0.0, 0.0), _on_paper(tip), ESTIMATED, 1.8, zorder=5)
     ax.plot(*_on_paper(tip), " ")  # the axes reach to the tip
-    _write(ax, name, tip, ESTIMATED, (-12, 4) if _on_paper(tip)[0] < 0 else (12, 4))
+    away = 12 + 3.5 * max(len(name) - 2, 0)
+    _write(ax, name, tip, ESTIMATED, (-away, 4) if _on_paper(tip)[0] < 0 else (away, 4))
 
 
 def _cut(line: Array) -> Array:

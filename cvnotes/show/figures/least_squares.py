@@ -124,7 +124,7 @@ def draw_valley(
     *,
     ax: "Axes | None" = None,
 ) -> "Axes":
-    """Draw a cost over two unknowns as a map with contours, and ways that steps took over it.
+    """Draw a cost over two unknowns as a map, light where it is low, and ways that steps took.
 
     Parameters
     ----------
@@ -141,8 +141,6 @@ def draw_valley(
     >>> ax.get_legend().get_texts()[0].get_text()
     'down'
     """
-    from matplotlib.colors import BoundaryNorm
-
     x, y = numbers(x, "x").ravel(), numbers(y, "y").ravel()
     height = numbers(cost, "cost")
     if height.shape != (len(y), len(x)) or min(height.shape) < 2:
@@ -155,14 +153,11 @@ def draw_valley(
         raise CvnotesError("paths: expected one to three ways")
     ax = drawn_on(ax, width=760, height=520)
     z = np.log10(height)
-    levels = np.unique(np.quantile(z, np.linspace(0, 1, 25) ** 2))  # most of them where it is low
+    levels = np.unique(np.quantile(z, np.linspace(0, 1, 13) ** 2))  # most of them where it is low
     if len(levels) == 1:
         levels = levels + [0.0, 1.0]
-    norm = BoundaryNorm(levels, 256)
-    shade = ax.contourf(x, y, z, levels=levels, norm=norm, cmap="Greys", alpha=0.75)
-    whole = np.arange(np.ceil(levels[0]), levels[-1] + 1e-9)
-    bar = ax.figure.colorbar(shade, ax=ax, shrink=0.8, label="log₁₀ of the cost", ticks=whole)
-    bar.ax.tick_params(labelsize=FONT - 1)
+    shades = 0.95 - 0.6 * np.linspace(0, 1, len(levels) - 1)
+    ax.contourf(x, y, z, levels=levels, colors=[str(shade) for shade in shades])
     first = "start"
     for (name, path), colour in zip(paths.items(), (ESTIMATED, LENS, WORLD), strict=False):
         way: Array = points(path, name, 2).reshape(-1, 2)
