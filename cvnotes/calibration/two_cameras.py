@@ -67,8 +67,8 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
     def costs_of(parts: npt.NDArray[np.intp]) -> Array:
         return near.at(near.camera_of(np.stack([parts == 0, parts == 1], axis=1).astype(float)))
 
-    def f_of(two: float) -> float:
-        return float(near.c.sum() / two - 1) * (freedom(problem) - 2 * q) / q
+    def explain(two: float, f: float) -> bool:
+        return bool((near.c.sum() - two) * (freedom(problem) - 2 * q) > f * q * two)
 
     try:
         near = NearBy.of(problem, x)
@@ -76,14 +76,12 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
         second = parts.astype(bool)
         costs[np.minimum(second.sum(1), (~second).sum(1)) < _FEWEST] = np.inf
         best = costs.argmin()
-        if f_of(costs[best]) < _NEARLY * PARTED:
+        if not explain(costs[best], _NEARLY * PARTED):
             return None
         found = _parted(problem, x, second[best], one.rms)
     except (CvnotesError, np.linalg.LinAlgError):  # they, or one part, do not determine a camera
         return None
-    if found is None or f_of(found.rms**2 * problem.n_seen) < PARTED:
-        return None
-    return found
+    return found if found and explain(found.rms**2 * problem.n_seen, PARTED) else None
 
 
 def _parted(

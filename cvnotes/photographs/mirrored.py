@@ -1,11 +1,12 @@
 """Photographs in which left and right are exchanged, beside others in which they are not."""
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, DegenerateError
+from cvnotes.base import Array, CvnotesError, DegenerateError
 from cvnotes.calibration import Calibration
 from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.correspondences import Correspondences
@@ -74,9 +75,12 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
     at, costs = refit_poses(held, State(x.shared[: len(problem.names)], x.R, x.T))
     costs = costs.reshape(-1, n)
     way, left = _read_best(held, at, costs)
-    some = (costs[0].sum() / left - 1) * freedom(problem.some(slice(n))) > MIXED
+    some = bool((costs[0].sum() - left) * freedom(problem.some(slice(n))) > MIXED * left)
+    best = None
     if some:
-        best = _refined(problem, State(x.shared, at.R, at.T), way)
+        with suppress(CvnotesError):  # read like this, they may have no camera
+            best = _refined(problem, State(x.shared, at.R, at.T), way)
+    if best is not None:
         if two:  # they are no camera and its mirror if they explain more
             times = np.sqrt(best.min(0).sum() / problem.n_seen_by_view[:n].sum()) / two.rms
             if times > AS_WELL:
