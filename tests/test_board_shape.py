@@ -448,3 +448,23 @@ def test_what_holds_the_chosen_board_back_is_not_sought_again(monkeypatch):
     *lenses, chosen = map(len, asked)
     assert len(lenses) >= 3
     assert chosen - 1 == 1 < min(lenses)  # and once more for the deviations of its corners
+
+
+def test_a_board_with_nothing_to_be_seen_but_noise_is_known_flat_in_a_few_rounds(monkeypatch):
+    board, rounds = course.board(), []
+    monkeypatch.setattr(
+        board_shape, "shape_variances", lambda *each: rounds.append(1) or shape_variances(*each)
+    )
+    m = course.measured_corners()
+    found = calibrate(board.points, m, (640, 480), board="free")
+    assert np.abs(found.shape.offsets).max() < 0.02  # mm
+    assert len(rounds) - 1 <= 3  # MacKay's rule alone takes all eight; one is for the deviations
+
+
+@pytest.mark.slow
+def test_a_quotient_takes_a_free_board_too():
+    real = course.real_corners()
+    found = calibrate(real.board.points, real.left, real.size, lens="rational", board="auto")
+    assert found.choice.board == "free"
+    assert found.rms < 0.09  # 0.16 on a flat one
+    assert found.A[0, 0] == pytest.approx(533.9, abs=0.5)  # as with k1 k2 p1 p2

@@ -13,7 +13,7 @@ from cvnotes.calibration import calibrate
 from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, look_at
 from cvnotes.commands.cli import main
 from cvnotes.commands.report import note_of, notes_of
-from cvnotes.photographs import calibrate_photographs
+from cvnotes.photographs import NoCamera, calibrate_photographs
 from cvnotes.pictures import render
 from cvnotes.targets import CharucoBoard, Chessboard, find_corners
 from cvnotes.targets.markers import _dictionary, _outlines, _read, find_numbered
@@ -360,3 +360,11 @@ def test_the_command_prints_and_calibrates_it(tmp_path, capsys):
         photograph.unlink()
     assert main([*plain, "--charuco", "5x5_100", "--out", str(out)]) == 1
     assert "there are markers of 4x4" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_a_count_that_is_one_row_short_is_answered_with_the_right_one():
+    views = [camera([60, 40, -330]), camera([160, 90, -330]), camera([90, 10, -360])]
+    pictures = [render(BOARD, view, blur=0.7) for view in views]
+    with pytest.raises(NoCamera, match=r"a board of 9×5 .* 3 photographs show one of 9×6"):
+        calibrate_photographs(pictures, CharucoBoard((9, 5), 25.0))

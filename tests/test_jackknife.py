@@ -5,6 +5,7 @@ import pytest
 
 from cvnotes.base import CvnotesError
 from cvnotes.calibration import Calibration, calibrate, prediction_std
+from cvnotes.calibration.prediction import angles_seen
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import course
 from cvnotes.targets import Chessboard
@@ -136,3 +137,54 @@ def test_two_views_leave_nothing_to_compare():
     assert np.isinf([*found.std_of_views.values()]).all()
     assert "±: from noise alone" in repr(found)
     assert np.isinf(prediction_std(found, [320, 240], of="views"))
+
+
+def moved(camera, name, by):
+    return camera.with_parameters({name: camera.parameters[name] + by})
+
+
+def test_what_is_predicted_is_differentiated_as_by_small_changes():
+    """With a turn of the camera, found by least squares, that meets the corners best."""
+    real = course.real_corners()
+    found = calibrate(real.board.points, real.left, real.size, lens="k1 k2")
+    places = np.array([[40.0, 30], [320, 240], [600, 420]])
+    corners = np.concatenate(real.left)[:: -(-702 // 200)]
+    rays, of_corners = found.camera.ray(places), found.camera.ray(corners)
+    turns, columns = 1e-6 * np.eye(3), []
+    for name in found.names:
+        h = 1e-6 * max(1.0, abs(found.camera.parameters[name]))
+        other = moved(found.camera, name, h)
+
+        def seen(w, rays=rays, other=other):
+            return other.project(rays @ rotation_from_vector(w).T)
+
+        def off(w, other=other):
+            return (other.project(of_corners @ rotation_from_vector(w).T) - corners).ravel()
+
+        J = np.stack([(off(t) - off(-t)) / 2e-6 for t in turns], axis=1)
+        best = -np.linalg.lstsq(J, off(np.zeros(3)), rcond=None)[0]
+        columns.append((seen(best) - places) / h)
+    J = np.stack(columns, axis=-1)
+    std = np.sqrt(np.einsum("mci,ij,mcj->m", J, found.covariance, J))
+    assert prediction_std(found, places, turning=True) == pytest.approx(std, rel=1e-3)
+
+
+def test_the_angles_that_are_seen_are_known_as_well_as_small_changes_say():
+    real = course.real_corners()
+    found = calibrate(real.board.points, real.left, real.size, lens="k1 k2")
+    angles, std = angles_seen(found)
+    corners = np.concatenate(real.left)
+    (left, top), (right, bottom), (u, v) = corners.min(0), corners.max(0), found.A[:2, 2]
+
+    def spanned(camera):
+        x, y, z = camera.ray([[left, v], [right, v], [u, top], [u, bottom]]).T
+        a = np.arctan2([x[0], x[1], y[2], y[3]], z)
+        return a[1::2] - a[::2]
+
+    assert angles == pytest.approx(spanned(found.camera))
+    J = []
+    for name in found.names:
+        h = 1e-6 * max(1.0, abs(found.camera.parameters[name]))
+        J.append((spanned(moved(found.camera, name, h)) - angles) / h)
+    C = found.covariance_of_views
+    assert std == pytest.approx(np.sqrt(np.einsum("ic,ij,jc->c", J, C, J)), rel=1e-3)

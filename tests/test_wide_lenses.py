@@ -433,3 +433,17 @@ def test_a_board_near_90_degrees_of_a_fisheye_has_no_more_pieces_than_its_edges_
         lengths = np.linalg.norm(end - start, axis=1)
         assert lengths.max() < 1.2
         assert len(lengths) < 3 * lengths.sum()
+
+
+def test_a_lens_that_is_beaten_where_another_of_its_kind_ended_is_not_started_again():
+    W, m = seen_by(Camera(intrinsics(200, 200, 320, 240), lens=FisheyeLens((0.01,))), 10)
+    data = Correspondences.of(W, m)
+    found = calibrate(W, m, (640, 480), lens="fisheye")
+    problem = Problem.of(data, (640, 480), "k1 k2", skew=False)
+    x = problem.state(found.camera, data.pose_in_scaled_units(found.poses))
+    alone, beaten = Search(problem, patience=3), Search(problem, patience=3, rival=0.0)
+    for search in (alone, beaten):
+        search.resume(Camera(found.A, size=(640, 480)), x)
+    assert len(alone.minima) == len(beaten.minima) == 1
+    assert next(alone.starts(), None) is not None
+    assert next(beaten.starts(), None) is None

@@ -115,7 +115,7 @@ def choose(
         photographs = kept
         exchanged, two = _accused(photographs, result, model)
     if two and not exchanged.views:
-        return with_doubt(result, _of_two_cameras(two, exchanged)), photographs
+        return with_doubt(result, _of_two_cameras(two)), photographs
     return with_doubt_of_mirrored(result, exchanged), photographs
 
 
@@ -140,13 +140,12 @@ def _accused(
     return exchanged, two
 
 
-def _of_two_cameras(two: TwoCameras, exchanged: Mirrored) -> Mixed:
+def _of_two_cameras(two: TwoCameras) -> Mixed:
     """Return what is to be said of photographs that no single camera took."""
-    or_else = ", or are some mirrored" * exchanged.some
     return Mixed(
         f"{{}} fit one camera, and {{}} another ({two.rms:.2f} px off with two cameras, "
-        f"{two.of_one:.2f} px with one): do they come from two cameras, or was the zoom or focus "
-        f"changed between them{or_else}? Calibrate each by itself",
+        f"{two.of_one:.2f} px with one): do they come from two cameras, was the zoom or focus "
+        "changed between them, or are some mirrored? Calibrate each part by itself",
         *(Views(tuple(np.flatnonzero(own).tolist())) for own in (~two.second, two.second)),
     )
 

@@ -84,7 +84,7 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
         if two:  # they are no camera and its mirror if they explain more
             times = np.sqrt(best.min(0).sum() / problem.n_seen_by_view[:n].sum()) / two.rms
             if times > AS_WELL:
-                return Mirrored(some=bool(times < AS_WELL**2))
+                return Mirrored()
         told = np.minimum(problem.n_seen_by_view[:n], CORNERS_THAT_TELL)
         gain = (best[0] - best[1:].min(0)) * 2 * told.sum() / best.min(0).sum()
         # All read the other way is the same: the fewer count; of halves, that without the first.
