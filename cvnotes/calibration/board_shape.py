@@ -207,7 +207,9 @@ def shaped(
         )
         if (np.abs(hold - before) < _FOUND * before).all():
             break
-    return free, minimise(free, x, tolerance=tolerance, patience=_PATIENCE)
+    best = minimise(free, x, tolerance=tolerance, patience=_PATIENCE)
+    # A valley has no bottom that noise would let one find.
+    return free, replace(best, converged=best.converged or bool(free.model.cancelling))
 
 
 def _groups(free: Problem) -> list[slice]:
