@@ -242,15 +242,16 @@ def test_the_committed_notebooks_arrive_as_they_are(tmp_path):
 def test_every_link_of_a_chapter_leads_to_a_file_in_the_copy(tmp_path):
     deliver(material("notebooks"), tmp_path / "copy")
     links = 0
-    for path in [*tmp_path.glob("copy/*.ipynb"), *tmp_path.glob("copy/docs/*.md")]:
+    for path in [*tmp_path.glob("copy/*.ipynb"), *tmp_path.glob("copy/docs/**/*.md")]:
         for target in re.findall(r"\]\(([\w./-]+\.(?:md|ipynb|svg|png))[#)]", path.read_text()):
             place = (path.parent / target).resolve()
             assert place.is_file(), (path.name, target)
             assert place.is_relative_to(tmp_path / "copy")  # JupyterLab shows nothing above it
             links += path.name.startswith("00") or path.suffix == ".md"
     assert links >= 12 + 7  # chapters and pages from notebook 0, figures from the pages
-    copied = {path.name for path in tmp_path.glob("copy/docs/*.md")}
-    assert copied == {"notation.md", "errata.md", "notes.md"}
+    copied = {path.name for path in tmp_path.glob("copy/docs/**/*.md")}
+    sheets = {"cross_product.md", "one_point.md", "two_dlt_rows.md"}
+    assert copied == {"notation.md", "errata.md", "notes.md"} | sheets
 
 
 def test_a_page_comes_up_to_date_and_one_that_was_changed_is_left_alone(course, mine):

@@ -21,7 +21,7 @@ from cvnotes.files.ownership import numbered
 
 FOLDER = "my_course"
 RECORD = ".cvnotes-course.json"
-_PAGE = re.compile(r"\]\(\.\./docs/([\w-]+\.md)")
+_PAGE = re.compile(r"\]\(\.\./docs/([\w/-]+\.md)")
 _FIGURE = re.compile(r"\]\((figures/[\w-]+\.\w+)\)")
 
 
