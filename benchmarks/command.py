@@ -27,6 +27,8 @@ REAL = {
     "right": ("left_right", "right*.jpg", (9, 6)),
     "wide": ("wide", "*.jpg", (8, 6)),
     "fisheye": ("fisheye", "*.jpg", (6, 4)),
+    "sony": ("sony", "*.jpg", (6, 4)),
+    "depth": ("depth", "*.png", (9, 6)),
 }
 SCRIPT = """
 import sys
