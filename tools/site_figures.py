@@ -74,9 +74,10 @@ def panels_of(picture: npt.NDArray[np.uint8]) -> list[tuple[int, int, int, int]]
             return [(0, 0, width, height)]
         return upper + [(left, row + top, wide, high) for left, top, wide, high in lower]
     empty = np.asarray((picture >= _INK).all(axis=(0, 2)))
-    cuts = [_gap(empty, 0.25, 0.42), _gap(empty, 0.58, 0.75)] if width > _THREE * height else [None]
-    if None in cuts:
-        cuts = [_gap(empty, 0.33, 0.67)]
+    cuts, three = [_gap(empty, 0.33, 0.67)], [_gap(empty, 0.25, 0.42), _gap(empty, 0.58, 0.75)]
+    halved = cuts[0] is not None and abs(cuts[0] / width - 0.5) < 0.05  # two panels, or two and two
+    if width > _THREE * height and not halved and None not in three:
+        cuts = three
     edges = [0, *(cut for cut in cuts if cut is not None), width]
     return [(a, 0, b - a, height) for a, b in pairwise(edges) if not empty[a:b].all()]
 

@@ -108,4 +108,5 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
     left.set(xlabel="RMS (px per point)")
     right.set(xlabel="error of the focal length (%)", title="what counts")
     left.invert_yaxis()
+    right.tick_params(labelleft=True)  # a narrow page shows the panels one below the other
     return axes
