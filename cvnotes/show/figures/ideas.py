@@ -185,7 +185,7 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
     """
     y, z, f = 1.5, 4.0, 1.5
     v = f * y / z
-    ax = drawn_on(ax, width=760, height=330)
+    ax = drawn_on(ax, height=300)
     ax.plot([-f, f, z], [-v, v, y], color=LENS, linewidth=1.6, zorder=3)
     ax.fill([0, z, z], [0, 0, y], color=WORLD, alpha=0.2, linewidth=0)
     ax.fill([0, f, f], [0, 0, v], fill=False, hatch="///", edgecolor=ESTIMATED, linewidth=0)
@@ -201,7 +201,7 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
     for end, row, name in ((f, 0.55 * up, "f"), (z, 0.9 * up, "z")):
         ax.annotate("", (0, row), (end, row), arrowprops=span)
         _label(ax, name, (end / 2, row), IDEAL)
-    _label(ax, "C, the pinhole", (0, 0.22 * down), CAMERA)
+    _label(ax, "C, the pinhole", (-0.1, 0.33 * down), CAMERA)
     _label(ax, "image plane, z = f", (f, 1.15 * down), CAMERA)
     _label(ax, "film behind the hole:\nupside down", (-f, 1.25 * down), MUTED)
     _label(ax, "y", (z + 0.04 * z, y / 2), WORLD)
