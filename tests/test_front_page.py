@@ -23,7 +23,8 @@ def test_the_picture_is_the_exploration_before_it_is_touched(tmp_path):
         for path in (tmp_path / "still.png", front_page.PICTURE)
     )
     assert drawn.shape == kept.shape
-    assert np.abs(drawn - kept).mean() < 1  # else: python tools/draw_front.py
+    # one changed word is some 600 pixels; else: python tools/draw_front.py
+    assert np.sum(np.abs(drawn - kept).max(axis=2) > 64) < 50
 
 
 def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
