@@ -169,14 +169,41 @@ def test_mirrored_photographs_of_a_camera_nearly_its_own_mirror_are_noticed_and_
     assert found.doubts[0].startswith("in some photographs left and right seem exchanged, but")
 
 
-@pytest.mark.parametrize(("n_left", "n_right"), [(3, 10), (4, 9), (10, 3), (4, 4)])
-def test_the_few_photographs_of_a_second_camera_are_noticed(n_left, n_right):
+@pytest.mark.parametrize(("n_left", "n_right"), [(3, 10), (5, 8), (7, 6), (10, 3)])
+def test_the_few_photographs_of_a_second_camera_are_named(n_left, n_right):
     real, blank = course.real_corners(), np.zeros((48, 64), np.uint8)
     m = [*real.left[:n_left], *real.right[len(real.right) - n_right :]]
     seen = [Detection(Path(f"{i:02}.png"), real.size, blank, m) for i, m in enumerate(m)]
     found = calibrate_detected(Photographs(real.board, seen))
     assert not found.reliable
+    names = [", ".join(f"{i:02}.png" for i in part)
+             for part in (range(n_left), range(n_left, n_left + n_right))]  # fmt: skip
+    more, fewer = sorted(names, key=len, reverse=True)
+    assert found.doubts[0].startswith(f"{more} fit one camera, and {fewer} another (0.0")
     assert "do they come from two cameras" in found.doubts[0]
+
+
+def test_four_photographs_of_each_of_two_cameras_are_noticed():
+    real, blank = course.real_corners(), np.zeros((48, 64), np.uint8)
+    m = [*real.left[:4], *real.right[-4:]]
+    seen = [Detection(Path(f"{i:02}.png"), real.size, blank, m) for i, m in enumerate(m)]
+    found = calibrate_detected(Photographs(real.board, seen))
+    assert not found.reliable
+    assert "do they come from several cameras" in found.doubts[0]
+
+
+@pytest.mark.parametrize("spread", [{"u0": 30.0, "v0": 30.0}, {"alpha_u": 12.0, "alpha_v": 12.0}])
+def test_a_camera_that_is_another_each_time_is_not_called_two(spread):
+    # as with an image stabiliser, or with a lens that focuses before each photograph
+    rng, camera, seen = np.random.default_rng(3), course.camera(), []
+    for i, G in enumerate(course.poses()):
+        off = {name: camera.parameters[name] + rng.normal(0, s) for name, s in spread.items()}
+        (photo,) = detections(camera.with_parameters(off), [G], seed=i).looked_at
+        seen.append(replace(photo, path=Path(f"{i:02}.png")))
+    found = calibrate_detected(Photographs(BOARD, seen))
+    assert not found.reliable
+    assert found.doubts[0].startswith("the camera was not the same in all photographs (")
+    assert "stabiliser" in found.doubts[0]
 
 
 def test_the_second_of_two_cameras_may_be_nearly_the_first_and_have_three_photographs():
@@ -254,6 +281,19 @@ def test_a_single_wrong_corner_is_left_out_and_said():
     assert photo.astray[0] == pytest.approx(3.9, abs=0.4)
     assert note_of(photo).startswith("1 of 54 corners left out: 3.")
     assert found.doubts == []
+
+
+def test_what_one_photograph_of_many_shows_is_not_advised():
+    blank, part = np.zeros((48, 64), np.uint8), NoBoard(CornersNotFound("not", count=(6, 6)))
+    none = NoBoard(CornersNotFound("not"))
+    seen = [Detection(Path(f"{i}.png"), (640, 480), blank, None, reason=part if i < 2 else none)
+            for i in range(12)]  # fmt: skip
+    with pytest.raises(NoCamera, match="2 photographs show one of 6×6"):
+        fitted(Photographs(BOARD, seen))
+    with pytest.raises(NoCamera, match="was found in none"):
+        fitted(Photographs(BOARD, seen[1:]))
+    with pytest.raises(NoCamera, match="1 photograph shows one of 6×6"):
+        fitted(Photographs(BOARD, seen[:1]))
 
 
 def test_what_most_photographs_show_decides_whether_a_part_of_a_board_was_asked_for():

@@ -74,6 +74,7 @@ class TestFound:
             ({"light": (0.5, 0.4)}, 0.012),
             ({"vignetting": 0.6}, 0.012),
             ({"gain": 0.1, "noise": 1.0}, 0.05),
+            ({"gain": 0.15, "noise": 8.0}, 0.3),  # noise a quarter of the contrast
             ({"gain": 2.0}, 0.05),
             ({"jpeg": 20}, 0.05),
             ({"margin": 0.2}, 0.01),

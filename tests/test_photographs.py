@@ -5,6 +5,7 @@ photographs through a wide lens and a fisheye.
 """
 
 import json
+from dataclasses import replace
 from itertools import chain
 
 import cv2
@@ -22,7 +23,8 @@ from test_stereo import (
 from cvnotes.commands.cli import main
 from cvnotes.files import read_camera, read_photo
 from cvnotes.photographs import calibrate_photographs
-from cvnotes.photographs.driver import chessboard
+from cvnotes.photographs.driver import calibrate_detected, chessboard, detect_photographs
+from cvnotes.photographs.reasons import Exchanged
 from cvnotes.pictures import course
 from cvnotes.targets import Chessboard, find_corners
 from cvnotes.targets.finding import count_corners
@@ -175,3 +177,17 @@ def test_another_kind_of_lens_is_not_hidden_by_the_board(which):
     found = calibrate_photographs(photos, chessboard((9, 6), 25.0))
     assert (found.calibration.choice.lens, found.calibration.choice.board) == ("fisheye", "free")
     assert found.camera.is_invertible
+
+
+@pytest.mark.parametrize("mirrored", [(2, 8, 10), (8, 9, 10, 11, 12)])
+def test_a_telephone_nearly_its_own_mirror_accuses_no_honest_photograph(mirrored):
+    board = chessboard((6, 4), 30.0)
+    seen = detect_photographs(PHOTOGRAPHS.parent / "sony", board)
+    photos = list(seen.looked_at)
+    for i in mirrored:
+        m = photos[i].corners.reshape(4, 6, 2)[::-1].reshape(-1, 2)
+        photos[i] = replace(photos[i], corners=m * [-1, 1] + [seen.size[0] - 1, 0])
+    found = calibrate_detected(replace(seen, looked_at=photos))
+    assert not found.reliable
+    accused = [i for i, x in enumerate(found.photographs.looked_at) if x.reason == Exchanged()]
+    assert {*accused} <= {*mirrored}

@@ -190,19 +190,20 @@ class Choice:
         return np.asarray(of_chosen * np.outer(wider, wider))
 
     def close_by(self) -> tuple[Candidate, str, float] | None:
-        """Return the model that fits as well and differs most: the parameter, and by how many σ.
+        """Return the model that fits as well and differs most: the parameter, and by how many px.
 
-        None where no other is close, or differs by more than the deviation.
+        None where no other is close, or differs by more than the deviation of the one chosen.
         """
         names = [name for name in self.chosen.names if name in SENSOR]
         std = np.sqrt(np.diag(self.chosen.covariance)[: len(names)])
         here, far = self.chosen.camera.parameters, []
         for other in self.close:
             there = other.camera.parameters
-            off = np.abs([there[name] - here[name] for name in names]) / std
-            if off.max() > 1:
-                far.append((other, names[int(off.argmax())], float(off.max())))
-        return max(far, key=lambda each: each[2], default=None)
+            off = np.abs([there[name] - here[name] for name in names])
+            most = int((off / std).argmax())
+            if off[most] > std[most]:
+                far.append((other, names[most], float(off[most]), float(off[most] / std[most])))
+        return max(far, key=lambda each: each[3])[:3] if far else None
 
 
 def choose_model(

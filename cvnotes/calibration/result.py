@@ -196,11 +196,11 @@ class Calibration:
                 "do they say something: another calibration may have others for the same lens"
             )
         if self.choice is not None and (close := self.choice.close_by()):
-            other, name, times = close
+            other, name, off = close
             board = f" on a {other.board} board" * (other.board != self.choice.board)
             notes.append(
                 f"±: contain that {other.lens}{board} fits as well; its {name} differs by "
-                f"{times:.1f} σ"
+                f"{float(f'{off:.2g}'):g} px"
             )
         if (times := self.times_noise) > TIMES_NOISE:
             note = (

@@ -26,11 +26,15 @@ class TwoCameras:
         The views of the second camera: the fewer; of halves, that without the first view.
     rms, of_one : float
         Root mean square reprojection distance with the two, and with one camera, px.
+    told : bool
+        Whether the views tell which belong together: not where those of one are again those of two,
+        as of a camera that changes all the time.
     """
 
     second: npt.NDArray[np.bool_]
     rms: float
     of_one: float
+    told: bool
 
 
 def two_cameras(one: Calibration) -> TwoCameras | None:
@@ -60,7 +64,16 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
     data = Correspondences.of(one.board_points, one.image_points, flat=False)
     problem = Problem.at(one.camera, one.names, data)
     x = problem.state(one.camera, data.pose_in_scaled_units(one.poses))
-    n_views, q = len(one.poses), len(one.names)
+    if (parted := _in_two(problem, x)) is None:
+        return None
+    second, rms = parted
+    again = (_alone_in_two(problem, x, np.flatnonzero(own)) for own in (~second, second))
+    return TwoCameras(second, rms, one.rms, not any(again))
+
+
+def _in_two(problem: Problem, x: State) -> tuple[npt.NDArray[np.bool_], float] | None:
+    """Tell which views are a second camera's, and the RMS then, where two explain far more."""
+    n_views, q = len(problem.m), len(problem.names)
     if n_views < 2 * _FEWEST:
         return None
 
@@ -78,15 +91,24 @@ def two_cameras(one: Calibration) -> TwoCameras | None:
         best = costs.argmin()
         if not explain(costs[best], _NEARLY * PARTED):
             return None
-        found = _parted(problem, x, second[best], one.rms)
+        found = _parted(problem, x, second[best])
     except (CvnotesError, np.linalg.LinAlgError):  # they, or one part, do not determine a camera
         return None
-    return found if found and explain(found.rms**2 * problem.n_seen, PARTED) else None
+    return found if found and explain(found[1] ** 2 * problem.n_seen, PARTED) else None
+
+
+def _alone_in_two(problem: Problem, x: State, part: npt.NDArray[np.intp]) -> bool:
+    """Tell whether some of the views, with a camera of their own, are again those of two."""
+    some = problem.some(part)
+    try:
+        return _in_two(some, minimise(some, x.some(part)).x) is not None
+    except CvnotesError:
+        return False
 
 
 def _parted(
-    problem: Problem, x: State, second: npt.NDArray[np.bool_], of_one: float
-) -> TwoCameras | None:
+    problem: Problem, x: State, second: npt.NDArray[np.bool_]
+) -> tuple[npt.NDArray[np.bool_], float] | None:
     """Refine two cameras from a first guess which views the second one took."""
     for _ in range(ROUNDS):
         if min(second.sum(), (~second).sum()) < _FEWEST:
@@ -103,4 +125,4 @@ def _parted(
         return None
     if 2 * second.sum() + second[0] > len(second):
         second = ~second
-    return TwoCameras(second, float(np.sqrt(costs.min(0).sum() / problem.n_seen)), of_one)
+    return second, float(np.sqrt(costs.min(0).sum() / problem.n_seen))

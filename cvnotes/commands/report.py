@@ -153,7 +153,8 @@ def _in_mm(shape: "BoardShape") -> str:
     """Describe how far a board is from flat."""
     z, aside = shape.heights, np.linalg.norm(shape.offsets[:, :2], axis=1)
     words = (
-        f"{z.min():.2f} to {z.max():.2f} mm out of its plane (± {np.median(shape.std[:, 2]):.2f})"
+        f"{z.min().round(2) + 0.0:.2f} to {z.max():.2f} mm out of its plane "
+        f"(± {np.median(shape.std[:, 2]):.2f})"
     )
     moved = f", corners up to {aside.max():.2f} mm beside their places"
     return words + moved * (shape.kind == "free")

@@ -12,6 +12,7 @@ from cvnotes.calibration.doubts import Views
 from cvnotes.calibration.reliability import astray, misfits
 from cvnotes.calibration.thresholds import FEWEST_KEPT, PART_KEPT, ROUNDS
 from cvnotes.calibration.two_cameras import TwoCameras, two_cameras
+from cvnotes.camera import Lens
 from cvnotes.files import Reason
 from cvnotes.photographs.detection import Photographs
 from cvnotes.photographs.mirrored import (
@@ -21,6 +22,8 @@ from cvnotes.photographs.mirrored import (
     with_doubt_of_mirrored,
 )
 from cvnotes.photographs.reasons import Exchanged, Misfit, Mixed
+
+_TELLS_APART = "k1 k2 p1 p2"  # the lens with which two cameras are parted
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,8 @@ def fit(photographs: Photographs, model: Model) -> Calibration:
     asked = "a board of {}×{} inner corners".format(*photographs.board.corners)
     if other := photographs.instead:  # of which a part was found here and there, if anything
         n, there = photographs.counts[other], "{}×{}".format(*other)
-        raise DegenerateError(f"{asked} was asked for, but {n} photographs show one of {there}")
+        show = "photograph shows" if n == 1 else "photographs show"
+        raise DegenerateError(f"{asked} was asked for, but {n} {show} one of {there}")
     if photographs.rejected and not photographs.looked_at:
         raise DegenerateError("none of them could be read")
     if not photographs.used:
@@ -126,10 +130,18 @@ def _accused(
 
     What a lens misses that is too simple, or a flat board, a mirror or a second camera may explain,
     too: nothing is said before each photograph was heard with the best lens and a board that may
-    bend. (Corners that are free would explain the mirror.)
+    bend. (Corners that are free would explain the mirror.) One lens for two cameras is chosen too
+    simple to tell which photographs are whose.
     """
     two = two_cameras(result)
+    if two and type(result.camera.lens) is Lens and not {*result.names} & {"p1", "k3"}:
+        parted = None
+        with suppress(CvnotesError):
+            parted = two_cameras(fit(photographs, replace(model, lens=_TELLS_APART)))
+        two = parted or (replace(two, told=False) if model.lens == "auto" else None)
     exchanged = mirrored(photographs, result, two)
+    if two and not two.told and not exchanged.views:  # what changes may look like its mirror, too
+        return Mirrored(), two
     if (two or exchanged != Mirrored()) and (model.lens != "auto" or result.shape is None):
         with suppress(CvnotesError):  # few views do not determine so much
             bent = fit(photographs, replace(model, lens="auto", board_shape="bent"))
@@ -142,10 +154,17 @@ def _accused(
 
 def _of_two_cameras(two: TwoCameras) -> Mixed:
     """Return what is to be said of photographs that no single camera took."""
+    off = f"({two.rms:.2f} px off with two cameras, {two.of_one:.2f} px with one)"
+    if not two.told:
+        return Mixed(
+            f"the camera was not the same in all photographs {off}, and they do not tell which "
+            "belong together: do they come from several cameras, did zoom, focus or an image "
+            "stabiliser change in between, or was it moved while it took them?"
+        )
     return Mixed(
-        f"{{}} fit one camera, and {{}} another ({two.rms:.2f} px off with two cameras, "
-        f"{two.of_one:.2f} px with one): do they come from two cameras, was the zoom or focus "
-        "changed between them, or are some mirrored? Calibrate each part by itself",
+        f"{{}} fit one camera, and {{}} another {off}: do they come from two cameras, was the zoom "
+        "or focus changed, has an image stabiliser moved, or are some mirrored? Calibrate each "
+        "part by itself",
         *(Views(tuple(np.flatnonzero(own).tolist())) for own in (~two.second, two.second)),
     )
 

@@ -140,13 +140,15 @@ class Photographs:
     def instead(self) -> tuple[int, int] | None:
         """Inner corners of another board, which half as many photographs show as the one asked for.
 
-        A smaller one does not count where that was found: it is the same, cut off.
+        A smaller one does not count where that was found: it is the same, cut off. Nor does what
+        one of many shows.
         """
         counts, asked = self.counts, self._asked
         found = counts.pop(asked)
         others = [c for c in counts if not found or c[0] > asked[0] or c[1] > asked[1]]
         other = max(others, key=lambda each: counts[each], default=asked)
-        return other if counts[other] > OTHER_BOARDS * found else None
+        told = counts[other] > OTHER_BOARDS * found and counts[other] >= min(2, len(self.looked_at))
+        return other if told else None
 
     @property
     def markers(self) -> str:

@@ -98,7 +98,9 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
     rms = result.view_rms
     turned = np.sqrt(costs[1:].min(0) / problem.n_seen_by_view[:n])
     strange = (rms > MISSES_MORE * np.median(rms)) & (turned < EXCHANGED * rms)
-    return Mirrored(np.flatnonzero(strange).tolist(), some)
+    if some and (strange != (way > 0)).any() and (strange != (way == 0)).any():
+        return Mirrored(some=True)  # the camera of all, of both kinds, judges none of them
+    return Mirrored(np.flatnonzero(strange).tolist())
 
 
 def _read_in_all_ways(
@@ -180,7 +182,10 @@ def with_doubt_of_mirrored(result: Calibration, found: Mirrored) -> Calibration:
     if not exchanged:
         return with_doubt(
             result,
-            Mixed(f"in some photographs {Exchanged.words}, but they do not tell in which: {asked}"),
+            Mixed(
+                f"in some photographs {Exchanged.words}, but they do not tell in which: {asked} Or "
+                "has an image stabiliser moved?"
+            ),
         )
     several = len(exchanged) > 1
     why = f", for the camera fits {'them' if several else 'it'} better so"

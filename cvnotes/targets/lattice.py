@@ -14,8 +14,6 @@ from cvnotes.targets.subpixel import EdgeFit, Mask, fit_edges
 _MUCH_SMALLER = 2.5
 # How unevenly corners in line may stand, as `unevenness` measures it: lenses of 150° need 0.4.
 _UNEVEN = 0.5
-# A fit may leave so much of the contrast unexplained; noise of 30 grey levels leaves 0.3.
-_UNEXPLAINED = 0.5
 # A corner may leave so many times as much of it as the others do, if it is that much at all. In
 # photographs it is twice as much at most, where paper ends beside a corner 4 to 16 times.
 _UNLIKE, _NOTICED = 3.0, 0.12
@@ -171,8 +169,6 @@ def check_board(fit: EdgeFit, corners: tuple[int, int], *, partial: bool = False
         )
     if wrong > may:
         raise NotABoard("its squares are not alternately light and dark")
-    if np.median(fit.residual[seen] / np.abs(fit.contrast[seen])) > _UNEXPLAINED:
-        raise NotABoard("its corners drown in noise")
     good = trusted(fit, corners)
     if np.count_nonzero(~good) > may:
         lattice = np.where(good[:, None], fit.m, np.nan).reshape(rows, columns, 2)

@@ -54,6 +54,8 @@ _VERY_BLURRED = 0.2  # of half a window
 # Sum of squares, in grey levels, that single precision leaves in a window.
 _ROUNDING = 3.0
 _window = partial(whole, at_most=250)  # half a side: its pixels grow with the square
+_SIGNIFICANT = 5.0  # deviations of its own that a contrast must be
+_MEDIAN = 0.6745  # of absolute Gaussian noise, over its deviation
 _SINGULAR = 1e-30  # determinant of the parameters' correlations; on a board it is above 1e-6
 
 
@@ -329,9 +331,12 @@ def _facing(p: Array, axes: Array) -> Array:
 def _result(middle: Array, p: Array, system: Array, window: Window, good: Mask) -> EdgeFit:
     free = system.shape[1] - 1
     system = system[..., [*range(free), -1]]
-    residual = np.sqrt(system[:, free, free] / np.maximum(window.weight.sum(-1) - free, 1))
-    blur, half = _blur(p), window.place[0].max()
-    good = good & (np.abs(p[:, 6]) > 2 * residual) & (blur.max(-1) < half)
+    told = np.maximum(window.weight.sum(-1) - free, 1)
+    variance = system[:, free, free] / told
+    beside_noise = np.sqrt(np.maximum(variance - _noise(window) ** 2, 0))
+    residual, blur, half = np.sqrt(variance), _blur(p), window.place[0].max()
+    least = np.maximum(2 * beside_noise, _SIGNIFICANT * residual / np.sqrt(told))
+    good = good & (np.abs(p[:, 6]) > least) & (blur.max(-1) < half)
     good &= _determined(system[:, :free, :free])
     D = crossing_jacobian(p[good])[..., :free]
     covariance = np.full((len(p), 2, 2), np.nan)
@@ -344,6 +349,17 @@ def _result(middle: Array, p: Array, system: Array, window: Window, good: Mask) 
         residual=residual,
         covariance=covariance,
     )
+
+
+def _noise(window: Window) -> float:
+    """Return the deviation of white noise, by second differences both ways: edges hardly have any.
+
+    After J. Immerkær, Computer Vision and Image Understanding 64 (1996) 300-302; the median, as
+    corners have some.
+    """
+    side = round(np.sqrt(window.place.shape[1]))
+    twice = np.diff(np.diff(window.grey.reshape(-1, side, side), 2, axis=1), 2, axis=2)
+    return float(np.median(np.abs(twice))) / (6 * _MEDIAN) if twice.size else 0.0
 
 
 def _determined(normal: Array) -> Mask:
