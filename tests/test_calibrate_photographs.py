@@ -169,7 +169,7 @@ def test_mirrored_photographs_of_a_camera_nearly_its_own_mirror_are_noticed_and_
     assert found.doubts[0].startswith("in some photographs left and right seem exchanged, but")
 
 
-@pytest.mark.parametrize(("n_left", "n_right"), [(3, 10), (5, 8), (7, 6), (10, 3)])
+@pytest.mark.parametrize(("n_left", "n_right"), [(3, 10), (4, 9), (5, 8), (7, 6), (10, 3)])
 def test_the_few_photographs_of_a_second_camera_are_named(n_left, n_right):
     real, blank = course.real_corners(), np.zeros((48, 64), np.uint8)
     m = [*real.left[:n_left], *real.right[len(real.right) - n_right :]]

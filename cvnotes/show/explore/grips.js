@@ -10,6 +10,7 @@ globalThis.CvnotesGrips = class {
     this.tell = pull;
     this.own = new Map();
     this.held = null; // by keys that came before their picture
+    this.left = null; // of keys whose picture has come: what its sliders rounded away
   }
 
   // Put what can be taken hold of where the picture of this size, drawn for these values, has it.
@@ -26,8 +27,13 @@ globalThis.CvnotesGrips = class {
     }
   }
 
-  // The newest picture is there: the next key goes on from it.
+  // The newest picture is there: the next key goes on from it, whether keys come fast or slowly.
   rest() {
+    if (!this.held) return;
+    const { name, grip, x, y } = this.held;
+    const { at, unit, step } = this.own.get(name).grip;
+    const left = [x, y].map((by, k) => (unit[k] ? (grip.at[k] + by * grip.unit[k] - at[k]) / unit[k] : 0));
+    this.left = left.every((by) => Math.abs(by) < step) ? { name, at: `${at}`, by: left } : null;
     this.held = null;
   }
 
@@ -58,7 +64,11 @@ globalThis.CvnotesGrips = class {
       if (!way || event.altKey || event.ctrlKey || event.metaKey) return;
       event.preventDefault();
       // Keys that come before the picture add up from where the first one found it.
-      if (this.held?.name !== name) this.held = { name, grip: own.grip, values: { ...this.values }, x: 0, y: 0 };
+      if (this.held?.name !== name) {
+        const goesOn = this.left?.name === name && this.left.at === `${own.grip.at}`;
+        const [x, y] = goesOn ? this.left.by : [0, 0];
+        this.held = { name, grip: own.grip, values: { ...this.values }, x, y };
+      }
       const step = own.grip.step * (event.shiftKey ? 5 : 1);
       this.held.x += way[0] * step;
       this.held.y += way[1] * step;
