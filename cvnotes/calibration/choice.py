@@ -192,7 +192,7 @@ class Choice:
     def close_by(self) -> tuple[Candidate, str, float] | None:
         """Return the model that fits as well and differs most: the parameter, and by how many px.
 
-        None where no other is close, or differs by more than the deviation of the one chosen.
+        None where no other is close and differs by more than the deviation of the one chosen.
         """
         names = [name for name in self.chosen.names if name in SENSOR]
         std = np.sqrt(np.diag(self.chosen.covariance)[: len(names)])
@@ -201,9 +201,9 @@ class Choice:
             there = other.camera.parameters
             off = np.abs([there[name] - here[name] for name in names])
             most = int((off / std).argmax())
-            if off[most] > std[most]:
-                far.append((other, names[most], float(off[most]), float(off[most] / std[most])))
-        return max(far, key=lambda each: each[3])[:3] if far else None
+            if (times := off[most] / std[most]) > 1:
+                far.append((times, other, names[most], float(off[most])))
+        return max(far, key=lambda each: each[0])[1:] if far else None
 
 
 def choose_model(

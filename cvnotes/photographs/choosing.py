@@ -23,7 +23,7 @@ from cvnotes.photographs.mirrored import (
 )
 from cvnotes.photographs.reasons import Exchanged, Misfit, Mixed
 
-_TELLS_APART = "k1 k2 p1 p2"  # the lens with which two cameras are parted
+_TELLS_APART = "k1 k2 p1 p2"
 
 
 @dataclass(frozen=True)
@@ -130,18 +130,14 @@ def _accused(
 
     What a lens misses that is too simple, or a flat board, a mirror or a second camera may explain,
     too: nothing is said before each photograph was heard with the best lens and a board that may
-    bend. (Corners that are free would explain the mirror.) One lens for two cameras is chosen too
-    simple to tell which photographs are whose.
+    bend. (Corners that are free would explain the mirror.)
     """
     two = two_cameras(result)
-    if two and type(result.camera.lens) is Lens and not {*result.names} & {"p1", "k3"}:
-        parted = None
-        with suppress(CvnotesError):
-            parted = two_cameras(fit(photographs, replace(model, lens=_TELLS_APART)))
-        two = parted or (replace(two, told=False) if model.lens == "auto" else None)
-    exchanged = mirrored(photographs, result, two)
-    if two and not two.told and not exchanged.views:  # what changes may look like its mirror, too
-        return Mirrored(), two
+    exchanged = mirrored(photographs, result, two)  # both with one lens, so that they compare
+    if two and not exchanged.views:
+        two = _told_apart(photographs, result, model, two)
+        if two and not two.told:  # what changes may look like its mirror, too
+            return Mirrored(), two
     if (two or exchanged != Mirrored()) and (model.lens != "auto" or result.shape is None):
         with suppress(CvnotesError):  # few views do not determine so much
             bent = fit(photographs, replace(model, lens="auto", board_shape="bent"))
@@ -150,6 +146,22 @@ def _accused(
             named = [i for i in exchanged.views if i in again.views]
             exchanged = Mirrored(named, exchanged.some and again.some)
     return exchanged, two
+
+
+def _told_apart(
+    photographs: Photographs, result: Calibration, model: Model, two: TwoCameras
+) -> TwoCameras | None:
+    """Part two cameras with a lens that can tell: one for both is chosen too simple for that.
+
+    What such a lens does not confirm is no second camera if a simpler one was prescribed, and else
+    one of which it is not told which photographs are its own.
+    """
+    if type(result.camera.lens) is not Lens or {*result.names} & {"p1", "k3"}:
+        return two
+    with suppress(CvnotesError):
+        if parted := two_cameras(fit(photographs, replace(model, lens=_TELLS_APART))):
+            return parted
+    return replace(two, told=False) if model.lens == "auto" else None
 
 
 def _of_two_cameras(two: TwoCameras) -> Mixed:
