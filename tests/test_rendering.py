@@ -1,5 +1,6 @@
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -268,3 +269,46 @@ def test_a_rendered_fisheye_shows_each_side_of_a_room_where_the_lens_puts_its_ed
     for edge_at in edges:
         assert crossing(row, int(edge_at)) == pytest.approx(edge_at, abs=0.1)
     assert (picture[0, 0] == 0).all()  # 200√2/60 rad from the axis: more than there is
+
+
+def test_a_box_throws_its_shadow_where_lines_along_the_light_meet_the_floor():
+    """Each corner is carried along the light by hand; OpenCV tells the convex hull's inside."""
+    light, camera = np.array([0.6, -1.0, -0.3]), Camera(A, look_at([1500, -2500, -4000], [0, 0, 0]))
+    floor = quads([[-9e3, 500, -9e3], [9e3, 500, -9e3], [9e3, 500, 9e3], [-9e3, 500, 9e3]],
+                  [[0, 1, 2, 3]], (1, 1, 1))  # fmt: skip
+    turn = pose(rotation_from_vector([0, 0.4, 0]), [100, 0, 300])
+    body = box((-400, 400), (-300, 100), (-200, 200), (1, 0, 0)).moved(turn)  # it hovers
+    scene = replace(join(floor, body), around=replace(DARK, light=tuple(light), ambient=0.2))
+    grey = render_scene(scene, camera, samples=4).astype(int)
+    along = body.vertices - light * ((body.vertices[:, 1:2] - 500) / light[1])
+    hull = cv2.convexHull(camera.project(along).astype(np.float32))
+    pixels = np.stack(np.meshgrid(np.arange(640), np.arange(480)), -1).reshape(-1, 2).astype(float)
+    inside = np.array([cv2.pointPolygonTest(hull, m, measureDist=True) for m in pixels])
+    on_floor = (grey[..., 1] > 0).ravel()  # neither the red box nor the black around
+    sunlit, shaded = on_floor & (inside < -1.5), on_floor & (inside > 1.5)
+    assert shaded.sum() > 3000
+    assert sunlit.sum() > 50_000
+    cosine = -light[1] / np.linalg.norm(light)
+    for pixels, c in ((sunlit, cosine), (shaded, -cosine)):
+        seen = np.bincount(grey[..., 1].ravel()[pixels])
+        assert seen.argmax() == np.rint(255 * (0.2 + 0.8 * (1 + c) / 2))
+        assert seen.max() > 0.99 * pixels.sum()  # the rest lies along the edges of the box
+
+
+@pytest.mark.parametrize("light", [(0.5, -0.4, -0.8), (-1, 0.2, 0.3), (0, 0, 1), (0.1, 1, 0.01)])
+@pytest.mark.parametrize("inside", [False, True])
+def test_no_lit_face_stands_in_its_own_shadow_and_a_room_is_lit_through_its_walls(light, inside):
+    G = pose(rotation_from_vector([0.3, 0.5, 0.2]), [0, 0, 0 if inside else 900])
+    scene = box(*[(-700, 700)] * 3 if inside else [(-99, 99)] * 3, (1, 1, 1)).moved(G)
+    scene = replace(scene, around=replace(DARK, light=light, ambient=0.3))
+    picture = render_scene(scene, Camera(A), samples=1)[..., 0]
+    v, u = np.nonzero(picture)
+    xy = Camera(A).ideal(np.stack([u, v], -1).astype(float))
+    M = depth_map(scene, Camera(A))[v, u, None] * np.column_stack([xy, np.ones(len(xy))])
+    where = (M - G[:3, 3]) @ G[:3, :3]  # in the frame of the box: the largest names the face
+    face = np.abs(where).argmax(axis=1)
+    sign = np.sign(where[np.arange(len(where)), face]) * (-1 if inside else 1)
+    cosine = sign * (G[:3, :3].T @ light)[face] / np.linalg.norm(light)
+    assert len(np.unique(cosine)) >= 2
+    off = np.abs(picture[v, u] - 255 * (0.3 + 0.7 * (1 + cosine) / 2)) > 0.51
+    assert off.mean() < 0.02  # along edges

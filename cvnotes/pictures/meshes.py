@@ -24,7 +24,8 @@ class Surroundings:
     haze : float
         Distance over which things keep 1/e of their own colour; the rest is the horizon's.
     light : (x, y, z)
-        Where the light comes from, as a direction in the WRF; y points down.
+        Where the light comes from, as a direction in the WRF; y points down. Boxes cast shadows,
+        and so does a sheet unless its corners run clockwise as the light sees them.
     ambient : float
         Brightness of a face that is turned away from the light, 0 to 1.
     """

@@ -25,7 +25,7 @@ _RAYS = 131_072  # at a time, of pixels that are looked at closely
 
 
 def render_scene(scene: Scene, camera: Camera, *, samples: int = 64) -> npt.NDArray[np.uint8]:
-    """Take a picture of a scene.
+    """Take a picture of a scene, with the shadows that its parts cast on each other.
 
     For noise, blur or JPEG hand `radiance` to `cvnotes.pictures.exposure.expose`.
 
@@ -87,9 +87,9 @@ def radiance(scene: Scene, camera: Camera, *, samples: int = 64) -> Array:
     surfaces = Surfaces.seen_by(camera, scene)
     middle = pixel_centres(camera.size)
     xy = camera.ideal(middle)
-    colour, square = surfaces.colours_along(in_tiles(xy))
-    planes = np.stack([out_of_tiles(x, camera.size) for x in (*(255 * colour), *square)])
-    # 2. many, where a colour or a square changes or an edge passes
+    colour, place = surfaces.colours_along(in_tiles(xy))
+    planes = np.stack([out_of_tiles(x, camera.size) for x in (*(255 * colour), *place)])
+    # 2. many, where a colour or a square changes, a shadow ends or an edge passes
     busy = changing(np.moveaxis(planes, 0, -1))
     busy |= crossed(camera, move(camera.G, scene.vertices)[scene.edges], xy)
     picture: Array = np.stack([*planes[:3]], axis=-1)

@@ -14,9 +14,10 @@ from cvnotes.targets.chessboard import PrintedBoard
 Span = tuple[float, float]  # from, to
 
 GROUND = 1600.0
+DESK_LIGHT = (-0.5, 0.35, -1.0)
 
 _OUTDOORS = Surroundings(
-    (0.90, 0.93, 0.95), (0.36, 0.58, 0.84), haze=200e3, light=(-0.5, -1.0, -0.7), ambient=0.35
+    (0.90, 0.93, 0.95), (0.36, 0.58, 0.84), haze=200e3, light=(-0.9, -0.9, -0.6), ambient=0.45
 )
 _FAR = 1e6
 
@@ -97,10 +98,9 @@ def corridor() -> Scene:
             _beside(side, (1190, 1200), (-500, 1600), (z, z + 950), door)
             for z in range(3500 + 1500 * (side > 0), 29_000, 5000)
         ]
-    parts += [
-        box((-250, 250), (-1100, -1080), (z, z + 1200), lamp) for z in range(2000, 29_000, 3000)
-    ]
-    return join(shell, *parts)
+    # Flat, and looking down: what shines casts no shadow.
+    parts += [_floor((250, -250), -1080, (z, z + 1200), lamp) for z in range(2000, 29_000, 3000)]
+    return replace(join(shell, *parts), around=Surroundings(light=(0.25, -1, -0.35), ambient=0.7))
 
 
 def room() -> Scene:
@@ -133,9 +133,12 @@ def room() -> Scene:
         box((-600, 600), (-700, 200), (9940, 9950), (0.23, 0.42, 0.40)),
         box((-3000, -2980), (-900, 300), (6300, 8900), (1.0, 1.0, 1.0)),
     ]
-    behind = [  # which only a fisheye sees: a door and a window
-        box((-2900, -1900), (-500, GROUND), (-2000, -1950), (0.55, 0.36, 0.27)),
-        box((1700, 2900), (-1300, -300), (-2000, -1950), (0.62, 0.78, 0.90)),
+    behind = [  # which only a fisheye sees: a door and a window, flat, for light falls through
+        quads([[x, y, -1950] for x, y in corners], [[0, 1, 2, 3]], colour)
+        for corners, colour in (
+            (_rectangle((-2900, -1900), (-500, GROUND)), (0.55, 0.36, 0.27)),
+            (_rectangle((1700, 2900), (-1300, -300)), (0.62, 0.78, 0.90)),
+        )
     ]
     return join(shell, *furniture, *hung, *behind)
 
@@ -167,8 +170,11 @@ def _shell(
 
 
 def _floor(x: Span, y: float, z: Span, colours: npt.ArrayLike) -> Scene:
-    corners = [[x[0], y, z[0]], [x[1], y, z[0]], [x[1], y, z[1]], [x[0], y, z[1]]]
-    return quads(corners, [[0, 1, 2, 3]], colours)
+    return quads([[X, y, Z] for X, Z in _rectangle(x, z)], [[0, 1, 2, 3]], colours)
+
+
+def _rectangle(x: Span, y: Span) -> list[Span]:
+    return [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])]
 
 
 def _beside(side: int, x: Span, y: Span, z: Span, colours: npt.ArrayLike) -> Scene:
@@ -186,7 +192,7 @@ def desk(target: Chessboard) -> Scene:
     >>> desk(Chessboard((9, 6), 25.0))
     Scene(52 vertices, 72 triangles)
     """
-    return join(
+    parts = join(
         box((-3000, 3000), (-1500, -1450), (-2500, 700), (0.90, 0.88, 0.83)),  # the wall
         box((-700, 900), (-450, 600), (_THICK, 43), (0.78, 0.57, 0.36)),
         box((-330, -130), (-60, 230), (-38, _THICK), (0.24, 0.40, 0.46)),
@@ -194,6 +200,7 @@ def desk(target: Chessboard) -> Scene:
         box((300, 385), (-150, -65), (-95, _THICK), (0.78, 0.33, 0.28)),
         target_scene(target),
     )
+    return replace(parts, around=Surroundings(light=DESK_LIGHT))
 
 
 _PRINT = ((0.06, 0.06, 0.07), (0.98, 0.98, 0.97))

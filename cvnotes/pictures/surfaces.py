@@ -1,14 +1,20 @@
-"""What a ray sees of a scene: the colour in its light, the checker's square, haze and sky."""
+"""What a ray sees of a scene: the colour in light or shadow, the checker's square, haze and sky.
+
+What the light sees is lit: it is one more camera, so far away that its rays are nearly parallel.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, move
+from cvnotes.camera import Camera, look_at, move
 from cvnotes.pictures.antialiasing import Mask
 from cvnotes.pictures.meshes import Scene, Surroundings
 from cvnotes.pictures.raycast import Indices, depth_along, edge_functions, search
+
+_FAR = 100  # how far away the light is, in sizes of what casts shadows
+_TOUCHING = 1e-8  # of that distance: what is no farther apart throws no shadow
 
 
 class Surfaces(NamedTuple):
@@ -17,45 +23,75 @@ class Surfaces(NamedTuple):
     corners: Array  # (m, 3, 3) in the CRF
     forms: Array  # (9, m): coefficients of u w, v w and w along a ray (x, y, 1)
     checkered: Mask  # (m,)
-    palette: Array  # (3, 2 m): both colours of each triangle
+    palette: Array  # (3, 4 m): both colours of each triangle in the light, then in a shadow
+    bright: Mask  # (m,) the side that the camera sees is turned towards the light
+    light: Array  # (4, 4) CRF → the light's frame
+    shading: Array  # (k, 3, 3) the triangles that cast shadows, in the light's frame
     extent: Array  # (2, m)
     around: Surroundings
     down: Array  # (3,) the world's y axis in the CRF
 
     @classmethod
     def seen_by(cls, camera: Camera, scene: Scene) -> "Surfaces":
-        """Carry a scene into a camera's frame, and shade it."""
+        """Carry a scene into a camera's frame, and shade it.
+
+        Those faces of a body cast its shadow that look away from the light. So no lit face can
+        stand in its own, and a room is lit from without through the walls that one looks through.
+        """
         corners = move(camera.G, scene.vertices)[scene.triangles]
         n, _ = edge_functions(corners)
         # The barycentric weights are e_i / Σ e_i; u and v are mixed by them.
         uv1 = np.concatenate([scene.uv, np.ones_like(scene.uv[..., :1])], axis=-1)
         forms = (uv1.swapaxes(1, 2) @ n).reshape(-1, 9).T.copy()
-        colours = scene.colours * _shade(scene, camera)[:, None, None]
+        light = np.array(scene.around.light) / np.linalg.norm(scene.around.light)
+        towards = np.einsum("ij,ij->i", camera.centre - scene.corners[:, 0], scene.normals)
+        cosine = scene.normals @ light * np.where(towards < 0, -1, 1)
+        shade = [_shade(c, scene.around.ambient) for c in (cosine, -np.abs(cosine))]
+        colours = np.array(shade)[..., None, None] * scene.colours
+        casting = scene.corners[scene.normals @ light > 0]
+        from_light = _seen_from(light, casting)
         return cls(
             corners,
             forms,
             (scene.colours[:, 0] != scene.colours[:, 1]).any(axis=1),
             colours.reshape(-1, 3).T.copy(),
+            cosine > 0,
+            from_light @ np.linalg.inv(camera.G),
+            move(from_light, casting),
             scene.extent.T.copy(),
             scene.around,
             camera.R[:, 1],
         )
 
     def colours_along(self, xy: Array) -> tuple[Array, Array]:
-        """Return the colours (3, groups, k) that rays (groups, k, 2) see, and squares (2, …)."""
+        """Return the colours (3, groups, k) that rays (groups, k, 2) see, and where: (3, …).
+
+        That is the square (i, j) of the checker, and whether it is in a shadow.
+        """
         triangle = search(self.corners, xy)
+        depth = depth_along(self.corners, triangle, xy)
         x, y = np.moveaxis(xy, -1, 0).copy()
         none = triangle < 0
         square = self._squares(triangle, x, y)
+        dark = self._in_shadow(triangle, depth, xy)
         odd = square.sum(axis=0).astype(np.intp) & 1
-        colour = np.take(self.palette, np.where(none, 0, 2 * triangle + odd), axis=1)
+        which = 2 * (triangle + len(self.corners) * dark) + odd
+        colour = np.take(self.palette, np.where(none, 0, which), axis=1)
         if np.isfinite(self.around.haze):
-            depth = depth_along(self.corners, triangle, xy)
             clear = np.exp(-depth * np.sqrt(1 + x * x + y * y) / self.around.haze)
             horizon = np.array(self.around.horizon)[:, None, None]
             colour = horizon + clear * (colour - horizon)
         colour[:, none] = self._sky(x[none], y[none])
-        return colour, square
+        return colour, np.stack([*square, dark])
+
+    def _in_shadow(self, triangle: Indices, depth: Array, xy: Array) -> Mask:
+        """Return where rays (groups, k, 2) end in a shadow: the light sees something else first."""
+        asked = (triangle >= 0) & self.bright[triangle]
+        M = np.where(asked, depth, np.nan)[..., None] * np.dstack([xy, np.ones(xy.shape[:2])])
+        M = M @ self.light[:3, :3].T + self.light[:3, 3]
+        along = M[..., :2] / M[..., 2:]
+        first = depth_along(self.shading, search(self.shading, along), along)
+        return np.asarray(first < (1 - _TOUCHING) * M[..., 2])
 
     def _squares(self, triangle: Indices, x: Array, y: Array) -> Array:
         """Return the square (i, j) of the checker, as (2, …): (0, 0) where there is none.
@@ -83,12 +119,20 @@ class Surfaces(NamedTuple):
         return np.where(np.isnan(x), 0, (1 - height) * horizon + height * zenith)
 
 
-def _shade(scene: Scene, camera: Camera) -> Array:
-    """Return the brightness (m,) of the side of each triangle that the camera sees.
+def _shade(cosine: Array, ambient: float) -> Array:
+    """Return how bright faces are by the cosine of their angle to the light, in 0 to 1.
 
-    Lambert's cosine law, softened: it falls to the ambient light only on the far side.
+    Lambert's law, softened: it falls to the ambient light only on the far side. A face in a
+    shadow is as bright as one that is turned as far away from the light.
     """
-    light, ambient = np.array(scene.around.light), scene.around.ambient
-    towards = np.einsum("ij,ij->i", camera.centre - scene.corners[:, 0], scene.normals)
-    cosine = scene.normals @ (light / np.linalg.norm(light)) * np.where(towards < 0, -1, 1)
-    return np.asarray(ambient + (1 - ambient) * (1 + cosine) / 2)
+    return ambient + (1 - ambient) * (1 + cosine) / 2
+
+
+def _seen_from(light: Array, casting: Array) -> Array:
+    """Return the motion (4, 4) from the WRF into the frame of a light in that direction."""
+    if not len(casting):
+        return np.eye(4)
+    low, high = casting.min(axis=(0, 1)), casting.max(axis=(0, 1))
+    middle = (low + high) / 2
+    up = np.eye(3)[np.abs(light).argmin()]  # any that is not along it
+    return look_at(middle + _FAR * np.linalg.norm(high - low) * light, middle, up)

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from cvnotes.base import Array, DegenerateError, ShapeError, numbers
 from cvnotes.camera import Camera
 from cvnotes.camera.model import is_camera
+from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.show.axes import beside, panels, pixel_axes
 from cvnotes.show.guards import count, length, one_point
 from cvnotes.show.style import ESTIMATED, FONT, MUTED
@@ -25,9 +26,9 @@ _FACES = {
     "y = 1": (3, 2, 6, 7),
 }
 _COLOUR = np.array([0.96, 0.55, 0.16])  # of the side that is lit best
-_SHADES = {"top": 1.0, "y = 1": 0.82, "x = 0": 0.72, "x = 1": 0.6, "y = 0": 0.48}
+_SHADES = {"top": 1.0, "x = 0": 0.82, "y = 1": 0.72, "x = 1": 0.6, "y = 0": 0.48}
 _PER_EDGE = 16  # short pieces that a lens may bend
-_SHADOW = np.array([0.5, -0.35])  # where the light throws the shadow of height 1
+_SHADOW = np.array(DESK_LIGHT)[:2] / DESK_LIGHT[2]  # where it throws the shadow of height 1
 
 
 def draw_arrow(J: npt.ArrayLike, shared: int) -> Any:
