@@ -9,7 +9,7 @@ import pytest
 from benchmarks.coverage import BOARD, SENSOR, TRUE, Case, once, seen
 from cvnotes.base import CvnotesError, student
 from cvnotes.calibration import calibrate, choose_model, prediction_std
-from cvnotes.calibration.choice import Candidate
+from cvnotes.calibration.choice import Candidate, Choice
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.jackknife import Influence
 from cvnotes.calibration.pose import pose_from_view
@@ -117,6 +117,20 @@ class TestTheBarsContainTheChoice:
         close = found.choice.close_by()
         notes = " ".join(found.notes_on_deviations)
         assert (close is None) == ("fits as well; its" not in notes)
+
+    @pytest.mark.parametrize(("px", "named"), [(0.9, False), (1.1, True), (2.0, True)])
+    def test_it_is_named_if_it_differs_by_more_than_one_deviation(self, px, named):
+        """Two candidates made by hand: deviations of 2 px, and v0 apart by so many of them."""
+        chosen = replace(
+            candidate([1.0] * 5), names=SENSOR, covariance=np.diag([4.0] * len(SENSOR))
+        )
+        A = chosen.camera.A + np.array([[0, 0, 0.5], [0, 0, 2 * px], [0, 0, 0]])
+        other = replace(chosen, lens="k1 k2 p1 p2", camera=replace(chosen.camera, A=A))
+        close = Choice(chosen, (chosen, other)).close_by()
+        assert (close is not None) == named
+        if close is not None:
+            assert close[0] is other
+            assert close[1:] == ("v0", pytest.approx(2 * px))
 
 
 @pytest.mark.sampling

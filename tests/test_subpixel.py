@@ -260,6 +260,13 @@ class TestRefineEdges:
         pixels = eight_bits(image, 2.0, np.random.default_rng(5))
         assert rms(refine_edges(pixels, m + 0.2, grid=(9, 6)) - m) < 0.04
 
+    @pytest.mark.parametrize("seed", range(4))
+    def test_in_noise_alone_hardly_any_crossing_is_fitted(self, seed):
+        image = eight_bits(np.full((200, 200), 128.0), 20.0, np.random.default_rng(seed))
+        v, u = np.mgrid[28:173:18, 28:173:18]
+        fitted = refine_edges(image, np.stack([u, v], -1).reshape(-1, 2).astype(float))
+        assert np.isfinite(fitted).all(axis=1).sum() <= 3  # of 81
+
     @pytest.mark.parametrize(
         "response",
         [lambda x: 255 * (x / 255) ** 0.45, lambda x: 255 * (x / 255) ** 2.2, lambda x: 1.7 * x],
