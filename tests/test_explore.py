@@ -9,6 +9,7 @@ import re
 import sys
 import time
 from contextlib import nullcontext
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ from cvnotes.camera import (
     rotation_from_vector,
 )
 from cvnotes.homography import dlt
-from cvnotes.pictures import course
+from cvnotes.pictures import course, radiance, rails
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.columns import Believed
@@ -51,7 +52,7 @@ from cvnotes.show.explore.votes import window_at
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
 MODELS = {name: explore.model(name) for name in explore.NAMES}
-STORIES = ("straighten", "triangle", "votes", "fold", "finding", "columns")  # of our photographs
+STORIES = ("straighten", "shadows", "triangle", "votes", "fold", "finding", "columns")
 each_model = pytest.mark.parametrize("name", explore.NAMES)
 
 
@@ -670,6 +671,42 @@ def test_a_bent_row_is_straight_with_the_k1_that_bent_it_and_with_no_other():
     assert "bends down" in model.drawing(k1=-0.26).sentence
     middle = grip_of(model.drawing(), "row")
     assert model.dragged("row", (middle.at[0], 0))["k1"] == -0.25
+
+
+def test_the_sun_is_seen_where_trigonometry_puts_it_and_its_rays_end_opposite_if_it_is_behind():
+    model = MODELS["shadows"]
+    for azimuth, behind in ((30, 0), (-150, 1)):  # opposite points of the sky
+        drawing = model.drawing(azimuth=azimuth, elevation=20)
+        up = np.tan(np.radians(20)) / np.cos(np.radians(30))
+        at = 319.5 + 400 * np.tan(np.radians(30)), 239.5 + 400 * up * (1 if behind else -1)
+        np.testing.assert_allclose(grip_of(drawing, "sun").at, at, atol=1e-3)
+        assert ("behind the camera" in drawing.sentence) == bool(behind)
+        assert model.dragged("sun", at)["azimuth"] == azimuth
+        assert model.dragged("sun", at)["elevation"] == 20
+    abeam = model.drawing(azimuth=90, elevation=20)
+    assert "stay parallel" in abeam.sentence
+    assert not abeam.grips
+
+
+def test_each_shadow_lies_where_the_renderer_throws_it():
+    """The same railway under the same sun, ray by ray, with its poles and without them."""
+    model, poles = MODELS["shadows"], 20 * 12  # the last triangles of the scene
+    azimuth, elevation = np.radians([-28.5, 14.5])
+    whole = rails().lit_from((np.sin(azimuth), -np.tan(elevation), np.cos(azimuth)))
+    parts = ("triangles", "colours", "uv", "extent")
+    bare = replace(whole, **{name: getattr(whole, name)[:-poles] for name in parts})
+    camera = Camera(intrinsics(275, 275, 219.5, 164.5), size=(440, 330))
+    with_poles, without = (radiance(scene, camera, samples=16) for scene in (whole, bare))
+    panel = slice(TITLE, TITLE + 330), slice(MARGIN, MARGIN + 440)
+    drawn, elsewhere = (
+        model.picture(azimuth=degrees, elevation=14.5)[panel].astype(float)
+        for degrees in (-28.5, 180)
+    )
+    near = slice(235, 325)  # rows of the ground before the first pole
+    thrown = (without - with_poles)[near, 8:432].sum(-1) > 20
+    strip = (elsewhere - drawn)[near, 8:432].sum(-1) > 100
+    assert strip.sum() > 800
+    assert (thrown & strip).sum() > 0.7 * (thrown | strip).sum()  # the rest: on rails, sleepers
 
 
 def test_what_is_taken_off_a_photograph_puts_its_squares_under_the_row_of_corners():

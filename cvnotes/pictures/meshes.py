@@ -130,6 +130,10 @@ class Scene:
         """Return the same scene elsewhere: every vertex moved by a rigid motion (4, 4)."""
         return replace(self, vertices=move(world_from_scene, self.vertices))
 
+    def lit_from(self, direction: tuple[float, float, float]) -> "Scene":
+        """Return the same scene in a light from another direction (3,) of the WRF."""
+        return replace(self, around=replace(self.around, light=direction))
+
     def __repr__(self) -> str:
         return f"Scene({len(self.vertices)} vertices, {len(self.triangles)} triangles)"
 

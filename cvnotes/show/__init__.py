@@ -12,6 +12,7 @@ from cvnotes.show.explore import (
     explore_noise,
     explore_projection,
     explore_rectification,
+    explore_shadows,
     explore_straighten,
     explore_tilt,
     explore_triangle,
@@ -151,6 +152,7 @@ __all__ = [
     "ESTIMATED",
     # explorations
     "explore_straighten",
+    "explore_shadows",
     "explore_projection",
     "explore_triangle",
     "explore_camera",

@@ -20,6 +20,7 @@ from cvnotes.show.explore.model import Model
 from cvnotes.show.explore.noise import noise_model
 from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
+from cvnotes.show.explore.shadows import shadows_model
 from cvnotes.show.explore.straighten import straighten_model
 from cvnotes.show.explore.tilt import tilt_model
 from cvnotes.show.explore.triangle import triangle_model
@@ -43,6 +44,7 @@ _MODELS: dict[str, Callable[[Camera, Chessboard], Model]] = {
 # What the course itself has photographed: no other camera or board can be given.
 _STORIES: dict[str, Callable[[], Model]] = {
     "straighten": straighten_model,
+    "shadows": shadows_model,
     "triangle": triangle_model,
     "votes": votes_model,
     "fold": fold_model,
@@ -60,8 +62,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     name : str
         One of `NAMES`.
     camera, board : optional
-        By default the course's. "straighten", "triangle", "votes", "fold", "finding" and "columns"
-        show photographs of the course, and take none.
+        By default the course's. "straighten", "shadows", "triangle", "votes", "fold", "finding"
+        and "columns" show photographs of the course, and take none.
 
     Raises
     ------
@@ -134,6 +136,11 @@ def explore_tilt(*, camera: Camera | None = None, board: Chessboard | None = Non
 def explore_straighten() -> "Explorer":
     """Move the k1 that is taken off a photograph, until a row of its corners is straight."""
     return _explorer("straighten", None)
+
+
+def explore_shadows() -> "Explorer":
+    """Move the sun, and watch where the lines from shadows through what throws them meet."""
+    return _explorer("shadows", None)
 
 
 def explore_triangle() -> "Explorer":

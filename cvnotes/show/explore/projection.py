@@ -70,7 +70,7 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
         panel.line(ground[[*range(len(ground)), 0]], MUTED, 0.8, dash=5)
     panel.segments(camera.project(_sleepers(middle, along, across)), _WOOD, 1)
     for side in (-0.5, 0.5):
-        rail = _in_front(middle + side * _GAUGE * across - 1e3 * along, 1e7 * along)
+        rail = in_front(middle + side * _GAUGE * across - 1e3 * along, 1e7 * along)
         panel.line(camera.project(rail), WORLD, 2.5)
     end = camera.vanishing_point(along)
     panel.mark(end, "ideal", 9)
@@ -128,7 +128,7 @@ def _sentence(camera: Camera, along: Array) -> str:
     return f"{said} end at ({u:.1f}, {v:.1f}) px{place}, wherever they start."
 
 
-def _in_front(start: Array, along: Array) -> Array:
+def in_front(start: Array, along: Array) -> Array:
     """Cut the segment start … start + along to what lies in front of the camera: (2, 3)."""
     z, dz = float(start[2]) - _NEAREST, float(along[2])
     if z < 0 and z + dz < 0:
