@@ -60,16 +60,16 @@ each_model = pytest.mark.parametrize("name", explore.NAMES)
 def packed_once():
     """Let each picture be packed as small as it gets only once: many tests ask for the same."""
     module = sys.modules[Model.__module__]  # `explore.model` is a function
-    pack, known = module._small_png, {}
+    pack, known = module.packed, {}
 
-    def packed(picture):
+    def packed(picture, level):
         key = (picture.shape, picture.tobytes())
         if key not in known:
-            known[key] = pack(picture)
+            known[key] = pack(picture, level)
         return known[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(module, "_small_png", packed)
+        patch.setattr(module, "packed", packed)
         yield
 
 

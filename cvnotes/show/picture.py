@@ -102,17 +102,22 @@ def figure_of(drawn: Any) -> "Figure":
 
 
 def encode(figure: "Figure") -> tuple[bytes, str]:
-    """Encode a figure at 200 dpi, small; gives the bytes and their type.
+    """Encode a figure at 200 dpi, small; gives the bytes and their type."""
+    return packed(pixels_of(figure))
+
+
+def packed(pixels: npt.NDArray[np.uint8], level: int = _PACKING) -> tuple[bytes, str]:
+    """Pack pixels small; gives the bytes and their type.
 
     Line drawings become PNG with a palette of 256 colours, which suffices for their blended
-    edges. A figure with a photograph in it becomes JPEG.
+    edges. What has a photograph in it becomes JPEG.
     """
     from PIL import Image
 
-    picture, encoded = Image.fromarray(pixels_of(figure)).convert("RGB"), io.BytesIO()
+    picture, encoded = Image.fromarray(pixels).convert("RGB"), io.BytesIO()
     few = with_palette(picture)
     if few and not _never_small(few.tobytes()):
-        few.save(encoded, "PNG", compress_level=_PACKING)
+        few.save(encoded, "PNG", compress_level=level)
         if encoded.tell() < _LARGE:
             return encoded.getvalue(), "image/png"
         encoded = io.BytesIO()  # a grey photograph: few colours, but noise that no PNG packs

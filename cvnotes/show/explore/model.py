@@ -1,6 +1,5 @@
 """What an exploration is: settings, and a pure function from their values to a picture."""
 
-import io
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -10,7 +9,7 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.show.explore.paper import Drawn, Grip, Paper
-from cvnotes.show.picture import Picture
+from cvnotes.show.picture import Picture, packed
 from cvnotes.show.style import ESTIMATED
 
 Values = Mapping[str, float]
@@ -186,14 +185,5 @@ class Model:
     def _still(self, paper: Paper, values: Values) -> Picture:
         drawing = self.drawn_on(paper, self.values(**values))
         alt = f"{self.about} {drawing.sentence}"
-        return Picture(_small_png(drawing.picture), alt, drawing.picture.shape[1] // 2)
-
-
-def _small_png(picture: Drawn) -> bytes:
-    """Pack a picture in 256 colours, as small as it gets."""
-    from PIL import Image
-
-    encoded = io.BytesIO()
-    palette = Image.fromarray(picture).quantize(256, dither=Image.Dither.NONE)
-    palette.save(encoded, "PNG", optimize=True)
-    return encoded.getvalue()
+        data, mime = packed(drawing.picture, level=9)
+        return Picture(data, alt, drawing.picture.shape[1] // 2, mime)
