@@ -18,7 +18,7 @@ from PIL import Image
 FOLDER = "_figures"
 _WIDE = 1.8  # widths over heights from which a figure may be cut
 _THREE = 2.6  # from which it may have three panels
-_GAP = 12  # px without ink that part two panels
+_GAP = 8  # px without ink that part two panels; a photograph blurs four of twelve
 _INK = 250  # grey levels below which something is drawn
 _STORED = re.compile(
     r'(<img alt="[^"]*" width="(\d+)" style=")([^"]*" )src="data:image/(png|jpeg);base64,([^"]+)"'
@@ -97,5 +97,5 @@ def _gap(empty: npt.NDArray[np.bool_], begin: float, end: float) -> int | None:
 
 def _above_titles(empty: npt.NDArray[np.bool_]) -> int | None:
     """Return the row above the titles of the lower panels, which stand before the last gap."""
-    gaps = [run for run in _runs(empty, 0.33, 0.67) if run[1] - run[0] >= _GAP / 2]
+    gaps = [run for run in _runs(empty, 0.4, 0.6) if run[1] - run[0] >= _GAP / 2]
     return round(sum(gaps[-2]) / 2) if len(gaps) > 1 else None
