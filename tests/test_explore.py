@@ -14,6 +14,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.signal import fftconvolve
+from scipy.special import j1
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError
 from cvnotes.base.png import pack_png
@@ -45,6 +47,7 @@ from cvnotes.show.explore.lettering import LETTERS
 from cvnotes.show.explore.model import Drawing, Model, Setting
 from cvnotes.show.explore.page import asked
 from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explore.pinhole import behind_a_hole
 from cvnotes.show.explore.rectification import lines_from
 from cvnotes.show.explore.triangle import camera_of
 from cvnotes.show.explore.votes import window_at
@@ -52,7 +55,7 @@ from cvnotes.show.explore.votes import window_at
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
 MODELS = {name: explore.model(name) for name in explore.NAMES}
-STORIES = ("straighten", "shadows", "triangle", "votes", "fold", "finding", "columns")
+STORIES = ("straighten", "shadows", "triangle", "pinhole", "votes", "fold", "finding", "columns")
 each_model = pytest.mark.parametrize("name", explore.NAMES)
 
 
@@ -709,6 +712,32 @@ def test_each_shadow_lies_where_the_renderer_throws_it():
     assert (thrown & strip).sum() > 0.7 * (thrown | strip).sum()  # the rest: on rails, sleepers
 
 
+def test_the_best_hole_is_where_shadow_and_diffraction_are_equal():
+    model = MODELS["pinhole"]
+    widths = [grip_of(model.drawing(hole=d), "hole").at[1] for d in np.arange(0.06, 0.09, 0.001)]
+    best = np.sqrt(2.44 * 0.00055 * 4)  # mm: the least of d + a / d
+    assert abs(0.06 + 0.001 * np.argmin(widths) - best) <= 0.001
+    assert "its shadow is 15 px wide, and diffraction adds 15 px" in (
+        model.drawing(hole=0.073).sentence
+    )
+    assert model.dragged("hole", (0.1, 50), lens=1) == {"hole": 0.1, "lens": 0}
+
+
+@pytest.mark.parametrize("d", [0.02, 0.073, 0.4])
+def test_behind_a_hole_a_point_is_its_shadow_spread_by_airys_disc(d):
+    """The same in space, as a convolution, where the model works with waves."""
+    r = np.hypot(*np.mgrid[-160:161, -160:161]) * 0.005 * 640 / 440 + 1e-9  # mm on the sensor
+    q = np.pi * d * r / (0.00055 * 4)
+    blot = fftconvolve(r < d / 2, (2 * j1(q) / q) ** 2, "same")
+    scene = np.zeros((330, 440))
+    scene[120:210, 150:290] = 255
+    framed = np.pad(scene, 96)[..., None].repeat(3, axis=-1)
+    seen = behind_a_hole(d, np.fft.rfft2(framed, axes=(0, 1)))
+    expected = fftconvolve(scene, blot / blot.sum(), "same")
+    assert np.abs(seen[..., 0] - expected).max() < 6
+    assert np.sqrt(np.mean((seen[..., 0] - expected) ** 2)) < 1.5  # of rings that are cut off
+
+
 def test_what_is_taken_off_a_photograph_puts_its_squares_under_the_row_of_corners():
     model = MODELS["straighten"]
     for k1 in (-0.25, 0):
@@ -887,7 +916,12 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "straighten": {"k1": -0.1},
     "columns": {"amount": 0.7, "free": 1},
 }
-ON_A_WAY = {("finding", "step"), ("tilt", "tilt"), ("fold", "fold")}  # along a curve, by its x
+ON_A_WAY = {  # along a curve, by its x
+    ("finding", "step"),
+    ("tilt", "tilt"),
+    ("fold", "fold"),
+    ("pinhole", "hole"),
+}
 
 
 def grip_of(drawing, name):

@@ -18,6 +18,7 @@ from cvnotes.show.explore.homography import homography_model
 from cvnotes.show.explore.lens import lens_model
 from cvnotes.show.explore.model import Model
 from cvnotes.show.explore.noise import noise_model
+from cvnotes.show.explore.pinhole import pinhole_model
 from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
 from cvnotes.show.explore.shadows import shadows_model
@@ -46,6 +47,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "straighten": straighten_model,
     "shadows": shadows_model,
     "triangle": triangle_model,
+    "pinhole": pinhole_model,
     "votes": votes_model,
     "fold": fold_model,
     "finding": finding_model,
@@ -62,8 +64,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     name : str
         One of `NAMES`.
     camera, board : optional
-        By default the course's. "straighten", "shadows", "triangle", "votes", "fold", "finding"
-        and "columns" show photographs of the course, and take none.
+        By default the course's. "straighten", "shadows", "triangle", "pinhole", "votes", "fold",
+        "finding" and "columns" show photographs of the course, and take none.
 
     Raises
     ------
@@ -146,6 +148,11 @@ def explore_shadows() -> "Explorer":
 def explore_triangle() -> "Explorer":
     """Pull the vanishing points of a box, and watch principal point and focal length follow."""
     return _explorer("triangle", None)
+
+
+def explore_pinhole() -> "Explorer":
+    """Make a pinhole wider and smaller, and watch the picture behind it."""
+    return _explorer("pinhole", None)
 
 
 def explore_votes() -> "Explorer":
