@@ -199,8 +199,8 @@ class Calibration:
             other, name, off = close
             board = f" on a {other.board} board" * (other.board != self.choice.board)
             notes.append(
-                f"±: contain that {other.lens}{board} fits as well; its {name} differs by "
-                f"{float(f'{off:.2g}'):g} px"
+                f"±: wide enough for {other.lens}{board}, which fits as well; its {name} "
+                f"differs by {float(f'{off:.2g}'):g} px"
             )
         if (times := self.times_noise) > TIMES_NOISE:
             note = (

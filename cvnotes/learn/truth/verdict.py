@@ -102,7 +102,7 @@ def _of_fit(found: Calibration) -> Iterator[tuple[bool, str]]:
     sure = found.reliable
     yield sure, "the pictures determine the camera" if sure else found.warnings[0]
     part = found.rms / max(found.size)
-    words = f"RMS {found.rms:.3f} px, {100 * part:.2g} % of the picture's longer side"
+    words = f"RMS {found.rms:.3f} px, {1e6 * part:.0f} millionths of the picture's longer side"
     if part < _LARGE:
         words += ": normal or better"
     yield _line(part < _LARGE, words, ": look at the residuals, something moved")

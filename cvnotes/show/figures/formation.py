@@ -37,7 +37,7 @@ def box_lines(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> Array:
 
 _STEPS = """1. G: M = R W + T
 2. ÷ z: x / z and y / z
-3. lens: times L(r), and a little aside
+3. lens: times L(r), plus p1 and p2
 4. A: to pixels"""
 
 
