@@ -168,7 +168,9 @@ def _bars(paper: Paper, heights: list[float], free: int) -> Panel:
 def _chart(paper: Paper, left: Believed, right: Believed, amount: float) -> Panel:
     """Draw the shift of each column: the left camera's, and so much of the right camera's."""
     n = len(left.columns)
-    panel = paper.panel(_CHART, (-1.4, n - 0.4), (_SHIFT, -_SHIFT - 0.04), "shift of columns (mm)")
+    panel = paper.panel(
+        _CHART, (-1.4, n - 0.4), (_SHIFT, -_SHIFT - 0.04), "shift of the nine columns (mm)"
+    )
     panel.ticks(y=(-0.1, 0.1), size=12)
     panel.line([[-1.4, 0.0], [float(n), 0.0]], MUTED, 0.8)
     at = np.arange(n)

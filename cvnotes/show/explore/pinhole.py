@@ -92,7 +92,8 @@ def _spots(paper: Paper, d: float) -> Panel:
         panel.text(at, name, colour, size=12)
     here = [d, float(sum(spot(d)))]
     panel.mark(here, "estimated", 9)
-    panel.text([d + 0.012, here[1] + 9], f"{here[1]:.0f} px", ESTIMATED, size=13)
+    aside, anchor = (-0.008, "rm") if d > 0.1 else (0.012, "lm")
+    panel.text([d + aside, here[1] + 9], f"{here[1]:.0f} px", ESTIMATED, anchor=anchor, size=13)
     panel.grip("hole", "the diameter of the hole", here, 4)
     return panel
 
