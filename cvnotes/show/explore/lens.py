@@ -13,7 +13,7 @@ from cvnotes.show.explore.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
-_RADIUS = 1.0  # of the curve r L(r)
+_RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
 _DETAIL = 400  # px of the photograph of the room for a length of 1 on the plane z = 1
 _COARSE = 4  # px between which the way back through the lens, which takes long, is linear
@@ -115,6 +115,9 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
         phi = np.linspace(0, 2 * np.pi, 121)
         circle = lens.max_radius * np.stack([np.cos(phi), np.sin(phi)], -1)
         panel.line(polynomial(lens, circle), ESTIMATED, 2.2)
+        seen = lens.max_radius * float(lens.L(lens.max_radius))
+        words = f"orange: the fold, r = {lens.max_radius:.2f}, seen at {seen:.2f}"
+        panel.text([panel.x[0] + 0.03, panel.y[0] + 0.05], words, ESTIMATED)
     left, bottom = panel.x[0] + 0.03, panel.y[1] - 0.05
     panel.text([left, bottom], "grey: ideal", MUTED)
     panel.text([left + 0.34, bottom], "blue: through the lens", LENS)
@@ -124,8 +127,8 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
 def _draw_curve(panel: Panel, lens: Lens) -> None:
     r = np.linspace(0, _RADIUS, 201)
     observed = np.stack([r, r * radial_factor(lens.k, r * r)], -1)
-    panel.ticks(np.arange(0.2, 1, 0.2).round(1), np.arange(0.2, 1.1, 0.2).round(1))
-    panel.line([[0, 0], [1, 1]], IDEAL, 1, dash=4)
+    panel.ticks(np.arange(0.2, 1.3, 0.2).round(1), np.arange(0.2, 1.1, 0.2).round(1))
+    panel.line([[0.0, 0.0], [1.2, 1.2]], IDEAL, 1, dash=4)
     panel.text([0.87, 0.93], "ideal", IDEAL, anchor="rm")
     good = (r <= lens.max_radius)[:, None]
     panel.line(np.where(good, np.nan, observed), ESTIMATED, 1.8, dash=5)

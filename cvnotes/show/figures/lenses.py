@@ -104,11 +104,11 @@ def draw_newton(lens: Lens, r_lens: float, *, ax: "Axes | None" = None) -> "Axes
     if reach * float(lens.L(reach)) < r_lens:
         raise CvnotesError(f"r' = {r_lens:g} is beyond the fold: no r is shown there")
     ax = drawn_on(ax)
-    low = max(0.0, r - 0.4 * (reach - r))
+    low = max(0.0, r - 0.1 * (reach - r))
     fine = np.linspace(low, reach, 300)
     ax.plot(fine, fine * lens.L(fine), color=LENS, lw=2, label="r L(r)")
     ax.axhline(r_lens, color=IDEAL, lw=1)
-    beside(ax, f"r' = {r_lens:g}", (0, r_lens), (6, 6), IDEAL)
+    beside(ax, f"r' = {r_lens:g}", (reach, r_lens), (-6, -16), IDEAL, ha="right")
     tiny = 1e-6
     for i in "₀₁₂":
         value = r * float(lens.L(r))
