@@ -130,10 +130,11 @@ def draw_corners(
         arrow(ax, m[0], end, WORLD, 1.6)
         _write(ax, name, m[0] + 1.25 * (end - m[0]), WORLD)
     ax.plot(*m[0], "o", color=WORLD, markersize=9, fillstyle="none", markeredgewidth=1.6)
-    for i in (0, columns - 1, columns * (rows - 1), columns * rows - 1):
-        if np.isfinite(m[i]).all():
-            outwards = m[i] - np.nanmean(m, axis=0)
-            _write(ax, str(i), m[i] + 0.12 * outwards, ESTIMATED)
+    for j in (0, rows - 1):
+        for i, inner in ((0, 1), (columns - 1, columns - 2)):
+            at, beside = grid[j, [i, inner]]
+            if np.isfinite([at, beside]).all():  # on the margin: the square tells where 0 is
+                _write(ax, str(columns * j + i), at + 1.5 * (at - beside), ESTIMATED)
     return ax
 
 
