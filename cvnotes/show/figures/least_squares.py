@@ -43,6 +43,7 @@ def draw_stretched_circle(D: npt.ArrayLike) -> Any:
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     left, right = axes = panels(2, width=900, height=400)
     many = circle[:-1:12]
+    reach = 1.25 * max(1.0, s[0])  # the same on both sides, so that lengths can be compared
     for ax, around, dots, ends in (
         (left, circle, many, Vt),
         (right, circle @ D.T, many @ D.T, Vt @ D.T),
@@ -53,10 +54,11 @@ def draw_stretched_circle(D: npt.ArrayLike) -> Any:
             arrow(ax, np.zeros(2), end, colour, 2)
         ax.plot(0, 0, "o", color=IDEAL, ms=4)
         ax.set_aspect("equal")
-        reach = 1.25 * float(np.abs(around).max()) or 1.0
         ax.set(xlim=(-reach, reach), ylim=(-reach, reach))
     for name, end, colour in zip(("v₁", "v₂"), Vt, (LENS, ESTIMATED), strict=True):
-        left.annotate(name, 1.12 * end, color=colour, fontsize=FONT + 2, ha="center", va="center")
+        for ax, words, at in ((left, name, end), (right, f"D {name}", D @ end)):
+            at = at + 0.12 * reach * at / max(float(np.linalg.norm(at)), 1e-12)
+            ax.annotate(words, at, color=colour, fontsize=FONT + 2, ha="center", va="center")
     left.set(title="all h of length 1", xlabel="first entry of h", ylabel="second entry of h")
     right.set(title=f"D h: σ₁ = {s[0]:.2f}, σ₂ = {s[1]:.2f}")
     right.set(xlabel="first entry of D h", ylabel="second entry of D h")
