@@ -237,7 +237,7 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     still = page.locator(".jp-OutputArea-output").filter(
         has_text="Run this cell to move its sliders"
     )
-    still.first.locator("img").wait_for(timeout=60_000)
+    still.last.locator("img").wait_for(timeout=60_000)  # of the second exploration of the chapter
     assert page.locator("text=Error displaying widget").count() == 0
 
 
