@@ -57,7 +57,7 @@ def draw_stretched_circle(D: npt.ArrayLike) -> Any:
         ax.set(xlim=(-reach, reach), ylim=(-reach, reach))
     for name, end, colour in zip(("v₁", "v₂"), Vt, (LENS, ESTIMATED), strict=True):
         for ax, words, at in ((left, name, end), (right, f"D {name}", D @ end)):
-            at = at + 0.12 * reach * at / max(float(np.linalg.norm(at)), 1e-12)
+            at = at + 0.12 * reach * (at / max(float(np.hypot(*at)), 1e-12))
             ax.annotate(words, at, color=colour, fontsize=FONT + 2, ha="center", va="center")
     left.set(title="all h of length 1", xlabel="first entry of h", ylabel="second entry of h")
     right.set(title=f"D h: σ₁ = {s[0]:.2f}, σ₂ = {s[1]:.2f}")
