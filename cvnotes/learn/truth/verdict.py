@@ -93,7 +93,8 @@ def _of_pictures(found: Calibration) -> Iterator[tuple[bool, str]]:
     yield _line(angle >= _FLAT, f"boards differ by up to {angle:.0f}° in tilt", advice)
     seen = covered_cells(list(found.image_points), found.size)
     if missed := 4 - int(seen[[0, 0, -1, -1], [0, -1, 0, -1]].sum()):
-        yield False, f"no board in {missed} of the picture's four corners: hold a small one there"
+        of = "any" if missed == 4 else missed
+        yield False, f"no board in {of} of the picture's four corners: hold a small one there"
     else:
         yield True, "boards reach into all four corners of the picture"
 

@@ -78,7 +78,7 @@ def draw_clouds(errors: Mapping[str, npt.ArrayLike], *, reach: float | None = No
     for ax, (name, cloud), i in zip(axes, clouds.items(), range(len(clouds)), strict=True):
         ax.axhline(0, color=MUTED, lw=0.6)
         ax.axvline(0, color=MUTED, lw=0.6)
-        ax.plot(*cloud.T, ".", color=_CLOUDS[i % 3], ms=3, alpha=0.5)
+        ax.plot(*cloud.T, ".", color=_CLOUDS[i % 3], ms=5, alpha=0.6)
         ax.plot(0, 0, "+", color=IDEAL, ms=12, mew=2)
         rms = np.sqrt((cloud**2).mean())
         ax.set(title=f"{name}: {rms:.3f} px", xlabel="error along u (px)", aspect="equal")

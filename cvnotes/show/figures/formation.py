@@ -185,7 +185,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
         beside(ax, f"{name}: {angle:.1f}°", (alpha, right), (0, -16), colour, ha="center")
     ax.axhline(0, color=MUTED, ls="-.", lw=0.8)
     ax.plot(0, 0, ">", color=CAMERA, ms=9)
-    ax.set(xlabel="along the axis (px)", ylabel="to the right (px)", aspect="equal")
+    ax.set(xlabel="along the axis (px)", ylabel="sideways (px)", aspect="equal")
     ax.margins(x=0.12, y=0.12)
     ax.invert_yaxis()
     return ax

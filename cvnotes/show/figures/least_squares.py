@@ -111,6 +111,8 @@ def draw_two_errors(
     top = 1.15 * float(max(np.abs(x).max(), np.abs(seen * w).max(), 0.1))
     ax.set(xlim=(-0.06 * w.max(), 1.12 * w.max()), ylim=(top, -top))
     beside(ax, "w = 1", (1, -top), (4, -12), CAMERA)
+    ax.plot([], [], color=MUTED, lw=1, label="where H puts the point")
+    ax.plot([], [], color=MUTED, lw=1, ls="--", label="where it was seen")
     ax.plot([], [], color=ESTIMATED, lw=4, label="geometric error, on w = 1")
     ax.plot([], [], color=LENS, lw=4, label="algebraic error, at the point's own w")
     ax.legend(loc="lower right", fontsize=FONT, frameon=False)

@@ -17,6 +17,7 @@ def camera_shapes(
     *,
     image: npt.NDArray[np.uint8] | None = None,
     name: str = "camera",
+    meaning: str = "camera",
 ) -> Shapes:
     """Return a camera: its centre, and the pyramid to its image plane at z = `depth`.
 
@@ -30,6 +31,8 @@ def camera_shapes(
         A picture to put on the image plane, (height, width) or (height, width, 3).
     name : str
         Written above it.
+    meaning : {"camera", "estimated", ...}
+        Sets the colour.
 
     Examples
     --------
@@ -38,7 +41,7 @@ def camera_shapes(
     ['camera pyramid', 'camera']
     """
     w, h = is_camera(camera, "camera").size
-    depth = number(depth, "depth")
+    depth, colour = number(depth, "depth"), colour_of(meaning)
     border = [[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]]
     corners = _on_plane(camera, xy_from_px(camera.A, border), depth)
     around = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
@@ -47,10 +50,10 @@ def camera_shapes(
     left, right = _on_plane(camera, xy_from_px(camera.A, [[0.4 * w, -0.5], [0.6 * w, -0.5]]), depth)
     up = (left + right) / 2 - 0.1 * (corners[3] - corners[0])
     ends = np.concatenate([around, spokes, [[left, up], [up, right]]])
-    shapes: Shapes = (Lines(f"{name} pyramid", ends, CAMERA),)
+    shapes: Shapes = (Lines(f"{name} pyramid", ends, colour),)
     if image is not None:
         shapes += (Photo(f"{name} picture", corners, _picture(image)),)
-    return (*shapes, Label(name, up - 0.12 * (corners[3] - corners[0]), CAMERA))
+    return (*shapes, Label(name, up - 0.12 * (corners[3] - corners[0]), colour))
 
 
 def ray_shapes(
