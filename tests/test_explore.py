@@ -33,15 +33,17 @@ from cvnotes.pictures import course, radiance, rails
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
 from cvnotes.show.explore.boards import pinhole
 from cvnotes.show.explore.columns import Believed
+from cvnotes.show.explore.depth import pair
 from cvnotes.show.explore.finding import Finding, rms
 from cvnotes.show.explore.fold import (
     _SHOWN,
-    _on_sheet,
     angles,
     circle_of,
+    on_sheet,
     photographs,
     vanishing_points,
 )
+from cvnotes.show.explore.folds import distance
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.lettering import LETTERS
 from cvnotes.show.explore.model import Drawing, Model, Setting
@@ -55,7 +57,10 @@ from cvnotes.show.explore.votes import window_at
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
 MODELS = {name: explore.model(name) for name in explore.NAMES}
-STORIES = ("straighten", "shadows", "triangle", "pinhole", "votes", "fold", "finding", "columns")
+STORIES = (
+    "straighten", "shadows", "triangle", "pinhole", "votes", "fold", "folds", "finding", "columns",
+    "depth",
+)  # fmt: skip
 each_model = pytest.mark.parametrize("name", explore.NAMES)
 
 
@@ -599,11 +604,11 @@ def test_every_place_of_the_half_circle_sees_both_right_angles_and_one_those_of_
 
 
 def test_the_photograph_of_the_fold_is_no_mirror_image_and_all_its_points_are_on_the_sheet():
-    corner, right, below = _on_sheet(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]))
+    corner, right, below = on_sheet(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]))
     assert np.linalg.det([right - corner, below - corner]) > 0  # y of the sheet runs downwards
     W, low_high = course.board().points, np.transpose(_SHOWN)
     points = vanishing_points(dlt(W[:, :2], photographs()[0].project(W)))
-    seen = (_on_sheet(np.column_stack([points, np.zeros(4)])) - low_high[0]) / np.ptp(
+    seen = (on_sheet(np.column_stack([points, np.zeros(4)])) - low_high[0]) / np.ptp(
         low_high, axis=0
     )
     assert np.allclose(seen, 0.5, atol=0.45)
@@ -621,7 +626,50 @@ def test_from_the_side_the_two_half_circles_cross_in_one_place():
 def _on_paper(circle, folds):
     """Give where on its panel a circle is drawn, from 0 to 1."""
     low, high = np.transpose(_SHOWN)
-    return (_on_sheet(np.array([circle.place(fold) for fold in folds])) - low) / (high - low)
+    return (on_sheet(np.array([circle.place(fold) for fold in folds])) - low) / (high - low)
+
+
+def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
+    camera = course.camera()
+    exact = [camera.moved(G).project(course.board().points) for G in course.poses()]
+    eye = np.array([325, 238 * 800 / 804, 800])
+    for m, measured in zip(exact, course.measured_corners(), strict=True):
+        straight = camera.ideal(m) * [800, 800] + [325, 238 * 800 / 804]
+        circle = circle_of(dlt(course.board().points[:, :2], straight))
+        assert distance(circle, eye) < 1e-6
+        assert np.abs(m - measured).max() < 0.1
+        # Beside it: against a search along the circle.
+        aside = eye + [30, -20, 50]
+        arc = np.array([circle.place(fold) for fold in np.linspace(0, 180, 20_001)])
+        searched = np.linalg.norm(arc - aside, axis=1).min()
+        assert np.isclose(distance(circle, aside), searched, rtol=1e-4)
+    said = {k1: numbers(MODELS["folds"].drawing(k1=k1).sentence) for k1 in (-0.25, -0.2, 0)}
+    assert said[-0.25][-1] < 0.5
+    assert said[-0.2][-1] > 10
+    assert said[0][-2:] == [21, 91]
+
+
+def test_what_lies_at_the_chosen_depth_has_no_fringe_and_all_else_has():
+    left, right = pair()
+    for W in ([-900, 0, 10_000], [2400, 600, 7600]):  # on the wall behind, on the cupboard
+        seen = left.project(W) - right.project(W)
+        assert np.allclose(seen, [520 * 400 / W[2], 0])
+    picture = MODELS["depth"].drawing
+    (u, v), scale = left.project([900, -900, 9990]), WIDTH / 640  # the frame of the blackboard
+    here = np.s_[
+        TITLE + round(v * scale) : TITLE + round((v + 60) * scale),
+        MARGIN + round((u - 60) * scale) : MARGIN + round((u + 10) * scale),
+    ]
+
+    def fringe(depth):
+        shown = picture(depth=depth).picture[here].astype(int)
+        return int((np.abs(shown[..., 0] - shown[..., 1]) > 40).sum())
+
+    assert fringe(10_000) < 10
+    assert fringe(7450) > 100
+    assert fringe(4000) > 300
+    plan = picture(depth=10_000).picture
+    assert count(plan, "#D55E00") > 2 * count(picture(depth=4000).picture, "#D55E00")
 
 
 def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_say_which_is_it():
@@ -914,12 +962,14 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "finding": {"step": 1.5},
     "tilt": {"tilt": 30},
     "straighten": {"k1": -0.1},
+    "folds": {"k1": -0.15},
     "columns": {"amount": 0.7, "free": 1},
 }
 ON_A_WAY = {  # along a curve, by its x
     ("finding", "step"),
     ("tilt", "tilt"),
     ("fold", "fold"),
+    ("folds", "k1"),
     ("pinhole", "hole"),
 }
 
@@ -943,7 +993,7 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
         assert off[0] < 9
     elif (name, held) == ("columns", "free"):  # from bar to bar
         assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
-    elif held in ("nine", "row", "eye"):  # up and down; to the nearest place of the half circle
+    elif held in ("nine", "row", "eye", "depth"):  # up and down; to the nearest place of the half circle
         assert off[1] < 9 or held == "eye"
     elif held == "rails":  # its length stays, its direction follows
         turned = np.arctan2(*wanted) - np.arctan2(*after.at)

@@ -5,8 +5,10 @@ from cvnotes.show.banner import one_corner
 from cvnotes.show.explore import (
     explore_camera,
     explore_columns,
+    explore_depth,
     explore_finding,
     explore_fold,
+    explore_folds,
     explore_homography,
     explore_lens,
     explore_noise,
@@ -162,10 +164,12 @@ __all__ = [
     "explore_votes",
     "explore_homography",
     "explore_fold",
+    "explore_folds",
     "explore_finding",
     "explore_noise",
     "explore_warp",
     "explore_rectification",
     "explore_tilt",
     "explore_columns",
+    "explore_depth",
 ]

@@ -12,8 +12,10 @@ from cvnotes.base import CvnotesError
 from cvnotes.camera import Camera
 from cvnotes.show.explore.camera import camera_model
 from cvnotes.show.explore.columns import columns_model
+from cvnotes.show.explore.depth import depth_model
 from cvnotes.show.explore.finding import finding_model
 from cvnotes.show.explore.fold import fold_model
+from cvnotes.show.explore.folds import folds_model
 from cvnotes.show.explore.homography import homography_model
 from cvnotes.show.explore.lens import lens_model
 from cvnotes.show.explore.model import Model
@@ -50,8 +52,10 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "pinhole": pinhole_model,
     "votes": votes_model,
     "fold": fold_model,
+    "folds": folds_model,
     "finding": finding_model,
     "columns": columns_model,
+    "depth": depth_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 
@@ -65,7 +69,7 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
         One of `NAMES`.
     camera, board : optional
         By default the course's. "straighten", "shadows", "triangle", "pinhole", "votes", "fold",
-        "finding" and "columns" show photographs of the course, and take none.
+        "folds", "finding", "columns" and "depth" show photographs of the course, and take none.
 
     Raises
     ------
@@ -165,6 +169,11 @@ def explore_fold() -> "Explorer":
     return _explorer("fold", None)
 
 
+def explore_folds() -> "Explorer":
+    """Undo the lens, and watch the half circles of twelve photographs meet in the camera."""
+    return _explorer("folds", None)
+
+
 def explore_finding() -> "Explorer":
     """Follow a calibration from the closed form to the answer, and watch its misses."""
     return _explorer("finding", None)
@@ -173,6 +182,11 @@ def explore_finding() -> "Explorer":
 def explore_columns() -> "Explorer":
     """Let the corners of a real board move, and hold one camera's measurement against another's."""
     return _explorer("columns", None)
+
+
+def explore_depth() -> "Explorer":
+    """Shift one picture of a pair over the other, and read how far away things are."""
+    return _explorer("depth", None)
 
 
 def _explorer(name: str, camera: Camera | None, board: Chessboard | None = None) -> "Explorer":

@@ -112,7 +112,7 @@ def fold_model() -> Model:
         return {"fold": float(folds[np.linalg.norm(places - at, axis=1).argmin()])}
 
     drags = {
-        "eye": lambda _, at: nearest(_on_sheet(way), at),
+        "eye": lambda _, at: nearest(on_sheet(way), at),
         "fold": lambda _, at: nearest(way[:, 1:2], at[:1]),  # along the curve, by its x
     }
     return Model("fold", about, settings, draw, drags)
@@ -130,14 +130,14 @@ def _sentence(H: list[Array], eye: Array) -> str:
     return f"{said}: this is the camera." if near else f"{said}: this is not the camera."
 
 
-def _on_sheet(place: Array) -> Array:
+def on_sheet(place: Array) -> Array:
     """Project places (u, v, w), (..., 3), in parallel onto the sheet (..., 2)."""
     return np.asarray((place * [1, 1, -1]) @ _VIEW.T)
 
 
 def _flat(xy: Array) -> Array:
     """Put points (..., 2) of a picture on the sheet."""
-    return _on_sheet(np.concatenate([xy, np.zeros((*xy.shape[:-1], 1))], axis=-1))
+    return on_sheet(np.concatenate([xy, np.zeros((*xy.shape[:-1], 1))], axis=-1))
 
 
 def _space(
@@ -156,23 +156,23 @@ def _space(
     panel.line(_flat(circles[0].foot + along), IDEAL, 0.8, dash=5)
     for circle, ink in reversed([*zip(circles, _INKS, strict=False)]):
         arc = np.array([circle.place(float(fold)) for fold in range(0, 181, 3)])
-        panel.line(_on_sheet(arc), ink, 2)
-        panel.line(_on_sheet(arc[[0, -1]]), ink, 0.8)
+        panel.line(on_sheet(arc), ink, 2)
+        panel.line(on_sheet(arc[[0, -1]]), ink, 0.8)
     below = np.array([*eye[:2], 0])
-    panel.line(_on_sheet(np.array([eye, below])), IDEAL, 1.4, dash=3)
+    panel.line(on_sheet(np.array([eye, below])), IDEAL, 1.4, dash=3)
     points = vanishing_points(H)
     for k, point in enumerate(points):
         name, meaning, colour = _PAIRS[k // 2]
-        panel.line(np.array([_on_sheet(eye), _flat(point)]), colour, 1.4)
+        panel.line(np.array([on_sheet(eye), _flat(point)]), colour, 1.4)
         panel.mark(_flat(point), meaning, 5)
         _name(panel, _flat(point), (8, 6), name, colour, "la")
     _name(panel, _flat(points[3] + 0.12 * (points[3] - points[0])), (-8, 0), "horizon", IDEAL, "rm")
-    panel.mark(_on_sheet(below), "ideal", 7)
-    panel.mark(_on_sheet(eye), "camera", 9)
-    panel.grip("eye", "the eye, to be turned about the horizon", _on_sheet(eye), 4)
-    _name(panel, _on_sheet(eye), (0, -17), "eye", CAMERA, "md")
-    _name(panel, _on_sheet(below), (0, 24), "principal point", IDEAL, "ma")
-    _name(panel, _on_sheet((eye + below) / 2), (7, 0), f"α = {eye[2]:.0f} px", IDEAL, "lm")
+    panel.mark(on_sheet(below), "ideal", 7)
+    panel.mark(on_sheet(eye), "camera", 9)
+    panel.grip("eye", "the eye, to be turned about the horizon", on_sheet(eye), 4)
+    _name(panel, on_sheet(eye), (0, -17), "eye", CAMERA, "md")
+    _name(panel, on_sheet(below), (0, 24), "principal point", IDEAL, "ma")
+    _name(panel, on_sheet((eye + below) / 2), (7, 0), f"α = {eye[2]:.0f} px", IDEAL, "lm")
     return panel
 
 

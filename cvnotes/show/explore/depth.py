@@ -1,0 +1,95 @@
+"""Explore depth: shift one picture of a pair until a thing has no fringe; read how far it is."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import Camera, intrinsics, pose
+from cvnotes.pictures import depth_map, pixel_centres, radiance, room
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
+from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, MUTED
+
+_PICTURE, _PLAN = (440, 330), (300, 330)
+_ALPHA, _BASE, _SIZE = 520, 400, (640, 480)  # px, mm, px
+_NEAREST, _FARTHEST, _WALL = 2500, 10_500, 10_000  # mm
+_SAME = 120  # mm, of depth, that are drawn as one
+_GREY = np.array([0.299, 0.587, 0.114])
+
+
+def pair() -> tuple[Camera, Camera]:
+    """Return two cameras that look the same way, the right one beside the left one."""
+    A = intrinsics(_ALPHA, _ALPHA, (_SIZE[0] - 1) / 2, (_SIZE[1] - 1) / 2)
+    left = Camera(A, size=_SIZE)
+    return left, left.moved(pose(np.eye(3), [-_BASE, 0, 0]))
+
+
+def in_two_colours(left: Array, right: Array, d: float) -> Drawn:
+    """Lay two grey pictures over each other, in red and cyan, the right one d px to the right."""
+    u = np.clip(np.arange(left.shape[1]) - d, 0, left.shape[1] - 1)
+    low = np.minimum(u.astype(int), left.shape[1] - 2)
+    part = u - low
+    moved = (1 - part) * right[:, low] + part * right[:, low + 1]
+    return np.stack([left, moved, moved], axis=-1).clip(0, 255).astype(np.uint8)
+
+
+def depth_model() -> Model:
+    """Make the model of the room, seen by two cameras side by side."""
+    settings = (
+        Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 4000,
+                "what is so far away lies upon itself in both pictures"),
+    )  # fmt: skip
+    about = (
+        "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
+        "until what lies at one depth has no fringes; beside it the room from above."
+    )
+
+    @lru_cache(maxsize=1)
+    def photographs() -> tuple[Array, Array]:
+        left, right = (radiance(room(), camera, samples=4) @ _GREY for camera in pair())
+        return left, right
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        Z = values["depth"]
+        d = _ALPHA * _BASE / Z
+        panel = paper.picture_panel(_PICTURE, _SIZE, "left in red, right in cyan and shifted")
+        panel.image(in_two_colours(*photographs(), d))
+        return Drawing(paper.join((panel, _plan(paper, Z))), _sentence(Z, d))
+
+    return Model("depth", about, settings, draw, {"depth": lambda _, at: {"depth": float(at[1])}})
+
+
+def _sentence(Z: float, d: float) -> str:
+    fringe = abs(d - _ALPHA * _BASE / _WALL)
+    said = f"Shifted by {d:.1f} px: what is {Z / 1000:.2f} m away has no fringes. "
+    if fringe < 0.2:
+        return f"{said}That is the wall behind."
+    return f"{said}Those of the wall behind are {fringe:.1f} px wide."
+
+
+@lru_cache(maxsize=1)
+def seen_from_above() -> Array:
+    """Return the places (n, 2), x and z in mm, of what the left camera sees of walls and things."""
+    camera, _ = pair()
+    some = np.s_[::6, ::3]
+    z = depth_map(room(), camera)[some][..., None]
+    M = z * np.concatenate([camera.ideal(pixel_centres(_SIZE)[some]), np.ones_like(z)], axis=-1)
+    upright = np.abs(M[..., 1]) < 1590  # neither floor nor ceiling, which are 1600 mm away
+    return np.asarray(M[upright][:, [0, 2]])
+
+
+def _plan(paper: Paper, Z: float) -> Panel:
+    """Draw the room from above, with the depth at which nothing has a fringe."""
+    panel = paper.panel(_PLAN, (-5200, 5200), (10_900, -540), "from above: pull the line")
+    panel.ticks(y=(2000, 4000, 6000, 8000, 10_000))
+    places = seen_from_above()
+    there = np.abs(places[:, 1] - Z) < _SAME
+    for some, colour in ((~there, MUTED), (there, ESTIMATED)):
+        panel.segments(places[some, None] + [[-25, 0], [25, 0]], colour, 2)
+    panel.line([[-5200, Z], [5200, Z]], ESTIMATED, 1.2, dash=5)
+    panel.mark([[0, 0], [_BASE, 0]], "camera", 7)
+    panel.mark([3900, Z], "estimated", 8)
+    panel.text([3900, Z + 480], f"{Z / 1000:.2f} m", IDEAL, anchor="mm", size=13)
+    panel.grip("depth", "how far away things have no fringe", [3900, Z], 4)
+    return panel

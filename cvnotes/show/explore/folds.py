@@ -1,0 +1,130 @@
+"""Explore twelve folds: the half circles of all photographs meet only if the lens is undone."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import Lens, px_from_xy, xy_from_px
+from cvnotes.homography import dlt
+from cvnotes.pictures import course
+from cvnotes.show.explore.fold import Circle, circle_of, on_sheet
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
+from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+
+_SPACE, _CLOSE, _CURVE = (300, 340), (250, 340), (290, 340)
+_LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
+_NEAR = 130  # px about the eye, that are shown enlarged
+_MOST = 90.0  # px, of the curve
+
+
+class _Tangle:
+    """The half circles of the course's photographs, with as much lens undone as k1 says."""
+
+    def __init__(self) -> None:
+        camera = course.camera()
+        self.A, self.size, self.seen = camera.A, camera.size, course.measured_corners()
+        self.W = course.board().points[:, :2]
+        # Rows are stretched until pixels are square, as the geometry of the fold asks.
+        self.square = np.array([1, self.A[0, 0] / self.A[1, 1]])
+        self.eye = np.array([*(self.A[:2, 2] * self.square), self.A[0, 0]])
+        self.circles = lru_cache(maxsize=None)(self._circles)
+
+    def _circles(self, k1: float) -> list[Circle]:
+        lens = Lens(k=(k1, 1.6 * k1**2))
+        ideal = px_from_xy(self.A, lens.undistort(xy_from_px(self.A, self.seen)))
+        return [circle_of(dlt(self.W, m)) for m in ideal * self.square]
+
+    def misses(self, k1: float) -> Array:
+        """Return how far each half circle passes beside the camera's true centre, in px."""
+        return np.array([distance(circle, self.eye) for circle in self.circles(k1)])
+
+
+def distance(circle: Circle, place: Array) -> float:
+    """Return how far a place (u, v, w) is from a circle."""
+    by = place[:2] - circle.foot
+    along = by @ circle.up
+    aside = np.linalg.norm(by - along * circle.up)
+    return float(np.hypot(aside, np.hypot(along, place[2]) - circle.radius))
+
+
+def folds_model() -> Model:
+    """Make the model of the half circles of twelve photographs, whose lens is undone by k1."""
+    tangle = _Tangle()
+    settings = (
+        Setting(
+            "k1", "k1", _LOWEST, _HIGHEST, _STEP, 0, "of the lens that is undone; k2 = 1.6 k1²"
+        ),
+    )
+    about = (
+        "Twelve half circles, one for each photograph: all places from which it shows right "
+        "angles. Beside them the same enlarged about the camera, and how far they miss it, "
+        "against k1."
+    )
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        k1 = values["k1"]
+        panels = _space(tangle, paper, k1), _close(tangle, paper, k1), _curve(tangle, paper, k1)
+        return Drawing(paper.join(panels), _sentence(k1, tangle.misses(k1)))
+
+    return Model("folds", about, settings, draw, {"k1": lambda _, at: {"k1": float(at[0])}})
+
+
+def _sentence(k1: float, misses: Array) -> str:
+    k = f"{k1:.3f}".replace("-", "−")
+    said = f"With k1 = {k} undone, the twelve half circles pass the camera at "
+    if misses.max() < 1:
+        return f"{said}{misses.max():.1f} px at most: they meet, and where they do is the camera."
+    return f"{said}{misses.min():.0f} to {misses.max():.0f} px: no eye sees all right angles."
+
+
+def _arcs(tangle: _Tangle, panel: Panel, k1: float, width: float) -> None:
+    for circle in tangle.circles(k1):
+        arc = np.array([circle.place(float(fold)) for fold in np.arange(0, 180.5, 0.5)])
+        panel.line(on_sheet(arc), LENS, width)
+
+
+def _space(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
+    w, h = tangle.size
+    frame = np.array([[0, 0, 0], [w, 0, 0], [w, h, 0], [0, h, 0], [0, 0, 0]])
+    seen = on_sheet(frame * [*tangle.square, 0] - [0.5, 0.5, 0])
+    middle = (seen[:-1].mean(axis=0) + on_sheet(tangle.eye)) / 2
+    reach = 760 * np.array(_SPACE) / _SPACE[1]
+    (left, top), (right, low) = middle - reach, middle + reach
+    panel = paper.panel(_SPACE, (left, right), (top, low), "twelve half circles over the picture")
+    panel.polygons(seen[None, :-1], "#F4F4F0")
+    panel.line(seen, MUTED, 1)
+    _arcs(tangle, panel, k1, 1)
+    panel.mark(on_sheet(tangle.eye), "ideal", 8)
+    return panel
+
+
+def _close(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
+    reach = _NEAR * np.array(_CLOSE) / _CLOSE[0]
+    (left, top), (right, low) = on_sheet(tangle.eye) - reach, on_sheet(tangle.eye) + reach
+    panel = paper.panel(_CLOSE, (left, right), (top, low), "enlarged about the camera")
+    _arcs(tangle, panel, k1, 1.4)
+    panel.mark(on_sheet(tangle.eye), "ideal", 10)
+    panel.line([[left + 12, low - 14], [left + 62, low - 14]], IDEAL, 2)
+    panel.text([left + 68, low - 14], "50 px", IDEAL, size=12)
+    return panel
+
+
+def _curve(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
+    """Draw how far the half circles miss the camera; the hand pulls along the curve."""
+    panel = paper.panel(
+        _CURVE,
+        (_LOWEST - 0.03, _HIGHEST + 0.03),
+        (_MOST, -0.1 * _MOST),
+        "miss (RMS, px) against k1",
+    )
+    panel.ticks(x=(-0.4, -0.3, -0.2, -0.1, 0, 0.1), y=(20, 40, 60, 80), size=12)
+    tried = np.arange(_LOWEST, _HIGHEST + 0.01, 0.025)
+    way = np.array([[k, np.sqrt(np.mean(tangle.misses(float(k)) ** 2))] for k in tried])
+    panel.line(way, MUTED, 1.6)
+    at = np.array([k1, np.sqrt(np.mean(tangle.misses(k1) ** 2))])
+    panel.mark(at, "estimated", 8)
+    panel.text(at + [0.03, 4], f"{at[1]:.1f} px", ESTIMATED, size=13)
+    panel.grip("k1", "how much of the lens is undone", at, 4)
+    return panel
