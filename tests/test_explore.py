@@ -617,7 +617,7 @@ def test_the_photograph_of_the_fold_is_no_mirror_image_and_all_its_points_are_on
 def test_from_the_side_the_two_half_circles_cross_in_one_place():
     W = course.board().points
     one, two = (circle_of(dlt(W[:, :2], camera.project(W))) for camera in photographs())
-    way = np.array([two.place(fold)[1:] for fold in np.arange(0.1, 180, 0.1)])
+    way = two.place(np.arange(0.1, 180, 0.1))[:, 1:]
     inside = np.hypot(way[:, 0] - one.foot[1], way[:, 1]) < one.radius
     (crossing,) = np.flatnonzero(np.diff(inside))
     assert np.allclose(way[crossing], [239.5, 400], atol=1)
@@ -626,7 +626,7 @@ def test_from_the_side_the_two_half_circles_cross_in_one_place():
 def _on_paper(circle, folds):
     """Give where on its panel a circle is drawn, from 0 to 1."""
     low, high = np.transpose(_SHOWN)
-    return (on_sheet(np.array([circle.place(fold) for fold in folds])) - low) / (high - low)
+    return (on_sheet(circle.place(folds)) - low) / (high - low)
 
 
 def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
@@ -640,7 +640,7 @@ def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
         assert np.abs(m - measured).max() < 0.1
         # Beside it: against a search along the circle.
         aside = eye + [30, -20, 50]
-        arc = np.array([circle.place(fold) for fold in np.linspace(0, 180, 20_001)])
+        arc = circle.place(np.linspace(0, 180, 20_001))
         searched = np.linalg.norm(arc - aside, axis=1).min()
         assert np.isclose(distance(circle, aside), searched, rtol=1e-4)
     said = {k1: numbers(MODELS["folds"].drawing(k1=k1).sentence) for k1 in (-0.25, -0.2, 0)}
@@ -993,7 +993,12 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
         assert off[0] < 9
     elif (name, held) == ("columns", "free"):  # from bar to bar
         assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
-    elif held in ("nine", "row", "eye", "depth"):  # up and down; to the nearest place of the half circle
+    elif held in (
+        "nine",
+        "row",
+        "eye",
+        "depth",
+    ):  # up and down; to the nearest place of the half circle
         assert off[1] < 9 or held == "eye"
     elif held == "rails":  # its length stays, its direction follows
         turned = np.arctan2(*wanted) - np.arctan2(*after.at)

@@ -121,7 +121,9 @@ def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
             camera, misses = finding.at(at)
             draw_arrows(panel, m, -_magnified(at) * misses[i] / unit)
             k1 = f"k1 = {camera.parameters['k1']:+.3f}".replace("-", "−")
-            panel.text(middle + [-0.96, -0.9], f"{_digits(rms(misses))} px", ESTIMATED, size=16)
+            panel.text(
+                middle + [-0.96, -0.9], f"all: {_digits(rms(misses))} px", ESTIMATED, size=16
+            )
             panel.text(middle + [0.96, -0.9], k1, anchor="rm", size=14)
             panel.text(middle + [-0.96, 0.82], f"× {_magnified(at):.0f}", size=12)
     return panel

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
@@ -36,11 +37,11 @@ class Circle(NamedTuple):
     up: Array  # (2,) unit vector in the picture, from the horizon to the board
     radius: float
 
-    def place(self, fold: float) -> Array:
-        """Return the place at an angle from the picture, in degrees: (u0, v0, α)."""
-        phi = np.radians(fold)
+    def place(self, fold: npt.ArrayLike) -> Array:
+        """Return the places (..., 3) at angles (...) from the picture, in degrees: (u0, v0, α)."""
+        phi = np.radians(fold)[..., None]
         in_plane = self.foot + self.radius * np.cos(phi) * self.up
-        return np.array([*in_plane, self.radius * np.sin(phi)])
+        return np.concatenate([in_plane, self.radius * np.sin(phi)], axis=-1)
 
 
 def photographs() -> list[Camera]:
@@ -106,7 +107,7 @@ def fold_model() -> Model:
         return Drawing(paper.join((space, side)), _sentence(H[:shown], eye))
 
     folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
-    way = np.array([circles[0].place(float(fold)) for fold in folds])
+    way = circles[0].place(folds)
 
     def nearest(places: Array, at: Array) -> Values:
         return {"fold": float(folds[np.linalg.norm(places - at, axis=1).argmin()])}
@@ -155,7 +156,7 @@ def _space(
     along = np.array([[-3000.0], [3000.0]]) * [up[1], -up[0]]
     panel.line(_flat(circles[0].foot + along), IDEAL, 0.8, dash=5)
     for circle, ink in reversed([*zip(circles, _INKS, strict=False)]):
-        arc = np.array([circle.place(float(fold)) for fold in range(0, 181, 3)])
+        arc = circle.place(np.arange(0, 181, 3))
         panel.line(on_sheet(arc), ink, 2)
         panel.line(on_sheet(arc[[0, -1]]), ink, 0.8)
     below = np.array([*eye[:2], 0])
@@ -191,7 +192,7 @@ def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Pa
     )
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
     for k in reversed(range(len(H))):
-        arc = np.array([circles[k].place(float(fold)) for fold in range(0, 181, 2)])
+        arc = circles[k].place(np.arange(0, 181, 2))
         panel.line(arc[:, 1:], _INKS[k], 2)
         sides, diagonals = angles(H[k], eye)
         seen = f"photograph {k + 1}", f"sides {sides:.1f}°", f"diagonals {diagonals:.1f}°"

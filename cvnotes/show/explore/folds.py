@@ -81,8 +81,7 @@ def _sentence(k1: float, misses: Array) -> str:
 
 def _arcs(tangle: _Tangle, panel: Panel, k1: float, width: float) -> None:
     for circle in tangle.circles(k1):
-        arc = np.array([circle.place(float(fold)) for fold in np.arange(0, 180.5, 0.5)])
-        panel.line(on_sheet(arc), LENS, width)
+        panel.line(on_sheet(circle.place(np.arange(0, 180.5, 0.5))), LENS, width)
 
 
 def _space(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
