@@ -114,6 +114,7 @@ def check_sight(name, values):
 # Every exploration.
 
 
+@pytest.mark.once
 @each_model
 def test_each_slider_may_stand_at_either_end_and_at_zero(name):
     for s in MODELS[name].settings:
