@@ -43,7 +43,6 @@ from cvnotes.show.explore.fold import (
     photographs,
     vanishing_points,
 )
-from cvnotes.show.explore.folds import distance
 from cvnotes.show.explore.lens import polynomial
 from cvnotes.show.explore.lettering import LETTERS
 from cvnotes.show.explore.model import Drawing, Model, Setting
@@ -114,7 +113,6 @@ def check_sight(name, values):
 # Every exploration.
 
 
-@pytest.mark.once
 @each_model
 def test_each_slider_may_stand_at_either_end_and_at_zero(name):
     for s in MODELS[name].settings:
@@ -637,13 +635,13 @@ def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
     for m, measured in zip(exact, course.measured_corners(), strict=True):
         straight = camera.ideal(m) * [800, 800] + [325, 238 * 800 / 804]
         circle = circle_of(dlt(course.board().points[:, :2], straight))
-        assert distance(circle, eye) < 1e-6
+        assert circle.distance(eye) < 1e-6
         assert np.abs(m - measured).max() < 0.1
         # Beside it: against a search along the circle.
         aside = eye + [30, -20, 50]
         arc = circle.place(np.linspace(0, 180, 20_001))
         searched = np.linalg.norm(arc - aside, axis=1).min()
-        assert np.isclose(distance(circle, aside), searched, rtol=1e-4)
+        assert np.isclose(circle.distance(aside), searched, rtol=1e-4)
     said = {k1: numbers(MODELS["folds"].drawing(k1=k1).sentence) for k1 in (-0.25, -0.2, 0)}
     assert said[-0.25][-1] < 0.5
     assert said[-0.2][-1] > 10
@@ -973,6 +971,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("folds", "k1"),
     ("pinhole", "hole"),
 }
+UP_AND_DOWN = {"nine", "row", "depth", "eye"}  # the eye to the nearest place of its half circle
 
 
 def grip_of(drawing, name):
@@ -994,12 +993,7 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
         assert off[0] < 9
     elif (name, held) == ("columns", "free"):  # from bar to bar
         assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
-    elif held in (
-        "nine",
-        "row",
-        "eye",
-        "depth",
-    ):  # up and down; to the nearest place of the half circle
+    elif held in UP_AND_DOWN:
         assert off[1] < 9 or held == "eye"
     elif held == "rails":  # its length stays, its direction follows
         turned = np.arctan2(*wanted) - np.arctan2(*after.at)

@@ -4,18 +4,18 @@ from functools import lru_cache
 
 import numpy as np
 
-from cvnotes.base import Array
+from cvnotes.base import Array, Image, luma
 from cvnotes.camera import Camera, intrinsics, pose
 from cvnotes.pictures import depth_map, pixel_centres, radiance, room
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, MUTED
+from cvnotes.warping import backward_warp
 
 _PICTURE, _PLAN = (440, 330), (300, 330)
 _ALPHA, _BASE, _SIZE = 520, 400, (640, 480)  # px, mm, px
-_NEAREST, _FARTHEST, _WALL = 2500, 10_500, 10_000  # mm
+_NEAREST, _FARTHEST = 2500, 10_500  # mm
 _SAME = 120  # mm, of depth, that are drawn as one
-_GREY = np.array([0.299, 0.587, 0.114])
 
 
 def pair() -> tuple[Camera, Camera]:
@@ -25,12 +25,9 @@ def pair() -> tuple[Camera, Camera]:
     return left, left.moved(pose(np.eye(3), [-_BASE, 0, 0]))
 
 
-def in_two_colours(left: Array, right: Array, d: float) -> Drawn:
+def in_two_colours(left: Image, right: Image, d: float) -> Drawn:
     """Lay two grey pictures over each other, in red and cyan, the right one d px to the right."""
-    u = np.clip(np.arange(left.shape[1]) - d, 0, left.shape[1] - 1)
-    low = np.minimum(u.astype(int), left.shape[1] - 2)
-    part = u - low
-    moved = (1 - part) * right[:, low] + part * right[:, low + 1]
+    moved = backward_warp(right, lambda m: m - [d, 0], border="replicate")
     return np.stack([left, moved, moved], axis=-1).clip(0, 255).astype(np.uint8)
 
 
@@ -46,8 +43,8 @@ def depth_model() -> Model:
     )
 
     @lru_cache(maxsize=1)
-    def photographs() -> tuple[Array, Array]:
-        left, right = (radiance(room(), camera, samples=4) @ _GREY for camera in pair())
+    def photographs() -> tuple[Image, Image]:
+        left, right = (luma(radiance(room(), camera, samples=4)) for camera in pair())
         return left, right
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -61,7 +58,8 @@ def depth_model() -> Model:
 
 
 def _sentence(Z: float, d: float) -> str:
-    fringe = abs(d - _ALPHA * _BASE / _WALL)
+    wall = seen_from_above()[:, 1].max()
+    fringe = abs(d - _ALPHA * _BASE / wall)
     said = f"Shifted by {d:.1f} px: what is {Z / 1000:.2f} m away has no fringes. "
     if fringe < 0.2:
         return f"{said}That is the wall behind."
@@ -90,6 +88,6 @@ def _plan(paper: Paper, Z: float) -> Panel:
     panel.line([[-5200, Z], [5200, Z]], ESTIMATED, 1.2, dash=5)
     panel.mark([[0, 0], [_BASE, 0]], "camera", 7)
     panel.mark([3900, Z], "estimated", 8)
-    panel.text([3900, Z + 480], f"{Z / 1000:.2f} m", IDEAL, anchor="mm", size=13)
+    panel.text([3900, Z - 480], f"{Z / 1000:.2f} m", IDEAL, anchor="mm", size=13)
     panel.grip("depth", "how far away things have no fringe", [3900, Z], 4)
     return panel

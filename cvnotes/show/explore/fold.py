@@ -43,6 +43,13 @@ class Circle(NamedTuple):
         in_plane = self.foot + self.radius * np.cos(phi) * self.up
         return np.concatenate([in_plane, self.radius * np.sin(phi)], axis=-1)
 
+    def distance(self, place: Array) -> float:
+        """Return how far a place (u, v, w) is from the circle."""
+        by = place[:2] - self.foot
+        along = by @ self.up
+        aside = np.linalg.norm(by - along * self.up)
+        return float(np.hypot(aside, np.hypot(along, place[2]) - self.radius))
+
 
 def photographs() -> list[Camera]:
     """Return the cameras that have taken the two photographs, without a lens."""

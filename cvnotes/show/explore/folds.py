@@ -25,6 +25,9 @@ class _Tangle:
     def __init__(self) -> None:
         camera = course.camera()
         self.A, self.size, self.seen = camera.A, camera.size, course.measured_corners()
+        # One slider for both coefficients: it passes the course's lens.
+        k1, k2 = camera.lens.k[:2]
+        self.bend = k2 / k1**2
         self.W = course.board().points[:, :2]
         # Rows are stretched until pixels are square, as the geometry of the fold asks.
         self.square = np.array([1, self.A[0, 0] / self.A[1, 1]])
@@ -32,21 +35,13 @@ class _Tangle:
         self.circles = lru_cache(maxsize=None)(self._circles)
 
     def _circles(self, k1: float) -> list[Circle]:
-        lens = Lens(k=(k1, 1.6 * k1**2))
+        lens = Lens(k=(k1, self.bend * k1**2))
         ideal = px_from_xy(self.A, lens.undistort(xy_from_px(self.A, self.seen)))
         return [circle_of(dlt(self.W, m)) for m in ideal * self.square]
 
     def misses(self, k1: float) -> Array:
         """Return how far each half circle passes beside the camera's true centre, in px."""
-        return np.array([distance(circle, self.eye) for circle in self.circles(k1)])
-
-
-def distance(circle: Circle, place: Array) -> float:
-    """Return how far a place (u, v, w) is from a circle."""
-    by = place[:2] - circle.foot
-    along = by @ circle.up
-    aside = np.linalg.norm(by - along * circle.up)
-    return float(np.hypot(aside, np.hypot(along, place[2]) - circle.radius))
+        return np.array([circle.distance(self.eye) for circle in self.circles(k1)])
 
 
 def folds_model() -> Model:
@@ -54,7 +49,13 @@ def folds_model() -> Model:
     tangle = _Tangle()
     settings = (
         Setting(
-            "k1", "k1", _LOWEST, _HIGHEST, _STEP, 0, "of the lens that is undone; k2 = 1.6 k1²"
+            "k1",
+            "k1",
+            _LOWEST,
+            _HIGHEST,
+            _STEP,
+            0,
+            f"of the lens that is undone; k2 = {tangle.bend:.1f} k1²",
         ),
     )
     about = (
@@ -124,6 +125,7 @@ def _curve(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
     panel.line(way, MUTED, 1.6)
     at = np.array([k1, np.sqrt(np.mean(tangle.misses(k1) ** 2))])
     panel.mark(at, "estimated", 8)
-    panel.text(at + [0.03, 4], f"{at[1]:.1f} px", ESTIMATED, size=13)
+    side, anchor = (-1, "rm") if k1 > way[way[:, 1].argmin(), 0] else (1, "lm")  # within the V
+    panel.text(at + [0.03 * side, 4], f"{at[1]:.1f} px", ESTIMATED, anchor=anchor, size=13)
     panel.grip("k1", "how much of the lens is undone", at, 4)
     return panel
