@@ -191,11 +191,11 @@ def test_letters_of_a_turned_frame_are_upright_and_face_the_view_in_a_file_too(v
     turned = pose(rotation_from_vector([2.0, -1, 0.5]), [0, 0, 0])
     scene = build_scene(*axes_shapes(turned, meaning="camera"), view=view)
     right, up, way = scene.camera_transform[:3, :3].T
-    ends = 120 * (GL_FROM_CV[:3, :3] @ turned[:3, :3]).T
+    ends = 100 * (GL_FROM_CV[:3, :3] @ turned[:3, :3]).T
     for letter, end in zip("xz", ends[[0, 2]], strict=True):
         ink = scene.geometry[letter].vertices - end
         assert np.ptp(ink @ way) < 0.3 * np.ptp(ink @ right)  # its strokes have a body
-        assert np.abs(ink).max() < 5
+        assert np.linalg.norm(ink, axis=1).max() < 10  # beside the tip of its axis
     assert np.corrcoef(ink @ right, ink @ up)[0, 1] > 0.2  # the long stroke of a z
 
 

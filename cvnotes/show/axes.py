@@ -64,6 +64,7 @@ def dress(ax: "Axes") -> "Axes":
     ax.spines[["left", "bottom"]].set_color(MUTED)
     ax.tick_params(labelsize=FONT - 1, color=MUTED, labelcolor="#333333")
     ax.title.set_fontsize(FONT + 1)
+    ax.title.set_color("#333333")
     for axis in (ax.xaxis, ax.yaxis):
         axis.label.set_fontsize(FONT)
     return ax

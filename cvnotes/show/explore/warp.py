@@ -15,7 +15,8 @@ from cvnotes.show.style import ESTIMATED, rgb
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp, compose, forward_warp, rotation_map, zoom_map
 
-_WIDTH = 108  # px of the source: few enough to see each one
+_WIDTH = 105  # px of the source: few enough to see each one, and odd as its height of 79, so that
+#             quarter turns about the middle take pixels to pixels
 _LARGER = 4  # px of the page for a pixel
 _ARM = 0.25  # of the width, from the middle to where the picture is taken hold of
 _PAPER = 255  # grey level where the source has nothing to show

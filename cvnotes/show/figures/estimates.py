@@ -102,7 +102,7 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
         end = max(expected, float(error.max()), promised)
         beside(right, words, (end, y), (7, 0), va="center", size=9)
     right.set_xscale("log")
-    right.set_xlim(1e-3, 1e5)
+    right.set_xlim(1e-3, 1e6)
     left.set_xlim(0, 1.08 * max(run.rms for runs in results.values() for run in runs) or None)
     left.set(yticks=range(len(results)), yticklabels=list(results), title="what is looked at")
     left.set(xlabel="RMS (px per point)")

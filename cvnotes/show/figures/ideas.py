@@ -7,10 +7,17 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, ShapeError, matrix, real
+from cvnotes.camera import Camera, Lens, intrinsics, move, pose, rotation_from_vector
+from cvnotes.pictures import render
 from cvnotes.projective import apply
 from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter
 from cvnotes.show.guards import texts
+from cvnotes.show.space.camera_shapes import camera_shapes, ray_shapes
+from cvnotes.show.space.directions import sheet
+from cvnotes.show.space.shapes import target_shapes
+from cvnotes.show.space.stills import draw_scene
 from cvnotes.show.style import CAMERA, COLOURS, ESTIMATED, FONT, IDEAL, LENS, MARKERS, MUTED, WORLD
+from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,30 +25,70 @@ if TYPE_CHECKING:
 # Where x, y and w lead on paper: x to the right, y away from us, w up.
 _OBLIQUE = np.array([[1.0, 0.0], [0.42, 0.40], [0.0, 1.7]])
 _WIDE, _DEEP = 2.2, 1.3  # half the sides of the piece of the plane w = 1 that is drawn
-_MEANINGS = {
-    "world": "what stands in the world",
-    "camera": "the camera: its centre, its image plane",
-    "ideal": "the truth, or what an exact formula says",
-    "lens": "a point in a picture, as the lens shows it",
-    "estimated": "found by a computation: corners, lines, cameras",
+_MEANINGS = {  # with where the words stand on the axes
+    "world": ("what stands in the world", (0.03, 0.945)),
+    "camera": ("the camera: its centre,\nits image plane", (0.45, 0.12)),
+    "ideal": ("the truth, or what\nan exact formula says", (0.825, 0.82)),
+    "lens": ("a point in a picture,\nas the lens shows it", (0.825, 0.5)),
+    "estimated": ("found by a computation:\ncorners, lines, cameras", (0.825, 0.18)),
 }
 
 
 def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
-    """Draw the legend of all figures: five colours and markers, with one meaning each.
+    """Draw one scene with all five colours and markers, each with its meaning beside it.
 
     Examples
     --------
-    >>> [text.get_text().split(":")[0] for text in draw_meanings().texts][2:4]
-    ['the truth, or what an exact formula says', 'a point in a picture, as the lens shows it']
+    >>> [text.get_text().split(chr(10))[0] for text in draw_meanings().texts][2:4]
+    ['the truth, or what', 'a point in a picture,']
     """
-    ax = drawn_on(ax, width=450, height=150)
-    for row, (meaning, words) in enumerate(_MEANINGS.items()):
-        ax.plot([0.02, 0.12], [row, row], "-", color=COLOURS[meaning], linewidth=2)
-        ax.plot(0.07, row, MARKERS[meaning], color=COLOURS[meaning], markersize=9)
-        ax.text(0.16, row, words, va="center", fontsize=FONT + 1)
-    ax.set(xlim=(0, 1), ylim=(len(_MEANINGS) - 0.5, -0.5))
-    ax.axis("off")
+    from matplotlib.patches import ConnectionPatch
+
+    ax, view = drawn_on(ax, width=900, height=330), (14.0, -150.0)
+    board, there = (
+        Chessboard((4, 3), 40.0),
+        pose(rotation_from_vector([0.1, 0.6, 0.1]), [-60, -90, 600]),
+    )
+    camera = Camera(intrinsics(450, 450, 160, 120), lens=Lens(k=(-0.9,)), size=(320, 240))
+    image, corner = render(board, camera.moved(there), blur=0.6), move(there, board.points[3])
+    seen, true = camera.project(corner), Camera(camera.A).project(corner)
+    shapes = [*target_shapes(board, there), *camera_shapes(camera, 300, image=image)[:-1]]
+    draw_scene(*shapes, *ray_shapes(camera, seen, to=corner), ax=ax, view=view)
+    left, (bottom, top) = ax.get_xlim()[0], ax.get_ylim()
+    ax.set_xlim(left, left + 3.15 * (bottom - top))
+    close = ax.inset_axes((0.625, 0.17, 0.18, 0.66), xticks=[], yticks=[])
+    close.imshow(image, cmap="gray", vmin=0, vmax=255, alpha=0.5)
+    close.set(xlim=seen[0] + [-7, 7], ylim=seen[1] + [7, -7])
+    close.spines[:].set(color=CAMERA, linewidth=1.5)
+    on_pane = np.array([*(seen - [160, 120]) / 450, 1]) * 300 @ sheet(view).T
+    for end in ((0, 0), (0, 1)):
+        ends: dict[str, Any] = {"axesA": ax, "axesB": close, "color": MUTED, "linewidth": 0.8}
+        start = (on_pane[0], on_pane[1])
+        ax.add_artist(ConnectionPatch(start, end, "data", "axes fraction", **ends, zorder=2e6))
+    on_paper = [
+        corner @ sheet(view).T,
+        camera.centre @ sheet(view).T,
+        true,
+        seen,
+        seen + [0.8, 0.9],
+    ]
+    leader = {"arrowstyle": "-", "linewidth": 0.9, "shrinkB": 5}
+    for i, ((meaning, (words, by)), at) in enumerate(zip(_MEANINGS.items(), on_paper, strict=True)):
+        colour, where = COLOURS[meaning], ax if i < 2 else close
+        where.plot(*at, MARKERS[meaning], color=colour, markersize=10 if i < 2 else 13,
+                   markeredgewidth=2.5, zorder=3e6)  # fmt: skip
+        ax.annotate(
+            words,
+            (at[0], at[1]),
+            by,
+            xycoords=where.transData,
+            textcoords="axes fraction",
+            va="center",
+            zorder=4e6,
+            color=colour,
+            fontsize=FONT + 1,
+            arrowprops=None if i < 2 else leader | {"color": colour},
+        )
     return ax
 
 
@@ -81,7 +128,9 @@ def draw_rays(
         raise CvnotesError("the zero vector is neither a point nor a line")
     ax = drawn_on(ax, height=400)
     patch = np.array([[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]) * [_WIDE, _DEEP, 1]
-    ax.fill(*_on_paper(patch).T, color=WORLD, alpha=0.16, linewidth=0, zorder=2)
+    ax.fill(
+        *_on_paper(patch).T, fc="#D6EFE7", ec="#9ECFBF", alpha=0.7, zorder=3.5
+    )  # veils what is under it
     _write(ax, "w = 1", patch[1], WORLD, (12, -10))
     named = [*names, *[""] * (len(x_h) + len(lines))]
     for x, name in zip(x_h, named, strict=False):
@@ -90,7 +139,7 @@ def draw_rays(
         _draw_plane(ax, line, name)
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=7, zorder=6)
     ax.set(aspect="equal")
-    ax.margins(0.08)
+    ax.plot([-3, 3], [-0.7, 2.6], " ")  # so that figures side by side have one scale
     ax.axis("off")
     return ax
 
@@ -106,7 +155,7 @@ def _draw_ray(ax: "Axes", x: Array, name: str) -> None:
         return
     ax.plot(*_on_paper([tip, 1.22 * tip]).T, color=colour, linewidth=1.6, zorder=5)
     ax.plot(*_on_paper(tip), "s", color=WORLD, markersize=7, zorder=6)
-    _write(ax, name, tip, colour, (12, 10))
+    _write(ax, name, tip, colour, (14, 6) if _on_paper(tip)[0] > 0 else (-14, 4))
 
 
 def _draw_plane(ax: "Axes", line: Array, name: str) -> None:
@@ -162,13 +211,14 @@ def draw_mapped(H: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") 
     ax = drawn_on(ax, width=300, height=300)
     square = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
     angle = np.linspace(0, 2 * np.pi, 73)
-    ax.plot(*square.T, "--", color=IDEAL, linewidth=1)
+    ax.plot(*square.T, "--", color=MUTED, linewidth=1)
     ax.plot(*apply(H, square).T, color=WORLD, linewidth=2)
     for t in np.linspace(-1, 1, 5):
         for ends in ([[t, -1], [t, 1]], [[-1, t], [1, t]]):
             ax.plot(*apply(H, ends).T, color=WORLD, linewidth=0.8)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    ax.plot(*apply(H, circle).T, color=ESTIMATED, linewidth=2)
+    ax.fill(*apply(H, square).T, color=WORLD, alpha=0.12, linewidth=0)
+    ax.plot(*apply(H, circle).T, color=IDEAL, linewidth=2)
     ax.set(aspect="equal", title=title)
     ax.axis("off")
     return ax
@@ -183,34 +233,55 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
     >>> [float(v) for v in ax.lines[0].get_xydata()[1]]  # the ray meets the image plane
     [1.5, 0.5625]
     """
-    y, z, f = 1.5, 4.0, 1.5
-    v = f * y / z
-    ax = drawn_on(ax, height=300)
-    ax.plot([-f, f, z], [-v, v, y], color=LENS, linewidth=1.6, zorder=3)
-    ax.fill([0, z, z], [0, 0, y], color=WORLD, alpha=0.2, linewidth=0)
-    ax.fill([0, f, f], [0, 0, v], fill=False, hatch="///", edgecolor=ESTIMATED, linewidth=0)
-    ax.axhline(0, color=MUTED, linewidth=1, linestyle="-.", zorder=1)
-    half = 0.85 * y
-    ax.plot([f, f], [-half, half], color=CAMERA, linewidth=2.5)
-    ax.plot([-f, -f], [-half, half], color=CAMERA, linewidth=2.5, linestyle=":")
-    for at, tip, colour in ((z, y, WORLD), (f, v, ESTIMATED), (-f, -v, ESTIMATED)):
-        arrow(ax, (at, 0), (at, tip), colour, 3, zorder=4)
-    ax.plot(0, 0, "o", color=CAMERA, markersize=9, zorder=5)
-    up, down = -1.05 * half, 1.15 * half
-    span: dict[str, Any] = {"arrowstyle": "<->", "color": MUTED, "shrinkA": 0, "shrinkB": 0}
-    for end, row, name in ((f, 0.55 * up, "f"), (z, 0.9 * up, "z")):
+    y, z, f, top = 1.5, 4.0, 1.5, -1.3
+    v, light = f * y / z, "#FFE9A8"
+    ax = drawn_on(ax, width=900, height=440)
+    for end in (y, top):
+        ax.plot([-f, f, z], end / z * np.array([-f, f, z]), color=MUTED, linewidth=1, zorder=4)
+    ax.fill([-9, 9, 9, -9], [y, y, 9, 9], color="#E3EEDC", linewidth=0)
+    ax.fill([-f - 0.5, 0, 0, -f - 0.5], [y, y, -y, -y], color="#2B2B2B", linewidth=0)
+    ax.plot([0, 0], [-0.05, 0.05], color=light, linewidth=3)
+    for end in (-f, z):
+        ax.fill(*np.transpose([[0, 0], [end, y * end / z], [end, top * end / z]]), color=light,
+                alpha=0.5, linewidth=0, zorder=2)  # fmt: skip
+    _draw_tree(ax, z, 1)
+    sheet = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ [[0.38, -0.17], [0, 1]]
+    for at, colour, alpha in ((-f, "#FBF6E6", 1), (f, CAMERA, 0.3)):  # planes, seen aslant
+        ax.fill(*(sheet + [at, 0]).T, fc=colour, ec=CAMERA, lw=1.5, alpha=alpha, zorder=3)
+        _draw_tree(ax, at, at / z, 0.5)
+    ax.plot([0, 1.22 * z], [0, 0], color=MUTED, linewidth=1, linestyle="-.", zorder=4)
+    for at, tip, colour in ((z, y, WORLD), (f, v, LENS)):
+        ax.fill([0, at, at], [0, 0, tip], color=colour, alpha=0.3, linewidth=0, zorder=3.5)
+        arrow(ax, (at, 0), (at, tip), colour, 2.2, zorder=5)
+    ax.plot(0, 0, "o", color=CAMERA, markersize=8, zorder=5)
+    span: dict[str, Any] = {"arrowstyle": "<->", "color": IDEAL, "shrinkA": 0, "shrinkB": 0}
+    for end, row, name in ((f, y + 0.2, "f"), (z, y + 0.5, "z")):
         ax.annotate("", (0, row), (end, row), arrowprops=span)
-        _label(ax, name, (end / 2, row), IDEAL)
-    _label(ax, "C, the pinhole", (-0.1, 0.33 * down), CAMERA)
-    _label(ax, "image plane, z = f", (f, 1.15 * down), CAMERA)
-    _label(ax, "film behind the hole:\nupside down", (-f, 1.25 * down), MUTED)
-    _label(ax, "y", (z + 0.04 * z, y / 2), WORLD)
-    _label(ax, "v", (f + 0.03 * z, v / 2), ESTIMATED)
-    _label(ax, "axis", (1.15 * z, 0.12 * up), MUTED)
-    ax.set(xlim=(-1.5 * f, 1.2 * z), ylim=(1.6 * down, 1.3 * up))
+        ax.plot([end] * 2, [y, row + 0.07], color=MUTED, linewidth=0.8)
+        letter(ax, name, (end / 2, row), IDEAL, fontsize=FONT + 3)
+    ax.plot([0, 0], [y, y + 0.57], color=MUTED, linewidth=0.8)
+    for name, at, by, colour in (
+        ("y", (z, y / 2), (8, -3), WORLD), ("v", (f, v / 2), (7, -4), LENS),
+        ("C, the pinhole", (0, 0), (8, 40), CAMERA), ("image plane", (f, -1), (0, 18), CAMERA),
+        ("film", (-f, -1), (0, 16), "white"), ("axis", (1.22 * z, 0), (4, -4), MUTED),
+    ):  # fmt: skip
+        beside(ax, name, at, by, colour, fontsize=FONT + 1, zorder=6)
+    ax.set(xlim=(-f - 0.6, 1.33 * z), ylim=(y + 0.75, -y - 0.15), aspect="equal")
     ax.axis("off")
     return ax
 
 
-def _label(ax: "Axes", text: str, at: tuple[float, float], colour: str) -> None:
-    letter(ax, text, at, colour, fontsize=FONT + 1, zorder=6)
+def _draw_tree(ax: "Axes", at: float, scale: float, wide: float = 1) -> None:
+    """Draw a tree that reaches from y = 1.5 down there to −1.3, or its picture on a plane."""
+    from matplotlib.patches import Circle, Patch, Polygon
+    from matplotlib.transforms import Affine2D
+
+    place = Affine2D.from_values(wide * scale, -(1 - wide) * 0.45 * scale, 0, scale, at, 0)
+    trunk = [[-0.1, 1.5], [0.1, 1.5], [0.04, -0.3], [-0.04, -0.3]]
+    tree: list[Patch] = [Polygon(trunk, color="#7A5230")]
+    for x, y, r, green in ((-0.3, -0.15, 0.4, "#3E8E54"), (0.3, -0.2, 0.42, "#357D49"),
+                           (0, -0.75, 0.55, "#4BA063")):  # fmt: skip
+        tree.append(Circle((x, y), r, color=green))
+    for part in tree:
+        part.set(transform=place + ax.transData, linewidth=0, zorder=3)
+        ax.add_patch(part)

@@ -134,7 +134,8 @@ def draw_corners(
         for i, inner in ((0, 1), (columns - 1, columns - 2)):
             at, beside = grid[j, [i, inner]]
             if np.isfinite([at, beside]).all():  # on the margin: the square tells where 0 is
-                _write(ax, str(columns * j + i), at + 1.5 * (at - beside), ESTIMATED)
+                away = (at - beside) / max(np.linalg.norm(at - beside), 1e-9) * ax.get_xlim()[1]
+                _write(ax, str(columns * j + i), at + 0.035 * away, ESTIMATED)
     return ax
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, matrix, numbers, points
-from cvnotes.show.axes import arrow, beside, drawn_on, panels
+from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter, panels
 from cvnotes.show.guards import thing
 from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
 
@@ -41,27 +41,29 @@ def draw_stretched_circle(D: npt.ArrayLike) -> Any:
     _, s, Vt = np.linalg.svd(D)
     angle = np.linspace(0, 2 * np.pi, 241)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    left, right = axes = panels(2, width=900, height=400)
-    many = circle[:-1:12]
-    reach = 1.25 * max(1.0, s[0])  # the same on both sides, so that lengths can be compared
-    for ax, around, dots, ends in (
-        (left, circle, many, Vt),
-        (right, circle @ D.T, many @ D.T, Vt @ D.T),
+    # The same scale on both sides, so that lengths can be compared.
+    wide, high = max(1.3, 1.2 * s[0]), max(1.15, 1.15 * float(np.abs(circle @ D.T)[:, 1].max()))
+    left, right = axes = panels(
+        2, width=900, height=round(840 * high / (wide + 1.3)) + 64, width_ratios=(1.3, wide)
+    )
+    for ax, M, reach, names in (
+        (left, np.eye(2), 1.3, "v₁ v₂"),
+        (right, D, wide, "D\xa0v₁ D\xa0v₂"),
     ):
+        around = circle @ M.T
         ax.plot(*around.T, color=MUTED, lw=1)
-        ax.plot(*dots.T, ".", color=MUTED, ms=6)
-        for end, colour in zip(ends, (LENS, ESTIMATED), strict=True):
+        for i in range(0, 240, 20):  # every other one of 24 sectors, so that each is found again
+            ax.fill(*np.vstack([around[i : i + 11], [0, 0]]).T, color="0.5", alpha=0.16, lw=0)
+        for name, v, colour in zip(names.split(" "), Vt, (LENS, ESTIMATED), strict=True):
+            end = M @ v
             arrow(ax, np.zeros(2), end, colour, 2)
+            at = end + 0.18 * (end / max(float(np.hypot(*end)), 1e-12))
+            letter(ax, name, at, colour, fontsize=FONT + 2)
         ax.plot(0, 0, "o", color=IDEAL, ms=4)
-        ax.set_aspect("equal")
-        ax.set(xlim=(-reach, reach), ylim=(-reach, reach))
-    for name, end, colour in zip(("v₁", "v₂"), Vt, (LENS, ESTIMATED), strict=True):
-        for ax, words, at in ((left, name, end), (right, f"D {name}", D @ end)):
-            at = at + 0.12 * reach * (at / max(float(np.hypot(*at)), 1e-12))
-            ax.annotate(words, at, color=colour, fontsize=FONT + 2, ha="center", va="center")
-    left.set(title="all h of length 1", xlabel="first entry of h", ylabel="second entry of h")
-    right.set(title=f"D h: σ₁ = {s[0]:.2f}, σ₂ = {s[1]:.2f}")
-    right.set(xlabel="first entry of D h", ylabel="second entry of D h")
+        ax.set(xlim=(-reach, reach), ylim=(-high, high), aspect="equal")
+        ax.set_axis_off()
+    left.set_title("all h of length 1")
+    right.set_title(f"D h: σ₁ = {s[0]:.2f}, σ₂ = {s[1]:.2f}")
     return axes
 
 
@@ -93,30 +95,35 @@ def draw_two_errors(
     x, w = predicted.T
     if not (w > np.finfo(float).tiny * (1 + np.abs(x))).all():  # else x/w is no number
         raise DegenerateError("points_h: a point with w ≤ 0 is behind the camera and is not seen")
-    ax = drawn_on(ax, width=760, height=400)
-    ax.axvline(1, color=CAMERA, lw=2)
+    ax = drawn_on(ax, width=760, height=300)
+    ax.axvline(1, color=CAMERA, lw=6, alpha=0.35)
     for xi, wi, mi in zip(x, w, seen, strict=True):
+        ax.fill([0, wi, wi], [0, xi, mi * wi], color=LENS, alpha=0.08, lw=0)
         ax.plot([0, wi], [0, xi], color=MUTED, lw=1)
         ax.plot([0, wi], [0, mi * wi], color=MUTED, lw=1, ls="--")
         outwards = 16 if xi < 0 else -16  # there no ray passes
-        errors = ((1.0, ESTIMATED, (-7, outwards), "right"), (wi, LENS, (7, 0), "left"))
+        errors = ((1.0, ESTIMATED, (-7, outwards), "right"), (wi, LENS, (9, 0), "left"))
         for depth, colour, offset, side in errors:
             gap = np.array([xi / wi, mi]) * depth
             ax.plot([depth, depth], gap, color=colour, lw=4, solid_capstyle="butt")
             beside(ax, f"{abs(gap[1] - gap[0]):.2f}", (depth, gap.mean()), offset, colour,
                    ha=side, va="center", fontsize=FONT)  # fmt: skip
         ax.plot(wi, xi, "s", color=WORLD, ms=6)
-        ax.plot([1, 1], [xi / wi, mi], "o", color=IDEAL, ms=3)
-    ax.plot(0, 0, "^", color=CAMERA, ms=10)
-    top = 1.15 * float(max(np.abs(x).max(), np.abs(seen * w).max(), 0.1))
-    ax.set(xlim=(-0.06 * w.max(), 1.12 * w.max()), ylim=(top, -top))
-    beside(ax, "w = 1", (1, -top), (4, -12), CAMERA)
-    ax.plot([], [], color=MUTED, lw=1, label="where H puts the point")
-    ax.plot([], [], color=MUTED, lw=1, ls="--", label="where it was seen")
-    ax.plot([], [], color=ESTIMATED, lw=4, label="geometric error, on w = 1")
-    ax.plot([], [], color=LENS, lw=4, label="algebraic error, at the point's own w")
-    ax.legend(loc="lower right", fontsize=FONT, frameon=False)
-    ax.set(xlabel="w, the depth in units of H", ylabel="x")
+    ax.plot(0, 0, ">", color=CAMERA, ms=12)
+    both = np.concatenate([x, seen * w])
+    top, bottom = (1.15 * max(float((side * both).max()), 0.6, 0.1 * w.max()) for side in (-1, 1))
+    far = int(w.argmax())  # there the names stand
+    for text, at, by, colour in (
+        ("geometric error, on w = 1", (1, -top), (8, -10), ESTIMATED),
+        ("algebraic error", (w[far], (x[far] + seen[far] * w[far]) / 2), (38, 0), LENS),
+        ("where H puts it", (w[far], x[far]), (9, 3), WORLD),
+        ("where it was seen", (w[far], seen[far] * w[far]), (9, -4), MUTED),
+    ):
+        beside(ax, text, at, by, colour, va="center", fontsize=FONT)
+    depths = np.unique([0, 1, *w])
+    ax.set(xlim=(-0.06 * w.max(), 1.32 * w.max()), ylim=(bottom, -top), xticks=depths, yticks=[])
+    ax.spines["left"].set_visible(False)
+    ax.set_xlabel("w, the depth in units of H")
     return ax
 
 
@@ -128,21 +135,21 @@ def draw_valley(
     *,
     ax: "Axes | None" = None,
 ) -> "Axes":
-    """Draw a cost over two unknowns as a map, light where it is low, and ways that steps took.
+    """Draw a cost over two unknowns as a relief, lit from above left, and ways that steps took.
 
     Parameters
     ----------
     x, y : array_like, shapes (n,) and (m,)
         Values of the two unknowns.
     cost : array_like, shape (m, n)
-        Positive; its logarithm is drawn, the low part in finer steps.
+        Positive; its logarithm is drawn.
     paths : mapping from name to array_like of shape (k, 2)
         At most three ways, from their start on.
 
     Examples
     --------
     >>> ax = draw_valley([0, 1], [0, 1], [[1, 2], [3, 4]], {"down": [[1, 1], [0, 0]]})
-    >>> ax.get_legend().get_texts()[0].get_text()
+    >>> ax.texts[0].get_text()
     'down'
     """
     x, y = numbers(x, "x").ravel(), numbers(y, "y").ravel()
@@ -155,21 +162,25 @@ def draw_valley(
         raise CvnotesError("cost: expected positive numbers, whose logarithm can be drawn")
     if not 1 <= len(thing(paths, "paths", Mapping)) <= 3:  # type: ignore[type-abstract]
         raise CvnotesError("paths: expected one to three ways")
+    from matplotlib.colors import LightSource, LinearSegmentedColormap
+
     ax = drawn_on(ax, width=760, height=520)
     z = np.log10(height)
-    levels = np.unique(np.quantile(z, np.linspace(0, 1, 13) ** 2))  # most of them where it is low
-    if len(levels) == 1:
-        levels = levels + [0.0, 1.0]
-    shades = 0.95 - 0.6 * np.linspace(0, 1, len(levels) - 1)
-    ax.contourf(x, y, z, levels=levels, colors=[str(shade) for shade in shades])
-    first = "start"
-    for (name, path), colour in zip(paths.items(), (ESTIMATED, LENS, WORLD), strict=False):
+    paper = LinearSegmentedColormap.from_list("", ["#FFFDF6", "#D9C7A3", "#8A7350"])
+    lit = LightSource(azdeg=330, altdeg=40).shade(z[::-1], paper, blend_mode="soft", vert_exag=25)[
+        ::-1
+    ]
+    within = x.min(), x.max(), y.min(), y.max()
+    ax.imshow(lit, extent=within, origin="lower", aspect="auto", interpolation="bilinear")
+    ax.contour(x, y, z, levels=16, colors="#5A4A30", linewidths=0.5, alpha=0.5)
+    looks = ((ESTIMATED, 3.6), (LENS, 1.6), (WORLD, 1.0))  # the next lies on the one before
+    for (name, path), (colour, lw) in zip(paths.items(), looks, strict=False):
         way: Array = points(path, name, 2).reshape(-1, 2)
         if not len(way):
             raise DegenerateError(f"{name}: expected at least the start of the way")
-        ax.plot(*way.T, "-o", color=colour, lw=1.8, ms=5, label=name)
-        ax.plot(*way[0], "s", color=IDEAL, ms=8, zorder=4, label=first)
-        first = ""
-    ax.set(xlim=(x.min(), x.max()), ylim=(y.min(), y.max()))
-    ax.legend(loc="upper left", fontsize=FONT)
+        ax.plot(*way.T, "-o", color=colour, lw=lw, ms=5, path_effects=halo())
+        ax.plot(*way[0], "s", color=IDEAL, ms=8, zorder=4)
+        up = 8 if way[-1, 1] > way[:, 1].min() else -18  # away from the way
+        beside(ax, name, way[-1], (-12, up), colour, ha="right", path_effects=halo())
+    ax.set(xlim=within[:2], ylim=within[2:], xticks=[], yticks=[], frame_on=False)
     return ax

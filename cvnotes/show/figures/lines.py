@@ -116,21 +116,27 @@ def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     if not (x_h != 0).any(axis=1).all():
         raise CvnotesError("x_h: [0 0] is no point, and has no line of its own")
     reach = 5.0  # of the axes, to both sides
-    ax = drawn_on(ax, height=330)
+    ax = drawn_on(ax, width=760, height=320)
     ax.axhline(1, color=WORLD, linewidth=2.2, zorder=1)
+    text: dict[str, Any] = {"fontsize": FONT + 1, "zorder": 5, "path_effects": halo()}
     for x, w in x_h:
         ideal = abs(w) < 1e-100 * abs(x)
-        ax.axline((0, 0), (x, w), color=ESTIMATED if ideal else IDEAL, linewidth=1.1, zorder=2)
-        if not ideal:
+        colour = ESTIMATED if ideal else IDEAL
+        ax.axline((0, 0), (x, w), color=colour, linewidth=1.1, zorder=2)
+        if ideal:
+            beside(ax, "[1 0]", (reach, 0), (6, 0), colour, va="center", **text)
+        elif abs(x / w) <= reach:
             ax.plot(x / w, 1, "s", color=WORLD, markersize=6, zorder=3)
+            name = f"{x / w:g}".replace("-", "−")
+            beside(ax, name, (x / w, 1), (0, 8), WORLD, ha="center", **text)
         if w != 1:
-            ax.plot(x, w, "o", color=ESTIMATED if ideal else IDEAL, markersize=5, zorder=3)
+            ax.plot(x, w, "o", color=colour, markersize=5, zorder=3)
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=8, zorder=4)
-    text: dict[str, Any] = {"fontsize": FONT, "zorder": 5, "path_effects": halo()}
-    beside(ax, "ℝ, at\nw = 1", (reach, 1), (6, 0), WORLD, va="center", **text)
-    beside(ax, "[0 0]", (0, 0), (0, -20), MUTED, ha="center", **text)
-    ax.set(xlim=(-reach, reach), ylim=(-0.35 * reach, 0.65 * reach), aspect="equal")
-    ax.set(xlabel="first coordinate, wx", ylabel="last coordinate, w")
+    beside(ax, "ℝ, at w = 1", (reach, 1), (6, 0), WORLD, va="center", **text)
+    beside(ax, "[0 0]", (0, 0), (0, -36), MUTED, ha="center", **text)
+    ax.set(xlim=(-reach, reach), ylim=(-0.3 * reach, 0.45 * reach), aspect="equal")
+    ax.set(xlabel="first coordinate, wx", ylabel="last coordinate, w", xticks=[], yticks=[])
+    ax.spines[:].set_visible(False)
     return ax
 
 

@@ -8,9 +8,9 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, ShapeError, number
 from cvnotes.calibration import Calibration, prediction_std
-from cvnotes.show.axes import as_picture, drawn_on, picture_axes
+from cvnotes.show.axes import as_picture, drawn_on, letter, panels
 from cvnotes.show.guards import calibrated, count, eight_bits, pictures
-from cvnotes.show.style import ESTIMATED, FONT
+from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,7 +22,7 @@ def draw_prediction_error(
     ax: "Axes | None" = None,
     between: tuple[float, float] | None = None,
 ) -> "Axes":
-    """Draw, over the picture, how far off the image of a fixed ray may be, in colours and lines.
+    """Draw, over the picture, how far off the image of a fixed ray may be, in bands of colour.
 
     Parameters
     ----------
@@ -32,7 +32,8 @@ def draw_prediction_error(
         Deviations in px at the ends of the colours, so that two maps can be compared; by default
         those of this map.
     """
-    from matplotlib.colors import BoundaryNorm
+    from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.ticker import MaxNLocator
 
     calibrated(calibration)
     w, h = calibration.size
@@ -44,20 +45,17 @@ def draw_prediction_error(
         least, most = (number(x, "between", at_least=0) for x in between)
         if not least < most:
             raise CvnotesError(f"between: expected (least, most), got ({least:g}, {most:g})")
-    levels = least + (most - least) * np.linspace(0, 1, 13) ** 2  # most of the map is low
-    norm = BoundaryNorm(levels, 256, extend="both")
-    colours = ax.contourf(u, v, std, levels=levels, cmap="cividis", norm=norm, extend="both")
-    lines = ax.contour(u, v, std, levels=levels[1::2], colors="white", linewidths=0.8)
-    bar = ax.figure.colorbar(colours, ax=ax, shrink=0.7, pad=0.02, aspect=16, format="%.2g")
-    bar.add_lines(lines)
-    ax.clabel(lines, levels[1:7:2], fmt="%.2g", fontsize=FONT - 2)
-    bar.set_ticks(list(levels[1::2]))
-    bar.set_label("σ (px)", fontsize=FONT - 1)
-    bar.ax.tick_params(labelsize=FONT - 1)
+    levels = MaxNLocator(6).tick_values(least, most)[1:]
+    colours = LinearSegmentedColormap.from_list("", ["white", ESTIMATED])
+    ax.contourf(u, v, std, levels=levels, cmap=colours, extend="both")
+    ax.contour(u, v, std, levels=levels, colors="white", linewidths=0.8)
     for m in calibration.image_points:
-        ax.plot(*m.T, ".", color=ESTIMATED, ms=1.5)
-    ax.set_title("standard deviation of a predicted pixel")
-    return as_picture(ax, calibration.size)
+        ax.plot(*m.T, ".", color=MUTED, ms=1.5)
+    for i, j in ((0, 0), (0, 64), (24, 32), (48, 0), (48, 64)):  # in the corners and the middle
+        at = 0.9 * u[i, j] + 0.05 * w, 0.94 * v[i, j] + 0.03 * h
+        letter(ax, f"{std[i, j]:#.2g}", at, IDEAL, fontsize=FONT)
+    ax.set_title(f"σ of a pixel: a band is {levels[1] - levels[0]:.2g} px")
+    return as_picture(ax, calibration.size, ticks=False)
 
 
 def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5) -> "Axes":
@@ -85,7 +83,7 @@ def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5) -> "Axes":
     for i, image in enumerate(small):
         top, left = (i // columns) * (h + gap), (i % columns) * (w + gap)
         wall[top : top + h, left : left + w] = image
-    ax: Axes = picture_axes((wall.shape[1], wall.shape[0]))
+    ax: Axes = panels(height=min(max(round(640 * len(wall) / wall.shape[1]), 60), 1200))
     ax.imshow(wall, cmap="gray", vmin=0, vmax=255)
     ax.axis("off")
     return ax

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, DegenerateError, image_size, number
 from cvnotes.base.digits import round_number
-from cvnotes.calibration.coverage import count_cells, joined
+from cvnotes.calibration.coverage import count_cells
 from cvnotes.show.axes import as_picture, drawn_on, letter
 from cvnotes.show.guards import calibrated
 from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED
@@ -45,12 +45,12 @@ def draw_residuals(
     if magnify is None:
         magnify = round_number(0.04 * width / longer) if longer > 0 else 1.0
     magnify = number(magnify, "magnify")
-    ax = as_picture(drawn_on(ax, calibration.size), calibration.size)
+    ax = as_picture(drawn_on(ax, calibration.size), calibration.size, ticks=False)
     ax.quiver(
         *(m - r).T, *(r * magnify).T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1,
-        units="width", width=0.0018, headwidth=4, headlength=4.5, headaxislength=4,
+        units="width", width=0.0016, headwidth=3.5, headlength=4, headaxislength=3.6, minlength=0,
     )  # fmt: skip
-    ax.set_title(f"Residuals × {magnify:,g} (RMS {calibration.rms:.3f} px per point)")
+    ax.set_title(f"residuals × {magnify:g}, RMS {calibration.rms:.3f} px per point")
     return ax
 
 
@@ -60,7 +60,7 @@ def draw_coverage(
     *,
     ax: "Axes | None" = None,
 ) -> "Axes":
-    """Draw the corners, and how many there are in each cell of the picture.
+    """Draw how many corners there are in each cell of the picture: the more, the darker it is.
 
     The lens is known where corners were; in the empty cells, which are hatched, it is guessed.
 
@@ -74,23 +74,25 @@ def draw_coverage(
     Examples
     --------
     >>> draw_coverage([[[10, 10], [600, 400]]], (640, 480)).get_title()
-    'Corners in 2 of 48 cells of the picture'
+    'corners in 2 of 48 cells of the picture'
     """
+    from matplotlib.colors import LinearSegmentedColormap
     from matplotlib.patches import Rectangle
 
     size = image_size(size)
-    m, count = joined(image_points), count_cells(image_points, size)
+    count = count_cells(image_points, size)
     side = np.array(size) / count.shape
-    ax = as_picture(drawn_on(ax, size), size)
-    ax.plot(*m.T, ".", color=ESTIMATED, markersize=4, alpha=0.35, markeredgewidth=0, zorder=2)
+    ax = as_picture(drawn_on(ax, size), size, ticks=False)
+    tint = LinearSegmentedColormap.from_list("", ["white", "#F0B98F"])
     for cell, corners in np.ndenumerate(count):
         u, v = (np.array(cell) * side - 0.5).tolist()
-        look: dict[str, Any] = {"fill": False} if corners else {"fc": "#EEEEEE", "hatch": "//"}
-        ax.add_patch(Rectangle((u, v), *side, edgecolor="#C4C4C4", zorder=1.5, **look))
+        look: dict[str, Any] = {"fc": tint(corners / max(count.max(), 1)), "ec": "white"}
+        if not corners:
+            look = {"fc": "#EEEEEE", "ec": "#C4C4C4", "hatch": "//"}
+        ax.add_patch(Rectangle((u, v), *side, **look))
         if corners:
-            middle = u + side[0] / 2, v + side[1] / 2
-            letter(ax, f"{corners}", middle, IDEAL, fontsize=FONT - 1)
-    ax.set_title(f"Corners in {(count > 0).sum()} of {count.size} cells of the picture")
+            letter(ax, f"{corners}", (u + side[0] / 2, v + side[1] / 2), IDEAL, path_effects=[])
+    ax.set_title(f"corners in {(count > 0).sum()} of {count.size} cells of the picture")
     return ax
 
 

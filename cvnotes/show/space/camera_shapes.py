@@ -30,7 +30,7 @@ def camera_shapes(
     image : ndarray of uint8, optional
         A picture to put on the image plane, (height, width) or (height, width, 3).
     name : str
-        Written above it.
+        Written beside its centre.
     meaning : {"camera", "estimated", ...}
         Sets the colour.
 
@@ -53,7 +53,7 @@ def camera_shapes(
     shapes: Shapes = (Lines(f"{name} pyramid", ends, colour),)
     if image is not None:
         shapes += (Photo(f"{name} picture", corners, _picture(image)),)
-    return (*shapes, Label(name, up - 0.12 * (corners[3] - corners[0]), colour))
+    return (*shapes, Label(name, camera.centre, colour, camera.centre - up))
 
 
 def ray_shapes(
@@ -160,7 +160,7 @@ def plane_shapes(camera: Camera, z: float = 1.0) -> Shapes:
     return (
         Faces("z = 1 plane", corners[None], pale),
         Lines("z = 1 outline", ends, CAMERA, 1.5),
-        Label("z = 1", corners[1], CAMERA),
+        Label("z = 1", corners[1], CAMERA, corners[1] - corners[3]),
     )
 
 
@@ -179,7 +179,7 @@ def dot_shapes(W: npt.ArrayLike, name: str, *, radius: float = 8.0) -> Shapes:
         [[belt[i], belt[(i + 1) % 4], tip] for tip in (z, -z) for i in range(4)]
     )
     colours = np.tile([*rgb(WORLD), 1.0], (8, 1))
-    return Faces(f"{name} dot", corners, colours), Label(name, at - 3.0 * y, WORLD)
+    return Faces(f"{name} dot", corners, colours), Label(name, at, WORLD, -y)
 
 
 def _on_plane(camera: Camera, xy: Array, z: float) -> Array:

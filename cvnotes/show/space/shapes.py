@@ -43,11 +43,12 @@ class Photo(NamedTuple):
 
 
 class Label(NamedTuple):
-    """Words at a point (3,): a name, or the letter of an axis."""
+    """Words beside a point (3,): a name, or the letter of an axis, and the way they stand off."""
 
     name: str
     at: Array
     colour: str
+    way: Array = np.zeros(3)
 
 
 Shape = Faces | Lines | Photo | Label
@@ -88,10 +89,11 @@ def axes_shapes(
         head = axis * length
         ends.append([0 * axis, head])
         ends += [[head, head - tip * axis + s * wing * side] for s in (-1, 1)]
-    names = zip((name, *letters), length * np.vstack([[-0.12] * 3, 1.2 * np.eye(3)]), strict=True)
+    tips = np.vstack([np.zeros(3), length * np.eye(3)])
+    ways = np.vstack([-np.ones(3), np.eye(3)]) @ G[:3, :3].T
     return (
         Lines(f"{name} axes", move(G, np.array(ends)), colour, 2.2),
-        *(Label(words, move(G, at), colour) for words, at in names),
+        *map(Label, (name, *letters), move(G, tips), [colour] * 4, ways),
     )
 
 
@@ -113,7 +115,7 @@ def arrow_shapes(start: npt.ArrayLike, end: npt.ArrayLike, name: str = "") -> Sh
     side = side / np.linalg.norm(side) * np.linalg.norm(way)
     wings = [[end, end - 0.06 * way + s * 0.025 * side] for s in (-1, 1)]
     arrow = Lines(f"{name} arrow", np.array([[start, end], *wings]), ESTIMATED, 2.2)
-    return (arrow, Label(name, start + 0.5 * way + 0.08 * side, ESTIMATED)) if name else (arrow,)
+    return (arrow, Label(name, (start + end) / 2, ESTIMATED, side)) if name else (arrow,)
 
 
 def target_shapes(

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 _ROOM = 0.06  # around the scene, of its longer side
 _GHOST = 0.22  # how strongly a line shows through what hides it
-_LEADER = 18  # points from which on a label has a line to what it names
+_LEADER = 14  # points from which on a label has a line to what it names
+_OFF = 9  # points of paper from what a label names to its middle
 _CLEAR = 2  # px around a label
 # Points of paper by which a label may move, the short ways first.
 _STEPS = [
@@ -129,7 +130,8 @@ def _pierced(ends: Array, corners: Array) -> Array:
     ends, start, end = ends[through], start[through, None], end[through, None]
     at = ends[:, 0] + start / (start - end) * (ends[:, 1] - ends[:, 0])
     part = np.stack([(at - origin) @ side / (side @ side) for side in (right, down)], axis=-1)
-    return np.asarray(at[((part > 0) & (part < 1)).all(axis=-1)])
+    inside = (part > 1e-9) & (part < 1 - 1e-9)  # not at a corner, where its pyramid ends
+    return np.asarray(at[inside.all(axis=-1)])
 
 
 def _write(ax: "Axes", labels: list[Label], on_sheet: Array) -> None:
@@ -149,16 +151,19 @@ def _write(ax: "Axes", labels: list[Label], on_sheet: Array) -> None:
         half = sharp * (np.array(words.get_window_extent().size) / 2 + _CLEAR)
         words.remove()
         place = sharp * ax.transData.transform(at)
-        for step in _STEPS:
+        way = (label.way @ on_sheet) * [1, -1]  # which is short where it leads to the viewer
+        reach = max(float(np.linalg.norm(way)), 0.3 * float(np.linalg.norm(label.way)))
+        off = _OFF * way / (reach or 1)
+        for step in off + _STEPS:
             low, high = (place + sharp * figure.dpi / 72 * step + s * half for s in (-1, 1))
             (left, bottom), (right, top) = np.rint(low).astype(int), np.rint(high).astype(int)
             under = ink[max(bottom, 0) : top, max(left, 0) : right]
             if under.size == (right - left) * (top - bottom) and not under.any():
                 break
         else:
-            step = _STEPS[0]
+            step = off
         under[:] = True
         leader = {"arrowstyle": "-", "color": MUTED, "lw": 0.8, "shrinkA": 1, "shrinkB": 2}
-        far = np.linalg.norm(step) > _LEADER
+        far = np.linalg.norm(step) - half[1] * 72 / figure.dpi / sharp > _LEADER
         style |= {"path_effects": halo(), "zorder": 3e6}
         beside(ax, label.name, at, step, label.colour, arrowprops=leader if far else None, **style)

@@ -90,7 +90,8 @@ def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)
                 meshes = [_mesh(_bars(ends, thickness * width), np.array(to_rgba(colour)))]
             case Photo(name, corners, image):
                 meshes = [_textured(corners, image)]
-            case Label(name, at, colour) if name in _STROKES:
+            case Label(name, at, colour, way) if name in _STROKES:
+                at = at + 1.2 * _LETTER * reach * way / (np.linalg.norm(way) or 1)
                 strokes = at + _LETTER * reach * _facing(_STROKES[name], view or (0, -90))
                 meshes = [_mesh(_bars(strokes, 2 * thickness), np.array(to_rgba(colour)))]
             case Label():
