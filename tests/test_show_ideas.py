@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from matplotlib.lines import Line2D
 
 from cvnotes.base import CvnotesError
 from cvnotes.show import draw_mapped, draw_meanings, draw_pinhole, draw_rays
@@ -21,9 +22,9 @@ def line_on_the_plane(ax):
 
 def test_every_colour_has_its_meaning_in_the_legend():
     ax = draw_meanings()
-    shown = {to_hex(line.get_color()).upper() for line in ax.lines}
-    assert shown == {colour.upper() for colour in COLOURS.values()}
-    assert len(ax.texts) == len(COLOURS)
+    shown = {to_hex(line.get_color()).upper() for line in ax.figure.findobj(Line2D)}
+    assert shown >= {colour.upper() for colour in COLOURS.values()}
+    assert len([text for text in ax.texts if text.get_text()]) == len(COLOURS)
 
 
 def test_points_on_a_line_lie_on_its_plane_in_the_drawing():

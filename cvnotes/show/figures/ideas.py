@@ -39,16 +39,12 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
 
     Examples
     --------
-    >>> [text.get_text().split(chr(10))[0] for text in draw_meanings().texts][2:4]
+    >>> [text.get_text().split(chr(10))[0] for text in draw_meanings().texts][-3:-1]
     ['the truth, or what', 'a point in a picture,']
     """
-    from matplotlib.patches import ConnectionPatch
-
     ax, view = drawn_on(ax, width=900, height=330), (14.0, -150.0)
-    board, there = (
-        Chessboard((4, 3), 40.0),
-        pose(rotation_from_vector([0.1, 0.6, 0.1]), [-60, -90, 600]),
-    )
+    board = Chessboard((4, 3), 40.0)
+    there = pose(rotation_from_vector([0.1, 0.6, 0.1]), [-60, -90, 600])
     camera = Camera(intrinsics(450, 450, 160, 120), lens=Lens(k=(-0.9,)), size=(320, 240))
     image, corner = render(board, camera.moved(there), blur=0.6), move(there, board.points[3])
     seen, true = camera.project(corner), Camera(camera.A).project(corner)
@@ -60,35 +56,19 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     close.imshow(image, cmap="gray", vmin=0, vmax=255, alpha=0.5)
     close.set(xlim=seen[0] + [-7, 7], ylim=seen[1] + [7, -7])
     close.spines[:].set(color=CAMERA, linewidth=1.5)
-    on_pane = np.array([*(seen - [160, 120]) / 450, 1]) * 300 @ sheet(view).T
-    for end in ((0, 0), (0, 1)):
-        ends: dict[str, Any] = {"axesA": ax, "axesB": close, "color": MUTED, "linewidth": 0.8}
-        start = (on_pane[0], on_pane[1])
-        ax.add_artist(ConnectionPatch(start, end, "data", "axes fraction", **ends, zorder=2e6))
-    on_paper = [
-        corner @ sheet(view).T,
-        camera.centre @ sheet(view).T,
-        true,
-        seen,
-        seen + [0.8, 0.9],
-    ]
-    leader = {"arrowstyle": "-", "linewidth": 0.9, "shrinkB": 5}
-    for i, ((meaning, (words, by)), at) in enumerate(zip(_MEANINGS.items(), on_paper, strict=True)):
-        colour, where = COLOURS[meaning], ax if i < 2 else close
-        where.plot(*at, MARKERS[meaning], color=colour, markersize=10 if i < 2 else 13,
-                   markeredgewidth=2.5, zorder=3e6)  # fmt: skip
-        ax.annotate(
-            words,
-            (at[0], at[1]),
-            by,
-            xycoords=where.transData,
-            textcoords="axes fraction",
-            va="center",
-            zorder=4e6,
-            color=colour,
-            fontsize=FONT + 1,
-            arrowprops=None if i < 2 else leader | {"color": colour},
-        )
+    on_pane = 300 * np.array([*(seen - [160, 120]) / 450, 1])
+    here, centre, start = np.array([corner, camera.centre, on_pane]) @ sheet(view).T
+    line: dict[str, Any] = {"arrowstyle": "-", "linewidth": 0.9, "shrinkA": 0}
+    for side in (0, 1):
+        ax.annotate("", tuple(start), (0, side), "data", close.transAxes, zorder=2e6,
+                    arrowprops=line | {"shrinkB": 0, "color": MUTED})  # fmt: skip
+    places = (here, centre, true, seen, seen + [0.8, 0.9])
+    for (meaning, (words, by)), at in zip(_MEANINGS.items(), places, strict=True):
+        colour, where = COLOURS[meaning], ax if meaning in ("world", "camera") else close
+        where.plot(*at, MARKERS[meaning], color=colour, ms=12, mew=2.5, zorder=3e6)
+        leader = None if where is ax else line | {"color": colour, "shrinkB": 5}
+        ax.annotate(words, (at[0], at[1]), by, where.transData, "axes fraction", va="center",
+                    zorder=4e6, color=colour, fontsize=FONT + 1, arrowprops=leader)  # fmt: skip
     return ax
 
 
@@ -257,9 +237,8 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
     span: dict[str, Any] = {"arrowstyle": "<->", "color": IDEAL, "shrinkA": 0, "shrinkB": 0}
     for end, row, name in ((f, y + 0.2, "f"), (z, y + 0.5, "z")):
         ax.annotate("", (0, row), (end, row), arrowprops=span)
-        ax.plot([end] * 2, [y, row + 0.07], color=MUTED, linewidth=0.8)
+        ax.plot([[0, end]] * 2, [[y] * 2, [row + 0.07] * 2], color=MUTED, linewidth=0.8)
         letter(ax, name, (end / 2, row), IDEAL, fontsize=FONT + 3)
-    ax.plot([0, 0], [y, y + 0.57], color=MUTED, linewidth=0.8)
     for name, at, by, colour in (
         ("y", (z, y / 2), (8, -3), WORLD), ("v", (f, v / 2), (7, -4), LENS),
         ("C, the pinhole", (0, 0), (8, 40), CAMERA), ("image plane", (f, -1), (0, 18), CAMERA),
@@ -273,15 +252,13 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
 
 def _draw_tree(ax: "Axes", at: float, scale: float, wide: float = 1) -> None:
     """Draw a tree that reaches from y = 1.5 down there to −1.3, or its picture on a plane."""
-    from matplotlib.patches import Circle, Patch, Polygon
+    from matplotlib.patches import Circle, Polygon
     from matplotlib.transforms import Affine2D
 
     place = Affine2D.from_values(wide * scale, -(1 - wide) * 0.45 * scale, 0, scale, at, 0)
     trunk = [[-0.1, 1.5], [0.1, 1.5], [0.04, -0.3], [-0.04, -0.3]]
-    tree: list[Patch] = [Polygon(trunk, color="#7A5230")]
-    for x, y, r, green in ((-0.3, -0.15, 0.4, "#3E8E54"), (0.3, -0.2, 0.42, "#357D49"),
-                           (0, -0.75, 0.55, "#4BA063")):  # fmt: skip
-        tree.append(Circle((x, y), r, color=green))
-    for part in tree:
+    leaves = (((-0.3, -0.15), "#3E8E54"), ((0.3, -0.2), "#357D49"), ((0, -0.8), "#4BA063"))
+    crown = [Circle(middle, 0.5 if middle[0] == 0 else 0.4, color=c) for middle, c in leaves]
+    for part in (Polygon(trunk, color="#7A5230"), *crown):
         part.set(transform=place + ax.transData, linewidth=0, zorder=3)
         ax.add_patch(part)

@@ -92,12 +92,11 @@ def draw_altitudes(
     draw_points(c, ax=ax)
     draw_points(v, ax=ax)
     _widened(ax, v)
-    beside(ax, "c", c, (12, 12), ESTIMATED, ha="center", va="center", fontsize=FONT,
-           fontweight="bold", path_effects=halo())  # fmt: skip
-    for name, corner, away in zip("XYZ", v, v - v.mean(axis=0), strict=True):
-        shift = 14 * away / np.linalg.norm(away) * (1, -1)  # points on paper count upwards
-        beside(ax, name, corner, shift, ESTIMATED, ha="center", va="center", fontsize=FONT,
-               fontweight="bold", annotation_clip=False)  # fmt: skip
+    away = v - v.mean(axis=0)
+    shifts = 14 * away / np.linalg.norm(away, axis=1, keepdims=True) * (1, -1)  # paper: upwards
+    for name, at, shift in zip("cXYZ", [c, *v], [(12, 12), *shifts], strict=True):
+        beside(ax, name, at, shift, ESTIMATED, ha="center", va="center", fontsize=FONT + 1,
+               fontweight="bold", path_effects=halo(), annotation_clip=False)  # fmt: skip
     return ax
 
 
