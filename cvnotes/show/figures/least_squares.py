@@ -135,7 +135,7 @@ def draw_valley(
     *,
     ax: "Axes | None" = None,
 ) -> "Axes":
-    """Draw a cost over two unknowns as a relief, lit from above left, and ways that steps took.
+    """Draw a cost over two unknowns as ground, light where it is low, and ways that steps took.
 
     Parameters
     ----------
@@ -162,16 +162,14 @@ def draw_valley(
         raise CvnotesError("cost: expected positive numbers, whose logarithm can be drawn")
     if not 1 <= len(thing(paths, "paths", Mapping)) <= 3:  # type: ignore[type-abstract]
         raise CvnotesError("paths: expected one to three ways")
-    from matplotlib.colors import LightSource, LinearSegmentedColormap
+    from matplotlib.colors import LinearSegmentedColormap
 
     ax = drawn_on(ax, width=760, height=520)
     z = np.log10(height)
     paper = LinearSegmentedColormap.from_list("", ["#FFFDF6", "#D9C7A3", "#8A7350"])
-    lit = LightSource(azdeg=330, altdeg=40).shade(z[::-1], paper, blend_mode="soft", vert_exag=25)[
-        ::-1
-    ]
     within = x.min(), x.max(), y.min(), y.max()
-    ax.imshow(lit, extent=within, origin="lower", aspect="auto", interpolation="bilinear")
+    low = float(np.quantile(z, 0.005))  # the hollow's own depths would take all the tones
+    ax.imshow(z, paper, aspect="auto", vmin=low, extent=within, origin="lower")
     ax.contour(x, y, z, levels=16, colors="#5A4A30", linewidths=0.5, alpha=0.5)
     looks = ((ESTIMATED, 3.6), (LENS, 1.6), (WORLD, 1.0))  # the next lies on the one before
     for (name, path), (colour, lw) in zip(paths.items(), looks, strict=False):
