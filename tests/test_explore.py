@@ -50,6 +50,7 @@ from cvnotes.show.explore.page import asked
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.explore.pinhole import behind_a_hole
 from cvnotes.show.explore.rectification import lines_from
+from cvnotes.show.explore.ruler import behind_the_first
 from cvnotes.show.explore.triangle import camera_of
 from cvnotes.show.explore.votes import window_at
 
@@ -57,8 +58,8 @@ from cvnotes.show.explore.votes import window_at
 MARGIN, TITLE, WIDTH = 3, 22, 440
 MODELS = {name: explore.model(name) for name in explore.NAMES}
 STORIES = (
-    "straighten", "shadows", "triangle", "pinhole", "votes", "fold", "folds", "finding", "columns",
-    "depth",
+    "straighten", "ring", "ruler", "shadows", "triangle", "pinhole", "votes", "fold", "folds",
+    "finding", "columns", "depth",
 )  # fmt: skip
 each_model = pytest.mark.parametrize("name", explore.NAMES)
 
@@ -582,6 +583,34 @@ def test_the_votes_of_the_photograph_cross_at_the_true_corner_and_nowhere_else()
         assert np.allclose([crossing_u, crossing_v], truth, atol=0.15)
 
 
+def test_a_class_goes_through_infinity_and_its_dot_once_round_the_ring():
+    ring = MODELS["ring"]
+    for angle in (-60, 0, 45, 89, 91, 180, 250):
+        drawing = ring.drawing(angle=angle)
+        assert np.isclose(numbers(drawing.sentence)[2], np.tan(np.radians(angle)), rtol=1e-3)
+        dot = next(grip for grip in drawing.grips if grip.name == "dot")
+        (a, b), x = dot.at, np.tan(np.radians(angle))
+        assert np.isclose(a**2 + (b - 0.5) ** 2, 0.25, rtol=1e-4)  # on the ring,
+        assert np.isclose(a, x * (1 - b), atol=1e-4)  # and seen from its top over its number
+    assert "point at infinity" in ring.drawing(angle=90).sentence
+    assert ring.dragged("dot", (-0.05, 0.99), angle=89)["angle"] > 90
+    assert ring.dragged("line", (-1, 1), angle=89)["angle"] == 135
+    assert ring.dragged("line", (-1, 1), angle=-20)["angle"] == -45
+
+
+def test_the_ruler_reads_what_the_camera_photographed_and_errs_as_far_as_a_click():
+    P = Camera(course.camera().A).P
+    for t in (10, 25, 50, 75, 200):  # m behind the first pole
+        _, v, w = P @ [-4000, 1950, 15000 + 1000 * t, 1]
+        assert np.isclose(behind_the_first(v / w), t, rtol=1e-9)
+    rng, feet = np.random.default_rng(3), [[-4, 1.95, 15 + t] for t in (0, 75)]
+    (a, c), end = Camera(course.camera().A).project(feet), (325, 238)
+    along = (end - a) / np.linalg.norm(end - a)
+    clicked = c + rng.normal(0, 0.3, (4000, 1)) * along
+    said = numbers(MODELS["ruler"].drawing(row=round(float(c[1]), 1)).sentence)
+    assert abs(said[2] - behind_the_first(clicked[:, 1]).std()) < 0.08
+
+
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():
     said = [numbers(MODELS["tilt"].drawing(tilt=tilt).sentence)[1] for tilt in (0, 10, 20, 30, 45)]
     assert said == [0.0, 0.6, 2.2, 3.9, 6.0]
@@ -971,7 +1000,9 @@ ON_A_WAY = {  # along a curve, by its x
     ("fold", "fold"),
     ("folds", "k1"),
     ("pinhole", "hole"),
+    ("ruler", "foot"),
 }
+TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {"nine", "row", "depth", "eye"}  # the eye to the nearest place of its half circle
 
 
@@ -996,8 +1027,9 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
         assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
     elif held in UP_AND_DOWN:
         assert off[1] < 9 or held == "eye"
-    elif held == "rails":  # its length stays, its direction follows
-        turned = np.arctan2(*wanted) - np.arctan2(*after.at)
+    elif held in TURNS_ABOUT:  # its direction follows
+        (a, b), (c, d) = wanted - TURNS_ABOUT[held], np.array(after.at) - TURNS_ABOUT[held]
+        turned = np.arctan2(a * d - b * c, a * c + b * d)
         assert abs(np.degrees(turned)) <= 0.5 + 1e-9
     else:
         assert off.max() < 9, off  # px; whole degrees are up to 8 px apart

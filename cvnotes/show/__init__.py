@@ -15,6 +15,8 @@ from cvnotes.show.explore import (
     explore_pinhole,
     explore_projection,
     explore_rectification,
+    explore_ring,
+    explore_ruler,
     explore_shadows,
     explore_straighten,
     explore_tilt,
@@ -155,6 +157,8 @@ __all__ = [
     "ESTIMATED",
     # explorations
     "explore_straighten",
+    "explore_ring",
+    "explore_ruler",
     "explore_shadows",
     "explore_projection",
     "explore_triangle",

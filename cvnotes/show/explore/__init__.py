@@ -23,6 +23,8 @@ from cvnotes.show.explore.noise import noise_model
 from cvnotes.show.explore.pinhole import pinhole_model
 from cvnotes.show.explore.projection import projection_model
 from cvnotes.show.explore.rectification import rectification_model
+from cvnotes.show.explore.ring import ring_model
+from cvnotes.show.explore.ruler import ruler_model
 from cvnotes.show.explore.shadows import shadows_model
 from cvnotes.show.explore.straighten import straighten_model
 from cvnotes.show.explore.tilt import tilt_model
@@ -44,9 +46,11 @@ _MODELS: dict[str, Callable[[Camera, Chessboard], Model]] = {
     "rectification": rectification_model,
     "tilt": tilt_model,
 }
-# What the course itself has photographed: no other camera or board can be given.
+# What the course itself has photographed or thought of: no other camera or board can be given.
 _STORIES: dict[str, Callable[[], Model]] = {
     "straighten": straighten_model,
+    "ring": ring_model,
+    "ruler": ruler_model,
     "shadows": shadows_model,
     "triangle": triangle_model,
     "pinhole": pinhole_model,
@@ -68,8 +72,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     name : str
         One of `NAMES`.
     camera, board : optional
-        By default the course's. "straighten", "shadows", "triangle", "pinhole", "votes", "fold",
-        "folds", "finding", "columns" and "depth" show photographs of the course, and take none.
+        By default the course's. What shows photographs or a thought of the course's own takes
+        none.
 
     Raises
     ------
@@ -142,6 +146,16 @@ def explore_tilt(*, camera: Camera | None = None, board: Chessboard | None = Non
 def explore_straighten() -> "Explorer":
     """Move the k1 that is taken off a photograph, until a row of its corners is straight."""
     return _explorer("straighten", None)
+
+
+def explore_ring() -> "Explorer":
+    """Turn a class of pairs through infinity, and watch its dot go round a ring."""
+    return _explorer("ring", None)
+
+
+def explore_ruler() -> "Explorer":
+    """Pull a foot along a row of poles, and read from the picture how far away it is."""
+    return _explorer("ruler", None)
 
 
 def explore_shadows() -> "Explorer":

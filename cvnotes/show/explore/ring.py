@@ -1,0 +1,109 @@
+"""Explore the projective line: a class of pairs turns about the origin, and closes like a ring."""
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
+from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD
+
+_NUMBERS = np.array([0, 0.5, 1, 2, 4, 8, -8, -4, -2, -1, -0.5])
+_WIDE, _FAINT = 2.2, "#CCCCCC"
+
+
+def ring_model() -> Model:
+    """Make the model of the pairs [wx, w], with their ring."""
+    settings = (
+        Setting("angle", "angle (°)", -90, 270, 0.5, 45, "how far the line has turned from x = 0"),
+    )
+    about = (
+        "Left, lines through the origin: each is one class of pairs, and crosses w = 1 at its "
+        "number x. Right, a ring on the line of these numbers: seen from its top, each dot is over "
+        "its x."
+    )
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        turn = np.radians(values["angle"])
+        way = np.array([np.sin(turn), np.cos(turn)]).round(15)  # [wx, w], so that 90° is exact
+        x = float(way[0] / way[1]) if way[1] else np.inf
+        colour = IDEAL if way[1] else ESTIMATED
+        pairs = paper.panel((400, 230), (-3.05, 3.05), (2.2, -1.3), "the pairs [wx  w]")
+        _draw_pairs(pairs, way, x, colour)
+        ring = paper.panel((470, 230), (-_WIDE, _WIDE), (1.55, -0.6), "the same classes as a ring")
+        _draw_ring(ring, way, x, colour)
+        return Drawing(paper.join((pairs, ring)), _sentence(values["angle"], x))
+
+    def turned(values: Values, at: Array) -> Values:
+        """Turn the line to a pair, by the shorter way from where it is."""
+        return {"angle": _nearest(np.degrees(np.arctan2(*at)), values["angle"], 180)}
+
+    def walked(values: Values, at: Array) -> Values:
+        """Turn it to half the angle at which a place of the ring stands."""
+        twice = np.degrees(np.arctan2(at[0], 0.5 - at[1]))
+        return {"angle": _nearest(twice / 2, values["angle"], 180)}
+
+    return Model("ring", about, settings, draw, {"line": turned, "dot": walked})
+
+
+def _nearest(angle: float, to: float, turn: float) -> float:
+    return float(angle + turn * np.round((to - angle) / turn))
+
+
+def _draw_pairs(panel: Panel, way: Array, x: float, colour: str) -> None:
+    for number in _NUMBERS:
+        panel.line(np.outer([-9, 9], [number, 1]), _FAINT, 0.8)
+    panel.line([[-9, 0], [9, 0]], _FAINT, 0.8)
+    panel.line([[-9, 1], [9, 1]], WORLD, 2)
+    panel.text([-2.95, 1.2], "w = 1", WORLD)
+    panel.line(np.outer([-9, 9], way), colour, 2.2)
+    panel.text([0, -0.2], "[0 0]", MUTED, anchor="mt", size=10)
+    if np.isfinite(x):
+        panel.mark([x, 1], "world", 9)
+        panel.text([x, 1.3], _number(x), WORLD, anchor="mm", size=13)
+    panel.grip("line", "the class, a line through the origin", 1.9 * way, 5)
+
+
+def _draw_ring(panel: Panel, way: Array, x: float, colour: str) -> None:
+    round_ = np.radians(np.arange(0, 361, 3))
+    panel.line([[-9, 0], [9, 0]], WORLD, 2)
+    panel.line(np.column_stack([np.sin(round_), 1 - np.cos(round_)]) / 2, WORLD, 2)
+    for number in _NUMBERS:
+        panel.line(_ray(number), _FAINT, 0.8)
+        panel.mark(_dot(np.array([number, 1])), "world", 5)
+        if abs(number) <= 2:
+            panel.text([number, -0.17], _number(number), anchor="mm", size=10)
+    dot = _dot(way)
+    if np.isfinite(x):
+        panel.line(_ray(x), colour, 2.2)
+        panel.mark([x, 0], "world", 9)
+    else:
+        panel.line([[-9, 1], [9, 1]], colour, 2.2)
+    panel.text([0, 1.17], "∞", ESTIMATED, anchor="mm", size=15)
+    panel.mark(dot, "world" if np.isfinite(x) else "estimated", 10)
+    panel.grip("dot", "the dot on the ring", dot, 5)
+
+
+def _dot(way: Array) -> Array:
+    """Return where a pair's dot is, at twice its angle on a ring of diameter 1 that stands on 0."""
+    a, w = way
+    return np.asarray(np.array([a * w, a * a]) / (a * a + w * w))
+
+
+def _ray(x: float) -> Array:
+    """Return the ray from the ring's top to the number x, or to where it has left the panel."""
+    part = min(1, 2 * _WIDE / max(abs(x), 1))
+    return np.array([[0, 1], [part * x, 1 - part]])
+
+
+def _number(x: float) -> str:
+    return f"{x:.3g}".replace("-", "−")
+
+
+def _sentence(angle: float, x: float) -> str:
+    if not np.isfinite(x):
+        return (
+            f"At {angle:g}° the line is level, [1 0]: it never reaches w = 1. Its dot is the top "
+            "of the ring, the same from both sides: the point at infinity."
+        )
+    side = "" if abs(x) < 20 else " Soon it is level; beyond it waits −x on the other side."
+    return f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its dot at {2 * angle:g}°.{side}"

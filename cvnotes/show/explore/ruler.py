@@ -1,0 +1,107 @@
+"""Explore the cross-ratio: two poles and their vanishing point make a picture into a ruler."""
+
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array
+from cvnotes.camera import Camera, intrinsics
+from cvnotes.pictures import course, rails, render_scene
+from cvnotes.show.explore.model import Drawing, Model, Setting, Values
+from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
+
+_CAMERA = Camera(course.camera().A)
+_LEFT, _TOP, _SIZE, _SHARP = 75, 152, (280, 210), 4  # px: what of the picture is shown, how finely
+_X, _GROUND, _UP, _FIRST, _GAP = -4.0, 1.95, -4.05, 15.0, 25.0  # m: the row of poles
+_FEET = _CAMERA.project([[_X, _GROUND, _FIRST + _GAP * i] for i in range(4)])
+_END, _TOP_OF_FIRST = _CAMERA.A[:2, 2], _CAMERA.project([_X, _UP, _FIRST])
+_CLICK, _FARTHEST = 0.3, 112.0  # px by which a foot is missed; m that the plan shows
+
+
+def ruler_model() -> Model:
+    """Make the model of poles beside a railway, and of one that is pulled along their row."""
+    low, high = float(_END[1]) + 2, float(_FEET[0, 1].round())
+    about = (
+        "Poles beside a railway, and an orange pole that moves along their row; beside it the same "
+        "from above, with what the picture alone says about the orange pole's distance."
+    )
+    settings = (
+        Setting("row", "row of the foot (px)", low, high, 0.1, 266, "where its foot is clicked"),
+    )
+
+    @lru_cache(maxsize=1)
+    def photograph() -> Drawn:
+        """Photograph that part of the course's picture of the railway, in finer pixels."""
+        (au, _, u0), (_, av, v0), _ = _SHARP * _CAMERA.A
+        first = (_SHARP - 1) / 2  # the middle of the first pixel, in the fine ones
+        A = intrinsics(au, av, u0 - _SHARP * _LEFT + first, v0 - _SHARP * _TOP + first)
+        size = (_SHARP * _SIZE[0], _SHARP * _SIZE[1])
+        return render_scene(rails(), Camera(A, size=size), samples=4)
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        part = (values["row"] - _FEET[0, 1]) / (_END[1] - _FEET[0, 1])  # of the way to the end
+        foot = _FEET[0] + part * (_END - _FEET[0])
+        off = _CLICK * np.array([-1, 1]) * (_END - _FEET[0])[1] / np.linalg.norm(_END - _FEET[0])
+        t, near, far = behind_the_first([foot[1], *(foot[1] + off)]).tolist()
+        x, y = (_LEFT - 0.5, _LEFT + _SIZE[0] - 0.5), (_TOP - 0.5, _TOP + _SIZE[1] - 0.5)
+        panel = paper.panel((440, 330), x, y, "the picture: pull the orange pole by its foot")
+        panel.image(photograph())
+        panel.line([_FEET[0], _END], IDEAL, 1, dash=4)
+        panel.line([foot, _TOP_OF_FIRST + part * (_END - _TOP_OF_FIRST)], ESTIMATED, 3)
+        panel.mark(_FEET[:2], "lens", 8)
+        for at, name in zip(_FEET[:2], "ab", strict=True):
+            panel.text(at + [-7, 8], name, LENS, anchor="mm", size=14)
+        panel.text(_END + [-8, -9], "∞", IDEAL, anchor="mm", size=14)
+        panel.mark(_END, "ideal", 9)
+        panel.mark(foot, "estimated", 9)
+        panel.text(foot + [9, 9], "c", ESTIMATED, anchor="mm", size=14)
+        panel.grip("foot", "the foot of the orange pole", foot, 4)
+        plan = paper.panel((310, 330), (-8.5, 2.7), (_FARTHEST, -12), "the ground from above (m)")
+        _draw_plan(plan, t, near, far)
+        ratio = t / (t - _GAP) if t != _GAP else np.inf
+        return Drawing(paper.join((panel, plan)), _sentence(foot, t, far - near, ratio))
+
+    def pulled(_: Values, at: Array) -> Values:
+        part = (at[0] - _FEET[0, 0]) / (_END[0] - _FEET[0, 0])
+        return {"row": float(_FEET[0, 1] + part * (_END - _FEET[0])[1])}
+
+    return Model("ruler", about, settings, draw, {"foot": pulled})
+
+
+def behind_the_first(row: npt.ArrayLike) -> Array:
+    """Say how many metres behind pole a the ground is that the row's line shows in row v.
+
+    From the picture alone: with the vanishing point as d the cross-ratio (a, b; c, d) is an
+    ordinary ratio on the ground, r = t / (t − 25).
+    """
+    a, b, c, d = _FEET[0, 1], _FEET[1, 1], np.asarray(row, dtype=float), _END[1]
+    # t = 25 r / (r − 1), multiplied out: it holds at b, too, where r is infinite.
+    return np.asarray(_GAP * (c - a) * (d - b) / ((c - a) * (d - b) - (c - b) * (d - a)))
+
+
+def _draw_plan(panel: Panel, t: float, near: float, far: float) -> None:
+    for (left, right), colour in (((-9, 2), "#E6EFDF"), ((-2.3, 2.3), "#DCD8D2")):
+        panel.polygons([[[left, -20], [right, -20], [right, 120], [left, 120]]], colour)
+    panel.ticks(y=(0, 25, 50, 75, 100))
+    for x in (-0.75, 0.75):
+        panel.line([[x, -20], [x, 120]], MUTED, 1.5)
+    row = [[_X, 25.0 * i] for i in range(5)]
+    panel.mark(row, "world", 7)
+    for at, name in zip(row[:2], "ab", strict=True):
+        panel.text([at[0] - 0.6, at[1]], name, WORLD, anchor="mm", size=13)
+    panel.line([[_X, near], [_X, min(far, 200.0)]], ESTIMATED, 3)
+    panel.mark([_X, t], "estimated", 9)
+    said = f"c  {t:.1f} m" if t < _FARTHEST - 4 else f"c  {t:.0f} m"
+    panel.text([_X + 0.4, min(t, _FARTHEST - 5)], said, ESTIMATED, size=13)
+
+
+def _sentence(foot: Array, t: float, width: float, ratio: float) -> str:
+    where = f"The foot in row {foot[1]:.1f} stands {t:.1f} ± {width / 2:.1f} m behind a"
+    if not np.isfinite(ratio) or abs(ratio) > 999:
+        return f"{where}, at b itself: there the ratio (a, b; c, ∞) is infinite."
+    return (
+        f"{where}: in the picture as on the ground (a, b; c, ∞) = {ratio:.2f}. A click "
+        f"that misses by {_CLICK:g} px along the row makes the ±."
+    )
