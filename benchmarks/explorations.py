@@ -14,14 +14,14 @@ import numpy as np
 from benchmarks import screen
 from cvnotes.base import Array
 from cvnotes.base.png import pack_png
-from cvnotes.show import explore
-from cvnotes.show.explore.model import Model
+from cvnotes.show import explorations
+from cvnotes.show.explorations.model import Model
 
 READY = """import io
 import numpy as np
 import ipywidgets
 from PIL import Image
-from cvnotes.show.explore import model
+from cvnotes.show.explorations import model
 from cvnotes.base.png import pack_png
 packed = [pack_png(model("camera").picture(alpha=alpha)) for alpha in (600, 800)]
 ready, slider = ipywidgets.Image(value=packed[0]), ipywidgets.IntSlider()
@@ -62,12 +62,15 @@ def main() -> None:
         print("Chromium, Playwright or JupyterLab is missing: no times on the screen")
     else:
         calls = {
-            name: f"from cvnotes.show.explore import *\nexplore_{name}()" for name in explore.NAMES
+            name: f"from cvnotes.show import explore\nexplore({name!r})"
+            for name in explorations.NAMES
         }
         on_screen = screen.waited(calls | PEERS, path)
     print(f"{'':26}{'answer':>15}{'packing':>15}{'on the screen':>18}")
-    for name in (*explore.NAMES, *PEERS):
-        columns = kernel_times(explore.model(name)).T if name in explore.NAMES else ((), ())
+    for name in (*explorations.NAMES, *PEERS):
+        columns = (
+            kernel_times(explorations.model(name)).T if name in explorations.NAMES else ((), ())
+        )
         cells = [_cell(times) for times in (*columns, on_screen.get(name, ()))]
         print(f"{name:26}{cells[0]:>15}{cells[1]:>15}{cells[2]:>18}")
 

@@ -57,7 +57,7 @@ html_js_files: list[Any] = ["site.js"]
 # Sphinx's own tags: the site has Python for the browser, and JupyterLite.
 LIVE, LITE = (tags.has(name) for name in ("live", "lite"))  # type: ignore[name-defined] # noqa: F821
 if LIVE:
-    html_static_path += ["static", "../cvnotes/show/explore/grips.js"]
+    html_static_path += ["static", "../cvnotes/show/explorations/grips.js"]
     html_css_files.append("live/live.css")
     defer = {"defer": "defer"}  # in this order, once the page is there
     scripts = ("page", "explore", "exercises", "visit")

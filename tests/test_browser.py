@@ -14,7 +14,7 @@ import pytest
 
 from cvnotes.commands.lab import free_port, start_server, stop, wait_until_up
 from cvnotes.show import IDEAL, WORLD, Lines, build_scene, show_scene
-from cvnotes.show.explore import NAMES, model
+from cvnotes.show.explorations import NAMES, model
 
 pytest.importorskip("jupyterlab", reason="JupyterLab is not installed")
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-EXPLORES = re.compile(r"^explore_\w+\(", re.MULTILINE)
+EXPLORES = re.compile(r"^explore\(", re.MULTILINE)
 # Handles, keys and the way to the kernel are the same for all; test_explore.py tries each model.
 ONE = ("noise",)
 TOKEN = "of-this-test-alone"
@@ -137,7 +137,7 @@ def course(tmp_path_factory):
     place = tmp_path_factory.mktemp("lab")
     folder = shutil.copytree(NOTEBOOKS[0].parent, place / "notebooks") if NOTEBOOKS else place
     saved = folder / "saved.ipynb"
-    _write_scratch(saved, *(f"explore_{name}()" for name in NAMES))
+    _write_scratch(saved, *(f'explore("{name}")' for name in NAMES))
     build = [sys.executable, ROOT / "tools" / "build_notebooks.py", saved]
     subprocess.run(build, check=True, capture_output=True)
     notebook = nbformat.read(saved, as_version=4)
@@ -212,7 +212,7 @@ def seen_saved(lab, tmp_path_factory):
     cells, seen = lab.evaluate(CELLS), {}
     screens = tmp_path_factory.mktemp("saved")
     for name in NAMES:
-        picture = _output(lab, cells, rf"^explore_{name}\(").locator("img")
+        picture = _output(lab, cells, rf'^explore\("{name}"').locator("img")
         picture.wait_for(state="visible", timeout=60_000)
         sharpness = picture.evaluate("img => img.naturalWidth / img.width")
         seen[name] = picture.count(), sharpness, picture.get_attribute("alt")
@@ -238,7 +238,7 @@ def explorers(page, run_once):
 def _write_scratch(path, *sources):
     kernel = {"name": "python3", "display_name": "Python 3"}
     notebook = nbformat.v4.new_notebook(metadata={"kernelspec": kernel})
-    cells = ["from cvnotes.show.explore import *", *sources]
+    cells = ["from cvnotes.show import explore", *sources]
     notebook.cells = [nbformat.v4.new_code_cell(source) for source in cells]
     nbformat.write(notebook, path)
 
@@ -325,7 +325,7 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
         assert sharpness >= 1.5
         assert alt.startswith(model(name).about)
     for name in NAMES:
-        output = _output(page, explorers, rf"^explore_{name}\(")
+        output = _output(page, explorers, rf'^explore\("{name}"')
         output.locator("img.widget-image").wait_for(state="visible", timeout=60_000)
         assert output.locator("img").count() == 1
         settings = model(name).settings
@@ -337,7 +337,7 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
 @pytest.mark.once
 def test_a_chapter_that_was_run_and_saved_opens_with_the_picture_and_no_error(page, course):
     saved = course[0] / "run_and_saved.ipynb"
-    _write_scratch(saved, *(f"explore_{name}()" for name in ONE))
+    _write_scratch(saved, *(f'explore("{name}")' for name in ONE))
     cells = _open_and_run(page, saved.name)
     page.locator(".jp-NotebookPanel:not(.lm-mod-hidden) img.widget-image").wait_for()
     page.evaluate("() => window.jupyterapp.shell.currentWidget.context.save()")
@@ -347,7 +347,7 @@ def test_a_chapter_that_was_run_and_saved_opens_with_the_picture_and_no_error(pa
     page.evaluate(READY)
     page.evaluate(KERNEL_IS_THERE)
     for name in ONE:
-        picture = _output(page, cells, rf"^explore_{name}\(").locator("img")
+        picture = _output(page, cells, rf'^explore\("{name}"').locator("img")
         picture.wait_for(timeout=60_000)
         assert picture.get_attribute("alt").startswith(model(name).about)
     shown = page.locator(".jp-NotebookPanel:not(.lm-mod-hidden)").inner_text()
@@ -381,7 +381,7 @@ def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(empty_
 
 def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, explorers):
     for name in ONE:
-        handle, picture = _explorer(page, explorers, rf"^explore_{name}\(")
+        handle, picture = _explorer(page, explorers, rf'^explore\("{name}"')
         start = picture.evaluate(PICTURE)
         handle.focus()
         for setting in model(name).settings:
@@ -402,7 +402,7 @@ def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, explorers):
 def test_an_exploration_follows_the_keyboard_and_does_not_lag_behind(page, explorers, tmp_path):
     waited = {}
     for name in ONE:
-        handle, picture = _explorer(page, explorers, rf"^explore_{name}\(")
+        handle, picture = _explorer(page, explorers, rf'^explore\("{name}"')
         start = picture.evaluate(PICTURE)
         waited[name] = statistics.median(handle.evaluate(LATENCY))
         page.screenshot(path=tmp_path / f"{name}.png")
@@ -425,7 +425,7 @@ def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, explore
         ("projection", "the vanishing point", ("heading (°)", "slope (°)")),
         ("camera", "the camera, to carry it", ("angle x (°)", "angle y (°)")),
     ):
-        output = _output(page, explorers, rf"^explore_{name}\(")
+        output = _output(page, explorers, rf'^explore\("{name}"')
         grip = output.get_by_label(label)
         grip.wait_for(state="visible", timeout=20_000)
         grip.scroll_into_view_if_needed()
@@ -446,7 +446,7 @@ def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, explore
         if name != "camera":  # it stays under the hand
             assert np.hypot(*np.subtract(_middle(grip), (x - 30, y - 24))) < 8, name
         page.screenshot(path=tmp_path / f"{name}.png")
-    output = _output(page, explorers, r"^explore_homography\(")
+    output = _output(page, explorers, r'^explore\("homography"')
     output.get_by_label("corner 3, bottom right").focus()
     for _ in range(5):  # quicker than pictures are drawn; the notebook keeps its cell
         page.keyboard.press("ArrowDown")

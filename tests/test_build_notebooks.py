@@ -57,18 +57,18 @@ def page(tmp_path_factory):
     """Build one notebook with everything that is not kept as it comes."""
     path = write(
         tmp_path_factory.mktemp("page") / "page.ipynb",
-        ("from cvnotes.show.explore import explore_lens\nexplore_lens()", "nbval-ignore-output"),
+        ("from cvnotes.show.explorations import explore\nexplore('lens')", "nbval-ignore-output"),
         ("'a large viewer'", "no-save-output"),
         "import ipywidgets\nipywidgets.IntSlider()",
         "'a value'",
-        "from IPython.display import display\nwidget = explore_lens()\ndisplay(widget, 5)",
+        "from IPython.display import display\nwidget = explore('lens')\ndisplay(widget, 5)",
         ("# What is drawn: nothing.\n6", "hide-input"),
     )
     return path, built(path)
 
 
 def test_of_an_exploration_the_still_remains_with_its_text_and_nothing_of_the_widget(page):
-    from cvnotes.show.explore import model
+    from cvnotes.show.explorations import model
 
     for cell in (page[1][0], page[1][4]):
         data = cell.outputs[0].data
@@ -110,7 +110,7 @@ def test_a_widget_saved_by_jupyterlab_is_not_as_built(page, tmp_path):
 
 
 def test_where_a_page_would_show_nothing_it_is_told(tmp_path):
-    hidden = ("from cvnotes.show.explore import explore_lens\nexplore_lens();", "explore")
+    hidden = ("from cvnotes.show.explorations import explore\nexplore('lens');", "explore")
     path = write(tmp_path / "empty.ipynb", hidden, "1", ("'a viewer'", "no-save-output"), "2")
     result = run(path)
     assert result.returncode == 1

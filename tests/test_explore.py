@@ -30,12 +30,12 @@ from cvnotes.camera import (
 )
 from cvnotes.homography import dlt
 from cvnotes.pictures import course, radiance, rails
-from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explore
-from cvnotes.show.explore.boards import pinhole
-from cvnotes.show.explore.columns import Believed
-from cvnotes.show.explore.depth import pair
-from cvnotes.show.explore.finding import Finding, rms
-from cvnotes.show.explore.fold import (
+from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
+from cvnotes.show.explorations.boards import pinhole
+from cvnotes.show.explorations.columns import Believed
+from cvnotes.show.explorations.depth import pair
+from cvnotes.show.explorations.finding import Finding, rms
+from cvnotes.show.explorations.fold import (
     _SHOWN,
     angles,
     circle_of,
@@ -43,31 +43,31 @@ from cvnotes.show.explore.fold import (
     photographs,
     vanishing_points,
 )
-from cvnotes.show.explore.lens import polynomial
-from cvnotes.show.explore.lettering import LETTERS
-from cvnotes.show.explore.model import Drawing, Model, Setting
-from cvnotes.show.explore.page import asked
-from cvnotes.show.explore.paper import Panel, Paper
-from cvnotes.show.explore.pinhole import behind_a_hole
-from cvnotes.show.explore.rectification import lines_from
-from cvnotes.show.explore.ruler import behind_the_first
-from cvnotes.show.explore.triangle import camera_of
-from cvnotes.show.explore.votes import window_at
+from cvnotes.show.explorations.lens import polynomial
+from cvnotes.show.explorations.lettering import LETTERS
+from cvnotes.show.explorations.model import Drawing, Model, Setting
+from cvnotes.show.explorations.page import asked
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.pinhole import behind_a_hole
+from cvnotes.show.explorations.rectification import lines_from
+from cvnotes.show.explorations.ruler import behind_the_first
+from cvnotes.show.explorations.triangle import camera_of
+from cvnotes.show.explorations.votes import window_at
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
-MODELS = {name: explore.model(name) for name in explore.NAMES}
+MODELS = {name: explorations.model(name) for name in explorations.NAMES}
 STORIES = (
     "straighten", "ring", "ruler", "shadows", "triangle", "pinhole", "votes", "fold", "folds",
     "finding", "columns", "depth",
 )  # fmt: skip
-each_model = pytest.mark.parametrize("name", explore.NAMES)
+each_model = pytest.mark.parametrize("name", explorations.NAMES)
 
 
 @pytest.fixture(scope="module", autouse=True)
 def packed_once():
     """Let each picture be packed as small as it gets only once: many tests ask for the same."""
-    module = sys.modules[Model.__module__]  # `explore.model` is a function
+    module = sys.modules[Model.__module__]  # `explorations.model` is a function
     pack, known = module.packed, {}
 
     def packed(picture, level):
@@ -149,7 +149,7 @@ def test_every_slider_moves_something(name):
 
 @each_model
 def test_the_same_values_give_the_same_picture(name):
-    model = explore.model(name)
+    model = explorations.model(name)
     assert np.array_equal(model.picture(), MODELS[name].picture())
 
 
@@ -228,7 +228,7 @@ def test_values_no_slider_could_say_are_refused_in_words():
     with pytest.raises(CvnotesError, match="got nan"):
         MODELS["lens"].still(k1=float("nan"))
     with pytest.raises(CvnotesError, match="expected one of projection, camera, lens"):
-        explore.model("zoo")
+        explorations.model("zoo")
 
 
 def test_where_there_is_no_answer_the_sentence_says_why():
@@ -244,15 +244,15 @@ def test_where_there_is_no_answer_the_sentence_says_why():
 def test_another_camera_and_another_board_may_be_given():
     camera = Camera(intrinsics(500, 505, 250, 190), lens=Lens(k=(-1.7, 0.2)), size=(500, 400))
     board = course.Chessboard((6, 5), 40.0)
-    for name in explore.NAMES:
+    for name in explorations.NAMES:
         if name in STORIES:
             with pytest.raises(CvnotesError, match=f"{name}: shows photographs of the course"):
-                explore.model(name, camera)
+                explorations.model(name, camera)
             continue
-        model = explore.model(name, camera, board)
+        model = explorations.model(name, camera, board)
         rng = np.random.default_rng(1)
         assert model.picture(**random_values(model, rng)).any()
-    assert explore.model("lens", camera).settings[0].value == -1.7
+    assert explorations.model("lens", camera).settings[0].value == -1.7
 
 
 # What each of them shows.
@@ -343,7 +343,7 @@ def test_a_lens_with_k1_of_minus_four_thirds_folds_at_one_half():
 @pytest.mark.parametrize("name", ["homography", "warp"])
 def test_without_scipy_a_photograph_has_the_same_digits(name, monkeypatch):
     monkeypatch.setitem(sys.modules, "scipy.special", None)
-    assert np.array_equal(explore.model(name).picture(), MODELS[name].picture())
+    assert np.array_equal(explorations.model(name).picture(), MODELS[name].picture())
 
 
 def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():
@@ -709,7 +709,7 @@ def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_sa
         for by in ((0, 0), (3, -3)):  # px: a hand is not exact
             at = tuple(np.add(grip.at, np.multiply(grip.unit, by)))
             assert abs(MODELS["fold"].dragged("eye", at, fold=50)["fold"] - fold) <= 2
-    explorer = explore.explore_fold()
+    explorer = explorations.explore("fold")
     explorer.sliders["second"].value = True
     for fold, said in ((59, "this is the camera"), (50, "this is not the camera")):
         explorer.sliders["fold"].value = fold
@@ -889,7 +889,7 @@ def counting(model):
 
 @each_model
 def test_a_slider_that_is_moved_changes_the_picture_and_reset_brings_it_back(name):
-    widget = getattr(explore, f"explore_{name}")()
+    widget = explorations.explore(name)
     start = widget.image.value
     assert np.array_equal(np.asarray(Image.open(io.BytesIO(start))), MODELS[name].picture())
     first = MODELS[name].settings[0]
@@ -908,7 +908,7 @@ def test_a_slider_that_is_moved_changes_the_picture_and_reset_brings_it_back(nam
 
 @each_model
 def test_sliders_say_what_they_are_and_can_be_moved_by_keys(name):
-    widget = getattr(explore, f"explore_{name}")()
+    widget = explorations.explore(name)
     for s in MODELS[name].settings:
         slider = widget.sliders[s.name]
         assert len(slider.tooltip) > 4
@@ -925,7 +925,7 @@ def test_sliders_say_what_they_are_and_can_be_moved_by_keys(name):
 
 
 def test_a_choice_is_a_switch_that_changes_the_picture_and_goes_back_with_the_rest():
-    widget = explore.explore_warp()
+    widget = explorations.explore("warp")
     start = widget.image.value
     assert widget.values["bilinear"] == 0
     widget.sliders["bilinear"].value = True
@@ -938,7 +938,7 @@ def test_a_choice_is_a_switch_that_changes_the_picture_and_goes_back_with_the_re
 
 
 def test_reset_draws_once_and_unchanged_values_are_not_drawn_again():
-    from cvnotes.show.explore.shell import Explorer
+    from cvnotes.show.explorations.shell import Explorer
 
     model, calls = counting(MODELS["lens"])
     widget = Explorer(model)
@@ -956,7 +956,7 @@ def test_reset_draws_once_and_unchanged_values_are_not_drawn_again():
 @pytest.mark.slow
 @each_model
 def test_where_no_kernel_runs_the_still_of_the_same_values_is_seen(name):
-    widget = getattr(explore, f"explore_{name}")()
+    widget = explorations.explore(name)
     bundle = widget._repr_mimebundle_()
     assert bundle["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
     assert bundle["text/html"].startswith(MODELS[name].still()._repr_html_())
@@ -970,7 +970,7 @@ def test_where_no_kernel_runs_the_still_of_the_same_values_is_seen(name):
 
 
 def test_a_sentence_cannot_smuggle_markup_into_the_page():
-    from cvnotes.show.explore.shell import Explorer
+    from cvnotes.show.explorations.shell import Explorer
 
     def draw(paper, _):
         return Drawing(paper.join((paper.panel((50, 50), (0, 1), (0, 1)),)), "1 < 2 & <b>no</b>")
@@ -983,7 +983,7 @@ def test_a_sentence_cannot_smuggle_markup_into_the_page():
 
 # Taken hold of by hand.
 
-PULLED = [(name, grip) for name in explore.NAMES for grip in MODELS[name].drags]
+PULLED = [(name, grip) for name in explorations.NAMES for grip in MODELS[name].drags]
 
 
 FREE_TO_MOVE = {  # where the hand may pull to either side
@@ -1122,7 +1122,7 @@ def data_of(explorer):
 
 @each_model
 def test_a_page_is_told_what_its_sliders_need_and_is_answered_with_the_same_picture(name):
-    told = data_of(getattr(explore, f"explore_{name}")())
+    told = data_of(explorations.explore(name))
     model = MODELS[name]
     assert [s["name"] for s in told["settings"]] == [s.name for s in model.settings]
     assert told["sentence"] == model.drawing().sentence
@@ -1141,17 +1141,17 @@ def test_a_page_is_told_what_its_sliders_need_and_is_answered_with_the_same_pict
 
 def test_a_page_shows_the_camera_and_the_board_that_were_given():
     camera = Camera(intrinsics(500, 505, 250, 190), lens=Lens(k=(-1.7, 0.2)), size=(500, 400))
-    told = data_of(explore.explore_lens(camera=camera))
-    own = explore.model("lens", camera)
+    told = data_of(explorations.explore("lens", camera=camera))
+    own = explorations.model("lens", camera)
     assert json.loads(asked(json.dumps(told)).rest)["sentence"] == own.drawing().sentence
     board = course.Chessboard((6, 5), 40.0)
-    told = data_of(explore.explore_camera(camera=camera, board=board))
-    own = explore.model("camera", camera, board)
+    told = data_of(explorations.explore("camera", camera=camera, board=board))
+    own = explorations.model("camera", camera, board)
     assert json.loads(asked(json.dumps(told)).rest)["sentence"] == own.drawing().sentence
 
 
 def test_a_page_may_pull_a_grip():
-    told = data_of(explore.explore_homography())
+    told = data_of(explorations.explore("homography"))
     grip = told["grips"][0]
     at = [grip["at"][0] + 12, grip["at"][1] - 7]
     rest = json.loads(asked(json.dumps({**told, "grip": grip["name"], "at": at})).rest)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cvnotes.show import explore
+from cvnotes.show import explorations
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -17,7 +17,7 @@ front_page = pytest.importorskip("front_page", reason="the extra docs is not ins
 
 
 def test_the_picture_is_the_exploration_before_it_is_touched(tmp_path):
-    (tmp_path / "still.png").write_bytes(explore.model(front_page.EXPLORED).still().data)
+    (tmp_path / "still.png").write_bytes(explorations.model(front_page.EXPLORED).still().data)
     drawn, kept = (
         np.asarray(Image.open(path).convert("RGB")).astype(int)
         for path in (tmp_path / "still.png", front_page.PICTURE)

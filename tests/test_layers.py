@@ -17,8 +17,8 @@ import pytest
 from cvnotes.calibration import calibrate
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import good_views
-from cvnotes.show.explore import NAMES
-from cvnotes.show.explore.lettering import font_file
+from cvnotes.show.explorations import NAMES
+from cvnotes.show.explorations.lettering import font_file
 from cvnotes.targets import Chessboard
 
 pytestmark = pytest.mark.once
@@ -44,7 +44,7 @@ ONLY_IN = {
         "warping",
     },
     "matplotlib": {"show"},
-    "ipywidgets": {"show.explore"},
+    "ipywidgets": {"show.explorations"},
     "trimesh": {"show.space.viewer"},
     "jupyter_server": {"commands.lab"},
 }
@@ -178,7 +178,7 @@ def test_explorations_and_exercises_need_nothing_but_numpy_and_pillow():
         "            raise ImportError(name)\n"
         "sys.meta_path.insert(0, Absent())\n"
         "import cvnotes.learn\n"
-        "from cvnotes.show.explore import NAMES, model\n"
+        "from cvnotes.show.explorations import NAMES, model\n"
         "print([model(name).drawing().picture.shape[2] for name in NAMES])"
     )
     named = {**os.environ, "CVNOTES_FONT": str(font_file())}

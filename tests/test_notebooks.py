@@ -496,7 +496,7 @@ def test_a_chapter_has_all_its_parts(path):
                  "## Further reading", "## What comes next"):  # fmt: skip
         assert part in prose, f"no {part!r}"
     assert 2 <= len(re.findall(r"^check\(", code, re.M)) <= 6
-    assert re.search(r"^explore_\w+\(", code, re.M), "no explore widget"
+    assert re.search(r"^explore\(", code, re.M), "no explore widget"
     assert 30 <= sum(not _folded(cell) for cell in notebook.cells) <= 75
     assert "import" in _code(notebook)[0].source
 

@@ -10,7 +10,7 @@ from conftest import IMPATIENT, text_of
 from firefox import PROGRAM, Firefox
 from webkit import DRIVER, SCREEN, WebKit
 
-from cvnotes.show import explore
+from cvnotes.show import explorations
 
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
@@ -183,7 +183,7 @@ def test_an_exploration_follows_keys_mouse_and_thumb(page):
     page.run("() => document.querySelector('.explore input').focus()")
     page.press("ArrowRight", "ArrowRight")
     page.wait(ANOTHER, 0)
-    assert page.wait(SENTENCE, explore.model("homography").drawing(du1=2).sentence)
+    assert page.wait(SENTENCE, explorations.model("homography").drawing(du1=2).sentence)
     for number, kind in ((2, "mouse"), *([(3, "touch")] if page.touch else [])):
         corner = f"corner {number}"
         (x, y), (u, v), shown = page.run(GRIP, corner), page.run(AT, corner), page.run(SHOWN)

@@ -18,7 +18,7 @@ from accessible import violations
 from conftest import IMPATIENT, QuietHandler, serving, taken
 
 from cvnotes.commands.cli import main as cvnotes
-from cvnotes.show import explore
+from cvnotes.show.explorations import NAMES, explore, model
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -26,7 +26,7 @@ pytest.importorskip("sphinx", reason="the extra docs is not installed")
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 AWAKE = 120_000  # ms; Python is compiled anew for each page
-MODELS = {name: explore.model(name) for name in explore.NAMES}
+MODELS = {name: model(name) for name in NAMES}
 ARTICLE = re.compile(r'(<article class="bd-article"[^>]*>)')
 # What the canvas shows, as a number that changes with the picture.
 SHOWN = """box => {
@@ -68,7 +68,7 @@ CHECKED = """box => {
 def address(live_folder):
     """Serve the site with one more page, on which are all explorations."""
     page = (live_folder / "notebooks" / "04_lens_distortion.html").read_text()
-    outputs = "".join(_output(name) for name in explore.NAMES)
+    outputs = "".join(_output(name) for name in NAMES)
     page = ARTICLE.sub(lambda found: found[1] + outputs, page).encode()
 
     class Handler(QuietHandler):
@@ -86,7 +86,7 @@ def address(live_folder):
 
 
 def _output(name):
-    shown = getattr(explore, f"explore_{name}")()._repr_mimebundle_()["text/html"]
+    shown = explore(name)._repr_mimebundle_()["text/html"]
     return f'<div class="cell"><div class="cell_output"><div>{shown}</div></div></div>'
 
 
@@ -153,7 +153,7 @@ def exercises(page_of_exercises, watched):
 def explorations(page):
     page.wait_for_selector(".explore")
     boxes = page.locator(".explore")
-    return {name: boxes.nth(i) for i, name in enumerate(explore.NAMES)}
+    return {name: boxes.nth(i) for i, name in enumerate(NAMES)}
 
 
 def becomes_another(page, box, before):
@@ -357,7 +357,7 @@ def test_each_chapter_has_its_explorations_and_its_exercises_on_any_width(
     sources = [cell.source for cell in cells if cell.cell_type == "code"]
     wanted = [
         sum(bool(re.search(call, source, re.MULTILINE)) for source in sources)
-        for call in (r"^explore_\w+\(", r'^check\("\w+", ')
+        for call in (r"^explore\(", r'^check\("\w+", ')
     ]
     telephone.goto(f"{address}/notebooks/{notebook.stem}.html")
     telephone.wait_for_load_state()

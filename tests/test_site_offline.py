@@ -217,7 +217,7 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     pictures = sum("<img" in str(cell) for cell in outputs)
     assert pictures >= 3, outputs
     grip = page.get_by_label("the camera, to carry it round the board")
-    page.evaluate(SHOW_CELL, "explore_camera(")
+    page.evaluate(SHOW_CELL, 'explore("camera"')
     grip.wait_for(state="visible", timeout=60_000)
     grip.focus()
     expect = pytest.importorskip("playwright.sync_api").expect
@@ -233,7 +233,7 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
         "() => window.jupyterapp?.shell?.currentWidget?.context", timeout=120_000
     )
     page.evaluate(KERNEL_IS_THERE)
-    page.evaluate(SHOW_CELL, "explore_camera(")
+    page.evaluate(SHOW_CELL, 'explore("camera"')
     still = page.locator(".jp-OutputArea-output").filter(
         has_text="Run this cell to move its sliders"
     )

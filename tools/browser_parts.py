@@ -52,7 +52,7 @@ from urllib.error import URLError
 from urllib.request import urlopen
 
 import cvnotes
-from cvnotes.show.explore import lettering
+from cvnotes.show.explorations import lettering
 
 Entry = dict[str, Any]  # of one package in the lock
 

@@ -91,7 +91,7 @@ def _unseen(notebook: nbformat.NotebookNode) -> list[str]:
     seen = ["<img" in str(cell.outputs) for cell in cells]
     found = []
     for i, cell in enumerate(cells):
-        if re.search(r"^explore_\w+\(", cell.source, re.M) and not seen[i]:
+        if re.search(r"^explore\(", cell.source, re.M) and not seen[i]:
             found.append(f"{cell.id} shows no still of its exploration")
         if "no-save-output" in cell.metadata.get("tags", []) and not any(
             seen[max(0, i - 1) : i + 2]

@@ -46,7 +46,7 @@ LIVE = tuple(
     ROOT / folder / name
     for folder, names in (
         ("docs/static/live", ("python.js", "worker.js", "page.js", "explore.js", "live.css")),
-        ("cvnotes/show/explore", ("grips.js",)),  # shared with the notebook
+        ("cvnotes/show/explorations", ("grips.js",)),  # shared with the notebook
     )
     for name in names
 )

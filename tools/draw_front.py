@@ -2,7 +2,7 @@
 
 from front_page import EXPLORED, PICTURE
 
-from cvnotes.show import explore
+from cvnotes.show import explorations
 
 if __name__ == "__main__":
-    PICTURE.write_bytes(explore.model(EXPLORED).still().data)
+    PICTURE.write_bytes(explorations.model(EXPLORED).still().data)

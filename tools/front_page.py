@@ -17,9 +17,9 @@ from PIL import Image
 from site_figures import FOLDER, panels_of
 
 from cvnotes.learn import check
-from cvnotes.show import explore
-from cvnotes.show.explore.page import page_data
-from cvnotes.show.explore.paper import Paper
+from cvnotes.show import explorations
+from cvnotes.show.explorations.page import page_data
+from cvnotes.show.explorations.paper import Paper
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "docs" / "templates" / "front.md"
@@ -84,7 +84,7 @@ def buttons(live: bool, lite: bool) -> str:
 
 def exploration(live: bool) -> str:
     """Write the exploration as it is before Python comes: a picture for each width, and data."""
-    model = explore.model(EXPLORED)
+    model = explorations.model(EXPLORED)
     wide = json.loads(page_data(model, None, None, {}))
     data = model.drawn_on(Paper(1, narrow=True), model.values()).as_data()
     narrow = {"size": data["size"], "grips": data["grips"]}
@@ -117,7 +117,7 @@ def put_pictures(made: Path) -> None:
     for path in sorted(ROOT.glob("notebooks/*.ipynb")):
         richest(path).save(made / FOLDER / f"card-{path.stem}.jpg", quality=80, optimize=True)
     (made / FOLDER / "front.png").write_bytes(PICTURE.read_bytes())
-    content = explore.model(EXPLORED).narrow_still().data
+    content = explorations.model(EXPLORED).narrow_still().data
     (made / FOLDER / "front-narrow.png").write_bytes(content)
 
 

@@ -2,28 +2,7 @@
 
 from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
-from cvnotes.show.explore import (
-    explore_camera,
-    explore_columns,
-    explore_depth,
-    explore_finding,
-    explore_fold,
-    explore_folds,
-    explore_homography,
-    explore_lens,
-    explore_noise,
-    explore_pinhole,
-    explore_projection,
-    explore_rectification,
-    explore_ring,
-    explore_ruler,
-    explore_shadows,
-    explore_straighten,
-    explore_tilt,
-    explore_triangle,
-    explore_votes,
-    explore_warp,
-)
+from cvnotes.show.explorations import explore
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.corners import draw_clouds, draw_response
 from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
@@ -155,25 +134,6 @@ __all__ = [
     "IDEAL",
     "LENS",
     "ESTIMATED",
-    # explorations
-    "explore_straighten",
-    "explore_ring",
-    "explore_ruler",
-    "explore_shadows",
-    "explore_projection",
-    "explore_triangle",
-    "explore_pinhole",
-    "explore_camera",
-    "explore_lens",
-    "explore_votes",
-    "explore_homography",
-    "explore_fold",
-    "explore_folds",
-    "explore_finding",
-    "explore_noise",
-    "explore_warp",
-    "explore_rectification",
-    "explore_tilt",
-    "explore_columns",
-    "explore_depth",
+    # an idea with sliders
+    "explore",
 ]

@@ -25,7 +25,7 @@ function from(module, name) {
 
 const answer = {
   explore({ question }) {
-    const shown = from("cvnotes.show.explore.page", "asked")(question);
+    const shown = from("cvnotes.show.explorations.page", "asked")(question);
     const proxy = shown.pixels;
     const pixels = proxy.toJs();
     const { rest } = shown;

@@ -5,7 +5,7 @@
 // saved it. (What a build tool makes of an extension comes to no more than this.)
 (() => {
   const VIEW = "application/vnd.jupyter.widget-view+json";
-  const STILL = "cvnotes-explore"; // as cvnotes/show/explore/shell.py marks it
+  const STILL = "cvnotes-explore"; // as cvnotes/show/explorations/shell.py marks it
 
   function drop({ cells }) {
     for (const { outputs = [] } of cells)

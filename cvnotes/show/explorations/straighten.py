@@ -7,8 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.pictures import course, hold_at, radiance, room_with
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
 _PICTURE, _ROW = (440, 330), (410, 330)

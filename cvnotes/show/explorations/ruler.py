@@ -8,8 +8,8 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.pictures import course, rails, render_scene
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
 
 _CAMERA = Camera(course.camera().A)

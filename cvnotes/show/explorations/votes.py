@@ -6,8 +6,8 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.pictures import course
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, rgb
 
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote

@@ -4,8 +4,8 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, rotation_from_vector
-from cvnotes.show.explore.boards import on_sheet
-from cvnotes.show.explore.model import Values
+from cvnotes.show.explorations.boards import on_sheet
+from cvnotes.show.explorations.model import Values
 from cvnotes.targets import Chessboard
 
 _SPEED = 2.0  # radians for one radius on the sheet, on which the sphere is foreshortened

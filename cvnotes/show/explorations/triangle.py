@@ -9,8 +9,8 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.pictures import blocks, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
 
 _SHOWN = ((-1200.0, 1300.0), (-520.0, 1668.0))  # px of the photograph, u and v

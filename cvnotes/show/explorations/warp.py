@@ -8,9 +8,9 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.camera import Camera, pose, rotation_from_vector
 from cvnotes.pictures import render
-from cvnotes.show.explore.boards import pinhole
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Paper
+from cvnotes.show.explorations.boards import pinhole
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Paper
 from cvnotes.show.style import ESTIMATED, rgb
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp, compose, forward_warp, rotation_map, zoom_map

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from PIL import Image, ImageDraw
 
 from cvnotes.base import Array
-from cvnotes.show.explore.lettering import stamp, title_strip
-from cvnotes.show.explore.strokes import clipped, dashed
+from cvnotes.show.explorations.lettering import stamp, title_strip
+from cvnotes.show.explorations.strokes import clipped, dashed
 from cvnotes.show.style import COLOURS, INK, MARKERS, MUTED
 
 Drawn = npt.NDArray[np.uint8]

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.show.explore.paper import Drawn, Grip, Paper
+from cvnotes.show.explorations.paper import Drawn, Grip, Paper
 from cvnotes.show.picture import Picture, packed
 from cvnotes.show.style import ESTIMATED
 
@@ -158,7 +158,7 @@ class Model:
 
         Examples
         --------
-        >>> from cvnotes.show.explore import model
+        >>> from cvnotes.show.explorations import model
         >>> model("projection").dragged("vanishing point", (325, 200))["slope"]
         3.0
         """

@@ -8,9 +8,9 @@ from cvnotes.base import Array
 from cvnotes.camera import Lens, px_from_xy, xy_from_px
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
-from cvnotes.show.explore.fold import Circle, circle_of, on_sheet
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.fold import Circle, circle_of, on_sheet
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _SPACE, _CLOSE, _CURVE = (300, 340), (250, 340), (290, 340)

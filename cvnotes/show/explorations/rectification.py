@@ -4,9 +4,9 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, chain, pose, rotation_from_angles, rotation_from_vector
-from cvnotes.show.explore.boards import draw_board, pinhole
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.boards import draw_board, pinhole
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED
 from cvnotes.stereo import epipolar_lines, fundamental_matrix, rectify
 from cvnotes.targets import Chessboard

@@ -8,8 +8,8 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.pictures import render_scene, room
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS
 
 Spectrum = npt.NDArray[np.complex128]

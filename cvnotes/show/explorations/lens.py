@@ -8,8 +8,8 @@ from PIL import Image
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.camera.lens import radial_factor
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y

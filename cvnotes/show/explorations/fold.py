@@ -9,9 +9,9 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
-from cvnotes.show.explore.boards import draw_net, draw_squares
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.boards import draw_net, draw_squares
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 SIZE = (640, 480)

@@ -15,9 +15,9 @@ from cvnotes.base import CvnotesError
 from cvnotes.camera import Camera
 from cvnotes.files.cameras import camera_from_entry, camera_to_dict
 from cvnotes.files.entry import Entry
-from cvnotes.show import explore
-from cvnotes.show.explore.model import Model, Values
-from cvnotes.show.explore.paper import Paper
+from cvnotes.show import explorations
+from cvnotes.show.explorations.model import Model, Values
+from cvnotes.show.explorations.paper import Paper
 from cvnotes.targets import Chessboard
 
 MAX_SHARPNESS = 3
@@ -44,7 +44,7 @@ def page_data(model: Model, camera: Camera | None, board: Chessboard | None, val
 
     Examples
     --------
-    >>> json.loads(page_data(explore.model("lens"), None, None, {}))["settings"][0]["name"]
+    >>> json.loads(page_data(explorations.model("lens"), None, None, {}))["settings"][0]["name"]
     'k1'
     """
     values = model.values(**values)
@@ -103,7 +103,7 @@ def asked(question: str) -> Shown:
 def _model(name: str, camera: str, board: str) -> Model:
     """Make a model once; camera and board are JSON, null for the course's."""
     own_camera, own_board = json.loads(camera), json.loads(board)
-    return explore.model(
+    return explorations.model(
         name,
         None if own_camera is None else camera_from_entry(Entry(own_camera, "the page")),
         None if own_board is None else _board_from_dict(own_board),

@@ -10,9 +10,9 @@ from cvnotes.camera import Camera, pose, rotation_from_vector
 from cvnotes.homography import dlt
 from cvnotes.pictures import render
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.show.explore.boards import pinhole
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Paper, Range
+from cvnotes.show.explorations.boards import pinhole
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Paper, Range
 from cvnotes.show.style import ESTIMATED, WORLD
 from cvnotes.targets import Chessboard
 from cvnotes.warping import rectify_plane

@@ -11,9 +11,9 @@ from PIL import Image, ImageDraw
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.pictures import rails, render_scene
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Panel, Paper
-from cvnotes.show.explore.projection import in_front
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.projection import in_front
 from cvnotes.show.style import CAMERA, ESTIMATED, MUTED, WORLD
 
 _SIZE = (640, 480)  # px of the photograph

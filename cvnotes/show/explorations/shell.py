@@ -16,8 +16,8 @@ from ipywidgets.widgets.widget_string import HTML, Text
 
 from cvnotes.base.png import pack_png
 from cvnotes.camera import Camera
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.page import page_data
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.page import page_data
 from cvnotes.targets import Chessboard
 
 _UNSEEN = "position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%)"
@@ -46,8 +46,8 @@ class Explorer(VBox):
 
     Examples
     --------
-    >>> from cvnotes.show import explore_lens
-    >>> explorer = explore_lens()
+    >>> from cvnotes.show import explore
+    >>> explorer = explore("lens")
     >>> explorer
     explore lens: run this cell to move its sliders
     >>> explorer.sliders["k1"].value = -0.3
@@ -149,7 +149,7 @@ class Explorer(VBox):
         self._pulled.add_class("cvnotes-pulled")
         self._told.add_class("cvnotes-told")
         self._pulled.observe(self._pull, "value")
-        here = files("cvnotes.show.explore")
+        here = files("cvnotes.show.explorations")
         script = "\n".join((here / name).read_text("utf-8") for name in _SCRIPTS)
         output = {
             "output_type": "display_data",

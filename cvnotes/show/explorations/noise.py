@@ -10,8 +10,8 @@ from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Problem, State, covariance, minimise
 from cvnotes.camera import Camera
 from cvnotes.pictures import good_views
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
 from cvnotes.targets import Chessboard
 

@@ -7,10 +7,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
-from cvnotes.show.explore.boards import draw_arrows, draw_net
-from cvnotes.show.explore.finding import rms
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.boards import draw_arrows, draw_net
+from cvnotes.show.explorations.finding import rms
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD
 
 _NUMBERS = np.array([0, 0.5, 1, 2, 4, 8, -8, -4, -2, -1, -0.5])

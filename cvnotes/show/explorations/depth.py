@@ -7,8 +7,8 @@ import numpy as np
 from cvnotes.base import Array, Image, luma
 from cvnotes.camera import Camera, intrinsics, pose
 from cvnotes.pictures import depth_map, pixel_centres, radiance, room
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, MUTED
 from cvnotes.warping import backward_warp
 

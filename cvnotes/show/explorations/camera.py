@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
-from cvnotes.show.explore.boards import (
+from cvnotes.show.explorations.boards import (
     draw_arrows,
     draw_board,
     draw_in_space,
@@ -12,10 +12,10 @@ from cvnotes.show.explore.boards import (
     on_sheet,
     pinhole,
 )
-from cvnotes.show.explore.matrices import FOCAL, PIERCING, SHIFT, SKEW, TURN, matrix_table
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.orbit import round_the_board
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.matrices import FOCAL, PIERCING, SHIFT, SKEW, TURN, matrix_table
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.orbit import round_the_board
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
 from cvnotes.show.space.shapes import axes_shapes, target_shapes
 from cvnotes.show.style import CAMERA, ESTIMATED

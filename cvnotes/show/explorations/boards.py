@@ -6,7 +6,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, rotation_from_vector
-from cvnotes.show.explore.paper import Panel
+from cvnotes.show.explorations.paper import Panel
 from cvnotes.show.space.shapes import Faces, Label, Lines, Shape, places, target_shapes
 from cvnotes.show.style import ESTIMATED, MUTED
 from cvnotes.targets import Chessboard

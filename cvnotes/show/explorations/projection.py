@@ -6,9 +6,9 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera
-from cvnotes.show.explore.boards import pinhole
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.boards import pinhole
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD
 
 _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before the camera

@@ -10,10 +10,10 @@ from cvnotes.calibration import calibrate
 from cvnotes.calibration.jacobian import jacobian
 from cvnotes.calibration.refinement import Problem
 from cvnotes.pictures import course
-from cvnotes.show.explore.boards import draw_arrows, draw_measured
-from cvnotes.show.explore.finding import rms
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.boards import draw_arrows, draw_measured
+from cvnotes.show.explorations.finding import rms
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _LENS = "k1 k2 p1 p2"

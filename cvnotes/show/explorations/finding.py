@@ -16,9 +16,9 @@ from cvnotes.calibration.refinement import Problem, State, solve_by_schur, take_
 from cvnotes.camera import Camera, Lens
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
-from cvnotes.show.explore.boards import draw_arrows, draw_measured
-from cvnotes.show.explore.model import Drawing, Model, Setting, Values
-from cvnotes.show.explore.paper import Panel, Paper
+from cvnotes.show.explorations.boards import draw_arrows, draw_measured
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 MAGNIFIED = (5, 50, 700, 3000)  # how much longer than true arrows are after each step
