@@ -63,21 +63,23 @@ def dress(ax: "Axes") -> "Axes":
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(MUTED)
     ax.tick_params(labelsize=FONT - 1, color=MUTED, labelcolor="#333333")
-    ax.title.set_fontsize(FONT + 1)
+    ax.title.set_fontsize(FONT)
     ax.title.set_color("#333333")
     for axis in (ax.xaxis, ax.yaxis):
         axis.label.set_fontsize(FONT)
     return ax
 
 
-def darken_words(figure: "Figure") -> None:
-    """Draw words in one of the colours of the style in its darker ink."""
+def set_words(figure: "Figure") -> None:
+    """Draw words of the style's colours in their darker ink, and titles from the left."""
     from matplotlib.colors import to_hex
     from matplotlib.text import Text
 
     for words in figure.findobj(Text):
         colour = to_hex(words.get_color()).upper()
         words.set_color(INK.get(colour, colour))
+    for ax in figure.axes:
+        ax.title.set(x=0, ha="left")  # here: each set_title puts it back into the middle
 
 
 def halo() -> list[Any]:

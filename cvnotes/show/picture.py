@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, whole
-from cvnotes.show.axes import darken_words
+from cvnotes.show.axes import set_words
 from cvnotes.show.style import DPI
 
 if TYPE_CHECKING:
@@ -163,7 +163,7 @@ def pixels_of(figure: "Figure") -> npt.NDArray[np.uint8]:
     """Draw a figure once, as (height, width, 4); savefig draws it twice, and packs it."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    darken_words(figure)
+    set_words(figure)
     canvas, dpi, paper = figure.canvas, figure.dpi, figure.get_facecolor()
     try:
         figure.set_facecolor("white")
