@@ -24,6 +24,7 @@ from cvnotes.camera import (
     Camera,
     Lens,
     intrinsics,
+    look_at,
     pose,
     rotation_from_angles,
     rotation_from_vector,
@@ -50,6 +51,7 @@ from cvnotes.show.explorations.page import asked
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.pinhole import behind_a_hole
 from cvnotes.show.explorations.rectification import lines_from
+from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.votes import window_at
@@ -57,10 +59,7 @@ from cvnotes.show.explorations.votes import window_at
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
 MODELS = {name: explorations.model(name) for name in explorations.NAMES}
-STORIES = (
-    "straighten", "ring", "ruler", "shadows", "triangle", "pinhole", "votes", "fold", "folds",
-    "finding", "columns", "depth",
-)  # fmt: skip
+STORIES = tuple(explorations._STORIES)
 each_model = pytest.mark.parametrize("name", explorations.NAMES)
 
 
@@ -611,6 +610,18 @@ def test_the_ruler_reads_what_the_camera_photographed_and_errs_as_far_as_a_click
     assert abs(said[2] - behind_the_first(clicked[:, 1]).std()) < 0.08
 
 
+def test_a_rod_is_as_high_in_the_picture_as_one_that_is_photographed():
+    street = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
+    for x, z in ((0, 9000), (5000, 12000), (-9000, 20000)):
+        feet = street.project([[x, 1600, z], [x, 1600 - 1000, z], [x, 1600 - 6500, z]])
+        assert np.allclose(at_height(feet[0], [0, 1, 6.5]), feet, atol=1e-6)
+    drawing = MODELS["rod"].drawing(u=140, v=448, height=4)
+    top = next(grip for grip in drawing.grips if grip.name == "top")
+    assert np.allclose(top.at, at_height(np.array([140, 448]), 4), atol=1e-3)
+    horizon = street.vanishing_point([1, 0, 0])[1]  # crossed at the height of the camera, 2.8 m
+    assert abs(at_height(np.array([140, 448]), 2.8)[1] - horizon) < 1e-6
+
+
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():
     said = [numbers(MODELS["tilt"].drawing(tilt=tilt).sentence)[1] for tilt in (0, 10, 20, 30, 45)]
     assert said == [0.0, 0.6, 2.2, 3.9, 6.0]
@@ -1003,7 +1014,13 @@ ON_A_WAY = {  # along a curve, by its x
     ("ruler", "foot"),
 }
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "dot": (0, 0.5)}  # its length stays
-UP_AND_DOWN = {"nine", "row", "depth", "eye"}  # the eye to the nearest place of its half circle
+UP_AND_DOWN = {
+    "nine",
+    "row",
+    "depth",
+    "eye",
+    "top",
+}  # the eye to the nearest place of its half circle
 
 
 def grip_of(drawing, name):

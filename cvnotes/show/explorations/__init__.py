@@ -24,6 +24,7 @@ from cvnotes.show.explorations.pinhole import pinhole_model
 from cvnotes.show.explorations.projection import projection_model
 from cvnotes.show.explorations.rectification import rectification_model
 from cvnotes.show.explorations.ring import ring_model
+from cvnotes.show.explorations.rod import rod_model
 from cvnotes.show.explorations.ruler import ruler_model
 from cvnotes.show.explorations.shadows import shadows_model
 from cvnotes.show.explorations.straighten import straighten_model
@@ -51,6 +52,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "straighten": straighten_model,
     "ring": ring_model,
     "ruler": ruler_model,
+    "rod": rod_model,
     "shadows": shadows_model,
     "triangle": triangle_model,
     "pinhole": pinhole_model,

@@ -1,0 +1,125 @@
+"""Explore heights in one picture: a rod in metres that is stood anywhere on the ground."""
+
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array
+from cvnotes.camera import Camera, horizon, look_at
+from cvnotes.pictures import blocks, course, depth_map, render_scene
+from cvnotes.projective import from_homogeneous, to_homogeneous
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
+
+_CAMERA = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
+_GROUND, _EYE, _BOX, _TALLEST = 1.6, 2.8, 2.0, 8.0  # m: y of the ground, and three heights
+_EDGE = _CAMERA.project(blocks().vertices[[17, 19]])  # of the yellow box, from top to foot
+_UP, _LEVEL = _CAMERA.vanishing_point([0, 1, 0]), horizon(_CAMERA, [0, 1, 0])
+_HORIZON = float(-_LEVEL[2] / _LEVEL[1])  # its row: the camera is not rolled
+_WIDTH = 0.16  # m, of the rod
+
+
+def rod_model() -> Model:
+    """Make the model of the three blocks, with a rod among them."""
+    settings = (
+        Setting("u", "foot, u (px)", 0, 639, 1, 140, "where the foot is, from left to right"),
+        Setting("v", "foot, v (px)", 352, 479, 1, 448, "where it is, downwards"),
+        Setting("height", "height (m)", 1, _TALLEST, 0.1, 4, "the rod's height"),
+    )
+    about = (
+        "A rod with a band for each metre stands on the ground before three blocks; the black line "
+        "is the horizon. Beside it the same from the side, with the camera."
+    )
+
+    @lru_cache(maxsize=1)
+    def photographed() -> tuple[Drawn, Array]:
+        return render_scene(blocks(), _CAMERA, samples=16), depth_map(blocks(), _CAMERA)
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        photo, depths = photographed()
+        foot, height = np.array([values["u"], values["v"]]), values["height"]
+        panel = paper.picture_panel((480, 360), _CAMERA.size, "a rod, and the horizon")
+        panel.image(photo)
+        panel.line([[-20, _HORIZON], [660, _HORIZON]], IDEAL, 1)
+        _draw_rod(panel, foot, height, depths)
+        panel.grip("foot", "the foot of the rod", foot, 4)
+        top = at_height(foot, height)
+        panel.grip("top", "the top of the rod", top, 4)
+        side = paper.panel((330, 360), (-2.5, 36), (9, -1), "the same from the side (m)")
+        away = float(np.linalg.norm((_stands(foot) - _CAMERA.centre)[[0, 2]])) / 1e3
+        _draw_side(side, away, height)
+        return Drawing(paper.join((panel, side)), _sentence(foot, height))
+
+    def carried(_: Values, at: Array) -> Values:
+        return {"u": float(at[0]), "v": float(at[1])}
+
+    def stretched(values: Values, at: Array) -> Values:
+        """Make the rod as high as its point that is nearest to where it is pulled."""
+        heights = np.linspace(1, _TALLEST, 141)
+        rod = at_height(np.array([values["u"], values["v"]]), heights)
+        return {"height": float(heights[np.linalg.norm(rod - at, axis=1).argmin()])}
+
+    return Model("rod", about, settings, draw, {"foot": carried, "top": stretched})
+
+
+def at_height(foot: Array, height: npt.ArrayLike) -> Array:
+    """Return the pixels (..., 2) so many metres over a foot, all of it from the picture.
+
+    A. Criminisi's single view metrology: with the horizon l and the vanishing point v of the
+    upright direction, what is h over the ground point p lies at p / (l · p) + h μ v, and the
+    yellow box, 2 m high, gives μ.
+    """
+    top, bottom, up, p = to_homogeneous([*_EDGE, _UP, foot])
+    across = np.cross(up, top)
+    mu = -np.cross(bottom, top) @ across / (_BOX * (_LEVEL @ bottom) * (across @ across))
+    h = np.asarray(height, dtype=float)[..., None]
+    return from_homogeneous(p / (_LEVEL @ p) + h * mu * up)
+
+
+def _stands(foot: Array) -> Array:
+    """Return where in the world, in mm, a foot stands: the truth, which the picture has not."""
+    ray = _CAMERA.R.T @ np.linalg.solve(_CAMERA.A, [*foot, 1])
+    return np.asarray(_CAMERA.centre + ray * 1e3 * _EYE / ray[1])
+
+
+def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
+    """Draw a band for each metre, thin where something stands before it."""
+    h = np.append(np.arange(0, height, 0.125), height)
+    pixels, places = at_height(foot, h), _stands(foot) - 1e3 * h[:, None] * [0, 1, 0]
+    u, v = np.clip(np.rint(pixels), 0, np.array(_CAMERA.size) - 1).astype(int).T
+    hidden = depths[v, u] < (places @ _CAMERA.G[2, :3] + _CAMERA.G[2, 3]) - 100
+    width = float(np.linalg.norm(pixels[1] - pixels[0])) * _WIDTH / 0.125 / panel.pixel
+    seen = np.where(hidden[:, None], np.nan, pixels)
+    panel.line(seen, MUTED, width + 1.5)
+    for i, part in enumerate(pairwise(pixels)):
+        colour = ESTIMATED if int(h[i]) % 2 == 0 else "#FFFFFF"
+        panel.line(part, colour, 1 if hidden[i : i + 2].any() else width)
+    apart = np.linalg.norm(pixels[8] - pixels[0]) / panel.pixel  # where letters have no room,
+    for metre in range(1 if apart > 20 else int(height), int(height) + 1):  # only the last
+        panel.text(at_height(foot, metre) + [width / 2 + 4, 0], f"{metre}", ESTIMATED, size=10)
+
+
+def _draw_side(panel: Panel, away: float, height: float) -> None:
+    panel.polygons([[[-9, 0], [99, 0], [99, -9], [-9, -9]]], "#DDDACF")
+    panel.ticks(x=(0, 10, 20, 30), y=(2, 4, 6, 8))
+    panel.line(np.array([[0, _EYE], [99, _EYE]]), IDEAL, 1)
+    panel.line(np.array([[0, 0], [0, _EYE]]), MUTED, 2)
+    panel.mark([0, _EYE], "camera", 9)
+    panel.text([0, _EYE + 0.6], "camera", CAMERA, anchor="lm")
+    panel.line(np.array([[away, 0], [0, _EYE], [away, height]]), ESTIMATED, 0.9, dash=4)
+    for metre in np.arange(0, height, 1):
+        ends = np.array([[away, metre], [away, min(metre + 1, height)]])
+        panel.line(ends, MUTED, 7)
+        panel.line(ends, ESTIMATED if metre % 2 == 0 else "#FFFFFF", 5)
+
+
+def _sentence(foot: Array, height: float) -> str:
+    metre = float(np.linalg.norm(at_height(foot, 1) - foot))
+    u, v = foot.tolist()
+    return (
+        f"A rod of {height:.1f} m at ({u:.0f}, {v:.0f}) px: its lowest metre is {metre:.0f} px "
+        f"high. The horizon crosses it at {_EYE:g} m, wherever it stands: there the camera is."
+    )
