@@ -13,6 +13,7 @@ from cvnotes.camera import Camera
 from cvnotes.show.explore.camera import camera_model
 from cvnotes.show.explore.columns import columns_model
 from cvnotes.show.explore.depth import depth_model
+from cvnotes.show.explore.dolly import dolly_model
 from cvnotes.show.explore.finding import finding_model
 from cvnotes.show.explore.fold import fold_model
 from cvnotes.show.explore.folds import folds_model
@@ -56,6 +57,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "finding": finding_model,
     "columns": columns_model,
     "depth": depth_model,
+    "dolly": dolly_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 
@@ -69,7 +71,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
         One of `NAMES`.
     camera, board : optional
         By default the course's. "straighten", "shadows", "triangle", "pinhole", "votes", "fold",
-        "folds", "finding", "columns" and "depth" show photographs of the course, and take none.
+        "folds", "finding", "columns", "depth" and "dolly" show photographs of the course, and take
+        none.
 
     Raises
     ------
@@ -187,6 +190,11 @@ def explore_columns() -> "Explorer":
 def explore_depth() -> "Explorer":
     """Shift one picture of a pair over the other, and read how far away things are."""
     return _explorer("depth", None)
+
+
+def explore_dolly() -> "Explorer":
+    """Step back and zoom: a box keeps its size in the picture, and the room behind it does not."""
+    return _explorer("dolly", None)
 
 
 def _explorer(name: str, camera: Camera | None, board: Chessboard | None = None) -> "Explorer":
