@@ -712,6 +712,27 @@ def test_what_lies_at_the_chosen_depth_has_no_fringe_and_all_else_has():
     assert count(plan, "#D55E00") > 2 * count(picture(depth=4000).picture, "#D55E00")
 
 
+def test_stepping_back_and_zooming_keeps_the_box_and_enlarges_what_is_behind_it():
+    shown = MODELS["dolly"].drawing
+    for distance in (1500, 4000, 7000):
+        for keep in (0, 1):
+            alpha = 750 if keep else 0.25 * distance
+            angle = 2 * np.degrees(np.arctan(320 / alpha))
+            box, board = 400 * alpha / distance, 1400 * alpha / (distance + 2500)
+            drawing = shown(distance=distance, keep=keep)
+            expected = [distance / 1000, alpha, angle, box, board]
+            np.testing.assert_allclose(numbers(drawing.sentence), expected, atol=0.5)
+    # The red front of the box is where its corners are seen: 0.25 px a millimetre, always.
+    for distance in (1500, 7000):
+        picture = shown(distance=distance).picture
+        (u, v), scale = (319.5 + 0.25 * 100, 239.5 + 0.25 * 200), WIDTH / 640
+        left, top = MARGIN + round((u + 0.5) * scale), TITLE + round((v + 0.5) * scale)
+        side = round(100 * scale)
+        front = picture[top + 3 : top + side - 3, left + 3 : left + side - 3].reshape(-1, 3)
+        assert np.ptp(front.astype(int), axis=0).max() < 8
+        assert np.abs(front[0].astype(int) - picture[top + side // 2, left + side + 4]).max() > 40
+
+
 def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_say_which_is_it():
     for fold in range(30, 121, 15):
         drawing = MODELS["fold"].drawing(fold=fold, second=0)
@@ -1020,6 +1041,7 @@ UP_AND_DOWN = {
     "depth",
     "eye",
     "top",
+    "walk",
 }  # the eye to the nearest place of its half circle
 
 

@@ -236,3 +236,21 @@ def join(*scenes: Scene) -> Scene:
         for name in ("vertices", "colours", "uv", "extent")
     }
     return Scene(triangles=np.concatenate(triangles), around=scenes[0].around, **parts)
+
+
+def from_above(scene: Scene, cut: float) -> tuple[Array, Array]:
+    """Return a plan of a scene of boxes: all that is level between its ground and y = cut.
+
+    The outlines (n, 4, 2) are in x and z, the highest last; with the colours (n, 3).
+
+    Examples
+    --------
+    >>> from_above(box((0, 1), (0, 2), (0, 3)), -1)[0][-1].tolist()
+    [[0.0, 3.0], [1.0, 3.0], [1.0, 0.0], [0.0, 0.0]]
+    """
+    faces = scene.corners.reshape(-1, 6, 3)[:, [0, 1, 2, 5]]  # of two triangles each
+    heights = faces[..., 1].mean(axis=1)
+    order = np.argsort(-heights, kind="stable")
+    level = (np.ptp(faces[..., 1], axis=1) == 0) & (heights > cut) & (heights < heights.max())
+    some = order[level[order]]
+    return faces[some][..., [0, 2]], scene.colours[2 * some, 0]

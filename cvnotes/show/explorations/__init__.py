@@ -13,6 +13,7 @@ from cvnotes.camera import Camera
 from cvnotes.show.explorations.camera import camera_model
 from cvnotes.show.explorations.columns import columns_model
 from cvnotes.show.explorations.depth import depth_model
+from cvnotes.show.explorations.dolly import dolly_model
 from cvnotes.show.explorations.finding import finding_model
 from cvnotes.show.explorations.fold import fold_model
 from cvnotes.show.explorations.folds import folds_model
@@ -62,6 +63,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "finding": finding_model,
     "columns": columns_model,
     "depth": depth_model,
+    "dolly": dolly_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 
