@@ -34,6 +34,7 @@ from cvnotes.pictures import course, radiance, rails
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
+from cvnotes.show.explorations.cube import _found
 from cvnotes.show.explorations.depth import pair
 from cvnotes.show.explorations.finding import Finding, rms
 from cvnotes.show.explorations.fold import (
@@ -55,6 +56,7 @@ from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.votes import window_at
+from cvnotes.targets import refine_subpixel
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
@@ -620,6 +622,19 @@ def test_a_rod_is_as_high_in_the_picture_as_one_that_is_photographed():
     assert np.allclose(top.at, at_height(np.array([140, 448]), 4), atol=1e-3)
     horizon = street.vanishing_point([1, 0, 0])[1]  # crossed at the height of the camera, 2.8 m
     assert abs(at_height(np.array([140, 448]), 2.8)[1] - horizon) < 1e-6
+
+
+def test_a_block_stands_where_the_photographed_board_has_its_squares():
+    cube, photo = MODELS["cube"], _found().photo.mean(axis=2)
+    for x, y, lens in ((0, 0, 1), (200, 125, 1), (100, 50, 0)):
+        drawing = cube.drawing(x=x, y=y, lens=lens, height=150)
+        grips = {grip.name: np.array(grip.at) for grip in drawing.grips}
+        corner = refine_subpixel(photo, grips["foot"].round()[None] + 1)[0]
+        assert np.linalg.norm(grips["foot"] - corner) < (0.1 if lens else 1)  # of the pixels
+        moved = cube.dragged("foot", tuple(grips["foot"]), x=99, y=99, lens=lens)
+        assert (moved["x"], moved["y"]) == (x, y)
+    *_, off = numbers(drawing.sentence)
+    assert 3 < off < 8
 
 
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():

@@ -12,6 +12,7 @@ from cvnotes.base import CvnotesError
 from cvnotes.camera import Camera
 from cvnotes.show.explorations.camera import camera_model
 from cvnotes.show.explorations.columns import columns_model
+from cvnotes.show.explorations.cube import cube_model
 from cvnotes.show.explorations.depth import depth_model
 from cvnotes.show.explorations.dolly import dolly_model
 from cvnotes.show.explorations.finding import finding_model
@@ -64,6 +65,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "columns": columns_model,
     "depth": depth_model,
     "dolly": dolly_model,
+    "cube": cube_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 

@@ -1,0 +1,178 @@
+"""Explore a calibrated camera: a block stands on a photographed board, wherever it is pulled."""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFilter
+
+from cvnotes.base import Array
+from cvnotes.calibration import pose_from_view
+from cvnotes.camera import Camera, Lens, intrinsics, look_at
+from cvnotes.pictures import course, desk, render_scene
+from cvnotes.pictures.scenes import DESK_LIGHT
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.style import CAMERA, ESTIMATED
+from cvnotes.targets import find_corners
+
+_BOARD = course.board()
+_SQUARE, _SIDE = _BOARD.square, 2 * _BOARD.square  # mm
+_CAMERA = Camera(
+    intrinsics(1150, 1150, 639.5, 479.5),
+    look_at([165, 400, -300], [95, 70, -22]),
+    lens=Lens(k=(-0.25, 0.1)),
+    size=(1280, 960),
+)
+_LIGHT = np.array(DESK_LIGHT) / np.linalg.norm(DESK_LIGHT)
+_PAINT = np.array([[246, 150, 60], [232, 122, 36]])  # two tints of the block's tiles
+_SHADED, _SOFT = 0.42, 6  # what a shadow leaves of the light; px of its edge
+
+
+class _Found(NamedTuple):
+    """The photograph, and the camera with the pose found from its corners: with lens, without."""
+
+    photo: Drawn
+    cameras: tuple[Camera, Camera]
+
+
+@lru_cache(maxsize=1)
+def _found() -> _Found:
+    photo = render_scene(desk(_BOARD), _CAMERA, samples=16)
+    m = find_corners(photo.mean(axis=2).round().astype(np.uint8), _BOARD)
+    bare = (
+        Camera(_CAMERA.A, size=_CAMERA.size),
+        Camera(_CAMERA.A, lens=_CAMERA.lens, size=_CAMERA.size),
+    )
+    without, with_lens = (one.moved(pose_from_view(one, _BOARD.points, m)) for one in bare)
+    return _Found(photo, (without, with_lens))
+
+
+def cube_model() -> Model:
+    """Make the model of a desk with a board, and a block on it."""
+    columns, rows = _BOARD.corners
+    settings = (
+        Setting("x", "x (mm)", -50, columns * _SQUARE + 25, 1, 100, "where the block stands"),
+        Setting("y", "y (mm)", -50, rows * _SQUARE + 25, 1, 50, "where the block stands"),
+        Setting("height", "height (mm)", 20, 150, 1, 75, "how high the block is"),
+        Setting("turn", "turn (°)", -45, 45, 1, 0, "how far it is turned on the board"),
+        Setting("lens", "with the lens", 0, 1, 1, 1, "whether the camera's lens is used"),
+    )
+    about = (
+        "A photograph of a desk with a board, and a block that stands on the board, drawn by the "
+        "camera that was found from the board's corners. Beside it the board from above."
+    )
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        photo, cameras = _found()
+        camera = cameras[int(values["lens"])]
+        foot, h = np.array([values["x"], values["y"]]), values["height"]
+        base = foot + _turned(values["turn"]) * _SIDE / 2
+        panel = paper.picture_panel((540, 405), _CAMERA.size, "a block on your desk: pull its foot")
+        panel.image(_in_the_shade(photo, camera, base, h))
+        corners = _draw_block(panel, camera, base, h)
+        at = camera.project([*foot, 0])
+        panel.grip("foot", "the foot of the block", at, 5)
+        panel.grip("top", "the top of the block", camera.project([*foot, -h]), 12)
+        plan = paper.panel((400, 405), (-140, 334), (-60, 420), "the same from above")
+        _draw_plan(plan, base)
+        off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1).max()
+        return Drawing(paper.join((panel, plan)), _sentence(foot, at, h, off, bool(values["lens"])))
+
+    def carried(values: Values, at: Array) -> Values:
+        x, y = on_board(_found().cameras[int(values["lens"])], at)
+        return {"x": float(x), "y": float(y)}
+
+    def stretched(values: Values, at: Array) -> Values:
+        """Make the block as high as the place over its foot that is level with the hand."""
+        h = np.arange(20, 151.0)
+        over = np.column_stack([np.full_like(h, values["x"]), np.full_like(h, values["y"]), -h])
+        seen = _found().cameras[int(values["lens"])].project(over)
+        return {"height": float(h[np.abs(seen[:, 1] - at[1]).argmin()])}
+
+    return Model("cube", about, settings, draw, {"foot": carried, "top": stretched})
+
+
+def on_board(camera: Camera, m: Array) -> Array:
+    """Return the place (2,) of the board that a pixel shows: undo sensor and lens, then Z = 0."""
+    H = camera.G[:3, [0, 1, 3]]
+    x, y, w = np.linalg.solve(H, [*camera.ideal(m), 1])
+    return np.array([x / w, y / w])
+
+
+def _turned(angle: float) -> Array:
+    """Return the corners (4, 2) of a square of side 2 about the origin, turned."""
+    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ [[c, s], [-s, c]]
+
+
+def _in_the_shade(photo: Drawn, camera: Camera, base: Array, h: float) -> Drawn:
+    """Darken what lies in the block's shadow: between its foot and where its top's shadow falls."""
+    rim = _around(np.concatenate([base, base + h * _LIGHT[:2] / _LIGHT[2]]))
+    rim = camera.project(np.insert(rim, 2, 0, axis=1))
+    w, h_px = _CAMERA.size
+    left, top = np.clip(np.floor(rim.min(axis=0)) - 20, 0, (w - 1, h_px - 1)).astype(int).tolist()
+    right, bottom = np.clip(np.ceil(rim.max(axis=0)) + 20, 1, (w, h_px)).astype(int).tolist()
+    mask = Image.new("L", (max(right - left, 1), max(bottom - top, 1)))
+    ImageDraw.Draw(mask).polygon((rim - [left, top]).ravel().tolist(), 255)
+    light = 1 - (1 - _SHADED) * np.asarray(mask.filter(ImageFilter.GaussianBlur(_SOFT))) / 255
+    shaded = photo.copy()
+    part = shaded[top:bottom, left:right]
+    part[:] = part * light[: part.shape[0], : part.shape[1], None]
+    return shaded
+
+
+def _around(xy: Array) -> Array:
+    """Return the convex hull of points (n, 2), in turn."""
+    from scipy.spatial import ConvexHull
+
+    return np.asarray(xy[ConvexHull(xy).vertices])
+
+
+def _draw_block(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
+    """Draw the block's faces that are seen, in tiles; returns its corners (8, 3)."""
+    low, high = np.insert(base, 2, 0, axis=1), np.insert(base, 2, -h, axis=1)
+    faces = [high, *(np.array([high[i - 1], high[i], low[i], low[i - 1]]) for i in range(4))]
+    middle = (low[0] + high[2]) / 2
+    for a, b, c, d in faces:
+        outside = (a + c) / 2 - middle
+        outside = outside / np.linalg.norm(outside)
+        if outside @ (camera.centre - a) <= 0:
+            continue
+        light = 0.45 + 0.55 * max(float(outside @ _LIGHT), 0)
+        n, k = (round(float(np.linalg.norm(side)) / _SQUARE + 0.1) for side in (b - a, d - a))
+        s, t = np.meshgrid(np.arange(n + 1) / n, np.arange(k + 1) / k)
+        grid = camera.project(a + s[..., None] * (b - a) + t[..., None] * (d - a))
+        for i in range(k):
+            for j in range(n):
+                tile = grid[[i, i, i + 1, i + 1], [j, j + 1, j + 1, j]]
+                tint = (light * _PAINT[(i + j) % 2]).astype(int)
+                panel.polygons(tile[None], "#{:02X}{:02X}{:02X}".format(*tint))
+    return np.concatenate([low, high])
+
+
+def _draw_plan(panel: Panel, base: Array) -> None:
+    columns, rows = _BOARD.corners
+    rest = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    panel.polygons([[[-99, -99], [999, -99], [999, 999], [-99, 999]]], "#E4C7A3")
+    panel.polygons(((rest * [columns + 3, rows + 3] - 2) * _SQUARE)[None], "#FFFFFF")
+    dark = [(i, j) for i in range(-1, columns) for j in range(-1, rows) if (i + j) % 2 == 0]
+    panel.polygons((np.array(dark)[:, None] + rest) * _SQUARE, "#333333")
+    panel.polygons(base[None], ESTIMATED)
+    panel.line(base[[0, 1, 2, 3, 0]], "#FFFFFF", 1.5)
+    eye = _CAMERA.centre[:2]
+    panel.mark(eye, "camera", 10)
+    panel.text(eye - [14, 0], "camera", CAMERA, anchor="rm", size=12)
+
+
+def _sentence(foot: Array, at: Array, h: float, off: float, lens: bool) -> str:
+    (x, y), (u, v) = foot, at
+    said = (
+        f"A block {h:.0f} mm high at ({x:.0f}, {y:.0f}) mm: its foot is seen at "
+        f"({u:.0f}, {v:.0f}) px. "
+    )
+    if lens:
+        return f"{said}Its corners are at most {off:.2f} px from where the true camera sees them."
+    return (
+        f"{said}Without the lens, and the best pose that is left, they are up to {off:.1f} px off."
+    )
