@@ -170,12 +170,10 @@ FIGURES = [
         size=(640, 480),
     ),
     figure(lines.draw_segments, {"segments": (LINES, rows(2))}, sizes=("size",), size=(640, 480)),
-    figure(lines.draw_classes, {"x_h": (np.array([[1.0, 1], [4, 2]]), rows(2))}),
     figure(lines.segment_ends, {"segments": (LINES, rows(2))}),
     # predictions
     figure(predictions.draw_wall, {"images": (PAIR, PICTURE), "columns": (2, ONE)}),
     # quality
-    figure(quality.draw_board_shape, {"magnify": (50.0, ONE)}, calibration=FREE),
     figure(quality.draw_residuals, {"magnify": (50.0, ONE)}, calibration=RESULT),
     figure(
         quality.draw_coverage, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480)

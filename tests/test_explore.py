@@ -625,7 +625,7 @@ def test_a_rod_is_as_high_in_the_picture_as_one_that_is_photographed():
 
 
 def test_a_block_stands_where_the_photographed_board_has_its_squares():
-    cube, photo = MODELS["cube"], _found().photo.mean(axis=2)
+    cube, photo = MODELS["cube"], np.asarray(_found().photo).mean(axis=2)
     for x, y, lens in ((0, 0, 1), (200, 125, 1), (100, 50, 0)):
         drawing = cube.drawing(x=x, y=y, lens=lens, height=150)
         grips = {grip.name: np.array(grip.at) for grip in drawing.grips}

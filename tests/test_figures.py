@@ -10,7 +10,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.contour import ContourSet
 from matplotlib.patches import Rectangle
 from matplotlib.quiver import Quiver
 from PIL import Image
@@ -18,7 +17,6 @@ from PIL import Image
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
 from cvnotes.calibration import BoardShape
 from cvnotes.show import (
-    draw_board_shape,
     draw_corners,
     draw_coverage,
     draw_image,
@@ -66,7 +64,6 @@ DRAWN = {
     "corners": lambda ax: draw_corners(GREY, CORNERS, BOARD, ax=ax),
     "residuals": lambda ax: draw_residuals(NOISE, ax=ax),
     "coverage": lambda ax: draw_coverage(NOISE.image_points, (64, 48), ax=ax),
-    "board": lambda ax: draw_board_shape(NOISE, ax=ax),
 }
 
 
@@ -245,29 +242,6 @@ def test_residuals_need_corners():
     made = calibration([[[0.1, 0.1]]], image_points=[])
     with pytest.raises(DegenerateError, match="read from a file that has no corners"):
         draw_residuals(made)
-
-
-def test_a_board_is_drawn_with_its_heights_in_colours_and_the_rest_as_arrows():
-    ax = draw_board_shape(NOISE, magnify=10)
-    (arrows,) = [c for c in ax.collections if isinstance(c, Quiver)]
-    np.testing.assert_allclose(np.stack([arrows.U, arrows.V], -1), 10 * FREE.offsets[:, :2])
-    (colours,) = [c for c in ax.collections if isinstance(c, ContourSet) and c.filled]
-    assert colours.levels[-1] == -colours.levels[0] == pytest.approx(np.abs(FREE.heights).max())
-    z = FREE.heights
-    assert f"from {z.min():.2f} to {z.max():.2f} mm (± 0.02)".replace("-", "−") in ax.get_title()
-    bottom, top = ax.get_ylim()
-    assert bottom > top  # as in the picture
-
-
-def test_a_bent_board_has_no_arrows_and_a_flat_one_no_figure():
-    W = BOARD.points + [0, 0, 1] * FREE.offsets
-    bent = SimpleNamespace(**vars(NOISE) | {"shape": BoardShape("bent", BOARD.points, W, FREE.std)})
-    ax = draw_board_shape(bent)
-    assert not [c for c in ax.collections if isinstance(c, Quiver)]
-    assert "arrows" not in ax.get_title()
-    flat = SimpleNamespace(**vars(NOISE) | {"shape": None})
-    with pytest.raises(DegenerateError, match='taken for flat; calibrate with board="free"'):
-        draw_board_shape(flat)
 
 
 def hatched(ax):

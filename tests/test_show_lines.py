@@ -3,10 +3,7 @@ import pytest
 
 from cvnotes.base import CvnotesError, ShapeError
 from cvnotes.show import (
-    ESTIMATED,
-    IDEAL,
     WORLD,
-    draw_classes,
     draw_image,
     draw_lines,
     draw_segments,
@@ -64,28 +61,6 @@ def test_segments_are_drawn_from_end_to_end():
     ax = draw_segments(segments, meaning="ideal", label="edges")
     assert np.allclose([ends(line) for line in ax.lines], segments)
     assert ax.get_legend_handles_labels()[1] == ["edges"]
-
-
-# Classes.
-
-
-def test_a_class_is_a_line_through_the_origin_and_its_point_stands_at_w_1():
-    ax = draw_classes([[4, 2]])
-    (line,) = (line for line in ax.lines if line.get_color() == IDEAL and hasattr(line, "get_xy1"))
-    assert np.allclose(two_points(line), [[0, 0], [4, 2]])
-    squares = [ends(line) for line in ax.lines if line.get_marker() == "s"]
-    assert np.allclose(squares, [[[2, 1]]])
-
-
-def test_the_point_at_infinity_has_no_place_on_the_line_w_1():
-    ax = draw_classes([[-3, 0]])
-    assert not [line for line in ax.lines if line.get_marker() == "s"]
-    assert ESTIMATED in {line.get_color() for line in ax.lines}
-
-
-def test_zero_is_refused_because_it_is_no_point():
-    with pytest.raises(CvnotesError, match=r"\[0 0\] is no point"):
-        draw_classes([[1, 1], [0, 0]])
 
 
 # What cannot be drawn.

@@ -24,9 +24,9 @@ from cvnotes.show.figures.lenses import (
     draw_newton,
     draw_radius,
 )
-from cvnotes.show.figures.lines import draw_classes, draw_lines, draw_segments
+from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
-from cvnotes.show.figures.quality import draw_board_shape, draw_coverage, draw_residuals
+from cvnotes.show.figures.quality import draw_coverage, draw_residuals
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
 from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits
 from cvnotes.show.picture import Picture, show
@@ -63,7 +63,6 @@ __all__ = [
     "draw_corners",
     "draw_lines",
     "draw_segments",
-    "draw_classes",
     # ideas: the colours, P², maps of the plane, the pinhole
     "draw_meanings",
     "draw_rays",
@@ -95,7 +94,6 @@ __all__ = [
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_coverage",
-    "draw_board_shape",
     "draw_plane_error",
     "draw_view_families",
     "draw_prediction_error",

@@ -14,7 +14,7 @@ from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED
-from cvnotes.targets import find_corners
+from cvnotes.targets import refine_subpixel
 
 _BOARD = course.board()
 _SQUARE, _SIDE = _BOARD.square, 2 * _BOARD.square  # mm
@@ -30,22 +30,25 @@ _SHADED, _SOFT = 0.42, 6  # what a shadow leaves of the light; px of its edge
 
 
 class _Found(NamedTuple):
-    """The photograph, and the camera with the pose found from its corners: with lens, without."""
+    """The photograph, lit and in the shade; cameras with the pose found from it: no lens, lens."""
 
-    photo: Drawn
+    photo: Image.Image
+    dark: Image.Image
     cameras: tuple[Camera, Camera]
 
 
 @lru_cache(maxsize=1)
 def _found() -> _Found:
     photo = render_scene(desk(_BOARD), _CAMERA, samples=16)
-    m = find_corners(photo.mean(axis=2).round().astype(np.uint8), _BOARD)
+    # The finder of boards is not there in a browser; what it finds is refined as here.
+    m = refine_subpixel(photo.mean(axis=2), _CAMERA.project(_BOARD.points).round())
     bare = (
         Camera(_CAMERA.A, size=_CAMERA.size),
         Camera(_CAMERA.A, lens=_CAMERA.lens, size=_CAMERA.size),
     )
     without, with_lens = (one.moved(pose_from_view(one, _BOARD.points, m)) for one in bare)
-    return _Found(photo, (without, with_lens))
+    dark = Image.fromarray((photo * _SHADED).astype(np.uint8))
+    return _Found(Image.fromarray(photo), dark, (without, with_lens))
 
 
 def cube_model() -> Model:
@@ -64,12 +67,12 @@ def cube_model() -> Model:
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        photo, cameras = _found()
-        camera = cameras[int(values["lens"])]
+        found = _found()
+        camera = found.cameras[int(values["lens"])]
         foot, h = np.array([values["x"], values["y"]]), values["height"]
         base = foot + _turned(values["turn"]) * _SIDE / 2
         panel = paper.picture_panel((540, 405), _CAMERA.size, "a block on your desk: pull its foot")
-        panel.image(_in_the_shade(photo, camera, base, h))
+        panel.image(_in_the_shade(found, camera, base, h))
         corners = _draw_block(panel, camera, base, h)
         at = camera.project([*foot, 0])
         panel.grip("foot", "the foot of the block", at, 5)
@@ -106,27 +109,17 @@ def _turned(angle: float) -> Array:
     return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ [[c, s], [-s, c]]
 
 
-def _in_the_shade(photo: Drawn, camera: Camera, base: Array, h: float) -> Drawn:
-    """Darken what lies in the block's shadow: between its foot and where its top's shadow falls."""
-    rim = _around(np.concatenate([base, base + h * _LIGHT[:2] / _LIGHT[2]]))
-    rim = camera.project(np.insert(rim, 2, 0, axis=1))
-    w, h_px = _CAMERA.size
-    left, top = np.clip(np.floor(rim.min(axis=0)) - 20, 0, (w - 1, h_px - 1)).astype(int).tolist()
-    right, bottom = np.clip(np.ceil(rim.max(axis=0)) + 20, 1, (w, h_px)).astype(int).tolist()
-    mask = Image.new("L", (max(right - left, 1), max(bottom - top, 1)))
-    ImageDraw.Draw(mask).polygon((rim - [left, top]).ravel().tolist(), 255)
-    light = 1 - (1 - _SHADED) * np.asarray(mask.filter(ImageFilter.GaussianBlur(_SOFT))) / 255
-    shaded = photo.copy()
-    part = shaded[top:bottom, left:right]
-    part[:] = part * light[: part.shape[0], : part.shape[1], None]
-    return shaded
-
-
-def _around(xy: Array) -> Array:
-    """Return the convex hull of points (n, 2), in turn."""
-    from scipy.spatial import ConvexHull
-
-    return np.asarray(xy[ConvexHull(xy).vertices])
+def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn:
+    """Darken what lies in the block's shadow: all between its foot and its top's shadow."""
+    fallen = base + h * _LIGHT[:2] / _LIGHT[2]
+    swept = [[base[i - 1], base[i], fallen[i], fallen[i - 1]] for i in range(4)]
+    seen = camera.project(np.insert(np.array([*swept, fallen]), 2, 0, axis=-1))
+    w, height = _CAMERA.size
+    mask = Image.new("L", (w // 2, height // 2))
+    for corners in seen / 2:
+        ImageDraw.Draw(mask).polygon(corners.ravel().tolist(), 255)
+    soft = mask.filter(ImageFilter.GaussianBlur(_SOFT / 2)).resize(_CAMERA.size)
+    return np.asarray(Image.composite(found.dark, found.photo, soft))
 
 
 def _draw_block(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
@@ -154,13 +147,14 @@ def _draw_block(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
 def _draw_plan(panel: Panel, base: Array) -> None:
     columns, rows = _BOARD.corners
     rest = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
-    panel.polygons([[[-99, -99], [999, -99], [999, 999], [-99, 999]]], "#E4C7A3")
+    panel.polygons(((rest - 0.5) * 2000)[None], "#E4C7A3")
     panel.polygons(((rest * [columns + 3, rows + 3] - 2) * _SQUARE)[None], "#FFFFFF")
     dark = [(i, j) for i in range(-1, columns) for j in range(-1, rows) if (i + j) % 2 == 0]
     panel.polygons((np.array(dark)[:, None] + rest) * _SQUARE, "#333333")
+    eye = _CAMERA.centre[:2]
+    panel.line([eye, base.mean(axis=0)], ESTIMATED, 0.9, dash=5)
     panel.polygons(base[None], ESTIMATED)
     panel.line(base[[0, 1, 2, 3, 0]], "#FFFFFF", 1.5)
-    eye = _CAMERA.centre[:2]
     panel.mark(eye, "camera", 10)
     panel.text(eye - [14, 0], "camera", CAMERA, anchor="rm", size=12)
 

@@ -1,4 +1,4 @@
-"""Figures of projective geometry: lines, segments, and the classes of coordinates."""
+"""Figures of projective geometry: lines and segments."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, matrix, points
-from cvnotes.show.axes import beside, drawn_on, halo, pixel_axes
+from cvnotes.base import Array, ShapeError, points
+from cvnotes.show.axes import halo, pixel_axes
 from cvnotes.show.guards import length
-from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED, WORLD, colour_of
+from cvnotes.show.style import colour_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,53 +90,6 @@ def draw_segments(
     ax = pixel_axes(ax, size)
     for i, pair in enumerate(ends):
         ax.plot(*pair.T, label=label if label and i == 0 else None, **style)
-    return ax
-
-
-def draw_classes(x_h: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw points of P¹, the projective line: classes [wx w] are lines through the origin.
-
-    Where such a line crosses w = 1 is the Euclidean point x. The class of [1 0] never does: it is
-    the point at infinity. All of them pass through [0 0], which therefore is no point.
-
-    Parameters
-    ----------
-    x_h : array_like, shape (n, 2)
-        One member (wx, w) of each class; a dot marks it where it is not the one with w = 1.
-
-    Examples
-    --------
-    >>> ax = draw_classes([[1, 1], [4, 2], [1, 0]])
-    >>> ax.get_xlabel(), ax.get_ylabel()
-    ('first coordinate, wx', 'last coordinate, w')
-    """
-    x_h = matrix(x_h, "x_h", 2).reshape(-1, 2)
-    if len(x_h) == 0:
-        raise CvnotesError("x_h: expected at least one class")
-    if not (x_h != 0).any(axis=1).all():
-        raise CvnotesError("x_h: [0 0] is no point, and has no line of its own")
-    reach = 5.0  # of the axes, to both sides
-    ax = drawn_on(ax, width=760, height=320)
-    ax.axhline(1, color=WORLD, linewidth=2.2, zorder=1)
-    text: dict[str, Any] = {"fontsize": FONT + 1, "zorder": 5, "path_effects": halo()}
-    for x, w in x_h:
-        ideal = abs(w) < 1e-100 * abs(x)
-        colour = ESTIMATED if ideal else IDEAL
-        ax.axline((0, 0), (x, w), color=colour, linewidth=1.1, zorder=2)
-        if ideal:
-            beside(ax, "[1 0]", (reach, 0), (6, 0), colour, va="center", **text)
-        elif abs(x / w) <= reach:
-            ax.plot(x / w, 1, "s", color=WORLD, markersize=6, zorder=3)
-            name = f"{x / w:g}".replace("-", "−")
-            beside(ax, name, (x / w, 1), (0, 8), WORLD, ha="center", **text)
-        if w != 1:
-            ax.plot(x, w, "o", color=colour, markersize=5, zorder=3)
-    ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=8, zorder=4)
-    beside(ax, "ℝ, at w = 1", (reach, 1), (6, 0), WORLD, va="center", **text)
-    beside(ax, "[0 0]", (0, 0), (0, -36), MUTED, ha="center", **text)
-    ax.set(xlim=(-reach, reach), ylim=(-0.3 * reach, 0.45 * reach), aspect="equal")
-    ax.set(xlabel="first coordinate, wx", ylabel="last coordinate, w", xticks=[], yticks=[])
-    ax.spines[:].set_visible(False)
     return ax
 
 

@@ -15,7 +15,7 @@ from cvnotes.base.digits import round_number
 from cvnotes.calibration.coverage import count_cells
 from cvnotes.show.axes import as_picture, drawn_on, letter
 from cvnotes.show.guards import calibrated
-from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,74 +93,6 @@ def draw_coverage(
         if corners:
             letter(ax, f"{corners}", (u + side[0] / 2, v + side[1] / 2), IDEAL, path_effects=[])
     ax.set_title(f"corners in {(count > 0).sum()} of {count.size} cells of the picture")
-    return ax
-
-
-def draw_board_shape(
-    calibration: "Calibration",
-    *,
-    ax: "Axes | None" = None,
-    magnify: float | None = None,
-) -> "Axes":
-    """Draw how the board differs from a flat one: its heights in colours, the rest as arrows.
-
-    Heights are along the board's z axis, which points away from the camera. Arrows lead from where
-    corners were taken to be to where they are, within the board; a bent board has none.
-
-    Parameters
-    ----------
-    calibration : Calibration
-        Made with ``board="bent"``, ``"free"`` or ``"auto"``.
-    magnify : float, optional
-        How much longer than true the arrows are; by default a round number that makes the longer
-        ones 6 % of the board.
-
-    Examples
-    --------
-    >>> from cvnotes.calibration import calibrate
-    >>> from cvnotes.pictures import course
-    >>> real = course.real_corners()
-    >>> found = calibrate(real.board.points, real.left, real.size, board="free")
-    >>> draw_board_shape(found).get_title()
-    'Heights from −0.20 to 0.28 mm (± 0.03), arrows × 100'
-    """
-    from matplotlib.ticker import MaxNLocator
-
-    calibrated(calibration)
-    shape = calibration.shape
-    if shape is None:
-        raise DegenerateError(
-            'the board of this calibration was taken for flat; calibrate with board="free"'
-        )
-    x, y, _ = shape.given.T
-    extent = float(np.hypot(np.ptp(x), np.ptp(y)))
-    ax = drawn_on(ax, height=round(min(max(500 * np.ptp(y) / np.ptp(x), 200), 760)) + 90)
-    z = shape.heights
-    highest = max(float(np.abs(z).max()), 1e-9 * extent)
-    colours = ax.tricontourf(x, y, z, levels=np.linspace(-highest, highest, 21), cmap="PuOr_r")
-    ax.tricontour(x, y, z, levels=[0.0], colors=MUTED, linewidths=0.8)
-    bar = ax.figure.colorbar(
-        colours, ax=ax, shrink=0.85, pad=0.02, aspect=16, ticks=MaxNLocator(6, symmetric=True)
-    )
-    bar.set_label("z (mm), away from the camera", fontsize=FONT - 1)
-    bar.ax.tick_params(labelsize=FONT - 1)
-    ax.plot(x, y, ".", color=IDEAL, markersize=3)
-    title = f"Heights from {z.min():.2f} to {z.max():.2f} mm (± {np.median(shape.std[:, 2]):.2f})"
-    aside = shape.offsets[:, :2]
-    longer = float(np.percentile(np.hypot(*aside.T), 95))
-    if longer > 0:
-        if magnify is None:
-            magnify = round_number(0.06 * extent / longer)
-        magnify = number(magnify, "magnify")
-        ax.quiver(
-            x, y, *(aside * magnify).T, color=IDEAL, angles="xy", scale_units="xy", scale=1,
-            units="width", width=0.0025,
-        )  # fmt: skip
-        title += f", arrows × {magnify:,g}"
-    room = 0.07 * extent
-    ax.set(xlim=(x.min() - room, x.max() + room), ylim=(y.max() + room, y.min() - room))
-    ax.set(aspect="equal", xlabel="x (mm)", ylabel="y (mm)")
-    ax.set_title(title.replace("-", "−"))
     return ax
 
 
