@@ -43,9 +43,7 @@ def dolly_model() -> Model:
             m = camera.project(ends)
             widths.append(m[1, 0] - m[0, 0])
             panel.line(m, IDEAL, 2)
-            panel.text(
-                m.mean(axis=0) + [0, 14], f"{widths[-1]:.0f} px", IDEAL, anchor="mm", size=13
-            )
+            panel.text(m.mean(axis=0) + [0, 14], f"{widths[-1]:.0f} px", IDEAL, anchor="mm")
         angle = np.degrees(camera.field_of_view[0])
         said = (
             f"The camera is {values['distance'] / 1000:g} m away; with α = {alpha:g} px it sees "
@@ -88,9 +86,7 @@ def _plan(paper: Paper, camera: Camera, angle: float) -> Panel:
     panel.line(_BOARD[:, ::2], _GREEN, 5)
     panel.polygons(_OUTSIDE, "#E4E4E4")
     panel.line(_CORNERS, MUTED, 3)
-    panel.text(
-        [_X, _FRONT - 420], f"{np.ptp(across[:, 0]) / 1000:.2f} m", LENS, anchor="mm", size=12
-    )
+    panel.text([_X, _FRONT - 420], f"{np.ptp(across[:, 0]) / 1000:.2f} m", LENS, anchor="mm")
     panel.mark(eye, "camera", 9)
     panel.text(eye + [250, -60], f"{angle:.0f}°", CAMERA, size=13)
     panel.grip("walk", "how far back the camera stands", eye, 8)
