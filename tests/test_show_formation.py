@@ -106,12 +106,18 @@ def test_the_angles_that_two_cameras_see_are_written_beside_them():
         [7450, 450], [7450, 850], [7850, 450], [7850, 850]]  # fmt: skip
 
 
-def test_the_lines_of_a_leaning_sensor_lean():
+def test_the_columns_of_a_leaning_sensor_lean_and_see_the_same_room():
     A = intrinsics(800, 800, 320, 240, -80.0)
-    down = draw_sensor(A).lines[0].get_xydata()  # u = 0
-    across, along = down[1] - down[0]
+    cells = draw_sensor(A).collections[0]
+    first, *_, last = cells.get_coordinates()[:, 0]  # the border at u = −½
+    across, along = last - first
     assert along == pytest.approx(480 / 800)
     assert across == pytest.approx(0.1 * along)  # 80 px of 800 for each unit of y
+    # What the room shows at one place of the plane z = 1, both sensors have there.
+    straight = draw_sensor(intrinsics(800, 800, 320, 240)).collections[0].get_array()
+    x, y = cells.get_coordinates()[15:17, 29:31].mean((0, 1))
+    upright = straight[int((800 * y + 240.5) / 20), int((800 * x + 320.5) / 20)]
+    np.testing.assert_allclose(cells.get_array()[15, 29], upright, atol=0.05)
 
 
 def test_pixels_are_squares_around_whole_numbers():

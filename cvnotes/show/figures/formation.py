@@ -70,28 +70,27 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     W = np.concatenate([outlined(thing.faces).reshape(-1, 3), point[None]])
     M = move(is_camera(camera, "camera").G, W)
     xy = np.where(M[:, 2:] > 0, M[:, :2] / np.where(M[:, 2:] > 0, M[:, 2:], 1), np.nan)
-    states, steps = {"the world": W, "the camera's frame": M, "the plane z = 1": xy}, ["G", "÷ z"]
+    states = [("", "the world", W), ("G", "the camera's frame", M), ("÷ z", "the plane z = 1", xy)]
     if not camera.lens.is_ideal:
-        states["through the lens"] = camera.lens.distort(np.nan_to_num(xy, nan=_FARTHEST))
-        steps.append("lens")
-    states["the picture"] = camera.project(W)
+        bent = camera.lens.distort(np.nan_to_num(xy, nan=_FARTHEST))
+        states.append(("lens", "through the lens", bent))
+    states.append(("A", "the picture", camera.project(W)))
     axes = _places(len(states) - 4)
     for ax, frame in zip(axes, (camera.G, None), strict=False):
         _from_above(ax, camera, M if frame is None else W, frame)
-    for ax, m, colour in zip(axes[2:-1], list(states.values())[2:], (IDEAL, LENS), strict=False):
+    for ax, (*_, m), colour in zip(axes[2:-1], states[2:], (IDEAL, LENS), strict=False):
         _border(ax, camera)
         if m is not xy:  # where it would be without the lens
             draw_faces(ax, xy[:-1], _SHADES, (0.8, 0.8, 0.8), lw=0)
         draw_faces(ax, m[:-1], _SHADES, _FILL, ec=colour, lw=1.2)
     w, h = camera.size
     axes[-1].imshow(_photograph(camera, thing, low, high), extent=(-0.5, w - 0.5, h - 0.5, -0.5))
-    leading = ["", *(f"{i}. {step}" for i, step in enumerate([*steps, "A"], start=1))]
-    for ax, (name, m), step in zip(axes, states.items(), leading, strict=True):
+    for i, (ax, (step, name, m)) in enumerate(zip(axes, states, strict=True)):
         ax.set_title(name, fontsize=FONT + 1)
         ax.axis("off")
         _follow(ax, m[-1])
         if step:
-            _lead_to(ax, step, below=ax is axes[3])
+            _lead_to(ax, f"{i}. {step}", below=i == 3)
     return axes
 
 
@@ -209,8 +208,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
     walls = Rectangle((-_BACK, -3000), _WALL + _BACK, 6000, fc="white", ec=MUTED, lw=3)
     ax.add_patch(walls)
     for corners, colour in zip(*from_above(room(), -1500), strict=True):
-        for patch in ax.fill(*corners.T[::-1], fc=colour, zorder=2):
-            patch.set_clip_path(walls)
+        ax.fill(*corners.T[::-1], fc=colour, zorder=2)
     ax.plot([9940, 9940], [-600, 600], color="#3A6A66", lw=5, solid_capstyle="butt")  # blackboard
     across = (_WALL + _BACK) / len(cameras)
     for i, ((name, camera), own) in enumerate(zip(cameras.items(), _OWN, strict=False)):

@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, image_size, intrinsic_matrix
-from cvnotes.camera import xy_from_px
+from cvnotes.camera import Camera, xy_from_px
+from cvnotes.pictures import render_scene, room
 from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter
 from cvnotes.show.figures.images import draw_image
 from cvnotes.show.guards import count, one_point
@@ -18,29 +19,28 @@ if TYPE_CHECKING:
 
 
 def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw a sensor's lines of pixels on the plane z = 1, as A has it: its axes may lean.
+    """Draw a sensor on the plane z = 1, with what it sees of a room: its axes may lean.
 
     Parameters
     ----------
     A : array_like, shape (3, 3)
-        Intrinsic matrix of a sensor of 640 × 480 pixels; every 80 of them a line is drawn.
+        Intrinsic matrix of a sensor of 640 × 480 pixels; a cell stands for 20 × 20 of them.
 
     Examples
     --------
-    >>> draw_sensor([[800, 0, 320], [0, 800, 240], [0, 0, 1]]).get_xlabel()
-    'x / z'
+    >>> draw_sensor([[800, 0, 320], [0, 800, 240], [0, 0, 1]]).collections[0].get_array().shape
+    (24, 32, 3)
     """
     A, step = intrinsic_matrix(A), 80
     ax = drawn_on(ax, height=400)
-    columns, rows = np.arange(0, 641, step), np.arange(0, 481, step)
-    for u in columns:
-        ax.plot(*xy_from_px(A, [[u, 0], [u, 480]]).T, color=MUTED, lw=0.8)
-    for v in rows:
-        ax.plot(*xy_from_px(A, [[0, v], [640, v]]).T, color=MUTED, lw=0.8)
+    seen = render_scene(room(), Camera(A, size=(640, 480)), samples=1)
+    corners = np.stack(np.meshgrid(np.arange(0, 641, 20), np.arange(0, 481, 20)), axis=-1) - 0.5
+    cells = seen.reshape(24, 20, 32, 20, 3).mean(axis=(1, 3)) / 255
+    ax.pcolormesh(*np.moveaxis(xy_from_px(A, corners), -1, 0), cells, ec=MUTED, lw=0.3)
     start, *tips = xy_from_px(A, [[0, 0], [2 * step, 0], [0, 2 * step]])
     for tip, name in zip(tips, "uv", strict=True):
         arrow(ax, start, tip, LENS, 2.2, gap=2)
-        letter(ax, name, 1.2 * tip - 0.2 * start, LENS)
+        letter(ax, name, 1.2 * tip - 0.2 * start, LENS, fontsize=FONT + 2)
     first, last = (np.arctan2(*(tip - start)[::-1]) for tip in tips)
     arc = np.linspace(first, last, 25)[:, None]
     reach = 0.4 * float(np.linalg.norm(tips[0] - start))
@@ -49,7 +49,8 @@ def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     letter(ax, "θ", middle, ESTIMATED)
     ax.plot(0, 0, "^", color=CAMERA, ms=8)
     beside(ax, "(u0, v0)", (0, 0), (8, 8), CAMERA, path_effects=halo())
-    ax.set(xlabel="x / z", ylabel="y / z", aspect="equal")
+    ax.set_aspect("equal")
+    ax.axis("off")
     ax.invert_yaxis()
     return ax
 
