@@ -44,6 +44,7 @@ from cvnotes.show.figures import (
     lines,
     predictions,
     quality,
+    sensors,
     vanishing,
     warps,
 )
@@ -128,17 +129,20 @@ FIGURES = [
     ),
     figure(
         formation.draw_formation,
-        {"lines": (W[:6].reshape(2, 3, 3), several(3)), "point": (W[3], several(3))},
+        {
+            "lines": (formation.box_lines((0, 9), (0, 6), (3, 5)), several(3)),
+            "point": (W[3], several(3)),
+        },
         camera=CAMERA,
     ),
-    figure(formation.draw_sensor, {"A": (A, SINGLE)}),
+    figure(sensors.draw_sensor, {"A": (A, SINGLE)}),
     figure(
-        formation.draw_pixels,
+        sensors.draw_pixels,
         {"image": (SMALL, PICTURE), "corner": ((4, 3), SINGLE)},
         sizes=("size",),
         size=(4, 3),
     ),
-    figure(formation.draw_half_pixels, {"factor": (2, ONE)}),
+    figure(sensors.draw_half_pixels, {"factor": (2, ONE)}),
     # least squares
     figure(least_squares.draw_stretched_circle, {"D": (np.array([[2.0, 1], [1, 1]]), SINGLE)}),
     figure(

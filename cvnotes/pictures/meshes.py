@@ -107,6 +107,11 @@ class Scene:
         corners: Array = self.vertices[self.triangles]
         return corners
 
+    @property
+    def faces(self) -> Array:
+        """Corners (k, 4, 3) of the faces in the WRF, if each is of two triangles."""
+        return np.asarray(self.corners.reshape(-1, 6, 3)[:, [0, 1, 2, 5]])
+
     @cached_property
     def normals(self) -> Array:
         """Unit normals (m, 3) of the triangles; zero for those without an area."""
@@ -239,18 +244,12 @@ def join(*scenes: Scene) -> Scene:
 
 
 def from_above(scene: Scene, cut: float) -> tuple[Array, Array]:
-    """Return a plan of a scene of boxes: all that is level between its ground and y = cut.
+    """Return a plan of a scene of boxes: outlines (n, 4, 2), x and z, and their colours (n, 3).
 
-    The outlines (n, 4, 2) are in x and z, the highest last; with the colours (n, 3).
-
-    Examples
-    --------
-    >>> from_above(box((0, 1), (0, 2), (0, 3)), -1)[0][-1].tolist()
-    [[0.0, 3.0], [1.0, 3.0], [1.0, 0.0], [0.0, 0.0]]
+    It has what is level between the ground and the height y = cut, the highest last.
     """
-    faces = scene.corners.reshape(-1, 6, 3)[:, [0, 1, 2, 5]]  # of two triangles each
-    heights = faces[..., 1].mean(axis=1)
+    heights = scene.faces[..., 1].mean(axis=1)
+    level = (np.ptp(scene.faces[..., 1], axis=1) == 0) & (cut < heights) & (heights < heights.max())
     order = np.argsort(-heights, kind="stable")
-    level = (np.ptp(faces[..., 1], axis=1) == 0) & (heights > cut) & (heights < heights.max())
     some = order[level[order]]
-    return faces[some][..., [0, 2]], scene.colours[2 * some, 0]
+    return scene.faces[some][..., [0, 2]], scene.colours[2 * some, 0]

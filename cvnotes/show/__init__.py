@@ -6,14 +6,7 @@ from cvnotes.show.explorations import explore
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.corners import draw_clouds, draw_response
 from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
-from cvnotes.show.figures.formation import (
-    box_lines,
-    draw_field_of_view,
-    draw_formation,
-    draw_half_pixels,
-    draw_pixels,
-    draw_sensor,
-)
+from cvnotes.show.figures.formation import box_lines, draw_field_of_view, draw_formation
 from cvnotes.show.figures.ideas import draw_mapped, draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.least_squares import draw_stretched_circle, draw_two_errors, draw_valley
@@ -27,6 +20,7 @@ from cvnotes.show.figures.lenses import (
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
+from cvnotes.show.figures.sensors import draw_half_pixels, draw_pixels, draw_sensor
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
 from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward, draw_hits
 from cvnotes.show.picture import Picture, show

@@ -36,17 +36,14 @@ def dolly_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         camera = camera_at(values)
-        alpha, widths = camera.A[0, 0], []
+        alpha, angle = camera.A[0, 0], np.degrees(camera.field_of_view[0])
         panel = paper.picture_panel(_SHOWN, _SIZE, f"α = {alpha:g} px")
         panel.image(_photograph(values["distance"], values["keep"]))
-        for ends in (_BOX, _BOARD):
-            m = camera.project(ends)
-            widths.append(m[1, 0] - m[0, 0])
-            panel.line(m, IDEAL, 2)
-            panel.text(
-                m.mean(axis=0) + [0, 14], f"{widths[-1]:.0f} px", IDEAL, anchor="mm", size=13
-            )
-        angle = np.degrees(camera.field_of_view[0])
+        seen = camera.project([_BOX, _BOARD])
+        widths = np.ptp(seen[..., 0], axis=1)
+        for ends, width in zip(seen, widths, strict=True):
+            panel.line(ends, IDEAL, 2)
+            panel.text(ends.mean(axis=0) + [0, 14], f"{width:.0f} px", IDEAL, anchor="mm", size=13)
         said = (
             f"The camera is {values['distance'] / 1000:g} m away; with α = {alpha:g} px it sees "
             f"{angle:.1f}°. The box is {widths[0]:.0f} px wide, the blackboard {widths[1]:.0f} px."
@@ -88,9 +85,7 @@ def _plan(paper: Paper, camera: Camera, angle: float) -> Panel:
     panel.line(_BOARD[:, ::2], _GREEN, 5)
     panel.polygons(_OUTSIDE, "#E4E4E4")
     panel.line(_CORNERS, MUTED, 3)
-    panel.text(
-        [_X, _FRONT - 420], f"{np.ptp(across[:, 0]) / 1000:.2f} m", LENS, anchor="mm", size=12
-    )
+    panel.text([_X, _FRONT - 420], f"{np.ptp(across[:, 0]) / 1000:.2f} m", LENS, anchor="mm")
     panel.mark(eye, "camera", 9)
     panel.text(eye + [250, -60], f"{angle:.0f}°", CAMERA, size=13)
     panel.grip("walk", "how far back the camera stands", eye, 8)

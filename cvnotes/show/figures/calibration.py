@@ -8,26 +8,25 @@ import numpy.typing as npt
 from cvnotes.base import Array, DegenerateError, ShapeError, numbers
 from cvnotes.camera import Camera
 from cvnotes.camera.model import is_camera
+from cvnotes.pictures.meshes import box
 from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.show.axes import beside, panels, pixel_axes
+from cvnotes.show.figures.formation import draw_faces, outlined
 from cvnotes.show.guards import count, length, one_point
 from cvnotes.show.style import ESTIMATED, FONT, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Corner i of the cube has the bits of i as its x, y and height; each face goes round clockwise as
-# whoever looks at its outside sees it.
-_FACES = {
-    "top": (4, 5, 7, 6),
-    "y = 0": (0, 1, 5, 4),
-    "x = 0": (2, 0, 4, 6),
-    "x = 1": (1, 3, 7, 5),
-    "y = 1": (3, 2, 6, 7),
-}
-_COLOUR = np.array([0.96, 0.55, 0.16])  # of the side that is lit best
-_SHADES = {"top": 1.0, "x = 0": 0.82, "y = 1": 0.72, "x = 1": 0.6, "y = 0": 0.48}
-_PER_EDGE = 16  # short pieces that a lens may bend
+_COLOUR = (0.96, 0.55, 0.16)  # of the side that is lit best
+_SHADES = (
+    1.0,
+    0.4,
+    0.82,
+    0.6,
+    0.48,
+    0.72,
+)  # of the top, the bottom, low and high x, low and high y
 _SHADOW = np.array(DESK_LIGHT)[:2] / DESK_LIGHT[2]  # where it throws the shadow of height 1
 
 
@@ -124,39 +123,22 @@ def draw_cube(
     """
     camera, side = is_camera(camera, "camera"), length(side, "side")
     x0, y0 = one_point(origin, "origin", 2)
-    bits = np.array([[i & 1, i >> 1 & 1, -(i >> 2)] for i in range(8)], float)
-    W = [x0, y0, 0] + side * bits
+    cube = box((x0, x0 + side), (y0, y0 + side), (-side, 0))
     ax = pixel_axes(ax, camera.size)
     limits = ax.get_xlim(), ax.get_ylim()
-    floor = W[[2, 0, 0, 1, 3, 3], :2]  # in turn round the outline of the cube and its shadow
+    floor = cube.vertices[[2, 0, 0, 1, 3, 3], :2]  # round the outline of the cube and its shadow
     floor[2:5] += side * _SHADOW
     shadow = _outline(camera, np.column_stack([floor, np.zeros(6)]))
     ax.fill(*shadow.T, color="#404040", alpha=0.6, linewidth=0, zorder=2)  # seen on black, too
-    for name, corners in _FACES.items():
-        face = _outline(camera, W[list(corners)])
-        if _turns_right(face):
-            ax.fill(
-                *face.T,
-                facecolor=_COLOUR * _SHADES[name],
-                edgecolor="white",
-                linewidth=1.2,
-                zorder=3,
-            )
+    faces = _outline(camera, cube.faces)
+    draw_faces(ax, faces, _SHADES, _COLOUR, edgecolor="white", linewidth=1.2, zorder=3)
     ax.set(xlim=limits[0], ylim=limits[1])
     return ax
 
 
 def _outline(camera: Camera, W: Array) -> Array:
-    """Picture (n, 2) of a closed polygon in space, its edges in short pieces."""
-    t = np.arange(_PER_EDGE)[:, None] / _PER_EDGE
-    pieces = [a + t * (b - a) for a, b in zip(W, np.roll(W, -1, axis=0), strict=True)]
-    m = camera.project(np.concatenate(pieces))
+    """Picture (..., 2) of closed polygons in space, their edges in short pieces."""
+    m = camera.project(outlined(W))
     if np.isnan(m).any():
         raise DegenerateError("a corner of the cube has no image: it is not before the camera")
     return m
-
-
-def _turns_right(m: Array) -> bool:
-    """Whether a closed polygon of pixels goes round clockwise, as v downwards shows it."""
-    u, v = m.T
-    return bool(np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0)

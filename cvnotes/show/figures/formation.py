@@ -1,4 +1,4 @@
-"""Figures of how an image is formed: the chain of steps, the field of view, sensor and pixels."""
+"""Figures of how an image is formed: the chain of steps, and the field of view."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, image_size, intrinsic_matrix, points
+from cvnotes.base import MOST, Array, CvnotesError, ShapeError, number, points
 from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
+from cvnotes.pictures import render_scene, room
+from cvnotes.pictures.meshes import Colour, Scene, box, from_above, join, quads
 from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter, panels
-from cvnotes.show.figures.images import draw_image
-from cvnotes.show.guards import count, one_point
-from cvnotes.show.guards import picture as checked
-from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
+from cvnotes.show.guards import one_point
+from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
 def box_lines(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> Array:
-    """Return the twelve edges of a box from x[0] to x[1] and so on, as lines (12, 25, 3).
+    """Return the twelve edges of a box from x[0] to x[1] and so on, as lines (12, 2, 3).
 
     Examples
     --------
@@ -30,15 +30,14 @@ def box_lines(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> Array:
     sides = np.stack([one_point(side, name, 2) for side, name in ((x, "x"), (y, "y"), (z, "z"))])
     corners = np.array(list(np.ndindex(2, 2, 2)))
     pairs = [(a, b) for a in range(8) for b in range(a) if (corners[a] != corners[b]).sum() == 1]
-    ends = sides[[0, 1, 2], corners][np.array(pairs)]
-    along = np.linspace(0, 1, 25)[:, None]
-    return np.asarray(ends[:, :1] + along * (ends[:, 1:] - ends[:, :1]))
+    return np.asarray(sides[[0, 1, 2], corners][np.array(pairs)])
 
 
-_STEPS = """1. G: M = R W + T
-2. ÷ z: x / z and y / z
-3. lens: times L(r), plus p1 and p2
-4. A: to pixels"""
+_FILL = rgb(WORLD)
+_SHADES = (1.0, 0.5, 0.55, 0.85, 0.9, 0.6)  # of front, back, left, right, top, bottom
+_FARTHEST = 1e9  # what is farther away is not drawn
+_AXES = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1.0]])
+_TABLE = ((0.93, 0.90, 0.84), (0.87, 0.83, 0.76))
 
 
 def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -> Any:
@@ -48,8 +47,8 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     ----------
     camera : Camera
         Its A, G and lens are the steps. An ideal lens has no panel.
-    lines : array_like, shape (k, n, 3)
-        Lines of the world, n points on each.
+    lines : array_like, shape (12, n, 3)
+        The edges of a box, as `box_lines` gives them.
     point : array_like, shape (3,)
         A point of the world to be followed, drawn as a cross.
 
@@ -57,246 +56,181 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     --------
     >>> from cvnotes.camera import intrinsics
     >>> camera = Camera(intrinsics(800, 800, 320, 240))
-    >>> axes = draw_formation(camera, [[[0, 0, 5], [1, 0, 5]]], [1, 0, 5])
+    >>> axes = draw_formation(camera, box_lines((0, 1), (0, 1), (5, 6)), [1, 0, 5])
     >>> [ax.get_title() for ax in axes][-1]
-    '3. A → the picture'
+    'the picture'
     """
     lines, point = points(lines, "lines", 3), one_point(point, "point", 3)
-    if lines.ndim != 3 or lines.size == 0:
-        raise ShapeError(f"lines: expected (k, n, 3), lines of n points, got {lines.shape}")
-    bent = not is_camera(camera, "camera").lens.is_ideal
-    columns = 3 if bent else 2
-    grid = panels(columns, 2, width=960, height=660 if bent else 840)
-    axes = grid.ravel()[: 5 if bent else 4]
-    for ax in grid.ravel()[5:]:  # a place that is free says what the steps are
-        ax.axis("off")
-        ax.text(0.05, 0.5, _STEPS, transform=ax.transAxes, va="center", linespacing=2)
-    W = np.concatenate([lines.reshape(-1, 3), point[None]])
-    M = move(camera.G, W)
-    _from_above(axes[0], camera, W, lines.shape, camera.G)
-    _from_above(axes[1], camera, M, lines.shape, None)
+    if lines.ndim != 3 or len(lines) != 12 or lines.size == 0:
+        raise ShapeError(f"lines: expected (12, n, 3), edges of n points, got {lines.shape}")
+    number(float(np.abs(lines).max()), "lines", at_most=MOST)
+    low, high = lines.min(axis=(0, 1)), lines.max(axis=(0, 1))
+    x, y, z = np.stack([low, high], axis=1)
+    thing = box(x, y, z, _FILL)
+    W = np.concatenate([outlined(thing.faces).reshape(-1, 3), point[None]])
+    M = move(is_camera(camera, "camera").G, W)
     xy = np.where(M[:, 2:] > 0, M[:, :2] / np.where(M[:, 2:] > 0, M[:, 2:], 1), np.nan)
-    _plane(axes[2], camera, xy, lines.shape, IDEAL)
-    states = {"the world": W, "the camera's frame": M, "the plane z = 1": xy}
-    steps = ["G", "÷ z", "A"]
-    if bent:
-        states["through the lens"] = camera.lens.distort(np.nan_to_num(xy, nan=1e9))
-        _plane(axes[3], camera, states["through the lens"], lines.shape, LENS)
-        steps.insert(2, "lens")
-    states["the picture"] = camera.project(W)
-    _trace(axes[-1], states["the picture"], lines.shape, LENS)
-    _border(axes[-1], _corners(camera), "u → , v ↓ (px)")
-    leading = ["", *(f"{i}. {step} → " for i, step in enumerate(steps, start=1))]
-    for ax, step, (name, (*_, place)) in zip(axes, leading, states.items(), strict=True):
-        ax.set_title(step + name, fontsize=FONT + 1)
-        ax.locator_params(nbins=4)
-        ax.set_box_aspect(0.85)
-        ax.set_aspect("equal", adjustable="datalim")
-        digits = 0 if len(place) == 3 else 4 if np.abs(place).max() < 10 else 1
-        words = ", ".join(f"{number:.{digits}f}" for number in place).replace("-", "−")
-        y, va = (0.97, "top") if len(place) == 3 else (0.03, "bottom")  # a camera stands below
-        ax.text(0.98, y, f"({words})", transform=ax.transAxes, ha="right", va=va, color=ESTIMATED)
+    states = [("", "the world", W), ("G", "the camera's frame", M), ("÷ z", "the plane z = 1", xy)]
+    if not camera.lens.is_ideal:
+        bent = camera.lens.distort(np.nan_to_num(xy, nan=_FARTHEST))
+        states.append(("lens", "through the lens", bent))
+    states.append(("A", "the picture", camera.project(W)))
+    axes = _places(len(states) - 4)
+    for ax, frame in zip(axes, (camera.G, None), strict=False):
+        _from_above(ax, camera, M if frame is None else W, frame)
+    for ax, (*_, m), colour in zip(axes[2:-1], states[2:], (IDEAL, LENS), strict=False):
+        _border(ax, camera)
+        if m is not xy:  # where it would be without the lens
+            draw_faces(ax, xy[:-1], _SHADES, (0.8, 0.8, 0.8), lw=0)
+        draw_faces(ax, m[:-1], _SHADES, _FILL, ec=colour, lw=1.2)
+    w, h = camera.size
+    axes[-1].imshow(_photograph(camera, thing, low, high), extent=(-0.5, w - 0.5, h - 0.5, -0.5))
+    for i, (ax, (step, name, m)) in enumerate(zip(axes, states, strict=True)):
+        ax.set_title(name, fontsize=FONT + 1)
+        ax.axis("off")
+        _follow(ax, m[-1])
+        if step:
+            _lead_to(ax, f"{i}. {step}", below=i == 3)
     return axes
 
 
-def _trace(ax: "Axes", m: Array, shape: tuple[int, ...], colour: str) -> None:
-    """Draw the lines, and the last point as a cross."""
-    for line in m[:-1].reshape(*shape[:2], -1):
-        ax.plot(*line[:, :2].T, color=colour, lw=1.1)
-    ax.plot(*m[-1, :2], "x", color=ESTIMATED, ms=9, mew=2.5, zorder=5)
+def _places(bent: int) -> Array:
+    """Make the panels: two that are high, two below each other, and one more if the lens bends."""
+    grid = panels(3 + bent, 2, width=960, height=440, width_ratios=[1, 1, 1.25, 1.25][: 3 + bent])
+    for k in (0, 1, 3)[: 2 + bent]:
+        grid[1, k].remove()
+        grid[0, k].set_subplotspec(grid[0, k].get_gridspec()[:, k])
+    return np.array([*grid[0, :3], grid[1, 2], *grid[0, 3:]])
 
 
-def _from_above(
-    ax: "Axes", camera: Camera, X: Array, shape: tuple[int, ...], G: Array | None
+def _lead_to(ax: "Axes", step: str, below: bool) -> None:
+    """Draw the arrow of a step from the panel before, on the left or above."""
+    places = ((0.04, 1.24), (0.04, 1.02), (-0.08, 1.13)), ((-0.2, 0.5), (-0.02, 0.5), (-0.11, 0.56))
+    start, end, at = places[0 if below else 1]
+    arrow(ax, start, end, MUTED, 1.8, xycoords="axes fraction", textcoords="axes fraction")
+    letter(ax, step, at, "#333333", transform=ax.transAxes)
+
+
+def _follow(ax: "Axes", at: Array) -> None:
+    """Mark the point that is followed, and write its numbers beside it, towards the middle."""
+    place = at[[0, -1]]  # from above, x and z
+    ax.plot(*place, "x", color=ESTIMATED, ms=9, mew=2.5, zorder=5)
+    digits = 0 if len(at) == 3 else 3 if np.abs(at).max() < 10 else 1
+    words = ", ".join(f"{number:.{digits}f}" for number in at).replace("-", "−")
+    look = {"ha": "right", "va": "top", "path_effects": halo(), "zorder": 6}
+    beside(ax, f"({words})", place, (14, -8), ESTIMATED, **look)
+
+
+def outlined(corners: Array) -> Array:
+    """Divide the edges of polygons (..., k, 3) into short pieces that a lens may bend."""
+    edges = np.roll(corners, -1, axis=-2) - corners
+    pieces = corners[..., None, :] + np.arange(16)[:, None] / 16 * edges[..., None, :]
+    return np.asarray(pieces.reshape(*corners.shape[:-2], -1, 3))
+
+
+def draw_faces(
+    ax: "Axes", m: Array, shades: tuple[float, ...], colour: Colour, *, turn: int = 1, **style: Any
 ) -> None:
-    """Draw lines and camera from above, z upwards; in the world's frame if G is given."""
-    _trace(ax, X[:, [0, 2]], shape, WORLD)
-    middle = X.mean(axis=0)
-    reach = 0.25 * float(np.linalg.norm(middle if G is None else move(G, middle)))
-    w = camera.size[0]
-    sides = np.array([[-0.5, camera.A[1, 2]], [w - 0.5, camera.A[1, 2]]])
-    tips = np.concatenate([xy_from_px(camera.A, sides), np.ones((2, 1))], axis=1)
-    tips = reach * tips / tips[:, 2:]
-    frame = reach * np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1.0]])
-    cone = np.concatenate([np.zeros((1, 3)), tips, np.zeros((1, 3))])
+    """Draw, of a box's outlined faces, those that nothing hides: the ones that go round one way."""
+    m = np.where(np.abs(m) < _FARTHEST, m, np.nan)
+    for (u, v), shade in zip(m.reshape(6, -1, 2).transpose(0, 2, 1), shades, strict=True):
+        if turn * np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0:
+            ax.fill(u, v, fc=np.multiply(shade, colour), **style)
+
+
+def _photograph(camera: Camera, thing: Scene, low: Array, high: Array) -> npt.NDArray[np.uint8]:
+    """Take the box's picture, on a table of squares that are a quarter of its longest edge."""
+    edge = float((high - low).max())
+    sheet = low[:2] + edge * np.array([[-30, -30], [30, -30], [30, 30], [-30, 30]])
+    table = quads([[*xy, high[2]] for xy in sheet], [[0, 1, 2, 3]], _TABLE, edge / 4)
+    return render_scene(join(thing, table), camera, samples=16)
+
+
+def _from_above(ax: "Axes", camera: Camera, X: Array, G: Array | None) -> None:
+    """Draw box and camera from above, z upwards; in the world's frame if G is given."""
+    from matplotlib.patches import Polygon
+
+    back = np.eye(4) if G is None else inverse(G)
+    far = float(move(inverse(back), X)[:, 2].max())
+    left, right = _sides(camera)
+    cone = move(back, 9 * far * np.array([[0, 0, 0], [left, 0, 1], [right, 0, 1]]))
     if G is not None:
-        _frame(ax, frame, WORLD, "XZ")
-        cone, frame = move(inverse(G), cone), move(inverse(G), frame)
-    ax.plot(*cone[:, [0, 2]].T, color=CAMERA, lw=1.4)
-    _frame(ax, frame, CAMERA, "xz")
-    ax.set_xlabel("x → , z ↑" if G is None else "X → , Z ↑")
+        _frame(ax, 1.3 * np.ptp(X[:, 0]) * _AXES, WORLD, "XZ")
+    draw_faces(ax, X[:-1, [0, 2]], _SHADES, _FILL, turn=-1, ec=WORLD)
+    _frame(ax, move(back, 0.22 * far * _AXES), CAMERA, "xz")
+    ax.add_artist(Polygon(cone[:, [0, 2]], fc=CAMERA, alpha=0.2, zorder=0))  # not to be fitted
+    ax.set_aspect("equal", adjustable="datalim")
+
+
+def _sides(camera: Camera) -> Array:
+    """Return x / z at the left and the right border of a picture, in the row of its (u0, v0)."""
+    borders = [[-0.5, camera.A[1, 2]], [camera.size[0] - 0.5, camera.A[1, 2]]]
+    return np.asarray(xy_from_px(camera.A, borders)[:, 0])
 
 
 def _frame(ax: "Axes", frame: Array, colour: str, letters: str) -> None:
     for tip, name in zip(frame[1:], letters, strict=True):
         arrow(ax, frame[0, [0, 2]], tip[[0, 2]], colour, 1.5, gap=2)
-        out = 1.22 * tip - 0.22 * frame[0]
+        out = 1.13 * tip - 0.13 * frame[0]
         ax.plot(*np.stack([frame[0], out])[:, [0, 2]].T, alpha=0)  # makes room
         letter(ax, name, out[[0, 2]], colour, fontsize=FONT - 1)
 
 
-def _plane(ax: "Axes", camera: Camera, xy: Array, shape: tuple[int, ...], colour: str) -> None:
-    """Draw the plane z = 1, with the picture's border."""
-    _trace(ax, xy, shape, colour)
-    axes = "x / z → , y / z ↓" if colour == IDEAL else "x' → , y' ↓"
-    _border(ax, xy_from_px(camera.A, _corners(camera)), axes)
-    ax.plot(0, 0, "+", color=IDEAL, ms=8)
-
-
-def _corners(camera: Camera) -> Array:
-    """Return the corners (4, 2) of a camera's picture, in pixels."""
-    w, h = camera.size
-    return np.array([[0, 0], [w, 0], [w, h], [0, h]]) - 0.5
-
-
-def _border(ax: "Axes", corners: Array, label: str) -> None:
-    """Draw the picture's border, and let the second coordinate run down."""
-    ax.plot(*corners[[0, 1, 2, 3, 0]].T, color=CAMERA, lw=1.2)
-    ax.set_xlabel(label)
+def _border(ax: "Axes", camera: Camera) -> None:
+    """Draw the picture's border on z = 1, pale inside, and let the second coordinate run down."""
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * camera.size - 0.5
+    ax.fill(*xy_from_px(camera.A, corners).T, fc=(*rgb(CAMERA), 0.12), ec=CAMERA, lw=1.2)
+    ax.set_aspect("equal")
     ax.invert_yaxis()
 
 
 def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = None) -> "Axes":
-    """Draw, from above and in pixels, how wide an angle each camera's picture spans.
+    """Draw the course's room from above, what each camera sees of it, and the pictures below.
 
     Parameters
     ----------
     cameras : mapping from names to Camera
-        Up to five. The picture is drawn at the distance α_u from the centre.
+        Up to five. They stand in the origin of `room`, and look along its z axis; of the pictures,
+        the middle rows are shown. Lenses are left out.
 
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
     >>> ax = draw_field_of_view({"wide": Camera(intrinsics(320, 320, 319.5, 240))})
     >>> [text.get_text() for text in ax.texts]
-    ['wide: 90.0°']
+    ['wide: 90.0°', 'wide']
     """
-    from matplotlib.patches import Polygon
+    from matplotlib.patches import Rectangle
 
     if not isinstance(cameras, Mapping) or not 1 <= len(cameras) <= len(_OWN):
         raise CvnotesError(f"cameras: expected one to {len(_OWN)} by name")
-    ax = drawn_on(ax, height=340)
-    for (name, camera), colour in zip(cameras.items(), _OWN, strict=False):
-        alpha, u0 = is_camera(camera, "camera").A[[0, 0], [0, 2]]
-        left, right = -0.5 - u0, camera.size[0] - 0.5 - u0
-        ax.plot([alpha, alpha], [left, right], color=colour, lw=4)
-        ax.add_patch(Polygon([[0, 0], [alpha, left], [alpha, right]], fc=colour, alpha=0.12))
-        angle = np.degrees(np.arctan2(right, alpha) - np.arctan2(left, alpha))
-        beside(ax, f"{name}: {angle:.1f}°", (alpha, right), (0, -16), colour, ha="center")
-    ax.axhline(0, color=MUTED, ls="-.", lw=0.8)
-    ax.plot(0, 0, ">", color=CAMERA, ms=9)
-    ax.set(xlabel="along the axis (px)", ylabel="sideways (px)", aspect="equal")
-    ax.margins(x=0.12, y=0.12)
-    ax.invert_yaxis()
-    return ax
-
-
-_OWN = (LENS, ESTIMATED, WORLD, CAMERA, IDEAL)
-
-
-def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw a sensor's lines of pixels on the plane z = 1, as A has it: its axes may lean.
-
-    Parameters
-    ----------
-    A : array_like, shape (3, 3)
-        Intrinsic matrix of a sensor of 640 × 480 pixels; every 80 of them a line is drawn.
-
-    Examples
-    --------
-    >>> draw_sensor([[800, 0, 320], [0, 800, 240], [0, 0, 1]]).get_xlabel()
-    'x / z'
-    """
-    A, step = intrinsic_matrix(A), 80
-    ax = drawn_on(ax, height=400)
-    columns, rows = np.arange(0, 641, step), np.arange(0, 481, step)
-    for u in columns:
-        ax.plot(*xy_from_px(A, [[u, 0], [u, 480]]).T, color=MUTED, lw=0.8)
-    for v in rows:
-        ax.plot(*xy_from_px(A, [[0, v], [640, v]]).T, color=MUTED, lw=0.8)
-    start, *tips = xy_from_px(A, [[0, 0], [2 * step, 0], [0, 2 * step]])
-    for tip, name in zip(tips, "uv", strict=True):
-        arrow(ax, start, tip, LENS, 2.2, gap=2)
-        letter(ax, name, 1.2 * tip - 0.2 * start, LENS)
-    first, last = (np.arctan2(*(tip - start)[::-1]) for tip in tips)
-    arc = np.linspace(first, last, 25)[:, None]
-    reach = 0.4 * float(np.linalg.norm(tips[0] - start))
-    ax.plot(*(start + reach * np.hstack([np.cos(arc), np.sin(arc)])).T, color=ESTIMATED, lw=1.8)
-    middle = start + 1.5 * reach * np.hstack([np.cos(arc), np.sin(arc)])[12]
-    letter(ax, "θ", middle, ESTIMATED)
-    ax.plot(0, 0, "^", color=CAMERA, ms=8)
-    beside(ax, "(u0, v0)", (0, 0), (8, 8), CAMERA, path_effects=halo())
-    ax.set(xlabel="x / z", ylabel="y / z", aspect="equal")
-    ax.invert_yaxis()
-    return ax
-
-
-def draw_pixels(
-    image: npt.ArrayLike,
-    corner: tuple[int, int],
-    size: tuple[int, int] = (8, 6),
-    *,
-    ax: "Axes | None" = None,
-) -> "Axes":
-    """Draw a few pixels of a picture as the squares they are, with their centres and numbers.
-
-    Parameters
-    ----------
-    image : array_like, shape (height, width) or (height, width, 3)
-        The picture.
-    corner : (u, v)
-        The first pixel to show.
-    size : (columns, rows)
-        How many.
-
-    Examples
-    --------
-    >>> draw_pixels(np.zeros((48, 64), np.uint8), (0, 0), (4, 3)).get_xlim()
-    (np.float64(-0.5), np.float64(3.5))
-    """
-    from matplotlib.patches import Rectangle
-
-    picture, (columns, rows) = checked(image), image_size(size)
-    first = one_point(corner, "corner", 2)
-    if (first < 0).any() or (first + size > picture.shape[1::-1]).any():
-        raise CvnotesError("these pixels are not inside of the picture")
-    u0, v0 = np.rint(first).astype(int)
-    ax = drawn_on(ax, width=560)
-    draw_image(picture, ax=ax, ticks=True)
-    for u in range(u0, u0 + columns):
-        for v in range(v0, v0 + rows):
-            ax.add_patch(Rectangle((u - 0.5, v - 0.5), 1, 1, fc="none", ec=MUTED, lw=0.8))
-    centres = np.mgrid[u0 : u0 + columns, v0 : v0 + rows].reshape(2, -1)
-    ax.plot(*centres, "o", color=MUTED, ms=4, mec="white", mew=0.8)
-    ax.set(xlim=(u0 - 0.5, u0 + columns - 0.5), ylim=(v0 + rows - 0.5, v0 - 0.5))
-    ax.set(xticks=range(u0, u0 + columns), yticks=range(v0, v0 + rows))
-    return ax
-
-
-def draw_half_pixels(factor: int = 2, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw a row of pixels, and below it the same row with `factor` times fewer, wider pixels.
-
-    Examples
-    --------
-    >>> [text.get_text() for text in draw_half_pixels(4).texts if "½" in text.get_text()]
-    ['−½', '7½', '−½', '1½']
-    """
-    from matplotlib.patches import Rectangle
-
-    factor = count(factor, "factor")
-    ax = drawn_on(ax, height=230)
-    few = max(2, 8 // factor)
-    rows = ((few * factor, 1, 0.0, -0.2, LENS), (few, factor, 1.4, 2.85, ESTIMATED))
-    for n, wide, top, words, colour in rows:
-        for u in range(n):
-            middle = ((u + 0.5) * wide, top + 0.4)
-            ax.add_patch(Rectangle((u * wide, top), wide, 1, fc="white", ec=colour, lw=1.5))
-            ax.plot(*middle, ".", color=colour, ms=8)
-            beside(ax, str(u), middle, (0, -16), colour, ha="center")
-        for at, text in ((0, "−½"), (n * wide, f"{n - 1}½")):
-            ax.text(at, words, text, ha="center", color=colour, fontsize=FONT + 1)
-    for u in (0, few * factor):
-        ax.plot([u, u], [0, 2.4], ":", color=IDEAL, lw=1)
-    ax.set(xlim=(-1, few * factor + 1), ylim=(3.1, -0.8), aspect="equal")
+    ax = drawn_on(ax, height=500)
+    walls = Rectangle((-_BACK, -3000), _WALL + _BACK, 6000, fc="white", ec=MUTED, lw=3)
+    ax.add_patch(walls)
+    for corners, colour in zip(*from_above(room(), -1500), strict=True):
+        ax.fill(*corners.T[::-1], fc=colour, zorder=2)
+    ax.plot([9940, 9940], [-600, 600], color="#3A6A66", lw=5, solid_capstyle="butt")  # blackboard
+    across = (_WALL + _BACK) / len(cameras)
+    for i, ((name, camera), own) in enumerate(zip(cameras.items(), _OWN, strict=False)):
+        (left, right), (w, h) = _sides(is_camera(camera, "camera")), camera.size
+        sides = _WALL * np.array([[1, left], [0, 0], [1, right]])
+        ax.fill(*sides.T, fc=own, alpha=0.16)[0].set_clip_path(walls)
+        ax.plot(*sides.T, color=own, lw=1.6, zorder=3)[0].set_clip_path(walls)
+        arc, reach = np.linspace(np.arctan(left), np.arctan(right), 50), 1500 + 2100 * i
+        ax.plot(reach * np.cos(arc), reach * np.sin(arc), color=own, lw=2)
+        words = f"{name}: {np.degrees(np.ptp(arc)):.1f}°"
+        beside(ax, words, (reach, 0), (8, 0), own, va="center", path_effects=halo())
+        rows = Camera(camera.A, size=(w, h)).cropped((0, h // 4), (w, h // 2))
+        x0, x1 = -_BACK + across * i + 60, -_BACK + across * (i + 1) - 60
+        span = (x0, x1, 3300 + (x1 - x0) * (h // 2) / w, 3300)
+        ax.imshow(render_scene(room(), rows, samples=16), extent=span)
+        ax.add_patch(Rectangle((x0, 3300), x1 - x0, span[2] - 3300, fc="none", ec=own, lw=3))
+        beside(ax, name, (x0, span[2]), (8, 8), own, path_effects=halo())
+    ax.plot(0, 0, ">", color=CAMERA, ms=11)
+    ax.set(xlim=(-_BACK - 100, _WALL + 100), ylim=(span[2] + 100, -3100), aspect="equal")
     ax.axis("off")
     return ax
+
+
+_OWN = (CAMERA, LENS, IDEAL, WORLD, ESTIMATED)
+_WALL, _BACK = 10_000, 400  # mm, from the camera to the room's far wall, and what is behind it
