@@ -7,6 +7,7 @@ from cvnotes.show.explore import (
     explore_columns,
     explore_depth,
     explore_finding,
+    explore_fisheye,
     explore_fold,
     explore_folds,
     explore_homography,
@@ -172,4 +173,5 @@ __all__ = [
     "explore_tilt",
     "explore_columns",
     "explore_depth",
+    "explore_fisheye",
 ]

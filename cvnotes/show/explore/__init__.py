@@ -14,6 +14,7 @@ from cvnotes.show.explore.camera import camera_model
 from cvnotes.show.explore.columns import columns_model
 from cvnotes.show.explore.depth import depth_model
 from cvnotes.show.explore.finding import finding_model
+from cvnotes.show.explore.fisheye import fisheye_model
 from cvnotes.show.explore.fold import fold_model
 from cvnotes.show.explore.folds import folds_model
 from cvnotes.show.explore.homography import homography_model
@@ -56,6 +57,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "finding": finding_model,
     "columns": columns_model,
     "depth": depth_model,
+    "fisheye": fisheye_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 
@@ -68,8 +70,7 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     name : str
         One of `NAMES`.
     camera, board : optional
-        By default the course's. "straighten", "shadows", "triangle", "pinhole", "votes", "fold",
-        "folds", "finding", "columns" and "depth" show photographs of the course, and take none.
+        By default the course's. Those that show photographs of the course, as "pinhole", take none.
 
     Raises
     ------
@@ -187,6 +188,11 @@ def explore_columns() -> "Explorer":
 def explore_depth() -> "Explorer":
     """Shift one picture of a pair over the other, and read how far away things are."""
     return _explorer("depth", None)
+
+
+def explore_fisheye() -> "Explorer":
+    """Look about in a fisheye's picture, and widen the view until its corners smear."""
+    return _explorer("fisheye", None)
 
 
 def _explorer(name: str, camera: Camera | None, board: Chessboard | None = None) -> "Explorer":
