@@ -13,7 +13,7 @@ from cvnotes.show.explore.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, MUTED
 from cvnotes.warping import backward_warp
 
-_SIZE, _SHOWN, _VIEW = 800, (400, 400), (466, 400)  # px: of the photograph, and on the page
+_SIZE, _SHOWN, _VIEW = 700, (350, 350), (420, 350)  # px: of the photograph, and on the page
 _WIDTH = np.radians(220)  # that the fisheye sees; what is farther aside falls on its mount
 _F, _MIDDLE = 0.97 * _SIZE / _WIDTH, (_SIZE - 1) / 2
 _A, _G = intrinsics(_F, _F, _MIDDLE, _MIDDLE), pose(np.eye(3), [300, 100, -6900])
@@ -52,7 +52,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _pulled(_: Values, at: Array) -> Values:
-    x, y, z = _CAMERA.lens.rays((at - _MIDDLE) / _F)
+    off = (at - _MIDDLE) / _F
+    x, y, z = _CAMERA.lens.rays(off / max(1.0, np.hypot(*off) / (np.pi / 2)))
     return {"right": float(np.degrees(np.arctan2(x, z))), "up": float(np.degrees(np.arcsin(-y)))}
 
 
