@@ -30,7 +30,7 @@ from cvnotes.camera import (
     rotation_from_vector,
 )
 from cvnotes.homography import dlt
-from cvnotes.pictures import course, radiance, rails
+from cvnotes.pictures import course, radiance, rails, render_scene, room
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
@@ -845,6 +845,30 @@ def test_the_best_hole_is_where_shadow_and_diffraction_are_equal():
         model.drawing(hole=0.073).sentence
     )
     assert model.dragged("hole", (0.1, 50), lens=1) == {"hole": 0.1, "lens": 0}
+
+
+@pytest.mark.parametrize(("fov", "right", "up"), [(60, 0, 0), (70, 40, -15), (120, -10, 5)])
+def test_a_view_out_of_the_fisheyes_picture_is_what_a_pinhole_camera_sees(fov, right, up):
+    drawing = MODELS["fisheye"].drawing(fov=fov, right=right, up=up)
+    seen = drawing.picture[TITLE + 1 : TITLE + 349, 360:778]
+    f = 210 / np.tan(np.radians(fov / 2))
+    a, b = np.radians([right, up])
+    ahead = np.array([np.sin(a) * np.cos(b), -np.sin(b), np.cos(a) * np.cos(b)])
+    eye = np.array([-300.0, -100, 6900])
+    there = Camera(intrinsics(f, f, 209.5, 174.5), look_at(eye, eye + ahead), size=(420, 350))
+    off = seen.astype(int) - render_scene(room(), there, samples=4)[1:349, 1:419]
+    assert np.abs(off).mean() < 3  # grey levels: edges are less sharp
+    assert np.median(np.abs(off)) == 0
+
+
+def test_the_outline_of_a_view_grows_towards_180_degrees_and_never_reaches_them():
+    for fov in (40, 110, 150):
+        drawing = MODELS["fisheye"].drawing(fov=fov, right=0, up=0)
+        ink = np.abs(drawing.picture[:, :356].astype(int) - list(bytes.fromhex(ESTIMATED[1:])))
+        orange = np.argwhere((ink < 12).all(axis=-1))[:, 1]
+        px_for_a_degree = 0.97 * 350 / 220
+        assert abs(np.ptp(orange) - fov * px_for_a_degree) < 5, fov
+    assert "sensor 1,320 px wide" in drawing.sentence  # 2 · 0.97 · 700 px / 220° · tan 75°
 
 
 @pytest.mark.parametrize("d", [0.02, 0.073, 0.4])

@@ -65,4 +65,5 @@ def test_an_arrow_leads_from_the_truth_to_the_prediction_ten_times_as_long():
     (arrows,) = ax.collections
     assert arrows.get_offsets().tolist() == [[10, 20], [30, 5]]
     assert (arrows.U.tolist(), arrows.V.tolist()) == ([5, 0], [0, -10])
+    assert not arrows.get_clip_on()
     assert ax.get_title() == "(arrows × 10)"

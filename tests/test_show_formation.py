@@ -154,6 +154,10 @@ def test_a_polynomial_ends_before_90_degrees_and_a_fisheye_does_not():
     polynomial, fisheye = (line.get_xydata() for line in ax.lines[:2])
     assert np.isnan(polynomial[polynomial[:, 0] > 90, 1]).all()
     np.testing.assert_allclose(fisheye[:, 1], np.radians(fisheye[:, 0]), rtol=1e-9)
+    names = {text.get_text(): text.xy for text in ax.texts}  # each at the end of its curve
+    assert names["polynomial"] == pytest.approx((np.degrees(np.arctan(3.2)), 3.2), abs=0.4)
+    assert names["fisheye"] == pytest.approx((np.degrees(2.1), 2.1))
+    assert ax.get_legend() is None
 
 
 def test_an_arrow_leads_from_its_start_to_its_end():

@@ -65,10 +65,15 @@ def test_each_method_has_its_cloud_and_its_rms():
 def test_the_lens_ends_at_its_fold_and_arrows_are_its_displacement():
     ax = draw_radius(Lens(k=(-4 / 3,)))
     assert ax.texts[0].get_text() == "max_radius = 0.50"  # 1 + 3 k1 r² = 0
+    for text in ax.texts[1:]:  # the names stand on their curves
+        r, seen = text.xy
+        assert seen == pytest.approx(r if "ideal" in text.get_text() else r - 4 / 3 * r**3)
     arrows = draw_displacement(Lens(k=(0.4,))).collections[0]
     assert (arrows.U[0], arrows.V[0]) == pytest.approx(
         (-0.3, -0.3), abs=1e-12
     )  # 3 k1 r² x, r² = 0.5
+    ends = {tuple(at) for line in arrows.axes.lines for at in line.get_xydata().round(9)}
+    assert (-0.8, -0.8) in ends  # there, too, stands the corner of the bent grid
 
 
 def test_maps_of_the_uncertainty_share_their_colours_where_they_are_to_be_compared():

@@ -16,6 +16,7 @@ from cvnotes.show.explorations.cube import cube_model
 from cvnotes.show.explorations.depth import depth_model
 from cvnotes.show.explorations.dolly import dolly_model
 from cvnotes.show.explorations.finding import finding_model
+from cvnotes.show.explorations.fisheye import fisheye_model
 from cvnotes.show.explorations.fold import fold_model
 from cvnotes.show.explorations.folds import folds_model
 from cvnotes.show.explorations.homography import homography_model
@@ -66,6 +67,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "depth": depth_model,
     "dolly": dolly_model,
     "cube": cube_model,
+    "fisheye": fisheye_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 

@@ -11,11 +11,12 @@ from cvnotes.camera.lens import radial_factor
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.warping import backward_warp
 
 _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
 _RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
-_DETAIL = 400  # px of the photograph of the room for a length of 1 on the plane z = 1
+_DETAIL = 800  # px of the photograph of the room for a length of 1 on the plane z = 1
 _COARSE = 4  # px between which the way back through the lens, which takes long, is linear
 
 
@@ -52,7 +53,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     reach = 1.25 * _EXTENT
     x = reach * _SIZE[0] / _SIZE[1]
     grid = paper.panel(_SIZE, (-x, x), (-reach, reach), "plane z = 1: ideal, and through the lens")
-    grid.image(_bent_room(lens, x, reach))
+    grid.image(_bent_room(lens, x, reach, paper.sharpness))
     _draw_grid(grid, lens)
     _draw_frame(grid, camera, lens)
     curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "radius: observed r L(r) against ideal r")
@@ -71,25 +72,22 @@ def _room() -> Drawn:
     return (255 - (255 - picture.astype(int)) // 2).astype(np.uint8)  # light, under a grid
 
 
-def _bent_room(lens: Lens, x: float, y: float) -> Drawn:
+def _bent_room(lens: Lens, x: float, y: float, sharpness: int) -> Drawn:
     """Show the room through a lens, from −x to x and −y to y; white where it shows nothing."""
     room = _room()
     h, w = room.shape[:2]
+    size = sharpness * _SIZE[0], sharpness * _SIZE[1]
     columns, rows = (
         reach * ((2 * np.arange(n) + 1) / n - 1)
         for reach, n in zip((x, y), np.array(_SIZE) // _COARSE, strict=True)
     )
     ideal = lens.undistort(np.stack(np.meshgrid(columns, rows), axis=-1))
-    middle = np.array([w - 1, h - 1]) / 2
-    u, v = (
-        np.asarray(Image.fromarray(side).resize(_SIZE, Image.Resampling.BILINEAR))
-        for side in np.moveaxis(_DETAIL * ideal + middle, -1, 0).astype(np.float32)
-    )
-    seen = (u >= 0) & (u < w - 1) & (v >= 0) & (v < h - 1)  # NaN is not
-    at = np.where(seen, np.rint(v) * w + np.rint(u), 0).astype(int)
-    picture: Drawn = room.reshape(-1, 3).take(at, axis=0)
-    picture[~seen] = 255
-    return picture
+    sides = (_DETAIL * ideal + np.array([w - 1, h - 1]) / 2).astype(np.float32)
+    m = [
+        np.asarray(Image.fromarray(side).resize(size, Image.Resampling.BILINEAR))
+        for side in np.moveaxis(sides, -1, 0)
+    ]
+    return backward_warp(room, np.stack(m, axis=-1), fill=255).astype(np.uint8)
 
 
 def _draw_grid(panel: Panel, lens: Lens) -> None:
@@ -116,12 +114,13 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
         circle = lens.max_radius * np.stack([np.cos(phi), np.sin(phi)], -1)
         panel.line(polynomial(lens, circle), ESTIMATED, 2.2)
         seen = lens.max_radius * float(lens.L(lens.max_radius))
-        words = f"orange: the fold, r = {lens.max_radius:.2f}, seen at {seen:.2f}"
-        panel.text([panel.x[0] + 0.03, panel.y[0] + 0.05], words, ESTIMATED)
-    left, bottom = panel.x[0] + 0.03, panel.y[1] - 0.05
-    panel.text([left, bottom], "grey: ideal", MUTED)
-    panel.text([left + 0.34, bottom], "blue: through the lens", LENS)
-    panel.text([-left, bottom], "light blue: the picture", CAMERA, anchor="rm")
+        words = f"the fold, r = {lens.max_radius:.2f}, seen at {seen:.2f}"
+        panel.text([0, max(-seen - 0.02, panel.y[0] + 0.07)], words, ESTIMATED, anchor="md")
+    panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
+    bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
+    below = [0.02, min(bent[1] + 0.02, panel.y[1] - 0.07)]
+    panel.text(below, "through the lens", LENS, anchor="la")
+    panel.text(corners[3] + [0.01, 0.02], "the picture", CAMERA, anchor="la")
 
 
 def _draw_curve(panel: Panel, lens: Lens) -> None:
@@ -129,18 +128,15 @@ def _draw_curve(panel: Panel, lens: Lens) -> None:
     observed = np.stack([r, r * radial_factor(lens.k, r * r)], -1)
     panel.ticks(np.arange(0.2, 1.3, 0.2).round(1), np.arange(0.2, 1.1, 0.2).round(1))
     panel.line([[0.0, 0.0], [1.2, 1.2]], IDEAL, 1, dash=4)
-    panel.text([0.87, 0.93], "ideal", IDEAL, anchor="rm")
+    panel.text([0.97, 0.93], "ideal", IDEAL)
     good = (r <= lens.max_radius)[:, None]
     panel.line(np.where(good, np.nan, observed), ESTIMATED, 1.8, dash=5)
     panel.line(np.where(good, observed, np.nan), LENS, 2.2)
     if lens.max_radius < _RADIUS:
         panel.line([[lens.max_radius, 1.2], [lens.max_radius, -0.2]], ESTIMATED, 1)
-        side = "l" if lens.max_radius < 0.6 else "r"
-        shift = 0.015 if side == "l" else -0.015
-        panel.text(
-            [lens.max_radius + shift, 1.12], f"max_radius {lens.max_radius:.3f}", ESTIMATED,
-            anchor=f"{side}m",
-        )  # fmt: skip
+        shift, anchor = (0.015, "lm") if lens.max_radius < 0.6 else (-0.015, "rm")
+        words = f"max_radius {lens.max_radius:.3f}"
+        panel.text([lens.max_radius + shift, 1.12], words, ESTIMATED, anchor=anchor)
 
 
 def _sentence(camera: Camera, lens: Lens) -> str:

@@ -48,9 +48,11 @@ def draw_plane_error(
     ax = drawn_on(ax)
     d = magnify * (predicted - m)
     ax.plot(*m.T, "o", color=LENS, ms=3)
-    ax.quiver(
-        *m.T, *d.T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1, width=0.004
+    arrows = ax.quiver(
+        *m.T, *d.T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1, width=0.005,
+        minshaft=2, clip_on=False,
     )  # fmt: skip
+    arrows.set_in_layout(False)  # one that leads out of the picture leaves it as large as it is
     if not ax.images:  # (else the photograph says what is shown)
         low, high = m.min(0), m.max(0)  # of the points alone, so that two figures can be compared
         room = max(0.15 * float((high - low).max()) + 1, 1e-9 * float(np.abs(m).max()))
