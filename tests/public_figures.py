@@ -152,14 +152,6 @@ FIGURES = [
             "m": (np.array([0.6, -0.1]), SINGLE),
         },
     ),
-    figure(
-        lambda cost, path: least_squares.draw_valley([0, 1, 2], [0, 1], cost, {"path": path}),
-        {
-            "cost": (np.array([[1.0, 2, 3], [4, 5, 6]]), SINGLE),
-            "path": (np.array([[1.0, 1], [0, 0]]), several(2)),
-        },
-        "show.least_squares.draw_valley",
-    ),
     # lenses
     figure(lenses.draw_newton, {"r_lens": (0.4, ONE)}, lens=LENS),
     figure(lenses.draw_angles, {}, lenses={"a": LENS}),

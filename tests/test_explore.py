@@ -55,6 +55,7 @@ from cvnotes.show.explorations.rectification import lines_from
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
 from cvnotes.show.explorations.triangle import camera_of
+from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import window_at
 from cvnotes.targets import refine_subpixel
 
@@ -635,6 +636,29 @@ def test_a_block_stands_where_the_photographed_board_has_its_squares():
         assert (moved["x"], moved["y"]) == (x, y)
     *_, off = numbers(drawing.sentence)
     assert 3 < off < 8
+
+
+def test_the_damped_walk_finds_the_hollow_from_all_starts_above_the_walls_and_the_other_from_few():
+    of = floor()
+    best = of.best[[1, 2], [2, 2]]
+    h, step = np.array([0.2, 1.4]), 1e-6 * np.eye(2)
+    slopes = [(of.residuals(h + d)[0] - of.residuals(h - d)[0]) / 2e-6 for d in step]
+    assert np.allclose(of.residuals(h)[1], np.transpose(slopes), rtol=1e-5, atol=1e-8)
+    assert all(of.rms(best) < of.rms(best + d) for d in (*1e3 * step, *-1e3 * step))
+
+    def arrives(h6, h9, mu):
+        return np.allclose(of.walk(np.array([h6, h9]), mu)[-1], best, atol=1e-3)
+
+    for h6 in (-2.5, -1, 0.8):
+        assert [arrives(h6, h9, 1e-3) for h9 in (2.2, 1.7, 1.0, 0.5, -1)] == [True] * 3 + [
+            False
+        ] * 2
+        assert [arrives(h6, h9, 0) for h9 in (2.2, 1.7, 1.0, 0.5, -1)] == [False] * 2 + [True] + [
+            False
+        ] * 2
+    said = MODELS["valley"].drawing(steps=25).sentence
+    assert "in the hollow after 12" in said
+    assert "walk is not there" in said
 
 
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():

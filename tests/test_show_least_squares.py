@@ -1,13 +1,12 @@
 import numpy as np
 import pytest
 
-from cvnotes.base import CvnotesError, DegenerateError, ShapeError
+from cvnotes.base import DegenerateError, ShapeError
 from cvnotes.show import (
     ESTIMATED,
     LENS,
     draw_stretched_circle,
     draw_two_errors,
-    draw_valley,
 )
 
 
@@ -41,24 +40,3 @@ def test_points_behind_the_camera_have_no_rays():
         draw_two_errors([[1.0, -2.0]], [0.5])
     with pytest.raises(ShapeError, match="one number for each"):
         draw_two_errors([[1.0, 2.0]], [0.5, 0.6])
-
-
-def test_ways_are_drawn_where_they_went_and_the_map_in_logarithms():
-    way = [[0.0, 1.0], [2.0, 0.5], [1.0, 0.0]]
-    ax = draw_valley([0, 1, 2], [0, 1], [[1, 10, 100], [1, 10, 1000]], {"a way": way})
-    assert ax.lines[0].get_xydata().tolist() == way
-    levels = ax.collections[0].levels
-    assert (levels.min(), levels.max()) == pytest.approx((0, 3), abs=0.3)
-
-
-@pytest.mark.parametrize(
-    ("cost", "paths", "words"),
-    [
-        ([[1, 2, 3]], {"a": [[0, 0]]}, "cost: expected"),
-        ([[1, 2], [3, 0]], {"a": [[0, 0]]}, "positive"),
-        ([[1, 2], [3, 4]], {}, "one to three"),
-    ],
-)
-def test_what_is_no_map_is_refused(cost, paths, words):
-    with pytest.raises(CvnotesError, match=words):
-        draw_valley([0, 1], [0, 1], cost, paths)

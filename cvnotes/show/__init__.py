@@ -9,7 +9,7 @@ from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
 from cvnotes.show.figures.formation import box_lines, draw_field_of_view, draw_formation
 from cvnotes.show.figures.ideas import draw_mapped, draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
-from cvnotes.show.figures.least_squares import draw_stretched_circle, draw_two_errors, draw_valley
+from cvnotes.show.figures.least_squares import draw_stretched_circle, draw_two_errors
 from cvnotes.show.figures.lenses import (
     draw_angles,
     draw_displacement,
@@ -84,7 +84,6 @@ __all__ = [
     # chapters 5 and 6: least squares
     "draw_stretched_circle",
     "draw_two_errors",
-    "draw_valley",
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_coverage",

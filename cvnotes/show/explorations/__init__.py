@@ -33,6 +33,7 @@ from cvnotes.show.explorations.shadows import shadows_model
 from cvnotes.show.explorations.straighten import straighten_model
 from cvnotes.show.explorations.tilt import tilt_model
 from cvnotes.show.explorations.triangle import triangle_model
+from cvnotes.show.explorations.valley import valley_model
 from cvnotes.show.explorations.votes import votes_model
 from cvnotes.show.explorations.warp import warp_model
 from cvnotes.targets import Chessboard
@@ -68,6 +69,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "dolly": dolly_model,
     "cube": cube_model,
     "fisheye": fisheye_model,
+    "valley": valley_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 

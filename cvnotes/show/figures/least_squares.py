@@ -1,14 +1,12 @@
 """Figures of least squares: the singular vectors, two kinds of error, the way into a valley."""
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, matrix, numbers, points
-from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter, panels
-from cvnotes.show.guards import thing
+from cvnotes.base import DegenerateError, ShapeError, matrix, numbers, points
+from cvnotes.show.axes import arrow, beside, drawn_on, letter, panels
 from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED, WORLD
 
 if TYPE_CHECKING:
@@ -124,61 +122,4 @@ def draw_two_errors(
     ax.set(xlim=(-0.06 * w.max(), 1.32 * w.max()), ylim=(bottom, -top), xticks=depths, yticks=[])
     ax.spines["left"].set_visible(False)
     ax.set_xlabel("w, the depth in units of H")
-    return ax
-
-
-def draw_valley(
-    x: npt.ArrayLike,
-    y: npt.ArrayLike,
-    cost: npt.ArrayLike,
-    paths: Mapping[str, npt.ArrayLike],
-    *,
-    ax: "Axes | None" = None,
-) -> "Axes":
-    """Draw a cost over two unknowns as ground, light where it is low, and ways that steps took.
-
-    Parameters
-    ----------
-    x, y : array_like, shapes (n,) and (m,)
-        Values of the two unknowns.
-    cost : array_like, shape (m, n)
-        Positive; its logarithm is drawn.
-    paths : mapping from name to array_like of shape (k, 2)
-        At most three ways, from their start on.
-
-    Examples
-    --------
-    >>> ax = draw_valley([0, 1], [0, 1], [[1, 2], [3, 4]], {"down": [[1, 1], [0, 0]]})
-    >>> ax.texts[0].get_text()
-    'down'
-    """
-    x, y = numbers(x, "x").ravel(), numbers(y, "y").ravel()
-    height = numbers(cost, "cost")
-    if height.shape != (len(y), len(x)) or min(height.shape) < 2:
-        raise ShapeError(
-            f"cost: expected ({len(y)}, {len(x)}), at least (2, 2), got {height.shape}"
-        )
-    if not (height > 0).all():
-        raise CvnotesError("cost: expected positive numbers, whose logarithm can be drawn")
-    if not 1 <= len(thing(paths, "paths", Mapping)) <= 3:  # type: ignore[type-abstract]
-        raise CvnotesError("paths: expected one to three ways")
-    from matplotlib.colors import LinearSegmentedColormap
-
-    ax = drawn_on(ax, width=760, height=520)
-    z = np.log10(height)
-    paper = LinearSegmentedColormap.from_list("", ["#FFFDF6", "#D9C7A3", "#8A7350"])
-    within = x.min(), x.max(), y.min(), y.max()
-    low = float(np.quantile(z, 0.005))  # the hollow's own depths would take all the tones
-    ax.imshow(z, paper, aspect="auto", vmin=low, extent=within, origin="lower")
-    ax.contour(x, y, z, levels=16, colors="#5A4A30", linewidths=0.5, alpha=0.5)
-    looks = ((ESTIMATED, 3.6), (LENS, 1.6), (WORLD, 1.0))  # the next lies on the one before
-    for (name, path), (colour, lw) in zip(paths.items(), looks, strict=False):
-        way: Array = points(path, name, 2).reshape(-1, 2)
-        if not len(way):
-            raise DegenerateError(f"{name}: expected at least the start of the way")
-        ax.plot(*way.T, "-o", color=colour, lw=lw, ms=5, path_effects=halo())
-        ax.plot(*way[0], "s", color=IDEAL, ms=8, zorder=4)
-        up = 8 if way[-1, 1] > way[:, 1].min() else -18  # away from the way
-        beside(ax, name, way[-1], (-12, up), colour, ha="right", path_effects=halo())
-    ax.set(xlim=within[:2], ylim=within[2:], xticks=[], yticks=[], frame_on=False)
     return ax
