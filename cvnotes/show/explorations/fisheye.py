@@ -18,15 +18,14 @@ _WIDTH = np.radians(220)  # that the fisheye sees; what is farther aside falls o
 _F, _MIDDLE = 0.97 * _SIZE / _WIDTH, (_SIZE - 1) / 2
 _A, _G = intrinsics(_F, _F, _MIDDLE, _MIDDLE), pose(np.eye(3), [300, 100, -6900])
 _CAMERA = Camera(_A, _G, FisheyeLens(), size=(_SIZE, _SIZE))
-_SIDEWAYS, _UP = 80, 60  # °, as far as one can look
 
 
 def fisheye_model() -> Model:
     """Make the model of a room through a fisheye, and of a pinhole view made of its picture."""
     settings = (
         Setting("fov", "field of view (°)", 40, 150, 1, 110, "of the view, from left to right"),
-        Setting("right", "to the right (°)", -_SIDEWAYS, _SIDEWAYS, 1, -25, "where to look"),
-        Setting("up", "upwards (°)", -_UP, _UP, 1, -10, "where to look"),
+        Setting("right", "to the right (°)", -80, 80, 1, -25, "where to look"),
+        Setting("up", "upwards (°)", -60, 60, 1, -10, "where to look"),
     )
     about = (
         "A room through a fisheye that sees 220°, with the outline of a pinhole's view; beside it "
@@ -37,15 +36,16 @@ def fisheye_model() -> Model:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     fov, f = values["fov"], _VIEW[0] / 2 / np.tan(np.radians(values["fov"]) / 2)
-    R = facing(values["right"], values["up"])
+    turned, raised = np.radians([[0, values["right"], 0], [values["up"], 0, 0]])
+    R = rotation_from_vector(turned) @ rotation_from_vector(raised)  # from the view's axes; level
     photo = paper.picture_panel(_SHOWN, (_SIZE, _SIZE), "through a fisheye (+ to look elsewhere)")
     photo.image(_photograph())
     _outline(photo, f, R)
     # For each pixel of the view: what the fisheye has in that direction.
     width, height = size = paper.sharpness * _VIEW[0], paper.sharpness * _VIEW[1]
     A = intrinsics(paper.sharpness * f, paper.sharpness * f, (width - 1) / 2, (height - 1) / 2)
-    turned = R @ np.linalg.inv(A)
-    seen = backward_warp(_photograph(), lambda m: shown_at(to_homogeneous(m) @ turned.T), size=size)
+    back = R @ np.linalg.inv(A)
+    seen = backward_warp(_photograph(), lambda m: shown_at(to_homogeneous(m) @ back.T), size=size)
     view = paper.panel(_VIEW, (0, 1), (0, 1), "a pinhole's view, out of the fisheye's picture")
     view.image(seen.astype(np.uint8))
     return Drawing(paper.join((photo, view)), _sentence(fov, f))
@@ -55,12 +55,6 @@ def _pulled(_: Values, at: Array) -> Values:
     off = (at - _MIDDLE) / _F
     x, y, z = _CAMERA.lens.rays(off / max(1.0, np.hypot(*off) / (np.pi / 2)))
     return {"right": float(np.degrees(np.arctan2(x, z))), "up": float(np.degrees(np.arcsin(-y)))}
-
-
-def facing(right: float, up: float) -> Array:
-    """Return R (3, 3), from the axes of a view to those of the fisheye; the view stays level."""
-    turned, raised = np.radians([[0, right, 0], [up, 0, 0]])
-    return rotation_from_vector(turned) @ rotation_from_vector(raised)
 
 
 def shown_at(rays: Array) -> Array:
