@@ -1,4 +1,4 @@
-"""Explore a calibrated camera: a block stands on a photographed board, wherever it is pulled."""
+"""Explore a calibrated camera: a tower stands on a photographed board, wherever it is pulled."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -25,7 +25,8 @@ _CAMERA = Camera(
     size=(1280, 960),
 )
 _LIGHT = np.array(DESK_LIGHT) / np.linalg.norm(DESK_LIGHT)
-_PAINT = np.array([[246, 150, 60], [232, 122, 36]])  # two tints of the block's tiles
+_WINDOW = "#4A2E18"
+_PAINT = np.array([[246, 150, 60], [236, 134, 46]])  # two tints of the tower's tiles
 _SHADED, _SOFT = 0.42, 6  # what a shadow leaves of the light; px of its edge
 
 
@@ -52,17 +53,17 @@ def _found() -> _Found:
 
 
 def cube_model() -> Model:
-    """Make the model of a desk with a board, and a block on it."""
+    """Make the model of a desk with a board, and a tower on it."""
     columns, rows = _BOARD.corners
     settings = (
-        Setting("x", "x (mm)", -50, columns * _SQUARE + 25, 1, 100, "where the block stands"),
-        Setting("y", "y (mm)", -50, rows * _SQUARE + 25, 1, 50, "where the block stands"),
-        Setting("height", "height (mm)", 20, 150, 1, 75, "how high the block is"),
+        Setting("x", "x (mm)", -50, columns * _SQUARE + 25, 1, 100, "where the tower stands"),
+        Setting("y", "y (mm)", -50, rows * _SQUARE + 25, 1, 50, "where the tower stands"),
+        Setting("height", "height (mm)", 20, 150, 1, 100, "how high the tower is"),
         Setting("turn", "turn (°)", -45, 45, 1, 0, "how far it is turned on the board"),
         Setting("lens", "with the lens", 0, 1, 1, 1, "whether the camera's lens is used"),
     )
     about = (
-        "A photograph of a desk with a board, and a block that stands on the board, drawn by the "
+        "A photograph of a desk with a board, and a tower that stands on the board, drawn by the "
         "camera that was found from the board's corners. Beside it the board from above."
     )
 
@@ -71,12 +72,12 @@ def cube_model() -> Model:
         camera = found.cameras[int(values["lens"])]
         foot, h = np.array([values["x"], values["y"]]), values["height"]
         base = foot + _turned(values["turn"]) * _SIDE / 2
-        panel = paper.picture_panel((540, 405), _CAMERA.size, "a block on your desk: pull its foot")
+        panel = paper.picture_panel((540, 405), _CAMERA.size, "a tower on your desk: pull its foot")
         panel.image(_in_the_shade(found, camera, base, h))
-        corners = _draw_block(panel, camera, base, h)
+        corners = _draw_tower(panel, camera, base, h)
         at = camera.project([*foot, 0])
-        panel.grip("foot", "the foot of the block", at, 5)
-        panel.grip("top", "the top of the block", camera.project([*foot, -h]), 12)
+        panel.grip("foot", "the foot of the tower", at, 5)
+        panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
         plan = paper.panel((400, 405), (-140, 334), (-60, 420), "the same from above")
         _draw_plan(plan, base)
         off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1).max()
@@ -87,7 +88,7 @@ def cube_model() -> Model:
         return {"x": float(x), "y": float(y)}
 
     def stretched(values: Values, at: Array) -> Values:
-        """Make the block as high as the place over its foot that is level with the hand."""
+        """Make the tower as high as the place over its foot that is level with the hand."""
         h = np.arange(20, 151.0)
         over = np.column_stack([np.full_like(h, values["x"]), np.full_like(h, values["y"]), -h])
         seen = _found().cameras[int(values["lens"])].project(over)
@@ -110,7 +111,7 @@ def _turned(angle: float) -> Array:
 
 
 def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn:
-    """Darken what lies in the block's shadow: all between its foot and its top's shadow."""
+    """Darken what lies in the tower's shadow: all between its foot and its top's shadow."""
     fallen = base + h * _LIGHT[:2] / _LIGHT[2]
     swept = [[base[i - 1], base[i], fallen[i], fallen[i - 1]] for i in range(4)]
     seen = camera.project(np.insert(np.array([*swept, fallen]), 2, 0, axis=-1))
@@ -122,8 +123,8 @@ def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn
     return np.asarray(Image.composite(found.dark, found.photo, soft))
 
 
-def _draw_block(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
-    """Draw the block's faces that are seen, in tiles; returns its corners (8, 3)."""
+def _draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
+    """Draw the tower's faces that are seen, in tiles; returns its corners (8, 3)."""
     low, high = np.insert(base, 2, 0, axis=1), np.insert(base, 2, -h, axis=1)
     faces = [high, *(np.array([high[i - 1], high[i], low[i], low[i - 1]]) for i in range(4))]
     middle = (low[0] + high[2]) / 2
@@ -141,6 +142,9 @@ def _draw_block(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
                 tile = grid[[i, i, i + 1, i + 1], [j, j + 1, j + 1, j]]
                 tint = (light * _PAINT[(i + j) % 2]).astype(int)
                 panel.polygons(tile[None], "#{:02X}{:02X}{:02X}".format(*tint))
+                if outside[2] > -0.5:  # not on the roof
+                    middle_of = tile.mean(axis=0)
+                    panel.polygons((middle_of + 0.55 * (tile - middle_of))[None], _WINDOW)
     return np.concatenate([low, high])
 
 
@@ -162,7 +166,7 @@ def _draw_plan(panel: Panel, base: Array) -> None:
 def _sentence(foot: Array, at: Array, h: float, off: float, lens: bool) -> str:
     (x, y), (u, v) = foot, at
     said = (
-        f"A block {h:.0f} mm high at ({x:.0f}, {y:.0f}) mm: its foot is seen at "
+        f"A tower {h:.0f} mm high at ({x:.0f}, {y:.0f}) mm: its foot is seen at "
         f"({u:.0f}, {v:.0f}) px. "
     )
     if lens:
