@@ -5,6 +5,7 @@ from cvnotes.show.banner import one_corner
 from cvnotes.show.explore import (
     explore_camera,
     explore_columns,
+    explore_cube,
     explore_depth,
     explore_finding,
     explore_fold,
@@ -171,5 +172,6 @@ __all__ = [
     "explore_rectification",
     "explore_tilt",
     "explore_columns",
+    "explore_cube",
     "explore_depth",
 ]

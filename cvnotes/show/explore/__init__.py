@@ -12,6 +12,7 @@ from cvnotes.base import CvnotesError
 from cvnotes.camera import Camera
 from cvnotes.show.explore.camera import camera_model
 from cvnotes.show.explore.columns import columns_model
+from cvnotes.show.explore.cube import cube_model
 from cvnotes.show.explore.depth import depth_model
 from cvnotes.show.explore.finding import finding_model
 from cvnotes.show.explore.fold import fold_model
@@ -56,6 +57,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "finding": finding_model,
     "columns": columns_model,
     "depth": depth_model,
+    "cube": cube_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 
@@ -69,7 +71,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
         One of `NAMES`.
     camera, board : optional
         By default the course's. "straighten", "shadows", "triangle", "pinhole", "votes", "fold",
-        "folds", "finding", "columns" and "depth" show photographs of the course, and take none.
+        "folds", "finding", "columns", "depth" and "cube" show photographs of the course, and take
+        none.
 
     Raises
     ------
@@ -187,6 +190,11 @@ def explore_columns() -> "Explorer":
 def explore_depth() -> "Explorer":
     """Shift one picture of a pair over the other, and read how far away things are."""
     return _explorer("depth", None)
+
+
+def explore_cube() -> "Explorer":
+    """Pull a tower over the board on a photographed desk, with the lens and without it."""
+    return _explorer("cube", None)
 
 
 def _explorer(name: str, camera: Camera | None, board: Chessboard | None = None) -> "Explorer":
