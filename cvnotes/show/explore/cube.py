@@ -14,7 +14,7 @@ from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.show.explore.model import Drawing, Model, Setting, Values
 from cvnotes.show.explore.paper import Panel, Paper
 from cvnotes.show.style import IDEAL, LENS
-from cvnotes.targets import find_corners
+from cvnotes.targets import refine_subpixel
 
 _TAKEN_BY = Camera(intrinsics(600, 600, 359.5, 269.5), lens=Lens(k=(-0.2,)), size=(720, 540))
 # Where the photographs were taken, and what was in their middle, in mm; the first one is shown.
@@ -37,12 +37,14 @@ _CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * _SIDE / 2
 
 @lru_cache(maxsize=1)
 def photographed() -> tuple[Image.Image, Image.Image, Camera]:
-    """Photograph a desk, lit and in the shade, and find the camera from the pixels alone."""
+    """Photograph a desk, lit and in the shade, and find the camera from the gradients of pixels."""
     board = course.board()
     scene = desk(board)
     eyes = [_TAKEN_BY.moved(look_at(eye, at, up=(0, 0, -1))) for eye, at in _PLACES]
     photos = [render_scene(scene, eye, samples=4) for eye in eyes]
-    seen = np.array([find_corners(photo, board) for photo in photos])
+    # Marked by hand, to a whole pixel; the finder needs more than NumPy.
+    marked = [np.rint(eye.project(board.points)) for eye in eyes]
+    seen = np.array([refine_subpixel(*each) for each in zip(photos, marked, strict=True)])
     with warnings.catch_warnings(action="ignore", category=CalibrationWarning):
         found = calibrate(board.points, seen, _TAKEN_BY.size, lens="k1")
     dark = render_scene(scene.lit_from((0, 0, 1)), eyes[0], samples=4)
@@ -60,7 +62,7 @@ def cube_model() -> Model:
     )
     about = (
         "The photograph of a chessboard on a desk, and on the board an orange tower with its "
-        "windows and its shadow, drawn by the camera that was found from the photograph."
+        "windows and its shadow, drawn by the camera that was found from three such photographs."
     )
 
     def pulled(values: Values, at: Array) -> Values:
