@@ -30,11 +30,12 @@ from cvnotes.camera import (
     rotation_from_vector,
 )
 from cvnotes.homography import dlt
-from cvnotes.pictures import course, radiance, rails, render_scene, room
+from cvnotes.pictures import course, desk, radiance, rails, render_scene, room
+from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
+from cvnotes.show.explorations import cube
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
-from cvnotes.show.explorations.cube import _found
 from cvnotes.show.explorations.depth import pair
 from cvnotes.show.explorations.finding import Finding, rms
 from cvnotes.show.explorations.fold import (
@@ -626,13 +627,13 @@ def test_a_rod_is_as_high_in_the_picture_as_one_that_is_photographed():
 
 
 def test_a_block_stands_where_the_photographed_board_has_its_squares():
-    cube, photo = MODELS["cube"], np.asarray(_found().photo).mean(axis=2)
+    tower, photo = MODELS["cube"], np.asarray(cube._found().photo).mean(axis=2)
     for x, y, lens in ((0, 0, 1), (200, 125, 1), (100, 50, 0)):
-        drawing = cube.drawing(x=x, y=y, lens=lens, height=150)
+        drawing = tower.drawing(x=x, y=y, lens=lens, height=150)
         grips = {grip.name: np.array(grip.at) for grip in drawing.grips}
         corner = refine_subpixel(photo, grips["foot"].round()[None] + 1)[0]
         assert np.linalg.norm(grips["foot"] - corner) < (0.1 if lens else 1)  # of the pixels
-        moved = cube.dragged("foot", tuple(grips["foot"]), x=99, y=99, lens=lens)
+        moved = tower.dragged("foot", tuple(grips["foot"]), x=99, y=99, lens=lens)
         assert (moved["x"], moved["y"]) == (x, y)
     *_, off = numbers(drawing.sentence)
     assert 3 < off < 8
@@ -659,6 +660,23 @@ def test_the_damped_walk_finds_the_hollow_from_all_starts_above_the_walls_and_th
     said = MODELS["valley"].drawing(steps=25).sentence
     assert "in the hollow after 12" in said
     assert "walk is not there" in said
+
+
+def test_the_tower_and_its_shadow_lie_where_the_renderer_puts_them():
+    """The same desk with a box on it, ray by ray."""
+    camera, on_desk = cube._CAMERA.resized((540, 405)), desk(course.board())
+    tower = box((50, 100), (25, 75), (-75, 0), (0.96, 0.55, 0.16))
+    bare, full = (
+        render_scene(scene, camera, samples=4).astype(int)
+        for scene in (on_desk, join(on_desk, tower))
+    )
+    panel = slice(TITLE, TITLE + 405), slice(MARGIN, MARGIN + 540)
+    drawn = MODELS["cube"].picture(x=75, y=50, height=75)[panel].astype(int)
+    true, ours = (np.abs(picture - bare).sum(-1) > 60 for picture in (full, drawn))
+    for part in (true, ours):
+        part[:5], part[-5:], part[:, :5], part[:, -5:] = 0, 0, 0, 0  # the frame
+    assert true.sum() > 5000
+    assert (true & ours).sum() > 0.9 * (true | ours).sum()  # the rest: the shadow's soft edge
 
 
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():

@@ -48,11 +48,13 @@ def draw_squares(panel: Panel, m: Array, board: Chessboard, colour: str) -> None
     panel.polygons(squares[(row + column) % 2 == 0], colour)
 
 
-def draw_net(panel: Panel, m: Array, board: Chessboard, colour: str, width: float) -> None:
+def draw_net(
+    panel: Panel, m: Array, board: Chessboard, colour: str, width: float, dash: float = 0
+) -> None:
     """Draw the rows and columns of corners (n, 2) as lines."""
     grid = m.reshape(*board.corners[::-1], 2)
     for line in (*grid, *grid.transpose(1, 0, 2)):
-        panel.line(line, colour, width)
+        panel.line(line, colour, width, dash)
 
 
 def draw_arrows(panel: Panel, m: Array, d: Array) -> None:

@@ -10,7 +10,7 @@ from cvnotes.calibration import calibrate
 from cvnotes.calibration.jacobian import jacobian
 from cvnotes.calibration.refinement import Problem
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import draw_arrows, draw_measured
+from cvnotes.show.explorations.boards import draw_arrows, draw_measured, draw_squares
 from cvnotes.show.explorations.finding import rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
@@ -157,10 +157,12 @@ def _bars(paper: Paper, heights: list[float], free: int) -> Panel:
     """Draw the RMS for everything that may be free; the chosen one is orange."""
     panel = paper.panel(_BARS, (0, len(_FREE)), (_HIGHEST, -0.025), "RMS (px) if these may move")
     for k, height in enumerate(heights):
-        foot = [[k + 0.15, 0], [k + 0.85, 0], [k + 0.85, height], [k + 0.15, height]]
-        panel.polygons([foot], ESTIMATED if k == free else "#BBBBBB")
-        panel.text([k + 0.5, height + 0.004], f"{height:.3f}", IDEAL, anchor="ms", size=11)
+        chosen = k == free
+        panel.line([[k + 0.5, 0], [k + 0.5, height]], ESTIMATED if chosen else MUTED, 2.5)
+        panel.text([k + 0.5, height + 0.008], f"{height:.3f}", IDEAL, anchor="ms", size=11)
         panel.text([k + 0.5, -0.013], _FREE[k], IDEAL, anchor="mm", size=10)
+    panel.line([[0, 0], [len(_FREE), 0]], MUTED, 0.8)
+    panel.mark([free + 0.5, heights[free]], "estimated", 6)
     panel.grip("free", "what is free to move", [free + 0.5, heights[free]], 8)
     return panel
 
@@ -171,18 +173,21 @@ def _chart(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     panel = paper.panel(
         _CHART, (-1.4, n - 0.4), (_SHIFT, -_SHIFT - 0.04), "shift of the nine columns (mm)"
     )
+    lines = np.linspace(-_SHIFT, _SHIFT, len(left.shifts))  # of the board, behind its columns
+    sheet = np.stack(np.meshgrid(np.arange(n), lines), axis=-1).reshape(-1, 2)
+    draw_squares(panel, sheet.astype(float), course.real_corners().board, "#F0F0F0")
     panel.ticks(y=(-0.1, 0.1), size=12)
     panel.line([[-1.4, 0.0], [float(n), 0.0]], MUTED, 0.8)
     at = np.arange(n)
     own = np.stack([at, left.columns], axis=-1)
     for row in left.shifts:
-        panel.mark(np.stack([at, row], axis=-1), "lens", 1.5)
+        panel.mark(np.stack([at, row], axis=-1), "lens", 3)
     panel.line(own, LENS, 2)
     panel.mark(own, "lens", 6)
     others = np.stack([at, amount * right.columns], axis=-1)
     panel.line(others, ESTIMATED, 1, dash=3)
     panel.mark(others, "estimated", 6)
     panel.grip("nine", "the right camera's nine shifts, to be pulled up", others[_HELD], 3)
-    panel.text([-1.2, -0.19], "blue: by the left camera", LENS)
+    panel.text([-1.2, -0.19], "blue: by the left camera; dots: its single corners", LENS)
     panel.text([-1.2, -0.215], f"orange: by the right camera, × {amount:g}", ESTIMATED)
     return panel

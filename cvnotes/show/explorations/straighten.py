@@ -3,6 +3,7 @@
 from functools import lru_cache
 
 import numpy as np
+from PIL import Image
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
@@ -13,9 +14,10 @@ from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
 _PICTURE, _ROW = (440, 330), (410, 330)
 _ALPHA, _SIZE, _MIDDLE = 540, (640, 480), np.array([319.5, 239.5])
+_FINE = 4  # so many times the photograph is enlarged, smoothly, before pixels are looked up
 _K1 = -0.25  # of the lens that took the photograph
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
-_BOW = 20.0  # px, shown on either side of the straight line
+_BOW = (-8.5, 10.5)  # px below and above the straight line that are shown
 
 
 def straighten_model() -> Model:
@@ -33,8 +35,9 @@ def straighten_model() -> Model:
 
     @lru_cache(maxsize=1)
     def photograph() -> Drawn:
-        taken = radiance(room_with(board, G), camera, samples=4)
-        return np.asarray(taken.clip(0, 255).astype(np.uint8))
+        taken = radiance(room_with(board, G), camera, samples=16)
+        photo = Image.fromarray(taken.clip(0, 255).astype(np.uint8))
+        return np.asarray(photo.resize((_FINE * _SIZE[0], _FINE * _SIZE[1])))
 
     def draw(paper: Paper, values: Values) -> Drawing:
         lens = Lens(k=(values["k1"],))
@@ -66,8 +69,8 @@ def _without(lens: Lens, photo: Drawn, sharpness: int) -> Drawn:
     w, h = sharpness * _PICTURE[0], sharpness * _PICTURE[1]
     u, v = (np.linspace(-0.5, n - 0.5, 2 * k + 1)[1::2] for n, k in zip(_SIZE, (w, h), strict=True))
     xy = (np.stack(np.meshgrid(u, v), -1) - _MIDDLE) / _ALPHA
-    at = np.rint(_ALPHA * lens.distort(xy) + _MIDDLE)
-    seen = ((at >= 0) & (at < _SIZE)).all(axis=-1)[..., None]  # NaN is not
+    at = np.rint(_FINE * (_ALPHA * lens.distort(xy) + _MIDDLE + 0.5) - 0.5)
+    seen = ((at >= 0) & (at < photo.shape[1::-1])).all(axis=-1)[..., None]  # NaN is not
     column, line = np.where(seen, at, 0).astype(int).transpose(2, 0, 1)
     return np.where(seen, photo[line, column], np.uint8(255))
 
@@ -76,11 +79,11 @@ def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
     panel = paper.panel(
         _ROW,
         (-0.5, _SIZE[0] - 0.5),
-        (_BOW, -_BOW),
+        _BOW[::-1],
         "the uppermost row: px above its line, against u",
     )
-    panel.ticks(x=(200, 400, 600), y=(-10, 0, 10))
-    panel.line([[0, 0], [_SIZE[0], 0]], MUTED, 1)
+    panel.ticks(y=(-5, 0, 5, 10), size=12)
+    panel.line([[40, 0], [_SIZE[0], 0]], MUTED, 1)
     at = np.column_stack([m[:, 0], bow])
     panel.line(at[[0, -1]], ESTIMATED, 1.5)
     panel.line(at, LENS, 1.2)

@@ -17,7 +17,8 @@ from cvnotes.targets import Chessboard
 _PICTURE, _CURVE = (440, 330), (410, 330)
 _STEEPEST = 60  # degrees
 _FAR = 2.1625  # of the board's diagonal, to the long lens
-_MAGNIFIED = 10
+_MAGNIFIED = 6
+_PALE = "#A6CEE4"  # the blue of a lens, for what lies under arrows
 
 
 class _Lenses:
@@ -59,7 +60,8 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
     )
     about = (
         "One tilted board through two lenses. Before the second, half as long, it is turned and "
-        "placed so that the pictures are most alike; beside it how far they differ, against tilt."
+        "placed so that the pictures are most alike; below, both cameras from the side; beside it "
+        "how far the pictures differ, against tilt."
     )
 
     drags = {"tilt": lambda _, at: {"tilt": float(at[0])}}
@@ -69,24 +71,14 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
 def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
     tilt = values["tilt"]
     one, other, near, turned = lenses.seen(tilt)
-    alpha, short = lenses.long.A[0, 0], lenses.short.A[0, 0]
-    picture = paper.picture_panel(
-        _PICTURE, lenses.long.size, f"one board, two lenses (arrows × {_MAGNIFIED})"
-    )
-    for m, colour, width in ((one, LENS, 2.4), (other, ESTIMATED, 1.2)):
-        draw_net(picture, m, lenses.board, colour, width)
-    draw_arrows(picture, one, _MAGNIFIED * (other - one))
     w, h = lenses.long.size
-    picture.text(
-        [0.03 * w, 0.88 * h],
-        f"blue: α = {alpha:.0f} px, from {lenses.away:.0f} mm, tilted {tilt:.0f}°",
-        LENS,
-    )
-    picture.text(
-        [0.03 * w, 0.94 * h],
-        f"orange: α = {short:.0f} px, from {near:.0f} mm, tilted {turned:.0f}°",
-        ESTIMATED,
-    )
+    title = f"one board, two lenses (arrows × {_MAGNIFIED}); below, from the side"
+    picture = paper.panel(_PICTURE, (-0.5, w - 0.5), (0.18 * h, 1.18 * h), title)
+    draw_net(picture, one, lenses.board, _PALE, 2.4)
+    draw_net(picture, other, lenses.board, ESTIMATED, 1, 3)
+    draw_arrows(picture, one, _MAGNIFIED * (other - one))
+    picture.line([[0, 0.74 * h], [w, 0.74 * h]], MUTED, 0.8)
+    _draw_side(picture, lenses, (lenses.away, tilt), (near, turned))
     misfit = lenses.misfit(tilt)
     sentence = f"Tilted by {tilt:.0f}° the two pictures differ by {misfit:.1f} px (RMS): "
     if misfit < 0.05:
@@ -94,6 +86,26 @@ def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
     else:
         sentence += f"with corners good to 0.1 px that is {misfit / 0.1:.0f} times the noise."
     return Drawing(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
+
+
+def _draw_side(
+    picture: Panel, lenses: _Lenses, far: tuple[float, float], near: tuple[float, float]
+) -> None:
+    """Draw both cameras on their axis, each (distance, tilt) with its board, to one scale."""
+    w, h = lenses.long.size
+    middle, a_mm = np.array([0.86 * w, 0.96 * h]), 0.8 * w / lenses.away
+    half = a_mm * np.ptp(lenses.board.points[:, 1]) / 2
+    for camera, (away, tilt), colour, dash, name_at in (
+        (lenses.long, far, LENS, 0, 0.8 * h),
+        (lenses.short, near, ESTIMATED, 4, 1.13 * h),
+    ):
+        end = half * np.array([np.sin(np.radians(tilt)), np.cos(np.radians(tilt))])
+        eye = middle - [a_mm * away, 0]
+        picture.line([eye, middle - end, middle + end, eye], colour, 1.2, dash)
+        picture.line([middle - end, middle + end], colour, 3, dash)
+        name = f"α = {camera.A[0, 0]:.0f} px from {away:.0f} mm, tilted {abs(tilt):.0f}°"
+        picture.text([0.04 * w, name_at], name, colour)
+        picture.mark(eye, "camera", 7)
 
 
 def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
