@@ -673,10 +673,13 @@ def test_the_tower_and_its_shadow_lie_where_the_renderer_puts_them():
     panel = slice(TITLE, TITLE + 405), slice(MARGIN, MARGIN + 540)
     drawn = MODELS["cube"].picture(x=75, y=50, height=75)[panel].astype(int)
     true, ours = (np.abs(picture - bare).sum(-1) > 60 for picture in (full, drawn))
-    for part in (true, ours):
-        part[:5], part[-5:], part[:, :5], part[:, -5:] = 0, 0, 0, 0  # the frame
+    around = list(itertools.product((-1, 0, 1), repeat=2))
+    true, ours = (  # without the edges of squares, where two sizes of pixels differ
+        np.logical_and.reduce([np.roll(part, by, (0, 1)) for by in around]) for part in (true, ours)
+    )
+    ours[:5], ours[-5:], ours[:, :5], ours[:, -5:] = 0, 0, 0, 0  # the frame
     assert true.sum() > 5000
-    assert (true & ours).sum() > 0.9 * (true | ours).sum()  # the rest: the shadow's soft edge
+    assert (true & ours).sum() > 0.95 * (true | ours).sum()  # the rest: the shadow's soft edge
 
 
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():

@@ -133,7 +133,7 @@ def _draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
         outside = outside / np.linalg.norm(outside)
         if outside @ (camera.centre - a) <= 0:
             continue
-        light = 0.45 + 0.55 * max(float(outside @ _LIGHT), 0)
+        light = 0.55 + 0.5 * max(float(outside @ _LIGHT), 0)
         n, k = (round(float(np.linalg.norm(side)) / _SQUARE + 0.1) for side in (b - a, d - a))
         s, t = np.meshgrid(np.arange(n + 1) / n, np.arange(k + 1) / k)
         grid = camera.project(a + s[..., None] * (b - a) + t[..., None] * (d - a))
