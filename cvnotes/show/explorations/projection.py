@@ -80,6 +80,15 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
         left, above = u > 0.7 * w, v > 40
         beside = [u - 14 if left else u + 14, v - 14 if above else v + 18]
         panel.text(beside, "vanishing point", IDEAL, anchor="rm" if left else "lm")
+    elif along[2] == 0:
+        for at, anchor in ((8, "lm"), (w - 9, "rm")):
+            panel.text([at, h / 2], "∞", IDEAL, anchor=anchor, size=16)
+    else:  # an arrow at the border, to where it is
+        at, arrow, anchor = (w - 9, "→", "rm") if u >= w else (8, "←", "lm")
+        if 0 <= u < w:
+            at, arrow = u, "↑" if v < 0 else "↓"
+        words = f"{arrow} ({u:.0f}, {v:.0f})".replace("-", "−")
+        panel.text([at, np.clip(v, 20, h - 20)], words, IDEAL, anchor=anchor, size=13)
 
 
 def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:

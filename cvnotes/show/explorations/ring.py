@@ -56,6 +56,7 @@ def _draw_pairs(panel: Panel, way: Array, x: float, colour: str) -> None:
     panel.line([[-9, 1], [9, 1]], WORLD, 2)
     panel.text([-2.95, 1.2], "w = 1", WORLD)
     panel.line(np.outer([-9, 9], way), colour, 2.2)
+    panel.line(_arc(np.arctan2(*way), 0.5), MUTED, 1)
     panel.text([0, -0.2], "[0 0]", MUTED, anchor="mt", size=10)
     if np.isfinite(x):
         panel.mark([x, 1], "world", 9)
@@ -73,6 +74,7 @@ def _draw_ring(panel: Panel, way: Array, x: float, colour: str) -> None:
         if abs(number) <= 2:
             panel.text([number, -0.17], _number(number), anchor="mm", size=10)
     dot = _dot(way)
+    panel.line([0, 0.5] + [1, -1] * _arc(2 * np.arctan2(*way), 0.16), MUTED, 1)
     if np.isfinite(x):
         panel.line(_ray(x), colour, 2.2)
         panel.mark([x, 0], "world", 9)
@@ -87,6 +89,12 @@ def _dot(way: Array) -> Array:
     """Return where a pair's dot is, at twice its angle on a ring of diameter 1 that stands on 0."""
     a, w = way
     return np.asarray(np.array([a * w, a * a]) / (a * a + w * w))
+
+
+def _arc(angle: float, radius: float) -> Array:
+    """Return an arc from the upright to an angle, about the origin."""
+    turn = np.linspace(0, angle, 40)
+    return radius * np.column_stack([np.sin(turn), np.cos(turn)])
 
 
 def _ray(x: float) -> Array:
@@ -106,4 +114,5 @@ def _sentence(angle: float, x: float) -> str:
             "of the ring, the same from both sides: the point at infinity."
         )
     side = "" if abs(x) < 20 else " Soon it is level; beyond it waits −x on the other side."
-    return f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its dot at {2 * angle:g}°.{side}"
+    said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its dot at {2 * angle % 360:g}°."
+    return said + side

@@ -119,7 +119,5 @@ def _draw_side(panel: Panel, away: float, height: float) -> None:
 def _sentence(foot: Array, height: float) -> str:
     metre = float(np.linalg.norm(at_height(foot, 1) - foot))
     u, v = foot.tolist()
-    return (
-        f"A rod of {height:.1f} m at ({u:.0f}, {v:.0f}) px: its lowest metre is {metre:.0f} px "
-        f"high. The horizon crosses it at {_EYE:g} m, wherever it stands: there the camera is."
-    )
+    place = f"A rod of {height:.1f} m at ({u:.0f}, {v:.0f}) px"
+    return f"{place}: its lowest metre is {metre:.0f} px high."

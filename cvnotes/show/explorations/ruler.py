@@ -22,7 +22,7 @@ _CLICK, _FARTHEST = 0.3, 112.0  # px by which a foot is missed; m that the plan 
 
 def ruler_model() -> Model:
     """Make the model of poles beside a railway, and of one that is pulled along their row."""
-    low, high = float(_END[1]) + 2, float(_FEET[0, 1].round())
+    low, high = float(_END[1]) + 2, float(np.floor(_FEET[0, 1]))
     about = (
         "Poles beside a railway, and an orange pole that moves along their row; beside it the same "
         "from above, with what the picture alone says about the orange pole's distance."

@@ -51,11 +51,9 @@ def shadows_model() -> Model:
         if sun[2] > 0:
             panel.polygons([end + _DISC], _GLOW)
         for top in _POLES[:4]:
-            tip = _tip(top, sun)
-            if tip[2] > 0:  # in front of the camera
-                ray = _CAMERA.project([top, tip])
-                panel.line(ray, ESTIMATED, 1.5)
-                panel.line([ray[0] if sun[2] > 0 else ray[1], end], ESTIMATED, 0.9, dash=5)
+            ray = _CAMERA.project(in_front(top, _tip(top, sun) - top))
+            panel.line(ray, ESTIMATED, 1.5)
+            panel.line([ray[0] if sun[2] > 0 else ray[1], end], ESTIMATED, 0.9, dash=5)
         panel.mark(end, "estimated", 10)
         panel.grip("sun", "the sun, or the shadow of the camera", end, 10)
         plan = paper.panel((330, 330), (-59, 59), (110, -8), "the same from above (m)")
@@ -122,7 +120,7 @@ def _draw_plan(panel: Panel, sun: Array) -> None:
 def _sentence(sun: Array, end: Array, values: Values) -> str:
     said = f"The sun stands {values['elevation']:g}° high"
     if sun[2] == 0:
-        return f"{said}, exactly abeam: its rays stay parallel in the picture, and end nowhere."
+        return f"{said}, just at our side: its rays stay parallel in the picture, and end nowhere."
     place = f"({end[0]:.0f}, {end[1]:.0f}) px"
     if sun[2] > 0:
         return f"{said}, and is seen at {place}: all lines from shadow to pole end there."

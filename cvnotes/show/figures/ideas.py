@@ -28,7 +28,7 @@ _WIDE, _DEEP = 2.2, 1.3  # half the sides of the piece of the plane w = 1 that i
 _MEANINGS = {  # with where the words stand on the axes
     "world": ("what stands in the world", (0.03, 0.945)),
     "camera": ("the camera: its centre,\nits image plane", (0.45, 0.12)),
-    "ideal": ("the truth, or what\nan exact formula says", (0.825, 0.82)),
+    "ideal": ("the truth, or an ideal:\nhere, without the lens", (0.825, 0.82)),
     "lens": ("a point in a picture,\nas the lens shows it", (0.825, 0.5)),
     "estimated": ("found by a computation:\ncorners, lines, cameras", (0.825, 0.18)),
 }
@@ -40,7 +40,7 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     Examples
     --------
     >>> [text.get_text().split(chr(10))[0] for text in draw_meanings().texts][-3:-1]
-    ['the truth, or what', 'a point in a picture,']
+    ['the truth, or an ideal:', 'a point in a picture,']
     """
     ax, view = drawn_on(ax, width=900, height=330), (14.0, -150.0)
     board = Chessboard((4, 3), 40.0)
