@@ -52,6 +52,7 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting
 from cvnotes.show.explorations.page import asked
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.pinhole import behind_a_hole
+from cvnotes.show.explorations.ransac import drawn_pairs
 from cvnotes.show.explorations.rectification import lines_from
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
@@ -682,6 +683,22 @@ def test_the_tower_and_its_shadow_lie_where_the_renderer_puts_them():
     assert (true & ours).sum() > 0.95 * (true | ours).sum()  # the rest: the shadow's soft edge
 
 
+def test_four_right_pairs_far_apart_find_all_the_others_and_one_wrong_one_hardly_any():
+    true = Camera(course.camera().A, course.poses()[6]).project(course.board().points)
+    pairs, fours, put = drawn_pairs(16)
+    right = np.linalg.norm(pairs - true, axis=1) < 3
+    assert right.sum() == 38
+    assert [np.isnan(put[59]).all(), np.isnan(put[44]).any()] == [True, False]
+    for draw in (44, 55):
+        assert np.array_equal(np.linalg.norm(put[draw] - pairs, axis=1) < 1.5, right)
+    sound = [all(np.linalg.norm(true - m, axis=1).min() < 1.5 for m in four) for four in fours]
+    for draw in np.flatnonzero(np.logical_not(sound[1:])) + 1:
+        agree = numbers(MODELS["ransac"].drawing(draw=draw).sentence)[1]
+        assert agree <= 6
+    assert "0 agree" in MODELS["ransac"].drawing(draw=0).sentence
+    assert numbers(MODELS["ransac"].drawing(draw=0, wrong=0).sentence)[2] == 54
+
+
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():
     said = [numbers(MODELS["tilt"].drawing(tilt=tilt).sentence)[1] for tilt in (0, 10, 20, 30, 45)]
     assert said == [0.0, 0.6, 2.2, 3.9, 6.0]
@@ -1109,6 +1126,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "straighten": {"k1": -0.1},
     "folds": {"k1": -0.15},
     "columns": {"amount": 0.7, "free": 1},
+    "ransac": {"draw": 20},
 }
 ON_A_WAY = {  # along a curve, by its x
     ("finding", "step"),
@@ -1117,9 +1135,11 @@ ON_A_WAY = {  # along a curve, by its x
     ("folds", "k1"),
     ("pinhole", "hole"),
     ("ruler", "foot"),
+    ("ransac", "draw"),
 }
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {
+    "curve",
     "nine",
     "row",
     "depth",

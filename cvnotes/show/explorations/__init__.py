@@ -25,6 +25,7 @@ from cvnotes.show.explorations.model import Model
 from cvnotes.show.explorations.noise import noise_model
 from cvnotes.show.explorations.pinhole import pinhole_model
 from cvnotes.show.explorations.projection import projection_model
+from cvnotes.show.explorations.ransac import ransac_model
 from cvnotes.show.explorations.rectification import rectification_model
 from cvnotes.show.explorations.ring import ring_model
 from cvnotes.show.explorations.rod import rod_model
@@ -70,6 +71,7 @@ _STORIES: dict[str, Callable[[], Model]] = {
     "cube": cube_model,
     "fisheye": fisheye_model,
     "valley": valley_model,
+    "ransac": ransac_model,
 }
 NAMES = (*_MODELS, *_STORIES)
 

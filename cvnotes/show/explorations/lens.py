@@ -14,6 +14,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.warping import backward_warp
 
 _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
+_HELD = 0.6  # where the curve is taken hold of
 _RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
 _DETAIL = 800  # px of the photograph of the room for a length of 1 on the plane z = 1
@@ -39,7 +40,14 @@ def lens_model(camera: Camera) -> Model:
         "A room and a square grid, both seen through a lens; beside it the observed radius "
         "r L(r) against the ideal radius r, with the fold where the model ends."
     )
-    return Model("lens", about, settings, partial(_draw, camera))
+
+    def pulled(values: Values, at: Array) -> Values:
+        """Choose the k1 whose curve goes through a height over the radius of the grip."""
+        r2 = _HELD**2
+        rest = 1 + values["k2"] * r2**2 + values["k3"] * r2**3
+        return {"k1": float((at[1] / _HELD - rest) / r2)}
+
+    return Model("lens", about, settings, partial(_draw, camera), {"curve": pulled})
 
 
 def _around(name: str, reach: float, step: float, value: float, about: str) -> Setting:
@@ -115,7 +123,7 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
         panel.line(polynomial(lens, circle), ESTIMATED, 2.2)
         seen = lens.max_radius * float(lens.L(lens.max_radius))
         words = f"the fold, r = {lens.max_radius:.2f}, seen at {seen:.2f}"
-        panel.text([0, max(-seen - 0.02, panel.y[0] + 0.07)], words, ESTIMATED, anchor="md")
+        panel.text([0, max(-seen + 0.03, panel.y[0] + 0.03)], words, ESTIMATED, anchor="mt")
     panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
     bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
     below = [0.02, min(bent[1] + 0.02, panel.y[1] - 0.07)]
@@ -132,6 +140,9 @@ def _draw_curve(panel: Panel, lens: Lens) -> None:
     good = (r <= lens.max_radius)[:, None]
     panel.line(np.where(good, np.nan, observed), ESTIMATED, 1.8, dash=5)
     panel.line(np.where(good, observed, np.nan), LENS, 2.2)
+    held = [_HELD, _HELD * float(radial_factor(lens.k, np.array(_HELD**2)))]
+    panel.mark(held, "lens", 8)
+    panel.grip("curve", "the curve of k1", held, 2)
     if lens.max_radius < _RADIUS:
         panel.line([[lens.max_radius, 1.2], [lens.max_radius, -0.2]], ESTIMATED, 1)
         shift, anchor = (0.015, "lm") if lens.max_radius < 0.6 else (-0.015, "rm")

@@ -18,6 +18,7 @@ _F, _PIXEL, _LIGHT = 4.0, 0.005, 0.00055  # mm: behind the hole, a pixel, green 
 _LENS = 2.0  # mm, as wide as the lens
 _SIZE, _SHOWN = (640, 480), (440, 330)
 _WIDEST, _HIGHEST = 0.4, 120.0  # mm, px
+_PALE = "#BBBBBB"  # of curves that do not count
 _FRAME = 96  # px around the picture, so that nothing comes round from the other side
 
 
@@ -47,7 +48,10 @@ def pinhole_model() -> Model:
         through = "a lens" if values["lens"] else f"a hole of {d:g} mm"
         panel = paper.picture_panel(_SHOWN, _SHOWN, f"the room through {through}")
         panel.image(photo if values["lens"] else behind_a_hole(d, spectrum))
-        return Drawing(paper.join((panel, _spots(paper, d))), _sentence(d, bool(values["lens"])))
+        return Drawing(
+            paper.join((panel, _spots(paper, d, bool(values["lens"])))),
+            _sentence(d, bool(values["lens"])),
+        )
 
     def pulled(_: Values, at: Array) -> Values:
         return {"hole": float(at[0]), "lens": 0}
@@ -76,7 +80,7 @@ def behind_a_hole(d: float, spectrum: Spectrum) -> Drawn:
     return np.asarray(np.rint(inner.clip(0, 255)).astype(np.uint8))
 
 
-def _spots(paper: Paper, d: float) -> Panel:
+def _spots(paper: Paper, d: float, lens: bool) -> Panel:
     panel = paper.panel(
         (410, 330), (-0.02, 0.43), (_HIGHEST, -8), "width of the spot (px) against the hole (mm)"
     )
@@ -88,19 +92,25 @@ def _spots(paper: Paper, d: float) -> Panel:
         ("diffraction", spread, CAMERA, (0.25, 10)),
         ("both", shadow + spread, IDEAL, (0.27, 72)),
     ):
-        panel.line(np.column_stack([holes, curve]), colour, 1.8)
+        panel.line(np.column_stack([holes, curve]), _PALE if lens else colour, 1.8)
         panel.text(at, name, colour, size=12)
     here = [d, float(sum(spot(d)))]
+    panel.grip("hole", "the diameter of the hole", here, 4)
+    if lens:
+        return panel
     panel.mark(here, "estimated", 9)
     aside, anchor = (-0.008, "rm") if d > 0.1 else (0.012, "lm")
     panel.text([d + aside, here[1] + 9], f"{here[1]:.0f} px", ESTIMATED, anchor=anchor, size=13)
-    panel.grip("hole", "the diameter of the hole", here, 4)
     return panel
 
 
 def _sentence(d: float, lens: bool) -> str:
     if lens:
-        return f"A lens of {_LENS:g} mm brings the light of each point at one depth together again."
+        blur = _LENS * _F * (1 / 2500 - 1 / 4000) / _PIXEL
+        return (
+            f"A lens of {_LENS:g} mm brings the light of each point at one depth together again: "
+            f"focused at 4 m, it makes a point at 2.5 m only {blur:.1f} px wide."
+        )
     shadow, spread = spot(d)
     return (
         f"A hole of {d:g} mm: its shadow is {shadow:.0f} px wide, and diffraction adds "

@@ -105,10 +105,10 @@ def _places(bent: int) -> Array:
 
 def _lead_to(ax: "Axes", step: str, below: bool) -> None:
     """Draw the arrow of a step from the panel before, on the left or above."""
-    places = ((0.5, 1.24), (0.5, 1.02), (0.54, 1.13)), ((-0.2, 0.5), (-0.02, 0.5), (-0.11, 0.56))
+    places = ((0.92, 1.24), (0.92, 1.02), (0.89, 1.13)), ((-0.2, 0.5), (-0.02, 0.5), (-0.11, 0.56))
     start, end, at = places[0 if below else 1]
     arrow(ax, start, end, MUTED, 1.8, xycoords="axes fraction", textcoords="axes fraction")
-    letter(ax, step, at, "#333333", transform=ax.transAxes, ha="left" if below else "center")
+    letter(ax, step, at, "#333333", transform=ax.transAxes, ha="right" if below else "center")
 
 
 def _follow(ax: "Axes", at: Array) -> None:

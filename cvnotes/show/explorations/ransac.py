@@ -1,0 +1,117 @@
+"""Explore RANSAC: four pairs at a time are believed, and all pairs vote on their homography."""
+
+from contextlib import suppress
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array, CvnotesError
+from cvnotes.camera import Camera
+from cvnotes.homography import dlt
+from cvnotes.pictures import course, render
+from cvnotes.projective import apply
+from cvnotes.show.explorations.boards import draw_net
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+
+_BOARD, _CAMERA = course.board(), Camera(course.camera().A, course.poses()[6])
+_PART = (160, 76), (580, 391)  # px: the part of the picture that is shown
+_DRAWS, _NOISE = 60, 0.3  # px
+_WRONG = "#7A7A7A"
+
+
+def ransac_model() -> Model:
+    """Make the model of 54 pairs, some of which changed places."""
+    settings = (
+        Setting("draw", "draw", 0, _DRAWS, 1, 0, "0 believes all pairs; each other draws four"),
+        Setting("wrong", "wrong pairs", 0, 40, 1, 16, "how many of the 54 changed places"),
+        Setting(
+            "threshold", "threshold (px)", 0.3, 6, 0.1, 1.5, "how far a pair that agrees is off"
+        ),
+    )
+    about = (
+        "A board, and where 54 pairs say that its corners are seen; the net of the homography of "
+        "four of them, or of all, and the pairs that agree with it. Beside it how many agree, draw "
+        "after draw, and how likely it is that four right ones have been drawn."
+    )
+
+    @lru_cache(maxsize=1)
+    def photograph() -> Drawn:
+        grey = render(_BOARD, _CAMERA, blur=0.7)
+        return np.asarray(185 + 0.27 * grey).astype(np.uint8)
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        n, wrong, limit = int(values["draw"]), int(values["wrong"]), values["threshold"]
+        pairs, fours, put = drawn_pairs(wrong)
+        agree = np.linalg.norm(put - pairs, axis=-1) < limit
+        (left, top), (right, bottom) = _PART
+        panel = paper.panel(
+            (440, 330), (left - 0.5, right - 0.5), (top - 0.5, bottom - 0.5),
+            "the pairs, and one homography",
+        )  # fmt: skip
+        panel.image(photograph()[top:bottom, left:right])
+        _draw_pairs(panel, put[n], pairs, agree[n], fours[n][: 4 * min(n, 1)])
+        votes = paper.panel(
+            (340, 330), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
+        )
+        counts = agree.sum(axis=1)
+        _draw_votes(votes, counts, n, wrong)
+        return Drawing(paper.join((panel, votes)), _sentence(n, counts, wrong))
+
+    return Model("ransac", about, settings, draw, {"draw": lambda _, at: {"draw": float(at[0])}})
+
+
+@lru_cache(maxsize=8)
+def drawn_pairs(wrong: int) -> tuple[Array, Array, Array]:
+    """Return the pairs (54, 2), the four of each draw (61, 4, 2), where these put the corners.
+
+    The last, (61, 54, 2), begins with what all pairs put down. Four on a line put them nowhere.
+    """
+    W, rng = _BOARD.points, np.random.default_rng(8)
+    pairs = _CAMERA.project(W) + rng.normal(scale=_NOISE, size=(len(W), 2))
+    lies = np.sort(rng.permutation(len(W))[:wrong])
+    pairs[lies] = np.roll(pairs[lies], 1, axis=0)
+    fours = np.array([rng.choice(len(W), 4, replace=False) for _ in range(_DRAWS + 1)])
+    put = np.full((_DRAWS + 1, len(W), 2), np.nan)
+    for i, four in enumerate([np.arange(len(W)), *fours[1:]]):
+        with suppress(CvnotesError):
+            put[i] = apply(dlt(W[four, :2], pairs[four]), W[:, :2])
+    return pairs, pairs[fours], put
+
+
+def _draw_pairs(
+    panel: Panel, put: Array, pairs: Array, agree: npt.NDArray[np.bool_], four: Array
+) -> None:
+    """Draw the net that a homography puts down, and each pair, led to its corner if it is off."""
+    panel.segments(np.stack([put, pairs], axis=1)[~agree], _WRONG, 0.8)
+    draw_net(panel, put, _BOARD, ESTIMATED, 1.4)
+    panel.segments(pairs[~agree][:, None] + [[-3, 0], [3, 0]], _WRONG, 4)
+    panel.mark(pairs[agree], "lens", 6)
+    panel.mark(four, "ideal", 9)
+
+
+def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
+    panel.ticks(x=(0, 20, 40, 60), y=(18, 36, 54))
+    right = (1 - wrong / 54) ** 4
+    draws = np.arange(_DRAWS + 1)
+    panel.line(np.column_stack([draws, 54 * (1 - (1 - right) ** draws)]), MUTED, 1.2, dash=4)
+    panel.text([22, 56.5], "54 × chance of four right ones", MUTED, size=10)
+    best = np.maximum.accumulate(np.where(draws > 0, counts, 0))
+    panel.line(np.column_stack([draws, best])[1:], IDEAL, 1.6)
+    panel.segments([[[k, 0], [k, c]] for k, c in zip(draws, counts, strict=True)], LENS, 2.5)
+    panel.mark([n, counts[n]], "estimated", 9)
+    panel.grip("draw", "which draw is shown", [n, float(counts[n])], 5)
+
+
+def _sentence(n: int, counts: Array, wrong: int) -> str:
+    if n == 0:
+        return (
+            f"All 54 pairs are believed, {wrong} of them wrong: {counts[0]} agree with the answer."
+        )
+    best = int(counts[1 : n + 1].argmax()) + 1
+    return (
+        f"Draw {n}: {counts[n]} of 54 pairs agree. The largest set so far has {counts[best]}, "
+        f"found in draw {best}; {54 - wrong} are right."
+    )
