@@ -153,10 +153,7 @@ FIGURES = [
         },
     ),
     # lenses
-    figure(lenses.draw_newton, {"r_lens": (0.4, ONE)}, lens=LENS),
-    figure(lenses.draw_angles, {}, lenses={"a": LENS}),
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
-    figure(lenses.draw_radius, {"up_to": (1.5, ONE)}, lens=LENS),
     figure(lenses.draw_displacement, {}, lens=LENS),
     # lines
     figure(

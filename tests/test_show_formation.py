@@ -4,16 +4,14 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError, ShapeError
-from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, look_at
+from cvnotes.camera import Camera, Lens, intrinsics, look_at
 from cvnotes.pictures import render_scene, room
 from cvnotes.show import (
     arrow_shapes,
     box_lines,
-    draw_angles,
     draw_field_of_view,
     draw_formation,
     draw_half_pixels,
-    draw_newton,
     draw_pixels,
     draw_sensor,
 )
@@ -138,26 +136,6 @@ def test_the_borders_of_many_and_of_few_pixels_are_the_same():
              for row in (ax.patches[:8], ax.patches[8:])]  # fmt: skip
     assert spans == [(0, 8), (0, 8)]
     assert len(ax.patches) == 10
-
-
-def test_newtons_tangents_lead_to_the_radius():
-    lens, r = Lens((-0.4,)), 0.7
-    ax = draw_newton(lens, r * (1 - 0.4 * r**2))
-    last = ax.lines[-2].get_xydata()[-1]
-    np.testing.assert_allclose(last, [r, r * (1 - 0.4 * r**2)], rtol=1e-3)
-    with pytest.raises(CvnotesError, match="beyond the fold"):
-        draw_newton(lens, 0.7)
-
-
-def test_a_polynomial_ends_before_90_degrees_and_a_fisheye_does_not():
-    ax = draw_angles({"polynomial": Lens(), "fisheye": FisheyeLens()})
-    polynomial, fisheye = (line.get_xydata() for line in ax.lines[:2])
-    assert np.isnan(polynomial[polynomial[:, 0] > 90, 1]).all()
-    np.testing.assert_allclose(fisheye[:, 1], np.radians(fisheye[:, 0]), rtol=1e-9)
-    names = {text.get_text(): text.xy for text in ax.texts}  # each at the end of its curve
-    assert names["polynomial"] == pytest.approx((np.degrees(np.arctan(3.2)), 3.2), abs=0.4)
-    assert names["fisheye"] == pytest.approx((np.degrees(2.1), 2.1))
-    assert ax.get_legend() is None
 
 
 def test_an_arrow_leads_from_its_start_to_its_end():

@@ -14,7 +14,6 @@ from cvnotes.show import (
     draw_displacement,
     draw_hits,
     draw_prediction_error,
-    draw_radius,
     draw_wall,
 )
 
@@ -62,12 +61,7 @@ def test_each_method_has_its_cloud_and_its_rms():
     assert ax.lines[0].get_xydata().tolist() == [[3, -4]]
 
 
-def test_the_lens_ends_at_its_fold_and_arrows_are_its_displacement():
-    ax = draw_radius(Lens(k=(-4 / 3,)))
-    assert ax.texts[0].get_text() == "max_radius = 0.50"  # 1 + 3 k1 r² = 0
-    for text in ax.texts[1:]:  # the names stand on their curves
-        r, seen = text.xy
-        assert seen == pytest.approx(r if "ideal" in text.get_text() else r - 4 / 3 * r**3)
+def test_arrows_are_the_displacement_of_a_lens():
     arrows = draw_displacement(Lens(k=(0.4,))).collections[0]
     assert (arrows.U[0], arrows.V[0]) == pytest.approx(
         (-0.3, -0.3), abs=1e-12

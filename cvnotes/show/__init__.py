@@ -11,11 +11,8 @@ from cvnotes.show.figures.ideas import draw_mapped, draw_meanings, draw_pinhole,
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.least_squares import draw_stretched_circle, draw_two_errors
 from cvnotes.show.figures.lenses import (
-    draw_angles,
     draw_displacement,
     draw_grid,
-    draw_newton,
-    draw_radius,
 )
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
@@ -74,10 +71,7 @@ __all__ = [
     "draw_half_pixels",
     # chapter 4: lenses
     "draw_grid",
-    "draw_radius",
     "draw_displacement",
-    "draw_newton",
-    "draw_angles",
     # chapter 5: corners
     "draw_response",
     "draw_clouds",

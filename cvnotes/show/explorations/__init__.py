@@ -5,74 +5,24 @@ shows for some values, with its alternative text. Both call one pure model, so t
 widget cannot disagree.
 """
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import TYPE_CHECKING, cast
 
 from cvnotes.base import CvnotesError
 from cvnotes.camera import Camera
-from cvnotes.show.explorations.camera import camera_model
-from cvnotes.show.explorations.columns import columns_model
-from cvnotes.show.explorations.cube import cube_model
-from cvnotes.show.explorations.depth import depth_model
-from cvnotes.show.explorations.dolly import dolly_model
-from cvnotes.show.explorations.finding import finding_model
-from cvnotes.show.explorations.fisheye import fisheye_model
-from cvnotes.show.explorations.fold import fold_model
-from cvnotes.show.explorations.folds import folds_model
-from cvnotes.show.explorations.homography import homography_model
-from cvnotes.show.explorations.lens import lens_model
 from cvnotes.show.explorations.model import Model
-from cvnotes.show.explorations.noise import noise_model
-from cvnotes.show.explorations.pinhole import pinhole_model
-from cvnotes.show.explorations.projection import projection_model
-from cvnotes.show.explorations.ransac import ransac_model
-from cvnotes.show.explorations.rectification import rectification_model
-from cvnotes.show.explorations.ring import ring_model
-from cvnotes.show.explorations.rod import rod_model
-from cvnotes.show.explorations.ruler import ruler_model
-from cvnotes.show.explorations.shadows import shadows_model
-from cvnotes.show.explorations.straighten import straighten_model
-from cvnotes.show.explorations.tilt import tilt_model
-from cvnotes.show.explorations.triangle import triangle_model
-from cvnotes.show.explorations.valley import valley_model
-from cvnotes.show.explorations.votes import votes_model
-from cvnotes.show.explorations.warp import warp_model
 from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:
     from cvnotes.show.explorations.shell import Explorer
 
-_MODELS: dict[str, Callable[[Camera, Chessboard], Model]] = {
-    "projection": lambda camera, _: projection_model(camera),
-    "camera": camera_model,
-    "lens": lambda camera, _: lens_model(camera),
-    "homography": homography_model,
-    "noise": noise_model,
-    "warp": warp_model,
-    "rectification": rectification_model,
-    "tilt": tilt_model,
-}
-# What the course itself has photographed or thought of: no other camera or board can be given.
-_STORIES: dict[str, Callable[[], Model]] = {
-    "straighten": straighten_model,
-    "ring": ring_model,
-    "ruler": ruler_model,
-    "rod": rod_model,
-    "shadows": shadows_model,
-    "triangle": triangle_model,
-    "pinhole": pinhole_model,
-    "votes": votes_model,
-    "fold": fold_model,
-    "folds": folds_model,
-    "finding": finding_model,
-    "columns": columns_model,
-    "depth": depth_model,
-    "dolly": dolly_model,
-    "cube": cube_model,
-    "fisheye": fisheye_model,
-    "valley": valley_model,
-    "ransac": ransac_model,
-}
+# Each is a module of this folder, in which `<name>_model` makes its model: of a camera and a board,
+_MODELS = ("projection", "camera", "lens", "homography", "noise", "warp", "rectification", "tilt")
+# or of what the course itself has photographed or thought of.
+_STORIES = (
+    "straighten", "ring", "ruler", "rod", "shadows", "triangle", "pinhole", "dolly", "fisheye",
+    "votes", "valley", "ransac", "fold", "folds", "finding", "columns", "depth", "cube",
+)  # fmt: skip
 NAMES = (*_MODELS, *_STORIES)
 
 
@@ -99,16 +49,17 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
     """
     if name not in NAMES:
         raise CvnotesError(f"name: expected one of {', '.join(NAMES)}, got {name!r}")
+    make = getattr(import_module(f"{__name__}.{name}"), f"{name}_model")
     if name in _STORIES:
         if camera is not None or board is not None:
             raise CvnotesError(f"{name}: shows photographs of the course; give no camera or board")
-        return _STORIES[name]()
+        return cast(Model, make())
     if camera is None or board is None:
         from cvnotes.pictures import course
 
         camera = course.camera() if camera is None else camera
         board = course.board() if board is None else board
-    return _MODELS[name](camera, board)
+    return cast(Model, make(camera, board))
 
 
 def explore(

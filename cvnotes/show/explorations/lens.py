@@ -11,6 +11,7 @@ from cvnotes.camera.lens import radial_factor
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp
 
 _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
@@ -21,7 +22,7 @@ _DETAIL = 800  # px of the photograph of the room for a length of 1 on the plane
 _COARSE = 4  # px between which the way back through the lens, which takes long, is linear
 
 
-def lens_model(camera: Camera) -> Model:
+def lens_model(camera: Camera, _: Chessboard) -> Model:
     """Make the model; it starts with the lens of `camera`, whose frame is drawn into the grid.
 
     Of the lens its first three radial coefficients and the tangential ones are taken.

@@ -10,6 +10,7 @@ from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD
+from cvnotes.targets import Chessboard
 
 _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before the camera
 _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
@@ -18,7 +19,7 @@ _REACH = 7.0  # m: how far away the direction is taken hold of
 _PLANE = 2.5  # m: how far away the image plane is drawn from above
 
 
-def projection_model(camera: Camera) -> Model:
+def projection_model(camera: Camera, _: Chessboard) -> Model:
     """Make the model of rails seen by `camera`, its lens left out."""
     settings = (
         Setting("heading", "heading (°)", -90, 90, 1, 12, "how far the rails turn to the right"),
