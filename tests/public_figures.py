@@ -190,7 +190,6 @@ FIGURES = [
         warps.draw_disparity,
         {"point": (np.array([120.0, 400]), several(2)), "b": (100.0, ONE), "f": (150.0, ONE)},
     ),
-    figure(warps.draw_hits, {"hits": (np.array([[0.0, 1], [2, 1]]), SINGLE)}),
     figure(
         warps.draw_cell,
         {"values": (np.array([0.0, 10, 20, 30]), several(4)), "du": (0.5, ONE), "dv": (0.25, ONE)},

@@ -12,7 +12,6 @@ from cvnotes.show import (
     draw_clouds,
     draw_disparity,
     draw_displacement,
-    draw_hits,
     draw_prediction_error,
     draw_wall,
 )
@@ -48,10 +47,6 @@ def test_the_triangle_of_the_disparity_is_similar_to_that_of_the_base_line():
     assert d / 150 == pytest.approx((world[1, 0] - world[0, 0]) / 400)
     # u_left − u_right of the point, each in its own picture
     assert d == pytest.approx(120 * 150 / 400 - 20 * 150 / 400)
-
-
-def test_three_hits_look_like_two():
-    assert draw_hits([[0, 1, 3]]).images[0].get_array().tolist() == [[0, 1, 2]]
 
 
 def test_each_method_has_its_cloud_and_its_rms():

@@ -15,36 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def draw_hits(hits: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw how often each target pixel of a forward warp was hit: never, once, or more often.
-
-    Parameters
-    ----------
-    hits : array_like, shape (height, width)
-        Counts, as `forward_warp` gives them.
-
-    Examples
-    --------
-    >>> draw_hits([[0, 1], [2, 1]]).get_xlabel()
-    'u (px)'
-    """
-    from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
-
-    counts = numbers(hits, "hits")
-    if counts.ndim != 2 or counts.size == 0:
-        raise ShapeError(f"hits: expected (height, width), got {counts.shape}")
-    ax = drawn_on(ax, height=460)
-    colours = [ESTIMATED, "white", LENS]
-    ax.imshow(np.minimum(counts, 2), cmap=ListedColormap(colours), vmin=0, vmax=2)
-    names = ("never hit: a hole", "hit once", "hit more often: a fold")
-    patches = [Patch(fc=c, ec=MUTED, label=n) for c, n in zip(colours, names, strict=True)]
-    ax.legend(handles=patches, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3,
-              frameon=False, fontsize=FONT)  # fmt: skip
-    ax.set(xlabel="u (px)", ylabel="v (px)")
-    return ax
-
-
 def draw_forward(
     image: npt.ArrayLike, hits: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = ""
 ) -> "Axes":
