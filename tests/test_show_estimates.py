@@ -27,12 +27,16 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     doubtful = replace(RESULT, A=A, reliable=False, rms=2 * RESULT.rms)
     assert RESULT.reliable
     results = {"good": [RESULT, RESULT], "bad": [doubtful, doubtful, RESULT]}
-    boards, left, right = draw_view_families(results, W, truth=ALPHA / 1.25)
+    boards, left, right = axes = draw_view_families(results, W, truth=ALPHA / 1.25)
     assert [t.get_text() for t in boards.get_yticklabels()] == ["good", "bad"]
     frame, first = boards.patches[0].get_xy(), boards.patches[1].get_xy()[:-1:16]
     corners = W[[np.lexsort((b * W[:, 1], a * W[:, 0]))[0] for a, b in ((1, 1), (-1, 1))]]
     seen = RESULT.camera.moved(RESULT.poses[0]).project(corners)
     assert np.allclose(first[:2], frame[0] + (seen + 0.5) * 0.9 / 480)
+    axes[0].figure.draw_without_rendering()
+    words, strip = right.texts[2].get_window_extent(), right.get_window_extent()
+    assert strip.x0 < words.x0 < words.x1 < strip.x1
+    assert [t.get_text() for t in right.get_xticklabels()][1:-1:3] == ["0.001", "1", "1000"]
     assert len(boards.patches) == 2 * (1 + len(RESULT.poses))
     assert left.yaxis_inverted()  # the first family on top
     rms = [line.get_xdata() for line in left.lines]
@@ -41,8 +45,8 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     assert np.allclose(shown, [[25.0, 25.0], [50.0, 50.0]], atol=0.01)
     assert colours(right) == [ESTIMATED, ESTIMATED]  # such errors were never promised
     assert [t.get_text() for t in right.texts] == [
-        "25.00 %, beyond its promise", "promised", "median",
-        "50.00 %, beyond its promise", "promised", "median",
+        "median", "promised", "25.00 %, not as promised",
+        "median", "promised", "50.00 %, not as promised",
     ]  # fmt: skip
     std = RESULT.std["alpha_u"]
     near = draw_view_families({"kept": [RESULT]}, W, truth=RESULT.A[0, 0] - 1.9 * std)[2]

@@ -81,11 +81,7 @@ def _dark(x: Array) -> Array:
 
 
 def draw_cube(
-    camera: Camera,
-    side: float,
-    *,
-    origin: npt.ArrayLike = (0, 0),
-    ax: "Axes | None" = None,
+    camera: Camera, side: float, *, origin: npt.ArrayLike = (0, 0), ax: "Axes | None" = None
 ) -> "Axes":
     """Draw a cube that stands on a board, with its shadow, as the camera would photograph it.
 

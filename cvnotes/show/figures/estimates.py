@@ -98,26 +98,21 @@ def draw_view_families(
     boards, left, right = axes = panels(3, **shape, width_ratios=(1.6, 1.3, 5))
     for y, runs in enumerate(results.values()):
         _frame(boards, runs[0], W, y)
-        left.plot([run.rms for run in runs], _spread(y, runs), ".", color=MUTED, markersize=4)
-        _strip(right, runs, truth, y)
-    right.set_xscale("log")
-    right.set_xlim(1e-3, 1e4)
-    right.xaxis.set_major_formatter("{x:g}")
+        spread = y + np.linspace(-0.24, 0.24, len(runs))
+        left.plot([run.rms for run in runs], spread, ".", color=MUTED, markersize=4)
+        _strip(right, runs, truth, y, spread)
     left.set_xlim(0, 1.08 * max(run.rms for runs in results.values() for run in runs) or None)
     left.set(xlabel="RMS (px per point)", title="what is looked at")
-    right.set(xlabel="error of the focal length (%)", title="what counts")
+    right.set(xscale="log", xlim=(1e-3, 1e4), title="what counts")
+    right.set(xlabel="error of the focal length (%)")
+    right.xaxis.set_major_formatter("{x:g}")
     boards.set(aspect="equal", anchor="E", xticks=[], title="all its boards")
     boards.set(yticks=range(len(results)), yticklabels=list(results))
-    boards.spines[["left", "bottom"]].set_visible(False)
+    boards.set_ylim(len(results) - 0.5, -0.5)
+    boards.spines[:].set_visible(False)
     for ax in axes:
         ax.tick_params(which="both", length=0)
-    boards.set_ylim(len(results) - 0.5, -0.5)
     return axes
-
-
-def _spread(y: float, runs: Sequence[Calibration]) -> Any:
-    """Return heights in the row y that keep its dots apart."""
-    return y + np.linspace(-0.24, 0.24, len(runs))
 
 
 def _frame(ax: "Axes", run: Calibration, W: Any, y: float) -> None:
@@ -132,22 +127,20 @@ def _frame(ax: "Axes", run: Calibration, W: Any, y: float) -> None:
         ax.fill(u, v + y, fc=(*rgb(LENS), 0.06), ec=LENS, lw=0.9)
 
 
-def _strip(ax: "Axes", runs: Sequence[Calibration], truth: float, y: float) -> None:
+def _strip(ax: "Axes", runs: Sequence[Calibration], truth: float, y: float, spread: Any) -> None:
     """Draw the errors of the focal length in the row y, in percent, and what was promised."""
     error = np.array([100 * max(abs(run.A[0, 0] / truth - 1), 1e-5) for run in runs])
     std = 100 / truth * np.array([run.std["alpha_u"] for run in runs])
     kept = float(np.sqrt(np.mean((error / std) ** 2))) < 2
     colour = LENS if kept else ESTIMATED
     promised, expected = _HALF * float(np.median(std)), float(np.median(error))
-    ax.plot(error, _spread(y, runs), ".", color=colour, markersize=4)
-    for tick, ink, wide in ((expected, colour, 4), (promised, IDEAL, 1.6)):
+    ax.plot(error, spread, ".", color=colour, markersize=4)
+    far = error.max() > 10  # so that there is no room on the right
+    names = ("promised", promised, IDEAL, 1.6, "right"), ("median", expected, colour, 4, "left")
+    for name, tick, ink, wide, side in reversed(names):
         ax.plot([tick] * 2, [y - 0.36, y + 0.36], color=ink, linewidth=wide)
+        beside(ax, name if far else "", (tick, y - 0.36), (0, 3), ink, ha=side, size=9)
     words = f"{expected:.2f} %" if expected < 100 else "over 100 %"
-    words += "" if kept else ", beyond its promise"
-    ends = min(*error, promised), max(*error, promised)
-    if ends[1] < 10:
-        beside(ax, words, (ends[1], y), (7, 0), va="center", size=9)
-    else:  # there is no room on the right
-        beside(ax, words, (ends[0], y), (-7, 0), va="center", ha="right", size=9)
-        beside(ax, "promised", (promised, y - 0.36), (0, 3), ha="right", size=9)
-        beside(ax, "median", (expected, y - 0.36), (0, 3), colour, size=9)
+    words += "" if kept else ", not as promised"
+    end, by, side = (min(*error, promised), -7, "right") if far else (error.max(), 7, "left")
+    beside(ax, words, (end, y), (by, 0), va="center", ha=side, size=9)
