@@ -101,7 +101,7 @@ FIGURES = [
     ),
     figure(
         estimates.draw_view_families,
-        {"truth": (800.0, ONE)},
+        {"W": (W, several(3)), "truth": (800.0, ONE)},
         results={"a": [RESULT], "b": [RESULT, RESULT]},
     ),
     # calibration

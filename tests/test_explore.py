@@ -28,6 +28,7 @@ from cvnotes.camera import (
     pose,
     rotation_from_angles,
     rotation_from_vector,
+    xy_from_px,
 )
 from cvnotes.homography import dlt
 from cvnotes.pictures import course, desk, radiance, rails, render_scene, room
@@ -46,6 +47,7 @@ from cvnotes.show.explorations.fold import (
     photographs,
     vanishing_points,
 )
+from cvnotes.show.explorations.folds import _SHOWN as FOLDS_SHOWN
 from cvnotes.show.explorations.lens import polynomial
 from cvnotes.show.explorations.lettering import LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
@@ -731,6 +733,18 @@ def test_the_photograph_of_the_fold_is_no_mirror_image_and_all_its_points_are_on
     assert np.allclose(seen, 0.5, atol=0.45)
 
 
+def test_face_on_the_eye_of_the_fold_is_where_the_half_circles_of_thales_cross():
+    W = course.board().points
+    v = vanishing_points(dlt(W[:, :2], photographs()[0].project(W)))
+    a, b, c, d = s = (v - v[0]) @ (v[1] - v[0]) / np.linalg.norm(v[1] - v[0])
+    at = (a * b - c * d) / (a + b - c - d)
+    x = (770 + 0.62 * (at - (s.min() + s.max()) / 2)) / 1540 * 350 + 500 + 6 + MARGIN
+    y = (610 - 0.62 * np.sqrt((at - a) * (b - at))) / 1848 * 420 + TITLE
+    for fold in (30, 90):  # nothing in this plane turns with the fold
+        eye = MODELS["fold"].drawing(fold=fold).picture[round(y), round(x)]
+        assert eye.tolist() == [0x56, 0xB4, 0xE9]
+
+
 def test_from_the_side_the_two_half_circles_cross_in_one_place():
     W = course.board().points
     one, two = (circle_of(dlt(W[:, :2], camera.project(W))) for camera in photographs())
@@ -760,6 +774,14 @@ def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
         arc = circle.place(np.linspace(0, 180, 20_001))
         searched = np.linalg.norm(arc - aside, axis=1).min()
         assert np.isclose(circle.distance(aside), searched, rtol=1e-4)
+    (left, right), (top, low) = FOLDS_SHOWN
+    for k1 in (-0.4, -0.2, 0.1):
+        seen = xy_from_px(camera.A, course.measured_corners())
+        straight = Lens(k=(k1, 1.6 * k1**2)).undistort(seen)
+        for m in straight * 800 + eye[:2]:
+            arc = on_sheet(circle_of(dlt(course.board().points[:, :2], m)).place(range(181)))
+            assert (arc > [left, top]).all()
+            assert (arc < [right, low]).all()
     said = {k1: numbers(MODELS["folds"].drawing(k1=k1).sentence) for k1 in (-0.25, -0.2, 0)}
     assert said[-0.25][-1] < 0.5
     assert said[-0.2][-1] > 10

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from public_face import RESULT
+from public_face import RESULT, W
 
 from cvnotes.base import InputTypeError
 from cvnotes.show import ESTIMATED, LENS, draw_plane_error, draw_view_families
@@ -27,8 +27,17 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     doubtful = replace(RESULT, A=A, reliable=False, rms=2 * RESULT.rms)
     assert RESULT.reliable
     results = {"good": [RESULT, RESULT], "bad": [doubtful, doubtful, RESULT]}
-    left, right = draw_view_families(results, truth=ALPHA / 1.25)
-    assert [t.get_text() for t in left.get_yticklabels()] == ["good", "bad"]
+    boards, left, right = axes = draw_view_families(results, W, truth=ALPHA / 1.25)
+    assert [t.get_text() for t in boards.get_yticklabels()] == ["good", "bad"]
+    frame, first = boards.patches[0].get_xy(), boards.patches[1].get_xy()[:-1:16]
+    corners = W[[np.lexsort((b * W[:, 1], a * W[:, 0]))[0] for a, b in ((1, 1), (-1, 1))]]
+    seen = RESULT.camera.moved(RESULT.poses[0]).project(corners)
+    assert np.allclose(first[:2], frame[0] + (seen + 0.5) * 0.9 / 480)
+    axes[0].figure.draw_without_rendering()
+    words, strip = right.texts[2].get_window_extent(), right.get_window_extent()
+    assert strip.x0 < words.x0 < words.x1 < strip.x1
+    assert [t.get_text() for t in right.get_xticklabels()][1:-1:3] == ["0.001", "1", "1000"]
+    assert len(boards.patches) == 2 * (1 + len(RESULT.poses))
     assert left.yaxis_inverted()  # the first family on top
     rms = [line.get_xdata() for line in left.lines]
     assert np.allclose(np.concatenate(rms), RESULT.rms * np.array([1, 1, 2, 2, 1]))
@@ -36,11 +45,12 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     assert np.allclose(shown, [[25.0, 25.0], [50.0, 50.0]], atol=0.01)
     assert colours(right) == [ESTIMATED, ESTIMATED]  # such errors were never promised
     assert [t.get_text() for t in right.texts] == [
-        "25 %, beyond its promise", "50 %, beyond its promise"
+        "median", "promised", "25.00 %, not as promised",
+        "median", "promised", "50.00 %, not as promised",
     ]  # fmt: skip
     std = RESULT.std["alpha_u"]
-    near = draw_view_families({"kept": [RESULT]}, truth=RESULT.A[0, 0] - 1.9 * std)[1]
-    far = draw_view_families({"broken": [RESULT]}, truth=RESULT.A[0, 0] - 2.1 * std)[1]
+    near = draw_view_families({"kept": [RESULT]}, W, truth=RESULT.A[0, 0] - 1.9 * std)[2]
+    far = draw_view_families({"broken": [RESULT]}, W, truth=RESULT.A[0, 0] - 2.1 * std)[2]
     assert (colours(near), colours(far)) == ([LENS], [ESTIMATED])
     dots, _, promise = right.lines[:3]
     assert np.allclose(dots.get_xdata(), 25)
@@ -53,11 +63,11 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
 
 def test_what_is_no_calibration_is_refused_by_its_name():
     with pytest.raises(InputTypeError, match=r"results: expected a Mapping, got list"):
-        draw_view_families([RESULT], truth=800)
+        draw_view_families([RESULT], W, truth=800)
     with pytest.raises(InputTypeError, match=r"results\['a'\]: expected a list of calibrations"):
-        draw_view_families({"a": RESULT}, truth=800)
+        draw_view_families({"a": RESULT}, W, truth=800)
     with pytest.raises(InputTypeError, match=r"results\['a'\]: expected a Calibration, got str"):
-        draw_view_families({"a": ["left.json"]}, truth=800)
+        draw_view_families({"a": ["left.json"]}, W, truth=800)
 
 
 def test_an_arrow_leads_from_the_truth_to_the_prediction_ten_times_as_long():

@@ -24,6 +24,7 @@ _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
 _INKS = (IDEAL, MUTED)  # of the first photograph and of the second
 _SQUARE = "#B0B0B0"
+_SMALL = 0.62  # the scale of the fold, over that of the view from the side
 _PAIRS = (("sides", "estimated", ESTIMATED), ("diagonals", "lens", LENS))
 
 
@@ -103,14 +104,15 @@ def fold_model() -> Model:
     about = (
         "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
         "horizon, with lines to the vanishing points of the square's sides and of its diagonals. "
-        "Beside it the focal length against v0, along the half circle of each photograph."
+        "Beside it the plane of eye and horizon, where the eye is on a half circle over each pair; "
+        "and the focal length against v0, along the half circle of each photograph."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
         eye = circles[0].place(values["fold"])
         shown = 1 + int(values["second"])
         space = _space(paper, cameras[:shown], H[0], circles[:shown], eye)
-        side = _side(paper, H[:shown], circles[:shown], eye)
+        side = _side(paper, H[0], circles[:shown], eye)
         return Drawing(paper.join((space, side)), _sentence(H[:shown], eye))
 
     folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
@@ -180,7 +182,7 @@ def _space(
     panel.grip("eye", "the eye, to be turned about the horizon", on_sheet(eye), 4)
     _name(panel, on_sheet(eye), (0, -17), "eye", CAMERA, "md")
     _name(panel, on_sheet(below), (0, 24), "principal point", IDEAL, "ma")
-    _name(panel, on_sheet((eye + below) / 2), (7, 0), f"α = {eye[2]:.0f} px", IDEAL, "lm")
+    _name(panel, on_sheet((eye + below) / 2), (-7, 0), "α", IDEAL, "rm")
     return panel
 
 
@@ -191,21 +193,39 @@ def _name(
     panel.text(at + panel.pixel * np.array(by), words, colour, anchor=anchor, size=13)
 
 
-def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Panel:
-    """Draw the half circles from the side, and say at which angles the eye sees each square."""
-    high, low = 1330, -518  # one scale for both axes, so that a half circle is one
-    panel = paper.panel(
-        _SIDE, (-580, 960), (high, low), "from the side: height of the eye against v0 (px)"
-    )
+def _side(paper: Paper, H: Array, circles: list[Circle], eye: Array) -> Panel:
+    """Draw the half circles from the side, and above them the first fold."""
+    high, low = 1470, -378  # one scale for both axes, so that a half circle is one
+    panel = paper.panel(_SIDE, (-580, 960), (high, low), "the fold, face on")
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
-    for k in reversed(range(len(H))):
+    panel.polygons([[[-580, high], [960, high], [960, 700], [-580, 700]]], "#FFFFFF")
+    _fold(panel, H, circles[0])
+    words = "from the side: height of the eye against v0 (px)"
+    _name(panel, np.array([-580, 640]), (6, 0), words, MUTED, "lm")
+    for k in reversed(range(len(circles))):
         arc = circles[k].place(np.arange(0, 181, 2))
         panel.line(arc[:, 1:], _INKS[k], 2)
-        sides, diagonals = angles(H[k], eye)
-        seen = f"photograph {k + 1}", f"sides {sides:.1f}°", f"diagonals {diagonals:.1f}°"
-        for row, words in enumerate(seen):
-            panel.text([-520 + 720 * k, high - 130 - 100 * row], words, _INKS[k], size=13)
+        _name(panel, arc[45, 1:] * [1, 0], (90 * k - 45, -8), f"photograph {k + 1}", _INKS[k], "ma")
     panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
     panel.mark(eye[1:], "camera", 9)
     panel.grip("fold", "the fold", eye[1:], 4)
     return panel
+
+
+def _fold(panel: Panel, H: Array, circle: Circle) -> None:
+    """Draw horizon and eye in their own plane: the eye is on two half circles, by Thales."""
+    along = np.array([circle.up[1], -circle.up[0]])
+    s = (vanishing_points(H) - circle.foot) @ along
+    shift = np.array([190 - _SMALL * (s.min() + s.max()) / 2, 860])
+    eye = shift + [0, _SMALL * circle.radius]
+    panel.line(np.array([[-3000, 860], [3000, 860]]), IDEAL, 0.8, dash=5)
+    turn = np.radians(np.arange(0, 181, 3))
+    for (_, meaning, colour), (a, b) in zip(_PAIRS, s.reshape(2, 2), strict=True):
+        ring = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2
+        panel.line(shift + _SMALL * ring, colour, 0.8)
+        ends = shift + _SMALL * np.array([[a, 0], [b, 0]])
+        panel.line(np.array([ends[0], eye, ends[1]]), colour, 1.4)
+        one, two = 80 * (ends - eye) / np.linalg.norm(ends - eye, axis=1, keepdims=True)
+        panel.line(eye + np.array([one, one + two, two]), colour, 1.4)
+        panel.mark(ends, meaning, 5)
+    panel.mark(eye, "camera", 9)

@@ -8,12 +8,15 @@ from cvnotes.base import Array
 from cvnotes.camera import Lens, px_from_xy, xy_from_px
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
+from cvnotes.show.explorations.boards import draw_squares
 from cvnotes.show.explorations.fold import Circle, circle_of, on_sheet
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
-_SPACE, _CLOSE, _CURVE = (300, 340), (250, 340), (290, 340)
+_SPACE, _CLOSE, _CURVE = (450, 375), (180, 375), (210, 375)
+_WIDE = (450, 280)  # of the smaller ones on a narrow page
+_SHOWN = ((-2230, 2810), (-2563, 1637))  # x and y of the sheet: all half circles, for each k1
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
 _NEAR = 130  # px about the eye, that are shown enlarged
 _MOST = 90.0  # px, of the curve
@@ -48,16 +51,9 @@ def folds_model() -> Model:
     """Make the model of the half circles of twelve photographs, whose lens is undone by k1."""
     tangle = _Tangle()
     settings = (
-        Setting(
-            "k1",
-            "k1",
-            _LOWEST,
-            _HIGHEST,
-            _STEP,
-            0,
-            f"of the lens that is undone; k2 = {tangle.bend:.1f} k1²",
-        ),
-    )
+        Setting("k1", "k1", _LOWEST, _HIGHEST, _STEP, 0,
+                f"of the lens that is undone; k2 = {tangle.bend:.1f} k1²"),
+    )  # fmt: skip
     about = (
         "Twelve half circles, one for each photograph: all places from which it shows right "
         "angles. Beside them the same enlarged about the camera, and how far they miss it, "
@@ -82,29 +78,31 @@ def _sentence(k1: float, misses: Array) -> str:
 
 def _arcs(tangle: _Tangle, panel: Panel, k1: float, width: float) -> None:
     for circle in tangle.circles(k1):
-        panel.line(on_sheet(circle.place(np.arange(0, 180.5, 0.5))), LENS, width)
+        arc = on_sheet(circle.place(np.arange(0, 180.5, 0.5)))
+        panel.line(arc, LENS, width)
+        panel.mark(arc[[0, -1]], "lens", 3)
 
 
 def _space(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
     w, h = tangle.size
     frame = np.array([[0, 0, 0], [w, 0, 0], [w, h, 0], [0, h, 0], [0, 0, 0]])
     seen = on_sheet(frame * [*tangle.square, 0] - [0.5, 0.5, 0])
-    middle = (seen[:-1].mean(axis=0) + on_sheet(tangle.eye)) / 2
-    reach = 760 * np.array(_SPACE) / _SPACE[1]
-    (left, top), (right, low) = middle - reach, middle + reach
-    panel = paper.panel(_SPACE, (left, right), (top, low), "twelve half circles over the picture")
+    panel = paper.panel(_SPACE, *_SHOWN, "twelve half circles over the first photograph")
     panel.polygons(seen[None, :-1], "#F4F4F0")
     panel.line(seen, MUTED, 1)
-    _arcs(tangle, panel, k1, 1)
+    m = np.column_stack([tangle.seen[0] * tangle.square, np.zeros(len(tangle.W))])
+    draw_squares(panel, on_sheet(m), course.board(), "#B0B0B0")
+    _arcs(tangle, panel, k1, 0.7)
     panel.mark(on_sheet(tangle.eye), "ideal", 8)
     return panel
 
 
 def _close(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
-    reach = _NEAR * np.array(_CLOSE) / _CLOSE[0]
+    size = _WIDE if paper.narrow else _CLOSE
+    reach = _NEAR * np.array(size) / min(size)
     (left, top), (right, low) = on_sheet(tangle.eye) - reach, on_sheet(tangle.eye) + reach
-    panel = paper.panel(_CLOSE, (left, right), (top, low), "enlarged about the camera")
-    _arcs(tangle, panel, k1, 1.4)
+    panel = paper.panel(size, (left, right), (top, low), "enlarged about the camera")
+    _arcs(tangle, panel, k1, 1)
     panel.mark(on_sheet(tangle.eye), "ideal", 10)
     panel.line([[left + 12, low - 14], [left + 62, low - 14]], IDEAL, 2)
     panel.text([left + 68, low - 14], "50 px", IDEAL, size=12)
@@ -113,13 +111,9 @@ def _close(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
 
 def _curve(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
     """Draw how far the half circles miss the camera; the hand pulls along the curve."""
-    panel = paper.panel(
-        _CURVE,
-        (_LOWEST - 0.03, _HIGHEST + 0.03),
-        (_MOST, -0.1 * _MOST),
-        "miss (RMS, px) against k1",
-    )
-    panel.ticks(x=(-0.4, -0.3, -0.2, -0.1, 0, 0.1), y=(20, 40, 60, 80), size=12)
+    x, y = (_LOWEST - 0.07, _HIGHEST + 0.03), (_MOST, -0.1 * _MOST)
+    panel = paper.panel(_WIDE if paper.narrow else _CURVE, x, y, "miss (RMS, px) against k1")
+    panel.ticks(x=(-0.4, -0.2, 0), y=(20, 40, 60, 80), size=12)
     tried = np.arange(_LOWEST, _HIGHEST + 0.01, 0.025)
     way = np.array([[k, np.sqrt(np.mean(tangle.misses(float(k)) ** 2))] for k in tried])
     panel.line(way, MUTED, 1.6)

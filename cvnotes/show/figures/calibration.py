@@ -13,20 +13,14 @@ from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.show.axes import beside, panels, pixel_axes
 from cvnotes.show.figures.formation import draw_faces, outlined
 from cvnotes.show.guards import count, length, one_point
-from cvnotes.show.style import ESTIMATED, FONT, MUTED
+from cvnotes.show.style import FONT, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _COLOUR = (0.96, 0.55, 0.16)  # of the side that is lit best
-_SHADES = (
-    1.0,
-    0.4,
-    0.82,
-    0.6,
-    0.48,
-    0.72,
-)  # of the top, the bottom, low and high x, low and high y
+# Of the top, the bottom, low and high x, low and high y.
+_SHADES = (1.0, 0.4, 0.82, 0.6, 0.48, 0.72)
 _SHADOW = np.array(DESK_LIGHT)[:2] / DESK_LIGHT[2]  # where it throws the shadow of height 1
 
 
@@ -67,11 +61,14 @@ def draw_arrow(J: npt.ArrayLike, shared: int) -> Any:
     for ax in axes:
         ax.set(xticks=ticks, xticklabels=[], xlabel="unknowns")
         ax.tick_params(length=2)
-        for middle, name in (((shared - 1) / 2, "camera"), ((shared + columns - 1) / 2, "poses")):
-            at = {"xycoords": ("data", "axes fraction"), "ha": "center", "fontsize": FONT - 1}
-            beside(ax, name, (middle, 1), (0, 3), MUTED, **at)
-        ax.axvline(shared - 0.5, color=ESTIMATED, linewidth=0.8)
-    right.axhline(shared - 0.5, color=ESTIMATED, linewidth=0.8)
+        for u, name, side in (
+            (-0.5, "camera", "left"),
+            ((shared + columns) / 2, "poses", "center"),
+        ):
+            at = {"xycoords": ("data", "axes fraction"), "ha": side, "fontsize": FONT - 1}
+            beside(ax, name, (u, 1), (0, 3), MUTED, **at)
+        ax.axvline(shared - 0.5, color=MUTED, linewidth=0.8)
+    right.axhline(shared - 0.5, color=MUTED, linewidth=0.8)
     right.set(yticks=ticks, yticklabels=[])
     left.set_ylabel("measured coordinates, view after view")
     return axes
@@ -84,11 +81,7 @@ def _dark(x: Array) -> Array:
 
 
 def draw_cube(
-    camera: Camera,
-    side: float,
-    *,
-    origin: npt.ArrayLike = (0, 0),
-    ax: "Axes | None" = None,
+    camera: Camera, side: float, *, origin: npt.ArrayLike = (0, 0), ax: "Axes | None" = None
 ) -> "Axes":
     """Draw a cube that stands on a board, with its shadow, as the camera would photograph it.
 

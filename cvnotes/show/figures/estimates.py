@@ -9,8 +9,9 @@ import numpy.typing as npt
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
 from cvnotes.show.axes import as_picture, beside, drawn_on, panels
+from cvnotes.show.figures.formation import outlined
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,23 +63,28 @@ def draw_plane_error(
     return ax
 
 
-def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: float) -> Any:
-    """Draw RMS and error of the focal length of calibrations repeated for several sets of views.
+def draw_view_families(
+    results: Mapping[str, Sequence[Calibration]], W: npt.ArrayLike, *, truth: float
+) -> Any:
+    """Draw sets of views, and RMS and focal length of calibrations repeated for each of them.
 
     Parameters
     ----------
     results : mapping from name to sequence of Calibration
         For each set of views its repetitions, with other noise each time.
+    W : array_like, shape (n, 3)
+        The points of the board.
     truth : float
         The true α_u in pixels.
 
     Returns
     -------
-    ndarray of two Axes
-        The RMS on the left; on the right the relative errors of α_u on a logarithmic axis: a dot
-        for each repetition, a thick line for their median, and a thin one for what the standard
-        deviations promised for it: 0.674 times their own median, for half of all Gaussian errors
-        are smaller. Orange are those whose errors are more than twice what was promised.
+    ndarray of three Axes
+        The outlines of all boards of the first repetition, in a picture's frame; the RMS; and the
+        relative errors of α_u on a logarithmic axis: a dot for each repetition, a thick line for
+        their median, and a thin one for what the standard deviations promised for it: 0.674 times
+        their own median, for half of all Gaussian errors are smaller. Orange are those whose
+        errors are more than twice what was promised.
     """
     if not thing(results, "results", Mapping):  # type: ignore[type-abstract]
         raise CvnotesError("results: expected at least one set of views")
@@ -87,28 +93,54 @@ def draw_view_families(results: Mapping[str, Sequence[Calibration]], *, truth: f
             raise InputTypeError(f"results[{name!r}]: expected a list of calibrations")
         for run in runs:
             thing(run, f"results[{name!r}]", Calibration)
-    truth = length(truth, "truth")
-    left, right = axes = panels(2, width=900, height=90 + 52 * len(results), sharey=True)
+    W, truth = points(W, "W", 3), length(truth, "truth")
+    shape = {"width": 960, "height": 90 + 96 * len(results), "sharey": True}
+    boards, left, right = axes = panels(3, **shape, width_ratios=(1.6, 1.3, 5))
     for y, runs in enumerate(results.values()):
-        error = np.array([100 * max(abs(run.A[0, 0] / truth - 1), 1e-5) for run in runs])
-        std = 100 / truth * np.array([run.std["alpha_u"] for run in runs])
-        kept = float(np.sqrt(np.mean((error / std) ** 2))) < 2
-        colour = LENS if kept else ESTIMATED
-        promised, expected = _HALF * float(np.median(std)), float(np.median(error))
+        _frame(boards, runs[0], W, y)
         spread = y + np.linspace(-0.24, 0.24, len(runs))
         left.plot([run.rms for run in runs], spread, ".", color=MUTED, markersize=4)
-        right.plot(error, spread, ".", color=colour, markersize=4)
-        for tick, ink, wide in ((expected, colour, 4), (promised, IDEAL, 1.6)):
-            right.plot([tick] * 2, [y - 0.36, y + 0.36], color=ink, linewidth=wide)
-        words = f"{float(f'{expected:.2g}'):g} %" + ("" if kept else ", beyond its promise")
-        end = max(expected, float(error.max()), promised)
-        beside(right, words, (end, y), (7, 0), va="center", size=9)
-    right.set_xscale("log")
-    right.set_xlim(1e-3, 1e6)
+        _strip(right, runs, truth, y, spread)
     left.set_xlim(0, 1.08 * max(run.rms for runs in results.values() for run in runs) or None)
-    left.set(yticks=range(len(results)), yticklabels=list(results), title="what is looked at")
-    left.set(xlabel="RMS (px per point)")
-    right.set(xlabel="error of the focal length (%)", title="what counts")
-    left.invert_yaxis()
-    right.tick_params(labelleft=True)  # a narrow page shows the panels one below the other
+    left.set(xlabel="RMS (px per point)", title="what is looked at")
+    right.set(xscale="log", xlim=(1e-3, 1e4), title="what counts")
+    right.set(xlabel="error of the focal length (%)")
+    right.xaxis.set_major_formatter("{x:g}")
+    boards.set(aspect="equal", anchor="E", xticks=[], title="all its boards")
+    boards.set(yticks=range(len(results)), yticklabels=list(results))
+    boards.set_ylim(len(results) - 0.5, -0.5)
+    boards.spines[:].set_visible(False)
+    for ax in axes:
+        ax.tick_params(which="both", length=0)
     return axes
+
+
+def _frame(ax: "Axes", run: Calibration, W: Any, y: float) -> None:
+    """Draw the outlines of a calibration's boards in a picture's frame, 0.9 high, in the row y."""
+    (u0, v0, _), (u1, v1, _) = W.min(0), W.max(0)
+    edge = outlined(np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]]))
+    scale, middle = 0.9 / run.size[1], (np.array(run.size) - 1) / 2
+    w, h = scale * np.array(run.size) / 2
+    ax.fill([-w, w, w, -w], [y - h, y - h, y + h, y + h], fc="#F4F4F0", ec=MUTED, lw=0.8)
+    for pose in run.poses:
+        u, v = scale * (run.camera.moved(pose).project(edge) - middle).T
+        ax.fill(u, v + y, fc=(*rgb(LENS), 0.06), ec=LENS, lw=0.9)
+
+
+def _strip(ax: "Axes", runs: Sequence[Calibration], truth: float, y: float, spread: Any) -> None:
+    """Draw the errors of the focal length in the row y, in percent, and what was promised."""
+    error = np.array([100 * max(abs(run.A[0, 0] / truth - 1), 1e-5) for run in runs])
+    std = 100 / truth * np.array([run.std["alpha_u"] for run in runs])
+    kept = float(np.sqrt(np.mean((error / std) ** 2))) < 2
+    colour = LENS if kept else ESTIMATED
+    promised, expected = _HALF * float(np.median(std)), float(np.median(error))
+    ax.plot(error, spread, ".", color=colour, markersize=4)
+    far = error.max() > 10  # so that there is no room on the right
+    names = ("promised", promised, IDEAL, 1.6, "right"), ("median", expected, colour, 4, "left")
+    for name, tick, ink, wide, side in reversed(names):
+        ax.plot([tick] * 2, [y - 0.36, y + 0.36], color=ink, linewidth=wide)
+        beside(ax, name if far else "", (tick, y - 0.36), (0, 3), ink, ha=side, size=9)
+    words = f"{expected:.2f} %" if expected < 100 else "over 100 %"
+    words += "" if kept else ", not as promised"
+    end, by, side = (min(*error, promised), -7, "right") if far else (error.max(), 7, "left")
+    beside(ax, words, (end, y), (by, 0), va="center", ha=side, size=9)
