@@ -13,7 +13,7 @@ from cvnotes.pictures import course, desk, render_scene
 from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL
 from cvnotes.targets import refine_subpixel
 
 _BOARD = course.board()
@@ -27,6 +27,7 @@ _CAMERA = Camera(
 _LIGHT = np.array(DESK_LIGHT) / np.linalg.norm(DESK_LIGHT)
 _WINDOW = "#4A2E18"
 _PAINT = np.array([[246, 150, 60], [236, 134, 46]])  # two tints of the tower's tiles
+_EDGES = [(i, (i + 1) % 4 + i // 4 * 4) for i in range(8)] + [(i, i + 4) for i in range(4)]
 _SHADED, _SOFT = 0.42, 6  # what a shadow leaves of the light; px of its edge
 
 
@@ -75,6 +76,10 @@ def cube_model() -> Model:
         panel = paper.picture_panel((540, 405), _CAMERA.size, "a tower on your desk: pull its foot")
         panel.image(_in_the_shade(found, camera, base, h))
         corners = _draw_tower(panel, camera, base, h)
+        if not values["lens"]:
+            for i, j in _EDGES:  # where it belongs
+                edge = corners[i] + np.linspace(0, 1, 9)[:, None] * (corners[j] - corners[i])
+                panel.line(_CAMERA.project(edge), IDEAL, 1.2, dash=4)
         at = camera.project([*foot, 0])
         panel.grip("foot", "the foot of the tower", at, 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)

@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
@@ -38,9 +37,9 @@ class Circle(NamedTuple):
     up: Array  # (2,) unit vector in the picture, from the horizon to the board
     radius: float
 
-    def place(self, fold: npt.ArrayLike) -> Array:
+    def place(self, fold: Array | float) -> Array:
         """Return the places (..., 3) at angles (...) from the picture, in degrees: (u0, v0, α)."""
-        phi = np.radians(fold)[..., None]
+        phi = np.radians(np.asarray(fold, dtype=float))[..., None]
         in_plane = self.foot + self.radius * np.cos(phi) * self.up
         return np.concatenate([in_plane, self.radius * np.sin(phi)], axis=-1)
 

@@ -83,7 +83,8 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     n, sigma = int(values["views"]), values["sigma"]
     bound = study.std(n, sigma)
     error, std = study.estimate(n, sigma, int(values["draw"]))
-    reach = next((r for r in _REACHES if r > 2.5 * max(bound.max(), 0.1)), _REACHES[-1])
+    widest = max(2.5 * bound.max(), 1.1 * float((np.abs(error) + std).max()), 0.25)
+    reach = next((r for r in _REACHES if r > widest), _REACHES[-1])
     bars = paper.panel((450, 300), (-1.25 * reach, reach), (-0.8, 4.3), "estimate minus truth (px)")
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(

@@ -125,7 +125,11 @@ def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
     panel.line([[-6, 0], [_STEEPEST + 4, 0]], MUTED, 0.8)
     panel.mark(way[-1], "estimated", 8)
     panel.text(
-        way[-1] + [1.5, -0.03 * highest], f"{way[-1, 1]:.1f} px", IDEAL, anchor="lm", size=13
+        way[-1] + [-1.5 if tilt > 45 else 1.5, -0.03 * highest],
+        f"{way[-1, 1]:.1f} px",
+        IDEAL,
+        anchor="rm" if tilt > 45 else "lm",
+        size=13,
     )
     panel.grip("tilt", "the board's tilt", way[-1], 4)
     return panel

@@ -123,19 +123,20 @@ def valley_model() -> Model:
 
 
 def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
-    panel = paper.panel((360, 396), (-1.5, _MOST + 1), (5.4, -0.5), "RMS (px) after each step")
+    panel = paper.panel((360, 396), (-1.5, _MOST + 1), (5.4, -0.9), "RMS (px) after each step")
     panel.ticks(x=(5, 10, 15, 20, 25))
     for power in range(6):
         panel.line([[-2, power], [_MOST + 2, power]], "#DDDDDD", 0.5)
         panel.text([-1.3, power], f"{10**power:,}", anchor="lm", size=9)
-    for values, (name, colour, width), meaning, lift in zip(
-        rms, _WALKS, ("estimated", "lens"), (0.3, 0.3), strict=True
+    middles = [np.log10(max(values[len(values) // 2], 0.1)) for values in rms]
+    for values, (name, colour, width), meaning, high in zip(
+        rms, _WALKS, ("estimated", "lens"), middles, strict=True
     ):
         curve = np.column_stack([np.arange(len(values)), np.log10(np.clip(values, 0.1, 1e6))])
         panel.line(curve, colour, width)
         panel.mark(curve[-1], meaning, 7)
-        middle = curve[len(curve) // 2]
-        panel.text([max(middle[0], 5), middle[1] + lift], name, colour, anchor="lm", size=12)
+        beside = high + (0.3 if high == max(middles) else -0.35)
+        panel.text([max(len(curve) // 2, 5), beside], name, colour, anchor="lm", size=12)
     return panel
 
 

@@ -93,7 +93,9 @@ def draw_view_families(
             raise InputTypeError(f"results[{name!r}]: expected a list of calibrations")
         for run in runs:
             thing(run, f"results[{name!r}]", Calibration)
-    W, truth = points(W, "W", 3), length(truth, "truth")
+    W, truth = points(W, "W", 3).reshape(-1, 3), length(truth, "truth")
+    if not len(W):
+        raise CvnotesError("W: expected the points of the board")
     shape = {"width": 960, "height": 90 + 96 * len(results), "sharey": True}
     boards, left, right = axes = panels(3, **shape, width_ratios=(1.6, 1.3, 5))
     for y, runs in enumerate(results.values()):
