@@ -104,8 +104,8 @@ def fold_model() -> Model:
     about = (
         "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
         "horizon, with lines to the vanishing points of the square's sides and of its diagonals. "
-        "Beside it the plane of eye and horizon, where the eye is on a half circle over each pair; "
-        "and the focal length against v0, along the half circle of each photograph."
+        "Beside it the plane of both, with a half circle over each pair, and the focal length "
+        "against v0."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -200,8 +200,7 @@ def _side(paper: Paper, H: Array, circles: list[Circle], eye: Array) -> Panel:
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
     panel.polygons([[[-580, high], [960, high], [960, 700], [-580, 700]]], "#FFFFFF")
     _fold(panel, H, circles[0])
-    words = "from the side: height of the eye against v0 (px)"
-    _name(panel, np.array([-580, 640]), (6, 0), words, MUTED, "lm")
+    panel.text([-554, 640], "from the side: height of the eye against v0 (px)", size=13)
     for k in reversed(range(len(circles))):
         arc = circles[k].place(np.arange(0, 181, 2))
         panel.line(arc[:, 1:], _INKS[k], 2)
