@@ -103,8 +103,8 @@ def fold_model() -> Model:
     about = (
         "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
         "horizon, with lines to the vanishing points of the square's sides and of its diagonals. "
-        "Beside it the plane of eye and horizon, where the eye is on a half circle over each pair; "
-        "and the focal length against v0, along the half circle of each photograph."
+        "Beside it the plane of both, with a half circle over each pair, and the focal length "
+        "against v0."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -164,7 +164,7 @@ def _space(
     along = np.array([[-3000.0], [3000.0]]) * [up[1], -up[0]]
     panel.line(_flat(circles[0].foot + along), IDEAL, 0.8, dash=5)
     for circle, ink in reversed([*zip(circles, _INKS, strict=False)]):
-        arc = circle.place(np.arange(0, 181, 3))
+        arc = circle.place(np.arange(0, 181.0, 3))
         panel.line(on_sheet(arc), ink, 2)
         panel.line(on_sheet(arc[[0, -1]]), ink, 0.8)
     below = np.array([*eye[:2], 0])
@@ -199,10 +199,9 @@ def _side(paper: Paper, H: Array, circles: list[Circle], eye: Array) -> Panel:
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
     panel.polygons([[[-580, high], [960, high], [960, 700], [-580, 700]]], "#FFFFFF")
     _fold(panel, H, circles[0])
-    words = "from the side: height of the eye against v0 (px)"
-    _name(panel, np.array([-580, 640]), (6, 0), words, MUTED, "lm")
+    panel.text([-554, 640], "from the side: height of the eye against v0 (px)", size=13)
     for k in reversed(range(len(circles))):
-        arc = circles[k].place(np.arange(0, 181, 2))
+        arc = circles[k].place(np.arange(0, 181.0, 2))
         panel.line(arc[:, 1:], _INKS[k], 2)
         _name(panel, arc[45, 1:] * [1, 0], (90 * k - 45, -8), f"photograph {k + 1}", _INKS[k], "ma")
     panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
@@ -218,7 +217,7 @@ def _fold(panel: Panel, H: Array, circle: Circle) -> None:
     shift = np.array([190 - _SMALL * (s.min() + s.max()) / 2, 860])
     eye = shift + [0, _SMALL * circle.radius]
     panel.line(np.array([[-3000, 860], [3000, 860]]), IDEAL, 0.8, dash=5)
-    turn = np.radians(np.arange(0, 181, 3))
+    turn = np.radians(np.arange(0, 181.0, 3))
     for (_, meaning, colour), (a, b) in zip(_PAIRS, s.reshape(2, 2), strict=True):
         ring = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2
         panel.line(shift + _SMALL * ring, colour, 0.8)

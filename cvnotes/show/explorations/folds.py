@@ -15,7 +15,6 @@ from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _SPACE, _CLOSE, _CURVE = (450, 375), (180, 375), (210, 375)
-_WIDE = (450, 280)  # of the smaller ones on a narrow page
 _SHOWN = ((-2230, 2810), (-2563, 1637))  # x and y of the sheet: all half circles, for each k1
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
 _NEAR = 130  # px about the eye, that are shown enlarged
@@ -98,10 +97,9 @@ def _space(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
 
 
 def _close(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
-    size = _WIDE if paper.narrow else _CLOSE
-    reach = _NEAR * np.array(size) / min(size)
+    reach = _NEAR * np.array(_CLOSE) / _CLOSE[0]
     (left, top), (right, low) = on_sheet(tangle.eye) - reach, on_sheet(tangle.eye) + reach
-    panel = paper.panel(size, (left, right), (top, low), "enlarged about the camera")
+    panel = paper.panel(_CLOSE, (left, right), (top, low), "enlarged about the camera")
     _arcs(tangle, panel, k1, 1)
     panel.mark(on_sheet(tangle.eye), "ideal", 10)
     panel.line([[left + 12, low - 14], [left + 62, low - 14]], IDEAL, 2)
@@ -112,7 +110,7 @@ def _close(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
 def _curve(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
     """Draw how far the half circles miss the camera; the hand pulls along the curve."""
     x, y = (_LOWEST - 0.07, _HIGHEST + 0.03), (_MOST, -0.1 * _MOST)
-    panel = paper.panel(_WIDE if paper.narrow else _CURVE, x, y, "miss (RMS, px) against k1")
+    panel = paper.panel(_CURVE, x, y, "miss (RMS, px) against k1")
     panel.ticks(x=(-0.4, -0.2, 0), y=(20, 40, 60, 80), size=12)
     tried = np.arange(_LOWEST, _HIGHEST + 0.01, 0.025)
     way = np.array([[k, np.sqrt(np.mean(tangle.misses(float(k)) ** 2))] for k in tried])

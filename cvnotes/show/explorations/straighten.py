@@ -77,10 +77,7 @@ def _without(lens: Lens, photo: Drawn, sharpness: int) -> Drawn:
 
 def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
     panel = paper.panel(
-        _ROW,
-        (-0.5, _SIZE[0] - 0.5),
-        _BOW[::-1],
-        "the uppermost row: px above its line, against u",
+        _ROW, (-0.5, _SIZE[0] - 0.5), _BOW[::-1], "the uppermost row: px above its line, against u"
     )
     panel.ticks(y=(-5, 0, 5, 10), size=12)
     panel.line([[40, 0], [_SIZE[0], 0]], MUTED, 1)

@@ -96,8 +96,9 @@ def draw_view_families(
     W, truth = points(W, "W", 3).reshape(-1, 3), length(truth, "truth")
     if not len(W):
         raise CvnotesError("W: expected the points of the board")
-    shape = {"width": 960, "height": 90 + 96 * len(results), "sharey": True}
-    boards, left, right = axes = panels(3, **shape, width_ratios=(1.6, 1.3, 5))
+    n = len(results)
+    axes = panels(3, width=960, height=90 + 96 * n, sharey=True, width_ratios=(1.6, 1.3, 5))
+    boards, left, right = axes
     for y, runs in enumerate(results.values()):
         _frame(boards, runs[0], W, y)
         spread = y + np.linspace(-0.24, 0.24, len(runs))
@@ -109,8 +110,7 @@ def draw_view_families(
     right.set(xlabel="error of the focal length (%)")
     right.xaxis.set_major_formatter("{x:g}")
     boards.set(aspect="equal", anchor="E", xticks=[], title="all its boards")
-    boards.set(yticks=range(len(results)), yticklabels=list(results))
-    boards.set_ylim(len(results) - 0.5, -0.5)
+    boards.set(yticks=range(n), yticklabels=list(results), ylim=(n - 0.5, -0.5))
     boards.spines[:].set_visible(False)
     for ax in axes:
         ax.tick_params(which="both", length=0)
@@ -121,11 +121,11 @@ def _frame(ax: "Axes", run: Calibration, W: Any, y: float) -> None:
     """Draw the outlines of a calibration's boards in a picture's frame, 0.9 high, in the row y."""
     (u0, v0, _), (u1, v1, _) = W.min(0), W.max(0)
     edge = outlined(np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]]))
-    scale, middle = 0.9 / run.size[1], (np.array(run.size) - 1) / 2
-    w, h = scale * np.array(run.size) / 2
+    scale, half = 0.9 / run.size[1], np.array(run.size) / 2
+    w, h = scale * half
     ax.fill([-w, w, w, -w], [y - h, y - h, y + h, y + h], fc="#F4F4F0", ec=MUTED, lw=0.8)
     for pose in run.poses:
-        u, v = scale * (run.camera.moved(pose).project(edge) - middle).T
+        u, v = scale * (run.camera.moved(pose).project(edge) + 0.5 - half).T
         ax.fill(u, v + y, fc=(*rgb(LENS), 0.06), ec=LENS, lw=0.9)
 
 

@@ -17,10 +17,7 @@ if TYPE_CHECKING:
 
 
 def draw_vanishing(
-    segments: npt.ArrayLike,
-    v_h: npt.ArrayLike,
-    *,
-    ax: "Axes | None" = None,
+    segments: npt.ArrayLike, v_h: npt.ArrayLike, *, ax: "Axes | None" = None
 ) -> "Axes":
     """Draw segments and, dashed, the way on to their vanishing point; the axes grow to show it.
 
@@ -53,11 +50,7 @@ def draw_vanishing(
     return _widened(ax, v[None])
 
 
-def draw_altitudes(
-    v: npt.ArrayLike,
-    *,
-    ax: "Axes | None" = None,
-) -> "Axes":
+def draw_altitudes(v: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     """Draw the triangle of three vanishing points, its altitudes, and their orthocentre.
 
     For three orthogonal directions and square pixels that point, c, is the principal point, which
