@@ -512,7 +512,7 @@ def public_functions():
     """Give module and name of all functions and methods that take array_like arguments."""
     for path in sorted(PACKAGE.rglob("*.py")):
         parts = path.relative_to(PACKAGE).with_suffix("").parts
-        if parts[0] in ("learn", "commands") or parts[:2] == ("show", "explore"):
+        if parts[0] in ("learn", "commands") or parts[:2] == ("show", "explorations"):
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
         scopes = [("", tree.body)]
