@@ -698,6 +698,10 @@ def test_four_right_pairs_far_apart_find_all_the_others_and_one_wrong_one_hardly
         agree = numbers(MODELS["ransac"].drawing(draw=draw).sentence)[1]
         assert agree <= 6
     assert "0 agree" in MODELS["ransac"].drawing(draw=0).sentence
+    setting = next(one for one in MODELS["ransac"].settings if one.name == "wrong")
+    for wrong in np.arange(setting.low, setting.high + 1, setting.step).astype(int):
+        changed = np.linalg.norm(drawn_pairs(int(wrong))[0] - true, axis=1) > 3
+        assert changed.sum() == wrong  # one pair alone has none to change places with
     assert numbers(MODELS["ransac"].drawing(draw=0, wrong=0).sentence)[2] == 54
 
 

@@ -42,7 +42,7 @@ class _Found(NamedTuple):
 @lru_cache(maxsize=1)
 def _found() -> _Found:
     photo = render_scene(desk(_BOARD), _CAMERA, samples=16)
-    # The finder of boards is not there in a browser; what it finds is refined as here.
+    # On a page there is no OpenCV, and so no finder of boards: whole pixels are its start.
     m = refine_subpixel(photo.mean(axis=2), _CAMERA.project(_BOARD.points).round())
     bare = (
         Camera(_CAMERA.A, size=_CAMERA.size),

@@ -26,7 +26,7 @@ def ransac_model() -> Model:
     """Make the model of 54 pairs, some of which changed places."""
     settings = (
         Setting("draw", "draw", 0, _DRAWS, 1, 0, "0 believes all pairs; each other draws four"),
-        Setting("wrong", "wrong pairs", 0, 40, 1, 16, "how many of the 54 changed places"),
+        Setting("wrong", "wrong pairs", 0, 40, 2, 16, "how many of the 54 changed places"),
         Setting(
             "threshold", "threshold (px)", 0.3, 6, 0.1, 1.5, "how far a pair that agrees is off"
         ),

@@ -35,18 +35,19 @@ def ring_model() -> Model:
 
     def turned(values: Values, at: Array) -> Values:
         """Turn the line to a pair, by the shorter way from where it is."""
-        return {"angle": _nearest(np.degrees(np.arctan2(*at)), values["angle"], 180)}
+        return {"angle": _nearest(np.degrees(np.arctan2(*at)), values["angle"])}
 
     def walked(values: Values, at: Array) -> Values:
         """Turn it to half the angle at which a place of the ring stands."""
         twice = np.degrees(np.arctan2(at[0], 0.5 - at[1]))
-        return {"angle": _nearest(twice / 2, values["angle"], 180)}
+        return {"angle": _nearest(twice / 2, values["angle"])}
 
     return Model("ring", about, settings, draw, {"line": turned, "dot": walked})
 
 
-def _nearest(angle: float, to: float, turn: float) -> float:
-    return float(angle + turn * np.round((to - angle) / turn))
+def _nearest(angle: float, to: float) -> float:
+    """Return the angle of the same class that is nearest: a class comes back after half a turn."""
+    return float(angle + 180 * np.round((to - angle) / 180))
 
 
 def _draw_pairs(panel: Panel, way: Array, x: float, colour: str) -> None:
@@ -113,6 +114,7 @@ def _sentence(angle: float, x: float) -> str:
             f"At {angle:g}° the line is level, [1 0]: it never reaches w = 1. Its dot is the top "
             "of the ring, the same from both sides: the point at infinity."
         )
-    side = "" if abs(x) < 20 else " Soon it is level; beyond it waits −x on the other side."
     said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its dot at {2 * angle % 360:g}°."
-    return said + side
+    if abs(x) < 20:
+        return said
+    return f"{said} It is nearly level: just across the level line stands −x."

@@ -15,7 +15,7 @@ from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
 
 _CAMERA = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
-_GROUND, _EYE, _BOX, _TALLEST = 1.6, 2.8, 2.0, 8.0  # m: y of the ground, and three heights
+_EYE, _BOX, _TALLEST = 2.8, 2.0, 8.0  # m: heights of camera, yellow box and highest rod
 _EDGE = _CAMERA.project(blocks().vertices[[17, 19]])  # of the yellow box, from top to foot
 _UP, _LEVEL = _CAMERA.vanishing_point([0, 1, 0]), horizon(_CAMERA, [0, 1, 0])
 _HORIZON = float(-_LEVEL[2] / _LEVEL[1])  # its row: the camera is not rolled

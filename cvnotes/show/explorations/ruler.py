@@ -14,8 +14,9 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
 
 _CAMERA = Camera(course.camera().A)
 _LEFT, _TOP, _SIZE, _SHARP = 75, 152, (280, 210), 4  # px: what of the picture is shown, how finely
-_X, _GROUND, _UP, _FIRST, _GAP = -4.0, 1.95, -4.05, 15.0, 25.0  # m: the row of poles
-_FEET = _CAMERA.project([[_X, _GROUND, _FIRST + _GAP * i] for i in range(4)])
+# m: the row of poles, of which two are known
+_X, _GROUND, _UP, _FIRST, _GAP = -4.0, 1.95, -4.05, 15.0, 25.0
+_FEET = _CAMERA.project([[_X, _GROUND, _FIRST + _GAP * i] for i in range(2)])
 _END, _TOP_OF_FIRST = _CAMERA.A[:2, 2], _CAMERA.project([_X, _UP, _FIRST])
 _CLICK, _FARTHEST = 0.3, 112.0  # px by which a foot is missed; m that the plan shows
 
@@ -50,8 +51,8 @@ def ruler_model() -> Model:
         panel.image(photograph())
         panel.line([_FEET[0], _END], IDEAL, 1, dash=4)
         panel.line([foot, _TOP_OF_FIRST + part * (_END - _TOP_OF_FIRST)], ESTIMATED, 3)
-        panel.mark(_FEET[:2], "lens", 8)
-        for at, name in zip(_FEET[:2], "ab", strict=True):
+        panel.mark(_FEET, "lens", 8)
+        for at, name in zip(_FEET, "ab", strict=True):
             panel.text(at + [-7, 8], name, LENS, anchor="mm", size=14)
         panel.text(_END + [-8, -9], "∞", IDEAL, anchor="mm", size=14)
         panel.mark(_END, "ideal", 9)

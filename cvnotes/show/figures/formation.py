@@ -77,7 +77,7 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     states.append(("A", "the picture", camera.project(W)))
     axes = _places(len(states) - 4)
     for ax, frame in zip(axes, (camera.G, None), strict=False):
-        _from_above(ax, camera, M if frame is None else W, frame)
+        _draw_above(ax, camera, M if frame is None else W, frame)
     for ax, (*_, m), colour in zip(axes[2:-1], states[2:], (IDEAL, LENS), strict=False):
         _border(ax, camera)
         if m is not xy:  # where it would be without the lens
@@ -146,7 +146,7 @@ def _photograph(camera: Camera, thing: Scene, low: Array, high: Array) -> npt.ND
     return render_scene(join(thing, table), camera, samples=16)
 
 
-def _from_above(ax: "Axes", camera: Camera, X: Array, G: Array | None) -> None:
+def _draw_above(ax: "Axes", camera: Camera, X: Array, G: Array | None) -> None:
     """Draw box and camera from above, z upwards; in the world's frame if G is given."""
     from matplotlib.patches import Polygon
 

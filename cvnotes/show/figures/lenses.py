@@ -1,7 +1,7 @@
 """Figures of lenses: what they do to a grid, and how far they can be believed."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +13,6 @@ from cvnotes.show.style import IDEAL, LENS, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_CURVE: Any = {"width": 560, "height": 380}  # px on the page
-_HIGHEST = 3.2  # focal lengths from the middle, of the curves over an angle
 
 
 def draw_grid(
