@@ -629,7 +629,7 @@ def test_a_rod_is_as_high_in_the_picture_as_one_that_is_photographed():
     assert abs(at_height(np.array([140, 448]), 2.8)[1] - horizon) < 1e-6
 
 
-def test_a_block_stands_where_the_photographed_board_has_its_squares():
+def test_a_tower_stands_where_the_photographed_board_has_its_squares():
     tower, photo = MODELS["cube"], np.asarray(cube._found().photo).mean(axis=2)
     for x, y, lens in ((0, 0, 1), (200, 125, 1), (100, 50, 0)):
         drawing = tower.drawing(x=x, y=y, lens=lens, height=150)
