@@ -46,7 +46,6 @@ from cvnotes.show.figures import (
     quality,
     sensors,
     vanishing,
-    warps,
 )
 from cvnotes.show.figures import (
     images as figures,
@@ -181,19 +180,6 @@ FIGURES = [
         {"segments": (LINES, several(2)), "v_h": (np.array([900.0, 95, 1]), several(3))},
     ),
     figure(vanishing.draw_altitudes, {"v": (TRIANGLE, several(2))}),
-    # warps
-    figure(
-        warps.draw_forward,
-        {"image": (np.zeros((2, 2), np.uint8), PICTURE), "hits": (np.ones((2, 2)), SINGLE)},
-    ),
-    figure(
-        warps.draw_disparity,
-        {"point": (np.array([120.0, 400]), several(2)), "b": (100.0, ONE), "f": (150.0, ONE)},
-    ),
-    figure(
-        warps.draw_cell,
-        {"values": (np.array([0.0, 10, 20, 30]), several(4)), "du": (0.5, ONE), "dv": (0.25, ONE)},
-    ),
     # what 3-D figures are made of
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
     figure(

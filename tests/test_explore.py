@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
+from scipy import ndimage
 from scipy.signal import fftconvolve
 from scipy.special import j1
 
@@ -31,13 +32,23 @@ from cvnotes.camera import (
     xy_from_px,
 )
 from cvnotes.homography import dlt
-from cvnotes.pictures import course, desk, radiance, rails, render_scene, room
+from cvnotes.pictures import (
+    course,
+    desk,
+    gaussian_blur,
+    pixel_centres,
+    radiance,
+    rails,
+    render_scene,
+    room,
+)
 from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
 from cvnotes.show.explorations import cube
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
+from cvnotes.show.explorations.epipolar import cameras, seen_by_the_second
 from cvnotes.show.explorations.finding import Finding, rms
 from cvnotes.show.explorations.fold import (
     _SHOWN,
@@ -62,6 +73,7 @@ from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import window_at
 from cvnotes.targets import refine_subpixel
+from cvnotes.warping import backward_warp, zoom_map
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
 MARGIN, TITLE, WIDTH = 3, 22, 440
@@ -792,6 +804,54 @@ def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
     assert said[0][-2:] == [21, 91]
 
 
+def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
+    grey = np.array([60, 90, 110, 200])
+    for du, dv in ((0.35, 0.6), (0.8, 0.25), (0.5, 0.5)):
+        drawing = MODELS["between"].drawing(du=du, dv=dv)
+        value = ndimage.map_coordinates(grey.reshape(2, 2).astype(float), [[dv], [du]], order=1)[0]
+        assert numbers(drawing.sentence.partition("=")[2])[0] == pytest.approx(value, abs=0.051)
+        # The square between the centres begins 0.36 of 1.72 from the border of its panel.
+        low, high = round(330 * 0.36 / 1.72), round(330 * 1.36 / 1.72)
+        square = drawing.picture[TITLE + low : TITLE + high, MARGIN + low : MARGIN + high, 0]
+        weights = [(1 - du) * (1 - dv), du * (1 - dv), (1 - du) * dv, du * dv]
+        # Lines, words and the pixels themselves cover some of it.
+        seen = np.array([(square == g).mean() for g in grey])
+        assert np.abs(seen / seen.sum() - weights).max() < 0.05
+
+
+def test_shrunken_rings_are_those_of_the_library_blurred_or_not():
+    x, y = pixel_centres((240, 240)).transpose(2, 0, 1) - 119.5
+    old = 127.5 + 127.5 * np.cos(0.0036 * np.pi * (x**2 + y**2))
+    for blur in (0, 0.5):
+        drawing = MODELS["rings"].drawing(shrink=3, blur=blur, place=0)
+        new = backward_warp(gaussian_blur(old, 3 * blur), zoom_map(3), size=(80, 80))
+        left = MARGIN + 366
+        shown = drawing.picture[TITLE : TITLE + 360, left : left + 360, 0].astype(float)
+        at = np.rint(4.5 * (np.arange(80) + 0.5) - 0.5).astype(int)
+        off = np.abs(shown[np.ix_(at, at)] - new)[10:-10, 10:-10]
+        assert np.quantile(off, 0.95) < 5  # every eighth grey level is drawn
+    far = numbers(MODELS["rings"].drawing(shrink=3, place=92).sentence)
+    assert far[:2] == [0.99, 0.01]  # rings: once around, from one new pixel to the next
+
+
+def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_right():
+    first, second = cameras()
+    for W in ([1900, -500, 7600], [-500, 1600, 6000], [400, -800, 9990]):
+        m, partner = first.project(W), second.project(W)
+        line = seen_by_the_second(m, np.linspace(2000, 20_000, 50))
+        along = line[-1] - line[0]
+        off = (partner - line[0]) @ [-along[1], along[0]] / np.linalg.norm(along)
+        assert abs(off) < 1e-9
+        assert np.allclose(seen_by_the_second(m, np.array([W[2]])), partner)
+    shown = MODELS["epipolar"].drawing
+    for (u, v), depth in {(449, 205): 7.6, (320, 400): 5.18, (389, 301): 7.4}.items():
+        said = shown(u=u, v=v).sentence
+        assert "agree best" in said
+        assert numbers(said)[-1] == pytest.approx(depth, rel=0.03)
+    assert "nothing here tells" in shown(u=230, v=230).sentence  # on the plain wall
+    assert numbers(shown(u=449, v=205, depth=7600).sentence)[1] < 2
+
+
 def test_what_lies_at_the_chosen_depth_has_no_fringe_and_all_else_has():
     left, right = pair()
     for W in ([-900, 0, 10_000], [2400, 600, 7600]):  # on the wall behind, on the cupboard
@@ -1153,6 +1213,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "folds": {"k1": -0.15},
     "columns": {"amount": 0.7, "free": 1},
     "ransac": {"draw": 20},
+    "rings": {"place": 50},
 }
 ON_A_WAY = {  # along a curve, by its x
     ("finding", "step"),
@@ -1162,6 +1223,8 @@ ON_A_WAY = {  # along a curve, by its x
     ("pinhole", "hole"),
     ("ruler", "foot"),
     ("ransac", "draw"),
+    ("rings", "place"),
+    ("epipolar", "depth"),
 }
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {

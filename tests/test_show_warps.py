@@ -8,9 +8,7 @@ from cvnotes.calibration import calibrate, prediction_std
 from cvnotes.camera import Lens
 from cvnotes.pictures import course
 from cvnotes.show import (
-    draw_cell,
     draw_clouds,
-    draw_disparity,
     draw_displacement,
     draw_prediction_error,
     draw_wall,
@@ -22,31 +20,6 @@ def test_a_wall_fills_rows_from_the_left_with_every_fourth_pixel():
     wall = draw_wall(shades, columns=2).images[0].get_array()
     assert wall.shape == (8, 12)  # two rows of 2 px, two columns of 4 px, and a gap of 4 px
     assert [wall[0, 0], wall[0, 8], wall[6, 0], wall[6, 8]] == [10, 20, 30, 255]
-
-
-def test_a_cell_interpolates_along_u_first():
-    ax = draw_cell([0, 10, 20, 40], 0.5, 0.25)
-    assert [t.get_text() for t in ax.texts[-3:]] == ["$I_a$ = 5", "$I_b$ = 30", "I = 11.25"]
-
-
-def test_the_area_opposite_to_a_pixel_is_its_weight_and_an_unsolved_cell_tells_nothing():
-    ax = draw_cell([0, 10, 20, 40], 0.25, 0.5, areas=True)
-    first = ax.patches[0]  # of the pixel at the top left: the rectangle at the bottom right
-    assert (first.get_xy(), first.get_width(), first.get_height()) == ((0.25, 0.5), 0.75, 0.5)
-    assert sum(p.get_width() * p.get_height() for p in ax.patches) == 1
-    unsolved = draw_cell([0, 10, 20, 40], 0.25, 0.5, solved=False)
-    assert [text.get_text() for text in unsolved.texts] == [
-        "$I_1$ = 0", "$I_2$ = 10", "$I_3$ = 20", "$I_4$ = 40",
-    ]  # fmt: skip
-
-
-def test_the_triangle_of_the_disparity_is_similar_to_that_of_the_base_line():
-    ax = draw_disparity([120, 400], 100, 150)
-    world, small = (patch.get_xy() for patch in ax.patches[:2])
-    d = small[2, 0] - small[1, 0]
-    assert d / 150 == pytest.approx((world[1, 0] - world[0, 0]) / 400)
-    # u_left − u_right of the point, each in its own picture
-    assert d == pytest.approx(120 * 150 / 400 - 20 * 150 / 400)
 
 
 def test_each_method_has_its_cloud_and_its_rms():

@@ -19,7 +19,6 @@ from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
 from cvnotes.show.figures.sensors import draw_half_pixels, draw_pixels, draw_sensor
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
-from cvnotes.show.figures.warps import draw_cell, draw_disparity, draw_forward
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
@@ -89,9 +88,6 @@ __all__ = [
     "draw_arrow",
     "draw_cube",
     # chapter 8: warps
-    "draw_forward",
-    "draw_cell",
-    "draw_disparity",
     # in space
     "draw_scene",
     "build_scene",

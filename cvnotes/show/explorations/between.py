@@ -1,0 +1,118 @@
+"""Explore what lies between four pixels: each weighs the area of the rectangle opposite to it."""
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS
+from cvnotes.warping import interpolate
+
+_GREY = np.array([60.0, 90, 110, 200])  # I1 to I4: the upper two pixels, then the lower two
+_NAMES = "I₁", "I₂", "I₃", "I₄"
+_AT = np.array([[0, 0], [1, 0], [0, 1], [1, 1]])
+_REACH = 0.36  # px beyond the centres
+_PIXEL = 0.09  # px from the centre to the side of the little squares that stand for the pixels
+_FINE = 120  # the surface is drawn in so many steps
+_ROOM = 0.05  # of the square: smaller areas have no room for words
+
+
+def between_model() -> Model:
+    """Make the model of a place between four pixels."""
+    settings = (
+        Setting("du", "Δu", 0, 1, 0.05, 0.35, "how far right of I₁, in pixels"),
+        Setting("dv", "Δv", 0, 1, 0.05, 0.6, "how far below I₁, in pixels"),
+    )
+    about = (
+        "Four pixels and a place between their centres, which cuts the square between them into "
+        "four rectangles; the same as a smooth surface; and the grey values it is mixed of."
+    )
+    drags = {"place": lambda _, at: {"du": float(at[0]), "dv": float(at[1])}}
+    return Model("between", about, settings, _draw, drags)
+
+
+def weights(du: float, dv: float) -> Array:
+    """Return the weights (4,) of the pixels: the areas opposite to them."""
+    return np.array([(1 - du) * (1 - dv), du * (1 - dv), (1 - du) * dv, du * dv])
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    du, dv = values["du"], values["dv"]
+    place, weight = np.array([du, dv]), weights(du, dv)
+    panels = _areas(paper, place, weight), _surface(paper, place), _mix(paper, weight)
+    terms = " + ".join(f"{w:.2f} · {g:g}" for w, g in zip(weight, _GREY, strict=True))
+    nearest = _GREY[2 * round(dv) + round(du)]
+    return Drawing(
+        paper.join(panels),
+        f"{terms} = {weight @ _GREY:.1f}. The nearest pixel alone says {nearest:g}.",
+    )
+
+
+def _cell(paper: Paper, title: str) -> Panel:
+    """Make a panel with the square between four centres."""
+    return paper.panel((330, 330), (-_REACH, 1 + _REACH), (-_REACH, 1 + _REACH), title)
+
+
+def _box(low: npt.ArrayLike, high: npt.ArrayLike) -> Array:
+    """Return the corners (1, 4, 2) of an upright rectangle."""
+    (u0, v0), (u1, v1) = np.asarray(low), np.asarray(high)
+    return np.array([[[u0, v0], [u1, v0], [u1, v1], [u0, v1]]])
+
+
+def _areas(paper: Paper, place: Array, weight: Array) -> Panel:
+    """Draw the square in four rectangles, each as grey as the pixel that it weighs."""
+    panel = _cell(paper, "each pixel weighs the opposite area")
+    for at, grey in zip(_AT, _GREY, strict=True):
+        panel.polygons(_box(*np.sort([1 - at, place], axis=0)), _ink(grey))
+    for at, grey in zip(_AT, _GREY, strict=True):
+        panel.polygons(_box(at - _PIXEL, at + _PIXEL), _ink(grey))
+    for ends in (_box([0, 0], [1, 1])[0], *_box([0, 0], place), *_box(place, [1, 1])):
+        panel.line([*ends, ends[0]], ESTIMATED, 1.5)
+    for at, name, grey, w in zip(_AT, _NAMES, _GREY, weight, strict=True):
+        panel.text(at + (at - 0.5) * [0, 0.55], f"{name} = {grey:g}", LENS, anchor="mm", size=13)
+        if w >= _ROOM:
+            middle = (1 - at + place) / 2
+            panel.text(middle, f"{name} × {w:.2f}", IDEAL, anchor="mm", size=12)
+    panel.mark(place, "estimated", 8)
+    panel.grip("place", "a place between four pixels", place, 8)
+    return panel
+
+
+def _surface(paper: Paper, place: Array) -> Panel:
+    """Draw every value between the pixels, and the way: twice along u, once along v."""
+    panel = _cell(paper, "twice along u, once along v")
+    steps = np.linspace(-_REACH, 1 + _REACH, _FINE).clip(0, 1)
+    between = interpolate(_GREY.reshape(2, 2), np.stack(np.meshgrid(steps, steps), axis=-1))
+    panel.image(np.rint(between).astype(np.uint8))
+    du, dv = place
+    above, below = _GREY[[0, 2]] + (_GREY[[1, 3]] - _GREY[[0, 2]]) * du
+    panel.line([[du, 0], [du, 1]], ESTIMATED, 2)
+    for v, name, value in ((0, "a", above), (1, "b", below)):
+        panel.line([[0, v], [1, v]], LENS, 2)
+        panel.mark([du, v], "estimated", 6)
+        words = f"I{name} = {value:.1f}"
+        panel.text([du, v + 0.36 * (v - 0.5)], words, ESTIMATED, anchor="mm", size=13)
+    panel.mark(_AT, "lens", 6)
+    panel.mark(place, "estimated", 8)
+    aside, anchor = (0.07, "lm") if du < 0.5 else (-0.07, "rm")
+    value = above + (below - above) * dv
+    panel.text([du + aside, dv], f"I = {value:.1f}", ESTIMATED, anchor=anchor, size=13)
+    return panel
+
+
+def _mix(paper: Paper, weight: Array) -> Panel:
+    """Draw the four grey values as high as they weigh, beside what they mix to."""
+    panel = paper.panel((180, 330), (0, 3), (0, 1), "the mix")
+    feet = np.cumsum(weight)
+    for foot, w, grey, name in zip(feet, weight, _GREY, _NAMES, strict=True):
+        panel.polygons(_box([0, foot - w], [2, foot]), _ink(grey))
+        if w >= _ROOM:
+            panel.text([1, foot - w / 2], f"{name} × {w:.2f}", IDEAL, anchor="mm", size=12)
+    panel.polygons(_box([2, 0], [3, 1]), _ink(weight @ _GREY))
+    panel.text([2.5, 0.5], f"{weight @ _GREY:.0f}", ESTIMATED, anchor="mm", size=13)
+    return panel
+
+
+def _ink(grey: float) -> str:
+    return "#" + 3 * f"{round(grey):02X}"

@@ -1,0 +1,128 @@
+"""Explore the epipolar line: a pixel of one picture, and where the other may show the same."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array, Image, luma
+from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
+from cvnotes.pictures import radiance, room
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, LENS, MUTED
+from cvnotes.warping import interpolate
+
+_SIZE, _SHOWN = (640, 480), (340, 255)  # px
+_NEAREST, _FARTHEST = 2000, 20_000  # mm
+_PATCH = 9  # px from the middle of a patch to its border
+_AROUND = np.stack(np.meshgrid(*2 * [np.arange(-_PATCH, _PATCH + 1.0)]), axis=-1)
+_ALIKE = 0.5  # grey levels: so little more is as good as the best
+_TRIED = 1 / np.linspace(1 / _NEAREST, 1 / _FARTHEST, 240)  # mm: in even steps along the line
+
+
+def epipolar_model() -> Model:
+    """Make the model of the room by the two cameras of chapter 8."""
+    settings = (
+        Setting("u", "u (px)", 100, 620, 1, 449, "a pixel of the first picture"),
+        Setting("v", "v (px)", 30, 450, 1, 205, "and its row"),
+        Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 4000, "how far away it may be"),
+    )
+    about = (
+        "Two pictures of a room; a pixel of the first, the line on which the second shows what "
+        "may lie behind this pixel, and how well a patch around both agrees, depth by depth."
+    )
+    drags = {
+        "pixel": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
+        "depth": lambda _, at: {"depth": 1000 / max(float(at[0]), 1e-3)},
+    }
+    return Model("epipolar", about, settings, _draw, drags)
+
+
+def cameras() -> tuple[Camera, Camera]:
+    """Return the two cameras: the second 200 mm to the right, and turned a little."""
+    first = Camera(intrinsics(520, 520, 319.5, 239.5), size=_SIZE)
+    turn = rotation_from_vector([0.02, -0.06, 0.03])
+    return first, first.moved(pose(turn, [-200, 10, 15]))
+
+
+@lru_cache(maxsize=1)
+def photographs() -> tuple[Image, Image]:
+    """Return what both see, in colours."""
+    first, second = (radiance(room(), camera, samples=4) for camera in cameras())
+    return first, second
+
+
+@lru_cache(maxsize=1)
+def in_grey() -> tuple[Image, Image]:
+    """Return the same in grey levels, which are compared."""
+    first, second = map(luma, photographs())
+    return first, second
+
+
+def seen_by_the_second(m: Array, depth: Array) -> Array:
+    """Return where (n, 2) the second camera sees what lies in pixel m of the first, by depth."""
+    first, second = cameras()
+    return second.project(np.asarray(depth)[:, None] * [*first.ideal(m), 1])
+
+
+def differences(m: Array, places: Array) -> Array:
+    """Return how much (n,) the patches around places (n, 2) differ from the one around m."""
+    first, second = in_grey()
+    apart = interpolate(second, places[:, None, None] + _AROUND) - interpolate(first, m + _AROUND)
+    return np.asarray(np.abs(apart).mean(axis=(1, 2)))
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    m, depth = np.array([values["u"], values["v"]]), values["depth"]
+    line, place = seen_by_the_second(m, _TRIED), seen_by_the_second(m, np.array([depth]))[0]
+    pictures, patches = [], []
+    for photo, at, name in zip(photographs(), (m, place), ("first", "second"), strict=True):
+        picture = paper.picture_panel(_SHOWN, _SIZE, f"the {name} camera")
+        picture.image(photo.clip(0, 255).astype(np.uint8))
+        pictures.append(picture)
+        patches.append(_patch(paper, photo, at, f"{name}, enlarged"))
+    left, right = pictures
+    left.mark(m, "ideal", 9)
+    left.grip("pixel", "a pixel of the first picture", m, 4)
+    right.line(line[0] + np.array([[-30], [30]]) * (line[-1] - line[0]), LENS, 1, dash=6)
+    right.line(line, ESTIMATED, 2.5)
+    right.mark(place, "estimated", 8)
+    cost, (now,) = differences(m, line), differences(m, place[None])
+    rows = (left, right), (*patches, _curve(paper, cost, depth, now))
+    return Drawing(paper.join(*rows), _sentence(depth, now, cost))
+
+
+def _patch(paper: Paper, photo: Image, at: Array, title: str) -> Panel:
+    """Draw what one camera shows around a place, pixel by pixel."""
+    panel = paper.panel(
+        (164, 164), (-_PATCH - 0.5, _PATCH + 0.5), (-_PATCH - 0.5, _PATCH + 0.5), title
+    )
+    panel.image(
+        np.rint(interpolate(photo, at + _AROUND)).clip(0, 255).astype(np.uint8), smooth=False
+    )
+    panel.mark([0, 0], "ideal", 7)
+    return panel
+
+
+def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
+    """Draw by how much both patches differ, for each depth; equal steps are equal disparities."""
+    top = max(20.0, 1.15 * float(cost.max()))
+    panel = paper.panel(
+        (346, 164), (1000 / _NEAREST + 0.02, 1000 / _FARTHEST - 0.02), (top, -0.2 * top),
+        "difference of both, by depth: pull the cross",
+    )  # fmt: skip
+    for metres in (2, 3, 4, 5, 7, 10, 20):
+        panel.line([[1 / metres, 0], [1 / metres, top]], MUTED, 0.5)
+        panel.text([1 / metres, -0.1 * top], f"{metres} m", anchor="mm", size=10)
+    panel.line(np.column_stack([1000 / _TRIED, cost]), LENS, 2)
+    panel.mark([1000 / depth, now], "estimated", 7)
+    panel.grip("depth", "how far away it may be", [1000 / depth, now], 4)
+    return panel
+
+
+def _sentence(depth: float, now: float, cost: Array) -> str:
+    said = f"At {depth / 1000:.2f} m the two patches differ by {now:.1f} grey levels. "
+    low = _TRIED[cost < cost.min() + _ALIKE]
+    if low.max() > 1.5 * low.min():
+        return f"{said}So they do nearly everywhere: nothing here tells one depth from another."
+    return f"{said}They agree best at {_TRIED[cost.argmin()] / 1000:.2f} m."

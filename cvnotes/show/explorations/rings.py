@@ -1,0 +1,89 @@
+"""Explore aliasing: rings, finer and finer outwards, are shrunk, as they are or blurred before."""
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Paper
+from cvnotes.show.style import ESTIMATED, MUTED
+
+_SIZE, _FINENESS = 240, 0.0036  # px, and rings per px for each px from the middle
+_MIDDLE = (_SIZE - 1) / 2
+_AROUND = 16  # px that the profile shows to either side
+
+
+def rings_model() -> Model:
+    """Make the model of a picture of rings, shrunk."""
+    settings = (
+        Setting("shrink", "shrunk by", 1, 6, 0.05, 3, "how many old pixels a new one is wide"),
+        Setting("blur", "blur σ (new px)", 0, 1, 0.05, 0, "blurred first: 0.5 is the usual cure"),
+        Setting("place", "look at (px)", 0, 104, 1, 90, "how far right of the middle"),
+    )
+    about = (
+        "Rings, finer and finer outwards; the same picture shrunk; and a piece of one row of both: "
+        "the grey values that were there, and those that the new pixels take."
+    )
+    drags = {"place": lambda _, at: {"place": float(at[0]) - _MIDDLE}}
+    return Model("rings", about, settings, _draw, drags)
+
+
+def rings(x: Array, y: Array) -> Array:
+    """Return the grey value x px right of the middle and y px below it."""
+    return np.asarray(127.5 + 127.5 * np.cos(_FINENESS * np.pi * (x**2 + y**2)))
+
+
+def taken(shrink: float, blur: float) -> Array:
+    """Return how much of each old pixel (240,) a new one takes, along a row or a column."""
+    old = np.arange(_SIZE, dtype=np.float64)
+    new = shrink * (np.arange(int(_SIZE / shrink)) + 0.5) - 0.5
+    bilinear: Array = np.maximum(1 - np.abs(new[:, None] - old), 0)
+    if not blur:
+        return bilinear
+    bell = np.exp(-0.5 * ((old[:, None] - old) / (blur * shrink)) ** 2)
+    return np.asarray(bilinear @ (bell / bell.sum(axis=1, keepdims=True)))
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    shrink, blur, place = values["shrink"], values["blur"], values["place"]
+    line = np.arange(_SIZE) - _MIDDLE
+    weights, old = taken(shrink, blur), rings(*np.meshgrid(line, line))
+    new = weights @ old @ weights.T
+    row = len(new) // 2
+    y = shrink * (row + 0.5) - 0.5 - _MIDDLE
+    left = paper.picture_panel((360, 360), (_SIZE, _SIZE), f"{_SIZE} × {_SIZE} pixels")
+    left.image((8 * np.rint(old / 8)).clip(0, 255).astype(np.uint8))
+    left.grip("place", "where to look along the row", [_MIDDLE + place, _MIDDLE], 2)
+    right = paper.panel(
+        (360, 360), (-0.5, shrink * len(new) - 0.5), (-0.5, shrink * len(new) - 0.5),
+        f"the same in {len(new)} × {len(new)} pixels",
+    )  # fmt: skip
+    right.image((8 * np.rint(new / 8)).clip(0, 255).astype(np.uint8), smooth=False)
+    low, high = _MIDDLE + place + np.array([-_AROUND, _AROUND])
+    for panel in (left, right):
+        around = np.array([[low, -7], [high, -7], [high, 7], [low, 7], [low, -7]])
+        panel.line(around + [0, _MIDDLE + y], ESTIMATED, 2)
+    at = np.column_stack([shrink * (np.arange(len(new)) + 0.5) - 0.5, new[row]])
+    u = np.linspace(low, high, 600)
+    there, below = np.column_stack([u, rings(u - _MIDDLE, np.full_like(u, y))]), []
+    for curve, colour, title in (
+        (there, MUTED, "the rings there, and what the new pixels take"),
+        (at, ESTIMATED, "the new pixels alone"),
+    ):
+        panel = paper.panel((360, 130), (low, high), (285, -30), title)
+        panel.line(curve, colour, 2)
+        panel.mark(at[(at[:, 0] > low) & (at[:, 0] < high)], "estimated", 5)
+        below.append(panel)
+    return Drawing(
+        paper.join((left, right), tuple(below)), _sentence(_FINENESS * place * shrink, blur)
+    )
+
+
+def _sentence(rate: float, blur: float) -> str:
+    """Say how many rings pass from one new pixel to the next, and what these make of them."""
+    said = f"There {rate:.2f} rings pass from one new pixel to the next"
+    if rate <= 0.5:
+        said = f"{said}: at most one half, so that the new pixels can show them."
+    else:
+        said = f"{said}. The new pixels cannot tell that from {abs(rate - round(rate)):.2f}."
+    left = np.exp(-2 * (np.pi * rate * blur) ** 2)
+    return f"{said} The blur has left {left:.0%} of their contrast." if blur else said
