@@ -59,12 +59,12 @@ from cvnotes.show.explorations.fold import (
     vanishing_points,
 )
 from cvnotes.show.explorations.folds import _SHOWN as FOLDS_SHOWN
-from cvnotes.show.explorations.lens import polynomial
+from cvnotes.show.explorations.lens import first_to_fold, polynomial
 from cvnotes.show.explorations.lettering import LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
 from cvnotes.show.explorations.page import asked
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.pinhole import behind_a_hole
+from cvnotes.show.explorations.pinhole import spread_out
 from cvnotes.show.explorations.ransac import drawn_pairs
 from cvnotes.show.explorations.rectification import lines_from
 from cvnotes.show.explorations.rod import at_height
@@ -157,12 +157,18 @@ def test_thirty_random_settings_each_give_a_picture_of_the_same_size(name):
 
 @each_model
 def test_every_slider_moves_something(name):
+    """From the start; or from where the others stand at an end: some only act with another."""
     model = MODELS[name]
-    start = model.picture()
+    starts = [model.values(), {s.name: s.high for s in model.settings}]
     for s in model.settings:
         by = max(s.step, (s.high - s.low) / 8)
-        moved = min(s.value + by, s.high) if s.value < s.high else s.value - by
-        assert not np.array_equal(model.picture(**{s.name: moved}), start), s.name
+        for start in starts:
+            value = start[s.name]
+            moved = {**start, s.name: min(value + by, s.high) if value < s.high else value - by}
+            if not np.array_equal(model.picture(**moved), model.picture(**start)):
+                break
+        else:
+            raise AssertionError(s.name)
 
 
 @each_model
@@ -804,6 +810,32 @@ def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
     assert said[0][-2:] == [21, 91]
 
 
+def test_newton_and_division_need_as_many_rounds_as_they_are_said_to():
+    for r in (0.6, 0.8, 0.86, 0.91):
+        drawing = MODELS["newton"].drawing(r=r)
+        level = r - 0.4 * r**3
+        rounds, exact = [], min(x for x in np.roots([-0.4, 0, 1, -level]) if x > 0)
+        for step in (
+            lambda x, level=level: level / (1 - 0.4 * x**2),
+            lambda x, level=level: (level - 0.8 * x**3) / (1 - 1.2 * x**2),  # of x − f/f'
+        ):
+            x, n = level, 0
+            while abs(x - exact) * 800 >= 0.1:
+                x, n = step(x), n + 1
+            rounds.append(n)
+        assert numbers(drawing.sentence)[-2:] == rounds
+
+
+@pytest.mark.parametrize("p", [{"p1": 0.04}, {"p2": -0.05}, {"p1": 0.03, "p2": 0.04}])
+def test_the_lenss_curve_has_its_top_where_the_lens_folds(p):
+    drawing = MODELS["lens"].drawing(k1=-0.9, k2=0, k3=0, **p)
+    end = Lens(k=(-0.9,), p=(p.get("p1", 0), p.get("p2", 0))).max_radius
+    r = np.linspace(0, 1.3, 2000)
+    seen = first_to_fold(Lens(k=(-0.9,), p=(p.get("p1", 0), p.get("p2", 0))), r)
+    assert abs(r[seen.argmax()] - end) < 2e-3
+    assert f"max_radius = {end:.3f}" in drawing.sentence
+
+
 def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
     grey = np.array([60, 90, 110, 200])
     for du, dv in ((0.35, 0.6), (0.8, 0.25), (0.5, 0.5)):
@@ -984,15 +1016,31 @@ def test_each_shadow_lies_where_the_renderer_throws_it():
     assert (thrown & strip).sum() > 0.7 * (thrown | strip).sum()  # the rest: on rails, sleepers
 
 
-def test_the_best_hole_is_where_shadow_and_diffraction_are_equal():
+def test_the_best_hole_is_where_its_patch_and_diffraction_are_equal():
     model = MODELS["pinhole"]
     widths = [grip_of(model.drawing(hole=d), "hole").at[1] for d in np.arange(0.06, 0.09, 0.001)]
     best = np.sqrt(2.44 * 0.00055 * 4)  # mm: the least of d + a / d
     assert abs(0.06 + 0.001 * np.argmin(widths) - best) <= 0.001
-    assert "its shadow is 15 px wide, and diffraction adds 15 px" in (
+    assert "its patch of light is 15 px wide, and diffraction adds 15 px" in (
         model.drawing(hole=0.073).sentence
     )
-    assert model.dragged("hole", (0.1, 50), lens=1) == {"hole": 0.1, "lens": 0}
+    assert model.dragged("hole", (0.1, 50), lens=1) == {"hole": 0.1, "lens": 0, "focus": 4}
+
+
+def test_a_lens_focused_near_by_blurs_the_whole_room():
+    shown = MODELS["pinhole"].drawing
+    for focus in (0.2, 1, 4):
+        f = 1 / (1 / 4 + 1 / (1000 * focus))  # mm: of the lens, by its law, for 4 mm to the sensor
+        image = [1 / (1 / f - 1 / s) for s in (2500, 10_000)]  # mm: where these depths are sharp
+        discs = [2 * abs(4 - i) / i / 0.005 for i in image]  # px: similar triangles
+        said = numbers(shown(lens=1, focus=focus).sentence)
+        assert said[-2] == pytest.approx(max(discs), abs=0.051)
+        assert said[-1] == pytest.approx(2.44 * 0.00055 * 4 / 2 / 0.005, abs=0.05)
+    near, far = (
+        shown(lens=1, focus=s).picture[TITLE + 9 : 340, 9:430].astype(float) for s in (0.2, 4)
+    )
+    steepest = [np.abs(np.diff(picture, axis=1)).max() for picture in (near, far)]
+    assert steepest[0] < 0.5 * steepest[1]
 
 
 @pytest.mark.parametrize(("fov", "right", "up"), [(60, 0, 0), (70, 40, -15), (120, -10, 5)])
@@ -1020,7 +1068,7 @@ def test_the_outline_of_a_view_grows_towards_180_degrees_and_never_reaches_them(
 
 
 @pytest.mark.parametrize("d", [0.02, 0.073, 0.4])
-def test_behind_a_hole_a_point_is_its_shadow_spread_by_airys_disc(d):
+def test_behind_a_hole_a_point_is_its_patch_spread_by_airys_disc(d):
     """The same in space, as a convolution, where the model works with waves."""
     r = np.hypot(*np.mgrid[-160:161, -160:161]) * 0.005 * 640 / 440 + 1e-9  # mm on the sensor
     q = np.pi * d * r / (0.00055 * 4)
@@ -1028,7 +1076,7 @@ def test_behind_a_hole_a_point_is_its_shadow_spread_by_airys_disc(d):
     scene = np.zeros((330, 440))
     scene[120:210, 150:290] = 255
     framed = np.pad(scene, 96)[..., None].repeat(3, axis=-1)
-    seen = behind_a_hole(d, np.fft.rfft2(framed, axes=(0, 1)))
+    seen = spread_out(d, d, np.fft.rfft2(framed, axes=(0, 1)))
     expected = fftconvolve(scene, blot / blot.sum(), "same")
     assert np.abs(seen[..., 0] - expected).max() < 6
     assert np.sqrt(np.mean((seen[..., 0] - expected) ** 2)) < 1.5  # of rings that are cut off
@@ -1214,6 +1262,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "columns": {"amount": 0.7, "free": 1},
     "ransac": {"draw": 20},
     "rings": {"place": 50},
+    ("pinhole", "focus"): {"lens": 1, "focus": 1},
 }
 ON_A_WAY = {  # along a curve, by its x
     ("finding", "step"),
@@ -1221,9 +1270,11 @@ ON_A_WAY = {  # along a curve, by its x
     ("fold", "fold"),
     ("folds", "k1"),
     ("pinhole", "hole"),
+    ("pinhole", "focus"),
     ("ruler", "foot"),
     ("ransac", "draw"),
     ("rings", "place"),
+    ("newton", "level"),
     ("epipolar", "depth"),
 }
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "dot": (0, 0.5)}  # its length stays
@@ -1246,7 +1297,7 @@ def grip_of(drawing, name):
 @pytest.mark.parametrize("by", [(40, 0), (0, -30), (-25, 20)])
 def test_what_is_pulled_follows_the_hand(name, held, by):
     model = MODELS[name]
-    start = model.values(**FREE_TO_MOVE.get(name, {}))
+    start = model.values(**FREE_TO_MOVE.get((name, held), FREE_TO_MOVE.get(name, {})))
     before = grip_of(model.drawing(**start), held)
     wanted = np.array(before.at) + np.array(by) * before.unit
     after = grip_of(model.drawing(**model.dragged(held, tuple(wanted), **start)), held)

@@ -21,8 +21,8 @@ _MODELS = ("projection", "camera", "lens", "homography", "noise", "warp", "recti
 # or of what the course itself has photographed or thought of.
 _STORIES = (
     "straighten", "ring", "ruler", "rod", "shadows", "triangle", "pinhole", "dolly", "fisheye",
-    "votes", "valley", "ransac", "fold", "folds", "finding", "columns", "between", "rings",
-    "epipolar", "depth", "cube",
+    "newton", "votes", "valley", "ransac", "fold", "folds", "finding", "columns", "between",
+    "rings", "epipolar", "depth", "cube",
 )  # fmt: skip
 NAMES = (*_MODELS, *_STORIES)
 

@@ -26,8 +26,8 @@ _OUTSIDE = [np.stack([a, b, 2 * b, 2 * a]) for a, b in pairwise(_CORNERS)]
 def dolly_model() -> Model:
     """Make the model of the room from near and far, with a lens that makes up for the distance."""
     settings = (
-        Setting("distance", "distance (mm)", 1500, 7000, 250, 4500, "from camera to red box"),
-        Setting("keep", "keep the lens", 0, 1, 1, 0, f"α stays at {_KEPT} px"),
+        Setting("distance", "distance (mm)", 1500, 7000, 250, 3000, "from camera to red box"),
+        Setting("keep", "keep the lens", 0, 1, 1, 0, f"α stays at {_KEPT} px, as at 3 m"),
     )
     about = (
         "A red box in a room, and how wide the box and the blackboard behind it are in the "

@@ -44,8 +44,8 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
 
     def pulled(values: Values, at: Array) -> Values:
         """Choose the k1 whose curve goes through a height over the radius of the grip."""
-        r2 = _HELD**2
-        rest = 1 + values["k2"] * r2**2 + values["k3"] * r2**3
+        r2, p = _HELD**2, np.hypot(values["p1"], values["p2"])
+        rest = 1 + values["k2"] * r2**2 + values["k3"] * r2**3 - 3 * p * _HELD
         return {"k1": float((at[1] / _HELD - rest) / r2)}
 
     return Model("lens", about, settings, partial(_draw, camera), {"curve": pulled})
@@ -65,7 +65,8 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     grid.image(_bent_room(lens, x, reach, paper.sharpness))
     _draw_grid(grid, lens)
     _draw_frame(grid, camera, lens)
-    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "radius: observed r L(r) against ideal r")
+    along = ", in the direction that folds first" if any(lens.p) else " r L(r) against ideal r"
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), f"radius: observed{along}")
     _draw_curve(curve, lens)
     return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
 
@@ -124,7 +125,7 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
         panel.line(polynomial(lens, circle), ESTIMATED, 2.2)
         seen = lens.max_radius * float(lens.L(lens.max_radius))
         words = f"the fold, r = {lens.max_radius:.2f}, seen at {seen:.2f}"
-        panel.text([0, max(-seen + 0.03, panel.y[0] + 0.03)], words, ESTIMATED, anchor="mt")
+        panel.text([0, max(-seen - 0.02, panel.y[0] + 0.06)], words, ESTIMATED, anchor="md")
     panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
     bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
     below = [0.02, min(bent[1] + 0.02, panel.y[1] - 0.07)]
@@ -134,14 +135,14 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
 
 def _draw_curve(panel: Panel, lens: Lens) -> None:
     r = np.linspace(0, _RADIUS, 201)
-    observed = np.stack([r, r * radial_factor(lens.k, r * r)], -1)
+    observed = np.stack([r, first_to_fold(lens, r)], -1)
     panel.ticks(np.arange(0.2, 1.3, 0.2).round(1), np.arange(0.2, 1.1, 0.2).round(1))
     panel.line([[0.0, 0.0], [1.2, 1.2]], IDEAL, 1, dash=4)
     panel.text([0.97, 0.93], "ideal", IDEAL)
     good = (r <= lens.max_radius)[:, None]
     panel.line(np.where(good, np.nan, observed), ESTIMATED, 1.8, dash=5)
     panel.line(np.where(good, observed, np.nan), LENS, 2.2)
-    held = [_HELD, _HELD * float(radial_factor(lens.k, np.array(_HELD**2)))]
+    held = [_HELD, float(first_to_fold(lens, np.array(_HELD)))]
     panel.mark(held, "lens", 8)
     panel.grip("curve", "the curve of k1", held, 2)
     if lens.max_radius < _RADIUS:
@@ -174,6 +175,11 @@ def camera_corners(camera: Camera) -> Array:
     w, h = camera.size
     corners = [[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]]
     return Camera(camera.A, size=camera.size).ideal(corners)
+
+
+def first_to_fold(lens: Lens, r: Array) -> Array:
+    """Return the observed radius against the tangential direction (p2, p1), where it is least."""
+    return np.asarray(r * radial_factor(lens.k, r * r) - 3 * np.hypot(*lens.p) * r * r)
 
 
 def polynomial(lens: Lens, xy: Array) -> Array:

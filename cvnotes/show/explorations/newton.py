@@ -1,0 +1,116 @@
+"""Explore the way back through a lens: dividing by L follows a ray, Newton's method a tangent."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+
+_K1, _F = -0.4, 800  # of the lens, and px
+_FOLD = float(np.sqrt(-1 / (3 * _K1)))
+_ROUNDS = 20  # rounds of which the errors are drawn
+_LEAST, _MOST = 1e-5, 300.0  # px: the errors that are drawn
+_ENOUGH = 0.1  # px
+
+Step = Callable[[float, float], float]
+
+
+def newton_model() -> Model:
+    """Make the model of an ideal radius that is looked for in two ways."""
+    settings = (
+        Setting("r", "ideal radius r", 0.6, 0.91, 0.01, 0.86, "what is to be found, from r'"),
+        Setting("rounds", "rounds drawn", 1, 8, 1, 3, "how often each method goes on"),
+    )
+    about = (
+        "The observed radius over the ideal one, a level, and the ways of two methods to where the "
+        "curve reaches it; beside it how far off both are after each round."
+    )
+
+    def pulled(_: Values, at: Array) -> Values:
+        return {"r": float(at[0])}
+
+    return Model("newton", about, settings, _draw, {"level": pulled})
+
+
+def seen(r: Array | float) -> Array:
+    """Return the observed radius r L(r)."""
+    return np.asarray(r * (1 + _K1 * np.square(r)))
+
+
+def along_the_ray(r: float, level: float) -> float:
+    """Divide by L: follow the ray from the origin through the curve up to the level."""
+    return r * level / float(seen(r))
+
+
+def along_the_tangent(r: float, level: float) -> float:
+    """Take Newton's step: follow the tangent of the curve up to the level."""
+    return r + (level - float(seen(r))) / (1 + 3 * _K1 * r * r)
+
+
+def guesses(step: Step, level: float, rounds: int) -> Array:
+    """Return the guesses (rounds + 1,) from r' on."""
+    found = [level]
+    for _ in range(rounds):
+        found.append(step(found[-1], level))
+    return np.array(found)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    r, rounds = values["r"], int(values["rounds"])
+    level = float(seen(r))
+    curve = paper.panel(
+        (440, 340), (0.49, 0.96), (0.632, 0.445), "observed radius r' over r: pull the plus"
+    )
+    curve.ticks(x=(0.6, 0.7, 0.8, 0.9), y=(0.5, 0.55, 0.6))
+    fine = np.linspace(0, 0.96, 300)
+    curve.line(np.column_stack([fine, seen(fine)]), LENS, 2.5)
+    curve.line([[0, level], [1, level]], IDEAL, 1)
+    curve.line([[_FOLD, 0], [_FOLD, 1]], MUTED, 1, dash=4)
+    curve.text([_FOLD - 0.005, 0.47], "the fold", MUTED, anchor="rm")
+    errors = paper.panel(
+        (400, 340), (-0.6, _ROUNDS + 0.6), (np.log10(_MOST), np.log10(_LEAST)),
+        "error (px) after each round",
+    )  # fmt: skip
+    for power in (2, 1, 0, -1, -2, -3, -4):
+        errors.line([[-1, power], [_ROUNDS + 1, power]], "#DDDDDD", 0.5)
+        errors.text([-0.5, power], f"{10.0**power:g}", size=9)
+    counts = []
+    for step, colour in ((along_the_ray, MUTED), (along_the_tangent, ESTIMATED)):
+        way = guesses(step, level, 1000)
+        _way(curve, way[: rounds + 1], level, colour)
+        off = _F * np.abs(way - r)
+        counts.append(int(np.argmax(off < _ENOUGH)))
+        _series(errors, off, colour, rounds)
+    curve.text([level - 0.006, level - 0.006], "r'", IDEAL, anchor="rm", size=13)
+    curve.mark([r, level], "ideal", 8)
+    curve.grip("level", "the level r', by the ideal radius that it belongs to", [r, level], 4)
+    errors.text([_ROUNDS, 2.1], "dividing by L", MUTED, anchor="rm", size=12)
+    errors.text([_ROUNDS, 1.7], "Newton", ESTIMATED, anchor="rm", size=12)
+    return Drawing(paper.join((curve, errors)), _sentence(r, level, counts))
+
+
+def _way(panel: Panel, way: Array, level: float, colour: str) -> None:
+    """Draw the way of a method: from the level to the curve, and along a line to the level."""
+    heights = np.column_stack([np.full(len(way), level), seen(way)])
+    places = np.stack([np.repeat(way[:, None], 2, axis=1), heights], axis=-1).reshape(-1, 2)
+    panel.line(places[:-1], colour, 1.5)
+
+
+def _series(panel: Panel, off: Array, colour: str, rounds: int) -> None:
+    """Draw errors round by round, as a logarithm; those of the rounds drawn as larger dots."""
+    at = np.column_stack([np.arange(_ROUNDS + 1), np.log10(np.maximum(off[: _ROUNDS + 1], 1e-9))])
+    panel.line(at, colour, 1.5)
+    size = np.array([0.14, 0.055])
+    box = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * size
+    panel.polygons(at[: rounds + 1, None] + box, colour)
+
+
+def _sentence(r: float, level: float, counts: list[int]) -> str:
+    divided, newton = counts
+    return (
+        f"Seen at r' = {level:.3f}; looked for is r = {r:.2f}. To a tenth of a pixel, dividing by "
+        f"L takes {divided} rounds, Newton's method {newton}."
+    )
