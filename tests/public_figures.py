@@ -39,7 +39,6 @@ from cvnotes.show.figures import (
     estimates,
     formation,
     ideas,
-    least_squares,
     lenses,
     lines,
     predictions,
@@ -120,7 +119,6 @@ FIGURES = [
     ),
     # ideas
     figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
-    figure(ideas.draw_mapped, {"H": (np.diag([2.0, 1, 1]), SINGLE)}),
     # formation
     figure(
         formation.box_lines,
@@ -141,17 +139,7 @@ FIGURES = [
         sizes=("size",),
         size=(4, 3),
     ),
-    figure(sensors.draw_half_pixels, {"factor": (2, ONE)}),
     # least squares
-    figure(least_squares.draw_stretched_circle, {"D": (np.array([[2.0, 1], [1, 1]]), SINGLE)}),
-    figure(
-        least_squares.draw_two_errors,
-        {
-            "points_h": (np.array([[1.0, 2], [-1, 5]]), several(2)),
-            "m": (np.array([0.6, -0.1]), SINGLE),
-        },
-    ),
-    # lenses
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
     figure(lenses.draw_displacement, {}, lens=LENS),
     # lines

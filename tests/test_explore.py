@@ -44,7 +44,7 @@ from cvnotes.pictures import (
 )
 from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
-from cvnotes.show.explorations import cube
+from cvnotes.show.explorations import cube, maps
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -836,6 +836,42 @@ def test_the_lenss_curve_has_its_top_where_the_lens_folds(p):
     assert f"max_radius = {end:.3f}" in drawing.sentence
 
 
+@pytest.mark.parametrize(
+    ("values", "kept"),
+    [
+        ({"turn": 50}, {0, 1, 2, 3, 4}),
+        ({"turn": 50, "size": 0.7}, {1, 2, 3, 4}),
+        ({"size": 0.7, "shear": -0.6}, {2, 3, 4}),
+        ({"shear": 0.4, "tilt": 0.35}, {4}),
+    ],
+)
+def test_each_kind_of_map_keeps_what_its_row_of_the_table_says(values, kept):
+    names = ["length", "angle of the corner", "angle of opp", "upper half", "cross-ratio"]
+    said = MODELS["maps"].drawing(**values).sentence
+    assert {i for i, name in enumerate(names) if name in said} == kept
+    kinds = {5: "Euclidean", 4: "similar", 3: "affine", 1: "projective"}
+    assert kinds[len(kept)] in said
+    # By hand: the right side of the square, its ends and its middle, in perspective.
+    given = MODELS["maps"].values(**values)
+    k, s, t = given["size"], given["shear"], given["tilt"]
+    ends = [np.array([1 + s * y, y]) * k / (1 + t * y) for y in (-1, 1)]
+    side = np.linalg.norm(ends[1] - ends[0])
+    assert maps.measured(maps.matrix(given))[0] == pytest.approx(side)
+
+
+def test_h_is_shortest_where_the_smaller_singular_value_says():
+    for parallel in (0, 0.4, 0.9):
+        said = [
+            numbers(MODELS["ellipse"].drawing(angle=a, parallel=parallel).sentence)
+            for a in range(0, 181, 2)
+        ]
+        lengths = np.array([row[0] for row in said])
+        _, longest, shortest = said[0]
+        assert abs(lengths.max() - longest) < 0.011
+        assert abs(lengths.min() - shortest) < 0.02
+    assert "D v₂ = 0" in MODELS["ellipse"].drawing(parallel=1).sentence
+
+
 def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
     grey = np.array([60, 90, 110, 200])
     for du, dv in ((0.35, 0.6), (0.8, 0.25), (0.5, 0.5)):
@@ -1277,7 +1313,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("newton", "level"),
     ("epipolar", "depth"),
 }
-TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "dot": (0, 0.5)}  # its length stays
+TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "h": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {
     "curve",
     "nine",

@@ -11,7 +11,6 @@ from cvnotes.show import (
     box_lines,
     draw_field_of_view,
     draw_formation,
-    draw_half_pixels,
     draw_pixels,
     draw_sensor,
 )
@@ -128,14 +127,6 @@ def test_pixels_are_squares_around_whole_numbers():
     assert centres.get_xydata().tolist() == middles
     with pytest.raises(CvnotesError, match="not inside"):
         draw_pixels(np.zeros((48, 64), np.uint8), (62, 20), (4, 3))
-
-
-def test_the_borders_of_many_and_of_few_pixels_are_the_same():
-    ax = draw_half_pixels(4)
-    spans = [(min(r.get_x() for r in row), max(r.get_x() + r.get_width() for r in row))
-             for row in (ax.patches[:8], ax.patches[8:])]  # fmt: skip
-    assert spans == [(0, 8), (0, 8)]
-    assert len(ax.patches) == 10
 
 
 def test_an_arrow_leads_from_its_start_to_its_end():

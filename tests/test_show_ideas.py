@@ -6,8 +6,8 @@ from matplotlib.colors import to_hex
 from matplotlib.lines import Line2D
 
 from cvnotes.base import CvnotesError
-from cvnotes.show import draw_mapped, draw_meanings, draw_pinhole, draw_rays
-from cvnotes.show.style import COLOURS, ESTIMATED, WORLD
+from cvnotes.show import draw_meanings, draw_pinhole, draw_rays
+from cvnotes.show.style import COLOURS, ESTIMATED
 
 
 def squares(ax):
@@ -41,14 +41,6 @@ def test_a_point_at_infinity_has_no_dot_and_the_line_at_infinity_no_line_on_the_
     ax = draw_rays([[1, 0, 0]], [[0, 0, 1]], names=["d", "l"])
     assert squares(ax) == []
     assert [text.get_text() for text in ax.texts] == ["w = 1", "d", "", "l"]
-
-
-def test_a_projective_map_keeps_lines_straight_and_moves_the_circle():
-    H = np.array([[1, 0.2, 0], [0, 1.1, 0], [0.15, 0.35, 1]])
-    ax = draw_mapped(H)
-    sides = next(line for line in ax.lines if line.get_color() == WORLD).get_xydata()
-    corner = H @ [1, 1, 1]
-    assert np.allclose(sides[2], corner[:2] / corner[2])
 
 
 def test_the_ray_of_the_pinhole_passes_through_the_image_and_the_film():

@@ -7,9 +7,8 @@ from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.corners import draw_clouds, draw_response
 from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
 from cvnotes.show.figures.formation import box_lines, draw_field_of_view, draw_formation
-from cvnotes.show.figures.ideas import draw_mapped, draw_meanings, draw_pinhole, draw_rays
+from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
-from cvnotes.show.figures.least_squares import draw_stretched_circle, draw_two_errors
 from cvnotes.show.figures.lenses import (
     draw_displacement,
     draw_grid,
@@ -17,7 +16,7 @@ from cvnotes.show.figures.lenses import (
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
-from cvnotes.show.figures.sensors import draw_half_pixels, draw_pixels, draw_sensor
+from cvnotes.show.figures.sensors import draw_pixels, draw_sensor
 from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
@@ -56,7 +55,6 @@ __all__ = [
     # ideas: the colours, P², maps of the plane, the pinhole
     "draw_meanings",
     "draw_rays",
-    "draw_mapped",
     "draw_pinhole",
     # chapter 2: vanishing points
     "draw_vanishing",
@@ -67,7 +65,6 @@ __all__ = [
     "draw_field_of_view",
     "draw_sensor",
     "draw_pixels",
-    "draw_half_pixels",
     # chapter 4: lenses
     "draw_grid",
     "draw_displacement",
@@ -75,8 +72,6 @@ __all__ = [
     "draw_response",
     "draw_clouds",
     # chapters 5 and 6: least squares
-    "draw_stretched_circle",
-    "draw_two_errors",
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_coverage",

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 _MODELS = ("projection", "camera", "lens", "homography", "noise", "warp", "rectification", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
-    "straighten", "ring", "ruler", "rod", "shadows", "triangle", "pinhole", "dolly", "fisheye",
-    "newton", "votes", "valley", "ransac", "fold", "folds", "finding", "columns", "between",
-    "rings", "epipolar", "depth", "cube",
+    "straighten", "ring", "maps", "ruler", "rod", "shadows", "triangle", "pinhole", "dolly",
+    "fisheye", "newton", "votes", "ellipse", "valley", "ransac", "fold", "folds", "finding",
+    "columns", "between", "rings", "epipolar", "depth", "cube",
 )  # fmt: skip
 NAMES = (*_MODELS, *_STORIES)
 

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, matrix, real
+from cvnotes.base import Array, CvnotesError, matrix, real
 from cvnotes.camera import Camera, Lens, intrinsics, move, pose, rotation_from_vector
 from cvnotes.pictures import render
-from cvnotes.projective import apply
 from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter
 from cvnotes.show.guards import texts
 from cvnotes.show.space.camera_shapes import camera_shapes, ray_shapes
@@ -168,40 +167,6 @@ def _write(
 ) -> None:
     beside(ax, text, tuple(_on_paper(at)), shift, colour, fontsize=FONT + 1, ha="center",
            va="center", path_effects=halo(), zorder=7, annotation_clip=False)  # fmt: skip
-
-
-def draw_mapped(H: npt.ArrayLike, *, ax: "Axes | None" = None, title: str = "") -> "Axes":
-    """Draw what a map of the plane makes of a square with a grid and a circle.
-
-    Parameters
-    ----------
-    H : array_like, shape (3, 3)
-        The map, which moves the square from −1 to 1. The square itself is dashed.
-
-    Examples
-    --------
-    >>> ax = draw_mapped([[2, 0, 0], [0, 2, 0], [0, 0, 1]])
-    >>> ax.lines[0].get_xydata()[:2] * 2 == ax.lines[1].get_xydata()[:2]
-    array([[ True,  True],
-           [ True,  True]])
-    """
-    H = matrix(H, "H", 3, 3)
-    if H.ndim != 2:
-        raise ShapeError(f"H: expected one map (3, 3), got {H.shape}")
-    ax = drawn_on(ax, width=300, height=300)
-    square = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
-    angle = np.linspace(0, 2 * np.pi, 73)
-    ax.plot(*square.T, "--", color=MUTED, linewidth=1)
-    ax.plot(*apply(H, square).T, color=WORLD, linewidth=2)
-    for t in np.linspace(-1, 1, 5):
-        for ends in ([[t, -1], [t, 1]], [[-1, t], [1, t]]):
-            ax.plot(*apply(H, ends).T, color=WORLD, linewidth=0.8)
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    ax.fill(*apply(H, square).T, color=WORLD, alpha=0.12, linewidth=0)
-    ax.plot(*apply(H, circle).T, color=IDEAL, linewidth=2)
-    ax.set(aspect="equal", title=title)
-    ax.axis("off")
-    return ax
 
 
 def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":

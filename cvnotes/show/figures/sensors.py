@@ -10,9 +10,9 @@ from cvnotes.camera import Camera, xy_from_px
 from cvnotes.pictures import render_scene, room
 from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter
 from cvnotes.show.figures.images import draw_image
-from cvnotes.show.guards import count, one_point
+from cvnotes.show.guards import one_point
 from cvnotes.show.guards import picture as checked
-from cvnotes.show.style import CAMERA, ESTIMATED, FONT, IDEAL, LENS, MUTED
+from cvnotes.show.style import CAMERA, ESTIMATED, FONT, LENS, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,33 +94,4 @@ def draw_pixels(
     ax.plot(*centres, "o", color=MUTED, ms=4, mec="white", mew=0.8)
     ax.set(xlim=(u0 - 0.5, u0 + columns - 0.5), ylim=(v0 + rows - 0.5, v0 - 0.5))
     ax.set(xticks=range(u0, u0 + columns), yticks=range(v0, v0 + rows))
-    return ax
-
-
-def draw_half_pixels(factor: int = 2, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw a row of pixels, and below it the same row with `factor` times fewer, wider pixels.
-
-    Examples
-    --------
-    >>> [text.get_text() for text in draw_half_pixels(4).texts if "½" in text.get_text()]
-    ['−½', '7½', '−½', '1½']
-    """
-    from matplotlib.patches import Rectangle
-
-    factor = count(factor, "factor")
-    ax = drawn_on(ax, height=230)
-    few = max(2, 8 // factor)
-    rows = ((few * factor, 1, 0.0, -0.2, LENS), (few, factor, 1.4, 2.85, ESTIMATED))
-    for n, wide, top, words, colour in rows:
-        for u in range(n):
-            middle = ((u + 0.5) * wide, top + 0.4)
-            ax.add_patch(Rectangle((u * wide, top), wide, 1, fc="white", ec=colour, lw=1.5))
-            ax.plot(*middle, ".", color=colour, ms=8)
-            beside(ax, str(u), middle, (0, -16), colour, ha="center")
-        for at, text in ((0, "−½"), (n * wide, f"{n - 1}½")):
-            ax.text(at, words, text, ha="center", color=colour, fontsize=FONT + 1)
-    for u in (0, few * factor):
-        ax.plot([u, u], [0, 2.4], ":", color=IDEAL, lw=1)
-    ax.set(xlim=(-1, few * factor + 1), ylim=(3.1, -0.8), aspect="equal")
-    ax.axis("off")
     return ax

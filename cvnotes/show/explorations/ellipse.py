@@ -1,0 +1,80 @@
+"""Explore the smallest singular vector: turn h on its circle, and D h goes round an ellipse."""
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+
+_FULL = np.array([[1.6, 0.9], [0.5, 1.1]])
+_PARALLEL = np.array([[1.6, 0.8], [0.8, 0.4]])  # its second row is half of the first
+_UP = np.array([1, -1])  # y goes up here, and down on a panel
+
+
+def ellipse_model() -> Model:
+    """Make the model of a matrix with two unknowns, and of all h of length 1."""
+    settings = (
+        Setting("angle", "direction of h (°)", 0, 180, 1, 70, "h has the length 1"),
+        Setting("parallel", "rows parallel", 0, 1, 0.05, 0, "1: the second row says nothing new"),
+    )
+    about = (
+        "A vector h on the circle of all that have the length 1; D h on an ellipse; and how long "
+        "D h is, direction by direction."
+    )
+
+    def pulled(_: Values, at: Array) -> Values:
+        return {"angle": float(np.degrees(np.arctan2(-at[1], at[0])) % 180)}
+
+    return Model("ellipse", about, settings, _draw, {"h": pulled})
+
+
+def matrix(parallel: float) -> Array:
+    """Return D (2, 2): 0 as it is, 1 with parallel rows."""
+    return np.asarray((1 - parallel) * _FULL + parallel * _PARALLEL)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    D, a = matrix(values["parallel"]), np.radians(values["angle"])
+    h = np.array([np.cos(a), np.sin(a)])
+    _, s, Vt = np.linalg.svd(D)
+    Vt = Vt * np.where(Vt[:, 1:] < 0, -1, 1)  # v and −v are as good: take the upper one
+    left = _round(paper, ("all h of length 1", 250, 1.3), (np.eye(2), Vt, h), "")
+    left.grip("h", "the vector h", h * _UP, 4)
+    right = _round(paper, ("where D takes them", 330, 2.5), (D, Vt, h), "D ")
+    lengths = paper.panel((250, 300), (-8, 188), (2.4, -0.3), "length of D h, by direction (°)")
+    lengths.ticks(x=(0, 45, 90, 135, 180), y=(0, 1, 2))
+    turn = np.radians(np.arange(181))
+    all_h = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    lengths.line(np.column_stack([np.arange(181), np.linalg.norm(all_h @ D.T, axis=1)]), MUTED, 2)
+    for v, sigma, colour in zip(Vt, s, (LENS, ESTIMATED), strict=True):
+        at = np.degrees(np.arctan2(v[1], v[0]))
+        lengths.line([[at, 0], [at, sigma]], colour, 2.5)
+    long = float(np.linalg.norm(D @ h))
+    lengths.mark([values["angle"], long], "ideal", 8)
+    said = f"The length of D h is {long:.2f}. "
+    if s[1] < 1e-9:
+        return Drawing(paper.join((left, right, lengths)), f"{said}For v₂ it is 0: D v₂ = 0.")
+    return Drawing(
+        paper.join((left, right, lengths)),
+        f"{said}The longest is σ₁ = {s[0]:.2f}, the shortest σ₂ = {s[1]:.2f}.",
+    )
+
+
+def _round(
+    paper: Paper, about: tuple[str, int, float], what: tuple[Array, Array, Array], name: str
+) -> Panel:
+    """Draw where a map takes the circle, the singular vectors, and h."""
+    (title, size, reach), (map_, Vt, h) = about, what
+    high = reach * 300 / size
+    panel = paper.panel((size, 300), (-reach, reach), (-high, high), title)
+    turn = np.linspace(0, 2 * np.pi, 181)
+    panel.line(np.stack([np.cos(turn), np.sin(turn)], axis=-1) @ map_.T * _UP, MUTED, 2)
+    for v, colour, letter in zip(Vt, (LENS, ESTIMATED), ("v₁", "v₂"), strict=True):
+        end = map_ @ v
+        panel.line([[0, 0], end * _UP], colour, 3)
+        beyond = end + 0.11 * reach * v
+        panel.text(beyond * _UP, f"{name}{letter}", colour, anchor="mm", size=13)
+    panel.line([[0, 0], map_ @ h * _UP], IDEAL, 1.5)
+    panel.mark(map_ @ h * _UP, "ideal", 8)
+    return panel
