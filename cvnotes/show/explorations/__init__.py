@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from cvnotes.show.explorations.shell import Explorer
 
 # Each is a module of this folder, in which `<name>_model` makes its model: of a camera and a board,
-_MODELS = ("projection", "camera", "lens", "homography", "noise", "warp", "rectification", "tilt")
+_MODELS = ("projection", "camera", "lens", "noise", "warp", "rectification", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
     "straighten", "ring", "maps", "ruler", "rod", "shadows", "triangle", "pinhole", "dolly",
-    "fisheye", "newton", "votes", "ellipse", "valley", "ransac", "fold", "folds", "finding",
-    "columns", "between", "rings", "epipolar", "depth", "cube",
+    "fisheye", "newton", "votes", "ellipse", "valley", "ransac", "homography", "fold", "folds",
+    "finding", "columns", "between", "rings", "epipolar", "depth", "cube",
 )  # fmt: skip
 NAMES = (*_MODELS, *_STORIES)
 

@@ -97,9 +97,10 @@ def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
     right = (1 - wrong / 54) ** 4
     draws = np.arange(_DRAWS + 1)
     panel.line(np.column_stack([draws, 54 * (1 - (1 - right) ** draws)]), MUTED, 1.2, dash=4)
-    panel.text([22, 56.5], "54 × chance of four right ones", MUTED, size=10)
+    panel.text([13, 56.5], "chance of four right ones: 0 to 100 %", MUTED, size=10)
     best = np.maximum.accumulate(np.where(draws > 0, counts, 0))
-    panel.line(np.column_stack([draws, best])[1:], IDEAL, 1.6)
+    steps = np.column_stack([np.repeat(draws[1:], 2)[1:], np.repeat(best[1:], 2)[:-1]])
+    panel.line(steps, IDEAL, 1.6)
     panel.segments([[[k, 0], [k, c]] for k, c in zip(draws, counts, strict=True)], LENS, 2.5)
     panel.mark([n, counts[n]], "estimated", 9)
     panel.grip("draw", "which draw is shown", [n, float(counts[n])], 5)
