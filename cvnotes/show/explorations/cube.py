@@ -85,7 +85,7 @@ def cube_model() -> Model:
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
         plan = paper.panel((400, 405), (-140, 334), (-60, 420), "the same from above")
         _draw_plan(plan, base)
-        off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1).max()
+        off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1)
         return Drawing(paper.join((panel, plan)), _sentence(foot, at, h, off, bool(values["lens"])))
 
     def carried(values: Values, at: Array) -> Values:
@@ -168,14 +168,17 @@ def _draw_plan(panel: Panel, base: Array) -> None:
     panel.text(eye - [14, 0], "camera", CAMERA, anchor="rm", size=12)
 
 
-def _sentence(foot: Array, at: Array, h: float, off: float, lens: bool) -> str:
+def _sentence(foot: Array, at: Array, h: float, off: Array, lens: bool) -> str:
     (x, y), (u, v) = foot, at
     said = (
         f"A tower {h:.0f} mm high at ({x:.0f}, {y:.0f}) mm: its foot is seen at "
         f"({u:.0f}, {v:.0f}) px. "
     )
     if lens:
-        return f"{said}Its corners are at most {off:.2f} px from where the true camera sees them."
+        return (
+            f"{said}Its corners are within {off.max():.2f} px of where the true camera sees them."
+        )
     return (
-        f"{said}Without the lens, and the best pose that is left, they are up to {off:.1f} px off."
+        f"{said}Without the lens, and with the best pose that is left, it is up to "
+        f"{off[:4].max():.1f} px off at its foot and {off[4:].max():.1f} px at its top."
     )

@@ -5,7 +5,13 @@ from functools import lru_cache
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Lens, px_from_xy, xy_from_px
+from cvnotes.camera import (
+    Lens,
+    px_from_xy,
+    rotation_from_vector,
+    vector_from_rotation,
+    xy_from_px,
+)
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_squares
@@ -13,6 +19,8 @@ from cvnotes.show.explorations.fold import Circle, circle_of, on_sheet
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+
+_Of = tuple[float, float]  # k1, and how far the boards are turned
 
 _SPACE, _CLOSE, _CURVE = (450, 375), (180, 375), (210, 375)
 _SHOWN = ((-2230, 2810), (-2563, 1637))  # x and y of the sheet: all half circles, for each k1
@@ -26,7 +34,9 @@ class _Tangle:
 
     def __init__(self) -> None:
         camera = course.camera()
-        self.A, self.size, self.seen = camera.A, camera.size, course.measured_corners()
+        self.A, self.size = camera.A, camera.size
+        self.camera, self.poses, self.board = camera, course.poses(), course.board()
+        self.noise = course.measured_corners() - self._exact(self.poses)
         # One slider for both coefficients: it passes the course's lens.
         k1, k2 = camera.lens.k[:2]
         self.bend = k2 / k1**2
@@ -35,15 +45,29 @@ class _Tangle:
         self.square = np.array([1, self.A[0, 0] / self.A[1, 1]])
         self.eye = np.array([*(self.A[:2, 2] * self.square), self.A[0, 0]])
         self.circles = lru_cache(maxsize=None)(self._circles)
+        self.seen = lru_cache(maxsize=None)(self._seen)
 
-    def _circles(self, k1: float) -> list[Circle]:
+    def _exact(self, poses: Array) -> Array:
+        return np.array([self.camera.moved(G).project(self.board.points) for G in poses])
+
+    def _seen(self, turned: float) -> Array:
+        """Return the corners (12, 54, 2), each board turned from the first by a part of its own."""
+        first, poses = self.poses[0, :3, :3], self.poses.copy()
+        middle = self.board.points.mean(axis=0)
+        places = poses[:, :3, :3] @ middle + poses[:, :3, 3]
+        away = turned * vector_from_rotation(first.T @ poses[:, :3, :3])
+        poses[:, :3, :3] = first @ rotation_from_vector(away)
+        poses[:, :3, 3] = places - poses[:, :3, :3] @ middle
+        return self._exact(poses) + self.noise
+
+    def _circles(self, k1: float, turned: float) -> list[Circle]:
         lens = Lens(k=(k1, self.bend * k1**2))
-        ideal = px_from_xy(self.A, lens.undistort(xy_from_px(self.A, self.seen)))
+        ideal = px_from_xy(self.A, lens.undistort(xy_from_px(self.A, self.seen(turned))))
         return [circle_of(dlt(self.W, m)) for m in ideal * self.square]
 
-    def misses(self, k1: float) -> Array:
+    def misses(self, k1: float, turned: float) -> Array:
         """Return how far each half circle passes beside the camera's true centre, in px."""
-        return np.array([circle.distance(self.eye) for circle in self.circles(k1)])
+        return np.array([circle.distance(self.eye) for circle in self.circles(k1, turned)])
 
 
 def folds_model() -> Model:
@@ -52,6 +76,8 @@ def folds_model() -> Model:
     settings = (
         Setting("k1", "k1", _LOWEST, _HIGHEST, _STEP, 0,
                 f"of the lens that is undone; k2 = {tangle.bend:.1f} k1²"),
+        Setting("turned", "boards turned", 0, 1, 0.05, 1,
+                "1: as they were photographed; 0: all parallel to the first"),
     )  # fmt: skip
     about = (
         "Twelve half circles, one for each photograph: all places from which it shows right "
@@ -60,62 +86,67 @@ def folds_model() -> Model:
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        k1 = values["k1"]
-        panels = _space(tangle, paper, k1), _close(tangle, paper, k1), _curve(tangle, paper, k1)
-        return Drawing(paper.join(panels), _sentence(k1, tangle.misses(k1)))
+        of = values["k1"], values["turned"]
+        panels = _space(tangle, paper, of), _close(tangle, paper, of), _curve(tangle, paper, of)
+        return Drawing(paper.join(panels), _sentence(of, tangle.misses(*of)))
 
     return Model("folds", about, settings, draw, {"k1": lambda _, at: {"k1": float(at[0])}})
 
 
-def _sentence(k1: float, misses: Array) -> str:
+def _sentence(of: _Of, misses: Array) -> str:
+    k1, turned = of
     k = f"{k1:.3f}".replace("-", "−")
     said = f"With k1 = {k} undone, the twelve half circles pass the camera at "
+    if misses.max() < 1 and turned == 0:
+        return (
+            f"{said}{misses.max():.1f} px at most, but they are one: each of its places would do."
+        )
     if misses.max() < 1:
         return f"{said}{misses.max():.1f} px at most: they meet, and where they do is the camera."
     return f"{said}{misses.min():.0f} to {misses.max():.0f} px: no eye sees all right angles."
 
 
-def _arcs(tangle: _Tangle, panel: Panel, k1: float, width: float) -> None:
-    for circle in tangle.circles(k1):
+def _arcs(tangle: _Tangle, panel: Panel, of: _Of, width: float) -> None:
+    for circle in tangle.circles(*of):
         arc = on_sheet(circle.place(np.arange(0, 180.5, 0.5)))
         panel.line(arc, LENS, width)
         panel.mark(arc[[0, -1]], "lens", 3)
 
 
-def _space(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
+def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     w, h = tangle.size
     frame = np.array([[0, 0, 0], [w, 0, 0], [w, h, 0], [0, h, 0], [0, 0, 0]])
     seen = on_sheet(frame * [*tangle.square, 0] - [0.5, 0.5, 0])
     panel = paper.panel(_SPACE, *_SHOWN, "twelve half circles over the first photograph")
     panel.polygons(seen[None, :-1], "#F4F4F0")
     panel.line(seen, MUTED, 1)
-    m = np.column_stack([tangle.seen[0] * tangle.square, np.zeros(len(tangle.W))])
+    m = np.column_stack([tangle.seen(1)[0] * tangle.square, np.zeros(len(tangle.W))])
     draw_squares(panel, on_sheet(m), course.board(), "#B0B0B0")
-    _arcs(tangle, panel, k1, 0.7)
+    _arcs(tangle, panel, of, 0.7)
     panel.mark(on_sheet(tangle.eye), "ideal", 8)
     return panel
 
 
-def _close(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
+def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     reach = _NEAR * np.array(_CLOSE) / _CLOSE[0]
     (left, top), (right, low) = on_sheet(tangle.eye) - reach, on_sheet(tangle.eye) + reach
     panel = paper.panel(_CLOSE, (left, right), (top, low), "enlarged about the camera")
-    _arcs(tangle, panel, k1, 1)
+    _arcs(tangle, panel, of, 1)
     panel.mark(on_sheet(tangle.eye), "ideal", 10)
     panel.line([[left + 12, low - 14], [left + 62, low - 14]], IDEAL, 2)
     panel.text([left + 68, low - 14], "50 px", IDEAL, size=12)
     return panel
 
 
-def _curve(tangle: _Tangle, paper: Paper, k1: float) -> Panel:
+def _curve(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     """Draw how far the half circles miss the camera; the hand pulls along the curve."""
-    x, y = (_LOWEST - 0.07, _HIGHEST + 0.03), (_MOST, -0.1 * _MOST)
+    (k1, turned), x, y = of, (_LOWEST - 0.07, _HIGHEST + 0.03), (_MOST, -0.1 * _MOST)
     panel = paper.panel(_CURVE, x, y, "miss (RMS, px) against k1")
     panel.ticks(x=(-0.4, -0.2, 0), y=(20, 40, 60, 80), size=12)
     tried = np.arange(_LOWEST, _HIGHEST + 0.01, 0.025)
-    way = np.array([[k, np.sqrt(np.mean(tangle.misses(float(k)) ** 2))] for k in tried])
+    way = np.array([[k, np.sqrt(np.mean(tangle.misses(float(k), turned) ** 2))] for k in tried])
     panel.line(way, MUTED, 1.6)
-    at = np.array([k1, np.sqrt(np.mean(tangle.misses(k1) ** 2))])
+    at = np.array([k1, np.sqrt(np.mean(tangle.misses(k1, turned) ** 2))])
     panel.mark(at, "estimated", 8)
     side, anchor = (-1, "rm") if k1 > way[way[:, 1].argmin(), 0] else (1, "lm")  # within the V
     panel.text(at + [0.03 * side, 4], f"{at[1]:.1f} px", ESTIMATED, anchor=anchor, size=13)

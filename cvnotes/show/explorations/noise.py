@@ -18,7 +18,7 @@ from cvnotes.targets import Chessboard
 _FEWEST, _MOST = 3, 30
 _SHOWN = ("alpha_u", "alpha_v", "u0", "v0")
 _LABELS = ("α_u", "α_v", "u0", "v0")
-_REACHES = (1, 4, 10, 30, 100)  # px, of the error bars
+_REACH = 8.0  # px, of the error bars: what is larger leaves the panel
 
 
 class _Study:
@@ -83,9 +83,9 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     n, sigma = int(values["views"]), values["sigma"]
     bound = study.std(n, sigma)
     error, std = study.estimate(n, sigma, int(values["draw"]))
-    widest = max(2.5 * bound.max(), 1.1 * float((np.abs(error) + std).max()), 0.25)
-    reach = next((r for r in _REACHES if r > widest), _REACHES[-1])
-    bars = paper.panel((450, 300), (-1.25 * reach, reach), (-0.8, 4.3), "estimate minus truth (px)")
+    bars = paper.panel(
+        (450, 300), (-1.25 * _REACH, _REACH), (-0.8, 4.3), "estimate minus truth (px)"
+    )
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(
         (400, 300), (np.log10(2.6), np.log10(36)), (1.4, -1.8),
@@ -102,7 +102,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
 
 def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array) -> None:
     left, reach = panel.x
-    panel.ticks(x=np.array([-0.8, -0.4, 0.4, 0.8]) * reach, size=12)
+    panel.ticks(x=(-6, -4, -2, 2, 4, 6), size=12)
     panel.line([[0, -0.3], [0, 4.3]], IDEAL, 1, dash=4)
     panel.text([0.02 * reach, 3.85], "truth", IDEAL)
     panel.text([0.95 * left, -0.55], "blue: the bound, ±1σ and ±2σ", CAMERA)
