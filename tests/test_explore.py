@@ -44,7 +44,7 @@ from cvnotes.pictures import (
 )
 from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
-from cvnotes.show.explorations import cube, maps
+from cvnotes.show.explorations import cube, eleventh, maps
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -874,6 +874,20 @@ def test_h_is_shortest_where_the_smaller_singular_value_says():
         assert abs(lengths.max() - longest) < 0.011
         assert abs(lengths.min() - shortest) < 0.02
     assert "D v₂ = 0" in MODELS["ellipse"].drawing(parallel=1).sentence
+
+
+def test_what_the_next_picture_leaves_is_what_a_calibration_with_it_leaves():
+    of, W = eleventh.known(), course.board().points
+    for values in ({"u": 160, "v": 120, "tilt": 30}, {"u": 640, "v": 480, "tilt": -45}):
+        G = eleventh.held(**values)
+        seen = of.found.camera.moved(G).project(W)
+        assert np.linalg.norm(seen.mean(axis=0) - [values["u"], values["v"]]) < 40
+        noise = np.random.default_rng(6).normal(scale=0.1, size=seen.shape)
+        more = calibrate(W, np.array([*of.seen, seen + noise]), (1280, 960), lens="k1 k2")
+        said = numbers(MODELS["eleventh"].drawing(**values).sentence)
+        for name, left in (("k2", said[0]), ("alpha_u", said[2])):
+            came = more.std[name] / more.rms / of.found.std[name] * of.found.rms
+            assert came == pytest.approx(left, abs=0.02)
 
 
 def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():

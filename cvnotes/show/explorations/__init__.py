@@ -22,7 +22,7 @@ _MODELS = ("projection", "camera", "lens", "noise", "warp", "rectification", "ti
 _STORIES = (
     "straighten", "ring", "maps", "ruler", "rod", "shadows", "triangle", "pinhole", "dolly",
     "fisheye", "newton", "votes", "ellipse", "valley", "ransac", "homography", "fold", "folds",
-    "finding", "columns", "between", "rings", "epipolar", "depth", "cube",
+    "finding", "eleventh", "columns", "between", "rings", "epipolar", "depth", "cube",
 )  # fmt: skip
 NAMES = (*_MODELS, *_STORIES)
 

@@ -1,0 +1,127 @@
+"""Explore the next photograph: what would be known with one more view of the board."""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.calibration import Calibration, calibrate
+from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.jackknife import eliminated_by_view
+from cvnotes.calibration.prediction import pixel_jacobian
+from cvnotes.calibration.refinement import Problem
+from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
+from cvnotes.pictures import course, good_views, hold_at
+from cvnotes.show.explorations.boards import draw_net
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, rgb
+
+_PHONE = Camera(
+    intrinsics(1180, 1176, 655, 470), lens=Lens(k=(0.08, -0.15)), size=(1280, 960)
+)  # of chapter 9
+_BOARD = course.board()
+_SHOWN, _NOISE = (480, 360), 0.1  # px
+_LABELS = ("α_u", "α_v", "u0", "v0", "k1", "k2")
+_HIGHEST = 0.9  # px, where the map is darkest
+_DARK = 0.75  # of the way from white to orange
+
+
+class _Known(NamedTuple):
+    """What ten pictures say: the calibration, and how each pixel moves with the parameters."""
+
+    found: Calibration
+    J: Array
+    seen: Array
+
+
+def eleventh_model() -> Model:
+    """Make the model of ten pictures, and of an eleventh that has not been taken."""
+    settings = (
+        Setting("u", "u (px)", 100, 1180, 10, 820, "where the board's middle is held"),
+        Setting("v", "v (px)", 80, 880, 10, 580, "where the board's middle is held"),
+        Setting("tilt", "tilt (°)", -45, 45, 5, 0, "positive: its outer edge comes nearer"),
+    )
+    about = (
+        "The picture of a camera, the paler the better a pixel of it is known from ten pictures "
+        "of a board and one more, which is drawn; beside it which part of each standard deviation "
+        "the new picture leaves."
+    )
+    drags = {"board": lambda _, at: {"u": float(at[0]), "v": float(at[1])}}
+    return Model("eleventh", about, settings, _draw, drags)
+
+
+@lru_cache(maxsize=1)
+def known() -> _Known:
+    """Calibrate from ten pictures, as in chapter 9."""
+    poses = good_views(_BOARD, _PHONE, 10, rng=np.random.default_rng(2))
+    seen = np.array([_PHONE.moved(G).project(_BOARD.points) for G in poses])
+    seen += np.random.default_rng(3).normal(scale=_NOISE, size=seen.shape)
+    found = calibrate(_BOARD.points, seen, _PHONE.size, lens="k1 k2")
+    u, v = np.meshgrid(np.linspace(0, 1279, 65), np.linspace(0, 959, 49))
+    return _Known(found, pixel_jacobian(found, np.stack([u, v], axis=-1)), seen)
+
+
+def held(u: float, v: float, tilt: float) -> Array:
+    """Return the pose of the board at a place of the picture, its outer edge tilted nearer."""
+    found = known().found
+    w, h = found.size
+    axis = np.array([h / 2 - v, u - w / 2, 0.0])
+    length = np.linalg.norm(axis)
+    axis = axis / length if length > 1 else np.array([1.0, 0, 0])
+    return hold_at(_BOARD, found.camera, rotation_from_vector(np.radians(tilt) * axis), (u, v))
+
+
+def with_one_more(G: Array) -> Array:
+    """Return the covariance of the camera with the board once more, in pose G."""
+    found = known().found
+    data = Correspondences.in_unit_frame(_BOARD.points, np.zeros((1, len(_BOARD.points), 2)))
+    problem = Problem.at(found.camera, found.names, data)
+    S, _ = eliminated_by_view(
+        problem, problem.state(found.camera, data.pose_in_scaled_units(G[None]))
+    )
+    return np.linalg.inv(np.linalg.inv(found.covariance) + S[0] / _NOISE**2)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    of = known()
+    G = held(values["u"], values["v"], values["tilt"])
+    after = with_one_more(G)
+    std = np.sqrt(np.einsum("...ci,ij,...cj->...", of.J, after, of.J))
+    before = np.sqrt(np.einsum("...ci,ij,...cj->...", of.J, of.found.covariance, of.J))
+    panel = paper.picture_panel(_SHOWN, of.found.size, "σ of a pixel (px): pull the board")
+    part = _DARK * np.clip(std / _HIGHEST, 0, 1)[..., None]
+    panel.image(np.rint(255 * (1 - part * (1 - np.array(rgb(ESTIMATED))))).astype(np.uint8))
+    for m in of.seen.reshape(-1, 2):
+        panel.polygons((m + 2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]))[None], MUTED)
+    draw_net(panel, of.found.camera.moved(G).project(_BOARD.points), _BOARD, LENS, 2)
+    for row, column in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
+        at = np.array([70 if column == 0 else 1210, 36 if row == 0 else 924])
+        panel.text(at, f"{std[row, column]:.2f}", IDEAL, anchor="mm", size=13)
+    panel.mark([values["u"], values["v"]], "estimated", 9)
+    panel.grip("board", "the board of the next picture", [values["u"], values["v"]], 20)
+    left = np.sqrt(np.diag(after) / np.diag(of.found.covariance))
+    bars = _bars(paper, left)
+    return Drawing(paper.join((panel, bars)), _sentence(left, before, std))
+
+
+def _bars(paper: Paper, left: Array) -> Panel:
+    """Draw which part of each standard deviation is left."""
+    panel = paper.panel((360, 360), (-0.22, 1.2), (-0.7, 5.7), "left of each standard deviation")
+    panel.ticks(x=(0, 0.5, 1))
+    for i, (label, part) in enumerate(zip(_LABELS, left, strict=True)):
+        box = np.array([[0, i - 0.28], [1, i - 0.28], [1, i + 0.28], [0, i + 0.28]])
+        panel.polygons(box[None], "#E4E4E4")
+        panel.polygons((box * [part, 1])[None], CAMERA)
+        panel.text([-0.04, i], label, IDEAL, anchor="rm", size=13)
+        panel.text([1.04, i], f"{part:.2f}", IDEAL, size=13)
+    return panel
+
+
+def _sentence(left: Array, before: Array, after: Array) -> str:
+    return (
+        f"With this picture {left[5]:.2f} of the standard deviation of k2 would be left, and "
+        f"{left[0]:.2f} of that of α_u. A corner of the picture is known to {before.max():.2f} px "
+        f"now, and then to {after.max():.2f}."
+    )
