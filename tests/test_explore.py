@@ -503,10 +503,32 @@ def test_the_partner_of_each_marked_point_lies_on_its_epipolar_line():
 
 def test_epipolar_lines_pass_through_the_points_they_were_drawn_for():
     picture = MODELS["rectification"].picture(angle_x=0, angle_y=0, angle_z=0, forward=0)
-    orange = np.abs(picture.astype(int) - colour(ESTIMATED)).max(-1) < 60
-    rows = [half.mean(axis=1) > 0.6 for half in (orange[:, :346], orange[:, 346:])]
-    assert np.array_equal(*rows)
-    assert 7 <= rows[0].sum() <= 24  # eight lines of one to three px
+    for one in (ESTIMATED, LENS, WORLD, CAMERA):
+        drawn = np.abs(picture.astype(int) - colour(one)).max(-1) < 40
+        rows = [half.mean(axis=1) > 0.4 for half in (drawn[:, :346], drawn[:, 346:])]
+        assert np.array_equal(*rows)
+        assert 2 <= rows[0].sum() <= 6  # above and below a line, of one to three px
+
+
+def test_a_rectified_picture_shows_what_was_taken_and_grey_where_nothing_was():
+    values = {"angle_x": 12, "angle_y": -12, "angle_z": 0}
+    picture = MODELS["rectification"].picture(**values).astype(int)
+    black = (picture.max(axis=-1) < 60)[TITLE:]
+    upper, lower = black[:255, 346:], black[255 + 28 :, 346:]
+    whole = black[:255, :346].sum()
+    assert upper.sum() < 0.7 * whole  # most of the board has left the right picture
+    assert lower.sum() < 0.7 * upper.sum()  # and does not come back: what is left is smaller
+    assert (np.abs(picture[TITLE + 255 + 28 :] - 0xCF).max(axis=-1) == 0).mean() > 0.2
+
+
+def test_holes_are_orange_and_folds_are_blue():
+    drawing = MODELS["warp"].drawing(angle=20, zoom=1)
+    holes, _, folds = numbers(drawing.sentence)[:3]
+    left = drawing.picture[TITLE : TITLE + 316, MARGIN : MARGIN + 420].astype(int)
+    blue = (left[..., 2] > left[..., 0] + 40).sum() / 16  # pixels of 4 × 4
+    orange = (np.abs(left - colour(ESTIMATED)).max(axis=-1) < 10).sum() / 16
+    assert blue == pytest.approx(folds, rel=0.05)
+    assert orange == pytest.approx(holes, rel=0.05)
 
 
 @pytest.fixture(scope="module")

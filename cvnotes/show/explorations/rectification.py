@@ -7,12 +7,13 @@ from cvnotes.camera import Camera, chain, pose, rotation_from_angles, rotation_f
 from cvnotes.show.explorations.boards import draw_board, pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED
+from cvnotes.show.style import CAMERA, ESTIMATED, LENS, MUTED, WORLD
 from cvnotes.stereo import epipolar_lines, fundamental_matrix, rectify
 from cvnotes.targets import Chessboard
 
 _SIZE = (340, 255)
 _BASELINE = 0.35  # of the board's diagonal
+_LINES = ESTIMATED, LENS, WORLD, CAMERA  # one for each corner
 _RECTIFIED = (160, 120)  # px; only its camera is needed, and a small one is made sooner
 
 
@@ -50,9 +51,9 @@ def _beside(left: Camera, board: Chessboard, values: Values) -> Camera:
 
 def _draw(left: Camera, right: Camera, board: Chessboard, paper: Paper) -> Drawing:
     pair = rectify(left, right, size=_RECTIFIED, keep="all")
-    shown = board.points[_four(board)]
-    before = _row(paper, left, right, board, shown, "as taken")
-    after = _row(paper, pair.left, pair.right, board, shown, "rectified")
+    taken = left, right
+    before = _row(paper, taken, taken, board, "as taken")
+    after = _row(paper, (pair.left, pair.right), taken, board, "rectified")
     # In the pixels of the given cameras, whatever the size of the rectified pictures.
     scale = left.A[0, 0] / pair.left.A[0, 0]
     apart = _rows_apart(left, right, board), scale * _rows_apart(pair.left, pair.right, board)
@@ -64,17 +65,37 @@ def _draw(left: Camera, right: Camera, board: Chessboard, paper: Paper) -> Drawi
 
 
 def _row(
-    paper: Paper, left: Camera, right: Camera, board: Chessboard, shown: Array, what: str
+    paper: Paper,
+    pair: tuple[Camera, Camera],
+    taken: tuple[Camera, Camera],
+    board: Chessboard,
+    what: str,
 ) -> tuple[Panel, Panel]:
-    panels = []
-    for camera, other, side in ((left, right, "left"), (right, left, "right")):
+    """Draw what a pair shows: of a rectified one, what was in the pictures as they were taken."""
+    shown, panels = board.points[_four(board)], []
+    for i, side in enumerate(("left", "right")):
+        camera, other, old = pair[i], pair[1 - i], taken[i]
         panel = paper.picture_panel(_SIZE, camera.size, f"{side}, {what}")
         draw_board(panel, camera, board)
-        for line in lines_from(other, camera, shown):
-            panel.line(_across(line, camera.size), ESTIMATED, 1.4)
-        panel.mark(camera.project(shown), "ideal", 8)
+        for line, colour in zip(lines_from(other, camera, shown), _LINES, strict=True):
+            panel.line(_across(line, camera.size), colour, 1.8)
+        m = old.project(shown)
+        panel.mark(camera.project(shown[((m >= -0.5) & (m <= np.subtract(old.size, 0.5))).all(1)]),
+                   "ideal", 8)  # fmt: skip
+        if camera is not old:
+            _hide_unseen(panel, camera, old)
         panels.append(panel)
     return panels[0], panels[1]
+
+
+def _hide_unseen(panel: Panel, camera: Camera, old: Camera) -> None:
+    """Lay grey over all that the picture as it was taken does not show."""
+    w, h = np.subtract(old.size, 0.5)
+    rays = old.ray([[-0.5, -0.5], [w, -0.5], [w, h], [-0.5, h]])
+    corners = camera.project(camera.centre + rays)
+    far = corners.mean(axis=0) + 9 * (corners - corners.mean(axis=0))
+    panel.polygons([[corners[i - 1], corners[i], far[i], far[i - 1]] for i in range(4)], "#CFCFCF")
+    panel.line(corners[[0, 1, 2, 3, 0]], MUTED, 1)
 
 
 def lines_from(other: Camera, camera: Camera, W: Array) -> Array:
@@ -105,5 +126,5 @@ def _four(board: Chessboard) -> list[int]:
 def _pose(board: Chessboard) -> Array:
     R = rotation_from_vector([-0.35, 0.3, 0.1])
     extent = float(np.linalg.norm(board.points[-1]))
-    middle = [0.5 * _BASELINE * extent, 0, 2.9 * extent]
+    middle = [0.5 * _BASELINE * extent, 0, 2.2 * extent]
     return pose(R, middle - R @ board.points.mean(axis=0))

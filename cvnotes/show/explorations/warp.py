@@ -11,7 +11,7 @@ from cvnotes.pictures import render
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Paper
-from cvnotes.show.style import ESTIMATED, rgb
+from cvnotes.show.style import ESTIMATED, LENS, rgb
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp, compose, forward_warp, rotation_map, zoom_map
 
@@ -31,7 +31,7 @@ def warp_model(camera: Camera, board: Chessboard) -> Model:
     )
     about = (
         "A small picture turned and zoomed twice by the same map: forward, where pixels that "
-        "receive nothing are orange holes, and backward, without holes."
+        "receive nothing are orange holes, and those hit twice blue, and backward, without any."
     )
     source = _source(camera, board)
     height, width = source.shape
@@ -62,7 +62,7 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Drawing:
     holes = covered & (forward.hits == 0)
     size = (_LARGER * width, _LARGER * height)
     left = paper.picture_panel(size, (width, height), "forward: each pixel is sent")
-    left.image(_with_holes(forward.image.astype(np.uint8), holes), smooth=False)
+    left.image(_coloured(forward.image.astype(np.uint8), holes, forward.hits > 1), smooth=False)
     right = paper.picture_panel(
         size, (width, height), "backward: each pixel is fetched (+ to turn and zoom)"
     )
@@ -80,9 +80,11 @@ def _sentence(holes: npt.NDArray[np.bool_], covered: npt.NDArray[np.bool_], fold
     )
 
 
-def _with_holes(image: Drawn, holes: npt.NDArray[np.bool_]) -> Drawn:
+def _coloured(image: Drawn, holes: npt.NDArray[np.bool_], folds: npt.NDArray[np.bool_]) -> Drawn:
+    """Colour holes orange, and lay blue over folds, through which the board is still seen."""
     coloured = np.repeat(image[..., None], 3, axis=2)
     coloured[holes] = np.rint(255 * np.array(rgb(ESTIMATED)))
+    coloured[folds] = coloured[folds] // 2 + np.rint(127 * np.array(rgb(LENS))).astype(np.uint8)
     return coloured
 
 
