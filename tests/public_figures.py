@@ -87,12 +87,6 @@ FIGURES = [
     # corners
     figure(corners.draw_response, {"response": (CLOUD, SINGLE)}),
     figure(
-        lambda errors, reach=None: corners.draw_clouds({"errors": errors, "b": CLOUD}, reach=reach),
-        {"errors": (CLOUD, several(2)), "reach": (0.5, ONE)},
-        "show.corners.draw_clouds",
-    ),
-    # estimates
-    figure(
         estimates.draw_plane_error,
         {"m": (M, several(2)), "predicted": (M + 1, several(2)), "magnify": (10.0, ONE)},
         paired=("m", "predicted"),

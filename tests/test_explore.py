@@ -18,7 +18,7 @@ from scipy import ndimage
 from scipy.signal import fftconvolve
 from scipy.special import j1
 
-from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError
+from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError, luma
 from cvnotes.base.png import pack_png
 from cvnotes.calibration import calibrate
 from cvnotes.camera import (
@@ -35,16 +35,18 @@ from cvnotes.homography import dlt
 from cvnotes.pictures import (
     course,
     desk,
+    expose,
     gaussian_blur,
     pixel_centres,
     radiance,
     rails,
     render_scene,
     room,
+    room_with,
 )
 from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
-from cvnotes.show.explorations import cube, eleventh, maps
+from cvnotes.show.explorations import clouds, cube, eleventh, maps
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -72,7 +74,7 @@ from cvnotes.show.explorations.ruler import behind_the_first
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import window_at
-from cvnotes.targets import refine_subpixel
+from cvnotes.targets import refine_edges, refine_subpixel
 from cvnotes.warping import backward_warp, zoom_map
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
@@ -912,6 +914,24 @@ def test_what_the_next_picture_leaves_is_what_a_calibration_with_it_leaves():
             assert came == pytest.approx(left, abs=0.02)
 
 
+def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
+    light, truth = course.photos()[6].astype(float), course.exact_corners()[6]
+    sharpened = (2 * light - gaussian_blur(light, 1.5)).clip(0, 255)
+    shaken = expose(light, motion=(5, 0), noise=4, rng=np.random.default_rng(3))
+    inner = np.s_[10:-10, 10:-10]  # at the border they differ
+    assert np.abs(clouds.changed(2) - sharpened)[inner].max() < 1e-3
+    assert (clouds.changed(4) != shaken).mean() < 1e-3
+    seen = render_scene(room_with(course.board(), course.poses()[6]), course.camera())
+    assert np.abs(clouds.changed(5) - luma(seen.astype(float))).max() < 1e-9
+    for picture, which in ((sharpened, 2), (shaken, 4)):
+        for window in (5, 8):
+            off = refine_subpixel(picture, np.rint(truth), window=window) - truth
+            edges = refine_edges(picture, np.rint(truth), grid=(9, 6), window=window) - truth
+            said = numbers(MODELS["clouds"].drawing(picture=which, window=window).sentence)
+            expected = [np.sqrt(np.mean(e**2)) for e in (off, edges)]
+            np.testing.assert_allclose(said[-2:], expected, atol=6e-4)
+
+
 def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
     grey = np.array([60, 90, 110, 200])
     for du, dv in ((0.35, 0.6), (0.8, 0.25), (0.5, 0.5)):
@@ -1351,6 +1371,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("ruler", "foot"),
     ("ransac", "draw"),
     ("rings", "place"),
+    ("clouds", "window"),
     ("newton", "level"),
     ("epipolar", "depth"),
 }
@@ -1382,7 +1403,7 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
     if held == "camera":  # it goes round, on a sphere; see below
         assert after.at != before.at
     elif (name, held) in ON_A_WAY:
-        assert off[0] < 9
+        assert off[0] < (14 if name == "clouds" else 9)  # from window to window
     elif (name, held) == ("columns", "free"):  # from bar to bar
         assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
     elif held in UP_AND_DOWN:

@@ -8,7 +8,6 @@ from cvnotes.calibration import calibrate, prediction_std
 from cvnotes.camera import Lens
 from cvnotes.pictures import course
 from cvnotes.show import (
-    draw_clouds,
     draw_displacement,
     draw_prediction_error,
     draw_wall,
@@ -20,13 +19,6 @@ def test_a_wall_fills_rows_from_the_left_with_every_fourth_pixel():
     wall = draw_wall(shades, columns=2).images[0].get_array()
     assert wall.shape == (8, 12)  # two rows of 2 px, two columns of 4 px, and a gap of 4 px
     assert [wall[0, 0], wall[0, 8], wall[6, 0], wall[6, 8]] == [10, 20, 30, 255]
-
-
-def test_each_method_has_its_cloud_and_its_rms():
-    ax = draw_clouds({"a": [[3.0, -4.0]], "b": [[0, 0.1]]}, reach=5)
-    assert ax.texts[0].get_text() == "a: 3.536 px"  # √(25/2)
-    assert ax.get_xlim() == (-5, 5)
-    assert ax.lines[0].get_xydata().tolist() == [[3, -4]]
 
 
 def test_arrows_are_the_displacement_of_a_lens():

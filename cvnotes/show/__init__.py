@@ -4,7 +4,7 @@ from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
 from cvnotes.show.explorations import explore
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
-from cvnotes.show.figures.corners import draw_clouds, draw_response
+from cvnotes.show.figures.corners import draw_response
 from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
 from cvnotes.show.figures.formation import box_lines, draw_field_of_view, draw_formation
 from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole, draw_rays
@@ -70,7 +70,6 @@ __all__ = [
     "draw_displacement",
     # chapter 5: corners
     "draw_response",
-    "draw_clouds",
     # chapters 5 and 6: least squares
     # chapters 6, 7 and 9: estimates
     "draw_residuals",

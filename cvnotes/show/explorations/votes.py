@@ -8,7 +8,7 @@ from cvnotes.base import Array
 from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, rgb
+from cvnotes.show.style import ESTIMATED, LENS, rgb
 
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
 _LEFT, _TOP, _SIDE = 324, 185, 57  # px, the part of the photograph that is shown
@@ -54,7 +54,8 @@ def votes_model() -> Model:
     )
     about = (
         "A part of a photograph of the board with a window of 7 × 7 pixels; the lines along which "
-        "its pixels see an edge; and their gradients, with an ellipse as wide as they spread."
+        "its pixels see an edge, orange where steep and blue where level; and their gradients, "
+        "with an ellipse as wide as they spread."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -91,21 +92,24 @@ def _votes(
     for i in np.argsort(length)[(length < _WEAK).sum() :]:
         across = window.g[i, ::-1] * [-1, 1] / length[i]
         ends = window.p[i] + 3 * _HALF * np.outer([-1, 1], across)
-        panel.line(ends, _on_paper(min(length[i] / _STRONG, 1)), 1.2)
+        steep = abs(window.g[i, 0]) > abs(window.g[i, 1])
+        panel.line(ends, _on_paper(ESTIMATED if steep else LENS, min(length[i] / _STRONG, 1)), 1.2)
     panel.mark(corners, "ideal", 8)
     panel.mark(window.crossing, "estimated", 8)
     return panel
 
 
-def _on_paper(strength: float) -> str:
-    """Mix the colour of estimates with white."""
-    mixed = (255 * (1 - strength * (1 - np.array(rgb(ESTIMATED))))).astype(int)
+def _on_paper(colour: str, strength: float) -> str:
+    """Mix a colour with white."""
+    mixed = (255 * (1 - strength * (1 - np.array(rgb(colour))))).astype(int)
     return "#{:02X}{:02X}{:02X}".format(*mixed)
 
 
 def _spread(paper: Paper, window: Window) -> Panel:
     """Draw the gradients as dots, and the ellipse whose half axes are √(λ/n)."""
-    panel = paper.panel(_SIZE, (-_FAR, _FAR), (-_FAR, _FAR), "gradients (grey levels a pixel)")
+    panel = paper.panel(
+        _SIZE, (-_FAR, _FAR), (-_FAR, _FAR), "gradients g_u →, g_v ↓ (grey levels a pixel)"
+    )
     panel.ticks(x=(-60, -30, 0, 30, 60), y=(-60, -30, 0, 30, 60))
     panel.mark(window.g, "lens", 3.5)
     phi = np.linspace(0, 2 * np.pi, 61)

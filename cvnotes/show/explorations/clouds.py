@@ -1,0 +1,139 @@
+"""Explore two ways to measure corners: how far off, for which window, in which picture."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array, Image, luma
+from cvnotes.pictures import course, expose, render_scene, room_with
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS
+from cvnotes.targets import refine_edges, refine_subpixel
+
+_VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners is shown
+_PICTURES = "as computed", "sharpened", "JPEG of quality 30", "5 px shake, noise", "rays, no blur"
+_METHODS = ("gradients", LENS), ("edge model", ESTIMATED)
+_WINDOWS = np.arange(3, 13)  # px, from the middle to the border
+_REACH, _SHOWN = 0.15, 14  # px, of the clouds and of the picture
+_LEAST, _MOST = 0.004, 0.2  # px, of the curves
+
+
+def clouds_model() -> Model:
+    """Make the model of 54 corners, measured in two ways in five pictures."""
+    settings = (
+        Setting("window", "window (px)", 3, 12, 1, 4, "half of its side"),
+        Setting("picture", "picture", 1, 5, 1, 1, "; ".join(_PICTURES)),
+    )
+    about = (
+        "A corner and the window about it; the errors of 54 corners by the gradients, blue, and by "
+        "the model of two blurred edges, orange; and how large they are, for each window."
+    )
+    return Model("clouds", about, settings, _draw, {"window": lambda _, at: {"window": at[0]}})
+
+
+@lru_cache(maxsize=5)
+def changed(which: int) -> Image:
+    """Return one of the five pictures, as in chapter 5, in grey levels."""
+    light = course.photo(_VIEW).astype(float)
+    if which == 2:
+        soft = _spread(light.shape[0], 1.5) @ light @ _spread(light.shape[1], 1.5).T
+        return np.asarray((2 * light - soft).clip(0, 255))
+    if which == 3:
+        return expose(light, jpeg=30)
+    if which == 4:
+        way = 5 * ((np.arange(320) + 0.5) / 320 - 0.5)
+        shaken = light @ np.mean([_moved(light.shape[1], s) for s in way], axis=0).T
+        return expose(shaken, noise=4, rng=np.random.default_rng(3))
+    if which == 5:
+        room = room_with(course.board(), course.poses()[_VIEW])
+        return luma(render_scene(room, course.camera()).astype(float))
+    return light
+
+
+def _spread(n: int, sigma: float) -> Array:
+    """Return the matrix (n, n) of a Gaussian blur along rows or columns."""
+    at = np.arange(n)
+    bell = np.exp(-0.5 * ((at[:, None] - at) / sigma) ** 2)
+    return np.asarray(bell / bell.sum(axis=1, keepdims=True))
+
+
+def _moved(n: int, by: float) -> Array:
+    """Return the matrix (n, n) of a shift along rows, linear between pixels."""
+    at = np.arange(n)
+    return np.asarray(np.maximum(1 - np.abs((at[:, None] - by).clip(0, n - 1) - at), 0))
+
+
+@lru_cache(maxsize=5)
+def errors(which: int) -> Array:
+    """Return measured minus true corners, by method and window: (2, 10, 54, 2)."""
+    truth, photo = course.exact_corners()[_VIEW], changed(which)
+    start = np.rint(truth)
+    by_gradients = [refine_subpixel(photo, start, window=int(w)) for w in _WINDOWS]
+    by_edges = [refine_edges(photo, start, grid=(9, 6), window=int(w)) for w in _WINDOWS]
+    return np.asarray(np.array([by_gradients, by_edges]) - truth)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    window, which = round(values["window"]), round(values["picture"])
+    off = errors(which)
+    rms = np.sqrt(np.nanmean(off**2, axis=(2, 3)))
+    now = int(window - _WINDOWS[0])
+    panels = _picture(paper, window, which), _cloud(paper, off[:, now]), _curves(paper, rms, now)
+    (gradients, edges), name = rms[:, now], _PICTURES[which - 1]
+    lost = int(np.isnan(off[:, now, :, 0]).any(axis=0).sum())
+    ahead = "The edge model is ahead" if edges < gradients else "The gradients are ahead"
+    return Drawing(
+        paper.join(panels),
+        f"In the picture {name}, with a window of {2 * window + 1} × {2 * window + 1} px, the "
+        f"gradients are off by {gradients:.3f} px and the edge model by {edges:.3f}. {ahead}."
+        + f" ({lost} corners were lost.)"
+        * (lost > 0),
+    )
+
+
+def _picture(paper: Paper, window: int, which: int) -> Panel:
+    u, v = np.rint(course.exact_corners()[_VIEW, _CORNER]).astype(int)
+    panel = paper.panel(
+        (285, 285), (u - _SHOWN - 0.5, u + _SHOWN + 0.5), (v - _SHOWN - 0.5, v + _SHOWN + 0.5),
+        f"{_PICTURES[which - 1]}, and the window",
+    )  # fmt: skip
+    part = changed(which)[v - _SHOWN : v + _SHOWN + 1, u - _SHOWN : u + _SHOWN + 1]
+    panel.image(np.rint(part).clip(0, 255).astype(np.uint8), smooth=False)
+    box = (window + 0.5) * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
+    for colour, width in (("#FFFFFF", 4), (ESTIMATED, 2)):
+        panel.line(box + [u, v], colour, width)
+    return panel
+
+
+def _cloud(paper: Paper, off: Array) -> Panel:
+    """Draw the errors, and a ring as large as the RMS of a point."""
+    panel = paper.panel(
+        (285, 285), (-_REACH, _REACH), (-_REACH, _REACH), "errors of 54 corners, enlarged"
+    )
+    turn = np.linspace(0, 2 * np.pi, 91)
+    ring = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    dot = 0.0022 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    for cloud, (_, colour) in zip(off, _METHODS, strict=True):
+        panel.polygons(cloud[:, None] + dot, colour)
+        panel.line(np.sqrt(2 * np.nanmean(cloud**2)) * ring, colour, 2)
+    panel.mark([0, 0], "ideal", 6)
+    panel.line([[0.04, 0.138], [0.14, 0.138]], IDEAL, 2)
+    panel.text([0.09, 0.124], "0.1 px", IDEAL, anchor="mm", size=12)
+    return panel
+
+
+def _curves(paper: Paper, rms: Array, now: int) -> Panel:
+    """Draw the RMS of one coordinate against the window, as a logarithm."""
+    panel = paper.panel(
+        (285, 285), (2, 13), (np.log10(_MOST), np.log10(_LEAST)), "RMS (px) against the window"
+    )
+    for value in (0.005, 0.01, 0.02, 0.05, 0.1):
+        panel.line([[0, np.log10(value)], [14, np.log10(value)]], "#DDDDDD", 0.5)
+        panel.text([2.1, np.log10(value)], f"{value:g}", size=9)
+    for curve, (name, colour) in zip(rms, _METHODS, strict=True):
+        panel.line(np.column_stack([_WINDOWS, np.log10(curve)]), colour, 2)
+        panel.text([12.8, np.log10(curve[-1])], name, colour, anchor="rd", size=12)
+        panel.mark([_WINDOWS[now], np.log10(curve[now])], "ideal", 6)
+    panel.grip("window", "how large the window is", [_WINDOWS[now], np.log10(rms[0, now])], 26)
+    return panel
