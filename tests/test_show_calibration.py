@@ -80,3 +80,19 @@ def test_the_lens_bends_the_edges():
 def test_a_cube_behind_the_camera_is_refused():
     with pytest.raises(DegenerateError, match="no image"):
         draw_cube(Camera(SENSOR), SIDE)
+
+
+def test_a_cubes_sides_are_as_bright_as_the_light_falls_on_them_and_flat_light_throws_no_shadow():
+    camera = Camera(SENSOR, look_at([400, 400, -300], [50, 25, 0], up=(0, 0, -1)))
+    cubes = {light: draw_cube(camera, SIDE, light=light) for light in ((1, 0, -1), (0, 1, -0.2))}
+    (steep, flat) = cubes.values()
+    assert len(steep.patches) == 4
+    assert len(flat.patches) == 3  # top and two sides: no shadow
+    top, right, low = (np.array(p.get_facecolor()[:3]) for p in steep.patches[1:])
+    assert np.allclose(top, right)  # both are lit under 45°
+    assert low.max() < right.max()
+    # The shadow of the corner at the top left falls 50 mm to the left of its foot.
+    shadow = steep.patches[0].get_xy()
+    assert np.abs(shadow - camera.project([-50, 0, 0])).sum(axis=1).min() < 0.5
+    with pytest.raises(ShapeError):
+        draw_cube(camera, SIDE, light=(0, 1))

@@ -86,7 +86,7 @@ def _stands(foot: Array) -> Array:
 
 
 def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
-    """Draw a band for each metre, thin where something stands before it."""
+    """Draw a band for each metre; where something stands before it, thin dashes."""
     h = np.append(np.arange(0, height, 0.125), height)
     pixels, places = at_height(foot, h), _stands(foot) - 1e3 * h[:, None] * [0, 1, 0]
     u, v = np.clip(np.rint(pixels), 0, np.array(_CAMERA.size) - 1).astype(int).T
@@ -95,8 +95,9 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
     seen = np.where(hidden[:, None], np.nan, pixels)
     panel.line(seen, MUTED, width + 1.5)
     for i, part in enumerate(pairwise(pixels)):
-        colour = ESTIMATED if int(h[i]) % 2 == 0 else "#FFFFFF"
-        panel.line(part, colour, 1 if hidden[i : i + 2].any() else width)
+        colour, behind = ESTIMATED if int(h[i]) % 2 == 0 else "#FFFFFF", hidden[i : i + 2].any()
+        if not behind or i % 2:
+            panel.line(part, colour, 1 if behind else width)
     apart = np.linalg.norm(pixels[8] - pixels[0]) / panel.pixel  # where letters have no room,
     for metre in range(1 if apart > 20 else int(height), int(height) + 1):  # only the last
         panel.text(at_height(foot, metre) + [width / 2 + 4, 0], f"{metre}", ESTIMATED, size=10)

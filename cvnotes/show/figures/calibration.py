@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _COLOUR = (0.96, 0.55, 0.16)  # of the side that is lit best
-# Of the top, the bottom, low and high x, low and high y.
-_SHADES = (1.0, 0.4, 0.82, 0.6, 0.48, 0.72)
-_SHADOW = np.array(DESK_LIGHT)[:2] / DESK_LIGHT[2]  # where it throws the shadow of height 1
+# Outwards from the top, the bottom, low and high x, low and high y.
+_NORMALS = np.array([[0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0]])
+_AMBIENT, _STEEP = 0.45, 0.5  # brightness without light; sine of the flattest light with a shadow
 
 
 def draw_arrow(J: npt.ArrayLike, shared: int) -> Any:
@@ -81,7 +81,12 @@ def _dark(x: Array) -> Array:
 
 
 def draw_cube(
-    camera: Camera, side: float, *, origin: npt.ArrayLike = (0, 0), ax: "Axes | None" = None
+    camera: Camera,
+    side: float,
+    *,
+    origin: npt.ArrayLike = (0, 0),
+    light: npt.ArrayLike = DESK_LIGHT,
+    ax: "Axes | None" = None,
 ) -> "Axes":
     """Draw a cube that stands on a board, with its shadow, as the camera would photograph it.
 
@@ -93,6 +98,8 @@ def draw_cube(
         Length of an edge, in the unit of the board.
     origin : array_like, shape (2,)
         Where on the board its first corner stands; the others are at larger x and y.
+    light : array_like, shape (3,)
+        Where the light comes from, in the board's WRF; a flat one throws no shadow.
     ax : Axes, optional
         With the photograph on it.
 
@@ -114,17 +121,26 @@ def draw_cube(
     >>> len(draw_cube(camera, 50.0).patches)  # three faces and the shadow
     4
     """
+    from scipy.spatial import ConvexHull
+
     camera, side = is_camera(camera, "camera"), length(side, "side")
     x0, y0 = one_point(origin, "origin", 2)
     cube = box((x0, x0 + side), (y0, y0 + side), (-side, 0))
     ax = pixel_axes(ax, camera.size)
     limits = ax.get_xlim(), ax.get_ylim()
-    floor = cube.vertices[[2, 0, 0, 1, 3, 3], :2]  # round the outline of the cube and its shadow
-    floor[2:5] += side * _SHADOW
-    shadow = _outline(camera, np.column_stack([floor, np.zeros(6)]))
-    ax.fill(*shadow.T, color="#404040", alpha=0.6, linewidth=0, zorder=2)  # seen on black, too
+    lit = one_point(light, "light", 3)
+    lit = lit / max(float(np.linalg.norm(lit)), np.finfo(float).tiny)
+    if lit[2] < -_STEEP:
+        foot = cube.vertices[np.isclose(cube.vertices[:, 2], 0), :2]
+        floor = np.concatenate([foot, foot + side * lit[:2] / lit[2]])
+        floor = floor[ConvexHull(floor).vertices]
+        shadow = _outline(camera, np.column_stack([floor, np.zeros(len(floor))]))
+        ax.fill(*shadow.T, color="#404040", alpha=0.6, linewidth=0, zorder=2)  # seen on black, too
     faces = _outline(camera, cube.faces)
-    draw_faces(ax, faces, _SHADES, _COLOUR, edgecolor="white", linewidth=1.2, zorder=3)
+    shades = _AMBIENT + 0.65 * np.maximum(_NORMALS @ lit, 0)
+    draw_faces(
+        ax, faces, tuple(shades.clip(0, 1)), _COLOUR, edgecolor="white", linewidth=1.2, zorder=3
+    )
     ax.set(xlim=limits[0], ylim=limits[1])
     return ax
 
