@@ -35,7 +35,6 @@ from public_face import (
 from cvnotes.calibration import calibrate, coverage
 from cvnotes.show.figures import (
     calibration,
-    corners,
     estimates,
     formation,
     ideas,
@@ -84,8 +83,6 @@ def figure(call, arrays, name=None, **more):
 
 
 FIGURES = [
-    # corners
-    figure(corners.draw_response, {"response": (CLOUD, SINGLE)}),
     figure(
         estimates.draw_plane_error,
         {"m": (M, several(2)), "predicted": (M + 1, several(2)), "magnify": (10.0, ONE)},
@@ -135,7 +132,6 @@ FIGURES = [
     ),
     # least squares
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
-    figure(lenses.draw_displacement, {}, lens=LENS),
     # lines
     figure(
         lines.draw_lines,
@@ -157,10 +153,6 @@ FIGURES = [
         for count in (coverage.covered_cells, coverage.count_cells)
     ),
     # vanishing
-    figure(
-        vanishing.draw_vanishing,
-        {"segments": (LINES, several(2)), "v_h": (np.array([900.0, 95, 1]), several(3))},
-    ),
     figure(vanishing.draw_altitudes, {"v": (TRIANGLE, several(2))}),
     # what 3-D figures are made of
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),

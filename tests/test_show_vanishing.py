@@ -3,7 +3,7 @@ import pytest
 
 from cvnotes.base import DegenerateError, ShapeError
 from cvnotes.camera import Camera, intrinsics, look_at
-from cvnotes.show import draw_altitudes, draw_vanishing
+from cvnotes.show import draw_altitudes
 
 
 def ends(line):
@@ -12,34 +12,6 @@ def ends(line):
 
 def crosses(ax):
     return np.concatenate([c.get_offsets() for c in ax.collections])
-
-
-# Segments and their vanishing point.
-
-
-def test_dashes_lead_from_the_nearer_end_of_each_segment_to_the_vanishing_point():
-    segments = [[[0, 0], [100, 50]], [[100, 150], [0, 200]]]  # they meet in (200, 100)
-    ax = draw_vanishing(segments, [400, 200, 2])
-    dashed = [ends(line) for line in ax.lines if line.get_linestyle() == "--"]
-    assert np.allclose(dashed, [[[100, 50], [200, 100]], [[100, 150], [200, 100]]])
-    assert np.allclose(crosses(ax), [[200, 100]])
-
-
-@pytest.mark.parametrize("v", [[2000, 100], [-900, 240], [300, 3000], [300, -50]])
-def test_the_axes_grow_towards_a_vanishing_point_outside_of_the_picture(v):
-    ax = draw_vanishing([[[10, 10], [40, 40]]], [*v, 1])
-    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
-    assert left < v[0] < right
-    assert top < v[1] < bottom
-    assert left <= -0.5 < 639.5 <= right
-    assert top <= -0.5 < 479.5 <= bottom
-
-
-def test_a_vanishing_point_at_infinity_is_not_drawn():
-    ax = draw_vanishing([[[10, 10], [40, 40]]], [1, 1, 0])
-    assert len(ax.lines) == 1
-    assert not ax.collections
-    assert ax.get_xlim() == (-0.5, 639.5)
 
 
 # The triangle.
@@ -73,14 +45,16 @@ def test_points_on_a_line_are_no_triangle():
 # What cannot be drawn.
 
 
-@pytest.mark.parametrize(
-    ("draw", "message"),
-    [
-        (lambda: draw_vanishing([[[1, 2], [3, 4]]], np.eye(3)), "one point"),
-        (lambda: draw_vanishing([[1, 2], [3, 4], [5, 6]], [1, 2, 1]), "two ends each"),
-        (lambda: draw_altitudes([[[0, 0], [4, 0], [1, 3]]]), "three points"),
-    ],
-)
-def test_the_wrong_shape_is_named(draw, message):
-    with pytest.raises(ShapeError, match=message):
-        draw()
+def test_the_wrong_shape_is_named():
+    with pytest.raises(ShapeError, match="three points"):
+        draw_altitudes([[[0, 0], [4, 0], [1, 3]]])
+
+
+@pytest.mark.parametrize("v", [[2000, 100], [-900, 240], [300, 3000], [300, -50]])
+def test_the_axes_grow_towards_a_vanishing_point_outside_of_the_picture(v):
+    ax = draw_altitudes([v, [0, 0], [900, 700]])
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    assert left < v[0] < right
+    assert top < v[1] < bottom
+    assert left <= -0.5 < 639.5 <= right
+    assert top <= -0.5 < 479.5 <= bottom

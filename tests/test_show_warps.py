@@ -5,10 +5,8 @@ import pytest
 
 from cvnotes.base import CvnotesError
 from cvnotes.calibration import calibrate, prediction_std
-from cvnotes.camera import Lens
 from cvnotes.pictures import course
 from cvnotes.show import (
-    draw_displacement,
     draw_prediction_error,
     draw_wall,
 )
@@ -19,15 +17,6 @@ def test_a_wall_fills_rows_from_the_left_with_every_fourth_pixel():
     wall = draw_wall(shades, columns=2).images[0].get_array()
     assert wall.shape == (8, 12)  # two rows of 2 px, two columns of 4 px, and a gap of 4 px
     assert [wall[0, 0], wall[0, 8], wall[6, 0], wall[6, 8]] == [10, 20, 30, 255]
-
-
-def test_arrows_are_the_displacement_of_a_lens():
-    arrows = draw_displacement(Lens(k=(0.4,))).collections[0]
-    assert (arrows.U[0], arrows.V[0]) == pytest.approx(
-        (-0.3, -0.3), abs=1e-12
-    )  # 3 k1 r² x, r² = 0.5
-    ends = {tuple(at) for line in arrows.axes.lines for at in line.get_xydata().round(9)}
-    assert (-0.8, -0.8) in ends  # there, too, stands the corner of the bent grid
 
 
 def test_maps_of_the_uncertainty_share_their_colours_where_they_are_to_be_compared():

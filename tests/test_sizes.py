@@ -63,12 +63,6 @@ MORE = [
     function(show.one_corner, {}, chapter=1),
     function(show.draw_coverage, {}, image_points=PAIR, size=(640, 480)),
     function(show.draw_altitudes, {}, v=np.array([[1120.0, 240], [-480, 300], [300, -900]])),
-    function(
-        show.draw_vanishing,
-        {},
-        segments=np.array([[[0.0, 0], [100, 50]], [[0, 100], [100, 110]]]),
-        v_h=np.array([200.0, 120, 1]),
-    ),
 ]
 # Names of sizes that are no whole numbers, or pairs of such.
 NAMES = {"blur", "sigma", "motion", "margin", "radius", "window", "size", "farther"}

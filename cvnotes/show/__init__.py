@@ -4,20 +4,16 @@ from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
 from cvnotes.show.explorations import explore
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
-from cvnotes.show.figures.corners import draw_response
 from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
 from cvnotes.show.figures.formation import box_lines, draw_field_of_view, draw_formation
 from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
-from cvnotes.show.figures.lenses import (
-    draw_displacement,
-    draw_grid,
-)
+from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
 from cvnotes.show.figures.sensors import draw_pixels, draw_sensor
-from cvnotes.show.figures.vanishing import draw_altitudes, draw_vanishing
+from cvnotes.show.figures.vanishing import draw_altitudes
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
@@ -57,7 +53,6 @@ __all__ = [
     "draw_rays",
     "draw_pinhole",
     # chapter 2: vanishing points
-    "draw_vanishing",
     "draw_altitudes",
     # chapter 3: how an image is formed
     "draw_formation",
@@ -67,9 +62,7 @@ __all__ = [
     "draw_pixels",
     # chapter 4: lenses
     "draw_grid",
-    "draw_displacement",
     # chapter 5: corners
-    "draw_response",
     # chapters 5 and 6: least squares
     # chapters 6, 7 and 9: estimates
     "draw_residuals",

@@ -1,11 +1,9 @@
 """Figures of lenses: what they do to a grid, and how far they can be believed."""
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cvnotes.base import Array
 from cvnotes.camera import Lens
 from cvnotes.show.axes import drawn_on
 from cvnotes.show.guards import length, thing
@@ -44,27 +42,4 @@ def draw_grid(
     reach = 1.25 * extent
     ax.set(xlim=(-reach, reach), ylim=(reach, -reach), aspect="equal", title=title)
     ax.axis("off")
-    return ax
-
-
-def draw_displacement(lens: Lens, *, ax: "Axes | None" = None) -> "Axes":
-    """Draw a grid of the plane z = 1, and how a lens three times as strong moves it, as arrows.
-
-    Examples
-    --------
-    >>> len(draw_displacement(Lens(p=(0.02, 0.0))).collections[0].U)
-    25
-    """
-    thing(lens, "lens", Lens)
-    p1, p2 = lens.p
-    strong = replace(lens, k=tuple(3 * k for k in lens.k), p=(3 * p1, 3 * p2))
-    ax = draw_grid(strong, ax=ax)
-    ax.set(xlim=(-0.7, 0.7), ylim=(0.7, -0.7))
-    x = np.array([-0.5, -0.3, 0, 0.3, 0.5])
-    xy: Array = np.stack(np.meshgrid(x, x), -1).reshape(-1, 2)
-    moved = strong.distort(xy) - xy
-    ax.quiver(
-        *xy.T, *moved.T, color=LENS, zorder=3, width=0.008, minshaft=2,
-        angles="xy", scale_units="xy", scale=1,
-    )  # fmt: skip
     return ax

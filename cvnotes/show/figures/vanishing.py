@@ -9,45 +9,10 @@ from cvnotes.base import Array, DegenerateError, ShapeError, matrix
 from cvnotes.projective import from_homogeneous, join, meet, to_homogeneous
 from cvnotes.show.axes import beside, halo, pixel_axes
 from cvnotes.show.figures.images import draw_points
-from cvnotes.show.figures.lines import draw_segments, segment_ends
 from cvnotes.show.style import ESTIMATED, FONT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-
-def draw_vanishing(
-    segments: npt.ArrayLike, v_h: npt.ArrayLike, *, ax: "Axes | None" = None
-) -> "Axes":
-    """Draw segments and, dashed, the way on to their vanishing point; the axes grow to show it.
-
-    Parameters
-    ----------
-    segments : array_like, shape (n, 2, 2)
-        End points (u, v).
-    v_h : array_like, shape (3,)
-        The vanishing point, homogeneous. At infinity it is not drawn, and the axes stay.
-
-    Examples
-    --------
-    >>> ax = draw_vanishing([[[0, 0], [90, 90]], [[0, 190], [90, 100]]], [900, 95, 1])
-    >>> bool(ax.get_xlim()[1] > 900)
-    True
-    """
-    ends, v_h = segment_ends(segments), matrix(v_h, "v_h", 3)
-    if len(ends) == 0:
-        raise DegenerateError("segments: expected at least one that leads to the vanishing point")
-    if v_h.ndim != 1:
-        raise ShapeError(f"v_h: expected one point (3,), got {v_h.shape}")
-    ax = draw_segments(ends, ax=ax)
-    if v_h[2] == 0:
-        return ax
-    v = from_homogeneous(v_h)
-    near = ends[np.arange(len(ends)), np.linalg.norm(ends - v, axis=-1).argmin(axis=1)]
-    for start in near:
-        ax.plot(*np.stack([start, v]).T, "--", color=ESTIMATED, linewidth=0.9)
-    draw_points(v, ax=ax)
-    return _widened(ax, v[None])
 
 
 def draw_altitudes(v: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
