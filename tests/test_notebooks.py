@@ -11,6 +11,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
+from cvnotes import show
 from cvnotes.learn import EXERCISES, exercises
 from cvnotes.tutor.course import MORE, short_name
 
@@ -83,6 +84,12 @@ def test_code_cells_are_short_and_follow_prose(path):
     for before, cell in zip(notebook.cells, notebook.cells[1:], strict=False):
         if cell.cell_type == "code":
             assert before.cell_type == "markdown", f"{cell.id} has no prose before it"
+
+
+@each_notebook
+def test_figures_that_the_prose_names_exist(path):
+    named = set(re.findall(r"`(draw_\w+|explore\w*)`", _prose(_read(path))))
+    assert named <= set(show.__all__), named - set(show.__all__)
 
 
 @each_notebook
