@@ -29,6 +29,7 @@ from cvnotes.camera import (
     pose,
     rotation_from_angles,
     rotation_from_vector,
+    vector_from_rotation,
     xy_from_px,
 )
 from cvnotes.homography import dlt
@@ -46,7 +47,7 @@ from cvnotes.pictures import (
 )
 from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, LENS, WORLD, explorations
-from cvnotes.show.explorations import clouds, cube, eleventh, maps
+from cvnotes.show.explorations import clouds, cube, eleventh, gimbal, maps
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -932,6 +933,27 @@ def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
             np.testing.assert_allclose(said[-2:], expected, atol=6e-4)
 
 
+def test_the_rings_axes_are_those_about_which_their_angles_turn():
+    rng = np.random.default_rng(2)
+    for _ in range(5):
+        values = random_values(MODELS["gimbal"], rng)
+        angles = np.radians([values[name] for name in "xyz"])
+        R = rotation_from_angles(*angles)
+        turned = gimbal.axes(values)
+        for axis, name in zip(turned, "zyx", strict=True):
+            more = np.radians([values[n] + 0.01 * (n == name) for n in "xyz"])
+            turn = vector_from_rotation(rotation_from_angles(*more) @ R.T) / np.radians(0.01)
+            assert np.allclose(turn, axis, atol=1e-3)
+        volume = abs(np.linalg.det(turned))
+        assert volume == pytest.approx(np.cos(angles[1]), abs=1e-9)
+        said = MODELS["gimbal"].drawing(**values).sentence
+        assert "one line" in said if volume < 1e-9 else abs(numbers(said)[-1] - volume) < 0.006
+    # Then two angles do the same to what is drawn.
+    locked = [MODELS["gimbal"].picture(x=x, y=90, z=z) for x, z in ((40, 0), (10, -30))]
+    dart = [(p[TITLE:, :423].max(axis=-1) < 40) for p in locked]
+    assert (dart[0] & dart[1]).sum() > 0.9 * (dart[0] | dart[1]).sum() > 1000
+
+
 def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
     grey = np.array([60, 90, 110, 200])
     for du, dv in ((0.35, 0.6), (0.8, 0.25), (0.5, 0.5)):
@@ -1400,7 +1422,7 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
     wanted = np.array(before.at) + np.array(by) * before.unit
     after = grip_of(model.drawing(**model.dragged(held, tuple(wanted), **start)), held)
     off = np.abs(after.at - wanted) / np.abs(before.unit)
-    if held == "camera":  # it goes round, on a sphere; see below
+    if held in ("camera", "orange axis"):  # these go round, on a sphere and on a circle
         assert after.at != before.at
     elif (name, held) in ON_A_WAY:
         assert off[0] < (14 if name == "clouds" else 9)  # from window to window

@@ -1,0 +1,130 @@
+"""Explore three angles: rings that turn in each other, and how two of their axes become one."""
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import rotation_from_angles
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.space.directions import sheet, towards
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, rgb
+
+_UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z, the grey axis, points up on the sheet
+_SHEET, _TOWARDS = sheet((22, -52)) @ _UPRIGHT, towards((22, -52)) @ _UPRIGHT
+_RADII, _PIECES = (1.0, 0.8, 0.6), 28
+_COLOURS = MUTED, LENS, ESTIMATED
+_WIDE, _HIGH = (1, 1, 0.9, 0.9), (-0.06, 0.06, 0.06, -0.06)  # a ring's cut: radius and height
+_SHADES = 0.8, 1.0, 0.65, 1.0  # of a ring's rim, its side, its inside and the other side
+_PLANE = np.array([[0.5, 0, 0], [-0.4, 0.28, 0], [-0.28, 0, 0], [-0.4, -0.28, 0]])  # a dart
+
+
+def gimbal_model() -> Model:
+    """Make the model of three rings, R = Rz Ry Rx."""
+    settings = (
+        Setting("x", "angle x (°)", -180, 180, 5, 20, "turns the orange ring about its own axis"),
+        Setting("y", "angle y (°)", -90, 90, 5, 30, "the middle one: turns the blue ring"),
+        Setting(
+            "z", "angle z (°)", -180, 180, 5, 0, "turns all about the grey axis, which is fixed"
+        ),
+    )
+    about = (
+        "Three rings, each of which turns in the one outside of it, with their axes, and a dart in "
+        "the innermost; beside it how much of a cube the three axes span."
+    )
+
+    def pulled(values: Values, at: Array) -> Values:
+        """Choose the middle angle whose orange axis ends nearest to the hand."""
+        tried = np.arange(-90, 91, 5.0)
+        ends = np.array([_on_sheet(axes({**values, "y": y})[2] * 0.9) for y in tried])
+        return {"y": float(tried[np.linalg.norm(ends - at, axis=1).argmin()])}
+
+    return Model("gimbal", about, settings, _draw, {"orange axis": pulled})
+
+
+def axes(values: Values) -> Array:
+    """Return the axes (3, 3) about which the angles z, y and x turn, where the rings now stand."""
+    y, z = np.radians([values["y"], values["z"]])
+    about_z, about_zy = rotation_from_angles(0, 0, z), rotation_from_angles(0, y, z)
+    return np.array([[0, 0, 1.0], about_z[:, 1], about_zy[:, 0]])
+
+
+def _on_sheet(W: Array) -> Array:
+    return np.asarray(W @ _SHEET.T)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    outer, middle, inner = turns = axes(values)
+    R = rotation_from_angles(*np.radians([values["x"], values["y"], values["z"]]))
+    panel = paper.panel(
+        (420, 360), (-1.63, 1.63), (-1.4, 1.4), "each ring turns in the one outside"
+    )
+    faces, paints = [], []
+    for axis, side, r, colour in zip(
+        turns, (middle, inner, R[:, 1]), _RADII, _COLOURS, strict=True
+    ):
+        quads = _ring(axis, side, r)
+        faces.append(quads.reshape(-1, 4, 3))
+        paints += [_shaded(colour, s) for _ in range(_PIECES) for s in _SHADES]
+        bars = np.array([-r - 0.3, -r, r, r + 0.3])[:, None] * axis
+        for pair in (bars[:2], bars[2:]):
+            faces.append(_bar(pair))
+            paints += [colour] * len(faces[-1])
+    dart = _PLANE @ R.T
+    faces.append(dart[[[0, 1, 2, 2], [0, 3, 2, 2]]])
+    paints += [IDEAL, "#555555"]
+    quads = np.concatenate(faces)
+    depth = quads.mean(axis=1) @ _TOWARDS
+    for i in np.argsort(depth):
+        panel.polygons(_on_sheet(quads[i])[None], paints[i])
+    end = _on_sheet(inner * 0.9)
+    panel.mark(end, "estimated", 6)
+    panel.grip("orange axis", "the end of the orange axis", end, 8)
+    apart = np.degrees(np.arccos(min(abs(float(outer @ inner)), 1)))
+    return Drawing(paper.join((panel, _volume(paper, values["y"]))), _sentence(values["y"], apart))
+
+
+def _ring(axis: Array, side: Array, r: float) -> Array:
+    """Return the sides (pieces, 4, 4, 3) of a ring through two axes."""
+    t = np.linspace(0, 2 * np.pi, _PIECES + 1)[:, None, None]
+    wide, high = np.array(_WIDE)[:, None], np.array(_HIGH)[:, None]
+    cut = r * wide * (np.cos(t) * axis + np.sin(t) * side) + high * np.cross(axis, side)
+    cut = np.concatenate([cut, cut[:, :1]], axis=1)
+    return np.stack([cut[:-1, :-1], cut[1:, :-1], cut[1:, 1:], cut[:-1, 1:]], axis=2)
+
+
+def _bar(ends: Array) -> Array:
+    """Return a bar between two places as pieces (k, 4, 3) that face the reader."""
+    aside = np.cross(ends[1] - ends[0], _TOWARDS)
+    aside = 0.025 * aside / max(float(np.linalg.norm(aside)), 1e-9)
+    along = ends[0] + np.linspace(0, 1, 5)[:, None] * (ends[1] - ends[0])
+    return np.stack(
+        [along[:-1] - aside, along[:-1] + aside, along[1:] + aside, along[1:] - aside], 1
+    )
+
+
+def _shaded(colour: str, shade: float) -> str:
+    return "#{:02X}{:02X}{:02X}".format(*(round(255 * shade * part) for part in rgb(colour)))
+
+
+def _volume(paper: Paper, y: float) -> Panel:
+    panel = paper.panel((320, 360), (-112, 112), (1.15, -0.16), "volume that the three axes span")
+    panel.ticks(x=(-90, -45, 0, 45, 90), y=(0, 0.5, 1))
+    angles = np.arange(-90, 91, 2.0)
+    panel.line(np.column_stack([angles, np.cos(np.radians(angles))]), MUTED, 2)
+    here = np.array([y, np.cos(np.radians(y))])
+    panel.mark(here, "estimated", 8)
+    panel.text(here + [0, 0.07], f"{abs(here[1]):.2f}", ESTIMATED, anchor="mm", size=13)
+    panel.text([0, 0.12], "middle angle (°)", MUTED, anchor="mm", size=11)
+    return panel
+
+
+def _sentence(y: float, apart: float) -> str:
+    if abs(y) == 90:
+        return (
+            "The orange axis lies in the grey one: the angles x and z turn the dart about one "
+            "line, and only two directions of turning are left."
+        )
+    return (
+        f"The grey and the orange axis are {apart:.0f}° apart; the three span "
+        f"{np.cos(np.radians(y)):.2f} of a cube."
+    )
