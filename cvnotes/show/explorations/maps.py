@@ -6,7 +6,7 @@ from cvnotes.base import Array
 from cvnotes.projective import apply, cross_ratio, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
 
 _RIGHT, _TOP = np.array([1.0, 0]), np.array([0.0, -1])  # where the square is taken hold of
 _SIDE = np.array([[1, -1], [1, 0], [1, 0.5], [1, 1]])  # four points of its right side
@@ -86,7 +86,7 @@ def _angle(a: Array, b: Array) -> float:
 def _draw(paper: Paper, values: Values) -> Drawing:
     H = matrix(values)
     panel = paper.panel(
-        (350, 350), (-2, 2), (-2, 2), "pull the square at its right side, and at its top"
+        (350, 350), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its right side, and at its top"
     )
     panel.line(_SQUARE, MUTED, 1.2, dash=5)
     steps = np.linspace(-1, 1, 5)
@@ -96,6 +96,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             panel.line(apply(H, ends), WORLD, 2 if abs(v) == 1 else 0.8)
     t = np.linspace(0, 2 * np.pi, 121)
     panel.line(apply(H, np.column_stack([np.cos(t), np.sin(t)])), IDEAL, 2.2)
+    panel.line(apply(H, _SIDE[[0, 3]]), LENS, 3)
+    panel.mark(apply(H, _SIDE), "lens", 5)
     for name, what, place in (
         ("right side", "the right side, to turn and enlarge", _RIGHT),
         ("top", "the top, to shear and tilt", _TOP),

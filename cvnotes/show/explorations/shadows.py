@@ -56,7 +56,7 @@ def shadows_model() -> Model:
             panel.line([ray[0] if sun[2] > 0 else ray[1], end], ESTIMATED, 0.9, dash=5)
         panel.mark(end, "estimated", 10)
         panel.grip("sun", "the sun, or the shadow of the camera", end, 10)
-        plan = paper.panel((330, 330), (-59, 59), (110, -8), "the same from above (m)")
+        plan = paper.panel((330, 330), (-68, 68), (104, -32), "the same from above (m)")
         _draw_plan(plan, sun)
         return Drawing(paper.join((panel, plan)), _sentence(sun, end, values))
 
@@ -105,13 +105,13 @@ def _tip(top: Array, sun: Array) -> Array:
 def _draw_plan(panel: Panel, sun: Array) -> None:
     panel.ticks(x=(-40, 0, 40), y=(0, 50, 100))
     for x in (-0.75, 0.75):
-        panel.line([[x, -9], [x, 111]], WORLD, 1)
+        panel.line([[x, -33], [x, 111]], WORLD, 1)
     for top in _POLES:
         panel.line([top[::2], _tip(top, sun)[::2]], MUTED, 2)
         panel.mark(top[::2], "world", 6)
     to_sun = sun[::2] / np.linalg.norm(sun[::2])
     panel.line(np.outer([0, 200], to_sun), ESTIMATED, 0.9, dash=5)
-    panel.text(45 * to_sun, "to the sun", ESTIMATED, anchor="mm")
+    panel.text(26 * to_sun, "to the sun", ESTIMATED, anchor="mm")
     panel.mark([0, 0], "camera", 9)
     side = 1 if sun[0] < 0 else -1
     panel.text([4 * side, -4], "camera", CAMERA, anchor="lm" if side > 0 else "rm")

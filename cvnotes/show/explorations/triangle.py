@@ -88,7 +88,12 @@ def camera_of(v: Array) -> tuple[Array, float]:
 
 
 def _draw_box(panel: Panel, v: Array, nearest: Array, ends: Array) -> None:
-    """Draw the box that would have these vanishing points, its edges drawn on, and the triangle."""
+    """Draw the box that would have these vanishing points, its edges drawn on, and the triangle.
+
+    Where no camera sees a box so, its edges are grey and dashed.
+    """
+    _, square = camera_of(v)
+    look = (ESTIMATED, 0) if square > 0 else (MUTED, 4)
     e, n = to_homogeneous(ends), to_homogeneous(v)
     # Between the ends of two edges lies the corner in which the edges parallel to them meet.
     far = from_homogeneous(
@@ -96,7 +101,8 @@ def _draw_box(panel: Panel, v: Array, nearest: Array, ends: Array) -> None:
     )
     for k, name in enumerate("XYZ"):
         edges = [[nearest, ends[k]], [ends[k - 2], far[k]], [ends[k - 1], far[k - 1]]]
-        panel.segments(edges, ESTIMATED, 1.5)
+        for edge in edges:
+            panel.line(edge, look[0], 1.5, look[1])
         for begin, _ in edges:
             panel.line([begin, v[k]], ESTIMATED, 0.6, dash=3)
         panel.line(v[[k, k - 1]], ESTIMATED, 1.8)
