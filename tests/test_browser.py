@@ -447,15 +447,15 @@ def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, explore
             assert np.hypot(*np.subtract(_middle(grip), (x - 30, y - 24))) < 8, name
         page.screenshot(path=tmp_path / f"{name}.png")
     output = _output(page, explorers, r'^explore\("homography"')
-    output.get_by_label("corner 3, bottom right").focus()
+    output.get_by_label("corner 2, top right").focus()
     for _ in range(5):  # quicker than pictures are drawn; the notebook keeps its cell
         page.keyboard.press("ArrowDown")
-    readout = output.locator(".widget-slider", has_text="corner 3 v").locator(".widget-readout")
-    expect(readout).to_have_text("7")  # 5 px of the page
+    readout = output.locator(".widget-slider", has_text="corner 2 v").locator(".widget-readout")
+    expect(readout).to_have_text("9")  # 5 px of the page
     for _ in range(5):  # nor is anything lost where each waits for its picture
         page.keyboard.press("ArrowDown")
         page.wait_for_timeout(700)
-    expect(readout).to_have_text(re.compile("^1[345]$"))  # 12, were each rounded by itself
+    expect(readout).to_have_text(re.compile("^1[678]$"))  # 19, were each rounded by itself
 
 
 # What somebody types who reads the tasks of chapter 6: right, a classic mistake, and no end.

@@ -954,6 +954,21 @@ def test_the_rings_axes_are_those_about_which_their_angles_turn():
     assert (dart[0] & dart[1]).sum() > 0.9 * (dart[0] | dart[1]).sum() > 1000
 
 
+def test_both_walks_are_as_long_and_a_turn_on_the_spot_leaves_one_of_them_alone():
+    shown = MODELS["walks"].drawing
+    for turn in (-80, -32, 0, 45):
+        C_x, C_z, T_x, T_z, _ = numbers(shown(turn=turn).sentence)
+        assert (C_x, C_z) == (340, -420)
+        assert np.hypot(T_x, T_z) == pytest.approx(np.hypot(C_x, C_z), abs=1)
+        # As the library has it, in space: right by `turn` about the y axis, which points down.
+        R = rotation_from_vector([0, -np.radians(turn), 0])
+        camera = Camera(intrinsics(500, 500, 250, 190), pose(R, -R @ [340, 0, -420]))
+        assert np.abs(camera.T[[0, 2]] - [T_x, T_z]).max() < 0.51
+        ahead = camera.centre + camera.R.T @ [0, 0, 100]
+        grip = np.array(grip_of(shown(turn=turn), "line of sight").at) - [340, -420]
+        assert np.allclose(grip / 190, (ahead - camera.centre)[[0, 2]] / 100, atol=1e-3)
+
+
 def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
     grey = np.array([60, 90, 110, 200])
     for du, dv in ((0.35, 0.6), (0.8, 0.25), (0.5, 0.5)):
@@ -1380,6 +1395,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "columns": {"amount": 0.7, "free": 1},
     "ransac": {"draw": 20},
     "rings": {"place": 50},
+    "walks": {"X": 200},
     "homography": {"dv2": 40, "dv3": -40},
     ("pinhole", "focus"): {"lens": 1, "focus": 1},
 }
@@ -1397,6 +1413,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("newton", "level"),
     ("epipolar", "depth"),
 }
+ROUND = {("camera", "camera"), ("gimbal", "orange axis"), ("walks", "line of sight")}
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "h": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {
     "curve",
@@ -1422,7 +1439,7 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
     wanted = np.array(before.at) + np.array(by) * before.unit
     after = grip_of(model.drawing(**model.dragged(held, tuple(wanted), **start)), held)
     off = np.abs(after.at - wanted) / np.abs(before.unit)
-    if held in ("camera", "orange axis"):  # these go round, on a sphere and on a circle
+    if (name, held) in ROUND:  # on a sphere, see below, or on a circle
         assert after.at != before.at
     elif (name, held) in ON_A_WAY:
         assert off[0] < (14 if name == "clouds" else 9)  # from window to window

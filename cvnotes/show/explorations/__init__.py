@@ -21,9 +21,9 @@ _MODELS = ("projection", "camera", "lens", "noise", "warp", "rectification", "ti
 # or of what the course itself has photographed or thought of.
 _STORIES = (
     "straighten", "ring", "maps", "ruler", "rod", "shadows", "triangle", "pinhole", "dolly",
-    "gimbal", "fisheye", "newton", "clouds", "votes", "ellipse", "valley", "ransac", "homography",
-    "fold", "folds", "finding", "eleventh", "columns", "between", "rings", "epipolar", "depth",
-    "cube",
+    "walks", "gimbal", "fisheye", "newton", "clouds", "votes", "ellipse", "valley", "ransac",
+    "homography", "fold", "folds", "finding", "eleventh", "columns", "between", "rings", "epipolar",
+    "depth", "cube",
 )  # fmt: skip
 NAMES = (*_MODELS, *_STORIES)
 

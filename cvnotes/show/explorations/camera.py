@@ -17,8 +17,8 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.orbit import round_the_board
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
-from cvnotes.show.space.shapes import axes_shapes, target_shapes
-from cvnotes.show.style import CAMERA, ESTIMATED
+from cvnotes.show.space.shapes import Lines, axes_shapes, target_shapes
+from cvnotes.show.style import CAMERA, ESTIMATED, MUTED
 from cvnotes.targets import Chessboard
 
 _ASIDE = 12  # px from the way T to the words beside it
@@ -105,7 +105,9 @@ def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
         *axes_shapes(length=length, name="WRF"),
         *camera_shapes(camera, 2.5 * length, name=""),
     )
-    low, high = in_space(shapes, size)
+    # The scale stays when the camera goes away, as far as its slider does.
+    farthest = -4 * float(np.linalg.norm(board.points[-1])) * camera.R[2]
+    low, high = in_space((*shapes, Lines("", np.array([[farthest, farthest]]), MUTED, 1)), size)
     panel = paper.panel(
         size, (low[0], high[0]), (low[1], high[1]), "space, in the frame of the board"
     )

@@ -88,7 +88,7 @@ def valley_model() -> Model:
     settings = (
         Setting("h6", "start, ĥ6", *_H6, 0.05, 0.3, "the start: height in the picture"),
         Setting("h9", "start, ĥ9", *_H9, 0.05, 2.0, "the start: depth of the tiles"),
-        Setting("steps", "steps", 0, _MOST, 1, 3, "how many steps are taken"),
+        Setting("steps", "steps", 0, _MOST, 1, 12, "how many steps are taken"),
         Setting("mu", "log₁₀ μ at the start", -6, 4, 1, -3, "how the first step is damped"),
     )
     about = (

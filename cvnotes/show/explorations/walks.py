@@ -1,0 +1,89 @@
+"""Explore T and C: one camera before a board, from above, in the board's frame and in its own."""
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD
+
+_BOARD = np.array([[-25.0, 0], [225, 0]])  # mm, X and Z of its ends
+_AHEAD, _WIDE = 190, 0.5  # mm, how far the line of sight is drawn; half the width of the view there
+_REACH = 640  # mm, that are shown to each side
+
+
+def walks_model() -> Model:
+    """Make the model of a camera that is moved and turned before a board."""
+    settings = (
+        Setting("X", "camera's X (mm)", -400, 400, 10, 340, "where the camera stands"),
+        Setting("Z", "camera's Z (mm)", -500, -120, 10, -420, "negative: before the board"),
+        Setting("turn", "turn (°)", -80, 80, 1, -32, "of the camera on the spot, to the right"),
+    )
+    about = (
+        "A camera before a board, from above, twice: in the board's frame, with the walk from its "
+        "origin to the camera, C; and in the camera's frame, with the walk to the origin, T."
+    )
+
+    def looked(values: Values, at: Array) -> Values:
+        x, z = at - [values["X"], values["Z"]]
+        return {"turn": float(np.degrees(np.arctan2(x, z)))}
+
+    drags = {
+        "camera": lambda _, at: {"X": float(at[0]), "Z": float(at[1])},
+        "line of sight": looked,
+    }
+    return Model("walks", about, settings, _draw, drags)
+
+
+def frames(values: Values) -> tuple[Array, Array, Array]:
+    """Return R (2, 2), CRF ← WRF, from above, the camera's place C (2,), and T (2,)."""
+    a = np.radians(values["turn"])
+    R = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    C = np.array([values["X"], values["Z"]])
+    return R, C, -R @ C
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    R, C, T = frames(values)
+    world = _frame(paper, "in the board's frame: the walk to C", _BOARD, C, R)
+    _walk(world, C, WORLD, "XZ")
+    sight = C + R.T @ [0, _AHEAD]
+    world.mark(sight, "ideal", 6)
+    world.grip("camera", "where the camera stands", C, 6)
+    world.grip("line of sight", "where the camera looks", sight, 6)
+    own = _frame(
+        paper, "in the camera's frame: the walk to T", _BOARD @ R.T + T, np.zeros(2), np.eye(2)
+    )
+    _walk(own, T, CAMERA, "xz")
+    return Drawing(
+        paper.join((world, own)),
+        f"C = ({C[0]:.0f}, {C[1]:.0f}) mm along X and Z; T = ({T[0] + 0.0:.0f}, {T[1]:.0f}) mm "
+        f"along the camera's x and z. Both ways are {np.linalg.norm(C):.0f} mm long.",
+    )
+
+
+def _frame(paper: Paper, title: str, board: Array, camera: Array, R: Array) -> Panel:
+    """Draw board and camera from above, ahead being upwards."""
+    panel = paper.panel((400, 400), (-_REACH, _REACH), (_REACH, -_REACH), title)
+    panel.ticks(x=(-400, 0, 400), y=(-400, 0, 400))
+    sides = _AHEAD * np.array([[-_WIDE, 1], [_WIDE, 1]]) @ R + camera
+    panel.polygons([[camera, *sides]], "#DDEFFA")
+    panel.line(np.stack([sides[0], camera, sides[1]]), CAMERA, 1.5)
+    panel.line(board, "#333333", 7)
+    panel.line(np.stack([camera, camera + R.T @ [0, _AHEAD]]), IDEAL, 1, dash=4)
+    panel.mark(camera, "camera", 9)
+    panel.mark(board[0] + 0.1 * (board[1] - board[0]), "world", 7)
+    return panel
+
+
+def _walk(panel: Panel, to: Array, colour: str, names: str) -> None:
+    """Draw the walk from the middle of the frame along its two axes, with its numbers."""
+    corner = np.array([to[0], 0.0])
+    panel.line(np.stack([0 * to, corner, to]), colour, 4)
+    panel.line(np.stack([0 * to, to]), MUTED, 1, dash=4)
+    for name, number, at, by in (
+        (names[0], to[0], corner / 2, [0, -42 if to[1] > 0 else 42]),
+        (names[1], to[1], (corner + to) / 2, [95 if to[0] >= 0 else -95, 0]),
+    ):
+        words = f"{name} {number + 0.0:.0f}".replace("-", "−")
+        panel.text(at + by, words, colour, anchor="mm", size=14)
