@@ -83,13 +83,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     (gradients, edges), name = rms[:, now], _PICTURES[which - 1]
     lost = int(np.isnan(off[:, now, :, 0]).any(axis=0).sum())
     ahead = "The edge model is ahead" if edges < gradients else "The gradients are ahead"
-    return Drawing(
-        paper.join(panels),
+    said = (
         f"In the picture {name}, with a window of {2 * window + 1} × {2 * window + 1} px, the "
         f"gradients are off by {gradients:.3f} px and the edge model by {edges:.3f}. {ahead}."
-        + f" ({lost} corners were lost.)"
-        * (lost > 0),
     )
+    return Drawing(paper.join(panels), f"{said} ({lost} corners were lost.)" if lost else said)
 
 
 def _picture(paper: Paper, window: int, which: int) -> Panel:
