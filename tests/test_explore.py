@@ -525,6 +525,13 @@ def test_a_rectified_picture_shows_what_was_taken_and_grey_where_nothing_was():
     assert (np.abs(picture[TITLE + 255 + 28 :] - 0xCF).max(axis=-1) == 0).mean() > 0.2
 
 
+def test_no_more_pixels_are_folds_than_are_covered():
+    for angle in (0, 30):
+        holes, covered, folds = numbers(MODELS["warp"].drawing(angle=angle, zoom=0.5).sentence)[:3]
+        assert holes == 0
+        assert 0.95 * covered < folds <= covered
+
+
 def test_holes_are_orange_and_folds_are_blue():
     drawing = MODELS["warp"].drawing(angle=20, zoom=1)
     holes, _, folds = numbers(drawing.sentence)[:3]
@@ -1015,6 +1022,10 @@ def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_rig
         assert "agree best" in said
         assert numbers(said)[-1] == pytest.approx(depth, rel=0.03)
     assert "nothing here tells" in shown(u=230, v=230).sentence  # on the plain wall
+    *_, nearest, farthest = numbers(shown(u=310, v=202).sentence)  # along the blackboard's edge
+    assert nearest < 10 < farthest
+    assert farthest > 1.2 * nearest
+    assert re.search(r"as well from [\d.]+ m on", shown(u=400, v=250).sentence)  # in the shadow
     assert numbers(shown(u=449, v=205, depth=7600).sentence)[1] < 2
 
 

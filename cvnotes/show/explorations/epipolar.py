@@ -17,6 +17,7 @@ _NEAREST, _FARTHEST = 2000, 20_000  # mm
 _PATCH = 9  # px from the middle of a patch to its border
 _AROUND = np.stack(np.meshgrid(*2 * [np.arange(-_PATCH, _PATCH + 1.0)]), axis=-1)
 _ALIKE = 0.5  # grey levels: so little more is as good as the best
+_WIDE = 1.2  # the farthest over the nearest depth of a valley that is wide
 _TRIED = 1 / np.linspace(1 / _NEAREST, 1 / _FARTHEST, 240)  # mm: in even steps along the line
 
 
@@ -122,7 +123,10 @@ def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
 
 def _sentence(depth: float, now: float, cost: Array) -> str:
     said = f"At {depth / 1000:.2f} m the two patches differ by {now:.1f} grey levels. "
-    low = _TRIED[cost < cost.min() + _ALIKE]
-    if low.max() > 1.5 * low.min():
-        return f"{said}So they do nearly everywhere: nothing here tells one depth from another."
-    return f"{said}They agree best at {_TRIED[cost.argmin()] / 1000:.2f} m."
+    if np.ptp(cost) < _ALIKE:
+        return f"{said}So they do everywhere: nothing here tells one depth from another."
+    low = _TRIED[cost < cost.min() + _ALIKE] / 1000
+    if low.max() < _WIDE * low.min():
+        return f"{said}They agree best at {_TRIED[cost.argmin()] / 1000:.2f} m."
+    to = "on" if low.max() > 0.99 * _FARTHEST / 1000 else f"to {low.max():.1f} m"
+    return f"{said}They agree about as well from {low.min():.1f} m {to}."

@@ -59,10 +59,10 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Drawing:
     )  # fmt: skip
     covered = backward_warp(np.ones_like(source), where_from, method="nearest") > 0
     backward[~covered] = _PAPER
-    holes = covered & (forward.hits == 0)
+    holes, folds = covered & (forward.hits == 0), covered & (forward.hits > 1)
     size = (_LARGER * width, _LARGER * height)
     left = paper.picture_panel(size, (width, height), "forward: each pixel is sent")
-    left.image(_coloured(forward.image.astype(np.uint8), holes, forward.hits > 1), smooth=False)
+    left.image(_coloured(forward.image.astype(np.uint8), holes, folds), smooth=False)
     right = paper.picture_panel(
         size, (width, height), "backward: each pixel is fetched (+ to turn and zoom)"
     )
@@ -70,13 +70,15 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Drawing:
     arm = zoom * _ARM * width * np.array([np.cos(angle), np.sin(angle)])
     right.mark(middle + arm, "ideal", 6)
     right.grip("right side", "a point of the picture, to turn and zoom it", middle + arm, 4)
-    return Drawing(paper.join((left, right)), _sentence(holes, covered, forward.folds))
+    return Drawing(paper.join((left, right)), _sentence(holes, covered, folds))
 
 
-def _sentence(holes: npt.NDArray[np.bool_], covered: npt.NDArray[np.bool_], folds: int) -> str:
+def _sentence(
+    holes: npt.NDArray[np.bool_], covered: npt.NDArray[np.bool_], folds: npt.NDArray[np.bool_]
+) -> str:
     return (
-        f"Forward: {holes.sum()} of {covered.sum()} pixels are holes, and {folds} were hit more "
-        "than once. Backward: each pixel is asked for exactly once, no holes, no folds."
+        f"Forward: {holes.sum()} of {covered.sum()} pixels are holes, and {folds.sum()} were hit "
+        "more than once. Backward: each pixel is asked for exactly once, no holes, no folds."
     )
 
 
