@@ -48,7 +48,7 @@ __all__ = [
     "draw_corners",
     "draw_lines",
     "draw_segments",
-    # ideas: the colours, P², maps of the plane, the pinhole
+    # ideas: the colours, P², the pinhole
     "draw_meanings",
     "draw_rays",
     "draw_pinhole",
@@ -62,8 +62,6 @@ __all__ = [
     "draw_pixels",
     # chapter 4: lenses
     "draw_grid",
-    # chapter 5: corners
-    # chapters 5 and 6: least squares
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_coverage",
@@ -74,7 +72,6 @@ __all__ = [
     # chapter 7: the picture of J, a cube on the board
     "draw_arrow",
     "draw_cube",
-    # chapter 8: warps
     # in space
     "draw_scene",
     "build_scene",

@@ -4,6 +4,8 @@ The colours are those of Okabe and Ito, chosen so that any two that meet in a fi
 for readers with red or green blindness too; each meaning also has its own marker.
 """
 
+from collections.abc import Iterable
+
 from cvnotes.base import CvnotesError
 
 WORLD = "#009E73"
@@ -39,6 +41,17 @@ def colour_of(meaning: str) -> str:
     if meaning not in COLOURS:
         raise CvnotesError(f"meaning: expected one of {', '.join(COLOURS)}, got {meaning!r}")
     return COLOURS[meaning]
+
+
+def hexed(levels: Iterable[float]) -> str:
+    """Return red, green and blue from 0 to 255, cut to whole levels, as a colour like those above.
+
+    Examples
+    --------
+    >>> hexed((0, 51.9, 255))
+    '#0033FF'
+    """
+    return "#{:02X}{:02X}{:02X}".format(*map(int, levels))
 
 
 def rgb(colour: str) -> tuple[float, float, float]:

@@ -6,7 +6,7 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, hexed
 from cvnotes.warping import interpolate
 
 _GREY = np.array([60.0, 90, 110, 200])  # I1 to I4: the upper two pixels, then the lower two
@@ -64,9 +64,9 @@ def _areas(paper: Paper, place: Array, weight: Array) -> Panel:
     """Draw the square in four rectangles, each as grey as the pixel that it weighs."""
     panel = _cell(paper, "each pixel weighs the opposite area")
     for at, grey in zip(_AT, _GREY, strict=True):
-        panel.polygons(_box(*np.sort([1 - at, place], axis=0)), _ink(grey))
+        panel.polygons(_box(*np.sort([1 - at, place], axis=0)), hexed(3 * [grey]))
     for at, grey in zip(_AT, _GREY, strict=True):
-        panel.polygons(_box(at - _PIXEL, at + _PIXEL), _ink(grey))
+        panel.polygons(_box(at - _PIXEL, at + _PIXEL), hexed(3 * [grey]))
     for ends in (_box([0, 0], [1, 1])[0], *_box([0, 0], place), *_box(place, [1, 1])):
         panel.line([*ends, ends[0]], ESTIMATED, 1.5)
     for at, name, grey, w in zip(_AT, _NAMES, _GREY, weight, strict=True):
@@ -106,13 +106,9 @@ def _mix(paper: Paper, weight: Array) -> Panel:
     panel = paper.panel((180, 330), (0, 3), (0, 1), "the mix")
     feet = np.cumsum(weight)
     for foot, w, grey, name in zip(feet, weight, _GREY, _NAMES, strict=True):
-        panel.polygons(_box([0, foot - w], [2, foot]), _ink(grey))
+        panel.polygons(_box([0, foot - w], [2, foot]), hexed(3 * [grey]))
         if w >= _ROOM:
             panel.text([1, foot - w / 2], f"{name} × {w:.2f}", IDEAL, anchor="mm", size=12)
-    panel.polygons(_box([2, 0], [3, 1]), _ink(weight @ _GREY))
+    panel.polygons(_box([2, 0], [3, 1]), hexed(3 * [np.rint(weight @ _GREY)]))
     panel.text([2.5, 0.5], f"{weight @ _GREY:.0f}", ESTIMATED, anchor="mm", size=13)
     return panel
-
-
-def _ink(grey: float) -> str:
-    return "#" + 3 * f"{round(grey):02X}"

@@ -8,6 +8,8 @@ from cvnotes.base import Array, Image, luma
 from cvnotes.pictures import course, expose, render_scene, room_with
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.rings import blurred
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 from cvnotes.targets import refine_edges, refine_subpixel
 
@@ -37,7 +39,7 @@ def changed(which: int) -> Image:
     """Return one of the five pictures, as in chapter 5, in grey levels."""
     light = course.photo(_VIEW).astype(float)
     if which == 2:
-        soft = _spread(light.shape[0], 1.5) @ light @ _spread(light.shape[1], 1.5).T
+        soft = blurred(light.shape[0], 1.5) @ light @ blurred(light.shape[1], 1.5).T
         return np.asarray((2 * light - soft).clip(0, 255))
     if which == 3:
         return expose(light, jpeg=30)
@@ -49,13 +51,6 @@ def changed(which: int) -> Image:
         room = room_with(course.board(), course.poses()[_VIEW])
         return luma(render_scene(room, course.camera()).astype(float))
     return light
-
-
-def _spread(n: int, sigma: float) -> Array:
-    """Return the matrix (n, n) of a Gaussian blur along rows or columns."""
-    at = np.arange(n)
-    bell = np.exp(-0.5 * ((at[:, None] - at) / sigma) ** 2)
-    return np.asarray(bell / bell.sum(axis=1, keepdims=True))
 
 
 def _moved(n: int, by: float) -> Array:
@@ -109,8 +104,7 @@ def _cloud(paper: Paper, off: Array) -> Panel:
     panel = paper.panel(
         (285, 285), (-_REACH, _REACH), (-_REACH, _REACH), "errors of 54 corners, enlarged"
     )
-    turn = np.linspace(0, 2 * np.pi, 91)
-    ring = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    ring = circle(91)
     dot = 0.0022 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     for cloud, (_, colour) in zip(off, _METHODS, strict=True):
         panel.polygons(cloud[:, None] + dot, colour)

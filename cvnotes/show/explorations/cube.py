@@ -13,7 +13,7 @@ from cvnotes.pictures import course, desk, render_scene
 from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, hexed
 from cvnotes.targets import refine_subpixel
 
 _BOARD = course.board()
@@ -145,8 +145,7 @@ def _draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
         for i in range(k):
             for j in range(n):
                 tile = grid[[i, i, i + 1, i + 1], [j, j + 1, j + 1, j]]
-                tint = (light * _PAINT[(i + j) % 2]).astype(int)
-                panel.polygons(tile[None], "#{:02X}{:02X}{:02X}".format(*tint))
+                panel.polygons(tile[None], hexed(light * _PAINT[(i + j) % 2]))
                 if outside[2] > -0.5:  # not on the roof
                     middle_of = tile.mean(axis=0)
                     panel.polygons((middle_of + 0.55 * (tile - middle_of))[None], _WINDOW)

@@ -11,7 +11,7 @@ from cvnotes.pictures import render_scene, room
 from cvnotes.pictures.meshes import from_above
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, IDEAL, LENS, MUTED
+from cvnotes.show.style import CAMERA, IDEAL, LENS, MUTED, hexed
 
 _SIZE, _SHOWN, _PLAN = (640, 480), (440, 330), (292, 330)  # px
 _KEPT, _GROWS = 750, 0.25  # px, and px for each mm of distance
@@ -78,7 +78,7 @@ def _plan(paper: Paper, camera: Camera, angle: float) -> Panel:
     left, right = eye + (10_000 - eye[1]) * sides
     panel.polygons([[eye, left, right]], _PALE)
     for corners, colour in zip(*from_above(room(), -1500), strict=True):
-        panel.polygons([corners], "#" + bytes(np.rint(255 * colour).astype(int).tolist()).hex())
+        panel.polygons([corners], hexed(np.rint(255 * colour)))
     panel.line([left, eye, right], CAMERA, 1.5)
     across = eye + (_FRONT - eye[1]) * sides
     panel.line(across, LENS, 1.5)

@@ -5,6 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _FULL = np.array([[1.6, 0.9], [0.5, 1.1]])
@@ -44,8 +45,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     right = _round(paper, ("where D takes them", 330, 2.5), (D, Vt, h), "D ")
     lengths = paper.panel((250, 300), (-8, 188), (2.4, -0.3), "length of D h, by direction (°)")
     lengths.ticks(x=(0, 45, 90, 135, 180), y=(0, 1, 2))
-    turn = np.radians(np.arange(181))
-    all_h = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    all_h = circle(361)[:181]
     lengths.line(np.column_stack([np.arange(181), np.linalg.norm(all_h @ D.T, axis=1)]), MUTED, 2)
     for v, sigma, colour in zip(Vt, s, (LENS, ESTIMATED), strict=True):
         at = np.degrees(np.arctan2(v[1], v[0]))
@@ -68,8 +68,7 @@ def _round(
     (title, size, reach), (map_, Vt, h) = about, what
     high = reach * 300 / size
     panel = paper.panel((size, 300), (-reach, reach), (-high, high), title)
-    turn = np.linspace(0, 2 * np.pi, 181)
-    panel.line(np.stack([np.cos(turn), np.sin(turn)], axis=-1) @ map_.T * _UP, MUTED, 2)
+    panel.line(circle(181) @ map_.T * _UP, MUTED, 2)
     for v, colour, letter in zip(Vt, (LENS, ESTIMATED), ("v₁", "v₂"), strict=True):
         end = map_ @ v
         panel.line([[0, 0], end * _UP], colour, 3)

@@ -1,4 +1,4 @@
-"""Explore twelve folds: the half circles of all photographs meet only if the lens is undone."""
+"""Explore twelve folds: half circles that meet only if the lens is undone and boards turn."""
 
 from functools import lru_cache
 
@@ -40,7 +40,7 @@ class _Tangle:
         # One slider for both coefficients: it passes the course's lens.
         k1, k2 = camera.lens.k[:2]
         self.bend = k2 / k1**2
-        self.W = course.board().points[:, :2]
+        self.W = self.board.points[:, :2]
         # Rows are stretched until pixels are square, as the geometry of the fold asks.
         self.square = np.array([1, self.A[0, 0] / self.A[1, 1]])
         self.eye = np.array([*(self.A[:2, 2] * self.square), self.A[0, 0]])
@@ -121,7 +121,7 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     panel.polygons(seen[None, :-1], "#F4F4F0")
     panel.line(seen, MUTED, 1)
     m = np.column_stack([tangle.seen(1)[0] * tangle.square, np.zeros(len(tangle.W))])
-    draw_squares(panel, on_sheet(m), course.board(), "#B0B0B0")
+    draw_squares(panel, on_sheet(m), tangle.board, "#B0B0B0")
     _arcs(tangle, panel, of, 0.7)
     panel.mark(on_sheet(tangle.eye), "ideal", 8)
     return panel

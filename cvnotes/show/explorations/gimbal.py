@@ -7,7 +7,7 @@ from cvnotes.camera import rotation_from_angles
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.space.directions import sheet, towards
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
 
 _UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z, the grey axis, points up on the sheet
 _SHEET, _TOWARDS = sheet((22, -52)) @ _UPRIGHT, towards((22, -52)) @ _UPRIGHT
@@ -64,7 +64,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     ):
         quads = _ring(axis, side, r)
         faces.append(quads.reshape(-1, 4, 3))
-        paints += [_shaded(colour, s) for _ in range(_PIECES) for s in _SHADES]
+        paints += _PIECES * [hexed(np.rint(255 * s * np.array(rgb(colour)))) for s in _SHADES]
         bars = np.array([-r - 0.3, -r, r, r + 0.3])[:, None] * axis
         for pair in (bars[:2], bars[2:]):
             faces.append(_bar(pair))
@@ -100,10 +100,6 @@ def _bar(ends: Array) -> Array:
     return np.stack(
         [along[:-1] - aside, along[:-1] + aside, along[1:] + aside, along[1:] - aside], 1
     )
-
-
-def _shaded(colour: str, shade: float) -> str:
-    return "#{:02X}{:02X}{:02X}".format(*(round(255 * shade * part) for part in rgb(colour)))
 
 
 def _volume(paper: Paper, y: float) -> Panel:

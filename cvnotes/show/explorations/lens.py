@@ -10,6 +10,7 @@ from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.camera.lens import radial_factor
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp
@@ -120,9 +121,7 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
     for colour, width in (("#FFFFFF", 5), (CAMERA, 2.6)):
         panel.line(corners[[0, 1, 2, 3, 0]], colour, width)
     if lens.max_radius < 2 * _EXTENT:
-        phi = np.linspace(0, 2 * np.pi, 121)
-        circle = lens.max_radius * np.stack([np.cos(phi), np.sin(phi)], -1)
-        panel.line(polynomial(lens, circle), ESTIMATED, 2.2)
+        panel.line(polynomial(lens, lens.max_radius * circle(121)), ESTIMATED, 2.2)
         seen = lens.max_radius * float(lens.L(lens.max_radius))
         words = f"the fold, r = {lens.max_radius:.2f}, seen at {seen:.2f}"
         panel.text([0, max(-seen - 0.02, panel.y[0] + 0.06)], words, ESTIMATED, anchor="md")

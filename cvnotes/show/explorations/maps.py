@@ -6,6 +6,7 @@ from cvnotes.base import Array
 from cvnotes.projective import apply, cross_ratio, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
 
 _RIGHT, _TOP = np.array([1.0, 0]), np.array([0.0, -1])  # where the square is taken hold of
@@ -94,8 +95,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for v in steps:
         for ends in ([[-1, v], [1, v]], [[v, -1], [v, 1]]):
             panel.line(apply(H, ends), WORLD, 2 if abs(v) == 1 else 0.8)
-    t = np.linspace(0, 2 * np.pi, 121)
-    panel.line(apply(H, np.column_stack([np.cos(t), np.sin(t)])), IDEAL, 2.2)
+    panel.line(apply(H, circle(121)), IDEAL, 2.2)
     panel.line(apply(H, _SIDE[[0, 3]]), LENS, 3)
     panel.mark(apply(H, _SIDE), "lens", 5)
     for name, what, place in (

@@ -39,8 +39,14 @@ def taken(shrink: float, blur: float) -> Array:
     bilinear: Array = np.maximum(1 - np.abs(new[:, None] - old), 0)
     if not blur:
         return bilinear
-    bell = np.exp(-0.5 * ((old[:, None] - old) / (blur * shrink)) ** 2)
-    return np.asarray(bilinear @ (bell / bell.sum(axis=1, keepdims=True)))
+    return np.asarray(bilinear @ blurred(_SIZE, blur * shrink))
+
+
+def blurred(n: int, sigma: float) -> Array:
+    """Return the matrix (n, n) of a Gaussian blur along rows or columns: a page has no SciPy."""
+    at = np.arange(n)
+    bell = np.exp(-0.5 * ((at[:, None] - at) / sigma) ** 2)
+    return np.asarray(bell / bell.sum(axis=1, keepdims=True))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:

@@ -8,7 +8,8 @@ from cvnotes.base import Array
 from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, LENS, rgb
+from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.style import ESTIMATED, LENS, hexed, rgb
 
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
 _LEFT, _TOP, _SIDE = 324, 185, 57  # px, the part of the photograph that is shown
@@ -101,8 +102,7 @@ def _votes(
 
 def _on_paper(colour: str, strength: float) -> str:
     """Mix a colour with white."""
-    mixed = (255 * (1 - strength * (1 - np.array(rgb(colour))))).astype(int)
-    return "#{:02X}{:02X}{:02X}".format(*mixed)
+    return hexed(255 * (1 - strength * (1 - np.array(rgb(colour)))))
 
 
 def _spread(paper: Paper, window: Window) -> Panel:
@@ -112,9 +112,8 @@ def _spread(paper: Paper, window: Window) -> Panel:
     )
     panel.ticks(x=(-60, -30, 0, 30, 60), y=(-60, -30, 0, 30, 60))
     panel.mark(window.g, "lens", 3.5)
-    phi = np.linspace(0, 2 * np.pi, 61)
     half = window.axes * np.sqrt(window.eigenvalues / len(window.g))
-    panel.line(np.stack([np.cos(phi), np.sin(phi)], axis=1) @ half.T, ESTIMATED, 2.2)
+    panel.line(circle(61) @ half.T, ESTIMATED, 2.2)
     return panel
 
 

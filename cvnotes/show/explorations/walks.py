@@ -45,15 +45,15 @@ def frames(values: Values) -> tuple[Array, Array, Array]:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     R, C, T = frames(values)
-    world = _frame(paper, "in the board's frame: the walk to C", _BOARD, C, R)
+    at_0 = np.zeros(2)
+    world = _frame(paper, "in the board's frame: the walk to C", (_BOARD, at_0), C, R)
     _walk(world, C, WORLD, "XZ")
     sight = C + R.T @ [0, _AHEAD]
     world.mark(sight, "ideal", 6)
     world.grip("camera", "where the camera stands", C, 6)
     world.grip("line of sight", "where the camera looks", sight, 6)
-    own = _frame(
-        paper, "in the camera's frame: the walk to T", _BOARD @ R.T + T, np.zeros(2), np.eye(2)
-    )
+    seen = _BOARD @ R.T + T, T
+    own = _frame(paper, "in the camera's frame: the walk to T", seen, at_0, np.eye(2))
     _walk(own, T, CAMERA, "xz")
     return Drawing(
         paper.join((world, own)),
@@ -62,8 +62,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     )
 
 
-def _frame(paper: Paper, title: str, board: Array, camera: Array, R: Array) -> Panel:
-    """Draw board and camera from above, ahead being upwards."""
+def _frame(paper: Paper, title: str, seen: tuple[Array, Array], camera: Array, R: Array) -> Panel:
+    """Draw the board, its origin and the camera from above, ahead being upwards."""
+    board, origin = seen
     panel = paper.panel((400, 400), (-_REACH, _REACH), (_REACH, -_REACH), title)
     panel.ticks(x=(-400, 0, 400), y=(-400, 0, 400))
     sides = _AHEAD * np.array([[-_WIDE, 1], [_WIDE, 1]]) @ R + camera
@@ -72,7 +73,7 @@ def _frame(paper: Paper, title: str, board: Array, camera: Array, R: Array) -> P
     panel.line(board, "#333333", 7)
     panel.line(np.stack([camera, camera + R.T @ [0, _AHEAD]]), IDEAL, 1, dash=4)
     panel.mark(camera, "camera", 9)
-    panel.mark(board[0] + 0.1 * (board[1] - board[0]), "world", 7)
+    panel.mark(origin, "world", 7)
     return panel
 
 

@@ -1,4 +1,4 @@
-"""Drawings of ideas: P² as rays and planes, maps of a square, the pinhole, the course's colours."""
+"""Drawings of ideas: P² as rays and planes, the pinhole, the course's colours."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any

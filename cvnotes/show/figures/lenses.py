@@ -1,4 +1,4 @@
-"""Figures of lenses: what they do to a grid, and how far they can be believed."""
+"""Figures of lenses: what they do to a grid."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""Figures of the sensor: its lines, its pixels, and what is left of them in a smaller picture."""
+"""Figures of the sensor: its lines and its pixels."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""Figures of vanishing points: where segments lead, and the triangle that gives a camera away."""
+"""Figures of vanishing points: the triangle that gives a camera away."""
 
 from typing import TYPE_CHECKING
 
