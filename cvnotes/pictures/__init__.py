@@ -6,7 +6,7 @@ from cvnotes.pictures.boards import clutter, render
 from cvnotes.pictures.exposure import compress, expose, gaussian_blur, motion_blur
 from cvnotes.pictures.meshes import Scene
 from cvnotes.pictures.placing import facing, hold_at
-from cvnotes.pictures.posters import chart_room
+from cvnotes.pictures.posters import chart_room, poster_room
 from cvnotes.pictures.scene_render import depth_map, radiance, render_scene
 from cvnotes.pictures.scenes import blocks, corridor, desk, rails, room, room_with, target_scene
 from cvnotes.pictures.views import (
@@ -36,6 +36,7 @@ __all__ = [
     "room",
     "room_with",
     "chart_room",
+    "poster_room",
     "desk",
     "target_scene",
     # sets of poses: one that is good, and those of chapter 7 that are not

@@ -1,4 +1,4 @@
-"""A poster on a wall: letters in rows that grow smaller, and a switch beside them."""
+"""Posters on the walls of a room: letters that grow smaller, a switch beside them; and a sun."""
 
 import numpy as np
 import numpy.typing as npt
@@ -77,7 +77,37 @@ def chart_room() -> Scene:
     u, v = SWITCH
     plate = box((u - 40, u + 40), (v - 40, v + 40), (-1, 0), (0.97, 0.97, 0.95))
     rocker = box((u - 22, u + 22), (v - 28, v + 28), (-4, -1), (0.80, 0.42, 0.30))
-    return join(_paper(), _ink(), plate, rocker, room().moved(wall_from_room))
+    return join(chart(), plate, rocker, room().moved(wall_from_room))
+
+
+def chart() -> Scene:
+    """Build the chart alone, in its own frame."""
+    return join(_paper(), _ink())
+
+
+def poster_room() -> Scene:
+    """Build the room with a print on the white sheet of its left wall: a red sun over the sea.
+
+    The sheet is 2600 mm wide and 1200 mm high, the sun is a disc of 600 mm. The first 4 vertices
+    are the corners of the sheet, as seen from the room from the upper left one to the right.
+
+    Examples
+    --------
+    >>> poster_room().vertices[:3]
+    array([[-2979.,  -900.,  6300.],
+           [-2979.,  -900.,  8900.],
+           [-2979.,   300.,  8900.]])
+    """
+    turn = np.linspace(0, 2 * np.pi, 121)
+    rim = 300 * np.column_stack([0 * turn, np.sin(turn), np.cos(turn)]) + [-2977.5, -420, 7600]
+    first = np.arange(1, 120, 2)
+    fan = np.stack([0 * first, first, first + 1, first + 2], axis=1)
+    sun = quads(np.vstack([[[-2977.5, -420, 7600]], rim]), fan, (0.83, 0.24, 0.16))
+    parts = [sun, room()]
+    for x, top, colour in ((-2978.0, 20.0, (0.16, 0.36, 0.55)), (-2979.0, -900.0, _PAPER)):
+        corners = [[x, top, 6300], [x, top, 8900], [x, 300, 8900], [x, 300, 6300]]
+        parts.insert(0, quads(corners, [[0, 1, 2, 3]], colour))
+    return join(*parts)
 
 
 def _paper() -> Scene:

@@ -2,7 +2,7 @@
 
 from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
-from cvnotes.show.explorations import explore
+from cvnotes.show.explorations import explore, pull_points
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
 from cvnotes.show.figures.formation import box_lines, draw_field_of_view, draw_formation
@@ -98,6 +98,7 @@ __all__ = [
     "IDEAL",
     "LENS",
     "ESTIMATED",
-    # an idea with sliders
+    # an idea with sliders, and a photograph with points to be pulled
     "explore",
+    "pull_points",
 ]

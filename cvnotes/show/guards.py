@@ -135,6 +135,25 @@ def picture(x: Any, name: str = "image") -> npt.NDArray[Any]:
     return given
 
 
+def in_bytes(x: Any, name: str = "image") -> npt.NDArray[np.uint8]:
+    """Guard a picture of any kind of numbers and return it as a screen shows it, from 0 to 255.
+
+    Whole numbers stay, deep ones are scaled to their largest, since they seldom use their whole
+    range; floats are from 0 to 1, and NaN is white.
+
+    Examples
+    --------
+    >>> in_bytes([[0, 0.5, 1, np.nan]])
+    array([[  0, 128, 255, 255]], dtype=uint8)
+    """
+    given = picture(x, name)
+    if given.dtype == np.uint16:
+        given = given / max(int(given.max()), 1)
+    if given.dtype.kind not in "ui":
+        given = 255 * np.nan_to_num(given, nan=1).clip(0, 1)
+    return np.rint(given).clip(0, 255).astype(np.uint8)
+
+
 def eight_bits(x: Any, name: str = "image") -> npt.NDArray[np.uint8]:
     """Guard a picture of whole numbers from 0 to 255.
 

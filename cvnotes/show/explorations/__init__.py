@@ -8,23 +8,28 @@ widget cannot disagree.
 from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
+import numpy.typing as npt
+
 from cvnotes.base import CvnotesError
+from cvnotes.base.writing import PathLike
 from cvnotes.camera import Camera
+from cvnotes.show.explorations.hand import Tell, hand_model
 from cvnotes.show.explorations.model import Model
 from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:
-    from cvnotes.show.explorations.shell import Explorer
+    from cvnotes.show.explorations.shell import Explorer, PulledPoints
 
 # Each is a module of this folder, in which `<name>_model` makes its model: of a camera and a board,
 _MODELS = ("projection", "camera", "lens", "noise", "warp", "rectification", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
-    "straighten", "ring", "maps", "ruler", "rod", "shadows", "triangle", "pinhole", "dolly",
-    "walks", "gimbal", "fisheye", "newton", "clouds", "votes", "ellipse", "valley", "ransac",
-    "homography", "fold", "folds", "finding", "eleventh", "columns", "between", "rings", "epipolar",
-    "depth", "cube",
+    "straighten", "ring", "maps", "ruler", "rod", "shadows", "forged", "triangle", "pinhole",
+    "dolly", "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel", "votes", "ellipse",
+    "valley", "ransac", "homography", "fold", "folds", "finding", "eleventh", "columns",
+    "between", "rings", "epipolar", "depth", "cube",
 )  # fmt: skip
+__all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
 
 
@@ -89,3 +94,45 @@ def explore(
     from cvnotes.show.explorations.shell import Explorer
 
     return Explorer(model(name, camera, board), camera, board)
+
+
+def pull_points(picture: npt.ArrayLike | PathLike, at: npt.ArrayLike, tell: Tell) -> "PulledPoints":
+    """Pull points over a picture; at every pull a function of yours says what they mean.
+
+    A loupe shows the point that was moved last, and moves it finely.
+
+    Parameters
+    ----------
+    picture : array_like, shape (height, width) or (height, width, 3), or path
+        Grey values or RGB, as for `draw_image`; or the file of a photograph of your own.
+    at : array_like, shape (n, 2)
+        Pixels (u, v) where the points are at first, 12 at most. In a photograph of your own there
+        are as many, laid around its middle.
+    tell : callable
+        Called with the picture and the points (n, 2). It returns a sentence and a list of lines
+        (k, 2), in pixels, which are drawn over the picture; and, if it likes, another picture,
+        shown beside.
+
+    Returns
+    -------
+    PulledPoints
+        Its ``points`` are where they are now.
+
+    Raises
+    ------
+    CvnotesError
+        There is no point or too many, one lies outside, or what `tell` returns is something else.
+    FileError
+        The photograph cannot be read.
+
+    Examples
+    --------
+    >>> def slope(picture, points):
+    ...     (u1, v1), (u2, v2) = points
+    ...     return f"{(v2 - v1) / (u2 - u1):.2f}", [points]
+    >>> pull_points(np.zeros((48, 64)), [[10, 40], [30, 20]], slope).model.drawing(u2=20).sentence
+    '−2.00'
+    """
+    from cvnotes.show.explorations.shell import PulledPoints
+
+    return PulledPoints(hand_model(picture, at, tell))

@@ -4,7 +4,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from cvnotes.base import Array
+from cvnotes.base import Array, CvnotesError
+from cvnotes.calibration import constraints, intrinsics_from_b, solve_b
 from cvnotes.camera import (
     Lens,
     px_from_xy,
@@ -45,6 +46,7 @@ class _Tangle:
         self.square = np.array([1, self.A[0, 0] / self.A[1, 1]])
         self.eye = np.array([*(self.A[:2, 2] * self.square), self.A[0, 0]])
         self.circles = lru_cache(maxsize=None)(self._circles)
+        self.found = lru_cache(maxsize=None)(self._found)
         self.seen = lru_cache(maxsize=None)(self._seen)
 
     def _exact(self, poses: Array) -> Array:
@@ -60,10 +62,21 @@ class _Tangle:
         poses[:, :3, 3] = places - poses[:, :3, :3] @ middle
         return self._exact(poses) + self.noise
 
-    def _circles(self, k1: float, turned: float) -> list[Circle]:
+    def _homographies(self, k1: float, turned: float) -> Array:
         lens = Lens(k=(k1, self.bend * k1**2))
         ideal = px_from_xy(self.A, lens.undistort(xy_from_px(self.A, self.seen(turned))))
-        return [circle_of(dlt(self.W, m)) for m in ideal * self.square]
+        return dlt(self.W, ideal * self.square)
+
+    def _circles(self, k1: float, turned: float) -> list[Circle]:
+        return [circle_of(H) for H in self._homographies(k1, turned)]
+
+    def _found(self, k1: float, turned: float) -> Array:
+        """Return the camera (3,), as (u0, v0, α), that Zhang's equations find; NaN if none."""
+        try:
+            A = intrinsics_from_b(solve_b(constraints(self._homographies(k1, turned))))
+        except CvnotesError:
+            return np.full(3, np.nan)
+        return np.array([*A[:2, 2], A[0, 0]])
 
     def misses(self, k1: float, turned: float) -> Array:
         """Return how far each half circle passes beside the camera's true centre, in px."""
@@ -123,8 +136,15 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     m = np.column_stack([tangle.seen(1)[0] * tangle.square, np.zeros(len(tangle.W))])
     draw_squares(panel, on_sheet(m), tangle.board, "#B0B0B0")
     _arcs(tangle, panel, of, 0.7)
+    _draw_found(tangle, panel, of)
     panel.mark(on_sheet(tangle.eye), "ideal", 8)
     return panel
+
+
+def _draw_found(tangle: _Tangle, panel: Panel, of: _Of) -> None:
+    """Draw the camera that is found as a triangle, orange as all that is computed."""
+    at = on_sheet(tangle.found(*of))
+    panel.polygons([at + 9 * panel.pixel * np.array([[0, -1], [0.9, 0.7], [-0.9, 0.7]])], ESTIMATED)
 
 
 def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
@@ -132,6 +152,7 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     (left, top), (right, low) = on_sheet(tangle.eye) - reach, on_sheet(tangle.eye) + reach
     panel = paper.panel(_CLOSE, (left, right), (top, low), "enlarged about the camera")
     _arcs(tangle, panel, of, 1)
+    _draw_found(tangle, panel, of)
     panel.mark(on_sheet(tangle.eye), "ideal", 10)
     panel.line([[left + 12, low - 14], [left + 62, low - 14]], IDEAL, 2)
     panel.text([left + 68, low - 14], "50 px", IDEAL, size=12)

@@ -13,9 +13,10 @@ _UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z, the grey axis, poi
 _SHEET, _TOWARDS = sheet((22, -52)) @ _UPRIGHT, towards((22, -52)) @ _UPRIGHT
 _RADII, _PIECES = (1.0, 0.8, 0.6), 28
 _COLOURS = MUTED, LENS, ESTIMATED
-_WIDE, _HIGH = (1, 1, 0.9, 0.9), (-0.06, 0.06, 0.06, -0.06)  # a ring's cut: radius and height
+_WIDE, _HIGH = (1, 1, 0.9, 0.9), (-0.04, 0.04, 0.04, -0.04)  # a ring's cut: radius and height
 _SHADES = 0.8, 1.0, 0.65, 1.0  # of a ring's rim, its side, its inside and the other side
-_PLANE = np.array([[0.5, 0, 0], [-0.4, 0.28, 0], [-0.28, 0, 0], [-0.4, -0.28, 0]])  # a dart
+# A dart of paper: nose, two wings, tail and keel.
+_DART = np.array([[0.5, 0, 0], [-0.4, 0.3, 0], [-0.28, 0, 0], [-0.4, -0.3, 0], [-0.4, 0, 0.25]])
 
 
 def gimbal_model() -> Model:
@@ -69,9 +70,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         for pair in (bars[:2], bars[2:]):
             faces.append(_bar(pair))
             paints += [colour] * len(faces[-1])
-    dart = _PLANE @ R.T
-    faces.append(dart[[[0, 1, 2, 2], [0, 3, 2, 2]]])
-    paints += [IDEAL, "#555555"]
+    dart = _DART @ R.T
+    faces.append(dart[[[0, 1, 2, 2], [0, 3, 2, 2], [0, 4, 2, 2]]])
+    paints += [IDEAL, "#555555", "#333333"]
     quads = np.concatenate(faces)
     depth = quads.mean(axis=1) @ _TOWARDS
     for i in np.argsort(depth):

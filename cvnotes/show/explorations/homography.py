@@ -13,7 +13,7 @@ from cvnotes.pictures.posters import SWITCH
 from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, WORLD
+from cvnotes.show.style import ESTIMATED, IDEAL, WORLD
 from cvnotes.warping import rectify_plane
 
 _PICTURE, _SHOWN, _SIZE = (640, 480), (372, 279), (346, 279)  # px
@@ -29,7 +29,7 @@ def homography_model() -> Model:
     """Make the model of the wall of chapter 6, with a chart and a switch on it."""
     settings = tuple(
         Setting(
-            f"d{axis}{i}", f"corner {i} {axis}", -80, 80, 1, 0,
+            f"d{axis}{i}", f"corner {i} {axis}", -140, 140, 1, 0,
             f"moves the {name} corner by so many px along {axis}",
         )
         for i, name in enumerate(_NAMES, start=1)
@@ -68,6 +68,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     picture = paper.picture_panel(_SHOWN, _PICTURE, "the wall, and its squares of 100 mm")
     picture.image(_shown(paper.sharpness))
     _draw_grid(picture, H)
+    _draw_horizon(picture, H)
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 2.4)
     picture.mark(_SWITCH, "ideal", 8)
     picture.mark(m, "estimated", 7)
@@ -94,6 +95,16 @@ def _draw_grid(panel: Panel, H: Array) -> None:
         seen = to_homogeneous(line) @ H.T
         seen[seen[:, 2] * (H @ [210, 297, 1])[2] <= 0] = np.nan
         panel.line(seen[:, :2] / seen[:, 2:], ESTIMATED, 0.6)
+
+
+def _draw_horizon(panel: Panel, H: Array) -> None:
+    """Draw the picture of the wall's line at infinity."""
+    line = np.linalg.inv(H)[2]  # H⁻ᵀ [0 0 1]
+    ends = np.cross(line, [[0, 1, 0], [0, 1, -_PICTURE[1]]])  # in the first row and the last
+    panel.line(ends[:, :2] / ends[:, 2:], IDEAL, 1.4, dash=5)
+    at = ends[1, 0] / ends[1, 2]
+    if 0 < at < 0.8 * _PICTURE[0]:
+        panel.text([at + 8, _PICTURE[1] - 14], "the wall's horizon", IDEAL, size=12)
 
 
 def _sentence(switch: Array) -> str:

@@ -79,9 +79,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         errors.text([-0.5, power], f"{10.0**power:g}", size=9)
     for n in range(0, _ROUNDS + 1, 5):
         errors.text([n, np.log10(_LEAST) + 0.25], f"{n}", anchor="mm", size=9)
-    errors.text([_ROUNDS / 2, np.log10(_LEAST) + 0.65], "rounds", MUTED, anchor="mm", size=11)
+    errors.text([_ROUNDS - 2.5, np.log10(_LEAST) + 0.65], "rounds", MUTED, anchor="mm", size=11)
     curve.line(np.array([[0, 0], [level, float(seen(level))]]), MUTED, 1, dash=3)
-    curve.text([0.497, 0.452], "↓ the origin", MUTED, size=11)
+    curve.text([0.575, 0.464], "← to the origin", MUTED, size=11)
     counts = []
     for step, colour in ((along_the_ray, MUTED), (along_the_tangent, ESTIMATED)):
         way = guesses(step, level, 1000)

@@ -18,7 +18,8 @@ from cvnotes.targets import Chessboard
 _FEWEST, _MOST = 3, 30
 _SHOWN = ("alpha_u", "alpha_v", "u0", "v0")
 _LABELS = ("α_u", "α_v", "u0", "v0")
-_REACH = 8.0  # px, of the error bars: what is larger leaves the panel
+# px, of the error bars: the first is taken that holds three times the largest bound.
+_REACHES = (1, 3, 8, 20, 60)
 
 
 class _Study:
@@ -83,9 +84,8 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     n, sigma = int(values["views"]), values["sigma"]
     bound = study.std(n, sigma)
     error, std = study.estimate(n, sigma, int(values["draw"]))
-    bars = paper.panel(
-        (450, 300), (-1.25 * _REACH, _REACH), (-0.8, 4.3), "estimate minus truth (px)"
-    )
+    reach = next((r for r in _REACHES if r > 3 * bound.max()), _REACHES[-1])
+    bars = paper.panel((450, 300), (-1.25 * reach, reach), (-0.8, 4.3), "estimate minus truth (px)")
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(
         (400, 300), (np.log10(2.6), np.log10(36)), (1.4, -1.8),
@@ -102,7 +102,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
 
 def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array) -> None:
     left, reach = panel.x
-    panel.ticks(x=(-6, -4, -2, 2, 4, 6), size=12)
+    panel.ticks(x=np.array([-2, -1, 1, 2]) * (reach // 3 if reach > 1 else 0.3), size=12)
     panel.line([[0, -0.3], [0, 4.3]], IDEAL, 1, dash=4)
     panel.text([0.02 * reach, 3.85], "truth", IDEAL)
     panel.text([0.95 * left, -0.55], "blue: the bound, ±1σ and ±2σ", CAMERA)

@@ -4,10 +4,12 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
+from PIL import Image, ImageDraw
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, intrinsics
+from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import render_scene, room
+from cvnotes.pictures.posters import chart
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS
@@ -19,6 +21,7 @@ _LENS = 2.0  # mm, as wide as the lens
 _SIZE, _SHOWN = (640, 480), (440, 330)
 _WIDEST, _HIGHEST = 0.4, 120.0  # mm, px
 _ROOM = 2.5, 10.0, 5.0  # m: the nearest and the farthest that is seen, and one between
+_CARD = 0.2  # m: its depth
 _DEEPEST = 17.0  # px
 _PALE = "#EFEFEF"
 _FRAME = 96  # px around the picture, so that nothing comes round from the other side
@@ -32,29 +35,21 @@ def pinhole_model() -> Model:
         Setting("focus", "focused at (m)", 0.1, 10, 0.05, 4, "the depth that the lens makes sharp"),
     )
     about = (
-        "A room through a hole; beside it how many pixels wide the spot of a far lamp is, against "
-        "the diameter: the hole itself, the spread of light, and their sum, which has a lowest "
-        "point. With a lens: how wide the spot of a lamp is, against its depth."
+        "A room and a near card through a hole; beside it how many pixels wide the spot of a far "
+        "lamp is, against the diameter: the hole itself, the spread of light, and their sum, which "
+        "has a lowest point. With a lens: how wide the spot of a lamp is, against its depth."
     )
-
-    @lru_cache(maxsize=1)
-    def sharp() -> Spectrum:
-        """Photograph the room as an ideal lens would; gives the picture's spectrum."""
-        k = _SHOWN[0] / _SIZE[0]
-        A = intrinsics(k * _F / _PIXEL, k * _F / _PIXEL, (_SHOWN[0] - 1) / 2, (_SHOWN[1] - 1) / 2)
-        photo = render_scene(room(), Camera(A, size=_SHOWN), samples=16)
-        framed = np.pad(photo.astype(float), ((_FRAME, _FRAME), (_FRAME, _FRAME), (0, 0)), "edge")
-        return np.fft.rfft2(framed, axes=(0, 1))
 
     def draw(paper: Paper, values: Values) -> Drawing:
         d, focus = values["hole"], values["focus"]
         through = f"a hole of {d:g} mm"
         if values["lens"]:
-            through, patch, d = "a lens", float(disc(_ROOM[2], focus)) * _PIXEL, _LENS
+            through, d = "a lens", _LENS
+            patches = disc(np.array([_ROOM[2], _CARD]), focus) * _PIXEL
         else:
-            patch = d
+            patches = np.array([d, d])
         panel = paper.picture_panel(_SHOWN, _SHOWN, f"the room through {through}")
-        panel.image(spread_out(patch, d, sharp()))
+        panel.image(photographed(patches, d))
         beside = _discs(paper, focus) if values["lens"] else _spots(paper, d)
         said = _said_of_a_lens(focus) if values["lens"] else _said_of_a_hole(d)
         return Drawing(paper.join((panel, beside)), said)
@@ -77,7 +72,40 @@ def disc(s: Array | float, focus: float) -> Array:
     return np.asarray(_LENS * _F / 1000 * np.abs(1 / np.asarray(s) - 1 / focus) / _PIXEL)
 
 
-def spread_out(patch: float, d: float, spectrum: Spectrum) -> Drawn:
+@lru_cache(maxsize=1)
+def _sharp() -> tuple[Spectrum, Spectrum]:
+    """Photograph room and card as an ideal lens would; gives the spectra of both.
+
+    The card's picture has a fourth channel: how much it covers of each pixel.
+    """
+    k = _SHOWN[0] / _SIZE[0]
+    A = intrinsics(k * _F / _PIXEL, k * _F / _PIXEL, (_SHOWN[0] - 1) / 2, (_SHOWN[1] - 1) / 2)
+    # A chart of 594 mm ten times as far away looks like a card of 59 mm.
+    held = pose(rotation_from_vector([0, 0, -0.12]), [-720, -10, 10_000 * _CARD])
+    card = Camera(A, held, size=_SHOWN)
+    corners = card.project(chart().vertices[:4])
+    mask = Image.new("L", (4 * _SHOWN[0], 4 * _SHOWN[1]))
+    ImageDraw.Draw(mask).polygon((4 * corners + 2).ravel().tolist(), fill=255)
+    covered = np.asarray(mask.resize(_SHOWN, Image.Resampling.BOX))[..., None] / 255
+    layers = (
+        render_scene(room(), Camera(A, size=_SHOWN), samples=16),
+        np.dstack([covered * render_scene(chart(), card, samples=16), 255 * covered]),
+    )
+    around = ((_FRAME, _FRAME), (_FRAME, _FRAME), (0, 0))
+    far, near = (np.fft.rfft2(np.pad(x.astype(float), around, "edge"), axes=(0, 1)) for x in layers)
+    return far, near
+
+
+def photographed(patches: Array, d: float) -> Drawn:
+    """Photograph the room, and before it the card: each with its own patch of light."""
+    room, card = (
+        spread_out(patch, d, each) for patch, each in zip(patches.tolist(), _sharp(), strict=True)
+    )
+    seen = room * (1 - card[..., 3:] / 255) + card[..., :3]
+    return np.asarray(np.rint(seen.clip(0, 255)).astype(np.uint8))
+
+
+def spread_out(patch: float, d: float, spectrum: Spectrum) -> Array:
     """Spread each point by a patch, and by the diffraction of a hole: both weaken fine patterns."""
     h, w = spectrum.shape[0], 2 * (spectrum.shape[1] - 1)
     a_millimetre = _SHOWN[0] / _SIZE[0] / _PIXEL  # in pixels of what is shown
@@ -88,8 +116,7 @@ def spread_out(patch: float, d: float, spectrum: Spectrum) -> Drawn:
     kept = 2 * bessel / x * 2 / np.pi * (np.arccos(nu) - nu * np.sqrt(1 - nu**2))
     kept = np.interp(waves, np.append(0, rho), np.append(1, kept))
     picture = np.fft.irfft2(spectrum * kept[..., None], (h, w), axes=(0, 1))
-    inner = picture[_FRAME:-_FRAME, _FRAME:-_FRAME]
-    return np.asarray(np.rint(inner.clip(0, 255)).astype(np.uint8))
+    return np.asarray(picture[_FRAME:-_FRAME, _FRAME:-_FRAME])
 
 
 def _spots(paper: Paper, d: float) -> Panel:
@@ -124,6 +151,10 @@ def _discs(paper: Paper, focus: float) -> Panel:
     panel.polygons([[[near, 0], [far, 0], [far, _DEEPEST], [near, _DEEPEST]]], _PALE)
     panel.text([(near + far) / 2, 13], "the room", anchor="mm", size=12)
     panel.ticks(y=(0, 5, 10))
+    panel.line([[-1.14, 1], [1.1, 1]], IDEAL, 0.8, dash=3)
+    panel.text([1.05, 1.6], "1 px", IDEAL, anchor="rm", size=11)
+    panel.line(np.log10(_CARD) + np.array([[0, 0], [0, _DEEPEST]]), _PALE, 8)
+    panel.text([np.log10(_CARD), 15.5], "the card", anchor="mm", size=12)
     for s in (0.1, 0.2, 0.5, 1, 2, 5, 10):
         panel.text([np.log10(s), -1], f"{s:g} m", anchor="mm", size=10)
     s = np.geomspace(0.09, 12, 400)
@@ -136,11 +167,11 @@ def _discs(paper: Paper, focus: float) -> Panel:
 
 
 def _said_of_a_lens(focus: float) -> str:
-    most = float(disc(np.array(_ROOM), focus).max())
+    near, far = (float(disc(np.array(s), focus).max()) for s in (_CARD, _ROOM))
     return (
-        f"A lens of {_LENS:g} mm, focused at {focus:g} m: what is seen of the room lies between "
-        f"2.5 and 10 m and becomes discs of at most {most:.1f} px. Diffraction adds "
-        f"{spot(_LENS)[1]:.1f} px."
+        f"A lens of {_LENS:g} mm, focused at {focus:g} m: the card, {_CARD:g} m away, becomes "
+        f"discs of {near:.2f} px, the room, 2.5 to 10 m away, of at most {far:.2f} px. "
+        f"Diffraction adds {spot(_LENS)[1]:.1f} px."
     )
 
 

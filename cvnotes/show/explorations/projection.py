@@ -9,12 +9,13 @@ from cvnotes.camera import Camera
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD
+from cvnotes.show.style import CAMERA, IDEAL, WORLD
 from cvnotes.targets import Chessboard
 
 _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before the camera
 _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
-_WOOD = "#A8A8A8"
+_WOOD, _BALLAST, _GRASS, _SKY = "#8A7F76", "#D8D3CC", "#DDE9D3", "#E3EEF8"
+_RING = 44.0  # px, the radius of the small ring
 _REACH = 7.0  # m: how far away the direction is taken hold of
 _PLANE = 2.5  # m: how far away the image plane is drawn from above
 
@@ -55,6 +56,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     middle = np.array([0, values["height"], 0]) + _START * ahead / np.linalg.norm(ahead)
     picture = paper.picture_panel((440, 330), camera.size, "what the camera sees")
     _draw_picture(picture, camera, middle, along, across)
+    _draw_ring(picture, camera.size, heading)
     above = paper.panel((410, 330), (-8.9, 8.9), (12.6, -1.7), "the same from above (m)")
     _draw_above(above, camera, middle, along, across)
     return Drawing(paper.join((picture, above)), _sentence(camera, along))
@@ -66,10 +68,12 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
     side = horizon @ camera.A @ middle  # the side on which the plane of the rails is seen
     picture = np.array([[-9, -9], [w + 8, -9], [w + 8, h + 8], [-9, h + 8]], dtype=float)
     ground = _half(picture, horizon * np.sign(side))
+    panel.polygons(picture[None], _SKY)
     if len(ground) > 2:
-        panel.polygons(ground[None], "#EEF5EF")
-        panel.line(ground[[*range(len(ground)), 0]], MUTED, 0.8, dash=5)
-    panel.segments(camera.project(_sleepers(middle, along, across)), _WOOD, 1)
+        panel.polygons(ground[None], _GRASS)
+    bed = [in_front(middle + x * across - 2e3 * along, 4e3 * along) for x in (-1.7, 1.7)]
+    panel.polygons(camera.project(np.concatenate([bed[0], bed[1][::-1]]))[None], _BALLAST)
+    panel.segments(camera.project(_sleepers(middle, along, across)), _WOOD, 1.6)
     for side in (-0.5, 0.5):
         rail = in_front(middle + side * _GAUGE * across - 1e3 * along, 1e7 * along)
         panel.line(camera.project(rail), WORLD, 2.5)
@@ -90,6 +94,15 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
             at, arrow = u, "↑" if v < 0 else "↓"
         words = f"{arrow} ({u:.0f}, {v:.0f})".replace("-", "−")
         panel.text([at, np.clip(v, 20, h - 20)], words, IDEAL, anchor=anchor, size=13)
+
+
+def _draw_ring(panel: Panel, size: tuple[int, int], heading: float) -> None:
+    """Draw the ring of chapter 1: a direction's dot stands at twice its angle, and 90° on top."""
+    middle, turn = np.array(size) - [70, 78], 2 * np.pi * np.arange(61) / 60
+    panel.polygons(middle + 1.4 * _RING * np.stack([np.sin(turn), np.cos(turn)], -1)[None], "white")
+    panel.line(middle + _RING * np.stack([np.sin(turn), np.cos(turn)], -1), WORLD, 2)
+    panel.text(middle - [0, _RING - 18], "∞", IDEAL, anchor="mm", size=12)
+    panel.mark(middle + _RING * np.array([np.sin(2 * heading), np.cos(2 * heading)]), "world", 9)
 
 
 def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:
@@ -119,7 +132,7 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
 
 def _sleepers(middle: Array, along: Array, across: Array) -> Array:
     """Return the ends (n, 2, 3) of the sleepers, one for each metre."""
-    s = np.arange(-25.0, 40.0)[:, None, None]
+    s = np.arange(-25.0, 120.0)[:, None, None]
     return np.asarray(middle + s * along + np.outer([-0.8, 0.8], across) * _GAUGE)
 
 

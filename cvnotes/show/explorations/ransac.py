@@ -21,6 +21,8 @@ _PART = (160, 76), (580, 391)  # px: the part of the picture that is shown
 _DRAWS, _NOISE = 60, 0.3  # px
 _WRONG = "#7A7A7A"
 
+Mask = npt.NDArray[np.bool_]
+
 
 def ransac_model() -> Model:
     """Make the model of 54 pairs, some of which changed places."""
@@ -44,7 +46,7 @@ def ransac_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         n, wrong, limit = int(values["draw"]), int(values["wrong"]), values["threshold"]
-        pairs, fours, put = drawn_pairs(wrong)
+        pairs, fours, put, true = drawn_pairs(wrong)
         agree = np.linalg.norm(put - pairs, axis=-1) < limit
         (left, top), (right, bottom) = _PART
         panel = paper.panel(
@@ -58,16 +60,17 @@ def ransac_model() -> Model:
         )
         counts = agree.sum(axis=1)
         _draw_votes(votes, counts, n, wrong)
-        return Drawing(paper.join((panel, votes)), _sentence(n, counts, wrong))
+        return Drawing(paper.join((panel, votes)), _sentence(n, agree, true))
 
     return Model("ransac", about, settings, draw, {"draw": lambda _, at: {"draw": float(at[0])}})
 
 
 @lru_cache(maxsize=8)
-def drawn_pairs(wrong: int) -> tuple[Array, Array, Array]:
+def drawn_pairs(wrong: int) -> tuple[Array, Array, Array, Mask]:
     """Return the pairs (54, 2), the four of each draw (61, 4, 2), where these put the corners.
 
     The last, (61, 54, 2), begins with what all pairs put down. Four on a line put them nowhere.
+    Beside them which of the pairs are right.
     """
     W, rng = _BOARD.points, np.random.default_rng(8)
     pairs = _CAMERA.project(W) + rng.normal(scale=_NOISE, size=(len(W), 2))
@@ -78,12 +81,10 @@ def drawn_pairs(wrong: int) -> tuple[Array, Array, Array]:
     for i, four in enumerate([np.arange(len(W)), *fours[1:]]):
         with suppress(CvnotesError):
             put[i] = apply(dlt(W[four, :2], pairs[four]), W[:, :2])
-    return pairs, pairs[fours], put
+    return pairs, pairs[fours], put, ~np.isin(np.arange(len(W)), lies)
 
 
-def _draw_pairs(
-    panel: Panel, put: Array, pairs: Array, agree: npt.NDArray[np.bool_], four: Array
-) -> None:
+def _draw_pairs(panel: Panel, put: Array, pairs: Array, agree: Mask, four: Array) -> None:
     """Draw the net that a homography puts down, and each pair, led to its corner if it is off."""
     panel.segments(np.stack([put, pairs], axis=1)[~agree], _WRONG, 0.8)
     draw_net(panel, put, _BOARD, ESTIMATED, 1.4)
@@ -106,7 +107,8 @@ def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
     panel.grip("draw", "which draw is shown", [n, float(counts[n])], 5)
 
 
-def _sentence(n: int, counts: Array, wrong: int) -> str:
+def _sentence(n: int, agree: Mask, true: Mask) -> str:
+    counts, wrong = agree.sum(axis=1), int((~true).sum())
     if n == 0:
         return (
             f"All 54 pairs are believed, {wrong} of them wrong: {counts[0]} agree with the answer."
@@ -114,5 +116,6 @@ def _sentence(n: int, counts: Array, wrong: int) -> str:
     best = int(counts[1 : n + 1].argmax()) + 1
     return (
         f"Draw {n}: {counts[n]} of 54 pairs agree. The largest set so far has {counts[best]}, "
-        f"found in draw {best}; {54 - wrong} are right."
+        f"found in draw {best}: {(agree[best] & true).sum()} of them are right, of all "
+        f"{len(true)} pairs {true.sum()}."
     )

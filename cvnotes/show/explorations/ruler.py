@@ -83,7 +83,7 @@ def behind_the_first(row: npt.ArrayLike) -> Array:
 
 
 def _draw_plan(panel: Panel, t: float, near: float, far: float) -> None:
-    for (left, right), colour in (((-9, 2), "#E6EFDF"), ((-2.3, 2.3), "#DCD8D2")):
+    for (left, right), colour in (((-9, 9), "#E6EFDF"), ((-2.3, 2.3), "#DCD8D2")):
         panel.polygons([[[left, -20], [right, -20], [right, 120], [left, 120]]], colour)
     panel.ticks(y=(0, 25, 50, 75, 100))
     for x in (-0.75, 0.75):

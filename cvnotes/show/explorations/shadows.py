@@ -16,12 +16,12 @@ from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.projection import in_front
 from cvnotes.show.style import CAMERA, ESTIMATED, MUTED, WORLD
 
-_SIZE = (640, 480)  # px of the photograph
-_CAMERA = Camera(intrinsics(400, 400, 319.5, 239.5), size=_SIZE)
+SIZE = (640, 480)  # px of the photograph
+_CAMERA = Camera(intrinsics(400, 400, 319.5, 239.5), size=SIZE)
 _DISC = 15 * np.column_stack([f(np.linspace(0, 6.2, 40)) for f in (np.cos, np.sin)])  # px
 _GLOW, _NEAR = "#FFF0B8", 0.2  # what is nearer than 0.2 m is not drawn
-_POLES = np.array([[-4.0, -4.05, z] for z in range(15, 140, 25)])  # m, the tops
-_GROUND, _BALLAST, _BESIDE = 1.95, 1.77, 2.3  # m, their y, and how far the ballast reaches
+POLES = np.array([[-4.0, -4.05, z] for z in range(15, 140, 25)])  # m, the tops
+GROUND, _BALLAST, _BESIDE = 1.95, 1.77, 2.3  # m, their y, and how far the ballast reaches
 _HALF = 0.09  # m, half as wide as a pole
 
 
@@ -36,22 +36,16 @@ def shadows_model() -> Model:
         "its shadow is drawn on, to where all meet; beside it the same from above."
     )
 
-    @lru_cache(maxsize=1)
-    def photographs() -> tuple[Drawn, Drawn]:
-        """Photograph the rails with all ground in the light, and with all in the shade."""
-        lit, dark = (render_scene(rails().lit_from((0, y, 0)), _CAMERA, samples=4) for y in (-1, 1))
-        return lit, dark
-
     def draw(paper: Paper, values: Values) -> Drawing:
         azimuth, elevation = np.radians([values["azimuth"], values["elevation"]])
         sun = np.array([np.sin(azimuth), -np.tan(elevation), np.cos(azimuth)]).round(15)
-        panel = paper.picture_panel((440, 330), _SIZE, "poles, and where their shadows fall")
-        panel.image(_shaded(*photographs(), sun))
+        panel = paper.picture_panel((440, 330), SIZE, "poles, and where their shadows fall")
+        panel.image(shaded(_CAMERA, np.tile(sun, (len(POLES), 1))))
         end = _CAMERA.vanishing_point(sun)
         if sun[2] > 0:
-            panel.polygons([end + _DISC], _GLOW)
-        for top in _POLES[:4]:
-            ray = _CAMERA.project(in_front(top, _tip(top, sun) - top))
+            draw_sun(panel, end)
+        for top in POLES[:4]:
+            ray = _CAMERA.project(in_front(top, tip_of(top, sun) - top))
             panel.line(ray, ESTIMATED, 1.5)
             panel.line([ray[0] if sun[2] > 0 else ray[1], end], ESTIMATED, 0.9, dash=5)
         panel.mark(end, "estimated", 10)
@@ -69,36 +63,51 @@ def shadows_model() -> Model:
     return Model("shadows", about, settings, draw, {"sun": pulled})
 
 
-def _shaded(lit: Drawn, dark: Drawn, sun: Array) -> Drawn:
-    """Put the shadows of the poles, strips of the ground and of the ballast, into the picture."""
-    edges = [_CAMERA.project([[x, _BALLAST, z] for z in (_NEAR, 1e4)]) for x in (-_BESIDE, _BESIDE)]
-    strips = (_mask([_strip(top, sun, y) for top in _POLES]) for y in (_GROUND, _BALLAST))
-    ground, ballast = strips
+@lru_cache(maxsize=2)
+def _photographs(camera: Camera) -> tuple[Drawn, Drawn]:
+    """Photograph the rails with all ground in the light, and with all in the shade."""
+    lit, dark = (render_scene(rails().lit_from((0, y, 0)), camera, samples=4) for y in (-1, 1))
+    return lit, dark
+
+
+def shaded(camera: Camera, suns: Array) -> Drawn:
+    """Photograph the railway, with the shadow of each of `POLES` under a sun of its own (n, 3)."""
+    edges = [camera.project([[x, _BALLAST, z] for z in (_NEAR, 1e4)]) for x in (-_BESIDE, _BESIDE)]
+    each = [*zip(POLES, suns, strict=True)]
+    ground, ballast = (
+        _mask([_strip(camera, top, sun, y) for top, sun in each]) for y in (GROUND, _BALLAST)
+    )
     ground.paste(ballast, mask=_mask([np.concatenate([edges[0], edges[1][::-1]])]))
-    mask = ground.resize(_SIZE, Image.Resampling.BOX)
-    return np.asarray(Image.composite(Image.fromarray(dark), Image.fromarray(lit), mask))
+    mask = ground.resize(SIZE, Image.Resampling.BOX)
+    lit, dark = map(Image.fromarray, _photographs(camera))
+    return np.asarray(Image.composite(dark, lit, mask))
 
 
-def _strip(top: Array, sun: Array, y: float) -> Array:
+def _strip(camera: Camera, top: Array, sun: Array, y: float) -> Array:
     """Return the corners (4, 2) of a pole's shadow on the plane of that y."""
     foot, tip = np.array([top[0], y, top[2]]), top + (y - top[1]) / sun[1] * sun
     level = sun[::2] / np.linalg.norm(sun[::2])
     aside = _HALF * np.abs(level).sum() * np.array([level[1], 0, -level[0]])  # it is square
-    left, right = (_CAMERA.project(in_front(foot + by, tip - foot)) for by in (-aside, aside))
+    left, right = (camera.project(in_front(foot + by, tip - foot)) for by in (-aside, aside))
     return np.concatenate([left, right[::-1]])
+
+
+def draw_sun(panel: Panel, at: Array) -> None:
+    """Draw the disc of the sun at a pixel."""
+    panel.polygons([at + _DISC], _GLOW)
 
 
 def _mask(polygons: list[Array]) -> Image.Image:
     """Fill polygons (n, 2) of the photograph on a sheet of four times its size."""
-    mask = Image.new("L", (4 * _SIZE[0], 4 * _SIZE[1]))
+    mask = Image.new("L", (4 * SIZE[0], 4 * SIZE[1]))
     for corners in polygons:
         ImageDraw.Draw(mask).polygon((4 * corners + 2).ravel().tolist(), fill=255)
     return mask
 
 
-def _tip(top: Array, sun: Array) -> Array:
+def tip_of(top: Array, sun: Array) -> Array:
     """Return where the sun throws the shadow of a pole's top: on the ballast or beside it."""
-    high, low = (top + (y - top[1]) / sun[1] * sun for y in (_BALLAST, _GROUND))
+    high, low = (top + (y - top[1]) / sun[1] * sun for y in (_BALLAST, GROUND))
     return np.asarray(high if abs(high[0]) < _BESIDE else low)
 
 
@@ -106,8 +115,8 @@ def _draw_plan(panel: Panel, sun: Array) -> None:
     panel.ticks(x=(-40, 0, 40), y=(0, 50, 100))
     for x in (-0.75, 0.75):
         panel.line([[x, -33], [x, 111]], WORLD, 1)
-    for top in _POLES:
-        panel.line([top[::2], _tip(top, sun)[::2]], MUTED, 2)
+    for top in POLES:
+        panel.line([top[::2], tip_of(top, sun)[::2]], MUTED, 2)
         panel.mark(top[::2], "world", 6)
     to_sun = sun[::2] / np.linalg.norm(sun[::2])
     panel.line(np.outer([0, 200], to_sun), ESTIMATED, 0.9, dash=5)

@@ -12,10 +12,13 @@ from ipywidgets.widgets.widget_float import FloatSlider
 from ipywidgets.widgets.widget_int import IntSlider
 from ipywidgets.widgets.widget_media import Image
 from ipywidgets.widgets.widget_output import Output
+from ipywidgets.widgets.widget_selectioncontainer import Accordion
 from ipywidgets.widgets.widget_string import HTML, Text
 
+from cvnotes.base import Array
 from cvnotes.base.png import pack_png
 from cvnotes.camera import Camera
+from cvnotes.show.explorations.hand import points_of
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.page import page_data
 from cvnotes.targets import Chessboard
@@ -25,6 +28,7 @@ _TWO_LINES = "min-height: 2.8em; line-height: 1.4"  # so that the picture stays 
 _SCRIPTS = ("grips.js", "notebook.js")
 _HIDDEN = {"display": "none"}
 _NO_ROOM = {"height": "0", "overflow": "hidden", "margin": "0"}
+_FOLDED = ("the points, by sliders", "the points, to be copied")
 _COLUMNS = "repeat(auto-fit, minmax({}px, 1fr))"
 
 
@@ -54,6 +58,8 @@ class Explorer(VBox):
     >>> explorer.values["k1"]
     -0.3
     """
+
+    invites = "move its sliders"
 
     def __init__(
         self, model: Model, camera: Camera | None = None, board: Chessboard | None = None
@@ -88,7 +94,7 @@ class Explorer(VBox):
         self.add_class("cvnotes-explorer")  # type: ignore[no-untyped-call]
 
     def __repr__(self) -> str:
-        return f"explore {self.model.name}: run this cell to move its sliders"
+        return f"explore {self.model.name}: run this cell to {self.invites}"
 
     def _repr_mimebundle_(self, **kwargs: Any) -> dict[str, Any]:
         """Return the view of the widget, and the still for whoever cannot show that.
@@ -97,11 +103,13 @@ class Explorer(VBox):
         """
         bundle: dict[str, Any] = super()._repr_mimebundle_(**kwargs)  # type: ignore[no-untyped-call]
         drawing = self.model.drawing(**self.values)
-        data = escape(page_data(self.model, *self._given, self.values))
         still = self.model.still(**self.values)._repr_html_()
-        words = f"<p>{escape(drawing.sentence)} <em>Run this cell to move its sliders.</em></p>"
-        for_page = f'<span class="cvnotes-explore" hidden data-explore="{data}"></span>'
-        return bundle | {"text/html": still + words + for_page}
+        words = f"<p>{escape(drawing.sentence)} <em>Run this cell to {self.invites}.</em></p>"
+        return bundle | {"text/html": still + words + self._for_page()}
+
+    def _for_page(self) -> str:
+        data = escape(page_data(self.model, *self._given, self.values))
+        return f'<span class="cvnotes-explore" hidden data-explore="{data}"></span>'
 
     @property
     def values(self) -> dict[str, float]:
@@ -168,6 +176,38 @@ class Explorer(VBox):
         """Tell the script where a hand can take hold of the picture."""
         told = {"number": self._number, "values": self.values, **drawing.as_data()}
         self._told.value = escape(json.dumps(told))
+
+
+class PulledPoints(Explorer):
+    """Points that are pulled over a picture; their sliders and numbers are folded below it.
+
+    Examples
+    --------
+    >>> from cvnotes.show import pull_points
+    >>> pull_points([[0.0, 1]], [[1, 0]], lambda picture, points: ("One point.", [])).points
+    array([[1., 0.]])
+    """
+
+    invites = "pull its points"
+
+    def __init__(self, model: Model) -> None:
+        self._numbers = HTML()
+        super().__init__(model)
+        controls, *shown = self.children
+        self.children = (*shown, Accordion([controls, self._numbers], titles=_FOLDED))
+
+    @property
+    def points(self) -> Array:
+        """Where the points are, (n, 2): pixels (u, v)."""
+        return points_of(self.values)
+
+    def redraw(self, change: Any = None) -> None:
+        """Show the picture of the present points, and their numbers."""
+        super().redraw(change)
+        self._numbers.value = f"<code>{self.points.tolist()}</code>"
+
+    def _for_page(self) -> str:
+        return ""  # a page has no function of the reader's
 
 
 def _control(setting: Setting) -> Any:

@@ -26,7 +26,9 @@ def straighten_model() -> Model:
     camera = Camera(A, lens=Lens(k=(_K1,)), size=_SIZE)
     board = course.board()
     G = hold_at(board, camera, rotation_from_vector([0.2, 0.15, 0.0]), aim=[320, 235], farther=1.12)
-    row = (camera.moved(G).project(board.points[: board.corners[0]]) - _MIDDLE) / _ALPHA
+    corners = (camera.moved(G).project(board.points) - _MIDDLE) / _ALPHA
+    rows = corners.reshape(*board.corners[::-1], 2)
+    row = rows[0]
     settings = (Setting("k1", "k1", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is taken off"),)
     about = (
         "The photograph of a chessboard in a room, with as much bending taken off as k1 says; "
@@ -44,8 +46,10 @@ def straighten_model() -> Model:
         bow = _bow(lens, row)
         panel = paper.picture_panel(_PICTURE, _SIZE, "the photograph, with k1 taken off")
         panel.image(_without(lens, photograph(), paper.sharpness))
-        m = _ALPHA * lens.undistort(row) + _MIDDLE
-        panel.line(m[[0, -1]], ESTIMATED, 1.2)
+        net = _ALPHA * lens.undistort(rows) + _MIDDLE
+        m = net[0]
+        for line in (*net, *net.swapaxes(0, 1)):
+            panel.line(line[[0, -1]], ESTIMATED, 1.2)
         panel.mark(m, "lens", 4)
         return Drawing(paper.join((panel, _row_panel(paper, m, bow))), _sentence(lens, bow))
 

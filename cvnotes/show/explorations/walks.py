@@ -17,7 +17,7 @@ def walks_model() -> Model:
     settings = (
         Setting("X", "camera's X (mm)", -400, 400, 10, 340, "where the camera stands"),
         Setting("Z", "camera's Z (mm)", -500, -120, 10, -420, "negative: before the board"),
-        Setting("turn", "turn (°)", -80, 80, 1, -32, "of the camera on the spot, to the right"),
+        Setting("turn", "turn (°)", -80, 80, 0.1, -29.7, "of the camera on the spot, to the right"),
     )
     about = (
         "A camera before a board, from above, twice: in the board's frame, with the walk from its "

@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, ShapeError, points, positions
 from cvnotes.show.axes import arrow, as_picture, drawn_on, halo, letter, pixel_axes
-from cvnotes.show.guards import picture as checked
-from cvnotes.show.guards import thing
+from cvnotes.show.guards import in_bytes, thing
 from cvnotes.show.style import ESTIMATED, FONT, MARKERS, WORLD, colour_of
 from cvnotes.targets import CharucoBoard, Chessboard
 
@@ -37,13 +36,10 @@ def draw_image(
     >>> draw_image(np.zeros((480, 640), np.uint8)).get_ylim()
     (np.float64(479.5), np.float64(-0.5))
     """
-    picture = checked(image)
+    picture = in_bytes(image)
     size = (picture.shape[1], picture.shape[0])
-    if picture.dtype == np.uint16:  # deep pictures seldom use their whole range
-        picture = picture / max(int(picture.max()), 1)
-    white = 255 if picture.dtype.kind in "ui" else 1
     ax = drawn_on(ax, size)
-    ax.imshow(picture, cmap="gray", vmin=0, vmax=white)
+    ax.imshow(picture, cmap="gray", vmin=0, vmax=255)
     ax.set_title(title)
     return as_picture(ax, size, ticks=ticks)
 

@@ -1,0 +1,167 @@
+"""A picture whose points are pulled by hand, and what a function of the reader's says of them."""
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from cvnotes.base import Array, CvnotesError, points
+from cvnotes.base.writing import PathLike
+from cvnotes.files import read_photo
+from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.guards import in_bytes
+from cvnotes.show.guards import picture as checked
+from cvnotes.show.style import ESTIMATED
+
+# What is said of a picture and its points: a sentence, lines, and perhaps another picture.
+Tell = Callable[[npt.NDArray[Any], Array], tuple[Any, ...]]
+
+_ALONE, _BESIDE = ((600, 440), (230, 230)), ((380, 300), (130, 130))  # px: picture, loupe
+_OTHER = (330, 300)  # px, of the other picture
+_STEP = 0.5  # px
+_MOST = 12  # points
+
+
+def hand_model(picture: npt.ArrayLike | PathLike, at: npt.ArrayLike, tell: Tell) -> Model:
+    """Make the model of points on a picture, as `pull_points` describes them."""
+    at = points(at, "at", 2).reshape(-1, 2)
+    if isinstance(picture, str | Path):
+        picture = read_photo(picture).image
+        at = _around(picture.shape[1::-1], len(at))
+    return _model(checked(picture, "picture"), at, tell)
+
+
+def _around(size: Sequence[int], n: int) -> Array:
+    """Lay n points around the middle of a picture of (width, height), clockwise."""
+    turn = -3 * np.pi / 4 + 2 * np.pi * np.arange(n) / n
+    place = np.array(size) * (0.5 + 0.35 * np.stack([np.cos(turn), np.sin(turn)], axis=1))
+    return np.round(place)
+
+
+def points_of(values: Values) -> Array:
+    """Return where the points are, (n, 2)."""
+    n = (len(values) - 1) // 2
+    return np.array([[values[f"u{i}"], values[f"v{i}"]] for i in range(1, n + 1)])
+
+
+def _model(picture: npt.NDArray[Any], at: Array, tell: Tell) -> Model:
+    """Make the model; what cannot be told of the first points is an error at once."""
+    photo = in_bytes(picture, "picture")
+    h, w = photo.shape[:2]
+    if not 1 <= len(at) <= _MOST:
+        raise CvnotesError(f"at: expected 1 to {_MOST} points, got {len(at)}")
+    if not ((at >= 0) & (at <= [w - 1, h - 1])).all():
+        raise CvnotesError(f"at: expected points within the picture of {w} × {h} px")
+    _told(tell, picture, at)
+    settings = [Setting("point", "point", 1, len(at), 1, 1, "which point the loupe shows")]
+    for i, place in enumerate(at.tolist(), 1):
+        for name, most, start in zip("uv", (w - 1, h - 1), place, strict=True):
+            meaning = f"{name} of point {i}, in px"
+            settings.append(Setting(f"{name}{i}", f"{name}{i}", 0, most, _STEP, start, meaning))
+
+    @lru_cache(maxsize=4)
+    def fitted(width: int, height: int) -> Drawn:
+        """Keep the photograph as large as its panel: it is the same wherever the points are."""
+        return np.asarray(Image.fromarray(photo).resize((width, height), reducing_gap=2.0))
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        m, now = points_of(values), int(values["point"])
+        words, lines, other = _told_or_why(tell, picture, m)
+        room, loupe = _ALONE if other is None else _BESIDE
+        size = _fit((w, h), room)
+        panel = paper.picture_panel(size, (w, h), "pull the points")
+        panel.image(fitted(paper.sharpness * size[0], paper.sharpness * size[1]))
+        _draw_points(panel, m, lines)
+        panels = [panel, _loupe(paper, loupe, photo, m, lines, now)]
+        if other is not None:
+            beside = paper.panel(_fit(other.shape[1::-1], _OTHER), (0, 1), (0, 1), "what is told")
+            beside.image(other)
+            panels.insert(1, beside)
+        return Drawing(paper.join(tuple(panels)), words)
+
+    def pulled(i: int, at: Array) -> Values:
+        return {"point": i, f"u{i}": float(at[0]), f"v{i}": float(at[1])}
+
+    def pull_of(i: int) -> Drag:
+        return lambda _, at: pulled(i, at)
+
+    drags = {f"point {i}": pull_of(i) for i in range(1, len(at) + 1)}
+    drags["loupe"] = lambda values, at: pulled(int(values["point"]), at)
+    about = f"A picture with {len(at)} points to be pulled, a loupe over one of them, and lines."
+    return Model("pull_points", about, tuple(settings), draw, drags)
+
+
+def _told(tell: Tell, picture: npt.NDArray[Any], m: Array) -> tuple[str, list[Array], Drawn | None]:
+    """Ask what the points mean, and look whether the answer is of the right kind."""
+    with np.errstate(divide="ignore", invalid="ignore"):  # a hand may pull anywhere
+        answer = tell(picture, m.copy())
+    match answer:
+        case (str(words), list() | tuple() | np.ndarray() as lines):
+            other = None
+        case (str(words), list() | tuple() | np.ndarray() as lines, beside):
+            other = in_bytes(beside, "the picture that tell returns")
+        case _:
+            raise CvnotesError(
+                "tell: expected a function that returns a sentence, a list of lines and, if it "
+                f"likes, a picture; got {type(answer).__name__}"
+            )
+    drawn = [np.asarray(line, dtype=np.float64) for line in lines]
+    if any(line.ndim != 2 or line.shape[1] != 2 for line in drawn):
+        shapes = ", ".join(str(line.shape) for line in drawn)
+        raise CvnotesError(f"tell: expected lines of shape (k, 2), got {shapes}")
+    return words, drawn, other
+
+
+def _told_or_why(
+    tell: Tell, picture: npt.NDArray[Any], m: Array
+) -> tuple[str, list[Array], Drawn | None]:
+    """Ask again; where the reader's function stops, its error is the sentence."""
+    try:
+        return _told(tell, picture, m)
+    except Exception as reason:
+        return f"No answer for these points: {type(reason).__name__}: {reason}", [], None
+
+
+def _fit(size: Sequence[int], room: tuple[int, int]) -> tuple[int, int]:
+    scale = min(room[0] / size[0], room[1] / size[1])
+    return max(round(scale * size[0]), 1), max(round(scale * size[1]), 1)
+
+
+def _draw_points(panel: Panel, m: Array, lines: list[Array]) -> None:
+    for line in lines:
+        panel.line(line, ESTIMATED, 2)
+    panel.mark(m, "estimated", 5)
+    middle = m.mean(axis=0)
+    for i, place in enumerate(m, 1):
+        away = (place - middle) / max(float(np.linalg.norm(place - middle)), 1e-9)
+        panel.grip(f"point {i}", f"point {i}", place, _STEP / panel.pixel)
+        if len(m) > 1:
+            inside = np.array([panel.x, panel.y]).T + 10 * panel.pixel * np.array([[1], [-1]])
+            beside = np.clip(place + 22 * panel.pixel * away, *inside)
+            panel.text(beside, f"{i}", ESTIMATED, anchor="mm", size=14)
+
+
+def _loupe(
+    paper: Paper, size: tuple[int, int], photo: Drawn, m: Array, lines: list[Array], now: int
+) -> Panel:
+    """Draw the pixels around a point, enlarged; beyond the picture is white."""
+    reach = max(10, photo.shape[1] // 160)
+    middle = np.rint(m[now - 1]).astype(int)
+    (left, top), around = middle - reach, np.arange(2 * reach + 1)
+    rows, columns = top + around, left + around
+    seen = photo[rows.clip(0, len(photo) - 1)][:, columns.clip(0, photo.shape[1] - 1)]
+    panel = paper.panel(
+        size, (left - 0.5, left + 2 * reach + 0.5), (top - 0.5, top + 2 * reach + 0.5),
+        f"point {now}, enlarged",
+    )  # fmt: skip
+    panel.image(seen, smooth=False)
+    for line in lines:
+        panel.line(line, ESTIMATED, 1)
+    panel.mark(m[now - 1], "ideal", 9)
+    panel.grip("loupe", f"point {now}, finely", m[now - 1], _STEP / panel.pixel)
+    return panel
