@@ -312,7 +312,28 @@ def test_a_notebook_runs_and_its_slider_moves_the_picture(page, chapter, tmp_pat
     page.keyboard.press("ArrowRight")
     assert _becomes(page, picture, lambda now: now != before)
     page.screenshot(path=tmp_path / f"{path.stem}.png")
+    _pull_a_point(page, _output(page, cells, r"(?m)^pull_points\("))
+    page.screenshot(path=tmp_path / f"{path.stem}_pulled.png")
     page.evaluate(SHUT_DOWN)
+
+
+def _pull_a_point(page, output):
+    """Pull a point of the reader's photograph by mouse: his function answers, the loupe follows."""
+    picture, status = output.locator("img.widget-image"), output.get_by_role("status")
+    grip = output.get_by_label("point 2: drag it")
+    grip.wait_for(state="visible", timeout=60_000)
+    grip.scroll_into_view_if_needed()
+    said, seen = status.inner_text(), picture.evaluate(PICTURE)
+    x, y = _middle(grip)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 20, y - 16, steps=6)
+    page.mouse.up()
+    assert _becomes(page, picture, lambda now: now != seen)
+    output.get_by_label("point 2, finely").wait_for(state="visible", timeout=20_000)
+    page.wait_for_timeout(600)
+    assert status.inner_text() != said
+    assert np.hypot(*np.subtract(_middle(grip), (x + 20, y - 16))) < 8
 
 
 @pytest.mark.once

@@ -20,7 +20,7 @@ from scipy.special import j1
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError, luma
 from cvnotes.base.png import pack_png
-from cvnotes.calibration import calibrate
+from cvnotes.calibration import calibrate, constraints, intrinsics_from_b, solve_b
 from cvnotes.camera import (
     Camera,
     Lens,
@@ -72,6 +72,7 @@ from cvnotes.show.explorations.ransac import drawn_pairs
 from cvnotes.show.explorations.rectification import lines_from
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
+from cvnotes.show.explorations.subpixel import photograph as photograph_of_corner
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import window_at
@@ -856,9 +857,10 @@ def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
             assert (arc > [left, top]).all()
             assert (arc < [right, low]).all()
     said = {k1: numbers(MODELS["folds"].drawing(k1=k1).sentence) for k1 in (-0.25, -0.2, 0)}
-    assert said[-0.25][-1] < 0.5
-    assert said[-0.2][-1] > 10
-    assert said[0][-2:] == [21, 91]
+    assert said[-0.25][2] < 0.5
+    assert said[-0.25][3:] == [325, 238, 800]  # the camera that the equations find
+    assert said[-0.2][3] > 10
+    assert said[0][2:] == [21, 91, 314, 243, 803]  # as on the page, eleven pixels aside
 
 
 def test_newton_and_division_need_as_many_rounds_as_they_are_said_to():
@@ -1616,3 +1618,102 @@ def test_a_page_may_pull_a_grip():
     at = [grip["at"][0] + 12, grip["at"][1] - 7]
     rest = json.loads(asked(json.dumps({**told, "grip": grip["name"], "at": at})).rest)
     assert (rest["values"]["du1"], rest["values"]["dv1"]) == (12, -7)
+
+
+# A forged shadow, a corner between the pixels, and what was found in readers' hands.
+
+
+def test_a_shadow_could_be_true_exactly_if_its_line_goes_through_the_sun():
+    A, sun = np.array([[800, 0, 325], [0, 804, 238], [0, 0, 1.0]]), np.array([0.06, -0.2, 0.8])
+
+    def seen(M):
+        u, v, w = A @ M
+        return np.array([u / w, v / w])
+
+    top = np.array([-4.0, -4.05, 40])
+    true = top - 6 / 0.2 * sun  # on the ground, 1.95 m below the camera
+    assert true[1] == pytest.approx(1.95)
+    shown = MODELS["forged"].drawing
+    for aside, ahead in ((1, 0), (0, 0), (-2, 1.5), (0.3, -1)):
+        tip = seen(true + [aside, 0, ahead])
+        line = np.cross([*tip, 1], [*seen(top), 1])
+        miss = abs(line @ [*seen(sun), 1]) / np.hypot(*line[:2])
+        sentence = shown(aside=aside, ahead=ahead).sentence
+        assert numbers(sentence)[0] == pytest.approx(miss, abs=0.051)
+        assert ("could be true" in sentence) == (miss < 2)
+    # Another tip on the line through the sun and the top passes, too: the test proves nothing true.
+    along = seen(top) + 1.4 * (seen(true) - seen(top))
+    ray = np.linalg.solve(A, [*along, 1])
+    other = 1.95 * ray / ray[1]
+    off = (other - true).round(2)
+    assert np.linalg.norm(off) > 2
+    assert "could be true" in shown(aside=off[0], ahead=off[2]).sentence
+
+
+@pytest.mark.parametrize("at", [(352.38, 212.53), (351.7, 213.4), (353, 212)])
+def test_the_corner_that_is_pulled_is_where_its_pixels_say(at):
+    grey = photograph_of_corner(*at, 0.7, 0)
+    # Sampled anew: how much of each small square is light, by the edges of the exact board.
+    A, G = course.camera().A.copy(), course.poses()[6]
+    corner = Camera(A, G).project(course.board().points[22])
+    A[:2, 2] += np.array(at) - [332, 193] - corner
+    fine = (np.arange(41 * 8) + 0.5) / 8 - 0.5
+    m = np.stack(np.meshgrid(fine, fine), axis=-1)
+    H = A @ G[:3, [0, 1, 3]]
+    x, y, w = np.moveaxis(
+        np.concatenate([m, np.ones((*m.shape[:2], 1))], -1) @ np.linalg.inv(H).T, -1, 0
+    )
+    light = ((np.floor(x / w / 25) + np.floor(y / w / 25)) % 2).astype(float)
+    light = light if (light[24, 24] > 0.5) == (grey[3, 3] > 128) else 1 - light
+    kernel = np.exp(-0.5 * (np.arange(-40, 41) / (8 * 0.7)) ** 2)
+    kernel /= kernel.sum()
+    for axis in (0, 1):
+        light = np.apply_along_axis(np.convolve, axis, light, kernel, "same")
+    share = light.reshape(41, 8, 41, 8).mean(axis=(1, 3))[8:33, 8:33]
+    ours = grey[8:33, 8:33].astype(float)
+    assert np.abs(ours - (ours.min() + np.ptp(ours) * share)).max() < 6
+    said = numbers(MODELS["subpixel"].drawing(u=at[0], v=at[1], noise=0).sentence)
+    assert max(said[2:]) < 0.01
+
+
+def test_with_the_lens_undone_the_equations_find_the_camera_and_for_parallel_boards_none():
+    def triangle(**values):
+        picture = MODELS["folds"].drawing(**values).picture[:, 456:644]
+        orange = np.abs(picture.astype(int) - colour(ESTIMATED)).max(-1) < 40
+        return np.argwhere(orange)
+
+    W = course.board().points[:, :2]
+    A = intrinsics_from_b(solve_b(constraints(dlt(W, course.measured_corners()))))  # the page's
+    off = (A[:2, 2] - [325, 238]) * [1, 800 / 804]
+    assert np.linalg.norm(off) > 11
+    middle = np.array([MARGIN + 90, TITLE + 187.5])  # of the plan, which shows 100 px in 180
+    aside = triangle(k1=0).mean(axis=0)[::-1] - middle
+    assert aside == pytest.approx(off * 180 / 100 + [0, 1.7], abs=1.5)
+    assert len(triangle(k1=-0.25)) > 30
+    assert len(triangle(k1=-0.25, turned=0)) == 0
+
+
+def test_the_horizon_of_the_wall_is_drawn_where_its_parallels_meet():
+    values = {"du1": 80, "dv1": 80}
+    drawing = MODELS["homography"].drawing(**values)
+    m = np.array([grip_of(drawing, f"corner {i}").at for i in range(1, 5)])
+    sides = [np.cross([*m[i], 1], [*m[(i + 1) % 4], 1]) for i in range(4)]
+    line = np.cross(np.cross(sides[0], sides[2]), np.cross(sides[1], sides[3]))
+    dark = drawing.picture[TITLE + 4 : 296, MARGIN + 4 : 370].max(axis=-1) < 60
+    hits = 0
+    for v in range(20, 440, 3):
+        u = -(line[1] * v + line[2]) / line[0]
+        x, y = round(u * 372 / 640), round(v * 279 / 480)
+        hits += 8 < x < 360 and dark[y - 6 : y - 1, max(x - 4, 0) : x + 4].any()
+    assert hits > 40  # dashes
+
+
+@pytest.mark.parametrize("sigma", [0.01, 0.2, 1])
+@pytest.mark.parametrize("views", [3, 12])
+def test_what_can_be_estimated_stays_in_the_frame_of_the_noise(sigma, views):
+    picture = MODELS["noise"].drawing(sigma=sigma, views=views).picture[TITLE:322, :456]
+    blue = np.abs(picture.astype(int) - colour(CAMERA)).max(-1) < 40
+    columns = np.flatnonzero(blue[40:].any(axis=0))
+    assert columns.min() > 60
+    assert columns.max() < 440
+    assert np.ptp(columns) > 60  # and large enough to be compared

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from cvnotes.camera import Camera, intrinsics, pose
-from cvnotes.pictures import chart_room, render_scene
+from cvnotes.pictures import chart_room, poster_room, render_scene
 from cvnotes.pictures.posters import ROWS, SIZE, SWITCH, letter
 
 
@@ -38,3 +38,21 @@ def test_words_fit_onto_the_chart_one_below_the_other():
     assert all(below[1] > bottom for below, bottom in zip(ROWS[1:], bottoms, strict=False))
     assert bottoms[-1] < SIZE[1]
     assert all((6 * len(word) - 1) * height / 5 < SIZE[0] for word, _, height in ROWS)
+
+
+def test_the_sun_of_the_poster_is_round_and_its_sheet_as_large_as_it_is_said_to_be():
+    # From the middle of the room straight at the left wall, two millimetres to the pixel.
+    A = intrinsics(500, 500, 749.5, 399.5)
+    camera = Camera(
+        A, pose([[0, 0, 1], [0, 1, 0], [-1, 0, 0]], [-7600, 300, -1979]), size=(1500, 800)
+    )
+    sheet = camera.project(poster_room().vertices[:4])
+    assert np.ptp(sheet, axis=0) == pytest.approx([1300, 600], rel=2e-3)
+    assert sheet[0] == pytest.approx([99.5, 99.5], abs=2)  # the upper left corner
+    seen = render_scene(poster_room(), camera, samples=16).astype(int)
+    red = seen[..., 0] > 2 * seen[..., 1]
+    v, u = np.nonzero(red)
+    assert [np.ptp(u) + 1, np.ptp(v) + 1] == pytest.approx([300, 300], abs=2)
+    assert red.sum() == pytest.approx(np.pi * 150**2, rel=0.01)
+    sea = seen[640, 749]
+    assert sea[2] > sea[0] + 40

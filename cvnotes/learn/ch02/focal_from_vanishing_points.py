@@ -22,7 +22,7 @@ def _steps(v1: Array, v2: Array, centre: Array) -> Array:
     """Return f in pixels."""
     a = v1 - centre  # v1 measured from the principal point
     b = v2 - centre  # v2 measured from the principal point
-    f2 = -(a @ b)  # f², minus the dot product
+    f2 = -(a @ b)  # f² is minus the dot product
     return np.sqrt(f2)
 
 

@@ -104,7 +104,8 @@ def pull_points(picture: npt.ArrayLike | PathLike, at: npt.ArrayLike, tell: Tell
     Parameters
     ----------
     picture : array_like, shape (height, width) or (height, width, 3), or path
-        Grey values or RGB, as for `draw_image`; or the file of a photograph of your own.
+        Grey values or RGB, as for `draw_image`; or the file of a photograph of your own, which is
+        shrunk by a whole number until it is 1600 pixels long at most.
     at : array_like, shape (n, 2)
         Pixels (u, v) where the points are at first, 12 at most. In a photograph of your own there
         are as many, laid around its middle.

@@ -26,7 +26,7 @@ _Of = tuple[float, float]  # k1, and how far the boards are turned
 _SPACE, _CLOSE, _CURVE = (450, 375), (180, 375), (210, 375)
 _SHOWN = ((-2230, 2810), (-2563, 1637))  # x and y of the sheet: all half circles, for each k1
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
-_NEAR = 130  # px about the eye, that are shown enlarged
+_NEAR = 50  # px about the principal point, that are shown enlarged
 _MOST = 90.0  # px, of the curve
 
 
@@ -94,36 +94,32 @@ def folds_model() -> Model:
     )  # fmt: skip
     about = (
         "Twelve half circles, one for each photograph: all places from which it shows right "
-        "angles. Beside them the same enlarged about the camera, and how far they miss it, "
-        "against k1."
+        "angles. Beside them a plan about the principal point, in which they are lines, and how "
+        "far they miss the camera, against k1."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
         of = values["k1"], values["turned"]
         panels = _space(tangle, paper, of), _close(tangle, paper, of), _curve(tangle, paper, of)
-        return Drawing(paper.join(panels), _sentence(of, tangle.misses(*of)))
+        return Drawing(paper.join(panels), _sentence(of, tangle.misses(*of), tangle.found(*of)))
 
     return Model("folds", about, settings, draw, {"k1": lambda _, at: {"k1": float(at[0])}})
 
 
-def _sentence(of: _Of, misses: Array) -> str:
+def _sentence(of: _Of, misses: Array, found: Array) -> str:
     k1, turned = of
     k = f"{k1:.3f}".replace("-", "−")
     said = f"With k1 = {k} undone, the twelve half circles pass the camera at "
-    if misses.max() < 1 and turned == 0:
-        return (
-            f"{said}{misses.max():.1f} px at most, but they are one: each of its places would do."
-        )
-    if misses.max() < 1:
-        return f"{said}{misses.max():.1f} px at most: they meet, and where they do is the camera."
-    return f"{said}{misses.min():.0f} to {misses.max():.0f} px: no eye sees all right angles."
-
-
-def _arcs(tangle: _Tangle, panel: Panel, of: _Of, width: float) -> None:
-    for circle in tangle.circles(*of):
-        arc = on_sheet(circle.place(np.arange(0, 180.5, 0.5)))
-        panel.line(arc, LENS, width)
-        panel.mark(arc[[0, -1]], "lens", 3)
+    if misses.max() >= 1:
+        said += f"{misses.min():.0f} to {misses.max():.0f} px: no eye sees all right angles."
+    elif turned:
+        said += f"{misses.max():.1f} px at most: they meet, and where they do is the camera."
+    else:
+        said += f"{misses.max():.1f} px at most, but they are one: each of its places would do."
+    if np.isnan(found).any():
+        return f"{said} The equations have no answer."
+    u0, v0, alpha = found * [1, 804 / 800, 1]
+    return f"{said} The equations find ({u0:.0f}, {v0:.0f}) and α = {alpha:.0f} px."
 
 
 def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
@@ -135,27 +131,33 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     panel.line(seen, MUTED, 1)
     m = np.column_stack([tangle.seen(1)[0] * tangle.square, np.zeros(len(tangle.W))])
     draw_squares(panel, on_sheet(m), tangle.board, "#B0B0B0")
-    _arcs(tangle, panel, of, 0.7)
-    _draw_found(tangle, panel, of)
+    for circle in tangle.circles(*of):
+        arc = on_sheet(circle.place(np.arange(0, 180.5, 0.5)))
+        panel.line(arc, LENS, 0.7)
+        panel.mark(arc[[0, -1]], "lens", 3)
+    _draw_found(on_sheet(tangle.found(*of)), panel)
     panel.mark(on_sheet(tangle.eye), "ideal", 8)
     return panel
 
 
-def _draw_found(tangle: _Tangle, panel: Panel, of: _Of) -> None:
+def _draw_found(at: Array, panel: Panel) -> None:
     """Draw the camera that is found as a triangle, orange as all that is computed."""
-    at = on_sheet(tangle.found(*of))
-    panel.polygons([at + 9 * panel.pixel * np.array([[0, -1], [0.9, 0.7], [-0.9, 0.7]])], ESTIMATED)
+    panel.polygons(
+        [at + 13 * panel.pixel * np.array([[0, -1], [0.9, 0.7], [-0.9, 0.7]])], ESTIMATED
+    )
 
 
 def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
+    """Draw the plan: a half circle is a line there, square to the horizon, through (u0, v0)."""
     reach = _NEAR * np.array(_CLOSE) / _CLOSE[0]
-    (left, top), (right, low) = on_sheet(tangle.eye) - reach, on_sheet(tangle.eye) + reach
-    panel = paper.panel(_CLOSE, (left, right), (top, low), "enlarged about the camera")
-    _arcs(tangle, panel, of, 1)
-    _draw_found(tangle, panel, of)
-    panel.mark(on_sheet(tangle.eye), "ideal", 10)
-    panel.line([[left + 12, low - 14], [left + 62, low - 14]], IDEAL, 2)
-    panel.text([left + 68, low - 14], "50 px", IDEAL, size=12)
+    (left, top), (right, low) = tangle.eye[:2] - reach, tangle.eye[:2] + reach
+    panel = paper.panel(_CLOSE, (left, right), (top, low), "from above: u0 and v0")
+    for circle in tangle.circles(*of):
+        panel.line(circle.place(np.array([0.0, 180]))[:, :2], LENS, 1)
+    _draw_found(tangle.found(*of)[:2], panel)
+    panel.mark(tangle.eye[:2], "ideal", 10)
+    panel.line([[left + 8, low - 10], [left + 28, low - 10]], IDEAL, 2)
+    panel.text([left + 31, low - 10], "20 px", IDEAL, size=12)
     return panel
 
 

@@ -22,6 +22,8 @@ globalThis.CvnotesGrips = class {
       if (!this.own.has(grip.name)) this.own.set(grip.name, this.make(grip));
       const own = this.own.get(grip.name);
       own.grip = grip;
+      own.button.ariaLabel = `${grip.label}: drag it, or move it with the arrow keys`;
+      own.button.title = grip.label;
       own.button.style.left = `${(100 * grip.place[0]) / size[0]}%`;
       own.button.style.top = `${(100 * grip.place[1]) / size[1]}%`;
     }
@@ -37,12 +39,10 @@ globalThis.CvnotesGrips = class {
     this.held = null;
   }
 
-  make({ name, label }) {
+  make({ name }) {
     const button = document.createElement("button");
     button.type = "button";
     button.className = "explore-grip";
-    button.ariaLabel = `${label}: drag it, or move it with the arrow keys`;
-    button.title = label;
     button.dataset.lmSuppressShortcuts = "true"; // its arrows are not JupyterLab's
     const own = { button };
     let from = null; // where the hand took hold

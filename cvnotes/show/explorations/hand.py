@@ -25,15 +25,22 @@ _ALONE, _BESIDE = ((600, 440), (230, 230)), ((380, 300), (130, 130))  # px: pict
 _OTHER = (330, 300)  # px, of the other picture
 _STEP = 0.5  # px
 _MOST = 12  # points
+_LARGE = 1600  # px, the longer side of a photograph of the reader's own
 
 
 def hand_model(picture: npt.ArrayLike | PathLike, at: npt.ArrayLike, tell: Tell) -> Model:
     """Make the model of points on a picture, as `pull_points` describes them."""
     at = points(at, "at", 2).reshape(-1, 2)
     if isinstance(picture, str | Path):
-        picture = read_photo(picture).image
+        picture = _smaller(read_photo(picture).image)
         at = _around(picture.shape[1::-1], len(at))
     return _model(checked(picture, "picture"), at, tell)
+
+
+def _smaller(photo: Drawn) -> Drawn:
+    """Shrink a photograph by a whole number until a function that warps it follows the hand."""
+    times = -(-max(photo.shape[:2]) // _LARGE)
+    return np.asarray(Image.fromarray(photo).reduce(times))
 
 
 def _around(size: Sequence[int], n: int) -> Array:
@@ -151,15 +158,16 @@ def _loupe(
 ) -> Panel:
     """Draw the pixels around a point, enlarged; beyond the picture is white."""
     reach = max(10, photo.shape[1] // 160)
-    middle = np.rint(m[now - 1]).astype(int)
-    (left, top), around = middle - reach, np.arange(2 * reach + 1)
-    rows, columns = top + around, left + around
-    seen = photo[rows.clip(0, len(photo) - 1)][:, columns.clip(0, photo.shape[1] - 1)]
+    left, top = np.rint(m[now - 1]).astype(int) - reach
+    side = 2 * reach + 1
+    sheet = np.full((side, side, *photo.shape[2:]), 255, np.uint8)
+    seen = photo[max(top, 0) : top + side, max(left, 0) : left + side]
+    sheet[max(-top, 0) :, max(-left, 0) :][: seen.shape[0], : seen.shape[1]] = seen
     panel = paper.panel(
         size, (left - 0.5, left + 2 * reach + 0.5), (top - 0.5, top + 2 * reach + 0.5),
         f"point {now}, enlarged",
     )  # fmt: skip
-    panel.image(seen, smooth=False)
+    panel.image(sheet, smooth=False)
     for line in lines:
         panel.line(line, ESTIMATED, 1)
     panel.mark(m[now - 1], "ideal", 9)

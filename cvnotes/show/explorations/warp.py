@@ -61,7 +61,7 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Drawing:
     backward[~covered] = _PAPER
     holes, folds = covered & (forward.hits == 0), covered & (forward.hits > 1)
     size = (_LARGER * width, _LARGER * height)
-    left = paper.picture_panel(size, (width, height), "forward: each pixel is sent")
+    left = paper.picture_panel(size, (width, height), "sent: orange never hit, blue twice or more")
     left.image(_coloured(forward.image.astype(np.uint8), holes, folds), smooth=False)
     right = paper.picture_panel(
         size, (width, height), "backward: each pixel is fetched (+ to turn and zoom)"

@@ -1,0 +1,192 @@
+"""Points that are pulled over a picture, and what a function of the reader's says of them."""
+
+import html
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from cvnotes.base import CvnotesError, FileError
+from cvnotes.show import pull_points
+from cvnotes.show.explorations.hand import hand_model
+from cvnotes.show.style import ESTIMATED
+
+# Every pixel of the photograph has a colour of its own.
+V, U = np.mgrid[:120, :160]
+PHOTO = np.dstack([U, V, 200 + 0 * U]).astype(np.uint8)
+AT = np.array([[20.0, 30], [100, 40], [90, 100]])
+ORANGE = np.array([int(ESTIMATED[i : i + 2], 16) for i in (1, 3, 5)])
+
+
+def triangle(photo, three):
+    (a, b), (c, d) = three[1] - three[0], three[2] - three[0]
+    return f"Area {abs(a * d - b * c) / 2:.1f} of {photo.shape[1]}.", [three[[0, 1, 2, 0]]]
+
+
+def grip_of(drawing, name):
+    return next(grip for grip in drawing.grips if grip.name == name)
+
+
+def test_each_pull_calls_the_function_with_the_picture_and_the_points():
+    asked = []
+
+    def tell(photo, points):
+        asked.append((photo, points))
+        return "Said.", []
+
+    model = hand_model(PHOTO, AT, tell)
+    values = model.dragged("point 2", (110.2, 44.6))
+    assert (values["point"], values["u2"], values["v2"]) == (2, 110.0, 44.5)
+    model.drawing(**values)
+    photo, points = asked[-1]
+    assert photo is PHOTO
+    assert points.tolist() == [[20, 30], [110, 44.5], [90, 100]]
+    points[:] = 0  # the function may do with them what it likes
+    assert model.drawing(**values).sentence == "Said."
+    assert asked[-1][1][1].tolist() == [110, 44.5]
+
+
+def test_the_sentence_is_that_of_the_points_and_the_lines_lie_upon_them():
+    model = hand_model(PHOTO, AT, triangle)
+    assert model.drawing().sentence == "Area 2450.0 of 160."
+    assert model.drawing(u2=20, v2=60).sentence == "Area 1050.0 of 160."
+    drawing = model.drawing()
+    a, b, _ = (np.array(grip_of(drawing, f"point {i}").place) for i in (1, 2, 3))
+    for part in (0.2, 0.5, 0.8):
+        u, v = np.rint(a + part * (b - a)).astype(int)
+        around = drawing.picture[v - 2 : v + 3, u - 2 : u + 3].reshape(-1, 3).astype(int)
+        assert np.abs(around - ORANGE).max(axis=-1).min() < 30
+    assert [grip.label for grip in drawing.grips][-1] == "point 1, finely"
+
+
+def test_the_loupe_shows_the_pixels_around_the_point_that_was_pulled_last():
+    model = hand_model(PHOTO, AT, lambda *_: ("", []))
+    for point, (u, v) in ((1, (20, 30)), (3, (90, 100)), (2, (159, 0))):
+        drawing = model.drawing(**{"point": point, f"u{point}": u, f"v{point}": v})
+        grip = grip_of(drawing, "loupe")
+        assert grip.label == f"point {point}, finely"
+        assert grip.at == (u, v)
+        pixel = 1 / np.abs(grip.unit)  # px of the page for one of the photograph
+        assert pixel.min() > 8
+        for by in ((3, 0), (0, 2), (-2, 1), (-8, 8)):
+            x, y = np.rint(grip.place + pixel * by).astype(int)
+            seen = drawing.picture[y, x].tolist()
+            inside = u + by[0] < 160 and v + by[1] >= 0
+            assert seen == ([u + by[0], v + by[1], 200] if inside else [255, 255, 255])
+
+
+def test_in_the_loupe_the_same_point_is_pulled_finely():
+    model = hand_model(PHOTO, AT, triangle)
+    start = model.dragged("point 3", (90, 100))
+    loupe, photo = (grip_of(model.drawing(**start), name) for name in ("loupe", "point 3"))
+    assert loupe.unit[0] < 0.35 * photo.unit[0]
+    values = model.dragged("loupe", (91.5, 99.5), **start)
+    assert (values["u3"], values["v3"], values["u1"]) == (91.5, 99.5, 20)
+
+
+def test_a_picture_that_is_told_stands_beside():
+    green = np.zeros((50, 100, 3))
+    green[..., 1] = 1
+    model = hand_model(PHOTO, AT, lambda *_: ("", [], green))
+    picture = model.drawing().picture
+    v, u = np.nonzero((picture == [0, 255, 0]).all(axis=-1))
+    assert np.ptp(u) / np.ptp(v) == pytest.approx(2, rel=0.03)
+    assert np.ptp(u) > 300
+    alone = hand_model(PHOTO, AT, triangle).drawing()
+    assert grip_of(alone, "point 1").unit[0] < grip_of(model.drawing(), "point 1").unit[0]
+
+
+@pytest.mark.parametrize(
+    "photo",
+    [PHOTO / 255, PHOTO[..., 0], PHOTO[..., 0] > 80, PHOTO.astype(np.uint16) * 257],
+    ids=["float", "grey", "bool", "deep"],
+)
+def test_pictures_of_all_kinds_are_shown(photo):
+    drawing = hand_model(photo, AT, triangle).drawing()
+    x, y = np.rint(grip_of(drawing, "loupe").place).astype(int)
+    seen = drawing.picture[y + 90, x - 90].astype(int)  # eight pixels to the left, eight down
+    value = np.asarray(photo, dtype=float)[38, 12]
+    white = {"f": 1, "b": 1}.get(
+        np.asarray(photo).dtype.kind, np.max(photo) if photo.max() > 255 else 255
+    )
+    assert np.abs(seen - 255 * value / white).max() <= 1
+
+
+@pytest.mark.parametrize(
+    ("at", "tell", "words"),
+    [
+        (np.zeros((0, 2)), triangle, "expected 1 to 12 points, got 0"),
+        (np.ones((13, 2)), triangle, "expected 1 to 12 points, got 13"),
+        ([[160, 10]], triangle, "within the picture of 160 × 120 px"),
+        ([[5, 5]], lambda *_: "no lines", "a sentence, a list of lines.*got str"),
+        ([[5, 5]], lambda *_: ("", [[1, 2, 3]]), r"shape \(k, 2\)"),
+        ([[5, 5]], lambda *_: ("", [], np.zeros(7)), "picture that tell returns"),
+    ],
+)
+def test_what_cannot_be_shown_is_an_error_that_teaches(at, tell, words):
+    with pytest.raises(CvnotesError, match=words):
+        pull_points(PHOTO, at, tell)
+
+
+def test_an_error_of_the_readers_function_is_raised_at_first_and_told_afterwards():
+    def tell(_, points):
+        if points[0, 0] > 50:
+            raise ZeroDivisionError("that far?")
+        return "Fine.", []
+
+    with pytest.raises(ZeroDivisionError):
+        pull_points(PHOTO, [[60, 10]], tell)
+    widget = pull_points(PHOTO, [[10, 10]], tell)
+    widget.sliders["u1"].value = 60
+    assert "No answer for these points: ZeroDivisionError: that far?" in widget.sentence.value
+    widget.sliders["u1"].value = 40
+    assert "Fine." in widget.sentence.value
+    widget.close_all()
+
+
+def test_nan_where_lines_are_parallel_is_no_warning():
+    def meet(_, points):
+        x = 1 / (points[0, 0] - points[1, 0])
+        return f"{x:.1f}", [[points[0], [x, np.nan]]]
+
+    model = hand_model(PHOTO, [[10, 10], [20, 10]], meet)
+    assert model.drawing(u1=20).sentence == "inf"
+
+
+def test_of_a_photograph_of_ones_own_the_path_is_enough(tmp_path):
+    path = tmp_path / "mine.png"
+    Image.fromarray(np.full((300, 400, 3), 90, np.uint8)).save(path)
+    for given in (path, str(path)):
+        widget = pull_points(given, AT, triangle)
+        assert widget.points.shape == (3, 2)
+        off = widget.points - [200, 150]
+        assert np.abs(off / [400, 300]).max() < 0.4
+        assert np.linalg.norm(off, axis=1).min() > 50
+        assert "of 400." in widget.sentence.value
+        widget.close_all()
+    Image.fromarray(np.zeros((3000, 4000), np.uint8)).save(path)
+    widget = pull_points(path, AT, triangle)
+    assert "of 1334." in widget.sentence.value  # a third
+    widget.close_all()
+    with pytest.raises(FileError, match="nowhere"):
+        pull_points(tmp_path / "nowhere.jpg", AT, triangle)
+
+
+def test_the_widget_keeps_its_points_tells_them_and_leaves_a_still():
+    widget = pull_points(PHOTO, AT, triangle)
+    assert widget.points.tolist() == AT.tolist()
+    pulled = {"number": 1, "grip": "point 1", "at": [30, 35], "values": widget.values}
+    widget._pulled.value = json.dumps(pulled)
+    assert widget.points[0].tolist() == [30, 35]
+    folded = widget.children[-1]
+    assert "[[30.0, 35.0], [100.0, 40.0], [90.0, 100.0]]" in folded.children[1].value
+    assert set(widget.sliders.values()) < set(folded.children[0].children)
+    bundle = widget._repr_mimebundle_()["text/html"]
+    assert html.escape(widget.model.drawing(**widget.values).sentence) in bundle
+    assert "<img" in bundle
+    assert "pull its points" in bundle
+    assert "data-explore" not in bundle  # a page has no function of the reader's
+    widget.reset_button.click()
+    assert widget.points.tolist() == AT.tolist()
+    widget.close_all()
