@@ -124,12 +124,6 @@ FIGURES = [
         camera=CAMERA,
     ),
     figure(sensors.draw_sensor, {"A": (A, SINGLE)}),
-    figure(
-        sensors.draw_pixels,
-        {"image": (SMALL, PICTURE), "corner": ((4, 3), SINGLE)},
-        sizes=("size",),
-        size=(4, 3),
-    ),
     # least squares
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
     # lines

@@ -11,7 +11,6 @@ from cvnotes.show import (
     box_lines,
     draw_field_of_view,
     draw_formation,
-    draw_pixels,
     draw_sensor,
 )
 
@@ -115,18 +114,6 @@ def test_the_columns_of_a_leaning_sensor_lean_and_see_the_same_room():
     x, y = cells.get_coordinates()[15:17, 29:31].mean((0, 1))
     upright = straight[int((800 * y + 240.5) / 20), int((800 * x + 320.5) / 20)]
     np.testing.assert_allclose(cells.get_array()[15, 29], upright, atol=0.05)
-
-
-def test_pixels_are_squares_around_whole_numbers():
-    ax = draw_pixels(np.zeros((48, 64), np.uint8), (10, 20), (4, 3))
-    assert ax.get_xlim() == (9.5, 13.5)
-    assert ax.get_ylim() == (22.5, 19.5)
-    assert len(ax.patches) == 12
-    (centres,) = ax.lines
-    middles = [np.add(square.get_xy(), 0.5).tolist() for square in ax.patches]
-    assert centres.get_xydata().tolist() == middles
-    with pytest.raises(CvnotesError, match="not inside"):
-        draw_pixels(np.zeros((48, 64), np.uint8), (62, 20), (4, 3))
 
 
 def test_an_arrow_leads_from_its_start_to_its_end():

@@ -12,7 +12,7 @@ from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
-from cvnotes.show.figures.sensors import draw_pixels, draw_sensor
+from cvnotes.show.figures.sensors import draw_sensor
 from cvnotes.show.figures.vanishing import draw_altitudes
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
@@ -59,7 +59,6 @@ __all__ = [
     "box_lines",
     "draw_field_of_view",
     "draw_sensor",
-    "draw_pixels",
     # chapter 4: lenses
     "draw_grid",
     # chapters 6, 7 and 9: estimates

@@ -1,17 +1,14 @@
-"""Figures of the sensor: its lines and its pixels."""
+"""A figure of the sensor, whose axes may lean."""
 
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import CvnotesError, image_size, intrinsic_matrix
+from cvnotes.base import intrinsic_matrix
 from cvnotes.camera import Camera, xy_from_px
 from cvnotes.pictures import render_scene, room
 from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter
-from cvnotes.show.figures.images import draw_image
-from cvnotes.show.guards import one_point
-from cvnotes.show.guards import picture as checked
 from cvnotes.show.style import CAMERA, ESTIMATED, FONT, LENS, MUTED
 
 if TYPE_CHECKING:
@@ -52,46 +49,4 @@ def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     ax.set_aspect("equal")
     ax.axis("off")
     ax.invert_yaxis()
-    return ax
-
-
-def draw_pixels(
-    image: npt.ArrayLike,
-    corner: tuple[int, int],
-    size: tuple[int, int] = (8, 6),
-    *,
-    ax: "Axes | None" = None,
-) -> "Axes":
-    """Draw a few pixels of a picture as the squares they are, with their centres and numbers.
-
-    Parameters
-    ----------
-    image : array_like, shape (height, width) or (height, width, 3)
-        The picture.
-    corner : (u, v)
-        The first pixel to show.
-    size : (columns, rows)
-        How many.
-
-    Examples
-    --------
-    >>> draw_pixels(np.zeros((48, 64), np.uint8), (0, 0), (4, 3)).get_xlim()
-    (np.float64(-0.5), np.float64(3.5))
-    """
-    from matplotlib.patches import Rectangle
-
-    picture, (columns, rows) = checked(image), image_size(size)
-    first = one_point(corner, "corner", 2)
-    if (first < 0).any() or (first + size > picture.shape[1::-1]).any():
-        raise CvnotesError("these pixels are not inside of the picture")
-    u0, v0 = np.rint(first).astype(int)
-    ax = drawn_on(ax, width=560)
-    draw_image(picture, ax=ax, ticks=True)
-    for u in range(u0, u0 + columns):
-        for v in range(v0, v0 + rows):
-            ax.add_patch(Rectangle((u - 0.5, v - 0.5), 1, 1, fc="none", ec=MUTED, lw=0.8))
-    centres = np.mgrid[u0 : u0 + columns, v0 : v0 + rows].reshape(2, -1)
-    ax.plot(*centres, "o", color=MUTED, ms=4, mec="white", mew=0.8)
-    ax.set(xlim=(u0 - 0.5, u0 + columns - 0.5), ylim=(v0 + rows - 0.5, v0 - 0.5))
-    ax.set(xticks=range(u0, u0 + columns), yticks=range(v0, v0 + rows))
     return ax
