@@ -51,8 +51,9 @@ from cvnotes.show.explorations import clouds, cube, eleventh, gimbal, maps
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
+from cvnotes.show.explorations.disparity import columns, triangulated
 from cvnotes.show.explorations.epipolar import cameras, seen_by_the_second
-from cvnotes.show.explorations.finding import Finding, rms
+from cvnotes.show.explorations.finding import Finding, alike, rms
 from cvnotes.show.explorations.fold import (
     _SHOWN,
     angles,
@@ -944,7 +945,7 @@ def test_what_the_next_picture_leaves_is_what_a_calibration_with_it_leaves():
 def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
     light, truth = course.photos()[6].astype(float), course.exact_corners()[6]
     sharpened = (2 * light - gaussian_blur(light, 1.5)).clip(0, 255)
-    shaken = expose(light, motion=(5, 0), noise=4, rng=np.random.default_rng(3))
+    shaken = expose(light, motion=(5, 0), noise=2, rng=np.random.default_rng(3))
     inner = np.s_[10:-10, 10:-10]  # at the border they differ
     assert np.abs(clouds.changed(2) - sharpened)[inner].max() < 1e-3
     assert (clouds.changed(4) != shaken).mean() < 1e-3
@@ -1623,31 +1624,28 @@ def test_a_page_may_pull_a_grip():
 # A forged shadow, a corner between the pixels, and what was found in readers' hands.
 
 
-def test_a_shadow_could_be_true_exactly_if_its_line_goes_through_the_sun():
+def test_a_shadow_is_true_exactly_if_both_of_its_lines_end_where_they_should():
     A, sun = np.array([[800, 0, 325], [0, 804, 238], [0, 0, 1.0]]), np.array([0.06, -0.2, 0.8])
 
     def seen(M):
         u, v, w = A @ M
         return np.array([u / w, v / w])
 
-    top = np.array([-4.0, -4.05, 40])
+    top, foot = np.array([-4.0, -4.05, 40]), np.array([-4.0, 1.95, 40])
     true = top - 6 / 0.2 * sun  # on the ground, 1.95 m below the camera
-    assert true[1] == pytest.approx(1.95)
-    shown = MODELS["forged"].drawing
-    for aside, ahead in ((1, 0), (0, 0), (-2, 1.5), (0.3, -1)):
-        tip = seen(true + [aside, 0, ahead])
-        line = np.cross([*tip, 1], [*seen(top), 1])
-        miss = abs(line @ [*seen(sun), 1]) / np.hypot(*line[:2])
-        sentence = shown(aside=aside, ahead=ahead).sentence
-        assert numbers(sentence)[0] == pytest.approx(miss, abs=0.051)
-        assert ("could be true" in sentence) == (miss < 2)
-    # Another tip on the line through the sun and the top passes, too: the test proves nothing true.
-    along = seen(top) + 1.4 * (seen(true) - seen(top))
-    ray = np.linalg.solve(A, [*along, 1])
-    other = 1.95 * ray / ray[1]
-    off = (other - true).round(2)
-    assert np.linalg.norm(off) > 2
-    assert "could be true" in shown(aside=off[0], ahead=off[2]).sentence
+    # One more tip on the line through the sun and the top: along the ground it points elsewhere.
+    ray = np.linalg.solve(A, [*(seen(top) + 1.2 * (seen(true) - seen(top))), 1])
+    other = (1.95 * ray / ray[1] - true).round(2)
+    for aside, ahead in ((1, 0), (0, 0), (-2, 1.5), (0.3, -1), (other[0], other[2])):
+        tip, misses = seen(true + [aside, 0, ahead]), []
+        for by, end in ((top, sun), (foot, sun * [1, 0, 1])):
+            line = np.cross([*tip, 1], [*seen(by), 1])
+            misses.append(abs(line @ [*seen(end), 1]) / np.hypot(*line[:2]))
+        sentence = MODELS["forged"].drawing(aside=aside, ahead=ahead).sentence
+        assert numbers(sentence) == pytest.approx(misses, abs=0.051)
+        assert sentence.endswith(": true.") == (max(misses) < 2) == (aside == ahead == 0)
+    assert misses[0] < 0.5
+    assert misses[1] > 4
 
 
 @pytest.mark.parametrize("at", [(352.38, 212.53), (351.7, 213.4), (353, 212)])
@@ -1717,3 +1715,30 @@ def test_what_can_be_estimated_stays_in_the_frame_of_the_noise(sigma, views):
     assert columns.min() > 60
     assert columns.max() < 440
     assert np.ptp(columns) > 60  # and large enough to be compared
+
+
+def test_a_depth_is_where_the_rays_of_both_columns_meet_and_its_error_grows_with_the_square():
+    for X, Z in ((330, 3000), (-200, 1500), (500, 4500)):
+        left, right = 520 * X / Z, 520 * (X - 200) / Z
+        # x = z left / α and x = 200 + z right / α, as two linear equations.
+        place = np.linalg.solve([[1, -left / 520], [1, -right / 520]], [0, 200])
+        assert place == pytest.approx([X, Z])
+        assert columns(X, Z) == pytest.approx((left, right))
+        assert triangulated(*np.array([[left], [right]]))[0] == pytest.approx([X, Z])
+        said = numbers(MODELS["disparity"].drawing(X=X, Z=Z, sigma=0.5).sentence)
+        d = left - right
+        near, far = 520 * 200 / (d + 0.5), 520 * 200 / (d - 0.5)
+        assert said == pytest.approx([d, Z, 0.5, near, far], abs=0.51)
+        assert (far - near) / 2 == pytest.approx(0.5 * Z**2 / (520 * 200), rel=2e-3)
+
+
+def test_neighbours_that_are_alike_agree_and_noise_does_not():
+    noise = np.random.default_rng(3).normal(size=(12, 54, 2))
+    assert alike(np.ones((12, 54, 2))) == pytest.approx(1)
+    assert abs(alike(noise)) < 0.05
+    turned = np.tile([[1.0], [-1.0]], (3, 1)).ravel()  # not along the rows, only from row to row
+    assert alike(np.repeat(turned, 9)[None, :, None] * np.ones((12, 1, 2))) == pytest.approx(1)
+    shown = MODELS["finding"].drawing
+    assert "by 0.91 of 1: something" in shown(step=2).sentence
+    assert "by 0.72 of 1: something" in shown(step=2.5).sentence
+    assert "what is left is noise" in shown(step=3).sentence

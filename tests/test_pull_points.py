@@ -97,6 +97,18 @@ def test_a_picture_that_is_told_stands_beside():
     assert grip_of(alone, "point 1").unit[0] < grip_of(model.drawing(), "point 1").unit[0]
 
 
+def test_lines_upon_the_picture_that_is_told_are_drawn_upon_it():
+    def drawn(*more):
+        return (
+            hand_model(PHOTO, AT, lambda *_: ("", [], np.zeros((60, 90)), *more)).drawing().picture
+        )
+
+    new = (drawn([[[10, 30], [80, 30]]]) != drawn()).any(axis=-1)
+    v, u = np.nonzero(new)
+    assert np.ptp(u) == pytest.approx(70 * 330 / 90, abs=4)
+    assert np.ptp(v) < 8
+
+
 @pytest.mark.parametrize(
     "photo",
     [PHOTO / 255, PHOTO[..., 0], PHOTO[..., 0] > 80, PHOTO.astype(np.uint16) * 257],

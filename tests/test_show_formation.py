@@ -48,6 +48,17 @@ def test_each_panel_of_the_chain_shows_the_point_after_its_step(lens):
         np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
+@pytest.mark.parametrize("lens", [Lens(), Lens((-0.35, 0.08))])
+def test_the_pale_wedge_is_what_the_camera_sees_through_its_lens(lens):
+    axes = draw_formation(Camera(CAMERA.A, CAMERA.G, lens), BOX, [200, 125, 0])
+    (cone,) = [patch.get_xy() for patch in axes[1].patches if len(patch.get_xy()) == 4]
+    x, z = cone[1]
+    # That border of the picture, sought: where the lens shows x at its first column.
+    r = x / z
+    seen = 325 + 400 * r * (1 + sum(k * r ** (2 * i) for i, k in enumerate(lens.k, 1)))
+    assert seen == pytest.approx(-0.5, abs=1e-6)
+
+
 def polygons(ax):
     """The corners of each filled polygon, whose edges are in pieces of a sixteenth."""
     return [patch.get_xy()[:-1:16] for patch in ax.patches if len(patch.get_xy()) > 60]
@@ -60,7 +71,7 @@ def test_of_the_box_only_faces_that_the_camera_sees_are_drawn():
         [[0, 0, 0], [200, 0, 0], [200, 125, 0], [0, 125, 0]],
         [[200, 0, 80], [200, 0, 0], [200, 125, 0], [200, 125, 80]],
     ]
-    for face, W in zip(polygons(axes[2]), sides, strict=True):
+    for face, W in zip(polygons(axes[2])[1:], sides, strict=True):
         x, y, z = CAMERA.R @ np.transpose(W) + CAMERA.T[:, None]
         expected = np.column_stack([x / z, y / z])
         assert all(np.isclose(face, corner).all(1).any() for corner in expected)

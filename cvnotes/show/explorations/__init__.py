@@ -27,7 +27,7 @@ _STORIES = (
     "straighten", "ring", "maps", "ruler", "rod", "shadows", "forged", "triangle", "pinhole",
     "dolly", "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel", "votes", "ellipse",
     "valley", "ransac", "homography", "fold", "folds", "finding", "eleventh", "columns",
-    "between", "rings", "epipolar", "depth", "cube",
+    "between", "rings", "epipolar", "disparity", "depth", "cube",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
@@ -112,7 +112,7 @@ def pull_points(picture: npt.ArrayLike | PathLike, at: npt.ArrayLike, tell: Tell
     tell : callable
         Called with the picture and the points (n, 2). It returns a sentence and a list of lines
         (k, 2), in pixels, which are drawn over the picture; and, if it likes, another picture,
-        shown beside.
+        shown beside, and lines upon that.
 
     Returns
     -------

@@ -14,7 +14,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 from cvnotes.targets import refine_edges, refine_subpixel
 
 _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners is shown
-_PICTURES = "as computed", "sharpened", "JPEG of quality 30", "5 px shake, noise", "rays, no blur"
+_PICTURES = "as computed", "sharpened", "JPEG of quality 30", "5 px shake", "rays, no blur"
 _METHODS = ("gradients", LENS), ("edge model", ESTIMATED)
 _WINDOWS = np.arange(3, 13)  # px, from the middle to the border
 _REACH, _SHOWN = 0.15, 14  # px, of the clouds and of the picture
@@ -46,7 +46,7 @@ def changed(which: int) -> Image:
     if which == 4:
         way = 5 * ((np.arange(320) + 0.5) / 320 - 0.5)
         shaken = light @ np.mean([_moved(light.shape[1], s) for s in way], axis=0).T
-        return expose(shaken, noise=4, rng=np.random.default_rng(3))
+        return expose(shaken, noise=2, rng=np.random.default_rng(3))
     if which == 5:
         room = room_with(course.board(), course.poses()[_VIEW])
         return luma(render_scene(room, course.camera()).astype(float))

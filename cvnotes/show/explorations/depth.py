@@ -80,7 +80,9 @@ def seen_from_above() -> Array:
 def _plan(paper: Paper, Z: float) -> Panel:
     """Draw the room from above, with the depth at which nothing has a fringe."""
     panel = paper.panel(_PLAN, (-5200, 5200), (10_900, -540), "from above: pull the line")
-    panel.ticks(y=(2000, 4000, 6000, 8000, 10_000))
+    for metres in (2, 4, 6, 8, 10):
+        panel.line([[-5200, 1000 * metres], [5200, 1000 * metres]], "#DDDDDD", 0.5)
+        panel.text([-5100, 1000 * metres], f"{metres} m", MUTED, size=9)
     places = seen_from_above()
     there = np.abs(places[:, 1] - Z) < _SAME
     for some, colour in ((~there, MUTED), (there, ESTIMATED)):

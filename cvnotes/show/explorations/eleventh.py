@@ -41,7 +41,15 @@ def eleventh_model() -> Model:
     settings = (
         Setting("u", "u (px)", 100, 1180, 10, 820, "where the board's middle is held"),
         Setting("v", "v (px)", 80, 880, 10, 580, "where the board's middle is held"),
-        Setting("tilt", "tilt (°)", -45, 45, 5, 0, "positive: its outer edge comes nearer"),
+        Setting(
+            "tilt",
+            "tilt (°)",
+            -45,
+            45,
+            5,
+            0,
+            "positive: its outer edge comes nearer; in the middle there is none",
+        ),
     )
     about = (
         "The picture of a camera, the paler the better a pixel of it is known from ten pictures "
@@ -122,6 +130,6 @@ def _bars(paper: Paper, left: Array) -> Panel:
 def _sentence(left: Array, before: Array, after: Array) -> str:
     return (
         f"With this picture {left[5]:.2f} of the standard deviation of k2 would be left, and "
-        f"{left[0]:.2f} of that of α_u. A corner of the picture is known to {before.max():.2f} px "
-        f"now, and then to {after.max():.2f}."
+        f"{left[0]:.2f} of that of α_u. The worst corner of the picture is known to "
+        f"{before.max():.2f} px now, and then to {after.max():.2f}."
     )

@@ -96,9 +96,10 @@ def _draw(finding: Finding, paper: Paper, values: Values) -> Drawing:
     curve = _curve(paper, finding, step, camera)
     value = camera.parameters
     missed = rms(misses)
+    agreement = alike(misses)
     sentence = (
         f"After {step:g} of {_STEPS} steps k1 = {value['k1']:+.3f} and u0 = {value['u0']:.1f} px; "
-        f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. {_seen(missed)}"
+        f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. {_seen(agreement)}"
     )
     return Drawing(paper.join((frames, curve)), sentence)
 
@@ -138,10 +139,18 @@ def _digits(pixels: float) -> str:
     return f"{pixels:.2f}" if pixels >= 1 else f"{pixels:.3f}"
 
 
-def _seen(missed: float) -> str:
-    if missed > 0.02:
-        return "Neighbouring arrows agree: something is not in the model yet."
-    return "The arrows point in all directions: what is left is noise."
+def alike(misses: Array) -> float:
+    """Return how far neighbouring misses (n, 54, 2) agree along the rows: 1 if alike, 0 if not."""
+    rows = misses.reshape(len(misses), *course.board().corners[::-1], 2)
+    one, next_ = rows[:, :, :-1], rows[:, :, 1:]
+    return float((one * next_).sum() / np.sqrt((one**2).sum() * (next_**2).sum()))
+
+
+def _seen(agreement: float) -> str:
+    said = f"Neighbouring arrows agree by {agreement:.2f} of 1"
+    if agreement > 0.2:
+        return f"{said}: something is not in the model yet."
+    return f"{said}, they point in all directions: what is left is noise."
 
 
 def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel:

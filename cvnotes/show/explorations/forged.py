@@ -1,4 +1,4 @@
-"""Explore a forged shadow: the line from its tip over the top of its pole has to end in the sun."""
+"""Explore a forged shadow: from its tip over the top of its pole there has to be the sun."""
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from cvnotes.show.style import ESTIMATED, LENS
 _CAMERA = Camera(intrinsics(800, 804, 325, 238), size=SIZE)  # the course's, level
 _SUN = np.array([0.06, -0.2, 0.8])
 _MOST = 4.0  # m, of a tip from its place
-_NEAR = 2.0  # px: a line that misses the sun by less could be true
-_CLOSE = (33, 35)  # px to each side of the sun that are shown enlarged
+_NEAR = 2.0  # px: a line that misses its end by less is taken for true
+_CLOSE = (277, 493), (16, 246)  # px, u and v, of the part that is shown enlarged
 _HORIZON = 250.0  # px: below it is ground
 
 
@@ -24,29 +24,32 @@ def forged_model() -> Model:
         Setting("ahead", "ahead (m)", -2 * _MOST, 3 * _MOST, 0.05, 0, "of where the sun throws it"),
     )
     about = (
-        "A railway with poles and their long shadows; lines from the tips of three shadows over "
-        "the tops of their poles, drawn on towards the sun."
+        "A railway with poles and their long shadows; from the tips of three shadows lines over "
+        "the tops of their poles, towards the sun, and along the ground, towards the point of the "
+        "horizon below the sun."
     )
-    top, sun = POLES[1], _CAMERA.vanishing_point(_SUN)
+    top, foot = POLES[1], POLES[1] * [1, 0, 1] + [0, GROUND, 0]
+    # Where the lines should end: over the top and along the ground.
+    ends = _CAMERA.vanishing_point(np.array([_SUN, _SUN * [1, 0, 1]]))
     place = tip_of(top, _SUN)
 
     def draw(paper: Paper, values: Values) -> Drawing:
         tip = place + [values["aside"], 0, values["ahead"]]
         suns = np.tile(_SUN, (len(POLES), 1))
         suns[1] = top - tip
-        photo, ends = shaded(_CAMERA, suns), _CAMERA.project([tip, top])
+        photo, seen = shaded(_CAMERA, suns), _CAMERA.project([tip, top, foot])
+        misses = [_miss(seen[[0, i]], end) for i, end in enumerate(ends, 1)]
         panel = paper.picture_panel((470, 352), SIZE, "is this shadow true?")
         panel.image(photo)
-        (u, v), (w, h) = np.rint(sun).astype(int), _CLOSE
+        (u0, u1), (v0, v1) = _CLOSE
         close = paper.panel(
-            (330, 352), (u - w - 0.5, u + w + 0.5), (v - h - 0.5, v + h + 0.5), "enlarged: the sun"
+            (330, 352), (u0 - 0.5, u1 - 0.5), (v0 - 0.5, v1 - 0.5), "enlarged: sun and horizon"
         )
-        close.image(photo[max(v - h, 0) : v + h + 1, u - w : u + w + 1])
+        close.image(photo[v0:v1, u0:u1])
         for sheet in (panel, close):
-            _draw_lines(sheet, sun, ends)
-        panel.grip("tip", "the tip of the shadow of the second pole", ends[0], 2)
-        miss = _miss(ends, sun)
-        return Drawing(paper.join((panel, close)), _sentence(miss))
+            _draw_lines(sheet, ends, seen, misses)
+        panel.grip("tip", "the tip of the shadow of the second pole", seen[0], 2)
+        return Drawing(paper.join((panel, close)), _sentence(*misses))
 
     def pulled(_: Values, at: Array) -> Values:
         ray = np.linalg.solve(_CAMERA.A, [at[0], max(at[1], _HORIZON), 1])
@@ -56,22 +59,28 @@ def forged_model() -> Model:
     return Model("forged", about, settings, draw, {"tip": pulled})
 
 
-def _draw_lines(panel: Panel, sun: Array, ends: Array) -> None:
-    """Draw the sun, two true lines to it, and the line of the shadow that is pulled."""
-    draw_sun(panel, sun)
+def _draw_lines(panel: Panel, ends: Array, seen: Array, misses: list[float]) -> None:
+    """Draw sun and horizon point, two true lines to each, and those of the shadow pulled."""
+    draw_sun(panel, ends[0])
+    panel.mark(ends[1], "ideal", 7)
     for other in POLES[2:4]:
-        panel.line([_CAMERA.project(tip_of(other, _SUN)), sun], ESTIMATED, 1.2)
-    true = _miss(ends, sun) < _NEAR
-    panel.line([ends[0], ends[1] + 1.5 * (ends[1] - ends[0])], LENS if true else ESTIMATED, 2)
-    panel.mark(ends[0], "lens" if true else "estimated", 7)
+        for end, dash in zip(ends, (0, 4), strict=True):
+            panel.line([_CAMERA.project(tip_of(other, _SUN)), end], ESTIMATED, 1, dash=dash)
+    tip, *through = seen
+    for by, miss, dash in zip(through, misses, (0, 6), strict=True):
+        panel.line([tip, by + 9 * (by - tip)], LENS if miss < _NEAR else ESTIMATED, 2, dash=dash)
+    panel.mark(tip, "lens" if max(misses) < _NEAR else "estimated", 7)
 
 
-def _miss(ends: Array, sun: Array) -> float:
-    """Return how far the line through two pixels passes beside the sun, in px."""
-    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-    return float(abs(np.linalg.det([along, sun - ends[0]])))
+def _miss(line: Array, end: Array) -> float:
+    """Return how far the line through two pixels passes beside a third, in px."""
+    along = (line[1] - line[0]) / np.linalg.norm(line[1] - line[0])
+    return float(abs(np.linalg.det([along, end - line[0]])))
 
 
-def _sentence(miss: float) -> str:
-    said = f"The line from this tip over the top of its pole passes {miss:.1f} px beside the sun"
-    return f"{said}: it could be true." if miss < _NEAR else f"{said}: it was painted in."
+def _sentence(over: float, ground: float) -> str:
+    said = (
+        f"Over the top of its pole this tip points {over:.1f} px beside the sun, along the ground "
+        f"{ground:.1f} px beside the horizon below it"
+    )
+    return f"{said}: true." if max(over, ground) < _NEAR else f"{said}: painted in."

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -78,18 +78,23 @@ def _model(picture: npt.NDArray[Any], at: Array, tell: Tell) -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         m, now = points_of(values), int(values["point"])
-        words, lines, other = _told_or_why(tell, picture, m)
-        room, loupe = _ALONE if other is None else _BESIDE
+        told = _told_or_why(tell, picture, m)
+        room, loupe = _ALONE if told.other is None else _BESIDE
         size = _fit((w, h), room)
         panel = paper.picture_panel(size, (w, h), "pull the points")
         panel.image(fitted(paper.sharpness * size[0], paper.sharpness * size[1]))
-        _draw_points(panel, m, lines)
-        panels = [panel, _loupe(paper, loupe, photo, m, lines, now)]
-        if other is not None:
-            beside = paper.panel(_fit(other.shape[1::-1], _OTHER), (0, 1), (0, 1), "what is told")
-            beside.image(other)
+        _draw_points(panel, m, told.lines)
+        panels = [panel, _loupe(paper, loupe, photo, m, told.lines, now)]
+        if told.other is not None:
+            width, height = told.other.shape[1::-1]
+            beside = paper.picture_panel(
+                _fit((width, height), _OTHER), (width, height), "what your function returns"
+            )
+            beside.image(told.other)
+            for line in told.its_lines:
+                beside.line(line, ESTIMATED, 1.5)
             panels.insert(1, beside)
-        return Drawing(paper.join(tuple(panels)), words)
+        return Drawing(paper.join(tuple(panels)), told.words)
 
     def pulled(i: int, at: Array) -> Values:
         return {"point": i, f"u{i}": float(at[0]), f"v{i}": float(at[1])}
@@ -103,35 +108,45 @@ def _model(picture: npt.NDArray[Any], at: Array, tell: Tell) -> Model:
     return Model("pull_points", about, tuple(settings), draw, drags)
 
 
-def _told(tell: Tell, picture: npt.NDArray[Any], m: Array) -> tuple[str, list[Array], Drawn | None]:
+class _Told(NamedTuple):
+    """What the reader's function says: a sentence, lines, and perhaps a picture with lines."""
+
+    words: str
+    lines: list[Array]
+    other: Drawn | None = None
+    its_lines: Sequence[Array] = ()
+
+
+def _told(tell: Tell, picture: npt.NDArray[Any], m: Array) -> _Told:
     """Ask what the points mean, and look whether the answer is of the right kind."""
     with np.errstate(divide="ignore", invalid="ignore"):  # a hand may pull anywhere
         answer = tell(picture, m.copy())
     match answer:
-        case (str(words), list() | tuple() | np.ndarray() as lines):
-            other = None
-        case (str(words), list() | tuple() | np.ndarray() as lines, beside):
+        case (str(words), lines):
+            return _Told(words, _lines(lines))
+        case (str(words), lines, beside, *more) if len(more) < 2:
             other = in_bytes(beside, "the picture that tell returns")
-        case _:
-            raise CvnotesError(
-                "tell: expected a function that returns a sentence, a list of lines and, if it "
-                f"likes, a picture; got {type(answer).__name__}"
-            )
-    drawn = [np.asarray(line, dtype=np.float64) for line in lines]
-    if any(line.ndim != 2 or line.shape[1] != 2 for line in drawn):
-        shapes = ", ".join(str(line.shape) for line in drawn)
+            return _Told(words, _lines(lines), other, [at for its in more for at in _lines(its)])
+    raise CvnotesError(
+        "tell: expected a function that returns a sentence, a list of lines and, if it likes, a "
+        f"picture and lines upon it; got {type(answer).__name__}"
+    )
+
+
+def _lines(given: Any) -> list[Array]:
+    lines = [np.asarray(line, dtype=np.float64) for line in given]
+    if any(line.ndim != 2 or line.shape[1] != 2 for line in lines):
+        shapes = ", ".join(str(line.shape) for line in lines)
         raise CvnotesError(f"tell: expected lines of shape (k, 2), got {shapes}")
-    return words, drawn, other
+    return lines
 
 
-def _told_or_why(
-    tell: Tell, picture: npt.NDArray[Any], m: Array
-) -> tuple[str, list[Array], Drawn | None]:
+def _told_or_why(tell: Tell, picture: npt.NDArray[Any], m: Array) -> _Told:
     """Ask again; where the reader's function stops, its error is the sentence."""
     try:
         return _told(tell, picture, m)
     except Exception as reason:
-        return f"No answer for these points: {type(reason).__name__}: {reason}", [], None
+        return _Told(f"No answer for these points: {type(reason).__name__}: {reason}", [])
 
 
 def _fit(size: Sequence[int], room: tuple[int, int]) -> tuple[int, int]:

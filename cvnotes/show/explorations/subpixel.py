@@ -15,7 +15,7 @@ from cvnotes.targets import refine_edges, refine_subpixel
 _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners
 _HALF, _WINDOW = 20, 8  # px, of the picture that is made, and of the window
 _PIXEL = np.array([352.0, 213.0])  # in the middle of both
-_SHOWN, _NEAR = 6.5, 0.065  # px to each side of the middle, and of the true corner
+_SHOWN, _NEAR = 6.5, 0.11  # px to each side of the middle, and of the true corner
 
 
 def subpixel_model() -> Model:
@@ -66,10 +66,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.mark(true, "ideal", 11)
     panel.grip("corner", "the true corner", true, 1)
     close = _square(paper, true, _NEAR, "a tenth of a pixel about the true corner")
-    for r in (0.02, 0.04, 0.06):
+    for r in (0.02, 0.05, 0.1):
         turn = 2 * np.pi * np.arange(91) / 90
         close.line(true + r * np.stack([np.cos(turn), np.sin(turn)], axis=1), "#DDDDDD", 0.8)
-        close.text(true + [0, r - 0.003], f"{r:g} px", MUTED, anchor="mm", size=10)
+        close.text(true + [0, r - 0.005], f"{r:g} px", MUTED, anchor="mm", size=10)
     for row, (name, meaning, ink, at) in enumerate(
         (
             ("true", "ideal", IDEAL, true),
@@ -79,7 +79,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     ):
         key = true + [-0.92 * _NEAR, (-0.9 + 0.11 * row) * _NEAR]
         close.mark([at, key], meaning, 9)
-        close.text(key + [0.005, 0], name, ink, size=12)
+        close.text(key + [0.008, 0], name, ink, size=12)
     return Drawing(paper.join((panel, close)), _sentence(true, found))
 
 

@@ -79,7 +79,7 @@ def draw_formation(camera: Camera, lines: npt.ArrayLike, point: npt.ArrayLike) -
     for ax, frame in zip(axes, (camera.G, None), strict=False):
         _draw_above(ax, camera, M if frame is None else W, frame)
     for ax, (*_, m), colour in zip(axes[2:-1], states[2:], (IDEAL, LENS), strict=False):
-        _border(ax, camera)
+        _border(ax, camera, ideal=m is xy)
         if m is not xy:  # where it would be without the lens
             draw_faces(ax, xy[:-1], _SHADES, (0.8, 0.8, 0.8), lw=0)
         draw_faces(ax, m[:-1], _SHADES, _FILL, ec=colour, lw=1.2)
@@ -125,7 +125,7 @@ def outlined(corners: Array) -> Array:
     """Divide the edges of polygons (..., k, 3) into short pieces that a lens may bend."""
     edges = np.roll(corners, -1, axis=-2) - corners
     pieces = corners[..., None, :] + np.arange(16)[:, None] / 16 * edges[..., None, :]
-    return np.asarray(pieces.reshape(*corners.shape[:-2], -1, 3))
+    return np.asarray(pieces.reshape(*corners.shape[:-2], -1, corners.shape[-1]))
 
 
 def draw_faces(
@@ -165,7 +165,7 @@ def _draw_above(ax: "Axes", camera: Camera, X: Array, G: Array | None) -> None:
 def _sides(camera: Camera) -> Array:
     """Return x / z at the left and the right border of a picture, in the row of its (u0, v0)."""
     borders = [[-0.5, camera.A[1, 2]], [camera.size[0] - 0.5, camera.A[1, 2]]]
-    return np.asarray(xy_from_px(camera.A, borders)[:, 0])
+    return np.asarray(camera.ideal(borders)[:, 0])
 
 
 def _frame(ax: "Axes", frame: Array, colour: str, letters: str) -> None:
@@ -176,10 +176,11 @@ def _frame(ax: "Axes", frame: Array, colour: str, letters: str) -> None:
         letter(ax, name, out[[0, 2]], colour, fontsize=FONT - 1)
 
 
-def _border(ax: "Axes", camera: Camera) -> None:
-    """Draw the picture's border on z = 1, pale inside, and let the second coordinate run down."""
-    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * camera.size - 0.5
-    ax.fill(*xy_from_px(camera.A, corners).T, fc=(*rgb(CAMERA), 0.12), ec=CAMERA, lw=1.2)
+def _border(ax: "Axes", camera: Camera, ideal: bool) -> None:
+    """Draw the picture's border on z = 1, before the lens or after it; y runs down."""
+    corners = outlined(np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * camera.size - 0.5)
+    seen = camera.ideal(corners) if ideal else xy_from_px(camera.A, corners)
+    ax.fill(*seen.T, fc=(*rgb(CAMERA), 0.12), ec=CAMERA, lw=1.2)
     ax.set_aspect("equal")
     ax.invert_yaxis()
 
