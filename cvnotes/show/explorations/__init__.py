@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 _MODELS = ("projection", "camera", "lens", "noise", "warp", "rectification", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
-    "straighten", "ring", "maps", "ruler", "rod", "shadows", "forged", "triangle", "pinhole",
-    "dolly", "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel", "votes", "ellipse",
-    "valley", "ransac", "homography", "fold", "folds", "finding", "eleventh", "columns",
-    "between", "rings", "epipolar", "disparity", "depth", "cube",
+    "straighten", "stands", "ring", "maps", "ruler", "rod", "shadows", "forged", "triangle",
+    "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel", "votes",
+    "ellipse", "valley", "ransac", "homography", "fold", "folds", "finding", "eleventh",
+    "columns", "between", "rings", "epipolar", "disparity", "depth", "cube",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
@@ -77,7 +77,7 @@ def explore(
     Parameters
     ----------
     name : str
-        "straighten", "ring", "lens", …: one of `NAMES`.
+        "straighten", "stands", "ring", "lens", …: one of `NAMES`.
     camera, board : optional
         As for `model`.
 

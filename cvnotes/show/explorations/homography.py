@@ -5,14 +5,14 @@ from functools import lru_cache
 import numpy as np
 from PIL import Image as Bitmap
 
-from cvnotes.base import Array, Image
+from cvnotes.base import Array, Image, numerical_jacobian
 from cvnotes.camera import Camera, look_at
 from cvnotes.homography import dlt
 from cvnotes.pictures import chart_room, course, render_scene
-from cvnotes.pictures.posters import SWITCH
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, WORLD
 from cvnotes.warping import rectify_plane
 
@@ -22,6 +22,7 @@ _CHART = np.array([[0.0, 0], [420, 0], [420, 594], [0, 594]])  # mm, a sheet of 
 _READ = np.array([[343.0, 44], [522, 13], [508, 462], [342, 381]])  # px, its corners as read off
 _SWITCH = np.array([259.0, 285])  # px
 _REGION = (-440.0, 460.0), (-70.0, 655.72)  # mm of the wall, x and y: as wide and high as _SIZE
+_ENLARGED = 10  # times the standard deviations, so that they are seen
 _GRID = np.arange(-700, 701, 100)  # mm
 
 
@@ -35,16 +36,24 @@ def homography_model() -> Model:
         for i, name in enumerate(_NAMES, start=1)
         for axis in "uv"
     )  # fmt: skip
+    settings += tuple(
+        Setting(name, f"plus {name} (px)", 0, most, 1, start, "where the plus is, in the picture")
+        for name, most, start in zip("uv", _PICTURE, _SWITCH.tolist(), strict=True)
+    )
     about = (
         "A wall at a slant, with a chart whose four corners are marked, and the millimetres of the "
         "wall as the homography of these corners lays them; beside it the wall seen straight on."
     )
 
-    def pulled(i: int, at: Array) -> Values:
-        du, dv = (at - _READ[i - 1]).tolist()
-        return {f"du{i}": du, f"dv{i}": dv}
+    def corner(i: int) -> Drag:
+        def pulled(_: Values, at: Array) -> Values:
+            du, dv = (at - _READ[i - 1]).tolist()
+            return {f"du{i}": du, f"dv{i}": dv}
 
-    drags = {f"corner {i}": lambda _, at, i=i: pulled(i, at) for i in range(1, 5)}
+        return pulled
+
+    drags = {f"corner {i}": corner(i) for i in range(1, 5)}
+    drags["plus"] = lambda _, at: {"u": float(at[0]), "v": float(at[1])}
     return Model("homography", about, settings, _draw, drags)
 
 
@@ -64,27 +73,48 @@ def _shown(sharpness: int) -> Drawn:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     m = _READ + [[values[f"du{i}"], values[f"dv{i}"]] for i in range(1, 5)]
-    H = dlt(_CHART, m)
+    H, plus = dlt(_CHART, m), np.array([values["u"], values["v"]])
+    place, std, around = _measured(np.append(m, plus))
     picture = paper.picture_panel(_SHOWN, _PICTURE, "the wall, and its squares of 100 mm")
     picture.image(_shown(paper.sharpness))
     _draw_grid(picture, H)
     _draw_horizon(picture, H)
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 2.4)
-    picture.mark(_SWITCH, "ideal", 8)
+    picture.line(from_homogeneous(to_homogeneous(around) @ H.T), ESTIMATED, 2)
+    picture.mark(plus, "ideal", 8)
+    picture.grip("plus", "the plus, whose place on the wall is measured", plus, 1)
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):
         picture.grip(f"corner {i}", f"corner {i}, {_NAMES[i - 1]}", at, 1)
         aside = np.clip(at + 22 * np.sign(at - m.mean(axis=0)), 10, [625, 468])
         picture.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
-    switch = from_homogeneous(np.linalg.solve(H, [*_SWITCH, 1]))
-    straight = paper.panel(_SIZE, *_REGION, "straight on, by the four corners")
+    straight = paper.panel(_SIZE, *_REGION, "straight on; the ring is ten times the ±")
     (X0, X1), (Y0, Y1) = _REGION
     pixel = (X1 - X0) / (_SIZE[0] * paper.sharpness)
     wall = rectify_plane(photograph(), H, ((X0, Y0), (X1, Y1)), pixel, fill=255)
     straight.image(wall.astype(np.uint8))
     straight.line(_CHART[[0, 1, 2, 3, 0]], WORLD, 1.5, dash=5)
-    straight.mark(switch, "ideal", 8)
-    return Drawing(paper.join((picture, straight)), _sentence(switch))
+    straight.line(around, ESTIMATED, 2)
+    straight.mark(place, "ideal", 8)
+    return Drawing(paper.join((picture, straight)), _sentence(place, std))
+
+
+def _measured(x: Array) -> tuple[Array, Array, Array]:
+    """Measure on the wall what a pixel shows, by pixels (10,) of the four corners and itself.
+
+    Returns its place (2,) in mm, the standard deviations (2,) if all are read to whole pixels, and
+    an ellipse (n, 2) that is `_ENLARGED` times as large.
+    """
+
+    def place(x: Array) -> Array:
+        H = dlt(_CHART, x[:8].reshape(4, 2))
+        return np.asarray(from_homogeneous(np.linalg.solve(H, [*x[8:], 1])))
+
+    J = numerical_jacobian(place, x)
+    covariance = J @ J.T / 12  # a number that is rounded off is wrong by 1/√12 in the mean
+    size, axes = np.linalg.eigh(covariance)
+    around = place(x) + _ENLARGED * circle(49) * np.sqrt(size.clip(0)) @ axes.T
+    return place(x), np.sqrt(np.diag(covariance)), around
 
 
 def _draw_grid(panel: Panel, H: Array) -> None:
@@ -107,11 +137,9 @@ def _draw_horizon(panel: Panel, H: Array) -> None:
         panel.text([at + 8, _PICTURE[1] - 14], "the wall's horizon", IDEAL, size=12)
 
 
-def _sentence(switch: Array) -> str:
-    x, y = switch
-    off = float(np.linalg.norm(switch - SWITCH))
-    far = f"{off:.1f} mm" if off < 1e4 else "more than 10 m"
-    return (
-        f"By these corners the middle of the switch, the plus, lies at ({x:.0f}, {y:.0f}) mm from "
-        f"the chart's first corner: {far} off."
-    )
+def _sentence(place: Array, std: Array) -> str:
+    x, y = place
+    said = f"By these corners the plus lies at ({x:.0f}, {y:.0f}) mm from the chart's first corner"
+    if np.abs([x, y]).max() > 1e4:
+        return f"{said}: it is near the wall's horizon."
+    return f"{said}, ± {std[0]:.1f} mm across and ± {std[1]:.1f} mm down if pixels are read whole."
