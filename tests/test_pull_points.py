@@ -47,6 +47,15 @@ def test_each_pull_calls_the_function_with_the_picture_and_the_points():
     assert asked[-1][1][1].tolist() == [110, 44.5]
 
 
+def test_a_function_that_changes_its_points_moves_none_of_ours():
+    def tell(_, points):
+        points *= 0
+        return "Said.", []
+
+    drawing = hand_model(PHOTO, AT, tell).drawing()
+    assert [grip_of(drawing, f"point {i}").at for i in (1, 2, 3)] == [tuple(at) for at in AT]
+
+
 def test_the_sentence_is_that_of_the_points_and_the_lines_lie_upon_them():
     model = hand_model(PHOTO, AT, triangle)
     assert model.drawing().sentence == "Area 2450.0 of 160."

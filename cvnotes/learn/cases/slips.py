@@ -48,4 +48,8 @@ def misreadings(
 def _on_another_scale(answer: Array, pixel: Array, near: float) -> bool:
     """Return whether a pixel was read in a picture that was shown larger or smaller."""
     scale = float(answer @ pixel / (pixel @ pixel))
-    return 0.2 < scale < 6 and bool(np.linalg.norm(answer / scale - pixel) < near / 2)
+    return (
+        0.2 < scale < 6
+        and abs(scale - 1) > 0.15
+        and bool(np.linalg.norm(answer / scale - pixel) < near / 2)
+    )

@@ -110,7 +110,7 @@ EXERCISE = Exercise(
 }""",
     hints=(
         "Copy your functions into this notebook: dlt from notebook 06, A_from_b and extrinsics "
-        "from 07, b_from_views and radial_fit from 10, the further exercises.",
+        "from 07, b_from_views and radial_fit from the further exercises.",
         "check each of them by its own name first.",
         'my_steps = {"dlt": my_dlt, …}: functions, without brackets.',
     ),

@@ -131,7 +131,8 @@ def pull_points(picture: npt.ArrayLike | PathLike, at: npt.ArrayLike, tell: Tell
     >>> def slope(picture, points):
     ...     (u1, v1), (u2, v2) = points
     ...     return f"{(v2 - v1) / (u2 - u1):.2f}", [points]
-    >>> pull_points(np.zeros((48, 64)), [[10, 40], [30, 20]], slope).model.drawing(u2=20).sentence
+    >>> black = [64 * [0]] * 48
+    >>> pull_points(black, [[10, 40], [30, 20]], slope).model.drawing(u2=20).sentence
     '−2.00'
     """
     from cvnotes.show.explorations.shell import PulledPoints

@@ -128,7 +128,9 @@ def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn
     return np.asarray(Image.composite(found.dark, found.photo, soft))
 
 
-def draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
+def draw_tower(
+    panel: Panel, camera: Camera, base: Array, h: float, *, windows: bool = True
+) -> Array:
     """Draw the tower's faces that are seen, in tiles; returns its corners (8, 3)."""
     low, high = np.insert(base, 2, 0, axis=1), np.insert(base, 2, -h, axis=1)
     faces = [high, *(np.array([high[i - 1], high[i], low[i], low[i - 1]]) for i in range(4))]
@@ -146,7 +148,7 @@ def draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
             for j in range(n):
                 tile = grid[[i, i, i + 1, i + 1], [j, j + 1, j + 1, j]]
                 panel.polygons(tile[None], hexed(light * _PAINT[(i + j) % 2]))
-                if outside[2] > -0.5:  # not on the roof
+                if windows and outside[2] > -0.5:  # not on the roof
                     middle_of = tile.mean(axis=0)
                     panel.polygons((middle_of + 0.55 * (tile - middle_of))[None], _WINDOW)
     return np.concatenate([low, high])

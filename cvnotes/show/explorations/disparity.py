@@ -60,16 +60,20 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.mark([at + tip, _PLANE], "lens", 6)
         anchor = "lm" if side > 0 else "rm"
         panel.text([at + 20 * side, -240], f"{name} camera", CAMERA, anchor=anchor, size=12)
-        panel.text([at + tip + 14, _PLANE + 130], f"u {name}", LENS, size=12)
-    panel.text([_X[0] + 8, _PLANE + 130], "the pictures", LENS, size=12)
+        panel.text([at + tip + 14 * side, _PLANE - 140], f"u {name}", LENS, anchor=anchor, size=12)
+    panel.text([_X[0] + 8, _PLANE + 150], "the pictures", LENS, size=12)
     for row, ends, below in ((1290, tips[::-1], 150), (-150, np.array([0, _BASE]), -170)):
         panel.line([[ends[0], row], [ends[1], row]], IDEAL, 1.2)
         panel.segments([[[x, row - 45], [x, row + 45]] for x in ends], IDEAL, 1.2)
         name = "d" if row > 0 else "b"
         panel.text([ends.mean(), row + below], name, IDEAL, anchor="mm", size=14)
+    for x, top, name in ((-350, _PLANE, "α"), (560, Z, "Z")):
+        panel.line(np.array([[x, 0.0], [x, top]]), IDEAL, 1.2)
+        panel.segments([[[x - 14, z], [x + 14, z]] for z in (0.0, top)], IDEAL, 1.2)
+        panel.text([x + 12, top / 2], name, IDEAL, size=14)
     by = sigma / 2 * np.array([1, 1, -1, -1]), sigma / 2 * np.array([-1, 1, 1, -1])
     panel.polygons(triangulated(left + by[0], right + by[1])[None], ESTIMATED)
-    panel.mark([X, Z], "world", 6)
+    panel.mark([X, Z], "world", 4)
     panel.grip("point", "the point that both cameras see", [X, Z], 6)
     return Drawing(paper.join((panel, _error(paper, Z, sigma))), _sentence(left, right, sigma))
 

@@ -82,12 +82,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 2.4)
     picture.line(from_homogeneous(to_homogeneous(around) @ H.T), ESTIMATED, 2)
     picture.mark(plus, "ideal", 8)
-    picture.grip("plus", "the plus, whose place on the wall is measured", plus, 1)
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):
         picture.grip(f"corner {i}", f"corner {i}, {_NAMES[i - 1]}", at, 1)
         aside = np.clip(at + 22 * np.sign(at - m.mean(axis=0)), 10, [625, 468])
         picture.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
+    picture.grip("plus", "the plus, whose place on the wall is measured", plus, 1)
     straight = paper.panel(_SIZE, *_REGION, "straight on; the ring is ten times the ±")
     (X0, X1), (Y0, Y1) = _REGION
     pixel = (X1 - X0) / (_SIZE[0] * paper.sharpness)

@@ -98,7 +98,7 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
 
 def _draw_ring(panel: Panel, size: tuple[int, int], heading: float) -> None:
     """Draw the ring of chapter 1: a direction's dot stands at twice its angle, and 90° on top."""
-    middle, turn = np.array(size) - [70, 78], 2 * np.pi * np.arange(61) / 60
+    middle, turn = np.array([size[0] - 70, 78]), 2 * np.pi * np.arange(61) / 60
     panel.polygons(middle + 1.4 * _RING * np.stack([np.sin(turn), np.cos(turn)], -1)[None], "white")
     panel.line(middle + _RING * np.stack([np.sin(turn), np.cos(turn)], -1), WORLD, 2)
     panel.text(middle - [0, _RING - 18], "∞", IDEAL, anchor="mm", size=12)

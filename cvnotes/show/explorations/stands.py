@@ -36,7 +36,7 @@ def stands_model() -> Model:
         panel = paper.picture_panel((440, 330), _SIZE, "a cube on its squares: pull it")
         panel.image(photograph())
         draw_net(panel, camera.project(_BOARD.points), _BOARD, ESTIMATED, 1)
-        draw_tower(panel, camera, _BASE, _SIDE)
+        draw_tower(panel, camera, _BASE, _SIDE, windows=False)
         foot = camera.project([*_BASE.mean(axis=0), 0])
         panel.grip("cube", "the cube, to be pulled onto its squares", foot, 4)
         return Drawing(paper.join((panel, _curve(paper, values))), _sentence(values))

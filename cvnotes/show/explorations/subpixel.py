@@ -40,13 +40,13 @@ def _pulled(_: Values, at: Array) -> Values:
 
 @lru_cache(maxsize=64)
 def photograph(u: float, v: float, blur: float, noise: float) -> Image:
-    """Photograph the corner at (u, v) anew, with the same noise in each pixel of the sensor."""
+    """Photograph the corner at (u, v), at each place with new noise."""
     A = course.camera().A.copy()
     corner = Camera(A, course.poses()[_VIEW]).project(course.board().points[_CORNER])
     A[:2, 2] += [u, v] - _PIXEL + _HALF - corner
     size = (2 * _HALF + 1, 2 * _HALF + 1)
     light = render(course.board(), Camera(A, course.poses()[_VIEW], size=size), blur=blur)
-    return expose(light, noise=noise, rng=np.random.default_rng(1))
+    return expose(light, noise=noise, rng=np.random.default_rng([round(100 * u), round(100 * v)]))
 
 
 def measured(grey: Image) -> Array:

@@ -46,14 +46,14 @@ def frames(values: Values) -> tuple[Array, Array, Array]:
 def _draw(paper: Paper, values: Values) -> Drawing:
     R, C, T = frames(values)
     at_0 = np.zeros(2)
-    world = _frame(paper, "in the board's frame: the walk to C", (_BOARD, at_0), C, R)
+    world = _frame(paper, "board's frame: from origin to camera, C", (_BOARD, at_0), C, R)
     _walk(world, C, WORLD, "XZ")
     sight = C + R.T @ [0, _AHEAD]
     world.mark(sight, "ideal", 6)
     world.grip("camera", "where the camera stands", C, 6)
     world.grip("line of sight", "where the camera looks", sight, 6)
     seen = _BOARD @ R.T + T, T
-    own = _frame(paper, "in the camera's frame: the walk to T", seen, at_0, np.eye(2))
+    own = _frame(paper, "camera's frame: from camera to origin, T", seen, at_0, np.eye(2))
     _walk(own, T, CAMERA, "xz")
     return Drawing(
         paper.join((world, own)),
