@@ -135,15 +135,15 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
         arc = on_sheet(circle.place(np.arange(0, 180.5, 0.5)))
         panel.line(arc, LENS, 0.7)
         panel.mark(arc[[0, -1]], "lens", 3)
-    _draw_found(on_sheet(tangle.found(*of)), panel)
-    panel.mark(on_sheet(tangle.eye), "ideal", 8)
+    _draw_found(on_sheet(tangle.found(*of)), panel, 6)
+    panel.mark(on_sheet(tangle.eye), "ideal", 5)
     return panel
 
 
-def _draw_found(at: Array, panel: Panel) -> None:
+def _draw_found(at: Array, panel: Panel, size: float) -> None:
     """Draw the camera that is found as a triangle, orange as all that is computed."""
     panel.polygons(
-        [at + 13 * panel.pixel * np.array([[0, -1], [0.9, 0.7], [-0.9, 0.7]])], ESTIMATED
+        [at + size * panel.pixel * np.array([[0, -1], [0.9, 0.7], [-0.9, 0.7]])], ESTIMATED
     )
 
 
@@ -154,7 +154,7 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     panel = paper.panel(_CLOSE, (left, right), (top, low), "from above: u0 and v0")
     for circle in tangle.circles(*of):
         panel.line(circle.place(np.array([0.0, 180]))[:, :2], LENS, 1)
-    _draw_found(tangle.found(*of)[:2], panel)
+    _draw_found(tangle.found(*of)[:2], panel, 13)
     panel.mark(tangle.eye[:2], "ideal", 10)
     panel.line([[left + 8, low - 10], [left + 28, low - 10]], IDEAL, 2)
     panel.text([left + 31, low - 10], "20 px", IDEAL, size=12)
