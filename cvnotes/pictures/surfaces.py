@@ -87,7 +87,7 @@ class Surfaces(NamedTuple):
     def _in_shadow(self, triangle: Indices, depth: Array, xy: Array) -> Mask:
         """Return where rays (groups, k, 2) end in a shadow: the light sees something else first."""
         asked = (triangle >= 0) & self.bright[triangle]
-        if not len(self.shading):
+        if not len(self.shading):  # then the light has no frame, in which depths could be 0
             return np.zeros_like(asked)
         M = np.where(asked, depth, np.nan)[..., None] * np.dstack([xy, np.ones(xy.shape[:2])])
         M = M @ self.light[:3, :3].T + self.light[:3, 3]

@@ -77,7 +77,7 @@ def explore(
     Parameters
     ----------
     name : str
-        "straighten", "stands", "ring", "lens", …: one of `NAMES`.
+        "straighten", "ring", "lens", …: one of `NAMES`.
     camera, board : optional
         As for `model`.
 

@@ -71,7 +71,7 @@ class _Tangle:
         return [circle_of(H) for H in self._homographies(k1, turned)]
 
     def _found(self, k1: float, turned: float) -> Array:
-        """Return the camera (3,), as (u0, v0, α), that Zhang's equations find; NaN if none."""
+        """Return (u0, v0, α) that Zhang's equations find, in stretched rows; NaN if none."""
         try:
             A = intrinsics_from_b(solve_b(constraints(self._homographies(k1, turned))))
         except CvnotesError:
@@ -101,7 +101,8 @@ def folds_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         of = values["k1"], values["turned"]
         panels = _space(tangle, paper, of), _close(tangle, paper, of), _curve(tangle, paper, of)
-        return Drawing(paper.join(panels), _sentence(of, tangle.misses(*of), tangle.found(*of)))
+        found = tangle.found(*of) / [*tangle.square, 1]
+        return Drawing(paper.join(panels), _sentence(of, tangle.misses(*of), found))
 
     return Model("folds", about, settings, draw, {"k1": lambda _, at: {"k1": float(at[0])}})
 
@@ -118,7 +119,7 @@ def _sentence(of: _Of, misses: Array, found: Array) -> str:
         said += f"{misses.max():.1f} px at most, but they are one: each of its places would do."
     if np.isnan(found).any():
         return f"{said} The equations have no answer."
-    u0, v0, alpha = found * [1, 804 / 800, 1]
+    u0, v0, alpha = found
     return f"{said} The equations find ({u0:.0f}, {v0:.0f}) and α = {alpha:.0f} px."
 
 

@@ -42,7 +42,8 @@ def homography_model() -> Model:
     )
     about = (
         "A wall at a slant, with a chart whose four corners are marked, and the millimetres of the "
-        "wall as the homography of these corners lays them; beside it the wall seen straight on."
+        "wall as the homography of these corners lays them; beside it the wall seen straight on. "
+        "A ring is around what is measured."
     )
 
     def corner(i: int) -> Drag:
@@ -111,7 +112,7 @@ def _measured(x: Array) -> tuple[Array, Array, Array]:
         return np.asarray(from_homogeneous(np.linalg.solve(H, [*x[8:], 1])))
 
     J = numerical_jacobian(place, x)
-    covariance = J @ J.T / 12  # a number that is rounded off is wrong by 1/√12 in the mean
+    covariance = J @ J.T / 12  # of rounding to whole pixels: 1/√12 px as a root mean square
     size, axes = np.linalg.eigh(covariance)
     around = place(x) + _ENLARGED * circle(49) * np.sqrt(size.clip(0)) @ axes.T
     return place(x), np.sqrt(np.diag(covariance)), around

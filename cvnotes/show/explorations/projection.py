@@ -9,6 +9,7 @@ from cvnotes.camera import Camera
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, IDEAL, WORLD
 from cvnotes.targets import Chessboard
 
@@ -98,9 +99,9 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
 
 def _draw_ring(panel: Panel, size: tuple[int, int], heading: float) -> None:
     """Draw the ring of chapter 1: a direction's dot stands at twice its angle, and 90° on top."""
-    middle, turn = np.array([size[0] - 70, 78]), 2 * np.pi * np.arange(61) / 60
-    panel.polygons(middle + 1.4 * _RING * np.stack([np.sin(turn), np.cos(turn)], -1)[None], "white")
-    panel.line(middle + _RING * np.stack([np.sin(turn), np.cos(turn)], -1), WORLD, 2)
+    middle = np.array([size[0] - 70, 78])
+    panel.polygons((middle + 1.4 * _RING * circle(61))[None], "white")
+    panel.line(middle + _RING * circle(61), WORLD, 2)
     panel.text(middle - [0, _RING - 18], "∞", IDEAL, anchor="mm", size=12)
     panel.mark(middle + _RING * np.array([np.sin(2 * heading), np.cos(2 * heading)]), "world", 9)
 

@@ -9,6 +9,7 @@ from cvnotes.camera import Camera
 from cvnotes.pictures import course, expose, render
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.targets import refine_edges, refine_subpixel
 
@@ -67,8 +68,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.grip("corner", "the true corner", true, 1)
     close = _square(paper, true, _NEAR, "a tenth of a pixel about the true corner")
     for r in (0.02, 0.05, 0.1):
-        turn = 2 * np.pi * np.arange(91) / 90
-        close.line(true + r * np.stack([np.cos(turn), np.sin(turn)], axis=1), "#DDDDDD", 0.8)
+        close.line(true + r * circle(91), "#DDDDDD", 0.8)
         close.text(true + [0, r - 0.005], f"{r:g} px", MUTED, anchor="mm", size=10)
     for row, (name, meaning, ink, at) in enumerate(
         (
