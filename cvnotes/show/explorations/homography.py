@@ -86,7 +86,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):
         picture.grip(f"corner {i}", f"corner {i}, {_NAMES[i - 1]}", at, 1)
-        aside = np.clip(at + 22 * np.sign(at - m.mean(axis=0)), 10, [625, 468])
+        aside = np.clip(at + 22 * np.sign(at - m.mean(axis=0)), 16, np.subtract(_PICTURE, 16))
         picture.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
     picture.grip("plus", "the plus, whose place on the wall is measured", plus, 1)
     straight = paper.panel(_SIZE, *_REGION, "straight on; the ring is ten times the ±")
