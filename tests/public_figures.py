@@ -36,7 +36,6 @@ from cvnotes.calibration import calibrate, coverage
 from cvnotes.show.figures import (
     calibration,
     estimates,
-    formation,
     ideas,
     lenses,
     lines,
@@ -110,19 +109,7 @@ FIGURES = [
     ),
     # ideas
     figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
-    # formation
-    figure(
-        formation.box_lines,
-        {n: (np.array([0.0, 9.0]), several(2)) for n in "xyz"},
-    ),
-    figure(
-        formation.draw_formation,
-        {
-            "lines": (formation.box_lines((0, 9), (0, 6), (3, 5)), several(3)),
-            "point": (W[3], several(3)),
-        },
-        camera=CAMERA,
-    ),
+    # sensors
     figure(sensors.draw_sensor, {"A": (A, SINGLE)}),
     # least squares
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),

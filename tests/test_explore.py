@@ -16,6 +16,7 @@ import pytest
 from PIL import Image
 from scipy import ndimage
 from scipy.signal import fftconvolve
+from scipy.spatial.transform import Rotation, Slerp
 from scipy.special import j1
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError, luma
@@ -66,11 +67,12 @@ from cvnotes.show.explorations.folds import _SHOWN as FOLDS_SHOWN
 from cvnotes.show.explorations.lens import first_to_fold, polynomial
 from cvnotes.show.explorations.lettering import LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
+from cvnotes.show.explorations.moved import between, stands
 from cvnotes.show.explorations.page import asked
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.pinhole import spread_out
 from cvnotes.show.explorations.ransac import drawn_pairs
-from cvnotes.show.explorations.rectification import lines_from
+from cvnotes.show.explorations.rectification import turned
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
 from cvnotes.show.explorations.subpixel import photograph as photograph_of_corner
@@ -495,49 +497,41 @@ def test_a_smaller_picture_has_no_holes_for_there_is_nothing_to_show_around_it()
     assert folds > 0.9 * covered
 
 
-def test_rectified_partners_share_their_row_however_the_camera_was_turned():
-    rng = np.random.default_rng(3)
-    for _ in range(20):
-        said = numbers(
-            MODELS["rectification"].drawing(**random_values(MODELS["rectification"], rng)).sentence
-        )
-        assert said[1] == 0
-    assert said[0] > 1
+def test_partners_stand_where_both_turned_cameras_see_them_and_at_the_end_in_one_row():
+    first, second = cameras()
+    W = np.array([1900.0, -450, 7600])  # on the cupboard's front
+    u, v = first.project(W).round()
+    W = first.ray([u, v]) / first.ray([u, v])[2] * 7600
+    step = second.centre - first.centre
+    for part, nod, roll in ((0, 0, 0), (30, 0, 0), (0, 12, 0), (60, -5, 10), (100, 8, -8)):
+        values = {"turned": part, "u": u, "v": v, "angle_x": nod, "angle_z": roll}
+        drawing = MODELS["rectification"].drawing(**values)
+        rows, expected = numbers(drawing.sentence)[:2], []
+        own = Rotation.from_euler("xyz", [nod, 0, roll], degrees=True).as_matrix() @ second.R
+        e2 = np.cross(first.R[2] + own[2], step)
+        R = np.array([e / np.linalg.norm(e) for e in (step, e2, np.cross(step, e2))])
+        for start, centre in ((first.R, first.centre), (own, second.centre)):
+            ends = Rotation.from_matrix([start, R])  # and the shortest way between them
+            m = first.A @ Slerp([0, 100], ends)(part).as_matrix() @ (W - centre)
+            expected.append(m[1] / m[2])
+        assert rows == pytest.approx(expected, abs=0.06)
+    assert rows[0] == rows[1]
+    assert "infinity" in drawing.sentence
 
 
-def test_cameras_side_by_side_are_rectified_already():
-    still = {"angle_x": 0, "angle_y": 0, "angle_z": 0, "forward": 0}
-    assert numbers(MODELS["rectification"].drawing(**still).sentence)[0] == 0
-
-
-def test_the_partner_of_each_marked_point_lies_on_its_epipolar_line():
-    W = course.board().points
-    left = Camera(course.camera().A, pose(np.eye(3), [-100, -60, 600]))
-    right = left.moved(pose(rotation_from_vector([0.1, -0.2, 0.15]), [-190, -40, 620]))
-    for other, camera in ((left, right), (right, left)):
-        lines, m = lines_from(other, camera, W), camera.project(W)
-        assert np.abs((lines[:, :2] * m).sum(-1) + lines[:, 2]).max() < 1e-9
-        assert np.abs((lines[0, :2] * m).sum(-1) + lines[0, 2]).max() > 10
-
-
-def test_epipolar_lines_pass_through_the_points_they_were_drawn_for():
-    picture = MODELS["rectification"].picture(angle_x=0, angle_y=0, angle_z=0, forward=0)
-    for one in (ESTIMATED, LENS, WORLD, CAMERA):
-        drawn = np.abs(picture.astype(int) - colour(one)).max(-1) < 40
-        rows = [half.mean(axis=1) > 0.4 for half in (drawn[:, :346], drawn[:, 346:])]
-        assert np.array_equal(*rows)
-        assert 2 <= rows[0].sum() <= 6  # above and below a line, of one to three px
-
-
-def test_a_rectified_picture_shows_what_was_taken_and_grey_where_nothing_was():
-    values = {"angle_x": 12, "angle_y": -12, "angle_z": 0}
-    picture = MODELS["rectification"].picture(**values).astype(int)
-    black = (picture.max(axis=-1) < 60)[TITLE:]
-    upper, lower = black[:255, 346:], black[255 + 28 :, 346:]
-    whole = black[:255, :346].sum()
-    assert upper.sum() < 0.7 * whole  # most of the board has left the right picture
-    assert lower.sum() < 0.7 * upper.sum()  # and does not come back: what is left is smaller
-    assert (np.abs(picture[TITLE + 255 + 28 :] - 0xCF).max(axis=-1) == 0).mean() > 0.2
+@pytest.mark.parametrize("angles", [{}, {"angle_x": 6, "angle_z": -10}])
+def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_taken(angles):
+    model = MODELS["rectification"]
+    picture = model.picture(turned=100, **angles).astype(int)
+    for k, camera in enumerate(turned(model.values(**angles), 1)):
+        photo = render_scene(room(), camera, samples=16)
+        seen = np.asarray(Image.fromarray(photo).resize((328, 246))).astype(int)
+        panel = picture[TITLE : TITLE + 246, MARGIN + k * 334 :][:, :328]
+        off = np.abs(panel - seen).max(axis=2)
+        grey = (panel == 110).all(axis=2)
+        assert 0.05 < grey.mean() < 0.4
+        assert np.median(off[~grey]) <= 2
+        assert (off[~grey] < 30).mean() > 0.9  # but for the lines and the mark
 
 
 def test_no_more_pixels_are_folds_than_are_covered():
@@ -1009,6 +1003,66 @@ def test_both_walks_are_as_long_and_a_turn_on_the_spot_leaves_one_of_them_alone(
         assert np.allclose(grip / 190, (ahead - camera.centre)[[0, 2]] / 100, atol=1e-3)
 
 
+@pytest.mark.parametrize("k1", [0, -0.25])
+def test_the_followed_corner_is_where_each_step_puts_it_and_the_box_where_a_camera_sees_it(k1):
+    values = {"X": 200, "Z": -320, "turn": -20, "alpha": 700, "k1": k1, "width": 150, "front": 20}
+    drawing = MODELS["formation"].drawing(**values)
+    # Turned by 20° to the left about the vertical, then nodding down as much (Y points down).
+    turn = rotation_from_vector([0, np.radians(20), 0])
+    R = rotation_from_vector([np.radians(20), 0, 0]) @ turn
+    assert R[2, 1] > 0  # the axis points down
+    x, y, z = M = R @ (np.array([150, -125, 20]) - [200, -255, -320])
+    xy = np.array([x, y]) / z
+    bent = xy * (1 + k1 * xy @ xy)
+    m = bent * [700, 1.005 * 700] + [325, 238]
+    said = numbers(drawing.sentence.replace("k₁", ""))
+    expected = [150, -125, 20, *M, *xy, *(bent if k1 else ()), *m]
+    assert said == pytest.approx(expected, abs=0.5)
+    assert said[-2:] == pytest.approx(m, abs=0.051)
+    assert said[6:8] == pytest.approx(xy, abs=0.00051)
+    # The last panel, beside the third, against a photograph of the same box.
+    photo = render_scene(
+        box((0, 150), (-125, 0), (20, 80), (0, 1, 0)),
+        Camera(
+            intrinsics(700, 1.005 * 700, 325, 238),
+            pose(R, -R @ [200, -255, -320]),
+            Lens(k=(k1,)),
+            size=(640, 480),
+        ),
+    ).astype(int)
+    seen = np.asarray(Image.fromarray((photo[..., 1] - photo[..., 0]) > 60).resize((360, 270)))
+    top, left = 270 + TITLE + 6 + TITLE, 410 + 6 + MARGIN
+    panel = drawing.picture[top : top + 270, left : left + 360].astype(int)
+    green = panel[..., 1] - panel[..., 0] > 60
+    assert (green & seen).sum() > 0.93 * (green | seen).sum() > 1000  # cross and words lie on it
+
+
+def test_whoever_moved_the_picture_stays_and_both_motions_are_those_of_the_poses():
+    poses = course.poses()
+    for photo, who in ((6, 0), (3, 40), (11, 100), (4.5, 70)):
+        board_far, board_turn, far, turn = numbers(
+            MODELS["moved"]
+            .drawing(photo=photo, who=who)
+            .sentence.partition("since photograph 0")[2]
+        )
+        if who == 0:
+            assert far == turn == 0 < min(board_far, board_turn)
+        if photo == int(photo):
+            relative = poses[0] @ np.linalg.inv(poses[photo])
+            angle = np.degrees(Rotation.from_matrix(relative[:3, :3]).magnitude())
+            whole = np.array([np.linalg.norm(relative[:3, 3]), angle])
+            assert [far, turn] == pytest.approx(who / 100 * whole, abs=0.51)
+        if who == 100:
+            assert board_far == board_turn == 0
+        G = between(photo)
+        camera, of_board = stands(G, who / 100)
+        assert np.allclose(np.linalg.inv(camera) @ of_board, G, atol=1e-9)
+        if photo == int(photo):
+            assert np.allclose(G, poses[photo], atol=1e-9)
+    pictures = [MODELS["moved"].picture(photo=6, who=who)[:, 449:] for who in (0, 50, 100)]
+    assert (pictures[0] == np.array(pictures)).all()
+
+
 def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
     grey = np.array([60, 90, 110, 200])
     for du, dv in ((0.35, 0.6), (0.8, 0.25), (0.5, 0.5)):
@@ -1266,11 +1320,10 @@ def test_behind_a_hole_a_point_is_its_patch_spread_by_airys_disc(d):
     blot = fftconvolve(r < d / 2, (2 * j1(q) / q) ** 2, "same")
     scene = np.zeros((330, 440))
     scene[120:210, 150:290] = 255
-    framed = np.pad(scene, 96)[..., None].repeat(3, axis=-1)
-    seen = spread_out(d, d, np.fft.rfft2(framed, axes=(0, 1)))
+    seen = spread_out(d, d, np.fft.rfft2(np.pad(scene, ((105, 105), (100, 100)))))
     expected = fftconvolve(scene, blot / blot.sum(), "same")
-    assert np.abs(seen[..., 0] - expected).max() < 6
-    assert np.sqrt(np.mean((seen[..., 0] - expected) ** 2)) < 1.5  # of rings that are cut off
+    assert np.abs(seen - expected).max() < 6
+    assert np.sqrt(np.mean((seen - expected) ** 2)) < 1.5  # of rings that are cut off
 
 
 def test_what_is_taken_off_a_photograph_puts_its_squares_under_the_row_of_corners():
@@ -1454,6 +1507,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "ransac": {"draw": 20},
     "rings": {"place": 50},
     "walks": {"X": 200},
+    "formation": {"X": 200},
     "homography": {"dv2": 40, "dv3": -40},
     ("pinhole", "focus"): {"lens": 1, "focus": 1},
 }
@@ -1475,6 +1529,7 @@ ROUND = {
     ("camera", "camera"),
     ("gimbal", "orange axis"),
     ("walks", "line of sight"),
+    ("formation", "line of sight"),
     ("stands", "cube"),  # along the ray from the principal point
 }
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "h": (0, 0), "dot": (0, 0.5)}  # its length stays
@@ -1773,7 +1828,7 @@ def test_a_cube_stands_on_its_squares_by_the_focal_length_of_the_camera_alone():
         off = np.sqrt(np.mean(np.sum((m - c) ** 2, axis=1))) * abs(alpha / 800 - 1)
         sentence = model.drawing(alpha=alpha).sentence
         assert numbers(sentence)[1] == pytest.approx(off, abs=0.051)
-        assert "beside its squares" in sentence
+        assert "the cube is off" in sentence
     assert "the cube stands on its four squares" in model.drawing(alpha=800).sentence
     without = [numbers(model.drawing(alpha=a, lens=0).sentence)[1] for a in range(600, 1001, 5)]
     assert min(without) > 1

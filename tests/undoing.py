@@ -1,17 +1,22 @@
-"""Run a notebook, and each of its checks once more with a step undone: does the check notice?
+"""Run a notebook, each check once more with its step undone, and each change that a page asks for.
 
     python tests/undoing.py notebooks/04_lens_distortion.ipynb
 
-The table of what is undone is `tests/undone/04.toml`. A row says what is replaced (`step`, which
-stands in exactly one cell of code), by what (`undone`), and which cell is to fail (`noticed`, words
-of its code; left out: the cell of the step itself). All between the two runs in a copy of the
-process, so that nothing comes back. A check notices if its `assert` or its `verify` fails.
+The table is `tests/undone/04.toml`. A row says what is replaced (`step`, which stands in exactly
+one cell of code), by what (`undone`), and up to which cell one runs then (`noticed`, words of its
+code; left out: the cell of the step itself). Both may be lists, for what stands in several places.
+All runs in a copy of the process, so that nothing comes back.
 
-A row with `expected = "nothing"` is what a page asks a reader to change and run again: the cell
-must run through, for an answer that ends in a red traceback is none.
+* A row without `holds` undoes the step of a check. It is noticed if the last cell's `assert` or
+  `verify` fails.
+* A row with `holds` is what a page asks a reader to change and run again. `said` are words of the
+  answer, and `holds` is what they promise, in Python: true after the change, and false without it.
+  `printed` in it is what the cells have printed. Without a `step` it is a number of the prose.
 """
 
 import ast
+import contextlib
+import io
 import json
 import os
 import sys
@@ -43,12 +48,59 @@ def place(sources, words):
     return found[0]
 
 
+def as_list(value):
+    return value if isinstance(value, list) else [value]
+
+
+class Row:
+    """A row of the table, with the cells from the first that is changed to the last that is run."""
+
+    def __init__(self, row, sources):
+        self.row = row
+        steps, undone = as_list(row.get("step", [])), as_list(row.get("undone", []))
+        self.changes = list(zip(steps, undone, strict=True))
+        changed = [place(sources, step) for step in steps]
+        last = place(sources, row["noticed"]) if "noticed" in row else max(changed)
+        self.cells = range(min([*changed, last]), last + 1)
+
+    def changed(self, source):
+        for step, undone in self.changes:
+            source = source.replace(step, undone)
+        return source
+
+    def held(self, names, printed):
+        """Return whether what was said holds after the cells have printed `printed`."""
+        return bool(eval(f"({self.row['holds']})", {**names, "printed": printed}))
+
+
 def run(source, names):
-    exec(compile(source, "<cell>", "exec"), names)
+    """Run a cell, and return what it printed."""
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        exec(compile(source, "<cell>", "exec"), names)
+    return out.getvalue()
 
 
-def noticed(sources, first, last, row, names):
-    """Run the cells from the undone step to the check in a copy of the process; say what came."""
+def tried(row, sources, names):
+    """Run the cells of a row with its change; say what came."""
+    printed = ""
+    for at in row.cells:
+        try:
+            printed += run(row.changed(sources[at]), names)
+        except (AssertionError, NotVerified) as error:  # those before the last may notice, too
+            if at == row.cells[-1]:
+                return "noticed" if "holds" not in row.row else f"the answer is red: {error}"
+        except BaseException as error:
+            return f"{type(error).__name__} in cell {at} of the code: {error}"
+    if "holds" not in row.row:
+        return "nothing"
+    return (
+        "held" if row.held(names, printed) else f"false after the change, which printed {printed}"
+    )
+
+
+def in_a_copy(function, *given):
+    """Return what a function returns in a copy of this process, from which nothing comes back."""
     reading, writing = os.pipe()
     if child := os.fork():
         os.close(writing)
@@ -56,39 +108,38 @@ def noticed(sources, first, last, row, names):
             said = answer.read()
         os.waitpid(child, 0)
         return said
-    said = "nothing"
-    for at in range(first, last + 1):
-        source = sources[at]
-        try:
-            run(source.replace(row["step"], row["undone"]) if at == first else source, names)
-        except (AssertionError, NotVerified):  # those before it may notice, too
-            said = "noticed" if at == last else said
-        except BaseException as error:
-            said = f"{type(error).__name__} in cell {at} of the code: {error}"
-            break
+    try:
+        said = function(*given)
+    except BaseException as error:
+        said = f"{type(error).__name__}: {error}"
     os.write(writing, said.encode()[:4000])
     os._exit(0)
 
 
 def main():
     notebook = Path(sys.argv[1]).resolve()
-    rows = tomllib.loads((TABLES / f"{short_name(notebook.name)}.toml").read_text())["row"]
     cells = nbformat.read(notebook, as_version=4).cells
     sources = [cell.source for cell in cells if cell.cell_type == "code"]
+    table = tomllib.loads((TABLES / f"{short_name(notebook.name)}.toml").read_text())["row"]
+    rows = [Row(row, sources) for row in table]
     os.chdir(notebook.parent)
     names = {"__name__": "__main__", "display": print}
-    results = [""] * len(rows)
-    places = [place(sources, row["step"]) for row in rows]
-    lasts = [place(sources, row.get("noticed", row["step"])) for row in rows]
-    out, sys.stdout = sys.stdout, Path(os.devnull).open("w")  # noqa: SIM115
-    for i in range(max(lasts, default=-1) + 1):
+    results, printed = [""] * len(rows), []
+    for i, source in enumerate(sources):
         for k, row in enumerate(rows):
-            if places[k] == i:
-                results[k] = noticed(sources, i, lasts[k], row, names)
-        run(sources[i], names)
-    asked = {last for row, last in zip(rows, lasts, strict=True) if "expected" not in row}
+            if row.cells[0] == i and row.changes:
+                results[k] = in_a_copy(tried, row, sources, names)
+        printed.append(run(source, names))
+        for k, row in enumerate(rows):
+            if row.cells[-1] == i and "holds" in row.row:
+                held = row.held(names, "".join(printed[at] for at in row.cells))
+                if not row.changes:
+                    results[k] = "held" if held else "false"
+                elif held:
+                    results[k] = "true without the change as well, so it says nothing"
+    asked = {row.cells[-1] for row in rows if "holds" not in row.row}
     unasked = [source for i, source in enumerate(sources) if checks(source) and i not in asked]
-    json.dump({"results": results, "unasked": unasked}, out)
+    json.dump({"results": results, "unasked": unasked}, sys.stdout)
 
 
 if __name__ == "__main__":

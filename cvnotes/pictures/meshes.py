@@ -253,3 +253,10 @@ def from_above(scene: Scene, cut: float) -> tuple[Array, Array]:
     order = np.argsort(-heights, kind="stable")
     some = order[level[order]]
     return scene.faces[some][..., [0, 2]], scene.colours[2 * some, 0]
+
+
+def outlined(corners: Array) -> Array:
+    """Divide the edges of polygons (..., k, 3) into short pieces that a lens may bend."""
+    edges = np.roll(corners, -1, axis=-2) - corners
+    pieces = corners[..., None, :] + np.arange(16)[:, None] / 16 * edges[..., None, :]
+    return np.asarray(pieces.reshape(*corners.shape[:-2], -1, corners.shape[-1]))

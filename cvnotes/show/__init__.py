@@ -5,7 +5,7 @@ from cvnotes.show.banner import one_corner
 from cvnotes.show.explorations import explore, pull_points
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
-from cvnotes.show.figures.formation import box_lines, draw_field_of_view, draw_formation
+from cvnotes.show.figures.field_of_view import draw_field_of_view
 from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lenses import draw_grid
@@ -55,8 +55,6 @@ __all__ = [
     # chapter 2: vanishing points
     "draw_altitudes",
     # chapter 3: how an image is formed
-    "draw_formation",
-    "box_lines",
     "draw_field_of_view",
     "draw_sensor",
     # chapter 4: lenses

@@ -43,8 +43,8 @@ EXERCISE = Exercise(
     name="bad_views",
     chapter=7,
     title="Which set of views is worthless?",
-    task="""Four students photograph a board to calibrate a camera without skew. Whose pictures do \
-not determine A, however many corners are found in them?
+    task="""Four students photograph a board to calibrate a camera without skew or distortion. \
+Whose pictures do not determine A, however many corners are found in them?
 A: two pictures, the board tilted by 35° once about its x and once about its y axis.
 B: ten pictures, the board tilted by 40° each time, always parallel to itself, but turned in its own
    plane and moved into every part of the picture, near and far.

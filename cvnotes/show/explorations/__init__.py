@@ -21,13 +21,14 @@ if TYPE_CHECKING:
     from cvnotes.show.explorations.shell import Explorer, PulledPoints
 
 # Each is a module of this folder, in which `<name>_model` makes its model: of a camera and a board,
-_MODELS = ("projection", "camera", "lens", "noise", "warp", "rectification", "tilt")
+_MODELS = ("projection", "camera", "lens", "noise", "warp", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
     "straighten", "stands", "ring", "maps", "ruler", "rod", "shadows", "forged", "triangle",
-    "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel", "votes",
-    "ellipse", "valley", "ransac", "homography", "fold", "folds", "finding", "eleventh",
-    "columns", "between", "rings", "epipolar", "disparity", "depth", "cube",
+    "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel",
+    "votes", "ellipse", "valley", "ransac", "homography", "fold", "folds", "finding", "moved",
+    "eleventh", "columns", "between", "rings", "epipolar", "rectification", "disparity", "depth",
+    "cube",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
@@ -70,7 +71,7 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
 
 
 def explore(
-    name: str, *, camera: Camera | None = None, board: Chessboard | None = None
+    name: str, *, camera: Camera | None = None, board: Chessboard | None = None, **values: float
 ) -> "Explorer":
     """Explore an idea of the course: sliders, and a picture that follows them and the hand.
 
@@ -80,20 +81,24 @@ def explore(
         "straighten", "ring", "lens", …: one of `NAMES`.
     camera, board : optional
         As for `model`.
+    **values : float
+        Where sliders stand at first, by the names of the model's settings.
 
     Raises
     ------
     CvnotesError
-        There is no such exploration, or it takes no camera and no board.
+        There is no such exploration or slider, or it takes no camera and no board.
 
     Examples
     --------
     >>> explore("ring").values
     {'angle': 45.0}
+    >>> explore("ring", angle=90).values
+    {'angle': 90.0}
     """
     from cvnotes.show.explorations.shell import Explorer
 
-    return Explorer(model(name, camera, board), camera, board)
+    return Explorer(model(name, camera, board).starting(**values), camera, board)
 
 
 def pull_points(picture: npt.ArrayLike | PathLike, at: npt.ArrayLike, tell: Tell) -> "PulledPoints":

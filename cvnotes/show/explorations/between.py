@@ -42,7 +42,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     place, weight = np.array([du, dv]), weights(du, dv)
     panels = _areas(paper, place, weight), _surface(paper, place), _mix(paper, weight)
     terms = " + ".join(f"{w:.2f} · {g:g}" for w, g in zip(weight, _GREY, strict=True))
-    nearest = _GREY[2 * round(dv) + round(du)]
+    nearest = _GREY[2 * int(dv + 0.5) + int(du + 0.5)]  # halves as in the library
     return Drawing(
         paper.join(panels),
         f"{terms} = {weight @ _GREY:.1f}. The nearest pixel alone says {nearest:g}.",

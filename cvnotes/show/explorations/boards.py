@@ -26,7 +26,7 @@ def pinhole(camera: Camera) -> Camera:
 
 def draw_board(panel: Panel, camera: Camera, board: Chessboard) -> bool:
     """Draw a board's picture by a camera without distortion; tell if all of it is in front."""
-    border, squares = _board(board)
+    border, squares = paper_and_squares(board)
     paper = camera.project(border)
     panel.polygons(paper[None], "#FBFBF8")
     panel.line(paper[[0, 1, 2, 3, 0]], MUTED, 0.8)
@@ -98,7 +98,7 @@ def on_sheet(W: Array) -> Array:
 
 
 @lru_cache(maxsize=4)
-def _board(board: Chessboard) -> tuple[Array, Array]:
+def paper_and_squares(board: Chessboard) -> tuple[Array, Array]:
     """Return the corners of a board's paper (4, 3) and of its dark squares (m, 4, 3)."""
     squares, border = target_shapes(board)
     assert isinstance(squares, Faces)

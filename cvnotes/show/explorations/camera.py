@@ -136,7 +136,7 @@ def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
         f"at C = −RᵀT = {_words(camera.centre)} mm."
     )
     if not complete:
-        return f"{said} Part of the board is behind the camera and has no image."
+        return f"{said} The part of the board behind the camera has no image."
     m = camera.project(board.points)
     inside = ((m >= -0.5) & (m <= np.array(camera.size) - 0.5)).all(axis=-1)
     return said if inside.any() else f"{said} All inner corners are outside of the picture."

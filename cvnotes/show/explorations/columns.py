@@ -108,7 +108,7 @@ def columns_model() -> Model:
     real = course.real_corners()
     left, right = Believed(real.left), Believed(real.right)
     settings = (
-        Setting("amount", "nine numbers ×", 0, 1.5, 0.05, 0,
+        Setting("amount", "nine numbers ×", 0, 1.3, 0.05, 0,
                 "how much of the right camera's nine shifts is put into the left camera's board"),
         Setting("free", "free to move", 0, 3, 1, 0, "0 nothing, 1 heights, 2 shifts, 3 both"),
         Setting("photograph", "photograph", 0, len(real.left) - 1, 1, 7,

@@ -53,7 +53,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.line([[0, 0], [tips[1], _PLANE]], ESTIMATED, 1.6, dash=5)
     for at, tip, name, side in ((0.0, tips[0], "left", -1), (_BASE, tips[1], "right", 1)):
         panel.line([[at, 0], [at, 2000]], MUTED, 1, dash=2)
-        panel.text([at + 8, 1950], "u0", MUTED, size=12)
+        panel.text([at + 8, 1950], "u₀", MUTED, size=12)
         panel.line([[at - 200, _PLANE], [at + 190, _PLANE]], LENS, 2)
         panel.line([[at, 0], [X, Z]], IDEAL, 1.6)
         panel.mark([at, 0], "camera", 8)
@@ -94,7 +94,7 @@ def _error(paper: Paper, Z: float, sigma: float) -> Panel:
 def _sentence(left: float, right: float, sigma: float) -> str:
     d = left - right
     near, far = (_ALPHA * _BASE / (d + by) for by in (sigma, -sigma))
-    return (
-        f"d = {d:.1f} px, so Z = α b / d = {_ALPHA * _BASE / d:.0f} mm. "
-        f"Were d wrong by {sigma:g} px, it would be {near:.0f} or {far:.0f} mm."
-    )
+    said = f"d = {d:.1f} px, so Z = α b / d = {_ALPHA * _BASE / d:.0f} mm."
+    if not sigma:
+        return said
+    return f"{said} Were d wrong by {sigma:g} px, it would be {near:.0f} or {far:.0f} mm."

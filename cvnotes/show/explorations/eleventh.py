@@ -23,7 +23,7 @@ _PHONE = Camera(
 )  # of chapter 9
 _BOARD = course.board()
 _SHOWN, _NOISE = (480, 360), 0.1  # px
-_LABELS = ("α_u", "α_v", "u0", "v0", "k1", "k2")
+_LABELS = ("αᵤ", "αᵥ", "u₀", "v₀", "k₁", "k₂")
 _HIGHEST = 0.9  # px, where the map is darkest
 _DARK = 0.75  # of the way from white to orange
 
@@ -130,6 +130,6 @@ def _bars(paper: Paper, left: Array) -> Panel:
 def _sentence(left: Array, before: Array, after: Array) -> str:
     return (
         f"With this picture {left[5]:.2f} of the standard deviation of k2 would be left, and "
-        f"{left[0]:.2f} of that of α_u. The worst corner of the picture is known to "
+        f"{left[0]:.2f} of that of αᵤ. The worst corner of the picture is known to "
         f"{before.max():.2f} px now, and then to {after.max():.2f}."
     )

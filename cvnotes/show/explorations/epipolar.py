@@ -24,8 +24,8 @@ _TRIED = 1 / np.linspace(1 / _NEAREST, 1 / _FARTHEST, 240)  # mm: in even steps 
 def epipolar_model() -> Model:
     """Make the model of the room by the two cameras of chapter 8."""
     settings = (
-        Setting("u", "u (px)", 100, 620, 1, 449, "a pixel of the first picture"),
-        Setting("v", "v (px)", 30, 450, 1, 205, "and its row"),
+        Setting("u", "u (px)", 120, 620, 1, 449, "a pixel of the first picture"),
+        Setting("v", "v (px)", 40, 450, 1, 205, "and its row"),
         Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 4000, "how far away it may be"),
     )
     about = (

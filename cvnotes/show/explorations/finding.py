@@ -149,7 +149,7 @@ def alike(misses: Array) -> float:
 def _seen(agreement: float) -> str:
     said = f"Neighbouring arrows agree by {agreement:.2f} of 1"
     if agreement > 0.2:
-        return f"{said}: something is not in the model yet."
+        return f"{said}: the camera is not found yet."
     return f"{said}, they point in all directions: what is left is noise."
 
 
@@ -170,7 +170,7 @@ def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel
     here = [step, np.interp(step, *way.T)]
     panel.mark(here, "estimated", 7)
     panel.grip("step", "the step, to be moved along the curve", here, 4)
-    names = (("α_u", "alpha_u", ".1f"), ("u0", "u0", ".1f"), ("k1", "k1", "+.3f"))
+    names = (("αᵤ", "alpha_u", ".1f"), ("u₀", "u0", ".1f"), ("k₁", "k1", "+.3f"))
     for row, (label, name, how) in enumerate(names):
         number = f"{camera.parameters[name]:{how}}".replace("-", "−")
         colour = ESTIMATED if name == "k1" else MUTED

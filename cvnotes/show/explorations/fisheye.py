@@ -91,6 +91,6 @@ def _sentence(fov: float, f: float) -> str:
     needed = 2 * _F * np.tan(np.radians(fov) / 2)
     return (
         f"A view of {fov:g}°: in its middle a pixel of the fisheye becomes {f / _F:.1f} pixels "
-        f"long, in its corners {f / _F * (1 + corner**2):.1f}. A pinhole camera as sharp as the "
-        f"fisheye in the middle needs a sensor {needed:,.0f} px wide; for 180° no width is enough."
+        f"long, in its corners up to {f / _F * (1 + corner**2):.1f}. A pinhole camera as sharp as "
+        f"the fisheye in the middle needs a sensor {needed:,.0f} px wide; for 180° none is enough."
     )

@@ -118,7 +118,7 @@ def _sentence(of: _Of, misses: Array, found: Array) -> str:
     else:
         said += f"{misses.max():.1f} px at most, but they are one: each of its places would do."
     if np.isnan(found).any():
-        return f"{said} The equations have no answer."
+        return f"{said} The equations determine no camera."
     u0, v0, alpha = found
     return f"{said} The equations find ({u0:.0f}, {v0:.0f}) and α = {alpha:.0f} px."
 
@@ -152,7 +152,7 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     """Draw the plan: a half circle is a line there, square to the horizon, through (u0, v0)."""
     reach = _NEAR * np.array(_CLOSE) / _CLOSE[0]
     (left, top), (right, low) = tangle.eye[:2] - reach, tangle.eye[:2] + reach
-    panel = paper.panel(_CLOSE, (left, right), (top, low), "from above: u0 and v0")
+    panel = paper.panel(_CLOSE, (left, right), (top, low), "from above: u₀ and v₀")
     for circle in tangle.circles(*of):
         panel.line(circle.place(np.array([0.0, 180]))[:, :2], LENS, 1)
     _draw_found(tangle.found(*of)[:2], panel, 13)

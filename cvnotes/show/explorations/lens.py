@@ -123,7 +123,8 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
     if lens.max_radius < 2 * _EXTENT:
         panel.line(polynomial(lens, lens.max_radius * circle(121)), ESTIMATED, 2.2)
         seen = lens.max_radius * float(lens.L(lens.max_radius))
-        words = f"the fold, r = {lens.max_radius:.2f}, seen at {seen:.2f}"
+        where = "" if any(lens.p) else f", seen at {seen:.2f}"  # else in each direction elsewhere
+        words = f"the fold, r = {lens.max_radius:.2f}{where}"
         panel.text([0, max(-seen - 0.02, panel.y[0] + 0.06)], words, ESTIMATED, anchor="md")
     panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
     bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
@@ -157,8 +158,8 @@ def _sentence(camera: Camera, lens: Lens) -> str:
     ideal = lens.undistort(corners)
     if np.isnan(ideal).any():
         return (
-            f"The lens shows nothing beyond max_radius = {lens.max_radius:.3f}, not even at the "
-            f"corners of the picture (r' = {r:.3f}): there the model folds. Orange is no lens."
+            f"The lens shows nothing beyond max_radius = {lens.max_radius:.3f}, not even in all "
+            f"corners of the picture (r' up to {r:.3f}): there the model folds. Orange is no lens."
         )
     fold = f"folds at r = {lens.max_radius:.3f}, beyond the picture"
     ends = "never folds" if np.isinf(lens.max_radius) else fold

@@ -14,7 +14,7 @@ from cvnotes.base import FileError
 
 # All that explorations write: Latin, Greek, and a little mathematics.
 LETTERS = "".join(map(chr, (*range(32, 127), *range(160, 256), *range(0x391, 0x3CA)))) + (
-    "ĥ–—…′″√∞∝≈≤≥≠±−·×ᵀ⁻¹₀₁₂₃₄←→↑↓²³"
+    "ĥ–—…′″√∞∝≈≤≥≠±−·×ᵀ⁻¹₀₁₂₃₄ᵤᵥ←→↑↓²³"
 )
 
 

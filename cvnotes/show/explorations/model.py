@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -131,6 +131,11 @@ class Model:
                     f"got {values[s.name]!r}"
                 )
         return values
+
+    def starting(self, **values: float) -> "Model":
+        """Return the same model with other values at the start."""
+        start = self.values(**values)
+        return replace(self, settings=tuple(s._replace(value=start[s.name]) for s in self.settings))
 
     def drawing(self, **values: float) -> Drawing:
         """Return picture and sentence; where there is no answer, the sentence says why."""

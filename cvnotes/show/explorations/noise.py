@@ -17,9 +17,10 @@ from cvnotes.targets import Chessboard
 
 _FEWEST, _MOST = 3, 30
 _SHOWN = ("alpha_u", "alpha_v", "u0", "v0")
-_LABELS = ("α_u", "α_v", "u0", "v0")
-# px, of the error bars: the first is taken that holds three times the largest bound.
-_REACHES = (1, 3, 8, 20, 60)
+_LABELS = ("αᵤ", "αᵥ", "u₀", "v₀")
+# px, of the error bars: the first is taken that holds 3.5 times the largest bound.
+_REACHES = (1, 3, 8, 20, 60, 90)
+_OTHERS, _PALE = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0), "#BFDFF4"  # px, of noise, to be compared
 
 
 class _Study:
@@ -84,17 +85,17 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     n, sigma = int(values["views"]), values["sigma"]
     bound = study.std(n, sigma)
     error, std = study.estimate(n, sigma, int(values["draw"]))
-    reach = next((r for r in _REACHES if r > 3 * bound.max()), _REACHES[-1])
+    reach = next((r for r in _REACHES if r > 3.5 * bound.max()), _REACHES[-1])
     bars = paper.panel((450, 300), (-1.25 * reach, reach), (-0.8, 4.3), "estimate minus truth (px)")
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(
-        (400, 300), (np.log10(2.6), np.log10(36)), (1.4, -1.8),
-        "least standard deviation of α_u (px) against views",
+        (400, 300), (np.log10(2.6), np.log10(42)), (1.4, -1.8),
+        "least standard deviation of αᵤ (px) against views",
     )  # fmt: skip
     _draw_curve(curve, study, n, sigma)
     off = round(float(error[0]), 2) + 0.0  # no "−0.00"
     sentence = (
-        f"σ = {sigma:.2f} px and {n} views: α_u cannot be known better than ±{bound[0]:.2f} px "
+        f"σ = {sigma:.2f} px and {n} views: αᵤ cannot be known better than ±{bound[0]:.2f} px "
         f"(one standard deviation); this try says {off:+.2f} ± {std[0]:.2f} px."
     )
     return Drawing(paper.join((bars, curve)), sentence)
@@ -125,10 +126,14 @@ def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
     for value in (0.1, 1, 10):
         panel.line([[0, np.log10(value)], [2, np.log10(value)]], "#DDDDDD", 0.5)
         panel.text([np.log10(2.7), np.log10(value)], f"{value:g}", size=12)
-    if sigma == 0:
-        panel.text([1.0, -0.2], "no noise, no error", MUTED, anchor="mm", size=12)
-        return
     counts = np.arange(_FEWEST, _MOST + 1)
+    for other in _OTHERS:
+        curve = other * study.std_by_views[:, 0]
+        panel.line(np.log10(np.stack([counts, curve], -1)), _PALE, 1.2)
+        panel.text(np.log10([counts[-1] * 1.03, curve[-1]]), f"σ {other:g}", CAMERA, size=10)
+    if sigma == 0:
+        panel.text([1.0, -1.5], "no noise, no error", MUTED, anchor="mm", size=12)
+        return
     std = sigma * study.std_by_views[:, 0]
     slope = std[-1] * np.sqrt(_MOST / counts)
     panel.line(np.log10(np.stack([counts, slope], -1)), MUTED, 1, dash=4)

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw
 
-from cvnotes.base import Array
+from cvnotes.base import Array, luma
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import render_scene, room
 from cvnotes.pictures.posters import chart
@@ -24,7 +24,9 @@ _ROOM = 2.5, 10.0, 5.0  # m: the nearest and the farthest that is seen, and one 
 _CARD = 0.2  # m: its depth
 _DEEPEST = 17.0  # px
 _PALE = "#EFEFEF"
-_FRAME = 96  # px around the picture, so that nothing comes round from the other side
+# px around the picture, so that nothing comes round from the other side; 540 and 640 in all, whose
+# Fourier transforms are quick.
+_FRAME = (105, 105), (100, 100)
 
 
 def pinhole_model() -> Model:
@@ -74,9 +76,9 @@ def disc(s: Array | float, focus: float) -> Array:
 
 @lru_cache(maxsize=1)
 def _sharp() -> tuple[Spectrum, Spectrum]:
-    """Photograph room and card as an ideal lens would; gives the spectra of both.
+    """Photograph room and card as an ideal lens would; gives the spectra of both, (channels, …).
 
-    The card's picture has a fourth channel: how much it covers of each pixel.
+    The card is grey, and has a second channel: how much of each pixel it covers.
     """
     k = _SHOWN[0] / _SIZE[0]
     A = intrinsics(k * _F / _PIXEL, k * _F / _PIXEL, (_SHOWN[0] - 1) / 2, (_SHOWN[1] - 1) / 2)
@@ -86,13 +88,12 @@ def _sharp() -> tuple[Spectrum, Spectrum]:
     corners = card.project(chart().vertices[:4])
     mask = Image.new("L", (4 * _SHOWN[0], 4 * _SHOWN[1]))
     ImageDraw.Draw(mask).polygon((4 * corners + 2).ravel().tolist(), fill=255)
-    covered = np.asarray(mask.resize(_SHOWN, Image.Resampling.BOX))[..., None] / 255
+    covered = np.asarray(mask.resize(_SHOWN, Image.Resampling.BOX)) / 255
     layers = (
-        render_scene(room(), Camera(A, size=_SHOWN), samples=16),
-        np.dstack([covered * render_scene(chart(), card, samples=16), 255 * covered]),
+        np.moveaxis(render_scene(room(), Camera(A, size=_SHOWN), samples=16), 2, 0),
+        np.stack([covered * luma(render_scene(chart(), card, samples=16)), covered]),
     )
-    around = ((_FRAME, _FRAME), (_FRAME, _FRAME), (0, 0))
-    far, near = (np.fft.rfft2(np.pad(x.astype(float), around, "edge"), axes=(0, 1)) for x in layers)
+    far, near = (np.fft.rfft2(np.pad(x.astype(float), ((0, 0), *_FRAME), "edge")) for x in layers)
     return far, near
 
 
@@ -101,22 +102,23 @@ def photographed(patches: Array, d: float) -> Drawn:
     room, card = (
         spread_out(patch, d, each) for patch, each in zip(patches.tolist(), _sharp(), strict=True)
     )
-    seen = room * (1 - card[..., 3:] / 255) + card[..., :3]
-    return np.asarray(np.rint(seen.clip(0, 255)).astype(np.uint8))
+    seen = room * (1 - card[1]) + card[0]
+    return np.moveaxis(np.rint(seen.clip(0, 255)).astype(np.uint8), 0, 2)
 
 
 def spread_out(patch: float, d: float, spectrum: Spectrum) -> Array:
     """Spread each point by a patch, and by the diffraction of a hole: both weaken fine patterns."""
-    h, w = spectrum.shape[0], 2 * (spectrum.shape[1] - 1)
+    h, w = spectrum.shape[-2], 2 * (spectrum.shape[-1] - 1)
     a_millimetre = _SHOWN[0] / _SIZE[0] / _PIXEL  # in pixels of what is shown
     waves = np.hypot(np.fft.fftfreq(h)[:, None], np.fft.rfftfreq(w)) * a_millimetre
-    rho, turn = np.linspace(0, waves.max(), 600)[1:], np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    rho, turn = np.linspace(0, waves.max(), 600)[1:], np.linspace(0, 2 * np.pi, 200, endpoint=False)
     x, nu = np.pi * max(patch, 1e-6) * rho, np.minimum(rho * _LIGHT * _F / d, 1)
     bessel = np.cos(turn - x[:, None] * np.sin(turn)).mean(axis=1)  # J1, by Bessel's integral
     kept = 2 * bessel / x * 2 / np.pi * (np.arccos(nu) - nu * np.sqrt(1 - nu**2))
     kept = np.interp(waves, np.append(0, rho), np.append(1, kept))
-    picture = np.fft.irfft2(spectrum * kept[..., None], (h, w), axes=(0, 1))
-    return np.asarray(picture[_FRAME:-_FRAME, _FRAME:-_FRAME])
+    (top, _), (left, _) = _FRAME
+    picture = np.fft.irfft2(spectrum * kept)
+    return np.asarray(picture[..., top:-top, left:-left])
 
 
 def _spots(paper: Paper, d: float) -> Panel:
@@ -138,7 +140,8 @@ def _spots(paper: Paper, d: float) -> Panel:
     panel.grip("hole", "the diameter of the hole", here, 4)
     panel.mark(here, "estimated", 9)
     aside, anchor = (-0.008, "rm") if d > 0.1 else (0.012, "lm")
-    panel.text([d + aside, here[1] + 9], f"{here[1]:.0f} px", ESTIMATED, anchor=anchor, size=13)
+    at = [d + aside, min(here[1] + 9, _HIGHEST - 8)]
+    panel.text(at, f"{here[1]:.0f} px", ESTIMATED, anchor=anchor, size=13)
     return panel
 
 

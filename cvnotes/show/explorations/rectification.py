@@ -1,130 +1,131 @@
-"""Explore rectification: a stereo pair, and the same pair turned until it shares its rows."""
+"""Explore rectification: two cameras turn on the spot until their pictures share their rows."""
+
+from functools import lru_cache
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, chain, pose, rotation_from_angles, rotation_from_vector
-from cvnotes.show.explorations.boards import draw_board, pinhole
+from cvnotes.camera import (
+    Camera,
+    pose,
+    rotation_from_angles,
+    rotation_from_vector,
+    vector_from_rotation,
+)
+from cvnotes.pictures import depth_map, room
+from cvnotes.show.explorations.epipolar import cameras, photographs
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, LENS, MUTED, WORLD
-from cvnotes.stereo import epipolar_lines, fundamental_matrix, rectify
-from cvnotes.targets import Chessboard
+from cvnotes.show.explorations.paper import Paper
+from cvnotes.show.style import ESTIMATED, IDEAL
+from cvnotes.stereo import epipole
+from cvnotes.warping import backward_warp, homography_map
 
-_SIZE = (340, 255)
-_BASELINE = 0.35  # of the board's diagonal
-_LINES = ESTIMATED, LENS, WORLD, CAMERA  # one for each corner
-_RECTIFIED = (160, 120)  # px; only its camera is needed, and a small one is made sooner
+_SHOWN = 328, 246  # px
+_ROWS = range(30, 480, 60)  # of the rectified pair, that are followed
+_FAR = 2000.0  # px from the middle of a picture, to which a line is drawn
+_UNSEEN = 110
+_INFINITE = 1e9  # px
 
 
-def rectification_model(camera: Camera, board: Chessboard) -> Model:
-    """Make the model of two cameras like `camera`, their lenses left out, that see `board`."""
-    ahead = round(0.6 * _BASELINE * float(np.linalg.norm(board.points[-1])))
-    turn = "turns the right camera about its {} axis"
+def rectification_model() -> Model:
+    """Make the model of the two cameras of chapter 8, which turn."""
     settings = (
-        Setting("angle_x", "angle x (°)", -12, 12, 0.5, 4, turn.format("x") + " (nods)"),
-        Setting("angle_y", "angle y (°)", -12, 12, 0.5, -5, turn.format("y") + " (turns aside)"),
-        Setting("angle_z", "angle z (°)", -20, 20, 0.5, 8, turn.format("z") + " (rolls)"),
         Setting(
-            "forward", "ahead (mm)", -ahead, ahead, 1, 0, "how far the right camera stands ahead"
+            "turned",
+            "turned (%)",
+            0,
+            100,
+            1,
+            0,
+            "how much of the way to the attitude that both share",
+        ),
+        Setting("u", "u (px)", 60, 620, 1, 451, "a pixel of the first picture as it was taken"),
+        Setting("v", "v (px)", 30, 450, 1, 207, "and its row"),
+        *(
+            Setting(
+                f"angle_{axis}", f"{turn} (°)", -12, 12, 0.5, 0, f"turns the second about {axis}"
+            )
+            for axis, turn in (("x", "nod"), ("y", "turn aside"), ("z", "roll"))
         ),
     )
     about = (
-        "Two pictures of a chessboard by two cameras, with epipolar lines; below the rectified "
-        "pair, in which these lines are rows that both pictures share."
+        "Two pictures of a room, and epipolar lines that belong together. The cameras turn on the "
+        "spot until all these lines are rows that both pictures share."
     )
-    left = pinhole(camera).moved(_pose(board))
 
-    def draw(paper: Paper, values: Values) -> Drawing:
-        return _draw(left, _beside(left, board, values), board, paper)
+    def pulled(values: Values, at: Array) -> Values:
+        old, new = cameras()[0], turned(values, values["turned"] / 100)[0]
+        u, v = old.project(old.centre + new.ray(at))
+        return {"u": float(u), "v": float(v)}
 
-    return Model("rectification", about, settings, draw)
+    return Model("rectification", about, settings, _draw, {"pixel": pulled})
 
 
-def _beside(left: Camera, board: Chessboard, values: Values) -> Camera:
+def turned(values: Values, part: float) -> tuple[Camera, Camera]:
+    """Return both cameras after a part of their turns, on the spot, to the attitude they share."""
+    first, second = cameras()
     angles = np.radians([values["angle_x"], values["angle_y"], values["angle_z"]])
-    turned = pose(rotation_from_angles(*angles), np.zeros(3))
-    step = _BASELINE * float(np.linalg.norm(board.points[-1]))
-    moved = pose(np.eye(3), [-step, 0, -values["forward"]])
-    return left.moved(chain(turned, moved, left.G))
-
-
-def _draw(left: Camera, right: Camera, board: Chessboard, paper: Paper) -> Drawing:
-    pair = rectify(left, right, size=_RECTIFIED, keep="all")
-    taken = left, right
-    before = _row(paper, taken, taken, board, "as taken")
-    after = _row(paper, (pair.left, pair.right), taken, board, "rectified")
-    # In the pixels of the given cameras, whatever the size of the rectified pictures.
-    scale = left.A[0, 0] / pair.left.A[0, 0]
-    apart = _rows_apart(left, right, board), scale * _rows_apart(pair.left, pair.right, board)
-    sentence = (
-        f"As taken, partners lie up to {apart[0]:.1f} px above or below each other; rectified, "
-        f"{apart[1]:.1f} px: the search for a partner runs along one row."
+    second = _attitude(second, rotation_from_angles(*angles) @ second.R)
+    e1 = second.centre - first.centre
+    e2 = np.cross(first.R[2] + second.R[2], e1)
+    R = np.array([x / np.linalg.norm(x) for x in (e1, e2, np.cross(e1, e2))])
+    ways = (part * vector_from_rotation(R @ camera.R.T) for camera in (first, second))
+    one, other = (
+        _attitude(camera, rotation_from_vector(way) @ camera.R)
+        for camera, way in zip((first, second), ways, strict=True)
     )
-    return Drawing(paper.join(before, after), sentence)
+    return one, other
 
 
-def _row(
-    paper: Paper,
-    pair: tuple[Camera, Camera],
-    taken: tuple[Camera, Camera],
-    board: Chessboard,
-    what: str,
-) -> tuple[Panel, Panel]:
-    """Draw what a pair shows: of a rectified one, what was in the pictures as they were taken."""
-    shown, panels = board.points[_four(board)], []
-    for i, side in enumerate(("left", "right")):
-        camera, other, old = pair[i], pair[1 - i], taken[i]
-        panel = paper.picture_panel(_SIZE, camera.size, f"{side}, {what}")
-        draw_board(panel, camera, board)
-        for line, colour in zip(lines_from(other, camera, shown), _LINES, strict=True):
-            panel.line(_across(line, camera.size), colour, 1.8)
-        m = old.project(shown)
-        panel.mark(camera.project(shown[((m >= -0.5) & (m <= np.subtract(old.size, 0.5))).all(1)]),
-                   "ideal", 8)  # fmt: skip
-        if camera is not old:
-            _hide_unseen(panel, camera, old)
+def _attitude(camera: Camera, R: Array) -> Camera:
+    """Turn a camera on the spot."""
+    return camera.moved(pose(R, -R @ camera.centre))
+
+
+@lru_cache(maxsize=1)
+def _depths() -> Array:
+    return depth_map(room(), cameras()[0])
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    m = np.array([values["u"], values["v"]])
+    first, _ = cameras()
+    M = first.ideal(m)
+    W = _depths()[int(m[1]), int(m[0])] * np.array([*M, 1])  # the first camera's frame is the WRF
+    now, whole = turned(values, values["turned"] / 100), turned(values, 1)
+    row = whole[0].project(W)[1]
+    panels, at = [], []
+    for old, new, end, photo, name in zip(
+        cameras(), now, whole, photographs(), ("first", "second"), strict=True
+    ):
+        panel = paper.picture_panel(_SHOWN, old.size, f"the {name} camera")
+        H = old.A @ old.R @ new.R.T @ np.linalg.inv(new.A)  # pixel as taken from pixel as turned
+        photo = photo.clip(0, 255).astype(np.uint8)
+        panel.image(np.asarray(backward_warp(photo, homography_map(H), fill=_UNSEEN), np.uint8))
+        for v in _ROWS:
+            panel.line(_line(new, end, v), ESTIMATED, 1)
+        panel.line(_line(new, end, row), ESTIMATED, 2.5)
+        at.append(new.project(W))
+        panel.line(np.array([[-_FAR, at[0][1]], [_FAR, at[0][1]]]), IDEAL, 1, dash=5)
+        panel.mark(at[-1], "ideal", 9)
         panels.append(panel)
-    return panels[0], panels[1]
+    panels[0].grip("pixel", "a pixel of the first picture", at[0], 4)
+    return Drawing(paper.join((panels[0], panels[1])), _sentence(now, at))
 
 
-def _hide_unseen(panel: Panel, camera: Camera, old: Camera) -> None:
-    """Lay grey over all that the picture as it was taken does not show."""
-    w, h = np.subtract(old.size, 0.5)
-    rays = old.ray([[-0.5, -0.5], [w, -0.5], [w, h], [-0.5, h]])
-    corners = camera.project(camera.centre + rays)
-    far = corners.mean(axis=0) + 9 * (corners - corners.mean(axis=0))
-    panel.polygons([[corners[i - 1], corners[i], far[i], far[i - 1]] for i in range(4)], "#CFCFCF")
-    panel.line(corners[[0, 1, 2, 3, 0]], MUTED, 1)
+def _line(new: Camera, end: Camera, v: float) -> Array:
+    """Return where a turned camera shows what its picture has in row v after the whole turn."""
+    middle = end.A[0, 2]
+    return new.project(new.centre + end.ray([[middle - _FAR, v], [middle + _FAR, v]]))
 
 
-def lines_from(other: Camera, camera: Camera, W: Array) -> Array:
-    """Return the lines (n, 3) in a camera's picture on which what the other sees of W must lie."""
-    return epipolar_lines(fundamental_matrix(other, camera), other.project(W))
-
-
-def _rows_apart(left: Camera, right: Camera, board: Chessboard) -> float:
-    v = left.project(board.points)[:, 1] - right.project(board.points)[:, 1]
-    return float(np.abs(v).max())
-
-
-def _across(line: Array, size: tuple[int, int]) -> Array:
-    """Return two points (2, 2) of a line, beyond the left and right (or upper, lower) border."""
-    a, b, c = line.tolist()
-    along = 0 if abs(b) >= abs(a) else 1
-    ends = np.array([-1.0, size[along]])
-    other = -(line[along] * ends + c) / line[1 - along]
-    return np.stack([ends, other] if along == 0 else [other, ends], axis=-1)
-
-
-def _four(board: Chessboard) -> list[int]:
-    """Choose four inner corners at different heights."""
-    columns, rows = board.corners
-    return [0, columns * (rows // 3) + columns // 2, columns * (rows - 1), columns * rows - 1]
-
-
-def _pose(board: Chessboard) -> Array:
-    R = rotation_from_vector([-0.35, 0.3, 0.1])
-    extent = float(np.linalg.norm(board.points[-1]))
-    middle = [0.5 * _BASELINE * extent, 0, 2.2 * extent]
-    return pose(R, middle - R @ board.points.mean(axis=0))
+def _sentence(now: tuple[Camera, Camera], at: list[Array]) -> str:
+    own, partner = at[0][1], at[1][1]
+    said = f"The pixel stands in row {own:.1f}, its partner in row {partner:.1f}"
+    (u1, v1, w), (u2, v2, _) = epipole(*now), epipole(*now[::-1])
+    if abs(u1) > _INFINITE * abs(w):
+        return f"{said}: both share their rows, and both epipoles lie at infinity."
+    return (
+        f"{said}, {abs(partner - own):.1f} px {'lower' if partner > own else 'higher'}. The "
+        f"epipoles lie at ({u1:.0f}, {v1:.0f}) and ({u2:.0f}, {v2:.0f})."
+    )

@@ -25,7 +25,7 @@ def ring_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         turn = np.radians(values["angle"])
         way = np.array([np.sin(turn), np.cos(turn)]).round(15)  # [wx, w], so that 90° is exact
-        x = float(way[0] / way[1]) if way[1] else np.inf
+        x = float(way[0] / way[1]) + 0.0 if way[1] else np.inf  # + 0.0 makes -0 a 0
         colour = IDEAL if way[1] else ESTIMATED
         pairs = paper.panel((400, 230), (-3.05, 3.05), (2.2, -1.3), "the pairs [wx  w]")
         _draw_pairs(pairs, way, x, colour)

@@ -48,7 +48,7 @@ def rod_model() -> Model:
         panel.grip("foot", "the foot of the rod", foot, 4)
         top = at_height(foot, height)
         panel.grip("top", "the top of the rod", top, 4)
-        side = paper.panel((330, 360), (-2.5, 36), (9, -1), "the same from the side (m)")
+        side = paper.panel((330, 360), (-2.5, 39), (9, -1), "the same from the side (m)")
         away = float(np.linalg.norm((_stands(foot) - _CAMERA.centre)[[0, 2]])) / 1e3
         _draw_side(side, away, height)
         return Drawing(paper.join((panel, side)), _sentence(foot, height))

@@ -99,10 +99,11 @@ def _draw_plan(panel: Panel, t: float, near: float, far: float) -> None:
 
 
 def _sentence(foot: Array, t: float, width: float, ratio: float) -> str:
-    where = f"The foot in row {foot[1]:.1f} stands {t:.1f} ± {width / 2:.1f} m behind a"
+    off = f"{width / 2:.1f}" if width > 0.1 else f"{width / 2:.2f}"
+    where = f"The foot in row {foot[1]:.1f} stands {t:.1f} ± {off} m behind a"
     if not np.isfinite(ratio) or abs(ratio) > 999:
         return f"{where}, at b itself: there the ratio (a, b; c, ∞) is infinite."
     return (
-        f"{where}: in the picture as on the ground (a, b; c, ∞) = {ratio:.2f}. A click "
-        f"that misses by {_CLICK:g} px along the row makes the ±."
+        f"{where}: in the picture as on the ground (a, b; c, ∞) = {round(ratio, 2) + 0.0:.2f}. "
+        f"A click that misses by {_CLICK:g} px along the row makes the ±."
     )

@@ -132,7 +132,9 @@ def _sentence(sun: Array, end: Array, values: Values) -> str:
         return f"{said}, just at our side: its rays stay parallel in the picture, and end nowhere."
     place = f"({end[0]:.0f}, {end[1]:.0f}) px"
     if sun[2] > 0:
-        return f"{said}, and is seen at {place}: all lines from shadow to pole end there."
+        inside = (np.abs(end - np.array(SIZE) / 2 + 0.5) <= np.array(SIZE) / 2).all()
+        seen = "seen at" if inside else "outside of the picture, at"
+        return f"{said}, and is {seen} {place}: all lines from shadow to pole end there."
     return (
         f"{said} behind the camera. Its rays end at {place}: there falls the camera's own shadow."
     )

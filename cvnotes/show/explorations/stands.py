@@ -78,7 +78,8 @@ def _curve(paper: Paper, values: Values) -> Panel:
     panel.line([[a, missed(a, lens)] for a in tried], LENS, 2)
     here = [alpha, missed(alpha, lens)]
     panel.mark(here, "estimated", 8)
-    panel.text([alpha, here[1] + 5], f"{here[1]:.1f} px", ESTIMATED, anchor="mm", size=13)
+    over = [np.clip(alpha, 625, 975), here[1] + 5]
+    panel.text(over, f"{here[1]:.1f} px", ESTIMATED, anchor="mm", size=13)
     panel.text([800, 62], "the pose is kept", MUTED, anchor="mm", size=11)
     return panel
 
@@ -91,4 +92,4 @@ def _sentence(values: Values) -> str:
     )
     if off < _STANDS:
         return f"{said} are met: the cube stands on its four squares."
-    return f"{said} are missed by {off:.1f} px: the cube stands beside its squares."
+    return f"{said} are missed by {off:.1f} px, and the cube is off, too."

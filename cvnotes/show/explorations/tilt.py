@@ -81,10 +81,10 @@ def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
     _draw_side(picture, lenses, (lenses.away, tilt), (near, turned))
     misfit = lenses.misfit(tilt)
     sentence = f"Tilted by {tilt:.0f}° the two pictures differ by {misfit:.1f} px (RMS): "
-    if misfit < 0.05:
+    if not tilt:
         sentence += "no picture of this board tells the one lens from the other."
     else:
-        sentence += f"with corners good to 0.1 px that is {misfit / 0.1:.0f} times the noise."
+        sentence += f"with corners good to 0.1 px that is {misfit / 0.1:.2g} times the noise."
     return Drawing(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
 
 
@@ -125,7 +125,7 @@ def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
     panel.line([[-6, 0], [_STEEPEST + 4, 0]], MUTED, 0.8)
     panel.mark(way[-1], "estimated", 8)
     panel.text(
-        way[-1] + [-1.5 if tilt > 45 else 1.5, -0.03 * highest],
+        way[-1] + np.array([-1.5, -0.09 * highest] if tilt > 45 else [1.5, -0.03 * highest]),
         f"{way[-1, 1]:.1f} px",
         IDEAL,
         anchor="rm" if tilt > 45 else "lm",

@@ -39,7 +39,7 @@ def window_at(gradients: Array, at: tuple[int, int]) -> Window:
     S = g.T @ g
     eigenvalues, axes = np.linalg.eigh(S)
     R = float(np.linalg.det(S) - _K * np.trace(S) ** 2)
-    crosses = R > 0 and eigenvalues[1] > _NOTHING
+    crosses = R > 0 and eigenvalues[0] > _NOTHING
     crossing = np.linalg.solve(S, g.T @ (g * p).sum(axis=1)) if crosses else np.full(2, np.nan)
     return Window(p, g, eigenvalues, axes, R, crossing)
 
@@ -125,7 +125,7 @@ def _sentence(at: tuple[int, int], window: Window) -> str:
     )
     if large < _NOTHING:
         return f"{said}both are small, this is flat paper."
-    if window.R < 0:
+    if np.isnan(window.crossing).any():
         return f"{said}one is large, this is an edge."
     u, v = window.crossing
     return f"{said}both are large, this is a corner. The votes cross at ({u:.2f}, {v:.2f})."

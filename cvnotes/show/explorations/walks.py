@@ -82,9 +82,10 @@ def _walk(panel: Panel, to: Array, colour: str, names: str) -> None:
     corner = np.array([to[0], 0.0])
     panel.line(np.stack([0 * to, corner, to]), colour, 4)
     panel.line(np.stack([0 * to, to]), MUTED, 1, dash=4)
+    aside = np.copysign(95, to[0] * (450 - abs(to[0])))  # within, where the panel ends
     for name, number, at, by in (
         (names[0], to[0], corner / 2, [0, -42 if to[1] > 0 else 42]),
-        (names[1], to[1], (corner + to) / 2, [95 if to[0] >= 0 else -95, 0]),
+        (names[1], to[1], (corner + to) / 2, [aside, 0]),
     ):
         words = f"{name} {number + 0.0:.0f}".replace("-", "−")
         panel.text(at + by, words, colour, anchor="mm", size=14)

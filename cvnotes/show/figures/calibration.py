@@ -8,10 +8,9 @@ import numpy.typing as npt
 from cvnotes.base import Array, DegenerateError, ShapeError, numbers
 from cvnotes.camera import Camera
 from cvnotes.camera.model import is_camera
-from cvnotes.pictures.meshes import box
+from cvnotes.pictures.meshes import box, outlined
 from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.show.axes import beside, panels, pixel_axes
-from cvnotes.show.figures.formation import draw_faces, outlined
 from cvnotes.show.guards import count, length, one_point
 from cvnotes.show.style import FONT, MUTED
 
@@ -138,9 +137,10 @@ def draw_cube(
         ax.fill(*shadow.T, color="#404040", alpha=0.6, linewidth=0, zorder=2)  # seen on black, too
     faces = _outline(camera, cube.faces)
     shades = _AMBIENT + 0.65 * np.maximum(_NORMALS @ lit, 0)
-    draw_faces(
-        ax, faces, tuple(shades.clip(0, 1)), _COLOUR, edgecolor="white", linewidth=1.2, zorder=3
-    )
+    for (u, v), shade in zip(faces.transpose(0, 2, 1), shades.clip(0, 1), strict=True):
+        if np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0:  # nothing hides this face
+            colour = np.multiply(shade, _COLOUR)
+            ax.fill(u, v, facecolor=colour, edgecolor="white", linewidth=1.2, zorder=3)
     ax.set(xlim=limits[0], ylim=limits[1])
     return ax
 

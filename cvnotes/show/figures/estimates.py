@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number, paired, points
 from cvnotes.calibration import Calibration
+from cvnotes.pictures.meshes import outlined
 from cvnotes.show.axes import as_picture, beside, drawn_on, panels
-from cvnotes.show.figures.formation import outlined
 from cvnotes.show.guards import length, thing
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, rgb
 

@@ -1,0 +1,212 @@
+"""Explore the formation of an image: one box, before and after each step from world to pixels."""
+
+from collections.abc import Callable, Iterator
+from functools import lru_cache, partial
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import Camera, Lens, intrinsics, look_at, move
+from cvnotes.pictures.meshes import box, outlined
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, hexed, rgb
+
+# One step or several: from points of the world (..., 3) to where a panel shows them, (..., 2).
+Seen = Callable[[Array], Array]
+
+_SIZE, _PICTURE = (410, 270), (360, 270)  # px, of a panel
+_HEIGHT, _BACK = 125.0, 80.0  # mm, of the box, and Z of its far side; Y is 0 on the floor
+_EYE, _TILT = -255.0, 20.0  # mm, Y of the camera; degrees that it looks down
+_TILE, _REACH = 150.0, 1500.0  # mm: a tile, and how far there are tiles
+_SIGHT = 230.0  # mm: how far away one takes hold of the line of sight
+_LIGHT = np.array([0.55, 1, 0.35])  # how light goes down
+_SHADES = 1.0, 0.5, 0.55, 0.8, 0.92, 0.7  # of front, back, left, right, top, bottom
+_SKY, _FAR, _TILES, _SHADOW = "#DCE8F2", "#E8E1D4", ("#F0EADF", "#E0D8C9"), "#B5AC9A"
+_ROUND = np.linspace(-np.pi, np.pi, 361)
+_HORIZON = 1e9 * np.stack([np.sin(_ROUND), 0 * _ROUND, np.cos(_ROUND)], axis=1)
+_WEDGE, _JOINTS = "#DDEFFA", "#DEDEDE"
+
+
+def formation_model() -> Model:
+    """Make the model of a box before a camera that is moved, turned and zoomed."""
+    corner = "of the corner that is followed"
+    settings = (
+        Setting("X", "camera's X (mm)", -300, 600, 5, 340, "where the camera stands"),
+        Setting("Z", "camera's Z (mm)", -540, -120, 5, -420, "negative: before the box"),
+        Setting("turn", "turn (°)", -80, 80, 0.5, -30, "of the camera on the spot, to the right"),
+        Setting("alpha", "α (px)", 600, 1200, 10, 800, "the focal length"),
+        Setting("k1", "k₁ of the lens", -0.25, 0.25, 0.01, 0, "how strongly the lens bends"),
+        Setting("width", "the cross: X (mm)", 60, 400, 5, 200, corner),
+        Setting("front", "the cross: Z (mm)", -100, 70, 5, 0, corner),
+    )
+    about = (
+        "A box on a floor, four times: from above in the world, with a camera; from above in the "
+        "camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the "
+        "box is followed."
+    )
+
+    def looked(values: Values, at: Array) -> Values:
+        return {"turn": float(np.degrees(np.arctan2(*(at - [values["X"], values["Z"]]))))}
+
+    drags = {
+        "camera": lambda _, at: {"X": float(at[0]), "Z": float(at[1])},
+        "line of sight": looked,
+        "corner": lambda _, at: {"width": float(at[0]), "front": float(at[1])},
+    }
+    return Model("formation", about, settings, _draw, drags)
+
+
+def camera_of(values: Values) -> Camera:
+    """Return the camera, which looks down at the floor."""
+    turn, down = np.radians([values["turn"], _TILT])
+    eye = np.array([values["X"], _EYE, values["Z"]])
+    ahead = [np.sin(turn), np.tan(down), np.cos(turn)]
+    A = intrinsics(values["alpha"], 1.005 * values["alpha"], 325, 238)
+    return Camera(A, look_at(eye, eye + ahead), Lens(k=(values["k1"],)))
+
+
+def corner_of(values: Values) -> Array:
+    """Return the corner (3,) of the box that is followed, in the WRF."""
+    return np.array([values["width"], -_HEIGHT, values["front"]])
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    camera, W = camera_of(values), corner_of(values)
+    bent = not camera.lens.is_ideal
+    world = paper.panel(
+        _SIZE, (-400, 816), (250, -550), "the world, from above: pull camera and cross"
+    )
+    _draw_above(world, lambda W: W[..., [0, 2]], camera, W)
+    _draw_axes(world, max(150, W[0] + 70), WORLD, "XZ")
+    _take_hold(world, camera, W)
+    frame = paper.panel(_SIZE, (-608, 608), (690, -110), "1. G: the camera's frame, from above")
+    _draw_above(frame, lambda W: move(camera.G, W)[..., [0, 2]], camera, W)
+    _draw_axes(frame, 150, CAMERA, "xz")
+    steps = "2. ÷ z, 3. lens" if bent else "2. ÷ z"
+    plane = paper.panel(_SIZE, (-0.68, 0.68), (-0.448, 0.448), f"{steps}: the plane z = 1")
+    on_plane = partial(_on_plane, camera)
+    _draw_seen(plane, on_plane, W, bent)
+    _draw_border(plane, camera)
+    straight = partial(_on_plane, Camera(camera.A, camera.G))
+    if bent:
+        for face, _ in _unhidden(straight(_faces(W))):
+            plane.line(face, MUTED, 1, dash=3)
+    picture = paper.picture_panel(_PICTURE, camera.size, f"{3 + bent}. A: the picture")
+    _draw_seen(picture, camera.project, W, bent)
+    M, xy, m = move(camera.G, W), on_plane(W), camera.project(W)
+    followed = (world, W, "{:.0f}"), (frame, M, "{:.0f}"), (plane, xy, "{:.3f}")
+    said = [_follow(*one) for one in (*followed, (picture, m, "{:.1f}"))]
+    if np.isnan(m).any():
+        why = "behind the camera" if M[2] <= 0 else "farther aside than the lens shows anything"
+        sentence = f"W = {said[0]} mm. G makes {said[1]} of it, {why}: it has no image."
+    else:
+        x, y = straight(W)
+        lens = f"the lens {said[2]}, " if bent else ""
+        sentence = (
+            f"W = {said[0]} mm. G makes {said[1]} of it, in the camera's frame; the division by z "
+            f"({x:.3f}, {y:.3f}), {lens}and A the pixel {said[3]}."
+        )
+    return Drawing(paper.join((world, frame), (plane, picture)), sentence)
+
+
+def _on_plane(camera: Camera, W: Array) -> Array:
+    """Return where (..., 2) points come to lie on z = 1, behind the lens if there is one."""
+    return np.asarray((camera.project(W) - camera.A[:2, 2]) / np.diag(camera.A)[:2])
+
+
+def _faces(corner: Array) -> Array:
+    """Return the outlined faces (6, 64, 3) of the box between a corner and the axes."""
+    X, _, Z = corner
+    return outlined(box((0, X), (-_HEIGHT, 0), (Z, _BACK), (0, 0, 0)).faces)
+
+
+@lru_cache(maxsize=1)
+def _tiles() -> tuple[Array, Array]:
+    """Return the outlined tiles (n, 64, 3) of each of the two colours."""
+    i, j = np.indices(2 * [int(2 * _REACH / _TILE)]).reshape(2, -1, 1)
+    x, z = _TILE * (i + [0, 1, 1, 0]) - _REACH, _TILE * (j + [0, 0, 1, 1]) - _REACH
+    tiles = outlined(np.stack([x, 0 * x, z], axis=-1))
+    odd = ((i + j) % 2 == 1)[:, 0]
+    return tiles[~odd], tiles[odd]
+
+
+def _draw_above(panel: Panel, seen: Seen, camera: Camera, corner: Array) -> None:
+    """Draw box and camera from above, and how much of the world the camera sees."""
+    v0 = camera.A[1, 2]
+    sides = camera.ray([[-0.5, v0], [camera.size[0] - 0.5, v0]])
+    panel.polygons(seen(camera.centre + 4000 * np.array([[0, 0, 0], *sides]))[None], _WEDGE)
+    joints = np.arange(-_REACH, _REACH + 1, _TILE)
+    ends = np.array([[[x, 0, -_REACH], [x, 0, _REACH]] for x in joints])
+    panel.segments(seen(np.concatenate([ends, ends[..., ::-1]])), _JOINTS, 0.7)
+    _draw_box(panel, seen, corner, turn=-1)
+    panel.mark(seen(camera.centre), "camera", 9)
+
+
+def _draw_seen(panel: Panel, seen: Seen, corner: Array, bent: bool) -> None:
+    """Draw box and floor as the camera sees them; what no lens bends needs no outline."""
+    (x0, x1), (y0, y1) = panel.x, panel.y
+    panel.polygons([[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]], _FAR)
+    horizon = seen(_HORIZON)
+    horizon = horizon[(np.abs(horizon) < 1e4 * panel.pixel).all(axis=1)]
+    horizon = horizon[np.argsort(horizon[:, 0])]
+    over = np.array([[horizon[-1, 0], y0], [horizon[0, 0], y0]])
+    panel.polygons(np.concatenate([horizon, over])[None], _SKY)
+    for tiles, colour in zip(_tiles(), _TILES, strict=True):
+        panel.polygons(seen(tiles[:, :: 4 if bent else 16]), colour)
+    _draw_box(panel, seen, corner)
+
+
+def _draw_box(panel: Panel, seen: Seen, corner: Array, turn: int = 1) -> None:
+    """Draw the box's shadow, and the faces that nothing hides."""
+    faces = _faces(corner)
+    panel.polygons(seen(faces - faces[..., 1:2] * _LIGHT), _SHADOW)
+    for face, shade in _unhidden(seen(faces), turn):
+        panel.polygons(face[None], hexed(255 * shade * np.array(rgb(WORLD))))
+        panel.line(face, "#FFFFFF", 0.8)
+
+
+def _unhidden(faces: Array, turn: int = 1) -> Iterator[tuple[Array, float]]:
+    """Give those faces (n, 2) of a box that go round one way, with their shades."""
+    for face, shade in zip(faces, _SHADES, strict=True):
+        u, v = face.T
+        if turn * np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0:
+            yield face, shade
+
+
+def _draw_axes(panel: Panel, length: float, colour: str, names: str) -> None:
+    for tip, name in zip(np.diag([length, 170]), names, strict=True):
+        panel.line(np.stack([0 * tip, tip]), colour, 2.5)
+        panel.text(tip + 26 * np.sign(tip), name, colour, anchor="mm", size=13)
+
+
+def _take_hold(world: Panel, camera: Camera, corner: Array) -> None:
+    """Let a hand move the camera, turn it, and pull the corner."""
+    C, ahead = camera.centre[[0, 2]], camera.R[2, [0, 2]]
+    sight = C + _SIGHT * ahead / np.linalg.norm(ahead)
+    world.line([C, sight], IDEAL, 1, dash=4)
+    world.mark(sight, "ideal", 7)
+    world.grip("camera", "where the camera stands", C, 6)
+    world.grip("line of sight", "where the camera looks", sight, 6)
+    world.grip("corner", "the corner that is followed", corner[[0, 2]], 6)
+
+
+def _draw_border(plane: Panel, camera: Camera) -> None:
+    """Draw what of the plane z = 1 the sensor covers, which the lens does not change."""
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * camera.size - 0.5
+    plane.line((corners - camera.A[:2, 2]) / np.diag(camera.A)[:2], CAMERA, 2)
+
+
+def _follow(panel: Panel, at: Array, form: str) -> str:
+    """Mark the corner that is followed, and write its numbers beside it."""
+    words = f"({', '.join(form.format(x) for x in at + 0.0)})".replace("-", "−")
+    place = at[[0, -1]]  # from above, x and z
+    panel.mark(place, "estimated", 8)
+    low, high = np.sort([panel.x, panel.y]).T
+    if ((place >= low) & (place <= high)).all():
+        below = place + [0, 17 * panel.pixel * np.sign(panel.y[1] - panel.y[0])]
+        margin = np.array([52 * panel.pixel, 0])
+        panel.text(
+            np.clip(below, low + margin, high - margin), words, ESTIMATED, anchor="mm", size=12
+        )
+    return words

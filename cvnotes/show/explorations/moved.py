@@ -1,0 +1,130 @@
+"""Explore who moved: twelve photographs of a board, by a board that moves or by a camera."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import (
+    Camera,
+    chain,
+    inverse,
+    move,
+    pose,
+    rotation_from_vector,
+    vector_from_rotation,
+)
+from cvnotes.pictures import course
+from cvnotes.show.explorations.boards import draw_board, paper_and_squares, pinhole
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.space.camera_shapes import camera_shapes
+from cvnotes.show.space.shapes import Lines
+from cvnotes.show.style import CAMERA, MUTED
+
+_SIZE, _PICTURE = (440, 330), (380, 285)  # px
+_LAST = 11  # of the twelve photographs, counted from 0
+_CONE, _PALE, _PALE_BLUE, _INK = 110.0, "#C9C9C9", "#BFDFF4", "#262629"
+
+
+# Seen from above and behind the camera: x to the right, y down, z away.
+_VIEW = rotation_from_vector([0.45, 0, 0]) @ rotation_from_vector([0, 0.5, 0])
+
+
+def on_sheet(W: Array) -> Array:
+    """Project points (..., 3) onto the sheet (..., 2), all parallel."""
+    return np.asarray(W @ _VIEW[:2].T)
+
+
+def moved_model() -> Model:
+    """Make the model of the course's twelve photographs, in the frame of the first camera."""
+    settings = (
+        Setting("photo", "photograph", 0, _LAST, 0.1, 6, "which photograph; the way between two"),
+        Setting("who", "who moves (%)", 0, 100, 1, 0, "0: the board alone; 100: the camera alone"),
+    )
+    about = (
+        "A board and a camera in space, where they stood for twelve photographs, if the board "
+        "moved, the camera, or both; and the photograph, which is the same for all of these."
+    )
+    return Model("moved", about, settings, _draw)
+
+
+@lru_cache(maxsize=1)
+def _poses() -> Array:
+    return course.poses()
+
+
+def between(photo: float) -> Array:
+    """Return the board's pose (4, 4) before the camera, also on the way to the next photograph."""
+    i = min(int(photo), _LAST - 1)
+    G, G_next = _poses()[i : i + 2]
+    return chain(part_of(chain(G_next, inverse(G)), photo - i), G)
+
+
+def part_of(G: Array, part: float) -> Array:
+    """Return a part of a motion (4, 4): as much of its rotation, and of its translation."""
+    return pose(rotation_from_vector(part * vector_from_rotation(G[:3, :3])), part * G[:3, 3])
+
+
+def stands(G: Array, who: float) -> tuple[Array, Array]:
+    """Return the poses (4, 4) of camera and board in the first camera's frame: frame ← own."""
+    camera = part_of(chain(_poses()[0], inverse(G)), who)
+    return camera, chain(camera, G)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    board, own = course.board(), pinhole(course.camera())
+    G, who = between(values["photo"]), values["who"] / 100
+    space = paper.panel(_SIZE, *_range(), "space: camera and board")
+    border, squares = paper_and_squares(board)
+    for each in _poses():
+        camera, of_board = stands(each, who)
+        space.line(on_sheet(move(of_board, border))[[0, 1, 2, 3, 0]], _PALE, 0.8)
+        _draw_camera(space, own.moved(inverse(camera)), _PALE_BLUE, 1)
+    camera, of_board = stands(G, who)
+    sheet = on_sheet(move(of_board, border))
+    space.polygons(sheet[None], "#FBFBF8")
+    space.line(sheet[[0, 1, 2, 3, 0]], MUTED, 1.2)
+    space.polygons(on_sheet(move(of_board, squares)), _INK)
+    _draw_camera(space, own.moved(inverse(camera)), CAMERA, 2.5)
+    picture = paper.picture_panel(_PICTURE, own.size, "what the camera sees")
+    draw_board(picture, own.moved(G), board)
+    return Drawing(paper.join((space, picture)), _sentence(values, camera, of_board))
+
+
+def _draw_camera(panel: Panel, camera: Camera, colour: str, width: float) -> None:
+    for shape in camera_shapes(camera, _CONE, name=""):
+        if isinstance(shape, Lines):
+            panel.segments(on_sheet(shape.ends), colour, width)
+
+
+@lru_cache(maxsize=1)
+def _range() -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return what the panel shows: room for all boards and cameras, whoever moves."""
+    border, _ = paper_and_squares(course.board())
+    both = [stands(G, who) for G in _poses() for who in (0, 0.5, 1)]
+    seen = on_sheet(
+        np.concatenate([[move(b, border), c[:3, 3] + 0 * border] for c, b in both]).reshape(-1, 3)
+    )
+    low, high = seen.min(0), seen.max(0)
+    scale = 1.1 * ((high - low) / _SIZE).max() / 2 * np.array(_SIZE)
+    (x0, y0), (x1, y1) = (low + high) / 2 - scale, (low + high) / 2 + scale
+    return (x0, x1), (y0, y1)
+
+
+def _sentence(values: Values, camera: Array, of_board: Array) -> str:
+    middle = course.board().points.mean(axis=0)
+    start = _poses()[0]
+    moves = {
+        "board": (chain(of_board, inverse(start)), move(start, middle)),
+        "camera": (camera, np.zeros(3)),
+    }
+    said = []
+    for name, (motion, at) in moves.items():
+        far = float(np.linalg.norm(move(motion, at) - at))
+        turn = float(np.degrees(np.linalg.norm(vector_from_rotation(motion[:3, :3]))))
+        said.append(f"the {name} has moved by {far:.0f} mm and turned by {turn:.0f}°")
+    return (
+        f"Photograph {values['photo']:g}: since photograph 0 {' and '.join(said)}. How one stands "
+        "before the other is the same, and so is the picture."
+    )
