@@ -1063,6 +1063,26 @@ def test_whoever_moved_the_picture_stays_and_both_motions_are_those_of_the_poses
     assert (pictures[0] == np.array(pictures)).all()
 
 
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"X": 200, "Z": -120, "turn": 60, "alpha": 600, "width": 400},  # partly behind the camera
+        {"X": 200, "Z": -250, "turn": -25, "alpha": 600, "width": 400, "k1": -0.25},  # or the fold
+    ],
+)
+def test_a_box_of_which_a_corner_has_no_image_is_drawn_as_far_as_it_is_seen(values):
+    turn = np.radians(values["turn"])
+    R = rotation_from_vector([np.radians(20), 0, 0]) @ rotation_from_vector([0, -turn, 0])
+    A, centre = intrinsics(600, 603, 325, 238), [values["X"], -255, values["Z"]]
+    camera = Camera(A, pose(R, -R @ centre), Lens(k=(values.get("k1", 0),)))
+    photo = render_scene(box((0, 400), (-125, 0), (0, 80), (0, 1, 0)), camera).astype(int)
+    seen = np.asarray(Image.fromarray(photo[..., 1] - photo[..., 0] > 30).resize((360, 270)))
+    top, left = 270 + TITLE + 6 + TITLE, 410 + 6 + MARGIN
+    panel = MODELS["formation"].picture(**values)[top : top + 270, left : left + 360].astype(int)
+    green = panel[..., 1] - panel[..., 0] > 30
+    assert (green & seen).sum() > 0.93 * (green | seen).sum() > 5000
+
+
 def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
     grey = np.array([60, 90, 110, 200])
     for du, dv in ((0.35, 0.6), (0.8, 0.25), (0.5, 0.5)):
@@ -1815,8 +1835,8 @@ def test_neighbours_that_are_alike_agree_and_noise_does_not():
     turned = np.tile([[1.0], [-1.0]], (3, 1)).ravel()  # not along the rows, only from row to row
     assert alike(np.repeat(turned, 9)[None, :, None] * np.ones((12, 1, 2))) == pytest.approx(1)
     shown = MODELS["finding"].drawing
-    assert "by 0.91 of 1: something" in shown(step=2).sentence
-    assert "by 0.72 of 1: something" in shown(step=2.5).sentence
+    assert "by 0.91 of 1: the camera is not found yet" in shown(step=2).sentence
+    assert "by 0.72 of 1: the camera is not found yet" in shown(step=2.5).sentence
     assert "what is left is noise" in shown(step=3).sentence
 
 

@@ -240,6 +240,10 @@ def test_a_vanishing_point_at_infinity_is_a_direction_like_any_other():
     [
         (lambda: focal_length([400, 240], [500, 240], [320, 240]), "less than 90° apart"),
         (lambda: focal_length([320, 240], [500, 240], [320, 240]), "less than 90° apart"),
+        (
+            lambda: intrinsics_from_vanishing_points(np.array([[0, 0], [1, 1], [2, np.nan]])),
+            "tilt the camera",
+        ),
         (lambda: intrinsics_from_vanishing_points([[0, 0], [1, 1], [2, 2]]), "lie on a line"),
         (lambda: intrinsics_from_vanishing_points([[0, 0], [0, 0], [2, 2]]), "lie on a line"),
         (lambda: intrinsics_from_vanishing_points([[0, 0], [9, 0], [-4, 3]]), "90° or more"),

@@ -213,6 +213,11 @@ def intrinsics_from_vanishing_points(v: npt.ArrayLike) -> Array:
            [  0., 800., 240.],
            [  0.,   0.,   1.]])
     """
+    if isinstance(v, np.ndarray) and v.dtype.kind == "f" and np.isnan(v).any():
+        raise DegenerateError(
+            "v contains NaN: edges that are parallel in the picture have their vanishing point at "
+            "infinity; tilt the camera until no edge is parallel to the sensor"
+        )
     v = matrix(v, "v", 3, 2)
     if v.ndim != 2:
         raise ShapeError(f"v: expected three pixels (3, 2), got {v.shape}")

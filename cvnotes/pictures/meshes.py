@@ -259,4 +259,5 @@ def outlined(corners: Array) -> Array:
     """Divide the edges of polygons (..., k, 3) into short pieces that a lens may bend."""
     edges = np.roll(corners, -1, axis=-2) - corners
     pieces = corners[..., None, :] + np.arange(16)[:, None] / 16 * edges[..., None, :]
-    return np.asarray(pieces.reshape(*corners.shape[:-2], -1, corners.shape[-1]))
+    *many, k, dimension = corners.shape
+    return np.asarray(pieces.reshape(*many, 16 * k, dimension))

@@ -118,7 +118,10 @@ def _cloud(paper: Paper, off: Array) -> Panel:
 def _curves(paper: Paper, rms: Array, now: int) -> Panel:
     """Draw the RMS of one coordinate against the window, as a logarithm."""
     panel = paper.panel(
-        (285, 285), (2, 13), (np.log10(_MOST), np.log10(_LEAST)), "RMS (px) against the window"
+        (285, 285),
+        (2, 13),
+        (np.log10(_MOST), np.log10(_LEAST)),
+        "RMS along an axis (px) against the window",
     )
     for value in (0.005, 0.01, 0.02, 0.05, 0.1):
         panel.line([[0, np.log10(value)], [14, np.log10(value)]], "#DDDDDD", 0.5)

@@ -116,7 +116,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _bars(paper: Paper, left: Array) -> Panel:
     """Draw which part of each standard deviation is left."""
-    panel = paper.panel((360, 360), (-0.22, 1.2), (-0.7, 5.7), "left of each standard deviation")
+    panel = paper.panel(
+        (360, 360), (-0.22, 1.2), (-0.7, 5.7), "what is left of each standard deviation"
+    )
     panel.ticks(x=(0, 0.5, 1))
     for i, (label, part) in enumerate(zip(_LABELS, left, strict=True)):
         box = np.array([[0, i - 0.28], [1, i - 0.28], [1, i + 0.28], [0, i + 0.28]])

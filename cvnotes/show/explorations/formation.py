@@ -1,7 +1,8 @@
 """Explore the formation of an image: one box, before and after each step from world to pixels."""
 
-from collections.abc import Callable, Iterator
-from functools import lru_cache, partial
+from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,7 @@ _SIZE, _PICTURE = (410, 270), (360, 270)  # px, of a panel
 _HEIGHT, _BACK = 125.0, 80.0  # mm, of the box, and Z of its far side; Y is 0 on the floor
 _EYE, _TILT = -255.0, 20.0  # mm, Y of the camera; degrees that it looks down
 _TILE, _REACH = 150.0, 1500.0  # mm: a tile, and how far there are tiles
+_NEAR, _WIDEST = 10.0, 20.0  # mm before the camera; how far from the axis on z = 1
 _SIGHT = 230.0  # mm: how far away one takes hold of the line of sight
 _LIGHT = np.array([0.55, 1, 0.35])  # how light goes down
 _SHADES = 1.0, 0.5, 0.55, 0.8, 0.92, 0.7  # of front, back, left, right, top, bottom
@@ -80,53 +82,100 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_above(world, lambda W: W[..., [0, 2]], camera, W)
     _draw_axes(world, max(150, W[0] + 70), WORLD, "XZ")
     _take_hold(world, camera, W)
-    frame = paper.panel(_SIZE, (-608, 608), (690, -110), "1. G: the camera's frame, from above")
+    frame = paper.panel(_SIZE, (-608, 608), (690, -110), "1. G: the camera's frame, along its y")
     _draw_above(frame, lambda W: move(camera.G, W)[..., [0, 2]], camera, W)
     _draw_axes(frame, 150, CAMERA, "xz")
     steps = "2. ÷ z, 3. lens" if bent else "2. ÷ z"
     plane = paper.panel(_SIZE, (-0.68, 0.68), (-0.448, 0.448), f"{steps}: the plane z = 1")
-    on_plane = partial(_on_plane, camera)
-    _draw_seen(plane, on_plane, W, bent)
-    _draw_border(plane, camera)
-    straight = partial(_on_plane, Camera(camera.A, camera.G))
-    if bent:
-        for face, _ in _unhidden(straight(_faces(W))):
-            plane.line(face, MUTED, 1, dash=3)
     picture = paper.picture_panel(_PICTURE, camera.size, f"{3 + bent}. A: the picture")
-    _draw_seen(picture, camera.project, W, bent)
-    M, xy, m = move(camera.G, W), on_plane(W), camera.project(W)
-    followed = (world, W, "{:.0f}"), (frame, M, "{:.0f}"), (plane, xy, "{:.3f}")
+    scene = _Scene.of(camera, W)
+    _draw_seen(plane, scene, lambda xy: xy)
+    _draw_seen(picture, scene, lambda xy: xy * np.diag(camera.A)[:2] + camera.A[:2, 2])
+    _draw_border(plane, camera)
+    M = move(camera.G, W)
+    xy = M[:2] / M[2] if M[2] > 0 else np.full(2, np.nan)
+    m = camera.project(W)
+    on_plane = (m - camera.A[:2, 2]) / np.diag(camera.A)[:2]
+    if bent:
+        for face, _ in _unhidden(_Scene.of(Camera(camera.A, camera.G), W).faces):
+            plane.line(face, MUTED, 1, dash=3)
+        plane.line([xy, on_plane], ESTIMATED, 2)
+        plane.mark(xy, "ideal", 5)
+    followed = (world, W, "{:.0f}"), (frame, M, "{:.0f}"), (plane, on_plane, "{:.3f}")
     said = [_follow(*one) for one in (*followed, (picture, m, "{:.1f}"))]
+    return Drawing(paper.join((world, frame), (plane, picture)), _sentence(said, M, xy, m, bent))
+
+
+def _sentence(said: list[str], M: Array, xy: Array, m: Array, bent: bool) -> str:
     if np.isnan(m).any():
         why = "behind the camera" if M[2] <= 0 else "farther aside than the lens shows anything"
-        sentence = f"W = {said[0]} mm. G makes {said[1]} of it, {why}: it has no image."
-    else:
-        x, y = straight(W)
-        lens = f"the lens {said[2]}, " if bent else ""
-        sentence = (
-            f"W = {said[0]} mm. G makes {said[1]} of it, in the camera's frame; the division by z "
-            f"({x:.3f}, {y:.3f}), {lens}and A the pixel {said[3]}."
-        )
-    return Drawing(paper.join((world, frame), (plane, picture)), sentence)
+        return f"W = {said[0]} mm. G makes {said[1]} of it, {why}: it has no image."
+    lens = f"the lens {said[2]}, " if bent else ""
+    inside = ((m >= -0.5) & (m <= [639.5, 479.5])).all()
+    return (
+        f"W = {said[0]} mm. G makes {said[1]} of it, in the camera's frame; the division by z "
+        f"({xy[0]:.3f}, {xy[1]:.3f}), {lens}and A the pixel {said[3]}"
+        f"{'' if inside else ', outside of the picture'}."
+    )
 
 
-def _on_plane(camera: Camera, W: Array) -> Array:
-    """Return where (..., 2) points come to lie on z = 1, behind the lens if there is one."""
-    return np.asarray((camera.project(W) - camera.A[:2, 2]) / np.diag(camera.A)[:2])
+class _Scene(NamedTuple):
+    """What stands before a camera, as polygons on z = 1, behind its lens."""
+
+    tiles: tuple[list[Array], list[Array]]
+    shadow: list[Array]
+    faces: list[Array]
+    horizon: Array
+
+    @classmethod
+    def of(cls, camera: Camera, corner: Array) -> "_Scene":
+        faces = _faces(corner)
+        light, dark = (_on_plane(camera, tiles) for tiles in _tiles())
+        horizon = camera.project(_HORIZON)
+        horizon = (horizon - camera.A[:2, 2]) / np.diag(camera.A)[:2]
+        shadow = _on_plane(camera, faces - faces[..., 1:2] * _LIGHT)
+        return cls((light, dark), shadow, _on_plane(camera, faces), horizon)
+
+
+def _on_plane(camera: Camera, corners: Array) -> list[Array]:
+    """Bring polygons (n, k, 3) of the world onto z = 1, those parts that lie before the camera.
+
+    What the lens shows nowhere goes to the rim of what it shows, beyond every picture.
+    """
+    M = move(camera.G, corners)
+    parts = list(outlined(M))
+    for i in np.flatnonzero((M[..., 2] < _NEAR).any(axis=1)):
+        parts[i] = outlined(_before(M[i]))
+    ends = np.cumsum([len(part) for part in parts])[:-1]
+    x, y, z = np.concatenate(parts).T
+    xy = np.stack([x, y], axis=1) / z[:, None]
+    most = min(0.999 * camera.lens.max_radius, _WIDEST)
+    xy = xy * np.minimum(1, most / np.linalg.norm(xy, axis=1).clip(1e-12))[:, None]
+    return np.split(camera.lens.distort(xy), ends)
+
+
+def _before(M: Array) -> Array:
+    """Cut a polygon (k, 3) to what lies before the camera."""
+    kept: list[Array] = []
+    for a, b in zip(M, np.roll(M, -1, axis=0), strict=True):
+        kept += [a] * bool(a[2] >= _NEAR)
+        if (a[2] >= _NEAR) != (b[2] >= _NEAR):
+            kept += [a + (_NEAR - a[2]) / (b[2] - a[2]) * (b - a)]
+    return np.array(kept).reshape(-1, 3)
 
 
 def _faces(corner: Array) -> Array:
-    """Return the outlined faces (6, 64, 3) of the box between a corner and the axes."""
+    """Return the faces (6, 4, 3) of the box between a corner and the axes."""
     X, _, Z = corner
-    return outlined(box((0, X), (-_HEIGHT, 0), (Z, _BACK), (0, 0, 0)).faces)
+    return box((0, X), (-_HEIGHT, 0), (Z, _BACK), (0, 0, 0)).faces
 
 
 @lru_cache(maxsize=1)
 def _tiles() -> tuple[Array, Array]:
-    """Return the outlined tiles (n, 64, 3) of each of the two colours."""
+    """Return the tiles (n, 4, 3) of each of the two colours."""
     i, j = np.indices(2 * [int(2 * _REACH / _TILE)]).reshape(2, -1, 1)
     x, z = _TILE * (i + [0, 1, 1, 0]) - _REACH, _TILE * (j + [0, 0, 1, 1]) - _REACH
-    tiles = outlined(np.stack([x, 0 * x, z], axis=-1))
+    tiles = np.stack([x, 0 * x, z], axis=-1)
     odd = ((i + j) % 2 == 1)[:, 0]
     return tiles[~odd], tiles[odd]
 
@@ -139,34 +188,37 @@ def _draw_above(panel: Panel, seen: Seen, camera: Camera, corner: Array) -> None
     joints = np.arange(-_REACH, _REACH + 1, _TILE)
     ends = np.array([[[x, 0, -_REACH], [x, 0, _REACH]] for x in joints])
     panel.segments(seen(np.concatenate([ends, ends[..., ::-1]])), _JOINTS, 0.7)
-    _draw_box(panel, seen, corner, turn=-1)
+    faces = _faces(corner)
+    panel.polygons(seen(faces - faces[..., 1:2] * _LIGHT), _SHADOW)
+    _draw_faces(panel, list(seen(faces)), turn=-1)
     panel.mark(seen(camera.centre), "camera", 9)
 
 
-def _draw_seen(panel: Panel, seen: Seen, corner: Array, bent: bool) -> None:
-    """Draw box and floor as the camera sees them; what no lens bends needs no outline."""
+def _draw_seen(panel: Panel, scene: _Scene, place: Callable[[Array], Array]) -> None:
+    """Draw box and floor as the camera sees them."""
     (x0, x1), (y0, y1) = panel.x, panel.y
     panel.polygons([[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]], _FAR)
-    horizon = seen(_HORIZON)
+    horizon = place(scene.horizon)
     horizon = horizon[(np.abs(horizon) < 1e4 * panel.pixel).all(axis=1)]
     horizon = horizon[np.argsort(horizon[:, 0])]
     over = np.array([[horizon[-1, 0], y0], [horizon[0, 0], y0]])
     panel.polygons(np.concatenate([horizon, over])[None], _SKY)
-    for tiles, colour in zip(_tiles(), _TILES, strict=True):
-        panel.polygons(seen(tiles[:, :: 4 if bent else 16]), colour)
-    _draw_box(panel, seen, corner)
+    shaded = *zip(scene.tiles, _TILES, strict=True), (scene.shadow, _SHADOW)
+    for polygons, colour in shaded:
+        for polygon in polygons:
+            if len(polygon):
+                panel.polygons(place(polygon)[None], colour)
+    _draw_faces(panel, [place(face) for face in scene.faces])
 
 
-def _draw_box(panel: Panel, seen: Seen, corner: Array, turn: int = 1) -> None:
-    """Draw the box's shadow, and the faces that nothing hides."""
-    faces = _faces(corner)
-    panel.polygons(seen(faces - faces[..., 1:2] * _LIGHT), _SHADOW)
-    for face, shade in _unhidden(seen(faces), turn):
+def _draw_faces(panel: Panel, faces: Sequence[Array], turn: int = 1) -> None:
+    """Draw the faces that nothing hides."""
+    for face, shade in _unhidden(faces, turn):
         panel.polygons(face[None], hexed(255 * shade * np.array(rgb(WORLD))))
-        panel.line(face, "#FFFFFF", 0.8)
+        panel.line(face[[*range(len(face)), 0]], "#FFFFFF", 0.8)
 
 
-def _unhidden(faces: Array, turn: int = 1) -> Iterator[tuple[Array, float]]:
+def _unhidden(faces: Sequence[Array], turn: int = 1) -> Iterator[tuple[Array, float]]:
     """Give those faces (n, 2) of a box that go round one way, with their shades."""
     for face, shade in zip(faces, _SHADES, strict=True):
         u, v = face.T
@@ -204,9 +256,7 @@ def _follow(panel: Panel, at: Array, form: str) -> str:
     panel.mark(place, "estimated", 8)
     low, high = np.sort([panel.x, panel.y]).T
     if ((place >= low) & (place <= high)).all():
-        below = place + [0, 17 * panel.pixel * np.sign(panel.y[1] - panel.y[0])]
-        margin = np.array([52 * panel.pixel, 0])
-        panel.text(
-            np.clip(below, low + margin, high - margin), words, ESTIMATED, anchor="mm", size=12
-        )
+        side = 1 if high[0] - place[0] > 120 * panel.pixel else -1
+        beside = place + [14 * side * panel.pixel, 0]
+        panel.text(beside, words, ESTIMATED, anchor="lm" if side > 0 else "rm", size=12)
     return words

@@ -13,10 +13,10 @@ _RIGHT, _TOP = np.array([1.0, 0]), np.array([0.0, -1])  # where the square is ta
 _SIDE = np.array([[1, -1], [1, 0], [1, 0.5], [1, 1]])  # four points of its right side
 _SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
 _MEASURED = (
-    ("length of the side", "{:.2f}"),
+    ("length of the side", "{:.3f}"),
     ("angle of the corner", "{:.0f}°"),
     ("angle of opposite sides", "{:.0f}°"),
-    ("upper half : lower", "{:.2f}"),
+    ("upper half : lower", "{:.3f}"),
     ("cross-ratio", "{:.2f}"),
 )
 _KINDS = "Euclidean", "similar", "affine", "projective"

@@ -21,8 +21,8 @@ from cvnotes.stereo import epipole
 from cvnotes.warping import backward_warp, homography_map
 
 _SHOWN = 328, 246  # px
-_ROWS = range(30, 480, 60)  # of the rectified pair, that are followed
-_FAR = 2000.0  # px from the middle of a picture, to which a line is drawn
+_ROWS = range(30, 480, 60)  # of the first picture, at its middle: where lines are begun
+_APART = 200.0  # px between two points of a row that any turned camera sees
 _UNSEEN = 110
 _INFINITE = 1e9  # px
 
@@ -93,6 +93,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     M = first.ideal(m)
     W = _depths()[int(m[1]), int(m[0])] * np.array([*M, 1])  # the first camera's frame is the WRF
     now, whole = turned(values, values["turned"] / 100), turned(values, 1)
+    through = first.centre + first.ray([[first.A[0, 2], v] for v in _ROWS])
+    rows = whole[0].project(through)[:, 1]
     row = whole[0].project(W)[1]
     panels, at = [], []
     for old, new, end, photo, name in zip(
@@ -102,11 +104,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         H = old.A @ old.R @ new.R.T @ np.linalg.inv(new.A)  # pixel as taken from pixel as turned
         photo = photo.clip(0, 255).astype(np.uint8)
         panel.image(np.asarray(backward_warp(photo, homography_map(H), fill=_UNSEEN), np.uint8))
-        for v in _ROWS:
+        for v in rows:
             panel.line(_line(new, end, v), ESTIMATED, 1)
         panel.line(_line(new, end, row), ESTIMATED, 2.5)
         at.append(new.project(W))
-        panel.line(np.array([[-_FAR, at[0][1]], [_FAR, at[0][1]]]), IDEAL, 1, dash=5)
+        panel.line([[-9, at[0][1]], [old.size[0] + 9, at[0][1]]], IDEAL, 1, dash=5)
         panel.mark(at[-1], "ideal", 9)
         panels.append(panel)
     panels[0].grip("pixel", "a pixel of the first picture", at[0], 4)
@@ -116,7 +118,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 def _line(new: Camera, end: Camera, v: float) -> Array:
     """Return where a turned camera shows what its picture has in row v after the whole turn."""
     middle = end.A[0, 2]
-    return new.project(new.centre + end.ray([[middle - _FAR, v], [middle + _FAR, v]]))
+    m = new.project(new.centre + end.ray([[middle - _APART, v], [middle + _APART, v]]))
+    return np.asarray(m + 9 * np.array([[-1], [1]]) * (m[1] - m[0]))
 
 
 def _sentence(now: tuple[Camera, Camera], at: list[Array]) -> str:
@@ -125,7 +128,8 @@ def _sentence(now: tuple[Camera, Camera], at: list[Array]) -> str:
     (u1, v1, w), (u2, v2, _) = epipole(*now), epipole(*now[::-1])
     if abs(u1) > _INFINITE * abs(w):
         return f"{said}: both share their rows, and both epipoles lie at infinity."
+    apart = f"{abs(partner - own):.1f} px {'lower' if partner > own else 'higher'}"
     return (
-        f"{said}, {abs(partner - own):.1f} px {'lower' if partner > own else 'higher'}. The "
+        f"{said}, {'the same row' if round(abs(partner - own), 1) == 0 else apart}. The "
         f"epipoles lie at ({u1:.0f}, {v1:.0f}) and ({u2:.0f}, {v2:.0f})."
     )

@@ -11,7 +11,7 @@ from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.cube import draw_tower
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, LENS, MUTED, WORLD
 
 _BOARD, _TRUE, _POSE = course.board(), course.camera(), course.poses()[0]
 _SIZE, _ALPHA = (640, 480), 800.0
@@ -36,6 +36,8 @@ def stands_model() -> Model:
         panel = paper.picture_panel((440, 330), _SIZE, "a cube on its squares: pull it")
         panel.image(photograph())
         draw_net(panel, camera.project(_BOARD.points), _BOARD, ESTIMATED, 1)
+        squares = np.column_stack([_BASE, 0 * _BASE[:, 0]])[[0, 1, 2, 3, 0]]
+        panel.line(_TRUE.moved(_POSE).project(squares), WORLD, 3)
         draw_tower(panel, camera, _BASE, _SIDE, windows=False)
         foot = camera.project([*_BASE.mean(axis=0), 0])
         panel.grip("cube", "the cube, to be pulled onto its squares", foot, 4)

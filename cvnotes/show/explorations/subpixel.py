@@ -78,7 +78,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         )
     ):
         key = true + [-0.92 * _NEAR, (-0.9 + 0.11 * row) * _NEAR]
-        close.mark([at, key], meaning, 9)
+        shown = np.clip(at, true - 0.97 * _NEAR, true + 0.97 * _NEAR)  # farther: at the rim
+        close.mark([shown, key], meaning, 9)
         close.text(key + [0.008, 0], name, ink, size=12)
     return Drawing(paper.join((panel, close)), _sentence(true, found))
 

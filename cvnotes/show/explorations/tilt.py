@@ -80,11 +80,14 @@ def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
     picture.line([[0, 0.74 * h], [w, 0.74 * h]], MUTED, 0.8)
     _draw_side(picture, lenses, (lenses.away, tilt), (near, turned))
     misfit = lenses.misfit(tilt)
-    sentence = f"Tilted by {tilt:.0f}° the two pictures differ by {misfit:.1f} px (RMS): "
+    sentence = (
+        f"Tilted by {tilt:.0f}° the two pictures differ by {misfit:.1f} px (RMS of a corner): "
+    )
     if not tilt:
         sentence += "no picture of this board tells the one lens from the other."
     else:
-        sentence += f"with corners good to 0.1 px that is {misfit / 0.1:.2g} times the noise."
+        times = misfit / (np.sqrt(2) * 0.1)
+        sentence += f"{times:.2g} times what noise of 0.1 px along each axis makes of one."
     return Drawing(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
 
 

@@ -128,4 +128,6 @@ def _sentence(at: tuple[int, int], window: Window) -> str:
     if np.isnan(window.crossing).any():
         return f"{said}one is large, this is an edge."
     u, v = window.crossing
-    return f"{said}both are large, this is a corner. The votes cross at ({u:.2f}, {v:.2f})."
+    inside = max(abs(u - at[0]), abs(v - at[1])) <= _HALF
+    what = "this is a corner" if inside else "a corner is near, outside of the window"
+    return f"{said}both are large, {what}. The votes cross at ({u:.2f}, {v:.2f})."
