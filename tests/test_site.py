@@ -183,12 +183,14 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
     assert long
     assert min(long) > -1  # px: what is left of a box cannot be scrolled to
     telephone.goto((site / "notebooks" / "08_image_warping.html").as_uri())
-    for figure in telephone.locator("img[data-panels]").all():  # fetched when they come into sight
-        figure.evaluate("image => image.parentElement.scrollIntoView()")
-    telephone.wait_for_function(
-        "document.querySelectorAll('img[data-panels]').length"
-        " === document.querySelectorAll('.panels').length",
+    telephone.wait_for_function(  # figures are fetched when they come into sight
+        """() => {
+            const figures = [...document.querySelectorAll("img[data-panels]")];
+            figures.find((image) => !image.complete)?.parentElement.scrollIntoView();
+            return figures.length === document.querySelectorAll(".panels").length;
+        }""",
         timeout=60_000,
+        polling=100,
     )
     stacks = telephone.evaluate(
         """() => [...document.querySelectorAll(".panels")].map((stack) =>

@@ -215,7 +215,7 @@ def intrinsics_from_vanishing_points(v: npt.ArrayLike) -> Array:
     """
     if isinstance(v, np.ndarray) and v.dtype.kind == "f" and np.isnan(v).any():
         raise DegenerateError(
-            "v contains NaN: edges that are parallel in the picture have their vanishing point at "
+            "v contains NaN or infinite values: edges that are parallel in the picture meet at "
             "infinity; tilt the camera until no edge is parallel to the sensor"
         )
     v = matrix(v, "v", 3, 2)
