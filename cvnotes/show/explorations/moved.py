@@ -77,18 +77,21 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     G, who = between(values["photo"]), values["who"] / 100
     space = paper.panel(_SIZE, *_range(), "space: camera and board")
     border, squares = paper_and_squares(board)
-    for each in _poses():
-        camera, of_board = stands(each, who)
+    every = [stands(each, who) for each in _poses()]
+    for _, of_board in every:
         space.line(on_sheet(move(of_board, border))[[0, 1, 2, 3, 0]], _PALE, 0.8)
-        _draw_camera(space, own.moved(inverse(camera)), _PALE_BLUE, 1)
     camera, of_board = stands(G, who)
     sheet = on_sheet(move(of_board, border))
     space.polygons(sheet[None], "#FBFBF8")
     space.line(sheet[[0, 1, 2, 3, 0]], MUTED, 1.2)
     space.polygons(on_sheet(move(of_board, squares)), _INK)
+    for one, _ in every:
+        _draw_camera(space, own.moved(inverse(one)), _PALE_BLUE, 1)
+    for corner in sheet:  # a pyramid that moves, and keeps its form
+        space.line([on_sheet(camera[:3, 3]), corner], CAMERA, 1)
     _draw_camera(space, own.moved(inverse(camera)), CAMERA, 2.5)
     picture = paper.picture_panel(_PICTURE, own.size, "what the camera sees")
-    draw_board(picture, own.moved(G), board)
+    draw_board(picture, own.moved(chain(inverse(camera), of_board)), board)
     return Drawing(paper.join((space, picture)), _sentence(values, camera, of_board))
 
 
