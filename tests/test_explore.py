@@ -534,6 +534,21 @@ def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_take
         assert (off[~grey] < 30).mean() > 0.9  # but for the lines and the mark
 
 
+@pytest.mark.parametrize("values", [{}, {"angle_y": 12}, {"angle_y": -12}, {"turned": 100}])
+def test_epipolar_lines_cross_both_pictures_from_border_to_border(values):
+    picture = MODELS["rectification"].picture(**values).astype(int)[TITLE : TITLE + 246]
+    orange = np.abs(picture - colour(ESTIMATED)).max(axis=2) < 60
+    for k in (0, 1):
+        panel = orange[:, MARGIN + k * 334 :][:, :328]
+        for border in (panel[:, 3:40], panel[:, -40:-3]):
+            assert ndimage.label(border)[1] >= 5
+
+
+def test_the_lenses_differ_by_so_many_times_what_noise_makes_of_a_corner():
+    _, misfit, times, *_ = numbers(MODELS["tilt"].drawing(tilt=30).sentence)
+    assert times == pytest.approx(misfit / np.hypot(0.1, 0.1), rel=0.03)
+
+
 def test_no_more_pixels_are_folds_than_are_covered():
     for angle in (0, 30):
         holes, covered, folds = numbers(MODELS["warp"].drawing(angle=angle, zoom=0.5).sentence)[:3]
@@ -642,6 +657,14 @@ def test_a_window_on_a_ramp_votes_along_it_and_one_on_a_corner_for_the_corner():
     corner = window_at(gradients, (20, 20))
     assert np.allclose(corner.eigenvalues, [6 * 60**2, 6 * 80**2])
     assert np.allclose(corner.crossing, [18, 22])
+
+
+def test_a_corner_beside_the_window_is_not_in_it():
+    said = {
+        at: MODELS["votes"].drawing(u=at[0], v=at[1]).sentence for at in ((350, 213), (348, 217))
+    }
+    assert ["this is a corner" in sentence for sentence in said.values()] == [True, False]
+    assert ["outside of the window" in sentence for sentence in said.values()] == [False, True]
 
 
 def test_the_votes_of_the_photograph_cross_at_the_true_corner_and_nowhere_else():

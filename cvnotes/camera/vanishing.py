@@ -190,7 +190,8 @@ def intrinsics_from_vanishing_points(v: npt.ArrayLike) -> Array:
     Raises
     ------
     DegenerateError
-        The three points lie on a line, or their triangle has an angle of 90° or more.
+        The three points lie on a line, one is at infinity, or their triangle has an angle of 90°
+        or more.
 
     Notes
     -----

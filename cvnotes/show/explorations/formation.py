@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, Lens, intrinsics, look_at, move
+from cvnotes.camera import Camera, Lens, intrinsics, look_at, move, xy_from_px
 from cvnotes.pictures.meshes import box, outlined
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
@@ -94,8 +94,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_border(plane, camera)
     M = move(camera.G, W)
     xy = M[:2] / M[2] if M[2] > 0 else np.full(2, np.nan)
-    m = camera.project(W)
-    on_plane = (m - camera.A[:2, 2]) / np.diag(camera.A)[:2]
+    m, on_plane = camera.project(W), _sensed(camera, W)
     if bent:
         for face, _ in _unhidden(_Scene.of(Camera(camera.A, camera.G), W).faces):
             plane.line(face, MUTED, 1, dash=3)
@@ -131,8 +130,7 @@ class _Scene(NamedTuple):
     def of(cls, camera: Camera, corner: Array) -> "_Scene":
         faces = _faces(corner)
         light, dark = (_on_plane(camera, tiles) for tiles in _tiles())
-        horizon = camera.project(_HORIZON)
-        horizon = (horizon - camera.A[:2, 2]) / np.diag(camera.A)[:2]
+        horizon = _sensed(camera, _HORIZON)
         shadow = _on_plane(camera, faces - faces[..., 1:2] * _LIGHT)
         return cls((light, dark), shadow, _on_plane(camera, faces), horizon)
 
@@ -152,6 +150,11 @@ def _on_plane(camera: Camera, corners: Array) -> list[Array]:
     most = min(0.999 * camera.lens.max_radius, _WIDEST)
     xy = xy * np.minimum(1, most / np.linalg.norm(xy, axis=1).clip(1e-12))[:, None]
     return np.split(camera.lens.distort(xy), ends)
+
+
+def _sensed(camera: Camera, W: Array) -> Array:
+    """Return where (..., 2) on z = 1 points come to lie behind the lens; NaN without an image."""
+    return np.asarray((camera.project(W) - camera.A[:2, 2]) / np.diag(camera.A)[:2])
 
 
 def _before(M: Array) -> Array:
@@ -181,7 +184,7 @@ def _tiles() -> tuple[Array, Array]:
 
 
 def _draw_above(panel: Panel, seen: Seen, camera: Camera, corner: Array) -> None:
-    """Draw box and camera from above, and how much of the world the camera sees."""
+    """Draw box and camera from above, and what the row of the principal point sees."""
     v0 = camera.A[1, 2]
     sides = camera.ray([[-0.5, v0], [camera.size[0] - 0.5, v0]])
     panel.polygons(seen(camera.centre + 4000 * np.array([[0, 0, 0], *sides]))[None], _WEDGE)
@@ -246,7 +249,7 @@ def _take_hold(world: Panel, camera: Camera, corner: Array) -> None:
 def _draw_border(plane: Panel, camera: Camera) -> None:
     """Draw what of the plane z = 1 the sensor covers, which the lens does not change."""
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * camera.size - 0.5
-    plane.line((corners - camera.A[:2, 2]) / np.diag(camera.A)[:2], CAMERA, 2)
+    plane.line(xy_from_px(camera.A, corners), CAMERA, 2)
 
 
 def _follow(panel: Panel, at: Array, form: str) -> str:

@@ -25,8 +25,6 @@ from cvnotes.show.style import CAMERA, MUTED
 _SIZE, _PICTURE = (440, 330), (380, 285)  # px
 _LAST = 11  # of the twelve photographs, counted from 0
 _CONE, _PALE, _PALE_BLUE, _INK = 110.0, "#C9C9C9", "#BFDFF4", "#262629"
-
-
 # Seen from above and behind the camera: x to the right, y down, z away.
 _VIEW = rotation_from_vector([0.45, 0, 0]) @ rotation_from_vector([0, 0.5, 0])
 

@@ -30,15 +30,7 @@ _INFINITE = 1e9  # px
 def rectification_model() -> Model:
     """Make the model of the two cameras of chapter 8, which turn."""
     settings = (
-        Setting(
-            "turned",
-            "turned (%)",
-            0,
-            100,
-            1,
-            0,
-            "how much of the way to the attitude that both share",
-        ),
+        Setting("turned", "turned (%)", 0, 100, 1, 0, "how far to the attitude that both share"),
         Setting("u", "u (px)", 60, 620, 1, 451, "a pixel of the first picture as it was taken"),
         Setting("v", "v (px)", 30, 450, 1, 207, "and its row"),
         *(

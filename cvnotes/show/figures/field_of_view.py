@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+_OWN = (CAMERA, LENS, IDEAL, WORLD, ESTIMATED)
+_WALL, _BACK = 10_000, 400  # mm, from the camera to the room's far wall, and what is behind it
+
+
 def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = None) -> "Axes":
     """Draw the course's room from above, what each camera sees of it, and the pictures below.
 
@@ -63,10 +67,6 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
     ax.set(xlim=(-_BACK - 100, _WALL + 100), ylim=(span[2] + 100, -3100), aspect="equal")
     ax.axis("off")
     return ax
-
-
-_OWN = (CAMERA, LENS, IDEAL, WORLD, ESTIMATED)
-_WALL, _BACK = 10_000, 400  # mm, from the camera to the room's far wall, and what is behind it
 
 
 def _sides(camera: Camera) -> Array:
