@@ -416,13 +416,14 @@ def test_the_wall_is_measured_by_the_four_corners_that_are_given():
                                  for W, (u, v) in zip(corners[:, :2], m, strict=True)])  # fmt: skip
         H = np.append(np.linalg.solve(matrix, m.ravel()), 1).reshape(3, 3)
         x, y, w = np.linalg.solve(H, [259, 285, 1])
-        at, said = np.array([x, y]) / w, numbers(model.drawing(**nudge).sentence)
+        at = np.array([x, y]) / w
+        said = numbers(model.drawing(**nudge, u=259, v=285).sentence)
         assert np.abs(at - said[:2]).max() < 0.51
     # Straight on, the switch's plate is a square of 80 mm about (−330, 470).
     straight = model.picture()[TITLE:, 372 + 6 + MARGIN :].astype(int)
     u, v = np.rint((mm - [-440, -70]) * 346 / 900).astype(int)
-    wall, around = straight[v - 60, u], straight[v - 24 : v + 25, u - 24 : u + 25]
-    rows, columns = np.nonzero(np.abs(around - wall).max(axis=-1) > 12)
+    wall, around = straight[v - 60, u], straight[v - 18 : v + 19, u - 18 : u + 19]
+    rows, columns = np.nonzero((around - wall).min(axis=-1) > 8)  # paler than the wall
     assert np.ptp(columns) == pytest.approx(80 * 346 / 900, abs=2.5)
     assert np.ptp(rows) == pytest.approx(80 * 346 / 900, abs=2.5)
 
@@ -439,6 +440,23 @@ def test_what_is_measured_on_the_wall_scatters_as_it_is_said_to():
             x, y, w = np.linalg.solve(H, [*at, 1])
             places.append([x / w, y / w])
         assert said[2:] == pytest.approx(np.std(places, axis=0), rel=0.08, abs=0.06)
+
+
+def test_lines_of_equal_standard_deviation_run_where_the_wall_is_known_so_well():
+    model = MODELS["homography"]
+    picture = model.picture()[TITLE:, 372 + 6 + MARGIN :].astype(int)
+    orange = picture[..., 0] - picture[..., 2] > 60
+    m = np.array([grip.at for grip in model.drawing().grips if "corner" in grip.name])
+    H = dlt(np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * [420, 594], m)
+    for mm in ([-100, 470], [-20, 300], [-250, 60]):  # along the row the lines of 1.5, 2 and 3 mm
+        row = round((mm[1] + 70) * 279 / 725.72)
+        u, v, w = H @ [*mm, 1]
+        sigma = np.hypot(*numbers(model.drawing(u=round(u / w), v=round(v / w)).sentence)[2:])
+        crossed = np.flatnonzero(orange[row, : round(440 * 346 / 900)])
+        # Going left from the chart one line after the other is crossed.
+        right = crossed[crossed > (mm[0] + 440) * 346 / 900]
+        lines = 1 + np.count_nonzero(np.diff(right) > 3) if right.size else 0
+        assert lines == np.count_nonzero(np.array([1.5, 2, 3]) < sigma)
 
 
 def test_error_bars_grow_with_the_noise_and_shrink_with_the_views():
@@ -1082,8 +1100,40 @@ def test_whoever_moved_the_picture_stays_and_both_motions_are_those_of_the_poses
         assert np.allclose(np.linalg.inv(camera) @ of_board, G, atol=1e-9)
         if photo == int(photo):
             assert np.allclose(G, poses[photo], atol=1e-9)
-    pictures = [MODELS["moved"].picture(photo=6, who=who)[:, 449:] for who in (0, 50, 100)]
-    assert (pictures[0] == np.array(pictures)).all()
+    pictures = [MODELS["moved"].picture(photo=6, who=who) for who in (0, 50, 100)]
+    assert (pictures[0][:, 449:] == np.array(pictures)[:, :, 449:]).all()
+    # The floor stands still, whoever moves; boards, cameras and the shadow hide little of it.
+    tiles = [picture[:, :446, 0].astype(int) - picture[:, :446, 2] > 14 for picture in pictures]
+    assert np.logical_and.reduce(tiles).sum() > 0.85 * max(tile.sum() for tile in tiles) > 1000
+    # With the wall in it the photograph does tell.
+    walls = [MODELS["moved"].picture(photo=6, who=who, wall=1)[:, 449:] for who in (0, 50, 100)]
+    assert min((walls[0] != other).any(axis=-1).mean() for other in walls[1:]) > 0.02
+
+
+def test_on_its_way_the_box_turns_with_the_world_and_then_runs_along_its_rays():
+    draw = MODELS["formation"].picture
+    ways = {way: draw(way=way).astype(int) for way in (0, 1, 1.5, 2)}
+    top, left = TITLE, 410 + 6 + MARGIN
+    panels = {way: picture[top : top + 270, left : left + 410] for way, picture in ways.items()}
+    # At the start it is the first panel, but for the axes and what is pulled.
+    first = ways[0][top : top + 270, MARGIN : MARGIN + 410]
+    green = [(panel[..., 1] - panel[..., 0] > 120).nonzero() for panel in (first, panels[0])]
+    assert np.allclose(*(np.median(each, axis=1) for each in green), atol=1)
+    # The camera of the start, by hand: turned by 30° to the left, then down by 20°.
+    turn = rotation_from_vector([0, np.radians(30), 0])
+    R = rotation_from_vector([np.radians(20), 0, 0]) @ turn
+    x, _, z = R @ (np.array([200, -125, 0]) - [340, -255, -420])
+    for way, (at_x, at_z) in {
+        1: (x, z),
+        1.5: np.array([x, z]) * (1 + 250 / z) / 2,
+        2: (250 * x / z, 250),
+    }.items():
+        u, v = (at_x + 608) / 1216 * 410, (690 - at_z) / 800 * 270
+        cross = panels[way][round(v) - 4 : round(v) + 5, round(u) - 4 : round(u) + 5]
+        assert (cross[..., 0] - cross[..., 2] > 100).sum() > 25
+    # A point that runs along its ray has its image where it was.
+    below = [picture[top + 270 + 6 :] for picture in ways.values()]
+    assert all(np.array_equal(below[0], each) for each in below[1:])
 
 
 @pytest.mark.parametrize(

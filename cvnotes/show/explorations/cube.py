@@ -83,7 +83,7 @@ def cube_model() -> Model:
         at = camera.project([*foot, 0])
         panel.grip("foot", "the foot of the tower", at, 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
-        plan = paper.panel((400, 405), (-140, 334), (-60, 420), "the same from above")
+        plan = paper.panel((400, 405), (-155, 349), (-88, 422), "the same from above")
         _draw_plan(plan, base)
         off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1)
         return Drawing(paper.join((panel, plan)), _sentence(foot, at, h, off, bool(values["lens"])))

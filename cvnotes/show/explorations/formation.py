@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, Lens, intrinsics, look_at, move, xy_from_px
+from cvnotes.camera import Camera, Lens, intrinsics, inverse, look_at, move, xy_from_px
 from cvnotes.pictures.meshes import box, outlined
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.moved import part_of
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, hexed, rgb
 
@@ -17,6 +18,9 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, hexed, rg
 Seen = Callable[[Array], Array]
 
 _SIZE, _PICTURE = (410, 270), (360, 270)  # px, of a panel
+_ABOVE = np.array([[-400.0, 816], [250, -550]])  # mm, X and Z of the panel of the world
+_FRAME = np.array([[-608.0, 608], [690, -110]])  # mm, x and z of that of the camera's frame
+_PLANE = 250.0  # mm: where z = 1 is drawn
 _HEIGHT, _BACK = 125.0, 80.0  # mm, of the box, and Z of its far side; Y is 0 on the floor
 _EYE, _TILT = -255.0, 20.0  # mm, Y of the camera; degrees that it looks down
 _TILE, _REACH = 150.0, 1500.0  # mm: a tile, and how far there are tiles
@@ -41,7 +45,11 @@ def formation_model() -> Model:
         Setting("k1", "k₁ of the lens", -0.25, 0.25, 0.01, 0, "how strongly the lens bends"),
         Setting("width", "the cross: X (mm)", 60, 400, 5, 200, corner),
         Setting("front", "the cross: Z (mm)", -100, 70, 5, 0, corner),
-    )
+        Setting(
+            "way", "panel 2: the way", 0, 2, 0.05, 1,
+            "0: the world; 1: the camera's frame; 2: the box divided by z",
+        ),
+    )  # fmt: skip
     about = (
         "A box on a floor, four times: from above in the world, with a camera; from above in the "
         "camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the "
@@ -76,15 +84,12 @@ def corner_of(values: Values) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     camera, W = camera_of(values), corner_of(values)
     bent = not camera.lens.is_ideal
-    world = paper.panel(
-        _SIZE, (-400, 816), (250, -550), "the world, from above: pull camera and cross"
-    )
+    (x0, x1), (y0, y1) = _ABOVE
+    world = paper.panel(_SIZE, (x0, x1), (y0, y1), "the world, from above: pull camera and cross")
     _draw_above(world, lambda W: W[..., [0, 2]], camera, W)
-    _draw_axes(world, max(150, W[0] + 70), WORLD, "XZ")
+    _draw_axes(world, max(150, W[0] + 70), WORLD, "XZ", lambda ends: ends[..., [0, 2]])
     _take_hold(world, camera, W)
-    frame = paper.panel(_SIZE, (-608, 608), (690, -110), "1. G: the camera's frame, along its y")
-    _draw_above(frame, lambda W: move(camera.G, W)[..., [0, 2]], camera, W)
-    _draw_axes(frame, 150, CAMERA, "xz")
+    frame, at = _draw_frame(paper, camera, W, values["way"])
     steps = "2. ÷ z, 3. lens" if bent else "2. ÷ z"
     plane = paper.panel(_SIZE, (-0.68, 0.68), (-0.448, 0.448), f"{steps}: the plane z = 1")
     picture = paper.picture_panel(_PICTURE, camera.size, f"{3 + bent}. A: the picture")
@@ -100,12 +105,52 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             plane.line(face, MUTED, 1, dash=3)
         plane.line([xy, on_plane], ESTIMATED, 2)
         plane.mark(xy, "ideal", 5)
-    followed = (world, W, "{:.0f}"), (frame, M, "{:.0f}"), (plane, on_plane, "{:.3f}")
-    said = [_follow(*one) for one in (*followed, (picture, m, "{:.1f}"))]
+    said = _written(W, 0), _written(M, 0), _written(on_plane, 3), _written(m, 1)
+    on_the_way = {0.0: said[0], 1.0: said[1], 2.0: _written(xy, 3)[:-1] + ", 1)"}
+    _follow(world, W[[0, 2]], said[0])
+    _follow(frame, at, on_the_way.get(values["way"], ""), up=16 if values["way"] == 2 else 0)
+    _follow(plane, on_plane, said[2])
+    _follow(picture, m, said[3])
     return Drawing(paper.join((world, frame), (plane, picture)), _sentence(said, M, xy, m, bent))
 
 
-def _sentence(said: list[str], M: Array, xy: Array, m: Array, bent: bool) -> str:
+def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Panel, Array]:
+    """Draw the box on its way; returns where the corner is: (2,).
+
+    The world turns into the camera's frame; then the box runs along its rays onto the plane z = 1,
+    which is drawn `_PLANE` mm before the camera.
+    """
+    turned, slid = min(way, 1.0), max(way - 1.0, 0.0)
+    G = part_of(camera.G, turned)
+    x, y = (1 - turned) * _ABOVE + turned * _FRAME
+    steps = "from the world to the camera's frame", "÷ z: along the rays onto one plane"
+    title = "1. G: the camera's frame, along its y" if way == 1 else steps[int(way > 1)]
+    frame = paper.panel(_SIZE, (x[0], x[1]), (y[0], y[1]), title)
+
+    def seen(W: Array) -> Array:
+        return move(G, W)[..., [0, 2]]
+
+    def on_the_way(W: Array) -> Array:
+        M = move(G, W)
+        z = M[..., 2:].clip(_NEAR)
+        return (M * (1 - slid + slid * _PLANE / z))[..., [0, 2]]
+
+    _draw_above(frame, seen, camera, W)
+    _draw_axes(frame, 150, CAMERA, "xz", lambda ends: seen(move(inverse(camera.G), ends)))
+    if slid:
+        faces = _faces(W)
+        corners = faces[:2].reshape(-1, 3)
+        frame.segments(np.stack([0 * seen(corners), seen(corners)], axis=1), MUTED, 0.7)
+        _draw_faces(frame, list(seen(faces)), turn=-1)
+        v0 = camera.A[1, 2]
+        sides = camera.ideal([[-0.5, v0], [camera.size[0] - 0.5, v0]])[:, 0]
+        frame.line(np.column_stack([_PLANE * sides, [_PLANE, _PLANE]]), CAMERA, 3)
+        frame.line(on_the_way(corners)[np.argsort(on_the_way(corners)[:, 0])][[0, -1]], WORLD, 4)
+        _draw_faces(frame, list(on_the_way(faces)), turn=-1)
+    return frame, on_the_way(W)
+
+
+def _sentence(said: tuple[str, ...], M: Array, xy: Array, m: Array, bent: bool) -> str:
     if np.isnan(m).any():
         why = "behind the camera" if M[2] <= 0 else "farther aside than the lens shows anything"
         return f"W = {said[0]} mm. G makes {said[1]} of it, {why}: it has no image."
@@ -229,10 +274,10 @@ def _unhidden(faces: Sequence[Array], turn: int = 1) -> Iterator[tuple[Array, fl
             yield face, shade
 
 
-def _draw_axes(panel: Panel, length: float, colour: str, names: str) -> None:
-    for tip, name in zip(np.diag([length, 170]), names, strict=True):
-        panel.line(np.stack([0 * tip, tip]), colour, 2.5)
-        panel.text(tip + 26 * np.sign(tip), name, colour, anchor="mm", size=13)
+def _draw_axes(panel: Panel, length: float, colour: str, names: str, seen: Seen) -> None:
+    for tip, name in zip(np.diag([length, 0, 170])[[0, 2]], names, strict=True):
+        panel.line(seen(np.stack([0 * tip, tip])), colour, 2.5)
+        panel.text(seen(tip + 26 * np.sign(tip)), name, colour, anchor="mm", size=13)
 
 
 def _take_hold(world: Panel, camera: Camera, corner: Array) -> None:
@@ -252,14 +297,15 @@ def _draw_border(plane: Panel, camera: Camera) -> None:
     plane.line(xy_from_px(camera.A, corners), CAMERA, 2)
 
 
-def _follow(panel: Panel, at: Array, form: str) -> str:
+def _written(x: Array, digits: int) -> str:
+    return f"({', '.join(f'{number:.{digits}f}' for number in x + 0.0)})".replace("-", "−")
+
+
+def _follow(panel: Panel, place: Array, words: str, up: float = 0) -> None:
     """Mark the corner that is followed, and write its numbers beside it."""
-    words = f"({', '.join(form.format(x) for x in at + 0.0)})".replace("-", "−")
-    place = at[[0, -1]]  # from above, x and z
     panel.mark(place, "estimated", 8)
     low, high = np.sort([panel.x, panel.y]).T
     if ((place >= low) & (place <= high)).all():
         side = 1 if high[0] - place[0] > 120 * panel.pixel else -1
-        beside = place + [14 * side * panel.pixel, 0]
+        beside = place + np.array([14 * side, up]) * panel.pixel
         panel.text(beside, words, ESTIMATED, anchor="lm" if side > 0 else "rm", size=12)
-    return words

@@ -12,17 +12,17 @@ from cvnotes.pictures import chart_room, course, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, WORLD
+from cvnotes.show.style import ESTIMATED, IDEAL, WORLD, rgb
 from cvnotes.warping import rectify_plane
 
 _PICTURE, _SHOWN, _SIZE = (640, 480), (372, 279), (346, 279)  # px
 _NAMES = ("top left", "top right", "bottom right", "bottom left")
 _CHART = np.array([[0.0, 0], [420, 0], [420, 594], [0, 594]])  # mm, a sheet of A2
 _READ = np.array([[343.0, 44], [522, 13], [508, 462], [342, 381]])  # px, its corners as read off
-_SWITCH = np.array([259.0, 285])  # px
+_PLUS = (450, 240)  # px, where the plus begins: on the chart
 _REGION = (-440.0, 460.0), (-70.0, 655.72)  # mm of the wall, x and y: as wide and high as _SIZE
-_ENLARGED = 10  # times the standard deviations, so that they are seen
+_SHORES = (1, 1.5, 2, 3, 5, 10, 20)  # mm, standard deviations of a place
+_CELLS, _LABELLED = (32, 26), 7  # of the wall, where they are computed; the row that is labelled
 _GRID = np.arange(-700, 701, 100)  # mm
 
 
@@ -38,12 +38,12 @@ def homography_model() -> Model:
     )  # fmt: skip
     settings += tuple(
         Setting(name, f"plus {name} (px)", 0, most, 1, start, "where the plus is, in the picture")
-        for name, most, start in zip("uv", _PICTURE, _SWITCH.tolist(), strict=True)
+        for name, most, start in zip("uv", _PICTURE, _PLUS, strict=True)
     )
     about = (
         "A wall at a slant, with a chart whose four corners are marked, and the millimetres of the "
         "wall as the homography of these corners lays them; beside it the wall seen straight on. "
-        "A ring is around what is measured."
+        "Lines upon it tell how well a place is known."
     )
 
     def corner(i: int) -> Drag:
@@ -75,13 +75,12 @@ def _shown(sharpness: int) -> Drawn:
 def _draw(paper: Paper, values: Values) -> Drawing:
     m = _READ + [[values[f"du{i}"], values[f"dv{i}"]] for i in range(1, 5)]
     H, plus = dlt(_CHART, m), np.array([values["u"], values["v"]])
-    place, std, around = _measured(np.append(m, plus))
+    place, covariance = measured(m, plus)
     picture = paper.picture_panel(_SHOWN, _PICTURE, "the wall, and its squares of 100 mm")
     picture.image(_shown(paper.sharpness))
     _draw_grid(picture, H)
     _draw_horizon(picture, H)
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 2.4)
-    picture.line(from_homogeneous(to_homogeneous(around) @ H.T), ESTIMATED, 2)
     picture.mark(plus, "ideal", 8)
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):
@@ -89,33 +88,56 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         aside = np.clip(at + 22 * np.sign(at - m.mean(axis=0)), 16, np.subtract(_PICTURE, 16))
         picture.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
     picture.grip("plus", "the plus, whose place on the wall is measured", plus, 1)
-    straight = paper.panel(_SIZE, *_REGION, "straight on; the ring is ten times the ±")
+    straight = paper.panel(_SIZE, *_REGION, "straight on: where σ is 1 mm, 1.5, 2 …")
     (X0, X1), (Y0, Y1) = _REGION
     pixel = (X1 - X0) / (_SIZE[0] * paper.sharpness)
     wall = rectify_plane(photograph(), H, ((X0, Y0), (X1, Y1)), pixel, fill=255)
-    straight.image(wall.astype(np.uint8))
+    _draw_shores(straight, wall, m, H)
     straight.line(_CHART[[0, 1, 2, 3, 0]], WORLD, 1.5, dash=5)
-    straight.line(around, ESTIMATED, 2)
     straight.mark(place, "ideal", 8)
-    return Drawing(paper.join((picture, straight)), _sentence(place, std))
+    return Drawing(paper.join((picture, straight)), _sentence(place, np.sqrt(np.diag(covariance))))
 
 
-def _measured(x: Array) -> tuple[Array, Array, Array]:
-    """Measure on the wall what a pixel shows, by pixels (10,) of the four corners and itself.
+def measured(m: Array, pixels: Array) -> tuple[Array, Array]:
+    """Measure on the wall what pixels (..., 2) show, by the pixels (4, 2) of the four corners.
 
-    Returns its place (2,) in mm, the standard deviations (2,) if all are read to whole pixels, and
-    an ellipse (n, 2) that is `_ENLARGED` times as large.
+    Returns places (..., 2) in mm, and their covariances (..., 2, 2) if all are read to whole
+    pixels: 1/√12 px as a root mean square.
     """
 
     def place(x: Array) -> Array:
         H = dlt(_CHART, x[:8].reshape(4, 2))
-        return np.asarray(from_homogeneous(np.linalg.solve(H, [*x[8:], 1])))
+        return from_homogeneous(to_homogeneous(pixels + x[8:]) @ np.linalg.inv(H).T)
 
-    J = numerical_jacobian(place, x)
-    covariance = J @ J.T / 12  # of rounding to whole pixels: 1/√12 px as a root mean square
-    size, axes = np.linalg.eigh(covariance)
-    around = place(x) + _ENLARGED * circle(49) * np.sqrt(size.clip(0)) @ axes.T
-    return place(x), np.sqrt(np.diag(covariance)), around
+    x = np.append(m, [0, 0])
+    J = numerical_jacobian(place, x).reshape(*pixels.shape, 10)
+    return place(x), J @ np.swapaxes(J, -1, -2) / 12
+
+
+def _draw_shores(panel: Panel, wall: Image, m: Array, H: Array) -> None:
+    """Draw the wall, and on it lines of equal standard deviation."""
+    (X0, Y0), (X1, Y1) = np.transpose(_REGION)
+    columns, rows = _CELLS
+    X = X0 + (X1 - X0) * (np.arange(-1, columns + 1) + 0.5) / columns
+    Y = Y0 + (Y1 - Y0) * (np.arange(-1, rows + 1) + 0.5) / rows
+    seen = to_homogeneous(np.stack(np.meshgrid(X, Y), axis=-1)) @ H.T
+    _, covariance = measured(m, seen[..., :2] / seen[..., 2:])
+    std = np.sqrt(np.trace(covariance, axis1=-2, axis2=-1))
+    std[seen[..., 2] * (H @ [210, 297, 1])[2] <= 0] = 1e6  # behind the camera
+    height = np.log(std.clip(1e-3, 1e6)).astype(np.float32)
+    inside = (1, 1, columns + 1, rows + 1)
+    fine = np.asarray(
+        Bitmap.fromarray(height).resize(wall.shape[1::-1], Bitmap.Resampling.BICUBIC, inside)
+    )
+    steep = np.hypot(*np.gradient(fine)).clip(1e-9)
+    width = wall.shape[1] / _SIZE[0]
+    off = np.min([np.abs(fine - np.log(shore)) for shore in _SHORES], axis=0) / steep
+    ink = np.rint(3 * np.clip(width - off, 0, 1))[..., None] / 3  # few colours pack small
+    panel.image(((1 - ink) * wall + ink * 255 * np.array(rgb(ESTIMATED))).astype(np.uint8))
+    for shore in _SHORES:
+        crossed = np.flatnonzero(np.diff(np.sign(height[_LABELLED] - np.log(shore))))
+        if crossed.size:
+            panel.text([X[crossed[0]], Y[_LABELLED]], f"{shore:g}", ESTIMATED, anchor="mm", size=11)
 
 
 def _draw_grid(panel: Panel, H: Array) -> None:

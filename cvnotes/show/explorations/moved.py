@@ -1,6 +1,7 @@
 """Explore who moved: twelve photographs of a board, by a board that moves or by a camera."""
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +25,9 @@ from cvnotes.show.style import CAMERA, MUTED
 
 _SIZE, _PICTURE = (440, 330), (380, 285)  # px
 _LAST = 11  # of the twelve photographs, counted from 0
-_CONE, _PALE, _PALE_BLUE, _INK = 110.0, "#C9C9C9", "#BFDFF4", "#262629"
+_CONE, _TILE, _BEYOND = 110.0, 100, 1000  # mm
+_PALE, _PALE_BLUE, _INK = "#C9C9C9", "#BFDFF4", "#262629"
+_TILES, _WALL, _SHADOW = "#DAD1C2", "#BFD3C4", "#E3DED6"
 # Seen from above and behind the camera: x to the right, y down, z away.
 _VIEW = rotation_from_vector([0.45, 0, 0]) @ rotation_from_vector([0, 0.5, 0])
 
@@ -39,12 +42,26 @@ def moved_model() -> Model:
     settings = (
         Setting("photo", "photograph", 0, _LAST, 0.1, 6, "which photograph; the way between two"),
         Setting("who", "who moves (%)", 0, 100, 1, 0, "0: the board alone; 100: the camera alone"),
+        Setting("wall", "the wall in it", 0, 1, 1, 0, "whether the photograph shows the wall, too"),
     )
     about = (
         "A board and a camera in space, where they stood for twelve photographs, if the board "
-        "moved, the camera, or both; and the photograph, which is the same for all of these."
+        "moved, the camera, or both; and the photograph, where the board is the same for all these."
     )
     return Model("moved", about, settings, _draw)
+
+
+class _Room(NamedTuple):
+    """Lines (n, 2, 3) of floor and wall, how low the floor is, and what the panel shows.
+
+    The wall goes on beyond the panel; of that the photograph shows some.
+    """
+
+    floor: Array
+    wall: Array
+    beyond: Array
+    low: float
+    shown: tuple[tuple[float, float], tuple[float, float]]
 
 
 @lru_cache(maxsize=1)
@@ -73,13 +90,18 @@ def stands(G: Array, who: float) -> tuple[Array, Array]:
 def _draw(paper: Paper, values: Values) -> Drawing:
     board, own = course.board(), pinhole(course.camera())
     G, who = between(values["photo"]), values["who"] / 100
-    space = paper.panel(_SIZE, *_range(), "space: camera and board")
+    room = _room()
+    space = paper.panel(_SIZE, *room.shown, "space: camera and board, in a room")
     border, squares = paper_and_squares(board)
+    space.segments(on_sheet(room.wall), _WALL, 0.8)
+    space.segments(on_sheet(room.floor), _TILES, 0.8)
     every = [stands(each, who) for each in _poses()]
     for _, of_board in every:
         space.line(on_sheet(move(of_board, border))[[0, 1, 2, 3, 0]], _PALE, 0.8)
     camera, of_board = stands(G, who)
-    sheet = on_sheet(move(of_board, border))
+    there = move(of_board, border)
+    space.polygons(on_sheet(there * [1, 0, 1] + [0, room.low, 0])[None], _SHADOW)
+    sheet = on_sheet(there)
     space.polygons(sheet[None], "#FBFBF8")
     space.line(sheet[[0, 1, 2, 3, 0]], MUTED, 1.2)
     space.polygons(on_sheet(move(of_board, squares)), _INK)
@@ -89,6 +111,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         space.line([on_sheet(camera[:3, 3]), corner], CAMERA, 1)
     _draw_camera(space, own.moved(inverse(camera)), CAMERA, 2.5)
     picture = paper.picture_panel(_PICTURE, own.size, "what the camera sees")
+    if values["wall"]:
+        wall = own.moved(inverse(camera)).project(room.beyond)
+        picture.segments(wall, _WALL, 1.5)
     draw_board(picture, own.moved(chain(inverse(camera), of_board)), board)
     return Drawing(paper.join((space, picture)), _sentence(values, camera, of_board))
 
@@ -100,17 +125,32 @@ def _draw_camera(panel: Panel, camera: Camera, colour: str, width: float) -> Non
 
 
 @lru_cache(maxsize=1)
-def _range() -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return what the panel shows: room for all boards and cameras, whoever moves."""
+def _room() -> _Room:
+    """Make floor and wall, which stand still, with room for all boards and cameras."""
     border, _ = paper_and_squares(course.board())
     both = [stands(G, who) for G in _poses() for who in (0, 0.5, 1)]
-    seen = on_sheet(
-        np.concatenate([[move(b, border), c[:3, 3] + 0 * border] for c, b in both]).reshape(-1, 3)
+    W = np.concatenate([[move(b, border), c[:3, 3] + 0 * border] for c, b in both]).reshape(-1, 3)
+    (x0, y0, z0), (x1, y1, z1) = (
+        _TILE * np.floor(W.min(0) / _TILE),
+        _TILE * np.ceil(W.max(0) / _TILE),
     )
+    x, y, z = (np.arange(low, high + 1, _TILE) for low, high in ((x0, x1), (y0, y1), (z0, z1)))
+    floor = _grid(x, z)[..., [0, 2, 1]] + [0, y1, 0]
+    wall = _grid(x, y) + [0, 0, z1]
+    x, y = (np.arange(s[0] - _BEYOND, s[-1] + _BEYOND + 1, _TILE) for s in (x, y))
+    beyond = _grid(x, y) + [0, 0, z1]
+    seen = on_sheet(np.concatenate([W, floor.reshape(-1, 3), wall.reshape(-1, 3)]))
     low, high = seen.min(0), seen.max(0)
-    scale = 1.1 * ((high - low) / _SIZE).max() / 2 * np.array(_SIZE)
-    (x0, y0), (x1, y1) = (low + high) / 2 - scale, (low + high) / 2 + scale
-    return (x0, x1), (y0, y1)
+    scale = 1.05 * ((high - low) / _SIZE).max() / 2 * np.array(_SIZE)
+    (left, top), (right, bottom) = (low + high) / 2 - scale, (low + high) / 2 + scale
+    return _Room(floor, wall, beyond, y1, ((left, right), (top, bottom)))
+
+
+def _grid(s: Array, t: Array) -> Array:
+    """Return the sides (n, 2, 3) of squares with corners at s and t, where the third is 0."""
+    at = np.stack([*np.meshgrid(s, t, indexing="ij"), np.zeros((len(s), len(t)))], axis=-1)
+    sides = np.stack([at[:-1], at[1:]], axis=2), np.stack([at[:, :-1], at[:, 1:]], axis=2)
+    return np.concatenate([side.reshape(-1, 2, 3) for side in sides])
 
 
 def _sentence(values: Values, camera: Array, of_board: Array) -> str:
@@ -127,5 +167,5 @@ def _sentence(values: Values, camera: Array, of_board: Array) -> str:
         said.append(f"the {name} has moved by {far:.0f} mm and turned by {turn:.0f}°")
     return (
         f"Photograph {values['photo']:g}: since photograph 0 {' and '.join(said)}. How one stands "
-        "before the other is the same, and so is the picture."
+        "before the other is the same, and so is its picture."
     )

@@ -102,7 +102,9 @@ def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
     best = np.maximum.accumulate(np.where(draws > 0, counts, 0))
     steps = np.column_stack([np.repeat(draws[1:], 2)[1:], np.repeat(best[1:], 2)[:-1]])
     panel.line(steps, IDEAL, 1.6)
-    panel.segments([[[k, 0], [k, c]] for k, c in zip(draws, counts, strict=True)], LENS, 2.5)
+    bars = np.stack([np.column_stack([draws, 0 * draws]), np.column_stack([draws, counts])], axis=1)
+    panel.segments(bars[:1], MUTED, 2.5)  # all pairs: no draw
+    panel.segments(bars[1:], LENS, 2.5)
     panel.mark([n, counts[n]], "estimated", 9)
     panel.grip("draw", "which draw is shown", [n, float(counts[n])], 5)
 
