@@ -127,6 +127,8 @@ def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
             )
             panel.text(middle + [0.96, -0.9], k1, anchor="rm", size=14)
             panel.text(middle + [-0.96, 0.82], f"× {_magnified(at):.0f}", size=12)
+        else:
+            panel.text(middle + [-0.96, -0.9], f"step {frame}: not yet", size=14)
     return panel
 
 
@@ -147,7 +149,7 @@ def alike(misses: Array) -> float:
 
 
 def _seen(agreement: float) -> str:
-    said = f"Neighbouring arrows agree by {agreement:.2f} of 1"
+    said = f"Neighbouring arrows of all photographs agree by {agreement:.2f} of 1"
     if agreement > 0.2:
         return f"{said}: the camera is not found yet."
     return f"{said}, they point in all directions: what is left is noise."

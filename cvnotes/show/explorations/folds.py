@@ -155,7 +155,13 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     panel = paper.panel(_CLOSE, (left, right), (top, low), "from above: u₀ and v₀")
     for circle in tangle.circles(*of):
         panel.line(circle.place(np.array([0.0, 180]))[:, :2], LENS, 1)
-    _draw_found(tangle.found(*of)[:2], panel, 13)
+    found = tangle.found(*of)[:2]
+    rim = 13 * panel.pixel
+    _draw_found(np.clip(found, [left + rim, top + rim], [right - rim, low - rim]), panel, 13)
+    if np.isnan(found).any():
+        panel.text([left + 8, top + 12], "no camera", ESTIMATED, size=12)
+    elif ((found < [left, top]) | (found > [right, low])).any():
+        panel.text([left + 8, top + 12], "farther out", ESTIMATED, size=12)
     panel.mark(tangle.eye[:2], "ideal", 10)
     panel.line([[left + 8, low - 10], [left + 28, low - 10]], IDEAL, 2)
     panel.text([left + 31, low - 10], "20 px", IDEAL, size=12)

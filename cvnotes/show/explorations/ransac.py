@@ -116,8 +116,9 @@ def _sentence(n: int, agree: Mask, true: Mask) -> str:
             f"All 54 pairs are believed, {wrong} of them wrong: {counts[0]} agree with the answer."
         )
     best = int(counts[1 : n + 1].argmax()) + 1
+    one = f"{counts[n]} of 54 pairs agree" if counts[n] else "three of the four lie on one line"
     return (
-        f"Draw {n}: {counts[n]} of 54 pairs agree. The largest set so far has {counts[best]}, "
+        f"Draw {n}: {one}. The largest set so far has {counts[best]}, "
         f"found in draw {best}: {(agree[best] & true).sum()} of them are right, of all "
         f"{len(true)} pairs {true.sum()}."
     )

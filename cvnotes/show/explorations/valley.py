@@ -78,8 +78,7 @@ def _ground() -> Drawn:
     x = H @ of.tiles_h.T
     cost = np.sum((x[..., :2, :] / x[..., 2:, :] - of.seen.T) ** 2, axis=(2, 3))
     height = np.floor(3 * np.log10(cost.clip(1e-2, 1e5))) / 3
-    part = (height + 2) / 7
-    channels = [np.interp(part, [0, 0.5, 1], tone) for tone in _TONES.T]
+    channels = [np.interp(height, [0.7, 2.2, 4.5], tone) for tone in _TONES.T]
     return np.stack(channels, axis=-1).round().astype(np.uint8)
 
 
@@ -103,6 +102,7 @@ def valley_model() -> Model:
         ways = [of.walk(start, mu)[: taken + 1], of.walk(start, 0)[: taken + 1]]
         ground = paper.panel((440, 396), _H6, _H9[::-1], "the cost over ĥ6 (→) and ĥ9 (↑)")
         ground.image(_ground(), smooth=False)
+        ground.ticks(x=(-2, -1, 0), y=(-1, 0, 1, 2))
         for row, wall in enumerate(-(of.tiles_h[::7, :2] @ of.best[2, :2])[:5], 1):
             ground.text([0.93, wall], f"{row}", anchor="mm", size=10)
         ground.mark(of.best[[1, 2], [2, 2]], "ideal", 8)
@@ -128,15 +128,13 @@ def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
     for power in range(6):
         panel.line([[-2, power], [_MOST + 2, power]], "#DDDDDD", 0.5)
         panel.text([-1.3, power], f"{10**power:,}", anchor="lm", size=9)
-    middles = [np.log10(max(values[len(values) // 2], 0.1)) for values in rms]
     for values, (name, colour, width), meaning, high in zip(
-        rms, _WALKS, ("estimated", "lens"), middles, strict=True
+        rms, _WALKS, ("estimated", "lens"), (4.9, 4.4), strict=True
     ):
         curve = np.column_stack([np.arange(len(values)), np.log10(np.clip(values, 0.1, 1e6))])
         panel.line(curve, colour, width)
         panel.mark(curve[-1], meaning, 7)
-        beside = high + (0.3 if high == max(middles) else -0.35)
-        panel.text([max(len(curve) // 2, 5), beside], name, colour, anchor="lm", size=12)
+        panel.text([_MOST, high], name, colour, anchor="rm", size=12)
     return panel
 
 
