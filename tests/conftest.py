@@ -48,8 +48,8 @@ ROOT = Path(__file__).resolve().parents[1]
 # The files that take longest, and begin: what is short fills the gaps at the end. Where two use
 # one site, another stands between, so that no worker waits while the other builds it.
 LONG = (
-    "site_live", "webassembly", "grade", "browser", "catalogue", "site_offline", "site_engines",
-    "site", "site_access", "quality", "command_calibrate", "jackknife", "cli", "grade_safety",
+    "site_live", "webassembly", "grade", "undone", "browser", "catalogue", "site_offline",
+    "site_engines", "site", "site_access", "quality", "command_calibrate", "jackknife", "cli", "grade_safety",
     "corners", "grade_class", "explore", "wheel", "build_notebooks", "board_shape", "synthetic",
     "executors", "start", "charuco", "exercises_sandbox",
 )  # fmt: skip
