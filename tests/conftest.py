@@ -49,9 +49,9 @@ ROOT = Path(__file__).resolve().parents[1]
 # one site, another stands between, so that no worker waits while the other builds it.
 LONG = (
     "site_live", "webassembly", "grade", "undone", "browser", "catalogue", "site_offline",
-    "site_engines", "site", "site_access", "quality", "command_calibrate", "jackknife", "cli", "grade_safety",
-    "corners", "grade_class", "explore", "wheel", "build_notebooks", "board_shape", "synthetic",
-    "executors", "start", "charuco", "exercises_sandbox",
+    "site_engines", "site", "site_access", "quality", "command_calibrate", "jackknife", "cli",
+    "grade_safety", "corners", "grade_class", "explore", "wheel", "build_notebooks",
+    "board_shape", "synthetic", "executors", "start", "charuco", "exercises_sandbox",
 )  # fmt: skip
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 OF_CHROMIUM = [

@@ -1,10 +1,12 @@
 """The anatomy of the notebooks: what CONTRIBUTING.md and docs/teaching.md promise of each."""
 
 import ast
+import io
 import re
 import statistics
 import subprocess
 import sys
+import tokenize
 from itertools import pairwise
 from pathlib import Path
 
@@ -90,6 +92,32 @@ def test_code_cells_are_short_and_follow_prose(path):
 def test_figures_that_the_prose_names_exist(path):
     named = set(re.findall(r"`(draw_\w+|explore\w*)`", _prose(_read(path))))
     assert named <= set(show.__all__), named - set(show.__all__)
+
+
+def _names(source):
+    """Return the names in code, those within its strings too, but not in comments."""
+    found = set()
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type != tokenize.COMMENT:
+            found.update(re.findall(r"\w+", token.string))
+    return found
+
+
+@each_notebook
+def test_what_the_prose_names_is_in_the_next_cell_at_the_latest(path):
+    """Let no sentence speak of what a chapter has no longer, or has later, without saying so."""
+    cells, there, strange = _read(path).cells, set(), []
+    for i, cell in enumerate(cells):
+        following = next((c.source for c in cells[i:] if c.cell_type == "code"), "")
+        there |= _names(following)
+        if cell.cell_type != "markdown" or "## The same in OpenCV" in cell.source:
+            continue
+        for paragraph in cell.source.split("\n\n"):
+            if re.search("OpenCV|cv2|exercise|[Bb]elow", paragraph):
+                continue
+            named = re.findall(r"`([A-Za-z_]\w*)`", paragraph)
+            strange += [(i, n) for n in named if n not in there and "_from_" not in n]
+    assert strange == []
 
 
 @each_notebook
