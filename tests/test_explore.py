@@ -1318,6 +1318,8 @@ def test_the_focal_length_vanishes_where_the_triangle_of_vanishing_points_become
 
 def test_a_bent_row_is_straight_with_the_k1_that_bent_it_and_with_no_other():
     model = MODELS["straighten"]
+    titles = [model.picture(k1=k1)[:TITLE].tobytes() for k1 in (0, -0.25)]
+    assert titles[0] != titles[1]  # they tell the number
     assert "straight, and so are" in model.drawing(k1=-0.25).sentence
     assert "bends up" in model.drawing(k1=-0.24).sentence
     assert "bends down" in model.drawing(k1=-0.26).sentence
