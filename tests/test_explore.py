@@ -296,7 +296,7 @@ def test_rails_turned_by_45_degrees_vanish_one_focal_length_beside_the_piercing_
 
 
 def test_the_vanishing_point_does_not_depend_on_where_the_rails_lie():
-    low, high = (MODELS["projection"].drawing(heading=5, height=h) for h in (0.5, 3))
+    low, high = (MODELS["projection"].drawing(heading=5, height=h) for h in (0.5, 2))
     assert low.sentence == high.sentence
     assert not np.array_equal(low.picture, high.picture)
 
@@ -306,14 +306,27 @@ def test_rails_are_drawn_up_to_their_vanishing_point():
     u, v = (np.array([325, 238]) + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
     around = picture[round(v) + 8 : round(v) + 14, round(u) - 12 : round(u) + 12]
     assert count(around, WORLD) > 10
-    assert count(picture[TITLE : round(v) - 2, : WIDTH - 100], WORLD) == 0  # there is the ring
+    assert count(picture[TITLE : round(v) - 2, : MARGIN + WIDTH], WORLD) == 0
 
 
-def test_rails_parallel_to_the_image_plane_stay_parallel_and_are_still_drawn():
-    drawing = MODELS["projection"].drawing(heading=90)
+def test_the_dot_on_the_ring_stands_at_twice_the_angle_of_the_rails():
+    for heading in (-90, -60, 25, 40, 75):
+        picture = MODELS["projection"].picture(heading=heading)
+        twice = np.radians(2 * heading)
+        x, z = 2 * np.sin(twice), 2 + 2 * np.cos(twice)  # m: the camera is at twice ±90°
+        left = picture.shape[1] - MARGIN - 410 + (x + 8.9) / 17.8 * 410
+        top = TITLE + (12.6 - z) / 14.3 * 330
+        around = picture[round(top) - 3 : round(top) + 4, round(left) - 3 : round(left) + 4]
+        assert count(around, WORLD) > 40, heading
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+def test_rails_parallel_to_the_image_plane_stay_parallel_and_are_still_drawn(end):
+    height = getattr(MODELS["projection"].settings[2], end)  # neither hides them
+    drawing = MODELS["projection"].drawing(heading=90, height=height)
     assert "(c = 0)" in drawing.sentence
     assert "infinity" in drawing.sentence
-    left = drawing.picture[:, MARGIN : MARGIN + WIDTH - 100]  # without the small ring
+    left = drawing.picture[:, MARGIN : MARGIN + WIDTH]
     green = np.abs(left.astype(int) - colour(WORLD)).max(-1) < 40
     assert 2 < green.any(axis=1).sum() < 12
     assert green.any(axis=0).mean() > 0.98
@@ -1305,6 +1318,8 @@ def test_the_focal_length_vanishes_where_the_triangle_of_vanishing_points_become
 
 def test_a_bent_row_is_straight_with_the_k1_that_bent_it_and_with_no_other():
     model = MODELS["straighten"]
+    titles = [model.picture(k1=k1)[:TITLE].tobytes() for k1 in (0, -0.25)]
+    assert titles[0] != titles[1]  # they tell the number
     assert "straight, and so are" in model.drawing(k1=-0.25).sentence
     assert "bends up" in model.drawing(k1=-0.24).sentence
     assert "bends down" in model.drawing(k1=-0.26).sentence
@@ -1925,5 +1940,11 @@ def test_a_cube_stands_on_its_squares_by_the_focal_length_of_the_camera_alone():
     assert "the cube stands on its four squares" in model.drawing(alpha=800).sentence
     without = [numbers(model.drawing(alpha=a, lens=0).sentence)[1] for a in range(600, 1001, 5)]
     assert min(without) > 1
+    # The curve is lowest there, too: its panel is the right one, 340 wide for 450 px.
+    panel = model.picture(alpha=600, lens=0)[TITLE:, -MARGIN - 340 : -MARGIN].astype(int)
+    lowest = np.flatnonzero((np.abs(panel - colour(LENS)).max(-1) < 90).any(axis=1)).max()
+    blue = np.flatnonzero(np.abs(panel[lowest] - colour(LENS)).max(-1) < 90)
+    at = 600 + 5 * without.index(min(without))
+    assert 575 + (blue.mean() + 0.5) * 450 / 340 == pytest.approx(at, abs=2)
     foot = c + (np.array(grip_of(model.drawing(alpha=800), "cube").at) - c) * 900 / 800
     assert model.dragged("cube", tuple(foot))["alpha"] == 900

@@ -16,9 +16,8 @@ from cvnotes.targets import Chessboard
 _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before the camera
 _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
 _WOOD, _BALLAST, _GRASS, _SKY = "#8A7F76", "#D8D3CC", "#DDE9D3", "#E3EEF8"
-_RING = 44.0  # px, the radius of the small ring
 _REACH = 7.0  # m: how far away the direction is taken hold of
-_PLANE = 2.5  # m: how far away the image plane is drawn from above
+_PLANE = 4.0  # m: how far away the image plane is drawn from above, the ring's diameter
 
 
 def projection_model(camera: Camera, _: Chessboard) -> Model:
@@ -26,11 +25,12 @@ def projection_model(camera: Camera, _: Chessboard) -> Model:
     settings = (
         Setting("heading", "heading (°)", -90, 90, 1, 12, "how far the rails turn to the right"),
         Setting("slope", "slope (°)", -15, 15, 1, 0, "how steeply the rails climb"),
-        Setting("height", "height (m)", 0.2, 4, 0.1, 1.6, "how far the camera is above the rails"),
+        Setting("height", "height (m)", 0.2, 2, 0.1, 1.6, "how far the camera is above the rails"),
     )
     about = (
         "Two rails as the camera sees them, meeting in their vanishing point; beside it the same "
-        "from above, with the ray through the camera's centre that is parallel to the rails."
+        "from above, with the ray through the camera's centre that is parallel to the rails, and a "
+        "ring through the camera, which this ray cuts in a dot."
     )
     ideal = pinhole(camera)
 
@@ -57,7 +57,6 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     middle = np.array([0, values["height"], 0]) + _START * ahead / np.linalg.norm(ahead)
     picture = paper.picture_panel((440, 330), camera.size, "what the camera sees")
     _draw_picture(picture, camera, middle, along, across)
-    _draw_ring(picture, camera.size, heading)
     above = paper.panel((410, 330), (-8.9, 8.9), (12.6, -1.7), "the same from above (m)")
     _draw_above(above, camera, middle, along, across)
     return Drawing(paper.join((picture, above)), _sentence(camera, along))
@@ -97,15 +96,6 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
         panel.text([at, np.clip(v, 20, h - 20)], words, IDEAL, anchor=anchor, size=13)
 
 
-def _draw_ring(panel: Panel, size: tuple[int, int], heading: float) -> None:
-    """Draw the ring of chapter 1: a direction's dot stands at twice its angle, and 90° on top."""
-    middle = np.array([size[0] - 70, 78])
-    panel.polygons((middle + 1.4 * _RING * circle(61))[None], "white")
-    panel.line(middle + _RING * circle(61), WORLD, 2)
-    panel.text(middle - [0, _RING - 18], "∞", IDEAL, anchor="mm", size=12)
-    panel.mark(middle + _RING * np.array([np.sin(2 * heading), np.cos(2 * heading)]), "world", 9)
-
-
 def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:
     panel.ticks(x=np.arange(-8, 9, 4), y=np.arange(4, 13, 4))
     panel.segments(_sleepers(middle, along, across)[..., ::2], _WOOD, 1)
@@ -116,8 +106,11 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     view = np.array([[left, _PLANE], [0, 0], [right, _PLANE]])
     panel.line(5 * view, CAMERA, 0.8)
     panel.line([[left, _PLANE], [right, _PLANE]], CAMERA, 3)
+    # The ring of chapter 1, turned over: the camera is its top, the image plane its numbers.
+    panel.line(_PLANE / 2 * (circle(121) + [0, 1]), IDEAL, 1.5)
     panel.line(np.outer([0, 20], along[::2]), IDEAL, 1.2, dash=5)
     panel.mark([0, 0], "camera", 8)
+    panel.mark(_PLANE * along[2] / np.sum(along[::2] ** 2) * along[::2], "world", 9)
     panel.grip("rails", "the direction of the rails, from above", _REACH * along[::2], 5)
     if along[2] > 0:
         panel.mark(_PLANE * along[::2] / along[2], "ideal", 9)
@@ -125,9 +118,10 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     side = 1.0 if along[0] >= 0 else -1.0
     anchor = "lm" if side > 0 else "rm"
     panel.text([0.4 * side, -0.6], "camera", CAMERA, anchor=anchor)
-    beside = abs(right) + 0.5
-    if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH - 1.6:
-        beside = max(beside, out + 0.6)  # not upon the vanishing point
+    panel.text([-0.4 * side, -0.6], "∞", IDEAL, anchor="rm" if side > 0 else "lm", size=15)
+    beside = abs(right) + 0.3
+    if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH - 1.8:
+        beside = max(beside, out + 0.5)  # not upon the vanishing point
     panel.text([side * beside, _PLANE], "image plane", CAMERA, anchor=anchor)
 
 

@@ -43,8 +43,8 @@ def straighten_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         lens = Lens(k=(values["k1"],))
-        bow = _bow(lens, row)
-        panel = paper.picture_panel(_PICTURE, _SIZE, "the photograph, with k1 taken off")
+        bow, taken = _bow(lens, row), f"k1 = {lens.k[0]:.3f}".replace("-", "−")
+        panel = paper.picture_panel(_PICTURE, _SIZE, f"the photograph, {taken} taken off")
         panel.image(_without(lens, photograph(), paper.sharpness))
         net = _ALPHA * lens.undistort(rows) + _MIDDLE
         m = net[0]

@@ -90,13 +90,14 @@ def draw_rays(
     lines : array_like, shape (m, 3)
         Lines a x + b y + c w = 0.
     names : sequence of str
-        Written beside the points, and then beside the normals of the lines.
+        Written beside the points, and then beside the normals of the lines; the first word also
+        beside the line.
 
     Examples
     --------
     >>> ax = draw_rays([[0, 0, 1], [1, 1, 1]], [[-1, 1, 0]], names=["a", "b", "l"])
     >>> [text.get_text() for text in ax.texts if text.get_text()]
-    ['w = 1', 'a', 'b', 'l']
+    ['w = 1', 'a', 'b', 'l', 'l']
     """
     x_h, names = matrix(x_h, "x_h", 3).reshape(-1, 3), texts(names, "names")
     if len(x_h) == 0:
@@ -142,6 +143,7 @@ def _draw_plane(ax: "Axes", line: Array, name: str) -> None:
     if len(ends) == 2:
         ax.fill(*_on_paper([[0, 0, 0], *ends]).T, color=ESTIMATED, alpha=0.22, lw=0, zorder=2.5)
         ax.plot(*_on_paper(ends).T, color=ESTIMATED, linewidth=2.2, zorder=4)
+        _write(ax, name.split(" ")[0], ends[-1], ESTIMATED, (12, 4))
     tip = 0.9 * line / np.linalg.norm(line)
     arrow(ax, (0.0, 0.0), _on_paper(tip), ESTIMATED, 1.8, zorder=5)
     ax.plot(*_on_paper(tip), " ")  # the axes reach to the tip
