@@ -1303,6 +1303,23 @@ def test_the_focal_length_vanishes_where_the_triangle_of_vanishing_points_become
     assert {grip.name for grip in on_a_line.grips} == set("XYZ")  # and can be pulled apart again
 
 
+def test_where_c_comes_to_a_corner_of_the_triangle_its_letter_gives_way(monkeypatch):
+    write, rows = Panel.text, {}
+
+    def note(self, xy, words, *rest, **how):
+        rows[words] = np.array([*xy])  # of the last panel, the side view
+        write(self, xy, words, *rest, **how)
+
+    monkeypatch.setattr(Panel, "text", note)
+    for height in (600, 640, 673, 700, 800):
+        MODELS["triangle"].drawing(Y_v=height)
+        letter = 13 * 2188 / 420  # px of the photograph, as high as the panel is
+        assert abs(rows["c"][1] - rows["Y"][1]) > letter
+        f = next((at[0] for words, at in rows.items() if words.startswith("f =")), -99)
+        assert f <= -60  # left of the camera and of c
+        rows.clear()
+
+
 def test_a_bent_row_is_straight_with_the_k1_that_bent_it_and_with_no_other():
     model = MODELS["straighten"]
     assert "straight, and so are" in model.drawing(k1=-0.25).sentence
