@@ -723,6 +723,36 @@ def test_the_ruler_reads_what_the_camera_photographed_and_errs_as_far_as_a_click
     assert abs(said[2] - behind_the_first(clicked[:, 1]).std()) < 0.08
 
 
+@pytest.mark.parametrize("height", [0.5, 1.95, 4, 6, 8])
+def test_the_horizon_stays_and_cuts_the_poles_as_high_as_the_eye(height):
+    drawing = MODELS["eye"].drawing(height=height)
+    A, R = (
+        np.array([[800, 0, 325], [0, 804, 238], [0, 0, 1]]),
+        rotation_from_angles(0.06, 0.05, 0.14),
+    )
+    a, b, c = np.linalg.inv(A).T @ R[:, 1]
+
+    def around(x, y, z, reach=2):
+        """Return the drawn pixels around what is y m over the grass."""
+        u, v, w = A @ R @ [x, height - y, z]
+        u, v = (np.array([u, v]) / w + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
+        return drawing.picture[round(v) - reach : round(v) + reach + 1, round(u) - 3 : round(u) + 4]
+
+    for u in (400, 600):  # the line is where the formula has it, whatever the height
+        at = (np.array([u, -(a * u + c) / b]) + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
+        row, column = np.rint(at[::-1]).astype(int)
+        assert drawing.picture[row - 1 : row + 2, column].max(axis=-1).min() < 110
+    for z in (15, 40):
+        assert (count(around(-4, height, z), WORLD) > 15) == (height <= 6)
+        if 2 <= height < 6 and z == 40:
+            assert count(around(-4, 5.7, z), "#5C4A3D") > 3  # the pole reaches to its 6 m
+            assert count(around(-4, 6.3, z, 1), "#5C4A3D") == 0
+    said = (
+        "passes over all poles" if height > 6 else f"cuts every pole {height:.2f} m above its foot"
+    )
+    assert f"{height:.2f} m above the grass: the horizon {said}" in drawing.sentence
+
+
 def test_a_rod_is_as_high_in_the_picture_as_one_that_is_photographed():
     street = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
     for x, z in ((0, 9000), (5000, 12000), (-9000, 20000)):
