@@ -1681,6 +1681,7 @@ UP_AND_DOWN = {
     "eye",
     "top",
     "walk",
+    "height",
 }  # the eye to the nearest place of its half circle
 
 

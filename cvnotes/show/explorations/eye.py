@@ -39,7 +39,7 @@ def eye_model() -> Model:
     def raised(_: Values, at: Array) -> Values:
         return {"height": float(at[1])}
 
-    return Model("eye", about, settings, draw, {"eye": raised})
+    return Model("eye", about, settings, draw, {"height": raised})
 
 
 def _draw_picture(panel: Panel, height: float) -> None:
@@ -78,7 +78,7 @@ def _draw_side(panel: Panel, height: float) -> None:
     panel.line(np.array([[0, 0], [0, height]]), MUTED, 2)
     panel.mark([0, height], "camera", 9)
     panel.text([-4, height], "eye", CAMERA, anchor="rm")
-    panel.grip("eye", "the eye, to be pulled up and down", [0, height], 4)
+    panel.grip("height", "the eye, to be pulled up and down", [0, height], 4)
 
 
 def _sentence(height: float) -> str:
