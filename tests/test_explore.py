@@ -1059,6 +1059,57 @@ def test_the_rings_axes_are_those_about_which_their_angles_turn():
     assert (dart[0] & dart[1]).sum() > 0.9 * (dart[0] | dart[1]).sum() > 1000
 
 
+@pytest.fixture
+def written(monkeypatch):
+    """Note where the words of a drawing are written, each with the panel and the place."""
+    write, noted = Panel.text, {}
+
+    def note(self, xy, words, *rest, **how):
+        noted[words] = self, np.array(xy, dtype=float)
+        write(self, xy, words, *rest, **how)
+
+    monkeypatch.setattr(Panel, "text", note)
+    return noted
+
+
+def test_each_axis_of_the_rings_has_its_letter_beside_its_end(written):
+    for values in ({}, {"y": 90, "z": -40}, {"x": 70, "y": -30, "z": 100}):
+        drawing = MODELS["gimbal"].drawing(**values)
+        end = np.array(grip_of(drawing, "orange axis").at)  # on the axis of the last ring
+        assert np.allclose(written["x"][1] - end, [0.14, 0], atol=1e-6)
+        assert np.allclose(written["z"][1], [0.14, -1.3 * np.cos(np.radians(22))])  # up
+        assert np.linalg.norm(written["y"][1] - [0.14, 0]) < 1.1
+
+
+def test_the_word_sharp_is_not_written_over_that_of_a_pixel(written):
+    for focus in (0.1, 1, 1.95, 2, 5, 10):
+        MODELS["pinhole"].drawing(lens=1, focus=focus)
+        panel, (sharp, _) = written["sharp"]
+        assert abs(sharp - written["1 px"][1][0]) > 0.15 + 0.1  # half of "sharp", and "1 px"
+        assert sharp < panel.x[1] - 0.1
+
+
+def test_what_leaves_the_picture_below_is_still_measured_in_it(written):
+    drawing = MODELS["dolly"].drawing(distance=1500, keep=1)
+    panel, at = written["200 px"]  # 400 mm, 1.5 m away, by α = 750 px
+    u, v = np.rint(at * WIDTH / 640 + [MARGIN, TITLE]).astype(int)
+    assert TITLE < v < TITLE + 330 - 8
+    above = drawing.picture[v - 14 : v - 6, u - 60 : u + 60]
+    assert count(above, IDEAL) > 100
+    assert panel.y[1] > at[1]
+
+
+def test_the_pixel_of_the_followed_corner_is_written_beside_the_box(written):
+    for values in ({}, {"alpha": 1000}, {"k1": -0.2}, {"turn": -20}):
+        MODELS["formation"].drawing(**values)
+        panel, at = next((p, at) for w, (p, at) in written.items() if p.x == (-0.5, 639.5))
+        sheet, (u, v) = np.asarray(panel._image), np.rint(panel.place(at)).astype(int)
+        around = sheet[v - 14 : v + 15, u - 90 : u + 91]
+        green = (around[..., 1] > around[..., 0].astype(int) + 60).mean()
+        assert green < 0.02
+        written.clear()
+
+
 def test_both_walks_are_as_long_and_a_turn_on_the_spot_leaves_one_of_them_alone():
     shown = MODELS["walks"].drawing
     for turn in (-80, -32, 0, 45):
