@@ -736,6 +736,36 @@ def test_the_ruler_reads_what_the_camera_photographed_and_errs_as_far_as_a_click
     assert abs(said[2] - behind_the_first(clicked[:, 1]).std()) < 0.08
 
 
+@pytest.mark.parametrize("height", [0.5, 1.95, 4, 6, 8])
+def test_the_horizon_stays_and_cuts_the_poles_as_high_as_the_eye(height):
+    drawing = MODELS["eye"].drawing(height=height)
+    A, R = (
+        np.array([[800, 0, 325], [0, 804, 238], [0, 0, 1]]),
+        rotation_from_angles(0.06, 0.05, 0.14),
+    )
+    a, b, c = np.linalg.inv(A).T @ R[:, 1]
+
+    def around(x, y, z, reach=2):
+        """Return the drawn pixels around what is y m over the grass."""
+        u, v, w = A @ R @ [x, height - y, z]
+        u, v = (np.array([u, v]) / w + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
+        return drawing.picture[round(v) - reach : round(v) + reach + 1, round(u) - 3 : round(u) + 4]
+
+    for u in (400, 600):  # the line is where the formula has it, whatever the height
+        at = (np.array([u, -(a * u + c) / b]) + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
+        row, column = np.rint(at[::-1]).astype(int)
+        assert drawing.picture[row - 1 : row + 2, column].max(axis=-1).min() < 110
+    for z in (15, 40):
+        assert (count(around(-4, height, z), WORLD) > 15) == (height <= 6)
+        if 2 <= height < 6 and z == 40:
+            assert count(around(-4, 5.7, z), "#5C4A3D") > 3  # the pole reaches to its 6 m
+            assert count(around(-4, 6.3, z, 1), "#5C4A3D") == 0
+    said = (
+        "passes over all poles" if height > 6 else f"cuts every pole {height:.2f} m above its foot"
+    )
+    assert f"{height:.2f} m above the grass: the horizon {said}" in drawing.sentence
+
+
 def test_a_rod_is_as_high_in_the_picture_as_one_that_is_photographed():
     street = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
     for x, z in ((0, 9000), (5000, 12000), (-9000, 20000)):
@@ -1042,6 +1072,57 @@ def test_the_rings_axes_are_those_about_which_their_angles_turn():
     assert (dart[0] & dart[1]).sum() > 0.9 * (dart[0] | dart[1]).sum() > 1000
 
 
+@pytest.fixture
+def written(monkeypatch):
+    """Note where the words of a drawing are written, each with the panel and the place."""
+    write, noted = Panel.text, {}
+
+    def note(self, xy, words, *rest, **how):
+        noted[words] = self, np.array(xy, dtype=float)
+        write(self, xy, words, *rest, **how)
+
+    monkeypatch.setattr(Panel, "text", note)
+    return noted
+
+
+def test_each_axis_of_the_rings_has_its_letter_beside_its_end(written):
+    for values in ({}, {"y": 90, "z": -40}, {"x": 70, "y": -30, "z": 100}):
+        drawing = MODELS["gimbal"].drawing(**values)
+        end = np.array(grip_of(drawing, "orange axis").at)  # on the axis of the last ring
+        assert np.allclose(written["x"][1] - end, [0.14, 0], atol=1e-6)
+        assert np.allclose(written["z"][1], [0.14, -1.3 * np.cos(np.radians(22))])  # up
+        assert np.linalg.norm(written["y"][1] - [0.14, 0]) < 1.1
+
+
+def test_the_word_sharp_is_not_written_over_that_of_a_pixel(written):
+    for focus in (0.1, 1, 1.95, 2, 5, 10):
+        MODELS["pinhole"].drawing(lens=1, focus=focus)
+        panel, (sharp, _) = written["sharp"]
+        assert abs(sharp - written["1 px"][1][0]) > 0.15 + 0.1  # half of "sharp", and "1 px"
+        assert sharp < panel.x[1] - 0.1
+
+
+def test_what_leaves_the_picture_below_is_still_measured_in_it(written):
+    drawing = MODELS["dolly"].drawing(distance=1500, keep=1)
+    panel, at = written["200 px"]  # 400 mm, 1.5 m away, by α = 750 px
+    u, v = np.rint(at * WIDTH / 640 + [MARGIN, TITLE]).astype(int)
+    assert TITLE < v < TITLE + 330 - 8
+    above = drawing.picture[v - 14 : v - 6, u - 60 : u + 60]
+    assert count(above, IDEAL) > 100
+    assert panel.y[1] > at[1]
+
+
+def test_the_pixel_of_the_followed_corner_is_written_beside_the_box(written):
+    for values in ({}, {"alpha": 1000}, {"k1": -0.2}, {"turn": -20}):
+        MODELS["formation"].drawing(**values)
+        panel, at = next((p, at) for w, (p, at) in written.items() if p.x == (-0.5, 639.5))
+        sheet, (u, v) = np.asarray(panel._image), np.rint(panel.place(at)).astype(int)
+        around = sheet[v - 14 : v + 15, u - 90 : u + 91]
+        green = (around[..., 1] > around[..., 0].astype(int) + 60).mean()
+        assert green < 0.02
+        written.clear()
+
+
 def test_both_walks_are_as_long_and_a_turn_on_the_spot_leaves_one_of_them_alone():
     shown = MODELS["walks"].drawing
     for turn in (-80, -32, 0, 45):
@@ -1314,6 +1395,23 @@ def test_the_focal_length_vanishes_where_the_triangle_of_vanishing_points_become
     on_a_line = MODELS["triangle"].drawing(**{**right, "Y_v": 0})
     assert "no triangle" in on_a_line.sentence
     assert {grip.name for grip in on_a_line.grips} == set("XYZ")  # and can be pulled apart again
+
+
+def test_where_c_comes_to_a_corner_of_the_triangle_its_letter_gives_way(monkeypatch):
+    write, rows = Panel.text, {}
+
+    def note(self, xy, words, *rest, **how):
+        rows[words] = np.array([*xy])  # of the last panel, the side view
+        write(self, xy, words, *rest, **how)
+
+    monkeypatch.setattr(Panel, "text", note)
+    for height in (600, 640, 673, 700, 800):
+        MODELS["triangle"].drawing(Y_v=height)
+        letter = 13 * 2188 / 420  # px of the photograph, as high as the panel is
+        assert abs(rows["c"][1] - rows["Y"][1]) > letter
+        f = next((at[0] for words, at in rows.items() if words.startswith("f =")), -99)
+        assert f <= -60  # left of the camera and of c
+        rows.clear()
 
 
 def test_a_bent_row_is_straight_with_the_k1_that_bent_it_and_with_no_other():
@@ -1649,6 +1747,7 @@ UP_AND_DOWN = {
     "eye",
     "top",
     "walk",
+    "height",
 }  # the eye to the nearest place of its half circle
 
 

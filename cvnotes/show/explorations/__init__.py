@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _MODELS = ("projection", "camera", "lens", "noise", "warp", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
-    "straighten", "stands", "ring", "maps", "ruler", "rod", "shadows", "forged", "triangle",
+    "straighten", "stands", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged", "triangle",
     "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel",
     "votes", "ellipse", "valley", "ransac", "homography", "fold", "folds", "finding", "moved",
     "eleventh", "columns", "between", "rings", "epipolar", "rectification", "disparity", "depth",

@@ -18,6 +18,7 @@ _KEPT, _GROWS = 750, 0.25  # px, and px for each mm of distance
 _X, _Y, _FRONT = 350, 300, 7450  # mm: the camera's way, and the front of the red box
 _BOX = np.array([[450, 940, _FRONT], [850, 940, _FRONT]])  # just below its front
 _BOARD = np.array([[-700, 360, 9950], [700, 360, 9950]])  # just below the blackboard's frame
+_LOWEST = np.array([639, 450])  # px: what is below the picture is measured there
 _PALE, _GREEN = "#DDEFFA", "#3A6A66"
 _CORNERS = np.array([[-3000, 0], [-3000, 10_000], [3000, 10_000], [3000, 0]])  # mm, from above
 _OUTSIDE = [np.stack([a, b, 2 * b, 2 * a]) for a, b in pairwise(_CORNERS)]
@@ -41,7 +42,7 @@ def dolly_model() -> Model:
         panel.image(_photograph(values["distance"], values["keep"]))
         seen = camera.project([_BOX, _BOARD])
         widths = np.ptp(seen[..., 0], axis=1)
-        for ends, width in zip(seen, widths, strict=True):
+        for ends, width in zip(seen.clip(max=_LOWEST), widths, strict=True):
             panel.line(ends, IDEAL, 2)
             panel.text(ends.mean(axis=0) + [0, 14], f"{width:.0f} px", IDEAL, anchor="mm", size=13)
         said = (

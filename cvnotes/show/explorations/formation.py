@@ -110,7 +110,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _follow(world, W[[0, 2]], said[0])
     _follow(frame, at, on_the_way.get(values["way"], ""), up=16 if values["way"] == 2 else 0)
     _follow(plane, on_plane, said[2])
-    _follow(picture, m, said[3])
+    _follow(picture, m, said[3], over=True)
     return Drawing(paper.join((world, frame), (plane, picture)), _sentence(said, M, xy, m, bent))
 
 
@@ -301,11 +301,16 @@ def _written(x: Array, digits: int) -> str:
     return f"({', '.join(f'{number:.{digits}f}' for number in x + 0.0)})".replace("-", "−")
 
 
-def _follow(panel: Panel, place: Array, words: str, up: float = 0) -> None:
-    """Mark the corner that is followed, and write its numbers beside it."""
+def _follow(panel: Panel, place: Array, words: str, up: float = 0, over: bool = False) -> None:
+    """Mark the corner that is followed, and write its numbers beside it, or over the box."""
     panel.mark(place, "estimated", 8)
     low, high = np.sort([panel.x, panel.y]).T
-    if ((place >= low) & (place <= high)).all():
+    if over and ((place >= low) & (place <= high)).all():
+        room, away = 52 * panel.pixel, 46 * panel.pixel
+        row = place[1] - away if place[1] - low[1] > 1.4 * away else place[1] + away
+        at = [np.clip(place[0], low[0] + room, high[0] - room), row]
+        panel.text(at, words, ESTIMATED, anchor="mm", size=12)
+    elif ((place >= low) & (place <= high)).all():
         side = 1 if high[0] - place[0] > 120 * panel.pixel else -1
         beside = place + np.array([14 * side, up]) * panel.pixel
         panel.text(beside, words, ESTIMATED, anchor="lm" if side > 0 else "rm", size=12)

@@ -60,9 +60,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         (420, 360), (-1.63, 1.63), (-1.4, 1.4), "each ring turns in the one outside"
     )
     faces, paints = [], []
-    for axis, side, r, colour in zip(
-        turns, (middle, inner, R[:, 1]), _RADII, _COLOURS, strict=True
-    ):
+    rings = (*zip("zyx", turns, (middle, inner, R[:, 1]), _RADII, _COLOURS, strict=True),)
+    for _, axis, side, r, colour in rings:
         quads = _ring(axis, side, r)
         faces.append(quads.reshape(-1, 4, 3))
         paints += _PIECES * [hexed(np.rint(255 * s * np.array(rgb(colour)))) for s in _SHADES]
@@ -77,6 +76,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     depth = quads.mean(axis=1) @ _TOWARDS
     for i in np.argsort(depth):
         panel.polygons(_on_sheet(quads[i])[None], paints[i])
+    for name, axis, _, r, colour in rings:
+        panel.text(_on_sheet((r + 0.3) * axis) + [0.14, 0], name, colour, anchor="mm", size=14)
     end = _on_sheet(inner * 0.9)
     panel.mark(end, "estimated", 6)
     panel.grip("orange axis", "the end of the orange axis", end, 8)

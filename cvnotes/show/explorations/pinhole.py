@@ -155,7 +155,8 @@ def _discs(paper: Paper, focus: float) -> Panel:
     panel.text([(near + far) / 2, 13], "the room", anchor="mm", size=12)
     panel.ticks(y=(0, 5, 10))
     panel.line([[-1.14, 1], [1.1, 1]], IDEAL, 0.8, dash=3)
-    panel.text([1.05, 1.6], "1 px", IDEAL, anchor="rm", size=11)
+    at, anchor = ((1.05, 1.6), "rm") if focus < 2 else ((-1.1, 1.6), "lm")
+    panel.text(at, "1 px", IDEAL, anchor=anchor, size=11)
     panel.line(np.log10(_CARD) + np.array([[0, 0], [0, _DEEPEST]]), _PALE, 8)
     panel.text([np.log10(_CARD), 15.5], "the card", anchor="mm", size=12)
     for s in (0.1, 0.2, 0.5, 1, 2, 5, 10):
@@ -164,7 +165,7 @@ def _discs(paper: Paper, focus: float) -> Panel:
     panel.line(np.column_stack([np.log10(s), disc(s, focus)]), LENS, 2)
     here = [np.log10(focus), 0]
     panel.mark(here, "estimated", 9)
-    panel.text([here[0], 1.4], "sharp", ESTIMATED, anchor="mm", size=13)
+    panel.text([min(here[0], 0.96), 1.4], "sharp", ESTIMATED, anchor="mm", size=13)
     panel.grip("focus", "the depth that is sharp", here, 4)
     return panel
 

@@ -15,6 +15,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
 
 _SHOWN = ((-1200.0, 1300.0), (-520.0, 1668.0))  # px of the photograph, u and v
 _SIZE, _SIDE = (480, 420), (360, 420)  # both panels have one scale
+_APART = 90.0  # px of the photograph between two letters
 _EDGES = [1, 0, 3, 5]  # the box's nearest corner, and the next one along X, Y and Z
 
 
@@ -124,10 +125,13 @@ def _draw_side(panel: Panel, Y: Array, foot: Array, c: Array, square: float) -> 
         panel.line([[0, top], [-f, c[1]], [0, bottom]], ESTIMATED, 1.5)
         panel.line([[-f, c[1]], [0, c[1]]], MUTED, 1.2, dash=4)
         panel.mark([-f, c[1]], "camera", 9)
-        panel.text([-f / 2, c[1] - 50], f"f = {f:.0f}", MUTED, anchor="mm", size=12)
-    for words, at in (("c", c[1]), ("Y", bottom), ("line X Z", top)):
+        panel.text([-f - 60, c[1]], f"f = {f:.0f}", MUTED, anchor="rm", size=12)
+    # The letter of c gives way to that of an end to which c has come.
+    away = min((c[1] - end for end in (bottom, top)), key=abs)
+    beside = c[1] - away + np.copysign(max(abs(away), _APART), away)
+    for words, at, row in (("c", c[1], beside), ("Y", bottom, bottom), ("line X Z", top, top)):
         panel.mark([0, at], "estimated", 6)
-        panel.text([60, at], words, ESTIMATED, size=13)
+        panel.text([60, row], words, ESTIMATED, size=13)
 
 
 def _sentence(v: Array, c: Array, square: float) -> str:
