@@ -166,7 +166,7 @@ def _sentence(camera: Camera, lens: Lens) -> str:
         return (
             f"The model folds at max_radius = {lens.max_radius:.3f}, which is seen at "
             f"r' = {seen:.3f}{ray if any(lens.p) else ''}. The picture's corners are at r' up to "
-            f"{r:.3f}: in {black} of the 4 nothing is seen. Orange is no lens."
+            f"{r:.3f}: in {black} of them nothing is seen. Orange is no lens."
         )
     fold = f"folds at r = {lens.max_radius:.3f}, beyond the picture"
     ends = "never folds" if np.isinf(lens.max_radius) else fold
