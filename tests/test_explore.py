@@ -390,6 +390,26 @@ def test_without_scipy_a_photograph_has_the_same_digits(name, monkeypatch):
     assert np.array_equal(explorations.model(name).picture(), MODELS[name].picture())
 
 
+def test_where_the_lens_folds_is_told_as_it_is_seen_beside_the_pictures_corners():
+    said = numbers(MODELS["lens"].drawing(k1=-1, k2=0).sentence.replace("r'", ""))
+    r = 1 / np.sqrt(3)  # where 1 − 3 r² = 0
+    far = np.hypot((639.5 - 325) / 800, 241.5 / 804), np.hypot(325.5 / 800, 241.5 / 804)
+    assert np.allclose(said, [r, r - r**3, max(far), 4], atol=6e-4)
+
+
+def test_the_ray_of_the_curve_is_drawn_where_the_tangential_terms_pull_inwards():
+    def dark(i, j, **p):
+        picture = MODELS["lens"].picture(k1=0.8, k2=0.5, **p)
+        ray = np.array([MARGIN + 215, TITLE + 180]) + np.outer(np.arange(30, 165), [i, j])
+        u, v = np.rint(ray).astype(int).T
+        return (picture[v, u].max(axis=-1) < 60).mean()
+
+    assert dark(0, -1, p1=0.06) > 0.3  # p points down
+    assert dark(-0.6, -0.8, p1=0.08, p2=0.06) > 0.3
+    assert dark(0.6, -0.8, p1=0.08, p2=0.06) < 0.1
+    assert dark(0, -1) < 0.1
+
+
 def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():
     drawing = MODELS["lens"].drawing(k1=0, k2=0)
     assert drawing.sentence.startswith("The model never folds. An ideal")
@@ -699,9 +719,12 @@ def test_a_corner_beside_the_window_is_not_in_it():
 
 
 def test_the_votes_of_the_photograph_cross_at_the_true_corner_and_nowhere_else():
-    for (u, v), said in (((337, 205), "flat paper"), ((352, 201), "an edge")):
+    for (u, v), said in (
+        ((337, 205), "both are small: flat, nothing changes here."),
+        ((352, 201), "this is an edge."),
+    ):
         drawing = MODELS["votes"].drawing(u=u, v=v)
-        assert drawing.sentence.endswith(f"this is {said}.")
+        assert drawing.sentence.endswith(said)
     truth = course.exact_corners()[6, 22]
     for u, v in itertools.product((351, 352, 353), (212, 213)):
         *_, crossing_u, crossing_v = numbers(MODELS["votes"].drawing(u=u, v=v).sentence)
@@ -1051,6 +1074,16 @@ def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
             np.testing.assert_allclose(said[-2:], expected, atol=6e-4)
 
 
+def test_it_is_told_when_errors_lie_outside_of_their_panel():
+    def words(**values):
+        picture = MODELS["clouds"].picture(**values)[TITLE + 263 : TITLE + 283]
+        return int((picture[:, MARGIN + 300 : MARGIN + 420].max(axis=-1) < 60).sum())
+
+    assert words(picture=3, window=3) > 100  # 20 of 54
+    assert words(picture=1, window=3) == 0
+    assert MODELS["clouds"].settings[0].label == "half window (px)"
+
+
 def test_the_rings_axes_are_those_about_which_their_angles_turn():
     rng = np.random.default_rng(2)
     for _ in range(5):
@@ -1136,6 +1169,19 @@ def test_both_walks_are_as_long_and_a_turn_on_the_spot_leaves_one_of_them_alone(
         ahead = camera.centre + camera.R.T @ [0, 0, 100]
         grip = np.array(grip_of(shown(turn=turn), "line of sight").at) - [340, -420]
         assert np.allclose(grip / 190, (ahead - camera.centre)[[0, 2]] / 100, atol=1e-3)
+
+
+def test_the_name_of_the_followed_corner_leaves_the_small_plus_free():
+    values = {"X": 200, "Z": -250, "turn": -25, "alpha": 600}
+    for k1 in (0.25, -0.25):
+        picture = MODELS["formation"].drawing(k1=k1, **values).picture.astype(int)
+        plane = picture[-270 - MARGIN : -MARGIN, MARGIN : MARGIN + 410]
+        v, u = np.argwhere(np.abs(plane - colour(ESTIMATED)).max(axis=-1) < 40).T
+        at = np.array([0.411, 0.174]) * 205 / 0.68 + [205, 135]  # the plus, before the lens
+        near = np.abs(np.stack([u, v], axis=1) - at)
+        aside = (u < at[0] - 20) | (u > at[0] + 25)  # not the cross
+        assert aside.sum() > 40
+        assert near[aside, 1].min() > 6
 
 
 @pytest.mark.parametrize("k1", [0, -0.25])
@@ -1955,6 +2001,20 @@ def test_the_corner_that_is_pulled_is_where_its_pixels_say(at):
     assert np.abs(ours - (ours.min() + np.ptp(ours) * share)).max() < 6
     said = numbers(MODELS["subpixel"].drawing(u=at[0], v=at[1], noise=0).sentence)
     assert max(said[2:]) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("values", "ring"),
+    [({"noise": 0}, 0.005), ({}, 0.02), ({"noise": 10}, 0.1), ({"noise": 10, "blur": 2}, 0.5)],
+)
+def test_the_rings_are_as_large_as_the_errors_ask_for_and_both_marks_inside(values, ring):
+    at = {"u": 352.38, "v": 212.53}
+    drawing = MODELS["subpixel"].drawing(**at, **values)
+    close = drawing.picture[TITLE + 80 : TITLE + 390, -390 - MARGIN :].astype(int)  # without key
+    v, u = np.argwhere(np.abs(close - colour(LENS)).max(axis=-1) < 40).mean(axis=0)
+    off = np.hypot(u - 195, v + 80 - 195) * 1.1 * ring / 195
+    assert off == pytest.approx(numbers(drawing.sentence)[2], abs=0.02 * ring + 5e-4)
+    assert off < ring
 
 
 def test_with_the_lens_undone_the_equations_find_the_camera_and_for_parallel_boards_none():

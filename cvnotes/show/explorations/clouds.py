@@ -18,13 +18,13 @@ _PICTURES = "as computed", "sharpened", "JPEG of quality 30", "5 px shake", "ray
 _METHODS = ("gradients", LENS), ("edge model", ESTIMATED)
 _WINDOWS = np.arange(3, 13)  # px, from the middle to the border
 _REACH, _SHOWN = 0.15, 14  # px, of the clouds and of the picture
-_LEAST, _MOST = 0.004, 0.2  # px, of the curves
+_LEAST, _MOST = 0.0035, 0.2  # px, of the curves
 
 
 def clouds_model() -> Model:
     """Make the model of 54 corners, measured in two ways in five pictures."""
     settings = (
-        Setting("window", "window (px)", 3, 12, 1, 4, "half of its side"),
+        Setting("window", "half window (px)", 3, 12, 1, 4, "from its middle pixel to its border"),
         Setting("picture", "picture", 1, 5, 1, 1, "; ".join(_PICTURES)),
     )
     about = (
@@ -102,7 +102,7 @@ def _picture(paper: Paper, window: int, which: int) -> Panel:
 def _cloud(paper: Paper, off: Array) -> Panel:
     """Draw the errors, and a ring as large as the RMS of a point."""
     panel = paper.panel(
-        (285, 285), (-_REACH, _REACH), (-_REACH, _REACH), "errors of 54 corners, enlarged"
+        (285, 285), (-_REACH, _REACH), (-_REACH, _REACH), "54 errors; the panel is 0.3 px wide"
     )
     ring = circle(91)
     dot = 0.0022 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
@@ -110,8 +110,10 @@ def _cloud(paper: Paper, off: Array) -> Panel:
         panel.polygons(cloud[:, None] + dot, colour)
         panel.line(np.sqrt(2 * np.nanmean(cloud**2)) * ring, colour, 2)
     panel.mark([0, 0], "ideal", 6)
-    panel.line([[0.04, 0.138], [0.14, 0.138]], IDEAL, 2)
-    panel.text([0.09, 0.124], "0.1 px", IDEAL, anchor="mm", size=12)
+    outside = int((np.abs(off) > _REACH).any(axis=(0, 2)).sum())
+    if outside:
+        words = f"{outside} of 54 go beyond"
+        panel.text([0.01 - _REACH, 0.138], words, IDEAL, anchor="lm", size=12)
     return panel
 
 
@@ -121,8 +123,10 @@ def _curves(paper: Paper, rms: Array, now: int) -> Panel:
         (285, 285),
         (2, 13),
         (np.log10(_MOST), np.log10(_LEAST)),
-        "RMS along an axis (px) against the window",
+        "RMS (px) against the window's side (px)",
     )
+    for half in _WINDOWS[::3]:
+        panel.text([half, np.log10(1.06 * _LEAST)], f"{2 * half + 1}", anchor="md", size=9)
     for value in (0.005, 0.01, 0.02, 0.05, 0.1):
         panel.line([[0, np.log10(value)], [14, np.log10(value)]], "#DDDDDD", 0.5)
         panel.text([2.1, np.log10(value)], f"{value:g}", size=9)

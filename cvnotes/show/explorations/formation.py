@@ -102,6 +102,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     m, on_plane = camera.project(W), _sensed(camera, W)
     if bent:
         for face, _ in _unhidden(_Scene.of(Camera(camera.A, camera.G), W).faces):
+            plane.line(face, "#FFFFFF", 2.4)
             plane.line(face, MUTED, 1, dash=3)
         plane.line([xy, on_plane], ESTIMATED, 2)
         plane.mark(xy, "ideal", 5)
@@ -109,7 +110,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     on_the_way = {0.0: said[0], 1.0: said[1], 2.0: _written(xy, 3)[:-1] + ", 1)"}
     _follow(world, W[[0, 2]], said[0])
     _follow(frame, at, on_the_way.get(values["way"], ""), up=16 if values["way"] == 2 else 0)
-    _follow(plane, on_plane, said[2])
+    _follow(plane, on_plane, said[2], over=True)
     _follow(picture, m, said[3], over=True)
     return Drawing(paper.join((world, frame), (plane, picture)), _sentence(said, M, xy, m, bent))
 

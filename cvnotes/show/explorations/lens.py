@@ -66,8 +66,12 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     grid.image(_bent_room(lens, x, reach, paper.sharpness))
     _draw_grid(grid, lens)
     _draw_frame(grid, camera, lens)
-    along = ", in the direction that folds first" if any(lens.p) else " r L(r) against ideal r"
-    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), f"radius: observed{along}")
+    if any(lens.p):
+        ray = [[0, 0], -reach * np.array(lens.p[::-1]) / np.hypot(*lens.p)]
+        grid.line(ray, "#FFFFFF", 3.5)
+        grid.line(ray, IDEAL, 1.6, dash=5)
+    along = "along the dashed ray on the left" if any(lens.p) else "r L(r) against ideal r"
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), f"radius: observed {along}")
     _draw_curve(curve, lens)
     return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
 
@@ -157,9 +161,12 @@ def _sentence(camera: Camera, lens: Lens) -> str:
     r = float(np.linalg.norm(corners, axis=-1).max())
     ideal = lens.undistort(corners)
     if np.isnan(ideal).any():
+        seen, ray = first_to_fold(lens, np.array(lens.max_radius)), ", along the dashed ray"
+        black = np.isnan(ideal).any(axis=-1).sum()
         return (
-            f"The lens shows nothing beyond max_radius = {lens.max_radius:.3f}, not even in all "
-            f"corners of the picture (r' up to {r:.3f}): there the model folds. Orange is no lens."
+            f"The model folds at max_radius = {lens.max_radius:.3f}, which is seen at "
+            f"r' = {seen:.3f}{ray if any(lens.p) else ''}. The picture's corners are at r' up to "
+            f"{r:.3f}: in {black} of them nothing is seen. Orange is no lens."
         )
     fold = f"folds at r = {lens.max_radius:.3f}, beyond the picture"
     ends = "never folds" if np.isinf(lens.max_radius) else fold

@@ -16,7 +16,8 @@ from cvnotes.targets import refine_edges, refine_subpixel
 _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners
 _HALF, _WINDOW = 20, 8  # px, of the picture that is made, and of the window
 _PIXEL = np.array([352.0, 213.0])  # in the middle of both
-_SHOWN, _NEAR = 6.5, 0.11  # px to each side of the middle, and of the true corner
+_SHOWN = 6.5  # px to each side of the middle
+_RINGS = 0.005, 0.02, 0.1, 0.5  # px: the largest ring, as large as the errors ask for
 
 
 def subpixel_model() -> Model:
@@ -29,8 +30,8 @@ def subpixel_model() -> Model:
         Setting("noise", "noise σ", 0, 10, 0.5, 2, "of each pixel, in grey levels"),
     )
     about = (
-        "Thirteen by thirteen pixels around a corner of a chessboard; beside it a tenth of a pixel "
-        "about the true corner, with what two finders say: the gradients and the edge model."
+        "Thirteen by thirteen pixels around a corner of a chessboard; beside it, enlarged as far "
+        "as their errors allow, what two finders say: the gradients and the edge model."
     )
     return Model("subpixel", about, settings, _draw, {"corner": _pulled})
 
@@ -66,10 +67,13 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.image(grey[inside, inside].astype(np.uint8), smooth=False)
     panel.mark(true, "ideal", 11)
     panel.grip("corner", "the true corner", true, 1)
-    close = _square(paper, true, _NEAR, "a tenth of a pixel about the true corner")
-    for r in (0.02, 0.05, 0.1):
+    far = np.linalg.norm(found - true, axis=1).max()
+    ring = next((r for r in _RINGS if r > far), _RINGS[-1])
+    near = 1.1 * ring
+    close = _square(paper, true, near, f"{ring:g} px about the true corner")
+    for r in (0.2 * ring, 0.5 * ring, ring):
         close.line(true + r * circle(91), "#DDDDDD", 0.8)
-        close.text(true + [0, r - 0.005], f"{r:g} px", MUTED, anchor="mm", size=10)
+        close.text(true + [0, r - 0.045 * near], f"{r:g} px", MUTED, anchor="mm", size=10)
     for row, (name, meaning, ink, at) in enumerate(
         (
             ("true", "ideal", IDEAL, true),
@@ -77,10 +81,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             ("edge model", "estimated", ESTIMATED, found[1]),
         )
     ):
-        key = true + [-0.92 * _NEAR, (-0.9 + 0.11 * row) * _NEAR]
-        shown = np.clip(at, true - 0.97 * _NEAR, true + 0.97 * _NEAR)  # farther: at the rim
+        key = true + [-0.92 * near, (-0.9 + 0.11 * row) * near]
+        shown = np.clip(at, true - 0.94 * near, true + 0.94 * near)  # farther: at the rim
         close.mark([shown, key], meaning, 9)
-        close.text(key + [0.008, 0], name, ink, size=12)
+        close.text(key + [0.073 * near, 0], name, ink, size=12)
     return Drawing(paper.join((panel, close)), _sentence(true, found))
 
 

@@ -124,7 +124,7 @@ def _sentence(at: tuple[int, int], window: Window) -> str:
         f"R = {window.R / 1e6 + 0.0:.0f} million: "
     )
     if large < _NOTHING:
-        return f"{said}both are small, this is flat paper."
+        return f"{said}both are small: flat, nothing changes here."
     if np.isnan(window.crossing).any():
         return f"{said}one is large, this is an edge."
     u, v = window.crossing
