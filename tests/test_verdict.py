@@ -88,6 +88,11 @@ def test_the_real_bent_board_is_suspected_from_the_scatter_between_pictures():
     assert [words for good, words in verdict(found).lines if not good][-1].startswith(
         "the scatter between pictures is 2."
     )
+    # What the result itself doubts is said as well, and then no RMS is called normal.
+    assert found.reliable
+    assert len(found.warnings) > 0
+    assert {(False, doubt) for doubt in found.warnings} <= set(verdict(found).lines)
+    assert not any("normal or better" in words for _, words in verdict(found).lines)
 
 
 def test_a_result_without_corners_cannot_be_judged():

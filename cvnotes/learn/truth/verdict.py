@@ -100,13 +100,15 @@ def _of_pictures(found: Calibration) -> Iterator[tuple[bool, str]]:
 
 
 def _of_fit(found: Calibration) -> Iterator[tuple[bool, str]]:
-    sure = found.reliable
-    yield sure, "the pictures determine the camera" if sure else found.warnings[0]
+    if found.reliable:
+        yield True, "the pictures determine the camera"
+    yield from ((False, doubt) for doubt in found.warnings)
     part = found.rms / max(found.size)
     words = f"RMS {found.rms:.3f} px, {1e6 * part:.0f} millionths of the picture's longer side"
-    if part < _LARGE:
+    if part < _LARGE and not found.warnings:
         words += ": normal or better"
-    yield _line(part < _LARGE, words, ": look at the residuals, something moved")
+    advice = ": look at the residuals; something moved, or the board or the lens is not the model"
+    yield _line(part < _LARGE, words, advice)
     times = float(found.view_rms.max() / max(np.median(found.view_rms), 1e-12))
     words = f"the worst picture, {found.view_rms.argmax()}, has {times:.1f} times the usual RMS"
     yield _line(times < _OUT, words, ": look at it, or leave it out")

@@ -42,10 +42,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     place, weight = np.array([du, dv]), weights(du, dv)
     panels = _areas(paper, place, weight), _surface(paper, place), _mix(paper, weight)
     terms = " + ".join(f"{w:.2f} · {g:g}" for w, g in zip(weight, _GREY, strict=True))
-    nearest = _GREY[2 * int(dv + 0.5) + int(du + 0.5)]  # halves as in the library
+    nearest = ", or ".join(f"{g:g}" for g in _GREY[weight > weight.max() - 1e-9])
     return Drawing(
         paper.join(panels),
-        f"{terms} = {weight @ _GREY:.1f}. The nearest pixel alone says {nearest:g}.",
+        f"{terms} = {weight @ _GREY:.1f}. The nearest pixel alone says {nearest}.",
     )
 
 

@@ -9,13 +9,14 @@ from cvnotes.camera import Camera, intrinsics, pose
 from cvnotes.pictures import depth_map, pixel_centres, radiance, room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, rgb
 from cvnotes.warping import backward_warp
 
 _PICTURE, _PLAN = (440, 330), (300, 330)
 _ALPHA, _BASE, _SIZE = 520, 400, (640, 480)  # px, mm, px
 _NEAREST, _FARTHEST = 2500, 10_500  # mm
-_SAME = 120  # mm, of depth, that are drawn as one
+_SAME, _AGREES = 120, 0.3  # mm of depth, and px of disparity, that are drawn as one
+_NAMES = {"wall": (0, 10_450), "cupboard": (2020, 7150), "box": (720, 6750), "table": (-2100, 5900)}
 
 
 def pair() -> tuple[Camera, Camera]:
@@ -39,8 +40,12 @@ def depth_model() -> Model:
     )  # fmt: skip
     about = (
         "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
-        "until what lies at one depth has no fringes; beside it the room from above."
+        "until what lies at one depth, orange, has no fringes; beside it the room from above."
     )
+
+    @lru_cache(maxsize=1)
+    def depths() -> Array:
+        return depth_map(room(), pair()[0])
 
     @lru_cache(maxsize=1)
     def photographs() -> tuple[Image, Image]:
@@ -51,7 +56,10 @@ def depth_model() -> Model:
         Z = values["depth"]
         d = _ALPHA * _BASE / Z
         panel = paper.picture_panel(_PICTURE, _SIZE, "left in red, right in cyan and shifted")
-        panel.image(in_two_colours(*photographs(), d))
+        picture = in_two_colours(*photographs(), d)
+        there = np.abs(_ALPHA * _BASE / depths() - d) < _AGREES
+        picture[there] = (picture[there] + 255 * np.array(rgb(ESTIMATED))) / 2
+        panel.image(picture)
         return Drawing(paper.join((panel, _plan(paper, Z))), _sentence(Z, d))
 
     return Model("depth", about, settings, draw, {"depth": lambda _, at: {"depth": float(at[1])}})
@@ -85,6 +93,8 @@ def _plan(paper: Paper, Z: float) -> Panel:
         panel.text([-5100, 1000 * metres], f"{metres} m", MUTED, size=9)
     places = seen_from_above()
     there = np.abs(places[:, 1] - Z) < _SAME
+    for thing, at in _NAMES.items():
+        panel.text(at, thing, MUTED, anchor="mm", size=11)
     for some, colour in ((~there, MUTED), (there, ESTIMATED)):
         panel.segments(places[some, None] + [[-25, 0], [25, 0]], colour, 2)
     panel.line([[-5200, Z], [5200, Z]], ESTIMATED, 1.2, dash=5)
