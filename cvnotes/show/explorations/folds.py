@@ -159,9 +159,9 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     rim = 13 * panel.pixel
     _draw_found(np.clip(found, [left + rim, top + rim], [right - rim, low - rim]), panel, 13)
     if np.isnan(found).any():
-        panel.text([left + 8, top + 12], "no camera", ESTIMATED, size=12)
+        panel.text([left + 8, top + 12], "no camera", MUTED, size=12)
     elif ((found < [left, top]) | (found > [right, low])).any():
-        panel.text([left + 8, top + 12], "farther out", ESTIMATED, size=12)
+        panel.text([left + 8, top + 12], "farther out", MUTED, size=12)
     panel.mark(tangle.eye[:2], "ideal", 10)
     panel.line([[left + 8, low - 10], [left + 28, low - 10]], IDEAL, 2)
     panel.text([left + 31, low - 10], "20 px", IDEAL, size=12)
