@@ -52,8 +52,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
 
     Examples
     --------
-    >>> model("lens").drawing(k1=-4 / 3, k2=0).sentence[:48]
-    'The lens shows nothing beyond max_radius = 0.500'
+    >>> model("lens").drawing(k1=-4 / 3, k2=0).sentence[:37]
+    'The model folds at max_radius = 0.500'
     """
     if name not in NAMES:
         raise CvnotesError(f"name: expected one of {', '.join(NAMES)}, got {name!r}")
