@@ -46,7 +46,7 @@ def formation_model() -> Model:
         Setting("width", "the cross: X (mm)", 60, 400, 5, 200, corner),
         Setting("front", "the cross: Z (mm)", -100, 70, 5, 0, corner),
         Setting(
-            "way", "panel 2: the way", 0, 2, 0.05, 1,
+            "way", "upper right: the way", 0, 2, 0.05, 1,
             "0: the world; 1: the camera's frame; 2: the box divided by z",
         ),
     )  # fmt: skip
