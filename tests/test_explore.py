@@ -79,6 +79,7 @@ from cvnotes.show.explorations.subpixel import photograph as photograph_of_corne
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import window_at
+from cvnotes.show.style import MUTED
 from cvnotes.targets import refine_edges, refine_subpixel
 from cvnotes.warping import backward_warp, zoom_map
 
@@ -455,8 +456,8 @@ def test_the_wall_is_measured_by_the_four_corners_that_are_given():
     # Straight on, the switch's plate is a square of 80 mm about (−330, 470).
     straight = model.picture()[TITLE:, 372 + 6 + MARGIN :].astype(int)
     u, v = np.rint((mm - [-440, -70]) * 346 / 900).astype(int)
-    wall, around = straight[v - 60, u], straight[v - 18 : v + 19, u - 18 : u + 19]
-    rows, columns = np.nonzero((around - wall).min(axis=-1) > 8)  # paler than the wall
+    wall, around = straight[v - 60, u], straight[v - 24 : v + 25, u - 24 : u + 25]
+    rows, columns = np.nonzero((around - wall).min(axis=-1) > 12)  # paler than wall and line
     assert np.ptp(columns) == pytest.approx(80 * 346 / 900, abs=2.5)
     assert np.ptp(rows) == pytest.approx(80 * 346 / 900, abs=2.5)
 
@@ -1133,6 +1134,32 @@ def test_the_word_sharp_is_not_written_over_that_of_a_pixel(written):
         panel, (sharp, _) = written["sharp"]
         assert abs(sharp - written["1 px"][1][0]) > 0.15 + 0.1  # half of "sharp", and "1 px"
         assert sharp < panel.x[1] - 0.1
+
+
+def test_circle_and_ellipse_have_one_scale_and_the_rows_lie_at_right_angles_to_v2(written):
+    for parallel, rows in ((0, [[1.6, 0.9], [0.5, 1.1]]), (1, [[1.6, 0.8], [0.8, 0.4]])):
+        drawing = MODELS["ellipse"].drawing(parallel=parallel)
+        for i, row in enumerate(rows, 1):
+            end, word = np.array(row), written[f"row {i}"][1] * [1, -1]
+            assert np.linalg.norm(word - end) < 0.2
+            # The dashes run to the row's end: half way some of them are seen.
+            at = np.outer(np.linspace(0.4, 0.95, 40), end * [68, -68]) + [MARGIN + 130, TITLE + 120]
+            u, v = np.rint(at).astype(int).T
+            assert (np.abs(drawing.picture[v, u].astype(int) - colour(MUTED)).max(-1) < 60).any()
+        assert written["v₁"][0].pixel == pytest.approx(written["D v₁"][0].pixel)
+
+
+def test_what_is_not_there_is_said_where_one_looks_for_it(written):
+    for name, values, words in (
+        ("folds", {"k1": 0, "turned": 0.5}, "farther out"),
+        ("folds", {"k1": -0.25, "turned": 0}, "no camera"),
+        ("finding", {"step": 1}, "step 2: not yet"),
+    ):
+        MODELS[name].drawing()
+        assert words not in written
+        MODELS[name].drawing(**values)
+        assert words in written
+        written.clear()
 
 
 def test_what_leaves_the_picture_below_is_still_measured_in_it(written):

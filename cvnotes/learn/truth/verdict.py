@@ -58,7 +58,8 @@ def verdict(calibration: Calibration) -> Verdict:
     Verdict
         One line for each question: are there enough pictures, are the boards tilted, were the
         picture's four corners reached, do the views determine the camera, is the RMS normal, does
-        a picture stand out, are the residuals noise, is the focal length known?
+        a picture stand out, are the residuals noise, is the focal length known? And one for each
+        warning of the result.
 
     Notes
     -----

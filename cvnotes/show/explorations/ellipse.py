@@ -10,10 +10,8 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _FULL = np.array([[1.6, 0.9], [0.5, 1.1]])
 _PARALLEL = np.array([[1.6, 0.8], [0.8, 0.4]])  # its second row is half of the first
-_HIGH, _UNIT = (
-    240,
-    68,
-)  # px: a panel, and one scale for circle and ellipse, which shows by how much D stretches
+_HIGH = 240  # px, of a panel
+_UNIT = 68  # px, of circle and ellipse alike: so one sees by how much D stretches
 _UP = np.array([1, -1])  # y goes up here, and down on a panel
 
 

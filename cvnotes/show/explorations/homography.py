@@ -22,7 +22,7 @@ _READ = np.array([[343.0, 44], [522, 13], [508, 462], [342, 381]])  # px, its co
 _PLUS = (450, 240)  # px, where the plus begins: on the chart
 _REGION = (-440.0, 460.0), (-70.0, 655.72)  # mm of the wall, x and y: as wide and high as _SIZE
 _SHORES = (1, 1.5, 2, 3, 5, 10, 20)  # mm, standard deviations of a place
-_CELLS, _LABELLED = (32, 26), 7  # of the wall, where they are computed; the row that is labelled
+_CELLS, _LABELLED = (32, 26), 10  # of the wall, where they are computed; the row that is labelled
 _GRID = np.arange(-700, 701, 100)  # mm
 
 
@@ -116,16 +116,16 @@ def measured(m: Array, pixels: Array) -> tuple[Array, Array]:
 
 def _draw_shores(panel: Panel, wall: Image, m: Array, H: Array) -> None:
     """Draw the wall, and on it lines of equal standard deviation."""
-    (X0, Y0), (X1, Y1) = np.transpose(_REGION)
-    columns, rows = _CELLS
-    X = X0 + (X1 - X0) * (np.arange(-1, columns + 1) + 0.5) / columns
-    Y = Y0 + (Y1 - Y0) * (np.arange(-1, rows + 1) + 0.5) / rows
+    X, Y = (  # the middles of the cells, and of one more at each border
+        low + (high - low) * (np.arange(-1, n + 1) + 0.5) / n
+        for (low, high), n in zip(_REGION, _CELLS, strict=True)
+    )
     seen = to_homogeneous(np.stack(np.meshgrid(X, Y), axis=-1)) @ H.T
     _, covariance = measured(m, seen[..., :2] / seen[..., 2:])
     std = np.sqrt(np.trace(covariance, axis1=-2, axis2=-1))
     std[seen[..., 2] * (H @ [210, 297, 1])[2] <= 0] = 1e6  # behind the camera
     height = np.log(std.clip(1e-3, 1e6)).astype(np.float32)
-    inside = (1, 1, columns + 1, rows + 1)
+    inside = (1, 1, *np.add(_CELLS, 1).tolist())
     fine = np.asarray(
         Bitmap.fromarray(height).resize(wall.shape[1::-1], Bitmap.Resampling.BICUBIC, inside)
     )

@@ -52,7 +52,7 @@ def moved_model() -> Model:
 
 
 class _Room(NamedTuple):
-    """Lines (n, 2, 3) of floor and wall, how low the floor is, and what the panel shows.
+    """Lines (n, 2, 3) of floor and wall, and what the panel shows.
 
     The wall goes on beyond the panel; of that the photograph shows some.
     """
@@ -60,7 +60,6 @@ class _Room(NamedTuple):
     floor: Array
     wall: Array
     beyond: Array
-    low: float
     shown: tuple[tuple[float, float], tuple[float, float]]
 
 
@@ -100,7 +99,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         space.line(on_sheet(move(of_board, border))[[0, 1, 2, 3, 0]], _PALE, 0.8)
     camera, of_board = stands(G, who)
     there = move(of_board, border)
-    space.polygons(on_sheet(there * [1, 0, 1] + [0, room.low, 0])[None], _SHADOW)
+    space.polygons(on_sheet(there * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0])[None], _SHADOW)
     sheet = on_sheet(there)
     space.polygons(sheet[None], "#FBFBF8")
     space.line(sheet[[0, 1, 2, 3, 0]], MUTED, 1.2)
@@ -130,20 +129,17 @@ def _room() -> _Room:
     border, _ = paper_and_squares(course.board())
     both = [stands(G, who) for G in _poses() for who in (0, 0.5, 1)]
     W = np.concatenate([[move(b, border), c[:3, 3] + 0 * border] for c, b in both]).reshape(-1, 3)
-    (x0, y0, z0), (x1, y1, z1) = (
-        _TILE * np.floor(W.min(0) / _TILE),
-        _TILE * np.ceil(W.max(0) / _TILE),
-    )
-    x, y, z = (np.arange(low, high + 1, _TILE) for low, high in ((x0, x1), (y0, y1), (z0, z1)))
-    floor = _grid(x, z)[..., [0, 2, 1]] + [0, y1, 0]
-    wall = _grid(x, y) + [0, 0, z1]
+    first, last = np.floor(W.min(0) / _TILE), np.ceil(W.max(0) / _TILE)
+    x, y, z = (_TILE * np.arange(*ends) for ends in zip(first, last + 1, strict=True))
+    floor = _grid(x, z)[..., [0, 2, 1]] + [0, y[-1], 0]
+    wall = _grid(x, y) + [0, 0, z[-1]]
     x, y = (np.arange(s[0] - _BEYOND, s[-1] + _BEYOND + 1, _TILE) for s in (x, y))
-    beyond = _grid(x, y) + [0, 0, z1]
+    beyond = _grid(x, y) + [0, 0, z[-1]]
     seen = on_sheet(np.concatenate([W, floor.reshape(-1, 3), wall.reshape(-1, 3)]))
     low, high = seen.min(0), seen.max(0)
     scale = 1.05 * ((high - low) / _SIZE).max() / 2 * np.array(_SIZE)
     (left, top), (right, bottom) = (low + high) / 2 - scale, (low + high) / 2 + scale
-    return _Room(floor, wall, beyond, y1, ((left, right), (top, bottom)))
+    return _Room(floor, wall, beyond, ((left, right), (top, bottom)))
 
 
 def _grid(s: Array, t: Array) -> Array:

@@ -102,7 +102,7 @@ def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
     best = np.maximum.accumulate(np.where(draws > 0, counts, 0))
     steps = np.column_stack([np.repeat(draws[1:], 2)[1:], np.repeat(best[1:], 2)[:-1]])
     panel.line(steps, IDEAL, 1.6)
-    bars = np.stack([np.column_stack([draws, 0 * draws]), np.column_stack([draws, counts])], axis=1)
+    bars = [[[k, 0], [k, c]] for k, c in zip(draws, counts, strict=True)]
     panel.segments(bars[:1], MUTED, 2.5)  # all pairs: no draw
     panel.segments(bars[1:], LENS, 2.5)
     panel.mark([n, counts[n]], "estimated", 9)
