@@ -95,7 +95,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     picture = paper.picture_panel(_PICTURE, camera.size, f"{3 + bent}. A: the picture")
     scene = _Scene.of(camera, W)
     _draw_seen(plane, scene, lambda xy: xy)
-    _draw_seen(picture, scene, lambda xy: xy * np.diag(camera.A)[:2] + camera.A[:2, 2])
+    alpha, centre = np.diag(camera.A)[:2], camera.A[:2, 2]
+    _draw_seen(picture, scene, lambda xy: xy * alpha + centre)
     _draw_border(plane, camera)
     M = move(camera.G, W)
     xy = M[:2] / M[2] if M[2] > 0 else np.full(2, np.nan)
@@ -207,7 +208,7 @@ def _sensed(camera: Camera, W: Array) -> Array:
 def _before(M: Array) -> Array:
     """Cut a polygon (k, 3) to what lies before the camera."""
     kept: list[Array] = []
-    for a, b in zip(M, np.roll(M, -1, axis=0), strict=True):
+    for a, b in zip(M, [*M[1:], M[0]], strict=True):
         kept += [a] * bool(a[2] >= _NEAR)
         if (a[2] >= _NEAR) != (b[2] >= _NEAR):
             kept += [a + (_NEAR - a[2]) / (b[2] - a[2]) * (b - a)]
@@ -255,9 +256,7 @@ def _draw_seen(panel: Panel, scene: _Scene, place: Callable[[Array], Array]) -> 
     panel.polygons(np.concatenate([horizon, over])[None], _SKY)
     shaded = *zip(scene.tiles, _TILES, strict=True), (scene.shadow, _SHADOW)
     for polygons, colour in shaded:
-        for polygon in polygons:
-            if len(polygon):
-                panel.polygons(place(polygon)[None], colour)
+        panel.polygons([place(polygon) for polygon in polygons], colour)
     _draw_faces(panel, [place(face) for face in scene.faces])
 
 

@@ -4,6 +4,7 @@ Matplotlib takes a tenth of a second for a figure, too long for a picture that f
 Here Pillow draws at twice the size, and taking the mean of 2 × 2 pixels makes the lines smooth.
 """
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -137,11 +138,15 @@ class Panel:
         for pair in clipped(at[:, 0], at[:, 1], self._limits()):
             self._draw.line(pair.ravel().tolist(), colour, thick)
 
-    def polygons(self, corners: npt.ArrayLike, colour: str) -> None:
-        """Fill polygons with corners (n, k, 2); those without a place are left out."""
-        at = self.place(corners)
-        for one in at[(np.abs(at) < _LARGEST).all((1, 2))]:
-            self._draw.polygon(one.ravel().tolist(), fill=colour)
+    def polygons(self, corners: Iterable[npt.ArrayLike], colour: str) -> None:
+        """Fill polygons, each with corners (k, 2); those without a place are left out."""
+        several = [np.asarray(one) for one in corners]
+        if not several:
+            return
+        ends = np.cumsum([len(one) for one in several])[:-1]
+        for at in np.split(self.place(np.concatenate(several)), ends):
+            if len(at) and (np.abs(at) < _LARGEST).all():
+                self._draw.polygon(at.ravel().tolist(), fill=colour)
 
     def mark(self, xy: npt.ArrayLike, meaning: str, size: float = 5) -> None:
         """Mark points (n, 2) with the colour and the marker of their meaning."""
