@@ -110,10 +110,11 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.line(_PLANE / 2 * (circle(121) + [0, 1]), IDEAL, 1.5)
     panel.line(np.outer([0, 20], along[::2]), IDEAL, 1.2, dash=5)
     panel.mark([0, 0], "camera", 8)
-    panel.mark(_PLANE * along[2] / np.sum(along[::2] ** 2) * along[::2], "world", 9)
     panel.grip("rails", "the direction of the rails, from above", _REACH * along[::2], 5)
     if along[2] > 0:
-        panel.mark(_PLANE * along[::2] / along[2], "ideal", 9)
+        panel.mark(_PLANE * along[::2] / along[2], "ideal", 11)
+    # The dot over the plus, which is close to it where the rails run straight ahead.
+    panel.mark(_PLANE * along[2] / np.sum(along[::2] ** 2) * along[::2], "world", 7)
     # On the side that the rails leave free, and over all lines.
     side = 1.0 if along[0] >= 0 else -1.0
     anchor = "lm" if side > 0 else "rm"
@@ -121,7 +122,7 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.text([-0.4 * side, -0.6], "∞", IDEAL, anchor="rm" if side > 0 else "lm", size=15)
     beside = abs(right) + 0.3
     if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH - 1.8:
-        beside = max(beside, out + 0.5)  # not upon the vanishing point
+        beside = max(beside, out + 0.6)  # not upon the vanishing point
     panel.text([side * beside, _PLANE], "image plane", CAMERA, anchor=anchor)
 
 

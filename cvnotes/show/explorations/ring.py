@@ -58,7 +58,7 @@ def _draw_pairs(panel: Panel, way: Array, x: float, colour: str) -> None:
     panel.text([-2.95, 1.2], "w = 1", WORLD)
     panel.line(np.outer([-9, 9], way), colour, 2.2)
     panel.line(_arc(np.arctan2(*way), 0.5), MUTED, 1)
-    panel.text([0, -0.2], "[0 0]", MUTED, anchor="mt", size=10)
+    panel.text([0.09, -0.2], "[0 0]", MUTED, anchor="lt", size=10)
     if np.isfinite(x):
         panel.mark([x, 1], "world", 9)
         panel.text([x, 1.3], _number(x), WORLD, anchor="mm", size=13)
@@ -117,4 +117,4 @@ def _sentence(angle: float, x: float) -> str:
     said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its dot at {2 * angle % 360:g}°."
     if abs(x) < 20:
         return said
-    return f"{said} It is nearly level: just across the level line stands −x."
+    return f"{said} As far beyond the level line, it crosses at {_number(-x)}."

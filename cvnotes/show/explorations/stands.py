@@ -81,7 +81,7 @@ def _curve(paper: Paper, values: Values) -> Panel:
     panel.line([[a, missed(a, lens)] for a in tried], LENS, 2)
     here = [alpha, missed(alpha, lens)]
     panel.mark(here, "estimated", 8)
-    over = [np.clip(alpha, 625, 975), here[1] + 5]
+    over = [np.clip(alpha, 625, 975), here[1] + 9]  # between the two arms
     panel.text(over, f"{here[1]:.1f} px", ESTIMATED, anchor="mm", size=13)
     panel.text([800, 62], "the pose is kept", MUTED, anchor="mm", size=11)
     return panel
