@@ -1557,7 +1557,7 @@ def test_the_best_hole_is_where_its_patch_and_diffraction_are_equal():
     widths = [grip_of(model.drawing(hole=d), "hole").at[1] for d in np.arange(0.06, 0.09, 0.001)]
     best = np.sqrt(2.44 * 0.00055 * 4)  # mm: the least of d + a / d
     assert abs(0.06 + 0.001 * np.argmin(widths) - best) <= 0.001
-    assert "its patch of light is 15 px wide, and diffraction adds 15 px" in (
+    assert "its patch of light is 14.6 px wide, and diffraction adds 14.7 px" in (
         model.drawing(hole=0.073).sentence
     )
     assert model.dragged("hole", (0.1, 50), lens=1) == {"hole": 0.1, "lens": 0, "focus": 4}

@@ -81,6 +81,6 @@ def _miss(line: Array, end: Array) -> float:
 def _sentence(over: float, ground: float) -> str:
     said = (
         f"Over the top of its pole this tip points {over:.1f} px beside the sun, along the ground "
-        f"{ground:.1f} px beside the horizon below it"
+        f"{ground:.1f} px beside the black plus"
     )
     return f"{said}: true." if max(over, ground) < _NEAR else f"{said}: painted in."

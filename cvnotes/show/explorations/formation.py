@@ -85,7 +85,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     camera, W = camera_of(values), corner_of(values)
     bent = not camera.lens.is_ideal
     (x0, x1), (y0, y1) = _ABOVE
-    world = paper.panel(_SIZE, (x0, x1), (y0, y1), "the world, from above: pull camera and cross")
+    world = paper.panel(
+        _SIZE, (x0, x1), (y0, y1), "the world, from above: pull camera, plus, cross"
+    )
     _draw_above(world, lambda W: W[..., [0, 2]], camera, W)
     _draw_axes(world, max(150, W[0] + 70), WORLD, "XZ", lambda ends: ends[..., [0, 2]])
     _take_hold(world, camera, W)
@@ -109,7 +111,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         plane.mark(xy, "ideal", 5)
     said = _written(W, 0), _written(M, 0), _written(on_plane, 3), _written(m, 1)
     on_the_way = {0.0: said[0], 1.0: said[1], 2.0: _written(xy, 3)[:-1] + ", 1)"}
-    _follow(world, W[[0, 2]], said[0])
+    _follow(world, W[[0, 2]], said[0], up=-16)  # below the X axis
     _follow(frame, at, on_the_way.get(values["way"], ""), up=16 if values["way"] == 2 else 0)
     _follow(plane, on_plane, said[2], over=True)
     _follow(picture, m, said[3], over=True)
@@ -309,7 +311,9 @@ def _follow(panel: Panel, place: Array, words: str, up: float = 0, over: bool = 
     if over and ((place >= low) & (place <= high)).all():
         room, away = 52 * panel.pixel, 46 * panel.pixel
         row = place[1] - away if place[1] - low[1] > 1.4 * away else place[1] + away
-        at = [np.clip(place[0], low[0] + room, high[0] - room), row]
+        at = np.array([np.clip(place[0], low[0] + room, high[0] - room), row])
+        chip = at + 3.4 * len(words) * panel.pixel * np.array([[-1, 0], [1, 0]])
+        panel.line(chip, "#FFFFFF", 18)  # the numbers are to be read on the dark box, too
         panel.text(at, words, ESTIMATED, anchor="mm", size=12)
     elif ((place >= low) & (place <= high)).all():
         side = 1 if high[0] - place[0] > 120 * panel.pixel else -1

@@ -111,7 +111,8 @@ def _volume(paper: Paper, y: float) -> Panel:
     panel.line(np.column_stack([angles, np.cos(np.radians(angles))]), MUTED, 2)
     here = np.array([y, np.cos(np.radians(y))])
     panel.mark(here, "estimated", 8)
-    panel.text(here + [0, 0.07], f"{abs(here[1]):.2f}", ESTIMATED, anchor="mm", size=13)
+    below = here - [0.24 * y, 0.08 * here[1]]  # the curve is above
+    panel.text(below, f"{abs(here[1]):.2f}", ESTIMATED, anchor="mm", size=13)
     panel.text([0, 0.12], "middle angle (°)", MUTED, anchor="mm", size=11)
     return panel
 

@@ -182,6 +182,6 @@ def _said_of_a_lens(focus: float) -> str:
 def _said_of_a_hole(d: float) -> str:
     patch, spread = spot(d)
     return (
-        f"A hole of {d:g} mm: its patch of light is {patch:.0f} px wide, and diffraction adds "
-        f"{spread:.0f} px. A lens of {_LENS:g} mm has {(_LENS / d) ** 2:,.0f} times its light."
+        f"A hole of {d:g} mm: its patch of light is {patch:.1f} px wide, and diffraction adds "
+        f"{spread:.1f} px. A lens of {_LENS:g} mm has {(_LENS / d) ** 2:,.0f} times its light."
     )

@@ -109,7 +109,7 @@ def _draw_side(panel: Panel, away: float, height: float) -> None:
     panel.line(np.array([[0, _EYE], [99, _EYE]]), IDEAL, 1)
     panel.line(np.array([[0, 0], [0, _EYE]]), MUTED, 2)
     panel.mark([0, _EYE], "camera", 9)
-    panel.text([0, _EYE + 0.6], "camera", CAMERA, anchor="lm")
+    panel.text([0.6, 0.5], "camera", CAMERA, anchor="lm")
     panel.line(np.array([[away, 0], [0, _EYE], [away, height]]), ESTIMATED, 0.9, dash=4)
     for metre in np.arange(0, height, 1):
         ends = np.array([[away, metre], [away, min(metre + 1, height)]])

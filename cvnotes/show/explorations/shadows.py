@@ -112,7 +112,7 @@ def tip_of(top: Array, sun: Array) -> Array:
 
 
 def _draw_plan(panel: Panel, sun: Array) -> None:
-    panel.ticks(x=(-40, 0, 40), y=(0, 50, 100))
+    panel.ticks(x=(-40, 40), y=(0, 50, 100))
     for x in (-0.75, 0.75):
         panel.line([[x, -33], [x, 111]], WORLD, 1)
     for top in POLES:

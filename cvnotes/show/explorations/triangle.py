@@ -57,7 +57,6 @@ def triangle_model() -> Model:
             _SIDE, (-1500, 375), _SHOWN[1], "from the side: the altitude from Y, and the eye"
         )
         sky.image(sheet(paper.sharpness))
-        _draw_box(sky, v, nearest, nearest + part[:, None] * (v - nearest))
         c, square = camera_of(v)
         if np.isfinite(square):
             a, way = np.roll(v, 1, axis=0), np.roll(v, -1, axis=0) - np.roll(v, 1, axis=0)
@@ -66,8 +65,14 @@ def triangle_model() -> Model:
             )
             for corner, foot in zip(v, feet, strict=True):
                 sky.line([corner, foot, c], IDEAL, 0.9, dash=5)
+        _draw_box(sky, v, nearest, nearest + part[:, None] * (v - nearest))
+        if np.isfinite(square):
             sky.mark(c, "estimated", 6)
-            sky.text(c + [40, -50], "c", ESTIMATED, size=14)
+            # The letter of c gives way to that of a corner to which c has come.
+            corner = v[np.linalg.norm(v - c, axis=1).argmin()]
+            near = np.linalg.norm(corner - c) < 2 * _APART and corner[0] > v[:, 0].mean()
+            at, anchor = (c - [40, 50], "rm") if near else (c + [40, -50], "lm")
+            sky.text(at, "c", ESTIMATED, anchor=anchor, size=14)
             _draw_side(side, v[1], feet[1], c, square)
         return Drawing(paper.join((sky, side)), _sentence(v, c, square))
 
