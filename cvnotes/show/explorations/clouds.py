@@ -10,7 +10,7 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.rings import blurred
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, hexed, rgb
 from cvnotes.targets import refine_edges, refine_subpixel
 
 _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners is shown
@@ -107,7 +107,9 @@ def _cloud(paper: Paper, off: Array) -> Panel:
     ring = circle(91)
     dot = 0.0022 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     for cloud, (_, colour) in zip(off, _METHODS, strict=True):
-        panel.polygons(cloud[:, None] + dot, colour)
+        pale = hexed(255 - 0.55 * (255 - 255 * np.array(rgb(colour))))  # the ring stands out
+        panel.polygons(cloud[:, None] + dot, pale)
+    for cloud, (_, colour) in zip(off, _METHODS, strict=True):
         panel.line(np.sqrt(2 * np.nanmean(cloud**2)) * ring, colour, 2)
     panel.mark([0, 0], "ideal", 6)
     outside = int((np.abs(off) > _REACH).any(axis=(0, 2)).sum())
@@ -132,7 +134,7 @@ def _curves(paper: Paper, rms: Array, now: int) -> Panel:
         panel.text([2.1, np.log10(value)], f"{value:g}", size=9)
     for curve, (name, colour) in zip(rms, _METHODS, strict=True):
         panel.line(np.column_stack([_WINDOWS, np.log10(curve)]), colour, 2)
-        panel.text([12.8, np.log10(curve[-1])], name, colour, anchor="rd", size=12)
+        panel.text([12.8, np.log10(1.03 * curve[-4:].max())], name, colour, anchor="rd", size=12)
         panel.mark([_WINDOWS[now], np.log10(curve[now])], "ideal", 6)
     panel.grip("window", "how large the window is", [_WINDOWS[now], np.log10(rms[0, now])], 26)
     return panel

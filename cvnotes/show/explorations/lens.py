@@ -127,9 +127,9 @@ def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
     if lens.max_radius < 2 * _EXTENT:
         panel.line(polynomial(lens, lens.max_radius * circle(121)), ESTIMATED, 2.2)
         seen = lens.max_radius * float(lens.L(lens.max_radius))
-        where = "" if any(lens.p) else f", seen at {seen:.2f}"  # else in each direction elsewhere
-        words = f"the fold, r = {lens.max_radius:.2f}{where}"
-        panel.text([0, max(-seen - 0.02, panel.y[0] + 0.06)], words, ESTIMATED, anchor="md")
+        over = -seen > panel.y[0] + 0.07  # else there is room within the circle alone
+        y = -seen - 0.02 if over else max(-seen, panel.y[0]) + 0.02
+        panel.text([0, y], "the fold", ESTIMATED, anchor="md" if over else "ma")
     panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
     bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
     below = [0.02, min(bent[1] + 0.02, panel.y[1] - 0.07)]
@@ -151,9 +151,10 @@ def _draw_curve(panel: Panel, lens: Lens) -> None:
     panel.grip("curve", "the curve of k1", held, 2)
     if lens.max_radius < _RADIUS:
         panel.line([[lens.max_radius, 1.2], [lens.max_radius, -0.2]], ESTIMATED, 1)
-        shift, anchor = (0.015, "lm") if lens.max_radius < 0.6 else (-0.015, "rm")
+        near = lens.max_radius < 0.6  # then there is room above the curves, else below
+        shift, height, anchor = (0.015, 1.12, "lm") if near else (-0.015, 0.06, "rm")
         words = f"max_radius {lens.max_radius:.3f}"
-        panel.text([lens.max_radius + shift, 1.12], words, ESTIMATED, anchor=anchor)
+        panel.text([lens.max_radius + shift, height], words, ESTIMATED, anchor=anchor)
 
 
 def _sentence(camera: Camera, lens: Lens) -> str:
