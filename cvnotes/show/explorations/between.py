@@ -96,8 +96,10 @@ def _surface(paper: Paper, place: Array) -> Panel:
     panel.mark(_AT, "lens", 6)
     panel.mark(place, "estimated", 8)
     aside, anchor = (0.07, "lm") if du < 0.5 else (-0.07, "rm")
-    value = above + (below - above) * dv
-    panel.text([du + aside, dv], f"I = {value:.1f}", ESTIMATED, anchor=anchor, size=13)
+    value = weights(du, dv) @ _GREY
+    panel.text(
+        [du + aside, np.clip(dv, 0.1, 0.9)], f"I = {value:.1f}", ESTIMATED, anchor=anchor, size=13
+    )
     return panel
 
 

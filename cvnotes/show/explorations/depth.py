@@ -97,9 +97,9 @@ def _plan(paper: Paper, Z: float) -> Panel:
         panel.text(at, thing, MUTED, anchor="mm", size=11)
     for some, colour in ((~there, MUTED), (there, ESTIMATED)):
         panel.segments(places[some, None] + [[-25, 0], [25, 0]], colour, 2)
-    panel.line([[-5200, Z], [5200, Z]], ESTIMATED, 1.2, dash=5)
+    panel.line([[-4000, Z], [5200, Z]], ESTIMATED, 1.2, dash=5)
     panel.mark([[0, 0], [_BASE, 0]], "camera", 7)
-    panel.mark([3900, Z], "estimated", 8)
-    panel.text([3900, Z - 480], f"{Z / 1000:.2f} m", IDEAL, anchor="mm", size=13)
-    panel.grip("depth", "how far away things have no fringe", [3900, Z], 4)
+    panel.mark([4200, Z], "estimated", 8)
+    panel.text([4200, Z - 480], f"{Z / 1000:.2f} m", IDEAL, anchor="mm", size=12)
+    panel.grip("depth", "how far away things have no fringe", [4200, Z], 4)
     return panel

@@ -16,7 +16,7 @@ _LIGHT, _WARM = "#D1EDE5", "#F3CDAE"
 def disparity_model() -> Model:
     """Make the model of two rectified cameras, from above, and a point that both see."""
     settings = (
-        Setting("X", "X (mm)", -300, 500, 10, 330, "how far to the right of the left camera"),
+        Setting("X", "X (mm)", 0, 440, 10, 330, "how far to the right of the left camera"),
         Setting("Z", "Z (mm)", 1500, 4500, 10, 3000, "how far away"),
         Setting("sigma", "σ of d (px)", 0, 4, 0.1, 2, "how well the disparity is known"),
     )
@@ -52,17 +52,16 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.polygons(np.array([[[0.0, 0], [tips[1], _PLANE], [tips[0], _PLANE]]]), _WARM)
     panel.line([[0, 0], [tips[1], _PLANE]], ESTIMATED, 1.6, dash=5)
     for at, tip, name, side in ((0.0, tips[0], "left", -1), (_BASE, tips[1], "right", 1)):
-        panel.line([[at, 0], [at, 2000]], MUTED, 1, dash=2)
-        panel.text([at + 8, 1950], "u₀", MUTED, size=12)
+        panel.line([[at, 0], [at, _PLANE]], MUTED, 1, dash=2)
         panel.line([[at - 200, _PLANE], [at + 190, _PLANE]], LENS, 2)
         panel.line([[at, 0], [X, Z]], IDEAL, 1.6)
         panel.mark([at, 0], "camera", 8)
         panel.mark([at + tip, _PLANE], "lens", 6)
         anchor = "lm" if side > 0 else "rm"
         panel.text([at + 20 * side, -240], f"{name} camera", CAMERA, anchor=anchor, size=12)
-        panel.text([at + tip + 14 * side, _PLANE - 140], f"u {name}", LENS, anchor=anchor, size=12)
-    panel.text([_X[0] + 8, _PLANE + 150], "the pictures", LENS, size=12)
-    for row, ends, below in ((1290, tips[::-1], 150), (-150, np.array([0, _BASE]), -170)):
+        row = _PLANE - 140 if 0 < at < X else _PLANE + 110  # not upon a ray
+        panel.text([at + tip + 14 * side, row], f"u {name}", LENS, anchor=anchor, size=12)
+    for row, ends, below in ((1370, tips[::-1], 150), (-150, np.array([0, _BASE]), -170)):
         panel.line([[ends[0], row], [ends[1], row]], IDEAL, 1.2)
         panel.segments([[[x, row - 45], [x, row + 45]] for x in ends], IDEAL, 1.2)
         name = "d" if row > 0 else "b"

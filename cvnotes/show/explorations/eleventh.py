@@ -22,10 +22,11 @@ _PHONE = Camera(
     intrinsics(1180, 1176, 655, 470), lens=Lens(k=(0.08, -0.15)), size=(1280, 960)
 )  # of chapter 9
 _BOARD = course.board()
-_SHOWN, _NOISE = (480, 360), 0.1  # px
+_SHOWN, _NOISE = (480, 404), 0.1  # px
 _LABELS = ("αᵤ", "αᵥ", "u₀", "v₀", "k₁", "k₂")
 _HIGHEST = 0.9  # px, where the map is darkest
 _DARK = 0.75  # of the way from white to orange
+_RIM = 3  # rows of the map: room above and below the picture for the numbers of its corners
 
 
 class _Known(NamedTuple):
@@ -98,14 +99,22 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     after = with_one_more(G)
     std = np.sqrt(np.einsum("...ci,ij,...cj->...", of.J, after, of.J))
     before = np.sqrt(np.einsum("...ci,ij,...cj->...", of.J, of.found.covariance, of.J))
-    panel = paper.picture_panel(_SHOWN, of.found.size, "σ of a pixel (px): pull the board")
+    w, h = of.found.size
+    rim = _RIM * h / len(std)  # px
+    panel = paper.panel(
+        _SHOWN, (-0.5, w - 0.5), (-rim - 0.5, h + rim - 0.5), "σ of a pixel (px): pull the board"
+    )
+    std = np.pad(std, ((_RIM, _RIM), (0, 0)), mode="edge")
     part = _DARK * np.clip(std / _HIGHEST, 0, 1)[..., None]
     panel.image(np.rint(255 * (1 - part * (1 - np.array(rgb(ESTIMATED))))).astype(np.uint8))
     for m in of.seen.reshape(-1, 2):
         panel.polygons((m + 2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]))[None], MUTED)
+    for inner, outer in ((-0.5, -rim - 9), (h - 0.5, h + rim + 9)):
+        panel.polygons([[[-9, inner], [w + 9, inner], [w + 9, outer], [-9, outer]]], "#FFFFFF")
+        panel.line([[-9, inner], [w + 9, inner]], MUTED, 0.8)
     draw_net(panel, of.found.camera.moved(G).project(_BOARD.points), _BOARD, LENS, 2)
     for row, column in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
-        at = np.array([70 if column == 0 else 1210, 36 if row == 0 else 924])
+        at = np.array([70 if column == 0 else 1210, -rim / 2 if row == 0 else h + rim / 2])
         panel.text(at, f"{std[row, column]:.2f}", IDEAL, anchor="mm", size=13)
     panel.mark([values["u"], values["v"]], "estimated", 9)
     panel.grip("board", "the board of the next picture", [values["u"], values["v"]], 20)
@@ -117,7 +126,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 def _bars(paper: Paper, left: Array) -> Panel:
     """Draw which part of each standard deviation is left."""
     panel = paper.panel(
-        (360, 360), (-0.22, 1.2), (-0.7, 5.7), "what is left of each standard deviation"
+        (360, 404), (-0.22, 1.2), (-0.7, 5.7), "what is left of each standard deviation"
     )
     panel.ticks(x=(0, 0.5, 1))
     for i, (label, part) in enumerate(zip(_LABELS, left, strict=True)):

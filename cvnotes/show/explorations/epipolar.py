@@ -118,7 +118,9 @@ def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
     panel.line(np.column_stack([1000 / _TRIED, cost]), LENS, 2)
     worst = 1000 / _TRIED[cost.argmax()], float(cost.max())
     side = "lm" if worst[0] > (panel.x[0] + panel.x[1]) / 2 else "rm"  # x runs to the left
-    panel.text([*worst], f" {cost.max():.0f} grey levels ", MUTED, size=10, anchor=side)
+    panel.text(
+        [worst[0], worst[1] + 0.07 * top], f"{cost.max():.0f} grey levels", size=10, anchor=side
+    )
     panel.mark([1000 / depth, now], "estimated", 7)
     panel.grip("depth", "how far away it may be", [1000 / depth, now], 4)
     return panel
