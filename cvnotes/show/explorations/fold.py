@@ -174,7 +174,8 @@ def _space(
         name, meaning, colour = _PAIRS[k // 2]
         panel.line(np.array([on_sheet(eye), _flat(point)]), colour, 1.4)
         panel.mark(_flat(point), meaning, 5)
-        _name(panel, _flat(point), (8, 6), name, colour, "la")
+        if k in (0, 3):  # the outer one of each pair
+            _name(panel, _flat(point), (8, 6), name, colour, "la")
     _name(panel, _flat(points[3] + 0.12 * (points[3] - points[0])), (-8, 0), "horizon", IDEAL, "rm")
     panel.mark(on_sheet(below), "ideal", 7)
     panel.mark(on_sheet(eye), "camera", 9)

@@ -22,7 +22,7 @@ _READ = np.array([[343.0, 44], [522, 13], [508, 462], [342, 381]])  # px, its co
 _PLUS = (450, 240)  # px, where the plus begins: on the chart
 _REGION = (-440.0, 460.0), (-70.0, 655.72)  # mm of the wall, x and y: as wide and high as _SIZE
 _SHORES = (1, 1.5, 2, 3, 5, 10, 20)  # mm, standard deviations of a place
-_CELLS, _LABELLED = (32, 26), 10  # of the wall, where they are computed; the row that is labelled
+_CELLS, _LABELLED = (32, 26), 2  # of the wall, where they are computed; labels are above the chart
 _GRID = np.arange(-700, 701, 100)  # mm
 
 
@@ -157,7 +157,10 @@ def _draw_horizon(panel: Panel, H: Array) -> None:
     panel.line(ends[:, :2] / ends[:, 2:], IDEAL, 1.4, dash=5)
     at = ends[1, 0] / ends[1, 2]
     if 0 < at < 0.8 * _PICTURE[0]:
-        panel.text([at + 8, _PICTURE[1] - 14], "the wall's horizon", IDEAL, size=12)
+        aside, anchor = (8, "lm") if at < 320 else (-8, "rm")  # to the right of it is corner 3
+        panel.text(
+            [at + aside, _PICTURE[1] - 14], "the wall's horizon", IDEAL, anchor=anchor, size=12
+        )
 
 
 def _sentence(place: Array, std: Array) -> str:

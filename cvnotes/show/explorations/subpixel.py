@@ -94,8 +94,11 @@ def _square(paper: Paper, middle: Array, reach: float, title: str) -> Panel:
 
 
 def _sentence(true: Array, found: Array) -> str:
-    gradients, edges = np.linalg.norm(found - true, axis=1)
+    gradients, edges = (
+        f"{off:.3f} px" if off >= 0.0005 else "less than 0.001 px"
+        for off in np.linalg.norm(found - true, axis=1)
+    )
     return (
-        f"The corner is at ({true[0]:.2f}, {true[1]:.2f}). The gradients find it to "
-        f"{gradients:.3f} px, the edge model to {edges:.3f} px."
+        f"The corner is at ({true[0]:.2f}, {true[1]:.2f}). The gradients find it to {gradients}, "
+        f"the edge model to {edges}."
     )
