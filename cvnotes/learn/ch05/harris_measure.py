@@ -22,8 +22,8 @@ def harris_measure(Iu: Array, Iv: Array, k: float) -> float:
     uu = (Iu * Iu).sum()  # the sum of the squares of Iu
     vv = (Iv * Iv).sum()  # the sum of the squares of Iv
     uv = (Iu * Iv).sum()  # the sum of the mixed products
-    det = uu * vv - uv**2  # the determinant of M
-    trace = uu + vv  # the trace of M
+    det = uu * vv - uv**2  # the determinant of S
+    trace = uu + vv  # the trace of S
     return det - k * trace**2
 
 
@@ -49,13 +49,13 @@ MISTAKES = mistakes_in(harris_measure,
      "Of determinant and trace it is the trace that is squared and multiplied by k.",
      "trace**2 - k * det", "trace - k * det**2", "det**2 - k * trace**2"),
     ("another measure",
-     "That is another measure of M: an eigenvalue, the trace, or the determinant over the trace.",
+     "That is another measure of S: an eigenvalue, the trace, or the determinant over the trace.",
      "trace / 2 - np.sqrt(trace**2 / 4 - det)", "trace / 2 + np.sqrt(trace**2 / 4 - det)",
      "det / trace", "trace"),
     ("absolute gradients", "You took absolute values: the mixed sum needs the gradients' signs.",
      lambda Iu, Iv, k: harris_measure(np.abs(Iu), np.abs(Iv), k)),
     ("mean for sum",
-     "M is made of sums over the window; a mean in its place is smaller by the number of pixels.",
+     "S is made of sums over the window; a mean in its place is smaller by the number of pixels.",
      "(det - k * trace**2) / Iu.size**2",
      ("(Iu * Iu).sum()", "(Iu * Iu).mean()", "(Iv * Iv).sum()", "(Iv * Iv).mean()"),
      ("(Iu * Iv).sum()", "(Iu * Iv).mean()")),
@@ -66,22 +66,22 @@ EXERCISE = Exercise(
     name="harris_measure",
     chapter=5,
     title="Is there a corner?",
-    task="Give Harris' measure det M − k (trace M)² of a window, from the gradients Iu and Iv of "
-    "its pixels (both of one shape): M = Σ [Iu², Iu Iv; Iu Iv, Iv²] over the window.",
+    task="Give Harris' measure det S − k (trace S)² of a window, from the gradients Iu and Iv of "
+    "its pixels (both of one shape): S = Σ [Iu², Iu Iv; Iu Iv, Iv²] over the window.",
     hints=(
         "Multiply pixel by pixel first, then sum: three sums, Σ Iu², Σ Iv² and Σ Iu Iv.",
-        "det M = Σ Iu² Σ Iv² − (Σ Iu Iv)².",
-        "trace M = Σ Iu² + Σ Iv².",
+        "det S = Σ Iu² Σ Iv² − (Σ Iu Iv)².",
+        "trace S = Σ Iu² + Σ Iv².",
     ),
     cases=_windows,
     properties=(
-        Property("A corner gets det M − k (trace M)²."),
+        Property("A corner gets det S − k (trace S)²."),
         Property(
             "An edge, where all gradients are parallel, gets a negative number.",
             lambda measure, _: bool(measure < 0),
             about="edge",
         ),
-        Property("It gets exactly −k (trace M)², as det M is 0 there.", about="edge"),
+        Property("It gets exactly −k (trace S)², as det S is 0 there.", about="edge"),
     ),
     misconceptions=MISTAKES,
     steps=harris_measure,
