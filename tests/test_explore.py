@@ -160,6 +160,7 @@ def test_all_sliders_may_stand_at_their_ends_in_every_combination(name):
         check_sight(name, dict(zip((s.name for s in settings), values, strict=True)))
 
 
+@pytest.mark.once
 @each_model
 def test_thirty_random_settings_each_give_a_picture_of_the_same_size(name):
     rng = np.random.default_rng(7)
