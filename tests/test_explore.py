@@ -151,11 +151,13 @@ def test_each_slider_may_stand_at_either_end_and_at_zero(name):
 @pytest.mark.slow
 @each_model
 def test_all_sliders_may_stand_at_their_ends_in_every_combination(name):
-    """Of more than seven sliders, in as many as seven have: the same ones each time."""
+    """Of more than seven, in 128 that hold each combination of any three of them."""
     settings = MODELS[name].settings
     ends = np.array([*itertools.product(*((s.low, s.high) for s in settings))])
     if len(ends) > 2**7:
         ends = np.random.default_rng(7).permutation(ends)[: 2**7]
+        for three in itertools.combinations(ends.T, 3):
+            assert len(set(zip(*three, strict=True))) == 8
     for values in ends.tolist():
         check_sight(name, dict(zip((s.name for s in settings), values, strict=True)))
 
