@@ -16,6 +16,7 @@ import pytest
 from PIL import Image
 from scipy import ndimage
 from scipy.signal import fftconvolve
+from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation, Slerp
 from scipy.special import j1
 
@@ -48,7 +49,7 @@ from cvnotes.pictures import (
 )
 from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, explorations
-from cvnotes.show.explorations import clouds, cube, eleventh, gimbal, maps
+from cvnotes.show.explorations import clouds, cube, eleventh, formation, gimbal, maps, moved
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -75,6 +76,7 @@ from cvnotes.show.explorations.ransac import drawn_pairs
 from cvnotes.show.explorations.rectification import turned
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
+from cvnotes.show.explorations.subpixel import measured as two_finders
 from cvnotes.show.explorations.subpixel import photograph as photograph_of_corner
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
@@ -1141,6 +1143,67 @@ def test_the_word_sharp_is_not_written_over_that_of_a_pixel(written):
         panel, (sharp, _) = written["sharp"]
         assert abs(sharp - written["1 px"][1][0]) > 0.15 + 0.1  # half of "sharp", and "1 px"
         assert sharp < panel.x[1] - 0.1
+
+
+def test_close_to_level_the_number_on_the_other_side_is_told():
+    for angle in (88, 92):
+        x, beyond = numbers(MODELS["ring"].drawing(angle=angle).sentence)[2:5:2]
+        assert (x, beyond) == pytest.approx(np.tan(np.radians([angle, -angle])), rel=0.01)
+
+
+def test_no_finder_is_said_to_be_exact():
+    for noise, blur in itertools.product((0, 2), (0.2, 0.7)):
+        sentence = MODELS["subpixel"].drawing(noise=noise, blur=blur).sentence
+        u, v = numbers(sentence)[:2]
+        off = np.linalg.norm(two_finders(photograph_of_corner(u, v, blur, noise)) - [u, v], axis=1)
+        assert [f"{x:.3f}" if x >= 0.0005 else "less than 0.001" for x in off] == re.findall(
+            r"to (\S+|less than \S+) px", sentence
+        )
+        assert "0.000 px" not in sentence
+
+
+def test_the_shadow_of_the_moved_board_lies_on_the_floor(monkeypatch):
+    shadows, fill = [], Panel.polygons
+
+    def note(self, corners, ink):
+        shadows.extend([corners] * (ink == moved._SHADOW))
+        fill(self, corners, ink)
+
+    monkeypatch.setattr(Panel, "polygons", note)
+    for photo in (0, 6, 11):
+        MODELS["moved"].drawing(photo=photo)
+    floor = Delaunay(moved.on_sheet(moved._room().floor).reshape(-1, 2))
+    assert len(shadows) == 3
+    assert (floor.find_simplex(np.concatenate(shadows)) >= 0).all()
+
+
+def test_the_picture_of_the_next_view_is_as_wide_as_it_would_be():
+    grip = grip_of(MODELS["eleventh"].drawing(), "board")
+    assert grip.unit[0] == pytest.approx(grip.unit[1], rel=0.01)  # its pixels are square
+
+
+def test_what_is_behind_the_camera_is_cut_off_along_every_edge():
+    square = np.array([[0, 0, 110], [1, 0, 110], [1, 0, -90], [0, 0, -90]], float)
+    for turn in range(4):
+        cut = formation._before(np.roll(square, turn, 0)).round(9)
+        assert sorted(cut.tolist()) == [[0, 0, 10], [0, 0, 110], [1, 0, 10], [1, 0, 110]]
+
+
+def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
+    values = MODELS["formation"].values(way=2)
+    camera, (X, Y, Z) = formation.camera_of(values), formation.corner_of(values)
+    corners = np.array([*itertools.product((0, X), (Y, 0), (Z, formation._BACK))])
+    M = corners @ camera.R.T + camera.G[:3, 3]
+    low, high = formation._FRAME[0]
+    first, last = ((M[:, 0] / M[:, 2] * formation._PLANE - low) / (high - low) * 410)[
+        (M[:, 0] / M[:, 2]).argsort()[[0, -1]]
+    ]
+    left = 410 + 6 + MARGIN
+    strip = MODELS["formation"].picture(way=2)[TITLE : TITLE + 270, left : left + 410].astype(int)
+    rows = (np.abs(strip - colour(WORLD)).max(-1) < 40)[110:]  # the box itself is above
+    assert rows.any(axis=0).nonzero()[0][[0, -1]] == pytest.approx([first, last], abs=12)
+    middle = rows[:, round((first + last) / 2) - 4]
+    assert 3 <= np.ptp(middle.nonzero()[0]) + 1 == middle.sum()  # nothing is drawn through it
 
 
 def test_circle_and_ellipse_have_one_scale_and_the_rows_lie_at_right_angles_to_v2(written):

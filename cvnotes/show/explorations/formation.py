@@ -149,9 +149,11 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
         v0 = camera.A[1, 2]
         sides = camera.ideal([[-0.5, v0], [camera.size[0] - 0.5, v0]])[:, 0]
         frame.line(np.column_stack([_PLANE * sides, [_PLANE, _PLANE]]), CAMERA, 3)
-        flat = on_the_way(corners)  # in the end the faces are seen edge-on, and not drawn
-        frame.line(flat[[flat[:, 0].argmin(), flat[:, 0].argmax()]], WORLD, 4)
-        _draw_faces(frame, list(on_the_way(faces)), turn=-1)
+        if slid < 1:
+            _draw_faces(frame, list(on_the_way(faces)), turn=-1)
+        else:  # all faces are seen edge-on
+            flat = on_the_way(corners)
+            frame.line(flat[[flat[:, 0].argmin(), flat[:, 0].argmax()]], WORLD, 4)
     return frame, on_the_way(W)
 
 
