@@ -149,11 +149,10 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
         v0 = camera.A[1, 2]
         sides = camera.ideal([[-0.5, v0], [camera.size[0] - 0.5, v0]])[:, 0]
         frame.line(np.column_stack([_PLANE * sides, [_PLANE, _PLANE]]), CAMERA, 3)
+        flat = on_the_way(corners)  # what is left where the faces are seen edge-on
+        frame.line(flat[[flat[:, 0].argmin(), flat[:, 0].argmax()]], WORLD, 4)
         if slid < 1:
             _draw_faces(frame, list(on_the_way(faces)), turn=-1)
-        else:  # all faces are seen edge-on
-            flat = on_the_way(corners)
-            frame.line(flat[[flat[:, 0].argmin(), flat[:, 0].argmax()]], WORLD, 4)
     return frame, on_the_way(W)
 
 
