@@ -611,7 +611,7 @@ def test_a_billion_laughs_are_refused_at_once(saved):
     start = time.process_time()
     with pytest.raises(FileError, match="anchors and aliases are not read"):
         read_camera(saved("camera.yml", "\n".join(lines)))
-    assert time.process_time() - start < 1
+    assert time.process_time() - start < 5  # expanded, they would never end
 
 
 def test_xml_is_not_taken_for_yaml(saved):

@@ -231,7 +231,7 @@ def test_a_bomb_is_refused_from_its_header_quickly(tmp_path):
     start = time.process_time()
     with pytest.raises(FileError, match="more than 80 million pixels by its header"):
         read_photo(tmp_path / "bomb.png")
-    assert time.process_time() - start < 1
+    assert time.process_time() - start < 5  # to decode it takes minutes
 
 
 def test_a_file_too_large_for_any_photograph_is_not_loaded(tmp_path):
