@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, numbers, points, real
+from cvnotes.base import Array, CvnotesError, ShapeError, number, numbers, points, real
 from cvnotes.camera import move
 
 Triangles = npt.NDArray[np.intp]
@@ -28,6 +28,10 @@ class Surroundings:
         and so does a sheet unless its corners run clockwise as the light sees them.
     ambient : float
         Brightness of a face that is turned away from the light, 0 to 1.
+    occlusion : float
+        From how far, in the scene's unit, a face dims another one on which it stands (ambient
+        occlusion); 0 dims nothing. Faces are then rectangles of two triangles each, as those of
+        `box` and `quads` are.
     """
 
     horizon: Colour = (0.60, 0.63, 0.67)
@@ -35,6 +39,7 @@ class Surroundings:
     haze: float = np.inf
     light: tuple[float, float, float] = (0.5, -0.4, -0.8)
     ambient: float = 0.55
+    occlusion: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("horizon", "zenith", "light"):
@@ -46,6 +51,7 @@ class Surroundings:
             raise CvnotesError("light: (0, 0, 0) is no direction")
         if not self.haze > 0:
             raise CvnotesError(f"haze: expected a positive distance, got {self.haze:g}")
+        number(self.occlusion, "occlusion", at_least=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +116,9 @@ class Scene:
     @property
     def faces(self) -> Array:
         """Corners (k, 4, 3) of the faces in the WRF, if each is of two triangles."""
+        one, other = self.triangles[::2], self.triangles[1::2]
+        if len(one) != len(other) or (one[:, [0, 2]] != other[:, :2]).any():
+            raise CvnotesError("faces: expected two triangles each, as those of `box` and `quads`")
         return np.asarray(self.corners.reshape(-1, 6, 3)[:, [0, 1, 2, 5]])
 
     @cached_property

@@ -1,12 +1,14 @@
 """Posters on the walls of a room: letters that grow smaller, a switch beside them; and a sun."""
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import pose
 from cvnotes.pictures.meshes import Scene, box, join, quads
-from cvnotes.pictures.scenes import room
+from cvnotes.pictures.scenes import INDOORS, room
 
 # Five rows of five, from the top; a letter's cell is dark where there is an x.
 _LETTERS = {
@@ -77,7 +79,8 @@ def chart_room() -> Scene:
     u, v = SWITCH
     plate = box((u - 40, u + 40), (v - 40, v + 40), (-1, 0), (0.97, 0.97, 0.95))
     rocker = box((u - 22, u + 22), (v - 28, v + 28), (-4, -1), (0.80, 0.42, 0.30))
-    return join(chart(), plate, rocker, room().moved(wall_from_room))
+    scene = join(chart(), plate, rocker, room().moved(wall_from_room))
+    return replace(scene, around=INDOORS)
 
 
 def chart() -> Scene:
@@ -107,7 +110,7 @@ def poster_room() -> Scene:
     for x, top, colour in ((-2978.0, 20.0, (0.16, 0.36, 0.55)), (-2979.0, -900.0, _PAPER)):
         corners = [[x, top, 6300], [x, top, 8900], [x, 300, 8900], [x, 300, 6300]]
         parts.insert(0, quads(corners, [[0, 1, 2, 3]], colour))
-    return join(*parts)
+    return replace(join(*parts), around=INDOORS)
 
 
 def _paper() -> Scene:

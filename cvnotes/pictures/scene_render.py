@@ -87,12 +87,12 @@ def radiance(scene: Scene, camera: Camera, *, samples: int = 64) -> Array:
     surfaces = Surfaces.seen_by(camera, scene)
     middle = pixel_centres(camera.size)
     xy = camera.ideal(middle)
-    colour, place = surfaces.colours_along(in_tiles(xy))
+    colour, left, place = surfaces.colours_along(in_tiles(xy))
     planes = np.stack([out_of_tiles(x, camera.size) for x in (*(255 * colour), *place)])
     # 2. many, where a colour or a square changes, a shadow ends or an edge passes
     busy = changing(np.moveaxis(planes, 0, -1))
     busy |= crossed(camera, move(camera.G, scene.vertices)[scene.edges], xy)
-    picture: Array = np.stack([*planes[:3]], axis=-1)
+    picture: Array = out_of_tiles(left, camera.size)[..., None] * np.stack([*planes[:3]], axis=-1)
     picture[busy] = 255 * _supersampled(surfaces, camera, middle[busy], samples)
     return picture
 
@@ -142,6 +142,6 @@ def _supersampled(surfaces: Surfaces, camera: Camera, m: Array, samples: int) ->
         some = order[part]
         some = np.resize(some, -(-len(some) // TILE) * TILE)  # whole groups; a few twice
         xy = camera.ideal(m[some, None] + offsets).reshape(-1, TILE * samples, 2)
-        colour, _ = surfaces.colours_along(xy)
-        out[some] = colour.reshape(3, -1, samples).mean(axis=2).T
+        colour, left, _ = surfaces.colours_along(xy)
+        out[some] = (left * colour).reshape(3, -1, samples).mean(axis=2).T
     return out

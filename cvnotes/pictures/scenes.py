@@ -19,6 +19,7 @@ DESK_LIGHT = (-0.5, 0.35, -1.0)
 _OUTDOORS = Surroundings(
     (0.90, 0.93, 0.95), (0.36, 0.58, 0.84), haze=200e3, light=(-0.9, -0.9, -0.6), ambient=0.45
 )
+INDOORS = Surroundings(occlusion=800)
 _FAR = 1e6
 
 
@@ -100,7 +101,8 @@ def corridor() -> Scene:
         ]
     # Flat, and looking down: what shines casts no shadow.
     parts += [_floor((250, -250), -1080, (z, z + 1200), lamp) for z in range(2000, 29_000, 3000)]
-    return replace(join(shell, *parts), around=Surroundings(light=(0.25, -1, -0.35), ambient=0.7))
+    lamps = Surroundings(light=(0.25, -1, -0.35), ambient=0.7, occlusion=500)
+    return replace(join(shell, *parts), around=lamps)
 
 
 def room() -> Scene:
@@ -140,7 +142,7 @@ def room() -> Scene:
             (_rectangle((1700, 2900), (-1300, -300)), (0.62, 0.78, 0.90)),
         )
     ]
-    return join(shell, *furniture, *hung, *behind)
+    return replace(join(shell, *furniture, *hung, *behind), around=INDOORS)
 
 
 def room_with(target: Chessboard | TwoPlanes | ThreePlanes, G: npt.ArrayLike) -> Scene:
@@ -200,7 +202,7 @@ def desk(target: Chessboard) -> Scene:
         box((300, 385), (-150, -65), (-95, _THICK), (0.78, 0.33, 0.28)),
         target_scene(target),
     )
-    return replace(parts, around=Surroundings(light=DESK_LIGHT))
+    return replace(parts, around=Surroundings(light=DESK_LIGHT, occlusion=50))
 
 
 _PRINT = ((0.06, 0.06, 0.07), (0.98, 0.98, 0.97))

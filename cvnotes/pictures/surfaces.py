@@ -11,6 +11,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, look_at, move
 from cvnotes.pictures.antialiasing import Mask
 from cvnotes.pictures.meshes import Scene, Surroundings
+from cvnotes.pictures.occlusion import Occlusion
 from cvnotes.pictures.raycast import Indices, depth_along, edge_functions, search
 
 _FAR = 100  # how far away the light is, in sizes of what casts shadows
@@ -28,6 +29,7 @@ class Surfaces(NamedTuple):
     light: Array  # (4, 4) CRF → the light's frame
     shading: Array  # (k, 3, 3) the triangles that cast shadows, in the light's frame
     extent: Array  # (2, m)
+    occlusion: Occlusion | None
     around: Surroundings
     down: Array  # (3,) the world's y axis in the CRF
 
@@ -50,6 +52,7 @@ class Surfaces(NamedTuple):
         colours = np.array(shade)[..., None, None] * scene.colours
         casting = scene.corners[scene.normals @ light > 0]
         from_light = _seen_from(light, casting)
+        reach = scene.around.occlusion
         return cls(
             corners,
             forms,
@@ -59,14 +62,16 @@ class Surfaces(NamedTuple):
             from_light @ np.linalg.inv(camera.G),
             move(from_light, casting),
             scene.extent.T.copy(),
+            Occlusion.of_faces(move(camera.G, scene.faces), reach) if reach else None,
             scene.around,
             camera.R[:, 1],
         )
 
-    def colours_along(self, xy: Array) -> tuple[Array, Array]:
-        """Return the colours (3, groups, k) that rays (groups, k, 2) see, and where: (3, …).
+    def colours_along(self, xy: Array) -> tuple[Array, Array, Array]:
+        """Return the colours (3, groups, k) that rays (groups, k, 2) see, how dimmed, and where.
 
-        That is the square (i, j) of the checker, and whether it is in a shadow.
+        Dimmed by occlusion, to a part (groups, k) of them; where (3, groups, k) is the square
+        (i, j) of the checker, and whether it is in a shadow.
         """
         triangle = search(self.corners, xy)
         depth = depth_along(self.corners, triangle, xy)
@@ -82,7 +87,11 @@ class Surfaces(NamedTuple):
             horizon = np.array(self.around.horizon)[:, None, None]
             colour = horizon + clear * (colour - horizon)
         colour[:, none] = self._sky(x[none], y[none])
-        return colour, np.stack([*square, dark])
+        left = np.ones(triangle.shape)
+        if self.occlusion:
+            on = triangle >= 0
+            left[on] = self.occlusion.along(triangle[on] // 2, depth[on], x[on], y[on])
+        return colour, left, np.stack([*square, dark])
 
     def _in_shadow(self, triangle: Indices, depth: Array, xy: Array) -> Mask:
         """Return where rays (groups, k, 2) end in a shadow: the light sees something else first."""

@@ -1,0 +1,74 @@
+"""Ambient occlusion: even light comes from all around, and less of it to where faces meet.
+
+A face that stands on another one hides a part of the light from the strip beside it: the more the
+nearer, and no farther than it is high. That is worked out on a grid over each face, and read off
+between the nodes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from cvnotes.base import Array
+
+Indices = npt.NDArray[np.intp]
+
+_HIDDEN = 0.32  # of the light that is left, by an upright face right beside
+_STEPS = 6  # of a grid, within the reach
+_MOST = 400  # of them along a side
+_LOW = 1e-9  # of the reach: what stands no higher is flat
+
+
+class Occlusion(NamedTuple):
+    """What is left of the light (0 to 1) on a grid over each face, and where the grids lie."""
+
+    left: Array  # (n,) the grids, one after the other, row after row
+    first: Indices  # (f,) where each one begins
+    steps: Indices  # (2, f) along its rows and columns
+    forms: Array  # (2, 4, f) (a, d): a point M lies in column a·M + d, and in a row alike
+
+    @classmethod
+    def of_faces(cls, faces: Array, reach: float) -> "Occlusion":
+        """Work out what rectangles (f, 4, 3) in the CRF hide, each on the side that is seen."""
+        origin = faces[:, 0]
+        sides = np.stack([faces[:, 1] - origin, faces[:, 3] - origin])
+        squared = np.maximum((sides**2).sum(axis=-1), 1e-300)
+        normals = np.cross(*sides) / np.sqrt(squared.prod(axis=0))[:, None]
+        normals *= -np.sign((normals * origin).sum(axis=-1, keepdims=True))  # to the camera
+        low, high = faces.min(axis=1), faces.max(axis=1)
+        grids, steps = [], np.ones((2, len(faces)), dtype=np.intp)
+        for f, normal in enumerate(normals):
+            reaches = np.minimum(((faces - origin[f]) @ normal).max(axis=1), reach)
+            gap = np.maximum(low - high[f], low[f] - high).max(axis=1)
+            upright = 1 - (normals @ normal) ** 2
+            near = np.flatnonzero((gap < reaches) & (reaches > _LOW * reach) & (upright > 0.1))
+            if len(near):
+                steps[:, f] = np.ceil(_STEPS * np.sqrt(squared[:, f]) / reach).clip(1, _MOST)
+            s, t = (np.linspace(0, 1, n + 1)[:, None] for n in steps[:, f])
+            M = origin[f] + s * sides[0, f] + t[:, None] * sides[1, f]
+            hidden = np.zeros(M.shape[:2])
+            for g in near:
+                apart = M - origin[g]  # from what is nearest on the other face
+                for side, length in zip(sides[:, g], squared[:, g], strict=True):
+                    apart = apart - (apart @ side / length).clip(0, 1)[..., None] * side
+                distance = np.sqrt((apart**2).sum(axis=-1))
+                hidden += upright[g] * (1 - distance / reaches[g]).clip(0) ** 2
+            grids.append(1 / (1 + _HIDDEN / (1 - _HIDDEN) * hidden.ravel()))
+        first = np.cumsum([0] + [len(grid) for grid in grids[:-1]])
+        across = steps[..., None] * sides / squared[..., None]
+        forms = np.dstack([across, -(across * origin).sum(axis=-1)])
+        return cls(np.concatenate(grids), first, steps, forms.swapaxes(1, 2).copy())
+
+    def along(self, face: npt.NDArray[np.int32], depth: Array, x: Array, y: Array) -> Array:
+        """Return what is left of the light where rays (x, y, 1) end on faces; all (n,)."""
+        steps = self.steps[:, face]
+        a, b, c, d = np.moveaxis(self.forms[..., face], 1, 0)
+        place = (depth * (a * x + b * y + c) + d).clip(0, steps)
+        node = np.minimum(place.astype(np.intp), steps - 1)
+        s, t = place - node
+        width = steps[0] + 1
+        start = self.first[face] + node[1] * width + node[0]
+        rows = ((1 - s) * self.left[k] + s * self.left[k + 1] for k in (start, start + width))
+        above, below = rows
+        return np.asarray((1 - t) * above + t * below)
