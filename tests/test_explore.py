@@ -1037,6 +1037,21 @@ def test_each_kind_of_map_keeps_what_its_row_of_the_table_says(values, kept):
     assert maps.measured(maps.matrix(given))[0] == pytest.approx(side)
 
 
+def test_a_hand_reaches_all_four_kinds_of_maps_though_it_is_not_exact():
+    model = MODELS["maps"]
+    turn = np.radians(20)
+    right, up = np.array([np.cos(turn), np.sin(turn)]), np.array([np.sin(turn), -np.cos(turn)])
+    kinds = [
+        ("Euclidean", "right side", 1.05 * np.array([np.cos(1), np.sin(1)])),
+        ("similar", "right side", 1.3 * right),
+        ("affine", "top", up + 0.4 * right + 0.05 * up),
+        ("projective", "top", 1.3 * up + 0.05 * right),
+    ]
+    for kind, grip, at in kinds:
+        pulled = model.dragged(grip, at)
+        assert f"A map that is {kind}" in model.drawing(**pulled).sentence
+
+
 def test_h_is_shortest_where_the_smaller_singular_value_says():
     for parallel in (0, 0.4, 0.9):
         said = [

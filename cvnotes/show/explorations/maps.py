@@ -19,6 +19,7 @@ _MEASURED = (
     ("upper half : lower", "{:.3f}"),
     ("cross-ratio", "{:.2f}"),
 )
+_SNAP = 0.08  # of size, shear and tilt: so near to what changes nothing a hand means just that
 _KINDS = "Euclidean", "similar", "affine", "projective"
 _NUMBERS = 3, 4, 6, 8
 
@@ -54,7 +55,7 @@ def kind(values: Values) -> int:
 
 
 def _pulled_right(_: Values, at: Array) -> Values:
-    return {"turn": float(np.degrees(np.arctan2(at[1], at[0]))), "size": float(np.hypot(*at))}
+    return {"turn": float(np.degrees(np.arctan2(at[1], at[0]))), "size": _snap(np.hypot(*at), 1)}
 
 
 def _pulled_top(values: Values, at: Array) -> Values:
@@ -62,7 +63,11 @@ def _pulled_top(values: Values, at: Array) -> Values:
     a, k = np.radians(values["turn"]), values["size"]
     x, y = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]) @ at / k
     w = 1 / max(-y, 0.5)
-    return {"tilt": float(1 - w), "shear": float(-x * w)}
+    return {"tilt": _snap(1 - w, 0), "shear": _snap(-x * w, 0)}
+
+
+def _snap(value: float, still: float) -> float:
+    return still if abs(value - still) < _SNAP else float(value)
 
 
 def measured(H: Array) -> Array:
@@ -90,6 +95,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         (350, 350), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its right side, and at its top"
     )
     panel.line(_SQUARE, MUTED, 1.2, dash=5)
+    if values["tilt"]:  # both sides run on to their vanishing point
+        far = apply(H, [[0, 1e6]])[0]
+        panel.segments([[end, far] for end in apply(H, _SQUARE[:2] * [1, -1])], MUTED, 0.8)
     steps = np.linspace(-1, 1, 5)
     panel.polygons(apply(H, _SQUARE[:4])[None], "#E3F3EE")
     for v in steps:
