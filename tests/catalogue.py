@@ -176,7 +176,7 @@ ELSEWHERE = {
     ),
     65: (
         "20 000 points",
-        "homography::many_points_need_neither_a_square_of_their_number_nor_a_second",
+        "homography::many_points_need_no_square_of_their_number",
     ),
     66: (
         "similar data",
