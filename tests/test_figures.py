@@ -338,7 +338,7 @@ def test_line_drawings_are_small_png_and_photographs_jpeg():
     assert mime == "image/png"
     assert len(data) < 30_000
     photograph = RNG.integers(0, 255, (480, 640, 3), dtype=np.uint8)
-    assert encode(draw_image(photograph).figure)[1] == "image/jpeg"
+    assert encode(draw_image(photograph).figure)[1] == "image/webp"
 
 
 def test_the_colours_of_a_drawing_go_to_its_edges_and_not_to_its_paper():

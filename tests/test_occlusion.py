@@ -55,6 +55,15 @@ def test_two_walls_dim_more_than_one_and_never_all():
     assert 0.1 < on_the_floor(*many, x=[-100.0]) < two < one < 1
 
 
+def test_a_post_dims_less_far_than_a_wall():
+    def beside(half):
+        return on_the_floor(box((-200, 0), (-900, 0), (-half, half)), x=[20.0, 200.0])
+
+    post, wide = beside(30), beside(3000)
+    assert 1 - post[0] > 0.3
+    assert 1 - post[1] < 0.5 * (1 - wide[1])
+
+
 def test_what_hangs_below_a_plane_or_lies_along_it_dims_nothing():
     leg = box((-100, 100), (1, 800), (-100, 100))
     sheet = box((-1500, 1500), (-1, -0.5), (-1500, 1500), (1, 1, 1))

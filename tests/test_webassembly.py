@@ -25,7 +25,7 @@ SAID = ("no OpenCV in a browser", "can't start new thread")
 NUMBER = re.compile(r"(?<![\w.])[-−+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")
 SANITISE = (
     (re.compile("0x[0-9a-fA-F]{6,}"), "ADDRESS"),
-    (re.compile(r"data:image/(png|jpeg|svg\+xml);base64,[A-Za-z0-9+/=]+"), "IMAGE"),
+    (re.compile(r"data:image/(png|webp|svg\+xml);base64,[A-Za-z0-9+/=]+"), "IMAGE"),
 )
 
 

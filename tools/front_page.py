@@ -27,7 +27,7 @@ PICTURE = ROOT / "docs" / "figures" / "front.png"
 EXPLORED = "straighten"
 CARD = (480, 320)  # px: twice what is shown
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
-_IMAGE = re.compile(r'src="data:image/(?:png|jpeg);base64,([^"]+)"')
+_IMAGE = re.compile(r'src="data:image/(?:png|webp);base64,([^"]+)"')
 
 # The most frequent mistake of all, as a student writes it.
 WRONG = """def my_camera_centre(R, T):

@@ -21,7 +21,7 @@ _THREE = 2.6  # from which it may have three panels
 _GAP = 8  # px without ink that part two panels; a photograph blurs four of twelve
 _INK = 250  # grey levels below which something is drawn
 _STORED = re.compile(
-    r'(<img alt="[^"]*" width="(\d+)" style=")([^"]*" )src="data:image/(png|jpeg);base64,([^"]+)"'
+    r'(<img alt="[^"]*" width="(\d+)" style=")([^"]*" )src="data:image/(png|webp);base64,([^"]+)"'
 )
 
 
