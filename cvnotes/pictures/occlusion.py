@@ -1,8 +1,8 @@
 """Ambient occlusion: even light comes from all around, and less of it to where faces meet.
 
 A face that stands on another one hides a part of the light from the strip beside it: the more the
-nearer, no farther than it is high, and the less the narrower it is. That is worked out on a grid
-over each face, and read off between the nodes.
+nearer, no farther than it is high, and the less the narrower it is and the more it is seen edge-on.
+That is worked out on a grid over each face, and read off between the nodes.
 """
 
 from typing import NamedTuple
@@ -17,7 +17,7 @@ Indices = npt.NDArray[np.intp]
 _HIDDEN = 0.32  # of the light that is left, by an upright face right beside
 _STEPS = 6  # of a grid, within the reach
 _MOST = 400  # of them along a side
-_LOW = 1e-9  # of the reach: what stands no higher is flat
+_TINY = 1e-9  # of the reach: what stands no higher is flat, what is no farther apart touches
 
 
 class Occlusion(NamedTuple):
@@ -38,14 +38,14 @@ class Occlusion(NamedTuple):
         away = (normals * origin).sum(axis=-1, keepdims=True) > 0
         normals = np.where(away, -normals, normals)  # towards the camera
         low, high = faces.min(axis=1), faces.max(axis=1)
-        grids, steps = [], np.ones((2, len(faces)), dtype=np.intp)
+        tiny, grids, steps = _TINY * reach, [], np.ones((2, len(faces)), dtype=np.intp)
         for f, normal in enumerate(normals):
             reaches = np.minimum(((faces - origin[f]) @ normal).max(axis=1), reach)
             gap = np.maximum(low - high[f], low[f] - high).max(axis=1)
             along = np.cross(normals, normal)  # where both planes meet, as long as the sine
             upright = (along**2).sum(axis=-1)
             width = np.ptp((faces @ along[..., None])[..., 0], axis=1)
-            near = np.flatnonzero((gap < reaches) & (reaches > _LOW * reach) & (upright > 0.1))
+            near = np.flatnonzero((gap < reaches) & (reaches > tiny) & (upright > 0.1))
             if len(near):
                 steps[:, f] = np.ceil(_STEPS * np.sqrt(squared[:, f]) / reach).clip(1, _MOST)
             s, t = (np.linspace(0, 1, n + 1)[:, None] for n in steps[:, f])
@@ -56,7 +56,8 @@ class Occlusion(NamedTuple):
                 for side, length in zip(sides[:, g], squared[:, g], strict=True):
                     apart = apart - (apart @ side / length).clip(0, 1)[..., None] * side
                 distance = np.sqrt((apart**2).sum(axis=-1))
-                weight = upright[g] * width[g] / (width[g] + distance)
+                facing = (abs(apart @ normals[g]) + tiny) / (distance + tiny)
+                weight = upright[g] * facing * width[g] / (width[g] + distance)
                 hidden += weight * (1 - distance / reaches[g]).clip(0) ** 2
             grids.append(1 / (1 + _HIDDEN / (1 - _HIDDEN) * hidden.ravel()))
         first = np.cumsum([0] + [len(grid) for grid in grids[:-1]])
