@@ -1,8 +1,6 @@
 """Draw the picture with which README and the site begin: python tools/draw_front.py."""
 
-from front_page import EXPLORED, PICTURE
-
-from cvnotes.show import explorations
+from front_page import PICTURE, drawn
 
 if __name__ == "__main__":
-    PICTURE.write_bytes(explorations.model(EXPLORED).still().data)
+    drawn().save(PICTURE, optimize=True)

@@ -117,8 +117,14 @@ def put_pictures(made: Path) -> None:
     for path in sorted(ROOT.glob("notebooks/*.ipynb")):
         richest(path).save(made / FOLDER / f"card-{path.stem}.jpg", quality=80, optimize=True)
     (made / FOLDER / "front.png").write_bytes(PICTURE.read_bytes())
-    content = explorations.model(EXPLORED).narrow_still().data
-    (made / FOLDER / "front-narrow.png").write_bytes(content)
+    drawn(narrow=True).save(made / FOLDER / "front-narrow.png", optimize=True)
+
+
+def drawn(narrow: bool = False) -> Image.Image:
+    """Draw the exploration at twice its resolution, in 256 colours: PNG is shown everywhere."""
+    model = explorations.model(EXPLORED)
+    picture = model.drawn_on(Paper(2, narrow=narrow), model.values()).picture
+    return Image.fromarray(picture).quantize(256, dither=Image.Dither.NONE)
 
 
 def richest(path: Path) -> Image.Image:
