@@ -466,7 +466,7 @@ def test_the_wall_is_measured_by_the_four_corners_that_are_given():
     straight = model.picture()[TITLE:, 372 + 6 + MARGIN :].astype(int)
     u, v = np.rint((mm - [-440, -70]) * 346 / 900).astype(int)
     wall, around = straight[v - 60, u], straight[v - 24 : v + 25, u - 24 : u + 25]
-    rows, columns = np.nonzero((around - wall).min(axis=-1) > 12)  # paler than wall and line
+    rows, columns = np.nonzero((around - wall).min(axis=-1) > 4)  # paler than wall and line
     assert np.ptp(columns) == pytest.approx(80 * 346 / 900, abs=2.5)
     assert np.ptp(rows) == pytest.approx(80 * 346 / 900, abs=2.5)
 
@@ -851,13 +851,12 @@ def test_the_tower_and_its_shadow_lie_where_the_renderer_puts_them():
     """The same desk with a box on it, ray by ray."""
     camera, on_desk = cube._CAMERA.resized((540, 405)), desk(course.board())
     tower = box((50, 100), (25, 75), (-75, 0), (0.96, 0.55, 0.16))
-    bare, full = (
-        render_scene(scene, camera, samples=4).astype(int)
-        for scene in (on_desk, join(on_desk, tower))
-    )
+    even = replace(on_desk.around, occlusion=0)
+    scenes = on_desk, *(replace(scene, around=even) for scene in (on_desk, join(on_desk, tower)))
+    bare, empty, full = (render_scene(scene, camera, samples=4).astype(int) for scene in scenes)
     panel = slice(TITLE, TITLE + 405), slice(MARGIN, MARGIN + 540)
     drawn = MODELS["cube"].picture(x=75, y=50, height=75)[panel].astype(int)
-    true, ours = (np.abs(picture - bare).sum(-1) > 60 for picture in (full, drawn))
+    true, ours = (np.abs(one - two).sum(-1) > 60 for one, two in ((full, empty), (drawn, bare)))
     around = list(itertools.product((-1, 0, 1), repeat=2))
     true, ours = (  # without the edges of squares, where two sizes of pixels differ
         np.logical_and.reduce([np.roll(part, by, (0, 1)) for by in around]) for part in (true, ours)
@@ -1453,11 +1452,11 @@ def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_rig
         said = shown(u=u, v=v).sentence
         assert "agree best" in said
         assert numbers(said)[-1] == pytest.approx(depth, rel=0.03)
-    assert "nothing here tells" in shown(u=230, v=230).sentence  # on the plain wall
+    assert "nothing here tells" in shown(u=250, v=230).sentence  # on the plain wall
     *_, nearest, farthest = numbers(shown(u=310, v=202).sentence)  # along the blackboard's edge
     assert nearest < 10 < farthest
     assert farthest > 1.2 * nearest
-    assert re.search(r"as well from [\d.]+ m on", shown(u=400, v=250).sentence)  # in the shadow
+    assert re.search(r"as well from [\d.]+ m on", shown(u=240, v=215).sentence)  # not near by
     assert numbers(shown(u=449, v=205, depth=7600).sentence)[1] < 2
 
 
@@ -1522,7 +1521,7 @@ def test_stepping_back_and_zooming_keeps_the_box_and_enlarges_what_is_behind_it(
         left, top = MARGIN + round((u + 0.5) * scale), TITLE + round((v + 0.5) * scale)
         side = round(100 * scale)
         front = picture[top + 3 : top + side - 3, left + 3 : left + side - 3].reshape(-1, 3)
-        assert np.ptp(front.astype(int), axis=0).max() < 8
+        assert np.ptp(front[:, 1] / front[:, 0]) < 0.04  # one colour, dimmer at its foot
         assert np.abs(front[0].astype(int) - picture[top + side // 2, left + side + 4]).max() > 40
 
 
