@@ -1457,7 +1457,7 @@ def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_rig
     assert nearest < 10 < farthest
     assert farthest > 1.2 * nearest
     assert re.search(r"as well from [\d.]+ m on", shown(u=240, v=215).sentence)  # not near by
-    assert numbers(shown(u=449, v=205, depth=7600).sentence)[1] < 2
+    assert numbers(shown(u=449, v=205, depth=7600).sentence)[1] < 5
 
 
 def test_the_half_circles_of_parallel_boards_are_one():
