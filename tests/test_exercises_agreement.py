@@ -7,7 +7,7 @@ from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED, RIGHT_THERE_NOT_HERE,
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.judge import judge
 
-pytestmark = pytest.mark.usefixtures("worked_out_once")
+pytestmark = [pytest.mark.usefixtures("worked_out_once"), pytest.mark.once]
 
 FUNCTIONS = [name for name, e in EXERCISES.items() if e.answer == "function"]
 

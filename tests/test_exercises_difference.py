@@ -13,6 +13,8 @@ from cvnotes.tutor.checker.equality import within
 from cvnotes.tutor.checker.exercise import Case, Exercise, Misconception, Property
 from cvnotes.tutor.checker.judge import judge
 
+pytestmark = pytest.mark.once
+
 SEED = 2024
 
 

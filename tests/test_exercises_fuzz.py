@@ -15,7 +15,7 @@ from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.judge import judge
 from cvnotes.tutor.checker.outcome import Outcome
 
-pytestmark = pytest.mark.usefixtures("worked_out_once")
+pytestmark = [pytest.mark.usefixtures("worked_out_once"), pytest.mark.once]
 
 SEED = 2024
 CASES = {name: list(e.solved_cases(SEED)) for name, e in EXERCISES.items() if not e.parts}

@@ -15,6 +15,8 @@ from cvnotes.learn.exercises import COURSE
 from cvnotes.tutor.checker.soundness import faults
 from cvnotes.tutor.course import Session
 
+pytestmark = pytest.mark.once
+
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "docs" / "exercises.md").read_text(encoding="utf-8")
 CODE = re.search(r"```python\n(.*?)```", PAGE, re.S)[1]

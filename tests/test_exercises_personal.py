@@ -11,6 +11,8 @@ from cvnotes.camera import Camera
 from cvnotes.learn import check, personal_camera
 from cvnotes.learn.personal import normals, uniforms
 
+pytestmark = pytest.mark.once
+
 
 def test_these_numbers_never_change():
     own = personal_camera("s123456")

@@ -14,6 +14,8 @@ from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.judge import judge
 from cvnotes.tutor.checker.sandbox import run
 
+pytestmark = pytest.mark.once
+
 SEED = 2024
 
 

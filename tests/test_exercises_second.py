@@ -18,6 +18,8 @@ from cvnotes.tutor.checker.judge import judge
 from cvnotes.tutor.checker.sandbox import ask
 from cvnotes.tutor.checker.soundness import judged
 
+pytestmark = pytest.mark.once
+
 # Chapter 0
 
 

@@ -142,6 +142,7 @@ def check_sight(name, values):
 # Every exploration.
 
 
+@pytest.mark.once
 @each_model
 def test_each_slider_may_stand_at_either_end_and_at_zero(name):
     for s in MODELS[name].settings:
@@ -172,6 +173,7 @@ def test_thirty_random_settings_each_give_a_picture_of_the_same_size(name):
     assert shapes == {MODELS[name].picture().shape}
 
 
+@pytest.mark.once
 @each_model
 def test_every_slider_moves_something(name):
     """From the start; or from where the others stand at an end: some only act with another."""
@@ -2037,6 +2039,7 @@ def data_of(explorer):
     return json.loads(html.unescape(re.search(r'data-explore="([^"]*)"', shown)[1]))
 
 
+@pytest.mark.once
 @each_model
 def test_a_page_is_told_what_its_sliders_need_and_is_answered_with_the_same_picture(name):
     told = data_of(explorations.explore(name))
