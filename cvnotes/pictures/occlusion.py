@@ -5,12 +5,14 @@ nearer, no farther than it is high, and the less the narrower it is and the more
 That is worked out on a grid over each face, and read off between the nodes.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
+from cvnotes.camera import Camera
 
 Indices = npt.NDArray[np.intp]
 
@@ -29,41 +31,12 @@ class Occlusion(NamedTuple):
     forms: Array  # (2, 4, f) (a, d): a point M lies in column a·M + d, and in a row alike
 
     @classmethod
-    def of_faces(cls, faces: Array, reach: float) -> "Occlusion":
-        """Work out what rectangles (f, 4, 3) in the CRF hide, each on the side that is seen."""
-        origin = faces[:, 0]
-        sides = np.stack([faces[:, 1] - origin, faces[:, 3] - origin])
-        squared = np.maximum((sides**2).sum(axis=-1), 1e-300)
-        normals = np.cross(*sides) / np.sqrt(squared.prod(axis=0))[:, None]
-        away = (normals * origin).sum(axis=-1, keepdims=True) > 0
-        normals = np.where(away, -normals, normals)  # towards the camera
-        low, high = faces.min(axis=1), faces.max(axis=1)
-        tiny, grids, steps = _TINY * reach, [], np.ones((2, len(faces)), dtype=np.intp)
-        for f, normal in enumerate(normals):
-            reaches = np.minimum(((faces - origin[f]) @ normal).max(axis=1), reach)
-            gap = np.maximum(low - high[f], low[f] - high).max(axis=1)
-            along = np.cross(normals, normal)  # where both planes meet, as long as the sine
-            upright = (along**2).sum(axis=-1)
-            width = np.ptp((faces @ along[..., None])[..., 0], axis=1)
-            near = np.flatnonzero((gap < reaches) & (reaches > tiny) & (upright > 0.1))
-            if len(near):
-                steps[:, f] = np.ceil(_STEPS * np.sqrt(squared[:, f]) / reach).clip(1, _MOST)
-            s, t = (np.linspace(0, 1, n + 1)[:, None] for n in steps[:, f])
-            M = origin[f] + s * sides[0, f] + t[:, None] * sides[1, f]
-            hidden = np.zeros(M.shape[:2])
-            for g in near:
-                apart = M - origin[g]  # from what is nearest on the other face
-                for side, length in zip(sides[:, g], squared[:, g], strict=True):
-                    apart = apart - (apart @ side / length).clip(0, 1)[..., None] * side
-                distance = np.sqrt((apart**2).sum(axis=-1))
-                facing = (abs(apart @ normals[g]) + tiny) / (distance + tiny)
-                weight = upright[g] * facing * width[g] / (width[g] + distance)
-                hidden += weight * (1 - distance / reaches[g]).clip(0) ** 2
-            grids.append(1 / (1 + _HIDDEN / (1 - _HIDDEN) * hidden.ravel()))
-        first = np.cumsum([0] + [len(grid) for grid in grids[:-1]])
-        across = steps[..., None] * sides / squared[..., None]
-        forms = np.dstack([across, -(across * origin).sum(axis=-1)])
-        return cls(np.concatenate(grids), first, steps, forms.swapaxes(1, 2).copy())
+    def seen_by(cls, camera: Camera, faces: Array, reach: float) -> "Occlusion":
+        """Work out what rectangles (f, 4, 3) in the WRF hide, each on the side that is seen."""
+        normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 3] - faces[:, 0])
+        away = ((camera.centre - faces[:, 0]) * normals).sum(axis=-1) < 0
+        left, first, steps, forms = _grids(faces.tobytes(), away.tobytes(), reach)
+        return cls(left, first, steps, (forms @ np.linalg.inv(camera.G)).swapaxes(1, 2).copy())
 
     def along(self, face: npt.NDArray[np.int32], depth: Array, x: Array, y: Array) -> Array:
         """Return what is left of the light where rays (x, y, 1) end on faces; all (n,)."""
@@ -77,3 +50,41 @@ class Occlusion(NamedTuple):
         rows = ((1 - s) * self.left[k] + s * self.left[k + 1] for k in (start, start + width))
         above, below = rows
         return np.asarray((1 - t) * above + t * below)
+
+
+@lru_cache(maxsize=8)
+def _grids(corners: bytes, turned: bytes, reach: float) -> tuple[Array, Indices, Indices, Array]:
+    """Work it out once for all cameras that see the same sides of the same faces."""
+    faces = np.frombuffer(corners).reshape(-1, 4, 3)
+    origin = faces[:, 0]
+    sides = np.stack([faces[:, 1] - origin, faces[:, 3] - origin])
+    squared = np.maximum((sides**2).sum(axis=-1), 1e-300)
+    normals = np.cross(*sides) / np.sqrt(squared.prod(axis=0))[:, None]
+    normals[np.frombuffer(turned, dtype=bool)] *= -1
+    low, high = faces.min(axis=1), faces.max(axis=1)
+    tiny, grids, steps = _TINY * reach, [], np.ones((2, len(faces)), dtype=np.intp)
+    for f, normal in enumerate(normals):
+        reaches = np.minimum(((faces - origin[f]) @ normal).max(axis=1), reach)
+        gap = np.maximum(low - high[f], low[f] - high).max(axis=1)
+        along = np.cross(normals, normal)  # where both planes meet, as long as the sine
+        upright = (along**2).sum(axis=-1)
+        width = np.ptp((faces @ along[..., None])[..., 0], axis=1)
+        near = np.flatnonzero((gap < reaches) & (reaches > tiny) & (upright > 0.1))
+        if len(near):
+            steps[:, f] = np.ceil(_STEPS * np.sqrt(squared[:, f]) / reach).clip(1, _MOST)
+        s, t = (np.linspace(0, 1, n + 1)[:, None] for n in steps[:, f])
+        M = origin[f] + s * sides[0, f] + t[:, None] * sides[1, f]
+        hidden = np.zeros(M.shape[:2])
+        for g in near:
+            apart = M - origin[g]  # from what is nearest on the other face
+            for side, length in zip(sides[:, g], squared[:, g], strict=True):
+                apart = apart - (apart @ side / length).clip(0, 1)[..., None] * side
+            distance = np.sqrt((apart**2).sum(axis=-1))
+            facing = (abs(apart @ normals[g]) + tiny) / (distance + tiny)
+            weight = upright[g] * facing * width[g] / (width[g] + distance)
+            hidden += weight * (1 - distance / reaches[g]).clip(0) ** 2
+        grids.append(1 / (1 + _HIDDEN / (1 - _HIDDEN) * hidden.ravel()))
+    first = np.cumsum([0] + [len(grid) for grid in grids[:-1]])
+    across = steps[..., None] * sides / squared[..., None]
+    forms = np.dstack([across, -(across * origin).sum(axis=-1)])
+    return np.concatenate(grids), first, steps, forms

@@ -62,7 +62,7 @@ class Surfaces(NamedTuple):
             from_light @ np.linalg.inv(camera.G),
             move(from_light, casting),
             scene.extent.T.copy(),
-            Occlusion.of_faces(move(camera.G, scene.faces), reach) if reach else None,
+            Occlusion.seen_by(camera, scene.faces, reach) if reach else None,
             scene.around,
             camera.R[:, 1],
         )
