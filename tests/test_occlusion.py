@@ -18,10 +18,10 @@ ABOVE = Camera(
 )
 
 
-def on_the_floor(*bodies, x, camera=ABOVE, around=EVEN):
-    """Grey of the floor at (x, 0, 0) from 0 to 1, white where nothing dims it."""
+def on_the_floor(*bodies, x, z=0.0, camera=ABOVE, around=EVEN):
+    """Grey of the floor at (x, 0, z) from 0 to 1, white where nothing dims it."""
     seen = radiance(replace(join(FLOOR, *bodies), around=around), camera)[..., 0] / 255
-    M = np.stack(np.broadcast_arrays(x, 0.0, 0.0), axis=-1)
+    M = np.stack(np.broadcast_arrays(x, 0.0, z), axis=-1)
     u, v = np.rint(camera.project(M)).astype(int).T
     return seen[v, u]
 
@@ -61,7 +61,19 @@ def test_a_post_dims_less_far_than_a_wall():
 
     post, wide = beside(30), beside(3000)
     assert 1 - post[0] > 0.2
-    assert 1 - post[1] < 0.5 * (1 - wide[1])
+    assert 1 - post[1] < 0.6 * (1 - wide[1])
+
+
+def test_above_a_cupboard_its_top_dims_the_wall_and_its_front_does_not():
+    """Round the corner of a body there is no strip that two of its faces dim."""
+    seen = Camera(ABOVE.A, look_at([0, -3000, -10], [0, 0, 0]), size=ABOVE.size)
+    body = box((-600, 0), (-400, 0), (0, 600))
+    beside = on_the_floor(body, x=[40.0], camera=seen, z=300.0)
+    before = on_the_floor(body, x=[40.0], camera=seen, z=-40.0)  # off its corner
+    behind = on_the_floor(body, x=[-40.0], camera=seen, z=-200.0)  # before its front alone
+    alone = on_the_floor(wall(400), x=[200.0], camera=seen)
+    assert before == pytest.approx(beside, abs=0.05)
+    assert behind == pytest.approx(alone, abs=0.06)
 
 
 def test_what_hangs_below_a_plane_or_lies_along_it_dims_nothing():

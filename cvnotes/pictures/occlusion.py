@@ -17,9 +17,10 @@ from cvnotes.camera import Camera
 Indices = npt.NDArray[np.intp]
 
 _HIDDEN = 0.32  # of the light that is left, by an upright face right beside
-_STEPS = 6  # of a grid, within the reach
+_STEPS = 5  # of a grid, within the smallest reach
 _MOST = 400  # of them along a side
-_TINY = 1e-9  # of the reach: what stands no higher is flat, what is no farther apart touches
+_LEAST = 0.04  # of the reach: what stands no higher dims nothing that one would see
+_TINY = 1e-9  # of the reach: rounding
 
 
 class Occlusion(NamedTuple):
@@ -60,31 +61,47 @@ def _grids(corners: bytes, turned: bytes, reach: float) -> tuple[Array, Indices,
     sides = np.stack([faces[:, 1] - origin, faces[:, 3] - origin])
     squared = np.maximum((sides**2).sum(axis=-1), 1e-300)
     normals = np.cross(*sides) / np.sqrt(squared.prod(axis=0))[:, None]
-    normals[np.frombuffer(turned, dtype=bool)] *= -1
+    seen = np.where(np.frombuffer(turned, dtype=bool)[:, None], -normals, normals)
+    # Normals of a box point inwards. If the whole scene is on that side, it is seen from within.
+    heights = faces.reshape(-1, 3) @ normals.T - (origin * normals).sum(axis=-1)
+    within = (heights >= -_TINY * reach).all(axis=0)
+    free = np.where(within[:, None], normals, -normals)
     low, high = faces.min(axis=1), faces.max(axis=1)
-    tiny, grids, steps = _TINY * reach, [], np.ones((2, len(faces)), dtype=np.intp)
-    for f, normal in enumerate(normals):
+    across = sides / squared[..., None]
+    grids, steps = [], np.ones((2, len(faces)), dtype=np.intp)
+    for f, normal in enumerate(seen):
         reaches = np.minimum(((faces - origin[f]) @ normal).max(axis=1), reach)
         gap = np.maximum(low - high[f], low[f] - high).max(axis=1)
         along = np.cross(normals, normal)  # where both planes meet, as long as the sine
         upright = (along**2).sum(axis=-1)
         width = np.ptp((faces @ along[..., None])[..., 0], axis=1)
-        near = np.flatnonzero((gap < reaches) & (reaches > tiny) & (upright > 0.1))
+        near = np.flatnonzero((gap < reaches) & (reaches > _LEAST * reach) & (upright > 0.1))
         if len(near):
-            steps[:, f] = np.ceil(_STEPS * np.sqrt(squared[:, f]) / reach).clip(1, _MOST)
-        s, t = (np.linspace(0, 1, n + 1)[:, None] for n in steps[:, f])
-        M = origin[f] + s * sides[0, f] + t[:, None] * sides[1, f]
-        hidden = np.zeros(M.shape[:2])
+            fine = reaches[near].min() / _STEPS
+            steps[:, f] = np.ceil(np.sqrt(squared[:, f]) / fine).clip(1, _MOST)
+        s, t = (np.linspace(0, 1, n + 1) for n in steps[:, f])
+        hidden = np.zeros((len(t), len(s)))
+        step = np.sqrt(squared[:, f] / steps[:, f] ** 2).max()  # the foot lies between two nodes
         for g in near:
+            part = [  # of the grid, within reach
+                slice(*np.searchsorted(x, [place.min() - far, place.max() + far]))
+                for x, place, far in zip(
+                    (t, s),
+                    ((faces[g] - origin[f]) @ across[::-1, f].T).T,
+                    reaches[g] / np.sqrt(squared[::-1, f]),
+                    strict=True,
+                )
+            ]
+            M = origin[f] + s[part[1], None] * sides[0, f] + t[part[0], None, None] * sides[1, f]
             apart = M - origin[g]  # from what is nearest on the other face
             for side, length in zip(sides[:, g], squared[:, g], strict=True):
                 apart = apart - (apart @ side / length).clip(0, 1)[..., None] * side
             distance = np.sqrt((apart**2).sum(axis=-1))
-            facing = (abs(apart @ normals[g]) + tiny) / (distance + tiny)
-            weight = upright[g] * facing * width[g] / (width[g] + distance)
-            hidden += weight * (1 - distance / reaches[g]).clip(0) ** 2
+            facing = (apart @ free[g] + step).clip(0) / (distance + step)
+            weight = upright[g] * facing**2 * width[g] / (width[g] + distance)  # cos² + sin² = 1
+            hidden[tuple(part)] += weight * (1 - distance / reaches[g]).clip(0) ** 2
         grids.append(1 / (1 + _HIDDEN / (1 - _HIDDEN) * hidden.ravel()))
     first = np.cumsum([0] + [len(grid) for grid in grids[:-1]])
-    across = steps[..., None] * sides / squared[..., None]
-    forms = np.dstack([across, -(across * origin).sum(axis=-1)])
+    columns = steps[..., None] * across
+    forms = np.dstack([columns, -(columns * origin).sum(axis=-1)])
     return np.concatenate(grids), first, steps, forms

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
 # A figure with more colours than this holds a photograph.
-_MANY_COLOURS = 4096
+_MANY_COLOURS = 2048
 # A drawing is smaller than this, in bytes.
 _LARGE = 150_000
 # px: how wide what is made for a telephone is drawn.
@@ -126,7 +126,7 @@ def packed(pixels: npt.NDArray[np.uint8], level: int = _PACKING) -> tuple[bytes,
 
 
 def with_palette(picture: "PillowImage") -> "PillowImage | None":
-    """Return a drawing in 256 of its colours, or None if it has more than 4096.
+    """Return a drawing in 256 of its colours, or None if it has more than 2048.
 
     The palette is chosen by median cut, where a colour counts by the square root of its pixels:
     paper has nearly all of them, and the blended edges need the colours.
