@@ -26,7 +26,7 @@ from cvnotes.show import (
     panels,
     show,
 )
-from cvnotes.show.picture import encode, pixels_of, with_palette
+from cvnotes.show.picture import encode, packed, pixels_of, with_palette
 from cvnotes.show.style import COLOURS, ESTIMATED, INK, MARKERS
 from cvnotes.targets import Chessboard
 
@@ -332,13 +332,20 @@ def test_a_picture_is_white_behind_its_labels():
 
 
 @pytest.mark.slow
-def test_line_drawings_are_small_png_and_photographs_jpeg():
+def test_line_drawings_are_small_png_and_photographs_webp():
     figure = draw_residuals(NOISE).figure
     data, mime = encode(figure)
     assert mime == "image/png"
     assert len(data) < 30_000
     photograph = RNG.integers(0, 255, (480, 640, 3), dtype=np.uint8)
     assert encode(draw_image(photograph).figure)[1] == "image/webp"
+    shade = np.linspace(0.6, 1, 900)[:, None, None] * [[[207, 112, 53], [230, 220, 200]]]
+    shaded = shade.astype(np.uint8).repeat(40, axis=1)  # few colours, and a palette would band them
+    assert len(np.unique(shaded.reshape(-1, 3), axis=0)) < 500
+    steps = shaded + np.arange(8, dtype=np.uint8)[None, :, None].repeat(10, axis=1).reshape(
+        1, 80, 1
+    )
+    assert packed(steps)[1] == "image/webp"
 
 
 def test_the_colours_of_a_drawing_go_to_its_edges_and_not_to_its_paper():
@@ -349,7 +356,7 @@ def test_the_colours_of_a_drawing_go_to_its_edges_and_not_to_its_paper():
         ax.plot(*line.T, color=(list(COLOURS.values()) * 4)[k], linewidth=1 + 0.3 * k)
     drawn = Image.fromarray(pixels_of(ax.figure)).convert("RGB")
     plain = drawn.quantize(256, dither=Image.Dither.NONE)
-    assert len(drawn.getcolors(2048)) > 1000
+    assert len(drawn.getcolors(4096)) > 1000
     ours, pillows = (
         np.square(np.subtract(few.convert("RGB"), drawn, dtype=float)).mean()
         for few in (with_palette(drawn), plain)

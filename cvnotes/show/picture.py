@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
 # A figure with more colours than this holds a photograph.
-_MANY_COLOURS = 2048
+_MANY_COLOURS = 4096
+# Grey levels, in the mean: so has one whose palette is farther off.
+_OFF = 0.1
 # A drawing is smaller than this, in bytes.
 _LARGE = 150_000
 # px: how wide what is made for a telephone is drawn.
@@ -116,7 +118,7 @@ def packed(pixels: npt.NDArray[np.uint8], level: int = _PACKING) -> tuple[bytes,
 
     picture, encoded = Image.fromarray(pixels).convert("RGB"), io.BytesIO()
     few = with_palette(picture)
-    if few and not _never_small(few.tobytes()):
+    if few and _off(few, pixels) < _OFF and not _never_small(few.tobytes()):
         few.save(encoded, "PNG", compress_level=level)
         if encoded.tell() < _LARGE:
             return encoded.getvalue(), "image/png"
@@ -126,7 +128,7 @@ def packed(pixels: npt.NDArray[np.uint8], level: int = _PACKING) -> tuple[bytes,
 
 
 def with_palette(picture: "PillowImage") -> "PillowImage | None":
-    """Return a drawing in 256 of its colours, or None if it has more than 2048.
+    """Return a drawing in 256 of its colours, or None if it has more than 4096.
 
     The palette is chosen by median cut, where a colour counts by the square root of its pixels:
     paper has nearly all of them, and the blended edges need the colours.
@@ -175,6 +177,12 @@ def pixels_of(figure: "Figure") -> npt.NDArray[np.uint8]:
         figure.set_canvas(canvas)
         figure.set_facecolor(paper)
         figure.dpi = dpi
+
+
+def _off(few: "PillowImage", pixels: npt.NDArray[np.uint8]) -> float:
+    """Return by how many grey levels a palette's colours differ from the pixels, in the mean."""
+    shown = np.asarray(few.convert("RGB"), dtype=np.int16)
+    return float(np.abs(shown - pixels[..., :3]).mean())
 
 
 def _never_small(pixels: bytes) -> bool:
