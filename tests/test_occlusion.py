@@ -45,7 +45,7 @@ def test_a_low_step_dims_no_farther_than_it_is_high():
     x = np.arange(15.0, 450, 30)
     left = on_the_floor(wall(200), x=x)
     assert (left[x < 170] < 1).all()
-    assert (left[x > 300] == 1).all()  # a step of the grid is 83 mm
+    assert (left[x > 240] == 1).all()  # a step of the grid is 40 mm
 
 
 def test_two_walls_dim_more_than_one_and_never_all():
@@ -64,16 +64,18 @@ def test_a_post_dims_less_far_than_a_wall():
     assert 1 - post[1] < 0.6 * (1 - wide[1])
 
 
-def test_above_a_cupboard_its_top_dims_the_wall_and_its_front_does_not():
-    """Round the corner of a body there is no strip that two of its faces dim."""
-    seen = Camera(ABOVE.A, look_at([0, -3000, -10], [0, 0, 0]), size=ABOVE.size)
+def test_round_the_corner_of_a_body_two_faces_dim_as_one():
     body = box((-600, 0), (-400, 0), (0, 600))
-    beside = on_the_floor(body, x=[40.0], camera=seen, z=300.0)
-    before = on_the_floor(body, x=[40.0], camera=seen, z=-40.0)  # off its corner
-    behind = on_the_floor(body, x=[-40.0], camera=seen, z=-200.0)  # before its front alone
-    alone = on_the_floor(wall(400), x=[200.0], camera=seen)
-    assert before == pytest.approx(beside, abs=0.05)
-    assert behind == pytest.approx(alone, abs=0.06)
+    beside, off_its_corner = (on_the_floor(body, x=[40.0], z=z) for z in (300.0, -40.0))
+    assert off_its_corner == pytest.approx(beside, abs=0.05)
+    before = on_the_floor(body, x=[-40.0], z=-200.0)
+    assert before == pytest.approx(on_the_floor(wall(400), x=[200.0]), abs=0.06)
+
+
+def test_behind_itself_a_face_dims_nothing():
+    for front in (0, -3000):  # of the body: its plane is 100 mm before the place, or far away
+        body = box((-600, 0), (-400, 0), (front, 3000))
+        assert on_the_floor(body, x=[40.0], z=100.0) == pytest.approx(0.726, abs=0.005)
 
 
 def test_what_hangs_below_a_plane_or_lies_along_it_dims_nothing():

@@ -16,9 +16,9 @@ from cvnotes.camera import Camera
 
 Indices = npt.NDArray[np.intp]
 
-_HIDDEN = 0.32  # of the light that is left, by an upright face right beside
-_STEPS = 5  # of a grid, within the smallest reach
-_MOST = 400  # of them along a side
+_HIDDEN = 0.32  # of the light, by an upright face right beside
+_STEPS = 5  # of a grid, within the smallest reach; along a side no more than
+_MOST = 400
 _LEAST = 0.04  # of the reach: what stands no higher dims nothing that one would see
 _TINY = 1e-9  # of the reach: rounding
 
@@ -48,14 +48,15 @@ class Occlusion(NamedTuple):
         s, t = place - node
         width = steps[0] + 1
         start = self.first[face] + node[1] * width + node[0]
-        rows = ((1 - s) * self.left[k] + s * self.left[k + 1] for k in (start, start + width))
-        above, below = rows
+        above, below = (
+            (1 - s) * self.left[k] + s * self.left[k + 1] for k in (start, start + width)
+        )
         return np.asarray((1 - t) * above + t * below)
 
 
 @lru_cache(maxsize=8)
 def _grids(corners: bytes, turned: bytes, reach: float) -> tuple[Array, Indices, Indices, Array]:
-    """Work it out once for all cameras that see the same sides of the same faces."""
+    """Work out the grids, once for all cameras that see the same sides of the same faces."""
     faces = np.frombuffer(corners).reshape(-1, 4, 3)
     origin = faces[:, 0]
     sides = np.stack([faces[:, 1] - origin, faces[:, 3] - origin])
@@ -83,23 +84,24 @@ def _grids(corners: bytes, turned: bytes, reach: float) -> tuple[Array, Indices,
         hidden = np.zeros((len(t), len(s)))
         step = np.sqrt(squared[:, f] / steps[:, f] ** 2).max()  # the foot lies between two nodes
         for g in near:
-            part = [  # of the grid, within reach
-                slice(*np.searchsorted(x, [place.min() - far, place.max() + far]))
-                for x, place, far in zip(
-                    (t, s),
-                    ((faces[g] - origin[f]) @ across[::-1, f].T).T,
-                    reaches[g] / np.sqrt(squared[::-1, f]),
-                    strict=True,
-                )
-            ]
-            M = origin[f] + s[part[1], None] * sides[0, f] + t[part[0], None, None] * sides[1, f]
-            apart = M - origin[g]  # from what is nearest on the other face
+            # 1. the part of the grid within reach
+            middle = ((faces[g] - origin[f]) @ across[:, f].T).T
+            far = reaches[g] / np.sqrt(squared[:, f])
+            i, j = (
+                slice(*np.searchsorted(x, [m.min() - r, m.max() + r]))
+                for x, m, r in zip((s, t), middle, far, strict=True)
+            )
+            # 2. from the nearest point of the other face
+            apart = (
+                origin[f] + s[i, None] * sides[0, f] + t[j, None, None] * sides[1, f] - origin[g]
+            )
             for side, length in zip(sides[:, g], squared[:, g], strict=True):
                 apart = apart - (apart @ side / length).clip(0, 1)[..., None] * side
             distance = np.sqrt((apart**2).sum(axis=-1))
+            # 3. nothing behind it; round a corner two faces hide what one does: cos² + sin² = 1
             facing = (apart @ free[g] + step).clip(0) / (distance + step)
-            weight = upright[g] * facing**2 * width[g] / (width[g] + distance)  # cos² + sin² = 1
-            hidden[tuple(part)] += weight * (1 - distance / reaches[g]).clip(0) ** 2
+            weight = upright[g] * facing**2 * width[g] / (width[g] + distance)
+            hidden[j, i] += weight * (1 - distance / reaches[g]).clip(0) ** 2
         grids.append(1 / (1 + _HIDDEN / (1 - _HIDDEN) * hidden.ravel()))
     first = np.cumsum([0] + [len(grid) for grid in grids[:-1]])
     columns = steps[..., None] * across
