@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from scipy import ndimage
+from scipy.optimize import least_squares
 from scipy.signal import fftconvolve
 from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation, Slerp
@@ -49,7 +50,7 @@ from cvnotes.pictures import (
 )
 from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, explorations
-from cvnotes.show.explorations import clouds, cube, eleventh, formation, gimbal, maps, moved
+from cvnotes.show.explorations import clouds, cube, eleventh, formation, gimbal, maps, moved, twins
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -1362,6 +1363,48 @@ def test_whoever_moved_the_picture_stays_and_both_motions_are_those_of_the_poses
     assert min((walls[0] != other).any(axis=-1).mean() for other in walls[1:]) > 0.02
 
 
+def test_another_camera_takes_the_same_picture_of_a_board_and_not_of_a_box():
+    """The other camera is sought without circles: an angle, and what makes all corners agree."""
+    W, first = course.board().points, twins.one()
+    square = 25 * np.array([[3, 2], [5, 2], [5, 3], [3, 3.0]])
+    for alpha, height in ((300, 60), (1000, 80), (1080, 0)):
+
+        def camera(x, alpha=alpha):
+            A = np.array([[alpha, 0, x[0]], [0, alpha, x[1]], [0, 0, 1]])
+            return Camera(A, pose(rotation_from_vector(x[2:5]), x[5:]))
+
+        other = twins.other(alpha)
+        assert other.size == first.size
+        start = np.concatenate(
+            [[319.5, 239.5], vector_from_rotation(first.R), first.T * alpha / 600]
+        )
+        found = least_squares(
+            lambda x, camera=camera: (camera(x).project(W) - first.project(W)).ravel(),
+            start, x_scale="jac", xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=2000,
+        )  # fmt: skip
+        assert np.abs(found.fun).max() < 1e-6
+        assert np.allclose(camera(found.x).centre, other.centre, atol=1e-3)
+        assert np.abs(other.project(W) - first.project(W)).max() < 1e-9
+        drawing = MODELS["twins"].drawing(alpha=alpha, height=height)
+        top = np.column_stack([square, np.full(4, -height)])
+        off = np.linalg.norm(camera(found.x).project(top) - first.project(top), axis=1).max()
+        apart = np.linalg.norm(camera(found.x).centre - first.centre)
+        said = numbers(drawing.sentence)
+        assert np.allclose(
+            said, [alpha, apart, height, off] if height else [alpha, apart], atol=0.51
+        )
+    # Whoever takes it: the board in the picture stays; the dashed box, alone, moves.
+    still, pulled = (MODELS["twins"].picture(alpha=alpha, height=80) for alpha in (1000, 300))
+    changed = (still != pulled).any(axis=-1)[:, 449:]
+    assert 0.001 < changed.mean() < 0.02
+    assert count(still[:, 449:], ESTIMATED) > 200
+    top = first.project([[*(0.75 * square[0] + 0.25 * square[2]), -80]])[0]
+    u, v = np.rint([449 + top[0] * 400 / 640, TITLE + top[1] * 300 / 480]).astype(int)
+    assert np.abs(still[v, u] - colour("#C3D2DC")).max() < 12  # of the box one sees the top
+    flat = [MODELS["twins"].picture(alpha=alpha, height=0)[:, 449:] for alpha in (1000, 300)]
+    assert np.abs(flat[0].astype(int) - flat[1]).max() < 30
+
+
 def test_on_its_way_the_box_turns_with_the_world_and_then_runs_along_its_rays():
     draw = MODELS["formation"].picture
     ways = {way: draw(way=way).astype(int) for way in (0, 1, 1.5, 2)}
@@ -1911,6 +1954,7 @@ ROUND = {
     ("formation", "line of sight"),
     ("stands", "cube"),  # along the ray from the principal point
 }
+ON_A_CURVE = {("twins", "other"), ("twins", "box")}  # its nearest place
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "h": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {
     "curve",
@@ -1941,6 +1985,9 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
         assert after.at != before.at
     elif (name, held) in ON_A_WAY:
         assert off[0] < (14 if name == "clouds" else 9)  # from window to window
+    elif (name, held) in ON_A_CURVE:
+        far = np.linalg.norm((wanted - [before.at, after.at]) / before.unit, axis=1)
+        assert far[1] < far[0]
     elif (name, held) == ("columns", "free"):  # from bar to bar
         assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
     elif held in UP_AND_DOWN:

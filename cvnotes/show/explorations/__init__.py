@@ -26,9 +26,9 @@ _MODELS = ("projection", "camera", "lens", "noise", "warp", "tilt")
 _STORIES = (
     "straighten", "stands", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged", "triangle",
     "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel",
-    "votes", "ellipse", "valley", "ransac", "homography", "fold", "folds", "finding", "moved",
-    "eleventh", "columns", "between", "rings", "epipolar", "rectification", "disparity", "depth",
-    "cube",
+    "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold", "folds", "finding",
+    "moved", "eleventh", "columns", "between", "rings", "epipolar", "rectification", "disparity",
+    "depth", "cube",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

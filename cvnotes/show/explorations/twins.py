@@ -1,0 +1,182 @@
+"""Explore the twins: cameras in many places, with one and the same picture of a flat board."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.calibration import extrinsics
+from cvnotes.camera import Camera, intrinsics, inverse, look_at, move
+from cvnotes.pictures import course
+from cvnotes.show.explorations.boards import draw_board, paper_and_squares
+from cvnotes.show.explorations.fold import circle_of
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.space.directions import sheet
+from cvnotes.show.style import CAMERA, ESTIMATED, MUTED
+
+_SPACE, _PICTURE = (440, 300), (400, 300)  # px
+_SIZE, _ALPHA = (640, 480), 600  # px, of the one camera
+_EYE, _TARGET = [-110, 110, -330], [105, 62, 0]  # mm: where it is, and where it looks
+_LOW, _HIGH, _STEP = 300, 1080, 10  # px: α of the other one
+_FILM = 0.13  # mm of the drawn pictures, for a pixel
+_FOOT = [[3, 2], [5, 2], [5, 3], [3, 3]]  # corners of the board, on which the box stands
+_HIGHEST = 100  # mm
+_INK, _WAY, _SIDE, _TOP = "#262629", "#F0C4A4", "#8FA7B8", "#C3D2DC"
+_VIEW = sheet((30, -95))
+
+
+def on_sheet(W: Array) -> Array:
+    """Project points (..., 3) onto the sheet (..., 2), all parallel."""
+    return np.asarray(W @ _VIEW.T)
+
+
+def twins_model() -> Model:
+    """Make the model of a photograph of the board, and of all cameras that could have taken it."""
+    settings = (
+        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 1000,
+                "its focal length; its principal point and its place follow"),
+        Setting("height", "a box on the board (mm)", 0, _HIGHEST, 5, 80,
+                "how far it stands out of the plane"),
+    )  # fmt: skip
+    about = (
+        "A board and two cameras in space, with the way on which the other one can be pulled; and "
+        "their two pictures, laid over each other, of the board and of a box upon it."
+    )
+
+    def carry(_: Values, at: Array) -> Values:
+        nearest = np.linalg.norm(on_sheet(_way()) - at, axis=1).argmin()
+        return {"alpha": _LOW + _STEP * float(nearest)}
+
+    def lift(_: Values, at: Array) -> Values:
+        heights = np.arange(0, _HIGHEST + 1, 5.0)
+        tops = np.array([_top(height) for height in heights])
+        return {"height": float(heights[np.linalg.norm(tops - at, axis=1).argmin()])}
+
+    return Model("twins", about, settings, _draw, {"other": carry, "box": lift})
+
+
+@lru_cache(maxsize=1)
+def one() -> Camera:
+    """Return the camera that took the photograph, without a lens."""
+    A = intrinsics(_ALPHA, _ALPHA, (_SIZE[0] - 1) / 2, (_SIZE[1] - 1) / 2)
+    return Camera(A, look_at(_EYE, _TARGET), size=_SIZE)
+
+
+@lru_cache(maxsize=256)
+def other(alpha: float) -> Camera:
+    """Return the camera with another focal length α, and square pixels, that takes it as well.
+
+    If the picture of the board is the same, so is the homography H of its plane. Two right angles
+    leave (u0, v0, α) on a circle: see `fold.circle_of`. H gives the pose.
+    """
+    H = one().A @ one().G[:3, [0, 1, 3]]
+    circle = circle_of(H)
+    u, v, _ = circle.place(float(np.degrees(np.arcsin(alpha / circle.radius)))).tolist()
+    K = intrinsics(alpha, alpha, u, v)
+    return Camera(K, extrinsics(K, H[None])[0], size=_SIZE)
+
+
+def box(height: float) -> Array:
+    """Return the corners (8, 3) of a box on the board: its foot, then its top, before the plane."""
+    foot = course.board().square * np.column_stack([_FOOT, np.zeros(4)])
+    return np.concatenate([foot, foot - [0, 0, height]])
+
+
+def _top(height: float) -> Array:
+    """Return where the camera sees the middle of the box's top."""
+    return one().project(box(height)[4:].mean(axis=0))
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    cameras = (one(), other(values["alpha"]))
+    W = box(values["height"])
+    space = _space(paper, cameras, W)
+    picture = paper.picture_panel(_PICTURE, one().size, "both pictures: blue, and orange dashed")
+    draw_board(picture, one(), course.board())
+    _draw_box(picture, one().project(W))
+    for camera, colour, dash in zip(cameras, (CAMERA, ESTIMATED), (0, 5), strict=True):
+        m = camera.project(W)
+        picture.segments(np.stack([m[:4], m[4:]], axis=1), colour, 1.5)
+        picture.line(m[[4, 5, 6, 7, 4]], colour, 3, dash)
+    picture.grip("box", "the top of the box, to be lifted", _top(values["height"]))
+    return Drawing(paper.join((space, picture)), _sentence(cameras, W, values["height"]))
+
+
+def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
+    x, y = _shown()
+    panel = paper.panel(_SPACE, x, y, "space: pull the orange camera")
+    border, squares = paper_and_squares(course.board())
+    panel.polygons(on_sheet(border)[None], "#FBFBF8")
+    panel.line(on_sheet(border)[[0, 1, 2, 3, 0]], MUTED, 1)
+    panel.polygons(on_sheet(squares), _INK)
+    _draw_box(panel, on_sheet(W))
+    panel.line(on_sheet(_way()), _WAY, 2)
+    corners = course.board().points[[0, 8, 45]]
+    for camera, colour in zip(cameras, (CAMERA, ESTIMATED), strict=True):
+        for corner in corners:
+            panel.line(on_sheet(np.array([camera.centre, corner])), colour, 1.2)
+    for camera, colour in zip(cameras, (CAMERA, ESTIMATED), strict=True):
+        _draw_camera(panel, camera, colour)
+    panel.grip("other", "the other camera, to be pulled along its way", on_sheet(cameras[1].centre))
+    return panel
+
+
+def _draw_box(panel: Panel, at: Array) -> None:
+    """Draw those faces of the box, with corners at (8, 2), that are seen from outside."""
+    sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
+    for face, colour in ([4, 5, 6, 7], _TOP), *((side, _SIDE) for side in sides):
+        x, y = at[face].T
+        if x @ np.roll(y, -1) > y @ np.roll(x, -1):
+            panel.polygons(at[face][None], colour)
+
+
+def _draw_camera(panel: Panel, camera: Camera, colour: str) -> None:
+    """Draw a camera as its pyramid, with its picture of the board in it."""
+    border, squares = paper_and_squares(course.board())
+    w, h = camera.size
+    frame = camera.ray([[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]])
+    frame = _before(camera, camera.centre + frame)
+    panel.polygons(frame[None], "#E4E4E0")
+    panel.polygons(_before(camera, border)[None], "#FFFFFF")
+    panel.polygons(_before(camera, squares), _INK)
+    centre = on_sheet(camera.centre)
+    for at, after in zip(frame, np.roll(frame, -1, axis=0), strict=True):
+        panel.line([at, after, centre], colour, 2)
+    name = f"α = {camera.A[0, 0]:.0f}"
+    panel.text(centre + [0, 12 * panel.pixel], name, colour, anchor="ma", size=13)
+
+
+def _before(camera: Camera, W: Array) -> Array:
+    """Return where points (..., 3) are seen on a camera's drawn picture, on the sheet (..., 2)."""
+    M = move(camera.G, W)
+    return on_sheet(move(inverse(camera.G), _FILM * camera.A[0, 0] * M / M[..., 2:]))
+
+
+@lru_cache(maxsize=1)
+def _way() -> Array:
+    return np.array([other(float(alpha)).centre for alpha in np.arange(_LOW, _HIGH + 1, _STEP)])
+
+
+@lru_cache(maxsize=1)
+def _shown() -> tuple[tuple[float, float], tuple[float, float]]:
+    """Choose what the panel shows: the board, and all places of the other camera."""
+    border, _ = paper_and_squares(course.board())
+    seen = on_sheet(np.concatenate([border, _way(), box(_HIGHEST)]))
+    low, high = seen.min(0), seen.max(0)
+    scale = 1.2 * ((high - low) / _SPACE).max() / 2 * np.array(_SPACE)
+    (left, top), (right, bottom) = (low + high) / 2 - scale, (low + high) / 2 + scale
+    return (left, right), (top, bottom)
+
+
+def _sentence(cameras: tuple[Camera, Camera], W: Array, height: float) -> str:
+    first, second = cameras
+    apart = float(np.linalg.norm(first.centre - second.centre))
+    said = (
+        f"The orange camera, α = {second.A[0, 0]:.0f} px, stands {apart:.0f} mm from the blue one "
+        "and sees every corner of the board at the same pixel"
+    )
+    if not height:
+        return f"{said}: the picture of a plane does not tell them apart."
+    off = np.linalg.norm(first.project(W[4:]) - second.project(W[4:]), axis=1).max()
+    return f"{said}; corners of the box, {height:.0f} mm high, lie up to {off:.0f} px apart."
