@@ -21,6 +21,7 @@ _OUTDOORS = Surroundings(
 )
 INDOORS = Surroundings(occlusion=800)
 _FAR = 1e6
+_PALE = (0.86, 0.88, 0.88)
 
 
 def rails() -> Scene:
@@ -87,7 +88,7 @@ def corridor() -> Scene:
     array([ 1200.,  1600., 30000.])
     """
     tiles = ((0.36, 0.45, 0.50), (0.80, 0.83, 0.82))
-    shell = _shell((-1200, 1200), (-1100, GROUND), (-3000, 30_000), tiles, 600)
+    shell = _shell((-1200, 1200), (-1100, GROUND), (-3000, 30_000), _PALE, tiles, 600)
     wood, door, lamp = (0.62, 0.42, 0.24), (0.27, 0.45, 0.52), (1.4, 1.4, 1.4)
     parts = []
     for side in (-1, 1):
@@ -101,7 +102,7 @@ def corridor() -> Scene:
         ]
     # Flat, and looking down: what shines casts no shadow.
     parts += [_floor((250, -250), -1080, (z, z + 1200), lamp) for z in range(2000, 29_000, 3000)]
-    lamps = Surroundings(light=(0.25, -1, -0.35), ambient=0.7, occlusion=500)
+    lamps = Surroundings(light=(0, -1, 0), ambient=0.7, occlusion=500)
     return replace(join(shell, *parts), around=lamps)
 
 
@@ -116,7 +117,8 @@ def room() -> Scene:
     array([ 3000.,  1600., 10000.])
     """
     tiles = ((0.66, 0.48, 0.34), (0.88, 0.79, 0.66))
-    shell = _shell((-3000, 3000), (-1600, GROUND), (-2000, 10_000), tiles, 500)
+    sides = [_PALE], [(1.06, 1.06, 1.04)]  # the right one has its light from the left one
+    shell = _shell((-3000, 3000), (-1600, GROUND), (-2000, 10_000), sides, tiles, 500)
     table, plinth = (0.84, 0.56, 0.29), (0.93, 0.93, 0.90)
     furniture = [
         box((-2900, -1300), (800, 860), (6400, 8800), table),
@@ -135,6 +137,11 @@ def room() -> Scene:
         box((-600, 600), (-700, 200), (9940, 9950), (0.23, 0.42, 0.40)),
         box((-3000, -2980), (-900, 300), (6300, 8900), (1.0, 1.0, 1.0)),
     ]
+    wood = (0.55, 0.36, 0.27)
+    skirting = [  # shadows end on it, not a finger's breadth up the wall
+        box((x, x + 15), (1510, GROUND), (-2000, 10_000), wood) for x in (-3000, 2985)
+    ]
+    skirting += [box((-2985, 2985), (1510, GROUND), (9985, 10_000), wood)]
     behind = [  # which only a fisheye sees: a door and a window, flat, for light falls through
         quads([[x, y, -1950] for x, y in corners], [[0, 1, 2, 3]], colour)
         for corners, colour in (
@@ -142,7 +149,7 @@ def room() -> Scene:
             (_rectangle((1700, 2900), (-1300, -300)), (0.62, 0.78, 0.90)),
         )
     ]
-    return replace(join(shell, *furniture, *hung, *behind), around=INDOORS)
+    return replace(join(shell, *furniture, *hung, *skirting, *behind), around=INDOORS)
 
 
 def room_with(target: Chessboard | TwoPlanes | ThreePlanes, G: npt.ArrayLike) -> Scene:
@@ -161,13 +168,14 @@ def _shell(
     x: Span,
     y: Span,
     z: Span,
+    sides: npt.ArrayLike,
     tiles: npt.ArrayLike,
     tile: float,
 ) -> Scene:
-    """Build the walls, the ceiling and the tiled floor of a room."""
+    """Build the walls, the ceiling and the tiled floor of a room; sides are left and right."""
     walls = np.empty((6, 2, 3))
-    walls[:2], walls[2:4], walls[4] = (0.95, 0.92, 0.85), (0.86, 0.88, 0.88), (0.97, 0.97, 0.96)
-    walls[5] = tiles
+    walls[:2], walls[2:4], walls[5] = (0.95, 0.92, 0.85), sides, tiles
+    walls[4] = 1.22, 1.20, 1.15  # brighter than white: it has the light of floor and walls
     return box(x, y, z, walls, [np.inf] * 5 + [tile])
 
 

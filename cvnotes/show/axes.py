@@ -5,7 +5,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from cvnotes.base import InputTypeError, image_size, whole
-from cvnotes.show.style import DPI, FONT, INK, MUTED
+from cvnotes.show.style import DPI, FAINT, FONT, INK, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,8 +61,8 @@ def panels(
 def dress(ax: "Axes") -> "Axes":
     """Return axes the course's look: a light frame, small type."""
     ax.spines[["top", "right"]].set_visible(False)
-    ax.spines[["left", "bottom"]].set_color(MUTED)
-    ax.tick_params(labelsize=FONT - 1, color=MUTED, labelcolor="#333333")
+    ax.spines[["left", "bottom"]].set_color(FAINT)
+    ax.tick_params(labelsize=FONT - 1, color=FAINT, labelcolor="#333333")
     ax.title.set_fontsize(FONT)
     ax.title.set_color("#333333")
     for axis in (ax.xaxis, ax.yaxis):
@@ -137,7 +137,7 @@ def as_picture(ax: "Axes", size: tuple[int, int], *, ticks: bool = True) -> "Axe
         ax.set(xlabel="u (px)", ylabel="v (px)")
     else:
         ax.set(xticks=[], yticks=[])
-    ax.spines[["top", "right"]].set(visible=True, color=MUTED)
+    ax.spines[:].set(visible=True, color=MUTED)
     return ax
 
 

@@ -24,7 +24,8 @@ COLOURS = {
 # The same hues for words, dark enough to be read on white: at least 4.5 : 1 (WCAG 2.2 AA).
 INK = {WORLD: "#00805D", CAMERA: "#2279AD", ESTIMATED: "#BC5200"}
 MARKERS = {"world": "s", "camera": "^", "ideal": "+", "lens": "o", "estimated": "x"}
-MUTED = "#6E6E6E"  # frames, grids, remarks
+MUTED = "#6E6E6E"  # frames of photographs, remarks
+FAINT = "#C6C6C6"  # frames of all that is drawn
 
 DPI = 100  # a figure's inch is 100 px of the page
 FONT = 10

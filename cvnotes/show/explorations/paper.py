@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw
 from cvnotes.base import Array
 from cvnotes.show.explorations.lettering import stamp, title_strip
 from cvnotes.show.explorations.strokes import clipped, dashed
-from cvnotes.show.style import COLOURS, INK, MARKERS, MUTED
+from cvnotes.show.style import COLOURS, FAINT, INK, MARKERS, MUTED
 
 Drawn = npt.NDArray[np.uint8]
 Range = tuple[float, float]
@@ -25,7 +25,7 @@ _GAP = 6  # px between panels
 _FARTHEST = 1e12  # px: lines are cut to the panel with all the digits this leaves
 _LARGEST = 1e6  # px: polygons are not cut, and Pillow counts in whole numbers
 _BEYOND = 8  # px by which lines are drawn over the border, where they are cut off
-_GRID = "#DDDDDD"
+_GRID = "#E6E6E6"
 
 
 class Grip(NamedTuple):
@@ -98,6 +98,7 @@ class Panel:
         self.width, self.height = scale * size[0], scale * size[1]
         self._image = Image.new("RGB", (self.width, self.height), "white")
         self._draw = ImageDraw.Draw(self._image)
+        self._frame = FAINT
         self._grips: list[tuple[str, str, Array, float]] = []
 
     @property
@@ -148,12 +149,21 @@ class Panel:
             if len(at) and (np.abs(at) < _LARGEST).all():
                 self._draw.polygon(at.ravel().tolist(), fill=colour)
 
-    def mark(self, xy: npt.ArrayLike, meaning: str, size: float = 5) -> None:
-        """Mark points (n, 2) with the colour and the marker of their meaning."""
+    def mark(
+        self,
+        xy: npt.ArrayLike,
+        meaning: str,
+        size: float = 5,
+        looks: tuple[float, float] = (0, -1),
+    ) -> None:
+        """Mark points (n, 2) with the colour and the marker of their meaning.
+
+        A camera's triangle points to where it looks: so far to the right, and so far down.
+        """
         reach = size * self.scale
         for at in np.atleast_2d(self.place(xy)):
             if np.isfinite(at).all() and (np.abs(at) < 10 * max(self.width, self.height)).all():
-                self._marker(at, MARKERS[meaning], COLOURS[meaning], reach)
+                self._marker(at, MARKERS[meaning], COLOURS[meaning], reach, looks)
 
     def grip(self, name: str, label: str, xy: npt.ArrayLike, step: float = 1) -> None:
         """Let a hand take hold of a point; one that lies outside is held at the border."""
@@ -180,6 +190,7 @@ class Panel:
         how = Image.Resampling.NEAREST if fits or not smooth else Image.Resampling.BILINEAR
         resized = Image.fromarray(picture).resize((self.width, self.height), how)
         self._image.paste(resized.convert("RGB"))
+        self._frame = MUTED  # photographs end dark, drawings light
 
     def text(
         self,
@@ -217,9 +228,8 @@ class Panel:
             page = np.full((*self.sheet[::-1], 3), 255, np.uint8)
         sharpness = self.scale // 2
         strip, gap = sharpness * _TITLE, sharpness * _GAP
-        self._draw.rectangle(
-            (0, 0, self.width - 1, self.height - 1), outline=MUTED, width=self.scale
-        )
+        whole = (0, 0, self.width - 1, self.height - 1)
+        self._draw.rectangle(whole, outline=self._frame, width=self.scale)
         panel = np.asarray(self._image.reduce(2))
         height, width = panel.shape[:2]
         page[strip : strip + height, gap // 2 : gap // 2 + width] = panel
@@ -233,7 +243,7 @@ class Panel:
         beyond = _BEYOND * self.scale
         return np.full(2, -float(beyond)), np.array([self.width, self.height]) + float(beyond)
 
-    def _marker(self, at: Array, marker: str, colour: str, reach: float) -> None:
+    def _marker(self, at: Array, marker: str, colour: str, reach: float, looks: Range) -> None:
         u, v = at.tolist()
         r = 0.7 * reach
         box = (u - r, v - r, u + r, v + r)
@@ -242,7 +252,10 @@ class Panel:
         elif marker == "s":
             self._draw.rectangle(box, fill=colour, outline="white", width=self.scale // 2)
         elif marker == "^":
-            self._draw.polygon((u, v - reach, u + r, v + r, u - r, v + r), fill=colour)
+            ahead = reach * np.array(looks) / np.hypot(*looks)
+            aside, back = 0.7 * np.array([-ahead[1], ahead[0]]), at - 0.7 * ahead
+            corners = np.array([at + ahead, back + aside, back - aside])
+            self._draw.polygon(corners.ravel().tolist(), fill=colour)
         elif marker == "+":
             self._cross((u - reach, v, u + reach, v), (u, v - reach, u, v + reach), colour, reach)
         else:

@@ -134,13 +134,13 @@ def draw_cube(
         floor = np.concatenate([foot, foot + side * lit[:2] / lit[2]])
         floor = floor[ConvexHull(floor).vertices]
         shadow = _outline(camera, np.column_stack([floor, np.zeros(len(floor))]))
-        ax.fill(*shadow.T, color="#404040", alpha=0.6, linewidth=0, zorder=2)  # seen on black, too
+        ax.fill(*shadow.T, color="black", alpha=0.5, linewidth=0, zorder=2)
     faces = _outline(camera, cube.faces)
     shades = _AMBIENT + 0.65 * np.maximum(_NORMALS @ lit, 0)
     for (u, v), shade in zip(faces.transpose(0, 2, 1), shades.clip(0, 1), strict=True):
         if np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0:  # nothing hides this face
             colour = np.multiply(shade, _COLOUR)
-            ax.fill(u, v, facecolor=colour, edgecolor="white", linewidth=1.2, zorder=3)
+            ax.fill(u, v, facecolor=colour, edgecolor="white", linewidth=0.6, zorder=3)
     ax.set(xlim=limits[0], ylim=limits[1])
     return ax
 

@@ -118,7 +118,7 @@ def draw_corners(
     ax = draw_image(image, ax=ax)
     grid = m.reshape(rows, columns, 2)
     for row in grid:
-        ax.plot(*row.T, "-", color=ESTIMATED, linewidth=1, marker=".", markersize=4)
+        ax.plot(*row.T, "-", color=ESTIMATED, linewidth=0.8, marker=".", markersize=5)
     ends = (("x", grid[0, min(2, columns - 1)]), ("y", grid[min(2, rows - 1), 0]))
     for name, end in ends:
         if np.isnan([end, m[0]]).any():
@@ -128,10 +128,9 @@ def draw_corners(
     ax.plot(*m[0], "o", color=WORLD, markersize=9, fillstyle="none", markeredgewidth=1.6)
     for j in (0, rows - 1):
         for i, inner in ((0, 1), (columns - 1, columns - 2)):
-            at, beside = grid[j, [i, inner]]
-            if np.isfinite([at, beside]).all():  # on the margin: the square tells where 0 is
-                away = (at - beside) / max(np.linalg.norm(at - beside), 1e-9) * ax.get_xlim()[1]
-                _write(ax, str(columns * j + i), at + 0.035 * away, ESTIMATED)
+            at, diagonal = grid[j, i], grid[min(1, rows - 1) if j == 0 else rows - 2, inner]
+            if np.isfinite([at, diagonal]).all():  # outside of the squares, on the white margin
+                _write(ax, str(columns * j + i), at + 1.5 * (at - diagonal), ESTIMATED)
     return ax
 
 
@@ -140,4 +139,4 @@ def _write(ax: "Axes", text: str, where: Array, colour: str) -> None:
     right, bottom = ax.get_xlim()[1], ax.get_ylim()[0]
     margin = 0.04 * max(right, bottom)
     u, v = np.clip(where, margin, [right - margin, bottom - margin])
-    letter(ax, text, (u, v), colour, fontsize=FONT + 3, fontweight="bold")
+    letter(ax, text, (u, v), colour, fontsize=FONT + 1)
