@@ -87,8 +87,11 @@ def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:
         elif isinstance(shape, Lines):
             panel.segments(on_sheet(shape.ends), shape.colour, shape.width)
         elif isinstance(shape, Label):
-            aside, anchor = (0, "mm") if len(shape.name) == 1 else (_ASIDE, "ra")  # of an axis?
-            at = on_sheet(shape.at) - [aside * panel.pixel, 0]
+            if len(shape.name) == 1:  # of an axis: beyond its tip
+                way, anchor = on_sheet(shape.way), "mm"
+            else:
+                way, anchor = np.array([-1.0, 0]), "ra"
+            at = on_sheet(shape.at) + _ASIDE * panel.pixel * way / np.linalg.norm(way).clip(1e-9)
             panel.text(at, shape.name, shape.colour, anchor=anchor, size=12)
 
 

@@ -42,7 +42,7 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
         Setting("angle_z", "angle z (°)", -180, 180, 1, 5, turn.format("z"), TURN),
         _whole("T_x", "T x (mm)", -reach, reach, 0.9 * x, shift.format("x"), SHIFT),
         _whole("T_y", "T y (mm)", -reach, reach, 0.9 * y, shift.format("y"), SHIFT),
-        _whole("T_z", "T z (mm)", 0, 4 * reach, 2.6 * reach, shift.format("z"), SHIFT),
+        _whole("T_z", "T z (mm)", 0, 3.2 * reach, 2.6 * reach, shift.format("z"), SHIFT),
     )
     about = (
         "The picture that a camera takes of a chessboard; beside it camera and board in space, "
@@ -99,14 +99,14 @@ def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Drawing:
 
 def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
     size = (410, 330)
-    length = 2.5 * board.square
+    length = 5 * board.square
     shapes = (
         *target_shapes(board),
         *axes_shapes(length=length, name="WRF"),
-        *camera_shapes(camera, 2.5 * length, name=""),
+        *camera_shapes(camera, 1.25 * length, name=""),
     )
     # The scale stays when the camera goes away, as far as its slider does.
-    farthest = -4 * float(np.linalg.norm(board.points[-1])) * camera.R[2]
+    farthest = -3.2 * float(np.linalg.norm(board.points[-1])) * camera.R[2]
     low, high = in_space((*shapes, Lines("", np.array([[farthest, farthest]]), MUTED, 1)), size)
     panel = paper.panel(
         size, (low[0], high[0]), (low[1], high[1]), "space, in the frame of the board"

@@ -13,7 +13,7 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, IDEAL, LENS, MUTED, hexed
 
-_SIZE, _SHOWN, _PLAN = (640, 480), (440, 330), (292, 330)  # px
+_SIZE, _SHOWN, _PLAN = (640, 480), (440, 330), (205, 330)  # px
 _KEPT, _GROWS = 750, 0.25  # px, and px for each mm of distance
 _X, _Y, _FRONT = 350, 300, 7450  # mm: the camera's way, and the front of the red box
 _BOX = np.array([[450, 940, _FRONT], [850, 940, _FRONT]])  # just below its front
@@ -73,7 +73,7 @@ def _photograph(distance: float, keep: float) -> Drawn:
 
 def _plan(paper: Paper, camera: Camera, angle: float) -> Panel:
     """Draw the room from above, what the camera sees of it, and how wide that is at the box."""
-    panel = paper.panel(_PLAN, (-4550, 4550), (10_300, 16), "from above: pull the camera")
+    panel = paper.panel(_PLAN, (-3200, 3200), (10_300, 0), "from above: pull the camera")
     eye, sides = camera.centre[[0, 2]], camera.ray([[-0.5, 239.5], [639.5, 239.5]])[:, [0, 2]]
     sides = sides / sides[:, 1:]
     left, right = eye + (10_000 - eye[1]) * sides

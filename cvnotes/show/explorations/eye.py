@@ -7,15 +7,16 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, IDEAL, MUTED
+from cvnotes.show.style import CAMERA, IDEAL, MUTED, hexed, rgb
 
 _SIZE, _A = (640, 480), intrinsics(800, 804, 325, 238)
 _R = rotation_from_angles(0.06, 0.05, 0.14)  # of the chapter's tilted camera
 _ROW, _TALL, _START = -4.0, 6.0, 1.95  # m: where the poles stand, their height, the eye's at first
 _POLES, _MARKED = np.arange(15.0, 490, 25), 4  # m ahead; how many are marked
-_NEAR, _FAR = 0.5, 1e4  # m: all between is in front of the camera
-_SKY, _GRASS, _BALLAST, _WOOD = "#D9E6F2", "#8A9B6B", "#8F877E", "#5C4A3D"
-_STEEL, _SHADE = "#C8CED5", "#55524F"
+_HIGH, _GRASS, _BALLAST, _WOOD = "#9FBFE4", "#7A9155", "#8F877E", "#5C4A3D"
+_STEEL, _SHADE, _AIR = "#C8CED5", "#55524F", "#E6EDF2"
+_HAZE = 200.0  # m, as on the photographed railway
+_FURTHER = np.append(np.geomspace(0.3, 1000, 64), 1e4)  # m: where the ground changes its colour
 
 
 def eye_model() -> Model:
@@ -32,7 +33,7 @@ def eye_model() -> Model:
         height = values["height"]
         picture = paper.picture_panel((440, 330), _SIZE, "what the camera sees")
         _draw_picture(picture, height)
-        side = paper.panel((330, 330), (-18, 100), (9.2, -0.8), "the same from the side (m)")
+        side = paper.panel((330, 330), (-18, 100), (8.6, -0.8), "the same from the side (m)")
         _draw_side(side, height)
         return Drawing(paper.join((picture, side)), _sentence(height))
 
@@ -48,35 +49,45 @@ def _draw_picture(panel: Panel, height: float) -> None:
     skyline = np.array([[u, -(a * u + c) / b] for u in (-20.0, 660.0)])
 
     def fill(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike, ink: str) -> None:
-        corners = np.stack(np.broadcast_arrays(x, y, z), axis=-1)
-        panel.polygons(camera.project(corners.reshape(-1, 4, 3)), ink)
+        corners = np.stack(np.broadcast_arrays(x, y, z), axis=-1).reshape(-1, 4, 3)
+        away = 1 - np.exp(-corners[:, :, 2].mean(axis=1) / _HAZE)
+        panel.polygons(camera.project(corners), [_mixed(ink, _AIR, part) for part in away])
 
-    along = [_NEAR, _NEAR, _FAR, _FAR]
-    panel.polygons([[[-20, -20], [660, -20], [660, 500], [-20, 500]]], _SKY)
-    panel.polygons([[*skyline, [660, 999], [-20, 999]]], _GRASS)
+    along = np.stack([_FURTHER[:-1]] * 2 + [_FURTHER[1:]] * 2, axis=1)[::-1]
+    panel.polygons([[[-20, -20], [660, -20], [660, 500], [-20, 500]]], _AIR)
+    for part in np.linspace(0, 1, 40):  # the sky, ever bluer
+        over = skyline - [0, 420 * part]
+        panel.polygons([[*over, [660, -999], [-20, -999]]], _mixed(_AIR, _HIGH, part))
+    fill(3 * along * [-1, 1, 1, -1], 0, along, _GRASS)
     fill([-2.3, 2.3, 2.3, -2.3], -0.18, along, _BALLAST)
     fill([-1.3, 1.3, 1.3, -1.3], -0.2, np.arange(0.6, 300, 0.6)[:, None] + [0, 0, 0.3, 0.3], _WOOD)
     for x in (-0.715, 0.715):  # the inner face of a rail, and its head
         fill(x, [-0.2, -0.35, -0.35, -0.2], along, _SHADE)
         fill(np.sign(x) * np.array([0.715, 0.785, 0.785, 0.715]), -0.35, along, _STEEL)
     for z in _POLES[::-1]:
-        fill([_ROW - 0.09, _ROW + 0.09, _ROW + 0.09, _ROW - 0.09], [0, 0, -_TALL, -_TALL], z, _WOOD)
+        aside = _ROW + np.array([-0.09, 0.09, 0.09, -0.09])
+        fill(aside, [0, 0, -_TALL, -_TALL], [z] * 4, _WOOD)
     panel.line(skyline, IDEAL, 1.5)
     panel.text(skyline[1] - [30, 28], "horizon", IDEAL, anchor="rm")
     if height <= _TALL:
-        panel.mark(camera.project([[_ROW, -height, z] for z in _POLES[:_MARKED]]), "world", 6)
+        panel.mark(camera.project([[_ROW, -height, z] for z in _POLES[:_MARKED]]), "world", 4.5)
+
+
+def _mixed(ink: str, other: str, part: float) -> str:
+    """Return a colour, so far on the way to another one."""
+    return hexed(255 * ((1 - part) * np.array(rgb(ink)) + part * np.array(rgb(other))))
 
 
 def _draw_side(panel: Panel, height: float) -> None:
     panel.polygons([[[-20, 0], [120, 0], [120, -9], [-20, -9]]], "#DDDACF")
     panel.ticks(x=(0, 25, 50, 75), y=(2, 4, 6, 8))
     poles = _POLES[:_MARKED]
-    panel.segments([[[z, 0], [z, _TALL]] for z in poles], _WOOD, 3)
-    panel.line([[0, height], [120, height]], IDEAL, 1.5)
+    panel.segments([[[z, 0], [z, _TALL]] for z in poles], _WOOD, 2)
+    panel.line([[0, height], [120, height]], IDEAL, 1)
     if height <= _TALL:
-        panel.mark([[z, height] for z in poles], "world", 6)
+        panel.mark([[z, height] for z in poles], "world", 4.5)
     panel.line(np.array([[0, 0], [0, height]]), MUTED, 2)
-    panel.mark([0, height], "camera", 9)
+    panel.mark([0, height], "camera", 9, looks=(1, 0))
     panel.text([-4, height], "eye", CAMERA, anchor="rm")
     panel.grip("height", "the eye, to be pulled up and down", [0, height], 4)
 

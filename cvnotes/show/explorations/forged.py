@@ -13,7 +13,7 @@ _CAMERA = Camera(intrinsics(800, 804, 325, 238), size=SIZE)  # the course's, lev
 _SUN = np.array([0.06, -0.2, 0.8])
 _MOST = 4.0  # m, of a tip from its place
 _NEAR = 2.0  # px: a line that misses its end by less is taken for true
-_CLOSE = (277, 493), (16, 246)  # px, u and v, of the part that is shown enlarged
+_CLOSE = (263, 507), (22, 282)  # px, u and v, of the part that is shown enlarged
 _HORIZON = 250.0  # px: below it is ground
 
 
@@ -69,7 +69,9 @@ def _draw_lines(panel: Panel, ends: Array, seen: Array, misses: list[float]) -> 
     tip, *through = seen
     for by, miss, dash in zip(through, misses, (0, 6), strict=True):
         panel.line([tip, by + 9 * (by - tip)], LENS if miss < _NEAR else ESTIMATED, 2, dash=dash)
-    panel.mark(tip, "lens" if max(misses) < _NEAR else "estimated", 7)
+    if panel.x[0] < 0:  # on the whole picture; a tip outside is held at its border
+        tip = tip.clip(0, np.array(SIZE) - 1)
+        panel.mark(tip, "lens" if max(misses) < _NEAR else "estimated", 7)
 
 
 def _miss(line: Array, end: Array) -> float:

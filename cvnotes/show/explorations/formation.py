@@ -17,9 +17,9 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, hexed, rg
 # One step or several: from points of the world (..., 3) to where a panel shows them, (..., 2).
 Seen = Callable[[Array], Array]
 
-_SIZE, _PICTURE = (410, 270), (360, 270)  # px, of a panel
-_ABOVE = np.array([[-400.0, 816], [250, -550]])  # mm, X and Z of the panel of the world
-_FRAME = np.array([[-608.0, 608], [690, -110]])  # mm, x and z of that of the camera's frame
+_SIZE = 400, 300  # px, of a panel
+_ABOVE = np.array([[-400.0, 816], [306, -606]])  # mm, X and Z of the panel of the world
+_FRAME = np.array([[-608.0, 608], [760, -152]])  # mm, x and z of that of the camera's frame
 _PLANE = 250.0  # mm: where z = 1 is drawn
 _HEIGHT, _BACK = 125.0, 80.0  # mm, of the box, and Z of its far side; Y is 0 on the floor
 _EYE, _TILT = -255.0, 20.0  # mm, Y of the camera; degrees that it looks down
@@ -93,8 +93,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _take_hold(world, camera, W)
     frame, at = _draw_frame(paper, camera, W, values["way"])
     steps = "2. ÷ z, 3. lens" if bent else "2. ÷ z"
-    plane = paper.panel(_SIZE, (-0.68, 0.68), (-0.448, 0.448), f"{steps}: the plane z = 1")
-    picture = paper.picture_panel(_PICTURE, camera.size, f"{3 + bent}. A: the picture")
+    plane = paper.panel(_SIZE, (-0.64, 0.64), (-0.48, 0.48), f"{steps}: the plane z = 1")
+    picture = paper.picture_panel(_SIZE, camera.size, f"{3 + bent}. A: the picture")
     scene = _Scene.of(camera, W)
     _draw_seen(plane, scene, lambda xy: xy)
     alpha, centre = np.diag(camera.A)[:2], camera.A[:2, 2]
@@ -245,7 +245,8 @@ def _draw_above(panel: Panel, seen: Seen, camera: Camera, corner: Array) -> None
     faces = _faces(corner)
     panel.polygons(seen(faces - faces[..., 1:2] * _LIGHT), _SHADOW)
     _draw_faces(panel, list(seen(faces)), turn=-1)
-    panel.mark(seen(camera.centre), "camera", 9)
+    eye, ahead = panel.place(seen(camera.centre + np.outer([0, 1], camera.R[2])))
+    panel.mark(seen(camera.centre), "camera", 9, looks=tuple(ahead - eye))
 
 
 def _draw_seen(panel: Panel, scene: _Scene, place: Callable[[Array], Array]) -> None:
@@ -313,10 +314,10 @@ def _follow(panel: Panel, place: Array, words: str, up: float = 0, over: bool = 
         room, away = 52 * panel.pixel, 46 * panel.pixel
         row = place[1] - away if place[1] - low[1] > 1.4 * away else place[1] + away
         at = np.array([np.clip(place[0], low[0] + room, high[0] - room), row])
-        chip = at + 3.4 * len(words) * panel.pixel * np.array([[-1, 0], [1, 0]])
-        panel.line(chip, "#FFFFFF", 18)  # the numbers are to be read on the dark box, too
         panel.text(at, words, ESTIMATED, anchor="mm", size=12)
     elif ((place >= low) & (place <= high)).all():
         side = 1 if high[0] - place[0] > 120 * panel.pixel else -1
         beside = place + np.array([14 * side, up]) * panel.pixel
         panel.text(beside, words, ESTIMATED, anchor="lm" if side > 0 else "rm", size=12)
+    elif over:
+        panel.text((low + high) / 2, "the corner is outside", ESTIMATED, anchor="mm", size=12)

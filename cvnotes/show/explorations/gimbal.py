@@ -11,7 +11,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
 
 _UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z, the grey axis, points up on the sheet
 _SHEET, _TOWARDS = sheet((22, -52)) @ _UPRIGHT, towards((22, -52)) @ _UPRIGHT
-_RADII, _PIECES = (1.0, 0.8, 0.6), 28
+_RADII, _PIECES = (1.0, 0.8, 0.6), 72
 _COLOURS = MUTED, LENS, ESTIMATED
 _WIDE, _HIGH = (1, 1, 0.9, 0.9), (-0.04, 0.04, 0.04, -0.04)  # a ring's cut: radius and height
 _SHADES = 0.8, 1.0, 0.65, 1.0  # of a ring's rim, its side, its inside and the other side
@@ -74,8 +74,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     paints += [IDEAL, "#555555", "#333333"]
     quads = np.concatenate(faces)
     depth = quads.mean(axis=1) @ _TOWARDS
-    for i in np.argsort(depth):
-        panel.polygons(_on_sheet(quads[i])[None], paints[i])
+    order = np.argsort(depth)
+    panel.polygons(_on_sheet(quads[order]), [paints[i] for i in order])
     for name, axis, _, r, colour in rings:
         panel.text(_on_sheet((r + 0.3) * axis) + [0.14, 0], name, colour, anchor="mm", size=14)
     end = _on_sheet(inner * 0.9)
@@ -107,7 +107,7 @@ def _bar(ends: Array) -> Array:
 def _volume(paper: Paper, y: float) -> Panel:
     panel = paper.panel((320, 360), (-112, 112), (1.15, -0.16), "volume that the three axes span")
     panel.ticks(x=(-90, -45, 0, 45, 90), y=(0, 0.5, 1))
-    angles = np.arange(-90, 91, 2.0)
+    angles = np.arange(-90, 91, 0.5)
     panel.line(np.column_stack([angles, np.cos(np.radians(angles))]), MUTED, 2)
     here = np.array([y, np.cos(np.radians(y))])
     panel.mark(here, "estimated", 8)

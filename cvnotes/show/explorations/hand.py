@@ -14,6 +14,7 @@ from cvnotes.base.writing import PathLike
 from cvnotes.files import read_photo
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.guards import in_bytes
 from cvnotes.show.guards import picture as checked
 from cvnotes.show.style import ESTIMATED
@@ -158,14 +159,26 @@ def _draw_points(panel: Panel, m: Array, lines: list[Array]) -> None:
     for line in lines:
         panel.line(line, ESTIMATED, 2)
     panel.mark(m, "estimated", 5)
-    middle = m.mean(axis=0)
+    middle, marked = m.mean(axis=0), [*lines, *np.stack([m, m], axis=1)]
     for i, place in enumerate(m, 1):
-        away = (place - middle) / max(float(np.linalg.norm(place - middle)), 1e-9)
         panel.grip(f"point {i}", f"point {i}", place, _STEP / panel.pixel)
         if len(m) > 1:
             inside = np.array([panel.x, panel.y]).T + 10 * panel.pixel * np.array([[1], [-1]])
-            beside = np.clip(place + 22 * panel.pixel * away, *inside)
-            panel.text(beside, f"{i}", ESTIMATED, anchor="mm", size=14)
+            ring = np.clip(place + 22 * panel.pixel * circle(25), *inside)
+            at = _clearest(ring, place - middle, marked, panel.pixel)
+            panel.text(at, f"{i}", ESTIMATED, anchor="mm", size=14)
+
+
+def _clearest(places: Array, away: Array, marked: list[Array], pixel: float) -> Array:
+    """Choose a place for a word that is clear of lines and points, the outermost of such."""
+    ends = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in marked])
+    ends = ends[np.isfinite(ends).all(axis=(1, 2))]
+    start, way = ends[:, 0], ends[:, 1] - ends[:, 0]
+    part = ((places[:, None] - start) * way).sum(axis=2) / (way**2).sum(axis=1).clip(1e-12)
+    feet = start + part.clip(0, 1)[..., None] * way
+    off = np.linalg.norm(places[:, None] - feet, axis=2).min(axis=1)
+    outside = places @ away / max(float(np.linalg.norm(away)), 1e-9)
+    return np.asarray(places[np.argmax(off.clip(max=16 * pixel) + 0.1 * outside)])
 
 
 def _loupe(

@@ -4,7 +4,7 @@ Matplotlib takes a tenth of a second for a figure, too long for a picture that f
 Here Pillow draws at twice the size, and taking the mean of 2 × 2 pixels makes the lines smooth.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -139,15 +139,20 @@ class Panel:
         for pair in clipped(at[:, 0], at[:, 1], self._limits()):
             self._draw.line(pair.ravel().tolist(), colour, thick)
 
-    def polygons(self, corners: Iterable[npt.ArrayLike], colour: str) -> None:
-        """Fill polygons, each with corners (k, 2); those without a place are left out."""
+    def polygons(self, corners: Iterable[npt.ArrayLike], colour: str | Sequence[str]) -> None:
+        """Fill polygons, each with corners (k, 2), with one colour or each with its own.
+
+        Those without a place are left out.
+        """
         several = [np.asarray(one) for one in corners]
         if not several:
             return
         ends = np.cumsum([len(one) for one in several])[:-1]
-        for at in np.split(self.place(np.concatenate(several)), ends):
+        places = np.split(self.place(np.concatenate(several)), ends)
+        colours = [colour] * len(several) if isinstance(colour, str) else colour
+        for at, ink in zip(places, colours, strict=True):
             if len(at) and (np.abs(at) < _LARGEST).all():
-                self._draw.polygon(at.ravel().tolist(), fill=colour)
+                self._draw.polygon(at.ravel().tolist(), fill=ink)
 
     def mark(
         self,
@@ -253,7 +258,7 @@ class Panel:
             self._draw.rectangle(box, fill=colour, outline="white", width=self.scale // 2)
         elif marker == "^":
             ahead = reach * np.array(looks) / np.hypot(*looks)
-            aside, back = 0.7 * np.array([-ahead[1], ahead[0]]), at - 0.7 * ahead
+            aside, back = 0.6 * np.array([-ahead[1], ahead[0]]), at - 0.8 * ahead
             corners = np.array([at + ahead, back + aside, back - aside])
             self._draw.polygon(corners.ravel().tolist(), fill=colour)
         elif marker == "+":

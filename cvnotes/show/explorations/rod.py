@@ -12,14 +12,16 @@ from cvnotes.pictures import blocks, course, depth_map, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
 
 _CAMERA = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
-_EYE, _BOX, _TALLEST = 2.8, 2.0, 8.0  # m: heights of camera, yellow box and highest rod
+_EYE, _BOX, _TALLEST = 2.8, 2.0, 6.0  # m: heights of camera, yellow box and highest rod
 _EDGE = _CAMERA.project(blocks().vertices[[17, 19]])  # of the yellow box, from top to foot
 _UP, _LEVEL = _CAMERA.vanishing_point([0, 1, 0]), horizon(_CAMERA, [0, 1, 0])
 _HORIZON = float(-_LEVEL[2] / _LEVEL[1])  # its row: the camera is not rolled
 _WIDTH = 0.16  # m, of the rod
+_TOP = 79.5  # px: the sky above is not shown
 
 
 def rod_model() -> Model:
@@ -41,14 +43,14 @@ def rod_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         photo, depths = photographed()
         foot, height = np.array([values["u"], values["v"]]), values["height"]
-        panel = paper.picture_panel((480, 360), _CAMERA.size, "a rod, and the horizon")
-        panel.image(photo)
+        panel = paper.panel((480, 300), (-0.5, 639.5), (_TOP, 479.5), "a rod, and the horizon")
+        panel.image(photo[round(_TOP) :])
         panel.line([[-20, _HORIZON], [660, _HORIZON]], IDEAL, 1)
         _draw_rod(panel, foot, height, depths)
         panel.grip("foot", "the foot of the rod", foot, 4)
         top = at_height(foot, height)
         panel.grip("top", "the top of the rod", top, 4)
-        side = paper.panel((330, 360), (-2.5, 39), (9, -1), "the same from the side (m)")
+        side = paper.panel((330, 300), (-2.5, 39), (6.7, -0.8), "the same from the side (m)")
         away = float(np.linalg.norm((_stands(foot) - _CAMERA.centre)[[0, 2]])) / 1e3
         _draw_side(side, away, height)
         return Drawing(paper.join((panel, side)), _sentence(foot, height))
@@ -93,6 +95,8 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
     hidden = depths[v, u] < (places @ _CAMERA.G[2, :3] + _CAMERA.G[2, 3]) - 100
     width = float(np.linalg.norm(pixels[1] - pixels[0])) * _WIDTH / 0.125 / panel.pixel
     seen = np.where(hidden[:, None], np.nan, pixels)
+    if not hidden[0]:  # dim the ground round the foot, on which the rod stands
+        panel.polygons([foot + 1.4 * width * circle(30) * [1, 0.3]], "#5F5D54")
     panel.line(seen, MUTED, width + 1.5)
     for i, part in enumerate(pairwise(pixels)):
         colour, behind = ESTIMATED if int(h[i]) % 2 == 0 else "#FFFFFF", hidden[i : i + 2].any()
@@ -105,10 +109,10 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
 
 def _draw_side(panel: Panel, away: float, height: float) -> None:
     panel.polygons([[[-9, 0], [99, 0], [99, -9], [-9, -9]]], "#DDDACF")
-    panel.ticks(x=(0, 10, 20, 30), y=(2, 4, 6, 8))
+    panel.ticks(x=(0, 10, 20, 30), y=(2, 4, 6))
     panel.line(np.array([[0, _EYE], [99, _EYE]]), IDEAL, 1)
     panel.line(np.array([[0, 0], [0, _EYE]]), MUTED, 2)
-    panel.mark([0, _EYE], "camera", 9)
+    panel.mark([0, _EYE], "camera", 9, looks=(1, 0))
     panel.text([0.6, 0.5], "camera", CAMERA, anchor="lm")
     panel.line(np.array([[away, 0], [0, _EYE], [away, height]]), ESTIMATED, 0.9, dash=4)
     for metre in np.arange(0, height, 1):

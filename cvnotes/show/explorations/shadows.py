@@ -18,7 +18,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, MUTED, WORLD
 
 SIZE = (640, 480)  # px of the photograph
 _CAMERA = Camera(intrinsics(400, 400, 319.5, 239.5), size=SIZE)
-_DISC = 15 * np.column_stack([f(np.linspace(0, 6.2, 40)) for f in (np.cos, np.sin)])  # px
+_DISC = 13 * np.column_stack([f(np.linspace(0, 6.2, 40)) for f in (np.cos, np.sin)])  # px
 _GLOW, _NEAR = "#FFF0B8", 0.2  # what is nearer than 0.2 m is not drawn
 POLES = np.array([[-4.0, -4.05, z] for z in range(15, 140, 25)])  # m, the tops
 GROUND, _BALLAST, _BESIDE = 1.95, 1.77, 2.3  # m, their y, and how far the ballast reaches
@@ -48,7 +48,7 @@ def shadows_model() -> Model:
             ray = _CAMERA.project(in_front(top, tip_of(top, sun) - top))
             panel.line(ray, ESTIMATED, 1.5)
             panel.line([ray[0] if sun[2] > 0 else ray[1], end], ESTIMATED, 0.9, dash=5)
-        panel.mark(end, "estimated", 10)
+        panel.mark(end, "estimated", 8)
         panel.grip("sun", "the sun, or the shadow of the camera", end, 10)
         plan = paper.panel((330, 330), (-68, 68), (104, -32), "the same from above (m)")
         _draw_plan(plan, sun)
@@ -116,14 +116,17 @@ def _draw_plan(panel: Panel, sun: Array) -> None:
     for x in (-0.75, 0.75):
         panel.line([[x, -33], [x, 111]], WORLD, 1)
     for top in POLES:
-        panel.line([top[::2], tip_of(top, sun)[::2]], MUTED, 2)
+        panel.line([top[::2], tip_of(top, sun)[::2]], MUTED, 1.5)
         panel.mark(top[::2], "world", 6)
     to_sun = sun[::2] / np.linalg.norm(sun[::2])
     panel.line(np.outer([0, 200], to_sun), ESTIMATED, 0.9, dash=5)
-    panel.text(26 * to_sun, "to the sun", ESTIMATED, anchor="mm")
+    side = -1 if to_sun[0] < -0.3 else 1  # the words stand beside the line, away from the shadows
+    aside = side * np.copysign(1, to_sun[1]) * np.array([to_sun[1], -to_sun[0]])
+    beside = (26 + 20 * to_sun[0] ** 2) * to_sun + (np.abs(aside) @ [14, 4]) * aside
+    panel.text(beside, "to the sun", ESTIMATED, anchor="mm")
     panel.mark([0, 0], "camera", 9)
-    side = 1 if sun[0] < 0 else -1
-    panel.text([4 * side, -4], "camera", CAMERA, anchor="lm" if side > 0 else "rm")
+    below = -4 if sun[2] > 0 else 4
+    panel.text([4 * side, below], "camera", CAMERA, anchor="lm" if side > 0 else "rm")
 
 
 def _sentence(sun: Array, end: Array, values: Values) -> str:

@@ -42,7 +42,7 @@ def triangle_model() -> Model:
     @lru_cache(maxsize=2)
     def sheet(sharpness: int) -> Drawn:
         """Put the photograph on white paper, once for all values."""
-        pale = 0.4 * render_scene(blocks(), camera, samples=4) + 153  # for the lines drawn over it
+        pale = 0.6 * render_scene(blocks(), camera, samples=4) + 102  # for the lines drawn over it
         photo = Bitmap.fromarray(pale.astype(np.uint8))
         paper = Bitmap.new("RGB", (sharpness * _SIZE[0], sharpness * _SIZE[1]), "white")
         scale = paper.width / np.ptp(_SHOWN[0])
@@ -64,7 +64,10 @@ def triangle_model() -> Model:
                 a + ((v - a) * way).sum(1, keepdims=True) / (way * way).sum(1, keepdims=True) * way
             )
             for corner, foot in zip(v, feet, strict=True):
-                sky.line([corner, foot, c], IDEAL, 0.9, dash=5)
+                # The whole altitude, of which c may lie outside.
+                along = np.array([corner, foot, c])
+                along = along[np.argsort(along @ (foot - corner))]
+                sky.line(along[[0, -1]], IDEAL, 0.9, dash=5)
         _draw_box(sky, v, nearest, nearest + part[:, None] * (v - nearest))
         if np.isfinite(square):
             sky.mark(c, "estimated", 6)
@@ -114,7 +117,9 @@ def _draw_box(panel: Panel, v: Array, nearest: Array, ends: Array) -> None:
         panel.line(v[[k, k - 1]], ESTIMATED, 1.8)
         panel.mark(v[k], "estimated", 7)
         panel.grip(name, f"the vanishing point {name}", v[k], 2)
-        panel.text(v[k] + 60 * np.sign(v[k] - v.mean(0)), name, ESTIMATED, anchor="mm", size=14)
+        away = v[k] + 60 * np.sign(v[k] - v.mean(0))
+        inside = away.clip(*np.array([[1, -1]]).T * 45 + np.transpose(_SHOWN))
+        panel.text(inside, name, ESTIMATED, anchor="mm", size=14)
 
 
 def _draw_side(panel: Panel, Y: Array, foot: Array, c: Array, square: float) -> None:
@@ -122,15 +127,16 @@ def _draw_side(panel: Panel, Y: Array, foot: Array, c: Array, square: float) -> 
     long = float(np.linalg.norm(Y - foot))
     down = (Y - foot) / long * (1 if Y[1] >= foot[1] else -1)
     top, middle, bottom = (c[1] + (at - c) @ down for at in (foot, (foot + Y) / 2, Y))
-    phi = np.radians(np.arange(0, 181, 3))
+    phi = np.radians(np.arange(0, 180.5, 0.5))
     panel.line(np.stack([-np.sin(phi), np.cos(phi)], -1) * long / 2 + [0, middle], IDEAL, 1.2)
     panel.line([[0, top], [0, bottom]], CAMERA, 3)
     if square >= 0:
         f = float(np.sqrt(square))
         panel.line([[0, top], [-f, c[1]], [0, bottom]], ESTIMATED, 1.5)
         panel.line([[-f, c[1]], [0, c[1]]], MUTED, 1.2, dash=4)
-        panel.mark([-f, c[1]], "camera", 9)
-        panel.text([-f - 60, c[1]], f"f = {f:.0f}", MUTED, anchor="rm", size=12)
+        panel.mark([-f, c[1]], "camera", 9, looks=(1, 0))
+        at, anchor = ([-f / 2, c[1] - 24], "ms") if f > 400 else ([-f - 60, c[1]], "rm")
+        panel.text(at, f"f = {f:.0f}", MUTED, anchor=anchor, size=12)
     # The letter of c gives way to that of an end to which c has come.
     away = min((c[1] - end for end in (bottom, top)), key=abs)
     beside = c[1] - away + np.copysign(max(abs(away), _APART), away)
