@@ -35,7 +35,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
     >>> from cvnotes.camera import intrinsics
     >>> ax = draw_field_of_view({"wide": Camera(intrinsics(320, 320, 319.5, 240))})
     >>> [text.get_text() for text in ax.texts]
-    ['wide: 90.0°', 'wide']
+    ['wide: 90.0°']
     """
     from matplotlib.patches import Rectangle
 
@@ -46,7 +46,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
     ax.add_patch(walls)
     for corners, colour in zip(*from_above(room(), -1500), strict=True):
         ax.fill(*corners.T[::-1], fc=colour, zorder=2)
-    ax.plot([9940, 9940], [-600, 600], color="#3A6A66", lw=5, solid_capstyle="butt")  # blackboard
+    ax.plot([9960, 9960], [-600, 600], color="#3A6A66", lw=3, solid_capstyle="butt")  # blackboard
     across = (_WALL + _BACK) / len(cameras)
     for i, ((name, camera), own) in enumerate(zip(cameras.items(), _OWN, strict=False)):
         (left, right), (w, h) = _sides(is_camera(camera, "camera")), camera.size
@@ -61,8 +61,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
         x0, x1 = -_BACK + across * i + 60, -_BACK + across * (i + 1) - 60
         span = (x0, x1, 3300 + (x1 - x0) * (h // 2) / w, 3300)
         ax.imshow(render_scene(room(), rows, samples=16), extent=span)
-        ax.add_patch(Rectangle((x0, 3300), x1 - x0, span[2] - 3300, fc="none", ec=own, lw=3))
-        beside(ax, name, (x0, span[2]), (8, 8), own, path_effects=halo())
+        ax.add_patch(Rectangle((x0, 3300), x1 - x0, span[2] - 3300, fc="none", ec=own, lw=2))
     ax.plot(0, 0, ">", color=CAMERA, ms=11)
     ax.set(xlim=(-_BACK - 100, _WALL + 100), ylim=(span[2] + 100, -3100), aspect="equal")
     ax.axis("off")

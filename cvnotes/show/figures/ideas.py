@@ -180,13 +180,17 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
     >>> [float(v) for v in ax.lines[0].get_xydata()[1]]  # the ray meets the image plane
     [1.5, 0.5625]
     """
+    from matplotlib.patches import FancyBboxPatch
+
     y, z, f, top = 1.5, 4.0, 1.5, -1.3
     v, light = f * y / z, "#FFE9A8"
-    ax = drawn_on(ax, width=900, height=440)
+    ax = drawn_on(ax, width=760, height=372)
     for end in (y, top):
         ax.plot([-f, f, z], end / z * np.array([-f, f, z]), color=MUTED, linewidth=1, zorder=4)
     ax.fill([-9, 9, 9, -9], [y, y, 9, 9], color="#E3EEDC", linewidth=0)
-    ax.fill([-f - 0.5, 0, 0, -f - 0.5], [y, y, -y, -y], color="#2B2B2B", linewidth=0)
+    box = FancyBboxPatch((-f - 0.5, -y), f + 0.5, 2 * y, "round,pad=0,rounding_size=0.12")
+    box.set(facecolor="#3A3A3A", linewidth=0)
+    ax.add_patch(box)
     ax.plot([0, 0], [-0.05, 0.05], color=light, linewidth=3)
     for end in (-f, z):
         ax.fill(*np.transpose([[0, 0], [end, y * end / z], [end, top * end / z]]), color=light,
@@ -198,20 +202,21 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
         _draw_tree(ax, at, at / z, 0.5)
     ax.plot([0, 1.22 * z], [0, 0], color=MUTED, linewidth=1, linestyle="-.", zorder=4)
     for at, tip, colour in ((z, y, WORLD), (f, v, LENS)):
-        ax.fill([0, at, at], [0, 0, tip], color=colour, alpha=0.3, linewidth=0, zorder=3.5)
+        ax.fill([0, at, at], [0, 0, tip], color=colour, alpha=0.2, linewidth=0, zorder=3.5)
         arrow(ax, (at, 0), (at, tip), colour, 2.2, zorder=5)
     ax.plot(0, 0, "o", color=CAMERA, markersize=8, zorder=5)
     span: dict[str, Any] = {"arrowstyle": "<->", "color": IDEAL, "shrinkA": 0, "shrinkB": 0}
     for end, row, name in ((f, y + 0.2, "f"), (z, y + 0.5, "z")):
         ax.annotate("", (0, row), (end, row), arrowprops=span)
         ax.plot([[0, end]] * 2, [[y] * 2, [row + 0.07] * 2], color=MUTED, linewidth=0.8)
-        letter(ax, name, (end / 2, row), IDEAL, fontsize=FONT + 3)
+        letter(ax, name, (end / 2, row), IDEAL, fontsize=FONT + 3, fontstyle="italic")
     for name, at, by, colour in (
         ("y", (z, y / 2), (8, -3), WORLD), ("v", (f, v / 2), (7, -4), LENS),
         ("C, the pinhole", (0, 0), (8, 40), CAMERA), ("image plane", (f, -1), (0, 18), CAMERA),
         ("film", (-f, -1), (0, 16), "white"), ("axis", (1.22 * z, 0), (4, -4), MUTED),
     ):  # fmt: skip
-        beside(ax, name, at, by, colour, fontsize=FONT + 1, zorder=6)
+        style = "italic" if len(name) == 1 else "normal"
+        beside(ax, name, at, by, colour, fontsize=FONT + 1, fontstyle=style, zorder=6)
     ax.set(xlim=(-f - 0.6, 1.33 * z), ylim=(y + 0.75, -y - 0.15), aspect="equal")
     ax.axis("off")
     return ax
@@ -227,5 +232,5 @@ def _draw_tree(ax: "Axes", at: float, scale: float, wide: float = 1) -> None:
     leaves = (((-0.3, -0.15), "#3E8E54"), ((0.3, -0.2), "#357D49"), ((0, -0.8), "#4BA063"))
     crown = [Circle(middle, 0.5 if middle[0] == 0 else 0.4, color=c) for middle, c in leaves]
     for part in (Polygon(trunk, color="#7A5230"), *crown):
-        part.set(transform=place + ax.transData, linewidth=0, zorder=3)
+        part.set(transform=place + ax.transData, linewidth=0, zorder=3.7)  # before both wedges
         ax.add_patch(part)

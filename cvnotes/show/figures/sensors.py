@@ -35,9 +35,9 @@ def draw_sensor(A: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     cells = seen.reshape(24, 20, 32, 20, 3).mean(axis=(1, 3)) / 255
     ax.pcolormesh(*np.moveaxis(xy_from_px(A, corners), -1, 0), cells, ec=MUTED, lw=0.3)
     start, *tips = xy_from_px(A, [[0, 0], [2 * step, 0], [0, 2 * step]])
-    for tip, name in zip(tips, "uv", strict=True):
+    for tip, name, outside in zip(tips, "uv", ((-8, 8), (-12, 4)), strict=True):
         arrow(ax, start, tip, LENS, 2.2, gap=2)
-        letter(ax, name, 1.2 * tip - 0.2 * start, LENS, fontsize=FONT + 2)
+        beside(ax, name, tip, outside, LENS, fontsize=FONT + 2, fontstyle="italic")
     first, last = (np.arctan2(*(tip - start)[::-1]) for tip in tips)
     arc = np.linspace(first, last, 25)[:, None]
     reach = 0.4 * float(np.linalg.norm(tips[0] - start))

@@ -54,7 +54,7 @@ def draw_altitudes(v: npt.ArrayLike, *, ax: "Axes | None" = None) -> "Axes":
     shifts = 14 * away / np.linalg.norm(away, axis=1, keepdims=True) * (1, -1)  # paper: upwards
     for name, at, shift in zip("cXYZ", [c, *v], [(12, 12), *shifts], strict=True):
         beside(ax, name, at, shift, ESTIMATED, ha="center", va="center", fontsize=FONT + 1,
-               fontweight="bold", path_effects=halo(), annotation_clip=False)  # fmt: skip
+               path_effects=halo(), annotation_clip=False)  # fmt: skip
     return ax
 
 
