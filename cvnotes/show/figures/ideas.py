@@ -212,7 +212,7 @@ def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
         letter(ax, name, (end / 2, row), IDEAL, fontsize=FONT + 3, fontstyle="italic")
     for name, at, by, colour in (
         ("y", (z, y / 2), (8, -3), WORLD), ("v", (f, v / 2), (7, -4), LENS),
-        ("C, the pinhole", (0, 0), (8, 40), CAMERA), ("image plane", (f, -1), (0, 18), CAMERA),
+        ("pinhole C", (0, 0), (8, 40), CAMERA), ("image plane", (f, -1), (0, 18), CAMERA),
         ("film", (-f, -1), (0, 16), "white"), ("axis", (1.22 * z, 0), (4, -4), MUTED),
     ):  # fmt: skip
         style = "italic" if len(name) == 1 else "normal"
