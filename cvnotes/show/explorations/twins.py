@@ -98,7 +98,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for camera, colour, dash in zip(cameras, (CAMERA, ESTIMATED), (0, 5), strict=True):
         m = camera.project(W)
         sides = {
-            frozenset(two) for face, _ in _unhidden(m) for two in zip(face, face[1:] + face[:1])
+            frozenset(two)
+            for face, _ in _unhidden(m)
+            for two in zip(face, np.roll(face, 1), strict=True)
         }
         for side in sides:  # each once: dashes that are drawn twice make a line
             picture.line(m[sorted(side)], colour, 1.8, dash)

@@ -14,7 +14,7 @@ from cvnotes.show.style import ESTIMATED, LENS, hexed, rgb
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
 _LEFT, _TOP, _SIDE = 324, 185, 57  # px, the part of the photograph that is shown
 _SIZE = (285, 285)
-_WEAK, _STRONG = 25.0, 75.0  # grey levels a pixel: of votes not drawn, and of the thickest
+_WEAK, _STRONG = 33.0, 75.0  # grey levels a pixel: of votes not drawn, and of the thickest
 _FAR = 90.0  # grey levels a pixel, where the panel of gradients ends
 _K = 0.05  # of the Harris measure
 _NOTHING = 2000.0  # an eigenvalue that the noise of flat paper does not reach
