@@ -44,16 +44,17 @@ def turned_board() -> tuple[Chessboard, Camera]:
 
 
 def board_picture() -> npt.NDArray[np.uint8]:
-    """Photograph the turned board: (240, 320), for the exercise ``first_corner``.
+    """Photograph the turned board in a room: (240, 320, 3), for the exercise ``first_corner``.
 
     Examples
     --------
     >>> board_picture().shape
-    (240, 320)
+    (240, 320, 3)
     """
-    from cvnotes.pictures import render
+    from cvnotes.pictures import render_scene, room_with
 
-    return render(*turned_board())
+    board, camera = turned_board()
+    return render_scene(room_with(board, camera.G), Camera(camera.A, size=camera.size), samples=16)
 
 
 def stereo_cameras() -> tuple[Camera, Camera]:

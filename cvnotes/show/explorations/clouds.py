@@ -17,8 +17,8 @@ _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corne
 _PICTURES = "as computed", "sharpened", "JPEG of quality 30", "5 px shake", "rays, no blur"
 _METHODS = ("gradients", LENS), ("edge model", ESTIMATED)
 _WINDOWS = np.arange(3, 13)  # px, from the middle to the border
-_REACH, _SHOWN = 0.15, 14  # px, of the clouds and of the picture
-_LEAST, _MOST = 0.0035, 0.2  # px, of the curves
+_REACHES, _SHOWN = (0.07, 0.15), 14  # px, of the clouds and of the picture
+_LEAST, _MOST = 0.003, 0.2  # px, of the curves
 
 
 def clouds_model() -> Model:
@@ -74,7 +74,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     off = errors(which)
     rms = np.sqrt(np.nanmean(off**2, axis=(2, 3)))
     now = int(window - _WINDOWS[0])
-    panels = _picture(paper, window, which), _cloud(paper, off[:, now]), _curves(paper, rms, now)
+    reach = _REACHES[int(which > 2)]  # one for all windows, for the clouds to be compared
+    cloud = _cloud(paper, off[:, now], reach)
+    panels = _picture(paper, window, which), cloud, _curves(paper, rms, now)
     (gradients, edges), name = rms[:, now], _PICTURES[which - 1]
     lost = int(np.isnan(off[:, now, :, 0]).any(axis=0).sum())
     ahead = "The edge model is ahead" if edges < gradients else "The gradients are ahead"
@@ -94,28 +96,28 @@ def _picture(paper: Paper, window: int, which: int) -> Panel:
     part = changed(which)[v - _SHOWN : v + _SHOWN + 1, u - _SHOWN : u + _SHOWN + 1]
     panel.image(np.rint(part).clip(0, 255).astype(np.uint8), smooth=False)
     box = (window + 0.5) * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
-    for colour, width in (("#FFFFFF", 4), (ESTIMATED, 2)):
+    for colour, width in (("#FFFFFF", 3.5), (ESTIMATED, 1.8)):
         panel.line(box + [u, v], colour, width)
     return panel
 
 
-def _cloud(paper: Paper, off: Array) -> Panel:
+def _cloud(paper: Paper, off: Array, reach: float) -> Panel:
     """Draw the errors, and a ring as large as the RMS of a point."""
     panel = paper.panel(
-        (285, 285), (-_REACH, _REACH), (-_REACH, _REACH), "54 errors; the panel is 0.3 px wide"
+        (285, 285), (-reach, reach), (-reach, reach), f"54 errors; {2 * reach:g} px wide"
     )
     ring = circle(91)
-    dot = 0.0022 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    dot = 2 * panel.pixel * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     for cloud, (_, colour) in zip(off, _METHODS, strict=True):
         pale = hexed(255 - 0.55 * (255 - 255 * np.array(rgb(colour))))  # the ring stands out
         panel.polygons(cloud[:, None] + dot, pale)
     for cloud, (_, colour) in zip(off, _METHODS, strict=True):
-        panel.line(np.sqrt(2 * np.nanmean(cloud**2)) * ring, colour, 2)
+        panel.line(np.sqrt(2 * np.nanmean(cloud**2)) * ring, colour, 1.8)
     panel.mark([0, 0], "ideal", 6)
-    outside = int((np.abs(off) > _REACH).any(axis=(0, 2)).sum())
+    outside = int((np.abs(off) > reach).any(axis=(0, 2)).sum())
     if outside:
         words = f"{outside} of 54 go beyond"
-        panel.text([0.01 - _REACH, 0.138], words, IDEAL, anchor="lm", size=12)
+        panel.text([-0.94 * reach, 0.92 * reach], words, IDEAL, anchor="lm", size=12)
     return panel
 
 
@@ -134,7 +136,9 @@ def _curves(paper: Paper, rms: Array, now: int) -> Panel:
         panel.text([2.1, np.log10(value)], f"{value:g}", size=9)
     for curve, (name, colour) in zip(rms, _METHODS, strict=True):
         panel.line(np.column_stack([_WINDOWS, np.log10(curve)]), colour, 2)
-        panel.text([12.8, np.log10(1.03 * curve[-4:].max())], name, colour, anchor="rd", size=12)
+        upper = curve[-1] == rms[:, -1].max()  # its name is above it, that of the lower one below
+        at = np.log10(curve[-4:].max() if upper else curve[-4:].min()) + (0.05 if upper else -0.05)
+        panel.text([12.8, at], name, colour, anchor="rd" if upper else "ra", size=12)
         panel.mark([_WINDOWS[now], np.log10(curve[now])], "ideal", 6)
     panel.grip("window", "how large the window is", [_WINDOWS[now], np.log10(rms[0, now])], 26)
     return panel

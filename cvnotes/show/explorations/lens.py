@@ -4,6 +4,7 @@ from functools import cache, partial
 
 import numpy as np
 from PIL import Image
+from scipy.ndimage import distance_transform_edt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
@@ -60,16 +61,20 @@ def _around(name: str, reach: float, step: float, value: float, about: str) -> S
 
 def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     lens = Lens((values["k1"], values["k2"], values["k3"]), (values["p1"], values["p2"]))
-    reach = 1.25 * _EXTENT
+    reach = 1.4 * _EXTENT
     x = reach * _SIZE[0] / _SIZE[1]
-    grid = paper.panel(_SIZE, (-x, x), (-reach, reach), "plane z = 1: ideal, and through the lens")
+    title = "plane z = 1, and the frame of our picture"
+    grid = paper.panel(_SIZE, (-x, x), (-reach, reach), title)
     grid.image(_bent_room(lens, x, reach, paper.sharpness))
+    _draw_fold(grid, lens)
     _draw_grid(grid, lens)
-    _draw_frame(grid, camera, lens)
+    corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
+    for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
+        grid.line(corners, colour, width)
     if any(lens.p):
         ray = [[0, 0], -reach * np.array(lens.p[::-1]) / np.hypot(*lens.p)]
-        grid.line(ray, "#FFFFFF", 3.5)
-        grid.line(ray, IDEAL, 1.6, dash=5)
+        grid.line(ray, "#FFFFFF", 3)
+        grid.line(ray, IDEAL, 1.4, dash=5)
     along = "along the dashed ray on the left" if any(lens.p) else "r L(r) against ideal r"
     curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), f"radius: observed {along}")
     _draw_curve(curve, lens)
@@ -81,14 +86,17 @@ def _room() -> Drawn:
     """Photograph the room of the course once, through an ideal lens, wider than is shown."""
     from cvnotes.pictures import render_scene, room
 
-    w, h = 3 * _DETAIL, 2 * _DETAIL
+    w, h = 3 * _DETAIL, 5 * _DETAIL // 2
     camera = Camera(intrinsics(_DETAIL, _DETAIL, (w - 1) / 2, (h - 1) / 2), size=(w, h))
     picture: Drawn = render_scene(room(), camera, samples=4)
-    return (255 - (255 - picture.astype(int)) // 2).astype(np.uint8)  # light, under a grid
+    return (255 - 0.75 * (255.0 - picture)).astype(np.uint8)  # light, under a grid
 
 
 def _bent_room(lens: Lens, x: float, y: float, sharpness: int) -> Drawn:
-    """Show the room through a lens, from −x to x and −y to y; white where it shows nothing."""
+    """Show the room through a lens, from −x to x and −y to y.
+
+    Beyond the fold it shows what is nearest to it: that is for `_draw_fold` to cover.
+    """
     room = _room()
     h, w = room.shape[:2]
     size = sharpness * _SIZE[0], sharpness * _SIZE[1]
@@ -97,6 +105,7 @@ def _bent_room(lens: Lens, x: float, y: float, sharpness: int) -> Drawn:
         for reach, n in zip((x, y), np.array(_SIZE) // _COARSE, strict=True)
     )
     ideal = lens.undistort(np.stack(np.meshgrid(columns, rows), axis=-1))
+    ideal = ideal[tuple(distance_transform_edt(np.isnan(ideal[..., 0]), None, False, True))]
     sides = (_DETAIL * ideal + np.array([w - 1, h - 1]) / 2).astype(np.float32)
     m = [
         np.asarray(Image.fromarray(side).resize(size, Image.Resampling.BILINEAR))
@@ -105,47 +114,46 @@ def _bent_room(lens: Lens, x: float, y: float, sharpness: int) -> Drawn:
     return backward_warp(room, np.stack(m, axis=-1), fill=255).astype(np.uint8)
 
 
+def _draw_fold(panel: Panel, lens: Lens) -> None:
+    """Cover what lies beyond the fold, where the lens shows nothing, up to a smooth border."""
+    fold = polynomial(lens, min(lens.max_radius, 9.0) * circle(181))
+    if lens.max_radius < 9:
+        far = 9 * np.array([[1, 0], [1, 1], [-1, 1], [-1, -1], [1, -1], [1, 0]])
+        panel.polygons([np.concatenate([fold, far[::-1]])], "#FFFFFF")
+        panel.line(fold, ESTIMATED, 1.8)
+    if lens.max_radius < 2 * _EXTENT:
+        top = fold[:, 1].min()
+        over = top > panel.y[0] + 0.1  # else there is room within the circle alone
+        y = top - 0.02 if over else max(top, panel.y[0]) + 0.02
+        panel.text([0, y], "the fold", ESTIMATED, anchor="md" if over else "ma")
+
+
 def _draw_grid(panel: Panel, lens: Lens) -> None:
-    fine, coarse = np.linspace(-_EXTENT, _EXTENT, 61), np.linspace(-_EXTENT, _EXTENT, 13)
+    fine, coarse = np.linspace(-_EXTENT, _EXTENT, 49), np.linspace(-_EXTENT, _EXTENT, 9)
     across = np.stack(np.meshgrid(fine, coarse), -1)
     for line in (*across, *across[..., ::-1]):
-        panel.line(line[[0, -1]], "#BBBBBB", 0.6)
+        panel.line(line[[0, -1]], MUTED, 0.5)
     for line in (*across, *across[..., ::-1]):
         bent = polynomial(lens, line)
         beyond = np.linalg.norm(line, axis=-1, keepdims=True) > lens.max_radius
         if beyond.any():
-            panel.line(np.where(beyond, bent, np.nan), ESTIMATED, 0.8)
-        panel.line(np.where(beyond, np.nan, bent), LENS, 1.4)
+            panel.line(np.where(beyond, bent, np.nan), "#F4D0B8", 0.6)
+        panel.line(np.where(beyond, np.nan, bent), LENS, 1.2)
     panel.mark([0, 0], "ideal")
-
-
-def _draw_frame(panel: Panel, camera: Camera, lens: Lens) -> None:
-    """Draw the border of the camera's picture, and the fold's."""
-    corners = camera_corners(camera)
-    for colour, width in (("#FFFFFF", 5), (CAMERA, 2.6)):
-        panel.line(corners[[0, 1, 2, 3, 0]], colour, width)
-    if lens.max_radius < 2 * _EXTENT:
-        panel.line(polynomial(lens, lens.max_radius * circle(121)), ESTIMATED, 2.2)
-        seen = lens.max_radius * float(lens.L(lens.max_radius))
-        over = -seen > panel.y[0] + 0.07  # else there is room within the circle alone
-        y = -seen - 0.02 if over else max(-seen, panel.y[0]) + 0.02
-        panel.text([0, y], "the fold", ESTIMATED, anchor="md" if over else "ma")
     panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
     bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
-    below = [0.02, min(bent[1] + 0.02, panel.y[1] - 0.07)]
-    panel.text(below, "through the lens", LENS, anchor="la")
-    panel.text(corners[3] + [0.01, 0.02], "the picture", CAMERA, anchor="la")
+    below = [0, min(max(bent[1], _EXTENT) + 0.02, panel.y[1] - 0.07)]
+    panel.text(below, "through the lens", LENS, anchor="ma")
 
 
 def _draw_curve(panel: Panel, lens: Lens) -> None:
-    r = np.linspace(0, _RADIUS, 201)
-    observed = np.stack([r, first_to_fold(lens, r)], -1)
-    panel.ticks(np.arange(0.2, 1.3, 0.2).round(1), np.arange(0.2, 1.1, 0.2).round(1))
+    panel.ticks((0.4, 0.8, 1.2), (0.4, 0.8))
     panel.line([[0.0, 0.0], [1.2, 1.2]], IDEAL, 1, dash=4)
     panel.text([0.97, 0.93], "ideal", IDEAL)
-    good = (r <= lens.max_radius)[:, None]
-    panel.line(np.where(good, np.nan, observed), ESTIMATED, 1.8, dash=5)
-    panel.line(np.where(good, observed, np.nan), LENS, 2.2)
+    fold = min(lens.max_radius, _RADIUS)
+    good, beyond = np.linspace(0, fold, 61), np.linspace(fold, _RADIUS, 61)
+    panel.line(np.stack([beyond, first_to_fold(lens, beyond)], -1), ESTIMATED, 1.8, dash=5)
+    panel.line(np.stack([good, first_to_fold(lens, good)], -1), LENS, 2.2)
     held = [_HELD, float(first_to_fold(lens, np.array(_HELD)))]
     panel.mark(held, "lens", 8)
     panel.grip("curve", "the curve of k1", held, 2)

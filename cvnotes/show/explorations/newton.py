@@ -64,9 +64,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     curve = paper.panel(
         (440, 340), (0.49, 0.96), (0.632, 0.445), "observed radius r' over r: pull the plus"
     )
-    curve.ticks(x=(0.6, 0.7, 0.8, 0.9), y=(0.5, 0.55, 0.6))
-    fine = np.linspace(0, 0.96, 300)
-    curve.line(np.column_stack([fine, seen(fine)]), LENS, 2.5)
+    curve.ticks(y=(0.5, 0.55, 0.6))
+    for number in (0.6, 0.7, 0.8, 0.9):
+        curve.text([number, 0.4506], f"{number:g}", anchor="md", size=9)
+    fine = np.linspace(0.4, 0.96, 57)
+    curve.line(np.column_stack([fine, seen(fine)]), LENS, 2.2)
     curve.line([[0, level], [1, level]], IDEAL, 1)
     curve.line([[_FOLD, 0], [_FOLD, 1]], MUTED, 1, dash=4)
     curve.text([_FOLD - 0.005, 0.47], "the fold", MUTED, anchor="rm")
@@ -83,17 +85,21 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     curve.line(np.array([[0, 0], [level, float(seen(level))]]), MUTED, 1, dash=3)
     curve.text([0.575, 0.464], "← to the origin", MUTED, size=11)
     counts = []
-    for step, colour in ((along_the_ray, MUTED), (along_the_tangent, ESTIMATED)):
+    for step, name, colour in (
+        (along_the_ray, "dividing by L", MUTED),
+        (along_the_tangent, "Newton", ESTIMATED),
+    ):
         way = guesses(step, level, 1000)
         _way(curve, way[: rounds + 1], level, colour)
         off = _F * np.abs(way - r)
         counts.append(int(np.argmax(off < _ENOUGH)))
         _series(errors, off, colour, rounds)
-    curve.text([level - 0.006, level - 0.006], "r'", IDEAL, anchor="rm", size=13)
+        end = min(int(np.argmax(off < 0.003)), 12)  # to the right of it the curve has fallen
+        at = [end + 0.4, np.log10(max(off[end], 2e-4)) + 0.15]
+        errors.text(at, name, colour, anchor="ld", size=12)
+    curve.text([level - 0.003, level - 0.003], "r'", IDEAL, anchor="ra", size=13)
     curve.mark([r, level], "ideal", 8)
     curve.grip("level", "the level r', by the ideal radius that it belongs to", [r, level], 4)
-    errors.text([_ROUNDS, 2.1], "dividing by L", MUTED, anchor="rm", size=12)
-    errors.text([_ROUNDS, 1.7], "Newton", ESTIMATED, anchor="rm", size=12)
     return Drawing(paper.join((curve, errors)), _sentence(r, level, counts))
 
 

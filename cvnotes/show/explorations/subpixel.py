@@ -69,7 +69,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.grip("corner", "the true corner", true, 1)
     far = np.linalg.norm(found - true, axis=1).max()
     ring = next((r for r in _RINGS if r > far), _RINGS[-1])
-    near = 1.1 * ring
+    near = 1.14 * ring
     close = _square(paper, true, near, f"{ring:g} px about the true corner")
     for r in (0.2 * ring, 0.5 * ring, ring):
         close.line(true + r * circle(91), "#DDDDDD", 0.8)
@@ -81,10 +81,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             ("edge model", "estimated", ESTIMATED, found[1]),
         )
     ):
-        key = true + [-0.92 * near, (-0.9 + 0.11 * row) * near]
+        key = true + [-0.93 * near, (-0.94 + 0.085 * row) * near]  # beyond the rings
         shown = np.clip(at, true - 0.94 * near, true + 0.94 * near)  # farther: at the rim
-        close.mark([shown, key], meaning, 9)
-        close.text(key + [0.073 * near, 0], name, ink, size=12)
+        close.mark(shown, meaning, 9)
+        close.mark(key, meaning, 6)
+        close.text(key + [0.05 * near, 0], name, ink, size=11)
     return Drawing(paper.join((panel, close)), _sentence(true, found))
 
 

@@ -18,12 +18,12 @@ from cvnotes.show.style import CAMERA, ESTIMATED, MUTED
 _SPACE, _PICTURE = (440, 300), (400, 300)  # px
 _SIZE, _ALPHA = (640, 480), 600  # px, of the one camera
 _EYE, _TARGET = [-110, 110, -330], [105, 62, 0]  # mm: where it is, and where it looks
-_LOW, _HIGH, _STEP = 300, 1080, 10  # px: α of the other one
-_FILM = 0.13  # mm of the drawn pictures, for a pixel
+_LOW, _HIGH, _STEP = 300, 1000, 10  # px: α of the other one
+_FILM = 0.2  # mm of the drawn pictures, for a pixel
 _FOOT = [[3, 2], [5, 2], [5, 3], [3, 3]]  # corners of the board, on which the box stands
 _HIGHEST = 100  # mm
 _INK, _WAY, _SIDE, _TOP = "#262629", "#F0C4A4", "#8FA7B8", "#C3D2DC"
-_VIEW = sheet((30, -95))
+_VIEW = sheet((50, -85))
 
 
 def on_sheet(W: Array) -> Array:
@@ -34,7 +34,7 @@ def on_sheet(W: Array) -> Array:
 def twins_model() -> Model:
     """Make the model of a photograph of the board, and of all cameras that could have taken it."""
     settings = (
-        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 1000,
+        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 960,
                 "its focal length; its principal point and its place follow"),
         Setting("height", "a box on the board (mm)", 0, _HIGHEST, 5, 80,
                 "how far it stands out of the plane"),
@@ -97,8 +97,13 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_box(picture, one().project(W))
     for camera, colour, dash in zip(cameras, (CAMERA, ESTIMATED), (0, 5), strict=True):
         m = camera.project(W)
-        picture.segments(np.stack([m[:4], m[4:]], axis=1), colour, 1.5)
-        picture.line(m[[4, 5, 6, 7, 4]], colour, 3, dash)
+        sides = {
+            frozenset(two)
+            for face, _ in _unhidden(m)
+            for two in zip(face, np.roll(face, 1), strict=True)
+        }
+        for side in sides:  # each once: dashes that are drawn twice make a line
+            picture.line(m[sorted(side)], colour, 1.8, dash)
     picture.grip("box", "the top of the box, to be lifted", _top(values["height"]))
     return Drawing(paper.join((space, picture)), _sentence(cameras, W, values["height"]))
 
@@ -113,22 +118,34 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
     _draw_box(panel, on_sheet(W))
     panel.line(on_sheet(_way()), _WAY, 2)
     corners = course.board().points[[0, 8, 45]]
-    for camera, colour in zip(cameras, (CAMERA, ESTIMATED), strict=True):
-        for corner in corners:
-            panel.line(on_sheet(np.array([camera.centre, corner])), colour, 1.2)
-    for camera, colour in zip(cameras, (CAMERA, ESTIMATED), strict=True):
+    # Names: beside the centre, one above the way and one below, so that they never meet.
+    sides = (CAMERA, [10, 10], "la"), (ESTIMATED, [-14, -8], "rd")
+    for camera, (colour, aside, anchor) in zip(cameras, sides, strict=True):
+        rays = np.stack([_before(camera, corners), on_sheet(corners)], axis=1)
+        panel.segments(rays, colour, 0.9)
         _draw_camera(panel, camera, colour)
+        at = on_sheet(camera.centre) + np.array(aside) * panel.pixel
+        panel.text(at, f"α = {camera.A[0, 0]:.0f}", colour, anchor=anchor, size=13)
     panel.grip("other", "the other camera, to be pulled along its way", on_sheet(cameras[1].centre))
     return panel
 
 
 def _draw_box(panel: Panel, at: Array) -> None:
-    """Draw those faces of the box, with corners at (8, 2), that are seen from outside."""
+    for face, colour in _unhidden(at):
+        panel.polygons(at[face][None], colour)
+
+
+def _unhidden(at: Array) -> list[tuple[list[int], str]]:
+    """Return those faces of the box, with corners at (8, 2), that are seen from outside."""
     sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
-    for face, colour in ([4, 5, 6, 7], _TOP), *((side, _SIDE) for side in sides):
-        x, y = at[face].T
-        if x @ np.roll(y, -1) > y @ np.roll(x, -1):
-            panel.polygons(at[face][None], colour)
+    faces = [([4, 5, 6, 7], _TOP), *((side, _SIDE) for side in sides)]
+    return [(face, colour) for face, colour in faces if _area(at[face]) > 0]
+
+
+def _area(corners: Array) -> float:
+    """Return twice the area of a polygon (k, 2), negative if it is seen from behind."""
+    x, y = corners.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def _draw_camera(panel: Panel, camera: Camera, colour: str) -> None:
@@ -142,9 +159,7 @@ def _draw_camera(panel: Panel, camera: Camera, colour: str) -> None:
     panel.polygons(_before(camera, squares), _INK)
     centre = on_sheet(camera.centre)
     for at, after in zip(frame, np.roll(frame, -1, axis=0), strict=True):
-        panel.line([at, after, centre], colour, 2)
-    name = f"α = {camera.A[0, 0]:.0f}"
-    panel.text(centre + [0, 12 * panel.pixel], name, colour, anchor="ma", size=13)
+        panel.line([at, after, centre], colour, 1.5)
 
 
 def _before(camera: Camera, W: Array) -> Array:
@@ -163,8 +178,8 @@ def _shown() -> tuple[tuple[float, float], tuple[float, float]]:
     """Choose what the panel shows: the board, and all places of the other camera."""
     border, _ = paper_and_squares(course.board())
     seen = on_sheet(np.concatenate([border, _way(), box(_HIGHEST)]))
-    low, high = seen.min(0), seen.max(0)
-    scale = 1.2 * ((high - low) / _SPACE).max() / 2 * np.array(_SPACE)
+    low, high = seen.min(0) - [90, 0], seen.max(0)  # mm: room for a name on the left
+    scale = 1.1 * ((high - low) / _SPACE).max() / 2 * np.array(_SPACE)
     (left, top), (right, bottom) = (low + high) / 2 - scale, (low + high) / 2 + scale
     return (left, right), (top, bottom)
 

@@ -14,7 +14,7 @@ from cvnotes.show.style import ESTIMATED, LENS, hexed, rgb
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
 _LEFT, _TOP, _SIDE = 324, 185, 57  # px, the part of the photograph that is shown
 _SIZE = (285, 285)
-_WEAK, _STRONG = 8.0, 60.0  # grey levels a pixel: of votes not drawn, and in full colour
+_WEAK, _STRONG = 33.0, 75.0  # grey levels a pixel: of votes not drawn, and of the thickest
 _FAR = 90.0  # grey levels a pixel, where the panel of gradients ends
 _K = 0.05  # of the Harris measure
 _NOTHING = 2000.0  # an eigenvalue that the noise of flat paper does not reach
@@ -75,7 +75,7 @@ def _photo(paper: Paper, photo: Drawn, at: tuple[int, int]) -> Panel:
     panel = paper.panel(_SIZE, x, y, "part of a photograph, and the window")
     panel.image(photo[_TOP : _TOP + _SIDE, _LEFT : _LEFT + _SIDE])
     corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]
-    for colour, width in (("#FFFFFF", 5), (ESTIMATED, 2.4)):
+    for colour, width in (("#FFFFFF", 3.5), (ESTIMATED, 1.8)):
         panel.line(np.add(at, np.multiply(corners, _HALF + 0.5)), colour, width)
     panel.grip("window", "the window, to be moved over the photograph", at, 5)
     return panel
@@ -84,19 +84,21 @@ def _photo(paper: Paper, photo: Drawn, at: tuple[int, int]) -> Panel:
 def _votes(
     paper: Paper, photo: Drawn, at: tuple[int, int], window: Window, corners: Array
 ) -> Panel:
-    """Draw each pixel's line, the darker the longer its gradient, over the pale pixels."""
+    """Draw each pixel's line, the thicker and darker the longer its gradient, weak ones first."""
     (u, v), half = at, _HALF + 0.5
     panel = paper.panel(_SIZE, (u - half, u + half), (v - half, v + half), "the votes in it")
     part = photo[v - _HALF : v + _HALF + 1, u - _HALF : u + _HALF + 1]
-    panel.image((255 - 0.4 * (255.0 - part)).astype(np.uint8), smooth=False)
+    panel.image((255 - 0.25 * (255.0 - part)).astype(np.uint8), smooth=False)
     length = np.linalg.norm(window.g, axis=1)
     for i in np.argsort(length)[(length < _WEAK).sum() :]:
         across = window.g[i, ::-1] * [-1, 1] / length[i]
         ends = window.p[i] + 3 * _HALF * np.outer([-1, 1], across)
         steep = abs(window.g[i, 0]) > abs(window.g[i, 1])
-        panel.line(ends, _on_paper(ESTIMATED if steep else LENS, min(length[i] / _STRONG, 1)), 1.2)
-    panel.mark(corners, "ideal", 8)
-    panel.mark(window.crossing, "estimated", 8)
+        weight = min(length[i] / _STRONG, 1) ** 2  # as it counts in the sum of squares
+        ink = _on_paper(ESTIMATED if steep else LENS, 0.25 + 0.75 * weight)
+        panel.line(ends, ink, 0.6 + 2 * weight)
+    panel.mark(corners, "ideal", 11)
+    panel.mark(window.crossing, "estimated", 7)
     return panel
 
 
@@ -108,9 +110,9 @@ def _on_paper(colour: str, strength: float) -> str:
 def _spread(paper: Paper, window: Window) -> Panel:
     """Draw the gradients as dots, and the ellipse whose half axes are √(λ/n)."""
     panel = paper.panel(
-        _SIZE, (-_FAR, _FAR), (-_FAR, _FAR), "gradients g_u →, g_v ↓ (grey levels a pixel)"
+        _SIZE, (-_FAR, _FAR), (-_FAR, _FAR), "gradients gᵤ →, gᵥ ↓ (grey levels a pixel)"
     )
-    panel.ticks(x=(-60, -30, 0, 30, 60), y=(-60, -30, 0, 30, 60))
+    panel.ticks(x=(-60, 0, 60), y=(-60, 0, 60))
     panel.mark(window.g, "lens", 3.5)
     half = window.axes * np.sqrt(window.eigenvalues / len(window.g))
     panel.line(circle(61) @ half.T, ESTIMATED, 2.2)

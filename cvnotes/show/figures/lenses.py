@@ -7,7 +7,7 @@ import numpy as np
 from cvnotes.camera import Lens
 from cvnotes.show.axes import drawn_on
 from cvnotes.show.guards import length, thing
-from cvnotes.show.style import IDEAL, LENS, MUTED
+from cvnotes.show.style import FAINT, IDEAL, LENS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +36,7 @@ def draw_grid(
     fine, coarse = np.linspace(-extent, extent, 121), np.linspace(-extent, extent, 11)
     across = np.stack(np.meshgrid(fine, coarse), -1)
     for line in (*across, *across[..., ::-1]):
-        ax.plot(*line.T, color=MUTED, lw=0.6)
+        ax.plot(*line.T, color=FAINT, lw=0.6)
         ax.plot(*lens.distort(line).T, color=LENS, lw=1.3)
     ax.plot(*lens.centre, "+", color=IDEAL, ms=9)
     reach = 1.25 * extent
