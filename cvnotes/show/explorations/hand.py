@@ -22,7 +22,7 @@ from cvnotes.show.style import ESTIMATED
 # What is said of a picture and its points: a sentence, lines, and perhaps another picture.
 Tell = Callable[[npt.NDArray[Any], Array], tuple[Any, ...]]
 
-_ALONE, _BESIDE = ((600, 440), (230, 230)), ((380, 300), (130, 130))  # px: picture, loupe
+_ALONE, _BESIDE = ((600, 440), 230), ((380, 300), 130)  # px: picture, width of the loupe
 _OTHER = (330, 300)  # px, of the other picture
 _STEP = 0.5  # px
 _MOST = 12  # points
@@ -85,7 +85,7 @@ def _model(picture: npt.NDArray[Any], at: Array, tell: Tell) -> Model:
         panel = paper.picture_panel(size, (w, h), "pull the points")
         panel.image(fitted(paper.sharpness * size[0], paper.sharpness * size[1]))
         _draw_points(panel, m, told.lines)
-        panels = [panel, _loupe(paper, loupe, photo, m, told.lines, now)]
+        panels = [panel, _loupe(paper, (loupe, size[1]), photo, m, told.lines, now)]
         if told.other is not None:
             width, height = told.other.shape[1::-1]
             beside = paper.picture_panel(
@@ -186,13 +186,15 @@ def _loupe(
 ) -> Panel:
     """Draw the pixels around a point, enlarged; beyond the picture is white."""
     reach = max(10, photo.shape[1] // 160)
-    left, top = np.rint(m[now - 1]).astype(int) - reach
-    side = 2 * reach + 1
-    sheet = np.full((side, side, *photo.shape[2:]), 255, np.uint8)
-    seen = photo[max(top, 0) : top + side, max(left, 0) : left + side]
+    tall = round((reach + 0.5) * size[1] / size[0] - 0.5)  # as high as the picture beside it
+    size = (round(size[1] * (2 * reach + 1) / (2 * tall + 1)), size[1])
+    left, top = np.rint(m[now - 1]).astype(int) - [reach, tall]
+    wide, high = 2 * reach + 1, 2 * tall + 1
+    sheet = np.full((high, wide, *photo.shape[2:]), 255, np.uint8)
+    seen = photo[max(top, 0) : top + high, max(left, 0) : left + wide]
     sheet[max(-top, 0) :, max(-left, 0) :][: seen.shape[0], : seen.shape[1]] = seen
     panel = paper.panel(
-        size, (left - 0.5, left + 2 * reach + 0.5), (top - 0.5, top + 2 * reach + 0.5),
+        size, (left - 0.5, left + wide - 0.5), (top - 0.5, top + high - 0.5),
         f"point {now}, enlarged",
     )  # fmt: skip
     panel.image(sheet, smooth=False)

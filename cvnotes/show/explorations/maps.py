@@ -92,7 +92,7 @@ def _angle(a: Array, b: Array) -> float:
 def _draw(paper: Paper, values: Values) -> Drawing:
     H = matrix(values)
     panel = paper.panel(
-        (350, 350), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its right side, and at its top"
+        (350, 350), (-2.1, 2.1), (-2.1, 2.1), "pull the square at its right side, and at its top"
     )
     panel.line(_SQUARE, MUTED, 1.2, dash=5)
     if values["tilt"]:  # both sides run on to their vanishing point

@@ -8,16 +8,18 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, IDEAL, WORLD
 from cvnotes.targets import Chessboard
 
 _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before the camera
 _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
-_WOOD, _BALLAST, _GRASS, _SKY = "#8A7F76", "#D8D3CC", "#DDE9D3", "#E3EEF8"
+_WOOD, _BALLAST = "#6E5D50", "#C9C2BA"
+_SKY, _HAZE, _GRASS = np.array([[176, 203, 234], [233, 238, 239], [142, 163, 98]])
 _REACH = 7.0  # m: how far away the direction is taken hold of
 _PLANE = 4.0  # m: how far away the image plane is drawn from above, the ring's diameter
+_SQUARE = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1.2]]
 
 
 def projection_model(camera: Camera, _: Chessboard) -> Model:
@@ -57,7 +59,9 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     middle = np.array([0, values["height"], 0]) + _START * ahead / np.linalg.norm(ahead)
     picture = paper.picture_panel((440, 330), camera.size, "what the camera sees")
     _draw_picture(picture, camera, middle, along, across)
-    above = paper.panel((410, 330), (-8.9, 8.9), (12.6, -1.7), "the same from above (m)")
+    above = paper.panel(
+        (410, 330), (-8.9, 8.9), (12.6, -1.7), f"the same from above, the ring {_PLANE:g} m wide"
+    )
     _draw_above(above, camera, middle, along, across)
     return Drawing(paper.join((picture, above)), _sentence(camera, along))
 
@@ -66,11 +70,7 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
     w, h = camera.size
     horizon = np.cross(camera.A @ along, camera.A @ across)
     side = horizon @ camera.A @ middle  # the side on which the plane of the rails is seen
-    picture = np.array([[-9, -9], [w + 8, -9], [w + 8, h + 8], [-9, h + 8]], dtype=float)
-    ground = _half(picture, horizon * np.sign(side))
-    panel.polygons(picture[None], _SKY)
-    if len(ground) > 2:
-        panel.polygons(ground[None], _GRASS)
+    panel.image(_sky_and_grass(camera, horizon * np.sign(side) / np.hypot(*horizon[:2])))
     bed = [in_front(middle + x * across - 2e3 * along, 4e3 * along) for x in (-1.7, 1.7)]
     panel.polygons(camera.project(np.concatenate([bed[0], bed[1][::-1]]))[None], _BALLAST)
     panel.segments(camera.project(_sleepers(middle, along, across)), _WOOD, 1.6)
@@ -96,8 +96,15 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
         panel.text([at, np.clip(v, 20, h - 20)], words, IDEAL, anchor=anchor, size=13)
 
 
+def _sky_and_grass(camera: Camera, horizon: Array) -> Drawn:
+    """Paint both sides of the horizon, a line (a, b, c) of length 1: they pale towards it."""
+    v, u = np.mgrid[0 : camera.size[1] : 4, 0 : camera.size[0] : 4]
+    below = (horizon[0] * u + horizon[1] * v + horizon[2])[..., None]
+    haze = np.exp(-np.abs(below) / np.where(below > 0, 60, 150))
+    return np.asarray(haze * _HAZE + (1 - haze) * np.where(below > 0, _GRASS, _SKY), np.uint8)
+
+
 def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:
-    panel.ticks(x=np.arange(-8, 9, 4), y=np.arange(4, 13, 4))
     panel.segments(_sleepers(middle, along, across)[..., ::2], _WOOD, 1)
     for side in (-0.5, 0.5):
         rail = middle + side * _GAUGE * across + np.outer([-50, 50], along)
@@ -113,13 +120,14 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.grip("rails", "the direction of the rails, from above", _REACH * along[::2], 5)
     if along[2] > 0:
         panel.mark(_PLANE * along[::2] / along[2], "ideal", 11)
-    # The dot over the plus, which is close to it where the rails run straight ahead.
-    panel.mark(_PLANE * along[2] / np.sum(along[::2] ** 2) * along[::2], "world", 7)
+    # A hollow square: the plus, which is close to it straight ahead, and the camera stay in sight.
+    dot = _PLANE * along[2] / np.sum(along[::2] ** 2) * along[::2]
+    panel.line(dot + 5.5 * panel.pixel * np.array(_SQUARE), WORLD, 2.5)
     # On the side that the rails leave free, and over all lines.
     side = 1.0 if along[0] >= 0 else -1.0
     anchor = "lm" if side > 0 else "rm"
     panel.text([0.4 * side, -0.6], "camera", CAMERA, anchor=anchor)
-    panel.text([-0.4 * side, -0.6], "∞", IDEAL, anchor="rm" if side > 0 else "lm", size=15)
+    panel.text([0, -1.15], "∞", IDEAL, anchor="mm", size=15)
     beside = abs(right) + 0.3
     if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH - 1.8:
         beside = max(beside, out + 0.6)  # not upon the vanishing point
@@ -128,7 +136,7 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
 
 def _sleepers(middle: Array, along: Array, across: Array) -> Array:
     """Return the ends (n, 2, 3) of the sleepers, one for each metre."""
-    s = np.arange(-25.0, 120.0)[:, None, None]
+    s = np.arange(-25.0, 45.0)[:, None, None]
     return np.asarray(middle + s * along + np.outer([-0.8, 0.8], across) * _GAUGE)
 
 
@@ -156,14 +164,3 @@ def in_front(start: Array, along: Array) -> Array:
     first = cut if cut is not None and z < 0 else 0.0
     last = cut if cut is not None and z >= 0 else 1.0
     return start + np.outer([first, last], along)
-
-
-def _half(corners: Array, line: Array) -> Array:
-    """Cut a convex polygon (n, 2) to where l · (u, v, 1) is positive."""
-    following = np.roll(corners, -1, axis=0)
-    here, there = (x @ line[:2] + line[2] for x in (corners, following))
-    kept: list[Array] = []
-    for a, b, f, g in zip(corners, following, here, there, strict=True):
-        kept += [a] * bool(f >= 0)
-        kept += [a + f / (f - g) * (b - a)] if f * g < 0 else []
-    return np.array(kept).reshape(-1, 2)

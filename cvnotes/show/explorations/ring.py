@@ -8,7 +8,7 @@ from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD
 
 _NUMBERS = np.array([0, 0.5, 1, 2, 4, 8, -8, -4, -2, -1, -0.5])
-_WIDE, _FAINT = 2.2, "#CCCCCC"
+_WIDE, _FAINT = 1.38, "#CCCCCC"
 
 
 def ring_model() -> Model:
@@ -27,10 +27,10 @@ def ring_model() -> Model:
         way = np.array([np.sin(turn), np.cos(turn)]).round(15)  # [wx, w], so that 90° is exact
         x = float(way[0] / way[1]) + 0.0 if way[1] else np.inf  # + 0.0 makes -0 a 0
         colour = IDEAL if way[1] else ESTIMATED
-        pairs = paper.panel((400, 230), (-3.05, 3.05), (2.2, -1.3), "the pairs [wx  w]")
-        _draw_pairs(pairs, way, x, colour)
-        ring = paper.panel((470, 230), (-_WIDE, _WIDE), (1.55, -0.6), "the same classes as a ring")
-        _draw_ring(ring, way, x, colour)
+        pairs = paper.panel((370, 290), (-2.42, 2.42), (2.2, -1.6), "the pairs [wx  w]")
+        _draw_pairs(pairs, way, x, colour, values["angle"])
+        ring = paper.panel((500, 290), (-_WIDE, _WIDE), (1.3, -0.3), "the same classes as a ring")
+        _draw_ring(ring, way, x, colour, values["angle"])
         return Drawing(paper.join((pairs, ring)), _sentence(values["angle"], x))
 
     def turned(values: Values, at: Array) -> Values:
@@ -50,22 +50,23 @@ def _nearest(angle: float, to: float) -> float:
     return float(angle + 180 * np.round((to - angle) / 180))
 
 
-def _draw_pairs(panel: Panel, way: Array, x: float, colour: str) -> None:
+def _draw_pairs(panel: Panel, way: Array, x: float, colour: str, angle: float) -> None:
     for number in _NUMBERS:
         panel.line(np.outer([-9, 9], [number, 1]), _FAINT, 0.8)
     panel.line([[-9, 0], [9, 0]], _FAINT, 0.8)
     panel.line([[-9, 1], [9, 1]], WORLD, 2)
-    panel.text([-2.95, 1.2], "w = 1", WORLD)
+    panel.text([-2.33, 1.2], "w = 1", WORLD)
     panel.line(np.outer([-9, 9], way), colour, 2.2)
-    panel.line(_arc(np.arctan2(*way), 0.5), MUTED, 1)
-    panel.text([0.09, -0.2], "[0 0]", MUTED, anchor="lt", size=10)
+    _draw_angle(panel, angle, 0.5, 1)
     if np.isfinite(x):
         panel.mark([x, 1], "world", 9)
-        panel.text([x, 1.3], _number(x), WORLD, anchor="mm", size=13)
+        side = 1 if x >= 0 else -1  # the line leads up to this side, the number is on the other
+        where = [x - 0.13 * side, 1.25]
+        panel.text(where, _number(x), WORLD, anchor="rm" if x >= 0 else "lm", size=13)
     panel.grip("line", "the class, a line through the origin", 1.9 * way, 5)
 
 
-def _draw_ring(panel: Panel, way: Array, x: float, colour: str) -> None:
+def _draw_ring(panel: Panel, way: Array, x: float, colour: str, angle: float) -> None:
     round_ = np.radians(np.arange(0, 361, 3))
     panel.line([[-9, 0], [9, 0]], WORLD, 2)
     panel.line(np.column_stack([np.sin(round_), 1 - np.cos(round_)]) / 2, WORLD, 2)
@@ -73,15 +74,15 @@ def _draw_ring(panel: Panel, way: Array, x: float, colour: str) -> None:
         panel.line(_ray(number), _FAINT, 0.8)
         panel.mark(_dot(np.array([number, 1])), "world", 5)
         if abs(number) <= 2:
-            panel.text([number, -0.17], _number(number), anchor="mm", size=10)
+            panel.text([number, -0.15], _number(number), anchor="mm", size=10)
     dot = _dot(way)
-    panel.line([0, 0.5] + [1, -1] * _arc(2 * np.arctan2(*way), 0.16), MUTED, 1)
+    _draw_angle(panel, 2 * angle % 360, 0.16, -1, (0, 0.5))
     if np.isfinite(x):
         panel.line(_ray(x), colour, 2.2)
         panel.mark([x, 0], "world", 9)
     else:
         panel.line([[-9, 1], [9, 1]], colour, 2.2)
-    panel.text([0, 1.17], "∞", ESTIMATED, anchor="mm", size=15)
+    panel.text([0, 1.14], "∞", ESTIMATED, anchor="mm", size=15)
     panel.mark(dot, "world" if np.isfinite(x) else "estimated", 10)
     panel.grip("dot", "the dot on the ring", dot, 5)
 
@@ -92,10 +93,16 @@ def _dot(way: Array) -> Array:
     return np.asarray(np.array([a * w, a * a]) / (a * a + w * w))
 
 
-def _arc(angle: float, radius: float) -> Array:
-    """Return an arc from the upright to an angle, about the origin."""
-    turn = np.linspace(0, angle, 40)
-    return radius * np.column_stack([np.sin(turn), np.cos(turn)])
+def _draw_angle(
+    panel: Panel, angle: float, radius: float, up: int, about: tuple[float, float] = (0, 0)
+) -> None:
+    """Draw an angle from the upright, or with `up` = −1 from below, and write it if it is wide."""
+    turn = np.radians(np.linspace(0, angle, 61))
+    arc = radius * np.column_stack([np.sin(turn), up * np.cos(turn)])
+    panel.line(np.add(about, arc), MUTED, 1)
+    if abs(angle) > 15:
+        away = 1 + 22 * panel.pixel / radius
+        panel.text(np.add(about, away * arc[30]), f"{_number(angle)}°", anchor="mm")
 
 
 def _ray(x: float) -> Array:

@@ -91,11 +91,11 @@ def _draw_plan(panel: Panel, t: float, near: float, far: float) -> None:
     row = [[_X, 25.0 * i] for i in range(5)]
     panel.mark(row, "world", 7)
     for at, name in zip(row[:2], "ab", strict=True):
-        panel.text([at[0] - 0.6, at[1]], name, WORLD, anchor="mm", size=13)
+        panel.text([at[0] + 0.6, at[1]], name, WORLD, anchor="mm", size=13)
     panel.line([[_X, near], [_X, min(far, 200.0)]], ESTIMATED, 3)
     panel.mark([_X, t], "estimated", 9)
     said = f"c  {t:.1f} m" if t < _FARTHEST - 4 else f"c  {t:.0f} m"
-    panel.text([_X + 0.4, min(t, _FARTHEST - 5)], said, ESTIMATED, size=13)
+    panel.text([_X - 0.4, min(t, _FARTHEST - 5)], said, ESTIMATED, anchor="rm", size=13)
 
 
 def _sentence(foot: Array, t: float, width: float, ratio: float) -> str:

@@ -11,7 +11,7 @@ from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.cube import draw_tower
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, LENS, MUTED, WORLD
+from cvnotes.show.style import ESTIMATED, LENS, WORLD
 
 _BOARD, _TRUE, _POSE = course.board(), course.camera(), course.poses()[0]
 _SIZE, _ALPHA = (640, 480), 800.0
@@ -37,7 +37,8 @@ def stands_model() -> Model:
         panel.image(photograph())
         draw_net(panel, camera.project(_BOARD.points), _BOARD, ESTIMATED, 1)
         squares = np.column_stack([_BASE, 0 * _BASE[:, 0]])[[0, 1, 2, 3, 0]]
-        panel.line(_TRUE.moved(_POSE).project(squares), WORLD, 3)
+        around = squares + 0.06 * np.sign(squares - _SIDE / 2) * [_SIDE / 2, _SIDE / 2, 0]
+        panel.line(_TRUE.moved(_POSE).project(around), WORLD, 3)  # it stays in sight
         draw_tower(panel, camera, _BASE, _SIDE, windows=False)
         foot = camera.project([*_BASE.mean(axis=0), 0])
         panel.grip("cube", "the cube, to be pulled onto its squares", foot, 4)
@@ -75,15 +76,17 @@ def missed(alpha: float, lens: bool) -> float:
 
 def _curve(paper: Paper, values: Values) -> Panel:
     alpha, lens = values["alpha"], bool(values["lens"])
-    panel = paper.panel((340, 330), (575, 1025), (66, -9), "corners missed by (RMS, px) against α")
-    panel.ticks(x=(600, 700, 800, 900, 1000), y=(0, 20, 40, 60), size=11)
+    panel = paper.panel((340, 330), (560, 1025), (56, -7), "corners missed (RMS, px) by α")
+    panel.ticks(x=(600, 700, 800, 900, 1000), y=(0, 20, 40), size=11)
     tried = np.arange(600.0, 1001, 5)  # as the slider: the lowest is one of them
     panel.line([[a, missed(a, lens)] for a in tried], LENS, 2)
     here = [alpha, missed(alpha, lens)]
     panel.mark(here, "estimated", 8)
-    over = [np.clip(alpha, 625, 975), here[1] + 9]  # between the two arms
-    panel.text(over, f"{here[1]:.1f} px", ESTIMATED, anchor="mm", size=13)
-    panel.text([800, 62], "the pose is kept", MUTED, anchor="mm", size=11)
+    inside = 16 if alpha < 800 else -16  # between the two arms
+    panel.text(
+        [alpha + inside, here[1] + 2], f"{here[1]:.1f} px", ESTIMATED,
+        anchor="lm" if alpha < 800 else "rm", size=13,
+    )  # fmt: skip
     return panel
 
 

@@ -17,7 +17,7 @@ _ALPHA, _SIZE, _MIDDLE = 540, (640, 480), np.array([319.5, 239.5])
 _FINE = 4  # so many times the photograph is enlarged, smoothly, before pixels are looked up
 _K1 = -0.25  # of the lens that took the photograph
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
-_BOW = (-8.5, 10.5)  # px below and above the straight line that are shown
+_BOW = (-9.5, 9.5)  # px below and above the straight line that are shown
 
 
 def straighten_model() -> Model:
@@ -81,10 +81,10 @@ def _without(lens: Lens, photo: Drawn, sharpness: int) -> Drawn:
 
 def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
     panel = paper.panel(
-        _ROW, (-0.5, _SIZE[0] - 0.5), _BOW[::-1], "the uppermost row: px above its line, against u"
+        _ROW, (-0.5, _SIZE[0] - 0.5), _BOW[::-1], "the uppermost row: px above its line"
     )
-    panel.ticks(y=(-5, 0, 5, 10), size=12)
-    panel.line([[40, 0], [_SIZE[0], 0]], MUTED, 1)
+    panel.ticks(y=(-5, 0, 5), size=12)
+    panel.line([[40, 0], [_SIZE[0], 0]], MUTED, 0.8)
     at = np.column_stack([m[:, 0], bow])
     panel.line(at[[0, -1]], ESTIMATED, 1.5)
     panel.line(at, LENS, 1.2)

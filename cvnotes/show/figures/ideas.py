@@ -15,7 +15,18 @@ from cvnotes.show.space.camera_shapes import camera_shapes, ray_shapes
 from cvnotes.show.space.directions import sheet
 from cvnotes.show.space.shapes import target_shapes
 from cvnotes.show.space.stills import draw_scene
-from cvnotes.show.style import CAMERA, COLOURS, ESTIMATED, FONT, IDEAL, LENS, MARKERS, MUTED, WORLD
+from cvnotes.show.style import (
+    CAMERA,
+    COLOURS,
+    ESTIMATED,
+    FAINT,
+    FONT,
+    IDEAL,
+    LENS,
+    MARKERS,
+    MUTED,
+    WORLD,
+)
 from cvnotes.targets import Chessboard
 
 if TYPE_CHECKING:
@@ -23,13 +34,13 @@ if TYPE_CHECKING:
 
 # Where x, y and w lead on paper: x to the right, y away from us, w up.
 _OBLIQUE = np.array([[1.0, 0.0], [0.42, 0.40], [0.0, 1.7]])
-_WIDE, _DEEP = 2.2, 1.3  # half the sides of the piece of the plane w = 1 that is drawn
+_WIDE, _DEEP = 1.7, 1.2  # half the sides of the piece of the plane w = 1 that is drawn
 _MEANINGS = {  # with where the words stand on the axes
-    "world": ("what stands in the world", (0.03, 0.945)),
-    "camera": ("the camera: its centre,\nits image plane", (0.45, 0.12)),
-    "ideal": ("the truth, or an ideal:\nhere, without the lens", (0.825, 0.82)),
+    "world": ("what stands in the world", (0.03, 0.97)),
+    "camera": ("the camera: its centre,\nits image plane", (0.45, 0.08)),
+    "ideal": ("the truth, or an ideal:\nhere, without the lens", (0.825, 0.86)),
     "lens": ("a point in a picture,\nas the lens shows it", (0.825, 0.5)),
-    "estimated": ("found by a computation:\ncorners, lines, cameras", (0.825, 0.18)),
+    "estimated": ("found by a computation:\ncorners, lines, cameras", (0.825, 0.14)),
 }
 
 
@@ -41,7 +52,7 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     >>> [text.get_text().split(chr(10))[0] for text in draw_meanings().texts][-3:-1]
     ['the truth, or an ideal:', 'a point in a picture,']
     """
-    ax, view = drawn_on(ax, width=900, height=330), (14.0, -150.0)
+    ax, view = drawn_on(ax, width=900, height=290), (14.0, -150.0)
     board = Chessboard((4, 3), 40.0)
     there = pose(rotation_from_vector([0.1, 0.6, 0.1]), [-60, -90, 600])
     camera = Camera(intrinsics(450, 450, 160, 120), lens=Lens(k=(-0.9,)), size=(320, 240))
@@ -51,20 +62,26 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     draw_scene(*shapes, *ray_shapes(camera, seen, to=corner), ax=ax, view=view)
     left, (bottom, top) = ax.get_xlim()[0], ax.get_ylim()
     ax.set_xlim(left, left + 3.15 * (bottom - top))
-    close = ax.inset_axes((0.625, 0.17, 0.18, 0.66), xticks=[], yticks=[])
+    for spoke in ax.lines[:-1]:
+        spoke.set_linewidth(min(spoke.get_linewidth(), 1.2))
+    close = ax.inset_axes((0.625, 0.14, 0.185, 0.72), xticks=[], yticks=[])
     close.imshow(image, cmap="gray", vmin=0, vmax=255, alpha=0.5)
     close.set(xlim=seen[0] + [-7, 7], ylim=seen[1] + [7, -7])
-    close.spines[:].set(color=CAMERA, linewidth=1.5)
-    on_pane = 300 * np.array([*(seen - [160, 120]) / 450, 1])
-    here, centre, start = np.array([corner, camera.centre, on_pane]) @ sheet(view).T
+    close.spines[:].set(color=CAMERA, linewidth=1.2)
+    here, centre = np.array([corner, camera.centre]) @ sheet(view).T
+    # The piece of the picture that is enlarged, and from its near side the lines to the panel.
+    piece = np.array([[-7, -7], [7, -7], [7, 7], [-7, 7], [-7, -7]]) + seen - [160, 120]
+    frame = 300 * np.insert(piece / 450, 2, 1, axis=1) @ sheet(view).T
+    ax.plot(*frame.T, color=FAINT, lw=0.8, zorder=2e6)
     line: dict[str, Any] = {"arrowstyle": "-", "linewidth": 0.9, "shrinkA": 0}
-    for side in (0, 1):
-        ax.annotate("", tuple(start), (0, side), "data", close.transAxes, zorder=2e6,
-                    arrowprops=line | {"shrinkB": 0, "color": MUTED})  # fmt: skip
+    for side, start in zip((1, 0), frame[1:3], strict=True):
+        ax.annotate("", tuple(start), (0, side), "data", close.transAxes, zorder=-1,
+                    arrowprops=line | {"lw": 0.7, "shrinkB": 0, "color": FAINT})  # fmt: skip
     places = (here, centre, true, seen, seen + [0.8, 0.9])
     for (meaning, (words, by)), at in zip(_MEANINGS.items(), places, strict=True):
         colour, where = COLOURS[meaning], ax if meaning in ("world", "camera") else close
-        where.plot(*at, MARKERS[meaning], color=colour, ms=12, mew=2.5, zorder=3e6)
+        marker = "<" if meaning == "camera" else MARKERS[meaning]  # to where it looks
+        where.plot(*at, marker, color=colour, ms=12, mew=2.5, zorder=3e6)
         leader = None if where is ax else line | {"color": colour, "shrinkB": 5}
         ax.annotate(words, (at[0], at[1]), by, where.transData, "axes fraction", va="center",
                     zorder=4e6, color=colour, fontsize=FONT + 1, arrowprops=leader)  # fmt: skip
@@ -119,7 +136,7 @@ def draw_rays(
         _draw_plane(ax, line, name)
     ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=7, zorder=6)
     ax.set(aspect="equal")
-    ax.plot([-3, 3], [-0.7, 2.6], " ")  # so that figures side by side have one scale
+    ax.plot([-2.3, 2.3], [-0.4, 2.25], " ")  # so that figures side by side have one scale
     ax.axis("off")
     return ax
 
@@ -129,23 +146,23 @@ def _draw_ray(ax: "Axes", x: Array, name: str) -> None:
     colour = ESTIMATED if ideal else IDEAL
     tip = 1.9 * x / np.linalg.norm(x) if ideal else x / x[2]
     below = -0.9 * tip if ideal else -0.25 * tip
-    ax.plot(*_on_paper([below, tip]).T, color=colour, linewidth=1.6, zorder=3)
+    ax.plot(*_on_paper([below, tip]).T, color=colour, linewidth=1.3, zorder=3)
     if ideal:
         _write(ax, name, tip, colour, (10, 8))
         return
-    ax.plot(*_on_paper([tip, 1.22 * tip]).T, color=colour, linewidth=1.6, zorder=5)
+    ax.plot(*_on_paper([tip, 1.22 * tip]).T, color=colour, linewidth=1.3, zorder=5)
     ax.plot(*_on_paper(tip), "s", color=WORLD, markersize=7, zorder=6)
-    _write(ax, name, tip, colour, (14, 6) if _on_paper(tip)[0] > 0 else (-14, 4))
+    _write(ax, name, tip, colour, (-15, 13))
 
 
 def _draw_plane(ax: "Axes", line: Array, name: str) -> None:
     ends = _cut(line)
     if len(ends) == 2:
         ax.fill(*_on_paper([[0, 0, 0], *ends]).T, color=ESTIMATED, alpha=0.22, lw=0, zorder=2.5)
-        ax.plot(*_on_paper(ends).T, color=ESTIMATED, linewidth=2.2, zorder=4)
+        ax.plot(*_on_paper(ends).T, color=ESTIMATED, linewidth=1.8, zorder=4)
         _write(ax, name.split(" ")[0], ends[-1], ESTIMATED, (12, 4))
-    tip = 0.9 * line / np.linalg.norm(line)
-    arrow(ax, (0.0, 0.0), _on_paper(tip), ESTIMATED, 1.8, zorder=5)
+    tip = 0.75 * line / np.linalg.norm(line)
+    arrow(ax, (0.0, 0.0), _on_paper(tip), ESTIMATED, 1.2, zorder=5)
     ax.plot(*_on_paper(tip), " ")  # the axes reach to the tip
     away = 12 + 3.5 * max(len(name) - 2, 0)
     _write(ax, name, tip, ESTIMATED, (-away, 4) if _on_paper(tip)[0] < 0 else (away, 4))

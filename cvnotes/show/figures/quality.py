@@ -47,8 +47,9 @@ def draw_residuals(
     magnify = number(magnify, "magnify")
     ax = as_picture(drawn_on(ax, calibration.size), calibration.size, ticks=False)
     ax.quiver(
-        *(m - r).T, *(r * magnify).T, color=ESTIMATED, angles="xy", scale_units="xy", scale=1,
-        units="width", width=0.0016, headwidth=3.5, headlength=4, headaxislength=3.6, minlength=0,
+        *(m - r).T, *(r * magnify).T, color=ESTIMATED, alpha=0.7, angles="xy", scale_units="xy",
+        scale=1, units="width", width=0.0012, headwidth=3, headlength=3.5, headaxislength=3,
+        minlength=0,
     )  # fmt: skip
     ax.set_title(f"residuals × {magnify:g}, RMS {calibration.rms:.3f} px per point")
     return ax
@@ -83,10 +84,10 @@ def draw_coverage(
     count = count_cells(image_points, size)
     side = np.array(size) / count.shape
     ax = as_picture(drawn_on(ax, size), size, ticks=False)
-    tint = LinearSegmentedColormap.from_list("", ["white", "#F0B98F"])
+    tint = LinearSegmentedColormap.from_list("", ["#FFF6EE", "#F6B07A", "#E37A26"])
     for cell, corners in np.ndenumerate(count):
         u, v = (np.array(cell) * side - 0.5).tolist()
-        look: dict[str, Any] = {"fc": tint(corners / max(count.max(), 1)), "ec": "white"}
+        look: dict[str, Any] = {"fc": tint((corners / max(count.max(), 1)) ** 0.6), "ec": "white"}
         if not corners:
             look = {"fc": "#EEEEEE", "ec": "#C4C4C4", "hatch": "//"}
         ax.add_patch(Rectangle((u, v), *side, **look))
