@@ -45,8 +45,8 @@ def test_families_stand_side_by_side_with_all_their_repetitions_and_the_error_to
     assert np.allclose(shown, [[25.0, 25.0], [50.0, 50.0]], atol=0.01)
     assert colours(right) == [ESTIMATED, ESTIMATED]  # such errors were never promised
     assert [t.get_text() for t in right.texts] == [
-        "median", "promised", "25.00 %, not as promised",
-        "median", "promised", "50.00 %, not as promised",
+        "median", "promised", "25.00 %,\nnot as promised",
+        "median", "promised", "50.00 %,\nnot as promised",
     ]  # fmt: skip
     std = RESULT.std["alpha_u"]
     near = draw_view_families({"kept": [RESULT]}, W, truth=RESULT.A[0, 0] - 1.9 * std)[2]

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from cvnotes.base import MOST, InputTypeError, number
 from cvnotes.camera import pose, rotation_from_vector
-from cvnotes.pictures.meshes import Scene, Surroundings, box, join, quads
+from cvnotes.pictures.meshes import Colour, Scene, Surroundings, box, join, quads
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 from cvnotes.targets.chessboard import PrintedBoard
 
@@ -106,10 +106,10 @@ def corridor() -> Scene:
     return replace(join(shell, *parts), around=lamps)
 
 
-def room() -> Scene:
+def room(right: Colour = (1.06, 1.06, 1.04)) -> Scene:
     """Build a room of 6 m by 12 m whose walls, tiles and furniture all keep to three directions.
 
-    The first 8 vertices are its corners.
+    The first 8 vertices are its corners; `right` is the colour of its right wall.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def room() -> Scene:
     array([ 3000.,  1600., 10000.])
     """
     tiles = ((0.66, 0.48, 0.34), (0.88, 0.79, 0.66))
-    sides = [_PALE], [(1.06, 1.06, 1.04)]  # the right one has its light from the left one
+    sides = [_PALE], [right]  # the right one has its light from the left one
     shell = _shell((-3000, 3000), (-1600, GROUND), (-2000, 10_000), sides, tiles, 500)
     table, plinth = (0.84, 0.56, 0.29), (0.93, 0.93, 0.90)
     furniture = [

@@ -4,14 +4,14 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.paper import Panel, Paper, Range
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _FULL = np.array([[1.6, 0.9], [0.5, 1.1]])
 _PARALLEL = np.array([[1.6, 0.8], [0.8, 0.4]])  # its second row is half of the first
 _HIGH = 240  # px, of a panel
-_UNIT = 68  # px, of circle and ellipse alike: so one sees by how much D stretches
+_UNIT = 85  # px, of circle and ellipse alike: so one sees by how much D stretches
 _UP = np.array([1, -1])  # y goes up here, and down on a panel
 
 
@@ -42,13 +42,15 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     h = np.array([np.cos(a), np.sin(a)])
     _, s, Vt = np.linalg.svd(D)
     Vt = Vt * np.where(Vt[:, 1:] < 0, -1, 1)  # v and −v are as good: take the upper one
-    left = _round(paper, ("all h of length 1; rows of D", 260), (np.eye(2), Vt, h), "")
+    left = _round(
+        paper, ("all h of length 1; rows 1 and 2 of D", (-1.3, 1.95)), (np.eye(2), Vt, h), ""
+    )
     for i, row in enumerate(D, 1):
         left.line([[0, 0], row * _UP], MUTED, 1, dash=4)
-        left.text((row + [0.1, 0.14]) * _UP, f"row {i}", MUTED, anchor="rm", size=12)
+        left.text(1.08 * row * _UP, f"{i}", MUTED, anchor="mm", size=12)
     left.grip("h", "the vector h", h * _UP, 4)
-    right = _round(paper, ("where D takes them", 330), (D, Vt, h), "D ")
-    lengths = paper.panel((250, _HIGH), (-8, 188), (2.4, -0.3), "length of D h, by direction (°)")
+    right = _round(paper, ("where D takes them", (-1.95, 2.3)), (D, Vt, h), "D ")
+    lengths = paper.panel((206, _HIGH), (-8, 188), (2.4, -0.3), "length of D h, by direction (°)")
     lengths.ticks(x=(0, 45, 90, 135, 180), y=(0, 1, 2))
     all_h = circle(361)[:181]
     lengths.line(np.column_stack([np.arange(181), np.linalg.norm(all_h @ D.T, axis=1)]), MUTED, 2)
@@ -67,17 +69,17 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _round(
-    paper: Paper, about: tuple[str, int], what: tuple[Array, Array, Array], name: str
+    paper: Paper, about: tuple[str, Range], what: tuple[Array, Array, Array], name: str
 ) -> Panel:
     """Draw where a map takes the circle, the singular vectors, and h."""
-    (title, size), (map_, Vt, h) = about, what
-    reach, high = np.array([size, _HIGH]) / (2 * _UNIT)
-    panel = paper.panel((size, _HIGH), (-reach, reach), (-high, high), title)
+    (title, x), (map_, Vt, h) = about, what
+    high = _HIGH / (2 * _UNIT)
+    panel = paper.panel((round((x[1] - x[0]) * _UNIT), _HIGH), x, (-high, high), title)
     panel.line(circle(91), "#DDDDDD", 1.5)
-    panel.line(circle(181) @ map_.T * _UP, MUTED, 2)
+    panel.line(circle(181) @ map_.T * _UP, MUTED, 1.5)
     for v, colour, letter in zip(Vt, (LENS, ESTIMATED), ("v₁", "v₂"), strict=True):
         end = map_ @ v
-        panel.line([[0, 0], end * _UP], colour, 3)
+        panel.line([[0, 0], end * _UP], colour, 2.5)
         beyond = end + 0.26 * v
         panel.text(beyond * _UP, f"{name}{letter}", colour, anchor="mm", size=13)
     panel.line([[0, 0], map_ @ h * _UP], IDEAL, 1.5)

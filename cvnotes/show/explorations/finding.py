@@ -60,7 +60,7 @@ class Finding:
     @cached_property
     def way(self) -> Array:
         """Steps and the RMS there, (n, 2)."""
-        steps = np.linspace(0, _STEPS, 10 * _STEPS + 1)
+        steps = np.linspace(0, _STEPS, 30 * _STEPS + 1)
         return np.array([[step, rms(self.at(float(step))[1])] for step in steps])
 
 
@@ -112,16 +112,16 @@ def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
     panel = paper.panel(_FRAMES, (0, 4), (0, 4), f"photograph {i} four times: its misses enlarged")
     panel.segments([[[2, 0], [2, 4]], [[0, 2], [4, 2]]], MUTED, 1)
     low, high = finding.m[i].min(axis=0), finding.m[i].max(axis=0)
-    unit = 1.4 * ((high - low) / _FRAMES).max() * np.array(_FRAMES) / 2  # half a frame
+    unit = 1.47 * ((high - low) / _FRAMES).max() * np.array(_FRAMES) / 2  # half a frame
     for frame in range(_STEPS + 1):
-        middle = np.array([1 + 2 * (frame % 2), 1.06 + 2 * (frame // 2)])
+        middle = np.array([1 + 2 * (frame % 2), 1.09 + 2 * (frame // 2)])
         m = middle + (finding.m[i] - (low + high) / 2) / unit
         draw_measured(panel, m, course.board())
         if step > frame - 1:
             at = min(step, frame)
             camera, misses = finding.at(at)
             draw_arrows(panel, m, -_magnified(at) * misses[i] / unit)
-            k1 = f"k1 = {camera.parameters['k1']:+.3f}".replace("-", "−")
+            k1 = f"k₁ = {camera.parameters['k1']:+.3f}".replace("-", "−")
             panel.text(
                 middle + [-0.96, -0.9], f"all: {_digits(rms(misses))} px", ESTIMATED, size=16
             )
@@ -166,9 +166,9 @@ def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel
     panel.ticks(x=range(_STEPS + 1), size=12)
     way = np.column_stack([finding.way[:, 0], np.log10(finding.way[:, 1])])
     panel.segments(np.stack([way[:-1], way[1:]], axis=1), LENS, 2.2)
-    for at in way[::10]:
+    for at in way[::30]:
         panel.mark(at, "lens", 5)
-        panel.text(at + [0.1, 0.22], _digits(10 ** float(at[1])), IDEAL, anchor="ls")
+        panel.text(at + [0.06, 0.1], _digits(10 ** float(at[1])), IDEAL, anchor="ls")
     here = [step, np.interp(step, *way.T)]
     panel.mark(here, "estimated", 7)
     panel.grip("step", "the step, to be moved along the curve", here, 4)

@@ -18,7 +18,7 @@ ALPHA, MIDDLE = 400, ((SIZE[0] - 1) / 2, (SIZE[1] - 1) / 2)
 # Where two photographs of a board on a desk were taken, and what was up in them.
 _EYES = (([163, 203.5, -92.5], (0, 0, -1)), ([-15, 187, -120], (0.5, 0, 0.87)))
 _SPACE, _SIDE = (500, 420), (350, 420)
-_VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:2, :3]  # from the left, above
+_VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:3, :3]  # from the left, above
 _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
 _INKS = (IDEAL, MUTED)  # of the first photograph and of the second
@@ -141,7 +141,12 @@ def _sentence(H: list[Array], eye: Array) -> str:
 
 def on_sheet(place: Array) -> Array:
     """Project places (u, v, w), (..., 3), in parallel onto the sheet (..., 2)."""
-    return np.asarray((place * [1, 1, -1]) @ _VIEW.T)
+    return np.asarray((place * [1, 1, -1]) @ _VIEW[:2].T)
+
+
+def behind_sheet(place: Array) -> Array:
+    """Return how far behind the sheet places (u, v, w), (..., 3), are: larger is farther."""
+    return np.asarray((place * [1, 1, -1]) @ _VIEW[2])
 
 
 def _flat(xy: Array) -> Array:
@@ -176,12 +181,16 @@ def _space(
         panel.mark(_flat(point), meaning, 5)
         if k in (0, 3):  # the outer one of each pair
             _name(panel, _flat(point), (8, 6), name, colour, "la")
-    _name(panel, _flat(points[3] + 0.12 * (points[3] - points[0])), (-8, 0), "horizon", IDEAL, "rm")
+    _name(
+        panel, _flat(points[3] + 0.12 * (points[3] - points[0])), (-20, -3), "horizon", IDEAL, "rm"
+    )
     panel.mark(on_sheet(below), "ideal", 7)
     panel.mark(on_sheet(eye), "camera", 9)
     panel.grip("eye", "the eye, to be turned about the horizon", on_sheet(eye), 4)
-    _name(panel, on_sheet(eye), (0, -17), "eye", CAMERA, "md")
-    _name(panel, on_sheet(below), (0, 24), "principal point", IDEAL, "ma")
+    _name(panel, on_sheet(eye), (24, 14), "eye", CAMERA, "lm")
+    aside = on_sheet(below) + [0, 66 * panel.pixel]  # under the photograph
+    panel.line(np.array([on_sheet(below), aside]), MUTED, 0.6)
+    _name(panel, aside, (0, 2), "(u₀, v₀)", IDEAL, "ma")
     _name(panel, on_sheet((eye + below) / 2), (-7, 0), "α", IDEAL, "rm")
     return panel
 
@@ -195,12 +204,12 @@ def _name(
 
 def _side(paper: Paper, H: Array, circles: list[Circle], eye: Array) -> Panel:
     """Draw the half circles from the side, and above them the first fold."""
-    high, low = 1470, -378  # one scale for both axes, so that a half circle is one
+    high, low = 1598, -250  # one scale for both axes, so that a half circle is one
     panel = paper.panel(_SIDE, (-580, 960), (high, low), "the fold, face on")
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
-    panel.polygons([[[-580, high], [960, high], [960, 700], [-580, 700]]], "#FFFFFF")
+    panel.polygons([[[-580, high], [960, high], [960, 750], [-580, 750]]], "#FFFFFF")
     _fold(panel, H, circles[0])
-    panel.text([-554, 640], "from the side: height of the eye against v0 (px)", size=13)
+    panel.text([-554, 700], "from the side: height of the eye against v0 (px)", size=13)
     for k in reversed(range(len(circles))):
         arc = circles[k].place(np.arange(0, 181.0, 2))
         panel.line(arc[:, 1:], _INKS[k], 2)
@@ -215,9 +224,9 @@ def _fold(panel: Panel, H: Array, circle: Circle) -> None:
     """Draw horizon and eye in their own plane: the eye is on two half circles, by Thales."""
     along = np.array([circle.up[1], -circle.up[0]])
     s = (vanishing_points(H) - circle.foot) @ along
-    shift = np.array([190 - _SMALL * (s.min() + s.max()) / 2, 860])
+    shift = np.array([190 - _SMALL * (s.min() + s.max()) / 2, 988])
     eye = shift + [0, _SMALL * circle.radius]
-    panel.line(np.array([[-3000, 860], [3000, 860]]), IDEAL, 0.8, dash=5)
+    panel.line(np.array([[-3000, 988], [3000, 988]]), IDEAL, 0.8, dash=5)
     turn = np.radians(np.arange(0, 181.0, 3))
     for (_, meaning, colour), (a, b) in zip(_PAIRS, s.reshape(2, 2), strict=True):
         ring = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2

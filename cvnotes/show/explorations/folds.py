@@ -16,18 +16,20 @@ from cvnotes.camera import (
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_squares
-from cvnotes.show.explorations.fold import Circle, circle_of, on_sheet
+from cvnotes.show.explorations.fold import Circle, behind_sheet, circle_of, on_sheet
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
 
 _Of = tuple[float, float]  # k1, and how far the boards are turned
 
-_SPACE, _CLOSE, _CURVE = (450, 375), (180, 375), (210, 375)
-_SHOWN = ((-2230, 2810), (-2563, 1637))  # x and y of the sheet: all half circles, for each k1
+_SPACE, _CLOSE, _CURVE = (558, 462), (290, 250), (290, 184)
+_SHOWN = ((-2150, 2725), (-2480, 1556))  # x and y of the sheet: all half circles, for each k1
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
 _NEAR = 50  # px about the principal point, that are shown enlarged
 _MOST = 90.0  # px, of the curve
+_DEEP = 4000  # px from the palest half circles to the strongest, with the camera between
+_FAR, _NEAR_BY, _TONES = np.array([176.0, 206, 228]), 255 * np.array(rgb(LENS)), 8
 
 
 class _Tangle:
@@ -100,7 +102,8 @@ def folds_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         of = values["k1"], values["turned"]
-        panels = _space(tangle, paper, of), _close(tangle, paper, of), _curve(tangle, paper, of)
+        beside = [_close(tangle, paper, of), _curve(tangle, paper, of)]
+        panels = _space(tangle, paper, of), beside
         found = tangle.found(*of) / [*tangle.square, 1]
         return Drawing(paper.join(panels), _sentence(of, tangle.misses(*of), found))
 
@@ -132,17 +135,29 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     panel.line(seen, MUTED, 1)
     m = np.column_stack([tangle.seen(1)[0] * tangle.square, np.zeros(len(tangle.W))])
     draw_squares(panel, on_sheet(m), tangle.board, "#B0B0B0")
-    for circle in tangle.circles(*of):
-        arc = on_sheet(circle.place(np.arange(0, 180.5, 0.5)))
-        panel.line(arc, LENS, 0.7)
-        panel.mark(arc[[0, -1]], "lens", 3)
+    arcs = np.array([circle.place(np.arange(0, 181, 1.5)) for circle in tangle.circles(*of)])
+    _draw_arcs(panel, arcs, tangle.eye)
+    panel.mark(on_sheet(tangle.eye), "ideal", 9)
     _draw_found(on_sheet(tangle.found(*of)), panel, 6)
-    panel.mark(on_sheet(tangle.eye), "ideal", 5)
     return panel
 
 
+def _draw_arcs(panel: Panel, arcs: Array, eye: Array) -> None:
+    """Draw curves (n, k, 3) in pieces, from the farthest to the nearest: thicker and stronger."""
+    pieces = np.stack([arcs[:, :-1], arcs[:, 1:]], axis=2).reshape(-1, 2, 3)
+    near = behind_sheet(eye - pieces.mean(axis=1)) / _DEEP
+    tone = np.rint((near + 0.5).clip(0, 1) * (_TONES - 1))
+    for i in range(_TONES):
+        part = i / (_TONES - 1)
+        colour = hexed(_FAR + part * (_NEAR_BY - _FAR))
+        panel.segments(on_sheet(pieces[tone == i]), colour, 1 + 1.2 * part)
+
+
 def _draw_found(at: Array, panel: Panel, size: float) -> None:
-    """Draw the camera that is found as a triangle, orange as all that is computed."""
+    """Draw the camera that is found as a triangle, orange as all that is computed.
+
+    It goes over the plus of the true camera, whose arms are longer.
+    """
     panel.polygons(
         [at + size * panel.pixel * np.array([[0, -1], [0.9, 0.7], [-0.9, 0.7]])], ESTIMATED
     )
@@ -156,29 +171,28 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     for circle in tangle.circles(*of):
         panel.line(circle.place(np.array([0.0, 180]))[:, :2], LENS, 1)
     found = tangle.found(*of)[:2]
-    rim = 13 * panel.pixel
-    _draw_found(np.clip(found, [left + rim, top + rim], [right - rim, low - rim]), panel, 13)
+    panel.mark(tangle.eye[:2], "ideal", 13)
+    rim = 12 * panel.pixel
+    _draw_found(np.clip(found, [left + rim, top + rim], [right - rim, low - rim]), panel, 9)
     if np.isnan(found).any():
-        panel.text([left + 8, top + 12], "no camera", MUTED, size=12)
+        panel.text([left + 4, top + 6], "no camera", MUTED, size=12)
     elif ((found < [left, top]) | (found > [right, low])).any():
-        panel.text([left + 8, top + 12], "farther out", MUTED, size=12)
-    panel.mark(tangle.eye[:2], "ideal", 10)
-    panel.line([[left + 8, low - 10], [left + 28, low - 10]], IDEAL, 2)
-    panel.text([left + 31, low - 10], "20 px", IDEAL, size=12)
+        panel.text([left + 4, top + 6], "farther out", MUTED, size=12)
+    panel.line([[left + 4, low - 6], [left + 24, low - 6]], IDEAL, 2)
+    panel.text([left + 26, low - 6], "20 px", IDEAL, size=12)
     return panel
 
 
 def _curve(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     """Draw how far the half circles miss the camera; the hand pulls along the curve."""
-    (k1, turned), x, y = of, (_LOWEST - 0.07, _HIGHEST + 0.03), (_MOST, -0.1 * _MOST)
+    (k1, turned), x, y = of, (_LOWEST - 0.07, _HIGHEST + 0.03), (_MOST, -0.2 * _MOST)
     panel = paper.panel(_CURVE, x, y, "miss (RMS, px) against k1")
-    panel.ticks(x=(-0.4, -0.2, 0), y=(20, 40, 60, 80), size=12)
+    panel.ticks(x=(-0.4, -0.2, 0), y=(0, 40, 80), size=12)
     tried = np.arange(_LOWEST, _HIGHEST + 0.01, 0.025)
     way = np.array([[k, np.sqrt(np.mean(tangle.misses(float(k), turned) ** 2))] for k in tried])
     panel.line(way, MUTED, 1.6)
     at = np.array([k1, np.sqrt(np.mean(tangle.misses(k1, turned) ** 2))])
     panel.mark(at, "estimated", 8)
-    side, anchor = (-1, "rm") if k1 > way[way[:, 1].argmin(), 0] else (1, "lm")  # within the V
-    panel.text(at + [0.03 * side, 4], f"{at[1]:.1f} px", ESTIMATED, anchor=anchor, size=13)
+    panel.text([-0.2, 66], f"{at[1]:.1f} px", ESTIMATED, anchor="mm", size=15)  # within the V
     panel.grip("k1", "how much of the lens is undone", at, 4)
     return panel

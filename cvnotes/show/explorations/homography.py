@@ -80,7 +80,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     picture.image(_shown(paper.sharpness))
     _draw_grid(picture, H)
     _draw_horizon(picture, H)
-    picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 2.4)
+    picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 1.6)
     picture.mark(plus, "ideal", 8)
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):
@@ -123,7 +123,7 @@ def _draw_shores(panel: Panel, wall: Image, m: Array, H: Array) -> None:
     seen = to_homogeneous(np.stack(np.meshgrid(X, Y), axis=-1)) @ H.T
     _, covariance = measured(m, seen[..., :2] / seen[..., 2:])
     std = np.sqrt(np.trace(covariance, axis1=-2, axis2=-1))
-    std[seen[..., 2] * (H @ [210, 297, 1])[2] <= 0] = 1e6  # behind the camera
+    behind = (seen[..., 2] * (H @ [210, 297, 1])[2] <= 0).astype(np.float32)  # the camera
     height = np.log(std.clip(1e-3, 1e6)).astype(np.float32)
     inside = (1, 1, *np.add(_CELLS, 1).tolist())
     fine = np.asarray(
@@ -132,7 +132,8 @@ def _draw_shores(panel: Panel, wall: Image, m: Array, H: Array) -> None:
     steep = np.hypot(*np.gradient(fine)).clip(1e-9)
     width = wall.shape[1] / _SIZE[0]
     off = np.min([np.abs(fine - np.log(shore)) for shore in _SHORES], axis=0) / steep
-    ink = np.rint(3 * np.clip(width - off, 0, 1))[..., None] / 3  # few colours pack small
+    ink = np.rint(3 * np.clip(0.8 * width - off, 0, 1))[..., None] / 4  # few colours pack small
+    ink[np.asarray(Bitmap.fromarray(behind).resize(fine.shape[::-1], box=inside)) > 0] = 0
     panel.image(((1 - ink) * wall + ink * 255 * np.array(rgb(ESTIMATED))).astype(np.uint8))
     for shore in _SHORES:
         crossed = np.flatnonzero(np.diff(np.sign(height[_LABELLED] - np.log(shore))))
@@ -141,12 +142,13 @@ def _draw_shores(panel: Panel, wall: Image, m: Array, H: Array) -> None:
 
 
 def _draw_grid(panel: Panel, H: Array) -> None:
-    """Draw the lines at every hundredth millimetre, as far as they are before the camera."""
+    """Draw the lines at every hundredth millimetre before the camera, but not over the letters."""
     fine = np.linspace(_GRID[0], _GRID[-1], 57)
     across = np.stack(np.meshgrid(fine, _GRID), axis=-1)
     for line in (*across, *across[..., ::-1]):
         seen = to_homogeneous(line) @ H.T
         seen[seen[:, 2] * (H @ [210, 297, 1])[2] <= 0] = np.nan
+        seen[((line > 0) & (line < _CHART[2])).all(axis=-1)] = np.nan
         panel.line(seen[:, :2] / seen[:, 2:], ESTIMATED, 0.6)
 
 

@@ -21,13 +21,14 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
 from cvnotes.show.space.shapes import Lines
-from cvnotes.show.style import CAMERA, MUTED
+from cvnotes.show.style import CAMERA, MUTED, rgb
 
-_SIZE, _PICTURE = (440, 330), (380, 285)  # px
+_SIZE, _PICTURE = (402, 336), (448, 336)  # px
 _LAST = 11  # of the twelve photographs, counted from 0
 _CONE, _TILE, _BEYOND = 110.0, 100, 1000  # mm
-_PALE, _PALE_BLUE, _INK = "#C9C9C9", "#BFDFF4", "#262629"
-_TILES, _WALL, _SHADOW = "#DAD1C2", "#BFD3C4", "#E3DED6"
+_PALE, _PALE_BLUE, _INK = "#C9C9C9", "#A9D5F1", "#262629"
+_TILES, _WALL, _SHADOW, _JOINTS = "#EFE7D9", "#E2EBE4", "#CBC5BD", "#FBFAF7"
+_LINES, _GREY = "#BFD3C4", "#ECECEC"  # of the wall in the photograph; where nothing is told
 # Seen from above and behind the camera: x to the right, y down, z away.
 _VIEW = rotation_from_vector([0.45, 0, 0]) @ rotation_from_vector([0, 0.5, 0])
 
@@ -92,27 +93,32 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     room = _room()
     space = paper.panel(_SIZE, *room.shown, "space: camera and board, in a room")
     border, squares = paper_and_squares(board)
-    space.segments(on_sheet(room.wall), _WALL, 0.8)
-    space.segments(on_sheet(room.floor), _TILES, 0.8)
+    for plane, colour in ((room.wall, _WALL), (room.floor, _TILES)):
+        space.polygons(on_sheet(_border(plane))[None], colour)
+        space.segments(on_sheet(plane), _JOINTS, 0.8)
     every = [stands(each, who) for each in _poses()]
     for _, of_board in every:
-        space.line(on_sheet(move(of_board, border))[[0, 1, 2, 3, 0]], _PALE, 0.8)
+        sheet = on_sheet(move(of_board, border))
+        space.polygons(sheet[None], "#F8F8F6")
+        space.line(sheet[[0, 1, 2, 3, 0]], _PALE, 0.6)
     camera, of_board = stands(G, who)
     there = move(of_board, border)
     space.polygons(on_sheet(there * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0])[None], _SHADOW)
     sheet = on_sheet(there)
     space.polygons(sheet[None], "#FBFBF8")
-    space.line(sheet[[0, 1, 2, 3, 0]], MUTED, 1.2)
+    space.line(sheet[[0, 1, 2, 3, 0]], MUTED, 0.8)
     space.polygons(on_sheet(move(of_board, squares)), _INK)
     for one, _ in every:
-        _draw_camera(space, own.moved(inverse(one)), _PALE_BLUE, 1)
+        _draw_camera(space, own.moved(inverse(one)), _PALE_BLUE, 0.7)
     for corner in sheet:  # a pyramid that moves, and keeps its form
-        space.line([on_sheet(camera[:3, 3]), corner], CAMERA, 1)
-    _draw_camera(space, own.moved(inverse(camera)), CAMERA, 2.5)
+        space.line([on_sheet(camera[:3, 3]), corner], CAMERA, 0.7)
+    _draw_camera(space, own.moved(inverse(camera)), CAMERA, 1.6)
     picture = paper.picture_panel(_PICTURE, own.size, "what the camera sees")
+    backdrop = _WALL if values["wall"] else _GREY
+    picture.image((255 * np.array([[rgb(backdrop)]])).astype(np.uint8))
     if values["wall"]:
-        wall = own.moved(inverse(camera)).project(room.beyond)
-        picture.segments(wall, _WALL, 1.5)
+        seen = own.moved(inverse(camera)).project(room.beyond)
+        picture.segments(seen, _LINES, 1)
     draw_board(picture, own.moved(chain(inverse(camera), of_board)), board)
     return Drawing(paper.join((space, picture)), _sentence(values, camera, of_board))
 
@@ -140,6 +146,15 @@ def _room() -> _Room:
     scale = 1.05 * ((high - low) / _SIZE).max() / 2 * np.array(_SIZE)
     (left, top), (right, bottom) = (low + high) / 2 - scale, (low + high) / 2 + scale
     return _Room(floor, wall, beyond, ((left, right), (top, bottom)))
+
+
+def _border(plane: Array) -> Array:
+    """Return the corners (4, 3) of a rectangle, from the lines (n, 2, 3) upon it."""
+    low, high = plane.min(axis=(0, 1)), plane.max(axis=(0, 1))
+    i, j = np.flatnonzero(high > low)
+    corners = np.tile(low, (4, 1))
+    corners[1:3, i], corners[2:, j] = high[i], high[j]
+    return corners
 
 
 def _grid(s: Array, t: Array) -> Array:

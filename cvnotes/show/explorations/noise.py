@@ -86,10 +86,15 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     bound = study.std(n, sigma)
     error, std = study.estimate(n, sigma, int(values["draw"]))
     reach = next((r for r in _REACHES if r > 3.5 * bound.max()), _REACHES[-1])
-    bars = paper.panel((450, 300), (-1.25 * reach, reach), (-0.8, 4.3), "estimate minus truth (px)")
+    bars = paper.panel(
+        (450, 300),
+        (-1.25 * reach, reach),
+        (-0.5, 4.3),
+        "estimate minus truth (px): bars of ±1σ, thin ones of ±2σ",
+    )
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(
-        (400, 300), (np.log10(2.6), np.log10(42)), (1.4, -1.8),
+        (400, 300), (np.log10(2.6), np.log10(48)), (1.4, -1.8),
         "least standard deviation of αᵤ (px) against views",
     )  # fmt: skip
     _draw_curve(curve, study, n, sigma)
@@ -104,12 +109,14 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
 def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array) -> None:
     left, reach = panel.x
     panel.ticks(x=np.array([-2, -1, 1, 2]) * (reach // 3 if reach > 1 else 0.3), size=12)
-    panel.line([[0, -0.3], [0, 4.3]], IDEAL, 1, dash=4)
+    panel.line([[0, -0.5], [0, 4.3]], IDEAL, 1, dash=4)
     panel.text([0.02 * reach, 3.85], "truth", IDEAL)
-    panel.text([0.95 * left, -0.55], "blue: the bound, ±1σ and ±2σ", CAMERA)
-    panel.text([0.95 * reach, -0.55], "orange: the estimate, ±1σ", ESTIMATED, anchor="rm")
+    panel.text([2 * bound[0] + 0.04 * reach, 0], "the bound", CAMERA)
+    side = 1 if error[0] < 0 else -1  # towards the truth, where there is room
+    end, anchor = error[0] + side * (std[0] + 0.04 * reach), "lm" if side > 0 else "rm"
+    panel.text([end, 0.35], "this try", ESTIMATED, anchor=anchor)
     for i, label in enumerate(_LABELS):
-        for k, width in ((2, 7), (1, 14)):
+        for k, width in ((2, 3.5), (1, 8)):
             panel.line([[-k * bound[i], i], [k * bound[i], i]], CAMERA, width)
         y = i + 0.35
         panel.line([[error[i] - std[i], y], [error[i] + std[i], y]], ESTIMATED, 2)
@@ -130,13 +137,13 @@ def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
     for other in _OTHERS:
         curve = other * study.std_by_views[:, 0]
         panel.line(np.log10(np.stack([counts, curve], -1)), _PALE, 1.2)
-        panel.text(np.log10([counts[-1] * 1.03, curve[-1]]), f"σ {other:g}", CAMERA, size=10)
+        panel.text(np.log10([counts[-1] * 1.09, curve[-1]]), f"σ {other:g}", CAMERA, size=10)
     if sigma == 0:
         panel.text([1.0, -1.5], "no noise, no error", MUTED, anchor="mm", size=12)
         return
     std = sigma * study.std_by_views[:, 0]
     slope = std[-1] * np.sqrt(_MOST / counts)
     panel.line(np.log10(np.stack([counts, slope], -1)), MUTED, 1, dash=4)
-    panel.text(np.log10([3.2, slope[0] * 0.6]), "∝ 1/√views", MUTED)
+    panel.text(np.log10([3.2, 0.03]), "dashed: ∝ 1/√views", MUTED)
     panel.line(np.log10(np.stack([counts, std], -1)), CAMERA, 2.2)
     panel.mark(np.log10([n, std[n - _FEWEST]]), "camera", 8)

@@ -73,20 +73,26 @@ class Paper:
         """Make a panel that shows the pixels of a picture of (width, height)."""
         return self.panel(size, (-0.5, picture[0] - 0.5), (-0.5, picture[1] - 0.5), title)
 
-    def join(self, *rows: tuple["Panel", ...]) -> Drawn:
-        """Lay panels side by side, and rows below each other: (height, width, 3)."""
+    def join(self, *rows: tuple["Panel | list[Panel]", ...]) -> Drawn:
+        """Lay panels side by side, and rows below each other: (height, width, 3).
+
+        A list in a row is a column: its panels, all as wide, stand below each other.
+        """
+        columns = [[one if isinstance(one, list) else [one] for one in row] for row in rows]
         if self.narrow:
-            rows = tuple((panel,) for row in rows for panel in row)
-        height = sum(max(panel.sheet[1] for panel in row) for row in rows)
-        width = max(sum(panel.sheet[0] for panel in row) for row in rows)
-        page, top = np.full((height, width, 3), 255, np.uint8), 0
-        for row in rows:
+            columns = [[[panel]] for row in columns for column in row for panel in column]
+        high = [max(sum(panel.sheet[1] for panel in column) for column in row) for row in columns]
+        width = max(sum(column[0].sheet[0] for column in row) for row in columns)
+        page = np.full((sum(high), width, 3), 255, np.uint8)
+        for row, row_top in zip(columns, np.cumsum([0, *high]).tolist(), strict=False):
             left = 0
-            for panel in row:
-                panel.finish(page[top:, left:])
-                self.grips += tuple(panel.grips(left / self.sharpness, top / self.sharpness))
-                left += panel.sheet[0]
-            top += max(panel.sheet[1] for panel in row)
+            for column in row:
+                top = row_top
+                for panel in column:
+                    panel.finish(page[top:, left:])
+                    self.grips += tuple(panel.grips(left / self.sharpness, top / self.sharpness))
+                    top += panel.sheet[1]
+                left += column[0].sheet[0]
         return page
 
 

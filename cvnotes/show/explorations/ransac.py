@@ -27,7 +27,7 @@ Mask = npt.NDArray[np.bool_]
 def ransac_model() -> Model:
     """Make the model of 54 pairs, some of which changed places."""
     settings = (
-        Setting("draw", "draw", 0, _DRAWS, 1, 0, "0 believes all pairs; each other draws four"),
+        Setting("draw", "draw", 0, _DRAWS, 1, 12, "0 believes all pairs; each other draws four"),
         Setting("wrong", "wrong pairs", 0, 40, 2, 16, "how many of the 54 changed places"),
         Setting(
             "threshold", "threshold (px)", 0.3, 6, 0.1, 1.5, "how far a pair that agrees is off"
@@ -41,8 +41,9 @@ def ransac_model() -> Model:
 
     @lru_cache(maxsize=1)
     def photograph() -> Drawn:
-        grey = render(_BOARD, _CAMERA, blur=0.7)
-        return np.asarray(185 + 0.27 * grey).astype(np.uint8)
+        (left, top), (right, bottom) = 2 * np.array(_PART)
+        grey = render(_BOARD, _CAMERA.resized((1280, 960)), blur=0.7)
+        return np.asarray(185 + 0.27 * grey).astype(np.uint8)[top:bottom, left:right]
 
     def draw(paper: Paper, values: Values) -> Drawing:
         n, wrong, limit = int(values["draw"]), int(values["wrong"]), values["threshold"]
@@ -53,7 +54,7 @@ def ransac_model() -> Model:
             (440, 330), (left - 0.5, right - 0.5), (top - 0.5, bottom - 0.5),
             "the pairs, and one homography",
         )  # fmt: skip
-        panel.image(photograph()[top:bottom, left:right])
+        panel.image(photograph())
         _draw_pairs(panel, put[n], pairs, agree[n], fours[n][: 4 * min(n, 1)])
         votes = paper.panel(
             (340, 330), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
@@ -86,11 +87,12 @@ def drawn_pairs(wrong: int) -> tuple[Array, Array, Array, Mask]:
 
 def _draw_pairs(panel: Panel, put: Array, pairs: Array, agree: Mask, four: Array) -> None:
     """Draw the net that a homography puts down, and each pair, led to its corner if it is off."""
-    panel.segments(np.stack([put, pairs], axis=1)[~agree], _WRONG, 0.8)
-    draw_net(panel, put, _BOARD, ESTIMATED, 1.4)
-    panel.segments(pairs[~agree][:, None] + [[-3, 0], [3, 0]], _WRONG, 4)
-    panel.mark(pairs[agree], "lens", 6)
-    panel.mark(four, "ideal", 9)
+    panel.segments(np.stack([put, pairs], axis=1)[~agree], _WRONG, 0.5)
+    draw_net(panel, put, _BOARD, ESTIMATED, 0.9)
+    square = 2.5 * panel.pixel * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    panel.polygons(pairs[~agree][:, None] + square, _WRONG)
+    panel.mark(pairs[agree], "lens", 5)
+    panel.mark(four, "ideal", 8)
 
 
 def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
@@ -98,13 +100,12 @@ def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
     right = (1 - wrong / 54) ** 4
     draws = np.arange(_DRAWS + 1)
     panel.line(np.column_stack([draws, 54 * (1 - (1 - right) ** draws)]), MUTED, 1.2, dash=4)
-    panel.text([13, 56.5], "chance of four right ones: 0 to 100 %", MUTED, size=10)
+    panel.text([13, 56.5], "chance of four right ones", size=10)
+    panel.text([_DRAWS + 2.5, 56.5], "100 %", anchor="rm", size=10)
     best = np.maximum.accumulate(np.where(draws > 0, counts, 0))
     steps = np.column_stack([np.repeat(draws[1:], 2)[1:], np.repeat(best[1:], 2)[:-1]])
-    panel.line(steps, IDEAL, 1.6)
-    bars = [[[k, 0], [k, c]] for k, c in zip(draws, counts, strict=True)]
-    panel.segments(bars[:1], MUTED, 2.5)  # all pairs: no draw
-    panel.segments(bars[1:], LENS, 2.5)
+    panel.line(steps, IDEAL, 1.2)
+    panel.segments([[[k, 0], [k, counts[k]]] for k in draws[1:] if counts[k]], LENS, 2.2)
     panel.mark([n, counts[n]], "estimated", 9)
     panel.grip("draw", "which draw is shown", [n, float(counts[n])], 5)
 

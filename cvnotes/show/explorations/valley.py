@@ -12,11 +12,12 @@ from cvnotes.pictures import course
 from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, LENS
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
-_H6, _H9, _MOST = (-2.7, 1.0), (-1.4, 2.3), 25  # what is shown of the two unknowns; steps
-_TONES = np.array([[255, 253, 246], [217, 199, 163], [138, 115, 80]])  # from low to high ground
-_WALKS = (("Levenberg–Marquardt", ESTIMATED, 3.4), ("without damping", LENS, 1.8))
+_H6, _H9, _MOST = (-2.7, 1.0), (-1.4, 2.3), 25  # where walks may set out; steps
+_SHOWN = (-2.8, 1.1), (2.4, -1.5)  # of the two unknowns: a little more
+_TONES = np.array([[255, 255, 252], [224, 217, 202], [120, 108, 92]])  # from low to high ground
+_WALKS = (("Levenberg–Marquardt", ESTIMATED, 3.2), ("without damping", LENS, 1.4))
 
 
 class Floor(NamedTuple):
@@ -70,16 +71,17 @@ def floor() -> Floor:
 
 @lru_cache(maxsize=1)
 def _ground() -> Drawn:
-    """Paint the logarithm of the cost: light where it is low, with a step at every third of ten."""
-    h6, h9 = np.linspace(*_H6, 330), np.linspace(*_H9[::-1], 330)
-    of = floor()
-    H = np.broadcast_to(of.best, (330, 330, 3, 3)).copy()
+    """Paint the logarithm of the cost: light where it is low, with lines of equal height."""
+    (h6, h9), of = (np.linspace(*ends, 396) for ends in _SHOWN), floor()
+    H = np.broadcast_to(of.best, (396, 396, 3, 3)).copy()
     H[..., 1, 2], H[..., 2, 2] = h6, h9[:, None]
     x = H @ of.tiles_h.T
     cost = np.sum((x[..., :2, :] / x[..., 2:, :] - of.seen.T) ** 2, axis=(2, 3))
-    height = np.floor(3 * np.log10(cost.clip(1e-2, 1e5))) / 3
-    channels = [np.interp(height, [0.7, 2.2, 4.5], tone) for tone in _TONES.T]
-    return np.stack(channels, axis=-1).round().astype(np.uint8)
+    height = np.log10(cost.clip(1e-2, 1e5))
+    ground = np.stack([np.interp(height, [0.2, 2.2, 4.5], tone) for tone in _TONES.T], axis=-1)
+    off = np.abs(3 * height - np.rint(3 * height)) / np.hypot(*np.gradient(3 * height)).clip(1e-9)
+    line = np.clip(1 - off, 0, 1) * (height < 2.6)  # in pixels; none on the walls
+    return np.asarray((ground - 26 * line[..., None]).round(), dtype=np.uint8)
 
 
 def valley_model() -> Model:
@@ -100,17 +102,19 @@ def valley_model() -> Model:
         start, taken = np.array([values["h6"], values["h9"]]), int(values["steps"])
         of, mu = floor(), 10.0 ** values["mu"]
         ways = [of.walk(start, mu)[: taken + 1], of.walk(start, 0)[: taken + 1]]
-        ground = paper.panel((440, 396), _H6, _H9[::-1], "the cost over ĥ6 (→) and ĥ9 (↑)")
-        ground.image(_ground(), smooth=False)
-        ground.ticks(x=(-2, -1, 0), y=(-1, 0, 1, 2))
+        ground = paper.panel((396, 396), *_SHOWN, "the cost over ĥ6 (→) and ĥ9 (↑)")
+        ground.image(_ground())
+        for tick in (-2, -1, 0):
+            ground.text([tick, -1.42], f"{tick}".replace("-", "−"), anchor="md", size=9)
+        for tick in (-1, 0, 1, 2):
+            ground.text([-2.76, tick], f"{tick}".replace("-", "−"), size=9)
         for row, wall in enumerate(-(of.tiles_h[::7, :2] @ of.best[2, :2])[:5], 1):
-            ground.text([0.93, wall], f"{row}", anchor="mm", size=10)
-        ground.mark(of.best[[1, 2], [2, 2]], "ideal", 8)
+            ground.text([1.02 - 0.12 * (row % 2), wall], f"{row}", IDEAL, anchor="mm", size=10)
+        ground.mark(of.best[[1, 2], [2, 2]], "ideal", 12)
         for way, (_, colour, width) in zip(ways, _WALKS, strict=True):
-            ground.line(way, "#FFFFFF", width + 1.5)
             ground.line(way, colour, width)
         for way, meaning in zip(ways, ("estimated", "lens"), strict=True):
-            ground.mark(way[-1], meaning, 9)
+            ground.mark(way[-1], meaning, 8)
         ground.mark(start, "world", 9)
         ground.grip("start", "where the walks set out", start, 5)
         rms = [[of.rms(h) for h in way] for way in ways]
@@ -123,18 +127,20 @@ def valley_model() -> Model:
 
 
 def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
-    panel = paper.panel((360, 396), (-1.5, _MOST + 1), (5.4, -0.9), "RMS (px) after each step")
+    panel = paper.panel((440, 396), (-1.5, _MOST + 1), (5.4, -0.9), "RMS (px) after each step")
     panel.ticks(x=(5, 10, 15, 20, 25))
     for power in range(6):
         panel.line([[-2, power], [_MOST + 2, power]], "#DDDDDD", 0.5)
         panel.text([-1.3, power], f"{10**power:,}", anchor="lm", size=9)
-    for values, (name, colour, width), meaning, high in zip(
-        rms, _WALKS, ("estimated", "lens"), (4.9, 4.4), strict=True
+    for values, (name, colour, width), meaning, up in zip(
+        rms, _WALKS, ("estimated", "lens"), (-0.3, 0.3), strict=True
     ):
         curve = np.column_stack([np.arange(len(values)), np.log10(np.clip(values, 0.1, 1e6))])
         panel.line(curve, colour, width)
         panel.mark(curve[-1], meaning, 7)
-        panel.text([_MOST, high], name, colour, anchor="rm", size=12)
+        steps, high = curve[-1].tolist()
+        at, anchor = (steps + 0.8, "lm") if steps < 15 else (_MOST, "rm")
+        panel.text([at, min(high + up, 5)], name, colour, anchor=anchor, size=12)
     return panel
 
 

@@ -56,19 +56,20 @@ def draw_arrow(J: npt.ArrayLike, shared: int) -> Any:
     right.imshow(_dark(J.T @ J), cmap="Blues", vmin=0, vmax=1, interpolation="nearest")
     left.set_title(f"J: {rows} rows, {columns} columns", pad=18)
     right.set_title(f"JᵀJ: {columns} × {columns}", pad=18)
-    ticks = [shared - 0.5 + 6 * i for i in range((columns - shared) // 6)]
     for ax in axes:
-        ax.set(xticks=ticks, xticklabels=[], xlabel="unknowns")
-        ax.tick_params(length=2)
-        for u, name, side in (
-            (-0.5, "camera", "left"),
-            ((shared + columns) / 2, "poses", "center"),
+        ax.set(xticks=[], xlabel="unknowns")
+        for first, last, name, side in (
+            (0, shared, "camera", "left"),
+            (shared, columns, "poses", "center"),
         ):
             at = {"xycoords": ("data", "axes fraction"), "ha": side, "fontsize": FONT - 1}
-            beside(ax, name, (u, 1), (0, 3), MUTED, **at)
+            u = first - 0.5 if side == "left" else (first + last) / 2
+            beside(ax, name, (u, 1), (0, 6), MUTED, **at)
+            span, over = [first - 0.2, last - 0.8], ax.get_xaxis_transform()
+            ax.plot(span, [1.01, 1.01], color=MUTED, lw=0.8, transform=over, clip_on=False)
         ax.axvline(shared - 0.5, color=MUTED, linewidth=0.8)
     right.axhline(shared - 0.5, color=MUTED, linewidth=0.8)
-    right.set(yticks=ticks, yticklabels=[])
+    right.set(yticks=[])
     left.set_ylabel("measured coordinates, view after view")
     return axes
 

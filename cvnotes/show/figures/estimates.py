@@ -97,7 +97,7 @@ def draw_view_families(
     if not len(W):
         raise CvnotesError("W: expected the points of the board")
     n = len(results)
-    axes = panels(3, width=960, height=90 + 96 * n, sharey=True, width_ratios=(1.6, 1.3, 5))
+    axes = panels(3, width=820, height=90 + 86 * n, sharey=True, width_ratios=(1.6, 1.15, 4.2))
     boards, left, right = axes
     for y, runs in enumerate(results.values()):
         _frame(boards, runs[0], W, y)
@@ -126,7 +126,7 @@ def _frame(ax: "Axes", run: Calibration, W: Any, y: float) -> None:
     ax.fill([-w, w, w, -w], [y - h, y - h, y + h, y + h], fc="#F4F4F0", ec=MUTED, lw=0.8)
     for pose in run.poses:
         u, v = scale * (run.camera.moved(pose).project(edge) + 0.5 - half).T
-        ax.fill(u, v + y, fc=(*rgb(LENS), 0.06), ec=LENS, lw=0.9)
+        ax.fill(u, v + y, fc=(*rgb(LENS), 0.06), ec=LENS, lw=0.7)
 
 
 def _strip(ax: "Axes", runs: Sequence[Calibration], truth: float, y: float, spread: Any) -> None:
@@ -136,13 +136,13 @@ def _strip(ax: "Axes", runs: Sequence[Calibration], truth: float, y: float, spre
     kept = float(np.sqrt(np.mean((error / std) ** 2))) < 2
     colour = LENS if kept else ESTIMATED
     promised, expected = _HALF * float(np.median(std)), float(np.median(error))
-    ax.plot(error, spread, ".", color=colour, markersize=4)
+    ax.plot(error, spread, "o", color=colour, markersize=3.6, mec="white", mew=0.4)
     far = error.max() > 10  # so that there is no room on the right
-    names = ("promised", promised, IDEAL, 1.6, "right"), ("median", expected, colour, 4, "left")
+    names = ("promised", promised, IDEAL, 1.6, "right"), ("median", expected, colour, 3, "left")
     for name, tick, ink, wide, side in reversed(names):
-        ax.plot([tick] * 2, [y - 0.36, y + 0.36], color=ink, linewidth=wide)
+        ax.plot([tick] * 2, [y - 0.36, y + 0.36], color=ink, linewidth=wide, zorder=1)
         beside(ax, name if far else "", (tick, y - 0.36), (0, 3), ink, ha=side, size=9)
     words = f"{expected:.2f} %" if expected < 100 else "over 100 %"
-    words += "" if kept else ", not as promised"
+    words += "" if kept else ",\nnot as promised"
     end, by, side = (min(*error, promised), -7, "right") if far else (error.max(), 7, "left")
     beside(ax, words, (end, y), (by, 0), va="center", ha=side, size=9)
