@@ -15,7 +15,8 @@ _AT = np.array([[0, 0], [1, 0], [0, 1], [1, 1]])
 _REACH = 0.36  # px beyond the centres
 _PIXEL = 0.09  # px from the centre to the side of the little squares that stand for the pixels
 _FINE = 120  # the surface is drawn in so many steps
-_ROOM = 0.05  # of the square: smaller areas have no room for words
+_LIGHT = 117  # grey level on which black and white are read equally well
+_ROOM = 0.05  # of the square's height: what is lower has no room for words
 
 
 def between_model() -> Model:
@@ -71,9 +72,8 @@ def _areas(paper: Paper, place: Array, weight: Array) -> Panel:
         panel.line([*ends, ends[0]], ESTIMATED, 1.5)
     for at, name, grey, w in zip(_AT, _NAMES, _GREY, weight, strict=True):
         panel.text(at + (at - 0.5) * [0, 0.55], f"{name} = {grey:g}", LENS, anchor="mm", size=13)
-        if w >= _ROOM:
-            middle = (1 - at + place) / 2
-            panel.text(middle, f"{name} × {w:.2f}", IDEAL, anchor="mm", size=12)
+        if (np.abs(1 - at - place) > [0.31, _ROOM]).all():
+            _write(panel, (1 - at + place) / 2, f"{name} × {w:.2f}", grey)
     panel.mark(place, "estimated", 8)
     panel.grip("place", "a place between four pixels", place, 8)
     return panel
@@ -88,18 +88,15 @@ def _surface(paper: Paper, place: Array) -> Panel:
     du, dv = place
     above, below = _GREY[[0, 2]] + (_GREY[[1, 3]] - _GREY[[0, 2]]) * du
     panel.line([[du, 0], [du, 1]], ESTIMATED, 2)
-    for v, name, value in ((0, "a", above), (1, "b", below)):
+    for v, value in ((0, above), (1, below)):
         panel.line([[0, v], [1, v]], LENS, 2)
         panel.mark([du, v], "estimated", 6)
-        words = f"I{name} = {value:.1f}"
-        panel.text([du, v + 0.36 * (v - 0.5)], words, ESTIMATED, anchor="mm", size=13)
+        _write(panel, np.array([du, v + 0.36 * (v - 0.5)]), f"{value:.1f}", value)
     panel.mark(_AT, "lens", 6)
     panel.mark(place, "estimated", 8)
-    aside, anchor = (0.07, "lm") if du < 0.5 else (-0.07, "rm")
-    value = weights(du, dv) @ _GREY
-    panel.text(
-        [du + aside, np.clip(dv, 0.1, 0.9)], f"I = {value:.1f}", ESTIMATED, anchor=anchor, size=13
-    )
+    aside = np.array([0.17 if du < 0.5 else -0.17, np.clip(dv, 0.1, 0.9) - dv])
+    value = float(weights(du, dv) @ _GREY)
+    _write(panel, place + aside, f"{value:.1f}", value)
     return panel
 
 
@@ -110,7 +107,14 @@ def _mix(paper: Paper, weight: Array) -> Panel:
     for foot, w, grey, name in zip(feet, weight, _GREY, _NAMES, strict=True):
         panel.polygons(_box([0, foot - w], [2, foot]), hexed(3 * [grey]))
         if w >= _ROOM:
-            panel.text([1, foot - w / 2], f"{name} × {w:.2f}", IDEAL, anchor="mm", size=12)
-    panel.polygons(_box([2, 0], [3, 1]), hexed(3 * [np.rint(weight @ _GREY)]))
-    panel.text([2.5, 0.5], f"{weight @ _GREY:.0f}", ESTIMATED, anchor="mm", size=13)
+            _write(panel, np.array([1, foot - w / 2]), f"{name} × {w:.2f}", grey)
+    value = float(weight @ _GREY)
+    panel.polygons(_box([2, 0], [3, 1]), hexed(3 * [np.rint(value)]))
+    _write(panel, np.array([2.5, 0.5]), f"{value:.0f}", value)
     return panel
+
+
+def _write(panel: Panel, at: Array, words: str, grey: float) -> None:
+    """Write on grey: white on what is dark, black on what is light."""
+    ink = IDEAL if grey > _LIGHT else "#FFFFFF"
+    panel.text(at, words, ink, anchor="mm", size=13, rim=hexed(3 * [grey]))

@@ -10,11 +10,12 @@ from cvnotes.calibration import calibrate
 from cvnotes.calibration.jacobian import jacobian
 from cvnotes.calibration.refinement import Problem
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import draw_arrows, draw_measured, draw_squares
+from cvnotes.show.explorations.boards import draw_arrows, draw_measured
 from cvnotes.show.explorations.finding import rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
 
 _LENS = "k1 k2 p1 p2"
 _MAGNIFIED = 100
@@ -160,7 +161,9 @@ def _bars(paper: Paper, heights: list[float], free: int) -> Panel:
     panel = paper.panel(_BARS, (0, len(_FREE)), (_HIGHEST, -0.025), "RMS (px) if these may move")
     for k, height in enumerate(heights):
         chosen = k == free
-        panel.line([[k + 0.5, 0], [k + 0.5, height]], ESTIMATED if chosen else MUTED, 2.5)
+        panel.line([[k + 0.5, 0], [k + 0.5, height]], ESTIMATED if chosen else FAINT, 1.5)
+        if not chosen:
+            panel.polygons([[k + 0.5, height] + circle(17)[:-1] * [0.05, 0.0022]], MUTED)
         panel.text([k + 0.5, height + 0.008], f"{height:.3f}", IDEAL, anchor="ms", size=11)
         panel.text([k + 0.5, -0.013], _FREE[k], IDEAL, anchor="mm", size=10)
     panel.line([[0, 0], [len(_FREE), 0]], MUTED, 0.8)
@@ -173,11 +176,8 @@ def _chart(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     """Draw the shift of each column: the left camera's, and so much of the right camera's."""
     n = len(left.columns)
     panel = paper.panel(
-        _CHART, (-1.4, n - 0.4), (_SHIFT, -_SHIFT - 0.04), "shift of the nine columns (mm)"
+        _CHART, (-1.4, n - 0.4), (_SHIFT + 0.02, -_SHIFT - 0.06), "shift of the nine columns (mm)"
     )
-    lines = np.linspace(-_SHIFT, _SHIFT, len(left.shifts))  # of the board, behind its columns
-    sheet = np.stack(np.meshgrid(np.arange(n), lines), axis=-1).reshape(-1, 2)
-    draw_squares(panel, sheet.astype(float), course.real_corners().board, "#F0F0F0")
     panel.ticks(y=(-0.1, 0.1), size=12)
     panel.line([[-1.4, 0.0], [float(n), 0.0]], MUTED, 0.8)
     at = np.arange(n)
@@ -190,6 +190,6 @@ def _chart(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     panel.line(others, ESTIMATED, 1, dash=3)
     panel.mark(others, "estimated", 6)
     panel.grip("nine", "the right camera's nine shifts, to be pulled up", others[_HELD], 3)
-    panel.text([-1.2, -0.19], "blue: by the left camera; dots: its single corners", LENS)
-    panel.text([-1.2, -0.215], f"orange: by the right camera, × {amount:g}", ESTIMATED)
+    panel.text([0.4, -0.2], "by the left camera; dots: its single corners", LENS)
+    panel.text([0.4, -0.235], f"by the right camera, × {amount:g}", ESTIMATED)
     return panel

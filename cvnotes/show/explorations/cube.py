@@ -4,7 +4,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFilter
+from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
@@ -29,6 +29,7 @@ _WINDOW = "#4A2E18"
 _PAINT = np.array([[246, 150, 60], [236, 134, 46]])  # two tints of the tower's tiles
 _EDGES = [(i, (i + 1) % 4 + i // 4 * 4) for i in range(8)] + [(i, i + 4) for i in range(4)]
 _SHADED, _SOFT = 0.42, 6  # what a shadow leaves of the light; px of its edge
+_CLOSE, _NEAR = 210, 14  # of 255, how dark it is under a foot; px that this reaches
 
 
 class _Found(NamedTuple):
@@ -84,7 +85,7 @@ def cube_model() -> Model:
         panel.grip("foot", "the foot of the tower", at, 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
         plan = paper.panel((400, 405), (-155, 349), (-88, 422), "the same from above")
-        _draw_plan(plan, base)
+        _draw_plan(plan, base, h)
         off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1)
         return Drawing(paper.join((panel, plan)), _sentence(foot, at, h, off, bool(values["lens"])))
 
@@ -115,17 +116,25 @@ def _turned(angle: float) -> Array:
     return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ [[c, s], [-s, c]]
 
 
-def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn:
-    """Darken what lies in the tower's shadow: all between its foot and its top's shadow."""
+def _shadow(base: Array, h: float) -> Array:
+    """Return polygons (5, 4, 2) of the board that together are in the tower's shadow."""
     fallen = base + h * _LIGHT[:2] / _LIGHT[2]
     swept = [[base[i - 1], base[i], fallen[i], fallen[i - 1]] for i in range(4)]
-    seen = camera.project(np.insert(np.array([*swept, fallen]), 2, 0, axis=-1))
+    return np.array([*swept, fallen])
+
+
+def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn:
+    """Darken what lies in the tower's shadow, and, softer, what lies close round its foot."""
+    seen = camera.project(np.insert(_shadow(base, h), 2, 0, axis=-1))
     w, height = _CAMERA.size
     mask = Image.new("L", (w // 2, height // 2))
     for corners in seen / 2:
         ImageDraw.Draw(mask).polygon(corners.ravel().tolist(), 255)
-    soft = mask.filter(ImageFilter.GaussianBlur(_SOFT / 2)).resize(_CAMERA.size)
-    return np.asarray(Image.composite(found.dark, found.photo, soft))
+    soft = mask.filter(ImageFilter.GaussianBlur(_SOFT / 2))
+    foot, round_it = camera.project(np.insert(base, 2, 0, axis=-1)) / 2, Image.new("L", mask.size)
+    ImageDraw.Draw(round_it).polygon(foot.ravel().tolist(), _CLOSE)
+    round_it = ImageChops.lighter(soft, round_it.filter(ImageFilter.GaussianBlur(_NEAR / 2)))
+    return np.asarray(Image.composite(found.dark, found.photo, round_it.resize(_CAMERA.size)))
 
 
 def draw_tower(
@@ -154,18 +163,19 @@ def draw_tower(
     return np.concatenate([low, high])
 
 
-def _draw_plan(panel: Panel, base: Array) -> None:
+def _draw_plan(panel: Panel, base: Array, h: float) -> None:
     columns, rows = _BOARD.corners
     rest = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     panel.polygons(((rest - 0.5) * 2000)[None], "#E4C7A3")
     panel.polygons(((rest * [columns + 3, rows + 3] - 2) * _SQUARE)[None], "#FFFFFF")
+    panel.polygons(_shadow(base, h), "#8C8277")
     dark = [(i, j) for i in range(-1, columns) for j in range(-1, rows) if (i + j) % 2 == 0]
     panel.polygons((np.array(dark)[:, None] + rest) * _SQUARE, "#333333")
     eye = _CAMERA.centre[:2]
     panel.line([eye, base.mean(axis=0)], ESTIMATED, 0.9, dash=5)
     panel.polygons(base[None], ESTIMATED)
     panel.line(base[[0, 1, 2, 3, 0]], "#FFFFFF", 1.5)
-    panel.mark(eye, "camera", 10)
+    panel.mark(eye, "camera", 10, tuple(base.mean(axis=0) - eye))
     panel.text(eye - [14, 0], "camera", CAMERA, anchor="rm", size=12)
 
 

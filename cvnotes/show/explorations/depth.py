@@ -7,16 +7,19 @@ import numpy as np
 from cvnotes.base import Array, Image, luma
 from cvnotes.camera import Camera, intrinsics, pose
 from cvnotes.pictures import depth_map, pixel_centres, radiance, room
+from cvnotes.pictures.meshes import from_above
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, hexed, rgb
 from cvnotes.warping import backward_warp
 
 _PICTURE, _PLAN = (440, 330), (300, 330)
 _ALPHA, _BASE, _SIZE = 520, 400, (640, 480)  # px, mm, px
 _NEAREST, _FARTHEST = 2500, 10_500  # mm
 _SAME, _AGREES = 120, 0.3  # mm of depth, and px of disparity, that are drawn as one
-_NAMES = {"wall": (0, 10_450), "cupboard": (2020, 7150), "box": (720, 6750), "table": (-2100, 5900)}
+_NAMES = {"wall": (0, 10_400), "cupboard": (900, 9100), "box": (650, 6800), "table": (-2100, 5900)}
+
+_WALLS = [[-3000, -600], [-3000, 10_000], [3000, 10_000], [3000, -600]]
 
 
 def pair() -> tuple[Camera, Camera]:
@@ -87,17 +90,17 @@ def seen_from_above() -> Array:
 
 def _plan(paper: Paper, Z: float) -> Panel:
     """Draw the room from above, with the depth at which nothing has a fringe."""
-    panel = paper.panel(_PLAN, (-5200, 5200), (10_900, -540), "from above: pull the line")
+    panel = paper.panel(_PLAN, (-4700, 5500), (10_900, -320), "from above: pull the line")
+    for corners, colour in zip(*from_above(room(), -1500), strict=True):
+        panel.polygons([corners], hexed(np.rint(255 * colour)))
+    panel.line(_WALLS, MUTED, 2)
     for metres in (2, 4, 6, 8, 10):
-        panel.line([[-5200, 1000 * metres], [5200, 1000 * metres]], "#DDDDDD", 0.5)
-        panel.text([-5100, 1000 * metres], f"{metres} m", MUTED, size=9)
-    places = seen_from_above()
-    there = np.abs(places[:, 1] - Z) < _SAME
+        panel.text([-3250, 1000 * metres], f"{metres} m", MUTED, anchor="rm", size=10)
     for thing, at in _NAMES.items():
-        panel.text(at, thing, MUTED, anchor="mm", size=11)
-    for some, colour in ((~there, MUTED), (there, ESTIMATED)):
-        panel.segments(places[some, None] + [[-25, 0], [25, 0]], colour, 2)
-    panel.line([[-4000, Z], [5200, Z]], ESTIMATED, 1.2, dash=5)
+        panel.text(at, thing, "#333333", anchor="mm", size=11)
+    panel.line([[-3000, Z], [4200, Z]], ESTIMATED, 1, dash=5)
+    there = seen_from_above()[np.abs(seen_from_above()[:, 1] - Z) < _SAME]
+    panel.segments(there[:, None] + [[-25, 0], [25, 0]], ESTIMATED, 3)
     panel.mark([[0, 0], [_BASE, 0]], "camera", 7)
     panel.mark([4200, Z], "estimated", 8)
     panel.text([4200, Z - 480], f"{Z / 1000:.2f} m", IDEAL, anchor="mm", size=12)

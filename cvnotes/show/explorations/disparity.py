@@ -9,7 +9,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 _ALPHA, _BASE = 520.0, 200.0  # px, mm
 _PLANE = 1100.0  # mm, where both pictures are drawn: a pixel is 1100/520 mm there
-_X, _Z = (-400, 620), (4900, -520)  # mm that are shown, from above
+_X, _Z = (-400, 620), (4700, -520)  # mm that are shown, from above
 _LIGHT, _WARM = "#D1EDE5", "#F3CDAE"
 
 
@@ -17,7 +17,7 @@ def disparity_model() -> Model:
     """Make the model of two rectified cameras, from above, and a point that both see."""
     settings = (
         Setting("X", "X (mm)", 0, 440, 10, 330, "how far to the right of the left camera"),
-        Setting("Z", "Z (mm)", 1500, 4500, 10, 3000, "how far away"),
+        Setting("Z", "Z (mm)", 1500, 4500, 10, 3300, "how far away"),
         Setting("sigma", "σ of d (px)", 0, 4, 0.1, 2, "how well the disparity is known"),
     )
     about = (
@@ -46,7 +46,7 @@ def triangulated(left: Array, right: Array) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     X, Z, sigma = values["X"], values["Z"], values["sigma"]
     left, right = columns(X, Z)
-    panel = paper.panel((450, 420), _X, _Z, "from above: pull the point")
+    panel = paper.panel((450, 390), _X, _Z, "from above: pull the point")
     panel.polygons(np.array([[[0.0, 0], [_BASE, 0], [X, Z]]]), _LIGHT)
     tips = np.array([left, right]) * _PLANE / _ALPHA  # mm along the planes of the pictures
     panel.polygons(np.array([[[0.0, 0], [tips[1], _PLANE], [tips[0], _PLANE]]]), _WARM)
@@ -58,7 +58,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.mark([at, 0], "camera", 8)
         panel.mark([at + tip, _PLANE], "lens", 6)
         anchor = "lm" if side > 0 else "rm"
-        panel.text([at + 20 * side, -240], f"{name} camera", CAMERA, anchor=anchor, size=12)
+        panel.text([at + 20 * side, -230], f"{name} camera", CAMERA, anchor=anchor, size=12)
         row = _PLANE - 140 if 0 < at < X else _PLANE + 110  # not upon a ray
         panel.text([at + tip + 14 * side, row], f"u {name}", LENS, anchor=anchor, size=12)
     for row, ends, below in ((1370, tips[::-1], 150), (-150, np.array([0, _BASE]), -170)):
@@ -79,9 +79,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _error(paper: Paper, Z: float, sigma: float) -> Panel:
     """Draw the standard deviation of the depth against the depth."""
-    panel = paper.panel((300, 420), (-400, 5500), (1000, -130), "σ of Z (mm) against Z (mm)")
-    panel.ticks(x=(1000, 2000, 3000, 4000, 5000), y=(0, 250, 500, 750), size=11)
-    depths = np.linspace(0, 5500, 120)
+    panel = paper.panel((300, 390), (-400, 5000), (900, -90), "σ of Z (mm) against Z (mm)")
+    panel.ticks(x=(1000, 2000, 3000, 4000), y=(0, 250, 500, 750), size=11)
+    depths = np.linspace(0, 5000, 41)
     curve = depths**2 / (_ALPHA * _BASE) * sigma
     panel.line(np.column_stack([depths, curve]), ESTIMATED, 2)
     here = [Z, Z**2 / (_ALPHA * _BASE) * sigma]

@@ -4,6 +4,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from PIL import Image
 
 from cvnotes.base import Array
 from cvnotes.calibration import Calibration, calibrate
@@ -16,6 +17,7 @@ from cvnotes.pictures import course, good_views, hold_at
 from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, rgb
 
 _PHONE = Camera(
@@ -26,6 +28,7 @@ _SHOWN, _NOISE = (480, 404), 0.1  # px
 _LABELS = ("αᵤ", "αᵥ", "u₀", "v₀", "k₁", "k₂")
 _HIGHEST = 0.9  # px, where the map is darkest
 _DARK = 0.75  # of the way from white to orange
+_TINTS = 60  # between them: a picture has 256 colours, and the marks need some
 _RIM = 3  # rows of the map: room above and below the picture for the numbers of its corners
 
 
@@ -105,14 +108,15 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         _SHOWN, (-0.5, w - 0.5), (-rim - 0.5, h + rim - 0.5), "σ of a pixel (px): pull the board"
     )
     std = np.pad(std, ((_RIM, _RIM), (0, 0)), mode="edge")
-    part = _DARK * np.clip(std / _HIGHEST, 0, 1)[..., None]
-    panel.image(np.rint(255 * (1 - part * (1 - np.array(rgb(ESTIMATED))))).astype(np.uint8))
-    for m in of.seen.reshape(-1, 2):
-        panel.polygons((m + 2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]))[None], MUTED)
+    part = Image.fromarray((_TINTS * np.clip(std / _HIGHEST, 0, 1)).astype(np.float32))
+    fine = np.rint(np.asarray(part.resize((panel.width, panel.height), Image.Resampling.BILINEAR)))
+    tints = 1 - np.linspace(0, _DARK, _TINTS + 1)[:, None] * (1 - np.array(rgb(ESTIMATED)))
+    panel.image(np.rint(255 * tints).astype(np.uint8)[fine.astype(int)])
+    panel.polygons(of.seen.reshape(-1, 1, 2) + 2.4 * circle(9)[:-1], MUTED)
     for inner, outer in ((-0.5, -rim - 9), (h - 0.5, h + rim + 9)):
         panel.polygons([[[-9, inner], [w + 9, inner], [w + 9, outer], [-9, outer]]], "#FFFFFF")
         panel.line([[-9, inner], [w + 9, inner]], MUTED, 0.8)
-    draw_net(panel, of.found.camera.moved(G).project(_BOARD.points), _BOARD, LENS, 2)
+    draw_net(panel, of.found.camera.moved(G).project(_BOARD.points), _BOARD, LENS, 1.5)
     for row, column in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
         at = np.array([70 if column == 0 else 1210, -rim / 2 if row == 0 else h + rim / 2])
         panel.text(at, f"{std[row, column]:.2f}", IDEAL, anchor="mm", size=13)
@@ -130,7 +134,7 @@ def _bars(paper: Paper, left: Array) -> Panel:
     )
     panel.ticks(x=(0, 0.5, 1))
     for i, (label, part) in enumerate(zip(_LABELS, left, strict=True)):
-        box = np.array([[0, i - 0.28], [1, i - 0.28], [1, i + 0.28], [0, i + 0.28]])
+        box = np.array([[0, i - 0.15], [1, i - 0.15], [1, i + 0.15], [0, i + 0.15]])
         panel.polygons(box[None], "#E4E4E4")
         panel.polygons((box * [part, 1])[None], CAMERA)
         panel.text([-0.04, i], label, IDEAL, anchor="rm", size=13)

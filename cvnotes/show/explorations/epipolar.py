@@ -9,7 +9,7 @@ from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import radiance, room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, FAINT, LENS
 from cvnotes.warping import interpolate
 
 _SIZE, _SHOWN = (640, 480), (340, 255)  # px
@@ -83,11 +83,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         pictures.append(picture)
         patches.append(_patch(paper, photo, at, f"{name}, enlarged"))
     left, right = pictures
-    left.mark(m, "ideal", 9)
+    left.mark(m, "ideal", 8)
     left.grip("pixel", "a pixel of the first picture", m, 4)
     right.line(line[0] + np.array([[-30], [30]]) * (line[-1] - line[0]), LENS, 1, dash=6)
-    right.line(line, ESTIMATED, 2.5)
-    right.mark(place, "estimated", 8)
+    right.line(line, ESTIMATED, 2)
+    right.mark(place, "estimated", 7)
     cost, (now,) = differences(m, line), differences(m, place[None])
     rows = (left, right), (*patches, _curve(paper, cost, depth, now))
     return Drawing(paper.join(*rows), _sentence(depth, now, cost))
@@ -101,26 +101,24 @@ def _patch(paper: Paper, photo: Image, at: Array, title: str) -> Panel:
     panel.image(
         np.rint(interpolate(photo, at + _AROUND)).clip(0, 255).astype(np.uint8), smooth=False
     )
-    panel.mark([0, 0], "ideal", 7)
+    panel.mark([0, 0], "ideal", 6)
     return panel
 
 
 def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
     """Draw by how much both patches differ, for each depth; equal steps are equal disparities."""
-    top = max(20.0, 1.15 * float(cost.max()))
+    top = max(20.0, 1.18 * float(cost.max()))
     panel = paper.panel(
         (346, 164), (1000 / _NEAREST + 0.02, 1000 / _FARTHEST - 0.02), (top, -0.2 * top),
         "difference of both, by depth: pull the cross",
     )  # fmt: skip
     for metres in (2, 3, 4, 5, 7, 10, 20):
-        panel.line([[1 / metres, 0], [1 / metres, top]], MUTED, 0.5)
+        panel.line([[1 / metres, 0], [1 / metres, top]], FAINT, 0.5)
         panel.text([1 / metres, -0.1 * top], f"{metres} m", anchor="mm", size=10)
     panel.line(np.column_stack([1000 / _TRIED, cost]), LENS, 2)
-    worst = 1000 / _TRIED[cost.argmax()], float(cost.max())
-    side = "lm" if worst[0] > (panel.x[0] + panel.x[1]) / 2 else "rm"  # x runs to the left
-    panel.text(
-        [worst[0], worst[1] + 0.07 * top], f"{cost.max():.0f} grey levels", size=10, anchor=side
-    )
+    most = float(cost.max())
+    panel.segments([[[panel.x[0], y], [panel.x[1], y]] for y in (0, most)], FAINT, 0.5)
+    panel.text([panel.x[1] + 0.006, most + 0.06 * top], f"{most:.0f} grey levels", anchor="rm")
     panel.mark([1000 / depth, now], "estimated", 7)
     panel.grip("depth", "how far away it may be", [1000 / depth, now], 4)
     return panel

@@ -211,13 +211,18 @@ class Panel:
         *,
         anchor: str = "lm",
         size: int = 11,
+        rim: str = "white",
     ) -> None:
-        """Write words at a point; the anchor is Pillow's: left, middle, right; a, m, s or d."""
+        """Write words at a point; the anchor is Pillow's: left, middle, right; a, m, s or d.
+
+        On even ground their rim has its colour, and is not seen.
+        """
         at = self.place(xy)
         if np.isfinite(at).all() and (np.abs(at) < _LARGEST).all():
-            rim, ink, (left, top) = stamp(words, anchor, size * self.scale, round(1.5 * self.scale))
+            stroke = round(1.5 * self.scale)
+            around, ink, (left, top) = stamp(words, anchor, size * self.scale, stroke)
             corner = (round(float(at[0])) + left, round(float(at[1])) + top)
-            self._image.paste("white", corner, rim)
+            self._image.paste(rim, corner, around)
             self._image.paste(INK.get(colour, colour), corner, ink)
 
     def ticks(self, x: npt.ArrayLike = (), y: npt.ArrayLike = (), size: int = 9) -> None:

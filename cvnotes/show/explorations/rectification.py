@@ -96,12 +96,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         H = old.A @ old.R @ new.R.T @ np.linalg.inv(new.A)  # pixel as taken from pixel as turned
         photo = photo.clip(0, 255).astype(np.uint8)
         panel.image(np.asarray(backward_warp(photo, homography_map(H), fill=_UNSEEN), np.uint8))
-        for v in rows:
-            panel.line(_line(new, end, v), ESTIMATED, 1)
-        panel.line(_line(new, end, row), ESTIMATED, 2.5)
+        for v, width in (*((v, 1) for v in rows), (row, 2)):
+            panel.line(_line(new, end, v), "#FFFFFF", width + 0.7)
+            panel.line(_line(new, end, v), ESTIMATED, width)
         at.append(new.project(W))
         panel.line([[-9, at[0][1]], [old.size[0] + 9, at[0][1]]], IDEAL, 1, dash=5)
-        panel.mark(at[-1], "ideal", 9)
+        panel.mark(at[-1], "ideal", 8)
         panels.append(panel)
     panels[0].grip("pixel", "a pixel of the first picture", at[0], 4)
     return Drawing(paper.join((panels[0], panels[1])), _sentence(now, at))

@@ -11,7 +11,7 @@ from cvnotes.show.explorations.boards import draw_arrows, draw_net
 from cvnotes.show.explorations.finding import rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
 
 _PICTURE, _CURVE = (440, 330), (410, 330)
@@ -74,11 +74,11 @@ def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
     w, h = lenses.long.size
     title = f"one board, two lenses (arrows × {_MAGNIFIED}); below, from the side"
     picture = paper.panel(_PICTURE, (-0.5, w - 0.5), (0.18 * h, 1.18 * h), title)
-    draw_net(picture, one, lenses.board, _PALE, 2.4)
+    draw_net(picture, one, lenses.board, _PALE, 2)
     draw_net(picture, other, lenses.board, ESTIMATED, 1, 3)
     some = np.arange(len(one)).reshape(lenses.board.corners[::-1])[[0, -1], ::2]  # all would crowd
     draw_arrows(picture, one[some.ravel()], _MAGNIFIED * (other - one)[some.ravel()])
-    picture.line([[0, 0.74 * h], [w, 0.74 * h]], MUTED, 0.8)
+    picture.line([[0, 0.74 * h], [w, 0.74 * h]], FAINT, 0.8)
     _draw_side(picture, lenses, (lenses.away, tilt), (near, turned))
     misfit = lenses.misfit(tilt)
     sentence = (
@@ -106,10 +106,10 @@ def _draw_side(
         end = half * np.array([np.sin(np.radians(tilt)), np.cos(np.radians(tilt))])
         eye = middle - [a_mm * away, 0]
         picture.line([eye, middle - end, middle + end, eye], colour, 1.2, dash)
-        picture.line([middle - end, middle + end], colour, 3, dash)
+        picture.line([middle - end, middle + end], colour, 2.4, dash)
         name = f"α = {camera.A[0, 0]:.0f} px from {away:.0f} mm, tilted {abs(tilt):.0f}°"
         picture.text([0.04 * w, name_at], name, colour)
-        picture.mark(eye, "camera", 7)
+        picture.mark(eye, "camera", 7, (1, 0))
 
 
 def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
@@ -121,7 +121,7 @@ def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
         (highest, -0.12 * highest),
         "how far they differ (px) against tilt (°)",
     )
-    panel.ticks(x=(0, 15, 30, 45, 60), y=np.arange(1, np.floor(highest) + 1), size=12)
+    panel.ticks(x=(0, 15, 30, 45, 60), y=np.arange(2, highest, 2), size=12)
     at = np.arange(0, tilt + 1)
     way = np.array([[t, lenses.misfit(float(t))] for t in at])
     if len(way) > 1:

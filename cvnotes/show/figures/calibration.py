@@ -1,5 +1,6 @@
 """Figures of chapter 7: the picture of J, a cube on the board."""
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _COLOUR = (0.96, 0.55, 0.16)  # of the side that is lit best
+_EDGE = (1.0, 0.86, 0.7)
 # Outwards from the top, the bottom, low and high x, low and high y.
 _NORMALS = np.array([[0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0]])
 _AMBIENT, _STEEP = 0.45, 0.5  # brightness without light; sine of the flattest light with a shadow
@@ -121,6 +123,7 @@ def draw_cube(
     >>> len(draw_cube(camera, 50.0).patches)  # three faces and the shadow
     4
     """
+    from matplotlib.collections import PolyCollection
     from scipy.spatial import ConvexHull
 
     camera, side = is_camera(camera, "camera"), length(side, "side")
@@ -135,15 +138,30 @@ def draw_cube(
         floor = np.concatenate([foot, foot + side * lit[:2] / lit[2]])
         floor = floor[ConvexHull(floor).vertices]
         shadow = _outline(camera, np.column_stack([floor, np.zeros(len(floor))]))
-        ax.fill(*shadow.T, color="black", alpha=0.5, linewidth=0, zorder=2)
+        look: dict[str, Any] = {"color": "black", "linewidth": 0, "zorder": 2}
+        ax.fill(*shadow.T, alpha=0.5, agg_filter=partial(_softened, 0.8), **look)
+        under = PolyCollection([_outline(camera, cube.faces[1])], alpha=0.7, **look)
+        under.set_agg_filter(partial(_softened, 4))  # light from all sides is less round a foot
+        ax.add_collection(under, autolim=False)
     faces = _outline(camera, cube.faces)
     shades = _AMBIENT + 0.65 * np.maximum(_NORMALS @ lit, 0)
     for (u, v), shade in zip(faces.transpose(0, 2, 1), shades.clip(0, 1), strict=True):
         if np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0:  # nothing hides this face
             colour = np.multiply(shade, _COLOUR)
-            ax.fill(u, v, facecolor=colour, edgecolor="white", linewidth=0.6, zorder=3)
+            ax.fill(u, v, facecolor=colour, edgecolor=_EDGE, linewidth=0.6, zorder=3)
     ax.set(xlim=limits[0], ylim=limits[1])
     return ax
+
+
+def _softened(reach: float, drawn: Array, dpi: float) -> tuple[Array, int, int]:
+    """Blur what was drawn in black, (height, width, 4), by so many points; and where it begins."""
+    from scipy.ndimage import gaussian_filter
+
+    sigma = reach * dpi / 72
+    rim = round(3 * sigma)
+    wider = np.pad(drawn, ((rim, rim), (rim, rim), (0, 0)))
+    wider[..., :3], wider[..., 3] = 0, gaussian_filter(wider[..., 3], sigma)
+    return wider, -rim, -rim
 
 
 def _outline(camera: Camera, W: Array) -> Array:

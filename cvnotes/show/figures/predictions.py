@@ -15,6 +15,8 @@ from cvnotes.show.style import ESTIMATED, FONT, IDEAL, MUTED
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_RIM = 0.08  # of the picture's height, above and below a map
+
 
 def draw_prediction_error(
     calibration: Calibration,
@@ -22,7 +24,7 @@ def draw_prediction_error(
     ax: "Axes | None" = None,
     between: tuple[float, float] | None = None,
 ) -> "Axes":
-    """Draw, over the picture, how far off the image of a fixed ray may be, in bands of colour.
+    """Draw, over the picture, how far off the image of a fixed ray may be: the darker, the farther.
 
     Parameters
     ----------
@@ -47,15 +49,29 @@ def draw_prediction_error(
             raise CvnotesError(f"between: expected (least, most), got ({least:g}, {most:g})")
     levels = MaxNLocator(6).tick_values(least, most)[1:]
     colours = LinearSegmentedColormap.from_list("", ["white", ESTIMATED])
-    ax.contourf(u, v, std, levels=levels, cmap=colours, extend="both")
+    box = -0.5, w - 0.5, h - 0.5, -0.5
+    ax.imshow(std, cmap=colours, vmin=least, vmax=most, extent=box, interpolation="bilinear")
     ax.contour(u, v, std, levels=levels, colors="white", linewidths=0.8)
     for m in calibration.image_points:
         ax.plot(*m.T, ".", color=MUTED, ms=1.5)
     for i, j in ((0, 0), (0, 64), (24, 32), (48, 0), (48, 64)):  # in the corners and the middle
-        at = 0.9 * u[i, j] + 0.05 * w, 0.94 * v[i, j] + 0.03 * h
-        letter(ax, f"{std[i, j]:#.2g}", at, IDEAL, fontsize=FONT)
-    ax.set_title(f"σ of a pixel: a band is {levels[1] - levels[0]:.2g} px")
-    return as_picture(ax, calibration.size, ticks=False)
+        side, words = ("left", "center", "right")[j // 32], f"{std[i, j]:#.2g}"
+        at = u[i, j], -_RIM * h / 2 if i == 0 else (1 + _RIM / 2) * h
+        words = f"{words} in the middle" if i == 24 else words
+        letter(ax, words, at, IDEAL, fontsize=FONT, path_effects=[], ha=side)
+    ax.set_title(f"σ of a pixel: {levels[1] - levels[0]:.2g} px from line to line")
+    as_picture(ax, calibration.size, ticks=False)
+    ax.fill(
+        [box[0], box[1], box[1], box[0]],
+        [-0.5, -0.5, h, h],
+        fill=False,
+        ec=MUTED,
+        lw=0.8,
+        clip_on=False,
+    )
+    ax.spines[:].set_visible(False)
+    ax.set_ylim((1 + _RIM) * h, -_RIM * h)  # room for the numbers of the corners
+    return ax
 
 
 def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5) -> "Axes":
