@@ -310,6 +310,7 @@ def test_a_notebook_runs_and_its_slider_moves_the_picture(page, chapter, tmp_pat
     handle.focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowLeft")  # which moves one that stands at its right end
     assert _becomes(page, picture, lambda now: now != before)
     page.screenshot(path=tmp_path / f"{path.stem}.png")
     _pull_a_point(page, _output(page, cells, r"(?m)^pull_points\("))

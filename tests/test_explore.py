@@ -6,6 +6,7 @@ import io
 import itertools
 import json
 import re
+import subprocess
 import sys
 import time
 from contextlib import nullcontext
@@ -396,6 +397,12 @@ def test_a_lens_with_k1_of_minus_four_thirds_folds_at_one_half():
     for direction in ([1, 0], [-1, 0], [0, 1], [0, -1]):
         u, v = np.rint(middle + reach * np.array(direction)).astype(int)
         assert count(drawing.picture[v - 2 : v + 3, u - 2 : u + 3], ESTIMATED) > 0
+
+
+def test_no_exploration_needs_scipy_which_a_page_does_not_load_for_it():
+    block = "import sys; sys.modules['scipy'] = sys.modules['cv2'] = None; "
+    modules = ", ".join(f"cvnotes.show.explorations.{name}" for name in explorations.NAMES)
+    subprocess.run([sys.executable, "-c", f"{block}import {modules}"], check=True)
 
 
 @pytest.mark.parametrize("name", ["warp"])

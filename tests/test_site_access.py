@@ -61,7 +61,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
     page.goto(f"{live_site}/notebooks/06_homography_dlt.html")
     page.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
     reached, moved = [], 0
-    for _ in range(200):
+    for _ in range(300):
         page.keyboard.press("Tab")
         focused = page.evaluate(FOCUSED)
         if focused["kind"] == "body":
@@ -79,7 +79,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
             page.keyboard.press("Escape")
     assert focused["kind"] == "body", reached[-5:]  # and goes on at the browser's own buttons
     kinds = [kind for kind, _ in reached]
-    explored = [model(name) for name in ("ellipse", "valley", "ransac", "homography")]
+    explored = [model(name) for name in ("homography", "ellipse", "valley", "ransac", "homography")]
     assert kinds.count("range") == moved == sum(len(one.settings) for one in explored)
     assert kinds.count("textarea") == 5
     corners = [name for _, name in reached if "move it with the arrow keys" in name]

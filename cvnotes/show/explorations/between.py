@@ -72,7 +72,7 @@ def _areas(paper: Paper, place: Array, weight: Array) -> Panel:
         panel.line([*ends, ends[0]], ESTIMATED, 1.5)
     for at, name, grey, w in zip(_AT, _NAMES, _GREY, weight, strict=True):
         panel.text(at + (at - 0.5) * [0, 0.55], f"{name} = {grey:g}", LENS, anchor="mm", size=13)
-        if (np.abs(1 - at - place) > [0.31, _ROOM]).all():
+        if (np.abs(1 - at - place) > [0.31, 0.12]).all():
             _write(panel, (1 - at + place) / 2, f"{name} × {w:.2f}", grey)
     panel.mark(place, "estimated", 8)
     panel.grip("place", "a place between four pixels", place, 8)

@@ -176,7 +176,7 @@ def _chart(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     """Draw the shift of each column: the left camera's, and so much of the right camera's."""
     n = len(left.columns)
     panel = paper.panel(
-        _CHART, (-1.4, n - 0.4), (_SHIFT + 0.02, -_SHIFT - 0.06), "shift of the nine columns (mm)"
+        _CHART, (-1.4, n - 0.4), (_SHIFT + 0.02, -_SHIFT - 0.10), "shift of the nine columns (mm)"
     )
     panel.ticks(y=(-0.1, 0.1), size=12)
     panel.line([[-1.4, 0.0], [float(n), 0.0]], MUTED, 0.8)
@@ -190,6 +190,6 @@ def _chart(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     panel.line(others, ESTIMATED, 1, dash=3)
     panel.mark(others, "estimated", 6)
     panel.grip("nine", "the right camera's nine shifts, to be pulled up", others[_HELD], 3)
-    panel.text([0.4, -0.2], "by the left camera; dots: its single corners", LENS)
-    panel.text([0.4, -0.235], f"by the right camera, × {amount:g}", ESTIMATED)
+    panel.text([0.4, -0.245], "by the left camera; dots: its single corners", LENS)
+    panel.text([0.4, -0.28], f"by the right camera, × {amount:g}", ESTIMATED)
     return panel

@@ -74,7 +74,7 @@ def cube_model() -> Model:
         camera = found.cameras[int(values["lens"])]
         foot, h = np.array([values["x"], values["y"]]), values["height"]
         base = foot + _turned(values["turn"]) * _SIDE / 2
-        panel = paper.picture_panel((540, 405), _CAMERA.size, "a tower on your desk: pull its foot")
+        panel = paper.picture_panel((540, 405), _CAMERA.size, "a tower: pull its foot or its top")
         panel.image(_in_the_shade(found, camera, base, h))
         corners = draw_tower(panel, camera, base, h)
         if not values["lens"]:

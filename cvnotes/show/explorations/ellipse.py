@@ -45,12 +45,14 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left = _round(
         paper, ("all h of length 1; rows 1 and 2 of D", (-1.3, 1.95)), (np.eye(2), Vt, h), ""
     )
-    for i, row in enumerate(D, 1):
+    for row in D:
         left.line([[0, 0], row * _UP], MUTED, 1, dash=4)
-        left.text(1.08 * row * _UP, f"{i}", MUTED, anchor="mm", size=12)
+    names = ((D[0], "1, 2"),) if values["parallel"] > 0.7 else ((D[0], "1"), (D[1], "2"))
+    for row, name in names:
+        left.text(1.08 * row * _UP, name, MUTED, anchor="mm", size=12)
     left.grip("h", "the vector h", h * _UP, 4)
     right = _round(paper, ("where D takes them", (-1.95, 2.3)), (D, Vt, h), "D ")
-    lengths = paper.panel((206, _HIGH), (-8, 188), (2.4, -0.3), "length of D h, by direction (°)")
+    lengths = paper.panel((206, _HIGH), (-8, 198), (2.4, -0.3), "length of D h, by direction (°)")
     lengths.ticks(x=(0, 45, 90, 135, 180), y=(0, 1, 2))
     all_h = circle(361)[:181]
     lengths.line(np.column_stack([np.arange(181), np.linalg.norm(all_h @ D.T, axis=1)]), MUTED, 2)

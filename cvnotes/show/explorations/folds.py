@@ -178,7 +178,8 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
         panel.text([left + 4, top + 6], "no camera", MUTED, size=12)
     elif ((found < [left, top]) | (found > [right, low])).any():
         panel.text([left + 4, top + 6], "farther out", MUTED, size=12)
-    panel.line([[left + 4, low - 6], [left + 24, low - 6]], IDEAL, 2)
+    for ink, width in (("white", 7), (IDEAL, 2)):
+        panel.line([[left + 4, low - 6], [left + 24, low - 6]], ink, width)
     panel.text([left + 26, low - 6], "20 px", IDEAL, size=12)
     return panel
 

@@ -4,7 +4,6 @@ from functools import cache, partial
 
 import numpy as np
 from PIL import Image
-from scipy.ndimage import distance_transform_edt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
@@ -95,7 +94,7 @@ def _room() -> Drawn:
 def _bent_room(lens: Lens, x: float, y: float, sharpness: int) -> Drawn:
     """Show the room through a lens, from −x to x and −y to y.
 
-    Beyond the fold it shows what is nearest to it: that is for `_draw_fold` to cover.
+    A little beyond the fold it goes on: that is for `_draw_fold` to cover.
     """
     room = _room()
     h, w = room.shape[:2]
@@ -104,14 +103,26 @@ def _bent_room(lens: Lens, x: float, y: float, sharpness: int) -> Drawn:
         reach * ((2 * np.arange(n) + 1) / n - 1)
         for reach, n in zip((x, y), np.array(_SIZE) // _COARSE, strict=True)
     )
-    ideal = lens.undistort(np.stack(np.meshgrid(columns, rows), axis=-1))
-    ideal = ideal[tuple(distance_transform_edt(np.isnan(ideal[..., 0]), None, False, True))]
+    ideal = _continued(lens.undistort(np.stack(np.meshgrid(columns, rows), axis=-1)))
     sides = (_DETAIL * ideal + np.array([w - 1, h - 1]) / 2).astype(np.float32)
     m = [
         np.asarray(Image.fromarray(side).resize(size, Image.Resampling.BILINEAR))
         for side in np.moveaxis(sides, -1, 0)
     ]
     return backward_warp(room, np.stack(m, axis=-1), fill=255).astype(np.uint8)
+
+
+def _continued(x: Array) -> Array:
+    """Carry values (h, w, 2) on by two cells into NaN, so that no line between two lacks an end."""
+    for _ in range(2):
+        framed = np.pad(x, ((1, 1), (1, 1), (0, 0)), constant_values=np.nan)
+        around = np.stack(
+            [framed[:-2, 1:-1], framed[2:, 1:-1], framed[1:-1, :-2], framed[1:-1, 2:]]
+        )
+        known = np.isfinite(around)
+        mean = np.where(known, around, 0).sum(axis=0) / known.sum(axis=0).clip(1)
+        x = np.where(np.isnan(x) & known.any(axis=0), mean, x)
+    return x
 
 
 def _draw_fold(panel: Panel, lens: Lens) -> None:

@@ -90,7 +90,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
         (450, 300),
         (-1.25 * reach, reach),
         (-0.5, 4.3),
-        "estimate minus truth (px): bars of ±1σ, thin ones of ±2σ",
+        "estimate minus truth (px): ±1σ; thin blue ends ±2σ",
     )
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(

@@ -165,7 +165,7 @@ def _discs(paper: Paper, focus: float) -> Panel:
     panel.line(np.column_stack([np.log10(s), disc(s, focus)]), LENS, 2)
     here = [np.log10(focus), 0]
     panel.mark(here, "estimated", 9)
-    panel.text([min(here[0], 0.96), 1.4], "sharp", ESTIMATED, anchor="mm", size=13)
+    panel.text([min(here[0], 0.96), 2.6], "sharp", ESTIMATED, anchor="mm", size=13)
     panel.grip("focus", "the depth that is sharp", here, 4)
     return panel
 

@@ -82,10 +82,11 @@ def _curve(paper: Paper, values: Values) -> Panel:
     panel.line([[a, missed(a, lens)] for a in tried], LENS, 2)
     here = [alpha, missed(alpha, lens)]
     panel.mark(here, "estimated", 8)
-    inside = 16 if alpha < 800 else -16  # between the two arms
+    high = here[1] > 12  # between the two arms; near their foot, outside of them
+    inside = 16 if (alpha < 800) == high else -16
     panel.text(
-        [alpha + inside, here[1] + 2], f"{here[1]:.1f} px", ESTIMATED,
-        anchor="lm" if alpha < 800 else "rm", size=13,
+        [alpha + inside, here[1] + (2 if high else -0.5)], f"{here[1]:.1f} px", ESTIMATED,
+        anchor="lm" if inside > 0 else "rm", size=13,
     )  # fmt: skip
     return panel
 

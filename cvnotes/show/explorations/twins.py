@@ -119,7 +119,7 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
     panel.line(on_sheet(_way()), _WAY, 2)
     corners = course.board().points[[0, 8, 45]]
     # Names: beside the centre, one above the way and one below, so that they never meet.
-    sides = (CAMERA, [10, 10], "la"), (ESTIMATED, [-14, -8], "rd")
+    sides = (CAMERA, [10, 10], "la"), (ESTIMATED, [-26, -8], "rd")
     for camera, (colour, aside, anchor) in zip(cameras, sides, strict=True):
         rays = np.stack([_before(camera, corners), on_sheet(corners)], axis=1)
         panel.segments(rays, colour, 0.9)

@@ -45,7 +45,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
     walls = Rectangle((-_BACK, -3000), _WALL + _BACK, 6000, fc="white", ec=MUTED, lw=3)
     ax.add_patch(walls)
     for corners, colour in zip(*from_above(room(), -1500), strict=True):
-        ax.fill(*corners.T[::-1], fc=colour, zorder=2)
+        ax.fill(*corners.T[::-1], fc=colour, zorder=2)[0].set_clip_path(walls)
     ax.plot([9960, 9960], [-600, 600], color="#3A6A66", lw=3, solid_capstyle="butt")  # blackboard
     across = (_WALL + _BACK) / len(cameras)
     for i, ((name, camera), own) in enumerate(zip(cameras.items(), _OWN, strict=False)):
