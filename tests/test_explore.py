@@ -1230,8 +1230,8 @@ def test_circle_and_ellipse_have_one_scale_and_the_rows_lie_at_right_angles_to_v
             end, word = np.array(row), written[name][1] * [1, -1]
             assert np.linalg.norm(word - end) < 0.2
             # The dashes run to the row's end: half way some of them are seen.
-            at = np.outer(np.linspace(0.4, 0.95, 40), end * [85, -85]) + [
-                MARGIN + 110.5,
+            at = np.outer(np.linspace(0.4, 0.95, 40), end * [84, -84]) + [
+                MARGIN + 109.2,
                 TITLE + 120,
             ]
             u, v = np.rint(at).astype(int).T
@@ -1513,7 +1513,7 @@ def test_the_half_circles_of_parallel_boards_are_one():
     assert "they are one" in shown(k1=-0.25, turned=0).sentence
     assert "they meet" in shown(k1=-0.25, turned=1).sentence
     red, _, blue = np.array(
-        [shown(k1=-0.25, turned=t).picture[:, :560] for t in (0, 0.2, 1)], dtype=int
+        [shown(k1=-0.25, turned=t).picture[:, :510] for t in (0, 0.2, 1)], dtype=int
     ).transpose(3, 0, 1, 2)
     blue = (blue - red > 30).sum(axis=(1, 2))  # pale where they are far
     assert 3 * blue[0] < blue[1] < 3 * blue[2]  # one curve, a fan, twelve

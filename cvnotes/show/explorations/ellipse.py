@@ -46,7 +46,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         paper, ("all h of length 1; rows r₁ and r₂ of D", (-1.3, 1.95)), (np.eye(2), Vt, h), ""
     )
     for name, row in zip(("r₁", "r₂"), D, strict=True):
-        left.line([[0, 0], row * _UP], MUTED, 1, dash=4)
+        left.line([[0, 0], row * _UP], MUTED, 1.4, dash=4)
         left.text(1.08 * row * _UP, name, MUTED, anchor="mm", size=12)
     left.grip("h", "the vector h", h * _UP, 4)
     right = _round(paper, ("where D takes them", (-1.95, 2.3)), (D, Vt, h), "D ")

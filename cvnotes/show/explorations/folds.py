@@ -23,8 +23,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
 
 _Of = tuple[float, float]  # k1, and how far the boards are turned
 
-_SPACE, _CLOSE, _CURVE = (558, 462), (290, 250), (290, 184)
-_NARROW = (450, 373)  # the first of them on a narrow page
+_SPACE, _CLOSE, _CURVE = (508, 421), (340, 225), (340, 168)
 _SHOWN = ((-2150, 2725), (-2480, 1556))  # x and y of the sheet: all half circles, for each k1
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
 _NEAR = 50  # px about the principal point, that are shown enlarged
@@ -131,8 +130,7 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     w, h = tangle.size
     frame = np.array([[0, 0, 0], [w, 0, 0], [w, h, 0], [0, h, 0], [0, 0, 0]])
     seen = on_sheet(frame * [*tangle.square, 0] - [0.5, 0.5, 0])
-    size = _NARROW if paper.narrow else _SPACE
-    panel = paper.panel(size, *_SHOWN, "twelve half circles over the first photograph")
+    panel = paper.panel(_SPACE, *_SHOWN, "twelve half circles over the first photograph")
     panel.polygons(seen[None, :-1], "#F4F4F0")
     panel.line(seen, MUTED, 1)
     m = np.column_stack([tangle.seen(1)[0] * tangle.square, np.zeros(len(tangle.W))])
