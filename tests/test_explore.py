@@ -51,7 +51,17 @@ from cvnotes.pictures import (
 )
 from cvnotes.pictures.meshes import box, join
 from cvnotes.show import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, explorations
-from cvnotes.show.explorations import clouds, cube, eleventh, formation, gimbal, maps, moved, twins
+from cvnotes.show.explorations import (
+    clouds,
+    cube,
+    eleventh,
+    folds,
+    formation,
+    gimbal,
+    maps,
+    moved,
+    twins,
+)
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -499,7 +509,7 @@ def test_what_is_measured_on_the_wall_scatters_as_it_is_said_to():
 def test_lines_of_equal_standard_deviation_run_where_the_wall_is_known_so_well():
     model = MODELS["homography"]
     picture = model.picture()[TITLE:, 372 + 6 + MARGIN :].astype(int)
-    orange = picture[..., 0] - picture[..., 2] > 60
+    orange = picture[..., 0] - picture[..., 2] > 30
     m = np.array([grip.at for grip in model.drawing().grips if "corner" in grip.name])
     H = dlt(np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * [420, 594], m)
     for mm in ([-100, 470], [-20, 300], [-250, 60]):  # along the row the lines of 1.5, 2 and 3 mm
@@ -1237,11 +1247,11 @@ def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
     corners = np.array([*itertools.product((0, X), (Y, 0), (Z, formation._BACK))])
     M = corners @ camera.R.T + camera.G[:3, 3]
     low, high = formation._FRAME[0]
-    first, last = ((M[:, 0] / M[:, 2] * formation._PLANE - low) / (high - low) * 410)[
+    first, last = ((M[:, 0] / M[:, 2] * formation._PLANE - low) / (high - low) * 400)[
         (M[:, 0] / M[:, 2]).argsort()[[0, -1]]
     ]
-    left = 410 + 6 + MARGIN
-    strip = MODELS["formation"].picture(way=2)[TITLE : TITLE + 270, left : left + 410].astype(int)
+    left = 400 + 6 + MARGIN
+    strip = MODELS["formation"].picture(way=2)[TITLE : TITLE + 300, left : left + 400].astype(int)
     rows = (np.abs(strip - colour(WORLD)).max(-1) < 40)[110:]  # the box itself is above
     assert rows.any(axis=0).nonzero()[0][[0, -1]] == pytest.approx([first, last], abs=12)
     middle = rows[:, round((first + last) / 2) - 4]
@@ -1251,11 +1261,14 @@ def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
 def test_circle_and_ellipse_have_one_scale_and_the_rows_lie_at_right_angles_to_v2(written):
     for parallel, rows in ((0, [[1.6, 0.9], [0.5, 1.1]]), (1, [[1.6, 0.8], [0.8, 0.4]])):
         drawing = MODELS["ellipse"].drawing(parallel=parallel)
-        for i, row in enumerate(rows, 1):
-            end, word = np.array(row), written[f"row {i}"][1] * [1, -1]
+        for name, row in zip(("r₁", "r₂"), rows, strict=True):
+            end, word = np.array(row), written[name][1] * [1, -1]
             assert np.linalg.norm(word - end) < 0.2
             # The dashes run to the row's end: half way some of them are seen.
-            at = np.outer(np.linspace(0.4, 0.95, 40), end * [68, -68]) + [MARGIN + 130, TITLE + 120]
+            at = np.outer(np.linspace(0.4, 0.95, 40), end * [84, -84]) + [
+                MARGIN + 109.2,
+                TITLE + 120,
+            ]
             u, v = np.rint(at).astype(int).T
             assert (np.abs(drawing.picture[v, u].astype(int) - colour(MUTED)).max(-1) < 60).any()
         assert written["v₁"][0].pixel == pytest.approx(written["D v₁"][0].pixel)
@@ -1433,10 +1446,10 @@ def test_another_camera_takes_the_same_picture_of_a_board_and_not_of_a_box():
 def test_on_its_way_the_box_turns_with_the_world_and_then_runs_along_its_rays():
     draw = MODELS["formation"].picture
     ways = {way: draw(way=way).astype(int) for way in (0, 1, 1.5, 2)}
-    top, left = TITLE, 410 + 6 + MARGIN
-    panels = {way: picture[top : top + 270, left : left + 410] for way, picture in ways.items()}
+    top, left = TITLE, 400 + 6 + MARGIN
+    panels = {way: picture[top : top + 300, left : left + 400] for way, picture in ways.items()}
     # At the start it is the first panel, but for the axes and what is pulled.
-    first = ways[0][top : top + 270, MARGIN : MARGIN + 410]
+    first = ways[0][top : top + 300, MARGIN : MARGIN + 400]
     green = [(panel[..., 1] - panel[..., 0] > 120).nonzero() for panel in (first, panels[0])]
     assert np.allclose(*(np.median(each, axis=1) for each in green), atol=1)
     # The camera of the start, by hand: turned by 30° to the left, then down by 20°.
@@ -1448,11 +1461,11 @@ def test_on_its_way_the_box_turns_with_the_world_and_then_runs_along_its_rays():
         1.5: np.array([x, z]) * (1 + 250 / z) / 2,
         2: (250 * x / z, 250),
     }.items():
-        u, v = (at_x + 608) / 1216 * 410, (690 - at_z) / 800 * 270
+        u, v = (at_x + 608) / 1216 * 400, (760 - at_z) / 912 * 300
         cross = panels[way][round(v) - 4 : round(v) + 5, round(u) - 4 : round(u) + 5]
         assert (cross[..., 0] - cross[..., 2] > 100).sum() > 25
     # A point that runs along its ray has its image where it was.
-    below = [picture[top + 270 + 6 :] for picture in ways.values()]
+    below = [picture[top + 300 + 6 :] for picture in ways.values()]
     assert all(np.array_equal(below[0], each) for each in below[1:])
 
 
@@ -1469,9 +1482,9 @@ def test_a_box_of_which_a_corner_has_no_image_is_drawn_as_far_as_it_is_seen(valu
     A, centre = intrinsics(600, 603, 325, 238), [values["X"], -255, values["Z"]]
     camera = Camera(A, pose(R, -R @ centre), Lens(k=(values.get("k1", 0),)))
     photo = render_scene(box((0, 400), (-125, 0), (0, 80), (0, 1, 0)), camera).astype(int)
-    seen = np.asarray(Image.fromarray(photo[..., 1] - photo[..., 0] > 30).resize((360, 270)))
-    top, left = 270 + TITLE + 6 + TITLE, 410 + 6 + MARGIN
-    panel = MODELS["formation"].picture(**values)[top : top + 270, left : left + 360].astype(int)
+    seen = np.asarray(Image.fromarray(photo[..., 1] - photo[..., 0] > 30).resize((400, 300)))
+    top, left = 300 + TITLE + 6 + TITLE, 400 + 6 + MARGIN
+    panel = MODELS["formation"].picture(**values)[top : top + 300, left : left + 400].astype(int)
     green = panel[..., 1] - panel[..., 0] > 30
     assert (green & seen).sum() > 0.93 * (green | seen).sum() > 5000
 
@@ -1534,7 +1547,10 @@ def test_the_half_circles_of_parallel_boards_are_one():
     shown = MODELS["folds"].drawing
     assert "they are one" in shown(k1=-0.25, turned=0).sentence
     assert "they meet" in shown(k1=-0.25, turned=1).sentence
-    blue = [count(shown(k1=-0.25, turned=t).picture, LENS) for t in (0, 0.2, 1)]
+    red, _, blue = np.array(
+        [shown(k1=-0.25, turned=t).picture[:, :510] for t in (0, 0.2, 1)], dtype=int
+    ).transpose(3, 0, 1, 2)
+    blue = (blue - red > 30).sum(axis=(1, 2))  # pale where they are far
     assert 3 * blue[0] < blue[1] < 3 * blue[2]  # one curve, a fan, twelve
 
 
@@ -2220,8 +2236,10 @@ def test_the_rings_are_as_large_as_the_errors_ask_for_and_both_marks_inside(valu
 
 
 def test_with_the_lens_undone_the_equations_find_the_camera_and_for_parallel_boards_none():
+    space, close = folds._SPACE, folds._CLOSE  # panels, side by side
+
     def triangle(**values):
-        picture = MODELS["folds"].drawing(**values).picture[:, 456:644]
+        picture = MODELS["folds"].drawing(**values).picture[: TITLE + close[1], space[0] + 6 :]
         orange = np.abs(picture.astype(int) - colour(ESTIMATED)).max(-1) < 40
         return np.argwhere(orange)
 
@@ -2229,9 +2247,10 @@ def test_with_the_lens_undone_the_equations_find_the_camera_and_for_parallel_boa
     A = intrinsics_from_b(solve_b(constraints(dlt(W, course.measured_corners()))))  # the page's
     off = (A[:2, 2] - [325, 238]) * [1, 800 / 804]
     assert np.linalg.norm(off) > 11
-    middle = np.array([MARGIN + 90, TITLE + 187.5])  # of the plan, which shows 100 px in 180
+    middle = np.array([MARGIN + close[0] / 2, TITLE + close[1] / 2])  # of the plan
+    scale = close[0] / (2 * folds._NEAR)
     aside = triangle(k1=0).mean(axis=0)[::-1] - middle
-    assert aside == pytest.approx(off * 180 / 100 + [0, 1.7], abs=1.5)
+    assert aside == pytest.approx(off * scale + [0, 1.7], abs=1.5)
     assert len(triangle(k1=-0.25)) > 30
     assert len(triangle(k1=-0.25, turned=0)) == 0
 

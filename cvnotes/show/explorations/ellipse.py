@@ -11,7 +11,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 _FULL = np.array([[1.6, 0.9], [0.5, 1.1]])
 _PARALLEL = np.array([[1.6, 0.8], [0.8, 0.4]])  # its second row is half of the first
 _HIGH = 240  # px, of a panel
-_UNIT = 85  # px, of circle and ellipse alike: so one sees by how much D stretches
+_UNIT = 84  # px, of circle and ellipse alike: so one sees by how much D stretches
 _UP = np.array([1, -1])  # y goes up here, and down on a panel
 
 
@@ -43,12 +43,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _, s, Vt = np.linalg.svd(D)
     Vt = Vt * np.where(Vt[:, 1:] < 0, -1, 1)  # v and −v are as good: take the upper one
     left = _round(
-        paper, ("all h of length 1; rows 1 and 2 of D", (-1.3, 1.95)), (np.eye(2), Vt, h), ""
+        paper, ("all h of length 1; rows r₁ and r₂ of D", (-1.3, 1.95)), (np.eye(2), Vt, h), ""
     )
-    for row in D:
-        left.line([[0, 0], row * _UP], MUTED, 1, dash=4)
-    names = ((D[0], "1, 2"),) if values["parallel"] > 0.7 else ((D[0], "1"), (D[1], "2"))
-    for row, name in names:
+    for name, row in zip(("r₁", "r₂"), D, strict=True):
+        left.line([[0, 0], row * _UP], MUTED, 1.4, dash=4)
         left.text(1.08 * row * _UP, name, MUTED, anchor="mm", size=12)
     left.grip("h", "the vector h", h * _UP, 4)
     right = _round(paper, ("where D takes them", (-1.95, 2.3)), (D, Vt, h), "D ")

@@ -23,7 +23,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
 
 _Of = tuple[float, float]  # k1, and how far the boards are turned
 
-_SPACE, _CLOSE, _CURVE = (558, 462), (290, 250), (290, 184)
+_SPACE, _CLOSE, _CURVE = (508, 421), (340, 225), (340, 168)
 _SHOWN = ((-2150, 2725), (-2480, 1556))  # x and y of the sheet: all half circles, for each k1
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
 _NEAR = 50  # px about the principal point, that are shown enlarged
