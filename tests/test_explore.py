@@ -1955,6 +1955,17 @@ def test_a_sentence_cannot_smuggle_markup_into_the_page():
     widget.close_all()
 
 
+@pytest.mark.parametrize("looks", [(1, 0), (-3, 0), (0, 2), (0, -1), (1, 1)])
+def test_a_cameras_triangle_points_to_where_it_looks(looks):
+    panel = Paper().panel((101, 101), (-50.5, 50.5), (-50.5, 50.5))
+    panel.mark([0, 0], "camera", 30, looks)
+    v, u = np.nonzero(np.abs(panel.finish().astype(int) - colour(CAMERA)).max(axis=-1) < 40)
+    along = (np.column_stack([u, v]) - [MARGIN + 50, TITLE + 50]) @ looks / np.hypot(*looks)
+    assert along.max() == pytest.approx(30, abs=2)  # its tip
+    assert along.min() == pytest.approx(-24, abs=2)
+    assert along.mean() < -3  # it is wide behind
+
+
 # Taken hold of by hand.
 
 PULLED = [(name, grip) for name in explorations.NAMES for grip in MODELS[name].drags]

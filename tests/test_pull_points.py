@@ -9,7 +9,8 @@ from PIL import Image
 
 from cvnotes.base import CvnotesError, FileError
 from cvnotes.show import pull_points
-from cvnotes.show.explorations.hand import hand_model
+from cvnotes.show.explorations.hand import _clearest, hand_model
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED
 
 # Every pixel of the photograph has a colour of its own.
@@ -211,3 +212,15 @@ def test_the_widget_keeps_its_points_tells_them_and_leaves_a_still():
     widget.reset_button.click()
     assert widget.points.tolist() == AT.tolist()
     widget.close_all()
+
+
+def test_a_points_number_keeps_clear_of_lines_and_of_other_points():
+    ring = 22 * circle(25)
+    ahead = np.array([1.0, 0])
+    free = _clearest(ring, ahead, [np.array([[0.0, 0], [0, 0]])], 1.0)
+    assert np.allclose(free, 22 * ahead)
+    line, point = np.array([[0.0, 0], [100, 0]]), np.array([[0.0, 22], [0, 22]])
+    aside = _clearest(ring, ahead, [line, np.array([[np.nan, 0], [3, 3]]), point], 1.0)
+    assert abs(aside[1]) > 15  # px from the line
+    assert np.linalg.norm(aside - [0, 22]) > 15
+    assert aside[0] > 0  # and of such places the outermost

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from scipy import ndimage
 
 from cvnotes.base import DegenerateError, ShapeError
 from cvnotes.camera import Camera, Lens, intrinsics, look_at
-from cvnotes.show import draw_arrow, draw_cube
+from cvnotes.show import draw_arrow, draw_cube, draw_image
 
 CENTRE = np.array([320.0, 240])
 SENSOR = intrinsics(400, 400, *CENTRE)
@@ -96,3 +98,22 @@ def test_a_cubes_sides_are_as_bright_as_the_light_falls_on_them_and_flat_light_t
     assert np.abs(shadow - camera.project([-50, 0, 0])).sum(axis=1).min() < 0.5
     with pytest.raises(ShapeError):
         draw_cube(camera, SIDE, light=(0, 1))
+
+
+def test_a_shadow_darkens_what_it_falls_on_be_it_black_or_white():
+    bare, drawn = [], []
+    for grey in (15, 128, 242):
+        ax = draw_image(np.full((480, 640), grey, np.uint8))
+        bare.append(_pixels(ax))
+        drawn.append(_pixels(draw_cube(Camera(SENSOR, DESK), SIDE, ax=ax)))
+    cube = np.abs(drawn[0] - drawn[2]).max(axis=-1) < 10  # it hides the ground, and so does a frame
+    ground = ~ndimage.binary_dilation(cube, iterations=2)
+    for before, after in zip(bare, drawn, strict=True):
+        assert (after <= before + 1)[ground].all()
+        assert (after.max(axis=-1) < 0.6 * before.max(axis=-1))[ground].sum() > 300
+
+
+def _pixels(ax):
+    canvas = FigureCanvasAgg(ax.figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3].astype(int)

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.camera import pose
 from cvnotes.pictures.meshes import Scene, box, join, quads
-from cvnotes.pictures.scenes import INDOORS, room
+from cvnotes.pictures.scenes import INDOORS, PALE, room
 
 # Five rows of five, from the top; a letter's cell is dark where there is an x.
 _LETTERS = {
@@ -79,8 +79,8 @@ def chart_room() -> Scene:
     u, v = SWITCH
     plate = box((u - 40, u + 40), (v - 40, v + 40), (-1, 0), (0.97, 0.97, 0.95))
     rocker = box((u - 22, u + 22), (v - 28, v + 28), (-4, -1), (0.80, 0.42, 0.30))
-    wall = (0.86, 0.88, 0.88)  # it stands in the light here
-    scene = join(chart(), plate, rocker, room(wall).moved(wall_from_room))
+    # The wall at the right of the room stands in the light here: pale paint, not brightened.
+    scene = join(chart(), plate, rocker, room(PALE).moved(wall_from_room))
     return replace(scene, around=INDOORS)
 
 

@@ -21,7 +21,7 @@ _OUTDOORS = Surroundings(
 )
 INDOORS = Surroundings(occlusion=800)
 _FAR = 1e6
-_PALE = (0.86, 0.88, 0.88)
+PALE = (0.86, 0.88, 0.88)  # paint of walls
 
 
 def rails() -> Scene:
@@ -88,7 +88,7 @@ def corridor() -> Scene:
     array([ 1200.,  1600., 30000.])
     """
     tiles = ((0.36, 0.45, 0.50), (0.80, 0.83, 0.82))
-    shell = _shell((-1200, 1200), (-1100, GROUND), (-3000, 30_000), _PALE, tiles, 600)
+    shell = _shell((-1200, 1200), (-1100, GROUND), (-3000, 30_000), PALE, tiles, 600)
     wood, door, lamp = (0.62, 0.42, 0.24), (0.27, 0.45, 0.52), (1.4, 1.4, 1.4)
     parts = []
     for side in (-1, 1):
@@ -117,7 +117,7 @@ def room(right: Colour = (1.06, 1.06, 1.04)) -> Scene:
     array([ 3000.,  1600., 10000.])
     """
     tiles = ((0.66, 0.48, 0.34), (0.88, 0.79, 0.66))
-    sides = [_PALE], [right]  # the right one has its light from the left one
+    sides = [PALE], [right]  # the right one has its light from the left one
     shell = _shell((-3000, 3000), (-1600, GROUND), (-2000, 10_000), sides, tiles, 500)
     table, plinth = (0.84, 0.56, 0.29), (0.93, 0.93, 0.90)
     furniture = [

@@ -5,6 +5,7 @@ for readers with red or green blindness too; each meaning also has its own marke
 """
 
 from collections.abc import Iterable
+from functools import lru_cache
 
 from cvnotes.base import CvnotesError
 
@@ -53,6 +54,19 @@ def hexed(levels: Iterable[float]) -> str:
     '#0033FF'
     """
     return "#{:02X}{:02X}{:02X}".format(*map(int, levels))
+
+
+@lru_cache(maxsize=4096)  # a picture that is drawn again has the same colours
+def mixed(colour: str, other: str, part: float) -> str:
+    """Return a colour that lies so far, from 0 to 1, on the way to another one.
+
+    Examples
+    --------
+    >>> mixed("#000000", "#FFFFFF", 0.2)
+    '#333333'
+    """
+    ends = zip(rgb(colour), rgb(other), strict=True)
+    return hexed(255 * ((1 - part) * a + part * b) for a, b in ends)
 
 
 def rgb(colour: str) -> tuple[float, float, float]:

@@ -73,10 +73,14 @@ def draw_arrows(panel: Panel, m: Array, d: Array) -> None:
 def in_space(shapes: tuple[Shape, ...], size: tuple[int, int]) -> tuple[Array, Array]:
     """Choose the x and y ranges of a panel that shows all of some shapes, at equal scales."""
     seen = on_sheet(places(*shapes))
-    low, high = seen.min(0), seen.max(0)
-    scale = 1.15 * ((high - low) / size).max() / 2 * np.array(size)
+    return around(seen.min(0), seen.max(0), size, 1.15)
+
+
+def around(low: Array, high: Array, size: tuple[int, int], room: float) -> tuple[Array, Array]:
+    """Choose both ends (x, y) of a panel for what lies between two corners, at equal scales."""
+    reach = room * ((high - low) / size).max() / 2 * np.array(size)
     middle = (low + high) / 2
-    return middle - scale, middle + scale
+    return middle - reach, middle + reach
 
 
 def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:

@@ -10,7 +10,7 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.rings import blurred
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, hexed, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, mixed
 from cvnotes.targets import refine_edges, refine_subpixel
 
 _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners is shown
@@ -109,7 +109,7 @@ def _cloud(paper: Paper, off: Array, reach: float) -> Panel:
     ring = circle(91)
     dot = 2 * panel.pixel * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     for cloud, (_, colour) in zip(off, _METHODS, strict=True):
-        pale = hexed(255 - 0.55 * (255 - 255 * np.array(rgb(colour))))  # the ring stands out
+        pale = mixed("#FFFFFF", colour, 0.55)  # the ring stands out
         panel.polygons(cloud[:, None] + dot, pale)
     for cloud, (_, colour) in zip(off, _METHODS, strict=True):
         panel.line(np.sqrt(2 * np.nanmean(cloud**2)) * ring, colour, 1.8)

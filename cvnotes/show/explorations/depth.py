@@ -99,7 +99,8 @@ def _plan(paper: Paper, Z: float) -> Panel:
     for thing, at in _NAMES.items():
         panel.text(at, thing, "#333333", anchor="mm", size=11)
     panel.line([[-3000, Z], [4200, Z]], ESTIMATED, 1, dash=5)
-    there = seen_from_above()[np.abs(seen_from_above()[:, 1] - Z) < _SAME]
+    places = seen_from_above()
+    there = places[np.abs(places[:, 1] - Z) < _SAME]
     panel.segments(there[:, None] + [[-25, 0], [25, 0]], ESTIMATED, 3)
     panel.mark([[0, 0], [_BASE, 0]], "camera", 7)
     panel.mark([4200, Z], "estimated", 8)

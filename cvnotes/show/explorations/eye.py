@@ -7,7 +7,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, IDEAL, MUTED, hexed, rgb
+from cvnotes.show.style import CAMERA, IDEAL, MUTED, mixed
 
 _SIZE, _A = (640, 480), intrinsics(800, 804, 325, 238)
 _R = rotation_from_angles(0.06, 0.05, 0.14)  # of the chapter's tilted camera
@@ -51,13 +51,13 @@ def _draw_picture(panel: Panel, height: float) -> None:
     def fill(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike, ink: str) -> None:
         corners = np.stack(np.broadcast_arrays(x, y, z), axis=-1).reshape(-1, 4, 3)
         away = 1 - np.exp(-corners[:, :, 2].mean(axis=1) / _HAZE)
-        panel.polygons(camera.project(corners), [_mixed(ink, _AIR, part) for part in away])
+        panel.polygons(camera.project(corners), [mixed(ink, _AIR, part) for part in away.tolist()])
 
     along = np.stack([_FURTHER[:-1]] * 2 + [_FURTHER[1:]] * 2, axis=1)[::-1]
     panel.polygons([[[-20, -20], [660, -20], [660, 500], [-20, 500]]], _AIR)
-    for part in np.linspace(0, 1, 40):  # the sky, ever bluer
+    for part in np.linspace(0, 1, 40).tolist():  # the sky, ever bluer
         over = skyline - [0, 420 * part]
-        panel.polygons([[*over, [660, -999], [-20, -999]]], _mixed(_AIR, _HIGH, part))
+        panel.polygons([[*over, [660, -999], [-20, -999]]], mixed(_AIR, _HIGH, part))
     fill(3 * along * [-1, 1, 1, -1], 0, along, _GRASS)
     fill([-2.3, 2.3, 2.3, -2.3], -0.18, along, _BALLAST)
     fill([-1.3, 1.3, 1.3, -1.3], -0.2, np.arange(0.6, 300, 0.6)[:, None] + [0, 0, 0.3, 0.3], _WOOD)
@@ -71,11 +71,6 @@ def _draw_picture(panel: Panel, height: float) -> None:
     panel.text(skyline[1] - [30, 28], "horizon", IDEAL, anchor="rm")
     if height <= _TALL:
         panel.mark(camera.project([[_ROW, -height, z] for z in _POLES[:_MARKED]]), "world", 4.5)
-
-
-def _mixed(ink: str, other: str, part: float) -> str:
-    """Return a colour, so far on the way to another one."""
-    return hexed(255 * ((1 - part) * np.array(rgb(ink)) + part * np.array(rgb(other))))
 
 
 def _draw_side(panel: Panel, height: float) -> None:

@@ -19,7 +19,7 @@ from cvnotes.show.explorations.boards import draw_squares
 from cvnotes.show.explorations.fold import Circle, behind_sheet, circle_of, on_sheet
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
 _Of = tuple[float, float]  # k1, and how far the boards are turned
 
@@ -29,7 +29,7 @@ _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
 _NEAR = 50  # px about the principal point, that are shown enlarged
 _MOST = 90.0  # px, of the curve
 _DEEP = 4000  # px from the palest half circles to the strongest, with the camera between
-_FAR, _NEAR_BY, _TONES = np.array([176.0, 206, 228]), 255 * np.array(rgb(LENS)), 8
+_FAR, _TONES = "#B0CEE4", 8  # the palest blue; how many there are
 
 
 class _Tangle:
@@ -149,8 +149,7 @@ def _draw_arcs(panel: Panel, arcs: Array, eye: Array) -> None:
     tone = np.rint((near + 0.5).clip(0, 1) * (_TONES - 1))
     for i in range(_TONES):
         part = i / (_TONES - 1)
-        colour = hexed(_FAR + part * (_NEAR_BY - _FAR))
-        panel.segments(on_sheet(pieces[tone == i]), colour, 1 + 1.2 * part)
+        panel.segments(on_sheet(pieces[tone == i]), mixed(_FAR, LENS, part), 1 + 1.2 * part)
 
 
 def _draw_found(at: Array, panel: Panel, size: float) -> None:

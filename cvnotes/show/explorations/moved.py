@@ -16,7 +16,7 @@ from cvnotes.camera import (
     vector_from_rotation,
 )
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import draw_board, paper_and_squares, pinhole
+from cvnotes.show.explorations.boards import around, draw_board, paper_and_squares, pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
@@ -142,9 +142,7 @@ def _room() -> _Room:
     x, y = (np.arange(s[0] - _BEYOND, s[-1] + _BEYOND + 1, _TILE) for s in (x, y))
     beyond = _grid(x, y) + [0, 0, z[-1]]
     seen = on_sheet(np.concatenate([W, floor.reshape(-1, 3), wall.reshape(-1, 3)]))
-    low, high = seen.min(0), seen.max(0)
-    scale = 1.05 * ((high - low) / _SIZE).max() / 2 * np.array(_SIZE)
-    (left, top), (right, bottom) = (low + high) / 2 - scale, (low + high) / 2 + scale
+    (left, top), (right, bottom) = around(seen.min(0), seen.max(0), _SIZE, 1.05)
     return _Room(floor, wall, beyond, ((left, right), (top, bottom)))
 
 

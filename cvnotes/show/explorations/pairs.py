@@ -6,9 +6,8 @@ from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD
+from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, MUTED, WORLD
 
-_FAINT = "#CCCCCC"
 _MEMBERS = (1.0, 10.0, -0.5)  # factors of the page
 
 
@@ -44,8 +43,8 @@ def pairs_model() -> Model:
 
 
 def _draw_pair(panel: Panel, x: float, w: float) -> None:
-    panel.line([[-9, 0], [9, 0]], _FAINT, 0.8)
-    panel.line([[0, -9], [0, 9]], _FAINT, 0.8)
+    panel.line([[-9, 0], [9, 0]], FAINT, 0.8)
+    panel.line([[0, -9], [0, 9]], FAINT, 0.8)
     panel.text([4.0, -0.22], "wx", anchor="rm", size=13)
     panel.text([0.12, 2.28], "w", size=13)
     panel.line([[-9, 1], [9, 1]], WORLD, 2)

@@ -5,10 +5,10 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD
+from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, MUTED, WORLD
 
 _NUMBERS = np.array([0, 0.5, 1, 2, 4, 8, -8, -4, -2, -1, -0.5])
-_WIDE, _FAINT = 1.38, "#CCCCCC"
+_WIDE = 1.38
 
 
 def ring_model() -> Model:
@@ -52,8 +52,8 @@ def _nearest(angle: float, to: float) -> float:
 
 def _draw_pairs(panel: Panel, way: Array, x: float, colour: str, angle: float) -> None:
     for number in _NUMBERS:
-        panel.line(np.outer([-9, 9], [number, 1]), _FAINT, 0.8)
-    panel.line([[-9, 0], [9, 0]], _FAINT, 0.8)
+        panel.line(np.outer([-9, 9], [number, 1]), FAINT, 0.8)
+    panel.line([[-9, 0], [9, 0]], FAINT, 0.8)
     panel.line([[-9, 1], [9, 1]], WORLD, 2)
     panel.text([-2.33, 1.2], "w = 1", WORLD)
     panel.line(np.outer([-9, 9], way), colour, 2.2)
@@ -71,7 +71,7 @@ def _draw_ring(panel: Panel, way: Array, x: float, colour: str, angle: float) ->
     panel.line([[-9, 0], [9, 0]], WORLD, 2)
     panel.line(np.column_stack([np.sin(round_), 1 - np.cos(round_)]) / 2, WORLD, 2)
     for number in _NUMBERS:
-        panel.line(_ray(number), _FAINT, 0.8)
+        panel.line(_ray(number), FAINT, 0.8)
         panel.mark(_dot(np.array([number, 1])), "world", 5)
         if abs(number) <= 2:
             panel.text([number, -0.15], _number(number), anchor="mm", size=10)

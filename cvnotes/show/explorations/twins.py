@@ -8,7 +8,7 @@ from cvnotes.base import Array
 from cvnotes.calibration import extrinsics
 from cvnotes.camera import Camera, intrinsics, inverse, look_at, move
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import draw_board, paper_and_squares
+from cvnotes.show.explorations.boards import around, draw_board, paper_and_squares
 from cvnotes.show.explorations.fold import circle_of
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
@@ -178,9 +178,8 @@ def _shown() -> tuple[tuple[float, float], tuple[float, float]]:
     """Choose what the panel shows: the board, and all places of the other camera."""
     border, _ = paper_and_squares(course.board())
     seen = on_sheet(np.concatenate([border, _way(), box(_HIGHEST)]))
-    low, high = seen.min(0) - [90, 0], seen.max(0)  # mm: room for a name on the left
-    scale = 1.1 * ((high - low) / _SPACE).max() / 2 * np.array(_SPACE)
-    (left, top), (right, bottom) = (low + high) / 2 - scale, (low + high) / 2 + scale
+    low = seen.min(0) - [90, 0]  # mm: room for a name on the left
+    (left, top), (right, bottom) = around(low, seen.max(0), _SPACE, 1.1)
     return (left, right), (top, bottom)
 
 

@@ -9,7 +9,7 @@ from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, LENS, hexed, rgb
+from cvnotes.show.style import ESTIMATED, LENS, mixed
 
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
 _LEFT, _TOP, _SIDE = 324, 185, 57  # px, the part of the photograph that is shown
@@ -95,16 +95,11 @@ def _votes(
         ends = window.p[i] + 3 * _HALF * np.outer([-1, 1], across)
         steep = abs(window.g[i, 0]) > abs(window.g[i, 1])
         weight = min(length[i] / _STRONG, 1) ** 2  # as it counts in the sum of squares
-        ink = _on_paper(ESTIMATED if steep else LENS, 0.25 + 0.75 * weight)
+        ink = mixed("#FFFFFF", ESTIMATED if steep else LENS, 0.25 + 0.75 * weight)
         panel.line(ends, ink, 0.6 + 2 * weight)
     panel.mark(corners, "ideal", 11)
     panel.mark(window.crossing, "estimated", 7)
     return panel
-
-
-def _on_paper(colour: str, strength: float) -> str:
-    """Mix a colour with white."""
-    return hexed(255 * (1 - strength * (1 - np.array(rgb(colour)))))
 
 
 def _spread(paper: Paper, window: Window) -> Panel:

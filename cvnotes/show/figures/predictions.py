@@ -35,6 +35,7 @@ def draw_prediction_error(
         those of this map.
     """
     from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.patches import Rectangle
     from matplotlib.ticker import MaxNLocator
 
     calibrated(calibration)
@@ -61,14 +62,8 @@ def draw_prediction_error(
         letter(ax, words, at, IDEAL, fontsize=FONT, path_effects=[], ha=side)
     ax.set_title(f"σ of a pixel: {levels[1] - levels[0]:.2g} px from line to line")
     as_picture(ax, calibration.size, ticks=False)
-    ax.fill(
-        [box[0], box[1], box[1], box[0]],
-        [-0.5, -0.5, h, h],
-        fill=False,
-        ec=MUTED,
-        lw=0.8,
-        clip_on=False,
-    )
+    border = Rectangle((-0.5, -0.5), w, h, fill=False, ec=MUTED, lw=0.8, clip_on=False)
+    ax.add_patch(border)  # of the picture alone: the axes reach beyond it
     ax.spines[:].set_visible(False)
     ax.set_ylim((1 + _RIM) * h, -_RIM * h)  # room for the numbers of the corners
     return ax
