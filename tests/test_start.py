@@ -436,37 +436,51 @@ class Terminal:
     """A program in a pseudo-terminal, where Ctrl-C is a key."""
 
     def __init__(self, folder, run, *arguments):
-        import pty
-
         code = textwrap.dedent(DRIVER).format(path=str(START), run=run)
         self.said = ""
-        self.pid, self.keyboard = pty.fork()
+        self.keyboard, self.screen = os.openpty()
+        self.pid = os.fork()
         if self.pid == 0:
+            os.login_tty(self.screen)
             os.environ["PYTHONPATH"] = str(START.parent)
             signal.signal(signal.SIGINT, signal.default_int_handler)
             os.chdir(folder)
             os.execv(sys.executable, [sys.executable, "-c", code, *arguments])
 
     def read(self, pattern, seconds=300):
-        """Read until a pattern has come, or the end; gives the match."""
+        """Read until a pattern has come; gives the match, or None after so many seconds."""
         end = time.monotonic() + seconds
         while not (found := re.search(pattern, self.said)) and time.monotonic() < end:
-            if select.select([self.keyboard], [], [], 0.1)[0]:
-                try:
-                    self.said += os.read(self.keyboard, 4096).decode()
-                except OSError:
-                    return re.search(pattern, self.said)
+            self.take()
         return found
+
+    def take(self):
+        """Read what has come; tells if anything has."""
+        came = bool(select.select([self.keyboard], [], [], 0.1)[0])
+        if came:
+            self.said += os.read(self.keyboard, 4096).decode()
+        return came
 
     def press_ctrl_c(self):
         os.write(self.keyboard, b"\x03")
 
     def ends(self):
-        """Read to the end; gives the exit code."""
-        self.read("a text that never comes", seconds=300)
-        code = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+        """Read to the end; gives the exit code.
+
+        This end of the screen stays open until then: when the last one closes, a system may drop
+        words that were not read yet.
+        """
+        end = time.monotonic() + 300
+        pid = 0
+        while not pid and time.monotonic() < end:
+            self.take()
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+        assert pid, f"it still runs, and said {self.said!r}"
+        while self.take():
+            pass
         os.close(self.keyboard)
-        return code
+        os.close(self.screen)
+        return os.waitstatus_to_exitcode(status)
 
 
 def processes():
