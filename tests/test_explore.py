@@ -606,7 +606,7 @@ def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_take
     model = MODELS["rectification"]
     picture = model.picture(turned=100, **angles).astype(int)
     for k, camera in enumerate(turned(model.values(**angles), 1)):
-        photo = render_scene(room(), camera, samples=16)
+        photo = render_scene(room(), camera)
         seen = np.asarray(Image.fromarray(photo).resize((328, 246))).astype(int)
         panel = picture[TITLE : TITLE + 246, MARGIN + k * 334 :][:, :328]
         off = np.abs(panel - seen).max(axis=2)
@@ -1125,7 +1125,7 @@ def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
     inner = np.s_[10:-10, 10:-10]  # at the border they differ
     assert np.abs(clouds.changed(2) - sharpened)[inner].max() < 1e-3
     assert (clouds.changed(4) != shaken).mean() < 1e-3
-    seen = render_scene(room_with(course.board(), course.poses()[6]), course.camera())
+    seen = render_scene(room_with(course.board(), course.poses()[6]), course.camera(), samples=64)
     assert np.abs(clouds.changed(5) - luma(seen.astype(float))).max() < 1e-9
     for picture, which in ((sharpened, 2), (shaken, 4)):
         for window in (5, 8):
@@ -1705,7 +1705,7 @@ def test_each_shadow_lies_where_the_renderer_throws_it():
     parts = ("triangles", "colours", "uv", "extent")
     bare = replace(whole, **{name: getattr(whole, name)[:-poles] for name in parts})
     camera = Camera(intrinsics(275, 275, 219.5, 164.5), size=(440, 330))
-    with_poles, without = (radiance(scene, camera, samples=16) for scene in (whole, bare))
+    with_poles, without = (radiance(scene, camera) for scene in (whole, bare))
     panel = slice(TITLE, TITLE + 330), slice(MARGIN, MARGIN + 440)
     drawn, elsewhere = (
         model.picture(azimuth=degrees, elevation=14.5)[panel].astype(float)
@@ -1984,6 +1984,8 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "walks": {"X": 200},
     "formation": {"X": 200},
     "homography": {"dv2": 40, "dv3": -40},
+    "noise": {"views": 20},
+    "moved": {"who": 50},
     ("pinhole", "focus"): {"lens": 1, "focus": 1},
 }
 ON_A_WAY = {  # along a curve, by its x
@@ -2008,7 +2010,13 @@ ROUND = {
     ("formation", "line of sight"),
     ("stands", "cube"),  # along the ray from the principal point
 }
-ON_A_CURVE = {("twins", "other"), ("twins", "box"), ("pairs", "pair")}  # its nearest place
+ON_A_CURVE = {  # its nearest place
+    ("twins", "other"),
+    ("twins", "box"),
+    ("pairs", "pair"),
+    ("moved", "camera"),
+    ("moved", "board"),
+}
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "h": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {
     "curve",

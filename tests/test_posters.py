@@ -10,7 +10,7 @@ from cvnotes.pictures.posters import ROWS, SIZE, SWITCH, letter
 def front():
     """The chart from straight ahead, a pixel for each millimetre; (u, v) is (x + 400, y)."""
     camera = Camera(intrinsics(900, 900, 619.5, 299.5), pose(np.eye(3), [-220, -300, 900]))
-    return render_scene(chart_room(), Camera(camera.A, camera.G, size=(860, 600)), samples=16)
+    return render_scene(chart_room(), Camera(camera.A, camera.G, size=(860, 600)))
 
 
 def test_every_cell_of_every_letter_is_as_dark_as_it_should_be(front):
@@ -49,7 +49,7 @@ def test_the_sun_of_the_poster_is_round_and_its_sheet_as_large_as_it_is_said_to_
     sheet = camera.project(poster_room().vertices[:4])
     assert np.ptp(sheet, axis=0) == pytest.approx([1300, 600], rel=2e-3)
     assert sheet[0] == pytest.approx([99.5, 99.5], abs=2)  # the upper left corner
-    seen = render_scene(poster_room(), camera, samples=16).astype(int)
+    seen = render_scene(poster_room(), camera).astype(int)
     red = seen[..., 0] > 2 * seen[..., 1]
     v, u = np.nonzero(red)
     assert [np.ptp(u) + 1, np.ptp(v) + 1] == pytest.approx([300, 300], abs=2)

@@ -57,7 +57,7 @@ def test_a_rendered_corner_lies_where_the_camera_projects_it(lens, seed):
     board, camera = Chessboard(), Camera(A, lens=lens)
     tilt = rotation_from_vector(rng.uniform(-0.25, 0.25, 3) * [1, 1, 0.4])
     world_from_board = pose(tilt, [-100, -62, 460])
-    grey = render_scene(target_scene(board, world_from_board), camera)[..., 1]
+    grey = render_scene(target_scene(board, world_from_board), camera, samples=64)[..., 1]
     truth = camera.project(move(world_from_board, board.points))
     found = np.array([saddle(grey, m) for m in truth])
     assert np.abs(found - truth).max() < 0.02
@@ -91,7 +91,7 @@ def test_a_rendered_vertex_of_a_plain_quad_is_where_its_sides_meet():
 def test_every_grey_value_is_the_mean_over_the_pixels_square():
     board = target_scene(Chessboard(), pose(rotation_from_vector([0.4, 0.3, 0.5]), [-90, -70, 500]))
     camera = Camera(intrinsics(40, 40, 19.5, 14.5), lens=Lens((-0.2,)), size=(40, 30))
-    picture = render_scene(board, camera).astype(float)
+    picture = render_scene(board, camera, samples=64).astype(float)
     n = 16  # a picture of n times the size, whose pixels fill those of the small one
     A_fine = intrinsics(40 * n, 40 * n, 19.5 * n + (n - 1) / 2, 14.5 * n + (n - 1) / 2)
     fine = Camera(A_fine, lens=camera.lens, size=(40 * n, 30 * n))
@@ -146,7 +146,7 @@ def test_a_wire_thinner_than_a_pixel_is_seen_without_gaps():
     wire = quads(
         [[-9, 0.31, 9], [9, 0.92, 9], [9, 0.93, 9], [-9, 0.32, 9]], [[0, 1, 2, 3]], (1, 1, 1)
     )
-    picture = render_scene(replace(wire, around=DARK), SMALL)[..., 0].astype(float)
+    picture = render_scene(replace(wire, around=DARK), SMALL, samples=64)[..., 0].astype(float)
     # A width of 0.01 at depth 9 is 0.089 px, through each column.
     assert np.allclose(picture.sum(axis=0), 255 * 0.0889, atol=6)
 

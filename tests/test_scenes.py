@@ -135,5 +135,5 @@ def test_the_tiles_of_a_floor_are_square_and_fit_its_walls(place):
 
 def test_every_scene_is_drawn_without_a_warning_and_is_not_flat():
     for scene in (rails(), room(), corridor(), blocks()):
-        picture = render_scene(scene, CAMERA, samples=16)
+        picture = render_scene(scene, CAMERA)
         assert picture.std() > 20

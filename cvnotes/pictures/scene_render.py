@@ -24,7 +24,7 @@ from cvnotes.pictures.surfaces import Surfaces
 _RAYS = 131_072  # at a time, of pixels that are looked at closely
 
 
-def render_scene(scene: Scene, camera: Camera, *, samples: int = 64) -> npt.NDArray[np.uint8]:
+def render_scene(scene: Scene, camera: Camera, *, samples: int = 16) -> npt.NDArray[np.uint8]:
     """Take a picture of a scene, with the shadows that its parts cast on each other.
 
     For noise, blur or JPEG hand `radiance` to `cvnotes.pictures.exposure.expose`.
@@ -36,8 +36,9 @@ def render_scene(scene: Scene, camera: Camera, *, samples: int = 64) -> npt.NDAr
     camera : Camera
         The pixel that shows a vertex is ``camera.project(scene.vertices)``.
     samples : int
-        Rays through each pixel in which something changes. A fisheye's picture, up to 180° and
-        beyond, is put together from six such pictures, the sides of a cube.
+        Rays through each pixel in which something changes: 16 for a picture to be looked at, 64
+        for one to be measured in. A fisheye's picture, up to 180° and beyond, is put together
+        from six such pictures, the sides of a cube.
 
     Returns
     -------
@@ -62,7 +63,7 @@ def render_scene(scene: Scene, camera: Camera, *, samples: int = 64) -> npt.NDAr
     return np.asarray(np.rint(light.clip(0, 255)), dtype=np.uint8)
 
 
-def radiance(scene: Scene, camera: Camera, *, samples: int = 64) -> Array:
+def radiance(scene: Scene, camera: Camera, *, samples: int = 16) -> Array:
     """Return the mean light on each pixel, on the scale of grey levels, unrounded.
 
     Parameters are those of `render_scene`.

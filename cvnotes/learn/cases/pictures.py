@@ -54,7 +54,7 @@ def board_picture() -> npt.NDArray[np.uint8]:
     from cvnotes.pictures import render_scene, room_with
 
     board, camera = turned_board()
-    return render_scene(room_with(board, camera.G), Camera(camera.A, size=camera.size), samples=16)
+    return render_scene(room_with(board, camera.G), Camera(camera.A, size=camera.size))
 
 
 def stereo_cameras() -> tuple[Camera, Camera]:

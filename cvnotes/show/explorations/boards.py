@@ -63,7 +63,7 @@ def draw_arrows(panel: Panel, m: Array, d: Array) -> None:
     length = np.linalg.norm(d, axis=-1, keepdims=True)
     along = d / length.clip(1e-12)
     across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
-    head = np.minimum(_HEAD * panel.pixel, 0.4 * length)
+    head = np.minimum(_HEAD * panel.pixel, 0.8 * length)
     back = tip - head * along
     panel.segments(np.stack([m, tip], axis=1), ESTIMATED, 1.2)
     wings = back + 0.4 * head * across, back - 0.4 * head * across

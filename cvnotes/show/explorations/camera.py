@@ -102,7 +102,7 @@ def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
     length = 5 * board.square
     shapes = (
         *target_shapes(board),
-        *axes_shapes(length=length, name="WRF"),
+        *axes_shapes(length=length, name=""),
         *camera_shapes(camera, 1.25 * length, name=""),
     )
     # The scale stays when the camera goes away, as far as its slider does.

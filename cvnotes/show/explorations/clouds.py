@@ -49,7 +49,7 @@ def changed(which: int) -> Image:
         return expose(shaken, noise=2, rng=np.random.default_rng(3))
     if which == 5:
         room = room_with(course.board(), course.poses()[_VIEW])
-        return luma(render_scene(room, course.camera()).astype(float))
+        return luma(render_scene(room, course.camera(), samples=64).astype(float))
     return light
 
 

@@ -42,7 +42,7 @@ class _Found(NamedTuple):
 
 @lru_cache(maxsize=1)
 def _found() -> _Found:
-    photo = render_scene(desk(_BOARD), _CAMERA, samples=16)
+    photo = render_scene(desk(_BOARD), _CAMERA)
     # On a page there is no OpenCV, and so no finder of boards: whole pixels are its start.
     m = refine_subpixel(photo.mean(axis=2), _CAMERA.project(_BOARD.points).round())
     bare = (

@@ -9,6 +9,7 @@ from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _FULL = np.array([[1.6, 0.9], [0.5, 1.1]])
+_ASIDE = np.array([[1, -1.7], [1.7, 1]]) / 2  # 60°: off a row of D along v
 _PARALLEL = np.array([[1.6, 0.8], [0.8, 0.4]])  # its second row is half of the first
 _HIGH = 240  # px, of a panel
 _UNIT = 84  # px, of circle and ellipse alike: so one sees by how much D stretches
@@ -45,7 +46,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left = _round(
         paper, ("all h of length 1; rows r₁ and r₂ of D", (-1.3, 1.95)), (np.eye(2), Vt, h), ""
     )
-    for name, row in zip(("r₁", "r₂"), D, strict=True):
+    names = ("r₁, r₂", "") if values["parallel"] > 0.7 else ("r₁", "r₂")
+    for name, row in zip(names, D, strict=True):
         left.line([[0, 0], row * _UP], MUTED, 1.4, dash=4)
         left.text(1.08 * row * _UP, name, MUTED, anchor="mm", size=12)
     left.grip("h", "the vector h", h * _UP, 4)
@@ -80,8 +82,8 @@ def _round(
     for v, colour, letter in zip(Vt, (LENS, ESTIMATED), ("v₁", "v₂"), strict=True):
         end = map_ @ v
         panel.line([[0, 0], end * _UP], colour, 2.5)
-        beyond = end + 0.26 * v
-        panel.text(beyond * _UP, f"{name}{letter}", colour, anchor="mm", size=13)
+        beside = end + 0.26 * (v if name else _ASIDE @ v)
+        panel.text(beside * _UP, f"{name}{letter}", colour, anchor="mm", size=13)
     panel.line([[0, 0], map_ @ h * _UP], IDEAL, 1.5)
     panel.mark(map_ @ h * _UP, "ideal", 8)
     return panel

@@ -320,4 +320,5 @@ def _follow(panel: Panel, place: Array, words: str, up: float = 0, over: bool = 
         beside = place + np.array([14 * side, up]) * panel.pixel
         panel.text(beside, words, ESTIMATED, anchor="lm" if side > 0 else "rm", size=12)
     elif over:
-        panel.text((low + high) / 2, "the corner is outside", ESTIMATED, anchor="mm", size=12)
+        top = np.array([(low[0] + high[0]) / 2, low[1] + 14 * panel.pixel])
+        panel.text(top, "the corner is outside", ESTIMATED, anchor="mm", size=12)

@@ -19,7 +19,7 @@ _EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
 _HELD = 0.6  # where the curve is taken hold of
 _RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
-_DETAIL = 800  # px of the photograph of the room for a length of 1 on the plane z = 1
+_DETAIL = 450  # px of the photograph of the room for a length of 1 on the plane z = 1
 _COARSE = 4  # px between which the way back through the lens, which takes long, is linear
 
 

@@ -49,7 +49,8 @@ def moved_model() -> Model:
         "A board and a camera in space, where they stood for twelve photographs, if the board "
         "moved, the camera, or both; and the photograph, where the board is the same for all these."
     )
-    return Model("moved", about, settings, _draw)
+    drags = {"camera": _carried, "board": _passed}
+    return Model("moved", about, settings, _draw, drags)
 
 
 class _Room(NamedTuple):
@@ -87,11 +88,48 @@ def stands(G: Array, who: float) -> tuple[Array, Array]:
     return camera, chain(camera, G)
 
 
+def _carried(values: Values, at: Array) -> Values:
+    """Let a camera that is pulled along its way tell who moves."""
+    i = _nearest(_of_cameras(values["photo"]), at, values["who"])
+    return {"who": float(i)}
+
+
+def _passed(values: Values, at: Array) -> Values:
+    """Let a board that is pulled tell which photograph it is."""
+    i = _nearest(_of_boards(values["who"]), at, 10 * values["photo"])
+    return {"photo": i / 10}
+
+
+def _nearest(places: Array, at: Array, last: float) -> int:
+    """Return which of the places (n, 2) is nearest, of several the one nearest to the last."""
+    apart = np.linalg.norm(places - at, axis=1)
+    return int((apart + 1e-6 * np.abs(np.arange(len(places)) - last)).argmin())
+
+
+@lru_cache(maxsize=1)  # while one hand pulls
+def _of_cameras(photo: float) -> Array:
+    """Return where (101, 2) on the sheet the camera stands, from 0 to 100 %."""
+    G = between(photo)
+    return on_sheet(np.array([stands(G, who / 100)[0][:3, 3] for who in range(101)]))
+
+
+@lru_cache(maxsize=1)
+def _of_boards(who: float) -> Array:
+    """Return where (n, 2) on the sheet the board's middle is, photograph by photograph."""
+    tenths = range(10 * _LAST + 1)
+    return on_sheet(np.array([_middle(stands(between(i / 10), who / 100)[1]) for i in tenths]))
+
+
+def _middle(of_board: Array) -> Array:
+    """Return the middle (3,) of a board."""
+    return move(of_board, course.board().points.mean(axis=0))
+
+
 def _draw(paper: Paper, values: Values) -> Drawing:
     board, own = course.board(), pinhole(course.camera())
     G, who = between(values["photo"]), values["who"] / 100
     room = _room()
-    space = paper.panel(_SIZE, *room.shown, "space: camera and board, in a room")
+    space = paper.panel(_SIZE, *room.shown, "space: pull the board, or the camera")
     border, squares = paper_and_squares(board)
     for plane, colour in ((room.wall, _WALL), (room.floor, _TILES)):
         space.polygons(on_sheet(_border(plane))[None], colour)
@@ -113,6 +151,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for corner in sheet:  # a pyramid that moves, and keeps its form
         space.line([on_sheet(camera[:3, 3]), corner], CAMERA, 0.7)
     _draw_camera(space, own.moved(inverse(camera)), CAMERA, 1.6)
+    space.grip("camera", "the camera, between its two places", on_sheet(camera[:3, 3]), 6)
+    space.grip("board", "the board, from photograph to photograph", on_sheet(_middle(of_board)), 6)
     picture = paper.picture_panel(_PICTURE, own.size, "what the camera sees")
     backdrop = _WALL if values["wall"] else _GREY
     picture.image((255 * np.array([[rgb(backdrop)]])).astype(np.uint8))

@@ -78,7 +78,12 @@ def noise_model(camera: Camera, board: Chessboard) -> Model:
         "standard deviations; and these against the number of views."
     )
     study = _Study(camera, board)
-    return Model("noise", about, settings, partial(_draw, study))
+
+    def pulled(_: Values, at: Array) -> Values:
+        n, std = 10 ** at.clip(np.log10([_FEWEST, 1e-9]), np.log10([_MOST, 1e9]))
+        return {"views": float(n), "sigma": float(std / study.std(round(n), 1)[0])}
+
+    return Model("noise", about, settings, partial(_draw, study), {"bound": pulled})
 
 
 def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
@@ -95,7 +100,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(
         (400, 300), (np.log10(2.6), np.log10(48)), (1.4, -1.8),
-        "least standard deviation of αᵤ (px) against views",
+        "least std of αᵤ (px) against views: pull it",
     )  # fmt: skip
     _draw_curve(curve, study, n, sigma)
     off = round(float(error[0]), 2) + 0.0  # no "−0.00"
@@ -138,12 +143,14 @@ def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
         curve = other * study.std_by_views[:, 0]
         panel.line(np.log10(np.stack([counts, curve], -1)), _PALE, 1.2)
         panel.text(np.log10([counts[-1] * 1.09, curve[-1]]), f"σ {other:g}", CAMERA, size=10)
+    std = sigma * study.std_by_views[:, 0]
+    here = np.log10([n, max(std[n - _FEWEST], 1e-9)])
+    panel.grip("bound", "views to the right, noise upwards", here, 4)
     if sigma == 0:
         panel.text([1.0, -1.5], "no noise, no error", MUTED, anchor="mm", size=12)
         return
-    std = sigma * study.std_by_views[:, 0]
     slope = std[-1] * np.sqrt(_MOST / counts)
     panel.line(np.log10(np.stack([counts, slope], -1)), MUTED, 1, dash=4)
     panel.text(np.log10([3.2, 0.03]), "dashed: ∝ 1/√views", MUTED)
     panel.line(np.log10(np.stack([counts, std], -1)), CAMERA, 2.2)
-    panel.mark(np.log10([n, std[n - _FEWEST]]), "camera", 8)
+    panel.mark(here, "camera", 8)

@@ -90,8 +90,8 @@ def _sharp() -> tuple[Spectrum, Spectrum]:
     ImageDraw.Draw(mask).polygon((4 * corners + 2).ravel().tolist(), fill=255)
     covered = np.asarray(mask.resize(_SHOWN, Image.Resampling.BOX)) / 255
     layers = (
-        np.moveaxis(render_scene(room(), Camera(A, size=_SHOWN), samples=16), 2, 0),
-        np.stack([covered * luma(render_scene(chart(), card, samples=16)), covered]),
+        np.moveaxis(render_scene(room(), Camera(A, size=_SHOWN)), 2, 0),
+        np.stack([covered * luma(render_scene(chart(), card)), covered]),
     )
     far, near = (np.fft.rfft2(np.pad(x.astype(float), ((0, 0), *_FRAME), "edge")) for x in layers)
     return far, near

@@ -121,7 +121,7 @@ def _sentence(angle: float, x: float) -> str:
             f"At {angle:g}° the line is level, [1 0]: it never reaches w = 1. Its dot is the top "
             "of the ring, the same from both sides: the point at infinity."
         )
-    said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its dot at {2 * angle % 360:g}°."
+    said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its mark at {2 * angle % 360:g}°."
     if abs(x) < 20:
         return said
     return f"{said} As far beyond the level line, it crosses at {_number(-x)}."

@@ -38,7 +38,7 @@ def rod_model() -> Model:
 
     @lru_cache(maxsize=1)
     def photographed() -> tuple[Drawn, Array]:
-        return render_scene(blocks(), _CAMERA, samples=16), depth_map(blocks(), _CAMERA)
+        return render_scene(blocks(), _CAMERA), depth_map(blocks(), _CAMERA)
 
     def draw(paper: Paper, values: Values) -> Drawing:
         photo, depths = photographed()

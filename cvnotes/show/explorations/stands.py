@@ -57,7 +57,7 @@ def stands_model() -> Model:
 @lru_cache(maxsize=1)
 def photograph() -> Drawn:
     """Photograph the board in the room."""
-    return render_scene(room_with(_BOARD, _POSE), _TRUE, samples=16)
+    return render_scene(room_with(_BOARD, _POSE), _TRUE)
 
 
 def camera_of(alpha: float, lens: bool) -> Camera:

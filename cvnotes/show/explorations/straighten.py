@@ -37,7 +37,7 @@ def straighten_model() -> Model:
 
     @lru_cache(maxsize=1)
     def photograph() -> Drawn:
-        taken = radiance(room_with(board, G), camera, samples=16)
+        taken = radiance(room_with(board, G), camera)
         photo = Image.fromarray(taken.clip(0, 255).astype(np.uint8))
         return np.asarray(photo.resize((_FINE * _SIZE[0], _FINE * _SIZE[1])))
 

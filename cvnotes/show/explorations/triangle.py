@@ -73,9 +73,10 @@ def triangle_model() -> Model:
             sky.mark(c, "estimated", 6)
             # The letter of c gives way to that of a corner to which c has come.
             corner = v[np.linalg.norm(v - c, axis=1).argmin()]
-            near = np.linalg.norm(corner - c) < 2 * _APART and corner[0] > v[:, 0].mean()
-            at, anchor = (c - [40, 50], "rm") if near else (c + [40, -50], "lm")
-            sky.text(at, "c", ESTIMATED, anchor=anchor, size=14)
+            near = np.linalg.norm(corner - c) < 2 * _APART
+            left, below = near & np.array([corner[0] > v[:, 0].mean(), c[1] > corner[1]])
+            at = c + [-40 if left else 40, 50 if below else -50]
+            sky.text(at, "c", ESTIMATED, anchor="rm" if left else "lm", size=14)
             _draw_side(side, v[1], feet[1], c, square)
         return Drawing(paper.join((sky, side)), _sentence(v, c, square))
 

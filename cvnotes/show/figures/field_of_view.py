@@ -60,7 +60,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
         rows = Camera(camera.A, size=(w, h)).cropped((0, h // 4), (w, h // 2))
         x0, x1 = -_BACK + across * i + 60, -_BACK + across * (i + 1) - 60
         span = (x0, x1, 3300 + (x1 - x0) * (h // 2) / w, 3300)
-        ax.imshow(render_scene(room(), rows, samples=16), extent=span)
+        ax.imshow(render_scene(room(), rows), extent=span)
         ax.add_patch(Rectangle((x0, 3300), x1 - x0, span[2] - 3300, fc="none", ec=own, lw=2))
     ax.plot(0, 0, ">", color=CAMERA, ms=11)
     ax.set(xlim=(-_BACK - 100, _WALL + 100), ylim=(span[2] + 100, -3100), aspect="equal")

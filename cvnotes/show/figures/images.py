@@ -119,12 +119,11 @@ def draw_corners(
     grid = m.reshape(rows, columns, 2)
     for row in grid:
         ax.plot(*row.T, "-", color=ESTIMATED, linewidth=0.8, marker=".", markersize=5)
-    ends = (("x", grid[0, min(2, columns - 1)]), ("y", grid[min(2, rows - 1), 0]))
-    for name, end in ends:
-        if np.isnan([end, m[0]]).any():
-            continue
-        arrow(ax, m[0], end, WORLD, 1.6)
-        _write(ax, name, m[0] + 1.25 * (end - m[0]), WORLD)
+    along = np.array([grid[0, min(2, columns - 1)], grid[min(2, rows - 1), 0]]) - m[0]
+    for name, way, other in zip("xy", along, along[::-1], strict=True):
+        if np.isfinite([way, other]).all():
+            arrow(ax, m[0], m[0] + way, WORLD, 1.6)
+            _write(ax, name, m[0] + 0.9 * way - 0.3 * other, WORLD)  # on the white margin
     ax.plot(*m[0], "o", color=WORLD, markersize=9, fillstyle="none", markeredgewidth=1.6)
     for j in (0, rows - 1):
         for i, inner in ((0, 1), (columns - 1, columns - 2)):

@@ -48,7 +48,7 @@ def draw_residuals(
     ax = as_picture(drawn_on(ax, calibration.size), calibration.size, ticks=False)
     ax.quiver(
         *(m - r).T, *(r * magnify).T, color=ESTIMATED, alpha=0.7, angles="xy", scale_units="xy",
-        scale=1, units="width", width=0.0012, headwidth=3, headlength=3.5, headaxislength=3,
+        scale=1, units="width", width=0.002, headwidth=3, headlength=3.5, headaxislength=3,
         minlength=0,
     )  # fmt: skip
     ax.set_title(f"residuals × {magnify:g}, RMS {calibration.rms:.3f} px per point")
