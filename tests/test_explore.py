@@ -1259,9 +1259,12 @@ def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
 
 
 def test_circle_and_ellipse_have_one_scale_and_the_rows_lie_at_right_angles_to_v2(written):
-    for parallel, rows in ((0, [[1.6, 0.9], [0.5, 1.1]]), (1, [[1.6, 0.8], [0.8, 0.4]])):
+    apart, along = {"r₁": [1.6, 0.9], "r₂": [0.5, 1.1]}, {"r₁, r₂": [1.6, 0.8]}
+    for parallel, rows in ((0, apart), (1, along)):
+        written.clear()
         drawing = MODELS["ellipse"].drawing(parallel=parallel)
-        for name, row in zip(("r₁", "r₂"), rows, strict=True):
+        assert [name for name in written if "r" in name] == list(rows)
+        for name, row in rows.items():
             end, word = np.array(row), written[name][1] * [1, -1]
             assert np.linalg.norm(word - end) < 0.2
             # The dashes run to the row's end: half way some of them are seen.

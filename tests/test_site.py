@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from contextlib import suppress
 from html.parser import HTMLParser
 from importlib import import_module
 from pathlib import Path
@@ -45,7 +46,10 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory):
+def site(request, tmp_path_factory):
+    """Give the site with Python in it, which is built for other tests as well, or else without."""
+    with suppress(pytest.skip.Exception):
+        return request.getfixturevalue("live_folder")
     out = tmp_path_factory.mktemp("site") / "built"
     script = ROOT / "tools" / "build_site.py"
     run = subprocess.run(
@@ -60,8 +64,10 @@ def site(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def pages(site):
-    made = [path for path in site.rglob("*.html") if "_static" not in path.parts]
-    return {path.relative_to(site): Page(path) for path in made}
+    made = [path.relative_to(site) for path in site.rglob("*.html")]
+    # JupyterLite and Python are others' pages, and are tested where they are used.
+    ours = [path for path in made if not {"_static", "lite", "python"} & set(path.parts)]
+    return {path: Page(site / path) for path in ours}
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
@@ -95,6 +101,26 @@ def test_no_link_leads_nowhere(site, pages):
                 if unquote(parts.fragment) not in known:
                     dead.append((str(path), link))
     assert not dead
+
+
+def test_without_python_no_page_leads_where_python_is_needed(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "tools")
+    import_module("build_site").collect(tmp_path, live=False, lite=False)
+    pages = {
+        path.relative_to(tmp_path).with_suffix("").as_posix(): path.read_text()
+        for path in tmp_path.rglob("*")
+        if path.suffix in (".md", ".ipynb")
+    }
+    listed = re.findall(r"```{toctree}\n(.*?)```", pages["index"], re.S)
+    entries = [line for part in listed for line in part.split("\n") if line and line[0] != ":"]
+    assert len(entries) > 20
+    assert {re.sub(r".*<(.*)>", r"\1", entry) for entry in entries} <= set(pages)
+    leads = re.compile(r"""(?:\]\(|href=\\?")(?!https?:)([\w./-]+)\.(?:md|ipynb|html)\b""")
+    for name, text in pages.items():
+        folder = tmp_path / Path(name).parent
+        linked = {(folder / path).resolve() for path in leads.findall(text)}
+        assert {str(path.relative_to(tmp_path.resolve())) for path in linked} <= set(pages), name
+    assert leads.findall(pages["index"])
 
 
 def test_no_page_loads_anything_from_elsewhere(site, pages):
