@@ -53,6 +53,12 @@ LATENCY = """async box => {
     }
     return waited;
 }"""
+OVERHEARD = """box => {
+    box.overheard = [];
+    const state = box.querySelector('.explore-state');
+    new MutationObserver(() => box.overheard.push(state.textContent)).observe(
+        state, {childList: true, characterData: true, subtree: true});
+}"""
 MEGABYTES = r"() => /[1-9]\d*\.\d of 1\d\.\d MB/.test(document.body.innerText)"
 PIXELS = """canvas => {
     const all = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -216,6 +222,17 @@ def test_a_page_is_read_at_once_and_python_comes_with_the_first_touch(all_explor
     assert box.locator("img").is_hidden()
     box.locator("button", has_text="Reset").click()
     assert comes(page, says, box, MODELS["lens"].drawing().sentence)
+
+
+def test_once_python_is_awake_nothing_more_is_said_that_would_move_the_picture(all_explorations):
+    page = all_explorations
+    box = explorations(page)["lens"]
+    shown = box.evaluate(SHOWN)
+    box.evaluate(OVERHEARD)
+    box.locator("input").first.focus()
+    page.keyboard.press("ArrowRight")
+    becomes_another(page, box, shown)
+    assert box.evaluate("box => box.overheard") == []
 
 
 def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explorations, tmp_path):

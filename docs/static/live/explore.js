@@ -4,8 +4,7 @@
 // Python. While one picture is drawn, of all that is wanted meanwhile only the newest is kept.
 (() => {
   const NARROW = 600; // px of the page: narrower, and panels come below each other
-  const REST = 250; // ms without a touch, after which the picture is drawn once more, for fine screens
-  const SHARP = 2; // of which each pixel of a coarse screen is a mean
+  const REST = 250; // ms without a touch, after which the picture is drawn as sharp as the screen
   let count = 0;
 
   function digits({ step }) {
@@ -108,10 +107,10 @@
       const next = this.next;
       this.next = null;
       if (next) this.draw(next);
-      else {
+      else if (wanted.sharpness < devicePixelRatio) {
         this.grips.rest();
-        if (wanted.sharpness < SHARP) this.rest = setTimeout(() => this.want({ sharpness: SHARP }), REST);
-      }
+        this.rest = setTimeout(() => this.want({ sharpness: Math.min(Math.ceil(devicePixelRatio), 2) }), REST);
+      } else this.grips.rest();
     }
 
     say(text) {

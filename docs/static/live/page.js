@@ -26,6 +26,7 @@ const live = (() => {
       }
       const asked = waiting.get(data.id);
       if (!asked) return;
+      come = ""; // Python is awake
       if (data.started !== undefined) return asked.started(data.started);
       waiting.delete(data.id);
       if (data.error === undefined) asked.resolve(data);
