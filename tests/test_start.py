@@ -408,7 +408,7 @@ STAND_IN = """
     server = subprocess.Popen(wait, start_new_session=True)
     try:
         print("server", server.pid, "up", flush=True)
-        server.wait()
+        time.sleep(600)  # and no lock is held when Ctrl-C comes, as `wait` may hold one
     except KeyboardInterrupt:
         time.sleep(0.4)
         server.terminate()
