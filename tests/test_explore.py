@@ -1259,11 +1259,11 @@ def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
 
 
 def test_circle_and_ellipse_have_one_scale_and_the_rows_lie_at_right_angles_to_v2(written):
-    apart, along = {"r₁": [1.6, 0.9], "r₂": [0.5, 1.1]}, {"r₁, r₂": [1.6, 0.8]}
+    apart, along = {"r₁": [1.6, 0.9], "r₂": [0.5, 1.1]}, {"r₁, r₂": [1.6, 0.8], "": [0.8, 0.4]}
     for parallel, rows in ((0, apart), (1, along)):
         written.clear()
         drawing = MODELS["ellipse"].drawing(parallel=parallel)
-        assert [name for name in written if "r" in name] == list(rows)
+        assert [name for name in written if "r" in name or not name] == list(rows)
         for name, row in rows.items():
             end, word = np.array(row), written[name][1] * [1, -1]
             assert np.linalg.norm(word - end) < 0.2

@@ -149,6 +149,7 @@ def _wealth(panel: Image.Image) -> float:
     small = panel.copy()
     small.thumbnail((240, 240))
     pixels = np.asarray(small)
+    # One number for each colour: rows of three are sorted for seconds.
     colours = len(np.unique((pixels // 16).astype(int) @ [256, 16, 1]))
     return colours * float((pixels.min(axis=2) < 245).mean())
 

@@ -36,9 +36,9 @@ def render_scene(scene: Scene, camera: Camera, *, samples: int = 16) -> npt.NDAr
     camera : Camera
         The pixel that shows a vertex is ``camera.project(scene.vertices)``.
     samples : int
-        Rays through each pixel in which something changes: 16 for a picture to be looked at, 64
-        for one to be measured in. A fisheye's picture, up to 180° and beyond, is put together
-        from six such pictures, the sides of a cube.
+        Rays through each pixel in which something changes. In chapter 0's pictures corners are
+        found to 0.010 px with 16 of them and to 0.007 px with 64. A fisheye's picture, up to 180°
+        and beyond, is put together from six such pictures, the sides of a cube.
 
     Returns
     -------

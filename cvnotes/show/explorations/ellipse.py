@@ -46,6 +46,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left = _round(
         paper, ("all h of length 1; rows r₁ and r₂ of D", (-1.3, 1.95)), (np.eye(2), Vt, h), ""
     )
+    # Rows that nearly lie on each other share a name.
     names = ("r₁, r₂", "") if values["parallel"] > 0.7 else ("r₁", "r₂")
     for name, row in zip(names, D, strict=True):
         left.line([[0, 0], row * _UP], MUTED, 1.4, dash=4)

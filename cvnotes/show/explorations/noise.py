@@ -100,7 +100,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     _draw_bars(bars, bound, error, std)
     curve = paper.panel(
         (400, 300), (np.log10(2.6), np.log10(48)), (1.4, -1.8),
-        "least std of αᵤ (px) against views: pull it",
+        "least standard deviation of αᵤ (px) against views",
     )  # fmt: skip
     _draw_curve(curve, study, n, sigma)
     off = round(float(error[0]), 2) + 0.0  # no "−0.00"

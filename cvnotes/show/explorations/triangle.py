@@ -74,7 +74,7 @@ def triangle_model() -> Model:
             # The letter of c gives way to that of a corner to which c has come.
             corner = v[np.linalg.norm(v - c, axis=1).argmin()]
             near = np.linalg.norm(corner - c) < 2 * _APART
-            left, below = near & np.array([corner[0] > v[:, 0].mean(), c[1] > corner[1]])
+            left, below = near and corner[0] > v[:, 0].mean(), near and c[1] > corner[1]
             at = c + [-40 if left else 40, 50 if below else -50]
             sky.text(at, "c", ESTIMATED, anchor="rm" if left else "lm", size=14)
             _draw_side(side, v[1], feet[1], c, square)

@@ -120,8 +120,8 @@ def draw_corners(
     for row in grid:
         ax.plot(*row.T, "-", color=ESTIMATED, linewidth=0.8, marker=".", markersize=5)
     along = np.array([grid[0, min(2, columns - 1)], grid[min(2, rows - 1), 0]]) - m[0]
-    for name, way, other in zip("xy", along, along[::-1], strict=True):
-        if np.isfinite([way, other]).all():
+    for name, way, other in zip("xy", along, np.nan_to_num(along[::-1]), strict=True):
+        if np.isfinite(way).all():
             arrow(ax, m[0], m[0] + way, WORLD, 1.6)
             _write(ax, name, m[0] + 0.9 * way - 0.3 * other, WORLD)  # on the white margin
     ax.plot(*m[0], "o", color=WORLD, markersize=9, fillstyle="none", markeredgewidth=1.6)

@@ -114,7 +114,8 @@
         id: `keys-${name}`, className: "exercise-keys",
         textContent: "Ctrl+Enter checks. Tab indents; Esc, then Tab, leaves the box.",
       });
-      const parts = [label, this.area, keys, make("div", { className: "exercise-buttons" }, ...this.buttons)];
+      const paper = make("pre", { className: "exercise-call", textContent: this.call });
+      const parts = [label, this.area, paper, keys, make("div", { className: "exercise-buttons" }, ...this.buttons)];
       const group = make("div", { className: "exercise", role: "group", ariaLabel: `Exercise ${name}` });
       group.append(...parts, this.state, this.report, this.help);
       cell.querySelector(".cell_input").replaceWith(group);

@@ -26,7 +26,7 @@ const live = (() => {
       }
       const asked = waiting.get(data.id);
       if (!asked) return;
-      come = ""; // Python is awake
+      come = ""; // all of it: to be told so at each picture would move the page
       if (data.started !== undefined) return asked.started(data.started);
       waiting.delete(data.id);
       if (data.error === undefined) asked.resolve(data);
