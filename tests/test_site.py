@@ -46,10 +46,8 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def site(request, tmp_path_factory):
-    """Give the site with Python in it, which is built for other tests as well, or else without."""
-    with suppress(pytest.skip.Exception):
-        return request.getfixturevalue("live_folder")
+def plain(tmp_path_factory):
+    """Build the site without Python."""
     out = tmp_path_factory.mktemp("site") / "built"
     script = ROOT / "tools" / "build_site.py"
     run = subprocess.run(
@@ -63,11 +61,23 @@ def site(request, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def pages(site):
+def site(request):
+    """Give the site with Python in it, which is what readers print and see, or else without."""
+    with suppress(pytest.skip.Exception):
+        return request.getfixturevalue("live_folder")
+    return request.getfixturevalue("plain")
+
+
+def pages_of(site):
     made = [path.relative_to(site) for path in site.rglob("*.html")]
     # JupyterLite and Python are others' pages, and are tested where they are used.
     ours = [path for path in made if not {"_static", "lite", "python"} & set(path.parts)]
     return {path: Page(site / path) for path in ours}
+
+
+@pytest.fixture(scope="module")
+def pages(site):
+    return pages_of(site)
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
@@ -85,7 +95,7 @@ def test_each_notebook_is_a_page_with_its_cells_and_its_described_figures(notebo
     assert len(described) >= saved > 0
 
 
-def test_no_link_leads_nowhere(site, pages):
+def dead_links(site, pages):
     dead = []
     for path, page in pages.items():
         for link in page.links:
@@ -100,27 +110,17 @@ def test_no_link_leads_nowhere(site, pages):
                 known = pages[name].ids
                 if unquote(parts.fragment) not in known:
                     dead.append((str(path), link))
-    assert not dead
+    return dead
 
 
-def test_without_python_no_page_leads_where_python_is_needed(tmp_path, monkeypatch):
-    monkeypatch.syspath_prepend(ROOT / "tools")
-    import_module("build_site").collect(tmp_path, live=False, lite=False)
-    pages = {
-        path.relative_to(tmp_path).with_suffix("").as_posix(): path.read_text()
-        for path in tmp_path.rglob("*")
-        if path.suffix in (".md", ".ipynb")
-    }
-    listed = re.findall(r"```{toctree}\n(.*?)```", pages["index"], re.S)
-    entries = [line for part in listed for line in part.split("\n") if line and line[0] != ":"]
-    assert len(entries) > 20
-    assert {re.sub(r".*<(.*)>", r"\1", entry) for entry in entries} <= set(pages)
-    leads = re.compile(r"""(?:\]\(|href=\\?")(?!https?:)([\w./-]+)\.(?:md|ipynb|html)\b""")
-    for name, text in pages.items():
-        folder = tmp_path / Path(name).parent
-        linked = {(folder / path).resolve() for path in leads.findall(text)}
-        assert {str(path.relative_to(tmp_path.resolve())) for path in linked} <= set(pages), name
-    assert leads.findall(pages["index"])
+def test_no_link_leads_nowhere(site, pages):
+    assert not dead_links(site, pages)
+
+
+def test_without_python_the_site_is_whole_too(plain):
+    pages = pages_of(plain)
+    assert sum(path.parent == Path("notebooks") for path in pages) == len(NOTEBOOKS)
+    assert not dead_links(plain, pages)
 
 
 def test_no_page_loads_anything_from_elsewhere(site, pages):
