@@ -233,6 +233,8 @@ def test_once_python_is_awake_nothing_more_is_said_that_would_move_the_picture(a
     page.keyboard.press("ArrowRight")
     becomes_another(page, box, shown)
     assert box.evaluate("box => box.overheard") == []
+    box.locator("button", has_text="Reset").click()
+    assert comes(page, says, box, MODELS["lens"].drawing().sentence)
 
 
 def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explorations, tmp_path):
