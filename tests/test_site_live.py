@@ -6,9 +6,7 @@ Without the parts of Pyodide all is skipped.
 import csv
 import functools
 import io
-import json
 import re
-import statistics
 from pathlib import Path
 
 import nbformat
@@ -36,22 +34,6 @@ SHOWN = """box => {
     let sum = 0;
     for (let i = 0; i < data.length; i += 4) sum = (31 * sum + data[i] + 2 * data[i + 1]) % 1000003;
     return sum;
-}"""
-# Milliseconds from the movement of a slider to its picture.
-LATENCY = """async box => {
-    const slider = box.querySelector('input[type=range]');
-    const stage = box.querySelector('.explore-stage');
-    const waited = [];
-    for (let i = 0; i < 15; i++) {
-        delete stage.dataset.took;
-        const start = performance.now();
-        slider.value = Number(slider.value) + (i % 2 ? -1 : 1) * Number(slider.step);
-        slider.dispatchEvent(new Event('input', {bubbles: true}));
-        while (!stage.dataset.took) await new Promise(resolve => setTimeout(resolve));
-        await new Promise(resolve => requestAnimationFrame(resolve));
-        waited.push(performance.now() - start);
-    }
-    return waited;
 }"""
 OVERHEARD = """box => {
     box.overheard = [];
@@ -237,9 +219,8 @@ def test_once_python_is_awake_nothing_more_is_said_that_would_move_the_picture(a
     assert comes(page, says, box, MODELS["lens"].drawing().sentence)
 
 
-def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explorations, tmp_path):
+def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explorations):
     page = all_explorations
-    median = {}
     for name, box in explorations(page).items():
         shown = box.evaluate(SHOWN)
         setting = MODELS[name].settings[0]
@@ -257,11 +238,8 @@ def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explor
         assert (
             box.locator("canvas[role=img]").get_attribute("aria-label").endswith(drawing.sentence)
         )
-        median[name] = statistics.median(box.evaluate(LATENCY)[3:])
         box.locator("button", has_text="Reset").click()
         assert comes(page, says, box, MODELS[name].drawing().sentence)
-    (tmp_path / "median.json").write_text(json.dumps(median))
-    print(median)
 
 
 def test_the_browsers_picture_is_the_notebooks(all_explorations):

@@ -15,6 +15,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera
 
 Indices = npt.NDArray[np.intp]
+Mask = npt.NDArray[np.bool_]
 
 _HIDDEN = 0.32  # of the light, by an upright face right beside
 _STEPS = 5  # of a grid, within the smallest reach; along a side no more than
@@ -29,6 +30,7 @@ class Occlusion(NamedTuple):
     left: Array  # (n,) the grids, one after the other, row after row
     first: Indices  # (f,) where each one begins
     steps: Indices  # (2, f) along its rows and columns
+    dims: Mask  # (f,) whether anything does
     forms: Array  # (2, 4, f) (a, d): a point M lies in column a·M + d, and in a row alike
 
     @classmethod
@@ -37,7 +39,10 @@ class Occlusion(NamedTuple):
         normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 3] - faces[:, 0])
         away = ((camera.centre - faces[:, 0]) * normals).sum(axis=-1) < 0
         left, first, steps, forms = _grids(faces.tobytes(), away.tobytes(), reach)
-        return cls(left, first, steps, (forms @ np.linalg.inv(camera.G)).swapaxes(1, 2).copy())
+        dims = np.minimum.reduceat(left, first) < 1
+        return cls(
+            left, first, steps, dims, (forms @ np.linalg.inv(camera.G)).swapaxes(1, 2).copy()
+        )
 
     def along(self, face: npt.NDArray[np.int32], depth: Array, x: Array, y: Array) -> Array:
         """Return what is left of the light where rays (x, y, 1) end on faces; all (n,)."""
@@ -69,6 +74,7 @@ def _grids(corners: bytes, turned: bytes, reach: float) -> tuple[Array, Indices,
     free = np.where(within[:, None], normals, -normals)
     low, high = faces.min(axis=1), faces.max(axis=1)
     across = sides / squared[..., None]
+    axes = np.stack([*across, free], axis=-1)  # (f, 3, 3): along both sides, and upright
     grids, steps = [], np.ones((2, len(faces)), dtype=np.intp)
     for f, normal in enumerate(seen):
         reaches = np.minimum(((faces - origin[f]) @ normal).max(axis=1), reach)
@@ -77,29 +83,34 @@ def _grids(corners: bytes, turned: bytes, reach: float) -> tuple[Array, Indices,
         upright = (along**2).sum(axis=-1)
         width = np.ptp((faces @ along[..., None])[..., 0], axis=1)
         near = np.flatnonzero((gap < reaches) & (reaches > _LEAST * reach) & (upright > 0.1))
+        lengths = np.sqrt(squared[:, f])
         if len(near):
             fine = reaches[near].min() / _STEPS
-            steps[:, f] = np.ceil(np.sqrt(squared[:, f]) / fine).clip(1, _MOST)
+            steps[:, f] = np.ceil(lengths / fine).clip(1, _MOST)
         s, t = (np.linspace(0, 1, n + 1) for n in steps[:, f])
         hidden = np.zeros((len(t), len(s)))
-        step = np.sqrt(squared[:, f] / steps[:, f] ** 2).max()  # the foot lies between two nodes
-        for g in near:
-            # 1. the part of the grid within reach
-            middle = ((faces[g] - origin[f]) @ across[:, f].T).T
-            far = reaches[g] / np.sqrt(squared[:, f])
-            i, j = (
-                slice(*np.searchsorted(x, [m.min() - r, m.max() + r]))
-                for x, m, r in zip((s, t), middle, far, strict=True)
+        step = (lengths / steps[:, f]).max()  # the foot lies between two nodes
+        # 1. the parts of the grid within reach
+        shown = (faces[near] - origin[f]) @ axes[f, :, :2]
+        far = reaches[near, None] / lengths
+        ends = np.stack([shown.min(axis=1) - far, shown.max(axis=1) + far], axis=-1)
+        columns, rows = (np.searchsorted(x, ends[:, k]) for k, x in enumerate((s, t)))
+        # 2. where they lie for the other faces, each a rectangle
+        away = origin[f] - origin[near]
+        first_node, by_s, by_t = (
+            (m[:, None] @ axes[near])[:, 0]
+            for m in (away, *np.broadcast_to(sides[:, f, None], (2, *away.shape)))
+        )
+        for k, g in enumerate(near):
+            i, j = slice(*columns[k]), slice(*rows[k])
+            x, y, height = (
+                start + s[i] * right + t[j, None] * down
+                for start, right, down in zip(first_node[k], by_s[k], by_t[k], strict=True)
             )
-            # 2. from the nearest point of the other face
-            apart = (
-                origin[f] + s[i, None] * sides[0, f] + t[j, None, None] * sides[1, f] - origin[g]
-            )
-            for side, length in zip(sides[:, g], squared[:, g], strict=True):
-                apart = apart - (apart @ side / length).clip(0, 1)[..., None] * side
-            distance = np.sqrt((apart**2).sum(axis=-1))
+            x, y = x - x.clip(0, 1), y - y.clip(0, 1)  # beyond the other face's edges
+            distance = np.sqrt(x * x * squared[0, g] + y * y * squared[1, g] + height * height)
             # 3. nothing behind it; round a corner two faces hide what one does: cos² + sin² = 1
-            facing = (apart @ free[g] + step).clip(0) / (distance + step)
+            facing = (height + step).clip(0) / (distance + step)
             weight = upright[g] * facing**2 * width[g] / (width[g] + distance)
             hidden[j, i] += weight * (1 - distance / reaches[g]).clip(0) ** 2
         grids.append(1 / (1 + _HIDDEN / (1 - _HIDDEN) * hidden.ravel()))

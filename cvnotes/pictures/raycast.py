@@ -19,6 +19,7 @@ import numpy.typing as npt
 from cvnotes.base import Array, ShapeError, chunks, numbers, real
 
 Indices = npt.NDArray[np.int32]
+Mask = npt.NDArray[np.bool_]
 
 _CHUNK = 32  # triangles at a time
 _GROUPS = 64  # of rays at a time, so that they stay in the cache
@@ -86,80 +87,77 @@ def first_hits(corners: npt.ArrayLike, xy: npt.ArrayLike) -> Hits:
         raise ShapeError(f"corners: expected triangles (m, 3, 3), got {corners.shape}")
     if xy.ndim != 3 or xy.shape[-1] != 2:
         raise ShapeError(f"xy: expected groups of rays (groups, k, 2), got {xy.shape}")
-    triangle = search(corners, xy)
-    return Hits(triangle, depth_along(corners, triangle, xy))
+    return search(corners, xy)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of rays along the picture's plane, nearly
-def search(corners: Array, xy: Array) -> Indices:
-    """Return the number of the triangle that each ray meets first, as `first_hits` does.
+def search(corners: Array, xy: Array) -> Hits:
+    """Return what each ray meets first, as `first_hits` does, of numbers that are in order.
 
-    It goes through the triangles, and keeps for each ray the nearest so far.
+    A triangle that alone is left for a group, and fills it, is met by all of its rays. For the
+    other groups it goes through the triangles, and keeps for each ray the nearest so far.
     """
     n, det = edge_functions(corners)
+    forms = np.concatenate([n, (n.sum(axis=1) / det[:, None])[:, None]], axis=1)  # e_i, and 1 / z
     x, y = np.moveaxis(xy, -1, 0).copy()
-    touched = _may_be_seen(n, det, x, y)
+    touched, fills = _may_be_seen(forms, np.abs(n), det, x, y)
     first = np.full(x.shape, -1, dtype=np.int32)
     nearness = np.zeros(x.shape)  # 1 / z
+    alone = np.flatnonzero((touched.sum(axis=0) == 1) & (touched & fills).any(axis=0))
+    if len(alone):
+        triangle = touched[:, alone].argmax(axis=0)
+        first[alone] = triangle[:, None]
+        nearness[alone] = _value(forms[triangle, 3].T[..., None], x[alone], y[alone])
+        touched[:, alone] = False
     for i in np.flatnonzero(touched.any(axis=1)):
         every = np.flatnonzero(touched[i])
         for part in chunks(len(every), _GROUPS):
             groups = every[part]
             there, near = (x[groups], y[groups]), nearness[groups]
-            e0, e1, e2 = (a * there[0] + b * there[1] + c for a, b, c in n[i])
-            seen = (e0 >= 0) & (e1 >= 0) & (e2 >= 0)
-            inverse_z = (e0 + e1 + e2) / det[i]
-            seen &= inverse_z > near
+            e0, e1, e2, inverse_z = (_value(form, *there) for form in forms[i])
+            seen = (e0 >= 0) & (e1 >= 0) & (e2 >= 0) & (inverse_z > near)
             if seen.any():
                 nearness[groups] = np.where(seen, inverse_z, near)
                 first[groups] = np.where(seen, np.int32(i), first[groups])
-    return first
+    first[np.isnan(x)] = -1
+    depth = np.full(x.shape, np.nan)
+    np.divide(1, nearness, out=depth, where=first >= 0)
+    return Hits(first, depth)
 
 
-def _may_be_seen(n: Array, det: Array, x: Array, y: Array) -> npt.NDArray[np.bool_]:
+def _value(form: Array, x: Array, y: Array) -> Array:
+    a, b, c = form
+    return np.asarray(a * x + b * y + c)
+
+
+def _may_be_seen(forms: Array, size: Array, det: Array, x: Array, y: Array) -> tuple[Mask, Mask]:
     """Return which triangles (rows) may be what a ray of which group (columns) meets first.
 
     A triangle is out of the question if one e_i is negative all over the rectangle around a
-    group's rays, or if another triangle fills the rectangle and is nearer throughout.
+    group's rays, or if it is behind one that fills the rectangle. Which ones fill it is returned
+    as well. With numbers of this size (m, 3, 3) in the e_i rounding is allowed for.
     """
-    rectangle = np.stack([f.reduce(m, axis=1) for m in (x, y) for f in (np.fmin, np.fmax)])
-    seeing = ~np.isnan(rectangle[0])
-    forms, size = n.reshape(-1, 3), np.abs(n)
-    inverse_z, size_z = n.sum(axis=1) / det[:, None], size.sum(axis=1) / det[:, None]
-    touched = np.empty((len(n), len(x)), dtype=bool)
-    filled = np.zeros(len(x))  # 1 / z of the nearest that fills a rectangle, where it is farthest
-    for some in chunks(len(n), _CHUNK):
-        e = slice(3 * some.start, 3 * some.stop)
-        low, high = _range_of(forms[e], size.reshape(-1, 3)[e], rectangle)
-        touched[some] = ~(high < 0).reshape(some.stop - some.start, 3, -1).any(axis=1)
-        fills = (low >= 0).reshape(some.stop - some.start, 3, -1).all(axis=1)
-        least, _ = _range_of(inverse_z[some], size_z[some], rectangle)
-        filled = np.maximum(filled, np.where(fills, least, 0).max(axis=0))
-    for some in chunks(len(n), _CHUNK):
-        _, most = _range_of(inverse_z[some], size_z[some], rectangle)
-        touched[some] &= seeing & ~(most < filled)
-    return touched & np.isfinite(det)[:, None]
-
-
-def _range_of(forms: Array, size: Array, rectangle: Array) -> tuple[Array, Array]:
-    """Bound forms (k, 3), a x + b y + c, over rectangles (4, groups) = (x0, x1, y0, y1).
-
-    By more than what rounding does to numbers of their size (k, 3) the bounds are too wide.
-    """
-    x0, x1, y0, y1 = rectangle
+    (x0, x1), (y0, y1) = ([f.reduce(m, axis=1) for f in (np.fmin, np.fmax)] for m in (x, y))
     middle = np.stack([(x0 + x1) / 2, (y0 + y1) / 2, np.ones_like(x0)])
     half = np.stack([(x1 - x0) / 2, (y1 - y0) / 2, np.zeros_like(x0)])
-    reach = np.abs(forms) @ half + 1e-12 * size @ (np.abs(middle) + half)
-    value = forms @ middle
-    return value - reach, value + reach
-
-
-def depth_along(corners: Array, triangle: Indices, xy: Array) -> Array:
-    """Return z of the triangles' planes along the rays, NaN where there is no triangle."""
-    n, det = edge_functions(corners)
-    z = np.full(triangle.shape, np.nan)
-    hit = triangle >= 0
-    inverse = (n.sum(axis=1) / det[:, None]).T.copy()
-    a, b, c = inverse[:, triangle[hit]]
-    z[hit] = 1 / (a * xy[hit, 0] + b * xy[hit, 1] + c)
-    return z
+    size = np.concatenate([size, (size.sum(axis=1) / det[:, None])[:, None]], axis=1)
+    rounding = 1e-12 * (np.abs(middle) + half)
+    touched, fills = np.empty((2, len(det), len(x)), dtype=bool)
+    nearest = np.full(len(x), -1)  # of those that fill a rectangle
+    filled = np.zeros(len(x))  # its 1 / z where it is farthest
+    for some in chunks(len(det), _CHUNK):
+        value = forms[some] @ middle
+        reach = np.abs(forms[some]) @ half + size[some] @ rounding
+        touched[some] = ~(value + reach < 0)[:, :3].any(axis=1) & ~np.isnan(x0)
+        least = np.where((value >= reach).all(axis=1), value[:, 3] - reach[:, 3], 0)
+        fills[some] = least > 0
+        one = least.argmax(axis=0)
+        nearest = np.where(least.max(axis=0) > filled, some.start + one, nearest)
+        filled = np.maximum(filled, least.max(axis=0))
+    touched &= np.isfinite(det)[:, None]
+    i, g = np.nonzero(touched & (nearest >= 0))
+    ahead = forms[nearest[g], 3] - forms[i, 3]
+    reach = (np.abs(ahead) * half.T[g]).sum(axis=1)
+    reach += ((size[nearest[g], 3] + size[i, 3]) * rounding.T[g]).sum(axis=1)
+    touched[i, g] = (ahead * middle.T[g]).sum(axis=1) <= reach
+    return touched, fills

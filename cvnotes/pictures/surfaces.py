@@ -12,7 +12,7 @@ from cvnotes.camera import Camera, look_at, move
 from cvnotes.pictures.antialiasing import Mask
 from cvnotes.pictures.meshes import Scene, Surroundings
 from cvnotes.pictures.occlusion import Occlusion
-from cvnotes.pictures.raycast import Indices, depth_along, edge_functions, search
+from cvnotes.pictures.raycast import Indices, edge_functions, search
 
 _FAR = 100  # how far away the light is, in sizes of what casts shadows
 _TOUCHING = 1e-8  # of that distance: what is no farther apart throws no shadow
@@ -73,8 +73,7 @@ class Surfaces(NamedTuple):
         Dimmed by occlusion, to a part (groups, k) of them; where (3, groups, k) is the square
         (i, j) of the checker, and whether it is in a shadow.
         """
-        triangle = search(self.corners, xy)
-        depth = depth_along(self.corners, triangle, xy)
+        triangle, depth = search(self.corners, xy)
         x, y = np.moveaxis(xy, -1, 0).copy()
         none = triangle < 0
         square = self._squares(triangle, x, y)
@@ -89,7 +88,7 @@ class Surfaces(NamedTuple):
         colour[:, none] = self._sky(x[none], y[none])
         left = np.ones(triangle.shape)
         if self.occlusion:
-            on = triangle >= 0
+            on = np.append(self.occlusion.dims.repeat(2), False)[triangle]
             left[on] = self.occlusion.along(triangle[on] // 2, depth[on], x[on], y[on])
         return colour, left, np.stack([*square, dark])
 
@@ -101,8 +100,8 @@ class Surfaces(NamedTuple):
         M = np.where(asked, depth, np.nan)[..., None] * np.dstack([xy, np.ones(xy.shape[:2])])
         M = M @ self.light[:3, :3].T + self.light[:3, 3]
         along = M[..., :2] / M[..., 2:]
-        first = depth_along(self.shading, search(self.shading, along), along)
-        return np.asarray(first < (1 - _TOUCHING) * M[..., 2])
+        first = search(self.shading, along)
+        return np.asarray(first.depth < (1 - _TOUCHING) * M[..., 2])
 
     def _squares(self, triangle: Indices, x: Array, y: Array) -> Array:
         """Return the square (i, j) of the checker, as (2, …): (0, 0) where there is none.

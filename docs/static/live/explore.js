@@ -93,12 +93,10 @@
 
     async draw(wanted) {
       this.busy = true;
-      const started = performance.now();
       try {
         const say = (text) => this.say(text);
         const { pixels, rest } = await live.ask({ kind: "explore", question: JSON.stringify(wanted) }, { say });
         this.paint(pixels, JSON.parse(rest), wanted);
-        this.stage.dataset.took = performance.now() - started;
         this.say("");
       } catch (error) {
         this.say(error.message);
