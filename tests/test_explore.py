@@ -536,13 +536,26 @@ def test_simulated_calibrations_scatter_as_the_bound_says():
     errors, bounds = [], []
     for draw in range(1, 61):
         said = numbers(MODELS["noise"].drawing(sigma=1, views=12, draw=draw).sentence)
-        _, _, bound, error, own = said
+        _, _, bound, error, own, *_ = said
         errors.append(error)
         bounds.append(bound)
         assert 0.8 < own / bound < 1.25
     assert len(set(bounds)) == 1
     assert 0.75 < np.std(errors) / bounds[0] < 1.3
     assert abs(np.mean(errors)) < 0.5 * bounds[0]
+
+
+def test_each_try_leaves_a_stroke_and_as_many_miss_as_full_calibrations_do():
+    said = [numbers(MODELS["noise"].drawing(sigma=0.1, draw=k).sentence) for k in range(1, 61)]
+    missed = sum(abs(error) > own for _, _, _, error, own, *_ in said)
+    assert 12 <= missed <= 28  # of 60, one in three
+    assert abs(said[-1][-1] - missed) <= 1  # a try may miss by a hair
+    assert said[-1][-2] == 60
+    one, many = (
+        np.abs(MODELS["noise"].picture(draw=60, **kind).astype(int) - colour("#F2C4A5")).max(-1)
+        for kind in ({"sigma": 0}, {})
+    )
+    assert np.count_nonzero(many < 8) > np.count_nonzero(one < 8) + 300
 
 
 def test_a_picture_left_alone_has_neither_holes_nor_folds():

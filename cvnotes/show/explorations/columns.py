@@ -147,9 +147,7 @@ def _sentence(before: float, after: float, amount: float, free: int) -> str:
     given = "the board as it was drawn"
     if amount:
         given = f"the right camera's nine shifts × {amount:g} in the board"
-    said = (
-        f"Started from {given}{_WORDS[free]} the left camera misses its corners by {after:.3f} px"
-    )
+    said = f"With {given}{_WORDS[free]}, the left camera misses its corners by {after:.3f} px"
     if not amount and not free:
         return f"{said} (RMS)."
     gone = max(1 - (after / before) ** 2, 0)

@@ -109,7 +109,7 @@ def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
     """Draw by how much both patches differ, for each depth; equal steps are equal disparities."""
     top = max(20.0, 1.18 * float(cost.max()))
     panel = paper.panel(
-        (346, 164), (1000 / _NEAREST + 0.02, 1000 / _FARTHEST - 0.02), (top, -0.2 * top),
+        (346, 164), (1000 / _NEAREST + 0.02, 1000 / _FARTHEST - 0.03), (top, -0.2 * top),
         "difference of both, by depth: pull the cross",
     )  # fmt: skip
     for metres in (2, 3, 4, 5, 7, 10, 20):

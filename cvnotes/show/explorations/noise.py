@@ -1,13 +1,19 @@
 """Explore the noise: how exact a calibration can be, by the bound and by trying it."""
 
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import Problem, State, covariance, minimise
+from cvnotes.calibration.refinement import (
+    Problem,
+    State,
+    covariance,
+    minimise,
+    solve_by_schur,
+)
 from cvnotes.camera import Camera
 from cvnotes.pictures import good_views
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
@@ -20,6 +26,7 @@ _SHOWN = ("alpha_u", "alpha_v", "u0", "v0")
 _LABELS = ("αᵤ", "αᵥ", "u₀", "v₀")
 # px, of the error bars: the first is taken that holds 3.5 times the largest bound.
 _REACHES = (1, 3, 8, 20, 60, 90)
+_HELD = "#F2C4A5"  # the orange of a try whose error bar reaches the truth
 _OTHERS, _PALE = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0), "#BFDFF4"  # px, of noise, to be compared
 
 
@@ -38,6 +45,7 @@ class _Study:
         self.truth = self.problem.state(camera, data.pose_in_scaled_units(poses))
         counts = range(_FEWEST, _MOST + 1)
         self.std_by_views = np.array([self._std(n) for n in counts])  # for noise of 1 px
+        self.linear = lru_cache(maxsize=10_000)(self._linear)
 
     def std(self, n: int, sigma: float) -> Array:
         """Return the least standard deviations possible with n views, in the order of `_SHOWN`."""
@@ -45,12 +53,29 @@ class _Study:
 
     def estimate(self, n: int, sigma: float, draw: int) -> tuple[Array, Array]:
         """Calibrate from n noisy views: the estimate minus the truth, and its own error bars."""
+        noisy, start = self._noisy(n, sigma, draw)
+        found = minimise(noisy, start)
+        std = np.sqrt(found.cost / noisy.freedom * np.diag(covariance(found.system)))
+        return (found.x.shared - start.shared)[self._shown], std[self._shown]
+
+    def tries(self, n: int, sigma: float, draws: int) -> Array:
+        """Return the errors of that many calibrations, and their error bars, (2, draws, 4).
+
+        As far as one step from the truth tells, which is in proportion to the noise.
+        """
+        return sigma * np.stack([self.linear(n, draw + 1) for draw in range(draws)], axis=1)
+
+    def _linear(self, n: int, draw: int) -> Array:
+        problem, start = self._noisy(n, 1.0, draw)
+        cost, system = problem.linearise(start)
+        (step, _), gain = solve_by_schur(system, 0.0)
+        std = np.sqrt((cost - gain) / problem.freedom * np.diag(covariance(system)))
+        return np.stack([step[self._shown], std[self._shown]])
+
+    def _noisy(self, n: int, sigma: float, draw: int) -> tuple[Problem, State]:
         problem, start = self._first(n)
         noise = np.random.default_rng([1, draw]).normal(0, 1, self.problem.m.shape)[:n]
-        noisy = replace(problem, m=problem.m + sigma * noise)
-        found = minimise(noisy, start)
-        std = np.sqrt(found.cost / problem.freedom * np.diag(covariance(found.system)))
-        return (found.x.shared - start.shared)[self._shown], std[self._shown]
+        return replace(problem, m=problem.m + sigma * noise), start
 
     def _std(self, n: int) -> Array:
         problem, start = self._first(n)
@@ -74,8 +99,9 @@ def noise_model(camera: Camera, board: Chessboard) -> Model:
         Setting("draw", "another try", 1, 100, 1, 1, "which sample of the noise is drawn"),
     )
     about = (
-        "Errors of a simulated calibration with its own error bars, beside the least possible "
-        "standard deviations; and these against the number of views."
+        "Errors of a simulated calibration with its own error bars, below the least possible "
+        "standard deviations, and a stroke for each try so far, dark where its bar misses the "
+        "truth; beside them the least standard deviation against the number of views."
     )
     study = _Study(camera, board)
 
@@ -89,7 +115,8 @@ def noise_model(camera: Camera, board: Chessboard) -> Model:
 def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     n, sigma = int(values["views"]), values["sigma"]
     bound = study.std(n, sigma)
-    error, std = study.estimate(n, sigma, int(values["draw"]))
+    draw = int(values["draw"])
+    error, std = study.estimate(n, sigma, draw)
     reach = next((r for r in _REACHES if r > 3.5 * bound.max()), _REACHES[-1])
     bars = paper.panel(
         (450, 300),
@@ -97,7 +124,9 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
         (-0.5, 4.3),
         "estimate minus truth (px): ±1σ; thin blue ends ±2σ",
     )
-    _draw_bars(bars, bound, error, std)
+    tries = study.tries(n, sigma, draw)
+    missed = _draw_tries(bars, *tries)
+    _draw_bars(bars, bound, error, std, min(error[0] - std[0], tries[0, :, 0].min()))
     curve = paper.panel(
         (400, 300), (np.log10(2.6), np.log10(48)), (1.4, -1.8),
         "least standard deviation of αᵤ (px) against views",
@@ -108,18 +137,30 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
         f"σ = {sigma:.2f} px and {n} views: αᵤ cannot be known better than ±{bound[0]:.2f} px "
         f"(one standard deviation); this try says {off:+.2f} ± {std[0]:.2f} px."
     )
+    if draw > 1 and sigma:
+        sentence += f" Of {draw} tries {missed} are off by more than their ±."
     return Drawing(paper.join((bars, curve)), sentence)
 
 
-def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array) -> None:
+def _draw_tries(panel: Panel, error: Array, std: Array) -> int:
+    """Draw all tries so far (draws, 4) below the bounds; return how many bars of αᵤ miss."""
+    missed = np.abs(error) > std
+    down = 0.35 + 0.34 * (0.618 * np.arange(len(error)) % 1 - 0.5)  # beside each other
+    for i in range(len(_LABELS)):
+        ends = error[:, i, None, None] * [1, 0] + [[0, i - 0.04], [0, i + 0.04]]
+        ends[..., 1] += down[:, None]
+        for some, colour in ((~missed[:, i], _HELD), (missed[:, i], ESTIMATED)):
+            panel.segments(ends[some], colour, 2)
+    return int(missed[:, 0].sum())
+
+
+def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array, leftmost: float) -> None:
     left, reach = panel.x
     panel.ticks(x=np.array([-2, -1, 1, 2]) * (reach // 3 if reach > 1 else 0.3), size=12)
     panel.line([[0, -0.5], [0, 4.3]], IDEAL, 1, dash=4)
     panel.text([0.02 * reach, 3.85], "truth", IDEAL)
     panel.text([2 * bound[0] + 0.04 * reach, 0], "the bound", CAMERA)
-    side = 1 if error[0] < 0 else -1  # towards the truth, where there is room
-    end, anchor = error[0] + side * (std[0] + 0.04 * reach), "lm" if side > 0 else "rm"
-    panel.text([end, 0.35], "this try", ESTIMATED, anchor=anchor)
+    panel.text([leftmost - 0.04 * reach, 0.35], "this try", ESTIMATED, anchor="rm")
     for i, label in enumerate(_LABELS):
         for k, width in ((2, 3.5), (1, 8)):
             panel.line([[-k * bound[i], i], [k * bound[i], i]], CAMERA, width)

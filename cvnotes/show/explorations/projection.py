@@ -32,7 +32,7 @@ def projection_model(camera: Camera, _: Chessboard) -> Model:
     about = (
         "Two rails as the camera sees them, meeting in their vanishing point; beside it the same "
         "from above, with the ray through the camera's centre that is parallel to the rails, and a "
-        "ring through the camera, which this ray cuts in a dot."
+        "ring through the camera, which this ray cuts in a mark."
     )
     ideal = pinhole(camera)
 
@@ -71,7 +71,7 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
     horizon = np.cross(camera.A @ along, camera.A @ across)
     side = horizon @ camera.A @ middle  # the side on which the plane of the rails is seen
     panel.image(_sky_and_grass(camera, horizon * np.sign(side) / np.hypot(*horizon[:2])))
-    bed = [in_front(middle + x * across - 2e3 * along, 4e3 * along) for x in (-1.7, 1.7)]
+    bed = [in_front(middle + x * across - 60 * along, 2060 * along) for x in (-1.7, 1.7)]
     panel.polygons(camera.project(np.concatenate([bed[0], bed[1][::-1]]))[None], _BALLAST)
     panel.segments(camera.project(_sleepers(middle, along, across)), _WOOD, 1.6)
     for side in (-0.5, 0.5):

@@ -18,8 +18,8 @@ def ring_model() -> Model:
     )
     about = (
         "Left, lines through the origin: each is one class of pairs, and crosses w = 1 at its "
-        "number x. Right, a ring on the line of these numbers: seen from its top, each dot is over "
-        "its x."
+        "number x. Right, a ring on the line of these numbers: seen from its top, each mark is "
+        "over its x."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -84,7 +84,7 @@ def _draw_ring(panel: Panel, way: Array, x: float, colour: str, angle: float) ->
         panel.line([[-9, 1], [9, 1]], colour, 2.2)
     panel.text([0, 1.14], "∞", ESTIMATED, anchor="mm", size=15)
     panel.mark(dot, "world" if np.isfinite(x) else "estimated", 10)
-    panel.grip("dot", "the dot on the ring", dot, 5)
+    panel.grip("dot", "the mark on the ring", dot, 5)
 
 
 def _dot(way: Array) -> Array:
@@ -118,7 +118,7 @@ def _number(x: float) -> str:
 def _sentence(angle: float, x: float) -> str:
     if not np.isfinite(x):
         return (
-            f"At {angle:g}° the line is level, [1 0]: it never reaches w = 1. Its dot is the top "
+            f"At {angle:g}° the line is level, [1 0]: it never reaches w = 1. Its mark is the top "
             "of the ring, the same from both sides: the point at infinity."
         )
     said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its mark at {2 * angle % 360:g}°."
