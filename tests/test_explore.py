@@ -640,7 +640,7 @@ def test_epipolar_lines_cross_both_pictures_from_border_to_border(values):
 
 
 def test_the_lenses_differ_by_so_many_times_what_noise_makes_of_a_corner():
-    _, misfit, times, *_ = numbers(MODELS["tilt"].drawing(tilt=30).sentence)
+    _, _, _, misfit, times, *_ = numbers(MODELS["tilt"].drawing(tilt=30).sentence)
     assert times == pytest.approx(misfit / np.hypot(0.1, 0.1), rel=0.03)
 
 
@@ -951,8 +951,33 @@ def test_wrong_pairs_that_agree_with_each_other_win_against_the_right_ones():
 
 
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():
-    said = [numbers(MODELS["tilt"].drawing(tilt=tilt).sentence)[1] for tilt in (0, 10, 20, 30, 45)]
+    said = [numbers(MODELS["tilt"].drawing(tilt=tilt).sentence)[3] for tilt in (0, 10, 20, 30, 45)]
     assert said == [0.0, 0.6, 2.2, 3.9, 6.0]
+
+
+@pytest.mark.parametrize("tilt", [10, 45])
+def test_the_valley_of_a_tilt_is_as_deep_as_opencv_finds_it_and_closes_on_the_first_lens(tilt):
+    cv2 = pytest.importorskip("cv2")
+    board, R = course.board(), rotation_from_vector([np.radians(tilt), 0, 0])
+    W = board.points.astype(np.float64)
+    first = Camera(intrinsics(800, 800, 319.5, 239.5), size=(640, 480))
+    away = 2.1625 * np.hypot(*W[-1, :2])
+    m = first.moved(pose(R, [0, 0, away] - R @ W.mean(axis=0))).project(W)
+    said = {}
+    for alpha in (300, 550, 800, 1000):
+        A = intrinsics(alpha, alpha, 319.5, 239.5)
+        _, omega, T = cv2.solvePnP(W, m, A, None)
+        omega, T = cv2.solvePnPRefineLM(W, m, A, None, omega, T)
+        off = cv2.projectPoints(W, omega, T, A, None)[0].reshape(-1, 2) - m
+        said[alpha] = np.sqrt((off**2).sum(axis=1).mean())
+        drawing = MODELS["tilt"].drawing(tilt=tilt, alpha=alpha)
+        assert numbers(drawing.sentence)[3] == pytest.approx(said[alpha], abs=0.06)
+    assert said[800] < 1e-6
+    # The curve ends at the right as high as the longest lens misses.
+    picture = MODELS["tilt"].picture(tilt=tilt, alpha=500).astype(int)
+    orange = np.abs(picture - colour(ESTIMATED)).max(axis=-1) < 60
+    column = np.flatnonzero(orange[TITLE + 2 : TITLE + 328, 446 + round(410 * 760 / 860)])
+    assert column.mean() == pytest.approx(330 * (10 - said[1000] * 0.96) / 11, abs=4)
 
 
 def test_every_place_of_the_half_circle_sees_both_right_angles_and_one_those_of_two_pictures():
@@ -2006,7 +2031,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
 }
 ON_A_WAY = {  # along a curve, by its x
     ("finding", "step"),
-    ("tilt", "tilt"),
+    ("tilt", "lens"),
     ("fold", "fold"),
     ("folds", "k1"),
     ("pinhole", "hole"),
@@ -2024,6 +2049,7 @@ ROUND = {
     ("gimbal", "orange axis"),
     ("walks", "line of sight"),
     ("formation", "line of sight"),
+    ("tilt", "board"),
     ("stands", "cube"),  # along the ray from the principal point
 }
 ON_A_CURVE = {  # its nearest place

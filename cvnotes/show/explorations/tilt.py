@@ -1,8 +1,9 @@
-"""Explore the tilt: one board's picture by a long lens, and the best a lens half as long can do."""
+"""Explore the tilt: one board's picture by a long lens, and the best another lens can do."""
 
 from functools import lru_cache, partial
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
@@ -14,64 +15,84 @@ from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
 
-_PICTURE, _CURVE = (440, 330), (410, 330)
+_PICTURE, _VALLEY = (440, 330), (410, 330)
 _STEEPEST = 60  # degrees
+_SHORTEST, _LONGEST = 300, 1000  # px, of the other lens
+_NODES = np.array([300, 350, 425, 540, 660, 800, 1000])
 _FAR = 2.1625  # of the board's diagonal, to the long lens
 _MAGNIFIED = 6
+_HIGHEST = 10  # px, of the valley's sides
+_BESIDE = (10, 20, 45)  # degrees: the valleys of these tilts lie beside it
+_NOISE = 0.1 * np.sqrt(2)  # px, what noise of 0.1 px along each axis makes of a corner
+_FAINT = "#E3C3B0"  # the orange of those
 _PALE = "#A6CEE4"  # the blue of a lens, for what lies under arrows
+_SIDE = (0.86, 0.96, 0.64)  # where the boards stand, in widths and heights; how far the long lens
 
 
 class _Lenses:
-    """A lens and one half as long; before it the board is turned and placed anew.
+    """A lens and another one, before which the board is turned and placed anew.
 
-    Its pose is the one whose picture is most like that of the long lens.
+    Its pose is the one whose picture is most like that of the first.
     """
 
     def __init__(self, camera: Camera, board: Chessboard) -> None:
-        w, h = camera.size
-        alpha, middle = float(camera.A[0, 0]), ((w - 1) / 2, (h - 1) / 2)
+        w, h = self.size = camera.size
+        self.alpha, self.middle = float(camera.A[0, 0]), ((w - 1) / 2, (h - 1) / 2)
         self.board = board
-        self.long = Camera(intrinsics(alpha, alpha, *middle), size=camera.size)
-        self.short = Camera(intrinsics(alpha / 2, alpha / 2, *middle), size=camera.size)
         self.away = _FAR * float(np.linalg.norm(board.points[-1]))
         self.seen = lru_cache(maxsize=None)(self._seen)
+        self.valley = lru_cache(maxsize=None)(self._valley)
 
-    def _seen(self, tilt: float) -> tuple[Array, Array, float, float]:
-        """Return the corners (n, 2) by either lens; how far from the short one, and how tilted."""
-        R = rotation_from_vector([np.radians(tilt), 0, 0])
+    def camera(self, alpha: float) -> Camera:
+        return Camera(intrinsics(alpha, alpha, *self.middle), size=self.size)
+
+    def _seen(self, tilt: float, alpha: float) -> tuple[Array, Array, float, float]:
+        """Return the corners (n, 2) by either lens; how far from the other, and how tilted."""
+        R, other = rotation_from_vector([np.radians(tilt), 0, 0]), self.camera(alpha)
         W, middle = self.board.points, self.board.points.mean(axis=0)
-        m = self.long.moved(pose(R, [0, 0, self.away] - R @ middle)).project(W)
-        G = pose_from_view(self.short, W, m)
+        held = pose(R, [0, 0, self.away] - R @ middle)
+        m = self.camera(self.alpha).moved(held).project(W)
+        G = pose_from_view(other, W, m)
         near = float(G[2, :3] @ middle + G[2, 3])
         turned = float(np.degrees(np.arctan2(G[2, 1], G[2, 2])))
-        return m, self.short.moved(G).project(W), near, turned
+        return m, other.moved(G).project(W), near, turned
 
-    def misfit(self, tilt: float) -> float:
+    def misfit(self, tilt: float, alpha: float) -> float:
         """Return the RMS of the distances between the corners of both pictures, in pixels."""
-        one, other, *_ = self.seen(tilt)
+        one, other, *_ = self.seen(tilt, alpha)
         return rms(one - other)
+
+    def _valley(self, tilt: float) -> Polynomial:
+        """Return the misfit, with a sign, by how many times the other lens is shorter."""
+        misfit = [self.misfit(tilt, float(alpha)) for alpha in _NODES]
+        return Polynomial.fit(self.alpha / _NODES, np.sign(self.alpha - _NODES) * misfit, 6)
 
 
 def tilt_model(camera: Camera, board: Chessboard) -> Model:
-    """Make the model of `board`, tilted before the lens of `camera` and before one half as long."""
+    """Make the model of `board`, tilted before the lens of `camera` and before another one."""
     lenses = _Lenses(camera, board)
     settings = (
         Setting("tilt", "tilt (°)", 0, _STEEPEST, 1, 30, "turns the board about its x axis"),
+        Setting("alpha", "other lens, α (px)", _SHORTEST, _LONGEST, 10, 400, "how long it is"),
     )
     about = (
-        "One tilted board through two lenses. Before the second, half as long, it is turned and "
-        "placed so that the pictures are most alike; below, both cameras from the side; beside it "
-        "how far the pictures differ, against tilt."
+        "One tilted board through two lenses. Before the second it is turned and placed so that "
+        "the pictures are most alike; below, both cameras from the side; beside it how far the "
+        "pictures differ, against the length of the second lens."
     )
 
-    drags = {"tilt": lambda _, at: {"tilt": float(at[0])}}
+    def tilted(_: Values, at: Array) -> Values:
+        x, y = np.array([_SIDE[0] * camera.size[0], _SIDE[1] * camera.size[1]]) - at
+        return {"tilt": float(np.degrees(np.arctan2(x, max(y, 0))))}
+
+    drags = {"board": tilted, "lens": lambda _, at: {"alpha": float(at[0])}}
     return Model("tilt", about, settings, partial(_draw, lenses), drags)
 
 
 def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
-    tilt = values["tilt"]
-    one, other, near, turned = lenses.seen(tilt)
-    w, h = lenses.long.size
+    tilt, alpha = values["tilt"], values["alpha"]
+    one, other, near, turned = lenses.seen(tilt, alpha)
+    w, h = lenses.size
     title = f"one board, two lenses (arrows × {_MAGNIFIED}); below, from the side"
     picture = paper.panel(_PICTURE, (-0.5, w - 0.5), (0.18 * h, 1.18 * h), title)
     draw_net(picture, one, lenses.board, _PALE, 2)
@@ -79,61 +100,65 @@ def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
     some = np.arange(len(one)).reshape(lenses.board.corners[::-1])[[0, -1], ::2]  # all would crowd
     draw_arrows(picture, one[some.ravel()], _MAGNIFIED * (other - one)[some.ravel()])
     picture.line([[0, 0.74 * h], [w, 0.74 * h]], FAINT, 0.8)
-    _draw_side(picture, lenses, (lenses.away, tilt), (near, turned))
-    misfit = lenses.misfit(tilt)
+    _draw_side(picture, lenses, (lenses.alpha, lenses.away, tilt), (alpha, near, turned))
+    misfit = lenses.misfit(tilt, alpha)
     sentence = (
-        f"Tilted by {tilt:.0f}° the two pictures differ by {misfit:.1f} px (RMS of a corner): "
+        f"Tilted by {tilt:.0f}° the pictures of α = {lenses.alpha:.0f} and {alpha:.0f} px differ "
+        f"by {misfit:.1f} px (RMS of a corner): "
     )
-    if not tilt:
+    if alpha == lenses.alpha:
+        sentence += "it is the same lens."
+    elif not tilt:
         sentence += "no picture of this board tells the one lens from the other."
     else:
-        times = misfit / (np.sqrt(2) * 0.1)
-        sentence += f"{times:.2g} times what noise of 0.1 px along each axis makes of one."
-    return Drawing(paper.join((picture, _curve(lenses, paper, tilt))), sentence)
+        sentence += (
+            f"{misfit / _NOISE:.2g} times what noise of 0.1 px along each axis makes of one."
+        )
+    return Drawing(paper.join((picture, _draw_valley(lenses, paper, tilt, alpha))), sentence)
 
 
 def _draw_side(
-    picture: Panel, lenses: _Lenses, far: tuple[float, float], near: tuple[float, float]
+    picture: Panel, lenses: _Lenses, far: tuple[float, ...], near: tuple[float, ...]
 ) -> None:
-    """Draw both cameras on their axis, each (distance, tilt) with its board, to one scale."""
-    w, h = lenses.long.size
-    middle, a_mm = np.array([0.86 * w, 0.96 * h]), 0.8 * w / lenses.away
+    """Draw both cameras on their axis, each (α, distance, tilt) with its board, to one scale."""
+    w, h = lenses.size
+    middle, a_mm = np.array([_SIDE[0] * w, _SIDE[1] * h]), _SIDE[2] * w / lenses.away
     half = a_mm * np.ptp(lenses.board.points[:, 1]) / 2
-    for camera, (away, tilt), colour, dash, name_at in (
-        (lenses.long, far, LENS, 0, 0.8 * h),
-        (lenses.short, near, ESTIMATED, 4, 1.13 * h),
+    for (alpha, away, tilt), colour, dash, name_at in (
+        (far, LENS, 0, 0.8 * h),
+        (near, ESTIMATED, 4, 1.13 * h),
     ):
         end = half * np.array([np.sin(np.radians(tilt)), np.cos(np.radians(tilt))])
         eye = middle - [a_mm * away, 0]
         picture.line([eye, middle - end, middle + end, eye], colour, 1.2, dash)
         picture.line([middle - end, middle + end], colour, 2.4, dash)
-        name = f"α = {camera.A[0, 0]:.0f} px from {away:.0f} mm, tilted {abs(tilt):.0f}°"
+        name = f"α = {alpha:.0f} px from {away:.0f} mm, tilted {abs(tilt):.0f}°"
         picture.text([0.04 * w, name_at], name, colour)
         picture.mark(eye, "camera", 7, (1, 0))
+    end = half * np.array([np.sin(np.radians(far[2])), np.cos(np.radians(far[2]))])
+    picture.grip("board", "the board's upper edge, to tilt it", middle - end, 4)
 
 
-def _curve(lenses: _Lenses, paper: Paper, tilt: float) -> Panel:
-    """Draw the misfit up to the tilt, which the hand carries on."""
-    highest = 1.15 * lenses.misfit(_STEEPEST)
-    panel = paper.panel(
-        _CURVE,
-        (-6, _STEEPEST + 4),
-        (highest, -0.12 * highest),
-        "how far they differ (px) against tilt (°)",
-    )
-    panel.ticks(x=(0, 15, 30, 45, 60), y=np.arange(2, highest, 2), size=12)
-    at = np.arange(0, tilt + 1)
-    way = np.array([[t, lenses.misfit(float(t))] for t in at])
-    if len(way) > 1:
-        panel.line(way, ESTIMATED, 2.4)
-    panel.line([[-6, 0], [_STEEPEST + 4, 0]], MUTED, 0.8)
-    panel.mark(way[-1], "estimated", 8)
-    panel.text(
-        way[-1] + np.array([-1.5, 0.05 * highest] if tilt > 45 else [1.5, -0.03 * highest]),
-        f"{way[-1, 1]:.1f} px",
-        IDEAL,
-        anchor="rm" if tilt > 45 else "lm",
-        size=13,
-    )
-    panel.grip("tilt", "the board's tilt", way[-1], 4)
+def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Panel:
+    """Draw the misfit against the other lens: where it is not above the noise, any lens will do."""
+    ends = _SHORTEST - 70, _LONGEST + 90
+    title = "how far they differ (px) against the other lens, α (px)"
+    panel = paper.panel(_VALLEY, ends, (_HIGHEST, -0.1 * _HIGHEST), title)
+    panel.polygons([[[ends[0], 0], [ends[1], 0], [ends[1], _NOISE], [ends[0], _NOISE]]], FAINT)
+    panel.ticks(x=(400, 600, 800, 1000), y=(2, 4, 6, 8), size=12)
+    panel.line([[ends[0], 0], [ends[1], 0]], MUTED, 0.8)
+    panel.line([[lenses.alpha, 0], [lenses.alpha, _HIGHEST]], LENS, 1, dash=4)
+    at = np.linspace(_SHORTEST, _LONGEST, 71)
+    for other, colour, width in (*((t, _FAINT, 1.2) for t in _BESIDE), (tilt, ESTIMATED, 2.4)):
+        way = np.column_stack([at, np.abs(lenses.valley(float(other))(lenses.alpha / at))])
+        panel.line(way, colour, width)
+        if other != tilt:
+            panel.text([_SHORTEST - 8, way[0, 1]], f"{other}°", MUTED, anchor="rm", size=11)
+    panel.text([_LONGEST + 20, way[-1, 1]], f"{tilt:.0f}°", ESTIMATED, size=13)
+    x, y = alpha, lenses.misfit(tilt, alpha)
+    panel.mark([x, y], "estimated", 8)
+    above = x > lenses.alpha or y < 1
+    beside, anchor = ([14, 0.35], "lm") if alpha < 380 else ([-14, 0.6 if above else -0.5], "rm")
+    panel.text(np.add([x, y], beside), f"{y:.1f} px", IDEAL, anchor=anchor, size=13)
+    panel.grip("lens", "the other lens, longer or shorter", [x, y], 4)
     return panel
