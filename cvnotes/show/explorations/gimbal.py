@@ -77,7 +77,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     order = np.argsort(depth)
     panel.polygons(_on_sheet(quads[order]), [paints[i] for i in order])
     for name, axis, _, r, colour in rings:
-        panel.text(_on_sheet((r + 0.3) * axis) + [0.14, 0], name, colour, anchor="mm", size=14)
+        at = _on_sheet((r + 0.3) * axis)
+        panel.text(at + [0.14 if at[0] > -0.2 else -0.14, 0], name, colour, anchor="mm", size=14)
     end = _on_sheet(inner * 0.9)
     panel.mark(end, "estimated", 6)
     panel.grip("orange axis", "the end of the orange axis", end, 8)

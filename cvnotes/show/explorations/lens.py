@@ -192,8 +192,8 @@ def _sentence(camera: Camera, lens: Lens) -> str:
     ends = "never folds" if np.isinf(lens.max_radius) else fold
     far = float(np.linalg.norm(camera.A[:2, :2] @ (ideal - corners).T, axis=0).max())
     return (
-        f"The model {ends}. An ideal lens would show what is seen in the "
-        f"picture's corners up to {far:.1f} px elsewhere."
+        f"The model {ends}. The lens moves what is seen in the picture's corners by up to "
+        f"{far:.1f} px."
     )
 
 

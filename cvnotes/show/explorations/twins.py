@@ -125,6 +125,8 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
         panel.segments(rays, colour, 0.9)
         _draw_camera(panel, camera, colour)
         at = on_sheet(camera.centre) + np.array(aside) * panel.pixel
+        if anchor == "rd":  # no farther out than its name is long
+            at[0] = max(at[0], panel.x[0] + 66 * panel.pixel)
         panel.text(at, f"α = {camera.A[0, 0]:.0f}", colour, anchor=anchor, size=13)
     panel.grip("other", "the other camera, to be pulled along its way", on_sheet(cameras[1].centre))
     return panel
