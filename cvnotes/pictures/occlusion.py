@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera
+from cvnotes.pictures.antialiasing import Mask
 
 Indices = npt.NDArray[np.intp]
-Mask = npt.NDArray[np.bool_]
 
 _HIDDEN = 0.32  # of the light, by an upright face right beside
 _STEPS = 5  # of a grid, within the smallest reach; along a side no more than
@@ -30,7 +30,7 @@ class Occlusion(NamedTuple):
     left: Array  # (n,) the grids, one after the other, row after row
     first: Indices  # (f,) where each one begins
     steps: Indices  # (2, f) along its rows and columns
-    dims: Mask  # (f,) whether anything does
+    dimmed: Mask  # (f,) whether anything hides a part of it
     forms: Array  # (2, 4, f) (a, d): a point M lies in column a·M + d, and in a row alike
 
     @classmethod
@@ -38,11 +38,9 @@ class Occlusion(NamedTuple):
         """Work out what rectangles (f, 4, 3) in the WRF hide, each on the side that is seen."""
         normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 3] - faces[:, 0])
         away = ((camera.centre - faces[:, 0]) * normals).sum(axis=-1) < 0
-        left, first, steps, forms = _grids(faces.tobytes(), away.tobytes(), reach)
-        dims = np.minimum.reduceat(left, first) < 1
-        return cls(
-            left, first, steps, dims, (forms @ np.linalg.inv(camera.G)).swapaxes(1, 2).copy()
-        )
+        left, first, steps, dimmed, forms = _grids(faces.tobytes(), away.tobytes(), reach)
+        in_crf = (forms @ np.linalg.inv(camera.G)).swapaxes(1, 2).copy()
+        return cls(left, first, steps, dimmed, in_crf)
 
     def along(self, face: npt.NDArray[np.int32], depth: Array, x: Array, y: Array) -> Array:
         """Return what is left of the light where rays (x, y, 1) end on faces; all (n,)."""
@@ -60,7 +58,9 @@ class Occlusion(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def _grids(corners: bytes, turned: bytes, reach: float) -> tuple[Array, Indices, Indices, Array]:
+def _grids(
+    corners: bytes, turned: bytes, reach: float
+) -> tuple[Array, Indices, Indices, Mask, Array]:
     """Work out the grids, once for all cameras that see the same sides of the same faces."""
     faces = np.frombuffer(corners).reshape(-1, 4, 3)
     origin = faces[:, 0]
@@ -117,4 +117,5 @@ def _grids(corners: bytes, turned: bytes, reach: float) -> tuple[Array, Indices,
     first = np.cumsum([0] + [len(grid) for grid in grids[:-1]])
     columns = steps[..., None] * across
     forms = np.dstack([columns, -(columns * origin).sum(axis=-1)])
-    return np.concatenate(grids), first, steps, forms
+    dimmed = np.array([grid.min() < 1 for grid in grids])
+    return np.concatenate(grids), first, steps, dimmed, forms

@@ -17,9 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, ShapeError, chunks, numbers, real
+from cvnotes.pictures.antialiasing import Mask
 
 Indices = npt.NDArray[np.int32]
-Mask = npt.NDArray[np.bool_]
 
 _CHUNK = 32  # triangles at a time
 _GROUPS = 64  # of rays at a time, so that they stay in the cache
@@ -100,7 +100,7 @@ def search(corners: Array, xy: Array) -> Hits:
     n, det = edge_functions(corners)
     forms = np.concatenate([n, (n.sum(axis=1) / det[:, None])[:, None]], axis=1)  # e_i, and 1 / z
     x, y = np.moveaxis(xy, -1, 0).copy()
-    touched, fills = _may_be_seen(forms, np.abs(n), det, x, y)
+    touched, fills = _may_be_seen(forms, det, x, y)
     first = np.full(x.shape, -1, dtype=np.int32)
     nearness = np.zeros(x.shape)  # 1 / z
     alone = np.flatnonzero((touched.sum(axis=0) == 1) & (touched & fills).any(axis=0))
@@ -130,17 +130,18 @@ def _value(form: Array, x: Array, y: Array) -> Array:
     return np.asarray(a * x + b * y + c)
 
 
-def _may_be_seen(forms: Array, size: Array, det: Array, x: Array, y: Array) -> tuple[Mask, Mask]:
+def _may_be_seen(forms: Array, det: Array, x: Array, y: Array) -> tuple[Mask, Mask]:
     """Return which triangles (rows) may be what a ray of which group (columns) meets first.
 
     A triangle is out of the question if one e_i is negative all over the rectangle around a
     group's rays, or if it is behind one that fills the rectangle. Which ones fill it is returned
-    as well. With numbers of this size (m, 3, 3) in the e_i rounding is allowed for.
+    as well. Bounds are wider by more than what rounding does to the numbers in the e_i.
     """
     (x0, x1), (y0, y1) = ([f.reduce(m, axis=1) for f in (np.fmin, np.fmax)] for m in (x, y))
     middle = np.stack([(x0 + x1) / 2, (y0 + y1) / 2, np.ones_like(x0)])
     half = np.stack([(x1 - x0) / 2, (y1 - y0) / 2, np.zeros_like(x0)])
-    size = np.concatenate([size, (size.sum(axis=1) / det[:, None])[:, None]], axis=1)
+    size = np.abs(forms)
+    size[:, 3] = size[:, :3].sum(axis=1) / det[:, None]
     rounding = 1e-12 * (np.abs(middle) + half)
     touched, fills = np.empty((2, len(det), len(x)), dtype=bool)
     nearest = np.full(len(x), -1)  # of those that fill a rectangle
@@ -151,9 +152,9 @@ def _may_be_seen(forms: Array, size: Array, det: Array, x: Array, y: Array) -> t
         touched[some] = ~(value + reach < 0)[:, :3].any(axis=1) & ~np.isnan(x0)
         least = np.where((value >= reach).all(axis=1), value[:, 3] - reach[:, 3], 0)
         fills[some] = least > 0
-        one = least.argmax(axis=0)
-        nearest = np.where(least.max(axis=0) > filled, some.start + one, nearest)
-        filled = np.maximum(filled, least.max(axis=0))
+        most = least.max(axis=0)
+        nearest = np.where(most > filled, some.start + least.argmax(axis=0), nearest)
+        filled = np.maximum(filled, most)
     touched &= np.isfinite(det)[:, None]
     i, g = np.nonzero(touched & (nearest >= 0))
     ahead = forms[nearest[g], 3] - forms[i, 3]

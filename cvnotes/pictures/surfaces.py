@@ -88,7 +88,7 @@ class Surfaces(NamedTuple):
         colour[:, none] = self._sky(x[none], y[none])
         left = np.ones(triangle.shape)
         if self.occlusion:
-            on = np.append(self.occlusion.dims.repeat(2), False)[triangle]
+            on = np.append(self.occlusion.dimmed.repeat(2), False)[triangle]
             left[on] = self.occlusion.along(triangle[on] // 2, depth[on], x[on], y[on])
         return colour, left, np.stack([*square, dark])
 

@@ -7,13 +7,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import (
-    Problem,
-    State,
-    covariance,
-    minimise,
-    solve_by_schur,
-)
+from cvnotes.calibration.refinement import Problem, State, covariance, minimise
 from cvnotes.camera import Camera
 from cvnotes.pictures import good_views
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
@@ -45,37 +39,23 @@ class _Study:
         self.truth = self.problem.state(camera, data.pose_in_scaled_units(poses))
         counts = range(_FEWEST, _MOST + 1)
         self.std_by_views = np.array([self._std(n) for n in counts])  # for noise of 1 px
-        self.linear = lru_cache(maxsize=10_000)(self._linear)
+        self.estimate = lru_cache(maxsize=10_000)(self._estimate)
 
     def std(self, n: int, sigma: float) -> Array:
         """Return the least standard deviations possible with n views, in the order of `_SHOWN`."""
         return np.asarray(sigma * self.std_by_views[n - _FEWEST])
 
-    def estimate(self, n: int, sigma: float, draw: int) -> tuple[Array, Array]:
-        """Calibrate from n noisy views: the estimate minus the truth, and its own error bars."""
-        noisy, start = self._noisy(n, sigma, draw)
-        found = minimise(noisy, start)
-        std = np.sqrt(found.cost / noisy.freedom * np.diag(covariance(found.system)))
-        return (found.x.shared - start.shared)[self._shown], std[self._shown]
-
     def tries(self, n: int, sigma: float, draws: int) -> Array:
-        """Return the errors of that many calibrations, and their error bars, (2, draws, 4).
+        """Return the errors of that many calibrations, and their error bars, (2, draws, 4)."""
+        return np.stack([self.estimate(n, sigma, draw + 1) for draw in range(draws)], axis=1)
 
-        As far as one step from the truth tells, which is in proportion to the noise.
-        """
-        return sigma * np.stack([self.linear(n, draw + 1) for draw in range(draws)], axis=1)
-
-    def _linear(self, n: int, draw: int) -> Array:
-        problem, start = self._noisy(n, 1.0, draw)
-        cost, system = problem.linearise(start)
-        (step, _), gain = solve_by_schur(system, 0.0)
-        std = np.sqrt((cost - gain) / problem.freedom * np.diag(covariance(system)))
-        return np.stack([step[self._shown], std[self._shown]])
-
-    def _noisy(self, n: int, sigma: float, draw: int) -> tuple[Problem, State]:
+    def _estimate(self, n: int, sigma: float, draw: int) -> Array:
         problem, start = self._first(n)
         noise = np.random.default_rng([1, draw]).normal(0, 1, self.problem.m.shape)[:n]
-        return replace(problem, m=problem.m + sigma * noise), start
+        noisy = replace(problem, m=problem.m + sigma * noise)
+        found = minimise(noisy, start)
+        std = np.sqrt(found.cost / problem.freedom * np.diag(covariance(found.system)))
+        return np.stack([(found.x.shared - start.shared)[self._shown], std[self._shown]])
 
     def _std(self, n: int) -> Array:
         problem, start = self._first(n)
@@ -116,7 +96,8 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     n, sigma = int(values["views"]), values["sigma"]
     bound = study.std(n, sigma)
     draw = int(values["draw"])
-    error, std = study.estimate(n, sigma, draw)
+    tries = study.tries(n, sigma, draw)
+    error, std = tries[:, -1]
     reach = next((r for r in _REACHES if r > 3.5 * bound.max()), _REACHES[-1])
     bars = paper.panel(
         (450, 300),
@@ -124,7 +105,6 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
         (-0.5, 4.3),
         "estimate minus truth (px): ±1σ; thin blue ends ±2σ",
     )
-    tries = study.tries(n, sigma, draw)
     missed = _draw_tries(bars, *tries)
     _draw_bars(bars, bound, error, std, min(error[0] - std[0], tries[0, :, 0].min()))
     curve = paper.panel(

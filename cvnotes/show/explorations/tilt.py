@@ -24,7 +24,7 @@ _MAGNIFIED = 6
 _HIGHEST = 10  # px, of the valley's sides
 _BESIDE = (10, 20, 45)  # degrees: the valleys of these tilts lie beside it
 _NOISE = 0.1 * np.sqrt(2)  # px, what noise of 0.1 px along each axis makes of a corner
-_FAINT = "#E3C3B0"  # the orange of those
+_THEIRS = "#E3C3B0"  # the orange of those
 _PALE = "#A6CEE4"  # the blue of a lens, for what lies under arrows
 _SIDE = (0.86, 0.96, 0.64)  # where the boards stand, in widths and heights; how far the long lens
 
@@ -149,7 +149,7 @@ def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Pa
     panel.line([[ends[0], 0], [ends[1], 0]], MUTED, 0.8)
     panel.line([[lenses.alpha, 0], [lenses.alpha, _HIGHEST]], LENS, 1, dash=4)
     at = np.linspace(_SHORTEST, _LONGEST, 71)
-    for other, colour, width in (*((t, _FAINT, 1.2) for t in _BESIDE), (tilt, ESTIMATED, 2.4)):
+    for other, colour, width in (*((t, _THEIRS, 1.2) for t in _BESIDE), (tilt, ESTIMATED, 2.4)):
         way = np.column_stack([at, np.abs(lenses.valley(float(other))(lenses.alpha / at))])
         panel.line(way, colour, width)
         if other != tilt:
