@@ -13,7 +13,7 @@ from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 _CAMERA = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
 _EYE, _BOX, _TALLEST = 2.8, 2.0, 6.0  # m: heights of camera, yellow box and highest rod
@@ -21,39 +21,50 @@ _EDGE = _CAMERA.project(blocks().vertices[[17, 19]])  # of the yellow box, from 
 _UP, _LEVEL = _CAMERA.vanishing_point([0, 1, 0]), horizon(_CAMERA, [0, 1, 0])
 _HORIZON = float(-_LEVEL[2] / _LEVEL[1])  # its row: the camera is not rolled
 _WIDTH = 0.16  # m, of the rod
-_TOP = 79.5  # px: the sky above is not shown
+_BORDER = (-440, 80)  # px: so much more is shown on the left, and less of the sky
+_WIDE = Camera(
+    [[1, 0, -_BORDER[0]], [0, 1, -_BORDER[1]], [0, 0, 1]] @ _CAMERA.A, _CAMERA.G, size=(1080, 400)
+)
 
 
 def rod_model() -> Model:
     """Make the model of the three blocks, with a rod among them."""
     settings = (
-        Setting("u", "foot, u (px)", 0, 639, 1, 140, "where the foot is, from left to right"),
-        Setting("v", "foot, v (px)", 352, 479, 1, 448, "where it is, downwards"),
+        Setting("u", "foot, u (px)", 8, 631, 1, 190, "where the foot is, from left to right"),
+        Setting("v", "foot, v (px)", 352, 479, 1, 388, "where it is, downwards"),
         Setting("height", "height (m)", 1, _TALLEST, 0.1, 4, "the rod's height"),
     )
     about = (
         "A rod with a band for each metre stands on the ground before three blocks; the black line "
-        "is the horizon. Beside it the same from the side, with the camera."
+        "is the horizon. The line through its foot and the yellow box's meets it in e, and from e "
+        "a line over the box brings 2 m to the rod. Below, the same from the side, with the camera."
     )
 
     @lru_cache(maxsize=1)
     def photographed() -> tuple[Drawn, Array]:
-        return render_scene(blocks(), _CAMERA), depth_map(blocks(), _CAMERA)
+        photo = render_scene(blocks(), _WIDE).astype(float)
+        photo[:, : -_BORDER[0]] += 0.45 * (255 - photo[:, : -_BORDER[0]])  # beside the photograph
+        return np.rint(photo).astype(np.uint8), depth_map(blocks(), _WIDE)
 
     def draw(paper: Paper, values: Values) -> Drawing:
         photo, depths = photographed()
         foot, height = np.array([values["u"], values["v"]]), values["height"]
-        panel = paper.panel((480, 300), (-0.5, 639.5), (_TOP, 479.5), "a rod, and the horizon")
-        panel.image(photo[round(_TOP) :])
-        panel.line([[-20, _HORIZON], [660, _HORIZON]], IDEAL, 1)
+        left, width = (0, 480) if paper.narrow else (_BORDER[0], 810)
+        x, y = (left - 0.5, 639.5), (_BORDER[1] - 0.5, 479.5)
+        panel = paper.panel((width, 300), x, y, "a rod, and the horizon")
+        panel.image(photo[:, left - _BORDER[0] :])
+        panel.text([_BORDER[0] + 14, _BORDER[1] + 16], "beyond the photograph")
+        panel.line([[-460, _HORIZON], [660, _HORIZON]], IDEAL, 1)
+        e = _draw_way(panel, foot)
         _draw_rod(panel, foot, height, depths)
+        panel.mark(at_height(foot, _BOX), "estimated", 5)
         panel.grip("foot", "the foot of the rod", foot, 4)
         top = at_height(foot, height)
         panel.grip("top", "the top of the rod", top, 4)
-        side = paper.panel((330, 300), (-2.5, 39), (6.7, -0.8), "the same from the side (m)")
+        side = paper.panel((width, 146), (-2.5, 39), (6.6, -0.88), "the same from the side (m)")
         away = float(np.linalg.norm((_stands(foot) - _CAMERA.centre)[[0, 2]])) / 1e3
         _draw_side(side, away, height)
-        return Drawing(paper.join((panel, side)), _sentence(foot, height))
+        return Drawing(paper.join((panel,), (side,)), _sentence(foot, height, e))
 
     def carried(_: Values, at: Array) -> Values:
         return {"u": float(at[0]), "v": float(at[1])}
@@ -87,11 +98,28 @@ def _stands(foot: Array) -> Array:
     return np.asarray(_CAMERA.centre + ray * 1e3 * _EYE / ray[1])
 
 
+def _draw_way(panel: Panel, foot: Array) -> float:
+    """Draw how the height of the box comes to a foot, by e on the horizon; returns the u of e."""
+    (u, v), q = _EDGE[1], at_height(foot, _BOX)
+    e = np.array([u + (foot[0] - u) * (_HORIZON - v) / (foot[1] - v), _HORIZON])
+    for here, there in zip((q, foot), _EDGE, strict=True):
+        panel.line([here, there, e, here], ESTIMATED, 1)
+    panel.line(_EDGE, LENS, 2)
+    panel.mark(e, "estimated", 6)
+    (left, right), word = panel.x, "e"
+    if not left < e[0] < right:
+        word = "e →" if e[0] > right else "← e"
+    at = [np.clip(e[0], left + 8, right - 8), _HORIZON - 18]
+    anchor = "mm" if word == "e" else "rm" if e[0] > right else "lm"
+    panel.text(at, word, IDEAL, anchor=anchor, size=14)
+    return float(e[0])
+
+
 def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
     """Draw a band for each metre; where something stands before it, thin dashes."""
     h = np.append(np.arange(0, height, 0.125), height)
     pixels, places = at_height(foot, h), _stands(foot) - 1e3 * h[:, None] * [0, 1, 0]
-    u, v = np.clip(np.rint(pixels), 0, np.array(_CAMERA.size) - 1).astype(int).T
+    u, v = np.clip(np.rint(pixels) - _BORDER, 0, np.array(_WIDE.size) - 1).astype(int).T
     hidden = depths[v, u] < (places @ _CAMERA.G[2, :3] + _CAMERA.G[2, 3]) - 100
     width = float(np.linalg.norm(pixels[1] - pixels[0])) * _WIDTH / 0.125 / panel.pixel
     seen = np.where(hidden[:, None], np.nan, pixels)
@@ -121,8 +149,8 @@ def _draw_side(panel: Panel, away: float, height: float) -> None:
         panel.line(ends, ESTIMATED if metre % 2 == 0 else "#FFFFFF", 5)
 
 
-def _sentence(foot: Array, height: float) -> str:
+def _sentence(foot: Array, height: float, e: float) -> str:
     metre = float(np.linalg.norm(at_height(foot, 1) - foot))
     u, v = foot.tolist()
     place = f"A rod of {height:.1f} m at ({u:.0f}, {v:.0f}) px"
-    return f"{place}: its lowest metre is {metre:.0f} px high."
+    return f"{place}: its lowest metre is {metre:.0f} px high. e is at ({e:.0f}, {_HORIZON:.0f})."
