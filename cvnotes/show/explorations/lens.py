@@ -37,10 +37,12 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
         _around("k3", 2.0, 0.01, k3, "radial, of the sixth power of r"),
         _around("p1", 0.1, 0.001, p1, "tangential: an element of the lens off the axis, along y"),
         _around("p2", 0.1, 0.001, p2, "tangential: an element of the lens off the axis, along x"),
+        Setting("ring", "ring r", 0.05, 1.25, 0.01, 0.3, "the ideal radius of a ring"),
     )
     about = (
         "A room and a square grid, both seen through a lens; beside it the observed radius "
-        "r L(r) against the ideal radius r, with the fold where the model ends."
+        "r L(r) against the ideal radius r, with the fold where the model ends. In both a "
+        "ring, grey, and what the polynomial makes of it."
     )
 
     def pulled(values: Values, at: Array) -> Values:
@@ -49,7 +51,10 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
         rest = 1 + values["k2"] * r2**2 + values["k3"] * r2**3 - 3 * p * _HELD
         return {"k1": float((at[1] / _HELD - rest) / r2)}
 
-    return Model("lens", about, settings, partial(_draw, camera), {"curve": pulled})
+    def ringed(_: Values, at: Array) -> Values:
+        return {"ring": float(at[0])}
+
+    return Model("lens", about, settings, partial(_draw, camera), {"curve": pulled, "ring": ringed})
 
 
 def _around(name: str, reach: float, step: float, value: float, about: str) -> Setting:
@@ -66,6 +71,9 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     grid = paper.panel(_SIZE, (-x, x), (-reach, reach), title)
     grid.image(_bent_room(lens, x, reach, paper.sharpness))
     _draw_fold(grid, lens)
+    along = "along the dashed ray on the left" if any(lens.p) else "r L(r) against ideal r"
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), f"radius: observed {along}")
+    said = _draw_ring(grid, curve, lens, values["ring"])
     _draw_grid(grid, lens)
     corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
     for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
@@ -74,10 +82,8 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
         ray = [[0, 0], -reach * np.array(lens.p[::-1]) / np.hypot(*lens.p)]
         grid.line(ray, "#FFFFFF", 3)
         grid.line(ray, IDEAL, 1.4, dash=5)
-    along = "along the dashed ray on the left" if any(lens.p) else "r L(r) against ideal r"
-    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), f"radius: observed {along}")
     _draw_curve(curve, lens)
-    return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
+    return Drawing(paper.join((grid, curve)), f"{_sentence(camera, lens)} {said}")
 
 
 @cache
@@ -174,6 +180,31 @@ def _draw_curve(panel: Panel, lens: Lens) -> None:
         shift, height, anchor = (0.015, 1.12, "lm") if near else (-0.015, 0.06, "rm")
         words = f"max_radius {lens.max_radius:.3f}"
         panel.text([lens.max_radius + shift, height], words, ESTIMATED, anchor=anchor)
+
+
+def _draw_ring(grid: Panel, curve: Panel, lens: Lens, r: float) -> str:
+    """Draw what becomes of a ring of ideal radius r, beyond the fold too; says it in a sentence."""
+    seen, ring = float(first_to_fold(lens, np.array(r))), r * circle(121)
+    beyond = r > lens.max_radius
+    ink, dash = (ESTIMATED, 7.0) if beyond else (LENS, 0.0)
+    grid.line(ring, MUTED, 1.4, dash=4)
+    for colour, width in (("#FFFFFF", 5.0), (ink, 3.0)):
+        grid.line(polynomial(lens, ring), colour, width, dash=dash)
+    curve.line([[r, 0], [r, seen], [0, seen]], ink, 1)
+    curve.text([0.14, seen + 0.015], f"{seen:.2f}".replace("-", "−"), ink, anchor="ld", size=12)
+    curve.mark([r, 0], "ideal", 8)
+    curve.grip("ring", "the ideal radius of the ring", [r, 0], 5)
+    if not beyond:
+        return f"The ring of radius {r:.2f} is seen at {seen:.2f}."
+    said = f"The ring of radius {r:.2f} would be drawn at {seen:.2f}"
+    if seen < 0:
+        return f"{said}, beyond the middle."
+    towards = -np.array(lens.p[::-1]) / np.hypot(*lens.p) if any(lens.p) else np.array([1.0, 0.0])
+    other = float(np.linalg.norm(lens.undistort(seen * towards)))
+    if np.isnan(other):
+        return f"{said}, farther out than all that is seen."
+    curve.mark([other, seen], "estimated", 7)
+    return f"{said}, where that of {other:.2f} is seen."
 
 
 def _sentence(camera: Camera, lens: Lens) -> str:

@@ -9,7 +9,7 @@ from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, LENS, mixed
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD, mixed
 
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
 _LEFT, _TOP, _SIDE = 324, 185, 57  # px, the part of the photograph that is shown
@@ -28,7 +28,12 @@ class Window(NamedTuple):
     eigenvalues: Array  # the smaller one first
     axes: Array  # their directions, in columns
     R: float
-    crossing: Array  # NaN, where the votes do not cross
+    least: Array  # where the sum of squares is least
+    crossing: Array  # the same; NaN, where the votes do not cross
+
+    def misses(self, m: Array) -> float:
+        """Return the sum Σ (gᵀ(p − m))², how far the lines of all pixels pass m by."""
+        return float(np.sum(np.sum(self.g * (self.p - m), axis=1) ** 2))
 
 
 def window_at(gradients: Array, at: tuple[int, int]) -> Window:
@@ -40,8 +45,9 @@ def window_at(gradients: Array, at: tuple[int, int]) -> Window:
     eigenvalues, axes = np.linalg.eigh(S)
     R = float(np.linalg.det(S) - _K * np.trace(S) ** 2)
     crosses = R > 0 and eigenvalues[0] > _NOTHING
-    crossing = np.linalg.solve(S, g.T @ (g * p).sum(axis=1)) if crosses else np.full(2, np.nan)
-    return Window(p, g, eigenvalues, axes, R, crossing)
+    least = np.linalg.lstsq(S, g.T @ (g * p).sum(axis=1))[0]
+    crossing = least if crosses else np.full(2, np.nan)
+    return Window(p, g, eigenvalues, axes, R, least, crossing)
 
 
 def votes_model() -> Model:
@@ -52,21 +58,31 @@ def votes_model() -> Model:
     settings = (
         Setting("u", "u (px)", u, u + far, 1, 352, "column of the window's middle"),
         Setting("v", "v (px)", v, v + far, 1, 213, "row of the window's middle"),
+        Setting("m_u", "m, aside (px)", -_HALF, _HALF, 0.05, -1.5, "to the right of the middle"),
+        Setting("m_v", "m, down (px)", -_HALF, _HALF, 0.05, 1.5, "below the window's middle"),
     )
     about = (
         "A part of a photograph of the board with a window of 7 × 7 pixels; the lines along which "
-        "its pixels see an edge, orange where steep and blue where level; and their gradients, "
-        "with an ellipse as wide as they spread."
+        "its pixels see an edge, orange where steep and blue where level, and how far they pass "
+        "a square by, m; and their gradients, with an ellipse as wide as they spread."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
         at = round(values["u"]), round(values["v"])
         window = window_at(gradients, at)
+        m = np.add(at, [values["m_u"], values["m_v"]])
         votes = _votes(paper, photo, at, window, corners)
+        _draw_misses(votes, window, m)
         picture = paper.join((_photo(paper, photo, at), votes, _spread(paper, window)))
-        return Drawing(picture, _sentence(at, window))
+        return Drawing(picture, _sentence(at, window, m))
 
-    drags = {"window": lambda _, at: {"u": float(at[0]), "v": float(at[1])}}
+    drags = {
+        "window": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
+        "m": lambda values, at: {
+            "m_u": float(at[0] - values["u"]),
+            "m_v": float(at[1] - values["v"]),
+        },
+    }
     return Model("votes", about, settings, draw, drags)
 
 
@@ -98,8 +114,24 @@ def _votes(
         ink = mixed("#FFFFFF", ESTIMATED if steep else LENS, 0.25 + 0.75 * weight)
         panel.line(ends, ink, 0.6 + 2 * weight)
     panel.mark(corners, "ideal", 11)
-    panel.mark(window.crossing, "estimated", 7)
     return panel
+
+
+def _draw_misses(panel: Panel, window: Window, m: Array) -> None:
+    """Draw how far the lines pass m by, and round their crossing where the sum is 2, 4 … times."""
+    length = np.linalg.norm(window.g, axis=1)
+    strong = length > _WEAK
+    n = window.g[strong] / length[strong, None]
+    feet = m + n * np.sum(n * (window.p[strong] - m), axis=1)[:, None]
+    panel.segments(np.stack([m + 0 * feet, feet], axis=1), WORLD, 0.7)
+    if window.eigenvalues[1] > _NOTHING:
+        half = window.axes / np.sqrt(window.eigenvalues / window.misses(window.least))
+        for times in (2, 4, 8, 16):
+            panel.line(window.least + circle(181) * np.sqrt(times - 1) @ half.T, IDEAL, 1, dash=3)
+    panel.mark(window.crossing, "estimated", 7)
+    panel.mark(m, "world", 8)
+    panel.text(m + [0.3, 0.3], "m", WORLD, size=14)
+    panel.grip("m", "a point, for which all lines might vote", m, 5)
 
 
 def _spread(paper: Paper, window: Window) -> Panel:
@@ -114,7 +146,7 @@ def _spread(paper: Paper, window: Window) -> Panel:
     return panel
 
 
-def _sentence(at: tuple[int, int], window: Window) -> str:
+def _sentence(at: tuple[int, int], window: Window, m: Array) -> str:
     small, large = window.eigenvalues
     said = (
         f"At ({at[0]}, {at[1]}) the eigenvalues are {small:.0f} and {large:.0f}, "
@@ -127,4 +159,8 @@ def _sentence(at: tuple[int, int], window: Window) -> str:
     u, v = window.crossing
     inside = max(abs(u - at[0]), abs(v - at[1])) <= _HALF
     what = "this is a corner" if inside else "a corner is near, outside of the window"
-    return f"{said}both are large, {what}. The votes cross at ({u:.2f}, {v:.2f})."
+    times = window.misses(m) / window.misses(window.least)
+    return (
+        f"{said}both are large, {what}. At m the sum of squares is {times:.1f} times the "
+        f"least; the votes cross at ({u:.2f}, {v:.2f})."
+    )
