@@ -1175,6 +1175,27 @@ def test_a_ring_comes_back_beyond_the_fold_upon_one_that_the_lens_shows(r, ink):
     assert model.dragged("ring", (0.777, 0.4), k1=-1)["ring"] == 0.78
 
 
+def test_a_tape_measure_lies_on_the_wall_with_a_long_tick_every_hundred_millimetres():
+    drawing, bare = (MODELS["homography"].drawing(u=259, v=285, measure=on) for on in (1, 0))
+    camera = Camera(course.camera().A, look_at([1180, 150, -760], [-60, 340, 0]))
+    x, y = numbers(drawing.sentence)[:2]
+    middles = camera.project([[at, y, 0] for at in (-155, -55)]) * 372 / 640
+    for u, v in np.rint(middles + [MARGIN, TITLE]).astype(int):
+        near = np.s_[v - 2 : v + 3, u - 2 : u + 3]
+        assert count(drawing.picture[near], "#F2C230", 60) > 3
+        assert count(bare.picture[near], "#F2C230", 60) == 0
+    scale, left = 346 / 900, MARGIN + 372 + 6
+    upper = TITLE + round((y + 70 - 5) * scale)  # above the short ticks
+    ticks = [round(left + (at + 440) * scale) for at in (-100, -200, -300)]
+    dark = drawing.picture[upper, : ticks[0] + 9].max(axis=1) < 200
+    found = np.flatnonzero(dark[round(left + (x + 465) * scale) :]) + round(
+        left + (x + 470) * scale
+    )
+    assert {min(ticks, key=lambda at, k=k: abs(at - k)) for k in found} == set(ticks)
+    assert max(min(abs(at - k) for at in ticks) for k in found) <= 1
+    assert "±" not in bare.sentence
+
+
 @pytest.mark.parametrize("p", [{"p1": 0.04}, {"p2": -0.05}, {"p1": 0.03, "p2": 0.04}])
 def test_the_lenss_curve_has_its_top_where_the_lens_folds(p):
     drawing = MODELS["lens"].drawing(k1=-0.9, k2=0, k3=0, **p)

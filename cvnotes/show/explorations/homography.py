@@ -12,7 +12,7 @@ from cvnotes.pictures import chart_room, course, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, WORLD, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD, rgb
 from cvnotes.warping import rectify_plane
 
 _PICTURE, _SHOWN, _SIZE = (640, 480), (372, 279), (346, 279)  # px
@@ -24,6 +24,7 @@ _REGION = (-440.0, 460.0), (-70.0, 655.72)  # mm of the wall, x and y: as wide a
 _SHORES = (1, 1.5, 2, 3, 5, 10, 20)  # mm, standard deviations of a place
 _CELLS, _LABELLED = (32, 26), 2  # of the wall, where they are computed; labels are above the chart
 _GRID = np.arange(-700, 701, 100)  # mm
+_TAPE, _YELLOW = 16, "#F2C230"  # mm, as wide as it is
 
 
 def homography_model() -> Model:
@@ -40,10 +41,11 @@ def homography_model() -> Model:
         Setting(name, f"plus {name} (px)", 0, most, 1, start, "where the plus is, in the picture")
         for name, most, start in zip("uv", _PICTURE, _PLUS, strict=True)
     )
+    settings += (Setting("measure", "measure", 0, 1, 1, 1, "a tape measure, and how sure it is"),)
     about = (
         "A wall at a slant, with a chart whose four corners are marked, and the millimetres of the "
         "wall as the homography of these corners lays them; beside it the wall seen straight on. "
-        "Lines upon it tell how well a place is known."
+        "A tape measure leads from the chart to a plus, and lines tell how well a place is known."
     )
 
     def corner(i: int) -> Drag:
@@ -74,13 +76,16 @@ def _shown(sharpness: int) -> Drawn:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     m = _READ + [[values[f"du{i}"], values[f"dv{i}"]] for i in range(1, 5)]
-    H, plus = dlt(_CHART, m), np.array([values["u"], values["v"]])
+    H, plus, measures = dlt(_CHART, m), np.array([values["u"], values["v"]]), values["measure"]
     place, covariance = measured(m, plus)
     picture = paper.picture_panel(_SHOWN, _PICTURE, "the wall, and its squares of 100 mm")
     picture.image(_shown(paper.sharpness))
     _draw_grid(picture, H)
     _draw_horizon(picture, H)
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 1.6)
+    before = (H @ [*place, 1])[2] * (H @ [210, 297, 1])[2] > 0  # the camera
+    if measures and before:
+        _draw_tape(picture, place, H)
     picture.mark(plus, "ideal", 8)
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):
@@ -88,14 +93,19 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         aside = np.clip(at + 22 * np.sign(at - m.mean(axis=0)), 16, np.subtract(_PICTURE, 16))
         picture.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
     picture.grip("plus", "the plus, whose place on the wall is measured", plus, 1)
-    straight = paper.panel(_SIZE, *_REGION, "straight on: where σ is 1 mm, 1.5, 2 …")
+    title = "straight on" + (": where σ is 1 mm, 1.5, 2 …" if measures else "")
+    straight = paper.panel(_SIZE, *_REGION, title)
     (X0, X1), (Y0, Y1) = _REGION
     pixel = (X1 - X0) / (_SIZE[0] * paper.sharpness)
     wall = rectify_plane(photograph(), H, ((X0, Y0), (X1, Y1)), pixel, fill=255)
-    _draw_shores(straight, wall, m, H)
+    if measures:
+        _draw_shores(straight, wall, m, H)
+        _draw_tape(straight, place, np.eye(3))
+    else:
+        straight.image(wall.astype(np.uint8))
     straight.line(_CHART[[0, 1, 2, 3, 0]], WORLD, 1.5, dash=5)
     straight.mark(place, "ideal", 8)
-    return Drawing(paper.join((picture, straight)), _sentence(place, np.sqrt(np.diag(covariance))))
+    return Drawing(paper.join((picture, straight)), _sentence(place, covariance, measures))
 
 
 def measured(m: Array, pixels: Array) -> tuple[Array, Array]:
@@ -141,6 +151,24 @@ def _draw_shores(panel: Panel, wall: Image, m: Array, H: Array) -> None:
             panel.text([X[crossed[0]], Y[_LABELLED]], f"{shore:g}", ESTIMATED, anchor="mm", size=11)
 
 
+def _draw_tape(panel: Panel, place: Array, H: Array) -> None:
+    """Lay a tape measure on the wall, from the chart's left edge to a place; H shows it."""
+
+    def shown(x: Array, y: float) -> Array:
+        return from_homogeneous(np.column_stack([x, np.full(len(x), y), np.ones(len(x))]) @ H.T)
+
+    (X, Y), reach = place, np.linspace(0, place[0], 41)
+    above, below = shown(reach, Y - _TAPE / 2), shown(reach, Y + _TAPE / 2)
+    rim = np.concatenate([above, below[::-1], above[:1]])
+    panel.polygons([rim], _YELLOW)
+    panel.line(rim, MUTED, 0.6)
+    for apart, length in ((10, 0.4), (100, 1)):
+        x = np.arange(0, min(abs(X), 5e3), apart) * np.sign(X)
+        ends = np.stack([shown(x, Y + _TAPE / 2), shown(x, Y + _TAPE * (0.5 - length))], axis=1)
+        near = np.linalg.norm(np.diff(ends[:, 0], axis=0, append=np.inf), axis=1)
+        panel.segments(ends[near > 3 * panel.pixel], IDEAL, 0.8)
+
+
 def _draw_grid(panel: Panel, H: Array) -> None:
     """Draw the lines at every hundredth millimetre before the camera, but not over the letters."""
     fine = np.linspace(_GRID[0], _GRID[-1], 57)
@@ -165,9 +193,12 @@ def _draw_horizon(panel: Panel, H: Array) -> None:
         )
 
 
-def _sentence(place: Array, std: Array) -> str:
+def _sentence(place: Array, covariance: Array, measures: float) -> str:
     x, y = place
     said = f"By these corners the plus lies at ({x:.0f}, {y:.0f}) mm from the chart's first corner"
     if np.abs([x, y]).max() > 1e4:
         return f"{said}: it is near the wall's horizon."
-    return f"{said}, ± {std[0]:.1f} mm across and ± {std[1]:.1f} mm down if pixels are read whole."
+    if not measures:
+        return f"{said}."
+    across, down = np.sqrt(np.diag(covariance))
+    return f"{said}, ± {across:.1f} mm across and ± {down:.1f} mm down if pixels are read whole."
