@@ -19,6 +19,7 @@ _NEAREST, _FARTHEST = 2500, 10_500  # mm
 _SAME, _AGREES = 120, 0.3  # mm of depth, and px of disparity, that are drawn as one
 _NAMES = {"wall": (0, 10_400), "cupboard": (900, 9100), "box": (650, 6800), "table": (-2100, 5900)}
 
+_LEFT, _RIGHT = "#D92B2B", "#0A8F96"  # red and cyan, as dark as lines must be
 _WALLS = [[-3000, -600], [-3000, 10_000], [3000, 10_000], [3000, -600]]
 
 
@@ -40,10 +41,12 @@ def depth_model() -> Model:
     settings = (
         Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 4000,
                 "what is so far away lies upon itself in both pictures"),
+        Setting("row", "row (px)", 0, _SIZE[1] - 1, 1, 225, "the row whose grey values are drawn"),
     )  # fmt: skip
     about = (
         "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
-        "until what lies at one depth, orange, has no fringes; beside it the room from above."
+        "until what lies at one depth, orange, has no fringes; beside it the room from above. "
+        "Below, the grey values of one row in both pictures, two curves that meet at this depth."
     )
 
     @lru_cache(maxsize=1)
@@ -56,25 +59,54 @@ def depth_model() -> Model:
         return left, right
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        Z = values["depth"]
+        Z, row = values["depth"], round(values["row"])
         d = _ALPHA * _BASE / Z
         panel = paper.picture_panel(_PICTURE, _SIZE, "left in red, right in cyan and shifted")
         picture = in_two_colours(*photographs(), d)
         there = np.abs(_ALPHA * _BASE / depths() - d) < _AGREES
         picture[there] = (picture[there] + 255 * np.array(rgb(ESTIMATED))) / 2
         panel.image(picture)
-        return Drawing(paper.join((panel, _plan(paper, Z))), _sentence(Z, d))
+        panel.line([[-1, row], [_SIZE[0], row]], IDEAL, 1, dash=5)
+        panel.mark([24, row], "ideal", 8)
+        panel.grip("row", "the row whose grey values are drawn", [24, row], 4)
+        curves = _row(paper, row, d, *photographs(), there[row])
+        drawn = paper.join((panel, _plan(paper, Z)), curves)
+        return Drawing(drawn, _sentence(Z, d, row, int(there[row].sum())))
 
-    return Model("depth", about, settings, draw, {"depth": lambda _, at: {"depth": float(at[1])}})
+    drags = {
+        "depth": lambda _, at: {"depth": float(at[1])},
+        "row": lambda _, at: {"row": float(at[1])},
+    }
+    return Model("depth", about, settings, draw, drags)
 
 
-def _sentence(Z: float, d: float) -> str:
+def _row(
+    paper: Paper, row: int, d: float, left: Image, right: Image, there: Array
+) -> tuple[Panel, Panel]:
+    """Draw the grey values of a row of both pictures, orange where the depth is the chosen one."""
+    curves = paper.panel((_PICTURE[0], 104), (-0.5, _SIZE[0] - 0.5), (262, -8), "their grey values")
+    legend = paper.panel((_PLAN[0], 104), (0, 1), (1, 0))
+    u = np.arange(_SIZE[0])
+    for height, x, grey, colour, width, words in (
+        (0.8, u, np.where(there, left[row], np.nan), ESTIMATED, 7, "both, as far away as the line"),
+        (0.5, u + d, right[row], _RIGHT, 1.4, f"right picture, {d:.1f} px to the right"),
+        (0.2, u, left[row], _LEFT, 1.4, f"left picture, row {row}"),
+    ):
+        curves.line(np.column_stack([x, grey]), colour, width)
+        legend.line([[0.04, height], [0.12, height]], colour, width)
+        legend.text([0.16, height], words, colour, size=12)
+    return curves, legend
+
+
+def _sentence(Z: float, d: float, row: int, there: int) -> str:
     wall = seen_from_above()[:, 1].max()
     fringe = abs(d - _ALPHA * _BASE / wall)
     said = f"Shifted by {d:.1f} px: what is {Z / 1000:.2f} m away has no fringes. "
     if fringe < 0.2:
-        return f"{said}That is the wall behind."
-    return f"{said}Those of the wall behind are {fringe:.1f} px wide."
+        said += "That is the wall behind."
+    else:
+        said += f"Those of the wall behind are {fringe:.1f} px wide."
+    return f"{said} In row {row} {there} of {_SIZE[0]} pixels have this shift."
 
 
 @lru_cache(maxsize=1)
