@@ -1175,6 +1175,35 @@ def test_a_ring_comes_back_beyond_the_fold_upon_one_that_the_lens_shows(r, ink):
     assert model.dragged("ring", (0.777, 0.4), k1=-1)["ring"] == 0.78
 
 
+@pytest.mark.parametrize("hole", [0.02, 0.074, 0.3])
+def test_the_light_behind_a_hole_is_drawn_as_wide_as_it_is_told_to_be(hole):
+    drawing = MODELS["pinhole"].drawing(hole=hole)
+    _, patch, spread, *_ = numbers(drawing.sentence)
+    top, sensor = TITLE + 197 + 6 + TITLE, MARGIN + 440 + 6 + 330
+    inked = np.abs(drawing.picture[top : top + 105, sensor] - [213.0, 94, 0]).max(axis=-1) < 60
+    assert abs(inked.sum() - 0.85 * (patch + spread)) <= 3
+    lit = drawing.picture[top : top + 105, sensor - 300]  # before the hole
+    assert abs((np.abs(lit - [215.0, 231, 243]).max(axis=-1) < 8).sum() - 0.85 * patch) <= 3
+
+
+@pytest.mark.parametrize("focus", [4, 0.2, 0.1])
+def test_rays_meet_on_the_sensor_from_what_is_sharp_and_before_it_from_what_is_farther(focus):
+    picture = MODELS["pinhole"].picture(lens=1, focus=focus).astype(int)
+    top, left = TITLE + 197 + 6 + TITLE, MARGIN + 440 + 6
+
+    def apart(x, ink):
+        """How far apart the outermost strokes of a colour are in a column."""
+        near = picture[top : top + 105, left + x - 1 : left + x + 2]
+        warm = (near[..., 0] - near[..., 2]) * (1 if ink == ESTIMATED else -1)
+        return np.ptp(np.flatnonzero((warm > 50).any(axis=1)))
+
+    for ink, s in ((ESTIMATED, 5), (CAMERA, 0.2)):
+        disc = 1.6 * abs(1 / s - 1 / focus)  # px: 2 mm · 4 mm / 5 µm, and metres
+        assert abs(apart(330, ink) - 3 * disc) <= 4
+        expected = 34 + (np.sign(focus - s) * 1.5 * disc - 34) * 2 / 3  # two thirds of the way
+        assert abs(apart(270, ink) - 2 * abs(expected)) <= 4
+
+
 def test_a_tape_measure_lies_on_the_wall_with_a_long_tick_every_hundred_millimetres():
     drawing, bare = (MODELS["homography"].drawing(u=259, v=285, measure=on) for on in (1, 0))
     camera = Camera(course.camera().A, look_at([1180, 150, -760], [-60, 340, 0]))

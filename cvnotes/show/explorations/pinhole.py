@@ -12,7 +12,8 @@ from cvnotes.pictures import render_scene, room
 from cvnotes.pictures.posters import chart
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS
+from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 Spectrum = npt.NDArray[np.complex128]
 
@@ -23,7 +24,9 @@ _WIDEST, _HIGHEST = 0.4, 120.0  # mm, px
 _ROOM = 2.5, 10.0, 5.0  # m: the nearest and the farthest that is seen, and one between
 _CARD = 0.2  # m: its depth
 _DEEPEST = 17.0  # px
-_PALE = "#EFEFEF"
+_PALE, _LIT = "#EFEFEF", "#D7E7F3"
+_HOLE, _SENSOR, _EDGE = 150, 330, 34  # px of the side view: where they are; half of the lens
+_ACROSS = 0.85, 3  # px there for a pixel of the sensor, behind a hole and behind the lens
 # px around the picture, so that nothing comes round from the other side; 540 and 640 in all, whose
 # Fourier transforms are quick.
 _FRAME = (105, 105), (100, 100)
@@ -39,7 +42,8 @@ def pinhole_model() -> Model:
     about = (
         "A room and a near card through a hole; beside it how many pixels wide the spot of a far "
         "lamp is, against the diameter: the hole itself, the spread of light, and their sum, which "
-        "has a lowest point. With a lens: how wide the spot of a lamp is, against its depth."
+        "has a lowest point. With a lens: how wide the spot of a lamp is, against its depth. "
+        "Below, the rays that make the spot, from the side."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -54,7 +58,14 @@ def pinhole_model() -> Model:
         panel.image(photographed(patches, d))
         beside = _discs(paper, focus) if values["lens"] else _spots(paper, d)
         said = _said_of_a_lens(focus) if values["lens"] else _said_of_a_hole(d)
-        return Drawing(paper.join((panel, beside)), said)
+        side = paper.panel((410, 105), (0, 410), (52.5, -52.5), "from the side, stretched across")
+        side.line([[_SENSOR, -60], [_SENSOR, 60]], MUTED, 2)
+        side.text([_SENSOR + 12, -42], "sensor", MUTED)
+        if values["lens"]:
+            _draw_lens(side, focus)
+        else:
+            _draw_hole(side, d)
+        return Drawing(paper.join((panel, [beside, side])), said)
 
     drags = {
         "hole": lambda _, at: {"hole": float(at[0]), "lens": 0},
@@ -124,7 +135,7 @@ def spread_out(patch: float, d: float, spectrum: Spectrum) -> Array:
 def _spots(paper: Paper, d: float) -> Panel:
     """Draw how wide a spot is behind each hole."""
     panel = paper.panel(
-        (410, 330), (-0.02, 0.43), (_HIGHEST, -8), "width of the spot (px) against the hole (mm)"
+        (410, 197), (-0.02, 0.43), (_HIGHEST, -8), "width of the spot (px) against the hole (mm)"
     )
     panel.ticks(x=(0, 0.1, 0.2, 0.3, 0.4), y=(0, 40, 80))
     holes = np.linspace(0.008, 0.43, 400)
@@ -148,7 +159,7 @@ def _spots(paper: Paper, d: float) -> Panel:
 def _discs(paper: Paper, focus: float) -> Panel:
     """Draw how wide the lens makes a point at each depth."""
     panel = paper.panel(
-        (410, 330), (-1.14, 1.1), (_DEEPEST, -2.4), "width of the spot (px) against depth (m)"
+        (410, 197), (-1.14, 1.1), (_DEEPEST, -2.4), "width of the spot (px) against depth (m)"
     )
     near, far = np.log10(_ROOM[:2])
     panel.polygons([[[near, 0], [far, 0], [far, _DEEPEST], [near, _DEEPEST]]], _PALE)
@@ -168,6 +179,36 @@ def _discs(paper: Paper, focus: float) -> Panel:
     panel.text([min(here[0], 0.96), 2.6], "sharp", ESTIMATED, anchor="mm", size=13)
     panel.grip("focus", "the depth that is sharp", here, 4)
     return panel
+
+
+def _draw_hole(panel: Panel, d: float) -> None:
+    """Draw the light of a far lamp, and how it spreads behind the hole."""
+    patch, spread = (_ACROSS[0] / 2 * float(width) for width in spot(d))
+    panel.polygons([np.array([[0, -1], [_SENSOR, -1], [_SENSOR, 1], [0, 1]]) * [1, patch]], _LIT)
+    for side in (-1, 1):
+        panel.line([[0, side * patch], [_SENSOR, side * patch]], LENS, 1)
+        ends = [[_HOLE, side * patch], [_SENSOR, side * (patch + spread)]]
+        panel.line(ends, CAMERA, 1.2, dash=4)
+        panel.line([[_HOLE, side * patch], [_HOLE, side * 60]], IDEAL, 4)
+    panel.line([[_SENSOR, -patch - spread], [_SENSOR, patch + spread]], ESTIMATED, 7)
+    panel.text([6, -42], "light of a far lamp", LENS)
+
+
+def _draw_lens(panel: Panel, focus: float) -> None:
+    """Draw the rays through the lens's edges, of a point of the card and of one in the room."""
+    rim = circle(61) * [8, _EDGE + 6]
+    panel.polygons([rim + [_HOLE, 0]], _PALE)
+    points = ((_CARD, CAMERA, [14.0, 0.0]), (_ROOM[2], ESTIMATED, None))
+    for s, colour, start in sorted(points, key=lambda point: -disc(point[0], focus)):
+        # What is farther than the focus meets before the sensor: there its rays have crossed.
+        end = _ACROSS[1] / 2 * float(disc(s, focus)) * np.sign(focus - s)
+        for side in (-1, 1):
+            at = [_HOLE, side * _EDGE]
+            panel.line([start or [0, at[1]], at, [_SENSOR, side * end]], colour, 1.2)
+        panel.line([[_SENSOR, -abs(end) - 1], [_SENSOR, abs(end) + 1]], colour, 7)
+    panel.line(rim + [_HOLE, 0], LENS, 1.5)
+    panel.text([6, -44], f"from {_ROOM[2]:g} m", ESTIMATED)
+    panel.text([22, 0], "the card", CAMERA)
 
 
 def _said_of_a_lens(focus: float) -> str:
