@@ -1204,6 +1204,41 @@ def test_rays_meet_on_the_sensor_from_what_is_sharp_and_before_it_from_what_is_f
         assert abs(apart(270, ink) - 2 * abs(expected)) <= 4
 
 
+@pytest.mark.parametrize(
+    ("a", "b", "kind"),
+    [(0.3, 0.4, "ellipse"), (0.6, 0.8, "parabola"), (0.9, -1.0, "hyperbola"), (0, 0, "a circle")],
+)
+def test_the_picture_of_a_circle_is_the_conic_that_its_matrix_says(a, b, kind):
+    drawing = MODELS["conic"].drawing(a=a, b=b)
+    assert kind in drawing.sentence
+    inverse = np.linalg.inv([[1, 0, 0], [0, 1, 0], [a, b, 1]])
+    C = inverse.T @ np.diag([1, 1, -1]) @ inverse
+    disc = np.linalg.det(C[:2, :2])  # of a parabola 0, of a hyperbola negative
+    assert np.sign(round(disc, 9)) == {"parabola": 0, "hyperbola": -1}.get(kind, 1)
+    left = MARGIN + 400 + 6
+    picture = drawing.picture[TITLE + 4 : TITLE + 336, left + 4 : left + 396].astype(int)
+    for ink, side in ((LENS, 1), (ESTIMATED, -1)):
+        v, u = np.nonzero((np.abs(picture - colour(ink)) < 40).all(axis=-1))
+        if side < 0 and kind != "hyperbola":
+            assert len(u) < 5
+            continue
+        x = np.column_stack([(u + 4.5) / 42.5 - 80 / 17, 4 - (v + 4.5) / 42.5, np.ones(len(u))])
+        assert len(x) > 100
+        gradient = np.linalg.norm((2 * x @ C)[:, :2], axis=1)
+        assert np.median(np.abs(np.sum(x @ C * x, axis=1)) / gradient) < 1.5 / 42.5  # px off
+        # Back on the plane these are on their side of the line, where 1 / w is.
+        assert np.mean(np.sign(x @ inverse[2]) == side) > 0.98
+
+
+def test_the_line_that_goes_to_infinity_is_held_at_its_foot():
+    model = MODELS["conic"]
+    for foot in ((0.8, -0.3), (-1, 1), (0.5, 0.5)):
+        values = model.dragged("horizon", foot)
+        assert np.dot([values["a"], values["b"]], foot) == pytest.approx(-1, abs=0.01)
+        assert np.allclose(grip_of(model.drawing(**values), "horizon").at, foot, atol=0.02)
+    assert not model.drawing(a=0, b=0).grips
+
+
 def test_a_tape_measure_lies_on_the_wall_with_a_long_tick_every_hundred_millimetres():
     drawing, bare = (MODELS["homography"].drawing(u=259, v=285, measure=on) for on in (1, 0))
     camera = Camera(course.camera().A, look_at([1180, 150, -760], [-60, 340, 0]))
