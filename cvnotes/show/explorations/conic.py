@@ -26,7 +26,7 @@ def conic_model() -> Model:
     )
 
     def pulled(_: Values, at: Array) -> Values:
-        a, b = (-at / max(at @ at, 1e-9)).tolist()
+        a, b = (-at / max(float(at @ at), 1e-9)).tolist()
         return {"a": a, "b": b}
 
     return Model("conic", about, settings, _draw, {"horizon": pulled})

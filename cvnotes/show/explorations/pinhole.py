@@ -189,7 +189,7 @@ def _draw_hole(panel: Panel, d: float) -> None:
         panel.line([[0, side * patch], [_SENSOR, side * patch]], LENS, 1)
         ends = [[_HOLE, side * patch], [_SENSOR, side * (patch + spread)]]
         panel.line(ends, CAMERA, 1.2, dash=4)
-        panel.line([[_HOLE, side * patch], [_HOLE, side * 60]], IDEAL, 4)
+        panel.line([[_HOLE, side * patch], [_HOLE, side * 60.0]], IDEAL, 4)
     panel.line([[_SENSOR, -patch - spread], [_SENSOR, patch + spread]], ESTIMATED, 7)
     panel.text([6, -42], "light of a far lamp", LENS)
 
@@ -198,13 +198,13 @@ def _draw_lens(panel: Panel, focus: float) -> None:
     """Draw the rays through the lens's edges, of a point of the card and of one in the room."""
     rim = circle(61) * [8, _EDGE + 6]
     panel.polygons([rim + [_HOLE, 0]], _PALE)
-    points = ((_CARD, CAMERA, [14.0, 0.0]), (_ROOM[2], ESTIMATED, None))
-    for s, colour, start in sorted(points, key=lambda point: -disc(point[0], focus)):
+    points = ((_CARD, CAMERA, (14.0, 0.0)), (_ROOM[2], ESTIMATED, (0.0, _EDGE)))
+    for s, colour, (x, y) in sorted(points, key=lambda point: -disc(point[0], focus)):
         # What is farther than the focus meets before the sensor: there its rays have crossed.
         end = _ACROSS[1] / 2 * float(disc(s, focus)) * np.sign(focus - s)
         for side in (-1, 1):
-            at = [_HOLE, side * _EDGE]
-            panel.line([start or [0, at[1]], at, [_SENSOR, side * end]], colour, 1.2)
+            way = np.array([[x, y], [_HOLE, _EDGE], [_SENSOR, end]])
+            panel.line(way * [1, side], colour, 1.2)
         panel.line([[_SENSOR, -abs(end) - 1], [_SENSOR, abs(end) + 1]], colour, 7)
     panel.line(rim + [_HOLE, 0], LENS, 1.5)
     panel.text([6, -44], f"from {_ROOM[2]:g} m", ESTIMATED)
