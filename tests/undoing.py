@@ -23,8 +23,6 @@ import sys
 import tomllib
 from pathlib import Path
 
-import nbformat
-
 from cvnotes.learn.truth.verification import NotVerified
 from cvnotes.tutor.course import short_name
 
@@ -118,8 +116,8 @@ def in_a_copy(function, *given):
 
 def main():
     notebook = Path(sys.argv[1]).resolve()
-    cells = nbformat.read(notebook, as_version=4).cells
-    sources = [cell.source for cell in cells if cell.cell_type == "code"]
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     table = tomllib.loads((TABLES / f"{short_name(notebook.name)}.toml").read_text())["row"]
     rows = [Row(row, sources) for row in table]
     os.chdir(notebook.parent)

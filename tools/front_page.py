@@ -11,7 +11,6 @@ import re
 from html import escape
 from pathlib import Path
 
-import nbformat
 import numpy as np
 from PIL import Image
 from site_figures import FOLDER, panels_of
@@ -133,10 +132,10 @@ def richest(path: Path) -> Image.Image:
     Where no cell has it, of all figures of the notebook.
     """
     best, wealth = Image.new("RGB", CARD, "white"), 0.0
-    cells = nbformat.read(path, as_version=4).cells
-    for cell in [each for each in cells if "card" in each.metadata.get("tags", [])] or cells:
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    for cell in [each for each in cells if "card" in each["metadata"].get("tags", [])] or cells:
         for output in cell.get("outputs", []):
-            for found in _IMAGE.finditer(output.get("data", {}).get("text/html", "")):
+            for found in _IMAGE.finditer("".join(output.get("data", {}).get("text/html", ""))):
                 figure = Image.open(io.BytesIO(base64.b64decode(found[1]))).convert("RGB")
                 for left, top, width, height in panels_of(np.asarray(figure)):
                     panel = figure.crop((left, top, left + width, top + height))

@@ -216,6 +216,10 @@ def _along(summary: Callable[..., Any], right: Array) -> Iterator[Any]:
         yield np.apply_along_axis(summary, axis, right)
 
 
+_SUMMARIES: tuple[tuple[str, Callable[[Array], Any]], ...] = (
+    ("mean", np.mean), ("sum", np.sum), ("length", np.linalg.norm), ("largest", np.max),
+    ("smallest", np.min),
+)  # fmt: skip
 _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
     ("transposed", "the numbers are right; an array has its rows first, so transpose it.", _turned),
     ("a column, not a row", "the numbers are right, each in a bracket of its own: .ravel() or [:, "
@@ -239,8 +243,7 @@ _LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
     ("the diagonal only", "that is the diagonal only.", _diagonal),
     ("a matrix for its diagonal", "asked is the diagonal alone: see np.diag.", _on_diagonal),
     *((f"the {what}", f"that is the {what} of the right numbers; all of them are asked.",
-       _whole(summary)) for what, summary in (("mean", np.mean), ("sum", np.sum),
-       ("length", np.linalg.norm), ("largest", np.max), ("smallest", np.min))),
+       _whole(summary)) for what, summary in _SUMMARIES),
 )  # fmt: skip
 _ONE_NAN = ("one NaN for all", "one NaN for all of it; np.full({wanted}, np.nan) has the shape.")
 # What shapes alone tell, (given, wanted), whatever the numbers are.
