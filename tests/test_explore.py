@@ -158,23 +158,23 @@ def check_sight(name, values):
 
 @pytest.mark.once
 @each_model
-def test_each_slider_may_stand_at_either_end_and_at_zero(name):
+def test_each_slider_may_stand_at_zero(name):
     for s in MODELS[name].settings:
-        for value in {s.low, s.high, min(max(0, s.low), s.high)}:
-            check_sight(name, {s.name: value})
+        if s.low < 0 < s.high:  # else it is an end, which the next test asks for
+            check_sight(name, {s.name: 0})
 
 
 @pytest.mark.once
 @pytest.mark.slow
 @each_model
 def test_all_sliders_may_stand_at_their_ends_in_every_combination(name):
-    """Of more than seven, in 128 that hold each combination of any three of them."""
+    """Of more than five, in 32 that hold each combination of any two of them."""
     settings = MODELS[name].settings
     ends = np.array([*itertools.product(*((s.low, s.high) for s in settings))])
-    if len(ends) > 2**7:
-        ends = np.random.default_rng(7).permutation(ends)[: 2**7]
-        for three in itertools.combinations(ends.T, 3):
-            assert len(set(zip(*three, strict=True))) == 8
+    if len(ends) > 2**5:
+        ends = np.random.default_rng(7).permutation(ends)[: 2**5]
+        for two in itertools.combinations(ends.T, 2):
+            assert len(set(zip(*two, strict=True))) == 4
     for values in ends.tolist():
         check_sight(name, dict(zip((s.name for s in settings), values, strict=True)))
 
@@ -239,6 +239,7 @@ def test_a_picture_is_made_and_packed_sooner_than_an_empty_figure_of_matplotlib(
     assert fastest(lambda: pack_png(MODELS[name].picture())) < seconds_of_matplotlib
 
 
+@pytest.mark.once
 @each_model
 def test_all_that_is_written_is_among_the_letters_that_a_page_brings(name, monkeypatch):
     written = set()
@@ -253,6 +254,7 @@ def test_all_that_is_written_is_among_the_letters_that_a_page_brings(name, monke
     assert written <= set(LETTERS)
 
 
+@pytest.mark.once
 @each_model
 def test_no_figure_is_left_open(name):
     import matplotlib.pyplot as plt
@@ -261,6 +263,7 @@ def test_no_figure_is_left_open(name):
     assert plt.get_fignums() == []
 
 
+@pytest.mark.once
 @each_model
 def test_a_still_shows_what_the_widget_shows_at_twice_the_resolution(name):
     s = MODELS[name].settings[0]
@@ -2122,6 +2125,7 @@ def test_a_slider_that_is_moved_changes_the_picture_and_reset_brings_it_back(nam
     widget.close_all()
 
 
+@pytest.mark.once
 @each_model
 def test_sliders_say_what_they_are_and_can_be_moved_by_keys(name):
     widget = explorations.explore(name)
@@ -2169,6 +2173,7 @@ def test_reset_draws_once_and_unchanged_values_are_not_drawn_again():
     widget.close_all()
 
 
+@pytest.mark.once
 @pytest.mark.slow
 @each_model
 def test_where_no_kernel_runs_the_still_of_the_same_values_is_seen(name):
@@ -2339,6 +2344,7 @@ def test_a_camera_carried_round_the_board_keeps_its_middle_where_it_is_in_the_pi
         assert np.linalg.norm(now - pixel) < 12  # px; T is in whole millimetres, R in degrees
 
 
+@pytest.mark.once
 @each_model
 def test_on_a_narrow_page_panels_come_below_each_other(name):
     model = MODELS[name]
