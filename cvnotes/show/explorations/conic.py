@@ -66,7 +66,7 @@ def _draw_both(
 
 def _sentence(n: Array) -> str:
     s = float(n @ n)
-    said = f"a² + b² = {s:.2f}"
+    said = f"a² + b² = {s:.4f}"
     if s == 0:
         return f"{said}: H is the identity, and a circle stays a circle."
     if np.isclose(s, 1, rtol=0, atol=1e-9):

@@ -83,8 +83,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_grid(picture, H)
     _draw_horizon(picture, H)
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 1.6)
-    before = (H @ [*place, 1])[2] * (H @ [210, 297, 1])[2] > 0  # the camera
-    if measures and before:
+    w = np.array([[0, place[1], 1], [*place, 1], [210, 297, 1]]) @ H[2]
+    seen = bool((w[:2] * w[2] > 0).all())  # both ends of the tape are before the camera
+    if measures and seen:
         _draw_tape(picture, place, H)
     picture.mark(plus, "ideal", 8)
     picture.mark(m, "estimated", 7)
@@ -100,7 +101,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     wall = rectify_plane(photograph(), H, ((X0, Y0), (X1, Y1)), pixel, fill=255)
     if measures:
         _draw_shores(straight, wall, m, H)
-        _draw_tape(straight, place, np.eye(3))
+        if seen:
+            _draw_tape(straight, place, np.eye(3))
     else:
         straight.image(wall.astype(np.uint8))
     straight.line(_CHART[[0, 1, 2, 3, 0]], WORLD, 1.5, dash=5)

@@ -194,9 +194,10 @@ def _draw_ring(grid: Panel, curve: Panel, lens: Lens, r: float) -> str:
     curve.text([0.14, seen + 0.015], f"{seen:.2f}".replace("-", "−"), ink, anchor="ld", size=12)
     curve.mark([r, 0], "ideal", 8)
     curve.grip("ring", "the ideal radius of the ring", [r, 0], 5)
+    place = f"{seen:.2f}{' on the dashed ray' if any(lens.p) else ''}"
     if not beyond:
-        return f"The ring of radius {r:.2f} is seen at {seen:.2f}."
-    said = f"The ring of radius {r:.2f} would be drawn at {seen:.2f}"
+        return f"The ring of radius {r:.2f} is seen at {place}."
+    said = f"The ring of radius {r:.2f} would be drawn at {place}"
     if seen < 0:
         return f"{said}, beyond the middle."
     towards = -np.array(lens.p[::-1]) / np.hypot(*lens.p) if any(lens.p) else np.array([1.0, 0.0])
