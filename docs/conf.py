@@ -67,8 +67,8 @@ if LIVE:
         "**": ["navbar-logo.html", "search-button-field.html", "run.html", "sbt-sidebar-nav.html"]
     }
 RUN = (
-    '<p class="run"><a href="{address}">Run this chapter in this browser</a>. '
-    "Nothing is installed: Python comes with the page, 66 MB once.</p>"
+    '<p class="run"><span><a href="{address}">Run this chapter in this browser</a>: '
+    "nothing to install, 66 MB once.</span></p>"
 )
 
 
@@ -79,14 +79,15 @@ def escape_initials(*event: Any) -> None:
 
 
 def offer_to_run(*event: Any) -> None:
-    """Lead from a chapter to its notebook in JupyterLite, below the title and beside each page."""
+    """Lead from a chapter to its notebook in JupyterLite, below its motto and beside each page."""
     _, page, _, context, _ = event
     context["lite"] = LITE
     context["chapter"] = chapter = page.removeprefix("notebooks/") if "notebooks/" in page else ""
     if LITE and chapter and "body" in context:
         address = context["pathto"]("lite/notebooks/index.html", 1)
         link = RUN.format(address=f"{address}?path={page}.ipynb")
-        context["body"] = context["body"].replace("</h1>", f"</h1>\n{link}", 1)
+        head = re.compile(r"</h1>(\s*<blockquote>.*?</blockquote>)?", re.S)
+        context["body"] = head.sub(rf"\g<0>\n{link}", context["body"], count=1)
 
 
 CONTENTS: dict[tuple[Any, ...], tuple[str, str]] = {}

@@ -70,7 +70,9 @@ addEventListener("load", () => {
       say(open);
     });
     say(false);
-    document.querySelector(".bd-article h1").after(button);
+    const run = document.querySelector(".bd-article p.run");
+    if (run) run.append(button);
+    else document.querySelector(".bd-article h1").after(button);
   }
 
   addEventListener("DOMContentLoaded", () => {

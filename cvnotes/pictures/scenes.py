@@ -1,6 +1,7 @@
 """Scenes to photograph: rails, blocks on a plain, a corridor, a room, a desk, a target."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -200,11 +201,11 @@ def desk(target: Chessboard) -> Scene:
     --------
     >>> from cvnotes.targets import Chessboard
     >>> desk(Chessboard((9, 6), 25.0))
-    Scene(52 vertices, 72 triangles)
+    Scene(116 vertices, 104 triangles)
     """
     parts = join(
         box((-3000, 3000), (-1500, -1450), (-2500, 700), (0.90, 0.88, 0.83)),  # the wall
-        box((-700, 900), (-450, 600), (_THICK, 43), (0.78, 0.57, 0.36)),
+        _boards_of_wood((-700, 900), (-450, 600), (_THICK, 43)),
         box((-330, -130), (-60, 230), (-38, _THICK), (0.24, 0.40, 0.46)),
         box((-326, -128), (-58, 232), (-32, -4), (0.95, 0.93, 0.88)),  # its pages
         box((300, 385), (-150, -65), (-95, _THICK), (0.78, 0.33, 0.28)),
@@ -213,6 +214,24 @@ def desk(target: Chessboard) -> Scene:
     return replace(parts, around=Surroundings(light=DESK_LIGHT, occlusion=50))
 
 
+def _boards_of_wood(x: Span, y: Span, z: Span) -> Scene:
+    """Build the top of a desk: boards of two pieces each, no two of one tone, on a dark ground."""
+    rng = np.random.default_rng(3)
+    along = np.linspace(*y, 9)
+    along[1:-1] += rng.uniform(-15, 15, 7)
+    pieces = [
+        _rectangle((left, right - _JOINT), (low, high - _JOINT))
+        for low, high in pairwise(along)
+        for left, right in pairwise([x[0], rng.uniform(*x), x[1]])
+    ]
+    tops = np.insert(np.array(pieces).reshape(-1, 2), 2, z[0], axis=1)
+    tones = _WOOD * rng.uniform(0.9, 1.1, (len(pieces), 1, 1))
+    loops = np.arange(len(tops)).reshape(-1, 4)
+    return join(quads(tops, loops, tones), box(x, y, (z[0] + 1, z[1]), 0.55 * _WOOD))
+
+
+_JOINT = 1.2
+_WOOD = np.array([0.78, 0.57, 0.36])
 _PRINT = ((0.06, 0.06, 0.07), (0.98, 0.98, 0.97))
 _PLATE = (0.62, 0.64, 0.66)
 _THICK = 3.0

@@ -1,4 +1,4 @@
-"""The thin shell around a model: sliders, a reset button, and a picture that follows."""
+"""The thin shell around a model: a picture, and below it sliders that it follows."""
 
 import json
 from html import escape
@@ -24,7 +24,7 @@ from cvnotes.show.explorations.page import page_data
 from cvnotes.targets import Chessboard
 
 _UNSEEN = "position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%)"
-_TWO_LINES = "min-height: 2.8em; line-height: 1.4"  # so that the picture stays where it is
+_TWO_LINES = "min-height: 2.8em; line-height: 1.4"  # so that the sliders stay where they are
 _SCRIPTS = ("grips.js", "notebook.js")
 _HIDDEN = {"display": "none"}
 _NO_ROOM = {"height": "0", "overflow": "hidden", "margin": "0"}
@@ -90,7 +90,7 @@ class Explorer(VBox):
         )
         beside = [self.matrices] if self.matrices.value else []
         hands = [self._hands()] if model.drags else []
-        super().__init__([controls, self.sentence, self.image, *beside, *hands])  # type: ignore[no-untyped-call]
+        super().__init__([self.image, self.sentence, *beside, controls, *hands])  # type: ignore[no-untyped-call]
         self.add_class("cvnotes-explorer")  # type: ignore[no-untyped-call]
 
     def __repr__(self) -> str:
@@ -193,8 +193,9 @@ class PulledPoints(Explorer):
     def __init__(self, model: Model) -> None:
         self._numbers = HTML()
         super().__init__(model)
-        controls, *shown = self.children
-        self.children = (*shown, Accordion([controls, self._numbers], titles=_FOLDED))
+        picture, sentence, controls, *hands = self.children
+        folded = Accordion([controls, self._numbers], titles=_FOLDED)
+        self.children = (picture, sentence, folded, *hands)
 
     @property
     def points(self) -> Array:

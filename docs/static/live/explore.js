@@ -39,7 +39,7 @@
       reset.addEventListener("click", () => this.reset());
       controls.append(reset);
       const name = `Exploration: ${told.name}`;
-      const parts = [controls, this.state, this.sentence, this.stage, this.matrices];
+      const parts = [this.stage, this.sentence, this.state, this.matrices, controls];
       output.replaceChildren(make("div", { className: "explore", role: "group", ariaLabel: name }, ...parts));
       this.grips.place(at.grips, at.size, this.values);
     }
@@ -117,7 +117,7 @@
 
     paint(pixels, shown, wanted) {
       const [width, height] = shown.size;
-      // What leaves room for sliders may stay in sight above them.
+      // A low picture leaves room for sliders: it stays in sight while they pass below it.
       this.stage.classList.toggle("low", this.stage.clientWidth * height < 0.5 * innerHeight * width);
       if (this.canvas.width !== width || this.canvas.height !== height)
         [this.canvas.width, this.canvas.height] = [width, height];
