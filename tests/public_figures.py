@@ -39,10 +39,10 @@ from cvnotes.show.figures import (
     ideas,
     lenses,
     lines,
-    predictions,
     quality,
     sensors,
     vanishing,
+    wall,
 )
 from cvnotes.show.figures import (
     images as figures,
@@ -122,8 +122,8 @@ FIGURES = [
     ),
     figure(lines.draw_segments, {"segments": (LINES, rows(2))}, sizes=("size",), size=(640, 480)),
     figure(lines.segment_ends, {"segments": (LINES, rows(2))}),
-    # predictions
-    figure(predictions.draw_wall, {"images": (PAIR, PICTURE), "columns": (2, ONE)}),
+    # wall
+    figure(wall.draw_wall, {"images": (PAIR, PICTURE), "columns": (2, ONE)}),
     # quality
     figure(quality.draw_residuals, {"magnify": (50.0, ONE)}, calibration=RESULT),
     figure(

@@ -10,10 +10,10 @@ from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole, draw_rays
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
-from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
 from cvnotes.show.figures.sensors import draw_sensor
 from cvnotes.show.figures.vanishing import draw_altitudes
+from cvnotes.show.figures.wall import draw_wall
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
@@ -64,7 +64,6 @@ __all__ = [
     "draw_coverage",
     "draw_plane_error",
     "draw_view_families",
-    "draw_prediction_error",
     "draw_wall",
     # chapter 7: the picture of J, a cube on the board
     "draw_arrow",
