@@ -66,7 +66,7 @@ def draw_plane_error(
 def draw_view_families(
     results: Mapping[str, Sequence[Calibration]], W: npt.ArrayLike, *, truth: float
 ) -> Any:
-    """Draw sets of views, and RMS and focal length of calibrations repeated for each of them.
+    """Draw sets of views, and the focal lengths of calibrations repeated for each of them.
 
     Parameters
     ----------
@@ -79,12 +79,12 @@ def draw_view_families(
 
     Returns
     -------
-    ndarray of three Axes
-        The outlines of all boards of the first repetition, in a picture's frame; the RMS; and the
-        relative errors of α_u on a logarithmic axis: a dot for each repetition, a thick line for
-        their median, and a thin one for what the standard deviations promised for it: 0.674 times
-        their own median, for half of all Gaussian errors are smaller. Orange are those whose
-        errors are more than twice what was promised.
+    ndarray of two Axes
+        The outlines of all boards of the first repetition, in a picture's frame, with the median
+        RMS; and the relative errors of α_u on a logarithmic axis: a dot for each repetition, a
+        thick line for their median, and a thin one for what the standard deviations promised for
+        it: 0.674 times their own median, for half of all Gaussian errors are smaller. Orange are
+        those whose errors are more than twice what was promised.
     """
     if not thing(results, "results", Mapping):  # type: ignore[type-abstract]
         raise CvnotesError("results: expected at least one set of views")
@@ -97,20 +97,17 @@ def draw_view_families(
     if not len(W):
         raise CvnotesError("W: expected the points of the board")
     n = len(results)
-    axes = panels(3, width=820, height=90 + 86 * n, sharey=True, width_ratios=(1.6, 1.15, 4.2))
-    boards, left, right = axes
-    for y, runs in enumerate(results.values()):
+    axes = panels(2, width=820, height=90 + 86 * n, sharey=True, width_ratios=(1.6, 4.2))
+    boards, strips = axes
+    names = []
+    for y, (name, runs) in enumerate(results.items()):
         _frame(boards, runs[0], W, y)
-        spread = y + np.linspace(-0.24, 0.24, len(runs))
-        left.plot([run.rms for run in runs], spread, ".", color=MUTED, markersize=4)
-        _strip(right, runs, truth, y, spread)
-    left.set_xlim(0, 1.08 * max(run.rms for runs in results.values() for run in runs) or None)
-    left.set(xlabel="RMS (px per point)", title="what is looked at")
-    right.set(xscale="log", xlim=(1e-3, 1e4), title="what counts")
-    right.set(xlabel="error of the focal length (%)")
-    right.xaxis.set_major_formatter("{x:g}")
+        _strip(strips, runs, truth, y)
+        names.append(f"{name}\nRMS {np.median([run.rms for run in runs]):.2f} px")
+    strips.set(xscale="log", xlim=(1e-3, 1e4), xlabel="error of the focal length (%)")
+    strips.xaxis.set_major_formatter("{x:g}")
     boards.set(aspect="equal", anchor="E", xticks=[], title="all its boards")
-    boards.set(yticks=range(n), yticklabels=list(results), ylim=(n - 0.5, -0.5))
+    boards.set(yticks=range(n), yticklabels=names, ylim=(n - 0.5, -0.5))
     boards.spines[:].set_visible(False)
     for ax in axes:
         ax.tick_params(which="both", length=0)
@@ -129,19 +126,27 @@ def _frame(ax: "Axes", run: Calibration, W: Any, y: float) -> None:
         ax.fill(u, v + y, fc=(*rgb(LENS), 0.06), ec=LENS, lw=0.7)
 
 
-def _strip(ax: "Axes", runs: Sequence[Calibration], truth: float, y: float, spread: Any) -> None:
+def _strip(ax: "Axes", runs: Sequence[Calibration], truth: float, y: int) -> None:
     """Draw the errors of the focal length in the row y, in percent, and what was promised."""
     error = np.array([100 * max(abs(run.A[0, 0] / truth - 1), 1e-5) for run in runs])
     std = 100 / truth * np.array([run.std["alpha_u"] for run in runs])
     kept = float(np.sqrt(np.mean((error / std) ** 2))) < 2
     colour = LENS if kept else ESTIMATED
     promised, expected = _HALF * float(np.median(std)), float(np.median(error))
-    ax.plot(error, spread, "o", color=colour, markersize=3.6, mec="white", mew=0.4)
+    ax.plot(
+        error,
+        y + np.linspace(-0.24, 0.24, len(runs)),
+        "o",
+        color=colour,
+        markersize=3.6,
+        mec="white",
+        mew=0.4,
+    )
     far = error.max() > 10  # so that there is no room on the right
-    names = ("promised", promised, IDEAL, 1.6, "right"), ("median", expected, colour, 3, "left")
+    names = ("promised ", promised, IDEAL, 1.6, "right"), (" median", expected, colour, 3, "left")
     for name, tick, ink, wide, side in reversed(names):
         ax.plot([tick] * 2, [y - 0.36, y + 0.36], color=ink, linewidth=wide, zorder=1)
-        beside(ax, name if far else "", (tick, y - 0.36), (0, 3), ink, ha=side, size=9)
+        beside(ax, "" if y else name, (tick, y - 0.36), (0, 3), ink, ha=side, size=9)
     words = f"{expected:.2f} %" if expected < 100 else "over 100 %"
     words += "" if kept else ",\nnot as promised"
     end, by, side = (min(*error, promised), -7, "right") if far else (error.max(), 7, "left")
