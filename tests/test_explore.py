@@ -1243,6 +1243,22 @@ def test_the_line_that_goes_to_infinity_is_held_at_its_foot():
     assert not model.drawing(a=0, b=0).grips
 
 
+def test_two_photographs_join_to_that_of_one_wide_camera_at_its_focal_length():
+    wide = Camera(intrinsics(200, 200, 143.3, 163.3), size=(480, 309))  # as the sheet shows it
+    whole = radiance(room(), wide).clip(0, 255)
+    apart, off = {}, {}
+    for alpha in (460, 490, 500, 510, 540):
+        drawing = MODELS["seam"].drawing(alpha=alpha)
+        apart[alpha] = numbers(drawing.sentence)[-1]
+        sheet = drawing.picture[TITLE : TITLE + 309, MARGIN : MARGIN + 480].astype(int)
+        inside = np.s_[90:250, 25:370]  # where both are, or one of them
+        off[alpha] = np.abs(sheet[inside] - whole[inside]).mean()
+    assert off[500] < 0.4 * min(off[460], off[540]), off
+    assert off[500] < min(off[490], off[510])
+    assert apart[500] < 1.5
+    assert min(apart[490], apart[510]) > 4
+
+
 def test_a_tape_measure_lies_on_the_wall_with_a_long_tick_every_hundred_millimetres():
     drawing, bare = (MODELS["homography"].drawing(u=259, v=285, measure=on) for on in (1, 0))
     camera = Camera(course.camera().A, look_at([1180, 150, -760], [-60, 340, 0]))
@@ -2266,6 +2282,7 @@ ROUND = {
     ("stands", "cube"),  # along the ray from the principal point
 }
 ON_A_CURVE = {  # its nearest place
+    ("seam", "middle"),
     ("twins", "other"),
     ("twins", "box"),
     ("pairs", "pair"),

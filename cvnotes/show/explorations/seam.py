@@ -1,0 +1,113 @@
+"""Explore a turn on the spot: a second photograph is laid over the first, and α closes the seam."""
+
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from cvnotes.base import Array
+from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
+from cvnotes.pictures import radiance, room
+from cvnotes.projective import apply
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Paper, Range
+from cvnotes.show.style import ESTIMATED, LENS
+
+Seen = tuple[Drawn, npt.NDArray[np.bool_]]  # colours, and where there are any
+
+ALPHA, SIZE, MIDDLE = 500, (640, 480), (319.5, 239.5)
+TURN = rotation_from_vector([0.1, -0.35, 0.05])  # second camera ← first
+_LOWEST, _HIGHEST, _STEP = 200, 1200, 5
+_SHEET, _LOUPE = (480, 309), (216, 309)  # px of the panels
+_SHOWN, _CLOSE = ((-40, 1160), (-170, 602.5)), ((330, 450), (205, 376.7))  # their u and v
+_BORDER = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * SIZE - 0.5
+_FINE = 2  # so many times photographs are enlarged, smoothly, before pixels are looked up
+
+
+def between(alpha: float) -> Array:
+    """Return H (3, 3), second picture ← first, of a camera with this α that turns by `TURN`."""
+    A = intrinsics(alpha, alpha, *MIDDLE)
+    return np.asarray(A @ TURN @ np.linalg.inv(A))
+
+
+def seam_model() -> Model:
+    """Make the model of two photographs of a room, between which the camera has only turned."""
+    settings = (
+        Setting("alpha", "α (px)", _LOWEST, _HIGHEST, _STEP, 300, "of the camera that is assumed"),
+    )
+    about = (
+        "Two photographs of a room by a camera that has turned to the right. The second is laid "
+        "over the first as a camera with the chosen focal length would have it; beside it a part "
+        "of both, enlarged."
+    )
+    return Model("seam", about, settings, _draw, {"middle": _pulled})
+
+
+def _pulled(_: Values, at: Array) -> Values:
+    tried = np.arange(_LOWEST, _HIGHEST + 1.0, _STEP)
+    places = [_place(alpha) for alpha in tried]
+    return {"alpha": float(tried[np.linalg.norm(np.array(places) - at, axis=1).argmin()])}
+
+
+def _place(alpha: float) -> Array:
+    """Return where the middle of the second photograph comes to lie on the first."""
+    return apply(np.linalg.inv(between(alpha)), MIDDLE)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    alpha, k = values["alpha"], paper.sharpness
+    over = paper.panel(_SHEET, *_SHOWN, "the second photograph over the first: pull its middle")
+    close = paper.panel(_LOUPE, *_CLOSE, "enlarged")
+    border = apply(np.linalg.inv(between(alpha)), _BORDER)
+    for panel, (w, h), shown in ((over, _SHEET, _SHOWN), (close, _LOUPE, _CLOSE)):
+        panel.image(_laid_over(alpha, (k * w, k * h), shown)[0])
+        panel.line(_BORDER, LENS, 1.5)
+        panel.line(border, ESTIMATED, 1.5)
+    over.mark(_place(alpha), "estimated", 7)
+    over.grip("middle", "the middle of the second photograph", _place(alpha), _STEP / 2)
+    apart = _laid_over(alpha, _SHEET, _SHOWN)[1]
+    sentence = (
+        f"With α = {alpha:.0f} px the two photographs differ, where one lies over the other, by "
+        f"{apart:.1f} grey levels on average."
+    )
+    return Drawing(paper.join((over, close)), sentence)
+
+
+@lru_cache(maxsize=1)
+def _photographs() -> tuple[Drawn, Drawn]:
+    camera = Camera(intrinsics(ALPHA, ALPHA, *MIDDLE), size=SIZE)
+    taken = (radiance(room(), camera.moved(pose(R, [0, 0, 0]))) for R in (np.eye(3), TURN))
+    photos = (Image.fromarray(light.clip(0, 255).astype(np.uint8)) for light in taken)
+    large = _FINE * SIZE[0], _FINE * SIZE[1]
+    first, second = (np.asarray(photo.resize(large)) for photo in photos)
+    return first, second
+
+
+@lru_cache(maxsize=6)  # both photographs on three sheets
+def _seen(number: int, alpha: float, size: tuple[int, int], shown: tuple[Range, Range]) -> Seen:
+    """Return what a photograph shows at each place of a sheet."""
+    u, v = (np.linspace(*ends, 2 * n + 1)[1::2] for ends, n in zip(shown, size, strict=True))
+    H = between(alpha) if number else np.eye(3)
+    x, y, w = (a * u + b * v[:, None] + c for a, b, c in H)
+    photo = _photographs()[number]
+    column, line = (np.rint(_FINE * (at / w + 0.5) - 0.5).astype(int) for at in (x, y))
+    inside = (column >= 0) & (line >= 0) & (column < photo.shape[1]) & (line < photo.shape[0])
+    return photo[line * inside, column * inside], inside & (w > 0)
+
+
+def _laid_over(
+    alpha: float, size: tuple[int, int], shown: tuple[Range, Range]
+) -> tuple[Drawn, float]:
+    """Lay the second photograph over the first; returns also by how many grey levels they differ.
+
+    Where both are, each pixel is their mean.
+    """
+    first, in_first = _seen(0, 0.0, size, shown)
+    second, in_second = _seen(1, alpha, size, shown)
+    sheet = np.where(in_first[..., None], first, np.uint8(255))
+    sheet[in_second] = second[in_second]
+    both = in_first & in_second
+    one, other = first[both].astype(np.int16), second[both].astype(np.int16)
+    sheet[both] = (one + other) // 2
+    return sheet, float(np.abs(one - other).mean())
