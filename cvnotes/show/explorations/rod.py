@@ -1,5 +1,6 @@
 """Explore heights in one picture: a rod in metres that is stood anywhere on the ground."""
 
+from collections.abc import Iterator
 from functools import lru_cache
 from itertools import pairwise
 
@@ -13,7 +14,7 @@ from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, hexed, mixed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 _CAMERA = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
 _EYE, _BOX, _TALLEST = 2.8, 2.0, 6.0  # m: heights of camera, yellow box and highest rod
@@ -114,22 +115,12 @@ def _draw_way(panel: Panel, foot: Array) -> float:
     return float(e[0])
 
 
-@lru_cache(maxsize=1)
-def _blocks_from_the_side() -> list[tuple[float, float, float, str]]:
-    """Return how far from the camera each block begins and ends, in m, how high it is, its colour.
-
-    The farthest is first.
-    """
-    eights = blocks().vertices[:24].reshape(3, 8, 3)
-    sides = [
-        (
-            *_away(W)[[1, 6]].tolist(),
-            float(np.ptp(W[:, 1])) / 1e3,
-            mixed(hexed(255 * ink), "#FFFFFF", 0.5),
-        )
-        for W, ink in zip(eights, blocks().colours[::12, 1], strict=False)
-    ]
-    return sorted(sides, reverse=True)
+def _blocks_from_the_side() -> Iterator[tuple[float, float, float, str]]:
+    """Return where each block begins and ends, in m from the camera, its height and colour."""
+    for i, colour in zip((8, 0, 16), ("#C6D6DD", "#EDCCBA", "#EDE5CA"), strict=True):
+        W = blocks().vertices[i : i + 8]
+        near, far = _away(W[[1, 6]]).tolist()
+        yield near, far, float(np.ptp(W[:, 1])) / 1e3, colour
 
 
 def _away(W: Array) -> Array:

@@ -17,7 +17,6 @@ from cvnotes.show.style import CAMERA, ESTIMATED, FAINT, IDEAL, MUTED
 _SHOWN = ((-1120.0, 1220.0), (-520.0, 1668.0))  # px of the photograph, u and v
 _SIZE, _SPACE = (450, 420), (400, 420)  # both panels have one scale
 _SHEET = ((-1210.0, 1210.0), (-775.0, 1766.0))  # on which space is drawn
-_APART = 90.0  # px of the photograph between two letters
 _EDGES = [1, 0, 3, 5]  # the box's nearest corner, and the next one along X, Y and Z
 _MIDDLE = np.array([75.0, 0, 50])  # (u, v, w) about which the view of space turns
 _ABOVE = np.radians(15)  # from where it is seen
@@ -68,37 +67,15 @@ def triangle_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         v = np.array([[values[f"{name}_u"], values[f"{name}_v"]] for name in "XYZ"])
         sky = paper.panel(_SIZE, *_SHOWN, "the photograph, and where the edges of its box lead")
+        space = paper.panel(_SPACE, *_SHEET, "in space: pull the plus to turn it")
         sky.image(sheet(paper.sharpness))
         c, square = camera_of(v)
-        feet = v
-        if np.isfinite(square):
-            a, way = np.roll(v, 1, axis=0), np.roll(v, -1, axis=0) - np.roll(v, 1, axis=0)
-            feet = (
-                a + ((v - a) * way).sum(1, keepdims=True) / (way * way).sum(1, keepdims=True) * way
-            )
-            for corner, foot in zip(v, feet, strict=True):
-                # The whole altitude, of which c may lie outside.
-                along = np.array([corner, foot, c])
-                along = along[np.argsort(along @ (foot - corner))]
-                sky.line(along[[0, -1]], IDEAL, 0.9, dash=5)
-        _draw_box(sky, v, nearest, nearest + part[:, None] * (v - nearest))
-        if np.isfinite(square):
-            sky.mark(c, "estimated", 6)
-            # The letter of c gives way to that of a corner to which c has come.
-            corner = v[np.linalg.norm(v - c, axis=1).argmin()]
-            near = np.linalg.norm(corner - c) < 2 * _APART
-            left, below = near and corner[0] > v[:, 0].mean(), near and c[1] > corner[1]
-            at = c + [-40 if left else 40, 50 if below else -50]
-            sky.text(at, "c", ESTIMATED, anchor="rm" if left else "lm", size=14)
-        space = paper.panel(_SPACE, *_SHEET, "in space: pull the plus to turn it")
-        eye = np.array([*c, np.sqrt(max(square, 0))])
-        solid = np.empty((0, 4, 2))
-        if square > 0:
-            corner = eye + _BEHIND * (in_space(nearest) - eye)
-            edges = _BEHIND * (part / (1 - part))[:, None] * (in_space(v) - eye)
-            solid = _seen(corner, edges, values["turn"])
-        _draw_glass(space, values["turn"], v, photo(), solid)
-        _draw_rods(space, values["turn"], v, feet[1], eye, square)
+        eye, turn = np.array([*c, np.sqrt(max(square, 0))]), values["turn"]
+        _draw_box(sky, v, c, square, nearest, nearest + part[:, None] * (v - nearest))
+        corner = eye + _BEHIND * (in_space(nearest) - eye)
+        edges = _BEHIND * (part / (1 - part))[:, None] * (in_space(v) - eye)
+        _draw_glass(space, turn, v, photo(), _seen(corner, edges, turn) if square > 0 else v[:0])
+        _draw_rods(space, turn, v, eye, square)
         return Drawing(paper.join((sky, space)), _sentence(v, c, square))
 
     drags = {
@@ -119,30 +96,42 @@ def camera_of(v: Array) -> tuple[Array, float]:
     return c, float(-(X - c) @ (Y - c))
 
 
-def _draw_box(panel: Panel, v: Array, nearest: Array, ends: Array) -> None:
-    """Draw the box that would have these vanishing points, its edges drawn on, and the triangle.
+def _feet(v: Array) -> Array:
+    """Return the feet (3, 2) of the altitudes of a triangle (3, 2)."""
+    a, way = np.roll(v, 1, axis=0), np.roll(v, -1, axis=0) - np.roll(v, 1, axis=0)
+    part = ((v - a) * way).sum(axis=1) / (way * way).sum(axis=1)
+    return np.asarray(a + part[:, None] * way)
+
+
+def _draw_box(panel: Panel, v: Array, c: Array, square: float, nearest: Array, ends: Array) -> None:
+    """Draw the box that would have these vanishing points, its edges extended, and the triangle.
 
     Where no camera sees a box so, its edges are grey and dashed.
     """
-    _, square = camera_of(v)
     look = (ESTIMATED, 0) if square > 0 else (MUTED, 4)
+    sides = np.stack([v, np.roll(v, 1, axis=0)], axis=1)
+    lines, names = [*sides], [(name, at, ESTIMATED) for name, at in zip("XYZ", v, strict=True)]
+    if np.isfinite(square):
+        for corner, foot in zip(v, _feet(v), strict=True):
+            # The whole altitude, of which c may lie outside.
+            along = np.array([corner, foot, c])
+            along = along[np.argsort(along @ (foot - corner))][[0, -1]]
+            panel.line(along, IDEAL, 0.9, dash=5)
+            lines += [along]
+        names += [("c", c, ESTIMATED)]
     e, n = to_homogeneous(ends), to_homogeneous(v)
     # Between the ends of two edges lies the corner in which the edges parallel to them meet.
     far = from_homogeneous(
         np.cross(np.cross(e, np.roll(n, -1, axis=0)), np.cross(np.roll(e, -1, axis=0), n))
     )
     for k, name in enumerate("XYZ"):
-        edges = [[nearest, ends[k]], [ends[k - 2], far[k]], [ends[k - 1], far[k - 1]]]
-        for edge in edges:
-            panel.line(edge, look[0], 1.5, look[1])
-        for begin, _ in edges:
+        for begin, end in ((nearest, ends[k]), (ends[k - 2], far[k]), (ends[k - 1], far[k - 1])):
+            panel.line([begin, end], look[0], 1.5, look[1])
             panel.line([begin, v[k]], ESTIMATED, 0.6, dash=3)
-        panel.line(v[[k, k - 1]], ESTIMATED, 1.8)
-        panel.mark(v[k], "estimated", 7)
         panel.grip(name, f"the vanishing point {name}", v[k], 2)
-        away = v[k] + 60 * np.sign(v[k] - v.mean(0))
-        inside = away.clip(*np.array([[1, -1]]).T * 45 + np.transpose(_SHOWN))
-        panel.text(inside, name, ESTIMATED, anchor="mm", size=14)
+    panel.segments(sides, ESTIMATED, 1.8)
+    panel.mark([*v, c], "estimated", 7)
+    _letters(panel, names, lines)
 
 
 def in_space(uv: Array, w: Array | float = 0) -> Array:
@@ -196,62 +185,61 @@ def _draw_glass(panel: Panel, turn: float, v: Array, photo: Bitmap.Image, box: A
     panel.grip("turn", "the ring that turns the view", at, 4)
 
 
-def _draw_rods(panel: Panel, turn: float, v: Array, foot: Array, eye: Array, square: float) -> None:
+def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float) -> None:
     """Draw the triangle on the glass, the eye before it, and the rods from there to its corners.
 
     Faint is the half circle over the altitude from Y, on which the eye is.
     """
     m, c, top = (on_sheet(place, turn) for place in (in_space(v), eye * [1, 1, 0], eye))
+    names = [(name, at, ESTIMATED) for name, at in zip("XYZ", m, strict=True)]
     sides, rods = np.stack([m, np.roll(m, 1, axis=0)], axis=1), np.stack([m, 0 * m + top], axis=1)
+    lines = [*sides, *rods] if np.isfinite(square) else [*sides]
     panel.segments(sides, ESTIMATED, 1.5)
-    lines = [*sides]
     if square > 0:
-        phi = np.radians(np.arange(0, 181.0, 3))[:, None]
+        phi, foot = np.radians(np.arange(0, 181.0, 3)), _feet(v)[1]
         half = (v[1] - foot) / 2
-        before = np.linalg.norm(half) * np.sin(phi[:, 0])
-        arc = on_sheet(in_space(foot + half + np.cos(phi) * half, before), turn)
+        along = foot + half + np.cos(phi)[:, None] * half
+        arc = on_sheet(in_space(along, np.linalg.norm(half) * np.sin(phi)), turn)
         panel.line(arc, MUTED, 0.9)
         panel.line(arc[[0, -1]], MUTED, 0.9, dash=4)
         panel.line([top, c], IDEAL, 1.6)
         lines += [arc[[0, -1]], *np.stack([arc[:-1], arc[1:]], axis=1), np.array([top, c])]
-    if np.isfinite(square):
-        panel.segments(rods, ESTIMATED if square > 0 else MUTED, 4.5)
-        panel.segments(rods, _CORE if square > 0 else FAINT, 1.3)
-        lines += [*rods]
-    names = [("X", m[0], ESTIMATED), ("Y", m[1], ESTIMATED), ("Z", m[2], ESTIMATED)]
-    if square > 0:
+        names += [("eye", top, CAMERA)]
+        if np.linalg.norm(c - top) > 220:
+            names += [("c", c, ESTIMATED), ("f", 0.6 * c + 0.4 * top, IDEAL)]
         ways = in_space(v) - eye
         long = np.linalg.norm(ways, axis=1, keepdims=True)
         short = ways / long * min(150, 0.5 * long.min())
         for a, b in zip(short, np.roll(short, 1, axis=0), strict=True):
             panel.line(on_sheet(eye + np.array([a, a + b, b]), turn), ESTIMATED, 1.5)
-        panel.mark(top, "camera", 9, looks=tuple(c - top))
-        names += [("eye", top, CAMERA)]
-        if np.linalg.norm(c - top) > 220:
-            names += [("c", c, ESTIMATED), ("f", 0.6 * c + 0.4 * top, IDEAL)]
+    panel.segments(rods, ESTIMATED if square > 0 else MUTED, 4.5)
+    panel.segments(rods, _CORE if square > 0 else FAINT, 1.3)
     panel.mark([*m, c], "estimated", 6)
-    for name, at, ink in names:
-        away = np.arctan2(*(at - m.mean(axis=0))[::-1]) + np.radians(_AROUND)
-        wide = 36 * len(name)
-        around = 1.4 * np.column_stack([np.cos(away), np.sin(away)])
-        places = at + around.clip(-1, 1) * [60 + wide, 90]
-        place = _clearest(places, np.array(lines))
-        panel.text(place, name, ink, anchor="mm", size=14)
-        lines += [place + np.array([[-wide, 0], [wide, 0]])]
+    if square > 0:
+        panel.mark(top, "camera", 9, looks=tuple(c - top))
+    _letters(panel, names, lines)
     if not square > 0:
-        said = "no camera" if np.isfinite(square) else "no triangle, no camera"
         low, high = np.subtract(_SHEET[1][1], [150, 20])
         panel.polygons([[[-500, low], [500, low], [500, high], [-500, high]]], "white")
+        said = "no camera" if np.isfinite(square) else "no triangle, no camera"
         panel.text([0, (low + high) / 2], said, "#333333", anchor="mm", size=16)
 
 
-def _clearest(places: Array, lines: Array) -> Array:
-    """Return the first of places (n, 2) where segments (m, 2, 2) leave room for a letter."""
-    a, way = lines[:, 0], lines[:, 1] - lines[:, 0]
-    by = places[:, None] - a
-    part = ((by * way).sum(-1) / np.maximum((way * way).sum(-1), 1)).clip(0, 1)
-    room = np.linalg.norm(by - part[..., None] * way, axis=-1).min(axis=1)
-    return np.asarray(places[room.clip(None, 65).argmax()])
+def _letters(panel: Panel, names: list[tuple[str, Array, str]], lines: list[Array]) -> None:
+    """Write names beside their points, where lines (2, 2) and other names leave room."""
+    middle, ends = np.mean([at for _, at, _ in names[:3]], axis=0), np.array([panel.x, panel.y])
+    inside = [one for one in names if (ends[:, 0] < one[1]).all() and (one[1] < ends[:, 1]).all()]
+    for name, at, ink in inside:
+        away, wide = np.arctan2(*(at - middle)[::-1]) + np.radians(_AROUND), 36 * len(name)
+        around = 1.4 * np.column_stack([np.cos(away), np.sin(away)])
+        places = (at + around.clip(-1, 1) * [60 + wide, 90]).clip(ends[:, 0] + 60, ends[:, 1] - 60)
+        a, way = np.array(lines)[:, 0], np.diff(lines, axis=1)[:, 0]
+        by = places[:, None] - a
+        part = ((by * way).sum(-1) / np.maximum((way * way).sum(-1), 1)).clip(0, 1)
+        room = np.linalg.norm(by - part[..., None] * way, axis=-1).min(axis=1)
+        place = places[room.clip(None, 65).argmax()]
+        panel.text(place, name, ink, anchor="mm", size=14)
+        lines += [place + np.array([[-wide, 0], [wide, 0]])]
 
 
 def _sentence(v: Array, c: Array, square: float) -> str:
