@@ -32,7 +32,7 @@ def rod_model() -> Model:
     """Make the model of the three blocks, with a rod among them."""
     settings = (
         Setting("u", "foot, u (px)", 8, 631, 1, 135, "where the foot is, from left to right"),
-        Setting("v", "foot, v (px)", 352, 479, 1, 378, "where it is, downwards"),
+        Setting("v", "foot, v (px)", 352, 479, 1, 382, "where it is, downwards"),
         Setting("height", "height (m)", 1, _TALLEST, 0.1, 4, "the rod's height"),
     )
     about = (

@@ -78,12 +78,14 @@ def triangle_model() -> Model:
         _draw_rods(space, turn, v, eye, square)
         return Drawing(paper.join((sky, space)), _sentence(v, c, square))
 
+    def turned(_: Values, at: Array) -> Values:
+        return {"turn": float(np.degrees(np.arcsin(np.clip(-at[0] / _RING, -1, 1))))}
+
     drags = {
         name: lambda _, at, name=name: {f"{name}_u": float(at[0]), f"{name}_v": float(at[1])}
         for name in "XYZ"
     }
-    drags["turn"] = lambda _, at: {"turn": np.degrees(np.arcsin(np.clip(-at[0] / _RING, -1, 1)))}
-    return Model("triangle", about, settings, draw, drags)
+    return Model("triangle", about, settings, draw, {**drags, "turn": turned})
 
 
 def camera_of(v: Array) -> tuple[Array, float]:
