@@ -21,7 +21,6 @@ from public_face import (
     RESULT,
     SEEN,
     SINGLE,
-    TRIANGLE,
     A,
     Argument,
     G,
@@ -41,7 +40,6 @@ from cvnotes.show.figures import (
     lines,
     quality,
     sensors,
-    vanishing,
     wall,
 )
 from cvnotes.show.figures import (
@@ -133,8 +131,6 @@ FIGURES = [
         figure(count, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480))
         for count in (coverage.covered_cells, coverage.count_cells)
     ),
-    # vanishing
-    figure(vanishing.draw_altitudes, {"v": (TRIANGLE, several(2))}),
     # what 3-D figures are made of
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
     figure(

@@ -62,6 +62,7 @@ from cvnotes.show.explorations import (
     gimbal,
     maps,
     moved,
+    triangle,
     twins,
 )
 from cvnotes.show.explorations.boards import pinhole
@@ -1918,24 +1919,68 @@ def test_the_focal_length_vanishes_where_the_triangle_of_vanishing_points_become
     assert MODELS["triangle"].drawing(**right).sentence.endswith("f = 0.")
     on_a_line = MODELS["triangle"].drawing(**{**right, "Y_v": 0})
     assert "no triangle" in on_a_line.sentence
-    assert {grip.name for grip in on_a_line.grips} == set("XYZ")  # and can be pulled apart again
+    assert {grip.name for grip in on_a_line.grips} == {
+        *"XYZ",
+        "turn",
+    }  # and can be pulled apart again
 
 
-def test_where_c_comes_to_a_corner_of_the_triangle_its_letter_gives_way(monkeypatch):
-    write, rows = Panel.text, {}
+def test_in_space_the_eye_stands_where_the_camera_stood_before_its_picture(monkeypatch):
+    marks, texts = {}, []
+    monkeypatch.setattr(Panel, "mark", lambda _, xy, kind, *_a, **_k: marks.update({kind: xy}))
+    monkeypatch.setattr(Panel, "text", lambda _, _xy, words, *_a, **_k: texts.append(words))
+    R = look_at([3, -4, -5], [0, 0, 0])[:3, :3]
+    f, centre = 560, np.array([200, 330])
+    v = f * R[:2].T / R[2, :, None] + centre  # the axes of the world vanish there
+    corners = {
+        f"{name}_{axis}": v[i, j] for i, name in enumerate("XYZ") for j, axis in enumerate("uv")
+    }
+    places = np.column_stack([np.vstack([v, centre]), [0, 0, 0, f]])
+    for turn in (-40, 0, 25, 90):
+        MODELS["triangle"].drawing(**corners, turn=turn)
+        # The map from space to the sheet that takes all four there is that of a view from afar.
+        drawn = np.vstack([marks["estimated"][:3], marks["camera"]])
+        view = np.linalg.solve(places[1:] - places[0], drawn[1:] - drawn[0]).T
+        assert np.allclose(view @ view.T, np.eye(2), atol=1e-9)
+        t = np.radians(turn)
+        assert np.allclose(view[0], [np.cos(t), 0, -np.sin(t)], atol=1e-9)
+    assert "no camera" not in texts
+    marks.clear()
+    MODELS["triangle"].drawing(Y_v=600)
+    assert "no camera" in texts
+    assert "camera" not in marks
+    MODELS["triangle"].drawing(Y_v=-280)
+    assert texts[-1] == "no triangle, no camera"
+
+
+def test_the_box_behind_the_glass_has_the_shape_of_the_box_that_was_photographed(monkeypatch):
+    draw, boxes = triangle._seen, []
+    monkeypatch.setattr(triangle, "_seen", lambda *box: boxes.append(box) or draw(*box))
+    MODELS["triangle"].drawing()
+    (_, edges, _), W = boxes[0], blocks().vertices[[1, 0, 3, 5]]
+    assert np.allclose(edges @ edges.T / (edges[0] @ edges[0]), np.diag([1, 25 / 16, 1]), atol=5e-3)
+    nearest = [1200, -8000, 2000] - W[0]
+    along = np.array([700, -1000, 12800]) - [1200, -8000, 2000]
+    depth = -nearest @ along / np.linalg.norm(along)
+    assert np.linalg.norm(edges[0]) == pytest.approx(1.25 * 800 / depth * 4000, rel=2e-3)
+
+
+def test_letters_of_the_triangle_give_way_to_each_other(monkeypatch):
+    write, places = Panel.text, {}
 
     def note(self, xy, words, *rest, **how):
-        rows[words] = np.array([*xy])  # of the last panel, the side view
+        places[self, words] = self.place(xy) / self.scale
         write(self, xy, words, *rest, **how)
 
     monkeypatch.setattr(Panel, "text", note)
-    for height in (600, 640, 673, 700, 800):
-        MODELS["triangle"].drawing(Y_v=height)
-        letter = 13 * 2188 / 420  # px of the photograph, as high as the panel is
-        assert abs(rows["c"][1] - rows["Y"][1]) > letter
-        f = next((at[0] for words, at in rows.items() if words.startswith("f =")), -99)
-        assert f <= -60  # left of the camera and of c
-        rows.clear()
+    for height in (600, 640, 673, 700, 800, 1474):
+        for turn in (-90, -20, 0, 60, 90):
+            places.clear()
+            MODELS["triangle"].drawing(Y_v=height, turn=turn)
+            for (panel, one), (other, two) in itertools.combinations(places, 2):
+                off = np.abs(places[panel, one] - places[other, two])
+                apart = off[0] > 5 * (len(one) + len(two)) or off[1] > 13
+                assert apart or panel is not other, (height, turn, one, two)
 
 
 def test_a_bent_row_is_straight_with_the_k1_that_bent_it_and_with_no_other():
@@ -2243,6 +2288,7 @@ PULLED = [(name, grip) for name in explorations.NAMES for grip in MODELS[name].d
 FREE_TO_MOVE = {  # where the hand may pull to either side
     "projection": {"heading": 5},
     "finding": {"step": 1.5},
+    "triangle": {"Z_u": 900, "turn": 40},
     "pairs": {"x": 1, "w": 0.5},
     "tilt": {"tilt": 30},
     "straighten": {"k1": -0.1},
@@ -2261,6 +2307,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("finding", "step"),
     ("tilt", "lens"),
     ("fold", "fold"),
+    ("triangle", "turn"),
     ("folds", "k1"),
     ("pinhole", "hole"),
     ("pinhole", "focus"),

@@ -62,7 +62,6 @@ MORE = [
     function(show.show, {}, figure=show.panels(), alt="Axes."),
     function(show.one_corner, {}, chapter=1),
     function(show.draw_coverage, {}, image_points=PAIR, size=(640, 480)),
-    function(show.draw_altitudes, {}, v=np.array([[1120.0, 240], [-480, 300], [300, -900]])),
 ]
 # Names of sizes that are no whole numbers, or pairs of such.
 NAMES = {"blur", "sigma", "motion", "margin", "radius", "window", "size", "farther"}

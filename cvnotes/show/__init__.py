@@ -12,7 +12,6 @@ from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
 from cvnotes.show.figures.sensors import draw_sensor
-from cvnotes.show.figures.vanishing import draw_altitudes
 from cvnotes.show.figures.wall import draw_wall
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
@@ -52,8 +51,6 @@ __all__ = [
     "draw_meanings",
     "draw_rays",
     "draw_pinhole",
-    # chapter 2: vanishing points
-    "draw_altitudes",
     # chapter 3: how an image is formed
     "draw_field_of_view",
     "draw_sensor",

@@ -1,5 +1,6 @@
 """Explore heights in one picture: a rod in metres that is stood anywhere on the ground."""
 
+from collections.abc import Iterator
 from functools import lru_cache
 from itertools import pairwise
 
@@ -30,8 +31,8 @@ _WIDE = Camera(
 def rod_model() -> Model:
     """Make the model of the three blocks, with a rod among them."""
     settings = (
-        Setting("u", "foot, u (px)", 8, 631, 1, 190, "where the foot is, from left to right"),
-        Setting("v", "foot, v (px)", 352, 479, 1, 388, "where it is, downwards"),
+        Setting("u", "foot, u (px)", 8, 631, 1, 135, "where the foot is, from left to right"),
+        Setting("v", "foot, v (px)", 352, 479, 1, 382, "where it is, downwards"),
         Setting("height", "height (m)", 1, _TALLEST, 0.1, 4, "the rod's height"),
     )
     about = (
@@ -62,8 +63,7 @@ def rod_model() -> Model:
         top = at_height(foot, height)
         panel.grip("top", "the top of the rod", top, 4)
         side = paper.panel((width, 146), (-2.5, 39), (6.6, -0.88), "the same from the side (m)")
-        away = float(np.linalg.norm((_stands(foot) - _CAMERA.centre)[[0, 2]])) / 1e3
-        _draw_side(side, away, height)
+        _draw_side(side, float(_away(_stands(foot))), height)
         return Drawing(paper.join((panel,), (side,)), _sentence(foot, height, e))
 
     def carried(_: Values, at: Array) -> Values:
@@ -115,6 +115,19 @@ def _draw_way(panel: Panel, foot: Array) -> float:
     return float(e[0])
 
 
+def _blocks_from_the_side() -> Iterator[tuple[float, float, float, str]]:
+    """Return where each block begins and ends, in m from the camera, its height and colour."""
+    for i, colour in zip((8, 0, 16), ("#C6D6DD", "#EDCCBA", "#EDE5CA"), strict=True):
+        W = blocks().vertices[i : i + 8]
+        near, far = _away(W[[1, 6]]).tolist()
+        yield near, far, float(np.ptp(W[:, 1])) / 1e3, colour
+
+
+def _away(W: Array) -> Array:
+    """Return how far before the camera places (..., 3) are, in m, along the ground."""
+    return np.asarray(np.linalg.norm((W - _CAMERA.centre)[..., [0, 2]], axis=-1) / 1e3)
+
+
 def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
     """Draw a band for each metre; where something stands before it, thin dashes."""
     h = np.append(np.arange(0, height, 0.125), height)
@@ -137,7 +150,12 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
 
 def _draw_side(panel: Panel, away: float, height: float) -> None:
     panel.polygons([[[-9, 0], [99, 0], [99, -9], [-9, -9]]], "#DDDACF")
+    for near, far, top, colour in _blocks_from_the_side():
+        panel.polygons([[[near, 0], [near, top], [far, top], [far, 0]]], colour)
     panel.ticks(x=(0, 10, 20, 30), y=(2, 4, 6))
+    edge = float(_away(blocks().vertices[17]))
+    panel.line([[edge, _BOX], [away, _BOX]], ESTIMATED, 1)
+    panel.line([[edge, 0], [edge, _BOX]], LENS, 2.5)
     panel.line(np.array([[0, _EYE], [99, _EYE]]), IDEAL, 1)
     panel.line(np.array([[0, 0], [0, _EYE]]), MUTED, 2)
     panel.mark([0, _EYE], "camera", 9, looks=(1, 0))

@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 from PIL import Image as Bitmap
+from PIL import ImageDraw
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
@@ -11,12 +12,18 @@ from cvnotes.pictures import blocks, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
+from cvnotes.show.style import CAMERA, ESTIMATED, FAINT, IDEAL, MUTED
 
-_SHOWN = ((-1200.0, 1300.0), (-520.0, 1668.0))  # px of the photograph, u and v
-_SIZE, _SIDE = (480, 420), (360, 420)  # both panels have one scale
-_APART = 90.0  # px of the photograph between two letters
+_SHOWN = ((-1120.0, 1220.0), (-520.0, 1668.0))  # px of the photograph, u and v
+_SIZE, _SPACE = (450, 420), (400, 420)  # both panels have one scale
+_SHEET = ((-1210.0, 1210.0), (-775.0, 1766.0))  # on which space is drawn
 _EDGES = [1, 0, 3, 5]  # the box's nearest corner, and the next one along X, Y and Z
+_MIDDLE = np.array([75.0, 0, 50])  # (u, v, w) about which the view of space turns
+_ABOVE = np.radians(15)  # from where it is seen
+_RING, _LOW = 560.0, 1440.0  # px: radius of the ring by which it is turned, and its v
+_BEHIND = 1.25  # times as far from the eye as the glass: where the box stands
+_AROUND = (0, 45, -45, 90, -90, 135, -135, 180)  # degrees: where a letter may stand
+_PANE, _CORE, _FACES = "#EAF4FB", "#F4BE9B", ("#F0CBB5", "#FAEBE1", "#E8B596")
 
 
 def triangle_model() -> Model:
@@ -28,63 +35,57 @@ def triangle_model() -> Model:
     start = camera.vanishing_point(W[1:] - W[0]).round()
     # How far along each edge its end is seen, of the way to the vanishing point.
     part = np.linalg.norm(ends - nearest, axis=1) / np.linalg.norm(start - nearest, axis=1)
-    settings = tuple(
-        Setting(f"{name}_{axis}", f"{name}: {axis} (px)", low + 30, high - 30, 1, float(at),
-                f"where the edges along {name} vanish")
-        for name, point in zip("XYZ", start, strict=True)
-        for axis, at, (low, high) in zip("uv", point, _SHOWN, strict=True)
+    settings = (
+        *(Setting(f"{name}_{axis}", f"{name}: {axis} (px)", low + 70, high - 70, 1, float(at),
+                  f"where the edges along {name} vanish")
+          for name, point in zip("XYZ", start, strict=True)
+          for axis, at, (low, high) in zip("uv", point, _SHOWN, strict=True)),
+        Setting("turn", "turn (°)", -90, 90, 1, 60,
+                "from where space is seen: 0 from before the glass, 90 from its side"),
     )  # fmt: skip
     about = (
         "The photograph of a box, and far around it the triangle of three vanishing points with "
-        "its altitudes; beside it the altitude from Y, seen from the side, with a half circle."
+        "its altitudes; beside it the photograph in space as a pane of glass, and before it the "
+        "eye, from which three rods at right angles go to the three points."
     )
+
+    @lru_cache(maxsize=1)
+    def photo() -> Bitmap.Image:
+        """Return the photograph, pale for the lines that are drawn over it."""
+        pale = 0.6 * render_scene(blocks(), camera, samples=4) + 102
+        return Bitmap.fromarray(pale.astype(np.uint8))
 
     @lru_cache(maxsize=2)
     def sheet(sharpness: int) -> Drawn:
         """Put the photograph on white paper, once for all values."""
-        pale = 0.6 * render_scene(blocks(), camera, samples=4) + 102  # for the lines drawn over it
-        photo = Bitmap.fromarray(pale.astype(np.uint8))
         paper = Bitmap.new("RGB", (sharpness * _SIZE[0], sharpness * _SIZE[1]), "white")
         scale = paper.width / np.ptp(_SHOWN[0])
         corner = (round(-scale * _SHOWN[0][0]), round(-scale * _SHOWN[1][0]))
-        paper.paste(photo.resize((round(scale * 640), round(scale * 480))), corner)
+        paper.paste(photo().resize((round(scale * 640), round(scale * 480))), corner)
         return np.asarray(paper)
 
     def draw(paper: Paper, values: Values) -> Drawing:
         v = np.array([[values[f"{name}_u"], values[f"{name}_v"]] for name in "XYZ"])
         sky = paper.panel(_SIZE, *_SHOWN, "the photograph, and where the edges of its box lead")
-        side = paper.panel(
-            _SIDE, (-1500, 375), _SHOWN[1], "from the side: the altitude from Y, and the eye"
-        )
+        space = paper.panel(_SPACE, *_SHEET, "in space: pull the plus to turn it")
         sky.image(sheet(paper.sharpness))
         c, square = camera_of(v)
-        if np.isfinite(square):
-            a, way = np.roll(v, 1, axis=0), np.roll(v, -1, axis=0) - np.roll(v, 1, axis=0)
-            feet = (
-                a + ((v - a) * way).sum(1, keepdims=True) / (way * way).sum(1, keepdims=True) * way
-            )
-            for corner, foot in zip(v, feet, strict=True):
-                # The whole altitude, of which c may lie outside.
-                along = np.array([corner, foot, c])
-                along = along[np.argsort(along @ (foot - corner))]
-                sky.line(along[[0, -1]], IDEAL, 0.9, dash=5)
-        _draw_box(sky, v, nearest, nearest + part[:, None] * (v - nearest))
-        if np.isfinite(square):
-            sky.mark(c, "estimated", 6)
-            # The letter of c gives way to that of a corner to which c has come.
-            corner = v[np.linalg.norm(v - c, axis=1).argmin()]
-            near = np.linalg.norm(corner - c) < 2 * _APART
-            left, below = near and corner[0] > v[:, 0].mean(), near and c[1] > corner[1]
-            at = c + [-40 if left else 40, 50 if below else -50]
-            sky.text(at, "c", ESTIMATED, anchor="rm" if left else "lm", size=14)
-            _draw_side(side, v[1], feet[1], c, square)
-        return Drawing(paper.join((sky, side)), _sentence(v, c, square))
+        eye, turn = np.array([*c, np.sqrt(max(square, 0))]), values["turn"]
+        _draw_box(sky, v, c, square, nearest, nearest + part[:, None] * (v - nearest))
+        corner = eye + _BEHIND * (in_space(nearest) - eye)
+        edges = _BEHIND * (part / (1 - part))[:, None] * (in_space(v) - eye)
+        _draw_glass(space, turn, v, photo(), _seen(corner, edges, turn) if square > 0 else v[:0])
+        _draw_rods(space, turn, v, eye, square)
+        return Drawing(paper.join((sky, space)), _sentence(v, c, square))
+
+    def turned(_: Values, at: Array) -> Values:
+        return {"turn": float(np.degrees(np.arcsin(np.clip(-at[0] / _RING, -1, 1))))}
 
     drags = {
         name: lambda _, at, name=name: {f"{name}_u": float(at[0]), f"{name}_v": float(at[1])}
         for name in "XYZ"
     }
-    return Model("triangle", about, settings, draw, drags)
+    return Model("triangle", about, settings, draw, {**drags, "turn": turned})
 
 
 def camera_of(v: Array) -> tuple[Array, float]:
@@ -97,58 +98,155 @@ def camera_of(v: Array) -> tuple[Array, float]:
     return c, float(-(X - c) @ (Y - c))
 
 
-def _draw_box(panel: Panel, v: Array, nearest: Array, ends: Array) -> None:
-    """Draw the box that would have these vanishing points, its edges drawn on, and the triangle.
+def _feet(v: Array) -> Array:
+    """Return the feet (3, 2) of the altitudes of a triangle (3, 2)."""
+    a, way = np.roll(v, 1, axis=0), np.roll(v, -1, axis=0) - np.roll(v, 1, axis=0)
+    part = ((v - a) * way).sum(axis=1) / (way * way).sum(axis=1)
+    return np.asarray(a + part[:, None] * way)
+
+
+def _draw_box(panel: Panel, v: Array, c: Array, square: float, nearest: Array, ends: Array) -> None:
+    """Draw the box that would have these vanishing points, its edges extended, and the triangle.
 
     Where no camera sees a box so, its edges are grey and dashed.
     """
-    _, square = camera_of(v)
     look = (ESTIMATED, 0) if square > 0 else (MUTED, 4)
+    sides = np.stack([v, np.roll(v, 1, axis=0)], axis=1)
+    lines, names = [*sides], [(name, at, ESTIMATED) for name, at in zip("XYZ", v, strict=True)]
+    if np.isfinite(square):
+        for corner, foot in zip(v, _feet(v), strict=True):
+            # The whole altitude, of which c may lie outside.
+            along = np.array([corner, foot, c])
+            along = along[np.argsort(along @ (foot - corner))][[0, -1]]
+            panel.line(along, IDEAL, 0.9, dash=5)
+            lines += [along]
+        names += [("c", c, ESTIMATED)]
     e, n = to_homogeneous(ends), to_homogeneous(v)
     # Between the ends of two edges lies the corner in which the edges parallel to them meet.
     far = from_homogeneous(
         np.cross(np.cross(e, np.roll(n, -1, axis=0)), np.cross(np.roll(e, -1, axis=0), n))
     )
     for k, name in enumerate("XYZ"):
-        edges = [[nearest, ends[k]], [ends[k - 2], far[k]], [ends[k - 1], far[k - 1]]]
-        for edge in edges:
-            panel.line(edge, look[0], 1.5, look[1])
-        for begin, _ in edges:
+        for begin, end in ((nearest, ends[k]), (ends[k - 2], far[k]), (ends[k - 1], far[k - 1])):
+            panel.line([begin, end], look[0], 1.5, look[1])
             panel.line([begin, v[k]], ESTIMATED, 0.6, dash=3)
-        panel.line(v[[k, k - 1]], ESTIMATED, 1.8)
-        panel.mark(v[k], "estimated", 7)
         panel.grip(name, f"the vanishing point {name}", v[k], 2)
-        away = v[k] + 60 * np.sign(v[k] - v.mean(0))
-        inside = away.clip(*np.array([[1, -1]]).T * 45 + np.transpose(_SHOWN))
-        panel.text(inside, name, ESTIMATED, anchor="mm", size=14)
+    panel.segments(sides, ESTIMATED, 1.8)
+    panel.mark([*v, c], "estimated", 7)
+    _letters(panel, names, lines)
 
 
-def _draw_side(panel: Panel, Y: Array, foot: Array, c: Array, square: float) -> None:
-    """Draw an altitude upright, with c at its height; the eye is f to the left of it."""
-    long = float(np.linalg.norm(Y - foot))
-    down = (Y - foot) / long * (1 if Y[1] >= foot[1] else -1)
-    top, middle, bottom = (c[1] + (at - c) @ down for at in (foot, (foot + Y) / 2, Y))
-    phi = np.radians(np.arange(0, 180.5, 0.5))
-    panel.line(np.stack([-np.sin(phi), np.cos(phi)], -1) * long / 2 + [0, middle], IDEAL, 1.2)
-    panel.line([[0, top], [0, bottom]], CAMERA, 3)
-    if square >= 0:
-        f = float(np.sqrt(square))
-        panel.line([[0, top], [-f, c[1]], [0, bottom]], ESTIMATED, 1.5)
-        panel.line([[-f, c[1]], [0, c[1]]], MUTED, 1.2, dash=4)
-        panel.mark([-f, c[1]], "camera", 9, looks=(1, 0))
-        at, anchor = ([-f / 2, c[1] - 24], "ms") if f > 400 else ([-f - 60, c[1]], "rm")
-        panel.text(at, f"f = {f:.0f}", MUTED, anchor=anchor, size=12)
-    # The letter of c gives way to that of an end to which c has come.
-    away = min((c[1] - end for end in (bottom, top)), key=abs)
-    beside = c[1] - away + np.copysign(max(abs(away), _APART), away)
-    for words, at, row in (("c", c[1], beside), ("Y", bottom, bottom), ("line X Z", top, top)):
-        panel.mark([0, at], "estimated", 6)
-        panel.text([60, row], words, ESTIMATED, size=13)
+def in_space(uv: Array, w: Array | float = 0) -> Array:
+    """Return places (..., 3): over pixels (..., 2), w px before the glass."""
+    return np.concatenate([uv, np.broadcast_to(w, uv.shape[:-1])[..., None]], axis=-1)
+
+
+def on_sheet(place: Array, turn: float) -> Array:
+    """Project places (..., 3) in parallel onto the sheet (..., 2)."""
+    t = np.radians(turn)
+    aside = [np.cos(t), 0, -np.sin(t)]
+    down = [np.sin(t) * np.sin(_ABOVE), np.cos(_ABOVE), np.cos(t) * np.sin(_ABOVE)]
+    return np.asarray((place - _MIDDLE) @ np.transpose([aside, down]))
+
+
+def _seen(corner: Array, edges: Array, turn: float) -> Array:
+    """Return the three faces (3, 4, 2) of a box that are seen on the sheet, of its edges (3, 3)."""
+    t = np.radians(turn)
+    towards = [np.sin(t) * np.cos(_ABOVE), -np.sin(_ABOVE), np.cos(t) * np.cos(_ABOVE)]
+    a, b = np.roll(edges, 1, axis=0), np.roll(edges, 2, axis=0)
+    begin = corner + np.where((edges @ towards > 0)[:, None], edges, 0)
+    return on_sheet(begin[:, None] + np.stack([0 * a, a, a + b, b], axis=1), turn)
+
+
+def _draw_glass(panel: Panel, turn: float, v: Array, photo: Bitmap.Image, box: Array) -> None:
+    """Draw the glass with the photograph on it, and through it the box (3, 4, 2)."""
+    whole = Bitmap.new("RGB", (panel.width, panel.height), "white")
+    pen = ImageDraw.Draw(whole)
+    held = np.concatenate([v, [[0, 0], photo.size]])
+    (u0, v0), (u1, v1) = held.min(0) - 70, held.max(0) + 70
+    pane = on_sheet(in_space(np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]])), turn)
+    inks = [(_PANE, FAINT), *((ink, ESTIMATED) for ink in _FACES)]
+    for outline, (fill, ink) in zip([pane, *box], inks, strict=False):
+        pen.polygon(panel.place(outline).ravel().tolist(), fill, ink, panel.scale)
+    corners = np.array([[0, 0], [1, 0], [0, 1]]) - 0.5 / np.array(photo.size)
+    o, *ways = panel.place(on_sheet(in_space(corners * photo.size), turn))
+    M = (np.array(ways) - o).T / photo.size
+    if abs(np.linalg.det(M)) > 1e-3:  # not seen from its side
+        back = np.linalg.inv(M)
+        rows = np.column_stack([back, -back @ o]).ravel().tolist()
+        how = (whole.size, Bitmap.Transform.AFFINE, rows, Bitmap.Resampling.BILINEAR)
+        mask = Bitmap.new("L", photo.size, 255).transform(*how)
+        whole.paste(photo.transform(*how), mask=mask)
+    panel.image(np.asarray(whole))
+    ring = np.radians(np.arange(0, 361.0, 5))
+    sides = _MIDDLE[[0, 2]] + _RING * np.column_stack([np.sin(ring), np.cos(ring)])
+    panel.line(on_sheet(np.insert(sides, 1, _LOW, axis=1), 0), FAINT, 1.2)
+    t = np.radians(turn)
+    at = on_sheet(_MIDDLE * [1, 0, 1] + [-_RING * np.sin(t), _LOW, _RING * np.cos(t)], 0)
+    panel.mark(at, "ideal", 8)
+    panel.grip("turn", "the ring that turns the view", at, 4)
+
+
+def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float) -> None:
+    """Draw the triangle on the glass, the eye before it, and the rods from there to its corners.
+
+    Faint is the half circle over the altitude from Y, on which the eye is.
+    """
+    m, c, top = (on_sheet(place, turn) for place in (in_space(v), eye * [1, 1, 0], eye))
+    names = [(name, at, ESTIMATED) for name, at in zip("XYZ", m, strict=True)]
+    sides, rods = np.stack([m, np.roll(m, 1, axis=0)], axis=1), np.stack([m, 0 * m + top], axis=1)
+    lines = [*sides, *rods] if np.isfinite(square) else [*sides]
+    panel.segments(sides, ESTIMATED, 1.5)
+    if square > 0:
+        phi, foot = np.radians(np.arange(0, 181.0, 3)), _feet(v)[1]
+        half = (v[1] - foot) / 2
+        along = foot + half + np.cos(phi)[:, None] * half
+        arc = on_sheet(in_space(along, np.linalg.norm(half) * np.sin(phi)), turn)
+        panel.line(arc, MUTED, 0.9)
+        panel.line(arc[[0, -1]], MUTED, 0.9, dash=4)
+        panel.line([top, c], IDEAL, 1.6)
+        lines += [arc[[0, -1]], *np.stack([arc[:-1], arc[1:]], axis=1), np.array([top, c])]
+        names += [("eye", top, CAMERA)]
+        if np.linalg.norm(c - top) > 220:
+            names += [("c", c, ESTIMATED), ("f", 0.6 * c + 0.4 * top, IDEAL)]
+        ways = in_space(v) - eye
+        long = np.linalg.norm(ways, axis=1, keepdims=True)
+        short = ways / long * min(150, 0.5 * long.min())
+        for a, b in zip(short, np.roll(short, 1, axis=0), strict=True):
+            panel.line(on_sheet(eye + np.array([a, a + b, b]), turn), ESTIMATED, 1.5)
+    panel.segments(rods, ESTIMATED if square > 0 else MUTED, 4.5)
+    panel.segments(rods, _CORE if square > 0 else FAINT, 1.3)
+    panel.mark([*m, c], "estimated", 6)
+    if square > 0:
+        panel.mark(top, "camera", 9, looks=tuple(c - top))
+    _letters(panel, names, lines)
+    if not square > 0:
+        low, high = np.subtract(_SHEET[1][1], [150, 20])
+        panel.polygons([[[-500, low], [500, low], [500, high], [-500, high]]], "white")
+        said = "no camera" if np.isfinite(square) else "no triangle, no camera"
+        panel.text([0, (low + high) / 2], said, "#333333", anchor="mm", size=16)
+
+
+def _letters(panel: Panel, names: list[tuple[str, Array, str]], lines: list[Array]) -> None:
+    """Write names beside their points, where lines (2, 2) and other names leave room."""
+    middle, ends = np.mean([at for _, at, _ in names[:3]], axis=0), np.array([panel.x, panel.y])
+    inside = [one for one in names if (ends[:, 0] < one[1]).all() and (one[1] < ends[:, 1]).all()]
+    for name, at, ink in inside:
+        away, wide = np.arctan2(*(at - middle)[::-1]) + np.radians(_AROUND), 36 * len(name)
+        around = 1.4 * np.column_stack([np.cos(away), np.sin(away)])
+        places = (at + around.clip(-1, 1) * [60 + wide, 90]).clip(ends[:, 0] + 60, ends[:, 1] - 60)
+        a, way = np.array(lines)[:, 0], np.diff(lines, axis=1)[:, 0]
+        by = places[:, None] - a
+        part = ((by * way).sum(-1) / np.maximum((way * way).sum(-1), 1)).clip(0, 1)
+        room = np.linalg.norm(by - part[..., None] * way, axis=-1).min(axis=1)
+        place = places[room.clip(None, 65).argmax()]
+        panel.text(place, name, ink, anchor="mm", size=14)
+        lines += [place + np.array([[-wide, 0], [wide, 0]])]
 
 
 def _sentence(v: Array, c: Array, square: float) -> str:
     if np.isnan(square):
-        return "The three points lie on one line: there is no triangle, and no camera."
+        return "There is no triangle: the three points lie on one line. So there is no camera."
     ways = np.roll(v, -1, axis=0) - v  # from each corner to the next
     ways = ways / np.linalg.norm(ways, axis=1, keepdims=True)
     angles = np.degrees(np.arccos(-(ways * np.roll(ways, 1, axis=0)).sum(axis=1)))
