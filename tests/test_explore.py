@@ -2291,6 +2291,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "triangle": {"Z_u": 900, "turn": 40},
     "pairs": {"x": 1, "w": 0.5},
     "tilt": {"tilt": 30},
+    "stands": {"alpha": 800},
     "straighten": {"k1": -0.1},
     "folds": {"k1": -0.15},
     "columns": {"amount": 0.7, "free": 1},
@@ -2319,6 +2320,8 @@ ON_A_WAY = {  # along a curve, by its x
     ("newton", "level"),
     ("epipolar", "depth"),
     ("lens", "ring"),
+    ("stands", "plane"),
+    ("stands", "alpha"),
 }
 ROUND = {
     ("camera", "camera"),
@@ -2326,7 +2329,6 @@ ROUND = {
     ("walks", "line of sight"),
     ("formation", "line of sight"),
     ("tilt", "board"),
-    ("stands", "cube"),  # along the ray from the principal point
 }
 ON_A_CURVE = {  # its nearest place
     ("seam", "middle"),
@@ -2648,23 +2650,41 @@ def test_neighbours_that_are_alike_agree_and_noise_does_not():
     assert "what is left is noise" in shown(step=3).sentence
 
 
-def test_a_cube_stands_on_its_squares_by_the_focal_length_of_the_camera_alone():
-    model, c = MODELS["stands"], np.array([325, 238])
-    m = course.exact_corners()[0]
-    for alpha in (600, 780, 950):
-        # Another focal length enlarges the picture about the principal point.
-        off = np.sqrt(np.mean(np.sum((m - c) ** 2, axis=1))) * abs(alpha / 800 - 1)
-        sentence = model.drawing(alpha=alpha).sentence
-        assert numbers(sentence)[1] == pytest.approx(off, abs=0.051)
-        assert "the cube is off" in sentence
-    assert "the cube stands on its four squares" in model.drawing(alpha=800).sentence
-    without = [numbers(model.drawing(alpha=a, lens=0).sentence)[1] for a in range(600, 1001, 5)]
-    assert min(without) > 1
-    # The curve is lowest there, too: its panel is the right one, 340 wide for 465 px.
-    panel = model.picture(alpha=600, lens=0)[TITLE:, -MARGIN - 340 : -MARGIN].astype(int)
-    lowest = np.flatnonzero((np.abs(panel - colour(LENS)).max(-1) < 90).any(axis=1)).max()
-    blue = np.flatnonzero(np.abs(panel[lowest] - colour(LENS)).max(-1) < 90)
-    at = 600 + 5 * without.index(min(without))
-    assert 560 + (blue.mean() + 0.5) * 465 / 340 == pytest.approx(at, abs=2)
-    foot = c + (np.array(grip_of(model.drawing(alpha=800), "cube").at) - c) * 900 / 800
-    assert model.dragged("cube", tuple(foot))["alpha"] == 900
+def test_a_facing_board_fits_every_focal_length_and_a_tilted_one_its_own_alone():
+    """Another way to the best pose: scipy's, over a rotation vector and a place."""
+    model, board, c = MODELS["stands"], course.board(), np.array([325, 238])
+    held = {"facing": ([0, 0, 0], 394.87), "tilted": ([0, 0.8, 0], 416.49)}  # mm to the middle
+    W = board.points - board.points.mean(axis=0)
+
+    def seen(pose_of, alpha):
+        x, y, z = (Rotation.from_rotvec(pose_of[:3]).apply(W) + pose_of[3:]).T
+        return c + np.column_stack([alpha * x / z, 1.005 * alpha * y / z])
+
+    for alpha in (400, 780, 800, 1200):
+        said = numbers(model.drawing(alpha=alpha).sentence)
+        assert said[0] == alpha
+        for (vector, away), miss in zip(held.values(), (said[2], said[-1]), strict=True):
+            m = seen(np.array([*vector, 0, 0, away]), 800)
+            start = np.array([*vector, 0, 0, away * alpha / 800])
+            least = least_squares(lambda p, m=m, a=alpha: (seen(p, a) - m).ravel(), start)
+            if alpha != 800 or vector[1] == 0:
+                assert miss == pytest.approx(np.sqrt(2 * least.cost / len(W)), abs=0.051)
+        assert said[1] == round(394.87 * alpha / 800)
+        assert ("fits, too" in model.drawing(alpha=alpha).sentence) == (alpha == 800)
+
+
+def test_the_misses_are_drawn_as_far_as_the_focal_length_was_pulled():
+    model = MODELS["stands"]
+    for alpha in (400, 600, 1000):
+        drawing = model.drawing(alpha=alpha)
+        grip = grip_of(drawing, "alpha")
+        u, v = np.rint(grip.place).astype(int)
+        graph = drawing.picture[:, MARGIN + 406 :].astype(int)
+        top = TITLE + 260 + 6 + TITLE
+        beyond = graph[top : v - 14, u - 406 - MARGIN + 12 :]
+        assert count(beyond, ESTIMATED, 60) == 0  # the curve has not been there, nor its words
+        before = graph[top : top + 240, : u - 406 - MARGIN - 12]
+        assert (count(before, ESTIMATED, 60) > 100) == (alpha > 400)
+        assert count(drawing.picture[v - 2 : v + 3, u - 2 : u + 3], ESTIMATED) > 10
+    assert model.dragged("plane", (176, 0), alpha=400)["alpha"] == 800
+    assert model.dragged("alpha", (811, 9), alpha=400)["alpha"] == 820

@@ -76,7 +76,7 @@ def cube_model() -> Model:
         base = foot + _turned(values["turn"]) * _SIDE / 2
         panel = paper.picture_panel((540, 405), _CAMERA.size, "a tower: pull its foot or its top")
         panel.image(_in_the_shade(found, camera, base, h))
-        corners = draw_tower(panel, camera, base, h)
+        corners = _draw_tower(panel, camera, base, h)
         if not values["lens"]:
             for i, j in _EDGES:  # where it belongs
                 edge = corners[i] + np.linspace(0, 1, 9)[:, None] * (corners[j] - corners[i])
@@ -137,9 +137,7 @@ def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn
     return np.asarray(Image.composite(found.dark, found.photo, round_it.resize(_CAMERA.size)))
 
 
-def draw_tower(
-    panel: Panel, camera: Camera, base: Array, h: float, *, windows: bool = True
-) -> Array:
+def _draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
     """Draw the tower's faces that are seen, in tiles; returns its corners (8, 3)."""
     low, high = np.insert(base, 2, 0, axis=1), np.insert(base, 2, -h, axis=1)
     faces = [high, *(np.array([high[i - 1], high[i], low[i], low[i - 1]]) for i in range(4))]
@@ -157,7 +155,7 @@ def draw_tower(
             for j in range(n):
                 tile = grid[[i, i, i + 1, i + 1], [j, j + 1, j + 1, j]]
                 panel.polygons(tile[None], hexed(light * _PAINT[(i + j) % 2]))
-                if windows and outside[2] > -0.5:  # not on the roof
+                if outside[2] > -0.5:  # not on the roof
                     middle_of = tile.mean(axis=0)
                     panel.polygons((middle_of + 0.55 * (tile - middle_of))[None], _WINDOW)
     return np.concatenate([low, high])

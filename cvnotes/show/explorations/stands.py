@@ -1,102 +1,143 @@
-"""Explore what a focal length is good for: a cube stands on its squares by the right one alone."""
+"""Explore what calibrates: a board that faces the camera fits every focal length, a tilted one."""
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, Lens
-from cvnotes.pictures import course, render_scene, room_with
+from cvnotes.calibration import pose_from_view
+from cvnotes.camera import Camera, move, rotation_from_vector
+from cvnotes.pictures import course, hold_at, render_scene, room_with
 from cvnotes.show.explorations.boards import draw_net
-from cvnotes.show.explorations.cube import draw_tower
+from cvnotes.show.explorations.finding import rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, LENS, WORLD
+from cvnotes.show.style import CAMERA, ESTIMATED, MUTED
 
-_BOARD, _TRUE, _POSE = course.board(), course.camera(), course.poses()[0]
-_SIZE, _ALPHA = (640, 480), 800.0
-_SIDE = 2 * _BOARD.square
-_BASE = np.array([[0.0, 0], [50, 0], [50, 50], [0, 50]])  # mm: on four squares
-_STANDS = 0.5  # px: corners that are missed by less
+_BOARD, _A = course.board(), course.camera().A
+_SIZE, _ALPHA, _CUT = (640, 480), 800.0, 32  # px; rows that are cut off above and below
+_PANEL, _MOST = (400, 260), 14  # px; of misses
+_LOW, _HIGH, _STEP = 400, 1200, 20  # px, of α
+_MM = 0.22  # so many are a pixel of the picture, in the plan
+_ENDS = _BOARD.square * np.array([[-1, 2.5, 0], [9, 2.5, 0]])  # of the board, seen from above
+# How a board is held, in radians about y, and how much farther than would fill the picture; where
+# the axis of its camera is in the plan, in mm; its colour.
+_WAYS = {"facing": (0, 1.2, -104, MUTED), "tilted": (0.8, 1.06, 136, ESTIMATED)}
+
+
+class Best(NamedTuple):
+    """The best pose, CRF ← board; the net by it (n, 2), its RMS miss in px; mm to the middle."""
+
+    pose: Array
+    net: Array
+    miss: float
+    away: float
 
 
 def stands_model() -> Model:
-    """Make the model of a board in a room, and a cube that is drawn onto it."""
-    settings = (
-        Setting("alpha", "α (px)", 600, 1000, 5, 680, "the focal length, both along u and v"),
-        Setting("lens", "with the lens", 0, 1, 1, 1, "whether the lens is known, too"),
-    )
+    """Make the model of two photographs of a board, and the best pose of it for a focal length."""
+    settings = (Setting("alpha", "α (px)", _LOW, _HIGH, _STEP, _LOW, "the focal length"),)
     about = (
-        "A photograph of a board in a room; a cube is drawn onto the board, and the net of its "
-        "corners, by a camera with another focal length; beside it how far the net misses them."
+        "Two photographs of a board, one facing the camera and one tilted; over each an orange "
+        "net, the best that a camera with this focal length can do. Below, where the boards would "
+        "be, from above; beside it how far the nets miss the corners, up to this focal length."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        camera = camera_of(values["alpha"], bool(values["lens"]))
-        panel = paper.picture_panel((440, 330), _SIZE, "a cube on its squares: pull it")
-        panel.image(photograph())
-        draw_net(panel, camera.project(_BOARD.points), _BOARD, ESTIMATED, 1)
-        squares = np.column_stack([_BASE, 0 * _BASE[:, 0]])[[0, 1, 2, 3, 0]]
-        around = squares + 0.06 * np.sign(squares - _SIDE / 2) * [_SIDE / 2, _SIDE / 2, 0]
-        panel.line(_TRUE.moved(_POSE).project(around), WORLD, 3)  # it stays in sight
-        draw_tower(panel, camera, _BASE, _SIDE, windows=False)
-        foot = camera.project([*_BASE.mean(axis=0), 0])
-        panel.grip("cube", "the cube, to be pulled onto its squares", foot, 4)
-        return Drawing(paper.join((panel, _curve(paper, values))), _sentence(values))
+        alpha = values["alpha"]
+        photos = tuple(_photo(paper, how, best(how, alpha)) for how in _WAYS)
+        drawn = paper.join(photos, (_plan(paper, alpha), _graph(paper, alpha)))
+        return Drawing(drawn, _sentence(alpha))
 
-    def pulled(values: Values, at: Array) -> Values:
-        """Choose the focal length by which the foot comes nearest to the hand."""
-        tried = np.arange(600.0, 1001, 5)
-        lens = bool(values["lens"])
-        feet = [camera_of(alpha, lens).project([*_BASE.mean(axis=0), 0]) for alpha in tried]
-        return {"alpha": float(tried[np.linalg.norm(feet - at, axis=1).argmin()])}
-
-    return Model("stands", about, settings, draw, {"cube": pulled})
+    drags = {
+        "plane": lambda _, at: {"alpha": float(at[0]) / _MM},
+        "alpha": lambda _, at: {"alpha": float(at[0])},
+    }
+    return Model("stands", about, settings, draw, drags)
 
 
-@lru_cache(maxsize=1)
-def photograph() -> Drawn:
+def camera_of(alpha: float) -> Camera:
+    """Return the course's camera with another focal length, and without its lens."""
+    k = alpha / _ALPHA
+    return Camera(_A * [[k, 1, 1], [1, k, 1], [1, 1, 1]], size=_SIZE)
+
+
+@lru_cache(maxsize=2)
+def held(how: str) -> Array:
+    """Return the pose of the board in its photograph."""
+    tilt, farther, *_ = _WAYS[how]
+    R = rotation_from_vector([0, tilt, 0])
+    return hold_at(_BOARD, camera_of(_ALPHA), R, _A[:2, 2], farther)
+
+
+@lru_cache(maxsize=2)
+def photograph(how: str) -> Drawn:
     """Photograph the board in the room."""
-    return render_scene(room_with(_BOARD, _POSE), _TRUE)
+    return render_scene(room_with(_BOARD, held(how)), camera_of(_ALPHA))[_CUT:-_CUT]
 
 
-def camera_of(alpha: float, lens: bool) -> Camera:
-    """Return the course's camera, where it stood, with another focal length and perhaps no lens."""
-    A = _TRUE.A.copy()
-    A[[0, 1], [0, 1]] *= alpha / _ALPHA
-    return Camera(A, _POSE, _TRUE.lens if lens else Lens(), _SIZE)
+@lru_cache(maxsize=2 * (_HIGH - _LOW) // _STEP + 2)
+def best(how: str, alpha: float) -> Best:
+    """Find where a board would stand if this were the focal length."""
+    m = camera_of(_ALPHA).moved(held(how)).project(_BOARD.points)
+    G = pose_from_view(camera_of(alpha), _BOARD.points, m)
+    net = camera_of(alpha).moved(G).project(_BOARD.points)
+    return Best(G, net, rms(net - m), float(move(G, _BOARD.points.mean(axis=0))[2]))
 
 
-@lru_cache(maxsize=200)
-def missed(alpha: float, lens: bool) -> float:
-    """Return how far the corners are from where such a camera puts them, RMS in px."""
-    off = camera_of(alpha, lens).project(_BOARD.points) - _TRUE.moved(_POSE).project(_BOARD.points)
-    return float(np.sqrt(np.mean(np.sum(off**2, axis=1))))
-
-
-def _curve(paper: Paper, values: Values) -> Panel:
-    alpha, lens = values["alpha"], bool(values["lens"])
-    panel = paper.panel((340, 330), (560, 1025), (56, -7), "corners missed (RMS, px) by α")
-    panel.ticks(x=(600, 700, 800, 900, 1000), y=(0, 20, 40), size=11)
-    tried = np.arange(600.0, 1001, 5)  # as the slider: the lowest is one of them
-    panel.line([[a, missed(a, lens)] for a in tried], LENS, 2)
-    here = [alpha, missed(alpha, lens)]
-    panel.mark(here, "estimated", 8)
-    high = here[1] > 12  # between the two arms; near their foot, outside of them
-    inside = 16 if (alpha < 800) == high else -16
-    panel.text(
-        [alpha + inside, here[1] + (2 if high else -0.5)], f"{here[1]:.1f} px", ESTIMATED,
-        anchor="lm" if inside > 0 else "rm", size=13,
-    )  # fmt: skip
+def _photo(paper: Paper, how: str, found: Best) -> Panel:
+    title = f"{how}: the best net misses by {found.miss:.1f} px"
+    panel = paper.panel(_PANEL, (-0.5, _SIZE[0] - 0.5), (_CUT - 0.5, _SIZE[1] - _CUT - 0.5), title)
+    panel.image(photograph(how))
+    draw_net(panel, found.net, _BOARD, ESTIMATED, 1.2)
     return panel
 
 
-def _sentence(values: Values) -> str:
-    alpha, lens = values["alpha"], bool(values["lens"])
-    off = missed(alpha, lens)
+def _plan(paper: Paper, alpha: float) -> Panel:
+    """Draw both cameras, the planes of their pictures, and the boards that show this there."""
+    panel = paper.panel(_PANEL, (-40, 776), (-255, 255), "from above: pull the cross")
+    z, half = _MM * alpha, _MM * _SIZE[0] / 2
+    middle = 16  # mm, between both cameras
+    panel.line([[z, middle - half], [z, middle + half]], CAMERA, 1, dash=3)
+    for how, (tilt, _, across, colour) in _WAYS.items():
+        found = best(how, alpha)
+        a, b = move(found.pose, _ENDS)[:, [2, 0]] + [0, across]
+        panel.line([a, [0, across], b], colour, 1)
+        panel.line([[z, across - half], [z, across + half]], CAMERA, 2)
+        panel.line([a, b], colour, 4)
+        panel.mark([0, across], "camera", 9, (1, 0))
+        beside = [found.away + 30, across + 25 * tilt]
+        panel.text(beside, f"{found.away:.0f} mm", colour, size=13)
+    panel.text([z - 20, middle], "pictures", CAMERA, anchor="rm", size=12)
+    panel.mark([z, middle], "estimated", 8)
+    panel.grip("plane", "the planes of both pictures, nearer or farther", [z, middle], 2)
+    return panel
+
+
+def _graph(paper: Paper, alpha: float) -> Panel:
+    """Draw the misses, as far as the focal length has been pulled up."""
+    title = "how far the nets miss (RMS, px), by α (px)"
+    panel = paper.panel(_PANEL, (_LOW - 90, _HIGH + 160), (_MOST, -1.6), title)
+    panel.ticks(x=(400, 600, 800, 1000, 1200), y=(0, 5, 10), size=12)
+    tried = np.arange(_LOW, alpha + 1, _STEP)
+    for how, (tilt, *_, colour) in _WAYS.items():
+        misses = [best(how, float(a)).miss for a in tried]
+        panel.line(np.column_stack([tried, misses]), colour, 2.4)
+        panel.line([[alpha - 6, misses[-1]], [alpha + 6, misses[-1]]], colour, 5)
+        above = max(misses[-1] + 0.2, 1.7 if tilt else 0.6)  # both can be read at 800
+        panel.text([alpha + 24, above], how, colour, size=13)
+    panel.mark([alpha, misses[-1]], "estimated", 8)
+    panel.grip("alpha", "the focal length, shorter or longer", [alpha, misses[-1]], 4)
+    return panel
+
+
+def _sentence(alpha: float) -> str:
+    facing, tilted = (best(how, alpha) for how in _WAYS)
     said = (
-        f"With α = {alpha:.0f} px {'and' if lens else 'without'} the lens the corners of the board"
+        f"With α = {alpha:.0f} px the facing board would be {facing.away:.0f} mm away, and its net "
+        f"misses by {facing.miss:.1f} px. The tilted board "
     )
-    if off < _STANDS:
-        return f"{said} are met: the cube stands on its four squares."
-    return f"{said} are missed by {off:.1f} px, and the cube is off, too."
+    if tilted.miss < 0.05:
+        return f"{said}would be {tilted.away:.0f} mm away, and its net fits, too."
+    return f"{said}fits nowhere: at its best its net misses by {tilted.miss:.1f} px."

@@ -80,15 +80,15 @@ def _without(lens: Lens, photo: Drawn, sharpness: int) -> Drawn:
 
 
 def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
-    panel = paper.panel(
-        _ROW, (-0.5, _SIZE[0] - 0.5), _BOW[::-1], "the uppermost row: px above its line"
-    )
+    title = "the uppermost row, px above its line: pull its middle dot"
+    panel = paper.panel(_ROW, (-0.5, _SIZE[0] - 0.5), _BOW[::-1], title)
     panel.ticks(y=(-5, 0, 5), size=12)
     panel.line([[40, 0], [_SIZE[0], 0]], MUTED, 0.8)
     at = np.column_stack([m[:, 0], bow])
     panel.line(at[[0, -1]], ESTIMATED, 1.5)
     panel.line(at, LENS, 1.2)
     panel.mark(at, "lens", 6)
+    panel.mark(at[len(at) // 2], "lens", 12)
     panel.grip("row", "the middle of the row, to be pulled straight", at[len(at) // 2], 4)
     return panel
 
