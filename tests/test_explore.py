@@ -93,6 +93,7 @@ from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
 from cvnotes.show.explorations.subpixel import measured as two_finders
 from cvnotes.show.explorations.subpixel import photograph as photograph_of_corner
+from cvnotes.show.explorations.swing import nets, weights
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import window_at
@@ -2688,3 +2689,69 @@ def test_the_misses_are_drawn_as_far_as_the_focal_length_was_pulled():
         assert count(drawing.picture[v - 2 : v + 3, u - 2 : u + 3], ESTIMATED) > 10
     assert model.dragged("plane", (176, 0), alpha=400)["alpha"] == 800
     assert model.dragged("alpha", (811, 9), alpha=400)["alpha"] == 820
+
+
+@pytest.mark.parametrize(
+    ("row", "column", "du", "dv"), [(6, 1, 0, 10), (1, 7, -20, 5), (5, 4, 9, 30)]
+)
+def test_the_dlts_net_is_that_of_a_plain_svd_and_the_other_has_the_least_error_in_pixels(
+    row, column, du, dv
+):
+    """The floor by two similar triangles: 300 mm below a camera whose horizon is at v = 238."""
+    Y = np.repeat([450.0, 600, 900, 1500, 3000, 6000], 7)
+    X = np.tile(np.arange(-300.0, 301, 100), 6)
+    m = np.column_stack([325 + 800 * X / Y, 238 + 804 * 300 / Y])
+    true = m.reshape(6, 7, 2).copy()
+    m[7 * (row - 1) + column - 1] += du, dv
+    (x, y), (u, v) = (
+        ((xy - xy.mean(1, keepdims=True)) * np.sqrt(2)
+         / np.hypot(*(xy - xy.mean(1, keepdims=True))).mean())
+        for xy in (np.stack([X, Y]), m.T)
+    )  # fmt: skip
+    o, i = np.zeros(42), np.ones(42)
+    D = np.concatenate(
+        [[x, y, i, o, o, o, -u * x, -u * y, -u], [o, o, o, x, y, i, -v * x, -v * y, -v]], 1
+    ).T
+    h = np.linalg.svd(D)[2][8]
+
+    def net(h):
+        a, b, c = h.reshape(3, 3) @ [x, y, i]
+        size = np.hypot(*(m - m.mean(0)).T).mean() / np.sqrt(2)
+        return np.column_stack([a / c, b / c]) * size + m.mean(0)
+
+    least = least_squares(lambda h: (net(h) - m).ravel(), h, xtol=1e-12, ftol=1e-12).x
+    both = nets(row, column, du, dv)
+    assert np.allclose(both[0], net(h).reshape(6, 7, 2), atol=1e-6)
+    assert np.allclose(both[1], net(least).reshape(6, 7, 2), atol=1e-3)
+    moved = [np.hypot(*(one - true)[0].T).max() for one in both]
+    far, row_1 = np.hypot(du, dv), "row 1 moves by up to {:.1f} px (DLT), {:.1f} px (refined)."
+    said = MODELS["swing"].drawing(row=row, column=column, du=du, dv=dv).sentence
+    assert said == f"Dot of row {row} pulled by {far:.0f} px: {row_1.format(*moved)}"
+
+
+def test_the_nets_are_drawn_where_they_are_and_each_bar_is_as_long_as_its_row_weighs():
+    drawing = MODELS["swing"].drawing(row=6, column=4, dv=80)
+    panel = drawing.picture[TITLE : TITLE + 300, MARGIN : MARGIN + 530]
+    for net, ink in zip(nets(6, 4, 0, 80), (LENS, ESTIMATED), strict=True):
+        for a, b in ((net[0, 0], net[0, 1]), (net[2, 2], net[2, 3]), (net[1, 5], net[1, 6])):
+            at = (a + b) / 2 * [530 / 1200, 300 / 678] + [275 * 530 / 1200, -180 * 300 / 678]
+            u, v = np.rint(at).astype(int)
+            assert count(panel[v - 2 : v + 3, u - 2 : u + 3], ink, 90) > 2
+    left = MARGIN + 530 + 2 * MARGIN + 52 * 240 / 292
+    for depth, weight in zip((450, 600, 900, 1500, 3000, 6000), weights(), strict=True):
+        assert weight == pytest.approx((depth / 450) ** 2)
+        v = round(TITLE + (238 + 804 * 300 / depth - 180) * 300 / 678)
+        bar = count(drawing.picture[v : v + 1, round(left) - 3 :], LENS)
+        assert bar == pytest.approx(weight * 240 / 292, abs=2)
+
+
+@pytest.mark.parametrize("draw", [0, 12, 44])
+def test_each_wrong_pair_has_a_diamond_and_no_right_one_has(draw):
+    true = Camera(course.camera().A, course.poses()[6]).project(course.board().points)
+    pairs, picture = drawn_pairs(16)[0], MODELS["ransac"].picture(draw=draw)
+    for m, wrong in zip(pairs, np.linalg.norm(pairs - true, axis=1) > 3, strict=True):
+        u, v = np.rint([MARGIN, TITLE] + (m - [159.5, 75.5]) * 330 / 315).astype(int)
+        assert (count(picture[v - 1 : v + 2, u - 1 : u + 2], "#FFFFFF", 20) == 9) == wrong, m
+        if wrong:
+            rim = [count(picture[v - 1 : v + 2, w - 1 : w + 2], IDEAL, 90) for w in (u - 7, u + 7)]
+            assert min(rim) > 0, m

@@ -62,10 +62,9 @@ EXERCISE = Exercise(
     chapter=6,
     title="RANSAC, and its number of draws",
     task="Some of the pairs src, dst (n, 2) are wrong. Each row of draws (d, 4) says which four "
-    "pairs one draw has taken. Of the maps through these fours, take the one that takes most src "
-    "to within t px of their dst. Give the count k of these pairs, and the number N of draws, "
-    "rounded up, after which one without a wrong pair has been met with probability 0.999, if k "
-    "of the n pairs are right.",
+    "pairs one draw has taken. Give two numbers. k: the largest number of src that one draw's map "
+    "takes to within t px of their dst. N: how many random draws make it 99.9 % sure that at "
+    "least one of them has four right pairs, if k of the n pairs are right (round up).",
     hints=(
         "For each row of draws: H = dlt(src[row], dst[row]). Count the pairs whose distance "
         "between dst and where H takes src is below t. k is the largest count.",

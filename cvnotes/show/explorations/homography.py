@@ -44,8 +44,7 @@ def homography_model() -> Model:
     settings += (Setting("measure", "measure", 0, 1, 1, 1, "a tape measure, and how sure it is"),)
     about = (
         "A wall at a slant, with a chart whose four corners are marked, and the millimetres of the "
-        "wall as the homography of these corners lays them; beside it the wall seen straight on. "
-        "A tape measure leads from the chart to a plus, and lines tell how well a place is known."
+        "wall as the homography of these corners lays them; beside it the wall seen straight on."
     )
 
     def corner(i: int) -> Drag:

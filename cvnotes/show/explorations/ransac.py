@@ -55,7 +55,8 @@ def ransac_model() -> Model:
             "the pairs, and one homography",
         )  # fmt: skip
         panel.image(photograph())
-        _draw_pairs(panel, put[n], pairs, agree[n], fours[n][: 4 * min(n, 1)])
+        _draw_pairs(panel, put[n], pairs, agree[n], true)
+        panel.mark(fours[n][: 4 * min(n, 1)], "ideal", 8)
         votes = paper.panel(
             (340, 330), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
         )
@@ -85,23 +86,29 @@ def drawn_pairs(wrong: int) -> tuple[Array, Array, Array, Mask]:
     return pairs, pairs[fours], put, ~np.isin(np.arange(len(W)), lies)
 
 
-def _draw_pairs(panel: Panel, put: Array, pairs: Array, agree: Mask, four: Array) -> None:
-    """Draw the net that a homography puts down, and each pair, led to its corner if it is off."""
-    panel.segments(np.stack([put, pairs], axis=1)[~agree], _WRONG, 0.5)
+def _draw_pairs(panel: Panel, put: Array, pairs: Array, agree: Mask, true: Mask) -> None:
+    """Draw the net that a homography puts down, and each pair, led to its corner if it is off.
+
+    Wrong pairs lie in a diamond in all draws, and their lines are black and over the net.
+    """
+    ways, shape = np.stack([put, pairs], axis=1), np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    panel.segments(ways[~agree & true], _WRONG, 0.5)
     draw_net(panel, put, _BOARD, ESTIMATED, 0.9)
-    square = 2.5 * panel.pixel * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    panel.polygons(pairs[~agree][:, None] + square, _WRONG)
+    panel.segments(ways[~agree & ~true], IDEAL, 1)
+    panel.polygons(pairs[~agree & true][:, None] + 2.5 * panel.pixel * shape, _WRONG)
+    diamond = panel.pixel * np.array([[0, -1], [1, 0], [0, 1], [-1, 0]])
+    for size, ink in ((8, IDEAL), (6, "white")):
+        panel.polygons(pairs[~true][:, None] + size * diamond, ink)
     panel.mark(pairs[agree], "lens", 5)
-    panel.mark(four, "ideal", 8)
 
 
 def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
-    panel.ticks(x=(0, 20, 40, 60), y=(18, 36, 54))
+    panel.ticks(x=(0, 20, 40, 60), y=(18, 36, 54), size=12)
     right = (1 - wrong / 54) ** 4
     draws = np.arange(_DRAWS + 1)
     panel.line(np.column_stack([draws, 54 * (1 - (1 - right) ** draws)]), MUTED, 1.2, dash=4)
-    panel.text([13, 56.5], "chance of four right ones", size=10)
-    panel.text([_DRAWS + 2.5, 56.5], "100 %", anchor="rm", size=10)
+    panel.text([10, 56.5], "chance of four right ones", size=12)
+    panel.text([_DRAWS + 2.5, 56.5], "100 %", anchor="rm", size=12)
     best = np.maximum.accumulate(np.where(draws > 0, counts, 0))
     steps = np.column_stack([np.repeat(draws[1:], 2)[1:], np.repeat(best[1:], 2)[:-1]])
     panel.line(steps, IDEAL, 1.2)

@@ -1,0 +1,130 @@
+"""Explore two errors: pull one dot of a tiled floor, and see how far two homographies give way."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.homography import dlt, refine_homography
+from cvnotes.projective import apply
+from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.valley import rows_of_tiles
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+
+_SHOWN = (-275.0, 925.0), (180.0, 858.0)  # px of a wide sensor, u and v
+_SIZE, _BARS = (530, 300), (240, 300)
+_FAR = 80  # px: how far a dot can be pulled
+_TONES = np.array([[255, 250, 244], [243, 231, 219]])  # of the tiles
+_NETS = ((LENS, 3.0), (ESTIMATED, 1.4))  # of the DLT, and of the least error in pixels
+
+
+def swing_model() -> Model:
+    """Make the model of six rows of tiles, one dot of which is pulled."""
+    settings = (
+        Setting("row", "row", 1, 6, 1, 6, "of the dot that is pulled; row 1 is near"),
+        Setting("column", "column", 1, 7, 1, 1, "of the dot that is pulled, from the left"),
+        Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, 0, "in the picture"),
+        Setting("dv", "pulled down (px)", -_FAR, _FAR, 1, 30, "in the picture"),
+    )
+    about = (
+        "A tiled floor with six rows of dots, one of which is pulled away, and two nets through "
+        "them: of the DLT, and of the homography with the least error in pixels. Beside it the "
+        "weight of each row in the DLT."
+    )
+
+    def pulled(row: int) -> Drag:
+        def drag(values: Values, at: Array) -> Values:
+            du, dv = (at - _dots()[row - 1, int(values["column"]) - 1]).tolist()
+            return {"row": row, "du": du, "dv": dv}
+
+        return drag
+
+    drags = {f"row {row}": pulled(row) for row in range(1, 7)}
+    return Model("swing", about, settings, _draw, drags)
+
+
+@lru_cache(maxsize=8)
+def nets(row: int, column: int, du: float, dv: float) -> tuple[Array, Array]:
+    """Return where the DLT and its refinement put the dots, (6, 7, 2) each, if one is pulled."""
+    tiles, exact = rows_of_tiles()
+    seen = exact.copy()
+    seen[7 * row + column - 8] += du, dv
+    H = dlt(tiles, seen)
+    both = (apply(one, tiles) for one in (H, refine_homography(H, tiles, seen)))
+    first, second = (net.reshape(6, 7, 2) for net in both)
+    return first, second
+
+
+def weights() -> Array:
+    """Return the weight (6,) of each row's squared distances in the DLT, of row 1's: its w²."""
+    depth = rows_of_tiles()[0][::7, 1]
+    return np.asarray((depth / depth[0]) ** 2)
+
+
+def _dots() -> Array:
+    return rows_of_tiles()[1].reshape(6, 7, 2)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    row, column = int(values["row"]), int(values["column"])
+    two, dots = nets(row, column, values["du"], values["dv"]), _dots().copy()
+    left, held = dots[row - 1, column - 1].copy(), dots[:, column - 1]
+    held[row - 1] += values["du"], values["dv"]
+    panel = paper.panel(_SIZE, *_SHOWN, "blue: the DLT; orange: least error in pixels")
+    panel.image(_ground(paper.sharpness))
+    for net, (colour, width) in zip(two, _NETS, strict=True):
+        for line in (*net, *net.transpose(1, 0, 2)):
+            panel.line(line, colour, width)
+    panel.line([left, held[row - 1]], IDEAL, 1, dash=3)
+    others = np.delete(held, row - 1, axis=0)  # of the column: hollow, to be pulled as well
+    for at, size, ink in (
+        (dots.reshape(-1, 2), 2.2, IDEAL),
+        (held, 5, IDEAL),
+        (others, 3, "white"),
+    ):
+        panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
+    for i, (at, v) in enumerate(zip(held, _dots()[:, 0, 1], strict=True), start=1):
+        panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
+        panel.text([_SHOWN[0][0] + 12, v], f"{i}", IDEAL, size=12)
+    moved = [float(np.linalg.norm((net - _dots())[0], axis=1).max()) for net in two]
+    return Drawing(paper.join((panel, _bars(paper))), _sentence(values, moved))
+
+
+def _bars(paper: Paper) -> Panel:
+    """Draw the weight of each row, at the height that it has in the picture."""
+    panel = paper.panel(_BARS, (-52, 240), _SHOWN[1], "weight of each row in the DLT")
+    panel.line([[0, 0], [0, 1000]], MUTED, 0.8)
+    for i, (weight, v) in enumerate(zip(weights(), _dots()[:, 0, 1], strict=True), start=1):
+        bar = np.array([[0, -13], [weight, -13], [weight, 13], [0, 13]]) + [0, v]
+        panel.polygons([bar], LENS)
+        panel.text([-6, v], f"row {i}", anchor="rm", size=12)
+        panel.text([weight + 7, v], f"{weight:.2g}" if weight < 10 else f"{weight:.0f}", size=12)
+    return panel
+
+
+@lru_cache(maxsize=3)
+def _ground(sharpness: int) -> Drawn:
+    """Paint tiles of 100 mm × 150 mm, paler towards the horizon, which is at v = 238."""
+    u, v = (
+        np.linspace(*ends, 3 * sharpness * n, endpoint=False)
+        for ends, n in zip(_SHOWN, _SIZE, strict=True)
+    )
+    far = 804 * 300 / (v - 238).clip(1e-3)  # mm: focal length times height
+    odd = (np.floor((u - 325) / 800 * far[:, None] / 100) + np.floor(far / 150)[:, None]) % 2
+    grey = odd.reshape(len(v) // 3, 3, len(u) // 3, 3).mean(axis=(1, 3))
+    fade = np.interp(v[1::3], [238, 300], [0, 1])[:, None]
+    part = (0.5 + fade * (grey - 0.5))[..., None]
+    ground = np.where(v[1::3, None, None] < 238, 255, _TONES[0] + part * (_TONES[1] - _TONES[0]))
+    return np.asarray(ground.round()).astype(np.uint8)
+
+
+def _sentence(values: Values, moved: list[float]) -> str:
+    far = np.hypot(values["du"], values["dv"])
+    if far == 0:
+        return "No dot is pulled: both nets go through all dots."
+    return (
+        f"Dot of row {values['row']:.0f} pulled by {far:.0f} px: row 1 moves by up to "
+        f"{moved[0]:.1f} px (DLT), {moved[1]:.1f} px (refined)."
+    )
