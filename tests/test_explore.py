@@ -59,6 +59,7 @@ from cvnotes.show.explorations import (
     eleventh,
     folds,
     formation,
+    frame,
     gimbal,
     maps,
     moved,
@@ -2078,6 +2079,67 @@ def test_a_view_out_of_the_fisheyes_picture_is_what_a_pinhole_camera_sees(fov, r
     assert np.median(np.abs(off)) == 0
 
 
+@pytest.mark.parametrize(
+    ("f", "u0", "v0"), [(318, 319.5, 239.5), (279, 319.5, 239.5), (300, 379.5, 179.5)]
+)
+def test_a_new_frame_shows_what_a_pinhole_camera_sees_and_is_black_beyond_the_lenss_picture(
+    f, u0, v0
+):
+    """By a camera that photographs the street anew, and by r L(r) of each pixel's own radius."""
+    drawing = MODELS["frame"].drawing(f=f, u0=u0, v0=v0)
+    seen = drawing.picture[TITLE + 1 : TITLE + 287, -MARGIN - 383 : -MARGIN - 1].astype(int)
+    A = intrinsics(0.6 * f, 0.6 * f, 0.6 * (u0 + 0.5) - 0.5, 0.6 * (v0 + 0.5) - 0.5)
+    street = look_at([-600, 0, 6200], [-600, -900, 14_000])
+    there = Camera(A, street, size=(384, 288))
+    anew = render_scene(blocks(), there, samples=4)[1:287, 1:383]
+    x, y = np.moveaxis(pixel_centres((640, 480)) - [u0, v0], -1, 0) / f
+    bent = 400 * (1 - 0.25 * (x**2 + y**2) + 0.05 * (x**2 + y**2) ** 2)
+    black = (np.abs(bent * x) > 319.5) | (np.abs(bent * y) > 239.5)
+    dark = np.pad(seen.max(axis=-1) < 40, 1, mode="edge")  # under the panel's own border, too
+    assert dark.mean() == pytest.approx(black.mean(), abs=0.01)
+    assert (
+        np.abs(seen - anew)[~dark[1:-1, 1:-1]].mean() < 4
+    )  # grey levels: edges, and the black's border
+    # Where the frame lies in the photograph, by the same numbers: what is around it is lost.
+    r = np.linspace(0, 1.6, 4001)
+    radius = np.hypot(*np.moveaxis((pixel_centres((640, 480)) - [319.5, 239.5]) / 400, -1, 0))
+    back = np.interp(radius, r * (1 - 0.25 * r**2 + 0.05 * r**4), r) / radius
+    m = f * back[..., None] * (pixel_centres((640, 480)) - [319.5, 239.5]) / 400 + [u0, v0]
+    lost = ((m < 0) | (m > [639, 479])).any(axis=-1).mean()
+    wide = np.degrees(np.arctan((639 - u0) / f) + np.arctan(u0 / f))
+    said = numbers(drawing.sentence.replace("nothing", "0"))
+    assert said == pytest.approx([f, wide, 100 * black.mean(), 100 * lost], abs=0.51)
+    assert np.abs(said[2:] - 100 * np.array([black.mean(), lost])).max() < 0.11
+    # On the plane, away from lines and marks: black, pale, or white as the paper.
+    plane = drawing.picture[TITLE : TITLE + 440, MARGIN : MARGIN + 480].astype(int)
+    beside = [[0, 0], [5, 0], [-5, 0], [0, 5], [0, -5]]
+    x, y = np.moveaxis(pixel_centres((480, 440))[..., None, :] - [239.5, 219.5] + beside, -1, 0)
+    x, y = x * 2.76 / 480, y * 2.76 / 480
+    bent = 400 * (1 - 0.25 * (x**2 + y**2) + 0.05 * (x**2 + y**2) ** 2)
+    shown = (np.abs(bent * x) < 319.5) & (np.abs(bent * y) < 239.5) & (np.hypot(x, y) < 1.5)
+    framed = (x > -u0 / f) & (x < (639 - u0) / f) & (y > -v0 / f) & (y < (479 - v0) / f)
+    for place, low, high in (
+        (framed & ~shown, 0, 8),
+        (~framed & shown, 150, 254),
+        (~framed & ~shown, 255, 255),
+    ):
+        there = plane[place.all(axis=-1)].min(axis=-1)
+        assert ((low <= there) & (there <= high)).sum() >= 0.97 * len(there)
+
+
+def test_a_frame_has_no_gaps_from_where_a_side_no_longer_leaves_the_border_and_loses_all_else():
+    """The longest and the shortest focal length that the four sides of the picture ask for."""
+    r = np.linspace(0, 1.6, 400_001)
+    seen = r * (1 - 0.25 * r**2 + 0.05 * r**4)
+    side, top, corner = np.interp([319.5 / 400, 239.5 / 400, np.hypot(319.5, 239.5) / 400], seen, r)
+    full, every = max(319.5 / side, 239.5 / top), np.hypot(319.5, 239.5) / corner
+    assert [every, full] == pytest.approx(frame.ends(np.array([319.5, 239.5])), abs=0.01)
+    for f in range(260, 431, 5):
+        sentence = MODELS["frame"].drawing(f=f).sentence
+        assert ("nothing is black" in sentence) == (f >= full), f
+        assert ("nothing is lost" in sentence) == (f <= every), f
+
+
 def test_the_outline_of_a_view_grows_towards_180_degrees_and_never_reaches_them():
     for fov in (40, 110, 150):
         drawing = MODELS["fisheye"].drawing(fov=fov, right=0, up=0)
@@ -2336,6 +2398,7 @@ ON_A_CURVE = {  # its nearest place
     ("twins", "other"),
     ("twins", "box"),
     ("pairs", "pair"),
+    ("frame", "corner"),
     ("moved", "camera"),
     ("moved", "board"),
 }

@@ -11,7 +11,7 @@ from cvnotes.camera.lens import radial_factor
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, mixed
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp
 
@@ -20,6 +20,7 @@ _HELD = 0.6  # where the curve is taken hold of
 _RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
 _DETAIL = 450  # px of the photograph of the room for a length of 1 on the plane z = 1
+_FOLDED = mixed(ESTIMATED, "#FFFFFF", 0.4)
 _COARSE = 4  # px between which the way back through the lens, which takes long, is linear
 
 
@@ -150,16 +151,16 @@ def _draw_grid(panel: Panel, lens: Lens) -> None:
     across = np.stack(np.meshgrid(fine, coarse), -1)
     for line in (*across, *across[..., ::-1]):
         panel.line(line[[0, -1]], MUTED, 0.5)
-    for line in (*across, *across[..., ::-1]):
-        bent = polynomial(lens, line)
-        beyond = np.linalg.norm(line, axis=-1, keepdims=True) > lens.max_radius
-        if beyond.any():
-            panel.line(np.where(beyond, bent, np.nan), "#F4D0B8", 0.6)
-        panel.line(np.where(beyond, np.nan, bent), LENS, 1.2)
+    for beyond in (True, False):  # what comes back beyond the fold lies under the rest
+        for line in (*across, *across[..., ::-1]):
+            inside = np.linalg.norm(line, axis=-1, keepdims=True) <= lens.max_radius
+            bent = np.where(inside != beyond, polynomial(lens, line), np.nan)
+            panel.line(bent, *((_FOLDED, 1.3) if beyond else (LENS, 1.2)))
     panel.mark([0, 0], "ideal")
     panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
     bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
-    below = [0, min(max(bent[1], _EXTENT) + 0.02, panel.y[1] - 0.07)]
+    low = bent[1] if lens.max_radius < _EXTENT else max(bent[1], _EXTENT)
+    below = [0, min(low + 0.02, panel.y[1] - 0.07)]
     panel.text(below, "through the lens", LENS, anchor="ma")
 
 
@@ -190,14 +191,20 @@ def _draw_ring(grid: Panel, curve: Panel, lens: Lens, r: float) -> str:
     grid.line(ring, MUTED, 1.4, dash=4)
     for colour, width in (("#FFFFFF", 5.0), (ink, 3.0)):
         grid.line(polynomial(lens, ring), colour, width, dash=dash)
+    aside = r * np.array([np.cos(0.6), np.sin(0.6)])
+    grid.line([aside, polynomial(lens, aside)], ink, 1.4)
+    grid.mark([aside], "ideal", 5)
     curve.line([[r, 0], [r, seen], [0, seen]], ink, 1)
-    curve.text([0.14, seen + 0.015], f"{seen:.2f}".replace("-", "−"), ink, anchor="ld", size=12)
+    place, anchor = ([r - 0.02, seen - 0.015], "ra") if beyond else ([0.14, seen + 0.015], "ld")
+    if seen < 0:
+        place, anchor = [r - 0.02, seen + 0.015], "rd"
+    curve.text(place, f"{seen:.2f}".replace("-", "−"), ink, anchor=anchor, size=12)
     curve.mark([r, 0], "ideal", 8)
     curve.grip("ring", "the ideal radius of the ring", [r, 0], 5)
-    place = f"{seen:.2f}{' on the dashed ray' if any(lens.p) else ''}"
+    where = f"{seen:.2f}{' on the dashed ray' if any(lens.p) else ''}"
     if not beyond:
-        return f"The ring of radius {r:.2f} is seen at {place}."
-    said = f"The ring of radius {r:.2f} would be drawn at {place}"
+        return f"The ring of radius {r:.2f} is seen at {where}."
+    said = f"The ring of radius {r:.2f} would be drawn at {where}"
     if seen < 0:
         return f"{said}, beyond the middle."
     towards = -np.array(lens.p[::-1]) / np.hypot(*lens.p) if any(lens.p) else np.array([1.0, 0.0])
