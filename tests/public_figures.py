@@ -22,7 +22,6 @@ from public_face import (
     SEEN,
     SINGLE,
     TRIANGLE,
-    A,
     Argument,
     G,
     M,
@@ -41,7 +40,6 @@ from cvnotes.show.figures import (
     lines,
     predictions,
     quality,
-    sensors,
     vanishing,
 )
 from cvnotes.show.figures import (
@@ -109,8 +107,6 @@ FIGURES = [
     ),
     # ideas
     figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
-    # sensors
-    figure(sensors.draw_sensor, {"A": (A, SINGLE)}),
     # least squares
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
     # lines
@@ -137,10 +133,6 @@ FIGURES = [
     figure(vanishing.draw_altitudes, {"v": (TRIANGLE, several(2))}),
     # what 3-D figures are made of
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
-    figure(
-        shapes.arrow_shapes,
-        {"start": (np.array([1.0, 2, 3]), several(3)), "end": (np.array([4.0, 2, 9]), several(3))},
-    ),
     figure(shapes.target_shapes, {"world_from_target": (G, SINGLE)}, target=BOARD),
     figure(sights.camera_shapes, {"depth": (100.0, ONE), "image": (SMALL, PICTURE)}, camera=CAMERA),
     figure(sights.ray_shapes, {"m": (M, rows(2)), "length": (9.0, ONE)}, camera=CAMERA),

@@ -12,7 +12,6 @@ from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.predictions import draw_prediction_error, draw_wall
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
-from cvnotes.show.figures.sensors import draw_sensor
 from cvnotes.show.figures.vanishing import draw_altitudes
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
@@ -27,7 +26,6 @@ from cvnotes.show.space.shapes import (
     Label,
     Lines,
     Photo,
-    arrow_shapes,
     axes_shapes,
     scene_shapes,
     target_shapes,
@@ -56,7 +54,6 @@ __all__ = [
     "draw_altitudes",
     # chapter 3: how an image is formed
     "draw_field_of_view",
-    "draw_sensor",
     # chapter 4: lenses
     "draw_grid",
     # chapters 6, 7 and 9: estimates
@@ -76,7 +73,6 @@ __all__ = [
     "Viewer",
     "export_glb",
     "axes_shapes",
-    "arrow_shapes",
     "target_shapes",
     "scene_shapes",
     "camera_shapes",

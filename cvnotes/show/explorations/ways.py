@@ -8,7 +8,7 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.orbit import angles_of
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.space.directions import sheet, towards
-from cvnotes.show.style import COLOURS, ESTIMATED, IDEAL, LENS, MUTED, mixed
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
 _UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z points up on the sheet
 _SHEET, _TOWARDS = sheet((42, -62)) @ _UPRIGHT, towards((42, -62)) @ _UPRIGHT
@@ -21,12 +21,8 @@ _TURN = np.linspace(0, 2 * np.pi, 97)
 def ways_model() -> Model:
     """Make the model of a dart that is carried to an attitude in two ways."""
     settings = (
-        Setting(
-            "up", "tip up (°)", -30, 150, 1, 100, "90 is the pole; beyond it lies the far side"
-        ),
-        Setting(
-            "aside", "tip aside (°)", -60, 60, 1, -20, "from the circle through start and pole"
-        ),
+        Setting("up", "tip up (°)", -30, 150, 1, 100, "90 is the height of the pole"),
+        Setting("aside", "tip aside (°)", -60, 60, 1, -20, "0 is the circle through the pole"),
         Setting("roll", "roll (°)", -90, 90, 5, 0, "turns the target about its own length"),
         Setting("t", "time t (s)", 0, 1, 0.01, 0.4, "0 is the start, 1 the target"),
     )
@@ -79,8 +75,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     whole, t = float(np.degrees(np.linalg.norm(omega))), values["t"]
     panel = paper.panel((400, 370), (-1.3, 1.3), (-1.2025, 1.2025), "two ways to one attitude")
     by_axis = rotation_from_vector(np.outer(_T, omega))
-    y, z = np.outer(angles[1:], _T)
-    by_angles = np.column_stack([np.cos(y) * np.cos(z), np.cos(y) * np.sin(z), -np.sin(y)])
+    up, turn = np.outer(angles[1:], _T)
+    by_angles = np.stack([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), -np.sin(up)], 1)
     _draw_sphere(panel)
     tips = by_axis[:, :, 0] @ _SHEET.T
     panel.polygons([[[0, 0], *tips]], mixed("#FFFFFF", ESTIMATED, 0.16))
@@ -100,13 +96,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.mark(R[:, 0] @ _SHEET.T, meaning, 5)
     panel.mark(tips[-1], "ideal", 7)
     panel.grip("target", "the tip of the target", tips[-1], 4)
-    side = _speed(paper, speed, whole, t)
+    x, y, z = np.degrees(angles).round() + 0.0
     return Drawing(
-        paper.join((panel, side)),
-        "About one axis the way is {:.0f}°. By three angles, {:.0f}° about x, {:.0f}° about y and "
-        "{:.0f}° about z, it is {:.0f}°.".format(
-            whole, *np.degrees(angles).round() + 0.0, (speed[1:] + speed[:-1]).mean() / 2
-        ),
+        paper.join((panel, _speed(paper, speed, whole, t))),
+        f"About one axis the way is {whole:.0f}°. By three angles, {x:.0f}° about x, {y:.0f}° "
+        f"about y and {z:.0f}° about z, it is {np.trapezoid(speed, _T):.0f}°.",
     )
 
 
@@ -141,12 +135,10 @@ def _speed(paper: Paper, speed: Array, whole: float, t: float) -> Panel:
     panel = paper.panel((340, 370), (-0.14, 1.06), (480, -55), "how fast each turns (° a second)")
     panel.ticks(x=(0, 1), y=(0, 100, 200, 300, 400), size=12)
     panel.text([0.5, -34], "time (s)", MUTED, anchor="mm", size=12)
-    for x, words, meaning in (
-        (0, "about one axis", "estimated"),
-        (0.52, "by three angles", "lens"),
-    ):
-        panel.mark([x, 456], meaning, 5)
-        panel.text([x + 0.03, 456], words, COLOURS[meaning], size=13)
+    panel.mark([0, 456], "estimated", 5)
+    panel.text([0.03, 456], "about one axis", ESTIMATED, size=13)
+    panel.mark([0.52, 456], "lens", 5)
+    panel.text([0.55, 456], "by three angles", LENS, size=13)
     panel.line([[0, whole], [1, whole]], ESTIMATED, 2)
     panel.line(np.column_stack([_T, speed]), LENS, 2)
     now = [t, float(np.interp(t, _T, speed))]
