@@ -34,7 +34,9 @@ def ways_model() -> Model:
     def pulled(values: Values, at: Array) -> Values:
         """Put the tip where the hand is, on the side of the sphere that it is on."""
         across = at / max(float(np.linalg.norm(at)), 1)
-        deep = np.sqrt(max(1 - across @ across, 0)) * (-1 if _tip(values) @ _TOWARDS < 0 else 1)
+        deep = np.sqrt(max(1 - float(across @ across), 0)) * (
+            -1 if _tip(values) @ _TOWARDS < 0 else 1
+        )
         x, y, z = across @ _SHEET + deep * _TOWARDS
         up = (np.degrees(np.arctan2(z, x)) + 120) % 360 - 120
         return {"up": float(up), "aside": float(np.degrees(np.arcsin(np.clip(y, -1, 1))))}
@@ -60,7 +62,7 @@ def speeds(angles: Array) -> Array:
     The axes of x and z meet at an angle whose cosine is -sin y, both are perpendicular to y's.
     """
     x, _, z = angles
-    return np.sqrt(angles @ angles - 2 * x * z * np.sin(_T * angles[1]))
+    return np.asarray(np.sqrt(angles @ angles - 2 * x * z * np.sin(_T * angles[1])))
 
 
 def _tip(values: Values) -> Array:
