@@ -21,7 +21,6 @@ from public_face import (
     RESULT,
     SEEN,
     SINGLE,
-    A,
     Argument,
     G,
     M,
@@ -39,7 +38,6 @@ from cvnotes.show.figures import (
     lenses,
     lines,
     quality,
-    sensors,
     wall,
 )
 from cvnotes.show.figures import (
@@ -107,8 +105,6 @@ FIGURES = [
     ),
     # ideas
     figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
-    # sensors
-    figure(sensors.draw_sensor, {"A": (A, SINGLE)}),
     # least squares
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
     # lines
@@ -133,10 +129,6 @@ FIGURES = [
     ),
     # what 3-D figures are made of
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
-    figure(
-        shapes.arrow_shapes,
-        {"start": (np.array([1.0, 2, 3]), several(3)), "end": (np.array([4.0, 2, 9]), several(3))},
-    ),
     figure(shapes.target_shapes, {"world_from_target": (G, SINGLE)}, target=BOARD),
     figure(sights.camera_shapes, {"depth": (100.0, ONE), "image": (SMALL, PICTURE)}, camera=CAMERA),
     figure(sights.ray_shapes, {"m": (M, rows(2)), "length": (9.0, ONE)}, camera=CAMERA),

@@ -65,6 +65,7 @@ from cvnotes.show.explorations import (
     moved,
     triangle,
     twins,
+    ways,
 )
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
@@ -1414,6 +1415,49 @@ def test_the_rings_axes_are_those_about_which_their_angles_turn():
     assert (dart[0] & dart[1]).sum() > 0.9 * (dart[0] | dart[1]).sum() > 1000
 
 
+def angle_of(R):
+    return np.degrees(np.arccos(np.clip((np.trace(R) - 1) / 2, -1, 1)))
+
+
+def test_about_one_axis_a_dart_turns_evenly_and_by_three_angles_farther_beyond_the_pole():
+    rng, longer = np.random.default_rng(4), {}
+    near = {"up": 95, "aside": -3}, {"up": 110, "aside": -10, "roll": 40}
+    for values in (
+        {"up": 40, "aside": 30},
+        *near,
+        *(random_values(MODELS["ways"], rng) for _ in range(3)),
+    ):
+        values = MODELS["ways"].values(**values)
+        up, aside = np.radians([values["up"], values["aside"]])
+        omega, angles = ways.ways(values)
+        R = rotation_from_angles(*angles)
+        assert np.allclose(R, rotation_from_vector(omega), atol=1e-9)
+        tip = [np.cos(aside) * np.cos(up), np.sin(aside), np.cos(aside) * np.sin(up)]
+        assert np.allclose(R[:, 0], tip, atol=1e-9)
+        by_angles = [rotation_from_angles(*(s * angles)) for s in np.linspace(0, 1, 101)]
+        turned = [angle_of(a.T @ b) for a, b in itertools.pairwise(by_angles)]
+        speed = np.degrees(ways.speeds(angles))
+        assert np.allclose(100 * np.array(turned), (speed[1:] + speed[:-1]) / 2, atol=0.1)
+        drawing = MODELS["ways"].drawing(**values)
+        one, *three, way = numbers(drawing.sentence)
+        assert abs(one - angle_of(R)) < 0.51 > abs(way - sum(turned))
+        assert np.abs(three - np.degrees(angles)).max() < 0.51
+        longer[values["up"], values["aside"]] = way / one
+    assert longer[40, 30] < 1.03 < 1.5 < longer[95, -3] < 2.5 < longer[110, -10]
+    # Without roll the target is where the shortest way leads; its trail is drawn through all tips.
+    values = MODELS["ways"].values(t=0)
+    omega, angles = ways.ways(values)
+    assert abs(omega[0]) < 1e-12
+    drawing = MODELS["ways"].drawing(**values)
+    grip, picture = grip_of(drawing, "target"), drawing.picture
+    for way, ink in ((lambda s: rotation_from_angles(*(s * angles)), LENS),
+                     (lambda s: rotation_from_vector(s * omega), ESTIMATED)):  # fmt: skip
+        for s in (0.2, 0.4, 0.6):
+            at = ways._SHEET @ (way(s) - way(1))[:, 0] / grip.unit + grip.place
+            u, v = np.rint(at).astype(int)
+            assert count(picture[v - 2 : v + 3, u - 2 : u + 3], ink) > 5
+
+
 @pytest.fixture
 def written(monkeypatch):
     """Note where the words of a drawing are written, each with the panel and the place."""
@@ -2385,6 +2429,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("lens", "ring"),
     ("stands", "plane"),
     ("stands", "alpha"),
+    ("ways", "time"),
 }
 ROUND = {
     ("camera", "camera"),

@@ -11,7 +11,6 @@ from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
-from cvnotes.show.figures.sensors import draw_sensor
 from cvnotes.show.figures.wall import draw_wall
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
@@ -26,7 +25,6 @@ from cvnotes.show.space.shapes import (
     Label,
     Lines,
     Photo,
-    arrow_shapes,
     axes_shapes,
     scene_shapes,
     target_shapes,
@@ -53,7 +51,6 @@ __all__ = [
     "draw_pinhole",
     # chapter 3: how an image is formed
     "draw_field_of_view",
-    "draw_sensor",
     # chapter 4: lenses
     "draw_grid",
     # chapters 6, 7 and 9: estimates
@@ -72,7 +69,6 @@ __all__ = [
     "Viewer",
     "export_glb",
     "axes_shapes",
-    "arrow_shapes",
     "target_shapes",
     "scene_shapes",
     "camera_shapes",

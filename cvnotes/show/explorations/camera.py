@@ -3,7 +3,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
+from cvnotes.camera import Camera, intrinsics, inverse, pose, rotation_from_angles
 from cvnotes.show.explorations.boards import (
     draw_arrows,
     draw_board,
@@ -18,7 +18,7 @@ from cvnotes.show.explorations.orbit import round_the_board
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.space.camera_shapes import camera_shapes
 from cvnotes.show.space.shapes import Lines, axes_shapes, target_shapes
-from cvnotes.show.style import CAMERA, ESTIMATED, MUTED
+from cvnotes.show.style import ESTIMATED, MUTED
 from cvnotes.targets import Chessboard
 
 _ASIDE = 12  # px from the way T to the words beside it
@@ -85,7 +85,10 @@ def _moved(camera: Camera, values: Values) -> Camera:
 def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Drawing:
     picture = paper.picture_panel((440, 330), camera.size, "the picture of the board")
     complete = draw_board(picture, camera, board)
-    picture.mark(camera.A[:2, 2], "ideal", 9)
+    w, h = camera.size
+    for way in np.array([[11, 0], [0, 11]]) * picture.pixel:  # the middle of the picture
+        picture.line(np.outer([-1, 1], way) + [(w - 1) / 2, (h - 1) / 2], MUTED, 1.5)
+    picture.mark(camera.A[:2, 2], "camera", 7)
     origin = camera.project([0, 0, 0])
     picture.mark(origin, "world", 5)
     picture.grip(
@@ -103,6 +106,7 @@ def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
     shapes = (
         *target_shapes(board),
         *axes_shapes(length=length, name=""),
+        *axes_shapes(inverse(camera.G), 1.7 * length, name="", meaning="camera"),
         *camera_shapes(camera, 1.25 * length, name=""),
     )
     # The scale stays when the camera goes away, as far as its slider does.
@@ -122,12 +126,9 @@ def _draw_T(panel: Panel, camera: Camera) -> None:
     draw_arrows(panel, ends[:1], ends[1:] - ends[:1])
     panel.mark(ends[0], "camera", 5)
     panel.grip("camera", "the camera, to carry it round the board", ends[0], 6)
-    # Names stand beside the way, and that of the camera on the side that it comes from.
-    way, aside = ends[1] - ends[0], _ASIDE * panel.pixel
+    way, aside = ends[1] - ends[0], _ASIDE * panel.pixel  # the name stands beside the way
     across = np.array([-way[1], way[0]]) / max(float(np.linalg.norm(way)), panel.pixel)
     panel.text(ends.mean(axis=0) + aside * across, "T", ESTIMATED, anchor="mm", size=12)
-    away = np.array([0, 1.5 * aside if way[1] <= 0 else -1.5 * aside])
-    panel.text(ends[0] + away, "camera", CAMERA, anchor="mm", size=12)
 
 
 def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:

@@ -12,8 +12,8 @@ import numpy.typing as npt
 from cvnotes.base import Array, CvnotesError, InputTypeError, number
 from cvnotes.camera import move
 from cvnotes.pictures import Scene
-from cvnotes.show.guards import one_motion, one_point, thing
-from cvnotes.show.style import ESTIMATED, MUTED, colour_of
+from cvnotes.show.guards import one_motion, thing
+from cvnotes.show.style import MUTED, colour_of
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 
@@ -95,27 +95,6 @@ def axes_shapes(
         Lines(f"{name} axes", move(G, np.array(ends)), colour, 2.2),
         *map(Label, (name, *letters), move(G, tips), [colour] * 4, ways),
     )
-
-
-def arrow_shapes(start: npt.ArrayLike, end: npt.ArrayLike, name: str = "") -> Shapes:
-    """Return an arrow from one point of the world to another, with its name beside its middle.
-
-    Examples
-    --------
-    >>> line, label = arrow_shapes([0, 0, 0], [0, 0, 10], "T")
-    >>> line.ends[0]
-    array([[ 0.,  0.,  0.],
-           [ 0.,  0., 10.]])
-    """
-    start, end = one_point(start, "start", 3), one_point(end, "end", 3)
-    way = end - start
-    if not np.linalg.norm(way):  # which is 0 too for what is too small to be squared
-        raise CvnotesError("start and end coincide: an arrow needs a length")
-    side = np.cross(way, np.eye(3)[np.argmin(np.abs(way))])
-    side = side / np.linalg.norm(side) * np.linalg.norm(way)
-    wings = [[end, end - 0.06 * way + s * 0.025 * side] for s in (-1, 1)]
-    arrow = Lines(f"{name} arrow", np.array([[start, end], *wings]), ESTIMATED, 2.2)
-    return (arrow, Label(name, (start + end) / 2, ESTIMATED, side)) if name else (arrow,)
 
 
 def target_shapes(

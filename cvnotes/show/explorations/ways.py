@@ -1,0 +1,151 @@
+"""Explore two ways to one attitude: about one axis, and by three angles in proportion."""
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import rotation_from_angles, rotation_from_vector, vector_from_rotation
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.orbit import angles_of
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.space.directions import sheet, towards
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
+
+_UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z points up on the sheet
+_SHEET, _TOWARDS = sheet((42, -62)) @ _UPRIGHT, towards((42, -62)) @ _UPRIGHT
+_T = np.linspace(0, 1, 101)
+# A dart of paper that flies along x: nose, two wings, fold and keel.
+_DART = np.array([[1, 0, 0], [0, 0.2, 0], [0.1, 0, 0], [0, -0.2, 0], [0, 0, 0.18]])
+_TURN = np.linspace(0, 2 * np.pi, 97)
+
+
+def ways_model() -> Model:
+    """Make the model of a dart that is carried to an attitude in two ways."""
+    settings = (
+        Setting("up", "tip up (°)", -30, 150, 1, 100, "90 is the height of the pole"),
+        Setting("aside", "tip aside (°)", -60, 60, 1, -20, "0 is the circle through the pole"),
+        Setting("roll", "roll (°)", -90, 90, 5, 0, "turns the target about its own length"),
+        Setting("t", "time t (s)", 0, 1, 0.01, 0.4, "0 is the start, 1 the target"),
+    )
+    about = (
+        "A dart in a sphere, carried to a target about one axis, orange, and by its three angles, "
+        "blue: what their tips draw on the sphere; beside it both speeds."
+    )
+
+    def pulled(values: Values, at: Array) -> Values:
+        """Put the tip where the hand is, on the side of the sphere that it is on."""
+        across = at / max(float(np.linalg.norm(at)), 1)
+        deep = np.sqrt(max(1 - float(across @ across), 0)) * (
+            -1 if _tip(values) @ _TOWARDS < 0 else 1
+        )
+        x, y, z = across @ _SHEET + deep * _TOWARDS
+        up = (np.degrees(np.arctan2(z, x)) + 120) % 360 - 120
+        return {"up": float(up), "aside": float(np.degrees(np.arcsin(np.clip(y, -1, 1))))}
+
+    drags = {"target": pulled, "time": lambda _, at: {"t": float(at[0])}}
+    return Model("ways", about, settings, _draw, drags)
+
+
+def ways(values: Values) -> tuple[Array, Array]:
+    """Return where both ways lead: a rotation vector (3,), and angles x, y and z (3,)."""
+    tip = _tip(values)
+    axis, x = np.array([0, -tip[2], tip[1]]), float(tip[0])
+    sine = float(np.linalg.norm(axis))
+    swing = np.zeros(3) if sine < 1e-9 else axis / sine * np.arctan2(sine, x)
+    R = rotation_from_vector(swing) @ rotation_from_vector([np.radians(values["roll"]), 0, 0])
+    # Rounded, so that half a turn is +180° on every machine.
+    return vector_from_rotation(R), angles_of(R.round(12) + 0.0)
+
+
+def speeds(angles: Array) -> Array:
+    """Return how fast the dart turns (101,) while its three angles grow evenly.
+
+    The axes of x and z meet at an angle whose cosine is -sin y, both are perpendicular to y's.
+    """
+    x, _, z = angles
+    return np.asarray(np.sqrt(angles @ angles - 2 * x * z * np.sin(_T * angles[1])))
+
+
+def _tip(values: Values) -> Array:
+    up, aside = np.radians([values["up"], values["aside"]])
+    level = np.cos(aside)
+    return np.array([level * np.cos(up), np.sin(aside), level * np.sin(up)])
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    omega, angles = ways(values)
+    speed = np.degrees(speeds(angles))
+    whole, t = float(np.degrees(np.linalg.norm(omega))), values["t"]
+    panel = paper.panel((400, 370), (-1.3, 1.3), (-1.2025, 1.2025), "two ways to one attitude")
+    by_axis = rotation_from_vector(np.outer(_T, omega))
+    up, turn = np.outer(angles[1:], _T)
+    by_angles = np.stack([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), -np.sin(up)], 1)
+    _draw_sphere(panel)
+    tips = by_axis[:, :, 0] @ _SHEET.T
+    panel.polygons([[[0, 0], *tips]], mixed("#FFFFFF", ESTIMATED, 0.16))
+    if whole:
+        end = 1.12 * (omega / np.linalg.norm(omega)) @ _SHEET.T
+        panel.line([-end, end], ESTIMATED, 1, dash=4)
+        panel.text(1.06 * end + [0.05, 0], "ω", ESTIMATED, anchor="mm", size=14)
+    trails = (by_angles, LENS), (by_axis[:, :, 0], ESTIMATED)
+    for trail, colour in trails:
+        panel.line(trail @ _SHEET.T, mixed("#FFFFFF", colour, 0.4), 1.2)
+    now = rotation_from_vector(t * omega), rotation_from_angles(*(t * angles))
+    looks = (np.eye(3), "#D2D2D2"), (by_axis[-1], "#D2D2D2"), (now[1], LENS), (now[0], ESTIMATED)
+    _draw_darts(panel, looks)
+    for trail, colour in trails:
+        _draw_front(panel, trail, colour, 2.5)
+    for R, meaning in zip(now, ("estimated", "lens"), strict=True):
+        panel.mark(R[:, 0] @ _SHEET.T, meaning, 5)
+    panel.mark(tips[-1], "ideal", 7)
+    panel.grip("target", "the tip of the target", tips[-1], 4)
+    x, y, z = np.degrees(angles).round() + 0.0
+    return Drawing(
+        paper.join((panel, _speed(paper, speed, whole, t))),
+        f"About one axis the way is {whole:.0f}°. By three angles, {x:.0f}° about x, {y:.0f}° "
+        f"about y and {z:.0f}° about z, it is {np.trapezoid(speed, _T):.0f}°.",
+    )
+
+
+def _draw_sphere(panel: Panel) -> None:
+    """Draw parallels and meridians, and the pole."""
+    c, s = np.cos(_TURN), np.sin(_TURN)
+    panel.line(np.column_stack([c, s]), MUTED, 1)
+    for up in np.radians([-30, 0, 30, 60]):
+        _draw_front(panel, np.column_stack([np.cos(up) * c, np.cos(up) * s, np.sin(up) + 0 * c]))
+    for turn in np.radians(np.arange(0, 180, 30)):
+        _draw_front(panel, np.column_stack([np.cos(turn) * c, np.sin(turn) * c, s]))
+    panel.line(np.outer([1, 1.55], _SHEET[:, 2]), MUTED, 2.5)
+    panel.text([0.05, -1.12], "pole", MUTED, size=12)
+    panel.text(_SHEET[:, 0] + [0.12, 0.08], "start", MUTED, size=12)
+
+
+def _draw_front(panel: Panel, W: Array, colour: str = "#C9C9C9", width: float = 0.7) -> None:
+    """Draw as much of a curve on the sphere as lies on the side of the reader."""
+    front = (W @ _TOWARDS > 0)[:, None]
+    panel.line(np.where(front, W @ _SHEET.T, np.nan), colour, width)
+
+
+def _draw_darts(panel: Panel, looks: tuple[tuple[Array, str], ...]) -> None:
+    """Draw darts, each with its attitude and colour, from the back to the front."""
+    faces = np.concatenate([(_DART @ R.T)[[[0, 1, 2], [0, 3, 2], [0, 4, 2]]] for R, _ in looks])
+    paints = [mixed(colour, IDEAL, part) for _, colour in looks for part in (0, 0.12, 0.3)]
+    order = np.argsort(faces.mean(axis=1) @ _TOWARDS)
+    panel.polygons(faces[order] @ _SHEET.T, [paints[i] for i in order])
+
+
+def _speed(paper: Paper, speed: Array, whole: float, t: float) -> Panel:
+    panel = paper.panel((340, 370), (-0.14, 1.06), (480, -55), "how fast each turns (° a second)")
+    panel.ticks(x=(0, 1), y=(0, 100, 200, 300, 400), size=12)
+    panel.text([0.5, -34], "time (s)", MUTED, anchor="mm", size=12)
+    panel.mark([0, 456], "estimated", 5)
+    panel.text([0.03, 456], "about one axis", ESTIMATED, size=13)
+    panel.mark([0.52, 456], "lens", 5)
+    panel.text([0.55, 456], "by three angles", LENS, size=13)
+    panel.line([[0, whole], [1, whole]], ESTIMATED, 2)
+    panel.line(np.column_stack([_T, speed]), LENS, 2)
+    now = [t, float(np.interp(t, _T, speed))]
+    panel.line([[t, 0], [t, 400]], MUTED, 0.7, dash=4)
+    panel.mark([t, whole], "estimated", 5)
+    panel.mark(now, "lens", 6)
+    panel.grip("time", "the moment that is shown", now, 5)
+    return panel
