@@ -86,7 +86,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         _SIZE, (-half, half), (-half, half), f"corner {corner}: where do its edges meet?"
     )
     inside = slice(_HALF - _WINDOW, _HALF + _WINDOW + 1)
-    panel.image(photograph(corner, blur, noise)[inside, inside], smooth=False)
+    panel.image(photograph(corner, blur, noise)[inside, inside].astype(np.uint8), smooth=False)
     target = paper.panel(
         _SIZE, (-4.6, 4.6), (-4.6, 4.6), "how far off, enlarged towards the middle"
     )
