@@ -79,10 +79,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panels = _picture(paper, window, which), cloud, _curves(paper, rms, now)
     (gradients, edges), name = rms[:, now], _PICTURES[which - 1]
     lost = int(np.isnan(off[:, now, :, 0]).any(axis=0).sum())
-    ahead = "The edge model is ahead" if edges < gradients else "The gradients are ahead"
+    larger = "blue" if gradients > edges else "orange"
     said = (
         f"In the picture {name}, with a window of {2 * window + 1} × {2 * window + 1} px, the "
-        f"gradients are off by {gradients:.3f} px and the edge model by {edges:.3f}. {ahead}."
+        f"gradients are off by {gradients:.3f} px and the edge model by {edges:.3f}: the {larger} "
+        f"cloud is {max(gradients / edges, edges / gradients):.1f} times as large."
     )
     return Drawing(paper.join(panels), f"{said} ({lost} corners were lost.)" if lost else said)
 
@@ -130,10 +131,10 @@ def _curves(paper: Paper, rms: Array, now: int) -> Panel:
         "RMS (px) against the window's side (px)",
     )
     for half in _WINDOWS[::3]:
-        panel.text([half, np.log10(1.06 * _LEAST)], f"{2 * half + 1}", anchor="md", size=9)
+        panel.text([half, np.log10(1.06 * _LEAST)], f"{2 * half + 1}", anchor="md", size=12)
     for value in (0.005, 0.01, 0.02, 0.05, 0.1):
         panel.line([[0, np.log10(value)], [14, np.log10(value)]], "#DDDDDD", 0.5)
-        panel.text([2.1, np.log10(value)], f"{value:g}", size=9)
+        panel.text([2.1, np.log10(value)], f"{value:g}", size=12)
     for curve, (name, colour) in zip(rms, _METHODS, strict=True):
         panel.line(np.column_stack([_WINDOWS, np.log10(curve)]), colour, 2)
         upper = curve[-1] == rms[:, -1].max()  # its name is above it, that of the lower one below

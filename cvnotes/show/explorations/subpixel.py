@@ -1,4 +1,4 @@
-"""Explore a corner between the pixels: pull it, and two finders follow to a hundredth of one."""
+"""Explore a corner between the pixels: pull a cross there by eye, and see two finders beat you."""
 
 from functools import lru_cache
 
@@ -10,96 +10,129 @@ from cvnotes.pictures import course, expose, render
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
 from cvnotes.targets import refine_edges, refine_subpixel
 
-_VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners
-_HALF, _WINDOW = 20, 8  # px, of the picture that is made, and of the window
-_PIXEL = np.array([352.0, 213.0])  # in the middle of both
-_SHOWN = 6.5  # px to each side of the middle
-_RINGS = 0.005, 0.02, 0.1, 0.5  # px: the largest ring, as large as the errors ask for
+_VIEW = 6  # which photograph of the course
+_HALF, _WINDOW = 20, 8  # px, of the picture that is made, and of the window, all of which is shown
+_SIZE = (391, 391)  # 23 px of the page for each of 17
+_STALK = np.array([3.0, 3.0])  # px: the hand holds the cross from aside, and hides no corner
+_RINGS = (0.004, 0.02, 0.1, 0.5)  # px, as far apart as logarithms are
+_RIM = len(_RINGS) + 0.25  # of the target; what lies beyond is drawn there
+_GROUND = "#F2F2ED", "#FFFFFF"
 
 
 def subpixel_model() -> Model:
-    """Make the model of one corner of a photograph, whose place is pulled."""
-    u, v = course.exact_corners()[_VIEW, _CORNER].round(2).tolist()
+    """Make the model of one corner after the other, measured by hand and by two finders."""
     settings = (
-        Setting("u", "u (px)", 350.5, 353.5, 0.01, u, "where the corner truly is"),
-        Setting("v", "v (px)", 211.5, 214.5, 0.01, v, "where the corner truly is"),
+        Setting("u", "cross, aside (px)", -3.5, 3.5, 0.01, 1.6, "to the right of the middle pixel"),
+        Setting("v", "cross, down (px)", -3.5, 3.5, 0.01, -1.7, "below the middle pixel"),
+        Setting("finders", "show the finders", 0, 1, 1, 0, "how far off they and you are"),
+        Setting("corner", "corner", 0, 53, 1, 22, "of the 54 corners of the board"),
         Setting("blur", "blur σ (px)", 0.2, 2, 0.05, 0.7, "of the lens"),
         Setting("noise", "noise σ", 0, 10, 0.5, 2, "of each pixel, in grey levels"),
     )
     about = (
-        "Thirteen by thirteen pixels around a corner of a chessboard; beside it, enlarged as far "
-        "as their errors allow, what two finders say: the gradients and the edge model."
+        "Seventeen by seventeen pixels around a corner of a chessboard, with a cross that a hand "
+        "pulls; beside it a target with four rings, each of a fifth of the next one's radius."
     )
-    return Model("subpixel", about, settings, _draw, {"corner": _pulled})
+    return Model("subpixel", about, settings, _draw, {"cross": _pulled})
 
 
 def _pulled(_: Values, at: Array) -> Values:
-    return {"u": float(at[0]), "v": float(at[1])}
+    """Carry the cross by its handle; who pulls sees no hits."""
+    u, v = (at - _STALK).tolist()
+    return {"u": u, "v": v, "finders": 0}
+
+
+def place_of(corner: int) -> Array:
+    """Return where a corner truly is (2,), in px from the middle of the pixel that it lies in."""
+    m = course.exact_corners()[_VIEW, corner]
+    return np.asarray(m - np.rint(m))
 
 
 @lru_cache(maxsize=64)
-def photograph(u: float, v: float, blur: float, noise: float) -> Image:
-    """Photograph the corner at (u, v), at each place with new noise."""
-    A = course.camera().A.copy()
-    corner = Camera(A, course.poses()[_VIEW]).project(course.board().points[_CORNER])
-    A[:2, 2] += [u, v] - _PIXEL + _HALF - corner
+def photograph(corner: int, blur: float, noise: float) -> Image:
+    """Photograph the neighbourhood of a corner, with its pixel in the middle."""
+    camera, A = course.camera(), course.camera().A.copy()
+    A[:2, 2] += _HALF - np.rint(course.exact_corners()[_VIEW, corner])
     size = (2 * _HALF + 1, 2 * _HALF + 1)
-    light = render(course.board(), Camera(A, course.poses()[_VIEW], size=size), blur=blur)
-    return expose(light, noise=noise, rng=np.random.default_rng([round(100 * u), round(100 * v)]))
+    near = Camera(A, course.poses()[_VIEW], camera.lens, size)
+    return expose(
+        render(course.board(), near, blur=blur), noise=noise, rng=np.random.default_rng([4, corner])
+    )
 
 
-def measured(grey: Image) -> Array:
-    """Measure the corner in two ways, from the whole pixel in the middle: (2, 2)."""
-    start = [[_HALF, _HALF]]
+@lru_cache(maxsize=64)
+def found(corner: int, blur: float, noise: float) -> Array:
+    """Return where gradients and edge model find a corner (2, 2), as `place_of` has it."""
+    grey, start = photograph(corner, blur, noise), [[_HALF, _HALF]]
     both = (find(grey, start, window=_WINDOW)[0] for find in (refine_subpixel, refine_edges))
-    return np.asarray(np.array([*both]) + _PIXEL - _HALF)
+    return np.asarray(np.array([*both]) - _HALF)
+
+
+def on_target(off: Array) -> Array:
+    """Draw errors (..., 2) together, by the logarithm of their lengths: rings are 1, 2, 3 and 4."""
+    far = np.linalg.norm(off, axis=-1, keepdims=True)
+    ring = 1 + np.log(np.maximum(far, 1e-9) / _RINGS[0]) / np.log(_RINGS[1] / _RINGS[0])
+    return np.asarray(off / np.maximum(far, 1e-9) * ring.clip(0, _RIM))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    true = np.array([values["u"], values["v"]])
-    grey = photograph(values["u"], values["v"], values["blur"], values["noise"])
-    found = measured(grey)
-    panel = _square(paper, _PIXEL, _SHOWN, "the pixels: pull the corner")
-    inside = slice(round(_HALF - _SHOWN + 0.5), round(_HALF + _SHOWN + 0.5))
-    panel.image(grey[inside, inside].astype(np.uint8), smooth=False)
-    panel.mark(true, "ideal", 11)
-    panel.grip("corner", "the true corner", true, 1)
-    far = np.linalg.norm(found - true, axis=1).max()
-    ring = next((r for r in _RINGS if r > far), _RINGS[-1])
-    near = 1.14 * ring
-    close = _square(paper, true, near, f"{ring:g} px about the true corner")
-    for r in (0.2 * ring, 0.5 * ring, ring):
-        close.line(true + r * circle(91), "#DDDDDD", 0.8)
-        close.text(true + [0, r - 0.045 * near], f"{r:g} px", MUTED, anchor="mm", size=10)
-    for row, (name, meaning, ink, at) in enumerate(
-        (
-            ("true", "ideal", IDEAL, true),
-            ("gradients", "lens", LENS, found[0]),
-            ("edge model", "estimated", ESTIMATED, found[1]),
-        )
+    corner, blur, noise = round(values["corner"]), values["blur"], values["noise"]
+    hand, true = np.array([values["u"], values["v"]]), place_of(corner)
+    half = _WINDOW + 0.5
+    panel = paper.panel(
+        _SIZE, (-half, half), (-half, half), f"corner {corner}: where do its edges meet?"
+    )
+    inside = slice(_HALF - _WINDOW, _HALF + _WINDOW + 1)
+    panel.image(photograph(corner, blur, noise)[inside, inside].astype(np.uint8), smooth=False)
+    target = paper.panel(
+        _SIZE, (-4.6, 4.6), (-4.6, 4.6), "how far off, enlarged towards the middle"
+    )
+    for ring in range(len(_RINGS), 0, -1):
+        target.polygons([ring * circle(181)], _GROUND[ring % 2])
+        target.line(ring * circle(181), "#BBBBBB", 0.8)
+    for ring, px in enumerate(("0.004", "0.02", "0.1", "0.5 px"), 1):
+        target.text([0, ring - 0.25], px, MUTED, anchor="mm", size=12)
+    target.mark([0, 0], "ideal", 7)
+    off = np.array([hand, *found(corner, blur, noise)]) - true
+    _cross(panel, hand)
+    if values["finders"]:
+        panel.mark(true, "ideal", 9)
+        _hits(target, on_target(off))
+    return Drawing(paper.join((panel, target)), _sentence(off, bool(values["finders"])))
+
+
+def _cross(panel: Panel, hand: Array) -> None:
+    """Draw the hand's cross, open in the middle, and a stalk to hold it by."""
+    arms = np.array([[[0.22, 0], [2, 0]], [[0, 0.22], [0, 2]]])
+    arms = hand + np.concatenate([arms, -arms, [[[0.16, 0.16], _STALK]]])
+    for colour, width in (("#FFFFFF", 3.6), (WORLD, 1.6)):
+        panel.segments(arms, colour, width)
+    panel.mark(hand + _STALK, "world", 8)
+    panel.grip("cross", "the cross, held from aside", hand + _STALK, 1)
+
+
+def _hits(target: Panel, hits: Array) -> None:
+    """Mark the hand's hit and those of the finders, and name them in the panel's corners."""
+    for at, name, meaning, ink, (x, y) in (
+        ([0, 0], "true corner", "ideal", IDEAL, (4.25, -4.25)),
+        (hits[0], "you", "world", WORLD, (-4.25, -4.25)),
+        (hits[1], "gradients", "lens", LENS, (-4.25, 4.25)),
+        (hits[2], "edge model", "estimated", ESTIMATED, (4.25, 4.25)),
     ):
-        key = true + [-0.93 * near, (-0.94 + 0.085 * row) * near]  # beyond the rings
-        shown = np.clip(at, true - 0.94 * near, true + 0.94 * near)  # farther: at the rim
-        close.mark(shown, meaning, 9)
-        close.mark(key, meaning, 6)
-        close.text(key + [0.05 * near, 0], name, ink, size=11)
-    return Drawing(paper.join((panel, close)), _sentence(true, found))
+        target.mark([at, (x, y)], meaning, 7)
+        target.text([x - 0.3 * np.sign(x), y], name, ink, anchor="lm" if x < 0 else "rm", size=12)
 
 
-def _square(paper: Paper, middle: Array, reach: float, title: str) -> Panel:
-    u, v = middle.tolist()
-    return paper.panel((390, 390), (u - reach, u + reach), (v - reach, v + reach), title)
-
-
-def _sentence(true: Array, found: Array) -> str:
-    gradients, edges = (
-        f"{off:.3f} px" if off >= 0.0005 else "less than 0.001 px"
-        for off in np.linalg.norm(found - true, axis=1)
-    )
-    return (
-        f"The corner is at ({true[0]:.2f}, {true[1]:.2f}). The gradients find it to {gradients}, "
-        f"the edge model to {edges}."
-    )
+def _sentence(off: Array, shown: bool) -> str:
+    if not shown:
+        return (
+            "Pull the green square until the cross is where the edges seem to meet. Then show the "
+            "finders. (The next pull hides them.)"
+        )
+    hand, *both = np.linalg.norm(off, axis=1)
+    gradients, edges = (f"{x:.3f}" if x >= 0.0005 else "less than 0.001" for x in both)
+    you = f"{hand:.2f}" if hand >= 0.1 else f"{hand:.3f}"
+    return f"You are {you} px off; gradients {gradients}, edge model {edges} px."

@@ -58,13 +58,14 @@ def votes_model() -> Model:
     settings = (
         Setting("u", "u (px)", u, u + far, 1, 352, "column of the window's middle"),
         Setting("v", "v (px)", v, v + far, 1, 213, "row of the window's middle"),
+        Setting("guess", "show a guess m", 0, 1, 1, 0, "how far all lines pass it by"),
         Setting("m_u", "m, aside (px)", -_HALF, _HALF, 0.05, -1.5, "to the right of the middle"),
         Setting("m_v", "m, down (px)", -_HALF, _HALF, 0.05, 1.5, "below the window's middle"),
     )
     about = (
         "A part of a photograph of the board with a window of 7 × 7 pixels; the lines along which "
-        "its pixels see an edge, orange where steep and blue where level, and how far they pass "
-        "a square by, m; and their gradients, with an ellipse as wide as they spread."
+        "its pixels see an edge, orange where steep and blue where level; and their gradients, "
+        "with an ellipse as wide as they spread."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -72,9 +73,11 @@ def votes_model() -> Model:
         window = window_at(gradients, at)
         m = np.add(at, [values["m_u"], values["m_v"]])
         votes = _votes(paper, photo, at, window, corners)
-        _draw_misses(votes, window, m)
+        if values["guess"]:
+            _draw_misses(votes, window, m)
+        votes.mark(window.crossing, "estimated", 7)
         picture = paper.join((_photo(paper, photo, at), votes, _spread(paper, window)))
-        return Drawing(picture, _sentence(at, window, m))
+        return Drawing(picture, _sentence(at, window, m if values["guess"] else None))
 
     drags = {
         "window": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
@@ -128,7 +131,6 @@ def _draw_misses(panel: Panel, window: Window, m: Array) -> None:
         half = window.axes / np.sqrt(window.eigenvalues / window.misses(window.least))
         for times in (2, 4, 8, 16):
             panel.line(window.least + circle(181) * np.sqrt(times - 1) @ half.T, IDEAL, 1, dash=3)
-    panel.mark(window.crossing, "estimated", 7)
     panel.mark(m, "world", 8)
     panel.text(m + [0.3, 0.3], "m", WORLD, size=14)
     panel.grip("m", "a point, for which all lines might vote", m, 5)
@@ -139,14 +141,14 @@ def _spread(paper: Paper, window: Window) -> Panel:
     panel = paper.panel(
         _SIZE, (-_FAR, _FAR), (-_FAR, _FAR), "gradients gᵤ →, gᵥ ↓ (grey levels a pixel)"
     )
-    panel.ticks(x=(-60, 0, 60), y=(-60, 0, 60))
+    panel.ticks(x=(-60, 0, 60), y=(-60, 0, 60), size=12)
     panel.mark(window.g, "lens", 3.5)
     half = window.axes * np.sqrt(window.eigenvalues / len(window.g))
     panel.line(circle(61) @ half.T, ESTIMATED, 2.2)
     return panel
 
 
-def _sentence(at: tuple[int, int], window: Window, m: Array) -> str:
+def _sentence(at: tuple[int, int], window: Window, m: Array | None) -> str:
     small, large = window.eigenvalues
     said = (
         f"At ({at[0]}, {at[1]}) the eigenvalues are {small:.0f} and {large:.0f}, "
@@ -159,8 +161,8 @@ def _sentence(at: tuple[int, int], window: Window, m: Array) -> str:
     u, v = window.crossing
     inside = max(abs(u - at[0]), abs(v - at[1])) <= _HALF
     what = "this is a corner" if inside else "a corner is near, outside of the window"
+    said = f"{said}both are large, {what}. The votes cross at ({u:.2f}, {v:.2f})"
+    if m is None:
+        return f"{said}."
     times = window.misses(m) / window.misses(window.least)
-    return (
-        f"{said}both are large, {what}. At m the sum of squares is {times:.1f} times the "
-        f"least; the votes cross at ({u:.2f}, {v:.2f})."
-    )
+    return f"{said}; at m the sum of squares is {times:.1f} times as large as there."
