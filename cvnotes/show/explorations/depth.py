@@ -135,7 +135,7 @@ def coloured(depths: Array) -> Drawn:
     colours = [np.interp(steps, range(len(stops)), channel) for channel in stops.T]
     table = np.array([*np.transpose(colours), 3 * [_NONE]], dtype=np.uint8)
     at = 255 * (depths - _NEAREST) / (_WALL - _NEAREST)
-    return table[np.where(np.isnan(at), 256, at.clip(0, 255)).astype(int)]
+    return np.asarray(table[np.where(np.isnan(at), 256, at.clip(0, 255)).astype(int)])
 
 
 def depth_model() -> Model:
