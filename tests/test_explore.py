@@ -67,6 +67,7 @@ from cvnotes.show.explorations import (
     twins,
     ways,
 )
+from cvnotes.show.explorations import depth as swept
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -674,6 +675,13 @@ def test_holes_are_orange_and_folds_are_blue():
     assert blue == pytest.approx(folds, rel=0.05)
     assert folds == pytest.approx(holes, rel=0.1)  # what is missing here is stacked there
     assert orange == pytest.approx(holes, rel=0.05)
+    # Opaque, and light where the board is white: at the smallest zoom it is still seen.
+    small = (
+        MODELS["warp"].drawing(angle=20, zoom=0.25).picture[TITLE : TITLE + 316, :430].astype(int)
+    )
+    blues = small[small[..., 2] > small[..., 0] + 100]
+    assert len(blues) / 16 == pytest.approx(519, abs=2)
+    assert np.ptp(np.quantile(blues[:, 1], [0.05, 0.95])) > 60
 
 
 @pytest.fixture(scope="module")
@@ -1838,6 +1846,12 @@ def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_rig
     assert farthest > 1.2 * nearest
     assert re.search(r"as well from [\d.]+ m on", shown(u=240, v=215).sentence)  # not near by
     assert numbers(shown(u=449, v=205, depth=7600).sentence)[1] < 5
+    # The dashed line ends where the second camera sees the direction of the ray.
+    x, y, w = second.A @ second.R @ np.linalg.inv(first.A) @ [449, 205, 1]
+    u, v = (np.array([x, y]) / w + 0.5) * 340 / 640 + [MARGIN + 346, TITLE]
+    part = shown().picture[round(v) - 5 : round(v) + 4]
+    before, beyond = part[:, round(u) - 60 : round(u) - 28], part[:, round(u) + 28 : round(u) + 60]
+    assert count(before, LENS, 110) > 15 > 5 * count(beyond, LENS, 110)
 
 
 def test_the_half_circles_of_parallel_boards_are_one():
@@ -1856,54 +1870,90 @@ def test_what_lies_at_the_chosen_depth_has_no_fringe_and_all_else_has():
     for W in ([-900, 0, 10_000], [2400, 600, 7600]):  # on the wall behind, on the cupboard
         seen = left.project(W) - right.project(W)
         assert np.allclose(seen, [520 * 400 / W[2], 0])
-    picture = MODELS["depth"].drawing
-    (u, v), scale = left.project([900, -900, 9990]), WIDTH / 640  # the frame of the blackboard
+    (u, v), scale = left.project([900, -900, 9990]), 340 / 640  # the frame of the blackboard
     here = np.s_[
         TITLE + round(v * scale) : TITLE + round((v + 60) * scale),
         MARGIN + round((u - 60) * scale) : MARGIN + round((u + 10) * scale),
     ]
 
-    def fringe(depth):
-        red, green, blue = picture(depth=depth).picture[here].astype(int).transpose(2, 0, 1)
-        return int(((np.abs(red - green) > 40) & (green == blue)).sum())  # red or cyan, not orange
+    def fringe(Z):
+        picture = MODELS["depth"].drawing(depth=Z).picture[here].astype(int)
+        return int((np.abs(picture[..., 0] - picture[..., 1]) > 40).sum())  # red or cyan
 
     assert fringe(10_000) < 10
-    assert fringe(7450) > 100
-    assert fringe(4000) > 300
-    plan = picture(depth=10_000).picture
-    assert count(plan, "#D55E00") > 2 * count(picture(depth=4000).picture, "#D55E00")
-
-    def painted(W, depth):
-        u, v = np.rint(left.project(W) * scale).astype(int)
-        red, _, blue = picture(depth=depth).picture[TITLE + v, MARGIN + u].astype(int)
-        return red - blue > 60
-
-    # Orange is what is as far away: the wall, the cupboard's front, both beside no fringe.
-    for W in ([-900, -800, 10_000], [2400, 0, 7600]):
-        assert [painted(W, depth) for depth in (W[2] - 800, W[2], W[2] + 500)] == [
-            False,
-            True,
-            False,
-        ]
+    assert fringe(7450) > 60
+    assert fringe(4000) > 180
 
 
-def test_the_curves_of_a_row_lie_on_each_other_where_the_depth_is_right():
+def test_each_pixel_keeps_the_depth_whose_patches_agree_best_up_to_the_line():
+    left, right = swept.photographs()
+
+    def patch(picture, u, v, d=0):  # 7 × 7 pixels of the halved picture
+        part = picture[2 * v - 6 : 2 * v + 8, 2 * u - 6 - d : 2 * u + 8 - d]
+        return (part[::2, ::2] + part[1::2, ::2] + part[::2, 1::2] + part[1::2, 1::2]) / 4
+
+    rng = np.random.default_rng(5)
+    pixels = np.stack([rng.integers(60, 310, 60), rng.integers(10, 230, 60)], axis=-1)
+    for Z, texture in ((4000, 0), (7500, 1.5), (12_000, 0)):
+        found, kept = swept.depths_so_far(Z, texture), 0
+        for u, v in pixels:
+            own, tried = patch(left, u, v), np.arange(104, 208_000 / Z - 1e-9, -1).astype(int)
+            apart = [np.abs(own - patch(right, u, v, d)).mean() for d in tried]
+            beside = np.abs(own - patch(left, u + 1, v)).mean()
+            if min(apart) < beside and beside >= texture:
+                assert abs(208_000 / found[v, u] - tried[np.argmin(apart)]) < 0.501
+                kept += 1
+            else:
+                assert np.isnan(found[v, u])
+        assert 3 < kept < 60
+
+
+def test_the_depths_that_pixels_keep_are_those_of_the_room_and_dots_lie_where_things_stand():
     drawing = MODELS["depth"].drawing
-    row, top = 225, 2 * TITLE + 330 + 6 + 104 * 262 / 270  # where grey is 0
-    left, right = (radiance(room(), each).mean(axis=2)[row] for each in pair())
-    for depth, there in ((10_000, 200), (4000, 0)):
-        shown = drawing(depth=depth, row=row)
-        picture = shown.picture[2 * TITLE + 330 :, MARGIN : MARGIN + 440]
-        assert (count(picture, ESTIMATED, 40) > 300) == (there > 0)
-        assert (numbers(shown.sentence)[-2] > there) == (there > 0)
-        for u in (450, 470, 490):  # between edges, on the cupboard's side
-            for grey, at, ink in ((left, u, "#D92B2B"), (right, u - 208_000 / depth, "#0A8F96")):
-                height = np.interp(at, np.arange(640), grey)
-                v, column = round(top - height * 104 / 270), MARGIN + round(u * WIDTH / 640)
-                near = shown.picture[v - 3 : v + 4, column - 1 : column + 2]
-                assert count(near, ink, 110) or (depth == 10_000 and count(near, ESTIMATED, 60))
-    assert grip_of(drawing(row=100), "row").at[1] == 100
-    assert MODELS["depth"].dragged("row", (9, 77.6))["row"] == 78
+    found = swept.depths_so_far(12_000, 2)
+    v, u = np.mgrid[200:236:3, 100:220:3]  # on the floor, 1600 mm below the cameras
+    floor = 1600 * 520 / (2 * v + 0.5 - 239.5)
+    assert np.nanmedian(np.abs(found[v, u] - floor)) < 60
+    camera, plan = pair()[0], np.array([MARGIN + 346, TITLE])
+    for W in ([1900, 0, 7600], [700, 0, 9950], [-700, 0, 9950], [-1300, 830, 6400]):
+        u, v = np.rint((camera.project(W) - 0.5) / 2).astype(int)
+        assert abs(np.nanmedian(found[v - 4 : v + 5, u - 3 : u + 4]) / W[2] - 1) < 0.04
+
+        # From above 8800 mm are 350 px, and 13,520 mm 538.
+        x, y = np.rint(plan + [(W[0] + 4150) / 25.143, (12_900 - W[2]) / 25.13]).astype(int)
+        near = [
+            drawing(depth=Z).picture[y - 8 : y + 9, x - 8 : x + 9] for Z in (12_000, W[2] - 400)
+        ]
+        dots, before = ((part.max(axis=-1) < 230).sum() for part in near)
+        assert dots > 12 > 3 * before
+    part = drawing(depth=12_000).picture[TITLE + 128 : TITLE + 155, plan[0] + 30 : plan[0] + 62]
+    on_wall = np.nonzero(part.max(axis=-1) < 230)[1]  # the left one, 9.0 to 9.7 m away
+    assert on_wall.size > 30
+    assert np.median(on_wall) + 30 == pytest.approx((4150 - 3000) / 25.143, abs=4)
+    said = numbers(drawing(depth=12_000).sentence)
+    assert said[2] == pytest.approx(
+        208_000 / (208 / 12 - 0.5) - 208_000 / (208 / 12 + 0.5), abs=0.5
+    )
+    depths = found[np.isfinite(found)]
+    assert said[3:5] == [round(depths.size / 768), 100]
+    rows = [
+        (drawing(depth=Z).picture[:, MARGIN + 346 + 60] == [255, 226, 204]).all(axis=-1).sum()
+        for Z in (3000, 6000, 12_000)  # 43, 173 and 694 mm, and the line upon them
+    ]
+    assert rows[2] == pytest.approx(694 / 25.13, abs=4)
+    assert rows[0] < rows[1] < 8 < rows[2]
+
+
+def test_without_texture_noise_chooses_the_depth_and_the_true_outlines_lie_over_the_dots():
+    wall = np.s_[100:112, 122:134]  # plain, left of the blackboard, 10 m away
+    assert np.isnan(swept.depths_so_far(12_000, 1.5)[wall]).mean() > 0.9
+    assert np.nanstd(swept.depths_so_far(12_000, 0)[wall]) > 1500
+    share = [
+        numbers(MODELS["depth"].drawing(depth=12_000, texture=t).sentence)[3] for t in (0, 2, 6)
+    ]
+    assert share[0] > 85 > 3 * share[1] > 6 * share[2]
+    plain, outlined = (MODELS["depth"].drawing(true=t).picture for t in (0, 1))
+    assert count(outlined, IDEAL, 60) > count(plain, IDEAL, 60) + 1500
 
 
 def test_stepping_back_and_zooming_keeps_the_box_and_enlarges_what_is_behind_it():

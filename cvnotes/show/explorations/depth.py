@@ -1,8 +1,10 @@
-"""Explore depth: shift one picture of a pair until a thing has no fringe; read how far it is."""
+"""Explore depth: sweep a pair of pictures from near to far; each pixel keeps what agrees best."""
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array, Image, luma
 from cvnotes.camera import Camera, intrinsics, pose
@@ -10,17 +12,40 @@ from cvnotes.pictures import depth_map, pixel_centres, radiance, room
 from cvnotes.pictures.meshes import from_above
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, hexed, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, rgb
 from cvnotes.warping import backward_warp
 
-_PICTURE, _PLAN = (440, 330), (300, 330)
+_PICTURE, _PLAN = (340, 255), (350, 538)
 _ALPHA, _BASE, _SIZE = 520, 400, (640, 480)  # px, mm, px
-_NEAREST, _FARTHEST = 2500, 10_500  # mm
-_SAME, _AGREES = 120, 0.3  # mm of depth, and px of disparity, that are drawn as one
-_NAMES = {"wall": (0, 10_400), "cupboard": (900, 9100), "box": (650, 6800), "table": (-2100, 5900)}
+_NEAREST, _FARTHEST = 2000, 12_000  # mm
+_NOISE = 2  # grey levels
+_SHIFTS = np.arange(_ALPHA * _BASE // _NEAREST, 16, -1)  # px, from near to far
+_PATCH = 7  # pixels of the halved pictures
+_UPRIGHT = 1400  # mm from the height of the cameras: neither floor nor ceiling, 200 mm farther
+_NAMES = {"cupboard": (1130, 8900), "box": (650, 6950), "table": (-2150, 6050)}
+_RAMP = "#F89540", "#CC4778", "#7E03A8", "#0D0887"  # from near to far
+_NONE = 226  # grey level of a pixel without a depth
+_BAND = 255, 226, 204  # what lies half a pixel of shift before or behind the line
+_WALL = 10_000  # mm
+_WALLS = [[-3000, -600], [-3000, _WALL], [3000, _WALL], [3000, -600]]
 
-_LEFT, _RIGHT = "#D92B2B", "#0A8F96"  # red and cyan, as dark as lines must be
-_WALLS = [[-3000, -600], [-3000, 10_000], [3000, 10_000], [3000, -600]]
+
+class Sweep(NamedTuple):
+    """How well the halved pictures agree, for each shift, and how much each pixel has to go by.
+
+    Attributes
+    ----------
+    differences : ndarray, shape (shifts, height, width)
+        Mean difference of the patches around a pixel of the left picture and around its partner.
+    texture : ndarray, shape (height, width)
+        The same, of a patch of the left picture and the one beside it.
+    best : ndarray, shape (shifts, height, width)
+        Which shift agrees best of all up to this one.
+    """
+
+    differences: Array
+    texture: Array
+    best: npt.NDArray[np.uint8]
 
 
 def pair() -> tuple[Camera, Camera]:
@@ -36,106 +61,159 @@ def in_two_colours(left: Image, right: Image, d: float) -> Drawn:
     return np.stack([left, moved, moved], axis=-1).clip(0, 255).astype(np.uint8)
 
 
-def depth_model() -> Model:
-    """Make the model of the room, seen by two cameras side by side."""
-    settings = (
-        Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 4000,
-                "what is so far away lies upon itself in both pictures"),
-        Setting("row", "row (px)", 0, _SIZE[1] - 1, 1, 225, "the row whose grey values are drawn"),
-    )  # fmt: skip
-    about = (
-        "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
-        "until what lies at one depth, orange, has no fringes; beside it the room from above. "
-        "Below, the grey values of one row in both pictures, two curves that meet at this depth."
-    )
-
-    @lru_cache(maxsize=1)
-    def depths() -> Array:
-        return depth_map(room(), pair()[0])
-
-    @lru_cache(maxsize=1)
-    def photographs() -> tuple[Image, Image]:
-        left, right = (luma(radiance(room(), camera, samples=4)) for camera in pair())
-        return left, right
-
-    def draw(paper: Paper, values: Values) -> Drawing:
-        Z, row = values["depth"], round(values["row"])
-        d = _ALPHA * _BASE / Z
-        panel = paper.picture_panel(_PICTURE, _SIZE, "left in red, right in cyan and shifted")
-        picture = in_two_colours(*photographs(), d)
-        there = np.abs(_ALPHA * _BASE / depths() - d) < _AGREES
-        picture[there] = (picture[there] + 255 * np.array(rgb(ESTIMATED))) / 2
-        panel.image(picture)
-        panel.line([[-1, row], [_SIZE[0], row]], IDEAL, 1, dash=5)
-        panel.mark([24, row], "ideal", 8)
-        panel.grip("row", "the row whose grey values are drawn", [24, row], 4)
-        curves = _row(paper, row, d, *photographs(), there[row])
-        drawn = paper.join((panel, _plan(paper, Z)), curves)
-        return Drawing(drawn, _sentence(Z, d, row, int(there[row].sum())))
-
-    drags = {
-        "depth": lambda _, at: {"depth": float(at[1])},
-        "row": lambda _, at: {"row": float(at[1])},
-    }
-    return Model("depth", about, settings, draw, drags)
-
-
-def _row(
-    paper: Paper, row: int, d: float, left: Image, right: Image, there: Array
-) -> tuple[Panel, Panel]:
-    """Draw the grey values of a row of both pictures, orange where the depth is the chosen one."""
-    curves = paper.panel((_PICTURE[0], 104), (-0.5, _SIZE[0] - 0.5), (262, -8), "their grey values")
-    legend = paper.panel((_PLAN[0], 104), (0, 1), (1, 0))
-    u = np.arange(_SIZE[0])
-    for height, x, grey, colour, width, words in (
-        (0.8, u, np.where(there, left[row], np.nan), ESTIMATED, 7, "both, as far away as the line"),
-        (0.5, u + d, right[row], _RIGHT, 1.4, f"right picture, {d:.1f} px to the right"),
-        (0.2, u, left[row], _LEFT, 1.4, f"left picture, row {row}"),
-    ):
-        curves.line(np.column_stack([x, grey]), colour, width)
-        legend.line([[0.04, height], [0.12, height]], colour, width)
-        legend.text([0.16, height], words, colour, size=12)
-    return curves, legend
-
-
-def _sentence(Z: float, d: float, row: int, there: int) -> str:
-    wall = seen_from_above()[:, 1].max()
-    fringe = abs(d - _ALPHA * _BASE / wall)
-    said = f"Shifted by {d:.1f} px: what is {Z / 1000:.2f} m away has no fringes. "
-    if fringe < 0.2:
-        said += "That is the wall behind."
-    else:
-        said += f"Those of the wall behind are {fringe:.1f} px wide."
-    return f"{said} In row {row} {there} of {_SIZE[0]} pixels have this shift."
+@lru_cache(maxsize=1)
+def photographs() -> tuple[Image, Image]:
+    """Return the grey pictures of both cameras, with noise."""
+    noise = np.random.default_rng(8).normal(0, _NOISE, (2, *_SIZE[::-1]))
+    left, right = (luma(radiance(room(), camera, samples=4)) for camera in pair())
+    return left + noise[0], right + noise[1]
 
 
 @lru_cache(maxsize=1)
-def seen_from_above() -> Array:
-    """Return the places (n, 2), x and z in mm, of what the left camera sees of walls and things."""
-    camera, _ = pair()
-    some = np.s_[::6, ::3]
-    z = depth_map(room(), camera)[some][..., None]
-    M = z * np.concatenate([camera.ideal(pixel_centres(_SIZE)[some]), np.ones_like(z)], axis=-1)
-    upright = np.abs(M[..., 1]) < 1590  # neither floor nor ceiling, which are 1600 mm away
-    return np.asarray(M[upright][:, [0, 2]])
+def sweep() -> Sweep:
+    """Compare the two pictures at each shift."""
+    left, right = photographs()
+    small = _halved(left)
+    found = np.empty((len(_SHIFTS), *small.shape), np.float32)
+    for difference, d in zip(found, _SHIFTS, strict=True):
+        moved = np.roll(right, d, axis=1)
+        moved[:, :d] = np.inf  # there the right camera has seen nothing
+        difference[:] = _mean_around(np.minimum(np.abs(small - _halved(moved)), 255))
+    best = np.zeros(found.shape, np.uint8)
+    least = found[0].copy()
+    for k in range(1, len(found)):
+        best[k] = np.where(found[k] < least, k, best[k - 1])
+        np.minimum(least, found[k], out=least)
+    beside = np.abs(np.diff(small, axis=1, append=small[:, -1:]))
+    return Sweep(found, _mean_around(beside), best)
 
 
-def _plan(paper: Paper, Z: float) -> Panel:
-    """Draw the room from above, with the depth at which nothing has a fringe."""
-    panel = paper.panel(_PLAN, (-4700, 5500), (10_900, -320), "from above: pull the line")
-    for corners, colour in zip(*from_above(room(), -1500), strict=True):
-        panel.polygons([corners], hexed(np.rint(255 * colour)))
-    panel.line(_WALLS, MUTED, 2)
-    for metres in (2, 4, 6, 8, 10):
-        panel.text([-3250, 1000 * metres], f"{metres} m", MUTED, anchor="rm", size=10)
-    for thing, at in _NAMES.items():
-        panel.text(at, thing, "#333333", anchor="mm", size=11)
-    panel.line([[-3000, Z], [4200, Z]], ESTIMATED, 1, dash=5)
-    places = seen_from_above()
-    there = places[np.abs(places[:, 1] - Z) < _SAME]
-    panel.segments(there[:, None] + [[-25, 0], [25, 0]], ESTIMATED, 3)
+def _halved(picture: Image) -> Image:
+    height, width = picture.shape
+    return np.asarray(picture.reshape(height // 2, 2, width // 2, 2).mean(axis=(1, 3)))
+
+
+def _mean_around(values: Array) -> Array:
+    """Return the mean of the patch around each pixel."""
+    half = _PATCH // 2
+    padded = np.pad(values, half, mode="edge")
+    total = np.pad(padded, ((1, 0), (1, 0))).cumsum(axis=0).cumsum(axis=1)
+    n = _PATCH
+    return np.asarray((total[n:, n:] - total[:-n, n:] - total[n:, :-n] + total[:-n, :-n]) / n**2)
+
+
+def depths_so_far(Z: float, texture: float) -> Array:
+    """Return the depth in mm of each pixel of the left picture, halved; NaN where there is none.
+
+    It is the one that agrees best of all up to Z, between two whole shifts where the next ones
+    say so. A pixel has none if its patch differs from the one beside it by less than `texture`
+    grey levels, or from its partner by more than from that one.
+    """
+    differences, enough, best = sweep()
+    last = min(int(np.searchsorted(-_SHIFTS, -_ALPHA * _BASE / Z, "right")), len(_SHIFTS)) - 1
+    k = best[last].astype(int)
+    inside = np.clip(k, 1, len(_SHIFTS) - 2)
+    rows, columns = np.indices(k.shape)
+    before, least, after = (differences[inside + step, rows, columns] for step in (-1, 0, 1))
+    steep = np.maximum(before, after) - least  # a valley of two straight sides
+    between = np.divide(before - after, 2 * steep, out=np.zeros_like(steep), where=steep > 0)
+    found = _ALPHA * _BASE / (_SHIFTS[k] - np.where(k == inside, between.clip(-0.5, 0.5), 0))
+    agree = differences[k, rows, columns] < enough
+    return np.where(agree & (enough >= texture), found, np.nan)
+
+
+@lru_cache(maxsize=1)
+def true_depths() -> Array:
+    """Return the depth in mm of each pixel of the left picture, halved."""
+    return depth_map(room(), pair()[0].resized((_SIZE[0] // 2, _SIZE[1] // 2)))
+
+
+def coloured(depths: Array) -> Drawn:
+    """Return a colour for each depth, from near to far; grey where there is none."""
+    stops = 255 * np.array([rgb(colour) for colour in _RAMP])
+    steps = np.linspace(0, len(stops) - 1, 256)
+    colours = [np.interp(steps, range(len(stops)), channel) for channel in stops.T]
+    table = np.array([*np.transpose(colours), 3 * [_NONE]], dtype=np.uint8)
+    at = 255 * (depths - _NEAREST) / (_WALL - _NEAREST)
+    return np.asarray(table[np.where(np.isnan(at), 256, at.clip(0, 255)).astype(int)])
+
+
+def depth_model() -> Model:
+    """Make the model of the room, seen by two cameras side by side."""
+    settings = (
+        Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 6600,
+                "each pixel keeps the depth that agrees best of all up to this one"),
+        Setting("texture", "texture at least", 0, 6, 0.5, 2,
+                "grey levels by which a patch differs from the one beside it, or it stays grey"),
+        Setting("true", "true outlines", 0, 1, 1, 0, "of room, table, box and cupboard"),
+    )  # fmt: skip
+    about = (
+        "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
+        "until what lies at one depth has no fringes. Below, the depth of each pixel that agrees "
+        "best of all up to this one, by colours; beside it the same as dots, from above."
+    )
+
+    def draw(paper: Paper, values: Values) -> Drawing:
+        Z = values["depth"]
+        found = depths_so_far(Z, values["texture"])
+        panel = paper.picture_panel(_PICTURE, _SIZE, "left in red, right in cyan and shifted")
+        panel.image(in_two_colours(*photographs(), _ALPHA * _BASE / Z))
+        height, width = found.shape
+        below = paper.picture_panel(_PICTURE, (width, height), "depth so far; grey: none")
+        below.image(coloured(found), smooth=False)
+        plan = _plan(paper, Z, found, bool(values["true"]))
+        return Drawing(paper.join(([panel, below], plan)), _sentence(Z, found))
+
+    return Model("depth", about, settings, draw, {"depth": lambda _, at: {"depth": float(at[1])}})
+
+
+def _sentence(Z: float, found: Array) -> str:
+    d, here = _ALPHA * _BASE / Z, ~np.isnan(found)
+    near, far = _ALPHA * _BASE / (d + np.array([0.5, -0.5]))
+    said = f"Shifted by {d:.1f} px, for {Z / 1000:.2f} m; one pixel is {far - near:.0f} mm here. "
+    if not here.any():
+        return f"{said}So far no pixel has a depth."
+    off = np.median(np.abs(found - true_depths())[here])
+    return (
+        f"{said}So far {100 * here.mean():.0f} of 100 pixels have a depth; half of these are off "
+        f"by less than {off:.0f} mm."
+    )
+
+
+def _plan(paper: Paper, Z: float, found: Array, true: bool) -> Panel:
+    """Draw from above where what has a depth so far must be, and where it is."""
+    panel = paper.panel(_PLAN, (-4150, 4650), (12_900, -620), "from above: pull the line")
+    d = _ALPHA * _BASE / Z
+    panel.image(_dots(panel, found, _ALPHA * _BASE / (d + np.array([-0.5, 0.5]))), smooth=False)
+    if true:
+        for corners in from_above(room(), -1500)[0]:
+            panel.line([*corners, corners[0]], IDEAL, 1)
+        panel.line(_WALLS, IDEAL, 1.5)
+        for thing, at in _NAMES.items():
+            panel.text(at, thing, IDEAL, anchor="mm", size=12)
+    for metres in (2, 4, 6, 8, 10, 12):
+        panel.text([-3250, 1000 * metres], f"{metres} m", MUTED, anchor="rm", size=12)
+    panel.line([[-3000, Z], [3850, Z]], ESTIMATED, 1.5, dash=5)
     panel.mark([[0, 0], [_BASE, 0]], "camera", 7)
-    panel.mark([4200, Z], "estimated", 8)
-    panel.text([4200, Z - 480], f"{Z / 1000:.2f} m", IDEAL, anchor="mm", size=12)
-    panel.grip("depth", "how far away things have no fringe", [4200, Z], 4)
+    panel.mark([3850, Z], "estimated", 8)
+    panel.text([3850, Z - 500], f"{Z / 1000:.2f} m", IDEAL, anchor="mm", size=12)
+    panel.grip("depth", "up to which depth the pixels look", [3850, Z], 4)
     return panel
+
+
+def _dots(panel: Panel, found: Array, band: Array) -> Drawn:
+    """Return a picture for the plan: a dot for each depth, over a band between two depths."""
+    camera = pair()[0].resized(found.shape[::-1])
+    x, y = np.moveaxis(camera.ideal(pixel_centres(camera.size)), -1, 0)
+    upright = np.abs(y * found) < _UPRIGHT
+    places = np.stack([(x * found)[upright], found[upright]], axis=-1)
+    half = panel.scale / 2
+    dots = np.full((2 * _PLAN[1], 2 * _PLAN[0], 3), 255, np.uint8)
+    (left, top), (right, bottom) = panel.place(np.column_stack([[-3000, 3000], band])) / half
+    dots[round(top) : round(bottom), round(left) : round(right)] = _BAND
+    u, v = np.rint(panel.place(places) / half).astype(int).T
+    inside = (u > 0) & (u < dots.shape[1] - 1) & (v > 0) & (v < dots.shape[0] - 1)
+    colours = coloured(places[inside, 1])
+    for du, dv in np.ndindex(3, 3):
+        dots[v[inside] + dv - 1, u[inside] + du - 1] = colours
+    return dots

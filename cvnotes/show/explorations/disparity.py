@@ -46,7 +46,7 @@ def triangulated(left: Array, right: Array) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     X, Z, sigma = values["X"], values["Z"], values["sigma"]
     left, right = columns(X, Z)
-    panel = paper.panel((450, 390), _X, _Z, "from above: pull the point")
+    panel = paper.panel((450, 390), _X, _Z, "from above, depths six times shorter: pull the point")
     panel.polygons(np.array([[[0.0, 0], [_BASE, 0], [X, Z]]]), _LIGHT)
     tips = np.array([left, right]) * _PLANE / _ALPHA  # mm along the planes of the pictures
     panel.polygons(np.array([[[0.0, 0], [tips[1], _PLANE], [tips[0], _PLANE]]]), _WARM)
@@ -64,12 +64,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for row, ends, below in ((1370, tips[::-1], 150), (-150, np.array([0, _BASE]), -170)):
         panel.line([[ends[0], row], [ends[1], row]], IDEAL, 1.2)
         panel.segments([[[x, row - 45], [x, row + 45]] for x in ends], IDEAL, 1.2)
-        name = "d" if row > 0 else "b"
-        panel.text([ends.mean(), row + below], name, IDEAL, anchor="mm", size=14)
-    for x, top, name in ((-350, _PLANE, "α"), (560, Z, "Z")):
+        name = "d" if row > 0 else f"b = {_BASE:.0f} mm"
+        panel.text([ends.mean(), row + below], name, IDEAL, anchor="mm", size=13)
+    for x, top, name in ((-350, _PLANE, f"α = {_ALPHA:.0f} px"), (560, Z, "Z")):
         panel.line(np.array([[x, 0.0], [x, top]]), IDEAL, 1.2)
         panel.segments([[[x - 14, z], [x + 14, z]] for z in (0.0, top)], IDEAL, 1.2)
-        panel.text([x + 12, top / 2], name, IDEAL, size=14)
+        panel.text([x + 12, top / 2], name, IDEAL, size=13)
     by = sigma / 2 * np.array([1, 1, -1, -1]), sigma / 2 * np.array([-1, 1, 1, -1])
     panel.polygons(triangulated(left + by[0], right + by[1])[None], ESTIMATED)
     panel.mark([X, Z], "world", 4)

@@ -85,7 +85,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left, right = pictures
     left.mark(m, "ideal", 8)
     left.grip("pixel", "a pixel of the first picture", m, 4)
-    right.line(line[0] + np.array([[-30], [30]]) * (line[-1] - line[0]), LENS, 1, dash=6)
+    endless = cameras()[1].project(1e9 * cameras()[0].ray(m))  # beyond it, points lie behind
+    right.line([endless, endless + 60 * (line[0] - line[-1])], LENS, 1, dash=6)
+    right.text(endless + [4, -14], "∞", LENS, size=14)
     right.line(line, ESTIMATED, 2)
     right.mark(place, "estimated", 7)
     cost, (now,) = differences(m, line), differences(m, place[None])

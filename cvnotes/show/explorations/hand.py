@@ -89,7 +89,7 @@ def _model(picture: npt.NDArray[Any], at: Array, tell: Tell) -> Model:
         if told.other is not None:
             width, height = told.other.shape[1::-1]
             beside = paper.picture_panel(
-                _fit((width, height), _OTHER), (width, height), "what your function returns"
+                _fit((width, height), _OTHER), (width, height), "what the function returns"
             )
             beside.image(told.other)
             for line in told.its_lines:

@@ -19,6 +19,7 @@ _WIDTH = 105  # px of the source: few enough to see each one, and odd as its hei
 #             quarter turns about the middle take pixels to pixels
 _LARGER = 4  # px of the page for a pixel
 _ARM = 0.25  # of the width, from the middle to where the picture is taken hold of
+_LIGHT = "#7CC9F5"  # the blue of a fold on white
 _PAPER = 255  # grey level where the source has nothing to show
 
 
@@ -83,10 +84,11 @@ def _sentence(
 
 
 def _coloured(image: Drawn, holes: npt.NDArray[np.bool_], folds: npt.NDArray[np.bool_]) -> Drawn:
-    """Colour holes orange, and lay blue over folds, through which the board is still seen."""
+    """Colour holes orange and folds blue: a darker blue where the board is dark."""
     coloured = np.repeat(image[..., None], 3, axis=2)
     coloured[holes] = np.rint(255 * np.array(rgb(ESTIMATED)))
-    coloured[folds] = coloured[folds] // 2 + np.rint(127 * np.array(rgb(LENS))).astype(np.uint8)
+    dark, light = 255 * np.array([rgb(LENS), rgb(_LIGHT)])
+    coloured[folds] = np.rint(dark + (light - dark) * (image[folds, None] / 255))
     return coloured
 
 
