@@ -36,7 +36,6 @@ from cvnotes.calibration import calibrate, coverage
 from cvnotes.show.figures import (
     calibration,
     estimates,
-    ideas,
     lenses,
     lines,
     predictions,
@@ -107,8 +106,6 @@ FIGURES = [
         {"image": (SMALL, PICTURE), "corners": (SEEN[0], several(2))},
         board=BOARD,
     ),
-    # ideas
-    figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
     # sensors
     figure(sensors.draw_sensor, {"A": (A, SINGLE)}),
     # least squares
@@ -148,13 +145,6 @@ FIGURES = [
         lambda m, to=None: sights.ray_shapes(CAMERA, m, to=to),
         {"m": (M, rows(2)), "to": (W[:3], rows(3))},
         "show.sights.ray_shapes",
-    ),
-    figure(
-        sights.sheet_shapes,
-        {
-            "edge": (np.array([[0.0, 0, 0], [0, 0, 9]]), several(3)),
-            "edges": (np.array([[[1.0, 2, 0], [1, 2, 9]]]), rows(3)),
-        },
     ),
     figure(sights.plane_shapes, {"z": (100.0, ONE)}, camera=CAMERA),
     figure(

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from cvnotes.commands.lab import free_port, start_server, stop, wait_until_up
-from cvnotes.show import IDEAL, WORLD, Lines, build_scene, show_scene
 from cvnotes.show.explorations import NAMES, model
 
 pytest.importorskip("jupyterlab", reason="JupyterLab is not installed")
@@ -294,7 +293,7 @@ def _middle(grip):
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
-# nbval runs all of them; what a browser adds is the same in each, but for the 3-D viewer of one.
+# nbval runs all of them; what a browser adds is the same in each.
 @pytest.mark.parametrize("chapter", ["01", "04"])
 def test_a_notebook_runs_and_its_slider_moves_the_picture(page, chapter, tmp_path):
     path = next(path for path in NOTEBOOKS if path.name.startswith(chapter))
@@ -376,29 +375,6 @@ def test_a_chapter_that_was_run_and_saved_opens_with_the_picture_and_no_error(pa
     assert "Error displaying widget" not in shown
     assert "Run this cell to move its sliders" in shown
     page.evaluate(SHUT_DOWN)
-
-
-def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(empty_page):
-    page = empty_page
-    black = Lines("ideal", np.array([[[0.0, 0, 0], [0, 0, 9]]]), IDEAL, 2)
-    green = Lines("rail", np.array([[[1.0, 0, 0], [1, 0, 9]]]), WORLD, 2)
-    viewer = show_scene(build_scene(black, green), alt="Two <rails>")
-    page.set_content(f'<body style="background: #111"><section>{viewer._repr_html_()}</section>')
-    page.get_by_title("Two <rails>").wait_for()
-    frame = page.frames[1]
-    seen = """paper => {
-        if (typeof camera === 'undefined' || !camera) return null;
-        if (scene.background.getHexString() !== paper) return null;
-        const glow = {};
-        scene.traverse(n => { if (n.material) glow[n.name] = n.material.emissive.getHexString(); });
-        return glow;
-    }"""
-    dark = frame.wait_for_function(seen, arg="111111", timeout=60_000).json_value()
-    page.evaluate("() => { document.body.style.background = '#fff'; }")  # another theme is chosen
-    light = frame.wait_for_function(seen, arg="ffffff", timeout=60_000).json_value()
-    assert light["ideal"] == "000000"
-    assert min(bytes.fromhex(dark["ideal"])) > 0x80
-    assert dark["rail"] == light["rail"] != "000000"
 
 
 def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, explorers):

@@ -6,7 +6,7 @@ from cvnotes.show.explorations import explore, pull_points
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
 from cvnotes.show.figures.field_of_view import draw_field_of_view
-from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole, draw_rays
+from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
@@ -20,7 +20,6 @@ from cvnotes.show.space.camera_shapes import (
     dot_shapes,
     plane_shapes,
     ray_shapes,
-    sheet_shapes,
 )
 from cvnotes.show.space.shapes import (
     Faces,
@@ -33,7 +32,7 @@ from cvnotes.show.space.shapes import (
     target_shapes,
 )
 from cvnotes.show.space.stills import draw_scene
-from cvnotes.show.space.viewer import Viewer, build_scene, export_glb, show_scene
+from cvnotes.show.space.viewer import build_scene, export_glb
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, colour_of
 
 __all__ = [
@@ -48,9 +47,8 @@ __all__ = [
     "draw_corners",
     "draw_lines",
     "draw_segments",
-    # ideas: the colours, P², the pinhole
+    # ideas: the colours, the pinhole
     "draw_meanings",
-    "draw_rays",
     "draw_pinhole",
     # chapter 2: vanishing points
     "draw_altitudes",
@@ -72,8 +70,6 @@ __all__ = [
     # in space
     "draw_scene",
     "build_scene",
-    "show_scene",
-    "Viewer",
     "export_glb",
     "axes_shapes",
     "arrow_shapes",
@@ -81,7 +77,6 @@ __all__ = [
     "scene_shapes",
     "camera_shapes",
     "ray_shapes",
-    "sheet_shapes",
     "plane_shapes",
     "dot_shapes",
     "Faces",

@@ -1,20 +1,17 @@
-"""3-D figures to turn in the hand, in a notebook or as a GLB file.
+"""3-D figures to turn in the hand, as GLB files.
 
 The course's frames have y down and z ahead, OpenGL's cameras y up and z behind; `GL_FROM_CV`, half
 a turn about x, lies between the two and is its own inverse.
 """
 
 import os
-from dataclasses import dataclass
-from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError
+from cvnotes.base import Array
 from cvnotes.show.space.directions import sheet, towards
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shape, extent
 
@@ -24,7 +21,6 @@ _GLOW = 0.7
 _ANGLE = 45.0  # degrees that a viewer sees from top to bottom
 _FRAME = 1.2  # its width by its height, at least
 _ROOM = 1.03  # around the scene
-_HEIGHT = 500  # px on the page, at most
 # The letters of axes as strokes on a unit square, x to the right and y down; files hold no type.
 _STROKES = {
     "X": (((0, 0), (1, 1)), ((1, 0), (0, 1))),
@@ -37,26 +33,8 @@ _STROKES = {
 _LETTER = 1 / 40  # of the scene
 
 
-@dataclass(frozen=True)
-class Viewer:
-    """A scene to turn in the hand, and its description everywhere else."""
-
-    html: str
-    alt: str
-
-    def __repr__(self) -> str:
-        return self.alt
-
-    def _repr_html_(self) -> str:
-        return (
-            f'<div><iframe title="{escape(self.alt)}" srcdoc="{escape(self.html)}" '
-            f'style="border: none; width: 100%; max-height: {_HEIGHT}px; aspect-ratio: {_FRAME}">'
-            "</iframe></div>"
-        )
-
-
 def build_scene(*shapes: Shape, view: tuple[float, float] | None = (20.0, -40.0)) -> Any:
-    """Put shapes into a ``trimesh.Scene``, which `show_scene` turns in a notebook.
+    """Put shapes into a ``trimesh.Scene``, which `export_glb` writes.
 
     Parameters
     ----------
@@ -128,36 +106,6 @@ def _seen_from(view: tuple[float, float], scene: Any) -> Array:
     G = np.eye(4)
     G[:3, :3], G[:3, 3] = R, middle + _ROOM * away * way
     return G
-
-
-def show_scene(scene: Any, *, alt: str) -> Viewer:
-    """Show a scene to be turned by the hand, on the page's own paper: dark where the page is.
-
-    Parameters
-    ----------
-    scene : trimesh.Scene
-        What `build_scene` gave. It is seen from its view at first.
-    alt : str
-        What the scene shows, in a sentence, for those who cannot see it.
-
-    Returns
-    -------
-    Viewer
-        Shown by a notebook, without asking any network; its repr is `alt`.
-
-    Examples
-    --------
-    >>> from cvnotes.show import axes_shapes
-    >>> show_scene(build_scene(*axes_shapes()), alt="Three axes, to be turned.")
-    Three axes, to be turned.
-    """
-    from trimesh.viewer import scene_to_html
-
-    if not alt.strip():
-        raise CvnotesError("alt: say in a sentence what the scene shows")
-    paper = files("cvnotes.show.space").joinpath("viewer.js").read_text("utf-8")
-    page = scene_to_html(scene).replace("</body>", f"<script>{paper}</script></body>")
-    return Viewer(page, alt)
 
 
 def export_glb(scene: Any, path: str | os.PathLike[str]) -> None:
