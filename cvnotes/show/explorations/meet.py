@@ -60,7 +60,7 @@ def _slid(x: float, at: Array) -> float:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     lines = [triple(values, n) for n in "12"]
-    m = np.cross(*lines).round(9) + 0.0
+    m = np.cross(lines[0], lines[1]).round(9) + 0.0
     space = _space(paper, values, lines, m)
     return Drawing(paper.join((space, _table(paper, lines, m))), _sentence(lines, m))
 
@@ -69,7 +69,7 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
     panel = paper.panel(
         _SPACE, *_SHOWN, "the plane w = 1 over the origin; pull the lines at their ends"
     )
-    ray = (-m if m[2] < 0 else m) / max(np.linalg.norm(m), 1e-9)
+    ray = (-m if m[2] < 0 else m) / max(float(np.linalg.norm(m)), 1e-9)
     panel.polygons([on_sheet(_SQUARE)], "#EDEDE8")
     panel.line(on_sheet(_SQUARE), FAINT, 1)
     panel.line(on_sheet(np.outer([-9, 0], ray)), IDEAL, 1.4)
