@@ -93,11 +93,11 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
         panel.mark(on_sheet(m / m[2]), "world", 11)
         left = on_sheet(ray)[0] > 0  # the name stands where the ray leaves room
         low = on_sheet(m / m[2])[1] > _SHOWN[1][0] - 30 * panel.pixel
-        by = (-10 if left else 10, 24 if low else -10)
+        by = (-18 if left else 18, 8) if low else (-10 if left else 10, -10)
         _name(panel, m / m[2], by, "m", IDEAL, "rs" if left else "ls")
     panel.mark(on_sheet(_ORIGIN), "lens", 5)
     for w, ink in ((0, MUTED), (1, WORLD)):
-        _name(panel, np.array([-1, -1, w]), (-7, 0), f"w = {w}", ink, "rm")
+        _name(panel, np.array([-1, -1, w]), (-7, 15), f"w = {w}", ink, "rm")
     return panel
 
 
