@@ -34,7 +34,6 @@ from cvnotes.calibration import calibrate, coverage
 from cvnotes.show.figures import (
     calibration,
     estimates,
-    ideas,
     lenses,
     lines,
     quality,
@@ -103,8 +102,6 @@ FIGURES = [
         {"image": (SMALL, PICTURE), "corners": (SEEN[0], several(2))},
         board=BOARD,
     ),
-    # ideas
-    figure(ideas.draw_rays, {"x_h": (np.array([[1.0, 1, 1], [2, 1, 2]]), rows(3))}),
     # least squares
     figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
     # lines
@@ -131,18 +128,18 @@ FIGURES = [
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
     figure(shapes.target_shapes, {"world_from_target": (G, SINGLE)}, target=BOARD),
     figure(sights.camera_shapes, {"depth": (100.0, ONE), "image": (SMALL, PICTURE)}, camera=CAMERA),
-    figure(sights.ray_shapes, {"m": (M, rows(2)), "length": (9.0, ONE)}, camera=CAMERA),
-    figure(
-        lambda m, to=None: sights.ray_shapes(CAMERA, m, to=to),
-        {"m": (M, rows(2)), "to": (W[:3], rows(3))},
-        "show.sights.ray_shapes",
-    ),
     figure(
         sights.sheet_shapes,
         {
             "edge": (np.array([[0.0, 0, 0], [0, 0, 9]]), several(3)),
             "edges": (np.array([[[1.0, 2, 0], [1, 2, 9]]]), rows(3)),
         },
+    ),
+    figure(sights.ray_shapes, {"m": (M, rows(2)), "length": (9.0, ONE)}, camera=CAMERA),
+    figure(
+        lambda m, to=None: sights.ray_shapes(CAMERA, m, to=to),
+        {"m": (M, rows(2)), "to": (W[:3], rows(3))},
+        "show.sights.ray_shapes",
     ),
     figure(sights.plane_shapes, {"z": (100.0, ONE)}, camera=CAMERA),
     figure(

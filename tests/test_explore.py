@@ -51,7 +51,7 @@ from cvnotes.pictures import (
     room_with,
 )
 from cvnotes.pictures.meshes import box, join
-from cvnotes.projective import to_homogeneous
+from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, explorations
 from cvnotes.show.explorations import (
     clouds,
@@ -62,6 +62,7 @@ from cvnotes.show.explorations import (
     frame,
     gimbal,
     maps,
+    meet,
     moved,
     triangle,
     twins,
@@ -839,6 +840,43 @@ def test_a_class_goes_through_infinity_and_its_dot_once_round_the_ring():
     assert ring.dragged("line", (-1, 1), angle=-20)["angle"] == -45
 
 
+def test_two_lines_meet_where_their_equations_say_and_parallels_at_infinity():
+    rng, model = np.random.default_rng(4), MODELS["meet"]
+    for a1, b1, a2, b2 in rng.integers(-10, 11, (40, 4)).tolist():
+        values = {"a1": a1 / 10, "b1": b1 / 10, "a2": a2 / 10, "b2": b2 / 10}
+        drawing = model.drawing(**values)
+        said = drawing.sentence.rpartition("m = ")[2]
+        turn = (b2 - a2) - (b1 - a1)  # by which one line climbs more, over all of the square
+        if turn == 0:
+            word = "no point" if a1 == a2 else f"direction ±(1, {(b1 - a1) / 20:g})"
+            assert word.replace("-", "−") in said
+            continue
+        # From the gap of the lines at the left edge, by similar triangles.
+        x = 2 * (a1 - a2) / turn - 1
+        y = (a1 + (b1 - a1) * (x + 1) / 2) / 10
+        assert numbers(said)[-2:] == pytest.approx([x, y], rel=6e-3, abs=1e-9)
+        place = meet.on_sheet(np.array([x, y, 1]))
+        (left, right), (top, _) = meet._SHOWN
+        u, v = (place - [left, top]) * [1, -1] * meet._SPACE[0] / (right - left)
+        if 12 < u < meet._SPACE[0] - 12 and 12 < v < meet._SPACE[1] - 12:
+            u, v = round(u) + MARGIN, round(v) + TITLE
+            assert count(drawing.picture[v - 4 : v + 5, u - 4 : u + 5], WORLD) > 20
+
+
+def test_the_ray_of_two_parallels_is_level_and_both_arrows_are_perpendicular_to_every_ray():
+    model = MODELS["meet"]
+    level = model.drawing(b2=0).picture
+    for x in (-1.2, -0.5, 0.5, 1.2):  # along the ray [1 0 0], on both sides of the origin
+        place = meet.on_sheet(np.array([x, 0, 0])) - [meet._SHOWN[0][0], meet._SHOWN[1][0]]
+        u, v = np.rint(place / [0.0065385, -0.0065385] + [MARGIN, TITLE]).astype(int)
+        assert count(level[v - 2 : v + 3, u - 2 : u + 3], IDEAL, 90) > 3
+    for values in ({}, {"b2": -1}, {"a1": -0.4, "b1": 0.7}):
+        given = model.values(**values)
+        for n in "12":
+            ends = [[-1, given[f"a{n}"], 1], [1, given[f"b{n}"], 1]]
+            assert np.allclose(np.array(ends) @ meet.triple(given, n), 0, atol=1e-12)
+
+
 def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
     model = MODELS["pairs"]
     for x, w in ((2, 1.5), (-1.5, -1), (0.3, 0.7)):
@@ -1312,21 +1350,24 @@ def test_the_lenss_curve_has_its_top_where_the_lens_folds(p):
         ({"turn": 50}, {0, 1, 2, 3, 4}),
         ({"turn": 50, "size": 0.7}, {1, 2, 3, 4}),
         ({"size": 0.7, "shear": -0.6}, {2, 3, 4}),
-        ({"shear": 0.4, "tilt": 0.35}, {4}),
+        ({"shear": 0.4, "along": -0.3, "up": 0.35}, {4}),
     ],
 )
 def test_each_kind_of_map_keeps_what_its_row_of_the_table_says(values, kept):
-    names = ["length", "angle of the corner", "angle of opp", "upper half", "cross-ratio"]
+    names = ["length", "angle of the corner", "angle of opp", "one half", "cross-ratio"]
     said = MODELS["maps"].drawing(**values).sentence
     assert {i for i, name in enumerate(names) if name in said} == kept
     kinds = {5: "Euclidean", 4: "similar", 3: "affine", 1: "projective"}
     assert kinds[len(kept)] in said
-    # By hand: the right side of the square, its ends and its middle, in perspective.
+    # By hand: where the corners go, of which the first three make a parallelogram.
     given = MODELS["maps"].values(**values)
-    k, s, t = given["size"], given["shear"], given["tilt"]
-    ends = [np.array([1 + s * y, y]) * k / (1 + t * y) for y in (-1, 1)]
-    side = np.linalg.norm(ends[1] - ends[0])
-    assert maps.measured(maps.matrix(given))[0] == pytest.approx(side)
+    a, b, c, d = (complex(x, y) for x, y in apply(maps.matrix(given), maps._SQUARE[:4]))
+    side = given["size"] * np.exp(1j * np.radians(given["turn"]))
+    down = side * complex(given["shear"], given["stretch"])
+    assert np.isclose(c - d, 2 * side)
+    assert np.isclose(d - a, 2 * down)
+    assert np.isclose(b - a, (2 + given["along"]) * side - given["up"] * down)
+    assert maps.measured(maps.matrix(given))[0] == pytest.approx(abs(c - b))
 
 
 def test_a_hand_reaches_all_four_kinds_of_maps_though_it_is_not_exact():
@@ -1337,11 +1378,21 @@ def test_a_hand_reaches_all_four_kinds_of_maps_though_it_is_not_exact():
         ("Euclidean", "right side", 1.05 * np.array([np.cos(1), np.sin(1)])),
         ("similar", "right side", 1.3 * right),
         ("affine", "top", up + 0.4 * right + 0.05 * up),
-        ("projective", "top", 1.3 * up + 0.05 * right),
+        ("affine", "top", 1.3 * up + 0.05 * right),
+        ("projective", "corner", 1.3 * up + 1.2 * right),
     ]
     for kind, grip, at in kinds:
         pulled = model.dragged(grip, at)
         assert f"A map that is {kind}" in model.drawing(**pulled).sentence
+
+
+def test_no_hand_pulls_a_corner_of_the_square_out_of_its_panel():
+    rng, model = np.random.default_rng(8), MODELS["maps"]
+    values = model.values()
+    for at in rng.uniform(-4, 4, (150, 2)):
+        held = rng.choice(["right side", "top", "corner"])
+        values = model.dragged(held, tuple(at), **values)
+        assert np.abs(apply(maps.matrix(values), maps._SQUARE)).max() < 2.5
 
 
 def test_h_is_shortest_where_the_smaller_singular_value_says():
@@ -2499,6 +2550,7 @@ ON_A_CURVE = {  # its nearest place
     ("frame", "corner"),
     ("moved", "camera"),
     ("moved", "board"),
+    *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "h": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {

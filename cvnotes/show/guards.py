@@ -50,19 +50,6 @@ def count(x: Any, name: str) -> int:
     return whole(x, name, at_most=_MOST)
 
 
-def texts(x: Any, name: str) -> list[str]:
-    """Guard names that are written into a figure: several strings, or letters.
-
-    Examples
-    --------
-    >>> texts(("a", "b"), "names")
-    ['a', 'b']
-    """
-    if not isinstance(x, str | list | tuple) or not all(isinstance(item, str) for item in x):
-        raise InputTypeError(f"{name}: expected a list of names, got {x!r:.80}")
-    return list(x)
-
-
 def thing(x: Any, name: str, kind: type[Kind]) -> Kind:
     """Guard what is no array: a camera, a lens, a board.
 

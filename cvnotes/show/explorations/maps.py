@@ -4,22 +4,24 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.projective import apply, cross_ratio, to_homogeneous
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
 
-_RIGHT, _TOP = np.array([1.0, 0]), np.array([0.0, -1])  # where the square is taken hold of
+# Where the square is taken hold of.
+_RIGHT, _TOP, _CORNER = np.array([1.0, 0]), np.array([0.0, -1]), np.array([1.0, -1])
 _SIDE = np.array([[1, -1], [1, 0], [1, 0.5], [1, 1]])  # four points of its right side
 _SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
 _MEASURED = (
     ("length of the side", "{:.3f}"),
     ("angle of the corner", "{:.0f}°"),
     ("angle of opposite sides", "{:.0f}°"),
-    ("upper half : lower", "{:.3f}"),
+    ("one half : the other", "{:.3f}"),
     ("cross-ratio", "{:.2f}"),
 )
-_SNAP = 0.08  # of size, shear and tilt: so near to what changes nothing a hand means just that
+_SNAP = 0.08  # so near to what changes nothing a hand means just that
+_WIDE = 2.3  # how far from the middle a hand may pull
 _KINDS = "Euclidean", "similar", "affine", "projective"
 _NUMBERS = 3, 4, 6, 8
 
@@ -30,40 +32,81 @@ def maps_model() -> Model:
         Setting("turn", "turn (°)", -180, 180, 5, 20, "allowed to every kind"),
         Setting("size", "size", 0.4, 1.5, 0.05, 1, "1 is Euclidean; else at least a similarity"),
         Setting("shear", "shear", -1, 1, 0.05, 0, "not 0: at least affine"),
-        Setting("tilt", "tilt", -0.5, 0.5, 0.05, 0, "not 0: projective"),
+        Setting("stretch", "stretch", 0.4, 1.5, 0.05, 1, "not 1: at least affine"),
+        Setting("along", "corner, along", -0.5, 0.5, 0.05, 0, "not 0: projective"),
+        Setting("up", "corner, up", -0.5, 0.5, 0.05, 0, "not 0: projective"),
     )
     about = (
         "A square with a grid and a circle in it, before the map, dashed, and after it; beside it "
         "what was measured on both, orange where the map has changed it."
     )
-    drags = {"right side": _pulled_right, "top": _pulled_top}
+    pulls = (
+        ("right side", _RIGHT, _to_side),
+        ("top", _TOP, _to_top),
+        ("corner", _CORNER, _to_corner),
+    )
+    drags = {
+        name: lambda values, at, held=held, pull=pull: _inside(held, pull, values, at)
+        for name, held, pull in pulls
+    }
     return Model("maps", about, settings, _draw, drags)
 
 
 def matrix(values: Values) -> Array:
-    """Return the map (3, 3): first the tilt and the shear, then the size and the turn."""
+    """Return the map (3, 3): first the corner is moved, then stretch and shear, size and turn."""
+    similar, affine, projective = _steps(values)
+    return np.asarray(similar @ affine @ projective)
+
+
+def _steps(values: Values) -> tuple[Array, Array, Array]:
     a, k = np.radians(values["turn"]), values["size"]
     similar = [[k * np.cos(a), -k * np.sin(a), 0], [k * np.sin(a), k * np.cos(a), 0], [0, 0, 1]]
-    rest = [[1, values["shear"], 0], [0, 1, 0], [0, values["tilt"], 1]]
-    return np.asarray(np.array(similar) @ np.array(rest))
+    affine = [[1, values["shear"], 0], [0, values["stretch"], 0], [0, 0, 1]]
+    # With the origin in the opposite corner and sides of 1, (1, 1) goes to (s, t); the rest stays.
+    s, t = 1 + values["along"] / 2, 1 + values["up"] / 2
+    moved = np.array([[s, 0, 0], [0, t, 0], [1 - t, 1 - s, s + t - 1]])
+    unit = np.array([[0.5, 0, 0.5], [0, -0.5, 0.5], [0, 0, 1]])
+    return np.array(similar), np.array(affine), np.linalg.inv(unit) @ moved @ unit
 
 
 def kind(values: Values) -> int:
     """Return the first of the four nested kinds that has this map."""
-    steps = values["tilt"] != 0, values["shear"] != 0, values["size"] != 1
+    projective = values["along"] != 0 or values["up"] != 0
+    affine = values["shear"] != 0 or values["stretch"] != 1
+    steps = projective, affine, values["size"] != 1
     return next((3 - i for i, step in enumerate(steps) if step), 0)
 
 
-def _pulled_right(_: Values, at: Array) -> Values:
-    return {"turn": float(np.degrees(np.arctan2(at[1], at[0]))), "size": _snap(np.hypot(*at), 1)}
+def _to_side(values: Values, at: Array) -> Values:
+    _, affine, projective = _steps(values)
+    before = apply(affine @ projective, _RIGHT)
+    turn = np.arctan2(at[1], at[0]) - np.arctan2(before[1], before[0])
+    size = np.hypot(*at) / np.hypot(*before)
+    return {"turn": float(np.degrees(turn) + 180) % 360 - 180, "size": _snap(size, 1)}
 
 
-def _pulled_top(values: Values, at: Array) -> Values:
-    """Choose shear and tilt: turned back, the top lies at (−shear, −1) / (1 − tilt)."""
-    a, k = np.radians(values["turn"]), values["size"]
-    x, y = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]) @ at / k
-    w = 1 / max(-y, 0.5)
-    return {"tilt": _snap(1 - w, 0), "shear": _snap(-x * w, 0)}
+def _to_top(values: Values, at: Array) -> Values:
+    similar, _, projective = _steps(values)
+    (x, y), (u, v) = apply(np.linalg.inv(similar), at), apply(projective, _TOP)
+    return {"shear": _snap((x - u) / v, 0), "stretch": _snap(y / v, 1)}
+
+
+def _to_corner(values: Values, at: Array) -> Values:
+    similar, affine, _ = _steps(values)
+    by = (apply(np.linalg.inv(similar @ affine), at) - _CORNER) * [1, -1]
+    along, up = by if np.hypot(*by) > _SNAP else (0, 0)
+    return {"along": float(along), "up": float(up)}
+
+
+def _inside(held: Array, pull: Drag, values: Values, at: Array) -> Values:
+    """Follow a hand, but only so far that no corner leaves the panel."""
+    start = apply(matrix(values), held)
+    for part in (1, 0.75, 0.5, 0.25):
+        goal = start + part * (at.clip(-_WIDE, _WIDE) - start)
+        pulled = {**values, **pull(values, goal)}
+        if (np.abs(apply(matrix(pulled), _SQUARE)) <= _WIDE).all():
+            return pulled
+    return {}
 
 
 def _snap(value: float, still: float) -> float:
@@ -71,14 +114,14 @@ def _snap(value: float, still: float) -> float:
 
 
 def measured(H: Array) -> Array:
-    """Return a length, an angle, a tilt of sides, a ratio and a cross-ratio, (5,), after a map."""
-    side = apply(H, _SIDE)
+    """Return a length, two angles, a ratio and a cross-ratio, (5,), after a map."""
+    side, corners = apply(H, _SIDE), apply(H, _SQUARE)
     top, middle, low = side[[0, 1, 3]]
-    left = apply(H, _SIDE * [-1, 1])
+    across, right, back, left = corners[1:] - corners[:-1]
     return np.array([
         np.linalg.norm(low - top),
-        _angle(left[0] - top, low - top),
-        _angle(left[3] - left[0], low - top),
+        _angle(-across, right),
+        max(_angle(across, -back), _angle(right, -left)),
         np.linalg.norm(middle - top) / np.linalg.norm(low - middle),
         cross_ratio(*to_homogeneous(side)),
     ])  # fmt: skip
@@ -92,12 +135,14 @@ def _angle(a: Array, b: Array) -> float:
 def _draw(paper: Paper, values: Values) -> Drawing:
     H = matrix(values)
     panel = paper.panel(
-        (350, 350), (-2.1, 2.1), (-2.1, 2.1), "pull the square at its right side, and at its top"
+        (380, 380), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its three crosses"
     )
     panel.line(_SQUARE, MUTED, 1.2, dash=5)
-    if values["tilt"]:  # both sides run on to their vanishing point
-        far = apply(H, [[0, 1e6]])[0]
-        panel.segments([[end, far] for end in apply(H, _SQUARE[:2] * [1, -1])], MUTED, 0.8)
+    for way in np.eye(3)[:2]:  # sides that are no longer parallel run on to where they meet
+        far = H @ way
+        if abs(far[2]) > 1e-9:
+            starts = apply(H, _SQUARE[:4])
+            panel.segments([[start, far[:2] / far[2]] for start in starts], MUTED, 0.8)
     steps = np.linspace(-1, 1, 5)
     panel.polygons(apply(H, _SQUARE[:4])[None], "#E3F3EE")
     for v in steps:
@@ -108,7 +153,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.mark(apply(H, _SIDE), "lens", 5)
     for name, what, place in (
         ("right side", "the right side, to turn and enlarge", _RIGHT),
-        ("top", "the top, to shear and tilt", _TOP),
+        ("top", "the top, to shear and stretch", _TOP),
+        ("corner", "the corner, to break the parallels", _CORNER),
     ):
         at = apply(H, place)
         panel.mark(at, "estimated", 8)
@@ -118,7 +164,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _table(paper: Paper, H: Array, values: Values) -> Panel:
     """Write what was measured before and after the map, orange where it has changed."""
-    panel = paper.panel((350, 350), (0, 10), (0, 10), "measured before and after")
+    panel = paper.panel((350, 380), (0, 10), (0, 10), "measured before and after")
     which = kind(values)
     name = f"{_KINDS[which]}: {_NUMBERS[which]} numbers"
     panel.text([0.4, 1], name, IDEAL, size=16)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image, ImageDraw
+from PIL import Image, ImageChops, ImageDraw
 
 from cvnotes.base import Array
 from cvnotes.show.explorations.lettering import stamp, title_strip
@@ -159,6 +159,17 @@ class Panel:
         for at, ink in zip(places, colours, strict=True):
             if len(at) and (np.abs(at) < _LARGEST).all():
                 self._draw.polygon(at.ravel().tolist(), fill=ink)
+
+    def veil(self, panes: Sequence[npt.ArrayLike], tints: Sequence[str]) -> None:
+        """Lay one coloured glass over all that is drawn: polygons (k, 2), each with its tint."""
+        places = [self.place(pane) for pane in panes]
+        low = np.floor(np.min([at.min(axis=0) for at in places], axis=0)).astype(int)
+        high = np.ceil(np.max([at.max(axis=0) for at in places], axis=0)).astype(int)
+        left, top, right, bottom = box = (*low.tolist(), *high.tolist())
+        glass = Image.new("RGB", (right - left, bottom - top), "white")
+        for at, tint in zip(places, tints, strict=True):
+            ImageDraw.Draw(glass).polygon((at - low).ravel().tolist(), fill=tint)
+        self._image.paste(ImageChops.multiply(self._image.crop(box), glass), box)
 
     def mark(
         self,

@@ -10,12 +10,12 @@ from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import CAMERA, IDEAL, WORLD
+from cvnotes.show.style import CAMERA, IDEAL, WORLD, mixed
 from cvnotes.targets import Chessboard
 
 _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before the camera
 _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
-_WOOD, _BALLAST = "#6E5D50", "#C9C2BA"
+_WOOD, _BALLAST, _FAR = "#6B574A", "#B5ADA3", "#A1968B"  # the last is the mean of both
 _SKY, _HAZE, _GRASS = np.array([[176, 203, 234], [233, 238, 239], [142, 163, 98]])
 _REACH = 7.0  # m: how far away the direction is taken hold of
 _PLANE = 4.0  # m: how far away the image plane is drawn from above, the ring's diameter
@@ -71,9 +71,15 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
     horizon = np.cross(camera.A @ along, camera.A @ across)
     side = horizon @ camera.A @ middle  # the side on which the plane of the rails is seen
     panel.image(_sky_and_grass(camera, horizon * np.sign(side) / np.hypot(*horizon[:2])))
-    bed = [in_front(middle + x * across - 60 * along, 2060 * along) for x in (-1.7, 1.7)]
-    panel.polygons(camera.project(np.concatenate([bed[0], bed[1][::-1]]))[None], _BALLAST)
-    panel.segments(camera.project(_sleepers(middle, along, across)), _WOOD, 1.6)
+    for colour, start, length in ((_BALLAST, -60, 2060), (_FAR, 45, 1955)):
+        bed = [in_front(middle + x * across + start * along, length * along) for x in (-1.7, 1.7)]
+        panel.polygons(camera.project(np.concatenate([bed[0], bed[1][::-1]]))[None], colour)
+    for colour, half, length in ((_BALLAST, 1.7, 1.0), (_WOOD, 0.8 * _GAUGE, 0.25)):
+        ends = _sleepers(middle, along, across, half)
+        quads = np.concatenate([ends, ends[:, ::-1] + length * along], axis=1)
+        # Farther away than a pixel can tell them apart, wood and ballast have one colour.
+        faded = ((ends[:, 0] @ [0, 0, 1] - 10) / 30).clip(0, 1).round(2).tolist()
+        panel.polygons(camera.project(quads), [mixed(colour, _FAR, part) for part in faded])
     for side in (-0.5, 0.5):
         rail = in_front(middle + side * _GAUGE * across - 1e3 * along, 1e7 * along)
         panel.line(camera.project(rail), WORLD, 2.5)
@@ -134,10 +140,10 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.text([side * beside, _PLANE], "image plane", CAMERA, anchor=anchor)
 
 
-def _sleepers(middle: Array, along: Array, across: Array) -> Array:
-    """Return the ends (n, 2, 3) of the sleepers, one for each metre."""
+def _sleepers(middle: Array, along: Array, across: Array, half: float = 0.8 * _GAUGE) -> Array:
+    """Return the ends (n, 2, 3) of the sleepers, one for each metre, of half a length in m."""
     s = np.arange(-25.0, 45.0)[:, None, None]
-    return np.asarray(middle + s * along + np.outer([-0.8, 0.8], across) * _GAUGE)
+    return np.asarray(middle + s * along + np.outer([-half, half], across))
 
 
 def _sentence(camera: Camera, along: Array) -> str:

@@ -1,16 +1,12 @@
-"""Drawings of ideas: P² as rays and planes, the pinhole, the course's colours."""
+"""Drawings of ideas: the pinhole, the course's colours."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, matrix, real
 from cvnotes.camera import Camera, Lens, intrinsics, move, pose, rotation_from_vector
 from cvnotes.pictures import render
-from cvnotes.show.axes import arrow, beside, drawn_on, halo, letter
-from cvnotes.show.guards import texts
+from cvnotes.show.axes import arrow, beside, drawn_on, letter
 from cvnotes.show.space.camera_shapes import camera_shapes, ray_shapes
 from cvnotes.show.space.directions import sheet
 from cvnotes.show.space.shapes import target_shapes
@@ -18,7 +14,6 @@ from cvnotes.show.space.stills import draw_scene
 from cvnotes.show.style import (
     CAMERA,
     COLOURS,
-    ESTIMATED,
     FAINT,
     FONT,
     IDEAL,
@@ -33,8 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Where x, y and w lead on paper: x to the right, y away from us, w up.
-_OBLIQUE = np.array([[1.0, 0.0], [0.42, 0.40], [0.0, 1.7]])
-_WIDE, _DEEP = 1.7, 1.2  # half the sides of the piece of the plane w = 1 that is drawn
+
 _MEANINGS = {  # with where the words stand on the axes
     "world": ("what stands in the world", (0.03, 0.97)),
     "camera": ("the camera: its centre,\nits image plane", (0.45, 0.08)),
@@ -86,106 +80,6 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
         ax.annotate(words, (at[0], at[1]), by, where.transData, "axes fraction", va="center",
                     zorder=4e6, color=colour, fontsize=FONT + 1, arrowprops=leader)  # fmt: skip
     return ax
-
-
-def draw_rays(
-    x_h: npt.ArrayLike,
-    lines: npt.ArrayLike = (),
-    *,
-    ax: "Axes | None" = None,
-    names: Sequence[str] = (),
-) -> "Axes":
-    """Draw points of P² as rays through the origin, and lines of P² as planes of such rays.
-
-    The plane w = 1 is the Euclidean one: there a ray is a dot, and a plane is a line. The arrow
-    of a plane is its normal, the triple (a, b, c) of the line.
-
-    Parameters
-    ----------
-    x_h : array_like, shape (n, 3)
-        Points, homogeneous. Those with w = 0 are rays that never reach the plane w = 1.
-    lines : array_like, shape (m, 3)
-        Lines a x + b y + c w = 0.
-    names : sequence of str
-        Written beside the points, and then beside the normals of the lines; the first word also
-        beside the line.
-
-    Examples
-    --------
-    >>> ax = draw_rays([[0, 0, 1], [1, 1, 1]], [[-1, 1, 0]], names=["a", "b", "l"])
-    >>> [text.get_text() for text in ax.texts if text.get_text()]
-    ['w = 1', 'a', 'b', 'l', 'l']
-    """
-    x_h, names = matrix(x_h, "x_h", 3).reshape(-1, 3), texts(names, "names")
-    if len(x_h) == 0:
-        raise CvnotesError("x_h: expected at least one point")
-    lines = real(lines, "lines")
-    lines = matrix(lines, "lines", 3).reshape(-1, 3) if lines.size else np.zeros((0, 3))
-    if not (np.concatenate([x_h, lines]) != 0).any(axis=1).all():
-        raise CvnotesError("the zero vector is neither a point nor a line")
-    ax = drawn_on(ax, height=400)
-    patch = np.array([[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]) * [_WIDE, _DEEP, 1]
-    ax.fill(
-        *_on_paper(patch).T, fc="#D6EFE7", ec="#9ECFBF", alpha=0.7, zorder=3.5
-    )  # veils what is under it
-    _write(ax, "w = 1", patch[1], WORLD, (12, -10))
-    named = [*names, *[""] * (len(x_h) + len(lines))]
-    for x, name in zip(x_h, named, strict=False):
-        _draw_ray(ax, x, name)
-    for line, name in zip(lines, named[len(x_h) :], strict=False):
-        _draw_plane(ax, line, name)
-    ax.plot(0, 0, "o", color="white", markeredgecolor=MUTED, markersize=7, zorder=6)
-    ax.set(aspect="equal")
-    ax.plot([-2.3, 2.3], [-0.4, 2.25], " ")  # so that figures side by side have one scale
-    ax.axis("off")
-    return ax
-
-
-def _draw_ray(ax: "Axes", x: Array, name: str) -> None:
-    ideal = bool(x[2] == 0)
-    colour = ESTIMATED if ideal else IDEAL
-    tip = 1.9 * x / np.linalg.norm(x) if ideal else x / x[2]
-    below = -0.9 * tip if ideal else -0.25 * tip
-    ax.plot(*_on_paper([below, tip]).T, color=colour, linewidth=1.3, zorder=3)
-    if ideal:
-        _write(ax, name, tip, colour, (10, 8))
-        return
-    ax.plot(*_on_paper([tip, 1.22 * tip]).T, color=colour, linewidth=1.3, zorder=5)
-    ax.plot(*_on_paper(tip), "s", color=WORLD, markersize=7, zorder=6)
-    _write(ax, name, tip, colour, (-15, 13))
-
-
-def _draw_plane(ax: "Axes", line: Array, name: str) -> None:
-    ends = _cut(line)
-    if len(ends) == 2:
-        ax.fill(*_on_paper([[0, 0, 0], *ends]).T, color=ESTIMATED, alpha=0.22, lw=0, zorder=2.5)
-        ax.plot(*_on_paper(ends).T, color=ESTIMATED, linewidth=1.8, zorder=4)
-        _write(ax, name.split(" ")[0], ends[-1], ESTIMATED, (12, 4))
-    tip = 0.75 * line / np.linalg.norm(line)
-    arrow(ax, (0.0, 0.0), _on_paper(tip), ESTIMATED, 1.2, zorder=5)
-    ax.plot(*_on_paper(tip), " ")  # the axes reach to the tip
-    away = 12 + 3.5 * max(len(name) - 2, 0)
-    _write(ax, name, tip, ESTIMATED, (-away, 4) if _on_paper(tip)[0] < 0 else (away, 4))
-
-
-def _cut(line: Array) -> Array:
-    """Return the ends (2, 3) of a line in the piece of the plane w = 1, or none."""
-    a, b, c = line
-    found = [[x, -(a * x + c) / b, 1.0] for x in (-_WIDE, _WIDE) if b != 0]
-    found += [[-(b * y + c) / a, y, 1.0] for y in (-_DEEP, _DEEP) if a != 0]
-    inside = [p for p in found if abs(p[0]) <= _WIDE + 1e-9 and abs(p[1]) <= _DEEP + 1e-9]
-    return np.array(sorted(inside))[[0, -1]] if len(inside) > 1 else np.zeros((0, 3))
-
-
-def _on_paper(x: npt.ArrayLike) -> Array:
-    return np.asarray(np.asarray(x, dtype=float) @ _OBLIQUE)
-
-
-def _write(
-    ax: "Axes", text: str, at: npt.ArrayLike, colour: str, shift: tuple[float, float]
-) -> None:
-    beside(ax, text, tuple(_on_paper(at)), shift, colour, fontsize=FONT + 1, ha="center",
-           va="center", path_effects=halo(), zorder=7, annotation_clip=False)  # fmt: skip
 
 
 def draw_pinhole(*, ax: "Axes | None" = None) -> "Axes":
