@@ -14,7 +14,6 @@ from public_face import (
     BOARD,
     CAMERA,
     GREY,
-    LENS,
     LINES,
     ONE,
     PICTURE,
@@ -34,7 +33,6 @@ from cvnotes.calibration import calibrate, coverage
 from cvnotes.show.figures import (
     calibration,
     estimates,
-    lenses,
     lines,
     quality,
     wall,
@@ -103,7 +101,6 @@ FIGURES = [
         board=BOARD,
     ),
     # least squares
-    figure(lenses.draw_grid, {"extent": (0.5, ONE)}, lens=LENS),
     # lines
     figure(
         lines.draw_lines,
@@ -114,7 +111,7 @@ FIGURES = [
     figure(lines.draw_segments, {"segments": (LINES, rows(2))}, sizes=("size",), size=(640, 480)),
     figure(lines.segment_ends, {"segments": (LINES, rows(2))}),
     # wall
-    figure(wall.draw_wall, {"images": (PAIR, PICTURE), "columns": (2, ONE)}),
+    figure(wall.draw_wall, {"images": (PAIR, PICTURE)}),
     # quality
     figure(quality.draw_residuals, {"magnify": (50.0, ONE)}, calibration=RESULT),
     figure(
@@ -135,13 +132,11 @@ FIGURES = [
             "edges": (np.array([[[1.0, 2, 0], [1, 2, 9]]]), rows(3)),
         },
     ),
-    figure(sights.ray_shapes, {"m": (M, rows(2)), "length": (9.0, ONE)}, camera=CAMERA),
     figure(
-        lambda m, to=None: sights.ray_shapes(CAMERA, m, to=to),
+        lambda m, to: sights.ray_shapes(CAMERA, m, to=to),
         {"m": (M, rows(2)), "to": (W[:3], rows(3))},
         "show.sights.ray_shapes",
     ),
-    figure(sights.plane_shapes, {"z": (100.0, ONE)}, camera=CAMERA),
     figure(
         lambda W, radius: sights.dot_shapes(W, "C", radius=radius),
         {"W": (np.array([1.0, 2, 3]), several(3)), "radius": (8.0, ONE)},

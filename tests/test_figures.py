@@ -60,7 +60,7 @@ NOISE.shape = FREE
 
 DRAWN = {
     "image": lambda ax: draw_image(GREY, ax=ax, title="a picture", ticks=True),
-    "points": lambda ax: draw_points(CORNERS, size=(64, 48), ax=ax, label="seen"),
+    "points": lambda ax: draw_points(CORNERS, size=(64, 48), ax=ax),
     "corners": lambda ax: draw_corners(GREY, CORNERS, BOARD, ax=ax),
     "residuals": lambda ax: draw_residuals(NOISE, ax=ax),
     "coverage": lambda ax: draw_coverage(NOISE.image_points, (64, 48), ax=ax),

@@ -23,7 +23,7 @@ import yaml
 from cvnotes.base import CvnotesError, FileError, InputTypeError, writing
 from cvnotes.calibration import Calibration, calibrate_one_view, saving
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.saving import read_calibration, write_calibration
+from cvnotes.calibration.saving import calibration_json, read_calibration, write_calibration
 from cvnotes.camera import (
     Camera,
     FisheyeLens,
@@ -120,9 +120,8 @@ def test_a_camera_comes_back_from_json_bit_for_bit_with_its_pose_and_distortion_
     assert same_camera(read_camera(tmp_path / "camera.json"), camera)
 
 
-def test_json_has_the_keys_that_were_promised(tmp_path):
-    write_calibration(made(), tmp_path / "calibration.json", files=FILES, rejected=REJECTED)
-    keys = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
+def test_json_has_the_keys_that_were_promised():
+    keys = json.loads(calibration_json(made(), files=FILES, rejected=REJECTED))
     assert keys["format"] == "cvnotes calibration"
     assert keys["version"] == 1
     assert keys["image_size"] == [640, 480]
@@ -227,7 +226,8 @@ def test_what_is_written_of_more_than_a_thousand_photographs_is_read(tmp_path):
     )
     names = [f"a rather long folder/photograph number {i:05d}.jpg" for i in range(1500)]
     lost = [Rejected(name, "no chessboard of 9×6 inner corners was found") for name in names]
-    write_calibration(written, tmp_path / "calibration.json", files=names, rejected=lost)
+    text = calibration_json(written, files=names, rejected=lost)
+    (tmp_path / "calibration.json").write_text(text, encoding="utf-8")
     assert (tmp_path / "calibration.json").stat().st_size > 2_000_000
     back = Calibration.load(tmp_path / "calibration.json")
     assert np.array_equal(back.poses, poses)
@@ -242,9 +242,9 @@ def test_what_could_not_be_read_is_not_written(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_as_many_names_as_views(tmp_path):
+def test_as_many_names_as_views():
     with pytest.raises(CvnotesError, match="files: expected 2 names, got 1"):
-        write_calibration(made(), tmp_path / "calibration.json", files=["a.jpg"])
+        calibration_json(made(), files=["a.jpg"])
 
 
 # --- JSON that must be refused --------------------------------------------------------------
@@ -362,9 +362,8 @@ def test_hostile_json_is_refused_with_its_position(saved, content, message):
         ({"rms": -0.25}, "rms: -0.25 does not lie between"),
     ],
 )
-def test_a_wrong_calibration_is_refused_by_its_key(tmp_path, saved, change, message):
-    write_calibration(made(), tmp_path / "good.json", rejected=REJECTED)
-    keys = json.loads((tmp_path / "good.json").read_text()) | change
+def test_a_wrong_calibration_is_refused_by_its_key(saved, change, message):
+    keys = json.loads(calibration_json(made(), rejected=REJECTED)) | change
     with pytest.raises(FileError, match=message):
         read_calibration(saved("calibration.json", json.dumps(keys)))
 

@@ -11,9 +11,9 @@ from cvnotes.calibration import (
     calibrate,
     next_view,
     prediction_std,
-    where_to_hold,
 )
 from cvnotes.calibration.correspondences import Correspondences
+from cvnotes.calibration.next_view import _where_to_hold
 from cvnotes.calibration.prediction import pixel_jacobian
 from cvnotes.calibration.refinement import Problem, covariance
 from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, pose, rotation_from_vector
@@ -185,7 +185,7 @@ PINHOLE = Camera(intrinsics(800, 800, 320, 240))
 def test_where_to_hold_the_board_is_said_as_one_sees_it(turn, middle, words):
     R = rotation_from_vector(turn)
     T = np.array(middle) - R @ W.mean(0)
-    assert words in where_to_hold(PINHOLE, pose(R, T), W)
+    assert words in _where_to_hold(PINHOLE, pose(R, T), W)
     # and the side that is said to be farther away is
     for name, edge in (("right", [1, 3]), ("left", [0, 2]), ("upper", [0, 1]), ("lower", [2, 3])):
         if f"its {name} side farther" in words:

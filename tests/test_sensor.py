@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from cvnotes.base import CvnotesError, InputTypeError, ShapeError, number
-from cvnotes.pictures import compress, expose, gaussian_blur, motion_blur
+from cvnotes.pictures import compress, expose, gaussian_blur
+from cvnotes.pictures.exposure import _smeared
 
 
 def test_values_are_rounded_to_the_nearest_and_clipped():
@@ -58,7 +59,7 @@ def test_a_point_blurs_to_a_gaussian_of_the_same_sum():
 def test_motion_spreads_a_point_along_the_way_and_leaves_its_middle(motion):
     point = np.zeros((31, 31))
     point[15, 15] = 1.0
-    spread = motion_blur(point, np.array(motion))
+    spread = _smeared(point, np.array(motion))
     u = np.arange(31) - 15
     weights_u, weights_v = spread.sum(axis=0), spread.sum(axis=1)
     assert spread.sum() == pytest.approx(1, abs=1e-12)

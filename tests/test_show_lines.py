@@ -46,9 +46,8 @@ def test_lines_leave_the_limits_of_a_picture_as_they_are():
     assert (*ax.get_xlim(), *ax.get_ylim()) == (-0.5, 63.5, 47.5, -0.5)
 
 
-def test_one_name_in_the_legend_for_many_lines_and_the_colour_of_their_meaning():
-    ax = draw_lines([[1, 0, -5], [1, 0, -9]], meaning="world", label="grid")
-    assert ax.get_legend_handles_labels()[1] == ["grid"]
+def test_many_lines_have_the_colour_of_their_meaning():
+    ax = draw_lines([[1, 0, -5], [1, 0, -9]], meaning="world")
     assert {line.get_color() for line in ax.lines} == {WORLD}
     assert draw_lines([1, 0, -5], linewidth=3).lines[0].get_linewidth() == 3
 

@@ -55,8 +55,8 @@ def all_shapes():
         *target_shapes(BOARD),
         *axes_shapes(),
         *camera_shapes(BENT, image=image),
-        *ray_shapes(BENT, [320, 240], 500.0),
-        *plane_shapes(BENT, 100.0),
+        *ray_shapes(BENT, [320, 240], to=[0, 0, 0]),
+        *plane_shapes(BENT),
         *scene_shapes(box((0, 50), (0, 50), (0, 50))),
     )
 
@@ -108,7 +108,7 @@ def test_rays_through_the_lens_end_in_the_points_that_the_pixels_show():
 
 def test_pixels_beyond_the_lens_have_no_ray():
     camera = Camera(intrinsics(200, 200, 319.5, 239.5), lens=Lens((-0.5,)))
-    (lines,) = ray_shapes(camera, [[320, 240], [639, 479]], 10.0)
+    (lines,) = ray_shapes(camera, [[320, 240], [639, 479]], to=np.eye(2, 3))
     assert len(lines.ends) == 1
 
 
@@ -126,13 +126,13 @@ def test_a_sheet_between_two_segments_is_flat_and_covers_all_that_lies_between_t
 
 
 def test_the_outline_on_the_plane_z_is_the_border_of_the_picture_without_the_lens():
-    faces, outline, label = plane_shapes(BENT, 3.0)
+    faces, outline, label = plane_shapes(BENT)
     on = outline.ends[:, 0]
-    assert np.allclose(BENT.depth(on), 3, atol=1e-9)
+    assert np.allclose(BENT.depth(on), 1, atol=1e-9)
     m = BENT.project(on)
     far = np.abs((m - [319.5, 239.5]) / [320, 240]).max(axis=1)
     assert np.allclose(far, 1, atol=1e-6)
-    assert np.allclose(BENT.depth(faces.corners[0]), 3, atol=1e-9)
+    assert np.allclose(BENT.depth(faces.corners[0]), 1, atol=1e-9)
     assert label.name == "z = 1"
 
 
@@ -372,7 +372,10 @@ def test_a_line_is_hidden_by_a_face_and_shows_through_only_a_little():
 def test_a_ray_pierces_the_picture_where_its_pixel_is_and_has_a_dot_there():
     image, m = np.full((480, 640, 3), 255, np.uint8), np.array([[100.0, 400], [900, 100]])
     view = (20, -130)
-    shapes = (*camera_shapes(STRAIGHT, 100.0, image=image), *ray_shapes(STRAIGHT, m, 400.0))
+    shapes = (
+        *camera_shapes(STRAIGHT, 100.0, image=image),
+        *ray_shapes(STRAIGHT, m, to=STRAIGHT.centre + 400 * STRAIGHT.ray(m)),
+    )
     ax = draw_scene(*shapes, view=view)
     dots = np.concatenate([line.get_xydata() for line in ax.lines if line.get_marker() == "o"])
     at = STRAIGHT.centre + 100 * STRAIGHT.R.T @ [(100 - 319.5) / 800, (400 - 239.5) / 800, 1]
@@ -424,7 +427,6 @@ def depth_of(corners, eye, towards):
         (lambda: draw_scene(), CvnotesError, "at least one shape"),
         (lambda: build_scene(), CvnotesError, "at least one shape"),
         (lambda: axes_shapes(meaning="red"), CvnotesError, "world, camera, ideal"),
-        (lambda: ray_shapes(STRAIGHT, [1, 2]), CvnotesError, "`length` or near points `to`"),
         (lambda: ray_shapes(STRAIGHT, [[1, 2]], to=np.eye(3)), ShapeError, "one point for each"),
         (lambda: camera_shapes(STRAIGHT, image=np.ones((4, 4))), CvnotesError, "expected uint8"),
         (lambda: sheet_shapes(np.eye(3), np.ones((2, 3))), ShapeError, "between two segments"),

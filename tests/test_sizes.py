@@ -47,7 +47,6 @@ MORE = [
     function(pictures.clutter, {}, size=(64, 48), rng=_rng),
     function(pictures.pixel_centres, {}, size=(64, 48)),
     function(pictures.gaussian_blur, {}, light=NOISE, sigma=1.0),
-    function(pictures.motion_blur, {}, light=NOISE, motion=(1.0, 2.0)),
     function(pictures.compress, {}, image=GREY, quality=90),
     function(pictures.target_scene, {}, target=BOARD),
     function(

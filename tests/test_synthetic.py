@@ -6,10 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
-from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
+from cvnotes.base import CvnotesError, InputTypeError, ShapeError
 from cvnotes.camera import Camera, Lens, intrinsics, look_at, pose, rotation_from_vector
 from cvnotes.pictures import clutter, gaussian_blur, render
-from cvnotes.pictures.pixel_means import polygon_means
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 BOARD = Chessboard((9, 6), 25.0)
@@ -368,33 +367,6 @@ def test_clutter_has_edges_and_lies_between_its_grey_levels():
     assert picture.shape == (60, 80)
     assert picture.std() > 20
     assert 20 <= picture.min() <= picture.max() <= 200
-    assert clutter((8, 6), rng=np.random.default_rng(1), colour=True).shape == (6, 8, 3)
-
-
-def test_an_object_in_front_covers_what_is_behind_it_in_proportion():
-    outline = [[20.25, 10.5], [50.5, 20.5], [30.5, 40.5]]
-    image, camera = near(occluder=outline)
-    covered = polygon_means(outline, camera.size)
-    free, _ = near()
-    np.testing.assert_array_equal(image[covered == 0], free[covered == 0])
-    np.testing.assert_array_equal(image[covered == 1], 90)
-    np.testing.assert_allclose(image, free + covered * (90 - free.astype(float)), atol=1)
-
-
-def test_a_grey_board_stays_grey_in_a_colour_picture():
-    image, _ = near(colour=True, background=[250, 120, 10], margin=0.2)
-    grey, _ = near(background=0.0, margin=0.2)
-    assert image.shape == (60, 80, 3)
-    assert image.flags.c_contiguous
-    assert (image[grey == 0] == [250, 120, 10]).all()
-    inside = near(background=255.0, margin=0.2)[0] == grey
-    np.testing.assert_array_equal(image[inside], np.repeat(grey[inside][:, None], 3, axis=1))
-    noisy = near(colour=True, noise=5.0, rng=np.random.default_rng(0))[0].astype(float)
-    of_noise = (noisy - near()[0][..., None]).reshape(-1, 3).T
-    np.testing.assert_allclose(np.corrcoef(of_noise), np.eye(3), atol=0.06)
-    behind = clutter((80, 60), rng=np.random.default_rng(0), colour=True)
-    everything, _ = near(colour=True, background=behind, blur=0.7, jpeg=90)
-    assert everything.shape == (60, 80, 3)
 
 
 WRONG = {
@@ -412,9 +384,7 @@ WRONG = {
     "motion of one": ({"motion": 3}, ShapeError, r"motion: expected \(du, dv\)"),
     "quality 0": ({"jpeg": 0}, CvnotesError, "from 1 to 100, got 0"),
     "transposed background": ({"background": np.zeros((80, 60))}, ShapeError, r"\(60, 80\)"),
-    "colours in grey": ({"background": (1, 2, 3)}, ShapeError, "say colour=True"),
-    "two corners": ({"occluder": [[0, 0], [9, 9]]}, DegenerateError, "at least 3 corners"),
-    "no area": ({"occluder": [[0, 0], [4, 4], [9, 9]]}, DegenerateError, "no area"),
+    "a colour": ({"background": (1, 2, 3)}, ShapeError, "expected a grey level"),
 }
 
 

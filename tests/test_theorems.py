@@ -23,15 +23,12 @@ from cvnotes.projective import (
     direction_to_homogeneous,
     join,
     lies_on,
-    line_through,
     map_lines,
     meet,
-    meet_plane,
-    plane_through,
     same_up_to_scale,
     to_homogeneous,
 )
-from cvnotes.stereo import fundamental_matrix, rectify, triangulate
+from cvnotes.stereo import rectify, triangulate
 from cvnotes.warping import backward_warp, compose, homography_map
 
 theorem = settings(max_examples=100)
@@ -101,20 +98,6 @@ def test_two_lines_meet_in_a_point_of_both(k, m):
     assume(not same_up_to_scale(k, m, atol=1e-3))
     assert lies_on(meet(k, m), k)
     assert lies_on(meet(k, m), m)
-
-
-@theorem
-@given(homogeneous_in_space, homogeneous_in_space, homogeneous_in_space)
-def test_a_plane_through_three_points_contains_them_and_the_lines_between(a, b, c):
-    s = np.linalg.svd([x / np.linalg.norm(x) for x in (a, b, c)], compute_uv=False)
-    assume(s[2] > 1e-3)
-    plane = plane_through(a, b, c)
-    assert lies_on(np.stack([a, b, c]), plane, atol=1e-10).all()
-    other = np.roll(plane, 1) + [0, 0, 0, 1.0]
-    assume(not same_up_to_scale(plane, other, atol=1e-3))
-    line = line_through(a, b)
-    assume(np.abs(line @ other).max() > 1e-3 * np.abs(line).max())
-    assert lies_on(meet_plane(line, other), plane, atol=1e-8)
 
 
 @theorem
@@ -256,17 +239,6 @@ def test_rectified_correspondences_share_their_row(rig, W):
     m_left, m_right = pair.left.project(W), pair.right.project(W)
     np.testing.assert_allclose(m_left[:, 1], m_right[:, 1], atol=1e-9)
     assert (m_left[:, 0] > m_right[:, 0]).all()
-
-
-@theorem
-@given(rigs(), vectors(3, 200))
-def test_partners_lie_on_each_others_epipolar_lines(rig, W):
-    left, right = (Camera(c.A, c.G) for c in rig)
-    F = fundamental_matrix(left, right)
-    l_right = F @ to_homogeneous(left.project(W))
-    l_right /= np.linalg.norm(l_right[:2])
-    distance = l_right @ to_homogeneous(right.project(W))
-    assert abs(distance) < 1e-7
 
 
 @theorem

@@ -3,10 +3,10 @@
 from cvnotes.calibration.board_shape import BOARDS, BoardShape
 from cvnotes.calibration.choice import Choice, choose_model
 from cvnotes.calibration.driver import calibrate
-from cvnotes.calibration.next_view import NextView, next_view, where_to_hold
+from cvnotes.calibration.next_view import NextView, next_view
 from cvnotes.calibration.one_view import calibrate_one_view
 from cvnotes.calibration.pose import pose_from_view
-from cvnotes.calibration.ppm import ppm_design_matrix, ppm_dlt, refine_ppm, resect
+from cvnotes.calibration.ppm import ppm_dlt, resect
 from cvnotes.calibration.prediction import prediction_std
 from cvnotes.calibration.result import Calibration
 from cvnotes.calibration.zhang import (
@@ -38,10 +38,7 @@ __all__ = [
     "prediction_std",
     "NextView",
     "next_view",
-    "where_to_hold",
-    "ppm_design_matrix",
     "ppm_dlt",
-    "refine_ppm",
     "resect",
     "pose_from_view",
     "calibrate_one_view",

@@ -133,7 +133,7 @@ def next_view(calibration: Calibration, *, outline: npt.ArrayLike | None = None)
         camera.project(border),
         search.now,
         float(score[0]),
-        where_to_hold(calibration.camera, G, W),
+        _where_to_hold(calibration.camera, G, W),
         calibration.honest_std == calibration.std,
     )
 
@@ -167,29 +167,8 @@ def left_with(calibration: Calibration, G: npt.ArrayLike) -> float:
     return float(search._left(scaled[:, :3, :3], scaled[:, :3, 3])[0])
 
 
-def where_to_hold(camera: Camera, G: npt.ArrayLike, W: npt.ArrayLike) -> str:
-    """Say in words where a board is, as somebody who holds it needs to know.
-
-    Parameters
-    ----------
-    camera : Camera
-        Who looks.
-    G : array_like, shape (4, 4)
-        Pose of the board, CRF ← board.
-    W : array_like, shape (n, 3)
-        The corners on the board, in millimetres.
-
-    Examples
-    --------
-    >>> from cvnotes.camera import intrinsics, pose
-    >>> camera = Camera(intrinsics(800, 800, 320, 240))
-    >>> W = [[0, 0, 0], [200, 0, 0], [0, 100, 0], [200, 100, 0]]
-    >>> where_to_hold(camera, pose(rotation_from_vector([0, -0.5, 0]), [-250, -50, 500]), W)
-    'left in the picture, 57 cm away, tilted by 12° with its right side farther away'
-    """
-    G, W = rigid_motion(G), points(W, "W", 3)
-    if G.ndim != 2 or W.ndim != 2 or len(W) == 0:
-        raise ShapeError(f"expected one pose (4, 4) and W (n, 3), got {G.shape} and {W.shape}")
+def _where_to_hold(camera: Camera, G: Array, W: Array) -> str:
+    """Say in words where a board of corners W (n, 3) is, as who holds it needs to know."""
     R, middle = G[:3, :3], G[:3, :3] @ W.mean(0) + G[:3, 3]
     distance = float(np.linalg.norm(middle))
     to_sight = _facing((middle / distance)[None])[0].T
@@ -199,8 +178,6 @@ def where_to_hold(camera: Camera, G: npt.ArrayLike, W: npt.ArrayLike) -> str:
     roll = to_sight @ R[:, 0]
     roll = float(np.degrees(np.arctan2(roll[1], roll[0])))
     seen = camera.moved(G).project(W).mean(0)
-    if not np.isfinite(seen).all():
-        raise DegenerateError("the camera does not see the whole board in this pose")
     where = _place(seen, camera.size)
     words = f"{where}, {distance / 10:.0f} cm away, "
     if tilt < 5:

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, matrix, paired, points
+from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, paired, points
 from cvnotes.homography.refinement import refine_projection
 from cvnotes.projective import to_homogeneous
 from cvnotes.projective.points import apply_similarity, inverse_similarity, normaliser
@@ -48,26 +48,6 @@ def _several(W: npt.ArrayLike) -> Array:
     if np.abs(W).max() > 1e100:
         raise CvnotesError("W: coordinates beyond 1e100 cannot be computed with")
     return W
-
-
-def ppm_design_matrix(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
-    """Return D (2n, 12) of D p = 0, two rows for each point, p = the rows of P stacked.
-
-    m̃ × P W̃ = 0 has three rows, of which two suffice, as for a homography:
-    [0ᵀ, −W̃ᵀ, v W̃ᵀ] and [W̃ᵀ, 0ᵀ, −u W̃ᵀ].
-
-    Examples
-    --------
-    >>> ppm_design_matrix([[1, 2, 3]], [[4, 5]]).astype(int)
-    array([[ 0,  0,  0,  0, -1, -2, -3, -1,  5, 10, 15,  5],
-           [ 1,  2,  3,  1,  0,  0,  0,  0, -4, -8, -12, -4]])
-    """
-    W, m = pairs(W, m, at_least=1)
-    W_h = to_homogeneous(W)
-    D = np.zeros((len(W), 2, 3, 4))
-    D[:, 0, 1], D[:, 0, 2] = -W_h, m[:, 1:] * W_h
-    D[:, 1, 0], D[:, 1, 2] = W_h, -m[:, :1] * W_h
-    return D.reshape(-1, 12)
 
 
 def ppm_dlt(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
@@ -117,7 +97,7 @@ def ppm_dlt(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
     N1, N2 = normaliser.inside(W), normaliser.inside(m)
     W, m = apply_similarity(N1, W), apply_similarity(N2, m)
     refuse_flat(W, m)
-    _, s, Vt = np.linalg.svd(ppm_design_matrix(W, m), full_matrices=False)
+    _, s, Vt = np.linalg.svd(_design_matrix(W, m), full_matrices=False)
     if s[10] <= RANK * s[0]:
         raise DegenerateError(
             "these points leave P open although they are not in one plane: all but one lie in a "
@@ -129,25 +109,23 @@ def ppm_dlt(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
     return np.asarray(P / np.linalg.norm(P))
 
 
-def refine_ppm(P: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
-    """Refine P by minimising the geometric error Σ ‖m − π(P W̃)‖².
+def _design_matrix(W: Array, m: Array) -> Array:
+    """Return D (2n, 12) of D p = 0, two rows for each point, p = the rows of P stacked.
 
-    Parameters
-    ----------
-    P : array_like, shape (3, 4)
-        The start, for example from `ppm_dlt`; of any scale.
-    W, m : array_like, shape (n, 3) and (n, 2)
-        At least 6 points and their pixels.
+    m̃ × P W̃ = 0 has three rows, of which two suffice, as for a homography:
+    [0ᵀ, −W̃ᵀ, v W̃ᵀ] and [W̃ᵀ, 0ᵀ, −u W̃ᵀ].
+    """
+    W_h = to_homogeneous(W)
+    D = np.zeros((len(W), 2, 3, 4))
+    D[:, 0, 1], D[:, 0, 2] = -W_h, m[:, 1:] * W_h
+    D[:, 1, 0], D[:, 1, 2] = W_h, -m[:, :1] * W_h
+    return D.reshape(-1, 12)
 
-    Returns
-    -------
-    ndarray, shape (3, 4)
-        The refined P, ‖P‖ = 1, with the sign of the start.
 
-    Raises
-    ------
-    DegenerateError
-        The points leave P open.
+def resect(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
+    """Estimate P (3, 4) from points W (n, 3) and their pixels m (n, 2): DLT, then refinement.
+
+    The refinement minimises the geometric error Σ ‖m − π(P W̃)‖².
 
     Notes
     -----
@@ -162,32 +140,6 @@ def refine_ppm(P: npt.ArrayLike, W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
 
     Examples
     --------
-    >>> from cvnotes.targets import Chessboard, TwoPlanes
-    >>> W = TwoPlanes(Chessboard((3, 2), 10.0)).points
-    >>> truth = np.array([[8, 0, 3, 400], [0, 8, 2, 300], [0, 0, 0.01, 1]])
-    >>> m_h = W @ truth[:, :3].T + truth[:, 3]
-    >>> P = refine_ppm(truth + 0.001, W, m_h[:, :2] / m_h[:, 2:])
-    >>> np.allclose(P / P[2, 3], truth, atol=1e-9)
-    True
-    """
-    P = matrix(P, "P", 3, 4)
-    W, m = pairs(W, m, at_least=6)
-    if P.ndim != 2 or not P.any():
-        raise DegenerateError("P must be one non-zero (3, 4) matrix")
-    N1, N2 = normaliser.inside(W), normaliser.inside(m)
-    W_h, m = to_homogeneous.inside(apply_similarity(N1, W)), apply_similarity(N2, m)
-    refuse_flat(W_h[:, :3], m)
-    start = N2 @ (P / np.abs(P).max()) @ inverse_similarity(N1)
-    with np.errstate(all="ignore"):  # from a senseless start; no step is then found
-        P = inverse_similarity(N2) @ refine_projection(start, W_h, m) @ N1
-    return np.asarray(P / np.linalg.norm(P))
-
-
-def resect(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
-    """Estimate P (3, 4) from points W (n, 3) and their pixels m (n, 2): DLT, then refinement.
-
-    Examples
-    --------
     >>> from cvnotes.camera import Camera, decompose, intrinsics
     >>> from cvnotes.camera import look_at
     >>> from cvnotes.targets import TwoPlanes
@@ -199,4 +151,10 @@ def resect(W: npt.ArrayLike, m: npt.ArrayLike) -> Array:
            [  0., 805., 240.],
            [  0.,   0.,   1.]])
     """
-    return refine_ppm(ppm_dlt(W, m), W, m)
+    P = ppm_dlt(W, m)
+    W, m = pairs(W, m, at_least=6)
+    N1, N2 = normaliser.inside(W), normaliser.inside(m)
+    W_h, m = to_homogeneous.inside(apply_similarity(N1, W)), apply_similarity(N2, m)
+    start = N2 @ (P / np.abs(P).max()) @ inverse_similarity(N1)
+    P = inverse_similarity(N2) @ refine_projection(start, W_h, m) @ N1
+    return np.asarray(P / np.linalg.norm(P))

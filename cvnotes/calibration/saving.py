@@ -27,13 +27,7 @@ FORMAT = "cvnotes calibration"
 _ROUNDED = 1e-6  # numbers that agree to so much, whoever rounded them, are the same
 
 
-def write_calibration(
-    result: Mapping[str, Any],
-    path: PathLike,
-    *,
-    files: Sequence[PathLike] = (),
-    rejected: Sequence[Rejected] = (),
-) -> None:
+def write_calibration(result: Mapping[str, Any], path: PathLike) -> None:
     """Write a calibration as JSON, whole or not at all.
 
     Parameters
@@ -43,13 +37,8 @@ def write_calibration(
         that would make it larger than `read_calibration` accepts.
     path : path
         Where to; an existing file is replaced.
-    files : sequence of paths
-        The photograph of each view.
-    rejected : sequence of Rejected
-        The photographs that were not used, with their reasons.
     """
-    text = calibration_json(result, files=files, rejected=rejected)
-    write_whole({path_of(path): text.encode()})
+    write_whole({path_of(path): calibration_json(result).encode()})
 
 
 def calibration_json(
@@ -59,7 +48,7 @@ def calibration_json(
     rejected: Sequence[Rejected] = (),
     note: str = "",
 ) -> str:
-    """Spell a calibration as JSON, with a note for whoever opens it; see `write_calibration`."""
+    """Spell a calibration as JSON, with photographs, and a note to whoever opens it."""
     if files and len(files) != len(result["poses"]):
         raise CvnotesError(f"files: expected {len(result['poses'])} names, got {len(files)}")
     names, covariance = result["names"], result["covariance"]

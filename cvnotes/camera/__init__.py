@@ -31,7 +31,6 @@ from cvnotes.camera.vanishing import (
     horizon,
     intrinsics_from_vanishing_points,
     normal_from_horizon,
-    rotation_from_vanishing_points,
     vanishing_point,
 )
 
@@ -64,6 +63,5 @@ __all__ = [
     "horizon",
     "focal_length",
     "intrinsics_from_vanishing_points",
-    "rotation_from_vanishing_points",
     "normal_from_horizon",
 ]

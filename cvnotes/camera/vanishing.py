@@ -1,7 +1,5 @@
 """Vanishing points and horizons: found in a picture, and the camera they give away (notes 2b.1)."""
 
-import itertools
-
 import numpy as np
 import numpy.typing as npt
 
@@ -12,13 +10,10 @@ from cvnotes.base import (
     intrinsic_matrix,
     levenberg_marquardt,
     matrix,
-    numbers,
     points,
-    rotation,
     solve_dense,
 )
 from cvnotes.camera.model import Camera, intrinsics
-from cvnotes.camera.rigid import nearest_rotation
 from cvnotes.projective import to_homogeneous
 from cvnotes.projective.points import apply_similarity, normaliser
 
@@ -236,63 +231,6 @@ def intrinsics_from_vanishing_points(v: npt.ArrayLike) -> Array:
         )
     f = focal_length(v1, v2, c)
     return intrinsics(f, f, *(c + middle))
-
-
-def rotation_from_vanishing_points(
-    A: npt.ArrayLike, v_h: npt.ArrayLike, *, near: npt.ArrayLike | None = None
-) -> Array:
-    """Find the rotation CRF ← WRF from the vanishing points of the world's axes.
-
-    Parameters
-    ----------
-    A : array_like, shape (3, 3)
-        Intrinsic matrix.
-    v_h : array_like, shape (2, 3) or (3, 3)
-        Homogeneous vanishing points of x and y, or of x, y and z, one a row.
-    near : array_like, shape (3, 3), optional
-        A rough guess; by default the identity, the camera looking along z with x to the right.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        The rotation closest to the measured axes.
-
-    Notes
-    -----
-    rᵢ ≈ ± A⁻¹ ṽᵢ. A vanishing point is that of a direction and of its opposite, so the picture
-    leaves four rotations; the one nearest to the guess is given.
-
-    References
-    ----------
-    .. [1] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 8.6.
-
-    Examples
-    --------
-    >>> A = intrinsics(800, 800, 320, 240)
-    >>> v = A @ np.diag([1, -2, 3])  # axes are seen as if from straight behind, in any scale
-    >>> rotation_from_vanishing_points(A, v.T)
-    array([[1., 0., 0.],
-           [0., 1., 0.],
-           [0., 0., 1.]])
-    """
-    v = numbers(v_h, "v_h")
-    if v.shape not in ((2, 3), (3, 3)):
-        raise ShapeError(f"v_h: expected shape (2, 3) or (3, 3), got {v.shape}")
-    guess = np.eye(3) if near is None else rotation(near, "near")
-    if guess.ndim != 2:
-        raise ShapeError(f"near: expected one rotation (3, 3), got {guess.shape}")
-    if not v.any(axis=1).all():
-        raise DegenerateError("v_h: the zero vector is not a vanishing point")
-    r = np.linalg.solve(intrinsic_matrix(A), (v / np.abs(v).max(axis=1, keepdims=True)).T).T
-    r = r / np.linalg.norm(r, axis=1, keepdims=True)
-    if len(r) == 2:
-        r = np.stack([*r, np.cross(*r)])
-    if abs(np.linalg.det(r)) < 0.1:
-        raise DegenerateError("the vanishing points are not those of orthogonal directions")
-    signs = np.array(list(itertools.product((1, -1), repeat=3)))
-    signs = signs[np.prod(signs, axis=1) == np.sign(np.linalg.det(r))]
-    likeness = signs @ (r * guess.T).sum(axis=1)
-    return nearest_rotation((signs[np.argmax(likeness)][:, None] * r).T)
 
 
 def normal_from_horizon(A: npt.ArrayLike, line: npt.ArrayLike) -> Array:

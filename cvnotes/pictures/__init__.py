@@ -3,7 +3,7 @@
 from cvnotes.pictures import course
 from cvnotes.pictures.antialiasing import pixel_centres
 from cvnotes.pictures.boards import clutter, render
-from cvnotes.pictures.exposure import compress, expose, gaussian_blur, motion_blur
+from cvnotes.pictures.exposure import compress, expose, gaussian_blur
 from cvnotes.pictures.meshes import Scene
 from cvnotes.pictures.placing import facing, hold_at
 from cvnotes.pictures.posters import chart_room, poster_room
@@ -16,8 +16,6 @@ from cvnotes.pictures.views import (
     good_views,
     nearly_parallel_views,
     one_axis_views,
-    pure_translation_views,
-    repeated_views,
 )
 
 __all__ = [
@@ -43,11 +41,9 @@ __all__ = [
     "good_views",
     "covering_views",
     "fronto_parallel_views",
-    "pure_translation_views",
     "nearly_parallel_views",
     "one_axis_views",
     "centre_only_views",
-    "repeated_views",
     # one pose
     "facing",
     "hold_at",
@@ -55,6 +51,5 @@ __all__ = [
     "pixel_centres",
     "expose",
     "gaussian_blur",
-    "motion_blur",
     "compress",
 ]

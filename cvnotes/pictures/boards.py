@@ -19,15 +19,11 @@ from cvnotes.base import (
     number,
     numbers,
     target_size,
-    whole,
 )
 from cvnotes.camera import Camera
 from cvnotes.pictures.exposure import Image, expose, gaussian_blur
 from cvnotes.pictures.faces import Target, edges_in_picture
 from cvnotes.pictures.pixel_means import edge_means, polygon_means
-
-_MOST_THINGS = 1000  # each is drawn into the whole picture
-_OCCLUDER = 90.0  # grey level of what stands in the way
 
 
 def render(
@@ -42,9 +38,7 @@ def render(
     gain: float = 1.0,
     jpeg: int | None = None,
     background: npt.ArrayLike = 110.0,
-    occluder: npt.ArrayLike | None = None,
     margin: float = 1.0,
-    colour: bool = False,
     rng: np.random.Generator | None = None,
 ) -> Image:
     """Photograph a target with a known camera.
@@ -71,21 +65,17 @@ def render(
         Factor on the light; what exceeds 255 is clipped.
     jpeg : int, optional
         Quality, 1 to 100, of a JPEG compression.
-    background : float, (3,), (height, width) or (height, width, 3)
-        What is behind the target, and where the lens shows nothing: a grey level, a colour, or a
-        picture (see `clutter`). Colours need ``colour=True``.
-    occluder : array_like, shape (n, 2), optional
-        Outline in pixels of a dark thing in front of everything.
+    background : float or (height, width)
+        What is behind the target, and where the lens shows nothing: a grey level, or a picture
+        (see `clutter`).
     margin : float
         White paper around the outer squares, in squares.
-    colour : bool
-        Give a colour picture (RGB).
     rng : numpy.random.Generator, optional
         Where the noise comes from.
 
     Returns
     -------
-    ndarray of uint8, shape (height, width) or (height, width, 3)
+    ndarray of uint8, shape (height, width)
         The picture. Paper has grey level 220, ink 30, before all effects.
 
     Notes
@@ -115,22 +105,14 @@ def render(
         )
     sigma = blur_width(blur, "blur")
     white = number(margin, "margin", at_least=0, at_most=MOST)
-    behind = _background(background, target_size(camera.size), colour)
+    behind = _background(background, target_size(camera.size))
     picture = _paint(target, camera, behind, white, sigma)
-    if occluder is not None:
-        hidden = polygon_means(occluder, camera.size, blur=sigma)
-        picture += hidden * (_OCCLUDER - picture)
     _shade(picture, camera, light, vignetting)
-    if colour:
-        picture = np.array(np.broadcast_to(picture, (3, *picture.shape[1:])))
-    light_on_sensor = np.moveaxis(picture, 0, 2) if colour else picture[0]
-    return expose(light_on_sensor, motion=motion, noise=noise, gain=gain, jpeg=jpeg, rng=rng)
+    return expose(picture, motion=motion, noise=noise, gain=gain, jpeg=jpeg, rng=rng)
 
 
-def clutter(
-    size: tuple[int, int], *, rng: np.random.Generator, things: int = 40, colour: bool = False
-) -> Array:
-    """Make an untidy background for `render`: flat things with straight edges, over each other.
+def clutter(size: tuple[int, int], *, rng: np.random.Generator) -> Array:
+    """Make an untidy background for `render`: 40 flat things with straight edges, overlapping.
 
     Parameters
     ----------
@@ -138,14 +120,10 @@ def clutter(
         Size of the picture.
     rng : numpy.random.Generator
         Where the things come from.
-    things : int
-        How many there are.
-    colour : bool
-        Whether they are coloured.
 
     Returns
     -------
-    ndarray, shape (height, width) or (height, width, 3)
+    ndarray, shape (height, width)
         Grey levels from 20 to 200.
 
     Examples
@@ -155,45 +133,39 @@ def clutter(
     """
     width, height = size = target_size(size)
     generator(rng)
-    things = whole(things, "things", at_least=0, at_most=_MOST_THINGS)
-    picture = np.full((3 if colour else 1, height, width), 110.0)
-    for _ in range(things):
+    picture = np.full((height, width), 110.0)
+    for _ in range(40):
         # Corners in order of their angle as seen from the middle, so that no sides cross.
         angle = np.sort(2 * np.pi * (np.arange(5) + rng.random(5)) / 5)[:, None]
         radius = max(size) * rng.uniform(0.02, 0.2) * rng.uniform(0.5, 1.0, (5, 1))
         outline = rng.random(2) * size + radius * np.hstack([np.cos(angle), np.sin(angle)])
-        level = rng.uniform(20, 200, (len(picture), 1, 1))
+        level = rng.uniform(20, 200)
         picture += polygon_means(outline, size) * (level - picture)
-    return picture.transpose(1, 2, 0) if colour else picture[0]
+    return picture
 
 
-def _background(background: npt.ArrayLike, size: tuple[int, int], colour: bool) -> Array:
-    """Guard the background and give it as (1 or 3, 1, 1) or (1 or 3, height, width)."""
-    given, (width, height) = numbers(background, "background"), size
-    colours = [(3,), (height, width, 3)]
-    if given.shape in colours and not colour:
-        raise ShapeError("background: it is coloured but the picture is grey; say colour=True")
-    if given.shape not in [(), (height, width), *colours]:
+def _background(background: npt.ArrayLike, size: tuple[int, int]) -> Array:
+    """Guard the background: a grey level (), or a picture (height, width)."""
+    given = numbers(background, "background")
+    if given.shape not in [(), size[::-1]]:
         raise ShapeError(
-            f"background: expected a grey level, a colour (3,) or a picture ({height}, {width}) or "
-            f"({height}, {width}, 3), as large as the camera's, got shape {given.shape}"
+            f"background: expected a grey level, or a picture {size[::-1]}, as large as the "
+            f"camera's, got shape {given.shape}"
         )
-    if given.ndim < 2:
-        return given.reshape(-1, 1, 1)
-    return np.moveaxis(given.reshape(height, width, -1), 2, 0)
+    return given
 
 
 def _paint(target: Target, camera: Camera, behind: Array, margin: float, blur: float) -> Array:
-    """Put the target before its background: (1 or 3, height, width), sharp but for `blur`."""
+    """Put the target before its background: (height, width), sharp but for `blur`."""
     start, end, jump = edges_in_picture(target, camera, margin, step=max(1.0, blur / 2))
-    if behind.shape[1:] == (1, 1):
+    if behind.ndim == 0:
         # Where all that is behind is flat, the jump from there to the target is known.
-        jump = jump[:, :1] - jump[:, 1:] * behind[:, 0, 0]
-        painted = edge_means(start, end, jump, camera.size, blur=blur)
+        jump = jump[:, :1] - jump[:, 1:] * behind
+        painted = edge_means(start, end, jump, camera.size, blur=blur)[0]
         painted += behind
         return np.asarray(painted)
     if blur:
-        behind = np.stack([gaussian_blur.inside(channel, blur) for channel in behind])
+        behind = gaussian_blur.inside(behind, blur)
     grey, covered = edge_means(start, end, jump, camera.size, blur=blur)
     painted = (1 - covered) * behind
     painted += grey
@@ -201,7 +173,7 @@ def _paint(target: Target, camera: Camera, behind: Array, margin: float, blur: f
 
 
 def _shade(picture: Array, camera: Camera, light: npt.ArrayLike, vignetting: float) -> None:
-    """Light a picture (k, height, width) unevenly."""
+    """Light a picture (height, width) unevenly."""
     gradient, loss = numbers(light, "light"), number(vignetting, "vignetting", at_least=0)
     if gradient.shape != (2,) or np.abs(gradient).sum() > 1:
         raise CvnotesError(

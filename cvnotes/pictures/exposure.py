@@ -129,7 +129,7 @@ def expose(
     if blur:
         light = gaussian_blur.inside(light, blur)
     if np.any(motion):
-        light = motion_blur.inside(light, np.asarray(motion))
+        light = _smeared(light, np.asarray(motion))
     light *= gain
     if noise and rng is not None:
         light += rng.normal(0.0, noise, light.shape)
@@ -153,15 +153,8 @@ def gaussian_blur(light: Array, sigma: float) -> Array:
     return light
 
 
-@guarded(light=_picture, motion=_path)
-def motion_blur(light: Array, motion: Array) -> Array:
-    """Smear a picture (height, width, …) along the straight way (du, dv), half to either side.
-
-    Examples
-    --------
-    >>> motion_blur(np.array([[0.0, 0.0, 1.0, 0.0, 0.0]]), np.array([2.0, 0.0])).round(3)
-    array([[0.  , 0.25, 0.5 , 0.25, 0.  ]])
-    """
+def _smeared(light: Array, motion: Array) -> Array:
+    """Smear a picture (height, width, …) along the straight way (du, dv), half to either side."""
     from scipy.ndimage import correlate
 
     # The mean over the way of bilinear interpolation, as weights of the neighbours.

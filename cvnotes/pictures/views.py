@@ -34,11 +34,6 @@ def turned(towards: Array, angle: Array, rng: np.random.Generator) -> Array:
     )
 
 
-def one_tilt(rng: np.random.Generator) -> Array:
-    """One rotation (1, 3, 3) by 30° towards any direction."""
-    return turned(rng.uniform(0, 2 * np.pi, 1), np.radians([30.0]), rng)
-
-
 def all_sides(n: int, rng: np.random.Generator) -> Array:
     """Directions (n,) in the picture, one in each n-th of the circle, shuffled."""
     return np.asarray(2 * np.pi * (rng.permutation(n) + rng.random(n)) / n)
@@ -227,28 +222,6 @@ def fronto_parallel_views(
     return spread(target, camera, turned(np.zeros(n), np.zeros(n), rng), rng)
 
 
-def pure_translation_views(
-    target: Target, camera: Camera, n: int, *, rng: np.random.Generator
-) -> Array:
-    """Move a tilted board without turning it: n views say no more than one.
-
-    Parallel planes have the same vanishing line, and the two constraints that a view puts on the
-    intrinsics depend on nothing else: every view repeats those of the first. (A strong distortion
-    may hide this from the refinement, for it gives the principal point away.)
-
-    Examples
-    --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.targets import Chessboard
-    >>> camera = Camera(intrinsics(800, 804, 325, 238))
-    >>> G = pure_translation_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
-    >>> bool((G[:, :3, :3] == G[0, :3, :3]).all())
-    True
-    """
-    n = guard(target, camera, n, rng)
-    return spread(target, camera, np.repeat(one_tilt(rng), n, axis=0), rng)
-
-
 def nearly_parallel_views(
     target: Target, camera: Camera, n: int, *, rng: np.random.Generator
 ) -> Array:
@@ -268,7 +241,8 @@ def nearly_parallel_views(
     """
     n = guard(target, camera, n, rng)
     wobble = rotation_from_vector.inside(rng.normal(0, np.radians(1), (n, 3)))
-    return spread(target, camera, wobble @ one_tilt(rng), rng)
+    tilt = turned(rng.uniform(0, 2 * np.pi, 1), np.radians([30.0]), rng)
+    return spread(target, camera, wobble @ tilt, rng)
 
 
 def one_axis_views(target: Target, camera: Camera, n: int, *, rng: np.random.Generator) -> Array:
@@ -314,25 +288,3 @@ def centre_only_views(target: Target, camera: Camera, n: int, *, rng: np.random.
     R = turned(all_sides(n, rng), rng.uniform(*TILT, n), rng) @ facing(target)
     middle = (np.array(camera.size) - 1) / 2
     return np.stack([hold_at(target, camera, R_i, middle, rng.uniform(2.0, 2.5)) for R_i in R])
-
-
-def repeated_views(
-    target: Target, camera: Camera, n: int, *, rng: np.random.Generator, distinct: int = 2
-) -> Array:
-    """Photograph `distinct` good views over and over: counting pictures is not counting views.
-
-    A copy adds no equation. With two views among three the general camera stays undetermined,
-    however many pictures there are; with noise, the residuals do not tell.
-
-    Examples
-    --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.targets import Chessboard
-    >>> camera = Camera(intrinsics(800, 804, 325, 238))
-    >>> G = repeated_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
-    >>> bool((G[2] == G[0]).all()), bool((G[1] == G[0]).all())
-    (True, False)
-    """
-    n = guard(target, camera, n, rng)
-    distinct = whole(distinct, "distinct")
-    return good_views(target, camera, distinct, rng=rng)[np.arange(n) % distinct]

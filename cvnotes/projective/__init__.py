@@ -1,6 +1,6 @@
 """Chapter 1: points, lines and planes of projective space, at infinity too (notes 2b.1)."""
 
-from cvnotes.projective.lines import LINE_AT_INFINITY, cross_ratio, join, lies_on, map_lines, meet
+from cvnotes.projective.lines import cross_ratio, join, lies_on, map_lines, meet
 from cvnotes.projective.points import (
     apply,
     direction_to_homogeneous,
@@ -10,11 +10,9 @@ from cvnotes.projective.points import (
 )
 from cvnotes.projective.space import (
     PLANE_AT_INFINITY,
-    dual,
     line_of_planes,
     line_through,
     meet_plane,
-    plane_through,
 )
 
 __all__ = [
@@ -23,16 +21,13 @@ __all__ = [
     "from_homogeneous",
     "apply",
     "same_up_to_scale",
-    "LINE_AT_INFINITY",
     "join",
     "meet",
     "lies_on",
     "map_lines",
     "cross_ratio",
     "PLANE_AT_INFINITY",
-    "plane_through",
     "line_through",
     "line_of_planes",
-    "dual",
     "meet_plane",
 ]

@@ -18,8 +18,6 @@ from cvnotes.base import (
 from cvnotes.projective.points import refuse_zero, vectors
 
 _ROUNDING = 1e-15  # what is left of a determinant of unit vectors that should be 0
-LINE_AT_INFINITY = np.array([0.0, 0.0, 1.0])
-LINE_AT_INFINITY.setflags(write=False)
 
 _point, _line = partial(vectors, what="point", d=3), partial(vectors, what="line", d=3)
 

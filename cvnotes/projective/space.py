@@ -36,25 +36,6 @@ def _one_each(L: Array, **other: Array) -> None:
     equally_many(f"lines L and {name}", L.shape[:-2], x.shape[:-1])
 
 
-@guarded(a=_point, b=_point, c=_point, also=_as_many)
-def plane_through(a: Array, b: Array, c: Array) -> Array:
-    """Return the plane (..., 4) through three points of P³, (..., 4) each.
-
-    Raises
-    ------
-    DegenerateError
-        The points lie on a line: many planes pass through them.
-
-    Examples
-    --------
-    >>> plane_through([1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1])  # x + y + z = 1
-    array([ 1.,  1.,  1., -1.])
-    """
-    plane = _wedge(a, b, c)
-    refuse_zero(plane, (a, b, c), "the points lie on a line: many planes pass through them")
-    return plane + 0.0
-
-
 @guarded(a=_point, b=_point, also=_as_many)
 def line_through(a: Array, b: Array) -> Array:
     """Return the line of P³ through two points (..., 4), as L = a bᵀ − b aᵀ of shape (..., 4, 4).
@@ -94,23 +75,11 @@ def line_of_planes(p: Array, q: Array) -> Array:
     >>> meet_plane(z_axis, [0, 0, 1, -7])
     array([ 0.,  0., -7., -1.])
     """
-    return dual.inside(_of_two(p, q, "the planes coincide: they share all their points"))
-
-
-@guarded(L=_line)
-def dual(L: Array) -> Array:
-    """Turn a line given by points into the same line given by planes, and back.
-
-    Examples
-    --------
-    >>> L = line_through([0, 0, 0, 1], [0, 0, 5, 1])
-    >>> bool((dual(dual(L)) == L).all())
-    True
-    """
-    D = np.zeros_like(L)
+    by_planes = _of_two(p, q, "the planes coincide: they share all their points")
+    L = np.zeros_like(by_planes)
     for (i, j), (k, m) in (((0, 1), (2, 3)), ((0, 2), (3, 1)), ((0, 3), (1, 2))):
-        D[..., i, j], D[..., k, m] = L[..., k, m], L[..., i, j]
-    return D - D.mT
+        L[..., i, j], L[..., k, m] = by_planes[..., k, m], by_planes[..., i, j]
+    return L - L.mT
 
 
 @guarded(L=_line, p=_plane, also=_one_each)
@@ -131,14 +100,6 @@ def meet_plane(L: Array, p: Array) -> Array:
     point = (L @ p[..., None])[..., 0]
     refuse_zero(point, (_flat(L), p), "the line lies in the plane")
     return np.asarray(point) + 0.0
-
-
-def _wedge(*three: Array) -> Array:
-    """Return the vector (..., 4) that is orthogonal to three: the cross product of P³."""
-    M = np.stack(np.broadcast_arrays(*three), axis=-2)
-    with np.errstate(divide="ignore"):  # factors so small that their logarithm is infinite
-        minors = [(-1) ** i * np.linalg.det(np.delete(M, i, axis=-1)) for i in range(4)]
-    return np.stack(minors, axis=-1)
 
 
 def _of_two(a: Array, b: Array, words: str) -> Array:

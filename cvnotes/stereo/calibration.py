@@ -11,7 +11,6 @@ import numpy as np
 from cvnotes.base import (
     Array,
     CalibrationWarning,
-    CvnotesError,
     DegenerateError,
     ShapeError,
     image_size,
@@ -24,7 +23,6 @@ from cvnotes.calibration.refinement import Problem, covariance, refuse_too_few
 from cvnotes.calibration.reliability import Diagnostics, judge
 from cvnotes.calibration.thresholds import MOVED, OF_PICTURE
 from cvnotes.camera import Camera, chain, inverse, nearest_rotation, pose, vector_from_rotation
-from cvnotes.camera.model import is_camera
 from cvnotes.homography import dlt
 from cvnotes.stereo.jackknife import covariance_over_pairs
 from cvnotes.stereo.refinement import StereoProblem, StereoState
@@ -108,68 +106,10 @@ def calibrate_stereo(
             except DegenerateError as error:
                 raise DegenerateError(f"{side} camera: {error}") from error
         alone.append(found)
-    return _warned(together(pairs, alone))
-
-
-def _warned(rig: StereoCalibration) -> StereoCalibration:
-    """Warn whoever called the caller of what is doubtful."""
+    rig = together(pairs, alone)
     for sentence in rig.warnings:
-        warn(sentence, CalibrationWarning, stacklevel=3)
+        warn(sentence, CalibrationWarning, stacklevel=2)
     return rig
-
-
-def calibrate_relative_pose(
-    left: Camera,
-    right: Camera,
-    board_points: PointSets,
-    left_points: PointSets,
-    right_points: PointSets,
-) -> StereoCalibration:
-    """Find how two calibrated cameras stand to each other, from one or more pairs of pictures.
-
-    Parameters
-    ----------
-    left, right : Camera
-        Their A and lens are held; their own poses are not used.
-    board_points, left_points, right_points
-        As in `calibrate_stereo`.
-
-    Returns
-    -------
-    StereoCalibration
-        The given cameras with their relative pose, and its error bars.
-
-    Raises
-    ------
-    DegenerateError
-        The pairs do not fit two cameras on one rig.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from cvnotes.camera import chain, intrinsics, nearest_rotation, pose
-    >>> from cvnotes.targets import Chessboard
-    >>> board = Chessboard((9, 6), 25.0)
-    >>> left = Camera(intrinsics(800, 804, 325, 238))
-    >>> right = Camera(intrinsics(790, 794, 315, 243), pose(np.eye(3), [-100, 0, 0]))
-    >>> G = pose(nearest_rotation([[1, 0, 0.1], [0, 1, 0.2], [-0.1, -0.2, 1]]), [-40, -60, 600])
-    >>> seen = [c.moved(chain(c.G, G)).project(board.points) for c in (left, right)]
-    >>> calibrate_relative_pose(left, right, board.points, *seen).T.round(6) + 0.0
-    array([-100.,    0.,    0.])
-    """
-    for name, camera in (("left", left), ("right", right)):
-        if any(is_camera(camera, name).lens.centre):
-            raise CvnotesError(
-                f"{name}: the refinement knows lenses centred on the principal point only, got "
-                f"{camera.lens}"
-            )
-    pairs = paired_points(board_points, left_points, right_points)
-    problems = [
-        Problem.at(c, tuple(name for name, x in c.parameters.items() if name != "skew" or x), d)
-        for d, c in zip(pairs, (left, right), strict=True)
-    ]
-    problem = StereoProblem(problems[0], problems[1], cameras_known=True)
-    return _warned(refined(problem, pairs, [left, right]))
 
 
 def paired_points(
@@ -257,7 +197,7 @@ def refined(
     scale = np.ones(q)
     scale[-3:] = pairs[0].scale  # T, back in the unit of the board
     scale = np.outer(scale, scale)
-    left, right = _cameras(problem, best.x, pairs[0].scale, cameras)
+    left, right = _cameras(problem, best.x, pairs[0].scale)
     residuals = (
         problem.left.residuals(left.moved(np.eye(4)), best.x.left),
         problem.right.residuals(right.moved(np.eye(4)), best.x.of_right()),
@@ -277,9 +217,9 @@ def refined(
         converged=best.converged,
         _covariance_of_pairs=cache(lambda: covariance_over_pairs(problem, best.x)[:q, :q] * scale),
     )
-    sentences = [*_doubts(result, residuals, strangers)]
+    sentences = [*_doubts(result, strangers)]
     reliable = not sentences
-    for i, side in enumerate(() if judged or problem.cameras_known else SIDES):
+    for i, side in enumerate(() if judged else SIDES):
         one = replace(result.of_camera(i), converged=True)  # said above
         corners = (problem.left, problem.right)[i].m
         found, believed = judge(Diagnostics.of(one, residuals[i], corners, problem.left.W))
@@ -317,13 +257,9 @@ def _poses(data: Correspondences, camera: Camera) -> Array:
     return extrinsics(np.eye(3), np.array(H))
 
 
-def _cameras(
-    problem: StereoProblem, x: StereoState, scale: float, given: list[Camera]
-) -> tuple[Camera, Camera]:
+def _cameras(problem: StereoProblem, x: StereoState, scale: float) -> tuple[Camera, Camera]:
     """Return both cameras in the left one's frame."""
     G = pose(nearest_rotation(x.R), scale * x.T)
-    if problem.cameras_known:
-        return given[0].moved(np.eye(4)), given[1].moved(G)
     left, right = problem.left.camera_of(x.left.shared), problem.right.camera_of(x.right)
     return left, right.moved(G)
 
@@ -331,18 +267,13 @@ def _cameras(
 SIDES = ("left", "right")
 
 
-def _doubts(
-    result: StereoCalibration, residuals: tuple[Array, Array], strangers: list[int]
-) -> Iterator[Doubt]:
+def _doubts(result: StereoCalibration, strangers: list[int]) -> Iterator[Doubt]:
     """Say why a rig is not to be believed.
 
     Parameters
     ----------
     result : StereoCalibration
         Not judged yet.
-    residuals : pair of ndarray, shape (n_views, n, 2)
-        How far corners were seen from where the model puts them; 0 where none was seen, NaN where
-        the lens folds.
     strangers : list of int
         Pairs that show the cameras in another relative pose than the others do.
     """
@@ -355,16 +286,8 @@ def _doubts(
         )
     if not result.converged:
         yield Doubt("the refinement stopped before it reached a minimum")
-    known = len(result.names) == 6
-    folded = [side for side, r in zip(SIDES, residuals, strict=True) if np.isnan(r).any()]
-    if folded and known:
-        yield Doubt(
-            f"{' and '.join(folded)} camera: some corners lie where its lens folds over, so it "
-            "shows nothing there: do A and lens belong to these pictures?"
-        )
-    elif (typical := float(np.median(result.view_rms))) > OF_PICTURE * max(result.left.size):
-        ask = "A and lens belong to these pictures" if known else "left and right belong together"
+    if (typical := float(np.median(result.view_rms))) > OF_PICTURE * max(result.left.size):
         yield Doubt(
             f"the corners are {typical:.1f} px away from where the cameras put them, in a typical "
-            f"picture: do {ask}?"
+            "picture: do left and right belong together?"
         )

@@ -53,13 +53,10 @@ class StereoProblem:
     left, right : Problem
         Of the same views, with the same board points, and the same ways in which these may differ;
         what holds the shape of the board belongs to one of them.
-    cameras_known : bool
-        Hold A and lens of both cameras; only the relative pose and the boards are then sought.
     """
 
     left: Problem
     right: Problem
-    cameras_known: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -67,7 +64,7 @@ class StereoProblem:
         cameras = [f"left.{name}" for name in self.left.names]
         cameras += [f"right.{name}" for name in self.right.names]
         pose = ("omega_x", "omega_y", "omega_z", "T_x", "T_y", "T_z")
-        return pose if self.cameras_known else (*cameras, *pose)
+        return (*cameras, *pose)
 
     def some(self, views: slice) -> "StereoProblem":
         """Keep some of the pairs."""
@@ -94,21 +91,12 @@ class StereoProblem:
         of_left, of_right, of_G = self.places
         of_right = np.append(of_right, of_G)
         equations = _joined((left, of_left), (_carried_over(right, x), of_right))
-        if self.cameras_known:
-            equations = replace(
-                equations,
-                shared=equations.shared[np.ix_(of_G, of_G)],
-                border=equations.border[..., of_G],
-                g_shared=equations.g_shared[of_G],
-            )
         return cost_left + cost_right, equations
 
     def take_step(self, x: StereoState, step: tuple[Array, Array]) -> StereoState:
         """Take a step: rotations from the left, everything else by addition."""
         shared, poses = step
         of_left, of_right, of_G = self.places
-        if self.cameras_known:
-            shared = np.append(np.zeros(of_G[0]), shared)
         G = shared[of_G]
         return StereoState(
             take_step(x.left, (shared[of_left], poses)),

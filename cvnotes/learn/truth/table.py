@@ -2,64 +2,49 @@
 
 from dataclasses import dataclass
 from html import escape
-from math import floor, isnan, log10
+from math import floor, log10
 
 from cvnotes.base import text_table
 from cvnotes.base.digits import decimals, fixed
+from cvnotes.camera.model import SENSOR
 
 _HEADER = ("", "estimate", "truth", "error", "expected", "")
+# An error of more standard deviations than this is no chance: it happens once in 16,000 times.
+_SIGMAS = 4.0
 
 
 @dataclass(frozen=True)
 class Row:
-    """One number held against the truth.
-
-    `allowed` is the largest error that holds. `std` is the predicted standard deviation where
-    that is what decides, else NaN.
-    """
+    """One number held against the truth, with its predicted standard deviation."""
 
     name: str
     estimate: float
     truth: float
-    allowed: float
-    std: float = float("nan")
-    unit: str = ""
+    std: float
 
     @property
     def error(self) -> float:
-        """Estimate minus truth; 0 where neither exists (NaN)."""
-        if isnan(self.estimate) and isnan(self.truth):
-            return 0.0
+        """Estimate minus truth."""
         return self.estimate - self.truth
 
     @property
     def holds(self) -> bool:
-        """Whether the error is as small as it should be; never with a NaN on one side only."""
-        return bool(abs(self.error) <= self.allowed)
+        """Whether the error is as small as it should be."""
+        return abs(self.error) <= _SIGMAS * self.std
 
     def cells(self) -> tuple[str, ...]:
         """Return the row as text: name, estimate, truth, error, expected error, verdict."""
-        digits = _digits(self)
-        name = f"{self.name} ({self.unit})" if self.unit else self.name
-        expected = f"± {self.std:.2g}" if not isnan(self.std) else f"≤ {self.allowed:.2g}"
+        # Decimals that show the expected error, of at most seven significant digits.
+        most = 6 - floor(log10(max(abs(self.truth) or 1.0, self.std)))
+        digits = max(0, min(decimals(self.std), most))
         return (
-            name,
-            _number(self.estimate, digits),
-            _number(self.truth, digits),
-            self._error(digits),
-            expected,
+            f"{self.name} (px)" if self.name in SENSOR else self.name,
+            fixed(self.estimate, digits),
+            fixed(self.truth, digits),
+            fixed(self.error, digits, sign="+") if self.holds else f"{self.error:+.3g}",
+            f"± {self.std:.2g}",
             "✓ holds" if self.holds else "✗ off",
         )
-
-    def _error(self, digits: int) -> str:
-        """Write the error, but no digits of mere rounding, which differ between computers."""
-        if isnan(self.error):
-            return "missing"
-        if not self.holds:
-            return f"{self.error:+.3g}"
-        if self.allowed <= 1e-6 * max(abs(self.truth), 1.0) or isnan(self.truth):
-            return "rounding"
-        return fixed(self.error, digits, sign="+")
 
 
 @dataclass(frozen=True)
@@ -95,18 +80,3 @@ class Verification:
         )
         caption = escape(self.summary)
         return f"<table><caption>{caption}</caption><tr>{head}</tr>{body}</table>"
-
-
-def _digits(row: Row) -> int:
-    """Decimals that show the expected error; of a tolerance at most five significant digits."""
-    spread = row.allowed if isnan(row.std) else row.std
-    size = max(abs(row.truth) or 1.0, spread) if not isnan(row.truth) else 1.0
-    if size == float("inf"):
-        return 0
-    shown = decimals(spread) if spread > 0 else 12
-    most = 4 if isnan(row.std) else 6
-    return max(0, min(shown, most - floor(log10(size))))
-
-
-def _number(x: float, digits: int) -> str:
-    return "none" if isnan(x) else fixed(x, digits)

@@ -181,14 +181,7 @@ class Model:
 
     def still(self, **values: float) -> Picture:
         """Return the picture for a page: at twice the resolution, with its alternative text."""
-        return self._still(Paper(2), values)
-
-    def narrow_still(self, **values: float) -> Picture:
-        """Return the picture for a telephone, its panels one below the other."""
-        return self._still(Paper(2, narrow=True), values)
-
-    def _still(self, paper: Paper, values: Values) -> Picture:
-        drawing = self.drawn_on(paper, self.values(**values))
+        drawing = self.drawn_on(Paper(2), self.values(**values))
         alt = f"{self.about} {drawing.sentence}"
         data, mime = packed(drawing.picture, level=9)
         return Picture(data, alt, drawing.picture.shape[1] // 2, mime)

@@ -10,7 +10,7 @@ from cvnotes.camera import Camera
 from cvnotes.camera.model import is_camera
 from cvnotes.pictures import render_scene, room
 from cvnotes.pictures.meshes import from_above
-from cvnotes.show.axes import beside, drawn_on, halo
+from cvnotes.show.axes import beside, halo, panels
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, WORLD
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ _OWN = (CAMERA, LENS, IDEAL, WORLD, ESTIMATED)
 _WALL, _BACK = 10_000, 400  # mm, from the camera to the room's far wall, and what is behind it
 
 
-def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = None) -> "Axes":
+def draw_field_of_view(cameras: Mapping[str, Camera]) -> "Axes":
     """Draw the course's room from above, what each camera sees of it, and the pictures below.
 
     Parameters
@@ -41,7 +41,7 @@ def draw_field_of_view(cameras: Mapping[str, Camera], *, ax: "Axes | None" = Non
 
     if not isinstance(cameras, Mapping) or not 1 <= len(cameras) <= len(_OWN):
         raise CvnotesError(f"cameras: expected one to {len(_OWN)} by name")
-    ax = drawn_on(ax, height=500)
+    ax: Axes = panels(height=500)
     walls = Rectangle((-_BACK, -3000), _WALL + _BACK, 6000, fc="white", ec=MUTED, lw=3)
     ax.add_patch(walls)
     for corners, colour in zip(*from_above(room(), -1500), strict=True):

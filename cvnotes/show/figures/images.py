@@ -50,7 +50,6 @@ def draw_points(
     ax: "Axes | None" = None,
     size: tuple[int, int] = (640, 480),
     meaning: str = "estimated",
-    label: str = "",
 ) -> "Axes":
     """Draw pixels as markers, over a picture or on an empty one.
 
@@ -62,8 +61,6 @@ def draw_points(
         Size of the picture, where new axes are made.
     meaning : {"world", "camera", "ideal", "lens", "estimated"}
         Whose points these are; sets colour and marker.
-    label : str
-        Name in a legend.
 
     Examples
     --------
@@ -76,10 +73,8 @@ def draw_points(
     u, v = m.reshape(-1, 2).T
     ax.scatter(
         u, v, s=36, marker=MARKERS[meaning], color=colour, linewidths=1.4,
-        path_effects=halo(), label=label or None, zorder=3,
+        path_effects=halo(), zorder=3,
     )  # fmt: skip
-    if label:
-        ax.legend(loc="upper right", fontsize=FONT - 1)
     return ax
 
 

@@ -21,7 +21,6 @@ def draw_lines(
     ax: "Axes | None" = None,
     size: tuple[int, int] = (640, 480),
     meaning: str = "estimated",
-    label: str = "",
     linewidth: float = 1.4,
 ) -> "Axes":
     """Draw whole lines of P², as far as the axes reach.
@@ -34,8 +33,6 @@ def draw_lines(
         Size of the picture, where new axes are made.
     meaning : {"world", "camera", "ideal", "lens", "estimated"}
         Whose lines these are; sets the colour.
-    label : str
-        Name in a legend.
     linewidth : float
         As matplotlib's.
 
@@ -52,8 +49,7 @@ def draw_lines(
     for a, b, c in lines[(lines[:, :2] != 0).any(axis=1)]:
         n = np.array([a, b]) / np.hypot(a, b)
         foot = middle - (n @ middle + c / np.hypot(a, b)) * n
-        ax.axline(foot, foot + 100 * np.array([-n[1], n[0]]), label=label or None, **style)
-        label = ""
+        ax.axline(foot, foot + 100 * np.array([-n[1], n[0]]), **style)
     return ax
 
 

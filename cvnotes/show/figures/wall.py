@@ -8,32 +8,30 @@ import numpy.typing as npt
 
 from cvnotes.base import ShapeError
 from cvnotes.show.axes import panels
-from cvnotes.show.guards import count, eight_bits, pictures
+from cvnotes.show.guards import eight_bits, pictures
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def draw_wall(images: Sequence[npt.ArrayLike], *, columns: int = 5) -> "Axes":
-    """Draw small copies of grey pictures side by side, as on a contact sheet.
+def draw_wall(images: Sequence[npt.ArrayLike]) -> "Axes":
+    """Draw small copies of grey pictures, five in a row, as on a contact sheet.
 
     Parameters
     ----------
     images : sequence of array_like, shape (height, width)
         All of one size.
-    columns : int
-        Pictures in a row.
 
     Examples
     --------
-    >>> draw_wall([np.zeros((48, 64), np.uint8)] * 3, columns=3).axison
+    >>> draw_wall([np.zeros((48, 64), np.uint8)] * 3).axison
     False
     """
     small = [eight_bits(image, "images")[::4, ::4] for image in pictures(images, "images")]
     if small[0].ndim != 2:
         raise ShapeError(f"images: expected grey pictures, got colours, {small[0].shape}")
-    columns = count(columns, "columns")
-    rows, gap = -(-len(small) // columns), 4
+    columns, gap = 5, 4
+    rows = -(-len(small) // columns)
     h, w = small[0].shape
     wall = np.full((rows * (h + gap) - gap, columns * (w + gap) - gap), 255, np.uint8)
     for i, image in enumerate(small):

@@ -3,12 +3,12 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, ShapeError, number, points
+from cvnotes.base import Array, ShapeError, number, points
 from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
 from cvnotes.show.guards import eight_bits, one_point
 from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes
-from cvnotes.show.style import CAMERA, WORLD, colour_of, rgb
+from cvnotes.show.style import CAMERA, LENS, WORLD, rgb
 
 
 def camera_shapes(
@@ -17,7 +17,6 @@ def camera_shapes(
     *,
     image: npt.NDArray[np.uint8] | None = None,
     name: str = "camera",
-    meaning: str = "camera",
 ) -> Shapes:
     """Return a camera: its centre, and the pyramid to its image plane at z = `depth`.
 
@@ -31,8 +30,6 @@ def camera_shapes(
         A picture to put on the image plane, (height, width) or (height, width, 3).
     name : str
         Written beside its centre.
-    meaning : {"camera", "estimated", ...}
-        Sets the colour.
 
     Examples
     --------
@@ -41,7 +38,7 @@ def camera_shapes(
     ['camera pyramid', 'camera']
     """
     w, h = is_camera(camera, "camera").size
-    depth, colour = number(depth, "depth"), colour_of(meaning)
+    depth = number(depth, "depth")
     border = [[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]]
     corners = _on_plane(camera, xy_from_px(camera.A, border), depth)
     around = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
@@ -50,20 +47,13 @@ def camera_shapes(
     left, right = _on_plane(camera, xy_from_px(camera.A, [[0.4 * w, -0.5], [0.6 * w, -0.5]]), depth)
     up = (left + right) / 2 - 0.1 * (corners[3] - corners[0])
     ends = np.concatenate([around, spokes, [[left, up], [up, right]]])
-    shapes: Shapes = (Lines(f"{name} pyramid", ends, colour),)
+    shapes: Shapes = (Lines(f"{name} pyramid", ends, CAMERA),)
     if image is not None:
         shapes += (Photo(f"{name} picture", corners, _picture(image)),)
-    return (*shapes, Label(name, camera.centre, colour, camera.centre - up))
+    return (*shapes, Label(name, camera.centre, CAMERA, camera.centre - up))
 
 
-def ray_shapes(
-    camera: Camera,
-    m: npt.ArrayLike,
-    length: float | None = None,
-    *,
-    to: npt.ArrayLike | None = None,
-    meaning: str = "lens",
-) -> Shapes:
+def ray_shapes(camera: Camera, m: npt.ArrayLike, *, to: npt.ArrayLike) -> Shapes:
     """Return the rays that pixels see, from the camera's centre.
 
     Parameters
@@ -72,33 +62,25 @@ def ray_shapes(
         Whose rays.
     m : array_like, shape (..., 2)
         Pixels. Those that the lens model does not reach have no ray.
-    length : float, optional
-        Of each ray.
-    to : array_like, shape (..., 3), optional
-        World points to end near, instead of a length: each ray is as long as its point is far.
-    meaning : {"lens", "ideal", "estimated", ...}
-        Sets the colour.
+    to : array_like, shape (..., 3)
+        World points to end near: each ray is as long as its point is far.
 
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> lines, = ray_shapes(Camera(intrinsics(800, 800, 320, 240)), [320, 240], 1000.0)
+    >>> camera = Camera(intrinsics(800, 800, 320, 240))
+    >>> lines, = ray_shapes(camera, [320, 240], to=[0, 0, 1000])
     >>> lines.ends[0, 1]
     array([   0.,    0., 1000.])
     """
-    if (length is None) == (to is None):
-        raise CvnotesError("a ray ends after a `length` or near points `to`: give one of the two")
     d = is_camera(camera, "camera").ray(m)
-    if to is not None:
-        reach = np.linalg.norm(points(to, "to", 3) - camera.centre, axis=-1)[..., None]
-        if reach.shape[:-1] != d.shape[:-1]:
-            raise ShapeError(f"to: expected one point for each of the rays {d.shape[:-1]}")
-    else:
-        reach = np.float64(number(length, "length"))
+    reach = np.linalg.norm(points(to, "to", 3) - camera.centre, axis=-1)[..., None]
+    if reach.shape[:-1] != d.shape[:-1]:
+        raise ShapeError(f"to: expected one point for each of the rays {d.shape[:-1]}")
     tips = (camera.centre + reach * d).reshape(-1, 3)
     tips = tips[np.isfinite(tips[:, 0])]
     ends = np.stack([np.broadcast_to(camera.centre, tips.shape), tips], axis=1)
-    return (Lines("rays", ends, colour_of(meaning), 1.0),)
+    return (Lines("rays", ends, LENS, 1.0),)
 
 
 def sheet_shapes(edge: npt.ArrayLike, edges: npt.ArrayLike) -> Shapes:
@@ -131,21 +113,19 @@ def sheet_shapes(edge: npt.ArrayLike, edges: npt.ArrayLike) -> Shapes:
     return (Faces("sheets", corners, np.tile([*rgb(WORLD), 0.22], (len(corners), 1))),)
 
 
-def plane_shapes(camera: Camera, z: float = 1.0) -> Shapes:
-    """Return a plane of constant z in the CRF, and what the picture covers of it.
+def plane_shapes(camera: Camera) -> Shapes:
+    """Return the plane z = 1 in the CRF, of the ideal image points, and what is seen of it.
 
-    On the plane z = 1 live the ideal image points; `z` makes a copy of it as large as the rest of
-    the figure. The outline is the picture's border, freed from the lens.
+    The outline is the picture's border, freed from the lens.
 
     Examples
     --------
     >>> from cvnotes.camera import intrinsics
-    >>> faces, outline, label = plane_shapes(Camera(intrinsics(800, 800, 320, 240)), 100.0)
+    >>> faces, outline, label = plane_shapes(Camera(intrinsics(800, 800, 320, 240)))
     >>> faces.corners[0, 0]
-    array([-50., -50., 100.])
+    array([-0.5, -0.5,  1. ])
     """
     w, h = is_camera(camera, "camera").size
-    z = number(z, "z")
     t = np.linspace(0, 1, 25)[:-1]
     sides = [(t, 0 * t), (1 + 0 * t, t), (1 - t, 1 + 0 * t), (0 * t, 1 - t)]
     border = np.concatenate([np.stack(side, axis=-1) for side in sides]) * [w, h] - 0.5
@@ -153,8 +133,8 @@ def plane_shapes(camera: Camera, z: float = 1.0) -> Shapes:
     xy = xy[np.isfinite(xy[:, 0])]
     reach = np.ceil(10 * 1.15 * np.abs(xy).max(initial=0.1)) / 10
     square = reach * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    outline = _on_plane(camera, xy, z)
-    corners = _on_plane(camera, square, z)
+    outline = _on_plane(camera, xy, 1)
+    corners = _on_plane(camera, square, 1)
     pale = np.array([[0.4, 0.4, 0.4, 0.12]])
     ends = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
     return (
