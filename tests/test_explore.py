@@ -2513,6 +2513,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "noise": {"views": 20},
     "moved": {"who": 50},
     ("pinhole", "focus"): {"lens": 1, "focus": 1},
+    ("swing", "row 5"): {"row": 5},
     ("votes", "m"): {"guess": 1},
 }
 ON_A_WAY = {  # along a curve, by its x

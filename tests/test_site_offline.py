@@ -221,7 +221,8 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     grip.wait_for(state="visible", timeout=60_000)
     grip.focus()
     expect = pytest.importorskip("playwright.sync_api").expect
-    angle = page.locator(".widget-slider", has_text="angle x").last.locator(".widget-readout")
+    box = page.locator(".cvnotes-explorer", has=grip)
+    angle = box.locator(".widget-slider", has_text="angle x").locator(".widget-readout")
     before = angle.inner_text()
     for _ in range(3):
         page.keyboard.press("Shift+ArrowDown")

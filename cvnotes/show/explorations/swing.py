@@ -78,7 +78,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         for line in (*net, *net.transpose(1, 0, 2)):
             panel.line(line, colour, width)
     panel.line([left, held[row - 1]], IDEAL, 1, dash=3)
-    others = np.delete(held, row - 1, axis=0)  # of the column: hollow, to be pulled as well
+    near = 6 if row == 5 else 5  # the dots of rows 5 and 6 are too close for two grips
+    others = np.delete(held, [row - 1, near - 1], axis=0)  # hollow, to be pulled as well
     for at, size, ink in (
         (dots.reshape(-1, 2), 2.2, IDEAL),
         (held, 5, IDEAL),
@@ -86,7 +87,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     ):
         panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
     for i, (at, v) in enumerate(zip(held, _dots()[:, 0, 1], strict=True), start=1):
-        panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
+        if i != near:
+            panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
         panel.text([_SHOWN[0][0] + 12, v], f"{i}", IDEAL, size=12)
     moved = [float(np.linalg.norm((net - _dots())[0], axis=1).max()) for net in two]
     return Drawing(paper.join((panel, _bars(paper))), _sentence(values, moved))
