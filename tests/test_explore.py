@@ -1567,7 +1567,7 @@ def test_no_finder_is_said_to_be_exact():
         assert "0.000" not in sentence
 
 
-def test_the_shadow_of_the_moved_board_lies_on_the_floor(monkeypatch):
+def test_the_shadows_of_board_and_camera_lie_on_the_floor(monkeypatch):
     shadows, fill = [], Panel.polygons
 
     def note(self, corners, ink):
@@ -1578,8 +1578,9 @@ def test_the_shadow_of_the_moved_board_lies_on_the_floor(monkeypatch):
     for photo in (0, 6, 11):
         MODELS["moved"].drawing(photo=photo)
     floor = Delaunay(moved.on_sheet(moved._room().floor).reshape(-1, 2))
-    assert len(shadows) == 3
-    assert (floor.find_simplex(np.concatenate(shadows)) >= 0).all()
+    assert len(shadows) == 6
+    places = np.concatenate([shadow.reshape(-1, 2) for shadow in shadows])
+    assert (floor.find_simplex(places) >= 0).all()
 
 
 def test_the_picture_of_the_next_view_is_as_wide_as_it_would_be():

@@ -19,13 +19,14 @@ from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import around, draw_board, paper_and_squares, pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.space.camera_shapes import camera_shapes
 from cvnotes.show.space.shapes import Lines
 from cvnotes.show.style import CAMERA, MUTED, rgb
 
 _SIZE, _PICTURE = (402, 336), (448, 336)  # px
 _LAST = 11  # of the twelve photographs, counted from 0
-_CONE, _TILE, _BEYOND = 110.0, 100, 1000  # mm
+_CONE, _TILE, _BEYOND, _FOOT = 110.0, 100, 1000, 30.0  # mm
 _PALE, _PALE_BLUE, _INK = "#C9C9C9", "#A9D5F1", "#262629"
 _TILES, _WALL, _SHADOW, _JOINTS = "#EFE7D9", "#E2EBE4", "#CBC5BD", "#FBFAF7"
 _LINES, _GREY = "#BFD3C4", "#ECECEC"  # of the wall in the photograph; where nothing is told
@@ -148,6 +149,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     space.polygons(on_sheet(move(of_board, squares)), _INK)
     for one, _ in every:
         _draw_camera(space, own.moved(inverse(one)), _PALE_BLUE, 0.7)
+    below = camera[:3, 3] * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0]
+    space.polygons(on_sheet(below + _FOOT * np.insert(circle(25), 1, 0, axis=1))[None], _SHADOW)
+    space.line(on_sheet(np.array([camera[:3, 3], below])), MUTED, 0.8, dash=3)
     for corner in sheet:  # a pyramid that moves, and keeps its form
         space.line([on_sheet(camera[:3, 3]), corner], CAMERA, 0.7)
     _draw_camera(space, own.moved(inverse(camera)), CAMERA, 1.6)
@@ -175,7 +179,8 @@ def _room() -> _Room:
     border, _ = paper_and_squares(course.board())
     both = [stands(G, who) for G in _poses() for who in (0, 0.5, 1)]
     W = np.concatenate([[move(b, border), c[:3, 3] + 0 * border] for c, b in both]).reshape(-1, 3)
-    first, last = np.floor(W.min(0) / _TILE), np.ceil(W.max(0) / _TILE)
+    beside = np.array([_FOOT, 0, _FOOT])  # the shadow of a camera that stands at the edge
+    first, last = np.floor((W.min(0) - beside) / _TILE), np.ceil((W.max(0) + beside) / _TILE)
     x, y, z = (_TILE * np.arange(*ends) for ends in zip(first, last + 1, strict=True))
     floor = _grid(x, z)[..., [0, 2, 1]] + [0, y[-1], 0]
     wall = _grid(x, y) + [0, 0, z[-1]]

@@ -23,7 +23,7 @@ _ABOVE = np.radians(15)  # from where it is seen
 _RING, _LOW = 560.0, 1440.0  # px: radius of the ring by which it is turned, and its v
 _BEHIND = 1.25  # times as far from the eye as the glass: where the box stands
 _AROUND = (0, 45, -45, 90, -90, 135, -135, 180)  # degrees: where a letter may stand
-_PANE, _CORE, _FACES = "#EAF4FB", "#F4BE9B", ("#F0CBB5", "#FAEBE1", "#E8B596")
+_PANE, _CORE, _FACES = "#EAF4FB", "#FFFFFF", ("#F0CBB5", "#FAEBE1", "#E8B596")
 
 
 def triangle_model() -> Model:
@@ -213,8 +213,8 @@ def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float) -
         long = np.linalg.norm(ways, axis=1, keepdims=True)
         short = ways / long * min(150, 0.5 * long.min())
         for a, b in zip(short, np.roll(short, 1, axis=0), strict=True):
-            panel.line(on_sheet(eye + np.array([a, a + b, b]), turn), ESTIMATED, 1.5)
-    panel.segments(rods, ESTIMATED if square > 0 else MUTED, 4.5)
+            panel.line(on_sheet(eye + np.array([a, a + b, b]), turn), IDEAL, 1.2)
+    panel.segments(rods, CAMERA if square > 0 else MUTED, 5)
     panel.segments(rods, _CORE if square > 0 else FAINT, 1.3)
     panel.mark([*m, c], "estimated", 6)
     if square > 0:
