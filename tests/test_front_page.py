@@ -55,6 +55,14 @@ def test_the_tutor_s_reply_is_the_one_that_the_mistake_on_the_page_gets():
     assert said.message in unescape(page)
 
 
+@pytest.mark.slow
+@pytest.mark.once
+@pytest.mark.parametrize("path", sorted(ROOT.glob("notebooks/*.ipynb")), ids=lambda path: path.stem)
+def test_the_card_of_each_chapter_is_a_picture_and_not_paper(path):
+    card = np.asarray(front_page.richest(path)).min(axis=2)
+    assert (card < 245).mean() > 0.5
+
+
 def test_a_card_shows_what_is_drawn_without_the_numbers_along_its_axes():
     figure = np.full((300, 400, 3), 255, np.uint8)
     figure[20:240, 60:380] = (0, 90, 200)
