@@ -235,10 +235,8 @@ def test_a_chapter_runs_in_jupyterlite_from_its_page(page, live_site):
     )
     page.evaluate(KERNEL_IS_THERE)
     page.evaluate(SHOW_CELL, 'explore("camera"')
-    still = page.locator(".jp-OutputArea-output").filter(
-        has_text="Run this cell to move its sliders"
-    )
-    still.last.locator("img").wait_for(timeout=60_000)  # of the second exploration of the chapter
+    still = page.locator(".jp-OutputArea-output img[alt^='The picture that a camera takes']")
+    still.first.wait_for(timeout=60_000)
     assert page.locator("text=Error displaying widget").count() == 0
 
 

@@ -166,7 +166,7 @@ def _draw_grid(panel: Panel, lens: Lens) -> None:
 
 def _draw_curve(panel: Panel, lens: Lens) -> None:
     panel.ticks((0.4, 0.8, 1.2), (0.4, 0.8), size=11)
-    panel.line([[0, 0], [_RADIUS, 0]], MUTED, 0.8)
+    panel.line([[0.0, 0.0], [_RADIUS, 0.0]], MUTED, 0.8)
     panel.line([[0.0, 0.0], [1.2, 1.2]], IDEAL, 1, dash=4)
     panel.text([0.97, 0.93], "ideal", IDEAL)
     fold = min(lens.max_radius, _RADIUS)
