@@ -230,7 +230,7 @@ def _boards_of_wood(x: Span, y: Span, z: Span) -> Scene:
     return join(quads(tops, loops, tones), box(x, y, (z[0] + 1, z[1]), 0.55 * _WOOD))
 
 
-_JOINT = 1.2
+_JOINT = 1.2  # mm between boards
 _WOOD = np.array([0.78, 0.57, 0.36])
 _PRINT = ((0.06, 0.06, 0.07), (0.98, 0.98, 0.97))
 _PLATE = (0.62, 0.64, 0.66)

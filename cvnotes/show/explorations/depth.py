@@ -171,8 +171,8 @@ def _sentence(Z: float, found: Array) -> str:
     d, here = _ALPHA * _BASE / Z, ~np.isnan(found)
     near, far = _ALPHA * _BASE / (d + np.array([0.5, -0.5]))
     said = f"Shifted by {d:.1f} px, for {Z / 1000:.2f} m; one pixel is {far - near:.0f} mm here. "
-    if not here.any():
-        return f"{said}So far no pixel has a depth."
+    if here.mean() < 0.005:
+        return f"{said}So far hardly a pixel has a depth."
     off = np.median(np.abs(found - true_depths())[here])
     return (
         f"{said}So far {100 * here.mean():.0f} of 100 pixels have a depth; half of these are off "

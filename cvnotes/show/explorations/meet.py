@@ -151,9 +151,14 @@ def _place(m: Array) -> str:
 
 
 def _equation(line: Array) -> str:
+    """Write a line as in school: y = p + k x, without what is 0 or 1."""
     k, p = 0.0 - line[0], 0.0 - line[2]
-    slope = f" {'+' if k > 0 else '−'} {_number(abs(k))}x" if k else ""
-    return f"y = {_number(p)}{slope}"
+    slope = "x" if abs(k) == 1 else f"{_number(abs(k))}x"
+    if not k:
+        return f"y = {_number(p)}"
+    if not p:
+        return f"y = {'−' if k < 0 else ''}{slope}"
+    return f"y = {_number(p)} {'−' if k < 0 else '+'} {slope}"
 
 
 def _number(x: float, digits: int = 4) -> str:

@@ -25,7 +25,7 @@ _BORDER = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * SIZE - 0.5
 _FINE = 2  # so many times photographs are enlarged, smoothly, before pixels are looked up
 
 
-def between(alpha: float) -> Array:
+def homography_of(alpha: float) -> Array:
     """Return H (3, 3), second picture ← first, of a camera with this α that turns by `TURN`."""
     A = intrinsics(alpha, alpha, *MIDDLE)
     return np.asarray(A @ TURN @ np.linalg.inv(A))
@@ -52,14 +52,14 @@ def _pulled(_: Values, at: Array) -> Values:
 
 def _place(alpha: float) -> Array:
     """Return where the middle of the second photograph comes to lie on the first."""
-    return apply(np.linalg.inv(between(alpha)), MIDDLE)
+    return apply(np.linalg.inv(homography_of(alpha)), MIDDLE)
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     alpha, k = values["alpha"], paper.sharpness
     over = paper.panel(_SHEET, *_SHOWN, "the second photograph over the first: pull its middle")
     close = paper.panel(_LOUPE, *_CLOSE, "enlarged")
-    border = apply(np.linalg.inv(between(alpha)), _BORDER)
+    border = apply(np.linalg.inv(homography_of(alpha)), _BORDER)
     for panel, (w, h), shown in ((over, _SHEET, _SHOWN), (close, _LOUPE, _CLOSE)):
         panel.image(_laid_over(alpha, (k * w, k * h), shown)[0])
         panel.line(_BORDER, LENS, 1.5)
@@ -88,7 +88,7 @@ def _photographs() -> tuple[Drawn, Drawn]:
 def _seen(number: int, alpha: float, size: tuple[int, int], shown: tuple[Range, Range]) -> Seen:
     """Return what a photograph shows at each place of a sheet."""
     u, v = (np.linspace(*ends, 2 * n + 1)[1::2] for ends, n in zip(shown, size, strict=True))
-    H = between(alpha) if number else np.eye(3)
+    H = homography_of(alpha) if number else np.eye(3)
     x, y, w = (a * u + b * v[:, None] + c for a, b, c in H)
     photo = _photographs()[number]
     column, line = (np.rint(_FINE * (at / w + 0.5) - 0.5).astype(int) for at in (x, y))

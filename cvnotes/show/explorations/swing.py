@@ -6,6 +6,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.homography import dlt, refine_homography
+from cvnotes.pictures import course
 from cvnotes.projective import apply
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
@@ -79,11 +80,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             panel.line(line, colour, width)
     panel.line([left, held[row - 1]], IDEAL, 1, dash=3)
     near = 6 if row == 5 else 5  # the dots of rows 5 and 6 are too close for two grips
-    others = np.delete(held, [row - 1, near - 1], axis=0)  # hollow, to be pulled as well
     for at, size, ink in (
         (dots.reshape(-1, 2), 2.2, IDEAL),
-        (held, 5, IDEAL),
-        (others, 3, "white"),
+        (np.delete(held, near - 1, axis=0), 5, IDEAL),
+        (np.delete(held, [row - 1, near - 1], axis=0), 3, "white"),  # to be pulled as well
     ):
         panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
     for i, (at, v) in enumerate(zip(held, _dots()[:, 0, 1], strict=True), start=1):
@@ -108,17 +108,18 @@ def _bars(paper: Paper) -> Panel:
 
 @lru_cache(maxsize=3)
 def _ground(sharpness: int) -> Drawn:
-    """Paint tiles of 100 mm × 150 mm, paler towards the horizon, which is at v = 238."""
+    """Paint tiles of 100 mm × 150 mm, 300 mm below the camera, paler towards the horizon."""
+    (alpha_u, _, u0), (_, alpha_v, v0), _ = course.camera().A
     u, v = (
         np.linspace(*ends, 3 * sharpness * n, endpoint=False)
         for ends, n in zip(_SHOWN, _SIZE, strict=True)
     )
-    far = 804 * 300 / (v - 238).clip(1e-3)  # mm: focal length times height
-    odd = (np.floor((u - 325) / 800 * far[:, None] / 100) + np.floor(far / 150)[:, None]) % 2
+    far = alpha_v * 300 / (v - v0).clip(1e-3)  # mm
+    odd = (np.floor((u - u0) / alpha_u * far[:, None] / 100) + np.floor(far / 150)[:, None]) % 2
     grey = odd.reshape(len(v) // 3, 3, len(u) // 3, 3).mean(axis=(1, 3))
-    fade = np.interp(v[1::3], [238, 300], [0, 1])[:, None]
+    fade = np.interp(v[1::3], [v0, v0 + 62], [0, 1])[:, None]
     part = (0.5 + fade * (grey - 0.5))[..., None]
-    ground = np.where(v[1::3, None, None] < 238, 255, _TONES[0] + part * (_TONES[1] - _TONES[0]))
+    ground = np.where(v[1::3, None, None] < v0, 255, _TONES[0] + part * (_TONES[1] - _TONES[0]))
     return np.asarray(ground.round()).astype(np.uint8)
 
 
