@@ -865,7 +865,7 @@ def test_two_lines_meet_where_their_equations_say_and_parallels_at_infinity():
 
 def test_the_ray_of_two_parallels_is_level_and_both_arrows_are_perpendicular_to_every_ray():
     model = MODELS["meet"]
-    level = model.drawing(b2=0).picture
+    level = model.drawing(b2=-0.5).picture
     for x in (-1.2, -0.5, 0.5, 1.2):  # along the ray [1 0 0], on both sides of the origin
         place = meet.on_sheet(np.array([x, 0, 0])) - [meet._SHOWN[0][0], meet._SHOWN[1][0]]
         u, v = np.rint(place / [0.0065385, -0.0065385] + [MARGIN, TITLE]).astype(int)
@@ -2498,6 +2498,7 @@ PULLED = [(name, grip) for name in explorations.NAMES for grip in MODELS[name].d
 
 FREE_TO_MOVE = {  # where the hand may pull to either side
     "projection": {"heading": 5},
+    "meet": {"b2": 0.4},
     "finding": {"step": 1.5},
     "triangle": {"Z_u": 900, "turn": 40},
     "pairs": {"x": 1, "w": 0.5},

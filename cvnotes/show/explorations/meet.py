@@ -16,15 +16,15 @@ _SHOWN = ((-1.76, 1.64), (1.755, -0.86))
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
 _ORIGIN, _UP = np.zeros(3), np.array([0, 0, 1.0])
 _LINES = (
-    ("1", "l₁", "orange", ESTIMATED, ("#FCE6D7", "#F9CFB5")),
-    ("2", "l₂", "blue", LENS, ("#D9E9F4", "#B8D4E9")),
+    ("1", "l₁", "orange", ESTIMATED, ("#FDF0E7", "#FBE0CE"), "#EBA67A"),
+    ("2", "l₂", "blue", LENS, ("#E8F2F8", "#CFE2F0"), "#7FB4D8"),
 )
 _ENDS = (("a", -1.0, "left"), ("b", 1.0, "right"))
 
 
 def meet_model() -> Model:
     """Make the model of two lines of the plane w = 1, each from (−1, a) to (1, b) and beyond."""
-    starts = {"a1": 0.5, "b1": 0.5, "a2": 0, "b2": 0.8}
+    starts = {"a1": 0.5, "b1": 0.5, "a2": -0.5, "b2": 1}
     names = [
         (end + n, f"{colour}, {side}", x) for n, _, colour, *_ in _LINES for end, x, side in _ENDS
     ]
@@ -74,15 +74,17 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
     panel.line(on_sheet(_SQUARE), FAINT, 1)
     panel.line(on_sheet(np.outer([-9, 0], ray)), IDEAL, 1.4)
     ends = [np.array([[x, values[end + n], 1] for end, x, _ in _ENDS]) for n in "12"]
-    for two, (*_, tints) in zip(ends, _LINES, strict=True):
+    for two, (*_, tints, thread) in zip(ends, _LINES, strict=True):
         level = (two[1] - two[0]) / 2  # the direction in which the sheet leaves w = 0
         panel.veil(
             [on_sheet(np.array([*two, *end])) for end in ([level, -level], [_ORIGIN])], tints
         )
+        for place in np.linspace(*two, 13):
+            panel.line(on_sheet(np.array([_ORIGIN, place])), thread, 0.6)
     panel.veil([on_sheet(_SQUARE + _UP)], ["#E3F3EE"])
     panel.line(on_sheet(_SQUARE + _UP), "#9ECFBF", 1)
     panel.line(on_sheet(np.outer([0, 9], ray)), IDEAL, 2)
-    for two, row, (n, name, colour, ink, _) in zip(ends, lines, _LINES, strict=True):
+    for two, row, (n, name, colour, ink, *_) in zip(ends, lines, _LINES, strict=True):
         _normal(panel, row / np.linalg.norm(row), ray, name, ink)
         panel.line(on_sheet(two + np.outer([-9, 9], two[1] - two[0])), ink, 0.7)
         panel.line(on_sheet(two), ink, 2.5)
@@ -127,7 +129,7 @@ def _table(paper: Paper, lines: list[Array], m: Array) -> Panel:
     panel = paper.panel(_BESIDE, (0, 330), (0, 400), "as triples")
     rows = [
         (f"{name}:  {_equation(row)}", row, ink)
-        for row, (_, name, _, ink, _) in zip(lines, _LINES, strict=True)
+        for row, (_, name, _, ink, *_) in zip(lines, _LINES, strict=True)
     ]
     for k, (caption, row, ink) in enumerate([*rows, ("m = l₁ × l₂", m, IDEAL)]):
         y = 28 + 98 * k
