@@ -128,6 +128,13 @@ def packed_once():
         yield
 
 
+@pytest.fixture(autouse=True)
+def without_rings(request, monkeypatch):
+    """Leave out the rings of what can be pulled: what lies beneath them is looked at here."""
+    if "rings" not in request.node.name:
+        monkeypatch.setattr(Panel, "_ring", lambda *_: None)
+
+
 def colour(text):
     return np.array([int(text[i : i + 2], 16) for i in (1, 3, 5)])
 
@@ -2342,6 +2349,22 @@ def test_a_packed_picture_is_unpacked_by_others_as_it_was():
 def test_only_pictures_are_packed(bad):
     with pytest.raises(ShapeError, match="expected uint8"):
         pack_png(bad)
+
+
+@each_model
+def test_what_can_be_pulled_has_rings_around_it_and_nothing_else_has(name, monkeypatch):
+    drawing = MODELS[name].drawing()
+    monkeypatch.setattr(Panel, "_ring", lambda *_: None)
+    changed = (MODELS[name].drawing().picture != drawing.picture).any(axis=2)
+    height, width = changed.shape
+    v, u = np.mgrid[:height, :width]
+    near = np.zeros_like(changed)
+    for grip in drawing.grips:
+        far = np.hypot(u + 0.5 - grip.place[0], v + 0.5 - grip.place[1])
+        ring = (far > 10) & (far < 14)
+        near |= ring
+        assert changed[ring].mean() > 0.15, grip.name  # some of it may be cut off, or be on white
+    assert not changed[~near].any()
 
 
 def test_a_line_is_cut_at_the_border_and_interrupted_by_nan():
