@@ -2542,6 +2542,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     ("votes", "m"): {"guess": 1},
 }
 ON_A_WAY = {  # along a curve, by its x
+    ("residuals", "k1"),
     ("finding", "step"),
     ("tilt", "lens"),
     ("fold", "fold"),
@@ -3019,3 +3020,30 @@ def test_each_wrong_pair_has_a_diamond_and_no_right_one_has(draw):
         if wrong:
             rim = [count(picture[v - 1 : v + 2, w - 1 : w + 2], IDEAL, 90) for w in (u - 7, u + 7)]
             assert min(rim) > 0, m
+
+
+def test_what_is_left_with_a_believed_k1_is_what_a_library_leaves_that_finds_the_rest():
+    cv2 = pytest.importorskip("cv2")
+    from cvnotes.show.explorations.residuals import fitted
+
+    W = course.board().points.astype(np.float32)
+    m = course.measured_corners()
+    start = course.camera().A.copy()
+    for k1 in (0.0, -0.15, -0.25):
+        flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_K1 | cv2.CALIB_FIX_K3
+        flags |= cv2.CALIB_ZERO_TANGENT_DIST
+        missed, A, lens, R, T = cv2.calibrateCamera(
+            len(m) * [W],
+            list(m.astype(np.float32)),
+            course.camera().size,
+            start.copy(),
+            np.array([k1, 0.0, 0, 0, 0]),
+            flags=flags,
+            criteria=(cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 200, 1e-14),
+        )
+        assert lens.ravel()[0] == k1
+        seen = [cv2.projectPoints(W, r, t, A, lens)[0][:, 0] for r, t in zip(R, T, strict=True)]
+        assert np.abs(fitted(k1) - (np.array(seen) - m)).max() < 2e-3
+        assert numbers(MODELS["residuals"].drawing(k1=k1).sentence)[1] == pytest.approx(
+            missed, rel=6e-3
+        )
