@@ -2543,6 +2543,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
 }
 ON_A_WAY = {  # along a curve, by its x
     ("residuals", "k1"),
+    ("enlarged", "bar"),
     ("finding", "step"),
     ("tilt", "lens"),
     ("fold", "fold"),
@@ -3047,3 +3048,27 @@ def test_what_is_left_with_a_believed_k1_is_what_a_library_leaves_that_finds_the
         assert numbers(MODELS["residuals"].drawing(k1=k1).sentence)[1] == pytest.approx(
             missed, rel=6e-3
         )
+
+
+def test_an_enlargement_is_as_wide_as_its_blur_and_the_long_lens_as_narrow_as_its_own():
+    from cvnotes.show.explorations.enlarged import CORNER, FACTOR, SIZE, VIEW, piece, sharp
+
+    # Between centres of pixels nothing is interpolated: what was photographed is there again.
+    photo, nearest = course.photos()[VIEW].astype(float), piece("nearest")
+    left, top = CORNER.astype(int)
+    wide, high = np.array(SIZE) // FACTOR
+    seen = photo[top : top + high, left : left + wide]
+    assert np.array_equal(nearest, np.kron(seen, np.ones((FACTOR, FACTOR))))
+    # The long lens, made small again by the mean of its pixels, is the photograph but for noise.
+    small = sharp().reshape(high, FACTOR, wide, FACTOR).mean(axis=(1, 3))
+    assert np.median(np.abs(small - seen)) < 3
+    # An edge blurred by σ rises from a tenth to nine tenths over 2 · 1.2816 σ. Those of the pixel
+    # and of its straight line between two add up to it, as variances.
+    said = numbers(MODELS["enlarged"].drawing().sentence)
+    assert said[1] == pytest.approx(2 * 1.2816 * 0.7 / np.cos(np.radians(3)), abs=2)
+    both = FACTOR * np.sqrt(0.7**2 + 1 / 12 + 1 / 6)
+    assert said[0] == pytest.approx(2 * 1.2816 * both, abs=2)
+    assert said[2] == round(np.sqrt(np.mean((piece("bilinear") - sharp()) ** 2)))
+    shown = MODELS["enlarged"].drawing(bar=240).picture[TITLE : TITLE + SIZE[1], MARGIN:]
+    assert np.abs(shown[5:250, 5:230, 0] - piece("bilinear")[5:250, 5:230]).max() <= 1
+    assert np.abs(shown[5:250, 250:450, 0] - sharp()[5:250, 250:450]).max() <= 1
