@@ -24,7 +24,13 @@ from scipy.special import erf, j1
 
 from cvnotes.base import CalibrationWarning, CvnotesError, DegenerateError, ShapeError, luma
 from cvnotes.base.png import pack_png
-from cvnotes.calibration import calibrate, constraints, intrinsics_from_b, solve_b
+from cvnotes.calibration import (
+    calibrate,
+    calibrate_one_view,
+    constraints,
+    intrinsics_from_b,
+    solve_b,
+)
 from cvnotes.camera import (
     Camera,
     Lens,
@@ -61,6 +67,7 @@ from cvnotes.show.explorations import (
     formation,
     frame,
     gimbal,
+    hinge,
     maps,
     meet,
     moved,
@@ -101,7 +108,7 @@ from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import window_at
 from cvnotes.show.style import MUTED
-from cvnotes.targets import refine_edges, refine_subpixel
+from cvnotes.targets import Chessboard, TwoPlanes, refine_edges, refine_subpixel
 from cvnotes.warping import backward_warp, zoom_map
 
 # Where a panel begins within its picture, and how wide the course's picture is drawn, in px.
@@ -823,12 +830,12 @@ def test_the_sum_of_squares_is_least_where_the_votes_cross_and_twice_on_the_firs
     times = total([351, 215]) / lowest.fun
     assert f"at m the sum of squares is {times:.1f} times as large as there" in said
     drawing = MODELS["votes"].drawing(guess=1, m_u=3, m_v=3)
-    middle = np.array([MARGIN + 285 + 6, TITLE]) + 285 * (window.crossing - [348.5, 209.5]) / 7
+    middle = np.array([MARGIN + 265 + 6, TITLE]) + 567 * (window.crossing - [348.5, 209.5]) / 7
     for a in np.arange(0.2, 6.2, 0.6):
         way = np.array([np.cos(a), np.sin(a)])
         far = brentq(lambda k, way=way: total(window.crossing + k * way) - 2 * lowest.fun, 0, 5)
-        u, v = np.rint(middle + 285 / 7 * far * way).astype(int)
-        near = drawing.picture[v - 7 : v + 8, u - 7 : u + 8]  # dashes of 3 px, and gaps
+        u, v = np.rint(middle + 567 / 7 * far * way).astype(int)
+        near = drawing.picture[v - 9 : v + 10, u - 9 : u + 10]  # dashes of 3 px, and gaps
         assert count(near, IDEAL, 90) > 3, a
 
 
@@ -1445,22 +1452,67 @@ def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
             off = refine_subpixel(picture, np.rint(truth), window=window) - truth
             edges = refine_edges(picture, np.rint(truth), grid=(9, 6), window=window) - truth
             said = numbers(MODELS["clouds"].drawing(picture=which, window=window).sentence)
-            expected = [np.sqrt(np.mean(e**2)) for e in (off, edges)]
+            expected = [np.sqrt(np.mean(np.sum(e**2, axis=1))) for e in (off, edges)]
             np.testing.assert_allclose(said[-3:-1], expected, atol=6e-4)
             assert said[-1] == pytest.approx(max(expected) / min(expected), abs=0.06)
             larger = "blue" if expected[0] > expected[1] else "orange"
             sentence = MODELS["clouds"].drawing(picture=which, window=window).sentence
             assert f"the {larger} cloud is" in sentence
+    u, v = np.rint(truth[22]).astype(int)  # what is shown of each is a part of what is measured
+    for k, cutout in enumerate(clouds.cutouts(), 1):
+        part = clouds.changed(k)[v - 14 : v + 15, u - 14 : u + 15]
+        assert np.abs(cutout - part.clip(0, 255)).max() <= 0.5
+
+
+def test_a_ring_is_as_large_as_the_rms_of_a_point():
+    off = refine_subpixel(course.photos()[6], np.rint(course.exact_corners()[6]), window=6)
+    far = np.linalg.norm(off - course.exact_corners()[6], axis=1)
+    radius = 360 / 0.12 * np.sqrt(np.mean(far**2))
+    drawn = MODELS["clouds"].picture(window=6)
+    middle = np.array([MARGIN + 298, TITLE + 180])
+    for a in np.radians([10, 100, 190, 280]):
+        u, v = np.rint(middle + radius * np.array([np.cos(a), np.sin(a)])).astype(int)
+        assert count(drawn[v - 1 : v + 2, u - 1 : u + 2], LENS, 60) >= 2
 
 
 def test_it_is_told_when_errors_lie_outside_of_their_panel():
     def words(**values):
-        picture = MODELS["clouds"].picture(**values)[TITLE + 263 : TITLE + 283]
-        return int((picture[:, MARGIN + 300 : MARGIN + 420].max(axis=-1) < 60).sum())
+        picture = MODELS["clouds"].picture(**values)[TITLE + 334 : TITLE + 356]
+        return int((picture[:, MARGIN + 5 : MARGIN + 150].max(axis=-1) < 60).sum())
 
     assert words(picture=3, window=3) > 100  # 20 of 54
-    assert words(picture=1, window=3) == 0
+    assert words(picture=1, window=4) == 0
     assert MODELS["clouds"].settings[0].label == "half window (px)"
+
+
+def test_boards_on_a_hinge_tell_alpha_as_a_calibration_of_their_photograph_finds_it():
+    noise = np.random.default_rng(0).normal(scale=0.1, size=(40, 168))
+    for angle in (90, 150, 165):
+        target = TwoPlanes(Chessboard((7, 6), 25.0), np.radians(angle))
+        exact = hinge._VIEW.project(target.points)
+        told = numbers(MODELS["hinge"].drawing(angle=angle).sentence)[-1]
+        drawn = MODELS["hinge"].picture(angle=angle)
+        for k in (0, 13, 39):
+            result = calibrate_one_view(
+                target.points, exact + noise[k].reshape(2, 84).T, (640, 480)
+            )
+            scatter = result.rms * np.sqrt(84 / (168 - 10))  # px of a coordinate, from residuals
+            assert result.std["alpha_u"] * 0.1 / scatter == pytest.approx(told, rel=0.1)
+            u = MARGIN + 526 + 340 * (angle - 4 + 8 * k / 39 - 70) / 117
+            v = TITLE + 400 * (860 - result.A[0, 0]) / 132
+            at = np.rint([u, v]).astype(int)
+            assert count(drawn[at[1] - 1 : at[1] + 2, at[0] - 1 : at[0] + 2], ESTIMATED, 60) >= 4
+        assert hinge.found()[angle - 90].std() == pytest.approx(told, rel=0.25)
+
+
+def test_half_the_bend_is_worth_half_and_none_is_worth_nothing():
+    told = {a: numbers(MODELS["hinge"].drawing(angle=a).sentence)[-1] for a in (176, 178, 179)}
+    assert told[178] / told[176] == pytest.approx(2, rel=0.02)
+    assert told[179] / told[178] == pytest.approx(2, rel=0.02)
+    assert MODELS["hinge"].drawing(angle=180).sentence.endswith("does not tell α.")
+    flat = TwoPlanes(Chessboard((7, 6), 25.0), np.pi)
+    with pytest.raises(DegenerateError):
+        calibrate_one_view(flat.points, hinge._VIEW.project(flat.points), (640, 480))
 
 
 def test_the_rings_axes_are_those_about_which_their_angles_turn():
@@ -2562,6 +2614,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("stands", "plane"),
     ("stands", "alpha"),
     ("ways", "time"),
+    ("hinge", "angle"),
 }
 ROUND = {
     ("camera", "camera"),
@@ -2578,8 +2631,10 @@ ON_A_CURVE = {  # its nearest place
     ("frame", "corner"),
     ("moved", "camera"),
     ("moved", "board"),
+    ("hinge", "board"),
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
+FROM_ONE_TO_ONE = {("columns", "free"): 3, ("clouds", "picture"): 4}  # bars, pictures; the last
 TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "h": (0, 0), "dot": (0, 0.5)}  # its length stays
 UP_AND_DOWN = {
     "curve",
@@ -2613,8 +2668,8 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
     elif (name, held) in ON_A_CURVE:
         far = np.linalg.norm((wanted - [before.at, after.at]) / before.unit, axis=1)
         assert far[1] < far[0]
-    elif (name, held) == ("columns", "free"):  # from bar to bar
-        assert int(after.at[0]) == min(max(int(wanted[0]), 0), 3)
+    elif (name, held) in FROM_ONE_TO_ONE:
+        assert int(after.at[0]) == min(max(int(wanted[0]), 0), FROM_ONE_TO_ONE[name, held])
     elif held in UP_AND_DOWN:
         assert off[1] < 9 or held == "eye"
     elif held in TURNS_ABOUT:  # its direction follows
