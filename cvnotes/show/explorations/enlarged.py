@@ -1,6 +1,7 @@
 """Explore an enlargement: between the pixels of a photograph nothing was seen."""
 
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 
@@ -15,7 +16,8 @@ from cvnotes.warping import backward_warp, map_array, zoom_map
 VIEW, FACTOR, SIZE = 6, 8, (480, 360)  # which photograph, how much larger, and px of the piece
 CORNER = np.array([284.0, 196.0])  # px of the photograph, where the piece begins
 _ROW = 270  # of the piece, whose grey values are drawn
-_BESIDE, _METHODS = (290, 360), ("nearest", "bilinear")
+_BESIDE = (290, 360)
+Method = Literal["nearest", "bilinear"]
 
 
 def enlarged_model() -> Model:
@@ -33,7 +35,7 @@ def enlarged_model() -> Model:
 
 
 @lru_cache(maxsize=2)
-def piece(method: str) -> Array:
+def piece(method: Method) -> Array:
     """Enlarge the piece of the photograph, (height, width) of grey values."""
     look_up = CORNER + map_array(zoom_map(1 / FACTOR), SIZE)
     return np.asarray(backward_warp(course.photos()[VIEW], look_up, method=method), np.float64)
@@ -50,7 +52,8 @@ def sharp() -> Array:
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    bar, method = int(values["bar"]), _METHODS[int(values["bilinear"])]
+    bar = int(values["bar"])
+    method: Method = "bilinear" if values["bilinear"] else "nearest"
     enlarged = piece(method)
     shown = np.where(np.arange(SIZE[0]) < bar, enlarged, sharp())
     panel = paper.picture_panel(
