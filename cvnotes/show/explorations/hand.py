@@ -1,6 +1,5 @@
 """A picture whose points are pulled by hand, and what a function of the reader's says of them."""
 
-import math
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
