@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, intrinsics
+from cvnotes.camera import Camera
 from cvnotes.pictures import course, rails, render_scene
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
@@ -17,8 +17,9 @@ _CAMERA, _DOWN, _HALFWAY, _CELL = Camera(course.camera().A), 1.6, 20.0, 4.0  # m
 _MAP, _VIEW, _FINER = (330, 330), (440, 330), 1.375  # px; the photograph is finer than _CAMERA's
 _SHOWN = (-0.5475, 0.5475), (1.07, -0.025)  # of the map, whose rim has the radius 1
 _SIDE = 21  # degrees that the picture shows to either side
-_NAMED = (-20, 0, 20)  # degrees that are written there
-_GRASS, _UNSEEN, _YELLOW, _PALE = "#E6EFDF", "#F4F6F1", "#F0E442", np.array([166, 240, 216])
+_NAMED = np.radians([-20, 0, 20])  # directions whose degrees are written there
+_GRASS, _UNSEEN, _YELLOW = "#E6EFDF", "#F4F6F1", "#F0E442"
+_MEADOW, _PALE = "#7C8A5C", "#A6F0D8"  # grass of the photograph, and the grid upon it
 # Once round a cell of side 1, from the left of its near edge: bent on the map, so in short steps.
 _EDGE = np.stack([np.interp(np.linspace(0, 4, 65), range(5), at) for at in (
     [-0.5, 0.5, 0.5, -0.5, -0.5], [0, 0, 1, 1, 0])], axis=1)  # fmt: skip
@@ -43,10 +44,9 @@ def horizon_model() -> Model:
 
     def in_picture(_: Values, at: Array) -> Values:
         u, v = np.linalg.inv(_CAMERA.A)[:2] @ [*at, 1]
-        if v <= 0:  # in the sky, which is no place of the ground
-            return {"part": 1, "turn": _degrees(np.array([u, 1]))}
-        away = _DOWN / v * np.hypot(u, 1)
-        return {"part": float(away / (away + _HALFWAY)), "turn": _degrees(np.array([u, 1]))}
+        away = _DOWN * np.hypot(u, 1)  # times v; the sky is no place of the ground
+        part = away / (away + _HALFWAY * max(v, 0))
+        return {"part": float(part), "turn": _degrees(np.array([u, 1]))}
 
     return Model("horizon", about, settings, _draw, {"map": on_map, "picture": in_picture})
 
@@ -124,39 +124,34 @@ def _map(sharpness: int) -> Drawn:
     panel.line([rim[0], [0, 0], rim[-1]], CAMERA, 1)
     panel.line(rim, IDEAL, 3)
     panel.mark([0, 0], "camera", 9)
-    for degrees in _NAMED:
-        words = f"{degrees}°".replace("-", "−")
-        panel.text(1.045 * rim[_SIDE + degrees], words, IDEAL, anchor="mm", size=12)
+    _name(panel, 1.045 * np.stack([np.sin(_NAMED), np.cos(_NAMED)], axis=1))
     return _pixels(panel)
 
 
 @lru_cache(maxsize=2)
 def _picture(sharpness: int) -> Drawn:
     """Photograph the railway, and lay the grid upon the ground, behind the poles."""
-    (au, _, u0), (_, av, v0), _ = _FINER * _CAMERA.A
     half = (_FINER - 1) / 2  # the middle of the first pixel, in the fine ones
-    A = intrinsics(au, av, u0 + half, v0 + half)
-    size = (round(_FINER * _CAMERA.size[0]), round(_FINER * _CAMERA.size[1]))
-    panel, glass = (Paper(sharpness).picture_panel(_VIEW, _CAMERA.size) for _ in range(2))
-    panel.image(render_scene(rails(), Camera(A, size=size), samples=4))
+    A = np.array([[_FINER, 0, half], [0, _FINER, half], [0, 0, 1]]) @ _CAMERA.A
+    panel = Paper(sharpness).picture_panel(_VIEW, _CAMERA.size)
+    panel.image(render_scene(rails(), Camera(A, size=(880, 660)), samples=4))
     plain = _pixels(panel)
-    glass.image(np.zeros((1, 1), np.uint8))
     for line, strength in _lines(_SIDE + 1.2)[::-1]:
-        glass.line(seen(_lifted(line)), mixed("#000000", "#FFFFFF", strength), strength)
-    part = _pixels(glass)[..., :1] / 255
-    page = np.asarray(plain + part * (_PALE - plain), np.uint8)
-    panel.image(page)
-    horizon = seen(np.array([[np.sin(a := np.radians(d)), np.cos(a), 0] for d in _NAMED]))
+        panel.line(seen(_lifted(line)), mixed(_MEADOW, _PALE, strength), strength)
+    horizon = seen(np.stack([np.sin(_NAMED), np.cos(_NAMED), 0 * _NAMED], axis=1))
     panel.line(horizon + [[-40, 0], [0, 0], [40, 0]], IDEAL, 3)
-    for at, degrees in zip(horizon, _NAMED, strict=True):
-        words = f"{degrees}°".replace("-", "−")
-        panel.text(at - [0, 18], words, IDEAL, anchor="mm", size=12)
+    _name(panel, horizon - [0, 18])
     page = _pixels(panel).copy()
     for z in range(15, 150, 25):  # the poles stand before the lines
         corners = _CAMERA.project([[-4.09, -4.05, z - 0.09], [-3.91, 1.95, z + 0.09]])
         (left, top), (right, foot) = ((corners + 0.5) * page.shape[1] / 640).round().astype(int)
         page[max(top, 0) : foot, left:right] = plain[max(top, 0) : foot, left:right]
     return page
+
+
+def _name(panel: Panel, places: Array) -> None:
+    for at, degrees in zip(places, np.degrees(_NAMED), strict=True):
+        panel.text(at, f"{degrees:.0f}°".replace("-", "−"), IDEAL, anchor="mm", size=12)
 
 
 def _pixels(panel: Panel) -> Drawn:
