@@ -923,7 +923,7 @@ def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
             nearest = np.dot(at, [x, 1]) / (x**2 + 1)
             assert pulled["x"] == x
             assert pulled["w"] == pytest.approx(np.clip(nearest, -1.2, 2), abs=0.05 + 1e-9)
-    assert model.dragged("number", (-1.3, 0.4)) == {"x": -1.3, "w": 1.5}
+    assert model.dragged("number", (-1.3, 0.4)) == {"x": -1.3, "w": 0.5}
     nothing, some = (model.picture(w=w)[:, 490:] for w in (0, 1.5))
     assert count(nothing, ESTIMATED) > 3  # 0 / 0 is asked, not answered
     assert count(some, ESTIMATED) == 0

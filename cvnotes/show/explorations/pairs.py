@@ -15,7 +15,7 @@ def pairs_model() -> Model:
     """Make the model of one pair [wx, w] of the projective line, and of its class."""
     settings = (
         Setting("x", "x", -2, 2, 0.1, 2, "the number, where the line crosses w = 1"),
-        Setting("w", "w", -1.2, 2, 0.1, 1.5, "the factor: which pair of the class"),
+        Setting("w", "w", -1.2, 2, 0.1, 0.5, "the factor: which pair of the class"),
     )
     about = (
         "The plane of the pairs [wx, w]: a line through the origin with many dots, beside each its "
@@ -49,7 +49,7 @@ def _draw_class(panel: Panel, x: float, w: float) -> None:
     panel.line(np.outer([-9, 9], [x, 1]), MUTED, 1.5)
     side = 1 if x >= 0 else -1  # the line leads up to this side: words to the others
     other = "lm" if x >= 0 else "rm"
-    aside = 15 * panel.pixel * np.array([-side, abs(x)]) / np.hypot(x, 1)
+    aside = 22 * panel.pixel * np.array([-side, abs(x)]) / np.hypot(x, 1)
     for factor in _MEMBERS:
         at = factor * np.array([x, 1])
         panel.polygons([at + 3.5 * panel.pixel * circle(17)], MUTED)
@@ -57,8 +57,8 @@ def _draw_class(panel: Panel, x: float, w: float) -> None:
     panel.mark([x, 1], "world", 9)
     panel.text([-4.3 * side, 1.25], "w = 1", WORLD, anchor=other, size=13)
     panel.polygons([6 * panel.pixel * circle(24) + [w * x, w]], IDEAL)
-    beside = np.clip(w * x + 0.17 * side, -2.7, 2.7)  # within the panel
-    panel.text([beside, w - 0.32], _pair(x, w), IDEAL, anchor=other, size=14)
+    beside = np.clip(w * x + 0.3 * side, -2.7, 2.7)  # within the panel
+    panel.text([beside, w - 0.36], _pair(x, w), IDEAL, anchor=other, size=14)
     panel.grip("number", "the number, on the line w = 1", [x, 1], 6)
     panel.grip("pair", "the pair, along its class", [w * x, w], 6)
 

@@ -90,7 +90,7 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
     u, v = end.tolist()
     if 0 <= u < w and 0 <= v < h:
         left, above = u > 0.7 * w, v > 40
-        beside = [u - 14 if left else u + 14, v - 14 if above else v + 18]
+        beside = [u - 18 if left else u + 18, v - 20 if above else v + 24]
         panel.text(beside, "vanishing point", IDEAL, anchor="rm" if left else "lm")
     elif along[2] == 0:
         for at, anchor in ((8, "lm"), (w - 9, "rm")):

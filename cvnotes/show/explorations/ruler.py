@@ -58,7 +58,7 @@ def ruler_model() -> Model:
         panel.text(_END + [-8, -9], "∞", IDEAL, anchor="mm", size=14)
         panel.mark(_END, "ideal", 9)
         panel.mark(foot, "estimated", 9)
-        panel.text(foot + [9, 9], "c", ESTIMATED, anchor="mm", size=14)
+        panel.text(foot + [11, 10], "c", ESTIMATED, anchor="mm", size=14)
         panel.grip("foot", "the foot of the orange pole", foot, 4)
         plan = paper.panel(
             (310, 330),
