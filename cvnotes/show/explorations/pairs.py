@@ -45,6 +45,8 @@ def pairs_model() -> Model:
 def _draw_class(panel: Panel, x: float, w: float) -> None:
     panel.line([[-9, 0], [9, 0]], FAINT, 0.8)
     panel.line([[0, -9], [0, 9]], FAINT, 0.8)
+    panel.text([4.3, -0.22], "wx", anchor="rm", size=13)
+    panel.text([0.1, 2.3], "w", size=13)
     panel.line([[-9, 1], [9, 1]], WORLD, 2)
     panel.line(np.outer([-9, 9], [x, 1]), MUTED, 1.5)
     side = 1 if x >= 0 else -1  # the line leads up to this side: words to the others
