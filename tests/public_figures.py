@@ -126,13 +126,6 @@ FIGURES = [
     figure(shapes.target_shapes, {"world_from_target": (G, SINGLE)}, target=BOARD),
     figure(sights.camera_shapes, {"depth": (100.0, ONE), "image": (SMALL, PICTURE)}, camera=CAMERA),
     figure(
-        sights.sheet_shapes,
-        {
-            "edge": (np.array([[0.0, 0, 0], [0, 0, 9]]), several(3)),
-            "edges": (np.array([[[1.0, 2, 0], [1, 2, 9]]]), rows(3)),
-        },
-    ),
-    figure(
         lambda m, to: sights.ray_shapes(CAMERA, m, to=to),
         {"m": (M, rows(2)), "to": (W[:3], rows(3))},
         "show.sights.ray_shapes",

@@ -68,6 +68,7 @@ from cvnotes.show.explorations import (
     frame,
     gimbal,
     hinge,
+    horizon,
     maps,
     meet,
     moved,
@@ -361,12 +362,22 @@ def test_the_dot_on_the_ring_stands_at_twice_the_angle_of_the_rails():
     for heading in (-90, -60, 25, 40, 75):
         picture = MODELS["projection"].picture(heading=heading)
         twice = np.radians(2 * heading)
-        x, z = 2 * np.sin(twice), 2 + 2 * np.cos(twice)  # m: the camera is at twice ±90°
+        x, z = 3 * np.sin(twice), 3 + 3 * np.cos(twice)  # m: the camera is at twice ±90°
         left = picture.shape[1] - MARGIN - 410 + (x + 8.9) / 17.8 * 410
         top = TITLE + (12.6 - z) / 14.3 * 330
         around = picture[round(top) - 7 : round(top) + 8, round(left) - 7 : round(left) + 8]
         assert count(around, WORLD) > 40, heading  # hollow: what it lies upon stays in sight
         assert count(around[4:-4, 4:-4], WORLD) < 25, heading
+
+
+def test_a_mark_pulled_through_the_camera_comes_out_on_its_other_side():
+    pulled = MODELS["projection"].dragged
+    assert [pulled("mark", at)["heading"] for at in ((3, 3), (0.3, 0.01), (-0.3, 0.01))] == [
+        45,
+        88,
+        -88,
+    ]
+    assert [pulled("rails", at)["heading"] for at in ((9, -0.5), (-9, -0.5))] == [-87, 87]
 
 
 @pytest.mark.parametrize("end", ["low", "high"])
@@ -891,6 +902,18 @@ def test_the_ray_of_two_parallels_is_level_and_both_arrows_are_perpendicular_to_
             assert np.allclose(np.array(ends) @ meet.triple(given, n), 0, atol=1e-12)
 
 
+@pytest.mark.parametrize("b", [0.5, 0.2, -0.4])
+def test_the_arrow_of_a_line_leads_to_its_triple_and_stands_upright_on_its_rays(b):
+    given = {"a1": -0.3, "b1": b, "a2": 1, "b2": 1}
+    normal = np.cross([-1, -0.3, 1], [1, b, 1]) / 2  # of two points of the line
+    assert np.allclose(meet.triple(MODELS["meet"].values(**given), "1"), normal, atol=1e-12)
+    tip = meet.on_sheet(0.83 * normal / np.linalg.norm(normal))
+    (left, right), (top, bottom) = meet._SHOWN
+    u, v = (tip - [left, top]) / [right - left, bottom - top] * meet._SPACE + [MARGIN, TITLE]
+    picture = MODELS["meet"].picture(**given)
+    assert count(picture[round(v) - 3 : round(v) + 4, round(u) - 3 : round(u) + 4], ESTIMATED) > 4
+
+
 def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
     model = MODELS["pairs"]
     for x, w in ((2, 1.5), (-1.5, -1), (0.3, 0.7)):
@@ -899,12 +922,26 @@ def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
             pulled = model.dragged("pair", at, x=x, w=w)
             nearest = np.dot(at, [x, 1]) / (x**2 + 1)
             assert pulled["x"] == x
-            assert pulled["w"] == pytest.approx(np.clip(nearest, -1.2, 1.5), abs=0.05 + 1e-9)
-    assert model.dragged("number", (-1.3, 0.4)) == {"x": -1.3, "w": 1.5}
-    nothing, some = (model.picture(w=w)[:, 470:] for w in (0, 1.5))
+            assert pulled["w"] == pytest.approx(np.clip(nearest, -1.2, 2), abs=0.05 + 1e-9)
+    assert model.dragged("number", (-1.3, 0.4)) == {"x": -1.3, "w": 0.5}
+    nothing, some = (model.picture(w=w)[:, 490:] for w in (0, 1.5))
     assert count(nothing, ESTIMATED) > 3  # 0 / 0 is asked, not answered
     assert count(some, ESTIMATED) == 0
     assert "every line" in model.drawing(w=0).sentence
+
+
+@pytest.mark.parametrize("x", [-1.6, 0, 2])
+def test_every_dot_of_a_class_lies_on_its_line_and_where_it_is_pulled_the_number_stays(x):
+    model = MODELS["pairs"]
+    for w in (-1, -0.5, 0.5, 1.5):  # grey dots; and the black one upon them
+        for pulled, ink, least in ((2, MUTED, 25), (w, IDEAL, 60)):
+            picture = model.picture(x=x, w=pulled)
+            u, v = MARGIN + (w * x + 4.4) / 8.8 * 480, TITLE + (2.55 - w) / 4.95 * 270
+            around = picture[round(v) - 6 : round(v) + 7, round(u) - 6 : round(u) + 7]
+            assert count(around, ink) > least
+    right = [model.picture(x=x, w=w)[150:, 495:] for w in (-1, 0.5, 1.5)]
+    assert np.array_equal(right[0], right[1])
+    assert np.array_equal(right[1], right[2])
 
 
 def test_the_ruler_reads_what_the_camera_photographed_and_errs_as_far_as_a_click():
@@ -918,6 +955,73 @@ def test_the_ruler_reads_what_the_camera_photographed_and_errs_as_far_as_a_click
     clicked = c + rng.normal(0, 0.3, (4000, 1)) * along
     said = numbers(MODELS["ruler"].drawing(row=round(float(c[1]), 1)).sentence)
     assert abs(said[2] - behind_the_first(clicked[:, 1]).std()) < 0.08
+
+
+def test_the_bar_over_the_plan_is_ten_times_as_long_as_a_click_errs():
+    (a, end), c = Camera(course.camera().A).project([[-4, 1.95, 15], [-4, 1.95, 1e9]]), 258
+    part = (c - a[1]) / (end - a)[1]
+    foot = a + part * (end - a)
+    along = (end - a) / np.linalg.norm(end - a)
+
+    def t(u):  # m behind the first pole, by the true camera
+        return 800 * -4 / (u - 325) - 15
+
+    near, far = (t((foot + off * along)[0]) for off in (-0.3, 0.3))
+    assert abs(t(foot[0]) - 63.4) < 0.1
+    plan = MODELS["ruler"].picture(row=c)[TITLE : TITLE + 330, 440 + 3 * MARGIN :]
+    column = plan[:, round((-4 - 0.26 + 8.5) / 11.2 * 310)]
+    pale = np.abs(column.astype(int) - [238, 190, 153]).max(axis=-1) < 12
+    assert (np.ptp(np.flatnonzero(pale)) + 1) / 330 * 124 == pytest.approx(
+        10 * (far - near), abs=0.8
+    )
+
+
+@pytest.mark.parametrize(("part", "turn"), [(0.375, 0), (0.5, -12), (0.7, 9), (0.8, 0)])
+def test_the_yellow_cell_is_where_the_camera_sees_it_and_as_far_as_the_map_says(part, turn):
+    drawing = MODELS["horizon"].drawing(part=part, turn=turn)
+    away = 20 * part / (1 - part)
+    x, z = away * np.sin(np.radians(turn)), away * np.cos(np.radians(turn))
+    near, far = ([[x - 2, 1.6, at], [x + 2, 1.6, at]] for at in (z, z + 4))
+    corners = Camera(course.camera().A).project([*near, *far])
+    yellow = np.abs(drawing.picture.astype(int) - colour("#F0E442")).max(axis=-1) < 60
+    rows, columns = np.nonzero(yellow[:, 330 + 2 * MARGIN :])
+    seen = np.array([columns - MARGIN, rows - TITLE]).T * 640 / 440
+    # Within its black outline, whose acute corners are long.
+    assert (np.abs(seen.min(axis=0) - corners.min(axis=0)) < [11, 4]).all()
+    assert (np.abs(seen.max(axis=0) - corners.max(axis=0)) < [11, 4]).all()
+    said = numbers(drawing.sentence)
+    assert np.allclose(said[:3], [x * (1 - part), z * (1 - part), 1 - part], atol=1e-3)
+    assert said[3] == round(away)
+    assert said[-1] == pytest.approx(corners[0, 1] - corners[2, 1], rel=0.06)
+
+
+def test_a_cell_that_is_pulled_to_the_rim_or_into_the_sky_is_a_direction_of_the_horizon():
+    model, camera = MODELS["horizon"], Camera(course.camera().A)
+    for turn in (-15, 0, 21):
+        way = np.array([np.sin(np.radians(turn)), 0, np.cos(np.radians(turn))])
+        u, v = camera.vanishing_point(way)
+        for grip, at in (("map", 1.2 * way[[0, 2]]), ("picture", (u, v - 40))):
+            pulled = model.dragged(grip, tuple(at))
+            assert pulled == {"part": 1, "turn": turn}
+        drawing = model.drawing(**pulled)
+        said = numbers(drawing.sentence)
+        assert said[2] == 0
+        assert np.allclose(said[-2:], [u, v], atol=0.05)
+        on_map, in_picture = (grip_of(drawing, name) for name in ("map", "picture"))
+        assert np.allclose(on_map.at, way[[0, 2]], atol=1e-5)
+        assert np.allclose(in_picture.at, [u, v], atol=1e-3)
+    near = camera.project([3, 1.6, 20])
+    pulled = model.dragged("picture", tuple(near))
+    away = np.hypot(3, 20)
+    assert pulled["part"] == pytest.approx(away / (away + 20), abs=0.003)
+    assert pulled["turn"] == round(np.degrees(np.arctan2(3, 20)))
+
+
+def test_lines_along_the_rails_meet_at_the_rim_of_the_map():
+    far = horizon.pressed([[x, 1e7] for x in (-6, -0.75, 2, 40)])
+    assert np.allclose(far, [0, 1], atol=1e-4)
+    assert np.allclose(horizon.pressed([[12, 16], [0, 20], [-15, 0]]),
+                       [[0.3, 0.4], [0, 0.5], [-3 / 7, 0]], atol=1e-12)  # fmt: skip
 
 
 @pytest.mark.parametrize("height", [0.5, 1.95, 4, 6, 8])
@@ -1382,6 +1486,19 @@ def test_each_kind_of_map_keeps_what_its_row_of_the_table_says(values, kept):
     assert np.isclose(d - a, 2 * down)
     assert np.isclose(b - a, (2 + given["along"]) * side - given["up"] * down)
     assert maps.measured(maps.matrix(given))[0] == pytest.approx(abs(c - b))
+
+
+def test_what_a_map_changes_stands_inside_the_frame_of_its_kind_and_the_rest_is_kept():
+    heights = []
+    for values in ({}, {"size": 1.3}, {"shear": 0.4}, {"up": 0.3, "along": 0.2}):
+        picture = MODELS["maps"].picture(turn=20, **values)[TITLE : TITLE + 380, 380 + 2 * MARGIN :]
+        lit, _ = np.nonzero(np.abs(picture.astype(int) - colour(WORLD)).max(axis=-1) < 30)
+        orange, _ = np.nonzero(np.abs(picture.astype(int) - colour("#BC5200")).max(axis=-1) < 60)
+        heights.append(np.ptp(lit))
+        assert (len(orange) > 0) == bool(values)
+        assert ((lit.min() < orange) & (orange < lit.max())).all()
+    assert (np.diff(heights) > 40).all()  # each kind in the next
+    assert orange.min() > lit.min() + 90  # under the cross-ratio, which stays
 
 
 def test_a_hand_reaches_all_four_kinds_of_maps_though_it_is_not_exact():
@@ -2635,7 +2752,13 @@ ON_A_CURVE = {  # its nearest place
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
 FROM_ONE_TO_ONE = {("columns", "free"): 3, ("clouds", "picture"): 4}  # bars, pictures; the last
-TURNS_ABOUT = {"rails": (0, 0), "line": (0, 0), "h": (0, 0), "dot": (0, 0.5)}  # its length stays
+TURNS_ABOUT = {
+    "rails": (0, 0),
+    "mark": (0, 0),
+    "line": (0, 0),
+    "h": (0, 0),
+    "dot": (0, 0.5),
+}  # its length stays
 UP_AND_DOWN = {
     "curve",
     "nine",

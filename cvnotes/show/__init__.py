@@ -18,7 +18,6 @@ from cvnotes.show.space.camera_shapes import (
     dot_shapes,
     plane_shapes,
     ray_shapes,
-    sheet_shapes,
 )
 from cvnotes.show.space.shapes import (
     Faces,
@@ -72,7 +71,6 @@ __all__ = [
     "scene_shapes",
     "camera_shapes",
     "ray_shapes",
-    "sheet_shapes",
     "plane_shapes",
     "dot_shapes",
     "Faces",
