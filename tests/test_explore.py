@@ -3051,6 +3051,7 @@ def test_the_bars_of_four_photographs_are_those_of_all_derivatives_by_difference
     assert said == pytest.approx([*std, rms], abs=0.0501)
 
 
+@pytest.mark.filterwarnings("ignore::cvnotes.base.CalibrationWarning")
 @pytest.mark.parametrize("given", HELD)
 def test_noisy_photographs_scatter_as_the_bars_say_and_leave_always_the_same_rms(given):
     values = MODELS["nails"].values(**given)

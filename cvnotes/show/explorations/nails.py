@@ -95,12 +95,12 @@ def _pulled(i: int) -> Drag:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     camera, board = camera_of(values), course.board()
-    w, h = sheet = 2 * np.array(camera.size) + _GAP
+    w, h = sheet = 2 * camera.size[0] + _GAP, 2 * camera.size[1] + _GAP
     panel = paper.panel(_SIZE, (-0.5, w - 0.5), (-0.5, h - 0.5), "four photographs: pull the nails")
     for i, G in enumerate(held(values), start=1):
         u, v = _at(i)
-        own = camera.size * np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) - 0.5
-        panel.polygons([own + (u, v)], _GREY)
+        frame = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * camera.size - 0.5
+        panel.polygons([frame + _at(i)], _GREY)
         beside = Camera(camera.A + [[0, 0, u], [0, 0, v], [0, 0, 0]], G, camera.lens, sheet)
         draw_board(panel, beside, board)
         foot = board.points.mean(axis=0)
