@@ -1568,6 +1568,35 @@ def test_no_finder_is_said_to_be_exact():
         assert "0.000" not in sentence
 
 
+def test_how_many_bars_miss_is_told_for_each_of_the_four_numbers(written):
+    said = numbers(MODELS["noise"].drawing(draw=60).sentence)
+    told = [numbers(words) for words in written if words.startswith("missed")]
+    assert [said[-1], 60] in told
+    assert all(12 <= missed <= 28 and of == 60 for missed, of in told)  # one in three
+    written.clear()
+    MODELS["noise"].drawing(draw=60, sigma=0)
+    assert not any(words.startswith("missed") for words in written)
+
+
+def test_the_three_photographs_before_stay_pale_and_the_camera_is_a_body(monkeypatch):
+    earlier, fill = [], Panel.polygons
+
+    def note(self, corners, ink):
+        earlier.extend([np.squeeze(corners)] * (ink == "#F8F8F6"))
+        fill(self, corners, ink)
+
+    monkeypatch.setattr(Panel, "polygons", note)
+    poses, (W, _) = course.poses(), moved.paper_and_squares(course.board())
+    for photo, which in ((0, []), (2, [0, 1]), (6, [3, 4, 5]), (6.5, [4, 5, 6])):
+        earlier.clear()
+        picture = MODELS["moved"].picture(photo=photo)
+        assert len(earlier) == len(which)
+        for sheet, i in zip(earlier, which, strict=True):  # the camera stands still
+            M = W @ poses[i][:3, :3].T + poses[i][:3, 3]
+            assert np.allclose(sheet, moved.on_sheet(M))
+        assert count(picture[:, :405], "#BBE0F5", 6) > 400  # px of its filled sides
+
+
 def test_the_shadows_of_board_and_camera_lie_on_the_floor(monkeypatch):
     shadows, fill = [], Panel.polygons
 
@@ -2854,7 +2883,14 @@ def test_with_the_lens_undone_the_equations_find_the_camera_and_for_parallel_boa
             s = [(p - a) @ way for p in (a, b, c, d)]
             foot = a + (s[0] * s[1] - s[2] * s[3]) / (s[0] + s[1] - s[2] - s[3]) * way
             off = np.minimum(off, np.abs((blue - foot) @ way))
-            assert (abs(foot @ way) < 1) == near or not near
+            if near:  # through the camera, and as far as 100 px to either side: a chord from above
+                assert abs(foot @ way) < 1
+                reach = 100 * 800 / np.hypot(800, np.linalg.norm(foot))
+                picture = MODELS["folds"].picture(k1=k1)[:, left:]
+                for part in (-0.9, -0.4, 0.4, 0.9):
+                    at = part * reach * np.array([-way[1], way[0]])
+                    u, v = (middle + scale * at).astype(int)
+                    assert picture[v - 1 : v + 2, u - 1 : u + 2].min() < 200
         assert off.max() < 2.5
 
 
