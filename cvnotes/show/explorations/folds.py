@@ -162,7 +162,9 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     """Draw what lies in a ball about the camera, from above: u to the right and v down."""
     eye, reach = tangle.eye[:2], _NEAR / 0.93 * np.array(_CLOSE) / _CLOSE[1]
     (left, top), (right, low) = eye - reach, eye + reach
-    panel = paper.panel(_CLOSE, (left, right), (top, low), "within the ring, from above: u₀ and v₀")
+    panel = paper.panel(
+        _CLOSE, (left, right), (top, low), "within the circle, from above: u₀ and v₀"
+    )
     panel.line(eye + _NEAR * circle(129), IDEAL, 1)
     arcs = np.array([_inside(one, tangle.eye) for one in tangle.circles(*of)])
     _draw_arcs(panel, arcs[..., :2], (arcs[..., 2] - tangle.eye[2]) / (2 * _NEAR), (1.6, 3.2))
