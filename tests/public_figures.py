@@ -80,11 +80,6 @@ FIGURES = [
         {"m": (M, several(2)), "predicted": (M + 1, several(2)), "magnify": (10.0, ONE)},
         paired=("m", "predicted"),
     ),
-    figure(
-        estimates.draw_view_families,
-        {"W": (W, several(3)), "truth": (800.0, ONE)},
-        results={"a": [RESULT], "b": [RESULT, RESULT]},
-    ),
     # calibration
     figure(calibration.draw_arrow, {"J": (np.eye(14), SINGLE)}, shared=2),
     figure(

@@ -72,6 +72,7 @@ from cvnotes.show.explorations import (
     maps,
     meet,
     moved,
+    nails,
     triangle,
     twins,
     ways,
@@ -1743,6 +1744,35 @@ def test_no_finder_is_said_to_be_exact():
         assert "0.000" not in sentence
 
 
+def test_how_many_bars_miss_is_told_for_each_of_the_four_numbers(written):
+    said = numbers(MODELS["noise"].drawing(draw=60).sentence)
+    told = [numbers(words) for words in written if words.startswith("missed")]
+    assert [said[-1], 60] in told
+    assert all(12 <= missed <= 28 and of == 60 for missed, of in told)  # one in three
+    written.clear()
+    MODELS["noise"].drawing(draw=60, sigma=0)
+    assert not any(words.startswith("missed") for words in written)
+
+
+def test_the_three_photographs_before_stay_pale_and_the_camera_is_a_body(monkeypatch):
+    earlier, fill = [], Panel.polygons
+
+    def note(self, corners, ink):
+        earlier.extend([np.squeeze(corners)] * (ink == "#F8F8F6"))
+        fill(self, corners, ink)
+
+    monkeypatch.setattr(Panel, "polygons", note)
+    poses, (W, _) = course.poses(), moved.paper_and_squares(course.board())
+    for photo, which in ((0, []), (2, [0, 1]), (6, [3, 4, 5]), (6.5, [4, 5, 6])):
+        earlier.clear()
+        picture = MODELS["moved"].picture(photo=photo)
+        assert len(earlier) == len(which)
+        for sheet, i in zip(earlier, which, strict=True):  # the camera stands still
+            M = W @ poses[i][:3, :3].T + poses[i][:3, 3]
+            assert np.allclose(sheet, moved.on_sheet(M))
+        assert count(picture[:, :405], "#BBE0F5", 6) > 400  # px of its filled sides
+
+
 def test_the_shadows_of_board_and_camera_lie_on_the_floor(monkeypatch):
     shadows, fill = [], Panel.polygons
 
@@ -1809,7 +1839,7 @@ def test_circle_and_ellipse_have_one_scale_and_the_rows_lie_at_right_angles_to_v
 
 def test_what_is_not_there_is_said_where_one_looks_for_it(written):
     for name, values, words in (
-        ("folds", {"k1": 0, "turned": 0.5}, "farther out"),
+        ("folds", {"k1": 0, "turned": 0.4}, "farther out"),
         ("folds", {"k1": -0.25, "turned": 0}, "no camera"),
         ("finding", {"step": 1}, "step 2: not yet"),
     ):
@@ -2739,6 +2769,7 @@ ROUND = {
     ("walks", "line of sight"),
     ("formation", "line of sight"),
     ("tilt", "board"),
+    *(("nails", f"nail {i}") for i in range(1, 5)),
 }
 ON_A_CURVE = {  # its nearest place
     ("seam", "middle"),
@@ -3023,23 +3054,47 @@ def test_who_pulls_the_cross_sees_no_hits():
 
 
 def test_with_the_lens_undone_the_equations_find_the_camera_and_for_parallel_boards_none():
-    space, close = folds._SPACE, folds._CLOSE  # panels, side by side
+    close, left = folds._CLOSE, folds._SPACE[0] + 6  # panels, side by side
+    middle = np.array([MARGIN + close[0] / 2, TITLE + close[1] / 2])  # of the ring
+    scale = 0.93 * close[1] / 200  # 100 px to every side of the camera
 
-    def triangle(**values):
-        picture = MODELS["folds"].drawing(**values).picture[: TITLE + close[1], space[0] + 6 :]
-        orange = np.abs(picture.astype(int) - colour(ESTIMATED)).max(-1) < 40
-        return np.argwhere(orange)
+    def seen(ink, **values):
+        """Give places (n, 2) of a colour within the ring, in px from its middle."""
+        picture = MODELS["folds"].drawing(**values).picture[: TITLE + close[1], left:]
+        v, u = np.nonzero(np.abs(picture.astype(int) - colour(ink)).max(-1) < 60)
+        at = (np.column_stack([u, v]) + 0.5 - middle) / scale
+        return at[np.hypot(*at.T) < 98]
 
     W = course.board().points[:, :2]
     A = intrinsics_from_b(solve_b(constraints(dlt(W, course.measured_corners()))))  # the page's
     off = (A[:2, 2] - [325, 238]) * [1, 800 / 804]
     assert np.linalg.norm(off) > 11
-    middle = np.array([MARGIN + close[0] / 2, TITLE + close[1] / 2])  # of the plan
-    scale = close[0] / (2 * folds._NEAR)
-    aside = triangle(k1=0).mean(axis=0)[::-1] - middle
-    assert aside == pytest.approx(off * scale + [0, 1.7], abs=1.5)
-    assert len(triangle(k1=-0.25)) > 30
-    assert len(triangle(k1=-0.25, turned=0)) == 0
+    orange = seen(ESTIMATED, k1=0)
+    assert (orange.min(0) + orange.max(0)) / 2 == pytest.approx(off - [0, 0.15 * 9 / scale], abs=1)
+    assert len(seen(ESTIMATED, k1=-0.25)) > 20
+    assert len(seen(ESTIMATED, k1=-0.25, turned=0)) == 0
+    # The half circles: lines square to the horizon, which lead past the camera, or through it.
+    for k1, near in ((0, False), (-0.25, True)):
+        seen_by = xy_from_px(course.camera().A, course.measured_corners())
+        straight = Lens(k=(k1, 1.6 * k1**2)).undistort(seen_by)
+        blue = seen(LENS, k1=k1)
+        assert len(blue) > 60
+        off = np.full(len(blue), np.inf)
+        for m in straight * 800:  # px from the camera's principal point
+            a, b, c, d = vanishing_points(dlt(W, m))
+            way = (b - a) / np.linalg.norm(b - a)
+            s = [(p - a) @ way for p in (a, b, c, d)]
+            foot = a + (s[0] * s[1] - s[2] * s[3]) / (s[0] + s[1] - s[2] - s[3]) * way
+            off = np.minimum(off, np.abs((blue - foot) @ way))
+            if near:  # through the camera, and as far as 100 px to either side: a chord from above
+                assert abs(foot @ way) < 1
+                reach = 100 * 800 / np.hypot(800, np.linalg.norm(foot))
+                picture = MODELS["folds"].picture(k1=k1)[:, left:]
+                for part in (-0.9, -0.4, 0.4, 0.9):
+                    at = part * reach * np.array([-way[1], way[0]])
+                    u, v = (middle + scale * at).astype(int)
+                    assert picture[v - 1 : v + 2, u - 1 : u + 2].min() < 200
+        assert off.max() < 2.5
 
 
 def test_the_horizon_of_the_wall_is_drawn_where_its_parallels_meet():
@@ -3199,6 +3254,86 @@ def test_each_wrong_pair_has_a_diamond_and_no_right_one_has(draw):
         if wrong:
             rim = [count(picture[v - 1 : v + 2, w - 1 : w + 2], IDEAL, 90) for w in (u - 7, u + 7)]
             assert min(rim) > 0, m
+
+
+LYING = {f"{way}{i}": 0 for way in ("right", "down") for i in range(1, 5)}  # to the camera
+HELD = ({}, {"right2": 0, "right3": -12, "down4": 7}, LYING | {"down4": 15}, {"lens": 0})
+
+
+@pytest.mark.parametrize("given", HELD)
+def test_the_bars_of_four_photographs_are_those_of_all_derivatives_by_differences(given):
+    values = MODELS["nails"].values(**given)
+    W, G, c = course.board().points, nails.held(values), 2 * int(values["lens"])
+    camera = nails.camera_of(values)
+    turns = Rotation.from_matrix(G[:, :3, :3])
+
+    def seen(x):
+        """Photograph by hand: nothing of the exploration, and nothing of the library."""
+        shots = []
+        for R, T, step in zip(turns, G[:, :3, 3], x[4 + c :].reshape(4, 6), strict=True):
+            X, Y, Z = (Rotation.from_rotvec(step[:3]) * R).apply(W).T + (T + step[3:])[:, None]
+            r2 = (X**2 + Y**2) / Z**2
+            L = 1 + (x[4] * r2 + x[5] * r2**2 if c else 0)
+            shots += [x[0] * L * X / Z + x[2], x[1] * L * Y / Z + x[3]]
+        return np.concatenate(shots)
+
+    x = np.concatenate([[800, 804, 325, 238], [-0.25, 0.1][:c], np.zeros(24)])
+    u, v = seen(x).reshape(4, 2, 54).transpose(1, 0, 2)
+    assert np.allclose([camera.moved(one).project(W) for one in G], np.stack([u, v], -1))
+    steps = np.diag(np.where(np.arange(len(x)) < 4, 1e-3, 1e-5))
+    J = np.column_stack([(seen(x + h) - seen(x - h)) / (2 * h.max()) for h in steps])
+    std = 0.1 * np.sqrt(np.diag(np.linalg.inv(J.T @ J)))[:4]
+    ours, rms = nails.known(values)
+    assert ours == pytest.approx(std, rel=1e-3)
+    assert rms == pytest.approx(0.1 * np.sqrt((432 - len(x)) / 216))
+    said = numbers(MODELS["nails"].drawing(**given).sentence.replace("₀", ""))
+    assert said == pytest.approx([*std, rms], abs=0.0501)
+
+
+@pytest.mark.filterwarnings("ignore::cvnotes.base.CalibrationWarning")
+@pytest.mark.parametrize("given", HELD)
+def test_noisy_photographs_scatter_as_the_bars_say_and_leave_always_the_same_rms(given):
+    values = MODELS["nails"].values(**given)
+    W, rng = course.board().points, np.random.default_rng(8)
+    seen = [nails.camera_of(values).moved(G).project(W) for G in nails.held(values)]
+    lens = "k1 k2" if values["lens"] else "none"
+    runs = [calibrate(W, rng.normal(seen, 0.1), (640, 480), lens=lens) for _ in range(60)]
+    std, rms = nails.known(values)
+    found = np.array([[*run.A[[0, 1], [0, 1]], *run.A[:2, 2]] for run in runs])
+    assert found.std(axis=0) / std == pytest.approx(1, abs=4 / np.sqrt(2 * 60))
+    assert np.mean([run.rms for run in runs]) == pytest.approx(rms, rel=0.02)
+
+
+def test_boards_that_all_face_the_camera_leave_no_end_to_the_bars_of_the_focal_length():
+    *_, u0, v0 = nails.known(MODELS["nails"].values(**LYING))[0]
+    drawing = MODELS["nails"].drawing(**LYING)
+    assert drawing.sentence.count("undetermined") == 2
+    assert "RMS is 0.14 px" in drawing.sentence
+    bars = drawing.picture[TITLE : TITLE + 378, MARGIN + 504 + 2 * MARGIN :]
+    for i, std in enumerate((3000, 3000, u0, v0)):
+        row = bars[round((i + 0.25 + 0.85) * 378 / 5)]
+        long = count(row, CAMERA, 30)
+        assert long == pytest.approx(350 * np.log10(std / 0.04) / np.log10(3000 / 0.04), abs=5)
+    assert MODELS["nails"].drawing(**LYING, lens=0).sentence.count("undetermined") == 4
+
+
+@pytest.mark.parametrize("i", [1, 2, 3, 4])
+def test_a_nail_stands_upright_on_its_board_and_its_head_comes_to_where_it_is_pulled(i):
+    model, (w, h) = MODELS["nails"], (640 + 16, 480 + 16)
+    for lens in (0, 1):
+        for tilt, side in ((0, 0), (25, 70), (38, 200), (12, 300)):
+            right, down = tilt * np.cos(np.radians(side)), tilt * np.sin(np.radians(side))
+            lean = {f"right{i}": round(right), f"down{i}": round(down), "lens": lens}
+            values = model.values(**lean)
+            grip = grip_of(model.drawing(**lean), f"nail {i}")
+            of_board = nails.held(values)[i - 1]
+            x, y = (of_board[:3, :3] @ np.array(one) for one in ([1, 0, 0], [0, 1, 0]))
+            head = of_board[:3, :3] @ [100, 62.5, 0] + of_board[:3, 3] - 130 * np.cross(x, y)
+            lens_of = Lens(k=(-0.25, 0.1)) if lens else Lens()
+            u, v = Camera(course.camera().A, lens=lens_of).project(head)
+            assert grip.at == pytest.approx([u + (i - 1) % 2 * w, v + (i - 1) // 2 * h], abs=0.01)
+            there = model.dragged(f"nail {i}", grip.at, lens=lens)
+            assert [there[f"right{i}"], there[f"down{i}"]] == [round(right), round(down)]
 
 
 def test_what_is_left_with_a_believed_k1_is_what_a_library_leaves_that_finds_the_rest():

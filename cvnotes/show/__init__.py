@@ -4,7 +4,7 @@ from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
 from cvnotes.show.explorations import explore, pull_points
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
-from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
+from cvnotes.show.figures.estimates import draw_plane_error
 from cvnotes.show.figures.field_of_view import draw_field_of_view
 from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
@@ -55,7 +55,6 @@ __all__ = [
     "draw_residuals",
     "draw_coverage",
     "draw_plane_error",
-    "draw_view_families",
     "draw_wall",
     # chapter 7: the picture of J, a cube on the board
     "draw_arrow",
