@@ -97,6 +97,8 @@ from cvnotes.show.explorations.lens import first_to_fold, polynomial
 from cvnotes.show.explorations.lettering import LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
 from cvnotes.show.explorations.moved import between, stands
+from cvnotes.show.explorations.origin import plain
+from cvnotes.show.explorations.origin import rms as rms_of_origin
 from cvnotes.show.explorations.page import asked
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.pinhole import spread_out
@@ -104,6 +106,7 @@ from cvnotes.show.explorations.ransac import drawn_pairs
 from cvnotes.show.explorations.rectification import turned
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
+from cvnotes.show.explorations.strokes import contours
 from cvnotes.show.explorations.subpixel import photograph as photograph_of_corner
 from cvnotes.show.explorations.swing import nets, weights
 from cvnotes.show.explorations.triangle import camera_of
@@ -1172,7 +1175,7 @@ def test_wrong_pairs_that_agree_with_each_other_win_against_the_right_ones():
     net, shifted = put[20].reshape(6, 9, 2)[:, 1:], true.reshape(6, 9, 2)[:, :-1]
     assert np.abs(net - shifted).max() < 2  # the board, one square aside
     said = numbers(MODELS["ransac"].drawing(draw=20, wrong=40).sentence)
-    assert said == [20, 27, 54, 27, 20, 0, 54, 14]
+    assert said == [20, 27, 54, 20, 27, 0, 54, 14]
 
 
 def test_two_lenses_take_the_same_picture_of_a_board_that_faces_them_and_no_other():
@@ -3228,20 +3231,85 @@ def test_the_dlts_net_is_that_of_a_plain_svd_and_the_other_has_the_least_error_i
     assert said == f"Dot of row {row} pulled by {far:.0f} px: {row_1.format(*moved)}"
 
 
-def test_the_nets_are_drawn_where_they_are_and_each_bar_is_as_long_as_its_row_weighs():
-    drawing = MODELS["swing"].drawing(row=6, column=4, dv=80)
-    panel = drawing.picture[TITLE : TITLE + 300, MARGIN : MARGIN + 530]
-    for net, ink in zip(nets(6, 4, 0, 80), (LENS, ESTIMATED), strict=True):
-        for a, b in ((net[0, 0], net[0, 1]), (net[2, 2], net[2, 3]), (net[1, 5], net[1, 6])):
-            at = (a + b) / 2 * [530 / 1200, 300 / 678] + [275 * 530 / 1200, -180 * 300 / 678]
-            u, v = np.rint(at).astype(int)
-            assert count(panel[v - 2 : v + 3, u - 2 : u + 3], ink, 90) > 2
-    left = MARGIN + 530 + 2 * MARGIN + 52 * 240 / 292
-    for depth, weight in zip((450, 600, 900, 1500, 3000, 6000), weights(), strict=True):
-        assert weight == pytest.approx((depth / 450) ** 2)
-        v = round(TITLE + (238 + 804 * 300 / depth - 180) * 300 / 678)
-        bar = count(drawing.picture[v : v + 1, round(left) - 3 :], LENS)
-        assert bar == pytest.approx(weight * 240 / 292, abs=2)
+def test_arrows_lead_where_row_1_goes_and_bars_are_as_long_as_rows_weigh_and_do_harm():
+    drawing = MODELS["swing"].drawing(row=5, dv=40)
+    panel = drawing.picture[TITLE : TITLE + 276, MARGIN : MARGIN + 482]
+    X = np.arange(-300, 301, 100)
+    true = np.column_stack([325 + 800 * X / 450, 0 * X + 238 + 804 * 300 / 450])
+    for net, ink, which in zip(
+        nets(5, 1, 0, 40), (LENS, ESTIMATED), ((0, 1, 3), (0,)), strict=True
+    ):
+        for k in which:  # half way along the arrow, which is seven times as long
+            at = true[k] + 3.5 * (net[0, k] - true[k])
+            u, v = np.rint((at + [300, -165]) * [482 / 1380, 276 / 790]).astype(int)
+            assert count(panel[v - 1 : v + 2, u - 1 : u + 2], ink, 90) > 2, (k, ink)
+    bars = drawing.picture[TITLE:, MARGIN + 482 + 2 * MARGIN :]
+    for i, depth in enumerate((450, 600, 900, 1500, 3000, 6000), start=1):
+        y = 276 - (44 * i - 16)
+        weight = (depth / 450) ** 2
+        assert weights()[i - 1] == pytest.approx(weight)
+        assert count(bars[y - 3, 50:150], MUTED) == pytest.approx(weight / 3, abs=4)
+        for net, ink, up in zip(nets(i, 1, 0, 40), (LENS, ESTIMATED), (7, -7), strict=True):
+            far = np.linalg.norm(net[0] - true, axis=1).max()
+            pale = 255 - 0.4 * (255 - colour(ink))
+            tone = ink if i == 5 else "#{:02X}{:02X}{:02X}".format(*pale.astype(int))
+            wanted = 1.4 * far if i < 6 else 0  # what lies farther away is still to be found
+            assert count(bars[y - up, 164:], tone, 8) == pytest.approx(wanted, abs=2)
+
+
+@pytest.mark.parametrize("at", [(-300, -300), (100, 62.5), (500, 300)])
+def test_the_plain_svd_of_many_pictures_is_where_it_is_drawn_for_each_origin(at):
+    """The rows of D are written out here, with the noise of half a pixel in 400 pictures."""
+    W = np.array([[25.0 * i, 25.0 * j] for j in range(6) for i in range(9)])
+    G = course.poses()[6]
+    x = np.column_stack([W, 0 * W[:, 0]]) @ G[:3, :3].T + 6 * G[:3, 3]
+    x = x @ course.camera().A.T
+    m, rng = x[:, :2] / x[:, 2:], np.random.default_rng(3)
+    R, (X, Y), o, i = np.zeros((0, 9)), (W - at).T, np.zeros(54), np.ones(54)
+    for _ in range(400):
+        u, v = (m + rng.normal(scale=0.5, size=m.shape)).T
+        D = np.concatenate(
+            [[X, Y, i, o, o, o, -u * X, -u * Y, -u], [o, o, o, X, Y, i, -v * X, -v * Y, -v]], 1
+        )
+        R = np.linalg.qr(np.concatenate([R, D.T]))[1]
+    a, b, c = np.linalg.svd(R)[2][8].reshape(3, 3) @ [X, Y, i]
+    net, drawn = np.column_stack([a / c, b / c]), plain(np.array(at))
+    assert np.abs(net - drawn).max() < 0.1
+    off = np.sqrt(np.square(net - m).sum(axis=1).mean())
+    x, y = np.round(at).tolist()
+    said = numbers(MODELS["origin"].drawing(x=x, y=y).sentence)
+    assert said[2] == pytest.approx(off, abs=0.03)
+    assert said[3] == 0.02
+    picture = MODELS["origin"].picture(x=x, y=y)[TITLE:, MARGIN:]
+    places = (m + 10 * (drawn - m) - [190, 150.2]) * 374 / 79
+    for k in (0, 8, 53, 27):  # corners of the net that is enlarged, and one within it
+        u, v = np.rint(places[k]).astype(int)
+        near = picture[max(v - 2, 0) : v + 3, max(u - 2, 0) : u + 3]
+        assert count(near, LENS, 90) + count(near, IDEAL, 90) + count(near, ESTIMATED, 90) > 1
+
+
+def test_the_plane_is_darker_where_the_plain_svd_is_farther_off_and_palest_at_the_centroid():
+    picture = MODELS["origin"].picture(x=650, y=540)[TITLE:, MARGIN + 374 + 2 * MARGIN :]
+    places = [(100, -60), (350, 62), (-330, 62), (600, -400), (-450, -400)]
+    tones = []
+    for x, y in places:
+        u, v = np.rint([(x + 500) * 374 / 1200, (y + 450.9) * 320 / 1026.8]).astype(int)
+        tones.append(int(picture[v - 1 : v + 2, u - 1 : u + 2].astype(int).min(axis=(0, 1))[0]))
+    off = [float(rms_of_origin(plain(np.array(at)))) for at in places]
+    assert sorted(tones, reverse=True) == [tones[k] for k in np.argsort(off)]
+    X, Y = np.meshgrid(np.arange(-400, 601, 20), np.arange(-400, 501, 20))
+    best = rms_of_origin(plain(np.stack([X, Y], axis=-1))).argmin()
+    assert np.hypot(X.flat[best] - 100, Y.flat[best] - 62.5) < 30
+
+
+def test_a_line_of_equal_height_is_as_wide_on_steep_ground_as_on_even():
+    v, u = np.mgrid[:60, :80].astype(float)
+    for steep in (0.1, 5):
+        ink = contours(steep * u, [steep * 30, steep * 50], 1.5)
+        assert np.flatnonzero(ink[7] > 0.4).tolist() == [29, 30, 31, 49, 50, 51]
+    cone = contours(np.hypot(u - 40, v - 30), [20], 1)
+    assert np.abs(np.hypot(u - 40, v - 30)[cone > 0.01] - 20).max() < 1.1
+    assert cone.sum() == pytest.approx(2 * np.pi * 20, rel=0.1)
 
 
 @pytest.mark.parametrize("draw", [0, 12, 44])

@@ -57,7 +57,9 @@ def draw_net(
         panel.line(line, colour, width, dash)
 
 
-def draw_arrows(panel: Panel, m: Array, d: Array) -> None:
+def draw_arrows(
+    panel: Panel, m: Array, d: Array, colour: str = ESTIMATED, width: float = 1.2
+) -> None:
     """Draw arrows d (n, 2) from points m (n, 2), both in the coordinates of the panel."""
     tip = m + d
     length = np.linalg.norm(d, axis=-1, keepdims=True)
@@ -65,9 +67,9 @@ def draw_arrows(panel: Panel, m: Array, d: Array) -> None:
     across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
     head = np.minimum(_HEAD * panel.pixel, 0.8 * length)
     back = tip - head * along
-    panel.segments(np.stack([m, tip], axis=1), ESTIMATED, 1.2)
+    panel.segments(np.stack([m, tip], axis=1), colour, width)
     wings = back + 0.4 * head * across, back - 0.4 * head * across
-    panel.polygons(np.stack([tip, *wings], axis=1), ESTIMATED)
+    panel.polygons(np.stack([tip, *wings], axis=1), colour)
 
 
 def in_space(shapes: tuple[Shape, ...], size: tuple[int, int]) -> tuple[Array, Array]:
