@@ -24,11 +24,12 @@ if TYPE_CHECKING:
 _MODELS = ("projection", "camera", "lens", "noise", "warp", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
-    "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
-    "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton", "clouds",
-    "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold", "folds",
-    "finding", "moved", "eleventh", "columns", "between", "rings", "epipolar", "rectification",
-    "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "ways", "meet",
+    "straighten", "similar", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows",
+    "forged", "clicks", "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye",
+    "newton", "clouds", "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography",
+    "fold", "folds", "finding", "moved", "eleventh", "columns", "between", "rings", "epipolar",
+    "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "ways",
+    "meet",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
