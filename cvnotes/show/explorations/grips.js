@@ -84,7 +84,7 @@ globalThis.CvnotesGrips = class {
   }
 };
 
-// Large for a thumb, and seen when it is near.
+// Large for a thumb. What can be pulled has its ring in the picture; here it answers to the hand.
 document.getElementById("explore-grips")?.remove();
 document.head.append(
   Object.assign(document.createElement("style"), {
@@ -96,9 +96,9 @@ document.head.append(
   height: 1.9rem;
   transform: translate(-50%, -50%);
   padding: 0;
-  border: 2px dashed #444;
+  border: 2px solid transparent;
   border-radius: 50%;
-  background: rgb(255 255 255 / 0.15);
+  background: none;
   cursor: grab;
   touch-action: none;
   pointer-events: auto;

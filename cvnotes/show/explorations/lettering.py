@@ -37,7 +37,7 @@ def stamp(
 def title_strip(words: str, size: tuple[int, int], left: int, scale: int) -> npt.NDArray[np.uint8]:
     """Write a panel's title, from `left` on, into a strip of (width, height) px."""
     strip = Image.new("RGB", (2 * size[0], 2 * size[1]), "white")
-    ImageDraw.Draw(strip).text((left, size[1]), words, "#333333", _font(12 * scale), "lm")
+    ImageDraw.Draw(strip).text((left, size[1]), words, "#333333", _font(13 * scale), "lm")
     return np.asarray(strip.reduce(2))
 
 

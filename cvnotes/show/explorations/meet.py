@@ -79,7 +79,7 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
         panel.veil(
             [on_sheet(np.array([*two, *end])) for end in ([level, -level], [_ORIGIN])], tints
         )
-        for place in np.linspace(*two, 13):
+        for place in np.linspace(two[0], two[1], 13):
             panel.line(on_sheet(np.array([_ORIGIN, place])), thread, 0.6)
     panel.veil([on_sheet(_SQUARE + _UP)], ["#E3F3EE"])
     panel.line(on_sheet(_SQUARE + _UP), "#9ECFBF", 1)

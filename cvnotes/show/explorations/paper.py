@@ -25,7 +25,8 @@ _GAP = 6  # px between panels
 _FARTHEST = 1e12  # px: lines are cut to the panel with all the digits this leaves
 _LARGEST = 1e6  # px: polygons are not cut, and Pillow counts in whole numbers
 _BEYOND = 8  # px by which lines are drawn over the border, where they are cut off
-_GRID = "#E6E6E6"
+GRID = "#E6E6E6"
+_RING, _RING_INK = 12, "#444444"  # px, what can be pulled
 
 
 class Grip(NamedTuple):
@@ -188,12 +189,13 @@ class Panel:
                 self._marker(at, MARKERS[meaning], COLOURS[meaning], reach, looks)
 
     def grip(self, name: str, label: str, xy: npt.ArrayLike, step: float = 1) -> None:
-        """Let a hand take hold of a point; one that lies outside is held at the border."""
+        """Let a hand take hold of a point: a ring; one that lies outside is held at the border."""
         at = np.asarray(xy, dtype=np.float64)
         if np.isfinite(at).all():
             ends = np.array([self.x, self.y])
             at = np.clip(at, ends.min(axis=1), ends.max(axis=1))
             self._grips.append((name, label, at, step))
+            self._ring(self.place(at))
 
     def grips(self, left: float, top: float) -> list[Grip]:
         """Return the grips of this panel, which begins at (left, top) px of the picture."""
@@ -221,7 +223,7 @@ class Panel:
         colour: str = MUTED,
         *,
         anchor: str = "lm",
-        size: int = 11,
+        size: int = 12,
         rim: str = "white",
     ) -> None:
         """Write words at a point; the anchor is Pillow's: left, middle, right; a, m, s or d.
@@ -236,12 +238,12 @@ class Panel:
             self._image.paste(rim, corner, around)
             self._image.paste(INK.get(colour, colour), corner, ink)
 
-    def ticks(self, x: npt.ArrayLike = (), y: npt.ArrayLike = (), size: int = 9) -> None:
+    def ticks(self, x: npt.ArrayLike = (), y: npt.ArrayLike = (), size: int = 11) -> None:
         """Draw light lines with their numbers at some x and y."""
         (x0, x1), (y0, y1) = self.x, self.y
         at_x, at_y = np.ravel(x).tolist(), np.ravel(y).tolist()
         grid = [[[v, y0], [v, y1]] for v in at_x] + [[[x0, v], [x1, v]] for v in at_y]
-        self.segments(grid, _GRID, 0.5)
+        self.segments(grid, GRID, 0.5)
         for value in at_x:
             number = f"{value:g}".replace("-", "−")
             self.text([value, y1 - 0.03 * (y1 - y0)], number, anchor="md", size=size)
@@ -287,6 +289,14 @@ class Panel:
             self._cross((u - reach, v, u + reach, v), (u, v - reach, u, v + reach), colour, reach)
         else:
             self._cross(box, (u - r, v + r, u + r, v - r), colour, reach)
+
+    def _ring(self, at: Array) -> None:
+        """Draw what a hand takes hold of: dashes on a white circle, seen on dark and light."""
+        for reach, width, ink in ((_RING + 0.4, 2.2, "white"), (_RING, 1.4, _RING_INK)):
+            box = (*(at - reach * self.scale).tolist(), *(at + reach * self.scale).tolist())
+            for start in range(0, 360, 30 if ink == _RING_INK else 360):
+                end = start + (18 if ink == _RING_INK else 360)
+                self._draw.arc(box, start, end, fill=ink, width=round(width * self.scale))
 
     def _cross(self, one: _Stroke, two: _Stroke, colour: str, reach: float) -> None:
         """Draw two strokes with a white rim, to be seen on dark and light."""
