@@ -35,10 +35,12 @@ from cvnotes.camera import (
     Camera,
     Lens,
     intrinsics,
+    intrinsics_from_vanishing_points,
     look_at,
     pose,
     rotation_from_angles,
     rotation_from_vector,
+    vanishing_point,
     vector_from_rotation,
     xy_from_px,
 )
@@ -57,9 +59,10 @@ from cvnotes.pictures import (
     room_with,
 )
 from cvnotes.pictures.meshes import box, join
-from cvnotes.projective import apply, to_homogeneous
+from cvnotes.projective import apply, from_homogeneous, to_homogeneous
 from cvnotes.show import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, explorations
 from cvnotes.show.explorations import (
+    clicks,
     clouds,
     cube,
     eleventh,
@@ -2254,6 +2257,62 @@ def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_sa
     explorer.close_all()
 
 
+@pytest.mark.parametrize("noise", [0.2, 0.8])
+def test_clicks_scatter_as_the_derivatives_of_the_librarys_answer_say(noise):
+    """First order: each of the 36 numbers that are clicked moves the answer by its derivative."""
+    camera = Camera(course.camera().A, look_at([1200, -8000, 2000], [700, -1000, 12800]))
+    W, stretch = blocks().vertices[:8], np.array([1, 800 / 804])
+    ways = ((0, 1, 4, 5, 2, 3), (0, 2, 1, 3, 5, 7), (0, 4, 1, 5, 3, 7))
+    ends = np.array([camera.project(W[list(way)]) for way in ways]).reshape(3, 3, 2, 2)
+
+    def answer(clicked):
+        v = [vanishing_point(family) for family in clicked.reshape(ends.shape) * stretch]
+        v = from_homogeneous(np.array(v))
+        A = intrinsics_from_vanishing_points(v)
+        return np.concatenate([(v / stretch).ravel(), A[:2, 2] / stretch, [A[0, 0]]])
+
+    J = np.array([answer(ends.ravel() + e) - answer(ends.ravel() - e) for e in np.eye(36) / 10])
+    covariance = noise**2 * (5 * J.T) @ (5 * J)
+    v, c, f = clicks.found(noise)
+    seen = np.cov(np.column_stack([v.reshape(-1, 6), c, f]).T)
+    assert np.sqrt(np.diag(seen) / np.diag(covariance)) == pytest.approx(1, abs=0.2)
+    for i in (0, 2, 4):  # and the clouds of X, Y and Z point the same way
+        a, b = (np.linalg.eigh(one[i : i + 2, i : i + 2])[1][:, 1] for one in (seen, covariance))
+        assert abs(a @ b) > 0.999
+    radius = grip_of(MODELS["clicks"].drawing(noise=noise), "circle").at[0] - 325
+    assert radius == pytest.approx(np.sqrt(np.diag(covariance)[6:8].mean()), rel=0.12)
+    said = numbers(MODELS["clicks"].drawing(noise=noise).sentence)
+    assert said == pytest.approx([noise, radius, np.std(f)], abs=0.051)
+
+
+def test_a_block_hides_the_lines_of_the_rod_behind_it_and_no_others(monkeypatch):
+    """Walk from the camera to each place of a line: does the way lead through a block?"""
+    drawn, line = [], Panel.line
+
+    def kept(panel, xy, colour, width=1.5, dash=0):
+        drawn.append((np.array(xy), width, dash))
+        line(panel, xy, colour, width, dash)
+
+    monkeypatch.setattr(Panel, "line", kept)
+    camera = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
+    corners = blocks().vertices[:24].reshape(3, 8, 3)
+    MODELS["rod"].drawing()
+    ways = [xy for xy, width, dash in drawn if width == 1 and len(xy) > 60 and dash in (0, 3)]
+    for seen, hidden, y in zip(ways[::2], ways[1::2], (-400, 1600), strict=True):
+        dashed = np.isfinite(hidden[:, 0])
+        m = np.where(dashed[:, None], hidden, seen[:-1])
+        rays = np.linalg.solve(camera.A, to_homogeneous(m).T).T @ camera.R
+        rays *= ((y - camera.centre[1]) / rays[:, 1])[:, None]
+        places = camera.centre + np.linspace(0, 0.995, 800)[:, None, None] * rays
+        inside = np.zeros(len(m), bool)
+        for block in corners:
+            sides = (block[[1, 2, 4]] - block[0]).T
+            part = np.linalg.solve(sides, (places - block[0])[..., None])[..., 0]
+            inside |= ((part > 0) & (part < 1)).all(-1).any(0)
+        assert 5 < inside.sum() < 50
+        assert (inside != dashed).sum() <= 4  # at the edges of blocks
+
+
 def test_three_vanishing_points_of_a_box_are_those_of_the_camera_that_took_it():
     assert [*camera_of(np.array([[0.0, 0], [4, 0], [1, 3]]))[0]] == pytest.approx([1, 1])
     said = numbers(MODELS["triangle"].drawing().sentence)
@@ -2371,22 +2430,87 @@ def test_the_sun_is_seen_where_trigonometry_puts_it_and_its_rays_end_opposite_if
 def test_each_shadow_lies_where_the_renderer_throws_it():
     """The same railway under the same sun, ray by ray, with its poles and without them."""
     model, poles = MODELS["shadows"], 20 * 12  # the last triangles of the scene
-    azimuth, elevation = np.radians([-28.5, 14.5])
+    azimuth, elevation = np.radians([-151.5, 14.5])
     whole = rails().lit_from((np.sin(azimuth), -np.tan(elevation), np.cos(azimuth)))
     parts = ("triangles", "colours", "uv", "extent")
     bare = replace(whole, **{name: getattr(whole, name)[:-poles] for name in parts})
-    camera = Camera(intrinsics(275, 275, 219.5, 164.5), size=(440, 330))
+    camera = Camera(
+        intrinsics(275, 275, 219.5, 164.5), pose(np.eye(3), [0, 0, -13_000]), size=(440, 330)
+    )
     with_poles, without = (radiance(scene, camera) for scene in (whole, bare))
     panel = slice(TITLE, TITLE + 330), slice(MARGIN, MARGIN + 440)
     drawn, elsewhere = (
         model.picture(azimuth=degrees, elevation=14.5)[panel].astype(float)
-        for degrees in (-28.5, 180)
+        for degrees in (-151.5, 151.5)
     )
-    near = slice(235, 325)  # rows of the ground before the first pole
-    thrown = (without - with_poles)[near, 8:432].sum(-1) > 20
-    strip = (elsewhere - drawn)[near, 8:432].sum(-1) > 100
-    assert strip.sum() > 800
+    near = slice(200, 325), slice(8, 325)  # the ground, left of the shadow of the camera
+    thrown = (without - with_poles)[near].sum(-1) > 20
+    strip = (elsewhere - drawn)[near].sum(-1) > 100
+    assert thrown.sum() > 800
     assert (thrown & strip).sum() > 0.7 * (thrown | strip).sum()  # the rest: on rails, sleepers
+    # The shadow of a pole begins at its foot, and leads away from the sun.
+    foot, away = np.array([-4000, 1950, 40_000]), np.array([np.sin(azimuth), 0, np.cos(azimuth)])
+    for by, dark in ((-4000, True), (4000, False)):
+        u, v = np.rint(camera.project(foot + by * away)).astype(int)
+        assert ((elsewhere - drawn)[v - 1 : v + 2, u].sum(-1).max() > 60) == dark
+
+
+@pytest.mark.parametrize(("azimuth", "elevation"), [(160, 20), (-145, 16)])
+def test_the_cameras_shadow_falls_where_the_rays_of_the_sun_end(azimuth, elevation):
+    picture, other = (
+        MODELS["shadows"].picture(azimuth=a, elevation=elevation).astype(int)
+        for a in (azimuth, -azimuth)
+    )
+    u = 319.5 + 400 * np.tan(np.radians(azimuth))
+    v = 239.5 - 400 * np.tan(np.radians(elevation)) / np.cos(np.radians(azimuth))
+    away = -1.95 / np.tan(np.radians(elevation)) * np.cos(np.radians(azimuth))  # m, along the axis
+    half = 0.15 * 400 / away * 440 / 640  # px of the page: half of a box 0.3 m wide, or more
+    x, y = MARGIN + (u + 0.5) * 440 / 640, TITLE + (v + 0.5) * 440 / 640
+    y = round(y) + 8  # below the cross
+    for by, dark in ((-0.8, True), (0.8, True), (-2.2, False), (2.2, False)):
+        at = y, round(x + by * half)
+        assert ((other - picture)[at].sum() > 60) == dark, by
+
+
+def test_beside_the_camera_the_drawn_rays_stay_parallel(monkeypatch):
+    rays, line = [], Panel.line
+
+    def kept(panel, xy, colour, *rest, **how):
+        rays.extend([np.array(xy)] if colour == ESTIMATED and not how else [])
+        line(panel, xy, colour, *rest, **how)
+
+    monkeypatch.setattr(Panel, "line", kept)
+    for azimuth, elevation in ((90, 20), (-90, 35)):
+        rays.clear()
+        MODELS["shadows"].drawing(azimuth=azimuth, elevation=elevation)
+        slopes = [(ray[-1] - ray[0])[1] / (ray[-1] - ray[0])[0] for ray in rays]
+        assert len(slopes) == 4
+        assert np.allclose(np.abs(slopes), np.tan(np.radians(elevation)), atol=1e-6)
+
+
+@pytest.mark.parametrize(("z", "f"), [(5, 8), (4, 9), (9.7, 4.1)])
+def test_a_tree_is_as_high_on_the_plane_as_a_true_camera_sees_it_and_upside_down_on_the_film(z, f):
+    camera = Camera(np.diag([f, f, 1.0]))
+    foot, top, far = camera.project([[0, 1.6, z], [0, -1.4, z], [2.2, 1.6, 10]])
+    drawing = MODELS["similar"].drawing(z=z, f=f)
+    said = [f, 1600, 1e3 * z, foot[1], 10, far[1]]
+    assert numbers(drawing.sentence) == pytest.approx(said, abs=0.0051)
+    plane = drawing.picture[TITLE : TITLE + 336, 569 : 569 + 244].astype(int)
+    left = plane[:, : round((2 + far[0] / 2) / 5.88 * 244)]  # without the pale tree
+    crown, dot = (
+        np.flatnonzero((np.abs(left - colour(ink)).max(-1) < 12).any(1))
+        for ink in ("#44975C", LENS)
+    )
+    rows = np.array([crown.min(), dot.max() - 4.5]) / 336 * 8.1 - 3.8  # mm; the dot's middle
+    assert rows == pytest.approx([top[1], foot[1]], abs=0.05)
+    # From the side, foot, hole and both pictures lie on one line, at their distances.
+    film, tree = (np.array(grip_of(drawing, name).at) for name in ("film", "tree"))
+    assert abs(np.linalg.det([film, tree])) < 1e-6 * np.linalg.norm(tree) ** 2
+    assert film[0] / 12 == pytest.approx(-f)
+    assert tree[0] / 33 == pytest.approx(z)
+    for at in (film, -film):
+        x, y = np.rint(at + [MARGIN + 150, TITLE + 152]).astype(int)
+        assert count(drawing.picture[y - 2 : y + 3, x - 2 : x + 3], LENS) > 12
 
 
 def test_the_best_hole_is_where_its_patch_and_diffraction_are_equal():
@@ -2742,6 +2866,8 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     ("pinhole", "focus"): {"lens": 1, "focus": 1},
     ("swing", "row 5"): {"row": 5},
     ("votes", "m"): {"guess": 1},
+    "similar": {"f": 7},
+    "clicks": {"noise": 0.5},
 }
 ON_A_WAY = {  # along a curve, by its x
     ("residuals", "k1"),
@@ -2764,6 +2890,9 @@ ON_A_WAY = {  # along a curve, by its x
     ("stands", "plane"),
     ("stands", "alpha"),
     ("ways", "time"),
+    ("similar", "tree"),
+    ("similar", "film"),
+    ("clicks", "circle"),
     ("hinge", "angle"),
 }
 ROUND = {

@@ -6,7 +6,7 @@ from cvnotes.show.explorations import explore, pull_points
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.estimates import draw_plane_error
 from cvnotes.show.figures.field_of_view import draw_field_of_view
-from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole
+from cvnotes.show.figures.ideas import draw_meanings
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
@@ -44,9 +44,8 @@ __all__ = [
     "draw_corners",
     "draw_lines",
     "draw_segments",
-    # ideas: the colours, the pinhole
+    # the colours
     "draw_meanings",
-    "draw_pinhole",
     # chapter 3: how an image is formed
     "draw_field_of_view",
     # chapter 4: lenses
