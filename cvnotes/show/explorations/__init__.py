@@ -29,7 +29,7 @@ _STORIES = (
     "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold", "folds",
     "finding", "moved", "eleventh", "columns", "between", "rings", "epipolar", "rectification",
     "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "ways", "meet",
-    "residuals", "enlarged", "hinge", "horizon",
+    "residuals", "enlarged", "hinge", "horizon", "zoom",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
