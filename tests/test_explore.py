@@ -79,8 +79,10 @@ from cvnotes.show.explorations import (
     triangle,
     twins,
     ways,
+    zoom,
 )
 from cvnotes.show.explorations import depth as swept
+from cvnotes.show.explorations.boards import on_sheet as from_afar
 from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
@@ -109,7 +111,7 @@ from cvnotes.show.explorations.ransac import drawn_pairs
 from cvnotes.show.explorations.rectification import turned
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
-from cvnotes.show.explorations.strokes import contours
+from cvnotes.show.explorations.strokes import contours, cut
 from cvnotes.show.explorations.subpixel import photograph as photograph_of_corner
 from cvnotes.show.explorations.swing import nets, weights
 from cvnotes.show.explorations.triangle import camera_of
@@ -427,6 +429,39 @@ def test_numbers_below_zero_have_a_minus_sign_and_no_hyphen():
         assert re.search(r"−\d", sentence)
         assert not re.search(r"-\d", sentence)
     assert "says +0.00 ± 0.00 px" in MODELS["noise"].drawing(sigma=0).sentence
+
+
+def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_steps(written):
+    board = course.board()
+    for values in ({}, {"T_x": 20, "T_y": -90, "angle_y": 5}, {"u0": 250, "alpha": 700}):
+        written.clear()
+        drawing, v = MODELS["camera"].drawing(**values), MODELS["camera"].values(**values)
+        grip = grip_of(drawing, "camera")
+        R = rotation_from_angles(*np.radians([v["angle_x"], v["angle_y"], v["angle_z"]]))
+        T = np.array([v["T_x"], v["T_y"], v["T_z"]])
+        C = -R.T @ T
+
+        def place(W, grip=grip, C=C):
+            return from_afar(W - C) / grip.unit + grip.place
+
+        # 125 mm before the camera a ray from a square's middle pierces the small picture.
+        i, j = np.indices((10, 7)).reshape(2, -1) - 1
+        M = board.square * np.column_stack([i + 0.5, j + 0.5, 0 * i]) @ R.T + T
+        seen = [v["u0"], v["v0"]] + v["alpha"] * M[:, :2] / M[:, 2:] * [1, 1.005]
+        shown = ((seen > 10) & (seen < [630, 470])).all(axis=1)
+        b, a = np.rint(place(C + 125 / M[shown, 2:] * M[shown] @ R)).astype(int).T[::-1]
+        ink, dark = drawing.picture[b, a].astype(int), (i + j)[shown] % 2 == 0
+        bare = np.ptp(ink, axis=1) < 40  # neither under T nor under an axis
+        assert bare.mean() > 0.6
+        grey = ink.mean(axis=1)
+        assert np.mean(grey[dark & bare] < 138) > 0.9 < np.mean(grey[~dark & bare] > 138), values
+        panel, corner = None, np.zeros(3)
+        for name, step in zip("xyz", np.diag(T), strict=True):
+            words = f"{name} {step.sum():.0f}".replace("-", "−")
+            panel, at = written[words]
+            middle = from_afar(C + R.T @ (corner + step / 2))
+            assert np.linalg.norm(at - middle) < 12 * panel.pixel
+            corner = corner + step
 
 
 def test_a_board_beside_the_picture_is_missed_in_words():
@@ -1666,7 +1701,7 @@ def angle_of(R):
 
 def test_about_one_axis_a_dart_turns_evenly_and_by_three_angles_farther_beyond_the_pole():
     rng, longer = np.random.default_rng(4), {}
-    near = {"up": 95, "aside": -3}, {"up": 110, "aside": -10, "roll": 40}
+    near = {"up": 95, "aside": -3}, {"up": 105, "aside": -6}
     for values in (
         {"up": 40, "aside": 30},
         *near,
@@ -1688,8 +1723,8 @@ def test_about_one_axis_a_dart_turns_evenly_and_by_three_angles_farther_beyond_t
         assert abs(one - angle_of(R)) < 0.51 > abs(way - sum(turned))
         assert np.abs(three - np.degrees(angles)).max() < 0.51
         longer[values["up"], values["aside"]] = way / one
-    assert longer[40, 30] < 1.03 < 1.5 < longer[95, -3] < 2.5 < longer[110, -10]
-    # Without roll the target is where the shortest way leads; its trail is drawn through all tips.
+    assert longer[40, 30] < 1.03 < 1.45 < longer[105, -6] < 1.55 < longer[95, -3] < 1.6
+    # The target is where the shortest way leads; its trail is drawn through all tips.
     values = MODELS["ways"].values(t=0)
     omega, angles = ways.ways(values)
     assert abs(omega[0]) < 1e-12
@@ -1701,6 +1736,12 @@ def test_about_one_axis_a_dart_turns_evenly_and_by_three_angles_farther_beyond_t
             at = ways._SHEET @ (way(s) - way(1))[:, 0] / grip.unit + grip.place
             u, v = np.rint(at).astype(int)
             assert count(picture[v - 2 : v + 3, u - 2 : u + 3], ink) > 5
+    # The axis is an arrow from the middle of the sphere, square to start and target.
+    axis = np.cross([1, 0, 0], rotation_from_angles(*angles)[:, 0])
+    for part, most in ((-0.5, 0), (0.5, 25), (1.1, 25)):
+        at = ways._SHEET @ (part * axis / np.linalg.norm(axis))
+        u, v = np.rint((at - grip.at) / grip.unit + grip.place).astype(int)
+        assert (count(picture[v - 2 : v + 3, u - 2 : u + 3], ESTIMATED) > 5) == (most > 0)
 
 
 @pytest.fixture
@@ -1801,10 +1842,11 @@ def test_the_picture_of_the_next_view_is_as_wide_as_it_would_be():
 
 
 def test_what_is_behind_the_camera_is_cut_off_along_every_edge():
-    square = np.array([[0, 0, 110], [1, 0, 110], [1, 0, -90], [0, 0, -90]], float)
+    square = np.array([[0, 0, 110], [1, 0, 110], [1, 0, -40], [0, 0, -40]], float)
     for turn in range(4):
-        cut = formation._before(np.roll(square, turn, 0)).round(9)
-        assert sorted(cut.tolist()) == [[0, 0, 10], [0, 0, 110], [1, 0, 10], [1, 0, 110]]
+        turned = np.roll(square, turn, 0)
+        before = cut(turned, turned[:, 2] - 10).round(9)
+        assert sorted(before.tolist()) == [[0, 0, 10], [0, 0, 110], [1, 0, 10], [1, 0, 110]]
 
 
 def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
@@ -1864,6 +1906,38 @@ def test_what_leaves_the_picture_below_is_still_measured_in_it(written):
     above = drawing.picture[v - 14 : v - 6, u - 60 : u + 60]
     assert count(above, IDEAL) > 100
     assert panel.y[1] > at[1]
+
+
+def test_three_times_the_focal_length_is_three_times_the_blackboard_and_no_third_of_the_angle():
+    shown = MODELS["zoom"].drawing
+    for alpha in (300, 520, 1200, 1500):
+        angle, width = 2 * np.degrees(np.arctan(320 / alpha)), 1400 * alpha / 9950
+        first = 2 * np.degrees(np.arctan(320 / 400))
+        ratios = [400, alpha / 400, alpha / 400, first / angle]
+        drawing = shown(alpha=alpha)
+        said = numbers(drawing.sentence)
+        np.testing.assert_allclose(said[:3], [alpha, angle, width], atol=0.5)
+        np.testing.assert_allclose(said[3:], ratios, atol=0.006)
+        # In the plan a px of the sensor is 5 mm: the room from -1.1 to 10 m is 516 px wide.
+        scale, eye = 516 / 11_100, (MARGIN + 1100 * 516 / 11_100, TITLE + 279 / 2)
+        plan = drawing.picture[:, :516].astype(int)
+        sensor = np.argwhere(np.abs(plan - colour(LENS)).max(-1) < 30)
+        (top, left), (bottom, right) = sensor.min(axis=0), sensor.max(axis=0)
+        assert abs((left + right) / 2 - eye[0] - 5 * alpha * scale) < 1.5
+        assert abs(bottom - top - 640 * 5 * scale) < 2
+        # The sides of the angle go on through both ends, and what they enclose is tinted.
+        z, x = 0.6 * 5 * alpha, 0.6 * 5 * 320
+        for part, tinted in ((0.85, True), (1.25, False)):
+            u, v = round(eye[0] + z * scale), round(eye[1] - part * x * scale)
+            assert (plan[v, u, 0] < 250) == tinted, alpha
+    taken = MODELS["zoom"].drawing(alpha=1000).picture[TITLE + 40 : TITLE + 270, 530:880]
+    expected, other = (
+        render_scene(room(), zoom.camera_at(alpha, (372, 279)), samples=4)[40:270]
+        for alpha in (1000, 950)
+    )
+    first = 530 - (516 + 6 + MARGIN)
+    off = [np.abs(taken - e[:, first : first + 350].astype(int)).mean() for e in (expected, other)]
+    assert off[0] < 2 < 0.4 * off[1]
 
 
 def test_the_pixel_of_the_followed_corner_is_written_beside_the_box(written):
@@ -2888,6 +2962,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("epipolar", "depth"),
     ("lens", "ring"),
     ("stands", "plane"),
+    ("zoom", "sensor"),
     ("stands", "alpha"),
     ("ways", "time"),
     ("similar", "tree"),

@@ -5,7 +5,6 @@ from cvnotes.show.banner import one_corner
 from cvnotes.show.explorations import explore, pull_points
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.estimates import draw_plane_error
-from cvnotes.show.figures.field_of_view import draw_field_of_view
 from cvnotes.show.figures.ideas import draw_meanings
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lenses import draw_grid
@@ -47,7 +46,6 @@ __all__ = [
     # the colours
     "draw_meanings",
     # chapter 3: how an image is formed
-    "draw_field_of_view",
     # chapter 4: lenses
     "draw_grid",
     # chapters 6, 7 and 9: estimates
