@@ -830,6 +830,31 @@ def test_both_cameras_find_the_same_nine_columns_and_each_mends_the_other(believ
     assert mirrored > rms(left.misses(0, 0 * right.columns))
 
 
+def test_the_pulled_columns_stand_where_the_other_camera_finds_them_and_the_bar_says_how_good():
+    """The columns of whole calibrations with a free board, whose frame may be moved and scaled."""
+    real = course.real_corners()
+    W = real.board.points
+    said = calibrate(W, real.right, real.size, lens="k1 k2 p1 p2", board="free").board_points[0] - W
+    shifts = said[:, 0].reshape(6, 9).mean(axis=0)
+    drawing = MODELS["columns"].drawing(amount=1)
+    between = drawing.picture[TITLE + 73, MARGIN : MARGIN + 490].astype(int)  # rows of corners
+    orange = np.abs(between - colour(ESTIMATED)).max(axis=-1) < 40
+    at = np.array([run.mean() for run in np.split(np.arange(490), np.flatnonzero(np.diff(orange)) + 1)
+                   if orange[run[0]]])  # fmt: skip
+    mm = (at + 0.5) * (8 + 1.45 + 0.75) * 30 / 490 - 1.45 * 30
+    drawn = (mm - 30 * np.arange(9)) / 150
+    apart = drawn - shifts
+    apart -= np.polyval(np.polyfit(range(9), apart, 1), range(9))
+    assert np.abs(apart).max() < 0.018
+    assert np.ptp(shifts) > 0.2
+    bar = drawing.picture[TITLE:, MARGIN + 490 + 6 :].astype(int)
+    filled = (np.abs(bar - colour(ESTIMATED)).max(axis=-1) < 40).sum(axis=0).max()
+    moved = W + np.outer(np.tile(shifts, 6), [1, 0, 0])
+    with pytest.warns(CalibrationWarning):
+        flat = calibrate(moved, real.left, real.size, lens="k1 k2 p1 p2")
+    assert filled / 340 * 1.2 * 0.18 == pytest.approx(flat.rms, abs=0.006)
+
+
 def test_a_window_on_a_ramp_votes_along_it_and_one_on_a_corner_for_the_corner():
     gradients = np.zeros((40, 40, 2)) + [3.0, 4.0]  # everywhere: 5 grey levels a pixel
     ramp = window_at(gradients, (20, 20))
@@ -1441,6 +1466,33 @@ def test_the_picture_of_a_circle_is_the_conic_that_its_matrix_says(a, b, kind):
         assert np.median(np.abs(np.sum(x @ C * x, axis=1)) / gradient) < 1.5 / 42.5  # px off
         # Back on the plane these are on their side of the line, where 1 / w is.
         assert np.mean(np.sign(x @ inverse[2]) == side) > 0.98
+
+
+@pytest.mark.parametrize(("a", "b"), [(0.5, 0.4), (0.9, -1.0), (0, 0.4)])
+def test_the_net_beside_a_conic_runs_to_the_horizon_and_is_one_of_squares_on_the_plane(a, b):
+    left = MARGIN + 400 + 6
+    picture = MODELS["conic"].picture(a=a, b=b)[TITLE : TITLE + 340, left : left + 400].astype(int)
+    inverse = np.linalg.inv([[1, 0, 0], [0, 1, 0], [a, b, 1]])
+    for ink, side in (("#80B8D8", 1), ("#EAAE80", -1), ("#000000", 0)):
+        v, u = np.nonzero((np.abs(picture - colour(ink)) < 25).all(axis=-1))
+        x = np.column_stack([(u + 0.5) / 42.5 - 80 / 17, 4 - (v + 0.5) / 42.5, np.ones(len(u))])
+        beyond = (1 - x[:, :2] @ [a, b]) / np.hypot(a, b)  # in units of the plane's picture
+        assert len(x) > 100
+        if not side:
+            assert np.abs(beyond).max() < 0.05
+            continue
+        assert (side * beyond).min() > -0.05
+        assert min(side * beyond) < 0.15  # up to the horizon
+        C = x @ inverse.T @ np.diag([1, 1, -1]) @ inverse  # the rim of the circle is as pale
+        from_circle = np.abs(np.sum(C * x, axis=1)) / np.linalg.norm(2 * C[:, :2], axis=1)
+        clear = (side * beyond > 1) & (from_circle > 6 / 42.5)
+        shifts = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) / 42.5  # by no pixel, and by one
+        back = (x[clear] + shifts[:, None]) @ inverse.T
+        on_plane, *beside = back[..., :2] / back[..., 2:]
+        wide = np.abs(beside - on_plane).sum(axis=0)
+        off = np.abs(2 * on_plane - np.round(2 * on_plane)) / 2
+        assert np.mean((off < 1.2 * wide).any(axis=1)) > 0.98
+        assert np.mean(wide < 0.1) > 0.2  # (of wide ones it says nothing)
 
 
 def test_the_line_that_goes_to_infinity_is_held_at_its_foot():
@@ -2929,7 +2981,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "stands": {"alpha": 800},
     "straighten": {"k1": -0.1},
     "folds": {"k1": -0.15},
-    "columns": {"amount": 0.7, "free": 1},
+    "columns": {"amount": 0.8},
     "ransac": {"draw": 20},
     "rings": {"place": 50},
     "walks": {"X": 200},
@@ -2959,6 +3011,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("rings", "place"),
     ("clouds", "window"),
     ("newton", "level"),
+    ("columns", "nine"),
     ("epipolar", "depth"),
     ("lens", "ring"),
     ("stands", "plane"),
@@ -2989,7 +3042,7 @@ ON_A_CURVE = {  # its nearest place
     ("hinge", "board"),
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
-FROM_ONE_TO_ONE = {("columns", "free"): 3, ("clouds", "picture"): 4}  # bars, pictures; the last
+FROM_ONE_TO_ONE = {("clouds", "picture"): 4}  # from picture to picture; the last
 TURNS_ABOUT = {
     "rails": (0, 0),
     "mark": (0, 0),
@@ -2999,7 +3052,6 @@ TURNS_ABOUT = {
 }  # its length stays
 UP_AND_DOWN = {
     "curve",
-    "nine",
     "row",
     "depth",
     "eye",

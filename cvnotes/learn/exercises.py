@@ -32,7 +32,7 @@ CHAPTERS = {
 FURTHER = (
     "line_through field_of_view nearest_rotation form_image knows_its_origin geometric_error "
     "radial_fit b_from_views focal_from_turn camera_covariance bilinear rectifying_rotation "
-    "how_far which_to_trust"
+    "how_far which_to_trust pipeline"
 )
 
 

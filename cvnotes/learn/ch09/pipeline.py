@@ -109,8 +109,8 @@ EXERCISE = Exercise(
     "radial_fit": ...,
 }""",
     hints=(
-        "Copy your functions into this notebook: dlt from notebook 06, A_from_b and extrinsics "
-        "from 07, b_from_views and radial_fit from the further exercises.",
+        "Copy dlt from notebook 06, and A_from_b and extrinsics from 07; b_from_views and "
+        "radial_fit are exercises of this notebook.",
         "check each of them by its own name first.",
         'my_steps = {"dlt": my_dlt, …}: functions, without brackets.',
     ),

@@ -10,28 +10,21 @@ from cvnotes.calibration import calibrate
 from cvnotes.calibration.jacobian import jacobian
 from cvnotes.calibration.refinement import Problem
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import draw_arrows, draw_measured
 from cvnotes.show.explorations.finding import rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
 _LENS = "k1 k2 p1 p2"
-_MAGNIFIED = 100
-_PICTURE, _BARS, _CHART = (340, 255), (200, 255), (310, 255)
-_FREE = ("nothing", "heights", "shifts", "both")
+_MAGNIFIED = 150
+_SHEET, _BAR = (490, 340), (215, 340)
+_FREE = ("as printed", "heights", "shifts", "both")
 _AXES: tuple[tuple[int, ...], ...] = ((), (2,), (0, 1), (0, 1, 2))  # x and y lie in the sheet
-_WORDS = (
-    "",
-    " and each corner free to leave the plane",
-    " and each corner free within the sheet",
-    " and each corner free in space",
-)
-_HIGHEST = 0.2  # px, of the bars
-_SHIFT = 0.2  # mm, of the chart
+_PALE = "#EDEDED"
+_HIGHEST = 0.18  # px, of the bar
 _ROUNDING = 1e-9  # smaller singular values are those of moving or scaling the whole board
-_HELD = 2  # the column whose mark is a grip
+_HELD = 2  # the column that is pulled, by the middle between two of its corners
+_AT = 2.5
 
 
 class Believed:
@@ -105,89 +98,82 @@ def _without(Q: Array, x: Array) -> Array:
 
 
 def columns_model() -> Model:
-    """Make the model of the left camera's misses, and of what may move on its board."""
+    """Make the model of the nine columns of a real sheet, as each of two cameras finds them."""
     real = course.real_corners()
     left, right = Believed(real.left), Believed(real.right)
-    settings = (
-        Setting("amount", "nine numbers ×", 0, 1.3, 0.05, 0,
-                "how much of the right camera's nine shifts is put into the left camera's board"),
-        Setting("free", "free to move", 0, 3, 1, 0, "0 nothing, 1 heights, 2 shifts, 3 both"),
-        Setting("photograph", "photograph", 0, len(real.left) - 1, 1, 7,
-                "which of the left camera's photographs"),
-    )  # fmt: skip
+    amount = Setting("amount", "nine numbers ×", 0, 1.8, 0.05, 0,
+                     "how much of the right camera's nine shifts is put into the left camera's board")  # fmt: skip
     about = (
-        "What the left camera of a real pair misses, in one photograph; how large its RMS is if "
-        "corners of the board may move; and how far each column of corners is shifted."
+        "A printed sheet with its nine columns of corners: blue as the left camera of a real pair "
+        "finds them, orange with so much of the right camera's nine shifts; and the RMS of the "
+        "left camera on a sheet with the orange columns."
     )
 
     def pulled(_: Values, at: Array) -> Values:
-        return {"amount": float(at[1] / right.columns[_HELD])}
+        printed = _HELD * real.board.square
+        return {"amount": float((at[0] - printed) / (_MAGNIFIED * right.columns[_HELD]))}
 
-    drags = {"nine": pulled, "free": lambda _, at: {"free": float(np.floor(at[0]))}}
-    return Model("columns", about, settings, partial(_draw, left, right), drags)
-
-
-def _draw(left: Believed, right: Believed, paper: Paper, values: Values) -> Drawing:
-    amount, free, i = values["amount"], int(values["free"]), int(values["photograph"])
-    columns = amount * right.columns
-    misses = left.misses(free, columns)
-    real = course.real_corners()
-    picture = paper.picture_panel(
-        _PICTURE, real.size, f"left camera, photograph {i}: misses × {_MAGNIFIED}"
-    )
-    draw_measured(picture, real.left[i], real.board)
-    draw_arrows(picture, real.left[i], -_MAGNIFIED * misses[i])
-    bars = _bars(paper, [rms(left.misses(j, columns)) for j in range(len(_FREE))], free)
-    chart = _chart(paper, left, right, amount)
-    sentence = _sentence(rms(left.misses(0, 0 * columns)), rms(misses), amount, free)
-    return Drawing(paper.join((picture, bars, chart)), sentence)
+    of_left = [rms(left.misses(free, 0 * right.columns)) for free in range(len(_FREE))]
+    draw = partial(_draw, left, right, of_left)
+    return Model("columns", about, (amount,), draw, {"nine": pulled})
 
 
-def _sentence(before: float, after: float, amount: float, free: int) -> str:
-    given = "the board as it was drawn"
-    if amount:
-        given = f"the right camera's nine shifts × {amount:g} in the board"
-    said = f"With {given}{_WORDS[free]}, the left camera misses its corners by {after:.3f} px"
-    if not amount and not free:
-        return f"{said} (RMS)."
-    gone = max(1 - (after / before) ** 2, 0)
-    return f"{said} instead of {before:.3f}: {gone:.0%} of the squared misses are gone."
+def _draw(
+    left: Believed, right: Believed, freed: list[float], paper: Paper, values: Values
+) -> Drawing:
+    amount, before = values["amount"], freed[0]
+    after = rms(left.misses(0, amount * right.columns))
+    panels = _sheet(paper, left, right, amount), _bar(paper, after, freed)
+    if not amount:
+        said = f"With the columns as they were printed, the left camera misses by {before:.3f} px."
+    else:
+        said = (
+            f"With the right camera's nine shifts × {amount:g}, the left camera misses its corners "
+            f"by {after:.3f} px instead of {before:.3f}: "
+            f"{max(1 - (after / before) ** 2, 0):.0%} of the squared misses are gone."
+        )
+    return Drawing(paper.join(panels), said)
 
 
-def _bars(paper: Paper, heights: list[float], free: int) -> Panel:
-    """Draw the RMS for everything that may be free; the chosen one is orange."""
-    panel = paper.panel(_BARS, (0, len(_FREE)), (_HIGHEST, -0.025), "RMS (px) if these may move")
-    for k, height in enumerate(heights):
-        chosen = k == free
-        panel.line([[k + 0.5, 0], [k + 0.5, height]], ESTIMATED if chosen else FAINT, 1.5)
-        if not chosen:
-            panel.polygons([[k + 0.5, height] + circle(17)[:-1] * [0.05, 0.0022]], MUTED)
-        panel.text([k + 0.5, height + 0.008], f"{height:.3f}", IDEAL, anchor="ms", size=11)
-        panel.text([k + 0.5, -0.013], _FREE[k], IDEAL, anchor="mm", size=10)
-    panel.line([[0, 0], [len(_FREE), 0]], MUTED, 0.8)
-    panel.mark([free + 0.5, heights[free]], "estimated", 6)
-    panel.grip("free", "what is free to move", [free + 0.5, heights[free]], 8)
+def _sheet(paper: Paper, left: Believed, right: Believed, amount: float) -> Panel:
+    """Draw the squares, and both cameras' columns over them."""
+    square = course.real_corners().board.square
+    lines, columns = left.shifts.shape
+    reach = square * np.array([columns - 1, lines - 1])
+    panel = paper.panel(
+        _SHEET, (-1.45 * square, reach[0] + 0.75 * square), (-1.15 * square, reach[1] + 1.05 * square),
+        f"nine columns of the sheet, shifts × {_MAGNIFIED}",
+    )  # fmt: skip
+    dark = [np.array([i, j]) for i in range(columns - 1) for j in range(lines - 1) if (i + j) % 2]
+    corner = square * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    panel.polygons([square * at + corner for at in dark], _PALE)
+    x, y = square * np.arange(columns), square * np.arange(lines)
+    pulled = x + _MAGNIFIED * amount * right.columns
+    found = np.stack(np.broadcast_arrays(x + _MAGNIFIED * left.shifts, y[:, None]), axis=-1)
+    ends = np.array([-0.35, lines - 0.65]) * square
+    for k in range(columns):
+        panel.line(found[:, k], LENS, 3)
+        panel.mark(found[:, k], "lens", 4)
+        panel.line(np.stack([[pulled[k]] * 2, ends], axis=-1), ESTIMATED, 2)
+        panel.text([x[k], -0.75 * square], f"{k + 1}", MUTED, anchor="mm", size=13)
+    held = [pulled[_HELD], _AT * square]
+    panel.mark(held, "estimated", 6)
+    panel.grip("nine", "the right camera's nine shifts, to be pulled aside", held, 3)
+    panel.text([0, reach[1] + 0.75 * square], "blue: by the left camera", LENS, size=13)
+    panel.text(
+        [reach[0], reach[1] + 0.75 * square], f"orange: by the right one × {amount:g}", ESTIMATED,
+        anchor="rm", size=13,
+    )  # fmt: skip
     return panel
 
 
-def _chart(paper: Paper, left: Believed, right: Believed, amount: float) -> Panel:
-    """Draw the shift of each column: the left camera's, and so much of the right camera's."""
-    n = len(left.columns)
-    panel = paper.panel(
-        _CHART, (-1.4, n - 0.4), (_SHIFT + 0.02, -_SHIFT - 0.10), "shift of the nine columns (mm)"
-    )
-    panel.ticks(y=(-0.1, 0.1), size=12)
-    panel.line([[-1.4, 0.0], [float(n), 0.0]], MUTED, 0.8)
-    at = np.arange(n)
-    own = np.stack([at, left.columns], axis=-1)
-    for row in left.shifts:
-        panel.mark(np.stack([at, row], axis=-1), "lens", 3)
-    panel.line(own, LENS, 2)
-    panel.mark(own, "lens", 6)
-    others = np.stack([at, amount * right.columns], axis=-1)
-    panel.line(others, ESTIMATED, 1, dash=3)
-    panel.mark(others, "estimated", 6)
-    panel.grip("nine", "the right camera's nine shifts, to be pulled up", others[_HELD], 3)
-    panel.text([0.4, -0.245], "by the left camera; dots: its single corners", LENS)
-    panel.text([0.4, -0.28], f"by the right camera, × {amount:g}", ESTIMATED)
+def _bar(paper: Paper, now: float, freed: list[float]) -> Panel:
+    """Draw the RMS as a bar, and beside it what it would be if more could move."""
+    panel = paper.panel(_BAR, (0, 1), (1.16 * _HIGHEST, -0.04 * _HIGHEST), "RMS, left camera (px)")
+    panel.line([[0, 0], [1, 0]], MUTED, 0.8)
+    panel.polygons([[[0.12, 0], [0.4, 0], [0.4, now], [0.12, now]]], ESTIMATED)
+    for name, height in zip(_FREE, freed, strict=True):
+        panel.line([[0.06, height], [0.46, height]], MUTED, 1, dash=3)
+        panel.text([0.49, height], f"{name} {height:.3f}", MUTED, size=12)
+    panel.text([0.26, 0.03], f"{now:.3f}", "white", anchor="mm", size=15, rim=ESTIMATED)
     return panel

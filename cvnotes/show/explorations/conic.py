@@ -10,8 +10,11 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
 _SIZE = (400, 340)
 _NEAR, _FAR = 1.7, 4.0  # how far up and down the panels show the plane, before and after
-_PALE = "#CFE0EC", "#F3D5C2"  # of the net, before the line and beyond it
-_AT_INFINITY = 0.02  # in w: so near the line nothing is drawn
+_PALE = "#80B8D8", "#EAAE80"  # of the net, before the line and beyond it
+_AT_INFINITY = 0.02  # in w: so near the line no point of the circle is drawn
+_TINTS = "#F1F7FB", "#FDF4EE"  # of the two sides of the line
+_NET = np.arange(-6, 6.1, 0.5)  # where the lines of the net are
+_WIDE = 60.0  # how far they are drawn: beyond the frames
 
 
 def conic_model() -> Model:
@@ -22,7 +25,8 @@ def conic_model() -> Model:
     )
     about = (
         "A circle on a net of squares, and a black line; beside it what H makes of circle and net, "
-        "which takes the line to infinity. Orange is what lies beyond the line."
+        "which takes the line to infinity. Orange is what lies beyond the line. Blue and orange "
+        "meet at the plane's horizon, a thin black line."
     )
 
     def pulled(_: Values, at: Array) -> Values:
@@ -37,31 +41,62 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     before, after = (
         paper.panel(_SIZE, (-reach * 20 / 17, reach * 20 / 17), (reach, -reach), title)
         for reach, title in ((_NEAR, "a circle, and the line that goes to infinity"),
-                             (_FAR, "their picture"))
+                             (_FAR, "their picture, with the plane's horizon"))
     )  # fmt: skip
-    fine, at = np.linspace(-4, 4, 401), np.arange(-4, 4.1, 0.5)
-    net = np.stack(np.meshgrid(fine, at), axis=-1)
-    for line in (*net, *net[..., ::-1]):
-        _draw_both(before, after, line, n, _PALE, 0.8)
-    _draw_both(before, after, circle(721), n, (LENS, ESTIMATED), 3)
-    if n.any():
-        foot, along = -n / (n @ n), np.array([-n[1], n[0]]) / np.hypot(*n)
-        before.line(foot + np.outer([-9, 9], along), IDEAL, 2)
-        before.mark(foot, "ideal", 9)
-        before.grip("horizon", "the line that goes to infinity", foot, 4)
+    s = float(n @ n)
+    along = np.array([-n[1], n[0]]) / max(np.sqrt(s), 1e-12)
+    across = np.array([along[1], -along[0]])  # as n
+    for panel, sign in ((before, -1), (after, 1)):
+        panel.polygons([_WIDE * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])], _TINTS[0])
+        if s:
+            line = sign * n / s + np.outer([-_WIDE, _WIDE], along)
+            panel.polygons([[*line, *(line + 2 * sign * _WIDE * across)[::-1]]], _TINTS[1])
+    for way in np.eye(2):
+        for start in np.outer(_NET, 1 - way):
+            _draw_sides(before, start, way, -n)
+            _draw_sides(after, *_pictured(start, way, n), n)
+    _draw_circle(before, after, n)
+    if s:
+        for panel, foot, width in ((before, -n / s, 2), (after, n / s, 1)):
+            panel.line(foot + np.outer([-_WIDE, _WIDE], along), IDEAL, width)
+        if s >= 1:
+            half = np.sqrt(1 - 1 / s)
+            before.polygons([circle(25) * 0.05 - n / s + x * along for x in (-half, half)], IDEAL)
+        before.mark(-n / s, "ideal", 9)
+        before.grip("horizon", "the line that goes to infinity", -n / s, 4)
     return Drawing(paper.join((before, after)), _sentence(n))
 
 
-def _draw_both(
-    before: Panel, after: Panel, xy: Array, n: Array, inks: tuple[str, str], width: float
-) -> None:
-    """Draw a curve (k, 2) and its picture, in one colour before the line and one beyond it."""
+def _pictured(start: Array, way: Array, n: Array) -> tuple[Array, Array]:
+    """Return a point and the direction of the picture of a line: it is a line as well."""
+    w, far = start @ n + 1, way @ n
+    if max(abs(w), abs(far)) < 1e-9:  # the line that goes to infinity has none
+        return np.full(2, np.nan), way
+    # (start + t way) / (w + t far) moves along way w − start far, and is at way / far for t → ∞.
+    along = way * w - start * far
+    along /= np.hypot(*along)
+    at = start / w if abs(w) > abs(far) else way / far
+    return at - (at @ along) * along, along
+
+
+def _draw_sides(panel: Panel, at: Array, along: Array, n: Array) -> None:
+    """Draw a line, in one colour where n x is below 1, and in the other where it is above."""
+    slope = float(along @ n)
+    cut = (1 - at @ n) / slope if slope else np.copysign(np.inf, 1 - at @ n)
+    lower = np.clip([-_WIDE, cut], -_WIDE, _WIDE), np.clip([cut, _WIDE], -_WIDE, _WIDE)
+    for ink, part in zip(_PALE, lower if slope >= 0 else lower[::-1], strict=True):
+        panel.line(at + np.outer(part, along), ink, 0.8)
+
+
+def _draw_circle(before: Panel, after: Panel, n: Array) -> None:
+    """Draw the circle and its picture, in one colour before the line and one beyond it."""
+    xy = circle(361)
     w = xy @ n + 1
-    for ink, side in zip(inks, (1, -1), strict=True):
-        before.line(np.where((side * w > 0)[:, None], xy, np.nan), ink, width)
+    for ink, side in zip((LENS, ESTIMATED), (1, -1), strict=True):
+        before.line(np.where((side * w > 0)[:, None], xy, np.nan), ink, 4)
         with np.errstate(divide="ignore", invalid="ignore"):
             seen = np.where((side * w > _AT_INFINITY)[:, None], xy / w[:, None], np.nan)
-        after.line(seen, ink, width)
+        after.line(seen, ink, 4)
 
 
 def _sentence(n: Array) -> str:

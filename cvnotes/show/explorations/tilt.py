@@ -22,6 +22,7 @@ _NODES = np.array([300, 350, 425, 540, 660, 800, 1000])
 _FAR = 2.1625  # of the board's diagonal, to the long lens
 _MAGNIFIED = 6
 _HIGHEST = 10  # px, of the valley's sides
+_GRID = "#E6E6E6"
 _BESIDE = (10, 20, 45)  # degrees: the valleys of these tilts lie beside it
 _NOISE = 0.1 * np.sqrt(2)  # px, what noise of 0.1 px along each axis makes of a corner
 _THEIRS = "#E3C3B0"  # the orange of those
@@ -145,7 +146,10 @@ def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Pa
     title = "how far they differ (px) against the other lens, α (px)"
     panel = paper.panel(_VALLEY, ends, (_HIGHEST, -0.1 * _HIGHEST), title)
     panel.polygons([[[ends[0], 0], [ends[1], 0], [ends[1], _NOISE], [ends[0], _NOISE]]], FAINT)
-    panel.ticks(x=(400, 600, 800, 1000), y=(2, 4, 6, 8), size=12)
+    panel.ticks(x=(400, 600, 800, 1000), size=12)
+    for px in (2, 4, 6, 8):  # on the right, apart from the angles on the left
+        panel.line([[ends[0], px], [ends[1], px]], _GRID, 0.5)
+        panel.text([ends[1] - 8, px], f"{px} px", MUTED, anchor="rm", size=12)
     panel.line([[ends[0], 0], [ends[1], 0]], MUTED, 0.8)
     panel.line([[lenses.alpha, 0], [lenses.alpha, _HIGHEST]], LENS, 1, dash=4)
     at = np.linspace(_SHORTEST, _LONGEST, 71)
@@ -153,7 +157,7 @@ def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Pa
         way = np.column_stack([at, np.abs(lenses.valley(float(other))(lenses.alpha / at))])
         panel.line(way, colour, width)
         if other != tilt:
-            panel.text([_SHORTEST - 8, way[0, 1]], f"{other}°", MUTED, anchor="rm", size=11)
+            panel.text([_SHORTEST - 8, way[0, 1]], f"{other}°", MUTED, anchor="rm", size=12)
     panel.text([_LONGEST + 20, way[-1, 1]], f"{tilt:.0f}°", ESTIMATED, size=13)
     x, y = alpha, lenses.misfit(tilt, alpha)
     panel.mark([x, y], "estimated", 8)
