@@ -28,7 +28,8 @@ _STORIES = (
     "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton", "clouds",
     "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold", "folds",
     "finding", "moved", "eleventh", "columns", "between", "rings", "epipolar", "rectification",
-    "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "ways", "meet",
+    "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "ways", "meet", "rim",
+    "decentred",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
