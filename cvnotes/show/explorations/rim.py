@@ -112,15 +112,15 @@ def _plane(paper: Paper, lens: Lens, r: float) -> Panel:
 
 def _curve(paper: Paper, lens: Lens, r: float, other: float) -> Panel:
     panel = paper.panel(_BESIDE, (0, _RADIUS), (0.5, -0.42), "observed radius against r")
-    panel.line([[0, 0], [_RADIUS, 0]], FAINT, 1)
+    panel.line([[0.0, 0.0], [_RADIUS, 0.0]], FAINT, 1)
     end = min(lens.max_radius, _RADIUS)
     for start, stop, ink in ((0, end, LENS), (end, _RADIUS, ESTIMATED)):
         along = np.linspace(start, stop, 61)
         panel.line(np.stack([along, seen_radius(lens, along)], -1), ink, 2.5)
     seen = float(seen_radius(lens, np.array(r)))
-    panel.line([[r, 0], [r, seen]], IDEAL, 1)
+    panel.line(np.array([[r, 0], [r, seen]]), IDEAL, 1)
     if seen > 0:
-        panel.line([[r, seen], [other, seen]], ESTIMATED, 1, dash=4)
+        panel.line(np.array([[r, seen], [other, seen]]), ESTIMATED, 1, dash=4)
     panel.mark([r, 0], "ideal", 6)
     by, anchor = (-0.05, "ma") if seen > 0 else (0.05, "md")
     panel.text([r, by], f"{r:.2f}", IDEAL, anchor=anchor, size=12)
