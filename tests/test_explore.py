@@ -98,7 +98,7 @@ from cvnotes.show.explorations.fold import (
     vanishing_points,
 )
 from cvnotes.show.explorations.folds import _SHOWN as FOLDS_SHOWN
-from cvnotes.show.explorations.lens import first_to_fold, polynomial
+from cvnotes.show.explorations.lens import polynomial, seen_radius
 from cvnotes.show.explorations.lettering import LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
 from cvnotes.show.explorations.moved import between, stands
@@ -310,7 +310,7 @@ def test_a_still_shows_what_the_widget_shows_at_twice_the_resolution(name):
 
 
 def test_values_no_slider_could_say_are_refused_in_words():
-    with pytest.raises(CvnotesError, match="lens: 'k9' is none of k1, k2, k3, p1, p2"):
+    with pytest.raises(CvnotesError, match="lens: 'k9' is none of k1, k2, k3"):
         MODELS["lens"].still(k9=0)
     with pytest.raises(CvnotesError, match=r"k1: expected a number from -1\.5 to 1\.5, got 7"):
         MODELS["lens"].still(k1=7)
@@ -503,39 +503,25 @@ def test_where_the_lens_folds_is_told_as_it_is_seen_beside_the_pictures_corners(
     r = 1 / np.sqrt(3)  # where 1 − 3 r² = 0
     far = np.hypot((639.5 - 325) / 800, 241.5 / 804), np.hypot(325.5 / 800, 241.5 / 804)
     assert np.allclose(said[:4], [r, r - r**3, max(far), 4], atol=6e-4)
-    assert said[4:] == [0.3, 0.27]  # the ring: 0.3 − 0.3³
-
-
-def test_the_ray_of_the_curve_is_drawn_where_the_tangential_terms_pull_inwards():
-    def dark(i, j, **p):
-        picture = MODELS["lens"].picture(k1=0.8, k2=0.5, **p)
-        ray = np.array([MARGIN + 215, TITLE + 180]) + np.outer(np.arange(30, 165), [i, j])
-        u, v = np.rint(ray).astype(int).T
-        return (picture[v, u].max(axis=-1) < 60).mean()
-
-    assert dark(0, -1, p1=0.06) > 0.3  # p points down
-    assert dark(-0.6, -0.8, p1=0.08, p2=0.06) > 0.3
-    assert dark(0.6, -0.8, p1=0.08, p2=0.06) < 0.1
-    assert dark(0, -1) < 0.1
 
 
 def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():
     drawing = MODELS["lens"].drawing(k1=0, k2=0)
     assert drawing.sentence.startswith("The model never folds. The lens moves")
-    assert numbers(drawing.sentence) == [0, 0.3, 0.3]
+    assert numbers(drawing.sentence) == [0]
     assert count(drawing.picture, ESTIMATED) == 0
     assert count(drawing.picture, LENS) > 1000
 
 
 def test_the_drawn_polynomial_is_the_lens_wherever_that_is_valid():
-    lens = Lens((-0.3, 0.2, -0.1), (0.02, -0.03))
+    lens = Lens((-0.3, 0.2, -0.1))
     xy = np.random.default_rng(0).uniform(-0.4, 0.4, (50, 2))
     assert np.allclose(polynomial(lens, xy), lens.distort(xy), atol=1e-14)
     assert np.isfinite(polynomial(lens, 100 * xy)).all()
 
 
 def test_the_sentence_tells_how_far_an_ideal_lens_would_show_the_corners_elsewhere():
-    said = numbers(MODELS["lens"].drawing(k1=-0.25, k2=0).sentence)[-3]
+    said = numbers(MODELS["lens"].drawing(k1=-0.25, k2=0).sentence)[-1]
     # The farthest corner is the lower left one; r − 0.25 r³ = r' has the ideal r as smallest root.
     x, y = (-0.5 - 325) / 800, (479.5 - 238) / 804
     seen = np.hypot(x, y)
@@ -1388,29 +1374,55 @@ def test_newton_and_division_need_as_many_rounds_as_they_are_said_to():
         assert numbers(drawing.sentence)[-2:] == rounds
 
 
-@pytest.mark.parametrize(("r", "ink"), [(0.3, LENS), (0.68, ESTIMATED), (1.1, ESTIMATED)])
-def test_a_ring_comes_back_beyond_the_fold_upon_one_that_the_lens_shows(r, ink):
-    model = MODELS["lens"]
-    drawing, bare = (model.drawing(k1=-1.2, k2=0, ring=x) for x in (r, 0.05))
+@pytest.mark.parametrize(("r", "ink"), [(0.3, LENS), (0.68, ESTIMATED), (1.03, ESTIMATED)])
+def test_a_disc_is_folded_at_the_rim_over_what_the_lens_shows(r, ink):
+    model = MODELS["rim"]
+    drawing = model.drawing(k1=-1.2, k2=0, ring=r)
     seen = r - 1.2 * r**3
-    turn = np.random.default_rng(0).uniform(0, 2 * np.pi, 100)
-    at = np.column_stack([np.cos(turn), np.sin(turn)]) * 360 / 1.68
+    turn = np.random.default_rng(0).uniform(0, 2 * np.pi, 400)
+    at = np.column_stack([np.cos(turn), np.sin(turn)]) * 430 / 0.834
+
+    def shown(radius):
+        u, v = np.rint([MARGIN + 234.5, TITLE + 214.5] + radius * at).astype(int).T
+        return drawing.picture[v, u].astype(int)
 
     def inked(radius):
-        u, v = np.rint([MARGIN + 215, TITLE + 180] + radius * at).astype(int).T
-        pixels, before = (x.picture[v, u].astype(int) for x in (drawing, bare))
-        wanted = np.array([int(ink[k : k + 2], 16) for k in (1, 3, 5)])
-        return ((np.abs(pixels - wanted) < 60).all(axis=1) & (pixels != before).any(axis=1)).mean()
+        return (np.abs(shown(radius) - colour(ink)).max(axis=1) < 60).mean()
 
-    assert inked(abs(seen)) > (0.6 if ink == LENS else 0.25)  # it is dashed
-    assert inked(1.2 * abs(seen)) < 0.1 > inked(0.8 * abs(seen))
-    said = numbers(drawing.sentence.split("The ring")[1])
-    assert np.allclose(said[:2], [r, seen], atol=6e-3)
-    if r == 0.68:  # the other root of r − 1.2 r³
+    assert inked(abs(seen)) > 0.8
+    assert inked(1.15 * abs(seen)) < 0.1 > inked(0.85 * abs(seen))
+    top = 2 / 3 * np.sqrt(1 / 3.6)
+    said = numbers(drawing.sentence)
+    assert np.allclose(said[:4], [np.sqrt(1 / 3.6), top, r, seen], atol=6e-3)
+    red_over_blue = [np.median(shown(x) @ [1, 0, -1]) for x in ((seen + top) / 2, 0.8 * seen)]
+    if r == 0.68:  # cells are filled orange from the edge to the rim, and are none within
+        assert red_over_blue[0] > 60 > 20 > red_over_blue[1]
+        # the other root of r − 1.2 r³
         roots = np.roots([-1.2, 0, 1, -seen])
-        assert abs(said[2] - np.sort(roots[roots > 0])[0]) < 6e-3
+        assert abs(said[4] - np.sort(roots[roots > 0])[0]) < 6e-3
     assert grip_of(drawing, "ring").at == (r, 0)
-    assert model.dragged("ring", (0.777, 0.4), k1=-1)["ring"] == 0.78
+    assert model.dragged("ring", (0.6, -0.8), k1=-1)["ring"] == 1
+
+
+@pytest.mark.parametrize(("p1", "p2"), [(0.05, 0), (-0.03, 0.04), (0.02, 0.01)])
+def test_a_decentred_lens_bows_the_line_across_p_and_a_tilted_sensor_does_not(p1, p2):
+    """By the terms written out for x and y, and by a division by the tilted coordinate."""
+    drawing = MODELS["decentred"].drawing(p1=p1, p2=p2)
+    assert numbers(drawing.sentence)[-2:] == [round(200 * np.hypot(p1, p2), 1), 0]
+    x, y = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 11), np.linspace(-0.5, 0.5, 11)))
+    P1, P2, r2 = 3 * p1, 3 * p2, x * x + y * y
+    lens = x + 2 * P1 * x * y + P2 * (r2 + 2 * x * x), y + P1 * (r2 + 2 * y * y) + 2 * P2 * x * y
+    w = 1 - 2 * (P2 * x + P1 * y)
+    for shift, (u, v) in ((0, lens), (378, (x / w, y / w))):
+        inside = (np.abs(u) < 0.7) & (np.abs(v) < 0.66)
+        at = np.rint([shift + MARGIN + 185.5 + 372 / 1.44 * u, TITLE + 199.5 + 400 / 1.548 * v])
+        near = [
+            drawing.picture[b - 1 : b + 2, a - 1 : a + 2].astype(int)
+            for a, b in at.astype(int)[:, inside].T
+        ]
+        met = [(np.abs(around - colour(LENS)).max(-1) < 70).any() for around in near]
+        assert np.mean(met) > 0.8  # the rest lies under arrows and the ruler
+    assert grip_of(drawing, "p").at == pytest.approx((4 * p2, 4 * p1))
 
 
 @pytest.mark.parametrize("hole", [0.02, 0.074, 0.3])
@@ -1546,14 +1558,11 @@ def test_a_tape_measure_lies_on_the_wall_with_a_long_tick_every_hundred_millimet
     assert yellow[0] > 100 > yellow[1] == 0
 
 
-@pytest.mark.parametrize("p", [{"p1": 0.04}, {"p2": -0.05}, {"p1": 0.03, "p2": 0.04}])
-def test_the_lenss_curve_has_its_top_where_the_lens_folds(p):
-    drawing = MODELS["lens"].drawing(k1=-0.9, k2=0, k3=0, **p)
-    end = Lens(k=(-0.9,), p=(p.get("p1", 0), p.get("p2", 0))).max_radius
+def test_the_lenss_curve_has_its_top_where_the_lens_folds():
     r = np.linspace(0, 1.3, 2000)
-    seen = first_to_fold(Lens(k=(-0.9,), p=(p.get("p1", 0), p.get("p2", 0))), r)
-    assert abs(r[seen.argmax()] - end) < 2e-3
-    assert f"max_radius = {end:.3f}" in drawing.sentence
+    top = r[seen_radius(Lens(k=(-0.9, 0.1)), r).argmax()]
+    said = MODELS["lens"].drawing(k1=-0.9, k2=0.1).sentence
+    assert numbers(said)[0] == pytest.approx(top, abs=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -2915,14 +2924,14 @@ def test_reset_draws_once_and_unchanged_values_are_not_drawn_again():
 
     model, calls = counting(MODELS["lens"])
     widget = Explorer(model)
-    for name in ("k1", "k2", "k3", "p1", "p2"):
+    for name in ("k1", "k2", "k3"):
         widget.sliders[name].value = 0.05
-    assert len(calls) == 6
+    assert len(calls) == 4
     widget.reset()
-    assert len(calls) == 7
+    assert len(calls) == 5
     widget.reset()
     widget.redraw()
-    assert len(calls) == 7
+    assert len(calls) == 5
     widget.close_all()
 
 
@@ -2983,6 +2992,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "folds": {"k1": -0.15},
     "columns": {"amount": 0.8},
     "ransac": {"draw": 20},
+    "decentred": {"p1": 0.02},
     "rings": {"place": 50},
     "walks": {"X": 200},
     "formation": {"X": 200},
@@ -3013,7 +3023,6 @@ ON_A_WAY = {  # along a curve, by its x
     ("newton", "level"),
     ("columns", "nine"),
     ("epipolar", "depth"),
-    ("lens", "ring"),
     ("stands", "plane"),
     ("zoom", "sensor"),
     ("stands", "alpha"),
@@ -3024,6 +3033,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("hinge", "angle"),
 }
 ROUND = {
+    ("rim", "ring"),
     ("camera", "camera"),
     ("gimbal", "orange axis"),
     ("walks", "line of sight"),

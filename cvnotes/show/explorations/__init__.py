@@ -31,7 +31,7 @@ _STORIES = (
     "finding", "moved", "eleventh", "columns", "between", "rings", "epipolar",
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing",
     "frame", "ways", "meet", "residuals", "enlarged", "hinge", "horizon",
-    "nails", "origin", "similar", "clicks", "zoom",
+    "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
