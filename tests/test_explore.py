@@ -825,8 +825,8 @@ def test_the_pulled_columns_stand_where_the_other_camera_finds_them_and_the_bar_
     drawing = MODELS["columns"].drawing(amount=1)
     between = drawing.picture[TITLE + 73, MARGIN : MARGIN + 490].astype(int)  # rows of corners
     orange = np.abs(between - colour(ESTIMATED)).max(axis=-1) < 40
-    at = np.array([run.mean() for run in np.split(np.arange(490), np.flatnonzero(np.diff(orange)) + 1)
-                   if orange[run[0]]])  # fmt: skip
+    runs = np.split(np.arange(490), np.flatnonzero(np.diff(orange)) + 1)
+    at = np.array([run.mean() for run in runs if orange[run[0]]])
     mm = (at + 0.5) * (8 + 1.45 + 0.75) * 30 / 490 - 1.45 * 30
     drawn = (mm - 30 * np.arange(9)) / 150
     apart = drawn - shifts

@@ -101,8 +101,8 @@ def columns_model() -> Model:
     """Make the model of the nine columns of a real sheet, as each of two cameras finds them."""
     real = course.real_corners()
     left, right = Believed(real.left), Believed(real.right)
-    amount = Setting("amount", "nine numbers ×", 0, 1.8, 0.05, 0,
-                     "how much of the right camera's nine shifts is put into the left camera's board")  # fmt: skip
+    said = "how much of the right camera's nine shifts is put into the left camera's board"
+    amount = Setting("amount", "nine numbers ×", 0, 1.8, 0.05, 0, said)
     about = (
         "A printed sheet with its nine columns of corners: blue as the left camera of a real pair "
         "finds them, orange with so much of the right camera's nine shifts; and the RMS of the "
@@ -140,10 +140,10 @@ def _sheet(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     square = course.real_corners().board.square
     lines, columns = left.shifts.shape
     reach = square * np.array([columns - 1, lines - 1])
-    panel = paper.panel(
-        _SHEET, (-1.45 * square, reach[0] + 0.75 * square), (-1.15 * square, reach[1] + 1.05 * square),
-        f"nine columns of the sheet, shifts × {_MAGNIFIED}",
-    )  # fmt: skip
+    across = -1.45 * square, reach[0] + 0.75 * square
+    down = -1.15 * square, reach[1] + 1.05 * square
+    title = f"nine columns of the sheet, shifts × {_MAGNIFIED}"
+    panel = paper.panel(_SHEET, across, down, title)
     dark = [np.array([i, j]) for i in range(columns - 1) for j in range(lines - 1) if (i + j) % 2]
     corner = square * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     panel.polygons([square * at + corner for at in dark], _PALE)
