@@ -80,11 +80,6 @@ FIGURES = [
         {"m": (M, several(2)), "predicted": (M + 1, several(2)), "magnify": (10.0, ONE)},
         paired=("m", "predicted"),
     ),
-    figure(
-        estimates.draw_view_families,
-        {"W": (W, several(3)), "truth": (800.0, ONE)},
-        results={"a": [RESULT], "b": [RESULT, RESULT]},
-    ),
     # calibration
     figure(calibration.draw_arrow, {"J": (np.eye(14), SINGLE)}, shared=2),
     figure(
@@ -125,13 +120,6 @@ FIGURES = [
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),
     figure(shapes.target_shapes, {"world_from_target": (G, SINGLE)}, target=BOARD),
     figure(sights.camera_shapes, {"depth": (100.0, ONE), "image": (SMALL, PICTURE)}, camera=CAMERA),
-    figure(
-        sights.sheet_shapes,
-        {
-            "edge": (np.array([[0.0, 0, 0], [0, 0, 9]]), several(3)),
-            "edges": (np.array([[[1.0, 2, 0], [1, 2, 9]]]), rows(3)),
-        },
-    ),
     figure(
         lambda m, to: sights.ray_shapes(CAMERA, m, to=to),
         {"m": (M, rows(2)), "to": (W[:3], rows(3))},

@@ -16,10 +16,13 @@ from PIL import Image
 
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
 from cvnotes.calibration import BoardShape
+from cvnotes.camera import Camera, look_at
+from cvnotes.pictures import chart_room, course, render_scene
 from cvnotes.show import (
     draw_corners,
     draw_coverage,
     draw_image,
+    draw_lines,
     draw_points,
     draw_residuals,
     one_corner,
@@ -362,6 +365,19 @@ def test_the_colours_of_a_drawing_go_to_its_edges_and_not_to_its_paper():
         for few in (with_palette(drawn), plain)
     )
     assert ours < 0.7 * pillows
+
+
+def test_a_small_thing_keeps_its_colour_beside_lines_of_a_colour_like_it():
+    """The switch of chapter 6, which was as orange as the lines."""
+    camera = Camera(course.camera().A, look_at([1180, 150, -760], [-60, 340, 0]))
+    ax = draw_image(render_scene(chart_room(), camera), ax=panels(height=395))
+    ax = draw_lines([[-0.05, -0.3, 30], [-0.5, -1, 700]], ax=ax)
+    drawn = pixels_of(ax.figure)[..., :3].astype(int)
+    shown = np.asarray(with_palette(Image.fromarray(drawn.astype(np.uint8))).convert("RGB"), int)
+    assert np.abs(shown - drawn).max() < 25
+    switch = np.abs(drawn - [183, 107, 82]).max(axis=-1) < 12
+    assert switch.sum() > 300
+    assert np.abs((shown - drawn)[switch].mean(axis=0)).max() < 8
 
 
 def test_few_colours_are_kept_as_they_are_and_of_many_none_is_lost():

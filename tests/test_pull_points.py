@@ -115,7 +115,7 @@ def test_lines_upon_the_picture_that_is_told_are_drawn_upon_it():
 
     new = (drawn([[[10, 30], [80, 30]]]) != drawn()).any(axis=-1)
     v, u = np.nonzero(new)
-    assert np.ptp(u) == pytest.approx(70 * 330 / 90, abs=4)
+    assert np.ptp(u) == pytest.approx(70 * 315 / 90, abs=4)  # 210 px high
     assert np.ptp(v) < 8
 
 

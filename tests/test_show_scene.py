@@ -33,7 +33,6 @@ from cvnotes.show import (
     plane_shapes,
     ray_shapes,
     scene_shapes,
-    sheet_shapes,
     target_shapes,
 )
 from cvnotes.show.space.directions import sheet
@@ -110,19 +109,6 @@ def test_pixels_beyond_the_lens_have_no_ray():
     camera = Camera(intrinsics(200, 200, 319.5, 239.5), lens=Lens((-0.5,)))
     (lines,) = ray_shapes(camera, [[320, 240], [639, 479]], to=np.eye(2, 3))
     assert len(lines.ends) == 1
-
-
-def test_a_sheet_between_two_segments_is_flat_and_covers_all_that_lies_between_them():
-    ridge, eaves = [[0, 0, 0], [0, 0, 70]], [[[x, 40, 0], [x, 40, 70]] for x in (-30, 30)]
-    (faces,) = sheet_shapes(ridge, eaves)
-    for one, side in zip(faces.corners.reshape(2, -1, 4, 3), (-1, 1), strict=True):
-        assert np.allclose(40 * one[..., 0], side * 30 * one[..., 1], atol=1e-12)
-        assert np.allclose([one[..., 1:].min((0, 1)), one[..., 1:].max((0, 1))],
-                           [[0, 0], [40, 70]], atol=1e-12)  # fmt: skip
-        normals = np.cross(one[:, 2] - one[:, 0], one[:, 3] - one[:, 1]) / 2
-        assert np.allclose(normals, normals[0], atol=1e-12)  # equal pieces: none on another
-        assert np.linalg.norm(normals, axis=1).sum() == pytest.approx(50 * 70)
-    assert 0 < faces.colours[:, 3].max() < 0.5
 
 
 def test_the_outline_on_the_plane_z_is_the_border_of_the_picture_without_the_lens():
@@ -429,7 +415,6 @@ def depth_of(corners, eye, towards):
         (lambda: axes_shapes(meaning="red"), CvnotesError, "world, camera, ideal"),
         (lambda: ray_shapes(STRAIGHT, [[1, 2]], to=np.eye(3)), ShapeError, "one point for each"),
         (lambda: camera_shapes(STRAIGHT, image=np.ones((4, 4))), CvnotesError, "expected uint8"),
-        (lambda: sheet_shapes(np.eye(3), np.ones((2, 3))), ShapeError, "between two segments"),
     ],
 )
 def test_what_cannot_be_shown_is_refused_in_words(make, error, words):

@@ -4,9 +4,8 @@ from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
 from cvnotes.show.explorations import explore, pull_points
 from cvnotes.show.figures.calibration import draw_arrow, draw_cube
-from cvnotes.show.figures.estimates import draw_plane_error, draw_view_families
-from cvnotes.show.figures.field_of_view import draw_field_of_view
-from cvnotes.show.figures.ideas import draw_meanings, draw_pinhole
+from cvnotes.show.figures.estimates import draw_plane_error
+from cvnotes.show.figures.ideas import draw_meanings
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
@@ -18,7 +17,6 @@ from cvnotes.show.space.camera_shapes import (
     dot_shapes,
     plane_shapes,
     ray_shapes,
-    sheet_shapes,
 )
 from cvnotes.show.space.shapes import (
     Faces,
@@ -45,18 +43,15 @@ __all__ = [
     "draw_corners",
     "draw_lines",
     "draw_segments",
-    # ideas: the colours, the pinhole
+    # the colours
     "draw_meanings",
-    "draw_pinhole",
     # chapter 3: how an image is formed
-    "draw_field_of_view",
     # chapter 4: lenses
     "draw_grid",
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_coverage",
     "draw_plane_error",
-    "draw_view_families",
     "draw_wall",
     # chapter 7: the picture of J, a cube on the board
     "draw_arrow",
@@ -72,7 +67,6 @@ __all__ = [
     "scene_shapes",
     "camera_shapes",
     "ray_shapes",
-    "sheet_shapes",
     "plane_shapes",
     "dot_shapes",
     "Faces",

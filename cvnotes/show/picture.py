@@ -131,7 +131,8 @@ def with_palette(picture: "PillowImage") -> "PillowImage | None":
     """Return a drawing in 256 of its colours, or None if it has more than 4096.
 
     The palette is chosen by median cut, where a colour counts by the square root of its pixels:
-    paper has nearly all of them, and the blended edges need the colours.
+    paper has nearly all of them, and the blended edges need the colours. Then each goes to the
+    middle of those nearest to it, so that a small thing keeps its colour beside one like it.
 
     Examples
     --------
@@ -148,7 +149,7 @@ def with_palette(picture: "PillowImage") -> "PillowImage | None":
     colours = np.array([colour for _, colour in counted], dtype=np.uint8)
     times = np.sqrt([n for n, _ in counted]).round().astype(int)
     strip = Image.fromarray(colours.repeat(times, axis=0)[None])
-    palette = strip.quantize(256, dither=Image.Dither.NONE)
+    palette = strip.quantize(256, kmeans=1, dither=Image.Dither.NONE)
     code = np.zeros(256**3, dtype=np.uint8)
     code[_in_one_number(colours)] = np.asarray(palette)[0, np.cumsum(times) - 1]
     few = Image.fromarray(code[_in_one_number(np.asarray(picture))])

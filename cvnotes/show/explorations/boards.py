@@ -7,16 +7,15 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, rotation_from_vector
 from cvnotes.show.explorations.paper import Panel
-from cvnotes.show.space.shapes import Faces, Label, Lines, Shape, places, target_shapes
+from cvnotes.show.space.shapes import Faces, Lines, target_shapes
 from cvnotes.show.style import ESTIMATED, MUTED
 from cvnotes.targets import Chessboard
 
-_INK = "#262629"
+PAPER, SQUARES = "#FBFBF8", "#262629"
 _PALE = "#E2E2E2"  # squares that arrows or letters lie on
 _HEAD = 8  # px, of an arrow
-_ASIDE = 13  # px from what a name belongs to
-# Seen a little from above and from the right: x to the right, y down, z to the left and away.
-_VIEW = rotation_from_vector([0.35, 0, 0]) @ rotation_from_vector([0, -0.9, 0])
+# Seen a little from above and from the left: x to the right, y down, z away.
+_VIEW = rotation_from_vector([0.5, 0, 0]) @ rotation_from_vector([0, -0.1, 0])
 
 
 def pinhole(camera: Camera) -> Camera:
@@ -28,9 +27,9 @@ def draw_board(panel: Panel, camera: Camera, board: Chessboard) -> bool:
     """Draw a board's picture by a camera without distortion; tell if all of it is in front."""
     border, squares = paper_and_squares(board)
     paper = camera.project(border)
-    panel.polygons(paper[None], "#FBFBF8")
+    panel.polygons(paper[None], PAPER)
     panel.line(paper[[0, 1, 2, 3, 0]], MUTED, 0.8)
-    panel.polygons(camera.project(squares), _INK)
+    panel.polygons(camera.project(squares), SQUARES)
     return bool(np.isfinite(paper).all())
 
 
@@ -57,7 +56,9 @@ def draw_net(
         panel.line(line, colour, width, dash)
 
 
-def draw_arrows(panel: Panel, m: Array, d: Array) -> None:
+def draw_arrows(
+    panel: Panel, m: Array, d: Array, colour: str = ESTIMATED, width: float = 1.2
+) -> None:
     """Draw arrows d (n, 2) from points m (n, 2), both in the coordinates of the panel."""
     tip = m + d
     length = np.linalg.norm(d, axis=-1, keepdims=True)
@@ -65,15 +66,9 @@ def draw_arrows(panel: Panel, m: Array, d: Array) -> None:
     across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
     head = np.minimum(_HEAD * panel.pixel, 0.8 * length)
     back = tip - head * along
-    panel.segments(np.stack([m, tip], axis=1), ESTIMATED, 1.2)
+    panel.segments(np.stack([m, tip], axis=1), colour, width)
     wings = back + 0.4 * head * across, back - 0.4 * head * across
-    panel.polygons(np.stack([tip, *wings], axis=1), ESTIMATED)
-
-
-def in_space(shapes: tuple[Shape, ...], size: tuple[int, int]) -> tuple[Array, Array]:
-    """Choose the x and y ranges of a panel that shows all of some shapes, at equal scales."""
-    seen = on_sheet(places(*shapes))
-    return around(seen.min(0), seen.max(0), size, 1.15)
+    panel.polygons(np.stack([tip, *wings], axis=1), colour)
 
 
 def around(low: Array, high: Array, size: tuple[int, int], room: float) -> tuple[Array, Array]:
@@ -81,22 +76,6 @@ def around(low: Array, high: Array, size: tuple[int, int], room: float) -> tuple
     reach = room * ((high - low) / size).max() / 2 * np.array(size)
     middle = (low + high) / 2
     return middle - reach, middle + reach
-
-
-def draw_in_space(panel: Panel, shapes: tuple[Shape, ...]) -> None:
-    """Draw shapes of the world as seen from far away, in the order in which they are given."""
-    for shape in shapes:
-        if isinstance(shape, Faces):
-            panel.polygons(on_sheet(shape.corners[_dark(shape)]), _PALE)
-        elif isinstance(shape, Lines):
-            panel.segments(on_sheet(shape.ends), shape.colour, shape.width)
-        elif isinstance(shape, Label):
-            if len(shape.name) == 1:  # of an axis: beyond its tip
-                way, anchor = on_sheet(shape.way), "mm"
-            else:
-                way, anchor = np.array([-1.0, 0]), "ra"
-            at = on_sheet(shape.at) + _ASIDE * panel.pixel * way / np.linalg.norm(way).clip(1e-9)
-            panel.text(at, shape.name, shape.colour, anchor=anchor, size=12)
 
 
 def on_sheet(W: Array) -> Array:

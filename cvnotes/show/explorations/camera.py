@@ -1,34 +1,50 @@
 """Explore the camera: every entry of A, R and T, with the picture of a board and the space."""
 
+from functools import lru_cache
+
 import numpy as np
 
-from cvnotes.base import Array
-from cvnotes.camera import Camera, intrinsics, inverse, pose, rotation_from_angles
+from cvnotes.base import Array, clipped_segments
+from cvnotes.camera import (
+    Camera,
+    intrinsics,
+    inverse,
+    look_at,
+    move,
+    pose,
+    px_from_xy,
+    rotation_from_angles,
+    xy_from_px,
+)
 from cvnotes.show.explorations.boards import (
-    draw_arrows,
+    PAPER,
+    SQUARES,
+    around,
     draw_board,
-    draw_in_space,
-    in_space,
     on_sheet,
+    paper_and_squares,
     pinhole,
 )
 from cvnotes.show.explorations.matrices import FOCAL, PIERCING, SHIFT, SKEW, TURN, matrix_table
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.orbit import round_the_board
+from cvnotes.show.explorations.orbit import angles_of, round_the_board
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.space.camera_shapes import camera_shapes
-from cvnotes.show.space.shapes import Lines, axes_shapes, target_shapes
-from cvnotes.show.style import ESTIMATED, MUTED
+from cvnotes.show.explorations.strokes import circle, cut
+from cvnotes.show.style import CAMERA, MUTED, WORLD
 from cvnotes.targets import Chessboard
 
-_ASIDE = 12  # px from the way T to the words beside it
+_SIZE = (440, 330)  # px, of each panel
+_TILE, _NEAR = 4, 20.0  # squares to a tile of the floor; mm before the camera
+_FLOOR, _WALL, _SHADOW, _JOINTS = "#EFE7D9", "#E2EBE4", "#CBC5BD", "#FBFAF7"
+_GLASS = "#CFE8F8"
 
 
 def camera_model(camera: Camera, board: Chessboard) -> Model:
     """Make the model of a board seen by `camera`, its lens left out."""
     alpha, (u0, v0), (w, h) = camera.A[0, 0], camera.A[:2, 2], camera.size
     reach = float(np.ceil(np.linalg.norm(board.points[-1])))
-    x, y, _ = -board.points.mean(axis=0)
+    start = look_at(*reach / 236 * np.array([[340, 150, -420], [170, 60, 0]]))
+    angles, T = np.degrees(angles_of(start[:3, :3])), start[:3, 3]
     axis = "in which the optical axis pierces the picture"
     turn = "turns the board about the camera's {} axis: R = Rz Ry Rx"
     shift = "where the board's origin lies along the camera's {} axis, mm"
@@ -37,12 +53,12 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
         _whole("u0", "u0 (px)", 0, w, u0, f"column {axis}", PIERCING),
         _whole("v0", "v0 (px)", 0, h, v0, f"row {axis}", PIERCING),
         _whole("skew", "skew (px)", -0.4 * alpha, 0.4 * alpha, camera.A[0, 1], "entry A12", SKEW),
-        Setting("angle_x", "angle x (°)", -75, 75, 1, -25, turn.format("x"), TURN),
-        Setting("angle_y", "angle y (°)", -75, 75, 1, 20, turn.format("y"), TURN),
-        Setting("angle_z", "angle z (°)", -180, 180, 1, 5, turn.format("z"), TURN),
-        _whole("T_x", "T x (mm)", -reach, reach, 0.9 * x, shift.format("x"), SHIFT),
-        _whole("T_y", "T y (mm)", -reach, reach, 0.9 * y, shift.format("y"), SHIFT),
-        _whole("T_z", "T z (mm)", 0, 3.2 * reach, 2.6 * reach, shift.format("z"), SHIFT),
+        _tenth("angle_x", "angle x (°)", 75, angles[0], turn.format("x"), TURN),
+        _tenth("angle_y", "angle y (°)", 75, angles[1], turn.format("y"), TURN),
+        _tenth("angle_z", "angle z (°)", 180, angles[2], turn.format("z"), TURN),
+        _whole("T_x", "T x (mm)", -reach, reach, T[0], shift.format("x"), SHIFT),
+        _whole("T_y", "T y (mm)", -reach, reach, T[1], shift.format("y"), SHIFT),
+        _whole("T_z", "T z (mm)", 0, 3.2 * reach, T[2], shift.format("z"), SHIFT),
     )
     about = (
         "The picture that a camera takes of a chessboard; beside it camera and board in space, "
@@ -73,6 +89,11 @@ def _whole(
     return Setting(name, label, round(low), round(high), 1, round(value), about, tint)
 
 
+def _tenth(name: str, label: str, most: float, value: float, about: str, tint: str) -> Setting:
+    """Make a setting in steps of 0.1."""
+    return Setting(name, label, -most, most, 0.1, round(float(value), 1), about, tint)
+
+
 def _moved(camera: Camera, values: Values) -> Camera:
     ratio = camera.A[1, 1] / camera.A[0, 0]
     alpha = values["alpha"]
@@ -83,52 +104,142 @@ def _moved(camera: Camera, values: Values) -> Camera:
 
 
 def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Drawing:
-    picture = paper.picture_panel((440, 330), camera.size, "the picture of the board")
+    picture = paper.picture_panel((440, 330), camera.size, "the picture")
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * camera.size - 0.5
+    picture.polygons([corners], _WALL)
+    floor, joints = _floor(board, (-60, 60), (-60, 24))
+    picture.polygons([_seen(camera, floor)], _FLOOR)
+    ends = move(camera.G, joints)
+    picture.segments(_pixels(camera, clipped_segments(ends, ends[..., 2:] - _NEAR)), _JOINTS, 1)
     complete = draw_board(picture, camera, board)
-    w, h = camera.size
-    for way in np.array([[11, 0], [0, 11]]) * picture.pixel:  # the middle of the picture
-        picture.line(np.outer([-1, 1], way) + [(w - 1) / 2, (h - 1) / 2], MUTED, 1.5)
-    picture.mark(camera.A[:2, 2], "camera", 7)
+    middle = (np.array(camera.size) - 1) / 2
+    for way in np.array([[11, 0], [0, 11]]) * picture.pixel:
+        picture.line(np.outer([-1, 1], way) + middle, MUTED, 1.5)
+    picture.mark(camera.A[:2, 2], "camera", 9)
     origin = camera.project([0, 0, 0])
-    picture.mark(origin, "world", 5)
+    picture.mark(origin, "world", 7)
     picture.grip(
         "principal point", "where the optical axis pierces the picture", camera.A[:2, 2], 5
     )
     picture.grip("board", "the board's origin in the picture", origin, 5)
-    space = _space(camera, board, paper)
+    space = _space(camera, board, paper, corners)
     sentence = _sentence(camera, board, complete)
     return Drawing(paper.join((picture, space)), sentence, _matrices(camera))
 
 
-def _space(camera: Camera, board: Chessboard, paper: Paper) -> Panel:
-    size = (410, 330)
-    length = 5 * board.square
-    shapes = (
-        *target_shapes(board),
-        *axes_shapes(length=length, name=""),
-        *axes_shapes(inverse(camera.G), 1.7 * length, name="", meaning="camera"),
-        *camera_shapes(camera, 1.25 * length, name=""),
-    )
-    # The scale stays when the camera goes away, as far as its slider does.
-    farthest = -3.2 * float(np.linalg.norm(board.points[-1])) * camera.R[2]
-    low, high = in_space((*shapes, Lines("", np.array([[farthest, farthest]]), MUTED, 1)), size)
-    panel = paper.panel(
-        size, (low[0], high[0]), (low[1], high[1]), "space, in the frame of the board"
-    )
-    draw_in_space(panel, shapes)
-    _draw_T(panel, camera)
+@lru_cache(maxsize=8)
+def _floor(board: Chessboard, x: tuple[int, int], z: tuple[int, int]) -> tuple[Array, Array]:
+    """Return corners (4, 3) and joints (n, 2, 3) of a floor below a board, its ends in squares."""
+    at = np.array([[x[0], z[0]], [x[1], z[0]], [x[1], z[1]], [x[0], z[1]]])
+    along = [[[i, z[0]], [i, z[1]]] for i in range(x[0], x[1] + 1, _TILE)]
+    across = [[[x[0], i], [x[1], i]] for i in range(z[0], z[1] + 1, _TILE)]
+    low = board.corners[1] + 3
+    corners, joints = (np.insert(xz, 1, low, axis=-1) for xz in (at, [*along, *across]))
+    return board.square * corners, board.square * joints
+
+
+def _seen(camera: Camera, corners: Array) -> Array:
+    """Return the picture (m, 2) of a polygon (n, 3), of what of it lies before the camera."""
+    M = move(camera.G, corners)
+    return _pixels(camera, cut(M, M[:, 2] - _NEAR))
+
+
+def _pixels(camera: Camera, M: Array) -> Array:
+    return px_from_xy(camera.A, M[..., :2] / M[..., 2:])
+
+
+def _space(camera: Camera, board: Chessboard, paper: Paper, corners: Array) -> Panel:
+    """Draw board and camera as they stand, and the way T from the camera to the board's origin."""
+    border, squares = paper_and_squares(board)
+    floor, joints = _floor(board, (-4, 16), (-20, 6))
+    axes, own = board.square * 5 * np.eye(3), board.square * np.diag([5.5, 5.5, 8]) @ camera.R
+    back, C = inverse(camera.G), camera.centre
+    walk = move(back, np.vstack([np.zeros(3), np.cumsum(np.diag(camera.T), axis=0)]))
+    xy = xy_from_px(camera.A, corners)
+    pane = move(back, 5 * board.square * np.insert(xy, 2, 1, axis=-1))
+    stands = np.array([*border[2:], C])
+    below = np.where([0, 1, 0], floor[0], stands)
+    shown = on_sheet(np.concatenate([floor, border, axes, below, pane, C + own, walk]))
+    (x0, y0), (x1, y1) = around(shown.min(axis=0), shown.max(axis=0), _SIZE, 1.18)
+    panel = paper.panel(_SIZE, (x0, x1), (y0, y1), "space: pull the camera")
+    panel.polygons([on_sheet(floor)], _FLOOR)
+    panel.segments(on_sheet(joints), _JOINTS, 1)
+    panel.line(on_sheet(below[:2]), _SHADOW, 4)
+    panel.polygons([on_sheet(below[2] + board.square * np.insert(circle(25), 1, 0, 1))], _SHADOW)
+    panel.segments(on_sheet(np.stack([stands, below], axis=1)), MUTED, 1)
+    panel.polygons([on_sheet(border)], PAPER)
+    panel.line(on_sheet(border[[0, 1, 2, 3, 0]]), MUTED, 1)
+    panel.polygons(on_sheet(squares), SQUARES)
+    _draw_axes(panel, np.zeros(3), axes, "XYZ", WORLD)
+    _draw_pyramid(panel, on_sheet(C), on_sheet(pane))
+    seen = [_within(corners, _seen(camera, W)) for W in (border, *squares)]
+    across = (on_sheet(pane[[1, 3]]) - on_sheet(pane[0])) / np.array([camera.size]).T
+    small = [on_sheet(pane[0]) + (m - corners[0]) @ across for m in seen]
+    panel.polygons(small, [PAPER, *[SQUARES] * len(squares)])
+    _draw_axes(panel, C, own, "xyz", CAMERA)
+    _draw_T(panel, on_sheet(walk), camera.T)
+    panel.mark(on_sheet(np.zeros(3)), "world", 6)
+    panel.grip("camera", "the camera, to carry it round the board", on_sheet(C), 6)
     return panel
 
 
-def _draw_T(panel: Panel, camera: Camera) -> None:
-    """Draw the way from the camera to the board's origin, which is T in the camera's frame."""
-    ends = on_sheet(np.stack([camera.centre, np.zeros(3)]))
-    draw_arrows(panel, ends[:1], ends[1:] - ends[:1])
-    panel.mark(ends[0], "camera", 5)
-    panel.grip("camera", "the camera, to carry it round the board", ends[0], 6)
-    way, aside = ends[1] - ends[0], _ASIDE * panel.pixel  # the name stands beside the way
-    across = np.array([-way[1], way[0]]) / max(float(np.linalg.norm(way)), panel.pixel)
-    panel.text(ends.mean(axis=0) + aside * across, "T", ESTIMATED, anchor="mm", size=12)
+def _within(corners: Array, m: Array) -> Array:
+    """Cut a polygon (n, 2) to the picture, whose corners go round from the top left."""
+    for axis, side in ((0, 1), (0, -1), (1, 1), (1, -1)):
+        m = cut(m, side * (m[:, axis] - corners[1 - side, axis]))
+    return m
+
+
+def _draw_pyramid(panel: Panel, centre: Array, pane: Array) -> None:
+    """Draw the sides of a camera's pyramid as glass, and its image plane as the wall it sees."""
+    sides = np.stack([np.broadcast_to(centre, pane.shape), pane, np.roll(pane, -1, axis=0)], 1)
+    panel.veil(list(sides), [_GLASS] * 4)
+    panel.polygons([pane], _WALL)
+    panel.segments(sides[:, [[0, 1], [1, 2]]].reshape(-1, 2, 2), CAMERA, 1.5)
+
+
+def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str) -> None:
+    """Draw three axes (3, 3), with their names beyond their tips."""
+    for axis, name in zip(axes, names, strict=True):
+        ends = on_sheet(np.array([start, start + axis]))
+        panel.line(ends, colour, 2)
+        panel.text(
+            ends[1] + 11 * panel.pixel * _along(panel, ends), name, colour, anchor="mm", size=14
+        )
+
+
+def _draw_T(panel: Panel, at: Array, T: Array) -> None:
+    """Draw T, from the camera to the board's origin, and its three steps along x, y and z."""
+    panel.line(at, CAMERA, 2)
+    along = _along(panel, at[[0, 3]])
+    across = np.array([along[1], -along[0]])
+    head = at[3] + panel.pixel * np.array([[0, 0], [-17, 6], [-17, -6]]) @ np.array([along, across])
+    panel.line(np.array([at[0], head[1:].mean(axis=0)]), CAMERA, 4)
+    panel.polygons([head], CAMERA)
+    _name(panel, at[[0, 3]], at[1:3].mean(axis=0), "T", 17)
+    for i, (axis, number) in enumerate(zip("xyz", T, strict=True)):
+        _name(
+            panel,
+            at[i : i + 2],
+            at[0 if i else 3],
+            f"{axis} {number + 0.0:.0f}".replace("-", "−"),
+            14,
+        )
+
+
+def _name(panel: Panel, ends: Array, other: Array, words: str, size: int) -> None:
+    """Write words beside the middle of a line, on the side on which the other point is not."""
+    (x, y), middle = _along(panel, ends), ends.mean(axis=0)
+    across = np.array([y, -x])
+    across = across * (1 if across @ (middle - other) > 0 else -1)
+    anchor = "lmr"[1 - int(np.rint(1.2 * across[0]))] + "m"
+    panel.text(middle + 11 * panel.pixel * across, words, CAMERA, anchor=anchor, size=size)
+
+
+def _along(panel: Panel, ends: Array) -> Array:
+    """Return the direction from one end to the other, shorter than 1 where they nearly meet."""
+    way = ends[1] - ends[0]
+    return np.asarray(way / max(float(np.linalg.norm(way)), panel.pixel))
 
 
 def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:

@@ -5,20 +5,23 @@ from functools import lru_cache
 import numpy as np
 
 from cvnotes.base import Array, Image, luma
+from cvnotes.camera import Camera
 from cvnotes.pictures import course, expose, render_scene, room_with
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.rings import blurred
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, mixed
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 from cvnotes.targets import refine_edges, refine_subpixel
 
 _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners is shown
-_PICTURES = "as computed", "sharpened", "JPEG of quality 30", "5 px shake", "rays, no blur"
+_PICTURES = "as computed", "sharpened", "JPEG, quality 30", "5 px shake", "rays, no blur"
 _METHODS = ("gradients", LENS), ("edge model", ESTIMATED)
 _WINDOWS = np.arange(3, 13)  # px, from the middle to the border
-_REACHES, _SHOWN = (0.07, 0.15), 14  # px, of the clouds and of the picture
-_LEAST, _MOST = 0.003, 0.2  # px, of the curves
+_REACHES, _SHOWN = (0.06, 0.15), 14  # px, of the clouds and of the pictures
+_LEAST, _MOST = 0.0038, 0.25  # px, of the curves
+_CLOUD, _CURVES = (596, 360), (274, 526)
+_SIDE, _GAP = 4 * (2 * _SHOWN + 1), 4  # px of the page, of each picture and between two
 
 
 def clouds_model() -> Model:
@@ -28,10 +31,15 @@ def clouds_model() -> Model:
         Setting("picture", "picture", 1, 5, 1, 1, "; ".join(_PICTURES)),
     )
     about = (
-        "A corner and the window about it; the errors of 54 corners by the gradients, blue, and by "
-        "the model of two blurred edges, orange; and how large they are, for each window."
+        "The errors of 54 corners by the gradients, blue, and by the model of two blurred edges, "
+        "orange, with rings as large as the RMS of a point; below, the same corner in five "
+        "pictures, with its window; beside it how large the rings are, for each window."
     )
-    return Model("clouds", about, settings, _draw, {"window": lambda _, at: {"window": at[0]}})
+    drags = {
+        "window": lambda _, at: {"window": at[0]},
+        "picture": lambda _, at: {"picture": np.floor(at[0]) + 1},
+    }
+    return Model("clouds", about, settings, _draw, drags)
 
 
 @lru_cache(maxsize=5)
@@ -45,18 +53,30 @@ def changed(which: int) -> Image:
         return expose(light, jpeg=30)
     if which == 4:
         way = 5 * ((np.arange(320) + 0.5) / 320 - 0.5)
-        shaken = light @ np.mean([_moved(light.shape[1], s) for s in way], axis=0).T
-        return expose(shaken, noise=2, rng=np.random.default_rng(3))
+        wide = np.pad(light, ((0, 0), (3, 3)), mode="edge")
+        parts = [np.maximum(1 - np.abs(j - way), 0).mean() for j in range(-3, 4)]  # linear between
+        shaken = sum(part * wide[:, k : k + light.shape[1]] for k, part in enumerate(parts))
+        return expose(np.asarray(shaken), noise=2, rng=np.random.default_rng(3))
     if which == 5:
-        room = room_with(course.board(), course.poses()[_VIEW])
-        return luma(render_scene(room, course.camera(), samples=64).astype(float))
+        return _traced(course.camera())
     return light
 
 
-def _moved(n: int, by: float) -> Array:
-    """Return the matrix (n, n) of a shift along rows, linear between pixels."""
-    at = np.arange(n)
-    return np.asarray(np.maximum(1 - np.abs((at[:, None] - by).clip(0, n - 1) - at), 0))
+def _traced(camera: Camera) -> Image:
+    room = room_with(course.board(), course.poses()[_VIEW])
+    return np.asarray(luma(render_scene(room, camera, samples=64).astype(float)))
+
+
+@lru_cache(maxsize=1)
+def cutouts() -> Drawn:
+    """Return the same corner in all five pictures (5, 29, 29)."""
+    u, v = np.rint(course.exact_corners()[_VIEW, _CORNER]).astype(int)
+    around = np.s_[v - _SHOWN : v + _SHOWN + 1, u - _SHOWN : u + _SHOWN + 1]
+    A, side = course.camera().A.copy(), 2 * _SHOWN + 1
+    A[:2, 2] -= [u - _SHOWN, v - _SHOWN]  # a small picture takes no second
+    near = Camera(A, lens=course.camera().lens, size=(side, side))
+    parts = [*(changed(k)[around] for k in range(1, 5)), _traced(near)]
+    return np.rint(parts).clip(0, 255).astype(np.uint8)
 
 
 @lru_cache(maxsize=5)
@@ -72,11 +92,10 @@ def errors(which: int) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     window, which = round(values["window"]), round(values["picture"])
     off = errors(which)
-    rms = np.sqrt(np.nanmean(off**2, axis=(2, 3)))
+    rms = np.sqrt(2 * np.nanmean(off**2, axis=(2, 3)))  # of a point
     now = int(window - _WINDOWS[0])
-    reach = _REACHES[int(which > 2)]  # one for all windows, for the clouds to be compared
-    cloud = _cloud(paper, off[:, now], reach)
-    panels = _picture(paper, window, which), cloud, _curves(paper, rms, now)
+    cloud = _cloud(paper, off[:, now], rms[:, now], _REACHES[int(which > 2)])
+    drawn = paper.join(([cloud, _strip(paper, window, which)], _curves(paper, rms, now)))
     (gradients, edges), name = rms[:, now], _PICTURES[which - 1]
     lost = int(np.isnan(off[:, now, :, 0]).any(axis=0).sum())
     larger = "blue" if gradients > edges else "orange"
@@ -85,61 +104,68 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         f"gradients are off by {gradients:.3f} px and the edge model by {edges:.3f}: the {larger} "
         f"cloud is {max(gradients / edges, edges / gradients):.1f} times as large."
     )
-    return Drawing(paper.join(panels), f"{said} ({lost} corners were lost.)" if lost else said)
+    return Drawing(drawn, f"{said} ({lost} corners were lost.)" if lost else said)
 
 
-def _picture(paper: Paper, window: int, which: int) -> Panel:
-    u, v = np.rint(course.exact_corners()[_VIEW, _CORNER]).astype(int)
+def _strip(paper: Paper, window: int, which: int) -> Panel:
+    """Draw the same corner in all five pictures, side by side; the one that is measured, framed."""
+    wide, size, names = _SIDE + _GAP, (_CLOUD[0], _SIDE + 22), _SIDE + 11
     panel = paper.panel(
-        (285, 285), (u - _SHOWN - 0.5, u + _SHOWN + 0.5), (v - _SHOWN - 0.5, v + _SHOWN + 0.5),
-        f"{_PICTURES[which - 1]}, and the window",
-    )  # fmt: skip
-    part = changed(which)[v - _SHOWN : v + _SHOWN + 1, u - _SHOWN : u + _SHOWN + 1]
-    panel.image(np.rint(part).clip(0, 255).astype(np.uint8), smooth=False)
-    box = (window + 0.5) * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
-    for colour, width in (("#FFFFFF", 3.5), (ESTIMATED, 1.8)):
-        panel.line(box + [u, v], colour, width)
+        size, (0, size[0] / wide), (0, size[1]), "pull the cross along the pictures"
+    )
+    row = np.full((5, size[1], wide), 255, np.uint8)
+    row[:, :_SIDE, :_SIDE] = cutouts().repeat(4, axis=1).repeat(4, axis=2)
+    panel.image(np.concatenate(row, axis=1)[:, : size[0]])
+    square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
+    for k, name in enumerate(_PICTURES):
+        middle, chosen = np.array([k + _SIDE / wide / 2, _SIDE / 2]), k == which - 1
+        box = middle + 4 * (2 * window + 1) * square * [1 / wide, 1]
+        for colour, width in (("#FFFFFF", 3), (ESTIMATED, 1.4)):
+            panel.line(box, colour, width)
+        panel.text([middle[0], names], name, IDEAL if chosen else MUTED, anchor="mm", size=13)
+        if chosen:
+            panel.line(middle + (_SIDE - 3) * square * [1 / wide, 1], ESTIMATED, 3)
+    held = [which - 0.17, 0.14 * _SIDE]
+    panel.mark(held, "estimated", 8)
+    panel.grip("picture", "which picture is measured", held, wide)
     return panel
 
 
-def _cloud(paper: Paper, off: Array, reach: float) -> Panel:
-    """Draw the errors, and a ring as large as the RMS of a point."""
-    panel = paper.panel(
-        (285, 285), (-reach, reach), (-reach, reach), f"54 errors; {2 * reach:g} px wide"
-    )
-    ring = circle(91)
-    dot = 2 * panel.pixel * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    for cloud, (_, colour) in zip(off, _METHODS, strict=True):
-        pale = mixed("#FFFFFF", colour, 0.55)  # the ring stands out
-        panel.polygons(cloud[:, None] + dot, pale)
-    for cloud, (_, colour) in zip(off, _METHODS, strict=True):
-        panel.line(np.sqrt(2 * np.nanmean(cloud**2)) * ring, colour, 1.8)
-    panel.mark([0, 0], "ideal", 6)
-    outside = int((np.abs(off) > reach).any(axis=(0, 2)).sum())
+def _cloud(paper: Paper, off: Array, rms: Array, reach: float) -> Panel:
+    """Draw the errors, and rings as large as the RMS of a point; the smaller cloud on top."""
+    aside = reach * _CLOUD[0] / _CLOUD[1]
+    title = f"errors of 54 corners; the panel is {2 * reach:g} px high"
+    panel = paper.panel(_CLOUD, (-aside, aside), (-reach, reach), title)
+    dot, ring = 3 * panel.pixel * circle(13), circle(91)
+    order = np.argsort(-rms)
+    for k in order:
+        panel.polygons([rms[k] * ring], mixed("#FFFFFF", _METHODS[k][1], 0.15))
+    for k in order:
+        panel.line(rms[k] * ring, _METHODS[k][1], 2)
+        panel.polygons(off[k][:, None] + dot, mixed("#FFFFFF", _METHODS[k][1], 0.7))
+    panel.mark([0, 0], "ideal", 7)
+    outside = int((np.abs(off) > [aside, reach]).any(axis=(0, 2)).sum())
     if outside:
         words = f"{outside} of 54 go beyond"
-        panel.text([-0.94 * reach, 0.92 * reach], words, IDEAL, anchor="lm", size=12)
+        panel.text([-0.97 * aside, 0.92 * reach], words, IDEAL, anchor="lm", size=13)
     return panel
 
 
 def _curves(paper: Paper, rms: Array, now: int) -> Panel:
-    """Draw the RMS of one coordinate against the window, as a logarithm."""
-    panel = paper.panel(
-        (285, 285),
-        (2, 13),
-        (np.log10(_MOST), np.log10(_LEAST)),
-        "RMS (px) against the window's side (px)",
-    )
+    """Draw the RMS of a point against the window, as a logarithm."""
+    ends = (np.log10(_MOST), np.log10(_LEAST))
+    panel = paper.panel(_CURVES, (2, 13), ends, "RMS of a point (px), by the window (px)")
     for half in _WINDOWS[::3]:
-        panel.text([half, np.log10(1.06 * _LEAST)], f"{2 * half + 1}", anchor="md", size=12)
-    for value in (0.005, 0.01, 0.02, 0.05, 0.1):
+        panel.text([half, np.log10(1.03 * _LEAST)], f"{2 * half + 1}", anchor="md", size=12)
+    for value in (0.005, 0.01, 0.02, 0.05, 0.1, 0.2):
         panel.line([[0, np.log10(value)], [14, np.log10(value)]], "#DDDDDD", 0.5)
         panel.text([2.1, np.log10(value)], f"{value:g}", size=12)
     for curve, (name, colour) in zip(rms, _METHODS, strict=True):
-        panel.line(np.column_stack([_WINDOWS, np.log10(curve)]), colour, 2)
+        panel.line(np.column_stack([_WINDOWS, np.log10(curve)]), colour, 2.2)
         upper = curve[-1] == rms[:, -1].max()  # its name is above it, that of the lower one below
-        at = np.log10(curve[-4:].max() if upper else curve[-4:].min()) + (0.05 if upper else -0.05)
-        panel.text([12.8, at], name, colour, anchor="rd" if upper else "ra", size=12)
+        at = np.log10(curve[-4:].max() if upper else curve[-4:].min()) + (0.03 if upper else -0.03)
+        panel.text([12.8, at], name, colour, anchor="rd" if upper else "ra", size=13)
         panel.mark([_WINDOWS[now], np.log10(curve[now])], "ideal", 6)
-    panel.grip("window", "how large the window is", [_WINDOWS[now], np.log10(rms[0, now])], 26)
+    held = [_WINDOWS[now], np.log10(rms[0, now])]
+    panel.grip("window", "how large the window is", held, 26)
     return panel

@@ -33,7 +33,9 @@ def eye_model() -> Model:
         height = values["height"]
         picture = paper.picture_panel((440, 330), _SIZE, "what the camera sees")
         _draw_picture(picture, height)
-        side = paper.panel((330, 330), (-18, 100), (8.6, -0.8), "the same from the side (m)")
+        side = paper.panel(
+            (330, 330), (-18, 100), (8.6, -0.8), "from the side (m), heights stretched"
+        )
         _draw_side(side, height)
         return Drawing(paper.join((picture, side)), _sentence(height))
 

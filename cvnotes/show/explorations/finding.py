@@ -38,12 +38,12 @@ class Finding:
         k1, k2 = radial_distortion(A, G, W, m, terms=2)
         self.problem = Problem(W, m, size=self.size)
         start = self.problem.state(Camera(A, lens=Lens((k1, k2))), G)
-        self._states = [start]
+        self.states = [start]
         self._strides: list[tuple[Array, Array]] = []
         for _ in range(_STEPS):
-            stride, _ = solve_by_schur(self.problem.linearise(self._states[-1])[1], 0.0)
+            stride, _ = solve_by_schur(self.problem.linearise(self.states[-1])[1], 0.0)
             self._strides.append(stride)
-            self._states.append(take_step(self._states[-1], stride))
+            self.states.append(take_step(self.states[-1], stride))
 
     def at(self, step: float) -> tuple[Camera, Array]:
         """Return the camera after so many steps, parts of them too, and m minus what it predicts.
@@ -53,7 +53,7 @@ class Finding:
         whole = min(int(step), _STEPS - 1)
         shared, poses = self._strides[whole]
         part = step - whole
-        x: State = take_step(self._states[whole], (part * shared, part * poses))
+        x: State = take_step(self.states[whole], (part * shared, part * poses))
         camera = self.problem.camera_of(x.shared)
         return camera, self.problem.residuals(camera, x)
 

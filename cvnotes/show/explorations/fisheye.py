@@ -76,7 +76,7 @@ def _outline(panel: Panel, f: float, R: Array) -> None:
     phi = np.linspace(0, 2 * np.pi, 181)
     panel.line(shown_at(np.stack([np.cos(phi), np.sin(phi), 0 * phi], -1)), "white", 1.2, dash=5)
     below = shown_at(np.array([0.0, -1, 0])) + [0, 5 * panel.pixel]
-    panel.text(below, "180°", MUTED, anchor="ma", size=12)
+    panel.text(below, "90° from the axis", MUTED, anchor="ma", size=12)
     along, one = np.linspace(-1, 1, 41), np.ones(41)
     x, y = np.r_[along, one, -along, -one], np.r_[-one, along, one, -along]
     border = np.stack([x * _VIEW[0] / 2, y * _VIEW[1] / 2, f + 0 * x], axis=-1)

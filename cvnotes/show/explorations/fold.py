@@ -96,7 +96,7 @@ def fold_model() -> Model:
     H = [dlt(W[:, :2], camera.project(W)) for camera in cameras]
     circles = [circle_of(h) for h in H]
     settings = (
-        Setting("fold", "fold (°)", _LOWEST, _HIGHEST, 0.5, 50,
+        Setting("fold", "hinge (°)", _LOWEST, _HIGHEST, 0.5, 50,
                 "the angle of the eye over the photograph, about its horizon"),
         Setting("second", "a second photograph", 0, 1, 1, 1, "of the same board, same camera"),
     )  # fmt: skip
@@ -205,7 +205,7 @@ def _name(
 def _side(paper: Paper, H: Array, circles: list[Circle], eye: Array) -> Panel:
     """Draw the half circles from the side, and above them the first fold."""
     high, low = 1598, -250  # one scale for both axes, so that a half circle is one
-    panel = paper.panel(_SIDE, (-580, 960), (high, low), "the fold, face on")
+    panel = paper.panel(_SIDE, (-580, 960), (high, low), "the hinge, face on")
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
     panel.polygons([[[-580, high], [960, high], [960, 750], [-580, 750]]], "#FFFFFF")
     _fold(panel, H, circles[0])
@@ -216,7 +216,7 @@ def _side(paper: Paper, H: Array, circles: list[Circle], eye: Array) -> Panel:
         _name(panel, arc[45, 1:] * [1, 0], (90 * k - 45, -8), f"photograph {k + 1}", _INKS[k], "ma")
     panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
     panel.mark(eye[1:], "camera", 9)
-    panel.grip("fold", "the fold", eye[1:], 4)
+    panel.grip("fold", "the hinge", eye[1:], 4)
     return panel
 
 

@@ -19,14 +19,15 @@ from cvnotes.show.explorations.boards import draw_squares
 from cvnotes.show.explorations.fold import Circle, behind_sheet, circle_of, on_sheet
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
 _Of = tuple[float, float]  # k1, and how far the boards are turned
 
-_SPACE, _CLOSE, _CURVE = (508, 421), (340, 225), (340, 168)
+_SPACE, _CLOSE, _CURVE = (508, 421), (340, 262), (340, 131)
 _SHOWN = ((-2150, 2725), (-2480, 1556))  # x and y of the sheet: all half circles, for each k1
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
-_NEAR = 50  # px about the principal point, that are shown enlarged
+_NEAR = 100.0  # px about the camera, that are shown enlarged
 _MOST = 90.0  # px, of the curve
 _DEEP = 4000  # px from the palest half circles to the strongest, with the camera between
 _FAR, _TONES = "#B0CEE4", 8  # the palest blue; how many there are
@@ -96,8 +97,8 @@ def folds_model() -> Model:
     )  # fmt: skip
     about = (
         "Twelve half circles, one for each photograph: all places from which it shows right "
-        "angles. Beside them a plan about the principal point, in which they are lines, and how "
-        "far they miss the camera, against k1."
+        "angles. Beside them what lies near the camera, enlarged, and how far they miss it, "
+        "against k1."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -135,52 +136,67 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     panel.line(seen, MUTED, 1)
     m = np.column_stack([tangle.seen(1)[0] * tangle.square, np.zeros(len(tangle.W))])
     draw_squares(panel, on_sheet(m), tangle.board, "#B0B0B0")
-    arcs = np.array([circle.place(np.arange(0, 181, 1.5)) for circle in tangle.circles(*of)])
-    _draw_arcs(panel, arcs, tangle.eye)
-    panel.mark(on_sheet(tangle.eye), "ideal", 9)
-    _draw_found(on_sheet(tangle.found(*of)), panel, 6)
+    arcs = np.array([one.place(np.arange(0, 181, 1.5)) for one in tangle.circles(*of)])
+    near = behind_sheet(tangle.eye - arcs) / _DEEP
+    _draw_arcs(panel, on_sheet(arcs), near, (1, 2.2))
+    for size in (2.5 * panel.pixel, _NEAR):
+        panel.line(on_sheet(tangle.eye) + size * circle(33), IDEAL, 1)
+    panel.polygons([on_sheet(tangle.eye) + 2.5 * panel.pixel * circle(17)], IDEAL)
     return panel
 
 
-def _draw_arcs(panel: Panel, arcs: Array, eye: Array) -> None:
-    """Draw curves (n, k, 3) in pieces, from the farthest to the nearest: thicker and stronger."""
-    pieces = np.stack([arcs[:, :-1], arcs[:, 1:]], axis=2).reshape(-1, 2, 3)
-    near = behind_sheet(eye - pieces.mean(axis=1)) / _DEEP
-    tone = np.rint((near + 0.5).clip(0, 1) * (_TONES - 1))
+def _draw_arcs(panel: Panel, arcs: Array, near: Array, width: _Of) -> None:
+    """Draw curves (n, k, 2) in pieces, from the farthest to the nearest: thicker and stronger.
+
+    How near their points (n, k) are goes from −½ to ½.
+    """
+    pieces = np.stack([arcs[:, :-1], arcs[:, 1:]], axis=2)
+    tone = np.rint(((near[:, :-1] + near[:, 1:] + 1) / 2).clip(0, 1) * (_TONES - 1))
     for i in range(_TONES):
         part = i / (_TONES - 1)
-        panel.segments(on_sheet(pieces[tone == i]), mixed(_FAR, LENS, part), 1 + 1.2 * part)
-
-
-def _draw_found(at: Array, panel: Panel, size: float) -> None:
-    """Draw the camera that is found as a triangle, orange as all that is computed.
-
-    It goes over the plus of the true camera, whose arms are longer.
-    """
-    panel.polygons(
-        [at + size * panel.pixel * np.array([[0, -1], [0.9, 0.7], [-0.9, 0.7]])], ESTIMATED
-    )
+        ink = mixed(_FAR, LENS, part)
+        panel.segments(pieces[tone == i], ink, width[0] + part * (width[1] - width[0]))
 
 
 def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
-    """Draw the plan: a half circle is a line there, square to the horizon, through (u0, v0)."""
-    reach = _NEAR * np.array(_CLOSE) / _CLOSE[0]
-    (left, top), (right, low) = tangle.eye[:2] - reach, tangle.eye[:2] + reach
-    panel = paper.panel(_CLOSE, (left, right), (top, low), "from above: u₀ and v₀")
-    for circle in tangle.circles(*of):
-        panel.line(circle.place(np.array([0.0, 180]))[:, :2], LENS, 1)
+    """Draw what lies in a ball about the camera, from above: u to the right and v down."""
+    eye, reach = tangle.eye[:2], _NEAR / 0.93 * np.array(_CLOSE) / _CLOSE[1]
+    (left, top), (right, low) = eye - reach, eye + reach
+    panel = paper.panel(
+        _CLOSE, (left, right), (top, low), "within the circle, from above: u₀ and v₀"
+    )
+    panel.line(eye + _NEAR * circle(129), IDEAL, 1)
+    arcs = np.array([_inside(one, tangle.eye) for one in tangle.circles(*of)])
+    _draw_arcs(panel, arcs[..., :2], (arcs[..., 2] - tangle.eye[2]) / (2 * _NEAR), (1.6, 3.2))
+    pixel, inset = panel.pixel, 14 * panel.pixel
+    for at in (eye, np.array([left + inset, top + inset])):
+        panel.segments(at + 8 * pixel * np.array([[[-1, 0], [1, 0]], [[0, -1], [0, 1]]]), IDEAL, 2)
+    panel.text([left + inset + 12 * pixel, top + inset], "camera", IDEAL, size=12)
     found = tangle.found(*of)[:2]
-    panel.mark(tangle.eye[:2], "ideal", 13)
-    rim = 12 * panel.pixel
-    _draw_found(np.clip(found, [left + rim, top + rim], [right - rim, low - rim]), panel, 9)
-    if np.isnan(found).any():
-        panel.text([left + 4, top + 6], "no camera", MUTED, size=12)
-    elif ((found < [left, top]) | (found > [right, low])).any():
-        panel.text([left + 4, top + 6], "farther out", MUTED, size=12)
-    for ink, width in (("white", 7), (IDEAL, 2)):
-        panel.line([[left + 4, low - 6], [left + 24, low - 6]], ink, width)
-    panel.text([left + 26, low - 6], "20 px", IDEAL, size=12)
+    words = "no camera" if np.isnan(found).any() else "found"
+    if np.hypot(*(found - eye)) > _NEAR:
+        words = "farther out"
+    else:
+        _draw_triangle(panel, found)
+    _draw_triangle(panel, np.array([left + inset, low - inset]))
+    panel.text([left + inset + 12 * pixel, low - inset], words, ESTIMATED, size=12)
+    panel.segments([[[right - 50 - inset, low - inset], [right - inset, low - inset]]], IDEAL, 2)
+    panel.text([right - inset, low - 2 * inset], "50 px", IDEAL, anchor="rm", size=12)
     return panel
+
+
+def _inside(one: Circle, eye: Array) -> Array:
+    """Return places (k, 3) of a half circle near the camera; NaN outside of the ball."""
+    middle = np.degrees(np.arctan2(eye[2], (eye[:2] - one.foot) @ one.up))
+    places = one.place(middle + np.degrees(1.1 * _NEAR / one.radius) * np.linspace(-1, 1, 45))
+    places[np.linalg.norm(places - eye, axis=1) > _NEAR] = np.nan
+    return places
+
+
+def _draw_triangle(panel: Panel, at: Array) -> None:
+    """Draw the camera that is found: hollow, so that it hides nothing."""
+    corners = at + 9 * panel.pixel * np.array([[0, -1], [0.9, 0.7], [-0.9, 0.7]])
+    panel.line(corners[[0, 1, 2, 0, 1]], ESTIMATED, 2)
 
 
 def _curve(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:

@@ -6,7 +6,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.shadows import GROUND, POLES, SIZE, draw_sun, shaded, tip_of
+from cvnotes.show.explorations.shadows import GROUND, POLES, SIZE, draw_ray, photographed, tip_of
 from cvnotes.show.style import ESTIMATED, LENS
 
 _CAMERA = Camera(intrinsics(800, 804, 325, 238), size=SIZE)  # the course's, level
@@ -37,7 +37,7 @@ def forged_model() -> Model:
         tip = place + [values["aside"], 0, values["ahead"]]
         suns = np.tile(_SUN, (len(POLES), 1))
         suns[1] = top - tip
-        photo, seen = shaded(_CAMERA, suns), _CAMERA.project([tip, top, foot])
+        photo, seen = photographed(_CAMERA, suns, _SUN), _CAMERA.project([tip, top, foot])
         misses = [_miss(seen[[0, i]], end) for i, end in enumerate(ends, 1)]
         panel = paper.picture_panel((470, 352), SIZE, "is this shadow true?")
         panel.image(photo)
@@ -60,12 +60,11 @@ def forged_model() -> Model:
 
 
 def _draw_lines(panel: Panel, ends: Array, seen: Array, misses: list[float]) -> None:
-    """Draw sun and horizon point, two true lines to each, and those of the shadow pulled."""
-    draw_sun(panel, ends[0])
+    """Draw the horizon point, two true lines to each, and those of the shadow pulled."""
     panel.mark(ends[1], "ideal", 7)
     for other in POLES[2:4]:
-        for end, dash in zip(ends, (0, 4), strict=True):
-            panel.line([_CAMERA.project(tip_of(other, _SUN)), end], ESTIMATED, 1, dash=dash)
+        panel.line([_CAMERA.project(tip_of(other, _SUN)), ends[1]], ESTIMATED, 1, dash=4)
+        draw_ray(panel, _CAMERA, other, _SUN)
     tip, *through = seen
     for by, miss, dash in zip(through, misses, (0, 6), strict=True):
         panel.line([tip, by + 9 * (by - tip)], LENS if miss < _NEAR else ESTIMATED, 2, dash=dash)

@@ -12,6 +12,7 @@ from cvnotes.pictures.meshes import box, outlined
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.moved import part_of
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import cut
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, hexed, rgb
 
 # One step or several: from points of the world (..., 3) to where a panel shows them, (..., 2).
@@ -91,6 +92,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_above(world, lambda W: W[..., [0, 2]], camera, W)
     _draw_axes(world, max(150, W[0] + 70), WORLD, "XZ", lambda ends: ends[..., [0, 2]])
     _take_hold(world, camera, W)
+    world.line(np.array([camera.centre, W])[:, [0, 2]], ESTIMATED, 1.2)
     frame, at = _draw_frame(paper, camera, W, values["way"])
     steps = "2. ÷ z, 3. lens" if bent else "2. ÷ z"
     plane = paper.panel(_SIZE, (-0.64, 0.64), (-0.48, 0.48), f"{steps}: the plane z = 1")
@@ -153,6 +155,7 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
         frame.line(flat[[flat[:, 0].argmin(), flat[:, 0].argmax()]], WORLD, 4)
         if slid < 1:
             _draw_faces(frame, list(on_the_way(faces)), turn=-1)
+    frame.line(seen(np.array([camera.centre, W])), ESTIMATED, 1.2)
     return frame, on_the_way(W)
 
 
@@ -194,7 +197,7 @@ def _on_plane(camera: Camera, corners: Array) -> list[Array]:
     M = move(camera.G, corners)
     parts = list(outlined(M))
     for i in np.flatnonzero((M[..., 2] < _NEAR).any(axis=1)):
-        parts[i] = outlined(_before(M[i]))
+        parts[i] = outlined(cut(M[i], M[i, :, 2] - _NEAR))
     ends = np.cumsum([len(part) for part in parts])[:-1]
     x, y, z = np.concatenate(parts).T
     xy = np.stack([x, y], axis=1) / z[:, None]
@@ -206,16 +209,6 @@ def _on_plane(camera: Camera, corners: Array) -> list[Array]:
 def _sensed(camera: Camera, W: Array) -> Array:
     """Return where (..., 2) on z = 1 points come to lie behind the lens; NaN without an image."""
     return np.asarray((camera.project(W) - camera.A[:2, 2]) / np.diag(camera.A)[:2])
-
-
-def _before(M: Array) -> Array:
-    """Cut a polygon (k, 3) to what lies before the camera."""
-    kept: list[Array] = []
-    for a, b in zip(M, [*M[1:], M[0]], strict=True):
-        kept += [a] * bool(a[2] >= _NEAR)
-        if (a[2] >= _NEAR) != (b[2] >= _NEAR):
-            kept += [a + (_NEAR - a[2]) / (b[2] - a[2]) * (b - a)]
-    return np.array(kept).reshape(-1, 3)
 
 
 def _faces(corner: Array) -> Array:

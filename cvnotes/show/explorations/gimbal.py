@@ -78,7 +78,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.polygons(_on_sheet(quads[order]), [paints[i] for i in order])
     for name, axis, _, r, colour in rings:
         at = _on_sheet((r + 0.3) * axis)
-        panel.text(at + [0.14 if at[0] > -0.2 else -0.14, 0], name, colour, anchor="mm", size=14)
+        panel.text(at + [0.14 if at[0] > -0.2 else -0.14, 0], name, colour, anchor="mm", size=15)
     end = _on_sheet(inner * 0.9)
     panel.mark(end, "estimated", 6)
     panel.grip("orange axis", "the end of the orange axis", end, 8)
@@ -107,14 +107,14 @@ def _bar(ends: Array) -> Array:
 
 def _volume(paper: Paper, y: float) -> Panel:
     panel = paper.panel((320, 360), (-112, 112), (1.15, -0.16), "volume that the three axes span")
-    panel.ticks(x=(-90, -45, 0, 45, 90), y=(0, 0.5, 1))
+    panel.ticks(x=(-90, -45, 0, 45, 90), y=(0, 0.5, 1), size=12)
     angles = np.arange(-90, 91, 0.5)
     panel.line(np.column_stack([angles, np.cos(np.radians(angles))]), MUTED, 2)
     here = np.array([y, np.cos(np.radians(y))])
     panel.mark(here, "estimated", 8)
     below = here - [0.24 * y, 0.08 * here[1]]  # the curve is above
     panel.text(below, f"{abs(here[1]):.2f}", ESTIMATED, anchor="mm", size=13)
-    panel.text([0, 0.12], "middle angle (°)", MUTED, anchor="mm", size=11)
+    panel.text([0, 0.12], "middle angle (°)", MUTED, anchor="mm", size=13)
     return panel
 
 

@@ -22,8 +22,8 @@ from cvnotes.show.style import ESTIMATED
 # What is said of a picture and its points: a sentence, lines, and perhaps another picture.
 Tell = Callable[[npt.NDArray[Any], Array], tuple[Any, ...]]
 
-_ALONE, _BESIDE = ((600, 440), 230), ((380, 300), 130)  # px: picture, width of the loupe
-_OTHER = (330, 300)  # px, of the other picture
+_ALONE, _LOUPE = (600, 440), 230  # px: the picture, and the width of the loupe beside it
+_BESIDE, _OTHER, _LOWEST = (440, 340), (324, 210), 100  # px: with another picture over the loupe
 _STEP = 0.5  # px
 _MOST = 12  # points
 _LARGE = 1600  # px, the longer side of a photograph of the reader's own
@@ -80,22 +80,18 @@ def _model(picture: npt.NDArray[Any], at: Array, tell: Tell) -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         m, now = points_of(values), int(values["point"])
         told = _told_or_why(tell, picture, m)
-        room, loupe = _ALONE if told.other is None else _BESIDE
-        size = _fit((w, h), room)
+        size = _fit((w, h), _ALONE if told.other is None else _BESIDE)
         panel = paper.picture_panel(size, (w, h), "pull the points")
         panel.image(fitted(paper.sharpness * size[0], paper.sharpness * size[1]))
         _draw_points(panel, m, told.lines)
-        panels = [panel, _loupe(paper, (loupe, size[1]), photo, m, told.lines, now)]
-        if told.other is not None:
-            width, height = told.other.shape[1::-1]
-            beside = paper.picture_panel(
-                _fit((width, height), _OTHER), (width, height), "what the function returns"
-            )
-            beside.image(told.other)
-            for line in told.its_lines:
-                beside.line(line, ESTIMATED, 1.5)
-            panels.insert(1, beside)
-        return Drawing(paper.join(tuple(panels)), told.words)
+        if told.other is None:
+            column = [_loupe(paper, (_LOUPE, size[1]), photo, m, told.lines, now)]
+        else:
+            over = _beside(paper, told.other, told.its_lines)
+            below = max(size[1] - over.sheet[1] // paper.sharpness, _LOWEST)
+            loupe = (over.width // over.scale, below)
+            column = [over, _loupe(paper, loupe, photo, m, told.lines, now)]
+        return Drawing(paper.join((panel, column)), told.words)
 
     def pulled(i: int, at: Array) -> Values:
         return {"point": i, f"u{i}": float(at[0]), f"v{i}": float(at[1])}
@@ -181,13 +177,24 @@ def _clearest(places: Array, away: Array, marked: list[Array], pixel: float) -> 
     return np.asarray(places[np.argmax(off.clip(max=16 * pixel) + 0.1 * outside)])
 
 
+def _beside(paper: Paper, other: Drawn, lines: Sequence[Array]) -> Panel:
+    """Draw the picture that the reader's function returns, and its lines."""
+    size = (other.shape[1], other.shape[0])
+    panel = paper.picture_panel(_fit(size, _OTHER), size, "what the function returns")
+    panel.image(other)
+    for line in lines:
+        panel.line(line, ESTIMATED, 1.5)
+    return panel
+
+
 def _loupe(
     paper: Paper, size: tuple[int, int], photo: Drawn, m: Array, lines: list[Array], now: int
 ) -> Panel:
     """Draw the pixels around a point, enlarged; beyond the picture is white."""
-    reach = max(10, photo.shape[1] // 160)
-    tall = round((reach + 0.5) * size[1] / size[0] - 0.5)  # as high as the picture beside it
-    size = (round(size[1] * (2 * reach + 1) / (2 * tall + 1)), size[1])
+    # As many whole pixels as make them square, but for a few per cent.
+    short = max(min(10, round(21 * min(size) / max(size))), photo.shape[1] // 160)
+    long = round((short + 0.5) * max(size) / min(size) - 0.5)
+    reach, tall = (short, long) if size[0] < size[1] else (long, short)
     left, top = np.rint(m[now - 1]).astype(int) - [reach, tall]
     wide, high = 2 * reach + 1, 2 * tall + 1
     sheet = np.full((high, wide, *photo.shape[2:]), 255, np.uint8)

@@ -12,6 +12,7 @@ from cvnotes.pictures import chart_room, course, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.strokes import contours
 from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD, rgb
 from cvnotes.warping import rectify_plane
 
@@ -140,10 +141,8 @@ def _draw_shores(panel: Panel, wall: Image, m: Array, H: Array) -> None:
     fine = np.asarray(
         Bitmap.fromarray(height).resize(wall.shape[1::-1], Bitmap.Resampling.BICUBIC, inside)
     )
-    steep = np.hypot(*np.gradient(fine)).clip(1e-9)
-    width = wall.shape[1] / _SIZE[0]
-    off = np.min([np.abs(fine - np.log(shore)) for shore in _SHORES], axis=0) / steep
-    ink = np.rint(3 * np.clip(0.8 * width - off, 0, 1))[..., None] / 4  # few colours pack small
+    lines = contours(fine, np.log(_SHORES), 0.8 * wall.shape[1] / _SIZE[0])
+    ink = np.rint(3 * lines)[..., None] / 4  # few colours pack small
     ink[np.asarray(Bitmap.fromarray(behind).resize(fine.shape[::-1], box=inside)) > 0] = 0
     panel.image(((1 - ink) * wall + ink * 255 * np.array(rgb(ESTIMATED))).astype(np.uint8))
     for shore in _SHORES:

@@ -1,6 +1,6 @@
-"""Explore the lens: what k1, k2, k3, p1 and p2 do to a room and a grid, and where it folds."""
+"""Explore the lens: what k1, k2 and k3 do to a room and a grid, and where the model folds."""
 
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 
 import numpy as np
 from PIL import Image
@@ -11,7 +11,7 @@ from cvnotes.camera.lens import radial_factor
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, mixed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp
 
@@ -20,42 +20,33 @@ _HELD = 0.6  # where the curve is taken hold of
 _RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
 _DETAIL = 450  # px of the photograph of the room for a length of 1 on the plane z = 1
-_FOLDED = mixed(ESTIMATED, "#FFFFFF", 0.4)
 _COARSE = 4  # px between which the way back through the lens, which takes long, is linear
 
 
 def lens_model(camera: Camera, _: Chessboard) -> Model:
     """Make the model; it starts with the lens of `camera`, whose frame is drawn into the grid.
 
-    Of the lens its first three radial coefficients and the tangential ones are taken.
+    Of the lens its first three radial coefficients are taken.
     """
     k1, k2, k3 = (*camera.lens.k, 0.0, 0.0, 0.0)[:3]
-    p1, p2 = camera.lens.p
     what = "radial: bends the borders inwards (negative) or outwards"
     settings = (
         _around("k1", 1.5, 0.01, k1, what),
         _around("k2", 2.0, 0.01, k2, "radial, of the fourth power of r"),
         _around("k3", 2.0, 0.01, k3, "radial, of the sixth power of r"),
-        _around("p1", 0.1, 0.001, p1, "tangential: an element of the lens off the axis, along y"),
-        _around("p2", 0.1, 0.001, p2, "tangential: an element of the lens off the axis, along x"),
-        Setting("ring", "ring r", 0.05, 1.25, 0.01, 0.3, "the ideal radius of a ring"),
     )
     about = (
         "A room and a square grid, both seen through a lens; beside it the observed radius "
-        "r L(r) against the ideal radius r, with the fold where the model ends. In both a "
-        "ring, grey, and what the polynomial makes of it."
+        "r L(r) against the ideal radius r, with the fold where the model ends."
     )
 
     def pulled(values: Values, at: Array) -> Values:
         """Choose the k1 whose curve goes through a height over the radius of the grip."""
-        r2, p = _HELD**2, np.hypot(values["p1"], values["p2"])
-        rest = 1 + values["k2"] * r2**2 + values["k3"] * r2**3 - 3 * p * _HELD
+        r2 = _HELD**2
+        rest = 1 + values["k2"] * r2**2 + values["k3"] * r2**3
         return {"k1": float((at[1] / _HELD - rest) / r2)}
 
-    def ringed(_: Values, at: Array) -> Values:
-        return {"ring": float(at[0])}
-
-    return Model("lens", about, settings, partial(_draw, camera), {"curve": pulled, "ring": ringed})
+    return Model("lens", about, settings, partial(_draw, camera), {"curve": pulled})
 
 
 def _around(name: str, reach: float, step: float, value: float, about: str) -> Setting:
@@ -65,26 +56,20 @@ def _around(name: str, reach: float, step: float, value: float, about: str) -> S
 
 
 def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
-    lens = Lens((values["k1"], values["k2"], values["k3"]), (values["p1"], values["p2"]))
+    lens = Lens((values["k1"], values["k2"], values["k3"]))
     reach = 1.4 * _EXTENT
     x = reach * _SIZE[0] / _SIZE[1]
     title = "plane z = 1, and the frame of our picture"
     grid = paper.panel(_SIZE, (-x, x), (-reach, reach), title)
-    grid.image(_bent_room(lens, x, reach, paper.sharpness))
-    _draw_fold(grid, lens)
-    along = "along the dashed ray on the left" if any(lens.p) else "r L(r) against ideal r"
-    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), f"radius: observed {along}")
-    said = _draw_ring(grid, curve, lens, values["ring"])
+    grid.image(bent_room(lens, (x, reach), _SIZE, paper.sharpness))
+    draw_fold(grid, lens)
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "observed radius r L(r) against ideal r")
     _draw_grid(grid, lens)
     corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
     for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
         grid.line(corners, colour, width)
-    if any(lens.p):
-        ray = [[0, 0], -reach * np.array(lens.p[::-1]) / np.hypot(*lens.p)]
-        grid.line(ray, "#FFFFFF", 3)
-        grid.line(ray, IDEAL, 1.4, dash=5)
     _draw_curve(curve, lens)
-    return Drawing(paper.join((grid, curve)), f"{_sentence(camera, lens)} {said}")
+    return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
 
 
 @cache
@@ -95,20 +80,28 @@ def _room() -> Drawn:
     w, h = 3 * _DETAIL, 5 * _DETAIL // 2
     camera = Camera(intrinsics(_DETAIL, _DETAIL, (w - 1) / 2, (h - 1) / 2), size=(w, h))
     picture: Drawn = render_scene(room(), camera, samples=4)
-    return (255 - 0.75 * (255.0 - picture)).astype(np.uint8)  # light, under a grid
+    return picture
 
 
-def _bent_room(lens: Lens, x: float, y: float, sharpness: int) -> Drawn:
-    """Show the room through a lens, from −x to x and −y to y.
+@lru_cache(maxsize=4)  # it stays while something else is pulled
+def bent_room(
+    lens: Lens,
+    half: tuple[float, float],
+    panel: tuple[int, int],
+    sharpness: int,
+    part: float = 0.75,
+) -> Drawn:
+    """Show the room through a lens, half as wide and as high as given from the middle on.
 
-    A little beyond the fold it goes on: that is for `_draw_fold` to cover.
+    It is light, so that a grid can lie over it: only a `part` of its ink is left. A little beyond
+    the fold it goes on: that is for `draw_fold` to cover.
     """
     room = _room()
     h, w = room.shape[:2]
-    size = sharpness * _SIZE[0], sharpness * _SIZE[1]
+    size = sharpness * panel[0], sharpness * panel[1]
     columns, rows = (
         reach * ((2 * np.arange(n) + 1) / n - 1)
-        for reach, n in zip((x, y), np.array(_SIZE) // _COARSE, strict=True)
+        for reach, n in zip(half, np.array(panel) // _COARSE, strict=True)
     )
     ideal = _continued(lens.undistort(np.stack(np.meshgrid(columns, rows), axis=-1)))
     sides = (_DETAIL * ideal + np.array([w - 1, h - 1]) / 2).astype(np.float32)
@@ -116,7 +109,8 @@ def _bent_room(lens: Lens, x: float, y: float, sharpness: int) -> Drawn:
         np.asarray(Image.fromarray(side).resize(size, Image.Resampling.BILINEAR))
         for side in np.moveaxis(sides, -1, 0)
     ]
-    return backward_warp(room, np.stack(m, axis=-1), fill=255).astype(np.uint8)
+    seen = backward_warp(room, np.stack(m, axis=-1), fill=255)
+    return np.asarray(255 - part * (255.0 - seen)).astype(np.uint8)
 
 
 def _continued(x: Array) -> Array:
@@ -132,7 +126,7 @@ def _continued(x: Array) -> Array:
     return x
 
 
-def _draw_fold(panel: Panel, lens: Lens) -> None:
+def draw_fold(panel: Panel, lens: Lens) -> None:
     """Cover what lies beyond the fold, where the lens shows nothing, up to a smooth border."""
     fold = polynomial(lens, min(lens.max_radius, 9.0) * circle(181))
     if lens.max_radius < 9:
@@ -141,7 +135,7 @@ def _draw_fold(panel: Panel, lens: Lens) -> None:
         panel.line(fold, ESTIMATED, 1.8)
     if lens.max_radius < 2 * _EXTENT:
         top = fold[:, 1].min()
-        over = top > panel.y[0] + 0.1  # else there is room within the circle alone
+        over = top > panel.y[0] + 22 * panel.pixel  # else there is room within the circle alone
         y = top - 0.02 if over else max(top, panel.y[0]) + 0.02
         panel.text([0, y], "the fold", ESTIMATED, anchor="md" if over else "ma")
 
@@ -151,11 +145,8 @@ def _draw_grid(panel: Panel, lens: Lens) -> None:
     across = np.stack(np.meshgrid(fine, coarse), -1)
     for line in (*across, *across[..., ::-1]):
         panel.line(line[[0, -1]], MUTED, 0.5)
-    for beyond in (True, False):  # what comes back beyond the fold lies under the rest
-        for line in (*across, *across[..., ::-1]):
-            inside = np.linalg.norm(line, axis=-1, keepdims=True) <= lens.max_radius
-            bent = np.where(inside != beyond, polynomial(lens, line), np.nan)
-            panel.line(bent, *((_FOLDED, 1.3) if beyond else (LENS, 1.2)))
+    for line in (*across, *across[..., ::-1]):
+        panel.line(lens.distort(line), LENS, 1.2)  # NaN beyond the fold
     panel.mark([0, 0], "ideal")
     panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
     bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
@@ -171,9 +162,9 @@ def _draw_curve(panel: Panel, lens: Lens) -> None:
     panel.text([0.97, 0.93], "ideal", IDEAL)
     fold = min(lens.max_radius, _RADIUS)
     good, beyond = np.linspace(0, fold, 61), np.linspace(fold, _RADIUS, 61)
-    panel.line(np.stack([beyond, first_to_fold(lens, beyond)], -1), ESTIMATED, 1.8, dash=5)
-    panel.line(np.stack([good, first_to_fold(lens, good)], -1), LENS, 2.2)
-    held = [_HELD, float(first_to_fold(lens, np.array(_HELD)))]
+    panel.line(np.stack([beyond, seen_radius(lens, beyond)], -1), ESTIMATED, 1.8, dash=5)
+    panel.line(np.stack([good, seen_radius(lens, good)], -1), LENS, 2.2)
+    held = [_HELD, float(seen_radius(lens, np.array(_HELD)))]
     panel.mark(held, "lens", 8)
     panel.grip("curve", "the curve of k1", held, 2)
     if lens.max_radius < _RADIUS:
@@ -184,48 +175,16 @@ def _draw_curve(panel: Panel, lens: Lens) -> None:
         panel.text([lens.max_radius + shift, height], words, ESTIMATED, anchor=anchor)
 
 
-def _draw_ring(grid: Panel, curve: Panel, lens: Lens, r: float) -> str:
-    """Draw what becomes of a ring of ideal radius r, beyond the fold too; says it in a sentence."""
-    seen, ring = float(first_to_fold(lens, np.array(r))), r * circle(121)
-    beyond = r > lens.max_radius
-    ink, dash = (ESTIMATED, 7.0) if beyond else (LENS, 0.0)
-    grid.line(ring, MUTED, 1.4, dash=4)
-    for colour, width in (("#FFFFFF", 5.0), (ink, 3.0)):
-        grid.line(polynomial(lens, ring), colour, width, dash=dash)
-    aside = r * np.array([np.cos(0.6), np.sin(0.6)])
-    grid.line([aside, polynomial(lens, aside)], ink, 1.4)
-    grid.mark([aside], "ideal", 5)
-    curve.line([[r, 0], [r, seen], [0, seen]], ink, 1)
-    place, anchor = ([r - 0.02, seen - 0.015], "ra") if beyond else ([0.14, seen + 0.015], "ld")
-    if seen < 0:
-        place, anchor = [r - 0.02, seen + 0.015], "rd"
-    curve.text(place, f"{seen:.2f}".replace("-", "−"), ink, anchor=anchor, size=12)
-    curve.mark([r, 0], "ideal", 8)
-    curve.grip("ring", "the ideal radius of the ring", [r, 0], 5)
-    where = f"{seen:.2f}{' on the dashed ray' if any(lens.p) else ''}"
-    if not beyond:
-        return f"The ring of radius {r:.2f} is seen at {where}."
-    said = f"The ring of radius {r:.2f} would be drawn at {where}"
-    if seen < 0:
-        return f"{said}, beyond the middle."
-    towards = -np.array(lens.p[::-1]) / np.hypot(*lens.p) if any(lens.p) else np.array([1.0, 0.0])
-    other = float(np.linalg.norm(lens.undistort(seen * towards)))
-    if np.isnan(other):
-        return f"{said}, farther out than all that is seen."
-    curve.mark([other, seen], "estimated", 7)
-    return f"{said}, where that of {other:.2f} is seen."
-
-
 def _sentence(camera: Camera, lens: Lens) -> str:
     corners = camera_corners(camera)
     r = float(np.linalg.norm(corners, axis=-1).max())
     ideal = lens.undistort(corners)
     if np.isnan(ideal).any():
-        seen, ray = first_to_fold(lens, np.array(lens.max_radius)), ", along the dashed ray"
+        seen = seen_radius(lens, np.array(lens.max_radius))
         black = np.isnan(ideal).any(axis=-1).sum()
         return (
             f"The model folds at max_radius = {lens.max_radius:.3f}, which is seen at "
-            f"r' = {seen:.3f}{ray if any(lens.p) else ''}. The picture's corners are at r' up to "
+            f"r' = {seen:.3f}. The picture's corners are at r' up to "
             f"{r:.3f}: in {black} of them nothing is seen. Orange is no lens."
         )
     fold = f"folds at r = {lens.max_radius:.3f}, beyond the picture"
@@ -244,15 +203,11 @@ def camera_corners(camera: Camera) -> Array:
     return Camera(camera.A, size=camera.size).ideal(corners)
 
 
-def first_to_fold(lens: Lens, r: Array) -> Array:
-    """Return the observed radius against the tangential direction (p2, p1), where it is least."""
-    return np.asarray(r * radial_factor(lens.k, r * r) - 3 * np.hypot(*lens.p) * r * r)
+def seen_radius(lens: Lens, r: Array) -> Array:
+    """Return the observed radius r L(r), beyond the fold too, to show how the model folds."""
+    return np.asarray(r * radial_factor(lens.k, r * r))
 
 
 def polynomial(lens: Lens, xy: Array) -> Array:
-    """Evaluate the lens's formula (..., 2) beyond its validity too, to show how it folds."""
-    x, y = xy[..., 0], xy[..., 1]
-    r2 = x * x + y * y
-    p1, p2 = lens.p
-    factor = radial_factor(lens.k, r2) + 2 * (p2 * x + p1 * y)
-    return np.stack([factor * x + p2 * r2, factor * y + p1 * r2], -1)
+    """Move points (..., 2) by the factor L(r), beyond the fold too."""
+    return np.asarray(xy * radial_factor(lens.k, (xy * xy).sum(axis=-1, keepdims=True)))

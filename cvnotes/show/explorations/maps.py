@@ -7,7 +7,7 @@ from cvnotes.projective import apply, cross_ratio, to_homogeneous
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
+from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED, WORLD
 
 # Where the square is taken hold of.
 _RIGHT, _TOP, _CORNER = np.array([1.0, 0]), np.array([0.0, -1]), np.array([1.0, -1])
@@ -22,6 +22,8 @@ _MEASURED = (
 )
 _SNAP = 0.08  # so near to what changes nothing a hand means just that
 _WIDE = 2.3  # how far from the middle a hand may pull
+# Where the frames of the kinds begin, from the outermost to the innermost, and the rows of each.
+_FRAMES = (7, slice(4, 5)), (64, slice(2, 4)), (140, slice(1, 2)), (197, slice(0, 1))
 _KINDS = "Euclidean", "similar", "affine", "projective"
 _NUMBERS = 3, 4, 6, 8
 
@@ -38,7 +40,8 @@ def maps_model() -> Model:
     )
     about = (
         "A square with a grid and a circle in it, before the map, dashed, and after it; beside it "
-        "what was measured on both, orange where the map has changed it."
+        "four frames, each in the next, for the kinds of maps, with what each keeps, measured on "
+        "both; lit is the kind of this map, and orange is what it has changed."
     )
     pulls = (
         ("right side", _RIGHT, _to_side),
@@ -163,18 +166,23 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _table(paper: Paper, H: Array, values: Values) -> Panel:
-    """Write what was measured before and after the map, orange where it has changed."""
-    panel = paper.panel((350, 380), (0, 10), (0, 10), "measured before and after")
-    which = kind(values)
-    name = f"{_KINDS[which]}: {_NUMBERS[which]} numbers"
-    panel.text([0.4, 1], name, IDEAL, size=16)
-    for row, (what, form, before, after) in enumerate(_rows(H)):
-        same = form.format(before) == form.format(after)
-        y = 2.6 + 1.5 * row
-        panel.text([0.4, y], what, IDEAL, size=13)
-        panel.text([6.6, y], form.format(before), MUTED, anchor="rm", size=13)
-        panel.text([7.1, y], "=" if same else "→", IDEAL if same else ESTIMATED, size=13)
-        panel.text([9.6, y], form.format(after), IDEAL if same else ESTIMATED, anchor="rm", size=13)
+    """Draw the four kinds as frames, each in the next, with what each keeps; lit is the map's."""
+    panel = paper.panel((350, 380), (0, 280), (0, 304), "measured before → after")
+    rows, which = _rows(H), kind(values)
+    for i, (top, kept) in enumerate(_FRAMES):
+        x, y = 7 + 10 * i, 297 - 11 * i
+        frame = np.array([[x, top], [280 - x, top], [280 - x, y], [x, y], [x, top]])
+        lit, name = 3 - i == which, f"{_KINDS[3 - i]}: {_NUMBERS[3 - i]} numbers"
+        panel.polygons([frame], "#E3F3EE" if lit else "white")
+        panel.line(frame, WORLD if lit else FAINT, 2.5 if lit else 1)
+        rim = "#E3F3EE" if lit else "white"
+        panel.text([x + 9, top + 17], name, IDEAL if lit else MUTED, size=15, rim=rim)
+        for y, (what, form, before, after) in zip((38, 57), rows[kept], strict=False):
+            same = form.format(before) == form.format(after)
+            ink, said = (IDEAL, "=") if same else (ESTIMATED, "→")
+            panel.text([x + 9, top + y], what, ink, size=13, rim=rim)
+            words = f"{form.format(before)} {said} {form.format(after)}"
+            panel.text([271 - x, top + y], words, ink, anchor="rm", size=13, rim=rim)
     return panel
 
 

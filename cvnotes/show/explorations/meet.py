@@ -15,6 +15,7 @@ _SPACE, _BESIDE = (520, 400), (330, 400)
 _SHOWN = ((-1.76, 1.64), (1.755, -0.86))
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
 _ORIGIN, _UP = np.zeros(3), np.array([0, 0, 1.0])
+_AXES = np.array([[-0.9, -1.12, 1], [-1.14, -0.32, 1]])  # where arrows of x and y begin
 _LINES = (
     ("1", "l₁", "orange", ESTIMATED, ("#FDF0E7", "#FBE0CE"), "#EBA67A"),
     ("2", "l₂", "blue", LENS, ("#E8F2F8", "#CFE2F0"), "#7FB4D8"),
@@ -97,6 +98,8 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
         low = on_sheet(m / m[2])[1] > _SHOWN[1][0] - 30 * panel.pixel
         by = (-18 if left else 18, 8) if low else (-10 if left else 10, -10)
         _name(panel, m / m[2], by, "m", IDEAL, "rs" if left else "ls")
+    for start, way, name in zip(_AXES, 0.36 * np.eye(3), "xy", strict=False):
+        _arrow(panel, start, way, name, WORLD)
     panel.mark(on_sheet(_ORIGIN), "lens", 5)
     for w, ink in ((0, MUTED), (1, WORLD)):
         _name(panel, np.array([-1, -1, w]), (-7, 15), f"w = {w}", ink, "rm")
@@ -114,14 +117,18 @@ def _name(
 
 def _normal(panel: Panel, n: Array, ray: Array, name: str, ink: str) -> None:
     """Draw the direction of a triple as an arrow, with a right angle to the ray of its sheet."""
-    tip = on_sheet(0.85 * n)
-    ahead = tip / np.linalg.norm(tip)
-    head = panel.pixel * np.array([[0, 0], [-11, 4], [-11, -4]]) @ [ahead, [-ahead[1], ahead[0]]]
-    panel.line(np.array([[0, 0], tip]), ink, 1.6)
-    panel.polygons([tip + head], ink)
-    panel.text(tip + 11 * panel.pixel * ahead, name, ink, anchor="mm", size=15)
+    _arrow(panel, _ORIGIN, 0.85 * n, name, ink)
     if ray.any():
         panel.line(on_sheet(0.13 * np.array([ray, ray + n, n])), ink, 1)
+
+
+def _arrow(panel: Panel, start: Array, way: Array, name: str, ink: str) -> None:
+    foot, tip = on_sheet(np.array([start, start + way]))
+    ahead = (tip - foot) / np.linalg.norm(tip - foot)
+    head = panel.pixel * np.array([[0, 0], [-11, 4], [-11, -4]]) @ [ahead, [-ahead[1], ahead[0]]]
+    panel.line([foot, tip], ink, 1.6)
+    panel.polygons([tip + head], ink)
+    panel.text(tip + 11 * panel.pixel * ahead, name, ink, anchor="mm", size=15)
 
 
 def _table(paper: Paper, lines: list[Array], m: Array) -> Panel:

@@ -22,11 +22,12 @@ from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.space.camera_shapes import camera_shapes
 from cvnotes.show.space.shapes import Lines
-from cvnotes.show.style import CAMERA, MUTED, rgb
+from cvnotes.show.style import CAMERA, MUTED, mixed, rgb
 
 _SIZE, _PICTURE = (402, 336), (448, 336)  # px
 _LAST = 11  # of the twelve photographs, counted from 0
-_CONE, _TILE, _BEYOND, _FOOT = 110.0, 100, 1000, 30.0  # mm
+_CONE, _TILE, _BEYOND, _FOOT = 190.0, 100, 1000, 30.0  # mm
+_EARLIER = 3  # photographs, whose boards and cameras stay, pale
 _PALE, _PALE_BLUE, _INK = "#C9C9C9", "#A9D5F1", "#262629"
 _TILES, _WALL, _SHADOW, _JOINTS = "#EFE7D9", "#E2EBE4", "#CBC5BD", "#FBFAF7"
 _LINES, _GREY = "#BFD3C4", "#ECECEC"  # of the wall in the photograph; where nothing is told
@@ -135,11 +136,13 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for plane, colour in ((room.wall, _WALL), (room.floor, _TILES)):
         space.polygons(on_sheet(_border(plane))[None], colour)
         space.segments(on_sheet(plane), _JOINTS, 0.8)
-    every = [stands(each, who) for each in _poses()]
-    for _, of_board in every:
+    now = int(np.ceil(values["photo"]))
+    earlier = [stands(each, who) for each in _poses()[max(now - _EARLIER, 0) : now]]
+    for _, of_board in earlier:
         sheet = on_sheet(move(of_board, border))
         space.polygons(sheet[None], "#F8F8F6")
-        space.line(sheet[[0, 1, 2, 3, 0]], _PALE, 0.6)
+        space.polygons(on_sheet(move(of_board, squares)), _PALE)
+        space.line(sheet[[0, 1, 2, 3, 0]], _PALE, 0.8)
     camera, of_board = stands(G, who)
     there = move(of_board, border)
     space.polygons(on_sheet(there * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0])[None], _SHADOW)
@@ -147,8 +150,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     space.polygons(sheet[None], "#FBFBF8")
     space.line(sheet[[0, 1, 2, 3, 0]], MUTED, 0.8)
     space.polygons(on_sheet(move(of_board, squares)), _INK)
-    for one, _ in every:
-        _draw_camera(space, own.moved(inverse(one)), _PALE_BLUE, 0.7)
+    for one, _ in earlier:
+        _draw_camera(space, own.moved(inverse(one)), _PALE_BLUE, 0.8)
     below = camera[:3, 3] * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0]
     space.polygons(on_sheet(below + _FOOT * np.insert(circle(25), 1, 0, axis=1))[None], _SHADOW)
     space.line(on_sheet(np.array([camera[:3, 3], below])), MUTED, 0.8, dash=3)
@@ -168,9 +171,15 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _draw_camera(panel: Panel, camera: Camera, colour: str, width: float) -> None:
-    for shape in camera_shapes(camera, _CONE, name=""):
-        if isinstance(shape, Lines):
-            panel.segments(on_sheet(shape.ends), colour, width)
+    """Draw a camera by its edges; a strong one as a body, from its farthest face to its nearest."""
+    (lines, *_) = camera_shapes(camera, _CONE, name="")
+    assert isinstance(lines, Lines)
+    base = lines.ends[:4, 0]
+    sides = [np.array([*edge, camera.centre]) for edge in lines.ends[:4]]
+    faces = sorted([base, *sides], key=lambda face: -float(face.mean(axis=0) @ _VIEW[2]))
+    for face in faces * (colour == CAMERA):
+        panel.polygons([on_sheet(face)], mixed(colour, "#FFFFFF", 0.75 if len(face) == 4 else 0.6))
+    panel.segments(on_sheet(lines.ends), colour, width)
 
 
 @lru_cache(maxsize=1)

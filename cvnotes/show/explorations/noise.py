@@ -106,6 +106,9 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
         "estimate minus truth (px): ±1σ; thin blue ends ±2σ",
     )
     missed = _draw_tries(bars, *tries)
+    for i, count in enumerate(missed if draw > 1 and sigma else ()):
+        words = f"missed {count} of {draw}"
+        bars.text([0.97 * reach, i - 0.27], words, ESTIMATED, anchor="rm", size=12)
     _draw_bars(bars, bound, error, std, min(error[0] - std[0], tries[0, :, 0].min()))
     curve = paper.panel(
         (400, 300), (np.log10(2.6), np.log10(48)), (1.4, -1.8),
@@ -118,12 +121,12 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
         f"(one standard deviation); this try says {off:+.2f} ± {std[0]:.2f} px."
     )
     if draw > 1 and sigma:
-        sentence += f" Of {draw} tries {missed} are off by more than their ±."
+        sentence += f" Of {draw} tries {missed[0]} are off by more than their ±."
     return Drawing(paper.join((bars, curve)), sentence)
 
 
-def _draw_tries(panel: Panel, error: Array, std: Array) -> int:
-    """Draw all tries so far (draws, 4) below the bounds; return how many bars of αᵤ miss."""
+def _draw_tries(panel: Panel, error: Array, std: Array) -> list[int]:
+    """Draw all tries so far (draws, 4) below the bounds; return how many bars of each miss."""
     missed = np.abs(error) > std
     down = 0.35 + 0.34 * (0.618 * np.arange(len(error)) % 1 - 0.5)  # beside each other
     for i in range(len(_LABELS)):
@@ -131,7 +134,7 @@ def _draw_tries(panel: Panel, error: Array, std: Array) -> int:
         ends[..., 1] += down[:, None]
         for some, colour in ((~missed[:, i], _HELD), (missed[:, i], ESTIMATED)):
             panel.segments(ends[some], colour, 2)
-    return int(missed[:, 0].sum())
+    return [int(count) for count in missed.sum(axis=0)]
 
 
 def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array, leftmost: float) -> None:

@@ -25,7 +25,7 @@ _GAP = 6  # px between panels
 _FARTHEST = 1e12  # px: lines are cut to the panel with all the digits this leaves
 _LARGEST = 1e6  # px: polygons are not cut, and Pillow counts in whole numbers
 _BEYOND = 8  # px by which lines are drawn over the border, where they are cut off
-_GRID = "#E6E6E6"
+GRID = "#E6E6E6"
 _RING, _RING_INK = 12, "#444444"  # px, what can be pulled
 
 
@@ -243,7 +243,7 @@ class Panel:
         (x0, x1), (y0, y1) = self.x, self.y
         at_x, at_y = np.ravel(x).tolist(), np.ravel(y).tolist()
         grid = [[[v, y0], [v, y1]] for v in at_x] + [[[x0, v], [x1, v]] for v in at_y]
-        self.segments(grid, _GRID, 0.5)
+        self.segments(grid, GRID, 0.5)
         for value in at_x:
             number = f"{value:g}".replace("-", "−")
             self.text([value, y1 - 0.03 * (y1 - y0)], number, anchor="md", size=size)

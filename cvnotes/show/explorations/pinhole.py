@@ -60,7 +60,7 @@ def pinhole_model() -> Model:
         said = _said_of_a_lens(focus) if values["lens"] else _said_of_a_hole(d)
         side = paper.panel((410, 105), (0, 410), (52.5, -52.5), "from the side, stretched across")
         side.line([[_SENSOR, -60], [_SENSOR, 60]], MUTED, 2)
-        side.text([_SENSOR + 12, -42], "sensor", MUTED)
+        side.text([_SENSOR + 12, -42], "sensor", MUTED, size=13)
         if values["lens"]:
             _draw_lens(side, focus)
         else:
@@ -137,7 +137,7 @@ def _spots(paper: Paper, d: float) -> Panel:
     panel = paper.panel(
         (410, 197), (-0.02, 0.43), (_HIGHEST, -8), "width of the spot (px) against the hole (mm)"
     )
-    panel.ticks(x=(0, 0.1, 0.2, 0.3, 0.4), y=(0, 40, 80))
+    panel.ticks(x=(0, 0.1, 0.2, 0.3, 0.4), y=(0, 40, 80), size=12)
     holes = np.linspace(0.008, 0.43, 400)
     patch, spread = spot(holes)
     for name, curve, colour, at in (
@@ -146,7 +146,7 @@ def _spots(paper: Paper, d: float) -> Panel:
         ("both", patch + spread, IDEAL, (0.27, 72)),
     ):
         panel.line(np.column_stack([holes, curve]), colour, 1.8)
-        panel.text(at, name, colour, size=12)
+        panel.text(at, name, colour, size=13)
     here = [d, float(sum(spot(d)))]
     panel.grip("hole", "the diameter of the hole", here, 4)
     panel.mark(here, "estimated", 9)
@@ -163,15 +163,15 @@ def _discs(paper: Paper, focus: float) -> Panel:
     )
     near, far = np.log10(_ROOM[:2])
     panel.polygons([[[near, 0], [far, 0], [far, _DEEPEST], [near, _DEEPEST]]], _PALE)
-    panel.text([(near + far) / 2, 13], "the room", anchor="mm", size=12)
-    panel.ticks(y=(0, 5, 10))
+    panel.text([(near + far) / 2, 13], "the room", anchor="mm", size=13)
+    panel.ticks(y=(5, 10), size=12)
     panel.line([[-1.14, 1], [1.1, 1]], IDEAL, 0.8, dash=3)
     at, anchor = ((1.05, 1.6), "rm") if focus < 2 else ((-1.1, 1.6), "lm")
-    panel.text(at, "1 px", IDEAL, anchor=anchor, size=11)
+    panel.text(at, "1 px", IDEAL, anchor=anchor, size=13)
     panel.line(np.log10(_CARD) + np.array([[0, 0], [0, _DEEPEST]]), _PALE, 8)
-    panel.text([np.log10(_CARD), 15.5], "the card", anchor="mm", size=12)
+    panel.text([np.log10(_CARD), 15.5], "the card", anchor="mm", size=13)
     for s in (0.1, 0.2, 0.5, 1, 2, 5, 10):
-        panel.text([np.log10(s), -1], f"{s:g} m", anchor="mm", size=10)
+        panel.text([np.log10(s), -1], f"{s:g} m", anchor="mm", size=12)
     s = np.geomspace(0.09, 12, 400)
     panel.line(np.column_stack([np.log10(s), disc(s, focus)]), LENS, 2)
     here = [np.log10(focus), 0]
@@ -191,7 +191,7 @@ def _draw_hole(panel: Panel, d: float) -> None:
         panel.line(ends, CAMERA, 1.2, dash=4)
         panel.line([[_HOLE, side * patch], [_HOLE, side * 60.0]], IDEAL, 4)
     panel.line([[_SENSOR, -patch - spread], [_SENSOR, patch + spread]], ESTIMATED, 7)
-    panel.text([6, -42], "light of a far lamp", LENS)
+    panel.text([6, -42], "light of a far lamp", LENS, size=13)
 
 
 def _draw_lens(panel: Panel, focus: float) -> None:
@@ -207,8 +207,8 @@ def _draw_lens(panel: Panel, focus: float) -> None:
             panel.line(way * [1, side], colour, 1.2)
         panel.line([[_SENSOR, -abs(end) - 1], [_SENSOR, abs(end) + 1]], colour, 7)
     panel.line(rim + [_HOLE, 0], LENS, 1.5)
-    panel.text([6, -44], f"from {_ROOM[2]:g} m", ESTIMATED)
-    panel.text([22, 0], "the card", CAMERA)
+    panel.text([6, -44], f"from {_ROOM[2]:g} m", ESTIMATED, size=13)
+    panel.text([22, 0], "the card", CAMERA, size=13)
 
 
 def _said_of_a_lens(focus: float) -> str:

@@ -17,15 +17,15 @@ _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before
 _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
 _WOOD, _BALLAST, _FAR = "#6B574A", "#B5ADA3", "#A1968B"  # the last is the mean of both
 _SKY, _HAZE, _GRASS = np.array([[176, 203, 234], [233, 238, 239], [142, 163, 98]])
-_REACH = 7.0  # m: how far away the direction is taken hold of
-_PLANE = 4.0  # m: how far away the image plane is drawn from above, the ring's diameter
+_REACH = 10.0  # m: how far away the direction is taken hold of
+_PLANE = 6.0  # m: how far away the image plane is drawn from above, the ring's diameter
 _SQUARE = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1.2]]
 
 
 def projection_model(camera: Camera, _: Chessboard) -> Model:
     """Make the model of rails seen by `camera`, its lens left out."""
     settings = (
-        Setting("heading", "heading (°)", -90, 90, 1, 12, "how far the rails turn to the right"),
+        Setting("heading", "heading (°)", -90, 90, 1, 20, "how far the rails turn to the right"),
         Setting("slope", "slope (°)", -15, 15, 1, 0, "how steeply the rails climb"),
         Setting("height", "height (m)", 0.2, 2, 0.1, 1.6, "how far the camera is above the rails"),
     )
@@ -42,9 +42,10 @@ def projection_model(camera: Camera, _: Chessboard) -> Model:
         return {"heading": float(np.degrees(np.arctan2(x, z))), "slope": float(np.degrees(slope))}
 
     def turned(_: Values, at: Array) -> Values:
-        return {"heading": float(np.degrees(np.arctan2(*at)))}
+        # A direction has no sign: beyond 90° it goes on at −90°.
+        return {"heading": float((np.degrees(np.arctan2(*at)) + 90) % 180 - 90)}
 
-    drags = {"vanishing point": pointed, "rails": turned}
+    drags = {"vanishing point": pointed, "rails": turned, "mark": turned}
     return Model("projection", about, settings, partial(_draw, ideal), drags)
 
 
@@ -89,7 +90,7 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
     u, v = end.tolist()
     if 0 <= u < w and 0 <= v < h:
         left, above = u > 0.7 * w, v > 40
-        beside = [u - 14 if left else u + 14, v - 14 if above else v + 18]
+        beside = [u - 18 if left else u + 18, v - 20 if above else v + 24]
         panel.text(beside, "vanishing point", IDEAL, anchor="rm" if left else "lm")
     elif along[2] == 0:
         for at, anchor in ((8, "lm"), (w - 9, "rm")):
@@ -125,9 +126,10 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.mark([0, 0], "camera", 8)
     panel.grip("rails", "the direction of the rails, from above", _REACH * along[::2], 5)
     if along[2] > 0:
-        panel.mark(_PLANE * along[::2] / along[2], "ideal", 11)
+        panel.mark(_PLANE * along[::2] / along[2], "ideal", 8)
     # A hollow square: the plus, which is close to it straight ahead, and the camera stay in sight.
     dot = _PLANE * along[2] / np.sum(along[::2] ** 2) * along[::2]
+    panel.grip("mark", "the green mark, round the ring", dot, 5)
     panel.line(dot + 5.5 * panel.pixel * np.array(_SQUARE), WORLD, 2.5)
     # On the side that the rails leave free, and over all lines.
     side = 1.0 if along[0] >= 0 else -1.0

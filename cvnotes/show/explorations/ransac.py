@@ -19,7 +19,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 _BOARD, _CAMERA = course.board(), Camera(course.camera().A, course.poses()[6])
 _PART = (160, 76), (580, 391)  # px: the part of the picture that is shown
 _DRAWS, _NOISE = 60, 0.3  # px
-_WRONG = "#7A7A7A"
+_WRONG, _LINE = "#7A7A7A", "#8A8A8A"
 
 Mask = npt.NDArray[np.bool_]
 
@@ -57,6 +57,7 @@ def ransac_model() -> Model:
         panel.image(photograph())
         _draw_pairs(panel, put[n], pairs, agree[n], true)
         panel.mark(fours[n][: 4 * min(n, 1)], "ideal", 8)
+        panel.text([right - 12, top + 24], f"{agree[n].sum()} / 54", LENS, anchor="rm", size=26)
         votes = paper.panel(
             (340, 330), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
         )
@@ -89,12 +90,11 @@ def drawn_pairs(wrong: int) -> tuple[Array, Array, Array, Mask]:
 def _draw_pairs(panel: Panel, put: Array, pairs: Array, agree: Mask, true: Mask) -> None:
     """Draw the net that a homography puts down, and each pair, led to its corner if it is off.
 
-    Wrong pairs lie in a diamond in all draws, and their lines are black and over the net.
+    Wrong pairs lie in a diamond in all draws.
     """
     ways, shape = np.stack([put, pairs], axis=1), np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    panel.segments(ways[~agree & true], _WRONG, 0.5)
-    draw_net(panel, put, _BOARD, ESTIMATED, 0.9)
-    panel.segments(ways[~agree & ~true], IDEAL, 1)
+    panel.segments(ways[~agree], _LINE, 0.8)
+    draw_net(panel, put, _BOARD, ESTIMATED, 2)
     panel.polygons(pairs[~agree & true][:, None] + 2.5 * panel.pixel * shape, _WRONG)
     diamond = panel.pixel * np.array([[0, -1], [1, 0], [0, 1], [-1, 0]])
     for size, ink in ((8, IDEAL), (6, "white")):
@@ -126,7 +126,7 @@ def _sentence(n: int, agree: Mask, true: Mask) -> str:
     best = int(counts[1 : n + 1].argmax()) + 1
     one = f"{counts[n]} of 54 pairs agree" if counts[n] else "three of the four lie on one line"
     return (
-        f"Draw {n}: {one}. The largest set so far has {counts[best]}, "
-        f"found in draw {best}: {(agree[best] & true).sum()} of them are right, of all "
-        f"{len(true)} pairs {true.sum()}."
+        f"Draw {n}: {one}. The largest set so far, of draw {best}, has {counts[best]} pairs, "
+        f"{(agree[best] & true).sum()} of them right. Of all {len(true)} pairs {true.sum()} are "
+        "right."
     )

@@ -1,6 +1,7 @@
 """Explore heights in one picture: a rod in metres that is stood anywhere on the ground."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 
@@ -21,7 +22,7 @@ _EYE, _BOX, _TALLEST = 2.8, 2.0, 6.0  # m: heights of camera, yellow box and hig
 _EDGE = _CAMERA.project(blocks().vertices[[17, 19]])  # of the yellow box, from top to foot
 _UP, _LEVEL = _CAMERA.vanishing_point([0, 1, 0]), horizon(_CAMERA, [0, 1, 0])
 _HORIZON = float(-_LEVEL[2] / _LEVEL[1])  # its row: the camera is not rolled
-_WIDTH = 0.16  # m, of the rod
+_WIDTH, _TRIANGLES = 0.16, 36  # m, of the rod; of three blocks
 _BORDER = (-440, 80)  # px: so much more is shown on the left, and less of the sky
 _WIDE = Camera(
     [[1, 0, -_BORDER[0]], [0, 1, -_BORDER[1]], [0, 0, 1]] @ _CAMERA.A, _CAMERA.G, size=(1080, 400)
@@ -45,7 +46,9 @@ def rod_model() -> Model:
     def photographed() -> tuple[Drawn, Array]:
         photo = render_scene(blocks(), _WIDE).astype(float)
         photo[:, : -_BORDER[0]] += 0.45 * (255 - photo[:, : -_BORDER[0]])  # beside the photograph
-        return np.rint(photo).astype(np.uint8), depth_map(blocks(), _WIDE)
+        parts = ("triangles", "colours", "uv", "extent")  # of the blocks without their ground
+        alone = replace(blocks(), **{name: getattr(blocks(), name)[:_TRIANGLES] for name in parts})
+        return np.rint(photo).astype(np.uint8), depth_map(alone, _WIDE)
 
     def draw(paper: Paper, values: Values) -> Drawing:
         photo, depths = photographed()
@@ -56,7 +59,7 @@ def rod_model() -> Model:
         panel.image(photo[:, left - _BORDER[0] :])
         panel.text([_BORDER[0] + 14, _BORDER[1] + 16], "beyond the photograph")
         panel.line([[-460, _HORIZON], [660, _HORIZON]], IDEAL, 1)
-        e = _draw_way(panel, foot)
+        e = _draw_way(panel, foot, depths)
         _draw_rod(panel, foot, height, depths)
         panel.mark(at_height(foot, _BOX), "estimated", 5)
         panel.grip("foot", "the foot of the rod", foot, 4)
@@ -98,12 +101,21 @@ def _stands(foot: Array) -> Array:
     return np.asarray(_CAMERA.centre + ray * 1e3 * _EYE / ray[1])
 
 
-def _draw_way(panel: Panel, foot: Array) -> float:
-    """Draw how the height of the box comes to a foot, by e on the horizon; returns the u of e."""
-    (u, v), q = _EDGE[1], at_height(foot, _BOX)
+def _draw_way(panel: Panel, foot: Array, depths: Array) -> float:
+    """Draw how the height of the box comes to a foot, by e on the horizon; returns the u of e.
+
+    What a block hides is dashed, as it is of the rod.
+    """
+    u, v = _EDGE[1]
     e = np.array([u + (foot[0] - u) * (_HORIZON - v) / (foot[1] - v), _HORIZON])
-    for here, there in zip((q, foot), _EDGE, strict=True):
-        panel.line([here, there, e, here], ESTIMATED, 1)
+    near = max((foot, _EDGE[1]), key=lambda at: float(at[1]))
+    feet = near + np.linspace(0, 0.99, 64)[:, None] * (e - near)
+    for h in (_BOX, 0):
+        way = np.array([at_height(at, h) for at in feet])
+        places = np.array([_stands(at) for at in feet]) - [0, 1e3 * h, 0]
+        hidden = _hidden(way, places, depths)[:, None]
+        panel.line([*np.where(hidden, np.nan, way), e], ESTIMATED, 1)
+        panel.line(np.where(hidden, way, np.nan), ESTIMATED, 1, dash=3)
     panel.line(_EDGE, LENS, 2)
     panel.mark(e, "estimated", 6)
     (left, right), word = panel.x, "e"
@@ -132,8 +144,7 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
     """Draw a band for each metre; where something stands before it, thin dashes."""
     h = np.append(np.arange(0, height, 0.125), height)
     pixels, places = at_height(foot, h), _stands(foot) - 1e3 * h[:, None] * [0, 1, 0]
-    u, v = np.clip(np.rint(pixels) - _BORDER, 0, np.array(_WIDE.size) - 1).astype(int).T
-    hidden = depths[v, u] < (places @ _CAMERA.G[2, :3] + _CAMERA.G[2, 3]) - 100
+    hidden = _hidden(pixels, places, depths)
     width = float(np.linalg.norm(pixels[1] - pixels[0])) * _WIDTH / 0.125 / panel.pixel
     seen = np.where(hidden[:, None], np.nan, pixels)
     if not hidden[0]:  # dim the ground round the foot, on which the rod stands
@@ -146,6 +157,12 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
     apart = np.linalg.norm(pixels[8] - pixels[0]) / panel.pixel  # where letters have no room,
     for metre in range(1 if apart > 20 else int(height), int(height) + 1):  # only the last
         panel.text(at_height(foot, metre) + [width / 2 + 4, 0], f"{metre}", ESTIMATED, size=10)
+
+
+def _hidden(pixels: Array, places: Array, depths: Array) -> Array:
+    """Return which places (n, 3) a block hides; they are seen at these pixels."""
+    u, v = np.clip(np.rint(pixels) - _BORDER, 0, np.array(_WIDE.size) - 1).astype(int).T
+    return np.asarray(depths[v, u] < places @ _CAMERA.G[2, :3] + _CAMERA.G[2, 3] - 100)
 
 
 def _draw_side(panel: Panel, away: float, height: float) -> None:

@@ -10,7 +10,7 @@ from cvnotes.camera import Camera, intrinsics
 from cvnotes.pictures import course, rails, render_scene
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD, mixed
 
 _CAMERA = Camera(course.camera().A)
 _LEFT, _TOP, _SIZE, _SHARP = 75, 152, (280, 210), 4  # px: what of the picture is shown, how finely
@@ -19,6 +19,7 @@ _X, _GROUND, _UP, _FIRST, _GAP = -4.0, 1.95, -4.05, 15.0, 25.0
 _FEET = _CAMERA.project([[_X, _GROUND, _FIRST + _GAP * i] for i in range(2)])
 _END, _TOP_OF_FIRST = _CAMERA.A[:2, 2], _CAMERA.project([_X, _UP, _FIRST])
 _CLICK, _FARTHEST = 0.3, 112.0  # px by which a foot is missed; m that the plan shows
+_LONGER = 10  # times as long as the ± is the bar that shows it
 
 
 def ruler_model() -> Model:
@@ -29,7 +30,7 @@ def ruler_model() -> Model:
         "from above, with what the picture alone says about the orange pole's distance."
     )
     settings = (
-        Setting("row", "row of the foot (px)", low, high, 0.1, 266, "where its foot is clicked"),
+        Setting("row", "row of the foot (px)", low, high, 0.1, 258, "where its foot is clicked"),
     )
 
     @lru_cache(maxsize=1)
@@ -57,9 +58,14 @@ def ruler_model() -> Model:
         panel.text(_END + [-8, -9], "∞", IDEAL, anchor="mm", size=14)
         panel.mark(_END, "ideal", 9)
         panel.mark(foot, "estimated", 9)
-        panel.text(foot + [9, 9], "c", ESTIMATED, anchor="mm", size=14)
+        panel.text(foot + [11, 10], "c", ESTIMATED, anchor="mm", size=14)
         panel.grip("foot", "the foot of the orange pole", foot, 4)
-        plan = paper.panel((310, 330), (-8.5, 2.7), (_FARTHEST, -12), "the ground from above (m)")
+        plan = paper.panel(
+            (310, 330),
+            (-8.5, 2.7),
+            (_FARTHEST, -12),
+            f"from above (m), stretched across; bar: {_LONGER} × ±",
+        )
         _draw_plan(plan, t, near, far)
         ratio = t / (t - _GAP) if t != _GAP else np.inf
         return Drawing(paper.join((panel, plan)), _sentence(foot, t, far - near, ratio))
@@ -88,14 +94,17 @@ def _draw_plan(panel: Panel, t: float, near: float, far: float) -> None:
     panel.ticks(y=(0, 25, 50, 75, 100))
     for x in (-0.75, 0.75):
         panel.line([[x, -20], [x, 120]], MUTED, 1.5)
-    row = [[_X, 25.0 * i] for i in range(5)]
+    ends = t + _LONGER * (np.array([near, far]) - t)
+    low, high = ends.clip(-99, 199).tolist()
+    bar = np.array([[-0.28, low], [0.28, low], [0.28, high], [-0.28, high]]) + [_X, 0]
+    panel.polygons([bar], mixed("#FFFFFF", ESTIMATED, 0.4))
+    row = [[_X, _GAP * i] for i in range(5)]
     panel.mark(row, "world", 7)
     for at, name in zip(row[:2], "ab", strict=True):
         panel.text([at[0] + 0.6, at[1]], name, WORLD, anchor="mm", size=13)
-    panel.line([[_X, near], [_X, min(far, 200.0)]], ESTIMATED, 3)
     panel.mark([_X, t], "estimated", 9)
     said = f"c  {t:.1f} m" if t < _FARTHEST - 4 else f"c  {t:.0f} m"
-    panel.text([_X - 0.4, min(t, _FARTHEST - 5)], said, ESTIMATED, anchor="rm", size=13)
+    panel.text([_X - 0.6, min(t, _FARTHEST - 5)], said, ESTIMATED, anchor="rm", size=13)
 
 
 def _sentence(foot: Array, t: float, width: float, ratio: float) -> str:

@@ -3,24 +3,29 @@
 Its rays are parallel: they have a vanishing point like other parallel lines.
 """
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 from PIL import Image, ImageDraw
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, intrinsics
+from cvnotes.camera import Camera, intrinsics, pose
 from cvnotes.pictures import rails, render_scene
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.projection import in_front
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, ESTIMATED, MUTED, WORLD
 
 SIZE = (640, 480)  # px of the photograph
-_CAMERA = Camera(intrinsics(400, 400, 319.5, 239.5), size=SIZE)
-_DISC = 13 * np.column_stack([f(np.linspace(0, 6.2, 40)) for f in (np.cos, np.sin)])  # px
-_GLOW, _NEAR = "#FFF0B8", 0.2  # what is nearer than 0.2 m is not drawn
-POLES = np.array([[-4.0, -4.05, z] for z in range(15, 140, 25)])  # m, the tops
+_EYE = np.array([0, 0, 13.0])  # m, as all below
+_CAMERA = Camera(intrinsics(400, 400, 319.5, 239.5), pose(np.eye(3), -_EYE), size=SIZE)
+_WARM, _BLUE = (1.0, 0.89, 0.74), (0.22, 0.45, 0.85)  # the evening sky, low and high
+_SUN, _GLOW, _DARK = "#FFFDF0", "#FFE3A6", "#33302A"  # the sun, its light; a shadow's tip
+_DISC = 18  # px, radius of the sun
+_NEAR, _THINNEST = 0.2, 3  # m: what is nearer is not drawn; px, of a shadow far away
+POLES = np.array([[-4.0, -4.05, z] for z in range(15, 215, 25)])  # m, the tops
 GROUND, _BALLAST, _BESIDE = 1.95, 1.77, 2.3  # m, their y, and how far the ballast reaches
 _HALF = 0.09  # m, half as wide as a pole
 
@@ -28,8 +33,8 @@ _HALF = 0.09  # m, half as wide as a pole
 def shadows_model() -> Model:
     """Make the model of the railway in the evening, the camera level."""
     settings = (
-        Setting("azimuth", "azimuth (°)", -180, 180, 0.5, -30, "how far to the right the sun is"),
-        Setting("elevation", "elevation (°)", 2, 60, 0.5, 14, "how high the sun is"),
+        Setting("azimuth", "azimuth (°)", -180, 180, 0.5, 15, "how far to the right the sun is"),
+        Setting("elevation", "elevation (°)", 2, 60, 0.5, 20, "how high the sun is"),
     )
     about = (
         "A railway with poles and their shadows; the line through each pole's top and the tip of "
@@ -40,14 +45,11 @@ def shadows_model() -> Model:
         azimuth, elevation = np.radians([values["azimuth"], values["elevation"]])
         sun = np.array([np.sin(azimuth), -np.tan(elevation), np.cos(azimuth)]).round(15)
         panel = paper.picture_panel((440, 330), SIZE, "poles, and where their shadows fall")
-        panel.image(shaded(_CAMERA, np.tile(sun, (len(POLES), 1))))
+        panel.image(photographed(_CAMERA, np.tile(sun, (len(POLES), 1)), sun))
         end = _CAMERA.vanishing_point(sun)
-        if sun[2] > 0:
-            draw_sun(panel, end)
-        for top in POLES[:4]:
-            ray = _CAMERA.project(in_front(top, tip_of(top, sun) - top))
-            panel.line(ray, ESTIMATED, 1.5)
-            panel.line([ray[0] if sun[2] > 0 else ray[1], end], ESTIMATED, 0.9, dash=5)
+        for top in POLES[1:5]:  # the first one stands beside the camera
+            if (tip_of(top, sun) - _EYE)[2] > _NEAR:  # else its tip lies behind the camera
+                draw_ray(panel, _CAMERA, top, sun)
         panel.mark(end, "estimated", 8)
         panel.grip("sun", "the sun, or the shadow of the camera", end, 10)
         plan = paper.panel((330, 330), (-68, 68), (104, -32), "the same from above (m)")
@@ -65,44 +67,88 @@ def shadows_model() -> Model:
 
 @lru_cache(maxsize=2)
 def _photographs(camera: Camera) -> tuple[Drawn, Drawn]:
-    """Photograph the rails with all ground in the light, and with all in the shade."""
-    lit, dark = (render_scene(rails().lit_from((0, y, 0)), camera, samples=4) for y in (-1, 1))
+    """Photograph the rails in the evening with all ground in the light, and all in the shade."""
+    evening = replace(
+        rails(), around=replace(rails().around, horizon=_WARM, zenith=_BLUE, ambient=0.2)
+    )
+    eye = Camera(camera.A, pose(camera.R, 1e3 * camera.T), size=SIZE)  # the rails are in mm
+    lit, dark = (render_scene(evening.lit_from((0, y, 0)), eye, samples=4) for y in (-1, 1))
     return lit, dark
 
 
-def shaded(camera: Camera, suns: Array) -> Drawn:
-    """Photograph the railway, with the shadow of each of `POLES` under a sun of its own (n, 3)."""
-    edges = [camera.project([[x, _BALLAST, z] for z in (_NEAR, 1e4)]) for x in (-_BESIDE, _BESIDE)]
-    each = [*zip(POLES, suns, strict=True)]
+@lru_cache(maxsize=1)
+def _glare() -> tuple[Image.Image, Image.Image]:
+    """Return how much of each pixel its light and the sun cover, for a sun in the middle."""
+    v, u = np.mgrid[-SIZE[1] : SIZE[1], -SIZE[0] : SIZE[0]]
+    away = (np.hypot(u, v) - _DISC).clip(0)
+    glow, sun = 0.9 * np.exp(-away / 140), np.exp(-away / 4) + 0.4 * np.exp(-away / 30)
+    return _sheet(glow), _sheet(sun.clip(0, 1))
+
+
+def _sheet(part: Array) -> Image.Image:
+    return Image.fromarray((255 * part).astype(np.uint8))
+
+
+def photographed(camera: Camera, suns: Array, sun: Array) -> Drawn:
+    """Photograph the railway towards a sun (3,), each of `POLES` with the shadow of its own.
+
+    If the sun is behind the camera, this throws its own shadow: a box on a thin post.
+    """
+    eye = camera.centre
+    things = [(top + [0, 9, 0], top, _HALF, each) for top, each in zip(POLES, suns, strict=True)]
+    if sun[2] < 0:
+        things += [
+            (eye + [0, 9, 0], eye, 0.04, sun),
+            (eye + [0, 0.2, 0], eye - [0, 0.2, 0], 0.15, sun),
+        ]
     ground, ballast = (
-        _mask([_strip(camera, top, sun, y) for top, sun in each]) for y in (GROUND, _BALLAST)
+        _mask([_strip(camera, *thing, y) for thing in things], _THINNEST)
+        for y in (GROUND, _BALLAST)
     )
-    ground.paste(ballast, mask=_mask([np.concatenate([edges[0], edges[1][::-1]])]))
-    mask = ground.resize(SIZE, Image.Resampling.BOX)
+    edges = np.array([[x, _BALLAST, z] for x in (-_BESIDE, _BESIDE) for z in (eye[2] + _NEAR, 1e4)])
+    ground.paste(ballast, mask=_mask([camera.project(edges[[0, 1, 3, 2]])]))
     lit, dark = map(Image.fromarray, _photographs(camera))
-    return np.asarray(Image.composite(dark, lit, mask))
+    lit.paste(dark, mask=ground)
+    if sun[2] > 0:
+        left, top = SIZE - camera.vanishing_point(sun).round().astype(int).clip(-9999, 9999)
+        for ink, part in zip((_GLOW, _SUN), _glare(), strict=True):
+            lit.paste(ink, mask=part.crop((left, top, left + SIZE[0], top + SIZE[1])))
+    return np.asarray(lit)
 
 
-def _strip(camera: Camera, top: Array, sun: Array, y: float) -> Array:
-    """Return the corners (4, 2) of a pole's shadow on the plane of that y."""
-    foot, tip = np.array([top[0], y, top[2]]), top + (y - top[1]) / sun[1] * sun
+def _strip(camera: Camera, low: Array, top: Array, half: float, sun: Array, y: float) -> Array:
+    """Return the corners (4, 2) of the shadow, on the plane of that y, of a thing from low to top.
+
+    What stands on the plane begins there.
+    """
+    foot, tip = (at + (y - at[1]) / sun[1] * sun for at in (low - [0, max(low[1] - y, 0), 0], top))
     level = sun[::2] / np.linalg.norm(sun[::2])
-    aside = _HALF * np.abs(level).sum() * np.array([level[1], 0, -level[0]])  # it is square
-    left, right = (camera.project(in_front(foot + by, tip - foot)) for by in (-aside, aside))
+    aside = half * np.abs(level).sum() * np.array([level[1], 0, -level[0]])  # it is square
+    eye = camera.centre
+    left, right = (
+        camera.project(in_front(foot + by - eye, tip - foot) + eye) for by in (-aside, aside)
+    )
     return np.concatenate([left, right[::-1]])
 
 
-def draw_sun(panel: Panel, at: Array) -> None:
-    """Draw the disc of the sun at a pixel."""
-    panel.polygons([at + _DISC], _GLOW)
-
-
-def _mask(polygons: list[Array]) -> Image.Image:
-    """Fill polygons (n, 2) of the photograph on a sheet of four times its size."""
+def _mask(polygons: list[Array], thinnest: float = 0) -> Image.Image:
+    """Fill polygons (4, 2) of the photograph, none thinner than so many px, with smooth edges."""
     mask = Image.new("L", (4 * SIZE[0], 4 * SIZE[1]))
+    pen = ImageDraw.Draw(mask)
     for corners in polygons:
-        ImageDraw.Draw(mask).polygon((4 * corners + 2).ravel().tolist(), fill=255)
-    return mask
+        at = (4 * corners + 2).clip(-1e5, 1e5)
+        pen.polygon(at.ravel().tolist(), fill=255)
+        if thinnest:
+            pen.line(((at[:2] + at[:1:-1]) / 2).ravel().tolist(), 255, round(4 * thinnest))
+    return mask.reduce(4)
+
+
+def draw_ray(panel: Panel, camera: Camera, top: Array, sun: Array) -> None:
+    """Draw the ray that ends in the tip of a shadow, on to where all rays seem to begin or end."""
+    tip, over = camera.project([tip_of(top, sun), top])
+    end = camera.vanishing_point(sun) if sun[2] else over + 9 * (over - tip)
+    panel.line([over, tip, end] if sun[2] < 0 else [tip, over, end], ESTIMATED, 1)
+    panel.polygons([tip + 2.5 * panel.pixel * circle(20)], _DARK)
 
 
 def tip_of(top: Array, sun: Array) -> Array:
@@ -114,10 +160,11 @@ def tip_of(top: Array, sun: Array) -> Array:
 def _draw_plan(panel: Panel, sun: Array) -> None:
     panel.ticks(x=(-40, 40), y=(0, 50, 100))
     for x in (-0.75, 0.75):
-        panel.line([[x, -33], [x, 111]], WORLD, 1)
+        panel.line([[x, -50], [x, 111]], WORLD, 1)
     for top in POLES:
-        panel.line([top[::2], tip_of(top, sun)[::2]], MUTED, 1.5)
-        panel.mark(top[::2], "world", 6)
+        foot, tip = (at[::2] - _EYE[::2] for at in (top, tip_of(top, sun)))
+        panel.line([foot, tip], MUTED, 1.5)
+        panel.mark(foot, "world", 6)
     to_sun = sun[::2] / np.linalg.norm(sun[::2])
     panel.line(np.outer([0, 200], to_sun), ESTIMATED, 0.9, dash=5)
     side = -1 if to_sun[0] < -0.3 else 1  # the words stand beside the line, away from the shadows

@@ -1,6 +1,7 @@
-"""Strokes: straight ones cut to a rectangle, and into dashes; and a circle."""
+"""Strokes: straight ones cut to a rectangle, and into dashes; a circle; and lines of a ground."""
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array, clipped_segments
 
@@ -31,3 +32,30 @@ def dashed(pairs: Array, length: float) -> Array:
     part = (np.stack([start, start + length], -1) / reach[which, None]).clip(0, 1)
     part, which = part[part[:, 1] > part[:, 0]], which[part[:, 1] > part[:, 0]]
     return np.asarray(pairs[which, :1] + part[..., None] * way[which, None])
+
+
+def contours(height: Array, levels: npt.ArrayLike, reach: float) -> Array:
+    """Return the ink (h, w), from 0 to 1, of lines of equal height, so many px to either side."""
+    off = np.min([np.abs(height - level) for level in np.ravel(levels)], axis=0)
+    return np.asarray(np.clip(reach - off / np.hypot(*np.gradient(height)).clip(1e-9), 0, 1))
+
+
+def cut(corners: Array, inside: Array) -> Array:
+    """Cut a polygon (n, d) by a plane: what lies inside, as deep as is said of each corner (n,).
+
+    Examples
+    --------
+    >>> triangle = np.array([[0.0, 0], [4, 0], [0, 4]])
+    >>> cut(triangle, 1 - triangle[:, 0])  # where x is at most 1
+    array([[0., 0.],
+           [1., 0.],
+           [1., 3.],
+           [0., 4.]])
+    """
+    kept: list[Array] = []
+    for i in range(len(corners)):
+        a, b = corners[i - 1], corners[i]
+        if (inside[i - 1] >= 0) != (inside[i] >= 0):
+            kept += [a + inside[i - 1] / (inside[i - 1] - inside[i]) * (b - a)]
+        kept += [b] * bool(inside[i] >= 0)
+    return np.array(kept).reshape(-1, corners.shape[-1])

@@ -8,31 +8,33 @@ from cvnotes.base import Array
 from cvnotes.homography import dlt, refine_homography
 from cvnotes.pictures import course
 from cvnotes.projective import apply
+from cvnotes.show.explorations.boards import draw_arrows
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.explorations.valley import rows_of_tiles
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
-_SHOWN = (-275.0, 925.0), (180.0, 858.0)  # px of a wide sensor, u and v
-_SIZE, _BARS = (530, 300), (240, 300)
-_FAR = 80  # px: how far a dot can be pulled
+_SHOWN = (-300.0, 1080.0), (165.0, 955.0)  # px of a wide sensor, u and v
+_SIZE, _BARS = (482, 276), (280, 276)
+_TIMES = 7  # as long as they are, arrows are drawn
+_FAR = 100  # px: how far a dot can be pulled
 _TONES = np.array([[255, 250, 244], [243, 231, 219]])  # of the tiles
-_NETS = ((LENS, 3.0), (ESTIMATED, 1.4))  # of the DLT, and of the least error in pixels
+_INKS = LENS, ESTIMATED  # of the DLT, and of the least error in pixels
 
 
 def swing_model() -> Model:
     """Make the model of six rows of tiles, one dot of which is pulled."""
     settings = (
-        Setting("row", "row", 1, 6, 1, 6, "of the dot that is pulled; row 1 is near"),
+        Setting("row", "row", 1, 6, 1, 3, "of the dot that is pulled; row 1 is near"),
         Setting("column", "column", 1, 7, 1, 1, "of the dot that is pulled, from the left"),
         Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, 0, "in the picture"),
         Setting("dv", "pulled down (px)", -_FAR, _FAR, 1, 30, "in the picture"),
     )
     about = (
-        "A tiled floor with six rows of dots, one of which is pulled away, and two nets through "
-        "them: of the DLT, and of the homography with the least error in pixels. Beside it the "
-        "weight of each row in the DLT."
+        "A tiled floor with six rows of dots, one of which is pulled away, and arrows that show "
+        "how row 1 gives way: of the DLT, and of the homography with the least error in pixels. "
+        "Beside it the weight of each row in the DLT, and how far row 1 moves."
     )
 
     def pulled(row: int) -> Drag:
@@ -46,7 +48,7 @@ def swing_model() -> Model:
     return Model("swing", about, settings, _draw, drags)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def nets(row: int, column: int, du: float, dv: float) -> tuple[Array, Array]:
     """Return where the DLT and its refinement put the dots, (6, 7, 2) each, if one is pulled."""
     tiles, exact = rows_of_tiles()
@@ -70,15 +72,16 @@ def _dots() -> Array:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     row, column = int(values["row"]), int(values["column"])
-    two, dots = nets(row, column, values["du"], values["dv"]), _dots().copy()
-    left, held = dots[row - 1, column - 1].copy(), dots[:, column - 1]
+    dots = _dots()
+    held = dots[:, column - 1].copy()
     held[row - 1] += values["du"], values["dv"]
-    panel = paper.panel(_SIZE, *_SHOWN, "blue: the DLT; orange: least error in pixels")
+    panel = paper.panel(
+        _SIZE, *_SHOWN, f"how row 1 gives way, × {_TIMES}: blue DLT, orange refined"
+    )
     panel.image(_ground(paper.sharpness))
-    for net, (colour, width) in zip(two, _NETS, strict=True):
-        for line in (*net, *net.transpose(1, 0, 2)):
-            panel.line(line, colour, width)
-    panel.line([left, held[row - 1]], IDEAL, 1, dash=3)
+    for line in (*dots, *dots.transpose(1, 0, 2)):
+        panel.line(line, MUTED, 0.6)
+    panel.line([dots[row - 1, column - 1], held[row - 1]], IDEAL, 1, dash=3)
     near = 6 if row == 5 else 5  # the dots of rows 5 and 6 are too close for two grips
     for at, size, ink in (
         (dots.reshape(-1, 2), 2.2, IDEAL),
@@ -86,23 +89,39 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         (np.delete(held, [row - 1, near - 1], axis=0), 3, "white"),  # to be pulled as well
     ):
         panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
-    for i, (at, v) in enumerate(zip(held, _dots()[:, 0, 1], strict=True), start=1):
+    moved = [
+        [(net - dots)[0] for net in nets(k, column, values["du"], values["dv"])]
+        for k in range(1, row + 1)
+    ]
+    for by, colour in zip(moved[-1], _INKS, strict=True):
+        draw_arrows(panel, dots[0], _TIMES * by, colour, 2.4)
+    for i, (at, v) in enumerate(zip(held, dots[:, 0, 1], strict=True), start=1):
         if i != near:
             panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
         panel.text([_SHOWN[0][0] + 12, v], f"{i}", IDEAL, size=12)
-    moved = [float(np.linalg.norm((net - _dots())[0], axis=1).max()) for net in two]
-    return Drawing(paper.join((panel, _bars(paper))), _sentence(values, moved))
+    far = np.linalg.norm(moved, axis=-1).max(axis=-1)
+    return Drawing(paper.join((panel, _bars(paper, far))), _sentence(values, far[-1].tolist()))
 
 
-def _bars(paper: Paper) -> Panel:
-    """Draw the weight of each row, at the height that it has in the picture."""
-    panel = paper.panel(_BARS, (-52, 240), _SHOWN[1], "weight of each row in the DLT")
-    panel.line([[0, 0], [0, 1000]], MUTED, 0.8)
-    for i, (weight, v) in enumerate(zip(weights(), _dots()[:, 0, 1], strict=True), start=1):
-        bar = np.array([[0, -13], [weight, -13], [weight, 13], [0, 13]]) + [0, v]
-        panel.polygons([bar], LENS)
-        panel.text([-6, v], f"row {i}", anchor="rm", size=12)
-        panel.text([weight + 7, v], f"{weight:.2g}" if weight < 10 else f"{weight:.0f}", size=12)
+def _bars(paper: Paper, far: Array) -> Panel:
+    """Draw what each row weighs in the DLT, and how far row 1 gives way (k, 2) to the k nearest."""
+    title = "weight in the DLT; row 1 moves by (px)"
+    panel = paper.panel(_BARS, (0, _BARS[0]), (_BARS[1], 0), title)
+
+    def bar(x: float, y: float, length: float, words: str, ink: str, word: str = MUTED) -> None:
+        panel.polygons([[[x, y - 6], [x + length, y - 6], [x + length, y + 6], [x, y + 6]]], ink)
+        panel.text([x + length + 5, y], words, word, size=12)
+
+    for i, weight in enumerate(weights(), start=1):
+        y = 44.0 * i - 16
+        panel.text([10, y], f"row {i}", size=12)
+        bar(54, y, weight / 3, f"{weight:.2g}" if weight < 10 else f"{weight:.0f}", MUTED)
+        if i > len(far):
+            panel.text([166, y], "?", size=14)
+            continue
+        for px, colour, up in zip(far[i - 1], _INKS, (7, -7), strict=True):
+            ink = colour if i == len(far) else mixed("#FFFFFF", colour, 0.4)
+            bar(164, y + up, min(1.4 * px, 74), f"{px:.1f}", ink, colour)
     return panel
 
 
@@ -126,7 +145,7 @@ def _ground(sharpness: int) -> Drawn:
 def _sentence(values: Values, moved: list[float]) -> str:
     far = np.hypot(values["du"], values["dv"])
     if far == 0:
-        return "No dot is pulled: both nets go through all dots."
+        return "No dot is pulled: row 1 stays where it is."
     return (
         f"Dot of row {values['row']:.0f} pulled by {far:.0f} px: row 1 moves by up to "
         f"{moved[0]:.1f} px (DLT), {moved[1]:.1f} px (refined)."

@@ -23,7 +23,7 @@ _ABOVE = np.radians(15)  # from where it is seen
 _RING, _LOW = 560.0, 1440.0  # px: radius of the ring by which it is turned, and its v
 _BEHIND = 1.25  # times as far from the eye as the glass: where the box stands
 _AROUND = (0, 45, -45, 90, -90, 135, -135, 180)  # degrees: where a letter may stand
-_PANE, _CORE, _FACES = "#EAF4FB", "#FFFFFF", ("#F0CBB5", "#FAEBE1", "#E8B596")
+_PANE, _CORE, _FACES = "#EAF4FB", "#FFFFFF", ("#E6DCD6", "#F4EFEB", "#D8CBC3")
 
 
 def triangle_model() -> Model:
@@ -74,8 +74,9 @@ def triangle_model() -> Model:
         _draw_box(sky, v, c, square, nearest, nearest + part[:, None] * (v - nearest))
         corner = eye + _BEHIND * (in_space(nearest) - eye)
         edges = _BEHIND * (part / (1 - part))[:, None] * (in_space(v) - eye)
-        _draw_glass(space, turn, v, photo(), _seen(corner, edges, turn) if square > 0 else v[:0])
-        _draw_rods(space, turn, v, eye, square)
+        box = _seen(corner, edges, turn) if square > 0 else np.empty((0, 4, 2))
+        _draw_glass(space, turn, v, photo(), box)
+        _draw_rods(space, turn, v, eye, square, box)
         return Drawing(paper.join((sky, space)), _sentence(v, c, square))
 
     def turned(_: Values, at: Array) -> Values:
@@ -187,15 +188,19 @@ def _draw_glass(panel: Panel, turn: float, v: Array, photo: Bitmap.Image, box: A
     panel.grip("turn", "the ring that turns the view", at, 4)
 
 
-def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float) -> None:
+def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, box: Array) -> None:
     """Draw the triangle on the glass, the eye before it, and the rods from there to its corners.
 
-    Faint is the half circle over the altitude from Y, on which the eye is.
+    Faint is the half circle over the altitude from Y, on which the eye is. Letters stay away from
+    the box (3, 4, 2).
     """
     m, c, top = (on_sheet(place, turn) for place in (in_space(v), eye * [1, 1, 0], eye))
     names = [(name, at, ESTIMATED) for name, at in zip("XYZ", m, strict=True)]
     sides, rods = np.stack([m, np.roll(m, 1, axis=0)], axis=1), np.stack([m, 0 * m + top], axis=1)
     lines = [*sides, *rods] if np.isfinite(square) else [*sides]
+    lines += [
+        face[[i, j]] for face in box for i, j in ((0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3))
+    ]
     panel.segments(sides, ESTIMATED, 1.5)
     if square > 0:
         phi, foot = np.radians(np.arange(0, 181.0, 3)), _feet(v)[1]

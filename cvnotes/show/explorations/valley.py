@@ -12,6 +12,7 @@ from cvnotes.pictures import course
 from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.strokes import contours
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
 _H6, _H9, _MOST = (-2.7, 1.0), (-1.4, 2.3), 25  # where walks may set out; steps
@@ -84,9 +85,10 @@ def _ground() -> Drawn:
     cost = np.sum((x[..., :2, :] / x[..., 2:, :] - of.seen.T) ** 2, axis=(2, 3))
     height = np.log10(cost.clip(1e-2, 1e5))
     ground = np.stack([np.interp(height, [0.2, 2.2, 4.5], tone) for tone in _TONES.T], axis=-1)
-    off = np.abs(3 * height - np.rint(3 * height)) / np.hypot(*np.gradient(3 * height)).clip(1e-9)
-    line = np.clip(1 - off, 0, 1) * (height < 2.6)  # in pixels; none on the walls
-    return np.asarray((ground - 26 * line[..., None]).round(), dtype=np.uint8)
+    slope = np.interp(height, [2, 2.7], [14, 0]) * np.gradient(height, axis=0)
+    lit = (1 + slope).clip(0.8, 1)[..., None]  # from above; walls are dark anyway
+    line = contours(height, np.arange(0, 2.6, 1 / 3), 1)[..., None]  # none on the walls
+    return np.asarray((lit * ground + line * (255 - lit * ground)).round(), dtype=np.uint8)
 
 
 def valley_model() -> Model:
@@ -110,11 +112,11 @@ def valley_model() -> Model:
         ground = paper.panel((396, 396), *_SHOWN, "the cost over ĥ6 (→) and ĥ9 (↑)")
         ground.image(_ground())
         for tick in (-2, -1, 0):
-            ground.text([tick, -1.42], f"{tick}".replace("-", "−"), anchor="md", size=9)
+            ground.text([tick, -1.42], f"{tick}".replace("-", "−"), anchor="md", size=11)
         for tick in (-1, 0, 1, 2):
-            ground.text([-2.76, tick], f"{tick}".replace("-", "−"), size=9)
+            ground.text([-2.76, tick], f"{tick}".replace("-", "−"), size=11)
         for row, wall in enumerate(-(of.tiles_h[::7, :2] @ of.best[2, :2])[:5], 1):
-            ground.text([1.02 - 0.12 * (row % 2), wall], f"{row}", IDEAL, anchor="mm", size=10)
+            ground.text([1.02 - 0.12 * (row % 2), wall], f"{row}", IDEAL, anchor="mm", size=11)
         ground.mark(of.best[[1, 2], [2, 2]], "ideal", 12)
         for way, (_, colour, width) in zip(ways, _WALKS, strict=True):
             ground.line(way, colour, width)
@@ -133,10 +135,10 @@ def valley_model() -> Model:
 
 def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
     panel = paper.panel((440, 396), (-1.5, _MOST + 1), (5.4, -0.9), "RMS (px) after each step")
-    panel.ticks(x=(5, 10, 15, 20, 25))
+    panel.ticks(x=(5, 10, 15, 20, 25), size=11)
     for power in range(6):
         panel.line([[-2, power], [_MOST + 2, power]], "#DDDDDD", 0.5)
-        panel.text([-1.3, power], f"{10**power:,}", anchor="lm", size=9)
+        panel.text([-1.3, power], f"{10**power:,}", anchor="lm", size=11)
     for values, (name, colour, width), meaning, up in zip(
         rms, _WALKS, ("estimated", "lens"), (-0.3, 0.3), strict=True
     ):

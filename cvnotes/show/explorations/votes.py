@@ -12,8 +12,8 @@ from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD, mixed
 
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
-_LEFT, _TOP, _SIDE = 324, 185, 57  # px, the part of the photograph that is shown
-_SIZE = (285, 285)
+_LEFT, _TOP, _SIDE = 326, 187, 53  # px, the part of the photograph that is shown
+_LARGE, _SMALL = (567, 567), (265, 265)  # px of the page
 _WEAK, _STRONG = 33.0, 75.0  # grey levels a pixel: of votes not drawn, and of the thickest
 _FAR = 90.0  # grey levels a pixel, where the panel of gradients ends
 _K = 0.05  # of the Harris measure
@@ -75,9 +75,9 @@ def votes_model() -> Model:
         votes = _votes(paper, photo, at, window, corners)
         if values["guess"]:
             _draw_misses(votes, window, m)
-        votes.mark(window.crossing, "estimated", 7)
-        picture = paper.join((_photo(paper, photo, at), votes, _spread(paper, window)))
-        return Drawing(picture, _sentence(at, window, m if values["guess"] else None))
+        votes.mark(window.crossing, "estimated", 11)
+        drawn = paper.join(([_photo(paper, photo, at), _spread(paper, window)], votes))
+        return Drawing(drawn, _sentence(at, window, m if values["guess"] else None))
 
     drags = {
         "window": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
@@ -91,7 +91,7 @@ def votes_model() -> Model:
 
 def _photo(paper: Paper, photo: Drawn, at: tuple[int, int]) -> Panel:
     x, y = (_LEFT - 0.5, _LEFT + _SIDE - 0.5), (_TOP - 0.5, _TOP + _SIDE - 0.5)
-    panel = paper.panel(_SIZE, x, y, "part of a photograph, and the window")
+    panel = paper.panel(_SMALL, x, y, "pull the window")
     panel.image(photo[_TOP : _TOP + _SIDE, _LEFT : _LEFT + _SIDE])
     corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]
     for colour, width in (("#FFFFFF", 3.5), (ESTIMATED, 1.8)):
@@ -105,7 +105,7 @@ def _votes(
 ) -> Panel:
     """Draw each pixel's line, the thicker and darker the longer its gradient, weak ones first."""
     (u, v), half = at, _HALF + 0.5
-    panel = paper.panel(_SIZE, (u - half, u + half), (v - half, v + half), "the votes in it")
+    panel = paper.panel(_LARGE, (u - half, u + half), (v - half, v + half), "the votes in it")
     part = photo[v - _HALF : v + _HALF + 1, u - _HALF : u + _HALF + 1]
     panel.image((255 - 0.25 * (255.0 - part)).astype(np.uint8), smooth=False)
     length = np.linalg.norm(window.g, axis=1)
@@ -115,8 +115,8 @@ def _votes(
         steep = abs(window.g[i, 0]) > abs(window.g[i, 1])
         weight = min(length[i] / _STRONG, 1) ** 2  # as it counts in the sum of squares
         ink = mixed("#FFFFFF", ESTIMATED if steep else LENS, 0.25 + 0.75 * weight)
-        panel.line(ends, ink, 0.6 + 2 * weight)
-    panel.mark(corners, "ideal", 11)
+        panel.line(ends, ink, 0.8 + 3.2 * weight)
+    panel.mark(corners, "ideal", 16)
     return panel
 
 
@@ -126,20 +126,20 @@ def _draw_misses(panel: Panel, window: Window, m: Array) -> None:
     strong = length > _WEAK
     n = window.g[strong] / length[strong, None]
     feet = m + n * np.sum(n * (window.p[strong] - m), axis=1)[:, None]
-    panel.segments(np.stack([m + 0 * feet, feet], axis=1), WORLD, 0.7)
+    panel.segments(np.stack([m + 0 * feet, feet], axis=1), WORLD, 1.2)
     if window.eigenvalues[1] > _NOTHING:
         half = window.axes / np.sqrt(window.eigenvalues / window.misses(window.least))
         for times in (2, 4, 8, 16):
-            panel.line(window.least + circle(181) * np.sqrt(times - 1) @ half.T, IDEAL, 1, dash=3)
-    panel.mark(m, "world", 8)
-    panel.text(m + [0.3, 0.3], "m", WORLD, size=14)
+            panel.line(window.least + circle(181) * np.sqrt(times - 1) @ half.T, IDEAL, 1.6, dash=4)
+    panel.mark(m, "world", 11)
+    panel.text(m + [0.2, 0.25], "m", WORLD, size=18)
     panel.grip("m", "a point, for which all lines might vote", m, 5)
 
 
 def _spread(paper: Paper, window: Window) -> Panel:
     """Draw the gradients as dots, and the ellipse whose half axes are √(λ/n)."""
     panel = paper.panel(
-        _SIZE, (-_FAR, _FAR), (-_FAR, _FAR), "gradients gᵤ →, gᵥ ↓ (grey levels a pixel)"
+        _SMALL, (-_FAR, _FAR), (-_FAR, _FAR), "gradients gᵤ →, gᵥ ↓ (grey levels/px)"
     )
     panel.ticks(x=(-60, 0, 60), y=(-60, 0, 60), size=12)
     panel.mark(window.g, "lens", 3.5)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import rotation_from_angles, rotation_from_vector, vector_from_rotation
+from cvnotes.camera import rotation_from_angles, rotation_from_vector
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.orbit import angles_of
 from cvnotes.show.explorations.paper import Panel, Paper
@@ -13,17 +13,16 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 _UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z points up on the sheet
 _SHEET, _TOWARDS = sheet((42, -62)) @ _UPRIGHT, towards((42, -62)) @ _UPRIGHT
 _T = np.linspace(0, 1, 101)
-# A dart of paper that flies along x: nose, two wings, fold and keel.
-_DART = np.array([[1, 0, 0], [0, 0.2, 0], [0.1, 0, 0], [0, -0.2, 0], [0, 0, 0.18]])
+# A dart of paper that flies along x, from its nose: nose, two wings, fold and keel.
+_DART = np.array([[0, 0, 0], [-40, 13, 0], [-36, 0, 0], [-40, -13, 0], [-40, 0, 12]]) / 100
 _TURN = np.linspace(0, 2 * np.pi, 97)
 
 
 def ways_model() -> Model:
     """Make the model of a dart that is carried to an attitude in two ways."""
     settings = (
-        Setting("up", "tip up (°)", -30, 150, 1, 100, "90 is the height of the pole"),
-        Setting("aside", "tip aside (°)", -60, 60, 1, -20, "0 is the circle through the pole"),
-        Setting("roll", "roll (°)", -90, 90, 5, 0, "turns the target about its own length"),
+        Setting("up", "tip up (°)", -30, 150, 1, 105, "90 is the height of the pole"),
+        Setting("aside", "tip aside (°)", -60, 60, 1, -6, "0 is the circle through the pole"),
         Setting("t", "time t (s)", 0, 1, 0.01, 0.4, "0 is the start, 1 the target"),
     )
     about = (
@@ -50,10 +49,9 @@ def ways(values: Values) -> tuple[Array, Array]:
     tip = _tip(values)
     axis, x = np.array([0, -tip[2], tip[1]]), float(tip[0])
     sine = float(np.linalg.norm(axis))
-    swing = np.zeros(3) if sine < 1e-9 else axis / sine * np.arctan2(sine, x)
-    R = rotation_from_vector(swing) @ rotation_from_vector([np.radians(values["roll"]), 0, 0])
+    omega = np.zeros(3) if sine < 1e-9 else axis / sine * np.arctan2(sine, x)
     # Rounded, so that half a turn is +180° on every machine.
-    return vector_from_rotation(R), angles_of(R.round(12) + 0.0)
+    return omega, angles_of(rotation_from_vector(omega).round(12) + 0.0)
 
 
 def speeds(angles: Array) -> Array:
@@ -83,20 +81,17 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     tips = by_axis[:, :, 0] @ _SHEET.T
     panel.polygons([[[0, 0], *tips]], mixed("#FFFFFF", ESTIMATED, 0.16))
     if whole:
-        end = 1.12 * (omega / np.linalg.norm(omega)) @ _SHEET.T
-        panel.line([-end, end], ESTIMATED, 1, dash=4)
-        panel.text(1.06 * end + [0.05, 0], "ω", ESTIMATED, anchor="mm", size=14)
+        _draw_omega(panel, omega, by_axis)
     trails = (by_angles, LENS), (by_axis[:, :, 0], ESTIMATED)
     for trail, colour in trails:
         panel.line(trail @ _SHEET.T, mixed("#FFFFFF", colour, 0.4), 1.2)
     now = rotation_from_vector(t * omega), rotation_from_angles(*(t * angles))
-    looks = (np.eye(3), "#D2D2D2"), (by_axis[-1], "#D2D2D2"), (now[1], LENS), (now[0], ESTIMATED)
-    _draw_darts(panel, looks)
     for trail, colour in trails:
         _draw_front(panel, trail, colour, 2.5)
+    _draw_darts(panel, ((np.eye(3), "#D2D2D2"), (now[1], LENS), (now[0], ESTIMATED)))
     for R, meaning in zip(now, ("estimated", "lens"), strict=True):
         panel.mark(R[:, 0] @ _SHEET.T, meaning, 5)
-    panel.mark(tips[-1], "ideal", 7)
+    panel.mark(tips[-1], "ideal", 9)
     panel.grip("target", "the tip of the target", tips[-1], 4)
     x, y, z = np.degrees(angles).round() + 0.0
     return Drawing(
@@ -115,8 +110,8 @@ def _draw_sphere(panel: Panel) -> None:
     for turn in np.radians(np.arange(0, 180, 30)):
         _draw_front(panel, np.column_stack([np.cos(turn) * c, np.sin(turn) * c, s]))
     panel.line(np.outer([1, 1.55], _SHEET[:, 2]), MUTED, 2.5)
-    panel.text([0.05, -1.12], "pole", MUTED, size=12)
-    panel.text(_SHEET[:, 0] + [0.12, 0.08], "start", MUTED, size=12)
+    panel.text([0.05, -1.12], "pole", MUTED, size=14)
+    panel.text(_SHEET[:, 0] + [0.06, 0.1], "start", MUTED, size=14)
 
 
 def _draw_front(panel: Panel, W: Array, colour: str = "#C9C9C9", width: float = 0.7) -> None:
@@ -125,9 +120,25 @@ def _draw_front(panel: Panel, W: Array, colour: str = "#C9C9C9", width: float = 
     panel.line(np.where(front, W @ _SHEET.T, np.nan), colour, width)
 
 
+def _draw_omega(panel: Panel, omega: Array, by_axis: Array) -> None:
+    """Draw the axis as an arrow from the middle of the sphere, and about its foot the angle."""
+    foot = 0.3 * by_axis[:, :, 0] @ _SHEET.T
+    panel.line(foot, ESTIMATED, 1.5)
+    angle = float(np.linalg.norm(omega))
+    tip, end = _SHEET @ omega / angle, 0.55 * foot[50]
+    along = tip / max(float(np.linalg.norm(tip)), panel.pixel)
+    head = np.array([[0, 0], [-0.1, 0.035], [-0.1, -0.035]]) @ [along, along[::-1] * [-1, 1]]
+    panel.line([[0, 0], 1.15 * tip - 0.08 * along], ESTIMATED, 3)
+    panel.polygons([1.15 * tip + head], ESTIMATED)
+    panel.text(1.15 * tip + 0.1 * along, "ω", ESTIMATED, anchor="mm", size=18)
+    panel.text(end, f"{np.degrees(angle):.0f}°", ESTIMATED, anchor="mm", size=14)
+
+
 def _draw_darts(panel: Panel, looks: tuple[tuple[Array, str], ...]) -> None:
-    """Draw darts, each with its attitude and colour, from the back to the front."""
-    faces = np.concatenate([(_DART @ R.T)[[[0, 1, 2], [0, 3, 2], [0, 4, 2]]] for R, _ in looks])
+    """Draw darts, each with its attitude and colour, their noses on the sphere."""
+    faces = np.concatenate(
+        [(R[:, 0] + _DART @ R.T)[[[0, 1, 2], [0, 3, 2], [0, 4, 2]]] for R, _ in looks]
+    )
     paints = [mixed(colour, IDEAL, part) for _, colour in looks for part in (0, 0.12, 0.3)]
     order = np.argsort(faces.mean(axis=1) @ _TOWARDS)
     panel.polygons(faces[order] @ _SHEET.T, [paints[i] for i in order])

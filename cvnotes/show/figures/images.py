@@ -123,8 +123,8 @@ def draw_corners(
     for j in (0, rows - 1):
         for i, inner in ((0, 1), (columns - 1, columns - 2)):
             at, diagonal = grid[j, i], grid[min(1, rows - 1) if j == 0 else rows - 2, inner]
-            if np.isfinite([at, diagonal]).all():  # outside of the squares, on the white margin
-                _write(ax, str(columns * j + i), at + 1.5 * (at - diagonal), ESTIMATED)
+            if np.isfinite([at, diagonal]).all():  # beside it, in the outer square
+                _write(ax, str(columns * j + i), at + 0.5 * (at - diagonal), ESTIMATED)
     return ax
 
 

@@ -83,36 +83,6 @@ def ray_shapes(camera: Camera, m: npt.ArrayLike, *, to: npt.ArrayLike) -> Shapes
     return (Lines("rays", ends, LENS, 1.0),)
 
 
-def sheet_shapes(edge: npt.ArrayLike, edges: npt.ArrayLike) -> Shapes:
-    """Return flat sheets from one edge to others, as the rays of a camera to lines of the world.
-
-    They are pale: what is behind a sheet stays visible.
-
-    Parameters
-    ----------
-    edge : array_like, shape (2, 3)
-        The segment that all sheets share.
-    edges : array_like, shape (..., 2, 3)
-        The segment opposite to it, of each sheet.
-
-    Examples
-    --------
-    >>> ridge, eaves = [[0, 0, 0], [0, 0, 9]], [[[x, 2, 0], [x, 2, 9]] for x in (-1, 1)]
-    >>> faces, = sheet_shapes(ridge, eaves)
-    >>> faces.corners[0, 0], faces.corners[-1, 2]
-    (array([0., 0., 0.]), array([1., 2., 9.]))
-    """
-    shared, others = points(edge, "edge", 3), points(edges, "edges", 3)
-    if shared.shape != (2, 3) or others.ndim < 2 or others.shape[-2] != 2:
-        raise ShapeError(
-            "a sheet lies between two segments: expected edge (2, 3) and edges (..., 2, 3), "
-            f"got {shared.shape} and {others.shape}"
-        )
-    near = np.broadcast_to(shared, others.reshape(-1, 2, 3).shape)
-    corners = np.concatenate([near, others.reshape(-1, 2, 3)[:, ::-1]], axis=1)
-    return (Faces("sheets", corners, np.tile([*rgb(WORLD), 0.22], (len(corners), 1))),)
-
-
 def plane_shapes(camera: Camera) -> Shapes:
     """Return the plane z = 1 in the CRF, of the ideal image points, and what is seen of it.
 

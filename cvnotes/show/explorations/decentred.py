@@ -1,0 +1,113 @@
+"""Explore a decentred lens: pull the direction of its tangential terms, beside a tilted sensor."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import Lens
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS
+
+_SIZE, _SHOWN = (372, 400), ((-0.72, 0.72), (-0.774, 0.774))
+_EXTENT, _TIMES = 0.5, 3  # of the grid; each point is moved so many times as far
+_RULER = 0.35, 0.5  # how far along p it lies, and how far it reaches to both sides
+_ARROW = 4  # how much longer than p its arrow is
+_F = 800  # px, in which a bow is told
+
+
+def decentred_model() -> Model:
+    """Make the model of a grid through a lens with tangential terms alone."""
+    settings = (
+        Setting(
+            "p1", "p1", -0.05, 0.05, 0.001, 0.04, "an element of the lens off the axis, along y"
+        ),
+        Setting("p2", "p2", -0.05, 0.05, 0.001, 0, "an element of the lens off the axis, along x"),
+    )
+    about = (
+        "A grid through a lens with tangential terms alone, each point moved three times as far, "
+        "with the direction p in black. Beside it the same grid on a tilted sensor. A ruler shows "
+        "by how much a line across p bows."
+    )
+
+    def pulled(_: Values, at: Array) -> Values:
+        return {"p1": float(at[1] / _ARROW), "p2": float(at[0] / _ARROW)}
+
+    return Model("decentred", about, settings, _draw, {"p": pulled})
+
+
+def decentred(p: Array, xy: Array) -> Array:
+    """Return where a lens with p = (p2, p1) shows points (..., 2)."""
+    return Lens(p=(float(p[1]), float(p[0]))).distort(xy)
+
+
+def tilted(p: Array, xy: Array) -> Array:
+    """Return where a tilted sensor shows points (..., 2): to first order 2 (p · d) d farther."""
+    return np.asarray(xy / (1 - 2 * xy @ p)[..., None])
+
+
+def bow(line: Array) -> float:
+    """Return how far the middle of a line (n, 2) lies off the straight one through its ends."""
+    way, middle = line[-1] - line[0], line[len(line) // 2] - line[0]
+    return float(abs(way[0] * middle[1] - way[1] * middle[0]) / np.hypot(*way))
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    p = np.array([values["p2"], values["p1"]])
+    lens = paper.panel(_SIZE, *_SHOWN, "a decentred lens, each point moved 3 times as far")
+    sensor = paper.panel(_SIZE, *_SHOWN, "a tilted sensor, also 3 times as far")
+    bows = [_bent(panel, p, move) for panel, move in ((lens, decentred), (sensor, tilted))]
+    tip = _ARROW * p
+    _arrow(lens, np.zeros(2), tip, IDEAL, 2.5)
+    lens.mark([0, 0], "ideal", 5)
+    lens.polygons([tip + 6 * lens.pixel * circle(25)], IDEAL)
+    lens.text(tip + 18 * lens.pixel * _along(p)[1], "p", IDEAL, anchor="mm", size=17)
+    lens.grip("p", "the direction of the tangential terms", tip, 1)
+    words = (
+        f"p1 = {values['p1']:.3f}, p2 = {values['p2']:.3f}: at a focal length of {_F} px the line "
+        f"across p bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the tilted sensor."
+    )
+    return Drawing(paper.join((lens, sensor)), words)
+
+
+def _along(p: Array) -> tuple[Array, Array]:
+    """Return the direction of p, downwards if it has none, and the one across it."""
+    ahead = p / np.hypot(*p) if p.any() else np.array([0.0, 1])
+    return ahead, np.array([ahead[1], -ahead[0]])
+
+
+def _bent(panel: Panel, p: Array, move: Callable[[Array, Array], Array]) -> float:
+    """Draw the grid and what becomes of it; return by how many px a line across p bows."""
+    fine, coarse = (np.linspace(-_EXTENT, _EXTENT, n) for n in (49, 11))
+    across = np.stack(np.meshgrid(fine, coarse), -1)
+    lines = [*across, *across[..., ::-1]]
+    for line in lines:
+        panel.line(line[[0, -1]], "#D4D4D4", 1)
+    for line in lines:
+        panel.line(move(_TIMES * p, line), LENS, 1.6)
+    dots = np.stack(np.meshgrid(*2 * [[-0.5, -0.3, 0, 0.3, 0.5]]), -1).reshape(-1, 2)
+    for start, end in zip(dots, move(_TIMES * p, dots), strict=True):
+        _arrow(panel, start, end, ESTIMATED, 1.8)
+    ahead, across_p = _along(p)
+    ruled = _RULER[0] * ahead + np.outer(np.linspace(-_RULER[1], _RULER[1], 49), across_p)
+    seen = move(_TIMES * p, ruled)
+    panel.line(seen, LENS, 4)
+    panel.line(seen[[0, -1]], IDEAL, 2)
+    px = _F * bow(move(p, ruled))
+    words = f"the line across p bows by {px:.1f} px"
+    panel.text([0, 0.735], words, IDEAL, anchor="mm", size=14)
+    return px
+
+
+def _arrow(panel: Panel, start: Array, end: Array, ink: str, width: float) -> None:
+    way = end - start
+    far = float(np.hypot(*way))
+    head = min(5 * width * panel.pixel, 0.7 * far)
+    if far < 7 * panel.pixel:  # a speck
+        return
+    ahead = way / far
+    aside = 0.38 * head * np.array([-ahead[1], ahead[0]])
+    panel.line([start, end - 0.8 * head * ahead], ink, width)
+    panel.polygons([[end, end - head * ahead + aside, end - head * ahead - aside]], ink)

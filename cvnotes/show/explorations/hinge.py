@@ -1,0 +1,164 @@
+"""Explore why depth is needed: two boards open to one plane, and no focal length is left."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.camera import Camera, inverse, look_at, move
+from cvnotes.pictures import course
+from cvnotes.show.explorations.boards import paper_and_squares
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.space.directions import sheet
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, mixed
+from cvnotes.targets import Chessboard, TwoPlanes
+
+_BOARD, _A = Chessboard((7, 6), 25.0), course.camera().A
+_VIEW = Camera(_A, look_at([470, 40, -520], [65, 62, -75]))
+_SPACE, _FOUND = (520, 400), (340, 400)  # px
+_OPEN, _FLAT = 90, 180  # degrees between the boards
+_NOISE, _PHOTOS = 0.1, 40  # px, of each coordinate
+_REACH = 60  # px, of α
+_DEPTH = 180  # mm from the camera to its drawn picture
+_SHEET = sheet((24, -64))
+_SHOWN = ((-288, 266), (-106, 320))  # mm of the sheet
+
+
+def on_sheet(W: Array) -> Array:
+    """Project points (..., 3) onto the sheet (..., 2), all parallel."""
+    return np.asarray(W @ _SHEET.T)
+
+
+def hinge_model() -> Model:
+    """Make the model of a photograph of two boards on a hinge, and of what it tells of α."""
+    settings = (
+        Setting("angle", "angle of the boards (°)", _OPEN, _FLAT, 1, 120, "180° is one plane"),
+    )
+    about = (
+        "A camera before two boards on a hinge. Beside it a band against their angle: how exactly "
+        "one photograph of both tells the focal length, with what 40 of them told as dots."
+    )
+
+    def turned(_: Values, at: Array) -> Values:
+        nearest = np.linalg.norm(_way() - at, axis=1).argmin()
+        return {"angle": float(_OPEN + nearest)}
+
+    drags = {"board": turned, "angle": lambda _, at: {"angle": float(at[0])}}
+    return Model("hinge", about, settings, _draw, drags)
+
+
+@lru_cache(maxsize=1)
+def gains() -> Array:
+    """Return by how much α_u moves with each coordinate of the corners, for 90° to 179°: (90, 168).
+
+    Least squares find (JᵀJ)⁻¹Jᵀ n for small noise n, in all u and then all v, where J has the
+    derivatives of u = α_u x/z + u0 and v = α_v y/z + v0 by the four intrinsics and the pose.
+    """
+    W = [TwoPlanes(_BOARD, np.radians(angle)).points for angle in range(_OPEN, _FLAT)]
+    X, Y, z = np.moveaxis(move(_VIEW.G, np.array(W)), -1, 0)
+    x, y, i, o = X / z, Y / z, 1 + 0 * z, 0 * z
+    alpha_u, alpha_v = _A[[0, 1], [0, 1]]
+    by_u = [x, o, i, o, *alpha_u * np.array([1 / z, o, -x / z, -x * y, 1 + x * x, -y])]
+    by_v = [o, y, o, i, *alpha_v * np.array([o, 1 / z, -y / z, -1 - y * y, x * y, x])]
+    J = np.concatenate(np.moveaxis(np.array([by_u, by_v]), 1, -1), axis=1)
+    size = np.linalg.norm(J, axis=1, keepdims=True)  # or else much is lost to rounding
+    across = (J / size).swapaxes(1, 2)
+    return np.asarray(np.linalg.solve(across @ across.swapaxes(1, 2), across)[:, 0] / size[:, :, 0])
+
+
+@lru_cache(maxsize=1)
+def found() -> Array:
+    """Return α_u as 40 photographs tell it (angles, 40), the same noise for each angle."""
+    noise = np.random.default_rng(0).normal(scale=_NOISE, size=(_PHOTOS, gains().shape[1]))
+    return np.asarray(_A[0, 0] + gains() @ noise.T)
+
+
+@lru_cache(maxsize=1)
+def spread() -> Array:
+    """Return the standard deviation of α_u for each angle, px."""
+    return np.asarray(_NOISE * np.linalg.norm(gains(), axis=1))
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    angle = round(values["angle"])
+    drawn = paper.join((_space(paper, angle), _graph(paper, angle)))
+    if angle == _FLAT:
+        return Drawing(drawn, "At 180° both boards are one plane: the photograph does not tell α.")
+    one = spread()[angle - _OPEN]
+    return Drawing(
+        drawn, f"At {angle}° one photograph tells α to ± {one:.{1 if one > 2 else 2}f} px."
+    )
+
+
+def _outer(angle: float) -> Array:
+    """Return where the middle of the outer edge of the board that turns is on the sheet (2,)."""
+    side, board = TwoPlanes(_BOARD, np.radians(angle)).faces[1]
+    return on_sheet(move(side, paper_and_squares(board)[0][[0, 3]].mean(axis=0)))
+
+
+@lru_cache(maxsize=1)
+def _way() -> Array:
+    return np.array([_outer(angle) for angle in range(_OPEN, _FLAT + 1)])
+
+
+def _in_camera(W: Array) -> Array:
+    """Return where points (..., 3) are seen on the camera's drawn picture, on the sheet."""
+    M = move(_VIEW.G, W)
+    return on_sheet(move(inverse(_VIEW.G), _DEPTH * M / M[..., 2:]))
+
+
+def _space(paper: Paper, angle: int) -> Panel:
+    eye, (w, h) = on_sheet(_VIEW.centre), _VIEW.size
+    parts = [
+        [move(G, part) for part in paper_and_squares(board)]
+        for G, board in TwoPlanes(_BOARD, np.radians(angle)).faces
+    ]
+    panel = paper.panel(_SPACE, *_SHOWN, "one photograph of two boards: pull the left one open")
+    panel.line(_way(), mixed("#FFFFFF", ESTIMATED, 0.4), 2)
+    for border, squares in parts:
+        _draw_paper(panel, on_sheet(border), on_sheet(squares))
+    frame = _in_camera(_VIEW.centre + _VIEW.ray([[0, 0], [w, 0], [w, h], [0, h]]))
+    panel.polygons(frame[None], "#E4E4E0")
+    for border, squares in parts:
+        _draw_paper(panel, _in_camera(border), _in_camera(squares))
+    for at, after in zip(frame, np.roll(frame, -1, axis=0), strict=True):
+        panel.line([at, after, eye], CAMERA, 1.8)
+    panel.mark(_outer(angle), "estimated", 8)
+    panel.grip("board", "the outer edge of the board on the left", _outer(angle), 3)
+    return panel
+
+
+def _draw_paper(panel: Panel, border: Array, squares: Array) -> None:
+    panel.polygons(border[None], "#FBFBF8")
+    panel.line(border[[0, 1, 2, 3, 0]], MUTED, 0.8)
+    panel.polygons(squares, "#262629")
+
+
+def _graph(paper: Paper, angle: int) -> Panel:
+    """Draw the band α ± its standard deviation, and what 40 photographs say at one angle."""
+    alpha = _A[0, 0]
+    panel = paper.panel(
+        _FOUND, (_OPEN - 20, _FLAT + 7), (alpha + _REACH, alpha - _REACH - 12),
+        "α found in 40 photographs (px), by the angle (°)",
+    )  # fmt: skip
+    panel.ticks(x=(90, 120, 150, 180), y=(750, 775, 800, 825, 850), size=12)
+    angles = np.arange(_OPEN, _FLAT)
+    above, below = (np.stack([angles, alpha + by * spread()], axis=1) for by in (1, -1))
+    panel.polygons([np.concatenate([above, below[::-1]])], mixed("#FFFFFF", ESTIMATED, 0.2))
+    for end in (above, below):
+        panel.line(end, ESTIMATED, 1.4)
+    panel.line([[_OPEN - 20, alpha], [_FLAT + 20, alpha]], IDEAL, 1)
+    if angle < _FLAT:
+        places = np.stack([angle + np.linspace(-4, 4, _PHOTOS), found()[angle - _OPEN]], axis=1)
+        dot = 1.7 * circle(13) * [panel.pixel, (2 * _REACH + 12) / _FOUND[1]]
+        panel.polygons(places[:, None] + dot, ESTIMATED)
+    else:
+        panel.line([[_FLAT, 0], [_FLAT, 2 * alpha]], ESTIMATED, 4)
+    panel.text([93, alpha + 8], "± standard deviation", ESTIMATED, size=13)
+    held = [angle, alpha - 0.75 * _REACH]
+    panel.line([held, [angle, alpha]], MUTED, 0.8)
+    panel.mark(held, "estimated", 8)
+    panel.grip("angle", "the angle between both boards", held, 3)
+    return panel

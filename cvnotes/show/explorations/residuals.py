@@ -1,0 +1,82 @@
+"""Explore residuals: with a wrong lens they form a pattern, with the right one they are noise."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.calibration.refinement import solve_by_schur, take_step
+from cvnotes.show.explorations.boards import draw_arrows
+from cvnotes.show.explorations.finding import Finding, alike, rms
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import GRID, Panel, Paper
+from cvnotes.show.style import LENS
+
+_SENSOR, _BESIDE, _LONG = (500, 375), (270, 375), 16  # px; of an arrow as long as the RMS
+_LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.01
+_SURE = 1e12  # how much more one wish about k1 weighs than all pictures
+
+
+def residuals_model() -> Model:
+    """Make the model of all residuals of the course's twelve photographs, for a given k1."""
+    settings = (
+        Setting(
+            "k1", "k₁", _LOWEST, _HIGHEST, _STEP, 0, "the lens that is believed; the rest fits"
+        ),
+    )
+    about = (
+        "All corners of twelve photographs on one sensor, each with an arrow to where the best "
+        "camera with this k1 puts it. Beside it the RMS of all arrows against k1."
+    )
+    return Model("residuals", about, settings, _draw, {"k1": lambda _, at: {"k1": float(at[0])}})
+
+
+_finding = lru_cache(maxsize=1)(Finding)
+
+
+@lru_cache(maxsize=64)
+def fitted(k1: float) -> Array:
+    """Find all that fits best beside a given k1; return its misses (12, 54, 2), in pixels."""
+    problem, x = _finding().problem, _finding().states[-1]
+    place = problem.names.index("k1")
+    for _ in range(8):
+        _, system = problem.linearise(x)
+        system.shared[place, place] += _SURE
+        system.g_shared[place] += _SURE * (x.shared[place] - k1)
+        x = take_step(x, solve_by_schur(system, 0.0)[0])
+    return -problem.residuals(problem.camera_of(x.shared), x)
+
+
+@lru_cache(maxsize=1)
+def _valley() -> Array:
+    """Return some k1 and the RMS of the best camera with each, (n, 2)."""
+    some = np.r_[-0.4:-0.28:0.04, -0.28:-0.22:0.005, -0.22:-0.1:0.02, -0.1:0.11:0.05].round(3)
+    return np.array([[k1, rms(fitted(float(k1)))] for k1 in some])
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    k1 = values["k1"]
+    misses = fitted(k1)
+    missed, agree = rms(misses), alike(misses)
+    times = float(f"{_LONG / missed:.1g}")
+    m = _finding().m.reshape(-1, 2)
+    sensor = paper.picture_panel(_SENSOR, _finding().size, f"all residuals, × {times:,.0f}")
+    sensor.polygons([np.array([[-1, -1], [640, -1], [640, 480], [-1, 480]])], "#F4F4F2")
+    draw_arrows(sensor, m, times * sensor.pixel * misses.reshape(-1, 2))
+    said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows agree by {agree:.2f}"
+    what = "of 1: the lens is wrong." if agree > 0.2 else "of 1: what is left is noise."
+    sentence = f"{said} {what}".replace("-", "−")
+    return Drawing(paper.join((sensor, _curve(paper, k1, missed))), sentence)
+
+
+def _curve(paper: Paper, k1: float, missed: float) -> Panel:
+    panel = paper.panel(_BESIDE, (-0.46, 0.13), (-0.1, -2.5), "RMS (px) against k₁: pull the cross")
+    panel.ticks(x=(-0.3, -0.2, -0.1, 0))
+    for power in (-2, -1):
+        panel.segments([[[-0.38, power], [0.13, power]]], GRID, 0.5)
+        panel.text([-0.45, power], f"{10.0**power:g}")
+    panel.line(np.column_stack([_valley()[:, 0], np.log10(_valley()[:, 1])]), LENS, 2)
+    here = np.array([k1, np.log10(missed)])
+    panel.mark(here, "estimated", 8)
+    panel.grip("k1", "k1, to be moved along the curve", here, 4)
+    return panel
