@@ -47,7 +47,7 @@ def eleventh_model() -> Model:
         Setting("v", "v (px)", 80, 880, 10, 580, "where the board's middle is held"),
         Setting(
             "tilt",
-            "tilt (°)",
+            "tilt of outer edge (°)",
             -45,
             45,
             5,
