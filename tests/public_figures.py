@@ -35,7 +35,6 @@ from cvnotes.show.figures import (
     estimates,
     lines,
     quality,
-    wall,
 )
 from cvnotes.show.figures import (
     images as figures,
@@ -105,8 +104,6 @@ FIGURES = [
     ),
     figure(lines.draw_segments, {"segments": (LINES, rows(2))}, sizes=("size",), size=(640, 480)),
     figure(lines.segment_ends, {"segments": (LINES, rows(2))}),
-    # wall
-    figure(wall.draw_wall, {"images": (PAIR, PICTURE)}),
     # quality
     figure(quality.draw_residuals, {"magnify": (50.0, ONE)}, calibration=RESULT),
     figure(
@@ -124,10 +121,5 @@ FIGURES = [
         lambda m, to: sights.ray_shapes(CAMERA, m, to=to),
         {"m": (M, rows(2)), "to": (W[:3], rows(3))},
         "show.sights.ray_shapes",
-    ),
-    figure(
-        lambda W, radius: sights.dot_shapes(W, "C", radius=radius),
-        {"W": (np.array([1.0, 2, 3]), several(3)), "radius": (8.0, ONE)},
-        "show.sights.dot_shapes",
     ),
 ]

@@ -30,7 +30,6 @@ from cvnotes.show import (
     draw_scene,
     export_glb,
     panels,
-    plane_shapes,
     ray_shapes,
     scene_shapes,
     target_shapes,
@@ -55,7 +54,6 @@ def all_shapes():
         *axes_shapes(),
         *camera_shapes(BENT, image=image),
         *ray_shapes(BENT, [320, 240], to=[0, 0, 0]),
-        *plane_shapes(BENT),
         *scene_shapes(box((0, 50), (0, 50), (0, 50))),
     )
 
@@ -111,17 +109,6 @@ def test_pixels_beyond_the_lens_have_no_ray():
     assert len(lines.ends) == 1
 
 
-def test_the_outline_on_the_plane_z_is_the_border_of_the_picture_without_the_lens():
-    faces, outline, label = plane_shapes(BENT)
-    on = outline.ends[:, 0]
-    assert np.allclose(BENT.depth(on), 1, atol=1e-9)
-    m = BENT.project(on)
-    far = np.abs((m - [319.5, 239.5]) / [320, 240]).max(axis=1)
-    assert np.allclose(far, 1, atol=1e-6)
-    assert np.allclose(BENT.depth(faces.corners[0]), 1, atol=1e-9)
-    assert label.name == "z = 1"
-
-
 @pytest.mark.parametrize("target", [BOARD, TwoPlanes(), ThreePlanes()])
 def test_every_inner_corner_is_where_four_squares_of_two_colours_meet(target):
     faces = target_shapes(target)[0]
@@ -164,7 +151,7 @@ def test_what_is_estimated_has_its_own_colour():
 def test_a_scene_holds_every_shape_with_y_up():
     scene = build_scene(*all_shapes())
     expected = {"target", "target border", "WRF axes", "camera pyramid", "camera picture", "rays"}
-    expected |= {"z = 1 plane", "z = 1 outline", "scene"}
+    expected |= {"scene"}
     assert expected <= set(scene.geometry)
     board = target_shapes(BOARD)[0].corners.reshape(-1, 3)
     low, high = build_scene(*target_shapes(BOARD)[:1]).bounds
@@ -266,7 +253,7 @@ def test_a_still_has_equal_scales_y_downwards_and_no_axes():
 def test_a_still_names_what_it_shows():
     shapes = (*all_shapes(), *camera_shapes(STRAIGHT, name="camera 2"))
     texts = [text.get_text() for text in draw_scene(*shapes).texts]
-    assert texts == ["WRF", *"XYZ", "camera", "z = 1", "camera 2"]
+    assert texts == ["WRF", *"XYZ", "camera", "camera 2"]
 
 
 VIEWS = [(20, -40), (5, -90), (60, 10), (-20, 120), (25, -62), (89, -90), (18, 0)]

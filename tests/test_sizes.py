@@ -76,7 +76,6 @@ NO_SIZES = {
     "StereoCalibration.of_camera": "the number of a camera",
     "Model.of_views": "made by calibrate_photographs",
     "Photographs.without": "numbers of photographs",
-    "dot_shapes": "a radius in the scene's unit",
 }
 
 

@@ -7,15 +7,11 @@ from cvnotes.show.figures.calibration import draw_arrow, draw_cube
 from cvnotes.show.figures.estimates import draw_plane_error
 from cvnotes.show.figures.ideas import draw_meanings
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
-from cvnotes.show.figures.lenses import draw_grid
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.quality import draw_coverage, draw_residuals
-from cvnotes.show.figures.wall import draw_wall
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
-    dot_shapes,
-    plane_shapes,
     ray_shapes,
 )
 from cvnotes.show.space.shapes import (
@@ -47,12 +43,10 @@ __all__ = [
     "draw_meanings",
     # chapter 3: how an image is formed
     # chapter 4: lenses
-    "draw_grid",
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_coverage",
     "draw_plane_error",
-    "draw_wall",
     # chapter 7: the picture of J, a cube on the board
     "draw_arrow",
     "draw_cube",
@@ -67,8 +61,6 @@ __all__ = [
     "scene_shapes",
     "camera_shapes",
     "ray_shapes",
-    "plane_shapes",
-    "dot_shapes",
     "Faces",
     "Lines",
     "Photo",

@@ -134,8 +134,7 @@ def _strip(paper: Paper, window: int, which: int) -> Panel:
 def _cloud(paper: Paper, off: Array, rms: Array, reach: float) -> Panel:
     """Draw the errors, and rings as large as the RMS of a point; the smaller cloud on top."""
     aside = reach * _CLOUD[0] / _CLOUD[1]
-    title = f"errors of 54 corners; the panel is {2 * reach:g} px high"
-    panel = paper.panel(_CLOUD, (-aside, aside), (-reach, reach), title)
+    panel = paper.panel(_CLOUD, (-aside, aside), (-reach, reach), "errors of 54 corners")
     dot, ring = 3 * panel.pixel * circle(13), circle(91)
     order = np.argsort(-rms)
     for k in order:
@@ -144,6 +143,9 @@ def _cloud(paper: Paper, off: Array, rms: Array, reach: float) -> Panel:
         panel.line(rms[k] * ring, _METHODS[k][1], 2)
         panel.polygons(off[k][:, None] + dot, mixed("#FFFFFF", _METHODS[k][1], 0.7))
     panel.mark([0, 0], "ideal", 7)
+    bar = float(f"{reach / 3:.1g}")  # px, as long as the scale in the corner
+    panel.line([[0.95 * aside - bar, 0.86 * reach], [0.95 * aside, 0.86 * reach]], IDEAL, 2)
+    panel.text([0.95 * aside - bar / 2, 0.77 * reach], f"{bar:g} px", IDEAL, anchor="ms", size=13)
     outside = int((np.abs(off) > [aside, reach]).any(axis=(0, 2)).sum())
     if outside:
         words = f"{outside} of 54 go beyond"

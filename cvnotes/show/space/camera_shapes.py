@@ -1,4 +1,4 @@
-"""Cameras in 3-D figures: their pyramids, rays and sheets of rays, and the plane z = 1."""
+"""Cameras in 3-D figures: their pyramids, rays, and the pictures in them."""
 
 import numpy as np
 import numpy.typing as npt
@@ -6,9 +6,9 @@ import numpy.typing as npt
 from cvnotes.base import Array, ShapeError, number, points
 from cvnotes.camera import Camera, inverse, move, xy_from_px
 from cvnotes.camera.model import is_camera
-from cvnotes.show.guards import eight_bits, one_point
-from cvnotes.show.space.shapes import Faces, Label, Lines, Photo, Shapes
-from cvnotes.show.style import CAMERA, LENS, WORLD, rgb
+from cvnotes.show.guards import eight_bits
+from cvnotes.show.space.shapes import Label, Lines, Photo, Shapes
+from cvnotes.show.style import CAMERA, LENS
 
 
 def camera_shapes(
@@ -81,55 +81,6 @@ def ray_shapes(camera: Camera, m: npt.ArrayLike, *, to: npt.ArrayLike) -> Shapes
     tips = tips[np.isfinite(tips[:, 0])]
     ends = np.stack([np.broadcast_to(camera.centre, tips.shape), tips], axis=1)
     return (Lines("rays", ends, LENS, 1.0),)
-
-
-def plane_shapes(camera: Camera) -> Shapes:
-    """Return the plane z = 1 in the CRF, of the ideal image points, and what is seen of it.
-
-    The outline is the picture's border, freed from the lens.
-
-    Examples
-    --------
-    >>> from cvnotes.camera import intrinsics
-    >>> faces, outline, label = plane_shapes(Camera(intrinsics(800, 800, 320, 240)))
-    >>> faces.corners[0, 0]
-    array([-0.5, -0.5,  1. ])
-    """
-    w, h = is_camera(camera, "camera").size
-    t = np.linspace(0, 1, 25)[:-1]
-    sides = [(t, 0 * t), (1 + 0 * t, t), (1 - t, 1 + 0 * t), (0 * t, 1 - t)]
-    border = np.concatenate([np.stack(side, axis=-1) for side in sides]) * [w, h] - 0.5
-    xy = camera.ideal(border)
-    xy = xy[np.isfinite(xy[:, 0])]
-    reach = np.ceil(10 * 1.15 * np.abs(xy).max(initial=0.1)) / 10
-    square = reach * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    outline = _on_plane(camera, xy, 1)
-    corners = _on_plane(camera, square, 1)
-    pale = np.array([[0.4, 0.4, 0.4, 0.12]])
-    ends = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
-    return (
-        Faces("z = 1 plane", corners[None], pale),
-        Lines("z = 1 outline", ends, CAMERA, 1.5),
-        Label("z = 1", corners[1], CAMERA, corners[1] - corners[3]),
-    )
-
-
-def dot_shapes(W: npt.ArrayLike, name: str, *, radius: float = 8.0) -> Shapes:
-    """Return a point of the world (3,): a small octahedron with its name.
-
-    Examples
-    --------
-    >>> [shape.name for shape in dot_shapes([0, 0, 0], "C")]
-    ['C dot', 'C']
-    """
-    at, radius = one_point(W, "W", 3), number(radius, "radius")
-    x, y, z = radius * np.eye(3)
-    belt = [x, y, -x, -y]
-    corners = at + np.array(
-        [[belt[i], belt[(i + 1) % 4], tip] for tip in (z, -z) for i in range(4)]
-    )
-    colours = np.tile([*rgb(WORLD), 1.0], (8, 1))
-    return Faces(f"{name} dot", corners, colours), Label(name, at, WORLD, -y)
 
 
 def _on_plane(camera: Camera, xy: Array, z: float) -> Array:
