@@ -18,10 +18,10 @@ GROUND = 1600.0
 DESK_LIGHT = (-0.5, 0.35, -1.0)
 
 _OUTDOORS = Surroundings(
-    (0.90, 0.93, 0.95), (0.36, 0.58, 0.84), haze=600e3, light=(-0.9, -0.9, -0.6), ambient=0.45
+    (0.90, 0.93, 0.95), (0.36, 0.58, 0.84), haze=3e6, light=(-0.9, -0.9, -0.6), ambient=0.45
 )
 INDOORS = Surroundings(occlusion=800)
-_FAR = 1e6
+_FAR = 1e8
 PALE = (0.86, 0.88, 0.88)  # paint of walls
 
 

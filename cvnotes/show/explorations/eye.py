@@ -15,7 +15,7 @@ _ROW, _TALL, _START = -4.0, 6.0, 1.95  # m: where the poles stand, their height,
 _POLES, _MARKED = np.arange(15.0, 490, 25), 4  # m ahead; how many are marked
 _HIGH, _GRASS, _BALLAST, _WOOD = "#9FBFE4", "#7A9155", "#8F877E", "#5C4A3D"
 _STEEL, _SHADE, _AIR = "#C8CED5", "#55524F", "#E6EDF2"
-_HAZE = 200.0  # m, as on the photographed railway
+_HAZE = 3000.0  # m, as on the photographed railway
 _FURTHER = np.append(np.geomspace(0.3, 1000, 64), 1e4)  # m: where the ground changes its colour
 
 

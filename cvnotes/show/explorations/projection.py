@@ -107,7 +107,7 @@ def _sky_and_grass(camera: Camera, horizon: Array) -> Drawn:
     """Paint both sides of the horizon, a line (a, b, c) of length 1: they pale towards it."""
     v, u = np.mgrid[0 : camera.size[1] : 4, 0 : camera.size[0] : 4]
     below = (horizon[0] * u + horizon[1] * v + horizon[2])[..., None]
-    haze = np.exp(-np.abs(below) / np.where(below > 0, 60, 150))
+    haze = np.exp(-np.abs(below) / np.where(below > 0, 4, 150))
     return np.asarray(haze * _HAZE + (1 - haze) * np.where(below > 0, _GRASS, _SKY), np.uint8)
 
 
