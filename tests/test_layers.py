@@ -168,7 +168,8 @@ def test_importing_the_geometry_loads_numpy_only():
 
 
 def test_explorations_and_exercises_need_nothing_but_numpy_and_pillow():
-    # A page that runs them in the browser fetches each library over the network.
+    # A page that runs them in the browser fetches each library over the network, and of the
+    # course's photographs one.
     script = (
         "import importlib.abc, sys\n"
         "class Absent(importlib.abc.MetaPathFinder):\n"
@@ -178,6 +179,8 @@ def test_explorations_and_exercises_need_nothing_but_numpy_and_pillow():
         "            raise ImportError(name)\n"
         "sys.meta_path.insert(0, Absent())\n"
         "import cvnotes.learn\n"
+        "from cvnotes.pictures import course\n"
+        "course.photos = None\n"
         "from cvnotes.show.explorations import NAMES, model\n"
         "print([model(name).drawing().picture.shape[2] for name in NAMES])"
     )

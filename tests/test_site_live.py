@@ -222,8 +222,6 @@ def test_once_python_is_awake_nothing_more_is_said_that_would_move_the_picture(a
 def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explorations):
     page = all_explorations
     for name, box in explorations(page).items():
-        if name == "enlarged":  # a page says other numbers than the notebook: not yet looked into
-            continue
         shown = box.evaluate(SHOWN)
         setting = MODELS[name].settings[0]
         slider = box.locator("input").first

@@ -38,7 +38,7 @@ def enlarged_model() -> Model:
 def piece(method: Method) -> Array:
     """Enlarge the piece of the photograph, (height, width) of grey values."""
     look_up = CORNER + map_array(zoom_map(1 / FACTOR), SIZE)
-    return np.asarray(backward_warp(course.photos()[VIEW], look_up, method=method), np.float64)
+    return np.asarray(backward_warp(course.photo(VIEW), look_up, method=method), np.float64)
 
 
 @lru_cache(maxsize=1)
