@@ -125,8 +125,8 @@ def browser(request):
 def chapter(browser, live_site):
     """Open chapter 6, on which Python is woken once, by the first who asks."""
     browser.open(f"{live_site}/notebooks/06_homography_dlt.html")
-    browser.wait("() => document.querySelectorAll('.explore').length === 5")
-    # Its first exploration is the one that is tried: that of a homography.
+    browser.wait("() => document.readyState === 'complete' && !!document.querySelector('.explore')")
+    # Its first exploration, the one that is tried, is that of a homography.
     browser.run("() => [...document.querySelectorAll('.explore')].slice(1).map(x => x.remove())")
 
 

@@ -8,12 +8,11 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, rotation_from_vector
 from cvnotes.show.explorations.paper import Panel
 from cvnotes.show.space.shapes import Faces, Lines, target_shapes
-from cvnotes.show.style import ESTIMATED, MUTED
+from cvnotes.show.style import MUTED
 from cvnotes.targets import Chessboard
 
 PAPER, SQUARES = "#FBFBF8", "#262629"
 _PALE = "#E2E2E2"  # squares that arrows or letters lie on
-_HEAD = 8  # px, of an arrow
 # Seen a little from above and from the left: x to the right, y down, z away.
 _VIEW = rotation_from_vector([0.5, 0, 0]) @ rotation_from_vector([0, -0.1, 0])
 
@@ -27,10 +26,15 @@ def draw_board(panel: Panel, camera: Camera, board: Chessboard) -> bool:
     """Draw a board's picture by a camera without distortion; tell if all of it is in front."""
     border, squares = paper_and_squares(board)
     paper = camera.project(border)
-    panel.polygons(paper[None], PAPER)
-    panel.line(paper[[0, 1, 2, 3, 0]], MUTED, 0.8)
-    panel.polygons(camera.project(squares), SQUARES)
+    draw_sheet(panel, paper, camera.project(squares))
     return bool(np.isfinite(paper).all())
+
+
+def draw_sheet(panel: Panel, border: Array, squares: Array) -> None:
+    """Draw a board's paper (4, 2) and its dark squares (n, 4, 2), as they are seen."""
+    panel.polygons(border[None], PAPER)
+    panel.line(border[[0, 1, 2, 3, 0]], MUTED, 0.8)
+    panel.polygons(squares, SQUARES)
 
 
 def draw_measured(panel: Panel, m: Array, board: Chessboard) -> None:
@@ -54,21 +58,6 @@ def draw_net(
     grid = m.reshape(*board.corners[::-1], 2)
     for line in (*grid, *grid.transpose(1, 0, 2)):
         panel.line(line, colour, width, dash)
-
-
-def draw_arrows(
-    panel: Panel, m: Array, d: Array, colour: str = ESTIMATED, width: float = 1.2
-) -> None:
-    """Draw arrows d (n, 2) from points m (n, 2), both in the coordinates of the panel."""
-    tip = m + d
-    length = np.linalg.norm(d, axis=-1, keepdims=True)
-    along = d / length.clip(1e-12)
-    across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
-    head = np.minimum(_HEAD * panel.pixel, 0.8 * length)
-    back = tip - head * along
-    panel.segments(np.stack([m, tip], axis=1), colour, width)
-    wings = back + 0.4 * head * across, back - 0.4 * head * across
-    panel.polygons(np.stack([tip, *wings], axis=1), colour)
 
 
 def around(low: Array, high: Array, size: tuple[int, int], room: float) -> tuple[Array, Array]:

@@ -21,6 +21,7 @@ from cvnotes.show.explorations.boards import (
     SQUARES,
     around,
     draw_board,
+    draw_sheet,
     on_sheet,
     paper_and_squares,
     pinhole,
@@ -167,9 +168,7 @@ def _space(camera: Camera, board: Chessboard, paper: Paper, corners: Array) -> P
     panel.line(on_sheet(below[:2]), _SHADOW, 4)
     panel.polygons([on_sheet(below[2] + board.square * np.insert(circle(25), 1, 0, 1))], _SHADOW)
     panel.segments(on_sheet(np.stack([stands, below], axis=1)), MUTED, 1)
-    panel.polygons([on_sheet(border)], PAPER)
-    panel.line(on_sheet(border[[0, 1, 2, 3, 0]]), MUTED, 1)
-    panel.polygons(on_sheet(squares), SQUARES)
+    draw_sheet(panel, on_sheet(border), on_sheet(squares))
     _draw_axes(panel, np.zeros(3), axes, "XYZ", WORLD)
     _draw_pyramid(panel, on_sheet(C), on_sheet(pane))
     seen = [_within(corners, _seen(camera, W)) for W in (border, *squares)]
@@ -211,11 +210,7 @@ def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str)
 def _draw_T(panel: Panel, at: Array, T: Array) -> None:
     """Draw T, from the camera to the board's origin, and its three steps along x, y and z."""
     panel.line(at, CAMERA, 2)
-    along = _along(panel, at[[0, 3]])
-    across = np.array([along[1], -along[0]])
-    head = at[3] + panel.pixel * np.array([[0, 0], [-17, 6], [-17, -6]]) @ np.array([along, across])
-    panel.line(np.array([at[0], head[1:].mean(axis=0)]), CAMERA, 4)
-    panel.polygons([head], CAMERA)
+    panel.arrows(at[0], at[3] - at[0], CAMERA, 4)
     _name(panel, at[[0, 3]], at[1:3].mean(axis=0), "T", 17)
     for i, (axis, number) in enumerate(zip("xyz", T, strict=True)):
         _name(

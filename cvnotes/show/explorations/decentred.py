@@ -60,7 +60,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     sensor = paper.panel(_SIZE, *_SHOWN, "a tilted sensor, also 3 times as far")
     bows = [_bent(panel, p, move) for panel, move in ((lens, decentred), (sensor, tilted))]
     tip = _ARROW * p
-    _arrow(lens, np.zeros(2), tip, IDEAL, 2.5)
+    lens.arrows([0, 0], tip, IDEAL, 2.5)
     lens.mark([0, 0], "ideal", 5)
     lens.polygons([tip + 6 * lens.pixel * circle(25)], IDEAL)
     lens.text(tip + 18 * lens.pixel * _along(p)[1], "p", IDEAL, anchor="mm", size=17)
@@ -88,8 +88,9 @@ def _bent(panel: Panel, p: Array, move: Callable[[Array, Array], Array]) -> floa
     for line in lines:
         panel.line(move(_TIMES * p, line), LENS, 1.6)
     dots = np.stack(np.meshgrid(*2 * [[-0.5, -0.3, 0, 0.3, 0.5]]), -1).reshape(-1, 2)
-    for start, end in zip(dots, move(_TIMES * p, dots), strict=True):
-        _arrow(panel, start, end, ESTIMATED, 1.8)
+    ways = move(_TIMES * p, dots) - dots
+    far = np.linalg.norm(ways, axis=1) > 7 * panel.pixel  # others would be specks
+    panel.arrows(dots[far], ways[far], ESTIMATED, 1.8)
     ahead, across_p = _along(p)
     ruled = _RULER[0] * ahead + np.outer(np.linspace(-_RULER[1], _RULER[1], 49), across_p)
     seen = move(_TIMES * p, ruled)
@@ -99,15 +100,3 @@ def _bent(panel: Panel, p: Array, move: Callable[[Array, Array], Array]) -> floa
     words = f"the line across p bows by {px:.1f} px"
     panel.text([0, 0.735], words, IDEAL, anchor="mm", size=14)
     return px
-
-
-def _arrow(panel: Panel, start: Array, end: Array, ink: str, width: float) -> None:
-    way = end - start
-    far = float(np.hypot(*way))
-    head = min(5 * width * panel.pixel, 0.7 * far)
-    if far < 7 * panel.pixel:  # a speck
-        return
-    ahead = way / far
-    aside = 0.38 * head * np.array([-ahead[1], ahead[0]])
-    panel.line([start, end - 0.8 * head * ahead], ink, width)
-    panel.polygons([[end, end - head * ahead + aside, end - head * ahead - aside]], ink)

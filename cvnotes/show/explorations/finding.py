@@ -16,7 +16,7 @@ from cvnotes.calibration.refinement import Problem, State, solve_by_schur, take_
 from cvnotes.camera import Camera, Lens
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import draw_arrows, draw_measured
+from cvnotes.show.explorations.boards import draw_measured
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
@@ -120,7 +120,7 @@ def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
         if step > frame - 1:
             at = min(step, frame)
             camera, misses = finding.at(at)
-            draw_arrows(panel, m, -_magnified(at) * misses[i] / unit)
+            panel.arrows(m, -_magnified(at) * misses[i] / unit, ESTIMATED, 1.2)
             k1 = f"k₁ = {camera.parameters['k1']:+.3f}".replace("-", "−")
             panel.text(
                 middle + [-0.96, -0.9], f"all: {_digits(rms(misses))} px", ESTIMATED, size=16

@@ -7,7 +7,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, inverse, look_at, move
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import paper_and_squares
+from cvnotes.show.explorations.boards import draw_sheet, paper_and_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
@@ -118,22 +118,16 @@ def _space(paper: Paper, angle: int) -> Panel:
     panel = paper.panel(_SPACE, *_SHOWN, "one photograph of two boards: pull the left one open")
     panel.line(_way(), mixed("#FFFFFF", ESTIMATED, 0.4), 2)
     for border, squares in parts:
-        _draw_paper(panel, on_sheet(border), on_sheet(squares))
+        draw_sheet(panel, on_sheet(border), on_sheet(squares))
     frame = _in_camera(_VIEW.centre + _VIEW.ray([[0, 0], [w, 0], [w, h], [0, h]]))
     panel.polygons(frame[None], "#E4E4E0")
     for border, squares in parts:
-        _draw_paper(panel, _in_camera(border), _in_camera(squares))
+        draw_sheet(panel, _in_camera(border), _in_camera(squares))
     for at, after in zip(frame, np.roll(frame, -1, axis=0), strict=True):
         panel.line([at, after, eye], CAMERA, 1.8)
     panel.mark(_outer(angle), "estimated", 8)
     panel.grip("board", "the outer edge of the board on the left", _outer(angle), 3)
     return panel
-
-
-def _draw_paper(panel: Panel, border: Array, squares: Array) -> None:
-    panel.polygons(border[None], "#FBFBF8")
-    panel.line(border[[0, 1, 2, 3, 0]], MUTED, 0.8)
-    panel.polygons(squares, "#262629")
 
 
 def _graph(paper: Paper, angle: int) -> Panel:

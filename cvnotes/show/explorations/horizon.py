@@ -125,7 +125,7 @@ def _map(sharpness: int) -> Drawn:
     panel.line(rim, IDEAL, 3)
     panel.mark([0, 0], "camera", 9)
     _name(panel, 1.045 * np.stack([np.sin(_NAMED), np.cos(_NAMED)], axis=1))
-    return _pixels(panel)
+    return panel.drawn()
 
 
 @lru_cache(maxsize=2)
@@ -135,13 +135,13 @@ def _picture(sharpness: int) -> Drawn:
     A = np.array([[_FINER, 0, half], [0, _FINER, half], [0, 0, 1]]) @ _CAMERA.A
     panel = Paper(sharpness).picture_panel(_VIEW, _CAMERA.size)
     panel.image(render_scene(rails(), Camera(A, size=(880, 660)), samples=4))
-    plain = _pixels(panel)
+    plain = panel.drawn()
     for line, strength in _lines(_SIDE + 1.2)[::-1]:
         panel.line(seen(_lifted(line)), mixed(_MEADOW, _PALE, strength), strength)
     horizon = seen(np.stack([np.sin(_NAMED), np.cos(_NAMED), 0 * _NAMED], axis=1))
     panel.line(horizon + [[-40, 0], [0, 0], [40, 0]], IDEAL, 3)
     _name(panel, horizon - [0, 18])
-    page = _pixels(panel).copy()
+    page = panel.drawn().copy()
     for z in range(15, 150, 25):  # the poles stand before the lines
         corners = _CAMERA.project([[-4.09, -4.05, z - 0.09], [-3.91, 1.95, z + 0.09]])
         (left, top), (right, foot) = ((corners + 0.5) * page.shape[1] / 640).round().astype(int)
@@ -152,11 +152,6 @@ def _picture(sharpness: int) -> Drawn:
 def _name(panel: Panel, places: Array) -> None:
     for at, degrees in zip(places, np.degrees(_NAMED), strict=True):
         panel.text(at, f"{degrees:.0f}°".replace("-", "−"), IDEAL, anchor="mm", size=12)
-
-
-def _pixels(panel: Panel) -> Drawn:
-    """Return what was drawn, without title and frame."""
-    return np.asarray(panel._image.reduce(2))
 
 
 def _sentence(place: Array, high: float) -> str:

@@ -125,9 +125,7 @@ def _normal(panel: Panel, n: Array, ray: Array, name: str, ink: str) -> None:
 def _arrow(panel: Panel, start: Array, way: Array, name: str, ink: str) -> None:
     foot, tip = on_sheet(np.array([start, start + way]))
     ahead = (tip - foot) / np.linalg.norm(tip - foot)
-    head = panel.pixel * np.array([[0, 0], [-11, 4], [-11, -4]]) @ [ahead, [-ahead[1], ahead[0]]]
-    panel.line([foot, tip], ink, 1.6)
-    panel.polygons([tip + head], ink)
+    panel.arrows(foot, tip - foot, ink, 1.6)
     panel.text(tip + 11 * panel.pixel * ahead, name, ink, anchor="mm", size=15)
 
 

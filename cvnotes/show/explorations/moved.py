@@ -16,7 +16,13 @@ from cvnotes.camera import (
     vector_from_rotation,
 )
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import around, draw_board, paper_and_squares, pinhole
+from cvnotes.show.explorations.boards import (
+    around,
+    draw_board,
+    draw_sheet,
+    paper_and_squares,
+    pinhole,
+)
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
@@ -28,7 +34,7 @@ _SIZE, _PICTURE = (402, 336), (448, 336)  # px
 _LAST = 11  # of the twelve photographs, counted from 0
 _CONE, _TILE, _BEYOND, _FOOT = 190.0, 100, 1000, 30.0  # mm
 _EARLIER = 3  # photographs, whose boards and cameras stay, pale
-_PALE, _PALE_BLUE, _INK = "#C9C9C9", "#A9D5F1", "#262629"
+_PALE, _PALE_BLUE = "#C9C9C9", "#A9D5F1"
 _TILES, _WALL, _SHADOW, _JOINTS = "#EFE7D9", "#E2EBE4", "#CBC5BD", "#FBFAF7"
 _LINES, _GREY = "#BFD3C4", "#ECECEC"  # of the wall in the photograph; where nothing is told
 # Seen from above and behind the camera: x to the right, y down, z away.
@@ -147,9 +153,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     there = move(of_board, border)
     space.polygons(on_sheet(there * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0])[None], _SHADOW)
     sheet = on_sheet(there)
-    space.polygons(sheet[None], "#FBFBF8")
-    space.line(sheet[[0, 1, 2, 3, 0]], MUTED, 0.8)
-    space.polygons(on_sheet(move(of_board, squares)), _INK)
+    draw_sheet(space, sheet, on_sheet(move(of_board, squares)))
     for one, _ in earlier:
         _draw_camera(space, own.moved(inverse(one)), _PALE_BLUE, 0.8)
     below = camera[:3, 3] * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0]

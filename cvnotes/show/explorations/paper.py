@@ -146,6 +146,18 @@ class Panel:
         for pair in clipped(at[:, 0], at[:, 1], self._limits()):
             self._draw.line(pair.ravel().tolist(), colour, thick)
 
+    def arrows(self, starts: npt.ArrayLike, ways: npt.ArrayLike, colour: str, width: float) -> None:
+        """Draw arrows from points (n, 2), so far each; the thicker, the larger their heads."""
+        start, way = np.atleast_2d(starts), np.atleast_2d(ways)
+        length = np.linalg.norm(way, axis=-1, keepdims=True)
+        along = way / length.clip(1e-12)
+        across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+        head = np.minimum((5 + 2.5 * width) * self.pixel, 0.6 * length)
+        back = start + way - head * along
+        self.segments(np.stack([start, back + 0.2 * head * along], axis=1), colour, width)
+        wings = back + 0.4 * head * across, back - 0.4 * head * across
+        self.polygons(np.stack([start + way, *wings], axis=1), colour)
+
     def polygons(self, corners: Iterable[npt.ArrayLike], colour: str | Sequence[str]) -> None:
         """Fill polygons, each with corners (k, 2), with one colour or each with its own.
 
@@ -251,6 +263,10 @@ class Panel:
             number = f"{value:g}".replace("-", "−")
             self.text([x0 + 0.01 * (x1 - x0), value], number, size=size)
 
+    def drawn(self) -> Drawn:
+        """Return what was drawn so far, without title and frame."""
+        return np.asarray(self._image.reduce(2))
+
     def finish(self, page: Drawn | None = None) -> Drawn:
         """Put the panel, with frame and title, on the top left of a white page, or of its own."""
         if page is None:
@@ -259,7 +275,7 @@ class Panel:
         strip, gap = sharpness * _TITLE, sharpness * _GAP
         whole = (0, 0, self.width - 1, self.height - 1)
         self._draw.rectangle(whole, outline=self._frame, width=self.scale)
-        panel = np.asarray(self._image.reduce(2))
+        panel = self.drawn()
         height, width = panel.shape[:2]
         page[strip : strip + height, gap // 2 : gap // 2 + width] = panel
         left = self.scale * (_GAP // 2 + 2)

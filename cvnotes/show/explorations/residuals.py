@@ -6,23 +6,19 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration.refinement import solve_by_schur, take_step
-from cvnotes.show.explorations.boards import draw_arrows
 from cvnotes.show.explorations.finding import Finding, alike, rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import GRID, Panel, Paper
-from cvnotes.show.style import LENS
+from cvnotes.show.style import ESTIMATED, LENS
 
 _SENSOR, _BESIDE, _LONG = (500, 375), (270, 375), 16  # px; of an arrow as long as the RMS
-_LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.01
 _SURE = 1e12  # how much more one wish about k1 weighs than all pictures
 
 
 def residuals_model() -> Model:
     """Make the model of all residuals of the course's twelve photographs, for a given k1."""
     settings = (
-        Setting(
-            "k1", "k₁", _LOWEST, _HIGHEST, _STEP, 0, "the lens that is believed; the rest fits"
-        ),
+        Setting("k1", "k₁", -0.4, 0.1, 0.01, 0, "the lens that is believed; the rest fits"),
     )
     about = (
         "All corners of twelve photographs on one sensor, each with an arrow to where the best "
@@ -61,8 +57,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     times = float(f"{_LONG / missed:.1g}")
     m = _finding().m.reshape(-1, 2)
     sensor = paper.picture_panel(_SENSOR, _finding().size, f"all residuals, × {times:,.0f}")
-    sensor.polygons([np.array([[-1, -1], [640, -1], [640, 480], [-1, 480]])], "#F4F4F2")
-    draw_arrows(sensor, m, times * sensor.pixel * misses.reshape(-1, 2))
+    frame = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * _finding().size - 0.5
+    sensor.polygons([frame], "#F4F4F2")
+    sensor.arrows(m, times * sensor.pixel * misses.reshape(-1, 2), ESTIMATED, 1.2)
     said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows agree by {agree:.2f}"
     what = "of 1: the lens is wrong." if agree > 0.2 else "of 1: what is left is noise."
     sentence = f"{said} {what}".replace("-", "−")

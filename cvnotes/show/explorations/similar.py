@@ -89,16 +89,15 @@ def _draw_side(panel: Panel, z: float, f: float) -> None:
     panel.veil([tree * film / ahead], ["#8CBCE0"])
     for end in (_FOOT, _TOP):
         panel.line(np.outer([-film, ahead], [1, end * _DOWN / ahead]), MUTED, 1)
-    _arrow(panel, [ahead, 0], [ahead, ground], WORLD, 3)
-    _arrow(panel, [film, 0], [film, v], LENS, 3)
+    panel.arrows([ahead, 0], [0, ground], WORLD, 3)
+    panel.arrows([film, 0], [0, v], LENS, 3)
     for tip, name, at in (((38, 0), "z", (40, -14)), ((0, 38), "y", (14, 40))):  # the frame at C
-        _arrow(panel, (0, 0), tip, CAMERA, 2)
+        panel.arrows((0, 0), tip, CAMERA, 2)
         panel.text(at, name, CAMERA, anchor="mm", size=14, rim=_SKY)
     panel.polygons([6 * circle(20)], CAMERA)
     for end, row, name in ((film, ground + 20, "f"), (ahead, ground + 48, "z")):
         panel.segments([[[0, ground], [0, row + 6]], [[end, ground], [end, row + 6]]], MUTED, 0.9)
-        _arrow(panel, [end / 2, row], [0, row], IDEAL, 1.2)
-        _arrow(panel, [end / 2, row], [end, row], IDEAL, 1.2)
+        panel.arrows([[end / 2, row]] * 2, [[-end / 2, 0], [end / 2, 0]], IDEAL, 1.2)
         panel.text([end / 2, row], name, IDEAL, anchor="mm", size=15, rim=_GRASS)
     for at, name, ink, anchor in (
         ((ahead + 9, ground / 2 + 12), "y", WORLD, "lm"), ((film + 8, v / 2 + 2), "v", LENS, "lm"),
@@ -113,15 +112,6 @@ def _draw_side(panel: Panel, z: float, f: float) -> None:
     panel.grip("tree", "the foot of the tree, nearer or farther", [ahead, ground], 4)
 
 
-def _arrow(panel: Panel, start: npt.ArrayLike, tip: npt.ArrayLike, ink: str, width: float) -> None:
-    start, tip = np.asarray(start, float), np.asarray(tip, float)
-    along = (tip - start) / np.linalg.norm(tip - start)
-    along = panel.pixel * along
-    back, aside = tip - (5 + 2 * width) * along, (2 + width) * np.array([-along[1], along[0]])
-    panel.line(np.array([start, back]), ink, width)
-    panel.polygons([[tip, back + aside, back - aside]], ink)
-
-
 def _draw_plane(panel: Panel, z: float, f: float) -> None:
     """Draw what is on the image plane: both trees upright, and the heights of their feet."""
     panel.polygons([[[-9, -9], [9, -9], [9, 0], [-9, 0]]], _SKY)
@@ -134,7 +124,7 @@ def _draw_plane(panel: Panel, z: float, f: float) -> None:
     for (x, away), pale, side in ((_FAR, 0.6, 1), ((0, z), 0, -1)):
         at, v = f * x / away, f * _FOOT / away
         _draw_tree(panel, f / away * np.eye(2), (at, 0), pale)
-        _arrow(panel, [at, 0], [at, v], LENS, 3)
+        panel.arrows([at, 0], [0, v], LENS, 3)
         aside = [at + side * (0.2 * f / away + 0.05), 0.72 * v]
         panel.text(aside, f"{v:.2f}", LENS, anchor="lm" if side > 0 else "rm", size=13)
     panel.mark([0, f * _FOOT / z], "lens", 7)

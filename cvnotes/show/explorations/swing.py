@@ -8,7 +8,6 @@ from cvnotes.base import Array
 from cvnotes.homography import dlt, refine_homography
 from cvnotes.pictures import course
 from cvnotes.projective import apply
-from cvnotes.show.explorations.boards import draw_arrows
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
@@ -94,7 +93,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         for k in range(1, row + 1)
     ]
     for by, colour in zip(moved[-1], _INKS, strict=True):
-        draw_arrows(panel, dots[0], _TIMES * by, colour, 2.4)
+        panel.arrows(dots[0], _TIMES * by, colour, 2.4)
     for i, (at, v) in enumerate(zip(held, dots[:, 0, 1], strict=True), start=1):
         if i != near:
             panel.grip(f"row {i}", f"the dot of row {i}", at, 1)

@@ -8,7 +8,7 @@ from numpy.polynomial import Polynomial
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
-from cvnotes.show.explorations.boards import draw_arrows, draw_net
+from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.finding import rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
@@ -99,7 +99,8 @@ def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
     draw_net(picture, one, lenses.board, _PALE, 2)
     draw_net(picture, other, lenses.board, ESTIMATED, 1, 3)
     some = np.arange(len(one)).reshape(lenses.board.corners[::-1])[[0, -1], ::2]  # all would crowd
-    draw_arrows(picture, one[some.ravel()], _MAGNIFIED * (other - one)[some.ravel()])
+    bent = _MAGNIFIED * (other - one)
+    picture.arrows(one[some.ravel()], bent[some.ravel()], ESTIMATED, 1.2)
     picture.line([[0, 0.74 * h], [w, 0.74 * h]], FAINT, 0.8)
     _draw_side(picture, lenses, (lenses.alpha, lenses.away, tilt), (alpha, near, turned))
     misfit = lenses.misfit(tilt, alpha)

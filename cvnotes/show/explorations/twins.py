@@ -8,12 +8,12 @@ from cvnotes.base import Array
 from cvnotes.calibration import extrinsics
 from cvnotes.camera import Camera, intrinsics, inverse, look_at, move
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import around, draw_board, paper_and_squares
+from cvnotes.show.explorations.boards import around, draw_board, draw_sheet, paper_and_squares
 from cvnotes.show.explorations.fold import circle_of
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.space.directions import sheet
-from cvnotes.show.style import CAMERA, ESTIMATED, MUTED
+from cvnotes.show.style import CAMERA, ESTIMATED
 
 _SPACE, _PICTURE = (440, 300), (400, 300)  # px
 _SIZE, _ALPHA = (640, 480), 600  # px, of the one camera
@@ -112,9 +112,7 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
     x, y = _shown()
     panel = paper.panel(_SPACE, x, y, "space: pull the orange camera")
     border, squares = paper_and_squares(course.board())
-    panel.polygons(on_sheet(border)[None], "#FBFBF8")
-    panel.line(on_sheet(border)[[0, 1, 2, 3, 0]], MUTED, 1)
-    panel.polygons(on_sheet(squares), _INK)
+    draw_sheet(panel, on_sheet(border), on_sheet(squares))
     _draw_box(panel, on_sheet(W))
     panel.line(on_sheet(_way()), _WAY, 2)
     corners = course.board().points[[0, 8, 45]]

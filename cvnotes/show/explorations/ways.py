@@ -127,9 +127,7 @@ def _draw_omega(panel: Panel, omega: Array, by_axis: Array) -> None:
     angle = float(np.linalg.norm(omega))
     tip, end = _SHEET @ omega / angle, 0.55 * foot[50]
     along = tip / max(float(np.linalg.norm(tip)), panel.pixel)
-    head = np.array([[0, 0], [-0.1, 0.035], [-0.1, -0.035]]) @ [along, along[::-1] * [-1, 1]]
-    panel.line([[0, 0], 1.15 * tip - 0.08 * along], ESTIMATED, 3)
-    panel.polygons([1.15 * tip + head], ESTIMATED)
+    panel.arrows([0, 0], 1.15 * tip, ESTIMATED, 3)
     panel.text(1.15 * tip + 0.1 * along, "ω", ESTIMATED, anchor="mm", size=18)
     panel.text(end, f"{np.degrees(angle):.0f}°", ESTIMATED, anchor="mm", size=14)
 
