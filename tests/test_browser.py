@@ -295,7 +295,7 @@ def _middle(grip):
 
 
 # nbval runs all of them; what a browser adds is the same in each, but for the 3-D viewer of one.
-@pytest.mark.parametrize("chapter", ["04", "09"])
+@pytest.mark.parametrize("chapter", ["04", pytest.param("09", marks=pytest.mark.once)])
 def test_a_notebook_runs_and_its_slider_moves_the_picture(page, chapter, tmp_path):
     path = next(path for path in NOTEBOOKS if path.name.startswith(chapter))
     cells = _open_and_run(page, path.name)
@@ -405,6 +405,7 @@ def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(empty_
     assert dark["rail"] == light["rail"] != "000000"
 
 
+@pytest.mark.once
 def test_every_slider_is_reached_by_tab_and_moved_by_arrows(page, explorers):
     for name in ONE:
         handle, picture = _explorer(page, explorers, rf'^explore\("{name}"')

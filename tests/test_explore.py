@@ -2812,6 +2812,7 @@ def test_only_pictures_are_packed(bad):
         pack_png(bad)
 
 
+@pytest.mark.once
 @each_model
 def test_what_can_be_pulled_has_rings_around_it_and_nothing_else_has(name, monkeypatch):
     drawing = MODELS[name].drawing()
@@ -3075,6 +3076,7 @@ def grip_of(drawing, name):
     return next(grip for grip in drawing.grips if grip.name == name)
 
 
+@pytest.mark.once
 @pytest.mark.parametrize(("name", "held"), PULLED)
 @pytest.mark.parametrize("by", [(40, 0), (0, -30), (-25, 20)])
 def test_what_is_pulled_follows_the_hand(name, held, by):
@@ -3103,6 +3105,7 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
         assert off.max() < 9, off  # px; whole degrees are up to 8 px apart
 
 
+@pytest.mark.once
 @pytest.mark.parametrize(("name", "held"), PULLED)
 def test_what_is_pulled_far_away_stops_where_the_sliders_do(name, held):
     model = MODELS[name]

@@ -31,6 +31,8 @@ from cvnotes.tutor.checker.soundness import judged
 from cvnotes.tutor.checker.steps import lines_of, located
 from cvnotes.tutor.course import Session
 
+pytestmark = pytest.mark.once
+
 SEED = 2024
 FUNCTIONS = [e for e in EXERCISES.values() if e.answer == "function"]
 WITH_STEPS = [e for e in FUNCTIONS if e.steps is not None]
