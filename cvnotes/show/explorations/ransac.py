@@ -108,7 +108,8 @@ def _name_marks(panel: Panel, at: tuple[int, int]) -> None:
     x, y = at
     square = panel.pixel * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     diamond = panel.pixel * np.array([[0, -1], [1, 0], [0, 1], [-1, 0]])
-    panel.polygons([[[0, y - 16], [1e3, y - 16], [1e3, 1e3], [0, 1e3]]], "white")
+    strip = np.array([[0, y - 16], [1e3, y - 16], [1e3, 1e3], [0, 1e3]])
+    panel.polygons([strip], "white")
     panel.mark([x, y], "ideal", 7)
     panel.mark([x + 78, y], "lens", 5)
     right, wrong = np.array([[x + 142, y], [x + 290, y]])
