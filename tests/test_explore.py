@@ -1144,6 +1144,22 @@ def test_the_damped_walk_finds_the_hollow_from_all_starts_above_the_walls_and_th
     assert "undamped one is not there" in said
 
 
+def test_lines_of_equal_height_run_where_the_rms_is_so_large_and_the_hollow_is_darkest():
+    of, ground = floor(), MODELS["valley"].picture(h6=0.9, h9=-1.3, steps=0)[TITLE:, MARGIN:]
+    best = of.best[[1, 2], [2, 2]]
+
+    def shown(h):
+        return np.rint(396 * (h - [-2.8, 2.4]) / [3.9, -3.9]).astype(int)
+
+    for rms, way in ((150, [-0.5, 1]), (200, [-0.3, 1]), (200, [-1, 1])):
+        far = np.outer(np.linspace(0, 1.5, 1501), way)
+        u, v = shown(best + far[np.searchsorted([of.rms(best + by) for by in far], rms)])
+        row = ground[v - 9 : v + 10, u - 9 : u + 10].astype(int).sum(axis=-1)
+        assert row[8:11, 8:11].max() > np.median(row) + 40, (rms, way)
+    (u, v), (far_u, far_v) = shown(best + [0.15, 0.1]), shown(best + [0.6, 1])
+    assert ground[v, u].sum() < ground[far_v, far_u].sum() - 150
+
+
 def test_the_tower_and_its_shadow_lie_where_the_renderer_puts_them():
     """The same desk with a box on it, ray by ray."""
     camera, on_desk = cube._CAMERA.resized((540, 405)), desk(course.board())
