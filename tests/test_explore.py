@@ -1151,11 +1151,11 @@ def test_lines_of_equal_height_run_where_the_rms_is_so_large_and_the_hollow_is_d
     def shown(h):
         return np.rint(396 * (h - [-2.8, 2.4]) / [3.9, -3.9]).astype(int)
 
-    for rms, way in ((150, [-0.5, 1]), (200, [-0.3, 1]), (200, [-1, 1])):
+    for line, way in ((150, [-0.5, 1]), (200, [-0.3, 1]), (200, [-1, 1])):
         far = np.outer(np.linspace(0, 1.5, 1501), way)
-        u, v = shown(best + far[np.searchsorted([of.rms(best + by) for by in far], rms)])
+        u, v = shown(best + far[np.searchsorted([of.rms(best + by) for by in far], line)])
         row = ground[v - 9 : v + 10, u - 9 : u + 10].astype(int).sum(axis=-1)
-        assert row[8:11, 8:11].max() > np.median(row) + 40, (rms, way)
+        assert row[8:11, 8:11].max() > np.median(row) + 40, (line, way)
     (u, v), (far_u, far_v) = shown(best + [0.15, 0.1]), shown(best + [0.6, 1])
     assert ground[v, u].sum() < ground[far_v, far_u].sum() - 150
 
