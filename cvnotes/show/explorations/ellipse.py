@@ -87,4 +87,6 @@ def _round(
         panel.text(beside * _UP, f"{name}{letter}", colour, anchor="mm", size=13)
     panel.line([[0, 0], map_ @ h * _UP], IDEAL, 1.5)
     panel.mark(map_ @ h * _UP, "ideal", 8)
+    aside = 0.55 * map_ @ h + 0.15 * (_ASIDE @ h - 0.5 * h)  # not at its end, where v₁ may be
+    panel.text(aside * _UP, f"{name}h", IDEAL, anchor="mm", size=13)
     return panel

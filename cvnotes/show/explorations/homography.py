@@ -5,15 +5,14 @@ from functools import lru_cache
 import numpy as np
 from PIL import Image as Bitmap
 
-from cvnotes.base import Array, Image, numerical_jacobian
+from cvnotes.base import Array, Image
 from cvnotes.camera import Camera, look_at
 from cvnotes.homography import dlt
 from cvnotes.pictures import chart_room, course, render_scene
-from cvnotes.projective import from_homogeneous, to_homogeneous
+from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import contours
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, WORLD, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, WORLD
 from cvnotes.warping import rectify_plane
 
 _PICTURE, _SHOWN, _SIZE = (640, 480), (372, 279), (346, 279)  # px
@@ -22,10 +21,7 @@ _CHART = np.array([[0.0, 0], [420, 0], [420, 594], [0, 594]])  # mm, a sheet of 
 _READ = np.array([[343.0, 44], [522, 13], [508, 462], [342, 381]])  # px, its corners as read off
 _PLUS = (450, 240)  # px, where the plus begins: on the chart
 _REGION = (-440.0, 460.0), (-70.0, 655.72)  # mm of the wall, x and y: as wide and high as _SIZE
-_SHORES = (1, 1.5, 2, 3, 5, 10, 20)  # mm, standard deviations of a place
-_CELLS, _LABELLED = (32, 26), 2  # of the wall, where they are computed; labels are above the chart
 _GRID = np.arange(-700, 701, 100)  # mm
-_TAPE, _YELLOW = 16, "#F2C230"  # mm, as wide as it is
 
 
 def homography_model() -> Model:
@@ -42,7 +38,6 @@ def homography_model() -> Model:
         Setting(name, f"plus {name} (px)", 0, most, 1, start, "where the plus is, in the picture")
         for name, most, start in zip("uv", _PICTURE, _PLUS, strict=True)
     )
-    settings += (Setting("measure", "measure", 0, 1, 1, 1, "a tape measure, and how sure it is"),)
     about = (
         "A wall at a slant, with a chart whose four corners are marked, and the millimetres of the "
         "wall as the homography of these corners lays them; beside it the wall seen straight on."
@@ -76,17 +71,13 @@ def _shown(sharpness: int) -> Drawn:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     m = _READ + [[values[f"du{i}"], values[f"dv{i}"]] for i in range(1, 5)]
-    H, plus, measures = dlt(_CHART, m), np.array([values["u"], values["v"]]), values["measure"]
-    place, covariance = measured(m, plus)
+    H, plus = dlt(_CHART, m), np.array([values["u"], values["v"]])
+    place = apply(np.linalg.inv(H), plus)
     picture = paper.picture_panel(_SHOWN, _PICTURE, "the wall, and its squares of 100 mm")
     picture.image(_shown(paper.sharpness))
     _draw_grid(picture, H)
     _draw_horizon(picture, H)
     picture.line(m[[0, 1, 2, 3, 0]], ESTIMATED, 1.6)
-    w = np.array([[0, place[1], 1], [*place, 1], [210, 297, 1]]) @ H[2]
-    seen = bool((w[:2] * w[2] > 0).all())  # both ends of the tape are before the camera
-    if measures and seen:
-        _draw_tape(picture, place, H)
     picture.mark(plus, "ideal", 8)
     picture.mark(m, "estimated", 7)
     for i, at in enumerate(m, start=1):
@@ -94,79 +85,14 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         aside = np.clip(at + 22 * np.sign(at - m.mean(axis=0)), 16, np.subtract(_PICTURE, 16))
         picture.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
     picture.grip("plus", "the plus, whose place on the wall is measured", plus, 1)
-    title = "straight on" + (": where σ is 1 mm, 1.5, 2 …" if measures else "")
-    straight = paper.panel(_SIZE, *_REGION, title)
+    straight = paper.panel(_SIZE, *_REGION, "straight on")
     (X0, X1), (Y0, Y1) = _REGION
     pixel = (X1 - X0) / (_SIZE[0] * paper.sharpness)
     wall = rectify_plane(photograph(), H, ((X0, Y0), (X1, Y1)), pixel, fill=255)
-    if measures:
-        _draw_shores(straight, wall, m, H)
-        if seen:
-            _draw_tape(straight, place, np.eye(3))
-    else:
-        straight.image(wall.astype(np.uint8))
+    straight.image(wall.astype(np.uint8))
     straight.line(_CHART[[0, 1, 2, 3, 0]], WORLD, 1.5, dash=5)
     straight.mark(place, "ideal", 8)
-    return Drawing(paper.join((picture, straight)), _sentence(place, covariance, measures))
-
-
-def measured(m: Array, pixels: Array) -> tuple[Array, Array]:
-    """Measure on the wall what pixels (..., 2) show, by the pixels (4, 2) of the four corners.
-
-    Returns places (..., 2) in mm, and their covariances (..., 2, 2) if all are read to whole
-    pixels: 1/√12 px as a root mean square.
-    """
-
-    def place(x: Array) -> Array:
-        H = dlt(_CHART, x[:8].reshape(4, 2))
-        return from_homogeneous(to_homogeneous(pixels + x[8:]) @ np.linalg.inv(H).T)
-
-    x = np.append(m, [0, 0])
-    J = numerical_jacobian(place, x).reshape(*pixels.shape, 10)
-    return place(x), J @ np.swapaxes(J, -1, -2) / 12
-
-
-def _draw_shores(panel: Panel, wall: Image, m: Array, H: Array) -> None:
-    """Draw the wall, and on it lines of equal standard deviation."""
-    X, Y = (  # the middles of the cells, and of one more at each border
-        low + (high - low) * (np.arange(-1, n + 1) + 0.5) / n
-        for (low, high), n in zip(_REGION, _CELLS, strict=True)
-    )
-    seen = to_homogeneous(np.stack(np.meshgrid(X, Y), axis=-1)) @ H.T
-    _, covariance = measured(m, seen[..., :2] / seen[..., 2:])
-    std = np.sqrt(np.trace(covariance, axis1=-2, axis2=-1))
-    behind = (seen[..., 2] * (H @ [210, 297, 1])[2] <= 0).astype(np.float32)  # the camera
-    height = np.log(std.clip(1e-3, 1e6)).astype(np.float32)
-    inside = (1, 1, *np.add(_CELLS, 1).tolist())
-    fine = np.asarray(
-        Bitmap.fromarray(height).resize(wall.shape[1::-1], Bitmap.Resampling.BICUBIC, inside)
-    )
-    lines = contours(fine, np.log(_SHORES), 0.8 * wall.shape[1] / _SIZE[0])
-    ink = np.rint(3 * lines)[..., None] / 4  # few colours pack small
-    ink[np.asarray(Bitmap.fromarray(behind).resize(fine.shape[::-1], box=inside)) > 0] = 0
-    panel.image(((1 - ink) * wall + ink * 255 * np.array(rgb(ESTIMATED))).astype(np.uint8))
-    for shore in _SHORES:
-        crossed = np.flatnonzero(np.diff(np.sign(height[_LABELLED] - np.log(shore))))
-        if crossed.size:
-            panel.text([X[crossed[0]], Y[_LABELLED]], f"{shore:g}", ESTIMATED, anchor="mm", size=11)
-
-
-def _draw_tape(panel: Panel, place: Array, H: Array) -> None:
-    """Lay a tape measure on the wall, from the chart's left edge to a place; H shows it."""
-
-    def shown(x: Array, y: float) -> Array:
-        return from_homogeneous(np.column_stack([x, np.full(len(x), y), np.ones(len(x))]) @ H.T)
-
-    (X, Y), reach = place, np.linspace(0, place[0], 41)
-    above, below = shown(reach, Y - _TAPE / 2), shown(reach, Y + _TAPE / 2)
-    rim = np.concatenate([above, below[::-1], above[:1]])
-    panel.polygons([rim], _YELLOW)
-    panel.line(rim, MUTED, 0.6)
-    for apart, length in ((10, 0.4), (100, 1)):
-        x = np.arange(0, min(abs(X), 5e3), apart) * np.sign(X)
-        ends = np.stack([shown(x, Y + _TAPE / 2), shown(x, Y + _TAPE * (0.5 - length))], axis=1)
-        near = np.linalg.norm(np.diff(ends[:, 0], axis=0, append=np.inf), axis=1)
-        panel.segments(ends[near > 3 * panel.pixel], IDEAL, 0.8)
+    return Drawing(paper.join((picture, straight)), _sentence(place))
 
 
 def _draw_grid(panel: Panel, H: Array) -> None:
@@ -193,12 +119,7 @@ def _draw_horizon(panel: Panel, H: Array) -> None:
         )
 
 
-def _sentence(place: Array, covariance: Array, measures: float) -> str:
+def _sentence(place: Array) -> str:
     x, y = place
     said = f"By these corners the plus lies at ({x:.0f}, {y:.0f}) mm from the chart's first corner"
-    if np.abs([x, y]).max() > 1e4:
-        return f"{said}: it is near the wall's horizon."
-    if not measures:
-        return f"{said}."
-    across, down = np.sqrt(np.diag(covariance))
-    return f"{said}, ± {across:.1f} mm across and ± {down:.1f} mm down if pixels are read whole."
+    return f"{said}: it is near the wall's horizon." if np.abs(place).max() > 1e4 else f"{said}."

@@ -17,7 +17,7 @@ from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _BOARD, _CAMERA = course.board(), Camera(course.camera().A, course.poses()[6])
-_PART = (160, 76), (580, 391)  # px: the part of the picture that is shown
+_PART = (160, 76), (580, 420)  # px: the part of the picture that is shown
 _DRAWS, _NOISE = 60, 0.3  # px
 _WRONG, _LINE = "#7A7A7A", "#8A8A8A"
 
@@ -51,15 +51,16 @@ def ransac_model() -> Model:
         agree = np.linalg.norm(put - pairs, axis=-1) < limit
         (left, top), (right, bottom) = _PART
         panel = paper.panel(
-            (440, 330), (left - 0.5, right - 0.5), (top - 0.5, bottom - 0.5),
+            (440, 360), (left - 0.5, right - 0.5), (top - 0.5, bottom - 0.5),
             "the pairs, and one homography",
         )  # fmt: skip
         panel.image(photograph())
         _draw_pairs(panel, put[n], pairs, agree[n], true)
         panel.mark(fours[n][: 4 * min(n, 1)], "ideal", 8)
-        panel.text([right - 12, top + 24], f"{agree[n].sum()} / 54", LENS, anchor="rm", size=26)
+        panel.text([right - 12, top + 24], f"{agree[n].sum()} agree", LENS, anchor="rm", size=22)
+        _name_marks(panel, (left + 16, bottom - 14))
         votes = paper.panel(
-            (340, 330), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
+            (340, 360), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
         )
         counts = agree.sum(axis=1)
         _draw_votes(votes, counts, n, wrong)
@@ -100,6 +101,27 @@ def _draw_pairs(panel: Panel, put: Array, pairs: Array, agree: Mask, true: Mask)
     for size, ink in ((8, IDEAL), (6, "white")):
         panel.polygons(pairs[~true][:, None] + size * diamond, ink)
     panel.mark(pairs[agree], "lens", 5)
+
+
+def _name_marks(panel: Panel, at: tuple[int, int]) -> None:
+    """Write what the marks mean, below the board."""
+    x, y = at
+    square = panel.pixel * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    diamond = panel.pixel * np.array([[0, -1], [1, 0], [0, 1], [-1, 0]])
+    strip = np.array([[0, y - 16], [1e3, y - 16], [1e3, 1e3], [0, 1e3]])
+    panel.polygons([strip], "white")
+    panel.mark([x, y], "ideal", 7)
+    panel.mark([x + 78, y], "lens", 5)
+    right, wrong = np.array([[x + 142, y], [x + 290, y]])
+    panel.polygons([right + 2.5 * square], _WRONG)
+    panel.polygons([wrong + 7 * diamond, wrong + 5 * diamond], (IDEAL, "white"))
+    for aside, words in (
+        (11, "believed"),
+        (87, "agrees"),
+        (150, "right, but disagrees"),
+        (301, "wrong"),
+    ):
+        panel.text([x + aside, y], words, size=12)
 
 
 def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:

@@ -15,7 +15,7 @@ from cvnotes.show.explorations.valley import rows_of_tiles
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
 _SHOWN = (-300.0, 1080.0), (165.0, 955.0)  # px of a wide sensor, u and v
-_SIZE, _BARS = (482, 276), (280, 276)
+_SIZE, _BARS = (482, 276), (310, 276)
 _TIMES = 7  # as long as they are, arrows are drawn
 _FAR = 100  # px: how far a dot can be pulled
 _TONES = np.array([[255, 250, 244], [243, 231, 219]])  # of the tiles
@@ -25,7 +25,7 @@ _INKS = LENS, ESTIMATED  # of the DLT, and of the least error in pixels
 def swing_model() -> Model:
     """Make the model of six rows of tiles, one dot of which is pulled."""
     settings = (
-        Setting("row", "row", 1, 6, 1, 3, "of the dot that is pulled; row 1 is near"),
+        Setting("row", "row", 1, 6, 1, 6, "of the dot that is pulled; row 1 is near"),
         Setting("column", "column", 1, 7, 1, 1, "of the dot that is pulled, from the left"),
         Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, 0, "in the picture"),
         Setting("dv", "pulled down (px)", -_FAR, _FAR, 1, 30, "in the picture"),
@@ -90,20 +90,23 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
     moved = [
         [(net - dots)[0] for net in nets(k, column, values["du"], values["dv"])]
-        for k in range(1, row + 1)
+        for k in range(row, 7)
     ]
-    for by, colour in zip(moved[-1], _INKS, strict=True):
+    for by, colour in zip(moved[0], _INKS, strict=True):
         panel.arrows(dots[0], _TIMES * by, colour, 2.4)
     for i, (at, v) in enumerate(zip(held, dots[:, 0, 1], strict=True), start=1):
         if i != near:
             panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
         panel.text([_SHOWN[0][0] + 12, v], f"{i}", IDEAL, size=12)
+    aside, anchor = (-16, "rm") if held[row - 1, 0] > -100 else (16, "lm")
+    at = held[row - 1] + [aside * panel.pixel, 0]
+    panel.text(at, "pulled", IDEAL, anchor=anchor, size=12)
     far = np.linalg.norm(moved, axis=-1).max(axis=-1)
-    return Drawing(paper.join((panel, _bars(paper, far))), _sentence(values, far[-1].tolist()))
+    return Drawing(paper.join((panel, _bars(paper, far))), _sentence(values, far[0].tolist()))
 
 
 def _bars(paper: Paper, far: Array) -> Panel:
-    """Draw what each row weighs in the DLT, and how far row 1 gives way (k, 2) to the k nearest."""
+    """Draw what each row weighs in the DLT, and how far row 1 gives way (k, 2) to the k last."""
     title = "weight in the DLT; row 1 moves by (px)"
     panel = paper.panel(_BARS, (0, _BARS[0]), (_BARS[1], 0), title)
 
@@ -115,12 +118,14 @@ def _bars(paper: Paper, far: Array) -> Panel:
         y = 44.0 * i - 16
         panel.text([10, y], f"row {i}", size=12)
         bar(54, y, weight / 3, f"{weight:.2g}" if weight < 10 else f"{weight:.0f}", MUTED)
-        if i > len(far):
+        if i <= 6 - len(far):
             panel.text([166, y], "?", size=14)
             continue
-        for px, colour, up in zip(far[i - 1], _INKS, (7, -7), strict=True):
-            ink = colour if i == len(far) else mixed("#FFFFFF", colour, 0.4)
-            bar(164, y + up, min(1.4 * px, 74), f"{px:.1f}", ink, colour)
+        for px, colour, up in zip(far[i - 7], _INKS, (7, -7), strict=True):
+            here = i == 7 - len(far)
+            ink = colour if here else mixed("#FFFFFF", colour, 0.4)
+            name = {LENS: " DLT", ESTIMATED: " refined"}[colour] if here else ""
+            bar(164, y + up, min(1.4 * px, 74), f"{px:.1f}{name}", ink, colour)
     return panel
 
 

@@ -13,12 +13,17 @@ from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import contours
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
-_H6, _H9, _MOST = (-2.7, 1.0), (-1.4, 2.3), 25  # where walks may set out; steps
-_SHOWN = (-2.8, 1.1), (2.4, -1.5)  # of the two unknowns: a little more
-_TONES = np.array([[255, 255, 252], [224, 217, 202], [120, 108, 92]])  # from low to high ground
-_WALKS = (("Levenberg–Marquardt", ESTIMATED, 3.2), ("without damping", LENS, 1.4))
+_H6, _H9, _MOST, _MU = (-2.7, 1.0), (-1.4, 2.3), 25, 1e-3  # where walks may set out; steps
+_SHOWN, _SIDE = ((-2.8, 1.1), (2.4, -1.5)), 396  # of the two unknowns: a little more; px
+_HEIGHTS = (-2.0, 0.0, 1.5, 2.2, 3.3, 4.2)  # of the ground, and its tones from a lake to rock
+_TONES = np.array(
+    [[40, 62, 92], [96, 128, 150], [176, 194, 188], [216, 205, 180], [150, 120, 92], [110, 84, 62]]
+)
+_LIGHT = np.array([-1, -1, 1.2]) / np.linalg.norm([1, 1, 1.2])  # from the upper left
+_LINES = (3, 10, 30, 60, 100, 150, 200, 250, 300)  # px, RMS: of equal height
+_WALKS = (("damped", ESTIMATED, 3.2, "estimated"), ("undamped", LENS, 2.0, "lens"))
 
 
 class Floor(NamedTuple):
@@ -77,51 +82,60 @@ def floor() -> Floor:
 
 @lru_cache(maxsize=1)
 def _ground() -> Drawn:
-    """Paint the logarithm of the cost: light where it is low, with lines of equal height."""
-    (h6, h9), of = (np.linspace(*ends, 396) for ends in _SHOWN), floor()
-    H = np.broadcast_to(of.best, (396, 396, 3, 3)).copy()
-    H[..., 1, 2], H[..., 2, 2] = h6, h9[:, None]
-    x = H @ of.tiles_h.T
-    cost = np.sum((x[..., :2, :] / x[..., 2:, :] - of.seen.T) ** 2, axis=(2, 3))
-    height = np.log10(cost.clip(1e-2, 1e5))
-    ground = np.stack([np.interp(height, [0.2, 2.2, 4.5], tone) for tone in _TONES.T], axis=-1)
-    slope = np.interp(height, [2, 2.7], [14, 0]) * np.gradient(height, axis=0)
-    lit = (1 + slope).clip(0.8, 1)[..., None]  # from above; walls are dark anyway
-    line = contours(height, np.arange(0, 2.6, 1 / 3), 1)[..., None]  # none on the walls
-    return np.asarray((lit * ground + line * (255 - lit * ground)).round(), dtype=np.uint8)
+    """Paint the logarithm of the cost as ground, with light and shadow and lines of equal height.
+
+    With ĥ6 and ĥ9 free, x and the other parts of y and w stay: Σ (a + ĥ6 b)² in each row.
+    """
+    n = 2 * _SIDE
+    (h6, h9), of, H = (np.linspace(*ends, n) for ends in _SHOWN), floor(), floor().best
+    x, y, w = (H - np.outer([0, 1, 1], [0, 0, 1]) * H) @ of.tiles_h.T
+    b = 1 / (w + h9[:, None])
+    a, across = b * y - of.seen[:, 1], b * x - of.seen[:, 0]
+    A, B, C = np.sum(a**2 + across**2, axis=1), np.sum(a * b, axis=1), np.sum(b**2, axis=1)
+    height = np.log10(A[:, None] + 2 * np.outer(B, h6) + np.outer(C, h6**2))
+    line = contours(height, 2 * np.log10(np.divide(_LINES, of.px)), 1.1)
+    line[height > 2.5] = 0  # none on the walls
+    height = 4 - 0.4 * np.logaddexp(0, (4 - height) / 0.4)  # walls end at 4, rounded
+    for _ in range(8):
+        z = np.pad(height, 1, mode="edge")
+        around = z[:-2, 1:-1] + z[2:, 1:-1] + z[1:-1, :-2] + z[1:-1, 2:]
+        height = around / 8 + z[1:-1, 1:-1] / 2
+    down, right = (-0.04 * n * slope for slope in np.gradient(height))
+    upward = np.stack([right, down, np.ones_like(down)], axis=-1)
+    lit = upward @ _LIGHT / np.linalg.norm(upward, axis=-1) / _LIGHT[2]
+    ground = np.stack([np.interp(height, _HEIGHTS, tone) for tone in _TONES.T], axis=-1)
+    ground *= (0.5 + 0.5 * lit.clip(0, 1.4))[..., None]
+    return np.asarray((ground + 0.8 * line[..., None] * (255 - ground)).clip(0, 255)).astype(
+        np.uint8
+    )
 
 
 def valley_model() -> Model:
     """Make the model of the ground, and of two walks that set out from one place."""
     settings = (
-        Setting("h6", "start, ĥ6", *_H6, 0.05, 0.3, "the start: height in the picture"),
-        Setting("h9", "start, ĥ9", *_H9, 0.05, 2.0, "the start: depth of the tiles"),
-        Setting("steps", "steps", 0, _MOST, 1, 12, "how many steps are taken"),
-        Setting("mu", "log₁₀ μ at the start", -6, 4, 1, -3, "how the first step is damped"),
+        Setting("h6", "start, ĥ6", *_H6, 0.05, -1.2, "the start: height in the picture"),
+        Setting("h9", "start, ĥ9", *_H9, 0.05, 1.8, "the start: depth of the tiles"),
+        Setting("steps", "steps", 0, _MOST, 1, 15, "how many steps are taken"),
     )
     about = (
-        "A cost over two unknowns as ground, light where it is low, with dark walls, and two walks "
-        "from one start: Levenberg–Marquardt and one without damping. Beside it their RMS after "
-        "each step."
+        "A cost over two unknowns as ground, with a hollow and walls, and two walks from one "
+        "start: Levenberg–Marquardt's, which is damped, and one that is not. Beside it their RMS "
+        "after each step."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
         start, taken = np.array([values["h6"], values["h9"]]), int(values["steps"])
-        of, mu = floor(), 10.0 ** values["mu"]
-        ways = [of.walk(start, mu)[: taken + 1], of.walk(start, 0)[: taken + 1]]
-        ground = paper.panel((396, 396), *_SHOWN, "the cost over ĥ6 (→) and ĥ9 (↑)")
+        of = floor()
+        ways = [of.walk(start, mu)[: taken + 1] for mu in (_MU, 0)]
+        ground = paper.panel((_SIDE, _SIDE), *_SHOWN, "the cost over ĥ6 (→) and ĥ9 (↑)")
         ground.image(_ground())
-        for tick in (-2, -1, 0):
-            ground.text([tick, -1.42], f"{tick}".replace("-", "−"), anchor="md", size=11)
-        for tick in (-1, 0, 1, 2):
-            ground.text([-2.76, tick], f"{tick}".replace("-", "−"), size=11)
-        for row, wall in enumerate(-(of.tiles_h[::7, :2] @ of.best[2, :2])[:5], 1):
-            ground.text([1.02 - 0.12 * (row % 2), wall], f"{row}", IDEAL, anchor="mm", size=11)
-        ground.mark(of.best[[1, 2], [2, 2]], "ideal", 12)
-        for way, (_, colour, width) in zip(ways, _WALKS, strict=True):
+        for way, (_, colour, width, _) in zip(ways, _WALKS, strict=True):
+            ground.line(way, "#FFFFFF", width + 1.6)
             ground.line(way, colour, width)
-        for way, meaning in zip(ways, ("estimated", "lens"), strict=True):
+        _name_ground(ground, of)
+        for way, (name, colour, _, meaning) in zip(ways, _WALKS, strict=True):
             ground.mark(way[-1], meaning, 8)
+            _name_end(ground, way[-1], name, colour)
         ground.mark(start, "world", 9)
         ground.grip("start", "where the walks set out", start, 5)
         rms = [[of.rms(h) for h in way] for way in ways]
@@ -133,20 +147,44 @@ def valley_model() -> Model:
     return Model("valley", about, settings, draw, {"start": moved})
 
 
+def _name_ground(ground: Panel, of: Floor) -> None:
+    """Write the numbers of both axes, and what lowest place, lines and walls are."""
+    for tick in (-2, -1, 0):
+        ground.text([tick, -1.42], f"{tick}".replace("-", "−"), anchor="md", size=11)
+    for tick in (-1, 0, 1, 2):
+        ground.text([-2.76, tick], f"{tick}".replace("-", "−"), size=11)
+    walls = -(of.tiles_h[::7, :2] @ of.best[2, :2])
+    names = ("rows 1, 2", "row 3", "row 4", "wall: row 5 at infinity")
+    for name, wall in zip(names, (walls[:2].mean(), *walls[2:5]), strict=True):
+        ground.text([1.06, wall], name, IDEAL, anchor="rm", size=11)
+    best = of.best[[1, 2], [2, 2]]
+    for line, way in ((150, [1, 0.5]), (200, [1, 0.75])):
+        far = np.outer(np.linspace(0, 1.5, 301), way)
+        at = best + far[np.searchsorted([of.rms(best + by) for by in far], line)]
+        ground.text(at, f"RMS {line} px", MUTED, anchor="mm", size=11)
+    ground.mark(best, "ideal", 12)
+    ground.text(best + [-0.16, -0.02], "lowest", IDEAL, anchor="rm", size=12)
+
+
+def _name_end(ground: Panel, at: Array, name: str, colour: str) -> None:
+    """Write a walk's name beside its end, the damped one's above, within the picture."""
+    aside = 12 * ground.pixel * (1 if at[0] < 0.3 else -1)
+    up = 9 * ground.pixel * (1 if colour == ESTIMATED else -1)
+    ground.text(at + [aside, up], name, colour, anchor="lm" if aside > 0 else "rm", size=13)
+
+
 def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
     panel = paper.panel((440, 396), (-1.5, _MOST + 1), (5.4, -0.9), "RMS (px) after each step")
     panel.ticks(x=(5, 10, 15, 20, 25), size=11)
     for power in range(6):
         panel.line([[-2, power], [_MOST + 2, power]], "#DDDDDD", 0.5)
         panel.text([-1.3, power], f"{10**power:,}", anchor="lm", size=11)
-    for values, (name, colour, width), meaning, up in zip(
-        rms, _WALKS, ("estimated", "lens"), (-0.3, 0.3), strict=True
-    ):
+    for values, (name, colour, width, meaning), up in zip(rms, _WALKS, (-0.3, 0.3), strict=True):
         curve = np.column_stack([np.arange(len(values)), np.log10(np.clip(values, 0.1, 1e6))])
         panel.line(curve, colour, width)
         panel.mark(curve[-1], meaning, 7)
         steps, high = curve[-1].tolist()
-        at, anchor = (steps + 0.8, "lm") if steps < 15 else (_MOST, "rm")
+        at, anchor = (steps + 0.8, "lm") if steps < 18 else (_MOST, "rm")
         panel.text([at, min(high + up, 5)], name, colour, anchor=anchor, size=12)
     return panel
 
@@ -158,4 +196,4 @@ def _sentence(of: Floor, ways: list[Array], rms: list[list[float]]) -> str:
         there = np.flatnonzero(np.linalg.norm(way - best, axis=1) < 1e-3)
         arrived = f"is in the hollow after {there[0]}" if len(there) else "is not there"
         ends.append(f"{arrived}, RMS {values[-1]:,.4g} px")
-    return f"{steps} steps. Levenberg–Marquardt {ends[0]}; without damping the walk {ends[1]}."
+    return f"{steps} steps. The damped walk {ends[0]}; the undamped one {ends[1]}."

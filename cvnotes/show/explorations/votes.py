@@ -13,9 +13,8 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD, mixed
 
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
 _LEFT, _TOP, _SIDE = 326, 187, 53  # px, the part of the photograph that is shown
-_LARGE, _SMALL = (567, 567), (265, 265)  # px of the page
+_PANEL = (424, 424)  # px of the page
 _WEAK, _STRONG = 33.0, 75.0  # grey levels a pixel: of votes not drawn, and of the thickest
-_FAR = 90.0  # grey levels a pixel, where the panel of gradients ends
 _K = 0.05  # of the Harris measure
 _NOTHING = 2000.0  # an eigenvalue that the noise of flat paper does not reach
 
@@ -58,14 +57,13 @@ def votes_model() -> Model:
     settings = (
         Setting("u", "u (px)", u, u + far, 1, 352, "column of the window's middle"),
         Setting("v", "v (px)", v, v + far, 1, 213, "row of the window's middle"),
-        Setting("guess", "show a guess m", 0, 1, 1, 0, "how far all lines pass it by"),
         Setting("m_u", "m, aside (px)", -_HALF, _HALF, 0.05, -1.5, "to the right of the middle"),
         Setting("m_v", "m, down (px)", -_HALF, _HALF, 0.05, 1.5, "below the window's middle"),
     )
     about = (
-        "A part of a photograph of the board with a window of 7 × 7 pixels; the lines along which "
-        "its pixels see an edge, orange where steep and blue where level; and their gradients, "
-        "with an ellipse as wide as they spread."
+        "A part of a photograph of the board with a window of 7 × 7 pixels; and the lines along "
+        "which its pixels see an edge, orange where steep and blue where level, with a guess and "
+        "how far each line passes it by."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -73,11 +71,10 @@ def votes_model() -> Model:
         window = window_at(gradients, at)
         m = np.add(at, [values["m_u"], values["m_v"]])
         votes = _votes(paper, photo, at, window, corners)
-        if values["guess"]:
-            _draw_misses(votes, window, m)
+        _draw_misses(votes, window, m)
         votes.mark(window.crossing, "estimated", 11)
-        drawn = paper.join(([_photo(paper, photo, at), _spread(paper, window)], votes))
-        return Drawing(drawn, _sentence(at, window, m if values["guess"] else None))
+        drawn = paper.join((_photo(paper, photo, at), votes))
+        return Drawing(drawn, _sentence(at, window, m))
 
     drags = {
         "window": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
@@ -91,7 +88,7 @@ def votes_model() -> Model:
 
 def _photo(paper: Paper, photo: Drawn, at: tuple[int, int]) -> Panel:
     x, y = (_LEFT - 0.5, _LEFT + _SIDE - 0.5), (_TOP - 0.5, _TOP + _SIDE - 0.5)
-    panel = paper.panel(_SMALL, x, y, "pull the window")
+    panel = paper.panel(_PANEL, x, y, "the photograph, and the window")
     panel.image(photo[_TOP : _TOP + _SIDE, _LEFT : _LEFT + _SIDE])
     corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]
     for colour, width in (("#FFFFFF", 3.5), (ESTIMATED, 1.8)):
@@ -105,9 +102,12 @@ def _votes(
 ) -> Panel:
     """Draw each pixel's line, the thicker and darker the longer its gradient, weak ones first."""
     (u, v), half = at, _HALF + 0.5
-    panel = paper.panel(_LARGE, (u - half, u + half), (v - half, v + half), "the votes in it")
+    panel = paper.panel(
+        _PANEL, (u - half, u + half), (v - half, v + half), "the votes in it: pull m"
+    )
     part = photo[v - _HALF : v + _HALF + 1, u - _HALF : u + _HALF + 1]
-    panel.image((255 - 0.25 * (255.0 - part)).astype(np.uint8), smooth=False)
+    pale = 255 - 16 * np.rint((271.0 - part) / 64)  # few greys pack small
+    panel.image(pale.astype(np.uint8), smooth=False)
     length = np.linalg.norm(window.g, axis=1)
     for i in np.argsort(length)[(length < _WEAK).sum() :]:
         across = window.g[i, ::-1] * [-1, 1] / length[i]
@@ -129,26 +129,17 @@ def _draw_misses(panel: Panel, window: Window, m: Array) -> None:
     panel.segments(np.stack([m + 0 * feet, feet], axis=1), WORLD, 1.2)
     if window.eigenvalues[1] > _NOTHING:
         half = window.axes / np.sqrt(window.eigenvalues / window.misses(window.least))
+        across = half[:, 1] * np.sign(half[0, 1] - half[1, 1])  # the short way, up or to the right
         for times in (2, 4, 8, 16):
-            panel.line(window.least + circle(181) * np.sqrt(times - 1) @ half.T, IDEAL, 1.6, dash=4)
+            reach = np.sqrt(times - 1)
+            panel.line(window.least + circle(181) * reach @ half.T, IDEAL, 1.6, dash=4)
+            panel.text(window.least + reach * across, f"{times}×", IDEAL, anchor="mm", size=12)
     panel.mark(m, "world", 11)
     panel.text(m + [0.2, 0.25], "m", WORLD, size=18)
     panel.grip("m", "a point, for which all lines might vote", m, 5)
 
 
-def _spread(paper: Paper, window: Window) -> Panel:
-    """Draw the gradients as dots, and the ellipse whose half axes are √(λ/n)."""
-    panel = paper.panel(
-        _SMALL, (-_FAR, _FAR), (-_FAR, _FAR), "gradients gᵤ →, gᵥ ↓ (grey levels/px)"
-    )
-    panel.ticks(x=(-60, 0, 60), y=(-60, 0, 60), size=12)
-    panel.mark(window.g, "lens", 3.5)
-    half = window.axes * np.sqrt(window.eigenvalues / len(window.g))
-    panel.line(circle(61) @ half.T, ESTIMATED, 2.2)
-    return panel
-
-
-def _sentence(at: tuple[int, int], window: Window, m: Array | None) -> str:
+def _sentence(at: tuple[int, int], window: Window, m: Array) -> str:
     small, large = window.eigenvalues
     said = (
         f"At ({at[0]}, {at[1]}) the eigenvalues are {small:.0f} and {large:.0f}, "
@@ -162,7 +153,5 @@ def _sentence(at: tuple[int, int], window: Window, m: Array | None) -> str:
     inside = max(abs(u - at[0]), abs(v - at[1])) <= _HALF
     what = "this is a corner" if inside else "a corner is near, outside of the window"
     said = f"{said}both are large, {what}. The votes cross at ({u:.2f}, {v:.2f})"
-    if m is None:
-        return f"{said}."
     times = window.misses(m) / window.misses(window.least)
     return f"{said}; at m the sum of squares is {times:.1f} times as large as there."
