@@ -51,7 +51,7 @@ def frame_model() -> Model:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     f, c = values["f"], np.array([values["u0"], values["v0"]])
-    new = paper.panel(_NEW, (0, 1), (0, 1), "what the new camera shows")
+    new = paper.panel(_NEW, (0, 1), (0, 1), "the new picture")
     size = 2 * _NEW[0], 2 * _NEW[1]
     A = Camera(intrinsics(f, f, *c), size=_SIZE).resized(size).A
     new.image(undistort_image(*_photograph(), A, size=size).astype(np.uint8))
@@ -131,9 +131,7 @@ def shares(u0: float, v0: float) -> tuple[Array, Array]:
 
 def _plane(paper: Paper, f: float, c: Array) -> Panel:
     """Draw the plane z = 1: full colours in the frame, pale what it leaves out, black its gaps."""
-    panel = paper.panel(
-        _PLANE, (-_X, _X), (-_Y, _Y), "plane z = 1: a new frame; the old one dashed"
-    )
+    panel = paper.panel(_PLANE, (-_X, _X), (-_Y, _Y), "what the lens saw: pull the frame's corner")
     full, pale = _undistorted()
     shown, frame = pale.copy(), np.array([-c, _LAST - c]) / f
     (a, b), (r, d) = np.rint(panel.place(frame) * 2 / panel.scale).astype(int).clip(0).tolist()
@@ -155,10 +153,10 @@ def _plane(paper: Paper, f: float, c: Array) -> Panel:
 
 def _curves(paper: Paper, f: float, c: Array, filled: Array, lost: Array) -> Panel:
     """Draw how much of the new picture is black, and of what was seen is lost, over f."""
-    title = "black, and lost of what was seen, in %, over f (px)"
+    title = "how much is black, and how much lost (%), over f"
     panel = paper.panel(_CURVES, (_NEAR - 18, _FAR + 6), (_HIGH, _LOW), title)
     panel.ticks(y=(0, 20, 40), size=12)
-    for at, words in zip(ends(c), ("all", "no gaps"), strict=True):
+    for at, words in zip(ends(c), ("nothing lost", "nothing black"), strict=True):
         if _NEAR <= at <= _FAR:
             panel.line([[at, 0], [at, _HIGH]], MUTED, 1, dash=3)
             panel.text([at, _LOW / 2], words, MUTED, anchor="mm", size=12)
