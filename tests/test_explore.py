@@ -433,7 +433,7 @@ def test_numbers_below_zero_have_a_minus_sign_and_no_hyphen():
 
 def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_steps(written):
     board = course.board()
-    for values in ({}, {"T_x": 20, "T_y": -90, "angle_y": 5}, {"u0": 250, "alpha": 700}):
+    for values in ({}, {"T_x": 20, "T_y": -90, "angle_y": 5, "T_z": 450}, {"u0": 250, "alpha": 700}):
         written.clear()
         drawing, v = MODELS["camera"].drawing(**values), MODELS["camera"].values(**values)
         grip = grip_of(drawing, "camera")
