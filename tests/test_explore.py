@@ -2689,7 +2689,7 @@ def test_a_view_out_of_the_fisheyes_picture_is_what_a_pinhole_camera_sees(fov, r
     assert np.median(np.abs(off)) == 0
 
 
-@pytest.mark.parametrize("f", [318, 279, 300])
+@pytest.mark.parametrize("f", [318, 279, 340])
 def test_a_new_frame_shows_what_a_pinhole_camera_sees_and_is_black_beyond_the_lenss_picture(f):
     """By a camera that photographs the street anew, and by r L(r) of each pixel's own radius."""
     drawing, u0, v0 = MODELS["frame"].drawing(f=f), 319.5, 239.5
