@@ -433,7 +433,11 @@ def test_numbers_below_zero_have_a_minus_sign_and_no_hyphen():
 
 def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_steps(written):
     board = course.board()
-    for values in ({}, {"T_x": 20, "T_y": -90, "angle_y": 5}, {"u0": 250, "alpha": 700}):
+    for values in (
+        {},
+        {"T_x": 20, "T_y": -90, "angle_y": 5, "T_z": 450},
+        {"u0": 250, "alpha": 700},
+    ):
         written.clear()
         drawing, v = MODELS["camera"].drawing(**values), MODELS["camera"].values(**values)
         grip = grip_of(drawing, "camera")
@@ -459,8 +463,9 @@ def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_s
         for name, step in zip("xyz", np.diag(T), strict=True):
             words = f"{name} {step.sum():.0f}".replace("-", "−")
             panel, at = written[words]
-            middle = from_afar(C + R.T @ (corner + step / 2))
-            assert np.linalg.norm(at - middle) < 12 * panel.pixel
+            far = 0.9 if name == "x" and T[0] < 0 else 0.5  # the y axis begins where x does
+            beside = from_afar(C + R.T @ (corner + far * step))
+            assert np.linalg.norm(at - beside) < 12 * panel.pixel
             corner = corner + step
 
 
@@ -1362,7 +1367,7 @@ def test_newton_and_division_need_as_many_rounds_as_they_are_said_to():
 @pytest.mark.parametrize(("r", "ink"), [(0.3, LENS), (0.68, ESTIMATED), (1.03, ESTIMATED)])
 def test_a_disc_is_folded_at_the_rim_over_what_the_lens_shows(r, ink):
     model = MODELS["rim"]
-    drawing = model.drawing(k1=-1.2, k2=0, ring=r)
+    drawing = model.drawing(k1=-1.2, ring=r)
     seen = r - 1.2 * r**3
     turn = np.random.default_rng(0).uniform(0, 2 * np.pi, 400)
     at = np.column_stack([np.cos(turn), np.sin(turn)]) * 430 / 0.834
@@ -1708,10 +1713,11 @@ def test_the_rings_axes_are_those_about_which_their_angles_turn():
         volume = abs(np.linalg.det(turned))
         assert volume == pytest.approx(np.cos(angles[1]), abs=1e-9)
         said = MODELS["gimbal"].drawing(**values).sentence
-        assert "one line" in said if volume < 1e-9 else abs(numbers(said)[-1] - volume) < 0.006
+        apart = np.degrees(np.arccos(min(abs(turned[0] @ turned[2]), 1)))
+        assert "one line" in said if volume < 1e-9 else abs(numbers(said)[-1] - apart) < 0.51
     # Then two angles do the same to what is drawn.
     locked = [MODELS["gimbal"].picture(x=x, y=90, z=z) for x, z in ((40, 0), (10, -30))]
-    dart = [(p[TITLE:, :423].max(axis=-1) < 40) for p in locked]
+    dart = [(p[TITLE:].max(axis=-1) < 40) for p in locked]
     assert (dart[0] & dart[1]).sum() > 0.9 * (dart[0] | dart[1]).sum() > 1000
 
 
@@ -1918,16 +1924,6 @@ def test_what_is_not_there_is_said_where_one_looks_for_it(written):
         written.clear()
 
 
-def test_what_leaves_the_picture_below_is_still_measured_in_it(written):
-    drawing = MODELS["dolly"].drawing(distance=1500, keep=1)
-    panel, at = written["200 px"]  # 400 mm, 1.5 m away, by α = 750 px
-    u, v = np.rint(at * WIDTH / 640 + [MARGIN, TITLE]).astype(int)
-    assert TITLE < v < TITLE + 330 - 8
-    above = drawing.picture[v - 14 : v - 6, u - 60 : u + 60]
-    assert count(above, IDEAL) > 100
-    assert panel.y[1] > at[1]
-
-
 def test_three_times_the_focal_length_is_three_times_the_blackboard_and_no_third_of_the_angle():
     shown = MODELS["zoom"].drawing
     for alpha in (300, 520, 1200, 1500):
@@ -1975,14 +1971,14 @@ def test_both_walks_are_as_long_and_a_turn_on_the_spot_leaves_one_of_them_alone(
     shown = MODELS["walks"].drawing
     for turn in (-60, -32, 0, 45):
         C_x, C_z, T_x, T_z, _ = numbers(shown(turn=turn).sentence)
-        assert (C_x, C_z) == (340, -420)
+        assert (C_x, C_z) == (300, -400)
         assert np.hypot(T_x, T_z) == pytest.approx(np.hypot(C_x, C_z), abs=1)
         # As the library has it, in space: right by `turn` about the y axis, which points down.
         R = rotation_from_vector([0, -np.radians(turn), 0])
-        camera = Camera(intrinsics(500, 500, 250, 190), pose(R, -R @ [340, 0, -420]))
+        camera = Camera(intrinsics(500, 500, 250, 190), pose(R, -R @ [300, 0, -400]))
         assert np.abs(camera.T[[0, 2]] - [T_x, T_z]).max() < 0.51
         ahead = camera.centre + camera.R.T @ [0, 0, 100]
-        grip = np.array(grip_of(shown(turn=turn), "line of sight").at) - [340, -420]
+        grip = np.array(grip_of(shown(turn=turn), "line of sight").at) - [300, -400]
         assert np.allclose(grip / 150, (ahead - camera.centre)[[0, 2]] / 100, atol=1e-3)
 
 
@@ -2317,13 +2313,11 @@ def test_without_texture_noise_chooses_the_depth_and_the_true_outlines_lie_over_
 def test_stepping_back_and_zooming_keeps_the_box_and_enlarges_what_is_behind_it():
     shown = MODELS["dolly"].drawing
     for distance in (1500, 4000, 7000):
-        for keep in (0, 1):
-            alpha = 750 if keep else 0.25 * distance
-            angle = 2 * np.degrees(np.arctan(320 / alpha))
-            box, board = 400 * alpha / distance, 1400 * alpha / (distance + 2500)
-            drawing = shown(distance=distance, keep=keep)
-            expected = [distance / 1000, alpha, angle, box, board]
-            np.testing.assert_allclose(numbers(drawing.sentence), expected, atol=0.5)
+        alpha = 0.25 * distance
+        angle = 2 * np.degrees(np.arctan(320 / alpha))
+        box, board = 400 * alpha / distance, 1400 * alpha / (distance + 2500)
+        expected = [distance / 1000, alpha, angle, box, board]
+        np.testing.assert_allclose(numbers(shown(distance=distance).sentence), expected, atol=0.5)
     # The red front of the box is where its corners are seen: 0.25 px a millimetre, always.
     for distance in (1500, 7000):
         picture = shown(distance=distance).picture
@@ -2654,14 +2648,10 @@ def test_a_view_out_of_the_fisheyes_picture_is_what_a_pinhole_camera_sees(fov, r
     assert np.median(np.abs(off)) == 0
 
 
-@pytest.mark.parametrize(
-    ("f", "u0", "v0"), [(318, 319.5, 239.5), (279, 319.5, 239.5), (300, 379.5, 179.5)]
-)
-def test_a_new_frame_shows_what_a_pinhole_camera_sees_and_is_black_beyond_the_lenss_picture(
-    f, u0, v0
-):
+@pytest.mark.parametrize("f", [318, 279, 340])
+def test_a_new_frame_shows_what_a_pinhole_camera_sees_and_is_black_beyond_the_lenss_picture(f):
     """By a camera that photographs the street anew, and by r L(r) of each pixel's own radius."""
-    drawing = MODELS["frame"].drawing(f=f, u0=u0, v0=v0)
+    drawing, u0, v0 = MODELS["frame"].drawing(f=f), 319.5, 239.5
     seen = drawing.picture[TITLE + 1 : TITLE + 287, -MARGIN - 383 : -MARGIN - 1].astype(int)
     A = intrinsics(0.6 * f, 0.6 * f, 0.6 * (u0 + 0.5) - 0.5, 0.6 * (v0 + 0.5) - 0.5)
     street = look_at([-600, 0, 6200], [-600, -900, 14_000])
@@ -2708,7 +2698,7 @@ def test_a_frame_has_no_gaps_from_where_a_side_no_longer_leaves_the_border_and_l
     seen = r * (1 - 0.25 * r**2 + 0.05 * r**4)
     side, top, corner = np.interp([319.5 / 400, 239.5 / 400, np.hypot(319.5, 239.5) / 400], seen, r)
     full, every = max(319.5 / side, 239.5 / top), np.hypot(319.5, 239.5) / corner
-    assert [every, full] == pytest.approx(frame.ends(np.array([319.5, 239.5])), abs=0.01)
+    assert [every, full] == pytest.approx(frame.ends(), abs=0.01)
     for f in range(260, 431, 5):
         sentence = MODELS["frame"].drawing(f=f).sentence
         assert ("nothing is black" in sentence) == (f >= full), f
@@ -2985,7 +2975,6 @@ ON_A_WAY = {  # along a curve, by its x
     ("stands", "plane"),
     ("zoom", "sensor"),
     ("stands", "alpha"),
-    ("ways", "time"),
     ("similar", "tree"),
     ("similar", "film"),
     ("clicks", "circle"),
@@ -3103,7 +3092,8 @@ def test_on_a_narrow_page_panels_come_below_each_other(name):
     model = MODELS[name]
     wide = model.drawing()
     narrow = model.drawn_on(Paper(narrow=True), model.values())
-    assert narrow.picture.shape[1] < 0.7 * wide.picture.shape[1]
+    part = 1.01 if name in ("gimbal", "ways") else 0.7  # these two have one panel
+    assert narrow.picture.shape[1] < part * wide.picture.shape[1]
     assert narrow.sentence == wide.sentence
     inked = [np.abs(drawing.picture.astype(int) - 255).sum() for drawing in (wide, narrow)]
     # What lies beside the photograph of the rod has no room on a telephone; e is told as a number.
@@ -3128,19 +3118,19 @@ def test_grips_are_where_the_picture_shows_their_marks():
 
 
 def test_beside_the_camera_stand_its_matrices_on_the_colours_of_their_sliders():
-    moved = {"alpha": 900, "u0": 300, "skew": -20, "T_x": -70}
+    moved = {"alpha": 900, "u0": 300, "T_x": -70}
     drawing = MODELS["camera"].drawing(**moved)
     tables = [
         [[cell.replace("−", "-") for cell in re.findall(r">([^<]+)</td>", row)] for row in rows]
         for rows in (re.findall(r"<tr>(.*?)</tr>", t) for t in drawing.matrices.split("<table")[1:])
     ]
     A, G, P = (np.array(table, dtype=float) for table in tables)
-    assert A.tolist() == [[900, -20, 300], [0, round(900 * 804 / 800), 238], [0, 0, 1]]
+    assert A.tolist() == [[900, 0, 300], [0, round(900 * 804 / 800), 238], [0, 0, 1]]
     assert np.allclose(np.linalg.det(G[:3, :3]), 1, atol=0.05)
     assert G[0, 3] == -70
     assert np.allclose(P, A @ G[:3], rtol=0.03, atol=15)
     tints = {s.name: s.tint for s in MODELS["camera"].settings}
-    for name, number in (("alpha", "900"), ("u0", "300"), ("skew", "−20"), ("T_x", "−70")):
+    for name, number in (("alpha", "900"), ("u0", "300"), ("T_x", "−70")):
         assert f'background:{tints[name]};color:#000">{number}</td>' in drawing.matrices
 
 

@@ -26,7 +26,7 @@ from cvnotes.show.explorations.boards import (
     paper_and_squares,
     pinhole,
 )
-from cvnotes.show.explorations.matrices import FOCAL, PIERCING, SHIFT, SKEW, TURN, matrix_table
+from cvnotes.show.explorations.matrices import FOCAL, PIERCING, SHIFT, TURN, matrix_table
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.orbit import angles_of, round_the_board
 from cvnotes.show.explorations.paper import Panel, Paper
@@ -44,16 +44,15 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
     """Make the model of a board seen by `camera`, its lens left out."""
     alpha, (u0, v0), (w, h) = camera.A[0, 0], camera.A[:2, 2], camera.size
     reach = float(np.ceil(np.linalg.norm(board.points[-1])))
-    start = look_at(*reach / 236 * np.array([[340, 150, -420], [170, 60, 0]]))
+    start = look_at(*reach / 236 * np.array([[340, 150, -420], [100, 62, 0]]))
     angles, T = np.degrees(angles_of(start[:3, :3])), start[:3, 3]
     axis = "in which the optical axis pierces the picture"
     turn = "turns the board about the camera's {} axis: R = Rz Ry Rx"
-    shift = "where the board's origin lies along the camera's {} axis, mm"
+    shift = "where the world's origin lies along the camera's {} axis, mm"
     settings = (
         _whole("alpha", "α (px)", 0.3 * alpha, 2 * alpha, alpha, "focal length in pixels", FOCAL),
         _whole("u0", "u0 (px)", 0, w, u0, f"column {axis}", PIERCING),
         _whole("v0", "v0 (px)", 0, h, v0, f"row {axis}", PIERCING),
-        _whole("skew", "skew (px)", -0.4 * alpha, 0.4 * alpha, camera.A[0, 1], "entry A12", SKEW),
         _tenth("angle_x", "angle x (°)", 75, angles[0], turn.format("x"), TURN),
         _tenth("angle_y", "angle y (°)", 75, angles[1], turn.format("y"), TURN),
         _tenth("angle_z", "angle z (°)", 180, angles[2], turn.format("z"), TURN),
@@ -98,7 +97,7 @@ def _tenth(name: str, label: str, most: float, value: float, about: str, tint: s
 def _moved(camera: Camera, values: Values) -> Camera:
     ratio = camera.A[1, 1] / camera.A[0, 0]
     alpha = values["alpha"]
-    A = intrinsics(alpha, ratio * alpha, values["u0"], values["v0"], values["skew"])
+    A = intrinsics(alpha, ratio * alpha, values["u0"], values["v0"], camera.A[0, 1])
     angles = np.radians([values["angle_x"], values["angle_y"], values["angle_z"]])
     T = [values["T_x"], values["T_y"], values["T_z"]]
     return pinhole(Camera(A, size=camera.size)).moved(pose(rotation_from_angles(*angles), T))
@@ -122,7 +121,7 @@ def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Drawing:
     picture.grip(
         "principal point", "where the optical axis pierces the picture", camera.A[:2, 2], 5
     )
-    picture.grip("board", "the board's origin in the picture", origin, 5)
+    picture.grip("board", "the world's origin in the picture", origin, 5)
     space = _space(camera, board, paper, corners)
     sentence = _sentence(camera, board, complete)
     return Drawing(paper.join((picture, space)), sentence, _matrices(camera))
@@ -150,7 +149,7 @@ def _pixels(camera: Camera, M: Array) -> Array:
 
 
 def _space(camera: Camera, board: Chessboard, paper: Paper, corners: Array) -> Panel:
-    """Draw board and camera as they stand, and the way T from the camera to the board's origin."""
+    """Draw board and camera as they stand, and the way T from the camera to the world's origin."""
     border, squares = paper_and_squares(board)
     floor, joints = _floor(board, (-4, 16), (-20, 6))
     axes, own = board.square * 5 * np.eye(3), board.square * np.diag([5.5, 5.5, 8]) @ camera.R
@@ -208,7 +207,7 @@ def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str)
 
 
 def _draw_T(panel: Panel, at: Array, T: Array) -> None:
-    """Draw T, from the camera to the board's origin, and its three steps along x, y and z."""
+    """Draw T, from the camera to the world's origin, and its three steps along x, y and z."""
     panel.line(at, CAMERA, 2)
     panel.arrows(at[0], at[3] - at[0], CAMERA, 4)
     _name(panel, at[[0, 3]], at[1:3].mean(axis=0), "T", 17)
@@ -219,12 +218,13 @@ def _draw_T(panel: Panel, at: Array, T: Array) -> None:
             at[0 if i else 3],
             f"{axis} {number + 0.0:.0f}".replace("-", "−"),
             14,
+            0.9 if i == 0 and T[0] < 0 else 0.5,  # the y axis begins where x does
         )
 
 
-def _name(panel: Panel, ends: Array, other: Array, words: str, size: int) -> None:
-    """Write words beside the middle of a line, on the side on which the other point is not."""
-    (x, y), middle = _along(panel, ends), ends.mean(axis=0)
+def _name(panel: Panel, ends: Array, other: Array, words: str, size: int, far: float = 0.5) -> None:
+    """Write words beside a line, so far along it, on the side where the other point is not."""
+    (x, y), middle = _along(panel, ends), (1 - far) * ends[0] + far * ends[1]
     across = np.array([y, -x])
     across = across * (1 if across @ (middle - other) > 0 else -1)
     anchor = "lmr"[1 - int(np.rint(1.2 * across[0]))] + "m"
@@ -239,7 +239,7 @@ def _along(panel: Panel, ends: Array) -> Array:
 
 def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
     said = (
-        f"T = {_words(camera.T)} mm is where the camera sees the board's origin; the camera stands "
+        f"T = {_words(camera.T)} mm is where the camera sees the world's origin; the camera stands "
         f"at C = −RᵀT = {_words(camera.centre)} mm."
     )
     if not complete:
@@ -251,13 +251,13 @@ def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
 
 def _matrices(camera: Camera) -> str:
     """Write A, G and P = A [R|T]; what mixes several parameters has no colour."""
-    of_A = {(0, 0): FOCAL, (1, 1): FOCAL, (0, 1): SKEW, (0, 2): PIERCING, (1, 2): PIERCING}
+    of_A = {(0, 0): FOCAL, (1, 1): FOCAL, (0, 2): PIERCING, (1, 2): PIERCING}
     of_G = {(i, j): TURN if j < 3 else SHIFT for i in range(3) for j in range(4)}
     rotations = np.array([[2, 2, 2, 0]] * 3 + [[0, 0, 0, 0]])
     products = np.array([[1, 1, 1, 0], [1, 1, 1, 0], [3, 3, 3, 0]])
     return (
         matrix_table(camera.A, "A: the sensor (px)", np.zeros((3, 3), int), of_A)
-        + matrix_table(camera.G, "G: camera ← board (T in mm)", rotations, of_G)
+        + matrix_table(camera.G, "G: camera ← world (T in mm)", rotations, of_G)
         + matrix_table(camera.P, "P = A [R | T]", products, {})
     )
 

@@ -14,11 +14,10 @@ from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, IDEAL, LENS, MUTED, hexed
 
 _SIZE, _SHOWN, _PLAN = (640, 480), (440, 330), (205, 330)  # px
-_KEPT, _GROWS = 750, 0.25  # px, and px for each mm of distance
+_GROWS = 0.25  # px for each mm of distance
 _X, _Y, _FRONT = 350, 300, 7450  # mm: the camera's way, and the front of the red box
 _BOX = np.array([[450, 940, _FRONT], [850, 940, _FRONT]])  # just below its front
 _BOARD = np.array([[-700, 360, 9950], [700, 360, 9950]])  # just below the blackboard's frame
-_LOWEST = np.array([639, 450])  # px: what is below the picture is measured there
 _PALE, _GREEN = "#DDEFFA", "#3A6A66"
 _CORNERS = np.array([[-3000, 0], [-3000, 10_000], [3000, 10_000], [3000, 0]])  # mm, from above
 _OUTSIDE = [np.stack([a, b, 2 * b, 2 * a]) for a, b in pairwise(_CORNERS)]
@@ -28,7 +27,6 @@ def dolly_model() -> Model:
     """Make the model of the room from near and far, with a lens that makes up for the distance."""
     settings = (
         Setting("distance", "distance (mm)", 1500, 7000, 250, 3000, "from camera to red box"),
-        Setting("keep", "keep the lens", 0, 1, 1, 0, f"α stays at {_KEPT} px, as at 3 m"),
     )
     about = (
         "A red box in a room, and how wide the box and the blackboard behind it are in the "
@@ -36,13 +34,13 @@ def dolly_model() -> Model:
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        camera = camera_at(values)
+        camera = camera_at(values["distance"])
         alpha, angle = camera.A[0, 0], np.degrees(camera.field_of_view[0])
         panel = paper.picture_panel(_SHOWN, _SIZE, f"α = {alpha:g} px")
-        panel.image(_photograph(values["distance"], values["keep"]))
+        panel.image(_photograph(values["distance"]))
         seen = camera.project([_BOX, _BOARD])
         widths = np.ptp(seen[..., 0], axis=1)
-        for ends, width in zip(seen.clip(max=_LOWEST), widths, strict=True):
+        for ends, width in zip(seen, widths, strict=True):
             panel.line(ends, IDEAL, 2)
             panel.text(ends.mean(axis=0) + [0, 14], f"{width:.0f} px", IDEAL, anchor="mm", size=13)
         said = (
@@ -57,18 +55,18 @@ def dolly_model() -> Model:
     return Model("dolly", about, settings, draw, {"walk": pulled})
 
 
-def camera_at(values: Values, size: tuple[int, int] = _SIZE) -> Camera:
-    """Return the camera at some distance, of some size; α follows unless its lens is kept."""
-    alpha = _KEPT if values["keep"] else _GROWS * values["distance"]
+def camera_at(distance: float, size: tuple[int, int] = _SIZE) -> Camera:
+    """Return the camera at some distance, of some size; α grows with the distance."""
+    alpha = _GROWS * distance
     A, G = intrinsics(alpha, alpha, 319.5, 239.5), np.eye(4)
-    G[:3, 3] = -_X, -_Y, values["distance"] - _FRONT
+    G[:3, 3] = -_X, -_Y, distance - _FRONT
     return Camera(A, G).resized(size)
 
 
 @lru_cache(maxsize=64)
-def _photograph(distance: float, keep: float) -> Drawn:
+def _photograph(distance: float) -> Drawn:
     """Take a picture once: a tenth of a second, too long for a hand that comes back to it."""
-    return render_scene(room(), camera_at({"distance": distance, "keep": keep}, _SHOWN), samples=4)
+    return render_scene(room(), camera_at(distance, _SHOWN), samples=4)
 
 
 def _plan(paper: Paper, camera: Camera, angle: float) -> Panel:
@@ -88,6 +86,6 @@ def _plan(paper: Paper, camera: Camera, angle: float) -> Panel:
     panel.line(_CORNERS, MUTED, 3)
     panel.text([_X, _FRONT - 420], f"{np.ptp(across[:, 0]) / 1000:.2f} m", LENS, anchor="mm")
     panel.mark(eye, "camera", 9)
-    panel.text(eye + [250, -60], f"{angle:.0f}°", CAMERA, size=13)
+    panel.text(eye + [480, -60], f"{angle:.0f}°", CAMERA, size=13)
     panel.grip("walk", "how far back the camera stands", eye, 8)
     return panel

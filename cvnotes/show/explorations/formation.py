@@ -292,7 +292,10 @@ def _take_hold(world: Panel, camera: Camera, corner: Array) -> None:
 def _draw_border(plane: Panel, camera: Camera) -> None:
     """Draw what of the plane z = 1 the sensor covers, which the lens does not change."""
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * camera.size - 0.5
-    plane.line(xy_from_px(camera.A, corners), CAMERA, 2)
+    border = xy_from_px(camera.A, corners)
+    plane.line(border, CAMERA, 2)
+    below = border[3] + np.array([7, -6]) * plane.pixel
+    plane.text(below, "the sensor", CAMERA, anchor="ld", size=12)
 
 
 def _written(x: Array, digits: int) -> str:

@@ -1,6 +1,6 @@
 """Explore what leaves the frame: a new camera shows a part of a straightened picture."""
 
-from functools import cache, lru_cache
+from functools import cache
 
 import numpy as np
 
@@ -17,53 +17,43 @@ _PLANE, _NEW, _CURVES = (480, 440), (384, 288), (384, 124)  # px of the page
 _X, _Y = 1.38, 1.38 * 440 / 480  # of the plane z = 1, from its middle
 _SIZE = (640, 480)
 _LAST = np.array(_SIZE) - 1.0  # the last pixel; the first is (0, 0)
-_OLD, _NEAR, _FAR, _ASIDE = 400, 260, 430, 80  # px: focal lengths, and how far (u0, v0) may go
+_OLD, _NEAR, _FAR = 400, 260, 430  # px: focal lengths
 _LOW, _HIGH = -14, 58  # %, of the curves
-_A = intrinsics(_OLD, _OLD, *_LAST / 2)
+_C = _LAST / 2  # the principal point
+_A = intrinsics(_OLD, _OLD, *_C)
 _CAMERA = Camera(_A, look_at([-600, 0, 6200], [-600, -900, 14_000]), Lens((-0.25, 0.05)), _SIZE)
 _FINE = (2 * _SIZE[0], 2 * _SIZE[1])  # of the photograph that is looked up
 
 
 def frame_model() -> Model:
     """Make the model of the chapter's street, straightened, and of a new camera's picture of it."""
-    (u0, v0), by = _LAST / 2, _ASIDE
-    settings = (
-        Setting("f", "focal length f (px)", _NEAR, _FAR, 1, 318, "of the new camera"),
-        Setting("u0", "u0 (px)", u0 - by, u0 + by, 1, u0, "principal point of the new camera"),
-        Setting("v0", "v0 (px)", v0 - by, v0 + by, 1, v0, "principal point of the new camera"),
-    )  # fmt: skip
+    settings = (Setting("f", "focal length f (px)", _NEAR, _FAR, 1, 318, "of the new camera"),)
     about = (
         "A street on the plane z = 1 as the lens saw it, undistorted, with its curved border and "
         "the frame of a new camera; beside it this camera's picture, black where the frame "
         "leaves the border, and below it how much is black and how much is lost, over f."
     )
 
-    def resized(values: Values, at: Array) -> Values:
-        corner = _LAST - [values["u0"], values["v0"]]
-        return {"f": float(corner @ corner) / max(float(corner @ at), 1.0)}
+    def resized(_: Values, at: Array) -> Values:
+        return {"f": float(_C @ _C) / max(float(_C @ at), 1.0)}
 
-    def moved(values: Values, at: Array) -> Values:
-        u, v = (_LAST / 2 - values["f"] * at).tolist()
-        return {"u0": u, "v0": v}
-
-    return Model("frame", about, settings, _draw, {"corner": resized, "middle": moved})
+    return Model("frame", about, settings, _draw, {"corner": resized})
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    f, c = values["f"], np.array([values["u0"], values["v0"]])
-    new = paper.panel(_NEW, (0, 1), (0, 1), "what the new camera shows")
+    f = values["f"]
+    new = paper.panel(_NEW, (0, 1), (0, 1), "the new picture")
     size = 2 * _NEW[0], 2 * _NEW[1]
-    A = Camera(intrinsics(f, f, *c), size=_SIZE).resized(size).A
+    A = Camera(intrinsics(f, f, *_C), size=_SIZE).resized(size).A
     new.image(undistort_image(*_photograph(), A, size=size).astype(np.uint8))
-    filled, lost = shares(*c.tolist())
-    curves = _curves(paper, f, c, filled, lost)
-    drawn = paper.join((_plane(paper, f, c), [new, curves]))
-    return Drawing(drawn, _sentence(f, c, (filled > f).mean(), (lost < f).mean()))
+    filled, lost = shares()
+    drawn = paper.join((_plane(paper, f), [new, _curves(paper, f, filled, lost)]))
+    return Drawing(drawn, _sentence(f, (filled > f).mean(), (lost < f).mean()))
 
 
-def _sentence(f: float, c: Array, black: float, lost: float) -> str:
-    every, full = ends(c)
-    wide = np.degrees(np.arctan((_LAST - c) / f) + np.arctan(c / f))[0]
+def _sentence(f: float, black: float, lost: float) -> str:
+    every, full = ends()
+    wide = 2 * np.degrees(np.arctan(_C / f))[0]
     gaps = "nothing" if f >= full else _percent(black)
     gone = "nothing" if f <= every else _percent(lost)
     return (
@@ -105,60 +95,56 @@ def _seen() -> tuple[Array, Array, Array]:
     return middles, _CAMERA.ideal(middles), np.concatenate([top, right, bottom[::-1], left[::-1]])
 
 
-def _leaves(xy: Array, c: Array) -> Array:
+def _leaves(xy: Array) -> Array:
     """Return the focal length from which on points of the plane z = 1 are outside of the frame."""
-    return np.asarray((np.where(xy > 0, _LAST - c, c) / np.abs(xy)).min(axis=1))
+    return np.asarray((_C / np.abs(xy)).min(axis=1))
 
 
-def ends(c: Array) -> tuple[float, float]:
+def ends() -> tuple[float, float]:
     """Return the focal lengths up to which all is seen, and from which on nothing is black."""
-    at = _leaves(_seen()[2], c)
+    at = _leaves(_seen()[2])
     return float(at.min()), float(at.max())
 
 
-@lru_cache(maxsize=8)
-def shares(u0: float, v0: float) -> tuple[Array, Array]:
+@cache
+def shares() -> tuple[Array, Array]:
     """Return from which f on the new picture's parts are filled, and what was seen is lost.
 
     A part is filled as soon as its ray is nearer to the middle than the border is that way.
     """
-    c = np.array([u0, v0])
     middles, seen, rim = _seen()
-    angle, around = (np.arctan2(*xy.T[::-1]) for xy in (middles - c, rim))
+    angle, around = (np.arctan2(*xy.T[::-1]) for xy in (middles - _C, rim))
     far = np.interp(angle, around, np.linalg.norm(rim, axis=1), period=2 * np.pi)
-    return np.linalg.norm(middles - c, axis=1) / far, _leaves(seen, c)
+    return np.linalg.norm(middles - _C, axis=1) / far, _leaves(seen)
 
 
-def _plane(paper: Paper, f: float, c: Array) -> Panel:
+def _plane(paper: Paper, f: float) -> Panel:
     """Draw the plane z = 1: full colours in the frame, pale what it leaves out, black its gaps."""
-    panel = paper.panel(
-        _PLANE, (-_X, _X), (-_Y, _Y), "plane z = 1: a new frame; the old one dashed"
-    )
+    panel = paper.panel(_PLANE, (-_X, _X), (-_Y, _Y), "what the lens saw: pull the frame's corner")
     full, pale = _undistorted()
-    shown, frame = pale.copy(), np.array([-c, _LAST - c]) / f
+    shown, frame = pale.copy(), np.array([-_C, _C]) / f
     (a, b), (r, d) = np.rint(panel.place(frame) * 2 / panel.scale).astype(int).clip(0).tolist()
     shown[b:d, a:r] = full[b:d, a:r]
     panel.image(shown)
     panel.line(_seen()[2], LENS, 1.4)
-    old = np.array([-_LAST, _LAST]) / 2 / _OLD
+    old = np.array([-_C, _C]) / _OLD
     for corners, ink, width, dash in ((old, IDEAL, 1.4, 6.0), (frame, ESTIMATED, 2.6, 0.0)):
         around = [
             [corners[i, 0], corners[j, 1]] for i, j in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))
         ]
         panel.line(around, "#FFFFFF", width + 2)
         panel.line(around, ink, width, dash)
-    for name, at in (("corner", frame[1]), ("middle", frame.mean(axis=0))):
-        panel.mark(at, "ideal", 9)
-        panel.grip(name, f"the {name} of the new frame", at, 3)
+    panel.mark(frame[1], "ideal", 9)
+    panel.grip("corner", "the corner of the new frame", frame[1], 3)
     return panel
 
 
-def _curves(paper: Paper, f: float, c: Array, filled: Array, lost: Array) -> Panel:
+def _curves(paper: Paper, f: float, filled: Array, lost: Array) -> Panel:
     """Draw how much of the new picture is black, and of what was seen is lost, over f."""
-    title = "black, and lost of what was seen, in %, over f (px)"
+    title = "how much is black, and how much lost (%), over f"
     panel = paper.panel(_CURVES, (_NEAR - 18, _FAR + 6), (_HIGH, _LOW), title)
     panel.ticks(y=(0, 20, 40), size=12)
-    for at, words in zip(ends(c), ("all", "no gaps"), strict=True):
+    for at, words in zip(ends(), ("nothing lost", "nothing black"), strict=True):
         if _NEAR <= at <= _FAR:
             panel.line([[at, 0], [at, _HIGH]], MUTED, 1, dash=3)
             panel.text([at, _LOW / 2], words, MUTED, anchor="mm", size=12)

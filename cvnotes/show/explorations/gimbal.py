@@ -5,7 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import rotation_from_angles
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.paper import Paper
 from cvnotes.show.space.directions import sheet, towards
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
 
@@ -30,7 +30,7 @@ def gimbal_model() -> Model:
     )
     about = (
         "Three rings, each of which turns in the one outside of it, with their axes, and a dart in "
-        "the innermost; beside it how much of a cube the three axes span."
+        "the innermost."
     )
 
     def pulled(values: Values, at: Array) -> Values:
@@ -57,7 +57,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     outer, middle, inner = turns = axes(values)
     R = rotation_from_angles(*np.radians([values["x"], values["y"], values["z"]]))
     panel = paper.panel(
-        (420, 360), (-1.63, 1.63), (-1.4, 1.4), "each ring turns in the one outside"
+        (480, 400), (-1.68, 1.68), (-1.4, 1.4), "each ring turns in the one outside"
     )
     faces, paints = [], []
     rings = (*zip("zyx", turns, (middle, inner, R[:, 1]), _RADII, _COLOURS, strict=True),)
@@ -83,7 +83,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.mark(end, "estimated", 6)
     panel.grip("orange axis", "the end of the orange axis", end, 8)
     apart = np.degrees(np.arccos(min(abs(float(outer @ inner)), 1)))
-    return Drawing(paper.join((panel, _volume(paper, values["y"]))), _sentence(values["y"], apart))
+    return Drawing(paper.join((panel,)), _sentence(values["y"], apart))
 
 
 def _ring(axis: Array, side: Array, r: float) -> Array:
@@ -105,26 +105,10 @@ def _bar(ends: Array) -> Array:
     )
 
 
-def _volume(paper: Paper, y: float) -> Panel:
-    panel = paper.panel((320, 360), (-112, 112), (1.15, -0.16), "volume that the three axes span")
-    panel.ticks(x=(-90, -45, 0, 45, 90), y=(0, 0.5, 1), size=12)
-    angles = np.arange(-90, 91, 0.5)
-    panel.line(np.column_stack([angles, np.cos(np.radians(angles))]), MUTED, 2)
-    here = np.array([y, np.cos(np.radians(y))])
-    panel.mark(here, "estimated", 8)
-    below = here - [0.24 * y, 0.08 * here[1]]  # the curve is above
-    panel.text(below, f"{abs(here[1]):.2f}", ESTIMATED, anchor="mm", size=13)
-    panel.text([0, 0.12], "middle angle (°)", MUTED, anchor="mm", size=13)
-    return panel
-
-
 def _sentence(y: float, apart: float) -> str:
     if abs(y) == 90:
         return (
             "The orange axis lies in the grey one: the angles x and z turn the dart about one "
             "line, and only two directions of turning are left."
         )
-    return (
-        f"The grey and the orange axis are {apart:.0f}° apart; the three span "
-        f"{np.cos(np.radians(y)):.2f} of a cube."
-    )
+    return f"The grey and the orange axis are {apart:.0f}° apart."

@@ -59,7 +59,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     lens = Lens((values["k1"], values["k2"], values["k3"]))
     reach = 1.4 * _EXTENT
     x = reach * _SIZE[0] / _SIZE[1]
-    title = "plane z = 1, and the frame of our picture"
+    title = "a room and a grid through the lens"
     grid = paper.panel(_SIZE, (-x, x), (-reach, reach), title)
     grid.image(bent_room(lens, (x, reach), _SIZE, paper.sharpness))
     draw_fold(grid, lens)
@@ -68,6 +68,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
     for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
         grid.line(corners, colour, width)
+    grid.text(corners[3] + [7 * grid.pixel, -6 * grid.pixel], "picture", CAMERA, anchor="ld")
     _draw_curve(curve, lens)
     return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
 

@@ -66,7 +66,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     )
     curve.ticks(y=(0.5, 0.55, 0.6))
     for number in (0.6, 0.7, 0.8, 0.9):
-        curve.text([number, 0.4506], f"{number:g}", anchor="md", size=9)
+        curve.text([number, 0.4506], f"{number:g}", anchor="md", size=11)
     fine = np.linspace(0.4, 0.96, 57)
     curve.line(np.column_stack([fine, seen(fine)]), LENS, 2.2)
     curve.line([[0, level], [1, level]], IDEAL, 1)
@@ -78,10 +78,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     )  # fmt: skip
     for power in (2, 1, 0, -1, -2, -3, -4):
         errors.line([[-1, power], [_ROUNDS + 1, power]], "#DDDDDD", 0.5)
-        errors.text([-0.5, power], f"{10.0**power:g}", size=9)
+        errors.text([-0.5, power], f"{10.0**power:g}", size=11)
     for n in range(0, _ROUNDS + 1, 5):
-        errors.text([n, np.log10(_LEAST) + 0.25], f"{n}", anchor="mm", size=9)
-    errors.text([_ROUNDS - 2.5, np.log10(_LEAST) + 0.65], "rounds", MUTED, anchor="mm", size=11)
+        errors.text([n, np.log10(_LEAST) + 0.25], f"{n}", anchor="mm", size=11)
+    errors.text([_ROUNDS - 2.5, np.log10(_LEAST) + 0.75], "rounds", MUTED, anchor="mm", size=12)
     curve.line(np.array([[0, 0], [level, float(seen(level))]]), MUTED, 1, dash=3)
     curve.text([0.575, 0.464], "← to the origin", MUTED, size=11)
     counts = []

@@ -29,7 +29,6 @@ def rim_model() -> Model:
     settings = (
         Setting("ring", "r", 0.1, 1.05, 0.01, 0.7, "the ideal radius of the disc"),
         Setting("k1", "k1", -1.5, 0, 0.01, -1.33, "radial"),
-        Setting("k2", "k2", 0, 1, 0.01, 0, "radial, of the fourth power of r"),
     )
     about = (
         "A room through a lens, and on it a disc of cells. Up to the lens's rim it is blue; what "
@@ -41,7 +40,7 @@ def rim_model() -> Model:
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    lens, r = Lens((values["k1"], values["k2"])), values["ring"]
+    lens, r = Lens((values["k1"],)), values["ring"]
     seen = float(seen_radius(lens, np.array(r)))
     other = _other(lens, r, seen)
     return Drawing(

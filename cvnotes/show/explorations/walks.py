@@ -17,9 +17,9 @@ _WORLD, _OWN, _MM = (540, 200, -600), (640, 620, -180), 2.7
 def walks_model() -> Model:
     """Make the model of a camera that is moved and turned before a board."""
     settings = (
-        Setting("X", "camera's X (mm)", -400, 400, 10, 340, "where the camera stands"),
-        Setting("Z", "camera's Z (mm)", -500, -200, 10, -420, "negative: before the board"),
-        Setting("turn", "turn (°)", -60, 60, 0.1, -29.7, "of the camera on the spot, to the right"),
+        Setting("X", "camera's X (mm)", -400, 400, 10, 300, "where the camera stands"),
+        Setting("Z", "camera's Z (mm)", -500, -200, 10, -400, "negative: before the board"),
+        Setting("turn", "turn (°)", -60, 60, 0.1, -20, "of the camera on the spot, to the right"),
     )
     about = (
         "A camera before a board, from above, twice: in the board's frame, with the walk from its "
@@ -49,6 +49,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     R, C, T = frames(values)
     at_0 = np.zeros(2)
     world = _frame(paper, _WORLD, "board's frame: from origin to camera, C", (_BOARD, at_0), C, R)
+    beside, anchor = (-45, "rm") if C[0] > 0 else (245, "lm")
+    world.text([beside, 0], "board", "#333333", anchor=anchor, size=13)
     _walk(world, C, WORLD, "XZ")
     sight = C + R.T @ [0, _AHEAD]
     world.mark(sight, "ideal", 6)
@@ -59,7 +61,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _walk(own, T, CAMERA, "xz")
     return Drawing(
         paper.join((world, own)),
-        f"C = ({C[0]:.0f}, {C[1]:.0f}) mm along X and Z; T = ({T[0] + 0.0:.0f}, {T[1]:.0f}) mm "
+        f"C = ({C[0]:.0f}, {C[1]:.0f}) mm along X and Z; T = ({round(T[0])}, {round(T[1])}) mm "
         f"along the camera's x and z. Both ways are {np.linalg.norm(C):.0f} mm long.",
     )
 
@@ -98,5 +100,5 @@ def _walk(panel: Panel, to: Array, colour: str, names: str) -> None:
         (names[0], to[0], corner / 2, [0, -50 if to[1] > 0 else 50]),
         (names[1], to[1], (corner + to) / 2, [aside, 0]),
     ):
-        words = f"{name} {number + 0.0:.0f}".replace("-", "−")
+        words = f"{name} {round(number)}".replace("-", "−")
         panel.text(at + by, words, colour, anchor="mm", size=14)

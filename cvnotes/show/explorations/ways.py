@@ -27,7 +27,7 @@ def ways_model() -> Model:
     )
     about = (
         "A dart in a sphere, carried to a target about one axis, orange, and by its three angles, "
-        "blue: what their tips draw on the sphere; beside it both speeds."
+        "blue: what their tips draw on the sphere."
     )
 
     def pulled(values: Values, at: Array) -> Values:
@@ -40,8 +40,7 @@ def ways_model() -> Model:
         up = (np.degrees(np.arctan2(z, x)) + 120) % 360 - 120
         return {"up": float(up), "aside": float(np.degrees(np.arcsin(np.clip(y, -1, 1))))}
 
-    drags = {"target": pulled, "time": lambda _, at: {"t": float(at[0])}}
-    return Model("ways", about, settings, _draw, drags)
+    return Model("ways", about, settings, _draw, {"target": pulled})
 
 
 def ways(values: Values) -> tuple[Array, Array]:
@@ -73,7 +72,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     omega, angles = ways(values)
     speed = np.degrees(speeds(angles))
     whole, t = float(np.degrees(np.linalg.norm(omega))), values["t"]
-    panel = paper.panel((400, 370), (-1.3, 1.3), (-1.2025, 1.2025), "two ways to one attitude")
+    panel = paper.panel((520, 430), (-1.48, 1.48), (-1.224, 1.224), "two ways to one attitude")
     by_axis = rotation_from_vector(np.outer(_T, omega))
     up, turn = np.outer(angles[1:], _T)
     by_angles = np.stack([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), -np.sin(up)], 1)
@@ -93,9 +92,15 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.mark(R[:, 0] @ _SHEET.T, meaning, 5)
     panel.mark(tips[-1], "ideal", 9)
     panel.grip("target", "the tip of the target", tips[-1], 4)
+    for meaning, words, colour, row in (
+        ("estimated", "about one axis", ESTIMATED, 0.95),
+        ("lens", "by three angles", LENS, 1.1),
+    ):
+        panel.mark([-1.38, row], meaning, 5)
+        panel.text([-1.3, row], words, colour, anchor="lm", size=14)
     x, y, z = np.degrees(angles).round() + 0.0
     return Drawing(
-        paper.join((panel, _speed(paper, speed, whole, t))),
+        paper.join((panel,)),
         f"About one axis the way is {whole:.0f}°. By three angles, {x:.0f}° about x, {y:.0f}° "
         f"about y and {z:.0f}° about z, it is {np.trapezoid(speed, _T):.0f}°.",
     )
@@ -140,21 +145,3 @@ def _draw_darts(panel: Panel, looks: tuple[tuple[Array, str], ...]) -> None:
     paints = [mixed(colour, IDEAL, part) for _, colour in looks for part in (0, 0.12, 0.3)]
     order = np.argsort(faces.mean(axis=1) @ _TOWARDS)
     panel.polygons(faces[order] @ _SHEET.T, [paints[i] for i in order])
-
-
-def _speed(paper: Paper, speed: Array, whole: float, t: float) -> Panel:
-    panel = paper.panel((340, 370), (-0.14, 1.06), (480, -55), "how fast each turns (° a second)")
-    panel.ticks(x=(0, 1), y=(0, 100, 200, 300, 400), size=12)
-    panel.text([0.5, -34], "time (s)", MUTED, anchor="mm", size=12)
-    panel.mark([0, 456], "estimated", 5)
-    panel.text([0.03, 456], "about one axis", ESTIMATED, size=13)
-    panel.mark([0.52, 456], "lens", 5)
-    panel.text([0.55, 456], "by three angles", LENS, size=13)
-    panel.line([[0, whole], [1, whole]], ESTIMATED, 2)
-    panel.line(np.column_stack([_T, speed]), LENS, 2)
-    now = [t, float(np.interp(t, _T, speed))]
-    panel.line([[t, 0], [t, 400]], MUTED, 0.7, dash=4)
-    panel.mark([t, whole], "estimated", 5)
-    panel.mark(now, "lens", 6)
-    panel.grip("time", "the moment that is shown", now, 5)
-    return panel
