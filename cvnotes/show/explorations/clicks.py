@@ -63,7 +63,7 @@ def clicks_model() -> Model:
             if name != "c":
                 aside = (110, 0) if name == "Y" else (0, -110)
                 far.text(true + aside, name, ESTIMATED, anchor="mm", size=14)
-        far.line([[670, 330], _C + [75, 20]], ESTIMATED, 0.8)
+        far.line(_C + np.array([[345, 92], [75, 20]]), ESTIMATED, 0.8)
         far.text([690, 340], "principal point c", ESTIMATED, size=13)
         close = _draw_close(paper, c)
         return Drawing(paper.join((far, close)), _sentence(values["noise"], c, f))
@@ -95,7 +95,10 @@ def _draw_close(paper: Paper, c: Array) -> Panel:
     """Draw the principal points at their size, the circle of their scatter, and the middle."""
     (u, v), high = _C, _REACH * _CLOSE[1] / _CLOSE[0]
     panel = paper.panel(
-        _CLOSE, (u - _REACH, u + _REACH), (v - high, v + high), "the principal point c alone, larger"
+        _CLOSE,
+        (u - _REACH, u + _REACH),
+        (v - high, v + high),
+        "the principal point c alone, larger",
     )
     _dots(panel, c)
     radius, middle = float(np.std(c - _C)), np.array([319.5, 239.5])

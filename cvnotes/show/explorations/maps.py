@@ -137,9 +137,7 @@ def _angle(a: Array, b: Array) -> float:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     H = matrix(values)
-    panel = paper.panel(
-        (380, 380), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its crosses"
-    )
+    panel = paper.panel((380, 380), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its crosses")
     panel.line(_SQUARE, MUTED, 1.2, dash=5)
     for way in np.eye(3)[:2]:  # sides that are no longer parallel run on to where they meet
         far = H @ way

@@ -55,7 +55,7 @@ def rod_model() -> Model:
         foot, height = np.array([values["u"], values["v"]]), values["height"]
         left, width = (0, 480) if paper.narrow else (_BORDER[0], 810)
         x, y = (left - 0.5, 639.5), (_BORDER[1] - 0.5, 479.5)
-        panel = paper.panel((width, 300), x, y, "a rod, and the horizon")
+        panel = paper.panel((width, 300), x, y, "pull the rod by its foot")
         panel.image(photo[:, left - _BORDER[0] :])
         panel.text([_BORDER[0] + 14, _BORDER[1] + 16], "beyond the photograph")
         panel.line([[-460, _HORIZON], [660, _HORIZON]], IDEAL, 1)
