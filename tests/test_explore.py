@@ -1017,8 +1017,7 @@ def test_the_yellow_cell_is_where_the_camera_sees_it_and_as_far_as_the_map_says(
     assert (np.abs(seen.min(axis=0) - corners.min(axis=0)) < [11, 4]).all()
     assert (np.abs(seen.max(axis=0) - corners.max(axis=0)) < [11, 4]).all()
     said = numbers(drawing.sentence)
-    assert np.allclose(said[:3], [x * (1 - part), z * (1 - part), 1 - part], atol=1e-3)
-    assert said[3] == round(away)
+    assert said[:2] == [round(away), 4]
     assert said[-1] == pytest.approx(corners[0, 1] - corners[2, 1], rel=0.06)
 
 
@@ -1031,9 +1030,8 @@ def test_a_cell_that_is_pulled_to_the_rim_or_into_the_sky_is_a_direction_of_the_
             pulled = model.dragged(grip, tuple(at))
             assert pulled == {"part": 1, "turn": turn}
         drawing = model.drawing(**pulled)
-        said = numbers(drawing.sentence)
-        assert said[2] == 0
-        assert np.allclose(said[-2:], [u, v], atol=0.05)
+        assert "is at infinity" in drawing.sentence
+        assert np.allclose(numbers(drawing.sentence), [u, v], atol=0.05)
         on_map, in_picture = (grip_of(drawing, name) for name in ("map", "picture"))
         assert np.allclose(on_map.at, way[[0, 2]], atol=1e-5)
         assert np.allclose(in_picture.at, [u, v], atol=1e-3)

@@ -60,8 +60,11 @@ def clicks_model() -> Model:
         for name, cloud, true in zip("XYZc", [*v.transpose(1, 0, 2), c], [*_TRUE, _C], strict=True):
             _dots(far, true + _TIMES * (cloud - true))
             far.mark(true, "ideal", 6)
-            aside = {"X": (0, -110), "Y": (110, 0), "Z": (0, -110), "c": (0, 290)}[name]
-            far.text(true + aside, name, ESTIMATED, anchor="mm", size=14)
+            if name != "c":
+                aside = (110, 0) if name == "Y" else (0, -110)
+                far.text(true + aside, name, ESTIMATED, anchor="mm", size=14)
+        far.line(_C + np.array([[345, 92], [75, 20]]), ESTIMATED, 0.8)
+        far.text([690, 340], "principal point c", ESTIMATED, size=13)
         close = _draw_close(paper, c)
         return Drawing(paper.join((far, close)), _sentence(values["noise"], c, f))
 
@@ -92,13 +95,18 @@ def _draw_close(paper: Paper, c: Array) -> Panel:
     """Draw the principal points at their size, the circle of their scatter, and the middle."""
     (u, v), high = _C, _REACH * _CLOSE[1] / _CLOSE[0]
     panel = paper.panel(
-        _CLOSE, (u - _REACH, u + _REACH), (v - high, v + high), "the principal point alone, larger"
+        _CLOSE,
+        (u - _REACH, u + _REACH),
+        (v - high, v + high),
+        "the principal point c alone, larger",
     )
     _dots(panel, c)
     radius, middle = float(np.std(c - _C)), np.array([319.5, 239.5])
     panel.line(_C + radius * circle(90), ESTIMATED, 1.6)
     panel.mark(_C, "ideal", 9)
     panel.polygons([middle + r * circle(5) @ _TURNED for r in (1.1, 0.8)], ["#000000", "#FFFFFF"])
+    panel.text([u + 3, v - 21], "the true c", "#000000", anchor="mm", size=13)
+    panel.line(np.array([[u + 2.4, v - 19.3], [u + 0.2, v - 1.6]]), "#000000", 0.8)
     panel.text([u - 3, v + 21], "middle of the picture", "#000000", anchor="mm", size=13)
     panel.line(np.array([[u - 4, v + 19.3], [middle[0], middle[1] + 1.1]]), "#000000", 0.8)
     panel.line([[u + 12, v + 25.5], [u + 22, v + 25.5]], MUTED, 2)

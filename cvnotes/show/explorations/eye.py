@@ -85,7 +85,7 @@ def _draw_side(panel: Panel, height: float) -> None:
         panel.mark([[z, height] for z in poles], "world", 4.5)
     panel.line(np.array([[0, 0], [0, height]]), MUTED, 2)
     panel.mark([0, height], "camera", 9, looks=(1, 0))
-    panel.text([-4, height], "eye", CAMERA, anchor="rm")
+    panel.text([-5.5, height], "eye", CAMERA, anchor="rm")
     panel.grip("height", "the eye, to be pulled up and down", [0, height], 4)
 
 

@@ -20,7 +20,9 @@ _HORIZON = 250.0  # px: below it is ground
 def forged_model() -> Model:
     """Make the model of the railway with a low sun, the shadow of whose second pole is pulled."""
     settings = (
-        Setting("aside", "to the right (m)", -_MOST, _MOST, 0.05, 1, "of where the sun throws it"),
+        Setting(
+            "aside", "to the right (m)", -_MOST, _MOST, 0.05, 2.5, "of where the sun throws it"
+        ),
         Setting("ahead", "ahead (m)", -2 * _MOST, 3 * _MOST, 0.05, 0, "of where the sun throws it"),
     )
     about = (

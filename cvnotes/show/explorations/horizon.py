@@ -155,10 +155,8 @@ def _name(panel: Panel, places: Array) -> None:
 
 
 def _sentence(place: Array, high: float) -> str:
-    x, z, w = (float(f"{number:.3f}") + 0.0 for number in place)
-    said = f"[X Z w] = [{x:g} {z:g} {w:g}]"
-    if w == 0:
+    if place[2] == 0:
         u, v = seen(place)
-        return f"{said} is at infinity. In the picture it is ({u:.1f}, {v:.1f}), on the horizon."
+        return f"The cell is at infinity. In the picture it is ({u:.1f}, {v:.1f}), on the horizon."
     away = np.hypot(*place[:2]) / place[2]
-    return f"{said} is {away:.0f} m away. The cell of 4 m is {high:.2g} px high in the picture."
+    return f"The cell is {away:.0f} m away. Its 4 m are {high:.2g} px high in the picture."

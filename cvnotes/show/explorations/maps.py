@@ -137,9 +137,7 @@ def _angle(a: Array, b: Array) -> float:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     H = matrix(values)
-    panel = paper.panel(
-        (380, 380), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its three crosses"
-    )
+    panel = paper.panel((380, 380), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its crosses")
     panel.line(_SQUARE, MUTED, 1.2, dash=5)
     for way in np.eye(3)[:2]:  # sides that are no longer parallel run on to where they meet
         far = H @ way
@@ -154,12 +152,15 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.line(apply(H, circle(121)), IDEAL, 2.2)
     panel.line(apply(H, _SIDE[[0, 3]]), LENS, 3)
     panel.mark(apply(H, _SIDE), "lens", 5)
-    for name, what, place in (
+    middle = apply(H, [0, 0])
+    for number, (name, what, place) in enumerate((
         ("right side", "the right side, to turn and enlarge", _RIGHT),
         ("top", "the top, to shear and stretch", _TOP),
         ("corner", "the corner, to break the parallels", _CORNER),
-    ):
+    ), 1):  # fmt: skip
         at = apply(H, place)
+        away = (at - middle) / np.hypot(*(at - middle))
+        panel.text(at + 0.33 * away, f"{number}", ESTIMATED, anchor="mm", size=15)
         panel.mark(at, "estimated", 8)
         panel.grip(name, what, at, 4)
     return Drawing(paper.join((panel, _table(paper, H, values))), _sentence(H, values))

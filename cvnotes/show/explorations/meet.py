@@ -86,7 +86,10 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
     panel.line(on_sheet(_SQUARE + _UP), "#9ECFBF", 1)
     panel.line(on_sheet(np.outer([0, 9], ray)), IDEAL, 2)
     for two, row, (n, name, colour, ink, *_) in zip(ends, lines, _LINES, strict=True):
-        _normal(panel, row / np.linalg.norm(row), ray, name, ink)
+        normal = row / np.linalg.norm(row)
+        _arrow(panel, _ORIGIN, 0.85 * normal, name, ink)
+        if n == "1" and ray.any():  # one right angle, which stands for both
+            panel.line(on_sheet(0.13 * np.array([ray, ray + normal, normal])), ink, 1)
         panel.line(on_sheet(two + np.outer([-9, 9], two[1] - two[0])), ink, 0.7)
         panel.line(on_sheet(two), ink, 2.5)
         for place, (end, _, side) in zip(two, _ENDS, strict=True):
@@ -113,13 +116,6 @@ def _name(
     panel.text(
         on_sheet(place) + panel.pixel * np.array(by) * [1, -1], words, ink, anchor=anchor, size=14
     )
-
-
-def _normal(panel: Panel, n: Array, ray: Array, name: str, ink: str) -> None:
-    """Draw the direction of a triple as an arrow, with a right angle to the ray of its sheet."""
-    _arrow(panel, _ORIGIN, 0.85 * n, name, ink)
-    if ray.any():
-        panel.line(on_sheet(0.13 * np.array([ray, ray + n, n])), ink, 1)
 
 
 def _arrow(panel: Panel, start: Array, way: Array, name: str, ink: str) -> None:

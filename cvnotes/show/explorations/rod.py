@@ -55,10 +55,11 @@ def rod_model() -> Model:
         foot, height = np.array([values["u"], values["v"]]), values["height"]
         left, width = (0, 480) if paper.narrow else (_BORDER[0], 810)
         x, y = (left - 0.5, 639.5), (_BORDER[1] - 0.5, 479.5)
-        panel = paper.panel((width, 300), x, y, "a rod, and the horizon")
+        panel = paper.panel((width, 300), x, y, "pull the rod by its foot")
         panel.image(photo[:, left - _BORDER[0] :])
         panel.text([_BORDER[0] + 14, _BORDER[1] + 16], "beyond the photograph")
         panel.line([[-460, _HORIZON], [660, _HORIZON]], IDEAL, 1)
+        panel.text([633, _HORIZON - 11], "horizon", IDEAL, anchor="rm")
         e = _draw_way(panel, foot, depths)
         _draw_rod(panel, foot, height, depths)
         panel.mark(at_height(foot, _BOX), "estimated", 5)
@@ -156,7 +157,8 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
             panel.line(part, colour, 1 if behind else width)
     apart = np.linalg.norm(pixels[8] - pixels[0]) / panel.pixel  # where letters have no room,
     for metre in range(1 if apart > 20 else int(height), int(height) + 1):  # only the last
-        panel.text(at_height(foot, metre) + [width / 2 + 4, 0], f"{metre}", ESTIMATED, size=10)
+        aside = 18 if (height - metre) * apart < 12 else 4  # beside the ring of the grip
+        panel.text(at_height(foot, metre) + [width / 2 + aside, 0], f"{metre}", ESTIMATED, size=10)
 
 
 def _hidden(pixels: Array, places: Array, depths: Array) -> Array:

@@ -98,7 +98,7 @@ def _draw_side(panel: Panel, z: float, f: float) -> None:
     for end, row, name in ((film, ground + 20, "f"), (ahead, ground + 48, "z")):
         panel.segments([[[0, ground], [0, row + 6]], [[end, ground], [end, row + 6]]], MUTED, 0.9)
         panel.arrows([[end / 2, row]] * 2, [[-end / 2, 0], [end / 2, 0]], IDEAL, 1.2)
-        panel.text([end / 2, row], name, IDEAL, anchor="mm", size=15, rim=_GRASS)
+        panel.text([end / 2, row - 10], name, IDEAL, anchor="mm", size=15, rim=_GRASS)
     for at, name, ink, anchor in (
         ((ahead + 9, ground / 2 + 12), "y", WORLD, "lm"), ((film + 8, v / 2 + 2), "v", LENS, "lm"),
         ((4, -70), "pinhole C", CAMERA, "lm"), ((film + 4, -132), "image plane", CAMERA, "mm"),

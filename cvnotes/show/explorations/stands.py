@@ -109,7 +109,7 @@ def _plan(paper: Paper, alpha: float) -> Panel:
         panel.mark([0, across], "camera", 9, (1, 0))
         beside = [found.away + 30, across + 25 * tilt]
         panel.text(beside, f"{found.away:.0f} mm", colour, size=13)
-    panel.text([z - 20, middle], "pictures", CAMERA, anchor="rm", size=12)
+    panel.text([z + 8, -196], "picture", CAMERA, anchor="rm", size=12)
     panel.mark([z, middle], "estimated", 8)
     panel.grip("plane", "the planes of both pictures, nearer or farther", [z, middle], 2)
     return panel
@@ -126,7 +126,7 @@ def _graph(paper: Paper, alpha: float) -> Panel:
         panel.line(np.column_stack([tried, misses]), colour, 2.4)
         panel.line([[alpha - 6, misses[-1]], [alpha + 6, misses[-1]]], colour, 5)
         above = max(misses[-1] + 0.2, 1.7 if tilt else 0.6)  # both can be read at 800
-        panel.text([alpha + 24, above], how, colour, size=13)
+        panel.text([alpha + 36, above], how, colour, size=13)
     panel.mark([alpha, misses[-1]], "estimated", 8)
     panel.grip("alpha", "the focal length, shorter or longer", [alpha, misses[-1]], 4)
     return panel

@@ -239,7 +239,7 @@ def _letters(panel: Panel, names: list[tuple[str, Array, str]], lines: list[Arra
     for name, at, ink in inside:
         away, wide = np.arctan2(*(at - middle)[::-1]) + np.radians(_AROUND), 36 * len(name)
         around = 1.4 * np.column_stack([np.cos(away), np.sin(away)])
-        places = (at + around.clip(-1, 1) * [60 + wide, 90]).clip(ends[:, 0] + 60, ends[:, 1] - 60)
+        places = (at + around.clip(-1, 1) * [60 + wide, 116]).clip(ends[:, 0] + 60, ends[:, 1] - 60)
         a, way = np.array(lines)[:, 0], np.diff(lines, axis=1)[:, 0]
         by = places[:, None] - a
         part = ((by * way).sum(-1) / np.maximum((way * way).sum(-1), 1)).clip(0, 1)
