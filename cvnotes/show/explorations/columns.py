@@ -72,7 +72,8 @@ class Believed:
 
         The camera and the poses are the best ones for this board.
         """
-        return (self._missed - self._along_x @ columns).reshape(self._shape)
+        left = self._missed - self._along_x @ columns
+        return np.asarray(left.reshape(self._shape))
 
 
 def _basis(columns: Array) -> Array:
@@ -112,7 +113,7 @@ def _draw(left: Believed, right: Believed, before: float, paper: Paper, values: 
     after = rms(left.misses(amount * right.columns))
     panels = _sheet(paper, left, right, amount), _bar(paper, after, before)
     if not amount:
-        said = f"With the columns as they were printed, the left camera misses by {before:.3f} px."
+        said = f"With the columns as they were drawn, the left camera misses by {before:.3f} px."
     else:
         gone = 1 - (after / before) ** 2
         said = (
@@ -148,18 +149,18 @@ def _sheet(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     held = [pulled[_HELD], _AT * square]
     panel.mark(held, "estimated", 6)
     panel.grip("nine", "the right camera's nine shifts, to be pulled aside", held, 3)
-    right_of = f"by the right camera × {amount:g}" if amount else "as printed"
+    right_of = f"by the right camera × {amount:g}" if amount else "as drawn"
     panel.text([0, -1.4 * square], f"orange, {right_of}", ESTIMATED, size=13)
     panel.text([0, reach[1] + 1.4 * square], "blue, by the left camera", LENS, size=13)
     return panel
 
 
 def _bar(paper: Paper, now: float, before: float) -> Panel:
-    """Draw the RMS as a bar, and beside it what it was on the sheet as it was printed."""
+    """Draw the RMS as a bar, and beside it what it was on the sheet as it was drawn."""
     panel = paper.panel(_BAR, (0, 1), (1.16 * _HIGHEST, -0.04 * _HIGHEST), "RMS, left camera (px)")
     panel.line([[0, 0], [1, 0]], MUTED, 0.8)
     panel.polygons([[[0.12, 0], [0.4, 0], [0.4, now], [0.12, now]]], ESTIMATED)
     panel.line([[0.06, before], [0.46, before]], MUTED, 1, dash=3)
-    panel.text([0.49, before], "as printed", MUTED, size=13)
+    panel.text([0.49, before], "as drawn", MUTED, size=13)
     panel.text([0.26, 0.03], f"{now:.3f}", "white", anchor="mm", size=15, rim=ESTIMATED)
     return panel
