@@ -343,7 +343,11 @@ def test_a_right_answer_in_odd_clothes_passes(function):
 
 
 def test_whole_numbers_are_right_where_the_answer_is_whole():
-    report = check("knows_its_origin", lambda columns, rows: (columns + rows) % 2)
+    def my_same_points(a, b):
+        apart = np.linalg.norm(np.cross(a, b), axis=1)
+        return (apart <= 1e-6).astype(int)
+
+    report = check("same_points", my_same_points)
     assert report.passed
 
 

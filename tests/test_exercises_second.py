@@ -239,10 +239,6 @@ def my_saddle_point(patch):
     return [(b * e - 2 * c * d) / det + middle[1], (b * d - 2 * a * e) / det + middle[0]]
 
 
-def my_knows_its_origin(columns, rows):
-    return [bool(c % 2) != bool(r % 2) for c, r in zip(columns, rows, strict=True)]
-
-
 my_first_corner = (221.4, 115.6)
 
 

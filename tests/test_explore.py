@@ -9,7 +9,6 @@ import re
 import subprocess
 import sys
 import time
-from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -762,32 +761,20 @@ def test_the_misses_of_the_real_board_are_those_of_whole_calibrations(believed):
     sides = zip(believed, (real.left, real.right), believed[::-1], strict=True)
     for one, m, other in sides:
         moved = W + np.outer(np.tile(other.columns, 6), [1, 0, 0])
-        for points, board, said in (
-            (W, "flat", one.misses(0, none)),
-            (W, "free", one.misses(3, none)),
-            (moved, "flat", one.misses(0, other.columns)),
-        ):
-            is_flat = pytest.warns(CalibrationWarning, match="neighbouring corners miss")
-            with is_flat if board == "flat" else nullcontext():  # (else a warning is an error)
-                found = calibrate(points, m, real.size, lens="k1 k2 p1 p2", board=board)
+        for points, said in ((W, one.misses(none)), (moved, one.misses(other.columns))):
+            with pytest.warns(CalibrationWarning, match="neighbouring corners miss"):
+                found = calibrate(points, m, real.size, lens="k1 k2 p1 p2")
             assert abs(rms(said) / found.rms - 1) < 0.01
-
-
-def test_heights_explain_a_fifth_and_shifts_two_thirds_of_the_squared_misses(believed):
-    none = np.zeros(9)
-    for one, gone in zip(believed, ((0.18, 0.60, 0.76), (0.22, 0.66, 0.82)), strict=True):
-        costs = [rms(one.misses(free, none)) ** 2 for free in range(4)]
-        assert np.allclose(1 - np.array(costs[1:]) / costs[0], gone, atol=0.008)
 
 
 def test_both_cameras_find_the_same_nine_columns_and_each_mends_the_other(believed):
     left, right = believed
     assert np.corrcoef(left.columns, right.columns)[0, 1] > 0.98
     assert np.allclose(left.columns, right.columns, atol=0.03)
-    assert rms(left.misses(0, right.columns)) < 0.80 * rms(left.misses(0, 0 * right.columns))
-    assert rms(right.misses(0, left.columns)) < 0.75 * rms(right.misses(0, 0 * left.columns))
-    mirrored = rms(left.misses(0, right.columns[::-1]))
-    assert mirrored > rms(left.misses(0, 0 * right.columns))
+    assert rms(left.misses(right.columns)) < 0.80 * rms(left.misses(0 * right.columns))
+    assert rms(right.misses(left.columns)) < 0.75 * rms(right.misses(0 * left.columns))
+    mirrored = rms(left.misses(right.columns[::-1]))
+    assert mirrored > rms(left.misses(0 * right.columns))
 
 
 def test_the_pulled_columns_stand_where_the_other_camera_finds_them_and_the_bar_says_how_good():
@@ -797,12 +784,12 @@ def test_the_pulled_columns_stand_where_the_other_camera_finds_them_and_the_bar_
     said = calibrate(W, real.right, real.size, lens="k1 k2 p1 p2", board="free").board_points[0] - W
     shifts = said[:, 0].reshape(6, 9).mean(axis=0)
     drawing = MODELS["columns"].drawing(amount=1)
-    between = drawing.picture[TITLE + 73, MARGIN : MARGIN + 490].astype(int)  # rows of corners
+    between = drawing.picture[TITLE + 97, MARGIN : MARGIN + 490].astype(int)  # rows of corners
     orange = np.abs(between - colour(ESTIMATED)).max(axis=-1) < 40
     runs = np.split(np.arange(490), np.flatnonzero(np.diff(orange)) + 1)
     at = np.array([run.mean() for run in runs if orange[run[0]]])
-    mm = (at + 0.5) * (8 + 1.45 + 0.75) * 30 / 490 - 1.45 * 30
-    drawn = (mm - 30 * np.arange(9)) / 150
+    mm = (at + 0.5) * (8 + 1.25 + 0.75) * 30 / 490 - 37.5
+    drawn = (mm - 30 * np.arange(9)) / 100
     apart = drawn - shifts
     apart -= np.polyval(np.polyfit(range(9), apart, 1), range(9))
     assert np.abs(apart).max() < 0.018
@@ -812,7 +799,7 @@ def test_the_pulled_columns_stand_where_the_other_camera_finds_them_and_the_bar_
     moved = W + np.outer(np.tile(shifts, 6), [1, 0, 0])
     with pytest.warns(CalibrationWarning):
         flat = calibrate(moved, real.left, real.size, lens="k1 k2 p1 p2")
-    assert filled / 340 * 1.2 * 0.18 == pytest.approx(flat.rms, abs=0.006)
+    assert filled / 420 * 1.2 * 0.18 == pytest.approx(flat.rms, abs=0.006)
 
 
 def test_a_window_on_a_ramp_votes_along_it_and_one_on_a_corner_for_the_corner():
@@ -2938,7 +2925,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "stands": {"alpha": 800},
     "straighten": {"k1": -0.1},
     "folds": {"k1": -0.15},
-    "columns": {"amount": 0.8},
+    "columns": {"amount": 1},
     "ransac": {"draw": 20},
     "decentred": {"p1": 0.02},
     "rings": {"place": 50},

@@ -21,7 +21,7 @@ CHAPTERS = {
     "ch03": "intrinsics_from_sensor project camera_centre cam1_from_cam2 new_intrinsics "
     "nearest_rotation field_of_view rq",
     "ch04": "distort undistort fold_radius form_image corner_shift inverse_radius",
-    "ch05": "board_points harris_measure saddle_point knows_its_origin first_corner",
+    "ch05": "board_points harris_measure saddle_point first_corner",
     "ch06": "design_matrix normaliser dlt four_points geometric_error ransac",
     "ch07": "v_ij b_from_views a_from_b extrinsics radial_fit bad_views focal_from_turn "
     "camera_covariance levenberg_marquardt",
@@ -30,9 +30,9 @@ CHAPTERS = {
 }
 # Asked for in the notebook of further exercises; all others in the notebook of their chapter.
 FURTHER = (
-    "line_through field_of_view nearest_rotation form_image knows_its_origin geometric_error "
-    "radial_fit b_from_views focal_from_turn camera_covariance bilinear rectifying_rotation "
-    "how_far which_to_trust pipeline"
+    "line_through field_of_view nearest_rotation form_image geometric_error radial_fit "
+    "b_from_views focal_from_turn camera_covariance bilinear rectifying_rotation how_far "
+    "which_to_trust pipeline"
 )
 
 

@@ -1,7 +1,7 @@
 """Explore the board we believed: a real sheet whose corners are not quite where they were drawn."""
 
 import warnings
-from functools import cached_property, partial
+from functools import partial
 
 import numpy as np
 
@@ -16,10 +16,8 @@ from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
 _LENS = "k1 k2 p1 p2"
-_MAGNIFIED = 150
-_SHEET, _BAR = (490, 340), (215, 340)
-_FREE = ("as printed", "heights", "shifts", "both")
-_AXES: tuple[tuple[int, ...], ...] = ((), (2,), (0, 1), (0, 1, 2))  # x and y lie in the sheet
+_MAGNIFIED = 100
+_SHEET, _BAR = (490, 420), (215, 420)
 _PALE = "#EDEDED"
 _HIGHEST = 0.18  # px, of the bar
 _ROUNDING = 1e-9  # smaller singular values are those of moving or scaling the whole board
@@ -56,34 +54,26 @@ class Believed:
         taken = np.hstack([of_shared.reshape(rows, -1), P.reshape(rows, -1)])
         self._shape = m.shape
         Q = _basis(taken)
-        self._board = _without(Q, D.reshape(rows, -1)).reshape(rows, n, 3)
+        board = _without(Q, D.reshape(rows, -1)).reshape(rows, n, 3)
         self._missed = _without(Q, -r.ravel())
-        within = self._board[..., _AXES[2]].reshape(rows, -1)
+        within = board[..., :2].reshape(rows, -1)
         shifts = np.linalg.lstsq(within, self._missed, rcond=_ROUNDING)[0].reshape(n, 2)
         columns, lines = real.board.corners
         self.shifts = shifts[:, 0].reshape(lines, columns)  # of each corner along x, mm
+        self._along_x = board[..., 0].reshape(rows, lines, columns).sum(axis=1)
 
     @property
     def columns(self) -> Array:
         """How far each column of corners lies beside its place, along x, in mm."""
         return np.asarray(self.shifts.mean(axis=0))
 
-    def misses(self, free: int, columns: Array) -> Array:
-        """Return observed minus predicted pixels (views, n, 2), camera and poses at their best.
+    def misses(self, columns: Array) -> Array:
+        """Return observed minus predicted pixels (views, n, 2) on a board with moved columns.
 
-        The board's columns are moved by so much, and in addition its corners are as `free` as
-        `_FREE` says.
+        The camera and the poses are the best ones for this board.
         """
-        along_x = self._board[..., 0].reshape(len(self._board), *self.shifts.shape).sum(axis=1)
-        left = self._missed - along_x @ columns
-        return _without(self._of_free[free], left).reshape(self._shape)
-
-    @cached_property
-    def _of_free(self) -> list[Array]:
-        """A basis of what corners that are as free as that can explain."""
-        rows = len(self._board)
-        none = np.zeros((rows, 0))
-        return [none, *(_basis(self._board[..., axes].reshape(rows, -1)) for axes in _AXES[1:])]
+        left = self._missed - self._along_x @ columns
+        return np.asarray(left.reshape(self._shape))
 
 
 def _basis(columns: Array) -> Array:
@@ -102,7 +92,7 @@ def columns_model() -> Model:
     real = course.real_corners()
     left, right = Believed(real.left), Believed(real.right)
     said = "how much of the right camera's nine shifts is put into the left camera's board"
-    amount = Setting("amount", "nine numbers ×", 0, 1.8, 0.05, 0, said)
+    amount = Setting("amount", "nine numbers ×", 0, 2.4, 0.05, 0, said)
     about = (
         "A printed sheet with its nine columns of corners: blue as the left camera of a real pair "
         "finds them, orange with so much of the right camera's nine shifts; and the RMS of the "
@@ -113,24 +103,23 @@ def columns_model() -> Model:
         printed = _HELD * real.board.square
         return {"amount": float((at[0] - printed) / (_MAGNIFIED * right.columns[_HELD]))}
 
-    of_left = [rms(left.misses(free, 0 * right.columns)) for free in range(len(_FREE))]
-    draw = partial(_draw, left, right, of_left)
+    before = rms(left.misses(0 * right.columns))
+    draw = partial(_draw, left, right, before)
     return Model("columns", about, (amount,), draw, {"nine": pulled})
 
 
-def _draw(
-    left: Believed, right: Believed, freed: list[float], paper: Paper, values: Values
-) -> Drawing:
-    amount, before = values["amount"], freed[0]
-    after = rms(left.misses(0, amount * right.columns))
-    panels = _sheet(paper, left, right, amount), _bar(paper, after, freed)
+def _draw(left: Believed, right: Believed, before: float, paper: Paper, values: Values) -> Drawing:
+    amount = values["amount"]
+    after = rms(left.misses(amount * right.columns))
+    panels = _sheet(paper, left, right, amount), _bar(paper, after, before)
     if not amount:
-        said = f"With the columns as they were printed, the left camera misses by {before:.3f} px."
+        said = f"With the columns as they were drawn, the left camera misses by {before:.3f} px."
     else:
+        gone = 1 - (after / before) ** 2
         said = (
             f"With the right camera's nine shifts × {amount:g}, the left camera misses its corners "
-            f"by {after:.3f} px instead of {before:.3f}: "
-            f"{max(1 - (after / before) ** 2, 0):.0%} of the squared misses are gone."
+            f"by {after:.3f} px instead of {before:.3f}"
+            + (f": {gone:.0%} of the squared misses are gone." if gone > 0 else ".")
         )
     return Drawing(paper.join(panels), said)
 
@@ -140,8 +129,8 @@ def _sheet(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     square = course.real_corners().board.square
     lines, columns = left.shifts.shape
     reach = square * np.array([columns - 1, lines - 1])
-    across = -1.45 * square, reach[0] + 0.75 * square
-    down = -1.15 * square, reach[1] + 1.05 * square
+    across = -1.25 * square, reach[0] + 0.75 * square
+    down = -1.7 * square, reach[1] + 1.7 * square
     title = f"nine columns of the sheet, shifts × {_MAGNIFIED}"
     panel = paper.panel(_SHEET, across, down, title)
     dark = [np.array([i, j]) for i in range(columns - 1) for j in range(lines - 1) if (i + j) % 2]
@@ -155,25 +144,23 @@ def _sheet(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
         panel.line(found[:, k], LENS, 3)
         panel.mark(found[:, k], "lens", 4)
         panel.line(np.stack([[pulled[k]] * 2, ends], axis=-1), ESTIMATED, 2)
-        panel.text([x[k], -0.75 * square], f"{k + 1}", MUTED, anchor="mm", size=13)
+        panel.text([pulled[k], -0.75 * square], f"{k + 1}", ESTIMATED, anchor="mm", size=14)
+        panel.text([*found[-1, k] + [0, 0.75 * square]], f"{k + 1}", LENS, anchor="mm", size=14)
     held = [pulled[_HELD], _AT * square]
     panel.mark(held, "estimated", 6)
     panel.grip("nine", "the right camera's nine shifts, to be pulled aside", held, 3)
-    panel.text([0, reach[1] + 0.75 * square], "blue: by the left camera", LENS, size=13)
-    panel.text(
-        [reach[0], reach[1] + 0.75 * square], f"orange: by the right one × {amount:g}", ESTIMATED,
-        anchor="rm", size=13,
-    )  # fmt: skip
+    right_of = f"by the right camera × {amount:g}" if amount else "as drawn"
+    panel.text([0, -1.4 * square], f"orange, {right_of}", ESTIMATED, size=13)
+    panel.text([0, reach[1] + 1.4 * square], "blue, by the left camera", LENS, size=13)
     return panel
 
 
-def _bar(paper: Paper, now: float, freed: list[float]) -> Panel:
-    """Draw the RMS as a bar, and beside it what it would be if more could move."""
+def _bar(paper: Paper, now: float, before: float) -> Panel:
+    """Draw the RMS as a bar, and beside it what it was on the sheet as it was drawn."""
     panel = paper.panel(_BAR, (0, 1), (1.16 * _HIGHEST, -0.04 * _HIGHEST), "RMS, left camera (px)")
     panel.line([[0, 0], [1, 0]], MUTED, 0.8)
     panel.polygons([[[0.12, 0], [0.4, 0], [0.4, now], [0.12, now]]], ESTIMATED)
-    for name, height in zip(_FREE, freed, strict=True):
-        panel.line([[0.06, height], [0.46, height]], MUTED, 1, dash=3)
-        panel.text([0.49, height], f"{name} {height:.3f}", MUTED, size=12)
+    panel.line([[0.06, before], [0.46, before]], MUTED, 1, dash=3)
+    panel.text([0.49, before], "as drawn", MUTED, size=13)
     panel.text([0.26, 0.03], f"{now:.3f}", "white", anchor="mm", size=15, rim=ESTIMATED)
     return panel
