@@ -2322,7 +2322,9 @@ def test_the_depths_that_pixels_keep_are_those_of_the_room_and_dots_lie_where_th
         dots, before = ((np.ptp(part.astype(int), axis=-1) > 40).sum() for part in near)
         assert dots > 12 > 3 * before
     part = drawing(depth=12_000).picture[TITLE + 128 : TITLE + 155, plan[0] + 30 : plan[0] + 62]
-    on_wall = np.nonzero(np.ptp(part.astype(int), axis=-1) > 40)[1]  # the left one, 9.0 to 9.7 m away
+    on_wall = np.nonzero(np.ptp(part.astype(int), axis=-1) > 40)[
+        1
+    ]  # the left one, 9.0 to 9.7 m away
     assert on_wall.size > 30
     assert np.median(on_wall) + 30 == pytest.approx((4150 - 3000) / 25.143, abs=4)
     said = numbers(drawing(depth=12_000).sentence)
