@@ -640,14 +640,12 @@ def test_partners_stand_where_both_turned_cameras_see_them_and_at_the_end_in_one
     u, v = first.project(W).round()
     W = first.ray([u, v]) / first.ray([u, v])[2] * 7600
     step = second.centre - first.centre
-    for part, nod, roll in ((0, 0, 0), (30, 0, 0), (0, 12, 0), (60, -5, 10), (100, 8, -8)):
-        values = {"turned": part, "u": u, "v": v, "angle_x": nod, "angle_z": roll}
-        drawing = MODELS["rectification"].drawing(**values)
+    for part in (0, 30, 60, 100):
+        drawing = MODELS["rectification"].drawing(turned=part, u=u, v=v)
         rows, expected = numbers(drawing.sentence)[:2], []
-        own = Rotation.from_euler("xyz", [nod, 0, roll], degrees=True).as_matrix() @ second.R
-        e2 = np.cross(first.R[2] + own[2], step)
+        e2 = np.cross(first.R[2] + second.R[2], step)
         R = np.array([e / np.linalg.norm(e) for e in (step, e2, np.cross(step, e2))])
-        for start, centre in ((first.R, first.centre), (own, second.centre)):
+        for start, centre in ((first.R, first.centre), (second.R, second.centre)):
             ends = Rotation.from_matrix([start, R])  # and the shortest way between them
             m = first.A @ Slerp([0, 100], ends)(part).as_matrix() @ (W - centre)
             expected.append(m[1] / m[2])
@@ -656,11 +654,9 @@ def test_partners_stand_where_both_turned_cameras_see_them_and_at_the_end_in_one
     assert "infinity" in drawing.sentence
 
 
-@pytest.mark.parametrize("angles", [{}, {"angle_x": 6, "angle_z": -10}])
-def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_taken(angles):
-    model = MODELS["rectification"]
-    picture = model.picture(turned=100, **angles).astype(int)
-    for k, camera in enumerate(turned(model.values(**angles), 1)):
+def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_taken():
+    picture = MODELS["rectification"].picture(turned=100).astype(int)
+    for k, camera in enumerate(turned(1)):
         photo = render_scene(room(), camera)
         seen = np.asarray(Image.fromarray(photo).resize((328, 246))).astype(int)
         panel = picture[TITLE : TITLE + 246, MARGIN + k * 334 :][:, :328]
@@ -668,10 +664,10 @@ def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_take
         grey = (panel == 110).all(axis=2)
         assert 0.05 < grey.mean() < 0.4
         assert np.median(off[~grey]) <= 2
-        assert (off[~grey] < 30).mean() > 0.9  # but for the lines and the mark
+        assert (off[~grey] < 30).mean() > 0.88  # but for the lines, the mark and the names
 
 
-@pytest.mark.parametrize("values", [{}, {"angle_y": 12}, {"angle_y": -12}, {"turned": 100}])
+@pytest.mark.parametrize("values", [{}, {"turned": 50}, {"turned": 100}])
 def test_epipolar_lines_cross_both_pictures_from_border_to_border(values):
     picture = MODELS["rectification"].picture(**values).astype(int)[TITLE : TITLE + 246]
     orange = np.abs(picture - colour(ESTIMATED)).max(axis=2) < 60
@@ -1283,9 +1279,9 @@ def test_face_on_the_eye_of_the_fold_is_where_the_half_circles_of_thales_cross()
     a, b, c, d = s = (v - v[0]) @ (v[1] - v[0]) / np.linalg.norm(v[1] - v[0])
     at = (a * b - c * d) / (a + b - c - d)
     x = (770 + 0.62 * (at - (s.min() + s.max()) / 2)) / 1540 * 350 + 500 + 6 + MARGIN
-    y = (610 - 0.62 * np.sqrt((at - a) * (b - at))) / 1848 * 420 + TITLE
+    y = (1078 - 0.62 * np.sqrt((at - a) * (b - at))) / 1848 * 420 + TITLE
     for fold in (30, 90):  # nothing in this plane turns with the fold
-        eye = MODELS["fold"].drawing(fold=fold).picture[round(y), round(x)]
+        eye = MODELS["fold"].drawing(fold=fold, second=0).picture[round(y), round(x)]
         assert eye.tolist() == [0x56, 0xB4, 0xE9]
 
 
@@ -2154,14 +2150,14 @@ def test_shrunken_rings_are_those_of_the_library_blurred_or_not():
     x, y = pixel_centres((240, 240)).transpose(2, 0, 1) - 119.5
     old = 127.5 + 127.5 * np.cos(0.0036 * np.pi * (x**2 + y**2))
     for blur in (0, 0.5):
-        drawing = MODELS["rings"].drawing(shrink=3, blur=blur, place=0)
+        drawing = MODELS["rings"].drawing(blur=blur, place=0)
         new = backward_warp(gaussian_blur(old, 3 * blur), zoom_map(3), size=(80, 80))
         left = MARGIN + 366
         shown = drawing.picture[TITLE : TITLE + 360, left : left + 360, 0].astype(float)
         at = np.rint(4.5 * (np.arange(80) + 0.5) - 0.5).astype(int)
         off = np.abs(shown[np.ix_(at, at)] - new)[10:-10, 10:-10]
         assert np.quantile(off, 0.95) < 5  # every eighth grey level is drawn
-    far = numbers(MODELS["rings"].drawing(shrink=3, place=92).sentence)
+    far = numbers(MODELS["rings"].drawing(place=92).sentence)
     assert far[:2] == [0.99, 0.01]  # rings: once around, from one new pixel to the next
 
 
@@ -2263,10 +2259,12 @@ def test_the_depths_that_pixels_keep_are_those_of_the_room_and_dots_lie_where_th
         near = [
             drawing(depth=Z).picture[y - 8 : y + 9, x - 8 : x + 9] for Z in (12_000, W[2] - 400)
         ]
-        dots, before = ((part.max(axis=-1) < 230).sum() for part in near)
+        dots, before = ((np.ptp(part.astype(int), axis=-1) > 40).sum() for part in near)
         assert dots > 12 > 3 * before
     part = drawing(depth=12_000).picture[TITLE + 128 : TITLE + 155, plan[0] + 30 : plan[0] + 62]
-    on_wall = np.nonzero(part.max(axis=-1) < 230)[1]  # the left one, 9.0 to 9.7 m away
+    on_wall = np.nonzero(np.ptp(part.astype(int), axis=-1) > 40)[
+        1
+    ]  # the left one, 9.0 to 9.7 m away
     assert on_wall.size > 30
     assert np.median(on_wall) + 30 == pytest.approx((4150 - 3000) / 25.143, abs=4)
     said = numbers(drawing(depth=12_000).sentence)
@@ -2275,15 +2273,9 @@ def test_the_depths_that_pixels_keep_are_those_of_the_room_and_dots_lie_where_th
     )
     depths = found[np.isfinite(found)]
     assert said[3:5] == [round(depths.size / 768), 100]
-    rows = [
-        (drawing(depth=Z).picture[:, MARGIN + 346 + 60] == [255, 226, 204]).all(axis=-1).sum()
-        for Z in (3000, 6000, 12_000)  # 43, 173 and 694 mm, and the line upon them
-    ]
-    assert rows[2] == pytest.approx(694 / 25.13, abs=4)
-    assert rows[0] < rows[1] < 8 < rows[2]
 
 
-def test_without_texture_noise_chooses_the_depth_and_the_true_outlines_lie_over_the_dots():
+def test_without_texture_noise_chooses_the_depth():
     wall = np.s_[100:112, 122:134]  # plain, left of the blackboard, 10 m away
     assert np.isnan(swept.depths_so_far(12_000, 1.5)[wall]).mean() > 0.9
     assert np.nanstd(swept.depths_so_far(12_000, 0)[wall]) > 1500
@@ -2291,8 +2283,6 @@ def test_without_texture_noise_chooses_the_depth_and_the_true_outlines_lie_over_
         numbers(MODELS["depth"].drawing(depth=12_000, texture=t).sentence)[3] for t in (0, 2, 6)
     ]
     assert share[0] > 85 > 3 * share[1] > 6 * share[2]
-    plain, outlined = (MODELS["depth"].drawing(true=t).picture for t in (0, 1))
-    assert count(outlined, IDEAL, 60) > count(plain, IDEAL, 60) + 1500
 
 
 def test_stepping_back_and_zooming_keeps_the_box_and_enlarges_what_is_behind_it():

@@ -25,7 +25,6 @@ _UPRIGHT = 1400  # mm from the height of the cameras: neither floor nor ceiling,
 _NAMES = {"cupboard": (1130, 8900), "box": (650, 6950), "table": (-2150, 6050)}
 _RAMP = "#F89540", "#CC4778", "#7E03A8", "#0D0887"  # from near to far
 _NONE = 226  # grey level of a pixel without a depth
-_BAND = 255, 226, 204  # what lies half a pixel of shift before or behind the line
 _WALL = 10_000  # mm
 _WALLS = [[-3000, -600], [-3000, _WALL], [3000, _WALL], [3000, -600]]
 
@@ -141,11 +140,10 @@ def coloured(depths: Array) -> Drawn:
 def depth_model() -> Model:
     """Make the model of the room, seen by two cameras side by side."""
     settings = (
-        Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 6600,
+        Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 8200,
                 "each pixel keeps the depth that agrees best of all up to this one"),
         Setting("texture", "texture at least", 0, 6, 0.5, 2,
                 "grey levels by which a patch differs from the one beside it, or it stays grey"),
-        Setting("true", "true outlines", 0, 1, 1, 0, "of room, table, box and cupboard"),
     )  # fmt: skip
     about = (
         "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
@@ -161,7 +159,7 @@ def depth_model() -> Model:
         height, width = found.shape
         below = paper.picture_panel(_PICTURE, (width, height), "depth so far; grey: none")
         below.image(coloured(found), smooth=False)
-        plan = _plan(paper, Z, found, bool(values["true"]))
+        plan = _plan(paper, Z, found)
         return Drawing(paper.join(([panel, below], plan)), _sentence(Z, found))
 
     return Model("depth", about, settings, draw, {"depth": lambda _, at: {"depth": float(at[1])}})
@@ -180,17 +178,15 @@ def _sentence(Z: float, found: Array) -> str:
     )
 
 
-def _plan(paper: Paper, Z: float, found: Array, true: bool) -> Panel:
+def _plan(paper: Paper, Z: float, found: Array) -> Panel:
     """Draw from above where what has a depth so far must be, and where it is."""
     panel = paper.panel(_PLAN, (-4150, 4650), (12_900, -620), "from above: pull the line")
-    d = _ALPHA * _BASE / Z
-    panel.image(_dots(panel, found, _ALPHA * _BASE / (d + np.array([-0.5, 0.5]))), smooth=False)
-    if true:
-        for corners in from_above(room(), -1500)[0]:
-            panel.line([*corners, corners[0]], IDEAL, 1)
-        panel.line(_WALLS, IDEAL, 1.5)
-        for thing, at in _NAMES.items():
-            panel.text(at, thing, IDEAL, anchor="mm", size=12)
+    panel.image(_dots(panel, found), smooth=False)
+    for corners in from_above(room(), -1500)[0]:
+        panel.line([*corners, corners[0]], IDEAL, 1)
+    panel.line(_WALLS, IDEAL, 1.5)
+    for thing, at in _NAMES.items():
+        panel.text(at, thing, IDEAL, anchor="mm", size=12)
     for metres in (2, 4, 6, 8, 10, 12):
         panel.text([-3250, 1000 * metres], f"{metres} m", MUTED, anchor="rm", size=12)
     panel.line([[-3000, Z], [3850, Z]], ESTIMATED, 1.5, dash=5)
@@ -201,16 +197,14 @@ def _plan(paper: Paper, Z: float, found: Array, true: bool) -> Panel:
     return panel
 
 
-def _dots(panel: Panel, found: Array, band: Array) -> Drawn:
-    """Return a picture for the plan: a dot for each depth, over a band between two depths."""
+def _dots(panel: Panel, found: Array) -> Drawn:
+    """Return a picture for the plan: a dot for each depth."""
     camera = pair()[0].resized(found.shape[::-1])
     x, y = np.moveaxis(camera.ideal(pixel_centres(camera.size)), -1, 0)
     upright = np.abs(y * found) < _UPRIGHT
     places = np.stack([(x * found)[upright], found[upright]], axis=-1)
     half = panel.scale / 2
     dots = np.full((2 * _PLAN[1], 2 * _PLAN[0], 3), 255, np.uint8)
-    (left, top), (right, bottom) = panel.place(np.column_stack([[-3000, 3000], band])) / half
-    dots[round(top) : round(bottom), round(left) : round(right)] = _BAND
     u, v = np.rint(panel.place(places) / half).astype(int).T
     inside = (u > 0) & (u < dots.shape[1] - 1) & (v > 0) & (v < dots.shape[0] - 1)
     colours = coloured(places[inside, 1])

@@ -86,5 +86,5 @@ def _curve(paper: Paper, enlarged: Array, bar: int) -> Panel:
         panel.line(np.column_stack([np.arange(SIZE[0]), row[_ROW]]), ink, width)
     panel.line([[bar, 275], [bar, -20]], ESTIMATED, 1.5)
     panel.text([14, 262], "enlarged", LENS, size=13)
-    panel.text([160, 262], "the long lens", IDEAL, size=13)
+    panel.text([14, 236], "the long lens", IDEAL, size=13)
     return panel

@@ -88,6 +88,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     endless = cameras()[1].project(1e9 * cameras()[0].ray(m))  # beyond it, points lie behind
     right.line([endless, endless + 60 * (line[0] - line[-1])], LENS, 1, dash=6)
     right.text(endless + [4, -14], "∞", LENS, size=14)
+    begin = endless + (14 - endless[0]) / (line[0] - line[-1])[0] * (line[0] - line[-1])
+    right.text(begin + [0, 10], "epipolar line", LENS, anchor="la", size=12, rim="white")
     right.line(line, ESTIMATED, 2)
     right.mark(place, "estimated", 7)
     cost, (now,) = differences(m, line), differences(m, place[None])

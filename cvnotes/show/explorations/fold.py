@@ -23,7 +23,7 @@ _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
 _INKS = (IDEAL, MUTED)  # of the first photograph and of the second
 _SQUARE = "#B0B0B0"
-_SMALL = 0.62  # the scale of the fold, over that of the view from the side
+_SCALE, _FOOT = 0.62, 420  # of the fold, face on; where its horizon is drawn
 _PAIRS = (("sides", "estimated", ESTIMATED), ("diagonals", "lens", LENS))
 
 
@@ -103,15 +103,15 @@ def fold_model() -> Model:
     about = (
         "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
         "horizon, with lines to the vanishing points of the square's sides and of its diagonals. "
-        "Beside it the plane of both, with a half circle over each pair, and the focal length "
-        "against v0."
+        "Beside it the plane of both, with a half circle over each pair; or, with a second "
+        "photograph, both half circles from the side."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
         eye = circles[0].place(values["fold"])
         shown = 1 + int(values["second"])
         space = _space(paper, cameras[:shown], H[0], circles[:shown], eye)
-        side = _side(paper, H[0], circles[:shown], eye)
+        side = (_face_on, _side)[shown - 1](paper, H, circles, eye)
         return Drawing(paper.join((space, side)), _sentence(H[:shown], eye))
 
     folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
@@ -202,38 +202,46 @@ def _name(
     panel.text(at + panel.pixel * np.array(by), words, colour, anchor=anchor, size=13)
 
 
-def _side(paper: Paper, H: Array, circles: list[Circle], eye: Array) -> Panel:
-    """Draw the half circles from the side, and above them the first fold."""
-    high, low = 1598, -250  # one scale for both axes, so that a half circle is one
-    panel = paper.panel(_SIDE, (-580, 960), (high, low), "the hinge, face on")
-    panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
+def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Panel:
+    """Draw the half circles from the side, and say which angles the eye sees."""
+    high, low = 1498, -350  # one scale for both axes, so that a half circle is one
+    panel = paper.panel(_SIDE, (-580, 960), (high, low), "height of the eye against v₀ (px)")
+    panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400, 600), size=12)
     panel.polygons([[[-580, high], [960, high], [960, 750], [-580, 750]]], "#FFFFFF")
-    _fold(panel, H, circles[0])
-    panel.text([-554, 700], "from the side: height of the eye against v0 (px)", size=13)
     for k in reversed(range(len(circles))):
         arc = circles[k].place(np.arange(0, 181.0, 2))
         panel.line(arc[:, 1:], _INKS[k], 2)
         _name(panel, arc[45, 1:] * [1, 0], (90 * k - 45, -8), f"photograph {k + 1}", _INKS[k], "ma")
+        row = 1180 - 150 * k
+        panel.text([-520, row], f"photograph {k + 1}:", _INKS[k], anchor="lm", size=14)
+        for x, (_, _, colour), angle in zip((90, 480), _PAIRS, angles(H[k], eye), strict=True):
+            panel.text([x, row], f"{angle:.1f}°", colour, anchor="lm", size=16)
+    panel.text([-520, 1340], "the eye sees the angles", IDEAL, anchor="lm", size=14)
     panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
     panel.mark(eye[1:], "camera", 9)
     panel.grip("fold", "the hinge", eye[1:], 4)
     return panel
 
 
-def _fold(panel: Panel, H: Array, circle: Circle) -> None:
+def _face_on(paper: Paper, H: list[Array], circles: list[Circle], place: Array) -> Panel:
     """Draw horizon and eye in their own plane: the eye is on two half circles, by Thales."""
+    panel, circle = paper.panel(_SIDE, (-580, 960), (1498, -350), "the hinge, face on"), circles[0]
     along = np.array([circle.up[1], -circle.up[0]])
-    s = (vanishing_points(H) - circle.foot) @ along
-    shift = np.array([190 - _SMALL * (s.min() + s.max()) / 2, 988])
-    eye = shift + [0, _SMALL * circle.radius]
-    panel.line(np.array([[-3000, 988], [3000, 988]]), IDEAL, 0.8, dash=5)
+    s = (vanishing_points(H[0]) - circle.foot) @ along
+    shift = np.array([190 - _SCALE * (s.min() + s.max()) / 2, _FOOT])
+    eye = shift + [0, _SCALE * circle.radius]
+    panel.line(np.array([[-3000, _FOOT], [3000, _FOOT]]), IDEAL, 0.8, dash=5)
     turn = np.radians(np.arange(0, 181.0, 3))
-    for (_, meaning, colour), (a, b) in zip(_PAIRS, s.reshape(2, 2), strict=True):
+    for (name, meaning, colour), (a, b), angle, (x, anchor) in zip(
+        _PAIRS, s.reshape(2, 2), angles(H[0], place), ((-540, "ld"), (920, "rd")), strict=True
+    ):
         ring = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2
-        panel.line(shift + _SMALL * ring, colour, 0.8)
-        ends = shift + _SMALL * np.array([[a, 0], [b, 0]])
+        panel.line(shift + _SCALE * ring, colour, 0.8)
+        ends = shift + _SCALE * np.array([[a, 0], [b, 0]])
         panel.line(np.array([ends[0], eye, ends[1]]), colour, 1.4)
         one, two = 80 * (ends - eye) / np.linalg.norm(ends - eye, axis=1, keepdims=True)
         panel.line(eye + np.array([one, one + two, two]), colour, 1.4)
         panel.mark(ends, meaning, 5)
+        panel.text([x, 1180], f"{name}: {angle:.1f}°", colour, anchor=anchor, size=16)
     panel.mark(eye, "camera", 9)
+    return panel

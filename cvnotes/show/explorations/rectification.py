@@ -5,13 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import (
-    Camera,
-    pose,
-    rotation_from_angles,
-    rotation_from_vector,
-    vector_from_rotation,
-)
+from cvnotes.camera import Camera, pose, rotation_from_vector, vector_from_rotation
 from cvnotes.pictures import depth_map, room
 from cvnotes.show.explorations.epipolar import cameras, photographs
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
@@ -33,12 +27,6 @@ def rectification_model() -> Model:
         Setting("turned", "turned (%)", 0, 100, 1, 0, "how far to the attitude that both share"),
         Setting("u", "u (px)", 60, 620, 1, 451, "a pixel of the first picture as it was taken"),
         Setting("v", "v (px)", 30, 450, 1, 207, "and its row"),
-        *(
-            Setting(
-                f"angle_{axis}", f"{turn} (°)", -12, 12, 0.5, 0, f"turns the second about {axis}"
-            )
-            for axis, turn in (("x", "nod"), ("y", "turn aside"), ("z", "roll"))
-        ),
     )
     about = (
         "Two pictures of a room, and epipolar lines that belong together. The cameras turn on the "
@@ -46,18 +34,16 @@ def rectification_model() -> Model:
     )
 
     def pulled(values: Values, at: Array) -> Values:
-        old, new = cameras()[0], turned(values, values["turned"] / 100)[0]
+        old, new = cameras()[0], turned(values["turned"] / 100)[0]
         u, v = old.project(old.centre + new.ray(at))
         return {"u": float(u), "v": float(v)}
 
     return Model("rectification", about, settings, _draw, {"pixel": pulled})
 
 
-def turned(values: Values, part: float) -> tuple[Camera, Camera]:
+def turned(part: float) -> tuple[Camera, Camera]:
     """Return both cameras after a part of their turns, on the spot, to the attitude they share."""
     first, second = cameras()
-    angles = np.radians([values["angle_x"], values["angle_y"], values["angle_z"]])
-    second = _attitude(second, rotation_from_angles(*angles) @ second.R)
     e1 = second.centre - first.centre
     e2 = np.cross(first.R[2] + second.R[2], e1)
     R = np.array([x / np.linalg.norm(x) for x in (e1, e2, np.cross(e1, e2))])
@@ -84,7 +70,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     first, _ = cameras()
     M = first.ideal(m)
     W = _depths()[int(m[1]), int(m[0])] * np.array([*M, 1])  # the first camera's frame is the WRF
-    now, whole = turned(values, values["turned"] / 100), turned(values, 1)
+    now, whole = turned(values["turned"] / 100), turned(1)
     through = first.centre + first.ray([[first.A[0, 2], v] for v in _ROWS])
     rows = whole[0].project(through)[:, 1]
     row = whole[0].project(W)[1]
@@ -103,6 +89,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.line([[-9, at[0][1]], [old.size[0] + 9, at[0][1]]], IDEAL, 1, dash=5)
         panel.mark(at[-1], "ideal", 8)
         panels.append(panel)
+    right, row = panels[1], at[0][1]
+    right.text([626, row + 9], "row of the plus", IDEAL, anchor="ra", size=12, rim="white")
+    right.text(at[1] + [-14, -10], "partner", IDEAL, anchor="rd", size=12, rim="white")
     panels[0].grip("pixel", "a pixel of the first picture", at[0], 4)
     return Drawing(paper.join((panels[0], panels[1])), _sentence(now, at))
 

@@ -8,6 +8,7 @@ from cvnotes.show.explorations.paper import Paper
 from cvnotes.show.style import ESTIMATED, MUTED
 
 _SIZE, _FINENESS = 240, 0.0036  # px, and rings per px for each px from the middle
+_SHRINK = 3  # how many old pixels a new one is wide
 _MIDDLE = (_SIZE - 1) / 2
 _AROUND = 16  # px that the profile shows to either side
 
@@ -15,7 +16,6 @@ _AROUND = 16  # px that the profile shows to either side
 def rings_model() -> Model:
     """Make the model of a picture of rings, shrunk."""
     settings = (
-        Setting("shrink", "shrunk by", 1, 6, 0.05, 3, "how many old pixels a new one is wide"),
         Setting("blur", "blur σ (new px)", 0, 1, 0.05, 0, "blurred first: 0.5 is the usual cure"),
         Setting("place", "look at (px)", 0, 104, 1, 90, "how far right of the middle"),
     )
@@ -32,14 +32,14 @@ def rings(x: Array, y: Array) -> Array:
     return np.asarray(127.5 + 127.5 * np.cos(_FINENESS * np.pi * (x**2 + y**2)))
 
 
-def taken(shrink: float, blur: float) -> Array:
+def taken(blur: float) -> Array:
     """Return how much of each old pixel (240,) a new one takes, along a row or a column."""
     old = np.arange(_SIZE, dtype=np.float64)
-    new = shrink * (np.arange(int(_SIZE / shrink)) + 0.5) - 0.5
+    new = _SHRINK * (np.arange(_SIZE // _SHRINK) + 0.5) - 0.5
     bilinear: Array = np.maximum(1 - np.abs(new[:, None] - old), 0)
     if not blur:
         return bilinear
-    return np.asarray(bilinear @ blurred(_SIZE, blur * shrink))
+    return np.asarray(bilinear @ blurred(_SIZE, blur * _SHRINK))
 
 
 def blurred(n: int, sigma: float) -> Array:
@@ -50,25 +50,25 @@ def blurred(n: int, sigma: float) -> Array:
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    shrink, blur, place = values["shrink"], values["blur"], values["place"]
+    blur, place = values["blur"], values["place"]
     line = np.arange(_SIZE) - _MIDDLE
-    weights, old = taken(shrink, blur), rings(*np.meshgrid(line, line))
+    weights, old = taken(blur), rings(*np.meshgrid(line, line))
     new = weights @ old @ weights.T
     row = len(new) // 2
-    y = shrink * (row + 0.5) - 0.5 - _MIDDLE
+    y = _SHRINK * (row + 0.5) - 0.5 - _MIDDLE
     left = paper.picture_panel((360, 360), (_SIZE, _SIZE), f"{_SIZE} × {_SIZE} pixels")
     left.image((8 * np.rint(old / 8)).clip(0, 255).astype(np.uint8))
     left.grip("place", "where to look along the row", [_MIDDLE + place, _MIDDLE], 2)
     right = paper.panel(
-        (360, 360), (-0.5, shrink * len(new) - 0.5), (-0.5, shrink * len(new) - 0.5),
-        f"the same in {len(new)} × {len(new)} pixels",
+        (360, 360), (-0.5, _SIZE - 0.5), (-0.5, _SIZE - 0.5),
+        f"shrunk by three, to {len(new)} × {len(new)} pixels",
     )  # fmt: skip
     right.image((8 * np.rint(new / 8)).clip(0, 255).astype(np.uint8), smooth=False)
     low, high = _MIDDLE + place + np.array([-_AROUND, _AROUND])
     for panel in (left, right):
         around = np.array([[low, -7], [high, -7], [high, 7], [low, 7], [low, -7]])
         panel.line(around + [0, _MIDDLE + y], ESTIMATED, 2)
-    at = np.column_stack([shrink * (np.arange(len(new)) + 0.5) - 0.5, new[row]])
+    at = np.column_stack([_SHRINK * (np.arange(len(new)) + 0.5) - 0.5, new[row]])
     u = np.linspace(low, high, 600)
     there, below = np.column_stack([u, rings(u - _MIDDLE, np.full_like(u, y))]), []
     for curve, colour, title in (
@@ -80,7 +80,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.mark(at[(at[:, 0] > low) & (at[:, 0] < high)], "estimated", 5)
         below.append(panel)
     return Drawing(
-        paper.join((left, right), tuple(below)), _sentence(_FINENESS * place * shrink, blur)
+        paper.join((left, right), tuple(below)), _sentence(_FINENESS * place * _SHRINK, blur)
     )
 
 
