@@ -17,7 +17,7 @@ from cvnotes.calibration.next_view import _where_to_hold
 from cvnotes.calibration.prediction import pixel_jacobian
 from cvnotes.calibration.refinement import Problem, covariance
 from cvnotes.camera import Camera, FisheyeLens, Lens, intrinsics, pose, rotation_from_vector
-from cvnotes.pictures import course, good_views
+from cvnotes.pictures import course, good_views, hold_at
 from cvnotes.targets import Chessboard
 
 pytestmark = pytest.mark.filterwarnings("ignore::cvnotes.base.CalibrationWarning")
@@ -143,10 +143,10 @@ def test_the_whole_board_is_in_the_picture_and_before_the_camera():
 
 def test_after_views_in_the_middle_the_border_is_asked_for():
     """Views that keep a small board in the middle leave the lens open at the border."""
-    from cvnotes.pictures import centre_only_views
-
     rng = np.random.default_rng(2)
-    m = seen(centre_only_views(BOARD, CAMERA, 8, rng=rng), rng)
+    tilted = good_views(BOARD, CAMERA, 8, rng=rng)[:, :3, :3]
+    middle = [hold_at(BOARD, CAMERA, R, [319.5, 239.5], 2.2) for R in tilted]
+    m = seen(np.stack(middle), rng)
     view = next_view(of_noise(calibrate(BOARD.points, m, SIZE)))
     reach = np.linalg.norm(view.image_points - [325, 238], axis=1).max()
     assert reach > np.linalg.norm(m - [325, 238], axis=-1).max() + 80

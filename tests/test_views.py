@@ -7,27 +7,18 @@ from cvnotes.base import CvnotesError, DegenerateError, InputTypeError
 from cvnotes.calibration.coverage import covered_cells
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import (
-    centre_only_views,
     covering_views,
     facing,
     fronto_parallel_views,
     good_views,
     hold_at,
-    nearly_parallel_views,
-    one_axis_views,
 )
 from cvnotes.pictures.placing import every_face_seen
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 
 BOARD = Chessboard((9, 6), 25.0)
 CAMERA = Camera(intrinsics(800, 804, 325, 238), lens=Lens(k=(-0.25, 0.10)), size=(640, 480))
-FAMILIES = [
-    good_views,
-    fronto_parallel_views,
-    nearly_parallel_views,
-    one_axis_views,
-    centre_only_views,
-]
+FAMILIES = [good_views, fronto_parallel_views]
 families = pytest.mark.parametrize("family", FAMILIES, ids=lambda f: f.__name__)
 
 
@@ -127,25 +118,6 @@ def test_fronto_parallel_boards_are_parallel_to_the_sensor():
     np.testing.assert_allclose(views(fronto_parallel_views, 5)[:, :3, 2], [[0, 0, 1]] * 5)
 
 
-def test_nearly_parallel_boards_differ_by_a_few_degrees():
-    normals = views(nearly_parallel_views, 10)[:, :3, 2]
-    apart = np.degrees(np.arccos(np.clip(normals @ normals.T, -1, 1)))
-    assert 1 < apart.max() < 8
-
-
-def test_tilts_about_one_axis_leave_the_boards_x_along_u():
-    G = views(one_axis_views, 6)
-    np.testing.assert_allclose(G[:, :3, 0], [[1, 0, 0]] * 6, atol=1e-12)
-    assert (G[::2, 1, 2] * G[1::2, 1, 2] < 0).all()  # to either side
-    np.testing.assert_allclose(tilts(G), 30, atol=2.1)
-
-
-def test_centre_only_boards_stay_in_the_middle_half():
-    for G in views(centre_only_views, 9):
-        m = CAMERA.moved(G).project(BOARD.points)
-        assert (np.abs(m - [319.5, 239.5]) < [160, 120]).all()
-
-
 # ---- what a set of views says about the camera
 
 
@@ -199,19 +171,8 @@ def test_good_views_know_the_camera_well():
     np.testing.assert_array_less(error_bars(views(good_views, 3)), [12, 12, 12, 12, 0.06, 0.6])
 
 
-@pytest.mark.parametrize(
-    ("family", "parameter", "times"),
-    [
-        (fronto_parallel_views, 0, 100),
-        (nearly_parallel_views, 0, 2),
-        (one_axis_views, 0, 5),
-        (one_axis_views, 1, 5),
-        (centre_only_views, 4, 4),
-        (centre_only_views, 5, 10),
-    ],
-)
-def test_bad_views_leave_unknown_what_they_are_named_for(family, parameter, times):
-    assert error_bars(views(family, 12))[parameter] > times * GOOD[parameter]
+def test_boards_that_face_the_camera_leave_its_focal_length_unknown():
+    assert error_bars(views(fronto_parallel_views, 12))[0] > 100 * GOOD[0]
 
 
 # ---- placing

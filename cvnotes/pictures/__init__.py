@@ -10,12 +10,9 @@ from cvnotes.pictures.posters import chart_room, poster_room
 from cvnotes.pictures.scene_render import depth_map, radiance, render_scene
 from cvnotes.pictures.scenes import blocks, corridor, desk, rails, room, room_with, target_scene
 from cvnotes.pictures.views import (
-    centre_only_views,
     covering_views,
     fronto_parallel_views,
     good_views,
-    nearly_parallel_views,
-    one_axis_views,
 )
 
 __all__ = [
@@ -41,9 +38,6 @@ __all__ = [
     "good_views",
     "covering_views",
     "fronto_parallel_views",
-    "nearly_parallel_views",
-    "one_axis_views",
-    "centre_only_views",
     # one pose
     "facing",
     "hold_at",

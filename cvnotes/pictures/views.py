@@ -1,4 +1,4 @@
-"""Sets of views of a board: good ones, the misleading ones, and the turns they are made of."""
+"""Sets of views of a board: good ones, some that face the camera, and what they are made of."""
 
 from contextlib import suppress
 
@@ -47,13 +47,6 @@ def all_over(camera: Camera, n: int, rng: np.random.Generator) -> Array:
     cell = rng.permutation(np.arange(n) % 9)
     place = (np.stack([cell % 3, cell // 3], axis=-1) + rng.random((n, 2))) / 3 - 0.5
     return np.array(camera.size) * (0.5 + 0.4 * place) - 0.5
-
-
-def spread(target: Target, camera: Camera, R: Array, rng: np.random.Generator) -> Array:
-    """Hold a target in each of the rotations (n, 3, 3), all over the picture."""
-    R, aims = R @ facing(target), all_over(camera, len(R), rng)
-    far = rng.uniform(1.0, 1.3, len(R))
-    return np.stack([hold_at(target, camera, *given) for given in zip(R, aims, far, strict=True)])
 
 
 def good_views(
@@ -219,72 +212,6 @@ def fronto_parallel_views(
     array([1., 1., 1.])
     """
     n = guard(target, camera, n, rng)
-    return spread(target, camera, turned(np.zeros(n), np.zeros(n), rng), rng)
-
-
-def nearly_parallel_views(
-    target: Target, camera: Camera, n: int, *, rng: np.random.Generator
-) -> Array:
-    """Turn a tilted board by hardly a degree between views: noise decides the answer.
-
-    The equations do have a solution, for no two vanishing lines agree; but the differences between
-    them are of the size of the noise in the corners, and so is what is concluded from them.
-
-    Examples
-    --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.targets import Chessboard
-    >>> camera = Camera(intrinsics(800, 804, 325, 238))
-    >>> G = nearly_parallel_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
-    >>> bool((np.degrees(np.arccos(G[1:, :3, 2] @ G[0, :3, 2])) < 5).all())
-    True
-    """
-    n = guard(target, camera, n, rng)
-    wobble = rotation_from_vector.inside(rng.normal(0, np.radians(1), (n, 3)))
-    tilt = turned(rng.uniform(0, 2 * np.pi, 1), np.radians([30.0]), rng)
-    return spread(target, camera, wobble @ tilt, rng)
-
-
-def one_axis_views(target: Target, camera: Camera, n: int, *, rng: np.random.Generator) -> Array:
-    """Tilt the board forwards and backwards only, by about 30°: α_u and α_v run away together.
-
-    With the board's x axis always along u, a tilt by θ gives one relation between α_u and α_v, and
-    a tilt by −θ gives the same one again. The normals differ by 60° and still it is not enough:
-    the board must be tilted about different axes.
-
-    Examples
-    --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.targets import Chessboard
-    >>> camera = Camera(intrinsics(800, 804, 325, 238))
-    >>> G = one_axis_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
-    >>> G[:, 0, 0]  # x stays along u
-    array([1., 1., 1.])
-    """
-    n = guard(target, camera, n, rng)
-    angle = np.where(np.arange(n) % 2, 1, -1) * np.radians(rng.uniform(28, 32, n))
-    return spread(
-        target, camera, rotation_from_vector.inside(angle[:, None] * [1.0, 0.0, 0.0]), rng
-    )
-
-
-def centre_only_views(target: Target, camera: Camera, n: int, *, rng: np.random.Generator) -> Array:
-    """Keep a small board in the middle of the picture: the lens is seen where it does nothing.
-
-    Distortion grows with the cube of the distance from the centre. What is estimated from the
-    middle of the picture says little about k1 and nothing about k2, and is wrong at the borders,
-    where it is then used.
-
-    Examples
-    --------
-    >>> from cvnotes.camera import intrinsics
-    >>> from cvnotes.targets import Chessboard
-    >>> camera = Camera(intrinsics(800, 804, 325, 238))
-    >>> G = centre_only_views(Chessboard((9, 6)), camera, 3, rng=np.random.default_rng(1))
-    >>> camera.moved(G[0]).project([100, 62.5, 0]).round()  # the middle of the board
-    array([320., 240.])
-    """
-    n = guard(target, camera, n, rng)
-    R = turned(all_sides(n, rng), rng.uniform(*TILT, n), rng) @ facing(target)
-    middle = (np.array(camera.size) - 1) / 2
-    return np.stack([hold_at(target, camera, R_i, middle, rng.uniform(2.0, 2.5)) for R_i in R])
+    R = turned(np.zeros(n), np.zeros(n), rng) @ facing(target)
+    aims, far = all_over(camera, n, rng), rng.uniform(1.0, 1.3, n)
+    return np.stack([hold_at(target, camera, *given) for given in zip(R, aims, far, strict=True)])
