@@ -24,6 +24,28 @@ def brightness(picture, camera, W):
     return picture[v, u].mean(axis=-1)
 
 
+def pole():
+    """The corners (8, 3) of the railway's first pole, that nearest to the origin."""
+    return np.array(
+        [[x, y, z] for x in (-4090, -3910) for y in (-4050, 1950) for z in (14910, 15090)]
+    )
+
+
+@pytest.mark.parametrize(("scene", "body"), [(blocks(), blocks().vertices[:8]), (rails(), pole())])
+def test_a_shadow_begins_at_the_foot_of_what_throws_it(scene, body):
+    away = -np.array(scene.around.light) * [1, 0, 1]
+    away /= np.linalg.norm(away)
+    feet = body[np.isclose(body[:, 1], body[:, 1].max())]
+    # 3 mm beyond the last foot it is as dark as 100 mm beyond; towards the light it is bright.
+    grey = []
+    for W in feet[(feet @ away).argmax()] + np.outer([3, 100, -900], away):
+        camera = Camera(CAMERA.A, look_at(W + [0, -300, 0] + 200 * away, W), size=CAMERA.size)
+        grey += [*brightness(render_scene(scene, camera), camera, W[None])]
+    near, far, lit = grey
+    assert near == pytest.approx(far, abs=1)
+    assert near < 0.8 * lit
+
+
 @pytest.mark.parametrize("target", [Chessboard(), TwoPlanes(), ThreePlanes()])
 def test_the_squares_of_a_target_are_dark_and_light_as_its_boards_say(target):
     scene = target_scene(target)
