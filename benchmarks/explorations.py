@@ -23,7 +23,7 @@ import ipywidgets
 from PIL import Image
 from cvnotes.show.explorations import model
 from cvnotes.base.png import pack_png
-packed = [pack_png(model("camera").picture(alpha=alpha)) for alpha in (600, 800)]
+packed = [pack_png(model("camera").picture(T_x=x)) for x in (-87, 0)]
 ready, slider = ipywidgets.Image(value=packed[0]), ipywidgets.IntSlider()
 def follow(change):
     ready.value = packed[change.new % 2]

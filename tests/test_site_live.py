@@ -246,14 +246,14 @@ def test_the_browsers_picture_is_the_notebooks(all_explorations):
     page = all_explorations
     box = explorations(page)["camera"]
     shown = box.evaluate(SHOWN)
-    slider = box.locator("input").first
+    slider = box.locator("input").nth(3)  # T x, and the fourth entry of G
     slider.focus()
     page.keyboard.press("ArrowRight")
     becomes_another(page, box, shown)
-    entry = box.locator(".explore-matrices td").first
-    assert comes(page, lambda: entry.inner_text() == "801")
+    entry = box.locator(".explore-matrices td").nth(3)
+    assert comes(page, lambda: entry.inner_text() == "−86")
     seen = box.locator("canvas[role=img]").evaluate(PIXELS)
-    expected = MODELS["camera"].picture(alpha=float(slider.input_value()))
+    expected = MODELS["camera"].picture(T_x=float(slider.input_value()))
     pixels = np.array(seen, np.uint8).reshape(*expected.shape[:2], 4)[..., :3]
     # Two versions of Pillow draw some lines and letters in other shades.
     turned = MODELS["camera"].picture(angle_x=-13.1)

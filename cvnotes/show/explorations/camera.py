@@ -1,4 +1,4 @@
-"""Explore the camera: every entry of A, R and T, with the picture of a board and the space."""
+"""Explore a pose: three angles and T, with the picture of a board and the space."""
 
 from functools import lru_cache
 
@@ -7,7 +7,6 @@ import numpy as np
 from cvnotes.base import Array, clipped_segments
 from cvnotes.camera import (
     Camera,
-    intrinsics,
     inverse,
     look_at,
     move,
@@ -26,39 +25,35 @@ from cvnotes.show.explorations.boards import (
     paper_and_squares,
     pinhole,
 )
-from cvnotes.show.explorations.matrices import FOCAL, PIERCING, SHIFT, TURN, matrix_table
+from cvnotes.show.explorations.matrices import SHIFT, TURN, matrix_table
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.orbit import angles_of, round_the_board
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle, cut
-from cvnotes.show.style import CAMERA, MUTED, WORLD
+from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD, mixed
 from cvnotes.targets import Chessboard
 
 _SIZE = (440, 330)  # px, of each panel
 _TILE, _NEAR = 4, 20.0  # squares to a tile of the floor; mm before the camera
 _FLOOR, _WALL, _SHADOW, _JOINTS = "#EFE7D9", "#E2EBE4", "#CBC5BD", "#FBFAF7"
-_GLASS = "#CFE8F8"
+_GLASS, _EDGE = "#E3F1FB", mixed("#FFFFFF", CAMERA, 0.6)
 
 
 def camera_model(camera: Camera, board: Chessboard) -> Model:
     """Make the model of a board seen by `camera`, its lens left out."""
-    alpha, (u0, v0), (w, h) = camera.A[0, 0], camera.A[:2, 2], camera.size
     reach = float(np.ceil(np.linalg.norm(board.points[-1])))
     start = look_at(*reach / 236 * np.array([[340, 150, -420], [100, 62, 0]]))
     angles, T = np.degrees(angles_of(start[:3, :3])), start[:3, 3]
-    axis = "in which the optical axis pierces the picture"
-    turn = "turns the board about the camera's {} axis: R = Rz Ry Rx"
     shift = "where the world's origin lies along the camera's {} axis, mm"
     settings = (
-        _whole("alpha", "α (px)", 0.3 * alpha, 2 * alpha, alpha, "focal length in pixels", FOCAL),
-        _whole("u0", "u0 (px)", 0, w, u0, f"column {axis}", PIERCING),
-        _whole("v0", "v0 (px)", 0, h, v0, f"row {axis}", PIERCING),
-        _tenth("angle_x", "angle x (°)", 75, angles[0], turn.format("x"), TURN),
-        _tenth("angle_y", "angle y (°)", 75, angles[1], turn.format("y"), TURN),
-        _tenth("angle_z", "angle z (°)", 180, angles[2], turn.format("z"), TURN),
-        _whole("T_x", "T x (mm)", -reach, reach, T[0], shift.format("x"), SHIFT),
-        _whole("T_y", "T y (mm)", -reach, reach, T[1], shift.format("y"), SHIFT),
-        _whole("T_z", "T z (mm)", 0, 3.2 * reach, T[2], shift.format("z"), SHIFT),
+        _tenth("x", 75, angles[0], "turns the board about its own X axis: R = Rz Ry Rx"),
+        _tenth(
+            "y", 75, angles[1], "turns it about the camera's y axis, as angle z has turned this"
+        ),
+        _tenth("z", 180, angles[2], "turns the board about the camera's z axis"),
+        _whole("x", -reach, reach, T[0], shift.format("x")),
+        _whole("y", -reach, reach, T[1], shift.format("y")),
+        _whole("z", 0, 3.2 * reach, T[2], shift.format("z")),
     )
     about = (
         "The picture that a camera takes of a chessboard; beside it camera and board in space, "
@@ -72,35 +67,28 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
         return round_the_board(_moved(camera, values), board, at)
 
     def shifted(values: Values, at: Array) -> Values:
-        x, y, _ = np.linalg.solve(_moved(camera, values).A, [*at, 1]) * values["T_z"]
+        x, y, _ = np.linalg.solve(camera.A, [*at, 1]) * values["T_z"]
         return {"T_x": float(x), "T_y": float(y)}
 
-    def pierced(_: Values, at: Array) -> Values:
-        return {"u0": float(at[0]), "v0": float(at[1])}
-
-    drags = {"camera": carried, "board": shifted, "principal point": pierced}
-    return Model("camera", about, settings, draw, drags)
+    return Model("camera", about, settings, draw, {"camera": carried, "board": shifted})
 
 
-def _whole(
-    name: str, label: str, low: float, high: float, value: float, about: str, tint: str
-) -> Setting:
-    """Make a setting in steps of 1."""
-    return Setting(name, label, round(low), round(high), 1, round(value), about, tint)
+def _whole(axis: str, low: float, high: float, value: float, about: str) -> Setting:
+    """Make the setting of a coordinate of T, in steps of 1 mm."""
+    ends = round(low), round(high)
+    return Setting(f"T_{axis}", f"T {axis} (mm)", *ends, 1, round(value), about, SHIFT)
 
 
-def _tenth(name: str, label: str, most: float, value: float, about: str, tint: str) -> Setting:
-    """Make a setting in steps of 0.1."""
-    return Setting(name, label, -most, most, 0.1, round(float(value), 1), about, tint)
+def _tenth(axis: str, most: float, value: float, about: str) -> Setting:
+    """Make the setting of an angle, in steps of 0.1°."""
+    start = round(float(value), 1)
+    return Setting(f"angle_{axis}", f"angle {axis} (°)", -most, most, 0.1, start, about, TURN)
 
 
 def _moved(camera: Camera, values: Values) -> Camera:
-    ratio = camera.A[1, 1] / camera.A[0, 0]
-    alpha = values["alpha"]
-    A = intrinsics(alpha, ratio * alpha, values["u0"], values["v0"], camera.A[0, 1])
     angles = np.radians([values["angle_x"], values["angle_y"], values["angle_z"]])
     T = [values["T_x"], values["T_y"], values["T_z"]]
-    return pinhole(Camera(A, size=camera.size)).moved(pose(rotation_from_angles(*angles), T))
+    return pinhole(camera).moved(pose(rotation_from_angles(*angles), T))
 
 
 def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Drawing:
@@ -112,15 +100,8 @@ def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Drawing:
     ends = move(camera.G, joints)
     picture.segments(_pixels(camera, clipped_segments(ends, ends[..., 2:] - _NEAR)), _JOINTS, 1)
     complete = draw_board(picture, camera, board)
-    middle = (np.array(camera.size) - 1) / 2
-    for way in np.array([[11, 0], [0, 11]]) * picture.pixel:
-        picture.line(np.outer([-1, 1], way) + middle, MUTED, 1.5)
-    picture.mark(camera.A[:2, 2], "camera", 9)
     origin = camera.project([0, 0, 0])
     picture.mark(origin, "world", 7)
-    picture.grip(
-        "principal point", "where the optical axis pierces the picture", camera.A[:2, 2], 5
-    )
     picture.grip("board", "the world's origin in the picture", origin, 5)
     space = _space(camera, board, paper, corners)
     sentence = _sentence(camera, board, complete)
@@ -193,7 +174,7 @@ def _draw_pyramid(panel: Panel, centre: Array, pane: Array) -> None:
     sides = np.stack([np.broadcast_to(centre, pane.shape), pane, np.roll(pane, -1, axis=0)], 1)
     panel.veil(list(sides), [_GLASS] * 4)
     panel.polygons([pane], _WALL)
-    panel.segments(sides[:, [[0, 1], [1, 2]]].reshape(-1, 2, 2), CAMERA, 1.5)
+    panel.segments(sides[:, [[0, 1], [1, 2]]].reshape(-1, 2, 2), _EDGE, 1.2)
 
 
 def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str) -> None:
@@ -208,8 +189,8 @@ def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str)
 
 def _draw_T(panel: Panel, at: Array, T: Array) -> None:
     """Draw T, from the camera to the world's origin, and its three steps along x, y and z."""
-    panel.line(at, CAMERA, 2)
-    panel.arrows(at[0], at[3] - at[0], CAMERA, 4)
+    panel.line(at, IDEAL, 1.5, dash=5)
+    panel.arrows(at[0], at[3] - at[0], IDEAL, 4)
     _name(panel, at[[0, 3]], at[1:3].mean(axis=0), "T", 17)
     for i, (axis, number) in enumerate(zip("xyz", T, strict=True)):
         _name(
@@ -228,7 +209,7 @@ def _name(panel: Panel, ends: Array, other: Array, words: str, size: int, far: f
     across = np.array([y, -x])
     across = across * (1 if across @ (middle - other) > 0 else -1)
     anchor = "lmr"[1 - int(np.rint(1.2 * across[0]))] + "m"
-    panel.text(middle + 11 * panel.pixel * across, words, CAMERA, anchor=anchor, size=size)
+    panel.text(middle + 11 * panel.pixel * across, words, IDEAL, anchor=anchor, size=size)
 
 
 def _along(panel: Panel, ends: Array) -> Array:
@@ -250,16 +231,10 @@ def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
 
 
 def _matrices(camera: Camera) -> str:
-    """Write A, G and P = A [R|T]; what mixes several parameters has no colour."""
-    of_A = {(0, 0): FOCAL, (1, 1): FOCAL, (0, 2): PIERCING, (1, 2): PIERCING}
+    """Write G."""
     of_G = {(i, j): TURN if j < 3 else SHIFT for i in range(3) for j in range(4)}
     rotations = np.array([[2, 2, 2, 0]] * 3 + [[0, 0, 0, 0]])
-    products = np.array([[1, 1, 1, 0], [1, 1, 1, 0], [3, 3, 3, 0]])
-    return (
-        matrix_table(camera.A, "A: the sensor (px)", np.zeros((3, 3), int), of_A)
-        + matrix_table(camera.G, "G: camera ← world (T in mm)", rotations, of_G)
-        + matrix_table(camera.P, "P = A [R | T]", products, {})
-    )
+    return matrix_table(camera.G, "G: camera ← world (T in mm)", rotations, of_G)
 
 
 def _words(x: Array) -> str:

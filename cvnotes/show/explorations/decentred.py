@@ -97,6 +97,6 @@ def _bent(panel: Panel, p: Array, move: Callable[[Array, Array], Array]) -> floa
     panel.line(seen, LENS, 4)
     panel.line(seen[[0, -1]], IDEAL, 2)
     px = _F * bow(move(p, ruled))
-    words = f"the line across p bows by {px:.1f} px"
+    words = f"the line across p bows by {px:.1f} px (drawn: {_TIMES * px:.0f})"
     panel.text([0, 0.735], words, IDEAL, anchor="mm", size=14)
     return px

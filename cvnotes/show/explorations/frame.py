@@ -18,7 +18,7 @@ _X, _Y = 1.38, 1.38 * 440 / 480  # of the plane z = 1, from its middle
 _SIZE = (640, 480)
 _LAST = np.array(_SIZE) - 1.0  # the last pixel; the first is (0, 0)
 _OLD, _NEAR, _FAR = 400, 260, 430  # px: focal lengths
-_LOW, _HIGH = -14, 58  # %, of the curves
+_LOW, _HIGH = -20, 58  # %, of the curves
 _C = _LAST / 2  # the principal point
 _A = intrinsics(_OLD, _OLD, *_C)
 _CAMERA = Camera(_A, look_at([-600, 0, 6200], [-600, -900, 14_000]), Lens((-0.25, 0.05)), _SIZE)
@@ -134,6 +134,7 @@ def _plane(paper: Paper, f: float) -> Panel:
         ]
         panel.line(around, "#FFFFFF", width + 2)
         panel.line(around, ink, width, dash)
+    panel.text(old[0] + [8 * panel.pixel, 8 * panel.pixel], f"the old A: {_OLD} px", size=13)
     panel.mark(frame[1], "ideal", 9)
     panel.grip("corner", "the corner of the new frame", frame[1], 3)
     return panel
@@ -141,13 +142,13 @@ def _plane(paper: Paper, f: float) -> Panel:
 
 def _curves(paper: Paper, f: float, filled: Array, lost: Array) -> Panel:
     """Draw how much of the new picture is black, and of what was seen is lost, over f."""
-    title = "how much is black, and how much lost (%), over f"
+    title = "how much is black, and how much lost (%), over f (px)"
     panel = paper.panel(_CURVES, (_NEAR - 18, _FAR + 6), (_HIGH, _LOW), title)
-    panel.ticks(y=(0, 20, 40), size=12)
+    panel.ticks(x=(260, 300, 340, 380, 420), y=(0, 20, 40), size=12)
     for at, words in zip(ends(), ("nothing lost", "nothing black"), strict=True):
         if _NEAR <= at <= _FAR:
             panel.line([[at, 0], [at, _HIGH]], MUTED, 1, dash=3)
-            panel.text([at, _LOW / 2], words, MUTED, anchor="mm", size=12)
+            panel.text([at, _HIGH - 7], words, MUTED, anchor="mm", size=12)
     panel.line([[f, 0], [f, _HIGH]], ESTIMATED, 2)
     over = np.arange(_NEAR, _FAR + 1)
     for part, ink, words, place, anchor in (

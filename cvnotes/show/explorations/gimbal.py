@@ -12,6 +12,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
 _UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z, the grey axis, points up on the sheet
 _SHEET, _TOWARDS = sheet((22, -52)) @ _UPRIGHT, towards((22, -52)) @ _UPRIGHT
 _RADII, _PIECES = (1.0, 0.8, 0.6), 72
+_HELD, _BARED = 0.9, 0.72  # where the orange axis is held, and ends: before the blue ring
 _COLOURS = MUTED, LENS, ESTIMATED
 _WIDE, _HIGH = (1, 1, 0.9, 0.9), (-0.04, 0.04, 0.04, -0.04)  # a ring's cut: radius and height
 _SHADES = 0.8, 1.0, 0.65, 1.0  # of a ring's rim, its side, its inside and the other side
@@ -36,7 +37,7 @@ def gimbal_model() -> Model:
     def pulled(values: Values, at: Array) -> Values:
         """Choose the middle angle whose orange axis ends nearest to the hand."""
         tried = np.arange(-90, 91, 5.0)
-        ends = np.array([_on_sheet(axes({**values, "y": y})[2] * 0.9) for y in tried])
+        ends = np.array([_on_sheet(axes({**values, "y": y})[2] * _HELD) for y in tried])
         return {"y": float(tried[np.linalg.norm(ends - at, axis=1).argmin()])}
 
     return Model("gimbal", about, settings, _draw, {"orange axis": pulled})
@@ -61,11 +62,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     )
     faces, paints = [], []
     rings = (*zip("zyx", turns, (middle, inner, R[:, 1]), _RADII, _COLOURS, strict=True),)
-    for _, axis, side, r, colour in rings:
+    for name, axis, side, r, colour in rings:
         quads = _ring(axis, side, r)
         faces.append(quads.reshape(-1, 4, 3))
         paints += _PIECES * [hexed(np.rint(255 * s * np.array(rgb(colour)))) for s in _SHADES]
-        bars = np.array([-r - 0.3, -r, r, r + 0.3])[:, None] * axis
+        end = _BARED if name == "x" else r + 0.3
+        bars = np.array([-r - 0.3, -r, r, end])[:, None] * axis
         for pair in (bars[:2], bars[2:]):
             faces.append(_bar(pair))
             paints += [colour] * len(faces[-1])
@@ -79,7 +81,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for name, axis, _, r, colour in rings:
         at = _on_sheet((r + 0.3) * axis)
         panel.text(at + [0.14 if at[0] > -0.2 else -0.14, 0], name, colour, anchor="mm", size=15)
-    end = _on_sheet(inner * 0.9)
+    end = _on_sheet(inner * _HELD)
     panel.mark(end, "estimated", 6)
     panel.grip("orange axis", "the end of the orange axis", end, 8)
     apart = np.degrees(np.arccos(min(abs(float(outer @ inner)), 1)))

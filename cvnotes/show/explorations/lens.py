@@ -1,4 +1,4 @@
-"""Explore the lens: what k1, k2 and k3 do to a room and a grid, and where the model folds."""
+"""Explore the lens: what k1 and k2 do to a room and a grid, and where the model folds."""
 
 from functools import cache, lru_cache, partial
 
@@ -26,14 +26,13 @@ _COARSE = 4  # px between which the way back through the lens, which takes long,
 def lens_model(camera: Camera, _: Chessboard) -> Model:
     """Make the model; it starts with the lens of `camera`, whose frame is drawn into the grid.
 
-    Of the lens its first three radial coefficients are taken.
+    Of the lens its first two radial coefficients are taken.
     """
-    k1, k2, k3 = (*camera.lens.k, 0.0, 0.0, 0.0)[:3]
+    k1, k2 = (*camera.lens.k, 0.0, 0.0)[:2]
     what = "radial: bends the borders inwards (negative) or outwards"
     settings = (
         _around("k1", 1.5, 0.01, k1, what),
         _around("k2", 2.0, 0.01, k2, "radial, of the fourth power of r"),
-        _around("k3", 2.0, 0.01, k3, "radial, of the sixth power of r"),
     )
     about = (
         "A room and a square grid, both seen through a lens; beside it the observed radius "
@@ -43,8 +42,7 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
     def pulled(values: Values, at: Array) -> Values:
         """Choose the k1 whose curve goes through a height over the radius of the grip."""
         r2 = _HELD**2
-        rest = 1 + values["k2"] * r2**2 + values["k3"] * r2**3
-        return {"k1": float((at[1] / _HELD - rest) / r2)}
+        return {"k1": float((at[1] / _HELD - 1 - values["k2"] * r2**2) / r2)}
 
     return Model("lens", about, settings, partial(_draw, camera), {"curve": pulled})
 
@@ -56,7 +54,7 @@ def _around(name: str, reach: float, step: float, value: float, about: str) -> S
 
 
 def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
-    lens = Lens((values["k1"], values["k2"], values["k3"]))
+    lens = Lens((values["k1"], values["k2"]))
     reach = 1.4 * _EXTENT
     x = reach * _SIZE[0] / _SIZE[1]
     title = "a room and a grid through the lens"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from cvnotes.base import Array
 
 # Behind black letters, each light enough to read them, and different for every eye.
-FOCAL, PIERCING, TURN, SHIFT = "#FBD7BE", "#CFE6F7", "#FFF0B3", "#CBEBDB"
+TURN, SHIFT = "#FFF0B3", "#CBEBDB"
 
 Tints = Mapping[tuple[int, int], str]
 

@@ -37,7 +37,15 @@ def pinhole_model() -> Model:
     settings = (
         Setting("hole", "hole (mm)", 0.01, _WIDEST, 0.001, 0.2, "the diameter of the hole"),
         Setting("lens", f"a lens of {_LENS:g} mm", 0, 1, 1, 0, "a lens in place of the hole"),
-        Setting("focus", "focused at (m)", 0.1, 10, 0.05, 4, "the depth that the lens makes sharp"),
+        Setting(
+            "focus",
+            "lens focused at (m)",
+            0.1,
+            10,
+            0.05,
+            4,
+            "the depth that the lens makes sharp; a hole has none",
+        ),
     )
     about = (
         "A room and a near card through a hole; beside it how many pixels wide the spot of a far "
@@ -135,7 +143,7 @@ def spread_out(patch: float, d: float, spectrum: Spectrum) -> Array:
 def _spots(paper: Paper, d: float) -> Panel:
     """Draw how wide a spot is behind each hole."""
     panel = paper.panel(
-        (410, 197), (-0.02, 0.43), (_HIGHEST, -8), "width of the spot (px) against the hole (mm)"
+        (410, 197), (-0.02, 0.43), (_HIGHEST, -18), "width of the spot (px) against the hole (mm)"
     )
     panel.ticks(x=(0, 0.1, 0.2, 0.3, 0.4), y=(0, 40, 80), size=12)
     holes = np.linspace(0.008, 0.43, 400)
@@ -143,23 +151,20 @@ def _spots(paper: Paper, d: float) -> Panel:
     for name, curve, colour, at in (
         ("the hole", patch, LENS, (0.34, 58)),
         ("diffraction", spread, CAMERA, (0.25, 10)),
-        ("both", patch + spread, IDEAL, (0.27, 72)),
+        (f"both: {sum(spot(d)):.0f} px", patch + spread, IDEAL, (0.3, 100)),
     ):
         panel.line(np.column_stack([holes, curve]), colour, 1.8)
         panel.text(at, name, colour, size=13)
     here = [d, float(sum(spot(d)))]
     panel.grip("hole", "the diameter of the hole", here, 4)
     panel.mark(here, "estimated", 9)
-    aside, anchor = (-0.008, "rm") if d > 0.1 else (0.012, "lm")
-    at = [d + aside, min(here[1] + 9, _HIGHEST - 8)]
-    panel.text(at, f"{here[1]:.0f} px", ESTIMATED, anchor=anchor, size=13)
     return panel
 
 
 def _discs(paper: Paper, focus: float) -> Panel:
     """Draw how wide the lens makes a point at each depth."""
     panel = paper.panel(
-        (410, 197), (-1.14, 1.1), (_DEEPEST, -2.4), "width of the spot (px) against depth (m)"
+        (410, 197), (-1.14, 1.1), (_DEEPEST, -3.4), "width of the spot (px) against depth (m)"
     )
     near, far = np.log10(_ROOM[:2])
     panel.polygons([[[near, 0], [far, 0], [far, _DEEPEST], [near, _DEEPEST]]], _PALE)
@@ -171,7 +176,7 @@ def _discs(paper: Paper, focus: float) -> Panel:
     panel.line(np.log10(_CARD) + np.array([[0, 0], [0, _DEEPEST]]), _PALE, 8)
     panel.text([np.log10(_CARD), 15.5], "the card", anchor="mm", size=13)
     for s in (0.1, 0.2, 0.5, 1, 2, 5, 10):
-        panel.text([np.log10(s), -1], f"{s:g} m", anchor="mm", size=12)
+        panel.text([np.log10(s), -2.2], f"{s:g} m", anchor="mm", size=12)
     s = np.geomspace(0.09, 12, 400)
     panel.line(np.column_stack([np.log10(s), disc(s, focus)]), LENS, 2)
     here = [np.log10(focus), 0]

@@ -13,8 +13,8 @@ from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
 
 _LENS, _BESIDE = (470, 430), (270, 201)
 _HALF = 0.417  # of the lens's panel: for k1 = −4/3 the rim fills 80 % of its height
-_SHOWN = 1.05  # of the plane z = 1, to above and below its middle
-_RADIUS = 1.1  # of the curve
+_SHOWN = 0.95  # of the plane z = 1, to above and below its middle
+_RADIUS = 0.95  # of the curve
 _Tints = tuple[tuple[str, str], tuple[str, str]]
 _NET, _SPOKES = 0.1, 24  # how wide a ring of cells is, and how many cells are in it
 _BLUE, _ORANGE, _GREY = (
@@ -27,7 +27,7 @@ _BLUE, _ORANGE, _GREY = (
 def rim_model() -> Model:
     """Make the model of a disc of the plane z = 1, and of what a polynomial makes of it."""
     settings = (
-        Setting("ring", "r", 0.1, 1.05, 0.01, 0.7, "the ideal radius of the disc"),
+        Setting("ring", "r", 0.1, 0.87, 0.01, 0.7, "the ideal radius of the disc"),
         Setting("k1", "k1", -1.5, 0, 0.01, -1.33, "radial"),
     )
     about = (
@@ -110,7 +110,7 @@ def _plane(paper: Paper, lens: Lens, r: float) -> Panel:
 
 
 def _curve(paper: Paper, lens: Lens, r: float, other: float) -> Panel:
-    panel = paper.panel(_BESIDE, (0, _RADIUS), (0.5, -0.42), "observed radius against r")
+    panel = paper.panel(_BESIDE, (0, _RADIUS), (0.45, -0.2), "observed radius against r")
     panel.line([[0.0, 0.0], [_RADIUS, 0.0]], FAINT, 1)
     end = min(lens.max_radius, _RADIUS)
     for start, stop, ink in ((0, end, LENS), (end, _RADIUS, ESTIMATED)):
@@ -137,6 +137,4 @@ def _sentence(lens: Lens, r: float, seen: float, other: float) -> str:
     said = f"{ends} The polynomial draws the edge of the disc, r = {r:.2f}, at {seen:.2f}"
     if seen < 0:
         return f"{said}, beyond the middle."
-    if np.isnan(other):
-        return f"{said}, outside of the rim."
     return f"{said}, where r = {other:.2f} is seen."

@@ -101,8 +101,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     x, y, z = np.degrees(angles).round() + 0.0
     return Drawing(
         paper.join((panel,)),
-        f"About one axis the way is {whole:.0f}°. By three angles, {x:.0f}° about x, {y:.0f}° "
-        f"about y and {z:.0f}° about z, it is {np.trapezoid(speed, _T):.0f}°.",
+        f"About one axis the dart turns by {whole:.0f}°. By three angles, {x:.0f}° about x, "
+        f"{y:.0f}° about y and {z:.0f}° about z, it turns by {np.trapezoid(speed, _T):.0f}°, roll "
+        "included.",
     )
 
 
