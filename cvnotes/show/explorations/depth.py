@@ -40,11 +40,14 @@ class Sweep(NamedTuple):
         The same, of a patch of the left picture and the one beside it.
     best : ndarray, shape (shifts, height, width)
         Which shift agrees best of all up to this one.
+    back : ndarray, shape (shifts, height, width)
+        The same for the pixels of the right picture, which look into the left one.
     """
 
     differences: Array
     texture: Array
     best: npt.NDArray[np.uint8]
+    back: npt.NDArray[np.uint8]
 
 
 def pair() -> tuple[Camera, Camera]:
@@ -78,13 +81,27 @@ def sweep() -> Sweep:
         moved = np.roll(right, d, axis=1)
         moved[:, :d] = np.inf  # there the right camera has seen nothing
         difference[:] = _mean_around(np.minimum(np.abs(small - _halved(moved)), 255))
-    best = np.zeros(found.shape, np.uint8)
-    least = found[0].copy()
-    for k in range(1, len(found)):
-        best[k] = np.where(found[k] < least, k, best[k - 1])
-        np.minimum(least, found[k], out=least)
+    back, columns = np.full_like(found, np.inf), np.arange(small.shape[1])
+    for difference, other, d in zip(found, back, _SHIFTS, strict=True):
+        there = columns + _halved_shift(d)
+        inside = there < len(columns)
+        other[:, inside] = difference[:, there[inside]]
     beside = np.abs(np.diff(small, axis=1, append=small[:, -1:]))
-    return Sweep(found, _mean_around(beside), best)
+    return Sweep(found, _mean_around(beside), _best_so_far(found), _best_so_far(back))
+
+
+def _halved_shift(d: npt.NDArray[np.intp] | np.intp) -> npt.NDArray[np.intp] | np.intp:
+    """Return by how many columns of the halved pictures d px are, rounded up."""
+    return (d + 1) // 2
+
+
+def _best_so_far(differences: Array) -> npt.NDArray[np.uint8]:
+    """Return which of the differences (shifts, height, width) is the least up to each of them."""
+    best, least = np.zeros(differences.shape, np.uint8), differences[0].copy()
+    for k in range(1, len(differences)):
+        best[k] = np.where(differences[k] < least, k, best[k - 1])
+        np.minimum(least, differences[k], out=least)
+    return best
 
 
 def _halved(picture: Image) -> Image:
@@ -106,9 +123,10 @@ def depths_so_far(Z: float, texture: float) -> Array:
 
     It is the one that agrees best of all up to Z, between two whole shifts where the next ones
     say so. A pixel has none if its patch differs from the one beside it by less than `texture`
-    grey levels, or from its partner by more than from that one.
+    grey levels, or from its partner by more than from that one, or if the partner does not come
+    back to it, to one shift.
     """
-    differences, enough, best = sweep()
+    differences, enough, best, back = sweep()
     last = min(int(np.searchsorted(-_SHIFTS, -_ALPHA * _BASE / Z, "right")), len(_SHIFTS)) - 1
     k = best[last].astype(int)
     inside = np.clip(k, 1, len(_SHIFTS) - 2)
@@ -117,7 +135,8 @@ def depths_so_far(Z: float, texture: float) -> Array:
     steep = np.maximum(before, after) - least  # a valley of two straight sides
     between = np.divide(before - after, 2 * steep, out=np.zeros_like(steep), where=steep > 0)
     found = _ALPHA * _BASE / (_SHIFTS[k] - np.where(k == inside, between.clip(-0.5, 0.5), 0))
-    agree = differences[k, rows, columns] < enough
+    again = back[last][rows, (columns - _halved_shift(_SHIFTS[k])).clip(0)].astype(int)
+    agree = (differences[k, rows, columns] < enough) & (abs(again - k) <= 1)
     return np.where(agree & (enough >= texture), found, np.nan)
 
 

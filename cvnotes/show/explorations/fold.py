@@ -11,6 +11,7 @@ from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_net, draw_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle as ring
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 SIZE = (640, 480)
@@ -22,7 +23,7 @@ _VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:3, :3]  # from the
 _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
 _INKS = (IDEAL, MUTED)  # of the first photograph and of the second
-_SQUARE = "#B0B0B0"
+_SQUARE, _PALE = "#B0B0B0", "#BDBDBD"
 _SCALE, _FOOT = 0.62, 420  # of the fold, face on; where its horizon is drawn
 _PAIRS = (("sides", "estimated", ESTIMATED), ("diagonals", "lens", LENS))
 
@@ -110,7 +111,7 @@ def fold_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         eye = circles[0].place(values["fold"])
         shown = 1 + int(values["second"])
-        space = _space(paper, cameras[:shown], H[0], circles[:shown], eye)
+        space = _space(paper, cameras[0], H[:shown], circles[:shown], eye)
         side = (_face_on, _side)[shown - 1](paper, H, circles, eye)
         return Drawing(paper.join((space, side)), _sentence(H[:shown], eye))
 
@@ -155,26 +156,31 @@ def _flat(xy: Array) -> Array:
 
 
 def _space(
-    paper: Paper, cameras: list[Camera], H: Array, circles: list[Circle], eye: Array
+    paper: Paper, camera: Camera, H: list[Array], circles: list[Circle], eye: Array
 ) -> Panel:
     panel = paper.panel(_SPACE, *_SHOWN, "a photograph, the eye over it, and four vanishing points")
     (w, h), board = SIZE, course.board()
     frame = np.array([[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]])
     panel.polygons(_flat(frame)[None], "#F4F4F0")
     panel.line(_flat(frame[[0, 1, 2, 3, 0]]), MUTED, 1)
-    m = _flat(cameras[0].project(board.points))
+    m = _flat(camera.project(board.points))
     draw_squares(panel, m, board, _SQUARE)
     draw_net(panel, m, board, IDEAL, 0.8)
-    up = circles[0].up
-    along = np.array([[-3000.0], [3000.0]]) * [up[1], -up[0]]
-    panel.line(_flat(circles[0].foot + along), IDEAL, 0.8, dash=5)
     for circle, ink in reversed([*zip(circles, _INKS, strict=False)]):
+        along = np.array([[-3000.0], [3000.0]]) * [circle.up[1], -circle.up[0]]
+        panel.line(_flat(circle.foot + along), ink, 0.8, dash=5)
         arc = circle.place(np.arange(0, 181.0, 3))
         panel.line(on_sheet(arc), ink, 2)
         panel.line(on_sheet(arc[[0, -1]]), ink, 0.8)
     below = np.array([*eye[:2], 0])
     panel.line(on_sheet(np.array([eye, below])), IDEAL, 1.4, dash=3)
-    points = vanishing_points(H)
+    others = _flat(vanishing_points(H[-1]))
+    for point in others if len(H) > 1 else ():
+        panel.line(np.array([on_sheet(eye), point]), _PALE, 1.4)
+        panel.line(point + 4 * panel.pixel * ring(13), MUTED, 1.4)
+    if len(H) > 1:
+        _name(panel, others[0], (-6, 14), "horizon 2", MUTED, "ra")
+    points = vanishing_points(H[0])
     for k, point in enumerate(points):
         name, meaning, colour = _PAIRS[k // 2]
         panel.line(np.array([on_sheet(eye), _flat(point)]), colour, 1.4)
@@ -235,8 +241,8 @@ def _face_on(paper: Paper, H: list[Array], circles: list[Circle], place: Array) 
     for (name, meaning, colour), (a, b), angle, (x, anchor) in zip(
         _PAIRS, s.reshape(2, 2), angles(H[0], place), ((-540, "ld"), (920, "rd")), strict=True
     ):
-        ring = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2
-        panel.line(shift + _SCALE * ring, colour, 0.8)
+        thales = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2
+        panel.line(shift + _SCALE * thales, colour, 0.8)
         ends = shift + _SCALE * np.array([[a, 0], [b, 0]])
         panel.line(np.array([ends[0], eye, ends[1]]), colour, 1.4)
         one, two = 80 * (ends - eye) / np.linalg.norm(ends - eye, axis=1, keepdims=True)

@@ -33,8 +33,6 @@ from cvnotes.show.style import CAMERA, MUTED, mixed, rgb
 _SIZE, _PICTURE = (402, 336), (448, 336)  # px
 _LAST = 11  # of the twelve photographs, counted from 0
 _CONE, _TILE, _BEYOND, _FOOT = 190.0, 100, 1000, 30.0  # mm
-_EARLIER = 3  # photographs, whose boards and cameras stay, pale
-_PALE, _PALE_BLUE = "#C9C9C9", "#A9D5F1"
 _TILES, _WALL, _SHADOW, _JOINTS = "#EFE7D9", "#E2EBE4", "#CBC5BD", "#FBFAF7"
 _LINES, _GREY = "#BFD3C4", "#ECECEC"  # of the wall in the photograph; where nothing is told
 # Seen from above and behind the camera: x to the right, y down, z away.
@@ -142,26 +140,17 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for plane, colour in ((room.wall, _WALL), (room.floor, _TILES)):
         space.polygons(on_sheet(_border(plane))[None], colour)
         space.segments(on_sheet(plane), _JOINTS, 0.8)
-    now = int(np.ceil(values["photo"]))
-    earlier = [stands(each, who) for each in _poses()[max(now - _EARLIER, 0) : now]]
-    for _, of_board in earlier:
-        sheet = on_sheet(move(of_board, border))
-        space.polygons(sheet[None], "#F8F8F6")
-        space.polygons(on_sheet(move(of_board, squares)), _PALE)
-        space.line(sheet[[0, 1, 2, 3, 0]], _PALE, 0.8)
     camera, of_board = stands(G, who)
     there = move(of_board, border)
     space.polygons(on_sheet(there * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0])[None], _SHADOW)
     sheet = on_sheet(there)
     draw_sheet(space, sheet, on_sheet(move(of_board, squares)))
-    for one, _ in earlier:
-        _draw_camera(space, own.moved(inverse(one)), _PALE_BLUE, 0.8)
     below = camera[:3, 3] * [1, 0, 1] + room.floor[0, 0] * [0, 1, 0]
     space.polygons(on_sheet(below + _FOOT * np.insert(circle(25), 1, 0, axis=1))[None], _SHADOW)
     space.line(on_sheet(np.array([camera[:3, 3], below])), MUTED, 0.8, dash=3)
     for corner in sheet:  # a pyramid that moves, and keeps its form
         space.line([on_sheet(camera[:3, 3]), corner], CAMERA, 0.7)
-    _draw_camera(space, own.moved(inverse(camera)), CAMERA, 1.6)
+    _draw_camera(space, own.moved(inverse(camera)))
     space.grip("camera", "the camera, between its two places", on_sheet(camera[:3, 3]), 6)
     space.grip("board", "the board, from photograph to photograph", on_sheet(_middle(of_board)), 6)
     picture = paper.picture_panel(_PICTURE, own.size, "what the camera sees")
@@ -174,16 +163,16 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     return Drawing(paper.join((space, picture)), _sentence(values, camera, of_board))
 
 
-def _draw_camera(panel: Panel, camera: Camera, colour: str, width: float) -> None:
-    """Draw a camera by its edges; a strong one as a body, from its farthest face to its nearest."""
+def _draw_camera(panel: Panel, camera: Camera) -> None:
+    """Draw a camera as a body, from its farthest face to its nearest."""
     (lines, *_) = camera_shapes(camera, _CONE, name="")
     assert isinstance(lines, Lines)
     base = lines.ends[:4, 0]
     sides = [np.array([*edge, camera.centre]) for edge in lines.ends[:4]]
     faces = sorted([base, *sides], key=lambda face: -float(face.mean(axis=0) @ _VIEW[2]))
-    for face in faces * (colour == CAMERA):
-        panel.polygons([on_sheet(face)], mixed(colour, "#FFFFFF", 0.75 if len(face) == 4 else 0.6))
-    panel.segments(on_sheet(lines.ends), colour, width)
+    for face in faces:
+        panel.polygons([on_sheet(face)], mixed(CAMERA, "#FFFFFF", 0.75 if len(face) == 4 else 0.6))
+    panel.segments(on_sheet(lines.ends), CAMERA, 1.6)
 
 
 @lru_cache(maxsize=1)

@@ -91,7 +91,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panels.append(panel)
     right, row = panels[1], at[0][1]
     right.text([626, row + 9], "row of the plus", IDEAL, anchor="ra", size=12, rim="white")
-    right.text(at[1] + [-14, -10], "partner", IDEAL, anchor="rd", size=12, rim="white")
+    side = -1 if at[1][0] > 130 else 1  # its name has room there
+    right.text(
+        at[1] + [14 * side, -10], "partner", IDEAL, anchor="rd" if side < 0 else "ld",
+        size=12, rim="white",
+    )  # fmt: skip
     panels[0].grip("pixel", "a pixel of the first picture", at[0], 4)
     return Drawing(paper.join((panels[0], panels[1])), _sentence(now, at))
 

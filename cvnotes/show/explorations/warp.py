@@ -18,7 +18,8 @@ from cvnotes.warping import backward_warp, compose, forward_warp, rotation_map, 
 _WIDTH = 105  # px of the source: few enough to see each one, and odd as its height of 79, so that
 #             quarter turns about the middle take pixels to pixels
 _LARGER = 4  # px of the page for a pixel
-_ARM = 0.25  # of the width, from the middle to where the picture is taken hold of
+_MOST = 3  # times as large
+_ARM = 0.12  # of the width, from the middle to where the picture is taken hold of: in the frame
 _LIGHT = "#7CC9F5"  # the blue of a fold on white
 _PAPER = 255  # grey level where the source has nothing to show
 
@@ -27,7 +28,7 @@ def warp_model(camera: Camera, board: Chessboard) -> Model:
     """Make the model of a small picture of `board` by `camera`, turned and zoomed."""
     settings = (
         Setting("angle", "rotation (°)", -180, 180, 1, 20, "clockwise on the screen: v runs down"),
-        Setting("zoom", "zoom", 0.25, 4, 0.05, 1.2, "by how much distances grow"),
+        Setting("zoom", "zoom", 0.25, _MOST, 0.05, 1.2, "by how much distances grow"),
         Setting("bilinear", "bilinear", 0, 1, 1, 0, "backward: bilinear, else nearest neighbour"),
     )
     about = (
