@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,20 @@ def test_a_shadow_begins_at_the_foot_of_what_throws_it(scene, body):
     near, far, lit = grey
     assert near == pytest.approx(far, abs=1)
     assert near < 0.8 * lit
+
+
+@pytest.mark.parametrize(("azimuth", "elevation"), [(-150, 14), (150, 14), (30, 20), (90, 40)])
+def test_a_plain_that_reaches_the_horizon_throws_no_shadow_on_itself(azimuth, elevation):
+    a, e = np.radians([azimuth, elevation])
+    whole = rails().lit_from((np.sin(a), -np.tan(e), np.cos(a)))
+    parts = ("triangles", "colours", "uv", "extent")
+    scene = replace(whole, **{name: getattr(whole, name)[: -20 * 12] for name in parts})  # no poles
+    camera = Camera(CAMERA.A, pose(np.eye(3), [0, 0, -13_000]), size=CAMERA.size)
+    # The ballast, farther out than the shadows of the rails reach.
+    W = np.array(
+        [[x, 1770, z] for x in (-2200, -1900, 1900, 2200) for z in range(22_000, 40_000, 2000)]
+    )
+    assert np.ptp(brightness(render_scene(scene, camera, samples=1), camera, W)) < 2
 
 
 @pytest.mark.parametrize("target", [Chessboard(), TwoPlanes(), ThreePlanes()])

@@ -15,7 +15,7 @@ from cvnotes.pictures.occlusion import Occlusion
 from cvnotes.pictures.raycast import Indices, edge_functions, search
 
 _FAR = 100  # how far away the light is, in sizes of what casts shadows
-_TOUCHING = 1e-13  # of that distance, which rounding does not reach: no farther apart, no shadow
+_TOUCHING = 1e-10  # of that distance: what is no farther apart throws no shadow
 
 
 class Surfaces(NamedTuple):
@@ -51,7 +51,8 @@ class Surfaces(NamedTuple):
         shade = [_shade(c, scene.around.ambient) for c in (cosine, -np.abs(cosine))]
         colours = np.array(shade)[..., None, None] * scene.colours
         casting = scene.corners[scene.normals @ light > 0]
-        from_light = _seen_from(light, casting)
+        # A plain goes on beyond the haze; from so far that all of it is seen, digits would be lost.
+        from_light = _seen_from(light, casting.clip(-scene.around.haze, scene.around.haze))
         reach = scene.around.occlusion
         return cls(
             corners,
