@@ -60,9 +60,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     middle = np.array([0, values["height"], 0]) + _START * ahead / np.linalg.norm(ahead)
     picture = paper.picture_panel((440, 330), camera.size, "what the camera sees")
     _draw_picture(picture, camera, middle, along, across)
-    above = paper.panel(
-        (410, 330), (-8.9, 8.9), (12.6, -1.7), "the same from above"
-    )
+    above = paper.panel((410, 330), (-8.9, 8.9), (12.6, -1.7), "the same from above")
     _draw_above(above, camera, middle, along, across)
     return Drawing(paper.join((picture, above)), _sentence(camera, along))
 
