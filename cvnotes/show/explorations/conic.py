@@ -6,7 +6,7 @@ from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD
 
 _SIZE = (400, 340)
 _NEAR, _FAR = 1.7, 4.0  # how far up and down the panels show the plane, before and after
@@ -24,9 +24,9 @@ def conic_model() -> Model:
         Setting("b", "b", -1.5, 1.5, 0.01, 0.4, "the second one"),
     )
     about = (
-        "A circle on a net of squares, and a black line; beside it what H makes of circle and net, "
+        "A circle on a net of squares, and a green line; beside it what H makes of circle and net, "
         "which takes the line to infinity. Orange is what lies beyond the line. Blue and orange "
-        "meet at the plane's horizon, a thin black line."
+        "meet at the plane's horizon, a black line."
     )
 
     def pulled(_: Values, at: Array) -> Values:
@@ -40,8 +40,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     n = np.array([values["a"], values["b"]])
     before, after = (
         paper.panel(_SIZE, (-reach * 20 / 17, reach * 20 / 17), (reach, -reach), title)
-        for reach, title in ((_NEAR, "a circle, and the line that goes to infinity"),
-                             (_FAR, "their picture, with the plane's horizon"))
+        for reach, title in ((_NEAR, "a circle; the green line goes to infinity"),
+                             (_FAR, "their picture; the black line is the horizon"))
     )  # fmt: skip
     s = float(n @ n)
     along = np.array([-n[1], n[0]]) / max(np.sqrt(s), 1e-12)
@@ -57,12 +57,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             _draw_sides(after, *_pictured(start, way, n), n)
     _draw_circle(before, after, n)
     if s:
-        for panel, foot, width in ((before, -n / s, 2), (after, n / s, 1)):
-            panel.line(foot + np.outer([-_WIDE, _WIDE], along), IDEAL, width)
+        for panel, foot, ink in ((before, -n / s, WORLD), (after, n / s, IDEAL)):
+            panel.line(foot + np.outer([-_WIDE, _WIDE], along), ink, 2)
         if s >= 1:
             half = np.sqrt(1 - 1 / s)
             before.polygons([circle(25) * 0.05 - n / s + x * along for x in (-half, half)], IDEAL)
-        before.mark(-n / s, "ideal", 9)
+        before.mark(-n / s, "world", 7)
         before.grip("horizon", "the line that goes to infinity", -n / s, 4)
     return Drawing(paper.join((before, after)), _sentence(n))
 

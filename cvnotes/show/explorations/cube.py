@@ -180,8 +180,8 @@ def _draw_plan(panel: Panel, base: Array, h: float) -> None:
 def _sentence(foot: Array, at: Array, h: float, off: Array, lens: bool) -> str:
     (x, y), (u, v) = foot, at
     said = (
-        f"A tower {h:.0f} mm high at ({x:.0f}, {y:.0f}) mm: its foot is seen at "
-        f"({u:.0f}, {v:.0f}) px. "
+        f"A tower {h:.0f} mm high at ({x:.0f}, {y:.0f}) mm: the middle of its foot would "
+        f"be seen at ({u:.0f}, {v:.0f}) px. "
     )
     if lens:
         return (

@@ -1,6 +1,6 @@
 """Explore a turn on the spot: a second photograph is laid over the first, and α closes the seam."""
 
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -12,16 +12,18 @@ from cvnotes.pictures import radiance, room
 from cvnotes.projective import apply
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Paper, Range
-from cvnotes.show.style import ESTIMATED, LENS
+from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
 Seen = tuple[Drawn, npt.NDArray[np.bool_]]  # colours, and where there are any
 
 ALPHA, SIZE, MIDDLE = 500, (640, 480), (319.5, 239.5)
 TURN = rotation_from_vector([0.1, -0.35, 0.05])  # second camera ← first
 _LOWEST, _HIGHEST, _STEP = 200, 1200, 5
-_SHEET, _LOUPE = (480, 309), (216, 309)  # px of the panels
-_SHOWN, _CLOSE = ((-40, 1160), (-170, 602.5)), ((330, 450), (205, 376.7))  # their u and v
+_SHEET, _LOUPE, _CURVE = (480, 309), (216, 150), (216, 131)  # px of the panels
+_SHOWN, _CLOSE = ((-40, 1160), (-170, 602.5)), ((300, 444), (225, 325))  # their u and v
+_COARSE, _HIGHEST_OFF = (160, 103), 62  # px of a sheet for the curve; grey levels, its top
 _BORDER = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * SIZE - 0.5
+_TRIED = (*range(_LOWEST, 440, 20), *range(440, 560, 5), *range(560, _HIGHEST + 1, 20))
 _FINE = 2  # so many times photographs are enlarged, smoothly, before pixels are looked up
 
 
@@ -39,7 +41,7 @@ def seam_model() -> Model:
     about = (
         "Two photographs of a room by a camera that has turned to the right. The second is laid "
         "over the first as a camera with the chosen focal length would have it; beside it a part "
-        "of both, enlarged."
+        "of both, enlarged, and by how much they differ, against the focal length."
     )
     return Model("seam", about, settings, _draw, {"middle": _pulled})
 
@@ -66,12 +68,23 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.line(border, ESTIMATED, 1.5)
     over.mark(_place(alpha), "estimated", 7)
     over.grip("middle", "the middle of the second photograph", _place(alpha), _STEP / 2)
-    apart = _laid_over(alpha, _SHEET, _SHOWN)[1]
+    apart = _apart(alpha)
+    curve = paper.panel(_CURVE, (50, 1250), (_HIGHEST_OFF, -14), "how far they differ, against α")
+    curve.ticks(x=(500, 1000), y=(20, 40))
+    curve.line([[50, 0], [1250, 0]], MUTED, 0.8)
+    curve.line([(tried, _apart(tried)) for tried in _TRIED], ESTIMATED, 1.5)
+    curve.mark([alpha, apart], "estimated", 7)
     sentence = (
         f"With α = {alpha:.0f} px the two photographs differ, where one lies over the other, by "
         f"{apart:.1f} grey levels on average."
     )
-    return Drawing(paper.join((over, close)), sentence)
+    return Drawing(paper.join((over, [close, curve])), sentence)
+
+
+@cache
+def _apart(alpha: float) -> float:
+    """Return by how many grey levels the photographs differ where one lies over the other."""
+    return _laid_over(alpha, _COARSE, _SHOWN)[1]
 
 
 @lru_cache(maxsize=1)

@@ -136,7 +136,8 @@ def _draw_side(
         picture.line([middle - end, middle + end], colour, 2.4, dash)
         name = f"α = {alpha:.0f} px from {away:.0f} mm, tilted {abs(tilt):.0f}°"
         picture.text([0.04 * w, name_at], name, colour)
-        picture.mark(eye, "camera", 7, (1, 0))
+        wedge = 7 * picture.pixel * np.array([[1, 0], [-0.8, 0.6], [-0.8, -0.6]])
+        picture.polygons([eye + wedge], colour)
     end = half * np.array([np.sin(np.radians(far[2])), np.cos(np.radians(far[2]))])
     picture.grip("board", "the board's upper edge, to tilt it", middle - end, 4)
 
@@ -153,6 +154,8 @@ def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Pa
         panel.text([ends[1] - 8, px], f"{px} px", MUTED, anchor="rm", size=12)
     panel.line([[ends[0], 0], [ends[1], 0]], MUTED, 0.8)
     panel.line([[lenses.alpha, 0], [lenses.alpha, _HIGHEST]], LENS, 1, dash=4)
+    panel.text([lenses.alpha - 10, 9.5], "the same lens", LENS, anchor="rm", size=13)
+    panel.text([ends[0] + 8, -0.5], "noise", MUTED, size=12)
     at = np.linspace(_SHORTEST, _LONGEST, 71)
     for other, colour, width in (*((t, _THEIRS, 1.2) for t in _BESIDE), (tilt, ESTIMATED, 2.4)):
         way = np.column_stack([at, np.abs(lenses.valley(float(other))(lenses.alpha / at))])
