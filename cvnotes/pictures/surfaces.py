@@ -15,7 +15,7 @@ from cvnotes.pictures.occlusion import Occlusion
 from cvnotes.pictures.raycast import Indices, edge_functions, search
 
 _FAR = 100  # how far away the light is, in sizes of what casts shadows
-_TOUCHING = 1e-13  # of that distance, which rounding does not reach: no farther apart, no shadow
+_TOUCHING = 1e-11  # of that distance, which rounding does not reach: no farther apart, no shadow
 
 
 class Surfaces(NamedTuple):
