@@ -83,7 +83,7 @@ def _miss(line: Array, end: Array) -> float:
 
 def _sentence(over: float, ground: float) -> str:
     said = (
-        f"Over the top of its pole this tip points {over:.1f} px beside the sun, along the ground "
-        f"{ground:.1f} px beside the black plus"
+        f"The line over the pole's top misses the sun by {over:.1f} px, the line along the shadow "
+        f"misses the plus by {ground:.1f} px"
     )
     return f"{said}: true." if max(over, ground) < _NEAR else f"{said}: painted in."

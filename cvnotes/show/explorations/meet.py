@@ -93,7 +93,7 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
         panel.line(on_sheet(two + np.outer([-9, 9], two[1] - two[0])), ink, 0.7)
         panel.line(on_sheet(two), ink, 2.5)
         for place, (end, _, side) in zip(two, _ENDS, strict=True):
-            panel.mark(on_sheet(place), "estimated", 8)
+            panel.mark(on_sheet(place), "estimated" if n == "1" else "lens", 8)
             panel.grip(end + n, f"the {side} end of the {colour} line", on_sheet(place), 4)
     if m[2]:
         panel.mark(on_sheet(m / m[2]), "world", 11)

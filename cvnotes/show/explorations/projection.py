@@ -17,7 +17,7 @@ _GAUGE, _START = 1.5, 8.0  # m between the rails; m ahead where they pass before
 _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
 _WOOD, _BALLAST, _FAR = "#6B574A", "#B5ADA3", "#A1968B"  # the last is the mean of both
 _SKY, _HAZE, _GRASS = np.array([[176, 203, 234], [233, 238, 239], [142, 163, 98]])
-_REACH = 10.0  # m: how far away the direction is taken hold of
+_REACH = 8.2  # m: how far away the direction is taken hold of
 _PLANE = 6.0  # m: how far away the image plane is drawn from above, the ring's diameter
 _SQUARE = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1.2]]
 
@@ -60,9 +60,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     middle = np.array([0, values["height"], 0]) + _START * ahead / np.linalg.norm(ahead)
     picture = paper.picture_panel((440, 330), camera.size, "what the camera sees")
     _draw_picture(picture, camera, middle, along, across)
-    above = paper.panel(
-        (410, 330), (-8.9, 8.9), (12.6, -1.7), f"the same from above, the ring {_PLANE:g} m wide"
-    )
+    above = paper.panel((410, 330), (-8.9, 8.9), (12.6, -1.7), "the same from above")
     _draw_above(above, camera, middle, along, across)
     return Drawing(paper.join((picture, above)), _sentence(camera, along))
 
@@ -124,7 +122,9 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.line(_PLANE / 2 * (circle(121) + [0, 1]), IDEAL, 1.5)
     panel.line(np.outer([0, 20], along[::2]), IDEAL, 1.2, dash=5)
     panel.mark([0, 0], "camera", 8)
-    panel.grip("rails", "the direction of the rails, from above", _REACH * along[::2], 5)
+    held = _REACH * along[::2]
+    panel.polygons([held + 5 * panel.pixel * circle(24)], IDEAL)
+    panel.grip("rails", "the direction of the rails, from above", held, 5)
     if along[2] > 0:
         panel.mark(_PLANE * along[::2] / along[2], "ideal", 8)
     # A hollow square: the plus, which is close to it straight ahead, and the camera stay in sight.
@@ -137,7 +137,7 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.text([0.4 * side, -0.6], "camera", CAMERA, anchor=anchor)
     panel.text([0, -1.15], "∞", IDEAL, anchor="mm", size=15)
     beside = abs(right) + 0.3
-    if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH - 1.8:
+    if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH:
         beside = max(beside, out + 0.6)  # not upon the vanishing point
     panel.text([side * beside, _PLANE], "image plane", CAMERA, anchor=anchor)
 

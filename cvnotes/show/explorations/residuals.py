@@ -30,7 +30,7 @@ def residuals_model() -> Model:
 _finding = lru_cache(maxsize=1)(Finding)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=128)
 def fitted(k1: float) -> Array:
     """Find all that fits best beside a given k1; return its misses (12, 54, 2), in pixels."""
     problem, x = _finding().problem, _finding().states[-1]
@@ -46,7 +46,7 @@ def fitted(k1: float) -> Array:
 @lru_cache(maxsize=1)
 def _valley() -> Array:
     """Return some k1 and the RMS of the best camera with each, (n, 2)."""
-    some = np.r_[-0.4:-0.28:0.04, -0.28:-0.22:0.005, -0.22:-0.1:0.02, -0.1:0.11:0.05].round(3)
+    some = np.r_[-0.4:-0.28:0.01, -0.28:-0.22:0.0025, -0.22:-0.1:0.01, -0.1:0.11:0.02].round(4)
     return np.array([[k1, rms(fitted(float(k1)))] for k1 in some])
 
 

@@ -5,6 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, MUTED, WORLD
 
 _NUMBERS = np.array([0, 0.5, 1, 2, 4, 8, -8, -4, -2, -1, -0.5])
@@ -63,7 +64,9 @@ def _draw_pairs(panel: Panel, way: Array, x: float, colour: str, angle: float) -
         side = 1 if x >= 0 else -1  # the line leads up to this side, the number is on the other
         where = [x - 0.13 * side, 1.25]
         panel.text(where, _number(x), WORLD, anchor="rm" if x >= 0 else "lm", size=13)
-    panel.grip("line", "the class, a line through the origin", 1.9 * way, 5)
+    held = min(1.9, 1.42 / max(-way[1], 0.1)) * way  # in the panel, with its ring
+    panel.polygons([held + 5 * panel.pixel * circle(24)], colour)
+    panel.grip("line", "the class, a line through the origin", held, 5)
 
 
 def _draw_ring(panel: Panel, way: Array, x: float, colour: str, angle: float) -> None:

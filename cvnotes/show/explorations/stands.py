@@ -96,7 +96,9 @@ def _photo(paper: Paper, how: str, found: Best) -> Panel:
 
 def _plan(paper: Paper, alpha: float) -> Panel:
     """Draw both cameras, the planes of their pictures, and the boards that show this there."""
-    panel = paper.panel(_PANEL, (-40, 776), (-255, 255), "from above: pull the cross")
+    panel = paper.panel(
+        _PANEL, (-40, 776), (-255, 255), "from above, with the depth of each board's middle"
+    )
     z, half = _MM * alpha, _MM * _SIZE[0] / 2
     middle = 16  # mm, between both cameras
     panel.line([[z, middle - half], [z, middle + half]], CAMERA, 1, dash=3)

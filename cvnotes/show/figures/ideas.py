@@ -9,7 +9,7 @@ from cvnotes.pictures import render
 from cvnotes.show.axes import drawn_on
 from cvnotes.show.space.camera_shapes import camera_shapes, ray_shapes
 from cvnotes.show.space.directions import sheet
-from cvnotes.show.space.shapes import target_shapes
+from cvnotes.show.space.shapes import Lines, target_shapes
 from cvnotes.show.space.stills import draw_scene
 from cvnotes.show.style import CAMERA, COLOURS, FAINT, FONT, MARKERS
 from cvnotes.targets import Chessboard
@@ -40,7 +40,12 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
     camera = Camera(intrinsics(450, 450, 160, 120), lens=Lens(k=(-0.9,)), size=(320, 240))
     image, corner = render(board, camera.moved(there), blur=0.6), move(there, board.points[3])
     seen, true = camera.project(corner), Camera(camera.A).project(corner)
-    shapes = [*target_shapes(board, there), *camera_shapes(camera, 300, image=image)[:-1]]
+    # The camera without its name, and without the tick that says which way is up.
+    its = [
+        shape._replace(ends=shape.ends[:-2]) if isinstance(shape, Lines) else shape
+        for shape in camera_shapes(camera, 300, image=image)[:-1]
+    ]
+    shapes = [*target_shapes(board, there), *its]
     draw_scene(*shapes, *ray_shapes(camera, seen, to=corner), ax=ax, view=view)
     left, (bottom, top) = ax.get_xlim()[0], ax.get_ylim()
     ax.set_xlim(left, left + 3.15 * (bottom - top))
@@ -65,6 +70,10 @@ def draw_meanings(*, ax: "Axes | None" = None) -> "Axes":
         marker = "<" if meaning == "camera" else MARKERS[meaning]  # to where it looks
         where.plot(*at, marker, color=colour, ms=12, mew=2.5, zorder=3e6)
         leader = None if where is ax else line | {"color": colour, "shrinkB": 5}
+        # Light blue is too light for words: it is their ground.
+        ground = {"facecolor": CAMERA, "edgecolor": "none", "boxstyle": "round,pad=0.3"}
+        ink, box = ("black", ground) if meaning == "camera" else (colour, None)
         ax.annotate(words, (at[0], at[1]), by, where.transData, "axes fraction", va="center",
-                    zorder=4e6, color=colour, fontsize=FONT + 1, arrowprops=leader)  # fmt: skip
+                    zorder=4e6, color=ink, fontsize=FONT + 1, bbox=box,
+                    arrowprops=leader)  # fmt: skip
     return ax
