@@ -1788,6 +1788,26 @@ def test_close_to_level_the_number_on_the_other_side_is_told():
         assert (x, beyond) == pytest.approx(np.tan(np.radians([angle, -angle])), rel=0.01)
 
 
+def test_light_and_dark_change_as_often_as_on_a_ring_in_the_blurred_photograph():
+    grey = ndimage.gaussian_filter(course.photo(6).astype(float), 1)
+    turn = np.arange(16) * np.pi / 8
+    for u, v, wanted in ((205, 151, 2), (204, 177, 4), (174, 156, 2), (189, 150, None)):
+        ring = grey[
+            np.rint(v + 3 * np.sin(turn)).astype(int), np.rint(u + 3 * np.cos(turn)).astype(int)
+        ]
+        light = ring > (ring.min() + ring.max()) / 2
+        times = int(np.sum(light != np.roll(light, 1)))
+        assert wanted in (times, None)
+        drawing = MODELS["changes"].drawing(u=u, v=v)
+        assert numbers(drawing.sentence) == [u, v, times]
+        bars = drawing.picture[TITLE : TITLE + 360, MARGIN + 448 + 2 * MARGIN :]
+        for i, level in enumerate(ring):  # as high as the pixel is bright, in its colour
+            x = round((i + 0.5 + 2.6) * 336 / 18.6)
+            ink = ESTIMATED if light[i] else LENS
+            assert count(bars[:, x : x + 1], ink) == pytest.approx(level * 360 / 312, abs=3)
+    assert MODELS["changes"].drawing(u=218, v=148).sentence.endswith("nearly alike.")
+
+
 def test_no_finder_is_said_to_be_exact():
     for corner in range(54):
         sentence = MODELS["subpixel"].drawing(corner=corner, finders=1).sentence
