@@ -21,9 +21,9 @@ _SPACE, _FOUND = (520, 400), (340, 400)  # px
 _OPEN, _FLAT = 90, 180  # degrees between the boards
 _NOISE, _PHOTOS = 0.1, 40  # px, of each coordinate
 _REACH = 60  # px, of α
-_DEPTH = 180  # mm from the camera to its drawn picture
-_SHEET = sheet((24, -64))
-_SHOWN = ((-288, 266), (-106, 320))  # mm of the sheet
+_DEPTH = 165  # mm from the camera to its drawn picture
+_SHEET = sheet((24, -56))
+_SHOWN = ((-292, 278), (-106, 332))  # mm of the sheet
 
 
 def on_sheet(W: Array) -> Array:
@@ -115,7 +115,7 @@ def _space(paper: Paper, angle: int) -> Panel:
         [move(G, part) for part in paper_and_squares(board)]
         for G, board in TwoPlanes(_BOARD, np.radians(angle)).faces
     ]
-    panel = paper.panel(_SPACE, *_SHOWN, "one photograph of two boards: pull the left one open")
+    panel = paper.panel(_SPACE, *_SHOWN, "two boards before a camera: pull the left one open")
     panel.line(_way(), mixed("#FFFFFF", ESTIMATED, 0.4), 2)
     for border, squares in parts:
         draw_sheet(panel, on_sheet(border), on_sheet(squares))
@@ -125,6 +125,8 @@ def _space(paper: Paper, angle: int) -> Panel:
         draw_sheet(panel, _in_camera(border), _in_camera(squares))
     for at, after in zip(frame, np.roll(frame, -1, axis=0), strict=True):
         panel.line([at, after, eye], CAMERA, 1.8)
+    side = frame[[1, 2]].mean(axis=0) + [8 * panel.pixel, 0]
+    panel.text(side, "its photograph", CAMERA, size=13)
     panel.mark(_outer(angle), "estimated", 8)
     panel.grip("board", "the outer edge of the board on the left", _outer(angle), 3)
     return panel

@@ -5,8 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from cvnotes.base import Array, Image
-from cvnotes.camera import Camera
-from cvnotes.pictures import course, expose, render
+from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
@@ -14,7 +13,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
 from cvnotes.targets import refine_edges, refine_subpixel
 
 _VIEW = 6  # which photograph of the course
-_HALF, _WINDOW = 20, 8  # px, of the picture that is made, and of the window, all of which is shown
+_WINDOW = 8  # px: of the finders, and all of it is shown
 _SIZE = (391, 391)  # 23 px of the page for each of 17
 _STALK = np.array([3.0, 3.0])  # px: the hand holds the cross from aside, and hides no corner
 _RINGS = (0.004, 0.02, 0.1, 0.5)  # px, as far apart as logarithms are
@@ -29,8 +28,6 @@ def subpixel_model() -> Model:
         Setting("v", "cross, down (px)", -3.5, 3.5, 0.01, -1.7, "below the middle pixel"),
         Setting("finders", "show the finders", 0, 1, 1, 0, "how far off they and you are"),
         Setting("corner", "corner", 0, 53, 1, 22, "of the 54 corners of the board"),
-        Setting("blur", "blur σ (px)", 0.2, 2, 0.05, 0.7, "of the lens"),
-        Setting("noise", "noise σ", 0, 10, 0.5, 2, "of each pixel, in grey levels"),
     )
     about = (
         "Seventeen by seventeen pixels around a corner of a chessboard, with a cross that a hand "
@@ -51,24 +48,19 @@ def place_of(corner: int) -> Array:
     return np.asarray(m - np.rint(m))
 
 
-@lru_cache(maxsize=64)
-def photograph(corner: int, blur: float, noise: float) -> Image:
-    """Photograph the neighbourhood of a corner, with its pixel in the middle."""
-    camera, A = course.camera(), course.camera().A.copy()
-    A[:2, 2] += _HALF - np.rint(course.exact_corners()[_VIEW, corner])
-    size = (2 * _HALF + 1, 2 * _HALF + 1)
-    near = Camera(A, course.poses()[_VIEW], camera.lens, size)
-    return expose(
-        render(course.board(), near, blur=blur), noise=noise, rng=np.random.default_rng([4, corner])
-    )
+def neighbourhood(corner: int) -> Image:
+    """Return the grey levels of the window, with the corner's pixel in its middle."""
+    u, v = np.rint(course.exact_corners()[_VIEW, corner]).astype(int)
+    inside = (slice(at - _WINDOW, at + _WINDOW + 1) for at in (v, u))
+    return np.asarray(course.photo(_VIEW)[tuple(inside)])
 
 
-@lru_cache(maxsize=64)
-def found(corner: int, blur: float, noise: float) -> Array:
-    """Return where gradients and edge model find a corner (2, 2), as `place_of` has it."""
-    grey, start = photograph(corner, blur, noise), [[_HALF, _HALF]]
-    both = (find(grey, start, window=_WINDOW)[0] for find in (refine_subpixel, refine_edges))
-    return np.asarray(np.array([*both]) - _HALF)
+@lru_cache(maxsize=1)
+def found() -> Array:
+    """Return where gradients and edge model find all corners (2, 54, 2), as `place_of` has it."""
+    photo, start = course.photo(_VIEW), np.rint(course.exact_corners()[_VIEW])
+    edges = refine_edges(photo, start, grid=course.board().corners, window=_WINDOW)
+    return np.asarray([refine_subpixel(photo, start, window=_WINDOW), edges] - start)
 
 
 def on_target(off: Array) -> Array:
@@ -79,14 +71,13 @@ def on_target(off: Array) -> Array:
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    corner, blur, noise = round(values["corner"]), values["blur"], values["noise"]
+    corner = round(values["corner"])
     hand, true = np.array([values["u"], values["v"]]), place_of(corner)
     half = _WINDOW + 0.5
     panel = paper.panel(
         _SIZE, (-half, half), (-half, half), f"corner {corner}: where do its edges meet?"
     )
-    inside = slice(_HALF - _WINDOW, _HALF + _WINDOW + 1)
-    panel.image(photograph(corner, blur, noise)[inside, inside].astype(np.uint8), smooth=False)
+    panel.image(neighbourhood(corner).astype(np.uint8), smooth=False)
     target = paper.panel(
         _SIZE, (-4.6, 4.6), (-4.6, 4.6), "how far off, enlarged towards the middle"
     )
@@ -96,7 +87,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for ring, px in enumerate(("0.004", "0.02", "0.1", "0.5 px"), 1):
         target.text([0, ring - 0.25], px, MUTED, anchor="mm", size=12)
     target.mark([0, 0], "ideal", 7)
-    off = np.array([hand, *found(corner, blur, noise)]) - true
+    off = np.array([hand, *found()[:, corner]]) - true
     _cross(panel, hand)
     if values["finders"]:
         panel.mark(true, "ideal", 9)
@@ -135,4 +126,4 @@ def _sentence(off: Array, shown: bool) -> str:
     hand, *both = np.linalg.norm(off, axis=1)
     gradients, edges = (f"{x:.3f}" if x >= 0.0005 else "less than 0.001" for x in both)
     you = f"{hand:.2f}" if hand >= 0.1 else f"{hand:.3f}"
-    return f"You are {you} px off; gradients {gradients}, edge model {edges} px."
+    return f"You are {you} px off here; gradients {gradients}, edge model {edges} px."

@@ -27,8 +27,8 @@ def swing_model() -> Model:
     settings = (
         Setting("row", "row", 1, 6, 1, 6, "of the dot that is pulled; row 1 is near"),
         Setting("column", "column", 1, 7, 1, 1, "of the dot that is pulled, from the left"),
-        Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, 0, "in the picture"),
-        Setting("dv", "pulled down (px)", -_FAR, _FAR, 1, 30, "in the picture"),
+        Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, -40, "in the picture"),
+        Setting("dv", "pulled down (px)", -_FAR, _FAR, 1, 0, "in the picture"),
     )
     about = (
         "A tiled floor with six rows of dots, one of which is pulled away, and arrows that show "
@@ -81,11 +81,13 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for line in (*dots, *dots.transpose(1, 0, 2)):
         panel.line(line, MUTED, 0.6)
     panel.line([dots[row - 1, column - 1], held[row - 1]], IDEAL, 1, dash=3)
-    near = 6 if row == 5 else 5  # the dots of rows 5 and 6 are too close for two grips
+    near = 6 if row == 5 else 5  # of two grips that would touch, the other one's stays
+    if np.linalg.norm(held[5] - held[4]) > 26 * panel.pixel:
+        near = 7
     for at, size, ink in (
         (dots.reshape(-1, 2), 2.2, IDEAL),
-        (np.delete(held, near - 1, axis=0), 5, IDEAL),
-        (np.delete(held, [row - 1, near - 1], axis=0), 3, "white"),  # to be pulled as well
+        (np.array([at for i, at in enumerate(held, 1) if i != near]), 5, IDEAL),
+        (np.array([at for i, at in enumerate(held, 1) if i not in (row, near)]), 3, "white"),
     ):
         panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
     moved = [
@@ -94,6 +96,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     ]
     for by, colour in zip(moved[0], _INKS, strict=True):
         panel.arrows(dots[0], _TIMES * by, colour, 2.4)
+    tips = dots[0] + _TIMES * moved[0][1]
+    panel.polygons(tips[:, None] + 2.8 * panel.pixel * circle(17), ESTIMATED)  # short arrows, too
     for i, (at, v) in enumerate(zip(held, dots[:, 0, 1], strict=True), start=1):
         if i != near:
             panel.grip(f"row {i}", f"the dot of row {i}", at, 1)

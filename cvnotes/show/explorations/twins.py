@@ -19,10 +19,11 @@ _SPACE, _PICTURE = (440, 300), (400, 300)  # px
 _SIZE, _ALPHA = (640, 480), 600  # px, of the one camera
 _EYE, _TARGET = [-110, 110, -330], [105, 62, 0]  # mm: where it is, and where it looks
 _LOW, _HIGH, _STEP = 300, 1000, 10  # px: α of the other one
-_FILM = 0.2  # mm of the drawn pictures, for a pixel
+_FILM = 0.16  # mm of the drawn pictures, for a pixel
 _FOOT = [[3, 2], [5, 2], [5, 3], [3, 3]]  # corners of the board, on which the box stands
 _HIGHEST = 100  # mm
-_INK, _WAY, _SIDE, _TOP = "#262629", "#F0C4A4", "#8FA7B8", "#C3D2DC"
+_INK, _WAY = "#262629", "#F0C4A4"
+_WOOD, _BLUE = ("#8CC3AE", "#BFE0D4"), ("#8DBFE8", "#C4E0F6")  # of a box's sides and top
 _VIEW = sheet((50, -85))
 
 
@@ -34,14 +35,15 @@ def on_sheet(W: Array) -> Array:
 def twins_model() -> Model:
     """Make the model of a photograph of the board, and of all cameras that could have taken it."""
     settings = (
-        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 960,
+        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 350,
                 "its focal length; its principal point and its place follow"),
         Setting("height", "a box on the board (mm)", 0, _HIGHEST, 5, 80,
                 "how far it stands out of the plane"),
     )  # fmt: skip
     about = (
         "A board and two cameras in space, with the way on which the other one can be pulled; and "
-        "their two pictures, laid over each other, of the board and of a box upon it."
+        "their two pictures, laid over each other, of the board and of a box upon it, one in each "
+        "camera's colour."
     )
 
     def carry(_: Values, at: Array) -> Values:
@@ -92,18 +94,18 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     cameras = (one(), other(values["alpha"]))
     W = box(values["height"])
     space = _space(paper, cameras, W)
-    picture = paper.picture_panel(_PICTURE, one().size, "both pictures: blue, and orange dashed")
+    picture = paper.picture_panel(_PICTURE, one().size, "both pictures: one board, and two boxes")
     draw_board(picture, one(), course.board())
-    _draw_box(picture, one().project(W))
-    for camera, colour, dash in zip(cameras, (CAMERA, ESTIMATED), (0, 5), strict=True):
+    _draw_box(picture, one().project(W), _BLUE)
+    for camera, colour, width in zip(cameras, (CAMERA, ESTIMATED), (1.8, 2.6), strict=True):
         m = camera.project(W)
         sides = {
             frozenset(two)
-            for face, _ in _unhidden(m)
+            for face in _unhidden(m)
             for two in zip(face, np.roll(face, 1), strict=True)
         }
-        for side in sides:  # each once: dashes that are drawn twice make a line
-            picture.line(m[sorted(side)], colour, 1.8, dash)
+        for side in sides:
+            picture.line(m[sorted(side)], colour, width)
     picture.grip("box", "the top of the box, to be lifted", _top(values["height"]))
     return Drawing(paper.join((space, picture)), _sentence(cameras, W, values["height"]))
 
@@ -113,7 +115,7 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
     panel = paper.panel(_SPACE, x, y, "space: pull the orange camera")
     border, squares = paper_and_squares(course.board())
     draw_sheet(panel, on_sheet(border), on_sheet(squares))
-    _draw_box(panel, on_sheet(W))
+    _draw_box(panel, on_sheet(W), _WOOD)
     panel.line(on_sheet(_way()), _WAY, 2)
     corners = course.board().points[[0, 8, 45]]
     # Names: beside the centre, one above the way and one below, so that they never meet.
@@ -130,16 +132,15 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
     return panel
 
 
-def _draw_box(panel: Panel, at: Array) -> None:
-    for face, colour in _unhidden(at):
-        panel.polygons(at[face][None], colour)
+def _draw_box(panel: Panel, at: Array, colours: tuple[str, str]) -> None:
+    for face in _unhidden(at):
+        panel.polygons(at[face][None], colours[min(face) == 4])
 
 
-def _unhidden(at: Array) -> list[tuple[list[int], str]]:
+def _unhidden(at: Array) -> list[list[int]]:
     """Return those faces of the box, with corners at (8, 2), that are seen from outside."""
     sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
-    faces = [([4, 5, 6, 7], _TOP), *((side, _SIDE) for side in sides)]
-    return [(face, colour) for face, colour in faces if _area(at[face]) > 0]
+    return [face for face in ([4, 5, 6, 7], *sides) if _area(at[face]) > 0]
 
 
 def _area(corners: Array) -> float:

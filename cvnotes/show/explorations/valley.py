@@ -17,9 +17,16 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _H6, _H9, _MOST, _MU = (-2.7, 1.0), (-1.4, 2.3), 25, 1e-3  # where walks may set out; steps
 _SHOWN, _SIDE = ((-2.8, 1.1), (2.4, -1.5)), 396  # of the two unknowns: a little more; px
-_HEIGHTS = (-2.0, 0.0, 1.5, 2.2, 3.3, 4.2)  # of the ground, and its tones from a lake to rock
+_HEIGHTS = (-2.0, 0.0, 1.5, 2.2, 3.3, 4.2)  # of the ground, and its tones from a lake to snow
 _TONES = np.array(
-    [[40, 62, 92], [96, 128, 150], [176, 194, 188], [216, 205, 180], [150, 120, 92], [110, 84, 62]]
+    [
+        [36, 62, 98],
+        [80, 124, 156],
+        [146, 178, 178],
+        [190, 182, 152],
+        [226, 212, 188],
+        [255, 253, 250],
+    ]
 )
 _LIGHT = np.array([-1, -1, 1.2]) / np.linalg.norm([1, 1, 1.2])  # from the upper left
 _LINES = (3, 10, 30, 60, 100, 150, 200, 250, 300)  # px, RMS: of equal height
@@ -135,7 +142,8 @@ def valley_model() -> Model:
         _name_ground(ground, of)
         for way, (name, colour, _, meaning) in zip(ways, _WALKS, strict=True):
             ground.mark(way[-1], meaning, 8)
-            _name_end(ground, way[-1], name, colour)
+            higher = max(ways, key=lambda one: one[-1, 1]) is way
+            _name_end(ground, way[-1], name, colour, 1 if higher else -1)
         ground.mark(start, "world", 9)
         ground.grip("start", "where the walks set out", start, 5)
         rms = [[of.rms(h) for h in way] for way in ways]
@@ -166,17 +174,22 @@ def _name_ground(ground: Panel, of: Floor) -> None:
     ground.text(best + [-0.16, -0.02], "lowest", IDEAL, anchor="rm", size=12)
 
 
-def _name_end(ground: Panel, at: Array, name: str, colour: str) -> None:
-    """Write a walk's name beside its end, the damped one's above, within the picture."""
+def _name_end(ground: Panel, at: Array, name: str, colour: str, up: int) -> None:
+    """Write a walk's name beside its end, the higher one's above, within the picture."""
     aside = 12 * ground.pixel * (1 if at[0] < 0.3 else -1)
-    up = 9 * ground.pixel * (1 if colour == ESTIMATED else -1)
-    ground.text(at + [aside, up], name, colour, anchor="lm" if aside > 0 else "rm", size=13)
+    ground.text(
+        at + [aside, 9 * up * ground.pixel],
+        name,
+        colour,
+        anchor="lm" if aside > 0 else "rm",
+        size=13,
+    )
 
 
 def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
-    panel = paper.panel((440, 396), (-1.5, _MOST + 1), (5.4, -0.9), "RMS (px) after each step")
+    panel = paper.panel((440, 396), (-1.5, _MOST + 1), (4.3, -0.5), "RMS (px) after each step")
     panel.ticks(x=(5, 10, 15, 20, 25), size=11)
-    for power in range(6):
+    for power in range(5):
         panel.line([[-2, power], [_MOST + 2, power]], "#DDDDDD", 0.5)
         panel.text([-1.3, power], f"{10**power:,}", anchor="lm", size=11)
     for values, (name, colour, width, meaning), up in zip(rms, _WALKS, (-0.3, 0.3), strict=True):
@@ -185,7 +198,7 @@ def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
         panel.mark(curve[-1], meaning, 7)
         steps, high = curve[-1].tolist()
         at, anchor = (steps + 0.8, "lm") if steps < 18 else (_MOST, "rm")
-        panel.text([at, min(high + up, 5)], name, colour, anchor=anchor, size=12)
+        panel.text([at, min(high + up, 3.9)], name, colour, anchor=anchor, size=12)
     return panel
 
 
@@ -196,4 +209,5 @@ def _sentence(of: Floor, ways: list[Array], rms: list[list[float]]) -> str:
         there = np.flatnonzero(np.linalg.norm(way - best, axis=1) < 1e-3)
         arrived = f"is in the hollow after {there[0]}" if len(there) else "is not there"
         ends.append(f"{arrived}, RMS {values[-1]:,.4g} px")
-    return f"{steps} steps. The damped walk {ends[0]}; the undamped one {ends[1]}."
+    said = f"{steps} steps, refused ones counted."
+    return f"{said} The damped walk {ends[0]}; the undamped one {ends[1]}."
