@@ -25,6 +25,7 @@ _SIZE = (374, 320)
 _SEEN = (190.0, 269.0), (150.2, 217.8)  # px, u and v
 _PLANE = (-500.0, 700.0), (-450.9, 575.9)  # mm around the board's middle
 _LEVELS = (0.05, 0.1, 0.2, 0.3)  # px
+_CELLS = 28, 24  # of the coarse map, along X and Y
 _PALE = "#E4E4E4"
 
 
@@ -96,11 +97,16 @@ def rms(net: Array) -> Array:
 @lru_cache(maxsize=2)
 def _map(sharpness: int) -> Drawn:
     """Paint how far the plain DLT is off from each origin: paler is better."""
-    (x0, x1), (y0, y1) = _PLANE
-    X, Y = np.meshgrid(np.linspace(x0, x1, 29), np.linspace(y0, y1, 25))
+    x, y = (  # the middles of cells, two of them outside on each side
+        low + (high - low) * (np.arange(-2, n + 2) + 0.5) / n
+        for (low, high), n in zip(_PLANE, _CELLS, strict=True)
+    )
+    X, Y = np.meshgrid(x, y)
     coarse = np.log(rms(plain(np.stack([X, Y], axis=-1)))).astype(np.float32)
     size = (sharpness * _SIZE[0], sharpness * _SIZE[1])
-    height = np.asarray(Bitmap.fromarray(coarse).resize(size, Bitmap.Resampling.BICUBIC))
+    inside = (2, 2, 2 + _CELLS[0], 2 + _CELLS[1])
+    fine = Bitmap.fromarray(coarse).resize(size, Bitmap.Resampling.BICUBIC, box=inside)
+    height = np.asarray(fine)
     part = np.interp(height, np.log([0.02, 1.2]), [0, 0.6])[..., None]
     tint = 1 - part * (1 - np.array(rgb(LENS)))
     ink = contours(height, np.log(_LEVELS), 0.5 + 0.5 * sharpness)[..., None]

@@ -14,7 +14,7 @@ from cvnotes.projective import apply
 from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
 _BOARD, _CAMERA = course.board(), Camera(course.camera().A, course.poses()[6])
 _PART = (160, 76), (580, 420)  # px: the part of the picture that is shown
@@ -35,8 +35,8 @@ def ransac_model() -> Model:
     )
     about = (
         "A board, and where 54 pairs say that its corners are seen; the net of the homography of "
-        "four of them, or of all, and the pairs that agree with it. Beside it how many agree, draw "
-        "after draw, and how likely it is that four right ones have been drawn."
+        "four of them, or of all, and the pairs that agree with it. Beside it how many have agreed "
+        "in each draw so far."
     )
 
     @lru_cache(maxsize=1)
@@ -63,7 +63,7 @@ def ransac_model() -> Model:
             (340, 360), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
         )
         counts = agree.sum(axis=1)
-        _draw_votes(votes, counts, n, wrong)
+        _draw_votes(votes, counts[: n + 1])
         return Drawing(paper.join((panel, votes)), _sentence(n, agree, true))
 
     return Model("ransac", about, settings, draw, {"draw": lambda _, at: {"draw": float(at[0])}})
@@ -124,17 +124,17 @@ def _name_marks(panel: Panel, at: tuple[int, int]) -> None:
         panel.text([x + aside, y], words, size=12)
 
 
-def _draw_votes(panel: Panel, counts: Array, n: int, wrong: int) -> None:
+def _draw_votes(panel: Panel, counts: Array) -> None:
+    """Draw how many pairs agree in each draw so far, and the most of them as a line of steps."""
     panel.ticks(x=(0, 20, 40, 60), y=(18, 36, 54), size=12)
-    right = (1 - wrong / 54) ** 4
-    draws = np.arange(_DRAWS + 1)
-    panel.line(np.column_stack([draws, 54 * (1 - (1 - right) ** draws)]), MUTED, 1.2, dash=4)
-    panel.text([10, 56.5], "chance of four right ones", size=12)
-    panel.text([_DRAWS + 2.5, 56.5], "100 %", anchor="rm", size=12)
-    best = np.maximum.accumulate(np.where(draws > 0, counts, 0))
-    steps = np.column_stack([np.repeat(draws[1:], 2)[1:], np.repeat(best[1:], 2)[:-1]])
-    panel.line(steps, IDEAL, 1.2)
-    panel.segments([[[k, 0], [k, counts[k]]] for k in draws[1:] if counts[k]], LENS, 2.2)
+    n = len(counts) - 1
+    if n > 1:
+        best = np.maximum.accumulate(counts[1:])
+        ends = np.arange(1, n + 1).repeat(2)[1:]
+        panel.line(np.column_stack([ends, best.repeat(2)[:-1]]), IDEAL, 1.2)
+    draws = np.flatnonzero(counts[1:]) + 1
+    bars = np.stack([draws, 0 * draws, draws, counts[draws]], axis=-1)
+    panel.segments(bars.reshape(-1, 2, 2), LENS, 2.2)
     panel.mark([n, counts[n]], "estimated", 9)
     panel.grip("draw", "which draw is shown", [n, float(counts[n])], 5)
 

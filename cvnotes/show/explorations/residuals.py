@@ -67,7 +67,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _curve(paper: Paper, k1: float, missed: float) -> Panel:
-    panel = paper.panel(_BESIDE, (-0.46, 0.13), (-0.1, -2.5), "RMS (px) against k₁: pull the cross")
+    panel = paper.panel(_BESIDE, (-0.46, 0.13), (-0.1, -2.5), "RMS (px, logarithmic) by k₁")
     panel.ticks(x=(-0.3, -0.2, -0.1, 0))
     for power in (-2, -1):
         panel.segments([[[-0.38, power], [0.13, power]]], GRID, 0.5)
