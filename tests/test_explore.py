@@ -430,7 +430,16 @@ def test_numbers_below_zero_have_a_minus_sign_and_no_hyphen():
     assert "says +0.00 ± 0.00 px" in MODELS["noise"].drawing(sigma=0).sentence
 
 
-def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_steps(written):
+def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_steps(
+    written, monkeypatch
+):
+    lines, line = [], Panel.line
+
+    def kept(panel, xy, colour, width=1.5, dash=0):
+        lines.append((np.array(xy), dash))
+        line(panel, xy, colour, width, dash)
+
+    monkeypatch.setattr(Panel, "line", kept)
     board = course.board()
     for values in (
         {},
@@ -438,6 +447,7 @@ def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_s
         {"T_x": -60, "angle_z": 8},
     ):
         written.clear()
+        lines.clear()
         drawing, v = MODELS["camera"].drawing(**values), MODELS["camera"].values(**values)
         grip = grip_of(drawing, "camera")
         R = rotation_from_angles(*np.radians([v["angle_x"], v["angle_y"], v["angle_z"]]))
@@ -460,14 +470,13 @@ def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_s
         assert bare.mean() > 0.6
         grey = ink.mean(axis=1)
         assert np.mean(grey[dark & bare] < 138) > 0.9 < np.mean(grey[~dark & bare] > 138), values
-        panel, corner = None, np.zeros(3)
-        for name, step in zip("xyz", np.diag(T), strict=True):
-            words = f"{name} {step.sum():.0f}".replace("-", "−")
-            panel, at = written[words]
-            far = 0.9 if name == "x" and T[0] < 0 else 0.5  # the y axis begins where x does
-            beside = from_afar(C + R.T @ (corner + far * step))
-            assert np.linalg.norm(at - beside) < 12 * panel.pixel
-            corner = corner + step
+        panel, at = written["T"]
+        assert np.linalg.norm(at - from_afar(C + R.T @ T / 2)) < 12 * panel.pixel
+        words = ", ".join(f"{step:.0f}" for step in T).replace("-", "−")
+        assert panel.title == f"space, T = ({words}) mm: pull the camera"
+        (steps,) = (xy for xy, dash in lines if dash == 5)
+        corners = [np.zeros(3), *np.cumsum(np.diag(T), axis=0)]
+        assert np.allclose(steps, from_afar(C + np.array(corners) @ R))
 
 
 def test_a_board_beside_the_picture_is_missed_in_words():
@@ -1977,26 +1986,39 @@ def test_the_name_of_the_followed_corner_leaves_the_small_plus_free():
         assert (np.abs(u[~word] - at[0] - 2) < 23).all()
 
 
+def test_an_extra_has_a_slider_only_where_it_is_given_a_start():
+    plain, bent = MODELS["formation"], MODELS["formation"].starting(k1=-0.25)
+    names = [s.name for s in plain.settings]
+    assert [s.name for s in bent.settings] == [*names, "k1"]
+    assert bent.values()["k1"] == -0.25
+    assert "k1" not in plain.values()
+    assert np.array_equal(plain.picture(k1=-0.25), bent.picture())
+    assert not np.array_equal(plain.picture(), bent.picture())
+    assert bent.dragged("camera", (100, -300))["k1"] == -0.25
+    with pytest.raises(CvnotesError, match=r"0\.25"):
+        plain.values(k1=1)
+
+
 @pytest.mark.parametrize("k1", [0, -0.25])
 def test_the_followed_corner_is_where_each_step_puts_it_and_the_box_where_a_camera_sees_it(k1):
-    values = {"X": 200, "Z": -320, "turn": -20, "alpha": 700, "k1": k1, "width": 150, "front": 20}
+    values = {"X": 200, "Z": -320, "turn": -20, "alpha": 700, "k1": k1, "width": 150}
     drawing = MODELS["formation"].drawing(**values)
     # Turned by 20° to the left about the vertical, then nodding down as much (Y points down).
     turn = rotation_from_vector([0, np.radians(20), 0])
     R = rotation_from_vector([np.radians(20), 0, 0]) @ turn
     assert R[2, 1] > 0  # the axis points down
-    x, y, z = M = R @ (np.array([150, -125, 20]) - [200, -255, -320])
+    x, y, z = M = R @ (np.array([150, -125, 0]) - [200, -255, -320])
     xy = np.array([x, y]) / z
     bent = xy * (1 + k1 * xy @ xy)
     m = bent * [700, 1.005 * 700] + [325, 238]
     said = numbers(drawing.sentence.replace("k₁", ""))
-    expected = [150, -125, 20, *M, *xy, *(bent if k1 else ()), *m]
+    expected = [150, -125, 0, *M, *xy, *(bent if k1 else ()), *m]
     assert said == pytest.approx(expected, abs=0.5)
     assert said[-2:] == pytest.approx(m, abs=0.051)
     assert said[6:8] == pytest.approx(xy, abs=0.00051)
     # The last panel, beside the third, against a photograph of the same box.
     photo = render_scene(
-        box((0, 150), (-125, 0), (20, 80), (0, 1, 0)),
+        box((0, 150), (-125, 0), (0, 80), (0, 1, 0)),
         Camera(
             intrinsics(700, 1.005 * 700, 325, 238),
             pose(R, -R @ [200, -255, -320]),
@@ -2958,6 +2980,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("epipolar", "depth"),
     ("stands", "plane"),
     ("zoom", "sensor"),
+    ("formation", "corner"),
     ("stands", "alpha"),
     ("similar", "tree"),
     ("similar", "film"),

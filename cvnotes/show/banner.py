@@ -14,7 +14,7 @@ STEPS = ("R, T", "÷ z", "lens", "A")
 # Which steps a chapter is about: those of the first page and of the last two are all. Chapter 5
 # looks for the pixel itself. Chapters 6 and 7 go from the picture back to the world.
 _LIT: dict[int, tuple[str, ...]] = {
-    1: ("÷ z",), 2: ("R, T", "÷ z", "A"), 3: ("R, T", "A"), 4: ("lens",), 5: (),
+    1: ("÷ z",), 2: ("R, T", "÷ z", "A"), 3: ("R, T", "÷ z", "A"), 4: ("lens",), 5: (),
     6: ("R, T", "÷ z", "A"), 8: ("lens", "A"),
 }  # fmt: skip
 _BACKWARDS = (6, 7)

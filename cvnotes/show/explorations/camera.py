@@ -46,11 +46,9 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
     angles, T = np.degrees(angles_of(start[:3, :3])), start[:3, 3]
     shift = "where the world's origin lies along the camera's {} axis, mm"
     settings = (
-        _tenth("x", 75, angles[0], "turns the board about its own X axis: R = Rz Ry Rx"),
-        _tenth(
-            "y", 75, angles[1], "turns it about the camera's y axis, as angle z has turned this"
-        ),
-        _tenth("z", 180, angles[2], "turns the board about the camera's z axis"),
+        _tenth("x", 75, angles[0], "turns R about the board's own X axis: R = Rz Ry Rx"),
+        _tenth("y", 75, angles[1], "turns R about the camera's y axis, as turned by angle z"),
+        _tenth("z", 180, angles[2], "turns R about the camera's z axis"),
         _whole("x", -reach, reach, T[0], shift.format("x")),
         _whole("y", -reach, reach, T[1], shift.format("y")),
         _whole("z", 0, 3.2 * reach, T[2], shift.format("z")),
@@ -142,7 +140,9 @@ def _space(camera: Camera, board: Chessboard, paper: Paper, corners: Array) -> P
     below = np.where([0, 1, 0], floor[0], stands)
     shown = on_sheet(np.concatenate([floor, border, axes, below, pane, C + own, walk]))
     (x0, y0), (x1, y1) = around(shown.min(axis=0), shown.max(axis=0), _SIZE, 1.18)
-    panel = paper.panel(_SIZE, (x0, x1), (y0, y1), "space: pull the camera")
+    panel = paper.panel(
+        _SIZE, (x0, x1), (y0, y1), f"space, T = {_words(camera.T)} mm: pull the camera"
+    )
     panel.polygons([on_sheet(floor)], _FLOOR)
     panel.segments(on_sheet(joints), _JOINTS, 1)
     panel.line(on_sheet(below[:2]), _SHADOW, 4)
@@ -156,7 +156,7 @@ def _space(camera: Camera, board: Chessboard, paper: Paper, corners: Array) -> P
     small = [on_sheet(pane[0]) + (m - corners[0]) @ across for m in seen]
     panel.polygons(small, [PAPER, *[SQUARES] * len(squares)])
     _draw_axes(panel, C, own, "xyz", CAMERA)
-    _draw_T(panel, on_sheet(walk), camera.T)
+    _draw_T(panel, on_sheet(walk))
     panel.mark(on_sheet(np.zeros(3)), "world", 6)
     panel.grip("camera", "the camera, to carry it round the board", on_sheet(C), 6)
     return panel
@@ -187,29 +187,15 @@ def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str)
         )
 
 
-def _draw_T(panel: Panel, at: Array, T: Array) -> None:
+def _draw_T(panel: Panel, at: Array) -> None:
     """Draw T, from the camera to the world's origin, and its three steps along x, y and z."""
     panel.line(at, IDEAL, 1.5, dash=5)
     panel.arrows(at[0], at[3] - at[0], IDEAL, 4)
-    _name(panel, at[[0, 3]], at[1:3].mean(axis=0), "T", 17)
-    for i, (axis, number) in enumerate(zip("xyz", T, strict=True)):
-        _name(
-            panel,
-            at[i : i + 2],
-            at[0 if i else 3],
-            f"{axis} {number + 0.0:.0f}".replace("-", "−"),
-            14,
-            0.9 if i == 0 and T[0] < 0 else 0.5,  # the y axis begins where x does
-        )
-
-
-def _name(panel: Panel, ends: Array, other: Array, words: str, size: int, far: float = 0.5) -> None:
-    """Write words beside a line, so far along it, on the side where the other point is not."""
-    (x, y), middle = _along(panel, ends), (1 - far) * ends[0] + far * ends[1]
+    (x, y), middle = _along(panel, at[[0, 3]]), at[[0, 3]].mean(axis=0)
     across = np.array([y, -x])
-    across = across * (1 if across @ (middle - other) > 0 else -1)
+    across = across * (1 if across @ (middle - at[1:3].mean(axis=0)) > 0 else -1)
     anchor = "lmr"[1 - int(np.rint(1.2 * across[0]))] + "m"
-    panel.text(middle + 11 * panel.pixel * across, words, IDEAL, anchor=anchor, size=size)
+    panel.text(middle + 11 * panel.pixel * across, "T", IDEAL, anchor=anchor, size=17)
 
 
 def _along(panel: Panel, ends: Array) -> Array:
@@ -238,4 +224,6 @@ def _matrices(camera: Camera) -> str:
 
 
 def _words(x: Array) -> str:
-    return f"({', '.join(f'{value:.0f}' for value in (x.round() + 0.0).tolist())})"
+    return f"({', '.join(f'{value:.0f}' for value in (x.round() + 0.0).tolist())})".replace(
+        "-", "−"
+    )

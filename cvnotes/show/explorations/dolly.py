@@ -11,7 +11,7 @@ from cvnotes.pictures import render_scene, room
 from cvnotes.pictures.meshes import from_above
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, IDEAL, LENS, MUTED, hexed
+from cvnotes.show.style import CAMERA, IDEAL, MUTED, hexed
 
 _SIZE, _SHOWN, _PLAN = (640, 480), (440, 330), (205, 330)  # px
 _GROWS = 0.25  # px for each mm of distance
@@ -80,11 +80,11 @@ def _plan(paper: Paper, camera: Camera, angle: float) -> Panel:
         panel.polygons([corners], hexed(np.rint(255 * colour)))
     panel.line([left, eye, right], CAMERA, 1.5)
     across = eye + (_FRONT - eye[1]) * sides
-    panel.line(across, LENS, 1.5)
+    panel.line(across, IDEAL, 1.5)
     panel.line(_BOARD[:, ::2], _GREEN, 5)
     panel.polygons(_OUTSIDE, "#E4E4E4")
     panel.line(_CORNERS, MUTED, 3)
-    panel.text([_X, _FRONT - 420], f"{np.ptp(across[:, 0]) / 1000:.2f} m", LENS, anchor="mm")
+    panel.text([_X, _FRONT - 420], f"{np.ptp(across[:, 0]) / 1000:.2f} m", IDEAL, anchor="mm")
     panel.mark(eye, "camera", 9)
     panel.text(eye + [480, -60], f"{angle:.0f}°", CAMERA, size=13)
     panel.grip("walk", "how far back the camera stands", eye, 8)

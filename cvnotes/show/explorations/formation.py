@@ -37,20 +37,18 @@ _WEDGE, _JOINTS = "#DDEFFA", "#DEDEDE"
 
 def formation_model() -> Model:
     """Make the model of a box before a camera that is moved, turned and zoomed."""
-    corner = "of the corner that is followed"
     settings = (
         Setting("X", "camera's X (mm)", -300, 600, 5, 340, "where the camera stands"),
         Setting("Z", "camera's Z (mm)", -540, -120, 5, -420, "negative: before the box"),
         Setting("turn", "turn (°)", -80, 80, 0.5, -30, "of the camera on the spot, to the right"),
         Setting("alpha", "α (px)", 600, 1200, 10, 800, "the focal length"),
-        Setting("k1", "k₁ of the lens", -0.25, 0.25, 0.01, 0, "how strongly the lens bends"),
-        Setting("width", "the cross: X (mm)", 60, 400, 5, 200, corner),
-        Setting("front", "the cross: Z (mm)", -100, 70, 5, 0, corner),
+        Setting("width", "the cross: X (mm)", 60, 400, 5, 200, "of the corner that is followed"),
         Setting(
             "way", "upper right: the way", 0, 2, 0.05, 1,
             "0: the world; 1: the camera's frame; 2: the box divided by z",
         ),
     )  # fmt: skip
+    lens = Setting("k1", "k₁ of the lens", -0.25, 0.25, 0.01, 0, "how strongly the lens bends")
     about = (
         "A box on a floor, four times: from above in the world, with a camera; from above in the "
         "camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the "
@@ -63,9 +61,9 @@ def formation_model() -> Model:
     drags = {
         "camera": lambda _, at: {"X": float(at[0]), "Z": float(at[1])},
         "line of sight": looked,
-        "corner": lambda _, at: {"width": float(at[0]), "front": float(at[1])},
+        "corner": lambda _, at: {"width": float(at[0])},
     }
-    return Model("formation", about, settings, _draw, drags)
+    return Model("formation", about, settings, _draw, drags, (lens,))
 
 
 def camera_of(values: Values) -> Camera:
@@ -74,12 +72,12 @@ def camera_of(values: Values) -> Camera:
     eye = np.array([values["X"], _EYE, values["Z"]])
     ahead = [np.sin(turn), np.tan(down), np.cos(turn)]
     A = intrinsics(values["alpha"], 1.005 * values["alpha"], 325, 238)
-    return Camera(A, look_at(eye, eye + ahead), Lens(k=(values["k1"],)))
+    return Camera(A, look_at(eye, eye + ahead), Lens(k=(values.get("k1", 0.0),)))
 
 
 def corner_of(values: Values) -> Array:
     """Return the corner (3,) of the box that is followed, in the WRF."""
-    return np.array([values["width"], -_HEIGHT, values["front"]])
+    return np.array([values["width"], -_HEIGHT, 0.0])
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:

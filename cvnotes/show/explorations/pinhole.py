@@ -39,7 +39,7 @@ def pinhole_model() -> Model:
         Setting("lens", f"a lens of {_LENS:g} mm", 0, 1, 1, 0, "a lens in place of the hole"),
         Setting(
             "focus",
-            "lens focused at (m)",
+            "with the lens: focused at (m)",
             0.1,
             10,
             0.05,
@@ -212,7 +212,7 @@ def _draw_lens(panel: Panel, focus: float) -> None:
             panel.line(way * [1, side], colour, 1.2)
         panel.line([[_SENSOR, -abs(end) - 1], [_SENSOR, abs(end) + 1]], colour, 7)
     panel.line(rim + [_HOLE, 0], LENS, 1.5)
-    panel.text([6, -44], f"from {_ROOM[2]:g} m", ESTIMATED, size=13)
+    panel.text([6, -44], f"the room, {_ROOM[2]:g} m", ESTIMATED, size=13)
     panel.text([22, 0], "the card", CAMERA, size=13)
 
 
