@@ -107,11 +107,10 @@ FIGURES = [
     # quality
     figure(quality.draw_residuals, {"magnify": (50.0, ONE)}, calibration=RESULT),
     figure(
-        quality.draw_coverage, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480)
-    ),
-    *(
-        figure(count, {"image_points": (SEEN, rows(2))}, sizes=("size",), size=(640, 480))
-        for count in (coverage.covered_cells, coverage.count_cells)
+        coverage.covered_cells,
+        {"image_points": (SEEN, rows(2))},
+        sizes=("size",),
+        size=(640, 480),
     ),
     # what 3-D figures are made of
     figure(shapes.axes_shapes, {"world_from_frame": (G, SINGLE), "length": (100.0, ONE)}),

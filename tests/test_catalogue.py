@@ -240,7 +240,6 @@ MAY_BE_EMPTY = {
     "fisheye.FisheyeLens": ("k",),
     "pictures.raycast.first_hits": ("corners",),
     "calibration.coverage.covered_cells": ("image_points",),
-    "calibration.coverage.count_cells": ("image_points",),
 }
 
 

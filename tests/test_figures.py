@@ -10,7 +10,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.patches import Rectangle
 from matplotlib.quiver import Quiver
 from PIL import Image
 
@@ -20,7 +19,6 @@ from cvnotes.camera import Camera, look_at
 from cvnotes.pictures import chart_room, course, render_scene
 from cvnotes.show import (
     draw_corners,
-    draw_coverage,
     draw_image,
     draw_lines,
     draw_points,
@@ -66,7 +64,6 @@ DRAWN = {
     "points": lambda ax: draw_points(CORNERS, size=(64, 48), ax=ax),
     "corners": lambda ax: draw_corners(GREY, CORNERS, BOARD, ax=ax),
     "residuals": lambda ax: draw_residuals(NOISE, ax=ax),
-    "coverage": lambda ax: draw_coverage(NOISE.image_points, (64, 48), ax=ax),
 }
 
 
@@ -112,7 +109,7 @@ def test_no_text_is_cut_off_and_no_two_texts_overlap(name):
         assert not box.count_overlaps(boxes[:i]), texts[i]
 
 
-@pytest.mark.parametrize("name", ["image", "points", "corners", "residuals", "coverage"])
+@pytest.mark.parametrize("name", ["image", "points", "corners", "residuals"])
 def test_pixels_have_v_downwards_equal_scales_and_centres_at_integers(name):
     ax = DRAWN[name](None)
     assert ax.get_xlim() == (-0.5, 63.5)
@@ -245,30 +242,6 @@ def test_residuals_need_corners():
     made = calibration([[[0.1, 0.1]]], image_points=[])
     with pytest.raises(DegenerateError, match="read from a file that has no corners"):
         draw_residuals(made)
-
-
-def hatched(ax):
-    return {p.get_xy() for p in ax.patches if isinstance(p, Rectangle) and p.get_hatch()}
-
-
-def test_the_cells_without_corners_are_hatched_and_counted():
-    # 8 × 4 cells of 10 px; the outermost pixels of the picture belong to its outermost cells.
-    m = [[-0.5, -0.5], [9.4, 9.4], [9.5, 0], [79.4, 39.4], [79.5, 0], [500, -3]]
-    ax = draw_coverage(m, (80, 40))
-    assert ax.get_title() == "corners in 3 of 32 cells of the picture"
-    empty = hatched(ax)
-    assert len(empty) == 29
-    assert (19.5, -0.5) in empty
-    assert not empty & {(-0.5, -0.5), (9.5, -0.5), (69.5, 29.5)}
-    assert len(ax.patches) == 32
-    counts = {text.get_position(): text.get_text() for text in ax.texts}
-    assert counts == {(4.5, 4.5): "2", (14.5, 4.5): "1", (74.5, 34.5): "1"}
-
-
-def test_coverage_takes_all_views_in_any_form():
-    for m in (NOISE.image_points, tuple(NOISE.image_points), np.stack(NOISE.image_points)):
-        assert draw_coverage(m, (64, 48)).get_title() == "corners in 20 of 48 cells of the picture"
-    assert draw_coverage([], (48, 64)).get_title() == "corners in 0 of 48 cells of the picture"
 
 
 # --- style ----------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ import warnings
 
 import numpy as np
 import pytest
-from public_face import BOARD, CAMERA, FUNCTIONS, GREY, NOISE, PAIR, function
+from public_face import BOARD, CAMERA, FUNCTIONS, GREY, NOISE, function
 from public_figures import FIGURES
 
 from cvnotes import camera, pictures, show, targets
@@ -60,7 +60,6 @@ MORE = [
     function(show.panels, {}),
     function(show.show, {}, figure=show.panels(), alt="Axes."),
     function(show.one_corner, {}, chapter=1),
-    function(show.draw_coverage, {}, image_points=PAIR, size=(640, 480)),
 ]
 # Names of sizes that are no whole numbers, or pairs of such.
 NAMES = {"blur", "sigma", "motion", "margin", "radius", "window", "size", "farther"}

@@ -93,6 +93,15 @@ def test_covering_views_reach_all_four_corners_of_the_picture(seed):
         assert angle.max() <= 45
 
 
+def test_the_cells_in_which_corners_were_seen():
+    # 8 × 4 cells of 10 px; the outermost pixels of the picture belong to its outermost cells.
+    m = [[-0.5, -0.5], [9.4, 9.4], [9.5, 0], [79.4, 39.4], [79.5, 0], [500, -3]]
+    for seen in (covered_cells(m, (80, 40)), covered_cells([np.array([p]) for p in m], (80, 40))):
+        assert seen.shape == (8, 4)
+        assert np.argwhere(seen).tolist() == [[0, 0], [1, 0], [7, 3]]
+    assert not covered_cells([], (80, 40)).any()
+
+
 def test_three_views_reach_no_four_corners():
     with pytest.raises(CvnotesError, match="n: there are four corners to be reached, so at least"):
         views(covering_views, 3)

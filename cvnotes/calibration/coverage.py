@@ -29,25 +29,12 @@ def covered_cells(
     >>> covered_cells([[10, 10], [600, 400]], (640, 480)).sum()
     np.int64(2)
     """
-    return count_cells(image_points, size) > 0
-
-
-def count_cells(
-    image_points: npt.ArrayLike | Sequence[npt.ArrayLike], size: tuple[int, int]
-) -> npt.NDArray[np.intp]:
-    """Count the corners in each of the cells of `covered_cells`, (columns, rows).
-
-    Examples
-    --------
-    >>> count_cells([[10, 10], [20, 20], [600, 400]], (640, 480)).max()
-    np.int64(2)
-    """
     m, size = joined(image_points), image_size(size)
     cells = np.array([max(round(8 * n / max(size)), 1) for n in size])
     inside = m[((m >= -0.5) & (m < np.array(size) - 0.5)).all(axis=1)]
-    count = np.zeros(cells, dtype=np.intp)
-    np.add.at(count, tuple(((inside + 0.5) // (size / cells)).astype(int).T), 1)
-    return count
+    seen = np.zeros(cells, dtype=bool)
+    seen[tuple(((inside + 0.5) // (size / cells)).astype(int).T)] = True
+    return seen
 
 
 def joined(image_points: npt.ArrayLike | Sequence[npt.ArrayLike]) -> Array:

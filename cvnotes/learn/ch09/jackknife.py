@@ -52,8 +52,8 @@ EXERCISE = Exercise(
     title="Your own jackknife",
     task="In each of v views n points of the plane z = 1 should be at xy and were seen at xy_lens, "
     "shape (v, n, 2) each. Fit k = (k1, k2) by least squares to all views but one, for each view "
-    "left out in turn. Give the standard deviations (2,) that the scatter of these k about their "
-    "mean says the k of all views has.",
+    "left out in turn. From the scatter of these v results about their mean, give the jackknife's "
+    "standard deviations (2,) of k.",
     hints=(
         "One fit: xy_lens − xy = (k1 r² + k2 r⁴) xy, two rows for each point of the views that "
         "stay; np.linalg.lstsq. np.delete(xy, i, axis=0) leaves view i out.",
