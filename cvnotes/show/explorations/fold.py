@@ -172,6 +172,7 @@ def _space(
         arc = circle.place(np.arange(0, 181.0, 3))
         panel.line(on_sheet(arc), ink, 2)
         panel.line(on_sheet(arc[[0, -1]]), ink, 0.8)
+    _name(panel, on_sheet(circles[0].place(125.0)), (-6, -4), "the eye's path", IDEAL, "rd")
     below = np.array([*eye[:2], 0])
     panel.line(on_sheet(np.array([eye, below])), IDEAL, 1.4, dash=3)
     others = _flat(vanishing_points(H[-1]))
