@@ -1292,7 +1292,7 @@ def test_face_on_the_eye_of_the_fold_is_where_the_half_circles_of_thales_cross()
     x = (770 + 0.62 * (at - (s.min() + s.max()) / 2)) / 1540 * 350 + 500 + 6 + MARGIN
     y = (1078 - 0.62 * np.sqrt((at - a) * (b - at))) / 1848 * 420 + TITLE
     for fold in (30, 90):  # nothing in this plane turns with the fold
-        eye = MODELS["fold"].drawing(fold=fold, second=0).picture[round(y), round(x)]
+        eye = MODELS["thales"].drawing(fold=fold).picture[round(y), round(x)]
         assert eye.tolist() == [0x56, 0xB4, 0xE9]
 
 
@@ -2337,14 +2337,13 @@ def test_stepping_back_and_zooming_keeps_the_box_and_enlarges_what_is_behind_it(
 
 def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_say_which_is_it():
     for fold in range(30, 121, 15):
-        drawing = MODELS["fold"].drawing(fold=fold, second=0)
+        drawing = MODELS["thales"].drawing(fold=fold)
         assert numbers(drawing.sentence)[-2:] == [90, 90]
         grip = grip_of(drawing, "eye")
         for by in ((0, 0), (3, -3)):  # px: a hand is not exact
             at = tuple(np.add(grip.at, np.multiply(grip.unit, by)))
-            assert abs(MODELS["fold"].dragged("eye", at, fold=50)["fold"] - fold) <= 2
+            assert abs(MODELS["thales"].dragged("eye", at, fold=50)["fold"] - fold) <= 2
     explorer = explorations.explore("fold")
-    explorer.sliders["second"].value = True
     for fold, said in ((59, "this is the camera"), (50, "this is not the camera")):
         explorer.sliders["fold"].value = fold
         assert said in explorer.sentence.value

@@ -1,4 +1,4 @@
-"""Explore what lies between four pixels: each weighs the area of the rectangle opposite to it."""
+"""Explore what lies between four pixels, each weighted by the area of the opposite rectangle."""
 
 import numpy as np
 import numpy.typing as npt
@@ -63,7 +63,7 @@ def _box(low: npt.ArrayLike, high: npt.ArrayLike) -> Array:
 
 def _areas(paper: Paper, place: Array, weight: Array) -> Panel:
     """Draw the square in four rectangles, each as grey as the pixel that it weighs."""
-    panel = _cell(paper, "each pixel weighs the opposite area")
+    panel = _cell(paper, "each pixel is weighted by the opposite area")
     for at, grey in zip(_AT, _GREY, strict=True):
         panel.polygons(_box(*np.sort([1 - at, place], axis=0)), hexed(3 * [grey]))
     for at, grey in zip(_AT, _GREY, strict=True):

@@ -9,7 +9,7 @@ from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_net, draw_squares
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle as ring
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
@@ -18,14 +18,13 @@ SIZE = (640, 480)
 ALPHA, MIDDLE = 400, ((SIZE[0] - 1) / 2, (SIZE[1] - 1) / 2)
 # Where two photographs of a board on a desk were taken, and what was up in them.
 _EYES = (([163, 203.5, -92.5], (0, 0, -1)), ([-15, 187, -120], (0.5, 0, 0.87)))
-_SPACE, _SIDE = (500, 420), (350, 420)
+_SPACE, SIDE = (500, 420), (350, 420)
 _VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:3, :3]  # from the left, above
 _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
 _INKS = (IDEAL, MUTED)  # of the first photograph and of the second
 _SQUARE, _PALE = "#B0B0B0", "#BDBDBD"
-_SCALE, _FOOT = 0.62, 420  # of the fold, face on; where its horizon is drawn
-_PAIRS = (("sides", "estimated", ESTIMATED), ("diagonals", "lens", LENS))
+PAIRS = (("sides", "estimated", ESTIMATED), ("diagonals", "lens", LENS))
 
 
 class Circle(NamedTuple):
@@ -90,45 +89,53 @@ def angles(H: Array, eye: Array) -> tuple[float, float]:
     return float(sides), float(diagonals)
 
 
-def fold_model() -> Model:
-    """Make the model of the eye before a photograph, and before two."""
-    W = course.board().points
-    cameras = photographs()
+def two_photographs() -> tuple[list[Camera], list[Array], list[Circle]]:
+    """Return the cameras of both photographs, their homographies and their circles."""
+    W, cameras = course.board().points, photographs()
     H = [dlt(W[:, :2], camera.project(W)) for camera in cameras]
-    circles = [circle_of(h) for h in H]
-    settings = (
-        Setting("fold", "hinge (°)", _LOWEST, _HIGHEST, 0.5, 50,
-                "the angle of the eye over the photograph, about its horizon"),
-        Setting("second", "a second photograph", 0, 1, 1, 1, "of the same board, same camera"),
-    )  # fmt: skip
+    return cameras, H, [circle_of(h) for h in H]
+
+
+HINGE = Setting(
+    "fold", "hinge (°)", _LOWEST, _HIGHEST, 0.5, 50,
+    "the angle of the eye over the photograph, about its horizon",
+)  # fmt: skip
+
+
+def turned_to(circle: Circle, *, side: bool = False) -> Drag:
+    """Return what turns the eye on its circle to where it is pulled, in space or from the side."""
+    folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
+    way = circle.place(folds)
+    places = way[:, 1:2] if side else on_sheet(way)  # from the side along the curve, by its x
+
+    def pulled(_: Values, at: Array) -> Values:
+        away = np.linalg.norm(places - at[: places.shape[1]], axis=1)
+        return {"fold": float(folds[away.argmin()])}
+
+    return pulled
+
+
+def fold_model() -> Model:
+    """Make the model of the eye before two photographs."""
+    cameras, H, circles = two_photographs()
     about = (
         "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
-        "horizon, with lines to the vanishing points of the square's sides and of its diagonals. "
-        "Beside it the plane of both, with a half circle over each pair; or, with a second "
-        "photograph, both half circles from the side."
+        "horizon, with lines to the vanishing points of the square's sides and of its diagonals; "
+        "and the same of a second photograph. Beside it both half circles from the side."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
         eye = circles[0].place(values["fold"])
-        shown = 1 + int(values["second"])
-        space = _space(paper, cameras[0], H[:shown], circles[:shown], eye)
-        side = (_face_on, _side)[shown - 1](paper, H, circles, eye)
-        return Drawing(paper.join((space, side)), _sentence(H[:shown], eye))
+        space = eye_over_sheet(paper, cameras[0], H, circles, eye)
+        sentence = sentence_of(H, eye)
+        return Drawing(paper.join((space, _side(paper, H, circles, eye))), sentence)
 
-    folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
-    way = circles[0].place(folds)
-
-    def nearest(places: Array, at: Array) -> Values:
-        return {"fold": float(folds[np.linalg.norm(places - at, axis=1).argmin()])}
-
-    drags = {
-        "eye": lambda _, at: nearest(on_sheet(way), at),
-        "fold": lambda _, at: nearest(way[:, 1:2], at[:1]),  # along the curve, by its x
-    }
-    return Model("fold", about, settings, draw, drags)
+    drags = {"eye": turned_to(circles[0]), "fold": turned_to(circles[0], side=True)}
+    return Model("fold", about, (HINGE,), draw, drags)
 
 
-def _sentence(H: list[Array], eye: Array) -> str:
+def sentence_of(H: list[Array], eye: Array) -> str:
+    """Say which angles the eye sees in one photograph, or in two."""
     said = f"An eye {eye[2]:.0f} px over pixel ({eye[0]:.1f}, {eye[1]:.1f}) sees both "
     first = angles(H[0], eye)
     said += f"right angles of the photograph: {first[0]:.2f}° and {first[1]:.2f}°."
@@ -155,9 +162,10 @@ def _flat(xy: Array) -> Array:
     return on_sheet(np.concatenate([xy, np.zeros((*xy.shape[:-1], 1))], axis=-1))
 
 
-def _space(
+def eye_over_sheet(
     paper: Paper, camera: Camera, H: list[Array], circles: list[Circle], eye: Array
 ) -> Panel:
+    """Draw the photograph, the eye over it, and the half circles of all `circles`."""
     panel = paper.panel(_SPACE, *_SHOWN, "a photograph, the eye over it, and four vanishing points")
     (w, h), board = SIZE, course.board()
     frame = np.array([[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]])
@@ -172,6 +180,7 @@ def _space(
         arc = circle.place(np.arange(0, 181.0, 3))
         panel.line(on_sheet(arc), ink, 2)
         panel.line(on_sheet(arc[[0, -1]]), ink, 0.8)
+    _name(panel, on_sheet(circles[0].place(125.0)), (-6, -4), "the eye's path", IDEAL, "rd")
     below = np.array([*eye[:2], 0])
     panel.line(on_sheet(np.array([eye, below])), IDEAL, 1.4, dash=3)
     others = _flat(vanishing_points(H[-1]))
@@ -182,7 +191,7 @@ def _space(
         _name(panel, others[0], (-6, 14), "horizon 2", MUTED, "ra")
     points = vanishing_points(H[0])
     for k, point in enumerate(points):
-        name, meaning, colour = _PAIRS[k // 2]
+        name, meaning, colour = PAIRS[k // 2]
         panel.line(np.array([on_sheet(eye), _flat(point)]), colour, 1.4)
         panel.mark(_flat(point), meaning, 5)
         if k in (0, 3):  # the outer one of each pair
@@ -211,7 +220,7 @@ def _name(
 def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Panel:
     """Draw the half circles from the side, and say which angles the eye sees."""
     high, low = 1498, -350  # one scale for both axes, so that a half circle is one
-    panel = paper.panel(_SIDE, (-580, 960), (high, low), "height of the eye against v₀ (px)")
+    panel = paper.panel(SIDE, (-580, 960), (high, low), "height of the eye against v₀ (px)")
     panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400, 600), size=12)
     panel.polygons([[[-580, high], [960, high], [960, 750], [-580, 750]]], "#FFFFFF")
     for k in reversed(range(len(circles))):
@@ -220,34 +229,10 @@ def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Pa
         _name(panel, arc[45, 1:] * [1, 0], (90 * k - 45, -8), f"photograph {k + 1}", _INKS[k], "ma")
         row = 1180 - 150 * k
         panel.text([-520, row], f"photograph {k + 1}:", _INKS[k], anchor="lm", size=14)
-        for x, (_, _, colour), angle in zip((90, 480), _PAIRS, angles(H[k], eye), strict=True):
+        for x, (_, _, colour), angle in zip((90, 480), PAIRS, angles(H[k], eye), strict=True):
             panel.text([x, row], f"{angle:.1f}°", colour, anchor="lm", size=16)
     panel.text([-520, 1340], "the eye sees the angles", IDEAL, anchor="lm", size=14)
     panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
     panel.mark(eye[1:], "camera", 9)
     panel.grip("fold", "the hinge", eye[1:], 4)
-    return panel
-
-
-def _face_on(paper: Paper, H: list[Array], circles: list[Circle], place: Array) -> Panel:
-    """Draw horizon and eye in their own plane: the eye is on two half circles, by Thales."""
-    panel, circle = paper.panel(_SIDE, (-580, 960), (1498, -350), "the hinge, face on"), circles[0]
-    along = np.array([circle.up[1], -circle.up[0]])
-    s = (vanishing_points(H[0]) - circle.foot) @ along
-    shift = np.array([190 - _SCALE * (s.min() + s.max()) / 2, _FOOT])
-    eye = shift + [0, _SCALE * circle.radius]
-    panel.line(np.array([[-3000, _FOOT], [3000, _FOOT]]), IDEAL, 0.8, dash=5)
-    turn = np.radians(np.arange(0, 181.0, 3))
-    for (name, meaning, colour), (a, b), angle, (x, anchor) in zip(
-        _PAIRS, s.reshape(2, 2), angles(H[0], place), ((-540, "ld"), (920, "rd")), strict=True
-    ):
-        thales = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2
-        panel.line(shift + _SCALE * thales, colour, 0.8)
-        ends = shift + _SCALE * np.array([[a, 0], [b, 0]])
-        panel.line(np.array([ends[0], eye, ends[1]]), colour, 1.4)
-        one, two = 80 * (ends - eye) / np.linalg.norm(ends - eye, axis=1, keepdims=True)
-        panel.line(eye + np.array([one, one + two, two]), colour, 1.4)
-        panel.mark(ends, meaning, 5)
-        panel.text([x, 1180], f"{name}: {angle:.1f}°", colour, anchor=anchor, size=16)
-    panel.mark(eye, "camera", 9)
     return panel

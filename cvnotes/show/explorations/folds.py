@@ -131,7 +131,7 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     w, h = tangle.size
     frame = np.array([[0, 0, 0], [w, 0, 0], [w, h, 0], [0, h, 0], [0, 0, 0]])
     seen = on_sheet(frame * [*tangle.square, 0] - [0.5, 0.5, 0])
-    panel = paper.panel(_SPACE, *_SHOWN, "twelve half circles over the first photograph")
+    panel = paper.panel(_SPACE, *_SHOWN, "twelve half circles; the ring: 100 px about the camera")
     panel.polygons(seen[None, :-1], "#F4F4F0")
     panel.line(seen, MUTED, 1)
     m = np.column_stack([tangle.seen(1)[0] * tangle.square, np.zeros(len(tangle.W))])
@@ -162,9 +162,7 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     """Draw what lies in a ball about the camera, from above: u to the right and v down."""
     eye, reach = tangle.eye[:2], _NEAR / 0.93 * np.array(_CLOSE) / _CLOSE[1]
     (left, top), (right, low) = eye - reach, eye + reach
-    panel = paper.panel(
-        _CLOSE, (left, right), (top, low), "within the circle, from above: u₀ and v₀"
-    )
+    panel = paper.panel(_CLOSE, (left, right), (top, low), "within the ring, from above: u₀ and v₀")
     panel.line(eye + _NEAR * circle(129), IDEAL, 1)
     arcs = np.array([_inside(one, tangle.eye) for one in tangle.circles(*of)])
     _draw_arcs(panel, arcs[..., :2], (arcs[..., 2] - tangle.eye[2]) / (2 * _NEAR), (1.6, 3.2))
@@ -202,7 +200,7 @@ def _draw_triangle(panel: Panel, at: Array) -> None:
 def _curve(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     """Draw how far the half circles miss the camera; the hand pulls along the curve."""
     (k1, turned), x, y = of, (_LOWEST - 0.07, _HIGHEST + 0.03), (_MOST, -0.2 * _MOST)
-    panel = paper.panel(_CURVE, x, y, "miss (RMS, px) against k1")
+    panel = paper.panel(_CURVE, x, y, "RMS distance from camera (px) against k1")
     panel.ticks(x=(-0.4, -0.2, 0), y=(0, 40, 80), size=12)
     tried = np.arange(_LOWEST, _HIGHEST + 0.01, 0.025)
     way = np.array([[k, np.sqrt(np.mean(tangle.misses(float(k), turned) ** 2))] for k in tried])

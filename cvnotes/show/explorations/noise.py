@@ -103,7 +103,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
         (450, 300),
         (-1.25 * reach, reach),
         (-0.5, 4.3),
-        "estimate minus truth (px): ±1σ; thin blue ends ±2σ",
+        "estimate − truth (px), ± standard deviation (thin: twice)",
     )
     missed = _draw_tries(bars, *tries)
     for i, count in enumerate(missed if draw > 1 and sigma else ()):

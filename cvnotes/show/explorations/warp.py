@@ -66,7 +66,7 @@ def _draw(source: Drawn, paper: Paper, values: Values) -> Drawing:
     left = paper.picture_panel(size, (width, height), "sent: orange never hit, blue twice or more")
     left.image(_coloured(forward.image.astype(np.uint8), holes, folds), smooth=False)
     right = paper.picture_panel(
-        size, (width, height), "backward: each pixel is fetched (+ to turn and zoom)"
+        size, (width, height), "backward: each pixel asks (+ to turn and zoom)"
     )
     right.image(backward.astype(np.uint8), smooth=False)
     arm = zoom * _ARM * width * np.array([np.cos(angle), np.sin(angle)])
@@ -80,7 +80,7 @@ def _sentence(
 ) -> str:
     return (
         f"Forward: {holes.sum()} of {covered.sum()} pixels are holes, and {folds.sum()} were hit "
-        "more than once. Backward: each pixel is asked for exactly once, no holes, no folds."
+        "more than once. Backward: each new pixel asks exactly once, no holes, no folds."
     )
 
 
