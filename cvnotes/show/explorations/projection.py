@@ -139,7 +139,7 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.text([0, -1.15], "∞", IDEAL, anchor="mm", size=15)
     beside = abs(right) + 0.3
     if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH:
-        # Not upon the vanishing point; where there is no room for it beside it, at the other border.
+        # Not upon the vanishing point; without room beside it, at the other border.
         beside = max(beside, out + 0.6) if out < 4.8 else -8.7
     panel.text([side * beside, _PLANE + 0.55], "image plane", CAMERA, anchor=anchor)
 

@@ -65,7 +65,7 @@ def found() -> Array:
 
 
 def on_target(off: Array) -> Array:
-    """Draw errors (..., 2) together, by the logarithm of their lengths: rings are 1, 2, 3, 4 and 5."""
+    """Draw errors (..., 2) together, by the logarithm of their lengths: rings are 1 to 5."""
     far = np.linalg.norm(off, axis=-1, keepdims=True)
     ring = 1 + np.log(np.maximum(far, 1e-9) / _RINGS[0]) / np.log(_RINGS[1] / _RINGS[0])
     return np.asarray(off / np.maximum(far, 1e-9) * ring.clip(0, _RIM))
