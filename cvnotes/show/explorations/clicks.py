@@ -22,7 +22,7 @@ _EDGES = _CAMERA.project(blocks().vertices[_ENDS]).reshape(3, 3, 2, 2)
 _SQUARE, _C = np.array([1, 800 / 804]), _CAMERA.A[:2, 2]
 _TRUE = _CAMERA.vanishing_point(blocks().vertices[[1, 2, 4]] - blocks().vertices[0])
 _SHOWN, _SIZE, _CLOSE = ((-1250.0, 1390.0), (-560.0, 1720.0)), (440, 380), (330, 380)
-_TIMES, _REACH = 6, 24.0  # so many times larger are clouds; px to either side of c, enlarged
+_TIMES, _REACH = 3, 24.0  # so many times larger are clouds; px to either side of c, enlarged
 _DOT = mixed(ESTIMATED, "#FFFFFF", 0.4)
 _TURNED = np.array([[1, 1], [-1, 1]]) / np.sqrt(2)
 _DRAWS, _FIRST = 200, 14.4  # how often one clicks; about so many px does c scatter for 1 px
@@ -30,7 +30,7 @@ _DRAWS, _FIRST = 200, 14.4  # how often one clicks; about so many px does c scat
 
 def clicks_model() -> Model:
     """Make the model of the chapter's nine edges, clicked two hundred times with errors."""
-    settings = (Setting("noise", "clicks (px)", 0.1, 1, 0.05, 0.3, "their standard deviation"),)
+    settings = (Setting("noise", "clicks (px)", 0.1, 0.8, 0.05, 0.3, "their standard deviation"),)
     about = (
         "A box, and far around it two hundred findings of each of its three vanishing points: "
         "clouds that point at the box. In the middle is the cloud of the principal point, round "

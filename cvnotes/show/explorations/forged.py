@@ -86,4 +86,6 @@ def _sentence(over: float, ground: float) -> str:
         f"The line over the pole's top misses the sun by {over:.1f} px, the line along the shadow "
         f"misses the plus by {ground:.1f} px"
     )
-    return f"{said}: true." if max(over, ground) < _NEAR else f"{said}: painted in."
+    return (
+        f"{said}: true." if max(over, ground) < _NEAR else f"{said}: so this shadow was painted in."
+    )

@@ -85,10 +85,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     angle = round(values["angle"])
     drawn = paper.join((_space(paper, angle), _graph(paper, angle)))
     if angle == _FLAT:
-        return Drawing(drawn, "At 180° both boards are one plane: the photograph does not tell α.")
+        return Drawing(drawn, "At 180° both boards are one plane: the photograph does not tell αᵤ.")
     one = spread()[angle - _OPEN]
     return Drawing(
-        drawn, f"At {angle}° one photograph tells α to ± {one:.{1 if one > 2 else 2}f} px."
+        drawn, f"At {angle}° one photograph tells αᵤ to ± {one:.{1 if one > 2 else 2}f} px."
     )
 
 
@@ -137,7 +137,7 @@ def _graph(paper: Paper, angle: int) -> Panel:
     alpha = _A[0, 0]
     panel = paper.panel(
         _FOUND, (_OPEN - 20, _FLAT + 7), (alpha + _REACH, alpha - _REACH - 12),
-        "α found in 40 photographs (px), by the angle (°)",
+        "αᵤ found in 40 photographs (px), by the angle (°)",
     )  # fmt: skip
     panel.ticks(x=(90, 120, 150, 180), y=(750, 775, 800, 825, 850), size=12)
     angles = np.arange(_OPEN, _FLAT)

@@ -16,7 +16,8 @@ from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD, mixed
 _CAMERA, _DOWN, _HALFWAY, _CELL = Camera(course.camera().A), 1.6, 20.0, 4.0  # m
 _MAP, _VIEW, _FINER = (330, 330), (440, 330), 1.375  # px; the photograph is finer than _CAMERA's
 _SHOWN = (-0.5475, 0.5475), (1.07, -0.025)  # of the map, whose rim has the radius 1
-_SIDE = 21  # degrees that the picture shows to either side
+_SIDE = 21  # degrees to either side, to which the cell is pulled
+_SEEN = -22.1, 21.5  # degrees that the picture shows, from its left border to its right one
 _NAMED = np.radians([-20, 0, 20])  # directions whose degrees are written there
 _GRASS, _UNSEEN, _YELLOW = "#E6EFDF", "#F4F6F1", "#F0E442"
 _MEADOW, _PALE = "#7C8A5C", "#A6F0D8"  # grass of the photograph, and the grid upon it
@@ -97,12 +98,13 @@ def _lifted(ground: Array) -> Array:
     return np.concatenate([ground, np.ones_like(ground[..., :1])], axis=-1)
 
 
-def _lines(side: float) -> list[tuple[Array, float]]:
-    """Return the grid's lines (n, 2) that are seen to so many degrees, and how strong each is."""
-    slope = np.tan(np.radians(side))
+def _lines(left: float, right: float) -> list[tuple[Array, float]]:
+    """Return the grid's lines (n, 2) seen between two directions, in degrees, and how strong."""
+    slope = np.tan(np.radians([left, right]))
     odd, even = _CELL * np.arange(0.5, 30), _CELL * np.arange(1, 31)  # m; then it is too fine
-    along = [np.array([[x, z] for z in np.geomspace(abs(x) / slope, 1e5)]) for x in (*-odd, *odd)]
-    across = [np.array([[x, z] for x in np.linspace(-slope, slope) * z]) for z in even]
+    along = [np.array([[x, z] for z in np.geomspace(x / slope[int(x > 0)], 1e5)])
+             for x in (*-odd, *odd)]  # fmt: skip
+    across = [np.array([[x, z] for x in np.linspace(*slope) * z]) for z in even]
     away = np.abs([*-odd, *odd, *even])
     return list(zip(along + across, (30 / (away + 30)).round(2).tolist(), strict=True))
 
@@ -114,15 +116,16 @@ def _map(sharpness: int) -> Drawn:
     turn = np.radians(np.arange(-180, 181))
     rim = np.stack([np.sin(turn), np.cos(turn)], axis=1)
     panel.polygons([rim], _UNSEEN)
-    panel.polygons([[[0, 0], *rim[180 - _SIDE : 181 + _SIDE]]], _GRASS)
-    for line, strength in _lines(_SIDE):
+    turn = np.radians(np.linspace(*_SEEN, 60))
+    seen_rim = np.stack([np.sin(turn), np.cos(turn)], axis=1)
+    panel.polygons([[[0, 0], *seen_rim]], _GRASS)
+    for line, strength in _lines(*_SEEN):
         panel.line(pressed(line), mixed(_GRASS, WORLD, strength), strength)
     for x in (-0.75, 0.75):
         panel.line(pressed([[x, z] for z in np.geomspace(0.1, 1e6, 200)]), MUTED, 1.2)
     panel.line(rim, MUTED, 1)
-    rim = rim[180 - _SIDE : 181 + _SIDE]  # what the camera sees of it
-    panel.line([rim[0], [0, 0], rim[-1]], CAMERA, 1)
-    panel.line(rim, IDEAL, 3)
+    panel.line([seen_rim[0], [0, 0], seen_rim[-1]], CAMERA, 1)
+    panel.line(seen_rim, IDEAL, 3)
     panel.mark([0, 0], "camera", 9)
     _name(panel, 1.045 * np.stack([np.sin(_NAMED), np.cos(_NAMED)], axis=1))
     return panel.drawn()
@@ -136,7 +139,7 @@ def _picture(sharpness: int) -> Drawn:
     panel = Paper(sharpness).picture_panel(_VIEW, _CAMERA.size)
     panel.image(render_scene(rails(), Camera(A, size=(880, 660)), samples=4))
     plain = panel.drawn()
-    for line, strength in _lines(_SIDE + 1.2)[::-1]:
+    for line, strength in _lines(*_SEEN)[::-1]:
         panel.line(seen(_lifted(line)), mixed(_MEADOW, _PALE, strength), strength)
     horizon = seen(np.stack([np.sin(_NAMED), np.cos(_NAMED), 0 * _NAMED], axis=1))
     panel.line(horizon + [[-40, 0], [0, 0], [40, 0]], IDEAL, 3)

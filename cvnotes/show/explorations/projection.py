@@ -117,7 +117,8 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     (left, _), (right, _) = camera.ideal([[-0.5, 0], [camera.size[0] - 0.5, 0]]) * _PLANE
     view = np.array([[left, _PLANE], [0, 0], [right, _PLANE]])
     panel.line(5 * view, CAMERA, 0.8)
-    panel.line([[left, _PLANE], [right, _PLANE]], CAMERA, 3)
+    panel.line([[-9, _PLANE], [9, _PLANE]], CAMERA, 0.8)  # the plane goes on
+    panel.line([[left, _PLANE], [right, _PLANE]], CAMERA, 3)  # the picture on it
     # The ring of chapter 1, turned over: the camera is its top, the image plane its numbers.
     panel.line(_PLANE / 2 * (circle(121) + [0, 1]), IDEAL, 1.5)
     panel.line(np.outer([0, 20], along[::2]), IDEAL, 1.2, dash=5)
@@ -138,8 +139,9 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.text([0, -1.15], "∞", IDEAL, anchor="mm", size=15)
     beside = abs(right) + 0.3
     if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH:
-        beside = max(beside, out + 0.6)  # not upon the vanishing point
-    panel.text([side * beside, _PLANE], "image plane", CAMERA, anchor=anchor)
+        # Not upon the vanishing point; without room beside it, at the other border.
+        beside = max(beside, out + 0.6) if out < 4.8 else -8.7
+    panel.text([side * beside, _PLANE + 0.55], "image plane", CAMERA, anchor=anchor)
 
 
 def _sleepers(middle: Array, along: Array, across: Array, half: float = 0.8 * _GAUGE) -> Array:

@@ -114,5 +114,5 @@ def _sentence(foot: Array, t: float, width: float, ratio: float) -> str:
         return f"{where}, at b itself: there the ratio (a, b; c, ∞) is infinite."
     return (
         f"{where}: in the picture as on the ground (a, b; c, ∞) = {round(ratio, 2) + 0.0:.2f}. "
-        f"A click that misses by {_CLICK:g} px along the row makes the ±."
+        f"A click that misses by {_CLICK:g} px along the dashed line makes the ±."
     )

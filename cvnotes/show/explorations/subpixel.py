@@ -16,8 +16,9 @@ _VIEW = 6  # which photograph of the course
 _WINDOW = 8  # px: of the finders, and all of it is shown
 _SIZE = (391, 391)  # 23 px of the page for each of 17
 _STALK = np.array([3.0, 3.0])  # px: the hand holds the cross from aside, and hides no corner
-_RINGS = (0.004, 0.02, 0.1, 0.5)  # px, as far apart as logarithms are
+_RINGS = (0.004, 0.02, 0.1, 0.5, 2.5)  # px, as far apart as logarithms are
 _RIM = len(_RINGS) + 0.25  # of the target; what lies beyond is drawn there
+_HALF = len(_RINGS) + 0.75  # of the panel
 _GROUND = "#F2F2ED", "#FFFFFF"
 
 
@@ -31,7 +32,7 @@ def subpixel_model() -> Model:
     )
     about = (
         "Seventeen by seventeen pixels around a corner of a chessboard, with a cross that a hand "
-        "pulls; beside it a target with four rings, each of a fifth of the next one's radius."
+        "pulls; beside it a target with five rings, each of a fifth of the next one's radius."
     )
     return Model("subpixel", about, settings, _draw, {"cross": _pulled})
 
@@ -64,7 +65,7 @@ def found() -> Array:
 
 
 def on_target(off: Array) -> Array:
-    """Draw errors (..., 2) together, by the logarithm of their lengths: rings are 1, 2, 3 and 4."""
+    """Draw errors (..., 2) together, by the logarithm of their lengths: rings are 1 to 5."""
     far = np.linalg.norm(off, axis=-1, keepdims=True)
     ring = 1 + np.log(np.maximum(far, 1e-9) / _RINGS[0]) / np.log(_RINGS[1] / _RINGS[0])
     return np.asarray(off / np.maximum(far, 1e-9) * ring.clip(0, _RIM))
@@ -79,12 +80,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     )
     panel.image(neighbourhood(corner).astype(np.uint8), smooth=False)
     target = paper.panel(
-        _SIZE, (-4.6, 4.6), (-4.6, 4.6), "how far off, enlarged towards the middle"
+        _SIZE, (-_HALF, _HALF), (-_HALF, _HALF), "how far off, enlarged towards the middle"
     )
     for ring in range(len(_RINGS), 0, -1):
         target.polygons([ring * circle(181)], _GROUND[ring % 2])
         target.line(ring * circle(181), "#BBBBBB", 0.8)
-    for ring, px in enumerate(("0.004", "0.02", "0.1", "0.5 px"), 1):
+    for ring, px in enumerate(("0.004", "0.02", "0.1", "0.5", "2.5 px"), 1):
         target.text([0, ring - 0.25], px, MUTED, anchor="mm", size=12)
     target.mark([0, 0], "ideal", 7)
     off = np.array([hand, *found()[:, corner]]) - true
@@ -108,13 +109,13 @@ def _cross(panel: Panel, hand: Array) -> None:
 def _hits(target: Panel, hits: Array) -> None:
     """Mark the hand's hit and those of the finders, and name them in the panel's corners."""
     for at, name, meaning, ink, (x, y) in (
-        ([0, 0], "true corner", "ideal", IDEAL, (4.25, -4.25)),
-        (hits[0], "you", "world", WORLD, (-4.25, -4.25)),
-        (hits[1], "gradients", "lens", LENS, (-4.25, 4.25)),
-        (hits[2], "edge model", "estimated", ESTIMATED, (4.25, 4.25)),
+        ([0, 0], "true corner", "ideal", IDEAL, (5.4, -5.4)),
+        (hits[0], "you", "world", WORLD, (-5.4, -5.4)),
+        (hits[1], "gradients", "lens", LENS, (-5.4, 5.4)),
+        (hits[2], "edge model", "estimated", ESTIMATED, (5.4, 5.4)),
     ):
         target.mark([at, (x, y)], meaning, 7)
-        target.text([x - 0.3 * np.sign(x), y], name, ink, anchor="lm" if x < 0 else "rm", size=12)
+        target.text([x - 0.35 * np.sign(x), y], name, ink, anchor="lm" if x < 0 else "rm", size=12)
 
 
 def _sentence(off: Array, shown: bool) -> str:

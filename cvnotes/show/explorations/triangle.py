@@ -22,8 +22,9 @@ _MIDDLE = np.array([75.0, 0, 50])  # (u, v, w) about which the view of space tur
 _ABOVE = np.radians(15)  # from where it is seen
 _RING, _LOW = 560.0, 1440.0  # px: radius of the ring by which it is turned, and its v
 _BEHIND = 1.25  # times as far from the eye as the glass: where the box stands
+_CLEAR = 128  # of 255: how much of its ink the glass lays over what is behind it
 _AROUND = (0, 45, -45, 90, -90, 135, -135, 180)  # degrees: where a letter may stand
-_PANE, _CORE, _FACES = "#EAF4FB", "#FFFFFF", ("#E6DCD6", "#F4EFEB", "#D8CBC3")
+_PANE, _CORE, _FACES = "#D5EAF7", "#FFFFFF", ("#E6DCD6", "#F4EFEB", "#D8CBC3")
 
 
 def triangle_model() -> Model:
@@ -160,15 +161,18 @@ def _seen(corner: Array, edges: Array, turn: float) -> Array:
 
 
 def _draw_glass(panel: Panel, turn: float, v: Array, photo: Bitmap.Image, box: Array) -> None:
-    """Draw the glass with the photograph on it, and through it the box (3, 4, 2)."""
+    """Draw the box (3, 4, 2), and before it the glass with the photograph on it."""
     whole = Bitmap.new("RGB", (panel.width, panel.height), "white")
     pen = ImageDraw.Draw(whole)
     held = np.concatenate([v, [[0, 0], photo.size]])
     (u0, v0), (u1, v1) = held.min(0) - 70, held.max(0) + 70
     pane = on_sheet(in_space(np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]])), turn)
-    inks = [(_PANE, FAINT), *((ink, ESTIMATED) for ink in _FACES)]
-    for outline, (fill, ink) in zip([pane, *box], inks, strict=False):
-        pen.polygon(panel.place(outline).ravel().tolist(), fill, ink, panel.scale)
+    for face, fill in zip(box, _FACES, strict=False):
+        pen.polygon(panel.place(face).ravel().tolist(), fill, ESTIMATED, panel.scale)
+    glass = Bitmap.new("L", whole.size)
+    ImageDraw.Draw(glass).polygon(panel.place(pane).ravel().tolist(), _CLEAR)
+    whole.paste(_PANE, mask=glass)
+    pen.polygon(panel.place(pane).ravel().tolist(), None, FAINT, panel.scale)
     corners = np.array([[0, 0], [1, 0], [0, 1]]) - 0.5 / np.array(photo.size)
     o, *ways = panel.place(on_sheet(in_space(corners * photo.size), turn))
     M = (np.array(ways) - o).T / photo.size

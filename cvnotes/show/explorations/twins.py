@@ -35,7 +35,7 @@ def on_sheet(W: Array) -> Array:
 def twins_model() -> Model:
     """Make the model of a photograph of the board, and of all cameras that could have taken it."""
     settings = (
-        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 350,
+        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 900,
                 "its focal length; its principal point and its place follow"),
         Setting("height", "a box on the board (mm)", 0, _HIGHEST, 5, 80,
                 "how far it stands out of the plane"),
