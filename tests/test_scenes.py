@@ -175,3 +175,13 @@ def test_every_scene_is_drawn_without_a_warning_and_is_not_flat():
     for scene in (rails(), room(), corridor(), blocks()):
         picture = render_scene(scene, CAMERA)
         assert picture.std() > 20
+
+
+@pytest.mark.parametrize("scene", [blocks(), rails()])
+def test_a_landscape_that_is_moved_away_with_its_camera_looks_the_same(scene):
+    away = pose(np.eye(3), [2e7, 0, 3e7])
+    camera = Camera(CAMERA.A, look_at([1200, -4000, 2000], [700, -500, 12_800]), size=CAMERA.size)
+    here = render_scene(scene, camera).astype(int)
+    beside = Camera(camera.A, camera.G @ np.linalg.inv(away), size=camera.size)
+    there = render_scene(scene.moved(away), beside).astype(int)
+    assert (np.abs(here - there) > 8).mean() < 1e-3

@@ -15,6 +15,7 @@ from cvnotes.pictures.occlusion import Occlusion
 from cvnotes.pictures.raycast import Indices, edge_functions, search
 
 _FAR = 100  # how far away the light is, in sizes of what casts shadows
+_HIDDEN = 5  # times as far as the haze, less than a hundredth of a colour is left
 _TOUCHING = 1e-10  # of that distance: what is no farther apart throws no shadow
 
 
@@ -51,8 +52,7 @@ class Surfaces(NamedTuple):
         shade = [_shade(c, scene.around.ambient) for c in (cosine, -np.abs(cosine))]
         colours = np.array(shade)[..., None, None] * scene.colours
         casting = scene.corners[scene.normals @ light > 0]
-        # A plain goes on beyond the haze; from so far that all of it is seen, digits would be lost.
-        from_light = _seen_from(light, casting.clip(-scene.around.haze, scene.around.haze))
+        from_light = _seen_from(light, _near(casting, camera.centre, scene.around.haze))
         reach = scene.around.occlusion
         return cls(
             corners,
@@ -137,6 +137,17 @@ def _shade(cosine: Array, ambient: float) -> Array:
     shadow is as bright as one that is turned as far away from the light.
     """
     return ambient + (1 - ambient) * (1 + cosine) / 2
+
+
+def _near(casting: Array, centre: Array, haze: float) -> Array:
+    """Cut triangles off where haze hides them from the camera.
+
+    A plain goes on; a light that is far from all of it would lose the digits that tell a shadow
+    from what throws it.
+    """
+    low, high = centre - _HIDDEN * haze, centre + _HIDDEN * haze
+    seen = ((casting.min(axis=1) < high) & (casting.max(axis=1) > low)).all(axis=1)
+    return casting[seen].clip(low, high) if seen.any() else casting
 
 
 def _seen_from(light: Array, casting: Array) -> Array:

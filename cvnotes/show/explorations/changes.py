@@ -8,6 +8,7 @@ from cvnotes.base import Array
 from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.rings import blurred
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
@@ -34,20 +35,18 @@ def changes_model() -> Model:
 
 
 @lru_cache(maxsize=1)
-def blurred() -> Array:
-    """Return the photograph, blurred by a Gaussian of one pixel."""
-    kernel = np.exp(-0.5 * np.arange(-4, 5) ** 2)
-    grey = np.asarray(course.photo(_VIEW), dtype=np.float64)
-    for axis in (0, 1):
-        grey = np.apply_along_axis(np.convolve, axis, grey, kernel / kernel.sum(), "same")
-    return np.asarray(grey)
+def _soft() -> Array:
+    """Return the photograph, blurred by a Gaussian of one pixel: noise makes no changes."""
+    photo = course.photo(_VIEW)
+    height, width = photo.shape
+    return np.asarray(blurred(height, 1) @ photo @ blurred(width, 1).T)
 
 
 def ring_at(u: float, v: float) -> tuple[Array, Array, Array]:
     """Return a ring's pixels (16, 2), their grey levels, and which of them are light."""
     turn = 2 * np.pi * np.arange(_N) / _N
     at = np.rint([u, v] + _AROUND * np.column_stack([np.cos(turn), np.sin(turn)])).astype(int)
-    grey = blurred()[at[:, 1], at[:, 0]]
+    grey = _soft()[at[:, 1], at[:, 0]]
     return at, grey, grey > (grey.min() + grey.max()) / 2
 
 

@@ -183,11 +183,11 @@ def eye_over_sheet(
     _name(panel, on_sheet(circles[0].place(125.0)), (-6, -4), "the eye's path", IDEAL, "rd")
     below = np.array([*eye[:2], 0])
     panel.line(on_sheet(np.array([eye, below])), IDEAL, 1.4, dash=3)
-    others = _flat(vanishing_points(H[-1]))
-    for point in others if len(H) > 1 else ():
-        panel.line(np.array([on_sheet(eye), point]), _PALE, 1.4)
-        panel.line(point + 4 * panel.pixel * ring(13), MUTED, 1.4)
-    if len(H) > 1:
+    for second in H[1:]:
+        others = _flat(vanishing_points(second))
+        for point in others:
+            panel.line(np.array([on_sheet(eye), point]), _PALE, 1.4)
+            panel.line(point + 4 * panel.pixel * ring(13), MUTED, 1.4)
         _name(panel, others[0], (-6, 14), "horizon 2", MUTED, "ra")
     points = vanishing_points(H[0])
     for k, point in enumerate(points):

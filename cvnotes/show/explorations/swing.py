@@ -81,13 +81,14 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for line in (*dots, *dots.transpose(1, 0, 2)):
         panel.line(line, MUTED, 0.6)
     panel.line([dots[row - 1, column - 1], held[row - 1]], IDEAL, 1, dash=3)
-    near = 6 if row == 5 else 5  # of two grips that would touch, the other one's stays
-    if np.linalg.norm(held[5] - held[4]) > 26 * panel.pixel:
-        near = 7
+    grips = dict(enumerate(held, start=1))
+    if np.linalg.norm(held[5] - held[4]) < 26 * panel.pixel:  # both would touch
+        del grips[6 if row == 5 else 5]
+    others = np.array([at for i, at in grips.items() if i != row])
     for at, size, ink in (
         (dots.reshape(-1, 2), 2.2, IDEAL),
-        (np.array([at for i, at in enumerate(held, 1) if i != near]), 5, IDEAL),
-        (np.array([at for i, at in enumerate(held, 1) if i not in (row, near)]), 3, "white"),
+        (np.array([*grips.values()]), 5, IDEAL),
+        (others, 3, "white"),
     ):
         panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
     moved = [
@@ -99,7 +100,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     tips = dots[0] + _TIMES * moved[0][1]
     panel.polygons(tips[:, None] + 2.8 * panel.pixel * circle(17), ESTIMATED)  # short arrows, too
     for i, (at, v) in enumerate(zip(held, dots[:, 0, 1], strict=True), start=1):
-        if i != near:
+        if i in grips:
             panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
         panel.text([_SHOWN[0][0] + 12, v], f"{i}", IDEAL, size=12)
     aside, anchor = (-16, "rm") if held[row - 1, 0] > -100 else (16, "lm")

@@ -24,6 +24,7 @@ _FOOT = [[3, 2], [5, 2], [5, 3], [3, 3]]  # corners of the board, on which the b
 _HIGHEST = 100  # mm
 _INK, _WAY = "#262629", "#F0C4A4"
 _WOOD, _BLUE = ("#8CC3AE", "#BFE0D4"), ("#8DBFE8", "#C4E0F6")  # of a box's sides and top
+_LID = [4, 5, 6, 7]  # of the box's corners
 _VIEW = sheet((50, -85))
 
 
@@ -99,13 +100,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_box(picture, one().project(W), _BLUE)
     for camera, colour, width in zip(cameras, (CAMERA, ESTIMATED), (1.8, 2.6), strict=True):
         m = camera.project(W)
-        sides = {
-            frozenset(two)
-            for face in _unhidden(m)
-            for two in zip(face, np.roll(face, 1), strict=True)
-        }
-        for side in sides:
-            picture.line(m[sorted(side)], colour, width)
+        for face in _unhidden(m):
+            picture.line(m[[*face, face[0]]], colour, width)
     picture.grip("box", "the top of the box, to be lifted", _top(values["height"]))
     return Drawing(paper.join((space, picture)), _sentence(cameras, W, values["height"]))
 
@@ -134,13 +130,13 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
 
 def _draw_box(panel: Panel, at: Array, colours: tuple[str, str]) -> None:
     for face in _unhidden(at):
-        panel.polygons(at[face][None], colours[min(face) == 4])
+        panel.polygons(at[face][None], colours[face == _LID])
 
 
 def _unhidden(at: Array) -> list[list[int]]:
     """Return those faces of the box, with corners at (8, 2), that are seen from outside."""
     sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
-    return [face for face in ([4, 5, 6, 7], *sides) if _area(at[face]) > 0]
+    return [face for face in (_LID, *sides) if _area(at[face]) > 0]
 
 
 def _area(corners: Array) -> float:

@@ -15,7 +15,8 @@ from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import contours
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
-_H6, _H9, _MOST, _MU = (-2.7, 1.0), (-1.4, 2.3), 25, 1e-3  # where walks may set out; steps
+_H6, _H9, _MOST = (-2.7, 1.0), (-1.4, 2.3), 25  # where walks may set out; steps
+_MU = 1e-3  # how the first step of the damped one is damped
 _SHOWN, _SIDE = ((-2.8, 1.1), (2.4, -1.5)), 396  # of the two unknowns: a little more; px
 _HEIGHTS = (-2.0, 0.0, 1.5, 2.2, 3.3, 4.2)  # of the ground, and its tones from a lake to snow
 _TONES = np.array(
@@ -112,9 +113,8 @@ def _ground() -> Drawn:
     lit = upward @ _LIGHT / np.linalg.norm(upward, axis=-1) / _LIGHT[2]
     ground = np.stack([np.interp(height, _HEIGHTS, tone) for tone in _TONES.T], axis=-1)
     ground *= (0.5 + 0.5 * lit.clip(0, 1.4))[..., None]
-    return np.asarray((ground + 0.8 * line[..., None] * (255 - ground)).clip(0, 255)).astype(
-        np.uint8
-    )
+    ground += 0.8 * line[..., None] * (255 - ground)
+    return np.asarray(ground.clip(0, 255).astype(np.uint8))
 
 
 def valley_model() -> Model:
