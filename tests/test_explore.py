@@ -807,6 +807,10 @@ def test_the_pulled_columns_stand_where_the_other_camera_finds_them_and_the_bar_
     with pytest.warns(CalibrationWarning):
         flat = calibrate(moved, real.left, real.size, lens="k1 k2 p1 p2")
     assert filled / 420 * 1.2 * 0.18 == pytest.approx(flat.rms, abs=0.006)
+    with pytest.warns(CalibrationWarning):
+        drawn_flat = calibrate(W, real.left, real.size, lens="k1 k2 p1 p2")
+    gone = 1 - (flat.rms / drawn_flat.rms) ** 2
+    assert numbers(drawing.sentence)[-1] == pytest.approx(100 * gone, abs=2)
 
 
 def test_a_window_on_a_ramp_votes_along_it_and_one_on_a_corner_for_the_corner():
@@ -1512,6 +1516,55 @@ def test_two_photographs_join_to_that_of_one_wide_camera_at_its_focal_length():
     assert off[500] < min(off[490], off[510])
     assert apart[500] < 1.5
     assert min(apart[490], apart[510]) > 4
+
+
+def test_the_curve_of_a_seam_is_what_is_said_at_each_focal_length(monkeypatch):
+    drawn, line = [], Panel.line
+
+    def kept(panel, xy, *rest, **how):
+        drawn.append(np.array(xy))
+        line(panel, xy, *rest, **how)
+
+    monkeypatch.setattr(Panel, "line", kept)
+    MODELS["seam"].drawing()
+    (curve,) = (xy for xy in drawn if len(xy) > 20)
+    assert curve[curve[:, 1].argmin(), 0] == 500
+    for alpha in (220, 480, 500, 900):
+        said = numbers(MODELS["seam"].drawing(alpha=alpha).sentence)[-1]
+        assert curve[curve[:, 0] == alpha, 1] == pytest.approx(said, abs=0.06)
+
+
+def test_each_photographs_angles_stand_in_its_row(monkeypatch):
+    """Of a hinge too flat: what the sentence says of the first photograph, and of the second."""
+    placed, write = [], Panel.text
+
+    def note(self, xy, words, *rest, **how):
+        placed.append((np.array(xy), words))
+        write(self, xy, words, *rest, **how)
+
+    monkeypatch.setattr(Panel, "text", note)
+    said = re.findall(r"[\d.]+(?=°)", MODELS["fold"].drawing(fold=70).sentence)
+    rows = {words: xy[1] for xy, words in placed if words.startswith("photograph") and ":" in words}
+    for i, row in enumerate((rows["photograph 1:"], rows["photograph 2:"])):
+        shown = [words for xy, words in placed if xy[1] == row and words.endswith("°")]
+        assert shown == [f"{float(angle):.1f}°" for angle in said[2 * i : 2 * i + 2]]
+
+
+def test_the_box_is_seen_through_the_glass_before_it():
+    drawing = MODELS["triangle"].drawing()
+    glass, side = np.array([0xD5, 0xEA, 0xF7]), np.array([0xF4, 0xEF, 0xEB])
+    for behind in (side, np.full(3, 255)):
+        through = np.abs(drawing.picture.astype(int) - (glass + behind) / 2).max(axis=-1) < 1.5
+        assert through.sum() > 300
+
+
+def test_an_extra_that_was_asked_for_is_a_setting_once():
+    model = MODELS["formation"]
+    assert "k1" not in [s.name for s in model.settings]
+    again = model.starting(k1=0.1).starting(k1=-0.2)
+    assert [s.value for s in again.settings if s.name == "k1"] == [-0.2]
+    with pytest.raises(CvnotesError, match="none of"):
+        model.drawing(k3=0.1)
 
 
 def test_the_lenss_curve_has_its_top_where_the_lens_folds():

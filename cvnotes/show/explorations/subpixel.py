@@ -85,8 +85,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for ring in range(len(_RINGS), 0, -1):
         target.polygons([ring * circle(181)], _GROUND[ring % 2])
         target.line(ring * circle(181), "#BBBBBB", 0.8)
-    for ring, px in enumerate(("0.004", "0.02", "0.1", "0.5", "2.5 px"), 1):
-        target.text([0, ring - 0.25], px, MUTED, anchor="mm", size=12)
+    for ring, px in enumerate(_RINGS, 1):
+        words = f"{px:g} px" if ring == len(_RINGS) else f"{px:g}"
+        target.text([0, ring - 0.25], words, MUTED, anchor="mm", size=12)
     target.mark([0, 0], "ideal", 7)
     off = np.array([hand, *found()[:, corner]]) - true
     _cross(panel, hand)
