@@ -46,7 +46,12 @@ html_theme = "sphinx_book_theme"
 html_title = "cvnotes"
 html_context = {"default_mode": "auto"}  # light or dark, as the reader's machine is
 html_favicon = "figures/favicon.svg"
-html_theme_options = {"navbar_persistent": [], "home_page_in_toc": True}
+html_theme_options = {
+    "navbar_persistent": [],
+    "home_page_in_toc": True,
+    "article_header_start": ["toggle-primary-sidebar.html", "chapters.html"],
+}
+templates_path = ["templates"]
 
 numpydoc_show_class_members = False
 suppress_warnings = ["ref.python"]  # a word that names several things is then just a word
@@ -62,7 +67,6 @@ if LIVE:
     defer = {"defer": "defer"}  # in this order, once the page is there
     scripts = ("page", "explore", "exercises", "visit")
     html_js_files += [("grips.js", defer), *((f"live/{name}.js", defer) for name in scripts)]
-    templates_path = ["templates"]
     html_sidebars = {
         "**": ["navbar-logo.html", "search-button-field.html", "run.html", "sbt-sidebar-nav.html"]
     }
@@ -88,6 +92,17 @@ def offer_to_run(*event: Any) -> None:
         link = RUN.format(address=f"{address}?path={page}.ipynb")
         head = re.compile(r"</h1>(\s*<blockquote>.*?</blockquote>)?", re.S)
         context["body"] = head.sub(rf"\g<0>\n{link}", context["body"], count=1)
+
+
+def name_chapters(*event: Any) -> None:
+    """Tell the head of each page which chapters there are: page, number and title."""
+    app, _, _, context, _ = event
+    titles = app.env.titles
+    context["chapters"] = [
+        (page, f"{int(name[:2])}" if name[0].isdigit() else name.partition("_")[0], titles[page])
+        for page in sorted(titles)
+        if (name := page.removeprefix("notebooks/")) != page
+    ]
 
 
 CONTENTS: dict[tuple[Any, ...], tuple[str, str]] = {}
@@ -181,6 +196,7 @@ def setup(app: Any) -> None:
     """Have Sphinx call us before numpydoc, and when a page is written."""
     app.connect("autodoc-process-docstring", escape_initials, priority=100)
     app.connect("html-page-context", describe)
+    app.connect("html-page-context", name_chapters)
     app.connect("html-page-context", share_contents)
     app.connect("html-page-context", lead_back)
     if LIVE:

@@ -70,9 +70,12 @@ addEventListener("load", () => {
       say(open);
     });
     say(false);
-    const run = document.querySelector(".bd-article p.run");
-    if (run) run.append(button);
-    else document.querySelector(".bd-article h1").after(button);
+    let line = document.querySelector(".bd-article p.run");
+    if (!line) {
+      line = document.createElement("p");
+      (document.querySelector(".bd-article h1 + blockquote") ?? document.querySelector(".bd-article h1")).after(line);
+    }
+    line.append(button);
   }
 
   addEventListener("DOMContentLoaded", () => {

@@ -246,6 +246,28 @@ def test_at_1280_px_a_line_of_100_letters_fits_and_what_is_printed_wraps(site, c
     page.close()
 
 
+def test_a_chapter_shows_its_pictures_as_wide_as_they_were_drawn_and_leads_to_the_others(
+    site, chromium
+):
+    page = chromium.new_page(viewport={"width": 1280, "height": 900})
+    for path in NOTEBOOKS:
+        page.goto((site / "notebooks" / f"{path.stem}.html").as_uri())
+        widths = page.evaluate(
+            """() => [...document.querySelectorAll(".cell_output img")]
+                .map((one) => [one.getBoundingClientRect().width, +one.getAttribute("width")])"""
+        )
+        assert widths, path
+        assert all(shown >= min(drawn, 920) - 1 for shown, drawn in widths), path
+        heads = page.locator(".chapters a")
+        assert heads.count() == 1 + len(NOTEBOOKS)
+        here = page.locator(".chapters [aria-current=page]")
+        assert here.get_attribute("title") == page.inner_text("h1").strip().rstrip("#")
+        assert not page.locator(".bd-sidebar-primary").is_visible()
+        page.click(".primary-toggle")
+        page.wait_for_selector(".bd-sidebar-primary")  # until it is visible
+    page.close()
+
+
 def test_on_paper_a_chapter_has_all_its_lines_and_figures(site, chromium, tmp_path):
     if not shutil.which("pdftotext"):
         pytest.skip("no pdftotext on this machine (Debian: poppler-utils)")

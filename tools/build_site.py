@@ -17,6 +17,7 @@ in `_static/live`. Without the parts the site is built plain, and says so.
 import argparse
 import hashlib
 import json
+import re
 import shutil
 import sys
 import tempfile
@@ -114,12 +115,22 @@ def with_boards(text: str) -> str:
     return text.replace("{boards}", "".join(drawn))
 
 
+def fold_calls(text: str) -> str:
+    """Fold a notebook's cells that only ask for an exploration, which a page shows without them."""
+    notebook = json.loads(text)
+    for cell in notebook["cells"]:
+        if re.fullmatch(r"explore\([^\n]*\)", "".join(cell["source"])):
+            cell["metadata"]["tags"] = [*cell["metadata"].get("tags", ()), "hide-input"]
+    return json.dumps(notebook)
+
+
 def collect(source: Path, live: bool, lite: bool) -> None:
     """Put the pages together in a folder, with those that need Python if it is there."""
     for path in sorted(path for pattern in PAGES for path in ROOT.glob(pattern)):
         target = source / path.relative_to(ROOT)
         target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(path, target)
+        text = path.read_text(encoding="utf-8")
+        target.write_text(fold_calls(text) if path.suffix == ".ipynb" else text, encoding="utf-8")
     teaching = source / "docs" / "teaching.md"
     made = {
         path.stem: slides_of(json.loads(path.read_text(encoding="utf-8")))
@@ -148,6 +159,14 @@ def collect(source: Path, live: bool, lite: bool) -> None:
     contents += toctree(["reference/index"], "The package")
     contents += toctree(["About <README>", "CONTRIBUTING", "CHANGELOG"], "The project")
     (source / "index.md").write_text(front_page(live, lite) + contents)
+
+
+def fold_contents(made: Path) -> None:
+    """Leave the list of all pages folded beside pictures, which are as wide as they were drawn."""
+    for page in [made / "index.html", *(made / "notebooks").glob("*.html")]:
+        text = page.read_text(encoding="utf-8")
+        folded = text.replace("bd-sidebar-primary ", "bd-sidebar-primary pst-sidebar-hidden ", 1)
+        page.write_text(folded, encoding="utf-8")
 
 
 def add_lite(folder: Path) -> bool:
@@ -208,6 +227,7 @@ def main() -> int:
             if path.name not in MATHJAX:
                 path.unlink() if path.is_file() else shutil.rmtree(path)
         put_into_files(made)
+        fold_contents(made)
         put_pictures(made)
         if parts:
             lay_out(parts, made / "python")
