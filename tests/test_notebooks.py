@@ -308,7 +308,7 @@ def test_a_paragraph_can_be_read_in_one_go(path):
 
 @each_notebook
 def test_every_question_has_its_answer_folded_under_it(path):
-    """But for those that are guessed first; of three stars it is the idea and the result."""
+    """Or under its picture. What is guessed has none; under three stars are idea and result."""
     missing = []
     cells = _read(path).cells
     for i, cell in enumerate(cells):
@@ -330,9 +330,31 @@ def test_every_question_has_its_answer_folded_under_it(path):
             judged = checked and (last or "★★★" not in block)
             if not (asked or by_hand or prompt) or (last and guessed) or judged:
                 continue
-            if not _answers(blocks[k + 1]):
+            below = _blocks(cells[i + 2].source)[0] if last and _is_picture(cells, i + 1) else ""
+            if not _answers(blocks[k + 1]) and not _answers(below):
                 missing.append(block)
     assert missing == []
+
+
+def _is_picture(cells, i):
+    """Tell whether there is a cell that shows a picture, and prose after it."""
+    shows = r"^(explore|show|pull_points)\("
+    if i + 1 >= len(cells) or cells[i].cell_type != "code":
+        return None
+    return re.search(shows, cells[i].source, re.M)
+
+
+@each_notebook
+def test_one_looks_at_the_picture_before_the_answer(path):
+    cells = _read(path).cells
+    early = [
+        cell.source[-200:]
+        for i, cell in enumerate(cells)
+        if cell.cell_type == "markdown"
+        and _is_picture(cells, i + 1)
+        and _answers(_blocks(cell.source)[-1])
+    ]
+    assert early == []
 
 
 @each_notebook
