@@ -939,6 +939,32 @@ def test_the_arrow_of_a_line_leads_to_its_triple_and_stands_upright_on_its_rays(
     assert count(picture[round(v) - 3 : round(v) + 4, round(u) - 3 : round(u) + 4], ESTIMATED) > 4
 
 
+def test_a_line_of_sight_climbs_with_its_point_and_ends_parallel_to_the_rails():
+    model, camera = MODELS["rail"], course.camera().A
+    x, y = 0.75, 1.6  # m: the right rail from the camera
+    for part, away in ((0.375, 12), (0.5, 20), (0.8, 80)):
+        u, v, w = camera @ [x, y, away]
+        angle = np.degrees(np.arcsin(np.hypot(x, y) / np.hypot(np.hypot(x, y), away)))
+        said = numbers(model.drawing(part=part).sentence)
+        assert said == pytest.approx([away, angle, u / w, v / w], rel=0.03)
+    end = model.drawing(part=1)
+    assert numbers(end.sentence) == [325, 238]
+    assert "parallel" in end.sentence
+    # From the side, too, the end is the image of the rails' direction, and each place its own.
+    eye = look_at([3.6, -1.7, -4.6], [0.7, 0.4, 4])
+    for part, place in ((1, eye[:3, 2]), (0.5, eye[:3] @ [x, y, 20, 1])):
+        seen = 740 * place[:2] / place[2] + [284.5, 199.5]
+        grip = grip_of(model.drawing(part=part), "rail")
+        assert grip.at == pytest.approx(seen, abs=0.1)
+        u, v = np.rint(grip.place).astype(int)
+        square = model.picture(part=part)[v - 4 : v + 5, u - 4 : u + 5]
+        assert count(square, WORLD) > 40
+        assert model.dragged("rail", tuple(seen), part=0.3)["part"] == pytest.approx(part)
+    assert model.dragged("rail", (589, 0))["part"] == 1
+    beside = [model.picture(part=part)[:, 600:] for part in (0.375, 1)]
+    assert count(beside[0], LENS) > count(beside[1], LENS) + 100  # 100 px of gap, and none
+
+
 def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
     model = MODELS["pairs"]
     for x, w in ((2, 1.5), (-1.5, -1), (0.3, 0.7)):
@@ -3023,6 +3049,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("pinhole", "hole"),
     ("pinhole", "focus"),
     ("ruler", "foot"),
+    ("rail", "rail"),
     ("pairs", "number"),
     ("ransac", "draw"),
     ("rings", "place"),
