@@ -939,6 +939,32 @@ def test_the_arrow_of_a_line_leads_to_its_triple_and_stands_upright_on_its_rays(
     assert count(picture[round(v) - 3 : round(v) + 4, round(u) - 3 : round(u) + 4], ESTIMATED) > 4
 
 
+def test_a_line_of_sight_climbs_with_its_point_and_ends_parallel_to_the_rails():
+    model, camera = MODELS["rail"], course.camera().A
+    x, y = 0.75, 1.6  # m: the right rail from the camera
+    for part, away in ((0.375, 12), (0.5, 20), (0.8, 80)):
+        u, v, w = camera @ [x, y, away]
+        angle = np.degrees(np.arcsin(np.hypot(x, y) / np.hypot(np.hypot(x, y), away)))
+        said = numbers(model.drawing(part=part).sentence)
+        assert said == pytest.approx([away, angle, u / w, v / w], rel=0.03)
+    end = model.drawing(part=1)
+    assert numbers(end.sentence) == [325, 238]
+    assert "parallel" in end.sentence
+    # From the side, too, the end is the image of the rails' direction, and each place its own.
+    eye = look_at([3.6, -1.7, -4.6], [0.7, 0.4, 4])
+    for part, place in ((1, eye[:3, 2]), (0.5, eye[:3] @ [x, y, 20, 1])):
+        seen = 740 * place[:2] / place[2] + [284.5, 199.5]
+        grip = grip_of(model.drawing(part=part), "rail")
+        assert grip.at == pytest.approx(seen, abs=0.1)
+        u, v = np.rint(grip.place).astype(int)
+        square = model.picture(part=part)[v - 4 : v + 5, u - 4 : u + 5]
+        assert count(square, WORLD) > 40
+        assert model.dragged("rail", tuple(seen), part=0.3)["part"] == pytest.approx(part)
+    assert model.dragged("rail", (589, 0))["part"] == 1
+    beside = [model.picture(part=part)[:, 600:] for part in (0.375, 1)]
+    assert count(beside[0], LENS) > count(beside[1], LENS) + 100  # 100 px of gap, and none
+
+
 def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
     model = MODELS["pairs"]
     for x, w in ((2, 1.5), (-1.5, -1), (0.3, 0.7)):
@@ -949,7 +975,7 @@ def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
             assert pulled["x"] == x
             assert pulled["w"] == pytest.approx(np.clip(nearest, -1.2, 2), abs=0.05 + 1e-9)
     assert model.dragged("number", (-1.3, 0.4)) == {"x": -1.3, "w": 0.5}
-    nothing, some = (model.picture(w=w)[:, 490:] for w in (0, 1.5))
+    nothing, some = (model.picture(w=w)[:, 600:] for w in (0, 1.5))
     assert count(nothing, ESTIMATED) > 3  # 0 / 0 is asked, not answered
     assert count(some, ESTIMATED) == 0
     assert "every line" in model.drawing(w=0).sentence
@@ -961,10 +987,10 @@ def test_every_dot_of_a_class_lies_on_its_line_and_where_it_is_pulled_the_number
     for w in (-1, -0.5, 0.5, 1.5):  # grey dots; and the black one upon them
         for pulled, ink, least in ((2, MUTED, 25), (w, IDEAL, 60)):
             picture = model.picture(x=x, w=pulled)
-            u, v = MARGIN + (w * x + 4.4) / 8.8 * 480, TITLE + (2.55 - w) / 4.95 * 270
+            u, v = MARGIN + (w * x + 5.4) / 10.8 * 590, TITLE + (2.55 - w) / 4.95 * 270
             around = picture[round(v) - 6 : round(v) + 7, round(u) - 6 : round(u) + 7]
             assert count(around, ink) > least
-    right = [model.picture(x=x, w=w)[150:, 495:] for w in (-1, 0.5, 1.5)]
+    right = [model.picture(x=x, w=w)[150:, 605:] for w in (-1, 0.5, 1.5)]
     assert np.array_equal(right[0], right[1])
     assert np.array_equal(right[1], right[2])
 
@@ -1577,17 +1603,25 @@ def test_the_lenss_curve_has_its_top_where_the_lens_folds():
 @pytest.mark.parametrize(
     ("values", "kept"),
     [
-        ({"turn": 50}, {0, 1, 2, 3, 4}),
-        ({"turn": 50, "size": 0.7}, {1, 2, 3, 4}),
-        ({"size": 0.7, "shear": -0.6}, {2, 3, 4}),
-        ({"shear": 0.4, "along": -0.3, "up": 0.35}, {4}),
+        ({"turn": 50}, {0, 1, 2, 3, 4, 5}),
+        ({"turn": 50, "size": 0.7}, {1, 2, 3, 4, 5}),
+        ({"size": 0.7, "shear": -0.6}, {3, 4, 5}),
+        ({"size": 0.7, "stretch": 1.2}, {1, 3, 4, 5}),  # the ratio of two sides alone
+        ({"shear": 0.4, "along": -0.3, "up": 0.35}, {5}),
     ],
 )
 def test_each_kind_of_map_keeps_what_its_row_of_the_table_says(values, kept):
-    names = ["length", "angle of the corner", "angle of opp", "one half", "cross-ratio"]
+    names = [
+        "length",
+        "angle of the corner",
+        "blue side : top",
+        "angle of opp",
+        "one half",
+        "cross-ratio",
+    ]
     said = MODELS["maps"].drawing(**values).sentence
     assert {i for i, name in enumerate(names) if name in said} == kept
-    kinds = {5: "Euclidean", 4: "similar", 3: "affine", 1: "projective"}
+    kinds = {6: "Euclidean", 5: "similar", 4: "affine", 3: "affine", 1: "projective"}
     assert kinds[len(kept)] in said
     # By hand: where the corners go, of which the first three make a parallelogram.
     given = MODELS["maps"].values(**values)
@@ -1609,7 +1643,7 @@ def test_what_a_map_changes_stands_inside_the_frame_of_its_kind_and_the_rest_is_
         heights.append(np.ptp(lit))
         assert (len(orange) > 0) == bool(values)
         assert ((lit.min() < orange) & (orange < lit.max())).all()
-    assert (np.diff(heights) > 40).all()  # each kind in the next
+    assert (np.diff(heights) > 40).all(), heights  # each kind in the next
     assert orange.min() > lit.min() + 90  # under the cross-ratio, which stays
 
 
@@ -3023,6 +3057,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("pinhole", "hole"),
     ("pinhole", "focus"),
     ("ruler", "foot"),
+    ("rail", "rail"),
     ("pairs", "number"),
     ("ransac", "draw"),
     ("rings", "place"),

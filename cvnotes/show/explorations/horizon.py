@@ -15,7 +15,7 @@ from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD, mixed
 
 _CAMERA, _DOWN, _HALFWAY, _CELL = Camera(course.camera().A), 1.6, 20.0, 4.0  # m
 _MAP, _VIEW, _FINER = (330, 330), (440, 330), 1.375  # px; the photograph is finer than _CAMERA's
-_SHOWN = (-0.5475, 0.5475), (1.07, -0.025)  # of the map, whose rim has the radius 1
+_SHOWN = (-0.565, 0.565), (1.105, -0.025)  # of the map, whose rim has the radius 1
 _SIDE = 21  # degrees to either side, to which the cell is pulled
 _SEEN = -22.1, 21.5  # degrees that the picture shows, from its left border to its right one
 _NAMED = np.radians([-20, 0, 20])  # directions whose degrees are written there
@@ -127,7 +127,7 @@ def _map(sharpness: int) -> Drawn:
     panel.line([seen_rim[0], [0, 0], seen_rim[-1]], CAMERA, 1)
     panel.line(seen_rim, IDEAL, 3)
     panel.mark([0, 0], "camera", 9)
-    _name(panel, 1.045 * np.stack([np.sin(_NAMED), np.cos(_NAMED)], axis=1))
+    _name(panel, 1.068 * np.stack([np.sin(_NAMED), np.cos(_NAMED)], axis=1))
     return panel.drawn()
 
 
@@ -143,7 +143,7 @@ def _picture(sharpness: int) -> Drawn:
         panel.line(seen(_lifted(line)), mixed(_MEADOW, _PALE, strength), strength)
     horizon = seen(np.stack([np.sin(_NAMED), np.cos(_NAMED), 0 * _NAMED], axis=1))
     panel.line(horizon + [[-40, 0], [0, 0], [40, 0]], IDEAL, 3)
-    _name(panel, horizon - [0, 18])
+    _name(panel, horizon - [0, 30])
     page = panel.drawn().copy()
     for z in range(15, 150, 25):  # the poles stand before the lines
         corners = _CAMERA.project([[-4.09, -4.05, z - 0.09], [-3.91, 1.95, z + 0.09]])

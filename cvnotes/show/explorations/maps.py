@@ -16,6 +16,7 @@ _SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
 _MEASURED = (
     ("length of the side", "{:.3f}"),
     ("angle of the corner", "{:.0f}°"),
+    ("blue side : top", "{:.3f}"),
     ("angle of opposite sides", "{:.0f}°"),
     ("one half : the other", "{:.3f}"),
     ("cross-ratio", "{:.2f}"),
@@ -23,7 +24,7 @@ _MEASURED = (
 _SNAP = 0.08  # so near to what changes nothing a hand means just that
 _WIDE = 2.3  # how far from the middle a hand may pull
 # Where the frames of the kinds begin, from the outermost to the innermost, and the rows of each.
-_FRAMES = (7, slice(4, 5)), (64, slice(2, 4)), (140, slice(1, 2)), (197, slice(0, 1))
+_FRAMES = (7, slice(5, 6)), (59, slice(3, 5)), (131, slice(1, 3)), (203, slice(0, 1))
 _KINDS = "Euclidean", "similar", "affine", "projective"
 _NUMBERS = 3, 4, 6, 8
 
@@ -117,13 +118,14 @@ def _snap(value: float, still: float) -> float:
 
 
 def measured(H: Array) -> Array:
-    """Return a length, two angles, a ratio and a cross-ratio, (5,), after a map."""
+    """Return a length, two angles, two ratios and a cross-ratio, (6,), after a map."""
     side, corners = apply(H, _SIDE), apply(H, _SQUARE)
     top, middle, low = side[[0, 1, 3]]
     across, right, back, left = corners[1:] - corners[:-1]
     return np.array([
         np.linalg.norm(low - top),
         _angle(-across, right),
+        np.linalg.norm(right) / np.linalg.norm(across),
         max(_angle(across, -back), _angle(right, -left)),
         np.linalg.norm(middle - top) / np.linalg.norm(low - middle),
         cross_ratio(*to_homogeneous(side)),
@@ -137,7 +139,9 @@ def _angle(a: Array, b: Array) -> float:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     H = matrix(values)
-    panel = paper.panel((380, 380), (-2.5, 2.5), (-2.5, 2.5), "pull the square at its crosses")
+    reach = float(np.abs(apply(H, _SQUARE)).max())  # by sliders; no hand gets there
+    wide = max(2.5, 1.2 * reach)
+    panel = paper.panel((380, 380), (-wide, wide), (-wide, wide), "pull the square at its crosses")
     panel.line(_SQUARE, MUTED, 1.2, dash=5)
     for way in np.eye(3)[:2]:  # sides that are no longer parallel run on to where they meet
         far = H @ way
@@ -160,7 +164,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     ), 1):  # fmt: skip
         at = apply(H, place)
         away = (at - middle) / np.hypot(*(at - middle))
-        panel.text(at + 0.33 * away, f"{number}", ESTIMATED, anchor="mm", size=15)
+        panel.text(at + 0.132 * wide * away, f"{number}", ESTIMATED, anchor="mm", size=15)
         panel.mark(at, "estimated", 8)
         panel.grip(name, what, at, 4)
     return Drawing(paper.join((panel, _table(paper, H, values))), _sentence(H, values))

@@ -18,16 +18,16 @@ def pairs_model() -> Model:
         Setting("w", "w", -1.2, 2, 0.1, 0.5, "the factor: which pair of the class"),
     )
     about = (
-        "The plane of the pairs [wx, w]: a line through the origin with many dots, beside each its "
-        "number, and where it crosses the level w = 1. On the right the black dot is divided, and "
-        "its number stands on the level w = 1."
+        "The plane of the pairs [wx, w]: a line through the origin with many dots, the number "
+        "beside those that were passed, and where it crosses the level w = 1. On the right the "
+        "black dot is divided, and its number stands on the level w = 1."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
         x, w = values["x"], values["w"]
-        plane = paper.panel((480, 270), (-4.4, 4.4), (2.55, -2.4), "pull the black dot")
+        plane = paper.panel((590, 270), (-5.4, 5.4), (2.55, -2.4), "pull the black dot")
         _draw_class(plane, x, w)
-        seen = paper.panel((320, 270), (-2.6, 2.6), (2.2, -2.2), "divided by its last number")
+        seen = paper.panel((260, 270), (-2.6, 2.6), (2.2, -2.2), "divided by its last number")
         _draw_number(seen, x, w)
         return Drawing(paper.join((plane, seen)), _sentence(x, w))
 
@@ -45,7 +45,7 @@ def pairs_model() -> Model:
 def _draw_class(panel: Panel, x: float, w: float) -> None:
     panel.line([[-9, 0], [9, 0]], FAINT, 0.8)
     panel.line([[0, -9], [0, 9]], FAINT, 0.8)
-    panel.text([4.3, -0.22], "wx", anchor="rm", size=13)
+    panel.text([5.3, -0.22], "wx", anchor="rm", size=13)
     panel.text([0.1, 2.3], "w", size=13)
     panel.line([[-9, 1], [9, 1]], WORLD, 2)
     panel.line(np.outer([-9, 9], [x, 1]), MUTED, 1.5)
@@ -55,11 +55,12 @@ def _draw_class(panel: Panel, x: float, w: float) -> None:
     for factor in _MEMBERS:
         at = factor * np.array([x, 1])
         panel.polygons([at + 3.5 * panel.pixel * circle(17)], MUTED)
-        panel.text(at + aside, _number(x), WORLD, anchor="mm", size=15)
+        if min(w, 1) <= factor <= max(w, 1):  # between the black dot and the green mark
+            panel.text(at + aside, _number(x), WORLD, anchor="mm", size=15)
     panel.mark([x, 1], "world", 9)
-    panel.text([-4.3 * side, 1.25], "w = 1", WORLD, anchor=other, size=13)
+    panel.text([-5.3 * side, 1.25], "w = 1", WORLD, anchor=other, size=13)
     panel.polygons([6 * panel.pixel * circle(24) + [w * x, w]], IDEAL)
-    beside = np.clip(w * x + 0.3 * side, -2.7, 2.7)  # within the panel
+    beside = np.clip(w * x + 0.3 * side, -4.3, 4.3)  # within the panel
     panel.text([beside, w - 0.36], _pair(x, w), IDEAL, anchor=other, size=14)
     panel.grip("number", "the number, on the line w = 1", [x, 1], 6)
     panel.grip("pair", "the pair, along its class", [w * x, w], 6)

@@ -103,10 +103,11 @@ def _draw_picture(panel: Panel, camera: Camera, middle: Array, along: Array, acr
 
 def _sky_and_grass(camera: Camera, horizon: Array) -> Drawn:
     """Paint both sides of the horizon, a line (a, b, c) of length 1: they pale towards it."""
-    v, u = np.mgrid[0 : camera.size[1] : 4, 0 : camera.size[0] : 4]
+    v, u = np.mgrid[0 : camera.size[1] : 2, 0 : camera.size[0] : 2]
     below = (horizon[0] * u + horizon[1] * v + horizon[2])[..., None]
+    grass = (below / 3 + 0.5).clip(0, 1)  # the line between both is smooth, tilted too
     haze = np.exp(-np.abs(below) / np.where(below > 0, 4, 150))
-    return np.asarray(haze * _HAZE + (1 - haze) * np.where(below > 0, _GRASS, _SKY), np.uint8)
+    return np.asarray(haze * _HAZE + (1 - haze) * (grass * _GRASS + (1 - grass) * _SKY), np.uint8)
 
 
 def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, across: Array) -> None:

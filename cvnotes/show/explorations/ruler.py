@@ -103,7 +103,7 @@ def _draw_plan(panel: Panel, t: float, near: float, far: float) -> None:
     for at, name in zip(row[:2], "ab", strict=True):
         panel.text([at[0] + 0.6, at[1]], name, WORLD, anchor="mm", size=13)
     panel.mark([_X, t], "estimated", 9)
-    said = f"c  {t:.1f} m" if t < _FARTHEST - 4 else f"c  {t:.0f} m"
+    said = f"c  {t:.1f} m" if t < _FARTHEST - 4 else f"↑  c  {t:.0f} m"
     panel.text([_X - 0.6, min(t, _FARTHEST - 5)], said, ESTIMATED, anchor="rm", size=13)
 
 

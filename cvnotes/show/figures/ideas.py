@@ -21,7 +21,7 @@ _MEANINGS = {  # with where the words stand on the axes
     "world": ("what stands in the world", (0.03, 0.97)),
     "camera": ("the camera: its centre,\nits image plane", (0.45, 0.08)),
     "ideal": ("the truth, or an ideal:\nhere, without the lens", (0.825, 0.86)),
-    "lens": ("a point in a picture,\nas the lens shows it", (0.825, 0.5)),
+    "lens": ("a point in a picture,\nas one sees it", (0.825, 0.5)),
     "estimated": ("found by a computation:\ncorners, lines, cameras", (0.825, 0.14)),
 }
 
