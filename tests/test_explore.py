@@ -1519,6 +1519,24 @@ def test_the_net_beside_a_conic_runs_to_the_horizon_and_is_one_of_squares_on_the
         assert np.mean(wide < 0.1) > 0.2  # (of wide ones it says nothing)
 
 
+@pytest.mark.parametrize(
+    ("a", "b", "points"),
+    [(0.75, 0.75, True), (-0.9, 0.5, True), (0, 1.02, True), (0.9, -1.0, False), (0.6, 0.8, False)],
+)
+def test_an_arrow_points_to_the_piece_of_a_conic_that_is_outside(monkeypatch, a, b, points):
+    arrows = []
+    monkeypatch.setattr(Panel, "arrows", lambda _, *drawn: arrows.append(drawn[:2]))
+    MODELS["conic"].drawing(a=a, b=b)
+    assert len(arrows) == points
+    for start, way in arrows:
+        vertex = -np.array([a, b, 0]) / np.hypot(a, b) + [0, 0, 1]
+        x, y, w = np.array([[1, 0, 0], [0, 1, 0], [a, b, 1]]) @ vertex
+        ahead = np.array([x, y]) / w - start
+        assert abs(x / w) > 80 / 17 or abs(y / w) > 4  # out of the frame
+        assert max(abs((start + way) * [17 / 80, 1 / 4])) < 1  # and the arrow in it
+        assert np.allclose(way / np.linalg.norm(way), ahead / np.linalg.norm(ahead), atol=1e-9)
+
+
 def test_the_line_that_goes_to_infinity_is_held_at_its_foot():
     model = MODELS["conic"]
     for foot in ((0.8, -0.3), (-1, 1), (0.5, 0.5)):

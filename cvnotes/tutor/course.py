@@ -17,7 +17,7 @@ from cvnotes.base import CvnotesError, FileError
 from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED, verdict
 from cvnotes.tutor.checker.exercise import Exercise
 from cvnotes.tutor.checker.repairs import pointed
-from cvnotes.tutor.checker.report import WRONG, Report, Source, Words
+from cvnotes.tutor.checker.report import OPEN, WRONG, Report, Source, Words
 from cvnotes.tutor.checker.sandbox import ask
 from cvnotes.tutor.remembered import remember, shell, solved_before
 
@@ -134,6 +134,8 @@ class Course:
             report = self._pointed(report, exercise, answer)
         self._offer_what_reports_name()
         call = f'check("{name}", {_name_of(answer) or exercise.variable})'
+        if report.verdict == OPEN:  # the same below each exercise that was not begun
+            return replace(report, call=call)
         return replace(report, call=call, progress=self._progress_in(self.notebook_of(exercise)))
 
     def _pointed(self, report: Report, exercise: Exercise, answer: Any) -> Report:

@@ -73,7 +73,7 @@ def stereo_cameras() -> tuple[Camera, Camera]:
 
 @cache
 def nearest_edge() -> Array:
-    """Return the top (3,) of the nearest upright edge of the tall block in `stereo_pictures`.
+    """Return the top (3,) of the nearest upright edge of the red block in `stereo_pictures`.
 
     Examples
     --------

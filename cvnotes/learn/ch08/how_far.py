@@ -19,7 +19,7 @@ def how_far() -> float:
 
 @cache
 def _edges() -> Array:
-    """Return the depths of the upright edges: four of the tall block, then those of the others."""
+    """Return the depths of the upright edges: four of the red block, then those of the others."""
     from cvnotes.pictures import blocks
 
     tops = blocks().vertices.reshape(-1, 4, 3)[:6].reshape(-1, 3)
@@ -54,7 +54,7 @@ _MISTAKES = mistakes_in(how_far,
     ("upside down", "Your fraction is upside down: larger disparities mean nearer points.",
      "d * 800 / 640", "d * 640 / 800", "d / 640 / 800", "d * 640 * 800", "800 / (640 * d)",
      "640 / (800 * d)"),
-    ("another edge of the tall block", "That is an edge of the tall block, but not the nearest "
+    ("another edge of the red block", "That is an edge of the red block, but not the nearest "
      "one: where do its light and its dark side meet?",
      "_edges()[0]", "_edges()[3]", "_edges()[2]", {"same": within_part(0.011)}),
     ("an edge of another block", "That is an edge of one of the lower blocks.",
@@ -75,11 +75,11 @@ EXERCISE = Exercise(
     title="Read it off: how far away is the block?",
     task="Look at stereo_pictures(), a left and a right picture by two cameras side by side: both "
     "have α = 640 pixels and look the same way, and the right one stands 800 mm to the right. How "
-    "many millimetres away is the nearest upright edge of the tall block? To within 6 % is good "
+    "many millimetres away is the nearest upright edge of the red block? To within 6 % is good "
     "enough, which is three pixels.",
     stub="my_how_far = ...  # mm",
     hints=(
-        "It is the edge at which the light and the dark side of the tall block meet.",
+        "It is the edge at which the light and the dark side of the red block meet.",
         "In which column is it in the left picture, in which in the right one? Columns are those "
         "of the pictures, as the axes of imshow count them, not of your screen.",
         "The difference of the two columns is the disparity d, and Z = α b / d.",

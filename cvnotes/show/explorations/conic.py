@@ -15,6 +15,7 @@ _AT_INFINITY = 0.02  # in w: so near the line no point of the circle is drawn
 _TINTS = "#F1F7FB", "#FDF4EE"  # of the two sides of the line
 _NET = np.arange(-6, 6.1, 0.5)  # where the lines of the net are
 _WIDE = 60.0  # how far they are drawn: beyond the frames
+_RIM = 0.7  # how far inside of the frame an arrow points to what lies outside
 
 
 def conic_model() -> Model:
@@ -62,6 +63,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         if s >= 1:
             half = np.sqrt(1 - 1 / s)
             before.polygons([circle(25) * 0.05 - n / s + x * along for x in (-half, half)], IDEAL)
+        if s > 1 + 1e-9:
+            _point_to_the_other_piece(after, n / np.sqrt(s), np.sqrt(s))
         before.mark(-n / s, "world", 7)
         before.grip("horizon", "the line that goes to infinity", -n / s, 4)
     return Drawing(paper.join((before, after)), _sentence(n))
@@ -97,6 +100,21 @@ def _draw_circle(before: Panel, after: Panel, n: Array) -> None:
         with np.errstate(divide="ignore", invalid="ignore"):
             seen = np.where((side * w > _AT_INFINITY)[:, None], xy / w[:, None], np.nan)
         after.line(seen, ink, 4)
+
+
+def _point_to_the_other_piece(after: Panel, way: Array, size: float) -> None:
+    """Draw an arrow towards the piece beyond the horizon for as long as the frame does not show it.
+
+    Its vertex is the picture of the circle's point -n / |n|, at the distance 1 / (|n| - 1).
+    """
+    inside = np.array([_FAR * 20 / 17, _FAR]) - _RIM
+    rim = float(np.min(inside / np.abs(way).clip(1e-9)))
+    if (size - 1) * rim > 1:
+        return
+    tail = (rim - 1.2) * way
+    after.arrows(tail, 1.2 * way, ESTIMATED, 3)
+    words = tail[0].clip(-3.2, 3.2), tail[1] - np.copysign(0.5, way[1])
+    after.text(words, "the other piece", ESTIMATED, anchor="mm", size=14, rim=_TINTS[1])
 
 
 def _sentence(n: Array) -> str:

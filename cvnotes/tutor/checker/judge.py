@@ -76,10 +76,13 @@ def _by_part(
 
 
 def _not_solved_yet(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) -> Report:
-    """Describe what is asked; and of several steps, which are missing, or have other names."""
+    """Say where help is; and of several steps, which are missing, or have other names.
+
+    What is asked stands above the answer, and is not repeated.
+    """
     by_part, rest = _by_part(exercise, outcomes, seed)
     missing = [p.name for p, own in by_part if any(o.kind == "unfinished" for o in own)]
-    said, name = f"{_sentence(exercise.title)} ", None
+    said, name = "", None
     others = next((o.words for o in outcomes if o.kind == "unfinished" and o.words), "")
     if rest and others:
         names = ", ".join(part.name for part, _ in by_part)
@@ -90,10 +93,6 @@ def _not_solved_yet(exercise: Exercise, outcomes: Sequence[Outcome], seed: int) 
         said += f"{'These steps are' if missing[1:] else 'This step is'} missing: {steps}. "
         name = name or "steps missing"
     return Report(exercise.name, OPEN, said + hint_at(exercise), misconception=name)
-
-
-def _sentence(title: str) -> str:
-    return title if title.endswith(("?", ".")) else f"{title}."
 
 
 def hint_at(exercise: Exercise) -> str:

@@ -48,7 +48,7 @@ class Report:
     exact : str
         The formula, for whoever was refused before.
     progress : str
-        How far the student is in the chapter.
+        How far the student is in the chapter; nothing of an exercise that was not begun.
     call : str
         The call that gives this report again: what is too long to be shown is in it.
     """
