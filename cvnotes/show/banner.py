@@ -85,7 +85,14 @@ def one_corner(chapter: int) -> Picture:
         ("world", W[:, :2], None, WORLD, "({:.0f}, {:.0f}, {:.0f}) mm", W[-1]),
         ("camera", beside.project(M), cone, WORLD, "({:.1f}, {:.1f}, {:.1f}) mm", M[-1]),
         ("z = 1", xy, border, IDEAL, "({:.4f}, {:.4f})", xy[-1]),
-        ("no lens" if bare else "behind the lens", seen, border, LENS, "({:.4f}, {:.4f})", seen[-1]),
+        (
+            "no lens" if bare else "behind the lens",
+            seen,
+            border,
+            LENS,
+            "({:.4f}, {:.4f})",
+            seen[-1],
+        ),
         ("pixel", m, frame, LENS, "({:.1f}, {:.1f})", m[-1]),
     )
     lit = _LIT.get(chapter, STEPS)
@@ -170,7 +177,9 @@ def _line(points: npt.ArrayLike) -> str:
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in np.asarray(points))
 
 
-def _step(layout: _Layout, number: int, name: str, lit: bool, backwards: bool, crossed: bool) -> str:
+def _step(
+    layout: _Layout, number: int, name: str, lit: bool, backwards: bool, crossed: bool
+) -> str:
     """Draw the arrow to a panel from the one before it; a step that is not taken is crossed out."""
     left, top = layout.place(number + 1)
     tip, end, y = left - 7, left - layout.gap + 7, top + layout.tall // 2

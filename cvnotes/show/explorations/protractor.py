@@ -33,7 +33,10 @@ def protractor_model() -> Model:
         width = 480 if paper.narrow else 800
         part = width / np.ptp(_SHOWN)
         picture = paper.panel(
-            (width, round(part * np.ptp(_HIGH))), _SHOWN, _HIGH, "the picture, and what is far beside it"
+            (width, round(part * np.ptp(_HIGH))),
+            _SHOWN,
+            _HIGH,
+            "the picture, and what is far beside it",
         )
         above = paper.panel(
             (width, round(part * np.ptp(_AHEAD))), _SHOWN, _AHEAD, "the same from above"

@@ -68,7 +68,12 @@ def rod_model() -> Model:
         panel.grip("foot", "the foot of the rod", foot, 4)
         top = at_height(foot, height)
         panel.grip("top", "the top of the rod", top, 4)
-        side = paper.panel((width, 146), (-2.5, 39), (6.6, -0.88), "the same from the side (m), all drawn over each other")
+        side = paper.panel(
+            (width, 146),
+            (-2.5, 39),
+            (6.6, -0.88),
+            "the same from the side (m), all drawn over each other",
+        )
         _draw_side(side, float(_away(_stands(foot))), height)
         return Drawing(paper.join((panel,), (side,)), _sentence(foot, height, e))
 
@@ -119,7 +124,8 @@ def _draw_way(panel: Panel, foot: Array, depths: Array) -> float:
         hidden = _hidden(way, places, depths)
         # Line and dashes meet halfway between what is seen and what is hidden.
         way = np.insert(way, range(1, len(way)), (way[1:] + way[:-1]) / 2, axis=0)
-        both, either = hidden[1:] & hidden[:-1], hidden[1:] | hidden[:-1]
+        next_to = hidden[1:], hidden[:-1]
+        both, either = np.logical_and(*next_to), np.logical_or(*next_to)
         all_hidden, some = (np.insert(hidden, range(1, len(hidden)), at) for at in (both, either))
         panel.line([*np.where(all_hidden[:, None], np.nan, way), e], ESTIMATED, 1)
         panel.line(np.where(some[:, None], way, np.nan), ESTIMATED, 1, dash=3)
