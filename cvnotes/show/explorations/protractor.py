@@ -73,8 +73,8 @@ def _draw_picture(panel: Panel, ends: Array, ways: Array) -> None:
             (near_u, _CORNER[1], _FOOT))]  # fmt: skip
         panel.polygons([wall], ink)
         for corner in wall[:1] + wall[3:]:
-            panel.line([corner, [end, row]], ESTIMATED, 1, dash=4)
-    panel.line([*frame, frame[0]], MUTED, 1)
+            panel.line(np.array([corner, [end, row]], dtype=float), ESTIMATED, 1, dash=4)
+    panel.line(frame[[0, 1, 2, 3, 0]], MUTED, 1)
     panel.line([[_SHOWN[0], row], [_SHOWN[1], row]], IDEAL, 1.2)
     panel.text([_SHOWN[1] - 16, row + 64], "horizon", IDEAL, anchor="rm", size=13)
     for name, end, outwards, anchor in zip(("left", "right"), ends, (20, -20), "rl", strict=True):
@@ -91,10 +91,10 @@ def _draw_above(panel: Panel, ends: Array, ways: Array, angle: float) -> None:
     panel.line([[_SHOWN[0], _F], [_SHOWN[1], _F]], IDEAL, 1.2)
     panel.line([[0, _F], [639, _F]], MUTED, 4)
     panel.text([_SHOWN[0] + 16, _F + 42], "the plane of the picture", IDEAL, size=13)
-    panel.line([eye, [_C[0], _F]], MUTED, 0.9, dash=5)
+    panel.line(np.array([eye, [_C[0], _F]]), MUTED, 0.9, dash=5)
     panel.text([_C[0] + 16, 0.7 * _F], "f", MUTED, size=14)
     for end, unit, ink in zip(ends, units, _WALLS, strict=True):
-        panel.line([eye, [end, _F]], CAMERA, 2)
+        panel.line(np.array([eye, [end, _F]]), CAMERA, 2)
         panel.line([corner, corner + _LONG * unit], ink, 6)
         panel.mark([end, _F], "estimated", 7)
     turned = np.radians(np.linspace(0, angle, 40))[:, None]
