@@ -18,6 +18,7 @@ _LIT: dict[int, tuple[str, ...]] = {
     6: ("R, T", "÷ z", "A"), 8: ("lens", "A"),
 }  # fmt: skip
 _BACKWARDS = (6, 7)
+_WITHOUT_LENS = (2,)  # its camera has none, so its corner goes by another pixel
 _STYLE = (
     "text{font:13px system-ui,sans-serif;text-anchor:middle;fill:#333}.s{font-weight:600}"
     ".narrow text{font-size:12px}.narrow .n{font-size:11px}"
@@ -71,7 +72,8 @@ def one_corner(chapter: int) -> Picture:
     W = np.concatenate([_dark_squares(25.0).reshape(-1, 3), [[200, 125, 0]]])
     M = move(camera.G, W)
     xy = M[:, :2] / M[:, 2:]
-    seen = camera.lens.distort(xy)
+    bare = chapter in _WITHOUT_LENS
+    seen = xy if bare else camera.lens.distort(xy)
     m = px_from_xy(camera.A, seen)
     frame = np.array([[0, 0], [640, 0], [640, 480], [0, 480], [0, 0]]) - 0.5
     border = xy_from_px(camera.A, frame)
@@ -83,7 +85,14 @@ def one_corner(chapter: int) -> Picture:
         ("world", W[:, :2], None, WORLD, "({:.0f}, {:.0f}, {:.0f}) mm", W[-1]),
         ("camera", beside.project(M), cone, WORLD, "({:.1f}, {:.1f}, {:.1f}) mm", M[-1]),
         ("z = 1", xy, border, IDEAL, "({:.4f}, {:.4f})", xy[-1]),
-        ("behind the lens", seen, border, LENS, "({:.4f}, {:.4f})", seen[-1]),
+        (
+            "no lens" if bare else "behind the lens",
+            seen,
+            border,
+            LENS,
+            "({:.4f}, {:.4f})",
+            seen[-1],
+        ),
         ("pixel", m, frame, LENS, "({:.1f}, {:.1f})", m[-1]),
     )
     lit = _LIT.get(chapter, STEPS)
@@ -94,7 +103,10 @@ def one_corner(chapter: int) -> Picture:
             for k, (name, points, outline, colour, form, numbers) in enumerate(states)
         ]
         backwards = chapter in _BACKWARDS
-        parts += [_step(layout, k, name, name in lit, backwards) for k, name in enumerate(STEPS)]
+        parts += [
+            _step(layout, k, name, name in lit, backwards, bare and name == "lens")
+            for k, name in enumerate(STEPS)
+        ]
         if chapter == 5:
             x, y = layout.place(4) - [3, 4]
             parts.append(f'<path d="M{x} {y}h{layout.wide + 6}v{layout.tall + 8}'
@@ -110,7 +122,7 @@ def one_corner(chapter: int) -> Picture:
     said = [form.format(*numbers) for *_, form, numbers in states]
     alt = (
         f"One corner: world {said[0]}, camera {said[1]}, plane z = 1 {said[2]}, "
-        f"behind the lens {said[3]}, pixel {said[4]}. Lit: {', '.join(lit) or 'the pixel'}"
+        f"{states[3][0]} {said[3]}, pixel {said[4]}. Lit: {', '.join(lit) or 'the pixel'}"
         + (", backwards" if chapter in _BACKWARDS else "")
     )
     width = _STRIP.size[0] + 8
@@ -165,8 +177,10 @@ def _line(points: npt.ArrayLike) -> str:
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in np.asarray(points))
 
 
-def _step(layout: _Layout, number: int, name: str, lit: bool, backwards: bool) -> str:
-    """Draw the arrow to a panel from the one before it."""
+def _step(
+    layout: _Layout, number: int, name: str, lit: bool, backwards: bool, crossed: bool
+) -> str:
+    """Draw the arrow to a panel from the one before it; a step that is not taken is crossed out."""
     left, top = layout.place(number + 1)
     tip, end, y = left - 7, left - layout.gap + 7, top + layout.tall // 2
     if backwards:
@@ -177,5 +191,6 @@ def _step(layout: _Layout, number: int, name: str, lit: bool, backwards: bool) -
     return (
         f'<path d="M{end} {y}H{tip}m{back} -6L{tip} {y}l{back} 6" fill="none" stroke="{colour}" '
         f'stroke-width="{3 if lit else 1}"/>'
-        f'<text class="s" x="{(tip + end) // 2}" y="{y - 10}" style="fill:{ink}">{name}</text>'
+        f'<text class="s" x="{(tip + end) // 2}" y="{y - 10}" style="fill:{ink}'
+        f'{";text-decoration:line-through" if crossed else ""}">{name}</text>'
     )

@@ -90,7 +90,10 @@ def _draw_side(panel: Panel, height: float) -> None:
 
 
 def _sentence(height: float) -> str:
-    said = f"The eye is {height:.2f} m above the grass: the horizon"
+    said = f"The eye is {height:.2f} m above the grass"
+    if height == _START:  # what the horizon does is asked
+        return f"{said}. The poles are {_TALL:g} m high."
+    said += ": the horizon"
     if height > _TALL:
         return f"{said} passes over all poles, for they are {_TALL:g} m high."
     return f"{said} cuts every pole {height:.2f} m above its foot."

@@ -12,6 +12,7 @@ from cvnotes.show.style import ESTIMATED, LENS
 _CAMERA = Camera(intrinsics(800, 804, 325, 238), size=SIZE)  # the course's, level
 _SUN = np.array([0.06, -0.2, 0.8])
 _MOST = 4.0  # m, of a tip from its place
+_PAINTED = 2.5  # m to the right of where the sun throws it: the tip at first
 _NEAR = 2.0  # px: a line that misses its end by less is taken for true
 _CLOSE = (263, 507), (22, 282)  # px, u and v, of the part that is shown enlarged
 _HORIZON = 250.0  # px: below it is ground
@@ -21,9 +22,9 @@ def forged_model() -> Model:
     """Make the model of the railway with a low sun, the shadow of whose second pole is pulled."""
     settings = (
         Setting(
-            "aside", "to the right (m)", -_MOST, _MOST, 0.05, 2.5, "of where the sun throws it"
+            "aside", "to the right (m)", -1.5 * _MOST, _MOST, 0.05, 0, "of where it was painted"
         ),
-        Setting("ahead", "ahead (m)", -2 * _MOST, 3 * _MOST, 0.05, 0, "of where the sun throws it"),
+        Setting("ahead", "ahead (m)", -2 * _MOST, 3 * _MOST, 0.05, 0, "of where it was painted"),
     )
     about = (
         "A railway with poles and their long shadows; from the tips of three shadows lines over "
@@ -33,7 +34,7 @@ def forged_model() -> Model:
     top, foot = POLES[1], POLES[1] * [1, 0, 1] + [0, GROUND, 0]
     # Where the lines should end: over the top and along the ground.
     ends = _CAMERA.vanishing_point(np.array([_SUN, _SUN * [1, 0, 1]]))
-    place = tip_of(top, _SUN)
+    place = tip_of(top, _SUN) + [_PAINTED, 0, 0]
 
     def draw(paper: Paper, values: Values) -> Drawing:
         tip = place + [values["aside"], 0, values["ahead"]]

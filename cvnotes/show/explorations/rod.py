@@ -23,6 +23,7 @@ _EDGE = _CAMERA.project(blocks().vertices[[17, 19]])  # of the yellow box, from 
 _UP, _LEVEL = _CAMERA.vanishing_point([0, 1, 0]), horizon(_CAMERA, [0, 1, 0])
 _HORIZON = float(-_LEVEL[2] / _LEVEL[1])  # its row: the camera is not rolled
 _WIDTH, _TRIANGLES = 0.16, 36  # m, of the rod; of three blocks
+_LATE = 540  # px: farther to the right the border leaves no room for words
 _BORDER = (-440, 80)  # px: so much more is shown on the left, and less of the sky
 _WIDE = Camera(
     [[1, 0, -_BORDER[0]], [0, 1, -_BORDER[1]], [0, 0, 1]] @ _CAMERA.A, _CAMERA.G, size=(1080, 400)
@@ -32,8 +33,8 @@ _WIDE = Camera(
 def rod_model() -> Model:
     """Make the model of the three blocks, with a rod among them."""
     settings = (
-        Setting("u", "foot, u (px)", 8, 631, 1, 135, "where the foot is, from left to right"),
-        Setting("v", "foot, v (px)", 352, 479, 1, 382, "where it is, downwards"),
+        Setting("u", "foot, u (px)", 8, 615, 1, 135, "where the foot is, from left to right"),
+        Setting("v", "foot, v (px)", 352, 464, 1, 382, "where it is, downwards"),
         Setting("height", "height (m)", 1, _TALLEST, 0.1, 4, "the rod's height"),
     )
     about = (
@@ -59,14 +60,20 @@ def rod_model() -> Model:
         panel.image(photo[:, left - _BORDER[0] :])
         panel.text([_BORDER[0] + 14, _BORDER[1] + 16], "beyond the photograph")
         panel.line([[-460, _HORIZON], [660, _HORIZON]], IDEAL, 1)
-        panel.text([633, _HORIZON - 11], "horizon", IDEAL, anchor="rm")
+        beside, anchor = (20, "lm") if foot[0] > _LATE else (633, "rm")
+        panel.text([beside, _HORIZON - 11], "horizon", IDEAL, anchor=anchor)
         e = _draw_way(panel, foot, depths)
         _draw_rod(panel, foot, height, depths)
         panel.mark(at_height(foot, _BOX), "estimated", 5)
         panel.grip("foot", "the foot of the rod", foot, 4)
         top = at_height(foot, height)
         panel.grip("top", "the top of the rod", top, 4)
-        side = paper.panel((width, 146), (-2.5, 39), (6.6, -0.88), "the same from the side (m)")
+        side = paper.panel(
+            (width, 146),
+            (-2.5, 39),
+            (6.6, -0.88),
+            "the same from the side (m), all drawn over each other",
+        )
         _draw_side(side, float(_away(_stands(foot))), height)
         return Drawing(paper.join((panel,), (side,)), _sentence(foot, height, e))
 
@@ -114,9 +121,14 @@ def _draw_way(panel: Panel, foot: Array, depths: Array) -> float:
     for h in (_BOX, 0):
         way = np.array([at_height(at, h) for at in feet])
         places = np.array([_stands(at) for at in feet]) - [0, 1e3 * h, 0]
-        hidden = _hidden(way, places, depths)[:, None]
-        panel.line([*np.where(hidden, np.nan, way), e], ESTIMATED, 1)
-        panel.line(np.where(hidden, way, np.nan), ESTIMATED, 1, dash=3)
+        hidden = _hidden(way, places, depths)
+        # Line and dashes meet halfway between what is seen and what is hidden.
+        way = np.insert(way, range(1, len(way)), (way[1:] + way[:-1]) / 2, axis=0)
+        next_to = hidden[1:], hidden[:-1]
+        both, either = np.logical_and(*next_to), np.logical_or(*next_to)
+        all_hidden, some = (np.insert(hidden, range(1, len(hidden)), at) for at in (both, either))
+        panel.line([*np.where(all_hidden[:, None], np.nan, way), e], ESTIMATED, 1)
+        panel.line(np.where(some[:, None], way, np.nan), ESTIMATED, 1, dash=3)
     panel.line(_EDGE, LENS, 2)
     panel.mark(e, "estimated", 6)
     (left, right), word = panel.x, "e"
@@ -158,7 +170,9 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
     apart = np.linalg.norm(pixels[8] - pixels[0]) / panel.pixel  # where letters have no room,
     for metre in range(1 if apart > 20 else int(height), int(height) + 1):  # only the last
         aside = 18 if (height - metre) * apart < 12 else 4  # beside the ring of the grip
-        panel.text(at_height(foot, metre) + [width / 2 + aside, 0], f"{metre}", ESTIMATED, size=10)
+        side, anchor = (-1, "rm") if foot[0] > _LATE else (1, "lm")
+        at = at_height(foot, metre) + [side * (width / 2 + aside), 0]
+        panel.text(at, f"{metre}", ESTIMATED, anchor=anchor, size=10)
 
 
 def _hidden(pixels: Array, places: Array, depths: Array) -> Array:

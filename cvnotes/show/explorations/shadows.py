@@ -51,7 +51,10 @@ def shadows_model() -> Model:
             if (tip_of(top, sun) - _EYE)[2] > _NEAR:  # else its tip lies behind the camera
                 draw_ray(panel, _CAMERA, top, sun)
         panel.mark(end, "estimated", 8)
-        panel.grip("sun", "the sun, or the shadow of the camera", end, 10)
+        held = end.clip(16, np.array(SIZE) - 17)
+        panel.grip("sun", "the sun, or the shadow of the camera", held, 10)
+        if np.isfinite(end).all() and (held != end).any():
+            _point_to(panel, end, held)
         plan = paper.panel((330, 330), (-68, 68), (104, -32), "the same from above (m)")
         _draw_plan(plan, sun)
         return Drawing(paper.join((panel, plan)), _sentence(sun, end, values))
@@ -63,6 +66,15 @@ def shadows_model() -> Model:
         return {"azimuth": float(azimuth), "elevation": float(elevation)}
 
     return Model("shadows", about, settings, draw, {"sun": pulled})
+
+
+def _point_to(panel: Panel, end: Array, held: Array) -> None:
+    """Tell at the border where the end is that lies outside of the picture."""
+    (u, v), (x, y) = end.tolist(), held.tolist()
+    arrow = ("→" if u > x else "←") if u != x else ("↑" if v < y else "↓")
+    words = f"{arrow} ({u:.0f}, {v:.0f})".replace("-", "−")
+    side = 1 if x < SIZE[0] / 2 else -1
+    panel.text([x + 26 * side, y], words, ESTIMATED, anchor="lm" if side > 0 else "rm")
 
 
 @lru_cache(maxsize=2)

@@ -126,11 +126,11 @@ def _draw_plane(panel: Panel, z: float, f: float) -> None:
         _draw_tree(panel, f / away * np.eye(2), (at, 0), pale)
         panel.arrows([at, 0], [0, v], LENS, 3)
         aside = [at + side * (0.2 * f / away + 0.05), 0.72 * v]
-        panel.text(aside, f"{v:.2f}", LENS, anchor="lm" if side > 0 else "rm", size=13)
+        # What becomes of v is asked: the pale tree tells it when the green one has come there.
+        told = f"{v:.2f}" if side < 0 or z == _FAR[1] else "?"
+        panel.text(aside, told, LENS, anchor="lm" if side > 0 else "rm", size=13)
     panel.mark([0, f * _FOOT / z], "lens", 7)
 
 
 def _sentence(z: float, f: float) -> str:
-    v, far = f * _FOOT / z, f * _FOOT / _FAR[1]
-    said = f"v = f · y / z = {f:g} · {1e3 * _FOOT:.0f} / {1e3 * z:.0f} = {v:.2f} mm"
-    return f"{said}; for the pale tree, {_FAR[1]:g} m away, it is {far:.2f} mm."
+    return f"v = f · y / z = {f:g} · {1e3 * _FOOT:.0f} / {1e3 * z:.0f} = {f * _FOOT / z:.2f} mm."
