@@ -168,7 +168,7 @@ def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Pa
     above = x > lenses.alpha or y < 1
     beside, anchor = ([14, 0.35], "lm") if alpha < 380 else ([-14, 0.6 if above else -0.5], "rm")
     if y < 0.1:  # above it the other tilts' curves run together
-        beside, anchor = ([24, -0.5], "lm") if alpha < 900 else ([-24, -0.5], "rm")
+        beside, anchor = ([34, -0.5], "lm") if alpha < 900 else ([-24, -0.5], "rm")
     panel.text(np.add([x, y], beside), f"{y:.1f} px", IDEAL, anchor=anchor, size=13)
     panel.grip("lens", "the other lens, longer or shorter", [x, y], 4)
     return panel
