@@ -1274,7 +1274,7 @@ def test_the_valley_of_a_tilt_is_as_deep_as_opencv_finds_it_and_closes_on_the_fi
     picture = MODELS["tilt"].picture(tilt=tilt, alpha=500).astype(int)
     orange = np.abs(picture - colour(ESTIMATED)).max(axis=-1) < 60
     column = np.flatnonzero(orange[TITLE + 2 : TITLE + 328, 446 + round(410 * 760 / 860)])
-    assert column.mean() == pytest.approx(330 * (10 - said[1000] * 0.96) / 11, abs=4)
+    assert column.mean() == pytest.approx(330 * (10 - said[1000] * 0.96) / 11.5, abs=4)
 
 
 def test_the_edge_that_is_pulled_tilts_the_board_by_as_much_as_it_went_round():

@@ -24,12 +24,11 @@ _PHONE = Camera(
     intrinsics(1180, 1176, 655, 470), lens=Lens(k=(0.08, -0.15)), size=(1280, 960)
 )  # of chapter 9
 _BOARD = course.board()
-_SHOWN, _NOISE = (480, 404), 0.1  # px
+_SHOWN, _NOISE = (504, 378), 0.1  # px
 _LABELS = ("αᵤ", "αᵥ", "u₀", "v₀", "k₁", "k₂")
 _HIGHEST = 0.9  # px, where the map is darkest
 _DARK = 0.75  # of the way from white to orange
 _TINTS = 60  # between them: a picture has 256 colours, and the marks need some
-_RIM = 3  # rows of the map: room above and below the picture for the numbers of its corners
 
 
 class _Known(NamedTuple):
@@ -103,23 +102,18 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     std = np.sqrt(np.einsum("...ci,ij,...cj->...", of.J, after, of.J))
     before = np.sqrt(np.einsum("...ci,ij,...cj->...", of.J, of.found.covariance, of.J))
     w, h = of.found.size
-    rim = _RIM * h / len(std)  # px
     panel = paper.panel(
-        _SHOWN, (-0.5, w - 0.5), (-rim - 0.5, h + rim - 0.5), "σ of a pixel (px): pull the board"
+        _SHOWN, (-0.5, w - 0.5), (-0.5, h - 0.5), "σ of a pixel (px): pull the board"
     )
-    std = np.pad(std, ((_RIM, _RIM), (0, 0)), mode="edge")
     part = Image.fromarray((_TINTS * np.clip(std / _HIGHEST, 0, 1)).astype(np.float32))
     fine = np.rint(np.asarray(part.resize((panel.width, panel.height), Image.Resampling.BILINEAR)))
     tints = 1 - np.linspace(0, _DARK, _TINTS + 1)[:, None] * (1 - np.array(rgb(ESTIMATED)))
     panel.image(np.rint(255 * tints).astype(np.uint8)[fine.astype(int)])
     panel.polygons(of.seen.reshape(-1, 1, 2) + 2.4 * circle(9)[:-1], MUTED)
-    for inner, outer in ((-0.5, -rim - 9), (h - 0.5, h + rim + 9)):
-        panel.polygons([[[-9, inner], [w + 9, inner], [w + 9, outer], [-9, outer]]], "#FFFFFF")
-        panel.line([[-9, inner], [w + 9, inner]], MUTED, 0.8)
     draw_net(panel, of.found.camera.moved(G).project(_BOARD.points), _BOARD, LENS, 1.5)
     for row, column in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
-        at = np.array([70 if column == 0 else 1210, -rim / 2 if row == 0 else h + rim / 2])
-        panel.text(at, f"{std[row, column]:.2f}", IDEAL, anchor="mm", size=13)
+        at = np.array([44 if column == 0 else w - 45, 24 if row == 0 else h - 25])
+        panel.text(at, f"{std[row, column]:.2f}", IDEAL, anchor="mm", size=12)
     panel.mark([values["u"], values["v"]], "estimated", 9)
     panel.grip("board", "the board of the next picture", [values["u"], values["v"]], 20)
     left = np.sqrt(np.diag(after) / np.diag(of.found.covariance))
@@ -130,7 +124,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 def _bars(paper: Paper, left: Array) -> Panel:
     """Draw which part of each standard deviation is left."""
     panel = paper.panel(
-        (360, 404), (-0.22, 1.2), (-0.7, 5.7), "what is left of each standard deviation"
+        (360, 378), (-0.22, 1.2), (-0.7, 5.7), "what is left of each standard deviation"
     )
     panel.ticks(x=(0, 0.5, 1))
     for i, (label, part) in enumerate(zip(_LABELS, left, strict=True)):

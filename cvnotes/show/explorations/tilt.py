@@ -146,7 +146,7 @@ def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Pa
     """Draw the misfit against the other lens: where it is not above the noise, any lens will do."""
     ends = _SHORTEST - 70, _LONGEST + 90
     title = "how far they differ (px) against the other lens, α (px)"
-    panel = paper.panel(_VALLEY, ends, (_HIGHEST, -0.1 * _HIGHEST), title)
+    panel = paper.panel(_VALLEY, ends, (_HIGHEST, -0.15 * _HIGHEST), title)
     panel.polygons([[[ends[0], 0], [ends[1], 0], [ends[1], _NOISE], [ends[0], _NOISE]]], FAINT)
     panel.ticks(x=(400, 600, 800, 1000), size=12)
     for px in (2, 4, 6, 8):  # on the right, apart from the angles on the left
@@ -155,7 +155,7 @@ def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Pa
     panel.line([[ends[0], 0], [ends[1], 0]], MUTED, 0.8)
     panel.line([[lenses.alpha, 0], [lenses.alpha, _HIGHEST]], LENS, 1, dash=4)
     panel.text([lenses.alpha - 10, 9.5], "the same lens", LENS, anchor="rm", size=13)
-    panel.text([ends[0] + 8, -0.5], "noise", MUTED, size=12)
+    panel.text([ends[0] + 8, -0.7], "noise", MUTED, size=12)
     at = np.linspace(_SHORTEST, _LONGEST, 71)
     for other, colour, width in (*((t, _THEIRS, 1.2) for t in _BESIDE), (tilt, ESTIMATED, 2.4)):
         way = np.column_stack([at, np.abs(lenses.valley(float(other))(lenses.alpha / at))])
@@ -167,6 +167,8 @@ def _draw_valley(lenses: _Lenses, paper: Paper, tilt: float, alpha: float) -> Pa
     panel.mark([x, y], "estimated", 8)
     above = x > lenses.alpha or y < 1
     beside, anchor = ([14, 0.35], "lm") if alpha < 380 else ([-14, 0.6 if above else -0.5], "rm")
+    if y < 0.1:  # above it the other tilts' curves run together
+        beside, anchor = ([34, -0.5], "lm") if alpha < 900 else ([-24, -0.5], "rm")
     panel.text(np.add([x, y], beside), f"{y:.1f} px", IDEAL, anchor=anchor, size=13)
     panel.grip("lens", "the other lens, longer or shorter", [x, y], 4)
     return panel
