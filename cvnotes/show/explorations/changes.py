@@ -15,7 +15,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 _VIEW = 6  # which photograph of the course
 _LEFT, _TOP, _WIDE, _HIGH = 168, 141, 56, 45  # px: the part of it that is shown
 _PART, _LEVELS = (448, 360), (336, 360)  # px of the page
-_AROUND, _N = 3, 16  # px, the ring's radius, and its pixels
+_AROUND, _N = 5, 16  # px, the ring's radius, and its pixels
 _FLAT = 40  # grey levels: what is less is no light and dark
 
 

@@ -27,7 +27,7 @@ _SIDE, _GAP = 4 * (2 * _SHOWN + 1), 4  # px of the page, of each picture and bet
 def clouds_model() -> Model:
     """Make the model of 54 corners, measured in two ways in five pictures."""
     settings = (
-        Setting("window", "half window (px)", 3, 12, 1, 4, "from its middle pixel to its border"),
+        Setting("window", "half window (px)", 3, 12, 1, 8, "from its middle pixel to its border"),
         Setting("picture", "picture", 1, 5, 1, 1, "; ".join(_PICTURES)),
     )
     about = (

@@ -150,6 +150,10 @@ def _graph(paper: Paper, angle: int) -> Panel:
         places = np.stack([angle + np.linspace(-4, 4, _PHOTOS), found()[angle - _OPEN]], axis=1)
         dot = 1.7 * circle(13) * [panel.pixel, (2 * _REACH + 12) / _FOUND[1]]
         panel.polygons(places[:, None] + dot, ESTIMATED)
+        beyond = int((np.abs(places[:, 1] - alpha) > _REACH).sum())
+        if beyond:
+            words = f"{beyond} of {_PHOTOS} go beyond"
+            panel.text([93, alpha + 0.85 * _REACH], words, IDEAL, size=13)
     else:
         panel.line([[_FLAT, 0], [_FLAT, 2 * alpha]], ESTIMATED, 4)
     panel.text([93, alpha + 8], "± standard deviation", ESTIMATED, size=13)

@@ -12,6 +12,7 @@ from cvnotes.show.explorations.boards import around, draw_board, draw_sheet, pap
 from cvnotes.show.explorations.fold import circle_of
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.space.directions import sheet
 from cvnotes.show.style import CAMERA, ESTIMATED
 
@@ -36,15 +37,15 @@ def on_sheet(W: Array) -> Array:
 def twins_model() -> Model:
     """Make the model of a photograph of the board, and of all cameras that could have taken it."""
     settings = (
-        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 900,
+        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 400,
                 "its focal length; its principal point and its place follow"),
         Setting("height", "a box on the board (mm)", 0, _HIGHEST, 5, 80,
                 "how far it stands out of the plane"),
     )  # fmt: skip
     about = (
-        "A board and two cameras in space, with the way on which the other one can be pulled; and "
-        "their two pictures, laid over each other, of the board and of a box upon it, one in each "
-        "camera's colour."
+        "A board and two cameras in space, with the way on which the other one can be pulled; a "
+        "dot in each is its principal point; and their two pictures, laid over each other, of the "
+        "board and of a box upon it, one in each camera's colour."
     )
 
     def carry(_: Values, at: Array) -> Values:
@@ -115,7 +116,7 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
     panel.line(on_sheet(_way()), _WAY, 2)
     corners = course.board().points[[0, 8, 45]]
     # Names: beside the centre, one above the way and one below, so that they never meet.
-    sides = (CAMERA, [10, 10], "la"), (ESTIMATED, [-26, -8], "rd")
+    sides = (CAMERA, [46, 0], "lm"), (ESTIMATED, [-26, -8], "rd")
     for camera, (colour, aside, anchor) in zip(cameras, sides, strict=True):
         rays = np.stack([_before(camera, corners), on_sheet(corners)], axis=1)
         panel.segments(rays, colour, 0.9)
@@ -155,6 +156,10 @@ def _draw_camera(panel: Panel, camera: Camera, colour: str) -> None:
     panel.polygons(_before(camera, border)[None], "#FFFFFF")
     panel.polygons(_before(camera, squares), _INK)
     centre = on_sheet(camera.centre)
+    ahead = [0, 0, _FILM * camera.A[0, 0]]  # in the camera's frame: its principal point
+    principal = on_sheet(move(inverse(camera.G), ahead))
+    panel.line([centre, principal], colour, 1.2, dash=3)
+    panel.polygons([principal + 3.2 * panel.pixel * circle(13)], colour)
     for at, after in zip(frame, np.roll(frame, -1, axis=0), strict=True):
         panel.line([at, after, centre], colour, 1.5)
 
@@ -183,9 +188,10 @@ def _shown() -> tuple[tuple[float, float], tuple[float, float]]:
 def _sentence(cameras: tuple[Camera, Camera], W: Array, height: float) -> str:
     first, second = cameras
     apart = float(np.linalg.norm(first.centre - second.centre))
+    alpha, u0, v0 = second.A[[0, 0, 1], [0, 2, 2]]
     said = (
-        f"The orange camera, α = {second.A[0, 0]:.0f} px, stands {apart:.0f} mm from the blue one "
-        "and sees every corner of the board at the same pixel"
+        f"The orange camera, α = {alpha:.0f} px and principal point ({u0:.0f}, {v0:.0f}), stands "
+        f"{apart:.0f} mm from the blue one and sees every corner of the board at the same pixel"
     )
     if not height:
         return f"{said}: the picture of a plane does not tell them apart."

@@ -14,7 +14,8 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD, mixed
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
 _LEFT, _TOP, _SIDE = 326, 187, 53  # px, the part of the photograph that is shown
 _PANEL = (424, 424)  # px of the page
-_WEAK, _STRONG = 33.0, 75.0  # grey levels a pixel: of votes not drawn, and of the thickest
+_WEAK, _STRONG = 33.0, 75.0  # grey levels a pixel: of votes drawn in grey, and of the thickest
+_NOISE = "#BBBBBB"  # of weak votes
 _K = 0.05  # of the Harris measure
 _NOTHING = 2000.0  # an eigenvalue that the noise of flat paper does not reach
 
@@ -62,8 +63,8 @@ def votes_model() -> Model:
     )
     about = (
         "A part of a photograph of the board with a window of 7 × 7 pixels; and the lines along "
-        "which its pixels see an edge, orange where steep and blue where level, with a guess and "
-        "how far each line passes it by."
+        "which its pixels see an edge, upright ones orange, level ones blue, weak ones grey, with "
+        "a guess and how far each line passes it by."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -109,12 +110,15 @@ def _votes(
     pale = 255 - 16 * np.rint((271.0 - part) / 64)  # few greys pack small
     panel.image(pale.astype(np.uint8), smooth=False)
     length = np.linalg.norm(window.g, axis=1)
-    for i in np.argsort(length)[(length < _WEAK).sum() :]:
+    for i in np.argsort(length)[(length == 0).sum() :]:
         across = window.g[i, ::-1] * [-1, 1] / length[i]
         ends = window.p[i] + 3 * _HALF * np.outer([-1, 1], across)
-        steep = abs(window.g[i, 0]) > abs(window.g[i, 1])
+        if length[i] < _WEAK:
+            panel.line(ends, _NOISE, 0.7)
+            continue
+        upright = abs(window.g[i, 0]) > abs(window.g[i, 1])
         weight = min(length[i] / _STRONG, 1) ** 2  # as it counts in the sum of squares
-        ink = mixed("#FFFFFF", ESTIMATED if steep else LENS, 0.25 + 0.75 * weight)
+        ink = mixed("#FFFFFF", ESTIMATED if upright else LENS, 0.25 + 0.75 * weight)
         panel.line(ends, ink, 0.8 + 3.2 * weight)
     panel.mark(corners, "ideal", 16)
     return panel
