@@ -3665,10 +3665,12 @@ def test_boards_that_all_face_the_camera_leave_no_end_to_the_bars_of_the_focal_l
     assert drawing.sentence.count("undetermined") == 2
     assert "RMS is 0.14 px" in drawing.sentence
     bars = drawing.picture[TITLE : TITLE + 378, MARGIN + 504 + 2 * MARGIN :]
-    for i, std in enumerate((3000, 3000, u0, v0)):
-        row = bars[round((i + 0.25 + 0.85) * 378 / 5)]
-        long = count(row, CAMERA, 30)
-        assert long == pytest.approx(350 * np.log10(std / 0.04) / np.log10(3000 / 0.04), abs=5)
+    rms = 0.1 * np.sqrt((432 - 30) / 216)  # 432 coordinates, 30 unknowns; per corner
+    for i, (std, dot) in enumerate(((3000, 0), (3000, 0), (u0, 8), (v0, 8))):
+        row = bars[round((i + 0.14 + 0.85) * 378 / 5)].astype(int)
+        blue = np.flatnonzero(np.abs(row - colour(CAMERA)).max(axis=-1) < 30)
+        ends = 350 * np.log10(np.array([rms, std]) / 0.04) / np.log10(3000 / 0.04)
+        assert [blue.min(), blue.max() - dot] == pytest.approx(ends, abs=5)
     assert MODELS["nails"].drawing(**LYING, lens=0).sentence.count("undetermined") == 4
 
 
