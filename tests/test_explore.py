@@ -571,6 +571,18 @@ def test_the_wall_is_measured_by_the_four_corners_that_are_given():
     assert np.ptp(rows) == pytest.approx(80 * 346 / 900, abs=2.5)
 
 
+def test_a_switch_that_runs_away_is_seen_straight_on_until_it_is_a_metre_off():
+    """On the left until the horizon comes near, and then on the right: 2 m are shown."""
+    model = MODELS["homography"]
+    for by, seen in ((40, True), (60, False), (90, False), (100, True)):
+        drawing = model.drawing(du1=by, dv1=by, u=259, v=285)
+        mm = np.array(numbers(drawing.sentence)[:2])
+        u, v = np.rint((mm - [-1000, -513.5]) * 346 / 2000).astype(int)
+        straight = drawing.picture[TITLE : TITLE + 279, 372 + 6 + MARGIN : 372 + 6 + MARGIN + 346]
+        assert (0 <= u < 346) == seen
+        assert not seen or count(straight[v - 2 : v + 3, u - 2 : u + 3], IDEAL) > 4
+
+
 def test_error_bars_grow_with_the_noise_and_shrink_with_the_views():
     def bound(**values):
         return float(re.search(r"±(\d+\.\d+) px", MODELS["noise"].drawing(**values).sentence)[1])
@@ -1324,9 +1336,9 @@ def test_face_on_the_eye_of_the_fold_is_where_the_half_circles_of_thales_cross()
     a, b, c, d = s = (v - v[0]) @ (v[1] - v[0]) / np.linalg.norm(v[1] - v[0])
     at = (a * b - c * d) / (a + b - c - d)
     x = (770 + 0.62 * (at - (s.min() + s.max()) / 2)) / 1540 * 350 + 500 + 6 + MARGIN
-    y = (1078 - 0.62 * np.sqrt((at - a) * (b - at))) / 1848 * 420 + TITLE
+    y = (590 - 0.62 * np.sqrt((at - a) * (b - at))) / 660 * 150 + TITLE
     for fold in (30, 90):  # nothing in this plane turns with the fold
-        eye = MODELS["thales"].drawing(fold=fold).picture[round(y), round(x)]
+        eye = MODELS["fold"].drawing(fold=fold).picture[round(y), round(x)]
         assert eye.tolist() == [0x56, 0xB4, 0xE9]
 
 
@@ -1591,7 +1603,7 @@ def test_each_photographs_angles_stand_in_its_row(monkeypatch):
         write(self, xy, words, *rest, **how)
 
     monkeypatch.setattr(Panel, "text", note)
-    said = re.findall(r"[\d.]+(?=°)", MODELS["fold"].drawing(fold=70).sentence)
+    said = re.findall(r"[\d.]+(?=°)", MODELS["fold"].drawing(fold=70, second=1).sentence)
     rows = {words: xy[1] for xy, words in placed if words.startswith("photograph") and ":" in words}
     for i, row in enumerate((rows["photograph 1:"], rows["photograph 2:"])):
         shown = [words for xy, words in placed if xy[1] == row and words.endswith("°")]
@@ -2454,13 +2466,13 @@ def test_stepping_back_and_zooming_keeps_the_box_and_enlarges_what_is_behind_it(
 
 def test_explore_fold_turns_the_eye_to_where_it_is_pulled_and_two_photographs_say_which_is_it():
     for fold in range(30, 121, 15):
-        drawing = MODELS["thales"].drawing(fold=fold)
+        drawing = MODELS["fold"].drawing(fold=fold)
         assert numbers(drawing.sentence)[-2:] == [90, 90]
         grip = grip_of(drawing, "eye")
         for by in ((0, 0), (3, -3)):  # px: a hand is not exact
             at = tuple(np.add(grip.at, np.multiply(grip.unit, by)))
-            assert abs(MODELS["thales"].dragged("eye", at, fold=50)["fold"] - fold) <= 2
-    explorer = explorations.explore("fold")
+            assert abs(MODELS["fold"].dragged("eye", at, fold=50)["fold"] - fold) <= 2
+    explorer = explorations.explore("fold", second=1)
     for fold, said in ((59, "this is the camera"), (50, "this is not the camera")):
         explorer.sliders["fold"].value = fold
         assert said in explorer.sentence.value
@@ -3502,7 +3514,7 @@ def test_the_horizon_of_the_wall_is_drawn_where_its_parallels_meet():
     hits = 0
     for v in range(20, 440, 3):
         u = -(line[1] * v + line[2]) / line[0]
-        x, y = round(u * 372 / 640), round(v * 279 / 480)
+        x, y = round((u + 20) * 372 / 680), round((v + 15) * 279 / 510)  # white is around it
         hits += 8 < x < 360 and dark[y - 6 : y - 1, max(x - 4, 0) : x + 4].any()
     assert hits > 40  # dashes
 
@@ -3770,10 +3782,12 @@ def test_boards_that_all_face_the_camera_leave_no_end_to_the_bars_of_the_focal_l
     assert drawing.sentence.count("undetermined") == 2
     assert "RMS is 0.14 px" in drawing.sentence
     bars = drawing.picture[TITLE : TITLE + 378, MARGIN + 504 + 2 * MARGIN :]
-    for i, std in enumerate((3000, 3000, u0, v0)):
-        row = bars[round((i + 0.25 + 0.85) * 378 / 5)]
-        long = count(row, CAMERA, 30)
-        assert long == pytest.approx(350 * np.log10(std / 0.04) / np.log10(3000 / 0.04), abs=5)
+    rms = 0.1 * np.sqrt((432 - 30) / 216)  # 432 coordinates, 30 unknowns; per corner
+    for i, (std, dot) in enumerate(((3000, 0), (3000, 0), (u0, 8), (v0, 8))):
+        row = bars[round((i + 0.14 + 0.85) * 378 / 5)].astype(int)
+        blue = np.flatnonzero(np.abs(row - colour(CAMERA)).max(axis=-1) < 30)
+        ends = 350 * np.log10(np.array([rms, std]) / 0.04) / np.log10(3000 / 0.04)
+        assert [blue.min(), blue.max() - dot] == pytest.approx(ends, abs=5)
     assert MODELS["nails"].drawing(**LYING, lens=0).sentence.count("undetermined") == 4
 
 

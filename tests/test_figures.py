@@ -412,6 +412,20 @@ def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_ch
         one_corner(11)
 
 
+def test_the_head_of_chapter_6_leads_from_the_pixel_to_the_board_in_one_orange_step():
+    from xml.etree import ElementTree
+
+    drawn = ElementTree.fromstring(one_corner(6).data)
+    ways = [path for path in drawn.findall(".//{*}path") if path.get("stroke") == ESTIMATED]
+    (texts,) = (t for t in drawn.findall(".//{*}text") if (t.text or "").startswith("H⁻¹"))
+    (way,) = ways
+    start, end = (float(re.search(rf"{letter}([\d.]+)", way.get("d"))[1]) for letter in "MH")
+    middle = {t.text: float(t.get("x")) for t in drawn.findall(".//{*}text")}
+    assert (start, end) == (middle["pixel"], middle["world"])
+    assert INK[ESTIMATED] in texts.get("style")
+    assert float(texts.get("y")) < float(drawn.get("height"))
+
+
 def test_on_a_telephone_the_head_of_a_chapter_has_two_rows_in_which_no_words_meet():
     from xml.etree import ElementTree
 

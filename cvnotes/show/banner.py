@@ -103,8 +103,10 @@ def one_corner(chapter: int) -> Picture:
             for k, (name, points, outline, colour, form, numbers) in enumerate(states)
         ]
         backwards = chapter in _BACKWARDS
+        whole = chapter == 6 and layout is _STRIP  # H: all steps but the lens in one
+        shown = () if whole else lit
         parts += [
-            _step(layout, k, name, name in lit, backwards, bare and name == "lens")
+            _step(layout, k, name, name in shown, backwards, bare and name == "lens")
             for k, name in enumerate(STEPS)
         ]
         if chapter == 5:
@@ -113,6 +115,9 @@ def one_corner(chapter: int) -> Picture:
                          f'h{-layout.wide - 6}z" fill="none" stroke="{ESTIMATED}" '
                          'stroke-width="2"/>')  # fmt: skip
         width, height = layout.size
+        if whole:
+            height += 34
+            parts.append(_back_to_the_world(layout))
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 0 {width + 8} {height}" '
             f'width="{width + 8}" height="{height}"><style>{_STYLE}</style>'
@@ -170,6 +175,18 @@ def _panel(
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{ESTIMATED}" stroke="white"/>'
         f'<text class="t" x="{middle}" y="{top - 10}">{name}</text>'
         f'<text class="n" x="{middle}" y="{top + layout.tall + 18}">{numbers}</text>'
+    )
+
+
+def _back_to_the_world(layout: _Layout) -> str:
+    """Draw the way from the pixel to the board by a homography's inverse, under all panels."""
+    end, start = (round(layout.place(k)[0]) + layout.wide // 2 for k in (0, 4))
+    top = layout.size[1] + 2
+    return (
+        f'<path d="M{start} {top}V{top + 16}H{end}V{top}m-6 8L{end} {top}l6 8" fill="none" '
+        f'stroke="{ESTIMATED}" stroke-width="3"/>'
+        f'<text class="s" x="{(start + end) // 2}" y="{top + 9}" '
+        f'style="fill:{INK[ESTIMATED]}">H⁻¹, once the lens is straightened</text>'
     )
 
 

@@ -84,9 +84,12 @@ def _round(
         end = map_ @ v
         panel.line([[0, 0], end * _UP], colour, 2.5)
         beside = end + 0.26 * (v if name else _ASIDE @ v)
-        panel.text(beside * _UP, f"{name}{letter}", colour, anchor="mm", size=13)
+        nought = " = 0" if np.linalg.norm(end) < 1e-9 else ""
+        panel.text(beside * _UP, f"{name}{letter}{nought}", colour, anchor="mm", size=13)
     panel.line([[0, 0], map_ @ h * _UP], IDEAL, 1.5)
     panel.mark(map_ @ h * _UP, "ideal", 8)
     aside = 0.55 * map_ @ h + 0.15 * (_ASIDE @ h - 0.5 * h)  # not at its end, where v₁ may be
+    if np.linalg.norm(map_ @ h) < 0.3:  # so short that its name would lie on its end
+        aside = np.array([0.2, -0.3])
     panel.text(aside * _UP, f"{name}h", IDEAL, anchor="mm", size=13)
     return panel

@@ -166,9 +166,10 @@ def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel
     panel.ticks(x=range(_STEPS + 1), size=12)
     way = np.column_stack([finding.way[:, 0], np.log10(finding.way[:, 1])])
     panel.segments(np.stack([way[:-1], way[1:]], axis=1), LENS, 2.2)
-    for at in way[::30]:
-        panel.mark(at, "lens", 5)
-        panel.text(at + [0.06, 0.1], _digits(10 ** float(at[1])), IDEAL, anchor="ls")
+    for k, at in enumerate(way[::30]):
+        panel.mark(at, "lens", 5)  # its number beside the curve and the grip's ring
+        by, anchor = ((0.13, 0.12), "ls") if k < _STEPS else ((0.04, 0.26), "ms")
+        panel.text(at + by, _digits(10 ** float(at[1])), IDEAL, anchor=anchor)
     here = [step, np.interp(step, *way.T)]
     panel.mark(here, "estimated", 7)
     panel.grip("step", "the step, to be moved along the curve", here, 4)

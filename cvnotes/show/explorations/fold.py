@@ -18,7 +18,8 @@ SIZE = (640, 480)
 ALPHA, MIDDLE = 400, ((SIZE[0] - 1) / 2, (SIZE[1] - 1) / 2)
 # Where two photographs of a board on a desk were taken, and what was up in them.
 _EYES = (([163, 203.5, -92.5], (0, 0, -1)), ([-15, 187, -120], (0.5, 0, 0.87)))
-_SPACE, SIDE = (500, 420), (350, 420)
+_SPACE, _FACE, _SIDE = (500, 420), (350, 150), (350, 242)  # px: the two stand below each other
+_SCALE = 0.62  # of the hinge, face on
 _VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:3, :3]  # from the left, above
 _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
@@ -96,13 +97,16 @@ def two_photographs() -> tuple[list[Camera], list[Array], list[Circle]]:
     return cameras, H, [circle_of(h) for h in H]
 
 
-HINGE = Setting(
+_HINGE = Setting(
     "fold", "hinge (°)", _LOWEST, _HIGHEST, 0.5, 50,
     "the angle of the eye over the photograph, about its horizon",
 )  # fmt: skip
 
 
-def turned_to(circle: Circle, *, side: bool = False) -> Drag:
+_SECOND = Setting("second", "second photograph", 0, 1, 1, 0, "of the same board, from elsewhere")
+
+
+def _turned_to(circle: Circle, *, side: bool = False) -> Drag:
     """Return what turns the eye on its circle to where it is pulled, in space or from the side."""
     folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
     way = circle.place(folds)
@@ -121,20 +125,21 @@ def fold_model() -> Model:
     about = (
         "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
         "horizon, with lines to the vanishing points of the square's sides and of its diagonals; "
-        "and the same of a second photograph. Beside it both half circles from the side."
+        "and, if wanted, the same of a second photograph. Beside it the plane of horizon and eye, "
+        "with a half circle over each pair, and the eye's path from the side."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        eye = circles[0].place(values["fold"])
-        space = eye_over_sheet(paper, cameras[0], H, circles, eye)
-        sentence = sentence_of(H, eye)
-        return Drawing(paper.join((space, _side(paper, H, circles, eye))), sentence)
+        eye, n = circles[0].place(values["fold"]), 1 + round(values["second"])
+        space = _eye_over_sheet(paper, cameras[0], H[:n], circles[:n], eye)
+        beside = [_face_on(paper, H[0], circles[0], eye), _side(paper, H[:n], circles[:n], eye)]
+        return Drawing(paper.join((space, beside)), _sentence(H[:n], eye))
 
-    drags = {"eye": turned_to(circles[0]), "fold": turned_to(circles[0], side=True)}
-    return Model("fold", about, (HINGE,), draw, drags)
+    drags = {"eye": _turned_to(circles[0]), "fold": _turned_to(circles[0], side=True)}
+    return Model("fold", about, (_HINGE, _SECOND), draw, drags)
 
 
-def sentence_of(H: list[Array], eye: Array) -> str:
+def _sentence(H: list[Array], eye: Array) -> str:
     """Say which angles the eye sees in one photograph, or in two."""
     said = f"An eye {eye[2]:.0f} px over pixel ({eye[0]:.1f}, {eye[1]:.1f}) sees both "
     first = angles(H[0], eye)
@@ -162,7 +167,7 @@ def _flat(xy: Array) -> Array:
     return on_sheet(np.concatenate([xy, np.zeros((*xy.shape[:-1], 1))], axis=-1))
 
 
-def eye_over_sheet(
+def _eye_over_sheet(
     paper: Paper, camera: Camera, H: list[Array], circles: list[Circle], eye: Array
 ) -> Panel:
     """Draw the photograph, the eye over it, and the half circles of all `circles`."""
@@ -217,21 +222,46 @@ def _name(
     panel.text(at + panel.pixel * np.array(by), words, colour, anchor=anchor, size=13)
 
 
+def _face_on(paper: Paper, H: Array, circle: Circle, place: Array) -> Panel:
+    """Draw horizon and eye in their own plane: the eye is on two half circles, by Thales."""
+    panel = paper.panel(_FACE, (-580, 960), (590, -70), "the hinge, face on: nothing changes")
+    along = np.array([circle.up[1], -circle.up[0]])
+    s = (vanishing_points(H) - circle.foot) @ along
+    shift = np.array([190 - _SCALE * (s.min() + s.max()) / 2, 0])
+    eye = shift + [0, _SCALE * circle.radius]
+    panel.line(np.array([[-3000, 0], [3000, 0]]), IDEAL, 0.8, dash=5)
+    turn = np.radians(np.arange(0, 181.0, 3))
+    for (name, meaning, colour), (a, b), angle, (x, anchor) in zip(
+        PAIRS, s.reshape(2, 2), angles(H, place), ((-540, "ld"), (920, "rd")), strict=True
+    ):
+        thales = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2
+        panel.line(shift + _SCALE * thales, colour, 0.8)
+        ends = shift + _SCALE * np.array([[a, 0], [b, 0]])
+        panel.line(np.array([ends[0], eye, ends[1]]), colour, 1.4)
+        one, two = 80 * (ends - eye) / np.linalg.norm(ends - eye, axis=1, keepdims=True)
+        panel.line(eye + np.array([one, one + two, two]), colour, 1.4)
+        panel.mark(ends, meaning, 5)
+        panel.text([x, 490], f"{name}: {angle:.1f}°", colour, anchor=anchor, size=14)
+    panel.mark(eye, "camera", 9)
+    return panel
+
+
 def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Panel:
     """Draw the half circles from the side, and say which angles the eye sees."""
-    high, low = 1498, -350  # one scale for both axes, so that a half circle is one
-    panel = paper.panel(SIDE, (-580, 960), (high, low), "height of the eye against v₀ (px)")
-    panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400, 600), size=12)
-    panel.polygons([[[-580, high], [960, high], [960, 750], [-580, 750]]], "#FFFFFF")
+    high, low = 875, -190  # one scale for both axes, so that a half circle is one
+    panel = paper.panel(_SIDE, (-580, 960), (high, low), "height of the eye against v₀ (px)")
+    panel.ticks(x=(-400, 0, 400, 800), y=(0, 200, 400), size=12)
+    panel.polygons([[[-580, high], [960, high], [960, 560], [-580, 560]]], "#FFFFFF")
     for k in reversed(range(len(circles))):
         arc = circles[k].place(np.arange(0, 181.0, 2))
         panel.line(arc[:, 1:], _INKS[k], 2)
         _name(panel, arc[45, 1:] * [1, 0], (90 * k - 45, -8), f"photograph {k + 1}", _INKS[k], "ma")
-        row = 1180 - 150 * k
+        if len(circles) == 1:  # its angles stand above
+            break
+        row = 785 - 120 * k
         panel.text([-520, row], f"photograph {k + 1}:", _INKS[k], anchor="lm", size=14)
         for x, (_, _, colour), angle in zip((90, 480), PAIRS, angles(H[k], eye), strict=True):
             panel.text([x, row], f"{angle:.1f}°", colour, anchor="lm", size=16)
-    panel.text([-520, 1340], "the eye sees the angles", IDEAL, anchor="lm", size=14)
     panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
     panel.mark(eye[1:], "camera", 9)
     panel.grip("fold", "the hinge", eye[1:], 4)

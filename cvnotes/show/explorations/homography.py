@@ -16,11 +16,14 @@ from cvnotes.show.style import ESTIMATED, IDEAL, WORLD
 from cvnotes.warping import rectify_plane
 
 _PICTURE, _SHOWN, _SIZE = (640, 480), (372, 279), (346, 279)  # px
+_EDGE = (20, 15)  # px of the picture, white around it, for the rings of corners at its border
 _NAMES = ("top left", "top right", "bottom right", "bottom left")
 _CHART = np.array([[0.0, 0], [420, 0], [420, 594], [0, 594]])  # mm, a sheet of A2
 _READ = np.array([[343.0, 44], [522, 13], [508, 462], [342, 381]])  # px, its corners as read off
 _PLUS = (450, 240)  # px, where the plus begins: on the chart
-_REGION = (-440.0, 460.0), (-70.0, 655.72)  # mm of the wall, x and y: as wide and high as _SIZE
+# mm of the wall, x and y, as wide and high as _SIZE: about the chart, and where a corner is off.
+_REGION = (-440.0, 460.0), (-70.0, 655.72)
+_FAR = (-1000.0, 1000.0), (-513.5, 1099.22)
 _GRID = np.arange(-700, 701, 100)  # mm
 
 
@@ -66,14 +69,18 @@ def photograph() -> Image:
 def _shown(sharpness: int) -> Drawn:
     """Keep the photograph as large as its panel: it is the same for all values."""
     size = (sharpness * _SHOWN[0], sharpness * _SHOWN[1])
-    return np.asarray(Bitmap.fromarray(photograph().astype(np.uint8)).resize(size))
+    w, h = _EDGE
+    framed = np.pad(photograph().astype(np.uint8), ((h, h), (w, w), (0, 0)), constant_values=255)
+    return np.asarray(Bitmap.fromarray(framed).resize(size))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     m = _READ + [[values[f"du{i}"], values[f"dv{i}"]] for i in range(1, 5)]
     H, plus = dlt(_CHART, m), np.array([values["u"], values["v"]])
     place = apply(np.linalg.inv(H), plus)
-    picture = paper.picture_panel(_SHOWN, _PICTURE, "the wall, and its squares of 100 mm")
+    (w, h), (left, top) = _PICTURE, _EDGE
+    x, y = (-left - 0.5, w + left - 0.5), (-top - 0.5, h + top - 0.5)
+    picture = paper.panel(_SHOWN, x, y, "the wall, and its squares of 100 mm")
     picture.image(_shown(paper.sharpness))
     _draw_grid(picture, H)
     _draw_horizon(picture, H)
@@ -85,8 +92,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         aside = np.clip(at + 22 * np.sign(at - m.mean(axis=0)), 16, np.subtract(_PICTURE, 16))
         picture.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
     picture.grip("plus", "the plus, whose place on the wall is measured", plus, 1)
-    straight = paper.panel(_SIZE, *_REGION, "straight on")
-    (X0, X1), (Y0, Y1) = _REGION
+    off = np.any(m != _READ)  # what leaves the chart's surroundings is to be followed
+    (X0, X1), (Y0, Y1) = _FAR if off else _REGION
+    straight = paper.panel(_SIZE, (X0, X1), (Y0, Y1), f"straight on, {(X1 - X0) / 1000:g} m wide")
     pixel = (X1 - X0) / (_SIZE[0] * paper.sharpness)
     wall = rectify_plane(photograph(), H, ((X0, Y0), (X1, Y1)), pixel, fill=255)
     straight.image(wall.astype(np.uint8))
@@ -103,7 +111,9 @@ def _draw_grid(panel: Panel, H: Array) -> None:
         seen = to_homogeneous(line) @ H.T
         seen[seen[:, 2] * (H @ [210, 297, 1])[2] <= 0] = np.nan
         seen[((line > 0) & (line < _CHART[2])).all(axis=-1)] = np.nan
-        panel.line(seen[:, :2] / seen[:, 2:], ESTIMATED, 0.6)
+        at = seen[:, :2] / seen[:, 2:]
+        at[((at < 0) | (at > _PICTURE)).any(axis=-1)] = np.nan
+        panel.line(at, ESTIMATED, 0.6)
 
 
 def _draw_horizon(panel: Panel, H: Array) -> None:

@@ -33,7 +33,7 @@ def nails_model() -> Model:
     settings += (Setting("lens", "with a lens", 0, 1, 1, 1, "whose k1 and k2 are estimated, too"),)
     about = (
         "Four photographs of a board, each with a nail that stands upright on the board, and the "
-        "standard deviations of the camera that they determine, on a logarithmic scale."
+        "standard deviations of the camera that they determine, from the RMS on, by logarithms."
     )
     drags = {f"nail {i}": _pulled(i) for i in range(1, 5)}
     return Model("nails", about, settings, _draw, drags)
@@ -119,24 +119,25 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _bars(paper: Paper, std: Array, rms: float) -> Panel:
-    """Draw a bar for each parameter; all begin far below what is reached."""
+    """Lead from the RMS of the residuals to what each parameter has: logarithms have no zero."""
     left, right = np.log10([0.04, 3000])
     title = f"standard deviation (px), with noise of {_NOISE:g} px"
+    at = float(np.log10(rms))
     panel = paper.panel(_BARS, (left, right), (-0.85, 4.15), title)
+    unit = np.array([panel.pixel, 5 / _BARS[1]])  # of a px of the page
     for power in range(-1, 4):
         panel.line([[power, -0.3], [power, 3.8]], "#E0E0E0", 0.8)
         panel.text([power, 3.98], f"{10.0**power:g}", anchor="mm", size=12)
     for i, (name, one) in enumerate(zip(_LABELS, std, strict=True)):
-        end = min(np.log10(one), right)
-        bar = np.array([[left, -0.06], [end, -0.06], [end, 0.34], [left, 0.34]]) + [0, i]
-        panel.polygons([bar], CAMERA)
-        panel.text([left + 0.08, i - 0.22], name, IDEAL, size=15)
-        at, anchor = (end - 0.08, "rm") if end > 2 else (end + 0.08, "lm")
-        panel.text(
-            [at, i + 0.14], _number(one), IDEAL, anchor=anchor, size=14,
-            rim=CAMERA if end > 2 else "white",
-        )  # fmt: skip
-    at = float(np.log10(rms))
+        end, y = min(np.log10(one), right), i + 0.14
+        if one > _UNKNOWN:
+            panel.arrows([at, y], [end - at, 0], CAMERA, 5)
+        else:
+            panel.line([[at, y], [end, y]], CAMERA, 5)
+            panel.polygons([[end, y] + 8 * circle(33) * unit], CAMERA)
+        panel.symbol([left + 0.08, y], name, IDEAL, 16)
+        beside, anchor = (right - 0.06, "rd") if end > 2 else (end, "md")
+        panel.text([beside, y - 12 * unit[1]], _number(one), IDEAL, anchor=anchor, size=14)
     panel.line([[at, -0.62], [at, 3.8]], IDEAL, 1.2, dash=4)
     panel.text([at + 0.08, -0.6], f"RMS of the residuals: {rms:.2f} px", IDEAL, size=13)
     return panel

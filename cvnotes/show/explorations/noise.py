@@ -150,7 +150,7 @@ def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array, leftmost: f
         y = i + 0.35
         panel.line([[error[i] - std[i], y], [error[i] + std[i], y]], ESTIMATED, 2)
         panel.mark([error[i], y], "estimated", 5)
-        panel.text([0.95 * left, i], label, IDEAL, size=13)
+        panel.symbol([0.95 * left, i], label, IDEAL, 15)
 
 
 def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:

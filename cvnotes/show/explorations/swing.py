@@ -27,8 +27,8 @@ def swing_model() -> Model:
     settings = (
         Setting("row", "row", 1, 6, 1, 6, "of the dot that is pulled; row 1 is near"),
         Setting("column", "column", 1, 7, 1, 1, "of the dot that is pulled, from the left"),
-        Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, -40, "in the picture"),
-        Setting("dv", "pulled down (px)", -_FAR, _FAR, 1, 0, "in the picture"),
+        Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, 0, "in the picture"),
+        Setting("dv", "pulled down (px)", -_FAR, _FAR, 1, 20, "in the picture"),
     )
     about = (
         "A tiled floor with six rows of dots, one of which is pulled away, and arrows that show "
