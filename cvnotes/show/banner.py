@@ -103,8 +103,8 @@ def one_corner(chapter: int) -> Picture:
             for k, (name, points, outline, colour, form, numbers) in enumerate(states)
         ]
         backwards = chapter in _BACKWARDS
-        whole = chapter == 6 and layout is _STRIP  # H: all steps but the lens in one
-        shown = () if whole else lit
+        at_once = chapter == 6 and layout is _STRIP  # H: all steps but the lens in one
+        shown = () if at_once else lit
         parts += [
             _step(layout, k, name, name in shown, backwards, bare and name == "lens")
             for k, name in enumerate(STEPS)
@@ -115,7 +115,7 @@ def one_corner(chapter: int) -> Picture:
                          f'h{-layout.wide - 6}z" fill="none" stroke="{ESTIMATED}" '
                          'stroke-width="2"/>')  # fmt: skip
         width, height = layout.size
-        if whole:
+        if at_once:
             height += 34
             parts.append(_back_to_the_world(layout))
         return (
