@@ -2165,9 +2165,7 @@ def test_another_camera_takes_the_same_picture_of_a_board_and_not_of_a_box():
 
 def test_below_the_panels_stand_the_matrices_that_carry_the_corner(monkeypatch):
     columns = []
-    monkeypatch.setattr(
-        formation, "_column", lambda _, right, numbers, *how, **more: columns.append([*numbers])
-    )
+    monkeypatch.setattr(formation, "_column", lambda *told, **_: columns.append([*told[2]]))
     values = {"X": 200, "Z": -320, "turn": -20, "alpha": 700, "width": 150}
     MODELS["formation"].drawing(**values)
     M, *of_R, T, W, m, a, b, c, xy, divided = columns

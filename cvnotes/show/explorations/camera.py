@@ -1,6 +1,7 @@
 """Explore a pose: three angles and T, with the picture of a board and the space."""
 
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -196,7 +197,7 @@ def _draw_T(panel: Panel, at: Array, T: Array) -> None:
     across = across * (1 if across @ (middle - at[1:3].mean(axis=0)) > 0 else -1)
     anchor = "lmr"[1 - int(np.rint(1.2 * across[0]))] + "m"
     panel.text(middle + 11 * panel.pixel * across, "T", IDEAL, anchor=anchor, size=17)
-    for ends, step in zip(zip(at[:-1], at[1:], strict=True), T, strict=True):
+    for ends, step in zip(pairwise(at), T, strict=True):
         x, y = _along(panel, np.array(ends))
         if np.linalg.norm(ends[1] - ends[0]) > 25 * panel.pixel:  # else there is no room
             aside = np.array([y, -x]) * (1 if across @ [y, -x] < 0 else -1)

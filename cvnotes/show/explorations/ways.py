@@ -49,7 +49,8 @@ def ways(values: Values) -> tuple[Array, Array]:
     axis, x = np.array([0, -tip[2], tip[1]]), float(tip[0])
     sine = float(np.linalg.norm(axis))
     omega = np.zeros(3) if sine < 1e-9 else axis / sine * np.arctan2(sine, x)
-    # Rounded, so that half a turn is +180° on every machine; then −180° about z is as good, and nearer.
+    # Rounded, so that half a turn is +180° on every machine. Beside half a turn about x, that
+    # about z is the other way round: their ways are next to those of the angles around.
     angles = angles_of(rotation_from_vector(omega).round(12) + 0.0)
     if np.isclose(angles[0], np.pi) and np.isclose(angles[2], np.pi):
         angles[2] = -np.pi
