@@ -170,7 +170,7 @@ def _draw_arrows(panel: Panel, lens: Lens) -> Array:
     if len(xy):
         panel.arrows(xy, lens.distort(xy) - xy, IDEAL, 1.2)
     panel.mark([0, 0], "ideal")
-    return xy
+    return np.asarray(xy)
 
 
 def _draw_curve(panel: Panel, lens: Lens, moved: Array) -> None:

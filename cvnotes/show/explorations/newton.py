@@ -73,7 +73,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     every = np.linspace(0, 1, 61)
     for panel, along in ((whole, every), (curve, fine)):
         panel.line(np.column_stack([along, seen(along)]), LENS, 2.2)
-        panel.line([[0, level], [1, level]], IDEAL, 1)
+        panel.line(np.array([[0, level], [1, level]]), IDEAL, 1)
     curve.line([[_FOLD, 0], [_FOLD, 1]], MUTED, 1, dash=4)
     curve.text([_FOLD - 0.005, 0.47], "the fold", MUTED, anchor="rm")
     errors = paper.panel(
