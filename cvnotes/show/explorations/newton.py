@@ -81,7 +81,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         "error (px) after each round",
     )  # fmt: skip
     for power in (2, 1, 0, -1, -2, -3, -4):
-        errors.line([[-2.6, power], [_ROUNDS + 1, power]], "#DDDDDD", 0.5)
+        errors.line(np.array([[-2.6, power], [_ROUNDS + 1, power]]), "#DDDDDD", 0.5)
         errors.text([-2.4, power], f"{10.0**power:g}", size=11)
     for n in range(0, _ROUNDS + 1, 5):
         errors.text([n, np.log10(_LEAST) + 0.25], f"{n}", anchor="mm", size=11)
