@@ -477,6 +477,9 @@ def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_s
         (steps,) = (xy for xy, dash in lines if dash == 5)
         corners = [np.zeros(3), *np.cumsum(np.diag(T), axis=0)]
         assert np.allclose(steps, from_afar(C + np.array(corners) @ R))
+        of_z, at = written[f"{T[2]:.0f}"]
+        middle = from_afar(C + (np.array([T[0], T[1], T[2] / 2])) @ R)
+        assert np.linalg.norm(at - middle) < 18 * of_z.pixel
 
 
 def test_a_board_beside_the_picture_is_missed_in_words():
@@ -492,7 +495,7 @@ def test_a_board_behind_the_camera_has_no_image():
 
 def test_a_lens_with_k1_of_minus_four_thirds_folds_at_one_half():
     drawing = MODELS["lens"].drawing(k1=-4 / 3, k2=0)
-    assert "max_radius = 0.500" in drawing.sentence
+    assert "folds at r = 0.500" in drawing.sentence
     assert count(drawing.picture, ESTIMATED) > 500
     # On the axes the fold lies at r L(r) = 1/3; the grid panel shows 1.68 in 360 px.
     middle, reach = np.array([MARGIN + 215, TITLE + 180]), 360 / 1.68 / 3
@@ -2236,6 +2239,56 @@ def test_another_camera_takes_the_same_picture_of_a_board_and_not_of_a_box():
     assert np.abs(flat[0].astype(int) - flat[1]).max() < 30
 
 
+def test_below_the_panels_stand_the_matrices_that_carry_the_corner(monkeypatch):
+    columns = []
+    monkeypatch.setattr(formation, "_column", lambda *told, **_: columns.append([*told[2]]))
+    values = {"X": 200, "Z": -320, "turn": -20, "alpha": 700, "width": 150}
+    MODELS["formation"].drawing(**values)
+    M, *of_R, T, W, m, a, b, c, xy, divided = columns
+    turn = rotation_from_vector([0, np.radians(20), 0])
+    R = rotation_from_vector([np.radians(20), 0, 0]) @ turn
+    x, y, z = expected = R @ (np.array([150, -125, 0]) - [200, -255, -320])
+    assert np.allclose(np.transpose(of_R)[:3], R)
+    assert np.allclose(T, [*(-R @ [200, -255, -320]), 1])
+    assert W == [150, -125, 0, 1]
+    assert np.allclose([M[:3], divided], expected)
+    assert np.allclose(np.transpose([a, b, c]), [[700, 0, 325], [0, 703.5, 238], [0, 0, 1]])
+    assert np.allclose(xy, [x / z, y / z, 1])
+    assert np.allclose(m, [700 * x / z + 325, 703.5 * y / z + 238, 1])
+    columns.clear()
+    MODELS["formation"].drawing(k1=0.1, **values)  # through a lens it is no product
+    assert columns == []
+
+
+def test_the_end_of_the_edge_goes_along_its_ray_and_the_arrows_to_where_the_lens_shows(monkeypatch):
+    arrows, draw = [], Panel.arrows
+
+    def kept(panel, starts, ways, colour, width):
+        arrows.append((np.atleast_2d(starts), np.atleast_2d(ways)))
+        draw(panel, starts, ways, colour, width)
+
+    monkeypatch.setattr(Panel, "arrows", kept)
+    model, end = MODELS["lens"], np.array([2500, 1600]) / 3500
+    assert model.dragged("edge", tuple(0.9 * end), k2=0)["k1"] == round(-0.1 / (end @ end), 2)
+    drawing = model.drawing(k1=-0.2, k2=0.1)
+    r2 = end @ end
+    assert grip_of(drawing, "edge").at == pytest.approx(
+        end * (1 - 0.2 * r2 + 0.1 * r2**2), abs=1e-5
+    )
+    starts, ways = arrows[0]
+    r2 = (starts**2).sum(axis=1, keepdims=True)
+    assert len(starts) > 12
+    assert np.allclose(ways, starts * (-0.2 * r2 + 0.1 * r2**2))
+
+
+def test_on_the_circle_through_the_pole_the_way_is_as_long_as_beside_it():
+    lengths = [
+        numbers(MODELS["ways"].drawing(up=105, aside=aside).sentence)[-1] for aside in (-1, 0, 1)
+    ]
+    assert 3 < lengths[1] - lengths[0] < 5
+    assert lengths[0] == lengths[2]
+
+
 def test_on_its_way_the_box_turns_with_the_world_and_then_runs_along_its_rays():
     draw = MODELS["formation"].picture
     ways = {way: draw(way=way).astype(int) for way in (0, 1, 1.5, 2)}
@@ -3181,6 +3234,7 @@ ON_A_CURVE = {  # its nearest place
     ("twins", "box"),
     ("pairs", "pair"),
     ("frame", "corner"),
+    ("lens", "edge"),
     ("moved", "camera"),
     ("moved", "board"),
     ("hinge", "board"),

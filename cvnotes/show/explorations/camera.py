@@ -1,6 +1,7 @@
 """Explore a pose: three angles and T, with the picture of a board and the space."""
 
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -156,7 +157,7 @@ def _space(camera: Camera, board: Chessboard, paper: Paper, corners: Array) -> P
     small = [on_sheet(pane[0]) + (m - corners[0]) @ across for m in seen]
     panel.polygons(small, [PAPER, *[SQUARES] * len(squares)])
     _draw_axes(panel, C, own, "xyz", CAMERA)
-    _draw_T(panel, on_sheet(walk))
+    _draw_T(panel, on_sheet(walk), camera.T)
     panel.mark(on_sheet(np.zeros(3)), "world", 6)
     panel.grip("camera", "the camera, to carry it round the board", on_sheet(C), 6)
     return panel
@@ -187,15 +188,21 @@ def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str)
         )
 
 
-def _draw_T(panel: Panel, at: Array) -> None:
+def _draw_T(panel: Panel, at: Array, T: Array) -> None:
     """Draw T, from the camera to the world's origin, and its three steps along x, y and z."""
-    panel.line(at, IDEAL, 1.5, dash=5)
-    panel.arrows(at[0], at[3] - at[0], IDEAL, 4)
+    panel.line(at, CAMERA, 3, dash=5)
+    panel.arrows(at[0], at[3] - at[0], IDEAL, 2)
     (x, y), middle = _along(panel, at[[0, 3]]), at[[0, 3]].mean(axis=0)
     across = np.array([y, -x])
     across = across * (1 if across @ (middle - at[1:3].mean(axis=0)) > 0 else -1)
     anchor = "lmr"[1 - int(np.rint(1.2 * across[0]))] + "m"
     panel.text(middle + 11 * panel.pixel * across, "T", IDEAL, anchor=anchor, size=17)
+    for ends, step in zip(pairwise(at), T, strict=True):
+        x, y = _along(panel, np.array(ends))
+        if np.linalg.norm(ends[1] - ends[0]) > 25 * panel.pixel:  # else there is no room
+            aside = np.array([y, -x]) * (1 if across @ [y, -x] < 0 else -1)
+            beside = (ends[0] + ends[1]) / 2 + 16 * panel.pixel * aside
+            panel.text(beside, f"{step:.0f}".replace("-", "−"), CAMERA, anchor="mm", size=14)
 
 
 def _along(panel: Panel, ends: Array) -> Array:

@@ -48,7 +48,14 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     seen = backward_warp(_photograph(), lambda m: shown_at(to_homogeneous(m) @ back.T), size=size)
     view = paper.panel(_VIEW, (0, 1), (0, 1), "a pinhole's view, out of the fisheye's picture")
     view.image(seen.astype(np.uint8))
-    return Drawing(paper.join((photo, view)), _sentence(fov, f))
+    turn = np.linspace(-1, 1, 41)
+    x, y = (
+        np.r_[turn, turn, 0 * turn + 1, 0 * turn - 1],
+        np.r_[0 * turn + 1, 0 * turn - 1, turn, turn],
+    )
+    border = np.stack([x * _VIEW[0] / 2, y * _VIEW[1] / 2, f + 0 * x], axis=-1) @ R.T
+    beyond = bool((border[:, 2] < np.cos(_WIDTH / 2) * np.linalg.norm(border, axis=1)).any())
+    return Drawing(paper.join((photo, view)), _sentence(fov, f, beyond))
 
 
 def _pulled(_: Values, at: Array) -> Values:
@@ -87,11 +94,12 @@ def _outline(panel: Panel, f: float, R: Array) -> None:
     panel.grip("view", "where to look", ahead, 6)
 
 
-def _sentence(fov: float, f: float) -> str:
+def _sentence(fov: float, f: float, beyond: bool) -> str:
     corner = np.hypot(*_VIEW) / 2 / f  # tan of its angle from the middle
     needed = 2 * _F * np.tan(np.radians(fov) / 2)
     return (
         f"A view of {fov:g}°: in its middle a pixel of the fisheye becomes {f / _F:.1f} pixels "
         f"long, in its corners up to {f / _F * (1 + corner**2):.1f}. A pinhole camera as sharp as "
         f"the fisheye in the middle needs a sensor {needed:,.0f} px wide; for 180° none is enough."
+        f"{' Black: beyond the 220° that the fisheye sees.' if beyond else ''}"
     )

@@ -1,6 +1,6 @@
 """Explore the formation of an image: one box, before and after each step from world to pixels."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -13,12 +13,13 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.moved import part_of
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import cut
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, hexed, rgb
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, WORLD, hexed, rgb
 
 # One step or several: from points of the world (..., 3) to where a panel shows them, (..., 2).
 Seen = Callable[[Array], Array]
 
 _SIZE = 400, 300  # px, of a panel
+_SUMS = 400, 98  # px, of a panel of numbers
 _ABOVE = np.array([[-400.0, 816], [306, -606]])  # mm, X and Z of the panel of the world
 _FRAME = np.array([[-608.0, 608], [760, -152]])  # mm, x and z of that of the camera's frame
 _PLANE = 250.0  # mm: where z = 1 is drawn
@@ -44,7 +45,7 @@ def formation_model() -> Model:
         Setting("alpha", "α (px)", 600, 1200, 10, 800, "the focal length"),
         Setting("width", "the cross: X (mm)", 60, 400, 5, 200, "of the corner that is followed"),
         Setting(
-            "way", "upper right: the way", 0, 2, 0.05, 1,
+            "way", "upper right: from world to camera to plane", 0, 2, 0.05, 1,
             "0: the world; 1: the camera's frame; 2: the box divided by z",
         ),
     )  # fmt: skip
@@ -52,7 +53,7 @@ def formation_model() -> Model:
     about = (
         "A box on a floor, four times: from above in the world, with a camera; from above in the "
         "camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the "
-        "box is followed."
+        "box is followed; below stand the matrices that carry its numbers."
     )
 
     def looked(values: Values, at: Array) -> Values:
@@ -115,7 +116,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _follow(frame, at, on_the_way.get(values["way"], ""), up=16 if values["way"] == 2 else 0)
     _follow(plane, on_plane, said[2], over=True)
     _follow(picture, m, said[3], over=True)
-    return Drawing(paper.join((world, frame), (plane, picture)), _sentence(said, M, xy, m, bent))
+    rows = [(world, frame), (plane, picture)]
+    if "k1" not in values:  # with a lens between them they are no product
+        rows.append((_sum_of_G(paper, camera, W, M), _sum_of_A(paper, camera, M, m)))
+    return Drawing(paper.join(*rows), _sentence(said, M, xy, m, bent))
 
 
 def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Panel, Array]:
@@ -155,6 +159,49 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
             _draw_faces(frame, list(on_the_way(faces)), turn=-1)
     frame.line(seen(np.array([camera.centre, W])), ESTIMATED, 1.2)
     return frame, on_the_way(W)
+
+
+def _sum_of_G(paper: Paper, camera: Camera, W: Array, M: Array) -> Panel:
+    """Write how G makes the corner in the camera's frame of that in the world."""
+    panel = paper.panel(_SUMS, (0, _SUMS[0]), (0, _SUMS[1]), "1. G: its last column is T (mm)")
+    _column(panel, 54, [*M, 1], 0, CAMERA)
+    panel.text([74, 49], "=", anchor="mm", size=14)
+    for j, right in enumerate((146, 202, 258)):
+        _column(panel, right, camera.G[:, j], 3, IDEAL, bracket=("[", "", "")[j])
+    _column(panel, 308, camera.G[:, 3], 0, CAMERA, bracket="]")
+    _column(panel, 380, [*W, 1], 0, WORLD)
+    return panel
+
+
+def _sum_of_A(paper: Paper, camera: Camera, M: Array, m: Array) -> Panel:
+    """Write how the division and A make the pixel of the corner in the camera's frame."""
+    shown = not np.isnan(m).any()
+    title = f"2. ÷ {M[2]:.0f}, 3. A" if shown else "behind the camera: no image"
+    panel = paper.panel(_SUMS, (0, _SUMS[0]), (0, _SUMS[1]), title)
+    if shown:
+        _column(panel, 62, [*m, 1], 1, ESTIMATED)
+        for j, right in enumerate((126, 158, 190)):
+            _column(panel, right, camera.A[:, j], 0, LENS, bracket="[ ]"[j])
+        _column(panel, 257, [*M[:2] / M[2], 1], 3, IDEAL)
+        _column(panel, 328, M, 0, CAMERA)
+        for at in (79, 273):
+            panel.text([at, 49], "=", anchor="mm", size=14)
+        panel.text([342, 49], f"÷ {M[2]:.0f}", anchor="lm", size=12)
+    return panel
+
+
+def _column(
+    panel: Panel, right: float, numbers: Iterable[float], digits: int, ink: str, bracket: str = "[]"
+) -> None:
+    """Write numbers below each other, with brackets on both sides or on one."""
+    words = [f"{x:.{0 if x in (0, 1) else digits}f}".replace("-", "−") for x in numbers]
+    top = _SUMS[1] / 2 - 11 * len(words)
+    for i, word in enumerate(words):
+        panel.text([right, top + 22 * i + 11], word, ink, anchor="rm", size=12)
+    for side, at, turn in (("[", right - 10 - 8 * max(map(len, words)), 5), ("]", right + 7, -5)):
+        if side in bracket:
+            ends = [[at + turn, top], [at, top], [at, top + 22 * len(words)]]
+            panel.line([*ends, [at + turn, ends[-1][1]]], MUTED, 1.2)
 
 
 def _sentence(said: tuple[str, ...], M: Array, xy: Array, m: Array, bent: bool) -> str:

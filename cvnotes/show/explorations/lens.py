@@ -1,4 +1,4 @@
-"""Explore the lens: what k1 and k2 do to a room and a grid, and where the model folds."""
+"""Explore the lens: what k1 and k2 do to a room, and where the model folds."""
 
 from functools import cache, lru_cache, partial
 
@@ -15,7 +15,11 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp
 
-_EXTENT = 0.6  # of the grid on the plane z = 1, in x and y
+_EXTENT = 0.6  # of what is to be seen on the plane z = 1, in x and y
+_EDGE = np.array([[x, 1600, 3500] for x in np.linspace(-2500, 2500, 51)])  # of the tiles, mm
+_END = _EDGE[-1, :2] / 3500  # where it is taken hold of, as an ideal lens shows it
+_ARROWS = np.array([[0.8, 0], [0.78, 0.3], [0.78, -0.3], [0.72, -0.52], [0.4, -0.5], [0.4, 0.56]])
+_ARROWS = np.concatenate([_ARROWS, _ARROWS * [-1, 1], [[-0.714, 0.457], [0, 0.7], [0, -0.7]]])
 _HELD = 0.6  # where the curve is taken hold of
 _RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
@@ -35,8 +39,9 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
         _around("k2", 2.0, 0.01, k2, "radial, of the fourth power of r"),
     )
     about = (
-        "A room and a square grid, both seen through a lens; beside it the observed radius "
-        "r L(r) against the ideal radius r, with the fold where the model ends."
+        "A room seen through a lens, with arrows from where an ideal lens shows its points, and an "
+        "edge of its tiles beside a ruler; beside it the observed radius r L(r) against the ideal "
+        "radius r, with the same arrows, and the fold where the model ends."
     )
 
     def pulled(values: Values, at: Array) -> Values:
@@ -44,7 +49,13 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
         r2 = _HELD**2
         return {"k1": float((at[1] / _HELD - 1 - values["k2"] * r2**2) / r2)}
 
-    return Model("lens", about, settings, partial(_draw, camera), {"curve": pulled})
+    def along_the_ray(values: Values, at: Array) -> Values:
+        """Choose the k1 that shows the end of the edge where the hand is, along its ray."""
+        r2 = float(_END @ _END)
+        return {"k1": (float(at @ _END) / r2 - 1 - values["k2"] * r2**2) / r2}
+
+    drags = {"curve": pulled, "edge": along_the_ray}
+    return Model("lens", about, settings, partial(_draw, camera), drags)
 
 
 def _around(name: str, reach: float, step: float, value: float, about: str) -> Setting:
@@ -57,17 +68,21 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     lens = Lens((values["k1"], values["k2"]))
     reach = 1.4 * _EXTENT
     x = reach * _SIZE[0] / _SIZE[1]
-    title = "a room and a grid through the lens"
+    title = "a room through the lens: pull the edge's end"
     grid = paper.panel(_SIZE, (-x, x), (-reach, reach), title)
-    grid.image(bent_room(lens, (x, reach), _SIZE, paper.sharpness))
+    grid.image(bent_room(lens, (x, reach), _SIZE, paper.sharpness, 1))
+    _draw_edge(grid, lens)
     draw_fold(grid, lens)
     curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "observed radius r L(r) against ideal r")
-    _draw_grid(grid, lens)
     corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
     for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
         grid.line(corners, colour, width)
     grid.text(corners[3] + [7 * grid.pixel, -6 * grid.pixel], "picture", CAMERA, anchor="ld")
-    _draw_curve(curve, lens)
+    moved = _draw_arrows(grid, lens)
+    end = polynomial(lens, _END)
+    grid.mark(end, "lens", 8)
+    grid.grip("edge", "the end of the edge of the tiles", end, 2)
+    _draw_curve(curve, lens, moved)
     return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
 
 
@@ -139,30 +154,36 @@ def draw_fold(panel: Panel, lens: Lens) -> None:
         panel.text([0, y], "the fold", ESTIMATED, anchor="md" if over else "ma")
 
 
-def _draw_grid(panel: Panel, lens: Lens) -> None:
-    fine, coarse = np.linspace(-_EXTENT, _EXTENT, 49), np.linspace(-_EXTENT, _EXTENT, 9)
-    across = np.stack(np.meshgrid(fine, coarse), -1)
-    for line in (*across, *across[..., ::-1]):
-        panel.line(line[[0, -1]], MUTED, 0.5)
-    for line in (*across, *across[..., ::-1]):
-        panel.line(lens.distort(line), LENS, 1.2)  # NaN beyond the fold
+def _draw_edge(panel: Panel, lens: Lens) -> None:
+    """Draw an edge of the tiles as the lens shows it, and a ruler from end to end."""
+    edge = lens.distort(_EDGE[:, :2] / _EDGE[:, 2:])  # NaN beyond the fold
+    shown = edge[np.isfinite(edge[:, 0])]
+    if len(shown):
+        panel.line(shown[[0, -1]], IDEAL, 1.5)
+    panel.line(edge, LENS, 3)
+
+
+def _draw_arrows(panel: Panel, lens: Lens) -> Array:
+    """Draw arrows from ideal points to where the lens shows them; returns the points (n, 2)."""
+    xy = np.array([*_ARROWS, _END])
+    xy = xy[np.linalg.norm(xy, axis=1) < lens.max_radius]
+    if len(xy):
+        panel.arrows(xy, lens.distort(xy) - xy, IDEAL, 1.2)
     panel.mark([0, 0], "ideal")
-    panel.text([_EXTENT, -_EXTENT - 0.01], "ideal", MUTED, anchor="rd")
-    bent = polynomial(lens, np.array([0, min(_EXTENT, lens.max_radius)]))
-    low = bent[1] if lens.max_radius < _EXTENT else max(bent[1], _EXTENT)
-    below = [0, min(low + 0.02, panel.y[1] - 0.07)]
-    panel.text(below, "through the lens", LENS, anchor="ma")
+    return np.asarray(xy)
 
 
-def _draw_curve(panel: Panel, lens: Lens) -> None:
+def _draw_curve(panel: Panel, lens: Lens, moved: Array) -> None:
     panel.ticks((0.4, 0.8, 1.2), (0.4, 0.8), size=11)
     panel.line([[0.0, 0.0], [_RADIUS, 0.0]], MUTED, 0.8)
     panel.line([[0.0, 0.0], [1.2, 1.2]], IDEAL, 1, dash=4)
-    panel.text([0.97, 0.93], "ideal", IDEAL)
+    panel.text([0.99, 0.95], "ideal", IDEAL)
     fold = min(lens.max_radius, _RADIUS)
     good, beyond = np.linspace(0, fold, 61), np.linspace(fold, _RADIUS, 61)
     panel.line(np.stack([beyond, seen_radius(lens, beyond)], -1), ESTIMATED, 1.8, dash=5)
     panel.line(np.stack([good, seen_radius(lens, good)], -1), LENS, 2.2)
+    for r in np.unique(np.linalg.norm(moved, axis=1).round(9)):
+        panel.arrows([r, r], [0, float(seen_radius(lens, r)) - r], IDEAL, 1.2)
     held = [_HELD, float(seen_radius(lens, np.array(_HELD)))]
     panel.mark(held, "lens", 8)
     panel.grip("curve", "the curve of k1", held, 2)
@@ -170,7 +191,7 @@ def _draw_curve(panel: Panel, lens: Lens) -> None:
         panel.line([[lens.max_radius, 1.2], [lens.max_radius, -0.2]], ESTIMATED, 1)
         near = lens.max_radius < 0.6  # then there is room above the curves, else below
         shift, height, anchor = (0.015, 1.12, "lm") if near else (-0.015, 0.06, "rm")
-        words = f"max_radius {lens.max_radius:.3f}"
+        words = f"the fold, r = {lens.max_radius:.3f}"
         panel.text([lens.max_radius + shift, height], words, ESTIMATED, anchor=anchor)
 
 
@@ -182,7 +203,7 @@ def _sentence(camera: Camera, lens: Lens) -> str:
         seen = seen_radius(lens, np.array(lens.max_radius))
         black = np.isnan(ideal).any(axis=-1).sum()
         return (
-            f"The model folds at max_radius = {lens.max_radius:.3f}, which is seen at "
+            f"The model folds at r = {lens.max_radius:.3f}, which is seen at "
             f"r' = {seen:.3f}. The picture's corners are at r' up to "
             f"{r:.3f}: in {black} of them nothing is seen. Orange is no lens."
         )

@@ -22,7 +22,9 @@ def newton_model() -> Model:
     """Make the model of an ideal radius that is looked for in two ways."""
     settings = (
         Setting("r", "ideal radius r", 0.6, 0.91, 0.01, 0.86, "what is to be found, from r'"),
-        Setting("rounds", "rounds drawn", 1, 8, 1, 3, "how often each method goes on"),
+        Setting(
+            "rounds", "rounds drawn", 1, 8, 1, 3, "how often each method goes on, in the middle"
+        ),
     )
     about = (
         "The observed radius over the ideal one, a level, and the ways of two methods to where the "
@@ -61,53 +63,63 @@ def guesses(step: Step, level: float, rounds: int) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     r, rounds = values["r"], int(values["rounds"])
     level = float(seen(r))
-    curve = paper.panel(
-        (440, 340), (0.49, 0.96), (0.632, 0.445), "observed radius r' over r: pull the plus"
-    )
-    curve.ticks(y=(0.5, 0.55, 0.6))
-    for number in (0.6, 0.7, 0.8, 0.9):
+    whole = paper.panel((280, 340), (0, 1), (0.68, 0), "r' over r: the first round")
+    whole.ticks(x=(0.2, 0.4, 0.6, 0.8), y=(0.2, 0.4))
+    curve = paper.panel((330, 340), (0.55, 0.96), (0.632, 0.445), "nearer: pull the plus")
+    curve.ticks(y=(0.55, 0.6))
+    for number in (0.6, 0.7, 0.8):
         curve.text([number, 0.4506], f"{number:g}", anchor="md", size=11)
     fine = np.linspace(0.4, 0.96, 57)
-    curve.line(np.column_stack([fine, seen(fine)]), LENS, 2.2)
-    curve.line([[0, level], [1, level]], IDEAL, 1)
+    every = np.linspace(0, 1, 61)
+    for panel, along in ((whole, every), (curve, fine)):
+        panel.line(np.column_stack([along, seen(along)]), LENS, 2.2)
+        panel.line(np.array([[0, level], [1, level]]), IDEAL, 1)
     curve.line([[_FOLD, 0], [_FOLD, 1]], MUTED, 1, dash=4)
     curve.text([_FOLD - 0.005, 0.47], "the fold", MUTED, anchor="rm")
     errors = paper.panel(
-        (400, 340), (-0.6, _ROUNDS + 0.6), (np.log10(_MOST), np.log10(_LEAST)),
+        (280, 340), (-2.6, _ROUNDS + 0.8), (np.log10(_MOST), np.log10(_LEAST)),
         "error (px) after each round",
     )  # fmt: skip
     for power in (2, 1, 0, -1, -2, -3, -4):
-        errors.line([[-1, power], [_ROUNDS + 1, power]], "#DDDDDD", 0.5)
-        errors.text([-0.5, power], f"{10.0**power:g}", size=11)
+        errors.line(np.array([[-2.6, power], [_ROUNDS + 1, power]]), "#DDDDDD", 0.5)
+        errors.text([-2.4, power], f"{10.0**power:g}", size=11)
     for n in range(0, _ROUNDS + 1, 5):
         errors.text([n, np.log10(_LEAST) + 0.25], f"{n}", anchor="mm", size=11)
     errors.text([_ROUNDS - 2.5, np.log10(_LEAST) + 0.75], "rounds", MUTED, anchor="mm", size=12)
-    curve.line(np.array([[0, 0], [level, float(seen(level))]]), MUTED, 1, dash=3)
-    curve.text([0.575, 0.464], "← to the origin", MUTED, size=11)
+    first = float(seen(level))
+    for panel in (whole, curve):
+        panel.line(np.array([[0, 0], [level, first]]), MUTED, 1, dash=3)
+    whole.text([0.4, 0.25], "ray from the origin", MUTED, size=12)
+    whole.text([0.98, first - 0.05], "tangent", ESTIMATED, anchor="rm", size=12)
     counts = []
-    for step, name, colour in (
-        (along_the_ray, "dividing by L", MUTED),
-        (along_the_tangent, "Newton", ESTIMATED),
+    for step, name, colour, side in (
+        (along_the_ray, "dividing by L", MUTED, -1),
+        (along_the_tangent, "Newton", ESTIMATED, 1),
     ):
         way = guesses(step, level, 1000)
-        _way(curve, way[: rounds + 1], level, colour)
+        _way(whole, way[:2], level, colour, 3, side)
+        _way(curve, way[: rounds + 1], level, colour, 1.5, side)
         off = _F * np.abs(way - r)
         counts.append(int(np.argmax(off < _ENOUGH)))
         _series(errors, off, colour, rounds)
         end = min(int(np.argmax(off < 0.003)), 12)  # to the right of it the curve has fallen
         at = [end + 0.4, np.log10(max(off[end], 2e-4)) + 0.15]
         errors.text(at, name, colour, anchor="ld", size=12)
-    curve.text([level - 0.003, level - 0.003], "r'", IDEAL, anchor="ra", size=13)
+    curve.text([level - 0.006, level - 0.003], "r'", IDEAL, anchor="ra", size=13)
     curve.mark([r, level], "ideal", 8)
     curve.grip("level", "the level r', by the ideal radius that it belongs to", [r, level], 4)
-    return Drawing(paper.join((curve, errors)), _sentence(r, level, counts))
+    return Drawing(paper.join((whole, curve, errors)), _sentence(r, level, counts))
 
 
-def _way(panel: Panel, way: Array, level: float, colour: str) -> None:
-    """Draw the way of a method: from the level to the curve, and along a line to the level."""
+def _way(panel: Panel, way: Array, level: float, colour: str, width: float, side: int) -> None:
+    """Draw the way of a method: from the level to the curve, and along a line to the level.
+
+    Two ways that begin alike lie side by side.
+    """
     heights = np.column_stack([np.full(len(way), level), seen(way)])
     places = np.stack([np.repeat(way[:, None], 2, axis=1), heights], axis=-1).reshape(-1, 2)
-    panel.line(places[:-1], colour, 1.5)
+    aside = side * width / 2 * panel.pixel
+    panel.line(places[:-1] + [aside, 0], colour, width)
 
 
 def _series(panel: Panel, off: Array, colour: str, rounds: int) -> None:

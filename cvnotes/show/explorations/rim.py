@@ -61,7 +61,7 @@ def _other(lens: Lens, r: float, seen: float) -> float:
 def _seen(paper: Paper, lens: Lens, r: float, other: float) -> Panel:
     x = _HALF * _LENS[0] / _LENS[1]
     panel = paper.panel(_LENS, (-x, x), (-_HALF, _HALF), "what the polynomial makes of the disc")
-    panel.image(bent_room(lens, (x, _HALF), _LENS, paper.sharpness, 0.35))
+    panel.image(bent_room(lens, (x, _HALF), _LENS, paper.sharpness, 0.65))
     end, folds = min(r, lens.max_radius), r > lens.max_radius
     _disc(panel, lens, (0, float(np.nan_to_num(other)) if folds else r), _BLUE, not folds)
     if folds:
@@ -99,7 +99,7 @@ def _disc(
 def _plane(paper: Paper, lens: Lens, r: float) -> Panel:
     x = _SHOWN * _BESIDE[0] / _BESIDE[1]
     panel = paper.panel(_BESIDE, (-x, x), (-_SHOWN, _SHOWN), "plane z = 1: pull the plus")
-    panel.image(bent_room(Lens(), (x, _SHOWN), _BESIDE, paper.sharpness, 0.35))
+    panel.image(bent_room(Lens(), (x, _SHOWN), _BESIDE, paper.sharpness, 0.65))
     _disc(panel, Lens(), (0, r), _GREY, True)
     panel.line(r * circle(121), MUTED, 1.5)
     if lens.max_radius < r:
@@ -112,6 +112,14 @@ def _plane(paper: Paper, lens: Lens, r: float) -> Panel:
 def _curve(paper: Paper, lens: Lens, r: float, other: float) -> Panel:
     panel = paper.panel(_BESIDE, (0, _RADIUS), (0.45, -0.2), "observed radius against r")
     panel.line([[0.0, 0.0], [_RADIUS, 0.0]], FAINT, 1)
+    if np.isfinite(lens.max_radius) and lens.max_radius < _RADIUS:
+        fold, top = lens.max_radius, float(seen_radius(lens, np.array(lens.max_radius)))
+        back = lens.max_radius * float(np.sqrt(3))  # where r L(r) is 0 again
+        panel.line(np.array([[0, top], [fold, top], [fold, 0]]), MUTED, 0.8, dash=3)
+        panel.text([0.02, top - 0.01], f"{top:.2f}", anchor="ld", size=11)
+        for x in (fold, back):
+            if abs(x - r) > 0.13 and x < _RADIUS - 0.05:  # the curve falls to the right of it
+                panel.text([x, -0.04], f"{x:.2f}", anchor="ra", size=11)
     end = min(lens.max_radius, _RADIUS)
     for start, stop, ink in ((0, end, LENS), (end, _RADIUS, ESTIMATED)):
         along = np.linspace(start, stop, 61)

@@ -49,8 +49,12 @@ def ways(values: Values) -> tuple[Array, Array]:
     axis, x = np.array([0, -tip[2], tip[1]]), float(tip[0])
     sine = float(np.linalg.norm(axis))
     omega = np.zeros(3) if sine < 1e-9 else axis / sine * np.arctan2(sine, x)
-    # Rounded, so that half a turn is +180° on every machine.
-    return omega, angles_of(rotation_from_vector(omega).round(12) + 0.0)
+    # Rounded, so that half a turn is +180° on every machine. Beside half a turn about x, that
+    # about z is the other way round: their ways are next to those of the angles around.
+    angles = angles_of(rotation_from_vector(omega).round(12) + 0.0)
+    if np.isclose(angles[0], np.pi) and np.isclose(angles[2], np.pi):
+        angles[2] = -np.pi
+    return omega, angles
 
 
 def speeds(angles: Array) -> Array:
@@ -101,8 +105,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     x, y, z = np.degrees(angles).round() + 0.0
     return Drawing(
         paper.join((panel,)),
-        f"About one axis the dart turns by {whole:.0f}°. By three angles, {x:.0f}° about x, "
-        f"{y:.0f}° about y and {z:.0f}° about z, it turns by {np.trapezoid(speed, _T):.0f}°, roll "
+        f"The way about one axis is {whole:.0f}° long. That by three angles, {x:.0f}° about x, "
+        f"{y:.0f}° about y and {z:.0f}° about z, is {np.trapezoid(speed, _T):.0f}° long, roll "
         "included.",
     )
 
