@@ -2263,7 +2263,7 @@ def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_rig
     u, v = (np.array([x, y]) / w + 0.5) * 392 / 640 + [MARGIN + 398, TITLE]
     part = shown().picture[round(v) - 5 : round(v) + 9]
     before, beyond = part[:, round(u) - 72 : round(u) - 36], part[:, round(u) + 36 : round(u) + 72]
-    assert count(before, LENS, 110) > 15 > 5 * count(beyond, LENS, 110)
+    assert count(before, LENS, 95) > 15 > 5 * count(beyond, LENS, 95)
 
 
 def test_the_half_circles_of_parallel_boards_are_one():
