@@ -46,7 +46,9 @@ def triangulated(left: Array, right: Array) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     X, Z, sigma = values["X"], values["Z"], values["sigma"]
     left, right = columns(X, Z)
-    panel = paper.panel((450, 390), _X, _Z, "from above, depths seven times shorter: pull the point")
+    panel = paper.panel(
+        (450, 390), _X, _Z, "from above, depths seven times shorter: pull the point"
+    )
     panel.polygons(np.array([[[0.0, 0], [_BASE, 0], [X, Z]]]), _LIGHT)
     tips = np.array([left, right]) * _PLANE / _ALPHA  # mm along the planes of the pictures
     panel.polygons(np.array([[[0.0, 0], [tips[1], _PLANE], [tips[0], _PLANE]]]), _WARM)
