@@ -27,7 +27,7 @@ CHAPTERS = {
     "camera_covariance levenberg_marquardt",
     "ch08": "bilinear backward_warp count_holes undistortion_map",
     "ch09": "residuals error_bars which_to_trust own_camera pipeline jackknife",
-    "ch10": "rectifying_rotation depth how_far",
+    "ch10": "depth rectifying_rotation how_far",
 }
 # Asked for in the notebook of further exercises; all others in the notebook of their chapter.
 FURTHER = (
