@@ -446,20 +446,6 @@ def my_undistortion_map(A, k, size):
     return out
 
 
-def my_rectifying_rotation(R, left, right):
-    x = (right - left) / np.linalg.norm(right - left)
-    z = R[2] - (R[2] @ x) * x
-    z /= np.linalg.norm(z)
-    return np.stack([x, np.cross(z, x), z])
-
-
-def my_depth(alpha, b, u_left, u_right):
-    return [alpha * b / d if d else float("inf") for d in u_left - u_right]
-
-
-my_how_far = 8_800
-
-
 # Chapter 9
 
 
@@ -492,6 +478,23 @@ def my_jackknife(xy, xy_lens):
 
 
 my_which_to_trust = "B"
+
+
+# Chapter 10
+
+
+def my_rectifying_rotation(R, left, right):
+    x = (right - left) / np.linalg.norm(right - left)
+    z = R[2] - (R[2] @ x) * x
+    z /= np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z])
+
+
+def my_depth(alpha, b, u_left, u_right):
+    return [alpha * b / d if d else float("inf") for d in u_left - u_right]
+
+
+my_how_far = 8_800
 
 
 def solution_of(name, student=None):

@@ -684,8 +684,8 @@ def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_take
     picture = MODELS["rectification"].picture(turned=100).astype(int)
     for k, camera in enumerate(turned(1)):
         photo = render_scene(room(), camera)
-        seen = np.asarray(Image.fromarray(photo).resize((328, 246))).astype(int)
-        panel = picture[TITLE : TITLE + 246, MARGIN + k * 334 :][:, :328]
+        seen = np.asarray(Image.fromarray(photo).resize((400, 300))).astype(int)
+        panel = picture[TITLE : TITLE + 300, MARGIN + k * 406 :][:, :400]
         off = np.abs(panel - seen).max(axis=2)
         grey = (panel == 110).all(axis=2)
         assert 0.05 < grey.mean() < 0.4
@@ -695,10 +695,10 @@ def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_take
 
 @pytest.mark.parametrize("values", [{}, {"turned": 50}, {"turned": 100}])
 def test_epipolar_lines_cross_both_pictures_from_border_to_border(values):
-    picture = MODELS["rectification"].picture(**values).astype(int)[TITLE : TITLE + 246]
+    picture = MODELS["rectification"].picture(**values).astype(int)[TITLE : TITLE + 300]
     orange = np.abs(picture - colour(ESTIMATED)).max(axis=2) < 60
     for k in (0, 1):
-        panel = orange[:, MARGIN + k * 334 :][:, :328]
+        panel = orange[:, MARGIN + k * 406 :][:, :400]
         for border in (panel[:, 3:40], panel[:, -40:-3]):
             assert ndimage.label(border)[1] >= 5
 
@@ -2389,10 +2389,10 @@ def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_rig
     assert numbers(shown(u=449, v=205, depth=7600).sentence)[1] < 5
     # The dashed line ends where the second camera sees the direction of the ray.
     x, y, w = second.A @ second.R @ np.linalg.inv(first.A) @ [449, 205, 1]
-    u, v = (np.array([x, y]) / w + 0.5) * 340 / 640 + [MARGIN + 346, TITLE]
-    part = shown().picture[round(v) - 5 : round(v) + 4]
-    before, beyond = part[:, round(u) - 60 : round(u) - 28], part[:, round(u) + 28 : round(u) + 60]
-    assert count(before, LENS, 110) > 15 > 5 * count(beyond, LENS, 110)
+    u, v = (np.array([x, y]) / w + 0.5) * 392 / 640 + [MARGIN + 398, TITLE]
+    part = shown().picture[round(v) - 5 : round(v) + 9]
+    before, beyond = part[:, round(u) - 72 : round(u) - 36], part[:, round(u) + 36 : round(u) + 72]
+    assert count(before, LENS, 95) > 15 > 5 * count(beyond, LENS, 95)
 
 
 def test_the_half_circles_of_parallel_boards_are_one():
@@ -2411,7 +2411,7 @@ def test_what_lies_at_the_chosen_depth_has_no_fringe_and_all_else_has():
     for W in ([-900, 0, 10_000], [2400, 600, 7600]):  # on the wall behind, on the cupboard
         seen = left.project(W) - right.project(W)
         assert np.allclose(seen, [520 * 400 / W[2], 0])
-    (u, v), scale = left.project([900, -900, 9990]), 340 / 640  # the frame of the blackboard
+    (u, v), scale = left.project([900, -900, 9990]), 400 / 640  # the frame of the blackboard
     here = np.s_[
         TITLE + round(v * scale) : TITLE + round((v + 60) * scale),
         MARGIN + round((u - 60) * scale) : MARGIN + round((u + 10) * scale),
@@ -2462,24 +2462,24 @@ def test_the_depths_that_pixels_keep_are_those_of_the_room_and_dots_lie_where_th
     v, u = np.mgrid[200:236:3, 100:220:3]  # on the floor, 1600 mm below the cameras
     floor = 1600 * 520 / (2 * v + 0.5 - 239.5)
     assert np.nanmedian(np.abs(found[v, u] - floor)) < 60
-    camera, plan = pair()[0], np.array([MARGIN + 346, TITLE])
+    camera, plan = pair()[0], np.array([MARGIN + 406, TITLE])
     for W in ([1900, 0, 7600], [700, 0, 9950], [-700, 0, 9950], [-1300, 830, 6400]):
         u, v = np.rint((camera.project(W) - 0.5) / 2).astype(int)
         assert abs(np.nanmedian(found[v - 4 : v + 5, u - 3 : u + 4]) / W[2] - 1) < 0.04
 
-        # From above 8800 mm are 350 px, and 13,520 mm 538.
-        x, y = np.rint(plan + [(W[0] + 4150) / 25.143, (12_900 - W[2]) / 25.13]).astype(int)
+        # From above 8800 mm are 409 px, and 13,520 mm 628.
+        x, y = np.rint(plan + [(W[0] + 4150) / 21.516, (12_900 - W[2]) / 21.529]).astype(int)
         near = [
             drawing(depth=Z).picture[y - 8 : y + 9, x - 8 : x + 9] for Z in (12_000, W[2] - 400)
         ]
         dots, before = ((np.ptp(part.astype(int), axis=-1) > 40).sum() for part in near)
         assert dots > 12 > 3 * before
-    part = drawing(depth=12_000).picture[TITLE + 128 : TITLE + 155, plan[0] + 30 : plan[0] + 62]
+    part = drawing(depth=12_000).picture[TITLE + 149 : TITLE + 181, plan[0] + 37 : plan[0] + 69]
     on_wall = np.nonzero(np.ptp(part.astype(int), axis=-1) > 40)[
         1
     ]  # the left one, 9.0 to 9.7 m away
     assert on_wall.size > 30
-    assert np.median(on_wall) + 30 == pytest.approx((4150 - 3000) / 25.143, abs=4)
+    assert np.median(on_wall) + 37 == pytest.approx((4150 - 3000) / 21.516, abs=4)
     said = numbers(drawing(depth=12_000).sentence)
     assert said[2] == pytest.approx(
         208_000 / (208 / 12 - 0.5) - 208_000 / (208 / 12 + 0.5), abs=0.5
@@ -3179,6 +3179,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "ransac": {"draw": 20},
     "decentred": {"p1": 0.02},
     "rings": {"place": 50},
+    "depth": {"depth": 8000},
     "walks": {"X": 200},
     "formation": {"X": 200},
     "homography": {"dv2": 40, "dv3": -40},

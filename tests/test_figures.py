@@ -396,7 +396,13 @@ def test_a_picture_without_a_text_is_refused():
 def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_chapter():
     from xml.etree import ElementTree
 
-    for chapter, lit, forwards in ((0, 4, True), (4, 1, True), (5, 0, True), (7, 4, False)):
+    for chapter, lit, forwards in (
+        (0, 4, True),
+        (4, 1, True),
+        (5, 0, True),
+        (7, 4, False),
+        (10, 1, False),
+    ):
         picture = one_corner(chapter)
         drawn = ElementTree.fromstring(picture.data)
         steps = [text for text in drawn.findall(".//{*}text") if text.get("class") == "s"]

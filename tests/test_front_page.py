@@ -33,7 +33,7 @@ def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
     alone, live, whole = (front_page.front_page(*has) for has in ((0, 0), (1, 0), (1, 1)))
     for page in (alone, live, whole):
         assert front_page.sentence(readme) in page
-        assert page.count('<li><a href="notebooks/') == 11
+        assert page.count('<li><a href="notebooks/') == 12
         assert (
             len(re.findall(r'<nav class="front-buttons".*?</nav>', page, re.S)[0].split("<a ")) == 4
         )

@@ -592,7 +592,7 @@ def test_whoever_looks_for_a_chapter_finds_it():
 def test_the_further_exercises_stand_below_the_chapter_they_go_with():
     names, chapter = [], 0
     for cell in _read(FURTHER).cells:
-        if found := re.search(r"^## .*\n+After \[chapter (\d)\]", cell.source, re.M):
+        if found := re.search(r"^## .*\n+After \[chapter (\d+)\]", cell.source, re.M):
             chapter = int(found[1])
         for name in re.findall(r"^check\(\"(\w+)\"", cell.source, re.M):
             assert EXERCISES[name].chapter == chapter, name

@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-_ROW = re.compile(r"^\| (\d) \| ([^|]+) \| ([^|]+) \| (`[^|]+`) \|$", re.M)
+_ROW = re.compile(r"^\| (\d+) \| ([^|]+) \| ([^|]+) \| (`[^|]+`) \|$", re.M)
 
 
 class Titled(Protocol):
@@ -35,7 +35,7 @@ def numbered(text: str, made: Mapping[str, Sequence[Titled]]) -> str:
 
     def with_numbers(row: re.Match[str]) -> str:
         number, sections, exploration, exercises = row.groups()
-        slides = next(slides for name, slides in made.items() if name.startswith(f"0{number}_"))
+        slides = next(slides for name, slides in made.items() if name.startswith(f"{number:0>2}_"))
         shown = "; ".join(f"{name} ({pages(name, slides)})" for name in sections.split("; "))
         explored = f"{exploration} ({pages(exploration, slides)})"
         return f"| {number} | {shown} | {explored} | {exercises} |"

@@ -25,14 +25,14 @@ CHAPTERS = {
     "ch06": "design_matrix normaliser dlt four_points geometric_error ransac",
     "ch07": "v_ij b_from_views a_from_b extrinsics radial_fit bad_views focal_from_turn "
     "camera_covariance levenberg_marquardt",
-    "ch08": "bilinear backward_warp count_holes undistortion_map rectifying_rotation depth how_far",
+    "ch08": "bilinear backward_warp count_holes undistortion_map",
     "ch09": "residuals error_bars which_to_trust own_camera pipeline jackknife",
+    "ch10": "depth rectifying_rotation how_far",
 }
 # Asked for in the notebook of further exercises; all others in the notebook of their chapter.
 FURTHER = (
     "line_through field_of_view nearest_rotation form_image geometric_error radial_fit "
-    "b_from_views focal_from_turn camera_covariance bilinear rectifying_rotation how_far "
-    "which_to_trust pipeline"
+    "b_from_views focal_from_turn camera_covariance bilinear which_to_trust pipeline how_far"
 )
 
 

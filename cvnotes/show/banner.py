@@ -11,13 +11,14 @@ from cvnotes.show.picture import Picture
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, INK, LENS, MUTED, WORLD
 
 STEPS = ("R, T", "÷ z", "lens", "A")
-# Which steps a chapter is about: those of the first page and of the last two are all. Chapter 5
-# looks for the pixel itself. Chapters 6 and 7 go from the picture back to the world.
+# Which steps a chapter is about: those of the first page and of chapter 9 are all. Chapter 5 looks
+# for the pixel itself. Chapters 6 and 7 go from the picture back to the world, and chapter 10 finds
+# the depth again by which was divided.
 _LIT: dict[int, tuple[str, ...]] = {
     1: ("÷ z",), 2: ("R, T", "÷ z", "A"), 3: ("R, T", "÷ z", "A"), 4: ("lens",), 5: (),
-    6: ("R, T", "÷ z", "A"), 8: ("lens", "A"),
+    6: ("R, T", "÷ z", "A"), 8: ("lens", "A"), 10: ("÷ z",),
 }  # fmt: skip
-_BACKWARDS = (6, 7)
+_BACKWARDS = (6, 7, 10)
 _WITHOUT_LENS = (2,)  # its camera has none, so its corner goes by another pixel
 _STYLE = (
     "text{font:13px system-ui,sans-serif;text-anchor:middle;fill:#333}.s{font-weight:600}"

@@ -1,4 +1,4 @@
-"""Chapter 8: two cameras, and the depth that they see together (notes 2b.5)."""
+"""Chapter 10: two cameras, and the depth that they see together (notes 2b.5)."""
 
 from cvnotes.stereo.calibration import calibrate_stereo
 from cvnotes.stereo.epipolar import baseline, epipole, relative_pose

@@ -1,1 +1,1 @@
-"""Exercises of chapter 8, image warping: between the pixels, backwards, and two cameras."""
+"""Exercises of chapter 8, image warping: between the pixels, backwards, and without a lens."""

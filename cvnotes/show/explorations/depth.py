@@ -15,7 +15,7 @@ from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, rgb
 from cvnotes.warping import backward_warp
 
-_PICTURE, _PLAN = (340, 255), (350, 538)
+_PICTURE, _PLAN = (400, 300), (409, 628)
 _ALPHA, _BASE, _SIZE = 520, 400, (640, 480)  # px, mm, px
 _NEAREST, _FARTHEST = 2000, 12_000  # mm
 _NOISE = 2  # grey levels
@@ -159,7 +159,7 @@ def coloured(depths: Array) -> Drawn:
 def depth_model() -> Model:
     """Make the model of the room, seen by two cameras side by side."""
     settings = (
-        Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 8200,
+        Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 12_000,
                 "each pixel keeps the depth that agrees best of all up to this one"),
         Setting("texture", "texture at least", 0, 6, 0.5, 2,
                 "grey levels by which a patch differs from the one beside it, or it stays grey"),

@@ -9,7 +9,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 _ALPHA, _BASE = 520.0, 200.0  # px, mm
 _PLANE = 1100.0  # mm, where both pictures are drawn: a pixel is 1100/520 mm there
-_X, _Z = (-400, 620), (4700, -520)  # mm that are shown, from above
+_X, _Z = (-400, 620), (5600, -520)  # mm that are shown, from above
 _LIGHT, _WARM = "#D1EDE5", "#F3CDAE"
 
 
@@ -46,7 +46,9 @@ def triangulated(left: Array, right: Array) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     X, Z, sigma = values["X"], values["Z"], values["sigma"]
     left, right = columns(X, Z)
-    panel = paper.panel((450, 390), _X, _Z, "from above, depths six times shorter: pull the point")
+    panel = paper.panel(
+        (450, 390), _X, _Z, "from above, depths seven times shorter: pull the point"
+    )
     panel.polygons(np.array([[[0.0, 0], [_BASE, 0], [X, Z]]]), _LIGHT)
     tips = np.array([left, right]) * _PLANE / _ALPHA  # mm along the planes of the pictures
     panel.polygons(np.array([[[0.0, 0], [tips[1], _PLANE], [tips[0], _PLANE]]]), _WARM)
@@ -79,7 +81,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _error(paper: Paper, Z: float, sigma: float) -> Panel:
     """Draw the standard deviation of the depth against the depth."""
-    panel = paper.panel((300, 390), (-400, 5000), (900, -90), "σ of Z (mm) against Z (mm)")
+    panel = paper.panel((330, 390), (-400, 5000), (900, -90), "σ of Z (mm) against Z (mm)")
     panel.ticks(x=(1000, 2000, 3000, 4000), y=(0, 250, 500, 750), size=11)
     depths = np.linspace(0, 5000, 41)
     curve = depths**2 / (_ALPHA * _BASE) * sigma

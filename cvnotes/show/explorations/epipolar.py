@@ -12,17 +12,18 @@ from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, FAINT, LENS
 from cvnotes.warping import interpolate
 
-_SIZE, _SHOWN = (640, 480), (340, 255)  # px
+_SIZE, _SHOWN = (640, 480), (392, 294)  # px
 _NEAREST, _FARTHEST = 2000, 20_000  # mm
 _PATCH = 9  # px from the middle of a patch to its border
 _AROUND = np.stack(np.meshgrid(*2 * [np.arange(-_PATCH, _PATCH + 1.0)]), axis=-1)
 _ALIKE = 0.5  # grey levels: so little more is as good as the best
+_LEAST = 80.0  # grey levels on the scale, so that a valley of a few of them looks shallow
 _WIDE = 1.2  # the farthest over the nearest depth of a valley that is wide
 _TRIED = 1 / np.linspace(1 / _NEAREST, 1 / _FARTHEST, 240)  # mm: in even steps along the line
 
 
 def epipolar_model() -> Model:
-    """Make the model of the room by the two cameras of chapter 8."""
+    """Make the model of the room by the two cameras of chapter 10."""
     settings = (
         Setting("u", "u (px)", 120, 620, 1, 449, "a pixel of the first picture"),
         Setting("v", "v (px)", 40, 450, 1, 205, "and its row"),
@@ -86,7 +87,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left.mark(m, "ideal", 8)
     left.grip("pixel", "a pixel of the first picture", m, 4)
     endless = cameras()[1].project(1e9 * cameras()[0].ray(m))  # beyond it, points lie behind
-    right.line([endless, endless + 60 * (line[0] - line[-1])], LENS, 1, dash=6)
+    right.line([endless, endless + 60 * (line[0] - line[-1])], LENS, 1.5, dash=6)
     right.text(endless + [4, -14], "∞", LENS, size=14)
     begin = endless + (14 - endless[0]) / (line[0] - line[-1])[0] * (line[0] - line[-1])
     right.text(begin + [0, 10], "epipolar line", LENS, anchor="la", size=12, rim="white")
@@ -100,7 +101,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 def _patch(paper: Paper, photo: Image, at: Array, title: str) -> Panel:
     """Draw what one camera shows around a place, pixel by pixel."""
     panel = paper.panel(
-        (164, 164), (-_PATCH - 0.5, _PATCH + 0.5), (-_PATCH - 0.5, _PATCH + 0.5), title
+        (184, 184), (-_PATCH - 0.5, _PATCH + 0.5), (-_PATCH - 0.5, _PATCH + 0.5), title
     )
     panel.image(
         np.rint(interpolate(photo, at + _AROUND)).clip(0, 255).astype(np.uint8), smooth=False
@@ -111,9 +112,9 @@ def _patch(paper: Paper, photo: Image, at: Array, title: str) -> Panel:
 
 def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
     """Draw by how much both patches differ, for each depth; equal steps are equal disparities."""
-    top = max(20.0, 1.18 * float(cost.max()))
+    top = max(_LEAST, 1.18 * float(cost.max()))
     panel = paper.panel(
-        (346, 164), (1000 / _NEAREST + 0.02, 1000 / _FARTHEST - 0.03), (top, -0.2 * top),
+        (410, 184), (1000 / _NEAREST + 0.02, 1000 / _FARTHEST - 0.03), (top, -0.2 * top),
         "difference of both, by depth: pull the cross",
     )  # fmt: skip
     for metres in (2, 3, 4, 5, 7, 10, 20):

@@ -14,7 +14,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL
 from cvnotes.stereo import epipole
 from cvnotes.warping import backward_warp, homography_map
 
-_SHOWN = 328, 246  # px
+_SHOWN = 400, 300  # px
 _ROWS = range(30, 480, 60)  # of the first picture, at its middle: where lines are begun
 _APART = 200.0  # px between two points of a row that any turned camera sees
 _UNSEEN = 110
@@ -22,7 +22,7 @@ _INFINITE = 1e9  # px
 
 
 def rectification_model() -> Model:
-    """Make the model of the two cameras of chapter 8, which turn."""
+    """Make the model of the two cameras of chapter 10, which turn."""
     settings = (
         Setting("turned", "turned (%)", 0, 100, 1, 0, "how far to the attitude that both share"),
         Setting("u", "u (px)", 60, 620, 1, 451, "a pixel of the first picture as it was taken"),

@@ -71,7 +71,7 @@ _MISTAKES = mistakes_in(how_far,
 
 EXERCISE = Exercise(
     name="how_far",
-    chapter=8,
+    chapter=10,
     title="Read it off: how far away is the block?",
     task="Look at stereo_pictures(), a left and a right picture by two cameras side by side: both "
     "have α = 640 pixels and look the same way, and the right one stands 800 mm to the right. How "

@@ -56,7 +56,7 @@ _MISTAKES = mistakes_in(rectifying_rotation,
 
 EXERCISE = Exercise(
     name="rectifying_rotation",
-    chapter=8,
+    chapter=10,
     title="Two cameras side by side",
     task="To rectify a stereo pair both cameras are turned to one rotation, CRF ← WRF, whose x "
     "axis leads from the left camera's centre to the right one's; its z axis is as near as that "

@@ -49,7 +49,7 @@ _MISTAKES = mistakes_in(depth,
 
 EXERCISE = Exercise(
     name="depth",
-    chapter=8,
+    chapter=10,
     title="Depth from two pictures",
     task="Two rectified cameras with the focal length alpha, in pixels, stand b millimetres "
     "apart. Give the depth (n,) in millimetres of points seen in columns u_left and u_right, "
@@ -67,6 +67,6 @@ EXERCISE = Exercise(
     ),
     misconceptions=_MISTAKES,
     steps=depth,
-    concepts=("70",),
+    concepts=("70", "j"),
     sources=(disparity_to_depth,),
 )
