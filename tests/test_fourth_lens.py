@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from differences import numerical_jacobian
 
-from cvnotes.base import CvnotesError, FileError, InputTypeError, numerical_jacobian
+from cvnotes.base import CvnotesError, FileError, InputTypeError
 from cvnotes.calibration import LENSES, Calibration, calibrate
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.jacobian import jacobian

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
+from differences import numerical_jacobian
 
 from cvnotes.base import (
     ConvergenceError,
     DegenerateError,
     levenberg_marquardt,
-    numerical_jacobian,
     solve_dense,
 )
 

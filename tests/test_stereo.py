@@ -1,6 +1,7 @@
 import cv2
 import numpy as np
 import pytest
+from differences import numerical_jacobian
 from scipy.optimize import least_squares
 
 from cvnotes.base import (
@@ -9,7 +10,6 @@ from cvnotes.base import (
     DegenerateError,
     InputTypeError,
     ShapeError,
-    numerical_jacobian,
 )
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import Problem

@@ -1,6 +1,7 @@
 import cv2
 import numpy as np
 import pytest
+from differences import numerical_jacobian
 from scipy.special import erf
 from supersampled import eight_bits, picture
 
@@ -9,7 +10,6 @@ from cvnotes.base import (
     DegenerateError,
     InputTypeError,
     ShapeError,
-    numerical_jacobian,
 )
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.targets import Chessboard, harris, local_maxima, refine_edges, refine_subpixel

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from cvnotes.camera import Camera, Lens, chain, intrinsics, pose, rotation_from_vector
+from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.files import read_photo, write_camera, write_whole
 from cvnotes.learn import personal_camera
 from cvnotes.pictures import good_views, render, scenes
@@ -69,19 +69,6 @@ def views() -> dict[str, bytes]:
         }
     )
     return files
-
-
-def stereo() -> dict[str, Camera]:
-    """The course's camera, and a second one 100 mm to its right, turned a little inwards."""
-    right_from_left = pose(rotation_from_vector([0.01, 0.06, -0.015]), [0, 0, 0])
-    right_from_left[:3, 3] = -right_from_left[:3, :3] @ [99.5, 3.0, np.sqrt(100**2 - 99.5**2 - 9)]
-    second = Camera(
-        intrinsics(alpha_u=790, alpha_v=793, u0=315, v0=245),
-        chain(right_from_left).round(12),
-        Lens(k=(-0.22, 0.08)),
-        CAMERA.size,
-    )
-    return {"camera.json": CAMERA, "stereo_left.json": CAMERA, "stereo_right.json": second}
 
 
 def meshes() -> dict[str, bytes]:
@@ -144,8 +131,7 @@ def main() -> int:
     if not arguments.check:
         for folder in ("views", "meshes"):
             (ROOT / "data" / folder).mkdir(parents=True, exist_ok=True)
-        for name, camera in stereo().items():
-            write_camera(camera, ROOT / "data" / name)
+        write_camera(CAMERA, ROOT / "data" / "camera.json")
         write_whole({ROOT / "data" / name: data for name, data in files.items()})
     different = [name for name, data in files.items() if not same(ROOT / "data" / name, data)]
     print("\n".join([f"{name} differs" for name in different] or ["all as made"]))

@@ -40,7 +40,6 @@ from cvnotes.base.numerics import (
     chunks,
     clipped_segments,
     levenberg_marquardt,
-    numerical_jacobian,
     solve_dense,
     solved,
     student,
@@ -94,5 +93,4 @@ __all__ = [
     "solve_dense",
     "solved",
     "student",
-    "numerical_jacobian",
 ]

@@ -183,25 +183,6 @@ def solve_dense(system: Array, damping: float) -> tuple[Array, float]:
     return step, float(-gradient @ step)
 
 
-def numerical_jacobian(f: Callable[[Array], Array], x: Array, step: float = 1e-6) -> Array:
-    """Differentiate f at x by central differences, to check an analytic Jacobian.
-
-    Steps are relative to each parameter (absolute below 1), so expect about 1e-9 relative.
-
-    Examples
-    --------
-    >>> numerical_jacobian(lambda x: x**2, np.array([3.0])).round(6)
-    array([[6.]])
-    """
-    columns = []
-    for i in range(x.size):
-        h = step * max(1.0, abs(float(x[i])))
-        e = np.zeros_like(x)
-        e[i] = h
-        columns.append((f(x + e) - f(x - e)).ravel() / (2 * h))
-    return np.stack(columns, axis=-1)
-
-
 def clipped_segments(ends: Array, depth: Array) -> Array:
     """Cut segments to a convex region: (m, 2, d), without those that lie outside of it.
 

@@ -128,18 +128,6 @@ def real_corners() -> RealCorners:
     )
 
 
-def stereo_rig() -> tuple[Camera, Camera]:
-    """Return the course's stereo pair: the course's camera, and one beside it.
-
-    Examples
-    --------
-    >>> left, right = stereo_rig()
-    >>> float(np.linalg.norm(right.centre - left.centre).round(6))
-    100.0
-    """
-    return read_camera(_file("stereo_left.json")), read_camera(_file("stereo_right.json"))
-
-
 def _file(name: str) -> Path:
     path = DATA / name
     if not path.exists():
