@@ -42,7 +42,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     before, after = (
         paper.panel(_SIZE, (-reach * 20 / 17, reach * 20 / 17), (reach, -reach), title)
         for reach, title in ((_NEAR, "a circle; the green line goes to infinity"),
-                             (_FAR, "their picture; the black line is the horizon"))
+                             (_FAR, "their picture, drawn smaller; the black line is the horizon"))
     )  # fmt: skip
     s = float(n @ n)
     along = np.array([-n[1], n[0]]) / max(np.sqrt(s), 1e-12)
@@ -121,7 +121,7 @@ def _sentence(n: Array) -> str:
     s = float(n @ n)
     said = f"a² + b² = {s:.4f}"
     if s == 0:
-        return f"{said}: H is the identity, and a circle stays a circle."
+        return f"{said}: H is the identity."
     if np.isclose(s, 1, rtol=0, atol=1e-9):
         return f"{said}: the line touches the circle, whose picture is a parabola."
     if s < 1:

@@ -145,7 +145,7 @@ def _sentence(H: list[Array], eye: Array) -> str:
     first = angles(H[0], eye)
     said += f"right angles of the photograph: {first[0]:.2f}° and {first[1]:.2f}°."
     if len(H) == 1:
-        return f"{said} So does every other place on the half circle."
+        return said
     sides, diagonals = angles(H[1], eye)
     said += f" In the second one it sees {sides:.1f}° and {diagonals:.1f}°"
     near = max(abs(sides - 90), abs(diagonals - 90)) < 0.2
@@ -224,7 +224,7 @@ def _name(
 
 def _face_on(paper: Paper, H: Array, circle: Circle, place: Array) -> Panel:
     """Draw horizon and eye in their own plane: the eye is on two half circles, by Thales."""
-    panel = paper.panel(_FACE, (-580, 960), (590, -70), "the hinge, face on: nothing changes")
+    panel = paper.panel(_FACE, (-580, 960), (590, -70), "the hinge, face on")
     along = np.array([circle.up[1], -circle.up[0]])
     s = (vanishing_points(H) - circle.foot) @ along
     shift = np.array([190 - _SCALE * (s.min() + s.max()) / 2, 0])

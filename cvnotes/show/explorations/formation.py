@@ -45,7 +45,7 @@ def formation_model() -> Model:
         Setting("alpha", "α (px)", 600, 1200, 10, 800, "the focal length"),
         Setting("width", "the cross: X (mm)", 60, 400, 5, 200, "of the corner that is followed"),
         Setting(
-            "way", "upper right: from world to camera to plane", 0, 2, 0.05, 1,
+            "way", "upper right panel", 0, 2, 0.05, 1,
             "0: the world; 1: the camera's frame; 2: the box divided by z",
         ),
     )  # fmt: skip
@@ -182,11 +182,11 @@ def _sum_of_A(paper: Paper, camera: Camera, M: Array, m: Array) -> Panel:
         _column(panel, 62, [*m, 1], 1, ESTIMATED)
         for j, right in enumerate((126, 158, 190)):
             _column(panel, right, camera.A[:, j], 0, LENS, bracket="[ ]"[j])
-        _column(panel, 257, [*M[:2] / M[2], 1], 3, IDEAL)
-        _column(panel, 328, M, 0, CAMERA)
-        for at in (79, 273):
-            panel.text([at, 49], "=", anchor="mm", size=14)
-        panel.text([342, 49], f"÷ {M[2]:.0f}", anchor="lm", size=12)
+        _column(panel, 262, [*M[:2] / M[2], 1], 3, IDEAL)
+        _column(panel, 362, M, 0, CAMERA)
+        panel.text([79, 49], "=", anchor="mm", size=14)
+        panel.arrows([316, 49], [-38, 0], CAMERA, 1.5)
+        panel.text([298, 36], f"÷ {M[2]:.0f}", anchor="mm", size=12)
     return panel
 
 

@@ -223,5 +223,5 @@ def _sentence(values: Values, camera: Array, of_board: Array) -> str:
         said.append(f"the {name} has moved by {far:.0f} mm and turned by {turn:.0f}°")
     return (
         f"Photograph {values['photo']:g}: since photograph 0 {' and '.join(said)}. How one stands "
-        "before the other is the same, and so is the board in the photograph."
+        "before the other is the same."
     )

@@ -114,7 +114,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.text([u + 22, v + 36], f"{lean:.0f}°", IDEAL, size=14, rim=_GREY)
     std, rms = known(values)
     said = ", ".join(f"{name} {_number(one)}" for name, one in zip(_LABELS, std, strict=True))
-    sentence = f"Standard deviations: {said}. The RMS is {rms:.2f} px, as it is for all boards."
+    sentence = f"Standard deviations: {said}. The RMS is {rms:.2f} px."
     return Drawing(paper.join((panel, _bars(paper, std, rms))), sentence)
 
 

@@ -118,7 +118,7 @@ def _draw(study: _Study, paper: Paper, values: Values) -> Drawing:
     off = round(float(error[0]), 2) + 0.0  # no "−0.00"
     sentence = (
         f"σ = {sigma:.2f} px and {n} views: αᵤ cannot be known better than ±{bound[0]:.2f} px "
-        f"(one standard deviation); this try says {off:+.2f} ± {std[0]:.2f} px."
+        f"(one standard deviation); this try is off by {off:+.2f} px, and claims ± {std[0]:.2f} px."
     )
     if draw > 1 and sigma:
         sentence += f" Of {draw} tries {missed[0]} are off by more than their ±."

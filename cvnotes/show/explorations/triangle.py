@@ -195,26 +195,28 @@ def _draw_glass(panel: Panel, turn: float, v: Array, photo: Bitmap.Image, box: A
 def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, box: Array) -> None:
     """Draw the triangle on the glass, the eye before it, and the rods from there to its corners.
 
-    Faint is the half circle over the altitude from Y, on which the eye is. Letters stay away from
-    the box (3, 4, 2).
+    Faint is the half circle over the altitude from Y, on which the eye is, if there is one.
+    Letters stay away from the box (3, 4, 2).
     """
     m, c, top = (on_sheet(place, turn) for place in (in_space(v), eye * [1, 1, 0], eye))
     names = [(name, at, ESTIMATED) for name, at in zip("XYZ", m, strict=True)]
     sides, rods = np.stack([m, np.roll(m, 1, axis=0)], axis=1), np.stack([m, 0 * m + top], axis=1)
-    lines = [*sides, *rods] if np.isfinite(square) else [*sides]
+    lines = [*sides, *rods] if square > 0 else [*sides]
     lines += [
         face[[i, j]] for face in box for i, j in ((0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3))
     ]
     panel.segments(sides, ESTIMATED, 1.5)
-    if square > 0:
+    if np.isfinite(square):
         phi, foot = np.radians(np.arange(0, 181.0, 3)), _feet(v)[1]
         half = (v[1] - foot) / 2
         along = foot + half + np.cos(phi)[:, None] * half
         arc = on_sheet(in_space(along, np.linalg.norm(half) * np.sin(phi)), turn)
         panel.line(arc, MUTED, 0.9)
         panel.line(arc[[0, -1]], MUTED, 0.9, dash=4)
+        lines += [arc[[0, -1]], *np.stack([arc[:-1], arc[1:]], axis=1)]
+    if square > 0:
         panel.line([top, c], IDEAL, 1.6)
-        lines += [arc[[0, -1]], *np.stack([arc[:-1], arc[1:]], axis=1), np.array([top, c])]
+        lines += [np.array([top, c])]
         names += [("eye", top, CAMERA)]
         if np.linalg.norm(c - top) > 220:
             names += [("c", c, ESTIMATED), ("f", 0.6 * c + 0.4 * top, IDEAL)]
@@ -223,8 +225,10 @@ def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, b
         short = ways / long * min(150, 0.5 * long.min())
         for a, b in zip(short, np.roll(short, 1, axis=0), strict=True):
             panel.line(on_sheet(eye + np.array([a, a + b, b]), turn), IDEAL, 1.2)
-    panel.segments(rods, CAMERA if square > 0 else MUTED, 5)
-    panel.segments(rods, _CORE if square > 0 else FAINT, 1.3)
+        panel.segments(rods, CAMERA, 5)
+        panel.segments(rods, _CORE, 1.3)
+    elif np.isfinite(square):
+        names += [("c", c, ESTIMATED)]
     panel.mark([*m, c], "estimated", 6)
     if square > 0:
         panel.mark(top, "camera", 9, looks=tuple(c - top))
