@@ -337,11 +337,10 @@ def test_every_question_has_its_answer_folded_under_it(path):
 
 
 def _is_picture(cells, i):
-    """Tell whether there is a cell that shows a picture, and prose after it."""
+    """Tell whether there is such a cell, it shows a picture, and another follows."""
     shows = r"^(explore|show|pull_points)\("
-    if i + 1 >= len(cells) or cells[i].cell_type != "code":
-        return None
-    return re.search(shows, cells[i].source, re.M)
+    code = i + 1 < len(cells) and cells[i].cell_type == "code"
+    return code and re.search(shows, cells[i].source, re.M)
 
 
 @each_notebook

@@ -74,7 +74,7 @@ def one_corner(chapter: int) -> Picture:
     M = move(camera.G, W)
     xy = M[:, :2] / M[:, 2:]
     bare = chapter in _WITHOUT_LENS
-    seen = xy if bare else camera.lens.distort(xy)
+    behind, seen = ("no lens", xy) if bare else ("behind the lens", camera.lens.distort(xy))
     m = px_from_xy(camera.A, seen)
     frame = np.array([[0, 0], [640, 0], [640, 480], [0, 480], [0, 0]]) - 0.5
     border = xy_from_px(camera.A, frame)
@@ -86,14 +86,7 @@ def one_corner(chapter: int) -> Picture:
         ("world", W[:, :2], None, WORLD, "({:.0f}, {:.0f}, {:.0f}) mm", W[-1]),
         ("camera", beside.project(M), cone, WORLD, "({:.1f}, {:.1f}, {:.1f}) mm", M[-1]),
         ("z = 1", xy, border, IDEAL, "({:.4f}, {:.4f})", xy[-1]),
-        (
-            "no lens" if bare else "behind the lens",
-            seen,
-            border,
-            LENS,
-            "({:.4f}, {:.4f})",
-            seen[-1],
-        ),
+        (behind, seen, border, LENS, "({:.4f}, {:.4f})", seen[-1]),
         ("pixel", m, frame, LENS, "({:.1f}, {:.1f})", m[-1]),
     )
     lit = _LIT.get(chapter, STEPS)
@@ -128,7 +121,7 @@ def one_corner(chapter: int) -> Picture:
     said = [form.format(*numbers) for *_, form, numbers in states]
     alt = (
         f"One corner: world {said[0]}, camera {said[1]}, plane z = 1 {said[2]}, "
-        f"{states[3][0]} {said[3]}, pixel {said[4]}. Lit: {', '.join(lit) or 'the pixel'}"
+        f"{behind} {said[3]}, pixel {said[4]}. Lit: {', '.join(lit) or 'the pixel'}"
         + (", backwards" if chapter in _BACKWARDS else "")
     )
     width = _STRIP.size[0] + 8

@@ -56,8 +56,8 @@ def model(name: str, camera: Camera | None = None, board: Chessboard | None = No
 
     Examples
     --------
-    >>> model("lens").drawing(k1=-4 / 3, k2=0).sentence[:37]
-    'The model folds at max_radius = 0.500'
+    >>> model("lens").drawing(k1=-4 / 3, k2=0).sentence[:28]
+    'The model folds at r = 0.500'
     """
     if name not in NAMES:
         raise CvnotesError(f"name: expected one of {', '.join(NAMES)}, got {name!r}")

@@ -101,8 +101,6 @@ _HINGE = Setting(
     "fold", "hinge (°)", _LOWEST, _HIGHEST, 0.5, 50,
     "the angle of the eye over the photograph, about its horizon",
 )  # fmt: skip
-
-
 _SECOND = Setting("second", "second photograph", 0, 1, 1, 0, "of the same board, from elsewhere")
 
 
@@ -257,7 +255,7 @@ def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Pa
         panel.line(arc[:, 1:], _INKS[k], 2)
         _name(panel, arc[45, 1:] * [1, 0], (90 * k - 45, -8), f"photograph {k + 1}", _INKS[k], "ma")
         if len(circles) == 1:  # its angles stand above
-            break
+            continue
         row = 785 - 120 * k
         panel.text([-520, row], f"photograph {k + 1}:", _INKS[k], anchor="lm", size=14)
         for x, (_, _, colour), angle in zip((90, 480), PAIRS, angles(H[k], eye), strict=True):

@@ -19,7 +19,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, WORLD, hex
 Seen = Callable[[Array], Array]
 
 _SIZE = 400, 300  # px, of a panel
-_SUMS = 400, 98  # px, of a panel of numbers
+_PRODUCT = 400, 98  # px, of a panel of numbers
 _ABOVE = np.array([[-400.0, 816], [306, -606]])  # mm, X and Z of the panel of the world
 _FRAME = np.array([[-608.0, 608], [760, -152]])  # mm, x and z of that of the camera's frame
 _PLANE = 250.0  # mm: where z = 1 is drawn
@@ -118,7 +118,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _follow(picture, m, said[3], over=True)
     rows = [(world, frame), (plane, picture)]
     if "k1" not in values:  # with a lens between them they are no product
-        rows.append((_sum_of_G(paper, camera, W, M), _sum_of_A(paper, camera, M, m)))
+        rows.append((_product_of_G(paper, camera, W, M), _product_of_A(paper, camera, M, m)))
     return Drawing(paper.join(*rows), _sentence(said, M, xy, m, bent))
 
 
@@ -161,9 +161,11 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
     return frame, on_the_way(W)
 
 
-def _sum_of_G(paper: Paper, camera: Camera, W: Array, M: Array) -> Panel:
+def _product_of_G(paper: Paper, camera: Camera, W: Array, M: Array) -> Panel:
     """Write how G makes the corner in the camera's frame of that in the world."""
-    panel = paper.panel(_SUMS, (0, _SUMS[0]), (0, _SUMS[1]), "1. G: its last column is T (mm)")
+    panel = paper.panel(
+        _PRODUCT, (0, _PRODUCT[0]), (0, _PRODUCT[1]), "1. G: its last column is T (mm)"
+    )
     _column(panel, 54, [*M, 1], 0, CAMERA)
     panel.text([74, 49], "=", anchor="mm", size=14)
     for j, right in enumerate((146, 202, 258)):
@@ -173,11 +175,11 @@ def _sum_of_G(paper: Paper, camera: Camera, W: Array, M: Array) -> Panel:
     return panel
 
 
-def _sum_of_A(paper: Paper, camera: Camera, M: Array, m: Array) -> Panel:
+def _product_of_A(paper: Paper, camera: Camera, M: Array, m: Array) -> Panel:
     """Write how the division and A make the pixel of the corner in the camera's frame."""
     shown = not np.isnan(m).any()
     title = f"2. ÷ {M[2]:.0f}, 3. A" if shown else "behind the camera: no image"
-    panel = paper.panel(_SUMS, (0, _SUMS[0]), (0, _SUMS[1]), title)
+    panel = paper.panel(_PRODUCT, (0, _PRODUCT[0]), (0, _PRODUCT[1]), title)
     if shown:
         _column(panel, 62, [*m, 1], 1, ESTIMATED)
         for j, right in enumerate((126, 158, 190)):
@@ -195,7 +197,7 @@ def _column(
 ) -> None:
     """Write numbers below each other, with brackets on both sides or on one."""
     words = [f"{x:.{0 if x in (0, 1) else digits}f}".replace("-", "−") for x in numbers]
-    top = _SUMS[1] / 2 - 11 * len(words)
+    top = _PRODUCT[1] / 2 - 11 * len(words)
     for i, word in enumerate(words):
         panel.text([right, top + 22 * i + 11], word, ink, anchor="rm", size=12)
     for side, at, turn in (("[", right - 10 - 8 * max(map(len, words)), 5), ("]", right + 7, -5)):

@@ -48,7 +48,7 @@ def protractor_model() -> Model:
         said = f"The left wall runs along [{a:.2f} 0 1], the right one along [{b:.2f} 0 1]"
         return Drawing(
             paper.join((picture,), (above,)),
-            f"{said}: the angle between them is {angle:.1f}°.".replace("-", "−"),
+            f"{said}: the angle between them is {angle:.1f}°.",
         )
 
     drags = {name: lambda _, at, name=name: {name: float(at[0])} for name in ("left", "right")}

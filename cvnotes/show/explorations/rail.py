@@ -5,8 +5,10 @@ from functools import lru_cache
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, look_at
+from cvnotes.camera import Camera, look_at, pose
 from cvnotes.pictures import course, rails, render_scene
+from cvnotes.projective import from_homogeneous, to_homogeneous
+from cvnotes.show.explorations.lens import camera_corners
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD
@@ -17,8 +19,6 @@ _GAUGE, _DOWN, _HALFWAY, _GLASS = 1.5, 1.6, 20.0, 3.0  # m; the last is where th
 _SPACE, _BESIDE, _FINER = (590, 400), (270, 400), 2
 _SHOWN = (190, 460), (80, 480)  # px of the picture that are shown beside
 _SHEET = "#8CEBCB"
-# From pixels to finer ones; the middle of the first is no longer that of a fine one.
-_FINE = np.array([[_FINER, 0, (_FINER - 1) / 2], [0, _FINER, (_FINER - 1) / 2], [0, 0, 1]])
 
 
 def _aside() -> Camera:
@@ -51,8 +51,7 @@ def on_rail(part: float, side: float = 1) -> Array:
 
 def _seen(camera: Camera, place: Array) -> Array:
     """Return the pixel of a place [x y z w], also where w is 0."""
-    u, v, w = camera.P @ place
-    return np.array([u / w, v / w])
+    return from_homogeneous(camera.P @ place)
 
 
 def _pulled(_: Values, at: Array) -> Values:
@@ -95,33 +94,31 @@ def _edge(start: Array, end: Array) -> Array | None:
 
 def _corners() -> Array:
     """Return the corners of the picture on its glass, in m."""
-    (w, h), inverse = _CAMERA.size, np.linalg.inv(_CAMERA.A)
-    u, v = np.array([[0, 0], [w, 0], [w, h], [0, h]]).T - 0.5
-    return np.asarray(_GLASS * np.column_stack([u, v, np.ones(4)]) @ inverse.T)
+    return _GLASS * to_homogeneous(camera_corners(_CAMERA))
+
+
+def _finer(camera: Camera) -> Camera:
+    return camera.resized((_FINER * camera.size[0], _FINER * camera.size[1]))
 
 
 @lru_cache(maxsize=1)
 def _photograph() -> Drawn:
     """Photograph the railway as the camera sees it, in finer pixels."""
-    w, h = _CAMERA.size
-    eye = Camera(_FINE @ _CAMERA.A, size=(_FINER * w, _FINER * h))
-    return render_scene(rails(), eye, samples=4)
+    return render_scene(rails(), _finer(_CAMERA), samples=4)
 
 
 @lru_cache(maxsize=1)
 def _scene() -> Drawn:
     """Photograph the railway from the side, and lay the sheets and the picture into it."""
-    size = (_FINER * _SPACE[0], _FINER * _SPACE[1])
-    mm = _ASIDE.G @ np.diag([1e-3, 1e-3, 1e-3, 1])  # the railway is in mm
-    mm[:3] *= 1e3
-    eye = Camera(_FINE @ _ASIDE.A, mm, size=size)
+    aside = _finer(_ASIDE)
+    eye = Camera(aside.A, pose(aside.R, 1e3 * aside.T), size=aside.size)  # the railway is in mm
     panel = Paper(_FINER).panel(_SPACE, (-0.5, 589.5), (-0.5, 399.5))
     panel.image(render_scene(rails(), eye, samples=4))
     _lay_sheets(panel, [_GLASS, 1e5])
-    H = _FINE @ _ASIDE.P @ np.vstack([_GLASS * np.linalg.inv(_FINE @ _CAMERA.A), [0, 0, 1]])
+    H = aside.P @ np.vstack([_GLASS * np.linalg.inv(_finer(_CAMERA).A), [0, 0, 1]])
     photo = _photograph()
     glass = np.dstack([photo, np.full_like(photo[..., :1], 255)])
-    laid = backward_warp(glass, homography_map(np.linalg.inv(H)), size=size).astype(float)
+    laid = backward_warp(glass, homography_map(np.linalg.inv(H)), size=aside.size).astype(float)
     clear = laid[..., 3:] / 255
     page = (1 - clear) * panel.drawn() + laid[..., :3]
     panel.image(page.round().clip(0, 255).astype(np.uint8))
