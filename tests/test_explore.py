@@ -75,6 +75,7 @@ from cvnotes.show.explorations import (
     meet,
     moved,
     nails,
+    protractor,
     triangle,
     twins,
     ways,
@@ -2825,7 +2826,15 @@ def test_walls_that_are_photographed_vanish_where_the_protractor_says(left, righ
         drawn.append(np.array(xy))
         line(panel, xy, *rest, **how)
 
+    painted, polygons = [], Panel.polygons
+
+    def paint(panel, corners, ink):
+        if ink in protractor._WALLS:
+            painted.extend(np.array(corners, dtype=float))
+        polygons(panel, corners, ink)
+
     monkeypatch.setattr(Panel, "line", kept)
+    monkeypatch.setattr(Panel, "polygons", paint)
     sentence = MODELS["protractor"].drawing(left=left, right=right).sentence
     turned = Camera(
         intrinsics(800, 800, 325, 238), pose(rotation_from_vector([0, 0.3, 0]), [0, 0, 0])
@@ -2845,6 +2854,9 @@ def test_walls_that_are_photographed_vanish_where_the_protractor_says(left, righ
     # In the picture, the edges of the walls lead to the points that are pulled.
     edges = [xy for xy in drawn if len(xy) == 2 and (xy[1] == [left, 238]).all()]
     assert len(edges) == 2
+    for wall, u in zip(painted, (left, right), strict=True):
+        near, far = wall[0, 0], wall[1, 0]
+        assert min(near, u) < far < max(near, u)  # a wall runs towards its vanishing point
 
 
 @pytest.mark.parametrize(("z", "f"), [(5, 8), (4, 9), (9.7, 4.1)])
