@@ -2738,7 +2738,7 @@ def test_the_bar_under_the_residuals_is_as_long_as_it_says(k1, monkeypatch):
 
     monkeypatch.setattr(Panel, "text", text)
     monkeypatch.setattr(Panel, "line", line)
-    monkeypatch.setattr(Panel, "arrows", lambda panel, m, by, *_: arrows.append(by / panel.pixel))
+    monkeypatch.setattr(Panel, "arrows", lambda panel, _, by, *__: arrows.append(by / panel.pixel))
     arrows = []
     drawing = MODELS["residuals"].drawing(k1=k1)
     (length,) = [float(words[:-3]) for words in said if words.endswith(" px")]

@@ -40,8 +40,8 @@ from cvnotes.homography import (
 )
 from cvnotes.projective import (
     PLANE_AT_INFINITY,
-    direction_to_homogeneous,
     apply,
+    direction_to_homogeneous,
     from_homogeneous,
     lies_on,
     line_through,

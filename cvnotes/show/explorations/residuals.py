@@ -62,9 +62,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     sensor.polygons([frame], "#F4F4F2")
     _scale(sensor, times)
     sensor.arrows(m, times * sensor.pixel * misses.reshape(-1, 2), ESTIMATED, 1.2)
-    said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows agree by {agree:.2f}"
-    what = "of 1: the lens is wrong." if agree > 0.2 else "of 1: what is left is noise."
-    sentence = f"{said} {what}".replace("-", "−")
+    said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows are"
+    what = ("", "the lens is wrong") if agree > 0.2 else (" not", "what is left is noise")
+    sentence = f"{said}{what[0]} alike ({agree:.2f} of 1): {what[1]}.".replace("-", "−")
     return Drawing(paper.join((sensor, _curve(paper, k1, missed))), sentence)
 
 
