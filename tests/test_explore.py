@@ -942,7 +942,7 @@ def test_two_lines_meet_where_their_equations_say_and_parallels_at_infinity():
 
 def test_the_ray_of_two_parallels_is_level_and_both_arrows_are_perpendicular_to_every_ray():
     model = MODELS["meet"]
-    level = model.drawing(b2=-0.5).picture
+    level = model.drawing(a2=-0.5, b2=-0.5).picture
     for x in (-1.2, -0.5, 0.5, 1.2):  # along the ray [1 0 0], on both sides of the origin
         place = meet.on_sheet(np.array([x, 0, 0])) - [meet._SHOWN[0][0], meet._SHOWN[1][0]]
         u, v = np.rint(place / [0.0065385, -0.0065385] + [MARGIN, TITLE]).astype(int)
@@ -2715,13 +2715,38 @@ def test_letters_of_the_triangle_give_way_to_each_other(monkeypatch):
 
 def test_a_bent_row_is_straight_with_the_k1_that_bent_it_and_with_no_other():
     model = MODELS["straighten"]
-    titles = [model.picture(k1=k1)[:TITLE].tobytes() for k1 in (0, -0.25)]
+    titles = [model.picture(k1=k1)[:TITLE].tobytes() for k1 in (0, -0.2)]
     assert titles[0] != titles[1]  # they tell the number
-    assert "straight, and so are" in model.drawing(k1=-0.25).sentence
-    assert "bends up" in model.drawing(k1=-0.24).sentence
-    assert "bends down" in model.drawing(k1=-0.26).sentence
+    assert "straight, and so are" in model.drawing(k1=-0.2).sentence
+    assert "bends up" in model.drawing(k1=-0.19).sentence
+    assert "bends down" in model.drawing(k1=-0.21).sentence
     middle = grip_of(model.drawing(), "row")
-    assert model.dragged("row", (middle.at[0], 0))["k1"] == -0.25
+    assert model.dragged("row", (middle.at[0], 0))["k1"] == -0.2
+
+
+@pytest.mark.parametrize("k1", [0, -0.25, -0.4])
+def test_the_bar_under_the_residuals_is_as_long_as_it_says(k1, monkeypatch):
+    said, bars, write, rule = [], [], Panel.text, Panel.line
+
+    def text(panel, at, words, *args, **kwargs):
+        said.append(words)
+        return write(panel, at, words, *args, **kwargs)
+
+    def line(panel, points, ink, *args, **kwargs):
+        bars.append((panel, np.ptp(np.array(points)[:, 0]) / panel.pixel, ink))
+        return rule(panel, points, ink, *args, **kwargs)
+
+    monkeypatch.setattr(Panel, "text", text)
+    monkeypatch.setattr(Panel, "line", line)
+    monkeypatch.setattr(Panel, "arrows", lambda panel, _, by, *__: arrows.append(by / panel.pixel))
+    arrows = []
+    drawing = MODELS["residuals"].drawing(k1=k1)
+    (length,) = [float(words[:-3]) for words in said if words.endswith(" px")]
+    (long,) = [long for _, long, ink in bars if ink == IDEAL]
+    shown = np.sqrt(np.mean(np.sum(arrows[0] ** 2, axis=-1)))  # px of the panel
+    missed = numbers(drawing.sentence)[1]
+    assert long / length == pytest.approx(shown / missed, rel=5e-3)
+    assert 20 < long < 61
 
 
 def test_the_sun_is_seen_where_trigonometry_puts_it_and_its_rays_end_opposite_if_it_is_behind():
@@ -3021,7 +3046,7 @@ def test_behind_a_hole_a_point_is_its_patch_spread_by_airys_disc(d):
 
 def test_what_is_taken_off_a_photograph_puts_its_squares_under_the_row_of_corners():
     model = MODELS["straighten"]
-    for k1 in (-0.25, 0):
+    for k1 in (-0.2, 0):
         left = model.picture(k1=k1)[TITLE:, MARGIN : MARGIN + WIDTH].astype(int)
         blue = np.abs(left - colour(LENS)).max(-1) < 40
         across = np.flatnonzero(blue.any(axis=0))

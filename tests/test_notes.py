@@ -41,6 +41,7 @@ from cvnotes.homography import (
 from cvnotes.projective import (
     PLANE_AT_INFINITY,
     apply,
+    direction_to_homogeneous,
     from_homogeneous,
     lies_on,
     line_through,
@@ -89,6 +90,7 @@ def test_parallel_lines_share_a_point_of_the_plane_at_infinity():
     lines = [line_through([x, 0, 0, 1], [x + 1, 2, 3, 1]) for x in (0, 5)]  # both along (1, 2, 3)
     ends = np.array([meet_plane(line, PLANE_AT_INFINITY) for line in lines])
     assert all(same_up_to_scale(end, [1, 2, 3, 0]) for end in ends)
+    assert direction_to_homogeneous([1.0, 2, 3]).tolist() == [1, 2, 3, 0]
     assert lies_on(ends, PLANE_AT_INFINITY).all()
 
 

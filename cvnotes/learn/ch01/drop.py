@@ -20,7 +20,7 @@ def _homogeneous_points(rng: np.random.Generator) -> list[Case]:
 
 
 def _steps(x_h: Array) -> Array:
-    """Return points (n, d) from homogeneous coordinates x_h (n, d + 1); NaN at infinity."""
+    """Return points (n, d) of homogeneous x_h (n, d + 1), or NaN."""
     w = x_h[:, -1:]  # the last coordinate of each point
     x = x_h[:, :-1] / w  # the others, divided by it
     return np.where(w == 0, np.nan, x)

@@ -8,7 +8,7 @@ from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
 
 def measure_along(t: Array, m: Array, q: Array) -> Array:
-    """Return (n,): how many metres along the line the points are that are seen at q (n, 2)."""
+    """Return (n,): metres along the line of what is seen at q (n, 2)."""
     d = m[2] - m[0]  # the direction of the line in the picture
     s = (m - m[0]) @ d  # where the known points are along it
     x = (q - m[0]) @ d  # where the others are along it

@@ -29,9 +29,7 @@ _EDGE = np.stack([np.interp(np.linspace(0, 4, 65), range(5), at) for at in (
 def horizon_model() -> Model:
     """Make the model of a cell of the ground, pulled up to the line at infinity."""
     settings = (
-        Setting(
-            "part", "d / (d + 20 m)", 0.3, 1, 0.005, 0.375, "how far the cell is; 1 is infinity"
-        ),
+        Setting("part", "how far", 0.3, 1, 0.005, 0.375, "of the cell: 1 is infinity, 0.5 is 20 m"),
         Setting("turn", "direction (°)", -_SIDE, _SIDE, 1, 0, "to the right of the rails"),
     )
     about = (

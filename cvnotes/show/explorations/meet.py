@@ -15,7 +15,7 @@ _SPACE, _BESIDE = (520, 400), (330, 400)
 _SHOWN = ((-1.76, 1.64), (1.755, -0.86))
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
 _ORIGIN, _UP = np.zeros(3), np.array([0, 0, 1.0])
-_AXES = np.array([[-0.9, -1.12, 1], [-1.14, -0.32, 1]])  # where arrows of x and y begin
+_AXES = np.array([[-0.9, -1.12, 1], [-1.34, -0.3, 1]])  # where arrows of x and y begin
 _LINES = (
     ("1", "l₁", "orange", ESTIMATED, ("#FDF0E7", "#FBE0CE"), "#EBA67A"),
     ("2", "l₂", "blue", LENS, ("#E8F2F8", "#CFE2F0"), "#7FB4D8"),
@@ -25,7 +25,7 @@ _ENDS = (("a", -1.0, "left"), ("b", 1.0, "right"))
 
 def meet_model() -> Model:
     """Make the model of two lines of the plane w = 1, each from (−1, a) to (1, b) and beyond."""
-    starts = {"a1": 0.5, "b1": 0.5, "a2": -0.5, "b2": 1}
+    starts = {"a1": 0.5, "b1": 0.5, "a2": 0.0, "b2": 1}
     names = [
         (end + n, f"{colour}, {side}", x) for n, _, colour, *_ in _LINES for end, x, side in _ENDS
     ]
@@ -80,7 +80,7 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
         panel.veil(
             [on_sheet(np.array([*two, *end])) for end in ([level, -level], [_ORIGIN])], tints
         )
-        for place in np.linspace(two[0], two[1], 13):
+        for place in np.linspace(two[0], two[1], 7):
             panel.line(on_sheet(np.array([_ORIGIN, place])), thread, 0.6)
     panel.veil([on_sheet(_SQUARE + _UP)], ["#E3F3EE"])
     panel.line(on_sheet(_SQUARE + _UP), "#9ECFBF", 1)

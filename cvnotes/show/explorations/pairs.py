@@ -51,7 +51,7 @@ def _draw_class(panel: Panel, x: float, w: float) -> None:
     panel.line(np.outer([-9, 9], [x, 1]), MUTED, 1.5)
     side = 1 if x >= 0 else -1  # the line leads up to this side: words to the others
     other = "lm" if x >= 0 else "rm"
-    aside = 22 * panel.pixel * np.array([-side, abs(x)]) / np.hypot(x, 1)
+    aside = 19 * panel.pixel * np.array([-side, abs(x)]) / np.hypot(x, 1)
     for factor in _MEMBERS:
         at = factor * np.array([x, 1])
         panel.polygons([at + 3.5 * panel.pixel * circle(17)], MUTED)

@@ -32,11 +32,9 @@ _ASIDE = _aside()
 
 def rail_model() -> Model:
     """Make the model of a point of a rail, and of its line of sight through the picture."""
-    settings = (
-        Setting("part", "d / (d + 20 m)", 0.25, 1, 0.005, 0.4, "how far away; 1 is infinity"),
-    )
+    settings = (Setting("part", "how far", 0.25, 1, 0.005, 0.4, "1 is infinity, 0.5 is 20 m"),)
     about = (
-        "A railway from the side, with the camera that sees it and its picture on a glass. Through "
+        "A railway from outside, with the camera that sees it and its picture on a glass. Through "
         "each rail and the camera goes a green sheet; in it an orange line of sight leads to a "
         "point of the rail. Beside it the picture, with both pixels and the gap between them."
     )
@@ -65,7 +63,7 @@ def _pulled(_: Values, at: Array) -> Values:
 def _draw(paper: Paper, values: Values) -> Drawing:
     part = values["part"]
     space = paper.panel(
-        _SPACE, (-0.5, 589.5), (-0.5, 399.5), "from the side: pull the point along its rail"
+        _SPACE, (-0.5, 589.5), (-0.5, 399.5), "from outside: pull the point along its rail"
     )
     space.image(_scene())
     for side, width in ((-1, 1.2), (1, 2.4)):
@@ -109,7 +107,7 @@ def _photograph() -> Drawn:
 
 @lru_cache(maxsize=1)
 def _scene() -> Drawn:
-    """Photograph the railway from the side, and lay the sheets and the picture into it."""
+    """Photograph the railway from outside, and lay the sheets and the picture into it."""
     aside = _finer(_ASIDE)
     eye = Camera(aside.A, pose(aside.R, 1e3 * aside.T), size=aside.size)  # the railway is in mm
     panel = Paper(_FINER).panel(_SPACE, (-0.5, 589.5), (-0.5, 399.5))

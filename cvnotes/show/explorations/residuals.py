@@ -9,9 +9,10 @@ from cvnotes.calibration.refinement import solve_by_schur, take_step
 from cvnotes.show.explorations.finding import Finding, alike, rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import GRID, Panel, Paper
-from cvnotes.show.style import ESTIMATED, LENS
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
 _SENSOR, _BESIDE, _LONG = (500, 375), (270, 375), 16  # px; of an arrow as long as the RMS
+_BAR = 60  # px: the bar that shows the scale is as long as this at most
 _SURE = 1e12  # how much more one wish about k1 weighs than all pictures
 
 
@@ -59,11 +60,23 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     sensor = paper.picture_panel(_SENSOR, _finding().size, f"all residuals, × {times:,.0f}")
     frame = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * _finding().size - 0.5
     sensor.polygons([frame], "#F4F4F2")
+    _scale(sensor, times)
     sensor.arrows(m, times * sensor.pixel * misses.reshape(-1, 2), ESTIMATED, 1.2)
-    said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows agree by {agree:.2f}"
-    what = "of 1: the lens is wrong." if agree > 0.2 else "of 1: what is left is noise."
-    sentence = f"{said} {what}".replace("-", "−")
+    said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows are"
+    what = ("", "the lens is wrong") if agree > 0.2 else (" not", "what is left is noise")
+    sentence = f"{said}{what[0]} alike ({agree:.2f} of 1): {what[1]}.".replace("-", "−")
     return Drawing(paper.join((sensor, _curve(paper, k1, missed))), sentence)
+
+
+def _scale(sensor: Panel, times: float) -> None:
+    """Draw a bar of a round length as long as such an arrow, below the corners."""
+    power = 10.0 ** np.floor(np.log10(_BAR / times))
+    length = max(n * power for n in (1, 2, 5) if n * power * times <= _BAR)
+    long = length * times * sensor.pixel
+    end = np.array([_finding().size[0] - 20.0, _finding().size[1] - 22.0])
+    sensor.line([end - [long, 0], end], IDEAL, 2)
+    sensor.segments([[at - [0, 6], at + [0, 6]] for at in (end - [long, 0], end)], IDEAL, 2)
+    sensor.text(end - [long + 12, 0], f"{length:g} px", IDEAL, anchor="rm", size=14)
 
 
 def _curve(paper: Paper, k1: float, missed: float) -> Panel:

@@ -110,6 +110,7 @@ def _draw_plan(panel: Panel, t: float, near: float, far: float) -> None:
 def _sentence(foot: Array, t: float, width: float, ratio: float) -> str:
     off = f"{width / 2:.1f}" if width > 0.1 else f"{width / 2:.2f}"
     where = f"The foot in row {foot[1]:.1f} stands {t:.1f} ± {off} m behind a"
+    where += ", beyond the plan" if t > _FARTHEST else ""
     if not np.isfinite(ratio) or abs(ratio) > 999:
         return f"{where}, at b itself: there the ratio (a, b; c, ∞) is infinite."
     return (

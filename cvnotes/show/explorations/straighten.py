@@ -15,7 +15,7 @@ from cvnotes.show.style import ESTIMATED, LENS, MUTED
 _PICTURE, _ROW = (440, 330), (410, 330)
 _ALPHA, _SIZE, _MIDDLE = 540, (640, 480), np.array([319.5, 239.5])
 _FINE = 4  # so many times the photograph is enlarged, smoothly, before pixels are looked up
-_K1 = -0.25  # of the lens that took the photograph
+_K1 = -0.2  # of the lens that took the photograph: not the lens of the course
 _LOWEST, _HIGHEST, _STEP = -0.4, 0.1, 0.005
 _BOW = (-9.5, 9.5)  # px below and above the straight line that are shown
 
@@ -29,9 +29,9 @@ def straighten_model() -> Model:
     corners = (camera.moved(G).project(board.points) - _MIDDLE) / _ALPHA
     rows = corners.reshape(*board.corners[::-1], 2)
     row = rows[0]
-    settings = (Setting("k1", "k1", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is taken off"),)
+    settings = (Setting("k1", "k₁", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is taken off"),)
     about = (
-        "The photograph of a chessboard in a room, with as much bending taken off as k1 says; "
+        "The photograph of a chessboard in a room, with as much bending taken off as k₁ says; "
         "beside it the uppermost row of corners, and how far it is from a straight line."
     )
 
@@ -43,8 +43,8 @@ def straighten_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         lens = Lens(k=(values["k1"],))
-        bow, taken = _bow(lens, row), f"k1 = {lens.k[0]:.3f}".replace("-", "−")
-        panel = paper.picture_panel(_PICTURE, _SIZE, f"the photograph, {taken} taken off")
+        bow = _bow(lens, row)
+        panel = paper.picture_panel(_PICTURE, _SIZE, f"the photograph, {_taken(lens)} taken off")
         panel.image(_without(lens, photograph(), paper.sharpness))
         net = _ALPHA * lens.undistort(rows) + _MIDDLE
         m = net[0]
@@ -93,9 +93,13 @@ def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
     return panel
 
 
+def _taken(lens: Lens) -> str:
+    return f"k₁ = {lens.k[0]:.3f}".replace("-", "−") if lens.k[0] else "nothing"
+
+
 def _sentence(lens: Lens, bow: Array) -> str:
     most = float(bow[np.abs(bow).argmax()])
-    said = f"With k1 = {lens.k[0]:.3f} taken off, the uppermost row of corners "
+    said = f"With {_taken(lens)} taken off, the uppermost row of corners "
     if abs(most) < 0.05:
         return f"{said}is straight, and so are the sides of the paper."
     return f"{said}bends {'up' if most > 0 else 'down'} by {abs(most):.1f} px."
