@@ -19,6 +19,7 @@ import contextlib
 import io
 import json
 import os
+import signal
 import sys
 import tomllib
 from pathlib import Path
@@ -105,7 +106,8 @@ def in_a_copy(function, *given):
         with os.fdopen(reading) as answer:
             said = answer.read()
         os.waitpid(child, 0)
-        return said
+        return said or "it died, or did not come to an end"
+    signal.alarm(300)
     try:
         said = function(*given)
     except BaseException as error:
