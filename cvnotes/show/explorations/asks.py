@@ -11,7 +11,7 @@ from cvnotes.pictures import render_scene
 from cvnotes.pictures.posters import poster_room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, hexed
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, hexed
 from cvnotes.warping import (
     PixelMap,
     backward_warp,
@@ -106,6 +106,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     right.image(photo, smooth=False)
     every = 1 if warp == 2 else _EVERY
     dots = asked[every // 2 :: every, every // 2 :: every].reshape(-1, 2)
+    if warp == 4:  # from where they would ask without it
+        own = map_array(lambda m: m, SIZE)[every // 2 :: every, every // 2 :: every]
+        right.segments(np.stack([own.reshape(-1, 2), dots], axis=1), LENS, 1.2)
     right.mark(dots, "lens", 3)
     # One line over both panels: the second begins a gap further on.
     beside, low = np.array([right.sheet[0] / (right.width / 2) * SIZE[0], 0]), np.floor(at)
@@ -113,13 +116,16 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for panel, ends in ((left, (begin, end + beside)), (right, (begin - beside, end))):
         _framed(panel, ends, 1.6)
     _framed(left, _square(here - wide / 2, wide), 2)
+    if warp == 4:
+        _framed(right, np.array([here, at]), 1.6)
     _framed(right, _square(low - 0.5, 2), 2)
     left.grip("pixel", "a pixel of the new picture", here, wide)
     near, mix = _near(paper, photo, at), _mix(paper, photo, at)
-    seen = ((at > -1) & (at < SIZE)).all()
+    where = "" if ((at > -1) & (at < SIZE)).all() else ", beside the photograph"
+    if warp == 4:
+        where = f", {np.hypot(*(at - here)):.2f} px nearer to the middle"
     sentence = (
-        f"New pixel ({u}, {v}) asks at ({at[0]:.2f}, {at[1]:.2f})"
-        f"{'' if seen else ', beside the photograph'}. All {new[..., 0].size} "
+        f"New pixel ({u}, {v}) asks at ({at[0]:.2f}, {at[1]:.2f}){where}. All {new[..., 0].size} "
         f"new pixels together read {read} of the photograph's {photo[..., 0].size}."
     )
     return Drawing(paper.join((left, right, [near, mix])), sentence)
@@ -153,7 +159,9 @@ def _near(paper: Paper, photo: Drawn, at: Array) -> Panel:
     low = np.floor(at).astype(int)
     begin = low + 1 - _NEAR // 2
     panel = paper.panel(
-        (180, 180), *((b - 0.5, b + _NEAR - 0.5) for b in begin.tolist()), "its four pixels, weighted"
+        (180, 180),
+        *((b - 0.5, b + _NEAR - 0.5) for b in begin.tolist()),
+        "its four pixels, weighted",
     )
     u, v = begin
     padded = np.pad(photo, ((_NEAR, _NEAR), (_NEAR, _NEAR), (0, 0)), constant_values=255)
@@ -179,4 +187,3 @@ def _mix(paper: Paper, photo: Drawn, at: Array) -> Panel:
         panel.polygons([[[end - w, 0], [end, 0], [end, 1], [end - w, 1]]], hexed(colour))
     panel.polygons([[[0, 1], [1, 1], [1, 2], [0, 2]]], hexed(np.rint(weight @ colours)))
     return panel
-
