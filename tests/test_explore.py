@@ -3999,10 +3999,8 @@ def test_a_new_pixel_asks_where_the_formula_says_and_takes_the_mix_of_four(warp)
         assert said[:2] == [u // left, v // left]
         assert said[2:4] == pytest.approx(at, abs=0.0051)
         assert ("beside" in drawing.sentence) == (not ((at > -1) & (at < [60, 45])).all())
-        taken = [
-            ndimage.map_coordinates(photo[..., k], at[::-1, None], order=1, mode="grid-constant", cval=255)[0]
-            for k in range(3)
-        ]  # fmt: skip
+        how = {"order": 1, "mode": "grid-constant", "cval": 255}
+        taken = [ndimage.map_coordinates(photo[..., k], at[::-1, None], **how)[0] for k in range(3)]
         # Its colour where another is framed, whose line is short; and the lower half of the mix.
         model = MODELS["asks"].drawing(warp=warp, u=59, v=(v + 22) % 45).picture
         corner = np.array([TITLE + wide * (v // left), MARGIN + wide * (u // left)]) + wide // 2
