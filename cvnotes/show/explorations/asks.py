@@ -158,12 +158,9 @@ def _near(paper: Paper, photo: Drawn, at: Array) -> Panel:
     """Draw the place enlarged: the four pixels around it as they are, the others pale."""
     low = np.floor(at).astype(int)
     begin = low + 1 - _NEAR // 2
-    panel = paper.panel(
-        (180, 180),
-        *((b - 0.5, b + _NEAR - 0.5) for b in begin.tolist()),
-        "its four pixels, weighted",
-    )
-    u, v = begin
+    u, v = begin.tolist()
+    x, y = (u - 0.5, u + _NEAR - 0.5), (v - 0.5, v + _NEAR - 0.5)
+    panel = paper.panel((180, 180), x, y, "its four pixels, weighted")
     padded = np.pad(photo, ((_NEAR, _NEAR), (_NEAR, _NEAR), (0, 0)), constant_values=255)
     u, v = np.clip([u, v], -_NEAR, SIZE) + _NEAR
     piece = padded[v : v + _NEAR, u : u + _NEAR].astype(float)
