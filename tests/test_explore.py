@@ -61,6 +61,7 @@ from cvnotes.pictures.meshes import box, join
 from cvnotes.projective import apply, from_homogeneous, to_homogeneous
 from cvnotes.show import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, explorations
 from cvnotes.show.explorations import (
+    asks,
     clicks,
     clouds,
     cube,
@@ -3994,3 +3995,92 @@ def test_an_enlargement_is_as_wide_as_its_blur_and_the_long_lens_as_narrow_as_it
     shown = MODELS["enlarged"].drawing(bar=240).picture[TITLE : TITLE + SIZE[1], MARGIN:]
     assert np.abs(shown[5:250, 5:230, 0] - piece("bilinear")[5:250, 5:230]).max() <= 1
     assert np.abs(shown[5:250, 250:450, 0] - sharp()[5:250, 250:450]).max() <= 1
+
+
+def asked_by_hand(warp, u, v):
+    """Where pixel (u, v) of a new picture has to ask, by the formulas of the chapter."""
+    middle = np.array([29.5, 22])
+    if warp == 1:  # turned back, anticlockwise on the screen
+        c, s = np.cos(np.radians(20)), np.sin(np.radians(20))
+        x, y = np.array([u, v]) - middle
+        return middle + [c * x + s * y, c * y - s * x]
+    if warp == 2:  # the middle of nine
+        return np.array([3.0 * u + 1, 3.0 * v + 1])
+    if warp == 3:  # its place on the wall is photographed
+        Z, Y = 7600 + (u - 29.5) * 2840 / 60, -300 + (v - 22) * 2840 / 60
+        return asks.camera().project([-2979.0, Y, Z])
+    x, y = (np.array([u, v]) - middle) / 58
+    return middle + 58 * (1 - 0.3 * (x**2 + y**2)) * np.array([x, y])
+
+
+@pytest.mark.parametrize("warp", [1, 2, 3, 4])
+def test_a_new_pixel_asks_where_the_formula_says_and_takes_the_mix_of_four(warp):
+    wide, left = (18, 3) if warp == 2 else (6, 1)  # px of the page; of the photograph
+    photo = asks.photograph(warp == 4).astype(float)
+    for u, v in ((31, 18), (5, 40), (33, 30), (50, 20), (0, 0)):
+        drawing = MODELS["asks"].drawing(warp=warp, u=u, v=v)
+        at = asked_by_hand(warp, u // left, v // left)
+        said = numbers(drawing.sentence)
+        assert said[:2] == [u // left, v // left]
+        assert said[2:4] == pytest.approx(at, abs=0.0051)
+        assert ("beside" in drawing.sentence) == (not ((at > -1) & (at < [60, 45])).all())
+        how = {"order": 1, "mode": "grid-constant", "cval": 255}
+        taken = [ndimage.map_coordinates(photo[..., k], at[::-1, None], **how)[0] for k in range(3)]
+        # Its colour where another is framed, whose line is short; and the lower half of the mix.
+        model = MODELS["asks"].drawing(warp=warp, u=59, v=(v + 22) % 45).picture
+        corner = np.array([TITLE + wide * (v // left), MARGIN + wide * (u // left)]) + wide // 2
+        assert np.abs(model[tuple(corner)] - taken).max() <= 1
+        mix = drawing.picture[2 * TITLE + 180 + 6 + 45, 2 * 366 + MARGIN + 90]
+        assert np.abs(mix - taken).max() <= 1
+
+
+def test_a_new_pixel_mixes_four_colours_as_wide_as_they_weigh_and_they_are_lit():
+    drawing = MODELS["asks"].drawing(warp=1, u=31, v=18)
+    photo, (x, y) = asks.photograph(False), asked_by_hand(1, 31, 18)
+    du, dv = x % 1, y % 1
+    bar = drawing.picture[2 * TITLE + 180 + 6 + 15, 2 * 366 + MARGIN : 2 * 366 + MARGIN + 180]
+    for (i, j), weight in (
+        ((0, 0), (1 - du) * (1 - dv)),
+        ((1, 0), du * (1 - dv)),
+        ((0, 1), (1 - du) * dv),
+        ((1, 1), du * dv),
+    ):
+        ink = photo[int(y) + j, int(x) + i].astype(int)
+        assert (np.abs(bar - ink).max(axis=-1) <= 1).mean() == pytest.approx(weight, abs=0.02)
+        # Its own pixel of the enlarged piece, and the one beyond it, which is pale.
+        place = TITLE + 45 * (1 + j) + 36 - 27 * j, 2 * 366 + MARGIN + 45 * (1 + i) + 9 + 27 * i
+        assert np.abs(drawing.picture[place] - ink).max() <= 1
+        far = TITLE + 45 * 3 * j + 22, 2 * 366 + MARGIN + 45 * 3 * i + 22
+        assert drawing.picture[far].min() > 185
+
+
+def test_a_lens_draws_each_pixel_nearer_to_the_middle_by_a_line():
+    for u, v in ((1, 1), (58, 25), (10, 43)):
+        drawing = MODELS["asks"].drawing(warp=4, u=40, v=20)
+        own, at = np.array([u, v]), asked_by_hand(4, u, v)
+        half = np.rint(6 * ((own + at) / 2 + 0.5)).astype(int) + [366 + MARGIN, TITLE]
+        beside = drawing.picture[half[1] - 2 : half[1] + 3, half[0] - 2 : half[0] + 3]
+        assert count(beside, LENS, atol=110)  # the line is one pixel wide
+        said = numbers(MODELS["asks"].drawing(warp=4, u=u, v=v).sentence)
+        assert said[4] == pytest.approx(np.hypot(*(own - at)), abs=0.0051)
+
+
+def test_a_shrunken_picture_reads_one_old_pixel_of_nine_and_a_sun_seen_straight_on_is_round():
+    for warp, size in ((1, (60, 45)), (2, (20, 15)), (3, (60, 45)), (4, (60, 45))):
+        read = set()
+        for u, v in itertools.product(range(size[0]), range(size[1])):
+            x, y = asked_by_hand(warp, u, v).round(9)
+            for i in {int(np.floor(x)), int(np.ceil(x))}:
+                read |= {(i, j) for j in {int(np.floor(y)), int(np.ceil(y))}}
+        inside = sum(0 <= i < 60 and 0 <= j < 45 for i, j in read)
+        assert numbers(MODELS["asks"].drawing(warp=warp).sentence)[-3:] == [
+            size[0] * size[1], inside, 2700,
+        ]  # fmt: skip
+        assert warp != 2 or inside == 300
+    spread = []
+    for picture in (asks.photograph(False), asks.answered(3)[0]):
+        red = (picture[:35, :, 0].astype(float) - picture[:35, :, 1] - 25).clip(0)
+        v, u = np.indices(red.shape)
+        spread += [np.sqrt(np.cov(x.ravel(), aweights=red.ravel())) for x in (u, v)]
+    assert spread[1] > 1.7 * spread[0]  # in the photograph it is an ellipse
+    assert spread[3] == pytest.approx(spread[2], rel=0.1)  # straight on

@@ -5,12 +5,14 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, MUTED
 
 _SIZE, _FINENESS = 240, 0.0036  # px, and rings per px for each px from the middle
 _SHRINK = 3  # how many old pixels a new one is wide
 _MIDDLE = (_SIZE - 1) / 2
 _AROUND = 16  # px that the profile shows to either side
+_BELOW = 19  # px from the row to the ring that a hand takes hold of: under the box
 
 
 def rings_model() -> Model:
@@ -58,7 +60,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     y = _SHRINK * (row + 0.5) - 0.5 - _MIDDLE
     left = paper.picture_panel((360, 360), (_SIZE, _SIZE), f"{_SIZE} × {_SIZE} pixels")
     left.image((8 * np.rint(old / 8)).clip(0, 255).astype(np.uint8))
-    left.grip("place", "where to look along the row", [_MIDDLE + place, _MIDDLE], 2)
+    held = np.array([_MIDDLE + place, _MIDDLE + _BELOW])
+    left.polygons([held + 13 * left.pixel * circle(41)], "white")
+    left.grip("place", "where to look along the row", held, 2)
     right = paper.panel(
         (360, 360), (-0.5, _SIZE - 0.5), (-0.5, _SIZE - 0.5),
         f"shrunk by three, to {len(new)} × {len(new)} pixels",
@@ -67,7 +71,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     low, high = _MIDDLE + place + np.array([-_AROUND, _AROUND])
     for panel in (left, right):
         around = np.array([[low, -7], [high, -7], [high, 7], [low, 7], [low, -7]])
-        panel.line(around + [0, _MIDDLE + y], ESTIMATED, 2)
+        for ink, width in (("white", 6), (ESTIMATED, 2.5)):  # a white rim: seen on rings, too
+            panel.line(around + [0, _MIDDLE + y], ink, width)
     at = np.column_stack([_SHRINK * (np.arange(len(new)) + 0.5) - 0.5, new[row]])
     u = np.linspace(low, high, 600)
     there, below = np.column_stack([u, rings(u - _MIDDLE, np.full_like(u, y))]), []
