@@ -2021,7 +2021,7 @@ def test_the_box_is_divided_by_its_depth_in_the_plan_and_in_the_picture():
         row = round((762 - 250) / 882 * 300)
         green = (np.abs(plan[row] - colour(WORLD)).max(-1) < 40).nonzero()[0]
         left, cross = 200 + np.array([-60, x]) * 250 / z * 400 / 1176
-        assert green[0] == pytest.approx(left, abs=2)
+        assert green[0] == pytest.approx(left, abs=1.2)
         assert cross - 9 < green[-1] <= cross + 1  # the cross lies upon its end
         # The front of the box, midway between its top and its foot on the floor.
         row = round(150 + (30 + 155) / 2 / z * 250)
