@@ -82,5 +82,5 @@ def _draw_rays(frame: Panel, camera: Camera, W: Array) -> None:
     flat = _PLANE * corners[:, 0] / corners[:, 1]
     frame.line([[flat.min(), _PLANE], [flat.max(), _PLANE]], WORLD, 5)
     M = seen(W)
-    frame.line([[0, 0], M], ESTIMATED, 1.2)
+    frame.line(np.array([0 * M, M]), ESTIMATED, 1.2)
     frame.mark(M * _PLANE / M[1], "estimated", 6)
