@@ -2011,6 +2011,25 @@ def test_what_is_behind_the_camera_is_cut_off_along_every_edge():
         assert sorted(before.tolist()) == [[0, 0, 10], [0, 0, 110], [1, 0, 10], [1, 0, 110]]
 
 
+def test_the_box_is_divided_by_its_depth_in_the_plan_and_in_the_picture():
+    """The plan has z = 1 at 250 mm; the picture is 400 px for 1.6 of that plane."""
+    for x, z in ((120, 300), (120, 600), (60, 450)):
+        drawing = MODELS["divide"].drawing(x=x, z=z)
+        assert numbers(drawing.sentence) == pytest.approx([x, 30, z, z, x / z, 30 / z, 1], abs=6e-4)
+        plan = drawing.picture[TITLE : TITLE + 300, MARGIN : MARGIN + 400].astype(int)
+        seen = drawing.picture[TITLE : TITLE + 300, 406 + MARGIN : 806 + MARGIN].astype(int)
+        # From the left side of the box, 60 mm beside the axis, to the cross.
+        row = round((762 - 250) / 882 * 300)
+        green = (np.abs(plan[row] - colour(WORLD)).max(-1) < 40).nonzero()[0]
+        left, cross = 200 + np.array([-60, x]) * 250 / z * 400 / 1176
+        assert green[0] == pytest.approx(left, abs=1.2)
+        assert cross - 9 < green[-1] <= cross + 1  # the cross lies upon its end
+        # The front of the box, midway between its top and its foot on the floor.
+        row = round(150 + (30 + 155) / 2 / z * 250)
+        green = (seen[row, :, 1] - seen[row, :, 0] > 60).nonzero()[0]
+        assert green[[0, -1]] == pytest.approx(200 + np.array([-60, x]) / z * 250, abs=2)
+
+
 def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
     values = MODELS["formation"].values(way=2)
     camera, (X, Y, Z) = formation.camera_of(values), formation.corner_of(values)
@@ -3263,6 +3282,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "depth": {"depth": 8000},
     "walks": {"X": 200},
     "formation": {"X": 200},
+    "divide": {"z": 450},
     "homography": {"dv2": 40, "dv3": -40},
     "noise": {"views": 20},
     "moved": {"who": 50},

@@ -411,9 +411,11 @@ def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_ch
         begin, tip = (float(re.search(rf"{letter}([\d.]+)", ends[0])[1]) for letter in "MH")
         assert (tip > begin) == forwards
         assert "(595.1, 411.0)" in picture.alt  # chapter 4 works it out, step by step
-    bare = one_corner(2)  # no lens: 800 · 0.35193 + 325 and 804 · 0.22430 + 238
-    assert "no lens (0.3519, 0.2243), pixel (606.5, 418.3)" in bare.alt
-    assert [picture.data.count(b"line-through") for picture in (bare, one_corner(3))] == [1, 0]
+    for chapter in (2, 3):  # no lens: 800 · 0.35193 + 325 and 804 · 0.22430 + 238
+        bare = one_corner(chapter)
+        assert "no lens (0.3519, 0.2243), pixel (606.5, 418.3)" in bare.alt
+        assert bare.data.count(b"line-through") == 1
+    assert one_corner(4).data.count(b"line-through") == 0
     with pytest.raises(CvnotesError, match="0 to 10"):
         one_corner(11)
 

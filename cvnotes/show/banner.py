@@ -19,7 +19,7 @@ _LIT: dict[int, tuple[str, ...]] = {
     6: ("R, T", "÷ z", "A"), 8: ("lens", "A"), 10: ("÷ z",),
 }  # fmt: skip
 _BACKWARDS = (6, 7, 10)
-_WITHOUT_LENS = (2,)  # its camera has none, so its corner goes by another pixel
+_WITHOUT_LENS = (2, 3)  # their cameras have none, so their corner goes by another pixel
 _STYLE = (
     "text{font:13px system-ui,sans-serif;text-anchor:middle;fill:#333}.s{font-weight:600}"
     ".narrow text{font-size:12px}.narrow .n{font-size:11px}"

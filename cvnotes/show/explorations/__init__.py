@@ -32,7 +32,7 @@ _STORIES = (
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing",
     "frame", "ways", "meet", "residuals", "enlarged", "hinge", "horizon",
     "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
-    "changes", "rail", "protractor", "asks",
+    "changes", "rail", "protractor", "asks", "divide",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

@@ -45,8 +45,8 @@ def formation_model() -> Model:
         Setting("alpha", "α (px)", 600, 1200, 10, 800, "the focal length"),
         Setting("width", "the cross: X (mm)", 60, 400, 5, 200, "of the corner that is followed"),
         Setting(
-            "way", "upper right panel", 0, 2, 0.05, 1,
-            "0: the world; 1: the camera's frame; 2: the box divided by z",
+            "way", "steps 1 and 2", 0, 2, 0.05, 1,
+            "upper right panel: 0 the world, 1 the camera's frame, 2 divided by z",
         ),
     )  # fmt: skip
     lens = Setting("k1", "k₁ of the lens", -0.25, 0.25, 0.01, 0, "how strongly the lens bends")
@@ -88,34 +88,34 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     world = paper.panel(
         _SIZE, (x0, x1), (y0, y1), "the world, from above: pull camera, plus, cross"
     )
-    _draw_above(world, lambda W: W[..., [0, 2]], camera, W)
-    _draw_axes(world, max(150, W[0] + 70), WORLD, "XZ", lambda ends: ends[..., [0, 2]])
+    draw_above(world, lambda W: W[..., [0, 2]], camera, W)
+    draw_axes(world, max(150, W[0] + 70), WORLD, "XZ", lambda ends: ends[..., [0, 2]])
     _take_hold(world, camera, W)
     world.line(np.array([camera.centre, W])[:, [0, 2]], ESTIMATED, 1.2)
     frame, at = _draw_frame(paper, camera, W, values["way"])
     steps = "2. ÷ z, 3. lens" if bent else "2. ÷ z"
     plane = paper.panel(_SIZE, (-0.64, 0.64), (-0.48, 0.48), f"{steps}: the plane z = 1")
     picture = paper.picture_panel(_SIZE, camera.size, f"{3 + bent}. A: the picture")
-    scene = _Scene.of(camera, W)
-    _draw_seen(plane, scene, lambda xy: xy)
+    scene = Scene.of(camera, W)
+    draw_seen(plane, scene, lambda xy: xy)
     alpha, centre = np.diag(camera.A)[:2], camera.A[:2, 2]
-    _draw_seen(picture, scene, lambda xy: xy * alpha + centre)
+    draw_seen(picture, scene, lambda xy: xy * alpha + centre)
     _draw_border(plane, camera)
     M = move(camera.G, W)
     xy = M[:2] / M[2] if M[2] > 0 else np.full(2, np.nan)
     m, on_plane = camera.project(W), _sensed(camera, W)
     if bent:
-        for face, _ in _unhidden(_Scene.of(Camera(camera.A, camera.G), W).faces):
+        for face, _ in _unhidden(Scene.of(Camera(camera.A, camera.G), W).faces):
             plane.line(face, "#FFFFFF", 2.4)
             plane.line(face, MUTED, 1, dash=3)
         plane.line([xy, on_plane], ESTIMATED, 2)
         plane.mark(xy, "ideal", 5)
-    said = _written(W, 0), _written(M, 0), _written(on_plane, 3), _written(m, 1)
-    on_the_way = {0.0: said[0], 1.0: said[1], 2.0: _written(xy, 3)[:-1] + ", 1)"}
-    _follow(world, W[[0, 2]], said[0], up=-16)  # below the X axis
-    _follow(frame, at, on_the_way.get(values["way"], ""), up=16 if values["way"] == 2 else 0)
-    _follow(plane, on_plane, said[2], over=True)
-    _follow(picture, m, said[3], over=True)
+    said = written(W, 0), written(M, 0), written(on_plane, 3), written(m, 1)
+    on_the_way = {0.0: said[0], 1.0: said[1], 2.0: written(xy, 3)[:-1] + ", 1)"}
+    follow(world, W[[0, 2]], said[0], up=-16)  # below the X axis
+    follow(frame, at, on_the_way.get(values["way"], ""), up=16 if values["way"] == 2 else 0)
+    follow(plane, on_plane, said[2], over=True)
+    follow(picture, m, said[3], over=True)
     rows = [(world, frame), (plane, picture)]
     if "k1" not in values:  # with a lens between them they are no product
         rows.append((_product_of_G(paper, camera, W, M), _product_of_A(paper, camera, M, m)))
@@ -143,20 +143,20 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
         z = M[..., 2:].clip(_NEAR)
         return (M * (1 - slid + slid * _PLANE / z))[..., [0, 2]]
 
-    _draw_above(frame, seen, camera, W)
-    _draw_axes(frame, 150, CAMERA, "xz", lambda ends: seen(move(inverse(camera.G), ends)))
+    draw_above(frame, seen, camera, W)
+    draw_axes(frame, 150, CAMERA, "xz", lambda ends: seen(move(inverse(camera.G), ends)))
     if slid:
-        faces = _faces(W)
+        faces = faces_of(W)
         corners = faces[:2].reshape(-1, 3)
         frame.segments(np.stack([0 * seen(corners), seen(corners)], axis=1), MUTED, 0.7)
-        _draw_faces(frame, list(seen(faces)), turn=-1)
+        draw_faces(frame, list(seen(faces)), turn=-1)
         v0 = camera.A[1, 2]
         sides = camera.ideal([[-0.5, v0], [camera.size[0] - 0.5, v0]])[:, 0]
         frame.line(np.column_stack([_PLANE * sides, [_PLANE, _PLANE]]), CAMERA, 3)
         flat = on_the_way(corners)  # what is left where the faces are seen edge-on
         frame.line(flat[[flat[:, 0].argmin(), flat[:, 0].argmax()]], WORLD, 4)
         if slid < 1:
-            _draw_faces(frame, list(on_the_way(faces)), turn=-1)
+            draw_faces(frame, list(on_the_way(faces)), turn=-1)
     frame.line(seen(np.array([camera.centre, W])), ESTIMATED, 1.2)
     return frame, on_the_way(W)
 
@@ -219,7 +219,7 @@ def _sentence(said: tuple[str, ...], M: Array, xy: Array, m: Array, bent: bool) 
     )
 
 
-class _Scene(NamedTuple):
+class Scene(NamedTuple):
     """What stands before a camera, as polygons on z = 1, behind its lens."""
 
     tiles: tuple[list[Array], list[Array]]
@@ -228,8 +228,9 @@ class _Scene(NamedTuple):
     horizon: Array
 
     @classmethod
-    def of(cls, camera: Camera, corner: Array) -> "_Scene":
-        faces = _faces(corner)
+    def of(cls, camera: Camera, corner: Array) -> "Scene":
+        """Return what a camera sees, the box with this corner."""
+        faces = faces_of(corner)
         light, dark = (_on_plane(camera, tiles) for tiles in _tiles())
         horizon = _sensed(camera, _HORIZON)
         shadow = _on_plane(camera, faces - faces[..., 1:2] * _LIGHT)
@@ -258,7 +259,7 @@ def _sensed(camera: Camera, W: Array) -> Array:
     return np.asarray((camera.project(W) - camera.A[:2, 2]) / np.diag(camera.A)[:2])
 
 
-def _faces(corner: Array) -> Array:
+def faces_of(corner: Array) -> Array:
     """Return the faces (6, 4, 3) of the box between a corner and the axes."""
     X, _, Z = corner
     return box((0, X), (-_HEIGHT, 0), (Z, _BACK), (0, 0, 0)).faces
@@ -274,7 +275,7 @@ def _tiles() -> tuple[Array, Array]:
     return tiles[~odd], tiles[odd]
 
 
-def _draw_above(panel: Panel, seen: Seen, camera: Camera, corner: Array) -> None:
+def draw_above(panel: Panel, seen: Seen, camera: Camera, corner: Array) -> None:
     """Draw box and camera from above, and what the row of the principal point sees."""
     v0 = camera.A[1, 2]
     sides = camera.ray([[-0.5, v0], [camera.size[0] - 0.5, v0]])
@@ -282,14 +283,14 @@ def _draw_above(panel: Panel, seen: Seen, camera: Camera, corner: Array) -> None
     joints = np.arange(-_REACH, _REACH + 1, _TILE)
     ends = np.array([[[x, 0, -_REACH], [x, 0, _REACH]] for x in joints])
     panel.segments(seen(np.concatenate([ends, ends[..., ::-1]])), _JOINTS, 0.7)
-    faces = _faces(corner)
+    faces = faces_of(corner)
     panel.polygons(seen(faces - faces[..., 1:2] * _LIGHT), _SHADOW)
-    _draw_faces(panel, list(seen(faces)), turn=-1)
+    draw_faces(panel, list(seen(faces)), turn=-1)
     eye, ahead = panel.place(seen(camera.centre + np.outer([0, 1], camera.R[2])))
     panel.mark(seen(camera.centre), "camera", 9, looks=tuple(ahead - eye))
 
 
-def _draw_seen(panel: Panel, scene: _Scene, place: Callable[[Array], Array]) -> None:
+def draw_seen(panel: Panel, scene: Scene, place: Callable[[Array], Array]) -> None:
     """Draw box and floor as the camera sees them."""
     (x0, x1), (y0, y1) = panel.x, panel.y
     panel.polygons([[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]], _FAR)
@@ -301,10 +302,10 @@ def _draw_seen(panel: Panel, scene: _Scene, place: Callable[[Array], Array]) -> 
     shaded = *zip(scene.tiles, _TILES, strict=True), (scene.shadow, _SHADOW)
     for polygons, colour in shaded:
         panel.polygons([place(polygon) for polygon in polygons], colour)
-    _draw_faces(panel, [place(face) for face in scene.faces])
+    draw_faces(panel, [place(face) for face in scene.faces])
 
 
-def _draw_faces(panel: Panel, faces: Sequence[Array], turn: int = 1) -> None:
+def draw_faces(panel: Panel, faces: Sequence[Array], turn: int = 1) -> None:
     """Draw the faces that nothing hides."""
     for face, shade in _unhidden(faces, turn):
         panel.polygons(face[None], hexed(255 * shade * np.array(rgb(WORLD))))
@@ -319,7 +320,8 @@ def _unhidden(faces: Sequence[Array], turn: int = 1) -> Iterator[tuple[Array, fl
             yield face, shade
 
 
-def _draw_axes(panel: Panel, length: float, colour: str, names: str, seen: Seen) -> None:
+def draw_axes(panel: Panel, length: float, colour: str, names: str, seen: Seen) -> None:
+    """Draw the axes that run to the right and ahead, with their names."""
     for tip, name in zip(np.diag([length, 0, 170])[[0, 2]], names, strict=True):
         panel.line(seen(np.stack([0 * tip, tip])), colour, 2.5)
         panel.text(seen(tip + 26 * np.sign(tip)), name, colour, anchor="mm", size=13)
@@ -345,11 +347,12 @@ def _draw_border(plane: Panel, camera: Camera) -> None:
     plane.text(below, "the sensor", CAMERA, anchor="ld", size=12)
 
 
-def _written(x: Array, digits: int) -> str:
+def written(x: Array, digits: int) -> str:
+    """Write numbers in brackets."""
     return f"({', '.join(f'{number:.{digits}f}' for number in x + 0.0)})".replace("-", "−")
 
 
-def _follow(panel: Panel, place: Array, words: str, up: float = 0, over: bool = False) -> None:
+def follow(panel: Panel, place: Array, words: str, up: float = 0, over: bool = False) -> None:
     """Mark the corner that is followed, and write its numbers beside it, or over the box."""
     panel.mark(place, "estimated", 8)
     low, high = np.sort([panel.x, panel.y]).T
