@@ -74,7 +74,7 @@ def rows_of_tiles() -> tuple[Array, Array]:
 
 def floor_A() -> Array:
     """Return A (3, 3) of the camera over the floor: as the course's, with a larger sensor."""
-    return course.camera().A + np.array([[0.0, 0, 480], [0, 0, 360], [0, 0, 0]])
+    return np.asarray(course.camera().A + [[0, 0, 480], [0, 0, 360], [0, 0, 0]])
 
 
 @lru_cache(maxsize=1)
