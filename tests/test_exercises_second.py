@@ -101,7 +101,8 @@ def my_person_height(horizon, v, post, h, person):
     return h * x_p[0] * between(x_v, x_q) / (x_q[0] * between(x_v, x_p))
 
 
-my_where_the_rails_meet = (430, 160)
+# By similar triangles from (381, 5) and (146, 470), (448, 5) and (615, 470): left edges of rails.
+my_where_the_rails_meet = (381 + 235 * 67 / 402, 5 - 465 * 67 / 402)
 
 
 # Chapter 3

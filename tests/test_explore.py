@@ -3759,10 +3759,10 @@ def test_the_misses_are_drawn_as_far_as_the_focal_length_was_pulled():
 def test_the_dlts_net_is_that_of_a_plain_svd_and_the_other_has_the_least_error_in_pixels(
     row, column, du, dv
 ):
-    """The floor by two similar triangles: 300 mm below a camera whose horizon is at v = 238."""
+    """The floor by two similar triangles: 300 mm below a camera whose horizon is at v = 598."""
     Y = np.repeat([450.0, 600, 900, 1500, 3000, 6000], 7)
     X = np.tile(np.arange(-300.0, 301, 100), 6)
-    m = np.column_stack([325 + 800 * X / Y, 238 + 804 * 300 / Y])
+    m = np.column_stack([805 + 800 * X / Y, 598 + 804 * 300 / Y])
     true = m.reshape(6, 7, 2).copy()
     m[7 * (row - 1) + column - 1] += du, dv
     (x, y), (u, v) = (
@@ -3793,19 +3793,19 @@ def test_the_dlts_net_is_that_of_a_plain_svd_and_the_other_has_the_least_error_i
 
 def test_arrows_lead_where_row_1_goes_and_bars_are_as_long_as_rows_weigh_and_do_harm():
     drawing = MODELS["swing"].drawing(row=5, du=0, dv=40)
-    panel = drawing.picture[TITLE : TITLE + 276, MARGIN : MARGIN + 482]
+    panel = drawing.picture[TITLE : TITLE + 264, MARGIN : MARGIN + 540]
     X = np.arange(-300, 301, 100)
-    true = np.column_stack([325 + 800 * X / 450, 0 * X + 238 + 804 * 300 / 450])
+    true = np.column_stack([805 + 800 * X / 450, 0 * X + 598 + 804 * 300 / 450])
     for net, ink, which in zip(
         nets(5, 1, 0, 40), (LENS, ESTIMATED), ((0, 1, 3), (0,)), strict=True
     ):
         for k in which:  # half way along the arrow, which is seven times as long
             at = true[k] + 3.5 * (net[0, k] - true[k])
-            u, v = np.rint((at + [300, -165]) * [482 / 1380, 276 / 790]).astype(int)
+            u, v = np.rint((at - [115, 525]) * [540 / 1380, 264 / 675]).astype(int)
             assert count(panel[v - 1 : v + 2, u - 1 : u + 2], ink, 90) > 2, (k, ink)
-    bars = drawing.picture[TITLE:, MARGIN + 482 + 2 * MARGIN :]
+    bars = drawing.picture[TITLE:, MARGIN + 540 + 2 * MARGIN :]
     for i, depth in enumerate((450, 600, 900, 1500, 3000, 6000), start=1):
-        y = 276 - (44 * i - 16)
+        y = 264 - (42 * i - 16)
         weight = (depth / 450) ** 2
         assert weights()[i - 1] == pytest.approx(weight)
         assert count(bars[y - 3, 50:150], MUTED) == pytest.approx(weight / 3, abs=4)

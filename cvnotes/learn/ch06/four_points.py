@@ -1,11 +1,13 @@
 """Four points fix a homography."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from cvnotes.base import Array
-from cvnotes.homography import design_matrix, dlt
+from cvnotes.base import Array, DegenerateError
+from cvnotes.homography import design_matrix, dlt, four_points_h9_one, four_points_unit_norm
 from cvnotes.homography.linear import normal_matrix
 from cvnotes.learn.cases.cameras import SQUARE, affine_fit, board_grid, rounded, some_homography
 from cvnotes.learn.ch06.dlt import OF_THE_ROWS
@@ -49,9 +51,21 @@ def _steps(src: Array, dst: Array) -> Array:
     return h.reshape(3, 3)
 
 
-# With h9 = 1 on the other side; nothing where the eight equations have no solution.
-_WITH_H9 = (
-    "np.append(np.linalg.solve(D[:, :8], {}D[:, 8]), 1).reshape(3, 3) "
+def _where_solvable(solve: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Any]:
+    """Return one of the notes' two solutions, which gives nothing where h9 is 0."""
+
+    def answer(src: Array, dst: Array) -> Any:
+        try:
+            return solve(src, dst)
+        except DegenerateError:
+            return None
+
+    return answer
+
+
+# With h9 = 1 and a wrong sign; nothing where the eight equations have no solution.
+_WRONG_SIGN = (
+    "np.append(np.linalg.solve(D[:, :8], D[:, 8]), 1).reshape(3, 3) "
     "if np.linalg.cond(D[:, :8] / abs(D).max(0)[:8]) < 1e10 else None"
 )
 _MISTAKES = mistakes_in(_steps,
@@ -60,9 +74,10 @@ _MISTAKES = mistakes_in(_steps,
      affine_fit),
     ("h9 = 1", "Right unless the true h9 is 0, which neither h9 = 1 nor the notes' formula for h9 "
      "can express: both solve the same 8×8 system, and it is singular then.",
-     _WITH_H9.format("-"), "np.append(np.linalg.lstsq(D[:, :8], -D[:, 8])[0], 1).reshape(3, 3)"),
+     _where_solvable(four_points_h9_one), _where_solvable(four_points_unit_norm),
+     "np.append(np.linalg.lstsq(D[:, :8], -D[:, 8])[0], 1).reshape(3, 3)"),
     ("sign of the right-hand side", "With which sign does the ninth column go to the other side?",
-     _WITH_H9.format("")),
+     _WRONG_SIGN),
     ("three points only", "That is the affine map of three points. How far off is the fourth?",
      lambda src, dst: affine_fit(src[:3], dst[:3])),
     ("full_matrices=False", "full_matrices=False leaves out the null vector that eight rows have.",

@@ -6,18 +6,17 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.homography import dlt, refine_homography
-from cvnotes.pictures import course
 from cvnotes.projective import apply
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.explorations.valley import rows_of_tiles
+from cvnotes.show.explorations.valley import floor_A, rows_of_tiles
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
-_SHOWN = (-300.0, 1080.0), (165.0, 955.0)  # px of a wide sensor, u and v
-_SIZE, _BARS = (482, 276), (310, 276)
+_SHOWN = (115.0, 1495.0), (525.0, 1200.0)  # px, u and v: below, the sensor ends
+_SIZE, _BARS = (540, 264), (310, 264)
 _TIMES = 7  # as long as they are, arrows are drawn
-_FAR = 100  # px: how far a dot can be pulled
+_FAR, _DOWN = 100, 60  # px: how far a dot can be pulled; down to the sensor's end
 _TONES = np.array([[255, 250, 244], [243, 231, 219]])  # of the tiles
 _INKS = LENS, ESTIMATED  # of the DLT, and of the least error in pixels
 
@@ -28,7 +27,7 @@ def swing_model() -> Model:
         Setting("row", "row", 1, 6, 1, 6, "of the dot that is pulled; row 1 is near"),
         Setting("column", "column", 1, 7, 1, 1, "of the dot that is pulled, from the left"),
         Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, 0, "in the picture"),
-        Setting("dv", "pulled down (px)", -_FAR, _FAR, 1, 20, "in the picture"),
+        Setting("dv", "pulled down (px)", -_FAR, _DOWN, 1, 20, "in the picture"),
     )
     about = (
         "A tiled floor with six rows of dots, one of which is pulled away, and arrows that show "
@@ -103,7 +102,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         if i in grips:
             panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
         panel.text([_SHOWN[0][0] + 12, v], f"{i}", IDEAL, size=12)
-    aside, anchor = (-16, "rm") if held[row - 1, 0] > -100 else (16, "lm")
+    aside, anchor = (-16, "rm") if held[row - 1, 0] > _SHOWN[0][0] + 200 else (16, "lm")
     at = held[row - 1] + [aside * panel.pixel, 0]
     panel.text(at, "pulled", IDEAL, anchor=anchor, size=12)
     far = np.linalg.norm(moved, axis=-1).max(axis=-1)
@@ -120,7 +119,7 @@ def _bars(paper: Paper, far: Array) -> Panel:
         panel.text([x + length + 5, y], words, word, size=12)
 
     for i, weight in enumerate(weights(), start=1):
-        y = 44.0 * i - 16
+        y = 42.0 * i - 16
         panel.text([10, y], f"row {i}", size=12)
         bar(54, y, weight / 3, f"{weight:.2g}" if weight < 10 else f"{weight:.0f}", MUTED)
         if i <= 6 - len(far):
@@ -137,7 +136,7 @@ def _bars(paper: Paper, far: Array) -> Panel:
 @lru_cache(maxsize=3)
 def _ground(sharpness: int) -> Drawn:
     """Paint tiles of 100 mm × 150 mm, 300 mm below the camera, paler towards the horizon."""
-    (alpha_u, _, u0), (_, alpha_v, v0), _ = course.camera().A
+    (alpha_u, _, u0), (_, alpha_v, v0), _ = floor_A()
     u, v = (
         np.linspace(*ends, 3 * sharpness * n, endpoint=False)
         for ends, n in zip(_SHOWN, _SIZE, strict=True)

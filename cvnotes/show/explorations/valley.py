@@ -13,23 +13,15 @@ from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import contours
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, rgb
 
 _H6, _H9, _MOST = (-2.7, 1.0), (-1.4, 2.3), 25  # where walks may set out; steps
 _MU = 1e-3  # how the first step of the damped one is damped
 _SHOWN, _SIDE = ((-2.8, 1.1), (2.4, -1.5)), 396  # of the two unknowns: a little more; px
-_HEIGHTS = (-2.0, 0.0, 1.5, 2.2, 3.3, 4.2)  # of the ground, and its tones from a lake to snow
+_HEIGHTS = (-1.0, 0.5, 1.4, 2.0, 2.7, 4.2)  # of the ground: the lower, the darker
 _TONES = np.array(
-    [
-        [36, 62, 98],
-        [80, 124, 156],
-        [146, 178, 178],
-        [190, 182, 152],
-        [226, 212, 188],
-        [255, 253, 250],
-    ]
+    [rgb(tone) for tone in ("#13233A", "#3A506B", "#7C91AC", "#AABACD", "#D5DDE7", "#FFFFFF")]
 )
-_LIGHT = np.array([-1, -1, 1.2]) / np.linalg.norm([1, 1, 1.2])  # from the upper left
 _LINES = (3, 10, 30, 60, 100, 150, 200, 250, 300)  # px, RMS: of equal height
 _WALKS = (("damped", ESTIMATED, 3.2, "estimated"), ("undamped", LENS, 2.0, "lens"))
 
@@ -70,11 +62,19 @@ class Floor(NamedTuple):
 
 @lru_cache(maxsize=1)
 def rows_of_tiles() -> tuple[Array, Array]:
-    """Return the corners (42, 2) of six rows of tiles on chapter 6's floor, and their pixels."""
+    """Return the corners (42, 2) of six rows of tiles on chapter 6's floor, and their pixels.
+
+    The sensor has 1600 × 1200 pixels, so that the nearest row is seen, too.
+    """
     G = np.array([[1.0, 0, 0, 0], [0, 0, -1, 300], [0, 1, 0, 0], [0, 0, 0, 1]])
     rows, columns = (450, 600, 900, 1500, 3000, 6000), range(-300, 301, 100)
     tiles = np.array([[x, y] for y in rows for x in columns], float)
-    return tiles, Camera(course.camera().A, G).project(np.insert(tiles, 2, 0, axis=1))
+    return tiles, Camera(floor_A(), G).project(np.insert(tiles, 2, 0, axis=1))
+
+
+def floor_A() -> Array:
+    """Return A (3, 3) of the camera over the floor: as the course's, with a larger sensor."""
+    return np.asarray(course.camera().A + [[0, 0, 480], [0, 0, 360], [0, 0, 0]])
 
 
 @lru_cache(maxsize=1)
@@ -90,7 +90,7 @@ def floor() -> Floor:
 
 @lru_cache(maxsize=1)
 def _ground() -> Drawn:
-    """Paint the logarithm of the cost as ground, with light and shadow and lines of equal height.
+    """Paint the logarithm of the cost, the higher the paler, with lines of equal height.
 
     With ĥ6 and ĥ9 free, x and the other parts of y and w stay: Σ (a + ĥ6 b)² in each row.
     """
@@ -103,18 +103,9 @@ def _ground() -> Drawn:
     height = np.log10(A[:, None] + 2 * np.outer(B, h6) + np.outer(C, h6**2))
     line = contours(height, 2 * np.log10(np.divide(_LINES, of.px)), 1.1)
     line[height > 2.5] = 0  # none on the walls
-    height = 4 - 0.4 * np.logaddexp(0, (4 - height) / 0.4)  # walls end at 4, rounded
-    for _ in range(8):
-        z = np.pad(height, 1, mode="edge")
-        around = z[:-2, 1:-1] + z[2:, 1:-1] + z[1:-1, :-2] + z[1:-1, 2:]
-        height = around / 8 + z[1:-1, 1:-1] / 2
-    down, right = (-0.04 * n * slope for slope in np.gradient(height))
-    upward = np.stack([right, down, np.ones_like(down)], axis=-1)
-    lit = upward @ _LIGHT / np.linalg.norm(upward, axis=-1) / _LIGHT[2]
     ground = np.stack([np.interp(height, _HEIGHTS, tone) for tone in _TONES.T], axis=-1)
-    ground *= (0.5 + 0.5 * lit.clip(0, 1.4))[..., None]
-    ground += 0.8 * line[..., None] * (255 - ground)
-    return np.asarray(ground.clip(0, 255).astype(np.uint8))
+    ground += line[..., None] * (1 - ground)
+    return np.asarray((255 * ground).round().astype(np.uint8))
 
 
 def valley_model() -> Model:
@@ -134,16 +125,14 @@ def valley_model() -> Model:
         start, taken = np.array([values["h6"], values["h9"]]), int(values["steps"])
         of = floor()
         ways = [of.walk(start, mu)[: taken + 1] for mu in (_MU, 0)]
-        ground = paper.panel((_SIDE, _SIDE), *_SHOWN, "the cost over ĥ6 (→) and ĥ9 (↑)")
+        ground = paper.panel((_SIDE, _SIDE), *_SHOWN, "cost over ĥ6 (→) and ĥ9 (↑): dark is low")
         ground.image(_ground())
         for way, (_, colour, width, _) in zip(ways, _WALKS, strict=True):
             ground.line(way, "#FFFFFF", width + 1.6)
             ground.line(way, colour, width)
         _name_ground(ground, of)
-        for way, (name, colour, _, meaning) in zip(ways, _WALKS, strict=True):
+        for way, (*_, meaning) in zip(ways, _WALKS, strict=True):
             ground.mark(way[-1], meaning, 8)
-            higher = max(ways, key=lambda one: one[-1, 1]) is way
-            _name_end(ground, way[-1], name, colour, 1 if higher else -1)
         ground.mark(start, "world", 9)
         ground.grip("start", "where the walks set out", start, 5)
         rms = [[of.rms(h) for h in way] for way in ways]
@@ -156,7 +145,7 @@ def valley_model() -> Model:
 
 
 def _name_ground(ground: Panel, of: Floor) -> None:
-    """Write the numbers of both axes, and what lowest place, lines and walls are."""
+    """Write the numbers of both axes, and what lines and walls are; mark the lowest place."""
     for tick in (-2, -1, 0):
         ground.text([tick, -1.42], f"{tick}".replace("-", "−"), anchor="md", size=11)
     for tick in (-1, 0, 1, 2):
@@ -164,26 +153,13 @@ def _name_ground(ground: Panel, of: Floor) -> None:
     walls = -(of.tiles_h[::7, :2] @ of.best[2, :2])
     names = ("rows 1, 2", "row 3", "row 4", "wall: row 5 at infinity")
     for name, wall in zip(names, (walls[:2].mean(), *walls[2:5]), strict=True):
-        ground.text([1.06, wall], name, IDEAL, anchor="rm", size=11)
+        ground.text([-2.5, wall], name, IDEAL, size=11)
     best = of.best[[1, 2], [2, 2]]
     for line, way in ((150, [1, 0.5]), (200, [1, 0.75])):
         far = np.outer(np.linspace(0, 1.5, 301), way)
         at = best + far[np.searchsorted([of.rms(best + by) for by in far], line)]
         ground.text(at, f"RMS {line} px", MUTED, anchor="mm", size=11)
     ground.mark(best, "ideal", 12)
-    ground.text(best + [-0.16, -0.02], "lowest", IDEAL, anchor="rm", size=12)
-
-
-def _name_end(ground: Panel, at: Array, name: str, colour: str, up: int) -> None:
-    """Write a walk's name beside its end, the higher one's above, within the picture."""
-    aside = 12 * ground.pixel * (1 if at[0] < 0.3 else -1)
-    ground.text(
-        at + [aside, 9 * up * ground.pixel],
-        name,
-        colour,
-        anchor="lm" if aside > 0 else "rm",
-        size=13,
-    )
 
 
 def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
