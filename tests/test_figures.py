@@ -18,11 +18,13 @@ from cvnotes.calibration import BoardShape
 from cvnotes.camera import Camera, look_at
 from cvnotes.pictures import chart_room, course, render_scene
 from cvnotes.show import (
+    chain,
     draw_corners,
     draw_image,
     draw_lines,
     draw_points,
     draw_residuals,
+    eight_projects,
     one_corner,
     panels,
     show,
@@ -432,6 +434,80 @@ def test_the_head_of_chapter_6_leads_from_the_pixel_to_the_board_in_one_orange_s
     assert (start, end) == (middle["pixel"], middle["world"])
     assert INK[ESTIMATED] in texts.get("style")
     assert float(texts.get("y")) < float(drawn.get("height"))
+
+
+def test_the_strip_of_chapter_7_shows_the_numbers_that_its_photographs_give():
+    from cvnotes.calibration import (
+        calibrate,
+        constraints,
+        extrinsics,
+        intrinsics_from_b,
+        radial_distortion,
+        solve_b,
+    )
+    from cvnotes.homography import dlt
+    from cvnotes.pictures import course
+
+    board, camera, m = course.board(), course.camera(), course.measured_corners()
+    H = dlt(board.points[:, :2], m)
+    A = intrinsics_from_b(solve_b(constraints(H)))
+    rays = np.linalg.solve(camera.A, H)[:, :, :2]
+    lengths = np.prod(np.linalg.norm(rays, axis=1), axis=-1)
+    angles = np.degrees(np.arccos(np.prod(rays, axis=-1).sum(axis=-1) / lengths))
+    G = extrinsics(A, H)
+    off = np.linalg.norm(G[:, :3, 3] - course.poses()[:, :3, 3], axis=-1)
+    k1, _ = radial_distortion(A, G, board.points, m, terms=2)
+    found = calibrate(board.points, m, camera.size)
+    rms = np.sqrt(np.mean(np.sum((m - course.exact_corners()) ** 2, axis=-1)))
+    for number in (
+        f"corners {rms:.3f} px",
+        f"H {min(angles):.0f}° to {max(angles):.0f}°",
+        f"B {len(constraints(H))} rows 4 unknowns",
+        f"A {np.hypot(*(A - camera.A)[:2, 2]):.0f} px off",
+        f"poses up to {max(off):.0f} mm off",
+        f"lens k₁ = {k1:+.2f} true: −{abs(camera.lens.k[0])}",
+        f"all at once {found.rms:.3f} px",
+        f"± {found.A[0, 0]:.2f} ± {found.std['alpha_u']:.2f} αᵤ, true: {camera.A[0, 0]:.0f}",
+    ):
+        assert number in chain().alt
+
+
+def test_a_link_of_chapter_7_has_its_number_once_its_section_is_read():
+    from xml.etree import ElementTree
+
+    for lit, numbers, pale in (
+        (("corners",), 0, 7), (("B", "A"), 2, 4), (("±",), 7, 0), ((), 8, 0),
+    ):  # fmt: skip
+        picture = chain(*lit)
+        for drawing, widest in ((picture.data, 920), (picture.narrow, 400)):
+            drawn = ElementTree.fromstring(drawing)
+            assert int(drawn.get("width")) <= widest
+            under = [t.text for t in drawn.findall(".//{*}text") if t.get("class") == "n"]
+            assert under[:numbers].count(None) == 0
+            assert under[numbers:] == ["?"] * len(lit) + [None] * pale
+            faint = [g for g in drawn.findall(".//{*}g") if g.get("opacity") == "0.35"]
+            names = [t for t in drawn.findall(".//{*}text") if t.get("class") == "s"]
+            assert len(faint) == pale
+            assert [t.text for t in names if INK[ESTIMATED] in t.get("style")] == list(lit)
+    with pytest.raises(CvnotesError, match="corners, H, B, A, poses"):
+        chain("K")
+
+
+def test_the_sheet_of_projects_has_eight_tiles_and_what_is_drawn_stays_within_them():
+    from xml.etree import ElementTree
+
+    picture = eight_projects()
+    for drawing, columns in ((picture.data, 4), (picture.narrow, 2)):
+        tiles = ElementTree.fromstring(drawing).findall("{*}g")
+        places = [re.findall(r"[\d.]+", tile.get("transform")) for tile in tiles]
+        assert len({x for x, _ in places}) == columns
+        assert [tile.find("{*}text").text[0] for tile in tiles] == list("12345678")
+        for tile in tiles:
+            for path in tile.findall("{*}g//{*}path"):
+                if re.fullmatch(r"[ML\d. -]+Z?", path.get("d")):
+                    xy = np.array(re.findall(r"-?[\d.]+", path.get("d")), float).reshape(-1, 2)
+                    assert (xy >= 0).all(), path.get("d")
+                    assert (xy <= [204, 140]).all(), path.get("d")
 
 
 def test_on_a_telephone_the_head_of_a_chapter_has_two_rows_in_which_no_words_meet():

@@ -17,7 +17,6 @@ IGNORED = {"no-save-output", "nbval-ignore-output"}
 # What may differ, and why: a part of the cell that says it.
 DIFFERS = {
     "cv2.": "there is no OpenCV in a browser",
-    "with suppress(ImportError):": "so such a cell says nothing",
     "found = calibrate(board.points, corners, camera.size)": "another finder: 0.003 px in v0",
 }
 SAID = ("no OpenCV in a browser", "can't start new thread")

@@ -9,7 +9,9 @@ from cvnotes.show.figures.ideas import draw_meanings
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.figures.quality import draw_residuals
+from cvnotes.show.links import chain
 from cvnotes.show.picture import Picture, show
+from cvnotes.show.projects import eight_projects
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
     ray_shapes,
@@ -46,9 +48,12 @@ __all__ = [
     # chapters 6, 7 and 9: estimates
     "draw_residuals",
     "draw_plane_error",
-    # chapter 7: the picture of J, a cube on the board
+    # chapter 7: its strip, the picture of J, a cube on the board
+    "chain",
     "draw_arrow",
     "draw_cube",
+    # the further exercises
+    "eight_projects",
     # in space
     "draw_scene",
     "build_scene",

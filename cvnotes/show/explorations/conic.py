@@ -123,7 +123,7 @@ def _sentence(n: Array) -> str:
     if s == 0:
         return f"{said}: H is the identity."
     if np.isclose(s, 1, rtol=0, atol=1e-9):
-        return f"{said}: the line touches the circle, whose picture is a parabola."
+        return f"{said}: the line touches the circle."
     if s < 1:
-        return f"{said}: the line passes the circle by, whose picture is an ellipse."
-    return f"{said}: the line cuts the circle in two points, and its picture is a hyperbola."
+        return f"{said}: the line passes the circle by."
+    return f"{said}: the line cuts the circle in two points."

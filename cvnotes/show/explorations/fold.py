@@ -139,13 +139,13 @@ def fold_model() -> Model:
 
 def _sentence(H: list[Array], eye: Array) -> str:
     """Say which angles the eye sees in one photograph, or in two."""
-    said = f"An eye {eye[2]:.0f} px over pixel ({eye[0]:.1f}, {eye[1]:.1f}) sees both "
+    said = f"An eye {eye[2]:.0f} px over pixel ({eye[0]:.1f}, {eye[1]:.1f}): "
     first = angles(H[0], eye)
-    said += f"right angles of the photograph: {first[0]:.2f}° and {first[1]:.2f}°."
+    said += f"sides {first[0]:.2f}°, diagonals {first[1]:.2f}°."
     if len(H) == 1:
         return said
     sides, diagonals = angles(H[1], eye)
-    said += f" In the second one it sees {sides:.1f}° and {diagonals:.1f}°"
+    said += f" Photograph 2: sides {sides:.1f}°, diagonals {diagonals:.1f}°"
     near = max(abs(sides - 90), abs(diagonals - 90)) < 0.2
     return f"{said}: this is the camera." if near else f"{said}: this is not the camera."
 
@@ -253,7 +253,6 @@ def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Pa
     for k in reversed(range(len(circles))):
         arc = circles[k].place(np.arange(0, 181.0, 2))
         panel.line(arc[:, 1:], _INKS[k], 2)
-        _name(panel, arc[45, 1:] * [1, 0], (90 * k - 45, -8), f"photograph {k + 1}", _INKS[k], "ma")
         if len(circles) == 1:  # its angles stand above
             continue
         row = 785 - 120 * k

@@ -221,7 +221,4 @@ def _sentence(values: Values, camera: Array, of_board: Array) -> str:
         far = float(np.linalg.norm(move(motion, at) - at))
         turn = float(np.degrees(np.linalg.norm(vector_from_rotation(motion[:3, :3]))))
         said.append(f"the {name} has moved by {far:.0f} mm and turned by {turn:.0f}°")
-    return (
-        f"Photograph {values['photo']:g}: since photograph 0 {' and '.join(said)}. How one stands "
-        "before the other is the same."
-    )
+    return f"Photograph {values['photo']:g}: since photograph 0 {' and '.join(said)}."
