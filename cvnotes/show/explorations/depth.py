@@ -12,7 +12,7 @@ from cvnotes.pictures import depth_map, pixel_centres, radiance, room
 from cvnotes.pictures.meshes import from_above
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, rgb
 from cvnotes.warping import backward_warp
 
 _PICTURE, _PLAN = (400, 300), (409, 628)
