@@ -206,10 +206,10 @@ def _plan(paper: Paper, Z: float, found: Array) -> Panel:
     panel.line(_WALLS, IDEAL, 1.5)
     for thing, at in _NAMES.items():
         panel.text(at, thing, IDEAL, anchor="mm", size=12)
-    metres = np.arange(2, 13, 2)  # as the colours tell them
-    for m, ink in zip(metres, coloured(1000.0 * metres), strict=True):
-        at, tint = [-3250, 1000 * m], "#{:02X}{:02X}{:02X}".format(*ink)
-        panel.text(at, f"{m} m", tint, anchor="rm", size=13, rim="white")
+    depths = np.arange(2000.0, 13_000, 2000, dtype=np.float64)
+    for at, ink in zip(depths, coloured(depths), strict=True):  # in the colour of its dots
+        tint = "#{:02X}{:02X}{:02X}".format(*ink)
+        panel.text([-3250, at], f"{at / 1000:.0f} m", tint, anchor="rm", size=13, rim="white")
     panel.line([[-3000, Z], [3850, Z]], ESTIMATED, 1.5, dash=5)
     panel.mark([[0, 0], [_BASE, 0]], "camera", 7)
     panel.mark([3850, Z], "estimated", 8)
