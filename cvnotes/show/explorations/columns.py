@@ -17,7 +17,7 @@ from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
 _LENS = "k1 k2 p1 p2"
 _MAGNIFIED = 100
-_SHEET, _BAR = (490, 420), (215, 420)
+_SHEET, _BAR = (560, 420), (250, 420)
 _PALE = "#EDEDED"
 _HIGHEST = 0.18  # px, of the bar
 _ROUNDING = 1e-9  # smaller singular values are those of moving or scaling the whole board
@@ -53,14 +53,17 @@ class Believed:
         rows = 2 * views * n
         taken = np.hstack([of_shared.reshape(rows, -1), P.reshape(rows, -1)])
         self._shape = m.shape
-        Q = _basis(taken)
-        board = _without(Q, D.reshape(rows, -1)).reshape(rows, n, 3)
-        self._missed = _without(Q, -r.ravel())
-        within = board[..., :2].reshape(rows, -1)
-        shifts = np.linalg.lstsq(within, self._missed, rcond=_ROUNDING)[0].reshape(n, 2)
         columns, lines = real.board.corners
-        self.shifts = shifts[:, 0].reshape(lines, columns)  # of each corner along x, mm
-        self._along_x = board[..., 0].reshape(rows, lines, columns).sum(axis=1)
+        along_x, missed = of_corners[..., 0], -r.reshape(m.shape)
+        shifts = (along_x * missed).sum(axis=(0, 2)) / (along_x**2).sum(axis=(0, 2))
+        self.shifts = shifts.reshape(lines, columns)  # of each corner along x, mm
+        Q = _basis(taken)
+        board = _without(Q, D.reshape(rows, -1))
+        self._missed = _without(Q, missed.ravel())
+        left = _without(_basis(board), self._missed)
+        self.least = rms(left.reshape(m.shape))  # px, if every corner may move
+        by_column = board.reshape(rows, lines, columns, 3)[..., 0]
+        self._along_x = by_column.sum(axis=1)
 
     @property
     def columns(self) -> Array:
@@ -78,7 +81,8 @@ class Believed:
 
 def _basis(columns: Array) -> Array:
     """Return an orthonormal basis of what the columns of a matrix span."""
-    U, s, _ = np.linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
+    lengths = np.linalg.norm(columns, axis=0)
+    U, s, _ = np.linalg.svd(columns / lengths, full_matrices=False)
     return np.asarray(U[:, s > _ROUNDING * s[0]])
 
 
@@ -92,7 +96,7 @@ def columns_model() -> Model:
     real = course.real_corners()
     left, right = Believed(real.left), Believed(real.right)
     said = "how much of the right camera's nine shifts is put into the left camera's board"
-    amount = Setting("amount", "nine numbers ×", 0, 2.4, 0.05, 0, said)
+    amount = Setting("amount", "nine numbers ×", 0, 3, 0.05, 1, said)
     about = (
         "A printed sheet with its nine columns of corners: blue as the left camera of a real pair "
         "finds them, orange with so much of the right camera's nine shifts; and the RMS of the "
@@ -111,7 +115,7 @@ def columns_model() -> Model:
 def _draw(left: Believed, right: Believed, before: float, paper: Paper, values: Values) -> Drawing:
     amount = values["amount"]
     after = rms(left.misses(amount * right.columns))
-    panels = _sheet(paper, left, right, amount), _bar(paper, after, before)
+    panels = _sheet(paper, left, right, amount), _bar(paper, after, before, left.least)
     if not amount:
         said = f"With the columns as they were drawn, the left camera misses by {before:.3f} px."
     else:
@@ -155,12 +159,13 @@ def _sheet(paper: Paper, left: Believed, right: Believed, amount: float) -> Pane
     return panel
 
 
-def _bar(paper: Paper, now: float, before: float) -> Panel:
-    """Draw the RMS as a bar, and beside it what it was on the sheet as it was drawn."""
+def _bar(paper: Paper, now: float, before: float, least: float) -> Panel:
+    """Draw the RMS as a bar; beside it that of the sheet as drawn, and of one of free corners."""
     panel = paper.panel(_BAR, (0, 1), (1.16 * _HIGHEST, -0.04 * _HIGHEST), "RMS, left camera (px)")
     panel.line([[0, 0], [1, 0]], MUTED, 0.8)
     panel.polygons([[[0.12, 0], [0.4, 0], [0.4, now], [0.12, now]]], ESTIMATED)
-    panel.line([[0.06, before], [0.46, before]], MUTED, 1, dash=3)
-    panel.text([0.49, before], "as drawn", MUTED, size=13)
+    for height, name in ((before, "as drawn"), (least, "all corners free")):
+        panel.line([[0.06, height], [0.46, height]], MUTED, 1, dash=3)
+        panel.text([0.49, height], name, MUTED, size=13)
     panel.text([0.26, 0.03], f"{now:.3f}", "white", anchor="mm", size=15, rim=ESTIMATED)
     return panel

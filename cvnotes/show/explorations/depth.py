@@ -12,7 +12,7 @@ from cvnotes.pictures import depth_map, pixel_centres, radiance, room
 from cvnotes.pictures.meshes import from_above
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, MUTED, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, rgb
 from cvnotes.warping import backward_warp
 
 _PICTURE, _PLAN = (400, 300), (409, 628)
@@ -24,7 +24,7 @@ _PATCH = 7  # pixels of the halved pictures
 _UPRIGHT = 1400  # mm from the height of the cameras: neither floor nor ceiling, 200 mm farther
 _NAMES = {"cupboard": (1130, 8900), "box": (650, 6950), "table": (-2150, 6050)}
 _RAMP = "#F89540", "#CC4778", "#7E03A8", "#0D0887"  # from near to far
-_NONE = 226  # grey level of a pixel without a depth
+_NONE = 205  # grey level of a pixel without a depth
 _WALL = 10_000  # mm
 _WALLS = [[-3000, -600], [-3000, _WALL], [3000, _WALL], [3000, -600]]
 
@@ -206,8 +206,10 @@ def _plan(paper: Paper, Z: float, found: Array) -> Panel:
     panel.line(_WALLS, IDEAL, 1.5)
     for thing, at in _NAMES.items():
         panel.text(at, thing, IDEAL, anchor="mm", size=12)
-    for metres in (2, 4, 6, 8, 10, 12):
-        panel.text([-3250, 1000 * metres], f"{metres} m", MUTED, anchor="rm", size=12)
+    depths = np.arange(2000.0, 13_000, 2000, dtype=np.float64)
+    for at, ink in zip(depths, coloured(depths), strict=True):  # in the colour of its dots
+        tint = "#{:02X}{:02X}{:02X}".format(*ink)
+        panel.text([-3250, at], f"{at / 1000:.0f} m", tint, anchor="rm", size=13, rim="white")
     panel.line([[-3000, Z], [3850, Z]], ESTIMATED, 1.5, dash=5)
     panel.mark([[0, 0], [_BASE, 0]], "camera", 7)
     panel.mark([3850, Z], "estimated", 8)

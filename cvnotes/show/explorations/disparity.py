@@ -17,13 +17,13 @@ def disparity_model() -> Model:
     """Make the model of two rectified cameras, from above, and a point that both see."""
     settings = (
         Setting("X", "X (mm)", 0, 440, 10, 330, "how far to the right of the left camera"),
-        Setting("Z", "Z (mm)", 1500, 4500, 10, 3300, "how far away"),
-        Setting("sigma", "σ of d (px)", 0, 4, 0.1, 2, "how well the disparity is known"),
+        Setting("Z", "Z (mm)", 1500, 4500, 10, 4000, "how far away"),
+        Setting("sigma", "σ of d (px)", 0, 1, 0.05, 0.25, "how well the disparity is known"),
     )
     about = (
         "Two cameras from above that see one point, with the triangle over their base line and the "
         "similar one over the disparity; around the point where it may lie, and beside it the "
-        "standard deviation of its depth, against the depth."
+        "standard deviation of its depth against the depth, and the line of 1 %."
     )
 
     def pulled(_: Values, at: Array) -> Values:
@@ -81,14 +81,16 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _error(paper: Paper, Z: float, sigma: float) -> Panel:
     """Draw the standard deviation of the depth against the depth."""
-    panel = paper.panel((330, 390), (-400, 5000), (900, -90), "σ of Z (mm) against Z (mm)")
-    panel.ticks(x=(1000, 2000, 3000, 4000), y=(0, 250, 500, 750), size=11)
+    panel = paper.panel((340, 390), (-400, 5000), (160, -16), "σ of Z (mm) against Z (mm)")
+    panel.ticks(x=(1000, 2000, 3000, 4000), y=(0, 50, 100, 150), size=11)
+    panel.line([[0, 0], [5000, 50]], MUTED, 1, dash=4)
+    panel.text([900, 18], "1 % of Z", MUTED, anchor="mm", size=12)
     depths = np.linspace(0, 5000, 41)
     curve = depths**2 / (_ALPHA * _BASE) * sigma
     panel.line(np.column_stack([depths, curve]), ESTIMATED, 2)
     here = [Z, Z**2 / (_ALPHA * _BASE) * sigma]
     panel.mark(here, "estimated", 8)
-    panel.text([Z - 150, here[1] + 50], f"{here[1]:.0f} mm", ESTIMATED, anchor="rm", size=13)
+    panel.text([Z - 150, here[1] + 9], f"{here[1]:.0f} mm", ESTIMATED, anchor="rm", size=13)
     return panel
 
 

@@ -25,8 +25,8 @@ def rectification_model() -> Model:
     """Make the model of the two cameras of chapter 10, which turn."""
     settings = (
         Setting("turned", "turned (%)", 0, 100, 1, 0, "how far to the attitude that both share"),
-        Setting("u", "u (px)", 60, 620, 1, 451, "a pixel of the first picture as it was taken"),
-        Setting("v", "v (px)", 30, 450, 1, 207, "and its row"),
+        Setting("u", "u (px)", 60, 620, 1, 449, "a pixel of the first picture as it was taken"),
+        Setting("v", "v (px)", 30, 450, 1, 205, "and its row"),
     )
     about = (
         "Two pictures of a room, and epipolar lines that belong together. The cameras turn on the "

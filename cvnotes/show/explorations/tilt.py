@@ -74,7 +74,7 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
     lenses = _Lenses(camera, board)
     settings = (
         Setting("tilt", "tilt (°)", 0, _STEEPEST, 1, 30, "turns the board about its x axis"),
-        Setting("alpha", "other lens, α (px)", _SHORTEST, _LONGEST, 10, 400, "how long it is"),
+        Setting("alpha", "other lens, α (px)", _SHORTEST, _LONGEST, 5, 400, "how long it is"),
     )
     about = (
         "One tilted board through two lenses. Before the second it is turned and placed so that "
