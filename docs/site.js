@@ -46,7 +46,7 @@ addEventListener("load", () => {
 // What is folded: plumbing (the tag hide-input) and answers. A button opens all of it, paper shows
 // all of it, and on a narrow page the rest of the code is folded too, but for exercises.
 (() => {
-  const all = () => [...document.querySelectorAll(".bd-article details")];
+  const all = () => [...document.querySelectorAll(".bd-article details:not(.explore details)")];
 
   function fold(input) {
     if (input.closest("details") || /^check\(/m.test(input.textContent)) return;

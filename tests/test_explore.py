@@ -4109,3 +4109,94 @@ def test_a_shrunken_picture_reads_one_old_pixel_of_nine_and_a_sun_seen_straight_
         spread += [np.sqrt(np.cov(x.ravel(), aweights=red.ravel())) for x in (u, v)]
     assert spread[1] > 1.7 * spread[0]  # in the photograph it is an ellipse
     assert spread[3] == pytest.approx(spread[2], rel=0.1)  # straight on
+
+
+# What can be pulled in the picture is not asked for by sliders too.
+
+
+def pulled_by(names, drag):
+    """Make a model of three sliders and a switch, of which a hand pulls some."""
+    settings = [Setting(name, name, 0, 1, 0.01, 0.5, "a number") for name in "xyz"]
+
+    def draw(paper, values):
+        panel = paper.panel((200, 100), (0, 1), (0, 1))
+        panel.grip("dot", "the dot", (values["x"], values["y"]))
+        return Drawing(paper.join((panel,)), "A dot.")
+
+    choice = Setting("switch", "switch", 0, 1, 1, 0, "yes or no")
+    drags = {"dot": lambda values, at: drag(values, at)}
+    return Model("dot", "A dot.", (*settings[: len(names)], choice), draw, drags)
+
+
+def everything(values, at):
+    z = {"z": at[0] - at[1]} if "z" in values else {}
+    return {**values, "x": at[0], "y": at[1], **z}
+
+
+def all_but_z(values, at):
+    return {**values, "x": at[0], "y": at[1]}
+
+
+def one_way(values, at):  # a hand that only moves to the right, and down, says all three
+    return {**values, "x": max(at[0], 0.5), "y": max(at[1], 0.5), "z": min(at[1], 0.5)}
+
+
+@pytest.mark.parametrize(
+    ("names", "drag", "folded"),
+    [
+        ("xyz", everything, ("x", "y", "z")),
+        ("xyz", one_way, ("x", "y", "z")),
+        ("xyz", all_but_z, ()),
+        ("xy", everything, ()),  # one row of sliders is as low as the line that opens it
+    ],
+)
+def test_sliders_are_folded_where_a_hand_can_pull_all_that_they_set(names, drag, folded):
+    from cvnotes.show.explorations.shell import Explorer
+
+    model = pulled_by(names, drag)
+    assert model.folded() == folded
+    tinted = replace(model, settings=(model.settings[0]._replace(tint="#FFF0B3"), *model.settings))
+    assert tinted.folded() == ()  # its colours are the legend of a matrix
+    widget = Explorer(model)
+    assert data_of(widget)["folded"] == list(folded)
+    controls, *rest = widget.children[2:-1]
+    seen = [each for each in controls.children if each in widget.sliders.values()]
+    assert seen == [slider for name, slider in widget.sliders.items() if name not in folded]
+    assert len(rest) == bool(folded)
+    widget.close_all()
+
+
+def test_a_button_that_the_keyboard_reaches_opens_the_folded_sliders_and_closes_them():
+    widget = explorations.explore("homography")
+    controls, below = widget.children[2:4]
+    fold = controls.children[0]
+    assert type(fold).__name__ == "ToggleButton"
+    assert list(below.children[0].children) == list(widget.sliders.values())
+    for opened, sign, display in ((True, "▾", None), (False, "▸", "none")):
+        fold.value = not opened
+        fold.value = opened
+        assert fold.description == f"{sign} sliders"
+        assert below.layout.display == display
+    slider = widget.sliders["du1"]  # folded or not, it stands where the corner was pulled to
+    pulled = {"number": 1, "grip": "corner 1", "at": [12, -7], "values": widget.values}
+    start = widget.image.value
+    widget._pulled.value = json.dumps(pulled)
+    assert slider.value != 0
+    assert widget.image.value != start
+    widget.close_all()
+
+
+@pytest.mark.once
+@each_model
+def test_what_is_folded_can_be_pulled_from_where_it_stands_and_switches_stay(name):
+    model = MODELS[name]
+    folded = model.folded()
+    switches = {s.name for s in model.settings if s.is_choice}
+    assert not switches & set(folded)
+    assert set(folded) in (set(), {s.name for s in model.settings} - switches)
+    assert not folded or len(folded) > 2
+    assert bool(folded) == (name in FOLDED)
+
+
+# Where six and more sliders stood under a picture that says them all, and some with fewer.
+FOLDED = {"homography", "nails", "triangle", "maps", "votes", "meet", "walks", "rod", "epipolar"}

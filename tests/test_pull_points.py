@@ -201,9 +201,10 @@ def test_the_widget_keeps_its_points_tells_them_and_leaves_a_still():
     pulled = {"number": 1, "grip": "point 1", "at": [30, 35], "values": widget.values}
     widget._pulled.value = json.dumps(pulled)
     assert widget.points[0].tolist() == [30, 35]
-    folded = widget.children[2]
+    folded = widget.children[3]
+    assert folded.layout.display == "none"  # until the button before it is pressed
     assert "[[30.0, 35.0], [100.0, 40.0], [90.0, 100.0]]" in folded.children[1].value
-    assert set(widget.sliders.values()) < set(folded.children[0].children)
+    assert set(widget.sliders.values()) == set(folded.children[0].children)
     bundle = widget._repr_mimebundle_()["text/html"]
     assert html.escape(widget.model.drawing(**widget.values).sentence) in bundle
     assert "<img" in bundle

@@ -69,6 +69,9 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
         reached.append((focused["kind"], focused["name"]))
         assert focused["marked"], focused
         assert not focused["hidden"], focused
+        folded = "document.activeElement.matches('.explore details:not([open]) > summary')"
+        if page.evaluate(folded):
+            page.keyboard.press("Enter")
         if focused["kind"] == "range":
             before = page.evaluate("document.activeElement.value")
             page.keyboard.press("ArrowRight")

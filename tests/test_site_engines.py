@@ -183,6 +183,7 @@ def test_a_chapter_runs_in_jupyterlite(page, live_site):
 
 @pytest.mark.usefixtures("chapter")
 def test_an_exploration_follows_keys_mouse_and_thumb(page):
+    page.run("() => document.querySelector('.explore summary').click()")
     page.run("() => document.querySelector('.explore input').focus()")
     page.press("ArrowRight", "ArrowRight")
     page.wait(ANOTHER, 0)

@@ -184,7 +184,18 @@ def middle(grip):
 
 def value(box, label):
     number = box.locator(".explore-control", has=box.page.get_by_text(label, exact=True))
-    return float(number.locator("output").inner_text().replace("−", "-"))
+    return float(number.locator("output").text_content().replace("−", "-"))  # folded or not
+
+
+def unfold(box):
+    """Open the sliders of what can be pulled, if they are folded, by the keyboard."""
+    fold = box.locator(".explore-controls > details")
+    if fold.count():
+        assert not fold.locator("input").first.is_visible()
+        fold.locator("summary").focus()
+        box.page.keyboard.press("Enter")
+        assert fold.locator("input").first.is_visible()
+    return fold.count()
 
 
 # Explorations.
@@ -224,7 +235,8 @@ def test_every_exploration_follows_the_keyboard_as_the_notebook_would(all_explor
     for name, box in explorations(page).items():
         shown = box.evaluate(SHOWN)
         setting = MODELS[name].settings[0]
-        slider = box.locator("input").first
+        assert unfold(box) == bool(MODELS[name].folded()), name
+        slider = box.get_by_label(setting.label, exact=True)
         slider.focus()
         way = -1 if setting.value - 3 * setting.step >= setting.low else 1
         for _ in range(3):
@@ -309,6 +321,7 @@ def test_a_thumb_on_a_telephone_moves_slider_and_corner(open_page):
         "all_explorations", viewport={"width": 400, "height": 800}, has_touch=True, is_mobile=True
     )
     box = explorations(page)["homography"]
+    box.locator("summary").tap()
     slider = box.locator("input[type=range]").first
     slider.scroll_into_view_if_needed()
     place = slider.bounding_box()

@@ -13,6 +13,7 @@ from cvnotes.show.picture import Picture, packed
 from cvnotes.show.style import ESTIMATED
 
 Values = Mapping[str, float]
+_PULL = 40  # px of the page: so far that every slider takes a step
 
 
 class Setting(NamedTuple):
@@ -186,6 +187,32 @@ class Model:
                 steps = round((moved[s.name] - s.low) / s.step)
                 moved[s.name] = min(max(round(s.low + steps * s.step, 9) + 0.0, s.low), s.high)
         return moved
+
+    def folded(self, **values: float) -> tuple[str, ...]:
+        """Name the settings whose sliders are folded below the picture.
+
+        Where a hand can pull all that sliders set, they say it once more, and many of them push
+        the text away from the picture. A switch cannot be pulled: it stays. So do one or two
+        sliders, which take no more room than what would open them, and sliders whose colours say
+        what the entries of a matrix are.
+
+        Examples
+        --------
+        >>> from cvnotes.show.explorations import model
+        >>> model("walks").folded(), model("lens").folded()
+        (('X', 'Z', 'turn'), ())
+        """
+        values = self.values(**values)
+        sliders = tuple(s.name for s in self.settings if not s.is_choice)
+        if len(sliders) <= 2 or any(s.tint for s in self.settings):
+            return ()
+        by_hand = set()
+        for grip in self.drawing(**values).grips:
+            for way in (-_PULL, 0), (_PULL, 0), (0, -_PULL), (0, _PULL):
+                at = tuple(np.array(grip.at) + np.array(way) * grip.unit)
+                pulled = self.dragged(grip.name, at, **values)
+                by_hand |= {name for name in sliders if pulled[name] != values[name]}
+        return sliders if len(by_hand) == len(sliders) else ()
 
     def still(self, **values: float) -> Picture:
         """Return the picture for a page: at twice the resolution, with its alternative text."""

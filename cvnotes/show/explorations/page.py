@@ -55,6 +55,7 @@ def page_data(model: Model, camera: Camera | None, board: Chessboard | None, val
             "camera": None if camera is None else camera_to_dict(camera),
             "board": None if board is None else _board_to_dict(board),
             "settings": [{**s._asdict(), "choice": s.is_choice} for s in model.settings],
+            "folded": model.folded(**values),
             "values": values,
             **model.drawing(**values).as_data(),
         },

@@ -65,6 +65,7 @@ def _draw_picture(panel: Panel, ends: Array, ways: Array) -> None:
     row = _C[1]
     panel.polygons([frame], _SKY)
     panel.polygons([np.maximum(frame, [-9, row])], _GRASS)
+    panel.line([[_SHOWN[0], row], [_SHOWN[1], row]], IDEAL, 1.2)  # behind the house
     far = _CORNER + _LONG * ways / np.linalg.norm(ways, axis=1, keepdims=True)
     for (x, z), end, ink in zip(far, ends, _WALLS, strict=True):
         near_u, far_u = _C[0] + _F * np.array([_CORNER[0] / _CORNER[1], x / z])
@@ -75,7 +76,6 @@ def _draw_picture(panel: Panel, ends: Array, ways: Array) -> None:
         for corner in wall[:1] + wall[3:]:
             panel.line(np.array([corner, [end, row]], dtype=float), ESTIMATED, 1, dash=4)
     panel.line(frame[[0, 1, 2, 3, 0]], MUTED, 1)
-    panel.line([[_SHOWN[0], row], [_SHOWN[1], row]], IDEAL, 1.2)
     panel.text([_SHOWN[1] - 16, row + 64], "horizon", IDEAL, anchor="rm", size=13)
     for name, end, outwards, anchor in zip(("left", "right"), ends, (20, -20), "rl", strict=True):
         panel.mark([end, row], "estimated", 7)

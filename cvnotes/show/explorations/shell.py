@@ -5,14 +5,13 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
-from ipywidgets.widgets.widget_bool import Checkbox
+from ipywidgets.widgets.widget_bool import Checkbox, ToggleButton
 from ipywidgets.widgets.widget_box import Box, GridBox, VBox
 from ipywidgets.widgets.widget_button import Button
 from ipywidgets.widgets.widget_float import FloatSlider
 from ipywidgets.widgets.widget_int import IntSlider
 from ipywidgets.widgets.widget_media import Image
 from ipywidgets.widgets.widget_output import Output
-from ipywidgets.widgets.widget_selectioncontainer import Accordion
 from ipywidgets.widgets.widget_string import HTML, Text
 
 from cvnotes.base import Array
@@ -28,7 +27,6 @@ _TWO_LINES = "min-height: 2.8em; line-height: 1.4"  # so that the sliders stay w
 _SCRIPTS = ("grips.js", "notebook.js")
 _HIDDEN = {"display": "none"}
 _NO_ROOM = {"height": "0", "overflow": "hidden", "margin": "0"}
-_FOLDED = ("the points, by sliders", "the points, to be copied")
 _COLUMNS = "repeat(auto-fit, minmax({}px, 1fr))"
 
 
@@ -59,7 +57,7 @@ class Explorer(VBox):
     -0.3
     """
 
-    invites = "move its sliders"
+    invites, folds = "move its sliders", "sliders"
 
     def __init__(
         self, model: Model, camera: Camera | None = None, board: Chessboard | None = None
@@ -80,17 +78,9 @@ class Explorer(VBox):
         for slider in self.sliders.values():
             slider.observe(self.redraw, "value")
         self.reset_button.on_click(self.reset)
-        many = len(self.sliders) > 6
-        controls = GridBox(
-            [*self.sliders.values(), self.reset_button],
-            layout={
-                "grid_template_columns": _COLUMNS.format(250 if many else 290),
-                "width": "100%",
-            },
-        )
         beside = [self.matrices] if self.matrices.value else []
         hands = [self._hands()] if model.drags else []
-        super().__init__([self.image, self.sentence, *beside, controls, *hands])  # type: ignore[no-untyped-call]
+        super().__init__([self.image, self.sentence, *beside, *self._controls(), *hands])  # type: ignore[no-untyped-call]
         self.add_class("cvnotes-explorer")  # type: ignore[no-untyped-call]
 
     def __repr__(self) -> str:
@@ -152,6 +142,27 @@ class Explorer(VBox):
             self._held = False
         self.redraw()
 
+    def _controls(self) -> list[Box]:
+        """Lay out what is moved below the picture: what can be pulled in it is folded at first."""
+        folded, more = self.model.folded(), self._folded_too()
+        shown = [slider for name, slider in self.sliders.items() if name not in folded]
+        if not folded and not more:
+            return [_grid([*shown, self.reset_button])]
+        below = VBox([_grid([self.sliders[name] for name in folded]), *more])
+        fold = ToggleButton(tooltip="Show the sliders of what can be pulled in the picture")
+
+        def turn(_: Any = None) -> None:
+            fold.description = f"{'▾' if fold.value else '▸'} {self.folds}"
+            below.layout.display = None if fold.value else "none"
+
+        fold.observe(turn, "value")
+        turn()
+        return [_grid([*shown, fold, self.reset_button]), below]
+
+    def _folded_too(self) -> list[Any]:
+        """Give what is folded below the sliders."""
+        return []
+
     def _hands(self) -> Box:
         """Make what lets a hand take hold of the picture: a script, and its two ways to Python."""
         self._pulled.add_class("cvnotes-pulled")
@@ -188,14 +199,11 @@ class PulledPoints(Explorer):
     array([[1., 0.]])
     """
 
-    invites = "pull its points"
+    invites, folds = "pull its points", "numbers"
 
     def __init__(self, model: Model) -> None:
         self._numbers = HTML()
         super().__init__(model)
-        picture, sentence, controls, *hands = self.children
-        folded = Accordion([controls, self._numbers], titles=_FOLDED)
-        self.children = (picture, sentence, folded, *hands)
 
     @property
     def points(self) -> Array:
@@ -207,8 +215,16 @@ class PulledPoints(Explorer):
         super().redraw(change)
         self._numbers.value = f"<code>{self.points.tolist()}</code>"
 
+    def _folded_too(self) -> list[Any]:
+        return [self._numbers]
+
     def _for_page(self) -> str:
         return ""  # a page has no function of the reader's
+
+
+def _grid(parts: list[Any]) -> GridBox:
+    columns = _COLUMNS.format(250 if len(parts) > 7 else 290)
+    return GridBox(parts, layout={"grid_template_columns": columns, "width": "100%"})
 
 
 def _control(setting: Setting) -> Any:

@@ -34,7 +34,12 @@
       this.grips = new CvnotesGrips(this.stage, (wanted) => this.want(wanted));
       this.inputs = new Map();
       const controls = make("div", { className: "explore-controls" });
-      for (const setting of told.settings) controls.append(this.control(setting));
+      // What can be pulled in the picture is folded; a still of before says nothing of that.
+      const folded = make("div", { className: "explore-folded" });
+      for (const setting of told.settings)
+        (told.folded?.includes(setting.name) ? folded : controls).append(this.control(setting));
+      if (folded.children.length)
+        controls.append(make("details", {}, make("summary", { textContent: "sliders" }), folded));
       const reset = make("button", { type: "button", textContent: "Reset", className: "live-button" });
       reset.addEventListener("click", () => this.reset());
       controls.append(reset);
