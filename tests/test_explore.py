@@ -526,7 +526,7 @@ def test_where_the_lens_folds_is_told_as_it_is_seen_beside_the_pictures_corners(
 
 def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():
     drawing = MODELS["lens"].drawing(k1=0, k2=0)
-    assert drawing.sentence.startswith("The model never folds. The lens moves")
+    assert drawing.sentence.startswith("The model never folds. What is seen")
     assert numbers(drawing.sentence) == [0]
     assert count(drawing.picture, ESTIMATED) == 0
     assert count(drawing.picture, LENS) > 1000
@@ -1828,7 +1828,7 @@ def test_half_the_bend_is_worth_half_and_none_is_worth_nothing():
     told = {a: numbers(MODELS["hinge"].drawing(angle=a).sentence)[-1] for a in (176, 178, 179)}
     assert told[178] / told[176] == pytest.approx(2, rel=0.02)
     assert told[179] / told[178] == pytest.approx(2, rel=0.02)
-    assert MODELS["hinge"].drawing(angle=180).sentence.endswith("does not tell αᵤ.")
+    assert MODELS["hinge"].drawing(angle=180).sentence.endswith("does not determine αᵤ.")
     flat = TwoPlanes(Chessboard((7, 6), 25.0), np.pi)
     with pytest.raises(DegenerateError):
         calibrate_one_view(flat.points, hinge._VIEW.project(flat.points), (640, 480))

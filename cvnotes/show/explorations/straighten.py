@@ -29,9 +29,9 @@ def straighten_model() -> Model:
     corners = (camera.moved(G).project(board.points) - _MIDDLE) / _ALPHA
     rows = corners.reshape(*board.corners[::-1], 2)
     row = rows[0]
-    settings = (Setting("k1", "k1", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is taken off"),)
+    settings = (Setting("k1", "k₁", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is taken off"),)
     about = (
-        "The photograph of a chessboard in a room, with as much bending taken off as k1 says; "
+        "The photograph of a chessboard in a room, with as much bending taken off as k₁ says; "
         "beside it the uppermost row of corners, and how far it is from a straight line."
     )
 
@@ -43,7 +43,7 @@ def straighten_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         lens = Lens(k=(values["k1"],))
-        bow, taken = _bow(lens, row), f"k1 = {lens.k[0]:.3f}".replace("-", "−")
+        bow, taken = _bow(lens, row), f"k₁ = {lens.k[0]:.3f}".replace("-", "−")
         panel = paper.picture_panel(_PICTURE, _SIZE, f"the photograph, {taken} taken off")
         panel.image(_without(lens, photograph(), paper.sharpness))
         net = _ALPHA * lens.undistort(rows) + _MIDDLE
@@ -95,7 +95,7 @@ def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
 
 def _sentence(lens: Lens, bow: Array) -> str:
     most = float(bow[np.abs(bow).argmax()])
-    said = f"With k1 = {lens.k[0]:.3f} taken off, the uppermost row of corners "
+    said = f"With k₁ = {lens.k[0]:.3f} taken off, the uppermost row of corners "
     if abs(most) < 0.05:
         return f"{said}is straight, and so are the sides of the paper."
     return f"{said}bends {'up' if most > 0 else 'down'} by {abs(most):.1f} px."
