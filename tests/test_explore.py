@@ -2138,7 +2138,7 @@ def test_an_extra_has_a_slider_only_where_it_is_given_a_start():
     assert np.array_equal(plain.picture(k1=-0.25), bent.picture())
     assert not np.array_equal(plain.picture(), bent.picture())
     assert bent.dragged("camera", (100, -300))["k1"] == -0.25
-    with pytest.raises(CvnotesError, match=r"0\.25"):
+    with pytest.raises(CvnotesError, match=r"0\.3"):
         plain.values(k1=1)
 
 
@@ -3969,3 +3969,31 @@ def test_an_enlargement_is_as_wide_as_its_blur_and_the_long_lens_as_narrow_as_it
     shown = MODELS["enlarged"].drawing(bar=240).picture[TITLE : TITLE + SIZE[1], MARGIN:]
     assert np.abs(shown[5:250, 5:230, 0] - piece("bilinear")[5:250, 5:230]).max() <= 1
     assert np.abs(shown[5:250, 250:450, 0] - sharp()[5:250, 250:450]).max() <= 1
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_coefficients_have_small_digits_wherever_a_reader_meets_them(name, written):
+    drawing, model = MODELS[name].drawing(), MODELS[name]
+    met = [drawing.sentence, model.about, *written, *(panel.title for panel, _ in written.values())]
+    met += [words for s in (*model.settings, *model.extras) for words in (s.label, s.help)]
+    met += [grip.label for grip in drawing.grips]
+    assert [words for words in met if re.search(r"\b(k[1-6]|p[12]|[uv]0)\b", words)] == []
+
+
+def test_what_a_pincushion_shows_in_the_corners_comes_from_farther_in():
+    sides = {k1: MODELS["lens"].drawing(k1=k1, k2=0).sentence[-4:-1] for k1 in (-0.2, 0.2)}
+    assert sides == {-0.2: "out", 0.2: " in"}
+
+
+def test_no_dot_of_the_hinge_lies_beyond_one_plane(monkeypatch):
+    drawn = []
+    paint = Panel.polygons
+    monkeypatch.setattr(
+        Panel, "polygons", lambda self, at, ink: (drawn.append(at), paint(self, at, ink))
+    )
+    for angle in (170, 178):
+        drawn.clear()
+        MODELS["hinge"].drawing(angle=angle)
+        dots = next(at for at in drawn if np.shape(at)[1:] == (13, 2))
+        assert dots[..., 0].max() < 180.7
+        assert dots[..., 1].min() > 735  # above the angles

@@ -85,7 +85,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     angle = round(values["angle"])
     drawn = paper.join((_space(paper, angle), _graph(paper, angle)))
     if angle == _FLAT:
-        return Drawing(drawn, "At 180° both boards are one plane: the photograph does not determine αᵤ.")
+        return Drawing(
+            drawn, "At 180° both boards are one plane: the photograph does not determine αᵤ."
+        )
     one = spread()[angle - _OPEN]
     return Drawing(
         drawn, f"At {angle}° one photograph determines αᵤ to ± {one:.{1 if one > 2 else 2}f} px."
