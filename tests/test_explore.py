@@ -1393,10 +1393,10 @@ def test_twelve_half_circles_meet_in_the_camera_where_its_lens_is_undone():
             assert (arc > [left, top]).all()
             assert (arc < [right, low]).all()
     said = {k1: numbers(MODELS["folds"].drawing(k1=k1).sentence) for k1 in (-0.25, -0.2, 0)}
-    assert said[-0.25][2] < 0.5
-    assert said[-0.25][3:] == [325, 238, 800]  # the camera that the equations find
-    assert said[-0.2][3] > 10
-    assert said[0][2:] == [21, 91, 314, 243, 803]  # as on the page, eleven pixels aside
+    assert said[-0.25][1] < 0.5
+    assert said[-0.25][2:] == [325, 238, 800]  # the camera that the equations find
+    assert said[-0.2][2] > 10
+    assert said[0][1:] == [21, 91, 314, 243, 803]  # as on the page, eleven pixels aside
 
 
 def test_newton_and_division_need_as_many_rounds_as_they_are_said_to():
