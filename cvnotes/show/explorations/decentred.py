@@ -22,9 +22,9 @@ def decentred_model() -> Model:
     """Make the model of a grid through a lens with tangential terms alone."""
     settings = (
         Setting(
-            "p1", "p1", -0.05, 0.05, 0.001, 0.04, "an element of the lens off the axis, along y"
+            "p1", "p₁", -0.05, 0.05, 0.001, 0.04, "an element of the lens off the axis, along y"
         ),
-        Setting("p2", "p2", -0.05, 0.05, 0.001, 0, "an element of the lens off the axis, along x"),
+        Setting("p2", "p₂", -0.05, 0.05, 0.001, 0, "an element of the lens off the axis, along x"),
     )
     about = (
         "A grid through a lens with tangential terms alone, each point moved three times as far, "
@@ -66,7 +66,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     lens.text(tip + 18 * lens.pixel * _along(p)[1], "p", IDEAL, anchor="mm", size=17)
     lens.grip("p", "the direction of the tangential terms", tip, 1)
     words = (
-        f"p1 = {values['p1']:.3f}, p2 = {values['p2']:.3f}: at a focal length of {_F} px the line "
+        f"p₁ = {values['p1']:.3f}, p₂ = {values['p2']:.3f}: at a focal length of {_F} px the line "
         f"across p bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the tilted sensor."
     )
     return Drawing(paper.join((lens, sensor)), words)

@@ -138,7 +138,7 @@ def _bars(paper: Paper, left: Array) -> Panel:
 
 def _sentence(left: Array, before: Array, after: Array) -> str:
     return (
-        f"With this picture {left[5]:.2f} of the standard deviation of k2 would be left, and "
+        f"With this picture {left[5]:.2f} of the standard deviation of k₂ would be left, and "
         f"{left[0]:.2f} of that of αᵤ. The worst corner of the picture is known to "
         f"{before.max():.2f} px now, and then to {after.max():.2f}."
     )

@@ -98,7 +98,7 @@ def _draw(finding: Finding, paper: Paper, values: Values) -> Drawing:
     missed = rms(misses)
     agreement = alike(misses)
     sentence = (
-        f"After {step:g} of {_STEPS} steps k1 = {value['k1']:+.3f} and u0 = {value['u0']:.1f} px; "
+        f"After {step:g} of {_STEPS} steps k₁ = {value['k1']:+.3f} and u₀ = {value['u0']:.1f} px; "
         f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. {_seen(agreement)}"
     )
     return Drawing(paper.join((frames, curve)), sentence)

@@ -90,15 +90,15 @@ def folds_model() -> Model:
     """Make the model of the half circles of twelve photographs, whose lens is undone by k1."""
     tangle = _Tangle()
     settings = (
-        Setting("k1", "k1", _LOWEST, _HIGHEST, _STEP, 0,
-                f"of the lens that is undone; k2 = {tangle.bend:.1f} k1²"),
+        Setting("k1", "k₁", _LOWEST, _HIGHEST, _STEP, 0,
+                f"of the lens that is undone; k₂ = {tangle.bend:.1f} k₁²"),
         Setting("turned", "boards turned", 0, 1, 0.05, 1,
                 "1: as they were photographed; 0: all parallel to the first"),
     )  # fmt: skip
     about = (
         "Twelve half circles, one for each photograph: all places from which it shows right "
         "angles. Beside them what lies near the camera, enlarged, and how far they miss it, "
-        "against k1."
+        "against k₁."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -114,7 +114,7 @@ def folds_model() -> Model:
 def _sentence(of: _Of, misses: Array, found: Array) -> str:
     k1, turned = of
     k = f"{k1:.3f}".replace("-", "−")
-    said = f"With k1 = {k} undone, the twelve half circles pass the camera at "
+    said = f"With k₁ = {k} undone, the twelve half circles pass the camera at "
     if misses.max() >= 1:
         said += f"{misses.min():.0f} to {misses.max():.0f} px: no eye sees all right angles."
     elif turned:
@@ -200,7 +200,7 @@ def _draw_triangle(panel: Panel, at: Array) -> None:
 def _curve(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     """Draw how far the half circles miss the camera; the hand pulls along the curve."""
     (k1, turned), x, y = of, (_LOWEST - 0.07, _HIGHEST + 0.03), (_MOST, -0.2 * _MOST)
-    panel = paper.panel(_CURVE, x, y, "RMS distance from camera (px) against k1")
+    panel = paper.panel(_CURVE, x, y, "RMS distance from camera (px) against k₁")
     panel.ticks(x=(-0.4, -0.2, 0), y=(0, 40, 80), size=12)
     tried = np.arange(_LOWEST, _HIGHEST + 0.01, 0.025)
     way = np.array([[k, np.sqrt(np.mean(tangle.misses(float(k), turned) ** 2))] for k in tried])

@@ -49,7 +49,7 @@ def formation_model() -> Model:
             "upper right panel: 0 the world, 1 the camera's frame, 2 divided by z",
         ),
     )  # fmt: skip
-    lens = Setting("k1", "k₁ of the lens", -0.25, 0.25, 0.01, 0, "how strongly the lens bends")
+    lens = Setting("k1", "k₁ of the lens", -0.3, 0.3, 0.01, 0, "how strongly the lens bends")
     about = (
         "A box on a floor, four times: from above in the world, with a camera; from above in the "
         "camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the "

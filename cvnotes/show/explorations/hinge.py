@@ -32,13 +32,13 @@ def on_sheet(W: Array) -> Array:
 
 
 def hinge_model() -> Model:
-    """Make the model of a photograph of two boards on a hinge, and of what it tells of α."""
+    """Make the model of a photograph of two boards on a hinge, and of how well it determines α."""
     settings = (
         Setting("angle", "angle of the boards (°)", _OPEN, _FLAT, 1, 120, "180° is one plane"),
     )
     about = (
         "A camera before two boards on a hinge. Beside it a band against their angle: how exactly "
-        "one photograph of both tells the focal length, with what 40 of them told as dots."
+        "one photograph of both determines the focal length, with that of 40 of them as dots."
     )
 
     def turned(_: Values, at: Array) -> Values:
@@ -70,7 +70,7 @@ def gains() -> Array:
 
 @lru_cache(maxsize=1)
 def found() -> Array:
-    """Return α_u as 40 photographs tell it (angles, 40), the same noise for each angle."""
+    """Return α_u as 40 photographs give it (angles, 40), the same noise for each angle."""
     noise = np.random.default_rng(0).normal(scale=_NOISE, size=(_PHOTOS, gains().shape[1]))
     return np.asarray(_A[0, 0] + gains() @ noise.T)
 
@@ -85,10 +85,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     angle = round(values["angle"])
     drawn = paper.join((_space(paper, angle), _graph(paper, angle)))
     if angle == _FLAT:
-        return Drawing(drawn, "At 180° both boards are one plane: the photograph does not tell αᵤ.")
+        return Drawing(
+            drawn, "At 180° both boards are one plane: the photograph does not determine αᵤ."
+        )
     one = spread()[angle - _OPEN]
     return Drawing(
-        drawn, f"At {angle}° one photograph tells αᵤ to ± {one:.{1 if one > 2 else 2}f} px."
+        drawn, f"At {angle}° one photograph determines αᵤ to ± {one:.{1 if one > 2 else 2}f} px."
     )
 
 
@@ -147,10 +149,12 @@ def _graph(paper: Paper, angle: int) -> Panel:
         panel.line(end, ESTIMATED, 1.4)
     panel.line([[_OPEN - 20, alpha], [_FLAT + 20, alpha]], IDEAL, 1)
     if angle < _FLAT:
-        places = np.stack([angle + np.linspace(-4, 4, _PHOTOS), found()[angle - _OPEN]], axis=1)
+        aside = min(4, _FLAT - angle) * np.linspace(-1, 1, _PHOTOS)  # none beyond 180°
+        places = np.stack([angle + aside, found()[angle - _OPEN]], axis=1)
         dot = 1.7 * circle(13) * [panel.pixel, (2 * _REACH + 12) / _FOUND[1]]
-        panel.polygons(places[:, None] + dot, ESTIMATED)
-        beyond = int((np.abs(places[:, 1] - alpha) > _REACH).sum())
+        within = np.abs(places[:, 1] - alpha) <= _REACH  # below stand the angles
+        panel.polygons(places[within, None] + dot, ESTIMATED)
+        beyond = int((~within).sum())
         if beyond:
             words = f"{beyond} of {_PHOTOS} go beyond"
             panel.text([93, alpha + 0.85 * _REACH], words, IDEAL, size=13)

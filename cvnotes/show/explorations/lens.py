@@ -61,7 +61,8 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
 def _around(name: str, reach: float, step: float, value: float, about: str) -> Setting:
     """Make a setting from −reach to reach, or as far as a camera's own value asks for."""
     reach = max(reach, abs(value))
-    return Setting(name, name, -reach, reach, step, value, about)
+    label = name.translate(str.maketrans("12", "₁₂"))
+    return Setting(name, label, -reach, reach, step, value, about)
 
 
 def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
@@ -186,7 +187,7 @@ def _draw_curve(panel: Panel, lens: Lens, moved: Array) -> None:
         panel.arrows([r, r], [0, float(seen_radius(lens, r)) - r], IDEAL, 1.2)
     held = [_HELD, float(seen_radius(lens, np.array(_HELD)))]
     panel.mark(held, "lens", 8)
-    panel.grip("curve", "the curve of k1", held, 2)
+    panel.grip("curve", "the curve of k₁", held, 2)
     if lens.max_radius < _RADIUS:
         panel.line([[lens.max_radius, 1.2], [lens.max_radius, -0.2]], ESTIMATED, 1)
         near = lens.max_radius < 0.6  # then there is room above the curves, else below
@@ -209,10 +210,12 @@ def _sentence(camera: Camera, lens: Lens) -> str:
         )
     fold = f"folds at r = {lens.max_radius:.3f}, beyond the picture"
     ends = "never folds" if np.isinf(lens.max_radius) else fold
-    far = float(np.linalg.norm(camera.A[:2, :2] @ (ideal - corners).T, axis=0).max())
+    away = np.linalg.norm(camera.A[:2, :2] @ (ideal - corners).T, axis=0)
+    far, farthest = away.max(), away.argmax()
+    side = "out" if np.linalg.norm(ideal[farthest]) >= np.linalg.norm(corners[farthest]) else "in"
     return (
-        f"The model {ends}. The lens moves what is seen in the picture's corners by up to "
-        f"{far:.1f} px."
+        f"The model {ends}. What is seen in the picture's corners comes from up to {far:.1f} px "
+        f"farther {side}."
     )
 
 

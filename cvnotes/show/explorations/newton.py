@@ -63,21 +63,18 @@ def guesses(step: Step, level: float, rounds: int) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     r, rounds = values["r"], int(values["rounds"])
     level = float(seen(r))
-    whole = paper.panel((280, 340), (0, 1), (0.68, 0), "r' over r: the first round")
-    whole.ticks(x=(0.2, 0.4, 0.6, 0.8), y=(0.2, 0.4))
-    curve = paper.panel((330, 340), (0.55, 0.96), (0.632, 0.445), "nearer: pull the plus")
-    curve.ticks(y=(0.55, 0.6))
-    for number in (0.6, 0.7, 0.8):
-        curve.text([number, 0.4506], f"{number:g}", anchor="md", size=11)
-    fine = np.linspace(0.4, 0.96, 57)
-    every = np.linspace(0, 1, 61)
-    for panel, along in ((whole, every), (curve, fine)):
-        panel.line(np.column_stack([along, seen(along)]), LENS, 2.2)
-        panel.line(np.array([[0, level], [1, level]]), IDEAL, 1)
+    title = f"r' over r, for k₁ = {_K1}: pull the plus".replace("-", "−")
+    curve = paper.panel((540, 360), (0.455, 0.96), (0.632, 0.365), title)
+    curve.ticks(y=(0.4, 0.45, 0.5, 0.55, 0.6))
+    for number in (0.5, 0.6, 0.7, 0.8):
+        curve.text([number, 0.372], f"{number:g}", anchor="md", size=11)
+    along = np.linspace(0.4, 0.96, 57)
+    curve.line(np.column_stack([along, seen(along)]), LENS, 2.2)
+    curve.line(np.array([[0, level], [1, level]]), IDEAL, 1)
     curve.line([[_FOLD, 0], [_FOLD, 1]], MUTED, 1, dash=4)
-    curve.text([_FOLD - 0.005, 0.47], "the fold", MUTED, anchor="rm")
+    curve.text([_FOLD - 0.005, 0.4], "the fold", MUTED, anchor="rm")
     errors = paper.panel(
-        (280, 340), (-2.6, _ROUNDS + 0.8), (np.log10(_MOST), np.log10(_LEAST)),
+        (300, 360), (-2.6, _ROUNDS + 0.8), (np.log10(_MOST), np.log10(_LEAST)),
         "error (px) after each round",
     )  # fmt: skip
     for power in (2, 1, 0, -1, -2, -3, -4):
@@ -87,17 +84,16 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         errors.text([n, np.log10(_LEAST) + 0.25], f"{n}", anchor="mm", size=11)
     errors.text([_ROUNDS - 2.5, np.log10(_LEAST) + 0.75], "rounds", MUTED, anchor="mm", size=12)
     first = float(seen(level))
-    for panel in (whole, curve):
-        panel.line(np.array([[0, 0], [level, first]]), MUTED, 1, dash=3)
-    whole.text([0.4, 0.25], "ray from the origin", MUTED, size=12)
-    whole.text([0.98, first - 0.05], "tangent", ESTIMATED, anchor="rm", size=12)
+    curve.line(np.array([[0, 0], [level, first]]), MUTED, 1, dash=3)
+    foot = np.array([level, first])
+    curve.text([0.51, 0.413], "ray from the origin", MUTED, size=12)
+    curve.text(foot + [0.03, 0.004], "the tangent", ESTIMATED, size=12)
     counts = []
     for step, name, colour, side in (
         (along_the_ray, "dividing by L", MUTED, -1),
         (along_the_tangent, "Newton", ESTIMATED, 1),
     ):
         way = guesses(step, level, 1000)
-        _way(whole, way[:2], level, colour, 3, side)
         _way(curve, way[: rounds + 1], level, colour, 1.5, side)
         off = _F * np.abs(way - r)
         counts.append(int(np.argmax(off < _ENOUGH)))
@@ -105,10 +101,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         end = min(int(np.argmax(off < 0.003)), 12)  # to the right of it the curve has fallen
         at = [end + 0.4, np.log10(max(off[end], 2e-4)) + 0.15]
         errors.text(at, name, colour, anchor="ld", size=12)
-    curve.text([level - 0.006, level - 0.003], "r'", IDEAL, anchor="ra", size=13)
+    curve.mark([level, level], "ideal", 6)
+    curve.text([level, level + 0.013], "start: r₀ = r'", IDEAL, anchor="mm", size=13)
     curve.mark([r, level], "ideal", 8)
     curve.grip("level", "the level r', by the ideal radius that it belongs to", [r, level], 4)
-    return Drawing(paper.join((whole, curve, errors)), _sentence(r, level, counts))
+    return Drawing(paper.join((curve, errors)), _sentence(r, level, counts))
 
 
 def _way(panel: Panel, way: Array, level: float, colour: str, width: float, side: int) -> None:

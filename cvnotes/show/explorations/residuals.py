@@ -23,7 +23,7 @@ def residuals_model() -> Model:
     )
     about = (
         "All corners of twelve photographs on one sensor, each with an arrow to where the best "
-        "camera with this k1 puts it. Beside it the RMS of all arrows against k1."
+        "camera with this k₁ puts it. Beside it the RMS of all arrows against k₁."
     )
     return Model("residuals", about, settings, _draw, {"k1": lambda _, at: {"k1": float(at[0])}})
 
@@ -88,5 +88,5 @@ def _curve(paper: Paper, k1: float, missed: float) -> Panel:
     panel.line(np.column_stack([_valley()[:, 0], np.log10(_valley()[:, 1])]), LENS, 2)
     here = np.array([k1, np.log10(missed)])
     panel.mark(here, "estimated", 8)
-    panel.grip("k1", "k1, to be moved along the curve", here, 4)
+    panel.grip("k1", "k₁, to be moved along the curve", here, 4)
     return panel

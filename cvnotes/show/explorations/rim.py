@@ -28,7 +28,7 @@ def rim_model() -> Model:
     """Make the model of a disc of the plane z = 1, and of what a polynomial makes of it."""
     settings = (
         Setting("ring", "r", 0.1, 0.87, 0.01, 0.7, "the ideal radius of the disc"),
-        Setting("k1", "k1", -1.5, 0, 0.01, -1.33, "radial"),
+        Setting("k1", "k₁", -1.5, 0, 0.01, -1.33, "radial"),
     )
     about = (
         "A room through a lens, and on it a disc of cells. Up to the lens's rim it is blue; what "
