@@ -429,7 +429,7 @@ def test_numbers_below_zero_have_a_minus_sign_and_no_hyphen():
         sentence = MODELS[name].drawing(**values).sentence
         assert re.search(r"−\d", sentence)
         assert not re.search(r"-\d", sentence)
-    assert "says +0.00 ± 0.00 px" in MODELS["noise"].drawing(sigma=0).sentence
+    assert "off by +0.00 px, and claims ± 0.00 px" in MODELS["noise"].drawing(sigma=0).sentence
 
 
 def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_steps(
