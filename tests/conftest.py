@@ -21,7 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 from cvnotes.calibration import Calibration, extrinsics, radial_distortion
 from cvnotes.calibration.correspondences import Correspondences
@@ -32,8 +32,13 @@ from cvnotes.homography import dlt
 from cvnotes.targets import Chessboard
 
 # The same examples each time, and no verdict on how long a busy machine takes to draw them.
+# What is found is shown as found: to make it small takes half an hour where each try is a calibration.
 settings.register_profile(
-    "course", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+    "course",
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+    phases=[Phase.explicit, Phase.generate],
 )
 settings.load_profile("course")
 

@@ -112,6 +112,15 @@ def test_any_arguments_lead_to_an_answer_or_to_an_error_of_the_family(call):
 A = intrinsics(800, 800, 320, 240)
 
 
+@pytest.mark.parametrize(("side", "axis"), [("left_points", 0), ("right_points", 1)])
+def test_a_corner_far_beside_the_picture_is_an_error_and_no_overflow(side, axis):
+    function = next(f for f in ALL if side in f.good)
+    far = function.good[side].copy()
+    far[-1, -1, axis] = 1e5
+    with pytest.raises(CvnotesError):
+        function.call(**{**function.good, side: far})
+
+
 def test_points_that_no_lens_shows_are_nowhere():
     barrel = Camera(A, lens=Lens(k=(-0.3,)))  # shows nothing beyond a radius of 0.7
     pair = [barrel, barrel.moved(pose(np.eye(3), [-80.0, 0, 0]))]

@@ -139,17 +139,16 @@ def levenberg_marquardt(
     damping, previous, returns = 0.0, 0.0, 0
     for iteration in range(1, max_iterations + 1):
         step, predicted = solve(system, damping)
-        x_new = take_step(x, step)
         shrinks = max(_SHRINKS, predicted / previous) if previous > 0 else 1.0
         # (a decrease below 0 is no decrease: it comes from rounding where J is nearly singular)
         close = abs(predicted) * min(1.0, shrinks) <= tolerance * cost + floor
-        if close and damping == 0:  # too short a step to look where it ends
-            return Minimum(x_new, max(cost - predicted, 0.0), system, iteration, True)
         with np.errstate(all="ignore"):  # a step too far may leave the model; it is then refused
+            x_new = take_step(x, step)
+            if close and damping == 0:  # too short a step to look where it ends
+                return Minimum(x_new, max(cost - predicted, 0.0), system, iteration, True)
             cost_new, system_new = linearise(x_new)
-        if follow and np.isfinite(cost_new) and cost_new >= cost:
-            x_new = follow(x_new, system_new)
-            with np.errstate(all="ignore"):
+            if follow and np.isfinite(cost_new) and cost_new >= cost:
+                x_new = follow(x_new, system_new)
                 cost_new, system_new = linearise(x_new)
         downhill = cost_new < cost
         if downhill:
