@@ -32,7 +32,7 @@ from cvnotes.homography import dlt
 from cvnotes.targets import Chessboard
 
 # The same examples each time, and no verdict on how long a busy machine takes to draw them.
-# What is found is shown as found: to make it small takes half an hour where each try is a calibration.
+# What is found is shown as found: to make it small takes half an hour where a try is a calibration.
 settings.register_profile(
     "course",
     derandomize=True,
