@@ -408,7 +408,8 @@ STAND_IN = """
     server = subprocess.Popen(wait, start_new_session=True)
     try:
         print("server", server.pid, "up", flush=True)
-        time.sleep(600)  # and no lock is held when Ctrl-C comes, as `wait` may hold one
+        while True:  # no lock is held when Ctrl-C comes, as `wait` may hold one; and a signal that
+            time.sleep(0.1)  # comes just before a sleep begins ends only the next
     except KeyboardInterrupt:
         time.sleep(0.4)
         server.terminate()
