@@ -89,11 +89,11 @@ def processor_time():
     return sum(os.times()[:4])
 
 
-def wait_for(condition, seconds=300.0):
+def wait_for(condition, seconds=300.0, of=None):
     """Wait until something holds that comes by itself, the later the busier the machine is."""
     deadline = time.monotonic() + seconds
     while not condition():
-        assert time.monotonic() < deadline
+        assert time.monotonic() < deadline, of
         time.sleep(0.05)
 
 
