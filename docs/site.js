@@ -31,6 +31,24 @@
   narrow.addEventListener("change", () => narrow.matches && stackAll());
 })();
 
+// A line may break between a formula and the full stop behind it, or the bracket before it: browsers
+// ask no word joiner there, so the two are held together.
+addEventListener("DOMContentLoaded", () => {
+  for (const formula of document.querySelectorAll("span.math")) {
+    const [before, behind] = [formula.previousSibling, formula.nextSibling];
+    const opens = /[(“‘]$/.test(before?.data);
+    const closing = /^[.,;:!?)’”]+/.exec(behind?.data);
+    if (!opens && !closing) continue;
+    const held = document.createElement("span");
+    held.style.whiteSpace = "nowrap";
+    formula.before(held);
+    if (opens) held.append(before.splitText(before.length - 1));
+    held.append(formula);
+    if (closing) behind.splitText(closing[0].length);
+    if (closing) held.append(behind);
+  }
+});
+
 // What the theme and docutils say of themselves, so that every reader program understands it.
 addEventListener("load", () => {
   for (const button of document.querySelectorAll(".search-button-field")) button.removeAttribute("aria-label");

@@ -195,6 +195,25 @@ def test_on_a_telephone_no_page_is_wider_than_the_screen(site, telephone, name):
     assert telephone.evaluate("document.documentElement.scrollWidth") <= 400
 
 
+# How many formulas have a comma or the like behind them, and where it begins another line.
+LONE = """() => {
+    let count = 0;
+    const lone = [];
+    for (const formula of document.querySelectorAll(".bd-article span.math")) {
+        const behind = formula.nextSibling, letter = document.createRange();
+        if (!/^[.,;:)]/.test(behind?.data)) continue;
+        letter.setStart(behind, 0);
+        letter.setEnd(behind, 1);
+        const { top, height } = letter.getBoundingClientRect();
+        if (!height) continue;
+        count += 1;
+        const end = formula.lastElementChild.getBoundingClientRect().bottom;
+        if (top > end) lone.push(formula.parentElement.parentElement.textContent);
+    }
+    return [count, lone];
+}"""
+
+
 def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_beginning(
     site, telephone
 ):
@@ -208,6 +227,9 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
     )
     assert long
     assert min(long) > -1  # px: what is left of a box cannot be scrolled to
+    punctuated, lone = telephone.evaluate(LONE)
+    assert punctuated > 50
+    assert lone == []
     telephone.goto((site / "notebooks" / "08_image_warping.html").as_uri())
     telephone.wait_for_function(  # figures are fetched when they come into sight
         """() => {
