@@ -113,11 +113,12 @@ A = intrinsics(800, 800, 320, 240)
 
 
 @pytest.mark.parametrize(("side", "axis"), [("left_points", 0), ("right_points", 1)])
-def test_a_corner_far_beside_the_picture_is_an_error_and_no_overflow(side, axis):
+def test_a_corner_far_beside_the_picture_is_refused_or_doubted_and_no_overflow(side, axis):
     function = next(f for f in ALL if side in f.good)
     far = function.good[side].copy()
     far[-1, -1, axis] = 1e5
-    with pytest.raises(CvnotesError):
+    # Which of the two depends on the machine's last digits: the search goes far in either case.
+    with pytest.raises((CvnotesError, CalibrationWarning)):
         function.call(**{**function.good, side: far})
 
 
