@@ -21,8 +21,8 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
-MAGNIFIED = (5, 50, 700, 3000)  # how much longer than true arrows are after each step
-_STEPS = len(MAGNIFIED) - 1
+_STEPS = 3
+_LONGEST = 0.12  # of the board's width in the photograph: so long is a frame's longest arrow
 _FRAMES, _CURVE = (456, 304), (394, 304)
 
 
@@ -56,6 +56,15 @@ class Finding:
         x: State = take_step(self.states[whole], (part * shared, part * poses))
         camera = self.problem.camera_of(x.shared)
         return camera, self.problem.residuals(camera, x)
+
+    @cached_property
+    def enlarged(self) -> Array:
+        """How much longer than true the arrows of each photograph are after each step, (12, 4)."""
+        missed = np.array([self.at(step)[1] for step in range(_STEPS + 1)])
+        longest = _LONGEST * np.ptp(self.m, axis=1).max(axis=-1)
+        times = longest[:, None] / np.linalg.norm(missed, axis=-1).max(axis=-1).T
+        tens = 10 ** np.floor(np.log10(times))
+        return np.asarray(tens * np.rint(times / tens))  # a number of one digit, and noughts
 
     @cached_property
     def way(self) -> Array:
@@ -120,21 +129,22 @@ def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
         if step > frame - 1:
             at = min(step, frame)
             camera, misses = finding.at(at)
-            panel.arrows(m, -_magnified(at) * misses[i] / unit, ESTIMATED, 1.2)
+            times = _magnified(finding.enlarged[i], at)
+            panel.arrows(m, -times * misses[i] / unit, ESTIMATED, 1.2)
             k1 = f"k₁ = {camera.parameters['k1']:+.3f}".replace("-", "−")
             panel.text(
                 middle + [-0.96, -0.9], f"all: {_digits(rms(misses))} px", ESTIMATED, size=16
             )
             panel.text(middle + [0.96, -0.9], k1, anchor="rm", size=14)
-            panel.text(middle + [-0.96, 0.82], f"× {_magnified(at):.0f}", size=12)
+            panel.text(middle + [-0.96, 0.82], f"× {times:.0f}", size=12)
         else:
             panel.text(middle + [-0.96, -0.9], f"step {frame}: not yet", size=14)
     return panel
 
 
-def _magnified(step: float) -> float:
+def _magnified(enlarged: Array, step: float) -> float:
     """Magnify the more the smaller the misses are, by equal factors within a step."""
-    return float(np.exp(np.interp(step, range(_STEPS + 1), np.log(MAGNIFIED))))
+    return float(np.exp(np.interp(step, range(_STEPS + 1), np.log(enlarged))))
 
 
 def _digits(pixels: float) -> str:

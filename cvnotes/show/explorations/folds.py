@@ -31,6 +31,7 @@ _NEAR = 100.0  # px about the camera, that are shown enlarged
 _MOST = 90.0  # px, of the curve
 _DEEP = 4000  # px from the palest half circles to the strongest, with the camera between
 _FAR, _TONES = "#B0CEE4", 8  # the palest blue; how many there are
+_FADES = 5  # steps in which a half circle fades out, where it leaves what is shown enlarged
 
 
 class _Tangle:
@@ -145,17 +146,28 @@ def _space(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     return panel
 
 
-def _draw_arcs(panel: Panel, arcs: Array, near: Array, width: _Of) -> None:
+def _draw_arcs(
+    panel: Panel, arcs: Array, near: Array, width: _Of, faded: Array | float = 0
+) -> None:
     """Draw curves (n, k, 2) in pieces, from the farthest to the nearest: thicker and stronger.
 
-    How near their points (n, k) are goes from −½ to ½.
+    How near their points (n, k) are goes from −½ to ½, and how faded from 0 to 1.
     """
     pieces = np.stack([arcs[:, :-1], arcs[:, 1:]], axis=2)
-    tone = np.rint(((near[:, :-1] + near[:, 1:] + 1) / 2).clip(0, 1) * (_TONES - 1))
+    tone = _step(near + 0.5, _TONES)
+    pale = _step(np.broadcast_to(faded, near.shape), _FADES)
     for i in range(_TONES):
         part = i / (_TONES - 1)
-        ink = mixed(_FAR, LENS, part)
-        panel.segments(pieces[tone == i], ink, width[0] + part * (width[1] - width[0]))
+        for j in reversed(range(_FADES)):
+            ink = mixed(mixed(_FAR, LENS, part), "#FFFFFF", j / _FADES)
+            some = pieces[(tone == i) & (pale == j)]
+            panel.segments(some, ink, width[0] + part * (width[1] - width[0]))
+
+
+def _step(values: Array, steps: int) -> Array:
+    """Return for each piece between two points, whose values go from 0 to 1, one of the steps."""
+    middle = (values[:, :-1] + values[:, 1:]) / 2
+    return np.asarray(np.rint(np.nan_to_num(middle).clip(0, 1) * (steps - 1)))
 
 
 def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
@@ -165,7 +177,9 @@ def _close(tangle: _Tangle, paper: Paper, of: _Of) -> Panel:
     panel = paper.panel(_CLOSE, (left, right), (top, low), "within the ring, from above: u₀ and v₀")
     panel.line(eye + _NEAR * circle(129), IDEAL, 1)
     arcs = np.array([_inside(one, tangle.eye) for one in tangle.circles(*of)])
-    _draw_arcs(panel, arcs[..., :2], (arcs[..., 2] - tangle.eye[2]) / (2 * _NEAR), (1.6, 3.2))
+    up = (arcs[..., 2] - tangle.eye[2]) / _NEAR
+    away = np.linalg.norm(arcs - tangle.eye, axis=-1) / _NEAR
+    _draw_arcs(panel, arcs[..., :2], up / 2, (1.6, 3.2), (away - 0.8) / 0.2)
     pixel, inset = panel.pixel, 14 * panel.pixel
     for at in (eye, np.array([left + inset, top + inset])):
         panel.segments(at + 8 * pixel * np.array([[[-1, 0], [1, 0]], [[0, -1], [0, 1]]]), IDEAL, 2)
