@@ -16,7 +16,7 @@ from cvnotes.tutor.course import Course
 CHAPTERS = {
     "ch00": "bend",
     "ch01": "lift drop line_through meet same_points measure_along",
-    "ch02": "vanishing_point horizon focal_from_vanishing_points where_the_rails_meet "
+    "ch02": "vanishing_point focal_from_vanishing_points horizon where_the_rails_meet "
     "person_height",
     "ch03": "intrinsics_from_sensor project camera_centre cam1_from_cam2 new_intrinsics "
     "nearest_rotation field_of_view rq",

@@ -15,8 +15,8 @@ _ROW, _TALL, _START = -4.0, 6.0, 1.95  # m: where the poles stand, their height,
 _POLES, _MARKED = np.arange(15.0, 490, 25), 4  # m ahead; how many are marked
 _HIGH, _GRASS, _BALLAST, _WOOD = "#9FBFE4", "#7A9155", "#8F877E", "#5C4A3D"
 _STEEL, _SHADE, _AIR = "#C8CED5", "#55524F", "#E6EDF2"
-_HAZE = 3000.0  # m, as on the photographed railway
-_FURTHER = np.append(np.geomspace(0.3, 1000, 64), 1e4)  # m: where the ground changes its colour
+_HAZE, _PALEST = 3000.0, 0.4  # m, as photographed; but the ground is green up to its horizon
+_FURTHER = np.geomspace(0.3, 1e5, 100)  # m: where the ground changes its colour
 
 
 def eye_model() -> Model:
@@ -25,8 +25,8 @@ def eye_model() -> Model:
         Setting("height", "eye (m)", 0.5, 8, 0.05, _START, "how high it is above the grass"),
     )
     about = (
-        "A railway with poles, seen by a camera that is tilted and rolled, and its horizon; green "
-        "marks on four poles are as high as the camera. Beside it the same from the side."
+        "A railway with poles, seen by a camera that is tilted and rolled, and its horizon; beside "
+        "it the same from the side. Once the camera moves, green marks on four poles are as high."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -52,7 +52,7 @@ def _draw_picture(panel: Panel, height: float) -> None:
 
     def fill(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike, ink: str) -> None:
         corners = np.stack(np.broadcast_arrays(x, y, z), axis=-1).reshape(-1, 4, 3)
-        away = 1 - np.exp(-corners[:, :, 2].mean(axis=1) / _HAZE)
+        away = _PALEST * (1 - np.exp(-corners[:, :, 2].mean(axis=1) / _HAZE))
         panel.polygons(camera.project(corners), [mixed(ink, _AIR, part) for part in away.tolist()])
 
     along = np.stack([_FURTHER[:-1]] * 2 + [_FURTHER[1:]] * 2, axis=1)[::-1]
@@ -71,7 +71,7 @@ def _draw_picture(panel: Panel, height: float) -> None:
         fill(aside, [0, 0, -_TALL, -_TALL], [z] * 4, _WOOD)
     panel.line(skyline, IDEAL, 1.5)
     panel.text(skyline[1] - [30, 28], "horizon", IDEAL, anchor="rm")
-    if height <= _TALL:
+    if _marked(height):
         panel.mark(camera.project([[_ROW, -height, z] for z in _POLES[:_MARKED]]), "world", 4.5)
 
 
@@ -81,12 +81,16 @@ def _draw_side(panel: Panel, height: float) -> None:
     poles = _POLES[:_MARKED]
     panel.segments([[[z, 0], [z, _TALL]] for z in poles], _WOOD, 2)
     panel.line([[0, height], [120, height]], IDEAL, 1)
-    if height <= _TALL:
+    if _marked(height):
         panel.mark([[z, height] for z in poles], "world", 4.5)
     panel.line(np.array([[0, 0], [0, height]]), MUTED, 2)
     panel.mark([0, height], "camera", 9, looks=(1, 0))
     panel.text([-5.5, height], "eye", CAMERA, anchor="rm")
     panel.grip("height", "the eye, to be pulled up and down", [0, height], 4)
+
+
+def _marked(height: float) -> bool:
+    return height <= _TALL and height != _START  # where they will be is asked
 
 
 def _sentence(height: float) -> str:

@@ -77,11 +77,11 @@ def _draw_picture(panel: Panel, ends: Array, ways: Array) -> None:
             panel.line(np.array([corner, [end, row]], dtype=float), ESTIMATED, 1, dash=4)
     panel.line(frame[[0, 1, 2, 3, 0]], MUTED, 1)
     panel.text([_SHOWN[1] - 16, row + 64], "horizon", IDEAL, anchor="rm", size=13)
-    for name, end, outwards, anchor in zip(("left", "right"), ends, (20, -20), "rl", strict=True):
+    for name, end, aside in zip(("left", "right"), ends, (-220, -20), strict=True):
         panel.mark([end, row], "estimated", 7)
         panel.grip(name, f"the vanishing point of the {name} wall", [end, row], 5)
         said = f"u = {end:.0f}".replace("-", "−")
-        panel.text([end + outwards, row - 66], said, ESTIMATED, anchor=f"{anchor}m", size=13)
+        panel.text([max(end + aside, _SHOWN[0] + 16), row - 66], said, ESTIMATED, size=13)
 
 
 def _draw_above(panel: Panel, ends: Array, ways: Array, angle: float) -> None:

@@ -134,7 +134,8 @@ def _draw_way(panel: Panel, foot: Array, depths: Array) -> float:
     (left, right), word = panel.x, "e"
     if not left < e[0] < right:
         word = "e →" if e[0] > right else "← e"
-    at = [np.clip(e[0], left + 8, right - 8), _HORIZON - 18]
+    above = -20 if e[0] > right else 18  # at the right, under "horizon"
+    at = [np.clip(e[0], left + 8, right - 8), _HORIZON - above]
     anchor = "mm" if word == "e" else "rm" if e[0] > right else "lm"
     panel.text(at, word, IDEAL, anchor=anchor, size=14)
     return float(e[0])

@@ -191,7 +191,7 @@ def _draw_plan(panel: Panel, sun: Array) -> None:
 def _sentence(sun: Array, end: Array, values: Values) -> str:
     said = f"The sun stands {values['elevation']:g}° high"
     if sun[2] == 0:
-        return f"{said}, just at our side: its rays stay parallel in the picture, and end nowhere."
+        return f"{said}, just at our side: its rays stay parallel here, too, and end at infinity."
     place = f"({end[0]:.0f}, {end[1]:.0f}) px"
     if sun[2] > 0:
         inside = (np.abs(end - np.array(SIZE) / 2 + 0.5) <= np.array(SIZE) / 2).all()

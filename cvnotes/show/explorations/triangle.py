@@ -195,7 +195,7 @@ def _draw_glass(panel: Panel, turn: float, v: Array, photo: Bitmap.Image, box: A
 def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, box: Array) -> None:
     """Draw the triangle on the glass, the eye before it, and the rods from there to its corners.
 
-    Faint is the half circle over the altitude from Y, on which the eye is, if there is one.
+    Grey is the half circle over the altitude from Y to H, on which the eye is, if there is one.
     Letters stay away from the box (3, 4, 2).
     """
     m, c, top = (on_sheet(place, turn) for place in (in_space(v), eye * [1, 1, 0], eye))
@@ -214,9 +214,12 @@ def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, b
         panel.line(arc, MUTED, 0.9)
         panel.line(arc[[0, -1]], MUTED, 0.9, dash=4)
         lines += [arc[[0, -1]], *np.stack([arc[:-1], arc[1:]], axis=1)]
+        H = on_sheet(in_space(foot), turn)
+        names += [("H", H, MUTED)]
     if square > 0:
+        panel.line([top, H], MUTED, 1.2)  # at right angles to the rod to Y
         panel.line([top, c], IDEAL, 1.6)
-        lines += [np.array([top, c])]
+        lines += [np.array([top, H]), np.array([top, c])]
         names += [("eye", top, CAMERA)]
         if np.linalg.norm(c - top) > 220:
             names += [("c", c, ESTIMATED), ("f", 0.6 * c + 0.4 * top, IDEAL)]
