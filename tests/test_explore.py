@@ -1795,7 +1795,7 @@ def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
 def test_a_ring_is_as_large_as_the_rms_of_a_point():
     off = refine_subpixel(course.photos()[6], np.rint(course.exact_corners()[6]), window=6)
     far = np.linalg.norm(off - course.exact_corners()[6], axis=1)
-    radius = 360 / 0.12 * np.sqrt(np.mean(far**2))
+    radius = 360 / 0.2 * np.sqrt(np.mean(far**2))
     drawn = MODELS["clouds"].picture(window=6)
     middle = np.array([MARGIN + 298, TITLE + 180])
     for a in np.radians([10, 100, 190, 280]):
@@ -1808,7 +1808,7 @@ def test_it_is_told_when_errors_lie_outside_of_their_panel():
         picture = MODELS["clouds"].picture(**values)[TITLE + 334 : TITLE + 356]
         return int((picture[:, MARGIN + 5 : MARGIN + 150].max(axis=-1) < 60).sum())
 
-    assert words(picture=3, window=3) > 100  # 20 of 54
+    assert words(picture=3, window=3) > 100  # 25 of 54
     assert words(picture=1, window=4) == 0
     assert MODELS["clouds"].settings[0].label == "half window (px)"
 
@@ -2247,7 +2247,7 @@ def test_whoever_moved_the_picture_stays_and_both_motions_are_those_of_the_poses
 def test_another_camera_takes_the_same_picture_of_a_board_and_not_of_a_box():
     """The other camera is sought without circles: an angle, and what makes all corners agree."""
     W, first = course.board().points, twins.one()
-    square = 25 * np.array([[3, 2], [5, 2], [5, 3], [3, 3.0]])
+    square = 25 * np.array([[0, 1], [2, 1], [2, 2], [0, 2.0]])
     for alpha, height in ((300, 60), (960, 80), (1000, 0)):
 
         def camera(x, alpha=alpha):
@@ -2279,7 +2279,7 @@ def test_another_camera_takes_the_same_picture_of_a_board_and_not_of_a_box():
     changed = (still != pulled).any(axis=-1)[:, 449:]
     assert 0.001 < changed.mean() < 0.02
     assert count(still[:, 449:], ESTIMATED) > 200
-    top = first.project([[*(0.6 * square[0] + 0.4 * square[2]), -80]])[0]
+    top = first.project([[*(0.3 * square[0] + 0.7 * square[2]), -80]])[0]
     u, v = np.rint([449 + top[0] * 400 / 640, TITLE + top[1] * 300 / 480]).astype(int)
     assert np.abs(still[v, u] - colour("#C4E0F6")).max() < 12  # of the box one sees the top
     flat = [MODELS["twins"].picture(alpha=alpha, height=0)[:, 449:] for alpha in (1000, 300)]

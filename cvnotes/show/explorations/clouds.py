@@ -18,7 +18,7 @@ _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corne
 _PICTURES = "as computed", "sharpened", "JPEG, quality 30", "5 px shake", "rays, no blur"
 _METHODS = ("gradients", LENS), ("edge model", ESTIMATED)
 _WINDOWS = np.arange(3, 13)  # px, from the middle to the border
-_REACHES, _SHOWN = (0.06, 0.15), 14  # px, of the clouds and of the pictures
+_REACH, _SHOWN = 0.1, 14  # px, of the clouds, all alike, and of the pictures
 _LEAST, _MOST = 0.0038, 0.25  # px, of the curves
 _CLOUD, _CURVES = (596, 360), (274, 526)
 _SIDE, _GAP = 4 * (2 * _SHOWN + 1), 4  # px of the page, of each picture and between two
@@ -94,7 +94,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     off = errors(which)
     rms = np.sqrt(2 * np.nanmean(off**2, axis=(2, 3)))  # of a point
     now = int(window - _WINDOWS[0])
-    cloud = _cloud(paper, off[:, now], rms[:, now], _REACHES[int(which > 2)])
+    cloud = _cloud(paper, off[:, now], rms[:, now])
     drawn = paper.join(([cloud, _strip(paper, window, which)], _curves(paper, rms, now)))
     (gradients, edges), name = rms[:, now], _PICTURES[which - 1]
     lost = int(np.isnan(off[:, now, :, 0]).any(axis=0).sum())
@@ -131,19 +131,20 @@ def _strip(paper: Paper, window: int, which: int) -> Panel:
     return panel
 
 
-def _cloud(paper: Paper, off: Array, rms: Array, reach: float) -> Panel:
+def _cloud(paper: Paper, off: Array, rms: Array) -> Panel:
     """Draw the errors, and rings as large as the RMS of a point; the smaller cloud on top."""
-    aside = reach * _CLOUD[0] / _CLOUD[1]
+    reach, aside = _REACH, _REACH * _CLOUD[0] / _CLOUD[1]
     panel = paper.panel(_CLOUD, (-aside, aside), (-reach, reach), "errors of 54 corners")
-    dot, ring = 3 * panel.pixel * circle(13), circle(91)
+    dot, ring = 2.5 * panel.pixel * circle(13), circle(91)
     order = np.argsort(-rms)
     for k in order:
         panel.polygons([rms[k] * ring], mixed("#FFFFFF", _METHODS[k][1], 0.15))
     for k in order:
-        panel.line(rms[k] * ring, _METHODS[k][1], 2)
         panel.polygons(off[k][:, None] + dot, mixed("#FFFFFF", _METHODS[k][1], 0.7))
+    for k in order:
+        panel.line(rms[k] * ring, _METHODS[k][1], 2)
     panel.mark([0, 0], "ideal", 7)
-    bar = float(f"{reach / 3:.1g}")  # px, as long as the scale in the corner
+    bar = reach / 2  # px, as long as the scale in the corner
     panel.line([[0.95 * aside - bar, 0.86 * reach], [0.95 * aside, 0.86 * reach]], IDEAL, 2)
     panel.text([0.95 * aside - bar / 2, 0.77 * reach], f"{bar:g} px", IDEAL, anchor="ms", size=13)
     outside = int((np.abs(off) > [aside, reach]).any(axis=(0, 2)).sum())
