@@ -96,7 +96,7 @@ def columns_model() -> Model:
     real = course.real_corners()
     left, right = Believed(real.left), Believed(real.right)
     said = "how much of the right camera's nine shifts is put into the left camera's board"
-    amount = Setting("amount", "nine numbers ×", 0, 3, 0.05, 1, said)
+    amount = Setting("amount", "nine numbers ×", 0, 2.5, 0.05, 1, said)
     about = (
         "A printed sheet with its nine columns of corners: blue as the left camera of a real pair "
         "finds them, orange with so much of the right camera's nine shifts; and the RMS of the "
