@@ -1481,6 +1481,70 @@ def test_a_decentred_lens_bows_the_line_across_p_and_a_tilted_sensor_does_not(p1
     assert grip_of(drawing, "p").at == pytest.approx((4 * p2, 4 * p1))
 
 
+def behind_two_faces(stop, slope):
+    """Trace a ray from a stop before the lens by angles; return its place and slope behind it.
+
+    At each face sin I = (l − R) sin U / R and sin I' = n sin I / n', with the distance l from the
+    face to where the ray meets the axis under the angle U: Conrady's way.
+    """
+    after, U = stop + 5, np.arctan(slope)  # l from the first face, and the angle to the axis
+    for R, n, n_next, thick in ((100, 1, 1.5, 10), (-100, 1.5, 1, 0)):
+        met = np.arcsin((after - R) / R * np.sin(-U))
+        left = np.arcsin(n / n_next * np.sin(met))
+        U_next = -U + met - left
+        after = R + R * np.sin(left) / np.sin(U_next) - thick
+        U = -U_next
+    return after + 5, np.tan(U)
+
+
+@pytest.mark.parametrize("stop", [5.5, 10, 15])
+def test_a_stop_before_a_lens_makes_a_barrel_and_one_behind_it_a_pincushion(stop):
+    """The lens is the same from both sides: a ray to a stop behind it is one that goes back."""
+    from cvnotes.show.explorations.stop import FOCAL, SENSOR, lens_of, radii
+
+    f = 1 / (0.5 * (2 / 100 - 0.5 * 10 / (1.5 * 100 * 100)))  # the lens maker's
+    sensor = 5 + f * (1 - 0.5 * 10 / (1.5 * 100))
+    assert np.allclose([FOCAL, SENSOR], [f, sensor])
+    slopes = np.linspace(0.02, 0.8, 40)
+    at, behind = np.transpose([behind_two_faces(-stop, slope) for slope in slopes])
+    r, seen = radii(-stop, slopes)
+    assert np.allclose([r, seen], [slopes, (sensor - at) * behind / f], rtol=1e-9)
+    assert (np.diff(seen / r) < 0).all()
+    assert np.allclose(r * lens_of(-stop).L(r), seen, atol=1e-3)
+    r, seen = radii(stop, slopes)
+    assert np.allclose([r, seen], [behind, (sensor - stop) * slopes / f], rtol=1e-9)
+    assert (np.diff(seen / r) > 0).all()
+    assert np.allclose(r * lens_of(stop).L(r), seen, atol=1e-3)
+
+
+def test_a_stop_within_the_glass_leaves_lines_nearly_straight():
+    from cvnotes.show.explorations.stop import radii
+
+    slopes = np.linspace(0.01, 0.5, 30)
+    r, seen = radii(0, slopes)
+    assert np.allclose(r, 1.5 * slopes / np.sqrt(1 - 1.25 * slopes**2), rtol=0.04)  # as of a plate
+    assert np.abs(seen / r - 1).max() < 0.005
+    for outside, inside in ((-5.001, -5), (5.001, 5)):  # it passes the faces without a leap
+        ways = [np.interp(0.4, *radii(at, np.linspace(0, 0.6, 200))) for at in (outside, inside)]
+        assert abs(ways[0] - ways[1]) < 1e-4
+
+
+@pytest.mark.parametrize(("stop", "shape"), [(-15, "barrel"), (0, "straight"), (15, "pincushion")])
+def test_the_rays_through_a_stop_are_drawn_to_where_they_are_told_to_arrive(stop, shape):
+    from cvnotes.show.explorations.stop import SENSOR
+
+    drawing = MODELS["stop"].drawing(stop=stop)
+    assert f"{shape}, k" in drawing.sentence
+    meant, seen = numbers(drawing.sentence)[-3:-1]
+    assert round(seen - meant) == {-15: -3, 0: 0, 15: 5}[stop]
+    u = MARGIN + (SENSOR + 62) / 174 * 430 - 0.5
+    for side in (-1, 1):
+        v = TITLE + (66 + side * seen) / 132 * 326 - 0.5
+        near = drawing.picture[round(v) - 2 : round(v) + 3, round(u) - 2 : round(u) + 3]
+        assert (np.abs(near.astype(int) - colour(LENS)).max(axis=-1) < 60).any()
+    assert grip_of(drawing, "stop").at[0] == stop
+
+
 @pytest.mark.parametrize("hole", [0.02, 0.074, 0.3])
 def test_the_light_behind_a_hole_is_drawn_as_wide_as_it_is_told_to_be(hole):
     drawing = MODELS["pinhole"].drawing(hole=hole)
@@ -3306,6 +3370,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     ("swing", "row 5"): {"row": 5},
     "similar": {"f": 7},
     "clicks": {"noise": 0.4},
+    "stop": {"stop": 0},
 }
 ON_A_WAY = {  # along a curve, by its x
     ("residuals", "k1"),
@@ -3336,6 +3401,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("hinge", "angle"),
     ("protractor", "left"),
     ("protractor", "right"),
+    ("stop", "stop"),
 }
 ROUND = {
     ("rim", "ring"),

@@ -132,7 +132,9 @@ def _space(camera: Camera, board: Chessboard, paper: Paper, corners: Array) -> P
     """Draw board and camera as they stand, and the way T from the camera to the world's origin."""
     border, squares = paper_and_squares(board)
     floor, joints = _floor(board, (-4, 16), (-20, 6))
-    axes, own = board.square * 5 * np.eye(3), board.square * np.diag([5.5, 5.5, 8]) @ camera.R
+    columns, rows = board.corners  # the names stand beyond the paper, and can be read
+    axes = board.square * np.diag([columns + 0.5, rows + 0.5, 5])
+    own = board.square * np.diag([5.5, 5.5, 8]) @ camera.R
     back, C = inverse(camera.G), camera.centre
     walk = move(back, np.vstack([np.zeros(3), np.cumsum(np.diag(camera.T), axis=0)]))
     xy = xy_from_px(camera.A, corners)

@@ -59,6 +59,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     lens = paper.panel(_SIZE, *_SHOWN, "a decentred lens, each point moved 3 times as far")
     sensor = paper.panel(_SIZE, *_SHOWN, "a tilted sensor, also 3 times as far")
     bows = [_bent(panel, p, move) for panel, move in ((lens, decentred), (sensor, tilted))]
+    beside = _EXTENT * np.stack(_along(p))  # where p adds itself threefold, and once
+    lens.arrows(beside, decentred(_TIMES * p, beside) - beside, IDEAL, 2.5)
     tip = _ARROW * p
     lens.arrows([0, 0], tip, IDEAL, 2.5)
     lens.mark([0, 0], "ideal", 5)

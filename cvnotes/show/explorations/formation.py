@@ -367,4 +367,5 @@ def follow(panel: Panel, place: Array, words: str, up: float = 0, over: bool = F
         panel.text(beside, words, ESTIMATED, anchor="lm" if side > 0 else "rm", size=12)
     elif over:
         top = np.array([(low[0] + high[0]) / 2, low[1] + 14 * panel.pixel])
-        panel.text(top, "the corner is outside", ESTIMATED, anchor="mm", size=12)
+        words = "the corner is outside" if np.isfinite(place).all() else "the corner has no image"
+        panel.text(top, words, ESTIMATED, anchor="mm", size=12)
