@@ -46,6 +46,15 @@ def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
     assert (ROOT / opened).is_file()  # JupyterLite has them in the repository's places
 
 
+def test_the_hours_it_names_are_those_of_all_chapters():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    first = (ROOT / "notebooks" / "00_start_here.ipynb").read_text(encoding="utf-8")
+    rows = re.findall(r"\|(\d)([¼½¾]?)\|\\n", first)
+    hours = sum(int(whole) + {"": 0, "¼": 0.25, "½": 0.5, "¾": 0.75}[part] for whole, part in rows)
+    assert len(rows) == 10
+    assert f"some {round(hours)} hours" in front_page.whom(readme)
+
+
 def test_the_tutor_s_reply_is_the_one_that_the_mistake_on_the_page_gets():
     page = front_page.front_page(live=True, lite=True)
     code = re.search(r"```python\n(.*?)```", page, re.S)[1]

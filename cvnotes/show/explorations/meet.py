@@ -56,7 +56,7 @@ def on_sheet(place: Array) -> Array:
 
 def arrow_along(row: Array) -> Array:
     """Return the arrow (3,) along a triple, of any scale: as long as others where it is seen."""
-    seen = np.linalg.norm(on_sheet(row)) / np.linalg.norm(row)
+    seen = float(np.linalg.norm(on_sheet(row)) / np.linalg.norm(row))
     return np.asarray(_ARROW / max(seen, 0.2) * row / np.linalg.norm(row))
 
 
