@@ -963,7 +963,7 @@ def test_the_arrow_of_a_line_leads_to_its_triple_and_stands_upright_on_its_rays(
     given = {"a1": -0.3, "b1": b, "a2": 1, "b2": 1}
     normal = np.cross([-1, -0.3, 1], [1, b, 1]) / 2  # of two points of the line
     assert np.allclose(meet.triple(MODELS["meet"].values(**given), "1"), normal, atol=1e-12)
-    tip = meet.on_sheet(0.83 * normal / np.linalg.norm(normal))
+    tip = meet.on_sheet(0.97 * meet.arrow_along(normal))
     (left, right), (top, bottom) = meet._SHOWN
     u, v = (tip - [left, top]) / [right - left, bottom - top] * meet._SPACE + [MARGIN, TITLE]
     picture = MODELS["meet"].picture(**given)
@@ -1789,7 +1789,7 @@ def test_a_hand_reaches_all_four_kinds_of_maps_though_it_is_not_exact():
     ]
     for kind, grip, at in kinds:
         pulled = model.dragged(grip, at)
-        assert f"A map that is {kind}" in model.drawing(**pulled).sentence
+        assert kind in model.drawing(**pulled).sentence.split(". As before")[0]
 
 
 def test_no_hand_pulls_a_corner_of_the_square_out_of_its_panel():

@@ -33,6 +33,7 @@ def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
     alone, live, whole = (front_page.front_page(*has) for has in ((0, 0), (1, 0), (1, 1)))
     for page in (alone, live, whole):
         assert front_page.sentence(readme) in page
+        assert front_page.whom(readme) in page
         assert page.count('<li><a href="notebooks/') == 12
         assert (
             len(re.findall(r'<nav class="front-buttons".*?</nav>', page, re.S)[0].split("<a ")) == 4
@@ -43,6 +44,15 @@ def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
     assert "your_camera.html" in live
     opened = re.search(r"lite/notebooks/index.html\?path=(\S+?)\"", whole)[1]
     assert (ROOT / opened).is_file()  # JupyterLite has them in the repository's places
+
+
+def test_the_hours_it_names_are_those_of_all_chapters():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    first = (ROOT / "notebooks" / "00_start_here.ipynb").read_text(encoding="utf-8")
+    rows = re.findall(r"\|(\d)([¼½¾]?)\|\\n", first)
+    hours = sum(int(whole) + {"": 0, "¼": 0.25, "½": 0.5, "¾": 0.75}[part] for whole, part in rows)
+    assert len(rows) == 10
+    assert f"some {round(hours)} hours" in front_page.whom(readme)
 
 
 def test_the_tutor_s_reply_is_the_one_that_the_mistake_on_the_page_gets():
@@ -59,8 +69,9 @@ def test_the_tutor_s_reply_is_the_one_that_the_mistake_on_the_page_gets():
 @pytest.mark.once
 @pytest.mark.parametrize("path", sorted(ROOT.glob("notebooks/*.ipynb")), ids=lambda path: path.stem)
 def test_the_card_of_each_chapter_is_a_picture_and_not_paper(path):
-    card = np.asarray(front_page.richest(path)).min(axis=2)
-    assert (card < 245).mean() > 0.5
+    card = np.asarray(front_page.card_of(path))
+    assert card.shape[:2] == front_page.CARD[::-1]
+    assert (card.min(axis=2) < 245).mean() > 0.4
 
 
 def test_a_card_shows_what_is_drawn_without_the_numbers_along_its_axes():

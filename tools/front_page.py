@@ -19,12 +19,18 @@ from cvnotes.learn import check
 from cvnotes.show import explorations
 from cvnotes.show.explorations.page import page_data
 from cvnotes.show.explorations.paper import Paper
+from cvnotes.show.explorations.subpixel import neighbourhood, place_of
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "docs" / "templates" / "front.md"
 PICTURE = ROOT / "docs" / "figures" / "front.png"
 EXPLORED = "straighten"
 CARD = (480, 320)  # px: twice what is shown
+# Cards that are a part of an exploration: its settings, the left and upper end, the width in px.
+PARTS = {
+    "03_camera_model": ("divide", {}, (90, 120, 270)),
+    "more_exercises": ("conic", {"a": 0.0, "b": 1.5}, (414, 44, 390)),
+}
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
 _IMAGE = re.compile(r'src="data:image/(?:png|webp);base64,([^"]+)"')
 
@@ -44,6 +50,7 @@ def front_page(live: bool, lite: bool) -> str:
     parts = {
         "SENTENCE": sentence(readme),
         "BUTTONS": buttons(live, lite),
+        "WHOM": whom(readme),
         "EXPLORATION": exploration(live),
         "INVITATION": "Pull the row straight." if live else "What a lens does.",
         "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
@@ -60,6 +67,14 @@ def sentence(readme: str) -> str:
     if not found:
         raise ValueError("README.md says nothing in bold letters, which the front page repeats")
     return " ".join(found[1].split())
+
+
+def whom(readme: str) -> str:
+    """Return for whom README says the course is, what it needs and how long it takes."""
+    found = re.search(r"^For students .+$", readme, re.M)
+    if not found:
+        raise ValueError("README.md has no line 'For students ...', which the front page repeats")
+    return found[0]
 
 
 def buttons(live: bool, lite: bool) -> str:
@@ -114,7 +129,7 @@ def card(number: str, title: str, name: str, question: str) -> str:
 def put_pictures(made: Path) -> None:
     """Write the pictures of the page into the site."""
     for path in sorted(ROOT.glob("notebooks/*.ipynb")):
-        richest(path).save(made / FOLDER / f"card-{path.stem}.jpg", quality=80, optimize=True)
+        card_of(path).save(made / FOLDER / f"card-{path.stem}.jpg", quality=80, optimize=True)
     (made / FOLDER / "front.png").write_bytes(PICTURE.read_bytes())
     drawn(narrow=True).save(made / FOLDER / "front-narrow.png", optimize=True)
 
@@ -124,6 +139,27 @@ def drawn(narrow: bool = False) -> Image.Image:
     model = explorations.model(EXPLORED)
     picture = model.drawn_on(Paper(2, narrow=narrow), model.values()).picture
     return Image.fromarray(picture).quantize(256, dither=Image.Dither.NONE)
+
+
+def card_of(path: Path) -> Image.Image:
+    """Return one clear thing of a notebook, as it is seen at the size of a card."""
+    if path.stem == "05_calibration_targets":
+        return corner()
+    if path.stem not in PARTS:
+        return richest(path)
+    name, settings, (left, top, width) = PARTS[path.stem]
+    model = explorations.model(name)
+    picture = Image.fromarray(model.drawn_on(Paper(2), model.values() | settings).picture)
+    box = np.array([left, top, left + width, top + width * CARD[1] / CARD[0]])
+    return picture.resize(CARD, Image.Resampling.LANCZOS, tuple(2 * box))
+
+
+def corner() -> Image.Image:
+    """Draw one corner of chapter 5's board, pixel by pixel, with the place that is found."""
+    panel = Paper(2).panel((CARD[0] // 2, CARD[1] // 2), (-6.5, 5.5), (-4.5, 3.5))
+    panel.image(neighbourhood(22)[4:12, 2:14].astype(np.uint8), smooth=False)
+    panel.mark(place_of(22), "estimated", 22)
+    return Image.fromarray(panel.drawn())
 
 
 def richest(path: Path) -> Image.Image:

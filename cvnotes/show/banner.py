@@ -11,6 +11,7 @@ from cvnotes.show.picture import Picture
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, INK, LENS, MUTED, WORLD
 
 STEPS = ("R, T", "÷ z", "lens", "A")
+_IN_WORDS = ("place", "divide", "bend", "pixels")  # below the arrows, where a reader is new
 # Which steps a chapter is about: those of the first page and of chapter 9 are all. Chapter 5 looks
 # for the pixel itself. Chapters 6 and 7 go from the picture back to the world, and chapter 10 finds
 # the depth again by which was divided.
@@ -103,6 +104,8 @@ def one_corner(chapter: int) -> Picture:
             _step(layout, k, name, name in shown, backwards, bare and name == "lens")
             for k, name in enumerate(STEPS)
         ]
+        if chapter == 0:
+            parts += [_below_step(layout, k, words) for k, words in enumerate(_IN_WORDS)]
         if chapter == 5:
             x, y = layout.place(4) - [3, 4]
             parts.append(f'<path d="M{x} {y}h{layout.wide + 6}v{layout.tall + 8}'
@@ -205,3 +208,10 @@ def _step(
         f'<text class="s" x="{(tip + end) // 2}" y="{y - 10}" style="fill:{ink}'
         f'{";text-decoration:line-through" if crossed else ""}">{name}</text>'
     )
+
+
+def _below_step(layout: _Layout, number: int, words: str) -> str:
+    """Write below an arrow what its step does."""
+    left, top = layout.place(number + 1)
+    x, y = left - layout.gap // 2, top + layout.tall // 2 + 20
+    return f'<text class="n" x="{x}" y="{y}">{words}</text>'

@@ -33,9 +33,15 @@ def bend(row: Array) -> float:
 
 
 MISTAKES = mistakes_in(bend,
-    ("measured straight down", "You measured along v, or u, not at right angles to the line.",
+    ("measured straight down", "You measured straight down, or across; the distance from a "
+     "line is at right angles to it.",
      "np.abs(across).max() * np.linalg.norm(d) / abs(d[0])",
      "np.abs(across).max() * np.linalg.norm(d) / abs(d[1])"),
+    ("equal steps", "You compared with equal steps along the line. The points need not be spaced "
+     "evenly; measure at right angles to the line.",
+     "np.linalg.norm(row - np.linspace(row[0], row[-1], len(row)), axis=1).max()",
+     "np.abs(row - np.linspace(row[0], row[-1], len(row)))[:, 1].max()",
+     "np.abs(row - np.linspace(row[0], row[-1], len(row)))[:, 0].max()"),
     ("sign kept", "You took the largest without abs(): points on the other side count as negative.",
      "across.max()", "(-across).max()"),
     ("along for across",

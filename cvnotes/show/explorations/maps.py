@@ -26,6 +26,7 @@ _WIDE = 2.3  # how far from the middle a hand may pull
 # Where the frames of the kinds begin, from the outermost to the innermost, and the rows of each.
 _FRAMES = (7, slice(5, 6)), (59, slice(3, 5)), (131, slice(1, 3)), (203, slice(0, 1))
 _KINDS = "Euclidean", "similar", "affine", "projective"
+_SAID = "A Euclidean map", "A similarity", "An affine map", "A projective map"
 _NUMBERS = 3, 4, 6, 8
 
 
@@ -198,4 +199,4 @@ def _rows(H: Array) -> list[tuple[str, str, float, float]]:
 
 def _sentence(H: Array, values: Values) -> str:
     kept = [what for what, form, *both in _rows(H) if len({form.format(x) for x in both}) == 1]
-    return f"A map that is {_KINDS[kind(values)]}. As before: {', '.join(kept)}, straight lines."
+    return f"{_SAID[kind(values)]}. As before: {', '.join(kept)}, straight lines."

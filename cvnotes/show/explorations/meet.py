@@ -14,11 +14,12 @@ _SEEN = np.array([_ACROSS, np.sin(_FROM_ABOVE) * _BACK + [0, 0, np.cos(_FROM_ABO
 _SPACE, _BESIDE = (520, 400), (330, 400)
 _SHOWN = ((-1.76, 1.64), (1.755, -0.86))
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
+_ARROW = 0.62  # how long the arrows are, on the sheet of paper
 _ORIGIN, _UP = np.zeros(3), np.array([0, 0, 1.0])
 _AXES = np.array([[-0.9, -1.12, 1], [-1.34, -0.3, 1]])  # where arrows of x and y begin
 _LINES = (
-    ("1", "l₁", "orange", ESTIMATED, ("#FDF0E7", "#FBE0CE"), "#EBA67A"),
-    ("2", "l₂", "blue", LENS, ("#E8F2F8", "#CFE2F0"), "#7FB4D8"),
+    ("1", "l₁", "orange", ESTIMATED, ("#FDF0E7", "#FBE0CE")),
+    ("2", "l₂", "blue", LENS, ("#E8F2F8", "#CFE2F0")),
 )
 _ENDS = (("a", -1.0, "left"), ("b", 1.0, "right"))
 
@@ -53,6 +54,12 @@ def on_sheet(place: Array) -> Array:
     return np.asarray(place @ _SEEN.T)
 
 
+def arrow_along(row: Array) -> Array:
+    """Return the arrow (3,) along a triple, of any scale: as long as others where it is seen."""
+    seen = float(np.linalg.norm(on_sheet(row)) / np.linalg.norm(row))
+    return np.asarray(_ARROW / max(seen, 0.2) * row / np.linalg.norm(row))
+
+
 def _slid(x: float, at: Array) -> float:
     """Return the y at which the edge at x of the plane w = 1 comes nearest to a place."""
     start, way = on_sheet(np.array([[x, 0, 1], [0, 1, 0]]))
@@ -75,21 +82,20 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
     panel.line(on_sheet(_SQUARE), FAINT, 1)
     panel.line(on_sheet(np.outer([-9, 0], ray)), IDEAL, 1.4)
     ends = [np.array([[x, values[end + n], 1] for end, x, _ in _ENDS]) for n in "12"]
-    for two, (*_, tints, thread) in zip(ends, _LINES, strict=True):
+    for two, (*_, tints) in zip(ends, _LINES, strict=True):
         level = (two[1] - two[0]) / 2  # the direction in which the sheet leaves w = 0
         panel.veil(
             [on_sheet(np.array([*two, *end])) for end in ([level, -level], [_ORIGIN])], tints
         )
-        for place in np.linspace(two[0], two[1], 7):
-            panel.line(on_sheet(np.array([_ORIGIN, place])), thread, 0.6)
     panel.veil([on_sheet(_SQUARE + _UP)], ["#E3F3EE"])
     panel.line(on_sheet(_SQUARE + _UP), "#9ECFBF", 1)
     panel.line(on_sheet(np.outer([0, 9], ray)), IDEAL, 2)
     for two, row, (n, name, colour, ink, *_) in zip(ends, lines, _LINES, strict=True):
-        normal = row / np.linalg.norm(row)
-        _arrow(panel, _ORIGIN, 0.85 * normal, name, ink)
-        if n == "1" and ray.any():  # one right angle, which stands for both
-            panel.line(on_sheet(0.13 * np.array([ray, ray + normal, normal])), ink, 1)
+        way = arrow_along(row)
+        _arrow(panel, _ORIGIN, way, name, ink)
+        if ray.any():
+            foot = 0.25 * way
+            panel.line(on_sheet(np.array([0.16 * ray, 0.16 * ray + foot, foot])), ink, 1.2)
         panel.line(on_sheet(two + np.outer([-9, 9], two[1] - two[0])), ink, 0.7)
         panel.line(on_sheet(two), ink, 2.5)
         for place, (end, _, side) in zip(two, _ENDS, strict=True):

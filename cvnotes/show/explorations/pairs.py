@@ -69,8 +69,8 @@ def _draw_class(panel: Panel, x: float, w: float) -> None:
 def _draw_number(panel: Panel, x: float, w: float) -> None:
     """Divide the pair, in large letters, over the line of numbers."""
     said, colour = (_number(x), WORLD) if w else ("?", ESTIMATED)
-    panel.text([0.9, 0.9], f"{_number(w * x)} / {_number(w)}  =", IDEAL, anchor="rm", size=24)
-    panel.text([1.2, 0.9], said, colour, size=30)
+    panel.text([1.2, 0.9], f"{_number(w * x)} / {_number(w)}  =", IDEAL, anchor="rm", size=23)
+    panel.text([1.5, 0.9], said, colour, size=30)
     panel.line([[-9, -0.8], [9, -0.8]], WORLD, 2)
     for n in range(-2, 3):
         panel.line([[n, -0.86], [n, -0.74]], WORLD, 1)

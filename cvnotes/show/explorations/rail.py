@@ -151,7 +151,7 @@ def _picture(paper: Paper, part: float) -> Panel:
     panel.line(ends, LENS, 2)
     panel.mark(ends, "ideal", 9)
     gap = f"gap {_number(ends[1][0] - ends[0][0])} px"
-    low = ends[1][1] + 20
+    low = ends[1][1] + (20 if ends[1][1] < 425 else -42)  # within the panel
     panel.text([325, low], gap, LENS, anchor="mm", size=15)
     panel.text([325, low + 22], f"row {ends[1][1]:.1f}", IDEAL, anchor="mm", size=15)
     return panel

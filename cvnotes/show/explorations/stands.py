@@ -13,7 +13,7 @@ from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.finding import rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, MUTED
+from cvnotes.show.style import CAMERA, ESTIMATED, LENS, MUTED
 
 _BOARD, _A = course.board(), course.camera().A
 _SIZE, _ALPHA, _CUT = (640, 480), 800.0, 32  # px; rows that are cut off above and below
@@ -91,7 +91,20 @@ def _photo(paper: Paper, how: str, found: Best) -> Panel:
     panel = paper.panel(_PANEL, (-0.5, _SIZE[0] - 0.5), (_CUT - 0.5, _SIZE[1] - _CUT - 0.5), title)
     panel.image(photograph(how))
     draw_net(panel, found.net, _BOARD, ESTIMATED, 1.2)
+    if how == "tilted":  # a wrong focal length makes its two sides too alike, or not enough
+        _sides(panel, found.net)
     return panel
+
+
+def _sides(panel: Panel, net: Array) -> None:
+    """Write how long the left and the right side of the board are, and those of the net."""
+    m = camera_of(_ALPHA).moved(held("tilted")).project(_BOARD.points)
+    for column, across in ((0, -80), (-1, 91)):
+        place = m[column] * [1, 0] + [across, _SIZE[1] / 2]
+        for name, points, ink, down in (("board", m, LENS, -14), ("net", net, ESTIMATED, 18)):
+            line = points.reshape(*_BOARD.corners[::-1], 2)[:, column]
+            long = np.linalg.norm(line[-1] - line[0])
+            panel.text(place + [0, down], f"{name} {long:.0f}", ink, anchor="mm", size=13)
 
 
 def _plan(paper: Paper, alpha: float) -> Panel:
@@ -120,7 +133,7 @@ def _plan(paper: Paper, alpha: float) -> Panel:
 def _graph(paper: Paper, alpha: float) -> Panel:
     """Draw the misses, as far as the focal length has been pulled up."""
     title = "how far the nets miss (RMS, px), by α (px)"
-    panel = paper.panel(_PANEL, (_LOW - 90, _HIGH + 160), (_MOST, -1.6), title)
+    panel = paper.panel(_PANEL, (_LOW - 90, _HIGH + 160), (_MOST, -2.4), title)
     panel.ticks(x=(400, 600, 800, 1000, 1200), y=(0, 5, 10), size=12)
     tried = np.arange(_LOW, alpha + 1, _STEP)
     for how, (tilt, *_, colour) in _WAYS.items():
