@@ -103,6 +103,8 @@ from cvnotes.show.explorations.lens import polynomial, seen_radius
 from cvnotes.show.explorations.lettering import LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
 from cvnotes.show.explorations.moved import between, stands
+from cvnotes.show.explorations.origin import believed as believed_from
+from cvnotes.show.explorations.origin import corners as corners_of_origin
 from cvnotes.show.explorations.origin import plain
 from cvnotes.show.explorations.origin import rms as rms_of_origin
 from cvnotes.show.explorations.page import asked
@@ -586,6 +588,9 @@ def test_a_switch_that_runs_away_is_seen_straight_on_until_it_is_a_metre_off():
         straight = drawing.picture[TITLE : TITLE + 279, 372 + 6 + MARGIN : 372 + 6 + MARGIN + 346]
         assert (0 <= u < 346) == seen
         assert not seen or count(straight[v - 2 : v + 3, u - 2 : u + 3], IDEAL) > 4
+        if not seen:  # an arrow at the side where it has left
+            side = straight[:, 8:60] if u < 0 else straight[:, -60:-8]
+            assert count(side, IDEAL) > 60
 
 
 def test_error_bars_grow_with_the_noise_and_shrink_with_the_views():
@@ -3521,7 +3526,7 @@ def test_on_a_narrow_page_panels_come_below_each_other(name):
     assert narrow.sentence == wide.sentence
     inked = [np.abs(drawing.picture.astype(int) - 255).sum() for drawing in (wide, narrow)]
     # What lies beside the photograph of the rod has no room on a telephone; e is told as a number.
-    smaller = name in ("rod", "protractor") and inked[0] > inked[1]  # the latter: drawn smaller
+    smaller = name in ("rod", "protractor", "origin") and inked[0] > inked[1]  # the others: smaller
     assert inked[0] == inked[1] or smaller
     for grip in narrow.grips:
         assert 0 <= grip.place[0] <= narrow.picture.shape[1]
@@ -3930,6 +3935,28 @@ def test_the_plain_svd_of_many_pictures_is_where_it_is_drawn_for_each_origin(at)
         assert count(near, LENS, 90) + count(near, IDEAL, 90) + count(near, ESTIMATED, 90) > 1
 
 
+@pytest.mark.parametrize("at", [(-300, -300), (100, 60), (500, 300)])
+def test_the_board_that_the_plain_svd_believes_in_is_seen_by_the_same_pixels_but_nearer(at):
+    origin, true, blue = believed_from(np.array(at, float))
+    A = course.camera().A
+    for place, seen in ((true, corners_of_origin()[1]), (blue, plain(np.array(at, float)))):
+        m = place @ A.T
+        assert np.allclose(m[:, :2] / m[:, 2:], seen, atol=1e-6)
+    X = np.column_stack([corners_of_origin()[0] - at, np.ones(54)])
+    for place in (true, blue):  # both are plane, and their origin has one depth
+        to_space = np.linalg.lstsq(X, place, rcond=None)[0]
+        assert np.allclose(X @ to_space, place, atol=1e-6)
+        assert to_space[2, 2] == pytest.approx(origin[2], rel=1e-9)
+    assert blue[:, 2].mean() < true[:, 2].mean() + 10
+    # In the view from the side, 4120 mm are 754 px wide.
+    side = MODELS["origin"].picture(x=at[0], y=at[1])[2 * TITLE + 320 + 6 :, MARGIN:]
+    for place, ink in ((true, IDEAL), (blue, LENS)):
+        u, v = np.rint([(place[20, 2] + 120) * 754 / 4120, 66 + (place[20, 1] + 232) * 754 / 4120])
+        u, v = int(u), int(v)
+        near = side[v - 2 : v + 3, u - 2 : u + 3]
+        assert count(near, ink, 90) + count(near, WORLD, 90) + count(near, LENS, 90) > 2
+
+
 def test_the_plane_is_darker_where_the_plain_svd_is_farther_off_and_palest_at_the_centroid():
     picture = MODELS["origin"].picture(x=650, y=540)[TITLE:, MARGIN + 374 + 2 * MARGIN :]
     places = [(100, -60), (350, 62), (-330, 62), (600, -400), (-450, -400)]
@@ -4154,6 +4181,30 @@ def test_a_new_pixel_mixes_four_colours_as_wide_as_they_weigh_and_they_are_lit()
         assert np.abs(drawing.picture[place] - ink).max() <= 1
         far = TITLE + 45 * 3 * j + 22, 2 * 366 + MARGIN + 45 * 3 * i + 22
         assert drawing.picture[far].min() > 185
+
+
+@pytest.mark.parametrize(("u", "v", "tip"), [(0, 0, (0, 11)), (59, 0, (49, 0)), (58, 44, (59, 33))])
+def test_what_asks_beside_the_photograph_points_out_of_it_and_weighs_no_pixel(u, v, tip):
+    drawing = MODELS["asks"].drawing(warp=1, u=u, v=v)
+    x, y = (6 * (np.array(tip) + 0.5)).astype(int) + [366 + MARGIN, TITLE]
+    assert count(drawing.picture[y - 12 : y + 13, x - 12 : x + 13], ESTIMATED) > 12
+    near = drawing.picture[TITLE + 3 : TITLE + 177, 2 * 366 + MARGIN + 3 : 2 * 366 + MARGIN + 177]
+    assert count(near, IDEAL) == 0
+    assert count(near, ESTIMATED) > 20
+
+
+@pytest.mark.parametrize(("u", "v"), [(31, 18), (40, 25), (20, 10)])
+def test_the_square_between_the_four_centres_is_cut_where_a_pixel_asks(u, v):
+    x, y = asked_by_hand(1, u, v)
+    drawing = MODELS["asks"].drawing(warp=1, u=u, v=v)
+    near = drawing.picture[TITLE : TITLE + 180, 2 * 366 + MARGIN : 2 * 366 + MARGIN + 180]
+    left, top = round(45 * (1.5 + x % 1)), round(45 * (1.5 + y % 1))
+    for line in (near[68:112, left - 2 : left + 3], near[top - 2 : top + 3, 68:112]):
+        assert count(line, ESTIMATED, 110) > 10
+    for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        at_x, at_y = 67 + 45 * i, 67 + 45 * j
+        dot = near[at_y - 2 : at_y + 3, at_x - 2 : at_x + 3]
+        assert count(dot, LENS, 60) + count(dot, ESTIMATED, 60) > 9
 
 
 def test_a_lens_draws_each_pixel_nearer_to_the_middle_by_a_line():

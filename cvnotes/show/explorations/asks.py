@@ -113,15 +113,22 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     # One line over both panels: the second begins a gap further on.
     beside, low = np.array([right.sheet[0] / (right.width / 2) * SIZE[0], 0]), np.floor(at)
     begin, end = here + [wide / 2, 0], np.array([low[0] - 0.5, at[1]])
+    out = not ((at > -1) & (at < SIZE)).all()
+    if out:  # to the border of the photograph, within, and from there an arrow
+        border = np.clip(at, -0.5, np.array(SIZE) - 0.5)
+        end = border + 4 * np.sign(border - at)
     for panel, ends in ((left, (begin, end + beside)), (right, (begin - beside, end))):
         _framed(panel, ends, 1.6)
+    if out:
+        right.arrows(end, border - end, "white", 5)
+        right.arrows(end, border - end, ESTIMATED, 2.4)
     _framed(left, _square(here - wide / 2, wide), 2)
     if warp == 4:
         _framed(right, np.array([here, at]), 1.6)
     _framed(right, _square(low - 0.5, 2), 2)
     left.grip("pixel", "a pixel of the new picture", here, wide)
     near, mix = _near(paper, photo, at), _mix(paper, photo, at)
-    where = "" if ((at > -1) & (at < SIZE)).all() else ", beside the photograph"
+    where = ", beside the photograph" if out else ""
     if warp == 4:
         where = f", {np.hypot(*(at - here)):.2f} px nearer to the middle"
     sentence = (
@@ -167,7 +174,15 @@ def _near(paper: Paper, photo: Drawn, at: Array) -> Panel:
     lit = np.zeros((_NEAR, _NEAR, 1))
     lit[1:3, 1:3] = 1
     panel.image(np.rint(lit * piece + (1 - lit) * (0.25 * piece + 191)).astype(np.uint8))
-    _framed(panel, _square(low - 0.5, 2), 2)
+    if not ((at > -1) & (at < SIZE)).all():
+        panel.text(low + [0.5, 0.5], "beside: fill", ESTIMATED, anchor="mm", size=14)
+        return panel
+    # The square between the four centres, in four parts: each weighs the opposite pixel.
+    (u, v), (x0, y0) = at, low
+    _framed(panel, _square(low, 1), 1.6)
+    panel.segments([[[u, y0], [u, y0 + 1]], [[x0, v], [x0 + 1, v]]], "white", 3)
+    panel.segments([[[u, y0], [u, y0 + 1]], [[x0, v], [x0 + 1, v]]], ESTIMATED, 1.2)
+    panel.mark(low + np.array([[0, 0], [1, 0], [0, 1], [1, 1]]), "lens", 6)
     for k, w in enumerate(weighed(photo, at)[0]):  # above and below: the cross is between
         step = np.array([k % 2, k // 2])
         panel.text(low + step + [0, 1.6 * (step[1] - 0.5)], f"{w:.2f}", IDEAL, anchor="mm", size=14)

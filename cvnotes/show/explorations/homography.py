@@ -100,6 +100,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     straight.image(wall.astype(np.uint8))
     straight.line(_CHART[[0, 1, 2, 3, 0]], WORLD, 1.5, dash=5)
     straight.mark(place, "ideal", 8)
+    _draw_way(straight, place)
     return Drawing(paper.join((picture, straight)), _sentence(place))
 
 
@@ -127,6 +128,23 @@ def _draw_horizon(panel: Panel, H: Array) -> None:
         panel.text(
             [at + aside, _PICTURE[1] - 14], "the wall's horizon", IDEAL, anchor=anchor, size=12
         )
+
+
+def _draw_way(panel: Panel, place: Array) -> None:
+    """Draw an arrow at the border to a plus that lies beyond; at a side, with its X."""
+    low, high = np.array([panel.x, panel.y]).T + np.array([[14], [-14]]) * panel.pixel
+    middle = (low + high) / 2
+    way = place - middle
+    part = np.min((high - low) / 2 / np.abs(way).clip(1e-9))
+    if part >= 1:
+        return
+    along, tip = way / np.linalg.norm(way), middle + part * way
+    panel.arrows(tip - 34 * panel.pixel * along, 40 * panel.pixel * along, "white", 5)
+    panel.arrows(tip - 32 * panel.pixel * along, 36 * panel.pixel * along, IDEAL, 2.4)
+    if (high[0] - low[0]) / 2 <= part * abs(way[0]) + 1e-6:  # it has left at a side
+        words, below = f"X = {place[0]:.0f} mm".replace("-", "−"), tip + [0, 24 * panel.pixel]
+        anchor = "lm" if way[0] < 0 else "rm"
+        panel.text(np.minimum(below, high), words, IDEAL, anchor=anchor, size=13)
 
 
 def _sentence(place: Array) -> str:

@@ -103,7 +103,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
         panel.text([_SHOWN[0][0] + 12, v], f"{i}", IDEAL, size=12)
     aside, anchor = (-16, "rm") if held[row - 1, 0] > _SHOWN[0][0] + 200 else (16, "lm")
-    at = held[row - 1] + [aside * panel.pixel, 0]
+    lift = 18 * panel.pixel if held[row - 1, 1] > _SHOWN[1][1] - 50 else 0  # above the border
+    at = held[row - 1] + [aside * panel.pixel, -lift]
     panel.text(at, "pulled", IDEAL, anchor=anchor, size=12)
     far = np.linalg.norm(moved, axis=-1).max(axis=-1)
     return Drawing(paper.join((panel, _bars(paper, far))), _sentence(values, far[0].tolist()))

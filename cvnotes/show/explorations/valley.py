@@ -13,7 +13,7 @@ from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import contours
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, rgb
 
 _H6, _H9, _MOST = (-2.7, 1.0), (-1.4, 2.3), 25  # where walks may set out; steps
 _MU = 1e-3  # how the first step of the damped one is damped
@@ -158,7 +158,7 @@ def _name_ground(ground: Panel, of: Floor) -> None:
     for line, way in ((150, [1, 0.5]), (200, [1, 0.75])):
         far = np.outer(np.linspace(0, 1.5, 301), way)
         at = best + far[np.searchsorted([of.rms(best + by) for by in far], line)]
-        ground.text(at, f"RMS {line} px", MUTED, anchor="mm", size=11)
+        ground.text(at, f"RMS {line} px", IDEAL, anchor="mm", size=11)
     ground.mark(best, "ideal", 12)
 
 
@@ -174,7 +174,7 @@ def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
         panel.mark(curve[-1], meaning, 7)
         steps, high = curve[-1].tolist()
         at, anchor = (steps + 0.8, "lm") if steps < 18 else (_MOST, "rm")
-        panel.text([at, min(high + up, 3.9)], name, colour, anchor=anchor, size=12)
+        panel.text([at, np.clip(high + up, -0.1, 3.9)], name, colour, anchor=anchor, size=12)
     return panel
 
 
