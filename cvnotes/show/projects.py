@@ -14,7 +14,7 @@ _EYE = Camera(
     intrinsics(158, 158, 96, 58), look_at([3.4, -6.0, -5.6], [0.1, 0, -0.5], up=(0, 0, -1))
 )
 _NAMES = (
-    "1 ★ A poster", "2 ★★ A building", "3 ★★ A cube on the board", "4 ★★ Zoom",
+    "1 ★ A poster", "2 ★★ A building", "3 ★★ A cube", "4 ★★ Zoom",
     "5 ★★ How many pictures?", "6 ★★★ Your board", "7 ★★★ A very wide lens", "8 ★★★ Stereo",
 )  # fmt: skip
 

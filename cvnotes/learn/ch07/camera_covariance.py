@@ -50,7 +50,8 @@ EXERCISE = Exercise(
     "camera's corner of (JᵀJ)⁻¹, however many views there are.",
     hints=(
         "JᵀJ is an arrow: the views meet in the camera's c × c corner only.",
-        "Eliminate a view's pose within its own block: JcᵀJc − JcᵀJp (JpᵀJp)⁻¹ JpᵀJc is left.",
+        "Eliminate a view's pose within its own block: NᵀN = JcᵀJc − JcᵀJp (JpᵀJp)⁻¹ JpᵀJc is left "
+        "(N is Jc less its part in the span of Jp).",
         "Add what is left over all views, S += …, and invert the sum once.",
     ),
     cases=_views,

@@ -167,7 +167,8 @@ def depth_model() -> Model:
     about = (
         "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
         "until what lies at one depth has no fringes. Below, the depth of each pixel that agrees "
-        "best of all up to this one, by colours; beside it the same as dots, from above."
+        "best of all up to this one, by colours; beside it what is neither floor nor ceiling, as "
+        "dots, from above."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -199,7 +200,9 @@ def _sentence(Z: float, found: Array) -> str:
 
 def _plan(paper: Paper, Z: float, found: Array) -> Panel:
     """Draw from above where what has a depth so far must be, and where it is."""
-    panel = paper.panel(_PLAN, (-4150, 4650), (12_900, -620), "from above: pull the line")
+    panel = paper.panel(
+        _PLAN, (-4150, 4650), (12_900, -620), "from above, without floor and ceiling: pull the line"
+    )
     panel.image(_dots(panel, found), smooth=False)
     for corners in from_above(room(), -1500)[0]:
         panel.line([*corners, corners[0]], IDEAL, 1)

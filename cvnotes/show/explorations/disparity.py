@@ -10,6 +10,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 _ALPHA, _BASE = 520.0, 200.0  # px, mm
 _PLANE = 1100.0  # mm, where both pictures are drawn: a pixel is 1100/520 mm there
 _X, _Z = (-400, 620), (5600, -520)  # mm that are shown, from above
+_LOWEST = 70.0  # mm: so high at least is the axis of the error
 _LIGHT, _WARM = "#D1EDE5", "#F3CDAE"
 
 
@@ -81,16 +82,20 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _error(paper: Paper, Z: float, sigma: float) -> Panel:
     """Draw the standard deviation of the depth against the depth."""
-    panel = paper.panel((340, 390), (-400, 5000), (160, -16), "σ of Z (mm) against Z (mm)")
-    panel.ticks(x=(1000, 2000, 3000, 4000), y=(0, 50, 100, 150), size=11)
-    panel.line([[0, 0], [5000, 50]], MUTED, 1, dash=4)
-    panel.text([900, 18], "1 % of Z", MUTED, anchor="mm", size=12)
     depths = np.linspace(0, 5000, 41)
-    curve = depths**2 / (_ALPHA * _BASE) * sigma
-    panel.line(np.column_stack([depths, curve]), ESTIMATED, 2)
+    curve = np.column_stack([depths, depths**2 / (_ALPHA * _BASE) * sigma])
+    top = max(_LOWEST, 1.06 * float(curve[-1, 1]))
+    panel = paper.panel((340, 390), (-400, 5600), (top, -0.1 * top), "σ of Z (mm) against Z (mm)")
+    step = 20 if top < 2 * _LOWEST else 50
+    panel.ticks(x=(1000, 2000, 3000, 4000), y=range(0, round(top), step), size=11)
+    panel.line([[0, 0], [5000, 50]], MUTED, 1, dash=4)
+    panel.text([5060, 50], "1 %", MUTED, anchor="lm", size=12)
+    panel.line(curve, ESTIMATED, 2)
     here = [Z, Z**2 / (_ALPHA * _BASE) * sigma]
     panel.mark(here, "estimated", 8)
-    panel.text([Z - 150, here[1] + 9], f"{here[1]:.0f} mm", ESTIMATED, anchor="rm", size=13)
+    side = 1 if here[1] < 0.01 * Z else -1  # not upon the line of 1 %
+    at, anchor = [Z + 140 * side, here[1] - 0.05 * side * top], "lm" if side > 0 else "rm"
+    panel.text(at, f"{here[1]:.0f} mm", ESTIMATED, anchor=anchor, size=13)
     return panel
 
 
