@@ -412,14 +412,27 @@ def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_ch
         ends = [path.get("d") for path in drawn.findall(".//{*}path") if "H" in path.get("d")]
         begin, tip = (float(re.search(rf"{letter}([\d.]+)", ends[0])[1]) for letter in "MH")
         assert (tip > begin) == forwards
-        assert "(595.1, 411.0)" in picture.alt  # chapter 4 works it out, step by step
-    for chapter in (2, 3):  # no lens: 800 · 0.35193 + 325 and 804 · 0.22430 + 238
+        assert "(595, 411)" in picture.alt  # chapter 4 works it out, step by step
+    for chapter in (2, 3):  # no lens: 800 · 0.35193 + 325 and 804 · 0.22428 + 238
         bare = one_corner(chapter)
-        assert "no lens (0.3519, 0.2243), pixel (606.5, 418.3)" in bare.alt
+        assert "no lens (0.352, 0.224), pixel (607, 418)" in bare.alt
         assert bare.data.count(b"line-through") == 1
     assert one_corner(4).data.count(b"line-through") == 0
     with pytest.raises(CvnotesError, match="0 to 10"):
         one_corner(11)
+
+
+def test_each_step_of_the_head_can_be_checked_with_the_numbers_that_are_written():
+    A, lens = course.camera().A, course.camera().lens
+    for chapter in (0, 2):
+        said = re.findall(r"\(([-\d., ]+)\)", one_corner(chapter).alt)
+        world, camera, plane, behind, pixel = (
+            np.array(one.split(","), dtype=float) for one in said
+        )
+        assert world.tolist() == [200, 125, 0]
+        assert (np.round(camera[:2] / camera[2], 3) == plane).all()
+        assert (np.round(plane if chapter else lens.distort(plane), 3) == behind).all()
+        assert (np.round(A[:2, :2] @ behind + A[:2, 2]) == pixel).all()
 
 
 def test_the_head_of_chapter_6_leads_from_the_pixel_to_the_board_in_one_orange_step():

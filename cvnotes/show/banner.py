@@ -64,8 +64,8 @@ def one_corner(chapter: int) -> Picture:
     Examples
     --------
     >>> one_corner(4)
-    One corner: world (200, 125, 0) mm, camera (99.6, 63.5, 283.1) mm, plane z = 1 (0.3519, 0.2243),
-    behind the lens (0.3377, 0.2152), pixel (595.1, 411.0). Lit: lens
+    One corner: world (200, 125, 0) mm, camera (99.6, 63.5, 283.1) mm, plane z = 1 (0.352, 0.224),
+    behind the lens (0.338, 0.215), pixel (595, 411). Lit: lens
     """
     chapter = whole(chapter, "chapter", at_least=0, at_most=10)
     from cvnotes.pictures import course
@@ -83,12 +83,13 @@ def one_corner(chapter: int) -> Picture:
     eye = beside.project(np.zeros(3))
     cone = beside.project(120 * np.column_stack([border, np.ones(5)]))
     cone = np.concatenate([[leg for tip in cone[:4] for leg in (tip, eye)], cone])
+    # So many digits that each step, with the numbers that are written, gives the next ones.
     states = (
         ("world", W[:, :2], None, WORLD, "({:.0f}, {:.0f}, {:.0f}) mm", W[-1]),
         ("camera", beside.project(M), cone, WORLD, "({:.1f}, {:.1f}, {:.1f}) mm", M[-1]),
-        ("z = 1", xy, border, IDEAL, "({:.4f}, {:.4f})", xy[-1]),
-        (behind, seen, border, LENS, "({:.4f}, {:.4f})", seen[-1]),
-        ("pixel", m, frame, LENS, "({:.1f}, {:.1f})", m[-1]),
+        ("z = 1", xy, border, IDEAL, "({:.3f}, {:.3f})", xy[-1]),
+        (behind, seen, border, LENS, "({:.3f}, {:.3f})", seen[-1]),
+        ("pixel", m, frame, LENS, "({:.0f}, {:.0f})", m[-1]),
     )
     lit = _LIT.get(chapter, STEPS)
 
