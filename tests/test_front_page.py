@@ -41,6 +41,8 @@ def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
         assert not re.search(r"@[A-Z]+@", page)
     assert "data-explore" not in alone
     assert "lite/" not in live
+    cost = re.search(r"JupyterLite, (\d+ MB once)", readme)[1]
+    assert [cost in page for page in (alone, live, whole)] == [False, False, True]
     assert "your_camera.html" in live
     opened = re.search(r"lite/notebooks/index.html\?path=(\S+?)\"", whole)[1]
     assert (ROOT / opened).is_file()  # JupyterLite has them in the repository's places
@@ -81,3 +83,22 @@ def test_a_card_shows_what_is_drawn_without_the_numbers_along_its_axes():
     card = np.asarray(front_page.fitted(Image.fromarray(figure)))
     assert card.shape == (320, 480, 3)
     assert (card == (0, 90, 200)).all()
+
+
+def test_the_link_to_try_it_leads_to_the_box_of_its_exercise():
+    template = front_page.TEMPLATE.read_text(encoding="utf-8")
+    chapter, box = re.search(r"notebooks/(\w+)\.html#(answer-\w+)", template).groups()
+    name = box.removeprefix("answer-")
+    written = (ROOT / "notebooks" / f"{chapter}.ipynb").read_text(encoding="utf-8")
+    assert f'check(\\"{name}\\", my_{name})' in written
+    boxes = (ROOT / "docs" / "static" / "live" / "exercises.js").read_text(encoding="utf-8")
+    assert "id: `answer-${name}`" in boxes
+
+
+@pytest.mark.parametrize("name", front_page.PARTS)
+def test_no_word_is_written_on_a_card_that_is_cut_out_of_an_exploration(name, monkeypatch):
+    def refuse(*_, **__):
+        raise AssertionError("a word on a card")
+
+    monkeypatch.setattr(front_page.Panel, "text", refuse)
+    assert front_page.card_of(ROOT / "notebooks" / f"{name}.ipynb").size == front_page.CARD

@@ -18,7 +18,7 @@ from site_figures import FOLDER, panels_of
 from cvnotes.learn import check
 from cvnotes.show import explorations
 from cvnotes.show.explorations.page import page_data
-from cvnotes.show.explorations.paper import Paper
+from cvnotes.show.explorations.paper import Panel, Paper, Range
 from cvnotes.show.explorations.subpixel import neighbourhood, place_of
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -28,7 +28,9 @@ EXPLORED = "straighten"
 CARD = (480, 320)  # px: twice what is shown
 # Cards that are a part of an exploration: its settings, the left and upper end, the width in px.
 PARTS = {
-    "03_camera_model": ("divide", {}, (90, 120, 270)),
+    "03_camera_model": ("divide", {}, (90, 122, 270)),
+    "07_zhang_calibration": ("nails", {}, (6, 44, 500)),
+    "10_two_pictures": ("rectification", {}, (256, 26, 432)),
     "more_exercises": ("conic", {"a": 0.0, "b": 1.5}, (414, 44, 390)),
 }
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
@@ -86,13 +88,16 @@ def buttons(live: bool, lite: bool) -> str:
         else "docs/install.html"
     )
     own = "your_camera.html" if live else "notebooks/09_your_own_camera.html"
-    ways = (
-        (f"{start}.html", "Read", "chapter 0, half an hour"),
-        (run, "Run", "here, nothing installed" if lite else "on your machine"),
-        (own, "Your own camera", "photographs in, camera out"),
+    at_home = "on your machine", ""
+    ways = (  # on a telephone only the name, and what it costs
+        (f"{start}.html", "Read", "chapter 0, half an hour", ""),
+        (run, "Run", *(("here, nothing installed, ", "66 MB once") if lite else at_home)),
+        (own, "Your own camera", "photographs in, camera out", ""),
     )
     return "\n".join(
-        f'<a href="{to}"><strong>{name}</strong> <span>{what}</span></a>' for to, name, what in ways
+        f'<a href="{to}"><strong>{name}</strong> '
+        f'<span><span class="front-what">{what}</span>{cost}</span></a>'
+        for to, name, what, cost in ways
     )
 
 
@@ -149,9 +154,26 @@ def card_of(path: Path) -> Image.Image:
         return richest(path)
     name, settings, (left, top, width) = PARTS[path.stem]
     model = explorations.model(name)
-    picture = Image.fromarray(model.drawn_on(Paper(2), model.values() | settings).picture)
+    picture = Image.fromarray(model.drawn_on(_Wordless(2), model.values() | settings).picture)
     box = np.array([left, top, left + width, top + width * CARD[1] / CARD[0]])
     return picture.resize(CARD, Image.Resampling.LANCZOS, tuple(2 * box))
+
+
+class _Wordless(Paper):
+    """A paper on which no words are written: on a card they could not be read."""
+
+    def panel(
+        self, size: tuple[int, int], x: Range, y: Range, title: str = ""
+    ) -> Panel:  # with the title's strip
+        return _Silent(size, x, y, title, 2 * self.sharpness)
+
+
+class _Silent(Panel):
+    def text(self, *_: object, **__: object) -> None:
+        """Write nothing."""
+
+    def grip(self, *_: object, **__: object) -> None:
+        """Draw no ring: a card is not pulled."""
 
 
 def corner() -> Image.Image:
