@@ -926,6 +926,16 @@ def test_a_class_goes_through_infinity_and_its_dot_once_round_the_ring():
     assert ring.dragged("line", (-1, 1), angle=-20)["angle"] == -45
 
 
+def test_the_marks_of_the_ring_carry_their_numbers_outside_of_it(written):
+    MODELS["ring"].drawing(angle=30)
+    for number in (1, 2, 4, 8, -1, -2, -4, -8):
+        panel, at = written[f"{number}".replace("-", "−")]
+        off = at - [0, 0.5]
+        assert np.hypot(*off) > 0.5 + 6 * panel.pixel  # the words' middle, beyond the rim
+        mark = np.array([number, number**2]) / (number**2 + 1) - [0, 0.5]
+        assert np.allclose(off / np.hypot(*off), mark / np.hypot(*mark))
+
+
 def test_two_lines_meet_where_their_equations_say_and_parallels_at_infinity():
     rng, model = np.random.default_rng(4), MODELS["meet"]
     for a1, b1, a2, b2 in rng.integers(-10, 11, (40, 4)).tolist():
@@ -1746,10 +1756,10 @@ def test_the_lenss_curve_has_its_top_where_the_lens_folds():
 def test_each_kind_of_map_keeps_what_its_row_of_the_table_says(values, kept):
     names = [
         "length",
-        "angle of the corner",
-        "blue side : top",
+        "angle at corner 3",
+        "blue side : bottom",
         "angle of opp",
-        "one half",
+        "blue half",
         "cross-ratio",
     ]
     said = MODELS["maps"].drawing(**values).sentence
@@ -1765,7 +1775,13 @@ def test_each_kind_of_map_keeps_what_its_row_of_the_table_says(values, kept):
     assert np.isclose(d - a, 2 * down)
     assert np.isclose(b - a, (2 + given["along"]) * side - given["up"] * down)
     assert maps.measured(maps.matrix(given))[0] == pytest.approx(abs(c - b))
-    assert maps.measured(maps.matrix(given))[2] == pytest.approx(abs(c - b) / abs(b - a))
+    assert maps.measured(maps.matrix(given))[2] == pytest.approx(abs(c - b) / abs(d - c))
+
+
+@pytest.mark.parametrize("moved", [-0.5, -0.2, 0.1, 0.3, 0.5])
+def test_a_corner_that_is_pulled_along_the_diagonal_leaves_the_cross_ratio_alone(moved):
+    said = MODELS["maps"].drawing(along=moved, up=moved).sentence
+    assert said.endswith("As before: cross-ratio, straight lines.")
 
 
 def test_what_a_map_changes_stands_inside_the_frame_of_its_kind_and_the_rest_is_kept():

@@ -16,6 +16,7 @@ from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD, mixed
 _CAMERA, _DOWN, _HALFWAY, _CELL = Camera(course.camera().A), 1.6, 20.0, 4.0  # m
 _MAP, _VIEW, _FINER = (330, 330), (440, 330), 1.375  # px; the photograph is finer than _CAMERA's
 _SHOWN = (-0.565, 0.565), (1.105, -0.025)  # of the map, whose rim has the radius 1
+_DISC, _DISC_AT = 0.16, np.array([-0.38, 0.19])  # the whole map, small, beside what is shown
 _SIDE = 21  # degrees to either side, to which the cell is pulled
 _SEEN = -22.1, 21.5  # degrees that the picture shows, from its left border to its right one
 _NAMED = np.radians([-20, 0, 20])  # directions whose degrees are written there
@@ -89,7 +90,18 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         else:
             panel.mark(at, "ideal", 9)
         panel.grip(name, f"the cell, in the {name}", at, 2)
+    _on_disc(plan, part * way, part == 1)
     return Drawing(paper.join((plan, view)), _sentence(place, high))
+
+
+def _on_disc(plan: Panel, at: Array, at_the_rim: bool) -> None:
+    """Mark the cell on the small map; at the rim it is also the point behind the camera."""
+    small = _DISC_AT + _DISC * np.array([at, -at])
+    if at_the_rim:
+        plan.mark(small, "ideal", 6)
+        return
+    for size, ink in ((3.6, IDEAL), (2.4, _YELLOW)):
+        plan.polygons([small[0] + size * plan.pixel * circle(17)], ink)
 
 
 def _lifted(ground: Array) -> Array:
@@ -126,6 +138,12 @@ def _map(sharpness: int) -> Drawn:
     panel.line(seen_rim, IDEAL, 3)
     panel.mark([0, 0], "camera", 9)
     _name(panel, 1.068 * np.stack([np.sin(_NAMED), np.cos(_NAMED)], axis=1))
+    panel.polygons([_DISC_AT + _DISC * rim], "white")
+    panel.polygons([_DISC_AT + _DISC * np.array([[0, 0], *seen_rim])], _GRASS)
+    panel.line(_DISC_AT + _DISC * rim, MUTED, 1)
+    panel.line(_DISC_AT + _DISC * seen_rim, IDEAL, 2)
+    panel.mark(_DISC_AT, "camera", 5)
+    panel.text(_DISC_AT + [0, _DISC + 0.05], "all around", anchor="mm", size=12)
     return panel.drawn()
 
 

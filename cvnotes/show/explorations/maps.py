@@ -14,11 +14,11 @@ _RIGHT, _TOP, _CORNER = np.array([1.0, 0]), np.array([0.0, -1]), np.array([1.0, 
 _SIDE = np.array([[1, -1], [1, 0], [1, 0.5], [1, 1]])  # four points of its right side
 _SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
 _MEASURED = (
-    ("length of the side", "{:.3f}"),
-    ("angle of the corner", "{:.0f}°"),
-    ("blue side : top", "{:.3f}"),
+    ("blue side's length", "{:.3f}"),
+    ("angle at corner 3", "{:.0f}°"),
+    ("blue side : bottom", "{:.3f}"),
     ("angle of opposite sides", "{:.0f}°"),
-    ("one half : the other", "{:.3f}"),
+    ("blue half : other half", "{:.3f}"),
     ("cross-ratio", "{:.2f}"),
 )
 _SNAP = 0.08  # so near to what changes nothing a hand means just that
@@ -122,11 +122,11 @@ def measured(H: Array) -> Array:
     """Return a length, two angles, two ratios and a cross-ratio, (6,), after a map."""
     side, corners = apply(H, _SIDE), apply(H, _SQUARE)
     top, middle, low = side[[0, 1, 3]]
-    across, right, back, left = corners[1:] - corners[:-1]
+    across, right, back, left = corners[1:] - corners[:-1]  # no hand on 3 moves the bottom, back
     return np.array([
         np.linalg.norm(low - top),
         _angle(-across, right),
-        np.linalg.norm(right) / np.linalg.norm(across),
+        np.linalg.norm(right) / np.linalg.norm(back),
         max(_angle(across, -back), _angle(right, -left)),
         np.linalg.norm(middle - top) / np.linalg.norm(low - middle),
         cross_ratio(*to_homogeneous(side)),

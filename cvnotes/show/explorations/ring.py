@@ -8,7 +8,7 @@ from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, MUTED, WORLD
 
-_NUMBERS = np.array([0, 0.5, 1, 2, 4, 8, -8, -4, -2, -1, -0.5])
+_NUMBERS = np.array([0, 1, 2, 4, 8, -8, -4, -2, -1])
 _WIDE = 1.38
 
 
@@ -75,9 +75,12 @@ def _draw_ring(panel: Panel, way: Array, x: float, colour: str, angle: float) ->
     panel.line(np.column_stack([np.sin(round_), 1 - np.cos(round_)]) / 2, WORLD, 2)
     for number in _NUMBERS:
         panel.line(_ray(number), FAINT, 0.8)
-        panel.mark(_dot(np.array([number, 1])), "world", 5)
-        if abs(number) <= 2:
-            panel.text([number, -0.15], _number(number), anchor="mm", size=10)
+        mark = _dot(np.array([number, 1]))
+        panel.mark(mark, "world", 5)
+        if abs(number) <= 1:
+            panel.text([number, -0.15], _number(number), anchor="mm", size=11)
+        if number:
+            panel.text([0, 0.5] + 1.18 * (mark - [0, 0.5]), _number(number), anchor="mm", size=11)
     dot = _dot(way)
     _draw_angle(panel, 2 * angle % 360, 0.16, -1, (0, 0.5))
     if np.isfinite(x):
