@@ -13,6 +13,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
 _SIZE, _SHOWN = (372, 400), ((-0.72, 0.72), (-0.774, 0.774))
 _EXTENT, _TIMES = 0.5, 3  # of the grid; each point is moved so many times as far
+_BESIDE = 0.63  # how far beside p two points are pointed out, outside of the grid
 _RULER = 0.35, 0.5  # how far along p it lies, and how far it reaches to both sides
 _ARROW = 4  # how much longer than p its arrow is
 _F = 800  # px, in which a bow is told
@@ -59,8 +60,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     lens = paper.panel(_SIZE, *_SHOWN, "a decentred lens, each point moved 3 times as far")
     sensor = paper.panel(_SIZE, *_SHOWN, "a tilted sensor, also 3 times as far")
     bows = [_bent(panel, p, move) for panel, move in ((lens, decentred), (sensor, tilted))]
-    beside = _EXTENT * np.stack(_along(p))  # where p adds itself threefold, and once
-    lens.arrows(beside, decentred(_TIMES * p, beside) - beside, IDEAL, 2.5)
+    _point_out(lens, p)
     tip = _ARROW * p
     lens.arrows([0, 0], tip, IDEAL, 2.5)
     lens.mark([0, 0], "ideal", 5)
@@ -72,6 +72,18 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         f"across p bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the tilted sensor."
     )
     return Drawing(paper.join((lens, sensor)), words)
+
+
+def _point_out(panel: Panel, p: Array) -> None:
+    """Draw two points beside p, which move across their rays, and one along p, as its ray does."""
+    ahead, across = _along(p)
+    points = np.array([_BESIDE * across, -_BESIDE * across, _EXTENT * ahead])
+    for point in points:
+        panel.line([[0, 0], point], IDEAL, 1, dash=4)
+    panel.arrows(points, decentred(_TIMES * p, points) - points, IDEAL, 3.5)
+    for point, words in zip(points, ("r²p", "r²p", "3r²p"), strict=True):
+        aside = -22 * ahead if words == "r²p" else 28 * across
+        panel.text(point + panel.pixel * aside, words, IDEAL, anchor="mm", size=14)
 
 
 def _along(p: Array) -> tuple[Array, Array]:

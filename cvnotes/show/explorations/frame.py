@@ -55,10 +55,10 @@ def _sentence(f: float, black: float, lost: float) -> str:
     every, full = ends()
     wide = 2 * np.degrees(np.arctan(_C / f))[0]
     gaps = "nothing" if f >= full else _percent(black)
-    gone = "nothing" if f <= every else _percent(lost)
+    gone = "nothing" if f <= every else f"{_percent(lost)} of the old pixels"
     return (
         f"f = {f:g} px: the new camera sees {wide:.0f}° from left to right. Of its picture {gaps} "
-        f"is black; of what the lens saw {gone} is lost."
+        f"is black; {gone} is lost."
     )
 
 
@@ -152,8 +152,8 @@ def _curves(paper: Paper, f: float, filled: Array, lost: Array) -> Panel:
     panel.line([[f, 0], [f, _HIGH]], ESTIMATED, 2)
     over = np.arange(_NEAR, _FAR + 1)
     for part, ink, words, place, anchor in (
-        ([(filled > one).mean() for one in over], IDEAL, "black", 0, "ld"),
-        ([(lost < one).mean() for one in over], LENS, "lost", -8, "rd"),
+        ([(filled > one).mean() for one in over], IDEAL, "black (of the new)", 0, "ld"),
+        ([(lost < one).mean() for one in over], LENS, "lost (of the old pixels)", -8, "rd"),
     ):
         curve = np.column_stack([over, 100 * np.array(part)])
         panel.line(curve, ink, 2)

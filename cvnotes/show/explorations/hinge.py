@@ -9,7 +9,7 @@ from cvnotes.camera import Camera, inverse, look_at, move
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_sheet, paper_and_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.paper import GRID, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.space.directions import sheet
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, mixed
@@ -17,10 +17,12 @@ from cvnotes.targets import Chessboard, TwoPlanes
 
 _BOARD, _A = Chessboard((7, 6), 25.0), course.camera().A
 _VIEW = Camera(_A, look_at([470, 40, -520], [65, 62, -75]))
-_SPACE, _FOUND = (520, 400), (340, 400)  # px
+_SPACE, _CURVE, _FOUND = (520, 400), (340, 246), (340, 126)  # px
 _OPEN, _FLAT = 90, 180  # degrees between the boards
 _NOISE, _PHOTOS = 0.1, 40  # px, of each coordinate
-_REACH = 60  # px, of α
+_REACH = 130  # px, of α
+_LEAST, _MOST = 0.5, 180  # px: the ends of the curve's axis
+_END = 0.45  # degrees: where on the logarithmic axis no bend at all stands
 _DEPTH = 165  # mm from the camera to its drawn picture
 _SHEET = sheet((24, -56))
 _SHOWN = ((-292, 278), (-106, 332))  # mm of the sheet
@@ -37,15 +39,19 @@ def hinge_model() -> Model:
         Setting("angle", "angle of the boards (°)", _OPEN, _FLAT, 1, 120, "180° is one plane"),
     )
     about = (
-        "A camera before two boards on a hinge. Beside it a band against their angle: how exactly "
-        "one photograph of both determines the focal length, with that of 40 of them as dots."
+        "A camera before two boards on a hinge. Beside it, against the bend between them, on two "
+        "logarithmic axes: how exactly one photograph of both determines the focal length; and "
+        "below the focal lengths that 40 of them give, as dots."
     )
 
     def turned(_: Values, at: Array) -> Values:
         nearest = np.linalg.norm(_way() - at, axis=1).argmin()
         return {"angle": float(_OPEN + nearest)}
 
-    drags = {"board": turned, "angle": lambda _, at: {"angle": float(at[0])}}
+    def along(_: Values, at: Array) -> Values:
+        return {"angle": float(round(_FLAT - 10 ** -np.clip(at[0], -2, 1)))}
+
+    drags = {"board": turned, "angle": along}
     return Model("hinge", about, settings, _draw, drags)
 
 
@@ -83,7 +89,7 @@ def spread() -> Array:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     angle = round(values["angle"])
-    drawn = paper.join((_space(paper, angle), _graph(paper, angle)))
+    drawn = paper.join((_space(paper, angle), [_curve(paper, angle), _dots(paper, angle)]))
     if angle == _FLAT:
         return Drawing(
             drawn, "At 180° both boards are one plane: the photograph does not determine αᵤ."
@@ -134,35 +140,56 @@ def _space(paper: Paper, angle: int) -> Panel:
     return panel
 
 
-def _graph(paper: Paper, angle: int) -> Panel:
-    """Draw the band α ± its standard deviation, and what 40 photographs say at one angle."""
-    alpha = _A[0, 0]
-    panel = paper.panel(
-        _FOUND, (_OPEN - 20, _FLAT + 7), (alpha + _REACH, alpha - _REACH - 12),
-        "αᵤ found in 40 photographs (px), by the angle (°)",
-    )  # fmt: skip
-    panel.ticks(x=(90, 120, 150, 180), y=(750, 775, 800, 825, 850), size=12)
-    angles = np.arange(_OPEN, _FLAT)
-    above, below = (np.stack([angles, alpha + by * spread()], axis=1) for by in (1, -1))
-    panel.polygons([np.concatenate([above, below[::-1]])], mixed("#FFFFFF", ESTIMATED, 0.2))
-    for end in (above, below):
-        panel.line(end, ESTIMATED, 1.4)
-    panel.line([[_OPEN - 20, alpha], [_FLAT + 20, alpha]], IDEAL, 1)
+def _at(bend: float) -> float:
+    """Return where a bend stands on the axis: the smaller, the farther to the right."""
+    return -float(np.log10(max(bend, _END)))
+
+
+def _curve(paper: Paper, angle: int) -> Panel:
+    """Draw the standard deviation of α over the bend, both axes logarithmic."""
+    low, high = np.log10([_LEAST, _MOST])
+    left, right = _at(130), _at(0) + 0.12
+    title = "standard deviation of αᵤ (px) by the bend"
+    panel = paper.panel(_CURVE, (left, right), (high, low), title)
+    for bend in (90, 45, 20, 10, 4, 2, 1):
+        panel.line([[_at(bend), low], [_at(bend), high]], GRID, 0.5)
+        panel.text([_at(bend), low + 0.1], f"{bend}°", anchor="md", size=12)
+    for px in (1, 10, 100):
+        panel.line([[left, np.log10(px)], [right, np.log10(px)]], GRID, 0.5)
+        panel.text([left + 0.03, np.log10(px)], f"{px}", size=12)
+    bends = np.arange(_FLAT - _OPEN, 0, -1)
+    panel.line(np.stack([-np.log10(bends), np.log10(spread())], axis=1), ESTIMATED, 2.2)
+    held = [_at(0), np.log10(130)]
     if angle < _FLAT:
-        aside = min(4, _FLAT - angle) * np.linspace(-1, 1, _PHOTOS)  # none beyond 180°
-        places = np.stack([angle + aside, found()[angle - _OPEN]], axis=1)
-        dot = 1.7 * circle(13) * [panel.pixel, (2 * _REACH + 12) / _FOUND[1]]
-        within = np.abs(places[:, 1] - alpha) <= _REACH  # below stand the angles
-        panel.polygons(places[within, None] + dot, ESTIMATED)
-        beyond = int((~within).sum())
-        if beyond:
-            words = f"{beyond} of {_PHOTOS} go beyond"
-            panel.text([93, alpha + 0.85 * _REACH], words, IDEAL, size=13)
-    else:
-        panel.line([[_FLAT, 0], [_FLAT, 2 * alpha]], ESTIMATED, 4)
-    panel.text([93, alpha + 8], "± standard deviation", ESTIMATED, size=13)
-    held = [angle, alpha - 0.75 * _REACH]
-    panel.line([held, [angle, alpha]], MUTED, 0.8)
+        held = [_at(_FLAT - angle), np.log10(spread()[angle - _OPEN])]
+    panel.line([[held[0], low + 0.28], held], MUTED, 0.8)
     panel.mark(held, "estimated", 8)
     panel.grip("angle", "the angle between both boards", held, 3)
+    return panel
+
+
+def _dots(paper: Paper, angle: int) -> Panel:
+    """Draw what 40 photographs say of α, and the band α ± its standard deviation."""
+    alpha = _A[0, 0]
+    title = "αᵤ found in 40 photographs (px)"
+    panel = paper.panel(_FOUND, (alpha - _REACH, alpha + _REACH), (-1.1, 1.6), title)
+    panel.ticks(x=(700, 750, 800, 850, 900), size=12)
+    if angle == _FLAT:
+        panel.text([alpha, 0], "anything: it is not determined", IDEAL, anchor="mm", size=14)
+        return panel
+    one = min(spread()[angle - _OPEN], _REACH)
+    band = [alpha - one, alpha + one]
+    panel.polygons(
+        [[[band[0], -1], [band[1], -1], [band[1], 1], [band[0], 1]]],
+        mixed("#FFFFFF", ESTIMATED, 0.2),
+    )
+    panel.line([[alpha, -1], [alpha, 1]], IDEAL, 1)
+    places = np.stack([found()[angle - _OPEN], np.linspace(-0.9, 0.9, _PHOTOS)], axis=1)
+    dot = 1.7 * circle(13) * [panel.pixel, 2.7 / _FOUND[1]]
+    within = np.abs(places[:, 0] - alpha) <= _REACH
+    panel.polygons(places[within, None] + dot, ESTIMATED)
+    beyond = int((~within).sum())
+    if beyond:
+        words = f"{beyond} of {_PHOTOS} go beyond"
+        panel.text([alpha + 0.97 * _REACH, -0.85], words, IDEAL, anchor="rm", size=13)
     return panel
