@@ -2624,6 +2624,25 @@ def test_the_depths_that_pixels_keep_are_those_of_the_room_and_dots_lie_where_th
     assert said[3:5] == [round(depths.size / 768), 100]
 
 
+def test_the_plan_has_no_dots_of_floor_and_ceiling_however_wrong_their_depths(monkeypatch):
+    v, u = np.mgrid[:240, :320]
+    x, y = (u - 159.5) / 260, (v - 119.5) / 260  # of the room 3000 mm to a side and 1600 in height
+    level = 1600 / np.abs(y) < np.minimum(10_000, 3000 / np.abs(x))
+    floor, ceiling = level & (v > 180), level & (v < 120)  # in front of all things, and above them
+    wall = np.s_[100:112, 122:134]
+
+    def coloured():
+        picture = MODELS["depth"].drawing(depth=12_000).picture
+        part = picture[TITLE + 400 : TITLE + 440, MARGIN + 406 + 150 : MARGIN + 406 + 260]
+        return int((np.ptp(part.astype(int), axis=-1) > 40).sum())  # 3.4 to 4.3 m away
+
+    for here, dots in ((floor, False), (ceiling, False), (wall, True)):
+        found = np.full((240, 320), np.nan)
+        found[here] = 3850
+        monkeypatch.setattr(swept, "depths_so_far", lambda *_, found=found: found)
+        assert (coloured() > 12) == dots
+
+
 def test_without_texture_noise_chooses_the_depth():
     wall = np.s_[100:112, 122:134]  # plain, left of the blackboard, 10 m away
     assert np.isnan(swept.depths_so_far(12_000, 1.5)[wall]).mean() > 0.9

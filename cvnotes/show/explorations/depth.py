@@ -21,7 +21,7 @@ _NEAREST, _FARTHEST = 2000, 12_000  # mm
 _NOISE = 2  # grey levels
 _SHIFTS = np.arange(_ALPHA * _BASE // _NEAREST, 16, -1)  # px, from near to far
 _PATCH = 7  # pixels of the halved pictures
-_UPRIGHT = 1400  # mm from the height of the cameras: neither floor nor ceiling, 200 mm farther
+_UPRIGHT = 1400  # mm from the height of the cameras: floor and ceiling are a patch farther
 _NAMES = {"cupboard": (1130, 8900), "box": (650, 6950), "table": (-2150, 6050)}
 _RAMP = "#F89540", "#CC4778", "#7E03A8", "#0D0887"  # from near to far
 _NONE = 205  # grey level of a pixel without a depth
@@ -222,10 +222,10 @@ def _plan(paper: Paper, Z: float, found: Array) -> Panel:
 
 
 def _dots(panel: Panel, found: Array) -> Drawn:
-    """Return a picture for the plan: a dot for each depth."""
+    """Return a picture for the plan: a dot for each depth of what is not floor or ceiling."""
     camera = pair()[0].resized(found.shape[::-1])
     x, y = np.moveaxis(camera.ideal(pixel_centres(camera.size)), -1, 0)
-    upright = np.abs(y * found) < _UPRIGHT
+    upright = (np.abs(y * true_depths()) < _UPRIGHT) & ~np.isnan(found)  # a found one may be wrong
     places = np.stack([(x * found)[upright], found[upright]], axis=-1)
     half = panel.scale / 2
     dots = np.full((2 * _PLAN[1], 2 * _PLAN[0], 3), 255, np.uint8)
