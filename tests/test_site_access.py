@@ -100,6 +100,16 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
     assert "mjx-container" not in kinds  # a hundred formulas are no stops
 
 
+def test_the_first_page_leads_to_the_question_and_the_box_for_its_answer(page, live_site):
+    page.set_viewport_size({"width": 1280, "height": 900})
+    page.goto(f"{live_site}/index.html")
+    page.get_by_role("link", name="try this one").click()
+    page.wait_for_function("document.activeElement.id === 'answer-camera_centre'")
+    page.wait_for_load_state()
+    question = page.get_by_text("Where the camera stands.")
+    wait_for(lambda: 50 < question.bounding_box()["y"] < 500, seconds=20)  # below the bar
+
+
 def test_photographs_are_chosen_with_the_keyboard_alone(page, live_site):
     # Playwright asks for choosers without waiting until they come to it: before the page does.
     page.on("filechooser", lambda _: None)

@@ -258,7 +258,7 @@
   // A link may lead to a box, which was not yet there when the page came.
   const led = boxes.find(({ area }) => `#${area.id}` === location.hash);
   led?.area.focus({ preventScroll: true });
-  led?.area.scrollIntoView({ block: "center" });
+  led?.area.scrollIntoView();
   addEventListener("storage", ({ key, newValue }) => {
     for (const box of boxes) {
       if (key === PREFIX + box.key) box.elsewhere(newValue);
