@@ -7,6 +7,8 @@ from pathlib import Path
 from textwrap import shorten
 from typing import Any
 
+from docutils import nodes
+
 import cvnotes
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
@@ -142,6 +144,16 @@ def move_mark(text: str, first: str, page: str) -> str:
     return f'{outside}<ul class="current">{inside}{HERE}{after}'
 
 
+CHECKED = re.compile(r'^check\("(\w+)"', re.MULTILINE)
+
+
+def name_exercises(_: Any, doctree: Any) -> None:
+    """Let links lead to the cell in which an exercise is answered: #exercise-name."""
+    for node in doctree.findall(nodes.container):
+        if "cell" in node["classes"] and (found := CHECKED.search(node.astext())):
+            node["ids"].append(f"exercise-{found[1]}")
+
+
 WAY_BACK = re.compile(r'(reference/[\w.]+)\.html#([\w.]+)"')
 
 
@@ -195,6 +207,7 @@ def describe(*event: Any) -> None:
 def setup(app: Any) -> None:
     """Have Sphinx call us before numpydoc, and when a page is written."""
     app.connect("autodoc-process-docstring", escape_initials, priority=100)
+    app.connect("doctree-read", name_exercises)
     app.connect("html-page-context", describe)
     app.connect("html-page-context", name_chapters)
     app.connect("html-page-context", share_contents)

@@ -85,16 +85,6 @@ def test_a_card_shows_what_is_drawn_without_the_numbers_along_its_axes():
     assert (card == (0, 90, 200)).all()
 
 
-def test_the_link_to_try_it_leads_to_the_box_of_its_exercise():
-    template = front_page.TEMPLATE.read_text(encoding="utf-8")
-    chapter, box = re.search(r"notebooks/(\w+)\.html#(answer-\w+)", template).groups()
-    name = box.removeprefix("answer-")
-    written = (ROOT / "notebooks" / f"{chapter}.ipynb").read_text(encoding="utf-8")
-    assert f'check(\\"{name}\\", my_{name})' in written
-    boxes = (ROOT / "docs" / "static" / "live" / "exercises.js").read_text(encoding="utf-8")
-    assert "id: `answer-${name}`" in boxes
-
-
 @pytest.mark.parametrize("name", front_page.PARTS)
 def test_no_word_is_written_on_a_card_that_is_cut_out_of_an_exploration(name, monkeypatch):
     def refuse(*_, **__):

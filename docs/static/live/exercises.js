@@ -255,10 +255,11 @@
   cells.forEach((cell, i) => CALL.test(sources[i]) && boxes.push(new Box(cell, sources[i])));
   if (!kept && boxes.length)
     boxes[0].say("This browser keeps nothing of what you write: save it as a notebook before you leave the page.");
-  // A link may lead to a box, which was not yet there when the page came.
-  const led = boxes.find(({ area }) => `#${area.id}` === location.hash);
-  led?.area.focus({ preventScroll: true });
-  led?.area.scrollIntoView();
+  // A link may lead to an exercise: one can write at once.
+  const write = () =>
+    boxes.find(({ area }) => area.closest(".cell:target"))?.area.focus({ preventScroll: true });
+  if (document.readyState === "complete") write();
+  else addEventListener("load", write); // the browser has gone there, and taken the focus along
   addEventListener("storage", ({ key, newValue }) => {
     for (const box of boxes) {
       if (key === PREFIX + box.key) box.elsewhere(newValue);
