@@ -205,7 +205,7 @@ def describe(*event: Any) -> None:
 
 
 def setup(app: Any) -> None:
-    """Have Sphinx call us before numpydoc, and when a page is written."""
+    """Have Sphinx call us before numpydoc, and when a page is read or written."""
     app.connect("autodoc-process-docstring", escape_initials, priority=100)
     app.connect("doctree-read", name_exercises)
     app.connect("html-page-context", describe)

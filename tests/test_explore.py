@@ -973,6 +973,14 @@ def test_the_ray_of_two_parallels_is_level_and_both_arrows_are_perpendicular_to_
             assert np.allclose(np.array(ends) @ meet.triple(given, n), 0, atol=1e-12)
 
 
+@pytest.mark.parametrize("row", [[1, 0, 0], [0, 3, 0], [1, -1, 0.3], [-2, 1, 1]])
+def test_the_arrows_of_all_lines_are_as_long_where_they_are_seen(row):
+    arrow = meet.arrow_along(np.array(row, float))
+    assert np.allclose(np.cross(arrow, row), 0)
+    assert arrow @ row > 0
+    assert np.linalg.norm(meet.on_sheet(arrow)) == pytest.approx(0.62)
+
+
 @pytest.mark.parametrize("b", [0.5, 0.2, -0.4])
 def test_the_arrow_of_a_line_leads_to_its_triple_and_stands_upright_on_its_rays(b):
     given = {"a1": -0.3, "b1": b, "a2": 1, "b2": 1}
@@ -1089,6 +1097,23 @@ def test_the_yellow_cell_is_where_the_camera_sees_it_and_as_far_as_the_map_says(
     said = numbers(drawing.sentence)
     assert said[:2] == [round(away), 4]
     assert said[-1] == pytest.approx(corners[0, 1] - corners[2, 1], rel=0.06)
+
+
+@pytest.mark.parametrize(("part", "places"), [(0.5, 1), (1, 2)])
+def test_the_small_disc_shows_both_ends_of_a_direction_only_at_the_rim(part, places, monkeypatch):
+    drawn = []
+    for name, middle in (("polygons", lambda at: np.mean(at[0], axis=0)), ("mark", np.asarray)):
+        draw = getattr(Panel, name)
+
+        def note(self, at, *how, draw=draw, middle=middle):
+            drawn.extend(np.atleast_2d(middle(at)))
+            draw(self, at, *how)
+
+        monkeypatch.setattr(Panel, name, note)
+    MODELS["horizon"].drawing(part=part, turn=12)
+    way = 0.16 * part * np.array([np.sin(np.radians(12)), np.cos(np.radians(12))])
+    ends = [[-0.38, 0.19] + way, [-0.38, 0.19] - way]
+    assert sum(any(np.allclose(at, end, atol=2e-3) for at in drawn) for end in ends) == places
 
 
 def test_a_cell_that_is_pulled_to_the_rim_or_into_the_sky_is_a_direction_of_the_horizon():
@@ -1473,6 +1498,23 @@ def test_a_disc_is_folded_at_the_rim_over_what_the_lens_shows(r, ink):
         assert abs(said[4] - np.sort(roots[roots > 0])[0]) < 6e-3
     assert grip_of(drawing, "ring").at == (r, 0)
     assert model.dragged("ring", (0.36, -0.48), k1=-1)["ring"] == 0.6
+
+
+@pytest.mark.parametrize(("p1", "p2"), [(0.05, 0), (-0.03, 0.04), (0.02, 0.01)])
+def test_beside_p_a_decentred_lens_moves_points_by_r2_p_and_along_p_three_times_as_far(
+    p1, p2, written, monkeypatch
+):
+    drawn, draw = [], Panel.arrows
+    monkeypatch.setattr(Panel, "arrows", lambda *how: (drawn.append(how[1:]), draw(*how)))
+    MODELS["decentred"].drawing(p1=p1, p2=p2)
+    starts, ways = next(
+        (np.array(at), np.array(way)) for at, way, *_ in drawn if np.shape(at) == (3, 2)
+    )
+    p, r2 = np.array([p2, p1]), (starts**2).sum(axis=1)
+    assert np.allclose(starts[:2] @ p, 0)
+    assert np.allclose(starts[2] @ [p[1], -p[0]], 0)
+    assert np.allclose(ways, 3 * r2[:, None] * p * [[1], [1], [3]])  # all are drawn 3 times as far
+    assert {"r²p", "3r²p"} <= set(written)
 
 
 @pytest.mark.parametrize(("p1", "p2"), [(0.05, 0), (-0.03, 0.04), (0.02, 0.01)])
@@ -3823,6 +3865,19 @@ def test_a_depth_is_where_the_rays_of_both_columns_meet_and_its_error_grows_with
         assert (far - near) / 2 == pytest.approx(0.5 * Z**2 / (520 * 200), rel=2e-3)
 
 
+@pytest.mark.parametrize("sigma", [0, 0.25, 0.5, 1])
+def test_the_curve_of_the_error_of_depth_stays_in_its_panel(sigma, monkeypatch):
+    drawn, draw = [], Panel.line
+    monkeypatch.setattr(Panel, "line", lambda *a, **k: (drawn.append(a[:3]), draw(*a, **k)))
+    MODELS["disparity"].drawing(sigma=sigma)
+    panel, curve, _ = next(each for each in drawn if np.shape(each[1]) == (41, 2))
+    Z, error = np.transpose(curve)
+    assert np.allclose(error, sigma * Z**2 / (520 * 200))
+    assert panel.x[0] < 0 < Z[-1] < panel.x[1]
+    assert panel.y[1] < 0
+    assert panel.y[0] > max(error[-1], 50)  # the line of 1 % ends at 50 mm
+
+
 def test_neighbours_that_are_alike_agree_and_noise_does_not():
     noise = np.random.default_rng(3).normal(size=(12, 54, 2))
     assert alike(np.ones((12, 54, 2))) == pytest.approx(1)
@@ -4229,17 +4284,27 @@ def test_what_asks_beside_the_photograph_points_out_of_it_and_weighs_no_pixel(u,
 
 
 @pytest.mark.parametrize(("u", "v"), [(31, 18), (40, 25), (20, 10)])
-def test_the_square_between_the_four_centres_is_cut_where_a_pixel_asks(u, v):
+def test_the_square_between_the_four_centres_is_cut_where_a_pixel_asks(u, v, monkeypatch):
+    drawn, marked = [], []
+    for name, noted in (("line", drawn), ("segments", drawn), ("mark", marked)):
+        draw = getattr(Panel, name)
+
+        def note(self, at, ink, *rest, draw=draw, noted=noted, **how):
+            noted.append((np.array(at, float), ink))
+            draw(self, at, ink, *rest, **how)
+
+        monkeypatch.setattr(Panel, name, note)
     x, y = asked_by_hand(1, u, v)
-    drawing = MODELS["asks"].drawing(warp=1, u=u, v=v)
-    near = drawing.picture[TITLE : TITLE + 180, 2 * 366 + MARGIN : 2 * 366 + MARGIN + 180]
-    left, top = round(45 * (1.5 + x % 1)), round(45 * (1.5 + y % 1))
-    for line in (near[68:112, left - 2 : left + 3], near[top - 2 : top + 3, 68:112]):
-        assert count(line, ESTIMATED, 110) > 10
-    for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
-        at_x, at_y = 67 + 45 * i, 67 + 45 * j
-        dot = near[at_y - 2 : at_y + 3, at_x - 2 : at_x + 3]
-        assert count(dot, LENS, 60) + count(dot, ESTIMATED, 60) > 9
+    MODELS["asks"].drawing(warp=1, u=u, v=v)
+    low = np.floor([x, y])
+    square = low + [[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]
+    cuts = [[[x, low[1]], [x, low[1] + 1]], [[low[0], y], [low[0] + 1, y]]]
+    for shape in (square, cuts):
+        assert any(
+            ink == ESTIMATED and at.shape == np.shape(shape) and np.allclose(at, shape)
+            for at, ink in drawn
+        )
+    assert any(ink == "lens" and {*map(tuple, at)} == {*map(tuple, square)} for at, ink in marked)
 
 
 def test_a_lens_draws_each_pixel_nearer_to_the_middle_by_a_line():

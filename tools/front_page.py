@@ -19,7 +19,6 @@ from cvnotes.learn import check
 from cvnotes.show import explorations
 from cvnotes.show.explorations.page import page_data
 from cvnotes.show.explorations.paper import Panel, Paper, Range
-from cvnotes.show.explorations.subpixel import neighbourhood, place_of
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "docs" / "templates" / "front.md"
@@ -29,6 +28,7 @@ CARD = (480, 320)  # px: twice what is shown
 # Cards that are a part of an exploration: its settings, the left and upper end, the width in px.
 PARTS = {
     "03_camera_model": ("divide", {}, (90, 122, 270)),
+    "05_calibration_targets": ("subpixel", {"u": 0.38, "v": -0.47}, (95, 122, 260)),  # pulled right
     "07_zhang_calibration": ("nails", {}, (6, 44, 500)),
     "10_two_pictures": ("rectification", {}, (256, 26, 432)),
     "more_exercises": ("conic", {"a": 0.0, "b": 1.5}, (414, 44, 390)),
@@ -148,8 +148,6 @@ def drawn(narrow: bool = False) -> Image.Image:
 
 def card_of(path: Path) -> Image.Image:
     """Return one clear thing of a notebook, as it is seen at the size of a card."""
-    if path.stem == "05_calibration_targets":
-        return corner()
     if path.stem not in PARTS:
         return richest(path)
     name, settings, (left, top, width) = PARTS[path.stem]
@@ -162,9 +160,8 @@ def card_of(path: Path) -> Image.Image:
 class _Wordless(Paper):
     """A paper on which no words are written: on a card they could not be read."""
 
-    def panel(
-        self, size: tuple[int, int], x: Range, y: Range, title: str = ""
-    ) -> Panel:  # with the title's strip
+    def panel(self, size: tuple[int, int], x: Range, y: Range, title: str = "") -> Panel:
+        """Make a panel of the same size, the strip for its title kept."""
         return _Silent(size, x, y, title, 2 * self.sharpness)
 
 
@@ -174,14 +171,6 @@ class _Silent(Panel):
 
     def grip(self, *_: object, **__: object) -> None:
         """Draw no ring: a card is not pulled."""
-
-
-def corner() -> Image.Image:
-    """Draw one corner of chapter 5's board, pixel by pixel, with the place that is found."""
-    panel = Paper(2).panel((CARD[0] // 2, CARD[1] // 2), (-6.5, 5.5), (-4.5, 3.5))
-    panel.image(neighbourhood(22)[4:12, 2:14].astype(np.uint8), smooth=False)
-    panel.mark(place_of(22), "estimated", 22)
-    return Image.fromarray(panel.drawn())
 
 
 def richest(path: Path) -> Image.Image:
