@@ -35,7 +35,11 @@ nb_code_prompt_hide = "Hide the code"
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
 # With Tab one goes from link to link and from slider to slider, not through a hundred formulas.
-mathjax3_config = {"options": {"menuOptions": {"settings": {"inTabOrder": False}}}}
+mathjax3_config = {
+    "options": {"menuOptions": {"settings": {"inTabOrder": False}}},
+    # Formulas are as large as the type they stand in, whether it is there yet or not.
+    "chtml": {"matchFontHeight": False, "scale": 1.06},
+}
 
 # `dlt` in a docstring leads to dlt where there is just one; shapes stand in the text, so that
 # signatures can stay short.

@@ -356,7 +356,9 @@ def test_a_saved_exploration_is_seen_as_its_still_and_once_run_as_the_widget_alo
         assert output.locator("img").count() == 1
         settings = model(name).settings
         switches = sum(setting.is_choice for setting in settings)
-        assert output.locator(".noUi-handle").count() == len(settings) - switches
+        lists = sum(bool(setting.names) for setting in settings)
+        assert output.locator(".noUi-handle").count() == len(settings) - switches - lists
+        assert output.locator("select").count() == lists
         assert output.locator("input[type=checkbox]").count() == switches
 
 

@@ -3322,7 +3322,8 @@ def test_a_slider_that_is_moved_changes_the_picture_and_reset_brings_it_back(nam
     assert np.array_equal(np.asarray(Image.open(io.BytesIO(start))), MODELS[name].picture())
     first = MODELS[name].settings[0]
     slider = widget.sliders[first.name]
-    slider.value += slider.step * (9 if first.value < first.high else -9)
+    way = 9 * first.step * (1 if first.value < first.high else -1)
+    slider.value = min(max(first.value + way, first.low), first.high)
     assert widget.image.value != start
     values = widget.values
     assert MODELS[name].drawing(**values).sentence in html.unescape(widget.sentence.value)
@@ -3344,12 +3345,28 @@ def test_sliders_say_what_they_are_and_can_be_moved_by_keys(name):
         if s.is_choice:
             assert type(slider).__name__ == "Checkbox"
             continue
+        if s.names:
+            values = np.arange(s.low, s.high + 1)
+            assert slider.options == tuple(zip(s.names, values, strict=True))
+            continue
         assert type(slider).__name__ in ("IntSlider", "FloatSlider")
         assert (slider.min, slider.max, slider.step) == (s.low, s.high, s.step)
         assert slider.continuous_update
     assert MODELS[name].about in html.unescape(widget.sentence.value)
     assert 'aria-live="polite"' in widget.sentence.value
     assert not any("Output" in type(w).__name__ for w in widget.children)
+    widget.close_all()
+
+
+def test_what_has_names_is_chosen_from_a_list_and_follows_the_hand():
+    widget = explorations.explore("asks")
+    widget.sliders["warp"].label = "lens"
+    assert widget.values["warp"] == 4
+    assert MODELS["asks"].drawing(warp=4).sentence in html.unescape(widget.sentence.value)
+    widget.reset_button.click()
+    assert widget.sliders["warp"].label == "rotation"
+    assert not set(MODELS["asks"].folded()) & {"warp"}
+    assert MODELS["clouds"].dragged("picture", (2.5, 0))["picture"] == 3
     widget.close_all()
 
 
@@ -3392,8 +3409,8 @@ def test_where_no_kernel_runs_the_still_of_the_same_values_is_seen(name):
     assert bundle["text/html"].startswith(MODELS[name].still()._repr_html_())
     assert html.escape(MODELS[name].drawing().sentence) in bundle["text/html"].partition(">")[2]
     assert len(bundle["text/html"]) < 160_000  # three bytes as four letters: 120 kB of picture
-    slider = widget.sliders[MODELS[name].settings[0].name]
-    slider.value = slider.max
+    first = MODELS[name].settings[0]
+    widget.sliders[first.name].value = first.high
     still = MODELS[name].still(**widget.values)._repr_html_()
     assert widget._repr_mimebundle_()["text/html"].startswith(still)
     widget.close_all()

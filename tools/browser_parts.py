@@ -36,7 +36,6 @@ go on without Python if `PartsMissingError` is raised: its text is one sentence.
 import argparse
 import hashlib
 import json
-import logging
 import os
 import shutil
 import subprocess
@@ -50,6 +49,8 @@ from pathlib import Path
 from typing import Any
 from urllib.error import URLError
 from urllib.request import urlopen
+
+from typeface import write_subset
 
 import cvnotes
 from cvnotes.show.explorations import lettering
@@ -272,26 +273,12 @@ def lay_out(parts: Path, folder: Path) -> Path:
     lock = json.loads((parts / "pyodide-lock.json").read_text(encoding="utf-8"))
     lock["packages"] = entries
     (folder / "pyodide-lock.json").write_text(json.dumps(lock), encoding="utf-8")
-    write_letters(folder / LETTERS)
+    # The type of explorations, with the letters that they need: a tenth of matplotlib's.
+    write_subset(lettering.font_file(), folder / LETTERS, lettering.LETTERS)
     sizes = {path.name: path.stat().st_size for path in sorted(folder.iterdir())}
     listed = {"cvnotes": code["file_name"], "data": data["file_name"], "bytes": sizes}
     (folder / "parts.json").write_text(json.dumps(listed, indent=1), encoding="utf-8")
     return folder
-
-
-def write_letters(path: Path) -> None:
-    """Write the type of explorations with the letters that they need: a tenth of matplotlib's."""
-    from fontTools import subset
-
-    logging.getLogger("fontTools").setLevel(logging.WARNING)
-    options: Any = subset.Options(drop_tables=["FFTM"])
-    font = subset.load_font(str(lettering.font_file()), options)
-    letters: Any = subset.Subsetter(options)
-    letters.populate(text=lettering.LETTERS)
-    letters.subset(font)
-    font.recalcTimestamp = False  # the same bytes each time
-    subset.save_font(font, str(path), options)
-    font.close()
 
 
 def pack(

@@ -30,6 +30,7 @@ from build_slides import slides_of
 from front_page import front_page, put_pictures
 from lectures import numbered
 from site_figures import put_into_files
+from typeface import write_typefaces
 
 from cvnotes.targets import Chessboard
 from cvnotes.targets.page import Page
@@ -226,6 +227,7 @@ def main() -> int:
         for path in (made / "_static" / "mathjax").iterdir():
             if path.name not in MATHJAX:
                 path.unlink() if path.is_file() else shutil.rmtree(path)
+        write_typefaces(made / "_static" / "fonts")
         put_into_files(made)
         fold_contents(made)
         put_pictures(made)

@@ -36,7 +36,7 @@ _LENS = Lens(k=(-0.3,))
 def asks_model() -> Model:
     """Make the model of a new picture, whose pixels ask the photograph of a print."""
     settings = (
-        Setting("warp", "which warp", 1, 4, 1, 1, "; ".join(NAMES)),
+        Setting("warp", "which warp", 1, 4, 1, 1, "where new pixels ask", names=NAMES),
         Setting("u", "new pixel, across", 0, SIZE[0] - 1, 1, 31, "of 60; of 20 where it is shrunk"),
         Setting("v", "new pixel, down", 0, SIZE[1] - 1, 1, 18, "of 45; of 15 where it is shrunk"),
     )

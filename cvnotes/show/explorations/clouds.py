@@ -28,7 +28,7 @@ def clouds_model() -> Model:
     """Make the model of 54 corners, measured in two ways in five pictures."""
     settings = (
         Setting("window", "half window (px)", 3, 12, 1, 8, "from its middle pixel to its border"),
-        Setting("picture", "picture", 1, 5, 1, 1, "; ".join(_PICTURES)),
+        Setting("picture", "picture", 1, 5, 1, 1, "how it was made", names=_PICTURES),
     )
     about = (
         "The errors of 54 corners by the gradients, blue, and by the model of two blurred edges, "

@@ -31,6 +31,8 @@ class Setting(NamedTuple):
         What it means, for the tooltip.
     tint : str
         Colour behind its label, where matrices show what it moves on the same one.
+    names : tuple of str
+        What its values are called, from `low` on: a list to choose from and no slider.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Setting(NamedTuple):
     value: float
     help: str
     tint: str = ""
+    names: tuple[str, ...] = ()
 
     @property
     def is_choice(self) -> bool:
@@ -192,9 +195,9 @@ class Model:
         """Name the settings whose sliders are folded below the picture.
 
         Where a hand can pull all that sliders set, they say it once more, and many of them push
-        the text away from the picture. A switch cannot be pulled: it stays. So do one or two
-        sliders, which take no more room than what would open them, and sliders whose colours say
-        what the entries of a matrix are.
+        the text away from the picture. A switch or a list stays: no hand can pull it. So do one or
+        two sliders, which take no more room than what would open them, and sliders whose colours
+        say what the entries of a matrix are.
 
         Examples
         --------
@@ -203,7 +206,7 @@ class Model:
         (('X', 'Z', 'turn'), ())
         """
         values = self.values(**values)
-        sliders = tuple(s.name for s in self.settings if not s.is_choice)
+        sliders = tuple(s.name for s in self.settings if not (s.is_choice or s.names))
         if len(sliders) <= 2 or any(s.tint for s in self.settings):
             return ()
         by_hand = set()

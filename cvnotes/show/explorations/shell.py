@@ -12,6 +12,7 @@ from ipywidgets.widgets.widget_float import FloatSlider
 from ipywidgets.widgets.widget_int import IntSlider
 from ipywidgets.widgets.widget_media import Image
 from ipywidgets.widgets.widget_output import Output
+from ipywidgets.widgets.widget_selection import Dropdown
 from ipywidgets.widgets.widget_string import HTML, Text
 
 from cvnotes.base import Array
@@ -228,7 +229,7 @@ def _grid(parts: list[Any]) -> GridBox:
 
 
 def _control(setting: Setting) -> Any:
-    """Make what a setting is moved by: a switch for a choice, else a slider.
+    """Make what a setting is moved by: a switch, a list of its names, or a slider.
 
     Its numbers are whole where step and start are.
     """
@@ -241,6 +242,9 @@ def _control(setting: Setting) -> Any:
     }
     if setting.is_choice:
         return Checkbox(value=bool(setting.value), **look)
+    if setting.names:
+        options = [(name, setting.low + k) for k, name in enumerate(setting.names)]
+        return Dropdown(value=setting.value, options=options, **look)
     whole = all(float(x).is_integer() for x in (setting.low, setting.step, setting.value))
     kind, number = (IntSlider, int) if whole else (FloatSlider, float)
     value, low, high, step = map(number, (setting.value, setting.low, setting.high, setting.step))

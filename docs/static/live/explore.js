@@ -12,7 +12,7 @@
   }
 
   function written(setting, value) {
-    return setting.choice ? "" : value.toFixed(digits(setting)).replace("-", "−");
+    return setting.choice || setting.names.length ? "" : value.toFixed(digits(setting)).replace("-", "−");
   }
 
   class Exploration {
@@ -56,9 +56,12 @@
       const value = this.values[setting.name];
       const number = make("output", { textContent: written(setting, value) });
       number.setAttribute("for", id);
-      const { low: min, high: max, step } = setting;
+      const { low: min, high: max, step, names } = setting;
       const kind = setting.choice ? { type: "checkbox", checked: !!value } : { type: "range", min, max, step };
-      const input = make("input", { id, title: setting.help, ...kind });
+      const options = names.map((name, k) => make("option", { value: min + k, textContent: name }));
+      const input = names.length
+        ? make("select", { id, title: setting.help }, ...options)
+        : make("input", { id, title: setting.help, ...kind });
       if (!setting.choice) input.value = value;
       input.addEventListener("input", () => {
         this.values[setting.name] = setting.choice ? Number(input.checked) : Number(input.value);
