@@ -23,7 +23,7 @@ from cvnotes.show.explorations.paper import Panel, Paper, Range
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "docs" / "templates" / "front.md"
 PICTURE = ROOT / "docs" / "figures" / "front.png"
-EXPLORED = "straighten"
+EXPLORED = "cube"
 CARD = (480, 320)  # px: twice what is shown
 # Cards that are a part of an exploration: its settings, the left and upper end, the width in px.
 PARTS = {
@@ -54,7 +54,7 @@ def front_page(live: bool, lite: bool) -> str:
         "BUTTONS": buttons(live, lite),
         "WHOM": whom(readme),
         "EXPLORATION": exploration(live),
-        "INVITATION": "Pull the row straight." if live else "What a lens does.",
+        "INVITATION": "Pull the tower." if live else "A tower that is not there.",
         "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
         "WRONG": WRONG,
         "REPLY": escape(check("camera_centre", camera_centre).message),
