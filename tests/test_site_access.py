@@ -160,7 +160,7 @@ def test_the_first_page_shows_its_sentence_its_ways_in_and_a_grip_at_once(page, 
     page.set_viewport_size({"width": width, "height": 800})
     page.goto(f"{live_site}/index.html")
     page.wait_for_selector(".explore-grip")
-    for shown in (".front-sentence", ".front-buttons a >> nth=2", ".explore-grip"):
+    for shown in (".front-sentence", ".front-buttons a >> nth=2", ".explore-grip >> nth=0"):
         box = page.locator(shown).bounding_box()
         assert 0 < box["y"] < box["y"] + box["height"] < 800, shown
         assert 0 <= box["x"] < box["x"] + box["width"] <= width, shown

@@ -12,7 +12,7 @@
   }
 
   function written(setting, value) {
-    return setting.choice || setting.names.length ? "" : value.toFixed(digits(setting)).replace("-", "−");
+    return setting.choice || setting.names?.length ? "" : value.toFixed(digits(setting)).replace("-", "−");
   }
 
   class Exploration {
@@ -56,7 +56,7 @@
       const value = this.values[setting.name];
       const number = make("output", { textContent: written(setting, value) });
       number.setAttribute("for", id);
-      const { low: min, high: max, step, names } = setting;
+      const { low: min, high: max, step, names = [] } = setting; // a still of before has no names
       const kind = setting.choice ? { type: "checkbox", checked: !!value } : { type: "range", min, max, step };
       const options = names.map((name, k) => make("option", { value: min + k, textContent: name }));
       const input = names.length
