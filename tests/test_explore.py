@@ -76,6 +76,7 @@ from cvnotes.show.explorations import (
     meet,
     moved,
     nails,
+    plane,
     protractor,
     triangle,
     twins,
@@ -2541,6 +2542,35 @@ def test_shrunken_rings_are_those_of_the_library_blurred_or_not():
     assert far[:2] == [0.99, 0.01]  # rings: once around, from one new pixel to the next
 
 
+def test_the_epipolar_plane_turns_about_the_base_line_and_cuts_the_second_picture_in_its_line():
+    first, second = plane.cameras()
+    epipole, shown = second.project(first.centre), MODELS["plane"].drawing
+    turns = []
+    for u, v in ((190, 150), (120, 40), (260, 200)):
+        line = plane.epipolar_line(u, v) / np.linalg.norm(plane.epipolar_line(u, v)[:2])
+        assert abs(line @ [*epipole, 1]) < 1e-6
+        for depth in (1500, 6000):
+            point = plane.on_the_ray(u, v, depth)
+            assert np.allclose(first.project(point), [u, v])
+            assert abs(line @ [*second.project(point), 1]) < 1e-6
+        said = numbers(shown(u=u, v=v, depth=3500).sentence)
+        partner = second.project(plane.on_the_ray(u, v, 3500))
+        assert np.allclose(said[1:3], partner, atol=0.51)
+        turns.append(said[-1])
+        u2, v2 = partner * 272 / 320
+        below = shown(u=u, v=v, depth=3500).picture[TITLE + 232 :, MARGIN : MARGIN + 272]
+        assert count(below[round(v2) - 6 :][:12, round(u2) - 6 :][:, :12], ESTIMATED) > 10
+    # Downwards in the picture is downwards in the room: the plane's dip is that of the ray.
+    one, two = first.centre, second.centre
+    for dip, (u, v) in zip(turns, ((190, 150), (120, 40), (260, 200)), strict=True):
+        normal = np.cross(two - one, plane.on_the_ray(u, v, 1000.0) - one)
+        along = (two - one) / np.linalg.norm(two - one)
+        level = np.cross(two - one, np.cross(along, [0, 1, 0]))
+        cosine = normal @ level / np.linalg.norm(normal) / np.linalg.norm(level)
+        assert abs(dip) == pytest.approx(np.degrees(np.arccos(min(abs(cosine), 1))), abs=0.6)
+    assert turns[1] > 0 > turns[0] > turns[2]  # up, down, farther down
+
+
 def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_right():
     first, second = cameras()
     for W in ([1900, -500, 7600], [-500, 1600, 6000], [400, -800, 9990]):
@@ -2605,16 +2635,15 @@ def test_what_lies_at_the_chosen_depth_has_no_fringe_and_all_else_has():
 
 
 def test_each_pixel_keeps_the_depth_whose_patches_agree_best_up_to_the_line():
-    left, right = swept.photographs()
-
     def patch(picture, u, v, d=0):  # 7 × 7 pixels of the halved picture
         part = picture[2 * v - 6 : 2 * v + 8, 2 * u - 6 - d : 2 * u + 8 - d]
         return (part[::2, ::2] + part[1::2, ::2] + part[::2, 1::2] + part[1::2, 1::2]) / 4
 
     rng = np.random.default_rng(5)
     pixels = np.stack([rng.integers(60, 310, 60), rng.integers(10, 230, 60)], axis=-1)
-    for Z, texture in ((4000, 0), (7500, 1.5), (12_000, 0)):
-        found, kept = swept.depths_so_far(Z, texture), 0
+    for Z, dots in ((4000, True), (7500, False), (12_000, False)):
+        found, kept = swept.depths_so_far(Z, dots), 0
+        left, right = swept.photographs(dots)
         for u, v in pixels:
             own, tried = patch(left, u, v), np.arange(104, 208_000 / Z - 1e-9, -1).astype(int)
             apart = [np.abs(own - patch(right, u, v, d)).mean() for d in tried]
@@ -2626,7 +2655,7 @@ def test_each_pixel_keeps_the_depth_whose_patches_agree_best_up_to_the_line():
                 for c, d in asked
             ]
             again = abs(int(np.argmin(back)) - int(np.argmin(apart))) <= 1
-            if min(apart) < beside and beside >= texture and again:
+            if min(apart) < beside and beside >= 2 and again:
                 assert abs(208_000 / found[v, u] - tried[np.argmin(apart)]) < 0.501
                 kept += 1
             else:
@@ -2636,7 +2665,7 @@ def test_each_pixel_keeps_the_depth_whose_patches_agree_best_up_to_the_line():
 
 def test_the_depths_that_pixels_keep_are_those_of_the_room_and_dots_lie_where_things_stand():
     drawing = MODELS["depth"].drawing
-    found = swept.depths_so_far(12_000, 2)
+    found = swept.depths_so_far(12_000)
     v, u = np.mgrid[200:236:3, 100:220:3]  # on the floor, 1600 mm below the cameras
     floor = 1600 * 520 / (2 * v + 0.5 - 239.5)
     assert np.nanmedian(np.abs(found[v, u] - floor)) < 60
@@ -2685,14 +2714,17 @@ def test_the_plan_has_no_dots_of_floor_and_ceiling_however_wrong_their_depths(mo
         assert (coloured() > 12) == dots
 
 
-def test_without_texture_noise_chooses_the_depth():
+def test_thrown_dots_lie_on_the_room_and_give_plain_walls_a_depth():
     wall = np.s_[100:112, 122:134]  # plain, left of the blackboard, 10 m away
-    assert np.isnan(swept.depths_so_far(12_000, 1.5)[wall]).mean() > 0.9
-    assert np.nanstd(swept.depths_so_far(12_000, 0)[wall]) > 1500
-    share = [
-        numbers(MODELS["depth"].drawing(depth=12_000, texture=t).sentence)[3] for t in (0, 2, 6)
-    ]
-    assert share[0] > 2 * share[1] > 4 * share[2]
+    assert np.isnan(swept.depths_so_far(12_000)[wall]).mean() > 0.9
+    assert np.nanmedian(swept.depths_so_far(12_000, True)[wall]) == pytest.approx(10_000, rel=0.01)
+    without, thrown = (numbers(MODELS["depth"].drawing(dots=on).sentence)[3] for on in (0, 1))
+    assert thrown > 3 * without
+    # A dot on the back wall is seen 20.8 px farther left by the right camera, 400 mm aside.
+    left, right = (swept.dots_on(camera) for camera in pair())
+    there = np.s_[180:230, 240:320]
+    assert np.corrcoef(left[there].ravel(), np.roll(right, 21, axis=1)[there].ravel())[0, 1] > 0.6
+    assert abs(np.corrcoef(left[there].ravel(), right[there].ravel())[0, 1]) < 0.1
 
 
 def test_stepping_back_and_zooming_keeps_the_box_and_enlarges_what_is_behind_it():
@@ -3515,6 +3547,7 @@ ON_A_CURVE = {  # its nearest place
     ("seam", "middle"),
     ("twins", "other"),
     ("twins", "box"),
+    ("plane", "depth"),
     ("pairs", "pair"),
     ("frame", "corner"),
     ("lens", "edge"),
@@ -4444,7 +4477,18 @@ def test_what_is_folded_can_be_pulled_from_where_it_stands_and_switches_stay(nam
 
 
 # Where six and more sliders stood under a picture that says them all, and some with fewer.
-FOLDED = {"homography", "nails", "triangle", "maps", "votes", "meet", "walks", "rod", "epipolar"}
+FOLDED = {
+    "homography",
+    "nails",
+    "triangle",
+    "maps",
+    "votes",
+    "meet",
+    "walks",
+    "rod",
+    "epipolar",
+    "plane",
+}
 
 
 @pytest.mark.parametrize("name", MODELS)

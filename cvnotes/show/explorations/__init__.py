@@ -28,7 +28,7 @@ _STORIES = (
     "rod", "shadows", "forged", "triangle", "formation", "pinhole", "dolly",
     "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel", "votes",
     "twins", "ellipse", "valley", "ransac", "homography", "fold", "folds",
-    "finding", "moved", "eleventh", "columns", "between", "rings", "epipolar",
+    "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing",
     "frame", "ways", "meet", "residuals", "enlarged", "hinge", "horizon",
     "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",

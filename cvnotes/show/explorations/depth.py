@@ -13,16 +13,18 @@ from cvnotes.pictures.meshes import from_above
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, rgb
-from cvnotes.warping import backward_warp
+from cvnotes.warping import backward_warp, interpolate
 
 _PICTURE, _PLAN = (400, 300), (409, 628)
 _ALPHA, _BASE, _SIZE = 520, 400, (640, 480)  # px, mm, px
 _NEAREST, _FARTHEST = 2000, 12_000  # mm
-_NOISE = 2  # grey levels
+_NOISE, _TEXTURE = 2, 2  # grey levels; so much the patch beside differs at least, or it is plain
+_BRIGHT = 0.5  # of its light that a dot of the projector adds to a place
 _SHIFTS = np.arange(_ALPHA * _BASE // _NEAREST, 16, -1)  # px, from near to far
 _PATCH = 7  # pixels of the halved pictures
 _UPRIGHT = 1400  # mm from the height of the cameras: floor and ceiling are a patch farther
 _NAMES = {"cupboard": (1130, 8900), "box": (650, 6950), "table": (-2150, 6050)}
+_COLOURED = 5500, 10_200  # mm: where most things are the colours change
 _RAMP = "#F89540", "#CC4778", "#7E03A8", "#0D0887"  # from near to far
 _NONE = 205  # grey level of a pixel without a depth
 _WALL = 10_000  # mm
@@ -64,17 +66,39 @@ def in_two_colours(left: Image, right: Image, d: float) -> Drawn:
 
 
 @lru_cache(maxsize=1)
-def photographs() -> tuple[Image, Image]:
-    """Return the grey pictures of both cameras, with noise."""
-    noise = np.random.default_rng(8).normal(0, _NOISE, (2, *_SIZE[::-1]))
+def _light() -> tuple[Image, Image]:
     left, right = (luma(radiance(room(), camera, samples=4)) for camera in pair())
+    return left, right
+
+
+@lru_cache(maxsize=2)
+def photographs(dots: bool = False) -> tuple[Image, Image]:
+    """Return the grey pictures of both cameras, with noise, in a room with or without dots."""
+    noise = np.random.default_rng(8).normal(0, _NOISE, (2, *_SIZE[::-1]))
+    left, right = _light()
+    if dots:
+        thrown = [1 + _BRIGHT * dots_on(camera) for camera in pair()]
+        left, right = left * thrown[0], right * thrown[1]
     return left + noise[0], right + noise[1]
 
 
-@lru_cache(maxsize=1)
-def sweep() -> Sweep:
+def dots_on(camera: Camera) -> Array:
+    """Return how bright (height, width) a projector's dots are on what each pixel shows.
+
+    It stands between the cameras; what one of them sees and the projector does not gets dots, too.
+    """
+    projector = pair()[0].moved(pose(np.eye(3), [-_BASE / 2, 0, 0]))
+    slide = np.random.default_rng(3).random(_SIZE[::-1]) < 0.25
+    rays = np.insert(camera.ideal(pixel_centres(camera.size)), 2, 1, axis=-1)
+    places = rays * depth_map(room(), camera)[..., None] - camera.T
+    at = projector.project(places)
+    return np.asarray(interpolate(slide.astype(np.float64), at, border="replicate"), np.float64)
+
+
+@lru_cache(maxsize=2)
+def sweep(dots: bool = False) -> Sweep:
     """Compare the two pictures at each shift."""
-    left, right = photographs()
+    left, right = photographs(dots)
     small = _halved(left)
     found = np.empty((len(_SHIFTS), *small.shape), np.float32)
     for difference, d in zip(found, _SHIFTS, strict=True):
@@ -118,15 +142,15 @@ def _mean_around(values: Array) -> Array:
     return np.asarray((total[n:, n:] - total[:-n, n:] - total[n:, :-n] + total[:-n, :-n]) / n**2)
 
 
-def depths_so_far(Z: float, texture: float) -> Array:
+def depths_so_far(Z: float, dots: bool = False) -> Array:
     """Return the depth in mm of each pixel of the left picture, halved; NaN where there is none.
 
     It is the one that agrees best of all up to Z, between two whole shifts where the next ones
-    say so. A pixel has none if its patch differs from the one beside it by less than `texture`
-    grey levels, or from its partner by more than from that one, or if the partner does not come
+    say so. A pixel has none if its patch differs from the one beside it by less than 2 grey
+    levels, or from its partner by more than from that one, or if the partner does not come
     back to it, to one shift.
     """
-    differences, enough, best, back = sweep()
+    differences, enough, best, back = sweep(dots)
     last = min(int(np.searchsorted(-_SHIFTS, -_ALPHA * _BASE / Z, "right")), len(_SHIFTS)) - 1
     k = best[last].astype(int)
     inside = np.clip(k, 1, len(_SHIFTS) - 2)
@@ -137,7 +161,7 @@ def depths_so_far(Z: float, texture: float) -> Array:
     found = _ALPHA * _BASE / (_SHIFTS[k] - np.where(k == inside, between.clip(-0.5, 0.5), 0))
     again = back[last][rows, (columns - _halved_shift(_SHIFTS[k])).clip(0)].astype(int)
     agree = (differences[k, rows, columns] < enough) & (abs(again - k) <= 1)
-    return np.where(agree & (enough >= texture), found, np.nan)
+    return np.where(agree & (enough >= _TEXTURE), found, np.nan)
 
 
 @lru_cache(maxsize=1)
@@ -152,7 +176,8 @@ def coloured(depths: Array) -> Drawn:
     steps = np.linspace(0, len(stops) - 1, 256)
     colours = [np.interp(steps, range(len(stops)), channel) for channel in stops.T]
     table = np.array([*np.transpose(colours), 3 * [_NONE]], dtype=np.uint8)
-    at = 255 * (depths - _NEAREST) / (_WALL - _NEAREST)
+    first, last = _COLOURED
+    at = 255 * (depths - first) / (last - first)
     return np.asarray(table[np.where(np.isnan(at), 256, at.clip(0, 255)).astype(int)])
 
 
@@ -161,8 +186,8 @@ def depth_model() -> Model:
     settings = (
         Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 12_000,
                 "each pixel keeps the depth that agrees best of all up to this one"),
-        Setting("texture", "texture at least", 0, 6, 0.5, 2,
-                "grey levels by which a patch differs from the one beside it, or it stays grey"),
+        Setting("dots", "dots thrown", 0, 1, 1, 0,
+                "whether a projector between the cameras throws dots on the room"),
     )  # fmt: skip
     about = (
         "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
@@ -172,10 +197,10 @@ def depth_model() -> Model:
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        Z = values["depth"]
-        found = depths_so_far(Z, values["texture"])
+        Z, dots = values["depth"], bool(values["dots"])
+        found = depths_so_far(Z, dots)
         panel = paper.picture_panel(_PICTURE, _SIZE, "left in red, right in cyan and shifted")
-        panel.image(in_two_colours(*photographs(), _ALPHA * _BASE / Z))
+        panel.image(in_two_colours(*photographs(dots), _ALPHA * _BASE / Z))
         height, width = found.shape
         below = paper.picture_panel(_PICTURE, (width, height), "depth so far; grey: none")
         below.image(coloured(found), smooth=False)
