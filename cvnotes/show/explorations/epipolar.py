@@ -19,6 +19,9 @@ _AROUND = np.stack(np.meshgrid(*2 * [np.arange(-_PATCH, _PATCH + 1.0)]), axis=-1
 _ALIKE = 0.5  # grey levels: so little more is as good as the best
 _LEAST = 80.0  # grey levels on the scale, so that a valley of a few of them looks shallow
 _WIDE = 1.2  # the farthest over the nearest depth of a valley that is wide
+_WIDTH, _HIGH = 410, (44, 112)  # px of the page: the strip along the line, and the curve below it
+_AXIS = 1000 / _NEAREST + 0.02, 1000 / _FARTHEST - 0.03  # 1/m, from near to far
+_BESIDE = np.linspace(-2.5, 2.5, 22)  # px of the picture that the strip shows across the line
 _TRIED = 1 / np.linspace(1 / _NEAREST, 1 / _FARTHEST, 240)  # mm: in even steps along the line
 
 
@@ -94,7 +97,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     right.line(line, ESTIMATED, 2)
     right.mark(place, "estimated", 7)
     cost, (now,) = differences(m, line), differences(m, place[None])
-    rows = (left, right), (*patches, _curve(paper, cost, depth, now))
+    below = [_strip(paper, m, depth), _curve(paper, cost, depth, now)]
+    rows = (left, right), (*patches, below)
     return Drawing(paper.join(*rows), _sentence(depth, now, cost))
 
 
@@ -110,20 +114,31 @@ def _patch(paper: Paper, photo: Image, at: Array, title: str) -> Panel:
     return panel
 
 
+def _strip(paper: Paper, m: Array, depth: float) -> Panel:
+    """Draw the second picture along the line, which is level here, above the curve of the same."""
+    panel = paper.panel((_WIDTH, _HIGH[0]), _AXIS, (-1, 1), "the second picture along its line")
+    along = seen_by_the_second(m, 1000 / np.linspace(*_AXIS, _WIDTH // 2))
+    way = along[-1] - along[0]
+    across = np.array([-way[1], way[0]]) / np.linalg.norm(way) * np.sign(way[0])
+    strip = interpolate(photographs()[1], along + _BESIDE[:, None, None] * across)
+    panel.image(strip.clip(0, 255).astype(np.uint8))
+    panel.mark([1000 / depth, 0], "estimated", 7)
+    return panel
+
+
 def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
     """Draw by how much both patches differ, for each depth; equal steps are equal disparities."""
     top = max(_LEAST, 1.18 * float(cost.max()))
     panel = paper.panel(
-        (410, 184), (1000 / _NEAREST + 0.02, 1000 / _FARTHEST - 0.03), (top, -0.2 * top),
-        "difference of both, by depth: pull the cross",
-    )  # fmt: skip
+        (_WIDTH, _HIGH[1]), _AXIS, (top, -0.25 * top), "difference of both: pull the cross"
+    )
     for metres in (2, 3, 4, 5, 7, 10, 20):
         panel.line([[1 / metres, 0], [1 / metres, top]], FAINT, 0.5)
-        panel.text([1 / metres, -0.1 * top], f"{metres} m", anchor="mm", size=10)
+        panel.text([1 / metres, -0.13 * top], f"{metres} m", anchor="mm", size=10)
     panel.line(np.column_stack([1000 / _TRIED, cost]), LENS, 2)
     most = float(cost.max())
     panel.segments([[[panel.x[0], y], [panel.x[1], y]] for y in (0, most)], FAINT, 0.5)
-    panel.text([panel.x[1] + 0.006, most + 0.06 * top], f"{most:.0f} grey levels", anchor="rm")
+    panel.text([panel.x[1] + 0.006, most - 0.13 * top], f"{most:.0f} grey levels", anchor="rm")
     panel.mark([1000 / depth, now], "estimated", 7)
     panel.grip("depth", "how far away it may be", [1000 / depth, now], 4)
     return panel
