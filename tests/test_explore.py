@@ -927,6 +927,19 @@ def test_a_class_goes_through_infinity_and_its_dot_once_round_the_ring():
     assert ring.dragged("line", (-1, 1), angle=-20)["angle"] == -45
 
 
+def test_the_join_on_the_ring_is_dashed_green_and_no_angle_but_that_of_the_line_is_written(written):
+    picture = MODELS["ring"].drawing(angle=45).picture
+    assert [words for words in written if words.endswith("°")] == ["45°"]
+    panel, _ = written["∞"]
+    part = np.linspace(0.1, 0.4, 200)[:, None]  # from the top of the ring towards its mark
+    places = (1 - part) * [0, 1] + part * [1, 0]
+    off = (places - [panel.x[0], panel.y[0]]) * [1, -1] / panel.pixel
+    u, v = np.rint(off + [picture.shape[1] - MARGIN - 500, TITLE]).astype(int).T
+    green = np.abs(picture[v, u].astype(int) - colour(WORLD)).max(axis=-1) < 60
+    assert 0.3 < green.mean() < 0.8  # dashes, and gaps
+    assert count(picture[v.min() : v.max(), u.min() : u.max()], IDEAL) == 0
+
+
 def test_the_marks_of_the_ring_carry_their_numbers_outside_of_it(written):
     MODELS["ring"].drawing(angle=30)
     for number in (1, 2, 4, 8, -1, -2, -4, -8):
@@ -2083,7 +2096,7 @@ def test_the_word_sharp_is_not_written_over_that_of_a_pixel(written):
 
 def test_close_to_level_the_number_on_the_other_side_is_told():
     for angle in (88, 92):
-        x, beyond = numbers(MODELS["ring"].drawing(angle=angle).sentence)[2:5:2]
+        x, beyond = numbers(MODELS["ring"].drawing(angle=angle).sentence)[2:4]
         assert (x, beyond) == pytest.approx(np.tan(np.radians([angle, -angle])), rel=0.01)
 
 

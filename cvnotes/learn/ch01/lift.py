@@ -51,8 +51,8 @@ EXERCISE = Exercise(
     name="lift",
     chapter=1,
     title="Lift points to projective space",
-    task="Give homogeneous coordinates, shape (n, d + 1), of points x, shape (n, d): those of the "
-    "whole class whose last coordinate is the number w.",
+    task="Each point has many homogeneous coordinates. Of points x, shape (n, d), give those that "
+    "end in the number w, shape (n, d + 1).",
     hints=(
         "For w = 1 the point (x, y) becomes (x, y, 1).",
         "A class of coordinates differs by a factor that multiplies every one of them.",

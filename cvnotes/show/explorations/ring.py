@@ -19,8 +19,8 @@ def ring_model() -> Model:
     )
     about = (
         "Left, lines through the origin: each is one class of pairs, and crosses w = 1 at its "
-        "number x. Right, a ring on the line of these numbers: seen from its top, each mark is "
-        "over its x."
+        "number x. Right, a ring on the line of these numbers: where the dashed join of x and the "
+        "ring's top crosses the ring is the mark of x."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
@@ -31,7 +31,7 @@ def ring_model() -> Model:
         pairs = paper.panel((370, 290), (-2.42, 2.42), (2.2, -1.6), "the pairs [wx  w]")
         _draw_pairs(pairs, way, x, colour, values["angle"])
         ring = paper.panel((500, 290), (-_WIDE, _WIDE), (1.3, -0.3), "the same classes as a ring")
-        _draw_ring(ring, way, x, colour, values["angle"])
+        _draw_ring(ring, way, x)
         return Drawing(paper.join((pairs, ring)), _sentence(values["angle"], x))
 
     def turned(values: Values, at: Array) -> Values:
@@ -58,7 +58,7 @@ def _draw_pairs(panel: Panel, way: Array, x: float, colour: str, angle: float) -
     panel.line([[-9, 1], [9, 1]], WORLD, 2)
     panel.text([-2.33, 1.2], "w = 1", WORLD)
     panel.line(np.outer([-9, 9], way), colour, 2.2)
-    _draw_angle(panel, angle, 0.5, 1)
+    _draw_angle(panel, angle, 0.5)
     if np.isfinite(x):
         panel.mark([x, 1], "world", 9)
         side = 1 if x >= 0 else -1  # the line leads up to this side, the number is on the other
@@ -69,7 +69,7 @@ def _draw_pairs(panel: Panel, way: Array, x: float, colour: str, angle: float) -
     panel.grip("line", "the class, a line through the origin", held, 5)
 
 
-def _draw_ring(panel: Panel, way: Array, x: float, colour: str, angle: float) -> None:
+def _draw_ring(panel: Panel, way: Array, x: float) -> None:
     round_ = np.radians(np.arange(0, 361, 3))
     panel.line([[-9, 0], [9, 0]], WORLD, 2)
     panel.line(np.column_stack([np.sin(round_), 1 - np.cos(round_)]) / 2, WORLD, 2)
@@ -82,12 +82,11 @@ def _draw_ring(panel: Panel, way: Array, x: float, colour: str, angle: float) ->
         if number:
             panel.text([0, 0.5] + 1.18 * (mark - [0, 0.5]), _number(number), anchor="mm", size=11)
     dot = _dot(way)
-    _draw_angle(panel, 2 * angle % 360, 0.16, -1, (0, 0.5))
     if np.isfinite(x):
-        panel.line(_ray(x), colour, 2.2)
+        panel.line(_ray(x), WORLD, 2, dash=5)  # not the black line of the pairs
         panel.mark([x, 0], "world", 9)
     else:
-        panel.line([[-9, 1], [9, 1]], colour, 2.2)
+        panel.line([[-9, 1], [9, 1]], ESTIMATED, 2, dash=5)
     panel.text([0, 1.14], "∞", ESTIMATED, anchor="mm", size=15)
     panel.mark(dot, "world" if np.isfinite(x) else "estimated", 10)
     panel.grip("dot", "the mark on the ring", dot, 5)
@@ -99,16 +98,14 @@ def _dot(way: Array) -> Array:
     return np.asarray(np.array([a * w, a * a]) / (a * a + w * w))
 
 
-def _draw_angle(
-    panel: Panel, angle: float, radius: float, up: int, about: tuple[float, float] = (0, 0)
-) -> None:
-    """Draw an angle from the upright, or with `up` = −1 from below, and write it if it is wide."""
+def _draw_angle(panel: Panel, angle: float, radius: float) -> None:
+    """Draw an angle at the origin, from the upright, and write it if it is wide."""
     turn = np.radians(np.linspace(0, angle, 61))
-    arc = radius * np.column_stack([np.sin(turn), up * np.cos(turn)])
-    panel.line(np.add(about, arc), MUTED, 1)
+    arc = radius * np.column_stack([np.sin(turn), np.cos(turn)])
+    panel.line(arc, MUTED, 1)
     if abs(angle) > 15:
         away = 1 + 22 * panel.pixel / radius
-        panel.text(np.add(about, away * arc[30]), f"{_number(angle)}°", anchor="mm")
+        panel.text(away * arc[30], f"{_number(angle)}°", anchor="mm")
 
 
 def _ray(x: float) -> Array:
@@ -127,7 +124,7 @@ def _sentence(angle: float, x: float) -> str:
             f"At {angle:g}° the line is level, [1 0]: it never reaches w = 1. Its mark is the top "
             "of the ring, the same from both sides: the point at infinity."
         )
-    said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}, its mark at {2 * angle % 360:g}°."
+    said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}."
     if abs(x) < 20:
         return said
     return f"{said} As far beyond the level line, it crosses at {_number(-x)}."
