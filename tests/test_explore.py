@@ -78,6 +78,7 @@ from cvnotes.show.explorations import (
     nails,
     plane,
     protractor,
+    rodrigues,
     triangle,
     twins,
     ways,
@@ -2187,6 +2188,70 @@ def test_the_box_is_divided_by_its_depth_in_the_plan_and_in_the_picture():
         assert green[[0, -1]] == pytest.approx(200 + np.array([-60, x]) / z * 250, abs=2)
 
 
+def test_the_ray_of_a_point_meets_the_enlarged_sensor_where_its_row_counts_it():
+    """From above 120 mm are 400 px and 370 mm are 300 px; of the row 3.584 mm are 400 px."""
+    for x, z, f, du in ((30, 250, 4, 0.005), (-40, 300, 6.5, 0.008), (45, 320, 8, 0.004)):
+        drawing = MODELS["pixels"].drawing(x=x, z=z, f=f, du=du)
+        length = f * x / z
+        *_, mm, pitch, px, centre, u = numbers(drawing.sentence)
+        expected = [length, du, length / du, 325, 325 + length / du]
+        assert np.allclose([mm, pitch, px, centre, u], expected, atol=0.051)
+        assert abs(mm - length) < 0.0051
+        plan, row = (
+            drawing.picture[TITLE : TITLE + 300, left + MARGIN : left + MARGIN + 400].astype(int)
+            for left in (0, 406)
+        )
+        # The sensor's length from the axis to the ray is as thick as no other line.
+        level = round((345 - 20 * f) / 370 * 300)
+        blue = (np.abs(plan[level - 1] - colour(LENS)).max(-1) < 40).nonzero()[0]
+        ends = sorted([200, 200 + 20 * length / 120 * 400])
+        assert blue[[0, -1]] == pytest.approx(ends, abs=3)
+        orange = (np.abs(row[150] - colour(ESTIMATED)).max(-1) < 60).nonzero()[0]
+        assert orange.mean() == pytest.approx(200 + length / 3.584 * 400, abs=1)
+    # Pixels twice as wide are half as many, and the length in mm stays.
+    counts = [numbers(MODELS["pixels"].drawing(du=du).sentence) for du in (0.005, 0.01)]
+    assert counts[0][-5] == counts[1][-5]
+    assert counts[0][-3] == 2 * counts[1][-3]
+
+
+def test_a_vector_is_turned_about_n_on_the_circle_of_its_part_across(monkeypatch):
+    draw, arrows = Panel.arrows, []
+
+    def kept(panel, start, way, colour, width):
+        arrows.append((colour, width, *np.array(start, float), *np.array(way, float)))
+        draw(panel, start, way, colour, width)
+
+    monkeypatch.setattr(Panel, "arrows", kept)
+    n, w, sheet = np.array([0.0, 0, 1]), np.array([3.0, 0, 2]), rodrigues._SHEET
+    q = np.cross(n, w)
+    for theta in (-120, -35, 50, 165):
+        arrows.clear()
+        drawing = MODELS["rodrigues"].drawing(theta=theta)
+        turned = Rotation.from_rotvec(np.radians(theta) * n).apply(w)
+        assert np.allclose(numbers(drawing.sentence)[-3:], turned, atol=0.0051)
+        assert np.allclose(grip_of(drawing, "tip from above").at, turned[:2], atol=1e-6)
+        assert np.allclose(grip_of(drawing, "tip in space").at, sheet @ turned, atol=1e-6)
+        # Both pictures have p, n × w and the turned vector as arrows; the part along n stays.
+        for colour_, width, start, way in (
+            (IDEAL, 2, sheet @ n * 2, sheet @ [3, 0, 0]),
+            (LENS, 2, sheet @ n * 2, sheet @ q),
+            (ESTIMATED, 3, [0, 0], sheet @ turned),
+            (WORLD, 4, [0, 0], sheet @ n * 2),
+            (LENS, 1.5, [0, 0], q[:2]),
+            (ESTIMATED, 3, [0, 0], turned[:2]),
+        ):
+            wanted = np.array([width, *start, *way])
+            assert any(c == colour_ and np.allclose(r, wanted, atol=1e-6) for c, *r in arrows)
+        # The steps to the tip: cos θ p in black, then sin θ (n × w) in blue, thick.
+        grip = grip_of(drawing, "tip from above")
+        for step, ink in (((turned[0] / 2, 0), IDEAL), ((turned[0], turned[1] / 2), LENS)):
+            at = (np.array(step) - grip.at) / grip.unit + grip.place
+            u, v = np.rint(at).astype(int)
+            assert count(drawing.picture[v - 3 : v + 4, u - 3 : u + 4], ink) > 10
+    # Seen against n a turn goes anticlockwise, on the page, in both pictures.
+    assert np.linalg.det(np.column_stack([sheet @ [3, 0, 0], sheet @ q])) < 0 > grip.unit[1]
+
+
 def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
     values = MODELS["formation"].values(way=2)
     camera, (X, Y, Z) = formation.camera_of(values), formation.corner_of(values)
@@ -3507,6 +3572,7 @@ FREE_TO_MOVE = {  # where the hand may pull to either side
     "walks": {"X": 200},
     "formation": {"X": 200},
     "divide": {"z": 450},
+    "pixels": {"f": 6},
     "homography": {"dv2": 40, "dv3": -40},
     "noise": {"views": 20},
     "moved": {"who": 50},
@@ -3551,6 +3617,7 @@ ROUND = {
     ("rim", "ring"),
     ("camera", "camera"),
     ("gimbal", "orange axis"),
+    ("rodrigues", "tip in space"),
     ("walks", "line of sight"),
     ("formation", "line of sight"),
     ("tilt", "board"),
@@ -3576,6 +3643,7 @@ TURNS_ABOUT = {
     "line": (0, 0),
     "h": (0, 0),
     "dot": (0, 0.5),
+    "tip from above": (0, 0),
 }  # its length stays
 UP_AND_DOWN = {
     "curve",
@@ -3585,6 +3653,7 @@ UP_AND_DOWN = {
     "top",
     "walk",
     "height",
+    "sensor",
 }  # the eye to the nearest place of its half circle
 
 

@@ -27,7 +27,7 @@ _SEEN = np.array([0.8, 0.6])  # on z = 1: how far from the axis the picture reac
 def divide_model() -> Model:
     """Make the model of a box before a level camera, from near and far."""
     settings = (
-        Setting("x", "the cross: x (mm)", 40, 240, 5, 120, "how far to the right of the axis"),
+        Setting("x", "the cross: x (mm)", 40, 220, 5, 120, "how far to the right of the axis"),
         Setting("z", "the cross: z (mm)", 300, 600, 10, 300, "its depth"),
     )
     about = (

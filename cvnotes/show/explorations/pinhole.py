@@ -39,7 +39,7 @@ def pinhole_model() -> Model:
         Setting("lens", f"a lens of {_LENS:g} mm", 0, 1, 1, 0, "a lens in place of the hole"),
         Setting(
             "focus",
-            "with the lens: focused at (m)",
+            "focus of the lens (m)",
             0.1,
             10,
             0.05,
