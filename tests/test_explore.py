@@ -2987,6 +2987,29 @@ def test_the_box_behind_the_glass_has_the_shape_of_the_box_that_was_photographed
     assert np.linalg.norm(edges[0]) == pytest.approx(1.25 * 800 / depth * 4000, rel=2e-3)
 
 
+def test_the_foot_of_the_altitude_from_y_has_its_letter_and_its_right_angle(monkeypatch):
+    marks, letters = [], []
+    monkeypatch.setattr(
+        Panel, "line", lambda _, xy, *_a, **_k: marks.append(xy) if len(xy) == 3 else None
+    )
+    monkeypatch.setattr(Panel, "text", lambda _, _xy, words, *_a, **_k: letters.append(words))
+    for X, Z, Y in (((-900, 0), (300, 0), (-200, 700)), ((-600, -200), (400, 300), (-400, 1200))):
+        marks.clear()
+        letters.clear()
+        corners = {"X": X, "Y": Y, "Z": Z}
+        MODELS["triangle"].drawing(
+            turn=0, **{f"{name}_{axis}": at[i] for name, at in corners.items()
+                       for i, axis in enumerate("uv")}
+        )  # fmt: skip
+        side, down = np.subtract(Z, X), np.array([-(Z[1] - X[1]), Z[0] - X[0]])
+        foot = X + side * (np.subtract(Y, X) @ side) / (side @ side)
+        on_altitude, corner, on_side = marks[0]
+        assert np.allclose([down @ (on_side - foot), side @ (on_altitude - foot)], 0, atol=1e-6)
+        assert np.allclose(corner - on_side, on_altitude - foot, atol=1e-9)
+        assert (on_altitude - foot) @ (np.array(Y) - foot) > 0
+        assert letters.count("H") == 2  # in the photograph, and in space
+
+
 def test_letters_of_the_triangle_give_way_to_each_other(monkeypatch):
     write, places = Panel.text, {}
 

@@ -107,6 +107,15 @@ def _feet(v: Array) -> Array:
     return np.asarray(a + part[:, None] * way)
 
 
+def _square_at(H: Array, v: Array) -> Array:
+    """Return the mark (3, 2) of the right angle at H, between the altitude to Y and the side."""
+    X, Y, Z = v
+    ways = np.array([Y - H, (Z if np.dot(Z - H, Z - H) > np.dot(X - H, X - H) else X) - H])
+    long = np.linalg.norm(ways, axis=1, keepdims=True)
+    a, b = ways / long * min(90, 0.3 * long.min())
+    return np.asarray(H + np.array([a, a + b, b]))
+
+
 def _draw_box(panel: Panel, v: Array, c: Array, square: float, nearest: Array, ends: Array) -> None:
     """Draw the box that would have these vanishing points, its edges extended, and the triangle.
 
@@ -122,7 +131,9 @@ def _draw_box(panel: Panel, v: Array, c: Array, square: float, nearest: Array, e
             along = along[np.argsort(along @ (foot - corner))][[0, -1]]
             panel.line(along, IDEAL, 0.9, dash=5)
             lines += [along]
-        names += [("c", c, ESTIMATED)]
+        H = _feet(v)[1]
+        panel.line(_square_at(H, v), IDEAL, 1.2)
+        names += [("c", c, ESTIMATED), ("H", H, MUTED)]
     e, n = to_homogeneous(ends), to_homogeneous(v)
     # Between the ends of two edges lies the corner in which the edges parallel to them meet.
     far = from_homogeneous(
@@ -215,6 +226,7 @@ def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, b
         panel.line(arc[[0, -1]], MUTED, 0.9, dash=4)
         lines += [arc[[0, -1]], *np.stack([arc[:-1], arc[1:]], axis=1)]
         H = on_sheet(in_space(foot), turn)
+        panel.line(on_sheet(in_space(_square_at(foot, v)), turn), IDEAL, 1.2)
         names += [("H", H, MUTED)]
     if square > 0:
         panel.line([top, H], MUTED, 1.2)  # at right angles to the rod to Y
