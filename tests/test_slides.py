@@ -55,6 +55,9 @@ def test_what_is_folded_under_a_question_is_in_the_notes_and_not_shown(monkeypat
     (slide,) = slides_of({"cells": [{"cell_type": "markdown", "source": asked}]})
     assert slide.shown == ['<p class="question">How far?</p>']
     assert slide.notes == ["How far?", "Answer: Ten metres."]
+    more = asked.replace(">Answer<", ">More exactly<")
+    (slide,) = slides_of({"cells": [{"cell_type": "markdown", "source": more}]})
+    assert slide.notes == ["How far?", "More exactly: Ten metres."]
 
 
 def test_each_chapter_has_a_lecture_of_90_minutes_whose_sections_and_exercises_there_are(
