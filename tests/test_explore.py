@@ -531,8 +531,9 @@ def test_where_the_lens_folds_is_told_as_it_is_seen_beside_the_pictures_corners(
 
 def test_a_lens_that_does_nothing_moves_nothing_and_folds_nowhere():
     drawing = MODELS["lens"].drawing(k1=0, k2=0)
-    assert drawing.sentence.startswith("The model never folds. What is seen")
-    assert numbers(drawing.sentence) == [0]
+    assert "folds" not in drawing.sentence
+    assert "from the centre, this one there too. What is seen" in drawing.sentence
+    assert numbers(drawing.sentence)[-1] == 0
     assert count(drawing.picture, ESTIMATED) == 0
     assert count(drawing.picture, LENS) > 1000
 
@@ -1543,13 +1544,13 @@ def test_a_decentred_lens_bows_the_line_across_p_and_a_tilted_sensor_does_not(p1
     w = 1 - 2 * (P2 * x + P1 * y)
     for shift, (u, v) in ((0, lens), (378, (x / w, y / w))):
         inside = (np.abs(u) < 0.7) & (np.abs(v) < 0.66)
-        at = np.rint([shift + MARGIN + 185.5 + 372 / 1.44 * u, TITLE + 199.5 + 400 / 1.548 * v])
+        at = np.rint([shift + MARGIN + 185.5 + 372 / 1.68 * u, TITLE + 199.5 + 400 / 1.806 * v])
         near = [
             drawing.picture[b - 1 : b + 2, a - 1 : a + 2].astype(int)
             for a, b in at.astype(int)[:, inside].T
         ]
         met = [(np.abs(around - colour(LENS)).max(-1) < 70).any() for around in near]
-        assert np.mean(met) > 0.8  # the rest lies under arrows and the ruler
+        assert np.mean(met) > 0.8  # the rest lies under arrows, words and the ruler
     assert grip_of(drawing, "p").at == pytest.approx((4 * p2, 4 * p1))
 
 
@@ -1609,12 +1610,33 @@ def test_the_rays_through_a_stop_are_drawn_to_where_they_are_told_to_arrive(stop
     assert f"{shape}, k" in drawing.sentence
     meant, seen = numbers(drawing.sentence)[-3:-1]
     assert round(seen - meant) == {-15: -3, 0: 0, 15: 5}[stop]
-    u = MARGIN + (SENSOR + 62) / 174 * 430 - 0.5
+    u = MARGIN + (SENSOR + 62) / 174 * 520 - 0.5
     for side in (-1, 1):
-        v = TITLE + (66 + side * seen) / 132 * 326 - 0.5
+        v = TITLE + (66 + side * seen) / 132 * 394 - 0.5
         near = drawing.picture[round(v) - 2 : round(v) + 3, round(u) - 2 : round(u) + 3]
         assert (np.abs(near.astype(int) - colour(LENS)).max(axis=-1) < 60).any()
     assert grip_of(drawing, "stop").at[0] == stop
+
+
+@pytest.mark.parametrize("stop", [-15, 4, 15])
+def test_the_factor_of_the_traced_rays_is_drawn_with_its_polynomial_and_that_with_k1_alone(
+    stop, monkeypatch
+):
+    dots, lines, mark, line = [], [], Panel.mark, Panel.line
+    monkeypatch.setattr(Panel, "mark", lambda *how: (dots.append(how[:2]), mark(*how)))
+    monkeypatch.setattr(
+        Panel, "line", lambda *how, **more: (lines.append((how[0], how[1])), line(*how, **more))
+    )
+    drawing = MODELS["stop"].drawing(stop=stop)
+    panel, five = dots[-1]
+    assert panel.title.startswith("L: observed ÷ ideal")
+    r, factor = np.transpose(five)
+    assert np.allclose(r, [-0.5, -0.25, 0, 0.25, 0.5], atol=1e-3)
+    meant, seen = numbers(drawing.sentence)[-3:-1]
+    assert np.allclose(factor[[0, 2, 4]], [seen / meant, 1, seen / meant], atol=2e-3)
+    whole, bend = (np.array(at) for where, at in lines[-2:])
+    assert np.allclose(np.interp(r, *whole.T), factor, atol=2e-3)
+    assert np.allclose((bend[:, 1] - 1), numbers(drawing.sentence)[-1] * bend[:, 0] ** 2, atol=2e-3)
 
 
 @pytest.mark.parametrize("hole", [0.02, 0.074, 0.3])
@@ -2532,6 +2554,19 @@ def test_the_end_of_the_edge_goes_along_its_ray_and_the_arrows_to_where_the_lens
     r2 = (starts**2).sum(axis=1, keepdims=True)
     assert len(starts) > 12
     assert np.allclose(ways, starts * (-0.2 * r2 + 0.1 * r2**2))
+
+
+@pytest.mark.parametrize(("k1", "word"), [(-0.25, "nearer"), (0.1, "farther out")])
+def test_how_far_the_lens_moves_the_end_of_the_edge_is_told_in_pixels(k1, word):
+    camera = Camera(intrinsics(400, 400, 319.5, 239.5))
+    drawing = explorations.model("lens", camera).drawing(k1=k1, k2=0.05)
+    ideal = 400 * np.hypot(2500, 1600) / 3500
+    r2 = (ideal / 400) ** 2
+    told = numbers(drawing.sentence.split("this one")[0])[-1]
+    moved = numbers(drawing.sentence.split("this one")[1])[0]
+    assert told == round(ideal)
+    assert moved == round(ideal * abs(k1 * r2 + 0.05 * r2**2), 1)
+    assert f"px {word}. " in drawing.sentence
 
 
 def test_on_the_circle_through_the_pole_the_way_is_as_long_as_beside_it():

@@ -9,11 +9,11 @@ from cvnotes.camera import Lens
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS
+from cvnotes.show.style import IDEAL, LENS
 
-_SIZE, _SHOWN = (372, 400), ((-0.72, 0.72), (-0.774, 0.774))
+_SIZE, _SHOWN = (372, 400), ((-0.84, 0.84), (-0.903, 0.903))
 _EXTENT, _TIMES = 0.5, 3  # of the grid; each point is moved so many times as far
-_BESIDE = 0.63  # how far beside p two points are pointed out, outside of the grid
+_BESIDE = 0.63  # how far from the centre three points are pointed out, outside of the grid
 _RULER = 0.35, 0.5  # how far along p it lies, and how far it reaches to both sides
 _ARROW = 4  # how much longer than p its arrow is
 _F = 800  # px, in which a bow is told
@@ -75,15 +75,21 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _point_out(panel: Panel, p: Array) -> None:
-    """Draw two points beside p, which move across their rays, and one along p, as its ray does."""
+    """Draw two points across p, which move across their rays, and one along p, as its ray does."""
     ahead, across = _along(p)
-    points = np.array([_BESIDE * across, -_BESIDE * across, _EXTENT * ahead])
+    points = _BESIDE * np.array([across, -across, ahead])
     for point in points:
-        panel.line([[0, 0], point], IDEAL, 1, dash=4)
+        panel.line([[0, 0], point], "#FFFFFF", 4)
+        panel.line([[0, 0], point], IDEAL, 1.2, dash=4)
     panel.arrows(points, decentred(_TIMES * p, points) - points, IDEAL, 3.5)
-    for point, words in zip(points, ("r²p", "r²p", "3r²p"), strict=True):
-        aside = -22 * ahead if words == "r²p" else 28 * across
-        panel.text(point + panel.pixel * aside, words, IDEAL, anchor="mm", size=14)
+    for at, aside, words in (
+        (points[0], -20 * ahead, "r²p"),
+        (points[1], -20 * ahead, "r²p"),
+        (points[2], 30 * across, "3r²p"),
+        (0.5 * points[0], -18 * ahead, "across p"),
+        (0.76 * points[2], 40 * across, "along p"),
+    ):
+        panel.text(at + panel.pixel * aside, words, IDEAL, anchor="mm", size=14)
 
 
 def _along(p: Array) -> tuple[Array, Array]:
@@ -101,10 +107,6 @@ def _bent(panel: Panel, p: Array, move: Callable[[Array, Array], Array]) -> floa
         panel.line(line[[0, -1]], "#D4D4D4", 1)
     for line in lines:
         panel.line(move(_TIMES * p, line), LENS, 1.6)
-    dots = np.stack(np.meshgrid(*2 * [[-0.5, -0.3, 0, 0.3, 0.5]]), -1).reshape(-1, 2)
-    ways = move(_TIMES * p, dots) - dots
-    far = np.linalg.norm(ways, axis=1) > 7 * panel.pixel  # others would be specks
-    panel.arrows(dots[far], ways[far], ESTIMATED, 1.8)
     ahead, across_p = _along(p)
     ruled = _RULER[0] * ahead + np.outer(np.linspace(-_RULER[1], _RULER[1], 49), across_p)
     seen = move(_TIMES * p, ruled)
@@ -112,5 +114,5 @@ def _bent(panel: Panel, p: Array, move: Callable[[Array, Array], Array]) -> floa
     panel.line(seen[[0, -1]], IDEAL, 2)
     px = _F * bow(move(p, ruled))
     words = f"the line across p bows by {px:.1f} px (drawn: {_TIMES * px:.0f})"
-    panel.text([0, 0.735], words, IDEAL, anchor="mm", size=14)
+    panel.text([0, 0.86], words, IDEAL, anchor="mm", size=14)
     return px

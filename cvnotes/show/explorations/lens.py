@@ -208,15 +208,26 @@ def _sentence(camera: Camera, lens: Lens) -> str:
             f"r' = {seen:.3f}. The picture's corners are at r' up to "
             f"{r:.3f}: in {black} of them nothing is seen. Orange is no lens."
         )
-    fold = f"folds at r = {lens.max_radius:.3f}, beyond the picture"
-    ends = "never folds" if np.isinf(lens.max_radius) else fold
+    fold = f"The model folds at r = {lens.max_radius:.3f}, beyond the picture. "
+    ends = "" if np.isinf(lens.max_radius) else fold
     away = np.linalg.norm(camera.A[:2, :2] @ (ideal - corners).T, axis=0)
     far, farthest = away.max(), away.argmax()
     side = "out" if np.linalg.norm(ideal[farthest]) >= np.linalg.norm(corners[farthest]) else "in"
     return (
-        f"The model {ends}. What is seen in the picture's corners comes from up to {far:.1f} px "
-        f"farther {side}."
+        f"{ends}{_of_the_end(camera, lens)}What is seen in the picture's corners comes from up to "
+        f"{far:.1f} px farther {side}."
     )
+
+
+def _of_the_end(camera: Camera, lens: Lens) -> str:
+    """Tell how far the end of the edge is moved, if the lens shows it."""
+    px = camera.A[:2, :2]
+    ideal, seen = (float(np.linalg.norm(px @ xy)) for xy in (_END, lens.distort(_END)))
+    if np.isnan(seen):
+        return ""
+    moved = f"{abs(seen - ideal):.1f} px {'nearer' if seen < ideal else 'farther out'}"
+    where = moved if abs(seen - ideal) >= 0.05 else "there too"
+    return f"An ideal lens shows the edge's end {ideal:.0f} px from the centre, this one {where}. "
 
 
 def camera_corners(camera: Camera) -> Array:

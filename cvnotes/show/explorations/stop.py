@@ -10,7 +10,7 @@ from cvnotes.show.explorations.lens import bent_room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import CAMERA, IDEAL, LENS
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS
 
 # One lens of glass, the same on both sides, in mm; its middle is at 0.
 _INDEX, _RADIUS, _THICK, _RIM = 1.5, 100.0, 10.0, 28.0
@@ -21,7 +21,9 @@ SENSOR = _PRINCIPAL + FOCAL  # where an ideal lens of this focal length shows wh
 
 _DRAWN = np.array([-0.5, -0.25, 0, 0.25, 0.5])  # the ideal radii of the rays
 _STEEPEST = 1.0, 0.5  # slopes at the stop of the rays the picture is made of; within the glass
-_ACROSS, _DOWN, _SIZE = (-62.0, 112.0), 66.0, (430, 326)  # mm, mm, px
+_ACROSS, _DOWN, _SIZE = (-62.0, 112.0), 66.0, (520, 394)  # mm, mm, px
+_ROOM, _FACTOR = (340, 226), (340, 140)  # px
+_FAR, _LEAST, _MOST = 0.62, 0.9, 1.12  # of the curve: r, and from where to where L
 _HANDLE = -42.0  # mm: where the stop is taken hold of
 _HALF = 0.5  # of the plane z = 1, to above and below its middle
 _EDGE = np.array([[x, 1600, 4500] for x in np.linspace(-2500, 2500, 51)])  # of the tiles, mm
@@ -36,7 +38,8 @@ def stop_model() -> Model:
     about = (
         "A lens, cut in two, with a stop and the sensor: rays through the middle of the stop, bent "
         "by the glass, in blue, and dashed where an ideal lens would send them. Beside it the "
-        "picture of a room that arises so."
+        "picture of a room that arises so, and below it, over the ideal radius r, L: the observed "
+        "radius of each ray divided by the ideal one."
     )
     return Model("stop", about, settings, _draw, {"stop": lambda _, at: {"stop": float(at[0])}})
 
@@ -113,13 +116,14 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_lens(cut)
     _draw_rays(cut, stop, slopes, seen)
     _draw_stop(cut, stop)
-    lens, x = lens_of(stop), _HALF * _SIZE[0] / _SIZE[1]
-    room = paper.panel(_SIZE, (-x, x), (-_HALF, _HALF), "the picture, turned upright")
-    room.image(bent_room(lens, (x, _HALF), _SIZE, paper.sharpness, 1))
+    lens, x = lens_of(stop), _HALF * _ROOM[0] / _ROOM[1]
+    room = paper.panel(_ROOM, (-x, x), (-_HALF, _HALF), "the picture, turned upright")
+    room.image(bent_room(lens, (x, _HALF), _ROOM, paper.sharpness, 1))
     edge = lens.distort(_EDGE[:, :2] / _EDGE[:, 2:])
     room.line(edge[[0, -1]], IDEAL, 1.5)
     room.line(edge, LENS, 3)
-    return Drawing(paper.join((cut, room)), _sentence(stop, float(seen[-1])))
+    drawn = paper.join((cut, [room, _factor(paper, stop, slopes)]))
+    return Drawing(drawn, _sentence(stop, float(seen[-1])))
 
 
 def _draw_lens(panel: Panel) -> None:
@@ -161,9 +165,32 @@ def _draw_stop(panel: Panel, stop: float) -> None:
     panel.grip("stop", "the stop", top, 2)
 
 
-def _sentence(stop: float, seen: float) -> str:
+def _factor(paper: Paper, stop: float, slopes: Array) -> Panel:
+    """Draw by which factor the rays arrive farther out than meant, and polynomials through it."""
+    title = "L: observed ÷ ideal radius, over r"
+    panel = paper.panel(_FACTOR, (-_FAR, _FAR), (_MOST, _LEAST), title)
+    panel.ticks(x=(-0.5, -0.25, 0, 0.25, 0.5), y=(0.95, 1, 1.05, 1.1))
+    panel.line([[-_FAR, 1], [_FAR, 1]], IDEAL, 1, dash=4)
+    r, k1 = np.linspace(-_FAR, _FAR, 125), _k1(stop)
+    bend, everything = 1 + k1 * r**2, lens_of(stop).L(r)
+    panel.line(np.column_stack([r, everything]), LENS, 2.2)
+    panel.line(np.column_stack([r, bend]), ESTIMATED, 1.5, dash=4)
+    high = 1.045 if k1 < 0.1 else 0.955  # where no curve is
+    panel.text([0, high], "dashed: 1 + k₁r²", ESTIMATED, anchor="mm")
+    ideal, seen = radii(stop, slopes)
+    factors = np.divide(seen, ideal, out=np.ones_like(seen), where=np.abs(_DRAWN) > 0)
+    panel.mark(np.column_stack([ideal, factors]), "lens", 5)
+    return panel
+
+
+def _k1(stop: float) -> float:
+    """Return what is left near the axis of the polynomial."""
     r, near = radii(stop, np.array([0.02]))
-    k1 = float(((near / r - 1) / r**2)[0])  # what is left near the axis of the polynomial
+    return float(((near / r - 1) / r**2)[0])
+
+
+def _sentence(stop: float, seen: float) -> str:
+    k1 = _k1(stop)
     place = f"{abs(stop):.0f} mm {'before' if stop < 0 else 'behind'} the middle of the lens"
     shape = "barrel" if k1 < -0.02 else "pincushion" if k1 > 0.02 else "nearly straight"
     return (
