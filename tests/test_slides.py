@@ -47,14 +47,15 @@ def test_every_figure_heading_and_trap_of_the_notebooks_is_on_a_slide(made):
         assert len(set(re.findall(r"<h2>(.*?)</h2>", page))) >= 0.7 * len(headings)
 
 
-def test_what_is_folded_under_a_question_is_in_the_notes_and_not_shown(monkeypatch):
+@pytest.mark.parametrize("name", ["Answer", "Proof", "More exactly"])
+def test_what_is_folded_is_in_the_notes_and_not_shown(monkeypatch, name):
     monkeypatch.syspath_prepend(ROOT / "tools")
     from build_slides import slides_of
 
-    asked = "# A\n\nHow far?\n\n<details><summary>Answer</summary>\n\nTen\n\nmetres.\n\n</details>"
+    asked = f"# A\n\nHow far?\n\n<details><summary>{name}</summary>\n\nTen\n\nmetres.\n\n</details>"
     (slide,) = slides_of({"cells": [{"cell_type": "markdown", "source": asked}]})
     assert slide.shown == ['<p class="question">How far?</p>']
-    assert slide.notes == ["How far?", "Answer: Ten metres."]
+    assert slide.notes == ["How far?", f"{name}: Ten metres."]
 
 
 def test_each_chapter_has_a_lecture_of_90_minutes_whose_sections_and_exercises_there_are(

@@ -52,8 +52,11 @@ LIVE = tuple(
 )
 # Sections that are read, and not shown.
 NOT_SHOWN = ("further reading", "what comes next", "the same in opencv")
-# An answer is folded under its question; on slides it stands in the notes.
-_ANSWER = re.compile(r"^ *<details><summary>Answer</summary>\n(.+?)^ *</details>$", re.M | re.S)
+# What is folded, an answer under its question or a proof, stands in the notes of a slide.
+_FOLDED = re.compile(
+    r"^ *<details><summary>(Answer|Proof|More exactly)</summary>\n(.+?)^ *</details>$", re.M | re.S
+)
+_IN_NOTES = ("Answer: ", "Proof: ", "More exactly: ")
 _DISPLAY = re.compile(r"\$\$.+?\$\$", re.S)
 _QUESTION = re.compile(r"^guess\(\"[^\"]+\", \.\.\., \"([^\"]+)\"", re.M)
 
@@ -103,7 +106,7 @@ def slides_of(notebook: dict[str, Any]) -> list[Slide]:
     for cell in notebook["cells"]:
         source = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
-            source = _ANSWER.sub(lambda folded: f"Answer: {' '.join(folded[1].split())}", source)
+            source = _FOLDED.sub(lambda fold: f"{fold[1]}: {' '.join(fold[2].split())}", source)
             for title, text in parts_of(source):
                 if title is not None:
                     skipped = title.lower().startswith(NOT_SHOWN)
@@ -111,7 +114,7 @@ def slides_of(notebook: dict[str, Any]) -> list[Slide]:
                         slides.append(Slide(title, kind="title" if not slides else "words"))
                 if not skipped and slides:
                     add_words(slides, text)
-            said = [part for part in paragraphs(source) if not part.startswith("Answer: ")]
+            said = [part for part in paragraphs(source) if not part.startswith(_IN_NOTES)]
             before = said[-1] if said else ""
         elif not skipped and slides:
             slides.extend(shown_by(cell, source, slides[-1].title, before))
@@ -142,7 +145,7 @@ def add_words(slides: list[Slide], text: str) -> None:
     """Show of a text its thesis, formulas, lists, tables, questions and traps; keep the rest."""
     slide = slides[-1]
     for part in paragraphs(text):
-        if part.startswith("Answer: "):
+        if part.startswith(_IN_NOTES):
             slide.notes.append(part)
         elif part.startswith("**Careful"):
             slides.append(Slide(slide.title, [_markdown.render(part)], kind="careful"))
