@@ -2190,6 +2190,17 @@ def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
     assert 3 <= np.ptp(middle.nonzero()[0]) + 1 == middle.sum()  # nothing is drawn through it
 
 
+def test_words_on_the_wall_keep_clear_of_corner_3_and_of_the_chart(written):
+    for pulled, side in ((60, 1), (110, -1)):
+        MODELS["homography"].drawing(du1=pulled, dv1=pulled)
+        m = np.array([[343.0 + pulled, 44 + pulled], [522, 13], [508, 462], [342, 381]])
+        line = np.linalg.inv(dlt([[0, 0], [420, 0], [420, 594], [0, 594]], m))[2]
+        foot = -(480 * line[1] + line[2]) / line[0]  # where it leaves the picture
+        assert written["the wall's horizon"][1][0] == pytest.approx(foot + 8 * side, abs=1)
+    MODELS["homography"].drawing(du1=80, dv1=80, u=259, v=285)
+    assert written["X = 20515 mm"][1][1] > 594  # below the frame of the chart
+
+
 def test_the_singular_vectors_and_the_half_axes_have_their_right_angle_marked():
     drawing = MODELS["ellipse"].drawing(angle=0)  # h and D h lie elsewhere
     D = np.array([[1.6, 0.9], [0.5, 1.1]])
