@@ -2291,6 +2291,31 @@ def test_at_the_end_of_the_way_the_box_is_one_line_on_the_plane():
     assert 3 <= np.ptp(middle.nonzero()[0]) + 1 == middle.sum()  # nothing is drawn through it
 
 
+def test_words_on_the_wall_keep_clear_of_corner_3_and_of_the_chart(written):
+    for pulled, side in ((60, 1), (110, -1)):
+        MODELS["homography"].drawing(du1=pulled, dv1=pulled)
+        m = np.array([[343.0 + pulled, 44 + pulled], [522, 13], [508, 462], [342, 381]])
+        line = np.linalg.inv(dlt([[0, 0], [420, 0], [420, 594], [0, 594]], m))[2]
+        foot = -(480 * line[1] + line[2]) / line[0]  # where it leaves the picture
+        assert written["the wall's horizon"][1][0] == pytest.approx(foot + 8 * side, abs=1)
+    MODELS["homography"].drawing(du1=80, dv1=80, u=259, v=285)
+    assert written["X = 20515 mm"][1][1] > 594  # below the frame of the chart
+
+
+def test_the_singular_vectors_and_the_half_axes_have_their_right_angle_marked():
+    drawing = MODELS["ellipse"].drawing(angle=0)  # h and D h lie elsewhere
+    D = np.array([[1.6, 0.9], [0.5, 1.1]])
+    v = np.linalg.svd(D)[2]
+    v = v * np.where(v[:, 1:] < 0, -1, 1)
+    second = MARGIN + 273 + 2 * MARGIN  # where the second panel begins
+    for middle, ends in ((MARGIN + 1.3 * 84, v), (second + 1.95 * 84, v @ D.T)):
+        one, other = ends / np.linalg.norm(ends, axis=1, keepdims=True)
+        assert abs(one @ other) < 1e-9
+        for side in (one + 0.5 * other, 0.5 * one + other):
+            x, y = np.rint(0.13 * side * [84, -84] + [middle, TITLE + 120]).astype(int)
+            assert count(drawing.picture[y - 1 : y + 2, x - 1 : x + 2], MUTED, 90) > 0
+
+
 def test_circle_and_ellipse_have_one_scale_and_the_rows_lie_at_right_angles_to_v2(written):
     apart, along = {"r₁": [1.6, 0.9], "r₂": [0.5, 1.1]}, {"r₁, r₂": [1.6, 0.8], "": [0.8, 0.4]}
     for parallel, rows in ((0, apart), (1, along)):

@@ -13,6 +13,7 @@ _ASIDE = np.array([[1, -1.7], [1.7, 1]]) / 2  # 60°: off a row of D along v
 _PARALLEL = np.array([[1.6, 0.8], [0.8, 0.4]])  # its second row is half of the first
 _HIGH = 240  # px, of a panel
 _UNIT = 84  # px, of circle and ellipse alike: so one sees by how much D stretches
+_CORNER = 0.13  # side of the square that marks a right angle, in units
 _UP = np.array([1, -1])  # y goes up here, and down on a panel
 
 
@@ -86,6 +87,11 @@ def _round(
         beside = end + 0.26 * (v if name else _ASIDE @ v)
         nought = " = 0" if np.linalg.norm(end) < 1e-9 else ""
         panel.text(beside * _UP, f"{name}{letter}{nought}", colour, anchor="mm", size=13)
+    ends = Vt @ map_.T
+    long = np.linalg.norm(ends, axis=1, keepdims=True)
+    if long.min() > 2 * _CORNER:
+        one, other = _CORNER * ends / long
+        panel.line(np.array([one, one + other, other]) * _UP, MUTED, 1.2)  # a right angle
     panel.line([[0, 0], map_ @ h * _UP], IDEAL, 1.5)
     panel.mark(map_ @ h * _UP, "ideal", 8)
     aside = 0.55 * map_ @ h + 0.15 * (_ASIDE @ h - 0.5 * h)  # not at its end, where v₁ may be

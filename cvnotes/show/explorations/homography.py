@@ -124,7 +124,7 @@ def _draw_horizon(panel: Panel, H: Array) -> None:
     panel.line(ends[:, :2] / ends[:, 2:], IDEAL, 1.4, dash=5)
     at = ends[1, 0] / ends[1, 2]
     if 0 < at < 0.8 * _PICTURE[0]:
-        aside, anchor = (8, "lm") if at < 320 else (-8, "rm")  # to the right of it is corner 3
+        aside, anchor = (8, "lm") if at < 250 else (-8, "rm")  # to the right of it is corner 3
         panel.text(
             [at + aside, _PICTURE[1] - 14], "the wall's horizon", IDEAL, anchor=anchor, size=12
         )
@@ -144,6 +144,8 @@ def _draw_way(panel: Panel, place: Array) -> None:
     if (high[0] - low[0]) / 2 <= part * abs(way[0]) + 1e-6:  # it has left at a side
         words, below = f"X = {place[0]:.0f} mm".replace("-", "−"), tip + [0, 24 * panel.pixel]
         anchor = "lm" if way[0] < 0 else "rm"
+        if anchor == "rm":  # so long that it would lie over the chart
+            below[1] = max(below[1], _CHART[2, 1] + 20 * panel.pixel)
         panel.text(np.minimum(below, high), words, IDEAL, anchor=anchor, size=13)
 
 

@@ -126,7 +126,7 @@ def _name_marks(panel: Panel, at: tuple[int, int]) -> None:
 
 def _draw_votes(panel: Panel, counts: Array) -> None:
     """Draw how many pairs agree in each draw so far, and the most of them as a line of steps."""
-    panel.ticks(x=(0, 20, 40, 60), y=(18, 36, 54), size=12)
+    panel.ticks(x=(0, 20, 40, 60), y=(0, 18, 36, 54), size=12)
     n = len(counts) - 1
     if n > 1:
         best = np.maximum.accumulate(counts[1:])
