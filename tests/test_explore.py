@@ -781,6 +781,22 @@ def test_a_frame_of_the_finding_has_its_arrows_from_the_step_on_that_leads_to_it
         assert seen[:begun] == whole[:begun]
 
 
+def test_a_frame_of_the_finding_keeps_its_scale_and_no_arrow_leaves_it(finding, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(Panel, "arrows", lambda _, *arrows: drawn.append(arrows[:2]))
+
+    def of_the_last_frame(step, left):
+        MODELS["finding"].drawing(step=step, photograph=2)
+        starts, ways = drawn[-1]
+        ends = starts + ways
+        assert ((ends > [left, 2]) & (ends < [left + 2, 4])).all()
+        return ways
+
+    scales = [of_the_last_frame(step, 2) / finding.at(step)[1][2] for step in (2.85, 3)]
+    assert np.allclose(scales, scales[0][0], rtol=1e-9, atol=0)  # the arrows shorten as the misses
+    assert 0 < len(of_the_last_frame(1.5, 0)) < 54
+
+
 @pytest.fixture(scope="module")
 def believed():
     real = course.real_corners()
@@ -4100,9 +4116,9 @@ def test_neighbours_that_are_alike_agree_and_noise_does_not():
     turned = np.tile([[1.0], [-1.0]], (3, 1)).ravel()  # not along the rows, only from row to row
     assert alike(np.repeat(turned, 9)[None, :, None] * np.ones((12, 1, 2))) == pytest.approx(1)
     shown = MODELS["finding"].drawing
-    assert "by 0.91 of 1: the camera is not found yet" in shown(step=2).sentence
-    assert "by 0.72 of 1: the camera is not found yet" in shown(step=2.5).sentence
-    assert "what is left is noise" in shown(step=3).sentence
+    for step, agreement in ((2, "0.91"), (2.5, "0.72"), (3, "−0.04")):
+        said = shown(step=step).sentence.replace("-", "−")
+        assert f"photographs agree by {agreement} of 1" in said
 
 
 def test_a_facing_board_fits_every_focal_length_and_a_tilted_one_its_own_alone():
@@ -4352,12 +4368,13 @@ def test_boards_that_all_face_the_camera_leave_no_end_to_the_bars_of_the_focal_l
     assert drawing.sentence.count("undetermined") == 2
     assert "RMS is 0.14 px" in drawing.sentence
     bars = drawing.picture[TITLE : TITLE + 378, MARGIN + 504 + 2 * MARGIN :]
-    rms = 0.1 * np.sqrt((432 - 30) / 216)  # 432 coordinates, 30 unknowns; per corner
-    for i, (std, dot) in enumerate(((3000, 0), (3000, 0), (u0, 8), (v0, 8))):
+    unit = 350 / np.log10(3000 / 0.04)  # px for a power of ten
+    for i, std in enumerate((3000, 3000, u0, v0)):  # arrows beyond the scale, and dots
         row = bars[round((i + 0.14 + 0.85) * 378 / 5)].astype(int)
         blue = np.flatnonzero(np.abs(row - colour(CAMERA)).max(axis=-1) < 30)
-        ends = 350 * np.log10(np.array([rms, std]) / 0.04) / np.log10(3000 / 0.04)
-        assert [blue.min(), blue.max() - dot] == pytest.approx(ends, abs=5)
+        reach = [-0.4 * unit, 0] if std == 3000 else [-8, 8]
+        ends = unit * np.log10(std / 0.04) + np.array(reach)
+        assert [blue.min(), blue.max()] == pytest.approx(ends, abs=5)
     assert MODELS["nails"].drawing(**LYING, lens=0).sentence.count("undetermined") == 4
 
 

@@ -19,10 +19,12 @@ from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_measured
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.explorations.strokes import clipped
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
 _STEPS = 3
 _LONGEST = 0.12  # of the board's width in the photograph: so long is a frame's longest arrow
+_PALE = mixed(ESTIMATED, "#FFFFFF", 0.55)  # of arrows that leave their frame
 _FRAMES, _CURVE = (456, 304), (394, 304)
 
 
@@ -105,10 +107,10 @@ def _draw(finding: Finding, paper: Paper, values: Values) -> Drawing:
     curve = _curve(paper, finding, step, camera)
     value = camera.parameters
     missed = rms(misses)
-    agreement = alike(misses)
     sentence = (
         f"After {step:g} of {_STEPS} steps k₁ = {value['k1']:+.3f} and u₀ = {value['u0']:.1f} px; "
-        f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. {_seen(agreement)}"
+        f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. "
+        f"Neighbouring arrows of all photographs agree by {alike(misses):.2f} of 1."
     )
     return Drawing(paper.join((frames, curve)), sentence)
 
@@ -116,7 +118,8 @@ def _draw(finding: Finding, paper: Paper, values: Values) -> Drawing:
 def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
     """Draw a photograph's corners four times: what is missed at the start and after each step.
 
-    A frame whose step has begun shows how far it has come; later ones have no arrows yet.
+    A frame whose step has begun shows how far it has come; later ones have no arrows yet. Each
+    keeps its scale, so that its arrows become shorter.
     """
     panel = paper.panel(_FRAMES, (0, 4), (0, 4), f"photograph {i} four times: its misses enlarged")
     panel.segments([[[2, 0], [2, 4]], [[0, 2], [4, 2]]], MUTED, 1)
@@ -127,10 +130,10 @@ def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
         m = middle + (finding.m[i] - (low + high) / 2) / unit
         draw_measured(panel, m, course.board())
         if step > frame - 1:
-            at = min(step, frame)
-            camera, misses = finding.at(at)
-            times = _magnified(finding.enlarged[i], at)
-            panel.arrows(m, -times * misses[i] / unit, ESTIMATED, 1.2)
+            camera, misses = finding.at(min(step, frame))
+            times = finding.enlarged[i, frame]
+            corner = middle // 2 * 2
+            _draw_within(panel, (corner, corner + 2), m, -times * misses[i] / unit)
             k1 = f"k₁ = {camera.parameters['k1']:+.3f}".replace("-", "−")
             panel.text(
                 middle + [-0.96, -0.9], f"all: {_digits(rms(misses))} px", ESTIMATED, size=16
@@ -142,9 +145,13 @@ def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
     return panel
 
 
-def _magnified(enlarged: Array, step: float) -> float:
-    """Magnify the more the smaller the misses are, by equal factors within a step."""
-    return float(np.exp(np.interp(step, range(_STEPS + 1), np.log(enlarged))))
+def _draw_within(panel: Panel, frame: tuple[Array, Array], starts: Array, ways: Array) -> None:
+    """Draw arrows in a frame; those that lead beyond it are pale, and end at its border."""
+    low, high = frame
+    ends = starts + ways
+    within = ((ends > low) & (ends < high)).all(axis=1)
+    panel.segments(clipped(starts[~within], ends[~within], frame), _PALE, 1)
+    panel.arrows(starts[within], ways[within], ESTIMATED, 1.2)
 
 
 def _digits(pixels: float) -> str:
@@ -156,13 +163,6 @@ def alike(misses: Array) -> float:
     rows = misses.reshape(len(misses), *course.board().corners[::-1], 2)
     one, next_ = rows[:, :, :-1], rows[:, :, 1:]
     return float((one * next_).sum() / np.sqrt((one**2).sum() * (next_**2).sum()))
-
-
-def _seen(agreement: float) -> str:
-    said = f"Neighbouring arrows of all photographs agree by {agreement:.2f} of 1"
-    if agreement > 0.2:
-        return f"{said}: the camera is not found yet."
-    return f"{said}, they point in all directions: what is left is noise."
 
 
 def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel:

@@ -19,6 +19,7 @@ _MOST, _START = 40, ((0, -30), (30, 0), (-30, 0), (0, 30))  # degrees, to the ri
 _AIMS = np.array([[285, 235], [365, 235], [285, 265], [365, 265]])  # px, of the boards' middles
 _FAR, _NAIL = 560.0, 130.0  # mm: how far away the boards are, how long a nail is
 _NOISE, _UNKNOWN = 0.1, 1000  # px: of the corners, and from where on nothing is known
+_BEYOND = 0.4  # powers of ten: how long the arrow is to what is not known
 _LABELS = ("αᵤ", "αᵥ", "u₀", "v₀")
 
 
@@ -33,7 +34,7 @@ def nails_model() -> Model:
     settings += (Setting("lens", "with a lens", 0, 1, 1, 1, "whose k₁ and k₂ are estimated, too"),)
     about = (
         "Four photographs of a board, each with a nail that stands upright on the board, and the "
-        "standard deviations of the camera that they determine, from the RMS on, by logarithms."
+        "standard deviations of the camera that they determine, on a scale of powers of ten."
     )
     drags = {f"nail {i}": _pulled(i) for i in range(1, 5)}
     return Model("nails", about, settings, _draw, drags)
@@ -119,7 +120,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _bars(paper: Paper, std: Array, rms: float) -> Panel:
-    """Lead from the RMS of the residuals to what each parameter has: logarithms have no zero."""
+    """Draw a dot for each parameter, and the RMS of the residuals as a line beside them."""
     left, right = np.log10([0.04, 3000])
     title = f"standard deviation (px), with noise of {_NOISE:g} px"
     at = float(np.log10(rms))
@@ -131,9 +132,8 @@ def _bars(paper: Paper, std: Array, rms: float) -> Panel:
     for i, (name, one) in enumerate(zip(_LABELS, std, strict=True)):
         end, y = min(np.log10(one), right), i + 0.14
         if one > _UNKNOWN:
-            panel.arrows([at, y], [end - at, 0], CAMERA, 5)
+            panel.arrows([end - _BEYOND, y], [_BEYOND, 0], CAMERA, 5)
         else:
-            panel.line([[at, y], [end, y]], CAMERA, 5)
             panel.polygons([[end, y] + 8 * circle(33) * unit], CAMERA)
         panel.symbol([left + 0.08, y], name, IDEAL, 16)
         beside, anchor = (right - 0.06, "rd") if end > 2 else (end, "md")
