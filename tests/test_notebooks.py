@@ -27,7 +27,10 @@ each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
 each_chapter = pytest.mark.parametrize("path", CHAPTERS, ids=lambda p: p.stem)
 MAX_LINES, MAX_FOLDED, MEDIAN_LINES, IMPORT_LINES, MAX_BYTES = 12, 16, 5, 8, 1_500_000
 KEY = ROOT / "docs/teacher/answers"  # the lecturer's answers to the questions in the prose
-ANSWER = re.compile(r"^ *<details><summary>Answer</summary>\n\n.+?\n\n *</details>$", re.M | re.S)
+ANSWER = re.compile(
+    r"^ *<details><summary>(?:Answer|Proof|More exactly)</summary>\n\n.+?\n\n *</details>$",
+    re.M | re.S,
+)
 # Names of the library that open cells ask for: in all, of a chapter's student, for one figure.
 MAX_IN_ALL, MAX_NAMES, MAX_IN_A_FIGURE = 120, 25, 4
 WINGS = {"cvnotes", *(f"cvnotes.{file.parent.name}" for file in ROOT.glob("cvnotes/*/__init__.py"))}

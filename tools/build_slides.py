@@ -53,7 +53,10 @@ LIVE = tuple(
 # Sections that are read, and not shown.
 NOT_SHOWN = ("further reading", "what comes next", "the same in opencv")
 # An answer is folded under its question; on slides it stands in the notes.
-_ANSWER = re.compile(r"^ *<details><summary>Answer</summary>\n(.+?)^ *</details>$", re.M | re.S)
+_ANSWER = re.compile(
+    r"^ *<details><summary>(?:Answer|Proof|More exactly)</summary>\n(.+?)^ *</details>$",
+    re.M | re.S,
+)
 _DISPLAY = re.compile(r"\$\$.+?\$\$", re.S)
 _QUESTION = re.compile(r"^guess\(\"[^\"]+\", \.\.\., \"([^\"]+)\"", re.M)
 
