@@ -2013,6 +2013,15 @@ def test_boards_on_a_hinge_tell_alpha_as_a_calibration_of_their_photograph_finds
         assert hinge.found()[angle - 90].std() == pytest.approx(told, rel=0.25)
 
 
+def test_the_curve_of_the_hinge_counts_the_angle_that_its_slider_counts(written):
+    MODELS["hinge"].drawing(angle=150)
+    named = [words for words in written if words.endswith("°")]
+    assert named == [f"{angle}°" for angle in (90, 135, 160, 170, 176, 178, 179)]
+    for words in named:
+        held = grip_of(MODELS["hinge"].drawing(angle=int(words[:-1])), "angle").at
+        assert written[words][1][0] == pytest.approx(held[0], abs=0.01)
+
+
 def test_dots_that_leave_the_panel_of_the_hinge_are_counted(written):
     for angle in (120, 179):
         beyond = int((np.abs(hinge.found()[angle - 90] - 800) > 130).sum())
@@ -2157,6 +2166,17 @@ def test_light_and_dark_change_as_often_as_on_a_ring_in_the_blurred_photograph()
             ink = ESTIMATED if light[i] else LENS
             assert count(bars[:, x : x + 1], ink) == pytest.approx(level * 360 / 312, abs=3)
     assert MODELS["changes"].drawing(u=217, v=148).sentence.endswith("nearly alike.")
+
+
+def test_an_arrow_at_the_ring_runs_the_way_in_which_its_pixels_are_counted():
+    """From the right, downwards: in black, outside of the ring's lower right quarter alone."""
+    drawn = MODELS["changes"].picture(u=205, v=151)
+    middle = np.array([MARGIN + (205 - 167.5) * 8, TITLE + (151 - 140.5) * 8])
+    for angle, wanted in ((15, True), (40, True), (-30, False), (200, False)):
+        at = 6.6 * 8 * np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+        u, v = np.rint(middle + at).astype(int)
+        black = (drawn[v - 1 : v + 2, u - 1 : u + 2].max(axis=-1) < 40).sum()
+        assert (black >= 3) == wanted, angle
 
 
 def test_no_finder_is_said_to_be_exact():
@@ -2551,6 +2571,7 @@ def test_another_camera_takes_the_same_picture_of_a_board_and_not_of_a_box():
     top = first.project([[*(0.3 * square[0] + 0.7 * square[2]), -80]])[0]
     u, v = np.rint([449 + top[0] * 400 / 640, TITLE + top[1] * 300 / 480]).astype(int)
     assert np.abs(still[v, u] - colour("#C4E0F6")).max() < 12  # of the box one sees the top
+    assert count(still[:, :440], "#8DBFE8", 12) > 100  # the box in space: blue, as in the picture
     flat = [MODELS["twins"].picture(alpha=alpha, height=0)[:, 449:] for alpha in (1000, 300)]
     assert np.abs(flat[0].astype(int) - flat[1]).max() < 30
 

@@ -61,6 +61,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     part.image(photo[_TOP : _TOP + _HIGH, _LEFT : _LEFT + _WIDE], smooth=False)
     part.polygons(at[:, None] + 0.62 * circle(17), "#FFFFFF")
     part.polygons(at[:, None] + 0.48 * circle(17), inks)
+    turn = np.radians(np.linspace(8, 60, 9))  # from the right, clockwise on the page: v runs down
+    arc = [u, v] + (_AROUND + 1.6) * np.column_stack([np.cos(turn), np.sin(turn)])
+    for colour, width in (("#FFFFFF", 5), (IDEAL, 2)):
+        part.line(arc, colour, width)
+        part.arrows(arc[-5:-4], arc[-1:] - arc[-5:-4], colour, width)
     part.grip("ring", "the ring, to be pulled over the photograph", [u, v])
     times = 0 if flat else int(np.sum(light != np.roll(light, 1)))
     return Drawing(
@@ -70,7 +75,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _levels(paper: Paper, grey: Array, light: Array, inks: list[str], times: int) -> Panel:
     """Draw the grey levels on the ring as bars, and a stroke where light and dark change."""
-    title = "grey levels once round it, from the right"
+    title = "grey levels, clockwise from the right"
     panel = paper.panel(_LEVELS, (-2.6, _N), (300, -12), title)
     panel.ticks(y=(0, 50, 100, 150, 200), size=11)
     bar = np.array([[0.1, 0], [0.9, 0], [0.9, 1], [0.1, 1]])

@@ -157,7 +157,7 @@ def _cloud(paper: Paper, off: Array, rms: Array) -> Panel:
 def _curves(paper: Paper, rms: Array, now: int) -> Panel:
     """Draw the RMS of a point against the window, as a logarithm."""
     ends = (np.log10(_MOST), np.log10(_LEAST))
-    panel = paper.panel(_CURVES, (2, 13), ends, "RMS of a point, by the width of the window (px)")
+    panel = paper.panel(_CURVES, (2, 13), ends, "RMS (px), by the width of the window")
     for half in _WINDOWS[::3]:
         panel.text([half, np.log10(1.03 * _LEAST)], f"{2 * half + 1}", anchor="md", size=12)
     for value in (0.005, 0.01, 0.02, 0.05, 0.1, 0.2):

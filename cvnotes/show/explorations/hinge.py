@@ -36,10 +36,10 @@ def on_sheet(W: Array) -> Array:
 def hinge_model() -> Model:
     """Make the model of a photograph of two boards on a hinge, and of how well it determines α."""
     settings = (
-        Setting("angle", "angle of the boards (°)", _OPEN, _FLAT, 1, 120, "180° is one plane"),
+        Setting("angle", "angle of the boards (°)", _OPEN, _FLAT, 1, 150, "180° is one plane"),
     )
     about = (
-        "A camera before two boards on a hinge. Beside it, against the bend between them, on two "
+        "A camera before two boards on a hinge. Beside it, against the angle between them, on two "
         "logarithmic axes: how exactly one photograph of both determines the focal length; and "
         "below the focal lengths that 40 of them give, as dots."
     )
@@ -146,14 +146,14 @@ def _at(bend: float) -> float:
 
 
 def _curve(paper: Paper, angle: int) -> Panel:
-    """Draw the standard deviation of α over the bend, both axes logarithmic."""
+    """Draw the standard deviation of α over the bend, 180° less the angle, both logarithmic."""
     low, high = np.log10([_LEAST, _MOST])
     left, right = _at(130), _at(0) + 0.12
-    title = "standard deviation of αᵤ (px) by the bend"
+    title = "± of αᵤ (px), by the angle of the boards"
     panel = paper.panel(_CURVE, (left, right), (high, low), title)
     for bend in (90, 45, 20, 10, 4, 2, 1):
         panel.line([[_at(bend), low], [_at(bend), high]], GRID, 0.5)
-        panel.text([_at(bend), low + 0.1], f"{bend}°", anchor="md", size=12)
+        panel.text([_at(bend), low + 0.1], f"{_FLAT - bend}°", anchor="md", size=12)
     for px in (1, 10, 100):
         panel.line([[left, np.log10(px)], [right, np.log10(px)]], GRID, 0.5)
         panel.text([left + 0.03, np.log10(px)], f"{px}", size=12)

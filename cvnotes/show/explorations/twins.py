@@ -24,7 +24,7 @@ _FILM = 0.16  # mm of the drawn pictures, for a pixel
 _FOOT = [[0, 1], [2, 1], [2, 2], [0, 2]]  # corners of the board, on which the box stands
 _HIGHEST = 100  # mm
 _INK, _WAY = "#262629", "#F0C4A4"
-_WOOD, _BLUE = ("#8CC3AE", "#BFE0D4"), ("#8DBFE8", "#C4E0F6")  # of a box's sides and top
+_BLUE = ("#8DBFE8", "#C4E0F6")  # of a box's sides and top
 _LID = [4, 5, 6, 7]  # of the box's corners
 _VIEW = sheet((50, -85))
 
@@ -37,7 +37,7 @@ def on_sheet(W: Array) -> Array:
 def twins_model() -> Model:
     """Make the model of a photograph of the board, and of all cameras that could have taken it."""
     settings = (
-        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 400,
+        Setting("alpha", "α of the other camera (px)", _LOW, _HIGH, _STEP, 900,
                 "its focal length; its principal point and its place follow"),
         Setting("height", "a box on the board (mm)", 0, _HIGHEST, 5, 80,
                 "how far it stands out of the plane"),
@@ -98,7 +98,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     space = _space(paper, cameras, W)
     picture = paper.picture_panel(_PICTURE, one().size, "both pictures: one board, and two boxes")
     draw_board(picture, one(), course.board())
-    _draw_box(picture, one().project(W), _BLUE)
+    _draw_box(picture, one().project(W))
     for camera, colour, width in zip(cameras, (CAMERA, ESTIMATED), (1.8, 2.6), strict=True):
         m = camera.project(W)
         for face in _unhidden(m):
@@ -112,7 +112,7 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
     panel = paper.panel(_SPACE, x, y, "space: pull the orange camera")
     border, squares = paper_and_squares(course.board())
     draw_sheet(panel, on_sheet(border), on_sheet(squares))
-    _draw_box(panel, on_sheet(W), _WOOD)
+    _draw_box(panel, on_sheet(W))
     panel.line(on_sheet(_way()), _WAY, 2)
     corners = course.board().points[[0, 8, 45]]
     # Names: beside the centre, one above the way and one below, so that they never meet.
@@ -129,9 +129,9 @@ def _space(paper: Paper, cameras: tuple[Camera, Camera], W: Array) -> Panel:
     return panel
 
 
-def _draw_box(panel: Panel, at: Array, colours: tuple[str, str]) -> None:
+def _draw_box(panel: Panel, at: Array) -> None:
     for face in _unhidden(at):
-        panel.polygons(at[face][None], colours[face == _LID])
+        panel.polygons(at[face][None], _BLUE[face == _LID])
 
 
 def _unhidden(at: Array) -> list[list[int]]:
@@ -191,9 +191,9 @@ def _sentence(cameras: tuple[Camera, Camera], W: Array, height: float) -> str:
     alpha, u0, v0 = second.A[[0, 0, 1], [0, 2, 2]]
     said = (
         f"The orange camera, α = {alpha:.0f} px and principal point ({u0:.0f}, {v0:.0f}), stands "
-        f"{apart:.0f} mm from the blue one and sees every corner of the board at the same pixel"
+        f"{apart:.0f} mm from the blue one"
     )
     if not height:
-        return f"{said}: the picture of a plane does not tell them apart."
+        return f"{said}. No box stands on the board."
     off = np.linalg.norm(first.project(W[4:]) - second.project(W[4:]), axis=1).max()
-    return f"{said}; corners of the box, {height:.0f} mm high, lie up to {off:.0f} px apart."
+    return f"{said}. In their pictures the box, {height:.0f} mm high, is up to {off:.0f} px apart."
