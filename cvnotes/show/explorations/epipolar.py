@@ -98,8 +98,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     right.mark(place, "estimated", 7)
     cost, (now,) = differences(m, line), differences(m, place[None])
     below = [_strip(paper, m, depth), _curve(paper, cost, depth, now)]
-    rows = (left, right), (*patches, below)
-    return Drawing(paper.join(*rows), _sentence(depth, now, cost))
+    picture = paper.join((left, right), (*patches, below))
+    return Drawing(picture, _sentence(depth, now, cost))
 
 
 def _patch(paper: Paper, photo: Image, at: Array, title: str) -> Panel:
