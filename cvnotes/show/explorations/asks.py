@@ -143,7 +143,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _pale(photo: Drawn) -> Drawn:
-    return np.rint(0.6 * photo + 102).astype(np.uint8)
+    """Return a photograph as paper shines through it."""
+    return np.asarray(np.rint(0.6 * photo + 102), dtype=np.uint8)
 
 
 def apart(asked: Array, u: int, v: int) -> tuple[float, float]:

@@ -62,7 +62,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left.image((8 * np.rint(old / 8)).clip(0, 255).astype(np.uint8))
     held = np.array([_MIDDLE + place, _HANDLE])
     for ink, width in (("white", 5.0), (ESTIMATED, 2)):  # a stick from the box to its handle
-        left.line([[held[0], _MIDDLE + y + 7], held], ink, width)
+        left.line(np.array([[held[0], _MIDDLE + y + 7], held]), ink, width)
     left.polygons([held + 13 * left.pixel * circle(41)], "white")
     left.mark(held, "estimated", 7)
     left.grip("place", "where to look along the row", held, 2)

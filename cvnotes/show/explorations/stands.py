@@ -104,7 +104,7 @@ def _sides(panel: Panel, net: Array) -> None:
         for name, points, ink, down in (("board", m, LENS, -14), ("net", net, ESTIMATED, 18)):
             line = points.reshape(*_BOARD.corners[::-1], 2)[:, column]
             long = np.linalg.norm(line[-1] - line[0])
-            panel.text(place + [0, down], f"{name} {long:.0f} px", ink, anchor="mm", size=13)
+            panel.text(place + [0, down], f"{name} {long:.0f}", ink, anchor="mm", size=13)
 
 
 def _plan(paper: Paper, alpha: float) -> Panel:
