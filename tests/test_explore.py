@@ -2713,6 +2713,10 @@ def test_shrunken_rings_are_those_of_the_library_blurred_or_not():
         at = np.rint(4.5 * (np.arange(80) + 0.5) - 0.5).astype(int)
         off = np.abs(shown[np.ix_(at, at)] - new)[10:-10, 10:-10]
         assert np.quantile(off, 0.95) < 5  # every eighth grey level is drawn
+    drawing = MODELS["rings"].drawing(place=30)  # the handle covers no ring that is true
+    u, v = grip_of(drawing, "place").at
+    assert (u, v) == (149.5, pytest.approx(229.5))
+    assert drawing.picture[TITLE + 270, MARGIN + 225].tolist() == [213, 94, 0]  # on its stick
     far = numbers(MODELS["rings"].drawing(place=92).sentence)
     assert far[:2] == [0.99, 0.01]  # rings: once around, from one new pixel to the next
 
@@ -4558,6 +4562,35 @@ def test_the_square_between_the_four_centres_is_cut_where_a_pixel_asks(u, v, mon
             for at, ink in drawn
         )
     assert any(ink == "lens" and {*map(tuple, at)} == {*map(tuple, square)} for at, ink in marked)
+
+
+@pytest.mark.parametrize("warp", [1, 2, 3, 4])
+def test_each_new_pixel_has_a_dot_and_its_neighbours_are_as_far_off_as_is_said(warp, monkeypatch):
+    marked, dots, draw, fill = {}, [], Panel.mark, Panel.polygons
+
+    def mark(self, at, meaning, size=5, *rest):
+        marked[(meaning, size)] = np.array(at, float)
+        draw(self, at, meaning, size, *rest)
+
+    def polygons(self, corners, ink):
+        if isinstance(ink, str) and ink == LENS:
+            dots.append(np.array(corners).mean(axis=1))
+        fill(self, corners, ink)
+
+    monkeypatch.setattr(Panel, "mark", mark)
+    monkeypatch.setattr(Panel, "polygons", polygons)
+    wide, high, left = (20, 15, 3) if warp == 2 else (60, 45, 1)
+    for u, v in ((7, 9), (wide - 1, high - 1)):
+        said = MODELS["asks"].drawing(warp=warp, u=left * u, v=left * v).sentence
+        by_hand = [asked_by_hand(warp, i, j) for j in range(high) for i in range(wide)]
+        np.testing.assert_allclose(dots.pop(), by_hand, atol=1e-6)
+        at, i, j = asked_by_hand(warp, u, v), min(u + 1, wide - 2), min(v + 1, high - 2)
+        apart = [np.hypot(*(asked_by_hand(warp, *one) - at)) for one in ((i, v), (u, j))]
+        assert numbers(said)[-5:-3] == pytest.approx(apart, abs=0.0051)
+        if warp != 1 or u == 7:  # else it asks beside the photograph
+            near = [asked_by_hand(warp, i, j) for j in (v - 1, v, v + 1) for i in (u - 1, u, u + 1)
+                    if i < wide and j < high]  # fmt: skip
+            np.testing.assert_allclose(marked["estimated", 4], near, atol=1e-6)
 
 
 def test_a_lens_draws_each_pixel_nearer_to_the_middle_by_a_line():

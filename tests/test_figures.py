@@ -326,6 +326,16 @@ def test_line_drawings_are_small_png_and_photographs_webp():
     assert packed(steps)[1] == "image/webp"
 
 
+def test_small_dots_on_large_pixels_are_packed_without_loss_and_smaller():
+    blocks = RNG.integers(0, 255, (60, 180, 3), dtype=np.uint8).repeat(10, axis=0)
+    dotted = blocks.repeat(10, axis=1)
+    dotted[::9, ::11] = 0
+    data, mime = packed(dotted)
+    assert mime == "image/webp"
+    assert len(data) < 100_000
+    assert (np.asarray(Image.open(io.BytesIO(data))) == dotted).all()
+
+
 def test_the_colours_of_a_drawing_go_to_its_edges_and_not_to_its_paper():
     """Against Pillow's own choice, in which each pixel counts the same."""
     ax = panels()

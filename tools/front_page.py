@@ -91,8 +91,8 @@ def buttons(live: bool, lite: bool) -> str:
     at_home = "on your machine", ""
     ways = (  # on a telephone only the name, and what it costs
         (f"{start}.html", "Read", "chapter 0, half an hour", ""),
-        (run, "Run", *(("here, nothing installed, ", "66 MB once") if lite else at_home)),
-        (own, "Your own camera", "photographs in, camera out", ""),
+        (run, "Run", *(("the course's Python, in this page, ", "66 MB once") if lite else at_home)),
+        (own, "Your own camera", "photographs of a chessboard in, its numbers out", ""),
     )
     return "\n".join(
         f'<a href="{to}"><strong>{name}</strong> '
@@ -122,7 +122,7 @@ def exploration(live: bool) -> str:
 
 def card(number: str, title: str, name: str, question: str) -> str:
     """Write a chapter's card: its richest picture, its name and its question."""
-    label = title if number in ("00", "★") else f"{int(number)} · {title}"
+    label = title if number == "★" else f"{int(number)} · {title}"
     question = re.sub(r"\*(.+?)\*", r"<em>\1</em>", escape(question))
     return (
         f'<li><a href="notebooks/{name}.html"><img src="{FOLDER}/card-{name}.jpg" alt="" '

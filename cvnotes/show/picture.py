@@ -25,6 +25,7 @@ _MANY_COLOURS = 4096
 _OFF = 0.1
 # A drawing is smaller than this, in bytes.
 _LARGE = 150_000
+_MUCH = 100_000
 # px: how wide what is made for a telephone is drawn.
 NARROW = 380
 # Of zlib: the last levels take six times as long, and save a fourteenth.
@@ -124,6 +125,10 @@ def packed(pixels: npt.NDArray[np.uint8], level: int = _PACKING) -> tuple[bytes,
             return encoded.getvalue(), "image/png"
         encoded = io.BytesIO()  # a grey photograph: few colours, but noise that no PNG packs
     picture.save(encoded, "WEBP", quality=90)
+    if encoded.tell() > _MUCH:  # small dots on large pixels: edges that only a lossless one packs
+        exact = io.BytesIO()
+        picture.save(exact, "WEBP", lossless=True, method=1)
+        encoded = min(encoded, exact, key=io.BytesIO.tell)
     return encoded.getvalue(), "image/webp"
 
 

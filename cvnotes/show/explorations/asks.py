@@ -26,7 +26,8 @@ SIZE, SHRINK = (60, 45), 3  # px of the photograph; and how many old pixels a ne
 NAMES = "rotation", "shrinking", "homography", "lens"
 _LARGER = 6  # px of the page for a pixel of the photograph
 _NEAR = 4  # pixels that the enlarged piece is wide and high
-_EVERY = 3  # so many pixels lie between two dots, and from row to row
+_EVERY = 3  # px from one line that a lens draws to the next
+_DOT = 2  # px of the page that a dot is wide: each new pixel has one
 _MIDDLE = (np.array(SIZE) - 1) / 2
 _CORNERS = np.array([[6300, -900], [8900, -900], [8900, 300], [6300, 300]])  # of the print, mm
 _MARGIN, _PIXEL = 120, 2840 / SIZE[0]  # of the wall around it, and side of a new pixel, mm
@@ -43,7 +44,7 @@ def asks_model() -> Model:
     about = (
         "A new picture, one pixel of it framed; a line to the place in the photograph where it "
         "asks; and the four pixels around that place, enlarged, with their weights and their mix. "
-        "Dots show where the others ask."
+        "Each new pixel has a dot where it asks."
     )
     drags = {"pixel": lambda _, at: {"u": float(at[0]), "v": float(at[1])}}
     return Model("asks", about, settings, _draw, drags)
@@ -103,13 +104,13 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left = paper.picture_panel(shown, SIZE, "the new picture: pull the pixel that asks")
     left.image(new, smooth=False)
     right = paper.picture_panel(shown, SIZE, f"{NAMES[warp - 1]}: where they ask in the photograph")
-    right.image(photo, smooth=False)
-    every = 1 if warp == 2 else _EVERY
-    dots = asked[every // 2 :: every, every // 2 :: every].reshape(-1, 2)
+    right.image(_pale(photo), smooth=False)  # on which dots are seen everywhere
     if warp == 4:  # from where they would ask without it
-        own = map_array(lambda m: m, SIZE)[every // 2 :: every, every // 2 :: every]
-        right.segments(np.stack([own.reshape(-1, 2), dots], axis=1), LENS, 1.2)
-    right.mark(dots, "lens", 3)
+        own = map_array(lambda m: m, SIZE)
+        ways = np.stack([own, asked], axis=2)[1::_EVERY, 1::_EVERY]
+        right.segments(ways.reshape(-1, 2, 2), LENS, 1.2)
+    half = _DOT / 2 * right.pixel
+    right.polygons([_square(dot - half, 2 * half)[:4] for dot in asked.reshape(-1, 2)], LENS)
     # One line over both panels: the second begins a gap further on.
     beside, low = np.array([right.sheet[0] / (right.width / 2) * SIZE[0], 0]), np.floor(at)
     begin, end = here + [wide / 2, 0], np.array([low[0] - 0.5, at[1]])
@@ -127,15 +128,31 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         _framed(right, np.array([here, at]), 1.6)
     _framed(right, _square(low - 0.5, 2), 2)
     left.grip("pixel", "a pixel of the new picture", here, wide)
-    near, mix = _near(paper, photo, at), _mix(paper, photo, at)
+    near, mix = _near(paper, photo, asked, (u, v)), _mix(paper, photo, at)
     where = ", beside the photograph" if out else ""
     if warp == 4:
         where = f", {np.hypot(*(at - here)):.2f} px nearer to the middle"
+    across, down = apart(asked, u, v)
     sentence = (
-        f"New pixel ({u}, {v}) asks at ({at[0]:.2f}, {at[1]:.2f}){where}. All {new[..., 0].size} "
-        f"new pixels together read {read} of the photograph's {photo[..., 0].size}."
+        f"New pixel ({u}, {v}) asks at ({at[0]:.2f}, {at[1]:.2f}){where}; its neighbour in the row "
+        f"asks {across:.2f} px from there, the one in the column {down:.2f} px. All "
+        f"{new[..., 0].size} new pixels together read {read} of the photograph's "
+        f"{photo[..., 0].size}."
     )
     return Drawing(paper.join((left, right, [near, mix])), sentence)
+
+
+def _pale(photo: Drawn) -> Drawn:
+    """Return a photograph as paper shines through it."""
+    return np.asarray(np.rint(0.6 * photo + 102), dtype=np.uint8)
+
+
+def apart(asked: Array, u: int, v: int) -> tuple[float, float]:
+    """Return how far from where a pixel asks the next ones across and down do, in old pixels."""
+    height, width = asked.shape[:2]
+    x, y = min(u, width - 2), min(v, height - 2)  # on the last ones: from the ones before them
+    across, down = asked[v, x + 1] - asked[v, x], asked[y + 1, u] - asked[y, u]
+    return float(np.hypot(*across)), float(np.hypot(*down))
 
 
 def _square(corner: Array, side: float) -> Array:
@@ -161,8 +178,13 @@ def weighed(photo: Drawn, at: Array) -> tuple[Array, Array]:
     return weight, padded[v : v + 2, u : u + 2].reshape(4, 3).astype(float)
 
 
-def _near(paper: Paper, photo: Drawn, at: Array) -> Panel:
-    """Draw the place enlarged: the four pixels around it as they are, the others pale."""
+def _near(paper: Paper, photo: Drawn, asked: Array, pixel: tuple[int, int]) -> Panel:
+    """Draw the place enlarged: the four pixels around it as they are, the others pale.
+
+    Small crosses are where the neighbours of the framed pixel ask.
+    """
+    (column, line) = pixel
+    at = asked[line, column]
     low = np.floor(at).astype(int)
     begin = low + 1 - _NEAR // 2
     u, v = begin.tolist()
@@ -182,6 +204,8 @@ def _near(paper: Paper, photo: Drawn, at: Array) -> Panel:
     _framed(panel, _square(low, 1), 1.6)
     panel.segments([[[u, y0], [u, y0 + 1]], [[x0, v], [x0 + 1, v]]], "white", 3)
     panel.segments([[[u, y0], [u, y0 + 1]], [[x0, v], [x0 + 1, v]]], ESTIMATED, 1.2)
+    around = asked[max(line - 1, 0) : line + 2, max(column - 1, 0) : column + 2]
+    panel.mark(around.reshape(-1, 2), "estimated", 4)
     panel.mark(low + np.array([[0, 0], [1, 0], [0, 1], [1, 1]]), "lens", 6)
     for k, w in enumerate(weighed(photo, at)[0]):  # above and below: the cross is between
         step = np.array([k % 2, k // 2])

@@ -64,7 +64,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     sensor.arrows(m, times * sensor.pixel * misses.reshape(-1, 2), ESTIMATED, 1.2)
     said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows are"
     what = ("", "the lens is wrong") if agree > 0.2 else (" not", "what is left is noise")
-    sentence = f"{said}{what[0]} alike ({agree:.2f} of 1): {what[1]}.".replace("-", "−")
+    sentence = f"{said}{what[0]} alike: {what[1]}.".replace("-", "−")
     return Drawing(paper.join((sensor, _curve(paper, k1, missed))), sentence)
 
 
@@ -80,7 +80,7 @@ def _scale(sensor: Panel, times: float) -> None:
 
 
 def _curve(paper: Paper, k1: float, missed: float) -> Panel:
-    panel = paper.panel(_BESIDE, (-0.46, 0.13), (-0.1, -2.5), "RMS (px, logarithmic) by k₁")
+    panel = paper.panel(_BESIDE, (-0.46, 0.13), (-0.1, -2.5), "RMS (px) by k₁")
     panel.ticks(x=(-0.3, -0.2, -0.1, 0))
     for power in (-2, -1):
         panel.segments([[[-0.38, power], [0.13, power]]], GRID, 0.5)

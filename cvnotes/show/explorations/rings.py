@@ -12,7 +12,7 @@ _SIZE, _FINENESS = 240, 0.0036  # px, and rings per px for each px from the midd
 _SHRINK = 3  # how many old pixels a new one is wide
 _MIDDLE = (_SIZE - 1) / 2
 _AROUND = 16  # px that the profile shows to either side
-_BELOW = 19  # px from the row to the ring that a hand takes hold of: under the box
+_HANDLE = 229.5  # px down to what a hand takes hold of: at the lower border, off all true rings
 
 
 def rings_model() -> Model:
@@ -60,8 +60,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     y = _SHRINK * (row + 0.5) - 0.5 - _MIDDLE
     left = paper.picture_panel((360, 360), (_SIZE, _SIZE), f"{_SIZE} × {_SIZE} pixels")
     left.image((8 * np.rint(old / 8)).clip(0, 255).astype(np.uint8))
-    held = np.array([_MIDDLE + place, _MIDDLE + _BELOW])
+    held = np.array([_MIDDLE + place, _HANDLE])
+    for ink, width in (("white", 5.0), (ESTIMATED, 2)):  # a stick from the box to its handle
+        left.line(np.array([[held[0], _MIDDLE + y + 7], held]), ink, width)
     left.polygons([held + 13 * left.pixel * circle(41)], "white")
+    left.mark(held, "estimated", 7)
     left.grip("place", "where to look along the row", held, 2)
     right = paper.panel(
         (360, 360), (-0.5, _SIZE - 0.5), (-0.5, _SIZE - 0.5),
