@@ -268,7 +268,7 @@ def test_at_1280_px_a_line_of_100_letters_fits_and_what_is_printed_wraps(site, c
     page.close()
 
 
-def test_a_chapter_shows_its_pictures_as_wide_as_they_were_drawn_and_leads_to_the_others(
+def test_a_chapter_shows_pictures_as_wide_as_drawn_whole_tables_and_leads_to_the_others(
     site, chromium
 ):
     page = chromium.new_page(viewport={"width": 1280, "height": 900})
@@ -280,6 +280,11 @@ def test_a_chapter_shows_its_pictures_as_wide_as_they_were_drawn_and_leads_to_th
         )
         assert widths, path
         assert all(shown >= min(drawn, 920) - 1 for shown, drawn in widths), path
+        cut = """() => [...document.querySelectorAll(".bd-article table")]
+            .filter((one) => one.scrollWidth > one.parentElement.clientWidth + 1).length"""
+        assert page.evaluate(cut) == 0, path
+        loaded = "[...document.fonts].filter((one) => one.status === 'loaded').length"
+        assert page.evaluate(f"document.fonts.ready.then(() => {loaded})") >= 3, path
         heads = page.locator(".chapters a")
         assert heads.count() == 1 + len(NOTEBOOKS)
         here = page.locator(".chapters [aria-current=page]")
