@@ -22,7 +22,7 @@ def plane_model() -> Model:
     """Make the model of two cameras in the room, and the plane through both and a point."""
     settings = (
         Setting("u", "u (px)", 110, 280, 1, 190, "a pixel of the first picture"),
-        Setting("v", "v (px)", 20, 220, 1, 150, "and its row"),
+        Setting("v", "v (px)", 50, 220, 1, 150, "and its row"),
         Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 3500, "of the point on its ray"),
     )
     about = (
@@ -51,7 +51,7 @@ def cameras() -> tuple[Camera, Camera]:
 @lru_cache(maxsize=1)
 def onlooker() -> Camera:
     """Return the camera by which both are seen."""
-    A = intrinsics(1140, 1140, 262, 236)
+    A = intrinsics(1080, 1080, 268, 256)
     return Camera(A, look_at([-1500, -3100, -1200], [60, 250, 4500]), size=_OUTSIDE)
 
 
