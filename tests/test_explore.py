@@ -116,6 +116,7 @@ from cvnotes.show.explorations.ransac import drawn_pairs
 from cvnotes.show.explorations.rectification import turned
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
+from cvnotes.show.explorations.seam import scene as scene_of_the_seam
 from cvnotes.show.explorations.strokes import contours, cut
 from cvnotes.show.explorations.subpixel import neighbourhood
 from cvnotes.show.explorations.swing import nets, weights
@@ -1768,7 +1769,7 @@ def test_the_line_that_goes_to_infinity_is_held_at_its_foot():
 
 def test_two_photographs_join_to_that_of_one_wide_camera_at_its_focal_length():
     wide = Camera(intrinsics(200, 200, 143.3, 163.3), size=(480, 309))  # as the sheet shows it
-    whole = radiance(room(), wide).clip(0, 255)
+    whole = radiance(scene_of_the_seam(), wide).clip(0, 255)
     apart, off = {}, {}
     for alpha in (460, 490, 500, 510, 540):
         drawing = MODELS["seam"].drawing(alpha=alpha)
@@ -1780,6 +1781,31 @@ def test_two_photographs_join_to_that_of_one_wide_camera_at_its_focal_length():
     assert off[500] < min(off[490], off[510])
     assert apart[500] < 1.5
     assert min(apart[490], apart[510]) > 4
+
+
+def test_after_a_step_aside_what_is_near_closes_at_another_focal_length_than_what_is_far():
+    """In the enlarged part: the post is green where it closes, and the board on the wall dark."""
+
+    def seen(**values):
+        close = MODELS["seam"].drawing(**values).picture[TITLE : TITLE + 150, -219:-3].astype(int)
+        red, green, blue = np.moveaxis(close, -1, 0)
+        return ((green - red > 60) & (green - blue > 40)).sum(), ((red < 70) & (blue > 80)).sum()
+
+    on_the_spot = seen(alpha=500)
+    far, near = seen(alpha=560, aside=400), seen(alpha=695, aside=400)
+    assert on_the_spot[0] > 2000
+    assert near[0] > 5 * max(far[0], 1)  # the post is whole here, and there pale and twice
+    assert far[1] > 2 * near[1]
+
+
+def test_a_step_aside_leaves_the_seam_open_at_every_focal_length():
+    lowest = {}
+    for aside in (0, 200, 400):
+        off = [numbers(MODELS["seam"].drawing(alpha=a, aside=aside).sentence)[-1]
+               for a in range(460, 620, 10)]  # fmt: skip
+        lowest[aside] = min(off)
+    assert lowest[0] < 1
+    assert 10 < lowest[200] < lowest[400] - 3
 
 
 def test_the_curve_of_a_seam_is_what_is_said_at_each_focal_length(monkeypatch):

@@ -310,6 +310,28 @@ def test_a_paragraph_can_be_read_in_one_go(path):
     assert [part for part in paragraphs if len(part.split()) > 105 and part[0] not in "|#<"] == []
 
 
+def test_the_map_of_the_further_exercises_names_each_with_its_stars_and_chapter():
+    prose = _prose(_read(FURTHER))
+    rows = re.findall(r"^\|\[(\d+)\]\((\d\d)_\w+\.ipynb\)\|(.*)\|$", prose, re.M)
+    assert all(int(chapter) == int(name) for chapter, name, _ in rows)
+    said, there, chapter = {}, {}, ""
+    for number, _, cells in rows:
+        *tasks, projects = cells.split("|")
+        for task, stars in re.findall(r"(\w+) (★+)", " ".join(tasks)):
+            said[task] = (number, stars)
+        said |= {f"project {project}": number for project in re.findall(r"\d+", projects)}
+    for line in prose.split("## Eight projects")[0].splitlines():
+        if found := re.search(r"After \[chapter (\d+)\]", line):
+            chapter = found[1]
+        if task := re.match(r"\*\*(\w+)\. (★+)", line):
+            there[task[1]] = (chapter, task[2])
+    for project, chapters in re.findall(
+        r"^\*\*(\d)\. ★+ .*?\*\* \(([\d, ]+)\)", prose.replace("(chapters ", "("), re.M
+    ):
+        there[f"project {project}"] = str(max(map(int, chapters.split(","))))
+    assert said == there
+
+
 @each_notebook
 def test_every_question_has_its_answer_folded_under_it(path):
     """Or under its picture. What is guessed has none; under three stars are idea and result."""
