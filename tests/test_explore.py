@@ -1972,6 +1972,20 @@ def test_what_the_next_picture_leaves_is_what_a_calibration_with_it_leaves():
             assert came == pytest.approx(left, abs=0.02)
 
 
+def test_the_curve_of_k2_is_what_is_said_at_each_tilt_and_marks_where_the_board_faces_its_ray():
+    model = MODELS["eleventh"]
+    for u, v in ((160, 120), (1120, 840)):
+        for tilt, left in zip(eleventh._TILTS, eleventh.left_of_k2(u, v), strict=True):
+            drawing = model.drawing(u=u, v=v, tilt=tilt)
+            assert numbers(drawing.sentence)[0] == pytest.approx(left, abs=0.006)
+            assert grip_of(drawing, "left").at == pytest.approx((tilt, left), abs=1e-5)
+        faces = eleventh.faces_its_ray(u, v)
+        G = eleventh.held(u, v, faces)
+        normal, middle = G[:3, 2], (G @ [100, 62.5, 0, 1])[:3]
+        assert np.degrees(np.arccos(normal @ middle / np.linalg.norm(middle))) < 1
+    assert model.dragged("left", (31.0, 0.3))["tilt"] == 30
+
+
 def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
     light, truth = course.photos()[6].astype(float), course.exact_corners()[6]
     sharpened = (2 * light - gaussian_blur(light, 1.5)).clip(0, 255)
@@ -3762,6 +3776,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("protractor", "left"),
     ("protractor", "right"),
     ("stop", "stop"),
+    ("eleventh", "left"),
 }
 ROUND = {
     ("rim", "ring"),
@@ -4750,6 +4765,7 @@ FOLDED = {
     "rod",
     "epipolar",
     "plane",
+    "eleventh",
 }
 
 

@@ -123,6 +123,17 @@ def test_without_python_the_site_is_whole_too(plain):
     assert not dead_links(plain, pages)
 
 
+def test_the_last_chapter_leads_to_the_pages_that_calibrate_and_show_a_board(live_folder, plain):
+    """Where there are such pages; without them their names are words."""
+    of_live, of_plain = (
+        (folder / "notebooks/09_your_own_camera.html").read_text().split("<article")[1]
+        for folder in (live_folder, plain)
+    )  # beside an article the menu leads there, too
+    for page in ("your_camera", "board_on_screen"):
+        assert f'href="../{page}.html"' in of_live.partition("</article")[0]
+        assert f"{page}.html" not in of_plain
+
+
 def test_no_page_loads_anything_from_elsewhere(site, pages):
     for path, page in pages.items():
         for source in page.loads:

@@ -125,13 +125,27 @@ def fold_calls(text: str) -> str:
     return json.dumps(notebook)
 
 
+def link_pages(text: str, pages: list[Path]) -> str:
+    """Make links of the names of some pages, *like this*, in a chapter, which is read without too.
+
+    The pages are those that only a site with Python for the browser has.
+    """
+    for page in pages:
+        title = page.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
+        text = text.replace(f"*{title}*", f"[{title}](../{page.stem}.md)")
+    return text
+
+
 def collect(source: Path, live: bool, lite: bool) -> None:
     """Put the pages together in a folder, with those that need Python if it is there."""
+    pages = sorted((ROOT / "docs" / "live").glob("*.md")) if live else []
     for path in sorted(path for pattern in PAGES for path in ROOT.glob(pattern)):
         target = source / path.relative_to(ROOT)
         target.parent.mkdir(parents=True, exist_ok=True)
         text = path.read_text(encoding="utf-8")
-        target.write_text(fold_calls(text) if path.suffix == ".ipynb" else text, encoding="utf-8")
+        if path.suffix == ".ipynb":
+            text = link_pages(fold_calls(text), pages)
+        target.write_text(text, encoding="utf-8")
     teaching = source / "docs" / "teaching.md"
     made = {
         path.stem: slides_of(json.loads(path.read_text(encoding="utf-8")))
@@ -143,8 +157,7 @@ def collect(source: Path, live: bool, lite: bool) -> None:
     contents = toctree([f"notebooks/{name}" for name in notebooks], "The course")
     paths = [*sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("docs/sheets/*.md"))]
     docs = [str(path.relative_to(ROOT).with_suffix("")) for path in paths]
-    if live:
-        pages = sorted((ROOT / "docs" / "live").glob("*.md"))
+    if pages:
         for path in pages:
             text = with_boards(path.read_text(encoding="utf-8"))
             (source / path.name).write_text(text, encoding="utf-8")

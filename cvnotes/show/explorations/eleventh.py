@@ -25,10 +25,12 @@ _PHONE = Camera(
 )  # of chapter 9
 _BOARD = course.board()
 _SHOWN, _NOISE = (504, 378), 0.1  # px
+_BARS, _CURVE = (360, 178), (360, 170)
 _LABELS = ("αᵤ", "αᵥ", "u₀", "v₀", "k₁", "k₂")
 _HIGHEST = 0.9  # px, where the map is darkest
 _DARK = 0.75  # of the way from white to orange
 _TINTS = 60  # between them: a picture has 256 colours, and the marks need some
+_TILTS = np.arange(-45.0, 46, 5)  # degrees
 
 
 class _Known(NamedTuple):
@@ -57,9 +59,12 @@ def eleventh_model() -> Model:
     about = (
         "The picture of a camera, the paler the better a pixel of it is known from ten pictures "
         "of a board and one more, which is drawn; beside it which part of each standard deviation "
-        "the new picture leaves."
+        "the new picture leaves, and below it what is left of that of k₂ at each tilt."
     )
-    drags = {"board": lambda _, at: {"u": float(at[0]), "v": float(at[1])}}
+    drags = {
+        "board": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
+        "left": lambda _, at: {"tilt": float(at[0])},
+    }
     return Model("eleventh", about, settings, _draw, drags)
 
 
@@ -85,14 +90,29 @@ def held(u: float, v: float, tilt: float) -> Array:
 
 
 def with_one_more(G: Array) -> Array:
-    """Return the covariance of the camera with the board once more, in pose G."""
-    found = known().found
-    data = Correspondences.in_unit_frame(_BOARD.points, np.zeros((1, len(_BOARD.points), 2)))
+    """Return the covariance of the camera with the board once more, in pose G (..., 4, 4)."""
+    found, poses = known().found, np.reshape(G, (-1, 4, 4))
+    data = Correspondences.in_unit_frame(
+        _BOARD.points, np.zeros((len(poses), len(_BOARD.points), 2))
+    )
     problem = Problem.at(found.camera, found.names, data)
     S, _ = eliminated_by_view(
-        problem, problem.state(found.camera, data.pose_in_scaled_units(G[None]))
+        problem, problem.state(found.camera, data.pose_in_scaled_units(poses))
     )
-    return np.linalg.inv(np.linalg.inv(found.covariance) + S[0] / _NOISE**2)
+    after = np.linalg.inv(np.linalg.inv(found.covariance) + S / _NOISE**2)
+    return np.asarray(after.reshape(*G.shape[:-2], *after.shape[1:]))
+
+
+@lru_cache(maxsize=4)
+def left_of_k2(u: float, v: float) -> Array:
+    """Return what is left of the standard deviation of k2 at each tilt of the board there."""
+    after = with_one_more(np.array([held(u, v, tilt) for tilt in _TILTS]))
+    return np.asarray(np.sqrt(after[:, -1, -1] / known().found.covariance[-1, -1]))
+
+
+def faces_its_ray(u: float, v: float) -> float:
+    """Return the tilt at which the board there is square to its line of sight, in degrees."""
+    return float(np.degrees(np.arccos(known().found.camera.ray([u, v])[2])))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
@@ -117,15 +137,13 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.mark([values["u"], values["v"]], "estimated", 9)
     panel.grip("board", "the board of the next picture", [values["u"], values["v"]], 20)
     left = np.sqrt(np.diag(after) / np.diag(of.found.covariance))
-    bars = _bars(paper, left)
-    return Drawing(paper.join((panel, bars)), _sentence(left, before, std))
+    column = [_bars(paper, left), _curve(paper, values, float(left[5]))]
+    return Drawing(paper.join((panel, column)), _sentence(left, before, std))
 
 
 def _bars(paper: Paper, left: Array) -> Panel:
     """Draw which part of each standard deviation is left."""
-    panel = paper.panel(
-        (360, 378), (-0.22, 1.2), (-0.7, 5.7), "what is left of each standard deviation"
-    )
+    panel = paper.panel(_BARS, (-0.22, 1.2), (-0.7, 6.1), "what is left of each standard deviation")
     panel.ticks(x=(0, 0.5, 1))
     for i, (label, part) in enumerate(zip(_LABELS, left, strict=True)):
         box = np.array([[0, i - 0.15], [1, i - 0.15], [1, i + 0.15], [0, i + 0.15]])
@@ -133,6 +151,21 @@ def _bars(paper: Paper, left: Array) -> Panel:
         panel.polygons((box * [part, 1])[None], CAMERA)
         panel.text([-0.04, i], label, IDEAL, anchor="rm", size=13)
         panel.text([1.04, i], f"{part:.2f}", IDEAL, size=13)
+    return panel
+
+
+def _curve(paper: Paper, values: Values, left: float) -> Panel:
+    """Draw what is left of that of k2 against the tilt, at the same place of the picture."""
+    u, v, tilt = values["u"], values["v"], values["tilt"]
+    title = "what is left for k₂, against the tilt of the outer edge (°)"
+    panel = paper.panel(_CURVE, (-56, 52), (1.12, -0.2), title)
+    panel.ticks(x=(-45, -30, -15, 0, 15, 30, 45), y=(0, 0.5, 1))
+    square = faces_its_ray(u, v)
+    panel.line([[square, 0], [square, 1.12]], LENS, 1, dash=4)
+    panel.text([square - 2, 0.12], "faces its ray", LENS, anchor="rm", size=12)
+    panel.line(np.column_stack([_TILTS, left_of_k2(u, v)]), CAMERA, 2)
+    panel.mark([tilt, left], "estimated", 8)
+    panel.grip("left", "the tilt of the board's outer edge", [tilt, left], 5)
     return panel
 
 
