@@ -2761,10 +2761,9 @@ def test_shrunken_rings_are_those_of_the_library_blurred_or_not():
     assert far[:2] == [0.99, 0.01]  # rings: once around, from one new pixel to the next
 
 
-def test_the_epipolar_plane_turns_about_the_base_line_and_cuts_the_second_picture_in_its_line():
+def test_the_epipolar_plane_cuts_the_second_picture_in_its_line():
     first, second = plane.cameras()
     epipole, shown = second.project(first.centre), MODELS["plane"].drawing
-    turns = []
     for u, v in ((190, 150), (120, 55), (260, 200)):
         line = plane.epipolar_line(u, v) / np.linalg.norm(plane.epipolar_line(u, v)[:2])
         assert abs(line @ [*epipole, 1]) < 1e-6
@@ -2775,19 +2774,9 @@ def test_the_epipolar_plane_turns_about_the_base_line_and_cuts_the_second_pictur
         said = numbers(shown(u=u, v=v, depth=3500).sentence)
         partner = second.project(plane.on_the_ray(u, v, 3500))
         assert np.allclose(said[1:3], partner, atol=0.51)
-        turns.append(said[-1])
         u2, v2 = partner * 272 / 320
         below = shown(u=u, v=v, depth=3500).picture[TITLE + 232 :, MARGIN : MARGIN + 272]
         assert count(below[round(v2) - 6 :][:12, round(u2) - 6 :][:, :12], ESTIMATED) > 10
-    # Downwards in the picture is downwards in the room: the plane's dip is that of the ray.
-    one, two = first.centre, second.centre
-    for dip, (u, v) in zip(turns, ((190, 150), (120, 55), (260, 200)), strict=True):
-        normal = np.cross(two - one, plane.on_the_ray(u, v, 1000.0) - one)
-        along = (two - one) / np.linalg.norm(two - one)
-        level = np.cross(two - one, np.cross(along, [0, 1, 0]))
-        cosine = normal @ level / np.linalg.norm(normal) / np.linalg.norm(level)
-        assert abs(dip) == pytest.approx(np.degrees(np.arccos(min(abs(cosine), 1))), abs=0.6)
-    assert turns[1] > 0 > turns[0] > turns[2]  # up, down, farther down
 
 
 def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_right():

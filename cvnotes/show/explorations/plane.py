@@ -100,21 +100,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     at = "beside the second picture"
     if ((partner > 0) & (partner < _SIZE)).all():
         at = f"at ({partner[0]:.0f}, {partner[1]:.0f}) px of the second picture"
-    said = (
-        f"{depth / 1000:.2f} m away the point is seen {at}. The plane has turned by "
-        f"{turned(point):.0f}° about the base line."
-    )
+    said = f"{depth / 1000:.2f} m away the point is seen {at}."
     return Drawing(paper.join((pictures, outside)), said)
-
-
-def turned(point: Array) -> float:
-    """Return by how many degrees the plane of both centres and a point leaves the level."""
-    one, two = (camera.centre for camera in cameras())
-    along = (two - one) / np.linalg.norm(two - one)
-    across = point - one - (point - one) @ along * along
-    level = np.cross(along, [0.0, 1, 0])
-    level /= np.linalg.norm(level)
-    return float(np.degrees(np.arctan2(-across @ np.cross(level, along), across @ level)))
 
 
 def _draw_outside(panel: Panel, m: Array, point: Array, line: Array) -> None:
@@ -134,8 +121,17 @@ def _draw_outside(panel: Panel, m: Array, point: Array, line: Array) -> None:
     for centre, name, side in ((one, "first", -10), (two, "second", 10)):
         panel.mark(seen(centre), "lens", 5)
         panel.text(seen(centre) + [side, 14], name, CAMERA, anchor="rm" if side < 0 else "lm")
-    middle = seen((one + two) / 2)
-    panel.text(middle + [0, 16], "base line", CAMERA, anchor="mm")
+    panel.text(seen((one + two) / 2) + [0, 16], "base line", CAMERA, anchor="mm")
+    d = (point - one) / np.linalg.norm(point - one)
+    n = np.cross(one - two, d)  # T leads from the second centre to the first
+    for start, way, name, ink, beside in (
+        (two, 0.45 * (one - two), "T", CAMERA, (0, -12)),
+        (one, 700 * d, "d", IDEAL, (-14, 0)),
+        ((one + two + point) / 3, 350 * n / np.linalg.norm(n), "n", ESTIMATED, (12, -4)),
+    ):
+        ends = seen(np.array([start, start + way]))
+        panel.arrows(ends[:1], np.diff(ends, axis=0), ink, 2.5)
+        panel.text(ends[1] + beside, name, ink, anchor="mm", size=14)
     panel.mark(seen(point), "estimated", 8)
     panel.grip("depth", "the point on its ray", seen(point), 6)
 
