@@ -1503,6 +1503,24 @@ def test_newton_and_division_need_as_many_rounds_as_they_are_said_to():
         assert numbers(drawing.sentence)[-2:] == rounds
 
 
+@pytest.mark.parametrize("r", [0.6, 0.86])
+def test_the_first_ray_of_dividing_is_drawn_small_from_the_origin_on(r, monkeypatch):
+    from cvnotes.show.explorations.newton import _HIGHEST, _SMALL
+
+    drawn, draw = [], Panel.line
+    monkeypatch.setattr(
+        Panel, "line", lambda *how, **so: (drawn.append(np.array(how[1])), draw(*how, **so))
+    )
+    MODELS["newton"].drawing(r=r)
+    small = [(xy - _SMALL[0]) / _SMALL[1] * [1, _HIGHEST] for xy in drawn]
+    (ray,) = [xy for xy in small if np.allclose(xy[0], 0) and len(xy) == 2]
+    level = r - 0.4 * r**3
+    assert np.allclose(ray[1], [level / (1 - 0.4 * level**2), level])
+    assert any(
+        len(xy) == 61 and np.allclose(xy[:, 1], xy[:, 0] - 0.4 * xy[:, 0] ** 3) for xy in small
+    )
+
+
 @pytest.mark.parametrize(("r", "ink"), [(0.3, LENS), (0.68, ESTIMATED), (0.82, ESTIMATED)])
 def test_a_disc_is_folded_at_the_rim_over_what_the_lens_shows(r, ink):
     model = MODELS["rim"]
@@ -1548,6 +1566,23 @@ def test_beside_p_a_decentred_lens_moves_points_by_r2_p_and_along_p_three_times_
     assert np.allclose(starts[2] @ [p[1], -p[0]], 0)
     assert np.allclose(ways, 3 * r2[:, None] * p * [[1], [1], [3]])  # all are drawn 3 times as far
     assert {"r²p", "3r²p"} <= set(written)
+
+
+def test_glass_aside_bends_the_ray_on_the_axis_and_a_sensor_askew_cuts_rays_elsewhere():
+    from cvnotes.show.explorations.decentred import _AXIS, axis_ray, tilted, tilted_rays
+
+    assert np.allclose(axis_ray(0)[:, 1], _AXIS)
+    met = axis_ray(0.05)
+    assert np.allclose(met[:2, 1], _AXIS)
+    # a thin lens sends a parallel ray through its focus, which is on its own axis
+    own = _AXIS + 300 * 0.05
+    assert np.isclose(met[1, 1] + (met[2, 1] - met[1, 1]) * 110 / (met[2, 0] - met[1, 0]), own)
+    start, ends = tilted_rays(0.05).transpose(1, 0, 2)
+    slopes = (ends - start)[:, 1] / (ends - start)[:, 0]
+    flat = tilted_rays(0)[0, 1, 0] - start[0, 0]
+    seen = tilted(np.array([0, 0.15]), np.column_stack([0 * slopes, slopes]))
+    assert np.allclose((ends - start)[:, 1] / flat, seen[:, 1])
+    assert np.allclose(np.diff(ends[:, 0]) / np.diff(ends[:, 1]), 0.3)  # the sensor is straight
 
 
 @pytest.mark.parametrize(("p1", "p2"), [(0.05, 0), (-0.03, 0.04), (0.02, 0.01)])
@@ -2635,6 +2670,15 @@ def test_below_the_panels_stand_the_matrices_that_carry_the_corner(monkeypatch):
     columns.clear()
     MODELS["formation"].drawing(k1=0.1, **values)  # through a lens it is no product
     assert columns == []
+
+
+def test_a_question_mark_stands_where_an_ideal_lens_shows_the_point_of_the_guess(monkeypatch):
+    put, write = {}, Panel.text
+    monkeypatch.setattr(
+        Panel, "text", lambda *how, **so: (put.update({how[2]: how[1]}), write(*how, **so))
+    )
+    MODELS["lens"].drawing(k1=-0.2)
+    assert np.allclose(put["?"], [0.8, 0], atol=0.04)
 
 
 def test_the_end_of_the_edge_goes_along_its_ray_and_the_arrows_to_where_the_lens_shows(monkeypatch):

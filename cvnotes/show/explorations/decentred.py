@@ -9,7 +9,7 @@ from cvnotes.camera import Lens
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import IDEAL, LENS
+from cvnotes.show.style import CAMERA, IDEAL, LENS
 
 _SIZE, _SHOWN = (372, 400), ((-0.84, 0.84), (-0.903, 0.903))
 _EXTENT, _TIMES = 0.5, 3  # of the grid; each point is moved so many times as far
@@ -17,6 +17,10 @@ _BESIDE = 0.63  # how far from the centre three points are pointed out, outside 
 _RULER = 0.35, 0.5  # how far along p it lies, and how far it reaches to both sides
 _ARROW = 4  # how much longer than p its arrow is
 _F = 800  # px, in which a bow is told
+_SIDE, _PLATE = (372, 96), "#A6A6A6"  # of the panels that show lens and sensor from the side: px
+_FIRST, _SECOND, _SENSOR, _AXIS = 110, 180, 330, 48  # px: where two pieces of glass stand
+_ASIDE, _FOCAL = 300, 110  # px: how far the second is aside for a p of 1; its focal length
+_STEEP = 0.14  # slope of the rays to a tilted sensor
 
 
 def decentred_model() -> Model:
@@ -30,7 +34,8 @@ def decentred_model() -> Model:
     about = (
         "A grid through a lens with tangential terms alone, each point moved three times as far, "
         "with the direction p in black. Beside it the same grid on a tilted sensor. A ruler shows "
-        "by how much a line across p bows."
+        "by how much a line across p bows. Below, both from the side: two pieces "
+        "of glass, one aside, and a sensor askew."
     )
 
     def pulled(_: Values, at: Array) -> Values:
@@ -67,11 +72,66 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     lens.polygons([tip + 6 * lens.pixel * circle(25)], IDEAL)
     lens.text(tip + 18 * lens.pixel * _along(p)[1], "p", IDEAL, anchor="mm", size=17)
     lens.grip("p", "the direction of the tangential terms", tip, 1)
+    size = float(np.hypot(*p))
+    below = _glass(paper, size), _askew(paper, size)
     words = (
         f"p₁ = {values['p1']:.3f}, p₂ = {values['p2']:.3f}: at a focal length of {_F} px the line "
         f"across p bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the tilted sensor."
     )
-    return Drawing(paper.join((lens, sensor)), words)
+    return Drawing(paper.join((lens, sensor), below), words)
+
+
+def _glass(paper: Paper, p: float) -> Panel:
+    """Draw two pieces of glass from the side, and the ray on the axis of the first."""
+    panel = paper.panel(
+        _SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side: two pieces of glass, one aside"
+    )
+    _piece(panel, np.array([_FIRST, _AXIS]))
+    _piece(panel, np.array([_SECOND, _AXIS + _ASIDE * p]))
+    panel.line([[_SENSOR, 6], [_SENSOR, _SIDE[1] - 6]], _PLATE, 4)
+    panel.line(axis_ray(p), LENS, 2.2)
+    panel.mark(axis_ray(p)[-1], "lens", 5)
+    return panel
+
+
+def axis_ray(p: float) -> Array:
+    """Return the way (3, 2) of the ray on the first one's axis: only the second bends it."""
+    run = _SENSOR - _SECOND
+    return np.array([[0, _AXIS], [_SECOND, _AXIS], [_SENSOR, _AXIS + run * _ASIDE * p / _FOCAL]])
+
+
+def _askew(paper: Paper, p: float) -> Panel:
+    """Draw a piece of glass from the side, rays through its middle, and a tilted sensor."""
+    panel = paper.panel(_SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side: the sensor askew")
+    _piece(panel, np.array([_FIRST, _AXIS]))
+    panel.line([[_SENSOR, 6], [_SENSOR, _SIDE[1] - 6]], "#999999", 1, dash=4)
+    for ends in tilted_rays(p):
+        panel.line(
+            [[0, _AXIS - _FIRST * (ends[1, 1] - _AXIS) / (ends[1, 0] - _FIRST)], *ends], LENS, 1.8
+        )
+    met = tilted_rays(p)[:, 1]
+    panel.line(met[0] + np.outer([-0.15, 1.15], met[-1] - met[0]), _PLATE, 4)
+    panel.mark(met, "lens", 5)
+    return panel
+
+
+def tilted_rays(p: float) -> Array:
+    """Return the ways (3, 2, 2) from the middle of the glass to a sensor, tilted 3 times as far."""
+    slopes = np.array([-_STEEP, 0, _STEEP])
+    far = (_SENSOR - _FIRST) / (1 - 2 * _TIMES * p * slopes)
+    met = np.column_stack([_FIRST + far, _AXIS + slopes * far])
+    return np.stack([np.broadcast_to([_FIRST, _AXIS], met.shape), met], axis=1)
+
+
+def _piece(panel: Panel, at: Array) -> None:
+    """Draw a piece of glass from the side, and the axis of the first."""
+    panel.line([[0, _AXIS], [_SIDE[0], _AXIS]], "#999999", 1, dash=4)
+    turn = np.linspace(-1, 1, 31)
+    side = np.column_stack([9 * (1 - turn**2), 22 * turn])
+    face = np.concatenate([at + side, (at + side * [-1, 1])[::-1]])
+    panel.polygons([face], "#DDEFFA")
+    panel.line(face[[*range(len(face)), 0]], CAMERA, 1.5)
+    panel.mark(at, "ideal", 3)
 
 
 def _point_out(panel: Panel, p: Array) -> None:

@@ -20,6 +20,7 @@ _EDGE = np.array([[x, 1600, 3500] for x in np.linspace(-2500, 2500, 51)])  # of 
 _END = _EDGE[-1, :2] / 3500  # where it is taken hold of, as an ideal lens shows it
 _ARROWS = np.array([[0.8, 0], [0.78, 0.3], [0.78, -0.3], [0.72, -0.52], [0.4, -0.5], [0.4, 0.56]])
 _ARROWS = np.concatenate([_ARROWS, _ARROWS * [-1, 1], [[-0.714, 0.457], [0, 0.7], [0, -0.7]]])
+_GUESSED = _ARROWS[0]  # how far it is moved is what the chapter lets one guess
 _HELD = 0.6  # where the curve is taken hold of
 _RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
@@ -80,6 +81,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
         grid.line(corners, colour, width)
     grid.text(corners[3] + [7 * grid.pixel, -6 * grid.pixel], "picture", CAMERA, anchor="ld")
     moved = _draw_arrows(grid, lens)
+    grid.text(_GUESSED + [7 * grid.pixel, 0], "?", IDEAL, anchor="lm", size=18)
     end = polynomial(lens, _END)
     grid.mark(end, "lens", 8)
     grid.grip("edge", "the end of the edge of the tiles", end, 2)

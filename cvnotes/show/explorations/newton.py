@@ -14,6 +14,8 @@ _FOLD = float(np.sqrt(-1 / (3 * _K1)))
 _ROUNDS = 20  # rounds of which the errors are drawn
 _LEAST, _MOST = 1e-5, 300.0  # px: the errors that are drawn
 _ENOUGH = 0.1  # px
+_ACROSS, _UPWARDS = (0.455, 0.96), (0.365, 0.632)  # what is shown of the curve: r and r'
+_SMALL, _HIGHEST = ((0.665, 0.387), (0.235, 0.11)), 0.66  # where all of it is drawn small
 
 Step = Callable[[float, float], float]
 
@@ -64,7 +66,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     r, rounds = values["r"], int(values["rounds"])
     level = float(seen(r))
     title = f"r' over r, for k₁ = {_K1}: pull the plus".replace("-", "−")
-    curve = paper.panel((540, 360), (0.455, 0.96), (0.632, 0.365), title)
+    curve = paper.panel((540, 360), _ACROSS, _UPWARDS[::-1], title)
     curve.ticks(y=(0.4, 0.45, 0.5, 0.55, 0.6))
     for number in (0.5, 0.6, 0.7, 0.8):
         curve.text([number, 0.372], f"{number:g}", anchor="md", size=11)
@@ -72,7 +74,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     curve.line(np.column_stack([along, seen(along)]), LENS, 2.2)
     curve.line(np.array([[0, level], [1, level]]), IDEAL, 1)
     curve.line([[_FOLD, 0], [_FOLD, 1]], MUTED, 1, dash=4)
-    curve.text([_FOLD - 0.005, 0.4], "the fold", MUTED, anchor="rm")
+    curve.text([_FOLD + 0.005, 0.4], "fold", MUTED, anchor="lm", size=12)
     errors = paper.panel(
         (300, 360), (-2.6, _ROUNDS + 0.8), (np.log10(_MOST), np.log10(_LEAST)),
         "error (px) after each round",
@@ -86,7 +88,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     first = float(seen(level))
     curve.line(np.array([[0, 0], [level, first]]), MUTED, 1, dash=3)
     foot = np.array([level, first])
-    curve.text([0.51, 0.413], "ray from the origin", MUTED, size=12)
+    curve.text([0.51, 0.413], "ray from (0, 0)", MUTED, size=12)
+    _draw_whole(curve, level)
     curve.text(foot + [0.03, 0.004], "the tangent", ESTIMATED, size=12)
     counts = []
     for step, name, colour, side in (
@@ -106,6 +109,30 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     curve.mark([r, level], "ideal", 8)
     curve.grip("level", "the level r', by the ideal radius that it belongs to", [r, level], 4)
     return Drawing(paper.join((curve, errors)), _sentence(r, level, counts))
+
+
+def _draw_whole(panel: Panel, level: float) -> None:
+    """Draw the same from (0, 0) on, small: the first ray of dividing, and what the panel shows."""
+    box = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]])
+
+    def small(at: Array) -> Array:
+        return np.asarray(_SMALL[0] + at / [1, _HIGHEST] * np.array(_SMALL[1]))
+
+    panel.polygons([small(box * [1, _HIGHEST])], "#FFFFFF")
+    panel.line(small(box * [1, _HIGHEST]), MUTED, 0.8)
+    frame = np.transpose([_ACROSS, _UPWARDS])
+    frame = np.minimum(frame[0] + box * (frame[1] - frame[0]), [1, _HIGHEST])
+    panel.polygons([small(frame)], "#EEEEEE")
+    along = np.linspace(0, 1, 61)
+    panel.line(small(np.column_stack([along, seen(along)])), LENS, 1.8)
+    panel.line(small(np.array([[0, level], [1, level]])), IDEAL, 1)
+    reached = along_the_ray(level, level)
+    panel.line(small(np.array([[0, 0], [reached, level]])), MUTED, 1.8)
+    panel.line(small(np.array([[level, level], [level, float(seen(level))]])), MUTED, 1.8)
+    panel.text(small(np.array([0.1, 0.03])), "(0, 0)", MUTED, anchor="ld", size=11)
+    panel.text(
+        small(np.array([0.98, 0.03])), "grey: the large picture", MUTED, anchor="rd", size=11
+    )
 
 
 def _way(panel: Panel, way: Array, level: float, colour: str, width: float, side: int) -> None:

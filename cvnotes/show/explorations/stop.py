@@ -167,7 +167,7 @@ def _draw_stop(panel: Panel, stop: float) -> None:
 
 def _factor(paper: Paper, stop: float, slopes: Array) -> Panel:
     """Draw by which factor the rays arrive farther out than meant, and polynomials through it."""
-    title = "L: observed ÷ ideal radius, over r"
+    title = "L over r (negative: on the other side)"
     panel = paper.panel(_FACTOR, (-_FAR, _FAR), (_MOST, _LEAST), title)
     panel.ticks(x=(-0.5, -0.25, 0, 0.25, 0.5), y=(0.95, 1, 1.05, 1.1))
     panel.line([[-_FAR, 1], [_FAR, 1]], IDEAL, 1, dash=4)
