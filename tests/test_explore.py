@@ -2161,9 +2161,18 @@ def test_about_one_axis_a_dart_turns_evenly_and_by_three_angles_farther_beyond_t
         speed = np.degrees(ways.speeds(angles))
         assert np.allclose(100 * np.array(turned), (speed[1:] + speed[:-1]) / 2, atol=0.1)
         drawing = MODELS["ways"].drawing(**values)
-        one, *three, way = numbers(drawing.sentence)
+        one, *three, way, x, y, z, round_about = numbers(drawing.sentence)
         assert abs(one - angle_of(R)) < 0.51 > abs(way - sum(turned))
         assert np.abs(three - np.degrees(angles)).max() < 0.51
+        # The other triple is of the same attitude, its middle angle beyond 90°.
+        others = ways.other_triple(angles)
+        assert np.abs([x, y, z] - np.degrees(others)).max() < 0.51
+        assert np.allclose(rotation_from_angles(*others), R, atol=1e-9)
+        assert abs(others[1]) >= np.pi / 2 >= abs(angles[1])
+        assert np.abs(others).max() <= np.pi
+        by_others = [rotation_from_angles(*(s * others)) for s in np.linspace(0, 1, 101)]
+        turned = [angle_of(a.T @ b) for a, b in itertools.pairwise(by_others)]
+        assert abs(round_about - sum(turned)) < 0.6
         longer[values["up"], values["aside"]] = way / one
     assert longer[40, 30] < 1.03 < 1.45 < longer[105, -6] < 1.55 < longer[95, -3] < 1.6
     # The target is where the shortest way leads; its trail is drawn through all tips.
@@ -2178,6 +2187,15 @@ def test_about_one_axis_a_dart_turns_evenly_and_by_three_angles_farther_beyond_t
             at = ways._SHEET @ (way(s) - way(1))[:, 0] / grip.unit + grip.place
             u, v = np.rint(at).astype(int)
             assert count(picture[v - 2 : v + 3, u - 2 : u + 3], ink) > 5
+    others = ways.other_triple(angles)  # dashed: about half of its tips, those that are in front
+    tips = np.array([rotation_from_angles(*(s * others))[:, 0] for s in np.linspace(0.1, 0.9, 81)])
+    front = tips[tips @ ways._TOWARDS > 0.02]
+    at = (front - rotation_from_angles(*angles)[:, 0]) @ ways._SHEET.T / grip.unit + grip.place
+    dashes = [
+        count(picture[v - 1 : v + 2, u - 1 : u + 2], LENS) > 1 for u, v in np.rint(at).astype(int)
+    ]
+    assert len(dashes) > 20
+    assert 0.3 < np.mean(dashes) < 0.8
     # The axis is an arrow from the middle of the sphere, square to start and target.
     axis = np.cross([1, 0, 0], rotation_from_angles(*angles)[:, 0])
     for part, most in ((-0.5, 0), (0.5, 25), (1.1, 25)):
@@ -2717,7 +2735,7 @@ def test_how_far_the_lens_moves_the_end_of_the_edge_is_told_in_pixels(k1, word):
 
 def test_on_the_circle_through_the_pole_the_way_is_as_long_as_beside_it():
     lengths = [
-        numbers(MODELS["ways"].drawing(up=105, aside=aside).sentence)[-1] for aside in (-1, 0, 1)
+        numbers(MODELS["ways"].drawing(up=105, aside=aside).sentence)[4] for aside in (-1, 0, 1)
     ]
     assert 3 < lengths[1] - lengths[0] < 5
     assert lengths[0] == lengths[2]

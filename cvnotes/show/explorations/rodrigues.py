@@ -96,11 +96,12 @@ def _draw_above(panel: Panel, turned: Array, theta: float) -> None:
     panel.arrows([0, 0], [x, y], ESTIMATED, 3)
     panel.line([[0, 0], [x, 0]], IDEAL, 4.5)  # the two steps that lead to the tip
     panel.line([[x, 0], [x, y]], LENS, 4.5)
-    panel.text([x / 2, -0.3 if y >= 0 else 0.3], "cos θ p", IDEAL, anchor="mm", size=14)
+    if abs(x) > 0.1:  # a step of no length has no name
+        panel.text([x / 2, -0.3 if y >= 0 else 0.3], "cos θ p", IDEAL, anchor="mm", size=14)
     side = 1 if x >= 0 else -1
-    panel.text(
-        [x + 0.2 * side, y / 2], "sin θ (n × w)", LENS, anchor="lm" if side > 0 else "rm", size=14
-    )
+    if abs(y) > 0.1:
+        beside = [x + 0.2 * side, y / 2]
+        panel.text(beside, "sin θ (n × w)", LENS, anchor="lm" if side > 0 else "rm", size=14)
     panel.text(_arc(1, theta / 2)[-1], "θ", ESTIMATED, anchor="mm", size=15)
     panel.mark([x, y], "estimated", 7)
     panel.grip("tip from above", "the tip, to be turned about n", [x, y], 5)

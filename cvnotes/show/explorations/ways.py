@@ -27,7 +27,7 @@ def ways_model() -> Model:
     )
     about = (
         "A dart in a sphere, carried to a target about one axis, orange, and by its three angles, "
-        "blue: what their tips draw on the sphere."
+        "blue: what their tips draw on the sphere. Dashed: by the target's other three angles."
     )
 
     def pulled(values: Values, at: Array) -> Values:
@@ -57,6 +57,13 @@ def ways(values: Values) -> tuple[Array, Array]:
     return omega, angles
 
 
+def other_triple(angles: Array) -> Array:
+    """Return the other angles x, y and z (3,) of the same attitude, from -180° to 180°."""
+    x, y, z = angles
+    other = np.array([x + np.pi, np.pi - y, z + np.pi])
+    return np.asarray(np.pi - (np.pi - other) % (2 * np.pi))
+
+
 def speeds(angles: Array) -> Array:
     """Return how fast the dart turns (101,) while its three angles grow evenly.
 
@@ -72,19 +79,34 @@ def _tip(values: Values) -> Array:
     return np.array([level * np.cos(up), np.sin(aside), level * np.sin(up)])
 
 
+def _tips(angles: Array) -> Array:
+    """Return the tips (101, 3) of a dart whose three angles grow evenly."""
+    _, up, turn = np.outer(angles, _T)
+    return np.stack([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), -np.sin(up)], 1)
+
+
 def _draw(paper: Paper, values: Values) -> Drawing:
     omega, angles = ways(values)
-    speed = np.degrees(speeds(angles))
+    others = other_triple(angles)
+    length, round_about = (
+        np.trapezoid(np.degrees(speeds(several)), _T) for several in (angles, others)
+    )
     whole, t = float(np.degrees(np.linalg.norm(omega))), values["t"]
     panel = paper.panel((520, 430), (-1.48, 1.48), (-1.224, 1.224), "two ways to one attitude")
     by_axis = rotation_from_vector(np.outer(_T, omega))
-    up, turn = np.outer(angles[1:], _T)
-    by_angles = np.stack([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), -np.sin(up)], 1)
+    by_angles, by_others = _tips(angles), _tips(others)
     _draw_sphere(panel)
     tips = by_axis[:, :, 0] @ _SHEET.T
     panel.polygons([[[0, 0], *tips]], mixed("#FFFFFF", ESTIMATED, 0.16))
     if whole:
         _draw_omega(panel, omega, by_axis)
+    dashes = np.where((np.arange(101) % 6 < 4)[:, None], by_others, np.nan)
+    _draw_front(panel, dashes, LENS, 2)
+    panel.line(
+        np.where(dashes @ _TOWARDS[:, None] < 0, dashes, np.nan) @ _SHEET.T,
+        mixed("#FFFFFF", LENS, 0.4),
+        1,
+    )
     trails = (by_angles, LENS), (by_axis[:, :, 0], ESTIMATED)
     for trail, colour in trails:
         panel.line(trail @ _SHEET.T, mixed("#FFFFFF", colour, 0.4), 1.2)
@@ -102,12 +124,16 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     ):
         panel.mark([-1.38, row], meaning, 5)
         panel.text([-1.3, row], words, colour, anchor="lm", size=14)
+    panel.line([[0.42, 1.1], [0.62, 1.1]], LENS, 1.5, dash=3)
+    panel.text([0.7, 1.1], "by the other triple", LENS, anchor="lm", size=14)
     x, y, z = np.degrees(angles).round() + 0.0
+    x_2, y_2, z_2 = np.degrees(others).round() + 0.0
     return Drawing(
         paper.join((panel,)),
         f"The way about one axis is {whole:.0f}° long. That by three angles, {x:.0f}° about x, "
-        f"{y:.0f}° about y and {z:.0f}° about z, is {np.trapezoid(speed, _T):.0f}° long, roll "
-        "included.",
+        f"{y:.0f}° about y and {z:.0f}° about z, is {length:.0f}° long, roll "
+        f"included; by the other triple, {x_2:.0f}°, {y_2:.0f}° and {z_2:.0f}°, it is "
+        f"{round_about:.0f}°.",
     )
 
 
