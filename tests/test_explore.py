@@ -90,6 +90,8 @@ from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
 from cvnotes.show.explorations.disparity import columns, triangulated
+from cvnotes.show.explorations.door import believed as believed_from
+from cvnotes.show.explorations.door import place as hung_at
 from cvnotes.show.explorations.epipolar import cameras, seen_by_the_second
 from cvnotes.show.explorations.finding import Finding, alike, rms
 from cvnotes.show.explorations.fold import (
@@ -105,7 +107,6 @@ from cvnotes.show.explorations.lens import polynomial, seen_radius
 from cvnotes.show.explorations.lettering import LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
 from cvnotes.show.explorations.moved import between, stands
-from cvnotes.show.explorations.origin import believed as believed_from
 from cvnotes.show.explorations.origin import corners as corners_of_origin
 from cvnotes.show.explorations.origin import plain
 from cvnotes.show.explorations.origin import rms as rms_of_origin
@@ -3769,7 +3770,8 @@ def test_a_cameras_triangle_points_to_where_it_looks(looks):
 PULLED = [(name, grip) for name in explorations.NAMES for grip in MODELS[name].drags]
 
 
-FREE_TO_MOVE = {  # where the hand may pull to either side
+FREE_TO_MOVE = {
+    "door": {"out": 100},  # where the hand may pull to either side
     "projection": {"heading": 5},
     "meet": {"b2": 0.4},
     "finding": {"step": 1.5},
@@ -3850,6 +3852,7 @@ ON_A_CURVE = {  # its nearest place
     ("moved", "camera"),
     ("moved", "board"),
     ("hinge", "board"),
+    ("door", "hinge"),
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
 FROM_ONE_TO_ONE = {("clouds", "picture"): 4}  # from picture to picture; the last
@@ -3951,7 +3954,7 @@ def test_on_a_narrow_page_panels_come_below_each_other(name):
     assert narrow.sentence == wide.sentence
     inked = [np.abs(drawing.picture.astype(int) - 255).sum() for drawing in (wide, narrow)]
     # What lies beside the photograph of the rod has no room on a telephone; e is told as a number.
-    smaller = name in ("rod", "protractor", "origin") and inked[0] > inked[1]  # the others: smaller
+    smaller = name in ("rod", "protractor", "door") and inked[0] > inked[1]  # the others: smaller
     assert inked[0] == inked[1] or smaller
     for grip in narrow.grips:
         assert 0 <= grip.place[0] <= narrow.picture.shape[1]
@@ -4386,13 +4389,31 @@ def test_the_board_that_the_plain_svd_believes_in_is_seen_by_the_same_pixels_but
         assert np.allclose(X @ to_space, place, atol=1e-6)
         assert to_space[2, 2] == pytest.approx(origin[2], rel=1e-9)
     assert blue[:, 2].mean() < true[:, 2].mean() + 10
-    # In the view from the side, 4120 mm are 754 px wide.
-    side = MODELS["origin"].picture(x=at[0], y=at[1])[2 * TITLE + 320 + 6 :, MARGIN:]
-    for place, ink in ((true, IDEAL), (blue, LENS)):
-        u, v = np.rint([(place[20, 2] + 120) * 754 / 4120, 66 + (place[20, 1] + 232) * 754 / 4120])
-        u, v = int(u), int(v)
-        near = side[v - 2 : v + 3, u - 2 : u + 3]
-        assert count(near, ink, 90) + count(near, WORLD, 90) + count(near, LENS, 90) > 2
+
+
+@pytest.mark.parametrize("out", [540, 0, -400])
+def test_the_door_is_drawn_where_the_plain_svd_has_the_board_and_hangs_on_the_origin(out):
+    origin, true, blue = believed_from(hung_at(out))
+    drawing = MODELS["door"].drawing(out=out)
+    told = numbers(drawing.sentence)[-2:]
+    assert told == pytest.approx(
+        [true[:, 2].mean() / origin[2], blue[:, 2].mean() / origin[2]], abs=5e-3
+    )
+    scale = 754 / 4130  # px for each mm
+    side = drawing.picture[TITLE:, MARGIN:]
+
+    def near(place):
+        u, v = np.rint(scale * (place[[2, 1]] - [-130, -200]) + [0, 105]).astype(int)
+        return side[v - 2 : v + 3, u - 2 : u + 3]
+
+    for place, inks in ((true, (IDEAL, LENS)), (blue, (LENS,))):
+        for k in (0, 20, 53):
+            assert sum(count(near(place[k]), ink, 140) for ink in inks) > 1
+    assert count(near(origin), WORLD, 9) > 9
+    (grip,) = drawing.grips
+    assert np.allclose(grip.at, origin[[2, 1]])
+    assert MODELS["door"].dragged("hinge", tuple(grip.at), out=100) == {"out": out}
+    assert (abs(told[0] - told[1]) < 0.005) == (out == 0)  # hung in its middle it does not turn
 
 
 def test_the_plane_is_darker_where_the_plain_svd_is_farther_off_and_palest_at_the_centroid():

@@ -50,6 +50,8 @@ _MISTAKES = mistakes_in(ransac,
      ("counts.max()", "counts[0]"), ("counts.max()", "counts[-1]")),
     ("one pair for four", "A draw is right only if all four of its pairs are: how likely is that?",
      ("q**4", "q"), ("q**4", "4 * q")),
+    ("no pair twice", "True, a draw takes no pair twice; here the simpler q⁴ is asked for.",
+     ("q**4", "np.prod((counts.max() - np.arange(4)) / (len(src) - np.arange(4)))")),
     ("0.999 for 0.001", "All N draws may be wrong with probability 0.001; you allowed 0.999.",
      ("0.001", "0.999")),
     ("the part of wrong pairs", "You took the wrong pairs' part: four right ones have to meet.",
@@ -64,17 +66,18 @@ EXERCISE = Exercise(
     task="Some of the pairs src, dst (n, 2) are wrong. Each row of draws (d, 4) says which four "
     "pairs one draw has taken. Give two numbers. k: the largest number of src that one draw's map "
     "takes to within t px of their dst. N: how many random draws make it 99.9 % sure that at "
-    "least one of them has four right pairs, if k of the n pairs are right (round up).",
+    "least one of them has four right pairs, if one draw has them with the probability q⁴, "
+    "q = k/n (round up).",
     hints=(
         "For each row of draws: H = dlt(src[row], dst[row]). Count the pairs whose distance "
         "between dst and where H takes src is below t. k is the largest count.",
-        "With q = k/n one draw is right with probability q⁴, and all N are wrong with (1 − q⁴)ᴺ.",
+        "One draw is right with the probability q⁴, q = k/n, and all N are wrong with (1 − q⁴)ᴺ.",
         "(1 − q⁴)ᴺ = 0.001, so N = log 0.001 / log(1 − q⁴), rounded up by np.ceil.",
     ),
     cases=_some_wrong,
     properties=(
         Property("k pairs agree with the best of the maps.", lambda x, c: x[0] == c.right[0]),
-        Property("After N draws one of right pairs alone has been met, with 0.999."),
+        Property("By q⁴, after N draws one of right pairs alone has been met, with 0.999."),
     ),
     misconceptions=_MISTAKES,
     steps=ransac,

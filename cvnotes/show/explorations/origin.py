@@ -18,15 +18,13 @@ from cvnotes.show.explorations.boards import draw_net, draw_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle, contours
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD, mixed, rgb
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD, mixed, rgb
 
 _BOARD, _NOISE, _TIMES = course.board(), 0.5, 10  # px; shifts are drawn so many times
 _SIZE = (374, 320)
 _SEEN = (190.0, 269.0), (150.2, 217.8)  # px, u and v
 _PLANE = (-500.0, 700.0), (-450.9, 575.9)  # mm around the board's middle
 _LEVELS = (0.05, 0.1, 0.2, 0.3)  # px
-_SIDE = 754, 132  # px; on a telephone as wide as the others
-_AWAY, _BELOW = (-120.0, 4000.0), 232.0  # mm: what the side view shows; its middle is so far down
 _CELLS = 28, 24  # of the coarse map, along X and Y
 _PALE = "#E4E4E4"
 
@@ -40,8 +38,7 @@ def origin_model() -> Model:
     about = (
         "A board that is far away, and two nets through its corners, their shifts enlarged: of the "
         "plain DLT, and of the normalised one. Beside it the board's plane with the origin of its "
-        "coordinates, and lines that say how far off the plain DLT is from each origin. Below them "
-        "the camera and the board from the side, where it is and where the plain DLT believes it."
+        "coordinates, and lines that say how far off the plain DLT is from each origin."
     )
     drags = {"origin": lambda _, at: {"x": float(at[0]), "y": float(at[1])}}
     return Model("origin", about, settings, _draw, drags)
@@ -96,18 +93,6 @@ def seen_from(origins: Array) -> Array:
     return np.asarray(x)
 
 
-def believed(at: Array) -> tuple[Array, Array, Array]:
-    """Return the origin (3,), and the corners (54, 3) as they are and as the plain DLT has them.
-
-    In mm of the camera's frame; the origin has the same depth for both.
-    """
-    far = far_camera()
-    x = np.vstack([at, corners()[0]])
-    origin, *true = np.insert(x, 2, 0, axis=1) @ far.G[:3, :3].T + far.G[:3, 3]
-    rays = seen_from(at) @ np.linalg.inv(far.A).T
-    return origin, np.array(true), origin[2] * rays
-
-
 def normalised() -> Array:
     """Return where the normalised DLT puts the corners (54, 2), from whatever origin."""
     R, N1, N2 = _measured(scaled=True)
@@ -149,7 +134,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.polygons(m[:, None] + 2.6 * panel.pixel * circle(17), IDEAL)
     off = [float(rms(net)) for net in nets]
     return Drawing(
-        paper.join((panel, _plane(paper, at)), (_side(paper, at),)),
+        paper.join((panel, _plane(paper, at))),
         f"Origin at ({at[0]:.0f}, {at[1]:.0f}) mm: the plain DLT is {off[0]:.2f} px off, the "
         f"normalised one {off[1]:.2f} px.",
     )
@@ -170,25 +155,4 @@ def _plane(paper: Paper, at: Array) -> Panel:
         panel.text(at + 1.25 * way, name, WORLD, anchor="mm", size=13)
     panel.mark(at, "world", 9)
     panel.grip("origin", "the origin of the board's coordinates", at, 5)
-    return panel
-
-
-def _side(paper: Paper, at: Array) -> Panel:
-    """Draw the camera, the origin and the board from the side: as it is, and as blue has it."""
-    width, height = (_SIZE[0], 100) if paper.narrow else _SIDE
-    half = (_AWAY[1] - _AWAY[0]) * height / width / 2
-    down = -_BELOW - half, -_BELOW + half
-    panel = paper.panel((width, height), _AWAY, down, "from the side: depth ÷ depth of the origin")
-    origin, *boards = (one[..., [2, 1]] for one in believed(at))
-    for board, colour, name in zip(boards, (IDEAL, LENS), ("true", "blue"), strict=True):
-        middle = board.mean(axis=0)
-        panel.segments([[[0, 0], middle]], mixed("#FFFFFF", colour, 0.35), 0.8)
-        panel.line([origin, middle], colour, 1, dash=3)
-        draw_net(panel, board, _BOARD, colour, 1)
-        words = f"{name} {middle[0] / origin[0]:.2f}"
-        below, anchor = [middle[0], down[1] - 11 * panel.pixel], {"true": "lm", "blue": "rm"}[name]
-        panel.text(below, words, colour, anchor=anchor)  # blue is never farther away
-    panel.mark([0, 0], "camera", 9, looks=(1, 0))
-    panel.text([0, down[1] - 11 * panel.pixel], "camera", MUTED, anchor="lm")
-    panel.mark(origin, "world", 7)
     return panel
