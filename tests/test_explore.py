@@ -2805,6 +2805,22 @@ def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
         assert np.abs(seen / seen.sum() - weights).max() < 0.05
 
 
+def test_the_values_on_both_edges_between_four_pixels_are_named_as_in_the_formula(monkeypatch):
+    written, draw = {}, Panel.text
+
+    def text(self, at, words, *rest, **how):
+        written[words] = np.array(at, float)
+        draw(self, at, words, *rest, **how)
+
+    monkeypatch.setattr(Panel, "text", text)
+    for du, dv, upper, lower in ((0.35, 0.6, 70.5, 141.5), (0.8, 0.25, 84.0, 182.0)):
+        written.clear()
+        MODELS["between"].drawing(du=du, dv=dv)
+        above, below = written[f"I_a = {upper:.1f}"], written[f"I_b = {lower:.1f}"]
+        assert above[0] == below[0] == du
+        assert above[1] < 0 < 1 < below[1]
+
+
 def test_shrunken_rings_are_those_of_the_library_blurred_or_not():
     x, y = pixel_centres((240, 240)).transpose(2, 0, 1) - 119.5
     old = 127.5 + 127.5 * np.cos(0.0036 * np.pi * (x**2 + y**2))
