@@ -165,7 +165,7 @@ def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
     counts = np.arange(_FEWEST, _MOST + 1)
     for other in _OTHERS:
         curve = other * study.std_by_views[:, 0]
-        panel.line(np.log10(np.stack([counts, curve], -1)), _PALE, 1.2)
+        panel.line(np.log10(np.stack([counts, curve], -1)), _PALE, 0.8)
         panel.text(np.log10([counts[-1] * 1.09, curve[-1]]), f"σ {other:g}", CAMERA, size=10)
     std = sigma * study.std_by_views[:, 0]
     here = np.log10([n, max(std[n - _FEWEST], 1e-9)])
@@ -174,7 +174,7 @@ def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
         panel.text([1.0, -1.5], "no noise, no error", MUTED, anchor="mm", size=12)
         return
     slope = std[-1] * np.sqrt(_MOST / counts)
-    panel.line(np.log10(np.stack([counts, slope], -1)), MUTED, 1, dash=4)
+    panel.line(np.log10(np.stack([counts, slope], -1)), IDEAL, 1.5, dash=4)
     panel.text(np.log10([3.2, 0.03]), "dashed: ∝ 1/√views", MUTED)
     panel.line(np.log10(np.stack([counts, std], -1)), CAMERA, 2.2)
     panel.mark(here, "camera", 8)
