@@ -976,6 +976,9 @@ def test_two_lines_meet_where_their_equations_say_and_parallels_at_infinity():
         values = {"a1": a1 / 10, "b1": b1 / 10, "a2": a2 / 10, "b2": b2 / 10}
         drawing = model.drawing(**values)
         said = drawing.sentence.rpartition("m = ")[2]
+        assert drawing.sentence.startswith(
+            "Both lines are v = " if said.startswith("[0 0 0]") else "v = "
+        )
         turn = (b2 - a2) - (b1 - a1)  # by which one line climbs more, over all of the square
         if turn == 0:
             word = "no point" if a1 == a2 else f"direction ±(1, {(b1 - a1) / 20:g})"
@@ -1952,6 +1955,19 @@ def test_what_a_map_changes_stands_inside_the_frame_of_its_kind_and_the_rest_is_
         assert ((lit.min() < orange) & (orange < lit.max())).all()
     assert (np.diff(heights) > 40).all(), heights  # each kind in the next
     assert orange.min() > lit.min() + 90  # under the cross-ratio, which stays
+
+
+def test_four_letters_stand_inside_the_square_beside_the_points_of_the_cross_ratio():
+    for values in ({}, {"size": 0.6, "shear": 0.5}, {"along": 0.3, "up": 0.2}):
+        picture, H = MODELS["maps"].picture(**values), maps.matrix(MODELS["maps"].values(**values))
+        wide = max(2.5, 1.2 * float(np.abs(apply(H, maps._SQUARE)).max()))
+        for place, away in zip(maps._SIDE, (25, 25, 14, 14), strict=True):
+            there, inner = (
+                380 * (apply(H, place - [by, 0]) + wide) / (2 * wide) for by in (0, 0.5)
+            )
+            at = there + away * (inner - there) / np.linalg.norm(inner - there)
+            x, y = np.rint(at + [MARGIN, TITLE]).astype(int)
+            assert count(picture[y - 7 : y + 8, x - 5 : x + 6], LENS, 90) > 8
 
 
 def test_a_hand_reaches_all_four_kinds_of_maps_though_it_is_not_exact():

@@ -34,7 +34,7 @@ def maps_model() -> Model:
     """Make the model of a square with a circle in it, mapped by a matrix of four numbers."""
     settings = (
         Setting("turn", "turn (°)", -180, 180, 5, 20, "allowed to every kind"),
-        Setting("size", "size", 0.4, 1.5, 0.05, 1, "1 is Euclidean; else at least a similarity"),
+        Setting("size", "size", 0.6, 1.5, 0.05, 1, "1 is Euclidean; else at least a similarity"),
         Setting("shear", "shear", -1, 1, 0.05, 0, "not 0: at least affine"),
         Setting("stretch", "stretch", 0.4, 1.5, 0.05, 1, "not 1: at least affine"),
         Setting("along", "corner, along", -0.5, 0.5, 0.05, 0, "not 0: projective"),
@@ -158,6 +158,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.line(apply(H, _SIDE[[0, 3]]), LENS, 3)
     panel.mark(apply(H, _SIDE), "lens", 5)
     middle = apply(H, [0, 0])
+    for name, place, away in zip("abcd", _SIDE, (25, 25, 14, 14), strict=True):
+        inwards = apply(H, place - [0.5, 0]) - apply(H, place)  # clear of marks and rings
+        at = apply(H, place) + away * panel.pixel * inwards / np.hypot(*inwards)
+        panel.text(at, name, LENS, anchor="mm", size=14)
     for number, (name, what, place) in enumerate((
         ("right side", "the right side, to turn and enlarge", _RIGHT),
         ("top", "the top, to shear and stretch", _TOP),

@@ -16,7 +16,7 @@ _SHOWN = ((-1.76, 1.64), (1.755, -0.86))
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
 _ARROW = 0.62  # how long the arrows are, on the sheet of paper
 _ORIGIN, _UP = np.zeros(3), np.array([0, 0, 1.0])
-_AXES = np.array([[-0.9, -1.12, 1], [-1.34, -0.3, 1]])  # where arrows of x and y begin
+_AXES = np.array([[-0.9, -1.12, 1], [-1.34, -0.3, 1]])  # where arrows of u and v begin
 _LINES = (
     ("1", "l₁", "orange", ESTIMATED, ("#FDF0E7", "#FBE0CE")),
     ("2", "l₂", "blue", LENS, ("#E8F2F8", "#CFE2F0")),
@@ -31,7 +31,7 @@ def meet_model() -> Model:
         (end + n, f"{colour}, {side}", x) for n, _, colour, *_ in _LINES for end, x, side in _ENDS
     ]
     settings = tuple(
-        Setting(name, label, -1, 1, 0.1, starts[name], f"the line's y at x = {x:g}")
+        Setting(name, label, -1, 1, 0.1, starts[name], f"the line's v at u = {x:g}")
         for name, label, x in names
     )
     about = (
@@ -44,13 +44,13 @@ def meet_model() -> Model:
 
 
 def triple(values: Values, n: str) -> Array:
-    """Return the triple [a b c] of a line y = p + k x: (−k, 1, −p)."""
+    """Return the triple [a b c] of a line v = p + k u: (−k, 1, −p)."""
     a, b = values[f"a{n}"], values[f"b{n}"]
     return np.array([(a - b) / 2, 1, -(a + b) / 2]).round(9) + 0.0
 
 
 def on_sheet(place: Array) -> Array:
-    """Project places (x, y, w), (..., 3), in parallel onto the sheet (..., 2)."""
+    """Project places (u, v, w), (..., 3), in parallel onto the sheet (..., 2)."""
     return np.asarray(place @ _SEEN.T)
 
 
@@ -61,7 +61,7 @@ def arrow_along(row: Array) -> Array:
 
 
 def _slid(x: float, at: Array) -> float:
-    """Return the y at which the edge at x of the plane w = 1 comes nearest to a place."""
+    """Return the v at which the edge at u of the plane w = 1 comes nearest to a place."""
     start, way = on_sheet(np.array([[x, 0, 1], [0, 1, 0]]))
     return float((at - start) @ way / (way @ way))
 
@@ -107,7 +107,7 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
         low = on_sheet(m / m[2])[1] > _SHOWN[1][0] - 30 * panel.pixel
         by = (-18 if left else 18, 8) if low else (-10 if left else 10, -10)
         _name(panel, m / m[2], by, "m", IDEAL, "rs" if left else "ls")
-    for start, way, name in zip(_AXES, 0.36 * np.eye(3), "xy", strict=False):
+    for start, way, name in zip(_AXES, 0.36 * np.eye(3), "uv", strict=False):
         _arrow(panel, start, way, name, WORLD)
     panel.mark(on_sheet(_ORIGIN), "lens", 5)
     for w, ink in ((0, MUTED), (1, WORLD)):
@@ -152,22 +152,22 @@ def _table(paper: Paper, lines: list[Array], m: Array) -> Panel:
 def _place(m: Array) -> str:
     """Say where a point of the plane is."""
     if m[2]:
-        x, y = m[:2] / m[2] + 0.0
-        return f"({_number(x, 3)}, {_number(y, 3)})"
+        u, v = m[:2] / m[2] + 0.0
+        return f"({_number(u, 3)}, {_number(v, 3)})"
     if not m.any():
         return "no point, or every one"
     return f"at infinity, direction ±(1, {_number(m[1] / m[0] + 0.0)})"
 
 
 def _equation(line: Array) -> str:
-    """Write a line as in school: y = p + k x, without what is 0 or 1."""
+    """Write a line as in school: v = p + k u, without what is 0 or 1."""
     k, p = 0.0 - line[0], 0.0 - line[2]
-    slope = "x" if abs(k) == 1 else f"{_number(abs(k))}x"
+    slope = "u" if abs(k) == 1 else f"{_number(abs(k))}u"
     if not k:
-        return f"y = {_number(p)}"
+        return f"v = {_number(p)}"
     if not p:
-        return f"y = {'−' if k < 0 else ''}{slope}"
-    return f"y = {_number(p)} {'−' if k < 0 else '+'} {slope}"
+        return f"v = {'−' if k < 0 else ''}{slope}"
+    return f"v = {_number(p)} {'−' if k < 0 else '+'} {slope}"
 
 
 def _number(x: float, digits: int = 4) -> str:
