@@ -9,7 +9,7 @@ from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.pictures import render_scene, room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, hexed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, hexed
 
 _SIZE, _SHOWN, _OUTSIDE = (320, 240), (272, 204), (590, 436)  # px
 _NEAREST, _FARTHEST = 1500, 6000  # mm along the axis
@@ -125,9 +125,9 @@ def _draw_outside(panel: Panel, m: Array, point: Array, line: Array) -> None:
     d = (point - one) / np.linalg.norm(point - one)
     n = np.cross(one - two, d)  # T leads from the second centre to the first
     for start, way, name, ink, beside in (
-        (two, 0.45 * (one - two), "T", CAMERA, (0, -12)),
+        (two, 0.3 * (one - two), "T", LENS, (0, -13)),
         (one, 700 * d, "d", IDEAL, (-14, 0)),
-        ((one + two + point) / 3, 350 * n / np.linalg.norm(n), "n", ESTIMATED, (12, -4)),
+        ((one + two + point) / 3, 350 * n / np.linalg.norm(n), "n", WORLD, (13, -4)),
     ):
         ends = seen(np.array([start, start + way]))
         panel.arrows(ends[:1], np.diff(ends, axis=0), ink, 2.5)
