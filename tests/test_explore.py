@@ -438,6 +438,15 @@ def test_numbers_below_zero_have_a_minus_sign_and_no_hyphen():
     assert "off by +0.00 px, and claims ± 0.00 px" in MODELS["noise"].drawing(sigma=0).sentence
 
 
+def test_from_behind_a_board_is_plain_paper():
+    turned = {"T_x": -190, "T_y": -80, "T_z": 650}
+    front, behind = (MODELS["camera"].drawing(**turned, angle_y=angle) for angle in (60, 75))
+    black = [count(each.picture[TITLE:, :WIDTH], "#262629", 12) for each in (front, behind)]
+    assert black[0] > 300 > 50 > black[1]
+    assert "behind the board" in behind.sentence
+    assert "behind the board" not in front.sentence
+
+
 def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_steps(
     written, monkeypatch
 ):

@@ -23,10 +23,13 @@ def pinhole(camera: Camera) -> Camera:
 
 
 def draw_board(panel: Panel, camera: Camera, board: Chessboard) -> bool:
-    """Draw a board's picture by a camera without distortion; tell if all of it is in front."""
+    """Draw a board's picture by a camera without distortion; tell if all of it is in front.
+
+    From behind only its paper is seen.
+    """
     border, squares = paper_and_squares(board)
-    paper = camera.project(border)
-    draw_sheet(panel, paper, camera.project(squares))
+    paper, printed = camera.project(border), squares if camera.centre[2] < 0 else squares[:0]
+    draw_sheet(panel, paper, camera.project(printed))
     return bool(np.isfinite(paper).all())
 
 

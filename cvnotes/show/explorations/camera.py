@@ -220,6 +220,8 @@ def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
     )
     if not complete:
         return f"{said} The part of the board behind the camera has no image."
+    if camera.centre[2] > 0:
+        return f"{said} It stands behind the board."
     m = camera.project(board.points)
     inside = ((m >= -0.5) & (m <= np.array(camera.size) - 0.5)).all(axis=-1)
     return said if inside.any() else f"{said} All inner corners are outside of the picture."
