@@ -24,7 +24,7 @@ _VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:3, :3]  # from the
 _LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
 _INKS = (IDEAL, MUTED)  # of the first photograph and of the second
-_SQUARE, _PALE = "#B0B0B0", "#BDBDBD"
+_SQUARE, _PALE, _LID = "#B0B0B0", "#BDBDBD", "#E3EEF7"
 PAIRS = (("sides", "estimated", ESTIMATED), ("diagonals", "lens", LENS))
 
 
@@ -173,6 +173,8 @@ def _eye_over_sheet(
     (w, h), board = SIZE, course.board()
     frame = np.array([[-0.5, -0.5], [w - 0.5, -0.5], [w - 0.5, h - 0.5], [-0.5, h - 0.5]])
     panel.polygons(_flat(frame)[None], "#F4F4F0")
+    lid = np.array([[*point, 0] for point in vanishing_points(H[0])[[0, 3]]] + [eye])
+    panel.polygons(on_sheet(lid)[None], _LID)
     panel.line(_flat(frame[[0, 1, 2, 3, 0]]), MUTED, 1)
     m = _flat(camera.project(board.points))
     draw_squares(panel, m, board, _SQUARE)
@@ -200,7 +202,12 @@ def _eye_over_sheet(
         if k in (0, 3):  # the outer one of each pair
             _name(panel, _flat(point), (8, 6), name, colour, "la")
     _name(
-        panel, _flat(points[3] + 0.12 * (points[3] - points[0])), (-20, -3), "horizon", IDEAL, "rm"
+        panel,
+        _flat(points[3] + 0.12 * (points[3] - points[0])),
+        (-20, -3),
+        "horizon: the hinge",
+        IDEAL,
+        "rm",
     )
     panel.mark(on_sheet(below), "ideal", 7)
     panel.mark(on_sheet(eye), "camera", 9)
