@@ -1694,7 +1694,7 @@ def test_the_factor_of_the_traced_rays_is_drawn_with_its_polynomial_and_that_wit
     )
     drawing = MODELS["stop"].drawing(stop=stop)
     panel, five = dots[-1]
-    assert panel.title.startswith("L: observed ÷ ideal")
+    assert panel.title.startswith("L over r")
     r, factor = np.transpose(five)
     assert np.allclose(r, [-0.5, -0.25, 0, 0.25, 0.5], atol=1e-3)
     meant, seen = numbers(drawing.sentence)[-3:-1]
