@@ -81,8 +81,8 @@ def asked(question: str) -> Shown:
     Examples
     --------
     >>> shown = asked('{"name": "lens", "values": {"k1": 0, "k2": 0}}')
-    >>> json.loads(shown.rest)["sentence"][:22]
-    'The model never folds.'
+    >>> json.loads(shown.rest)["sentence"][:13]
+    'An ideal lens'
     """
     given: dict[str, Any] = json.loads(question)
     camera, board = (json.dumps(given.get(key)) for key in ("camera", "board"))
