@@ -25,6 +25,7 @@ _MANY_COLOURS = 4096
 _OFF = 0.1
 # A drawing is smaller than this, in bytes.
 _LARGE = 150_000
+# From so many bytes on a photograph is tried without loss, too.
 _MUCH = 100_000
 # px: how wide what is made for a telephone is drawn.
 NARROW = 380

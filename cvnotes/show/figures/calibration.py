@@ -56,13 +56,13 @@ def draw_arrow(J: npt.ArrayLike, shared: int) -> Any:
         raise ShapeError(f"J: expected (n, {shared} + 6 n_views), got {J.shape}")
     lengths = np.linalg.norm(J, axis=0)
     J = J / np.where(lengths > 0, lengths, 1)
-    left, right, last = axes = panels(3, width=980, height=400, width_ratios=(1, 1, 0.36))
+    left, right, rest = axes = panels(3, width=980, height=400, width_ratios=(1, 1, 0.36))
     rows, columns = J.shape
     left.imshow(_dark(J), cmap="Blues", vmin=0, vmax=1, aspect="auto", interpolation="nearest")
     right.imshow(_dark(J.T @ J), cmap="Blues", vmin=0, vmax=1, interpolation="nearest")
     left.set_title(f"J: {rows} rows, {columns} columns", pad=18)
     right.set_title(f"JᵀJ: {columns} × {columns}", pad=18)
-    _draw_remaining(last, J[:, :shared], J[:, shared:])
+    _draw_remaining(rest, J[:, :shared], J[:, shared:])
     for ax in (left, right):
         ax.set(xticks=[], xlabel="unknowns")
         for first, last, name, side in (
