@@ -66,6 +66,7 @@ from cvnotes.show.explorations import (
     clouds,
     cube,
     eleventh,
+    epipolar,
     folds,
     formation,
     frame,
@@ -2881,6 +2882,27 @@ def test_the_epipolar_plane_cuts_the_second_picture_in_its_line():
         u2, v2 = partner * 272 / 320
         below = shown(u=u, v=v, depth=3500).picture[TITLE + 232 :, MARGIN : MARGIN + 272]
         assert count(below[round(v2) - 6 :][:12, round(u2) - 6 :][:, :12], ESTIMATED) > 10
+
+
+def test_the_normal_is_T_cross_d_and_the_strip_is_the_second_picture_along_the_line(monkeypatch):
+    arrows, images, arrow, image = [], [], Panel.arrows, Panel.image
+    monkeypatch.setattr(Panel, "arrows", lambda *how: (arrows.append(how), arrow(*how)))
+    monkeypatch.setattr(
+        Panel, "image", lambda *how, **more: (images.append(how[1]), image(*how, **more))
+    )
+    MODELS["plane"].drawing()
+    first, second = (camera.centre for camera in plane.cameras())
+    point, seen = plane.on_the_ray(190, 150, 3500.0), plane.onlooker().project
+    n = np.cross(first - second, point - first)
+    foot = (first + second + point) / 3
+    way = seen(foot + 350 * n / np.linalg.norm(n)) - seen(foot)
+    assert np.allclose(arrows[-1][2], way)
+    MODELS["epipolar"].drawing(u=320, v=420)  # a tile
+    (strip,) = (each for each in images if each.shape[:2] == (22, 205))
+    nearness = np.linspace(0.52, 0.02, 205)[::8]  # 1/m, and even along the strip
+    u, v = np.rint(seen_by_the_second(np.array([320.0, 420]), 1000 / nearness)).astype(int).T
+    off = np.abs(strip[10:12, ::8].mean(axis=0) - epipolar.photographs()[1][v, u]).max(axis=1)
+    assert np.mean(off < 25) > 0.8, off
 
 
 def test_the_partner_lies_on_the_epipolar_line_and_agrees_where_its_depth_is_right():
