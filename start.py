@@ -56,7 +56,10 @@ print(json.dumps({
 """
 MADE_HERE = "made-by-start.py"  # in an environment that may be deleted when it is broken
 # What is not there any more if files of an environment were lost; pip would believe its lists.
-NEEDED = ("numpy", "scipy", "matplotlib", "cv2", "trimesh", "ipywidgets", "PIL", "yaml", "tqdm")
+NEEDED = (
+    "numpy", "scipy", "matplotlib", "cv2", "trimesh", "ipywidgets", "font_source_sans_pro", "PIL",
+    "yaml", "tqdm",
+)  # fmt: skip
 
 
 class CannotError(Exception):

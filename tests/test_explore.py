@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fontTools.ttLib import TTFont
 from PIL import Image
 from scipy import ndimage
 from scipy.optimize import brentq, least_squares, minimize
@@ -105,7 +106,7 @@ from cvnotes.show.explorations.fold import (
 )
 from cvnotes.show.explorations.folds import _SHOWN as FOLDS_SHOWN
 from cvnotes.show.explorations.lens import polynomial, seen_radius
-from cvnotes.show.explorations.lettering import LETTERS
+from cvnotes.show.explorations.lettering import INDEX, LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
 from cvnotes.show.explorations.moved import between, stands
 from cvnotes.show.explorations.origin import corners as corners_of_origin
@@ -126,6 +127,7 @@ from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import window_at
 from cvnotes.show.style import MUTED
+from cvnotes.show.typeface import font_file
 from cvnotes.targets import Chessboard, TwoPlanes, refine_edges, refine_subpixel
 from cvnotes.warping import backward_warp, zoom_map
 
@@ -288,7 +290,11 @@ def test_all_that_is_written_is_among_the_letters_that_a_page_brings(name, monke
     rng = np.random.default_rng(3)
     for _ in range(5):
         MODELS[name].picture(**random_values(MODELS[name], rng))
-    assert written <= set(LETTERS)
+    assert set("".join(written).translate(INDEX)) <= set(LETTERS)
+
+
+def test_the_type_has_every_letter_that_a_page_brings():
+    assert set(map(ord, LETTERS)) <= set(TTFont(font_file()).getBestCmap())
 
 
 @pytest.mark.once

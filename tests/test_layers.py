@@ -18,7 +18,7 @@ from cvnotes.calibration import calibrate
 from cvnotes.camera import Camera, Lens, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import good_views
 from cvnotes.show.explorations import NAMES
-from cvnotes.show.explorations.lettering import font_file
+from cvnotes.show.typeface import font_file
 from cvnotes.targets import Chessboard
 
 pytestmark = pytest.mark.once

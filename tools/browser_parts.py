@@ -53,7 +53,8 @@ from urllib.request import urlopen
 from typeface import write_subset
 
 import cvnotes
-from cvnotes.show.explorations import lettering
+from cvnotes.show.explorations.lettering import LETTERS as WRITTEN
+from cvnotes.show.typeface import font_file
 
 Entry = dict[str, Any]  # of one package in the lock
 
@@ -273,8 +274,8 @@ def lay_out(parts: Path, folder: Path) -> Path:
     lock = json.loads((parts / "pyodide-lock.json").read_text(encoding="utf-8"))
     lock["packages"] = entries
     (folder / "pyodide-lock.json").write_text(json.dumps(lock), encoding="utf-8")
-    # The type of explorations, with the letters that they need: a tenth of matplotlib's.
-    write_subset(lettering.font_file(), folder / LETTERS, lettering.LETTERS)
+    # The type of explorations, with the letters that they need: a tenth of the whole.
+    write_subset(font_file(), folder / LETTERS, WRITTEN)
     sizes = {path.name: path.stat().st_size for path in sorted(folder.iterdir())}
     listed = {"cvnotes": code["file_name"], "data": data["file_name"], "bytes": sizes}
     (folder / "parts.json").write_text(json.dumps(listed, indent=1), encoding="utf-8")

@@ -2,10 +2,12 @@
 
 import logging
 import sys
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from cvnotes.base import InputTypeError, image_size, whole
 from cvnotes.show.style import DPI, FAINT, FONT, INK, MUTED
+from cvnotes.show.typeface import enlargement, font_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +64,8 @@ def dress(ax: "Axes") -> "Axes":
     """Return axes the course's look: a light frame, small type."""
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(FAINT)
-    ax.tick_params(labelsize=FONT - 1, color=FAINT, labelcolor="#333333")
+    size = enlargement() * (FONT - 1)
+    ax.tick_params(labelsize=size, labelfontfamily=_family(), color=FAINT, labelcolor="#333333")
     ax.title.set_fontsize(FONT)
     ax.title.set_color("#333333")
     for axis in (ax.xaxis, ax.yaxis):
@@ -71,15 +74,27 @@ def dress(ax: "Axes") -> "Axes":
 
 
 def set_words(figure: "Figure") -> None:
-    """Draw words of the style's colours in their darker ink, and titles from the left."""
+    """Draw words in the course's type and in their darker ink, and titles from the left."""
     from matplotlib.colors import to_hex
     from matplotlib.text import Text
 
-    for words in figure.findobj(Text):
+    found: list[Any] = figure.findobj(Text)
+    for words in found:
         colour = to_hex(words.get_color()).upper()
         words.set_color(INK.get(colour, colour))
+        if words.get_fontfamily() != _family():
+            words.set(fontfamily=_family(), fontsize=enlargement() * words.get_fontsize())
     for ax in figure.axes:
         ax.title.set(x=0, ha="left")  # here: each set_title puts it back into the middle
+
+
+@lru_cache(maxsize=1)
+def _family() -> list[str]:
+    """Tell matplotlib of the course's type, and how to ask for it; the rest has its own."""
+    from matplotlib.font_manager import FontProperties, fontManager
+
+    fontManager.addfont(font_file())
+    return [FontProperties(fname=font_file()).get_name(), "DejaVu Sans"]
 
 
 def halo() -> list[Any]:

@@ -29,7 +29,7 @@ MUTED = "#6E6E6E"  # frames of photographs, remarks
 FAINT = "#C6C6C6"  # frames of all that is drawn
 
 DPI = 100  # a figure's inch is 100 px of the page
-FONT = 10
+FONT = 9.5  # as large as in explorations
 
 
 def colour_of(meaning: str) -> str:

@@ -1,21 +1,25 @@
 """Words as pixels, written once and kept: stamps for a panel, and its title."""
 
 import math
-import os
 from functools import lru_cache
-from importlib.util import find_spec
-from pathlib import Path
+from itertools import groupby
 
 import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
-from cvnotes.base import FileError
+from cvnotes.show.typeface import enlargement, font_file
 
 # All that explorations write: Latin, Greek, and a little mathematics.
-LETTERS = "".join(map(chr, (*range(32, 127), *range(160, 256), *range(0x391, 0x3CA)))) + (
-    "ĥ–—…′″√∞∝≈≤≥≠±−·×ᵀ⁻¹₀₁₂₃₄ᵤᵥ←→↑↓²³"
+LETTERS = (
+    "".join(
+        map(chr, (*range(32, 127), *range(160, 256), *range(0x391, 0x3A2), *range(0x3A3, 0x3CA)))
+    )
+    + "ĥ–—…′″√∞≈≤≥≠±−·×←→↑↓"
 )
+# An index is larger than the type's own, to be read at a drawing's size, and there is one of v.
+INDEX = str.maketrans("₀₁₂₃₄ᵤᵥ", "01234uv")
+_SMALLER, _LOWER = 0.75, 0.2  # than the letter before it, in its size
 
 
 @lru_cache(maxsize=512)
@@ -23,13 +27,23 @@ def stamp(
     words: str, anchor: str, size: int, stroke: int
 ) -> tuple[Image.Image, Image.Image, tuple[int, int]]:
     """Write words once: masks of their white rim and of their ink, and where these begin."""
-    font = _font(size)
-    box = font.getbbox(words, anchor=anchor, stroke_width=stroke)
-    left, top = (math.floor(side) for side in box[:2])
-    size_of_both = (math.ceil(box[2]) - left + 1, math.ceil(box[3]) - top + 1)
-    masks = [Image.new("L", size_of_both) for _ in range(2)]
-    for mask, width in zip(masks, (stroke, 0), strict=True):
-        ImageDraw.Draw(mask).text((-left, -top), words, 255, font, anchor, stroke_width=width)
+    runs = _runs(words or " ", size)
+    (last, _), part, font = runs[-1]
+    ascent, descent = _font(size).getmetrics()
+    x = -(last + font.getlength(part)) * "lmr".index(anchor[0]) / 2
+    y = {"a": ascent, "m": (ascent - descent) / 2, "s": 0, "d": -descent}[anchor[1]]
+    boxes = np.array([
+        np.add(font.getbbox(part, anchor="ls", stroke_width=stroke), (*at, *at))
+        for at, part, font in runs
+    ]) + (x, y, x, y)  # fmt: skip
+    left, top = (math.floor(side) for side in boxes[:, :2].min(axis=0).tolist())
+    right, bottom = (math.ceil(side) for side in boxes[:, 2:].max(axis=0).tolist())
+    masks = [Image.new("L", (right - left + 1, bottom - top + 1)) for _ in range(2)]
+    for mask, rim in zip(masks, (stroke, 0), strict=True):
+        pen = ImageDraw.Draw(mask)
+        for (ahead, below), part, font in runs:
+            place = (x + ahead - left, y + below - top)
+            pen.text(place, part, 255, font, "ls", stroke_width=rim)
     return masks[0], masks[1], (left, top)
 
 
@@ -37,29 +51,23 @@ def stamp(
 def title_strip(words: str, size: tuple[int, int], left: int, scale: int) -> npt.NDArray[np.uint8]:
     """Write a panel's title, from `left` on, into a strip of (width, height) px."""
     strip = Image.new("RGB", (2 * size[0], 2 * size[1]), "white")
-    ImageDraw.Draw(strip).text((left, size[1]), words, "#333333", _font(13 * scale), "lm")
+    _, ink, (ahead, above) = stamp(words, "lm", 13 * scale, 0)
+    strip.paste("#333333", (left + ahead, size[1] + above), ink)
     return np.asarray(strip.reduce(2))
+
+
+def _runs(words: str, size: int) -> list[tuple[tuple[float, float], str, ImageFont.FreeTypeFont]]:
+    """Part words into letters and indices: where each begins, right and down, and its font."""
+    runs: list[tuple[tuple[float, float], str, ImageFont.FreeTypeFont]] = []
+    x = 0.0
+    for small, letters in groupby(words, lambda letter: ord(letter) in INDEX):
+        part = "".join(letters).translate(INDEX)
+        font = _font(round(_SMALLER * size) if small else size)
+        runs.append(((x, _LOWER * size if small else 0.0), part, font))
+        x += font.getlength(part)
+    return runs
 
 
 @lru_cache(maxsize=16)
 def _font(size: int) -> ImageFont.FreeTypeFont:
-    return ImageFont.truetype(font_file(), size)
-
-
-def font_file() -> Path:
-    """Find matplotlib's own type: drawings and figures look alike, and there are Greek letters.
-
-    Matplotlib is not loaded for it. On a page it is not there either; whoever runs the
-    explorations there names a file with the letters of `LETTERS` in CVNOTES_FONT.
-
-    Examples
-    --------
-    >>> font_file().name
-    'DejaVuSans.ttf'
-    """
-    if given := os.environ.get("CVNOTES_FONT"):
-        return Path(given)
-    found = find_spec("matplotlib")
-    if found is None or found.origin is None:
-        raise FileError("there is no type to write with: matplotlib, which brings it, is missing")
-    return Path(found.origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf"
+    return ImageFont.truetype(font_file(), round(enlargement() * size))

@@ -135,7 +135,7 @@ def _bars(paper: Paper, std: Array, rms: float) -> Panel:
             panel.arrows([end - _BEYOND, y], [_BEYOND, 0], CAMERA, 5)
         else:
             panel.polygons([[end, y] + 8 * circle(33) * unit], CAMERA)
-        panel.symbol([left + 0.08, y], name, IDEAL, 16)
+        panel.text([left + 0.08, y], name, IDEAL, size=16)
         beside, anchor = (right - 0.06, "rd") if end > 2 else (end, "md")
         panel.text([beside, y - 12 * unit[1]], _number(one), IDEAL, anchor=anchor, size=14)
     panel.line([[at, -0.62], [at, 3.8]], IDEAL, 1.2, dash=4)

@@ -150,7 +150,7 @@ def _draw_bars(panel: Panel, bound: Array, error: Array, std: Array, leftmost: f
         y = i + 0.35
         panel.line([[error[i] - std[i], y], [error[i] + std[i], y]], ESTIMATED, 2)
         panel.mark([error[i], y], "estimated", 5)
-        panel.symbol([0.95 * left, i], label, IDEAL, 15)
+        panel.text([0.95 * left, i], label, IDEAL, size=15)
 
 
 def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
@@ -175,6 +175,6 @@ def _draw_curve(panel: Panel, study: _Study, n: int, sigma: float) -> None:
         return
     slope = std[-1] * np.sqrt(_MOST / counts)
     panel.line(np.log10(np.stack([counts, slope], -1)), IDEAL, 1.5, dash=4)
-    panel.text(np.log10([3.2, 0.03]), "dashed: ∝ 1/√views", MUTED)
+    panel.text(np.log10([3.2, 0.03]), "dashed: as 1/√views", MUTED)
     panel.line(np.log10(np.stack([counts, std], -1)), CAMERA, 2.2)
     panel.mark(here, "camera", 8)

@@ -250,14 +250,6 @@ class Panel:
             self._image.paste(rim, corner, around)
             self._image.paste(INK.get(colour, colour), corner, ink)
 
-    def symbol(self, xy: npt.ArrayLike, name: str, colour: str, size: int) -> None:
-        """Write a letter and its index, which is larger than the font's own: αᵤ, u₀."""
-        index = name[1:].translate(str.maketrans("ᵤᵥ₀₁₂", "uv012"))
-        ratio = (self.y[1] - self.y[0]) / self.height * self.scale  # of y, a px of the page down
-        self.text(xy, name[0], colour, anchor="lm", size=size)
-        beside = np.asarray(xy) + size * np.array([0.66 * self.pixel, 0.3 * ratio])
-        self.text(beside, index, colour, anchor="lm", size=round(0.75 * size))
-
     def ticks(self, x: npt.ArrayLike = (), y: npt.ArrayLike = (), size: int = 11) -> None:
         """Draw light lines with their numbers at some x and y."""
         (x0, x1), (y0, y1) = self.x, self.y
