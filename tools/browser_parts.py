@@ -50,11 +50,9 @@ from typing import Any
 from urllib.error import URLError
 from urllib.request import urlopen
 
-from typeface import write_subset
-
 import cvnotes
 from cvnotes.show.explorations.lettering import LETTERS as WRITTEN
-from cvnotes.show.typeface import font_file
+from cvnotes.show.typeface import font_file, subset_of
 
 Entry = dict[str, Any]  # of one package in the lock
 
@@ -275,7 +273,7 @@ def lay_out(parts: Path, folder: Path) -> Path:
     lock["packages"] = entries
     (folder / "pyodide-lock.json").write_text(json.dumps(lock), encoding="utf-8")
     # The type of explorations, with the letters that they need: a tenth of the whole.
-    write_subset(font_file(), folder / LETTERS, WRITTEN)
+    (folder / LETTERS).write_bytes(subset_of(font_file(), WRITTEN))
     sizes = {path.name: path.stat().st_size for path in sorted(folder.iterdir())}
     listed = {"cvnotes": code["file_name"], "data": data["file_name"], "bytes": sizes}
     (folder / "parts.json").write_text(json.dumps(listed, indent=1), encoding="utf-8")

@@ -5,38 +5,18 @@ licence (SIL Open Font License 1.1) lets nobody call by the reserved name: the n
 the pages call them "cvnotes serif" and "cvnotes sans" (`docs/site.css`).
 """
 
-import logging
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import Any
+
+from cvnotes.show.typeface import subset_of
 
 FACES = "Regular", "It", "Semibold"  # for text, for emphasis, for headings and strong words
 FAMILIES = {
     "serif": ("font_source_serif_pro", "SourceSerifPro"),
     "sans": ("font_source_sans_pro", "SourceSansPro"),
 }
-# Of the names: copyright, licence and its address.
-_KEPT: dict[str, Any] = {
-    "flavor": "woff",
-    "name_IDs": [0, 13, 14],
-    "layout_features": ["kern", "liga", "tnum"],
-}
+_KEPT = ["kern", "liga", "tnum"]
 LETTERS = "".join(map(chr, (*range(0x20, 0x180), *range(0x370, 0x400), *range(0x2000, 0x2300))))
-
-
-def write_subset(source: Path, target: Path, letters: str, **how: Any) -> None:
-    """Write a font with some letters alone, the same bytes each time."""
-    from fontTools import subset
-
-    logging.getLogger("fontTools").setLevel(logging.WARNING)
-    options: Any = subset.Options(drop_tables=["FFTM"], **how)
-    font = subset.load_font(str(source), options)
-    cutter: Any = subset.Subsetter(options)
-    cutter.populate(text=letters)
-    cutter.subset(font)
-    font.recalcTimestamp = False
-    subset.save_font(font, str(target), options)
-    font.close()
 
 
 def write_typefaces(folder: Path) -> None:
@@ -48,4 +28,4 @@ def write_typefaces(folder: Path) -> None:
         for face in FACES:
             target = folder / f"{family}-{face}.woff"
             with as_file(given / f"{stem}-{face}.ttf") as source:
-                write_subset(source, target, LETTERS, **_KEPT)
+                target.write_bytes(subset_of(source, LETTERS, flavor="woff", layout_features=_KEPT))

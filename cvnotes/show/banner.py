@@ -9,6 +9,7 @@ from cvnotes.base import Array, whole
 from cvnotes.camera import Camera, intrinsics, look_at, move, px_from_xy, xy_from_px
 from cvnotes.show.picture import Picture
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, INK, LENS, MUTED, WORLD
+from cvnotes.show.typeface import svg
 
 STEPS = ("R, T", "÷ z", "lens", "A")
 _IN_WORDS = ("place", "divide", "bend", "pixels")  # below the arrows, where a reader is new
@@ -22,8 +23,8 @@ _LIT: dict[int, tuple[str, ...]] = {
 _BACKWARDS = (6, 7, 10)
 _WITHOUT_LENS = (2, 3)  # their cameras have none, so their corner goes by another pixel
 _STYLE = (
-    "text{font:13px system-ui,sans-serif;text-anchor:middle;fill:#333}.s{font-weight:600}"
-    ".narrow text{font-size:12px}.narrow .n{font-size:11px}"
+    "text{font:14px cvnotes;text-anchor:middle;fill:#333}.s{font-weight:600}"
+    ".narrow text{font-size:13px}.narrow .n{font-size:12px}"
 )
 
 
@@ -116,11 +117,8 @@ def one_corner(chapter: int) -> Picture:
         if at_once:
             height += 34
             parts.append(_back_to_the_world(layout))
-        return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 0 {width + 8} {height}" '
-            f'width="{width + 8}" height="{height}"><style>{_STYLE}</style>'
-            f'<g class="{kind}">{"".join(parts)}</g></svg>'
-        ).encode()
+        body = f'<g class="{kind}">{"".join(parts)}</g>'
+        return svg(body, width + 8, height, style=_STYLE, left=-4)
 
     said = [form.format(*numbers) for *_, form, numbers in states]
     alt = (

@@ -5,6 +5,7 @@ from typing import NamedTuple
 from cvnotes.base import CvnotesError
 from cvnotes.show.picture import Picture
 from cvnotes.show.style import ESTIMATED, FAINT, INK, LENS, MUTED, WORLD
+from cvnotes.show.typeface import svg
 
 
 class _Link(NamedTuple):
@@ -62,8 +63,8 @@ _LINKS = (
 _WIDE, _TALL, _GAP = 74, 50, 25
 _ABOVE, _BELOW = 22, 36
 _STYLE = (
-    "text{font:12px system-ui,sans-serif;text-anchor:middle;fill:#333}.s{font-weight:600}"
-    ".r{fill:#6E6E6E}.narrow text{font-size:11px}"
+    "text{font:13.5px cvnotes;text-anchor:middle;fill:#333}.s{font-weight:600}"
+    ".r{fill:#6E6E6E}.narrow text{font-size:12.5px}"
 )
 
 
@@ -96,11 +97,8 @@ def chain(*lit: str) -> Picture:
         width = columns * (_WIDE + gap) - gap + 20
         height = len(_LINKS) // columns * (_ABOVE + _TALL + _BELOW)
         parts = [_box(k, columns, gap, k < done, k in at) for k in range(len(_LINKS))]
-        return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-10 0 {width} {height}" '
-            f'width="{width}" height="{height}"><style>{_STYLE}</style>'
-            f'<g class="{kind}">{"".join(parts)}</g></svg>'
-        ).encode()
+        body = f'<g class="{kind}">{"".join(parts)}</g>'
+        return svg(body, width, height, style=_STYLE, left=-10)
 
     width = 8 * (_WIDE + _GAP) - _GAP + 20
     return Picture(drawn(8, _GAP, "wide"), alt, width, "image/svg+xml", drawn(4, 18, "narrow"))

@@ -7,9 +7,10 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.show.picture import NARROW, Picture
 from cvnotes.show.style import CAMERA, ESTIMATED, FAINT, LENS, MUTED, WORLD
+from cvnotes.show.typeface import svg
 
 _WIDE, _TALL, _GAP, _ABOVE = 200, 140, 14, 26
-_STYLE = "text{font:600 14px system-ui,sans-serif;fill:#333}"
+_STYLE = "text{font:600 15px cvnotes;fill:#333}"
 _EYE = Camera(
     intrinsics(158, 158, 96, 58), look_at([3.4, -6.0, -5.6], [0.1, 0, -0.5], up=(0, 0, -1))
 )
@@ -44,11 +45,7 @@ def eight_projects() -> Picture:
             f'<rect width="{_WIDE}" height="{_TALL}" rx="6" fill="none" stroke="{FAINT}"/></g>'
             for k, each in enumerate(drawn)
         ]
-        return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
-            f'width="{round(width * scale)}" height="{round(height * scale)}">'
-            f"<style>{_STYLE}</style>{''.join(tiles)}</svg>"
-        ).encode()
+        return svg("".join(tiles), width, height, style=_STYLE, scale=scale)
 
     alt = (
         "Eight drawings: a poster straightened; a house with three edges drawn on; a cube on a "
