@@ -11,7 +11,7 @@ from cvnotes.show.explorations.votes import slopes, window_at
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
 
 _PLACES = {"edge": (352, 201), "corner": (352, 213), "flat paper": (367, 205)}
-_HALF = 4  # px from the window's middle to the border of what is shown of the photograph
+_HALF = 5  # px from the window's middle to the border of what is shown of the photograph
 _SIDE = 275, 275  # px, of a panel
 _STEEPEST = 84.0  # grey levels a pixel: the square of such a change fills its pixel
 _SQUARE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
