@@ -80,6 +80,7 @@ from cvnotes.show.explorations import (
     nails,
     plane,
     protractor,
+    push,
     rodrigues,
     triangle,
     twins,
@@ -125,8 +126,8 @@ from cvnotes.show.explorations.subpixel import neighbourhood
 from cvnotes.show.explorations.swing import nets, weights
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.valley import floor
-from cvnotes.show.explorations.votes import window_at
-from cvnotes.show.style import MUTED
+from cvnotes.show.explorations.votes import slopes, window_at
+from cvnotes.show.style import MUTED, mixed
 from cvnotes.show.typeface import font_file
 from cvnotes.targets import Chessboard, TwoPlanes, refine_edges, refine_subpixel
 from cvnotes.warping import backward_warp, zoom_map
@@ -946,6 +947,47 @@ def test_the_sum_of_squares_is_least_where_the_votes_cross_and_twice_on_the_firs
         u, v = np.rint(middle + 424 / 7 * far * way).astype(int)
         near = drawing.picture[v - 9 : v + 10, u - 9 : u + 10]  # dashes of 3 px, and gaps
         assert count(near, IDEAL, 90) > 3, a
+
+
+@pytest.mark.parametrize("place", ["edge", "corner"])
+def test_a_pushed_window_changes_as_its_gradients_say_and_its_sums_end_at_the_eigenvalues(place):
+    photo, (u, v) = course.photo(6).astype(float), push._PLACES[place]
+    rows, columns = np.mgrid[v - 3 : v + 4, u - 3 : u + 4]
+    for angle, (du, dv) in ((0, (1, 0)), (90, (0, 1)), (180, (-1, 0)), (45, (1, 1))):
+        far = np.hypot(du, dv)  # a pixel there and one back: half of the difference
+        there, back = (photo[rows + k * dv, columns + k * du] for k in (1, -1))
+        off = push.changes_at(place)[:, angle] - (there - back).ravel() / 2 / far
+        assert np.abs(off).max() < (1e-9 if far == 1 else 26)
+        assert np.std(off) < 0.15 * np.std(there - back)
+    told = numbers(MODELS["push"].drawing(place=1 + (place == "corner"), angle=180).sentence)
+    eigenvalues = window_at(slopes(), (u, v)).eigenvalues
+    assert np.allclose(told[-2:], eigenvalues[::-1], rtol=1e-3, atol=4)
+
+
+def test_the_squares_of_the_changes_have_the_area_that_is_their_sum():
+    for angle in (0, 40, 85, 180):
+        squares = MODELS["push"].picture(angle=angle)[TITLE : TITLE + 275, 281 + MARGIN :][:, :275]
+        change = push.changes_at("edge")[:, angle]
+        for ink, shown in (("#FFFFFF", change > 0), ("#000000", change < 0)):
+            wanted = np.sum(change[shown] ** 2) / 84**2 * (275 / 7) ** 2
+            assert abs(count(squares, ink) - wanted) < 0.15 * wanted + 60, (angle, ink)
+
+
+def test_of_the_pushed_window_only_the_way_that_d_went_is_traced():
+    size = [count(MODELS["push"].picture(angle=a)[:, 2 * 281 :], MUTED, 25) for a in (0, 40, 180)]
+    assert size[0] < size[1] - 100 < size[2] - 400
+
+
+def test_the_square_on_what_is_left_is_smallest_where_least_squares_say():
+    m = np.arange(2, 4.21, 0.05).round(2)
+    told = np.array([numbers(MODELS["wishes"].drawing(m=each).sentence)[-1] for each in m])
+    assert np.allclose(told, (6 - 2 * m) ** 2 + (4 - m) ** 2, atol=0.006)
+    assert m[told.argmin()] == 3.2
+    tint = mixed("#FFFFFF", ESTIMATED, 0.25)
+    unit = 399 / 9.5, 336 / 8
+    for each, area in zip(m, told, strict=True):
+        seen = count(MODELS["wishes"].picture(m=each)[:, 342:], tint, 12)
+        assert 0.7 * area < seen / np.prod(unit) < 1.02 * area, each
 
 
 def test_a_class_goes_through_infinity_and_its_dot_once_round_the_ring():
@@ -3899,6 +3941,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("protractor", "right"),
     ("stop", "stop"),
     ("eleventh", "left"),
+    ("wishes", "m"),
 }
 ROUND = {
     ("rim", "ring"),
@@ -3922,6 +3965,7 @@ ON_A_CURVE = {  # its nearest place
     ("moved", "board"),
     ("hinge", "board"),
     ("door", "hinge"),
+    ("wishes", "foot"),
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
 FROM_ONE_TO_ONE = {("clouds", "picture"): 4}  # from picture to picture; the last
@@ -3930,6 +3974,7 @@ TURNS_ABOUT = {
     "mark": (0, 0),
     "line": (0, 0),
     "h": (0, 0),
+    "d": (0, 0),
     "dot": (0, 0.5),
     "tip from above": (0, 0),
 }  # its length stays

@@ -1,5 +1,6 @@
 """Explore the votes: a small window over a photograph, and what its pixels say of a corner."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -50,10 +51,15 @@ def window_at(gradients: Array, at: tuple[int, int]) -> Window:
     return Window(p, g, eigenvalues, axes, R, least, crossing)
 
 
+@lru_cache(maxsize=1)
+def slopes() -> Array:
+    """Return the gradients (height, width, 2) of the photograph."""
+    return np.stack(np.gradient(course.photo(6).astype(float))[::-1], axis=-1)
+
+
 def votes_model() -> Model:
     """Make the model of a window over one of the course's photographs."""
     photo, corners = course.photo(6), course.exact_corners()[6]
-    gradients = np.stack(np.gradient(photo.astype(float))[::-1], axis=-1)
     (u, v), far = (_LEFT + _HALF, _TOP + _HALF), _SIDE - 2 * _HALF - 1
     settings = (
         Setting("u", "u (px)", u, u + far, 1, 352, "column of the window's middle"),
@@ -69,7 +75,7 @@ def votes_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         at = round(values["u"]), round(values["v"])
-        window = window_at(gradients, at)
+        window = window_at(slopes(), at)
         m = np.add(at, [values["m_u"], values["m_v"]])
         votes = _votes(paper, photo, at, window, corners)
         _draw_misses(votes, window, m)
@@ -134,7 +140,7 @@ def _draw_misses(panel: Panel, window: Window, m: Array) -> None:
     if window.eigenvalues[1] > _NOTHING:
         half = window.axes / np.sqrt(window.eigenvalues / window.misses(window.least))
         across = half[:, 1] * np.sign(half[0, 1] - half[1, 1])  # the short way, up or to the right
-        for times in (2, 4, 8, 16):
+        for times in (2, 4, 8):
             reach = np.sqrt(times - 1)
             panel.line(window.least + circle(181) * reach @ half.T, IDEAL, 1.6, dash=4)
             panel.text(window.least + reach * across, f"{times}×", IDEAL, anchor="mm", size=12)
