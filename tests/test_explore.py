@@ -922,6 +922,56 @@ def test_the_votes_of_the_photograph_cross_at_the_true_corner_and_nowhere_else(m
         assert np.allclose([crossing_u, crossing_v], truth, atol=0.15)
 
 
+@pytest.mark.parametrize("far", [310, 400, 500])
+def test_in_the_bowl_the_ellipse_is_what_the_circle_of_the_noise_becomes(far, monkeypatch):
+    """The corners are seen by a camera that is 1 px longer, or whose board is 1 mm farther."""
+    X, Z = 0.3 * np.array([300, far]), np.array([300, far])
+
+    def outwards(alpha, T_z):
+        return (800 + alpha) * X / (Z + T_z)
+
+    J = np.stack([(outwards(*(h)) - outwards(*(-h))) / 2e-3 for h in 1e-3 * np.eye(2)], axis=1)
+    curves, line = [], Panel.line
+
+    def kept(panel, xy, colour, width=1.5, **how):
+        curves.append((panel.title[:6], np.array(xy), width))
+        line(panel, xy, colour, width, **how)
+
+    arrows = []
+    monkeypatch.setattr(Panel, "line", kept)
+    monkeypatch.setattr(Panel, "arrows", lambda _, *both: arrows.append(both[:2]))
+    said = MODELS["bowl"].drawing(far=far, alpha=1.2, T_z=-0.4).sentence
+    (circle,) = [xy for title, xy, _ in curves if title == "corner"]
+    wide, ellipse, bar = [xy for title, xy, _ in curves if title == "errors"]
+    assert np.allclose(np.linalg.norm(circle, axis=1), 0.1, rtol=1e-9)
+    assert np.allclose(np.linalg.norm(ellipse @ J.T, axis=1), 0.1, rtol=1e-4)
+    assert np.allclose(wide, 2 * ellipse, rtol=1e-9)
+    std = np.sqrt(0.01 * np.linalg.inv(J.T @ J)[0, 0])
+    alone = 0.1 / np.linalg.norm(J[:, 0])
+    assert np.isclose(ellipse[:, 0].max(), std, rtol=1e-3)
+    assert np.allclose(bar, [[-alone, 0], [alone, 0]], rtol=1e-6)
+    assert said.endswith(f"α has ± {std:.2f} px, and ± {alone:.2f} px at a known distance.")
+    (start, longer), (then, farther) = arrows
+    assert np.allclose([*start, *(then - longer)], 0)
+    assert np.allclose(longer, 1.2 * J[:, 0], rtol=1e-5)
+    assert np.allclose(farther, -0.4 * J[:, 1], rtol=1e-5)
+    right, left = outwards(1.2, -0.4) - outwards(0, 0)
+    assert np.allclose(numbers(said)[2:4], [right, left], atol=0.012)  # no line, but nearly
+
+
+def test_a_board_that_faces_the_camera_leaves_the_bowl_a_valley_and_no_throw_in_it():
+    drawing, tilted = MODELS["bowl"].drawing(far=300), MODELS["bowl"].drawing(far=400)
+    said = "α has no ±: a camera longer by 1 px, 0.375 mm farther, sees the same."
+    assert drawing.sentence.endswith(said)
+    assert np.isclose(801 / (300 + 0.375), 800 / 300, rtol=1e-5)
+    dots = np.array([230, 158, 102])  # orange, paler
+
+    def seen(picture):
+        return int((np.abs(picture[TITLE:, -330:].astype(int) - dots).max(axis=-1) < 12).sum())
+
+    assert seen(drawing.picture) < 5 < 500 < seen(tilted.picture)
+
+
 def test_the_sum_of_squares_is_least_where_the_votes_cross_and_twice_on_the_first_ellipse():
     photo = course.photo(6).astype(float)
     g_v, g_u = np.gradient(photo)
@@ -3955,6 +4005,7 @@ ROUND = {
 }
 ON_A_CURVE = {  # its nearest place
     ("seam", "middle"),
+    ("bowl", "far"),
     ("twins", "other"),
     ("twins", "box"),
     ("plane", "depth"),
@@ -4941,6 +4992,7 @@ def test_what_is_folded_can_be_pulled_from_where_it_stands_and_switches_stay(nam
 
 # Where six and more sliders stood under a picture that says them all, and some with fewer.
 FOLDED = {
+    "bowl",
     "homography",
     "nails",
     "triangle",

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
-from cvnotes.calibration import intrinsics_from_b
+from cvnotes.calibration import intrinsics_from_b, intrinsics_from_b_by_formulas
 from cvnotes.learn.cases.cameras import some_intrinsics
 from cvnotes.tutor import Case, Exercise, Property, mistakes_in
 
@@ -97,6 +97,6 @@ EXERCISE = Exercise(
     ),
     misconceptions=_MISTAKES,
     steps=A_from_b,
-    concepts=("56", "59", "E28", "E31"),
-    sources=(intrinsics_from_b,),
+    concepts=("56", "59", "b", "E28", "E31"),
+    sources=(intrinsics_from_b, intrinsics_from_b_by_formulas),
 )

@@ -34,6 +34,7 @@ _STORIES = (
     "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
     "changes", "rail", "protractor", "asks", "divide", "stop",
     "pixels", "rodrigues", "door", "push", "wishes",
+    "pixels", "rodrigues", "door", "bowl",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

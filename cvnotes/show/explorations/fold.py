@@ -229,11 +229,13 @@ def _name(
 
 def _face_on(paper: Paper, H: Array, circle: Circle, place: Array) -> Panel:
     """Draw horizon and eye in their own plane: the eye is on two half circles, by Thales."""
-    panel = paper.panel(_FACE, (-580, 960), (590, -70), "the hinge, face on")
+    panel = paper.panel(_FACE, (-580, 960), (590, -70), "the lid, face on")
     along = np.array([circle.up[1], -circle.up[0]])
     s = (vanishing_points(H) - circle.foot) @ along
     shift = np.array([190 - _SCALE * (s.min() + s.max()) / 2, 0])
     eye = shift + [0, _SCALE * circle.radius]
+    outer = shift + _SCALE * np.array([[s.min(), 0], [s.max(), 0]])
+    panel.polygons([[*outer, eye]], _LID)
     panel.line(np.array([[-3000, 0], [3000, 0]]), IDEAL, 0.8, dash=5)
     turn = np.radians(np.arange(0, 181.0, 3))
     for (name, meaning, colour), (a, b), angle, (x, anchor) in zip(
