@@ -24,17 +24,14 @@ if TYPE_CHECKING:
 _MODELS = ("projection", "camera", "lens", "noise", "warp", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
-    "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye",
-    "rod", "shadows", "forged", "triangle", "formation", "pinhole", "dolly",
-    "walks", "gimbal", "fisheye", "newton", "clouds", "subpixel", "votes",
-    "twins", "ellipse", "valley", "ransac", "homography", "fold", "folds",
-    "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
-    "rectification", "disparity", "depth", "cube", "conic", "seam", "swing",
-    "frame", "ways", "meet", "residuals", "enlarged", "hinge", "horizon",
-    "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
-    "changes", "rail", "protractor", "asks", "divide", "stop",
-    "pixels", "rodrigues", "door", "push", "wishes",
-    "pixels", "rodrigues", "door", "bowl",
+    "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
+    "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton",
+    "clouds", "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold",
+    "folds", "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
+    "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "ways",
+    "meet", "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks",
+    "zoom", "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop",
+    "pixels", "rodrigues", "door", "push", "wishes", "bowl",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
