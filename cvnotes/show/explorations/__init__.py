@@ -30,7 +30,7 @@ _STORIES = (
     "twins", "ellipse", "valley", "ransac", "homography", "fold", "folds",
     "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing",
-    "frame", "ways", "meet", "residuals", "enlarged", "hinge", "horizon",
+    "frame", "rows", "meet", "residuals", "enlarged", "hinge", "horizon",
     "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
     "changes", "rail", "protractor", "asks", "divide", "stop",
     "pixels", "rodrigues", "door",
