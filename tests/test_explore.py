@@ -1581,21 +1581,26 @@ def test_beside_p_a_decentred_lens_moves_points_by_r2_p_and_along_p_three_times_
     assert {"r²p", "3r²p"} <= set(written)
 
 
-def test_glass_aside_bends_the_ray_on_the_axis_and_a_sensor_askew_cuts_rays_elsewhere():
-    from cvnotes.show.explorations.decentred import _AXIS, axis_ray, tilted, tilted_rays
+def test_the_glass_is_shifted_by_four_times_p_and_bends_the_ray_on_the_axis_to_its_focus():
+    from cvnotes.show.explorations.decentred import _AXIS, axis_ray
 
+    assert MODELS["decentred"].dragged("glass", (0.12, -0.16)) == {"p1": -0.04, "p2": 0.03}
+    drawing = MODELS["decentred"].drawing(p1=-0.04, p2=0.03)
+    assert drawing.sentence.startswith("δ = (0.12, −0.16), p₁ = −0.040, p₂ = 0.030")
+    # All around the grip is the light blue of the glass, up to its radius, and white beyond.
+    place = np.array(grip_of(drawing, "glass").place)
+    turn = np.linspace(0, 2 * np.pi, 200)
+    for reach, tint in ((0.44, "#E4F2FB"), (0.75, "#FFFFFF")):
+        ring = place + reach * 470 / 1.52 * np.stack([np.cos(turn), np.sin(turn)], -1)
+        ring = ring[(ring > 30).all(1) & (ring < 470).all(1)]
+        at = np.rint(ring).astype(int)
+        assert count(drawing.picture[at[:, 1], at[:, 0]], tint, 6) > 0.4 * len(at)
     assert np.allclose(axis_ray(0)[:, 1], _AXIS)
-    met = axis_ray(0.05)
+    met = axis_ray(0.2)
     assert np.allclose(met[:2, 1], _AXIS)
     # a thin lens sends a parallel ray through its focus, which is on its own axis
-    own = _AXIS + 300 * 0.05
-    assert np.isclose(met[1, 1] + (met[2, 1] - met[1, 1]) * 110 / (met[2, 0] - met[1, 0]), own)
-    start, ends = tilted_rays(0.05).transpose(1, 0, 2)
-    slopes = (ends - start)[:, 1] / (ends - start)[:, 0]
-    flat = tilted_rays(0)[0, 1, 0] - start[0, 0]
-    seen = tilted(np.array([0, 0.15]), np.column_stack([0 * slopes, slopes]))
-    assert np.allclose((ends - start)[:, 1] / flat, seen[:, 1])
-    assert np.allclose(np.diff(ends[:, 0]) / np.diff(ends[:, 1]), 0.3)  # the sensor is straight
+    own = _AXIS + 200 * 0.2
+    assert np.isclose(met[1, 1] + (met[2, 1] - met[1, 1]) * 260 / (met[2, 0] - met[1, 0]), own)
 
 
 @pytest.mark.parametrize(("p1", "p2"), [(0.05, 0), (-0.03, 0.04), (0.02, 0.01)])
@@ -1607,16 +1612,19 @@ def test_a_decentred_lens_bows_the_line_across_p_and_a_tilted_sensor_does_not(p1
     P1, P2, r2 = 3 * p1, 3 * p2, x * x + y * y
     lens = x + 2 * P1 * x * y + P2 * (r2 + 2 * x * x), y + P1 * (r2 + 2 * y * y) + 2 * P2 * x * y
     w = 1 - 2 * (P2 * x + P1 * y)
-    for shift, (u, v) in ((0, lens), (378, (x / w, y / w))):
-        inside = (np.abs(u) < 0.7) & (np.abs(v) < 0.66)
-        at = np.rint([shift + MARGIN + 185.5 + 372 / 1.68 * u, TITLE + 199.5 + 400 / 1.806 * v])
+    for left, top, unit, (u, v) in (
+        (235, 235, 470 / 1.52, lens),
+        (476 + 165, 182 + 6 + TITLE + 130, 330 / 1.52, (x / w, y / w)),
+    ):
+        inside = (np.abs(u) < 0.7) & (np.abs(v) < 0.56)
+        at = np.rint([MARGIN + left - 0.5 + unit * u, TITLE + top - 0.5 + unit * v])
         near = [
             drawing.picture[b - 1 : b + 2, a - 1 : a + 2].astype(int)
             for a, b in at.astype(int)[:, inside].T
         ]
         met = [(np.abs(around - colour(LENS)).max(-1) < 70).any() for around in near]
         assert np.mean(met) > 0.8  # the rest lies under arrows, words and the ruler
-    assert grip_of(drawing, "p").at == pytest.approx((4 * p2, 4 * p1))
+    assert grip_of(drawing, "glass").at == pytest.approx((4 * p2, 4 * p1))
 
 
 def behind_two_faces(stop, slope):
@@ -2643,6 +2651,14 @@ def test_another_camera_takes_the_same_picture_of_a_board_and_not_of_a_box():
     assert count(still[:, :440], "#8DBFE8", 12) > 100  # the box in space: blue, as in the picture
     flat = [MODELS["twins"].picture(alpha=alpha, height=0)[:, 449:] for alpha in (1000, 300)]
     assert np.abs(flat[0].astype(int) - flat[1]).max() < 30
+
+
+@pytest.mark.parametrize(("k1", "side"), [(-0.2, 1), (0.2, -1)])
+def test_the_edge_is_named_on_the_side_to_which_it_bows_off_the_ruler(k1, side, written):
+    MODELS["lens"].drawing(k1=k1, k2=0)
+    (_, edge), (_, ruler) = written["edge"], written["ruler"]
+    assert edge[0] == pytest.approx(ruler[0], abs=1e-9)
+    assert 0.02 < side * (edge[1] - ruler[1]) < 0.2
 
 
 def test_a_question_mark_stands_where_an_ideal_lens_shows_the_point_of_the_guess(monkeypatch):
