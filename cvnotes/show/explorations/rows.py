@@ -55,7 +55,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         f"Turned by {abs(values['turn']):.0f}° to the {side}: x leads {a:.2f} along X and {b:.2f} "
         f"along Z, z leads {c:.2f} and {d:.2f}."
     )
-    return Drawing(paper.join((plan, _matrix(paper, R, size[1]))), said)
+    return Drawing(paper.join((plan, _matrix(paper, R))), said)
 
 
 def _cast(plan: Panel, axis: Array, colour: str, out: float) -> None:
@@ -73,10 +73,10 @@ def _cast(plan: Panel, axis: Array, colour: str, out: float) -> None:
     plan.arrows(_C, axis, colour, 3.5)
 
 
-def _matrix(paper: Paper, R: Array, height: int) -> Panel:
+def _matrix(paper: Paper, R: Array) -> Panel:
     """Write R: the axes of the camera below each other, each on its colour."""
-    panel = paper.panel((250, height), (0, 250), (0, height), "R: its rows are the camera's axes")
-    top = height / 2 - 40
+    panel = paper.panel((250, 160), (0, 250), (0, 160), "R: its rows are the camera's axes")
+    top = 54
     for j, head in enumerate("XZ"):
         panel.text([105 + 80 * j, top - 24], f"along {head}", WORLD, anchor="mm", size=13)
     for i, (name, colour, *_) in enumerate(_ROWS):
