@@ -1,4 +1,4 @@
-"""Explore a decentred lens: pull the direction of its tangential terms, beside a tilted sensor."""
+"""Explore a decentred lens: pull its second piece of glass aside, beside a tilted sensor."""
 
 from collections.abc import Callable
 
@@ -11,37 +11,33 @@ from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, IDEAL, LENS
 
-_SIZE, _SHOWN = (372, 400), ((-0.84, 0.84), (-0.903, 0.903))
+_SIZE, _TILTED, _X = (470, 470), (330, 260), 0.76  # px of the panels; how far both show x
 _EXTENT, _TIMES = 0.5, 3  # of the grid; each point is moved so many times as far
-_BESIDE = 0.63  # how far from the centre three points are pointed out, outside of the grid
+_BESIDE = 0.58  # how far from the centre three points are pointed out, outside of the grid
 _RULER = 0.35, 0.5  # how far along p it lies, and how far it reaches to both sides
-_ARROW = 4  # how much longer than p its arrow is
+_K, _RIM = 0.25, 0.46  # of the glass: how strongly it pulls inwards, p = k δ; its radius
 _F = 800  # px, in which a bow is told
-_SIDE, _PLATE = (372, 96), "#A6A6A6"  # of the panels that show lens and sensor from the side: px
-_FIRST, _SECOND, _SENSOR, _AXIS = 110, 180, 330, 48  # px: where two pieces of glass stand
-_ASIDE, _FOCAL = 300, 110  # px: how far the second is aside for a p of 1; its focal length
-_STEEP = 0.14  # slope of the rays to a tilted sensor
+_SIDE, _GLASS, _PLATE = (330, 182), "#E4F2FB", "#A6A6A6"  # of the panel from the side, in px
+_FIRST, _SECOND, _SENSOR, _AXIS = 70, 150, 290, 70  # px: where two pieces of glass stand
+_LONG, _FOCAL = 200, 260  # px: a δ of 1; the focal length of the second
 
 
 def decentred_model() -> Model:
     """Make the model of a grid through a lens with tangential terms alone."""
     settings = (
-        Setting(
-            "p1", "p₁", -0.05, 0.05, 0.001, 0.04, "an element of the lens off the axis, along y"
-        ),
-        Setting("p2", "p₂", -0.05, 0.05, 0.001, 0, "an element of the lens off the axis, along x"),
+        Setting("p1", "p₁", -0.05, 0.05, 0.001, 0.04, "p along y: a quarter of the shift δ"),
+        Setting("p2", "p₂", -0.05, 0.05, 0.001, 0, "p along x: a quarter of the shift δ"),
     )
     about = (
-        "A grid through a lens with tangential terms alone, each point moved three times as far, "
-        "with the direction p in black. Beside it the same grid on a tilted sensor. A ruler shows "
-        "by how much a line across p bows. Below, both from the side: two pieces "
-        "of glass, one aside, and a sensor askew."
+        "A grid through a lens whose second piece of glass, light blue, is shifted by δ: its "
+        "tangential terms alone, each point moved three times as far. A ruler shows by how much a "
+        "line across δ bows. Beside it both pieces from the side, and the grid on a tilted sensor."
     )
 
     def pulled(_: Values, at: Array) -> Values:
-        return {"p1": float(at[1] / _ARROW), "p2": float(at[0] / _ARROW)}
+        return {"p1": float(at[1] * _K), "p2": float(at[0] * _K)}
 
-    return Model("decentred", about, settings, _draw, {"p": pulled})
+    return Model("decentred", about, settings, _draw, {"glass": pulled})
 
 
 def decentred(p: Array, xy: Array) -> Array:
@@ -62,76 +58,55 @@ def bow(line: Array) -> float:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     p = np.array([values["p2"], values["p1"]])
-    lens = paper.panel(_SIZE, *_SHOWN, "a decentred lens, each point moved 3 times as far")
-    sensor = paper.panel(_SIZE, *_SHOWN, "a tilted sensor, also 3 times as far")
+    delta, high = p / _K, _X * _TILTED[1] / _TILTED[0]
+    lens = paper.panel(
+        _SIZE, (-_X, _X), (-_X, _X), "a decentred lens, each point moved 3 times as far"
+    )
+    sensor = paper.panel(_TILTED, (-_X, _X), (-high, high), "a tilted sensor, also 3 times as far")
+    rim = delta + _RIM * circle(73)
+    lens.polygons([rim], _GLASS)
+    lens.line(rim, CAMERA, 1.5)
     bows = [_bent(panel, p, move) for panel, move in ((lens, decentred), (sensor, tilted))]
     _point_out(lens, p)
-    tip = _ARROW * p
-    lens.arrows([0, 0], tip, IDEAL, 2.5)
-    lens.mark([0, 0], "ideal", 5)
-    lens.polygons([tip + 6 * lens.pixel * circle(25)], IDEAL)
-    lens.text(tip + 18 * lens.pixel * _along(p)[1], "p", IDEAL, anchor="mm", size=17)
-    lens.grip("p", "the direction of the tangential terms", tip, 1)
-    size = float(np.hypot(*p))
-    below = _glass(paper, size), _askew(paper, size)
+    ahead, across = _along(p)
+    lens.arrows([0, 0], delta, IDEAL, 3)
+    lens.mark([0, 0], "ideal", 7)
+    lens.polygons([delta + 5 * lens.pixel * circle(25)], IDEAL)
+    lens.text(delta + lens.pixel * (12 * ahead - 22 * across), "δ", IDEAL, anchor="mm", size=19)
+    lens.grip("glass", "the middle of the second piece of glass", delta, 1)
+    x, y = delta.round(3) + 0.0
     words = (
-        f"p₁ = {values['p1']:.3f}, p₂ = {values['p2']:.3f}: at a focal length of {_F} px the line "
-        f"across p bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the tilted sensor."
+        f"δ = ({x:g}, {y:g}), p₁ = {values['p1']:.3f}, p₂ = {values['p2']:.3f}: at a focal length "
+        f"of {_F} px the line across δ bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the "
+        "tilted sensor."
     )
-    return Drawing(paper.join((lens, sensor), below), words)
+    return Drawing(paper.join((lens, [_aside(paper, float(np.hypot(*delta))), sensor])), words)
 
 
-def _glass(paper: Paper, p: float) -> Panel:
+def _aside(paper: Paper, delta: float) -> Panel:
     """Draw two pieces of glass from the side, and the ray on the axis of the first."""
-    panel = paper.panel(
-        _SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side: two pieces of glass, one aside"
-    )
-    _piece(panel, np.array([_FIRST, _AXIS]))
-    _piece(panel, np.array([_SECOND, _AXIS + _ASIDE * p]))
-    panel.line([[_SENSOR, 6], [_SENSOR, _SIDE[1] - 6]], _PLATE, 4)
-    panel.line(axis_ray(p), LENS, 2.2)
-    panel.mark(axis_ray(p)[-1], "lens", 5)
-    return panel
-
-
-def axis_ray(p: float) -> Array:
-    """Return the way (3, 2) of the ray on the first one's axis: only the second bends it."""
-    run = _SENSOR - _SECOND
-    return np.array([[0, _AXIS], [_SECOND, _AXIS], [_SENSOR, _AXIS + run * _ASIDE * p / _FOCAL]])
-
-
-def _askew(paper: Paper, p: float) -> Panel:
-    """Draw a piece of glass from the side, rays through its middle, and a tilted sensor."""
-    panel = paper.panel(_SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side: the sensor askew")
-    _piece(panel, np.array([_FIRST, _AXIS]))
-    panel.line([[_SENSOR, 6], [_SENSOR, _SIDE[1] - 6]], "#999999", 1, dash=4)
-    for ends in tilted_rays(p):
-        panel.line(
-            [[0, _AXIS - _FIRST * (ends[1, 1] - _AXIS) / (ends[1, 0] - _FIRST)], *ends], LENS, 1.8
-        )
-    met = tilted_rays(p)[:, 1]
-    panel.line(met[0] + np.outer([-0.15, 1.15], met[-1] - met[0]), _PLATE, 4)
-    panel.mark(met, "lens", 5)
-    return panel
-
-
-def tilted_rays(p: float) -> Array:
-    """Return the ways (3, 2, 2) from the middle of the glass to a sensor, tilted 3 times as far."""
-    slopes = np.array([-_STEEP, 0, _STEEP])
-    far = (_SENSOR - _FIRST) / (1 - 2 * _TIMES * p * slopes)
-    met = np.column_stack([_FIRST + far, _AXIS + slopes * far])
-    return np.stack([np.broadcast_to([_FIRST, _AXIS], met.shape), met], axis=1)
-
-
-def _piece(panel: Panel, at: Array) -> None:
-    """Draw a piece of glass from the side, and the axis of the first."""
+    panel = paper.panel(_SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side: the second is shifted")
     panel.line([[0, _AXIS], [_SIDE[0], _AXIS]], "#999999", 1, dash=4)
+    centre = np.array([_SECOND, _AXIS + _LONG * delta])
     turn = np.linspace(-1, 1, 31)
-    side = np.column_stack([9 * (1 - turn**2), 22 * turn])
-    face = np.concatenate([at + side, (at + side * [-1, 1])[::-1]])
-    panel.polygons([face], "#DDEFFA")
-    panel.line(face[[*range(len(face)), 0]], CAMERA, 1.5)
-    panel.mark(at, "ideal", 3)
+    side = np.column_stack([13 * (1 - turn**2), 44 * turn])
+    for at in np.array([_FIRST, _AXIS]), centre:
+        face = np.concatenate([at + side, (at + side * [-1, 1])[::-1]])
+        panel.polygons([face], _GLASS)
+        panel.line(face[[*range(len(face)), 0]], CAMERA, 1.5)
+    panel.line([[_SENSOR, 8], [_SENSOR, _SIDE[1] - 8]], _PLATE, 5)
+    panel.line(axis_ray(delta), LENS, 2.4)
+    panel.mark(axis_ray(delta)[-1], "lens", 6)
+    if delta:
+        panel.arrows([_SECOND, _AXIS], [0, _LONG * delta], IDEAL, 2.5)
+        panel.text([_SECOND + 26, _AXIS + _LONG * delta / 2 + 8], "δ", IDEAL, anchor="mm", size=19)
+    return panel
+
+
+def axis_ray(delta: float) -> Array:
+    """Return the way (3, 2) of the ray on the first one's axis: only the second bends it."""
+    run, shift = _SENSOR - _SECOND, _LONG * delta
+    return np.array([[0, _AXIS], [_SECOND, _AXIS], [_SENSOR, _AXIS + run * shift / _FOCAL]])
 
 
 def _point_out(panel: Panel, p: Array) -> None:
@@ -145,11 +120,9 @@ def _point_out(panel: Panel, p: Array) -> None:
     for at, aside, words in (
         (points[0], -20 * ahead, "r²p"),
         (points[1], -20 * ahead, "r²p"),
-        (points[2], 30 * across, "3r²p"),
-        (0.5 * points[0], -18 * ahead, "across p"),
-        (0.76 * points[2], 40 * across, "along p"),
+        (points[2], 30 * across + 14 * ahead, "3r²p"),
     ):
-        panel.text(at + panel.pixel * aside, words, IDEAL, anchor="mm", size=14)
+        panel.text(at + panel.pixel * aside, words, IDEAL, anchor="mm", size=15)
 
 
 def _along(p: Array) -> tuple[Array, Array]:
@@ -172,7 +145,4 @@ def _bent(panel: Panel, p: Array, move: Callable[[Array, Array], Array]) -> floa
     seen = move(_TIMES * p, ruled)
     panel.line(seen, LENS, 4)
     panel.line(seen[[0, -1]], IDEAL, 2)
-    px = _F * bow(move(p, ruled))
-    words = f"the line across p bows by {px:.1f} px (drawn: {_TIMES * px:.0f})"
-    panel.text([0, 0.86], words, IDEAL, anchor="mm", size=14)
-    return px
+    return _F * bow(move(p, ruled))

@@ -1,6 +1,6 @@
 """Explore the formation of an image: one box, before and after each step from world to pixels."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -13,17 +13,17 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.moved import part_of
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import cut
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, WORLD, hexed, rgb
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, hexed, rgb
 
 # One step or several: from points of the world (..., 3) to where a panel shows them, (..., 2).
 Seen = Callable[[Array], Array]
 
 _SIZE = 400, 300  # px, of a panel
-_PRODUCT = 400, 98  # px, of a panel of numbers
 _ABOVE = np.array([[-400.0, 816], [306, -606]])  # mm, X and Z of the panel of the world
 _FRAME = np.array([[-608.0, 608], [760, -152]])  # mm, x and z of that of the camera's frame
 _PLANE = 250.0  # mm: where z = 1 is drawn
 _HEIGHT, _BACK = 125.0, 80.0  # mm, of the box, and Z of its far side; Y is 0 on the floor
+_CORNER = np.array([200.0, -_HEIGHT, 0])  # mm, of the box: the one that is followed
 _EYE, _TILT = -255.0, 20.0  # mm, Y of the camera; degrees that it looks down
 _TILE, _REACH = 150.0, 1500.0  # mm: a tile, and how far there are tiles
 _NEAR, _WIDEST = 10.0, 20.0  # mm before the camera; how far from the axis on z = 1
@@ -39,21 +39,17 @@ _WEDGE, _JOINTS = "#DDEFFA", "#DEDEDE"
 def formation_model() -> Model:
     """Make the model of a box before a camera that is moved, turned and zoomed."""
     settings = (
+        Setting("way", "steps", 0, 3, 0.05, 3, "0 the world, 1 after G, 2 divided by z, 3 after A"),
         Setting("X", "camera's X (mm)", -300, 600, 5, 340, "where the camera stands"),
         Setting("Z", "camera's Z (mm)", -540, -120, 5, -420, "negative: before the box"),
         Setting("turn", "turn (°)", -80, 80, 0.5, -30, "of the camera on the spot, to the right"),
         Setting("alpha", "α (px)", 600, 1200, 10, 800, "the focal length"),
-        Setting("width", "the cross: X (mm)", 60, 400, 5, 200, "of the corner that is followed"),
-        Setting(
-            "way", "steps 1 and 2", 0, 2, 0.05, 1,
-            "upper right panel: 0 the world, 1 the camera's frame, 2 divided by z",
-        ),
-    )  # fmt: skip
+    )
     lens = Setting("k1", "k₁ of the lens", -0.3, 0.3, 0.01, 0, "how strongly the lens bends")
     about = (
         "A box on a floor, four times: from above in the world, with a camera; from above in the "
         "camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the "
-        "box is followed; below stand the matrices that carry its numbers."
+        "box is followed, with its numbers. What is still to come is pale."
     )
 
     def looked(values: Values, at: Array) -> Values:
@@ -62,7 +58,6 @@ def formation_model() -> Model:
     drags = {
         "camera": lambda _, at: {"X": float(at[0]), "Z": float(at[1])},
         "line of sight": looked,
-        "corner": lambda _, at: {"width": float(at[0])},
     }
     return Model("formation", about, settings, _draw, drags, (lens,))
 
@@ -76,23 +71,16 @@ def camera_of(values: Values) -> Camera:
     return Camera(A, look_at(eye, eye + ahead), Lens(k=(values.get("k1", 0.0),)))
 
 
-def corner_of(values: Values) -> Array:
-    """Return the corner (3,) of the box that is followed, in the WRF."""
-    return np.array([values["width"], -_HEIGHT, 0.0])
-
-
 def _draw(paper: Paper, values: Values) -> Drawing:
-    camera, W = camera_of(values), corner_of(values)
+    camera, W, way = camera_of(values), _CORNER, values["way"]
     bent = not camera.lens.is_ideal
     (x0, x1), (y0, y1) = _ABOVE
-    world = paper.panel(
-        _SIZE, (x0, x1), (y0, y1), "the world, from above: pull camera, plus, cross"
-    )
+    world = paper.panel(_SIZE, (x0, x1), (y0, y1), "the world, from above: pull camera and plus")
     draw_above(world, lambda W: W[..., [0, 2]], camera, W)
     draw_axes(world, max(150, W[0] + 70), WORLD, "XZ", lambda ends: ends[..., [0, 2]])
-    _take_hold(world, camera, W)
+    _take_hold(world, camera)
     world.line(np.array([camera.centre, W])[:, [0, 2]], ESTIMATED, 1.2)
-    frame, at = _draw_frame(paper, camera, W, values["way"])
+    frame, at = _draw_frame(paper, camera, W, min(way, 2))
     steps = "2. ÷ z, 3. lens" if bent else "2. ÷ z"
     plane = paper.panel(_SIZE, (-0.64, 0.64), (-0.48, 0.48), f"{steps}: the plane z = 1")
     picture = paper.picture_panel(_SIZE, camera.size, f"{3 + bent}. A: the picture")
@@ -113,13 +101,21 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     said = written(W, 0), written(M, 0), written(on_plane, 3), written(m, 1)
     on_the_way = {0.0: said[0], 1.0: said[1], 2.0: written(xy, 3)[:-1] + ", 1)"}
     follow(world, W[[0, 2]], said[0], up=-16)  # below the X axis
-    follow(frame, at, on_the_way.get(values["way"], ""), up=16 if values["way"] == 2 else 0)
+    follow(frame, at, on_the_way.get(min(way, 2), ""), up=16 if way >= 2 else 0)
     follow(plane, on_plane, said[2], over=True)
     follow(picture, m, said[3], over=True)
-    rows = [(world, frame), (plane, picture)]
-    if "k1" not in values:  # with a lens between them they are no product
-        rows.append((_product_of_G(paper, camera, W, M), _product_of_A(paper, camera, M, m)))
-    return Drawing(paper.join(*rows), _sentence(said, M, xy, m, bent))
+    for panel, step in ((plane, 2), (picture, 3)):
+        if way < step:
+            _make_pale(panel, min(step - way, 1), f"after step {step}")
+    return Drawing(
+        paper.join((world, frame), (plane, picture)), _sentence(said, M, xy, m, bent, way)
+    )
+
+
+def _make_pale(panel: Panel, part: float, words: str) -> None:
+    """Make pale, by some part, what is still to come."""
+    panel.image((255 - (1 - 0.85 * part) * (255.0 - panel.drawn())).astype(np.uint8))
+    panel.text([np.mean(panel.x), np.mean(panel.y)], words, MUTED, anchor="mm", size=17)
 
 
 def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Panel, Array]:
@@ -161,62 +157,19 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
     return frame, on_the_way(W)
 
 
-def _product_of_G(paper: Paper, camera: Camera, W: Array, M: Array) -> Panel:
-    """Write how G makes the corner in the camera's frame of that in the world."""
-    panel = paper.panel(
-        _PRODUCT, (0, _PRODUCT[0]), (0, _PRODUCT[1]), "1. G: its last column is T (mm)"
-    )
-    _column(panel, 54, [*M, 1], 0, CAMERA)
-    panel.text([74, 49], "=", anchor="mm", size=14)
-    for j, right in enumerate((146, 202, 258)):
-        _column(panel, right, camera.G[:, j], 3, IDEAL, bracket=("[", "", "")[j])
-    _column(panel, 308, camera.G[:, 3], 0, CAMERA, bracket="]")
-    _column(panel, 380, [*W, 1], 0, WORLD)
-    return panel
-
-
-def _product_of_A(paper: Paper, camera: Camera, M: Array, m: Array) -> Panel:
-    """Write how the division and A make the pixel of the corner in the camera's frame."""
-    shown = not np.isnan(m).any()
-    title = f"2. ÷ {M[2]:.0f}, 3. A" if shown else "behind the camera: no image"
-    panel = paper.panel(_PRODUCT, (0, _PRODUCT[0]), (0, _PRODUCT[1]), title)
-    if shown:
-        _column(panel, 62, [*m, 1], 1, ESTIMATED)
-        for j, right in enumerate((126, 158, 190)):
-            _column(panel, right, camera.A[:, j], 0, LENS, bracket="[ ]"[j])
-        _column(panel, 262, [*M[:2] / M[2], 1], 3, IDEAL)
-        _column(panel, 362, M, 0, CAMERA)
-        panel.text([79, 49], "=", anchor="mm", size=14)
-        panel.arrows([316, 49], [-38, 0], CAMERA, 1.5)
-        panel.text([298, 36], f"÷ {M[2]:.0f}", anchor="mm", size=12)
-    return panel
-
-
-def _column(
-    panel: Panel, right: float, numbers: Iterable[float], digits: int, ink: str, bracket: str = "[]"
-) -> None:
-    """Write numbers below each other, with brackets on both sides or on one."""
-    words = [f"{x:.{0 if x in (0, 1) else digits}f}".replace("-", "−") for x in numbers]
-    top = _PRODUCT[1] / 2 - 11 * len(words)
-    for i, word in enumerate(words):
-        panel.text([right, top + 22 * i + 11], word, ink, anchor="rm", size=12)
-    for side, at, turn in (("[", right - 10 - 8 * max(map(len, words)), 5), ("]", right + 7, -5)):
-        if side in bracket:
-            ends = [[at + turn, top], [at, top], [at, top + 22 * len(words)]]
-            panel.line([*ends, [at + turn, ends[-1][1]]], MUTED, 1.2)
-
-
-def _sentence(said: tuple[str, ...], M: Array, xy: Array, m: Array, bent: bool) -> str:
+def _sentence(said: tuple[str, ...], M: Array, xy: Array, m: Array, bent: bool, way: float) -> str:
     if np.isnan(m).any():
         why = "behind the camera" if M[2] <= 0 else "farther aside than the lens shows anything"
         return f"W = {said[0]} mm. G makes {said[1]} of it, {why}: it has no image."
     lens = f"the lens {said[2]}, " if bent else ""
     inside = ((m >= -0.5) & (m <= [639.5, 479.5])).all()
-    return (
-        f"W = {said[0]} mm. G makes {said[1]} of it, in the camera's frame; the division by z "
-        f"({xy[0]:.3f}, {xy[1]:.3f}), {lens}and A the pixel {said[3]}"
-        f"{'' if inside else ', outside of the picture'}."
+    told = (
+        f"W = {said[0]} mm",
+        f". G makes {said[1]} of it, in the camera's frame",
+        f"; the division by z ({xy[0]:.3f}, {xy[1]:.3f})",
+        f", {lens}and A the pixel {said[3]}{'' if inside else ', outside of the picture'}",
     )
+    return "".join(told[: 1 + int(way)]) + "."
 
 
 class Scene(NamedTuple):
@@ -327,15 +280,14 @@ def draw_axes(panel: Panel, length: float, colour: str, names: str, seen: Seen) 
         panel.text(seen(tip + 26 * np.sign(tip)), name, colour, anchor="mm", size=13)
 
 
-def _take_hold(world: Panel, camera: Camera, corner: Array) -> None:
-    """Let a hand move the camera, turn it, and pull the corner."""
+def _take_hold(world: Panel, camera: Camera) -> None:
+    """Let a hand move the camera, and turn it."""
     C, ahead = camera.centre[[0, 2]], camera.R[2, [0, 2]]
     sight = C + _SIGHT * ahead / np.linalg.norm(ahead)
     world.line([C, sight], IDEAL, 1, dash=4)
     world.mark(sight, "ideal", 7)
     world.grip("camera", "where the camera stands", C, 6)
     world.grip("line of sight", "where the camera looks", sight, 6)
-    world.grip("corner", "the corner that is followed", corner[[0, 2]], 6)
 
 
 def _draw_border(plane: Panel, camera: Camera) -> None:

@@ -75,7 +75,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     grid.image(bent_room(lens, (x, reach), _SIZE, paper.sharpness, 1))
     _draw_edge(grid, lens)
     draw_fold(grid, lens)
-    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "observed radius r L(r) against ideal r")
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "observed radius, over the ideal one")
     corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
     for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
         grid.line(corners, colour, width)
@@ -164,6 +164,11 @@ def _draw_edge(panel: Panel, lens: Lens) -> None:
     if len(shown):
         panel.line(shown[[0, -1]], IDEAL, 1.5)
     panel.line(edge, LENS, 3)
+    middle, ruled = edge[25], edge[[0, -1]].mean(axis=0)
+    side = 1 if middle[1] >= ruled[1] else -1  # in a barrel the edge is below
+    for at, words, ink, way in ((middle, "edge", LENS, side), (ruled, "ruler", IDEAL, -side)):
+        beside = at + [0, 7 * way * panel.pixel]
+        panel.text(beside, words, ink, anchor="ma" if way > 0 else "md", size=13)
 
 
 def _draw_arrows(panel: Panel, lens: Lens) -> Array:
