@@ -28,10 +28,10 @@ _STORIES = (
     "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton",
     "clouds", "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold",
     "folds", "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
-    "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "ways",
-    "meet", "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks",
-    "zoom", "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop",
-    "pixels", "rodrigues", "door", "push", "wishes", "bowl", "rows",
+    "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
+    "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
+    "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
+    "rodrigues", "door", "push", "wishes", "bowl", "rows",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
