@@ -92,8 +92,6 @@ from cvnotes.show.explorations.boards import pinhole
 from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
 from cvnotes.show.explorations.disparity import columns, triangulated
-from cvnotes.show.explorations.door import believed as believed_from
-from cvnotes.show.explorations.door import place as hung_at
 from cvnotes.show.explorations.epipolar import cameras, seen_by_the_second
 from cvnotes.show.explorations.finding import Finding, alike, rms
 from cvnotes.show.explorations.fold import (
@@ -109,9 +107,10 @@ from cvnotes.show.explorations.lens import polynomial, seen_radius
 from cvnotes.show.explorations.lettering import INDEX, LETTERS
 from cvnotes.show.explorations.model import Drawing, Model, Setting
 from cvnotes.show.explorations.moved import between, stands
+from cvnotes.show.explorations.origin import believed as believed_from
+from cvnotes.show.explorations.origin import bill, plain
 from cvnotes.show.explorations.origin import corners as corners_of_origin
-from cvnotes.show.explorations.origin import plain
-from cvnotes.show.explorations.origin import rms as rms_of_origin
+from cvnotes.show.explorations.origin import place as hung_at
 from cvnotes.show.explorations.page import asked
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.pinhole import spread_out
@@ -1397,6 +1396,41 @@ def test_the_damped_walk_finds_the_hollow_from_all_starts_above_the_walls_and_th
     said = MODELS["valley"].drawing(steps=25).sentence
     assert "damped walk is in the hollow after 15" in said
     assert "undamped one is not there" in said
+
+
+@pytest.mark.parametrize("t", [200, 600, -150])
+def test_the_parabola_touches_the_cost_and_its_lowest_point_is_the_next_step(t, monkeypatch):
+    drawn, draw = [], Panel.line
+    monkeypatch.setattr(
+        Panel, "line", lambda *how, **so: (drawn.append(np.array(how[1])), draw(*how, **so))
+    )
+    drawing = MODELS["parabola"].drawing(t=t)
+    Y = np.array([450, 600, 900, 1500, 3000, 6000])
+    noise = np.random.default_rng(6).normal(size=(42, 2))[3::7, 1]
+
+    def misses(t):
+        return 804 * 300 / (Y + t) - 804 * 300 / Y - noise
+
+    def cost(t):
+        return np.sum(misses(t) ** 2)
+
+    ground, parabola = (line for line in drawn if len(line) in (600, 400))
+    shown = ground[ground[:, 1] < 2.1e5]
+    assert np.allclose(shown[:, 1], [cost(x) for x in shown[:, 0]])
+    a, b, c = np.polyfit(*parabola.T, 2)
+    assert np.allclose(np.polyval([a, b, c], parabola[:, 0]), parabola[:, 1], rtol=1e-6)
+    assert np.polyval([a, b, c], t) == pytest.approx(cost(t), rel=1e-6)
+    assert 2 * a * t + b == pytest.approx((cost(t + 0.01) - cost(t - 0.01)) / 0.02, rel=1e-4)
+    slope = (misses(t + 0.01) - misses(t - 0.01)) / 0.02
+    assert a == pytest.approx(slope @ slope, rel=1e-4)
+    said = numbers(drawing.sentence)
+    assert said[:2] == [t, round(-b / 2 / a)]
+    assert ("behind the camera" in drawing.sentence) == (-b / 2 / a < -450)
+    if t < 300:
+        assert said[2:4] == pytest.approx(
+            [np.sqrt(cost(x) / 6) for x in (t, -b / 2 / a)], abs=0.05001
+        )
+    assert np.allclose(grip_of(drawing, "t").at, [t, cost(t)])
 
 
 def test_lines_of_equal_height_run_where_the_rms_is_so_large_and_the_hollow_is_darkest():
@@ -3881,7 +3915,7 @@ PULLED = [(name, grip) for name in explorations.NAMES for grip in MODELS[name].d
 
 
 FREE_TO_MOVE = {
-    "door": {"out": 100},  # where the hand may pull to either side
+    "origin": {"out": 100},  # where the hand may pull to either side
     "projection": {"heading": 5},
     "meet": {"b2": 0.4},
     "finding": {"step": 1.5},
@@ -3940,6 +3974,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("stop", "stop"),
     ("eleventh", "left"),
     ("wishes", "m"),
+    ("parabola", "t"),
 }
 ROUND = {
     ("rim", "ring"),
@@ -3966,6 +4001,7 @@ ON_A_CURVE = {  # its nearest place
     ("hinge", "board"),
     ("door", "hinge"),
     ("wishes", "foot"),
+    ("origin", "hinge"),
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
 FROM_ONE_TO_ONE = {("clouds", "picture"): 4}  # from picture to picture; the last
@@ -4068,7 +4104,9 @@ def test_on_a_narrow_page_panels_come_below_each_other(name):
     assert narrow.sentence == wide.sentence
     inked = [np.abs(drawing.picture.astype(int) - 255).sum() for drawing in (wide, narrow)]
     # What lies beside the photograph of the rod has no room on a telephone; e is told as a number.
-    smaller = name in ("rod", "protractor", "door") and inked[0] > inked[1]  # the others: smaller
+    smaller = (
+        name in ("rod", "protractor", "origin", "parabola") and inked[0] > inked[1]
+    )  # the others: smaller
     assert inked[0] == inked[1] or smaller
     for grip in narrow.grips:
         assert 0 <= grip.place[0] <= narrow.picture.shape[1]
@@ -4459,14 +4497,14 @@ def test_arrows_lead_where_row_1_goes_and_bars_are_as_long_as_rows_weigh_and_do_
             assert count(bars[y - up, 164:], tone, 8) == pytest.approx(wanted, abs=2)
 
 
-@pytest.mark.parametrize("at", [(-300, -300), (100, 62.5), (500, 300)])
-def test_the_plain_svd_of_many_pictures_is_where_it_is_drawn_for_each_origin(at):
+@pytest.mark.parametrize("out", [540, 0, -400])
+def test_the_plain_svd_of_many_pictures_is_where_it_is_drawn_and_what_it_pays_is_drawn(out):
     """The rows of D are written out here, with the noise of half a pixel in 400 pictures."""
     W = np.array([[25.0 * i, 25.0 * j] for j in range(6) for i in range(9)])
     G = course.poses()[6]
     x = np.column_stack([W, 0 * W[:, 0]]) @ G[:3, :3].T + 6 * G[:3, 3]
     x = x @ course.camera().A.T
-    m, rng = x[:, :2] / x[:, 2:], np.random.default_rng(3)
+    m, rng, at = x[:, :2] / x[:, 2:], np.random.default_rng(3), hung_at(out)
     R, (X, Y), o, i = np.zeros((0, 9)), (W - at).T, np.zeros(54), np.ones(54)
     for _ in range(400):
         u, v = (m + rng.normal(scale=0.5, size=m.shape)).T
@@ -4474,27 +4512,41 @@ def test_the_plain_svd_of_many_pictures_is_where_it_is_drawn_for_each_origin(at)
             [[X, Y, i, o, o, o, -u * X, -u * Y, -u], [o, o, o, X, Y, i, -v * X, -v * Y, -v]], 1
         )
         R = np.linalg.qr(np.concatenate([R, D.T]))[1]
-    a, b, c = np.linalg.svd(R)[2][8].reshape(3, 3) @ [X, Y, i]
-    net, drawn = np.column_stack([a / c, b / c]), plain(np.array(at))
+    H = np.linalg.svd(R)[2][8].reshape(3, 3)
+    a, b, c = H @ [X, Y, i]
+    net, drawn = np.column_stack([a / c, b / c]), apply(plain(at), W - at)
     assert np.abs(net - drawn).max() < 0.1
     off = np.sqrt(np.square(net - m).sum(axis=1).mean())
-    x, y = np.round(at).tolist()
-    said = numbers(MODELS["origin"].drawing(x=x, y=y).sentence)
-    assert said[2] == pytest.approx(off, abs=0.03)
-    assert said[3] == 0.02
-    picture = MODELS["origin"].picture(x=x, y=y)[TITLE:, MARGIN:]
-    places = (m + 10 * (drawn - m) - [190, 150.2]) * 374 / 79
+    drawing = MODELS["origin"].drawing(out=out)
+    said = numbers(drawing.sentence)
+    assert said[3] == pytest.approx(off, abs=0.03)
+    assert said[4] == 0.02
+    c = c / H[2, 2]
+    depth = x[:, 2] / np.linalg.lstsq(np.column_stack([X, Y, i]), x[:, 2], rcond=None)[0][2]
+    pays = [0.5 * np.mean(c**2), np.mean(np.square(c[:, None] * (net - m)).sum(axis=1))]
+    wanted = [[0.5 * np.mean(depth**2), 0], pays]
+    assert np.allclose(bill(at), wanted, atol=0.01)
+    assert said[-3:] == pytest.approx([*pays, wanted[0][0]], abs=0.015)
+    below = drawing.picture[TITLE + 210 + MARGIN + TITLE + MARGIN :]
+    places = (m + 10 * (drawn - m) - [190, 161.8]) * 374 / 79
     for k in (0, 8, 53, 27):  # corners of the net that is enlarged, and one within it
-        u, v = np.rint(places[k]).astype(int)
-        near = picture[max(v - 2, 0) : v + 3, max(u - 2, 0) : u + 3]
+        u, v = np.rint(places[k]).astype(int) + [MARGIN, 0]
+        near = below[max(v - 2, 0) : v + 3, max(u - 2, 0) : u + 3]
         assert count(near, LENS, 90) + count(near, IDEAL, 90) + count(near, ESTIMATED, 90) > 1
+    bars = below[:, MARGIN + 374 + 2 * MARGIN :]
+    for (noise, fit), up in zip(bill(at), (143, 55), strict=True):
+        assert count(bars[210 - up], "#A9A9A9", 9) == pytest.approx(344 / 0.6 * noise, abs=2)
+        assert count(bars[210 - up], LENS, 9) == pytest.approx(344 / 0.6 * fit, abs=2)
 
 
 @pytest.mark.parametrize("at", [(-300, -300), (100, 60), (500, 300)])
 def test_the_board_that_the_plain_svd_believes_in_is_seen_by_the_same_pixels_but_nearer(at):
     origin, true, blue = believed_from(np.array(at, float))
     A = course.camera().A
-    for place, seen in ((true, corners_of_origin()[1]), (blue, plain(np.array(at, float)))):
+    for place, seen in (
+        (true, corners_of_origin()[1]),
+        (blue, apply(plain(np.array(at, float)), corners_of_origin()[0] - at)),
+    ):
         m = place @ A.T
         assert np.allclose(m[:, :2] / m[:, 2:], seen, atol=1e-6)
     X = np.column_stack([corners_of_origin()[0] - at, np.ones(54)])
@@ -4508,8 +4560,8 @@ def test_the_board_that_the_plain_svd_believes_in_is_seen_by_the_same_pixels_but
 @pytest.mark.parametrize("out", [540, 0, -400])
 def test_the_door_is_drawn_where_the_plain_svd_has_the_board_and_hangs_on_the_origin(out):
     origin, true, blue = believed_from(hung_at(out))
-    drawing = MODELS["door"].drawing(out=out)
-    told = numbers(drawing.sentence)[-2:]
+    drawing = MODELS["origin"].drawing(out=out)
+    told = numbers(drawing.sentence)[1:3][::-1]
     assert told == pytest.approx(
         [true[:, 2].mean() / origin[2], blue[:, 2].mean() / origin[2]], abs=5e-3
     )
@@ -4526,22 +4578,8 @@ def test_the_door_is_drawn_where_the_plain_svd_has_the_board_and_hangs_on_the_or
     assert count(near(origin), WORLD, 9) > 9
     (grip,) = drawing.grips
     assert np.allclose(grip.at, origin[[2, 1]])
-    assert MODELS["door"].dragged("hinge", tuple(grip.at), out=100) == {"out": out}
+    assert MODELS["origin"].dragged("hinge", tuple(grip.at), out=100) == {"out": out}
     assert (abs(told[0] - told[1]) < 0.005) == (out == 0)  # hung in its middle it does not turn
-
-
-def test_the_plane_is_darker_where_the_plain_svd_is_farther_off_and_palest_at_the_centroid():
-    picture = MODELS["origin"].picture(x=650, y=540)[TITLE:, MARGIN + 374 + 2 * MARGIN :]
-    places = [(100, -60), (350, 62), (-330, 62), (600, -400), (-450, -400)]
-    tones = []
-    for x, y in places:
-        u, v = np.rint([(x + 500) * 374 / 1200, (y + 450.9) * 320 / 1026.8]).astype(int)
-        tones.append(int(picture[v - 1 : v + 2, u - 1 : u + 2].astype(int).min(axis=(0, 1))[0]))
-    off = [float(rms_of_origin(plain(np.array(at)))) for at in places]
-    assert sorted(tones, reverse=True) == [tones[k] for k in np.argsort(off)]
-    X, Y = np.meshgrid(np.arange(-400, 601, 20), np.arange(-400, 501, 20))
-    best = rms_of_origin(plain(np.stack([X, Y], axis=-1))).argmin()
-    assert np.hypot(X.flat[best] - 100, Y.flat[best] - 62.5) < 30
 
 
 def test_a_line_of_equal_height_is_as_wide_on_steep_ground_as_on_even():

@@ -86,7 +86,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
     kinds = [kind for kind, _ in reached]
     explored = [
         model(name)
-        for name in ("homography", "ellipse", "origin", "door", "swing", "valley", "ransac")
+        for name in ("homography", "ellipse", "origin", "swing", "parabola", "valley", "ransac")
     ]
     assert (
         kinds.count("range")

@@ -101,7 +101,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     straight.line(_CHART[[0, 1, 2, 3, 0]], WORLD, 1.5, dash=5)
     straight.mark(place, "ideal", 8)
     _draw_way(straight, place)
-    return Drawing(paper.join((picture, straight)), _sentence(place))
+    said = [_sentence(place)]
+    for i, (du, dv) in enumerate(m - _READ, start=1):
+        if du or dv:
+            said.append(f"Corner {i} is pulled by ({du:.0f}, {dv:.0f}) px.".replace("-", "−"))
+    return Drawing(paper.join((picture, straight)), " ".join(said))
 
 
 def _draw_grid(panel: Panel, H: Array) -> None:

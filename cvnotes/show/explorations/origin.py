@@ -1,4 +1,4 @@
-"""Explore normalisation: pull the origin of a board, and see where the plain DLT puts its net.
+"""Explore why the plain DLT errs: a far board that swings about its origin, like a door.
 
 That the answer depends on the coordinates: R. Hartley, "In defense of the eight-point algorithm",
 *PAMI* 19 (1997).
@@ -7,7 +7,6 @@ That the answer depends on the coordinates: R. Hartley, "In defense of the eight
 from functools import lru_cache
 
 import numpy as np
-from PIL import Image as Bitmap
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera
@@ -16,34 +15,46 @@ from cvnotes.pictures import course
 from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.boards import draw_net, draw_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle, contours
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD, mixed, rgb
+from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD, mixed
 
 _BOARD, _NOISE, _TIMES = course.board(), 0.5, 10  # px; shifts are drawn so many times
-_SIZE = (374, 320)
-_SEEN = (190.0, 269.0), (150.2, 217.8)  # px, u and v
-_PLANE = (-500.0, 700.0), (-450.9, 575.9)  # mm around the board's middle
-_LEVELS = (0.05, 0.1, 0.2, 0.3)  # px
-_CELLS = 28, 24  # of the coarse map, along X and Y
-_PALE = "#E4E4E4"
+_FARTHEST = 540  # mm, of the origin from the board's middle
+_ALONG = np.array([-0.741, -0.6715])  # that way on the board: up and to the left, of length 1
+_WIDE, _NARROW, _HALF = (754, 210), (374, 150), (374, 210)  # px
+_AWAY, _MIDDLE = (-130.0, 4000.0), -200.0  # mm of depth; of height, in the middle of the picture
+_SEEN = (190.0, 269.0), (161.8, 206.16)  # px, u and v
+_BILL = 0.6  # px², as long as a bar can be
+_PALE, _GREY = "#E4E4E4", "#A9A9A9"
 
 
 def origin_model() -> Model:
     """Make the model of a far board, and of the origin from which its corners are measured."""
-    settings = tuple(
-        Setting(axis, f"origin {axis} (mm)", *ends, 5, start, "from the board's first corner")
-        for axis, ends, start in (("x", (-470, 670), -300), ("y", (-420, 545), -300))
-    )
+    settings = (
+        Setting("out", "origin from the board's middle (mm)", -_FARTHEST, _FARTHEST, 10, _FARTHEST,
+                "along the board, upwards and to the left"),
+    )  # fmt: skip
     about = (
-        "A board that is far away, and two nets through its corners, their shifts enlarged: of the "
-        "plain DLT, and of the normalised one. Beside it the board's plane with the origin of its "
-        "coordinates, and lines that say how far off the plain DLT is from each origin."
+        "A camera and a far board from the side: where the board is, and where the plain DLT "
+        "believes it, turned about the origin of its coordinates. Below, two nets through its "
+        "corners, their shifts enlarged: of the plain DLT, and of the normalised one; and what "
+        "the misses cost, of the true homography and of the plain DLT's."
     )
-    drags = {"origin": lambda _, at: {"x": float(at[0]), "y": float(at[1])}}
-    return Model("origin", about, settings, _draw, drags)
+
+    def pulled(_: Values, at: Array) -> Values:
+        start, end = _in_camera(np.array([place(0.0), place(1.0)]))[:, [2, 1]]
+        return {"out": float((at - start) @ (end - start) / ((end - start) @ (end - start)))}
+
+    return Model("origin", about, settings, _draw, {"hinge": pulled})
 
 
+def place(out: float) -> Array:
+    """Return the origin (2,) in mm from the board's first corner."""
+    return np.asarray(corners()[0].mean(axis=0) + out * _ALONG)
+
+
+@lru_cache(maxsize=1)
 def far_camera() -> Camera:
     """Return the camera that sees the board from six times as far away."""
     G = course.poses()[6].copy()
@@ -57,102 +68,129 @@ def corners() -> tuple[Array, Array]:
     return _BOARD.points[:, :2], far_camera().project(_BOARD.points)
 
 
-@lru_cache(maxsize=2)
-def _measured(scaled: bool) -> tuple[Array, Array, Array]:
-    """Return all that many measurements say of H between normalised points: (9, 9), N₁ and N₂.
+def _in_camera(xy: Array) -> Array:
+    """Return places of the board's plane (n, 2) in the camera's frame (n, 3)."""
+    G = far_camera().G
+    return np.asarray(np.insert(xy, 2, 0, axis=1) @ G[:3, :3].T + G[:3, 3])
+
+
+def _dlt_of_many(W: Array, m: Array, noise: float) -> Array:
+    """Return H (3, 3) of the DLT, h9 = 1, from many photographs with noise of so many px.
 
     A noise e of a pixel multiplies X, Y and 1 in D. In the mean of many measurements DᵀD grows by
     the squares of e X, e Y and e, as it would by rows of their own.
     """
+    rows = np.zeros((2 * len(W), 9))
+    rows[:, 6:] = noise * to_homogeneous(W).repeat(2, axis=0)
+    D = np.vstack([design_matrix(W, m), rows])
+    H = np.linalg.svd(D, full_matrices=False)[2][-1].reshape(3, 3)
+    return np.asarray(H / H[2, 2])
+
+
+def plain(at: Array) -> Array:
+    """Return H of the plain DLT, of corners measured from an origin, whose depth w is 1."""
     W, m = corners()
-    N1, N2 = normaliser(W), normaliser(m) if scaled else np.eye(3)
-    x = apply(N1, W)
-    noise = np.zeros((2 * len(W), 9))
-    noise[:, 6:] = _NOISE * N2[0, 0] * to_homogeneous(x).repeat(2, axis=0)
-    return np.linalg.qr(np.vstack([design_matrix(x, apply(N2, m)), noise]))[1], N1, N2
-
-
-def plain(origins: Array) -> Array:
-    """Return where the plain DLT puts the corners (…, 54, 2), if they are measured from origins."""
-    x = seen_from(origins)
-    return np.asarray(x[..., :2] / x[..., 2:])
-
-
-def seen_from(origins: Array) -> Array:
-    """Return H times the corners (…, 54, 3), H of the plain DLT with h9 = 1: w is 1 at the origin.
-
-    The equations are those of normalised points, and ‖h‖ = 1 is of the coordinates in use.
-    """
-    R, N1, _ = _measured(scaled=False)
-    back = np.broadcast_to(np.linalg.inv(N1), (*origins.shape[:-1], 3, 3)).copy()
-    back[..., :2, 2] -= origins
-    D = R.reshape(9, 3, 3) @ back[..., None, :, :].swapaxes(-1, -2)
-    H = np.linalg.svd(D.reshape(*origins.shape[:-1], 9, 9))[2][..., -1, :]
-    H = H.reshape(*origins.shape[:-1], 3, 3) / H[..., -1:, None]
-    x = to_homogeneous(corners()[0] - origins[..., None, :]) @ H.swapaxes(-1, -2)
-    return np.asarray(x)
+    return _dlt_of_many(W - at, m, _NOISE)
 
 
 def normalised() -> Array:
     """Return where the normalised DLT puts the corners (54, 2), from whatever origin."""
-    R, N1, N2 = _measured(scaled=True)
-    H = np.linalg.inv(N2) @ np.linalg.svd(R)[2][-1].reshape(3, 3) @ N1
-    return np.asarray(apply(H, corners()[0]))
+    W, m = corners()
+    N1, N2 = normaliser(W), normaliser(m)
+    H = _dlt_of_many(apply(N1, W), apply(N2, m), _NOISE * float(N2[0, 0]))
+    return np.asarray(apply(np.linalg.inv(N2) @ H @ N1, W))
 
 
-def rms(net: Array) -> Array:
-    """Return how far a net (…, 54, 2) is off, as RMS in pixels."""
-    return np.asarray(np.sqrt(((net - corners()[1]) ** 2).sum(axis=-1).mean(axis=-1)))
+def rms(net: Array) -> float:
+    """Return how far a net (54, 2) is off, as RMS in pixels."""
+    return float(np.sqrt(((net - corners()[1]) ** 2).sum(axis=-1).mean()))
 
 
-@lru_cache(maxsize=2)
-def _map(sharpness: int) -> Drawn:
-    """Paint how far the plain DLT is off from each origin: paler is better."""
-    x, y = (  # the middles of cells, two of them outside on each side
-        low + (high - low) * (np.arange(-2, n + 2) + 0.5) / n
-        for (low, high), n in zip(_PLANE, _CELLS, strict=True)
-    )
-    X, Y = np.meshgrid(x, y)
-    coarse = np.log(rms(plain(np.stack([X, Y], axis=-1)))).astype(np.float32)
-    size = (sharpness * _SIZE[0], sharpness * _SIZE[1])
-    inside = (2, 2, 2 + _CELLS[0], 2 + _CELLS[1])
-    fine = Bitmap.fromarray(coarse).resize(size, Bitmap.Resampling.BICUBIC, box=inside)
-    height = np.asarray(fine)
-    part = np.interp(height, np.log([0.02, 1.2]), [0, 0.6])[..., None]
-    tint = 1 - part * (1 - np.array(rgb(LENS)))
-    ink = contours(height, np.log(_LEVELS), 0.5 + 0.5 * sharpness)[..., None]
-    return np.asarray((255 * (tint + ink * (1 - tint))).round(), dtype=np.uint8)
+def believed(at: Array) -> tuple[Array, Array, Array]:
+    """Return the origin (3,), and the corners (54, 3) as they are and as the plain DLT has them.
+
+    In mm of the camera's frame; the origin has the same depth for both.
+    """
+    origin, *true = _in_camera(np.vstack([at, corners()[0]]))
+    seen = to_homogeneous(corners()[0] - at) @ plain(at).T
+    return origin, np.array(true), origin[2] * seen @ np.linalg.inv(far_camera().A).T
+
+
+def bill(at: Array) -> Array:
+    """Return the squares (2, 2) of misses times depths, of noise and of the fit, mean.
+
+    In px², for the board as it is and as the plain DLT has it; the origin has the depth 1.
+    """
+    depths = np.array([board[:, 2] for board in believed(at)[1:]]) / believed(at)[0][2]
+    off = apply(plain(at), corners()[0] - at) - corners()[1]
+    misses = np.stack([0 * depths[0], np.hypot(*off.T)])
+    squares = 2 * (_NOISE * depths) ** 2, (misses * depths) ** 2
+    return np.asarray(np.mean(squares, axis=-1).T)
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    at = np.array([values["x"], values["y"]])
-    nets, m = (plain(at), normalised()), corners()[1]
-    panel = paper.panel(_SIZE, *_SEEN, f"blue: plain; orange: normalised; shifts × {_TIMES}")
-    draw_squares(panel, m, _BOARD, _PALE)
-    for net, colour in zip(nets, (LENS, ESTIMATED), strict=True):
-        draw_net(panel, m + _TIMES * (net - m), _BOARD, colour, 1.6)
-    panel.polygons(m[:, None] + 2.6 * panel.pixel * circle(17), IDEAL)
-    off = [float(rms(net)) for net in nets]
-    return Drawing(
-        paper.join((panel, _plane(paper, at))),
-        f"Origin at ({at[0]:.0f}, {at[1]:.0f}) mm: the plain DLT is {off[0]:.2f} px off, the "
-        f"normalised one {off[1]:.2f} px.",
+    at = place(values["out"])
+    net, costs = apply(plain(at), corners()[0] - at), bill(at)
+    side, ratios = _side(paper, at)
+    (noise, _), (less, fit) = costs
+    sentence = (
+        f"The origin is {abs(values['out']):.0f} mm from the board's middle, which the plain DLT "
+        f"believes {ratios[1]:.2f} times as far away as the origin (true: {ratios[0]:.2f}). Its "
+        f"net is {rms(net):.2f} px off, the normalised one's {rms(normalised()):.2f} px. It pays "
+        f"{less:.2f} for noise and {fit:.2f} for the fit; the true one would pay {noise:.2f}."
     )
+    return Drawing(paper.join((side,), (_nets(paper, net), _bars(paper, costs))), sentence)
 
 
-def _plane(paper: Paper, at: Array) -> Panel:
-    """Draw the board from above, the origin of its coordinates, and how far off each would be."""
-    panel = paper.panel(_SIZE, *_PLANE, "the board from above; pull the green origin")
-    panel.image(_map(paper.sharpness))
-    W, middle = corners()[0], corners()[0].mean(axis=0)
-    draw_squares(panel, W, _BOARD, mixed("#FFFFFF", IDEAL, 0.5))
-    ray = middle + np.linspace(0, 600, 61)[:, None] * [-0.6, 0.8]
-    for level, place in zip(_LEVELS, np.searchsorted(rms(plain(ray)), _LEVELS), strict=True):
-        if 9 < place < len(ray):
-            panel.text(ray[place], f"{level:g} px", LENS, anchor="mm", size=12)
-    for way, name in ((np.array([130, 0]), "X"), (np.array([0, 130]), "Y")):
-        panel.line([at, at + way], WORLD, 2.5)
-        panel.text(at + 1.25 * way, name, WORLD, anchor="mm", size=13)
-    panel.mark(at, "world", 9)
-    panel.grip("origin", "the origin of the board's coordinates", at, 5)
+def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
+    """Draw the board from the side; return with it how far its middle is, in the origin's depth."""
+    width, height = _NARROW if paper.narrow else _WIDE
+    half = (_AWAY[1] - _AWAY[0]) * height / width / 2
+    high, low = _MIDDLE - half, _MIDDLE + half
+    title = "the camera and the board, from the side"
+    panel = paper.panel((width, height), _AWAY, (high, low), title)
+    hinge, *boards = (one[..., [2, 1]] for one in believed(at))
+    middles = [board.mean(axis=0) for board in boards]
+    panel.polygons([[hinge, *middles]], mixed("#FFFFFF", LENS, 0.15))
+    panel.line([[0, 0], middles[0]], MUTED, 0.8)
+    ratios = [float(middle[0] / hinge[0]) for middle in middles]
+    rows = zip(boards, middles, ratios, (IDEAL, LENS), ("true", "blue"), (28, 11), strict=True)
+    for board, middle, ratio, colour, name, up in rows:
+        panel.line([hinge, middle], colour, 1.4, dash=4)
+        draw_net(panel, board, _BOARD, colour, 1)
+        below = [middle[0], low - up * panel.pixel]
+        panel.text(below, f"{name} {ratio:.2f}", colour, anchor="mm")
+    panel.mark([0, 0], "camera", 9, looks=(1, 0))
+    panel.text([0, low - 11 * panel.pixel], "camera", MUTED, anchor="lm")
+    panel.mark(hinge, "world", 6)
+    panel.text([hinge[0], low - 45 * panel.pixel], "origin 1.00", WORLD, anchor="mm")
+    panel.grip("hinge", "the origin, which is the hinge", hinge, 10)
+    return panel, ratios
+
+
+def _nets(paper: Paper, net: Array) -> Panel:
+    panel = paper.panel(_HALF, *_SEEN, f"blue: plain; orange: normalised; shifts × {_TIMES}")
+    m = corners()[1]
+    draw_squares(panel, m, _BOARD, _PALE)
+    for one, colour in ((net, LENS), (normalised(), ESTIMATED)):
+        draw_net(panel, m + _TIMES * (one - m), _BOARD, colour, 1.6)
+    panel.polygons(m[:, None] + 2.6 * panel.pixel * circle(17), IDEAL)
+    return panel
+
+
+def _bars(paper: Paper, costs: Array) -> Panel:
+    """Draw two bills as bars, of noise in grey and of a bad fit in blue, one behind the other."""
+    title = "(miss × depth)², mean: the DLT wants it small"
+    panel = paper.panel(_HALF, (0, _HALF[0]), (_HALF[1], 0), title)
+    long = (_HALF[0] - 30) / _BILL
+    for name, ink, (noise, fit), y in zip(
+        ("the true board", "the blue board"), (IDEAL, LENS), costs, (130, 42), strict=True
+    ):
+        ends = 15 + long * np.array([0, noise, noise + fit])
+        for left, right, colour in ((*ends[:2], _GREY), (*ends[1:], LENS)):
+            panel.polygons([[[left, y], [right, y], [right, y + 26], [left, y + 26]]], colour)
+        panel.text([15, y + 44], f"{name} costs {noise + fit:.2f}", ink, size=13)
+        panel.text([15, y - 14], f"noise {noise:.2f}", MUTED)
+        if fit > 0.004:
+            panel.text([max(ends[1], 95), y - 14], f"worse fit {fit:.2f}", LENS)
     return panel

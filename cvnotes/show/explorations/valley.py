@@ -1,5 +1,6 @@
 """Explore Levenberg–Marquardt: a cost over two unknowns as ground, and two walks over it."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -72,6 +73,12 @@ def rows_of_tiles() -> tuple[Array, Array]:
     return tiles, Camera(floor_A(), G).project(np.insert(tiles, 2, 0, axis=1))
 
 
+def measured() -> tuple[Array, Array]:
+    """Return the corners (42, 2) of the tiles, and where they are seen with a noise of a pixel."""
+    tiles, exact = rows_of_tiles()
+    return tiles, exact + np.random.default_rng(6).normal(scale=1.0, size=exact.shape)
+
+
 def floor_A() -> Array:
     """Return A (3, 3) of the camera over the floor: as the course's, with a larger sensor."""
     return np.asarray(course.camera().A + [[0, 0, 480], [0, 0, 360], [0, 0, 0]])
@@ -80,8 +87,7 @@ def floor_A() -> Array:
 @lru_cache(maxsize=1)
 def floor() -> Floor:
     """Measure the rows of tiles with a noise of one pixel, as chapter 6 does."""
-    tiles, exact = rows_of_tiles()
-    seen = exact + np.random.default_rng(6).normal(scale=1.0, size=exact.shape)
+    tiles, seen = measured()
     N1, N2 = normaliser(tiles), normaliser(seen)
     best = N2 @ refine_homography(dlt(tiles, seen), tiles, seen) @ np.linalg.inv(N1)
     px = 1 / (N2[0, 0] * np.sqrt(len(tiles)))
@@ -162,17 +168,30 @@ def _name_ground(ground: Panel, of: Floor) -> None:
     ground.mark(best, "ideal", 12)
 
 
-def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
-    panel = paper.panel((440, 396), (-1.5, _MOST + 1), (4.3, -0.5), "RMS (px) after each step")
-    panel.ticks(x=(5, 10, 15, 20, 25), size=11)
+def rms_panel(paper: Paper, size: tuple[int, int], most: int) -> Panel:
+    """Make a panel for the RMS after each of so many steps, as a logarithm."""
+    left = -46 * most / (size[0] - 60)  # there the numbers stand
+    panel = paper.panel(size, (left, 1.04 * most), (4.3, -0.5), "RMS (px) after each step")
+    panel.ticks(x=np.arange(1, 6) * (most // 5), size=11)
     for power in range(5):
-        panel.line([[-2, power], [_MOST + 2, power]], "#DDDDDD", 0.5)
-        panel.text([-1.3, power], f"{10**power:,}", anchor="lm", size=11)
+        panel.line([[-most, power], [2 * most, power]], "#DDDDDD", 0.5)
+        panel.text([0.95 * left, power], f"{10**power:,}", anchor="lm", size=11)
+    return panel
+
+
+def rms_curve(panel: Panel, rms: Sequence[float], colour: str, width: float) -> Array:
+    """Draw the RMS after each step; return where it ends."""
+    curve = np.column_stack([np.arange(len(rms)), np.log10(np.clip(rms, 0.1, 1e6))])
+    panel.line(curve, colour, width)
+    return np.asarray(curve[-1])
+
+
+def _curves(paper: Paper, rms: list[list[float]]) -> Panel:
+    panel = rms_panel(paper, (440, 396), _MOST)
     for values, (name, colour, width, meaning), up in zip(rms, _WALKS, (-0.3, 0.3), strict=True):
-        curve = np.column_stack([np.arange(len(values)), np.log10(np.clip(values, 0.1, 1e6))])
-        panel.line(curve, colour, width)
-        panel.mark(curve[-1], meaning, 7)
-        steps, high = curve[-1].tolist()
+        end = rms_curve(panel, values, colour, width)
+        panel.mark(end, meaning, 7)
+        steps, high = end.tolist()
         at, anchor = (steps + 0.8, "lm") if steps < 18 else (_MOST, "rm")
         panel.text([at, np.clip(high + up, -0.1, 3.9)], name, colour, anchor=anchor, size=12)
     return panel

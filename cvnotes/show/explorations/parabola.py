@@ -1,0 +1,126 @@
+"""Explore the step of Gauss and Newton: a cost over one unknown, and the parabola in its place."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from cvnotes.base import Array
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.valley import floor_A, measured, rms_curve, rms_panel
+from cvnotes.show.style import ESTIMATED, LENS, MUTED, rgb
+
+_NEAREST, _FARTHEST = -190, 630  # mm, of the start
+_SHOWN = (-760.0, 730.0), (210_000.0, -30_000.0)  # t in mm, the cost in px²
+_STEPS, _HEIGHT = 5, 340  # px
+_WALL = -450  # mm: beyond it row 1 would lie behind the camera
+_WIDE, _NARROW = (544, 204), (374, 374)  # px, of the cost and of the RMS
+_GROUND = "#8FA3BD", "#EDF1F6"  # low and high, as in the chapter's valley
+_APART = 16  # px between steps that have a number each
+
+
+def parabola_model() -> Model:
+    """Make the model of a floor believed t mm too far away, and of the steps that find this t."""
+    settings = (
+        Setting("t", "t (mm)", _NEAREST, _FARTHEST, 1, 200, "where the parabola touches the cost"),
+    )
+    about = (
+        "The cost over one unknown t as a hilly ground, a parabola that touches it where t is, and "
+        "the steps of Gauss and Newton from there on. Beside it their RMS."
+    )
+    return Model("parabola", about, settings, _draw, {"t": lambda _, at: {"t": float(at[0])}})
+
+
+def residuals(t: Array | float) -> tuple[Array, Array]:
+    """Return r (..., 6), predicted minus seen by the middle tile of each row, and J = dr/dt."""
+    tiles, seen = measured()
+    distance = tiles[3::7, 1] + np.asarray(t)[..., None]
+    _, alpha, v0 = floor_A()[1]
+    return v0 + alpha * 300 / distance - seen[3::7, 1], -alpha * 300 / distance**2
+
+
+def cost(t: Array | float) -> Array:
+    """Return the sum of squares."""
+    return np.asarray(np.sum(residuals(t)[0] ** 2, axis=-1))
+
+
+def walk(t: float) -> Array:
+    """Return t before the first step and after each."""
+    way = [t]
+    for _ in range(_STEPS):
+        r, J = residuals(way[-1])
+        way.append(way[-1] - float(J @ r / (J @ J)))
+    return np.array(way)
+
+
+@lru_cache(maxsize=1)
+def _ground() -> Drawn:
+    part = np.linspace(1, 0, 240)[:, None, None]
+    low, high = (255 * np.array(rgb(tone)) for tone in _GROUND)
+    return np.asarray((low + part * (high - low)).round(), np.uint8).repeat(2, axis=1)
+
+
+def _draw(paper: Paper, values: Values) -> Drawing:
+    t, (wide, beside) = values["t"], _NARROW if paper.narrow else _WIDE
+    panel = paper.panel((wide, _HEIGHT), *_SHOWN, "the cost rᵀr over t (mm), and its parabola")
+    panel.image(_ground())
+    (left, right), (top, _) = _SHOWN
+    before = np.linspace(_WALL + 1, right, 600)
+    curve = np.column_stack([before, np.minimum(cost(before), 3 * top)])
+    panel.polygons([np.vstack([curve, [right, 3 * top]])], "white")
+    panel.line(curve, LENS, 2.4)
+    at, way, (r, J) = np.array([t, cost(t)]), walk(t), residuals(t)
+    across = np.linspace(left, right, 400)
+    touching = np.sum((r + J * (across - t)[:, None]) ** 2, axis=-1)
+    panel.line(np.column_stack([across, touching]), ESTIMATED, 2.2)
+    _name(panel, float(np.interp(-550, across, touching)))
+    lowest = np.array([way[1], np.sum((r + J * (way[1] - t)) ** 2)])
+    up = np.array([way[1], min(float(cost(way[1])), top)])
+    panel.line(np.stack([lowest, up]), ESTIMATED, 1.2, dash=3)
+    _number_steps(panel, way)
+    panel.mark(lowest, "estimated", 8)
+    panel.mark(at, "world", 9)
+    panel.grip("t", "t, where the parabola touches", at, 4)
+    rms = np.sqrt(cost(way) / len(r))
+    course = rms_panel(paper, (beside, 200 if paper.narrow else _HEIGHT), _STEPS)
+    rms_curve(course, rms.tolist(), ESTIMATED, 2.4)
+    course.mark(np.column_stack([range(1, 6), np.log10(rms[1:])]), "estimated", 6)
+    course.mark([0, np.log10(rms[0])], "world", 6)
+    return Drawing(paper.join((panel, course)), _sentence(way, rms))
+
+
+def _name(panel: Panel, passing: float) -> None:
+    """Draw the scale of t, and the wall; the words stay clear of the parabola passing there."""
+    top, low = _SHOWN[1]
+    for tick in (-600, -400, -200, 0, 200, 400, 600):
+        panel.text([tick, low + 7000], f"{tick}".replace("-", "−"), anchor="mm", size=11)
+    panel.line(np.array([[_WALL, top], [_WALL, -14_000]]), MUTED, 1.2, dash=4)
+    above = 194_000 if 12_000 < passing < 100_000 else 62_000
+    for words, down in (("row 1", 0), ("is behind", 14_000), ("the camera", 28_000)):
+        panel.text([_WALL - 14, above - down], words, MUTED, anchor="rm", size=12)
+    panel.text([560, float(cost(560.0)) - 22_000], "cost", LENS, anchor="lm", size=13)
+
+
+def _number_steps(panel: Panel, way: Array) -> None:
+    """Write each step's number where it stands on the cost, if there is room for it."""
+    last = np.full(2, np.inf)
+    for step, at in enumerate(np.column_stack([way, cost(way)])[1:], start=1):
+        here = panel.place(at) / panel.scale
+        if at[1] < _SHOWN[1][0] and np.linalg.norm(here - last) > _APART:
+            aside = [-12 * panel.pixel, 0] if at[1] > 8000 else [0, 9000]
+            panel.mark(at, "estimated", 5)
+            panel.text(at + aside, f"{step}", ESTIMATED, anchor="mm", size=13)
+            last = here
+
+
+def _sentence(way: Array, rms: Array) -> str:
+    t, lowest = (f"{round(x)}".replace("-", "−") for x in way[:2])
+    said = (
+        f"At t = {t} mm the curve is replaced by a parabola; the step goes to its lowest point, "
+        f"{lowest} mm. "
+    )
+    if way[1] < _WALL:
+        rows = "row 1 lies" if way[1] > -600 else "rows 1 and 2 lie"
+        return f"{said}There {rows} behind the camera: the walk does not find back."
+    after = ", ".join(f"{x:.1f}" for x in rms[:5])
+    return f"{said}RMS from step to step: {after} px."
